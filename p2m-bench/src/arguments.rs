@@ -69,6 +69,40 @@ pub(crate) enum Command {
     Program(ProgramArguments),
     /// Times distances between two scenes at many poses, and between a scene and an arm of capsules, against parry3d
     Pairs(PairsArguments),
+    /// Writes a generated terrain as shards and asks them within a limit of memory; fails if an answer differs
+    Shards(ShardsArguments),
+}
+
+/// The arguments of `shards`.
+#[derive(Args)]
+pub(crate) struct ShardsArguments {
+    /// The least number of triangles of the terrain, which is generated in tiles of 500,000
+    #[arg(long, default_value_t = 10_000_000)]
+    pub(crate) triangles: u64,
+
+    /// The largest length of the file of a shard in bytes
+    #[arg(long, default_value_t = 1 << 28)]
+    pub(crate) max_bytes: u64,
+
+    /// The largest amount of shards in memory in bytes
+    #[arg(long, default_value_t = 1 << 30)]
+    pub(crate) max_memory: u64,
+
+    /// The number of queries of each set
+    #[arg(long, default_value_t = 1_000_000)]
+    pub(crate) queries: usize,
+
+    /// The number of queries of each set that are compared with brute force
+    #[arg(long, default_value_t = 16)]
+    pub(crate) checked: usize,
+
+    /// Build one tree over all triangles as well, and compare all answers
+    #[arg(long)]
+    pub(crate) whole: bool,
+
+    /// The folder for the shards, if it is not that for temporary files
+    #[arg(long)]
+    pub(crate) folder: Option<PathBuf>,
 }
 
 /// The arguments that `query` and `verify` share.

@@ -12,7 +12,7 @@ use crate::report::provenance;
 use crate::scene::Scene;
 use crate::{
     adversaries, advise, backends, batch, candidates, delaunay, extremes, field, instances, kdop, measure, octree,
-    pairs, paper, program, rays, refit, report, saved, splits, tradeoff, verify,
+    pairs, paper, program, rays, refit, report, saved, shards, splits, tradeoff, verify,
 };
 use anyhow::{Context, Result};
 use p2m_testkit::queries::QuerySet;
@@ -34,6 +34,7 @@ pub(crate) fn run(command: Command) -> Result<bool> {
         Command::Instances(arguments) => time_instances(&arguments),
         Command::Program(arguments) => time_program(&arguments),
         Command::Pairs(arguments) => time_pairs(&arguments),
+        Command::Shards(arguments) => shards::run(&arguments),
         Command::Advise(arguments) => check_advice(&arguments),
         Command::Field(arguments) => fill_fields(&arguments),
         Command::Adversaries(arguments) => run_adversaries(&arguments),

@@ -42,6 +42,7 @@ mod report;
 mod rounds;
 mod saved;
 mod scene;
+mod shards;
 mod splits;
 mod tradeoff;
 mod verify;

@@ -1,0 +1,219 @@
+//! `p2m-bench shards`: writes a terrain that is generated tile by tile as shards, asks them within a limit of memory,
+//! and compares answers with brute force, which generates the tiles anew.
+
+use crate::arguments::ShardsArguments;
+use crate::memory;
+use anyhow::{Context, Result};
+use nalgebra::Point3;
+use p2m_bvh::AabbTree;
+use p2m_core::batch::{BatchOptions, closest_points_into};
+use p2m_core::{BruteForce, BuildIndex, Closest, ClosestPoint, Key, Primitive, PrimitiveSet, QueryOptions, Soup};
+use p2m_shards::{ShardClosest, ShardOptions, ShardWriter, ShardedIndex};
+use p2m_tradeoff::Table;
+use rand::{RngExt, SeedableRng};
+use rand_chacha::ChaCha8Rng;
+use rayon::prelude::*;
+use std::ops::ControlFlow;
+use std::time::Instant;
+
+/// The number of cells along a side of a tile, each of which has two triangles.
+const CELLS: u32 = 500;
+/// The number of triangles of a tile.
+const TILE_TRIANGLES: u64 = 2 * (CELLS as u64) * (CELLS as u64);
+
+/// A square terrain of tiles, each with a side of length 1.
+#[derive(Clone, Copy)]
+struct Terrain {
+    /// The number of tiles along a side.
+    side: u32,
+}
+
+impl Terrain {
+    /// Returns the smallest terrain with at least this number of triangles.
+    fn with_triangles(count: u64) -> Self {
+        let tiles = count.div_ceil(TILE_TRIANGLES);
+        let side = (1u32..).find(|side| u64::from(*side).pow(2) >= tiles).unwrap_or(1);
+        Self { side }
+    }
+
+    fn tiles(self) -> u32 {
+        self.side * self.side
+    }
+
+    /// Returns the height at a place.
+    fn height(x: f64, y: f64) -> f64 {
+        let wave =
+            |frequency: f64, phase: f64| ((frequency * x + phase).sin() * (frequency * y - phase).cos()) / frequency;
+        wave(2.0, 0.3) + wave(17.0, 1.1) + wave(131.0, 2.7)
+    }
+
+    /// Returns a tile by its number. Neighbours have the same vertices along their common side.
+    fn tile(self, number: u32) -> Result<Soup<f64>> {
+        let first = [number % self.side, number / self.side].map(|place| place * CELLS);
+        let coordinate = |k: usize, i: u32| f64::from(first[k] + i) / f64::from(CELLS);
+        let rows = (0..=CELLS).flat_map(|j| (0..=CELLS).map(move |i| [i, j]));
+        let vertex = |[i, j]: [u32; 2]| {
+            let (x, y) = (coordinate(0, i), coordinate(1, j));
+            Point3::new(x, y, Self::height(x, y))
+        };
+        let corners = |[i, j]: [u32; 2]| {
+            let at = |i: u32, j: u32| j * (CELLS + 1) + i;
+            [[at(i, j), at(i + 1, j), at(i, j + 1)], [at(i + 1, j), at(i + 1, j + 1), at(i, j + 1)]]
+        };
+        let cells = (0..CELLS).flat_map(|j| (0..CELLS).map(move |i| [i, j]));
+        Ok(Soup::from_triangles(rows.map(vertex).collect(), cells.flat_map(corners).collect())?)
+    }
+
+    /// Returns random points close to the terrain.
+    fn near(self, count: usize, seed: u64) -> Vec<Point3<f64>> {
+        let mut rng = ChaCha8Rng::seed_from_u64(seed);
+        let side = f64::from(self.side);
+        let point = |_| {
+            let [x, y, z] = std::array::from_fn(|_| rng.random::<f64>());
+            Point3::new(x * side, y * side, Self::height(x * side, y * side) + 0.01 * (z - 0.5))
+        };
+        (0..count).map(point).collect()
+    }
+
+    /// Returns random points of a slab that is one and a half times as wide as the terrain, and as high as a tile.
+    fn around(self, count: usize, seed: u64) -> Vec<Point3<f64>> {
+        let mut rng = ChaCha8Rng::seed_from_u64(seed);
+        let side = f64::from(self.side);
+        let point = |_| {
+            let [x, y, z] = std::array::from_fn(|_| rng.random::<f64>());
+            Point3::new((1.5 * x - 0.25) * side, (1.5 * y - 0.25) * side, 2.0 * z - 1.0)
+        };
+        (0..count).map(point).collect()
+    }
+}
+
+/// A clock and the peak of memory of a piece of work.
+struct Work(Instant);
+
+impl Work {
+    fn start() -> Self {
+        memory::reset_peak();
+        Self(Instant::now())
+    }
+
+    /// Returns the cells of a table about this piece of work, with the number of things that were done.
+    #[allow(clippy::cast_precision_loss, reason = "numbers for people to read")]
+    fn row(&self, name: &str, count: u64, note: String) -> Vec<String> {
+        let seconds = self.0.elapsed().as_secs_f64();
+        let (speed, peak) = (count as f64 / seconds, memory::peak() as f64 / 1e9);
+        vec![name.to_owned(), format!("{seconds:.1}"), format!("{speed:.0}"), format!("{peak:.2}"), note]
+    }
+}
+
+/// Writes and asks shards, and returns whether their answers are those of brute force and, if it is asked for, of one
+/// index over everything.
+pub(crate) fn run(arguments: &ShardsArguments) -> Result<bool> {
+    let terrain = Terrain::with_triangles(arguments.triangles);
+    let triangles = u64::from(terrain.tiles()) * TILE_TRIANGLES;
+    let folder = match &arguments.folder {
+        Some(folder) => tempfile::tempdir_in(folder),
+        None => tempfile::tempdir(),
+    };
+    let folder = folder.context("there is no folder for the shards")?;
+    let head = ["work", "seconds", "triangles or points a second", "peak of the heap, GB", "note"];
+    let mut table = Table::new(head.map(str::to_owned));
+
+    let work = Work::start();
+    let options = ShardOptions::default().with_max_bytes(arguments.max_bytes);
+    let mut writer = ShardWriter::new(&folder.path().join("shards"), options)?;
+    for number in 0..terrain.tiles() {
+        writer.add_scene(&terrain.tile(number)?.into())?;
+    }
+    table.push(work.row("generate and spill", triangles, format!("{} tiles", terrain.tiles())));
+    let work = Work::start();
+    let written = writer.finish_with_progress(&mut |_| ControlFlow::Continue(()))?;
+    let shards = written.manifest().shards.clone();
+    drop(written);
+    let (count, bytes) = (shards.len(), shards.iter().map(|shard| shard.bytes).sum::<u64>());
+    table.push(work.row("divide, build and write", triangles, format!("{count} shards, {} MB", bytes / 1_000_000)));
+
+    let sets = [("near", terrain.near(arguments.queries, 1)), ("around", terrain.around(arguments.queries, 2))];
+    let mut answers = Vec::new();
+    for (name, queries) in &sets {
+        let index = ShardedIndex::open_with_max_bytes(&folder.path().join("shards"), arguments.max_memory)?;
+        let mut out = vec![None; queries.len()];
+        let work = Work::start();
+        index.closest_points_into(queries, &QueryOptions::default(), &mut out)?;
+        let note = format!("{} loads of shards", index.loads());
+        table.push(work.row(&format!("ask {name}"), queries.len() as u64, note));
+        answers.push(out);
+    }
+    let mut are_equal = true;
+    for ((name, queries), answers) in sets.iter().zip(&answers) {
+        let checked = queries.len().min(arguments.checked);
+        let work = Work::start();
+        are_equal &= agrees_with_brute_force(terrain, &queries[..checked], &answers[..checked])?;
+        let note = if are_equal { "equal bits" } else { "DIFFERENT" };
+        table.push(work.row(&format!("brute force, {checked} points {name}"), checked as u64, note.to_owned()));
+    }
+    if arguments.whole {
+        let work = Work::start();
+        let mut whole = Soup::<f64>::default();
+        for number in 0..terrain.tiles() {
+            let tile = terrain.tile(number)?;
+            let first = u32::try_from(whole.positions().len())?;
+            tile.positions().iter().for_each(|position| {
+                whole.push_position(*position);
+            });
+            for triangle in tile.triangles() {
+                whole.push(p2m_core::Element::Triangle(triangle.map(|corner| first + corner)))?;
+            }
+        }
+        let tree = AabbTree::build(whole, &Default::default())?;
+        table.push(work.row("build one tree", triangles, String::new()));
+        for ((name, queries), answers) in sets.iter().zip(&answers) {
+            let mut out: Vec<Option<Closest<f64>>> = vec![None; queries.len()];
+            let work = Work::start();
+            closest_points_into(&tree, queries, &QueryOptions::default(), &BatchOptions::default(), &mut out);
+            let row = |note| work.row(&format!("ask one tree {name}"), queries.len() as u64, note);
+            are_equal &= out.iter().zip(answers).all(|(one, sharded)| is_same(one.as_ref(), sharded.as_ref()));
+            let note = if are_equal { "equal bits" } else { "DIFFERENT" };
+            table.push(row(note.to_owned()));
+        }
+    }
+    println!("{triangles} triangles, at most {} MB of shards in memory\n\n{table}", arguments.max_memory / 1_000_000);
+    Ok(are_equal)
+}
+
+/// Returns whether an answer of one index and that of shards are the same bits.
+fn is_same(one: Option<&Closest<f64>>, sharded: Option<&ShardClosest>) -> bool {
+    match (one, sharded) {
+        (Some(one), Some(sharded)) => {
+            let point = |closest: &Closest<f64>| closest.point.coords.map(f64::to_bits);
+            one.primitive.index() as u64 == sharded.id
+                && one.distance.to_bits() == sharded.closest.distance.to_bits()
+                && point(one) == point(&sharded.closest)
+        }
+        (one, sharded) => one.is_none() && sharded.is_none(),
+    }
+}
+
+/// Compares answers with those of brute force over all tiles, which are generated again one after the other.
+fn agrees_with_brute_force(
+    terrain: Terrain,
+    queries: &[Point3<f64>],
+    answers: &[Option<ShardClosest>],
+) -> Result<bool> {
+    let mut best: Vec<Option<(Key, u64, u64)>> = vec![None; queries.len()];
+    for number in 0..terrain.tiles() {
+        let tile = BruteForce::new(terrain.tile(number)?)?;
+        let first = u64::from(number) * TILE_TRIANGLES;
+        best.par_iter_mut().zip(queries).for_each(|(best, query)| {
+            if let Some(closest) = tile.closest_point(query) {
+                let key = tile.set().get(closest.primitive).project(query).key;
+                let found = (key, first + closest.primitive.index() as u64, closest.distance.to_bits());
+                *best = Some(best.map_or(found, |best| best.min(found)));
+            }
+        });
+    }
+    let is_same = |(best, answer): (&Option<(Key, u64, u64)>, &Option<ShardClosest>)| match (best, answer) {
+        (Some((_, id, distance)), Some(answer)) => (*id, *distance) == (answer.id, answer.closest.distance.to_bits()),
+        (best, answer) => best.is_none() && answer.is_none(),
+    };
+    Ok(best.iter().zip(answers).all(is_same))
+}
