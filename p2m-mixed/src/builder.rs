@@ -1,11 +1,13 @@
 //! The scene that a reader builds, statement by statement.
 
 use crate::Reason;
+use crate::pieces::Pieces;
 use crate::polygon::{CHECK_REPEATS_ABOVE_CORNERS, MAX_CORNER_SQUARES, Triangulator};
 use crate::scene::{Object, Scene, Skipped};
 use crate::text::{quote, trim};
 use nalgebra::Point3;
 use p2m_core::{Element, PrimitiveSet, Soup};
+use std::mem::take;
 
 /// The largest number of kinds of skipped records with a count of their own. Further kinds, as a file of noise has
 /// them, share one count.
@@ -96,24 +98,112 @@ impl ObjectRuns {
         }
         self.start = next;
     }
+
+    /// Returns the objects of a piece that ends at id `next`. The next piece starts at id 0 under the current name.
+    fn end_piece(&mut self, next: usize) -> Vec<Object> {
+        self.end(next);
+        self.start = 0;
+        take(&mut self.list)
+    }
 }
 
-/// Builds a scene. Callers have to check that indices are in range and that the vertices of primitives are finite.
+/// The primitives that were added: those of the whole scene, or those of the current piece.
 #[derive(Default)]
-pub(crate) struct SceneBuilder {
-    pub(crate) skipped: SkippedRecords,
+struct Output<'a> {
     soup: Soup<f64>,
     sources: Vec<u32>,
     objects: ObjectRuns,
+    /// The state of reading in pieces, or `None` if the scene is built as a whole.
+    pieces: Option<Box<Pieces<'a>>>,
+}
+
+impl Output<'_> {
+    /// Adds a primitive, whose indices are those of the file.
+    #[inline]
+    fn push(&mut self, element: Element, source: u32) -> Result<(), Reason> {
+        let element = if self.pieces.is_none() { element } else { self.element_of_piece(element)? };
+        self.soup.push(element).map_err(Reason::Build)?;
+        self.sources.push(source);
+        Ok(())
+    }
+
+    /// Ends a full piece, and returns a primitive with the indices that its vertices have in the current piece.
+    #[cold]
+    fn element_of_piece(&mut self, element: Element) -> Result<Element, Reason> {
+        self.end_full_piece()?;
+        let Some(pieces) = &mut self.pieces else { return Ok(element) };
+        let mut index = |vertex| pieces.index(vertex, &mut self.soup);
+        Ok(match element {
+            Element::Point(a) => Element::Point(index(a)?),
+            Element::Segment([a, b]) => Element::Segment([index(a)?, index(b)?]),
+            Element::Triangle([a, b, c]) => Element::Triangle([index(a)?, index(b)?, index(c)?]),
+        })
+    }
+
+    /// Passes the current piece to the visitor if it is full.
+    fn end_full_piece(&mut self) -> Result<(), Reason> {
+        match &mut self.pieces {
+            Some(pieces) if self.soup.len() >= pieces.max_primitives() => {
+                let objects = self.objects.end_piece(self.soup.len());
+                let (soup, sources) = (take(&mut self.soup), take(&mut self.sources));
+                pieces.visit(Scene { soup, sources, objects, skipped: Vec::new() })
+            }
+            _ => Ok(()),
+        }
+    }
+
+    /// Returns the position of a vertex of the file.
+    #[inline]
+    fn position(&mut self, vertex: u32) -> Result<Point3<f64>, Reason> {
+        match &mut self.pieces {
+            None => Ok(self.soup.positions()[vertex as usize]),
+            Some(pieces) => pieces.position(vertex),
+        }
+    }
+}
+
+/// Builds a scene, or pieces of it. Callers have to check that indices are in range and that the vertices of primitives
+/// are finite.
+#[derive(Default)]
+pub(crate) struct SceneBuilder<'a> {
+    pub(crate) skipped: SkippedRecords,
+    output: Output<'a>,
     corners: Vec<Point3<f64>>,
     triangulator: Triangulator,
     /// The sum of the squares of the numbers of vertices of large polygons so far.
     corner_squares: u64,
 }
 
-impl SceneBuilder {
+impl<'a> SceneBuilder<'a> {
+    /// Makes a builder that passes full pieces to a visitor.
+    pub(crate) fn in_pieces(pieces: Pieces<'a>) -> Self {
+        let output = Output { pieces: Some(Box::new(pieces)), ..Output::default() };
+        Self { output, ..Self::default() }
+    }
+
+    /// Returns the number of vertices.
+    #[inline]
+    pub(crate) fn vertex_count(&self) -> usize {
+        match &self.output.pieces {
+            None => self.output.soup.positions().len(),
+            Some(pieces) => pieces.vertex_count(),
+        }
+    }
+
+    /// Returns the positions of all vertices. A builder of pieces has them in memory only if it
+    /// [forgets](Self::forget_old_vertices) them.
     pub(crate) fn positions(&self) -> &[Point3<f64>] {
-        self.soup.positions()
+        match &self.output.pieces {
+            None => self.output.soup.positions(),
+            Some(pieces) => pieces.resident_positions(),
+        }
+    }
+
+    /// Ends a full piece, and removes all vertices if a piece has ended since the last call. Returns whether it removed
+    /// them. The next vertex is number 0 again.
+    pub(crate) fn forget_old_vertices(&mut self) -> Result<bool, Reason> {
+        self.output.end_full_piece()?;
+        Ok(self.output.pieces.as_mut().is_some_and(|pieces| pieces.forget_old_vertices()))
     }
 
     /// Adds a vertex and returns its index.
@@ -121,18 +211,18 @@ impl SceneBuilder {
     /// # Errors
     /// [`Reason::ElementTooLarge`] if u32 cannot number it.
     pub(crate) fn push_vertex(&mut self, position: Point3<f64>) -> Result<u32, Reason> {
-        let count = self.positions().len() as u64;
+        let count = self.vertex_count() as u64;
         let vertex = u32::try_from(count).ok().filter(|&vertex| vertex < u32::MAX);
         let vertex = vertex.ok_or(Reason::ElementTooLarge { count: count + 1, limit: u64::from(u32::MAX) })?;
-        self.soup.push_position(position);
+        match &mut self.output.pieces {
+            None => _ = self.output.soup.push_position(position),
+            Some(pieces) => pieces.push_position(position)?,
+        }
         Ok(vertex)
     }
 
     pub(crate) fn push(&mut self, element: Element, source: usize) -> Result<(), Reason> {
-        self.soup.push(element).map_err(Reason::Build)?;
-        // `u32::MAX` stands for sources that u32 cannot number. A file with so many has too many primitives anyway.
-        self.sources.push(u32::try_from(source).unwrap_or(u32::MAX));
-        Ok(())
+        self.output.push(element, source_number(source))
     }
 
     /// Adds the triangles that a polygon is divided into.
@@ -147,36 +237,43 @@ impl SceneBuilder {
             }
         }
         self.corners.clear();
-        self.corners.extend(vertices.iter().map(|&v| self.soup.positions()[v as usize]));
-        let source = u32::try_from(source).unwrap_or(u32::MAX);
+        for &vertex in vertices {
+            self.corners.push(self.output.position(vertex)?);
+        }
+        let source = source_number(source);
         for triangle in self.triangulator.triangulate(&self.corners) {
-            self.soup.push(Element::Triangle(triangle.map(|i| vertices[i as usize]))).map_err(Reason::Build)?;
-            self.sources.push(source);
+            self.output.push(Element::Triangle(triangle.map(|i| vertices[i as usize])), source)?;
         }
         Ok(())
     }
 
     /// Returns whether the coordinates of a vertex are finite, so that it may be part of a primitive.
-    pub(crate) fn is_finite(&self, vertex: u32) -> bool {
-        self.positions()[vertex as usize].iter().all(|x| x.is_finite())
+    #[inline]
+    pub(crate) fn is_finite(&mut self, vertex: u32) -> Result<bool, Reason> {
+        Ok(self.output.position(vertex)?.iter().all(|x| x.is_finite()))
     }
 
     /// Starts an object with this name. Primitives under an empty name belong to no object.
     pub(crate) fn start_object(&mut self, name: &[u8]) {
-        self.objects.start(trim(name), self.soup.len());
+        self.start_run(trim(name));
+    }
+
+    /// Starts an object with exactly this name.
+    pub(crate) fn start_run(&mut self, name: &[u8]) {
+        self.output.objects.start(name, self.output.soup.len());
     }
 
     /// Removes all objects.
     pub(crate) fn clear_objects(&mut self) {
-        self.objects = ObjectRuns { start: self.soup.len(), ..ObjectRuns::default() };
+        self.output.objects = ObjectRuns { start: self.output.soup.len(), ..ObjectRuns::default() };
     }
 
     /// Adds a point for every vertex with finite coordinates.
     #[allow(clippy::cast_possible_truncation, reason = "there are no more vertices than u32 can count")]
     pub(crate) fn push_point_cloud(&mut self) -> Result<(), Reason> {
         let mut left_out = 0;
-        for i in 0..self.positions().len() {
-            if self.is_finite(i as u32) {
+        for i in 0..self.vertex_count() {
+            if self.is_finite(i as u32)? {
                 self.push(Element::Point(i as u32), i)?;
             } else {
                 left_out += 1;
@@ -186,12 +283,18 @@ impl SceneBuilder {
         Ok(())
     }
 
-    pub(crate) fn finish(mut self) -> Scene {
+    /// Returns the scene, or its last piece, with all records that were skipped.
+    pub(crate) fn finish(self) -> Scene {
+        let Output { mut soup, mut sources, mut objects, .. } = self.output;
         // The scene does not grow any more.
-        self.soup.shrink_to_fit();
-        self.sources.shrink_to_fit();
-        self.objects.end(self.soup.len());
-        let Self { soup, sources, skipped, objects, .. } = self;
-        Scene { soup, sources, objects: objects.list, skipped: skipped.finish() }
+        soup.shrink_to_fit();
+        sources.shrink_to_fit();
+        objects.end(soup.len());
+        Scene { soup, sources, objects: objects.list, skipped: self.skipped.finish() }
     }
+}
+
+/// Returns the number of a source. `u32::MAX` stands for sources that u32 cannot number.
+fn source_number(source: usize) -> u32 {
+    u32::try_from(source).unwrap_or(u32::MAX)
 }

@@ -2,7 +2,7 @@
 //!
 //! - **Scenes**: [`read_scene`] reads OBJ, PLY, STL and OFF files into a [`Scene`], and [`write_scene`] writes them.
 //!   [`Scene::add`] and similar methods build a scene from named parts. [`Scene::skipped`] lists the data of a file
-//!   that the reader left out.
+//!   that the reader left out. [`read_scene_in_pieces`] reads files larger than the memory.
 //! - **Queries**: [`read_points`] and [`read_rays`] read query points and rays from XYZ, CSV, NPY and PLY files.
 //! - **Answers**: [`AnswerWriter`], [`HitWriter`] and [`NumberWriter`] write the answers to queries.
 //! - **Generators**: [`generate`] makes scenes that are the same on every platform.
@@ -44,6 +44,7 @@ mod obj;
 mod off;
 mod open;
 pub mod picture;
+mod pieces;
 mod ply;
 mod points;
 mod polygon;
@@ -65,6 +66,7 @@ pub use error::{FileLocation, HeaderProblem, ReadError, Reason};
 pub use format::{AnswerFormat, Format, PointFormat, UnknownFormat};
 pub use obj::read_obj;
 pub use off::read_off;
+pub use pieces::{PieceOptions, PieceSummary, read_scene_in_pieces};
 pub use ply::read_ply;
 pub use points::{read_points, read_points_from, read_rays, read_rays_from};
 pub use polygon::MAX_CORNERS;

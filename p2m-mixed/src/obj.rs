@@ -43,8 +43,19 @@ use std::ops::Range;
 /// [`Reason::PolygonsTooLarge`], and errors of `reader`. A file without bytes, and one without vertices that has
 /// statements unknown to OBJ, returns [`Reason::NoVertex`].
 pub fn read_obj(reader: impl BufRead, name: &str) -> Result<Scene, ReadError> {
+    read(reader, name, SceneBuilder::default(), &mut || false)
+}
+
+/// Reads an OBJ file into a builder, and returns the scene or its last piece. `has_objects` returns whether the file
+/// has statements `o`, as far as that is known before they are read. It is called at most once, for a statement `g`.
+pub(crate) fn read(
+    reader: impl BufRead,
+    name: &str,
+    builder: SceneBuilder<'_>,
+    has_objects: &mut dyn FnMut() -> bool,
+) -> Result<Scene, ReadError> {
     let mut lines = LineReader::new(reader, 0);
-    let mut parser = Parser::default();
+    let mut parser = Parser::new(builder, has_objects);
     let mut is_empty = true;
     loop {
         match lines.read_continued() {
@@ -63,6 +74,18 @@ pub fn read_obj(reader: impl BufRead, name: &str) -> Result<Scene, ReadError> {
     }
     parser.add_deferred().map_err(|(line, reason)| ReadError::new(name, FileLocation::Line(line), reason))?;
     parser.finish().map_err(|reason| ReadError::new(name, FileLocation::File, reason))
+}
+
+/// Returns whether an OBJ file has statements `o`. An error of the reader ends the search, because it occurs again when
+/// the file is read.
+pub(crate) fn has_objects(reader: impl BufRead) -> bool {
+    let mut lines = LineReader::new(reader, 0);
+    while lines.read_continued().unwrap_or(false) {
+        if Tokens::new(lines.bytes()).next() == Some(b"o") {
+            return true;
+        }
+    }
+    false
 }
 
 /// A statement that makes primitives of its vertices.
@@ -84,9 +107,8 @@ enum Deferred {
     ClearObjects,
 }
 
-#[derive(Default)]
-struct Parser {
-    builder: SceneBuilder,
+struct Parser<'a, 'b> {
+    builder: SceneBuilder<'b>,
     /// The number of statements `f` so far.
     faces: usize,
     /// The number of statements `l` so far.
@@ -99,6 +121,11 @@ struct Parser {
     has_free_form: bool,
     /// Whether there is a statement `o`.
     has_objects: bool,
+    /// Whether there is a statement `g` before all statements `o`.
+    has_groups: bool,
+    /// Whether groups are no objects, because statements `o` follow.
+    ignores_groups: bool,
+    find_objects: &'a mut dyn FnMut() -> bool,
     /// The vertices of the current statement.
     vertices: Vec<u32>,
     /// The first line of the current statement.
@@ -109,7 +136,27 @@ struct Parser {
     deferred_vertices: Vec<u32>,
 }
 
-impl Parser {
+impl<'a, 'b> Parser<'a, 'b> {
+    fn new(builder: SceneBuilder<'b>, find_objects: &'a mut dyn FnMut() -> bool) -> Self {
+        Self {
+            builder,
+            faces: 0,
+            lines: 0,
+            points: 0,
+            has_unknown: false,
+            has_free_form: false,
+            has_objects: false,
+            has_groups: false,
+            ignores_groups: false,
+            find_objects,
+            vertices: Vec::new(),
+            line: 0,
+            forward_line: None,
+            deferred: Vec::new(),
+            deferred_vertices: Vec::new(),
+        }
+    }
+
     /// Parses a statement. After an error, the last token of `tokens` is the one that the error is about.
     fn statement(&mut self, tokens: &mut Tokens<'_>) -> Result<(), Reason> {
         let Some(keyword) = tokens.next() else { return Ok(()) };
@@ -143,7 +190,11 @@ impl Parser {
                     }
                     self.has_objects = true;
                 }
-                if keyword == b"o" || !self.has_objects {
+                if keyword == b"g" && !self.has_objects && !self.has_groups {
+                    self.has_groups = true;
+                    self.ignores_groups = (self.find_objects)();
+                }
+                if keyword == b"o" || !(self.has_objects || self.ignores_groups) {
                     self.object(tokens.rest());
                 }
                 Ok(())
@@ -185,8 +236,10 @@ impl Parser {
 
     /// Adds the primitives of a statement whose vertices are defined.
     fn add(&mut self, shape: Shape, vertices: &[u32]) -> Result<(), Reason> {
-        if let Some(vertex) = vertices.iter().find(|vertex| !self.builder.is_finite(**vertex)) {
-            return Err(Reason::NonFiniteVertex { index: u64::from(*vertex) + 1 });
+        for &vertex in vertices {
+            if !self.builder.is_finite(vertex)? {
+                return Err(Reason::NonFiniteVertex { index: u64::from(vertex) + 1 });
+            }
         }
         match shape {
             Shape::Polygon => {
@@ -212,7 +265,7 @@ impl Parser {
     /// Adds what was deferred. The error has the line of its statement.
     fn add_deferred(&mut self) -> Result<(), (u64, Reason)> {
         let (deferred, vertices) = (std::mem::take(&mut self.deferred), std::mem::take(&mut self.deferred_vertices));
-        let count = self.builder.positions().len() as u64;
+        let count = self.builder.vertex_count() as u64;
         for statement in deferred {
             match statement {
                 Deferred::Object(name) => self.builder.start_object(&name),
@@ -230,7 +283,7 @@ impl Parser {
     }
 
     fn finish(mut self) -> Result<Scene, Reason> {
-        if self.has_unknown && self.builder.positions().is_empty() {
+        if self.has_unknown && self.builder.vertex_count() == 0 {
             return Err(Reason::NoVertex);
         }
         if self.faces + self.lines + self.points > 0 || self.has_free_form {
@@ -260,10 +313,10 @@ impl Parser {
         tokens.end_at_comment();
         self.vertices.clear();
         while let Some(token) = tokens.next() {
-            let vertex = vertex_of(token, self.builder.positions().len())?;
-            if vertex as usize >= self.builder.positions().len() {
+            let vertex = vertex_of(token, self.builder.vertex_count())?;
+            if vertex as usize >= self.builder.vertex_count() {
                 self.forward_line.get_or_insert(self.line + tokens.line_offset());
-            } else if !self.builder.is_finite(vertex) {
+            } else if !self.builder.is_finite(vertex)? {
                 return Err(Reason::NonFiniteVertex { index: u64::from(vertex) + 1 });
             }
             self.vertices.push(vertex);

@@ -34,6 +34,11 @@ use std::io::BufRead;
 /// without vertices or with more than [`MAX_CORNERS`], and errors of `reader`. No memory is allocated for data that the
 /// header only announces.
 pub fn read_off(reader: impl BufRead, name: &str) -> Result<Scene, ReadError> {
+    read(reader, name, SceneBuilder::default())
+}
+
+/// Reads an OFF file into a builder, and returns the scene or its last piece.
+pub(crate) fn read(reader: impl BufRead, name: &str, builder: SceneBuilder<'_>) -> Result<Scene, ReadError> {
     let mut tokens = Tokenizer::with_comments(LineReader::new(reader, 0));
     let fail = |line, reason| ReadError::new(name, FileLocation::Line(line), reason);
     let header = read_header(&mut tokens).map_err(|reason| fail(tokens.line(), reason))?;
@@ -41,10 +46,10 @@ pub fn read_off(reader: impl BufRead, name: &str) -> Result<Scene, ReadError> {
         let line = tokens.line();
         let (reader, offset) = tokens.into_lines().into_reader().map_err(|e| fail(line, Reason::Io(e)))?;
         let mut bytes = ByteReader::new(reader, offset);
-        return read_binary(&mut bytes, header.extras)
+        return read_binary(&mut bytes, header.extras, builder)
             .map_err(|reason| ReadError::new(name, FileLocation::Byte(bytes.start()), reason));
     };
-    read_text(&mut tokens, counts).map_err(|reason| fail(tokens.line(), reason))
+    read_text(&mut tokens, counts, builder).map_err(|reason| fail(tokens.line(), reason))
 }
 
 struct Header {
@@ -120,8 +125,12 @@ fn count(token: &[u8]) -> Result<u64, Reason> {
 /// The largest number of numbers after a face, which are its colour.
 const MAX_COLOUR_NUMBERS: u64 = 4;
 
-fn read_text(tokens: &mut Tokenizer<impl BufRead>, [vertices, faces]: [u64; 2]) -> Result<Scene, Reason> {
-    let mut off = Off::new([vertices, faces])?;
+fn read_text(
+    tokens: &mut Tokenizer<impl BufRead>,
+    [vertices, faces]: [u64; 2],
+    builder: SceneBuilder<'_>,
+) -> Result<Scene, Reason> {
+    let mut off = Off::new([vertices, faces], builder)?;
     for _ in 0..vertices {
         let mut position = Point3::origin();
         position.x = parse_number(tokens.next()?)?;
@@ -172,14 +181,14 @@ fn read_text(tokens: &mut Tokenizer<impl BufRead>, [vertices, faces]: [u64; 2]) 
     off.finish(rest, "words after the last face")
 }
 
-fn read_binary(bytes: &mut ByteReader<impl BufRead>, extras: u64) -> Result<Scene, Reason> {
+fn read_binary(bytes: &mut ByteReader<impl BufRead>, extras: u64, builder: SceneBuilder<'_>) -> Result<Scene, Reason> {
     let mut counts = [0; 3];
     for count in &mut counts {
         let number = i32::from_be_bytes(bytes.array()?);
         *count = u64::try_from(number).map_err(|_| Reason::BadListCount { count: i64::from(number) })?;
     }
     let [vertices, faces, _] = counts;
-    let mut off = Off::new([vertices, faces])?;
+    let mut off = Off::new([vertices, faces], builder)?;
     for _ in 0..vertices {
         let mut position = Point3::origin();
         for x in position.iter_mut() {
@@ -204,8 +213,8 @@ fn read_binary(bytes: &mut ByteReader<impl BufRead>, extras: u64) -> Result<Scen
 }
 
 /// Builds the scene of an OFF file.
-struct Off {
-    builder: SceneBuilder,
+struct Off<'a> {
+    builder: SceneBuilder<'a>,
     counts: [u64; 2],
     /// The numbers of vertices and of faces with numbers that are left out.
     extras: [u64; 2],
@@ -213,12 +222,12 @@ struct Off {
     corners: Vec<u32>,
 }
 
-impl Off {
-    fn new(counts: [u64; 2]) -> Result<Self, Reason> {
+impl<'a> Off<'a> {
+    fn new(counts: [u64; 2], builder: SceneBuilder<'a>) -> Result<Self, Reason> {
         if counts[0] > u64::from(u32::MAX) {
             return Err(Reason::ElementTooLarge { count: counts[0], limit: u64::from(u32::MAX) });
         }
-        Ok(Self { builder: SceneBuilder::default(), counts, extras: [0; 2], corners: Vec::new() })
+        Ok(Self { builder, counts, extras: [0; 2], corners: Vec::new() })
     }
 
     fn vertex(&mut self, position: Point3<f64>, extras: u64) -> Result<(), Reason> {
@@ -243,7 +252,7 @@ impl Off {
         let count = self.counts[0];
         let vertex = u32::try_from(index).ok().filter(|&v| u64::from(v) < count);
         let vertex = vertex.ok_or(Reason::NoSuchVertex { index, count })?;
-        if !self.builder.is_finite(vertex) {
+        if !self.builder.is_finite(vertex)? {
             return Err(Reason::NonFiniteVertex { index: u64::from(vertex) });
         }
         self.corners.push(vertex);

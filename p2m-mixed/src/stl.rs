@@ -32,7 +32,12 @@ const DETECTION_BYTES: u64 = 1024;
 /// [`ReadError`] with the line (text) or the offset of the facet (binary) for coordinates that are not finite,
 /// invalid numbers, unexpected words, an early end, and errors of `reader`. No memory is allocated for facets that
 /// the header only announces.
-pub fn read_stl(mut reader: impl BufRead, name: &str) -> Result<Scene, ReadError> {
+pub fn read_stl(reader: impl BufRead, name: &str) -> Result<Scene, ReadError> {
+    read(reader, name, SceneBuilder::default())
+}
+
+/// Reads an STL file into a builder, and returns the scene or its last piece.
+pub(crate) fn read(mut reader: impl BufRead, name: &str, builder: SceneBuilder<'_>) -> Result<Scene, ReadError> {
     let fail = |reason| ReadError::new(name, FileLocation::File, reason);
     let mut head = Vec::new();
     reader.by_ref().take(DETECTION_BYTES).read_to_end(&mut head).map_err(|e| fail(Reason::Io(e)))?;
@@ -43,14 +48,15 @@ pub fn read_stl(mut reader: impl BufRead, name: &str) -> Result<Scene, ReadError
     }
     let reader = Cursor::new(head).chain(reader);
     if is_text && says_solid {
-        let mut text = Text { tokens: Tokenizer::new(LineReader::new(reader, 0)), facets: Facets::default() };
+        let mut text = Text { tokens: Tokenizer::new(LineReader::new(reader, 0)), facets: Facets::new(builder) };
         match text.solids() {
             Ok(()) => Ok(text.facets.builder.finish()),
             Err(reason) => Err(ReadError::new(name, FileLocation::Line(text.tokens.line()), reason)),
         }
     } else {
         let mut bytes = ByteReader::new(reader, 0);
-        read_binary(&mut bytes).map_err(|reason| ReadError::new(name, FileLocation::Byte(bytes.start()), reason))
+        read_binary(&mut bytes, builder)
+            .map_err(|reason| ReadError::new(name, FileLocation::Byte(bytes.start()), reason))
     }
 }
 
@@ -67,9 +73,8 @@ fn starts_with_solid(head: &[u8]) -> bool {
 }
 
 /// Builds the scene of an STL file and merges equal vertices.
-#[derive(Default)]
-struct Facets {
-    builder: SceneBuilder,
+struct Facets<'a> {
+    builder: SceneBuilder<'a>,
     vertices: HashTable<u32>,
     hasher: RandomState,
     /// The number of facets so far.
@@ -78,7 +83,20 @@ struct Facets {
     corners: Vec<u32>,
 }
 
-impl Facets {
+impl<'a> Facets<'a> {
+    fn new(builder: SceneBuilder<'a>) -> Self {
+        let (vertices, hasher, corners) = Default::default();
+        Self { builder, vertices, hasher, count: 0, corners }
+    }
+
+    /// Starts a facet. Pieces share no vertices, so that the vertices of one piece are in memory.
+    fn start_facet(&mut self) -> Result<(), Reason> {
+        if self.builder.forget_old_vertices()? {
+            self.vertices.clear();
+        }
+        Ok(())
+    }
+
     /// Adds a corner, which has to be finite, to the current facet.
     fn corner(&mut self, corner: [f64; 3]) -> Result<(), Reason> {
         let corner = Point3::from(corner);
@@ -113,12 +131,12 @@ impl Facets {
     }
 }
 
-struct Text<R> {
+struct Text<'a, R> {
     tokens: Tokenizer<R>,
-    facets: Facets,
+    facets: Facets<'a>,
 }
 
-impl<R: BufRead> Text<R> {
+impl<R: BufRead> Text<'_, R> {
     fn solids(&mut self) -> Result<(), Reason> {
         let mut is_open = false;
         loop {
@@ -158,6 +176,7 @@ impl<R: BufRead> Text<R> {
     /// Reads the corners of a facet after the word `outer`.
     fn corners(&mut self) -> Result<(), Reason> {
         self.expect("loop", "'loop'")?;
+        self.facets.start_facet()?;
         loop {
             let token = self.tokens.next()?;
             if is(token, "endloop") {
@@ -186,14 +205,15 @@ fn is(token: &[u8], keyword: &str) -> bool {
     token.eq_ignore_ascii_case(keyword.as_bytes())
 }
 
-fn read_binary(bytes: &mut ByteReader<impl BufRead>) -> Result<Scene, Reason> {
+fn read_binary(bytes: &mut ByteReader<impl BufRead>, builder: SceneBuilder<'_>) -> Result<Scene, Reason> {
     bytes.array::<80>()?;
     let count = u32::from_le_bytes(bytes.array()?);
-    let mut facets = Facets::default();
+    let mut facets = Facets::new(builder);
     let mut with_attribute = 0;
     for _ in 0..count {
         // A facet has a normal, three vertices and an attribute of two bytes.
         let facet: [u8; 50] = bytes.array()?;
+        facets.start_facet()?;
         for corner in facet[12..48].chunks_exact(12) {
             let mut position = [0.0; 3];
             for (x, number) in position.iter_mut().zip(corner.as_chunks().0) {

@@ -2,6 +2,7 @@
 
 use p2m_core::BuildError;
 use p2m_core::storage::LoadError;
+use p2m_mixed::ReadError;
 use std::io;
 use std::path::PathBuf;
 
@@ -47,6 +48,9 @@ pub enum ShardError {
         /// A clause that says what differs.
         reason: &'static str,
     },
+    /// The file of a scene cannot be read.
+    #[error(transparent)]
+    Scene(#[from] ReadError),
     /// The index of a shard cannot be built.
     #[error(transparent)]
     Build(#[from] BuildError),

@@ -2,7 +2,7 @@
 //! whatever memory shards may take; and it answers nothing if the file of a shard is wrong.
 
 use nalgebra::{Point3, Vector3};
-use p2m::scene::{Object, Scene};
+use p2m::scene::{Object, PieceOptions, Scene};
 use p2m::shards::{
     MANIFEST_FILE, Manifest, ShardClosest, ShardError, ShardHit, ShardOptions, ShardWriter, ShardedIndex,
 };
@@ -249,6 +249,39 @@ fn names_and_sources_are_kept() {
     assert_eq!(shards.manifest().shards.len(), 4);
     let scene = p2m::scene::read_scene(&folder.path().join(&shards.manifest().shards[3].file)).unwrap();
     assert_eq!((scene.soup.len(), scene.sources), (1, vec![7]));
+}
+
+#[test]
+fn a_file_in_pieces_has_the_ids_and_objects_of_its_scene() {
+    let folder = tempfile::tempdir().unwrap();
+    let mut text = String::from("o strip\n");
+    for i in 1..40 {
+        // A triangle, a segment and a point of each vertex, in two objects and none.
+        text += &format!("v {i} {} 0\nf -1 1 1\nl 1 -1\np -1\n{}", i % 3, ["", "o\n", "o rest\n"][i / 14]);
+    }
+    let path = folder.path().join("mixed.obj");
+    fs::write(&path, text).unwrap();
+    let scene = p2m::scene::read_scene(&path).unwrap();
+    let first = Soup::new(vec![Point3::new(1e3, 0.0, 0.0)], [Element::Point(0)]).unwrap();
+    for len in [1, 5, 1000] {
+        let mut writer = ShardWriter::new(&folder.path().join(len.to_string()), ShardOptions::default()).unwrap();
+        writer.add_scene(&first.clone().into()).unwrap();
+        let summary = writer.add_file(&path, &PieceOptions::default().with_max_primitives(len)).unwrap();
+        assert_eq!(summary.primitive_count, scene.soup.len() as u64);
+        assert!(matches!(writer.add_file(folder.path(), &PieceOptions::default()), Err(ShardError::Scene(_))));
+        let shards = writer.finish().unwrap();
+        let objects: Vec<_> = shards.manifest().objects().iter().map(|o| (o.name.clone(), o.ids.clone())).collect();
+        let expected = scene.objects.iter().map(|o| (o.name.clone(), o.ids.start + 1..o.ids.end + 1));
+        assert_eq!(objects, expected.collect::<Vec<_>>());
+        let index = BruteForce::new(&scene.soup).unwrap();
+        for query in queries(&mut rng("shards of a file", 0), &scene.soup, 50) {
+            let expected = index.closest_point(&query).map(|c| fields(c.primitive.index() as u64 + 1, &c));
+            let found = shards.closest_point(&query).unwrap().filter(|answer| answer.id > 0);
+            if let Some(answer) = found {
+                assert_eq!(Some(fields(answer.id, &answer.closest)), expected);
+            }
+        }
+    }
 }
 
 /// Returns the message of the error of a query for which all shards are needed.

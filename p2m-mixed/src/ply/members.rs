@@ -55,8 +55,8 @@ impl PendingMembers {
 }
 
 /// Builds the primitives of a PLY file.
-pub(super) struct Members {
-    pub(super) builder: SceneBuilder,
+pub(super) struct Members<'a> {
+    pub(super) builder: SceneBuilder<'a>,
     vertex_count: u64,
     /// The number of faces. The sources of strips are numbered after them.
     faces: u64,
@@ -69,17 +69,9 @@ pub(super) struct Members {
     not_finite: Vec<(u32, FileLocation)>,
 }
 
-impl Members {
-    pub(super) fn new(vertex_count: u64, faces: u64, ids: Option<u64>) -> Self {
-        Self {
-            builder: SceneBuilder::default(),
-            vertex_count,
-            faces,
-            ids,
-            batches: Vec::new(),
-            member: Vec::new(),
-            not_finite: Vec::new(),
-        }
+impl<'a> Members<'a> {
+    pub(super) fn new(builder: SceneBuilder<'a>, vertex_count: u64, faces: u64, ids: Option<u64>) -> Self {
+        Self { builder, vertex_count, faces, ids, batches: Vec::new(), member: Vec::new(), not_finite: Vec::new() }
     }
 
     /// Adds a vertex, with its location if it is not finite.
@@ -128,7 +120,7 @@ impl Members {
 
     /// Returns whether members are added as soon as they are read: all vertices are known, and members have no ids.
     fn is_immediate(&self) -> bool {
-        self.ids.is_none() && self.builder.positions().len() as u64 == self.vertex_count
+        self.ids.is_none() && self.builder.vertex_count() as u64 == self.vertex_count
     }
 
     /// Reads a member of an element.

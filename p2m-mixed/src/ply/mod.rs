@@ -49,7 +49,12 @@ use std::io::BufRead;
 /// are not finite (with the location of the vertex), ids that are not a permutation of 0, 1, 2, ..., faces of fewer
 /// than three vertices or more than [`MAX_CORNERS`](crate::MAX_CORNERS), and errors of `reader`. No memory is allocated
 /// for data that the header only announces.
-pub fn read_ply(mut reader: impl BufRead, name: &str) -> Result<Scene, ReadError> {
+pub fn read_ply(reader: impl BufRead, name: &str) -> Result<Scene, ReadError> {
+    read(reader, name, SceneBuilder::default())
+}
+
+/// Reads a PLY file into a builder, and returns the scene or its last piece.
+pub(crate) fn read(mut reader: impl BufRead, name: &str, builder: SceneBuilder<'_>) -> Result<Scene, ReadError> {
     let header = read_header(&mut reader, name)?;
     let fail = |reason| ReadError::new(name, FileLocation::File, reason);
 
@@ -79,7 +84,7 @@ pub fn read_ply(mut reader: impl BufRead, name: &str) -> Result<Scene, ReadError
 
     let mut data = Data::new(reader, &header, name);
     let faces = header.elements.iter().filter(|e| e.name == b"face").map(|e| e.count).sum();
-    let mut members = Members::new(vertex_count, faces, ids);
+    let mut members = Members::new(builder, vertex_count, faces, ids);
     for (element, plan) in header.elements.iter().zip(&plans) {
         match plan {
             ElementPlan::Skip => {
@@ -189,7 +194,7 @@ fn vertex<const N: usize>(
 }
 
 /// Counts the properties other than those `used` as skipped.
-fn count_skipped_properties(builder: &mut SceneBuilder, element: &header::Element, used: &[usize]) {
+fn count_skipped_properties(builder: &mut SceneBuilder<'_>, element: &header::Element, used: &[usize]) {
     for (_, property) in element.properties.iter().enumerate().filter(|(k, _)| !used.contains(k)) {
         let what = [b"property ", property.name.as_slice(), b" of ", element.name.as_slice()].concat();
         builder.skipped.add(&what, element.count);

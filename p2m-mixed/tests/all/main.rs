@@ -13,6 +13,7 @@ mod npy;
 mod obj;
 mod off;
 mod picture;
+mod pieces;
 mod ply;
 mod polygons;
 mod rays;

@@ -15,7 +15,7 @@ use nalgebra::Point3;
 use p2m_advisor::{BackendEntry, BuildSettings};
 use p2m_core::storage::Writer;
 use p2m_core::{BuildError, Element, PrimitiveId, PrimitiveSet, Shape, Soup};
-use p2m_mixed::{Scene, save_scene};
+use p2m_mixed::{PieceOptions, PieceSummary, Scene, read_scene_in_pieces, save_scene};
 use partition::divide;
 use spill::{Record, Spill};
 use std::fs::{self, File};
@@ -165,6 +165,20 @@ impl ShardWriter {
             self.add(first + number as u64, source, soup.get(PrimitiveId::new(number)))?;
         }
         Ok(())
+    }
+
+    /// Adds the primitives of a file, which may be larger than the memory, after those that were added before. It is
+    /// [read in pieces](read_scene_in_pieces), with a temporary file in the folder of the shards unless `options` name
+    /// another one. The id of a primitive is that in the scene of [`read_scene`](p2m_mixed::read_scene) plus the number
+    /// of primitives that were added before, and objects are those of that scene.
+    ///
+    /// # Errors
+    /// It returns [`ShardError::Scene`] if the file cannot be read, and [`ShardError::Io`] if the temporary file of
+    /// primitives cannot be written. The primitives before the error have been added then.
+    pub fn add_file(&mut self, path: &Path, options: &PieceOptions) -> Result<PieceSummary, ShardError> {
+        let mut options = options.clone();
+        options.folder.get_or_insert_with(|| self.folder.clone());
+        read_scene_in_pieces(path, &options, &mut |piece| self.add_scene(&piece))
     }
 
     /// Returns the number of primitives that were added.
