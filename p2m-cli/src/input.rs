@@ -176,6 +176,16 @@ fn open<'a>(streams: &'a Streams, path: &Path) -> anyhow::Result<Box<dyn BufRead
     Ok(Box::new(raw))
 }
 
+/// Returns whether a path is a file, and not a pipe, whose content is not compressed.
+pub(crate) fn is_plain_file(path: &Path) -> bool {
+    let is_compressed = || -> io::Result<bool> {
+        let mut reader = BufReader::new(File::open(path)?);
+        let start = reader.fill_buf()?;
+        Ok(start.starts_with(&GZIP_MAGIC) || is_zstd(start))
+    };
+    path.is_file() && is_compressed().is_ok_and(|is_compressed| !is_compressed)
+}
+
 /// The first bytes of what gzip has compressed.
 const GZIP_MAGIC: [u8; 3] = [0x1f, 0x8b, 8];
 

@@ -9,11 +9,11 @@ use crate::streams::Streams;
 use crate::threads::ThreadArgs;
 use crate::usage::{bytes, one_of};
 use p2m_advisor::BackendEntry;
-use p2m_mixed::Format;
+use p2m_mixed::{Format, PieceOptions, Skipped};
 use p2m_shards::{ShardOptions, ShardWriter, ShardedIndex, shard_file};
 use serde_json::{Value, json};
 use std::ops::ControlFlow;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
 
 fn help() -> String {
@@ -23,7 +23,8 @@ The scenes are joined in the order in which they are named: primitives are numbe
 takes the folder in place of a scene, loads a shard when a query needs it, and gives the answers of one index over all.
 
 Space is divided so that the file of a shard is at most as long as --max-bytes says. While the folder is written, one shard \
-is in memory at a time, and temporary files in the folder take 88 bytes for each primitive, and twice that for a while.
+is in memory at a time; files are read in pieces, apart from compressed ones and the standard input, which are read as a \
+whole. Temporary files in the folder take 88 bytes for each primitive, and twice that for a while.
 
 The file manifest.json appears last, so a folder without it is unfinished. It has the box, the number of primitives and the \
 checksum of each shard; a query that needs a shard which is missing, damaged or another one fails.
@@ -93,9 +94,8 @@ pub(crate) fn run(streams: &Streams, args: &Args) -> anyhow::Result<()> {
     let mut writer = ShardWriter::new(&args.out, options)?;
     let mut skipped = Vec::new();
     for (path, format) in args.scenes.iter().zip(formats) {
-        let (scene, _) = read_scene_and_index(streams, path, format, false)?;
-        skipped.extend(scene.skipped.iter().map(|kind| (input::name(path), kind.clone())));
-        writer.add_scene(&scene)?;
+        let found = add(streams, &mut writer, path, format)?;
+        skipped.extend(found.into_iter().map(|kind| (input::name(path), kind)));
     }
     let mut times = Times { read: start.elapsed(), ..Times::default() };
 
@@ -103,6 +103,18 @@ pub(crate) fn run(streams: &Streams, args: &Args) -> anyhow::Result<()> {
     let index = finish(streams, args, writer, &pool)?;
     times.write = start.elapsed();
     report(streams, args, &index, &skipped, &times)
+}
+
+/// Adds the primitives of a file, and returns the records that were skipped. The file is read in pieces if that is
+/// possible, so that it may be larger than memory.
+fn add(streams: &Streams, writer: &mut ShardWriter, path: &Path, format: Format) -> anyhow::Result<Vec<Skipped>> {
+    if Format::from_path(path).ok() == Some(format) && input::is_plain_file(path) {
+        let _progress = Progress::start(streams, &format!("reading {}", input::name(path)), None, Unit::None);
+        return Ok(writer.add_file(path, &PieceOptions::default())?.skipped);
+    }
+    let (scene, _) = read_scene_and_index(streams, path, format, false)?;
+    writer.add_scene(&scene)?;
+    Ok(scene.skipped)
 }
 
 /// Builds all shards. Until the last one is written, an interruption removes those that are there.
@@ -132,7 +144,7 @@ fn report(
     streams: &Streams,
     args: &Args,
     index: &ShardedIndex,
-    skipped: &[(String, p2m_mixed::Skipped)],
+    skipped: &[(String, Skipped)],
     times: &Times,
 ) -> anyhow::Result<()> {
     let manifest = index.manifest();
@@ -140,7 +152,7 @@ fn report(
     let (count, total, largest) = (manifest.shards.len(), lengths().sum::<u64>(), lengths().max().unwrap_or(0));
     let scenes: Vec<String> = args.scenes.iter().map(|path| input::name(path)).collect();
     if args.json {
-        let skip = |(file, kind): &(String, p2m_mixed::Skipped)| json!({ "file": file, "kind": kind.what, "count": kind.count });
+        let skip = |(file, kind): &(String, Skipped)| json!({ "file": file, "kind": kind.what, "count": kind.count });
         return json::print(
             streams,
             &json!({

@@ -1,7 +1,8 @@
 //! Tests of `p2m shard`, and of `p2m query` of an index in shards.
 
-use crate::common::{SCENE, failure, json, p2m, path, table, text, write};
+use crate::common::{SCENE, failure, json, p2m, p2m_with, path, table, text, write};
 use std::fs;
+use std::io::Write;
 use tempfile::TempDir;
 
 /// Writes the carried scene in shards of at most 40 kB, and returns the folder.
@@ -70,6 +71,23 @@ fn several_scenes_are_numbered_on() {
     assert_eq!(report["skipped"][0]["count"], 1, "{report}");
     let answers = table(&["query", &site, "--points", &points, "--columns", "primitive,distance"]);
     assert_eq!(answers, "primitive,distance\n1,2.0\n0,1.0\n");
+}
+
+#[test]
+fn compressed_files_and_the_standard_input_are_the_same_scene() {
+    let folder = TempDir::new().unwrap();
+    let scene = fs::read(SCENE).unwrap();
+    let mut gzip = flate2::write::GzEncoder::new(Vec::new(), flate2::Compression::fast());
+    gzip.write_all(&scene).unwrap();
+    let packed = gzip.finish().unwrap();
+    let inputs = [(write(&folder, "s.obj.gz", &packed), vec![]), (write(&folder, "s.obj", &packed), vec![])];
+    let expected = table(&["query", SCENE, "--random", "50"]);
+    for (number, (input, stdin)) in inputs.into_iter().chain([("-".to_owned(), scene)]).enumerate() {
+        let site = path(&folder, &number.to_string());
+        let arguments = ["shard", &input, "--format", "obj", "--max-bytes", "40kB", "--out", &site];
+        assert_eq!(p2m_with(&arguments, stdin).code, 0);
+        assert_eq!(table(&["query", &site, "--random", "50"]), expected, "{input}");
+    }
 }
 
 #[test]
