@@ -105,13 +105,13 @@ struct Shards<'a> {
 
 impl Source for Shards<'_> {
     // A block may load every shard, however few queries it has.
-    const BLOCK_SIZE: BlockSize = BlockSize::Fixed(1 << 19);
+    const BLOCK_SIZE: BlockSize = BlockSize::Fixed(1 << 18);
 
     fn closest(&self, queries: &[Point3<f64>]) -> anyhow::Result<Vec<ClosestAnswer>> {
         let options = self.args.options();
         let mut answers = vec![None; queries.len()];
         if self.args.accuracy.is_certified() {
-            answers = self.index.map(queries, |query| self.index.certified_closest_point(query, &options))?;
+            answers = self.index.certified_closest_points(queries, &options)?;
         } else {
             self.index.closest_points_into(queries, &options, &mut answers)?;
         }
@@ -128,14 +128,8 @@ impl Source for Shards<'_> {
 
     fn near(&self, queries: &[Point3<f64>]) -> anyhow::Result<Vec<Vec<Closest<f64>>>> {
         let (k, radius) = self.args.near();
-        let near = |query: &Point3<f64>| {
-            let near = match k {
-                None => self.index.all_within(query, radius)?,
-                Some(k) => self.index.k_nearest(query, k, radius)?,
-            };
-            Ok(near.into_iter().map(in_scene).collect())
-        };
-        Ok(self.index.map(queries, near)?)
+        let near = self.index.all_k_nearest(queries, k.unwrap_or(usize::MAX), radius)?;
+        Ok(near.into_par_iter().map(|near| near.into_iter().map(in_scene).collect()).collect())
     }
 }
 

@@ -1,6 +1,6 @@
 //! Batches of queries for the closest point, in two phases that load each shard once.
 
-use crate::nearest::{ShardClosest, is_finite, key, limit, reach};
+use crate::nearest::{ByBound, CertifiedSearch, NearSearch, Search, ShardClosest, is_finite, key, limit, reach};
 use crate::{ShardError, ShardedIndex};
 use nalgebra::Point3;
 use p2m_core::batch::{BatchOptions, closest_points_into};
@@ -61,33 +61,73 @@ impl ShardedIndex {
         self.ask_others(queries, &options, &mut pending, out)
     }
 
-    /// Answers each query by a function, on all threads of the current pool, and returns the answers in the order of the
-    /// queries.
-    ///
-    /// The queries that are nearest to the box of one shard are answered together, so few shards are needed at a time.
-    /// It is for queries that [`closest_points_into`](Self::closest_points_into) does not answer.
+    /// Answers each query as [`k_nearest`](Self::k_nearest) does, on all threads of the current pool.
     ///
     /// # Errors
-    /// It returns the first error of the function, after which nothing more is answered.
+    /// It returns [`ShardError::Load`] and [`ShardError::OtherShard`] if a shard that is needed has a wrong file.
     ///
     /// # Complexity
-    /// Comparing n queries with the boxes of s shards takes O(n s).
-    pub fn map<A: Send + Sync>(
+    /// Each shard is loaded at most twice, and comparing n queries with the boxes of s shards takes O(n s).
+    pub fn all_k_nearest(
         &self,
         queries: &[impl Position<f64>],
-        answer: impl Fn(&Point3<f64>) -> Result<A, ShardError> + Sync,
-    ) -> Result<Vec<A>, ShardError> {
-        let nearest = |query: &_| self.begin(&Position::point(query), &QueryOptions::default()).nearest;
-        let nearest: Vec<u32> = queries.par_iter().map(nearest).collect();
-        let mut order: Vec<usize> = (0..queries.len()).collect();
-        order.par_sort_by_key(|i| nearest[*i]);
-        let mut answers: Vec<Option<A>> = std::iter::repeat_with(|| None).take(queries.len()).collect();
-        for group in order.chunk_by(|a, b| nearest[*a] == nearest[*b]) {
-            let found: Vec<A> =
-                group.par_iter().map(|i| answer(&queries[*i].point())).collect::<Result<_, ShardError>>()?;
-            group.iter().zip(found).for_each(|(i, found)| answers[*i] = Some(found));
+        k: usize,
+        radius: f64,
+    ) -> Result<Vec<Vec<ShardClosest>>, ShardError> {
+        let searches = self.search_all(queries, |query| NearSearch::new(query, k, radius))?;
+        Ok(searches.into_par_iter().map(NearSearch::finish).collect())
+    }
+
+    /// Answers each query as [`certified_closest_point`](Self::certified_closest_point) does, on all threads of the
+    /// current pool.
+    ///
+    /// # Errors
+    /// It returns [`ShardError::Load`] and [`ShardError::OtherShard`] if a shard that is needed has a wrong file.
+    ///
+    /// # Complexity
+    /// Each shard is loaded at most twice, and comparing n queries with the boxes of s shards takes O(n s).
+    pub fn certified_closest_points(
+        &self,
+        queries: &[impl Position<f64>],
+        options: &QueryOptions<f64>,
+    ) -> Result<Vec<Option<ShardClosest>>, ShardError> {
+        let searches = self.search_all(queries, |query| CertifiedSearch::new(query, options))?;
+        let finish = |(search, query): (CertifiedSearch, &_)| search.finish(&Position::point(query), options);
+        searches.into_par_iter().zip(queries).map(finish).collect()
+    }
+
+    /// Searches for all queries: each asks the shard with the nearest box, and then every other one that may matter.
+    fn search_all<S: Search + Send + Sync>(
+        &self,
+        queries: &[impl Position<f64>],
+        begin: impl Fn(&Point3<f64>) -> S + Sync,
+    ) -> Result<Vec<S>, ShardError> {
+        let first = |query: &_| {
+            let query = Position::point(query);
+            let search = begin(&query);
+            let nearest = ByBound::new(&self.boxes, &query).take(search.prune_above());
+            (search, nearest.map(|(number, _)| number))
+        };
+        let mut searches: Vec<(S, Option<usize>)> = queries.par_iter().map(first).collect();
+        for is_nearest in [true, false] {
+            for (number, bounds) in self.boxes.iter().enumerate() {
+                let needs = |(search, nearest): &(S, Option<usize>), query: &Point3<f64>| {
+                    (*nearest == Some(number)) == is_nearest && bounds.lower_bound(query) <= search.prune_above()
+                };
+                let is_needed = |(search, query): (&(S, Option<usize>), &_)| needs(search, &Position::point(query));
+                if !searches.par_iter().zip(queries).any(is_needed) {
+                    continue;
+                }
+                let shard = self.shard(number)?;
+                searches.par_iter_mut().zip(queries).for_each(|(search, query)| {
+                    let query = query.point();
+                    if needs(search, &query) {
+                        search.0.ask(&query, number, &shard);
+                    }
+                });
+            }
         }
-        Ok(answers.into_iter().flatten().collect())
+        Ok(searches.into_iter().map(|(search, _)| search).collect())
     }
 
     /// Returns the shard that a query asks first.

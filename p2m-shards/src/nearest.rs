@@ -132,10 +132,112 @@ fn distance_below(bound: f64) -> f64 {
     (bound.min(f64::MAX).sqrt() * (1.0 - 8.0 * f64::EPSILON) - 4.0 * f64::from_bits(1)).max(0.0)
 }
 
+/// What is known of the answer to a query while shards are asked.
+pub(crate) trait Search {
+    /// Returns the square above which a lower bound rules a shard out. It is negative if the query has no answer.
+    fn prune_above(&self) -> f64;
+
+    /// Asks a shard.
+    fn ask(&mut self, query: &Point3<f64>, number: usize, shard: &Shard);
+}
+
+/// A search for a certified answer.
+pub(crate) struct CertifiedSearch {
+    /// The certified answers of shards with their primitives.
+    winners: Vec<(ShardClosest, Shape<f64>)>,
+    largest: f64,
+}
+
+impl CertifiedSearch {
+    pub(crate) fn new(query: &Point3<f64>, options: &QueryOptions<f64>) -> Self {
+        let largest = if is_finite(query) { options.max_distance } else { f64::NAN };
+        Self { winners: Vec::new(), largest }
+    }
+
+    /// Returns the answer, for which rational arithmetic decides among the nearest primitives of the shards.
+    pub(crate) fn finish(
+        mut self,
+        query: &Point3<f64>,
+        options: &QueryOptions<f64>,
+    ) -> Result<Option<ShardClosest>, ShardError> {
+        if self.winners.len() < 2 {
+            return Ok(self.winners.pop().map(|(answer, _)| answer));
+        }
+        // Of equally near primitives the first one wins.
+        self.winners.sort_unstable_by_key(|(answer, _)| answer.id);
+        let shapes: Vec<Shape<f64>> = self.winners.iter().map(|(_, shape)| *shape).collect();
+        let few = BruteForce::new(shapes)?;
+        let decided = few.certified_closest_point(query, options).ok().flatten();
+        Ok(decided.map(|decided| {
+            let (mut winner, _) = self.winners[decided.primitive.index()];
+            let primitive = winner.closest.primitive;
+            winner.closest = decided;
+            winner.closest.primitive = primitive;
+            winner
+        }))
+    }
+}
+
+impl Search for CertifiedSearch {
+    fn prune_above(&self) -> f64 {
+        if self.largest.is_nan() { -1.0 } else { limit(self.largest) }
+    }
+
+    fn ask(&mut self, query: &Point3<f64>, number: usize, shard: &Shard) {
+        let within = QueryOptions::default().with_max_distance(self.largest);
+        // Primitives of scenes have vertices, so no answer fails and none is without a shape.
+        let answer = shard.index().certified_closest_point(query, &within).ok().flatten();
+        if let Some((closest, shape)) = answer.and_then(|one| Some((one, shard.shape(one.primitive)?))) {
+            self.winners.push((ShardClosest::new(number, shard, closest), shape));
+            // A primitive that is nearer by less than the rounding of that distance still counts.
+            self.largest = self.largest.min(closest.distance.next_up());
+        }
+    }
+}
+
+/// A search for a number of near primitives.
+pub(crate) struct NearSearch {
+    k: usize,
+    /// What was found, in order.
+    found: Vec<Near>,
+    largest: f64,
+}
+
 /// A near primitive and the key that orders it among others.
 struct Near {
     key: Key,
     answer: ShardClosest,
+}
+
+impl NearSearch {
+    pub(crate) fn new(query: &Point3<f64>, k: usize, radius: f64) -> Self {
+        // The comparison is false for a radius of NaN.
+        let has_answers = k > 0 && is_finite(query) && radius >= 0.0;
+        Self { k, found: Vec::new(), largest: if has_answers { radius } else { f64::NAN } }
+    }
+
+    pub(crate) fn finish(self) -> Vec<ShardClosest> {
+        self.found.into_iter().map(|near| near.answer).collect()
+    }
+}
+
+impl Search for NearSearch {
+    fn prune_above(&self) -> f64 {
+        if self.largest.is_nan() { -1.0 } else { limit(self.largest) }
+    }
+
+    fn ask(&mut self, query: &Point3<f64>, number: usize, shard: &Shard) {
+        let near = shard.index().k_nearest(query, self.k, self.largest);
+        self.found.extend(near.into_iter().map(|closest| Near {
+            key: key(shard, &closest, query),
+            answer: ShardClosest::new(number, shard, closest),
+        }));
+        self.found.sort_unstable_by_key(|near| (near.key, near.answer.id));
+        self.found.truncate(self.k);
+        if let Some(last) = self.found.get(self.k - 1) {
+            self.largest = last.answer.closest.distance;
+        }
+    }
 }
 
 impl ShardedIndex {
@@ -192,38 +294,9 @@ impl ShardedIndex {
         query: &Point3<f64>,
         options: &QueryOptions<f64>,
     ) -> Result<Option<ShardClosest>, ShardError> {
-        if !is_finite(query) {
-            return Ok(None);
-        }
-        let mut order = ByBound::new(&self.boxes, query);
-        let mut winners: Vec<(ShardClosest, Shape<f64>)> = Vec::new();
-        let mut largest = options.max_distance;
-        while let Some((number, _)) = order.take(limit(largest)) {
-            let shard = self.shard(number)?;
-            let within = QueryOptions::default().with_max_distance(largest);
-            // Primitives of scenes have vertices, so no answer fails and none is without a shape.
-            let answer = shard.index().certified_closest_point(query, &within).ok().flatten();
-            if let Some((closest, shape)) = answer.and_then(|one| Some((one, shard.shape(one.primitive)?))) {
-                winners.push((ShardClosest::new(number, &shard, closest), shape));
-                // A primitive that is nearer by less than the rounding of that distance still counts.
-                largest = largest.min(closest.distance.next_up());
-            }
-        }
-        if winners.len() < 2 {
-            return Ok(winners.pop().map(|(answer, _)| answer));
-        }
-        // Rational arithmetic decides among the nearest primitives of the shards, in the order of their ids.
-        winners.sort_unstable_by_key(|(answer, _)| answer.id);
-        let shapes: Vec<Shape<f64>> = winners.iter().map(|(_, shape)| *shape).collect();
-        let few = BruteForce::new(shapes)?;
-        let decided = few.certified_closest_point(query, options).ok().flatten();
-        Ok(decided.map(|decided| {
-            let (mut winner, _) = winners[decided.primitive.index()];
-            let primitive = winner.closest.primitive;
-            winner.closest = decided;
-            winner.closest.primitive = primitive;
-            winner
-        }))
+        let mut search = CertifiedSearch::new(query, options);
+        self.search(query, &mut search)?;
+        search.finish(query, options)
     }
 
     /// Returns the nearest primitives, at most `k` and none beyond the radius, nearest first. The radius may be
@@ -232,28 +305,18 @@ impl ShardedIndex {
     /// # Errors
     /// It returns [`ShardError::Load`] and [`ShardError::OtherShard`] if a shard that is needed has a wrong file.
     pub fn k_nearest(&self, query: &Point3<f64>, k: usize, radius: f64) -> Result<Vec<ShardClosest>, ShardError> {
-        // The comparison is false for a radius of NaN.
-        let has_answers = k > 0 && is_finite(query) && radius >= 0.0;
-        if !has_answers {
-            return Ok(Vec::new());
-        }
+        let mut search = NearSearch::new(query, k, radius);
+        self.search(query, &mut search)?;
+        Ok(search.finish())
+    }
+
+    /// Asks the shards for one query, the nearest box first, as long as a shard may matter.
+    fn search(&self, query: &Point3<f64>, search: &mut impl Search) -> Result<(), ShardError> {
         let mut order = ByBound::new(&self.boxes, query);
-        let mut found: Vec<Near> = Vec::new();
-        let mut largest = radius;
-        while let Some((number, _)) = order.take(limit(largest)) {
-            let shard = self.shard(number)?;
-            let near = shard.index().k_nearest(query, k, largest);
-            found.extend(near.into_iter().map(|closest| Near {
-                key: key(&shard, &closest, query),
-                answer: ShardClosest::new(number, &shard, closest),
-            }));
-            found.sort_unstable_by_key(|near| (near.key, near.answer.id));
-            found.truncate(k);
-            if let Some(last) = found.get(k - 1) {
-                largest = last.answer.closest.distance;
-            }
+        while let Some((number, _)) = order.take(search.prune_above()) {
+            search.ask(query, number, &*self.shard(number)?);
         }
-        Ok(found.into_iter().map(|near| near.answer).collect())
+        Ok(())
     }
 
     /// Returns all primitives within the radius, nearest first.

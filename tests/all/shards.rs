@@ -83,11 +83,15 @@ fn check_points(rng: &mut impl Rng, shards: &ShardedIndex, soup: &Soup<f64>, nam
         let expected: Vec<_> = points.iter().map(|query| brute.closest_point_with(query, &options)).collect();
         let mut batch = vec![None; points.len()];
         shards.closest_points_into(&points, &options, &mut batch).unwrap();
-        for ((query, expected), batch) in points.iter().zip(&expected).zip(&batch) {
+        let all_certified = shards.certified_closest_points(&points, &options).unwrap();
+        let batches = batch.iter().zip(&all_certified);
+        for ((query, expected), (batch, batch_certified)) in points.iter().zip(&expected).zip(batches) {
             let found = shards.closest_point_with(query, &options).unwrap();
             assert_eq!(found.as_ref().map(of_shards), expected.as_ref().map(of_index), "{name}, {query}");
             assert_eq!(batch.as_ref().map(of_shards), expected.as_ref().map(of_index), "{name}, batch, {query}");
             let certified = shards.certified_closest_point(query, &options).unwrap();
+            let bits = |one: &ShardClosest| (of_shards(one), one.closest.lower_bound.to_bits());
+            assert_eq!(batch_certified.as_ref().map(bits), certified.as_ref().map(bits), "{name}, batch, {query}");
             let expected = brute.certified_closest_point(query, &options).unwrap();
             assert_eq!(certified.as_ref().map(of_shards), expected.as_ref().map(of_index), "{name}, {query}");
             if let (Some(certified), Some(expected)) = (certified, expected) {
@@ -100,9 +104,13 @@ fn check_points(rng: &mut impl Rng, shards: &ShardedIndex, soup: &Soup<f64>, nam
             }
         }
     }
-    for query in &points {
-        for k in [1, 3, 100] {
+    for k in [0, 1, 3, 100] {
+        let bits = |one: &ShardClosest| (of_shards(one), one.closest.lower_bound.to_bits());
+        let batch = shards.all_k_nearest(&points, k, radius * 3.0).unwrap();
+        for (query, batch) in points.iter().zip(batch) {
             let found: Vec<_> = shards.k_nearest(query, k, radius * 3.0).unwrap();
+            let [batch, one_by_one] = [&batch, &found].map(|list| list.iter().map(bits).collect::<Vec<_>>());
+            assert_eq!(batch, one_by_one, "{name}, {k} nearest, batch, {query}");
             let expected = brute.k_nearest(query, k, radius * 3.0);
             let bounds = |closest: &Closest<f64>| closest.lower_bound.to_bits();
             assert_eq!(
@@ -111,6 +119,8 @@ fn check_points(rng: &mut impl Rng, shards: &ShardedIndex, soup: &Soup<f64>, nam
                 "{name}, {k} nearest, {query}"
             );
         }
+    }
+    for query in &points {
         let found: Vec<_> = shards.all_within(query, radius).unwrap().iter().map(of_shards).collect();
         let expected: Vec<_> = brute.all_within(query, radius).iter().map(of_index).collect();
         assert_eq!(found, expected, "{name}, {query}");
@@ -215,12 +225,15 @@ fn closed_surfaces_have_an_inside() {
     let folder = tempfile::tempdir().unwrap();
     let shards = write(rng, folder.path(), &sphere, ShardOptions::default().with_max_bytes(20_000));
     assert!(shards.manifest().shards.len() > 2);
-    for _ in 0..amount(10_000, 300) {
-        let query = Point3::from(std::array::from_fn(|_| rng.random_range(-1.2..1.2)));
+    let random_point = |_| Point3::from(std::array::from_fn(|_| rng.random_range(-1.2..1.2)));
+    let points: Vec<Point3<f64>> = (0..amount(10_000, 300)).map(random_point).collect();
+    let batch = shards.are_inside(&points).unwrap();
+    for (query, is_inside) in points.into_iter().zip(batch) {
+        assert_eq!(shards.is_inside(&query).unwrap(), is_inside, "{query}");
         let radius = query.coords.norm();
         // The sphere is a polyhedron, whose faces are a little inside.
         if !(0.98..=1.0).contains(&radius) {
-            assert_eq!(shards.is_inside(&query).unwrap(), radius < 0.98, "{query}");
+            assert_eq!(is_inside, radius < 0.98, "{query}");
         }
     }
     assert!(!shards.is_inside(&Point3::new(f64::NAN, 0.0, 0.0)).unwrap());
