@@ -234,13 +234,8 @@ impl<'a, 'b> Parser<'a, 'b> {
         Ok(())
     }
 
-    /// Adds the primitives of a statement whose vertices are defined.
+    /// Adds the primitives of a statement whose vertices are defined and finite.
     fn add(&mut self, shape: Shape, vertices: &[u32]) -> Result<(), Reason> {
-        for &vertex in vertices {
-            if !self.builder.is_finite(vertex)? {
-                return Err(Reason::NonFiniteVertex { index: u64::from(vertex) + 1 });
-            }
-        }
         match shape {
             Shape::Polygon => {
                 self.builder.push_polygon(vertices, self.faces)?;
@@ -262,6 +257,15 @@ impl<'a, 'b> Parser<'a, 'b> {
         Ok(())
     }
 
+    fn check_finite(&mut self, vertices: &[u32]) -> Result<(), Reason> {
+        for &vertex in vertices {
+            if !self.builder.is_finite(vertex)? {
+                return Err(Reason::NonFiniteVertex { index: u64::from(vertex) + 1 });
+            }
+        }
+        Ok(())
+    }
+
     /// Adds what was deferred. The error has the line of its statement.
     fn add_deferred(&mut self) -> Result<(), (u64, Reason)> {
         let (deferred, vertices) = (std::mem::take(&mut self.deferred), std::mem::take(&mut self.deferred_vertices));
@@ -275,7 +279,9 @@ impl<'a, 'b> Parser<'a, 'b> {
                     if let Some(vertex) = vertices.iter().find(|vertex| u64::from(**vertex) >= count) {
                         return Err((line, Reason::IndexOutOfRange { index: i64::from(*vertex) + 1, count }));
                     }
-                    self.add(shape, vertices).map_err(|reason| (line, reason))?;
+                    self.check_finite(vertices)
+                        .and_then(|()| self.add(shape, vertices))
+                        .map_err(|reason| (line, reason))?;
                 }
             }
         }

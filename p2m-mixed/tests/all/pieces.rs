@@ -192,6 +192,7 @@ fn statements_of_obj_files_mean_the_same_in_pieces() {
         // Groups are no objects if an object follows, in whatever way it is written.
         "g a\nf 1 2 3\nf 1 2 3\nf 1 2 3\ng b\nf 1 2 3\no c\nf 1 2 3\ng d\nf 1 2 3\n",
         "g a\nf 1 2 3\nf 1 2 3\n\\\no c\nf 1 2 3\n",
+        "g a\nf 1 2 3\nf 1 2 3\nusemtl x\\\no c\nf 1 2 3\n",
         "g a\nf 1 2 3\nf 1 2 3\n# \\\n#o c\nf 1 2 3\ng a\np 1\ng\np 1 2\ng a\np 3\n",
         "o a\nf 1 2 3\nf 1 2 3\ng b\nf 1 2 3\no a\nl 1 2 3 1\no\np 1\n",
         // Statements stay in order after a reference to a later vertex.
@@ -232,6 +233,11 @@ fn facets_of_more_than_three_vertices_are_divided_over_pieces() {
         "endsolid\n",
     ];
     assert!(check(text.concat(), Format::Stl));
+    // Facets after a divided one have the numbers of its vertices again.
+    let shifted = octagon.map(|[x, y, z]| [x + 10, y, z + 1]);
+    let text = ["solid\n", &facet(&octagon), &facet(&shifted), &facet(&octagon), "endsolid\n"];
+    let file = SceneFile::new(text.concat(), Format::Stl);
+    assert!((1..9).all(|n| check_with(&file.path, &PieceOptions::default().with_max_primitives(n))));
 }
 
 /// An error of reading, or of a visitor.
