@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import contextlib
 import os
 import pickle
 import signal
@@ -83,7 +84,10 @@ def chunked(draw: st.DrawFn) -> tuple[p2m.Index, Any, np.ndarray]:
     return p2m.Index(scene), da.from_array(points, chunks=tuple(chunks)), points
 
 
-@given(chunked(), st.sampled_from([{}, {"max_distance": 0.5}, {"certified": True}, {"epsilon": 0.1}, {"max_visits": 3}]))
+LIMITS = ({}, {"max_distance": 0.5}, {"certified": True}, {"epsilon": 0.1}, {"max_visits": 3})
+
+
+@given(chunked(), st.sampled_from(LIMITS))
 @settings(max_examples=50, deadline=None, suppress_health_check=list(HealthCheck))
 def test_all_fields_are_the_same_bits_for_all_chunks(case: tuple[p2m.Index, Any, np.ndarray], options: Any) -> None:
     index, array, points = case
@@ -300,16 +304,23 @@ def kill_once(block: np.ndarray, flag: str) -> np.ndarray:
     return block
 
 
-@pytest.mark.skipif(not hasattr(signal, "SIGKILL"), reason="this system has no SIGKILL")
-def test_processes_of_a_cluster_answer_and_one_may_end(path: Path, index: p2m.Index, tmp_path: Path) -> None:
+@contextlib.contextmanager
+def cluster(folder: Path) -> Iterator[Any]:
+    """Yield the client of a cluster of two processes, each with one thread."""
     distributed = pytest.importorskip("distributed")
     with (
         distributed.LocalCluster(
             n_workers=2, threads_per_worker=1, processes=True, dashboard_address=None, memory_limit=0,
-            local_directory=str(tmp_path),
-        ) as cluster,
-        distributed.Client(cluster) as client,
+            local_directory=str(folder),
+        ) as local,
+        distributed.Client(local) as client,
     ):
+        yield client
+
+
+@pytest.mark.skipif(not hasattr(signal, "SIGKILL"), reason="this system has no SIGKILL")
+def test_processes_of_a_cluster_answer_and_one_may_end(path: Path, index: p2m.Index, tmp_path: Path) -> None:
+    with cluster(tmp_path) as client:
         points = da.from_array(POINTS, chunks=(100, 3))
         for source in [path, index, p2m.Index(mixed_scene())]:
             answer = p2m.dask.closest(points, source, fields=FIELDS, map=source is path)
@@ -322,3 +333,17 @@ def test_processes_of_a_cluster_answer_and_one_may_end(path: Path, index: p2m.In
         client.wait_for_workers(2, timeout=30)
         after = set(client.run(os.getpid).values())
         assert flag.exists() and len(before) == 2 and len(before - after) == 1
+
+
+@pytest.mark.long
+def test_ten_million_points_on_two_processes(model_folder: Path, tmp_path: Path) -> None:
+    file = tmp_path / "dragon.p2m"
+    p2m.Index(p2m.read(model_folder / "dragon_100k.obj")).save(file)
+    index = p2m.load(file, map=True)
+    points = np.random.default_rng(1).uniform(*index.scene.bounds, (10_000_000, 3))
+    da.to_npy_stack(str(tmp_path / "points"), da.from_array(points, chunks=(500_000, 3)))
+    expected = index.closest(points)
+    del points
+    with cluster(tmp_path):
+        found = p2m.dask.closest(da.from_npy_stack(str(tmp_path / "points")), index).compute()
+    assert_same(found, expected)

@@ -219,7 +219,16 @@ class Ask:
         Returns
         -------
         pyspark.sql.types.StructType
+
+        Raises
+        ------
+        ValueError
+            For the fields ``point``, ``barycentric`` and ``feature``, whose types of Arrow Spark does not take.
         """
+        for field in self._fields:
+            dtype, tail = FIELDS[field]
+            if tail or dtype == np.uint8:
+                raise ValueError(f"fields: Spark does not take {field!r} from Arrow, as {_arrow_type(field)}")
         from pyspark.sql.pandas.types import from_arrow_schema
         from pyspark.sql.types import StructType
 
