@@ -191,6 +191,44 @@ def test_indexes_with_and_without_a_file_answer(path: Path, index: p2m.Index, ba
         p2m.dask.distance(points, ball_index, map=True)
 
 
+@given(chunked(), st.integers(3000, 30_000), st.sampled_from([None, 0, 40_000]))
+@settings(max_examples=25, deadline=None, suppress_health_check=list(HealthCheck))
+def test_folders_of_shards_have_the_same_bits(
+    tmp_path_factory: pytest.TempPathFactory, case: tuple[p2m.Index, Any, np.ndarray], size: int, limit: int | None
+) -> None:
+    index, array, points = case
+    folder = tmp_path_factory.mktemp("shards") / "site"
+    p2m.write_shards(index.scene, folder, size)
+    fields = tuple(name for name in FIELDS if name != "lower_bound")
+    expected = index.closest(points, fields=fields)
+    for source in [folder, folder / "manifest.json", p2m.Shards(folder, limit)]:
+        assert_same(p2m.dask.closest(array, source, fields=fields).compute(), expected)
+    lazy = p2m.dask.rays(array, [1.0, 2.0, -1.0], p2m.Shards(folder, limit, map=True), "crossings")
+    assert np.array_equal(lazy.compute(), index.rays(points, [1.0, 2.0, -1.0], "crossings"))
+    rows = points.reshape(-1, 3)
+    answers = p2m.Ask(p2m.Shards(folder, limit), fields=fields)(rows)
+    assert_same(answers, index.closest(rows, fields=fields), fields)
+    p2m.clear_opened()
+
+
+def test_a_process_opens_shards_once(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    scene = mixed_scene()
+    shards = p2m.write_shards(scene, tmp_path / "site", 8000)
+    p2m.clear_opened()
+    lazy = p2m.dask.distance(da.from_array(POINTS, chunks=(50, 3)), tmp_path / "site")
+    assert np.array_equal(lazy.compute(), shards.distance(POINTS))
+    assert p2m._opened.open_shards(tmp_path / "site").loads <= len(shards.shards)
+    (tmp_path / "site" / shards.shards[2].file).unlink()
+    p2m.clear_opened()
+    with pytest.raises(FileNotFoundError, match=shards.shards[2].file):
+        lazy.compute()
+    p2m.write_shards(mixed_scene(2), tmp_path / "site", replace=True)
+    with pytest.raises(ValueError, match=r"manifest\.json is not the manifest that the shards came from"):
+        lazy.compute()
+    with pytest.raises(ValueError, match="shards have no fields"):
+        p2m.dask.field(tmp_path / "site", (0, 0, 0), 1.0, (2, 2, 2))
+
+
 def mixed_ball() -> p2m.Index:
     return p2m.Index(p2m.Scene(*sphere(8, 12)))
 
