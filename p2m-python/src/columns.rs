@@ -114,11 +114,17 @@ impl Columns<'_> {
 
     /// Writes an answer, or that there is none.
     pub(crate) fn set(&mut self, i: usize, closest: Option<&Closest<f64>>) {
+        self.set_with_id(i, closest.map(|closest| (i64::from(closest.primitive.number()), closest)));
+    }
+
+    /// Writes an answer whose primitive has this id, or that there is none.
+    pub(crate) fn set_with_id(&mut self, i: usize, answer: Option<(i64, &Closest<f64>)>) {
+        let closest = answer.map(|(_, closest)| closest);
         if let Some(column) = &mut self.distance {
             column[i] = closest.map_or(f64::INFINITY, |c| c.distance);
         }
         if let Some(column) = &mut self.primitive {
-            column[i] = closest.map_or(NO_PRIMITIVE, |c| i64::from(c.primitive.number()));
+            column[i] = answer.map_or(NO_PRIMITIVE, |(id, _)| id);
         }
         if let Some(column) = &mut self.point {
             column[i] = closest.map_or(Point3::new(f64::NAN, f64::NAN, f64::NAN), |c| c.point);

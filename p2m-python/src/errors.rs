@@ -5,8 +5,9 @@ use p2m_core::storage::LoadError;
 use p2m_field::GridError;
 use p2m_field::sign::SignError;
 use p2m_mixed::{ReadError, Reason};
+use p2m_shards::ShardError;
 use pyo3::PyErr;
-use pyo3::exceptions::{PyMemoryError, PyOSError, PyValueError};
+use pyo3::exceptions::{PyFileExistsError, PyMemoryError, PyOSError, PyValueError};
 use std::io;
 use std::path::Path;
 
@@ -61,5 +62,15 @@ pub(crate) fn load_error(error: &LoadError, name: &str) -> PyErr {
     match error {
         LoadError::Io(source) => io_error(source, Path::new(name)),
         _ => value_error(format!("{name} {error}")),
+    }
+}
+
+/// The exception for shards that cannot be written, opened or asked, with the name of the file.
+pub(crate) fn shard_error(error: &ShardError) -> PyErr {
+    match error {
+        ShardError::Io { file, source } => io_error(source, file),
+        ShardError::Load { file, source } => load_error(source, &file.display().to_string()),
+        ShardError::Exists { .. } => PyFileExistsError::new_err(format!("{error}: give replace=True to replace it")),
+        _ => value_error(error),
     }
 }

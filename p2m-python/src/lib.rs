@@ -4,7 +4,7 @@
 //! the documentation for users are in Python (`python/p2m`). Every build and every batch runs detached from the
 //! interpreter, on threads that never call it (the module `work`).
 //!
-//! `unsafe` stands in one place, the mapping of a saved file that the user asked for.
+//! `unsafe` stands in two places, which map saved files and shards where the user asked for it.
 #![deny(unsafe_code)]
 
 mod advise;
@@ -22,6 +22,7 @@ mod rays;
 mod saved;
 mod scene;
 mod searchable;
+mod sharded;
 mod signs;
 mod threads;
 mod watched;
@@ -48,6 +49,8 @@ mod _p2m {
     use super::saved::{load, load_bytes};
     #[pymodule_export]
     use super::scene::Scene;
+    #[pymodule_export]
+    use super::sharded::{ShardWriter, Shards};
     #[pymodule_export]
     use super::threads::default_threads;
 

@@ -190,7 +190,7 @@ impl Index {
                     }
                     list.append(&mut part.answers);
                 }
-                Ok::<_, BadRow>(NearList { list })
+                Ok::<_, BadRow>(NearList { list, ids: None })
             };
             self.run(py, points.len(), threads, progress, work)
         })
@@ -270,7 +270,9 @@ impl Index {
 /// The primitives within a distance of some queries, before they are columns.
 #[pyclass(frozen, module = "p2m._p2m")]
 pub(crate) struct NearList {
-    list: Vec<Closest<f64>>,
+    pub(crate) list: Vec<Closest<f64>>,
+    /// The ids of the primitives, where they are not those of the answers.
+    pub(crate) ids: Option<Vec<i64>>,
 }
 
 #[pymethods]
@@ -283,7 +285,13 @@ impl NearList {
     fn fill(&self, py: Python<'_>, out: &Bound<'_, PyDict>) -> PyResult<()> {
         let mut arrays = Arrays::borrow(out)?;
         let mut columns: Columns<'_> = arrays.columns(self.list.len())?;
-        py.detach(|| self.list.iter().enumerate().for_each(|(i, closest)| columns.set(i, Some(closest))));
+        py.detach(|| match &self.ids {
+            None => self.list.iter().enumerate().for_each(|(i, closest)| columns.set(i, Some(closest))),
+            Some(ids) => {
+                let answers = ids.iter().copied().zip(&self.list);
+                answers.enumerate().for_each(|(i, answer)| columns.set_with_id(i, Some(answer)));
+            }
+        });
         Ok(())
     }
 }

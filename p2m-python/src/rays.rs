@@ -15,15 +15,15 @@ use pyo3::prelude::*;
 use pyo3::types::PyDict;
 
 /// Rays that have a row each.
-struct Rays<'a> {
-    origins: &'a [[f64; 3]],
-    directions: &'a [[f64; 3]],
-    range: [f64; 2],
-    radius: f64,
+pub(crate) struct Rays<'a> {
+    pub(crate) origins: &'a [[f64; 3]],
+    pub(crate) directions: &'a [[f64; 3]],
+    pub(crate) range: [f64; 2],
+    pub(crate) radius: f64,
 }
 
 /// The reason why a row is not a ray.
-struct BadRay(usize, RayError);
+pub(crate) struct BadRay(usize, RayError);
 
 impl From<BadRay> for PyErr {
     fn from(BadRay(row, error): BadRay) -> Self {
@@ -45,12 +45,12 @@ impl Rays<'_> {
             .map_err(|error| BadRay(row, error))
     }
 
-    fn check(&self) -> Result<(), BadRay> {
+    pub(crate) fn check(&self) -> Result<(), BadRay> {
         (0..self.origins.len()).try_for_each(|row| self.ray(row).map(drop))
     }
 
     /// Answers all rays in parts.
-    fn answer<O: Split, A: Send, R: Send>(
+    pub(crate) fn answer<O: Split, A: Send, R: Send>(
         &self,
         out: O,
         threads: &Threads,
@@ -69,7 +69,7 @@ impl Rays<'_> {
 
 /// Places for hits.
 #[derive(Default)]
-struct HitColumns<'a> {
+pub(crate) struct HitColumns<'a> {
     t: Option<&'a mut [f64]>,
     primitive: Option<&'a mut [i64]>,
     point: Option<&'a mut [[f64; 3]]>,
@@ -79,11 +79,17 @@ struct HitColumns<'a> {
 
 impl HitColumns<'_> {
     fn set(&mut self, i: usize, hit: Option<&Hit>) {
+        self.set_with_id(i, hit.map(|hit| (i64::from(hit.primitive.number()), hit)));
+    }
+
+    /// Writes a hit of the primitive with this id, or that there is none.
+    pub(crate) fn set_with_id(&mut self, i: usize, answer: Option<(i64, &Hit)>) {
+        let hit = answer.map(|(_, hit)| hit);
         if let Some(column) = &mut self.t {
             column[i] = hit.map_or(f64::INFINITY, |hit| hit.parameter);
         }
         if let Some(column) = &mut self.primitive {
-            column[i] = hit.map_or(NO_PRIMITIVE, |hit| i64::from(hit.primitive.number()));
+            column[i] = answer.map_or(NO_PRIMITIVE, |(id, _)| id);
         }
         if let Some(column) = &mut self.point {
             column[i] = hit.map_or([f64::NAN; 3], |hit| hit.point().coords.into());
@@ -114,7 +120,7 @@ impl Split for HitColumns<'_> {
 }
 
 /// Arrays for hits.
-struct HitArrays<'py> {
+pub(crate) struct HitArrays<'py> {
     t: Option<PyReadwriteArray1<'py, f64>>,
     primitive: Option<PyReadwriteArray1<'py, i64>>,
     point: Option<PyReadwriteArray1<'py, f64>>,
@@ -123,7 +129,7 @@ struct HitArrays<'py> {
 }
 
 impl<'py> HitArrays<'py> {
-    fn borrow(out: &Bound<'py, PyDict>) -> PyResult<Self> {
+    pub(crate) fn borrow(out: &Bound<'py, PyDict>) -> PyResult<Self> {
         Ok(Self {
             t: borrowed(out, "t")?,
             primitive: borrowed(out, "primitive")?,
@@ -133,7 +139,7 @@ impl<'py> HitArrays<'py> {
         })
     }
 
-    fn columns(&mut self) -> PyResult<HitColumns<'_>> {
+    pub(crate) fn columns(&mut self) -> PyResult<HitColumns<'_>> {
         Ok(HitColumns {
             t: slice(&mut self.t)?,
             primitive: slice(&mut self.primitive)?,
@@ -147,7 +153,9 @@ impl<'py> HitArrays<'py> {
 /// The hits of some rays, before they are columns.
 #[pyclass(frozen, module = "p2m._p2m")]
 pub(crate) struct HitList {
-    list: Vec<Hit>,
+    pub(crate) list: Vec<Hit>,
+    /// The ids of the primitives, where they are not those of the hits.
+    pub(crate) ids: Option<Vec<i64>>,
 }
 
 #[pymethods]
@@ -160,7 +168,13 @@ impl HitList {
     fn fill(&self, py: Python<'_>, out: &Bound<'_, PyDict>) -> PyResult<()> {
         let mut arrays = HitArrays::borrow(out)?;
         let mut columns = arrays.columns()?;
-        py.detach(|| self.list.iter().enumerate().for_each(|(i, hit)| columns.set(i, Some(hit))));
+        py.detach(|| match &self.ids {
+            None => self.list.iter().enumerate().for_each(|(i, hit)| columns.set(i, Some(hit))),
+            Some(ids) => {
+                let hits = ids.iter().copied().zip(&self.list);
+                hits.enumerate().for_each(|(i, hit)| columns.set_with_id(i, Some(hit)));
+            }
+        });
         Ok(())
     }
 }
@@ -274,7 +288,7 @@ impl Cast<'_> {
                         }
                         hits.concat()
                     });
-                    Ok::<_, BadRay>(HitList { list: parts.concat() })
+                    Ok::<_, BadRay>(HitList { list: parts.concat(), ids: None })
                 };
                 parent.run(py, origins.len(), threads, progress, work).map(Some)
             }

@@ -44,11 +44,16 @@ pub(crate) fn pool(_: Python<'_>, threads: usize) -> PyResult<Arc<ThreadPool>> {
     if let Some(pool) = pools.get(&threads) {
         return Ok(Arc::clone(pool));
     }
-    let builder = ThreadPoolBuilder::new().num_threads(threads).thread_name(|number| format!("p2m-{number}"));
-    let pool = builder.build().map_err(|error| pyo3::exceptions::PyRuntimeError::new_err(error.to_string()))?;
-    let pool = Arc::new(pool);
+    let pool = start(threads)?;
     pools.insert(threads, Arc::clone(&pool));
     Ok(pool)
+}
+
+/// Returns a pool with so many threads that nobody else uses.
+pub(crate) fn start(threads: usize) -> PyResult<Arc<ThreadPool>> {
+    let builder = ThreadPoolBuilder::new().num_threads(threads).thread_name(|number| format!("p2m-{number}"));
+    let pool = builder.build().map_err(|error| pyo3::exceptions::PyRuntimeError::new_err(error.to_string()))?;
+    Ok(Arc::new(pool))
 }
 
 /// Leaves a pool to the cancelled work that runs on it: later calls get another one. Its threads end with that work.

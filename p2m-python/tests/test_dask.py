@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import contextlib
 import os
 import pickle
 import signal
@@ -83,7 +84,10 @@ def chunked(draw: st.DrawFn) -> tuple[p2m.Index, Any, np.ndarray]:
     return p2m.Index(scene), da.from_array(points, chunks=tuple(chunks)), points
 
 
-@given(chunked(), st.sampled_from([{}, {"max_distance": 0.5}, {"certified": True}, {"epsilon": 0.1}, {"max_visits": 3}]))
+LIMITS = ({}, {"max_distance": 0.5}, {"certified": True}, {"epsilon": 0.1}, {"max_visits": 3})
+
+
+@given(chunked(), st.sampled_from(LIMITS))
 @settings(max_examples=50, deadline=None, suppress_health_check=list(HealthCheck))
 def test_all_fields_are_the_same_bits_for_all_chunks(case: tuple[p2m.Index, Any, np.ndarray], options: Any) -> None:
     index, array, points = case
@@ -185,6 +189,44 @@ def test_indexes_with_and_without_a_file_answer(path: Path, index: p2m.Index, ba
     np.testing.assert_array_equal(lazy.compute(), ball_index.distance(POINTS))
     with pytest.raises(ValueError, match="not loaded from a file"):
         p2m.dask.distance(points, ball_index, map=True)
+
+
+@given(chunked(), st.integers(3000, 30_000), st.sampled_from([None, 0, 40_000]))
+@settings(max_examples=25, deadline=None, suppress_health_check=list(HealthCheck))
+def test_folders_of_shards_have_the_same_bits(
+    tmp_path_factory: pytest.TempPathFactory, case: tuple[p2m.Index, Any, np.ndarray], size: int, limit: int | None
+) -> None:
+    index, array, points = case
+    folder = tmp_path_factory.mktemp("shards") / "site"
+    p2m.write_shards(index.scene, folder, size)
+    fields = tuple(name for name in FIELDS if name != "lower_bound")
+    expected = index.closest(points, fields=fields)
+    for source in [folder, folder / "manifest.json", p2m.Shards(folder, limit)]:
+        assert_same(p2m.dask.closest(array, source, fields=fields).compute(), expected)
+    lazy = p2m.dask.rays(array, [1.0, 2.0, -1.0], p2m.Shards(folder, limit, map=True), "crossings")
+    assert np.array_equal(lazy.compute(), index.rays(points, [1.0, 2.0, -1.0], "crossings"))
+    rows = points.reshape(-1, 3)
+    answers = p2m.Ask(p2m.Shards(folder, limit), fields=fields)(rows)
+    assert_same(answers, index.closest(rows, fields=fields), fields)
+    p2m.clear_opened()
+
+
+def test_a_process_opens_shards_once(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    scene = mixed_scene()
+    shards = p2m.write_shards(scene, tmp_path / "site", 8000)
+    p2m.clear_opened()
+    lazy = p2m.dask.distance(da.from_array(POINTS, chunks=(50, 3)), tmp_path / "site")
+    assert np.array_equal(lazy.compute(), shards.distance(POINTS))
+    assert p2m._opened.open_shards(tmp_path / "site").loads <= len(shards.shards)
+    (tmp_path / "site" / shards.shards[2].file).unlink()
+    p2m.clear_opened()
+    with pytest.raises(FileNotFoundError, match=shards.shards[2].file):
+        lazy.compute()
+    p2m.write_shards(mixed_scene(2), tmp_path / "site", replace=True)
+    with pytest.raises(ValueError, match=r"manifest\.json is not the manifest that the shards came from"):
+        lazy.compute()
+    with pytest.raises(ValueError, match="shards have no fields"):
+        p2m.dask.field(tmp_path / "site", (0, 0, 0), 1.0, (2, 2, 2))
 
 
 def mixed_ball() -> p2m.Index:
@@ -300,16 +342,23 @@ def kill_once(block: np.ndarray, flag: str) -> np.ndarray:
     return block
 
 
-@pytest.mark.skipif(not hasattr(signal, "SIGKILL"), reason="this system has no SIGKILL")
-def test_processes_of_a_cluster_answer_and_one_may_end(path: Path, index: p2m.Index, tmp_path: Path) -> None:
+@contextlib.contextmanager
+def cluster(folder: Path) -> Iterator[Any]:
+    """Yield the client of a cluster of two processes, each with one thread."""
     distributed = pytest.importorskip("distributed")
     with (
         distributed.LocalCluster(
             n_workers=2, threads_per_worker=1, processes=True, dashboard_address=None, memory_limit=0,
-            local_directory=str(tmp_path),
-        ) as cluster,
-        distributed.Client(cluster) as client,
+            local_directory=str(folder),
+        ) as local,
+        distributed.Client(local) as client,
     ):
+        yield client
+
+
+@pytest.mark.skipif(not hasattr(signal, "SIGKILL"), reason="this system has no SIGKILL")
+def test_processes_of_a_cluster_answer_and_one_may_end(path: Path, index: p2m.Index, tmp_path: Path) -> None:
+    with cluster(tmp_path) as client:
         points = da.from_array(POINTS, chunks=(100, 3))
         for source in [path, index, p2m.Index(mixed_scene())]:
             answer = p2m.dask.closest(points, source, fields=FIELDS, map=source is path)
@@ -322,3 +371,17 @@ def test_processes_of_a_cluster_answer_and_one_may_end(path: Path, index: p2m.In
         client.wait_for_workers(2, timeout=30)
         after = set(client.run(os.getpid).values())
         assert flag.exists() and len(before) == 2 and len(before - after) == 1
+
+
+@pytest.mark.long
+def test_ten_million_points_on_two_processes(model_folder: Path, tmp_path: Path) -> None:
+    file = tmp_path / "dragon.p2m"
+    p2m.Index(p2m.read(model_folder / "dragon_100k.obj")).save(file)
+    index = p2m.load(file, map=True)
+    points = np.random.default_rng(1).uniform(*index.scene.bounds, (10_000_000, 3))
+    da.to_npy_stack(str(tmp_path / "points"), da.from_array(points, chunks=(500_000, 3)))
+    expected = index.closest(points)
+    del points
+    with cluster(tmp_path):
+        found = p2m.dask.closest(da.from_npy_stack(str(tmp_path / "points")), index).compute()
+    assert_same(found, expected)

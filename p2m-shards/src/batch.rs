@@ -4,11 +4,49 @@ use crate::nearest::{ByBound, CertifiedSearch, NearSearch, Search, ShardClosest,
 use crate::{ShardError, ShardedIndex};
 use nalgebra::Point3;
 use p2m_core::batch::{BatchOptions, closest_points_into};
-use p2m_core::{Aabb, Closest, Key, Position, QueryOptions};
+use p2m_core::{Aabb, Best, Closest, ClosestPoint, Found, Index, Key, Position, QueryOptions};
 use rayon::prelude::*;
 
 /// The number that stands for no shard.
 const NONE: u32 = u32::MAX;
+
+/// A function that is called with a number of answered queries, and returns whether to go on.
+type Proceed<'a> = dyn Fn(usize) -> bool + Sync + 'a;
+
+/// The index of a shard, which leaves out queries when it is not to go on.
+struct Stoppable<'a> {
+    index: &'a dyn Index,
+    proceed: &'a Proceed<'a>,
+}
+
+/// The number of queries between two questions whether to go on.
+const QUERIES_PER_STEP: usize = 1 << 10;
+
+impl ClosestPoint<f64> for Stoppable<'_> {
+    fn search(&self, query: &Point3<f64>, best: &mut Best<f64>) {
+        self.index.search(query, best);
+    }
+
+    fn closest_point_with(&self, query: &Point3<f64>, options: &QueryOptions<f64>) -> Option<Closest<f64>> {
+        self.index.closest_point_with(query, options)
+    }
+
+    fn answer_queries(
+        &self,
+        queries: &[Point3<f64>],
+        options: &QueryOptions<f64>,
+        answered: &mut dyn FnMut(usize, Found<'_, f64>),
+    ) {
+        for (step, some) in queries.chunks(QUERIES_PER_STEP).enumerate() {
+            if !(self.proceed)(0) {
+                return;
+            }
+            let first = step * QUERIES_PER_STEP;
+            self.index.answer_queries(some, options, &mut |i, found| answered(first + i, found));
+            (self.proceed)(some.len());
+        }
+    }
+}
 
 /// The state of a query between the phases.
 #[derive(Clone, Copy)]
@@ -44,6 +82,27 @@ impl ShardedIndex {
         options: &QueryOptions<f64>,
         out: &mut [Option<ShardClosest>],
     ) -> Result<(), ShardError> {
+        self.closest_points_while(queries, options, out, &|_| true)
+    }
+
+    /// Answers a batch as [`closest_points_into`](Self::closest_points_into) does, as long as `proceed` returns `true`.
+    ///
+    /// All threads call it from time to time with the number of queries that they have answered since their last call.
+    /// A query that needs several shards counts once.
+    ///
+    /// # Errors
+    /// It returns the errors of [`closest_points_into`](Self::closest_points_into), and [`ShardError::Cancelled`] if
+    /// `proceed` has returned `false`. The content of `out` is then undefined.
+    ///
+    /// # Panics
+    /// It panics if the slices differ in length.
+    pub fn closest_points_while(
+        &self,
+        queries: &[impl Position<f64>],
+        options: &QueryOptions<f64>,
+        out: &mut [Option<ShardClosest>],
+        proceed: &Proceed<'_>,
+    ) -> Result<(), ShardError> {
         assert_eq!(queries.len(), out.len(), "one answer for each query");
         let mut options = *options;
         // A hint is an id within one shard.
@@ -52,13 +111,13 @@ impl ShardedIndex {
             // What a search leaves out on purpose depends on the order of shards, so each query has its own.
             return queries.par_iter().zip(out).try_for_each(|(query, answer)| {
                 *answer = self.closest_point_with(&query.point(), &options)?;
-                Ok(())
+                if proceed(1) { Ok(()) } else { Err(ShardError::Cancelled) }
             });
         }
         let mut pending: Vec<Pending> = queries.par_iter().map(|query| self.begin(&query.point(), &options)).collect();
         out.par_iter_mut().for_each(|answer| *answer = None);
-        self.ask_nearest(queries, &options, &mut pending, out)?;
-        self.ask_others(queries, &options, &mut pending, out)
+        self.ask_nearest(queries, &options, &mut pending, out, proceed)?;
+        self.ask_others(queries, &options, &mut pending, out, proceed)
     }
 
     /// Answers each query as [`k_nearest`](Self::k_nearest) does, on all threads of the current pool.
@@ -154,6 +213,7 @@ impl ShardedIndex {
         options: &QueryOptions<f64>,
         pending: &mut [Pending],
         out: &mut [Option<ShardClosest>],
+        proceed: &Proceed<'_>,
     ) -> Result<(), ShardError> {
         let mut groups: Vec<Vec<usize>> = vec![Vec::new(); self.boxes.len()];
         for (i, one) in pending.iter().enumerate() {
@@ -165,7 +225,11 @@ impl ShardedIndex {
             let shard = self.shard(number)?;
             let asked: Vec<Point3<f64>> = group.par_iter().map(|i| queries[*i].point()).collect();
             let mut answers: Vec<Option<Closest<f64>>> = vec![None; asked.len()];
-            closest_points_into(shard.index(), &asked, options, &BatchOptions::default(), &mut answers);
+            let stoppable = Stoppable { index: shard.index(), proceed };
+            closest_points_into(&stoppable, &asked, options, &BatchOptions::default(), &mut answers);
+            if !proceed(0) {
+                return Err(ShardError::Cancelled);
+            }
             let rest = |(query, answer): (&Point3<f64>, &Option<Closest<f64>>)| {
                 let closest = answer.as_ref()?;
                 let limit = self.limit_of(query, closest, options);
@@ -192,6 +256,7 @@ impl ShardedIndex {
         options: &QueryOptions<f64>,
         pending: &mut [Pending],
         out: &mut [Option<ShardClosest>],
+        proceed: &Proceed<'_>,
     ) -> Result<(), ShardError> {
         // Most queries need no other shard, so those that do are found once.
         let may_need = |i: &usize| pending[*i].key.is_some() || (pending[*i].nearest != NONE && out[*i].is_none());
@@ -207,14 +272,17 @@ impl ShardedIndex {
             }
             let shard = self.shard(number)?;
             let ask = |i: &usize| {
+                if !proceed(0) {
+                    return Err(ShardError::Cancelled);
+                }
                 let query = queries[*i].point();
                 let error = self.largest_error(&query);
                 let best = out[*i].map_or(f64::INFINITY, |best| reach(best.closest.distance, error));
                 let within = options.with_max_distance(options.max_distance.min(best));
-                let closest = shard.index().closest_point_with(&query, &within)?;
-                Some((closest, key(&shard, &closest, &query)))
+                let closest = shard.index().closest_point_with(&query, &within);
+                Ok(closest.map(|closest| (closest, key(&shard, &closest, &query))))
             };
-            let answers: Vec<Option<(Closest<f64>, Key)>> = group.par_iter().map(ask).collect();
+            let answers: Vec<Option<(Closest<f64>, Key)>> = group.par_iter().map(ask).collect::<Result<_, _>>()?;
             for (i, answer) in group.into_iter().zip(answers) {
                 let Some((closest, key)) = answer else { continue };
                 let answer = ShardClosest::new(number, &shard, closest);

@@ -3,6 +3,8 @@
 
 use crate::shard::Shard;
 use crate::{ShardEntry, ShardError};
+use rayon::ThreadPoolBuilder;
+use std::panic::resume_unwind;
 use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicU64, Ordering};
 use std::sync::{Arc, Mutex, PoisonError, RwLock};
@@ -61,7 +63,7 @@ impl Cache {
             return Ok(Arc::clone(shard));
         }
         self.reserve(number, entries);
-        match Shard::load(&self.folder, &entries[number], self.is_mapped) {
+        match self.load(&entries[number]) {
             Ok(shard) => {
                 self.loads.fetch_add(1, Ordering::Relaxed);
                 Ok(Arc::clone(place.insert(Arc::new(shard))))
@@ -73,13 +75,30 @@ impl Cache {
         }
     }
 
+    /// Loads a shard on threads of its own.
+    ///
+    /// Files are checked in parallel. A thread of a pool that waits for these checks begins other queries meanwhile,
+    /// which may need the very shard that it is loading, so it would wait for itself.
+    fn load(&self, entry: &ShardEntry) -> Result<Shard, ShardError> {
+        let threads = rayon::current_num_threads();
+        let load = || Shard::load(&self.folder, entry, self.is_mapped);
+        let load_elsewhere = || match ThreadPoolBuilder::new().num_threads(threads).build() {
+            Ok(pool) => pool.install(load),
+            Err(_) => load(),
+        };
+        std::thread::scope(|scope| scope.spawn(load_elsewhere).join()).unwrap_or_else(|panic| resume_unwind(panic))
+    }
+
     /// Counts the bytes of a shard that is about to be loaded, and removes others until all fit, if that is possible.
     fn reserve(&self, number: usize, entries: &[ShardEntry]) {
         let mut used = self.used_bytes.lock().unwrap_or_else(PoisonError::into_inner);
         *used += Shard::estimated_bytes(&entries[number]);
-        let mut by_use: Vec<usize> = (0..self.slots.len()).filter(|other| *other != number).collect();
-        by_use.sort_unstable_by_key(|other| self.slots[*other].last_use.load(Ordering::Relaxed));
-        for other in by_use {
+        // Other threads go on using shards, so each time is read once: sorting panics if keys change.
+        let use_of = |other: usize| (self.slots[other].last_use.load(Ordering::Relaxed), other);
+        let mut by_use: Vec<(u64, usize)> =
+            (0..self.slots.len()).filter(|other| *other != number).map(use_of).collect();
+        by_use.sort_unstable();
+        for (_, other) in by_use {
             if *used <= self.max_bytes {
                 return;
             }

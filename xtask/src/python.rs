@@ -10,12 +10,15 @@ const MIN_VERSION: (u32, u32) = (3, 11);
 /// The folder of the package.
 const PACKAGE: &str = "p2m-python";
 /// The packages that the tests need. They are those of the extra `test` in pyproject.toml.
-const NEEDED: [&str; 9] = [
+const NEEDED: [&str; 12] = [
     "numpy>=1.26",
-    "dask[array]>=2026.8",
+    "dask[array]>=2025.1",
+    "distributed>=2025.1",
     "hypothesis>=6.100",
     "mypy>=1.15",
-    "pyarrow>=21",
+    "pandas>=2.2",
+    "polars>=1.20",
+    "pyarrow>=18",
     "pytest>=8",
     "tqdm>=4.66",
     "types-tqdm>=4.66",
@@ -26,8 +29,8 @@ const NEEDED: [&str; 9] = [
 const RIVALS: [&str; 6] =
     ["trimesh==5.2.0", "rtree>=1.3", "scipy>=1.11", "libigl==2.6.3", "point-cloud-utils==0.34.0", "open3d==0.20.0"];
 
-/// Tests the package, or says why it cannot be tested here. A filter selects tests of pytest. With `--rivals` first, the
-/// package is compared with others, which are installed into an environment of their own.
+/// Tests the package, or says why it cannot be tested here. A filter selects tests of pytest. With `--rivals` first,
+/// the package is compared with others, which are installed into an environment of their own.
 pub(crate) fn check(filter: &[String]) -> Outcome {
     let compares = filter.first().is_some_and(|first| first == "--rivals");
     let filter = if compares { &filter[1..] } else { filter };
@@ -76,7 +79,9 @@ pub(crate) fn check(filter: &[String]) -> Outcome {
     }
     let examples = ["pytest", "--doctest-modules", "--doctest-glob=README.md", "--pyargs", "p2m", "README.md"];
     in_folder(PACKAGE, &examples, program)?;
-    in_folder(".", &["pytest", "-q", "--doctest-glob=python.md", "docs/python.md"], program)?;
+    for page in ["docs/python.md"] {
+        in_folder(".", &["pytest", "-q", "--doctest-glob=*.md", page], program)?;
+    }
     in_folder(PACKAGE, &["mypy"], program)?;
     in_folder(PACKAGE, &["mypy.stubtest", "--mypy-config-file", "pyproject.toml", "p2m"], program)
 }

@@ -14,6 +14,7 @@ array([2., 5.])
 `read` reads scenes from files, and `Scene.of` takes meshes of trimesh, Open3D, PyVista and meshio. `Index` has the
 queries. `hausdorff` returns the Hausdorff distance of two scenes. `load` loads saved indexes, and `advise` tells which
 backend a scene calls for. `Ask` and the module `p2m.dask` ask a saved index from any number of processes.
+`write_shards` and `Shards` are for scenes that are larger than memory.
 """
 
 from __future__ import annotations
@@ -34,6 +35,7 @@ from ._records import (
     Record,
 )
 from ._scene import Counts, Object, Scene, read
+from ._shards import ShardInfo, Shards, write_shards
 
 __all__ = [
     "AllHits",
@@ -51,6 +53,8 @@ __all__ = [
     "Object",
     "Record",
     "Scene",
+    "ShardInfo",
+    "Shards",
     "__version__",
     "advise",
     "backends",
@@ -58,4 +62,5 @@ __all__ = [
     "hausdorff",
     "load",
     "read",
+    "write_shards",
 ]

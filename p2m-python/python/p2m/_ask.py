@@ -12,6 +12,8 @@ from numpy.typing import NDArray
 from ._arrays import FIELDS, checked_limits, outputs, thread_count
 from ._index import Index
 from ._opened import index_source, opened
+from ._shards import Shards
+
 
 class Ask:
     """A function of batches of points that appends the closest points of one saved index.
@@ -22,8 +24,9 @@ class Ask:
 
     Parameters
     ----------
-    index : path-like or p2m.Index
-        The file of a saved index, or an index that was loaded from one, of which the path is used. If the file is there
+    index : path-like, p2m.Index or p2m.Shards
+        The file of a saved index, or an index that was loaded from one, of which the path is used. The folder of shards
+        that `write_shards` wrote, or a `Shards`, whose limit of memory then holds in each process. If the file is there
         when the object is made, other processes check that their file has the same checksum. Any other index is pickled
         as its bytes together with the scene.
     columns : str or sequence of str, optional
@@ -73,7 +76,7 @@ class Ask:
 
     def __init__(
         self,
-        index: str | os.PathLike[str] | Index,
+        index: str | os.PathLike[str] | Index | Shards,
         columns: str | Sequence[str] = ("x", "y", "z"),
         fields: str | Sequence[str] = ("distance", "primitive"),
         *,
@@ -103,7 +106,7 @@ class Ask:
         self._source = index_source(index, map)
         if must_exist and not isinstance(self._source, Index):
             os.stat(self._source.path)
-        self._opened: Index | None = None
+        self._opened: Index | Shards | None = None
 
     def __getstate__(self) -> dict[str, Any]:
         return {**self.__dict__, "_opened": None}
@@ -219,7 +222,16 @@ class Ask:
         Returns
         -------
         pyspark.sql.types.StructType
+
+        Raises
+        ------
+        ValueError
+            For the fields ``point``, ``barycentric`` and ``feature``, whose types of Arrow Spark does not take.
         """
+        for field in self._fields:
+            dtype, tail = FIELDS[field]
+            if tail or dtype == np.uint8:
+                raise ValueError(f"fields: Spark does not take {field!r} from Arrow, as {_arrow_type(field)}")
         from pyspark.sql.pandas.types import from_arrow_schema
         from pyspark.sql.types import StructType
 
@@ -234,7 +246,7 @@ class Ask:
             if name in self.names:
                 raise ValueError(f"batch: there is a column {name!r} already: use another prefix")
 
-    def _index(self) -> Index:
+    def _index(self) -> Index | Shards:
         if self._opened is None:
             self._opened = opened(self._source, self._threads)
         return self._opened

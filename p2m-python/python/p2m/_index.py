@@ -36,144 +36,20 @@ if TYPE_CHECKING:
     _RayMode = Literal["first", "all", "count", "any", "crossings"]
 
 
-class Index(PairQueries):
-    """An index over a scene, which answers queries and never changes.
+class PointQueries:
+    """The queries for points and rays of an index in one piece or in shards."""
 
-    Queries from several Python threads run at the same time, because the interpreter is released while an index is
-    built and while a batch is answered. Answers do not depend on the backend, the number of threads, the order of
-    queries or the processor: distances and primitives are the same bits, and of equally near primitives the one with
-    the lowest id is the answer.
+    __slots__ = ()
 
-    Parameters
-    ----------
-    scene : Scene or object
-        The scene, or an object that `Scene.of` makes one of.
-    backend : str
-        ``"aabb"``, a tree of boxes; ``"kdop"``, a tree of polytopes, for scenes askew to the axes; ``"octree"`` and
-        ``"p2m"``, cells with lists, which take longer to build and answer many queries faster; ``"brute"``, no
-        structure. ``"auto"`` is the tree of boxes, or with `queries` the backend that `p2m.advise` recommends.
-    threads : int, optional
-        The number of threads for the build and, unless they have their own, for queries. By default it is the
-        environment variable ``RAYON_NUM_THREADS``, or else the number of processors that this process may use.
-    progress : callable, True or "tqdm", optional
-        It is called as ``progress(done, total)`` about 25 times a second during a build that takes longer, or a bar of
-        tqdm is shown. Trees report only their end.
-    queries : int, optional
-        The number of queries that are expected, for the choice of ``"auto"``.
-    directions : {6, 14, 18, 26, "scene"}, optional
-        The number of faces of the polytopes of ``"kdop"``, by default 14; ``"scene"`` for 14 along axes of the scene.
-    resolution : float, optional
-        The fineness of the cells of ``"octree"``, by default 0.3. With 9 a large batch takes a quarter less time; the
-        index takes three to four times the memory and the build three times as long (docs/batches.md).
-
-    Raises
-    ------
-    ValueError
-        For an unknown backend or a wrong option.
-    KeyboardInterrupt
-        At once. What was running ends in the background: cells within about a per cent of their build, and a tree when
-        it is finished.
-
-    Notes
-    -----
-    An empty scene has an index: its queries have no answer, as those have that find nothing within `max_distance`.
-
-    ``copy.copy`` and ``copy.deepcopy`` return the same object. An index that was loaded from a file is pickled as the
-    path and the checksum of the file, any other as its bytes together with the scene. A process that unpickles an index
-    of a file several times opens the file once, and keeps the four indexes that it used last (`p2m.clear_opened`).
-
-    Examples
-    --------
-    >>> import numpy as np, p2m
-    >>> scene = p2m.Scene([[0, 0, 0], [4, 0, 0], [0, 4, 0]], triangles=[[0, 1, 2]])
-    >>> index = p2m.Index(scene)
-    >>> index.distance([[1.0, 1.0, 2.0], [1.0, 1.0, -3.0]])
-    array([2., 3.])
-    >>> index.closest([4.0, 4.0, 0.0], fields="point").point
-    array([2., 2., 0.])
-    """
-
-    __slots__ = ("__weakref__", "_raw", "_threads")
-
-    _raw: _p2m.Index
+    _raw: Any
     _threads: int | None
-
-    def __init__(
-        self,
-        scene: Any,
-        backend: str = "auto",
-        *,
-        threads: int | None = None,
-        progress: Progress = None,
-        queries: int | None = None,
-        directions: int | Literal["scene"] | None = None,
-        resolution: float | None = None,
-    ) -> None:
-        made = Scene.of(scene)
-        self._threads = None if threads is None else thread_count(threads)
-        count = thread_count(threads)
-        if backend == "auto":
-            backend = "aabb" if queries is None else advise(made, queries, threads=count)[0].backend
-        if directions is not None and backend != "kdop":
-            raise ValueError(f"directions: the backend {backend!r} has none")
-        if resolution is not None and backend != "octree":
-            raise ValueError(f"resolution: the backend {backend!r} has none")
-        if resolution is not None and not 0.0 < resolution < float("inf"):
-            raise ValueError(f"resolution: {resolution} is not positive and finite")
-        named = None if directions is None else str(directions)
-        with callback(progress, "building", "%") as call:
-            self._raw = _p2m.Index.build(made._raw, backend, count, call, named, resolution)
-
-    @classmethod
-    def _from_raw(cls, raw: _p2m.Index, threads: int | None) -> Index:
-        index = cls.__new__(cls)
-        index._raw = raw
-        index._threads = threads
-        return index
-
-    @property
-    def scene(self) -> Scene:
-        """The scene that the index was built over."""
-        return Scene._from_raw(self._raw.scene())
-
-    @property
-    def backend(self) -> str:
-        """The name of the backend."""
-        return self._raw.backend()
-
-    @property
-    def info(self) -> dict[str, Any]:
-        """What is known of the index, by names.
-
-        ``backend`` and ``summary`` describe the backend. ``primitives`` is the number of primitives. ``memory_bytes``
-        is the memory of the index besides the scene, and ``parts`` has it by parts. ``casts_rays``, ``answers_pairs``
-        and ``is_saveable`` tell what it can do. ``surface_area`` is that of all boxes of a tree: build anew when it has
-        grown by a third in refits. ``cells`` describes cells, ``directions`` is the number of faces of k-DOPs, and
-        ``path`` the file that the index was loaded from. What a backend does not have is None.
-        """
-        return self._raw.info()
-
-    def __len__(self) -> int:
-        return len(self.scene)
-
-    def __repr__(self) -> str:
-        return f"<p2m.Index {self.backend!r} of {len(self)} primitives>"
-
-    def __copy__(self) -> Index:
-        return self
-
-    def __deepcopy__(self, memo: object) -> Index:
-        return self
-
-    def __reduce__(self) -> tuple[Any, ...]:
-        origin = self._raw.origin()
-        if origin is not None:
-            path, checksum, is_mapped = origin
-            return _load_pickled, (os.fspath(path), checksum, is_mapped, self._threads)
-        return _load_bytes, (self._raw.to_bytes(), self.backend, self._threads)
 
     def _count(self, threads: int | None) -> int:
         return thread_count(threads, self._threads)
+
+    def _objects(self) -> list[tuple[str, int, int]]:
+        """Return the names of the objects, with their first id and the one after their last."""
+        raise NotImplementedError
 
     def closest(
         self,
@@ -267,7 +143,7 @@ class Index(PairQueries):
 
     def _fill_objects(self, primitive: NDArray[np.int64], objects: NDArray[np.int64]) -> None:
         """Write the numbers of the objects that primitives belong to."""
-        named = self._raw.scene().objects()
+        named = self._objects()
         starts = np.array([start for _, start, _ in named], np.int64)
         stops = np.array([stop for _, _, stop in named] + [0], np.int64)
         number = np.searchsorted(starts, primitive, side="right") - 1
@@ -307,73 +183,6 @@ class Index(PairQueries):
             points, max_distance=max_distance, fields=("distance",), out=out, threads=threads, progress=progress
         )
         return answer.distance
-
-    def signed_distance(
-        self,
-        points: ArrayLike,
-        *,
-        sign: _Sign = "auto",
-        inside: Literal["negative", "positive"] = "negative",
-        max_distance: float | None = None,
-        out: NDArray[np.float64] | None = None,
-        threads: int | None = None,
-        progress: Progress = None,
-    ) -> NDArray[np.float64]:
-        """Return the distances of query points with a sign that tells inside from outside.
-
-        Parameters
-        ----------
-        points, threads, progress
-            As for `closest`.
-        sign : {"auto", "closed", "winding"}, optional
-            ``"closed"``: the scene is a closed surface, and a point is inside if a ray from it crosses the surface an
-            odd number of times; pseudonormals decide most points, and exact rays the rest. Pseudonormals may be wrong
-            if the surface intersects itself, or if parts of it lie on each other without being the same triangles;
-            ``rays(points, direction, "crossings") % 2`` counts crossings. ``"winding"``: a point is inside if its
-            generalised winding number exceeds a half in magnitude; the triangles may have holes and intersect each
-            other. ``"auto"``: as a closed surface if it is one, otherwise by winding numbers.
-        inside : {"negative", "positive"}, optional
-            The sign inside. trimesh has positive numbers there; Open3D, libigl and point-cloud-utils negative ones.
-        max_distance : float, optional
-            The largest distance that is needed, inclusive, which makes the search shorter.
-        out : ndarray of float64, shape {..}, optional
-            The array that receives the distances.
-
-        Returns
-        -------
-        ndarray of float64, shape {..}
-            The signed distances: 0 on the surface, nan where the side is not defined because the winding number is a
-            half within the accuracy of float64, and beyond `max_distance`.
-
-        Raises
-        ------
-        ValueError
-            If the scene has segments or points, which have no sides; with ``sign="closed"`` also if it is not closed.
-
-        Notes
-        -----
-        The first call prepares the signs, which takes about as long as a build of the tree.
-
-        Examples
-        --------
-        >>> import p2m
-        >>> corners = [[0, 0, 0], [1, 0, 0], [0, 1, 0], [0, 0, 1]]
-        >>> solid = p2m.Scene(corners, triangles=[[0, 2, 1], [0, 1, 3], [0, 3, 2], [1, 2, 3]])
-        >>> index = p2m.Index(solid)
-        >>> index.signed_distance([[0.125, 0.25, 0.25], [0.5, -2.0, 0.25], [0.0, 0.0, 0.0]])
-        array([-0.125,  2.   ,  0.   ])
-        """
-        queries = coordinates(points, "points")
-        array = one_output(out, "signed_distance", _FLOAT64, queries.shape[:-1])
-        if inside not in ("negative", "positive"):
-            raise ValueError(f"inside: {inside!r} is none of 'negative', 'positive'")
-        largest = float("inf") if max_distance is None else not_negative(max_distance, "max_distance")
-        is_negative = inside == "negative"
-        count = self._count(threads)
-        with callback(progress, "answering", "points") as call:
-            columns = {"signed_distance": array.reshape(-1)}
-            self._raw.signed_distance(queries.reshape(-1), columns, sign, is_negative, largest, count, call)
-        return array
 
     def k_nearest(
         self,
@@ -653,6 +462,213 @@ class Index(PairQueries):
             values: NDArray[Any] = np.empty(number, np.bool_ if mode == "any" else np.int64)
             self._raw.rays(start, step, mode, {"value": values}, t_min, t_max, size, count, call)
             return values.reshape(leading)
+
+
+class Index(PointQueries, PairQueries):
+    """An index over a scene, which answers queries and never changes.
+
+    Queries from several Python threads run at the same time, because the interpreter is released while an index is
+    built and while a batch is answered. Answers do not depend on the backend, the number of threads, the order of
+    queries or the processor: distances and primitives are the same bits, and of equally near primitives the one with
+    the lowest id is the answer.
+
+    Parameters
+    ----------
+    scene : Scene or object
+        The scene, or an object that `Scene.of` makes one of.
+    backend : str
+        ``"aabb"``, a tree of boxes; ``"kdop"``, a tree of polytopes, for scenes askew to the axes; ``"octree"`` and
+        ``"p2m"``, cells with lists, which take longer to build and answer many queries faster; ``"brute"``, no
+        structure. ``"auto"`` is the tree of boxes, or with `queries` the backend that `p2m.advise` recommends.
+    threads : int, optional
+        The number of threads for the build and, unless they have their own, for queries. By default it is the
+        environment variable ``RAYON_NUM_THREADS``, or else the number of processors that this process may use.
+    progress : callable, True or "tqdm", optional
+        It is called as ``progress(done, total)`` about 25 times a second during a build that takes longer, or a bar of
+        tqdm is shown. Trees report only their end.
+    queries : int, optional
+        The number of queries that are expected, for the choice of ``"auto"``.
+    directions : {6, 14, 18, 26, "scene"}, optional
+        The number of faces of the polytopes of ``"kdop"``, by default 14; ``"scene"`` for 14 along axes of the scene.
+    resolution : float, optional
+        The fineness of the cells of ``"octree"``, by default 0.3. With 9 a large batch takes a quarter less time; the
+        index takes three to four times the memory and the build three times as long (docs/batches.md).
+
+    Raises
+    ------
+    ValueError
+        For an unknown backend or a wrong option.
+    KeyboardInterrupt
+        At once. What was running ends in the background: cells within about a per cent of their build, and a tree when
+        it is finished.
+
+    Notes
+    -----
+    An empty scene has an index: its queries have no answer, as those have that find nothing within `max_distance`.
+
+    ``copy.copy`` and ``copy.deepcopy`` return the same object. An index that was loaded from a file is pickled as the
+    path and the checksum of the file, any other as its bytes together with the scene. A process that unpickles an index
+    of a file several times opens the file once, and keeps the four indexes that it used last (`p2m.clear_opened`).
+
+    Examples
+    --------
+    >>> import numpy as np, p2m
+    >>> scene = p2m.Scene([[0, 0, 0], [4, 0, 0], [0, 4, 0]], triangles=[[0, 1, 2]])
+    >>> index = p2m.Index(scene)
+    >>> index.distance([[1.0, 1.0, 2.0], [1.0, 1.0, -3.0]])
+    array([2., 3.])
+    >>> index.closest([4.0, 4.0, 0.0], fields="point").point
+    array([2., 2., 0.])
+    """
+
+    __slots__ = ("__weakref__", "_raw", "_threads")
+
+    _raw: _p2m.Index
+    _threads: int | None
+
+    def __init__(
+        self,
+        scene: Any,
+        backend: str = "auto",
+        *,
+        threads: int | None = None,
+        progress: Progress = None,
+        queries: int | None = None,
+        directions: int | Literal["scene"] | None = None,
+        resolution: float | None = None,
+    ) -> None:
+        made = Scene.of(scene)
+        self._threads = None if threads is None else thread_count(threads)
+        count = thread_count(threads)
+        if backend == "auto":
+            backend = "aabb" if queries is None else advise(made, queries, threads=count)[0].backend
+        if directions is not None and backend != "kdop":
+            raise ValueError(f"directions: the backend {backend!r} has none")
+        if resolution is not None and backend != "octree":
+            raise ValueError(f"resolution: the backend {backend!r} has none")
+        if resolution is not None and not 0.0 < resolution < float("inf"):
+            raise ValueError(f"resolution: {resolution} is not positive and finite")
+        named = None if directions is None else str(directions)
+        with callback(progress, "building", "%") as call:
+            self._raw = _p2m.Index.build(made._raw, backend, count, call, named, resolution)
+
+    @classmethod
+    def _from_raw(cls, raw: _p2m.Index, threads: int | None) -> Index:
+        index = cls.__new__(cls)
+        index._raw = raw
+        index._threads = threads
+        return index
+
+    @property
+    def scene(self) -> Scene:
+        """The scene that the index was built over."""
+        return Scene._from_raw(self._raw.scene())
+
+    @property
+    def backend(self) -> str:
+        """The name of the backend."""
+        return self._raw.backend()
+
+    @property
+    def info(self) -> dict[str, Any]:
+        """What is known of the index, by names.
+
+        ``backend`` and ``summary`` describe the backend. ``primitives`` is the number of primitives. ``memory_bytes``
+        is the memory of the index besides the scene, and ``parts`` has it by parts. ``casts_rays``, ``answers_pairs``
+        and ``is_saveable`` tell what it can do. ``surface_area`` is that of all boxes of a tree: build anew when it has
+        grown by a third in refits. ``cells`` describes cells, ``directions`` is the number of faces of k-DOPs, and
+        ``path`` the file that the index was loaded from. What a backend does not have is None.
+        """
+        return self._raw.info()
+
+    def __len__(self) -> int:
+        return len(self.scene)
+
+    def __repr__(self) -> str:
+        return f"<p2m.Index {self.backend!r} of {len(self)} primitives>"
+
+    def __copy__(self) -> Index:
+        return self
+
+    def __deepcopy__(self, memo: object) -> Index:
+        return self
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        origin = self._raw.origin()
+        if origin is not None:
+            path, checksum, is_mapped = origin
+            return _load_pickled, (os.fspath(path), checksum, is_mapped, self._threads)
+        return _load_bytes, (self._raw.to_bytes(), self.backend, self._threads)
+
+    def _objects(self) -> list[tuple[str, int, int]]:
+        return self._raw.scene().objects()
+
+    def signed_distance(
+        self,
+        points: ArrayLike,
+        *,
+        sign: _Sign = "auto",
+        inside: Literal["negative", "positive"] = "negative",
+        max_distance: float | None = None,
+        out: NDArray[np.float64] | None = None,
+        threads: int | None = None,
+        progress: Progress = None,
+    ) -> NDArray[np.float64]:
+        """Return the distances of query points with a sign that tells inside from outside.
+
+        Parameters
+        ----------
+        points, threads, progress
+            As for `closest`.
+        sign : {"auto", "closed", "winding"}, optional
+            ``"closed"``: the scene is a closed surface, and a point is inside if a ray from it crosses the surface an
+            odd number of times; pseudonormals decide most points, and exact rays the rest. Pseudonormals may be wrong
+            if the surface intersects itself, or if parts of it lie on each other without being the same triangles;
+            ``rays(points, direction, "crossings") % 2`` counts crossings. ``"winding"``: a point is inside if its
+            generalised winding number exceeds a half in magnitude; the triangles may have holes and intersect each
+            other. ``"auto"``: as a closed surface if it is one, otherwise by winding numbers.
+        inside : {"negative", "positive"}, optional
+            The sign inside. trimesh has positive numbers there; Open3D, libigl and point-cloud-utils negative ones.
+        max_distance : float, optional
+            The largest distance that is needed, inclusive, which makes the search shorter.
+        out : ndarray of float64, shape {..}, optional
+            The array that receives the distances.
+
+        Returns
+        -------
+        ndarray of float64, shape {..}
+            The signed distances: 0 on the surface, nan where the side is not defined because the winding number is a
+            half within the accuracy of float64, and beyond `max_distance`.
+
+        Raises
+        ------
+        ValueError
+            If the scene has segments or points, which have no sides; with ``sign="closed"`` also if it is not closed.
+
+        Notes
+        -----
+        The first call prepares the signs, which takes about as long as a build of the tree.
+
+        Examples
+        --------
+        >>> import p2m
+        >>> corners = [[0, 0, 0], [1, 0, 0], [0, 1, 0], [0, 0, 1]]
+        >>> solid = p2m.Scene(corners, triangles=[[0, 2, 1], [0, 1, 3], [0, 3, 2], [1, 2, 3]])
+        >>> index = p2m.Index(solid)
+        >>> index.signed_distance([[0.125, 0.25, 0.25], [0.5, -2.0, 0.25], [0.0, 0.0, 0.0]])
+        array([-0.125,  2.   ,  0.   ])
+        """
+        queries = coordinates(points, "points")
+        array = one_output(out, "signed_distance", _FLOAT64, queries.shape[:-1])
+        if inside not in ("negative", "positive"):
+            raise ValueError(f"inside: {inside!r} is none of 'negative', 'positive'")
+        largest = float("inf") if max_distance is None else not_negative(max_distance, "max_distance")
+        is_negative = inside == "negative"
+        count = self._count(threads)
+        with callback(progress, "answering", "points") as call:
+            columns = {"signed_distance": array.reshape(-1)}
+            self._raw.signed_distance(queries.reshape(-1), columns, sign, is_negative, largest, count, call)
+        return array
 
     def field(
         self,

@@ -6,15 +6,19 @@ import errno
 import os
 import threading
 from collections import OrderedDict
+from collections.abc import Callable
 from dataclasses import dataclass
-from typing import Any, NamedTuple
+from typing import Any, NamedTuple, TypeVar, cast
 
 from . import _p2m
 from ._arrays import thread_count
 from ._index import Index
+from ._shards import MANIFEST_FILE, Shards, is_shard_folder, manifest_checksum, max_bytes_of, shard_folder
 
 MAX_OPENED = 4
 """The number of indexes that a process keeps open, which are those that it used last."""
+
+_Raw = TypeVar("_Raw", _p2m.Index, _p2m.Shards)
 
 _HEADER_BYTES = 64
 _MAGIC = b"\x89P2M\r\n\x1a\n"
@@ -31,12 +35,17 @@ class _FileVersion(NamedTuple):
     inode: int
     checksum: str | None
     is_mapped: bool
+    max_bytes: int | None = None
+
+    def is_same_use(self, other: _FileVersion) -> bool:
+        """Return whether another version may replace this one."""
+        return (self.path, self.is_mapped, self.max_bytes) == (other.path, other.is_mapped, other.max_bytes)
 
 
 class _Entry:
     """An index that is open, or that one thread opens while others wait for it."""
 
-    def __init__(self, raw: _p2m.Index | None = None) -> None:
+    def __init__(self, raw: _p2m.Index | _p2m.Shards | None = None) -> None:
         self.lock = threading.Lock()
         self.raw = raw
 
@@ -61,7 +70,7 @@ if hasattr(os, "register_at_fork"):
 
 
 def clear_opened() -> None:
-    """Forget the indexes of files that this process keeps open.
+    """Forget the indexes of files and the shards that this process keeps open.
 
     A process keeps the four indexes that it used last among those that `Ask`, `p2m.dask` and `pickle` opened. Their
     memory is free as soon as nothing else uses them.
@@ -90,9 +99,9 @@ def _version(path: str, is_mapped: bool) -> _FileVersion:
     return _FileVersion(real, status.st_size, status.st_mtime_ns, status.st_ino, read_checksum(real), is_mapped)
 
 
-def _open_version(version: _FileVersion, path: str, threads: int) -> _p2m.Index:
+def _open_version(version: _FileVersion, open_new: Callable[[], _Raw]) -> _Raw:
     with _lock:
-        for other in [key for key in _entries if key.path == version.path and key.is_mapped == version.is_mapped]:
+        for other in [key for key in _entries if key.is_same_use(version)]:
             if other != version:
                 del _entries[other]
         entry = _entries.setdefault(version, _Entry())
@@ -102,13 +111,14 @@ def _open_version(version: _FileVersion, path: str, threads: int) -> _p2m.Index:
     with entry.lock:
         if entry.raw is None:
             try:
-                entry.raw = _p2m.load(path, version.is_mapped, threads)
+                entry.raw = open_new()
             except BaseException:
                 with _lock:
                     if _entries.get(version) is entry:
                         del _entries[version]
                 raise
-        return entry.raw
+        # The path tells files of indexes from manifests, so it is what this function opened.
+        return cast(_Raw, entry.raw)
 
 
 def open_index(
@@ -138,8 +148,9 @@ def open_index(
         If the file is damaged, is not a saved index, or has another checksum.
     """
     absolute = os.path.abspath(os.fspath(path))
+    count = thread_count(threads)
     if os.path.isdir(absolute):
-        raise IsADirectoryError(errno.EISDIR, "A saved index is a file, and this is a directory", absolute)
+        raise IsADirectoryError(errno.EISDIR, "A saved index is a file, and this is a directory without shards", absolute)
     while True:
         version = _version(absolute, map)
         if checksum is not None and version.checksum not in (None, checksum):
@@ -147,29 +158,77 @@ def open_index(
                 f"{absolute} is not the file that the index came from: its checksum is {version.checksum} instead of "
                 f"{checksum}"
             )
-        raw = _open_version(version, absolute, thread_count(threads))
+        raw = _open_version(version, lambda: _p2m.load(absolute, map, count))
         origin = raw.origin()
         # The file may have been replaced after its header was read.
         if origin is not None and origin[1] == version.checksum:
             return Index._from_raw(raw, threads)
 
 
+def open_shards(
+    path: str | os.PathLike[str],
+    *,
+    checksum: str | None = None,
+    max_bytes: int | None = None,
+    map: bool = False,
+    threads: int | None = None,
+) -> Shards:
+    """Return the shards of a folder, which this process opens once for each limit of memory.
+
+    Parameters
+    ----------
+    path, max_bytes, map, threads
+        As for `p2m.Shards`.
+    checksum : str, optional
+        The checksum that the manifest has to have.
+
+    Raises
+    ------
+    OSError
+        If the manifest cannot be read.
+    ValueError
+        If the manifest is damaged, or has another checksum.
+    """
+    folder = shard_folder(path)
+    limit = max_bytes_of(max_bytes)
+    found = manifest_checksum(folder)
+    if checksum is not None and found not in (None, checksum):
+        raise ValueError(
+            f"{os.path.join(folder, MANIFEST_FILE)} is not the manifest that the shards came from: its checksum is "
+            f"{found} instead of {checksum}"
+        )
+    real = os.path.realpath(os.path.join(folder, MANIFEST_FILE))
+    status = os.stat(real)
+    version = _FileVersion(real, status.st_size, status.st_mtime_ns, status.st_ino, found, map, max_bytes)
+    raw = _open_version(version, lambda: _p2m.Shards(folder, limit, map))
+    return Shards._from_raw(raw, folder, found, max_bytes, map, threads)
+
+
 @dataclass(frozen=True)
 class IndexFile:
-    """The file of a saved index, which other processes open."""
+    """The file of a saved index, or the folder of shards, which other processes open."""
 
     path: str
     checksum: str | None
-    """The checksum that the file has to have, or None for any."""
+    """The checksum that the file or the manifest has to have, or None for any."""
     is_mapped: bool
+    max_bytes: int | None = None
+    """The memory that shards may take in a process."""
 
-    def open(self, threads: int | None) -> Index:
-        """Return the index, which a process opens once."""
-        return open_index(self.path, checksum=self.checksum, map=self.is_mapped, threads=threads)
+    def open(self, threads: int | None) -> Index | Shards:
+        """Return the index or the shards, which a process opens once."""
+        # Only the process that opens it is sure to see what the path is.
+        if not is_shard_folder(self.path):
+            return open_index(self.path, checksum=self.checksum, map=self.is_mapped, threads=threads)
+        return open_shards(
+            self.path, checksum=self.checksum, max_bytes=self.max_bytes, map=self.is_mapped, threads=threads
+        )
 
 
 def index_source(index: Any, map: bool) -> IndexFile | Index:
-    """Return the file of an index that was loaded from one or is named by its path, and any other index as it is."""
+    """Return the file of an index, or the folder of shards, and an index that came from no file as it is."""
+    if isinstance(index, Shards):
+        return IndexFile(index.path, index._manifest_checksum, index._is_mapped or map, index.max_bytes)
     if isinstance(index, Index):
         origin = index._raw.origin()
         if origin is None:
@@ -178,16 +237,16 @@ def index_source(index: Any, map: bool) -> IndexFile | Index:
             return index
         return IndexFile(os.fspath(origin[0]), origin[1], origin[2] or map)
     if not isinstance(index, (str, os.PathLike)):
-        raise TypeError(f"index: {type(index).__name__} is neither a path nor a p2m.Index")
-    absolute = os.path.abspath(os.fspath(index))
+        raise TypeError(f"index: {type(index).__name__} is neither a path nor a p2m.Index or p2m.Shards")
+    path = os.path.abspath(os.fspath(index))
     try:
-        checksum = read_checksum(absolute)
+        checksum = manifest_checksum(shard_folder(path)) if is_shard_folder(path) else read_checksum(path)
     except OSError:
         # Other machines may have a file system that this one has not.
         checksum = None
-    return IndexFile(absolute, checksum, map)
+    return IndexFile(path, checksum, map)
 
 
-def opened(source: IndexFile | Index, threads: int | None) -> Index:
-    """Return the index of a source."""
+def opened(source: IndexFile | Index, threads: int | None) -> Index | Shards:
+    """Return the index or the shards of a source."""
     return source.open(threads) if isinstance(source, IndexFile) else source

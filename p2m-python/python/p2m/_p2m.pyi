@@ -11,6 +11,8 @@ __all__ = [
     "NearList",
     "PairList",
     "Scene",
+    "ShardWriter",
+    "Shards",
     "__version__",
     "advise",
     "backends",
@@ -232,3 +234,75 @@ class Index:
         threads: int,
         progress: _Progress,
     ) -> None: ...
+
+@final
+class Shards:
+    def __new__(cls, path: _Path, max_bytes: int, map: bool) -> Shards: ...
+    def backend(self) -> str: ...
+    def counts(self) -> tuple[int, int, int]: ...
+    def bounds(self) -> list[list[float]] | None: ...
+    def objects(self) -> list[tuple[str, int, int]]: ...
+    def shards(self) -> list[tuple[str, int, int, list[list[float]]]]: ...
+    def loads(self) -> int: ...
+    def closest(
+        self,
+        points: _Coordinates,
+        out: _Arrays,
+        max_distance: float,
+        epsilon: float,
+        max_visits: int | None,
+        certified: bool,
+        threads: int,
+        progress: _Progress,
+    ) -> None: ...
+    def k_nearest(
+        self,
+        points: _Coordinates,
+        k: int,
+        out: _Arrays,
+        max_distance: float,
+        threads: int,
+        progress: _Progress,
+    ) -> None: ...
+    def within(
+        self,
+        points: _Coordinates,
+        radius: float,
+        counts: NDArray[np.int64],
+        threads: int,
+        progress: _Progress,
+    ) -> NearList: ...
+    def is_any_within(
+        self,
+        points: _Coordinates,
+        radius: float,
+        out: _Arrays,
+        threads: int,
+        progress: _Progress,
+    ) -> None: ...
+    def is_inside(
+        self,
+        points: _Coordinates,
+        out: _Arrays,
+        threads: int,
+        progress: _Progress,
+    ) -> None: ...
+    def rays(
+        self,
+        origins: NDArray[np.float64],
+        directions: NDArray[np.float64],
+        mode: str,
+        out: _Arrays,
+        t_min: float,
+        t_max: float,
+        radius: float,
+        threads: int,
+        progress: _Progress,
+    ) -> HitList | None: ...
+
+@final
+class ShardWriter:
+    def __new__(cls, folder: _Path, max_bytes: int, backend: str, replace: bool) -> ShardWriter: ...
+    def add(self, scene: Scene) -> None: ...
+    def close(self) -> None: ...
+    def finish(self, threads: int, progress: _Progress) -> None: ...

@@ -23,9 +23,10 @@ points : dask.array.Array or array_like, shape {.., 3}
     The points, with any chunks. What is no array of Dask goes through ``dask.array.from_array``: arrays of NumPy and of
     Zarr, and files that ``numpy.load(path, mmap_mode="r")`` maps. The last axis becomes one chunk. Chunks may have
     unknown sizes, as those of data frames have.
-index : path-like or p2m.Index
-    The file of a saved index, or an index that was loaded from one, of which the path is used. The path has to exist on
-    all machines of a cluster. If the file is there when a function of this module is called, or the index was loaded
+index : path-like, p2m.Index or p2m.Shards
+    The file of a saved index, or an index that was loaded from one, of which the path is used. The folder of shards
+    that `p2m.write_shards` wrote, or a `p2m.Shards`, whose limit of memory then holds in each process. The path has to
+    exist on all machines of a cluster. If the file is there when a function of this module is called, or the index was loaded
     from it, each process checks that its file has the same checksum. Any other index is sent to each process as its
     bytes together with the scene, which takes the memory of several copies: save large ones.
 threads : int, optional
@@ -60,6 +61,7 @@ from ._arrays import FIELDS, HIT_FIELDS, checked_limits, coordinates, not_negati
 from ._index import Index
 from ._opened import IndexFile, index_source, opened
 from ._records import ClosestPoints, FirstHits, Record
+from ._shards import is_shard_folder
 
 __all__ = ["LazyRecord", "closest", "distance", "field", "rays", "signed_distance"]
 
@@ -221,7 +223,8 @@ def signed_distance(
 
     Notes
     -----
-    Each process prepares the signs at its first block, which takes about as long as a build of the tree.
+    Each process prepares the signs at its first block, which takes about as long as a build of the tree. Shards have no
+    rule of winding numbers, so ``sign="winding"`` is an error of the computation.
 
     Examples
     --------
@@ -327,7 +330,7 @@ def field(
     Parameters
     ----------
     index, threads, map
-        As the module documents them.
+        As the module documents them. Shards have no fields.
     origin, spacing, shape, signed, sign, band
         As for `p2m.Index.field`.
     chunks : int, tuple or str, optional
@@ -374,6 +377,8 @@ def field(
         "threads": thread_count(threads),
     }
     source = index_source(index, map)
+    if isinstance(source, IndexFile) and is_shard_folder(source.path):
+        raise ValueError("index: shards have no fields: ask for the distances of points")
     token = tokenize(_key(source), options, normal)
     return da.map_blocks(
         _grid_block,
@@ -393,7 +398,7 @@ _KEYS: weakref.WeakKeyDictionary[Index, str] = weakref.WeakKeyDictionary()
 def _key(source: IndexFile | Index) -> Any:
     """Return what is the same for the same index, and differs otherwise as far as can be known here."""
     if isinstance(source, IndexFile):
-        return source.path, source.checksum, source.is_mapped
+        return source.path, source.checksum, source.is_mapped, source.max_bytes
     return _KEYS.setdefault(source, uuid.uuid4().hex)
 
 
@@ -560,4 +565,6 @@ def _grid_block(
     assert block_info is not None
     ranges = block_info[None]["array-location"]
     first, shape = [start for start, _ in ranges], [stop - start for start, stop in ranges]
-    return opened(source, options["threads"]).field(shape=shape, first=first, **options)
+    index = opened(source, options["threads"])
+    assert isinstance(index, Index)
+    return index.field(shape=shape, first=first, **options)

@@ -1,0 +1,405 @@
+"""Indexes in shards, for scenes that are larger than memory."""
+
+from __future__ import annotations
+
+import json
+import os
+from collections.abc import Iterable
+from typing import Any, Literal, NamedTuple
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from . import _p2m
+from ._arrays import Progress, callback, coordinates, not_negative, one_output, thread_count
+from ._index import PointQueries
+from ._scene import Object, Scene
+
+_FLOAT64 = np.dtype(np.float64)
+_BOOL = np.dtype(np.bool_)
+_UNLIMITED = 2**64 - 1
+
+MANIFEST_FILE = "manifest.json"
+"""The name of the file that describes the shards of a folder."""
+
+
+class ShardInfo(NamedTuple):
+    """The description of a shard."""
+
+    file: str
+    """The name of its file in the folder."""
+    file_bytes: int
+    """The length of its file."""
+    primitives: int
+    """The number of its primitives."""
+    bounds: NDArray[np.float64]
+    """The corners of the box around its primitives, shape (2, 3)."""
+
+
+class Shards(PointQueries):
+    """An index in shards, which `write_shards` wrote to a folder and which are loaded when a query needs them.
+
+    Answers are those of one `Index` over the whole scene, bit for bit, apart from the last bits of lower bounds. They
+    depend neither on how the scene was divided nor on the memory that shards may take. A query that needs a shard whose
+    file is missing, damaged or another one raises an error with the name of the file.
+
+    Parameters
+    ----------
+    path : path-like
+        The folder, or the file ``manifest.json`` in it. No shard is loaded yet.
+    max_bytes : int, optional
+        The memory that shards may take. A shard counts as the length of its file and 40 bytes for each primitive. Where
+        a query needs another one, those that were not used for the longest time are dropped. One shard is loaded
+        whatever the limit is. By default there is no limit.
+    map : bool, optional
+        Whether files are mapped into memory, as for `load`. Nobody may change or truncate a file while the index is in
+        use: what happens then is undefined. `write_shards` replaces files and does not change them.
+    threads : int, optional
+        The number of threads for queries, as for `Index`.
+
+    Raises
+    ------
+    OSError
+        If the manifest cannot be read.
+    ValueError
+        If it is damaged, or not that of shards.
+
+    Notes
+    -----
+    `closest` answers a batch in parts of 2**20 points. A part loads each shard at most twice, so large batches need
+    little memory and few reads of files. The options `epsilon`, `max_visits` and `certified`, and all other queries ask
+    one point after the other, along a curve. They are slow where the shards that they need do not fit into `max_bytes`.
+
+    Objects are pickled as the folder and the checksum of its manifest. A process that unpickles one several times opens
+    the folder once (`p2m.clear_opened`).
+
+    Examples
+    --------
+    >>> import os, tempfile
+    >>> import numpy as np, p2m
+    >>> folder = os.path.join(tempfile.mkdtemp(), "site")
+    >>> points = np.random.default_rng(1).uniform(size=(1000, 3))
+    >>> scene = p2m.Scene(points, points=np.arange(1000))
+    >>> shards = p2m.write_shards(scene, folder, max_bytes=20_000)
+    >>> len(shards), len(shards.shards) > 4
+    (1000, True)
+    >>> shards.closest(points[[0, 17, 999]]).primitive
+    array([  0,  17, 999])
+    """
+
+    __slots__ = ("__weakref__", "_is_mapped", "_manifest_checksum", "_max_bytes", "_path", "_raw", "_threads")
+
+    _raw: _p2m.Shards
+
+    def __init__(
+        self,
+        path: str | os.PathLike[str],
+        max_bytes: int | None = None,
+        map: bool = False,
+        *,
+        threads: int | None = None,
+    ) -> None:
+        folder = shard_folder(path)
+        checksum = manifest_checksum(folder)
+        raw = _p2m.Shards(folder, max_bytes_of(max_bytes), map)
+        self._set(raw, folder, checksum, max_bytes, map, threads)
+
+    def _set(
+        self,
+        raw: _p2m.Shards,
+        path: str,
+        checksum: str | None,
+        max_bytes: int | None,
+        is_mapped: bool,
+        threads: int | None,
+    ) -> None:
+        self._raw, self._path, self._manifest_checksum = raw, path, checksum
+        self._max_bytes, self._is_mapped = max_bytes, bool(is_mapped)
+        self._threads = None if threads is None else thread_count(threads)
+
+    @classmethod
+    def _from_raw(
+        cls,
+        raw: _p2m.Shards,
+        path: str,
+        checksum: str | None,
+        max_bytes: int | None,
+        is_mapped: bool,
+        threads: int | None,
+    ) -> Shards:
+        shards = cls.__new__(cls)
+        shards._set(raw, path, checksum, max_bytes, is_mapped, threads)
+        return shards
+
+    @property
+    def path(self) -> str:
+        """The folder."""
+        return self._path
+
+    @property
+    def backend(self) -> str:
+        """The name of the backend of all shards."""
+        return self._raw.backend()
+
+    @property
+    def max_bytes(self) -> int | None:
+        """The memory that shards may take, or None without a limit."""
+        return self._max_bytes
+
+    @property
+    def bounds(self) -> NDArray[np.float64]:
+        """The corners of the box around all primitives, shape (2, 3); nan for an empty scene."""
+        bounds = self._raw.bounds()
+        return np.full((2, 3), np.nan) if bounds is None else np.array(bounds)
+
+    @property
+    def shards(self) -> list[ShardInfo]:
+        """The descriptions of all shards."""
+        return [
+            ShardInfo(file, size, primitives, np.array(bounds)) for file, size, primitives, bounds in self._raw.shards()
+        ]
+
+    @property
+    def objects(self) -> list[Object]:
+        """The named parts of the whole scene, in the order of their ids."""
+        return [Object(*parts) for parts in self._raw.objects()]
+
+    @property
+    def loads(self) -> int:
+        """The number of times that a shard was loaded so far."""
+        return self._raw.loads()
+
+    def __len__(self) -> int:
+        return sum(self._raw.counts())
+
+    def __repr__(self) -> str:
+        return f"<p2m.Shards {self.backend!r} of {len(self)} primitives in {len(self._raw.shards())} shards>"
+
+    def __copy__(self) -> Shards:
+        return self
+
+    def __deepcopy__(self, memo: object) -> Shards:
+        return self
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        return _load_pickled, (self._path, self._manifest_checksum, self._max_bytes, self._is_mapped, self._threads)
+
+    def _objects(self) -> list[tuple[str, int, int]]:
+        return self._raw.objects()
+
+    def is_inside(
+        self,
+        points: ArrayLike,
+        *,
+        out: NDArray[np.bool_] | None = None,
+        threads: int | None = None,
+        progress: Progress = None,
+    ) -> NDArray[np.bool_]:
+        """Return whether points are inside of the closed surface that the triangles form.
+
+        A point is inside if a ray from it crosses the surface an odd number of times. The ray is the one along an axis
+        that passes the fewest boxes of shards. That the surface is closed is not checked, and points on the surface are
+        on either side.
+
+        Parameters
+        ----------
+        points, threads, progress
+            As for `closest`.
+        out : ndarray of bool, shape {..}, optional
+            The array that receives the answers.
+
+        Returns
+        -------
+        ndarray of bool, shape {..}
+
+        Raises
+        ------
+        ValueError
+            If the scene has segments or points, or the backend casts no rays.
+        """
+        queries = coordinates(points, "points")
+        array = one_output(out, "is_inside", _BOOL, queries.shape[:-1])
+        with callback(progress, "answering", "points") as call:
+            self._raw.is_inside(queries.reshape(-1), {"is_inside": array.reshape(-1)}, self._count(threads), call)
+        return array
+
+    def signed_distance(
+        self,
+        points: ArrayLike,
+        *,
+        sign: Literal["auto", "closed"] = "auto",
+        inside: Literal["negative", "positive"] = "negative",
+        max_distance: float | None = None,
+        out: NDArray[np.float64] | None = None,
+        threads: int | None = None,
+        progress: Progress = None,
+    ) -> NDArray[np.float64]:
+        """Return the distances of points with a sign that tells inside from outside.
+
+        Parameters
+        ----------
+        points, threads, progress
+            As for `closest`. Progress is that of the distances, and then of the sides.
+        sign : {"auto", "closed"}, optional
+            Both names stand for the rule of `is_inside`, which takes the surface for closed. Shards have no winding
+            numbers.
+        inside, max_distance, out
+            As for `Index.signed_distance`.
+
+        Returns
+        -------
+        ndarray of float64, shape {..}
+            The signed distances: 0 on the surface, and nan beyond `max_distance`.
+
+        Raises
+        ------
+        ValueError
+            If the scene has segments or points, or the backend casts no rays.
+
+        Examples
+        --------
+        >>> import os, p2m, tempfile
+        >>> corners = [[0, 0, 0], [1, 0, 0], [0, 1, 0], [0, 0, 1]]
+        >>> solid = p2m.Scene(corners, triangles=[[0, 2, 1], [0, 1, 3], [0, 3, 2], [1, 2, 3]])
+        >>> shards = p2m.write_shards(solid, os.path.join(tempfile.mkdtemp(), "solid"))
+        >>> shards.signed_distance([[0.125, 0.25, 0.25], [0.5, -2.0, 0.25], [0.0, 0.0, 0.0]])
+        array([-0.125,  2.   ,  0.   ])
+        """
+        queries = coordinates(points, "points")
+        array = one_output(out, "signed_distance", _FLOAT64, queries.shape[:-1])
+        for name, value, known in [("sign", sign, ("auto", "closed")), ("inside", inside, ("negative", "positive"))]:
+            if value not in known:
+                raise ValueError(f"{name}: {value!r} is none of {', '.join(map(repr, known))}")
+        if max_distance is not None:
+            not_negative(max_distance, "max_distance")
+        # Without queries this only checks that the scene has an inside.
+        self.is_inside(np.empty((0, 3)))
+        rows, flat = queries.reshape(-1, 3), array.reshape(-1)
+        self.closest(
+            rows, fields="distance", max_distance=max_distance, out=flat, threads=threads, progress=progress
+        )
+        decided = (flat > 0.0) & (flat < np.inf)
+        is_inside = np.zeros(len(flat), np.bool_)
+        is_inside[decided] = self.is_inside(rows[decided], threads=threads, progress=progress)
+        if max_distance is not None and max_distance < float("inf"):
+            flat[np.isinf(flat)] = np.nan
+        np.negative(flat, out=flat, where=is_inside)
+        return array if inside == "negative" else np.negative(array, out=array)
+
+
+def max_bytes_of(max_bytes: int | None) -> int:
+    """Return the limit of memory as the library takes it."""
+    if max_bytes is None:
+        return _UNLIMITED
+    if not 0 <= max_bytes <= _UNLIMITED:
+        raise ValueError(f"max_bytes: {max_bytes} is no number of bytes")
+    return int(max_bytes)
+
+
+def is_shard_folder(path: str) -> bool:
+    """Return whether a path is a folder with a manifest, or such a manifest."""
+    return os.path.basename(path) == MANIFEST_FILE or os.path.exists(os.path.join(path, MANIFEST_FILE))
+
+
+def shard_folder(path: str | os.PathLike[str]) -> str:
+    """Return the absolute path of a folder of shards, given that folder or its manifest."""
+    absolute = os.path.abspath(os.fspath(path))
+    return os.path.dirname(absolute) if os.path.basename(absolute) == MANIFEST_FILE else absolute
+
+
+def manifest_checksum(folder: str) -> str | None:
+    """Return the checksum that the manifest of a folder states, or None if the file is not a manifest."""
+    with open(os.path.join(folder, MANIFEST_FILE), encoding="utf-8") as file:
+        try:
+            document = json.load(file)
+        except ValueError:
+            return None
+    checksum = document.get("checksum") if isinstance(document, dict) else None
+    return checksum if isinstance(checksum, str) else None
+
+
+def _load_pickled(
+    path: str, checksum: str | None, max_bytes: int | None, is_mapped: bool, threads: int | None
+) -> Shards:
+    from ._opened import open_shards
+
+    return open_shards(path, checksum=checksum, max_bytes=max_bytes, map=is_mapped, threads=threads)
+
+
+def write_shards(
+    scenes: Any,
+    folder: str | os.PathLike[str],
+    max_bytes: int = 1 << 30,
+    *,
+    backend: str = "aabb",
+    replace: bool = False,
+    threads: int | None = None,
+    progress: Progress = None,
+) -> Shards:
+    """Write a scene as shards, each of which is a saved index of a part of it.
+
+    Only one scene and one shard are in memory at the same time, so the whole scene may be larger than memory. It is
+    collected in a temporary file in the folder, which takes 88 bytes for each primitive, and twice that at times.
+
+    Parameters
+    ----------
+    scenes : Scene, object or iterable of them
+        The scene, or parts of it one after the other, such as ``map(p2m.read, files)``. Ids count the primitives of all
+        parts in their order. A part is a scene, or an object that `Scene.of` makes one of, except for tuples.
+    folder : path-like
+        The folder, which is created if it is not there.
+    max_bytes : int, optional
+        The largest length of the file of a shard. Only a shard of one primitive may be longer. While a shard is built,
+        its index takes several times as much memory.
+    backend : str, optional
+        The backend of the shards, as for `Index`. ``"brute"`` has no saved form.
+    replace : bool, optional
+        Whether shards in the folder are replaced. Processes that have mapped them keep the old ones.
+    threads : int, optional
+        The number of threads that build a shard, as for `Index`.
+    progress : callable, True or "tqdm", optional
+        It is called as ``progress(done, total)`` with the number of primitives in finished shards, or a bar of tqdm is
+        shown.
+
+    Returns
+    -------
+    Shards
+
+    Raises
+    ------
+    FileExistsError
+        If the folder has shards and `replace` is false.
+    OSError
+        If a file cannot be written.
+    ValueError
+        For a wrong option.
+    KeyboardInterrupt
+        After the shard that is being built. All files that were written are removed first.
+
+    Examples
+    --------
+    >>> import os, p2m, tempfile
+    >>> tiles = (p2m.Scene([[x, 0, 0], [x + 1, 0, 0], [x, 1, 0]], triangles=[[0, 1, 2]]) for x in range(3))
+    >>> p2m.write_shards(tiles, os.path.join(tempfile.mkdtemp(), "tiles"))
+    <p2m.Shards 'aabb' of 3 primitives in 1 shards>
+    """
+    target = os.path.abspath(os.fspath(folder))
+    if max_bytes < 1:
+        raise ValueError(f"max_bytes: {max_bytes} is not at least 1")
+    count = thread_count(threads)
+    writer = _p2m.ShardWriter(target, max_bytes_of(max_bytes), backend, replace)
+    try:
+        for part in _parts(scenes):
+            writer.add(Scene.of(part)._raw)
+        with callback(progress, "writing", "primitives") as call:
+            writer.finish(count, call)
+    finally:
+        writer.close()
+    return Shards(target, threads=threads)
+
+
+def _parts(scenes: Any) -> Iterable[Any]:
+    """Return the parts of a scene, which may be one."""
+    if isinstance(scenes, Scene) or not isinstance(scenes, Iterable):
+        return (scenes,)
+    return scenes
