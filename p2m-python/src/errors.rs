@@ -68,8 +68,8 @@ pub(crate) fn load_error(error: &LoadError, name: &str) -> PyErr {
 /// The exception for shards that cannot be written, opened or asked, with the name of the file.
 pub(crate) fn shard_error(error: &ShardError) -> PyErr {
     match error {
-        ShardError::Io { file, source } => io_error(source, file),
-        ShardError::Load { file, source } => load_error(source, &file.display().to_string()),
+        ShardError::Io { file, error } => io_error(error, file),
+        ShardError::Load { file, error } => load_error(error, &file.display().to_string()),
         ShardError::Exists { .. } => PyFileExistsError::new_err(format!("{error}: give replace=True to replace it")),
         _ => value_error(error),
     }
