@@ -61,7 +61,7 @@ LIMITS = ({}, {"max_distance": 0.3}, {"max_distance": 0.0}, {"certified": True})
 ANY_CASE = settings(max_examples=60, deadline=None, suppress_health_check=list(HealthCheck))
 
 # Each query loads shards again where few fit into memory.
-FEW_CASES = settings(ANY_CASE, max_examples=12)
+FEW_CASES = settings(ANY_CASE, max_examples=15)
 
 
 @given(sharded(), st.sampled_from(LIMITS))
@@ -78,7 +78,7 @@ def test_closest_points_are_the_same_bits(case: Any, options: Any) -> None:
 
 
 @given(sharded(), st.floats(0, 0.5))
-@ANY_CASE
+@FEW_CASES
 def test_approximate_answers_have_their_error(case: Any, epsilon: float) -> None:
     index, shards, queries, _ = case
     exact = index.distance(queries)
@@ -103,7 +103,7 @@ def test_near_primitives_are_the_same_bits(case: Any, k: int, limit: float | Non
 
 
 @given(sharded(), st.sampled_from([0.0, 0.05]))
-@ANY_CASE
+@FEW_CASES
 def test_rays_are_the_same_bits(case: Any, radius: float) -> None:
     index, shards, queries, seed = case
     directions = np.random.default_rng(seed).integers(-2, 3, queries.shape).astype(np.float64)

@@ -370,3 +370,20 @@ fn an_index_is_only_replaced_on_purpose_and_unfinished_ones_leave_nothing() {
     assert_eq!(one.manifest().shards.len(), 1);
     assert!(count > 1 && fs::read_dir(&folder).unwrap().count() == 2, "the shards that were replaced are gone");
 }
+
+#[test]
+fn shards_are_used_while_others_make_room() {
+    let folder = tempfile::tempdir().unwrap();
+    let mut rng = rng("shards_are_used_while_others_make_room", 0);
+    let positions: Vec<Point3<f64>> =
+        (0..2000).map(|_| Point3::from([0; 3].map(|_| rng.random_range(0.0..1.0)))).collect();
+    let soup = Soup::new(positions.clone(), (0..2000).map(Element::Point)).unwrap();
+    let written = write(&mut rng, folder.path(), &soup, ShardOptions::default().with_max_bytes(6000));
+    assert!(written.manifest().shards.len() > 40);
+    let shards = ShardedIndex::open_with_max_bytes(folder.path(), 0).unwrap();
+    // Approximate queries ask for shards one by one, on all threads at the same time.
+    let options = QueryOptions::default().with_epsilon(0.01);
+    let mut answers = vec![None; positions.len()];
+    shards.closest_points_into(&positions, &options, &mut answers).unwrap();
+    assert!(answers.iter().all(|answer| answer.is_some_and(|answer| answer.closest.distance == 0.0)));
+}
