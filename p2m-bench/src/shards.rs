@@ -13,7 +13,6 @@ use p2m_tradeoff::Table;
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 use rayon::prelude::*;
-use std::ops::ControlFlow;
 use std::time::Instant;
 
 /// The number of cells along a side of a tile, each of which has two triangles.
@@ -66,24 +65,23 @@ impl Terrain {
 
     /// Returns random points close to the terrain.
     fn near(self, count: usize, seed: u64) -> Vec<Point3<f64>> {
-        let mut rng = ChaCha8Rng::seed_from_u64(seed);
-        let side = f64::from(self.side);
-        let point = |_| {
-            let [x, y, z] = std::array::from_fn(|_| rng.random::<f64>());
+        self.random_points(count, seed, |[x, y, z], side| {
             Point3::new(x * side, y * side, Self::height(x * side, y * side) + 0.01 * (z - 0.5))
-        };
-        (0..count).map(point).collect()
+        })
     }
 
-    /// Returns random points of a slab that is one and a half times as wide as the terrain, and as high as a tile.
+    /// Returns random points of a slab that is one and a half times as wide as the terrain, and as high as two tiles.
     fn around(self, count: usize, seed: u64) -> Vec<Point3<f64>> {
+        self.random_points(count, seed, |[x, y, z], side| {
+            Point3::new((1.5 * x - 0.25) * side, (1.5 * y - 0.25) * side, 2.0 * z - 1.0)
+        })
+    }
+
+    /// Returns points that a function makes of three random numbers from 0 to 1 and the length of a side.
+    fn random_points(self, count: usize, seed: u64, point: fn([f64; 3], f64) -> Point3<f64>) -> Vec<Point3<f64>> {
         let mut rng = ChaCha8Rng::seed_from_u64(seed);
         let side = f64::from(self.side);
-        let point = |_| {
-            let [x, y, z] = std::array::from_fn(|_| rng.random::<f64>());
-            Point3::new((1.5 * x - 0.25) * side, (1.5 * y - 0.25) * side, 2.0 * z - 1.0)
-        };
-        (0..count).map(point).collect()
+        (0..count).map(|_| point(std::array::from_fn(|_| rng.random::<f64>()), side)).collect()
     }
 }
 
@@ -126,9 +124,8 @@ pub(crate) fn run(arguments: &ShardsArguments) -> Result<bool> {
     }
     table.push(work.row("generate and spill", triangles, format!("{} tiles", terrain.tiles())));
     let work = Work::start();
-    let written = writer.finish_with_progress(&mut |_| ControlFlow::Continue(()))?;
-    let shards = written.manifest().shards.clone();
-    drop(written);
+    let written = writer.finish()?;
+    let shards = &written.manifest().shards;
     let (count, bytes) = (shards.len(), shards.iter().map(|shard| shard.bytes).sum::<u64>());
     table.push(work.row("divide, build and write", triangles, format!("{count} shards, {} MB", bytes / 1_000_000)));
 
@@ -147,9 +144,9 @@ pub(crate) fn run(arguments: &ShardsArguments) -> Result<bool> {
     for ((name, queries), answers) in sets.iter().zip(&answers) {
         let checked = queries.len().min(arguments.checked);
         let work = Work::start();
-        are_equal &= agrees_with_brute_force(terrain, &queries[..checked], &answers[..checked])?;
-        let note = if are_equal { "equal bits" } else { "DIFFERENT" };
-        table.push(work.row(&format!("brute force, {checked} points {name}"), checked as u64, note.to_owned()));
+        let is_equal = agrees_with_brute_force(terrain, &queries[..checked], &answers[..checked])?;
+        are_equal &= is_equal;
+        table.push(work.row(&format!("brute force, {checked} points {name}"), checked as u64, verdict(is_equal)));
     }
     if arguments.whole {
         let work = Work::start();
@@ -170,14 +167,18 @@ pub(crate) fn run(arguments: &ShardsArguments) -> Result<bool> {
             let mut out: Vec<Option<Closest<f64>>> = vec![None; queries.len()];
             let work = Work::start();
             closest_points_into(&tree, queries, &QueryOptions::default(), &BatchOptions::default(), &mut out);
-            let row = |note| work.row(&format!("ask one tree {name}"), queries.len() as u64, note);
-            are_equal &= out.iter().zip(answers).all(|(one, sharded)| is_same(one.as_ref(), sharded.as_ref()));
-            let note = if are_equal { "equal bits" } else { "DIFFERENT" };
-            table.push(row(note.to_owned()));
+            let is_equal = out.iter().zip(answers).all(|(one, sharded)| is_same(one.as_ref(), sharded.as_ref()));
+            are_equal &= is_equal;
+            table.push(work.row(&format!("ask one tree {name}"), queries.len() as u64, verdict(is_equal)));
         }
     }
     println!("{triangles} triangles, at most {} MB of shards in memory\n\n{table}", arguments.max_memory / 1_000_000);
     Ok(are_equal)
+}
+
+/// Returns the note of a row that compares answers.
+fn verdict(is_equal: bool) -> String {
+    if is_equal { "equal bits" } else { "DIFFERENT" }.to_owned()
 }
 
 /// Returns whether an answer of one index and that of shards are the same bits.

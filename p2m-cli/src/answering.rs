@@ -18,6 +18,9 @@ const MAX_BLOCK: usize = 1 << 14;
 const BLOCK_TIME: Duration = Duration::from_millis(100);
 /// The number of bytes of the records of a block, above which the next block is smaller.
 const MAX_BLOCK_BYTES: usize = 1 << 25;
+/// The number of answers that one thread encodes at a time.
+const ANSWERS_PER_TASK: usize = 1 << 11;
+
 /// The numbers of queries of blocks.
 #[derive(Clone, Copy, PartialEq, Eq)]
 pub(crate) enum BlockSize {
@@ -26,8 +29,6 @@ pub(crate) enum BlockSize {
     /// Every block has this number of queries, because what a block costs depends little on how many it has.
     Fixed(usize),
 }
-/// The number of answers that one thread encodes at a time.
-const ANSWERS_PER_TASK: usize = 1 << 11;
 
 /// A stream of points or rays to query with.
 pub(crate) struct QueryStream<I> {

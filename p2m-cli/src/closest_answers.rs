@@ -15,7 +15,7 @@ use std::time::Duration;
 /// The closest primitive, if there is one, and the distance with a sign, which is NaN where no signs are asked for.
 pub(crate) type ClosestAnswer = (Option<Closest<f64>>, f64);
 
-/// What answers queries: an index in memory or one in shards.
+/// A source of answers: an index in memory or one in shards.
 pub(crate) trait Source: Sync {
     /// The number of queries that it is best asked at a time.
     const BLOCK_SIZE: BlockSize;

@@ -70,6 +70,12 @@ fn answer_rows<P: Position<f64>, A: Send>(
     });
 }
 
+/// Returns the options of queries for the closest point.
+pub(crate) fn query_options(max_distance: f64, epsilon: f64, max_visits: Option<u32>) -> QueryOptions<f64> {
+    let options = QueryOptions::default().with_max_distance(max_distance).with_epsilon(epsilon);
+    options.with_max_visits(max_visits.unwrap_or(u32::MAX))
+}
+
 /// Flat lists of all near primitives of some queries.
 #[derive(Default)]
 struct Flat {
@@ -94,8 +100,7 @@ impl Index {
         threads: usize,
         progress: Option<Py<PyAny>>,
     ) -> PyResult<()> {
-        let options = QueryOptions::default().with_max_distance(max_distance).with_epsilon(epsilon);
-        let options = options.with_max_visits(max_visits.unwrap_or(u32::MAX));
+        let options = query_options(max_distance, epsilon, max_visits);
         let mut arrays = Arrays::borrow(out)?;
         with_positions!(points, points => {
             let columns = arrays.columns(points.len())?;

@@ -4,7 +4,7 @@ use crate::columns::{Arrays, borrowed, slice};
 use crate::errors::{shard_error, value_error};
 use crate::index::backend;
 use crate::parts::{Split, answer_in_parts};
-use crate::queries::{BadRow, NearList, batch_options, check_finite};
+use crate::queries::{BadRow, NearList, batch_options, check_finite, query_options};
 use crate::rays::{BadRay, HitArrays, HitList, Rays};
 use crate::scene::{Coordinates, Scene, triples, with_positions};
 use crate::work::{FIRST_STEP_QUERIES, Monitor, Threads, run_batch};
@@ -233,8 +233,7 @@ impl Shards {
         threads: usize,
         progress: Option<Py<PyAny>>,
     ) -> PyResult<()> {
-        let options = QueryOptions::default().with_max_distance(max_distance).with_epsilon(epsilon);
-        let options = options.with_max_visits(max_visits.unwrap_or(u32::MAX));
+        let options = query_options(max_distance, epsilon, max_visits);
         let mut arrays = Arrays::borrow(out)?;
         with_positions!(points, points => {
             let mut columns = arrays.columns(points.len())?;

@@ -132,10 +132,16 @@ fn distance_below(bound: f64) -> f64 {
     (bound.min(f64::MAX).sqrt() * (1.0 - 8.0 * f64::EPSILON) - 4.0 * f64::from_bits(1)).max(0.0)
 }
 
-/// What is known of the answer to a query while shards are asked.
+/// The state of a query while shards are asked.
 pub(crate) trait Search {
+    /// Returns the largest distance of an answer that can still matter, or NaN if the query has none.
+    fn largest(&self) -> f64;
+
     /// Returns the square above which a lower bound rules a shard out. It is negative if the query has no answer.
-    fn prune_above(&self) -> f64;
+    fn prune_above(&self) -> f64 {
+        let largest = self.largest();
+        if largest.is_nan() { -1.0 } else { limit(largest) }
+    }
 
     /// Asks a shard.
     fn ask(&mut self, query: &Point3<f64>, number: usize, shard: &Shard);
@@ -179,8 +185,8 @@ impl CertifiedSearch {
 }
 
 impl Search for CertifiedSearch {
-    fn prune_above(&self) -> f64 {
-        if self.largest.is_nan() { -1.0 } else { limit(self.largest) }
+    fn largest(&self) -> f64 {
+        self.largest
     }
 
     fn ask(&mut self, query: &Point3<f64>, number: usize, shard: &Shard) {
@@ -198,7 +204,7 @@ impl Search for CertifiedSearch {
 /// A search for a number of near primitives.
 pub(crate) struct NearSearch {
     k: usize,
-    /// What was found, in order.
+    /// The primitives that were found, in order.
     found: Vec<Near>,
     largest: f64,
 }
@@ -222,8 +228,8 @@ impl NearSearch {
 }
 
 impl Search for NearSearch {
-    fn prune_above(&self) -> f64 {
-        if self.largest.is_nan() { -1.0 } else { limit(self.largest) }
+    fn largest(&self) -> f64 {
+        self.largest
     }
 
     fn ask(&mut self, query: &Point3<f64>, number: usize, shard: &Shard) {

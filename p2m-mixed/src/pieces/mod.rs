@@ -63,7 +63,7 @@ impl PieceOptions {
     }
 }
 
-/// What is known at the end of a file that was read in pieces.
+/// The summary of a file that was read in pieces.
 #[derive(Debug, Clone, Default, PartialEq, Eq)]
 #[non_exhaustive]
 pub struct PieceSummary {
