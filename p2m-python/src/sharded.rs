@@ -11,8 +11,8 @@ use crate::work::{FIRST_STEP_QUERIES, Monitor, Threads, run_batch};
 use nalgebra::Point3;
 use numpy::{PyArray1, PyReadonlyArray1};
 use p2m_core::batch;
-use p2m_core::{Position, QueryOptions, Ray};
-use p2m_shards::{ShardClosest, ShardError, ShardHit, ShardOptions, ShardedIndex};
+use p2m_core::{Key, Position, Ray};
+use p2m_shards::{Proceed, ShardClosest, ShardError, ShardHit, ShardOptions, ShardedIndex};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 use std::ops::ControlFlow;
@@ -20,9 +20,9 @@ use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 use std::sync::{Mutex, PoisonError};
 
-/// The number of points that the two phases of a batch take at a time, which limits the memory besides the answers to
+/// The number of answers that the two phases of a batch take at a time, which limits the memory besides the answers to
 /// about 350 MB. A shard is loaded at most twice for each such part.
-const POINTS_PER_PART: usize = 1 << 20;
+const ANSWERS_PER_PART: usize = 1 << 20;
 
 /// The reason why a batch has no answers.
 enum Failure {
@@ -100,25 +100,23 @@ impl Shards {
         run_batch(py, &threads, &monitor, || work(&threads, &monitor))?.map_err(PyErr::from)
     }
 
-    /// Answers points by the two phases of a batch, and calls `set` with the number and the answer of each.
-    fn answer_batch<P: Position<f64>>(
-        &self,
+    /// Answers points in parts of so many, each by one batch of the library, and calls `set` with the number and the
+    /// answer of each point.
+    fn answer_batches<P: Position<f64>, A>(
         points: &[P],
-        options: &QueryOptions<f64>,
+        points_per_part: usize,
         monitor: &Monitor,
-        mut set: impl FnMut(usize, Option<&ShardClosest>),
+        answer: impl Fn(&[P], &Proceed<'_>) -> Result<Vec<A>, ShardError>,
+        mut set: impl FnMut(usize, &A),
     ) -> Result<(), Failure> {
         let done = AtomicUsize::new(0);
         let proceed = |count: usize| {
             monitor.set_done(done.fetch_add(count, Ordering::Relaxed) + count);
             !monitor.is_cancelled()
         };
-        let mut answers = vec![None; points.len().min(POINTS_PER_PART)];
-        for (part, points) in points.chunks(POINTS_PER_PART).enumerate() {
-            let answers = &mut answers[..points.len()];
-            self.index.closest_points_while(points, options, answers, &proceed)?;
-            let first = part * POINTS_PER_PART;
-            answers.iter().enumerate().for_each(|(i, answer)| set(first + i, answer.as_ref()));
+        for (part, points) in points.chunks(points_per_part).enumerate() {
+            let answers = answer(points, &proceed)?;
+            answers.iter().enumerate().for_each(|(i, answer)| set(part * points_per_part + i, answer));
         }
         Ok(())
     }
@@ -237,18 +235,18 @@ impl Shards {
         let mut arrays = Arrays::borrow(out)?;
         with_positions!(points, points => {
             let mut columns = arrays.columns(points.len())?;
-            let work = |threads: &Threads, monitor: &Monitor| {
+            let work = |_: &Threads, monitor: &Monitor| {
                 check_finite(points)?;
-                if certified {
-                    let certify = |query: &_| self.index.certified_closest_point(query, &options);
-                    let rows = crate::columns::Rows { columns, width: 1 };
-                    answer_each(points, rows, threads, monitor, certify, |answers, mut rows| {
-                        let answers = answers.iter().enumerate();
-                        answers.for_each(|(i, one)| rows.columns.set_with_id(i, one.as_ref().map(with_id)));
-                    })?;
-                    return Ok(());
-                }
-                self.answer_batch(points, &options, monitor, |i, one| columns.set_with_id(i, one.map(with_id)))
+                let answer = |points: &[_], proceed: &Proceed<'_>| {
+                    if certified {
+                        return self.index.certified_closest_points_while(points, &options, proceed);
+                    }
+                    let mut answers = vec![None; points.len()];
+                    self.index.closest_points_while(points, &options, &mut answers, proceed).map(|()| answers)
+                };
+                Self::answer_batches(points, ANSWERS_PER_PART, monitor, answer, |i, one: &Option<_>| {
+                    columns.set_with_id(i, one.as_ref().map(with_id));
+                })
             };
             Self::run(py, points.len(), threads, progress, work)
         })
@@ -269,18 +267,111 @@ impl Shards {
     ) -> PyResult<()> {
         let mut arrays = Arrays::borrow(out)?;
         with_positions!(points, points => {
-            let rows = crate::columns::Rows { columns: arrays.columns(points.len() * k)?, width: k };
+            let mut columns = arrays.columns(points.len() * k)?;
+            let work = |_: &Threads, monitor: &Monitor| {
+                check_finite(points)?;
+                let answer = |points: &[_], proceed: &Proceed<'_>| {
+                    self.index.all_k_nearest_while(points, k, max_distance, proceed)
+                };
+                let points_per_part = (ANSWERS_PER_PART / k.max(1)).max(1);
+                Self::answer_batches(points, points_per_part, monitor, answer, |i, near: &Vec<ShardClosest>| {
+                    for place in 0..k {
+                        columns.set_with_id(i * k + place, near.get(place).map(with_id));
+                    }
+                })
+            };
+            Self::run(py, points.len(), threads, progress, work)
+        })
+    }
+
+    /// Writes to `out` the shard with the nearest box of each query, or -1.
+    #[pyo3(signature = (points, out, max_distance, threads))]
+    fn nearest_shards(
+        &self,
+        py: Python<'_>,
+        points: Coordinates<'_>,
+        out: &Bound<'_, PyDict>,
+        max_distance: f64,
+        threads: usize,
+    ) -> PyResult<()> {
+        let mut array = borrowed::<i64>(out, "shard")?;
+        let out = slice(&mut array)?.unwrap_or_default();
+        with_positions!(points, points => {
             let work = |threads: &Threads, monitor: &Monitor| {
                 check_finite(points)?;
-                let nearest = |query: &_| self.index.k_nearest(query, k, max_distance);
-                answer_each(points, rows, threads, monitor, nearest, |answers, mut rows| {
-                    for (i, near) in answers.iter().enumerate() {
-                        for place in 0..k {
-                            rows.columns.set_with_id(i * k + place, near.get(place).map(with_id));
-                        }
+                answer_in_parts(points.len(), out, threads, monitor, &|range, out: &mut [i64]| {
+                    for (shard, point) in out.iter_mut().zip(&points[range]) {
+                        let nearest = self.index.nearest_shard(&point.point(), max_distance);
+                        *shard = nearest.and_then(|number| i64::try_from(number).ok()).unwrap_or(-1);
                     }
-                })?;
+                });
                 Ok(())
+            };
+            Self::run(py, points.len(), threads, None, work)
+        })
+    }
+
+    /// Returns the rows of queries and the shards that may have something as near as a distance, as two arrays.
+    #[pyo3(signature = (points, distances, threads))]
+    fn shards_within<'py>(
+        &self,
+        py: Python<'py>,
+        points: Coordinates<'py>,
+        distances: PyReadonlyArray1<'py, f64>,
+        threads: usize,
+    ) -> PyResult<[Bound<'py, PyArray1<i64>>; 2]> {
+        let distances = distances.as_slice()?;
+        let pairs = with_positions!(points, points => {
+            let work = |threads: &Threads, monitor: &Monitor| {
+                check_finite(points)?;
+                let parts = answer_in_parts(points.len(), (), threads, monitor, &|range, ()| {
+                    let mut pairs = Vec::with_capacity(range.len());
+                    for row in range {
+                        let query = points[row].point();
+                        pairs.extend(self.index.shards_within(&query, distances[row]).map(|shard| (row, shard)));
+                    }
+                    pairs
+                });
+                Ok(parts.concat())
+            };
+            Self::run(py, points.len(), threads, None, work)
+        })?;
+        let column = |part: fn(&(usize, usize)) -> usize| {
+            PyArray1::from_iter(py, pairs.iter().map(|pair| i64::try_from(part(pair)).unwrap_or(i64::MAX)))
+        };
+        Ok([column(|pair| pair.0), column(|pair| pair.1)])
+    }
+
+    /// Answers queries for the closest point by one shard into the arrays of `out`, among which `key` may be.
+    #[pyo3(signature = (points, shard, out, max_distance, threads, progress))]
+    #[allow(clippy::too_many_arguments, reason = "the Python layer passes them all")]
+    fn closest_in_shard(
+        &self,
+        py: Python<'_>,
+        points: Coordinates<'_>,
+        shard: usize,
+        out: &Bound<'_, PyDict>,
+        max_distance: f64,
+        threads: usize,
+        progress: Option<Py<PyAny>>,
+    ) -> PyResult<()> {
+        let options = query_options(max_distance, 0.0, None);
+        let mut arrays = Arrays::borrow(out)?;
+        let mut key_array = borrowed::<f64>(out, "key")?;
+        let mut keys = slice(&mut key_array)?.map(|flat| flat.as_chunks_mut::<2>().0);
+        with_positions!(points, points => {
+            let mut columns = arrays.columns(points.len())?;
+            let work = |_: &Threads, monitor: &Monitor| {
+                check_finite(points)?;
+                let answer = |points: &[_], proceed: &Proceed<'_>| {
+                    self.index.closest_points_in_shard_while(shard, points, &options, proceed)
+                };
+                Self::answer_batches(points, ANSWERS_PER_PART, monitor, answer, |i, one: &Option<_>| {
+                    columns.set_with_id(i, one.as_ref().map(|(answer, _)| with_id(answer)));
+                    if let Some(keys) = &mut keys {
+                        keys[i] = one.as_ref().map_or(Key::INFINITY, |(_, key)| *key).order();
+                    }
+                })
             };
             Self::run(py, points.len(), threads, progress, work)
         })

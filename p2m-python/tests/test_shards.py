@@ -154,6 +154,18 @@ def test_batches_of_several_parts(tmp_path: Path) -> None:
     assert any(0 < done < len(points) for done, _ in seen)
 
 
+@pytest.mark.parametrize("threads", [1, 2])
+def test_batches_load_each_shard_at_most_twice(folder: Path, threads: int) -> None:
+    index = p2m.Index(mixed_scene())
+    for query, options in [("closest", {}), ("closest", {"certified": True}), ("k_nearest", {"k": 20})]:
+        shards = p2m.Shards(folder, 0, threads=threads)
+        seen: list[int] = []
+        found = getattr(shards, query)(QUERIES, progress=lambda done, total: seen.append(done), **options)
+        assert_same(found, getattr(index, query)(QUERIES, **options))
+        assert len(shards.shards) < shards.loads <= 2 * len(shards.shards)
+        assert seen == sorted(seen) and seen[-1] == len(QUERIES)
+
+
 def test_facts_of_the_manifest(folder: Path) -> None:
     scene = mixed_scene()
     shards = p2m.Shards(folder / "manifest.json", max_bytes=123_456)
@@ -301,11 +313,15 @@ def test_an_interrupt_ends_a_batch(folder: Path) -> None:
 
     before = signal.signal(signal.SIGALRM, interrupt)
     try:
-        for options in [{}, {"certified": True}]:
-            shards = p2m.Shards(folder)
+        shards = p2m.Shards(folder)
+        for query in [
+            lambda: shards.closest(points), lambda: shards.closest(points, certified=True),
+            lambda: shards.k_nearest(points, 3),
+        ]:
+            shards.distance(QUERIES)
             signal.setitimer(signal.ITIMER_REAL, 0.1)
             with pytest.raises(KeyboardInterrupt):
-                shards.closest(points, **options)
+                query()
             assert_same(shards.closest(QUERIES), p2m.Index(mixed_scene()).closest(QUERIES))
     finally:
         signal.setitimer(signal.ITIMER_REAL, 0)

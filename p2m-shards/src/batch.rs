@@ -1,17 +1,17 @@
 //! Batches of queries for the closest point, in two phases that load each shard once.
 
-use crate::nearest::{ByBound, CertifiedSearch, NearSearch, Search, ShardClosest, is_finite, key, limit, reach};
-use crate::{ShardError, ShardedIndex};
+use crate::nearest::{ByBound, CertifiedSearch, NearSearch, Search, ShardClosest, is_finite, key, least, limit, reach};
+use crate::{Shard, ShardError, ShardedIndex};
 use nalgebra::Point3;
 use p2m_core::batch::{BatchOptions, closest_points_into};
-use p2m_core::{Aabb, Best, Closest, ClosestPoint, Found, Index, Key, Position, QueryOptions};
+use p2m_core::{Best, Closest, ClosestPoint, Found, Index, Key, Position, QueryOptions};
 use rayon::prelude::*;
 
 /// The number that stands for no shard.
 const NONE: u32 = u32::MAX;
 
 /// A function that is called with a number of answered queries, and returns whether to go on.
-type Proceed<'a> = dyn Fn(usize) -> bool + Sync + 'a;
+pub type Proceed<'a> = dyn Fn(usize) -> bool + Sync + 'a;
 
 /// The index of a shard, which leaves out queries when it is not to go on.
 struct Stoppable<'a> {
@@ -133,7 +133,26 @@ impl ShardedIndex {
         k: usize,
         radius: f64,
     ) -> Result<Vec<Vec<ShardClosest>>, ShardError> {
-        let searches = self.search_all(queries, |query| NearSearch::new(query, k, radius))?;
+        self.all_k_nearest_while(queries, k, radius, &|_| true)
+    }
+
+    /// Answers a batch as [`all_k_nearest`](Self::all_k_nearest) does, as long as `proceed` returns `true`, which is
+    /// called as [`closest_points_while`](Self::closest_points_while) calls it.
+    ///
+    /// # Errors
+    /// It returns the errors of [`all_k_nearest`](Self::all_k_nearest), and [`ShardError::Cancelled`] if `proceed` has
+    /// returned `false`.
+    ///
+    /// # Complexity
+    /// It is that of [`all_k_nearest`](Self::all_k_nearest).
+    pub fn all_k_nearest_while(
+        &self,
+        queries: &[impl Position<f64>],
+        k: usize,
+        radius: f64,
+        proceed: &Proceed<'_>,
+    ) -> Result<Vec<Vec<ShardClosest>>, ShardError> {
+        let searches = self.search_all(queries, |query| NearSearch::new(query, k, radius), proceed)?;
         Ok(searches.into_par_iter().map(NearSearch::finish).collect())
     }
 
@@ -150,9 +169,94 @@ impl ShardedIndex {
         queries: &[impl Position<f64>],
         options: &QueryOptions<f64>,
     ) -> Result<Vec<Option<ShardClosest>>, ShardError> {
-        let searches = self.search_all(queries, |query| CertifiedSearch::new(query, options))?;
-        let finish = |(search, query): (CertifiedSearch, &_)| search.finish(&Position::point(query), options);
+        self.certified_closest_points_while(queries, options, &|_| true)
+    }
+
+    /// Answers a batch as [`certified_closest_points`](Self::certified_closest_points) does, as long as `proceed`
+    /// returns `true`, which is called as [`closest_points_while`](Self::closest_points_while) calls it.
+    ///
+    /// # Errors
+    /// It returns the errors of [`certified_closest_points`](Self::certified_closest_points), and
+    /// [`ShardError::Cancelled`] if `proceed` has returned `false`.
+    ///
+    /// # Complexity
+    /// It is that of [`certified_closest_points`](Self::certified_closest_points).
+    pub fn certified_closest_points_while(
+        &self,
+        queries: &[impl Position<f64>],
+        options: &QueryOptions<f64>,
+        proceed: &Proceed<'_>,
+    ) -> Result<Vec<Option<ShardClosest>>, ShardError> {
+        let searches = self.search_all(queries, |query| CertifiedSearch::new(query, options), proceed)?;
+        let finish = |(search, query): (CertifiedSearch, &_)| {
+            if proceed(0) { search.finish(&Position::point(query), options) } else { Err(ShardError::Cancelled) }
+        };
         searches.into_par_iter().zip(queries).map(finish).collect()
+    }
+
+    /// Answers queries by one shard alone, on all threads of the current pool, as long as `proceed` returns `true`,
+    /// which is called as [`closest_points_while`](Self::closest_points_while) calls it. Each answer comes with its key.
+    ///
+    /// Of the answers of all shards that [`nearest_shard`](Self::nearest_shard) and
+    /// [`shards_within`](Self::shards_within) name, the one with the least key, and of equal keys with the lowest id, is
+    /// the answer of the whole scene. A hint is ignored.
+    ///
+    /// # Errors
+    /// It returns [`ShardError::Load`] and [`ShardError::OtherShard`] if the shard has a wrong file, and
+    /// [`ShardError::Cancelled`] if `proceed` has returned `false`.
+    ///
+    /// # Panics
+    /// It panics if the manifest has no such shard.
+    ///
+    /// # Complexity
+    /// The shard is loaded at most once, and not at all without queries.
+    pub fn closest_points_in_shard_while(
+        &self,
+        number: usize,
+        queries: &[impl Position<f64>],
+        options: &QueryOptions<f64>,
+        proceed: &Proceed<'_>,
+    ) -> Result<Vec<Option<(ShardClosest, Key)>>, ShardError> {
+        if queries.is_empty() {
+            return Ok(Vec::new());
+        }
+        let mut options = *options;
+        options.hint = None;
+        let shard = self.shard(number)?;
+        let queries: Vec<Point3<f64>> = queries.par_iter().map(Position::point).collect();
+        let answers = ask(&shard, &queries, &options, proceed)?;
+        let with_key = |(query, answer): (&_, Option<Closest<f64>>)| {
+            answer.map(|closest| (ShardClosest::new(number, &shard, closest), key(&shard, &closest, query)))
+        };
+        Ok(queries.par_iter().zip(answers).map(with_key).collect())
+    }
+
+    /// Returns the shard with the box that is nearest to a query, which is to be asked first, or `None` for a query
+    /// that is not finite, an empty scene, and where no box is within the largest distance.
+    ///
+    /// # Complexity
+    /// It takes O(s) for s shards, and loads none.
+    #[must_use]
+    pub fn nearest_shard(&self, query: &Point3<f64>, max_distance: f64) -> Option<usize> {
+        if !is_finite(query) {
+            return None;
+        }
+        let bounds = self.boxes.iter().map(|bounds| bounds.lower_bound(query));
+        least(bounds, limit(max_distance)).map(|(number, _)| number)
+    }
+
+    /// Returns all shards that may have a primitive as near as one that was found at `distance`, or a nearer one.
+    ///
+    /// # Complexity
+    /// It takes O(s) for s shards, and loads none.
+    pub fn shards_within(&self, query: &Point3<f64>, distance: f64) -> impl Iterator<Item = usize> {
+        self.shards_up_to(query, self.limit_of(query, distance, f64::INFINITY))
+    }
+
+    /// Returns all shards whose boxes are not beyond a limit on squared distances.
+    fn shards_up_to(&self, query: &Point3<f64>, limit: f64) -> impl Iterator<Item = usize> {
+        let boxes = self.boxes.iter().enumerate();
+        boxes.filter(move |(_, bounds)| bounds.lower_bound(query) <= limit).map(|(number, _)| number)
     }
 
     /// Searches for all queries: each asks the shard with the nearest box, and then every other one that may matter.
@@ -160,6 +264,7 @@ impl ShardedIndex {
         &self,
         queries: &[impl Position<f64>],
         begin: impl Fn(&Point3<f64>) -> S + Sync,
+        proceed: &Proceed<'_>,
     ) -> Result<Vec<S>, ShardError> {
         let first = |query: &_| {
             let query = Position::point(query);
@@ -178,12 +283,14 @@ impl ShardedIndex {
                     continue;
                 }
                 let shard = self.shard(number)?;
-                searches.par_iter_mut().zip(queries).for_each(|(search, query)| {
+                searches.par_iter_mut().zip(queries).try_for_each(|(search, query)| {
                     let query = query.point();
-                    if needs(search, &query) {
-                        search.0.ask(&query, number, &shard);
+                    if !needs(search, &query) {
+                        return Ok(());
                     }
-                });
+                    search.0.ask(&query, number, &shard);
+                    if proceed(usize::from(is_nearest)) { Ok(()) } else { Err(ShardError::Cancelled) }
+                })?;
             }
         }
         Ok(searches.into_iter().map(|(search, _)| search).collect())
@@ -191,19 +298,12 @@ impl ShardedIndex {
 
     /// Returns the shard that a query asks first.
     fn begin(&self, query: &Point3<f64>, options: &QueryOptions<f64>) -> Pending {
-        let nothing = Pending { nearest: NONE, limit: f64::NEG_INFINITY, key: None };
-        if !is_finite(query) {
-            return nothing;
-        }
-        let largest = limit(options.max_distance);
-        let mut best = (NONE, f64::INFINITY);
-        for (number, bounds) in (0..).zip(&self.boxes) {
-            let bound = bounds.lower_bound(query);
-            if bound <= largest && (bound < best.1 || best.0 == NONE) {
-                best = (number, bound);
-            }
-        }
-        if best.0 == NONE { nothing } else { Pending { nearest: best.0, limit: largest, key: None } }
+        let nearest = self.nearest_shard(query, options.max_distance);
+        nearest.map_or(Pending { nearest: NONE, limit: f64::NEG_INFINITY, key: None }, |number| Pending {
+            nearest: u32::try_from(number).unwrap_or(NONE),
+            limit: limit(options.max_distance),
+            key: None,
+        })
     }
 
     /// Asks for each query the shard with the nearest box.
@@ -224,18 +324,11 @@ impl ShardedIndex {
         for (number, group) in groups.into_iter().enumerate().filter(|(_, group)| !group.is_empty()) {
             let shard = self.shard(number)?;
             let asked: Vec<Point3<f64>> = group.par_iter().map(|i| queries[*i].point()).collect();
-            let mut answers: Vec<Option<Closest<f64>>> = vec![None; asked.len()];
-            let stoppable = Stoppable { index: shard.index(), proceed };
-            closest_points_into(&stoppable, &asked, options, &BatchOptions::default(), &mut answers);
-            if !proceed(0) {
-                return Err(ShardError::Cancelled);
-            }
+            let answers = ask(&shard, &asked, options, proceed)?;
             let rest = |(query, answer): (&Point3<f64>, &Option<Closest<f64>>)| {
                 let closest = answer.as_ref()?;
-                let limit = self.limit_of(query, closest, options);
-                let is_near =
-                    |(other, bounds): (usize, &Aabb<f64>)| other != number && bounds.lower_bound(query) <= limit;
-                let has_others = self.boxes.iter().enumerate().any(is_near);
+                let limit = self.limit_of(query, closest.distance, options.max_distance);
+                let has_others = self.shards_up_to(query, limit).any(|other| other != number);
                 Some((limit, has_others.then(|| key(&shard, closest, query))))
             };
             let rests: Vec<_> = asked.par_iter().zip(&answers).map(rest).collect();
@@ -291,7 +384,7 @@ impl ShardedIndex {
                 let is_winner = best.is_none_or(|(best, best_key)| (key, answer.id) < (best_key, best.id));
                 let (mut winner, key) = best.filter(|_| !is_winner).unwrap_or((answer, key));
                 winner.closest.lower_bound = bound.min(closest.lower_bound);
-                let limit = self.limit_of(&queries[i].point(), &winner.closest, options);
+                let limit = self.limit_of(&queries[i].point(), winner.closest.distance, options.max_distance);
                 pending[i] = Pending { limit, key: Some(key), ..pending[i] };
                 out[i] = Some(winner);
             }
@@ -299,8 +392,21 @@ impl ShardedIndex {
         Ok(())
     }
 
-    /// Returns the square above which no shard is needed for a query with this answer.
-    fn limit_of(&self, query: &Point3<f64>, closest: &Closest<f64>, options: &QueryOptions<f64>) -> f64 {
-        limit(options.max_distance.min(reach(closest.distance, self.largest_error(query))))
+    /// Returns the square above which no shard is needed for a query whose best answer has this distance.
+    fn limit_of(&self, query: &Point3<f64>, distance: f64, max_distance: f64) -> f64 {
+        limit(max_distance.min(reach(distance, self.largest_error(query))))
     }
+}
+
+/// Answers queries by one shard on all threads of the current pool, and in the order of the batches of the library.
+fn ask(
+    shard: &Shard,
+    queries: &[Point3<f64>],
+    options: &QueryOptions<f64>,
+    proceed: &Proceed<'_>,
+) -> Result<Vec<Option<Closest<f64>>>, ShardError> {
+    let mut answers = vec![None; queries.len()];
+    let stoppable = Stoppable { index: shard.index(), proceed };
+    closest_points_into(&stoppable, queries, options, &BatchOptions::default(), &mut answers);
+    if proceed(0) { Ok(answers) } else { Err(ShardError::Cancelled) }
 }

@@ -42,7 +42,10 @@
 //! equal the ids. Crossings of a ray add up over the shards, because each triangle is in one of them.
 //!
 //! Two phases answer a batch: each query asks the shard with the nearest box, and then the shards whose bounds are
-//! within the distance that was found. In each phase a shard is loaded once and answers all queries that need it.
+//! within the distance that was found. In each phase a shard is loaded once and answers all queries that need it. Several
+//! processes share these phases by [`nearest_shard`](ShardedIndex::nearest_shard),
+//! [`shards_within`](ShardedIndex::shards_within) and
+//! [`closest_points_in_shard_while`](ShardedIndex::closest_points_in_shard_while).
 
 #![deny(unsafe_code)]
 
@@ -57,6 +60,7 @@ mod shard;
 mod signs;
 mod write;
 
+pub use batch::Proceed;
 pub use error::ShardError;
 pub use index::ShardedIndex;
 pub use manifest::{MANIFEST_FILE, Manifest, ObjectEntry, ShardEntry, folder_of};

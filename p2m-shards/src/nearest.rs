@@ -57,13 +57,17 @@ impl ByBound {
     ///
     /// Few shards are taken, so looking for each among all costs less than sorting them.
     pub(crate) fn take(&mut self, limit: f64) -> Option<(usize, f64)> {
-        let least = |best: Option<(usize, f64)>, (number, bound): (usize, f64)| {
-            if bound <= limit && best.is_none_or(|(_, least)| bound < least) { Some((number, bound)) } else { best }
-        };
-        let (number, bound) = self.bounds.iter().copied().enumerate().fold(None, least)?;
+        let (number, bound) = least(self.bounds.iter().copied(), limit)?;
         self.bounds[number] = f64::NAN;
         Some((number, bound))
     }
+}
+
+/// Returns the place and the value of the least of some bounds that are at most a limit.
+pub(crate) fn least(bounds: impl Iterator<Item = f64>, limit: f64) -> Option<(usize, f64)> {
+    bounds.enumerate().fold(None, |best: Option<(usize, f64)>, (number, bound)| {
+        if bound <= limit && best.is_none_or(|(_, least)| bound < least) { Some((number, bound)) } else { best }
+    })
 }
 
 /// Returns the square above which a lower bound exceeds a distance.

@@ -73,6 +73,26 @@ fn of_shard_hit(hit: &ShardHit) -> (u64, u64, String) {
     of_hit(hit.id, &hit.hit)
 }
 
+/// Answers each query by the shard with the nearest box and then by all others that may matter, one after the other.
+fn merged_answers(
+    shards: &ShardedIndex,
+    points: &[Point3<f64>],
+    options: &QueryOptions<f64>,
+) -> Vec<Option<ShardClosest>> {
+    let ask = |number: usize, query: &Point3<f64>| {
+        shards.closest_points_in_shard_while(number, &[*query], options, &|_| true).unwrap()[0]
+    };
+    let answer = |query: &Point3<f64>| {
+        let nearest = shards.nearest_shard(query, options.max_distance)?;
+        let first = ask(nearest, query);
+        let distance = first.map_or(options.max_distance, |(answer, _)| answer.closest.distance);
+        let others = shards.shards_within(query, distance).filter(|other| *other != nearest);
+        let answers = others.filter_map(|other| ask(other, query)).chain(first);
+        answers.min_by_key(|(answer, key)| (*key, answer.id)).map(|(answer, _)| answer)
+    };
+    points.iter().map(answer).collect()
+}
+
 /// Compares all queries by points with those of brute force.
 fn check_points(rng: &mut impl Rng, shards: &ShardedIndex, soup: &Soup<f64>, name: &str) {
     let brute = BruteForce::new(soup).unwrap();
@@ -83,7 +103,11 @@ fn check_points(rng: &mut impl Rng, shards: &ShardedIndex, soup: &Soup<f64>, nam
         let expected: Vec<_> = points.iter().map(|query| brute.closest_point_with(query, &options)).collect();
         let mut batch = vec![None; points.len()];
         shards.closest_points_into(&points, &options, &mut batch).unwrap();
+        let merged = merged_answers(shards, &points, &options);
         let all_certified = shards.certified_closest_points(&points, &options).unwrap();
+        let merged: Vec<_> = merged.iter().map(|one| one.as_ref().map(of_shards)).collect();
+        let expected_fields: Vec<_> = expected.iter().map(|one| one.as_ref().map(of_index)).collect();
+        assert_eq!(merged, expected_fields, "{name}, shard by shard");
         let batches = batch.iter().zip(&all_certified);
         for ((query, expected), (batch, batch_certified)) in points.iter().zip(&expected).zip(batches) {
             let found = shards.closest_point_with(query, &options).unwrap();

@@ -88,6 +88,15 @@ impl Key {
         if self.tier == 0 { root } else { scale_by_power(root, self.tier * PLAIN_SQUARE_BITS) }
     }
 
+    /// Returns two numbers that are ordered as keys are: the first ones decide, and where these are equal the second
+    /// ones. They serve where keys leave a program and are compared elsewhere.
+    #[must_use]
+    pub fn order(self) -> [f64; 2] {
+        // Zero is below all tiers, although it has the tier of plain squares.
+        let tier = if self.square == 0.0 { -2 } else { self.tier };
+        [f64::from(tier), self.square]
+    }
+
     /// Returns a square that is not below the key, for pruning by bounds that are computed in plain f64.
     ///
     /// It is the key itself in the plain range, 2^-800 below the range (where squares of f64 lose their digits), and
@@ -156,6 +165,7 @@ mod tests {
             assert_eq!(key(a).distance(), a);
             for (j, &b) in lengths.iter().enumerate() {
                 assert_eq!(key(a).cmp(&key(b)), a.total_cmp(&b), "{a:e} {b:e} {i} {j}");
+                assert_eq!(key(a).order().partial_cmp(&key(b).order()), Some(a.total_cmp(&b)), "{a:e} {b:e}");
             }
         }
         assert!(key(f64::MAX) < Key::from_offset([f64::MAX; 3]));

@@ -264,6 +264,21 @@ class Shards:
         threads: int,
         progress: _Progress,
     ) -> None: ...
+    def nearest_shards(
+        self, points: _Coordinates, out: _Arrays, max_distance: float, threads: int
+    ) -> None: ...
+    def shards_within(
+        self, points: _Coordinates, distances: NDArray[np.float64], threads: int
+    ) -> list[NDArray[np.int64]]: ...
+    def closest_in_shard(
+        self,
+        points: _Coordinates,
+        shard: int,
+        out: _Arrays,
+        max_distance: float,
+        threads: int,
+        progress: _Progress,
+    ) -> None: ...
     def within(
         self,
         points: _Coordinates,

@@ -66,9 +66,10 @@ class Shards(PointQueries):
 
     Notes
     -----
-    `closest` answers a batch in parts of 2**20 points. A part loads each shard at most twice, so large batches need
-    little memory and few reads of files. The options `epsilon`, `max_visits` and `certified`, and all other queries ask
-    one point after the other, along a curve. They are slow where the shards that they need do not fit into `max_bytes`.
+    `closest` answers a batch in parts of 2**20 points, and `k_nearest` in parts of 2**20 answers. A part loads each
+    shard at most twice, so large batches need little memory and few reads of files. The options `epsilon` and
+    `max_visits`, and all other queries ask one point after the other. They are slow where the shards that they need do
+    not fit into `max_bytes`.
 
     Objects are pickled as the folder and the checksum of its manifest. A process that unpickles one several times opens
     the folder once (`p2m.clear_opened`).
