@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+import collections
 import contextlib
 import os
 import pickle
 import signal
 import subprocess
 import sys
+import zlib
 from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
@@ -15,7 +17,7 @@ from typing import Any
 import numpy as np
 import pytest
 from conftest import assert_same, mixed_scene, sphere
-from hypothesis import HealthCheck, given, settings
+from hypothesis import HealthCheck, Phase, given, settings
 from hypothesis import strategies as st
 
 import p2m
@@ -211,6 +213,144 @@ def test_folders_of_shards_have_the_same_bits(
     p2m.clear_opened()
 
 
+NO_SHRINKING = [phase for phase in Phase if phase != Phase.shrink]
+"""Examples that take a second are not made smaller."""
+
+EXACT = tuple(name for name in FIELDS if name != "lower_bound")
+
+
+@st.composite
+def scattered(draw: st.DrawFn) -> tuple[p2m.Index, int, Any, np.ndarray]:
+    """Return an index, a size of shards, points in any chunks, many of them as near to several shards, and the same."""
+    index, array, points = draw(chunked())
+    # At vertices many primitives are equally near, and halves of whole numbers are half way between boxes.
+    rows = np.concatenate([points.reshape(-1, 3), index.scene.vertices, np.rint(2 * index.scene.vertices) / 2])
+    rows = rows[np.random.default_rng(len(rows)).permutation(len(rows))].astype(points.dtype)
+    cuts = sorted(draw(st.sets(st.integers(1, len(rows) - 1), max_size=4)))
+    lengths = tuple(int(n) for n in np.diff([0, *cuts, len(rows)]))
+    lazy, eager = draw(st.sampled_from([(array, points), (da.from_array(rows, chunks=(lengths, 2)), rows)]))
+    return index, draw(st.integers(3000, 30_000)), lazy, eager
+
+
+@given(scattered(), st.sampled_from([None, 0, 40_000]), st.sampled_from([None, 0.0, 0.3]))
+@settings(max_examples=40, deadline=None, suppress_health_check=list(HealthCheck))
+def test_points_that_go_to_shards_have_the_same_bits(
+    tmp_path_factory: pytest.TempPathFactory, case: Any, limit: int | None, max_distance: float | None
+) -> None:
+    index, size, array, points = case
+    folder = tmp_path_factory.mktemp("shuffle") / "site"
+    p2m.write_shards(index.scene, folder, size)
+    lazy = p2m.dask.closest(
+        array, p2m.Shards(folder, limit), fields=FIELDS, max_distance=max_distance, shuffle=True, threads=2
+    )
+    found = lazy.compute(scheduler="sync")
+    assert found.fields == FIELDS and lazy.distance.chunks == array.chunks[:-1]
+    assert_same(found, index.closest(points, fields=EXACT, max_distance=max_distance), EXACT)
+    is_found = found.primitive >= 0
+    assert np.all(found.lower_bound[is_found] <= found.distance[is_found])
+    assert np.all(np.isinf(found.lower_bound[~is_found]))
+    p2m.clear_opened()
+
+
+@pytest.mark.parametrize("scale", [1.0, 2.0**-400, 2.0**400, 2.0**-560])
+@pytest.mark.parametrize("step", [1, -1])
+def test_keys_decide_between_shards_at_equal_distances(tmp_path: Path, scale: float, step: int) -> None:
+    """The squares are 1 and 1 + 2**-52, whose roots are the same number."""
+    vertices = scale * np.array([[1.0, 2.0**-26, 0.0], [1.0, 0.0, 0.0], [1.0, 0.0, 2.0**-26]])[::step]
+    index = p2m.Index(p2m.Scene(vertices, points=np.arange(3)))
+    shards = p2m.write_shards(index.scene, tmp_path / "points", 1)
+    found = p2m.dask.closest(np.zeros((1, 3)), shards, shuffle=True).compute()
+    assert len(shards.shards) == 3 and found.primitive[0] == 1
+    assert_same(found, index.closest(np.zeros((1, 3))))
+
+
+def test_points_that_go_to_shards_without_answers(tmp_path: Path) -> None:
+    p2m.write_shards([], tmp_path / "empty")
+    nothing = p2m.Index(p2m.Scene([])).closest(POINTS, fields=FIELDS)
+    assert_same(p2m.dask.closest(POINTS, tmp_path / "empty", fields=FIELDS, shuffle=True).compute(), nothing)
+    shards = p2m.write_shards(mixed_scene(), tmp_path / "site", 8000)
+    far = POINTS + 1000.0
+    found = p2m.dask.closest(far, shards, fields=FIELDS, max_distance=1.0, shuffle=True).compute()
+    assert_same(found, nothing)
+    bad = POINTS.copy()
+    bad[777, 1] = np.nan
+    with pytest.raises(ValueError, match="points: row 777 has a coordinate that is not finite"):
+        p2m.dask.distance(da.from_array(bad, chunks=(300, 3)), shards, shuffle=True).compute()
+    some = da.from_array(POINTS, chunks=(300, 3))
+    some = some[some[:, 0] > 0.5]
+    expected = p2m.Index(mixed_scene()).distance(POINTS[POINTS[:, 0] > 0.5])
+    np.testing.assert_array_equal(p2m.dask.distance(some, shards, shuffle=True).compute(), expected)
+
+
+@pytest.fixture(scope="module")
+def workers(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Any]:
+    """Yield the client of two workers of Dask in this process, whose tasks see what tests replace."""
+    distributed = pytest.importorskip("distributed")
+    folder = str(tmp_path_factory.mktemp("workers"))
+    with distributed.Client(
+        processes=False, n_workers=2, threads_per_worker=1, dashboard_address=None, local_directory=folder
+    ) as client:
+        yield client
+
+
+class Failures:
+    """Let tasks raise in their first attempts, before or after they have asked the shards."""
+
+    def __init__(self, seed: int, largest: int) -> None:
+        self.seed, self.largest = seed, largest
+        self.attempts: collections.Counter[Any] = collections.Counter()
+
+    def may_fail(self, place: str) -> None:
+        key = str(distributed_key())
+        random = zlib.crc32(f"{self.seed} {key.split('-')[1]} {key.split(',')[1:]}".encode())
+        is_here = ("before", "after")[random // 7 % 2] == place
+        if is_here and self.attempts[key] < random % (self.largest + 1):
+            self.attempts[key] += 1
+            raise RuntimeError(f"attempt {self.attempts[key]} of {key}")
+
+    def install(self, patch: pytest.MonkeyPatch) -> None:
+        opened = p2m._shuffle.Query.open
+
+        def open_or_fail(query: Any) -> Any:
+            self.may_fail("before")
+            return opened(query)
+
+        def or_fail(ask: Any) -> Any:
+            def asked(*arguments: Any, **options: Any) -> Any:
+                answer = ask(*arguments, **options)
+                self.may_fail("after")
+                return answer
+
+            return asked
+
+        patch.setattr(p2m._shuffle.Query, "open", open_or_fail)
+        for name in ["nearest_shards", "shards_within", "closest_in_shard"]:
+            patch.setattr(p2m.Shards, name, or_fail(getattr(p2m.Shards, name)))
+
+
+def distributed_key() -> Any:
+    """Return the key of the task that this thread runs."""
+    return pytest.importorskip("distributed").get_worker().get_current_task()
+
+
+@given(scattered(), st.integers(0, 2**30))
+@settings(max_examples=15, deadline=None, suppress_health_check=list(HealthCheck), phases=NO_SHRINKING)
+def test_tasks_that_fail_are_repeated_and_answers_are_the_same_bits(
+    tmp_path_factory: pytest.TempPathFactory, workers: Any, case: Any, seed: int
+) -> None:
+    index, size, array, points = case
+    shards = p2m.write_shards(index.scene, tmp_path_factory.mktemp("failures") / "site", size)
+    lazy = p2m.dask.closest(array, shards, fields=EXACT, shuffle=True)
+    expected = index.closest(points, fields=EXACT)
+    with pytest.MonkeyPatch.context() as patch:
+        failures = Failures(seed, 3)
+        failures.install(patch)
+        found = workers.gather(workers.compute(list(lazy), retries=3))
+        assert_same(dict(zip(EXACT, found)), expected, EXACT)
+        assert array.npartitions * len(shards.shards) < 4 or failures.attempts
+    p2m.clear_opened()
+
+
 def test_a_process_opens_shards_once(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     scene = mixed_scene()
     shards = p2m.write_shards(scene, tmp_path / "site", 8000)
@@ -293,6 +433,11 @@ def test_wrong_arguments_are_errors_at_once(path: Path, index: p2m.Index) -> Non
         (lambda: p2m.dask.closest(points, path, fields=("distance", "colour")), ValueError, "'colour' is none of"),
         (lambda: p2m.dask.closest(points, path, fields=()), ValueError, "fields: none"),
         (lambda: p2m.dask.closest(points, path, certified=True, epsilon=0.1), ValueError, "certified: "),
+        (lambda: p2m.dask.distance(points, path, shuffle=True), ValueError, "shuffle: the index is no folder"),
+        (lambda: p2m.dask.distance(points, mixed_ball(), shuffle=True), ValueError, "shuffle: the index is no folder"),
+        (lambda: p2m.dask.closest(points, path, shuffle=True, certified=True), ValueError, "shuffle: it has neither"),
+        (lambda: p2m.dask.closest(points, path, shuffle=True, epsilon=0.1), ValueError, "shuffle: it has neither"),
+        (lambda: p2m.dask.closest(points, path, shuffle=True, max_visits=3), ValueError, "shuffle: it has neither"),
         (lambda: p2m.dask.signed_distance(points, path, sign="odd"), ValueError, "sign: 'odd'"),
         (lambda: p2m.dask.rays(points, [0, 0, 1], path, "all"), ValueError, "mode: 'all' is none of"),
         (lambda: p2m.dask.rays(points, [0, 0, 1], path, "any", fields="t"), ValueError, "fields: the mode"),
@@ -371,6 +516,26 @@ def test_processes_of_a_cluster_answer_and_one_may_end(path: Path, index: p2m.In
         client.wait_for_workers(2, timeout=30)
         after = set(client.run(os.getpid).values())
         assert flag.exists() and len(before) == 2 and len(before - after) == 1
+
+
+def loads_of(shards: p2m.Shards) -> int:
+    """Return how often this process has loaded a shard."""
+    return shards.loads
+
+
+def test_processes_that_share_shards_load_each_at_most_twice(tmp_path: Path) -> None:
+    index = p2m.Index(mixed_scene())
+    count = len(p2m.write_shards(index.scene, tmp_path / "site", 8000).shards)
+    points = da.from_array(POINTS, chunks=(100, 3))
+    loads = {}
+    with cluster(tmp_path) as client:
+        # An index with another limit is another one to a process, so loads are counted from zero.
+        for shuffle, limit in [(False, 1), (True, 2)]:
+            shards = p2m.Shards(tmp_path / "site", limit)
+            found = p2m.dask.closest(points, shards, fields=EXACT, shuffle=shuffle).compute(scheduler=client)
+            assert_same(found, index.closest(POINTS, fields=EXACT))
+            loads[shuffle] = sum(client.run(loads_of, shards).values())
+    assert count <= loads[True] <= 2 * count < loads[False]
 
 
 @pytest.mark.long

@@ -262,6 +262,10 @@ def test_wrong_options_are_errors(folder: Path, tmp_path: Path) -> None:
         shards.closest([[0, 0, 0], [0, np.nan, 0]])
     with pytest.raises(ValueError, match="row 0 is zero"):
         shards.rays([0, 0, 0], [0, 0, 0])
+    with pytest.raises(IndexError, match=f"shard: {len(shards.shards)} is not from 0"):
+        shards.closest_in_shard([0, 0, 0], len(shards.shards))
+    with pytest.raises(ValueError, match=r"distances: the shape is \(2,\) instead of \(1,\)"):
+        shards.shards_within([[0, 0, 0]], [1.0, 2.0])
     with pytest.raises(ValueError, match="max_bytes: -1"):
         p2m.Shards(folder, -1)
     with pytest.raises(ValueError, match="max_bytes: 0"):

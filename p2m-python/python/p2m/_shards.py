@@ -4,15 +4,16 @@ from __future__ import annotations
 
 import json
 import os
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from typing import Any, Literal, NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from . import _p2m
-from ._arrays import Progress, callback, coordinates, not_negative, one_output, thread_count
+from ._arrays import FIELDS, Progress, callback, coordinates, flat, not_negative, one_output, outputs, thread_count
 from ._index import PointQueries
+from ._records import ClosestPoints
 from ._scene import Object, Scene
 
 _FLOAT64 = np.dtype(np.float64)
@@ -21,6 +22,9 @@ _UNLIMITED = 2**64 - 1
 
 MANIFEST_FILE = "manifest.json"
 """The name of the file that describes the shards of a folder."""
+
+SHARD_FIELDS = {name: kind for name, kind in FIELDS.items() if name != "object"} | {"key": (_FLOAT64, (2,))}
+"""The type and the last axes of the columns of answers of one shard."""
 
 
 class ShardInfo(NamedTuple):
@@ -286,6 +290,145 @@ class Shards(PointQueries):
             flat[np.isinf(flat)] = np.nan
         np.negative(flat, out=flat, where=is_inside)
         return array if inside == "negative" else np.negative(array, out=array)
+
+    def nearest_shards(
+        self, points: ArrayLike, *, max_distance: float | None = None, threads: int | None = None
+    ) -> NDArray[np.int64]:
+        """Return the number in `shards` of the shard whose box is nearest to each point. No shard is loaded.
+
+        The time is proportional to the number of points times the number of shards.
+
+        Parameters
+        ----------
+        points, threads
+            As for `closest`.
+        max_distance : float, optional
+            The largest distance of a box, inclusive.
+
+        Returns
+        -------
+        ndarray of int64, shape {..}
+            The numbers; -1 where no box is within `max_distance`, and for an empty scene.
+
+        Raises
+        ------
+        ValueError
+            If a coordinate is not finite, or for a wrong shape or option.
+
+        Examples
+        --------
+        >>> import os, p2m, tempfile
+        >>> scene = p2m.Scene([[0, 0, 0], [9, 0, 0]], points=[0, 1])
+        >>> shards = p2m.write_shards(scene, os.path.join(tempfile.mkdtemp(), "two"), max_bytes=1)
+        >>> shards.nearest_shards([[1, 0, 0], [8, 0, 0], [4, 0, 0]], max_distance=3.0)
+        array([ 0,  1, -1])
+        """
+        queries = coordinates(points, "points")
+        numbers = np.empty(queries.shape[:-1], np.int64)
+        largest = float("inf") if max_distance is None else not_negative(max_distance, "max_distance")
+        self._raw.nearest_shards(queries.reshape(-1), {"shard": numbers.reshape(-1)}, largest, self._count(threads))
+        return numbers
+
+    def shards_within(
+        self, points: ArrayLike, distances: ArrayLike, *, threads: int | None = None
+    ) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
+        """Return the shards that may have a primitive as near to a point as a distance. No shard is loaded.
+
+        The distance is one that `closest` returned, so the limit is larger by the rounding of such distances.
+
+        Parameters
+        ----------
+        points, threads
+            As for `closest`.
+        distances : array_like, shape {..}
+            The distance of each point, which may be infinite.
+
+        Returns
+        -------
+        rows : ndarray of int64, shape (m,)
+            The rows of the flattened points, in ascending order, each as often as it has shards.
+        numbers : ndarray of int64, shape (m,)
+            The numbers of their shards in `shards`, in ascending order for each point.
+
+        Raises
+        ------
+        ValueError
+            If a coordinate is not finite, or for a wrong shape.
+
+        Examples
+        --------
+        >>> import os, p2m, tempfile
+        >>> scene = p2m.Scene([[0, 0, 0], [9, 0, 0]], points=[0, 1])
+        >>> shards = p2m.write_shards(scene, os.path.join(tempfile.mkdtemp(), "two"), max_bytes=1)
+        >>> shards.shards_within([[1, 0, 0], [8, 0, 0]], [8.0, 1.0])
+        (array([0, 0, 1]), array([0, 1, 1]))
+        """
+        queries = coordinates(points, "points")
+        limits = np.ascontiguousarray(distances, np.float64)
+        if limits.shape != queries.shape[:-1]:
+            raise ValueError(f"distances: the shape is {limits.shape} instead of {queries.shape[:-1]}")
+        rows, numbers = self._raw.shards_within(queries.reshape(-1), limits.reshape(-1), self._count(threads))
+        return rows, numbers
+
+    def closest_in_shard(
+        self,
+        points: ArrayLike,
+        shard: int,
+        *,
+        max_distance: float | None = None,
+        fields: str | Sequence[str] = ("distance", "primitive", "key"),
+        threads: int | None = None,
+        progress: Progress = None,
+    ) -> ClosestPoints:
+        """Return the closest points of one shard, with ids of the whole scene.
+
+        Several processes share a query by this method: each point asks the shard of `nearest_shards`, and then the
+        other shards of `shards_within` for the distance that was found. Of its answers the one with the least key, and
+        of equal keys with the least primitive, is the answer of `closest`.
+
+        Parameters
+        ----------
+        points, max_distance, threads, progress
+            As for `closest`.
+        shard : int
+            The number of the shard in `shards`, which is loaded unless there are no points.
+        fields : str or sequence of str, optional
+            The arrays of the answer: those of `closest` apart from ``object``, and ``key`` of shape {.., 2}. Keys are
+            pairs of numbers that decide among equal distances, and they are compared by their first numbers, and where
+            these are equal by their second ones.
+
+        Returns
+        -------
+        ClosestPoints
+
+        Raises
+        ------
+        ValueError
+            If a coordinate is not finite, for a wrong shape or option, or if the file of the shard is damaged.
+        IndexError
+            If there is no such shard.
+        OSError
+            If the file of the shard cannot be read.
+
+        Examples
+        --------
+        >>> import os, p2m, tempfile
+        >>> scene = p2m.Scene([[0, 0, 0], [9, 0, 0]], points=[0, 1])
+        >>> shards = p2m.write_shards(scene, os.path.join(tempfile.mkdtemp(), "two"), max_bytes=1)
+        >>> shards.closest_in_shard([[1, 0, 0], [8, 0, 0]], 1).distance
+        array([8., 1.])
+        """
+        queries = coordinates(points, "points")
+        count = len(self._raw.shards())
+        if not 0 <= shard < count:
+            raise IndexError(f"shard: {shard} is not from 0 to {count - 1}")
+        arrays = outputs(fields, queries.shape[:-1], None, SHARD_FIELDS, ())
+        largest = float("inf") if max_distance is None else not_negative(max_distance, "max_distance")
+        with callback(progress, "answering", "points") as call:
+            self._raw.closest_in_shard(
+                queries.reshape(-1), shard, flat(arrays), largest, self._count(threads), call
+            )
+        return ClosestPoints(arrays)
 
 
 def max_bytes_of(max_bytes: int | None) -> int:

@@ -39,12 +39,15 @@ map : bool, optional
 
 from __future__ import annotations
 
+import contextlib
+import functools
 import itertools
 import math
+import operator
 import re
 import uuid
 import weakref
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from typing import Any, Literal, NamedTuple
 
 import numpy as np
@@ -54,6 +57,7 @@ try:
     import dask
     import dask.array as da
     from dask.base import tokenize
+    from dask.highlevelgraph import HighLevelGraph
 except ImportError:
     raise ImportError('p2m.dask needs Dask: pip install "dask[array]"')
 
@@ -62,10 +66,10 @@ from ._index import Index
 from ._opened import IndexFile, index_source, opened
 from ._records import ClosestPoints, FirstHits, Record
 from ._shards import is_shard_folder
+from ._shuffle import Columns, Query, Sent, ask, join, send_to_nearest, send_to_others
 
 __all__ = ["LazyRecord", "closest", "distance", "field", "rays", "signed_distance"]
 
-_Columns = dict[str, NDArray[Any]]
 _Known = Mapping[str, tuple[np.dtype[Any], tuple[int, ...]]]
 
 
@@ -119,6 +123,7 @@ def closest(
     epsilon: float = 0.0,
     max_visits: int | None = None,
     certified: bool = False,
+    shuffle: bool = False,
     threads: int = 1,
     map: bool = False,
 ) -> LazyClosestPoints:
@@ -130,6 +135,10 @@ def closest(
         As the module documents them.
     fields, max_distance, epsilon, max_visits, certified
         As for `p2m.Index.closest`.
+    shuffle : bool, optional
+        Whether points go to the shards that they need, where otherwise each block asks the whole folder. It needs a
+        folder of shards that this process can read, and answers are the same bits. It has neither `epsilon`,
+        `max_visits` nor `certified`. The notes say when it pays.
 
     Returns
     -------
@@ -146,6 +155,19 @@ def closest(
     OSError
         During the computation, if the file cannot be read.
 
+    Notes
+    -----
+    With `shuffle` each point goes to the shard with the nearest box, and then to the other shards whose boxes are
+    within the distance that was found. A task asks one shard for the points of all blocks, so all workers together load
+    each shard at most twice, where by block each worker loads each shard that its blocks need. It pays where the points
+    of a block are spread over a scene that does not fit into the memory of a worker.
+
+    A point in float64 moves 24 bytes to its shard, and its answer 32 bytes back besides fields other than distance and
+    primitive; points near the border of shards move several times. The graph has 4 n s + 3 n + 2 s tasks for n blocks
+    and s shards, so keep n s below 100,000 by large blocks. All points are in the memory of the workers at the same
+    time, and those of one shard in the memory of one worker. With few shards, or blocks that need few of them, the
+    default is better.
+
     Examples
     --------
     >>> import dask.array as da, p2m, p2m.dask
@@ -159,6 +181,14 @@ def closest(
     names = (fields,) if isinstance(fields, str) else tuple(fields)
     outputs(names, (0,), None, FIELDS, names)
     checked_limits(max_distance, epsilon, max_visits, certified)
+    source = index_source(index, map)
+    if shuffle:
+        if epsilon != 0.0 or max_visits is not None or certified:
+            raise ValueError("shuffle: it has neither epsilon, max_visits nor certified")
+        if not (isinstance(source, IndexFile) and is_shard_folder(source.path)):
+            raise ValueError("shuffle: the index is no folder of shards that this process can read")
+        query = Query(source, names, max_distance, thread_count(threads))
+        return LazyClosestPoints(_shuffled(_points(points, "points"), query))
     options = {
         "fields": names,
         "max_distance": max_distance,
@@ -168,11 +198,17 @@ def closest(
         "threads": thread_count(threads),
     }
     arrays = {"points": _points(points, "points")}
-    return LazyClosestPoints(_columns("closest", arrays, index_source(index, map), options, FIELDS, names))
+    return LazyClosestPoints(_columns("closest", arrays, source, options, FIELDS, names))
 
 
 def distance(
-    points: Any, index: Any, *, max_distance: float | None = None, threads: int = 1, map: bool = False
+    points: Any,
+    index: Any,
+    *,
+    max_distance: float | None = None,
+    shuffle: bool = False,
+    threads: int = 1,
+    map: bool = False,
 ) -> da.Array:
     """Return the distances of query points from the scene, as `p2m.Index.distance` does.
 
@@ -182,6 +218,8 @@ def distance(
         As the module documents them.
     max_distance : float, optional
         The largest distance of an answer, inclusive; infinite distances are beyond it.
+    shuffle : bool, optional
+        Whether points go to the shards that they need, as for `closest`.
 
     Returns
     -------
@@ -194,8 +232,8 @@ def distance(
     >>> p2m.dask.distance(np.array([[0, 3, 4], [0, 0, 1]]), index).compute()
     array([5., 1.])
     """
-    answer = closest(points, index, fields="distance", max_distance=max_distance, threads=threads, map=map)
-    return answer["distance"]
+    limits: dict[str, Any] = {"max_distance": max_distance, "shuffle": shuffle}
+    return closest(points, index, fields="distance", threads=threads, map=map, **limits)["distance"]
 
 
 def signed_distance(
@@ -438,8 +476,7 @@ def _columns(
 ) -> dict[str, da.Array]:
     """Return the lazy arrays of a query.
 
-    A layer of the graph has a task for each block, which returns a dictionary with the arrays of all fields. A layer
-    for each field takes its array out of the dictionaries.
+    A layer of the graph has a task for each block, which returns a dictionary with the arrays of all fields.
     """
     token = tokenize(query, [array.name for array in arrays.values()], _key(source), options)
     blocks = _aligned(list(arrays.values()))
@@ -456,6 +493,44 @@ def _columns(
         options=options,
         grid=_BlockGrid.of(blocks),
     )
+    return _fields_of(answers, f"p2m-{query}", token, known, names)
+
+
+def _shuffled(points: da.Array, query: Query) -> dict[str, da.Array]:
+    """Return the lazy arrays of a query for the closest point that goes to shards."""
+    shard_count = len(query.open().shards)
+    token = tokenize("shuffle", points.name, _key(query.source), query.fields, query.max_distance, query.threads)
+    blocks = list(np.ndindex(points.numblocks))
+
+    def key(task: str, *place: int) -> tuple[Any, ...]:
+        return (f"p2m-{task}-{token}", *place)
+
+    send = functools.partial(_send_block, query=query, grid=_BlockGrid.of([points]))
+    graph: dict[tuple[Any, ...], tuple[Any, ...]] = {}
+    for phase, shard in itertools.product(range(2), range(shard_count)):
+        pieces = [key("piece", phase, shard, b) for b in range(len(blocks))]
+        graph[key("ask", phase, shard)] = (functools.partial(ask, shard=shard, query=query), pieces)
+        for b, piece in enumerate(pieces):
+            graph[piece] = (Sent.piece, key("send", phase, b), shard)
+            graph[key("answer", phase, b, shard)] = (operator.getitem, key("ask", phase, shard), b)
+    for b, block in enumerate(blocks):
+        nearest, others = ([key("answer", phase, b, shard) for shard in range(shard_count)] for phase in range(2))
+        first, second = key("send", 0, b), key("send", 1, b)
+        graph[first] = (functools.partial(send, block_id=block), (points.name, *block))
+        graph[second] = (functools.partial(send_to_others, query=query), first, nearest)
+        graph[key("shuffle", *block)] = (functools.partial(join, query=query), first, nearest, second, others)
+    name = key("shuffle")[0]
+    answers = da.Array(
+        HighLevelGraph.from_collections(name, graph, dependencies=[points]),
+        name,
+        points.chunks,
+        meta=np.empty((0,) * points.ndim, object),
+    )
+    return _fields_of(answers, "p2m-shuffle", token, FIELDS, query.fields)
+
+
+def _fields_of(answers: da.Array, prefix: str, token: str, known: _Known, names: Sequence[str]) -> dict[str, da.Array]:
+    """Return the lazy arrays of fields, for each of which a layer of the graph takes its array out of dictionaries."""
     axes = tuple(range(answers.ndim))
     columns = {}
     for name in names:
@@ -471,7 +546,7 @@ def _columns(
             concatenate=None,
             dtype=dtype,
             meta=np.empty((0,) * (len(axes) - 1 + len(tail)), dtype),
-            name=f"p2m-{query}-{name}-{token}",
+            name=f"{prefix}-{name}-{token}",
             column=name,
         )
     return columns
@@ -529,18 +604,13 @@ class _BlockGrid(NamedTuple):
 _ROW = re.compile(r"(\w+): row (\d+) (.*)", re.DOTALL)
 
 
-def _answer_block(
-    *blocks: NDArray[Any],
-    query: str,
-    source: IndexFile | Index,
-    options: dict[str, Any],
-    grid: _BlockGrid | None,
-    block_id: tuple[int, ...],
-) -> _Columns:
-    """Return the arrays of all fields for a block of points or rays."""
-    answer = getattr(opened(source, options["threads"]), query)
+@contextlib.contextmanager
+def _rows_of_all(
+    blocks: Sequence[NDArray[Any]], grid: _BlockGrid | None, block_id: tuple[int, ...]
+) -> Iterator[None]:
+    """Replace the row of a block in the message of an error by the row of all points."""
     try:
-        arrays = answer(*blocks, **options)
+        yield
     except ValueError as error:
         found = _ROW.fullmatch(str(error))
         if found is None:
@@ -550,10 +620,30 @@ def _answer_block(
         if grid is None:
             raise ValueError(f"{name}: row {row} of the block {block_id[:-1]} {rest}") from error
         raise ValueError(f"{name}: row {grid.row(int(row), shape, block_id[:-1])} {rest}") from error
+
+
+def _send_block(block: NDArray[Any], *, query: Query, grid: _BlockGrid | None, block_id: tuple[int, ...]) -> Sent:
+    """Send each point of a block to the shard with the nearest box."""
+    with _rows_of_all([block], grid, block_id):
+        return send_to_nearest(block, query)
+
+
+def _answer_block(
+    *blocks: NDArray[Any],
+    query: str,
+    source: IndexFile | Index,
+    options: dict[str, Any],
+    grid: _BlockGrid | None,
+    block_id: tuple[int, ...],
+) -> Columns:
+    """Return the arrays of all fields for a block of points or rays."""
+    answer = getattr(opened(source, options["threads"]), query)
+    with _rows_of_all(blocks, grid, block_id):
+        arrays = answer(*blocks, **options)
     return arrays.asdict() if isinstance(arrays, Record) else {"value": arrays}
 
 
-def _column_block(answers: list[_Columns], *, column: str) -> NDArray[Any]:
+def _column_block(answers: list[Columns], *, column: str) -> NDArray[Any]:
     """Return the array of one field of a block."""
     return answers[0][column]
 
