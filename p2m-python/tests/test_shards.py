@@ -318,14 +318,13 @@ def test_an_interrupt_ends_a_batch(folder: Path) -> None:
     before = signal.signal(signal.SIGALRM, interrupt)
     try:
         shards = p2m.Shards(folder)
-        for query in [
-            lambda: shards.closest(points), lambda: shards.closest(points, certified=True),
-            lambda: shards.k_nearest(points, 3),
-        ]:
+        for query, options in [("closest", {}), ("closest", {"certified": True}), ("k_nearest", {"k": 3})]:
             shards.distance(QUERIES)
+            seen: list[int] = []
             signal.setitimer(signal.ITIMER_REAL, 0.1)
             with pytest.raises(KeyboardInterrupt):
-                query()
+                getattr(shards, query)(points, progress=lambda done, total: seen.append(done), **options)
+            assert max(seen, default=0) < len(points) // 2
             assert_same(shards.closest(QUERIES), p2m.Index(mixed_scene()).closest(QUERIES))
     finally:
         signal.setitimer(signal.ITIMER_REAL, 0)
