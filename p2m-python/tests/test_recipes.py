@@ -46,3 +46,9 @@ def test_the_benchmark_compares_all_answers() -> None:
     pytest.importorskip("distributed")
     printed = run("benchmarks/cluster.py", str(CARRIED), "--quick")
     assert printed.count("| cluster, map=") == 4 and printed.endswith("All answers are the same bits.\n")
+
+
+def test_the_benchmark_of_shards_compares_all_answers() -> None:
+    pytest.importorskip("distributed")
+    printed = run("benchmarks/shuffle.py", "--quick")
+    assert printed.count("| by block |") == printed.count("| to shards |") == 2

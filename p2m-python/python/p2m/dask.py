@@ -159,8 +159,8 @@ def closest(
     -----
     With `shuffle` each point goes to the shard with the nearest box, and then to the other shards whose boxes are
     within the distance that was found. A task asks one shard for the points of all blocks, so all workers together load
-    each shard at most twice, where by block each worker loads each shard that its blocks need. It pays where the points
-    of a block are spread over a scene that does not fit into the memory of a worker.
+    each shard at most twice if they have one thread each, where by block each worker loads each shard that its blocks
+    need. It pays where the points of a block are spread over a scene that does not fit into the memory of a worker.
 
     A point in float64 moves 24 bytes to its shard, and its answer 32 bytes back besides fields other than distance and
     primitive; points near the border of shards move several times. The graph has 4 n s + 3 n + 2 s tasks for n blocks
