@@ -15,6 +15,7 @@ pub(crate) mod adjacency;
 pub(crate) mod any_locator;
 pub(crate) mod budget;
 pub(crate) mod cell;
+pub(crate) mod cell_packets;
 pub(crate) mod cell_polytope;
 pub(crate) mod cells;
 pub(crate) mod circumsphere;
@@ -33,6 +34,7 @@ pub(crate) mod neighbour_block;
 pub(crate) mod neighbours;
 #[cfg(all(feature = "kiddo", feature = "rstar"))]
 pub(crate) mod paper;
+pub(crate) mod packet_cells;
 pub(crate) mod primitive_frame;
 pub(crate) mod query;
 #[cfg(feature = "rstar")]
