@@ -57,40 +57,22 @@ impl RegionPoints {
     }
 }
 
-/// The test of one feature: its planes, and the heights of a region above them. Its vectors are reused.
+/// The test of one feature: its planes, and their heights. Its vectors are reused.
 #[derive(Default)]
 pub(crate) struct ExcludedFeatures {
     /// A point of the convex hull of the region, about in its middle.
     middle: V3,
-    /// The planes so far.
-    planes: Vec<PlaneHeights>,
-    /// The heights of the points above some planes: those whose right side does not contain the middle, and
-    /// others on demand.
-    heights: Vec<[f64; BLOCK_POINTS]>,
-    /// Whether one plane has excluded the feature already.
-    is_decided: bool,
+    /// The planes so far, each with the height of the middle of the region.
+    planes: Vec<(Plane, f64)>,
 }
-
-/// A plane, with the heights of a region above it.
-struct PlaneHeights {
-    /// The plane, with its margin.
-    plane: Plane,
-    /// The height of the middle of the region.
-    middle: f64,
-    /// The index of the first block of heights, or [`NOT_COMPUTED`].
-    first: usize,
-}
-
-/// Marks that the heights above a plane are not computed yet.
-const NOT_COMPUTED: usize = usize::MAX;
 
 impl Plane {
     /// Returns the heights of points above the plane, increased by the margin. They are negative on the wrong side.
     #[inline(always)]
     fn heights<F: Float>(&self, [x, y, z]: [F; 3]) -> F {
-        let [px, py, pz] = self.point.map(F::splat);
-        let [dx, dy, dz] = self.direction.map(F::splat);
-        (x - px) * dx + (y - py) * dy + (z - pz) * dz + F::splat(self.margin)
+        let Self { point: [px, py, pz], direction: [dx, dy, dz], margin } = *self;
+        let (x, y, z) = (x - F::splat(px), y - F::splat(py), z - F::splat(pz));
+        x * F::splat(dx) + y * F::splat(dy) + z * F::splat(dz) + F::splat(margin)
     }
 }
 
@@ -117,66 +99,38 @@ impl ExcludedFeatures {
     #[inline(always)]
     pub(crate) fn begin_feature(&mut self) {
         self.planes.clear();
-        self.heights.clear();
-        self.is_decided = false;
     }
 
-    /// Adds a plane of the feature. It returns whether the plane excludes the feature, so that no other plane is
-    /// needed.
+    /// Adds a plane of the feature, and returns whether it excludes the feature, alone or with a plane before.
     #[inline(always)]
     pub(crate) fn add<D: Doubles>(&mut self, region: &RegionPoints, plane: Plane) -> bool {
-        let middle = plane.heights(self.middle);
-        let mut first = NOT_COMPUTED;
+        let height = plane.heights(self.middle);
         // All points can have a negative height only if their middle has.
-        if middle < 0.0 {
-            first = self.heights.len();
-            self.is_decided = self.compute_heights::<D>(&plane, region);
-        }
-        self.planes.push(PlaneHeights { plane, middle, first });
-        self.is_decided
-    }
-
-    /// Computes the heights of the points above a plane, and returns whether all are negative.
-    #[inline(always)]
-    fn compute_heights<D: Doubles>(&mut self, plane: &Plane, region: &RegionPoints) -> bool {
-        let mut is_below = 0xff;
-        for [x, y, z] in &region.blocks {
-            let heights = plane.heights([D::load(x), D::load(y), D::load(z)]);
-            is_below &= D::bits(heights.is_below(D::splat(0.0)));
-            let mut row = [0.0; BLOCK_POINTS];
-            heights.store(&mut row);
-            self.heights.push(row);
-        }
-        is_below == 0xff
-    }
-
-    /// Returns whether the planes exclude the feature.
-    #[inline(always)]
-    pub(crate) fn is_excluded<D: Doubles>(&mut self, region: &RegionPoints) -> bool {
-        if self.is_decided {
+        if height < 0.0 && are_below::<D, 1>(region, [&plane]) {
             return true;
         }
-        for i in 1..self.planes.len() {
-            for j in 0..i {
-                if self.planes[i].middle + self.planes[j].middle < 0.0 && self.is_excluded_by_two::<D>(region, i, j) {
-                    return true;
-                }
+        for (other, other_height) in &self.planes {
+            if height + other_height < 0.0 && are_below::<D, 2>(region, [&plane, other]) {
+                return true;
             }
         }
+        self.planes.push((plane, height));
         false
     }
+}
 
-    /// Returns whether the heights above two planes have a negative sum at all points.
-    #[inline(always)]
-    fn is_excluded_by_two<D: Doubles>(&mut self, region: &RegionPoints, i: usize, j: usize) -> bool {
-        for number in [i, j] {
-            if self.planes[number].first == NOT_COMPUTED {
-                self.planes[number].first = self.heights.len();
-                let plane = self.planes[number].plane;
-                self.compute_heights::<D>(&plane, region);
-            }
+/// Returns whether the heights above some planes have a negative sum at all points of a region.
+#[inline(always)]
+fn are_below<D: Doubles, const N: usize>(region: &RegionPoints, planes: [&Plane; N]) -> bool {
+    for [x, y, z] in &region.blocks {
+        let points = [D::load(x), D::load(y), D::load(z)];
+        let mut sum = planes[0].heights(points);
+        for plane in &planes[1..] {
+            sum = sum + plane.heights(points);
         }
-        let [a, b] = [i, j].map(|number| &self.heights[self.planes[number].first..][..region.blocks.len()]);
-        a.iter().zip(b).all(|(a, b)| D::bits((D::load(a) + D::load(b)).is_below(D::splat(0.0))) == 0xff)
+        if D::bits(sum.is_below(D::splat(0.0))) != 0xff {
+            return false;
+        }
     }
+    true
 }

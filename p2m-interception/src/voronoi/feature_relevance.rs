@@ -70,8 +70,8 @@ struct FeaturePlane {
     point: V3,
     /// The normal of the plane, which points to the right side.
     direction: V3,
-    /// The box of the vertices that the plane depends on.
-    vertices: [V3; 2],
+    /// Whether the plane depends on vertices of other primitives.
+    is_foreign: bool,
     /// The plane excludes nothing in cells whose margin is more than this length.
     max_margin: f64,
     /// The factor of the margin: the reciprocal of the sine of a triangle, for its sides.
@@ -84,6 +84,8 @@ struct FeaturePlane {
 pub(crate) struct PrimitiveFeatures {
     /// The box of the vertices.
     bounds: [V3; 2],
+    /// The box of all vertices that planes depend on, those of other primitives as well.
+    foreign_bounds: [V3; 2],
     /// The largest margin of cells in which anything can be excluded.
     max_margin: f64,
     /// The planes of all features.
@@ -106,7 +108,8 @@ impl PrimitiveFeatures {
             return;
         }
         self.bounds = box_of(&vertices[..count]);
-        let view = PrimitiveView { scene, vertices: &vertices[..count], sites, frame, bounds: self.bounds };
+        self.foreign_bounds = self.bounds;
+        let view = PrimitiveView { scene, vertices: &vertices[..count], sites, frame };
         let owned_by_lower_id = scene.adjacency.owned_by_lower_id[packet][lane];
         if count == 3 {
             self.planes.extend((0..3).map(|i| view.side_plane(i)));
@@ -115,12 +118,12 @@ impl PrimitiveFeatures {
         let edge_count = if count == 3 { 3 } else { count - 1 };
         for i in (0..edge_count).filter(|i| owned_by_lower_id >> (3 + i) & 1 == 0) {
             let first = self.planes.len();
-            view.add_edge_planes(i, scene.adjacency.opposite_triangles[packet][lane][i], &mut self.planes);
+            view.add_edge_planes(i, scene.adjacency.opposite_triangles[packet][lane][i], &mut self.planes, &mut self.foreign_bounds);
             self.features.push((first..self.planes.len(), None));
         }
         for i in (0..count).filter(|i| owned_by_lower_id >> i & 1 == 0) {
             let first = self.planes.len();
-            view.add_vertex_planes(i, &mut self.planes);
+            view.add_vertex_planes(i, &mut self.planes, &mut self.foreign_bounds);
             let vertex = scene.adjacency.is_exact.then_some((vertices[i], sites[i]));
             self.features.push((first..self.planes.len(), vertex));
         }
@@ -141,28 +144,29 @@ impl PrimitiveFeatures {
         if !(cell.max_error < margin * 0.25 && self.max_margin >= margin) {
             return true;
         }
+        let foreign_margin = cell.margin(&self.foreign_bounds);
         excluded.begin_region::<D>(region);
         for (planes, vertex) in &self.features {
             excluded.begin_feature();
-            let mut is_decided = false;
+            let mut is_excluded = false;
             for plane in &self.planes[planes.clone()] {
-                let margin = cell.margin(&plane.vertices);
+                let margin = if plane.is_foreign { foreign_margin } else { margin };
                 if plane.max_margin >= margin {
                     let margin = margin * plane.margin_factor;
                     let plane = Plane { point: plane.point, direction: plane.direction, margin };
-                    is_decided = excluded.add::<D>(region, plane);
-                    if is_decided {
+                    is_excluded = excluded.add::<D>(region, plane);
+                    if is_excluded {
                         break;
                     }
                 }
             }
             if let Some((vertex, site)) = vertex
+                && !is_excluded
                 && *site != cell.site
-                && !is_decided
             {
-                excluded.add::<D>(region, bisector(cell, vertex, margin, slack));
+                is_excluded = excluded.add::<D>(region, bisector(cell, vertex, margin, slack));
             }
-            if !excluded.is_excluded::<D>(region) {
+            if !is_excluded {
                 return true;
             }
         }
@@ -256,8 +260,6 @@ struct PrimitiveView<'a> {
     sites: [usize; 3],
     /// The directions of the primitive.
     frame: PrimitiveFrame,
-    /// The box of the vertices.
-    bounds: [V3; 2],
 }
 
 impl PrimitiveView<'_> {
@@ -267,21 +269,21 @@ impl PrimitiveView<'_> {
         FeaturePlane {
             point: self.vertices[i],
             direction: self.frame.inward_normals[i],
-            vertices: self.bounds,
+            is_foreign: false,
             max_margin: f64::INFINITY,
             margin_factor: self.frame.sine.recip(),
         }
     }
 
     /// Adds the planes of the edge from vertex i to the next one.
-    fn add_edge_planes(&self, i: usize, opposite: u32, planes: &mut Vec<FeaturePlane>) {
+    fn add_edge_planes(&self, i: usize, opposite: u32, planes: &mut Vec<FeaturePlane>, foreign_bounds: &mut [V3; 2]) {
         let count = self.vertices.len();
         let (p, q) = (self.vertices[i], self.vertices[(i + 1) % count]);
         let direction = self.frame.edge_directions[i];
         let end = |point, direction| FeaturePlane {
             point,
             direction,
-            vertices: self.bounds,
+            is_foreign: false,
             max_margin: f64::INFINITY,
             margin_factor: 1.0,
         };
@@ -301,29 +303,31 @@ impl PrimitiveView<'_> {
             vertices: &vertices,
             sites,
             frame: PrimitiveFrame::from_vertices(&vertices),
-            bounds: box_of(&[self.bounds[0], self.bounds[1], vertices[0], vertices[1], vertices[2]]),
         };
         // The height of the other triangle is zero if two of its vertices are equal, so `common_side` is its only
         // side with these ends.
         let ends = [self.sites[i], self.sites[(i + 1) % 3]];
         let common_side = (0..3).find(|j| ends.contains(&sites[*j]) && ends.contains(&sites[(j + 1) % 3]));
         if let Some(j) = common_side {
-            planes.push(FeaturePlane { max_margin: other.frame.height, ..flipped(other.side_plane(j)) });
+            let plane = flipped(other.side_plane(j));
+            planes.push(FeaturePlane { is_foreign: true, max_margin: other.frame.height, ..plane });
+            extend_box(foreign_bounds, &vertices);
         }
     }
 
     /// Adds the planes of vertex i.
-    fn add_vertex_planes(&self, i: usize, planes: &mut Vec<FeaturePlane>) {
+    fn add_vertex_planes(&self, i: usize, planes: &mut Vec<FeaturePlane>, foreign_bounds: &mut [V3; 2]) {
         let point = self.vertices[i];
         let mut add_edge_to = |end: V3| {
             let offset = sub(end, point);
             planes.push(FeaturePlane {
                 point,
                 direction: normalized(offset).map(|x| -x),
-                vertices: box_of(&[self.bounds[0], self.bounds[1], end]),
+                is_foreign: true,
                 max_margin: norm_squared(offset).sqrt().next_down(),
                 margin_factor: 1.0,
             });
+            extend_box(foreign_bounds, &[end]);
         };
         (0..self.vertices.len()).filter(|j| *j != i).for_each(|j| add_edge_to(self.vertices[j]));
         if self.scene.adjacency.is_exact {
@@ -336,10 +340,18 @@ impl PrimitiveView<'_> {
 
 /// Returns the corners of the box around some points.
 fn box_of(points: &[V3]) -> [V3; 2] {
-    let extreme = |start: f64, choose: fn(f64, f64) -> f64| {
-        std::array::from_fn(|k| points.iter().map(|point| point[k]).fold(start, choose))
-    };
-    [extreme(f64::INFINITY, f64::min), extreme(f64::NEG_INFINITY, f64::max)]
+    let mut bounds = [[f64::INFINITY; 3], [f64::NEG_INFINITY; 3]];
+    extend_box(&mut bounds, points);
+    bounds
+}
+
+/// Enlarges a box, given by its corners, so that it has some points.
+fn extend_box([low, high]: &mut [V3; 2], points: &[V3]) {
+    for point in points {
+        for k in 0..3 {
+            (low[k], high[k]) = (low[k].min(point[k]), high[k].max(point[k]));
+        }
+    }
 }
 
 impl RelevanceContext<'_> {

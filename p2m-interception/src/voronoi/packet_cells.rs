@@ -14,7 +14,7 @@ use crate::voronoi::corner_values::CornerValues;
 use crate::voronoi::excluded_features::{ExcludedFeatures, RegionPoints};
 use crate::voronoi::feature_relevance::{CellInfo, LanesOver, PrimitiveFeatures, RelevanceContext};
 use p2m_bvh::engine::packet::LANES;
-use p2m_core::engine::simd::{InstructionSet, SimdKernel};
+use p2m_core::engine::simd::{Doubles, InstructionSet, Portable, SimdKernel};
 use rustc_hash::FxHashMap;
 use std::ops::Range;
 
@@ -54,15 +54,15 @@ pub(crate) struct PacketCells {
     tetrahedra: Vec<[u32; 4]>,
     /// The values of the corner test.
     pub(crate) values: CornerValues,
-    /// The sites of cells with their near corners, sorted.
-    corners_of_cells: Vec<(u32, u32)>,
+    /// The cells with their near corners, sorted: the site in the upper half, and the corner in the lower half.
+    corners_of_cells: Vec<u64>,
     /// The sites of the cells that have near corners, each with its range in `corners_of_cells`.
     cells: Vec<(u32, Range<usize>)>,
-    /// The edges of the current cell from a near corner, with the lanes whose value is not above zero at exactly one
-    /// end.
-    crossed_edges: Vec<([u32; 2], u16)>,
-    /// The region of a primitive in the current cell.
-    pub(crate) region: RegionPoints,
+    /// For each near corner, and for each of the four edges there, the lanes whose value is not above zero at exactly
+    /// one end. An edge between two near corners has lanes at the first of them only.
+    crossings: Vec<[u16; 4]>,
+    /// For each lane the region of its primitive in the current cell.
+    regions: [RegionPoints; LANES],
     /// The planes around the largest features of the primitives of the packet.
     over: LanesOver,
     /// For each near corner the lanes over whose largest feature it is and whose value is not above zero there.
@@ -106,13 +106,13 @@ impl PacketCells {
                 self.numbers.insert(tetrahedron, number);
                 push(&mut self.corners, tetrahedron);
                 self.tetrahedra.push(vertices);
-                self.corners_of_cells.extend(vertices.into_iter().filter(has_list).map(|site| (site, number)));
+                self.corners_of_cells.extend(vertices.into_iter().filter(has_list).map(|site| u64::from(site) << 32 | u64::from(number)));
             }
         }
         self.corners_of_cells.sort_unstable();
         let mut first = 0;
-        for of_one in self.corners_of_cells.chunk_by(|a, b| a.0 == b.0) {
-            self.cells.push((of_one[0].0, first..first + of_one.len()));
+        for of_one in self.corners_of_cells.chunk_by(|a, b| a >> 32 == b >> 32) {
+            self.cells.push(((of_one[0] >> 32) as u32, first..first + of_one.len()));
             first += of_one.len();
         }
         let near = self.tetrahedra.len();
@@ -141,48 +141,69 @@ impl PacketCells {
         for corner in near..self.corners.positions.len() {
             self.values.raise_above_zero(corner);
         }
+        self.find_crossings();
     }
 
-    /// Begins a cell and returns the lanes whose value is not above zero at some of its corners.
+    /// Finds the lanes that each edge from a near corner crosses.
+    fn find_crossings(&mut self) {
+        let lanes_below = &self.values.lanes_below;
+        let near = self.tetrahedra.len();
+        self.crossings.clear();
+        self.crossings.extend(self.neighbours.iter().zip(lanes_below).enumerate().map(|(corner, (neighbours, lanes))| {
+            neighbours.map(|other| {
+                let other = other as usize;
+                // No corner has the number that stands for none.
+                let is_first = other >= near || corner < other;
+                lanes_below.get(other).filter(|_| is_first).map_or(0, |others| lanes ^ others)
+            })
+        }));
+    }
+
+    /// Returns the near corners of a cell.
     #[inline(always)]
-    fn begin_cell(&mut self, site: u32, range: Range<usize>) -> u16 {
-        self.crossed_edges.clear();
-        let mut near_lanes = 0;
-        for &(_, corner) in &self.corners_of_cells[range] {
-            let lanes = self.values.lanes_below[corner as usize];
-            near_lanes |= lanes;
-            let (vertices, neighbours) = (self.tetrahedra[corner as usize], self.neighbours[corner as usize]);
-            for (vertex, other) in vertices.into_iter().zip(neighbours) {
-                // An edge between two near corners is seen from both.
-                let is_first = other as usize >= self.tetrahedra.len() || corner < other;
-                if vertex != site && other != Delaunay::NONE && is_first {
-                    let crossing = lanes ^ self.values.lanes_below[other as usize];
-                    if crossing != 0 {
-                        self.crossed_edges.push(([corner, other], crossing));
-                    }
+    #[allow(clippy::cast_possible_truncation, reason = "the lower half")]
+    fn near_corners(&self, range: Range<usize>) -> impl Iterator<Item = usize> {
+        self.corners_of_cells[range].iter().map(|corner| *corner as u32 as usize)
+    }
+
+    /// Returns the lanes whose value is not above zero at some corner of a cell.
+    #[inline(always)]
+    fn near_lanes(&self, range: Range<usize>) -> u16 {
+        let lanes = self.near_corners(range).fold(0, |lanes, corner| lanes | self.values.lanes_below[corner]);
+        lanes & self.values.near_lanes
+    }
+
+    /// Computes the points that span the regions of some lanes in a cell.
+    #[inline(always)]
+    fn find_regions<D: Doubles>(&mut self, site: u32, range: Range<usize>, lanes: u16) {
+        for lane in Bits(lanes) {
+            self.regions[lane].clear();
+        }
+        for &corner in &self.corners_of_cells[range] {
+            let corner = corner as u32 as usize;
+            let position = self.corners.positions[corner];
+            for lane in Bits(lanes & self.values.lanes_below[corner]) {
+                self.regions[lane].push(position);
+            }
+            for face in 0..4 {
+                let crossing = self.crossings[corner][face];
+                if crossing & lanes == 0 || self.tetrahedra[corner][face] == site {
+                    continue;
                 }
-            }
-        }
-        near_lanes & self.values.near_lanes
-    }
-
-    /// Computes the points that span the region of a lane in the current cell.
-    #[inline(always)]
-    fn find_region(&mut self, range: Range<usize>, lane: usize) {
-        self.region.clear();
-        for &(_, corner) in &self.corners_of_cells[range] {
-            if self.values.lanes_below[corner as usize] >> lane & 1 == 1 {
-                self.region.push(self.corners.positions[corner as usize]);
-            }
-        }
-        for &(edge, lanes) in &self.crossed_edges {
-            if lanes >> lane & 1 == 1 {
-                let [i, j] = edge.map(|i| i as usize);
-                let [a, b] = [i, j].map(|i| f64::from(self.values.values[i][lane]));
-                // The part of the edge from i reaches a little beyond the zero of the chord.
-                let t = a / (a - b) + if a <= 0.0 { 1e-6 } else { -1e-6 };
-                let (from, to) = (self.corners.positions[i], self.corners.positions[j]);
-                self.region.push(std::array::from_fn(|k| from[k] + t * (to[k] - from[k])));
+                let other = self.neighbours[corner][face] as usize;
+                let to = self.corners.positions[other];
+                let (from_values, to_values) = (&self.values.values[corner], &self.values.values[other]);
+                let mut parts = [0.0; LANES];
+                for first in [0, LANES / 2] {
+                    let (a, b) = (D::load_f32(&from_values[first..]), D::load_f32(&to_values[first..]));
+                    // The part of the edge from the first corner reaches a little beyond the zero of the chord.
+                    let beyond = D::select(a.is_at_most(D::splat(0.0)), D::splat(1e-6), D::splat(-1e-6));
+                    (a / (a - b) + beyond).store(&mut parts[first..]);
+                }
+                for lane in Bits(crossing & lanes) {
+                    let along = |k: usize| position[k] + parts[lane] * (to[k] - position[k]);
+                    self.regions[lane].push([along(0), along(1), along(2)]);
+                }
             }
         }
     }
@@ -196,10 +217,10 @@ impl PacketCells {
     ) {
         for number in 0..self.cells.len() {
             let (site, range) = self.cells[number].clone();
-            let lanes = lanes_of(site) & self.begin_cell(site, range.clone());
-            for lane in (0..LANES).filter(|lane| lanes >> lane & 1 == 1) {
-                self.find_region(range.clone(), lane);
-                visit(site, lane, &self.region);
+            let lanes = lanes_of(site) & self.near_lanes(range.clone());
+            self.find_regions::<<Portable as InstructionSet>::Doubles>(site, range, lanes);
+            for lane in Bits(lanes) {
+                visit(site, lane, &self.regions[lane]);
             }
         }
     }
@@ -233,23 +254,35 @@ impl SimdKernel for FindRelevantLanes<'_, '_> {
             let Some(CellSize { max_distance, max_error }) = sizes[site as usize] else { continue };
             let position = scene.position(site as usize);
             let cell = CellInfo { site: site as usize, position, max_distance, max_error };
-            let near_lanes = packet.begin_cell(site, range.clone());
-            let mut lanes = near_lanes;
-            let corners = &packet.corners_of_cells[range.clone()];
-            let open = corners.iter().fold(near_lanes, |open, (_, corner)| open & !packet.lanes_over[*corner as usize]);
-            for lane in (0..LANES).filter(|lane| open >> lane & 1 == 1) {
+            let mut lanes = packet.near_lanes(range.clone());
+            let over = packet.near_corners(range.clone()).fold(0, |over, corner| over | packet.lanes_over[corner]);
+            packet.find_regions::<I::Doubles>(site, range, lanes & !over);
+            for lane in Bits(lanes & !over) {
                 if packet.prepared >> lane & 1 == 0 {
                     packet.prepared |= 1 << lane;
                     packet.features[lane].prepare(scene, packet.packet as usize, lane);
                 }
-                packet.find_region(range.clone(), lane);
-                let PacketCells { features, region, excluded, .. } = &mut *packet;
-                if !features[lane].is_relevant::<I::Doubles>(&cell, scene.slack, region, excluded) {
+                let PacketCells { features, regions, excluded, .. } = &mut *packet;
+                if !features[lane].is_relevant::<I::Doubles>(&cell, scene.slack, &regions[lane], excluded) {
                     lanes &= !(1 << lane);
                 }
             }
             found.push(PacketInCell { site, packet: packet.packet, lanes });
         }
+    }
+}
+
+/// The indices of the bits that are set, in ascending order.
+struct Bits(u16);
+
+impl Iterator for Bits {
+    type Item = usize;
+
+    #[inline(always)]
+    fn next(&mut self) -> Option<usize> {
+        let index = self.0.trailing_zeros() as usize;
+        self.0 &= self.0.wrapping_sub(1);
+        (index < LANES).then_some(index)
     }
 }
 
