@@ -49,7 +49,8 @@ impl EdgeAdjacency {
         let position = |site: usize| delaunay.sites()[site].map(|x| x * delaunay.unit());
         // For each site the primitive with the lowest id, and its packet and lane.
         let mut owners = vec![(PrimitiveId::new(0), NO_PRIMITIVE); count];
-        let mut edge_owners: FxHashMap<(u32, u32), EdgeTriangles> = FxHashMap::with_capacity_and_hasher(leaves.vertices.len(), FxBuildHasher);
+        let mut edge_owners: FxHashMap<(u32, u32), EdgeTriangles> =
+            FxHashMap::with_capacity_and_hasher(leaves.vertices.len(), FxBuildHasher);
         let for_each_lane = |visit: VisitLane<'_>| {
             for (number, packet) in leaves.packets.iter().enumerate().filter(|(_, p)| p.has_vertices()) {
                 for (lane, id) in packet.ids().iter().enumerate() {

@@ -103,7 +103,8 @@ impl CellPolytope {
             let (from, to) = (source.corners.positions[a], source.corners.positions[b]);
             let corner = std::array::from_fn(|k| from[k] + t * (to[k] - from[k]));
             // The error is that of the ends and of the sum. A displacement along the edge is harmless.
-            let error = source.corners.errors[a].max(source.corners.errors[b]) + source.corners.max_upper_bound * 4.0 * f64::EPSILON;
+            let error = source.corners.errors[a].max(source.corners.errors[b])
+                + source.corners.max_upper_bound * 4.0 * f64::EPSILON;
             let mut faces = [face; 3];
             let common = source.faces[a].iter().filter(|f| source.faces[b].contains(f));
             faces.iter_mut().zip(common.take(2)).for_each(|(to, f)| *to = *f);
@@ -161,7 +162,11 @@ mod tests {
                 if polytope.corners.positions.is_empty() {
                     break;
                 }
-                assert_eq!(polytope.corners.positions.len() + faces.len(), polytope.edges.len() + 2, "case {case}, face {face}");
+                assert_eq!(
+                    polytope.corners.positions.len() + faces.len(),
+                    polytope.edges.len() + 2,
+                    "case {case}, face {face}"
+                );
                 assert!(polytope.is_simple());
                 cuts += 1;
                 for (corner, faces) in polytope.corners.positions.iter().zip(&polytope.faces) {

@@ -4,7 +4,8 @@
 //! F(q) = d(q, t)^2 - (|q - v| + s)^2 at the corners, where s is the slack of the corner test, restrict the places
 //! where t can beat v. Take an edge of the cell with F <= 0 at one end and F > 0 at the other. F is concave, so it lies
 //! above its chord, and t cannot beat v beyond the zero of the chord. Therefore t can be the answer only in the convex
-//! hull of the corners where F <= 0 and of these zeros, which is the *region* of t (docs/proofs/p2m.md).
+//! hull of the corners where F <= 0 and of these zeros, which is the *region* of t (docs/proofs/p2m.md). The packets of
+//! all cells are found one packet after the other ([`packet_cells`](crate::voronoi::packet_cells)).
 //!
 //! A feature of t is *relevant* only if it can be nearest somewhere in the region
 //! ([`feature_relevance`](crate::voronoi::feature_relevance)). If each relevant feature of t also belongs to
@@ -80,7 +81,13 @@ impl CellContext<'_> {
                 packets.of_site(site).map(|packet| packet.lanes.count_ones() as usize).sum::<usize>() > above
             })
         });
-        let lists = ListBuilder { cells: self, adjacency: &adjacency, incident_tetrahedra: &incident_tetrahedra, packets, regions };
+        let lists = ListBuilder {
+            cells: self,
+            adjacency: &adjacency,
+            incident_tetrahedra: &incident_tetrahedra,
+            packets,
+            regions,
+        };
         let work = |chunk| lists.build_chunk(chunk);
         map_chunks_in_order(sites.len(), SITES_PER_TASK, self.limits.parallel, work, |chunk: ChunkResult| {
             if !budget.fits::<Block>(blocks.len() + chunk.blocks.len()) {
@@ -182,7 +189,11 @@ impl ListBuilder<'_> {
     /// Returns the regions of the primitives in the list of a site.
     fn regions_of(&self, site: usize) -> Vec<Region> {
         let first = self.regions.partition_point(|(other, _)| (*other as usize) < site);
-        self.regions[first..].iter().take_while(|(other, _)| *other as usize == site).map(|(_, region)| *region).collect()
+        self.regions[first..]
+            .iter()
+            .take_while(|(other, _)| *other as usize == site)
+            .map(|(_, region)| *region)
+            .collect()
     }
 }
 

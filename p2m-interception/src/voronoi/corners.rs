@@ -195,7 +195,8 @@ impl CellCorners {
 
     /// Returns the packets of all balls, each with the number of its corner.
     pub(crate) fn pairs(&self) -> impl Iterator<Item = (u32, u32)> + Clone + '_ {
-        (0..self.all.len() - 1).flat_map(|number| self.packets(number).iter().map(move |packet| (*packet, to_u32(number))))
+        (0..self.all.len() - 1)
+            .flat_map(|number| self.packets(number).iter().map(move |packet| (*packet, to_u32(number))))
     }
 
     /// Appends a corner with its packets.

@@ -52,7 +52,8 @@ impl RegionPoints {
 
     /// Returns the points.
     pub(crate) fn iter(&self) -> impl Iterator<Item = V3> + '_ {
-        let all = self.blocks.iter().flat_map(|[x, y, z]| (0..BLOCK_POINTS).map(|place| [x[place], y[place], z[place]]));
+        let all =
+            self.blocks.iter().flat_map(|[x, y, z]| (0..BLOCK_POINTS).map(|place| [x[place], y[place], z[place]]));
         all.take(self.count)
     }
 }

@@ -118,7 +118,12 @@ impl PrimitiveFeatures {
         let edge_count = if count == 3 { 3 } else { count - 1 };
         for i in (0..edge_count).filter(|i| owned_by_lower_id >> (3 + i) & 1 == 0) {
             let first = self.planes.len();
-            view.add_edge_planes(i, scene.adjacency.opposite_triangles[packet][lane][i], &mut self.planes, &mut self.foreign_bounds);
+            view.add_edge_planes(
+                i,
+                scene.adjacency.opposite_triangles[packet][lane][i],
+                &mut self.planes,
+                &mut self.foreign_bounds,
+            );
             self.features.push((first..self.planes.len(), None));
         }
         for i in (0..count).filter(|i| owned_by_lower_id >> i & 1 == 0) {

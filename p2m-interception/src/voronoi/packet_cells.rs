@@ -106,7 +106,9 @@ impl PacketCells {
                 self.numbers.insert(tetrahedron, number);
                 push(&mut self.corners, tetrahedron);
                 self.tetrahedra.push(vertices);
-                self.corners_of_cells.extend(vertices.into_iter().filter(has_list).map(|site| u64::from(site) << 32 | u64::from(number)));
+                self.corners_of_cells.extend(
+                    vertices.into_iter().filter(has_list).map(|site| u64::from(site) << 32 | u64::from(number)),
+                );
             }
         }
         self.corners_of_cells.sort_unstable();
@@ -149,14 +151,16 @@ impl PacketCells {
         let lanes_below = &self.values.lanes_below;
         let near = self.tetrahedra.len();
         self.crossings.clear();
-        self.crossings.extend(self.neighbours.iter().zip(lanes_below).enumerate().map(|(corner, (neighbours, lanes))| {
-            neighbours.map(|other| {
-                let other = other as usize;
-                // No corner has the number that stands for none.
-                let is_first = other >= near || corner < other;
-                lanes_below.get(other).filter(|_| is_first).map_or(0, |others| lanes ^ others)
-            })
-        }));
+        self.crossings.extend(self.neighbours.iter().zip(lanes_below).enumerate().map(
+            |(corner, (neighbours, lanes))| {
+                neighbours.map(|other| {
+                    let other = other as usize;
+                    // No corner has the number that stands for none.
+                    let is_first = other >= near || corner < other;
+                    lanes_below.get(other).filter(|_| is_first).map_or(0, |others| lanes ^ others)
+                })
+            },
+        ));
     }
 
     /// Returns the near corners of a cell.
@@ -246,7 +250,9 @@ impl SimdKernel for FindRelevantLanes<'_, '_> {
         let Self { scene, sizes, packet, found } = self;
         packet.over.prepare(scene, packet.packet as usize);
         packet.lanes_over.clear();
-        for (corner, lanes) in packet.corners.positions.iter().zip(&packet.values.lanes_below).take(packet.tetrahedra.len()) {
+        for (corner, lanes) in
+            packet.corners.positions.iter().zip(&packet.values.lanes_below).take(packet.tetrahedra.len())
+        {
             packet.lanes_over.push(lanes & packet.over.lanes_below_point::<I::Doubles>(corner));
         }
         for number in 0..packet.cells.len() {
