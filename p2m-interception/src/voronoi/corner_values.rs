@@ -127,14 +127,14 @@ impl SimdKernel for EvaluateCorners<'_> {
             }
             locals.convert::<I>();
             packet.squares_of_several::<I>(&locals, &ALL_PLACES[..chunk.len()], &[u32::MAX; PLACES], &mut squares);
-            for place in 0..chunk.len() {
+            for (place, squares) in squares.iter().enumerate().take(chunk.len()) {
                 let (upper_bound, error) = (corners.upper_bounds[first + place], corners.errors[first + place]);
                 // The value is unknown if f32 cannot represent the corner in the frame of the packet.
                 let mut lane_values = [f32::NEG_INFINITY; LANES];
                 if locals.far >> place & 1 == 0 {
                     let max_error = locals.excess[place] + ((error * per_unit) as f32) * 1.001;
                     let upper_bound = (upper_bound * per_unit) as f32 * (1.0 + 4.0 * f32::EPSILON);
-                    for (value, square) in lane_values.iter_mut().zip(squares[place]) {
+                    for (value, square) in lane_values.iter_mut().zip(squares) {
                         let least = (square.sqrt() * (1.0 - 4.0 * f32::EPSILON) - max_error).max(0.0);
                         // The product form keeps the relative precision of the difference of two squares, which may be
                         // much smaller than both.

@@ -90,9 +90,16 @@ pub(crate) struct PrimitiveFeatures {
     max_margin: f64,
     /// The planes of all features.
     planes: Vec<FeaturePlane>,
-    /// The features that no primitive with a lower id has, each as the range of its planes and, if the feature is a
-    /// vertex whose site is exact, that vertex with its site.
-    features: Vec<(Range<usize>, Option<(V3, usize)>)>,
+    /// The features that no primitive with a lower id has.
+    features: Vec<Feature>,
+}
+
+/// A feature of a primitive.
+struct Feature {
+    /// The range of its planes.
+    planes: Range<usize>,
+    /// The vertex with its site, if the feature is a vertex whose site is exact.
+    vertex: Option<(V3, usize)>,
 }
 
 impl PrimitiveFeatures {
@@ -113,7 +120,7 @@ impl PrimitiveFeatures {
         let owned_by_lower_id = scene.adjacency.owned_by_lower_id[packet][lane];
         if count == 3 {
             self.planes.extend((0..3).map(|i| view.side_plane(i)));
-            self.features.push((0..3, None));
+            self.features.push(Feature { planes: 0..3, vertex: None });
         }
         let edge_count = if count == 3 { 3 } else { count - 1 };
         for i in (0..edge_count).filter(|i| owned_by_lower_id >> (3 + i) & 1 == 0) {
@@ -124,13 +131,13 @@ impl PrimitiveFeatures {
                 &mut self.planes,
                 &mut self.foreign_bounds,
             );
-            self.features.push((first..self.planes.len(), None));
+            self.features.push(Feature { planes: first..self.planes.len(), vertex: None });
         }
         for i in (0..count).filter(|i| owned_by_lower_id >> i & 1 == 0) {
             let first = self.planes.len();
             view.add_vertex_planes(i, &mut self.planes, &mut self.foreign_bounds);
             let vertex = scene.adjacency.is_exact.then_some((vertices[i], sites[i]));
-            self.features.push((first..self.planes.len(), vertex));
+            self.features.push(Feature { planes: first..self.planes.len(), vertex });
         }
     }
 
@@ -151,7 +158,7 @@ impl PrimitiveFeatures {
         }
         let foreign_margin = cell.margin(&self.foreign_bounds);
         excluded.begin_region::<D>(region);
-        for (planes, vertex) in &self.features {
+        for Feature { planes, vertex } in &self.features {
             excluded.begin_feature();
             let mut is_excluded = false;
             for plane in &self.planes[planes.clone()] {

@@ -165,9 +165,8 @@ impl PacketCells {
 
     /// Returns the near corners of a cell.
     #[inline(always)]
-    #[allow(clippy::cast_possible_truncation, reason = "the lower half")]
     fn near_corners(&self, range: Range<usize>) -> impl Iterator<Item = usize> {
-        self.corners_of_cells[range].iter().map(|corner| *corner as u32 as usize)
+        self.corners_of_cells[range].iter().map(|corner| corner_in(*corner))
     }
 
     /// Returns the lanes whose value is not above zero at some corner of a cell.
@@ -184,7 +183,7 @@ impl PacketCells {
             self.regions[lane].clear();
         }
         for &corner in &self.corners_of_cells[range] {
-            let corner = corner as u32 as usize;
+            let corner = corner_in(corner);
             let position = self.corners.positions[corner];
             for lane in Bits(lanes & self.values.lanes_below[corner]) {
                 self.regions[lane].push(position);
@@ -290,6 +289,12 @@ impl Iterator for Bits {
         self.0 &= self.0.wrapping_sub(1);
         (index < LANES).then_some(index)
     }
+}
+
+/// Returns the corner of an entry of [`PacketCells::corners_of_cells`].
+#[inline(always)]
+fn corner_in(entry: u64) -> usize {
+    usize::try_from(entry & u64::from(u32::MAX)).expect("32 bits")
 }
 
 /// Converts a number of few corners to 32 bits.
