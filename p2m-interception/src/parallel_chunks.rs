@@ -2,21 +2,20 @@
 
 use std::ops::Range;
 
-/// The number of indices in a chunk.
-const CHUNK_LEN: usize = 1024;
 /// The number of chunks whose results exist before they are consumed. Their memory is needed twice.
 const CHUNKS_PER_GROUP: usize = 32;
 
-/// Splits 0..count into chunks, and passes the result of `work` on each chunk to `take`, in the order of the chunks.
+/// Splits 0..count into chunks of `chunk_len`, and passes the result of `work` on each chunk to `take`, in the order of the chunks.
 /// If `parallel`, the chunks of a group are worked on by all threads.
 pub(crate) fn map_chunks_in_order<R: Send>(
     count: usize,
+    chunk_len: usize,
     parallel: bool,
     work: impl Fn(Range<usize>) -> R + Sync,
     mut take: impl FnMut(R),
 ) {
     let chunks: Vec<Range<usize>> =
-        (0..count).step_by(CHUNK_LEN).map(|first| first..count.min(first + CHUNK_LEN)).collect();
+        (0..count).step_by(chunk_len).map(|first| first..count.min(first + chunk_len)).collect();
     #[cfg(feature = "rayon")]
     if parallel {
         use rayon::prelude::*;

@@ -4,7 +4,7 @@ use crate::delaunay::Delaunay;
 use p2m_bvh::PacketTree;
 use p2m_bvh::engine::packet::LANES;
 use p2m_core::PrimitiveId;
-use std::collections::HashMap;
+use rustc_hash::{FxBuildHasher, FxHashMap};
 
 /// The vertices and edges of a lane that a primitive with a lower id has as well, as bits: bit i for vertex i, and bit
 /// 3 + i for the edge from vertex i to the next one.
@@ -49,7 +49,8 @@ impl EdgeAdjacency {
         let position = |site: usize| delaunay.sites()[site].map(|x| x * delaunay.unit());
         // For each site the primitive with the lowest id, and its packet and lane.
         let mut owners = vec![(PrimitiveId::new(0), NO_PRIMITIVE); count];
-        let mut edge_owners: HashMap<(u32, u32), EdgeTriangles> = HashMap::with_capacity(leaves.vertices.len());
+        let mut edge_owners: FxHashMap<(u32, u32), EdgeTriangles> =
+            FxHashMap::with_capacity_and_hasher(leaves.vertices.len(), FxBuildHasher);
         let for_each_lane = |visit: VisitLane<'_>| {
             for (number, packet) in leaves.packets.iter().enumerate().filter(|(_, p)| p.has_vertices()) {
                 for (lane, id) in packet.ids().iter().enumerate() {

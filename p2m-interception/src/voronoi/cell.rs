@@ -1,16 +1,11 @@
-//! One Voronoi cell: from its corners to the entries of its list, the regions of the primitives in it, and its far
-//! half-space.
+//! One Voronoi cell: its corners and edges, and its far half-space.
 
 use crate::list::block::Entry;
 use crate::voronoi::adjacency::{EdgeAdjacency, NO_PRIMITIVE};
 use crate::voronoi::budget::Limits;
 use crate::voronoi::cell_polytope::CellPolytope;
 use crate::voronoi::corner_values::{CornerValues, SiteDistances};
-use crate::voronoi::corners::CellCorners;
-use crate::voronoi::excluded_features::ExcludedFeatures;
-use crate::voronoi::feature_relevance::{CellInfo, PrimitiveView, RelevanceContext};
-use crate::voronoi::list_filter::{BuildListFilter, Region};
-use crate::voronoi::primitive_frame::PrimitiveFrames;
+use crate::voronoi::list_filter::BuildListFilter;
 use crate::voronoi::site::FarHalfSpace;
 use crate::voronoi::sites::Sites;
 use p2m_bvh::PacketTree;
@@ -36,9 +31,9 @@ pub(crate) struct CellContext<'a> {
     pub(crate) filter: Option<(usize, BuildListFilter)>,
 }
 
-/// The cell that is being built. Its vectors are reused for the next cell.
+/// The cell whose far half-space is computed. Its vectors are reused for the next cell.
 #[derive(Default)]
-pub(crate) struct CellBuilder {
+pub(crate) struct FarPartBuilder {
     /// The position of the site.
     pub(crate) y: V3,
     /// The number of the site.
@@ -47,37 +42,30 @@ pub(crate) struct CellBuilder {
     pub(crate) polytope: CellPolytope,
     /// The part of the cell in the far half-space, and the polytope that it is clipped into.
     pub(crate) far_parts: [CellPolytope; 2],
-    /// The numbers of the packets that intersect the ball of a corner.
-    pub(crate) packets: Vec<u32>,
     /// The numbers of the tetrahedra at the site, sorted. Tetrahedron i has corner i of the cell.
     pub(crate) tetrahedra: Vec<u32>,
     /// The values of the corner test at the corners of a polytope.
     pub(crate) values: CornerValues,
-    /// The test of features, with its memory.
-    pub(crate) excluded: ExcludedFeatures,
 }
 
-impl CellBuilder {
-    /// Begins the cell of a site: collects its corners, its edges and the packets that intersect a ball
-    /// of its corners.
-    pub(crate) fn begin(&mut self, cells: &CellContext<'_>, corners: &CellCorners, site: usize, tetrahedra: &[u32]) {
+impl FarPartBuilder {
+    /// Begins the cell of a site, which has these tetrahedra: collects its corners and its edges.
+    fn begin(&mut self, cells: &CellContext<'_>, site: usize, tetrahedra: &[u32]) {
         let unit = cells.sites.delaunay.unit();
         self.site = site;
         self.y = cells.sites.delaunay.sites()[site].map(|x| x * unit);
         self.polytope.clear();
-        self.packets.clear();
         self.tetrahedra.clear();
         self.tetrahedra.extend_from_slice(tetrahedra);
         self.tetrahedra.sort_unstable();
         for (i, &number) in (0u32..).zip(&self.tetrahedra) {
             let t = number as usize;
-            let corner = &corners.all[t];
+            let corner = &cells.sites.corners.all[t];
             let tetrahedron = &cells.sites.delaunay.tetrahedra()[t];
             let mut faces = [0; 3];
             let others = tetrahedron.iter().filter(|v| **v as usize != site);
             faces.iter_mut().zip(others).for_each(|(to, v)| *to = *v);
             self.polytope.push(corner.position, corner.error, faces, &self.y, cells.limits.slack);
-            self.packets.extend_from_slice(corners.packets(t));
             for (v, other) in tetrahedron.iter().zip(&cells.sites.delaunay.neighbours()[t]) {
                 // Each pair of tetrahedra is joined once.
                 let is_joined = *v as usize != site && number < *other;
@@ -86,96 +74,43 @@ impl CellBuilder {
                 }
             }
         }
-        self.packets.sort_unstable();
-        self.packets.dedup();
-    }
-
-    /// Returns the entries of the list, the nearest packets first.
-    pub(crate) fn list_entries(
-        &mut self,
-        cells: &CellContext<'_>,
-        adjacency: &EdgeAdjacency,
-        frames: &PrimitiveFrames,
-    ) -> Vec<Entry> {
-        let tree = cells.tree;
-        let context =
-            RelevanceContext { tree, delaunay: &cells.sites.delaunay, adjacency, frames, slack: cells.limits.slack };
-        let CellPolytope { max_upper_bound: max_distance, max_error, .. } = self.polytope;
-        let cell_info = CellInfo { site: self.site, position: self.y, max_distance, max_error };
-        let mut entries: Vec<(f64, Entry)> = Vec::with_capacity(self.packets.len());
-        let packets = std::mem::take(&mut self.packets);
-        for &number in &packets {
-            let packet = &tree.leaves.packets[number as usize];
-            self.values.compute(&self.polytope, packet, tree);
-            let near_lanes = self.values.near_lanes;
-            let mut lanes = near_lanes;
-            for lane in (0..LANES).filter(|lane| near_lanes >> lane & 1 == 1) {
-                if let Some(view) = PrimitiveView::new(context, cell_info, number as usize, lane) {
-                    self.values.find_region(&self.polytope, lane);
-                    lanes &= !(u16::from(!view.is_relevant(&self.values.region, &mut self.excluded)) << lane);
-                }
-            }
-            if lanes != 0 {
-                let order = SiteDistances::new(tree, packet, &self.y).least(lanes) * packet.unit();
-                let bounds = tree.frame.enclose(&packet.bounds_of(lanes));
-                entries.push((order, Entry { packet: number, lanes, bounds, f: [0.0; 8] }));
-            }
-        }
-        self.packets = packets;
-        entries.sort_by(|a, b| a.0.total_cmp(&b.0).then(a.1.packet.cmp(&b.1.packet)));
-        entries.into_iter().map(|e| e.1).collect()
-    }
-
-    /// Returns a box around the region of each primitive in a list.
-    pub(crate) fn regions(&mut self, cells: &CellContext<'_>, entries: &[Entry]) -> Vec<Region> {
-        let tree = cells.tree;
-        let mut regions = Vec::new();
-        for entry in entries {
-            self.values.compute(&self.polytope, &tree.leaves.packets[entry.packet as usize], tree);
-            for lane in (0..LANES).filter(|lane| entry.lanes >> lane & 1 == 1) {
-                self.values.find_region(&self.polytope, lane);
-                regions.push(Region::from_points(&self.values.region, self.margin(), entry.packet, lane));
-            }
-        }
-        regions
-    }
-
-    /// Returns a length that exceeds the errors of the corners.
-    fn margin(&self) -> f64 {
-        4.0 * self.polytope.max_error + 1e-12 * self.polytope.max_upper_bound
     }
 
     /// Computes the far half-space of the site. It is `None` if there is none that is of use.
     #[allow(clippy::cast_possible_truncation, reason = "rounded, and margins have room")]
-    pub(crate) fn far_half_space(
+    pub(crate) fn half_space(
         &mut self,
         cells: &CellContext<'_>,
         adjacency: &EdgeAdjacency,
+        site: usize,
+        tetrahedra: &[u32],
         entries: &[Entry],
     ) -> Option<FarHalfSpace> {
         let tree = cells.tree;
         let sites = cells.sites.delaunay.sites();
         let unit = cells.sites.delaunay.unit();
-        let others = adjacency.edges.get(self.site).iter();
+        let position = sites[site].map(|x| x * unit);
+        let others = adjacency.edges.get(site).iter();
         let directions: Vec<V3> = others
-            .map(|w| sub(sites[*w as usize], sites[self.site]))
+            .map(|w| sub(sites[*w as usize], sites[site]))
             .map(|direction| direction.map(|x| x / norm_squared(direction).sqrt()))
             .collect();
         let sum = directions.iter().fold([0.0; 3], |sum, direction| sub(sum, *direction));
         let length = norm_squared(sum).sqrt();
-        if adjacency.owners[self.site] == NO_PRIMITIVE || directions.len() > MAX_EDGES_FOR_HALF_SPACE || length < 1e-3 {
+        if adjacency.owners[site] == NO_PRIMITIVE || directions.len() > MAX_EDGES_FOR_HALF_SPACE || length < 1e-3 {
             return None;
         }
         let normal = sum.map(|x| (x / length) as f32);
         let along = normal.map(f64::from);
         let bounds = tree.bounds();
         let start = (bounds.max - bounds.min).max() * HALF_SPACE_SCENE_SIZES;
-        let height = |x: &V3| dot(sub(*x, self.y), along) - start;
-        if self.polytope.corners.iter().all(|x| height(x) < 0.0) {
+        let height = |x: &V3| dot(sub(*x, position), along) - start;
+        if tetrahedra.iter().all(|t| height(&cells.sites.corners.all[*t as usize].position) < 0.0) {
             return None;
         }
+        self.begin(cells, site, tetrahedra);
         // The planes are moved outwards, so that rounding does not remove corners of the part that is left.
-        let margin = self.margin();
+        let margin = self.polytope.corners.margin();
         let (y, slack) = (self.y, cells.limits.slack);
         let [part, clipped] = &mut self.far_parts;
         part.clip(&self.polytope, height, u32::MAX, &y, slack);
@@ -191,7 +126,7 @@ impl CellBuilder {
         let mut max_lead = 0.0f64;
         for entry in entries {
             let packet = &tree.leaves.packets[entry.packet as usize];
-            self.values.compute(part, packet, tree);
+            self.values.compute(&part.corners, packet, tree);
             let lanes = self.values.near_lanes & entry.lanes;
             let from_site = SiteDistances::new(tree, packet, &y);
             for lane in (0..LANES).filter(|lane| lanes >> lane & 1 == 1) {

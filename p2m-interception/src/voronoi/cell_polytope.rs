@@ -2,64 +2,92 @@
 
 use p2m_core::engine::vector::{V3, norm_squared, sub};
 
-/// A convex polytope around a site or beside it.
+/// Corners of cells, with the lengths that the corner test needs.
 #[derive(Default)]
-pub(crate) struct CellPolytope {
+pub(crate) struct CornerPoints {
     /// The positions of the corners.
-    pub(crate) corners: Vec<V3>,
-    /// For each corner its distance from the site, increased by its error and by the slack.
+    pub(crate) positions: Vec<V3>,
+    /// For each corner its distance from the sites of its cells, increased by its error and by the slack.
     pub(crate) upper_bounds: Vec<f64>,
     /// For each corner an upper bound of the error of its position.
     pub(crate) errors: Vec<f64>,
-    /// For each corner the numbers of three faces that meet there.
-    faces: Vec<[u32; 3]>,
-    /// The pairs of corners that an edge joins.
-    pub(crate) edges: Vec<[u32; 2]>,
     /// The largest of `upper_bounds`.
     pub(crate) max_upper_bound: f64,
     /// The largest of `errors`.
     pub(crate) max_error: f64,
 }
 
+impl CornerPoints {
+    /// Removes all corners.
+    pub(crate) fn clear(&mut self) {
+        self.positions.clear();
+        self.upper_bounds.clear();
+        self.errors.clear();
+        (self.max_upper_bound, self.max_error) = (0.0, 0.0);
+    }
+
+    /// Adds a corner.
+    pub(crate) fn push(&mut self, position: V3, upper_bound: f64, error: f64) {
+        self.positions.push(position);
+        self.upper_bounds.push(upper_bound);
+        self.errors.push(error);
+        (self.max_upper_bound, self.max_error) = (self.max_upper_bound.max(upper_bound), self.max_error.max(error));
+    }
+
+    /// Returns a length that exceeds the errors of the corners.
+    pub(crate) fn margin(&self) -> f64 {
+        margin(self.max_upper_bound, self.max_error)
+    }
+}
+
+/// Returns a length that exceeds the errors of the corners of a cell.
+pub(crate) fn margin(max_upper_bound: f64, max_error: f64) -> f64 {
+    4.0 * max_error + 1e-12 * max_upper_bound
+}
+
+/// A convex polytope around a site or beside it.
+#[derive(Default)]
+pub(crate) struct CellPolytope {
+    /// The corners.
+    pub(crate) corners: CornerPoints,
+    /// For each corner the numbers of three faces that meet there.
+    faces: Vec<[u32; 3]>,
+    /// The pairs of corners that an edge joins.
+    pub(crate) edges: Vec<[u32; 2]>,
+}
+
 impl CellPolytope {
     /// Removes all corners, faces and edges.
     pub(crate) fn clear(&mut self) {
         self.corners.clear();
-        self.upper_bounds.clear();
-        self.errors.clear();
         self.faces.clear();
         self.edges.clear();
-        (self.max_upper_bound, self.max_error) = (0.0, 0.0);
     }
 
     /// Adds a corner.
     pub(crate) fn push(&mut self, corner: V3, error: f64, faces: [u32; 3], site: &V3, slack: f64) {
         let distance = norm_squared(sub(corner, *site)).sqrt() * (1.0 + 8.0 * f64::EPSILON);
-        let upper_bound = distance + error + slack;
-        self.corners.push(corner);
+        self.corners.push(corner, distance + error + slack, error);
         self.faces.push(faces);
-        self.upper_bounds.push(upper_bound);
-        self.errors.push(error);
-        (self.max_upper_bound, self.max_error) = (self.max_upper_bound.max(upper_bound), self.max_error.max(error));
     }
 
     /// Returns whether the number of edges is plausible, which is about that of a polytope with three edges at each
     /// corner. Where planes are nearly equal, as those of coplanar cells are, rounding may cut a face more than twice.
     /// Then any two of the cuts are joined by an edge, and each further plane multiplies their number.
     pub(crate) fn is_simple(&self) -> bool {
-        self.edges.len() <= 2 * self.corners.len() + 16
+        self.edges.len() <= 2 * self.corners.positions.len() + 16
     }
 
     /// Replaces the polytope by the part of another one where `height`, which is linear, is at least zero. The new
     /// face gets the number `face`.
     pub(crate) fn clip(&mut self, source: &Self, height: impl Fn(&V3) -> f64, face: u32, site: &V3, slack: f64) {
         self.clear();
-        let heights: Vec<f64> = source.corners.iter().map(height).collect();
+        let heights: Vec<f64> = source.corners.positions.iter().map(height).collect();
         let mut numbers = vec![u32::MAX; heights.len()];
-        let number = |polytope: &Self| u32::try_from(polytope.corners.len()).expect("few corners");
-        for (i, corner) in source.corners.iter().enumerate().filter(|(i, _)| heights[*i] >= 0.0) {
+        let number = |polytope: &Self| u32::try_from(polytope.corners.positions.len()).expect("few corners");
+        for (i, corner) in source.corners.positions.iter().enumerate().filter(|(i, _)| heights[*i] >= 0.0) {
             numbers[i] = number(self);
-            self.push(*corner, source.errors[i], source.faces[i], site, slack);
+            self.push(*corner, source.corners.errors[i], source.faces[i], site, slack);
         }
         let first = number(self);
         for [a, b] in source.edges.iter().map(|e| e.map(|i| i as usize)) {
@@ -72,10 +100,11 @@ impl CellPolytope {
                 continue;
             }
             let t = heights[a] / (heights[a] - heights[b]);
-            let (from, to) = (source.corners[a], source.corners[b]);
+            let (from, to) = (source.corners.positions[a], source.corners.positions[b]);
             let corner = std::array::from_fn(|k| from[k] + t * (to[k] - from[k]));
             // The error is that of the ends and of the sum. A displacement along the edge is harmless.
-            let error = source.errors[a].max(source.errors[b]) + source.max_upper_bound * 4.0 * f64::EPSILON;
+            let error = source.corners.errors[a].max(source.corners.errors[b])
+                + source.corners.max_upper_bound * 4.0 * f64::EPSILON;
             let mut faces = [face; 3];
             let common = source.faces[a].iter().filter(|f| source.faces[b].contains(f));
             faces.iter_mut().zip(common.take(2)).for_each(|(to, f)| *to = *f);
@@ -130,13 +159,17 @@ mod tests {
                 next.clip(&polytope, |x| dot(*x, normal) - offset, face, &[0.5; 3], 0.0);
                 polytope = next;
                 let faces: BTreeSet<u32> = polytope.faces.iter().flatten().copied().collect();
-                if polytope.corners.is_empty() {
+                if polytope.corners.positions.is_empty() {
                     break;
                 }
-                assert_eq!(polytope.corners.len() + faces.len(), polytope.edges.len() + 2, "case {case}, face {face}");
+                assert_eq!(
+                    polytope.corners.positions.len() + faces.len(),
+                    polytope.edges.len() + 2,
+                    "case {case}, face {face}"
+                );
                 assert!(polytope.is_simple());
                 cuts += 1;
-                for (corner, faces) in polytope.corners.iter().zip(&polytope.faces) {
+                for (corner, faces) in polytope.corners.positions.iter().zip(&polytope.faces) {
                     for (number, (normal, offset)) in (6..).zip(&planes) {
                         let height = dot(*corner, *normal) - offset;
                         assert!(height > -1e-12 && (!faces.contains(&number) || height < 1e-12), "{height}");
@@ -149,7 +182,7 @@ mod tests {
                 if planes.iter().all(|(normal, offset)| dot(point, *normal) > *offset) {
                     let direction: V3 = p2m_testkit::vector(&mut rng).into();
                     let farthest =
-                        polytope.corners.iter().map(|c| dot(*c, direction)).fold(f64::NEG_INFINITY, f64::max);
+                        polytope.corners.positions.iter().map(|c| dot(*c, direction)).fold(f64::NEG_INFINITY, f64::max);
                     assert!(dot(point, direction) <= farthest + 1e-12, "case {case}");
                 }
             }
@@ -182,7 +215,7 @@ mod tests {
                     detected += 1;
                     break;
                 }
-                assert!(polytope.corners.len() < 1000, "{} corners", polytope.corners.len());
+                assert!(polytope.corners.positions.len() < 1000, "{} corners", polytope.corners.positions.len());
             }
         }
         assert!(cases.have_more_than(10, detected), "{detected}");

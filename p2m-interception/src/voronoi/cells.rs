@@ -4,7 +4,8 @@
 //! F(q) = d(q, t)^2 - (|q - v| + s)^2 at the corners, where s is the slack of the corner test, restrict the places
 //! where t can beat v. Take an edge of the cell with F <= 0 at one end and F > 0 at the other. F is concave, so it lies
 //! above its chord, and t cannot beat v beyond the zero of the chord. Therefore t can be the answer only in the convex
-//! hull of the corners where F <= 0 and of these zeros, which is the *region* of t (docs/proofs/p2m.md).
+//! hull of the corners where F <= 0 and of these zeros, which is the *region* of t (docs/proofs/p2m.md). The packets of
+//! all cells are found one packet after the other ([`packet_cells`](crate::voronoi::packet_cells)).
 //!
 //! A feature of t is *relevant* only if it can be nearest somewhere in the region
 //! ([`feature_relevance`](crate::voronoi::feature_relevance)). If each relevant feature of t also belongs to
@@ -17,10 +18,12 @@ use crate::options::P2mReport;
 use crate::parallel_chunks::map_chunks_in_order;
 use crate::progress::{BuildStage, ProgressReporter};
 use crate::voronoi::adjacency::{EdgeAdjacency, IncidenceLists};
-use crate::voronoi::cell::{CellBuilder, CellContext};
-use crate::voronoi::list_filter::{ListFilter, ListFilters};
+use crate::voronoi::cell::{CellContext, FarPartBuilder};
+use crate::voronoi::cell_packets::CellPackets;
+use crate::voronoi::corner_values::SiteDistances;
+use crate::voronoi::list_filter::{ListFilter, ListFilters, Region};
 use crate::voronoi::neighbours::NeighbourTable;
-use crate::voronoi::primitive_frame::PrimitiveFrames;
+use crate::voronoi::packet_cells::PacketInCell;
 use crate::voronoi::site::{AUXILIARY_SITE, FALLBACK, FarHalfSpace};
 use std::ops::Range;
 use std::sync::Arc;
@@ -29,6 +32,9 @@ use std::sync::Arc;
 /// of a hub, so a walk ends there, and the tree answers in its cell. Otherwise a query in the cell of a site that all
 /// others surround would test all of them: at this number, that takes about as long as the search of a tree.
 const MAX_NEIGHBOURS: usize = 1024;
+
+/// The number of sites whose lists one task builds.
+const SITES_PER_TASK: usize = 1024;
 
 /// The sites with their lists.
 pub(crate) struct VoronoiLists {
@@ -68,10 +74,22 @@ impl CellContext<'_> {
         let mut filters = if self.filter.is_some() { ListFilters::new(sites.len()) } else { ListFilters::default() };
         let mut filled_sites = neighbours.sites.edit(std::mem::take);
         report.added = self.sites.added;
-        let frames = PrimitiveFrames::from_tree(self.tree);
-        let work = |chunk| self.build_chunk(chunk, &is_hub, &incident_tetrahedra, &adjacency, &frames);
         let budget = self.limits.budget;
-        map_chunks_in_order(sites.len(), self.limits.parallel, work, |chunk: ChunkResult| {
+        let packets = CellPackets::find(self, &adjacency, &incident_tetrahedra, is_hub, report, reporter);
+        let regions = self.filter.map_or_else(Vec::new, |(above, _)| {
+            packets.find_regions(self, |site| {
+                packets.of_site(site).map(|packet| packet.lanes.count_ones() as usize).sum::<usize>() > above
+            })
+        });
+        let lists = ListBuilder {
+            cells: self,
+            adjacency: &adjacency,
+            incident_tetrahedra: &incident_tetrahedra,
+            packets,
+            regions,
+        };
+        let work = |chunk| lists.build_chunk(chunk);
+        map_chunks_in_order(sites.len(), SITES_PER_TASK, self.limits.parallel, work, |chunk: ChunkResult| {
             if !budget.fits::<Block>(blocks.len() + chunk.blocks.len()) {
                 return;
             }
@@ -95,71 +113,87 @@ impl CellContext<'_> {
                         report.lists += 1;
                     }
                 }
-                reporter.advance([30.0, 100.0], result.site, sites.len());
+                reporter.advance([80.0, 100.0], result.site, sites.len());
             }
             report.entries += chunk.entries;
-            report.candidates += chunk.candidates;
-            report.max_candidates = report.max_candidates.max(chunk.max_candidates);
             report.primitives += chunk.primitives;
         });
         neighbours.sites = filled_sites.into();
         (!budget.is_exceeded()).then_some(VoronoiLists { neighbours, blocks, filters })
     }
+}
 
+/// What the lists are made of.
+struct ListBuilder<'a> {
+    /// The data that all cells share.
+    cells: &'a CellContext<'a>,
+    /// The edges of the primitives.
+    adjacency: &'a EdgeAdjacency,
+    /// For each site the tetrahedra at it.
+    incident_tetrahedra: &'a IncidenceLists,
+    /// The packets of all cells.
+    packets: CellPackets,
+    /// The regions in cells with a filter, sorted by the sites.
+    regions: Vec<(u32, Region)>,
+}
+
+impl ListBuilder<'_> {
     /// Builds the lists of some sites.
-    fn build_chunk(
-        &self,
-        sites: Range<usize>,
-        is_hub: &(impl Fn(usize) -> bool + Sync),
-        incident_tetrahedra: &IncidenceLists,
-        adjacency: &EdgeAdjacency,
-        frames: &PrimitiveFrames,
-    ) -> ChunkResult {
-        let corners = &self.sites.corners;
-        let mut chunk = ChunkResult {
-            cells: Vec::new(),
-            blocks: Vec::new(),
-            entries: 0,
-            primitives: 0,
-            candidates: 0,
-            max_candidates: 0,
-        };
-        let mut cell = CellBuilder::default();
+    fn build_chunk(&self, sites: Range<usize>) -> ChunkResult {
+        let cells = self.cells;
+        let mut chunk = ChunkResult { cells: Vec::new(), blocks: Vec::new(), entries: 0, primitives: 0 };
+        let mut far_part = FarPartBuilder::default();
         for site in sites {
-            if self.limits.budget.is_exceeded() {
+            if cells.limits.budget.is_exceeded() {
                 break;
             }
-            let tetrahedra = incident_tetrahedra.get(site);
             let mut result = CellResult { site, list: CellList::Tree, far_half_space: None, filter: None };
-            if let Some(anchor) = self.sites.anchor_of(site) {
+            let entries = self.list_entries(site);
+            if let Some(anchor) = cells.sites.anchor_of(site) {
                 result.list = CellList::Auxiliary(u32::try_from(anchor).expect("numbers of 32 bits"));
-            } else if site >= BOUNDING
-                && !is_hub(site)
-                && !tetrahedra.iter().any(|t| corners.all[*t as usize].is_crowded)
-            {
-                cell.begin(self, corners, site, tetrahedra);
-                chunk.candidates += cell.packets.len();
-                chunk.max_candidates = chunk.max_candidates.max(cell.packets.len());
-                let is_short = cell.packets.len() <= self.limits.max_list_packets;
-                let entries = if is_short { cell.list_entries(self, adjacency, frames) } else { Vec::new() };
-                if !entries.is_empty() {
-                    let primitives: usize = entries.iter().map(|entry| entry.lanes.count_ones() as usize).sum();
-                    chunk.primitives += primitives;
-                    result.filter = self
-                        .filter
-                        .filter(|(above, _)| primitives > *above)
-                        .map(|(_, build)| build(cell.regions(self, &entries)));
-                    result.far_half_space = cell.far_half_space(self, adjacency, &entries);
-                    let first = chunk.blocks.len();
-                    chunk.blocks.extend(Block::from_list(&entries, BoundKind::Boxes));
-                    chunk.entries += entries.len();
-                    result.list = CellList::Blocks(first..chunk.blocks.len());
-                }
+            } else if !entries.is_empty() {
+                let primitives: usize = entries.iter().map(|entry| entry.lanes.count_ones() as usize).sum();
+                chunk.primitives += primitives;
+                result.filter = cells
+                    .filter
+                    .filter(|(above, _)| primitives > *above)
+                    .map(|(_, build)| build(self.regions_of(site)));
+                result.far_half_space =
+                    far_part.half_space(cells, self.adjacency, site, self.incident_tetrahedra.get(site), &entries);
+                let first = chunk.blocks.len();
+                chunk.blocks.extend(Block::from_list(&entries, BoundKind::Boxes));
+                chunk.entries += entries.len();
+                result.list = CellList::Blocks(first..chunk.blocks.len());
             }
-            self.limits.budget.charge(std::mem::take(&mut cell.values.tests));
+            cells.limits.budget.charge(std::mem::take(&mut far_part.values.tests));
             chunk.cells.push(result);
         }
         chunk
+    }
+
+    /// Returns the entries of the list of a site, the nearest packets first.
+    fn list_entries(&self, site: usize) -> Vec<Entry> {
+        let (tree, delaunay) = (self.cells.tree, &self.cells.sites.delaunay);
+        let position = delaunay.sites()[site].map(|x| x * delaunay.unit());
+        let mut entries: Vec<(f64, Entry)> = Vec::new();
+        for &PacketInCell { packet: number, lanes, .. } in self.packets.of_site(site) {
+            let packet = &tree.leaves.packets[number as usize];
+            let order = SiteDistances::new(tree, packet, &position).least(lanes) * packet.unit();
+            let bounds = tree.frame.enclose(&packet.bounds_of(lanes));
+            entries.push((order, Entry { packet: number, lanes, bounds, f: [0.0; 8] }));
+        }
+        entries.sort_by(|a, b| a.0.total_cmp(&b.0).then(a.1.packet.cmp(&b.1.packet)));
+        entries.into_iter().map(|e| e.1).collect()
+    }
+
+    /// Returns the regions of the primitives in the list of a site.
+    fn regions_of(&self, site: usize) -> Vec<Region> {
+        let first = self.regions.partition_point(|(other, _)| (*other as usize) < site);
+        self.regions[first..]
+            .iter()
+            .take_while(|(other, _)| *other as usize == site)
+            .map(|(_, region)| *region)
+            .collect()
     }
 }
 
@@ -173,10 +207,6 @@ struct ChunkResult {
     entries: usize,
     /// The number of primitives in the lists.
     primitives: usize,
-    /// The number of packets that were examined for the lists.
-    candidates: usize,
-    /// The largest number of packets that were examined for one list.
-    max_candidates: usize,
 }
 
 /// The result of one cell.

@@ -1,10 +1,9 @@
-//! The values of the function of the corner test at the corners of a polytope, for the lanes of a packet, and the
-//! region that follows from them.
+//! The values of the function of the corner test at some corners, for the lanes of a packet.
 
 use crate::list::corner_test::{DistancesAtPoints, LaneDistances, MinOverLanes};
-use crate::voronoi::cell_polytope::CellPolytope;
+use crate::voronoi::cell_polytope::CornerPoints;
 use p2m_bvh::PacketTree;
-use p2m_bvh::engine::packet::{LANES, Packet};
+use p2m_bvh::engine::packet::{LANES, Locals, PLACES, Packet};
 use p2m_core::engine::simd::{InstructionSet, SimdKernel};
 use p2m_core::engine::vector::V3;
 use p2m_core::{Best, QueryOptions};
@@ -13,7 +12,7 @@ use p2m_core::{Best, QueryOptions};
 /// evaluated exactly instead.
 const FILTER_RANGE_UNITS: f64 = (1u64 << 19) as f64;
 
-/// The values of one packet at the corners of one polytope. Its vectors are reused.
+/// The values of one packet at some corners. Its vectors are reused.
 #[derive(Default)]
 pub(crate) struct CornerValues {
     /// For each corner the values of the lanes, rounded down, in squares of the unit of the packet.
@@ -22,10 +21,6 @@ pub(crate) struct CornerValues {
     pub(crate) near_lanes: u16,
     /// For each corner the lanes whose value is not above zero there.
     pub(crate) lanes_below: Vec<u16>,
-    /// For each edge the lanes whose value is not above zero at exactly one end.
-    pub(crate) lanes_crossing: Vec<u16>,
-    /// The points that span the region of one lane.
-    pub(crate) region: Vec<V3>,
     /// The number of tests of a packet at a corner, and of evaluated primitives.
     pub(crate) tests: usize,
 }
@@ -53,12 +48,12 @@ impl<'a> SiteDistances<'a> {
 }
 
 impl CornerValues {
-    /// Computes the values of a packet at the corners of a polytope.
-    pub(crate) fn compute(&mut self, polytope: &CellPolytope, packet: &Packet, tree: &PacketTree) {
+    /// Computes the values of a packet at some corners.
+    pub(crate) fn compute(&mut self, corners: &CornerPoints, packet: &Packet, tree: &PacketTree) {
         self.values.clear();
-        self.tests += polytope.corners.len();
-        self.near_lanes = tree.isa().run(EvaluateCorners { polytope, packet, values: &mut self.values });
-        self.evaluate_far_packets(polytope, packet, tree);
+        self.tests += corners.positions.len();
+        self.near_lanes = tree.isa().run(EvaluateCorners { corners, packet, values: &mut self.values });
+        self.evaluate_far_packets(corners, packet, tree);
         self.lanes_below.clear();
         for values in &self.values {
             let mut lanes = 0;
@@ -68,21 +63,23 @@ impl CornerValues {
             self.lanes_below.push(lanes);
         }
         self.near_lanes &= self.lanes_below.iter().fold(0, |all, lanes| all | lanes);
-        self.lanes_crossing.clear();
-        let lanes_below = &self.lanes_below;
-        self.lanes_crossing
-            .extend(polytope.edges.iter().map(|[i, j]| lanes_below[*i as usize] ^ lanes_below[*j as usize]));
+    }
+
+    /// Records that all values at a corner are above zero, which another test has shown.
+    pub(crate) fn raise_above_zero(&mut self, corner: usize) {
+        self.lanes_below[corner] = 0;
+        self.values[corner].iter_mut().for_each(|value| *value = value.max(f32::MIN_POSITIVE));
     }
 
     /// Evaluates primitives at the corners that are so far from the packet that its filter is too imprecise.
     #[allow(clippy::cast_possible_truncation, reason = "rounded down")]
-    fn evaluate_far_packets(&mut self, polytope: &CellPolytope, packet: &Packet, tree: &PacketTree) {
+    fn evaluate_far_packets(&mut self, corners: &CornerPoints, packet: &Packet, tree: &PacketTree) {
         let per_unit = packet.per_unit();
-        if !packet.has_vertices() || polytope.max_upper_bound * per_unit < FILTER_RANGE_UNITS {
+        if !packet.has_vertices() || corners.max_upper_bound * per_unit < FILTER_RANGE_UNITS {
             return;
         }
         for (i, values) in self.values.iter_mut().enumerate() {
-            let upper_bound = polytope.upper_bounds[i];
+            let upper_bound = corners.upper_bounds[i];
             if upper_bound * per_unit < FILTER_RANGE_UNITS {
                 continue;
             }
@@ -92,38 +89,21 @@ impl CornerValues {
                 }
                 self.tests += 1;
                 let mut best = Best::<f64>::new(&QueryOptions::default());
-                packet.offer(lane, &tree.leaves.vertices, polytope.corners[i], f64::INFINITY, &mut best);
+                packet.offer(lane, &tree.leaves.vertices, corners.positions[i], f64::INFINITY, &mut best);
                 let Some(closest) = best.finish() else { continue };
                 // The bound is lowered by the rounding of the kernel.
-                let least = closest.distance * (1.0 - 1e-14) - upper_bound * 1e-14 - polytope.errors[i];
+                let least = closest.distance * (1.0 - 1e-14) - upper_bound * 1e-14 - corners.errors[i];
                 let value = (least - upper_bound) * (least + upper_bound) * per_unit * per_unit;
                 values[lane] = values[lane].max((value as f32).next_down());
             }
         }
     }
-
-    /// Computes the points that span the region of a lane.
-    pub(crate) fn find_region(&mut self, polytope: &CellPolytope, lane: usize) {
-        self.region.clear();
-        for (corner, _) in polytope.corners.iter().zip(&self.lanes_below).filter(|(_, lanes)| **lanes >> lane & 1 == 1)
-        {
-            self.region.push(*corner);
-        }
-        for (edge, _) in polytope.edges.iter().zip(&self.lanes_crossing).filter(|(_, lanes)| **lanes >> lane & 1 == 1) {
-            let [i, j] = edge.map(|i| i as usize);
-            let [a, b] = [i, j].map(|i| f64::from(self.values[i][lane]));
-            // The part of the edge from i reaches a little beyond the zero of the chord.
-            let t = a / (a - b) + if a <= 0.0 { 1e-6 } else { -1e-6 };
-            let (from, to) = (polytope.corners[i], polytope.corners[j]);
-            self.region.push(std::array::from_fn(|k| from[k] + t * (to[k] - from[k])));
-        }
-    }
 }
 
-/// A SIMD kernel that computes the values of a packet at the corners of a polytope. It returns the lanes that are not
-/// above zero at some corner.
+/// A SIMD kernel that computes the values of a packet at some corners. It returns the lanes that are not above zero at
+/// some corner.
 struct EvaluateCorners<'a> {
-    polytope: &'a CellPolytope,
+    corners: &'a CornerPoints,
     packet: &'a Packet,
     values: &'a mut Vec<[f32; LANES]>,
 }
@@ -134,28 +114,39 @@ impl SimdKernel for EvaluateCorners<'_> {
     #[inline(always)]
     #[allow(clippy::cast_possible_truncation, reason = "rounded down; sixteen lanes")]
     fn run<I: InstructionSet>(self) -> u16 {
-        let Self { polytope, packet, values } = self;
+        const ALL_PLACES: [u8; PLACES] = [0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15];
+        let Self { corners, packet, values } = self;
         let mut near_lanes = 0;
         let per_unit = packet.per_unit();
-        for (i, corner) in polytope.corners.iter().enumerate() {
-            // The value is unknown if f32 cannot represent the corner in the frame of the packet.
-            let mut lane_values = [f32::NEG_INFINITY; LANES];
-            if let Some(local) = packet.local(corner) {
-                let mut squares = [0.0; LANES];
-                packet.squares::<I>(&local, f32::INFINITY, &mut squares);
-                let max_error = local.excess + ((polytope.errors[i] * per_unit) as f32) * 1.001;
-                let upper_bound = (polytope.upper_bounds[i] * per_unit) as f32 * (1.0 + 4.0 * f32::EPSILON);
-                for (value, square) in lane_values.iter_mut().zip(squares) {
-                    let least = (square.sqrt() * (1.0 - 4.0 * f32::EPSILON) - max_error).max(0.0);
-                    // The product form keeps the relative precision of the difference of two squares, which may be
-                    // much smaller than both.
-                    *value = (least - upper_bound) * (least + upper_bound);
+        let (mut locals, mut squares) = (Locals::default(), [[0.0; LANES]; PLACES]);
+        let mut first = 0;
+        while first < corners.positions.len() {
+            let chunk = &corners.positions[first..corners.positions.len().min(first + PLACES)];
+            for (place, position) in chunk.iter().enumerate() {
+                locals.set(place, position, packet);
+            }
+            locals.convert::<I>();
+            packet.squares_of_several::<I>(&locals, &ALL_PLACES[..chunk.len()], &[u32::MAX; PLACES], &mut squares);
+            for (place, squares) in squares.iter().enumerate().take(chunk.len()) {
+                let (upper_bound, error) = (corners.upper_bounds[first + place], corners.errors[first + place]);
+                // The value is unknown if f32 cannot represent the corner in the frame of the packet.
+                let mut lane_values = [f32::NEG_INFINITY; LANES];
+                if locals.far >> place & 1 == 0 {
+                    let max_error = locals.excess[place] + ((error * per_unit) as f32) * 1.001;
+                    let upper_bound = (upper_bound * per_unit) as f32 * (1.0 + 4.0 * f32::EPSILON);
+                    for (value, square) in lane_values.iter_mut().zip(squares) {
+                        let least = (square.sqrt() * (1.0 - 4.0 * f32::EPSILON) - max_error).max(0.0);
+                        // The product form keeps the relative precision of the difference of two squares, which may be
+                        // much smaller than both.
+                        *value = (least - upper_bound) * (least + upper_bound);
+                    }
                 }
+                for (lane, value) in lane_values.iter().enumerate() {
+                    near_lanes |= u32::from(*value <= 0.0) << lane;
+                }
+                values.push(lane_values);
             }
-            for (lane, value) in lane_values.iter().enumerate() {
-                near_lanes |= u32::from(*value <= 0.0) << lane;
-            }
-            values.push(lane_values);
+            first += PLACES;
         }
         (near_lanes & packet.lanes()) as u16
     }

@@ -8,11 +8,14 @@ use crate::voronoi::circumsphere;
 use p2m_bvh::PacketTree;
 use p2m_bvh::engine::range::Selection;
 use p2m_core::engine::vector::{V3, norm_squared, sub};
-use std::collections::HashMap;
+use rustc_hash::FxHashMap;
 use std::ops::Range;
 
 /// A ball that intersects more packets than this is crowded.
 pub(crate) const CROWDED_BALL_PACKETS: usize = 24;
+
+/// The number of corners that one task computes.
+const CORNERS_PER_TASK: usize = 1024;
 
 /// A corner of Voronoi cells, in coordinates of the scene.
 #[derive(Clone, Copy)]
@@ -79,6 +82,7 @@ impl CellCorners {
         let mut corners = Self { all: Vec::with_capacity(count + 1), packets: Vec::new() };
         map_chunks_in_order(
             count,
+            CORNERS_PER_TASK,
             limits.parallel,
             |chunk| Self::compute_chunk(tree, delaunay, limits, reused, chunk),
             |chunk: Self| {
@@ -155,7 +159,7 @@ impl CellCorners {
             }
             chunk
         };
-        map_chunks_in_order(count, limits.parallel, work, |chunk| corners.append(chunk, limits));
+        map_chunks_in_order(count, CORNERS_PER_TASK, limits.parallel, work, |chunk| corners.append(chunk, limits));
         corners.push(CellCorner::UNKNOWN, std::iter::empty());
         corners
     }
@@ -189,6 +193,12 @@ impl CellCorners {
         &self.packets[self.all[number].first_packet as usize..self.all[number + 1].first_packet as usize]
     }
 
+    /// Returns the packets of all balls, each with the number of its corner.
+    pub(crate) fn pairs(&self) -> impl Iterator<Item = (u32, u32)> + Clone + '_ {
+        (0..self.all.len() - 1)
+            .flat_map(|number| self.packets(number).iter().map(move |packet| (*packet, to_u32(number))))
+    }
+
     /// Appends a corner with its packets.
     fn push(&mut self, corner: CellCorner, packets: impl Iterator<Item = u32>) {
         let first_packet = to_u32(self.packets.len());
@@ -207,7 +217,7 @@ pub(crate) struct ReusedCorners<'a> {
     /// The corners of the earlier triangulation.
     pub(crate) corners: &'a CellCorners,
     /// The numbers of its tetrahedra, by their sorted sites.
-    pub(crate) numbers: HashMap<[u32; 4], usize>,
+    pub(crate) numbers: FxHashMap<[u32; 4], usize>,
     /// For each site of the new triangulation the same site of the earlier one, or [`ReusedCorners::NEW`].
     pub(crate) previous_sites: Vec<u32>,
 }
@@ -220,7 +230,7 @@ impl<'a> ReusedCorners<'a> {
     #[allow(clippy::float_cmp, reason = "the same or not")]
     pub(crate) fn new(earlier: &Delaunay, corners: &'a CellCorners, later: &Delaunay, points: usize) -> Self {
         let mut previous_sites = vec![Self::NEW; later.sites().len()];
-        let mut numbers = HashMap::new();
+        let mut numbers = FxHashMap::default();
         // Sites in another unit may be rounded differently, and the bounding sites of another box are elsewhere.
         if earlier.unit() == later.unit() {
             if earlier.sites()[..BOUNDING] == later.sites()[..BOUNDING] {

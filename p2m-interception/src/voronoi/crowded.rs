@@ -7,7 +7,7 @@ use p2m_bvh::engine::packet::LANES;
 use p2m_bvh::engine::range::Selection;
 use p2m_core::engine::vector::{V3, exponent, scale_by_power};
 use p2m_core::{Aabb, Best, QueryOptions};
-use std::collections::{HashMap, HashSet};
+use rustc_hash::{FxHashMap, FxHashSet};
 
 /// The centre of a ball becomes an auxiliary site only if this many crowded balls form a cluster.
 const MIN_BALLS_FOR_AUXILIARY_SITE: usize = 3;
@@ -60,7 +60,7 @@ impl CrowdedClusters<'_> {
     /// Chooses points for the crowded balls, at most `budget` of them.
     pub(crate) fn choose_sites(&self, budget: usize) -> Vec<AddedSite> {
         // Each cluster is stored as its first corner and the number of its corners.
-        let mut clusters: HashMap<GridCell, (usize, usize)> = HashMap::new();
+        let mut clusters: FxHashMap<GridCell, (usize, usize)> = FxHashMap::default();
         for (number, corner) in self.corners.all.iter().enumerate() {
             if corner.is_crowded
                 && corner.radius > 0.0
@@ -75,7 +75,7 @@ impl CrowdedClusters<'_> {
         }
         let mut clusters: Vec<(usize, usize)> = clusters.into_values().collect();
         clusters.sort_unstable();
-        let mut occupied_cells: HashSet<GridCell> = HashSet::new();
+        let mut occupied_cells: FxHashSet<GridCell> = FxHashSet::default();
         let mut added = Vec::new();
         for (number, count) in clusters {
             if added.len() >= budget || self.limits.budget.is_exceeded() {

@@ -1,7 +1,11 @@
-//! The exclusion of a feature by planes: all of a region is on the wrong side of one plane, or each of its points is on
-//! the wrong side of one of two planes.
+//! Excluded features: a feature that needs the query on one side of some planes cannot hold the nearest point in a
+//! region that lies on the wrong side of one plane, or of which each point is on the wrong side of one of two planes.
 
-use p2m_core::engine::vector::{V3, dot, sub};
+use p2m_core::engine::simd::{Doubles, Float};
+use p2m_core::engine::vector::V3;
+
+/// The number of points in a block of a region.
+const BLOCK_POINTS: usize = 8;
 
 /// A plane through a point with a normal of length 1. A query on its right side has a height of at least minus
 /// `margin`.
@@ -15,92 +19,119 @@ pub(crate) struct Plane {
     pub(crate) margin: f64,
 }
 
-/// The test of one feature: its planes, and the heights of a region above them. Its vectors are reused.
+/// The points that span a region, in blocks of eight. The last block repeats its first point.
 #[derive(Default)]
-pub(crate) struct ExcludedFeatures {
-    /// The mean of the points that span the region.
-    mean: V3,
-    /// The planes so far.
-    planes: Vec<PlaneHeights>,
-    /// The heights of the points above some planes: those whose right side does not contain the mean, and
-    /// others on demand.
-    heights: Vec<f64>,
-    /// Whether one plane has excluded the feature already.
-    is_decided: bool,
+pub(crate) struct RegionPoints {
+    blocks: Vec<[[f64; BLOCK_POINTS]; 3]>,
+    /// The number of points.
+    count: usize,
 }
 
-/// A plane, with the heights of a region above it.
-struct PlaneHeights {
-    /// The plane, with its margin.
-    plane: Plane,
-    /// The height of the mean of the region.
-    mean: f64,
-    /// The index of the first height of the points, if the heights have been computed.
-    first: Option<usize>,
+impl RegionPoints {
+    /// Removes all points.
+    #[inline(always)]
+    pub(crate) fn clear(&mut self) {
+        self.blocks.clear();
+        self.count = 0;
+    }
+
+    /// Adds a point.
+    #[inline(always)]
+    pub(crate) fn push(&mut self, point: V3) {
+        let place = self.count % BLOCK_POINTS;
+        self.count += 1;
+        match self.blocks.last_mut() {
+            Some(block) if place > 0 => {
+                for (row, x) in block.iter_mut().zip(point) {
+                    row[place] = x;
+                }
+            }
+            _ => self.blocks.push(point.map(|x| [x; BLOCK_POINTS])),
+        }
+    }
+
+    /// Returns the points.
+    pub(crate) fn iter(&self) -> impl Iterator<Item = V3> + '_ {
+        let all =
+            self.blocks.iter().flat_map(|[x, y, z]| (0..BLOCK_POINTS).map(|place| [x[place], y[place], z[place]]));
+        all.take(self.count)
+    }
+}
+
+/// The test of one feature: its planes, and their heights. Its vectors are reused.
+#[derive(Default)]
+pub(crate) struct ExcludedFeatures {
+    /// A point of the convex hull of the region, about in its middle.
+    middle: V3,
+    /// The planes so far, each with the height of the middle of the region.
+    planes: Vec<(Plane, f64)>,
 }
 
 impl Plane {
-    /// Returns the height of a point above the plane, increased by the margin. It is negative on the wrong side.
-    fn height(&self, x: &V3) -> f64 {
-        dot(sub(*x, self.point), self.direction) + self.margin
+    /// Returns the heights of points above the plane, increased by the margin. They are negative on the wrong side.
+    #[inline(always)]
+    fn heights<F: Float>(&self, [x, y, z]: [F; 3]) -> F {
+        let Self { point: [px, py, pz], direction: [dx, dy, dz], margin } = *self;
+        let (x, y, z) = (x - F::splat(px), y - F::splat(py), z - F::splat(pz));
+        x * F::splat(dx) + y * F::splat(dy) + z * F::splat(dz) + F::splat(margin)
     }
 }
 
 impl ExcludedFeatures {
     /// Begins another region.
-    pub(crate) fn begin_region(&mut self, region: &[V3]) {
-        let sum = region.iter().fold([0.0; 3], |sum, h| [sum[0] + h[0], sum[1] + h[1], sum[2] + h[2]]);
-        self.mean = sum.map(|x| x / region.len() as f64);
+    #[inline(always)]
+    pub(crate) fn begin_region<D: Doubles>(&mut self, region: &RegionPoints) {
+        let mut sum = [D::splat(0.0); 3];
+        for block in &region.blocks {
+            for (sum, row) in sum.iter_mut().zip(block) {
+                *sum = *sum + D::load(row);
+            }
+        }
+        let share = 1.0 / (region.blocks.len() * BLOCK_POINTS) as f64;
+        for (middle, sum) in self.middle.iter_mut().zip(sum) {
+            let mut row = [0.0; BLOCK_POINTS];
+            sum.store(&mut row);
+            let [a, b, c, d, e, f, g, h] = row;
+            *middle = (((a + b) + (c + d)) + ((e + f) + (g + h))) * share;
+        }
     }
 
     /// Begins another feature.
+    #[inline(always)]
     pub(crate) fn begin_feature(&mut self) {
         self.planes.clear();
-        self.heights.clear();
-        self.is_decided = false;
     }
 
-    /// Adds a plane of the feature.
-    pub(crate) fn add(&mut self, region: &[V3], plane: Plane) {
-        if self.is_decided {
-            return;
-        }
-        let mean = plane.height(&self.mean);
-        self.planes.push(PlaneHeights { plane, mean, first: None });
-        // All points can have a negative height only if their mean has.
-        if mean < 0.0 {
-            self.is_decided = self.heights_above(self.planes.len() - 1, region).iter().all(|x| *x < 0.0);
-        }
-    }
-
-    /// Returns the heights of the points above a plane.
-    fn heights_above(&mut self, number: usize, region: &[V3]) -> &[f64] {
-        let PlaneHeights { plane, first, .. } = &mut self.planes[number];
-        let first = *first.get_or_insert_with(|| {
-            let first = self.heights.len();
-            self.heights.extend(region.iter().map(|h| plane.height(h)));
-            first
-        });
-        &self.heights[first..first + region.len()]
-    }
-
-    /// Returns whether the planes exclude the feature.
-    pub(crate) fn is_excluded(&mut self, region: &[V3]) -> bool {
-        if self.is_decided || region.is_empty() {
+    /// Adds a plane of the feature, and returns whether it excludes the feature, alone or with a plane before.
+    #[inline(always)]
+    pub(crate) fn add<D: Doubles>(&mut self, region: &RegionPoints, plane: Plane) -> bool {
+        let height = plane.heights(self.middle);
+        // All points can have a negative height only if their middle has.
+        if height < 0.0 && are_below::<D, 1>(region, [&plane]) {
             return true;
         }
-        for i in 0..self.planes.len() {
-            for j in 0..i {
-                if self.planes[i].mean + self.planes[j].mean < 0.0 {
-                    self.heights_above(i, region);
-                    self.heights_above(j, region);
-                    let [a, b] = [i, j].map(|n| &self.heights[self.planes[n].first.unwrap_or(0)..][..region.len()]);
-                    if a.iter().zip(b).all(|(x, y)| x + y < 0.0) {
-                        return true;
-                    }
-                }
+        for (other, other_height) in &self.planes {
+            if height + other_height < 0.0 && are_below::<D, 2>(region, [&plane, other]) {
+                return true;
             }
         }
+        self.planes.push((plane, height));
         false
     }
+}
+
+/// Returns whether the heights above some planes have a negative sum at all points of a region.
+#[inline(always)]
+fn are_below<D: Doubles, const N: usize>(region: &RegionPoints, planes: [&Plane; N]) -> bool {
+    for [x, y, z] in &region.blocks {
+        let points = [D::load(x), D::load(y), D::load(z)];
+        let mut sum = planes[0].heights(points);
+        for plane in &planes[1..] {
+            sum = sum + plane.heights(points);
+        }
+        if D::bits(sum.is_below(D::splat(0.0))) != 0xff {
+            return false;
+        }
+    }
+    true
 }

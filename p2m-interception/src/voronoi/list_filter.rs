@@ -22,10 +22,10 @@ pub struct Region {
 
 impl Region {
     /// Makes the region of a primitive from points that span it, enlarged by `padding`.
-    pub(crate) fn from_points(points: &[V3], padding: f64, packet: u32, lane: usize) -> Self {
+    pub(crate) fn from_points(points: impl Iterator<Item = V3>, padding: f64, packet: u32, lane: usize) -> Self {
         let (mut low, mut high) = ([f64::INFINITY; 3], [f64::NEG_INFINITY; 3]);
-        for (k, (low, high)) in low.iter_mut().zip(&mut high).enumerate() {
-            for x in points.iter().map(|point| point[k]) {
+        for point in points {
+            for ((low, high), x) in low.iter_mut().zip(&mut high).zip(point) {
                 // A coordinate that is not finite bounds nothing.
                 let [from, to] =
                     if x.is_finite() { [x - padding, x + padding] } else { [f64::NEG_INFINITY, f64::INFINITY] };

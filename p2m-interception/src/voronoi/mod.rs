@@ -7,14 +7,15 @@
 //! So one ball query for each tetrahedron serves the lists of four cells. (The paper grows each list by flooding, and
 //! clips the cells.) Six artificial sites far outside make all cells bounded.
 //!
-//! The modules from sites to lists are [`corners`], [`crowded`], [`cell`] and [`cells`]. A query is located by a
-//! [`locator`], walks over the [`neighbours`] of sites, and searches a list ([`query`]). docs/proofs/p2m.md has the
-//! proofs.
+//! The modules from sites to lists are [`corners`], [`crowded`], [`packet_cells`], [`cell_packets`] and [`cells`]. A
+//! query is located by a [`locator`], walks over the [`neighbours`] of sites, and searches a list ([`query`]).
+//! docs/proofs/p2m.md has the proofs.
 
 pub(crate) mod adjacency;
 pub(crate) mod any_locator;
 pub(crate) mod budget;
 pub(crate) mod cell;
+pub(crate) mod cell_packets;
 pub(crate) mod cell_polytope;
 pub(crate) mod cells;
 pub(crate) mod circumsphere;
@@ -31,6 +32,7 @@ pub(crate) mod list_filter;
 pub(crate) mod locator;
 pub(crate) mod neighbour_block;
 pub(crate) mod neighbours;
+pub(crate) mod packet_cells;
 #[cfg(all(feature = "kiddo", feature = "rstar"))]
 pub(crate) mod paper;
 pub(crate) mod primitive_frame;

@@ -1,7 +1,5 @@
 //! The directions and proportions of primitives, which the tests of feature relevance need.
 
-use p2m_bvh::PacketTree;
-use p2m_bvh::engine::packet::LANES;
 use p2m_core::engine::arithmetic::cross;
 use p2m_core::engine::vector::{V3, norm_squared, sub};
 
@@ -18,36 +16,9 @@ pub(crate) struct PrimitiveFrame {
     pub(crate) sine: f64,
 }
 
-/// The frames of all lanes of all packets.
-pub(crate) struct PrimitiveFrames(Vec<PrimitiveFrame>);
-
-impl PrimitiveFrames {
-    /// Computes the frames of all primitives of a tree.
-    pub(crate) fn from_tree(tree: &PacketTree) -> Self {
-        let mut all = vec![PrimitiveFrame::default(); tree.leaves.packets.len() * LANES];
-        for (packet, packet_frames) in tree.leaves.packets.iter().zip(all.chunks_exact_mut(LANES)) {
-            for (lane, to) in packet_frames.iter_mut().enumerate().take(packet.ids().len()) {
-                let (positions, count) = packet.vertices_of(lane);
-                let mut vertices = [[0.0; 3]; 3];
-                vertices
-                    .iter_mut()
-                    .zip(&positions[..count])
-                    .for_each(|(to, position)| *to = tree.leaves.vertices[*position]);
-                *to = PrimitiveFrame::from_vertices(&vertices[..count]);
-            }
-        }
-        Self(all)
-    }
-
-    /// Returns the frame of a primitive.
-    pub(crate) fn get(&self, packet: usize, lane: usize) -> &PrimitiveFrame {
-        &self.0[packet * LANES + lane]
-    }
-}
-
 impl PrimitiveFrame {
     /// Computes the frame of a primitive with one to three vertices.
-    fn from_vertices(vertices: &[V3]) -> Self {
+    pub(crate) fn from_vertices(vertices: &[V3]) -> Self {
         let mut frame = Self { height: f64::INFINITY, sine: 1.0, ..Self::default() };
         if vertices.len() < 2 {
             return frame;

@@ -1,0 +1,155 @@
+//! The packets in the lists of all cells.
+//!
+//! The balls of corners give the tetrahedra around each packet. Packets are examined one after the other
+//! ([`packet_cells`](crate::voronoi::packet_cells)), and what they are in each cell is sorted by cells.
+
+use crate::delaunay::BOUNDING;
+use crate::options::P2mReport;
+use crate::parallel_chunks::map_chunks_in_order;
+use crate::progress::ProgressReporter;
+use crate::voronoi::adjacency::{EdgeAdjacency, IncidenceLists};
+use crate::voronoi::cell::CellContext;
+use crate::voronoi::cell_polytope::margin;
+use crate::voronoi::feature_relevance::RelevanceContext;
+use crate::voronoi::list_filter::Region;
+use crate::voronoi::packet_cells::{CellSize, FindRelevantLanes, PacketCells, PacketInCell};
+use p2m_core::engine::vector::{norm_squared, sub};
+use std::ops::Range;
+
+/// The number of packets that one task examines.
+const PACKETS_PER_TASK: usize = 64;
+
+/// The packets of all cells.
+pub(crate) struct CellPackets {
+    /// The lengths of each cell that gets a list.
+    sizes: Vec<Option<CellSize>>,
+    /// For each packet the tetrahedra whose balls it intersects.
+    near_tetrahedra: IncidenceLists,
+    /// The packets in cells, in the order of the packets.
+    packets: Vec<PacketInCell>,
+    /// For each site the indices of its packets in `packets`.
+    of_sites: IncidenceLists,
+}
+
+impl CellPackets {
+    /// Finds the packets of all cells but hubs. They are incomplete if that exceeds the budget.
+    pub(crate) fn find(
+        cells: &CellContext<'_>,
+        adjacency: &EdgeAdjacency,
+        incident_tetrahedra: &IncidenceLists,
+        is_hub: impl Fn(usize) -> bool,
+        report: &mut P2mReport,
+        reporter: &ProgressReporter<'_>,
+    ) -> Self {
+        let (sites, corners) = (&cells.sites.delaunay.sites(), &cells.sites.corners);
+        let has_list = |site: usize| {
+            site >= BOUNDING
+                && !is_hub(site)
+                && cells.sites.anchor_of(site).is_none()
+                && !incident_tetrahedra.get(site).iter().any(|t| corners.all[*t as usize].is_crowded)
+        };
+        let size_of = |site: usize| has_list(site).then(|| cells.measure(site, incident_tetrahedra.get(site)));
+        let packet_count = cells.tree.leaves.packets.len();
+        let mut found = Self {
+            sizes: (0..sites.len()).map(size_of).collect(),
+            near_tetrahedra: IncidenceLists::new(packet_count, corners.pairs()),
+            packets: Vec::new(),
+            of_sites: IncidenceLists::new(0, std::iter::empty()),
+        };
+        let (budget, parallel) = (cells.limits.budget, cells.limits.parallel);
+        let scene = RelevanceContext {
+            tree: cells.tree,
+            delaunay: &cells.sites.delaunay,
+            adjacency,
+            slack: cells.limits.slack,
+        };
+        let (sizes, near_tetrahedra, packets) = (&found.sizes, &found.near_tetrahedra, &mut found.packets);
+        let work = |chunk: Range<usize>| {
+            let (mut packet, mut found) = (PacketCells::default(), Vec::new());
+            for number in chunk {
+                if budget.is_exceeded() {
+                    break;
+                }
+                packet.begin(cells, sizes, to_u32(number), near_tetrahedra.get(number));
+                cells.tree.isa().run(FindRelevantLanes { scene, sizes, packet: &mut packet, found: &mut found });
+                budget.charge(std::mem::take(&mut packet.values.tests));
+            }
+            found
+        };
+        let mut done = 0;
+        map_chunks_in_order(packet_count, PACKETS_PER_TASK, parallel, work, |chunk: Vec<PacketInCell>| {
+            if budget.fits::<PacketInCell>(packets.len() + chunk.len()) {
+                packets.extend(chunk);
+            }
+            done = packet_count.min(done + PACKETS_PER_TASK);
+            reporter.advance([30.0, 80.0], done, packet_count);
+        });
+        found.of_sites =
+            IncidenceLists::new(sites.len(), found.packets.iter().zip(0..).map(|(packet, i)| (packet.site, i)));
+        for (site, size) in found.sizes.iter_mut().enumerate() {
+            let candidates = found.of_sites.get(site).len();
+            report.candidates += candidates;
+            report.max_candidates = report.max_candidates.max(candidates);
+            if candidates > cells.limits.max_list_packets {
+                *size = None;
+            }
+        }
+        found
+    }
+
+    /// Returns the packets of a site that have lanes, in ascending order. A site without a list has none.
+    pub(crate) fn of_site(&self, site: usize) -> impl Iterator<Item = &PacketInCell> {
+        let packets = self.of_sites.get(site).iter().filter(move |_| self.sizes[site].is_some());
+        packets.map(|number| &self.packets[*number as usize]).filter(|packet| packet.lanes != 0)
+    }
+
+    /// Finds the regions of all primitives in the cells of some sites, sorted by the sites.
+    pub(crate) fn find_regions(
+        &self,
+        cells: &CellContext<'_>,
+        is_wanted: impl Fn(usize) -> bool + Sync,
+    ) -> Vec<(u32, Region)> {
+        let work = |chunk: Range<usize>| {
+            let (mut packet, mut regions) = (PacketCells::default(), Vec::new());
+            for number in chunk {
+                let tetrahedra = self.near_tetrahedra.get(number);
+                packet.begin(cells, &self.sizes, to_u32(number), tetrahedra);
+                let lanes_of = |site: u32| {
+                    let mut packets = self.of_site(site as usize).filter(|_| is_wanted(site as usize));
+                    packets.find(|packet| packet.packet as usize == number).map_or(0, |packet| packet.lanes)
+                };
+                packet.visit_regions(lanes_of, |site, lane, points| {
+                    let CellSize { max_distance, max_error } = self.sizes[site as usize].expect("a cell with a list");
+                    let padding = margin(max_distance, max_error);
+                    regions.push((site, Region::from_points(points.iter(), padding, to_u32(number), lane)));
+                });
+            }
+            regions
+        };
+        let mut regions = Vec::new();
+        let packet_count = cells.tree.leaves.packets.len();
+        map_chunks_in_order(packet_count, PACKETS_PER_TASK, cells.limits.parallel, work, |chunk| regions.extend(chunk));
+        regions.sort_by_key(|(site, _)| *site);
+        regions
+    }
+}
+
+impl CellContext<'_> {
+    /// Returns the lengths of a cell whose corners are known.
+    fn measure(&self, site: usize, tetrahedra: &[u32]) -> CellSize {
+        let position = self.sites.delaunay.sites()[site].map(|x| x * self.sites.delaunay.unit());
+        let mut size = CellSize { max_distance: 0.0, max_error: 0.0 };
+        for tetrahedron in tetrahedra {
+            let corner = &self.sites.corners.all[*tetrahedron as usize];
+            let distance = norm_squared(sub(corner.position, position)).sqrt() * (1.0 + 8.0 * f64::EPSILON);
+            size.max_distance = size.max_distance.max(distance + corner.error + self.limits.slack);
+            size.max_error = size.max_error.max(corner.error);
+        }
+        size
+    }
+}
+
+/// Converts a number to 32 bits, of which there are enough: budgets see to that.
+fn to_u32(n: usize) -> u32 {
+    u32::try_from(n).expect("numbers of 32 bits")
+}

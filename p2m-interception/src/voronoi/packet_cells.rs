@@ -1,0 +1,303 @@
+//! One packet in all cells whose lists may need it: the primitives that can be the answer in each cell, and the regions
+//! where they can be.
+//!
+//! A packet matters only near the corners whose balls it intersects, its *near* corners. The value of the corner test
+//! at a corner is the same for all cells around it, for the corner is equally far from their sites. So the packet is
+//! evaluated once at each near corner and at each corner that an edge joins to one. The regions of its primitives in
+//! all cells follow from these values: each edge from a corner where a value is not above zero leads to another one of
+//! these corners.
+
+use crate::delaunay::Delaunay;
+use crate::voronoi::cell::CellContext;
+use crate::voronoi::cell_polytope::CornerPoints;
+use crate::voronoi::corner_values::CornerValues;
+use crate::voronoi::excluded_features::{ExcludedFeatures, RegionPoints};
+use crate::voronoi::feature_relevance::{CellInfo, LanesOver, PrimitiveFeatures, RelevanceContext};
+use p2m_bvh::engine::packet::LANES;
+use p2m_core::engine::simd::{Doubles, InstructionSet, Portable, SimdKernel};
+use rustc_hash::FxHashMap;
+use std::ops::Range;
+
+/// The lengths of a cell that gets a list.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct CellSize {
+    /// An upper bound of the distance from the site to a corner.
+    pub(crate) max_distance: f64,
+    /// An upper bound of the error of a corner.
+    pub(crate) max_error: f64,
+}
+
+/// A packet in a cell.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct PacketInCell {
+    /// The number of the site of the cell.
+    pub(crate) site: u32,
+    /// The number of the packet.
+    pub(crate) packet: u32,
+    /// The lanes that can hold the answer in the cell, as bits. There may be none.
+    pub(crate) lanes: u16,
+}
+
+/// The packet that is being examined, with the corners and cells around it. Its vectors are reused.
+#[derive(Default)]
+pub(crate) struct PacketCells {
+    /// The number of the packet.
+    packet: u32,
+    /// The number of each corner in this structure, by its tetrahedron.
+    numbers: FxHashMap<u32, u32>,
+    /// The near corners, then those that an edge joins to one.
+    corners: CornerPoints,
+    /// For each near corner the four corners that an edge joins to it, opposite to the vertices of its tetrahedron, or
+    /// [`Delaunay::NONE`].
+    neighbours: Vec<[u32; 4]>,
+    /// The vertices of the tetrahedra of near corners.
+    tetrahedra: Vec<[u32; 4]>,
+    /// The values of the corner test.
+    pub(crate) values: CornerValues,
+    /// The cells with their near corners, sorted: the site in the upper half, and the corner in the lower half.
+    corners_of_cells: Vec<u64>,
+    /// The sites of the cells that have near corners, each with its range in `corners_of_cells`.
+    cells: Vec<(u32, Range<usize>)>,
+    /// For each near corner, and for each of the four edges there, the lanes whose value is not above zero at exactly
+    /// one end. An edge between two near corners has lanes at the first of them only.
+    crossings: Vec<[u16; 4]>,
+    /// For each lane the region of its primitive in the current cell.
+    regions: [RegionPoints; LANES],
+    /// The planes around the largest features of the primitives of the packet.
+    over: LanesOver,
+    /// For each near corner the lanes over whose largest feature it is and whose value is not above zero there.
+    lanes_over: Vec<u16>,
+    /// The features of the primitives of the packet.
+    features: [PrimitiveFeatures; LANES],
+    /// The lanes whose features are prepared, as bits.
+    prepared: u16,
+    /// The test of features, with its memory.
+    excluded: ExcludedFeatures,
+}
+
+impl PacketCells {
+    /// Begins a packet, which intersects the balls of these tetrahedra. Cells without a size get no list and are left
+    /// out.
+    pub(crate) fn begin(
+        &mut self,
+        cells: &CellContext<'_>,
+        sizes: &[Option<CellSize>],
+        packet: u32,
+        near_tetrahedra: &[u32],
+    ) {
+        let (delaunay, corners, slack) = (&cells.sites.delaunay, &cells.sites.corners, cells.limits.slack);
+        self.packet = packet;
+        self.prepared = 0;
+        self.numbers.clear();
+        self.corners.clear();
+        self.neighbours.clear();
+        self.tetrahedra.clear();
+        self.corners_of_cells.clear();
+        self.cells.clear();
+        let has_list = |site: &u32| sizes[*site as usize].is_some();
+        let push = |points: &mut CornerPoints, tetrahedron: u32| {
+            let corner = &corners.all[tetrahedron as usize];
+            points.push(corner.position, corner.radius + corner.error + slack, corner.error);
+        };
+        for &tetrahedron in near_tetrahedra {
+            let vertices = delaunay.tetrahedra()[tetrahedron as usize];
+            if vertices.iter().any(has_list) {
+                let number = to_u32(self.tetrahedra.len());
+                self.numbers.insert(tetrahedron, number);
+                push(&mut self.corners, tetrahedron);
+                self.tetrahedra.push(vertices);
+                self.corners_of_cells.extend(
+                    vertices.into_iter().filter(has_list).map(|site| u64::from(site) << 32 | u64::from(number)),
+                );
+            }
+        }
+        self.corners_of_cells.sort_unstable();
+        let mut first = 0;
+        for of_one in self.corners_of_cells.chunk_by(|a, b| a >> 32 == b >> 32) {
+            self.cells.push(((of_one[0] >> 32) as u32, first..first + of_one.len()));
+            first += of_one.len();
+        }
+        let near = self.tetrahedra.len();
+        for &tetrahedron in near_tetrahedra {
+            if !self.numbers.contains_key(&tetrahedron) {
+                continue;
+            }
+            let (vertices, neighbours) =
+                (delaunay.tetrahedra()[tetrahedron as usize], delaunay.neighbours()[tetrahedron as usize]);
+            self.neighbours.push(std::array::from_fn(|face| {
+                // The edge belongs to the cells of the three vertices of the face. No cell with an unknown corner
+                // has a list.
+                let is_needed = (0..4).any(|v| v != face && has_list(&vertices[v]));
+                if !is_needed || neighbours[face] == Delaunay::NONE {
+                    return Delaunay::NONE;
+                }
+                *self.numbers.entry(neighbours[face]).or_insert_with(|| {
+                    push(&mut self.corners, neighbours[face]);
+                    to_u32(self.corners.positions.len() - 1)
+                })
+            }));
+        }
+        let tree = cells.tree;
+        self.values.compute(&self.corners, &tree.leaves.packets[packet as usize], tree);
+        // The packet does not intersect the balls of the other corners.
+        for corner in near..self.corners.positions.len() {
+            self.values.raise_above_zero(corner);
+        }
+        self.find_crossings();
+    }
+
+    /// Finds the lanes that each edge from a near corner crosses.
+    fn find_crossings(&mut self) {
+        let lanes_below = &self.values.lanes_below;
+        let near = self.tetrahedra.len();
+        self.crossings.clear();
+        self.crossings.extend(self.neighbours.iter().zip(lanes_below).enumerate().map(
+            |(corner, (neighbours, lanes))| {
+                neighbours.map(|other| {
+                    let other = other as usize;
+                    // No corner has the number that stands for none.
+                    let is_first = other >= near || corner < other;
+                    lanes_below.get(other).filter(|_| is_first).map_or(0, |others| lanes ^ others)
+                })
+            },
+        ));
+    }
+
+    /// Returns the near corners of a cell.
+    #[inline(always)]
+    fn near_corners(&self, range: Range<usize>) -> impl Iterator<Item = usize> {
+        self.corners_of_cells[range].iter().map(|corner| corner_in(*corner))
+    }
+
+    /// Returns the lanes whose value is not above zero at some corner of a cell.
+    #[inline(always)]
+    fn near_lanes(&self, range: Range<usize>) -> u16 {
+        let lanes = self.near_corners(range).fold(0, |lanes, corner| lanes | self.values.lanes_below[corner]);
+        lanes & self.values.near_lanes
+    }
+
+    /// Computes the points that span the regions of some lanes in a cell.
+    #[inline(always)]
+    fn find_regions<D: Doubles>(&mut self, site: u32, range: Range<usize>, lanes: u16) {
+        for lane in Bits(lanes) {
+            self.regions[lane].clear();
+        }
+        for &corner in &self.corners_of_cells[range] {
+            let corner = corner_in(corner);
+            let position = self.corners.positions[corner];
+            for lane in Bits(lanes & self.values.lanes_below[corner]) {
+                self.regions[lane].push(position);
+            }
+            for face in 0..4 {
+                let crossing = self.crossings[corner][face];
+                if crossing & lanes == 0 || self.tetrahedra[corner][face] == site {
+                    continue;
+                }
+                let other = self.neighbours[corner][face] as usize;
+                let to = self.corners.positions[other];
+                let (from_values, to_values) = (&self.values.values[corner], &self.values.values[other]);
+                let mut parts = [0.0; LANES];
+                for first in [0, LANES / 2] {
+                    let (a, b) = (D::load_f32(&from_values[first..]), D::load_f32(&to_values[first..]));
+                    // The part of the edge from the first corner reaches a little beyond the zero of the chord.
+                    let beyond = D::select(a.is_at_most(D::splat(0.0)), D::splat(1e-6), D::splat(-1e-6));
+                    (a / (a - b) + beyond).store(&mut parts[first..]);
+                }
+                for lane in Bits(crossing & lanes) {
+                    let along = |k: usize| position[k] + parts[lane] * (to[k] - position[k]);
+                    self.regions[lane].push([along(0), along(1), along(2)]);
+                }
+            }
+        }
+    }
+
+    /// Passes the region of each of some primitives of the packet to `visit`, with the site and the lane. `lanes_of`
+    /// returns the lanes in question in the cell of a site.
+    pub(crate) fn visit_regions(
+        &mut self,
+        lanes_of: impl Fn(u32) -> u16,
+        mut visit: impl FnMut(u32, usize, &RegionPoints),
+    ) {
+        for number in 0..self.cells.len() {
+            let (site, range) = self.cells[number].clone();
+            let lanes = lanes_of(site) & self.near_lanes(range.clone());
+            self.find_regions::<<Portable as InstructionSet>::Doubles>(site, range, lanes);
+            for lane in Bits(lanes) {
+                visit(site, lane, &self.regions[lane]);
+            }
+        }
+    }
+}
+
+/// A SIMD kernel that finds, for each cell with near corners, the lanes that can hold the answer there.
+pub(crate) struct FindRelevantLanes<'a, 'b> {
+    /// The data that all tests share.
+    pub(crate) scene: RelevanceContext<'a>,
+    /// The lengths of all cells.
+    pub(crate) sizes: &'a [Option<CellSize>],
+    /// The packet that is examined.
+    pub(crate) packet: &'b mut PacketCells,
+    /// Receives the packet in each cell, in the order of the sites.
+    pub(crate) found: &'b mut Vec<PacketInCell>,
+}
+
+impl SimdKernel for FindRelevantLanes<'_, '_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn run<I: InstructionSet>(self) {
+        let Self { scene, sizes, packet, found } = self;
+        packet.over.prepare(scene, packet.packet as usize);
+        packet.lanes_over.clear();
+        for (corner, lanes) in
+            packet.corners.positions.iter().zip(&packet.values.lanes_below).take(packet.tetrahedra.len())
+        {
+            packet.lanes_over.push(lanes & packet.over.lanes_below_point::<I::Doubles>(corner));
+        }
+        for number in 0..packet.cells.len() {
+            let (site, range) = packet.cells[number].clone();
+            let Some(CellSize { max_distance, max_error }) = sizes[site as usize] else { continue };
+            let position = scene.position(site as usize);
+            let cell = CellInfo { site: site as usize, position, max_distance, max_error };
+            let mut lanes = packet.near_lanes(range.clone());
+            let over = packet.near_corners(range.clone()).fold(0, |over, corner| over | packet.lanes_over[corner]);
+            packet.find_regions::<I::Doubles>(site, range, lanes & !over);
+            for lane in Bits(lanes & !over) {
+                if packet.prepared >> lane & 1 == 0 {
+                    packet.prepared |= 1 << lane;
+                    packet.features[lane].prepare(scene, packet.packet as usize, lane);
+                }
+                let PacketCells { features, regions, excluded, .. } = &mut *packet;
+                if !features[lane].is_relevant::<I::Doubles>(&cell, scene.slack, &regions[lane], excluded) {
+                    lanes &= !(1 << lane);
+                }
+            }
+            found.push(PacketInCell { site, packet: packet.packet, lanes });
+        }
+    }
+}
+
+/// The indices of the bits that are set, in ascending order.
+struct Bits(u16);
+
+impl Iterator for Bits {
+    type Item = usize;
+
+    #[inline(always)]
+    fn next(&mut self) -> Option<usize> {
+        let index = self.0.trailing_zeros() as usize;
+        self.0 &= self.0.wrapping_sub(1);
+        (index < LANES).then_some(index)
+    }
+}
+
+/// Returns the corner of an entry of [`PacketCells::corners_of_cells`].
+#[inline(always)]
+fn corner_in(entry: u64) -> usize {
+    usize::try_from(entry & u64::from(u32::MAX)).expect("32 bits")
+}
+
+/// Converts a number of few corners to 32 bits.
+fn to_u32(n: usize) -> u32 {
+    u32::try_from(n).expect("few corners")
+}
