@@ -300,5 +300,6 @@ pub fn frame_unit(size: f64) -> f64 {
 
 /// 2^e, which is 0 or infinite where f64 does not have it.
 fn scale(e: i32) -> f64 {
-    2f64.powi(e)
+    // The library function is slow, and almost all sizes are in the range of the other one.
+    if (-1022..=1023).contains(&e) { power_of_two(e) } else { 2f64.powi(e) }
 }

@@ -16,7 +16,7 @@
 
 use p2m_bvh::engine::volume::Rounded;
 use p2m_core::engine::simd::Lanes;
-use p2m_core::engine::vector::V3;
+use p2m_core::engine::vector::{V3, exponent, power_of_two};
 
 /// The highest level of a cell. A coordinate in units of the cells of this level is an integer of at most 32 bits,
 /// so corners of cells are exact.
@@ -168,11 +168,11 @@ impl Block {
         // f32.
         let size = (0..3).map(|k| high[k] - low[k]).fold(0.0, f64::max);
         let largest = low.iter().chain(&high).fold(0.0f64, |a, x| a.max(x.abs()));
-        let mut exponent = -100;
-        while size > 254.0 * 2f64.powi(exponent) || largest > 8_388_000.0 * 2f64.powi(exponent) {
+        let mut exponent = least_exponent(size, 8).max(least_exponent(largest, 23));
+        while size > 254.0 * power_of_two(exponent) || largest > 8_388_000.0 * power_of_two(exponent) {
             exponent += 1;
         }
-        let unit = 2f64.powi(exponent);
+        let unit = power_of_two(exponent);
         let origin = low.map(|x| (x / unit).floor() * unit);
         let mut block = Self::new(entries, LEVEL_OF_BOXES);
         block.exponent = exponent as i8;
@@ -199,13 +199,13 @@ impl Block {
         // Values above -min_f may be cut: a minimum of concave functions is concave, and such packets are farther than
         // y.
         let top = if min_f < 0.0 { max_f.min(-min_f) } else { max_f };
-        let mut exponent = -100;
-        while top - min_f > 254.0 * 2f64.powi(exponent) && exponent < 100 {
+        let mut exponent = least_exponent(top - min_f, 8);
+        while top - min_f > 254.0 * power_of_two(exponent) && exponent < 100 {
             exponent += 1;
         }
-        let unit = 2f64.powi(exponent);
+        let unit = power_of_two(exponent);
         // The base is lowered by the rounding of the sum in `lower_bounds`.
-        let base = min_f - unit / 256.0 - min_f.abs() * 2f64.powi(-20);
+        let base = min_f - unit / 256.0 - min_f.abs() * power_of_two(-20);
         let base = (base as f32).next_down();
         let mut block = Self::new(entries, level);
         block.exponent = exponent as i8;
@@ -299,6 +299,13 @@ impl BlockQuery {
         };
         [part(self.cells[0]), part(self.cells[1]), part(self.cells[2])]
     }
+}
+
+/// Returns an exponent of units, at least the lowest one, of which every lower one is too low for `length` to be below
+/// 2^`bits` units.
+fn least_exponent(length: f64, bits: i32) -> i32 {
+    let exponent = if length.is_finite() { exponent(length) } else { i32::from(*EXPONENTS.end()) };
+    (exponent - bits).clamp(i32::from(*EXPONENTS.start()), i32::from(*EXPONENTS.end()))
 }
 
 #[cfg(test)]

@@ -11,7 +11,7 @@
 //! primitives rather than too few.
 
 use nalgebra::Point3;
-use p2m_bvh::engine::packet::{self, LANES, Packet, at_most, smallest};
+use p2m_bvh::engine::packet::{self, LANES, Locals, PLACES, Packet, at_most, smallest};
 use p2m_core::Aabb;
 use p2m_core::engine::simd::{InstructionSet, SimdKernel};
 use p2m_core::engine::vector::{V3, norm_squared, sub};
@@ -98,16 +98,31 @@ impl SimdKernel for DistancesAtPoints<'_> {
 
     #[inline(always)]
     fn run<I: InstructionSet>(self) {
-        for ((point, distances), nearest) in self.points.iter().zip(self.distances).zip(self.nearest) {
-            (*distances, *nearest) = (LaneDistances::UNKNOWN, None);
-            let Some(local) = self.packet.local(point) else { continue };
-            self.packet.squares::<I>(&local, f32::INFINITY, &mut distances.squared);
-            distances.error_above = local.excess;
-            if self.packet.has_vertices() {
-                let least = smallest::<I::Wide>(&distances.squared);
-                let lane = (at_most::<I::Wide>(&distances.squared, least)).trailing_zeros() as usize;
-                *nearest = Some((f64::from(least.sqrt() + local.deficit) * self.packet.unit(), lane));
+        const ALL_PLACES: [u8; PLACES] = [0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15];
+        let Self { packet, points, distances, nearest } = self;
+        let (mut locals, mut squares) = (Locals::default(), [[0.0; LANES]; PLACES]);
+        let mut first = 0;
+        while first < points.len() {
+            let count = PLACES.min(points.len() - first);
+            for (place, point) in points[first..first + count].iter().enumerate() {
+                locals.set(place, point, packet);
             }
+            locals.convert::<I>();
+            packet.squares_of_several::<I>(&locals, &ALL_PLACES[..count], &[u32::MAX; PLACES], &mut squares);
+            for (place, squares) in squares.iter().enumerate().take(count) {
+                let (distances, nearest) = (&mut distances[first + place], &mut nearest[first + place]);
+                (*distances, *nearest) = (LaneDistances::UNKNOWN, None);
+                if locals.far >> place & 1 == 1 {
+                    continue;
+                }
+                *distances = LaneDistances { squared: *squares, error_above: locals.excess[place] };
+                if packet.has_vertices() {
+                    let least = smallest::<I::Wide>(squares);
+                    let lane = (at_most::<I::Wide>(squares, least)).trailing_zeros() as usize;
+                    *nearest = Some((f64::from(least.sqrt() + locals.deficit[place]) * packet.unit(), lane));
+                }
+            }
+            first += count;
         }
     }
 }
