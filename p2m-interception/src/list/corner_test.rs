@@ -166,8 +166,10 @@ impl SimdKernel for KeepLanes<'_> {
 /// A SIMD kernel that returns, for up to eight points, a lower bound of the distance to the nearest primitive in some
 /// lanes of a packet, in the unit of the packet.
 pub(crate) struct MinOverLanes<'a> {
-    /// The distances from the points to the packet.
+    /// The distances from some points to the packet.
     pub(crate) distances: &'a [LaneDistances],
+    /// The indices of the points among these.
+    pub(crate) points: &'a [usize],
     /// The lanes to consider, as bits.
     pub(crate) lanes: u16,
 }
@@ -182,7 +184,8 @@ impl SimdKernel for MinOverLanes<'_> {
             *other = if self.lanes >> lane & 1 == 1 { 0.0 } else { f32::INFINITY };
         }
         let mut all = [0.0; 8];
-        for (least, distances) in all.iter_mut().zip(self.distances) {
+        for (least, point) in all.iter_mut().zip(self.points) {
+            let distances = &self.distances[*point];
             let mut squared = [0.0; LANES];
             for lane in 0..LANES {
                 squared[lane] = distances.squared[lane] + exclusion[lane];

@@ -148,8 +148,10 @@ impl Refinement<'_> {
         }
         if open == 0 && candidates.len() <= MAX_FINE_PACKETS {
             self.counters.charge_tests(8 * candidates.len());
-            let packets: Vec<PacketCandidate> =
-                candidates.iter().filter_map(|c| self.packet_candidate(cube, &dominators, c)).collect();
+            let distances: Vec<[LaneDistances; 8]> =
+                candidates.iter().map(|candidate| self.distances_from_corners(cube, candidate)).collect();
+            let all = candidates.iter().zip(&distances);
+            let packets = all.filter_map(|(c, distances)| self.packet_candidate(&dominators, c, distances)).collect();
             return self.refine_fine(cube, packets, fraction);
         }
         // A node has at least eight packets.
@@ -189,23 +191,29 @@ impl Refinement<'_> {
         RefinedCell::Split(Box::new(children.map(|(cube, inherited)| cell(&cube, inherited))))
     }
 
-    /// Applies the corner test to a packet. The result is `None` if no lane passes.
-    fn packet_candidate(
-        &self,
-        cube: &Cube,
-        dominators: &Dominators,
-        candidate: &CoarseCandidate,
-    ) -> Option<PacketCandidate> {
-        let number = candidate.child.number();
-        let packet = &self.tree.leaves.packets[number];
+    /// Computes the distances from the corners of a cell to the lanes of a packet.
+    fn distances_from_corners(&self, cube: &Cube, candidate: &CoarseCandidate) -> [LaneDistances; 8] {
+        let packet = &self.tree.leaves.packets[candidate.child.number()];
         let points = cube.corners.map(|c| c.x);
         let mut distances = [LaneDistances::UNKNOWN; 8];
         let at = DistancesAtPoints { packet, points: &points, distances: &mut distances, nearest: &mut [None; 8] };
         self.isa().run(at);
-        let lanes =
-            self.isa().run(KeepLanes { packet, dominators, distances: &distances, corners: &[0, 1, 2, 3, 4, 5, 6, 7] });
+        distances
+    }
+
+    /// Applies the corner test to a packet. The result is `None` if no lane passes.
+    fn packet_candidate<'a>(
+        &self,
+        dominators: &Dominators,
+        candidate: &CoarseCandidate,
+        distances: &'a [LaneDistances; 8],
+    ) -> Option<PacketCandidate<'a>> {
+        const CORNERS: &[usize; 8] = &[0, 1, 2, 3, 4, 5, 6, 7];
+        let number = candidate.child.number();
+        let packet = &self.tree.leaves.packets[number];
+        let lanes = self.isa().run(KeepLanes { packet, dominators, distances, corners: CORNERS });
         let packet = u32::try_from(number).expect("packets have numbers");
-        (lanes != 0).then_some(PacketCandidate { packet, lanes, bounds: candidate.bounds, distances })
+        (lanes != 0).then_some(PacketCandidate { packet, lanes, bounds: candidate.bounds, distances, corners: CORNERS })
     }
 
     /// Returns the instruction set of the tree.
@@ -214,7 +222,7 @@ impl Refinement<'_> {
     }
 
     /// Refines a cell whose candidates are packets.
-    fn refine_fine(&self, cube: &Cube, candidates: Vec<PacketCandidate>, fraction: f64) -> RefinedCell {
+    fn refine_fine(&self, cube: &Cube, candidates: Vec<PacketCandidate<'_>>, fraction: f64) -> RefinedCell {
         if cube.level > 0 && !self.may_have_queries(cube) {
             return self.finish_cell(RefinedCell::Tree, fraction);
         }
@@ -243,7 +251,7 @@ impl Refinement<'_> {
             });
             let mut distances = [LaneDistances::UNKNOWN; LATTICE_POINTS];
             for corner in 0..8 {
-                distances[2 * CHILD_CORNERS[0][corner]] = candidate.distances[corner];
+                distances[2 * CHILD_CORNERS[0][corner]] = candidate.distances[candidate.corners[corner]];
             }
             distances[LATTICE_CENTRE] = *at_centre;
             for ((at, new), near) in NEW_LATTICE_POINTS.into_iter().zip(new_distances).zip(new_nearest) {
@@ -271,12 +279,11 @@ impl Refinement<'_> {
                 let lanes =
                     candidate.lanes & self.isa().run(KeepLanes { packet, dominators: &dominators, distances, corners });
                 if lanes != 0 {
-                    inherited.push(PacketCandidate { lanes, distances: corners.map(|at| distances[at]), ..*candidate });
+                    inherited.push(PacketCandidate { lanes, distances, corners, ..*candidate });
                 }
             }
             (child, inherited)
         });
-        drop(all);
         self.refine_children(children, candidates.len() >= MIN_PARALLEL_PACKETS, |child, inherited| {
             self.refine_fine(child, inherited, fraction * 0.125)
         })

@@ -29,7 +29,7 @@ impl Refinement<'_> {
     }
 
     /// Runs the filters of all packets at the centre of a cell.
-    pub(crate) fn sample_centre(&self, cube: &Cube, candidates: &[PacketCandidate]) -> CellCentre {
+    pub(crate) fn sample_centre(&self, cube: &Cube, candidates: &[PacketCandidate<'_>]) -> CellCentre {
         let x = cube.point(LATTICE_CENTRE);
         let mut centre = CellCentre {
             distances: Vec::with_capacity(candidates.len()),
@@ -55,7 +55,8 @@ impl Refinement<'_> {
         let y_squared = norm_squared(sub(x, centre.y));
         let f = candidates.iter().map(|candidate| {
             let unit = self.tree.leaves.packets[candidate.packet as usize].unit();
-            let least = self.isa().run(MinOverLanes { distances: &candidate.distances, lanes: candidate.lanes });
+            let PacketCandidate { distances, corners, lanes, .. } = *candidate;
+            let least = self.isa().run(MinOverLanes { distances, points: corners, lanes });
             std::array::from_fn(|i| (least[i] * unit) * (least[i] * unit) - squares[i])
         });
         let f: Vec<[f64; 8]> = f.collect();
@@ -64,7 +65,7 @@ impl Refinement<'_> {
         centre.passing_corners = f.iter().filter(|f| bound(f) <= y_squared).count();
         // Boxes are considered only near the scene, and only if corners let several packets pass.
         centre.passing_boxes = if centre.passing_corners > 2 && y_squared < 4.0 * cube.side * cube.side {
-            let bound = |candidate: &PacketCandidate| candidate.bounds.lower_bound(&nalgebra::Point3::from(x));
+            let bound = |candidate: &PacketCandidate<'_>| candidate.bounds.lower_bound(&nalgebra::Point3::from(x));
             candidates.iter().filter(|candidate| bound(candidate) <= y_squared).count()
         } else {
             usize::MAX
@@ -73,7 +74,12 @@ impl Refinement<'_> {
     }
 
     /// Builds the list of a cell as it is stored, or a cell without a list if the tree is better.
-    pub(crate) fn build_list(&self, cube: &Cube, candidates: &[PacketCandidate], centre: &CellCentre) -> RefinedCell {
+    pub(crate) fn build_list(
+        &self,
+        cube: &Cube,
+        candidates: &[PacketCandidate<'_>],
+        centre: &CellCentre,
+    ) -> RefinedCell {
         let frame = &self.tree.frame;
         let y = round_reference(frame.place(&centre.y));
         let squares = cube.corners.map(|corner| norm_squared(sub(frame.place(&corner.x), y)));
@@ -95,10 +101,13 @@ impl Refinement<'_> {
             single = Some((candidate.packet, lanes.trailing_zeros()));
             let bounds = frame.enclose(&packet.bounds_of(lanes));
             let length = packet.unit() * frame.per_unit;
-            let least = self.isa().run(MinOverLanes { distances: &candidate.distances, lanes });
+            let PacketCandidate { distances: at_corners, corners, .. } = *candidate;
+            let least = self.isa().run(MinOverLanes { distances: at_corners, points: corners, lanes });
             let f = std::array::from_fn(|i| (least[i] * length) * (least[i] * length) - squares[i] - margin);
             // Packets that are nearer to the centre come into earlier blocks.
-            let order = self.isa().run(MinOverLanes { distances: std::slice::from_ref(distances), lanes })[0] * length;
+            let order =
+                self.isa().run(MinOverLanes { distances: std::slice::from_ref(distances), points: &[0], lanes })[0]
+                    * length;
             entries.push((order, Entry { packet: candidate.packet, lanes, bounds, f }));
         }
         match (count, single) {
@@ -136,7 +145,7 @@ impl Refinement<'_> {
     /// Returns the lanes of a candidate without those that can only tie with a primitive of a lower id. Such a lane
     /// has one vertex as its nearest point everywhere in the cell, with a margin that makes the kernel return exactly
     /// the distance to this vertex, and a primitive with a lower id has the same vertex.
-    fn lanes_without_ties(&self, cube: &Cube, candidate: &PacketCandidate) -> u16 {
+    fn lanes_without_ties(&self, cube: &Cube, candidate: &PacketCandidate<'_>) -> u16 {
         /// The relative margin by which a vertex has to be the nearest point. The kernel needs 2^-38.
         const MARGIN: f64 = 1.0 / (1u64 << 36) as f64;
         let packet = &self.tree.leaves.packets[candidate.packet as usize];

@@ -76,15 +76,17 @@ pub(crate) struct CoarseCandidate {
 
 /// A packet that a fine cell cannot exclude.
 #[derive(Clone, Copy)]
-pub(crate) struct PacketCandidate {
+pub(crate) struct PacketCandidate<'a> {
     /// The number of the packet.
     pub(crate) packet: u32,
     /// The lanes that pass the corner test, as bits.
     pub(crate) lanes: u16,
     /// The box around the packet.
     pub(crate) bounds: Aabb<f64>,
-    /// The distances from the corners of the cell to its lanes.
-    pub(crate) distances: [LaneDistances; 8],
+    /// The distances from some points to its lanes.
+    pub(crate) distances: &'a [LaneDistances],
+    /// The indices of the corners of the cell among these points.
+    pub(crate) corners: &'a [usize; 8],
 }
 
 /// The primitive that the filters find nearest to a point.

@@ -43,7 +43,7 @@ impl<'a> SiteDistances<'a> {
 
     /// Returns a lower bound of the distance to the nearest of some lanes, in the unit of the packet.
     pub(crate) fn least(&self, lanes: u16) -> f64 {
-        self.tree.isa().run(MinOverLanes { distances: &self.distances, lanes })[0]
+        self.tree.isa().run(MinOverLanes { distances: &self.distances, points: &[0], lanes })[0]
     }
 }
 
