@@ -2,29 +2,36 @@
 
 use crate::build::options::{SplitOptions, SplitRule};
 use crate::build::primitive::{BuildPrimitive, GrowingBox};
+use p2m_core::engine::simd::{InstructionSet, Isa, SimdKernel};
+use p2m_core::engine::vector::{exponent, power_of_two};
 
 /// A measure of how likely a query is to visit a box, up to a common factor.
 struct AreaMeasure {
-    /// Lengths are divided by this unit, so that products do not overflow.
-    unit: f64,
+    /// Lengths are multiplied by this power of two, so that products do not overflow.
+    per_unit: f64,
 }
 
 impl AreaMeasure {
     /// The measure for boxes inside of `bounds`, which is at half scale; `None` if it would overflow or divide by zero.
     fn new(bounds: &GrowingBox) -> Option<Self> {
-        let unit = bounds.longest_side();
-        (unit > 0.0 && unit.is_finite()).then_some(Self { unit })
+        let longest = bounds.longest_side();
+        let is_usable = longest > 0.0 && longest.is_finite();
+        // The power is at most 2^1022, with which the longest side of a subnormal length stays below 1.
+        is_usable.then(|| Self { per_unit: power_of_two((-exponent(longest)).clamp(-1022, 1022)) })
     }
 
     /// Half of the surface area of a box.
     fn half_area(&self, bounds: &GrowingBox) -> f64 {
-        let [x, y, z]: [f64; 3] = std::array::from_fn(|k| (bounds.max[k] - bounds.min[k]) / self.unit);
+        let [x, y, z]: [f64; 3] = std::array::from_fn(|k| (bounds.max(k) - bounds.min(k)) * self.per_unit);
         x * y + y * z + z * x
     }
 }
 
 /// The number of bins along an axis.
 const BINS: usize = 16;
+/// The number of the last bin.
+const LAST_BIN: f64 = 15.0;
+const _: () = assert!(BINS == 16);
 
 /// A division of an interval of an axis into bins. Centres outside of the interval count for the first or the last bin.
 #[derive(Clone, Copy)]
@@ -50,11 +57,18 @@ impl Binning {
         self.scale.is_finite() && self.scale > 0.0
     }
 
-    /// The bin of the centre of a primitive.
-    #[inline]
-    #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "saturates at 0, and is limited above")]
+    /// The bin of the centre of a primitive. It never decreases while the centre moves up.
+    #[inline(always)]
+    #[allow(clippy::cast_possible_truncation, reason = "the lowest bits are those of a bin")]
     pub(crate) fn bin_of(&self, primitive: &BuildPrimitive) -> usize {
-        (((primitive.centre(self.axis) - self.low) * self.scale) as usize).min(BINS - 1)
+        // At this size the unit in the last place is 1, so the sum is rounded to an integer, whose lowest bits are
+        // those of its mantissa. That takes fewer instructions than a conversion.
+        const SHIFT: f64 = power_of_two(52);
+        let bin = (primitive.centre(self.axis) - self.low) * self.scale - 0.5;
+        // The number is NaN if the binning is not usable, and then the first bin has all primitives.
+        let bin = if bin > 0.0 { bin } else { 0.0 };
+        let bin = if bin < LAST_BIN { bin } else { LAST_BIN };
+        (bin + SHIFT).to_bits() as usize % BINS
     }
 }
 
@@ -73,8 +87,11 @@ pub(crate) fn to_f64(n: usize) -> f64 {
 }
 
 /// The cost of testing `n` primitives of which `block` are tested at once, in units of the cost of testing one.
+#[inline(always)]
 fn test_cost(n: usize, block: usize) -> f64 {
-    to_f64(n.div_ceil(block) * block)
+    // The usual sizes need no division.
+    let tested = if block.is_power_of_two() { (n + block - 1) & !(block - 1) } else { n.next_multiple_of(block) };
+    to_f64(tested)
 }
 
 /// The number of times that [`SplitRule::AdaptiveSah`] samples the cost again around the best position.
@@ -90,7 +107,7 @@ pub(crate) fn best_split(
     let block = options.block.max(1);
     let measure = AreaMeasure::new(bounds)?;
     let node_area = measure.half_area(bounds);
-    let on_axis = |axis: usize| Binning::new(axis, centres.min[axis], centres.max[axis]);
+    let on_axis = |axis: usize| Binning::new(axis, centres.min(axis), centres.max(axis));
     let cheaper = |a: Option<SplitPlane>, b: Option<SplitPlane>| match (a, b) {
         (Some(a), Some(b)) => Some(if b.cost < a.cost { b } else { a }),
         (a, b) => a.or(b),
@@ -98,13 +115,21 @@ pub(crate) fn best_split(
     match options.rule {
         SplitRule::Median => None,
         SplitRule::Sah => {
-            let borders = (0..3).map(|axis| cheapest_border(primitives, on_axis(axis), &measure, node_area, block));
-            borders.fold(None, cheaper)
+            let binnings = [on_axis(0), on_axis(1), on_axis(2)];
+            let bins = Bins::of(primitives, &binnings);
+            let borders = binnings.into_iter().zip(&bins);
+            borders
+                .map(|(binning, bins)| cheapest_border(bins, binning, &measure, node_area, block))
+                .fold(None, cheaper)
         }
         SplitRule::AdaptiveSah => {
-            let mut best = cheapest_border(primitives, on_axis(bounds.longest_axis()), &measure, node_area, block)?;
+            let border_of = |binning: Binning| {
+                let [bins] = Bins::of(primitives, &[binning]);
+                cheapest_border(&bins, binning, &measure, node_area, block)
+            };
+            let mut best = border_of(on_axis(bounds.longest_axis()))?;
             for _ in 0..RESAMPLINGS {
-                let finer = cheapest_border(primitives, best.binning.refined_at(best.bin), &measure, node_area, block);
+                let finer = border_of(best.binning.refined_at(best.bin));
                 best = cheaper(Some(best), finer)?;
             }
             Some(best)
@@ -112,9 +137,44 @@ pub(crate) fn best_split(
     }
 }
 
+/// The boxes and the numbers of the primitives in the bins of an axis.
+#[derive(Clone, Copy)]
+struct Bins([(GrowingBox, usize); BINS]);
+
+impl Bins {
+    /// Sorts primitives into the bins of several binnings.
+    fn of<const N: usize>(primitives: &[BuildPrimitive], binnings: &[Binning; N]) -> [Self; N] {
+        let mut bins = [Self([(GrowingBox::EMPTY, 0); BINS]); N];
+        Isa::best().run(FillBins { primitives, binnings, bins: &mut bins });
+        bins
+    }
+}
+
+/// A SIMD kernel that adds primitives to bins. It uses the instruction set only through the compiler.
+struct FillBins<'a, const N: usize> {
+    primitives: &'a [BuildPrimitive],
+    binnings: &'a [Binning; N],
+    bins: &'a mut [Bins; N],
+}
+
+impl<const N: usize> SimdKernel for FillBins<'_, N> {
+    type Output = ();
+
+    #[inline(always)]
+    fn run<I: InstructionSet>(self) {
+        for primitive in self.primitives {
+            for (binning, bins) in self.binnings.iter().zip(self.bins.iter_mut()) {
+                let (bounds, count) = &mut bins.0[binning.bin_of(primitive)];
+                bounds.add(&primitive.bounds);
+                *count += 1;
+            }
+        }
+    }
+}
+
 /// The cheapest border between two bins that has primitives on both sides.
 fn cheapest_border(
-    primitives: &[BuildPrimitive],
+    Bins(bins): &Bins,
     binning: Binning,
     measure: &AreaMeasure,
     node_area: f64,
@@ -123,33 +183,35 @@ fn cheapest_border(
     if !binning.is_usable() || !node_area.is_finite() {
         return None;
     }
-    let mut bins = [(GrowingBox::EMPTY, 0usize); BINS];
-    for primitive in primitives {
-        let bin = &mut bins[binning.bin_of(primitive)];
-        bin.0.add(&primitive.min, &primitive.max);
-        bin.1 += 1;
-    }
     // The area and the number of the primitives to the right of the border below each bin.
     let mut right = [(0.0, 0usize); BINS];
     let mut side = Side::EMPTY;
     for (k, bin) in bins.iter().enumerate().skip(1).rev() {
-        side.add(bin);
-        right[k] = (side.half_area(measure), side.count);
+        if bin.1 > 0 {
+            side.add(bin);
+            right[k] = (side.half_area(measure), side.count);
+        }
     }
     let mut best: Option<SplitPlane> = None;
     let mut side = Side::EMPTY;
-    for k in 1..BINS {
-        side.add(&bins[k - 1]);
-        let (right_area, right_count) = right[k];
-        if side.count == 0 || right_count == 0 {
+    let mut after = 0;
+    for (k, bin) in bins.iter().enumerate() {
+        if bin.1 == 0 {
             continue;
         }
-        let sum = side.half_area(measure) * test_cost(side.count, block) + right_area * test_cost(right_count, block);
-        // If all boxes lie on a line, every area is zero, and the most balanced split is taken.
-        let cost = if node_area > 0.0 { sum / node_area } else { test_cost(side.count.max(right_count), block) };
-        if best.as_ref().is_none_or(|b| cost < b.cost) {
-            best = Some(SplitPlane { binning, bin: k, cost });
+        // Borders beside empty bins divide the primitives as the first border before them does.
+        let border = std::mem::replace(&mut after, k + 1);
+        let (right_area, right_count) = right[k];
+        if side.count > 0 {
+            let left_cost = side.half_area(measure) * test_cost(side.count, block);
+            let sum = left_cost + right_area * test_cost(right_count, block);
+            // If all boxes lie on a line, every area is zero, and the most balanced split is taken.
+            let cost = if node_area > 0.0 { sum / node_area } else { test_cost(side.count.max(right_count), block) };
+            if best.as_ref().is_none_or(|b| cost < b.cost) {
+                best = Some(SplitPlane { binning, bin: border, cost });
+            }
         }
+        side.add(bin);
     }
     best
 }
@@ -164,7 +226,7 @@ impl Side {
     const EMPTY: Self = Self { bounds: GrowingBox::EMPTY, count: 0 };
 
     fn add(&mut self, (bounds, count): &(GrowingBox, usize)) {
-        self.bounds.add(&bounds.min, &bounds.max);
+        self.bounds.add(bounds);
         self.count += count;
     }
 

@@ -10,6 +10,7 @@ use crate::build::options::SplitOptions;
 use crate::build::primitive::{BuildPrimitive, GrowingBox};
 use crate::build::sah::{SplitPlane, best_split, to_f64};
 use crate::tree::MAX_DEPTH;
+use p2m_core::engine::simd::{InstructionSet, Isa, SimdKernel};
 use p2m_core::{Aabb, PrimitiveId, Real};
 
 /// The largest depth of a node below the root, whatever the input. Half of it is for splits by cost and half for
@@ -120,13 +121,7 @@ fn divide(primitives: &mut [BuildPrimitive], depth: usize, options: &SplitOption
     if primitives.len() <= 1 {
         return None;
     }
-    let mut bounds = GrowingBox::EMPTY;
-    let mut centres = GrowingBox::EMPTY;
-    for primitive in primitives.iter() {
-        bounds.add(&primitive.min, &primitive.max);
-        let centre = std::array::from_fn(|k| primitive.centre(k));
-        centres.add(&centre, &centre);
-    }
+    let [bounds, centres] = Isa::best().run(BoundPrimitives(primitives));
     let may_be_leaf = primitives.len() <= options.max_leaf;
     let plane = if depth < MAX_SPLIT_DEPTH / 2 { best_split(primitives, &bounds, &centres, options) } else { None };
     match plane {
@@ -148,6 +143,25 @@ fn divide(primitives: &mut [BuildPrimitive], depth: usize, options: &SplitOption
                 .select_nth_unstable_by(middle, |a, b| a.centre(axis).total_cmp(&b.centre(axis)).then(a.id.cmp(&b.id)));
             Some(middle)
         }
+    }
+}
+
+/// A SIMD kernel that returns the box around some primitives and the box around their centres. It uses the instruction
+/// set only through the compiler.
+struct BoundPrimitives<'a>(&'a [BuildPrimitive]);
+
+impl SimdKernel for BoundPrimitives<'_> {
+    type Output = [GrowingBox; 2];
+
+    #[inline(always)]
+    fn run<I: InstructionSet>(self) -> [GrowingBox; 2] {
+        let (mut bounds, mut centres) = (GrowingBox::EMPTY, GrowingBox::EMPTY);
+        for primitive in self.0 {
+            bounds.add(&primitive.bounds);
+            let centre = [primitive.centre(0), primitive.centre(1), primitive.centre(2)];
+            centres.add(&GrowingBox::new(centre, centre));
+        }
+        [bounds, centres]
     }
 }
 

@@ -96,7 +96,7 @@ impl Packet {
                 packet.quantize(lane, 1, to_f64_array(&primitive.bounds.max), f64::ceil);
             } else {
                 for (v, vertex) in primitive.vertices().iter().enumerate() {
-                    packet.quantize(lane, v, *vertex, f64::round);
+                    packet.quantize(lane, v, *vertex, round);
                     packet.corners[v][lane] = find_or_push(&mut exact, *vertex);
                 }
             }
@@ -281,6 +281,14 @@ fn find_or_push(list: &mut Vec<V3>, vertex: V3) -> u8 {
         list.push(vertex);
     }
     index as u8
+}
+
+/// Rounds a number below 2^51 to the nearest integer, ties to even. The function of the library is a call on processors
+/// without an instruction for it.
+#[inline(always)]
+fn round(x: f64) -> f64 {
+    const SHIFT: f64 = power_of_two(52) + power_of_two(51);
+    (x + SHIFT) - SHIFT
 }
 
 /// The smallest power of two of which `size` is at most 65534 times as large; 0 for a size of 0.
