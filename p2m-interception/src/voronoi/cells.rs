@@ -15,7 +15,7 @@
 use crate::delaunay::BOUNDING;
 use crate::list::block::{Block, BoundKind, Entry};
 use crate::options::P2mReport;
-use crate::parallel_chunks::map_chunks_in_order;
+use crate::parallel_chunks::{map_chunks_in_order, run_both};
 use crate::progress::{BuildStage, ProgressReporter};
 use crate::voronoi::adjacency::{EdgeAdjacency, IncidenceLists};
 use crate::voronoi::cell::{CellContext, FarPartBuilder};
@@ -60,14 +60,19 @@ impl CellContext<'_> {
         let is_hub =
             |site: usize| incident_tetrahedra.get(site).len() / 2 + adjacency.edges.get(site).len() > MAX_NEIGHBOURS;
         let slack = self.limits.slack / self.sites.delaunay.unit();
-        let mut neighbours = NeighbourTable::new(sites, BOUNDING, slack, |site, all, edges| {
+        let list_neighbours = |site: usize, all: &mut Vec<u32>, edges: &mut Vec<u32>| {
             if is_hub(site) {
                 return;
             }
             let neighbours = incident_tetrahedra.get(site).iter().flat_map(|t| tetrahedra[*t as usize]);
             all.extend(neighbours.filter(|v| *v as usize >= BOUNDING && *v as usize != site));
             edges.extend_from_slice(adjacency.edges.get(site));
-        });
+        };
+        let (mut neighbours, packets) = run_both(
+            self.limits.parallel,
+            || NeighbourTable::new(sites, BOUNDING, slack, list_neighbours),
+            || CellPackets::find(self, &adjacency, &incident_tetrahedra, is_hub, report, reporter),
+        );
         let empty_list =
             Block::from_list(&[Entry { packet: 0, lanes: 0, bounds: [[0.0; 3]; 2], f: [0.0; 8] }], BoundKind::Boxes);
         let mut blocks = vec![empty_list[0]; sites.len()];
@@ -75,7 +80,6 @@ impl CellContext<'_> {
         let mut filled_sites = neighbours.sites.edit(std::mem::take);
         report.added = self.sites.added;
         let budget = self.limits.budget;
-        let packets = CellPackets::find(self, &adjacency, &incident_tetrahedra, is_hub, report, reporter);
         let regions = self.filter.map_or_else(Vec::new, |(above, _)| {
             packets.find_regions(self, |site| {
                 packets.of_site(site).map(|packet| packet.lanes.count_ones() as usize).sum::<usize>() > above
