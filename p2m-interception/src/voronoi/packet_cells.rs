@@ -301,3 +301,70 @@ fn corner_in(entry: u64) -> usize {
 fn to_u32(n: usize) -> u32 {
     u32::try_from(n).expect("few corners")
 }
+
+#[cfg(test)]
+mod tests {
+    use crate::delaunay::Delaunay;
+    use crate::voronoi::circumsphere::circumcentre;
+    use crate::{P2mIndex, Partition};
+    use nalgebra::Point3;
+    use p2m_core::engine::vector::V3;
+    use p2m_core::{BruteForce, BuildIndex, ClosestPoint, Segment, Shape, Triangle};
+    use p2m_testkit::{cases, rng, vector};
+    use rand::RngExt;
+
+    /// A list has every answer in its cell. Queries are where a wrong region would lack one: at the corners of cells,
+    /// on edges between corners, and near both.
+    #[test]
+    fn lists_have_the_answers_at_corners_and_on_edges_of_cells() {
+        let (mut seen, mut others) = (0, 0);
+        let cases = cases(60, 12);
+        for case in cases.clone() {
+            let mut rng = rng("packets in cells", case);
+            let step = 2f64.powi(-(case as i32 % 4));
+            // Triangles of a rough surface share vertices and edges. Others, and segments, are anywhere.
+            let size = 6u32;
+            let height: Vec<f64> = (0..(size + 1).pow(2)).map(|_| rng.random_range(0.0..step)).collect();
+            let at = |i: u32, j: u32| Point3::new(f64::from(i), f64::from(j), height[(i * (size + 1) + j) as usize]);
+            let mut shapes: Vec<Shape<f64>> = Vec::new();
+            for (i, j) in (0..size).flat_map(|i| (0..size).map(move |j| (i, j))) {
+                shapes.push(Triangle::new(at(i, j), at(i + 1, j), at(i + 1, j + 1)).into());
+                shapes.push(Triangle::new(at(i, j), at(i + 1, j + 1), at(i, j + 1)).into());
+            }
+            for _ in 0..case % 3 * 20 {
+                let a = Point3::from(vector(&mut rng) * 4.0);
+                let [b, c] = [(); 2].map(|()| a + vector(&mut rng));
+                shapes.push(if rng.random() { Triangle::new(a, b, c).into() } else { Segment::new(a, b).into() });
+            }
+            let index = P2mIndex::<f64, &[Shape<f64>]>::build(&shapes[..], &Default::default()).expect("valid");
+            let brute = BruteForce::new(&shapes[..]).expect("valid");
+            let vertices: Vec<V3> = shapes
+                .iter()
+                .flat_map(|shape| shape.vertices().iter().map(|v| v.coords.into()).collect::<Vec<V3>>())
+                .collect();
+            let delaunay = Delaunay::new(&vertices, 300.0).expect("finite");
+            let position = |site: u32| delaunay.sites()[site as usize].map(|x| x * delaunay.unit());
+            let centres: Vec<Option<V3>> = delaunay
+                .tetrahedra()
+                .iter()
+                .map(|tetrahedron| circumcentre(&tetrahedron.map(position)).map(|centre| centre.position))
+                .collect();
+            for (tetrahedron, neighbours) in delaunay.neighbours().iter().enumerate() {
+                for other in neighbours.iter().filter(|other| **other != Delaunay::NONE) {
+                    let (Some(a), Some(b)) = (centres[tetrahedron], centres[*other as usize]) else { continue };
+                    let t = rng.random_range(0.0..1.0);
+                    let aside = vector(&mut rng) * 2f64.powi(-rng.random_range(4..40));
+                    let query = Point3::from(std::array::from_fn(|k| a[k] + t * (b[k] - a[k]))) + aside;
+                    let (Some(list), Some(answer)) = (index.partition().list(&query), brute.closest_point(&query))
+                    else {
+                        continue;
+                    };
+                    assert!(list.contains(&answer.primitive), "case {case}: {query} {answer:?} {list:?}");
+                    seen += 1;
+                    others += shapes.len() - list.len();
+                }
+            }
+        }
+        assert!(cases.have_more_than(20_000, seen) && others > 10 * seen, "{seen} {others}");
+    }
+}
