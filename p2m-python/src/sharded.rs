@@ -211,6 +211,11 @@ impl Shards {
         shards.map(|shard| (shard.file.clone(), shard.bytes, shard.primitives, [shard.min, shard.max])).collect()
     }
 
+    /// Returns the checksum of the manifest that was read.
+    fn checksum(&self) -> String {
+        self.index.manifest().checksum()
+    }
+
     /// Returns the number of times that a shard was loaded.
     fn loads(&self) -> u64 {
         self.index.loads()

@@ -92,6 +92,31 @@ def test_a_replaced_file_is_opened_anew(path: Path, loads: list[str]) -> None:
     assert len(_opened._entries) == 1
 
 
+def test_shards_replaced_while_they_are_opened_are_opened_anew_or_an_error(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    folder, scenes = tmp_path / "site", [mixed_scene(1), mixed_scene(3)]
+    p2m.write_shards(scenes[0], folder)
+    opened = p2m.Shards(folder)
+    source = _opened.index_source(opened, False)
+    read_checksum = _opened.manifest_checksum
+
+    def replace_after_reading(path: str) -> str | None:
+        found = read_checksum(path)
+        monkeypatch.setattr(_opened, "manifest_checksum", read_checksum)
+        p2m.write_shards(scenes[1], folder, replace=True)
+        return found
+
+    monkeypatch.setattr(_opened, "manifest_checksum", replace_after_reading)
+    second = _opened.open_shards(folder)
+    assert second._manifest_checksum == read_checksum(str(folder)) != opened._manifest_checksum
+    assert len(second) == len(p2m.Index(scenes[1]))
+    p2m.write_shards(scenes[0], folder, replace=True)
+    monkeypatch.setattr(_opened, "manifest_checksum", replace_after_reading)
+    with pytest.raises(ValueError, match="is not the manifest that the shards came from"):
+        _opened.opened(source, 1)
+
+
 def test_few_indexes_are_kept(tmp_path: Path, loads: list[str]) -> None:
     paths = [tmp_path / f"{number}.p2m" for number in range(6)]
     for path in paths:

@@ -155,8 +155,10 @@ impl Manifest {
         fs::rename(&unfinished, &file).map_err(ShardError::io(file))
     }
 
-    /// Returns the checksum of the manifest.
-    fn checksum(&self) -> String {
+    /// Returns the checksum of the manifest, which is in its file as well. It is the XXH3 checksum of the manifest in JSON
+    /// without white space, in hexadecimal digits.
+    #[must_use]
+    pub fn checksum(&self) -> String {
         // Numbers in JSON are the shortest that read back the same, so the text does not depend on the file.
         let text = serde_json::to_string(self).unwrap_or_default();
         format!("{:016x}", XxHash3_64::oneshot(text.as_bytes()))

@@ -191,17 +191,20 @@ def open_shards(
     """
     folder = shard_folder(path)
     limit = max_bytes_of(max_bytes)
-    found = manifest_checksum(folder)
-    if checksum is not None and found not in (None, checksum):
-        raise ValueError(
-            f"{os.path.join(folder, MANIFEST_FILE)} is not the manifest that the shards came from: its checksum is "
-            f"{found} instead of {checksum}"
-        )
     real = os.path.realpath(os.path.join(folder, MANIFEST_FILE))
-    status = os.stat(real)
-    version = _FileVersion(real, status.st_size, status.st_mtime_ns, status.st_ino, found, map, max_bytes)
-    raw = _open_version(version, lambda: _p2m.Shards(folder, limit, map))
-    return Shards._from_raw(raw, folder, found, max_bytes, map, threads)
+    while True:
+        found = manifest_checksum(folder)
+        if checksum is not None and found not in (None, checksum):
+            raise ValueError(
+                f"{os.path.join(folder, MANIFEST_FILE)} is not the manifest that the shards came from: its checksum is "
+                f"{found} instead of {checksum}"
+            )
+        status = os.stat(real)
+        version = _FileVersion(real, status.st_size, status.st_mtime_ns, status.st_ino, found, map, max_bytes)
+        raw = _open_version(version, lambda: _p2m.Shards(folder, limit, map))
+        # The manifest may have been replaced after its checksum was read.
+        if raw.checksum() == found:
+            return Shards._from_raw(raw, folder, max_bytes, map, threads)
 
 
 @dataclass(frozen=True)

@@ -105,20 +105,17 @@ class Shards(PointQueries):
         threads: int | None = None,
     ) -> None:
         folder = shard_folder(path)
-        checksum = manifest_checksum(folder)
-        raw = _p2m.Shards(folder, max_bytes_of(max_bytes), map)
-        self._set(raw, folder, checksum, max_bytes, map, threads)
+        self._set(_p2m.Shards(folder, max_bytes_of(max_bytes), map), folder, max_bytes, map, threads)
 
     def _set(
         self,
         raw: _p2m.Shards,
         path: str,
-        checksum: str | None,
         max_bytes: int | None,
         is_mapped: bool,
         threads: int | None,
     ) -> None:
-        self._raw, self._path, self._manifest_checksum = raw, path, checksum
+        self._raw, self._path, self._manifest_checksum = raw, path, raw.checksum()
         self._max_bytes, self._is_mapped = max_bytes, bool(is_mapped)
         self._threads = None if threads is None else thread_count(threads)
 
@@ -127,13 +124,12 @@ class Shards(PointQueries):
         cls,
         raw: _p2m.Shards,
         path: str,
-        checksum: str | None,
         max_bytes: int | None,
         is_mapped: bool,
         threads: int | None,
     ) -> Shards:
         shards = cls.__new__(cls)
-        shards._set(raw, path, checksum, max_bytes, is_mapped, threads)
+        shards._set(raw, path, max_bytes, is_mapped, threads)
         return shards
 
     @property
@@ -518,7 +514,8 @@ def write_shards(
     ValueError
         For a wrong option.
     KeyboardInterrupt
-        After the shard that is being built. All files that were written are removed first.
+        After the shard that is being built. All files that were written are removed first. After the last shard, the
+        shards are complete and stay.
 
     Examples
     --------
