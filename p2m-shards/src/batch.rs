@@ -1,6 +1,6 @@
 //! Batches of queries for the closest point, in two phases that load each shard once.
 
-use crate::nearest::{ByBound, CertifiedSearch, NearSearch, Search, ShardClosest, is_finite, key, limit, reach};
+use crate::nearest::{ByBound, CertifiedSearch, NearSearch, Search, ShardClosest, key, limit, may_have_answer, reach};
 use crate::{ShardError, ShardedIndex};
 use nalgebra::Point3;
 use p2m_core::batch::{BatchOptions, closest_points_into};
@@ -192,7 +192,7 @@ impl ShardedIndex {
     /// Returns the shard that a query asks first.
     fn begin(&self, query: &Point3<f64>, options: &QueryOptions<f64>) -> Pending {
         let nothing = Pending { nearest: NONE, limit: f64::NEG_INFINITY, key: None };
-        if !is_finite(query) {
+        if !may_have_answer(query, options) {
             return nothing;
         }
         let largest = limit(options.max_distance);

@@ -69,8 +69,8 @@ pub enum ShardError {
     /// A scene with segments or points has no inside.
     #[error("the scene has segments or points, which have no inside")]
     NoInside,
-    /// Writing was cancelled.
-    #[error("writing the shards was cancelled")]
+    /// Writing or a batch of queries was cancelled.
+    #[error("the work was cancelled")]
     Cancelled,
 }
 

@@ -156,7 +156,7 @@ pub(crate) struct CertifiedSearch {
 
 impl CertifiedSearch {
     pub(crate) fn new(query: &Point3<f64>, options: &QueryOptions<f64>) -> Self {
-        let largest = if is_finite(query) { options.max_distance } else { f64::NAN };
+        let largest = if may_have_answer(query, options) { options.max_distance } else { f64::NAN };
         Self { winners: Vec::new(), largest }
     }
 
@@ -276,7 +276,7 @@ impl ShardedIndex {
         query: &Point3<f64>,
         options: &QueryOptions<f64>,
     ) -> Result<Option<ShardClosest>, ShardError> {
-        if !is_finite(query) {
+        if !may_have_answer(query, options) {
             return Ok(None);
         }
         let mut merged = Merged::new(self, query, options);
@@ -347,6 +347,11 @@ impl ShardedIndex {
         }
         Ok(false)
     }
+}
+
+/// Returns whether a query may have an answer: its coordinates are finite, and its largest distance is a number.
+pub(crate) fn may_have_answer(query: &Point3<f64>, options: &QueryOptions<f64>) -> bool {
+    is_finite(query) && !options.max_distance.is_nan()
 }
 
 /// Returns whether all coordinates of a query are finite.

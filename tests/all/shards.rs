@@ -79,7 +79,8 @@ fn check_points(rng: &mut impl Rng, shards: &ShardedIndex, soup: &Soup<f64>, nam
     let points = queries(rng, soup, 12);
     let default = QueryOptions::default();
     let radius = points.iter().find_map(|query| brute.closest_point(query)).map_or(1.0, |c| c.distance);
-    for options in [default, default.with_max_distance(radius)] {
+    let beyond = [radius, f64::NAN, -1.0].map(|largest| default.with_max_distance(largest));
+    for options in [default].into_iter().chain(beyond) {
         let expected: Vec<_> = points.iter().map(|query| brute.closest_point_with(query, &options)).collect();
         let mut batch = vec![None; points.len()];
         shards.closest_points_into(&points, &options, &mut batch).unwrap();
@@ -151,19 +152,58 @@ fn check_rays(rng: &mut impl Rng, shards: &ShardedIndex, soup: &Soup<f64>, name:
         let along = Ray::new(&pair[0], &axis).unwrap_or(ray);
         let part = ray.with_range(-0.5, rng.random_range(-0.5..2.0)).unwrap();
         for ray in [ray, ray.line(), part, along, part.with_radius(0.05).unwrap()] {
-            let name = format!("{name}, {ray:?}");
-            let first = shards.first_intersection(&ray).unwrap();
-            let expected = brute.first_intersection(&ray).map(|hit| of_hit(hit.primitive.index() as u64, &hit));
-            assert_eq!(first.as_ref().map(of_shard_hit), expected, "{name}");
-            let all: Vec<_> = shards.all_intersections(&ray).unwrap().iter().map(of_shard_hit).collect();
-            let expected: Vec<_> =
-                brute.all_intersections(&ray).iter().map(|hit| of_hit(hit.primitive.index() as u64, hit)).collect();
-            assert_eq!(all, expected, "{name}");
-            assert_eq!(shards.count(&ray).unwrap(), brute.count(&ray), "{name}");
-            assert_eq!(shards.crossings(&ray).unwrap(), brute.crossings(&ray), "{name}");
-            assert_eq!(shards.do_intersect(&ray).unwrap(), brute.do_intersect(&ray), "{name}");
+            check_ray(shards, &brute, &ray, name);
         }
     }
+}
+
+/// Compares all queries by a ray with those of brute force, and returns the number of hits.
+fn check_ray(shards: &ShardedIndex, brute: &BruteForce<&Soup<f64>>, ray: &Ray, name: &str) -> usize {
+    let name = format!("{name}, {ray:?}");
+    let first = shards.first_intersection(ray).unwrap();
+    let expected = brute.first_intersection(ray).map(|hit| of_hit(hit.primitive.index() as u64, &hit));
+    assert_eq!(first.as_ref().map(of_shard_hit), expected, "{name}");
+    let all: Vec<_> = shards.all_intersections(ray).unwrap().iter().map(of_shard_hit).collect();
+    let expected: Vec<_> =
+        brute.all_intersections(ray).iter().map(|hit| of_hit(hit.primitive.index() as u64, hit)).collect();
+    assert_eq!(all, expected, "{name}");
+    assert_eq!(shards.count(ray).unwrap(), brute.count(ray), "{name}");
+    assert_eq!(shards.crossings(ray).unwrap(), brute.crossings(ray), "{name}");
+    assert_eq!(shards.do_intersect(ray).unwrap(), brute.do_intersect(ray), "{name}");
+    all.len()
+}
+
+#[test]
+fn rays_hit_scenes_at_the_ends_of_f64() {
+    let mut hits = 0;
+    for case in cases(300, 20) {
+        let rng = &mut rng("shards at the ends of f64", case);
+        // Triangles across two faces of a box that is wider than the largest number.
+        let axis = rng.random_range(0..3);
+        let corner = |number: usize, rng: &mut dyn Rng| {
+            let mut corner = Point3::from([(); 3].map(|()| rng.random_range(-1.0..1.0)));
+            corner[axis] = if number < 9 { f64::MAX } else { -f64::MAX } * rng.random_range(0.9..1.0);
+            corner
+        };
+        let positions = (0..18).map(|number| corner(number, rng)).collect();
+        let soup = Soup::new(positions, (0..6).map(|i| Element::Triangle([3 * i, 3 * i + 1, 3 * i + 2]))).unwrap();
+        let folder = tempfile::tempdir().unwrap();
+        let shards = write(rng, folder.path(), &soup, ShardOptions::default().with_max_bytes(1));
+        let brute = BruteForce::new(&soup).unwrap();
+        for (origin, size) in [(0.9 * f64::MAX, 1e308), (1.0, f64::MAX), (f64::MAX, 1e-3), (0.0, 1e-310)] {
+            let mut from = Point3::from([(); 3].map(|()| rng.random_range(-0.2..0.2)));
+            from[axis] = origin;
+            let mut along = Vector3::zeros();
+            along[axis] = -size;
+            for direction in [along, -along] {
+                let ray = Ray::new(&from, &direction).unwrap();
+                for ray in [ray, ray.line(), ray.with_range(0.0, 10.0).unwrap()] {
+                    hits += check_ray(&shards, &brute, &ray, &format!("case {case}"));
+                }
+            }
+        }
+    }
+    assert!(hits > 100, "{hits}");
 }
 
 #[test]
@@ -216,6 +256,8 @@ fn many_queries_of_a_mesh_in_one_batch() {
     }
     // Each shard is loaded once for each phase.
     assert!(shards.loads() <= 2 * shards.manifest().shards.len() as u64, "{}", shards.loads());
+    let stopped = shards.closest_points_while(&points, &QueryOptions::default(), &mut found, &|_| false);
+    assert_eq!(stopped.unwrap_err().to_string(), "the work was cancelled");
 }
 
 #[test]
