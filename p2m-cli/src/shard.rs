@@ -51,7 +51,8 @@ pub(crate) struct Args {
     #[arg(long, value_name = "FORMAT", value_parser = one_of::<Format>(Format::NAMES), ignore_case = true)]
     format: Option<Format>,
 
-    /// The largest length of the file of a shard, such as 500MB or 2GiB
+    /// The largest length of the file of a shard, such as 500MB or 2GiB. A shard has at least one primitive, which
+    /// takes about 2.5 kB
     #[arg(long, value_name = "BYTES", default_value = "1GiB", value_parser = bytes)]
     max_bytes: u64,
 
