@@ -26,8 +26,9 @@ Space is divided so that the file of a shard is at most as long as --max-bytes s
 is in memory at a time; files are read in pieces, apart from compressed ones and the standard input, which are read as a \
 whole. Temporary files in the folder take 88 bytes for each primitive, and twice that for a while.
 
-The file manifest.json appears last, so a folder without it is unfinished. It has the box, the number of primitives and the \
-checksum of each shard; a query that needs a shard which is missing, damaged or another one fails.
+The file manifest.json appears last, so a folder without it is unfinished, and an index that is replaced stays until then. \
+Each run writes files of its own, and the next run with --replace removes what killed runs have left. The manifest has the \
+box, the number of primitives and the checksum of each shard; a query that needs a shard which is missing, damaged or another one fails.
 
 {}
 
@@ -64,7 +65,7 @@ pub(crate) struct Args {
     #[arg(long, value_name = "FOLDER")]
     out: PathBuf,
 
-    /// Replace the index in shards that the folder has
+    /// Replace the index in shards that the folder has, when the new one is complete
     #[arg(long)]
     replace: bool,
 
@@ -92,7 +93,13 @@ pub(crate) fn run(streams: &Streams, args: &Args) -> anyhow::Result<()> {
     let pool = args.threads.pool()?;
 
     let start = Instant::now();
+    let mut files = unfinished();
+    let is_new = !args.out.exists();
     let mut writer = ShardWriter::new(&args.out, options)?;
+    let first = args.out.join(shard_file(writer.run(), 0));
+    let paths = is_new.then_some(&args.out).into_iter().chain([&first]);
+    let listed = paths.map(|path| Listed::new(&mut files, path)).collect();
+    drop(files);
     let mut skipped = Vec::new();
     for (path, format) in args.scenes.iter().zip(formats) {
         let found = add(streams, &mut writer, path, format)?;
@@ -101,7 +108,7 @@ pub(crate) fn run(streams: &Streams, args: &Args) -> anyhow::Result<()> {
     let mut times = Times { read: start.elapsed(), ..Times::default() };
 
     let start = Instant::now();
-    let index = finish(streams, args, writer, &pool)?;
+    let index = finish(streams, args, writer, listed, &pool)?;
     times.write = start.elapsed();
     report(streams, args, &index, &skipped, &times)
 }
@@ -118,23 +125,25 @@ fn add(streams: &Streams, writer: &mut ShardWriter, path: &Path, format: Format)
     Ok(scene.skipped)
 }
 
-/// Builds all shards. Until the last one is written, an interruption removes those that are there.
+/// Builds all shards. Until the last one is written, an interruption removes those that are there. The folder, if it
+/// is new, and the first file are listed already.
 fn finish(
     streams: &Streams,
     args: &Args,
     writer: ShardWriter,
+    mut listed: Vec<Listed>,
     pool: &rayon::ThreadPool,
 ) -> anyhow::Result<ShardedIndex> {
     let total = writer.primitive_count();
     let bar = Progress::start(streams, "building shards", Some(total), Unit::Items("primitives"));
-    let list = |number| Listed::new(&mut unfinished(), &args.out.join(shard_file(number)));
-    let mut listed = vec![list(0)];
+    let (run, mut finished) = (writer.run(), 0);
     let mut progress = |done| {
         bar.advance_to(done);
         if done == total {
             listed.clear();
         } else {
-            listed.push(list(listed.len()));
+            finished += 1;
+            listed.push(Listed::new(&mut unfinished(), &args.out.join(shard_file(run, finished))));
         }
         ControlFlow::Continue(())
     };

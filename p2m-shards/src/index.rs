@@ -45,8 +45,8 @@ impl ShardedIndex {
     ///
     /// # Safety
     /// Nobody may change or truncate the file of a shard while the index, or a shard of it, is in use. A change is a
-    /// data race, and truncation ends the program. [`ShardWriter`](crate::ShardWriter) removes the files of an index
-    /// that it replaces and writes new ones, which is no change of a file.
+    /// data race, and truncation ends the program. [`ShardWriter`](crate::ShardWriter) never writes to a file that a
+    /// manifest names: it writes new files and removes those of an index that it replaces.
     ///
     /// # Errors
     /// It returns the errors of [`Manifest::read`].

@@ -359,22 +359,22 @@ fn a_wrong_file_is_an_error_that_names_it() {
     let mut larger = sphere.clone();
     larger.map_positions(|p| p * 2.0).unwrap();
     super::shards::write(rng, other, &larger, options);
-    let file = folder.join("00001.p2m");
+    let file = folder.join("0-00001.p2m");
     let bytes = fs::read(&file).unwrap();
 
     fs::remove_file(&file).unwrap();
-    assert!(error_of(folder).contains("00001.p2m"), "{}", error_of(folder));
+    assert!(error_of(folder).contains("0-00001.p2m"), "{}", error_of(folder));
     fs::write(&file, &bytes[..bytes.len() - 64]).unwrap();
-    let length = format!("00001.p2m has {} bytes instead of {}", bytes.len() - 64, bytes.len());
+    let length = format!("0-00001.p2m has {} bytes instead of {}", bytes.len() - 64, bytes.len());
     assert!(error_of(folder).ends_with(&length), "{}", error_of(folder));
     let mut damaged = bytes.clone();
     damaged[bytes.len() / 2] ^= 1;
     fs::write(&file, &damaged).unwrap();
-    assert!(error_of(folder).contains("00001.p2m is damaged: the checksum of"), "{}", error_of(folder));
+    assert!(error_of(folder).contains("0-00001.p2m is damaged: the checksum of"), "{}", error_of(folder));
     let mut version = bytes.clone();
     version[8] = 250;
     fs::write(&file, &version).unwrap();
-    assert!(error_of(folder).contains("00001.p2m has version 250 of the format"), "{}", error_of(folder));
+    assert!(error_of(folder).contains("0-00001.p2m has version 250 of the format"), "{}", error_of(folder));
     // A shard of the same length that belongs to another scene.
     let same = Manifest::read(other).unwrap().shards.iter().find(|shard| shard.bytes == bytes.len() as u64).cloned();
     fs::copy(other.join(same.expect("both spheres are divided alike").file), &file).unwrap();
@@ -411,6 +411,87 @@ fn an_index_is_only_replaced_on_purpose_and_unfinished_ones_leave_nothing() {
     let one = write(rng, &folder, &sphere, ShardOptions::default().with_replace(true));
     assert_eq!(one.manifest().shards.len(), 1);
     assert!(count > 1 && fs::read_dir(&folder).unwrap().count() == 2, "the shards that were replaced are gone");
+}
+
+/// Returns the sorted names of the files of a folder.
+fn names(folder: &Path) -> Vec<String> {
+    let name = |entry: std::io::Result<fs::DirEntry>| entry.unwrap().file_name().into_string().unwrap();
+    let mut names: Vec<String> = fs::read_dir(folder).unwrap().map(name).collect();
+    names.sort_unstable();
+    names
+}
+
+/// Returns a writer to which a sphere of several shards was added.
+fn writer_of_sphere(folder: &Path, replace: bool) -> ShardWriter {
+    let options = ShardOptions::default().with_max_bytes(20_000).with_replace(replace);
+    let mut writer = ShardWriter::new(folder, options).unwrap();
+    writer.add_scene(&p2m::scene::generate::ico_sphere(&Default::default()).unwrap().into()).unwrap();
+    writer
+}
+
+/// Checks that the index of a folder has the manifest, and that all of its shards can be loaded.
+fn assert_whole(folder: &Path, manifest: &Manifest) {
+    let shards = ShardedIndex::open(folder).unwrap();
+    assert_eq!(shards.manifest(), manifest);
+    (0..manifest.shards.len()).for_each(|number| drop(shards.shard(number).unwrap()));
+}
+
+#[test]
+fn a_replacement_that_fails_keeps_the_old_index() {
+    let folder = tempfile::tempdir().unwrap();
+    let folder = folder.path();
+    let old = writer_of_sphere(folder, false).finish().unwrap().manifest().clone();
+    let files = names(folder);
+    drop(writer_of_sphere(folder, true));
+    assert_whole(folder, &old);
+    let cancelled = writer_of_sphere(folder, true).finish_with_progress(&mut |_| std::ops::ControlFlow::Break(()));
+    assert!(matches!(cancelled, Err(ShardError::Cancelled)));
+    assert_whole(folder, &old);
+    assert_eq!(names(folder), files);
+    // The manifest cannot be replaced by a file.
+    fs::remove_file(folder.join(MANIFEST_FILE)).unwrap();
+    fs::create_dir_all(folder.join(MANIFEST_FILE).join("full")).unwrap();
+    assert!(matches!(writer_of_sphere(folder, true).finish(), Err(ShardError::Io { .. })));
+    assert_eq!(names(folder), files);
+}
+
+#[test]
+fn two_writers_do_not_disturb_each_other() {
+    let folder = tempfile::tempdir().unwrap();
+    let folder = folder.path();
+    let [first, second] = [(); 2].map(|()| writer_of_sphere(folder, false));
+    let manifest = first.finish().unwrap().manifest().clone();
+    assert!(matches!(second.finish(), Err(ShardError::Exists { .. })));
+    assert_whole(folder, &manifest);
+    assert_eq!(names(folder).len(), manifest.shards.len() + 1);
+    // A replacement that finishes during another one removes the files of that, which notices it.
+    let [first, second] = [(); 2].map(|()| writer_of_sphere(folder, true));
+    let (mut second, mut manifest) = (Some(second), manifest);
+    let overtaken = first.finish_with_progress(&mut |_| {
+        if let Some(second) = second.take() {
+            manifest = second.finish().unwrap().manifest().clone();
+        }
+        std::ops::ControlFlow::Continue(())
+    });
+    assert!(matches!(overtaken, Err(ShardError::Io { .. })));
+    assert_whole(folder, &manifest);
+    assert_eq!(names(folder).len(), manifest.shards.len() + 1);
+}
+
+#[test]
+fn a_writer_changes_no_file_of_others_and_a_replacement_removes_what_runs_have_left() {
+    let folder = tempfile::tempdir().unwrap();
+    let folder = folder.path();
+    let (foreign, left) = (["00000.p2m", "0.p2m", "notes.txt"], ["0-00000.p2m", "3-00001.p2m", "1-manifest.json"]);
+    let all = || foreign.iter().chain(&left).map(|name| folder.join(name));
+    all().for_each(|file| fs::write(file, "another").unwrap());
+    let manifest = writer_of_sphere(folder, false).finish().unwrap().manifest().clone();
+    all().for_each(|file| assert_eq!(fs::read(file).unwrap(), b"another"));
+    assert_whole(folder, &manifest);
+    let manifest = writer_of_sphere(folder, true).finish().unwrap().manifest().clone();
+    assert_whole(folder, &manifest);
+    foreign.iter().for_each(|name| assert_eq!(fs::read(folder.join(name)).unwrap(), b"another"));
+    assert_eq!(names(folder).len(), foreign.len() + manifest.shards.len() + 1);
 }
 
 #[test]
