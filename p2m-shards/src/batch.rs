@@ -66,8 +66,7 @@ impl ShardedIndex {
     /// bounds, which do not depend on the other queries.
     ///
     /// # Errors
-    /// It returns [`ShardError::Load`] and [`ShardError::OtherShard`] if a shard that is needed has a wrong file. The
-    /// content of `out` is then undefined.
+    /// It returns the [errors of loading a shard](ShardError#loading-a-shard). The content of `out` is then undefined.
     ///
     /// # Panics
     /// It panics if the slices differ in length.
@@ -123,7 +122,7 @@ impl ShardedIndex {
     /// Answers each query as [`k_nearest`](Self::k_nearest) does, on all threads of the current pool.
     ///
     /// # Errors
-    /// It returns [`ShardError::Load`] and [`ShardError::OtherShard`] if a shard that is needed has a wrong file.
+    /// It returns the [errors of loading a shard](ShardError#loading-a-shard).
     ///
     /// # Complexity
     /// Each shard is loaded at most twice, and comparing n queries with the boxes of s shards takes O(n s).
@@ -141,7 +140,7 @@ impl ShardedIndex {
     /// current pool.
     ///
     /// # Errors
-    /// It returns [`ShardError::Load`] and [`ShardError::OtherShard`] if a shard that is needed has a wrong file.
+    /// It returns the [errors of loading a shard](ShardError#loading-a-shard).
     ///
     /// # Complexity
     /// Each shard is loaded at most twice, and comparing n queries with the boxes of s shards takes O(n s).

@@ -89,7 +89,7 @@ impl ShardedIndex {
     /// Returns a shard by its number in the manifest, which is loaded if it is not in memory.
     ///
     /// # Errors
-    /// It returns [`ShardError::Load`] and [`ShardError::OtherShard`] for a wrong file.
+    /// It returns the [errors of loading a shard](ShardError#loading-a-shard).
     ///
     /// # Panics
     /// It panics if the manifest has no such shard.

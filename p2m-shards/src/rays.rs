@@ -92,8 +92,8 @@ impl ShardedIndex {
     /// Returns the hit with the least parameter, and of equal parameters the one with the lowest id.
     ///
     /// # Errors
-    /// It returns [`ShardError::NoRays`] if the backend casts no rays, and [`ShardError::Load`] and
-    /// [`ShardError::OtherShard`] if a shard that is needed has a wrong file.
+    /// It returns [`ShardError::NoRays`] if the backend casts no rays, and the
+    /// [errors of loading a shard](ShardError#loading-a-shard).
     pub fn first_intersection(&self, ray: &Ray) -> Result<Option<ShardHit>, ShardError> {
         let mut best: Option<ShardHit> = None;
         for (entry, number) in self.shards_along(ray) {

@@ -318,6 +318,10 @@ fn a_file_in_pieces_has_the_ids_and_objects_of_its_scene() {
     fs::write(&path, text).unwrap();
     let scene = p2m::scene::read_scene(&path).unwrap();
     let first = Soup::new(vec![Point3::new(1e3, 0.0, 0.0)], [Element::Point(0)]).unwrap();
+    let options = ShardOptions::default().with_max_bytes(3_000);
+    let mut writer = ShardWriter::new(&folder.path().join("small"), options).unwrap();
+    let summary = writer.add_file(&path, &PieceOptions::default()).unwrap();
+    assert!(summary.piece_count > 2, "a piece takes no more memory than a shard: {}", summary.piece_count);
     for len in [1, 5, 1000] {
         let mut writer = ShardWriter::new(&folder.path().join(len.to_string()), ShardOptions::default()).unwrap();
         writer.add_scene(&first.clone().into()).unwrap();

@@ -69,8 +69,8 @@ impl ShardOptions {
     }
 }
 
-/// The bytes of the scene of a shard, for each primitive, that a first division expects.
-const SCENE_BYTES_PER_PRIMITIVE: f64 = 52.0;
+/// The bytes of a primitive in the file of a shard, besides those of the index, that a first division expects.
+const FILE_BYTES_PER_PRIMITIVE: f64 = 52.0;
 /// The part of the largest length of a file that a division aims at. Parts are not equally large.
 const FILL: f64 = 0.85;
 
@@ -189,7 +189,8 @@ impl ShardWriter {
 
     /// Adds the primitives of a file, which may be larger than the memory, after those that were added before. It is
     /// [read in pieces](read_scene_in_pieces), with a temporary file in the folder of the shards unless `options` name
-    /// another one. The id of a primitive is that in the scene of [`read_scene`](p2m_mixed::read_scene) plus the number
+    /// another one. A piece has at most the primitives of a full shard, and the vertices besides it at most the bytes of
+    /// one. The id of a primitive is that in the scene of [`read_scene`](p2m_mixed::read_scene) plus the number
     /// of primitives that were added before, and objects are those of that scene.
     ///
     /// # Errors
@@ -198,6 +199,10 @@ impl ShardWriter {
     pub fn add_file(&mut self, path: &Path, options: &PieceOptions) -> Result<PieceSummary, ShardError> {
         let mut options = options.clone();
         options.folder.get_or_insert_with(|| self.folder.clone());
+        let to_usize = |count| usize::try_from(count).unwrap_or(usize::MAX);
+        let max_bytes = self.options.max_bytes;
+        options.max_primitives = options.max_primitives.min(to_usize(capacity(max_bytes, 1.0, self.file_bytes())));
+        options.max_position_bytes = options.max_position_bytes.min(to_usize(max_bytes));
         read_scene_in_pieces(path, &options, &mut |piece| self.add_scene(&piece))
     }
 
@@ -205,6 +210,11 @@ impl ShardWriter {
     #[must_use]
     pub fn primitive_count(&self) -> u64 {
         self.manifest.primitive_count()
+    }
+
+    /// Returns the number of bytes that a primitive is expected to take in the file of a shard.
+    fn file_bytes(&self) -> f64 {
+        self.options.backend.cost.bytes_per_primitive + FILE_BYTES_PER_PRIMITIVE
     }
 
     fn add(&mut self, id: u64, source: u32, shape: Shape<f64>) -> Result<(), ShardError> {
@@ -241,7 +251,7 @@ impl ShardWriter {
         mut self,
         progress: &mut dyn FnMut(u64) -> ControlFlow<()>,
     ) -> Result<ShardedIndex, ShardError> {
-        let expected = self.options.backend.cost.bytes_per_primitive + SCENE_BYTES_PER_PRIMITIVE;
+        let expected = self.file_bytes();
         let mut parts: Vec<Spill> = self.spill.take().into_iter().filter(|spill| spill.len() > 0).collect();
         let (mut done, mut bytes_per_primitive, max_bytes) = (0, expected, self.options.max_bytes);
         while let Some(mut part) = parts.pop() {
