@@ -92,8 +92,8 @@ impl<'a> Merged<'a> {
 
     /// Returns the options of the next shard, whose largest distance is what can still matter.
     ///
-    /// That exceeds the best distance by the error of the kernel. If a shard has no answer within it, the true distances
-    /// of the primitives of the shard are therefore at least the lower bound of the best answer.
+    /// That exceeds the best distance by the error of the kernel. If a shard has no answer within it, the true
+    /// distances of the primitives of the shard are therefore at least the lower bound of the best answer.
     pub(crate) fn options(&self) -> QueryOptions<f64> {
         let reach = self.best.as_ref().map_or(f64::INFINITY, |(best, _)| reach(best.closest.distance, self.error));
         self.options.with_max_distance(self.options.max_distance.min(reach))

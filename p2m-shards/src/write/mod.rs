@@ -83,8 +83,8 @@ const WRITE_BUFFER_BYTES: usize = 1 << 20;
 ///
 /// The writer creates files under names that no other file in the folder has, and changes no file that it has not
 /// created. The index is there as soon as its manifest is, which is the last step. A writer that is dropped before
-/// removes its files, and an index that was to be replaced stays. Files of programs that were killed stay until an index
-/// in the folder is replaced.
+/// removes its files, and an index that was to be replaced stays. Files of programs that were killed stay until an
+/// index in the folder is replaced.
 ///
 /// Several writers may work in one folder. Of those that do not replace an index, the first one to finish succeeds. A
 /// writer that finishes its replacement removes the files of others that began before it, so that these fail.
@@ -189,9 +189,9 @@ impl ShardWriter {
 
     /// Adds the primitives of a file, which may be larger than the memory, after those that were added before. It is
     /// [read in pieces](read_scene_in_pieces), with a temporary file in the folder of the shards unless `options` name
-    /// another one. A piece has at most the primitives of a full shard, and the vertices besides it at most the bytes of
-    /// one. The id of a primitive is that in the scene of [`read_scene`](p2m_mixed::read_scene) plus the number
-    /// of primitives that were added before, and objects are those of that scene.
+    /// another one. A piece has at most the primitives of a full shard, and the vertices besides it at most the bytes
+    /// of one. The id of a primitive is that in the scene of [`read_scene`](p2m_mixed::read_scene) plus the number of
+    /// primitives that were added before, and objects are those of that scene.
     ///
     /// # Errors
     /// It returns [`ShardError::Scene`] if the file cannot be read, and [`ShardError::Io`] if the temporary file of
