@@ -4,7 +4,7 @@
 use std::path::{Path, PathBuf};
 use std::sync::{Mutex, MutexGuard, PoisonError};
 
-/// The files that do not have their final name yet.
+/// The files that are not finished yet, and the folders that are removed if they are empty without these.
 static UNFINISHED: Mutex<Vec<PathBuf>> = Mutex::new(Vec::new());
 
 /// Locks the list of unfinished files. The lock is held while a file is created or renamed, so that a signal finds
@@ -13,7 +13,7 @@ pub(crate) fn unfinished() -> MutexGuard<'static, Vec<PathBuf>> {
     UNFINISHED.lock().unwrap_or_else(PoisonError::into_inner)
 }
 
-/// Keeps a file on the list of unfinished files until it is dropped.
+/// Keeps a file or a folder on the list of unfinished files until it is dropped.
 pub(crate) struct Listed(PathBuf);
 
 impl Listed {
@@ -54,9 +54,10 @@ fn wait_for_signals() -> std::io::Result<()> {
         if let Some(signal) = signals.forever().next() {
             // The lock is kept until the end, so that no file is created or finished any more.
             let files = unfinished();
-            for file in files.iter() {
+            // A folder is listed before the files in it.
+            for file in files.iter().rev() {
                 // A file that is finished by now, or that cannot be removed, stays.
-                let _ = std::fs::remove_file(file);
+                let _ = std::fs::remove_file(file).or_else(|_| std::fs::remove_dir(file));
             }
             // The prompt of the shell appears below a progress bar.
             if std::io::stderr().is_terminal() {

@@ -16,7 +16,7 @@ use crate::sign_rule::{SignRule, SignedIndex};
 use crate::streams::Streams;
 use crate::summary::{AnswerSummary, IndexSummary, RunSummary, SceneSummary};
 use crate::usage::{bytes, not_negative, one_of, positive, usage, whole_number};
-use anyhow::Context;
+use anyhow::{Context, bail};
 use clap::ArgGroup;
 use clap::builder::{PossibleValuesParser, TypedValueParser};
 use nalgebra::Point3;
@@ -131,7 +131,10 @@ pub(crate) struct Args {
     within: Option<f64>,
 
     /// Add a column of distances that are negative inside; needs a scene of triangles [possible values of RULE: auto,
-    /// closed, winding]
+    /// closed, winding].
+    ///
+    /// An index in shards has only auto: a ray that crosses the surface an odd number of times begins inside. This is
+    /// right for a closed surface, and whether it is closed is not checked.
     #[arg(long, value_name = "RULE", num_args = 0..=1, require_equals = true, default_missing_value = "auto", value_enum, conflicts_with_all = ["k_nearest", "within"])]
     pub(crate) signed: Option<SignRule>,
 
@@ -153,6 +156,12 @@ pub(crate) struct Args {
 pub(crate) fn run(streams: &Streams, args: &Args) -> anyhow::Result<()> {
     if let Some(folder) = folder_of(&args.scene.path) {
         return shard_query::run(streams, args, &folder);
+    }
+    if args.scene.path.is_dir() {
+        bail!(
+            "{}: cannot be read: is a directory without the file manifest.json, so it is no finished index in shards",
+            args.scene.path.display()
+        );
     }
     if args.max_memory.is_some() {
         return Err(usage("--max-memory needs the folder of an index in shards, which `p2m shard` writes"));

@@ -56,8 +56,15 @@ pub(crate) fn run(streams: &Streams, args: &Args, folder: &Path) -> anyhow::Resu
     let run = RunSummary { index: index_summary, threads: pool.current_num_threads(), query_time };
     let (count, loads) = (manifest.shards.len(), index.loads());
     if query_args.json {
-        let shards = json!({ "shards": { "count": count, "loads": loads, "max_memory": args.max_memory } });
-        let answers = json::joined([shards, args.report(&summary, &run.index.cells())]);
+        let (signs, closed_checked) = args.signed.map(|_| ("crossings", false)).unzip();
+        let shards = json!({
+            "count": count,
+            "loads": loads,
+            "max_memory": args.max_memory,
+            "signs": signs,
+            "closed_checked": closed_checked,
+        });
+        let answers = json::joined([json!({ "shards": shards }), args.report(&summary, &run.index.cells())]);
         return json::print(streams, &run.json("query", answers, &query_args.output_json(format, bytes)));
     }
     let text = run.text("queries", "query", summary.queries());
@@ -79,10 +86,15 @@ fn refuse_options_of_builds(args: &Args) -> anyhow::Result<()> {
             "--backend, --k, --locator and --filter have no effect on an index in shards: each is built",
         ));
     }
-    if args.signed == Some(SignRule::Winding) {
-        return Err(usage("an index in shards has no winding numbers: use --signed=closed for a closed surface"));
-    }
-    Ok(())
+    let (rule, reason) = match args.signed {
+        None | Some(SignRule::Auto) => return Ok(()),
+        Some(SignRule::Closed) => ("closed", "which cannot check that the surface is closed"),
+        Some(SignRule::Winding) => ("winding", "which has no winding numbers"),
+    };
+    Err(usage(format!(
+        "--signed={rule} is not for an index in shards, {reason}: use --signed, which counts crossings of a ray, if you \
+         know that the surface is closed"
+    )))
 }
 
 /// Opens an index in shards.
@@ -121,7 +133,8 @@ impl Source for Shards<'_> {
         let are_inside = self.index.are_inside(queries)?;
         let with_sign = |(answer, is_inside): (Option<ShardClosest>, bool)| {
             let distance = answer.map_or(f64::NAN, |answer| answer.closest.distance);
-            (answer.map(in_scene), if is_inside { -distance } else { distance })
+            // A point on the surface has the distance 0, which has no sign.
+            (answer.map(in_scene), if is_inside && distance > 0.0 { -distance } else { distance })
         };
         Ok(answers.into_par_iter().zip(are_inside).map(with_sign).collect())
     }

@@ -1,6 +1,8 @@
 //! Batches of queries for the closest point, in two phases that load each shard once.
 
-use crate::nearest::{ByBound, CertifiedSearch, NearSearch, Search, ShardClosest, is_finite, key, least, limit, reach};
+use crate::nearest::{
+    ByBound, CertifiedSearch, NearSearch, Search, ShardClosest, key, least, limit, may_have_answer, reach,
+};
 use crate::{Shard, ShardError, ShardedIndex};
 use nalgebra::Point3;
 use p2m_core::batch::{BatchOptions, closest_points_into};
@@ -66,8 +68,7 @@ impl ShardedIndex {
     /// bounds, which do not depend on the other queries.
     ///
     /// # Errors
-    /// It returns [`ShardError::Load`] and [`ShardError::OtherShard`] if a shard that is needed has a wrong file. The
-    /// content of `out` is then undefined.
+    /// It returns the [errors of loading a shard](ShardError#loading-a-shard). The content of `out` is then undefined.
     ///
     /// # Panics
     /// It panics if the slices differ in length.
@@ -123,7 +124,7 @@ impl ShardedIndex {
     /// Answers each query as [`k_nearest`](Self::k_nearest) does, on all threads of the current pool.
     ///
     /// # Errors
-    /// It returns [`ShardError::Load`] and [`ShardError::OtherShard`] if a shard that is needed has a wrong file.
+    /// It returns the [errors of loading a shard](ShardError#loading-a-shard).
     ///
     /// # Complexity
     /// Each shard is loaded at most twice, and comparing n queries with the boxes of s shards takes O(n s).
@@ -160,7 +161,7 @@ impl ShardedIndex {
     /// current pool.
     ///
     /// # Errors
-    /// It returns [`ShardError::Load`] and [`ShardError::OtherShard`] if a shard that is needed has a wrong file.
+    /// It returns the [errors of loading a shard](ShardError#loading-a-shard).
     ///
     /// # Complexity
     /// Each shard is loaded at most twice, and comparing n queries with the boxes of s shards takes O(n s).
@@ -238,7 +239,7 @@ impl ShardedIndex {
     /// It takes O(s) for s shards, and loads none.
     #[must_use]
     pub fn nearest_shard(&self, query: &Point3<f64>, max_distance: f64) -> Option<usize> {
-        if !is_finite(query) {
+        if !may_have_answer(query, max_distance) {
             return None;
         }
         let bounds = self.boxes.iter().map(|bounds| bounds.lower_bound(query));

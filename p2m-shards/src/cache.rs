@@ -4,10 +4,12 @@
 use crate::shard::Shard;
 use crate::{ShardEntry, ShardError};
 use rayon::ThreadPoolBuilder;
+use std::error::Error;
 use std::panic::resume_unwind;
 use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicU64, Ordering};
 use std::sync::{Arc, Mutex, PoisonError, RwLock};
+use std::thread;
 
 /// The place of a shard.
 #[derive(Default)]
@@ -63,30 +65,30 @@ impl Cache {
             return Ok(Arc::clone(shard));
         }
         self.reserve(number, entries);
-        match self.load(&entries[number]) {
-            Ok(shard) => {
-                self.loads.fetch_add(1, Ordering::Relaxed);
-                Ok(Arc::clone(place.insert(Arc::new(shard))))
-            }
-            Err(error) => {
-                self.release(&entries[number]);
-                Err(error)
-            }
+        let loaded = self.load(&entries[number]);
+        if !matches!(loaded, Ok(Ok(_))) {
+            self.release(&entries[number]);
         }
+        let shard = loaded.unwrap_or_else(|panic| resume_unwind(panic))?;
+        self.loads.fetch_add(1, Ordering::Relaxed);
+        Ok(Arc::clone(place.insert(Arc::new(shard))))
     }
 
-    /// Loads a shard on threads of its own.
+    /// Loads a shard on threads of its own, and returns the panic if there is one.
     ///
     /// Files are checked in parallel. A thread of a pool that waits for these checks begins other queries meanwhile,
     /// which may need the very shard that it is loading, so it would wait for itself.
-    fn load(&self, entry: &ShardEntry) -> Result<Shard, ShardError> {
+    fn load(&self, entry: &ShardEntry) -> thread::Result<Result<Shard, ShardError>> {
         let threads = rayon::current_num_threads();
-        let load = || Shard::load(&self.folder, entry, self.is_mapped);
-        let load_elsewhere = || match ThreadPoolBuilder::new().num_threads(threads).build() {
-            Ok(pool) => pool.install(load),
-            Err(_) => load(),
+        let no_thread = |error: &dyn Error| ShardError::Threads { reason: error.to_string() };
+        let load = || {
+            let pool = ThreadPoolBuilder::new().num_threads(threads).build().map_err(|error| no_thread(&error))?;
+            pool.install(|| Shard::load(&self.folder, entry, self.is_mapped))
         };
-        std::thread::scope(|scope| scope.spawn(load_elsewhere).join()).unwrap_or_else(|panic| resume_unwind(panic))
+        thread::scope(|scope| match thread::Builder::new().spawn_scoped(scope, load) {
+            Ok(loader) => loader.join(),
+            Err(error) => Ok(Err(no_thread(&error))),
+        })
     }
 
     /// Counts the bytes of a shard that is about to be loaded, and removes others until all fit, if that is possible.

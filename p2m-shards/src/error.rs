@@ -6,7 +6,12 @@ use p2m_mixed::ReadError;
 use std::io;
 use std::path::PathBuf;
 
-/// An error of writing, opening or querying a sharded index. Its message begins with the name of the file.
+/// An error of writing, opening or querying a sharded index. The message of an error of a file begins with its name.
+///
+/// # Loading a shard
+///
+/// A query loads the shards that it needs, which fails with [`Load`](Self::Load) or [`OtherShard`](Self::OtherShard) if
+/// the file of a shard is wrong, and with [`Threads`](Self::Threads) if the system has no thread for loading it.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum ShardError {
@@ -48,6 +53,12 @@ pub enum ShardError {
         /// A clause that says what differs.
         reason: &'static str,
     },
+    /// The threads that load a shard cannot be started.
+    #[error("the threads that load a shard cannot be started: {reason}")]
+    Threads {
+        /// The message of the operating system.
+        reason: String,
+    },
     /// The file of a scene cannot be read.
     #[error(transparent)]
     Scene(#[from] ReadError),
@@ -69,8 +80,8 @@ pub enum ShardError {
     /// A scene with segments or points has no inside.
     #[error("the scene has segments or points, which have no inside")]
     NoInside,
-    /// Writing was cancelled.
-    #[error("writing the shards was cancelled")]
+    /// Writing or a batch of queries was cancelled.
+    #[error("the work was cancelled")]
     Cancelled,
 }
 

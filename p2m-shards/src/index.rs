@@ -30,8 +30,8 @@ impl ShardedIndex {
 
     /// Opens the sharded index of a folder, with a limit on the memory of the shards in bytes.
     ///
-    /// The memory of a shard is estimated as the length of its file and 40 bytes for each primitive. Where a query needs
-    /// a shard that does not fit, those that were not used for the longest time are dropped. One shard is loaded
+    /// The memory of a shard is estimated as the length of its file and 40 bytes for each primitive. Where a query
+    /// needs a shard that does not fit, those that were not used for the longest time are dropped. One shard is loaded
     /// whatever the limit is, and shards that other threads are using stay until these have finished.
     ///
     /// # Errors
@@ -45,8 +45,8 @@ impl ShardedIndex {
     ///
     /// # Safety
     /// Nobody may change or truncate the file of a shard while the index, or a shard of it, is in use. A change is a
-    /// data race, and truncation ends the program. [`ShardWriter`](crate::ShardWriter) removes the files of an index
-    /// that it replaces and writes new ones, which is no change of a file.
+    /// data race, and truncation ends the program. [`ShardWriter`](crate::ShardWriter) never writes to a file that a
+    /// manifest names: it writes new files and removes those of an index that it replaces.
     ///
     /// # Errors
     /// It returns the errors of [`Manifest::read`].
@@ -89,7 +89,7 @@ impl ShardedIndex {
     /// Returns a shard by its number in the manifest, which is loaded if it is not in memory.
     ///
     /// # Errors
-    /// It returns [`ShardError::Load`] and [`ShardError::OtherShard`] for a wrong file.
+    /// It returns the [errors of loading a shard](ShardError#loading-a-shard).
     ///
     /// # Panics
     /// It panics if the manifest has no such shard.

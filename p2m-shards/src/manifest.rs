@@ -5,8 +5,9 @@ use p2m_core::Aabb;
 use p2m_mixed::Object;
 use p2m_mixed::statistics::Counts;
 use serde::{Deserialize, Serialize};
-use std::fs;
 use std::path::{Path, PathBuf};
+use std::{fs, io};
+use tempfile::TempPath;
 use twox_hash::XxHash3_64;
 
 /// The name of the manifest in the folder of its shards.
@@ -144,15 +145,22 @@ impl Manifest {
         }
     }
 
-    /// Writes the manifest to a folder. It appears under its name when it is complete.
-    pub(crate) fn write(&self, folder: &Path) -> Result<(), ShardError> {
+    /// Writes the manifest to the file `unfinished`, and makes that the manifest of a folder when it is complete. Only
+    /// with `replace` may there be another one.
+    pub(crate) fn write(&self, unfinished: &Path, folder: &Path, replace: bool) -> Result<(), ShardError> {
         let document =
             Document { format: FORMAT.to_owned(), version: VERSION, checksum: self.checksum(), manifest: self };
         let file = folder.join(MANIFEST_FILE);
-        let unfinished = folder.join(format!("{MANIFEST_FILE}.unfinished"));
         let text = serde_json::to_string_pretty(&document).map_err(|error| ShardError::io(&file)(error.into()))?;
-        fs::write(&unfinished, text + "\n").map_err(ShardError::io(&unfinished))?;
-        fs::rename(&unfinished, &file).map_err(ShardError::io(file))
+        fs::write(unfinished, text + "\n").map_err(ShardError::io(unfinished))?;
+        if replace {
+            return fs::rename(unfinished, &file).map_err(ShardError::io(file));
+        }
+        let renamed = TempPath::try_from_path(unfinished).and_then(|path| Ok(path.persist_noclobber(&file)?));
+        renamed.map_err(|error| match error.kind() {
+            io::ErrorKind::AlreadyExists => ShardError::Exists { folder: folder.to_owned() },
+            _ => ShardError::io(&file)(error),
+        })
     }
 
     /// Returns the checksum of the manifest, which is in its file as well. It is the XXH3 checksum of the manifest in JSON

@@ -96,8 +96,8 @@ impl<'a> Merged<'a> {
 
     /// Returns the options of the next shard, whose largest distance is what can still matter.
     ///
-    /// That exceeds the best distance by the error of the kernel. So a shard without an answer has no primitive whose
-    /// true distance is below the lower bound of the best one.
+    /// That exceeds the best distance by the error of the kernel. If a shard has no answer within it, the true
+    /// distances of the primitives of the shard are therefore at least the lower bound of the best answer.
     pub(crate) fn options(&self) -> QueryOptions<f64> {
         let reach = self.best.as_ref().map_or(f64::INFINITY, |(best, _)| reach(best.closest.distance, self.error));
         self.options.with_max_distance(self.options.max_distance.min(reach))
@@ -160,7 +160,7 @@ pub(crate) struct CertifiedSearch {
 
 impl CertifiedSearch {
     pub(crate) fn new(query: &Point3<f64>, options: &QueryOptions<f64>) -> Self {
-        let largest = if is_finite(query) { options.max_distance } else { f64::NAN };
+        let largest = if may_have_answer(query, options.max_distance) { options.max_distance } else { f64::NAN };
         Self { winners: Vec::new(), largest }
     }
 
@@ -262,7 +262,7 @@ impl ShardedIndex {
     /// Returns the closest point, or `None` for an empty scene and for a query that is not finite.
     ///
     /// # Errors
-    /// It returns [`ShardError::Load`] and [`ShardError::OtherShard`] if a shard that is needed has a wrong file.
+    /// It returns the [errors of loading a shard](ShardError#loading-a-shard).
     pub fn closest_point(&self, query: &Point3<f64>) -> Result<Option<ShardClosest>, ShardError> {
         self.closest_point_with(query, &QueryOptions::default())
     }
@@ -271,7 +271,7 @@ impl ShardedIndex {
     /// ignored, and a limit on visits counts for each shard.
     ///
     /// # Errors
-    /// It returns [`ShardError::Load`] and [`ShardError::OtherShard`] if a shard that is needed has a wrong file.
+    /// It returns the [errors of loading a shard](ShardError#loading-a-shard).
     ///
     /// # Complexity
     /// It takes the time of a query of each shard that can have the answer, and O(s) for the boxes of s shards.
@@ -280,7 +280,7 @@ impl ShardedIndex {
         query: &Point3<f64>,
         options: &QueryOptions<f64>,
     ) -> Result<Option<ShardClosest>, ShardError> {
-        if !is_finite(query) {
+        if !may_have_answer(query, options.max_distance) {
             return Ok(None);
         }
         let mut merged = Merged::new(self, query, options);
@@ -298,7 +298,7 @@ impl ShardedIndex {
     /// is rounded once. Of the options only the largest distance is used, and it is compared without rounding.
     ///
     /// # Errors
-    /// It returns [`ShardError::Load`] and [`ShardError::OtherShard`] if a shard that is needed has a wrong file.
+    /// It returns the [errors of loading a shard](ShardError#loading-a-shard).
     pub fn certified_closest_point(
         &self,
         query: &Point3<f64>,
@@ -313,7 +313,7 @@ impl ShardedIndex {
     /// infinite. Lower bounds are those of the primitives.
     ///
     /// # Errors
-    /// It returns [`ShardError::Load`] and [`ShardError::OtherShard`] if a shard that is needed has a wrong file.
+    /// It returns the [errors of loading a shard](ShardError#loading-a-shard).
     pub fn k_nearest(&self, query: &Point3<f64>, k: usize, radius: f64) -> Result<Vec<ShardClosest>, ShardError> {
         let mut search = NearSearch::new(query, k, radius);
         self.search(query, &mut search)?;
@@ -332,7 +332,7 @@ impl ShardedIndex {
     /// Returns all primitives within the radius, nearest first.
     ///
     /// # Errors
-    /// It returns [`ShardError::Load`] and [`ShardError::OtherShard`] if a shard that is needed has a wrong file.
+    /// It returns the [errors of loading a shard](ShardError#loading-a-shard).
     pub fn all_within(&self, query: &Point3<f64>, radius: f64) -> Result<Vec<ShardClosest>, ShardError> {
         self.k_nearest(query, usize::MAX, radius)
     }
@@ -340,7 +340,7 @@ impl ShardedIndex {
     /// Returns whether any primitive is within the radius.
     ///
     /// # Errors
-    /// It returns [`ShardError::Load`] and [`ShardError::OtherShard`] if a shard that is needed has a wrong file.
+    /// It returns the [errors of loading a shard](ShardError#loading-a-shard).
     pub fn is_any_within(&self, query: &Point3<f64>, radius: f64) -> Result<bool, ShardError> {
         let may_have_any = is_finite(query) && radius >= 0.0;
         let mut order = ByBound::new(&self.boxes, query);
@@ -351,6 +351,11 @@ impl ShardedIndex {
         }
         Ok(false)
     }
+}
+
+/// Returns whether a query may have an answer: its coordinates are finite, and its largest distance is a number.
+pub(crate) fn may_have_answer(query: &Point3<f64>, max_distance: f64) -> bool {
+    is_finite(query) && !max_distance.is_nan()
 }
 
 /// Returns whether all coordinates of a query are finite.

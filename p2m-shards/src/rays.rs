@@ -39,9 +39,13 @@ pub(crate) fn entry(ray: &Ray, bounds: &Aabb<f64>) -> Option<f64> {
         }
         let ends = [low, high].map(|x| (x - origin[k]) / direction[k]);
         let (near, far) = (ends[0].min(ends[1]), ends[0].max(ends[1]));
-        // Infinities stay as they are. NaN cannot occur: the direction is not zero, and the origin is finite.
-        first = first.max(near - near.abs().min(f64::MAX) * SLACK - 8.0 * f64::from_bits(1));
-        last = last.min(far + far.abs().min(f64::MAX) * SLACK + 8.0 * f64::from_bits(1));
+        // An infinite end comes from an overflow, so the parameter may be a finite one.
+        if near.is_finite() {
+            first = first.max(near - near.abs() * SLACK - 8.0 * f64::from_bits(1));
+        }
+        if far.is_finite() {
+            last = last.min(far + far.abs() * SLACK + 8.0 * f64::from_bits(1));
+        }
     }
     (first <= last).then_some(first)
 }
@@ -88,8 +92,8 @@ impl ShardedIndex {
     /// Returns the hit with the least parameter, and of equal parameters the one with the lowest id.
     ///
     /// # Errors
-    /// It returns [`ShardError::NoRays`] if the backend casts no rays, and [`ShardError::Load`] and
-    /// [`ShardError::OtherShard`] if a shard that is needed has a wrong file.
+    /// It returns [`ShardError::NoRays`] if the backend casts no rays, and the
+    /// [errors of loading a shard](ShardError#loading-a-shard).
     pub fn first_intersection(&self, ray: &Ray) -> Result<Option<ShardHit>, ShardError> {
         let mut best: Option<ShardHit> = None;
         for (entry, number) in self.shards_along(ray) {

@@ -12,7 +12,7 @@ use std::sync::Arc;
 /// `(n,)` u64: the ids of the primitives in the whole scene, in ascending order.
 pub(crate) const IDS: &str = "shard/ids";
 /// An estimate of the memory that a primitive takes besides the file, in bytes: its vertices and its indices.
-const SCENE_BYTES_PER_PRIMITIVE: u64 = 40;
+const MEMORY_BYTES_PER_PRIMITIVE: u64 = 40;
 
 /// A part of the scene in memory.
 pub struct Shard {
@@ -58,7 +58,7 @@ impl Shard {
 
     /// Returns an estimate of the memory of the shard of an entry, in bytes.
     pub(crate) fn estimated_bytes(entry: &ShardEntry) -> u64 {
-        entry.bytes + SCENE_BYTES_PER_PRIMITIVE * entry.primitives
+        entry.bytes + MEMORY_BYTES_PER_PRIMITIVE * entry.primitives
     }
 
     /// Returns the primitives, whose ids in the shard are in the order of their ids in the whole scene.

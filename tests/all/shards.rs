@@ -99,7 +99,8 @@ fn check_points(rng: &mut impl Rng, shards: &ShardedIndex, soup: &Soup<f64>, nam
     let points = queries(rng, soup, 12);
     let default = QueryOptions::default();
     let radius = points.iter().find_map(|query| brute.closest_point(query)).map_or(1.0, |c| c.distance);
-    for options in [default, default.with_max_distance(radius)] {
+    let beyond = [radius, f64::NAN, -1.0].map(|largest| default.with_max_distance(largest));
+    for options in [default].into_iter().chain(beyond) {
         let expected: Vec<_> = points.iter().map(|query| brute.closest_point_with(query, &options)).collect();
         let mut batch = vec![None; points.len()];
         shards.closest_points_into(&points, &options, &mut batch).unwrap();
@@ -175,19 +176,58 @@ fn check_rays(rng: &mut impl Rng, shards: &ShardedIndex, soup: &Soup<f64>, name:
         let along = Ray::new(&pair[0], &axis).unwrap_or(ray);
         let part = ray.with_range(-0.5, rng.random_range(-0.5..2.0)).unwrap();
         for ray in [ray, ray.line(), part, along, part.with_radius(0.05).unwrap()] {
-            let name = format!("{name}, {ray:?}");
-            let first = shards.first_intersection(&ray).unwrap();
-            let expected = brute.first_intersection(&ray).map(|hit| of_hit(hit.primitive.index() as u64, &hit));
-            assert_eq!(first.as_ref().map(of_shard_hit), expected, "{name}");
-            let all: Vec<_> = shards.all_intersections(&ray).unwrap().iter().map(of_shard_hit).collect();
-            let expected: Vec<_> =
-                brute.all_intersections(&ray).iter().map(|hit| of_hit(hit.primitive.index() as u64, hit)).collect();
-            assert_eq!(all, expected, "{name}");
-            assert_eq!(shards.count(&ray).unwrap(), brute.count(&ray), "{name}");
-            assert_eq!(shards.crossings(&ray).unwrap(), brute.crossings(&ray), "{name}");
-            assert_eq!(shards.do_intersect(&ray).unwrap(), brute.do_intersect(&ray), "{name}");
+            check_ray(shards, &brute, &ray, name);
         }
     }
+}
+
+/// Compares all queries by a ray with those of brute force, and returns the number of hits.
+fn check_ray(shards: &ShardedIndex, brute: &BruteForce<&Soup<f64>>, ray: &Ray, name: &str) -> usize {
+    let name = format!("{name}, {ray:?}");
+    let first = shards.first_intersection(ray).unwrap();
+    let expected = brute.first_intersection(ray).map(|hit| of_hit(hit.primitive.index() as u64, &hit));
+    assert_eq!(first.as_ref().map(of_shard_hit), expected, "{name}");
+    let all: Vec<_> = shards.all_intersections(ray).unwrap().iter().map(of_shard_hit).collect();
+    let expected: Vec<_> =
+        brute.all_intersections(ray).iter().map(|hit| of_hit(hit.primitive.index() as u64, hit)).collect();
+    assert_eq!(all, expected, "{name}");
+    assert_eq!(shards.count(ray).unwrap(), brute.count(ray), "{name}");
+    assert_eq!(shards.crossings(ray).unwrap(), brute.crossings(ray), "{name}");
+    assert_eq!(shards.do_intersect(ray).unwrap(), brute.do_intersect(ray), "{name}");
+    all.len()
+}
+
+#[test]
+fn rays_hit_scenes_at_the_ends_of_f64() {
+    let mut hits = 0;
+    for case in cases(300, 20) {
+        let rng = &mut rng("shards at the ends of f64", case);
+        // Triangles across two faces of a box that is wider than the largest number.
+        let axis = rng.random_range(0..3);
+        let corner = |number: usize, rng: &mut dyn Rng| {
+            let mut corner = Point3::from([(); 3].map(|()| rng.random_range(-1.0..1.0)));
+            corner[axis] = if number < 9 { f64::MAX } else { -f64::MAX } * rng.random_range(0.9..1.0);
+            corner
+        };
+        let positions = (0..18).map(|number| corner(number, rng)).collect();
+        let soup = Soup::new(positions, (0..6).map(|i| Element::Triangle([3 * i, 3 * i + 1, 3 * i + 2]))).unwrap();
+        let folder = tempfile::tempdir().unwrap();
+        let shards = write(rng, folder.path(), &soup, ShardOptions::default().with_max_bytes(1));
+        let brute = BruteForce::new(&soup).unwrap();
+        for (origin, size) in [(0.9 * f64::MAX, 1e308), (1.0, f64::MAX), (f64::MAX, 1e-3), (0.0, 1e-310)] {
+            let mut from = Point3::from([(); 3].map(|()| rng.random_range(-0.2..0.2)));
+            from[axis] = origin;
+            let mut along = Vector3::zeros();
+            along[axis] = -size;
+            for direction in [along, -along] {
+                let ray = Ray::new(&from, &direction).unwrap();
+                for ray in [ray, ray.line(), ray.with_range(0.0, 10.0).unwrap()] {
+                    hits += check_ray(&shards, &brute, &ray, &format!("case {case}"));
+                }
+            }
+        }
+    }
+    assert!(hits > 100, "{hits}");
 }
 
 #[test]
@@ -240,6 +280,8 @@ fn many_queries_of_a_mesh_in_one_batch() {
     }
     // Each shard is loaded once for each phase.
     assert!(shards.loads() <= 2 * shards.manifest().shards.len() as u64, "{}", shards.loads());
+    let stopped = shards.closest_points_while(&points, &QueryOptions::default(), &mut found, &|_| false);
+    assert_eq!(stopped.unwrap_err().to_string(), "the work was cancelled");
 }
 
 #[test]
@@ -300,6 +342,10 @@ fn a_file_in_pieces_has_the_ids_and_objects_of_its_scene() {
     fs::write(&path, text).unwrap();
     let scene = p2m::scene::read_scene(&path).unwrap();
     let first = Soup::new(vec![Point3::new(1e3, 0.0, 0.0)], [Element::Point(0)]).unwrap();
+    let options = ShardOptions::default().with_max_bytes(3_000);
+    let mut writer = ShardWriter::new(&folder.path().join("small"), options).unwrap();
+    let summary = writer.add_file(&path, &PieceOptions::default()).unwrap();
+    assert!(summary.piece_count > 2, "a piece takes no more memory than a shard: {}", summary.piece_count);
     for len in [1, 5, 1000] {
         let mut writer = ShardWriter::new(&folder.path().join(len.to_string()), ShardOptions::default()).unwrap();
         writer.add_scene(&first.clone().into()).unwrap();
@@ -341,22 +387,22 @@ fn a_wrong_file_is_an_error_that_names_it() {
     let mut larger = sphere.clone();
     larger.map_positions(|p| p * 2.0).unwrap();
     super::shards::write(rng, other, &larger, options);
-    let file = folder.join("00001.p2m");
+    let file = folder.join("0-00001.p2m");
     let bytes = fs::read(&file).unwrap();
 
     fs::remove_file(&file).unwrap();
-    assert!(error_of(folder).contains("00001.p2m"), "{}", error_of(folder));
+    assert!(error_of(folder).contains("0-00001.p2m"), "{}", error_of(folder));
     fs::write(&file, &bytes[..bytes.len() - 64]).unwrap();
-    let length = format!("00001.p2m has {} bytes instead of {}", bytes.len() - 64, bytes.len());
+    let length = format!("0-00001.p2m has {} bytes instead of {}", bytes.len() - 64, bytes.len());
     assert!(error_of(folder).ends_with(&length), "{}", error_of(folder));
     let mut damaged = bytes.clone();
     damaged[bytes.len() / 2] ^= 1;
     fs::write(&file, &damaged).unwrap();
-    assert!(error_of(folder).contains("00001.p2m is damaged: the checksum of"), "{}", error_of(folder));
+    assert!(error_of(folder).contains("0-00001.p2m is damaged: the checksum of"), "{}", error_of(folder));
     let mut version = bytes.clone();
     version[8] = 250;
     fs::write(&file, &version).unwrap();
-    assert!(error_of(folder).contains("00001.p2m has version 250 of the format"), "{}", error_of(folder));
+    assert!(error_of(folder).contains("0-00001.p2m has version 250 of the format"), "{}", error_of(folder));
     // A shard of the same length that belongs to another scene.
     let same = Manifest::read(other).unwrap().shards.iter().find(|shard| shard.bytes == bytes.len() as u64).cloned();
     fs::copy(other.join(same.expect("both spheres are divided alike").file), &file).unwrap();
@@ -393,6 +439,87 @@ fn an_index_is_only_replaced_on_purpose_and_unfinished_ones_leave_nothing() {
     let one = write(rng, &folder, &sphere, ShardOptions::default().with_replace(true));
     assert_eq!(one.manifest().shards.len(), 1);
     assert!(count > 1 && fs::read_dir(&folder).unwrap().count() == 2, "the shards that were replaced are gone");
+}
+
+/// Returns the sorted names of the files of a folder.
+fn names(folder: &Path) -> Vec<String> {
+    let name = |entry: std::io::Result<fs::DirEntry>| entry.unwrap().file_name().into_string().unwrap();
+    let mut names: Vec<String> = fs::read_dir(folder).unwrap().map(name).collect();
+    names.sort_unstable();
+    names
+}
+
+/// Returns a writer to which a sphere of several shards was added.
+fn writer_of_sphere(folder: &Path, replace: bool) -> ShardWriter {
+    let options = ShardOptions::default().with_max_bytes(20_000).with_replace(replace);
+    let mut writer = ShardWriter::new(folder, options).unwrap();
+    writer.add_scene(&p2m::scene::generate::ico_sphere(&Default::default()).unwrap().into()).unwrap();
+    writer
+}
+
+/// Checks that the index of a folder has the manifest, and that all of its shards can be loaded.
+fn assert_whole(folder: &Path, manifest: &Manifest) {
+    let shards = ShardedIndex::open(folder).unwrap();
+    assert_eq!(shards.manifest(), manifest);
+    (0..manifest.shards.len()).for_each(|number| drop(shards.shard(number).unwrap()));
+}
+
+#[test]
+fn a_replacement_that_fails_keeps_the_old_index() {
+    let folder = tempfile::tempdir().unwrap();
+    let folder = folder.path();
+    let old = writer_of_sphere(folder, false).finish().unwrap().manifest().clone();
+    let files = names(folder);
+    drop(writer_of_sphere(folder, true));
+    assert_whole(folder, &old);
+    let cancelled = writer_of_sphere(folder, true).finish_with_progress(&mut |_| std::ops::ControlFlow::Break(()));
+    assert!(matches!(cancelled, Err(ShardError::Cancelled)));
+    assert_whole(folder, &old);
+    assert_eq!(names(folder), files);
+    // The manifest cannot be replaced by a file.
+    fs::remove_file(folder.join(MANIFEST_FILE)).unwrap();
+    fs::create_dir_all(folder.join(MANIFEST_FILE).join("full")).unwrap();
+    assert!(matches!(writer_of_sphere(folder, true).finish(), Err(ShardError::Io { .. })));
+    assert_eq!(names(folder), files);
+}
+
+#[test]
+fn two_writers_do_not_disturb_each_other() {
+    let folder = tempfile::tempdir().unwrap();
+    let folder = folder.path();
+    let [first, second] = [(); 2].map(|()| writer_of_sphere(folder, false));
+    let manifest = first.finish().unwrap().manifest().clone();
+    assert!(matches!(second.finish(), Err(ShardError::Exists { .. })));
+    assert_whole(folder, &manifest);
+    assert_eq!(names(folder).len(), manifest.shards.len() + 1);
+    // A replacement that finishes during another one removes the files of that, which notices it.
+    let [first, second] = [(); 2].map(|()| writer_of_sphere(folder, true));
+    let (mut second, mut manifest) = (Some(second), manifest);
+    let overtaken = first.finish_with_progress(&mut |_| {
+        if let Some(second) = second.take() {
+            manifest = second.finish().unwrap().manifest().clone();
+        }
+        std::ops::ControlFlow::Continue(())
+    });
+    assert!(matches!(overtaken, Err(ShardError::Io { .. })));
+    assert_whole(folder, &manifest);
+    assert_eq!(names(folder).len(), manifest.shards.len() + 1);
+}
+
+#[test]
+fn a_writer_changes_no_file_of_others_and_a_replacement_removes_what_runs_have_left() {
+    let folder = tempfile::tempdir().unwrap();
+    let folder = folder.path();
+    let (foreign, left) = (["00000.p2m", "0.p2m", "notes.txt"], ["0-00000.p2m", "3-00001.p2m", "1-manifest.json"]);
+    let all = || foreign.iter().chain(&left).map(|name| folder.join(name));
+    all().for_each(|file| fs::write(file, "another").unwrap());
+    let manifest = writer_of_sphere(folder, false).finish().unwrap().manifest().clone();
+    all().for_each(|file| assert_eq!(fs::read(file).unwrap(), b"another"));
+    assert_whole(folder, &manifest);
+    let manifest = writer_of_sphere(folder, true).finish().unwrap().manifest().clone();
+    assert_whole(folder, &manifest);
+    foreign.iter().for_each(|name| assert_eq!(fs::read(folder.join(name)).unwrap(), b"another"));
+    assert_eq!(names(folder).len(), foreign.len() + manifest.shards.len() + 1);
 }
 
 #[test]

@@ -146,7 +146,7 @@ fn causes_are_told_once() {
     assert_eq!(message.matches("o such file").count(), if cfg!(unix) { 1 } else { 0 }, "{message}");
     let directory = path(&folder, "folder.obj");
     fs::create_dir(&directory).unwrap();
-    let message = failure(&["query", &directory, "--grid", "1"], 1);
+    let message = failure(&["info", &directory], 1);
     assert_eq!(message, format!("error: {directory}: cannot be read: is a directory\n"));
 }
 

@@ -67,6 +67,24 @@ fn an_interrupted_run_leaves_what_was_there_before() {
     }
 }
 
+#[test]
+fn an_interrupted_run_leaves_no_folder_of_shards() {
+    let folder = TempDir::new().unwrap();
+    let site = folder.path().join("site");
+    let mut command = program(&["shard", "-", "--format", "obj", "--out"]);
+    // The input does not end, so that the run waits for it.
+    let mut child =
+        command.arg(&site).stdin(Stdio::piped()).stdout(Stdio::null()).stderr(Stdio::null()).spawn().unwrap();
+    let start = Instant::now();
+    while !site.is_dir() || names(&site).is_empty() {
+        assert!(start.elapsed() < Duration::from_secs(60), "no file was begun");
+        std::thread::sleep(Duration::from_millis(5));
+    }
+    send("-TERM", &child);
+    assert_eq!(child.wait().unwrap().code(), Some(143));
+    assert!(names(folder.path()).is_empty());
+}
+
 /// A run started by `nohup` goes on when its terminal closes, one in the background of a script when the script is
 /// interrupted; both still end by SIGTERM.
 #[cfg(target_os = "linux")]

@@ -1,6 +1,7 @@
 //! Tests of `p2m shard`, and of `p2m query` of an index in shards.
 
 use crate::common::{SCENE, failure, json, p2m, p2m_with, path, table, text, write};
+use serde_json::json;
 use std::fs;
 use std::io::Write;
 use tempfile::TempDir;
@@ -47,13 +48,33 @@ fn signs_are_those_of_the_whole_surface() {
     let expected = ask(&scene, "--signed");
     assert!(expected.contains(",-0."), "some points are inside");
     assert_eq!(ask(&site, "--signed"), expected);
-    let run = p2m(&["query", &site, "--random", "3", "--signed=closed"]);
+    let vertices: String = fs::read_to_string(&scene)
+        .unwrap()
+        .lines()
+        .filter_map(|line| Some(line.strip_prefix("v ")?.to_owned() + "\n"))
+        .collect();
+    let vertices = write(&folder, "vertices.xyz", vertices);
+    let ask = |scene: &str| table(&["query", scene, "--points", &vertices, "--columns", "signed", "--signed"]);
+    let expected = ask(&scene);
+    assert!(expected.lines().filter(|line| *line == "0.0").count() > 100, "vertices are on the surface");
+    assert_eq!(ask(&site), expected);
+    let run = p2m(&["query", &site, "--random", "3", "--signed"]);
     assert!(
         text(&run.stderr).contains("note     that the surface is closed was not checked\n"),
         "{}",
         text(&run.stderr)
     );
-    assert!(failure(&["query", &site, "--random", "1", "--signed=winding"], 2).contains("no winding numbers"));
+    for (signed, signs, is_checked) in
+        [(&["--signed=auto"][..], json!("crossings"), json!(false)), (&[], json!(null), json!(null))]
+    {
+        let out = path(&folder, "answers.csv");
+        let report = json(&[&["query", &site, "--random", "3", "--json", "--out", &out], signed].concat());
+        assert_eq!((&report["shards"]["signs"], &report["shards"]["closed_checked"]), (&signs, &is_checked));
+    }
+    for rule in ["closed", "winding"] {
+        let message = failure(&["query", &site, "--random", "1", &format!("--signed={rule}")], 2);
+        assert!(message.contains(&format!("--signed={rule} is not for an index in shards")), "{message}");
+    }
     let mixed = sharded(&folder);
     assert!(failure(&["query", &mixed, "--random", "1", "--signed"], 1).contains("which have no inside"));
 }
@@ -98,20 +119,20 @@ fn wrong_folders_and_files_are_named() {
     let ask = |scene: &str, code| failure(&["query", scene, "--random", "500", "--out", &out], code);
     assert!(failure(&["shard", SCENE, "--out", &site], 1).contains("there is a sharded index already"));
     table(&["shard", SCENE, "--max-bytes", "40kB", "--out", &site, "--replace"]);
-    let shard = format!("{site}/00001.p2m");
+    let shard = format!("{site}/1-00001.p2m");
     let whole = fs::read(&shard).unwrap();
     fs::write(&shard, &whole[..whole.len() / 2]).unwrap();
     let message = ask(&site, 1);
     assert_eq!(message.matches("bytes instead of").count(), 1, "{message}");
-    assert!(message.contains("00001.p2m"), "{message}");
+    assert!(message.contains("1-00001.p2m"), "{message}");
     fs::remove_file(&shard).unwrap();
-    assert!(ask(&site, 1).contains("00001.p2m"));
-    fs::copy(format!("{site}/00000.p2m"), &shard).unwrap();
-    assert!(ask(&site, 1).contains("00001.p2m"));
+    assert!(ask(&site, 1).contains("1-00001.p2m"));
+    fs::copy(format!("{site}/1-00000.p2m"), &shard).unwrap();
+    assert!(ask(&site, 1).contains("1-00001.p2m"));
     fs::write(format!("{site}/manifest.json"), "{}").unwrap();
     assert!(ask(&site, 1).contains("manifest.json"));
     fs::remove_file(format!("{site}/manifest.json")).unwrap();
-    assert!(ask(&site, 1).contains("is a directory"));
+    assert!(ask(&site, 1).contains("without the file manifest.json, so it is no finished index in shards"));
     // A failed run leaves neither a file nor a folder.
     assert!(!fs::exists(&out).unwrap());
     let missing = path(&folder, "new");

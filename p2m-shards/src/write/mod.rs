@@ -3,7 +3,11 @@
 //! Primitives are written to a temporary file as they come. At the end that file is divided by space into parts, large
 //! parts are divided again, and the index of each part is built and saved by itself. Temporary files are in the folder
 //! of the shards and take 88 bytes for each primitive, and twice that while a file is divided.
+//!
+//! Each run of a writer creates files under names of its own. The manifest gets its name when all shards are written,
+//! and only then are the files of an index that is replaced removed. So a folder has a complete index at any time.
 
+mod names;
 mod partition;
 mod spill;
 
@@ -12,6 +16,8 @@ use crate::shard::IDS;
 use crate::{ShardError, ShardedIndex};
 use hashbrown::HashTable;
 use nalgebra::Point3;
+pub use names::shard_file;
+use names::{begin_run, files_of_runs, run_of, unfinished_manifest};
 use p2m_advisor::{BackendEntry, BuildSettings};
 use p2m_core::storage::Writer;
 use p2m_core::{BuildError, Element, PrimitiveId, PrimitiveSet, Shape, Soup};
@@ -33,7 +39,7 @@ pub struct ShardOptions {
     pub max_bytes: u64,
     /// The backend of the shards, by default the tree of boxes.
     pub backend: &'static BackendEntry,
-    /// Whether a sharded index in the folder is replaced. By default it is an error.
+    /// Whether a sharded index in the folder is replaced when the new one is complete. By default it is an error.
     pub replace: bool,
 }
 
@@ -63,8 +69,8 @@ impl ShardOptions {
     }
 }
 
-/// The bytes of the scene of a shard, for each primitive, that a first division expects.
-const SCENE_BYTES_PER_PRIMITIVE: f64 = 52.0;
+/// The bytes of a primitive in the file of a shard, besides those of the index, that a first division expects.
+const FILE_BYTES_PER_PRIMITIVE: f64 = 52.0;
 /// The part of the largest length of a file that a division aims at. Parts are not equally large.
 const FILL: f64 = 0.85;
 
@@ -73,7 +79,15 @@ const WRITE_BUFFER_BYTES: usize = 1 << 20;
 
 /// A writer of shards. Scenes are added piece by piece, and [`finish`](Self::finish) builds the shards.
 ///
-/// Ids count the primitives in the order in which they were added. A writer that is dropped removes its files.
+/// Ids count the primitives in the order in which they were added.
+///
+/// The writer creates files under names that no other file in the folder has, and changes no file that it has not
+/// created. The index is there as soon as its manifest is, which is the last step. A writer that is dropped before
+/// removes its files, and an index that was to be replaced stays. Files of programs that were killed stay until an
+/// index in the folder is replaced.
+///
+/// Several writers may work in one folder. Of those that do not replace an index, the first one to finish succeeds. A
+/// writer that finishes its replacement removes the files of others that began before it, so that these fail.
 ///
 /// ```
 /// use p2m_core::{Point, Soup};
@@ -102,7 +116,9 @@ pub struct ShardWriter {
     /// The primitives, until they are divided.
     spill: Option<Spill>,
     manifest: Manifest,
-    /// The files to remove unless writing is finished.
+    /// The number of this run, with which the names of its files begin.
+    run: u64,
+    /// The files of this run, which are removed unless writing is finished: those of shards in their order.
     written: Vec<PathBuf>,
     /// Whether the folder is to be removed as well, because it was not there.
     is_new_folder: bool,
@@ -123,7 +139,6 @@ impl ShardWriter {
         }
         let is_new_folder = !folder.exists();
         fs::create_dir_all(folder).map_err(ShardError::io(folder))?;
-        let spill = Spill::new(folder).map_err(ShardError::io(folder))?;
         let manifest = Manifest {
             backend: options.backend.name.to_owned(),
             triangles: 0,
@@ -132,14 +147,19 @@ impl ShardWriter {
             shards: Vec::new(),
             objects: Vec::new(),
         };
-        Ok(Self {
-            folder: folder.to_owned(),
-            options,
-            spill: Some(spill),
-            manifest,
-            written: Vec::new(),
-            is_new_folder,
-        })
+        let (folder, written) = (folder.to_owned(), Vec::new());
+        let mut writer = Self { folder, options, spill: None, manifest, run: 0, written, is_new_folder };
+        // What fails from here on drops the writer, which removes what it has created.
+        writer.run = begin_run(&writer.folder).map_err(ShardError::io(&writer.folder))?;
+        writer.written.push(writer.folder.join(shard_file(writer.run, 0)));
+        writer.spill = Some(Spill::new(&writer.folder).map_err(ShardError::io(&writer.folder))?);
+        Ok(writer)
+    }
+
+    /// Returns the number of this run, which the names of its files have ([`shard_file`]).
+    #[must_use]
+    pub fn run(&self) -> u64 {
+        self.run
     }
 
     /// Adds the primitives of a scene after those that were added before. An object that continues the last one, by its
@@ -169,8 +189,9 @@ impl ShardWriter {
 
     /// Adds the primitives of a file, which may be larger than the memory, after those that were added before. It is
     /// [read in pieces](read_scene_in_pieces), with a temporary file in the folder of the shards unless `options` name
-    /// another one. The id of a primitive is that in the scene of [`read_scene`](p2m_mixed::read_scene) plus the number
-    /// of primitives that were added before, and objects are those of that scene.
+    /// another one. A piece has at most the primitives of a full shard, and the vertices besides it at most the bytes
+    /// of one. The id of a primitive is that in the scene of [`read_scene`](p2m_mixed::read_scene) plus the number of
+    /// primitives that were added before, and objects are those of that scene.
     ///
     /// # Errors
     /// It returns [`ShardError::Scene`] if the file cannot be read, and [`ShardError::Io`] if the temporary file of
@@ -178,6 +199,10 @@ impl ShardWriter {
     pub fn add_file(&mut self, path: &Path, options: &PieceOptions) -> Result<PieceSummary, ShardError> {
         let mut options = options.clone();
         options.folder.get_or_insert_with(|| self.folder.clone());
+        let to_usize = |count| usize::try_from(count).unwrap_or(usize::MAX);
+        let max_bytes = self.options.max_bytes;
+        options.max_primitives = options.max_primitives.min(to_usize(capacity(max_bytes, 1.0, self.file_bytes())));
+        options.max_position_bytes = options.max_position_bytes.min(to_usize(max_bytes));
         read_scene_in_pieces(path, &options, &mut |piece| self.add_scene(&piece))
     }
 
@@ -185,6 +210,11 @@ impl ShardWriter {
     #[must_use]
     pub fn primitive_count(&self) -> u64 {
         self.manifest.primitive_count()
+    }
+
+    /// Returns the number of bytes that a primitive is expected to take in the file of a shard.
+    fn file_bytes(&self) -> f64 {
+        self.options.backend.cost.bytes_per_primitive + FILE_BYTES_PER_PRIMITIVE
     }
 
     fn add(&mut self, id: u64, source: u32, shape: Shape<f64>) -> Result<(), ShardError> {
@@ -205,7 +235,9 @@ impl ShardWriter {
     /// Builds the shards, and returns the index that they make up.
     ///
     /// # Errors
-    /// It returns [`ShardError::Io`], and [`ShardError::Build`] for a shard of more than 2^30 primitives.
+    /// It returns [`ShardError::Io`], which includes that another writer has removed the files of this one,
+    /// [`ShardError::Exists`] if the folder has got a sharded index that is not to be replaced, and
+    /// [`ShardError::Build`] for a shard of more than 2^30 primitives.
     pub fn finish(self) -> Result<ShardedIndex, ShardError> {
         self.finish_with_progress(&mut |_| ControlFlow::Continue(()))
     }
@@ -219,8 +251,7 @@ impl ShardWriter {
         mut self,
         progress: &mut dyn FnMut(u64) -> ControlFlow<()>,
     ) -> Result<ShardedIndex, ShardError> {
-        self.remove_replaced()?;
-        let expected = self.options.backend.cost.bytes_per_primitive + SCENE_BYTES_PER_PRIMITIVE;
+        let expected = self.file_bytes();
         let mut parts: Vec<Spill> = self.spill.take().into_iter().filter(|spill| spill.len() > 0).collect();
         let (mut done, mut bytes_per_primitive, max_bytes) = (0, expected, self.options.max_bytes);
         while let Some(mut part) = parts.pop() {
@@ -244,9 +275,7 @@ impl ShardWriter {
             // The last one comes first, so that shards are numbered along the tree.
             parts.extend(divided.into_iter().rev());
         }
-        self.manifest.write(&self.folder)?;
-        self.written.clear();
-        self.is_new_folder = false;
+        self.publish()?;
         ShardedIndex::open(&self.folder)
     }
 
@@ -257,18 +286,20 @@ impl ShardWriter {
             PartError::Build(error) => ShardError::Build(error),
         })?;
         let built = self.options.backend.build(&scene.soup, &BuildSettings::default())?;
-        let file = shard_file(self.manifest.shards.len());
+        let file = shard_file(self.run, self.manifest.shards.len());
         let path = self.folder.join(&file);
-        if self.written.last() != Some(&path) {
-            self.written.push(path.clone());
-        }
+        // The file is there if it is the first one, or if it was too long and its part was divided.
+        let is_new = self.written.last() != Some(&path);
         let mut writer = Writer::default();
         save_scene(&scene, &mut writer);
         built.save(&mut writer);
         writer.put(IDS, &ids);
         let checksum = format!("{:016x}", writer.checksum());
-        let write = || {
-            let out = File::create(&path)?;
+        let mut write = || {
+            let out = if is_new { File::create_new(&path)? } else { File::create(&path)? };
+            if is_new {
+                self.written.push(path.clone());
+            }
             writer.write(BufWriter::with_capacity(WRITE_BUFFER_BYTES, &out))?;
             Ok(out.metadata()?.len())
         };
@@ -278,18 +309,29 @@ impl ShardWriter {
         Ok(ShardEntry { file, bytes, checksum, primitives: part.len(), min, max })
     }
 
-    /// Removes the index that is replaced. Programs that have mapped its files are not disturbed.
-    fn remove_replaced(&self) -> Result<(), ShardError> {
-        if !self.folder.join(MANIFEST_FILE).exists() {
-            return Ok(());
+    /// Makes the shards the index of the folder, and removes those that they replace. Programs that have mapped the
+    /// removed files are not disturbed.
+    fn publish(&mut self) -> Result<(), ShardError> {
+        // A replacement that has finished meanwhile has removed the files of this run.
+        for path in self.manifest.shards.iter().map(|shard| self.folder.join(&shard.file)) {
+            fs::metadata(&path).map_err(ShardError::io(&path))?;
         }
-        // Files that an unreadable manifest names are not known, and those of the same names are overwritten.
-        let old = Manifest::read(&self.folder).map(|manifest| manifest.shards).unwrap_or_default();
-        let names = std::iter::once(MANIFEST_FILE).chain(old.iter().map(|shard| &*shard.file));
-        for path in names.map(|name| self.folder.join(name)) {
-            match fs::remove_file(&path) {
-                Err(error) if error.kind() != io::ErrorKind::NotFound => return Err(ShardError::io(path)(error)),
-                _ => {}
+        // Files that an unreadable manifest names are not known.
+        let replaced = Manifest::read(&self.folder).map(|manifest| manifest.shards).unwrap_or_default();
+        let unfinished = self.folder.join(unfinished_manifest(self.run));
+        self.written.push(unfinished.clone());
+        self.manifest.write(&unfinished, &self.folder, self.options.replace)?;
+        // Of an empty scene the file of the first shard was created in vain.
+        for path in self.written.drain(..).skip(self.manifest.shards.len()) {
+            let _ = fs::remove_file(path);
+        }
+        self.is_new_folder = false;
+        if self.options.replace {
+            let left = files_of_runs(&self.folder).unwrap_or_default().into_iter().filter(|(run, _)| *run < self.run);
+            let left = replaced.into_iter().map(|shard| shard.file).chain(left.map(|(_, file)| file));
+            for file in left.filter(|file| run_of(file) != Some(self.run)) {
+                // What cannot be removed stays until the next replacement.
+                let _ = fs::remove_file(self.folder.join(file));
             }
         }
         Ok(())
@@ -299,19 +341,13 @@ impl ShardWriter {
 impl Drop for ShardWriter {
     fn drop(&mut self) {
         // What cannot be removed stays.
-        for path in &self.written {
+        for path in self.written.iter().rev() {
             let _ = fs::remove_file(path);
         }
         if self.is_new_folder {
             let _ = fs::remove_dir(&self.folder);
         }
     }
-}
-
-/// Returns the name of the file of a shard by its number, for programs that remove what an interruption leaves.
-#[must_use]
-pub fn shard_file(number: usize) -> String {
-    format!("{number:05}.p2m")
 }
 
 /// Returns how many primitives are expected to fill a part of the largest length of a file.
