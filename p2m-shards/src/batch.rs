@@ -203,7 +203,7 @@ impl ShardedIndex {
     /// the answer of the whole scene. A hint is ignored.
     ///
     /// # Errors
-    /// It returns [`ShardError::Load`] and [`ShardError::OtherShard`] if the shard has a wrong file, and
+    /// It returns the [errors of loading a shard](ShardError#loading-a-shard), and
     /// [`ShardError::Cancelled`] if `proceed` has returned `false`.
     ///
     /// # Panics
