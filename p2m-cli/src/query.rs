@@ -11,19 +11,18 @@ use crate::output::Output;
 use crate::p2m_args::P2mArgs;
 use crate::query_args::QueryArgs;
 use crate::sampling::{Queries, Region};
-use crate::shard_query;
+use crate::shard_query::{self, shard_folder};
 use crate::sign_rule::{SignRule, SignedIndex};
 use crate::streams::Streams;
 use crate::summary::{AnswerSummary, IndexSummary, RunSummary, SceneSummary};
 use crate::usage::{bytes, not_negative, one_of, positive, usage, whole_number};
-use anyhow::{Context, bail};
+use anyhow::Context;
 use clap::ArgGroup;
 use clap::builder::{PossibleValuesParser, TypedValueParser};
 use nalgebra::Point3;
 use p2m_advisor::{BuiltIndex, Index, QueryRegion, Workload};
 use p2m_core::{Aabb, Closest, PrimitiveSet, QueryOptions};
 use p2m_mixed::{AnswerColumn, AnswerFormat, Object, PointFormat};
-use p2m_shards::folder_of;
 use rayon::prelude::*;
 use serde_json::{Value, json};
 use std::path::PathBuf;
@@ -154,17 +153,8 @@ pub(crate) struct Args {
 }
 
 pub(crate) fn run(streams: &Streams, args: &Args) -> anyhow::Result<()> {
-    if let Some(folder) = folder_of(&args.scene.path) {
+    if let Some(folder) = shard_folder(&args.scene.path, args.max_memory)? {
         return shard_query::run(streams, args, &folder);
-    }
-    if args.scene.path.is_dir() {
-        bail!(
-            "{}: cannot be read: is a directory without the file manifest.json, so it is no finished index in shards",
-            args.scene.path.display()
-        );
-    }
-    if args.max_memory.is_some() {
-        return Err(usage("--max-memory needs the folder of an index in shards, which `p2m shard` writes"));
     }
     let (scene_args, query_args) = (&args.scene, &args.query_args);
     query_args.check(scene_args, args.points.as_deref(), "points")?;

@@ -1,29 +1,29 @@
 //! `p2m ray`: the hits of rays as a table.
 
-use crate::answering::{BlockSize, QueryStream, Steps, answer_all, answer_each};
+use crate::answering::{BlockSize, QueryStream};
 use crate::backend::{Backend, PreparedIndex, SceneSource, backends, saved_or_default};
 use crate::input::{self, SceneArgs, point_format, read_rays, read_scene_and_index};
 use crate::json;
 use crate::kdop_directions::requested;
 use crate::output::Output;
 use crate::query_args::QueryArgs;
-use crate::ray_summary::RaySummary;
+use crate::ray_answers::{Task, WholeIndex};
 use crate::sampling::{Region, random_rays};
+use crate::shard_query::shard_folder;
+use crate::shard_ray;
 use crate::streams::Streams;
 use crate::summary::{IndexSummary, RunSummary, SceneSummary};
-use crate::usage::{finite_not_negative, number, one_of, positive, usage, whole_number};
+use crate::usage::{bytes, finite_not_negative, number, one_of, positive, usage, whole_number};
 use anyhow::Context;
 use clap::{ArgGroup, ValueEnum};
 use nalgebra::{Point3, Vector3};
 use p2m_advisor::{BackendEntry, BuiltIndex, P2mSettings};
 use p2m_core::storage::Reader;
-use p2m_core::{Hit, PrimitiveSet, Ray, RayError, RayQuery};
-use p2m_mixed::{AnswerFormat, HitWriter, NumberWriter, Object, PointFormat, Scene};
-use rayon::ThreadPool;
+use p2m_core::{Aabb, PrimitiveSet, Ray, RayError};
+use p2m_mixed::PointFormat;
 use serde_json::{Value, json};
-use std::io;
 use std::path::PathBuf;
-use std::time::{Duration, Instant};
+use std::time::Instant;
 
 /// The text of the help. Each paragraph is one line, so that it wraps at the width of the terminal.
 fn help() -> String {
@@ -74,7 +74,7 @@ Examples:
 #[command(group = ArgGroup::new("questions").required(true).args(["rays", "random"]))]
 pub(crate) struct Args {
     #[command(flatten)]
-    scene: SceneArgs,
+    pub(crate) scene: SceneArgs,
 
     /// Cast the rays of this XYZ, TXT, CSV, NPY or PLY file; `-` is the standard input
     #[arg(long, value_name = "FILE")]
@@ -102,7 +102,7 @@ pub(crate) struct Args {
 
     /// The answer for each ray
     #[arg(long, value_enum, default_value_t = Mode::First)]
-    mode: Mode,
+    pub(crate) mode: Mode,
 
     /// Go both ways: parameters from minus infinity on
     #[arg(long, conflicts_with = "min")]
@@ -122,14 +122,18 @@ pub(crate) struct Args {
 
     /// The index to search; interception indexes (octree, p2m) answer no rays [default: aabb, or as a saved index does]
     #[arg(long, value_parser = backends(|backend| backend.casts_rays))]
-    backend: Option<Backend>,
+    pub(crate) backend: Option<Backend>,
+
+    /// Keep at most this much of an index in shards in memory, such as 4GB or 500MiB; one shard is kept in any case
+    #[arg(long, value_name = "BYTES", value_parser = bytes)]
+    pub(crate) max_memory: Option<u64>,
 
     #[command(flatten)]
-    query_args: QueryArgs,
+    pub(crate) query_args: QueryArgs,
 }
 
 #[derive(Clone, Copy, PartialEq, Eq, ValueEnum)]
-enum Mode {
+pub(crate) enum Mode {
     /// Whether a ray hits anything
     #[value(alias = "do")]
     Intersects,
@@ -160,14 +164,15 @@ impl Mode {
 }
 
 pub(crate) fn run(streams: &Streams, args: &Args) -> anyhow::Result<()> {
+    if let Some(folder) = shard_folder(&args.scene.path, args.max_memory)? {
+        return shard_ray::run(streams, args, &folder);
+    }
     let (scene_args, query_args) = (&args.scene, &args.query_args);
-    query_args.check(scene_args, args.rays.as_deref(), "rays")?;
-    let along_x = Ray::new(&Point3::<f64>::origin(), &Vector3::x()).and_then(|ray| args.limited(&ray));
-    along_x.map_err(|error| usage(format!("{error} (--min, --max)")))?;
+    args.check()?;
     let (format, out_format) = (scene_args.format()?, query_args.format(streams)?);
     let start = Instant::now();
     let (scene, saved) = read_scene_and_index(streams, &scene_args.path, format, scene_args.map)?;
-    let rays = rays(streams, args, &scene)?;
+    let rays = rays(streams, args, &scene.soup.aabb())?;
     let read_time = start.elapsed();
     // The file is opened before the work, which would be lost if its name were wrong.
     let mut output = Output::open(streams, Some(&query_args.out))?;
@@ -187,8 +192,8 @@ pub(crate) fn run(streams: &Streams, args: &Args) -> anyhow::Result<()> {
 
     let index = index.as_ray_query().context("the backend casts no rays")?;
     let (output_file, objects) = (&mut output, scene.objects.as_slice());
-    let task = Task { streams, index, pool: &pool, rays, output: output_file, format: out_format, objects };
-    let (query_time, summary) = task.run(args.mode).with_context(|| output.cannot_write())?;
+    let task = Task { streams, pool: &pool, rays, output: output_file, format: out_format, objects };
+    let (query_time, summary) = task.run(&WholeIndex(index), args.mode)?;
     let bytes = output.bytes();
     output.finish()?;
 
@@ -210,6 +215,14 @@ fn ray_backend(saved: Option<&Reader>) -> Backend {
 }
 
 impl Args {
+    /// Refuses combinations of arguments that contradict each other.
+    pub(crate) fn check(&self) -> anyhow::Result<()> {
+        self.query_args.check(&self.scene, self.rays.as_deref(), "rays")?;
+        let along_x = Ray::new(&Point3::<f64>::origin(), &Vector3::x()).and_then(|ray| self.limited(&ray));
+        along_x.map_err(|error| usage(format!("{error} (--min, --max)")))?;
+        Ok(())
+    }
+
     /// The least and the largest parameter.
     fn range(&self) -> [f64; 2] {
         [if self.line { f64::NEG_INFINITY } else { self.min }, self.max.unwrap_or(f64::INFINITY)]
@@ -222,7 +235,7 @@ impl Args {
     }
 
     /// Returns the part of a report about the rays and their answers.
-    fn report(&self, summary: Value) -> Value {
+    pub(crate) fn report(&self, summary: Value) -> Value {
         let source = match &self.rays {
             Some(path) => json!({ "rays": input::name(path) }),
             None => json!({ "random": self.random, "seed": self.seed, "box_scale": self.box_scale }),
@@ -241,13 +254,11 @@ impl Args {
     }
 }
 
-/// An index that rays can be cast at.
-type RayIndex<'a> = dyn RayQuery<f64> + Sync + 'a;
-
 /// The rays of the arguments.
-type Rays<'a> = QueryStream<Box<dyn Iterator<Item = Ray> + 'a>>;
+pub(crate) type Rays<'a> = QueryStream<Box<dyn Iterator<Item = Ray> + 'a>>;
 
-fn rays<'a>(streams: &Streams, args: &'a Args, scene: &Scene) -> anyhow::Result<Rays<'a>> {
+/// Returns the rays that the arguments ask for. `bounds` is the box of the scene.
+pub(crate) fn rays<'a>(streams: &Streams, args: &'a Args, bounds: &Aabb<f64>) -> anyhow::Result<Rays<'a>> {
     let (count, rays): (u64, Box<dyn Iterator<Item = Ray>>) = match &args.rays {
         Some(path) => {
             let rays = read_rays(streams, path, point_format(path, args.rays_format, "--rays-format")?)?;
@@ -255,95 +266,9 @@ fn rays<'a>(streams: &Streams, args: &'a Args, scene: &Scene) -> anyhow::Result<
         }
         None => {
             let count = args.random.unwrap_or(0);
-            (count, Box::new(random_rays(Region::around(&scene.soup.aabb(), args.box_scale), count, args.seed)))
+            (count, Box::new(random_rays(Region::around(bounds, args.box_scale), count, args.seed)))
         }
     };
     let rays = rays.map(|ray| args.limited(&ray).expect("the limits fit every ray"));
     Ok(QueryStream { name: "rays", count, iter: Box::new(rays), block_size: BlockSize::Adaptive })
-}
-
-/// The rays to answer, and the file for their answers.
-struct Task<'a, 's> {
-    streams: &'a Streams,
-    index: &'a RayIndex<'a>,
-    pool: &'a ThreadPool,
-    rays: Rays<'a>,
-    output: &'a mut Output<'s>,
-    format: AnswerFormat,
-    objects: &'a [Object],
-}
-
-impl Task<'_, '_> {
-    /// Answers all rays. Returns the time that this took, and a summary of the answers.
-    fn run(self, mode: Mode) -> io::Result<(Duration, RaySummary)> {
-        let (hits, one_each) = (RaySummary::with_counts("hits"), Some(self.rays.count));
-        match mode {
-            Mode::Intersects => {
-                self.counts("hit", RaySummary::default(), |index, ray| u64::from(index.do_intersect(ray)))
-            }
-            Mode::Count => self.counts("count", hits, |index, ray| index.count(ray) as u64),
-            Mode::Crossings => {
-                let crossed = RaySummary::with_counts("crossed");
-                self.counts("crossings", crossed, |index, ray| index.crossings(ray) as u64)
-            }
-            Mode::Any => self.hits(one_each, RaySummary::default(), |i, ray| i.any_intersection(ray), Option::as_slice),
-            Mode::First => {
-                self.hits(one_each, RaySummary::default(), |i, ray| i.first_intersection(ray), Option::as_slice)
-            }
-            Mode::All => self.hits(None, hits, |index, ray| index.all_intersections(ray), Vec::as_slice),
-        }
-    }
-
-    /// Writes a count for each ray.
-    fn counts(
-        self,
-        name: &'static str,
-        mut summary: RaySummary,
-        count: impl Fn(&RayIndex<'_>, &Ray) -> u64 + Sync,
-    ) -> io::Result<(Duration, RaySummary)> {
-        let mut writer = NumberWriter::new(self.output, self.format, name, self.rays.count)?;
-        let (encoder, index) = (writer.encoder(), self.index);
-        let steps = Steps {
-            answer: |rays: &[_]| Ok(answer_each(rays, |ray| count(index, ray))),
-            encode: |number, ray: &_, count: &u64, out: &mut _| {
-                encoder.encode(number, ray, *count, out);
-                1
-            },
-            take: |_: &_, count: &u64| summary.add(*count),
-            write: |count, records: &[u8]| writer.write_encoded(count, records),
-        };
-        let time = answer_all(self.streams, self.pool, self.rays, steps)?;
-        writer.finish()?;
-        Ok((time, summary))
-    }
-
-    /// Writes the hits of each ray, which `slice` takes from its answer. `records` is the number of records if each ray
-    /// has exactly one; otherwise each hit has one.
-    fn hits<A: Send + Sync>(
-        self,
-        records: Option<u64>,
-        mut summary: RaySummary,
-        intersect: impl Fn(&RayIndex<'_>, &Ray) -> A + Sync,
-        slice: fn(&A) -> &[Hit],
-    ) -> io::Result<(Duration, RaySummary)> {
-        let mut writer = HitWriter::with_objects(self.output, self.format, records, self.objects)?;
-        let (encoder, index) = (writer.encoder(), self.index);
-        let steps = Steps {
-            answer: |rays: &[_]| Ok(answer_each(rays, |ray| intersect(index, ray))),
-            encode: |number, ray: &_, answer: &A, out: &mut _| {
-                let hits = slice(answer);
-                if hits.is_empty() && records.is_some() {
-                    encoder.encode(number, ray, None, out);
-                    return 1;
-                }
-                hits.iter().for_each(|hit| encoder.encode(number, ray, Some(hit), out));
-                hits.len() as u64
-            },
-            take: |_: &_, answer: &A| summary.add_hits(slice(answer)),
-            write: |count, records: &[u8]| writer.write_encoded(count, records),
-        };
-        let time = answer_all(self.streams, self.pool, self.rays, steps)?;
-        writer.finish()?;
-        Ok((time, summary))
-    }
 }

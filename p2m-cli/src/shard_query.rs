@@ -2,6 +2,7 @@
 
 use crate::answering::BlockSize;
 use crate::closest_answers::{ClosestAnswer, Source, Task};
+use crate::input::SceneArgs;
 use crate::json;
 use crate::output::Output;
 use crate::query::{Args, queries};
@@ -12,24 +13,38 @@ use crate::usage::usage;
 use nalgebra::Point3;
 use p2m_advisor::IndexDetails;
 use p2m_core::{Closest, PrimitiveId};
-use p2m_shards::{ShardClosest, ShardError, ShardedIndex};
+use p2m_shards::{ShardClosest, ShardedIndex, folder_of};
 use rayon::prelude::*;
 use serde_json::json;
-use std::path::Path;
-use std::time::Instant;
+use std::path::{Path, PathBuf};
+use std::time::{Duration, Instant};
+
+/// Returns the folder of shards at a path, if it is one.
+pub(crate) fn shard_folder(path: &Path, max_memory: Option<u64>) -> anyhow::Result<Option<PathBuf>> {
+    let folder = folder_of(path);
+    if folder.is_none() && path.is_dir() {
+        anyhow::bail!(
+            "{}: cannot be read: is a directory without the file manifest.json, so it is no finished index in shards",
+            path.display()
+        );
+    }
+    if folder.is_none() && max_memory.is_some() {
+        return Err(usage("--max-memory needs the folder of an index in shards, which `p2m shard` writes"));
+    }
+    Ok(folder)
+}
 
 pub(crate) fn run(streams: &Streams, args: &Args, folder: &Path) -> anyhow::Result<()> {
     let query_args = &args.query_args;
     query_args.check(&args.scene, args.points.as_deref(), "points")?;
     args.check()?;
-    refuse_options_of_builds(args)?;
+    let has_options_of_builds = args.backend.is_some() || query_args.k.is_some() || !args.p2m.is_unspecified();
+    refuse_options_of_builds(&args.scene, has_options_of_builds)?;
+    refuse_other_signs(args)?;
     let format = query_args.format(streams)?;
     let start = Instant::now();
-    let index = open(folder, args.max_memory.unwrap_or(u64::MAX), args.scene.map)?;
+    let index = open(folder, args.max_memory, args.scene.map)?;
     let manifest = index.manifest();
-    if manifest.primitive_count() > PrimitiveId::MAX_COUNT as u64 {
-        anyhow::bail!("{}: has more than 2^30 primitives, whose numbers fit into no table", folder.display());
-    }
     if args.signed.is_some() {
         // Without points this checks that the scene has an inside.
         index.are_inside(&[] as &[Point3<f64>])?;
@@ -48,18 +63,13 @@ pub(crate) fn run(streams: &Streams, args: &Args, folder: &Path) -> anyhow::Resu
     let bytes = output.bytes();
     output.finish()?;
 
-    let name = args.scene.name();
-    let scene = SceneSummary { name, format: "p2m-shards", counts: manifest.counts(), skipped: &[] };
-    let details = IndexDetails::None;
-    let index_summary =
-        IndexSummary { scene, backend: &manifest.backend, details, is_loaded: true, read_time, build_time };
+    let index_summary = summarize(args.scene.name(), &index, read_time, build_time);
     let run = RunSummary { index: index_summary, threads: pool.current_num_threads(), query_time };
-    let (count, loads) = (manifest.shards.len(), index.loads());
     if query_args.json {
         let (signs, closed_checked) = args.signed.map(|_| ("crossings", false)).unzip();
         let shards = json!({
-            "count": count,
-            "loads": loads,
+            "count": manifest.shards.len(),
+            "loads": index.loads(),
             "max_memory": args.max_memory,
             "signs": signs,
             "closed_checked": closed_checked,
@@ -68,24 +78,28 @@ pub(crate) fn run(streams: &Streams, args: &Args, folder: &Path) -> anyhow::Resu
         return json::print(streams, &run.json("query", answers, &query_args.output_json(format, bytes)));
     }
     let text = run.text("queries", "query", summary.queries());
-    let times = if loads == 1 { "time" } else { "times" };
-    streams.print_summary(format_args!("{text}shards   {count}, loaded {loads} {times}\n{summary}"));
+    streams.print_summary(format_args!("{text}{}{summary}", loads_line(&index)));
     if args.signed.is_some() {
         streams.print_summary(format_args!("note     that the surface is closed was not checked\n"));
     }
     Ok(())
 }
 
-/// Refuses options that say how to build an index, and those that shards have not.
-fn refuse_options_of_builds(args: &Args) -> anyhow::Result<()> {
-    if args.scene.has_format() {
+/// Refuses options that say how to read a scene or to build an index.
+pub(crate) fn refuse_options_of_builds(scene: &SceneArgs, has_options_of_builds: bool) -> anyhow::Result<()> {
+    if scene.has_format() {
         return Err(usage("--format is for files, but this is the folder of an index in shards"));
     }
-    if args.backend.is_some() || args.query_args.k.is_some() || !args.p2m.is_unspecified() {
+    if has_options_of_builds {
         return Err(usage(
             "--backend, --k, --locator and --filter have no effect on an index in shards: each is built",
         ));
     }
+    Ok(())
+}
+
+/// Refuses rules of signs that shards do not have.
+fn refuse_other_signs(args: &Args) -> anyhow::Result<()> {
     let (rule, reason) = match args.signed {
         None | Some(SignRule::Auto) => return Ok(()),
         Some(SignRule::Closed) => ("closed", "which cannot check that the surface is closed"),
@@ -97,16 +111,41 @@ fn refuse_options_of_builds(args: &Args) -> anyhow::Result<()> {
     )))
 }
 
-/// Opens an index in shards.
-fn open(folder: &Path, max_bytes: u64, is_mapped: bool) -> Result<ShardedIndex, ShardError> {
-    if !is_mapped {
-        return ShardedIndex::open_with_max_bytes(folder, max_bytes);
+/// Opens an index in shards, whose primitives have to have numbers in a table.
+pub(crate) fn open(folder: &Path, max_memory: Option<u64>, is_mapped: bool) -> anyhow::Result<ShardedIndex> {
+    let max_bytes = max_memory.unwrap_or(u64::MAX);
+    let index = if is_mapped {
+        // SAFETY: `--map` says that the user has to keep the files unchanged.
+        #[allow(unsafe_code, reason = "the user asked for it and was told what it needs")]
+        unsafe {
+            ShardedIndex::open_mapped(folder, max_bytes)
+        }
+    } else {
+        ShardedIndex::open_with_max_bytes(folder, max_bytes)
+    }?;
+    if index.manifest().primitive_count() > PrimitiveId::MAX_COUNT as u64 {
+        anyhow::bail!("{}: has more than 2^30 primitives, whose numbers fit into no table", folder.display());
     }
-    // SAFETY: `--map` says that the user has to keep the files unchanged.
-    #[allow(unsafe_code, reason = "the user asked for it and was told what it needs")]
-    unsafe {
-        ShardedIndex::open_mapped(folder, max_bytes)
-    }
+    Ok(index)
+}
+
+/// Returns the summary of an index in shards.
+pub(crate) fn summarize(
+    name: String,
+    index: &ShardedIndex,
+    read_time: Duration,
+    build_time: Duration,
+) -> IndexSummary<'_> {
+    let manifest = index.manifest();
+    let scene = SceneSummary { name, format: "p2m-shards", counts: manifest.counts(), skipped: &[] };
+    let details = IndexDetails::None;
+    IndexSummary { scene, backend: &manifest.backend, details, is_loaded: true, read_time, build_time }
+}
+
+/// Returns the line of a summary about the shards and how often they were loaded.
+pub(crate) fn loads_line(index: &ShardedIndex) -> String {
+    let (count, loads) = (index.manifest().shards.len(), index.loads());
+    format!("shards   {count}, loaded {loads} {}\n", if loads == 1 { "time" } else { "times" })
 }
 
 /// An index in shards.

@@ -1,4 +1,4 @@
-//! Tests of `p2m shard`, and of `p2m query` of an index in shards.
+//! Tests of `p2m shard`, and of `p2m query` and `p2m ray` of an index in shards.
 
 use crate::common::{SCENE, failure, json, p2m, p2m_with, path, table, text, write};
 use serde_json::json;
@@ -36,6 +36,47 @@ fn a_folder_of_shards_gives_the_table_of_its_scene() {
         }
         assert_eq!(ask(&format!("{site}/manifest.json"), &[]), expected, "the manifest stands for the folder");
     }
+}
+
+#[test]
+fn rays_of_a_folder_of_shards_give_the_table_of_its_scene() {
+    let folder = TempDir::new().unwrap();
+    let site = sharded(&folder);
+    let rays = ["--random", "400", "--box-scale", "1.2"];
+    for options in [
+        &["--mode", "intersects"][..],
+        &["--mode", "first"],
+        &["--mode", "first", "--radius", "0.05"],
+        &["--mode", "all", "--line"],
+        &["--mode", "all", "--min", "0.1", "--max", "30"],
+        &["--mode", "count", "--radius", "0.01"],
+        &["--mode", "crossings", "--line"],
+    ] {
+        let ask = |scene: &str, more: &[&str]| table(&[&["ray", scene], &rays[..], options, more].concat());
+        let expected = ask(SCENE, &[]);
+        assert!(expected.lines().count() > 100, "{options:?}");
+        for more in [&[][..], &["--max-memory", "1"], &["--map"], &["--threads", "1"]] {
+            assert_eq!(ask(&site, more), expected, "{options:?} {more:?}");
+        }
+    }
+    // Some hit may be another one, but there is one for the same rays.
+    let has_hits = |scene: &str| -> Vec<bool> {
+        let answers = table(&[&["ray", scene], &rays[..], &["--mode", "any"]].concat());
+        answers.lines().skip(1).map(|line| !line.split(',').nth(7).unwrap().is_empty()).collect()
+    };
+    let expected = has_hits(SCENE);
+    assert!(expected.contains(&true) && expected.contains(&false));
+    assert_eq!(has_hits(&site), expected);
+    let out = path(&folder, "hits.csv");
+    let report = json(&["ray", &site, "--random", "50", "--max-memory", "40kB", "--json", "--out", &out]);
+    assert_eq!((&report["rays"], &report["shards"]["max_memory"]), (&json!(50), &json!(40_000)));
+    assert!(report["shards"]["loads"].as_u64() > report["shards"]["count"].as_u64(), "{report}");
+    assert!(
+        failure(&["ray", &site, "--random", "1", "--backend", "aabb"], 2).contains("no effect on an index in shards")
+    );
+    assert!(failure(&["ray", SCENE, "--random", "1", "--max-memory", "1"], 2).contains("needs the folder"));
+    fs::remove_file(format!("{site}/manifest.json")).unwrap();
+    assert!(failure(&["ray", &site, "--random", "1"], 1).contains("without the file manifest.json"));
 }
 
 #[test]
