@@ -10,7 +10,7 @@ use crate::threads::ThreadArgs;
 use crate::usage::{bytes, one_of};
 use p2m_advisor::BackendEntry;
 use p2m_mixed::{Format, PieceOptions, Skipped};
-use p2m_shards::{ShardOptions, ShardWriter, ShardedIndex, shard_file};
+use p2m_shards::{ShardError, ShardOptions, ShardWriter, ShardedIndex, shard_file};
 use serde_json::{Value, json};
 use std::ops::ControlFlow;
 use std::path::{Path, PathBuf};
@@ -96,7 +96,7 @@ pub(crate) fn run(streams: &Streams, args: &Args) -> anyhow::Result<()> {
     let start = Instant::now();
     let mut files = unfinished();
     let is_new = !args.out.exists();
-    let mut writer = ShardWriter::new(&args.out, options)?;
+    let mut writer = ShardWriter::new(&args.out, options).map_err(name_the_option)?;
     let first = args.out.join(shard_file(writer.run(), 0));
     let paths = is_new.then_some(&args.out).into_iter().chain([&first]);
     let listed = paths.map(|path| Listed::new(&mut files, path)).collect();
@@ -148,7 +148,15 @@ fn finish(
         }
         ControlFlow::Continue(())
     };
-    Ok(pool.install(|| writer.finish_with_progress(&mut progress))?)
+    pool.install(|| writer.finish_with_progress(&mut progress)).map_err(name_the_option)
+}
+
+/// Adds the option that replaces an index to the error that there is one already.
+fn name_the_option(error: ShardError) -> anyhow::Error {
+    match error {
+        ShardError::Exists { .. } => anyhow::anyhow!("{error}: give --replace to replace it"),
+        other => other.into(),
+    }
 }
 
 fn report(

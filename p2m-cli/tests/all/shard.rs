@@ -158,7 +158,7 @@ fn wrong_folders_and_files_are_named() {
     let site = sharded(&folder);
     let out = path(&folder, "answers.csv");
     let ask = |scene: &str, code| failure(&["query", scene, "--random", "500", "--out", &out], code);
-    assert!(failure(&["shard", SCENE, "--out", &site], 1).contains("there is a sharded index already"));
+    assert!(failure(&["shard", SCENE, "--out", &site], 1).contains("there is a sharded index already: give --replace"));
     table(&["shard", SCENE, "--max-bytes", "40kB", "--out", &site, "--replace"]);
     let shard = format!("{site}/1-00001.p2m");
     let whole = fs::read(&shard).unwrap();
