@@ -1,4 +1,4 @@
-//! Batches of queries for the closest point, in two phases that load each shard once.
+//! Batches of queries in two phases, each of which loads a shard at most once.
 
 use crate::nearest::{
     ByBound, CertifiedSearch, NearSearch, Search, ShardClosest, key, least, limit, may_have_answer, reach,
@@ -64,8 +64,8 @@ struct Pending {
 impl ShardedIndex {
     /// Answers `queries` into `out`, in their order, on all threads of the current pool.
     ///
-    /// The answers are those of [`closest_point_with`](Self::closest_point_with), apart from the last bits of lower
-    /// bounds, which do not depend on the other queries.
+    /// The answers are those of [`closest_point_with`](Self::closest_point_with). Only the last bits of lower bounds
+    /// may differ, and they do not depend on the other queries of the batch.
     ///
     /// # Errors
     /// It returns the [errors of loading a shard](ShardError#loading-a-shard). The content of `out` is then undefined.
@@ -74,9 +74,10 @@ impl ShardedIndex {
     /// It panics if the slices differ in length.
     ///
     /// # Complexity
-    /// Each shard is loaded at most twice, whatever the limit of memory is. Comparing n queries with the boxes of s
-    /// shards takes O(n s). Memory is 40 bytes for each query besides the answers, and about 200 bytes for each query
-    /// of the largest group that a shard answers.
+    /// Each shard is loaded at most twice, whatever the limit of memory is. With an epsilon or a limit on visits each
+    /// query is answered by itself, so shards may be loaded more often. Comparing n queries with the boxes of s shards
+    /// takes O(n s). Memory is 40 bytes for each query besides the answers, and about 200 bytes for each query of the
+    /// largest group that a shard answers.
     pub fn closest_points_into(
         &self,
         queries: &[impl Position<f64>],
@@ -196,11 +197,12 @@ impl ShardedIndex {
     }
 
     /// Answers queries by one shard alone, on all threads of the current pool, as long as `proceed` returns `true`,
-    /// which is called as [`closest_points_while`](Self::closest_points_while) calls it. Each answer comes with its key.
+    /// which is called as [`closest_points_while`](Self::closest_points_while) calls it. Each answer comes with its
+    /// key.
     ///
     /// Of the answers of all shards that [`nearest_shard`](Self::nearest_shard) and
-    /// [`shards_within`](Self::shards_within) name, the one with the least key, and of equal keys with the lowest id, is
-    /// the answer of the whole scene. A hint is ignored.
+    /// [`shards_within`](Self::shards_within) name, the one with the least key, and of equal keys with the lowest id,
+    /// is the answer of the whole scene. A hint is ignored.
     ///
     /// # Errors
     /// It returns the [errors of loading a shard](ShardError#loading-a-shard), and

@@ -1,4 +1,4 @@
-//! The shards that are in memory: each is loaded when a query first needs it, and the one that was not used for the
+//! The shards that are in memory: each is loaded when a query needs it, and the one that was not used for the
 //! longest time makes room for others.
 
 use crate::shard::Shard;

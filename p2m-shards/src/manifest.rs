@@ -163,8 +163,8 @@ impl Manifest {
         })
     }
 
-    /// Returns the checksum of the manifest, which is in its file as well. It is the XXH3 checksum of the manifest in JSON
-    /// without white space, in hexadecimal digits.
+    /// Returns the checksum of the manifest, which is in its file as well. It is the XXH3 checksum of the manifest in
+    /// JSON without white space, in hexadecimal digits.
     #[must_use]
     pub fn checksum(&self) -> String {
         // Numbers in JSON are the shortest that read back the same, so the text does not depend on the file.

@@ -38,7 +38,7 @@ impl ShardClosest {
     }
 }
 
-/// Returns the number by which the primitive of an answer is compared with others, before it was rounded.
+/// Returns the key of the primitive of an answer, which is its squared distance as the kernel computes it.
 pub(crate) fn key(shard: &Shard, closest: &Closest<f64>, query: &Point3<f64>) -> Key {
     shard.soup().get(closest.primitive).project(query).key
 }
@@ -70,7 +70,7 @@ pub(crate) fn least(bounds: impl Iterator<Item = f64>, limit: f64) -> Option<(us
     })
 }
 
-/// Returns the square above which a lower bound exceeds a distance.
+/// Returns the largest squared lower bound at which a shard may still have something within a distance.
 pub(crate) fn limit(distance: f64) -> f64 {
     Best::<f64>::new(&QueryOptions::default().with_max_distance(distance)).prune_above()
 }
@@ -94,10 +94,10 @@ impl<'a> Merged<'a> {
         Self { query, options, error: index.largest_error(query), best: None, lower_bound: f64::INFINITY }
     }
 
-    /// Returns the options of the next shard, whose largest distance is what can still matter.
+    /// Returns the options of the next shard.
     ///
-    /// That exceeds the best distance by the error of the kernel. If a shard has no answer within it, the true
-    /// distances of the primitives of the shard are therefore at least the lower bound of the best answer.
+    /// The largest distance is the best distance plus the error of the kernel, because a shard without an answer within
+    /// it then has no primitive below the lower bound of the best answer.
     pub(crate) fn options(&self) -> QueryOptions<f64> {
         let reach = self.best.as_ref().map_or(f64::INFINITY, |(best, _)| reach(best.closest.distance, self.error));
         self.options.with_max_distance(self.options.max_distance.min(reach))
@@ -107,7 +107,8 @@ impl<'a> Merged<'a> {
     pub(crate) fn offer(&mut self, number: usize, shard: &Arc<Shard>, bound: f64, answer: Option<Closest<f64>>) {
         let Some(closest) = answer else {
             if self.options.max_visits < u32::MAX {
-                // A search that ended early may have missed everything, so only the box is known to be empty.
+                // A search that ended early may have missed everything, so it is only known that nothing of the shard
+                // is nearer than its box.
                 self.lower_bound = self.lower_bound.min(distance_below(bound));
             }
             return;
@@ -195,7 +196,7 @@ impl Search for CertifiedSearch {
 
     fn ask(&mut self, query: &Point3<f64>, number: usize, shard: &Shard) {
         let within = QueryOptions::default().with_max_distance(self.largest);
-        // Primitives of scenes have vertices, so no answer fails and none is without a shape.
+        // A query cannot fail here, because every primitive of a scene has vertices.
         let answer = shard.index().certified_closest_point(query, &within).ok().flatten();
         if let Some((closest, shape)) = answer.and_then(|one| Some((one, shard.shape(one.primitive)?))) {
             self.winners.push((ShardClosest::new(number, shard, closest), shape));
@@ -310,7 +311,7 @@ impl ShardedIndex {
     }
 
     /// Returns the nearest primitives, at most `k` and none beyond the radius, nearest first. The radius may be
-    /// infinite. Lower bounds are those of the primitives.
+    /// infinite. The lower bound of each answer is that of its own primitive.
     ///
     /// # Errors
     /// It returns the [errors of loading a shard](ShardError#loading-a-shard).

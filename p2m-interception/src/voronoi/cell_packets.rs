@@ -1,7 +1,7 @@
 //! The packets in the lists of all cells.
 //!
-//! The balls of corners give the tetrahedra around each packet. Packets are examined one after the other
-//! ([`packet_cells`](crate::voronoi::packet_cells)), and what they are in each cell is sorted by cells.
+//! The balls of corners give the tetrahedra around each packet. The build examines packet by packet
+//! ([`packet_cells`](crate::voronoi::packet_cells)), and the results of all packets are then sorted by cells.
 
 use crate::delaunay::BOUNDING;
 use crate::options::P2mReport;

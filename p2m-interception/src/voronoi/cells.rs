@@ -5,7 +5,7 @@
 //! where t can beat v. Take an edge of the cell with F <= 0 at one end and F > 0 at the other. F is concave, so it lies
 //! above its chord, and t cannot beat v beyond the zero of the chord. Therefore t can be the answer only in the convex
 //! hull of the corners where F <= 0 and of these zeros, which is the *region* of t (docs/proofs/p2m.md). The packets of
-//! all cells are found one packet after the other ([`packet_cells`](crate::voronoi::packet_cells)).
+//! all cells are found packet by packet ([`packet_cells`](crate::voronoi::packet_cells)).
 //!
 //! A feature of t is *relevant* only if it can be nearest somewhere in the region
 //! ([`feature_relevance`](crate::voronoi::feature_relevance)). If each relevant feature of t also belongs to
@@ -28,9 +28,9 @@ use crate::voronoi::site::{AUXILIARY_SITE, FALLBACK, FarHalfSpace};
 use std::ops::Range;
 use std::sync::Arc;
 
-/// The number of neighbours, edges of primitives included, above which a site is a *hub*. The table has no neighbours
-/// of a hub, so a walk ends there, and the tree answers in its cell. Otherwise a query in the cell of a site that all
-/// others surround would test all of them: at this number, that takes about as long as the search of a tree.
+/// The number of neighbours and edges of primitives, added up, above which a site is a *hub*. The table has no
+/// neighbours of a hub, so a walk ends there, and the tree answers in its cell. Otherwise a query in the cell of a site
+/// that all others surround would test all of them: at this number, that takes about as long as the search of a tree.
 const MAX_NEIGHBOURS: usize = 1024;
 
 /// The number of sites whose lists one task builds.

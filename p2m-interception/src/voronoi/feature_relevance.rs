@@ -3,11 +3,12 @@
 //!
 //! Each kind of feature requires the query to lie on one side of some planes:
 //!
-//! - If the nearest point is inside of a face, the query is over the face, hence inside of each of its sides.
+//! - If the nearest point is inside of a face, the query is over the face, hence on the inner side of each of its
+//!   edges.
 //! - If it is inside of an edge, the query is between the ends of the edge, and over no triangle with this edge,
 //!   because such a triangle would be nearer.
 //! - If it is a vertex, the query is behind the vertex along every edge that begins there, and in the cell of another
-//!   site it is as near to the vertex as to that site.
+//!   site it is no nearer to that site than to the vertex.
 //!
 //! A feature is *excluded* if the whole region is on the wrong side of one plane. It is also excluded if the heights
 //! above two planes have a negative sum in the whole region, because then each point is on the wrong side of one of

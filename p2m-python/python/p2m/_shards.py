@@ -52,9 +52,10 @@ class Shards(PointQueries):
     path : path-like
         The folder, or the file ``manifest.json`` in it. No shard is loaded yet.
     max_bytes : int, optional
-        The memory that shards may take. A shard counts as the length of its file and 40 bytes for each primitive. Where
-        a query needs another one, those that were not used for the longest time are dropped. One shard is loaded
-        whatever the limit is. By default there is no limit.
+        The memory that shards may take. A shard counts as the length of its file and 40 bytes for each primitive. If
+        a shard does not fit, those that were not used for the longest time are dropped. Memory may exceed the limit,
+        because one shard is loaded whatever the limit is, and a dropped shard stays until the threads that use it have
+        finished. By default there is no limit.
     map : bool, optional
         Whether files are mapped into memory, as for `load`. Nobody may change or truncate a file while the index is in
         use: what happens then is undefined. `write_shards` replaces files and does not change them.
@@ -71,9 +72,9 @@ class Shards(PointQueries):
     Notes
     -----
     `closest` answers a batch in parts of 2**20 points, and `k_nearest` in parts of 2**20 answers. A part loads each
-    shard at most twice, so large batches need little memory and few reads of files. The options `epsilon` and
-    `max_visits`, and all other queries ask one point after the other. They are slow where the shards that they need do
-    not fit into `max_bytes`.
+    shard at most twice, so large batches need little memory and few reads of files. `within`,
+    `rays`, `is_inside`, the sides of `signed_distance`, and the options `epsilon` and `max_visits` ask one point after
+    the other. They are slow where the shards that they need do not fit into `max_bytes`.
 
     Objects are pickled as the folder and the checksum of its manifest. A process that unpickles one several times opens
     the folder once (`p2m.clear_opened`).
@@ -228,7 +229,7 @@ class Shards(PointQueries):
         self,
         points: ArrayLike,
         *,
-        sign: Literal["auto", "closed"] = "auto",
+        sign: Literal["auto"] = "auto",
         inside: Literal["negative", "positive"] = "negative",
         max_distance: float | None = None,
         out: NDArray[np.float64] | None = None,
@@ -241,9 +242,9 @@ class Shards(PointQueries):
         ----------
         points, threads, progress
             As for `closest`. Progress is that of the distances, and then of the sides.
-        sign : {"auto", "closed"}, optional
-            Both names stand for the rule of `is_inside`, which takes the surface for closed. Shards have no winding
-            numbers.
+        sign : {"auto"}, optional
+            The rule of `is_inside`, which takes the surface for closed. Whether it is closed is not checked, so
+            ``"closed"`` is an error, and shards have no winding numbers.
         inside, max_distance, out
             As for `Index.signed_distance`.
 
@@ -268,9 +269,10 @@ class Shards(PointQueries):
         """
         queries = coordinates(points, "points")
         array = one_output(out, "signed_distance", _FLOAT64, queries.shape[:-1])
-        for name, value, known in [("sign", sign, ("auto", "closed")), ("inside", inside, ("negative", "positive"))]:
-            if value not in known:
-                raise ValueError(f"{name}: {value!r} is none of {', '.join(map(repr, known))}")
+        if sign != "auto":
+            raise ValueError(f"sign: {sign!r} is not for shards, which have only 'auto'")
+        if inside not in ("negative", "positive"):
+            raise ValueError(f"inside: {inside!r} is none of 'negative', 'positive'")
         if max_distance is not None:
             not_negative(max_distance, "max_distance")
         # Without queries this only checks that the scene has an inside.
@@ -328,9 +330,9 @@ class Shards(PointQueries):
     def shards_within(
         self, points: ArrayLike, distances: ArrayLike, *, threads: int | None = None
     ) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
-        """Return the shards that may have a primitive as near to a point as a distance. No shard is loaded.
+        """Return for each point the shards that may have a primitive within its distance. No shard is loaded.
 
-        The distance is one that `closest` returned, so the limit is larger by the rounding of such distances.
+        A shard slightly beyond the distance is returned too, because distances of `closest` are rounded.
 
         Parameters
         ----------

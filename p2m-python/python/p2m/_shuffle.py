@@ -1,4 +1,4 @@
-"""The tasks of a query that goes to shards, each of which is asked once by one process for the points of all blocks.
+"""The tasks of a shuffled query: in each of two phases one task asks a shard for the points of all blocks.
 
 A block sends its points to shards, a shard answers the pieces of all blocks, and a block joins its answers. The first
 phase sends each point to the shard with the nearest box, and the second phase sends it to all others that may matter.
@@ -84,7 +84,7 @@ class Sent(NamedTuple):
         return self.points[self.starts[shard] : self.starts[shard + 1]]
 
     def rows_of(self, shard: int) -> NDArray[np.int64]:
-        """Return the rows of the points that go to a shard, of which each is there once."""
+        """Return the rows of the points that go to a shard. No row occurs twice."""
         return self.rows[self.starts[shard] : self.starts[shard + 1]]
 
 
@@ -139,7 +139,7 @@ def join(
 
 
 def _keep_nearer(best: Columns, rows: NDArray[np.int64], answer: Columns) -> None:
-    """Replace the best answers of rows, of which each is there once, where other answers win."""
+    """Replace the best answers of rows where other answers win. No row occurs twice."""
     (tier, square), (best_tier, best_square) = answer["key"].T, best["key"][rows].T
     is_first = (square == best_square) & (answer["primitive"] < best["primitive"][rows])
     wins = (tier < best_tier) | ((tier == best_tier) & ((square < best_square) | is_first))

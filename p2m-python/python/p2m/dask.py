@@ -261,8 +261,8 @@ def signed_distance(
 
     Notes
     -----
-    Each process prepares the signs at its first block, which takes about as long as a build of the tree. Shards have no
-    rule of winding numbers, so ``sign="winding"`` is an error of the computation.
+    Each process prepares the signs at its first block, which takes about as long as a build of the tree. Shards have
+    only the rule ``"auto"``, so other rules are an error of the computation.
 
     Examples
     --------

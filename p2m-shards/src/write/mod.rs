@@ -1,11 +1,13 @@
-//! Writing a scene as shards, in memory for one of them.
+//! The writer divides a scene that may be larger than memory, so it keeps only one shard in memory.
 //!
 //! Primitives are written to a temporary file as they come. At the end that file is divided by space into parts, large
 //! parts are divided again, and the index of each part is built and saved by itself. Temporary files are in the folder
-//! of the shards and take 88 bytes for each primitive, and twice that while a file is divided.
+//! of the shards and take 88 bytes for each primitive, and twice that while a file is divided. While a file of a scene
+//! is read, its vertices may be in another temporary file.
 //!
 //! Each run of a writer creates files under names of its own. The manifest gets its name when all shards are written,
-//! and only then are the files of an index that is replaced removed. So a folder has a complete index at any time.
+//! and only then are the files of an index that is replaced removed. So an index
+//! that is in the folder is complete at any time, because its manifest appears last.
 
 mod names;
 mod partition;

@@ -13,7 +13,7 @@ pub fn shard_file(run: u64, number: usize) -> String {
     format!("{run}-{number:05}.p2m")
 }
 
-/// Returns the name of the manifest of a run until it is finished.
+/// Returns the name that the manifest of a run has until the run is finished.
 pub(super) fn unfinished_manifest(run: u64) -> String {
     format!("{run}-{MANIFEST_FILE}")
 }
