@@ -19,17 +19,22 @@ use std::time::{Duration, Instant};
 fn help() -> String {
     format!(
         "\
-The scenes are joined in the order in which they are named: primitives are numbered on from one to the next. `p2m query` \
-takes the folder in place of a scene, loads a shard when a query needs it, and gives the answers of one index over all. \
-Only with --epsilon or --max-visits may answers be others than one index gives.
+The scenes are joined in the order in which they are named: primitives are numbered on from one to the next. \
+`p2m query` and `p2m ray` take the folder in place of a scene, load a shard when a query needs it, and give the \
+answers of one index over all, apart from the last bits of lower bounds. With --epsilon or --max-visits an answer may \
+differ from that of one index, because these options permit several answers. `p2m query` and `p2m ray` refuse a \
+folder of more than 2^30 primitives, because such ids do not fit into a table of answers.
 
-Space is divided so that the file of a shard is at most as long as --max-bytes says. While the folder is written, one shard \
-is in memory at a time; files are read in pieces, apart from compressed ones and the standard input, which are read as a \
-whole. In measurements this takes at most 30 MB and 2.6 times --max-bytes. Temporary files in the folder take 88 bytes for each primitive, and twice that for a while.
+Space is divided so that the file of a shard is at most as long as --max-bytes says. While the folder is written, one \
+shard is in memory at a time. Files are read in pieces. Compressed files, saved indexes, the standard input, and files \
+without the extension of their format are read as a whole, so they have to fit into memory. In measurements, pieces \
+and shards took at most 30 MB plus 2.6 times --max-bytes. Temporary files in the folder take 88 bytes for each \
+primitive, and twice that for a while. While a file is read, they also take at most 24 bytes for each of its vertices.
 
-The file manifest.json appears last, so a folder without it is unfinished, and an index that is replaced stays until then. \
-Each run writes files of its own, and the next run with --replace removes what killed runs have left. The manifest has the \
-box, the number of primitives and the checksum of each shard; a query that needs a shard which is missing, damaged or another one fails.
+The file manifest.json appears last, so a folder without it is unfinished, and an index that is replaced stays until \
+then. Each run writes files of its own, and the next run with --replace removes what killed runs have left. The \
+manifest has the box, the number of primitives and the checksum of each shard. A query fails if it needs a shard that \
+is missing, damaged or another one.
 
 {}
 

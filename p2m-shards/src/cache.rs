@@ -1,5 +1,5 @@
-//! The shards that are in memory: each is loaded when a query needs it, and the one that was not used for the
-//! longest time makes room for others.
+//! The shards that are in memory. A shard that is not there is loaded when a query needs it, and those unused for
+//! longest make room for it.
 
 use crate::shard::Shard;
 use crate::{ShardEntry, ShardError};

@@ -6,14 +6,14 @@ use p2m_mixed::ReadError;
 use std::io;
 use std::path::PathBuf;
 
-/// An error of writing, opening or querying a sharded index. The message begins with the name of
-/// the file, if the error concerns one.
+/// An error of writing, opening or querying a sharded index. The message begins with the name of the file, if the error
+/// concerns one.
 ///
 /// # Loading a shard
 ///
-/// A query loads the shards that it needs. Loading fails with [`Load`](Self::Load) if the file is missing, damaged or
-/// of another length, with [`OtherShard`](Self::OtherShard) if it is a valid file other than the one in the manifest,
-/// and with [`Threads`](Self::Threads) if the system has no thread for it.
+/// A query loads the shards that it needs. Loading fails with [`Load`](Self::Load) if the file cannot be read, is
+/// damaged or has another length, with [`OtherShard`](Self::OtherShard) if a file of the right length is not the one
+/// that the manifest describes, and with [`Threads`](Self::Threads) if the system has no thread for it.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum ShardError {
@@ -39,7 +39,8 @@ pub enum ShardError {
         /// A clause that says what is wrong.
         reason: String,
     },
-    /// The file of a shard is missing, damaged, of another length, or of another version of the format.
+    /// The file of a shard cannot be read, is damaged, or has another length than the manifest states or another
+    /// version of the format.
     #[error("{} {error}", file.display())]
     Load {
         /// The file of the shard.
@@ -47,7 +48,8 @@ pub enum ShardError {
         /// The error of loading it, which the message repeats.
         error: LoadError,
     },
-    /// The file of a shard is a valid one of the same length, but not the one that the manifest describes.
+    /// The file of a shard has the right length, but the manifest states another checksum, another number of
+    /// primitives or another box.
     #[error("{} is not the shard that the manifest describes: {reason}", file.display())]
     OtherShard {
         /// The file of the shard.

@@ -31,8 +31,8 @@ impl ShardedIndex {
     /// Opens the sharded index of a folder, with a limit on the memory of the shards in bytes.
     ///
     /// The memory of a shard is estimated as the length of its file and 40 bytes for each primitive. If a shard does
-    /// not fit, those that were not used for the longest time are dropped. Memory may exceed the limit, because one
-    /// shard is loaded whatever the limit is, and a dropped shard stays until the threads that use it have finished.
+    /// not fit, those unused for longest are dropped. Memory may exceed the limit, because one shard is loaded whatever
+    /// the limit is, and a dropped shard stays until the threads that use it have finished.
     ///
     /// # Errors
     /// It returns the errors of [`Manifest::read`].

@@ -26,11 +26,12 @@
 //!
 //! A primitive of the whole scene has an id, which counts from 0 in the order in which primitives were added. Every
 //! answer is that of one index over the whole scene: distances, points, features, weights and parameters have the same
-//! bits. The key of a primitive is its squared distance as the kernel computes it, and its distance is the rounded root
-//! of that. Of primitives with equal keys the lowest id wins. So answers depend neither on how the scene was divided,
-//! nor on the order in which shards are loaded, nor on the memory that they may take. Lower bounds are certified, but
-//! in their last bits they depend on the primitives that a search evaluates, as they do between backends. The lower
-//! bounds of the k nearest primitives have the bits that one index gives.
+//! bits. The key of a primitive is its squared distance as the kernel computes it, which is a square with a tier
+//! ([`Key`](p2m_core::Key)), and its distance is the rounded root of that. The least key wins, and of equal keys the
+//! lowest id. So answers depend neither on how the scene was divided, nor on the order in which shards are loaded, nor
+//! on the memory that they may take. Lower bounds are certified, but in their last bits they depend on the primitives
+//! that a search evaluates, as they do between backends. The lower bounds of the k nearest primitives have the bits
+//! that one index gives.
 //!
 //! Approximate queries, which have an epsilon or a limit on visits, may have other answers than one index. Their errors
 //! are within the bounds that these options promise.
@@ -45,12 +46,12 @@
 //! by more than the error of the kernel, because then none of its primitives can be the answer or lower the bound.
 //! Shards are asked in the order of these bounds, each with that distance as the largest one. The nearest of the
 //! answers is the answer: distances are compared, where they are equal the keys, and where these are equal the ids.
-//! That is the order of keys and ids, because a larger key never has a smaller distance. Crossings of a ray add up over
-//! the shards, because each triangle is in one of them.
+//! That is the order of keys and then ids, because a smaller key never has a larger distance. Crossings of a ray add up
+//! over the shards, because each triangle is in one of them.
 //!
 //! Two phases answer a batch: each query asks the shard with the nearest box, and then the shards whose bounds are
-//! within the distance that was found. In each phase a shard is loaded once and answers all queries that need it.
-//! Several processes share these phases by [`nearest_shard`](ShardedIndex::nearest_shard),
+//! within the distance that was found. In each phase a shard is loaded at most once and answers all queries that need
+//! it. Several processes share these phases by [`nearest_shard`](ShardedIndex::nearest_shard),
 //! [`shards_within`](ShardedIndex::shards_within) and
 //! [`closest_points_in_shard_while`](ShardedIndex::closest_points_in_shard_while).
 

@@ -38,7 +38,8 @@ impl ShardClosest {
     }
 }
 
-/// Returns the key of the primitive of an answer, which is its squared distance as the kernel computes it.
+/// Returns the key of the primitive of an answer, which is its squared distance as the kernel computes it: a square
+/// with a tier.
 pub(crate) fn key(shard: &Shard, closest: &Closest<f64>, query: &Point3<f64>) -> Key {
     shard.soup().get(closest.primitive).project(query).key
 }

@@ -1,7 +1,8 @@
 //! The packets in the lists of all cells.
 //!
-//! The balls of corners give the tetrahedra around each packet. The build examines packet by packet
-//! ([`packet_cells`](crate::voronoi::packet_cells)), and the results of all packets are then sorted by cells.
+//! The balls of corners give the tetrahedra around each packet. Each packet is examined by itself
+//! ([`packet_cells`](crate::voronoi::packet_cells)), in tasks that may run in parallel, and the results of the packets
+//! are then sorted by cells.
 
 use crate::delaunay::BOUNDING;
 use crate::options::P2mReport;

@@ -28,9 +28,12 @@ use crate::voronoi::site::{AUXILIARY_SITE, FALLBACK, FarHalfSpace};
 use std::ops::Range;
 use std::sync::Arc;
 
-/// The number of neighbours and edges of primitives, added up, above which a site is a *hub*. The table has no
-/// neighbours of a hub, so a walk ends there, and the tree answers in its cell. Otherwise a query in the cell of a site
-/// that all others surround would test all of them: at this number, that takes about as long as the search of a tree.
+/// The number of neighbours and edges of primitives, added up, above which a site is a *hub*. Half the number of the
+/// tetrahedra at a site stands for the number of its neighbours.
+///
+/// The table has no neighbours of a hub, so a walk ends there, and the tree answers in its cell. Otherwise a query in
+/// the cell of a site that all others surround would test all of them: at this number, that takes about as long as the
+/// search of a tree.
 const MAX_NEIGHBOURS: usize = 1024;
 
 /// The number of sites whose lists one task builds.

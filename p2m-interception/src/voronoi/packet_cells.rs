@@ -1,11 +1,11 @@
 //! One packet in all cells whose lists may need it: the primitives that can be the answer in each cell, and the regions
 //! where they can be.
 //!
-//! A packet matters only near the corners whose balls it intersects, its *near* corners. A corner is equally far from
-//! the sites of all cells around it, so one value is a lower bound of the corner test there for all of them. The packet
-//! is evaluated once at each near corner of a cell with a list, and at each corner that an edge joins to one. These
-//! values determine the regions of its primitives in all cells, because both ends of every edge that begins where a
-//! value is at most zero have been evaluated.
+//! A packet matters only near the corners whose balls it intersects, its *near* corners. The value of the corner test
+//! at an exact corner is the same for all cells around it, because the corner is equally far from their sites, and the
+//! computed value is a lower bound of it. So the packet is evaluated once at each near corner of cells with lists, and
+//! at each corner that an edge of such a cell joins to one. These values determine the regions of its primitives in all
+//! of these cells, because both ends of every edge that begins where a value is at most zero have been evaluated.
 
 use crate::delaunay::Delaunay;
 use crate::voronoi::cell::CellContext;

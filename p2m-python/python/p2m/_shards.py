@@ -52,10 +52,10 @@ class Shards(PointQueries):
     path : path-like
         The folder, or the file ``manifest.json`` in it. No shard is loaded yet.
     max_bytes : int, optional
-        The memory that shards may take. A shard counts as the length of its file and 40 bytes for each primitive. If
-        a shard does not fit, those that were not used for the longest time are dropped. Memory may exceed the limit,
-        because one shard is loaded whatever the limit is, and a dropped shard stays until the threads that use it have
-        finished. By default there is no limit.
+        The memory that shards may take. A shard counts as the length of its file and 40 bytes for each primitive. If a
+        shard does not fit, those unused for longest are dropped. Memory may exceed the limit, because one shard is
+        loaded whatever the limit is, and a dropped shard stays until the threads that use it have finished. By default
+        there is no limit.
     map : bool, optional
         Whether files are mapped into memory, as for `load`. Nobody may change or truncate a file while the index is in
         use: what happens then is undefined. `write_shards` replaces files and does not change them.
@@ -72,9 +72,9 @@ class Shards(PointQueries):
     Notes
     -----
     `closest` answers a batch in parts of 2**20 points, and `k_nearest` in parts of 2**20 answers. A part loads each
-    shard at most twice, so large batches need little memory and few reads of files. `within`,
-    `rays`, `is_inside`, the sides of `signed_distance`, and the options `epsilon` and `max_visits` ask one point after
-    the other. They are slow where the shards that they need do not fit into `max_bytes`.
+    shard at most twice, so large batches need little memory and few reads of files. `within`, `is_any_within`,
+    `is_inside`, `rays`, the sides of `signed_distance`, and `closest` with `epsilon` or `max_visits` ask each point by
+    itself. They are slow where the shards that they need do not fit into `max_bytes`.
 
     Objects are pickled as the folder and the checksum of its manifest. A process that unpickles one several times opens
     the folder once (`p2m.clear_opened`).
@@ -391,9 +391,11 @@ class Shards(PointQueries):
         shard : int
             The number of the shard in `shards`, which is loaded unless there are no points.
         fields : str or sequence of str, optional
-            The arrays of the answer: those of `closest` apart from ``object``, and ``key`` of shape {.., 2}. Keys are
-            pairs of numbers that decide among equal distances, and they are compared by their first numbers, and where
-            these are equal by their second ones.
+            The arrays of the answer: those of `closest` apart from ``object``, and ``key`` of shape {.., 2}. The
+            key of a primitive is its squared distance as the kernel computes it, which is a square with a tier. The
+            first number is the tier and the second one is the square. Tiers are compared first, and squares where
+            tiers are equal. A smaller key never has a larger distance, so answers in the order of keys and then
+            primitives are in the order of distances too.
 
         Returns
         -------

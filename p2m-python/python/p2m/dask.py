@@ -26,9 +26,9 @@ points : dask.array.Array or array_like, shape {.., 3}
 index : path-like, p2m.Index or p2m.Shards
     The file of a saved index, or an index that was loaded from one, of which the path is used. The folder of shards
     that `p2m.write_shards` wrote, or a `p2m.Shards`, whose limit of memory then holds in each process. The path has to
-    exist on all machines of a cluster. If the file is there when a function of this module is called, or the index was loaded
-    from it, each process checks that its file has the same checksum. Any other index is sent to each process as its
-    bytes together with the scene, which takes the memory of several copies: save large ones.
+    exist on all machines of a cluster. If the file is there when a function of this module is called, or the index was
+    loaded from it, each process checks that its file has the same checksum. Any other index is sent to each process as
+    its bytes together with the scene, which takes the memory of several copies: save large ones.
 threads : int, optional
     The number of threads for a block, by default 1 because Dask computes several blocks at the same time. With one
     process that has one thread of Dask, use the number of processors.

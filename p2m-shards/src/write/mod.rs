@@ -3,11 +3,12 @@
 //! Primitives are written to a temporary file as they come. At the end that file is divided by space into parts, large
 //! parts are divided again, and the index of each part is built and saved by itself. Temporary files are in the folder
 //! of the shards and take 88 bytes for each primitive, and twice that while a file is divided. While a file of a scene
-//! is read, its vertices may be in another temporary file.
+//! is read, vertices that do not fit into the memory for them are in another temporary file, which takes at most 24
+//! bytes for each vertex of that file.
 //!
 //! Each run of a writer creates files under names of its own. The manifest gets its name when all shards are written,
-//! and only then are the files of an index that is replaced removed. So an index
-//! that is in the folder is complete at any time, because its manifest appears last.
+//! and only then are the files of an index that is replaced removed. So an index that is in the folder is complete at
+//! any time, because its manifest appears last.
 
 mod names;
 mod partition;
@@ -89,7 +90,8 @@ const WRITE_BUFFER_BYTES: usize = 1 << 20;
 /// index in the folder is replaced.
 ///
 /// Several writers may work in one folder. Of those that do not replace an index, the first one to finish succeeds. A
-/// writer that finishes its replacement removes the files of others that began before it, so that these fail.
+/// writer that finishes its replacement removes the files of others that began before it. These fail if they had
+/// written shards by then.
 ///
 /// ```
 /// use p2m_core::{Point, Soup};
