@@ -197,8 +197,8 @@ impl ShardedIndex {
     }
 
     /// Answers queries by one shard alone, on all threads of the current pool, as long as `proceed` returns `true`,
-    /// which is called as [`closest_points_while`](Self::closest_points_while) calls it. Each answer comes with its
-    /// key.
+    /// which is called as [`closest_points_while`](Self::closest_points_while) calls it. Each answer
+    /// comes with its key.
     ///
     /// Of the answers of all shards that [`nearest_shard`](Self::nearest_shard) and
     /// [`shards_within`](Self::shards_within) name, the one with the least key, and of equal keys with the lowest id,

@@ -48,7 +48,7 @@ pub(crate) fn margin(max_upper_bound: f64, max_error: f64) -> f64 {
 /// A convex polytope around a site or beside it.
 #[derive(Default)]
 pub(crate) struct CellPolytope {
-    /// The corners.
+    /// The corners of the polytope.
     pub(crate) corners: CornerPoints,
     /// For each corner the numbers of three faces that meet there.
     faces: Vec<[u32; 3]>,

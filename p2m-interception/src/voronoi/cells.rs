@@ -130,7 +130,7 @@ impl CellContext<'_> {
     }
 }
 
-/// What the lists are made of.
+/// The data from which lists are built.
 struct ListBuilder<'a> {
     /// The data that all cells share.
     cells: &'a CellContext<'a>,

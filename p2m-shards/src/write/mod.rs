@@ -325,7 +325,7 @@ impl ShardWriter {
         let unfinished = self.folder.join(unfinished_manifest(self.run));
         self.written.push(unfinished.clone());
         self.manifest.write(&unfinished, &self.folder, self.options.replace)?;
-        // Of an empty scene the file of the first shard was created in vain.
+        // The first file was created before the scene was known, and an empty scene has no shard for it.
         for path in self.written.drain(..).skip(self.manifest.shards.len()) {
             let _ = fs::remove_file(path);
         }
