@@ -107,6 +107,7 @@ impl<I: ClosestPoint<f64> + Sync + ?Sized> Sampler<'_, I> {
             values.par_chunks_mut(layer * SLAB_LAYERS).enumerate().for_each(fill);
             return Ok(values);
         }
+        let _ = self.options.parallel;
         values.chunks_mut(layer * SLAB_LAYERS).enumerate().for_each(fill);
         Ok(values)
     }
