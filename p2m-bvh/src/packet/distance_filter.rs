@@ -111,6 +111,22 @@ impl Packet {
         }
     }
 
+    /// Computes the squared distances from at most [`PLACES`] points, point by point. `locals` receives the points.
+    #[inline(always)]
+    pub fn squares_at_points<I: InstructionSet>(
+        &self,
+        points: &[[f64; 3]],
+        locals: &mut Locals,
+        squares: &mut [[f32; LANES]; PLACES],
+    ) {
+        const ALL_PLACES: [u8; PLACES] = [0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15];
+        for (place, point) in points.iter().enumerate() {
+            locals.set(place, point, self);
+        }
+        locals.convert::<I>();
+        self.squares_of_several::<I>(locals, &ALL_PLACES[..points.len()], &[u32::MAX; PLACES], squares);
+    }
+
     /// Returns one bit for each lane: whether its triangle may be before the plane of a place, which
     /// [`Locals::place_planes`] sets. All bits are 1 for other primitives.
     #[inline(always)]

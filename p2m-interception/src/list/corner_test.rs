@@ -98,19 +98,14 @@ impl SimdKernel for DistancesAtPoints<'_> {
 
     #[inline(always)]
     fn run<I: InstructionSet>(self) {
-        const ALL_PLACES: [u8; PLACES] = [0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15];
         let Self { packet, points, distances, nearest } = self;
         let (mut locals, mut squares) = (Locals::default(), [[0.0; LANES]; PLACES]);
-        let mut first = 0;
-        while first < points.len() {
-            let count = PLACES.min(points.len() - first);
-            for (place, point) in points[first..first + count].iter().enumerate() {
-                locals.set(place, point, packet);
-            }
-            locals.convert::<I>();
-            packet.squares_of_several::<I>(&locals, &ALL_PLACES[..count], &[u32::MAX; PLACES], &mut squares);
-            for (place, squares) in squares.iter().enumerate().take(count) {
-                let (distances, nearest) = (&mut distances[first + place], &mut nearest[first + place]);
+        for (points, (distances, nearest)) in
+            points.chunks(PLACES).zip(distances.chunks_mut(PLACES).zip(nearest.chunks_mut(PLACES)))
+        {
+            packet.squares_at_points::<I>(points, &mut locals, &mut squares);
+            for (place, (distances, nearest)) in distances.iter_mut().zip(nearest).enumerate() {
+                let squares = &squares[place];
                 (*distances, *nearest) = (LaneDistances::UNKNOWN, None);
                 if locals.far >> place & 1 == 1 {
                     continue;
@@ -122,7 +117,6 @@ impl SimdKernel for DistancesAtPoints<'_> {
                     *nearest = Some((f64::from(least.sqrt() + locals.deficit[place]) * packet.unit(), lane));
                 }
             }
-            first += count;
         }
     }
 }

@@ -34,26 +34,19 @@ pub(crate) struct CellContext<'a> {
 /// The cell whose far half-space is computed. Its vectors are reused for the next cell.
 #[derive(Default)]
 pub(crate) struct FarPartBuilder {
-    /// The position of the site.
-    pub(crate) y: V3,
-    /// The number of the site.
-    pub(crate) site: usize,
     /// The corners and edges of the cell.
-    pub(crate) polytope: CellPolytope,
+    polytope: CellPolytope,
     /// The part of the cell in the far half-space, and the polytope that it is clipped into.
-    pub(crate) far_parts: [CellPolytope; 2],
+    far_parts: [CellPolytope; 2],
     /// The numbers of the tetrahedra at the site, sorted. Tetrahedron i has corner i of the cell.
-    pub(crate) tetrahedra: Vec<u32>,
+    tetrahedra: Vec<u32>,
     /// The values of the corner test at the corners of a polytope.
     pub(crate) values: CornerValues,
 }
 
 impl FarPartBuilder {
-    /// Begins the cell of a site, which has these tetrahedra: collects its corners and its edges.
-    fn begin(&mut self, cells: &CellContext<'_>, site: usize, tetrahedra: &[u32]) {
-        let unit = cells.sites.delaunay.unit();
-        self.site = site;
-        self.y = cells.sites.delaunay.sites()[site].map(|x| x * unit);
+    /// Begins the cell of a site at the position `y`, which has these tetrahedra: collects its corners and its edges.
+    fn begin(&mut self, cells: &CellContext<'_>, site: usize, y: &V3, tetrahedra: &[u32]) {
         self.polytope.clear();
         self.tetrahedra.clear();
         self.tetrahedra.extend_from_slice(tetrahedra);
@@ -65,7 +58,7 @@ impl FarPartBuilder {
             let mut faces = [0; 3];
             let others = tetrahedron.iter().filter(|v| **v as usize != site);
             faces.iter_mut().zip(others).for_each(|(to, v)| *to = *v);
-            self.polytope.push(corner.position, corner.error, faces, &self.y, cells.limits.slack);
+            self.polytope.push(corner.position, corner.error, faces, y, cells.limits.slack);
             for (v, other) in tetrahedron.iter().zip(&cells.sites.delaunay.neighbours()[t]) {
                 // Each pair of tetrahedra is joined once.
                 let is_joined = *v as usize != site && number < *other;
@@ -89,7 +82,7 @@ impl FarPartBuilder {
         let tree = cells.tree;
         let sites = cells.sites.delaunay.sites();
         let unit = cells.sites.delaunay.unit();
-        let position = sites[site].map(|x| x * unit);
+        let y = sites[site].map(|x| x * unit);
         let others = adjacency.edges.get(site).iter();
         let directions: Vec<V3> = others
             .map(|w| sub(sites[*w as usize], sites[site]))
@@ -104,14 +97,14 @@ impl FarPartBuilder {
         let along = normal.map(f64::from);
         let bounds = tree.bounds();
         let start = (bounds.max - bounds.min).max() * HALF_SPACE_SCENE_SIZES;
-        let height = |x: &V3| dot(sub(*x, position), along) - start;
+        let height = |x: &V3| dot(sub(*x, y), along) - start;
         if tetrahedra.iter().all(|t| height(&cells.sites.corners.all[*t as usize].position) < 0.0) {
             return None;
         }
-        self.begin(cells, site, tetrahedra);
+        self.begin(cells, site, &y, tetrahedra);
         // The planes are moved outwards, so that rounding does not remove corners of the part that is left.
         let margin = self.polytope.corners.margin();
-        let (y, slack) = (self.y, cells.limits.slack);
+        let slack = cells.limits.slack;
         let [part, clipped] = &mut self.far_parts;
         part.clip(&self.polytope, height, u32::MAX, &y, slack);
         for (direction, face) in directions.iter().zip((0..u32::MAX).rev()) {
@@ -131,7 +124,7 @@ impl FarPartBuilder {
             let from_site = SiteDistances::new(tree, packet, &y);
             for lane in (0..LANES).filter(|lane| lanes >> lane & 1 == 1) {
                 let (positions, count) = packet.vertices_of(lane);
-                if positions[..count].iter().any(|position| cells.sites.delaunay.site_of(*position) == self.site) {
+                if positions[..count].iter().any(|position| cells.sites.delaunay.site_of(*position) == site) {
                     continue;
                 }
                 let distance = from_site.least(1 << lane);

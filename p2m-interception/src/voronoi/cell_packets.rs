@@ -11,6 +11,7 @@ use crate::progress::ProgressReporter;
 use crate::voronoi::adjacency::{EdgeAdjacency, IncidenceLists};
 use crate::voronoi::cell::CellContext;
 use crate::voronoi::cell_polytope::margin;
+use crate::voronoi::corners::to_u32;
 use crate::voronoi::feature_relevance::RelevanceContext;
 use crate::voronoi::list_filter::Region;
 use crate::voronoi::packet_cells::{CellSize, FindRelevantLanes, PacketCells, PacketInCell};
@@ -148,9 +149,4 @@ impl CellContext<'_> {
         }
         size
     }
-}
-
-/// Converts a number to 32 bits, of which there are enough: budgets see to that.
-fn to_u32(n: usize) -> u32 {
-    u32::try_from(n).expect("numbers of 32 bits")
 }

@@ -114,27 +114,20 @@ impl SimdKernel for EvaluateCorners<'_> {
     #[inline(always)]
     #[allow(clippy::cast_possible_truncation, reason = "rounded down; sixteen lanes")]
     fn run<I: InstructionSet>(self) -> u16 {
-        const ALL_PLACES: [u8; PLACES] = [0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15];
         let Self { corners, packet, values } = self;
         let mut near_lanes = 0;
         let per_unit = packet.per_unit();
         let (mut locals, mut squares) = (Locals::default(), [[0.0; LANES]; PLACES]);
-        let mut first = 0;
-        while first < corners.positions.len() {
-            let chunk = &corners.positions[first..corners.positions.len().min(first + PLACES)];
-            for (place, position) in chunk.iter().enumerate() {
-                locals.set(place, position, packet);
-            }
-            locals.convert::<I>();
-            packet.squares_of_several::<I>(&locals, &ALL_PLACES[..chunk.len()], &[u32::MAX; PLACES], &mut squares);
-            for (place, squares) in squares.iter().enumerate().take(chunk.len()) {
-                let (upper_bound, error) = (corners.upper_bounds[first + place], corners.errors[first + place]);
+        let lengths = corners.upper_bounds.chunks(PLACES).zip(corners.errors.chunks(PLACES));
+        for (positions, (upper_bounds, errors)) in corners.positions.chunks(PLACES).zip(lengths) {
+            packet.squares_at_points::<I>(positions, &mut locals, &mut squares);
+            for (place, (upper_bound, error)) in upper_bounds.iter().zip(errors).enumerate() {
                 // The value is unknown if f32 cannot represent the corner in the frame of the packet.
                 let mut lane_values = [f32::NEG_INFINITY; LANES];
                 if locals.far >> place & 1 == 0 {
                     let max_error = locals.excess[place] + ((error * per_unit) as f32) * 1.001;
                     let upper_bound = (upper_bound * per_unit) as f32 * (1.0 + 4.0 * f32::EPSILON);
-                    for (value, square) in lane_values.iter_mut().zip(squares) {
+                    for (value, square) in lane_values.iter_mut().zip(squares[place]) {
                         let least = (square.sqrt() * (1.0 - 4.0 * f32::EPSILON) - max_error).max(0.0);
                         // The product form keeps the relative precision of the difference of two squares, which may be
                         // much smaller than both.
@@ -146,7 +139,6 @@ impl SimdKernel for EvaluateCorners<'_> {
                 }
                 values.push(lane_values);
             }
-            first += PLACES;
         }
         (near_lanes & packet.lanes()) as u16
     }

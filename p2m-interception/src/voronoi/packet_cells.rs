@@ -11,6 +11,7 @@ use crate::delaunay::Delaunay;
 use crate::voronoi::cell::CellContext;
 use crate::voronoi::cell_polytope::CornerPoints;
 use crate::voronoi::corner_values::CornerValues;
+use crate::voronoi::corners::to_u32;
 use crate::voronoi::excluded_features::{ExcludedFeatures, RegionPoints};
 use crate::voronoi::feature_relevance::{CellInfo, LanesOver, PrimitiveFeatures, RelevanceContext};
 use p2m_bvh::engine::packet::LANES;
@@ -295,11 +296,6 @@ impl Iterator for Bits {
 #[inline(always)]
 fn corner_in(entry: u64) -> usize {
     usize::try_from(entry & u64::from(u32::MAX)).expect("32 bits")
-}
-
-/// Converts a number of few corners to 32 bits.
-fn to_u32(n: usize) -> u32 {
-    u32::try_from(n).expect("few corners")
 }
 
 #[cfg(test)]

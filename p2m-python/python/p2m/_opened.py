@@ -121,6 +121,24 @@ def _open_version(version: _FileVersion, open_new: Callable[[], _Raw]) -> _Raw:
         return cast(_Raw, entry.raw)
 
 
+def _open_checked(
+    wrong: str,
+    checksum: str | None,
+    read_version: Callable[[], _FileVersion],
+    open_new: Callable[[], _Raw],
+    checksum_of: Callable[[_Raw], str | None],
+) -> _Raw:
+    """Return what is at a path now, and has the checksum that it has to have. `wrong` begins the message otherwise."""
+    while True:
+        version = read_version()
+        if checksum is not None and version.checksum not in (None, checksum):
+            raise ValueError(f"{wrong} came from: its checksum is {version.checksum} instead of {checksum}")
+        raw = _open_version(version, open_new)
+        # The file may have been replaced after its checksum was read.
+        if checksum_of(raw) == version.checksum:
+            return raw
+
+
 def open_index(
     path: str | os.PathLike[str], *, checksum: str | None = None, map: bool = False, threads: int | None = None
 ) -> Index:
@@ -151,18 +169,14 @@ def open_index(
     count = thread_count(threads)
     if os.path.isdir(absolute):
         raise IsADirectoryError(errno.EISDIR, "A saved index is a file, and this is a directory without shards", absolute)
-    while True:
-        version = _version(absolute, map)
-        if checksum is not None and version.checksum not in (None, checksum):
-            raise ValueError(
-                f"{absolute} is not the file that the index came from: its checksum is {version.checksum} instead of "
-                f"{checksum}"
-            )
-        raw = _open_version(version, lambda: _p2m.load(absolute, map, count))
-        origin = raw.origin()
-        # The file may have been replaced after its header was read.
-        if origin is not None and origin[1] == version.checksum:
-            return Index._from_raw(raw, threads)
+    raw = _open_checked(
+        f"{absolute} is not the file that the index",
+        checksum,
+        lambda: _version(absolute, map),
+        lambda: _p2m.load(absolute, map, count),
+        lambda raw: (raw.origin() or (None, None))[1],
+    )
+    return Index._from_raw(raw, threads)
 
 
 def open_shards(
@@ -191,20 +205,21 @@ def open_shards(
     """
     folder = shard_folder(path)
     limit = max_bytes_of(max_bytes)
-    real = os.path.realpath(os.path.join(folder, MANIFEST_FILE))
-    while True:
-        found = manifest_checksum(folder)
-        if checksum is not None and found not in (None, checksum):
-            raise ValueError(
-                f"{os.path.join(folder, MANIFEST_FILE)} is not the manifest that the shards came from: its checksum is "
-                f"{found} instead of {checksum}"
-            )
+    manifest = os.path.join(folder, MANIFEST_FILE)
+
+    def version() -> _FileVersion:
+        found, real = manifest_checksum(folder), os.path.realpath(manifest)
         status = os.stat(real)
-        version = _FileVersion(real, status.st_size, status.st_mtime_ns, status.st_ino, found, map, max_bytes)
-        raw = _open_version(version, lambda: _p2m.Shards(folder, limit, map))
-        # The manifest may have been replaced after its checksum was read.
-        if raw.checksum() == found:
-            return Shards._from_raw(raw, folder, max_bytes, map, threads)
+        return _FileVersion(real, status.st_size, status.st_mtime_ns, status.st_ino, found, map, max_bytes)
+
+    raw = _open_checked(
+        f"{manifest} is not the manifest that the shards",
+        checksum,
+        version,
+        lambda: _p2m.Shards(folder, limit, map),
+        lambda raw: raw.checksum(),
+    )
+    return Shards._from_raw(raw, folder, max_bytes, map, threads)
 
 
 @dataclass(frozen=True)
