@@ -3,8 +3,8 @@
 use crate::arguments::{
     AdversariesArguments, AdviseArguments, BatchArguments, Command, Common, CompareArguments, DelaunayArguments,
     ExtremePairsArguments, ExtremesArguments, FieldArguments, InstancesArguments, KdopArguments, PairsArguments,
-    PaperArguments, ProgramArguments, QueryArguments, RayArguments, ReportArguments, RivalArguments, SavedArguments,
-    SplitsArguments, VerifyArguments,
+    PaperArguments, PointsArguments, ProgramArguments, QueryArguments, RayArguments, ReportArguments, RivalArguments,
+    SavedArguments, SplitsArguments, VerifyArguments,
 };
 use crate::backend::Backend;
 use crate::measure::Effort;
@@ -12,9 +12,10 @@ use crate::report::provenance;
 use crate::scene::Scene;
 use crate::{
     adversaries, advise, backends, batch, candidates, delaunay, extremes, field, instances, kdop, measure, octree,
-    pairs, paper, program, rays, refit, report, saved, shards, splits, tradeoff, verify,
+    pairs, paper, points, program, rays, refit, report, saved, shards, splits, tradeoff, verify,
 };
 use anyhow::{Context, Result};
+use clap::ValueEnum as _;
 use p2m_testkit::queries::QuerySet;
 use p2m_tradeoff::Table;
 use std::path::PathBuf;
@@ -34,6 +35,7 @@ pub(crate) fn run(command: Command) -> Result<bool> {
         Command::Instances(arguments) => time_instances(&arguments),
         Command::Program(arguments) => time_program(&arguments),
         Command::Pairs(arguments) => time_pairs(&arguments),
+        Command::Points(arguments) => compare_clouds(&arguments),
         Command::Shards(arguments) => shards::run(&arguments),
         Command::Advise(arguments) => check_advice(&arguments),
         Command::Field(arguments) => fill_fields(&arguments),
@@ -256,6 +258,15 @@ fn time_pairs(arguments: &PairsArguments) -> Result<bool> {
     let effort = Effort { rounds: *rounds, queries: *poses, builds: 1, seed: *seed };
     println!("{}\n{}", provenance(None), in_rounds("One thread, thread CPU time", &effort));
     pairs::print(&Scene::read(scene)?, &Scene::read(other)?, *arms, &effort)
+}
+
+/// Times indexes over point clouds beside KD-trees, and returns whether ours agree.
+fn compare_clouds(arguments: &PointsArguments) -> Result<bool> {
+    let &PointsArguments { ref distributions, ref counts, ref sets, rounds, queries, builds, seed } = arguments;
+    let effort = Effort { rounds, queries, builds, seed };
+    println!("{}\n{}", provenance(None), in_rounds("One thread, thread CPU time", &effort));
+    let all = points::Distribution::value_variants();
+    points::print(if distributions.is_empty() { all } else { distributions }, counts, sets, &effort)
 }
 
 /// Returns the scene alone, or in seven orientations.

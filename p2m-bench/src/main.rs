@@ -35,6 +35,8 @@ mod our_indexes;
 mod pairs;
 mod paper;
 mod plot;
+mod point_trees;
+mod points;
 mod program;
 mod rays;
 mod refit;

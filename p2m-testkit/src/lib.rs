@@ -36,6 +36,7 @@ pub use models::{all_model_files, model_file, model_files, models};
 use nalgebra::Vector3;
 use rand::{Rng, RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
+pub use surface::normal as normal_number;
 
 /// Returns the random generator of case number `case` of the test `name`. Cases are independent of each other and
 /// of their order.

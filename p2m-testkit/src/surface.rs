@@ -116,7 +116,7 @@ pub(crate) fn direction(rng: &mut ChaCha8Rng) -> Vector3<f64> {
 }
 
 /// Returns a number of the standard normal distribution, by the method of Box and Muller.
-pub(crate) fn normal(rng: &mut ChaCha8Rng) -> f64 {
+pub fn normal(rng: &mut ChaCha8Rng) -> f64 {
     let radius = (-2.0 * (1.0 - rng.random::<f64>()).ln()).sqrt();
     radius * (TAU * rng.random::<f64>()).cos()
 }

@@ -1,0 +1,172 @@
+//! `p2m-bench points`: compares indexes over point clouds with the KD-trees of kiddo and nanoflann.
+//!
+//! The clouds have distributions on which KD-trees differ: uniform in space, on a surface, on a curve, in clusters, with
+//! spacings of ten orders of magnitude, and on a lattice, where most distances are equal.
+
+use crate::backends::by_name;
+use crate::measure::{Effort, Entry, MedianRange, build_all, measure_set};
+use crate::scene::Scene;
+use anyhow::Result;
+use clap::ValueEnum;
+use nalgebra::Point3;
+use p2m_core::{Element, Soup};
+use p2m_testkit::queries::QuerySet;
+use p2m_testkit::{normal_number, rng, vector};
+use p2m_tradeoff::Table;
+use rand::RngExt;
+use rand_chacha::ChaCha8Rng;
+use std::f64::consts::TAU;
+
+/// Our backends and their rivals, in the order of the columns.
+const BACKENDS: [&str; 10] = [
+    "aabb",
+    "octree",
+    "p2m",
+    "aabb-batch",
+    "octree-batch",
+    "p2m-batch",
+    "kiddo",
+    "nanoflann",
+    "kiddo-f32",
+    "nanoflann-f32",
+];
+/// The number of backends of ours that are asked one query at a time. As many after them are asked by one batch call.
+const SINGLE: usize = 3;
+/// The number of backends of ours. The others are rivals.
+const OURS: usize = 2 * SINGLE;
+
+/// A distribution of points.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub(crate) enum Distribution {
+    /// Points are uniform in a cube.
+    Uniform,
+    /// Points are on a surface of waves, as those of a scanner are.
+    Surface,
+    /// Points are on a helix.
+    Curve,
+    /// Points are normally distributed about a hundred centres.
+    Clusters,
+    /// The distances from the centre range over ten orders of magnitude.
+    Spacings,
+    /// Points form a cubic lattice.
+    Lattice,
+}
+
+impl Distribution {
+    /// Returns about `count` points.
+    fn generate(self, count: usize) -> Vec<Point3<f64>> {
+        let mut rng = rng("points", self as u64);
+        let random = &mut rng;
+        let repeated = |point: &mut dyn FnMut() -> Point3<f64>| (0..count).map(|_| point()).collect();
+        match self {
+            Self::Uniform => repeated(&mut || Point3::from(vector(random))),
+            Self::Surface => repeated(&mut || {
+                let [x, y] = [0; 2].map(|_| random.random_range(-1.0..1.0));
+                let wave = |frequency: f64| ((frequency * x).sin() * (frequency * y).cos()) / frequency;
+                Point3::new(x, y, wave(3.0) + wave(17.0))
+            }),
+            Self::Curve => repeated(&mut || {
+                let angle = 40.0 * TAU * random.random::<f64>();
+                Point3::new(angle.cos(), angle.sin(), angle / 100.0)
+            }),
+            Self::Clusters => {
+                let centres: Vec<_> = (0..100).map(|_| Point3::from(vector(random))).collect();
+                let mut centre = centres.iter().cycle();
+                repeated(&mut || centre.next().expect("the cycle has no end") + normal(random) * 0.01)
+            }
+            Self::Spacings => repeated(&mut || {
+                let length = 10f64.powf(random.random_range(-10.0..0.0));
+                Point3::from(normal(random).normalize() * length)
+            }),
+            Self::Lattice => {
+                let side = (1..).find(|side: &usize| side.pow(3) >= count).unwrap_or(1);
+                let coordinates = |i: usize| [i % side, i / side % side, i / (side * side)].map(|x| x as f64);
+                (0..side.pow(3)).map(|i| Point3::from(coordinates(i))).collect()
+            }
+        }
+    }
+}
+
+/// Returns a vector with normally distributed coordinates.
+fn normal(random: &mut ChaCha8Rng) -> nalgebra::Vector3<f64> {
+    nalgebra::Vector3::from_fn(|_, _| normal_number(random))
+}
+
+/// Returns a scene of points.
+fn scene(distribution: Distribution, count: usize) -> Result<Scene> {
+    let positions = distribution.generate(count);
+    let elements: Vec<Element> = (0..u32::try_from(positions.len())?).map(Element::Point).collect();
+    let name = distribution.to_possible_value().map_or(String::new(), |value| value.get_name().to_owned());
+    Scene::new(name, Soup::new(positions, elements)?)
+}
+
+/// Measures all backends on clouds, prints the tables, and returns whether ours agree and no rival is nearer.
+pub(crate) fn print(
+    distributions: &[Distribution],
+    counts: &[usize],
+    sets: &[QuerySet],
+    effort: &Effort,
+) -> Result<bool> {
+    let selected = BACKENDS.map(by_name);
+    let names = BACKENDS.iter().map(|name| (*name).to_owned());
+    let heads = ["points", "count", "set"].map(str::to_owned).into_iter();
+    let mut builds = Table::new(heads.clone().take(2).chain(names.clone()));
+    let mut queries =
+        Table::new(heads.chain(names).chain(["rivals / one by one", "rivals / batch"].map(str::to_owned)));
+    let mut is_good = true;
+    let mut absent: Vec<String> = Vec::new();
+    for distribution in distributions {
+        for &count in counts {
+            let scene = scene(*distribution, count)?;
+            let mut entries = build_all(&scene, &selected, effort.builds);
+            for set in sets {
+                measure_set(&scene, *set, &mut entries, effort);
+            }
+            let row = vec![scene.name.clone(), scene.len().to_string()];
+            builds
+                .push(row.iter().cloned().chain(entries.iter().map(|entry| build_cell(entry, scene.len()))).collect());
+            for (at, set) in sets.iter().enumerate() {
+                let medians: Vec<Option<f64>> = entries.iter().map(|entry| median(entry, at)).collect();
+                let least = |of: &[Option<f64>]| of.iter().copied().flatten().reduce(f64::min);
+                let ratio = |ours: &[Option<f64>]| match (least(&medians[OURS..]), least(ours)) {
+                    (Some(rival), Some(ours)) => format!("{:.2}", rival / ours),
+                    _ => "-".to_owned(),
+                };
+                let cells = medians.iter().map(|median| median.map_or("-".to_owned(), |ns| format!("{ns:.0}")));
+                let ratios = [ratio(&medians[..SINGLE]), ratio(&medians[SINGLE..OURS])];
+                queries.push(row.iter().cloned().chain([set.to_string()]).chain(cells).chain(ratios).collect());
+            }
+            for entry in &entries {
+                is_good &= !entry.backend.is_ours || entry.sets.iter().flatten().all(|set| set.agreement.is_clean());
+                let note =
+                    entry.index.as_ref().err().map(|why| format!("{} is left out: {}", entry.backend.name, why.0));
+                absent.extend(note.filter(|note| !absent.contains(note)));
+            }
+        }
+    }
+    println!(
+        "\nBuilds: seconds, and bytes a point that an index and its points take (without what is allocated in C++).\n\n{builds}"
+    );
+    println!(
+        "Queries: nanoseconds, and how many times the fastest rival takes as long as our fastest index.\n\n{queries}"
+    );
+    absent.iter().for_each(|note| println!("- {note}"));
+    Ok(is_good)
+}
+
+/// Describes the build of a backend over `count` points.
+fn build_cell(entry: &Entry<'_>, count: usize) -> String {
+    match (&entry.index, MedianRange::of(&entry.build.seconds)) {
+        (Ok(_), Some(seconds)) => {
+            let bytes = (entry.build.owned + entry.build.borrowed) as f64 / count as f64;
+            format!("{:.3} / {bytes:.0}", seconds.median)
+        }
+        _ => "-".to_owned(),
+    }
+}
+
+/// Returns the median time of a query of a set in nanoseconds.
+fn median(entry: &Entry<'_>, set: usize) -> Option<f64> {
+    let figures = entry.sets[set].as_ref().ok()?;
+    MedianRange::of(&figures.nanoseconds).map(|range| range.median)
+}
