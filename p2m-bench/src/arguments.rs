@@ -68,12 +68,42 @@ pub(crate) enum Command {
     Instances(InstancesArguments),
     /// Compares the program, from the first query to the complete file, with one batch of the library, in wall time
     Program(ProgramArguments),
+    /// Measures builds, memory and queries of scenes that grow, for docs/scale.md; fails if ours differ
+    Scale(ScaleArguments),
     /// Compares indexes over point clouds with KD-trees; fails if ours differ
     Points(PointsArguments),
     /// Times distances between two scenes at many poses, and between a scene and an arm of capsules, against parry3d
     Pairs(PairsArguments),
     /// Writes a generated terrain as shards and asks them within a limit of memory; fails if an answer differs
     Shards(ShardsArguments),
+}
+
+/// The arguments of `scale`.
+#[derive(Args)]
+pub(crate) struct ScaleArguments {
+    /// Backends of the registry
+    #[arg(long, value_delimiter = ',', default_value = "aabb,kdop,octree,p2m")]
+    pub(crate) backends: Vec<String>,
+    /// Numbers of triangles, in ascending order
+    #[arg(long, value_delimiter = ',', default_values_t = [10_000, 100_000, 1_000_000, 10_000_000, 100_000_000])]
+    pub(crate) sizes: Vec<usize>,
+    /// Query sets
+    #[arg(long, value_delimiter = ',', default_values_t = [QuerySet::Box10, QuerySet::Box1, QuerySet::Near])]
+    pub(crate) sets: Vec<QuerySet>,
+    /// Queries in a round
+    #[arg(long, default_value_t = 200_000)]
+    pub(crate) queries: usize,
+    /// Rounds of queries, and builds that take less than a second
+    #[arg(long, default_value_t = 5, value_parser = clap::builder::RangedU64ValueParser::<usize>::new().range(1..))]
+    pub(crate) rounds: usize,
+    /// The largest number of heap bytes at a time; a size that would take more is left out for that index
+    #[arg(long, default_value_t = 20_000_000_000)]
+    pub(crate) max_memory: usize,
+    /// The longest time of a build in seconds; a size that would take longer is left out for that index
+    #[arg(long, default_value_t = 900.0)]
+    pub(crate) max_seconds: f64,
+    #[command(flatten)]
+    pub(crate) document: Document,
 }
 
 /// The arguments of `points`.

@@ -4,7 +4,7 @@ use crate::arguments::{
     AdversariesArguments, AdviseArguments, BatchArguments, Command, Common, CompareArguments, DelaunayArguments,
     ExtremePairsArguments, ExtremesArguments, FieldArguments, InstancesArguments, KdopArguments, PairsArguments,
     PaperArguments, PointsArguments, ProgramArguments, QueryArguments, RayArguments, ReportArguments, RivalArguments,
-    SavedArguments, SplitsArguments, VerifyArguments,
+    SavedArguments, ScaleArguments, SplitsArguments, VerifyArguments,
 };
 use crate::backend::Backend;
 use crate::measure::Effort;
@@ -12,7 +12,7 @@ use crate::report::provenance;
 use crate::scene::Scene;
 use crate::{
     adversaries, advise, backends, batch, candidates, delaunay, extremes, field, instances, kdop, measure, octree,
-    pairs, paper, points, program, rays, refit, report, saved, shards, splits, tradeoff, verify,
+    pairs, paper, points, program, rays, refit, report, saved, scale, shards, splits, tradeoff, verify,
 };
 use anyhow::{Context, Result};
 use clap::ValueEnum as _;
@@ -35,6 +35,7 @@ pub(crate) fn run(command: Command) -> Result<bool> {
         Command::Instances(arguments) => time_instances(&arguments),
         Command::Program(arguments) => time_program(&arguments),
         Command::Pairs(arguments) => time_pairs(&arguments),
+        Command::Scale(arguments) => measure_scale(arguments),
         Command::Points(arguments) => compare_clouds(&arguments),
         Command::Shards(arguments) => shards::run(&arguments),
         Command::Advise(arguments) => check_advice(&arguments),
@@ -258,6 +259,13 @@ fn time_pairs(arguments: &PairsArguments) -> Result<bool> {
     let effort = Effort { rounds: *rounds, queries: *poses, builds: 1, seed: *seed };
     println!("{}\n{}", provenance(None), in_rounds("One thread, thread CPU time", &effort));
     pairs::print(&Scene::read(scene)?, &Scene::read(other)?, *arms, &effort)
+}
+
+/// Measures scenes that grow, and returns whether our indexes have the same answers.
+fn measure_scale(arguments: ScaleArguments) -> Result<bool> {
+    let ScaleArguments { backends, sizes, sets, queries, rounds, max_memory, max_seconds, document } = arguments;
+    let document = document.write;
+    scale::run(&scale::Request { backends, sizes, sets, queries, rounds, max_memory, max_seconds, document })
 }
 
 /// Times indexes over point clouds beside KD-trees, and returns whether ours agree.

@@ -43,6 +43,7 @@ mod refit;
 mod report;
 mod rounds;
 mod saved;
+mod scale;
 mod scene;
 mod shards;
 mod splits;
@@ -69,5 +70,6 @@ mod tests {
         crate::extremes::BLOCKS.check(Some(&document("extremes.md"))).unwrap();
         crate::extremes::pairs::BLOCKS.check(Some(&document("extremes.md"))).unwrap();
         crate::adversaries::BLOCKS.check(Some(&document("adversaries.md"))).unwrap();
+        crate::scale::BLOCKS.check(Some(&document("scale.md"))).unwrap();
     }
 }

@@ -85,6 +85,11 @@ pub(crate) fn point(query: V3, vertex: V3, prune: f64) -> Option<Nearest> {
             let (feature, weights) = vertex_feature(0);
             Nearest { key, offset, exponent: 0, feature, weights, size: largest(&[offset]) }
         }
+        // A query at the point itself is common, so it does not take the slow path of tiny distances.
+        None if offset == [0.0; 3] => {
+            let (feature, weights) = vertex_feature(0);
+            Nearest { key: Key::ZERO, offset, exponent: 0, feature, weights, size: 0.0 }
+        }
         None => rescaled::point(query, vertex),
     })
 }
