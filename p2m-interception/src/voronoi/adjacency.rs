@@ -116,17 +116,17 @@ fn edges_of(sites: &[usize]) -> impl Iterator<Item = (u32, u32)> + '_ {
     })
 }
 
-/// Lists of numbers, one for each site, in compressed form.
-pub(crate) struct IncidenceLists {
-    /// The index of the first number of each site, and the end.
+/// Lists of items, such as numbers, one list for each site, in compressed form.
+pub(crate) struct IncidenceLists<V = u32> {
+    /// The index of the first item of each site, and the end.
     firsts: Vec<u32>,
-    /// The numbers of all sites, one site after the other.
-    numbers: Vec<u32>,
+    /// The items of all sites, one site after the other.
+    items: Vec<V>,
 }
 
-impl IncidenceLists {
-    /// Collects the lists from pairs of a site and a number.
-    pub(crate) fn new(sites: usize, pairs: impl Iterator<Item = (u32, u32)> + Clone) -> Self {
+impl<V: Copy + Default> IncidenceLists<V> {
+    /// Collects the lists from pairs of a site and an item.
+    pub(crate) fn new(sites: usize, pairs: impl Iterator<Item = (u32, V)> + Clone) -> Self {
         let mut firsts = vec![0u32; sites + 1];
         for (site, _) in pairs.clone() {
             firsts[site as usize + 1] += 1;
@@ -134,17 +134,27 @@ impl IncidenceLists {
         for i in 0..sites {
             firsts[i + 1] += firsts[i];
         }
-        let mut numbers = vec![0u32; firsts[sites] as usize];
+        let mut items = vec![V::default(); firsts[sites] as usize];
         let mut next = firsts.clone();
-        for (site, number) in pairs {
-            numbers[next[site as usize] as usize] = number;
+        for (site, item) in pairs {
+            items[next[site as usize] as usize] = item;
             next[site as usize] += 1;
         }
-        Self { firsts, numbers }
+        Self { firsts, items }
     }
 
-    /// Returns the numbers of a site.
-    pub(crate) fn get(&self, site: usize) -> &[u32] {
-        &self.numbers[self.firsts[site] as usize..self.firsts[site + 1] as usize]
+    /// Returns the items of a site.
+    pub(crate) fn get(&self, site: usize) -> &[V] {
+        &self.items[self.range(site)]
+    }
+
+    /// Returns the items of a site, to be changed.
+    pub(crate) fn get_mut(&mut self, site: usize) -> &mut [V] {
+        let range = self.range(site);
+        &mut self.items[range]
+    }
+
+    fn range(&self, site: usize) -> std::ops::Range<usize> {
+        self.firsts[site] as usize..self.firsts[site + 1] as usize
     }
 }

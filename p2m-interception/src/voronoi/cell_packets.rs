@@ -21,16 +21,23 @@ use std::ops::Range;
 /// The number of packets that one task examines.
 const PACKETS_PER_TASK: usize = 64;
 
+/// A packet in the list of a cell.
+#[derive(Clone, Copy, Debug, Default)]
+pub(crate) struct ListedPacket {
+    /// The number of the packet.
+    pub(crate) packet: u32,
+    /// The lanes that can hold the answer in the cell, as bits. There is at least one.
+    pub(crate) lanes: u16,
+}
+
 /// The packets of all cells.
 pub(crate) struct CellPackets {
     /// The lengths of each cell that gets a list.
     sizes: Vec<Option<CellSize>>,
-    /// For each packet the tetrahedra whose balls it intersects.
-    near_tetrahedra: IncidenceLists,
-    /// The packets in cells, in the order of the packets.
-    packets: Vec<PacketInCell>,
-    /// For each site the indices of its packets in `packets`.
-    of_sites: IncidenceLists,
+    /// For each packet the tetrahedra whose balls it intersects. There are none if no list gets a filter.
+    near_tetrahedra: Option<IncidenceLists>,
+    /// For each site its packets, in ascending order.
+    of_sites: IncidenceLists<ListedPacket>,
 }
 
 impl CellPackets {
@@ -39,6 +46,7 @@ impl CellPackets {
         cells: &CellContext<'_>,
         adjacency: &EdgeAdjacency,
         incident_tetrahedra: &IncidenceLists,
+        near_tetrahedra: IncidenceLists,
         is_hub: impl Fn(usize) -> bool,
         report: &mut P2mReport,
         reporter: &ProgressReporter<'_>,
@@ -52,12 +60,10 @@ impl CellPackets {
         };
         let size_of = |site: usize| has_list(site).then(|| cells.measure(site, incident_tetrahedra.get(site)));
         let packet_count = cells.tree.leaves.packets.len();
-        let mut found = Self {
-            sizes: (0..sites.len()).map(size_of).collect(),
-            near_tetrahedra: IncidenceLists::new(packet_count, corners.pairs()),
-            packets: Vec::new(),
-            of_sites: IncidenceLists::new(0, std::iter::empty()),
-        };
+        let mut sizes: Vec<Option<CellSize>> = (0..sites.len()).map(size_of).collect();
+        // One vector of all would be copied as it grows.
+        let mut packets: Vec<Vec<PacketInCell>> = Vec::new();
+        let (mut packets_in_cells, mut candidates) = (0, vec![0u32; sites.len()]);
         let (budget, parallel) = (cells.limits.budget, cells.limits.parallel);
         let scene = RelevanceContext {
             tree: cells.tree,
@@ -65,60 +71,69 @@ impl CellPackets {
             adjacency,
             slack: cells.limits.slack,
         };
-        let (sizes, near_tetrahedra, packets) = (&found.sizes, &found.near_tetrahedra, &mut found.packets);
         let work = |chunk: Range<usize>| {
             let (mut packet, mut found) = (PacketCells::default(), Vec::new());
             for number in chunk {
                 if budget.is_exceeded() {
                     break;
                 }
-                packet.begin(cells, sizes, to_u32(number), near_tetrahedra.get(number));
+                packet.begin(cells, &sizes, to_u32(number), near_tetrahedra.get(number));
+                let sizes = &sizes;
                 cells.tree.isa().run(FindRelevantLanes { scene, sizes, packet: &mut packet, found: &mut found });
                 budget.charge(std::mem::take(&mut packet.values.tests));
             }
             found
         };
         let mut done = 0;
-        map_chunks_in_order(packet_count, PACKETS_PER_TASK, parallel, work, |chunk: Vec<PacketInCell>| {
-            if budget.fits::<PacketInCell>(packets.len() + chunk.len()) {
-                packets.extend(chunk);
+        map_chunks_in_order(packet_count, PACKETS_PER_TASK, parallel, work, |mut chunk: Vec<PacketInCell>| {
+            if budget.fits::<PacketInCell>(packets_in_cells + chunk.len()) {
+                packets_in_cells += chunk.len();
+                chunk.iter().for_each(|packet| candidates[packet.site as usize] += 1);
+                chunk.retain(|packet| packet.lanes != 0);
+                chunk.shrink_to_fit();
+                packets.push(chunk);
             }
             done = packet_count.min(done + PACKETS_PER_TASK);
             reporter.advance([30.0, 80.0], done, packet_count);
         });
-        found.of_sites =
-            IncidenceLists::new(sites.len(), found.packets.iter().zip(0..).map(|(packet, i)| (packet.site, i)));
-        for (site, size) in found.sizes.iter_mut().enumerate() {
-            let candidates = found.of_sites.get(site).len();
+        let near_tetrahedra = cells.filter.is_some().then_some(near_tetrahedra);
+        let listed = packets
+            .iter()
+            .flatten()
+            .map(|&PacketInCell { site, packet, lanes }| (site, ListedPacket { packet, lanes }));
+        let of_sites = IncidenceLists::new(sites.len(), listed);
+        for (size, candidates) in sizes.iter_mut().zip(candidates) {
+            let candidates = candidates as usize;
             report.candidates += candidates;
             report.max_candidates = report.max_candidates.max(candidates);
             if candidates > cells.limits.max_list_packets {
                 *size = None;
             }
         }
-        found
+        Self { sizes, near_tetrahedra, of_sites }
     }
 
-    /// Returns the packets of a site that have lanes, in ascending order. A site without a list has none.
-    pub(crate) fn of_site(&self, site: usize) -> impl Iterator<Item = &PacketInCell> {
-        let packets = self.of_sites.get(site).iter().filter(move |_| self.sizes[site].is_some());
-        packets.map(|number| &self.packets[*number as usize]).filter(|packet| packet.lanes != 0)
+    /// Returns the packets of a site in ascending order. A site without a list has none.
+    pub(crate) fn of_site(&self, site: usize) -> &[ListedPacket] {
+        if self.sizes[site].is_some() { self.of_sites.get(site) } else { &[] }
     }
 
-    /// Finds the regions of all primitives in the cells of some sites, sorted by the sites.
+    /// Finds the regions of all primitives in the cells of some sites, sorted by the sites. There are none if no list
+    /// gets a filter.
     pub(crate) fn find_regions(
         &self,
         cells: &CellContext<'_>,
         is_wanted: impl Fn(usize) -> bool + Sync,
     ) -> Vec<(u32, Region)> {
+        let Some(near_tetrahedra) = &self.near_tetrahedra else { return Vec::new() };
         let work = |chunk: Range<usize>| {
             let (mut packet, mut regions) = (PacketCells::default(), Vec::new());
             for number in chunk {
-                let tetrahedra = self.near_tetrahedra.get(number);
-                packet.begin(cells, &self.sizes, to_u32(number), tetrahedra);
+                packet.begin(cells, &self.sizes, to_u32(number), near_tetrahedra.get(number));
                 let lanes_of = |site: u32| {
-                    let mut packets = self.of_site(site as usize).filter(|_| is_wanted(site as usize));
-                    packets.find(|packet| packet.packet as usize == number).map_or(0, |packet| packet.lanes)
+                    let packets = if is_wanted(site as usize) { self.of_site(site as usize) } else { &[] };
+                    let found = packets.binary_search_by_key(&number, |packet| packet.packet as usize);
+                    found.map_or(0, |found| packets[found].lanes)
                 };
                 packet.visit_regions(lanes_of, |site, lane, points| {
                     let CellSize { max_distance, max_error } = self.sizes[site as usize].expect("a cell with a list");

@@ -13,17 +13,16 @@
 //! bits, and its lower id wins.
 
 use crate::delaunay::BOUNDING;
-use crate::list::block::{Block, BoundKind, Entry};
+use crate::list::block::{BLOCK_WIDTH, Block, BoundKind, Entry};
 use crate::options::P2mReport;
 use crate::parallel_chunks::{map_chunks_in_order, run_both};
 use crate::progress::{BuildStage, ProgressReporter};
 use crate::voronoi::adjacency::{EdgeAdjacency, IncidenceLists};
 use crate::voronoi::cell::{CellContext, FarPartBuilder};
-use crate::voronoi::cell_packets::CellPackets;
+use crate::voronoi::cell_packets::{CellPackets, ListedPacket};
 use crate::voronoi::corner_values::SiteDistances;
 use crate::voronoi::list_filter::{ListFilter, ListFilters, Region};
 use crate::voronoi::neighbours::NeighbourTable;
-use crate::voronoi::packet_cells::PacketInCell;
 use crate::voronoi::site::{AUXILIARY_SITE, FALLBACK, FarHalfSpace};
 use std::ops::Range;
 use std::sync::Arc;
@@ -51,7 +50,13 @@ pub(crate) struct VoronoiLists {
 
 impl CellContext<'_> {
     /// Builds the lists of all sites. It returns `None` if that exceeds the budget.
-    pub(crate) fn build_lists(&self, report: &mut P2mReport, reporter: &ProgressReporter<'_>) -> Option<VoronoiLists> {
+    /// `near_tetrahedra` are for each packet the tetrahedra whose balls it intersects.
+    pub(crate) fn build_lists(
+        &self,
+        near_tetrahedra: IncidenceLists,
+        report: &mut P2mReport,
+        reporter: &ProgressReporter<'_>,
+    ) -> Option<VoronoiLists> {
         reporter.begin_stage(BuildStage::Lists);
         let sites = self.sites.delaunay.sites();
         let tetrahedra = self.sites.delaunay.tetrahedra();
@@ -74,18 +79,20 @@ impl CellContext<'_> {
         let (mut neighbours, packets) = run_both(
             self.limits.parallel,
             || NeighbourTable::new(sites, BOUNDING, slack, list_neighbours),
-            || CellPackets::find(self, &adjacency, &incident_tetrahedra, is_hub, report, reporter),
+            || CellPackets::find(self, &adjacency, &incident_tetrahedra, near_tetrahedra, is_hub, report, reporter),
         );
         let empty_list =
             Block::from_list(&[Entry { packet: 0, lanes: 0, bounds: [[0.0; 3]; 2], f: [0.0; 8] }], BoundKind::Boxes);
-        let mut blocks = vec![empty_list[0]; sites.len()];
+        let further_blocks = |site| packets.of_site(site).len().div_ceil(BLOCK_WIDTH).saturating_sub(1);
+        let mut blocks = Vec::with_capacity(sites.len() + (0..sites.len()).map(further_blocks).sum::<usize>());
+        blocks.resize(sites.len(), empty_list[0]);
         let mut filters = if self.filter.is_some() { ListFilters::new(sites.len()) } else { ListFilters::default() };
         let mut filled_sites = neighbours.sites.edit(std::mem::take);
         report.added = self.sites.added;
         let budget = self.limits.budget;
         let regions = self.filter.map_or_else(Vec::new, |(above, _)| {
             packets.find_regions(self, |site| {
-                packets.of_site(site).map(|packet| packet.lanes.count_ones() as usize).sum::<usize>() > above
+                packets.of_site(site).iter().map(|packet| packet.lanes.count_ones() as usize).sum::<usize>() > above
             })
         });
         let lists = ListBuilder {
@@ -183,7 +190,7 @@ impl ListBuilder<'_> {
         let (tree, delaunay) = (self.cells.tree, &self.cells.sites.delaunay);
         let position = delaunay.sites()[site].map(|x| x * delaunay.unit());
         let mut entries: Vec<(f64, Entry)> = Vec::new();
-        for &PacketInCell { packet: number, lanes, .. } in self.packets.of_site(site) {
+        for &ListedPacket { packet: number, lanes } in self.packets.of_site(site) {
             let packet = &tree.leaves.packets[number as usize];
             let order = SiteDistances::new(tree, packet, &position).least(lanes) * packet.unit();
             let bounds = tree.frame.enclose(&packet.bounds_of(lanes));

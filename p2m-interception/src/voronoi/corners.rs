@@ -3,6 +3,7 @@
 
 use crate::delaunay::{BOUNDING, Delaunay};
 use crate::parallel_chunks::map_chunks_in_order;
+use crate::voronoi::adjacency::IncidenceLists;
 use crate::voronoi::budget::Limits;
 use crate::voronoi::circumsphere;
 use p2m_bvh::PacketTree;
@@ -64,8 +65,10 @@ impl CellCorner {
 pub(crate) struct CellCorners {
     /// The corners, in the order of their tetrahedra.
     pub(crate) all: Vec<CellCorner>,
-    /// The packets of all balls, one ball after the other.
+    /// The packets of the balls that are not crowded, one ball after the other.
     packets: Vec<u32>,
+    /// The packets of balls that were crowded while sites were added, each with the number of its corner.
+    late_packets: Vec<(u32, u32)>,
 }
 
 impl CellCorners {
@@ -79,7 +82,7 @@ impl CellCorners {
         progress: &dyn Fn(usize, usize),
     ) -> Self {
         let count = delaunay.tetrahedra().len();
-        let mut corners = Self { all: Vec::with_capacity(count + 1), packets: Vec::new() };
+        let mut corners = Self { all: Vec::with_capacity(count + 1), ..Self::default() };
         map_chunks_in_order(
             count,
             CORNERS_PER_TASK,
@@ -137,31 +140,33 @@ impl CellCorners {
         corners
     }
 
-    /// Returns the corners with the packets of crowded balls as well, unless they are too many for a list.
-    pub(crate) fn with_packets_of_crowded(self, tree: &PacketTree, limits: Limits<'_>) -> Self {
+    /// Finds the packets of crowded balls as well, unless they are too many for a list.
+    pub(crate) fn find_packets_of_crowded(&mut self, tree: &PacketTree, limits: Limits<'_>) {
         if limits.max_list_packets <= CROWDED_BALL_PACKETS || self.count_crowded() == 0 {
-            return self;
+            return;
         }
-        let count = self.all.len() - 1;
-        let mut corners = Self { all: Vec::with_capacity(count + 1), packets: Vec::with_capacity(self.packets.len()) };
+        let all = &self.all;
         let work = |numbers: Range<usize>| {
-            let mut chunk = Self::default();
+            let mut late_packets = Vec::new();
             let mut selections: Vec<Selection> = Vec::new();
             for number in numbers {
-                let corner = self.all[number];
+                let corner = all[number];
                 selections.clear();
                 let is_retried = corner.is_crowded && corner.radius > 0.0 && !limits.budget.is_exceeded();
                 if is_retried && corner.collect_ball(tree, limits, limits.max_list_packets, &mut selections) {
-                    chunk.push(CellCorner { is_crowded: false, ..corner }, selections.iter().map(|s| s.packet));
-                } else {
-                    chunk.push(corner, self.packets(number).iter().copied());
+                    late_packets.extend(selections.iter().map(|s| (s.packet, to_u32(number))));
                 }
             }
-            chunk
+            late_packets
         };
-        map_chunks_in_order(count, CORNERS_PER_TASK, limits.parallel, work, |chunk| corners.append(chunk, limits));
-        corners.push(CellCorner::UNKNOWN, std::iter::empty());
-        corners
+        let mut found = Vec::new();
+        map_chunks_in_order(all.len() - 1, CORNERS_PER_TASK, limits.parallel, work, |late_packets: Vec<(u32, u32)>| {
+            if limits.budget.fits::<u32>(self.packets.len() + found.len() + late_packets.len()) {
+                found.extend(late_packets);
+            }
+        });
+        found.iter().for_each(|(_, number)| self.all[*number as usize].is_crowded = false);
+        self.late_packets = found;
     }
 
     /// Appends the corners of a chunk. They are unknown if the budget has no memory for their packets.
@@ -188,15 +193,22 @@ impl CellCorners {
         self.all[..self.all.len() - 1].iter().filter(|corner| corner.is_crowded).count()
     }
 
-    /// Returns the packets that intersect the ball of a corner. A crowded corner has none.
-    pub(crate) fn packets(&self, number: usize) -> &[u32] {
+    /// Returns the packets that intersect the ball of a corner. A corner that is or was crowded has none.
+    fn packets(&self, number: usize) -> &[u32] {
         &self.packets[self.all[number].first_packet as usize..self.all[number + 1].first_packet as usize]
     }
 
-    /// Returns the packets of all balls, each with the number of its corner.
-    pub(crate) fn pairs(&self) -> impl Iterator<Item = (u32, u32)> + Clone + '_ {
-        (0..self.all.len() - 1)
-            .flat_map(|number| self.packets(number).iter().map(move |packet| (*packet, to_u32(number))))
+    /// Takes the packets of all balls, and returns for each of `packet_count` packets the numbers of its corners in
+    /// ascending order.
+    pub(crate) fn take_corners_of_packets(&mut self, packet_count: usize) -> IncidenceLists {
+        let numbers = 0..self.all.len() - 1;
+        let found = numbers.flat_map(|number| self.packets(number).iter().map(move |packet| (*packet, to_u32(number))));
+        let mut corners = IncidenceLists::new(packet_count, found.chain(self.late_packets.iter().copied()));
+        for (packet, _) in std::mem::take(&mut self.late_packets) {
+            corners.get_mut(packet as usize).sort_unstable();
+        }
+        self.packets = Vec::new();
+        corners
     }
 
     /// Appends a corner with its packets.

@@ -144,7 +144,7 @@ impl Voronoi {
         let max_added_sites = (tree.leaves.vertices.len() as f64 * options.max_extra_sites) as usize;
         let budget = &BuildBudget::new(options.memory, options.work, tree.packets().1);
         let limits = Limits { parallel, slack, max_list_packets, max_added_sites, budget };
-        let Some(sites) = Sites::new(tree, &bounds, limits, reporter) else {
+        let Some(mut sites) = Sites::new(tree, &bounds, limits, reporter) else {
             self.report.trees = tree.leaves.vertices.len();
             return;
         };
@@ -154,6 +154,7 @@ impl Voronoi {
             self.report.trees = fallback_count;
             return;
         }
+        let corners_of_packets = sites.corners.take_corners_of_packets(tree.leaves.packets.len());
         let cells = CellContext {
             tree,
             sites: &sites,
@@ -161,7 +162,9 @@ impl Voronoi {
             filter: options.list_filter.map(|build| (options.filter_above, build.0)),
         };
         let mut report = self.report;
-        let Some(VoronoiLists { neighbours, mut blocks, filters }) = cells.build_lists(&mut report, reporter) else {
+        let Some(VoronoiLists { neighbours, mut blocks, filters }) =
+            cells.build_lists(corners_of_packets, &mut report, reporter)
+        else {
             self.report.trees = sites.delaunay.sites().len();
             return;
         };

@@ -84,7 +84,7 @@ impl Sites {
                 break;
             }
         }
-        let corners = corners.with_packets_of_crowded(tree, limits);
+        corners.find_packets_of_crowded(tree, limits);
         if limits.budget.is_exceeded() {
             return None;
         }
