@@ -26,6 +26,26 @@ pub(crate) struct EdgeAdjacency {
     pub(crate) is_exact: bool,
 }
 
+/// What lists need to know of a triangulation and the primitives on its sites, apart from lengths.
+pub(crate) struct SiteTopology {
+    /// The vertices and edges of all primitives.
+    pub(crate) adjacency: EdgeAdjacency,
+    /// For each site the tetrahedra at it, in ascending order.
+    pub(crate) incident_tetrahedra: IncidenceLists,
+}
+
+impl SiteTopology {
+    /// Collects the topology of the packets of a tree and the triangulation of their vertices.
+    pub(crate) fn new(tree: &PacketTree, delaunay: &Delaunay) -> Self {
+        let tetrahedra = (0..).zip(delaunay.tetrahedra());
+        let incident = tetrahedra.flat_map(|(number, tetrahedron)| tetrahedron.iter().map(move |v| (*v, number)));
+        Self {
+            adjacency: EdgeAdjacency::from_tree(tree, delaunay),
+            incident_tetrahedra: IncidenceLists::new(delaunay.sites().len(), incident),
+        }
+    }
+}
+
 /// The primitives that have an edge.
 struct EdgeTriangles {
     /// The lowest id of all primitives with the edge.

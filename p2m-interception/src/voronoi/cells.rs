@@ -17,7 +17,8 @@ use crate::list::block::{BLOCK_WIDTH, Block, BoundKind, Entry};
 use crate::options::P2mReport;
 use crate::parallel_chunks::{map_chunks_in_order, run_both};
 use crate::progress::{BuildStage, ProgressReporter};
-use crate::voronoi::adjacency::{EdgeAdjacency, IncidenceLists};
+use crate::voronoi::adjacency::{EdgeAdjacency, IncidenceLists, SiteTopology};
+use crate::voronoi::any_locator::AnyLocator;
 use crate::voronoi::cell::{CellContext, FarPartBuilder};
 use crate::voronoi::cell_packets::{CellPackets, ListedPacket};
 use crate::voronoi::corner_values::SiteDistances;
@@ -42,6 +43,8 @@ const SITES_PER_TASK: usize = 1024;
 pub(crate) struct VoronoiLists {
     /// The sites, their neighbours, and where their lists are.
     pub(crate) neighbours: NeighbourTable,
+    /// The locator, if there were threads to build it beside the lists.
+    pub(crate) locator: Option<AnyLocator>,
     /// The blocks of the lists. The first block of a list has the number of its site.
     pub(crate) blocks: Vec<Block>,
     /// The filters of long lists.
@@ -50,21 +53,19 @@ pub(crate) struct VoronoiLists {
 
 impl CellContext<'_> {
     /// Builds the lists of all sites. It returns `None` if that exceeds the budget.
-    /// `near_tetrahedra` are for each packet the tetrahedra whose balls it intersects.
+    /// `near_tetrahedra` are for each packet the tetrahedra whose balls it intersects. `build_locator` is called if
+    /// another thread can run it beside the search for the lists.
     pub(crate) fn build_lists(
         &self,
         near_tetrahedra: IncidenceLists,
+        build_locator: impl Fn(&NeighbourTable) -> AnyLocator + Sync,
         report: &mut P2mReport,
         reporter: &ProgressReporter<'_>,
     ) -> Option<VoronoiLists> {
         reporter.begin_stage(BuildStage::Lists);
         let sites = self.sites.delaunay.sites();
         let tetrahedra = self.sites.delaunay.tetrahedra();
-        let incident_tetrahedra = IncidenceLists::new(
-            sites.len(),
-            (0..).zip(tetrahedra).flat_map(|(number, tetrahedron)| tetrahedron.iter().map(move |v| (*v, number))),
-        );
-        let adjacency = EdgeAdjacency::from_tree(self.tree, &self.sites.delaunay);
+        let SiteTopology { adjacency, incident_tetrahedra } = &self.sites.topology;
         let is_hub =
             |site: usize| incident_tetrahedra.get(site).len() / 2 + adjacency.edges.get(site).len() > MAX_NEIGHBOURS;
         let slack = self.limits.slack / self.sites.delaunay.unit();
@@ -76,10 +77,15 @@ impl CellContext<'_> {
             all.extend(neighbours.filter(|v| *v as usize >= BOUNDING && *v as usize != site));
             edges.extend_from_slice(adjacency.edges.get(site));
         };
-        let (mut neighbours, packets) = run_both(
-            self.limits.parallel,
-            || NeighbourTable::new(sites, BOUNDING, slack, list_neighbours),
-            || CellPackets::find(self, &adjacency, &incident_tetrahedra, near_tetrahedra, is_hub, report, reporter),
+        let parallel = self.limits.parallel;
+        let ((mut neighbours, locator), packets) = run_both(
+            parallel,
+            || {
+                let neighbours = NeighbourTable::new(sites, BOUNDING, slack, list_neighbours);
+                let locator = parallel.then(|| build_locator(&neighbours));
+                (neighbours, locator)
+            },
+            || CellPackets::find(self, adjacency, incident_tetrahedra, near_tetrahedra, is_hub, report, reporter),
         );
         let empty_list =
             Block::from_list(&[Entry { packet: 0, lanes: 0, bounds: [[0.0; 3]; 2], f: [0.0; 8] }], BoundKind::Boxes);
@@ -95,15 +101,9 @@ impl CellContext<'_> {
                 packets.of_site(site).iter().map(|packet| packet.lanes.count_ones() as usize).sum::<usize>() > above
             })
         });
-        let lists = ListBuilder {
-            cells: self,
-            adjacency: &adjacency,
-            incident_tetrahedra: &incident_tetrahedra,
-            packets,
-            regions,
-        };
+        let lists = ListBuilder { cells: self, adjacency, incident_tetrahedra, packets, regions };
         let work = |chunk| lists.build_chunk(chunk);
-        map_chunks_in_order(sites.len(), SITES_PER_TASK, self.limits.parallel, work, |chunk: ChunkResult| {
+        map_chunks_in_order(sites.len(), SITES_PER_TASK, parallel, work, |chunk: ChunkResult| {
             if !budget.fits::<Block>(blocks.len() + chunk.blocks.len()) {
                 return;
             }
@@ -133,7 +133,7 @@ impl CellContext<'_> {
             report.primitives += chunk.primitives;
         });
         neighbours.sites = filled_sites.into();
-        (!budget.is_exceeded()).then_some(VoronoiLists { neighbours, blocks, filters })
+        (!budget.is_exceeded()).then_some(VoronoiLists { neighbours, locator, blocks, filters })
     }
 }
 

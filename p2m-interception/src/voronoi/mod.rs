@@ -161,28 +161,32 @@ impl Voronoi {
             limits,
             filter: options.list_filter.map(|build| (options.filter_above, build.0)),
         };
+        let (unit, per_unit) = (sites.delaunay.unit(), sites.delaunay.unit().recip());
+        let build_locator = |neighbours: &NeighbourTable| {
+            let sites = LocatorSites::new(tree, neighbours, per_unit, [low, high]);
+            match options.locator {
+                Some(build) => AnyLocator::Other(build.0(&sites)),
+                None => AnyLocator::Grid(GridLocator::new(&sites)),
+            }
+        };
         let mut report = self.report;
-        let Some(VoronoiLists { neighbours, mut blocks, filters }) =
-            cells.build_lists(corners_of_packets, &mut report, reporter)
+        let Some(VoronoiLists { neighbours, locator, mut blocks, filters }) =
+            cells.build_lists(corners_of_packets, build_locator, &mut report, reporter)
         else {
             self.report.trees = sites.delaunay.sites().len();
             return;
         };
         self.report = report;
         self.slack = slack;
-        let Sites { delaunay, anchors, .. } = sites;
-        (self.unit, self.per_unit) = (delaunay.unit(), delaunay.unit().recip());
-        self.anchors = anchors.into_iter().map(|(_, anchor)| anchor).collect::<Vec<_>>().into();
-        drop(delaunay);
+        (self.unit, self.per_unit) = (unit, per_unit);
+        self.anchors = sites.anchors.iter().map(|(_, anchor)| *anchor).collect::<Vec<_>>().into();
+        drop(sites);
         (self.low, self.high) = (low, high);
         (self.neighbours, self.filters) = (neighbours, filters);
-        reporter.begin_stage(BuildStage::Locator);
-        let sites = self.locator_sites();
-        let locator = match options.locator {
-            Some(build) => AnyLocator::Other(build.0(&sites)),
-            None => AnyLocator::Grid(GridLocator::new(&sites)),
-        };
-        self.locator = Some(locator);
+        self.locator = locator.or_else(|| {
+            reporter.begin_stage(BuildStage::Locator);
+            Some(build_locator(&self.neighbours))
+        });
         self.report.filtered = self.filters.count();
         blocks.shrink_to_fit();
         self.blocks = blocks.into();
@@ -190,17 +194,12 @@ impl Voronoi {
     }
 }
 
-impl Voronoi {
-    /// Returns the sites and the boxes from which a locator is built.
-    pub(crate) fn locator_sites(&self) -> LocatorSites<'_> {
-        let scaled = |p: V3| p.map(|x| x * self.per_unit);
-        let scene_box = padded(&vertex_bounds(&self.tree)).map(scaled);
-        LocatorSites {
-            neighbours: &self.neighbours,
-            isa: self.tree.isa(),
-            scene_box,
-            domain_box: [self.low, self.high].map(scaled),
-        }
+impl<'a> LocatorSites<'a> {
+    /// Returns the sites of a table over a tree, whose unit is the inverse of `per_unit`, in a domain.
+    pub(crate) fn new(tree: &PacketTree, neighbours: &'a NeighbourTable, per_unit: f64, domain: [V3; 2]) -> Self {
+        let scaled = |p: V3| p.map(|x| x * per_unit);
+        let scene_box = padded(&vertex_bounds(tree)).map(scaled);
+        Self { neighbours, isa: tree.isa(), scene_box, domain_box: domain.map(scaled) }
     }
 }
 

@@ -4,6 +4,7 @@ use crate::voronoi::Voronoi;
 use crate::voronoi::any_locator::AnyLocator;
 use crate::voronoi::grid_locator::GridLocator;
 use crate::voronoi::list_filter::ListFilters;
+use crate::voronoi::locator::LocatorSites;
 use crate::voronoi::neighbours::NeighbourTable;
 use crate::voronoi::validate::{ANCHORS, LISTS, VORONOI, check};
 use p2m_bvh::PacketTree;
@@ -40,7 +41,10 @@ impl Saved for Voronoi {
         self.neighbours.save(writer);
         match &self.locator {
             Some(AnyLocator::Grid(grid)) => grid.save(writer),
-            Some(AnyLocator::Other(_)) => GridLocator::new(&self.locator_sites()).save_copy(writer),
+            Some(AnyLocator::Other(_)) => {
+                let sites = LocatorSites::new(&self.tree, &self.neighbours, per_unit, [low, high]);
+                GridLocator::new(&sites).save_copy(writer);
+            }
             None => {}
         }
         self.tree.save(writer);

@@ -12,7 +12,9 @@
 //! rounds, each with new tetrahedra, until no ball is crowded, a round does not help, or the budget is spent.
 
 use crate::delaunay::{BOUNDING, Delaunay};
+use crate::parallel_chunks::run_both;
 use crate::progress::{BuildStage, ProgressReporter};
+use crate::voronoi::adjacency::SiteTopology;
 use crate::voronoi::budget::{Limits, max_tetrahedra};
 use crate::voronoi::corners::{CellCorners, ReusedCorners};
 use crate::voronoi::crowded::{AddedSite, CrowdedClusters};
@@ -32,6 +34,8 @@ pub(crate) struct Sites {
     pub(crate) delaunay: Delaunay,
     /// The corners of the cells.
     pub(crate) corners: CellCorners,
+    /// The topology of the triangulation.
+    pub(crate) topology: SiteTopology,
     /// The auxiliary sites, sorted, each with a point of the scene near it.
     pub(crate) anchors: Vec<(usize, V3)>,
     /// The number of points of the scene that were added.
@@ -58,7 +62,15 @@ impl Sites {
         let mut points = vertices.to_vec();
         let mut added: Vec<AddedSite> = Vec::new();
         let mut delaunay = triangulate(&points)?;
-        let mut corners = CellCorners::new(tree, &delaunay, limits, None, &progress);
+        // The topology is collected beside the balls if there are threads for it, and at the end otherwise, because
+        // only that of the last triangulation is needed.
+        let parallel = limits.parallel;
+        let early_topology = |delaunay: &Delaunay| parallel.then(|| SiteTopology::new(tree, delaunay));
+        let (mut topology, mut corners) = run_both(
+            parallel,
+            || early_topology(&delaunay),
+            || CellCorners::new(tree, &delaunay, limits, None, &progress),
+        );
         for _ in 0..MAX_ROUNDS {
             let new_sites = CrowdedClusters { tree, corners: &corners, bounds, limits }
                 .choose_sites(limits.max_added_sites - added.len());
@@ -75,10 +87,14 @@ impl Sites {
                 break;
             };
             let reused = ReusedCorners::new(&delaunay, &corners, &next, count_before);
-            let all = CellCorners::new(tree, &next, limits, Some(&reused), &progress);
+            let (next_topology, all) = run_both(
+                parallel,
+                || early_topology(&next),
+                || CellCorners::new(tree, &next, limits, Some(&reused), &progress),
+            );
             let (crowded_before, crowded_after) = (corners.count_crowded(), all.count_crowded());
             added.extend(new_sites);
-            (delaunay, corners) = (next, all);
+            (delaunay, corners, topology) = (next, all, next_topology);
             // Points do not help everywhere. Between long thin triangles there would have to be too many.
             if crowded_after * 8 > crowded_before * 7 && crowded_after * 16 > corners.all.len() {
                 break;
@@ -102,7 +118,8 @@ impl Sites {
         }
         anchors.sort_unstable_by_key(|(site, _)| *site);
         let added = added.iter().filter(|point| point.anchor.is_none()).count();
-        Some(Self { delaunay, corners, anchors, added })
+        let topology = topology.unwrap_or_else(|| SiteTopology::new(tree, &delaunay));
+        Some(Self { delaunay, corners, topology, anchors, added })
     }
 
     /// Returns the number of cells that have a crowded corner, which leaves them to the tree.
