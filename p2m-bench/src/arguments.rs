@@ -70,7 +70,7 @@ pub(crate) enum Command {
     Program(ProgramArguments),
     /// Measures builds, memory and queries of scenes that grow, for docs/scale.md; fails if ours differ
     Scale(ScaleArguments),
-    /// Compares indexes over point clouds with KD-trees; fails if ours differ
+    /// Compares indexes over point clouds with KD-trees, for docs/scale.md; fails if ours differ
     Points(PointsArguments),
     /// Times distances between two scenes at many poses, and between a scene and an arm of capsules, against parry3d
     Pairs(PairsArguments),
@@ -130,6 +130,8 @@ pub(crate) struct PointsArguments {
     /// Seed of the query sets
     #[arg(long, default_value_t = 1)]
     pub(crate) seed: u64,
+    #[command(flatten)]
+    pub(crate) document: Document,
 }
 
 /// The arguments of `shards`.

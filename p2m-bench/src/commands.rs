@@ -270,11 +270,12 @@ fn measure_scale(arguments: ScaleArguments) -> Result<bool> {
 
 /// Times indexes over point clouds beside KD-trees, and returns whether ours agree.
 fn compare_clouds(arguments: &PointsArguments) -> Result<bool> {
-    let &PointsArguments { ref distributions, ref counts, ref sets, rounds, queries, builds, seed } = arguments;
+    let &PointsArguments { ref distributions, ref counts, ref sets, rounds, queries, builds, seed, ref document } =
+        arguments;
     let effort = Effort { rounds, queries, builds, seed };
-    println!("{}\n{}", provenance(None), in_rounds("One thread, thread CPU time", &effort));
     let all = points::Distribution::value_variants();
-    points::print(if distributions.is_empty() { all } else { distributions }, counts, sets, &effort)
+    let distributions = if distributions.is_empty() { all } else { distributions };
+    points::print(distributions, counts, sets, &effort, document.write.as_deref())
 }
 
 /// Returns the scene alone, or in seven orientations.

@@ -71,5 +71,6 @@ mod tests {
         crate::extremes::pairs::BLOCKS.check(Some(&document("extremes.md"))).unwrap();
         crate::adversaries::BLOCKS.check(Some(&document("adversaries.md"))).unwrap();
         crate::scale::BLOCKS.check(Some(&document("scale.md"))).unwrap();
+        crate::points::BLOCKS.check(Some(&document("scale.md"))).unwrap();
     }
 }

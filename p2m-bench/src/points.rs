@@ -4,7 +4,9 @@
 //! spacings of ten orders of magnitude, and on a lattice, where most distances are equal.
 
 use crate::backends::by_name;
+use crate::blocks::Blocks;
 use crate::measure::{Effort, Entry, MedianRange, build_all, measure_set};
+use crate::report::provenance;
 use crate::scene::Scene;
 use anyhow::Result;
 use clap::ValueEnum;
@@ -16,7 +18,10 @@ use p2m_tradeoff::Table;
 use rand::RngExt;
 use rand_chacha::ChaCha8Rng;
 use std::f64::consts::TAU;
+use std::path::Path;
 
+/// The blocks of docs/scale.md.
+pub(crate) const BLOCKS: Blocks<3> = Blocks { command: "points", names: ["provenance", "builds", "queries"] };
 /// Our backends and their rivals, in the order of the columns.
 const BACKENDS: [&str; 10] = [
     "aabb",
@@ -100,13 +105,15 @@ fn scene(distribution: Distribution, count: usize) -> Result<Scene> {
     Scene::new(name, Soup::new(positions, elements)?)
 }
 
-/// Measures all backends on clouds, prints the tables, and returns whether ours agree and no rival is nearer.
+/// Measures all backends on clouds, prints the tables or replaces the blocks of a document, and returns whether ours agree and no rival is nearer.
 pub(crate) fn print(
     distributions: &[Distribution],
     counts: &[usize],
     sets: &[QuerySet],
     effort: &Effort,
+    document: Option<&Path>,
 ) -> Result<bool> {
+    BLOCKS.check(document)?;
     let selected = BACKENDS.map(by_name);
     let names = BACKENDS.iter().map(|name| (*name).to_owned());
     let heads = ["points", "count", "set"].map(str::to_owned).into_iter();
@@ -144,13 +151,13 @@ pub(crate) fn print(
             }
         }
     }
-    println!(
-        "\nBuilds: seconds, and bytes a point that an index and its points take (without what is allocated in C++).\n\n{builds}"
+    let Effort { rounds, queries: count, .. } = effort;
+    let origin = format!(
+        "{}\nOne thread, thread CPU time, medians of {rounds} rounds of {count} queries.\n\n{}",
+        provenance(None),
+        absent.iter().map(|note| format!("- {note}\n")).collect::<String>()
     );
-    println!(
-        "Queries: nanoseconds, and how many times the fastest rival takes as long as our fastest index.\n\n{queries}"
-    );
-    absent.iter().for_each(|note| println!("- {note}"));
+    BLOCKS.publish(document, &[origin, builds.to_string(), queries.to_string()])?;
     Ok(is_good)
 }
 
