@@ -200,7 +200,7 @@ mod tests {
         measured(&[Element::Triangle([0, 1, 2]), Element::Segment([2, 3])], |entries| {
             for entry in entries {
                 let name = entry.backend.name;
-                if ["aabb-tri", "aabb-set"].contains(&name) {
+                if ["aabb-tri", "aabb-set"].contains(&name) || name.starts_with("kiddo") || name.starts_with("nano") {
                     assert!(entry.index.is_err());
                     continue;
                 }

@@ -3,6 +3,7 @@
 //! The clouds have distributions on which KD-trees differ: uniform in space, on a surface, on a curve, in clusters, with
 //! spacings of ten orders of magnitude, and on a lattice, where most distances are equal.
 
+use crate::backend::Backend;
 use crate::backends::by_name;
 use crate::blocks::Blocks;
 use crate::measure::{Effort, Entry, MedianRange, build_all, measure_set};
@@ -23,22 +24,14 @@ use std::path::Path;
 /// The blocks of docs/scale.md.
 pub(crate) const BLOCKS: Blocks<3> = Blocks { command: "points", names: ["provenance", "builds", "queries"] };
 /// Our backends and their rivals, in the order of the columns.
-const BACKENDS: [&str; 10] = [
-    "aabb",
-    "octree",
-    "p2m",
-    "aabb-batch",
-    "octree-batch",
-    "p2m-batch",
-    "kiddo",
-    "nanoflann",
-    "kiddo-f32",
-    "nanoflann-f32",
-];
+const BACKENDS: [&str; 8] =
+    ["aabb", "octree", "aabb-batch", "octree-batch", "kiddo", "nanoflann", "kiddo-f32", "nanoflann-f32"];
 /// The number of backends of ours that are asked one query at a time. As many after them are asked by one batch call.
-const SINGLE: usize = 3;
+const SINGLE: usize = 2;
 /// The number of backends of ours. The others are rivals.
 const OURS: usize = 2 * SINGLE;
+/// The largest number of points over which octrees are built, because each takes seconds for a million points.
+const MAX_OCTREE_POINTS: usize = 2_000_000;
 
 /// A distribution of points.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
@@ -114,7 +107,6 @@ pub(crate) fn print(
     document: Option<&Path>,
 ) -> Result<bool> {
     BLOCKS.check(document)?;
-    let selected = BACKENDS.map(by_name);
     let names = BACKENDS.iter().map(|name| (*name).to_owned());
     let heads = ["points", "count", "set"].map(str::to_owned).into_iter();
     let mut builds = Table::new(heads.clone().take(2).chain(names.clone()));
@@ -125,23 +117,27 @@ pub(crate) fn print(
     for distribution in distributions {
         for &count in counts {
             let scene = scene(*distribution, count)?;
+            let is_built = |name: &&&str| scene.len() <= MAX_OCTREE_POINTS || !name.starts_with("octree");
+            let selected: Vec<&Backend> = BACKENDS.iter().filter(is_built).map(|name| by_name(name)).collect();
             let mut entries = build_all(&scene, &selected, effort.builds);
             for set in sets {
                 measure_set(&scene, *set, &mut entries, effort);
             }
-            let row = vec![scene.name.clone(), scene.len().to_string()];
-            builds
-                .push(row.iter().cloned().chain(entries.iter().map(|entry| build_cell(entry, scene.len()))).collect());
+            let entry_of = |name: &str| entries.iter().find(|entry| entry.backend.name == name);
+            let built =
+                BACKENDS.map(|name| entry_of(name).map_or("-".to_owned(), |entry| build_cell(entry, scene.len())));
+            let row = [scene.name.clone(), scene.len().to_string()];
+            builds.push([&row[..], &built].concat());
             for (at, set) in sets.iter().enumerate() {
-                let medians: Vec<Option<f64>> = entries.iter().map(|entry| median(entry, at)).collect();
+                let medians = BACKENDS.map(|name| median(entry_of(name)?, at));
                 let least = |of: &[Option<f64>]| of.iter().copied().flatten().reduce(f64::min);
                 let ratio = |ours: &[Option<f64>]| match (least(&medians[OURS..]), least(ours)) {
                     (Some(rival), Some(ours)) => format!("{:.2}", rival / ours),
                     _ => "-".to_owned(),
                 };
-                let cells = medians.iter().map(|median| median.map_or("-".to_owned(), |ns| format!("{ns:.0}")));
+                let cells = medians.map(|median| median.map_or("-".to_owned(), |ns| format!("{ns:.0}")));
                 let ratios = [ratio(&medians[..SINGLE]), ratio(&medians[SINGLE..OURS])];
-                queries.push(row.iter().cloned().chain([set.to_string()]).chain(cells).chain(ratios).collect());
+                queries.push([&row[..], &[set.to_string()], &cells, &ratios].concat());
             }
             for entry in &entries {
                 is_good &= !entry.backend.is_ours || entry.sets.iter().flatten().all(|set| set.agreement.is_clean());
