@@ -56,6 +56,9 @@ pub(crate) struct Request {
     pub(crate) document: Option<PathBuf>,
 }
 
+/// A curve of a plot: what follows the name of the backend, the style, and the value for a size.
+type Curve<'a> = (&'a str, Mark, &'a dyn Fn(&Costs) -> f64);
+
 /// The costs of an index over one scene.
 struct Costs {
     triangles: usize,
@@ -264,7 +267,7 @@ fn publish(request: &Request, entries: &[&'static BackendEntry], costs: &[Vec<Co
 
 /// Draws a plot of the builds, one of the memory, and one of each set of queries.
 fn draw(request: &Request, entries: &[&'static BackendEntry], costs: &[Vec<Costs>], folder: &Path) -> Result<()> {
-    let plot = |file: String, y: &'static str, curves: &[(&str, Mark, &dyn Fn(&Costs) -> f64)]| {
+    let plot = |file: String, y: &'static str, curves: &[Curve<'_>]| {
         let series = entries.iter().zip(costs).enumerate().flat_map(|(colour, (entry, costs))| {
             curves.iter().map(move |(suffix, mark, value)| Series {
                 name: format!("{}{suffix}", entry.name),

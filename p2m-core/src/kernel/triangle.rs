@@ -80,18 +80,8 @@ pub(crate) fn point(query: V3, vertex: V3, prune: f64) -> Option<Nearest> {
     if square > prune {
         return None;
     }
-    Some(match Key::plain(square) {
-        Some(key) => {
-            let (feature, weights) = vertex_feature(0);
-            Nearest { key, offset, exponent: 0, feature, weights, size: largest(&[offset]) }
-        }
-        // A query at the point itself is common, so it does not take the slow path of tiny distances.
-        None if offset == [0.0; 3] => {
-            let (feature, weights) = vertex_feature(0);
-            Nearest { key: Key::ZERO, offset, exponent: 0, feature, weights, size: 0.0 }
-        }
-        None => rescaled::point(query, vertex),
-    })
+    let found = plain_nearest((square, offset, vertex_feature(0)), largest(&[offset]));
+    Some(found.unwrap_or_else(|| rescaled::point(query, vertex)))
 }
 
 /// Returns a lower bound on the key, given the box of the offsets. The arithmetic is
@@ -253,4 +243,20 @@ fn plain_nearest((square, offset, (feature, weights)): (f64, V3, (Feature, V3)),
         return None;
     };
     Some(Nearest { key, offset, exponent: 0, feature, weights, size })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_query_at_a_point_has_the_result_of_the_path_for_all_scales() {
+        for (query, vertex) in [([1.5, -2.0, 1e300], [1.5, -2.0, 1e300]), ([0.0; 3], [-0.0; 3]), ([-0.0; 3], [0.0; 3])]
+        {
+            let (found, expected) = (point(query, vertex, f64::INFINITY).unwrap(), rescaled::point(query, vertex));
+            assert_eq!((found.key, found.offset), (Key::ZERO, expected.offset));
+            assert_eq!((found.exponent, found.feature), (expected.exponent, expected.feature));
+            assert_eq!((found.weights, found.size), (expected.weights, expected.size));
+        }
+    }
 }
