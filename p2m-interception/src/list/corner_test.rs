@@ -11,7 +11,7 @@
 //! primitives rather than too few.
 
 use nalgebra::Point3;
-use p2m_bvh::engine::packet::{self, LANES, Locals, PLACES, Packet, at_most, smallest};
+use p2m_bvh::engine::packet::{self, LANES, Packet, at_most, smallest};
 use p2m_core::Aabb;
 use p2m_core::engine::simd::{InstructionSet, SimdKernel};
 use p2m_core::engine::vector::{V3, norm_squared, sub};
@@ -59,8 +59,10 @@ impl Dominators {
     /// Returns whether anything in a box can be nearer than all dominators somewhere in the cell.
     pub(crate) fn keeps_box(&self, corners: &[Corner; 8], bounds: &Aabb<f64>) -> bool {
         let squared = corners.map(|c| bounds.lower_bound(&Point3::from(c.x)));
-        // The lower bound of a box is too large by a few roundings at most.
-        self.rows[..self.count].iter().all(|row| (0..8).any(|i| squared[i] <= row[i] * row[i] * DISTANCE_ROUND_UP))
+        // The lower bound of a box is too large by a few roundings at most. A loop without branches is vectorized.
+        let is_near =
+            |row: &[f64; 8]| (0..8).fold(false, |near, i| near | (squared[i] <= row[i] * row[i] * DISTANCE_ROUND_UP));
+        self.rows[..self.count].iter().all(is_near)
     }
 }
 
@@ -80,44 +82,31 @@ impl LaneDistances {
     pub(crate) const UNKNOWN: Self = Self { squared: [0.0; LANES], error_above: f32::INFINITY };
 }
 
-/// A SIMD kernel that runs the filter of a packet at some points.
-pub(crate) struct DistancesAtPoints<'a> {
+/// A SIMD kernel that runs the filter of a packet at a point. It returns the distances, and an upper bound of the
+/// distance to the nearest lane with that lane. The latter is `None` if the filter cannot be used.
+pub(crate) struct DistancesAtPoint<'a> {
     /// The packet whose lanes are tested.
     pub(crate) packet: &'a Packet,
-    /// The points, in coordinates of the scene.
-    pub(crate) points: &'a [V3],
-    /// Receives the distances from each point.
-    pub(crate) distances: &'a mut [LaneDistances],
-    /// Receives an upper bound of the distance from each point to the nearest lane, with that lane. It is `None` if
-    /// the filter cannot be used.
-    pub(crate) nearest: &'a mut [Option<(f64, usize)>],
+    /// The point, in coordinates of the scene.
+    pub(crate) point: &'a V3,
 }
 
-impl SimdKernel for DistancesAtPoints<'_> {
-    type Output = ();
+impl SimdKernel for DistancesAtPoint<'_> {
+    type Output = (LaneDistances, Option<(f64, usize)>);
 
     #[inline(always)]
-    fn run<I: InstructionSet>(self) {
-        let Self { packet, points, distances, nearest } = self;
-        let (mut locals, mut squares) = (Locals::default(), [[0.0; LANES]; PLACES]);
-        for (points, (distances, nearest)) in
-            points.chunks(PLACES).zip(distances.chunks_mut(PLACES).zip(nearest.chunks_mut(PLACES)))
-        {
-            packet.squares_at_points::<I>(points, &mut locals, &mut squares);
-            for (place, (distances, nearest)) in distances.iter_mut().zip(nearest).enumerate() {
-                let squares = &squares[place];
-                (*distances, *nearest) = (LaneDistances::UNKNOWN, None);
-                if locals.far >> place & 1 == 1 {
-                    continue;
-                }
-                *distances = LaneDistances { squared: *squares, error_above: locals.excess[place] };
-                if packet.has_vertices() {
-                    let least = smallest::<I::Wide>(squares);
-                    let lane = (at_most::<I::Wide>(squares, least)).trailing_zeros() as usize;
-                    *nearest = Some((f64::from(least.sqrt() + locals.deficit[place]) * packet.unit(), lane));
-                }
-            }
+    fn run<I: InstructionSet>(self) -> Self::Output {
+        let Self { packet, point } = self;
+        let Some(local) = packet.local(point) else { return (LaneDistances::UNKNOWN, None) };
+        let mut squared = [0.0; LANES];
+        packet.squares::<I>(&local, f32::INFINITY, &mut squared);
+        let mut nearest = None;
+        if packet.has_vertices() {
+            let least = smallest::<I::Wide>(&squared);
+            let lane = (at_most::<I::Wide>(&squared, least)).trailing_zeros() as usize;
+            nearest = Some((f64::from(least.sqrt() + local.deficit) * packet.unit(), lane));
         }
+        (LaneDistances { squared, error_above: local.excess }, nearest)
     }
 }
 
@@ -131,6 +120,8 @@ pub(crate) struct KeepLanes<'a> {
     pub(crate) distances: &'a [LaneDistances],
     /// The indices of the eight corners among these points.
     pub(crate) corners: &'a [usize; 8],
+    /// The lanes to consider, as bits.
+    pub(crate) lanes: u16,
 }
 
 impl SimdKernel for KeepLanes<'_> {
@@ -139,21 +130,33 @@ impl SimdKernel for KeepLanes<'_> {
     #[inline(always)]
     #[allow(clippy::cast_possible_truncation, reason = "rounded up before; sixteen lanes")]
     fn run<I: InstructionSet>(self) -> u16 {
-        let mut kept = u32::MAX;
-        for row in &self.dominators.rows[..self.dominators.count] {
-            let mut near = 0;
-            for (distance, corner) in row.iter().zip(self.corners) {
-                let distances = &self.distances[*corner];
+        let Self { packet, dominators, distances, corners, lanes } = self;
+        let per_unit = packet.per_unit();
+        let mut kept = u32::from(lanes) & packet.lanes();
+        let mut error_above = [0.0; 8];
+        for (error, corner) in error_above.iter_mut().zip(corners) {
+            *error = distances[*corner].error_above;
+        }
+        for row in &dominators.rows[..dominators.count] {
+            let mut limits = [0.0f32; 8];
+            for i in 0..8 {
                 // The filter exceeds the distance by `error_above` at most.
-                let limit = ((distance * self.packet.per_unit()) as f32 + distances.error_above) * packet::ROUND_UP;
-                near |= at_most::<I::Wide>(&distances.squared, limit * limit * packet::ROUND_UP);
+                let limit = ((row[i] * per_unit) as f32 + error_above[i]) * packet::ROUND_UP;
+                limits[i] = limit * limit * packet::ROUND_UP;
+            }
+            let mut near = 0;
+            for (limit, corner) in limits.iter().zip(corners) {
+                near |= at_most::<I::Wide>(&distances[*corner].squared, *limit);
+                if near & kept == kept {
+                    break;
+                }
             }
             kept &= near;
             if kept == 0 {
                 break;
             }
         }
-        (kept & self.packet.lanes()) as u16
+        kept as u16
     }
 }
 

@@ -76,8 +76,9 @@ impl CellContext<'_> {
             || NeighbourTable::new(sites, BOUNDING, slack, list_neighbours),
             || CellPackets::find(self, &adjacency, &incident_tetrahedra, is_hub, report, reporter),
         );
-        let empty_list =
-            Block::from_list(&[Entry { packet: 0, lanes: 0, bounds: [[0.0; 3]; 2], f: [0.0; 8] }], BoundKind::Boxes);
+        let empty_list: Vec<Block> =
+            Block::from_list(&[Entry { packet: 0, lanes: 0, bounds: [[0.0; 3]; 2], f: [0.0; 8] }], BoundKind::Boxes)
+                .collect();
         let mut blocks = vec![empty_list[0]; sites.len()];
         let mut filters = if self.filter.is_some() { ListFilters::new(sites.len()) } else { ListFilters::default() };
         let mut filled_sites = neighbours.sites.edit(std::mem::take);

@@ -1,0 +1,334 @@
+//! The split of a cell: which of its children the candidates of the cell can reach.
+//!
+//! The children have 27 corners together, the *lattice*. A candidate is tested in two steps. The first one bounds the
+//! distances from the lattice to the box of the candidate, and compares them with the distances to all dominators of
+//! the lattice. The second one runs the filter of a packet, and only at the corners of those children that the box of
+//! the packet may reach.
+
+use crate::list::corner_test::{Corner, Dominators, KeepLanes, LaneDistances};
+use crate::octree::cell::{CHILD_CORNERS, CUBE_CORNERS, Cube, LATTICE_POINTS};
+use crate::octree::refinement::{Candidate, KnownDistances, LatticeDistances};
+use p2m_bvh::engine::packet::{LANES, Locals, PLACES, Packet};
+use p2m_core::engine::simd::{InstructionSet, Lanes, SimdKernel};
+use p2m_core::engine::vector::{V3, norm_squared, sub};
+
+/// The number of points of a lattice, rounded up to whole vectors.
+const WIDTH: usize = LATTICE_POINTS.next_multiple_of(16);
+/// The number of candidates that are tried as the nearest one to a point.
+pub(crate) const FEW: usize = 4;
+/// A factor that exceeds the roundings of a sum of three squares in f32.
+const ROUND_UP: f32 = 1.0 + 16.0 * f32::EPSILON;
+/// The reciprocal of [`ROUND_UP`], rounded down.
+const ROUND_DOWN: f32 = 1.0 - 16.0 * f32::EPSILON;
+
+/// For each child of a cell the lattice points at its corners, as bits.
+const CHILD_POINTS: [u32; 8] = {
+    let mut all = [0; 8];
+    let mut child = 0;
+    while child < 8 {
+        let mut corner = 0;
+        while corner < 8 {
+            all[child] |= 1 << CHILD_CORNERS[child][corner];
+            corner += 1;
+        }
+        child += 1;
+    }
+    all
+};
+
+/// The lattice points at the corners of a cell, as bits.
+pub(crate) const CUBE_POINTS: u32 = {
+    let mut all = 0;
+    let mut corner = 0;
+    while corner < 8 {
+        all |= 1 << CUBE_CORNERS[corner];
+        corner += 1;
+    }
+    all
+};
+
+/// The memory of a split, which is used again for each one.
+pub(crate) struct Lattice {
+    /// For each candidate lower bounds of the squared distances from the lattice to its box, in sides of the cell.
+    squares: Vec<[f32; WIDTH]>,
+    /// For each lattice point the few smallest of these bounds in ascending order.
+    few_squares: [[f32; WIDTH]; FEW],
+    /// The candidates that have them.
+    few_numbers: [[u32; WIDTH]; FEW],
+    /// For each candidate the children that its box may reach, as bits.
+    children: Vec<u8>,
+    /// For each candidate the lanes that may hold the answer in each child, as bits.
+    pub(crate) lanes: Vec<[u16; 8]>,
+    /// The points of a packet.
+    locals: Locals,
+}
+
+impl Default for Lattice {
+    fn default() -> Self {
+        Self {
+            squares: Vec::new(),
+            few_squares: [[0.0; WIDTH]; FEW],
+            few_numbers: [[0; WIDTH]; FEW],
+            children: Vec::new(),
+            lanes: Vec::new(),
+            locals: Locals::default(),
+        }
+    }
+}
+
+impl Lattice {
+    /// Returns the few candidates whose boxes are nearest to a lattice point, the nearest first, with lower bounds of
+    /// their squared distances. There are fewer if `count`, the number of all candidates, is smaller.
+    pub(crate) fn nearest_boxes(&self, at: usize, count: usize, side: f64) -> impl Iterator<Item = (f64, usize)> {
+        (0..FEW.min(count))
+            .map(move |i| (f64::from(self.few_squares[i][at]) * side * side, self.few_numbers[i][at] as usize))
+    }
+
+    /// Lets each candidate reach with all lanes the children that its box may reach.
+    pub(crate) fn keep_all_lanes(&mut self) {
+        self.lanes.clear();
+        let row = |children: &u8| std::array::from_fn(|child| if children >> child & 1 == 1 { u16::MAX } else { 0 });
+        self.lanes.extend(self.children.iter().map(row));
+    }
+}
+
+/// A SIMD kernel that bounds the distances from the lattice of a cell to the boxes of all candidates.
+pub(crate) struct BoundBoxes<'a> {
+    pub(crate) lattice: &'a mut Lattice,
+    pub(crate) cube: &'a Cube,
+    pub(crate) candidates: &'a [Candidate],
+}
+
+impl SimdKernel for BoundBoxes<'_> {
+    type Output = ();
+
+    #[inline(always)]
+    #[allow(clippy::cast_possible_truncation, reason = "rounding is allowed for; few candidates")]
+    fn run<I: InstructionSet>(self) {
+        let Self { lattice, cube, candidates } = self;
+        let Lattice { squares, few_squares, few_numbers, .. } = lattice;
+        let (half, per_side) = (cube.side * 0.5, cube.side.recip());
+        *few_squares = [[f32::INFINITY; WIDTH]; FEW];
+        squares.clear();
+        squares.reserve(candidates.len());
+        for (number, candidate) in candidates.iter().enumerate() {
+            let mut gaps = [[0.0f32; 3]; 3];
+            for (k, gaps) in gaps.iter_mut().enumerate() {
+                let (low, high) = (candidate.bounds.min[k], candidate.bounds.max[k]);
+                for (step, gap) in gaps.iter_mut().enumerate() {
+                    let x = cube.low[k] + half * step as f64;
+                    let outside = (low - x).max(x - high).max(0.0) * per_side;
+                    *gap = (outside * outside) as f32;
+                }
+            }
+            let mut row = [0.0f32; WIDTH];
+            for z in 0..3 {
+                for y in 0..3 {
+                    let gap = gaps[2][z] + gaps[1][y];
+                    for x in 0..3 {
+                        row[9 * z + 3 * y + x] = (gap + gaps[0][x]) * ROUND_DOWN;
+                    }
+                }
+            }
+            squares.push(row);
+            // The bound is inserted into the sorted columns.
+            let mut numbers = [number as u32; WIDTH];
+            for (few_squares, few_numbers) in few_squares.iter_mut().zip(few_numbers.iter_mut()) {
+                for at in 0..WIDTH {
+                    let (new, old) = ((row[at], numbers[at]), (few_squares[at], few_numbers[at]));
+                    let is_less = new.0 < old.0;
+                    (few_squares[at], few_numbers[at]) = if is_less { new } else { old };
+                    (row[at], numbers[at]) = if is_less { old } else { new };
+                }
+            }
+        }
+    }
+}
+
+/// A SIMD kernel that finds the children that the box of each candidate may reach.
+pub(crate) struct ReachChildren<'a> {
+    pub(crate) lattice: &'a mut Lattice,
+    /// The dominators of the lattice with their squared distances from it, rounded up, in sides of the cell.
+    pub(crate) limits: &'a LatticeLimits,
+}
+
+/// The dominators of a lattice: for each one the squared distances from the lattice, rounded up, in sides of the cell.
+pub(crate) struct LatticeLimits {
+    rows: [[f32; WIDTH]; LATTICE_POINTS],
+    /// The number of rows in use.
+    count: usize,
+}
+
+impl LatticeLimits {
+    /// Collects the dominators of the lattice, each once. `slack` is the s of the corner test.
+    #[allow(clippy::cast_possible_truncation, reason = "rounded up")]
+    pub(crate) fn new(lattice: &[Corner; LATTICE_POINTS], side: f64, slack: f64) -> Self {
+        let mut limits = Self { rows: [[0.0; WIDTH]; LATTICE_POINTS], count: 0 };
+        for (at, corner) in lattice.iter().enumerate() {
+            if !corner.y[0].is_finite() || lattice[..at].iter().any(|before| before.y == corner.y) {
+                continue;
+            }
+            for (limit, point) in limits.rows[limits.count].iter_mut().zip(lattice) {
+                let distance = (norm_squared(sub(point.x, corner.y)).sqrt() + slack) / side;
+                // The summand exceeds the rounding of squares that are not normal numbers of f32.
+                *limit = (distance * distance) as f32 * ROUND_UP + f32::MIN_POSITIVE;
+            }
+            limits.count += 1;
+        }
+        limits
+    }
+}
+
+impl SimdKernel for ReachChildren<'_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn run<I: InstructionSet>(self) {
+        let Self { lattice: Lattice { squares, children, .. }, limits } = self;
+        children.clear();
+        children.reserve(squares.len());
+        for squares in squares.iter() {
+            let mut reached = CHILD_POINTS;
+            for row in &limits.rows[..limits.count] {
+                let mut near = 0;
+                let mut at = 0;
+                while at < WIDTH {
+                    near |= I::Wide::load(&squares[at..]).at_most(I::Wide::load(&row[at..])) << at;
+                    at += I::Wide::LEN;
+                }
+                // A child stays reached if its corners near to every dominator are some, which is what the least of
+                // the numbers that are not zero says.
+                for (reached, points) in reached.iter_mut().zip(&CHILD_POINTS) {
+                    *reached = (*reached).min(near & points);
+                }
+            }
+            let mut bits = 0;
+            for (child, reached) in reached.iter().enumerate() {
+                bits |= u8::from(*reached != 0) << child;
+            }
+            children.push(bits);
+        }
+    }
+}
+
+/// A SIMD kernel that runs the filters of the packets of a cell at the lattice points of the children that their boxes
+/// may reach, and applies the corner test. It returns the number of tests of a packet at a point.
+pub(crate) struct FilterLanes<'a> {
+    pub(crate) lattice: &'a mut Lattice,
+    pub(crate) packets: &'a [Packet],
+    pub(crate) candidates: &'a [Candidate],
+    /// The lattice points.
+    pub(crate) points: &'a [V3; LATTICE_POINTS],
+    /// The distances from the corners of the cell, if they are known.
+    pub(crate) known: Option<KnownDistances<'a>>,
+    /// The dominators of each child.
+    pub(crate) dominators: &'a [Dominators; 8],
+    /// Receives the distances from the lattice to each packet.
+    pub(crate) distances: &'a mut [LatticeDistances],
+}
+
+impl SimdKernel for FilterLanes<'_> {
+    type Output = usize;
+
+    #[inline(always)]
+    fn run<I: InstructionSet>(self) -> usize {
+        let Self { lattice, packets, candidates, points, known, dominators, distances } = self;
+        let Lattice { children, lanes, locals, .. } = lattice;
+        lanes.clear();
+        lanes.reserve(candidates.len());
+        let mut tests = 0;
+        for ((candidate, children), distances) in candidates.iter().zip(children.iter()).zip(distances) {
+            let packet = &packets[candidate.child.number()];
+            let mut needed = 0;
+            for (child, points) in CHILD_POINTS.iter().enumerate() {
+                needed |= points * u32::from(children >> child & 1);
+            }
+            if let Some(known) = &known {
+                let from = &known.distances[candidate.index as usize];
+                for (to, from_corner) in CUBE_CORNERS.into_iter().zip(known.corners) {
+                    distances[to] = from[*from_corner];
+                }
+                needed &= !CUBE_POINTS;
+            }
+            tests += needed.count_ones() as usize;
+            distances_at_points::<I>(packet, points, needed, locals, distances);
+            let mut kept = [0; 8];
+            for child in 0..8 {
+                if children >> child & 1 == 1 {
+                    let (dominators, corners) = (&dominators[child], &CHILD_CORNERS[child]);
+                    let test = KeepLanes { packet, dominators, distances, corners, lanes: candidate.lanes };
+                    kept[child] = test.run::<I>();
+                }
+            }
+            lanes.push(kept);
+        }
+        tests
+    }
+}
+
+/// A SIMD kernel that runs the filters of packets at the corners of a cell, and applies the corner test. It keeps only
+/// the candidates that pass.
+pub(crate) struct FilterAtCorners<'a> {
+    pub(crate) lattice: &'a mut Lattice,
+    pub(crate) packets: &'a [Packet],
+    pub(crate) points: &'a [V3; LATTICE_POINTS],
+    pub(crate) dominators: &'a Dominators,
+    pub(crate) candidates: &'a mut Vec<Candidate>,
+    /// Receives the distances from the corners to each packet that is kept.
+    pub(crate) distances: &'a mut Vec<LatticeDistances>,
+}
+
+impl SimdKernel for FilterAtCorners<'_> {
+    type Output = ();
+
+    #[inline(always)]
+    #[allow(clippy::cast_possible_truncation, reason = "few candidates")]
+    fn run<I: InstructionSet>(self) {
+        let Self { lattice, packets, points, dominators, candidates, distances: all } = self;
+        let mut count = 0;
+        for i in 0..candidates.len() {
+            let mut candidate = candidates[i];
+            let packet = &packets[candidate.child.number()];
+            if all.len() == count {
+                all.push([LaneDistances::UNKNOWN; LATTICE_POINTS]);
+            }
+            let distances = &mut all[count];
+            distances_at_points::<I>(packet, points, CUBE_POINTS, &mut lattice.locals, distances);
+            let test = KeepLanes { packet, dominators, distances, corners: &CUBE_CORNERS, lanes: candidate.lanes };
+            candidate.lanes = test.run::<I>();
+            candidate.index = count as u32;
+            candidates[count] = candidate;
+            count += usize::from(candidate.lanes != 0);
+        }
+        candidates.truncate(count);
+    }
+}
+
+/// Runs the filter of a packet at the lattice points that have a bit in `needed`.
+#[inline(always)]
+fn distances_at_points<I: InstructionSet>(
+    packet: &Packet,
+    points: &[V3; LATTICE_POINTS],
+    mut needed: u32,
+    locals: &mut Locals,
+    distances: &mut LatticeDistances,
+) {
+    let mut squares = [[0.0; LANES]; PLACES];
+    while needed != 0 {
+        let (mut at, mut chunk, mut count) = ([0; PLACES], [[0.0; 3]; PLACES], 0);
+        while needed != 0 && count < PLACES {
+            at[count] = needed.trailing_zeros() as usize;
+            chunk[count] = points[at[count]];
+            needed &= needed - 1;
+            count += 1;
+        }
+        packet.squares_at_points::<I>(&chunk[..count], locals, &mut squares);
+        for place in 0..count {
+            let to = &mut distances[at[place]];
+            *to = LaneDistances { squared: squares[place], error_above: locals.excess[place] };
+            if locals.far >> place & 1 == 1 {
+                *to = LaneDistances::UNKNOWN;
+            }
+        }
+    }
+}
