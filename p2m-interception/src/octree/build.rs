@@ -21,6 +21,7 @@
 
 use crate::list::block::{BLOCK_WIDTH, MAX_LEVEL};
 use crate::list::corner_test::{Corner, Dominators, LaneDistances};
+use crate::octree::budget::Spent;
 use crate::octree::cell::{CHILD_CORNERS, CUBE_CORNERS, Cube, LATTICE_CENTRE, LATTICE_POINTS, cube_corner_at};
 use crate::octree::cell_list::MAX_LIST_PACKETS;
 use crate::octree::code::Row;
@@ -46,7 +47,7 @@ const COST_SAVED_BY_SPLIT: f64 = 0.5;
 /// the filters of the packets have run.
 const CERTAIN_PART_OF_BOX_COST: f64 = 0.5;
 /// The memory of the codes of a split at most. Eight rows with two levels stand for at least five splits.
-const CODE_BYTES_PER_SPLIT: u64 = (8 * size_of::<Row>()).div_ceil(5) as u64;
+const CODE_BYTES_PER_SPLIT: usize = (8 * size_of::<Row>()).div_ceil(5);
 /// The time that a split has to save, in nanoseconds times mass, where the mass of a cell is measured in that of one
 /// packet.
 const MIN_NS_SAVED_BY_SPLIT: f64 = 100.0;
@@ -59,22 +60,22 @@ impl Refinement<'_> {
 
     /// Searches the tree. The work of an ordinary search is included in what a split is charged. Where most of the
     /// scene is about equally near, a search takes time in proportion to the size of the scene, and is charged here.
-    pub(crate) fn probe_tree(&self, x: V3) -> TreeProbe {
+    pub(crate) fn probe_tree(&self, task: &mut CellTask, x: V3) -> TreeProbe {
         let probe = (self.search)(x);
         let tests = probe.packets + probe.primitives;
-        self.counters.charge_tests(if tests > CHARGE_SEARCH_ABOVE_TESTS { tests } else { 0 });
+        task.spent.tests += if tests > CHARGE_SEARCH_ABOVE_TESTS { tests as i64 } else { 0 };
         probe
     }
 
     /// Returns the point of the scene that is nearest to `x`.
-    pub(crate) fn nearest(&self, x: V3) -> V3 {
-        self.probe_tree(x).nearest
+    pub(crate) fn nearest(&self, task: &mut CellTask, x: V3) -> V3 {
+        self.probe_tree(task, x).nearest
     }
 
     /// Refines the cube of the domain.
     pub(crate) fn refine_root(&self, task: &mut CellTask, low: V3, side: f64, place: Place) -> RefinedCell {
         let at = |c: usize| -> V3 { std::array::from_fn(|k| low[k] + if c >> k & 1 == 1 { side } else { 0.0 }) };
-        let corners = std::array::from_fn(|c| Corner { x: at(c), y: self.nearest(at(c)) });
+        let corners = std::array::from_fn(|c| Corner { x: at(c), y: self.nearest(task, at(c)) });
         let root = Candidate { child: self.tree.root, bounds: *self.tree.bounds(), index: 0, lanes: u16::MAX };
         self.refine_unfiltered(task, Cube { low, side, level: 0, corners }, vec![root], place)
     }
@@ -147,10 +148,9 @@ impl Refinement<'_> {
 
     /// Counts a finished cell, which covers a part of the domain, and its memory.
     fn finish_cell(&self, task: &mut CellTask, cell: RefinedCell, place: Place) -> RefinedCell {
-        self.counters.add_finished(place.part);
-        self.counters.charge_tests(std::mem::take(&mut task.tests));
+        self.finished.add(place.part);
         if let RefinedCell::List(first) = cell {
-            self.counters.add_bytes(size_of_val(&task.made.blocks[first..]) as u64);
+            task.spent += Spent::new(size_of_val(&task.made.blocks[first..]), 0);
         }
         cell
     }
@@ -225,7 +225,7 @@ impl Refinement<'_> {
         dominators: &Dominators,
         go_on: impl FnOnce(&mut CellTask, Vec<Candidate>, KnownDistances<'_>) -> RefinedCell,
     ) -> RefinedCell {
-        task.tests += 8 * candidates.len();
+        task.spent += Spent::new(0, 8 * candidates.len());
         let mut distances = task.distances.pop().unwrap_or_default();
         self.isa().run(FilterAtCorners {
             lattice: &mut task.lattice,
@@ -283,7 +283,7 @@ impl Refinement<'_> {
             return self.split(task, cube, &candidates, has_packets, known, place);
         }
         let cell = OpenCell { cube: *cube, candidates, has_packets, resolution, place };
-        self.counters.reserve(&cell);
+        task.spent += Spent::reserved_for(&cell);
         task.open.push(cell);
         RefinedCell::Tree
     }
@@ -298,7 +298,7 @@ impl Refinement<'_> {
         known: Option<KnownDistances<'_>>,
         place: Place,
     ) -> RefinedCell {
-        if self.counters.is_exceeded() {
+        if task.spent.exceeds(self.budgets) {
             return RefinedCell::Tree;
         }
         self.isa().run(BoundBoxes { lattice: &mut task.lattice, cube, candidates });
@@ -308,10 +308,10 @@ impl Refinement<'_> {
             if let Some(known) = cube_corner_at(at) {
                 corner.y = cube.corners[known].y;
             } else if !has_packets {
-                corner.y = self.nearest(corner.x);
+                corner.y = self.nearest(task, corner.x);
             } else if at != LATTICE_CENTRE {
-                let few = task.lattice.nearest_boxes(at, candidates.len(), cube.side);
-                corner.y = self.nearest_of_few(candidates, few, corner.x, &mut task.tests);
+                let few = task.lattice.nearest_boxes(at, cube.side);
+                corner.y = self.nearest_of_few(task, candidates, few, corner.x);
             }
         }
         let limits = LatticeLimits::new(&lattice, cube.side, self.slack);
@@ -324,7 +324,7 @@ impl Refinement<'_> {
                 distances.resize(candidates.len(), [LaneDistances::UNKNOWN; LATTICE_POINTS]);
             }
             let dominators = std::array::from_fn(|c| Dominators::from_corners(&children[c].corners, self.slack));
-            task.tests += self.isa().run(FilterLanes {
+            let tests = self.isa().run(FilterLanes {
                 lattice: &mut task.lattice,
                 packets: &self.tree.leaves.packets,
                 candidates,
@@ -333,13 +333,12 @@ impl Refinement<'_> {
                 dominators: &dominators,
                 distances: &mut distances,
             });
+            task.spent += Spent::new(CODE_BYTES_PER_SPLIT, tests);
         } else {
             // The children need 19 searches of the tree, each of which tests some packets.
-            task.tests += 19 * 8;
+            task.spent += Spent::new(CODE_BYTES_PER_SPLIT, 19 * 8);
             task.lattice.keep_all_lanes();
         }
-        self.counters.charge_tests(std::mem::take(&mut task.tests));
-        self.counters.add_bytes(CODE_BYTES_PER_SPLIT);
         let inherited: [Vec<Candidate>; 8] = std::array::from_fn(|child| {
             let lanes = task.lattice.lanes.iter().map(|lanes| lanes[child]);
             let mut inherited = Vec::with_capacity(lanes.clone().filter(|lanes| *lanes != 0).count());

@@ -2,6 +2,7 @@
 
 use crate::list::block::{BLOCK_WIDTH, Block, BoundKind, Entry, round_reference};
 use crate::list::corner_test::{DistancesAtPoint, MinOverLanes};
+use crate::octree::budget::Spent;
 use crate::octree::cell::{Cube, LATTICE_CENTRE};
 use crate::octree::lattice::FEW;
 use crate::octree::refinement::{
@@ -22,27 +23,27 @@ impl Refinement<'_> {
     /// them cannot be used, it searches the tree.
     pub(crate) fn nearest_of_few(
         &self,
+        task: &mut CellTask,
         candidates: &[Candidate],
-        few: impl Iterator<Item = (f64, usize)>,
+        few: [(f64, usize); FEW],
         x: V3,
-        tests: &mut usize,
     ) -> V3 {
         let mut best = (f64::INFINITY, 0, 0);
         for (square, number) in few {
             if square >= best.0 * best.0 {
                 break;
             }
-            *tests += 1;
+            task.spent += Spent::new(0, 1);
             let packet = candidates[number].child.number();
             let at = DistancesAtPoint { packet: &self.tree.leaves.packets[packet], point: &x };
-            let Some((distance, lane)) = self.isa().run(at).1 else { return self.nearest(x) };
+            let Some((distance, lane)) = self.isa().run(at).1 else { return self.nearest(task, x) };
             if distance < best.0 {
                 best = (distance, packet, lane);
             }
         }
         let (distance, packet, lane) = best;
         if distance == f64::INFINITY {
-            return self.nearest(x);
+            return self.nearest(task, x);
         }
         let mut best = Best::<f64>::new(&QueryOptions::default());
         self.tree.leaves.packets[packet].offer(lane, &self.tree.leaves.vertices, x, f64::INFINITY, &mut best);
@@ -64,8 +65,7 @@ impl Refinement<'_> {
                 }
             }
         }
-        let few = few.into_iter().take(candidates.len());
-        task.centre.y = self.nearest_of_few(candidates, few, x, &mut task.tests);
+        task.centre.y = self.nearest_of_few(task, candidates, few, x);
         let y_squared = norm_squared(sub(x, task.centre.y));
         task.centre.passing_boxes = task.centre.box_squares.iter().filter(|square| **square <= y_squared).count();
     }
@@ -163,7 +163,7 @@ impl Refinement<'_> {
             entries
                 if entries.is_empty()
                     || entries.len() > MAX_LIST_PACKETS
-                    || self.is_tree_faster(cube, entries.len(), centre) =>
+                    || self.is_tree_faster(task, cube, entries.len()) =>
             {
                 RefinedCell::Tree
             }
@@ -179,13 +179,13 @@ impl Refinement<'_> {
     }
 
     /// Returns whether a search of the tree takes less time at the centre of the cell than a long list would.
-    fn is_tree_faster(&self, cube: &Cube, len: usize, centre: &CellCentre) -> bool {
+    fn is_tree_faster(&self, task: &mut CellTask, cube: &Cube, len: usize) -> bool {
         if len <= COMPARE_WITH_TREE_ABOVE_PACKETS {
             return false;
         }
-        let tests = centre.passing_boxes.min(centre.passing_corners) as f64;
+        let tests = task.centre.passing_boxes.min(task.centre.passing_corners) as f64;
         let list = NS_PER_PACKET * tests + NS_PER_BLOCK * len as f64 / BLOCK_WIDTH as f64;
-        let TreeProbe { nodes, packets, .. } = self.probe_tree(cube.point(LATTICE_CENTRE));
+        let TreeProbe { nodes, packets, .. } = self.probe_tree(task, cube.point(LATTICE_CENTRE));
         list > NS_PER_PACKET * packets as f64 + NS_PER_NODE * nodes as f64
     }
 

@@ -78,10 +78,9 @@ impl Default for Lattice {
 
 impl Lattice {
     /// Returns the few candidates whose boxes are nearest to a lattice point, the nearest first, with lower bounds of
-    /// their squared distances. There are fewer if `count`, the number of all candidates, is smaller.
-    pub(crate) fn nearest_boxes(&self, at: usize, count: usize, side: f64) -> impl Iterator<Item = (f64, usize)> {
-        (0..FEW.min(count))
-            .map(move |i| (f64::from(self.few_squares[i][at]) * side * side, self.few_numbers[i][at] as usize))
+    /// their squared distances. If there are fewer candidates, the other bounds are infinite.
+    pub(crate) fn nearest_boxes(&self, at: usize, side: f64) -> [(f64, usize); FEW] {
+        std::array::from_fn(|i| (f64::from(self.few_squares[i][at]) * side * side, self.few_numbers[i][at] as usize))
     }
 
     /// Lets each candidate reach with all lanes the children that its box may reach.

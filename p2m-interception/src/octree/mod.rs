@@ -19,9 +19,10 @@ mod validate;
 
 use crate::list::block::{Block, MAX_LEVEL};
 use crate::list::search;
-use crate::octree::budget::BudgetCounters;
+use crate::octree::budget::{FinishedPart, Spent};
 use crate::octree::code::{CellCode, CodeWriter, FALLBACK_CODE, Row};
 use crate::octree::domain::DomainCube;
+use crate::octree::passes::Passes;
 use crate::octree::refinement::{Refinement, TreeProbe};
 use crate::options::{OctreeOptions, OctreeReport};
 use crate::partition::Partition;
@@ -84,7 +85,8 @@ impl Octree {
             TreeProbe { nearest: best.nearest_point().unwrap_or([f64::INFINITY; 3]), nodes, packets, primitives }
         };
         let count = tree.packets().1.max(MIN_PRIMITIVES_FOR_BUDGETS) as f64;
-        let budgets = [options.memory, options.work].map(|budget| (budget * count) as u64);
+        let [bytes, tests] = [options.memory, options.work].map(|budget| (budget * count) as i64);
+        let budgets = Spent { bytes: bytes.max(0), tests: tests.max(0) };
         // The comparison is false if the resolution is NaN.
         let last_resolution = if options.resolution > 0.0 { options.resolution.min(MAX_RESOLUTION) } else { 0.0 };
         if last_resolution < MIN_RESOLUTION {
@@ -100,10 +102,13 @@ impl Octree {
             inv_packet_count: 1.0 / tree.packets().0 as f64,
             last_resolution,
             parallel: options.splits.parallel,
-            counters: BudgetCounters::new(budgets, progress),
+            budgets,
+            finished: FinishedPart::new(progress),
         };
-        let Some((refined, resolution)) = refinement.refine(cube.low, cube.side) else { return };
-        self.report.work = refinement.counters.work();
+        let Some(Passes { refined, spent, resolution, .. }) = Passes::run(&refinement, cube.low, cube.side) else {
+            return;
+        };
+        self.report.work = u64::try_from(spent.tests).unwrap_or(0);
         self.report.resolution = resolution;
         self.low = cube.low;
         self.cells_per_length = 2f64.powi(i32::from(MAX_LEVEL)) / cube.side;

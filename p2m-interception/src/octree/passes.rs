@@ -1,22 +1,29 @@
 //! The passes of a refinement: each one splits the cells that are worth it at its resolution, which is higher than that
 //! of the pass before.
 //!
-//! No cell is split twice: a pass begins with the cells that the pass before has left open. So the build can stop after
-//! any pass, and every open cell gets a list then. It stops where a pass exceeds a budget. The cells of that pass are
-//! discarded, which takes at most the rest of the budget of work. Whether a pass exceeds a budget and which passes there
-//! are does not depend on the number of threads.
+//! No cell is split twice: a pass begins with the cells that the pass before has left open. It takes the most valuable
+//! ones first, and ends where their children would exceed a budget. Then the build ends as well, and each cell that is
+//! still open gets a list. So a build can end after any cell of a pass, and it uses its budgets.
+//!
+//! The cells of a pass are refined in chunks, on all threads, and the chunks are kept one after the other. Which chunk
+//! is the last one to be kept depends only on what they take together, and not on the number of threads. A chunk that
+//! exceeds a budget by itself ends at once, so each thread wastes at most what is left of the budgets.
 
+use crate::octree::budget::Spent;
 use crate::octree::refinement::{CellTask, OpenCell, Place, RefinedCell, RefinedCells, Refinement};
 use crate::parallel_chunks::map_chunks_in_order;
 use p2m_core::engine::vector::V3;
-use std::ops::Range;
+use std::sync::Mutex;
 
-/// The ratio of the resolutions of two passes.
-const RESOLUTION_STEP: f64 = 0.3;
-/// The resolution of the first pass is this power of [`RESOLUTION_STEP`], unless the last one is lower.
-const FIRST_POWER: i32 = 8;
-/// A pass makes two steps at once if less than this part of each budget was spent before.
-const SPENT_FOR_TWO_STEPS: f64 = 0.1;
+/// The resolution of the first pass, unless the last one is lower.
+const FIRST_RESOLUTION: f64 = 2e-4;
+/// The ratio of the resolutions of two passes at most. Cells are left open at the end of each pass, and to go on with
+/// one takes about as many tests as a third of a split.
+const MAX_STEP: f64 = 40.0;
+/// The ratio of the resolutions of two passes at least.
+const MIN_STEP: f64 = 1.5;
+/// If the resolution is multiplied by a number, cells take about this power of it more, or less.
+const POWER_OF_RESOLUTION: f64 = 0.6;
 /// The largest number of cells that a thread takes at a time.
 const MAX_CELLS_PER_CHUNK: usize = 64;
 /// The least number of chunks into which the cells of a pass are divided, if there are enough.
@@ -25,77 +32,113 @@ const MIN_CHUNKS: usize = 256;
 /// What becomes of an open cell.
 type FateOf<'a> = fn(&Refinement<'a>, &mut CellTask, &OpenCell, Place) -> RefinedCell;
 
-impl<'a> Refinement<'a> {
-    /// Refines the cube of the domain, whose cell is the first one. It returns the cells and their resolution, or
-    /// `None` if even the coarsest cells exceed a budget.
-    pub(crate) fn refine(&self, low: V3, side: f64) -> Option<(RefinedCells, f64)> {
-        let mut power = FIRST_POWER;
-        let resolution_at = |power: i32| RESOLUTION_STEP.powi(power).min(self.last_resolution);
-        let mut task = CellTask { resolution: resolution_at(power), ..CellTask::default() };
+/// An octree between two passes.
+#[derive(Default)]
+pub(crate) struct Passes {
+    /// The cells. The cube of the domain is the first one.
+    pub(crate) refined: RefinedCells,
+    /// The cells that are open.
+    open: Vec<OpenCell>,
+    /// What the cells take of the budgets.
+    pub(crate) spent: Spent,
+    /// The resolution of the last pass.
+    pub(crate) resolution: f64,
+}
+
+impl Passes {
+    /// Refines the cube of the domain. The result is `None` if even the coarsest cells exceed a budget.
+    pub(crate) fn run(refinement: &Refinement<'_>, low: V3, side: f64) -> Option<Self> {
+        let resolution = FIRST_RESOLUTION.min(refinement.last_resolution);
+        let mut task = CellTask::new(resolution, Spent::default());
         let number = task.add_cell();
-        task.made.cells[number] = self.refine_root(&mut task, low, side, Place { number, part: 1.0 });
-        if self.counters.is_exceeded() {
+        task.made.cells[number] = refinement.refine_root(&mut task, low, side, Place { number, part: 1.0 });
+        if task.spent.exceeds(refinement.budgets) {
             return None;
         }
-        let CellTask { made: mut refined, mut open, mut resolution, .. } = task;
-        while !open.is_empty() {
-            power -= if self.counters.spent_part() < SPENT_FOR_TWO_STEPS { 2 } else { 1 };
-            let next = resolution_at(power);
-            let (split, rest): (Vec<_>, Vec<_>) = open.into_iter().partition(|cell| cell.resolution <= next);
-            open = rest;
-            let (spent, cells, blocks, rest) =
-                (self.counters.spent(), refined.cells.len(), refined.blocks.len(), open.len());
-            split.iter().for_each(|cell| self.counters.release(cell));
-            let numbers = self.run(&split, next, &mut refined, &mut open, Self::split_open);
-            if self.counters.is_exceeded() {
-                self.counters.restore(spent);
-                refined.cells.truncate(cells);
-                refined.blocks.truncate(blocks);
-                open.truncate(rest);
-                open.extend(split);
-                break;
+        let mut passes = Self { refined: task.made, open: task.open, spent: task.spent, resolution };
+        let mut is_kept = true;
+        while is_kept && !passes.open.is_empty() {
+            let spent = passes.spent.part_of(refinement.budgets);
+            let step = spent.powf(-1.0 / POWER_OF_RESOLUTION).clamp(MIN_STEP, MAX_STEP);
+            let next = (passes.resolution * step).min(refinement.last_resolution);
+            let (mut valuable, rest): (Vec<_>, Vec<_>) =
+                std::mem::take(&mut passes.open).into_iter().partition(|cell| cell.resolution <= next);
+            // Cells of about the same value stay in the order of their places, so that neighbours follow each other.
+            valuable.sort_by_key(|cell| cell.resolution.log2().floor() as i64);
+            passes.open = rest;
+            let left = passes.make(refinement, valuable, next, Refinement::split_open);
+            is_kept = left.is_empty();
+            passes.open.extend(left);
+            if is_kept {
+                passes.resolution = next;
             }
-            refined.set(&split, &numbers);
-            resolution = next;
         }
-        let resolution = if open.is_empty() { self.last_resolution } else { resolution };
-        open.iter().for_each(|cell| self.counters.release(cell));
-        let numbers = self.run(&open, resolution, &mut refined, &mut Vec::new(), Self::finish_open);
-        refined.set(&open, &numbers);
-        Some((refined, resolution))
+        if passes.open.is_empty() {
+            passes.resolution = refinement.last_resolution;
+        }
+        let open = std::mem::take(&mut passes.open);
+        passes.make(refinement, open, 0.0, Refinement::finish_open);
+        Some(passes)
     }
 
-    /// Determines what becomes of open cells and appends the results. It returns their numbers.
-    fn run(
-        &self,
-        cells: &[OpenCell],
+    /// Determines what becomes of open cells, the first ones first, until a budget is exceeded. It returns the cells
+    /// that are still open then.
+    fn make<'a>(
+        &mut self,
+        refinement: &Refinement<'a>,
+        mut cells: Vec<OpenCell>,
         resolution: f64,
-        refined: &mut RefinedCells,
-        open: &mut Vec<OpenCell>,
         fate_of: FateOf<'a>,
-    ) -> Vec<usize> {
-        let mut numbers = Vec::with_capacity(cells.len());
+    ) -> Vec<OpenCell> {
         let chunk_len = (cells.len() / MIN_CHUNKS).clamp(1, MAX_CELLS_PER_CHUNK);
-        let work = |range: Range<usize>| {
-            let mut task = CellTask { resolution, ..CellTask::default() };
-            let mut roots = Vec::with_capacity(range.len());
-            for cell in &cells[range] {
-                let number = task.add_cell();
-                task.made.cells[number] = fate_of(self, &mut task, cell, Place { number, ..cell.place });
-                roots.push(number);
-            }
-            (roots, task.made, task.open)
-        };
-        map_chunks_in_order(cells.len(), chunk_len, self.parallel, work, |(roots, made, more)| {
-            let first = refined.cells.len();
-            numbers.extend(roots.into_iter().map(|root| first + root));
-            refined.append(made);
-            open.extend(more.into_iter().map(|mut cell| {
-                cell.place.number += first;
-                cell
-            }));
-        });
-        numbers
+        // What was spent for the chunks that are kept so far, or nothing if no more chunks are kept.
+        let kept = Mutex::new(Some(self.spent));
+        let current = || *kept.lock().expect("no thread panics");
+        let mut done = 0;
+        map_chunks_in_order(
+            cells.len(),
+            chunk_len,
+            refinement.parallel,
+            |range| {
+                let mut task = CellTask::new(resolution, current()?);
+                for cell in &cells[range.clone()] {
+                    task.spent -= Spent::reserved_for(cell);
+                    let number = task.add_cell();
+                    task.made.cells[number] = fate_of(refinement, &mut task, cell, Place { number, ..cell.place });
+                    task.roots.push(number);
+                }
+                let CellTask { made, open, roots, spent, before, .. } = task;
+                Some((
+                    range,
+                    roots,
+                    made,
+                    open,
+                    Spent { bytes: spent.bytes - before.bytes, tests: spent.tests - before.tests },
+                ))
+            },
+            |chunk| {
+                let mut kept = kept.lock().expect("no thread panics");
+                let (Some(mut spent), Some((range, roots, made, open, more))) = (*kept, chunk) else { return };
+                spent += more;
+                if spent.exceeds(refinement.budgets) {
+                    *kept = None;
+                    return;
+                }
+                *kept = Some(spent);
+                done = range.end;
+                let first = self.refined.cells.len();
+                self.refined.append(made);
+                for (cell, root) in cells[range].iter().zip(roots) {
+                    self.refined.cells[cell.place.number] = self.refined.cells[first + root];
+                }
+                self.open.extend(open.into_iter().map(|mut cell| {
+                    cell.place.number += first;
+                    cell
+                }));
+                self.spent = spent;
+            },
+        );
+        cells.split_off(done)
     }
 }
 
@@ -109,12 +152,5 @@ impl RefinedCells {
             other => other,
         }));
         self.blocks.extend(made.blocks);
-    }
-
-    /// Sets what has become of open cells, given the numbers of the results.
-    fn set(&mut self, open: &[OpenCell], numbers: &[usize]) {
-        for (cell, number) in open.iter().zip(numbers) {
-            self.cells[cell.place.number] = self.cells[*number];
-        }
     }
 }

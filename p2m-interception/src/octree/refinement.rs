@@ -2,7 +2,7 @@
 
 use crate::list::block::Block;
 use crate::list::corner_test::LaneDistances;
-use crate::octree::budget::BudgetCounters;
+use crate::octree::budget::{FinishedPart, Spent};
 use crate::octree::cell::{Cube, LATTICE_POINTS};
 use crate::octree::cell_list::MAX_LIST_PACKETS;
 use crate::octree::lattice::Lattice;
@@ -105,8 +105,10 @@ pub(crate) struct Refinement<'a> {
     pub(crate) last_resolution: f64,
     /// Whether cells are refined on all threads.
     pub(crate) parallel: bool,
-    /// The budgets, and what has been spent of them.
-    pub(crate) counters: BudgetCounters<'a>,
+    /// The budgets.
+    pub(crate) budgets: Spent,
+    /// The finished part of the domain.
+    pub(crate) finished: FinishedPart<'a>,
 }
 
 /// A node or a packet of the tree that can hold the answer in a cell.
@@ -144,8 +146,12 @@ pub(crate) struct CellTask {
     pub(crate) made: RefinedCells,
     /// The cells that are left open.
     pub(crate) open: Vec<OpenCell>,
-    /// The tests of a packet at a point that were not yet charged.
-    pub(crate) tests: usize,
+    /// The numbers of the cells that the task began with.
+    pub(crate) roots: Vec<usize>,
+    /// What had been spent before the task, or by an earlier time.
+    pub(crate) before: Spent,
+    /// What has been spent, with what was spent before.
+    pub(crate) spent: Spent,
     /// The memory of the current split.
     pub(crate) lattice: Lattice,
     /// Vectors for the distances of splits: one for each cell on the path to the current one.
@@ -155,6 +161,11 @@ pub(crate) struct CellTask {
 }
 
 impl CellTask {
+    /// Begins a task of a pass.
+    pub(crate) fn new(resolution: f64, before: Spent) -> Self {
+        Self { resolution, before, spent: before, ..Self::default() }
+    }
+
     /// Adds a cell and returns its number.
     pub(crate) fn add_cell(&mut self) -> usize {
         self.made.cells.push(RefinedCell::Tree);
