@@ -13,7 +13,7 @@
 use nalgebra::Point3;
 use p2m_bvh::engine::packet::{self, LANES, Packet, at_most, smallest};
 use p2m_core::Aabb;
-use p2m_core::engine::simd::{InstructionSet, SimdKernel};
+use p2m_core::engine::simd::{Doubles, Float, InstructionSet, Lanes, SimdKernel};
 use p2m_core::engine::vector::{V3, norm_squared, sub};
 
 /// A corner of a cell with a dominator.
@@ -128,22 +128,22 @@ impl SimdKernel for KeepLanes<'_> {
     type Output = u16;
 
     #[inline(always)]
-    #[allow(clippy::cast_possible_truncation, reason = "rounded up before; sixteen lanes")]
+    #[allow(clippy::cast_possible_truncation, reason = "sixteen lanes")]
     fn run<I: InstructionSet>(self) -> u16 {
         let Self { packet, dominators, distances, corners, lanes } = self;
-        let per_unit = packet.per_unit();
+        let (per_unit, round_up) = (I::Doubles::splat(packet.per_unit()), I::Eight::splat(packet::ROUND_UP));
         let mut kept = u32::from(lanes) & packet.lanes();
         let mut error_above = [0.0; 8];
         for (error, corner) in error_above.iter_mut().zip(corners) {
             *error = distances[*corner].error_above;
         }
+        let error_above = I::Eight::load(&error_above);
         for row in &dominators.rows[..dominators.count] {
-            let mut limits = [0.0f32; 8];
-            for i in 0..8 {
-                // The filter exceeds the distance by `error_above` at most.
-                let limit = ((row[i] * per_unit) as f32 + error_above[i]) * packet::ROUND_UP;
-                limits[i] = limit * limit * packet::ROUND_UP;
-            }
+            let mut limits = [0.0; 8];
+            (I::Doubles::load(row) * per_unit).store_f32(&mut limits);
+            // The filter exceeds the distance by `error_above` at most.
+            let limit = I::Eight::load(&limits).add(error_above).mul(round_up);
+            limit.mul(limit).mul(round_up).store(&mut limits);
             let mut near = 0;
             for (limit, corner) in limits.iter().zip(corners) {
                 near |= at_most::<I::Wide>(&distances[*corner].squared, *limit);
@@ -157,6 +157,22 @@ impl SimdKernel for KeepLanes<'_> {
             }
         }
         kept as u16
+    }
+}
+
+/// A SIMD kernel that calls [`Packet::lanes_of_nearest_vertices`].
+pub(crate) struct NearestVertices<'a> {
+    pub(crate) packet: &'a Packet,
+    pub(crate) centre: &'a V3,
+    pub(crate) half: f64,
+}
+
+impl SimdKernel for NearestVertices<'_> {
+    type Output = [u32; 3];
+
+    #[inline(always)]
+    fn run<I: InstructionSet>(self) -> [u32; 3] {
+        self.packet.lanes_of_nearest_vertices::<I>(self.centre, self.half)
     }
 }
 

@@ -1,7 +1,7 @@
 //! The middle of a cell, which predicts what queries cost there, and the list of a finished cell.
 
 use crate::list::block::{BLOCK_WIDTH, Block, BoundKind, Entry, round_reference};
-use crate::list::corner_test::{DistancesAtPoint, MinOverLanes};
+use crate::list::corner_test::{DistancesAtPoint, MinOverLanes, NearestVertices};
 use crate::octree::budget::Spent;
 use crate::octree::cell::{Cube, LATTICE_CENTRE};
 use crate::octree::lattice::FEW;
@@ -199,17 +199,20 @@ impl Refinement<'_> {
         // The slack is added because rounding may put a query beside its cell.
         let half = cube.side * 0.5 + self.slack;
         let centre = cube.low.map(|x| x + cube.side * 0.5);
+        let is_nearest = self.isa().run(NearestVertices { packet, centre: &centre, half });
         let mut kept = candidate.lanes;
-        for lane in (0..packet.ids().len()).filter(|lane| candidate.lanes >> lane & 1 == 1) {
-            let (corners, count) = packet.vertices_of(lane);
-            let corners = &corners[..count];
-            let vertex = |v: usize| self.tree.leaves.vertices[corners[v]];
-            let ties = (0..corners.len()).any(|v| {
-                if self.lowest_owners[corners[v]] >= packet.ids()[lane] {
-                    return false;
+        for (v, lanes) in is_nearest.into_iter().enumerate() {
+            let mut rest = u32::from(kept) & lanes;
+            while rest != 0 {
+                let lane = rest.trailing_zeros() as usize;
+                rest &= rest - 1;
+                let (corners, count) = packet.vertices_of(lane);
+                if v >= count || self.lowest_owners[corners[v]] >= packet.ids()[lane] {
+                    continue;
                 }
+                let vertex = |v: usize| self.tree.leaves.vertices[corners[v]];
                 let nearest = vertex(v);
-                (0..corners.len()).filter(|&w| w != v).all(|w| {
+                let ties = (0..count).filter(|&w| w != v).all(|w| {
                     let other = vertex(w);
                     let edge: V3 = std::array::from_fn(|k| other[k] - nearest[k]);
                     let to: V3 = std::array::from_fn(|k| centre[k] - nearest[k]);
@@ -217,10 +220,10 @@ impl Refinement<'_> {
                     // This is the largest value of (q - nearest) . edge in the cell.
                     let largest: f64 = (0..3).map(|k| to[k] * edge[k] + half * edge[k].abs()).sum();
                     largest < -MARGIN * size * size
-                })
-            });
-            if ties {
-                kept &= !(1 << lane);
+                });
+                if ties {
+                    kept &= !(1 << lane);
+                }
             }
         }
         kept
