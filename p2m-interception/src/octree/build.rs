@@ -301,7 +301,8 @@ impl Refinement<'_> {
         if task.spent.exceeds(self.budgets) {
             return RefinedCell::Tree;
         }
-        self.isa().run(BoundBoxes { lattice: &mut task.lattice, cube, candidates });
+        let from_corners = if known.is_some() { &task.centre.from_corners[..] } else { &[] };
+        self.isa().run(BoundBoxes { lattice: &mut task.lattice, cube, candidates, from_corners });
         let mut lattice = [Corner { x: [0.0; 3], y: task.centre.y }; LATTICE_POINTS];
         for (at, corner) in lattice.iter_mut().enumerate() {
             corner.x = cube.point(at);

@@ -36,6 +36,23 @@ const CHILD_POINTS: [u32; 8] = {
     all
 };
 
+/// For each lattice point the mean of the squared distances to the corners around it, in sides of the cell. These are
+/// the corners of the smallest edge, face or cube of the cell that has the point in the middle.
+const MEAN_SQUARES: [f32; LATTICE_POINTS] = {
+    let mut all = [0.0; LATTICE_POINTS];
+    let mut at = 0;
+    while at < LATTICE_POINTS {
+        let steps = [at % 3, at / 3 % 3, at / 9];
+        let mut k = 0;
+        while k < 3 {
+            all[at] += if steps[k] == 1 { 0.25 } else { 0.0 };
+            k += 1;
+        }
+        at += 1;
+    }
+    all
+};
+
 /// The lattice points at the corners of a cell, as bits.
 pub(crate) const CUBE_POINTS: u32 = {
     let mut all = 0;
@@ -96,6 +113,8 @@ pub(crate) struct BoundBoxes<'a> {
     pub(crate) lattice: &'a mut Lattice,
     pub(crate) cube: &'a Cube,
     pub(crate) candidates: &'a [Candidate],
+    /// For each candidate lower bounds of the distances from the corners of the cell. It is empty if there are none.
+    pub(crate) from_corners: &'a [[f64; 8]],
 }
 
 impl SimdKernel for BoundBoxes<'_> {
@@ -104,7 +123,7 @@ impl SimdKernel for BoundBoxes<'_> {
     #[inline(always)]
     #[allow(clippy::cast_possible_truncation, reason = "rounding is allowed for; few candidates")]
     fn run<I: InstructionSet>(self) {
-        let Self { lattice, cube, candidates } = self;
+        let Self { lattice, cube, candidates, from_corners } = self;
         let Lattice { squares, few_squares, few_numbers, .. } = lattice;
         let (half, per_side) = (cube.side * 0.5, cube.side.recip());
         *few_squares = [[f32::INFINITY; WIDTH]; FEW];
@@ -129,6 +148,9 @@ impl SimdKernel for BoundBoxes<'_> {
                     }
                 }
             }
+            if !from_corners.is_empty() {
+                raise_to_interpolated(&mut row, &from_corners[number], per_side);
+            }
             squares.push(row);
             // The bound is inserted into the sorted columns.
             let mut numbers = [number as u32; WIDTH];
@@ -141,6 +163,35 @@ impl SimdKernel for BoundBoxes<'_> {
                 }
             }
         }
+    }
+}
+
+/// Raises lower bounds of the squared distances from the lattice to a packet, in sides of the cell, given lower bounds
+/// of the distances from the corners of the cell. They follow from the concave function of the corner test: the squared
+/// distance from a weighted mean of corners is at least the mean of their squared distances, minus the mean of the
+/// squared distances between the corners and their mean.
+#[inline(always)]
+#[allow(clippy::cast_possible_truncation, reason = "rounding is allowed for")]
+fn raise_to_interpolated(row: &mut [f32; WIDTH], from_corners: &[f64; 8], per_side: f64) {
+    let mut means = [0.0f32; LATTICE_POINTS];
+    for (at, distance) in CUBE_CORNERS.into_iter().zip(from_corners) {
+        let distance = distance * per_side;
+        means[at] = (distance * distance) as f32;
+    }
+    // The points in the middle between two others, first along x, then along y, then along z.
+    for first in [0, 6, 18, 24] {
+        means[first + 1] = 0.5 * (means[first] + means[first + 2]);
+    }
+    for first in [0, 18] {
+        for x in 0..3 {
+            means[first + x + 3] = 0.5 * (means[first + x] + means[first + x + 6]);
+        }
+    }
+    for at in 0..9 {
+        means[at + 9] = 0.5 * (means[at] + means[at + 18]);
+    }
+    for at in 0..LATTICE_POINTS {
+        row[at] = row[at].max((means[at] * ROUND_DOWN - MEAN_SQUARES[at]) * ROUND_DOWN);
     }
 }
 
