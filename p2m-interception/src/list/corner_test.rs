@@ -11,9 +11,9 @@
 //! primitives rather than too few.
 
 use nalgebra::Point3;
-use p2m_bvh::engine::packet::{self, LANES, Packet, at_most, smallest};
+use p2m_bvh::engine::packet::{LANES, Packet, at_most, smallest};
 use p2m_core::Aabb;
-use p2m_core::engine::simd::{Doubles, Float, InstructionSet, Lanes, SimdKernel};
+use p2m_core::engine::simd::{InstructionSet, SimdKernel};
 use p2m_core::engine::vector::{V3, norm_squared, sub};
 
 /// A corner of a cell with a dominator.
@@ -28,9 +28,9 @@ pub(crate) struct Corner {
 /// The eight corners of a cell with their distances to all dominators.
 pub(crate) struct Dominators {
     /// The distances, rounded up and increased by the slack s: one row of eight corners for each dominator.
-    rows: [[f64; 8]; 8],
+    pub(crate) rows: [[f64; 8]; 8],
     /// The number of dominators, which is the number of rows in use.
-    count: usize,
+    pub(crate) count: usize,
 }
 
 /// A factor that exceeds the rounding of a distance in f64 by far.
@@ -110,56 +110,6 @@ impl SimdKernel for DistancesAtPoint<'_> {
     }
 }
 
-/// A SIMD kernel that applies the corner test to a packet and returns the lanes that pass.
-pub(crate) struct KeepLanes<'a> {
-    /// The packet whose lanes are tested.
-    pub(crate) packet: &'a Packet,
-    /// The dominators at the corners of the cell.
-    pub(crate) dominators: &'a Dominators,
-    /// The distances from some points to the packet.
-    pub(crate) distances: &'a [LaneDistances],
-    /// The indices of the eight corners among these points.
-    pub(crate) corners: &'a [usize; 8],
-    /// The lanes to consider, as bits.
-    pub(crate) lanes: u16,
-}
-
-impl SimdKernel for KeepLanes<'_> {
-    type Output = u16;
-
-    #[inline(always)]
-    #[allow(clippy::cast_possible_truncation, reason = "sixteen lanes")]
-    fn run<I: InstructionSet>(self) -> u16 {
-        let Self { packet, dominators, distances, corners, lanes } = self;
-        let (per_unit, round_up) = (I::Doubles::splat(packet.per_unit()), I::Eight::splat(packet::ROUND_UP));
-        let mut kept = u32::from(lanes) & packet.lanes();
-        let mut error_above = [0.0; 8];
-        for (error, corner) in error_above.iter_mut().zip(corners) {
-            *error = distances[*corner].error_above;
-        }
-        let error_above = I::Eight::load(&error_above);
-        for row in &dominators.rows[..dominators.count] {
-            let mut limits = [0.0; 8];
-            (I::Doubles::load(row) * per_unit).store_f32(&mut limits);
-            // The filter exceeds the distance by `error_above` at most.
-            let limit = I::Eight::load(&limits).add(error_above).mul(round_up);
-            limit.mul(limit).mul(round_up).store(&mut limits);
-            let mut near = 0;
-            for (limit, corner) in limits.iter().zip(corners) {
-                near |= at_most::<I::Wide>(&distances[*corner].squared, *limit);
-                if near & kept == kept {
-                    break;
-                }
-            }
-            kept &= near;
-            if kept == 0 {
-                break;
-            }
-        }
-        kept as u16
-    }
-}
-
 /// A SIMD kernel that calls [`Packet::lanes_of_nearest_vertices`].
 pub(crate) struct NearestVertices<'a> {
     pub(crate) packet: &'a Packet,
@@ -176,37 +126,46 @@ impl SimdKernel for NearestVertices<'_> {
     }
 }
 
-/// A SIMD kernel that returns, for up to eight points, a lower bound of the distance to the nearest primitive in some
-/// lanes of a packet, in the unit of the packet.
-pub(crate) struct MinOverLanes<'a> {
-    /// The distances from some points to the packet.
-    pub(crate) distances: &'a [LaneDistances],
-    /// The indices of the points among these.
-    pub(crate) points: &'a [usize],
-    /// The lanes to consider, as bits.
+/// Returns a lower bound of the distance to the nearest of some lanes of a packet, in its unit, given the squared
+/// distances that the filter finds and the amount by which they may exceed the true ones. `exclusion` is zero for these
+/// lanes and infinite for the others.
+#[inline(always)]
+pub(crate) fn least_of_lanes<I: InstructionSet>(
+    squared: &[f32; LANES],
+    error_above: f32,
+    exclusion: &[f32; LANES],
+) -> f64 {
+    let mut sums = [0.0; LANES];
+    for lane in 0..LANES {
+        sums[lane] = squared[lane] + exclusion[lane];
+    }
+    // The factor lowers the bound by the rounding of the root.
+    let distance = f64::from(smallest::<I::Wide>(&sums)).sqrt() * (1.0 - 4.0 * f64::EPSILON);
+    (distance - f64::from(error_above)).max(0.0)
+}
+
+/// Returns zero for each lane that has a bit, and infinity for the others.
+#[inline(always)]
+pub(crate) fn exclusion_of(lanes: u16) -> [f32; LANES] {
+    let mut exclusion = [0.0; LANES];
+    for (lane, other) in exclusion.iter_mut().enumerate() {
+        *other = if lanes >> lane & 1 == 1 { 0.0 } else { f32::INFINITY };
+    }
+    exclusion
+}
+
+/// A SIMD kernel that calls [`least_of_lanes`] for some lanes.
+pub(crate) struct LeastOfLanes<'a> {
+    pub(crate) distances: &'a LaneDistances,
     pub(crate) lanes: u16,
 }
 
-impl SimdKernel for MinOverLanes<'_> {
-    type Output = [f64; 8];
+impl SimdKernel for LeastOfLanes<'_> {
+    type Output = f64;
 
     #[inline(always)]
-    fn run<I: InstructionSet>(self) -> [f64; 8] {
-        let mut exclusion = [0.0; LANES];
-        for (lane, other) in exclusion.iter_mut().enumerate() {
-            *other = if self.lanes >> lane & 1 == 1 { 0.0 } else { f32::INFINITY };
-        }
-        let mut all = [0.0; 8];
-        for (least, point) in all.iter_mut().zip(self.points) {
-            let distances = &self.distances[*point];
-            let mut squared = [0.0; LANES];
-            for lane in 0..LANES {
-                squared[lane] = distances.squared[lane] + exclusion[lane];
-            }
-            // The factor lowers the bound by the rounding of the root.
-            let distance = f64::from(smallest::<I::Wide>(&squared)).sqrt() * (1.0 - 4.0 * f64::EPSILON);
-            *least = (distance - f64::from(distances.error_above)).max(0.0);
-        }
-        all
+    fn run<I: InstructionSet>(self) -> f64 {
+        let Self { distances: LaneDistances { squared, error_above }, lanes } = self;
+        least_of_lanes::<I>(squared, *error_above, &exclusion_of(lanes))
     }
 }

@@ -20,12 +20,14 @@
 //! ([`passes`](crate::octree::passes)).
 
 use crate::list::block::{BLOCK_WIDTH, MAX_LEVEL};
-use crate::list::corner_test::{Corner, Dominators, LaneDistances};
+use crate::list::corner_test::{Corner, Dominators};
 use crate::octree::budget::Spent;
 use crate::octree::cell::{CHILD_CORNERS, CUBE_CORNERS, Cube, LATTICE_CENTRE, LATTICE_POINTS, cube_corner_at};
 use crate::octree::cell_list::MAX_LIST_PACKETS;
 use crate::octree::code::Row;
-use crate::octree::lattice::{BoundBoxes, FilterAtCorners, FilterLanes, LatticeLimits, ReachChildren};
+use crate::octree::lattice::{
+    BoundBoxes, FilterAtCorners, FilterLanes, LatticeDistances, LatticeLimits, ReachChildren,
+};
 use crate::octree::refinement::{
     Candidate, CellTask, KnownDistances, NS_PER_BLOCK, NS_PER_PACKET, OpenCell, Place, RefinedCell, Refinement,
     TreeProbe,
@@ -322,7 +324,7 @@ impl Refinement<'_> {
         if has_packets {
             distances = task.distances.pop().unwrap_or_default();
             if distances.len() < candidates.len() {
-                distances.resize(candidates.len(), [LaneDistances::UNKNOWN; LATTICE_POINTS]);
+                distances.resize(candidates.len(), LatticeDistances::default());
             }
             let dominators = std::array::from_fn(|c| Dominators::from_corners(&children[c].corners, self.slack));
             let tests = self.isa().run(FilterLanes {

@@ -1,10 +1,10 @@
 //! The middle of a cell, which predicts what queries cost there, and the list of a finished cell.
 
 use crate::list::block::{BLOCK_WIDTH, Block, BoundKind, Entry, round_reference};
-use crate::list::corner_test::{DistancesAtPoint, MinOverLanes, NearestVertices};
+use crate::list::corner_test::{DistancesAtPoint, NearestVertices};
 use crate::octree::budget::Spent;
 use crate::octree::cell::{Cube, LATTICE_CENTRE};
-use crate::octree::lattice::FEW;
+use crate::octree::lattice::{BoundFromCorners, FEW};
 use crate::octree::refinement::{
     Candidate, CellCentre, CellTask, KnownDistances, NS_PER_BLOCK, NS_PER_NODE, NS_PER_PACKET, RefinedCell, Refinement,
     TreeProbe,
@@ -81,16 +81,12 @@ impl Refinement<'_> {
         let squares = cube.corners.map(|corner| norm_squared(sub(corner.x, centre.y)));
         let y_squared = norm_squared(sub(cube.point(LATTICE_CENTRE), centre.y));
         centre.from_corners.clear();
+        self.bound_from_corners(candidates, known, &mut centre.from_corners);
         let mut top = 0.0f64;
-        for candidate in candidates {
-            let unit = self.tree.leaves.packets[candidate.child.number()].unit();
-            let distances = &known.distances[candidate.index as usize];
-            let least = MinOverLanes { distances, points: known.corners, lanes: candidate.lanes };
-            let least = self.isa().run(least).map(|least| least * unit);
+        for least in &centre.from_corners {
             for i in 0..8 {
                 top = top.max(squares[i] - least[i] * least[i]);
             }
-            centre.from_corners.push(least);
         }
         let is_passing = |least: &&[f64; 8]| {
             let sum: f64 = (0..8).map(|i| (least[i] * least[i] - squares[i]).min(top)).sum();
@@ -101,6 +97,11 @@ impl Refinement<'_> {
         if centre.passing_corners <= 2 || y_squared >= 4.0 * cube.side * cube.side {
             centre.passing_boxes = usize::MAX;
         }
+    }
+
+    /// Appends lower bounds of the distances from the corners of a cell to candidates.
+    fn bound_from_corners(&self, candidates: &[Candidate], known: KnownDistances<'_>, bounds: &mut Vec<[f64; 8]>) {
+        self.isa().run(BoundFromCorners { packets: &self.tree.leaves.packets, candidates, known, bounds });
     }
 
     /// Builds the list of a cell as it is stored, or a cell without a list if the tree is better. The centre of the cell
@@ -123,7 +124,7 @@ impl Refinement<'_> {
         let margin = largest * 2f64.powi(-46) + 4.0 * self.slack * frame.per_unit * largest.sqrt();
         let has_boxes = centre.passing_boxes < centre.passing_corners;
         let mut entries: Vec<(f64, Entry)> = Vec::with_capacity(candidates.len());
-        let mut count = 0;
+        let (mut count, mut bounds) = (0, Vec::with_capacity(1));
         for (candidate, from_corners) in candidates.iter().zip(&centre.from_corners) {
             let number = candidate.child.number();
             let packet = &self.tree.leaves.packets[number];
@@ -132,12 +133,13 @@ impl Refinement<'_> {
                 continue;
             }
             count += lanes.count_ones();
-            let mut from_corners = *from_corners;
-            if lanes != candidate.lanes {
-                let distances = &known.distances[candidate.index as usize];
-                let least = self.isa().run(MinOverLanes { distances, points: known.corners, lanes });
-                from_corners = least.map(|least| least * packet.unit());
+            bounds.clear();
+            if lanes == candidate.lanes {
+                bounds.push(*from_corners);
+            } else {
+                self.bound_from_corners(&[Candidate { lanes, ..*candidate }], known, &mut bounds);
             }
+            let from_corners = bounds[0];
             // Packets that are nearer to the cell come into earlier blocks.
             let order: f64 = from_corners.iter().map(|least| least * least).sum();
             let mut entry = Entry {

@@ -5,11 +5,11 @@
 //! the lattice. The second one runs the filter of a packet, and only at the corners of those children that the box of
 //! the packet may reach.
 
-use crate::list::corner_test::{Corner, Dominators, KeepLanes, LaneDistances};
+use crate::list::corner_test::{Corner, Dominators, exclusion_of, least_of_lanes};
 use crate::octree::cell::{CHILD_CORNERS, CUBE_CORNERS, Cube, LATTICE_POINTS};
-use crate::octree::refinement::{Candidate, KnownDistances, LatticeDistances};
-use p2m_bvh::engine::packet::{LANES, Locals, PLACES, Packet};
-use p2m_core::engine::simd::{InstructionSet, Lanes, SimdKernel};
+use crate::octree::refinement::{Candidate, KnownDistances};
+use p2m_bvh::engine::packet::{self, LANES, Locals, PLACES, Packet, at_most, smallest};
+use p2m_core::engine::simd::{Doubles, Float, InstructionSet, Lanes, SimdKernel};
 use p2m_core::engine::vector::{V3, norm_squared, sub};
 
 /// The number of points of a lattice, rounded up to whole vectors.
@@ -63,6 +63,38 @@ pub(crate) const CUBE_POINTS: u32 = {
     }
     all
 };
+
+/// The distances from the points of the lattice of a cell to the lanes of a packet, as the filter of the packet finds
+/// them. Those that no child needs mean nothing.
+#[derive(Clone)]
+#[repr(align(64))]
+pub(crate) struct LatticeDistances {
+    /// The squared distances in the unit of the packet. All are zero if the filter cannot be used at the point.
+    squared: [[f32; LANES]; LATTICE_POINTS],
+    /// The smallest of these for each point.
+    least: [f32; LATTICE_POINTS],
+    /// The amounts by which the filter may exceed the true distances, in the unit of the packet.
+    error_above: [f32; LATTICE_POINTS],
+}
+
+impl Default for LatticeDistances {
+    fn default() -> Self {
+        Self {
+            squared: [[0.0; LANES]; LATTICE_POINTS],
+            least: [0.0; LATTICE_POINTS],
+            error_above: [f32::INFINITY; LATTICE_POINTS],
+        }
+    }
+}
+
+impl LatticeDistances {
+    /// Copies the distances from a point of another lattice.
+    #[inline(always)]
+    fn copy(&mut self, to: usize, other: &Self, from: usize) {
+        (self.squared[to], self.least[to], self.error_above[to]) =
+            (other.squared[from], other.least[from], other.error_above[from]);
+    }
+}
 
 /// The memory of a split, which is used again for each one.
 pub(crate) struct Lattice {
@@ -296,7 +328,7 @@ impl SimdKernel for FilterLanes<'_> {
             if let Some(known) = &known {
                 let from = &known.distances[candidate.index as usize];
                 for (to, from_corner) in CUBE_CORNERS.into_iter().zip(known.corners) {
-                    distances[to] = from[*from_corner];
+                    distances.copy(to, from, *from_corner);
                 }
                 needed &= !CUBE_POINTS;
             }
@@ -306,8 +338,7 @@ impl SimdKernel for FilterLanes<'_> {
             for child in 0..8 {
                 if children >> child & 1 == 1 {
                     let (dominators, corners) = (&dominators[child], &CHILD_CORNERS[child]);
-                    let test = KeepLanes { packet, dominators, distances, corners, lanes: candidate.lanes };
-                    kept[child] = test.run::<I>();
+                    kept[child] = keep_lanes::<I>(packet, dominators, distances, corners, candidate.lanes);
                 }
             }
             lanes.push(kept);
@@ -340,12 +371,11 @@ impl SimdKernel for FilterAtCorners<'_> {
             let mut candidate = candidates[i];
             let packet = &packets[candidate.child.number()];
             if all.len() == count {
-                all.push([LaneDistances::UNKNOWN; LATTICE_POINTS]);
+                all.push(LatticeDistances::default());
             }
             let distances = &mut all[count];
             distances_at_points::<I>(packet, points, CUBE_POINTS, &mut lattice.locals, distances);
-            let test = KeepLanes { packet, dominators, distances, corners: &CUBE_CORNERS, lanes: candidate.lanes };
-            candidate.lanes = test.run::<I>();
+            candidate.lanes = keep_lanes::<I>(packet, dominators, distances, &CUBE_CORNERS, candidate.lanes);
             candidate.index = count as u32;
             candidates[count] = candidate;
             count += usize::from(candidate.lanes != 0);
@@ -374,11 +404,84 @@ fn distances_at_points<I: InstructionSet>(
         }
         packet.squares_at_points::<I>(&chunk[..count], locals, &mut squares);
         for place in 0..count {
-            let to = &mut distances[at[place]];
-            *to = LaneDistances { squared: squares[place], error_above: locals.excess[place] };
+            let (to, squares) = (at[place], &squares[place]);
             if locals.far >> place & 1 == 1 {
-                *to = LaneDistances::UNKNOWN;
+                (distances.squared[to], distances.least[to], distances.error_above[to]) =
+                    ([0.0; LANES], 0.0, f32::INFINITY);
+            } else {
+                (distances.squared[to], distances.least[to], distances.error_above[to]) =
+                    (*squares, smallest::<I::Wide>(squares), locals.excess[place]);
             }
+        }
+    }
+}
+
+/// Applies the corner test to a packet, given the distances from some points, among which the corners of the cell are.
+/// It returns those of some lanes that pass.
+#[inline(always)]
+#[allow(clippy::cast_possible_truncation, reason = "sixteen lanes")]
+fn keep_lanes<I: InstructionSet>(
+    packet: &Packet,
+    dominators: &Dominators,
+    distances: &LatticeDistances,
+    corners: &[usize; 8],
+    lanes: u16,
+) -> u16 {
+    let (per_unit, round_up) = (I::Doubles::splat(packet.per_unit()), I::Eight::splat(packet::ROUND_UP));
+    let mut kept = u32::from(lanes) & packet.lanes();
+    let (mut error_above, mut least) = ([0.0; 8], [0.0; 8]);
+    for i in 0..8 {
+        (error_above[i], least[i]) = (distances.error_above[corners[i]], distances.least[corners[i]]);
+    }
+    let (error_above, least) = (I::Eight::load(&error_above), I::Eight::load(&least));
+    for row in &dominators.rows[..dominators.count] {
+        let mut limits = [0.0; 8];
+        (I::Doubles::load(row) * per_unit).store_f32(&mut limits);
+        // The filter exceeds the distance by `error_above` at most.
+        let limit = I::Eight::load(&limits).add(error_above).mul(round_up);
+        let limit = limit.mul(limit).mul(round_up);
+        limit.store(&mut limits);
+        // Only some corners are near enough to any lane.
+        let (mut near_corners, mut near) = (least.at_most(limit), 0);
+        while near_corners != 0 && near & kept != kept {
+            let i = near_corners.trailing_zeros() as usize;
+            near_corners &= near_corners - 1;
+            near |= at_most::<I::Wide>(&distances.squared[corners[i]], limits[i]);
+        }
+        kept &= near;
+        if kept == 0 {
+            break;
+        }
+    }
+    kept as u16
+}
+
+/// A SIMD kernel that bounds the distances from the corners of a cell to all candidates from below.
+pub(crate) struct BoundFromCorners<'a> {
+    pub(crate) packets: &'a [Packet],
+    pub(crate) candidates: &'a [Candidate],
+    pub(crate) known: KnownDistances<'a>,
+    /// The bounds for each candidate are appended to this.
+    pub(crate) bounds: &'a mut Vec<[f64; 8]>,
+}
+
+impl SimdKernel for BoundFromCorners<'_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn run<I: InstructionSet>(self) {
+        let Self { packets, candidates, known: KnownDistances { distances, corners }, bounds } = self;
+        bounds.reserve(candidates.len());
+        for candidate in candidates {
+            let unit = packets[candidate.child.number()].unit();
+            let distances = &distances[candidate.index as usize];
+            let exclusion = exclusion_of(candidate.lanes);
+            let mut row = [0.0; 8];
+            for i in 0..8 {
+                let at = corners[i];
+                row[i] = least_of_lanes::<I>(&distances.squared[at], distances.error_above[at], &exclusion) * unit;
+            }
+            bounds.push(row);
         }
     }
 }

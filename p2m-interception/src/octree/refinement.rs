@@ -1,11 +1,10 @@
 //! The data of a refinement: what all cells share, what a cell inherits from its parent, and what becomes of it.
 
 use crate::list::block::Block;
-use crate::list::corner_test::LaneDistances;
 use crate::octree::budget::{FinishedPart, Spent};
-use crate::octree::cell::{Cube, LATTICE_POINTS};
+use crate::octree::cell::Cube;
 use crate::octree::cell_list::MAX_LIST_PACKETS;
-use crate::octree::lattice::Lattice;
+use crate::octree::lattice::{Lattice, LatticeDistances};
 use crate::options::Domain;
 use p2m_bvh::PacketTree;
 use p2m_bvh::engine::node::NodeRef;
@@ -123,10 +122,6 @@ pub(crate) struct Candidate {
     /// The lanes of the packet that can hold the answer, as bits.
     pub(crate) lanes: u16,
 }
-
-/// The distances from the points of the lattice of a cell to the lanes of a packet. Those that no child needs mean
-/// nothing.
-pub(crate) type LatticeDistances = [LaneDistances; LATTICE_POINTS];
 
 /// The distances from the lattice of the parent of a cell, which include those from the corners of the cell.
 #[derive(Clone, Copy)]
