@@ -47,7 +47,7 @@ const NS_SAVED_BY_LIST: f64 = 300.0;
 const COST_SAVED_BY_SPLIT: f64 = 0.5;
 /// A cell that would be split even if its list cost this part of what the boxes of its packets predict is split before
 /// the filters of the packets have run.
-const CERTAIN_PART_OF_BOX_COST: f64 = 0.5;
+const CERTAIN_PART_OF_BOX_COST: f64 = 0.25;
 /// The memory of the codes of a split at most. Eight rows with two levels stand for at least five splits.
 const CODE_BYTES_PER_SPLIT: usize = (8 * size_of::<Row>()).div_ceil(5);
 /// The time that a split has to save, in nanoseconds times mass, where the mass of a cell is measured in that of one
@@ -151,8 +151,8 @@ impl Refinement<'_> {
     /// Counts a finished cell, which covers a part of the domain, and its memory.
     fn finish_cell(&self, task: &mut CellTask, cell: RefinedCell, place: Place) -> RefinedCell {
         self.finished.add(place.part);
-        if let RefinedCell::List(first) = cell {
-            task.spent += Spent::new(size_of_val(&task.made.blocks[first..]), 0);
+        if let RefinedCell::List(_, first) = cell {
+            task.spent += Spent::new(size_of_val(&task.blocks[first as usize..]), 0);
         }
         cell
     }
@@ -352,11 +352,11 @@ impl Refinement<'_> {
             }
             inherited
         });
-        let first = task.made.cells.len();
-        task.made.cells.resize(first + 8, RefinedCell::Tree);
+        let first = task.cells.len();
+        task.cells.resize(first + 8, RefinedCell::Tree);
         for (c, (child, inherited)) in children.into_iter().zip(inherited).enumerate() {
             let place = Place { number: first + c, part: place.part * 0.125 };
-            task.made.cells[place.number] = if has_packets {
+            task.cells[place.number] = if has_packets {
                 let known = KnownDistances { distances: &distances, corners: &CHILD_CORNERS[c] };
                 self.refine_filtered(task, &child, inherited, known, place)
             } else {

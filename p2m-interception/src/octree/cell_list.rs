@@ -173,9 +173,9 @@ impl Refinement<'_> {
                 entries.sort_unstable_by(|a, b| a.0.total_cmp(&b.0).then(a.1.packet.cmp(&b.1.packet)));
                 let entries: Vec<Entry> = entries.iter().map(|e| e.1).collect();
                 let bounds = if has_boxes { BoundKind::Boxes } else { BoundKind::Corners { level: cube.level, y } };
-                let first = task.made.blocks.len();
-                task.made.blocks.extend(Block::from_list(&entries, bounds));
-                RefinedCell::List(first)
+                let first = u32::try_from(task.blocks.len()).expect("a task has few blocks");
+                task.blocks.extend(Block::from_list(&entries, bounds));
+                RefinedCell::List(0, first)
             }
         }
     }

@@ -82,8 +82,9 @@ impl CodeWriter<'_> {
                 self.report.singles += 1;
                 pack(KIND_SINGLE, packet as usize * LANES + usize::from(lane))
             }
-            RefinedCell::List(number) => {
-                let list = &self.refined.blocks[number..=number + usize::from(self.refined.blocks[number].following)];
+            RefinedCell::List(task, number) => {
+                let list = &self.refined.blocks[task as usize][number as usize..];
+                let list = &list[..=usize::from(list[0].following)];
                 self.report.lists += 1;
                 self.report.entries += list.iter().map(|block| usize::from(block.len)).sum::<usize>();
                 let first = self.blocks.len();

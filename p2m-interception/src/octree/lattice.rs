@@ -434,18 +434,22 @@ fn keep_lanes<I: InstructionSet>(
         (error_above[i], least[i]) = (distances.error_above[corners[i]], distances.least[corners[i]]);
     }
     let (error_above, least) = (I::Eight::load(&error_above), I::Eight::load(&least));
-    for row in &dominators.rows[..dominators.count] {
-        let mut limits = [0.0; 8];
-        (I::Doubles::load(row) * per_unit).store_f32(&mut limits);
+    let mut limits = [[0.0; 8]; 8];
+    let mut is_near_to_all = true;
+    for (limits, row) in limits.iter_mut().zip(&dominators.rows[..dominators.count]) {
+        (I::Doubles::load(row) * per_unit).store_f32(limits);
         // The filter exceeds the distance by `error_above` at most.
-        let limit = I::Eight::load(&limits).add(error_above).mul(round_up);
+        let limit = I::Eight::load(limits).add(error_above).mul(round_up);
         let limit = limit.mul(limit).mul(round_up);
-        limit.store(&mut limits);
-        // Only some corners are near enough to any lane.
-        let (mut near_corners, mut near) = (least.at_most(limit), 0);
-        while near_corners != 0 && near & kept != kept {
-            let i = near_corners.trailing_zeros() as usize;
-            near_corners &= near_corners - 1;
+        limit.store(limits);
+        is_near_to_all &= least.at_most(limit) != 0;
+    }
+    if !is_near_to_all {
+        return 0;
+    }
+    for limits in &limits[..dominators.count] {
+        let mut near = 0;
+        for i in 0..8 {
             near |= at_most::<I::Wide>(&distances.squared[corners[i]], limits[i]);
         }
         kept &= near;

@@ -112,11 +112,16 @@ impl Octree {
         self.report.resolution = resolution;
         self.low = cube.low;
         self.cells_per_length = 2f64.powi(i32::from(MAX_LEVEL)) / cube.side;
-        let mut codes =
-            CodeWriter { refined: &refined, rows: Vec::new(), blocks: Vec::new(), report: &mut self.report };
+        let block_count = refined.blocks.iter().map(Vec::len).sum();
+        let mut codes = CodeWriter {
+            refined: &refined,
+            rows: Vec::new(),
+            blocks: Vec::with_capacity(block_count),
+            report: &mut self.report,
+        };
         self.root = codes.encode(0, 0);
         codes.rows.shrink_to_fit();
-        codes.blocks.shrink_to_fit();
+        debug_assert_eq!(codes.blocks.len(), block_count, "each list has a cell");
         (self.rows, self.blocks) = (codes.rows.into(), codes.blocks.into());
         self.report.bytes = self.memory() - self.tree.memory();
     }

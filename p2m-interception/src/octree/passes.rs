@@ -9,6 +9,7 @@
 //! is the last one to be kept depends only on what they take together, and not on the number of threads. A chunk that
 //! exceeds a budget by itself ends at once, so each thread wastes at most what is left of the budgets.
 
+use crate::list::block::Block;
 use crate::octree::budget::Spent;
 use crate::octree::refinement::{CellTask, OpenCell, Place, RefinedCell, RefinedCells, Refinement};
 use crate::parallel_chunks::map_chunks_in_order;
@@ -51,11 +52,12 @@ impl Passes {
         let resolution = FIRST_RESOLUTION.min(refinement.last_resolution);
         let mut task = CellTask::new(resolution, Spent::default());
         let number = task.add_cell();
-        task.made.cells[number] = refinement.refine_root(&mut task, low, side, Place { number, part: 1.0 });
+        task.cells[number] = refinement.refine_root(&mut task, low, side, Place { number, part: 1.0 });
         if task.spent.exceeds(refinement.budgets) {
             return None;
         }
-        let mut passes = Self { refined: task.made, open: task.open, spent: task.spent, resolution };
+        let refined = RefinedCells { cells: task.cells, blocks: vec![task.blocks] };
+        let mut passes = Self { refined, open: task.open, spent: task.spent, resolution };
         let mut is_kept = true;
         while is_kept && !passes.open.is_empty() {
             let spent = passes.spent.part_of(refinement.budgets);
@@ -104,21 +106,23 @@ impl Passes {
                 for cell in &cells[range.clone()] {
                     task.spent -= Spent::reserved_for(cell);
                     let number = task.add_cell();
-                    task.made.cells[number] = fate_of(refinement, &mut task, cell, Place { number, ..cell.place });
+                    task.cells[number] = fate_of(refinement, &mut task, cell, Place { number, ..cell.place });
                     task.roots.push(number);
                 }
-                let CellTask { made, open, roots, spent, before, .. } = task;
+                let CellTask { cells: made, blocks, open, roots, spent, before, .. } = task;
                 Some((
                     range,
                     roots,
-                    made,
+                    (made, blocks),
                     open,
                     Spent { bytes: spent.bytes - before.bytes, tests: spent.tests - before.tests },
                 ))
             },
             |chunk| {
                 let mut kept = kept.lock().expect("no thread panics");
-                let (Some(mut spent), Some((range, roots, made, open, more))) = (*kept, chunk) else { return };
+                let (Some(mut spent), Some((range, roots, (made, blocks), open, more))) = (*kept, chunk) else {
+                    return;
+                };
                 spent += more;
                 if spent.exceeds(refinement.budgets) {
                     *kept = None;
@@ -127,7 +131,7 @@ impl Passes {
                 *kept = Some(spent);
                 done = range.end;
                 let first = self.refined.cells.len();
-                self.refined.append(made);
+                self.refined.append((made, blocks));
                 for (cell, root) in cells[range].iter().zip(roots) {
                     self.refined.cells[cell.place.number] = self.refined.cells[first + root];
                 }
@@ -144,13 +148,14 @@ impl Passes {
 
 impl RefinedCells {
     /// Appends the cells and blocks of a task, whose numbers begin at zero.
-    fn append(&mut self, made: Self) {
-        let (cells, blocks) = (self.cells.len(), self.blocks.len());
-        self.cells.extend(made.cells.into_iter().map(|cell| match cell {
-            RefinedCell::Split(first) => RefinedCell::Split(cells + first),
-            RefinedCell::List(first) => RefinedCell::List(blocks + first),
+    fn append(&mut self, (cells, blocks): (Vec<RefinedCell>, Vec<Block>)) {
+        let first = self.cells.len();
+        let task = u32::try_from(self.blocks.len()).expect("few tasks");
+        self.cells.extend(cells.into_iter().map(|cell| match cell {
+            RefinedCell::Split(children) => RefinedCell::Split(first + children),
+            RefinedCell::List(_, block) => RefinedCell::List(task, block),
             other => other,
         }));
-        self.blocks.extend(made.blocks);
+        self.blocks.push(blocks);
     }
 }

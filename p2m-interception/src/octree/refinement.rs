@@ -26,8 +26,8 @@ pub(crate) enum RefinedCell {
     Tree,
     /// One primitive is the nearest everywhere in the cell. The fields are its packet and its lane.
     Single(u32, u8),
-    /// The cell has a list, which begins at this block.
-    List(usize),
+    /// The cell has a list. The fields are the number of the task that made it, and its first block there.
+    List(u32, u32),
     /// The cell is split. Its eight children begin at this number. Child c lies above the centre on axis k if bit k of
     /// c is set.
     Split(usize),
@@ -38,8 +38,8 @@ pub(crate) enum RefinedCell {
 pub(crate) struct RefinedCells {
     /// The cells.
     pub(crate) cells: Vec<RefinedCell>,
-    /// The blocks of all lists.
-    pub(crate) blocks: Vec<Block>,
+    /// The blocks of all lists, as each task made them.
+    pub(crate) blocks: Vec<Vec<Block>>,
 }
 
 /// A cell that a later pass splits if the budgets allow it.
@@ -137,8 +137,10 @@ pub(crate) struct KnownDistances<'a> {
 pub(crate) struct CellTask {
     /// The resolution of the pass.
     pub(crate) resolution: f64,
-    /// The finished cells. The numbers of children and blocks begin at zero.
-    pub(crate) made: RefinedCells,
+    /// The finished cells. The numbers of children and tasks begin at zero.
+    pub(crate) cells: Vec<RefinedCell>,
+    /// The blocks of their lists.
+    pub(crate) blocks: Vec<Block>,
     /// The cells that are left open.
     pub(crate) open: Vec<OpenCell>,
     /// The numbers of the cells that the task began with.
@@ -163,8 +165,8 @@ impl CellTask {
 
     /// Adds a cell and returns its number.
     pub(crate) fn add_cell(&mut self) -> usize {
-        self.made.cells.push(RefinedCell::Tree);
-        self.made.cells.len() - 1
+        self.cells.push(RefinedCell::Tree);
+        self.cells.len() - 1
     }
 }
 
