@@ -247,7 +247,8 @@ impl LatticeLimits {
     pub(crate) fn new(lattice: &[Corner; LATTICE_POINTS], side: f64, slack: f64) -> Self {
         let mut limits = Self { rows: [[0.0; WIDTH]; LATTICE_POINTS], count: 0 };
         for (at, corner) in lattice.iter().enumerate() {
-            if !corner.y[0].is_finite() || lattice[..at].iter().any(|before| before.y == corner.y) {
+            let is_new = lattice[..at].iter().all(|before| before.y.map(f64::to_bits) != corner.y.map(f64::to_bits));
+            if !corner.y[0].is_finite() || !is_new {
                 continue;
             }
             for (limit, point) in limits.rows[limits.count].iter_mut().zip(lattice) {
@@ -278,8 +279,7 @@ impl SimdKernel for ReachChildren<'_> {
                     near |= I::Wide::load(&squares[at..]).at_most(I::Wide::load(&row[at..])) << at;
                     at += I::Wide::LEN;
                 }
-                // A child stays reached if its corners near to every dominator are some, which is what the least of
-                // the numbers that are not zero says.
+                // A child stays reached while some of its corners are near. Once none is, the least number is zero.
                 for (reached, points) in reached.iter_mut().zip(&CHILD_POINTS) {
                     *reached = (*reached).min(near & points);
                 }
@@ -487,5 +487,45 @@ impl SimdKernel for BoundFromCorners<'_> {
             }
             bounds.push(row);
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use rand::RngExt;
+
+    /// The distances from the lattice to sets of points are at least what follows from those at the corners, and nearly
+    /// that if a set is one point.
+    #[test]
+    fn distances_from_corners_bound_those_between_them() {
+        let mut close = 0;
+        let cases = p2m_testkit::cases(2000, 500);
+        for case in cases.clone() {
+            let mut rng = p2m_testkit::rng("interpolated", case);
+            let side = 2f64.powi(rng.random_range(-9..9));
+            let corner = Corner { x: [0.0; 3], y: [0.0; 3] };
+            let cube = Cube {
+                low: [0; 3].map(|_| f64::from(rng.random_range(-9..9)) * side),
+                side,
+                level: 5,
+                corners: [corner; 8],
+            };
+            let reach = side * 2f64.powi(rng.random_range(-2..8));
+            let set: Vec<V3> = (0..rng.random_range(1..4))
+                .map(|_| [0, 1, 2].map(|k: usize| cube.low[k] + rng.random_range(-reach..reach)))
+                .collect();
+            let square =
+                |at: usize| set.iter().map(|p| norm_squared(sub(cube.point(at), *p))).fold(f64::INFINITY, f64::min);
+            let mut row = [0.0; WIDTH];
+            raise_to_interpolated(&mut row, &CUBE_CORNERS.map(|at| square(at).sqrt()), side.recip());
+            let largest = CUBE_CORNERS.iter().map(|at| square(*at)).fold(0.0, f64::max) / (side * side);
+            for at in 0..LATTICE_POINTS {
+                let (bound, exact) = (f64::from(row[at]), square(at) / (side * side));
+                assert!(bound <= exact, "case {case}, point {at}: {bound} for {exact}");
+                close += usize::from(set.len() == 1 && bound >= exact - largest * 2f64.powi(-17));
+            }
+        }
+        assert!(cases.have_more_than(5000, close), "{close}");
     }
 }

@@ -66,7 +66,7 @@ impl Passes {
             let (mut valuable, rest): (Vec<_>, Vec<_>) =
                 std::mem::take(&mut passes.open).into_iter().partition(|cell| cell.resolution <= next);
             // Cells of about the same value stay in the order of their places, so that neighbours follow each other.
-            valuable.sort_by_key(|cell| cell.resolution.log2().floor() as i64);
+            valuable.sort_by(|a, b| a.resolution.log2().floor().total_cmp(&b.resolution.log2().floor()));
             passes.open = rest;
             let left = passes.make(refinement, valuable, next, Refinement::split_open);
             is_kept = left.is_empty();
