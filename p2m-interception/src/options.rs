@@ -21,9 +21,8 @@ pub enum Domain {
 
 /// The options of an octree.
 ///
-/// The budgets limit the index itself, not the memory while it is built. If a budget would be exceeded, the
-/// resolution is lowered to the next power of 0.3 until the octree fits. If none fits, there are no cells and the
-/// tree answers everything.
+/// The budgets limit the index itself, not the memory while it is built. If a budget would be exceeded, the least
+/// valuable cells stay coarser. If not even the coarsest cells fit, there are none and the tree answers everything.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct OctreeOptions {
@@ -113,7 +112,7 @@ pub struct OctreeReport {
     pub tree_bytes: usize,
     /// The number of tests of a packet at a point while building.
     pub work: u64,
-    /// The resolution, which is less than requested if that would have exceeded a budget.
+    /// The resolution at which all cells were refined. It is less than requested if a budget would have been exceeded.
     pub resolution: f64,
 }
 

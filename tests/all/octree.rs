@@ -105,6 +105,10 @@ fn budgets_are_kept() {
         assert!(report.bytes as f64 <= memory.max(0.0) * count, "{memory}: {report}");
         assert!(report.resolution < default_report.resolution);
     }
+    // The most valuable cells are split until little of a budget is left.
+    let memory = default_report.bytes as f64 / count * 0.5;
+    let half = built(&soup, &OctreeOptions::default().with_memory(memory)).report();
+    assert!(half.bytes as f64 > 0.7 * memory * count, "{half}");
     for work in [amount(20.0, 5.0), 2.0, 0.0] {
         let report = built(&soup, &OctreeOptions::default().with_work(work)).report();
         assert!(report.work as f64 <= work * count && report.bytes < default_report.bytes, "{work}: {report}");

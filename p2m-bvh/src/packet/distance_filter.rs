@@ -127,6 +127,43 @@ impl Packet {
         self.squares_of_several::<I>(locals, &ALL_PLACES[..points.len()], &[u32::MAX; PLACES], squares);
     }
 
+    /// Returns for each vertex one bit for each lane: whether this vertex may be the nearest point of its triangle or
+    /// segment for every query point in a cube. The cube has a centre and half of its side. A bit may be wrong by the
+    /// rounding of the packet.
+    #[inline(always)]
+    #[allow(clippy::cast_possible_truncation, reason = "rounding is allowed for")]
+    pub fn lanes_of_nearest_vertices<I: InstructionSet>(&self, centre: &[f64; 3], half: f64) -> [u32; 3] {
+        let others: &[(usize, usize)] = match self.kind() {
+            Kind::Triangle => &[(0, 1), (1, 2), (2, 0)],
+            Kind::Segment => &[(0, 1)],
+            Kind::Point | Kind::Box => return [u32::MAX; 3],
+        };
+        let query = [0, 1, 2].map(|k: usize| ((centre[k] - self.origin[k]) * self.per_unit) as f32);
+        let half = (half * self.per_unit) as f32;
+        // Coordinates are below 2^16 and are rounded by half a unit.
+        let reach = query[0].abs() + query[1].abs() + query[2].abs() + 3.0 * 65536.0;
+        let tolerance = 2.5 * reach + 6.0 * half;
+        let mut all = [u32::MAX; 3];
+        let mut at = 0;
+        while at < LANES {
+            for &(i, j) in others {
+                let vertex: V3<I::Wide> = self.vertex(i, at);
+                let edge = self.vertex(j, at).sub(&vertex);
+                // The largest values in the cube of (q - v) . (w - v), and of the same with v and w exchanged.
+                let middle = V3::splat(query).sub(&vertex).dot(&edge);
+                let from = I::Wide::splat(0.0);
+                let size =
+                    edge.x.max(from.sub(edge.x)).add(edge.y.max(from.sub(edge.y))).add(edge.z.max(from.sub(edge.z)));
+                let margin = size.mul(I::Wide::splat(half)).sub(I::Wide::splat(tolerance));
+                let above = !(((1 << I::Wide::LEN) - 1) << at);
+                all[i] &= middle.add(margin).at_most(from) << at | above;
+                all[j] &= edge.square().sub(middle).add(margin).at_most(from) << at | above;
+            }
+            at += I::Wide::LEN;
+        }
+        all
+    }
+
     /// Returns one bit for each lane: whether its triangle may be before the plane of a place, which
     /// [`Locals::place_planes`] sets. All bits are 1 for other primitives.
     #[inline(always)]

@@ -31,7 +31,7 @@ impl<L: Lanes> V3<L> {
         Self { x: self.x.mul(factor), y: self.y.mul(factor), z: self.z.mul(factor) }
     }
     #[inline(always)]
-    fn dot(&self, other: &Self) -> L {
+    pub(super) fn dot(&self, other: &Self) -> L {
         self.z.mul_add(other.z, self.y.mul_add(other.y, self.x.mul(other.x)))
     }
     #[inline(always)]

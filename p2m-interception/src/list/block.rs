@@ -116,20 +116,17 @@ pub(crate) struct BlockQuery {
 }
 
 impl Block {
-    /// Stores a list of at most 256 * 8 entries, which is not empty, in blocks.
-    pub(crate) fn from_list(entries: &[Entry], bounds: BoundKind) -> Vec<Self> {
-        let mut blocks: Vec<Self> = entries
-            .chunks(BLOCK_WIDTH)
-            .map(|entries| match bounds {
+    /// Returns the blocks of a list of at most 256 * 8 entries, which is not empty.
+    pub(crate) fn from_list(entries: &[Entry], bounds: BoundKind) -> impl Iterator<Item = Self> {
+        let count = entries.len().div_ceil(BLOCK_WIDTH);
+        entries.chunks(BLOCK_WIDTH).enumerate().map(move |(i, entries)| {
+            let mut block = match bounds {
                 BoundKind::Boxes => Self::from_boxes(entries),
                 BoundKind::Corners { level, y } => Self::from_corners(entries, level, y),
-            })
-            .collect();
-        let count = blocks.len();
-        for (i, block) in blocks.iter_mut().enumerate() {
+            };
             block.following = u8::try_from(count - 1 - i).expect("few blocks");
-        }
-        blocks
+            block
+        })
     }
 
     #[allow(clippy::cast_possible_truncation, reason = "at most eight")]
@@ -190,7 +187,11 @@ impl Block {
         block
     }
 
-    #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "rounded down within the range")]
+    #[allow(
+        clippy::cast_possible_truncation,
+        clippy::cast_sign_loss,
+        reason = "a conversion rounds down and saturates"
+    )]
     /// Stores the values of f at the corners for up to eight entries.
     fn from_corners(entries: &[Entry], level: u8, y: V3) -> Self {
         let all = || entries.iter().flat_map(|entry| entry.f);
@@ -215,7 +216,7 @@ impl Block {
         block.bounds = [[255; BLOCK_WIDTH]; 8];
         for (i, entry) in entries.iter().enumerate() {
             for (row, f) in block.bounds.iter_mut().zip(entry.f) {
-                row[i] = ((f - min_f) / unit).floor().clamp(0.0, 255.0) as u8;
+                row[i] = ((f - min_f) / unit) as u8;
             }
         }
         block
@@ -374,7 +375,7 @@ mod tests {
                 })
                 .collect();
             for bounds in [BoundKind::Boxes, BoundKind::Corners { level, y }] {
-                let blocks = Block::from_list(&entries, bounds);
+                let blocks: Vec<Block> = Block::from_list(&entries, bounds).collect();
                 assert_eq!((blocks.len(), blocks[0].len, blocks[0].following), (1, count as u8, 0));
                 for _ in 0..4 {
                     let part = [0; 3].map(|_| match rng.random_range(0..6) {
@@ -412,7 +413,7 @@ mod tests {
     fn lists_of_several_blocks_know_how_many_follow() {
         let entry = |packet| Entry { packet, lanes: 3, bounds: [[0.0; 3], [0.1; 3]], f: [0.5; 8] };
         let entries: Vec<Entry> = (0..19).map(entry).collect();
-        let blocks = Block::from_list(&entries, BoundKind::Boxes);
+        let blocks: Vec<Block> = Block::from_list(&entries, BoundKind::Boxes).collect();
         assert_eq!(blocks.iter().map(|b| (b.len, b.following)).collect::<Vec<_>>(), [(8, 2), (8, 1), (3, 0)]);
         assert_eq!((blocks[2].packets[1], blocks[2].lanes), (17, [3, 3, 3, 0, 0, 0, 0, 0]));
     }

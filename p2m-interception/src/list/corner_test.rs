@@ -11,7 +11,7 @@
 //! primitives rather than too few.
 
 use nalgebra::Point3;
-use p2m_bvh::engine::packet::{self, LANES, Locals, PLACES, Packet, at_most, smallest};
+use p2m_bvh::engine::packet::{LANES, Packet, at_most, smallest};
 use p2m_core::Aabb;
 use p2m_core::engine::simd::{InstructionSet, SimdKernel};
 use p2m_core::engine::vector::{V3, norm_squared, sub};
@@ -28,9 +28,9 @@ pub(crate) struct Corner {
 /// The eight corners of a cell with their distances to all dominators.
 pub(crate) struct Dominators {
     /// The distances, rounded up and increased by the slack s: one row of eight corners for each dominator.
-    rows: [[f64; 8]; 8],
+    pub(crate) rows: [[f64; 8]; 8],
     /// The number of dominators, which is the number of rows in use.
-    count: usize,
+    pub(crate) count: usize,
 }
 
 /// A factor that exceeds the rounding of a distance in f64 by far.
@@ -59,8 +59,10 @@ impl Dominators {
     /// Returns whether anything in a box can be nearer than all dominators somewhere in the cell.
     pub(crate) fn keeps_box(&self, corners: &[Corner; 8], bounds: &Aabb<f64>) -> bool {
         let squared = corners.map(|c| bounds.lower_bound(&Point3::from(c.x)));
-        // The lower bound of a box is too large by a few roundings at most.
-        self.rows[..self.count].iter().all(|row| (0..8).any(|i| squared[i] <= row[i] * row[i] * DISTANCE_ROUND_UP))
+        // The lower bound of a box is too large by a few roundings at most. A loop without branches is vectorized.
+        let is_near =
+            |row: &[f64; 8]| (0..8).fold(false, |near, i| near | (squared[i] <= row[i] * row[i] * DISTANCE_ROUND_UP));
+        self.rows[..self.count].iter().all(is_near)
     }
 }
 
@@ -80,114 +82,90 @@ impl LaneDistances {
     pub(crate) const UNKNOWN: Self = Self { squared: [0.0; LANES], error_above: f32::INFINITY };
 }
 
-/// A SIMD kernel that runs the filter of a packet at some points.
-pub(crate) struct DistancesAtPoints<'a> {
+/// A SIMD kernel that runs the filter of a packet at a point. It returns the distances, and an upper bound of the
+/// distance to the nearest lane with that lane. The latter is `None` if the filter cannot be used.
+pub(crate) struct DistancesAtPoint<'a> {
     /// The packet whose lanes are tested.
     pub(crate) packet: &'a Packet,
-    /// The points, in coordinates of the scene.
-    pub(crate) points: &'a [V3],
-    /// Receives the distances from each point.
-    pub(crate) distances: &'a mut [LaneDistances],
-    /// Receives an upper bound of the distance from each point to the nearest lane, with that lane. It is `None` if
-    /// the filter cannot be used.
-    pub(crate) nearest: &'a mut [Option<(f64, usize)>],
+    /// The point, in coordinates of the scene.
+    pub(crate) point: &'a V3,
 }
 
-impl SimdKernel for DistancesAtPoints<'_> {
-    type Output = ();
+impl SimdKernel for DistancesAtPoint<'_> {
+    type Output = (LaneDistances, Option<(f64, usize)>);
 
     #[inline(always)]
-    fn run<I: InstructionSet>(self) {
-        let Self { packet, points, distances, nearest } = self;
-        let (mut locals, mut squares) = (Locals::default(), [[0.0; LANES]; PLACES]);
-        for (points, (distances, nearest)) in
-            points.chunks(PLACES).zip(distances.chunks_mut(PLACES).zip(nearest.chunks_mut(PLACES)))
-        {
-            packet.squares_at_points::<I>(points, &mut locals, &mut squares);
-            for (place, (distances, nearest)) in distances.iter_mut().zip(nearest).enumerate() {
-                let squares = &squares[place];
-                (*distances, *nearest) = (LaneDistances::UNKNOWN, None);
-                if locals.far >> place & 1 == 1 {
-                    continue;
-                }
-                *distances = LaneDistances { squared: *squares, error_above: locals.excess[place] };
-                if packet.has_vertices() {
-                    let least = smallest::<I::Wide>(squares);
-                    let lane = (at_most::<I::Wide>(squares, least)).trailing_zeros() as usize;
-                    *nearest = Some((f64::from(least.sqrt() + locals.deficit[place]) * packet.unit(), lane));
-                }
-            }
+    fn run<I: InstructionSet>(self) -> Self::Output {
+        let Self { packet, point } = self;
+        let Some(local) = packet.local(point) else { return (LaneDistances::UNKNOWN, None) };
+        let mut squared = [0.0; LANES];
+        packet.squares::<I>(&local, f32::INFINITY, &mut squared);
+        let mut nearest = None;
+        if packet.has_vertices() {
+            let least = smallest::<I::Wide>(&squared);
+            let lane = (at_most::<I::Wide>(&squared, least)).trailing_zeros() as usize;
+            nearest = Some((f64::from(least.sqrt() + local.deficit) * packet.unit(), lane));
         }
+        (LaneDistances { squared, error_above: local.excess }, nearest)
     }
 }
 
-/// A SIMD kernel that applies the corner test to a packet and returns the lanes that pass.
-pub(crate) struct KeepLanes<'a> {
-    /// The packet whose lanes are tested.
+/// A SIMD kernel that calls [`Packet::lanes_of_nearest_vertices`].
+pub(crate) struct NearestVertices<'a> {
     pub(crate) packet: &'a Packet,
-    /// The dominators at the corners of the cell.
-    pub(crate) dominators: &'a Dominators,
-    /// The distances from some points to the packet.
-    pub(crate) distances: &'a [LaneDistances],
-    /// The indices of the eight corners among these points.
-    pub(crate) corners: &'a [usize; 8],
+    pub(crate) centre: &'a V3,
+    pub(crate) half: f64,
 }
 
-impl SimdKernel for KeepLanes<'_> {
-    type Output = u16;
+impl SimdKernel for NearestVertices<'_> {
+    type Output = [u32; 3];
 
     #[inline(always)]
-    #[allow(clippy::cast_possible_truncation, reason = "rounded up before; sixteen lanes")]
-    fn run<I: InstructionSet>(self) -> u16 {
-        let mut kept = u32::MAX;
-        for row in &self.dominators.rows[..self.dominators.count] {
-            let mut near = 0;
-            for (distance, corner) in row.iter().zip(self.corners) {
-                let distances = &self.distances[*corner];
-                // The filter exceeds the distance by `error_above` at most.
-                let limit = ((distance * self.packet.per_unit()) as f32 + distances.error_above) * packet::ROUND_UP;
-                near |= at_most::<I::Wide>(&distances.squared, limit * limit * packet::ROUND_UP);
-            }
-            kept &= near;
-            if kept == 0 {
-                break;
-            }
-        }
-        (kept & self.packet.lanes()) as u16
+    fn run<I: InstructionSet>(self) -> [u32; 3] {
+        self.packet.lanes_of_nearest_vertices::<I>(self.centre, self.half)
     }
 }
 
-/// A SIMD kernel that returns, for up to eight points, a lower bound of the distance to the nearest primitive in some
-/// lanes of a packet, in the unit of the packet.
-pub(crate) struct MinOverLanes<'a> {
-    /// The distances from some points to the packet.
-    pub(crate) distances: &'a [LaneDistances],
-    /// The indices of the points among these.
-    pub(crate) points: &'a [usize],
-    /// The lanes to consider, as bits.
+/// Returns a lower bound of the distance to the nearest of some lanes of a packet, in its unit, given the squared
+/// distances that the filter finds and the amount by which they may exceed the true ones. `exclusion` is zero for these
+/// lanes and infinite for the others.
+#[inline(always)]
+pub(crate) fn least_of_lanes<I: InstructionSet>(
+    squared: &[f32; LANES],
+    error_above: f32,
+    exclusion: &[f32; LANES],
+) -> f64 {
+    let mut sums = [0.0; LANES];
+    for lane in 0..LANES {
+        sums[lane] = squared[lane] + exclusion[lane];
+    }
+    // The factor lowers the bound by the rounding of the root.
+    let distance = f64::from(smallest::<I::Wide>(&sums)).sqrt() * (1.0 - 4.0 * f64::EPSILON);
+    (distance - f64::from(error_above)).max(0.0)
+}
+
+/// Returns zero for each lane that has a bit, and infinity for the others.
+#[inline(always)]
+pub(crate) fn exclusion_of(lanes: u16) -> [f32; LANES] {
+    let mut exclusion = [0.0; LANES];
+    for (lane, other) in exclusion.iter_mut().enumerate() {
+        *other = if lanes >> lane & 1 == 1 { 0.0 } else { f32::INFINITY };
+    }
+    exclusion
+}
+
+/// A SIMD kernel that calls [`least_of_lanes`] for some lanes.
+pub(crate) struct LeastOfLanes<'a> {
+    pub(crate) distances: &'a LaneDistances,
     pub(crate) lanes: u16,
 }
 
-impl SimdKernel for MinOverLanes<'_> {
-    type Output = [f64; 8];
+impl SimdKernel for LeastOfLanes<'_> {
+    type Output = f64;
 
     #[inline(always)]
-    fn run<I: InstructionSet>(self) -> [f64; 8] {
-        let mut exclusion = [0.0; LANES];
-        for (lane, other) in exclusion.iter_mut().enumerate() {
-            *other = if self.lanes >> lane & 1 == 1 { 0.0 } else { f32::INFINITY };
-        }
-        let mut all = [0.0; 8];
-        for (least, point) in all.iter_mut().zip(self.points) {
-            let distances = &self.distances[*point];
-            let mut squared = [0.0; LANES];
-            for lane in 0..LANES {
-                squared[lane] = distances.squared[lane] + exclusion[lane];
-            }
-            // The factor lowers the bound by the rounding of the root.
-            let distance = f64::from(smallest::<I::Wide>(&squared)).sqrt() * (1.0 - 4.0 * f64::EPSILON);
-            *least = (distance - f64::from(distances.error_above)).max(0.0);
-        }
-        all
+    fn run<I: InstructionSet>(self) -> f64 {
+        let Self { distances: LaneDistances { squared, error_above }, lanes } = self;
+        least_of_lanes::<I>(squared, *error_above, &exclusion_of(lanes))
     }
 }

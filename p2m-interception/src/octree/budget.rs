@@ -1,48 +1,87 @@
 //! The budgets of a refinement, and how far it has come.
-//!
-//! All counters only grow, and each cell adds the same amounts on every run. So whether a budget is exceeded in the
-//! end does not depend on the order in which threads refine cells.
 
+use crate::list::block::{BLOCK_WIDTH, Block};
+use crate::octree::refinement::OpenCell;
 use crate::progress::{BuildStage, Progress};
+use std::ops::{AddAssign, SubAssign};
 use std::sync::atomic::{AtomicU64, Ordering};
 
-/// The budgets of a refinement, with what has been spent of them.
-pub(crate) struct BudgetCounters<'a> {
-    /// Bytes of cells and lists so far.
-    pub(crate) bytes: AtomicU64,
-    /// Tests of a packet at a point so far.
-    pub(crate) work: AtomicU64,
-    /// The budgets of `bytes` and `work`.
-    pub(crate) budgets: [u64; 2],
-    /// The finished part of the domain, in units of 2^-40.
-    pub(crate) finished: AtomicU64,
-    /// The percentage that was reported last.
-    pub(crate) percent: AtomicU64,
-    /// Receives the progress.
-    pub(crate) progress: &'a (dyn Fn(Progress) + Sync),
+/// The tests of a packet at a point that the list of an open cell takes at most: at eight corners, and at the centre.
+const TESTS_PER_OPEN_PACKET: usize = 9;
+
+/// What cells take of the budgets.
+#[derive(Clone, Copy, Debug, Default)]
+pub(crate) struct Spent {
+    /// Bytes of cells and lists.
+    pub(crate) bytes: i64,
+    /// Tests of a packet at a point.
+    pub(crate) tests: i64,
 }
 
-impl BudgetCounters<'_> {
-    /// Returns whether a budget is exceeded. The cells are discarded then.
-    pub(crate) fn is_exceeded(&self) -> bool {
-        self.bytes.load(Ordering::Relaxed) > self.budgets[0] || self.work.load(Ordering::Relaxed) > self.budgets[1]
+impl Spent {
+    /// Returns what a number of bytes and of tests takes.
+    pub(crate) fn new(bytes: usize, tests: usize) -> Self {
+        let [bytes, tests] = [bytes, tests].map(|n| i64::try_from(n).unwrap_or(i64::MAX));
+        Self { bytes, tests }
+    }
+
+    /// Returns what the list of an open cell takes at most. It is reserved until the cell is split or finished.
+    pub(crate) fn reserved_for(cell: &OpenCell) -> Self {
+        let packets = if cell.may_have_list() { cell.candidates.len() } else { 0 };
+        Self::new(packets.div_ceil(BLOCK_WIDTH) * size_of::<Block>(), packets * TESTS_PER_OPEN_PACKET)
+    }
+
+    /// Returns whether a budget is exceeded.
+    pub(crate) fn exceeds(self, budgets: Self) -> bool {
+        self.bytes > budgets.bytes || self.tests > budgets.tests
+    }
+
+    /// Returns the part of a budget that has been spent, of the one that is closer to its end.
+    pub(crate) fn part_of(self, budgets: Self) -> f64 {
+        (self.bytes as f64 / budgets.bytes as f64).max(self.tests as f64 / budgets.tests as f64)
+    }
+}
+
+impl AddAssign for Spent {
+    fn add_assign(&mut self, other: Self) {
+        self.bytes += other.bytes;
+        self.tests += other.tests;
+    }
+}
+
+impl SubAssign for Spent {
+    fn sub_assign(&mut self, other: Self) {
+        self.bytes -= other.bytes;
+        self.tests -= other.tests;
+    }
+}
+
+/// Reports how much of the domain is finished.
+pub(crate) struct FinishedPart<'a> {
+    /// The finished part of the domain, in units of 2^-40.
+    finished: AtomicU64,
+    /// The percentage that was reported last.
+    percent: AtomicU64,
+    /// Receives the progress.
+    progress: &'a (dyn Fn(Progress) + Sync),
+}
+
+impl<'a> FinishedPart<'a> {
+    /// Begins with nothing.
+    pub(crate) fn new(progress: &'a (dyn Fn(Progress) + Sync)) -> Self {
+        Self { finished: AtomicU64::new(0), percent: AtomicU64::new(0), progress }
     }
 
     /// Adds a finished part of the domain, from 0 to 1, and reports each new percent.
     #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "a part is from 0 to 1")]
-    pub(crate) fn add_finished(&self, part_of_domain: f64) {
+    pub(crate) fn add(&self, part_of_domain: f64) {
         const ALL: f64 = (1u64 << 40) as f64;
         let part = (part_of_domain * ALL) as u64;
         let all = self.finished.fetch_add(part, Ordering::Relaxed) + part;
-        let percent = (all as f64 / ALL * 100.0) as u64;
+        let percent = ((all as f64 / ALL * 100.0) as u64).min(100);
         if self.percent.fetch_max(percent, Ordering::Relaxed) < percent {
-            let part = (percent as f64 / 100.0).min(1.0);
+            let part = percent as f64 / 100.0;
             (self.progress)(Progress { stage: BuildStage::Octree, part });
         }
-    }
-
-    /// Adds tests of packets to the work.
-    pub(crate) fn charge_tests(&self, tests: usize) {
-        self.work.fetch_add(tests as u64, Ordering::Relaxed);
     }
 }

@@ -43,26 +43,20 @@ pub(crate) const CHILD_CORNERS: [[usize; 8]; 8] = {
     all
 };
 
-/// The lattice points that are neither corners of the cube nor its centre.
-pub(crate) const NEW_LATTICE_POINTS: [usize; LATTICE_POINTS - 9] = {
-    let mut all = [0; LATTICE_POINTS - 9];
-    let mut count = 0;
-    let mut at = 0;
-    while at < LATTICE_POINTS {
-        let is_halfway = at % 3 == 1 || at / 3 % 3 == 1 || at / 9 == 1;
-        if is_halfway && at != LATTICE_CENTRE {
-            all[count] = at;
-            count += 1;
-        }
-        at += 1;
+/// The lattice points at the corners of the cube.
+pub(crate) const CUBE_CORNERS: [usize; 8] = {
+    let mut all = CHILD_CORNERS[0];
+    let mut corner = 0;
+    while corner < 8 {
+        all[corner] *= 2;
+        corner += 1;
     }
-    assert!(count == all.len());
     all
 };
 
 /// Returns the corner of the cube at a lattice point, if there is one.
 pub(crate) fn cube_corner_at(at: usize) -> Option<usize> {
-    (0..8).find(|&corner| 2 * CHILD_CORNERS[0][corner] == at)
+    CUBE_CORNERS.into_iter().position(|corner| corner == at)
 }
 
 impl Cube {
@@ -100,10 +94,6 @@ mod tests {
             std::array::from_fn(|at| Corner { x: cube.point(at), y: cube.point(at) });
         assert_eq!(cube.point(LATTICE_CENTRE), [1.0, 4.0, 2.5]);
         assert_eq!((0..LATTICE_POINTS).filter_map(cube_corner_at).collect::<Vec<_>>(), [0, 1, 2, 3, 4, 5, 6, 7]);
-        assert!(
-            NEW_LATTICE_POINTS.is_sorted()
-                && NEW_LATTICE_POINTS.iter().all(|&at| cube_corner_at(at).is_none() && at != LATTICE_CENTRE)
-        );
         for (c, child) in cube.children(&lattice).iter().enumerate() {
             assert_eq!((child.side, child.level), (2.0, 4));
             for (i, corner) in child.corners.iter().enumerate() {

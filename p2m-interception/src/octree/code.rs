@@ -3,7 +3,7 @@
 //! The three highest bits of a code say its kind, the other bits are a number.
 
 use crate::list::block::Block;
-use crate::octree::refinement::RefinedCell;
+use crate::octree::refinement::{RefinedCell, RefinedCells};
 use crate::options::OctreeReport;
 use p2m_bvh::engine::packet::LANES;
 
@@ -27,8 +27,10 @@ pub(crate) const FALLBACK_CODE: u32 = 4 << KIND_SHIFT;
 #[repr(C, align(32))]
 pub(crate) struct Row(pub(crate) [u32; 8]);
 
-/// Writes the codes of refined cells into rows.
+/// Writes the codes of refined cells into rows, and the blocks of their lists in the same order.
 pub(crate) struct CodeWriter<'a> {
+    /// The refined cells.
+    pub(crate) refined: &'a RefinedCells,
     /// The rows so far.
     pub(crate) rows: Vec<Row>,
     /// The blocks of all lists so far.
@@ -65,12 +67,13 @@ impl CellCode {
 impl CodeWriter<'_> {
     /// Stores a cell of a level and returns its code. A cell whose number does not fit into a code is left
     /// to the tree.
-    pub(crate) fn encode(&mut self, cell: RefinedCell, level: usize) -> u32 {
+    pub(crate) fn encode(&mut self, cell: usize, level: usize) -> u32 {
         let pack = |kind: u32, n: usize| {
             u32::try_from(n).ok().filter(|n| n >> KIND_SHIFT == 0).map_or(FALLBACK_CODE, |n| kind << KIND_SHIFT | n)
         };
         self.report.depth = self.report.depth.max(level);
-        match cell {
+        let is_split = |cell: usize| matches!(self.refined.cells[cell], RefinedCell::Split(_));
+        match self.refined.cells[cell] {
             RefinedCell::Tree => {
                 self.report.trees += 1;
                 FALLBACK_CODE
@@ -79,37 +82,36 @@ impl CodeWriter<'_> {
                 self.report.singles += 1;
                 pack(KIND_SINGLE, packet as usize * LANES + usize::from(lane))
             }
-            RefinedCell::Blocks(blocks) => {
+            RefinedCell::List(task, number) => {
+                let list = &self.refined.blocks[task as usize][number as usize..];
+                let list = &list[..=usize::from(list[0].following)];
                 self.report.lists += 1;
-                self.report.entries += blocks.iter().map(|block| usize::from(block.len)).sum::<usize>();
+                self.report.entries += list.iter().map(|block| usize::from(block.len)).sum::<usize>();
                 let first = self.blocks.len();
-                self.blocks.extend(blocks);
+                self.blocks.extend_from_slice(list);
                 pack(KIND_LIST, first)
             }
             RefinedCell::Split(children) => {
                 let row = self.rows.len();
-                let inner = children.iter().filter(|child| matches!(child, RefinedCell::Split(_))).count();
+                let inner = (children..children + 8).filter(|child| is_split(*child)).count();
                 // Two levels share eight rows, unless most of their codes would be the same.
                 if inner < 4 {
                     self.rows.push(Row([FALLBACK_CODE; 8]));
-                    for (c, child) in children.into_iter().enumerate() {
-                        self.rows[row].0[c] = self.encode(child, level + 1);
+                    for c in 0..8 {
+                        self.rows[row].0[c] = self.encode(children + c, level + 1);
                     }
                     return pack(KIND_ONE_LEVEL, row);
                 }
                 self.rows.resize(row + 8, Row([FALLBACK_CODE; 8]));
-                for (c, child) in children.into_iter().enumerate() {
-                    match child {
-                        RefinedCell::Split(grandchildren) => {
-                            for (g, grandchild) in grandchildren.into_iter().enumerate() {
-                                let code = self.encode(grandchild, level + 2);
-                                self.set_grandchild(row, c, g, code);
-                            }
+                for c in 0..8 {
+                    if let RefinedCell::Split(grandchildren) = self.refined.cells[children + c] {
+                        for g in 0..8 {
+                            let code = self.encode(grandchildren + g, level + 2);
+                            self.set_grandchild(row, c, g, code);
                         }
-                        leaf => {
-                            let code = self.encode(leaf, level + 1);
-                            (0..8).for_each(|g| self.set_grandchild(row, c, g, code));
-                        }
+                    } else {
+                        let code = self.encode(children + c, level + 1);
+                        (0..8).for_each(|g| self.set_grandchild(row, c, g, code));
                     }
                 }
                 pack(KIND_TWO_LEVELS, row)

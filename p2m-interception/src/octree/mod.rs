@@ -10,6 +10,8 @@ pub(crate) mod cell;
 pub(crate) mod cell_list;
 pub(crate) mod code;
 pub(crate) mod domain;
+pub(crate) mod lattice;
+pub(crate) mod passes;
 pub(crate) mod query;
 pub(crate) mod refinement;
 pub(crate) mod saved;
@@ -17,9 +19,10 @@ mod validate;
 
 use crate::list::block::{Block, MAX_LEVEL};
 use crate::list::search;
-use crate::octree::budget::BudgetCounters;
+use crate::octree::budget::{FinishedPart, Spent};
 use crate::octree::code::{CellCode, CodeWriter, FALLBACK_CODE, Row};
 use crate::octree::domain::DomainCube;
+use crate::octree::passes::Passes;
 use crate::octree::refinement::{Refinement, TreeProbe};
 use crate::options::{OctreeOptions, OctreeReport};
 use crate::partition::Partition;
@@ -31,17 +34,13 @@ use p2m_core::engine::vector::V3;
 use p2m_core::storage::Array;
 use p2m_core::{Best, Isa, PrimitiveId, PrimitiveSet, QueryOptions, Real, StatsCollector};
 use std::collections::HashMap;
-use std::sync::atomic::AtomicU64;
 
 /// The resolution above which cells do not become finer any more.
 const MAX_RESOLUTION: f64 = 1e9;
-/// The resolution below which the build gives up, because cells would not become coarser any more.
+/// The resolution below which there are no cells.
 const MIN_RESOLUTION: f64 = 1e-9;
 /// The budgets of a scene with fewer primitives are those of a scene with this many.
 const MIN_PRIMITIVES_FOR_BUDGETS: usize = 10_000;
-/// The build gives up and uses the tree alone once refinements that exceeded a budget have spent this
-/// many work budgets.
-const MAX_WASTED_WORK: u64 = 5;
 
 /// An interception index whose cells are cubes, over a set of primitives that it does not store.
 ///
@@ -66,8 +65,7 @@ pub struct Octree {
 }
 
 impl Octree {
-    /// Refines the cube of the domain. If a budget is exceeded, coarser resolutions are tried in turn, and finally the
-    /// octree stays empty.
+    /// Refines the cube of the domain. If even the coarsest cells exceed a budget, the octree stays empty.
     #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "saturates; NaN is no budget")]
     fn refine_within_budgets<T: Real, S: PrimitiveSet<T> + Sync + ?Sized>(
         &mut self,
@@ -87,52 +85,43 @@ impl Octree {
             TreeProbe { nearest: best.nearest_point().unwrap_or([f64::INFINITY; 3]), nodes, packets, primitives }
         };
         let count = tree.packets().1.max(MIN_PRIMITIVES_FOR_BUDGETS) as f64;
-        let budgets = [options.memory, options.work].map(|budget| (budget * count) as u64);
+        let [bytes, tests] = [options.memory, options.work].map(|budget| (budget * count) as i64);
+        let budgets = Spent { bytes: bytes.max(0), tests: tests.max(0) };
         // The comparison is false if the resolution is NaN.
-        let mut resolution = if options.resolution > 0.0 { options.resolution.min(MAX_RESOLUTION) } else { 0.0 };
-        let mut percent = 0;
-        let mut wasted_work = 0;
-        let (cells, counters) = loop {
-            if resolution < MIN_RESOLUTION || wasted_work > budgets[1].saturating_mul(MAX_WASTED_WORK) {
-                // Even the coarsest cells exceed the budgets, or it takes too long to find a resolution that does not.
-                return;
-            }
-            let counters = BudgetCounters {
-                bytes: AtomicU64::new(0),
-                work: AtomicU64::new(0),
-                budgets,
-                finished: AtomicU64::new(0),
-                percent: AtomicU64::new(percent),
-                progress,
-            };
-            let refinement = Refinement {
-                tree,
-                lowest_owners: &lowest_owners,
-                search: &search,
-                domain: options.domain,
-                slack: cube.slack,
-                uniform_boxes: &cube.uniform_boxes,
-                inv_packet_count: 1.0 / tree.packets().0 as f64,
-                resolution,
-                parallel: options.splits.parallel,
-                counters,
-            };
-            let cells = refinement.refine_root(cube.low, cube.side);
-            if !refinement.counters.is_exceeded() {
-                break (cells, refinement.counters);
-            }
-            percent = refinement.counters.percent.into_inner();
-            wasted_work += refinement.counters.work.into_inner();
-            resolution = next_coarser_resolution(resolution);
+        let last_resolution = if options.resolution > 0.0 { options.resolution.min(MAX_RESOLUTION) } else { 0.0 };
+        if last_resolution < MIN_RESOLUTION {
+            return;
+        }
+        let refinement = Refinement {
+            tree,
+            lowest_owners: &lowest_owners,
+            search: &search,
+            domain: options.domain,
+            slack: cube.slack,
+            uniform_boxes: &cube.uniform_boxes,
+            inv_packet_count: 1.0 / tree.packets().0 as f64,
+            last_resolution,
+            parallel: options.splits.parallel,
+            budgets,
+            finished: FinishedPart::new(progress),
         };
-        self.report.work = counters.work.into_inner();
+        let Some(Passes { refined, spent, resolution, .. }) = Passes::run(&refinement, cube.low, cube.side) else {
+            return;
+        };
+        self.report.work = u64::try_from(spent.tests).unwrap_or(0);
         self.report.resolution = resolution;
         self.low = cube.low;
         self.cells_per_length = 2f64.powi(i32::from(MAX_LEVEL)) / cube.side;
-        let mut codes = CodeWriter { rows: Vec::new(), blocks: Vec::new(), report: &mut self.report };
-        self.root = codes.encode(cells, 0);
+        let block_count = refined.blocks.iter().map(Vec::len).sum();
+        let mut codes = CodeWriter {
+            refined: &refined,
+            rows: Vec::new(),
+            blocks: Vec::with_capacity(block_count),
+            report: &mut self.report,
+        };
+        self.root = codes.encode(0, 0);
         codes.rows.shrink_to_fit();
-        codes.blocks.shrink_to_fit();
+        debug_assert_eq!(codes.blocks.len(), block_count, "each list has a cell");
         (self.rows, self.blocks) = (codes.rows.into(), codes.blocks.into());
         self.report.bytes = self.memory() - self.tree.memory();
     }
@@ -206,14 +195,6 @@ impl Partition for Octree {
     fn with_isa(self, isa: Isa) -> Self {
         Self { tree: self.tree.with_isa(isa), ..self }
     }
-}
-
-/// Returns the next lower power of 0.3. As these powers do not depend on the first resolution, a request for a finer
-/// octree never yields a coarser one.
-#[allow(clippy::cast_possible_truncation, reason = "some dozens")]
-fn next_coarser_resolution(resolution: f64) -> f64 {
-    let steps = (resolution.ln() / 0.3f64.ln() + 1e-6).floor() as i32 + 1;
-    0.3f64.powi(steps)
 }
 
 /// Returns for each vertex of a tree the primitive with the lowest id that has this vertex, bit for bit.

@@ -1,8 +1,10 @@
 //! The data of a refinement: what all cells share, what a cell inherits from its parent, and what becomes of it.
 
 use crate::list::block::Block;
-use crate::list::corner_test::LaneDistances;
-use crate::octree::budget::BudgetCounters;
+use crate::octree::budget::{FinishedPart, Spent};
+use crate::octree::cell::Cube;
+use crate::octree::cell_list::MAX_LIST_PACKETS;
+use crate::octree::lattice::{Lattice, LatticeDistances};
 use crate::options::Domain;
 use p2m_bvh::PacketTree;
 use p2m_bvh::engine::node::NodeRef;
@@ -17,16 +19,57 @@ pub(crate) const NS_PER_BLOCK: f64 = 15.0;
 /// The time in which a query visits a node of the tree, in nanoseconds.
 pub(crate) const NS_PER_NODE: f64 = 30.0;
 
-/// A finished cell. Child c of a split cell lies above the centre on axis k if bit k of c is set.
+/// A cell of an octree that is being built.
+#[derive(Clone, Copy, Debug)]
 pub(crate) enum RefinedCell {
     /// The tree answers in the cell.
     Tree,
     /// One primitive is the nearest everywhere in the cell. The fields are its packet and its lane.
     Single(u32, u8),
-    /// The blocks of the list of the cell.
-    Blocks(Vec<Block>),
-    /// The eight children of the cell.
-    Split(Box<[RefinedCell; 8]>),
+    /// The cell has a list. The fields are the number of the task that made it, and its first block there.
+    List(u32, u32),
+    /// The cell is split. Its eight children begin at this number. Child c lies above the centre on axis k if bit k of
+    /// c is set.
+    Split(usize),
+}
+
+/// The cells of an octree that is being built, or of a part of it.
+#[derive(Default)]
+pub(crate) struct RefinedCells {
+    /// The cells.
+    pub(crate) cells: Vec<RefinedCell>,
+    /// The blocks of all lists, as each task made them.
+    pub(crate) blocks: Vec<Vec<Block>>,
+}
+
+/// A cell that a later pass splits if the budgets allow it.
+pub(crate) struct OpenCell {
+    /// The place of the cell. The tree answers in it until the cell is finished.
+    pub(crate) place: Place,
+    /// The cube of the cell.
+    pub(crate) cube: Cube,
+    /// Nodes or packets of the tree that can hold the answer in the cell.
+    pub(crate) candidates: Vec<Candidate>,
+    /// Whether all candidates are packets.
+    pub(crate) has_packets: bool,
+    /// The resolution from which on a split is worth its memory.
+    pub(crate) resolution: f64,
+}
+
+impl OpenCell {
+    /// Returns whether the cell gets a list if it is not split.
+    pub(crate) fn may_have_list(&self) -> bool {
+        self.has_packets && self.candidates.len() <= MAX_LIST_PACKETS
+    }
+}
+
+/// The place of a cell among those of a task or of an octree.
+#[derive(Clone, Copy)]
+pub(crate) struct Place {
+    /// The number of the cell.
+    pub(crate) number: usize,
+    /// The part of the domain that the cell covers.
+    pub(crate) part: f64,
 }
 
 /// The result of one search of the tree, and the work of it.
@@ -57,72 +100,85 @@ pub(crate) struct Refinement<'a> {
     pub(crate) uniform_boxes: &'a [(Aabb<f64>, f64)],
     /// The reciprocal of the number of packets: each packet has this share of the queries on the surface.
     pub(crate) inv_packet_count: f64,
-    /// The resolution, which multiplies the value of a split.
-    pub(crate) resolution: f64,
-    /// Whether large cells are refined on all threads.
+    /// The resolution of the last pass. No pass splits cells for which it is too low.
+    pub(crate) last_resolution: f64,
+    /// Whether cells are refined on all threads.
     pub(crate) parallel: bool,
-    /// The budgets, and what has been spent of them.
-    pub(crate) counters: BudgetCounters<'a>,
+    /// The budgets.
+    pub(crate) budgets: Spent,
+    /// The finished part of the domain.
+    pub(crate) finished: FinishedPart<'a>,
 }
 
-/// A node or a packet of the tree that a coarse cell cannot exclude.
+/// A node or a packet of the tree that can hold the answer in a cell.
 #[derive(Clone, Copy)]
-pub(crate) struct CoarseCandidate {
-    /// The node or the packet.
-    pub(crate) child: NodeRef,
+pub(crate) struct Candidate {
     /// The box around it.
     pub(crate) bounds: Aabb<f64>,
+    /// The node or the packet.
+    pub(crate) child: NodeRef,
+    /// The index of the packet among the candidates of the parent.
+    pub(crate) index: u32,
+    /// The lanes of the packet that can hold the answer, as bits.
+    pub(crate) lanes: u16,
 }
 
-/// A packet that a fine cell cannot exclude.
+/// The distances from the lattice of the parent of a cell, which include those from the corners of the cell.
 #[derive(Clone, Copy)]
-pub(crate) struct PacketCandidate<'a> {
-    /// The number of the packet.
-    pub(crate) packet: u32,
-    /// The lanes that pass the corner test, as bits.
-    pub(crate) lanes: u16,
-    /// The box around the packet.
-    pub(crate) bounds: Aabb<f64>,
-    /// The distances from some points to its lanes.
-    pub(crate) distances: &'a [LaneDistances],
-    /// The indices of the corners of the cell among these points.
+pub(crate) struct KnownDistances<'a> {
+    /// The distances to each packet of the parent.
+    pub(crate) distances: &'a [LatticeDistances],
+    /// The points of the lattice that are the corners of the cell.
     pub(crate) corners: &'a [usize; 8],
 }
 
-/// The primitive that the filters find nearest to a point.
-#[derive(Clone, Copy)]
-pub(crate) struct NearestSample {
-    /// An upper bound of the distance to it. It is infinite if no filter could be used.
-    pub(crate) distance: f64,
-    /// The packet of the primitive.
-    pub(crate) packet: u32,
-    /// The lane of the primitive.
-    pub(crate) lane: usize,
+/// What one thread makes: some finished cells, some open ones, and memory that is used again for each cell.
+#[derive(Default)]
+pub(crate) struct CellTask {
+    /// The resolution of the pass.
+    pub(crate) resolution: f64,
+    /// The finished cells. The numbers of children and tasks begin at zero.
+    pub(crate) cells: Vec<RefinedCell>,
+    /// The blocks of their lists.
+    pub(crate) blocks: Vec<Block>,
+    /// The cells that are left open.
+    pub(crate) open: Vec<OpenCell>,
+    /// The numbers of the cells that the task began with.
+    pub(crate) roots: Vec<usize>,
+    /// What had been spent before the task, or by an earlier time.
+    pub(crate) before: Spent,
+    /// What has been spent, with what was spent before.
+    pub(crate) spent: Spent,
+    /// The memory of the current split.
+    pub(crate) lattice: Lattice,
+    /// Vectors for the distances of splits: one for each cell on the path to the current one.
+    pub(crate) distances: Vec<Vec<LatticeDistances>>,
+    /// The centre of the current cell.
+    pub(crate) centre: CellCentre,
 }
 
-impl NearestSample {
-    /// A sample before any packet was added.
-    pub(crate) const NONE: Self = Self { distance: f64::INFINITY, packet: 0, lane: 0 };
+impl CellTask {
+    /// Begins a task of a pass.
+    pub(crate) fn new(resolution: f64, before: Spent) -> Self {
+        Self { resolution, before, spent: before, ..Self::default() }
+    }
 
-    /// Replaces the sample if a packet has a lane with a lower upper bound.
-    pub(crate) fn add(&mut self, near: Option<(f64, usize)>, packet: u32) {
-        if let Some((distance, lane)) = near
-            && distance < self.distance
-        {
-            *self = Self { distance, packet, lane };
-        }
+    /// Adds a cell and returns its number.
+    pub(crate) fn add_cell(&mut self) -> usize {
+        self.cells.push(RefinedCell::Tree);
+        self.cells.len() - 1
     }
 }
 
-/// The filters at the centre of a cell, and what they predict for queries there.
+/// The middle of a cell, and what bounds at its corners predict for queries there. Its vectors are used again.
+#[derive(Default)]
 pub(crate) struct CellCentre {
-    /// The distances from the centre to each packet of the cell.
-    pub(crate) distances: Vec<LaneDistances>,
-    /// Whether the filters bound the distances to all packets. Packets of unknown primitives have no vertices and
-    /// no such bounds.
-    pub(crate) has_all_bounds: bool,
     /// The nearest point of the scene, which is a dominator.
     pub(crate) y: V3,
+    /// The squared lower bounds of the distances from the centre to the boxes of all candidates.
+    pub(crate) box_squares: Vec<f64>,
+    /// For each candidate lower bounds of the distances from the corners to its lanes.
+    pub(crate) from_corners: Vec<[f64; 8]>,
     /// The number of packets that a block with boxes would let pass.
     pub(crate) passing_boxes: usize,
     /// The number of packets that a block with corners would let pass.

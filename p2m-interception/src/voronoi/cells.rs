@@ -87,8 +87,9 @@ impl CellContext<'_> {
             },
             || CellPackets::find(self, adjacency, incident_tetrahedra, near_tetrahedra, is_hub, report, reporter),
         );
-        let empty_list =
-            Block::from_list(&[Entry { packet: 0, lanes: 0, bounds: [[0.0; 3]; 2], f: [0.0; 8] }], BoundKind::Boxes);
+        let empty_list: Vec<Block> =
+            Block::from_list(&[Entry { packet: 0, lanes: 0, bounds: [[0.0; 3]; 2], f: [0.0; 8] }], BoundKind::Boxes)
+                .collect();
         let further_blocks = |site| packets.of_site(site).len().div_ceil(BLOCK_WIDTH).saturating_sub(1);
         let mut blocks = Vec::with_capacity(sites.len() + (0..sites.len()).map(further_blocks).sum::<usize>());
         blocks.resize(sites.len(), empty_list[0]);

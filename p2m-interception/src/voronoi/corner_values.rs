@@ -1,6 +1,6 @@
 //! The values of the function of the corner test at some corners, for the lanes of a packet.
 
-use crate::list::corner_test::{DistancesAtPoints, LaneDistances, MinOverLanes};
+use crate::list::corner_test::{DistancesAtPoint, LaneDistances, LeastOfLanes};
 use crate::voronoi::cell_polytope::CornerPoints;
 use p2m_bvh::PacketTree;
 use p2m_bvh::engine::packet::{LANES, Locals, PLACES, Packet};
@@ -30,20 +30,18 @@ pub(crate) struct SiteDistances<'a> {
     /// The tree, for its instruction set.
     pub(crate) tree: &'a PacketTree,
     /// The distances from the site.
-    pub(crate) distances: [LaneDistances; 1],
+    pub(crate) distances: LaneDistances,
 }
 
 impl<'a> SiteDistances<'a> {
     /// Runs the filter of a packet at a site.
     pub(crate) fn new(tree: &'a PacketTree, packet: &Packet, site: &V3) -> Self {
-        let mut distances = [LaneDistances::UNKNOWN];
-        tree.isa().run(DistancesAtPoints { packet, points: &[*site], distances: &mut distances, nearest: &mut [None] });
-        Self { tree, distances }
+        Self { tree, distances: tree.isa().run(DistancesAtPoint { packet, point: site }).0 }
     }
 
     /// Returns a lower bound of the distance to the nearest of some lanes, in the unit of the packet.
     pub(crate) fn least(&self, lanes: u16) -> f64 {
-        self.tree.isa().run(MinOverLanes { distances: &self.distances, points: &[0], lanes })[0]
+        self.tree.isa().run(LeastOfLanes { distances: &self.distances, lanes })
     }
 }
 

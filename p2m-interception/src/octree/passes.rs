@@ -1,0 +1,161 @@
+//! The passes of a refinement: each one splits the cells that are worth it at its resolution, which is higher than that
+//! of the pass before.
+//!
+//! No cell is split twice: a pass begins with the cells that the pass before has left open. It takes the most valuable
+//! ones first, and ends where their children would exceed a budget. Then the build ends as well, and each cell that is
+//! still open gets a list. So a build can end after any cell of a pass, and it uses its budgets.
+//!
+//! The cells of a pass are refined in chunks, on all threads, and the chunks are kept one after the other. Which chunk
+//! is the last one to be kept depends only on what they take together, and not on the number of threads. A chunk that
+//! exceeds a budget by itself ends at once, so each thread wastes at most what is left of the budgets.
+
+use crate::list::block::Block;
+use crate::octree::budget::Spent;
+use crate::octree::refinement::{CellTask, OpenCell, Place, RefinedCell, RefinedCells, Refinement};
+use crate::parallel_chunks::map_chunks_in_order;
+use p2m_core::engine::vector::V3;
+use std::sync::Mutex;
+
+/// The resolution of the first pass, unless the last one is lower.
+const FIRST_RESOLUTION: f64 = 2e-4;
+/// The ratio of the resolutions of two passes at most. Cells are left open at the end of each pass, and to go on with
+/// one takes about as many tests as a third of a split.
+const MAX_STEP: f64 = 40.0;
+/// The ratio of the resolutions of two passes at least.
+const MIN_STEP: f64 = 1.5;
+/// If the resolution is multiplied by a number, cells take about this power of it more, or less.
+const POWER_OF_RESOLUTION: f64 = 0.6;
+/// The largest number of cells that a thread takes at a time.
+const MAX_CELLS_PER_CHUNK: usize = 64;
+/// The least number of chunks into which the cells of a pass are divided, if there are enough.
+const MIN_CHUNKS: usize = 256;
+
+/// What becomes of an open cell.
+type FateOf<'a> = fn(&Refinement<'a>, &mut CellTask, &OpenCell, Place) -> RefinedCell;
+
+/// An octree between two passes.
+#[derive(Default)]
+pub(crate) struct Passes {
+    /// The cells. The cube of the domain is the first one.
+    pub(crate) refined: RefinedCells,
+    /// The cells that are open.
+    open: Vec<OpenCell>,
+    /// What the cells take of the budgets.
+    pub(crate) spent: Spent,
+    /// The resolution of the last pass.
+    pub(crate) resolution: f64,
+}
+
+impl Passes {
+    /// Refines the cube of the domain. The result is `None` if even the coarsest cells exceed a budget.
+    pub(crate) fn run(refinement: &Refinement<'_>, low: V3, side: f64) -> Option<Self> {
+        let resolution = FIRST_RESOLUTION.min(refinement.last_resolution);
+        let mut task = CellTask::new(resolution, Spent::default());
+        let number = task.add_cell();
+        task.cells[number] = refinement.refine_root(&mut task, low, side, Place { number, part: 1.0 });
+        if task.spent.exceeds(refinement.budgets) {
+            return None;
+        }
+        let refined = RefinedCells { cells: task.cells, blocks: vec![task.blocks] };
+        let mut passes = Self { refined, open: task.open, spent: task.spent, resolution };
+        let mut is_kept = true;
+        while is_kept && !passes.open.is_empty() {
+            let spent = passes.spent.part_of(refinement.budgets);
+            let step = spent.powf(-1.0 / POWER_OF_RESOLUTION).clamp(MIN_STEP, MAX_STEP);
+            let next = (passes.resolution * step).min(refinement.last_resolution);
+            let (mut valuable, rest): (Vec<_>, Vec<_>) =
+                std::mem::take(&mut passes.open).into_iter().partition(|cell| cell.resolution <= next);
+            // Cells of about the same value stay in the order of their places, so that neighbours follow each other.
+            valuable.sort_by(|a, b| a.resolution.log2().floor().total_cmp(&b.resolution.log2().floor()));
+            passes.open = rest;
+            let left = passes.make(refinement, valuable, next, Refinement::split_open);
+            is_kept = left.is_empty();
+            passes.open.extend(left);
+            if is_kept {
+                passes.resolution = next;
+            }
+        }
+        if passes.open.is_empty() {
+            passes.resolution = refinement.last_resolution;
+        }
+        let open = std::mem::take(&mut passes.open);
+        passes.make(refinement, open, 0.0, Refinement::finish_open);
+        Some(passes)
+    }
+
+    /// Determines what becomes of open cells, the first ones first, until a budget is exceeded. It returns the cells
+    /// that are still open then.
+    fn make<'a>(
+        &mut self,
+        refinement: &Refinement<'a>,
+        mut cells: Vec<OpenCell>,
+        resolution: f64,
+        fate_of: FateOf<'a>,
+    ) -> Vec<OpenCell> {
+        let chunk_len = (cells.len() / MIN_CHUNKS).clamp(1, MAX_CELLS_PER_CHUNK);
+        // What was spent for the chunks that are kept so far, or nothing if no more chunks are kept.
+        let kept = Mutex::new(Some(self.spent));
+        let current = || *kept.lock().expect("no thread panics");
+        let mut done = 0;
+        map_chunks_in_order(
+            cells.len(),
+            chunk_len,
+            refinement.parallel,
+            |range| {
+                let mut task = CellTask::new(resolution, current()?);
+                for cell in &cells[range.clone()] {
+                    task.spent -= Spent::reserved_for(cell);
+                    let number = task.add_cell();
+                    task.cells[number] = fate_of(refinement, &mut task, cell, Place { number, ..cell.place });
+                    task.roots.push(number);
+                }
+                let CellTask { cells: made, blocks, open, roots, spent, before, .. } = task;
+                Some((
+                    range,
+                    roots,
+                    (made, blocks),
+                    open,
+                    Spent { bytes: spent.bytes - before.bytes, tests: spent.tests - before.tests },
+                ))
+            },
+            |chunk| {
+                let mut kept = kept.lock().expect("no thread panics");
+                let (Some(mut spent), Some((range, roots, (made, blocks), open, more))) = (*kept, chunk) else {
+                    return;
+                };
+                spent += more;
+                if spent.exceeds(refinement.budgets) {
+                    *kept = None;
+                    return;
+                }
+                *kept = Some(spent);
+                done = range.end;
+                let first = self.refined.cells.len();
+                self.refined.append((made, blocks));
+                for (cell, root) in cells[range].iter().zip(roots) {
+                    self.refined.cells[cell.place.number] = self.refined.cells[first + root];
+                }
+                self.open.extend(open.into_iter().map(|mut cell| {
+                    cell.place.number += first;
+                    cell
+                }));
+                self.spent = spent;
+            },
+        );
+        cells.split_off(done)
+    }
+}
+
+impl RefinedCells {
+    /// Appends the cells and blocks of a task, whose numbers begin at zero.
+    fn append(&mut self, (cells, blocks): (Vec<RefinedCell>, Vec<Block>)) {
+        let first = self.cells.len();
+        let task = u32::try_from(self.blocks.len()).expect("few tasks");
+        self.cells.extend(cells.into_iter().map(|cell| match cell {
+            RefinedCell::Split(children) => RefinedCell::Split(first + children),
+            RefinedCell::List(_, block) => RefinedCell::List(task, block),
+            other => other,
+        }));
+        self.blocks.push(blocks);
+    }
+}
