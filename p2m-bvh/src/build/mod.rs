@@ -10,6 +10,5 @@ mod packet_tree;
 mod primitive;
 mod sah;
 mod split;
-mod split_tree;
 
 pub use options::{SplitOptions, SplitRule, TreeOptions};
