@@ -174,6 +174,8 @@ fn pack<'a, V: Volume>(
             bounded.push(V::Node::enclose(shared, frame, &primitives, &bounds));
             *packet = Packet::new(ids, &primitives, &bounds, frame.unit * MIN_UNIT_RATIO, &mut vertices);
         }
+        // The lists of all chunks are in memory together with the list of all vertices.
+        vertices.shrink_to_fit();
         (vertices, bounded)
     };
     let mut packed = map_numbers(packets, parallel, |_| Packet::zeroed());

@@ -2,6 +2,7 @@
 
 use crate::packet::{Kind, Member};
 use crate::tree::frame::Frame;
+use p2m_core::engine::simd::{InstructionSet, Lanes};
 use p2m_core::{Aabb, PrimitiveId};
 
 /// The lanes of a box in the frame of a build: its lower corner, a lane that is not part of the box, the negated
@@ -54,10 +55,16 @@ impl BuildPrimitive {
         u64::from(self.0[7].to_bits()) << 32 | u64::from(self.0[3].to_bits())
     }
 
+    /// Twice the coordinate of the centre along an axis.
+    #[inline(always)]
+    pub(crate) fn centre_at(&self, axis: usize) -> f32 {
+        self.0[axis] - self.0[UPPER + axis]
+    }
+
     /// Twice the coordinates of the centre. The last number has no meaning.
     #[inline(always)]
     pub(crate) fn centre(&self) -> [f32; 4] {
-        std::array::from_fn(|k| self.0[k] - self.0[UPPER + k])
+        std::array::from_fn(|k| self.centre_at(k))
     }
 
     /// The box of the centre.
@@ -98,16 +105,16 @@ impl GrowingBox {
 
     /// Adds a box.
     #[inline(always)]
-    pub(crate) fn add(&mut self, other: &Self) {
-        // The lanes are copied first, because a conditional store would be slower than a minimum.
-        let (a, b) = (self.0, other.0);
-        self.0 = std::array::from_fn(|k| if b[k] < a[k] { b[k] } else { a[k] });
+    pub(crate) fn add<I: InstructionSet>(&mut self, other: &Self) {
+        I::Eight::load(&self.0).min(I::Eight::load(&other.0)).store(&mut self.0);
     }
 
-    /// Raises all numbers to `limit`, which turns a box into one that adds nothing if it is [`Self::NOTHING`].
+    /// The box if the condition holds, and otherwise one that adds nothing to others. There is no branch.
     #[inline(always)]
-    pub(crate) fn raised_to(&self, limit: f32) -> Self {
-        Self(std::array::from_fn(|k| if self.0[k] < limit { limit } else { self.0[k] }))
+    pub(crate) fn only_if(&self, condition: bool) -> Self {
+        // The limit is below all coordinates or above them: the condition is its sign.
+        let limit = f32::from_bits(Self::NOTHING.to_bits() | u32::from(condition) << 31);
+        Self(self.0.map(|x| if x < limit { limit } else { x }))
     }
 
     /// Half of the surface area of the box; a positive number for the box of nothing.

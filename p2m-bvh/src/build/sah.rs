@@ -50,31 +50,43 @@ impl Binning {
         self
     }
 
-    /// The bins of the centre of a primitive along the axes. They never decrease while the centre moves up.
+    /// The bin of a centre along an axis, given twice its coordinate. It never decreases while the centre moves up.
     #[inline(always)]
-    pub(crate) fn bins_of(&self, primitive: &BuildPrimitive) -> [u32; 4] {
+    fn bin_at(&self, axis: usize, centre: f32) -> u32 {
         // At this size the unit in the last place is 1, so the sum is rounded to an integer, whose lowest bits are
         // those of its mantissa. That takes fewer instructions than a conversion.
         const SHIFT: f32 = (1u32 << 23) as f32;
+        let bin = (centre - self.low[axis]) * self.scale[axis] - 0.5;
+        let bin = if bin > 0.0 { bin } else { 0.0 };
+        let bin = if bin < LAST_BIN { bin } else { LAST_BIN };
+        (bin + SHIFT).to_bits() % 16
+    }
+
+    /// The bins of the centre of a primitive along the axes.
+    #[inline(always)]
+    fn bins_of(&self, primitive: &BuildPrimitive) -> [u32; 4] {
         let centre = primitive.centre();
-        std::array::from_fn(|k| {
-            let bin = (centre[k] - self.low[k]) * self.scale[k] - 0.5;
-            let bin = if bin > 0.0 { bin } else { 0.0 };
-            let bin = if bin < LAST_BIN { bin } else { LAST_BIN };
-            (bin + SHIFT).to_bits() % 16
-        })
+        std::array::from_fn(|k| self.bin_at(k, centre[k]))
     }
 }
 
 /// A split of a node: primitives whose centre falls into a bin below `bin` along the axis go left.
 pub(crate) struct SplitPlane {
-    pub(crate) binning: Binning,
-    pub(crate) axis: usize,
-    pub(crate) bin: usize,
+    binning: Binning,
+    axis: usize,
+    bin: usize,
     /// The cost of both sides, in units of the cost of testing a primitive.
     pub(crate) cost: f32,
     /// The boxes around the primitives of both sides.
     pub(crate) bounds: [GrowingBox; 2],
+}
+
+impl SplitPlane {
+    /// Whether a primitive goes left.
+    #[inline(always)]
+    pub(crate) fn is_left(&self, primitive: &BuildPrimitive) -> bool {
+        (self.binning.bin_at(self.axis, primitive.centre_at(self.axis)) as usize) < self.bin
+    }
 }
 
 /// The number of times that [`SplitRule::AdaptiveSah`] samples the cost again around the best position.
@@ -118,10 +130,10 @@ impl Bins {
 
     /// The box around the primitives of some bins.
     #[inline(always)]
-    fn bounds(&self, bins: std::ops::Range<usize>) -> GrowingBox {
+    fn bounds<I: InstructionSet>(&self, bins: std::ops::Range<usize>) -> GrowingBox {
         let mut bounds = GrowingBox::EMPTY;
         for bin in bins {
-            bounds.add(&self.boxes[bin]);
+            bounds.add::<I>(&self.boxes[bin]);
         }
         bounds
     }
@@ -129,19 +141,19 @@ impl Bins {
     /// The cheapest border between two bins that has primitives on both sides, and its cost. The cost of a side is its
     /// half area times that of testing its primitives.
     #[inline(always)]
-    fn cheapest_border(&self, node_area: f32, block: usize) -> (usize, f32) {
+    fn cheapest_border<I: InstructionSet>(&self, node_area: f32, block: usize) -> (usize, f32) {
         // The area and the number of the primitives to the right of the border below each bin.
         let (mut areas, mut counts) = ([0.0; BINS], [0; BINS]);
         let (mut side, mut count) = (GrowingBox::EMPTY, 0);
         for bin in (1..BINS).rev() {
-            side.add(&self.boxes[bin]);
+            side.add::<I>(&self.boxes[bin]);
             count += self.counts[bin];
             (areas[bin], counts[bin]) = (side.half_area(), count);
         }
         let mut best = (0, f32::INFINITY);
         let (mut side, mut count) = (GrowingBox::EMPTY, 0);
         for bin in 1..BINS {
-            side.add(&self.boxes[bin - 1]);
+            side.add::<I>(&self.boxes[bin - 1]);
             count += self.counts[bin - 1];
             let [left, right] = [test_cost(count, block), test_cost(counts[bin], block)];
             // If all boxes lie on a line, every area is zero, and the most balanced split is taken.
@@ -188,13 +200,13 @@ impl<const N: usize> SimdKernel for FindBorder<'_, N> {
             let numbers = binning.bins_of(primitive);
             for i in 0..N {
                 let bin = (numbers[axes[i]] as usize) % BINS;
-                bins[i].boxes[bin].add(&primitive.bounds());
+                bins[i].boxes[bin].add::<I>(&primitive.bounds());
                 bins[i].counts[bin] += 1;
             }
         }
         let mut best = (0, 0, f32::INFINITY);
         for i in 0..N {
-            let (bin, cost) = bins[i].cheapest_border(node_area, block);
+            let (bin, cost) = bins[i].cheapest_border::<I>(node_area, block);
             if cost < best.2 {
                 best = (i, bin, cost);
             }
@@ -204,7 +216,7 @@ impl<const N: usize> SimdKernel for FindBorder<'_, N> {
             return None;
         }
         let cost = if node_area > 0.0 { sum / node_area } else { sum };
-        let bounds = [bins[i].bounds(0..bin), bins[i].bounds(bin..BINS)];
+        let bounds = [bins[i].bounds::<I>(0..bin), bins[i].bounds::<I>(bin..BINS)];
         Some(SplitPlane { binning, axis: axes[i], bin, cost, bounds })
     }
 }

@@ -64,9 +64,9 @@ pub(crate) fn split(
     if primitives.is_empty() {
         return Vec::new();
     }
-    let splitter = Splitter { isa: Isa::best(), members, options, per_unit: frame.per_unit };
-    let [bounds, centres] = splitter.isa.run(BoundPrimitives(primitives));
-    splitter.subtree(primitives, 0, Part { bounds, centres, unit: 1.0, is_finest: false, depth: 0 })
+    let splitter = Splitter { isa: Isa::best(), frame, members, options };
+    let root = splitter.root(primitives);
+    splitter.subtree(primitives, 0, root)
 }
 
 /// What is known of a node before it is split.
@@ -96,13 +96,19 @@ const MIN_PRIMITIVES_TO_FORK: usize = 1 << 13;
 /// What all splits of a tree have in common.
 struct Splitter<'a> {
     isa: Isa,
+    /// The frame of the scene.
+    frame: &'a Frame,
     members: Members<'a>,
     options: &'a SplitOptions,
-    /// The inverse of the unit of the frame of the scene.
-    per_unit: f64,
 }
 
 impl Splitter<'_> {
+    /// What is known of a root over primitives in the frame of the scene.
+    fn root(&self, primitives: &[BuildPrimitive]) -> Part {
+        let [bounds, centres] = self.isa.run(BoundPrimitives(primitives));
+        Part { bounds, centres, unit: 1.0, is_finest: false, depth: 0 }
+    }
+
     /// The tree over some primitives, which have the indices from `first` on. Its nodes are numbered from its root,
     /// which is 0.
     fn subtree(&self, primitives: &mut [BuildPrimitive], first: usize, part: Part) -> Vec<SplitNode> {
@@ -197,7 +203,7 @@ impl Splitter<'_> {
         }
         let [bounds, centres] = self.isa.run(BoundPrimitives(primitives));
         let is_finest = bounds.longest_side() < MIN_SIDE;
-        Part { bounds, centres, unit: frame.unit * self.per_unit, is_finest, depth: part.depth }
+        Part { bounds, centres, unit: frame.unit * self.frame.per_unit, is_finest, depth: part.depth }
     }
 }
 
@@ -241,8 +247,8 @@ impl SimdKernel for BoundPrimitives<'_> {
     fn run<I: InstructionSet>(self) -> [GrowingBox; 2] {
         let (mut bounds, mut centres) = (GrowingBox::EMPTY, GrowingBox::EMPTY);
         for primitive in self.0 {
-            bounds.add(&primitive.bounds());
-            centres.add(&primitive.centre_box());
+            bounds.add::<I>(&primitive.bounds());
+            centres.add::<I>(&primitive.centre_box());
         }
         [bounds, centres]
     }
@@ -261,20 +267,18 @@ impl SimdKernel for Partition<'_> {
     #[inline(always)]
     fn run<I: InstructionSet>(self) -> (usize, [GrowingBox; 2]) {
         let Self { primitives, plane } = self;
-        let SplitPlane { binning, axis, bin, .. } = plane;
         let mut split = 0;
         let [mut left, mut right] = [GrowingBox::EMPTY; 2];
         for i in 0..primitives.len() {
             let primitive = primitives[i];
-            let is_left = (binning.bins_of(&primitive)[*axis] as usize) < *bin;
+            let is_left = plane.is_left(&primitive);
             // Every primitive is swapped, so no branch depends on its side.
             primitives[i] = primitives[split];
             primitives[split] = primitive;
             split += usize::from(is_left);
             let centre = primitive.centre_box();
-            let limits = [-GrowingBox::NOTHING, GrowingBox::NOTHING];
-            left.add(&centre.raised_to(limits[usize::from(!is_left)]));
-            right.add(&centre.raised_to(limits[usize::from(is_left)]));
+            left.add::<I>(&centre.only_if(is_left));
+            right.add::<I>(&centre.only_if(!is_left));
         }
         (split, [left, right])
     }

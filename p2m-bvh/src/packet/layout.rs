@@ -342,28 +342,21 @@ impl<'a> ExactVertices<'a> {
         for (i, other) in self.keys.iter().enumerate() {
             found = found.min(if *other == key { i as u32 } else { u32::MAX });
         }
-        let known = &self.list[self.first..];
-        let is_same = |other: &V3| other.map(f64::to_bits) == [x, y, z];
-        if known.get(found as usize).is_some_and(is_same) {
-            return found as u8;
-        }
-        self.insert(vertex, key)
-    }
-
-    /// Does the same for a vertex that is not the first one with its key.
-    #[allow(clippy::cast_possible_truncation, reason = "there are at most 48 vertices")]
-    fn insert(&mut self, vertex: &V3, key: u32) -> u8 {
-        let bits = vertex.map(f64::to_bits);
-        let mut known = self.list[self.first..].iter();
-        let index = self.list.len() - self.first;
-        match known.position(|other| other.map(f64::to_bits) == bits) {
-            Some(index) => index as u8,
-            None => {
-                self.keys[index] = key;
-                self.list.push(*vertex);
-                index as u8
+        let (found, count) = (found as usize, self.list.len() - self.first);
+        // Equal vertices have equal keys.
+        if found < count {
+            let known = &self.list[self.first..];
+            let is_same = |other: &V3| other.map(f64::to_bits) == [x, y, z];
+            if is_same(&known[found]) {
+                return found as u8;
+            }
+            if let Some(index) = known.iter().position(is_same) {
+                return index as u8;
             }
         }
+        self.keys[count] = key;
+        self.list.push(*vertex);
+        count as u8
     }
 }
 
