@@ -13,7 +13,7 @@ use crate::tree::{Leaves, PacketTree};
 use crate::volume::Volume;
 use bytemuck::Zeroable;
 use p2m_core::engine::simd::Isa;
-use p2m_core::{Aabb, Primitive, PrimitiveId, PrimitiveSet, Real};
+use p2m_core::{Aabb, BuildError, Primitive, PrimitiveId, PrimitiveSet, Real, check_set};
 use std::ops::Range;
 
 /// The least unit of a packet, as a part of the unit of the tree: 2^-36. Finer units would bring nothing.
@@ -26,20 +26,35 @@ impl<V: Volume> PacketTree<V> {
     /// O(n log n) expected time, and O(K n) more for k-DOPs; O(n) memory.
     #[must_use]
     pub fn build<T: Real, S: PrimitiveSet<T> + Sync + ?Sized>(set: &S, options: &V::Options) -> Self {
-        let parallel = options.splits().parallel;
-        let box_of = |i: usize| set.get(PrimitiveId::new(i)).aabb();
-        let starts: Vec<usize> = (0..set.len()).step_by(CHUNK).collect();
-        let boxes = map(&starts, parallel, |start| {
-            (*start..set.len().min(start + CHUNK)).map(box_of).fold(Aabb::empty(), |all, one| all.union(&one))
-        });
-        let bounds = boxes.iter().fold(Aabb::empty(), |all, one| all.union(one)).to_f64();
+        let (bounds, _) = scene_box(set, options.splits().parallel);
+        Self::build_within(bounds, set, options)
+    }
+
+    /// Checks a set as [`check_set`] does and builds the tree over it. Both read the whole set, so they do it at once.
+    pub(crate) fn build_checked<T: Real, S: PrimitiveSet<T> + Sync + ?Sized>(
+        set: &S,
+        options: &V::Options,
+    ) -> Result<Self, BuildError> {
+        let (bounds, is_finite) = scene_box(set, options.splits().parallel);
+        if !is_finite || set.len() > PrimitiveId::MAX_COUNT {
+            check_set(set)?;
+        }
+        Ok(Self::build_within(bounds, set, options))
+    }
+
+    /// Builds the tree over a set with this box around it.
+    fn build_within<T: Real, S: PrimitiveSet<T> + Sync + ?Sized>(
+        bounds: Aabb<f64>,
+        set: &S,
+        options: &V::Options,
+    ) -> Self {
         let frame = Frame::around(&bounds);
         let place = |i: usize| {
             let id = PrimitiveId::new(i);
             let primitive = set.get(id);
             BuildPrimitive::new(&frame, &primitive.aabb().to_f64(), Kind::of(&primitive), id)
         };
-        let primitives = map_numbers(set.len(), parallel, place);
+        let primitives = map_numbers(set.len(), options.splits().parallel, place);
         Self::build_from_primitives(primitives, bounds, &|id| Member::from_primitive(&set.get(id)), options)
     }
 
@@ -56,18 +71,10 @@ impl<V: Volume> PacketTree<V> {
         let splits = split(&mut primitives, &frame, members, options);
         // Each leaf becomes one packet or several, because a packet has primitives of one kind.
         let mut packet_ids: Vec<Range<u32>> = Vec::new();
-        let mut order = vec![PrimitiveId::new(0); primitives.len()];
-        let mut ranks: Vec<u64> = Vec::new();
         let packets_of = |leaf: &SplitNode| {
-            // Primitives of a kind are sorted by id, because neighbours in the user's order tend to be neighbours in
-            // memory.
-            ranks.clear();
-            ranks.extend(primitives[leaf.range()].iter().map(BuildPrimitive::rank));
-            ranks.sort_unstable();
-            ranks.iter().zip(&mut order[leaf.range()]).for_each(|(rank, id)| *id = BuildPrimitive::id_of(*rank));
             let first_packet = to_u32(packet_ids.len());
             let mut first = leaf.first;
-            for run in ranks.chunk_by(|a, b| a >> 32 == b >> 32) {
+            for run in primitives[leaf.range()].chunk_by(BuildPrimitive::is_same_kind) {
                 for packet in run.chunks(LANES) {
                     let end = first + to_u32(packet.len());
                     packet_ids.push(first..end);
@@ -77,7 +84,9 @@ impl<V: Volume> PacketTree<V> {
             first_packet..to_u32(packet_ids.len())
         };
         let binary = PacketBinaryTree::new(&splits, packets_of);
-        drop((splits, primitives, ranks));
+        drop(splits);
+        let order = map(&primitives, options.parallel, BuildPrimitive::id);
+        drop(primitives);
         let (root, children, depth) = binary.collapse();
         drop(binary);
         let ids_of = |packet: usize| &order[packet_ids[packet].start as usize..packet_ids[packet].end as usize];
@@ -149,6 +158,24 @@ impl<V: Volume> PacketTree<V> {
         self.leaves = leaves;
         self.bound_nodes(&packet_bounds);
     }
+}
+
+/// The box around a set, and whether all its primitives are finite.
+fn scene_box<T: Real, S: PrimitiveSet<T> + Sync + ?Sized>(set: &S, parallel: bool) -> (Aabb<f64>, bool) {
+    let len = set.len();
+    let of_chunk = |chunk: usize| {
+        let (mut all, mut is_finite) = (Aabb::empty(), true);
+        for i in chunk * CHUNK..len.min((chunk + 1) * CHUNK) {
+            let primitive = set.get(PrimitiveId::new(i));
+            all = all.union(&primitive.aabb());
+            is_finite &= primitive.is_finite();
+        }
+        (all, is_finite)
+    };
+    let chunks = map_numbers(len.div_ceil(CHUNK), parallel, of_chunk);
+    let (all, is_finite) =
+        chunks.iter().fold((Aabb::empty(), true), |(all, is_finite), chunk| (all.union(&chunk.0), is_finite & chunk.1));
+    (all.to_f64(), is_finite)
 }
 
 /// The bounds of a node of a tree.

@@ -41,16 +41,16 @@ impl BuildPrimitive {
     }
 
     pub(crate) fn id(&self) -> PrimitiveId {
-        Self::id_of(self.rank())
+        PrimitiveId::new(self.0[3].to_bits() as usize)
     }
 
-    /// The id of the primitive with a [`rank`](Self::rank).
-    #[inline]
-    pub(crate) fn id_of(rank: u64) -> PrimitiveId {
-        PrimitiveId::new((rank & u64::from(u32::MAX)) as usize)
+    /// Whether another primitive is of the same kind.
+    pub(crate) fn is_same_kind(&self, other: &Self) -> bool {
+        self.0[7].to_bits() == other.0[7].to_bits()
     }
 
-    /// Primitives are packed in the order of this number: those of a kind are together, in the order of their ids.
+    /// The place of the primitive in its leaf: those of a kind are together, because a packet has primitives of one
+    /// kind, and in the order of their ids, because neighbours in the user's order tend to be neighbours in memory.
     pub(crate) fn rank(&self) -> u64 {
         u64::from(self.0[7].to_bits()) << 32 | u64::from(self.0[3].to_bits())
     }

@@ -53,7 +53,7 @@ impl SplitNode {
 /// Splits primitives, which stand in the frame of the scene, and sorts them into the order of the leaves. Returns the
 /// nodes; node 0 is the root, and no primitives have no nodes.
 ///
-/// The primitives of one leaf are in no particular order. Siblings are side by side, and everything below the left one
+/// The primitives of one leaf are sorted by [`BuildPrimitive::rank`]. Siblings are side by side, and everything below the left one
 /// comes before everything below the right one. Parents come before children.
 pub(crate) fn split(
     primitives: &mut [BuildPrimitive],
@@ -207,7 +207,9 @@ impl Splitter<'_> {
     }
 }
 
-fn leaf(part: &Part, first: usize, primitives: &[BuildPrimitive]) -> SplitNode {
+/// Makes a leaf and sorts its primitives.
+fn leaf(part: &Part, first: usize, primitives: &mut [BuildPrimitive]) -> SplitNode {
+    primitives.sort_unstable_by_key(BuildPrimitive::rank);
     SplitNode { half_area: part.half_area(), first: to_u32(first), count: to_u32(primitives.len()) }
 }
 
@@ -351,6 +353,19 @@ mod tests {
         // Equal bins separate one primitive at a time, which would give 1900 levels without a limit.
         let points: Vec<_> = (-950..950).map(|e| point(2f64.powi(e), 0.0, 0.0)).collect();
         assert!(depth(&check(&points)) > MAX_SPLIT_DEPTH / 2);
+    }
+
+    #[test]
+    fn details_of_a_large_scene_are_split_as_well_as_the_whole_of_it() {
+        // In a frame of the whole scene, all points of the small grid but the last would have the same coordinates.
+        let grid = (0..1024).map(|i| point(f64::from(i % 32), f64::from(i / 32), 0.0));
+        let points: Vec<_> = grid.chain([point(1e12, 1e12, 1e12)]).collect();
+        let (nodes, order) = topology(&points, &SplitOptions::default());
+        for leaf in nodes.iter().filter(|node| node.count > 0) {
+            let inside = order[leaf.range()].iter().filter(|id| **id < 1024).map(|id| points[*id]);
+            let bounds = Aabb::from_points(&inside.collect::<Vec<_>>());
+            assert!(bounds.is_empty() || (bounds.max - bounds.min).max() <= 8.0, "{bounds:?}");
+        }
     }
 
     #[cfg(feature = "rayon")]
