@@ -357,14 +357,15 @@ mod tests {
 
     #[test]
     fn details_of_a_large_scene_are_split_as_well_as_the_whole_of_it() {
-        // In a frame of the whole scene, all points of the small grid but the last would have the same coordinates.
-        let grid = (0..1024).map(|i| point(f64::from(i % 32), f64::from(i / 32), 0.0));
+        // In a frame of the whole scene, all points of the small grid would have the same coordinates. They would be
+        // split in the order of their ids, which jumps over the grid.
+        let grid = (0..1024).map(|i| i * 397 % 1024).map(|i| point(f64::from(i % 32), f64::from(i / 32), 0.0));
         let points: Vec<_> = grid.chain([point(1e12, 1e12, 1e12)]).collect();
         let (nodes, order) = topology(&points, &SplitOptions::default());
         for leaf in nodes.iter().filter(|node| node.count > 0) {
             let inside = order[leaf.range()].iter().filter(|id| **id < 1024).map(|id| points[*id]);
             let bounds = Aabb::from_points(&inside.collect::<Vec<_>>());
-            assert!(bounds.is_empty() || (bounds.max - bounds.min).max() <= 8.0, "{bounds:?}");
+            assert!(bounds.is_empty() || (bounds.max - bounds.min).max() < 16.0, "{bounds:?}");
         }
     }
 
