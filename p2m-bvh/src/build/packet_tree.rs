@@ -35,8 +35,11 @@ impl<V: Volume> PacketTree<V> {
         set: &S,
         options: &V::Options,
     ) -> Result<Self, BuildError> {
+        if set.len() > PrimitiveId::MAX_COUNT {
+            return Err(BuildError::TooMany { len: set.len() });
+        }
         let (bounds, is_finite) = scene_box(set, options.splits().parallel);
-        if !is_finite || set.len() > PrimitiveId::MAX_COUNT {
+        if !is_finite {
             check_set(set)?;
         }
         Ok(Self::build_within(bounds, set, options))
