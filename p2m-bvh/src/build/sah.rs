@@ -205,8 +205,8 @@ impl<const N: usize> SimdKernel for FindBorder<'_, N> {
             }
         }
         let mut best = (0, 0, f32::INFINITY);
-        for i in 0..N {
-            let (bin, cost) = bins[i].cheapest_border::<I>(node_area, block);
+        for (i, bins) in bins.iter().enumerate() {
+            let (bin, cost) = bins.cheapest_border::<I>(node_area, block);
             if cost < best.2 {
                 best = (i, bin, cost);
             }

@@ -285,7 +285,7 @@ impl SimdKernel for PackVertices<'_> {
         let count = primitives[0].vertices().len();
         let (origin, per_unit) = (packet.origin, packet.per_unit);
         for v in 0..count {
-            for k in 0..3 {
+            for (k, origin) in origin.into_iter().enumerate() {
                 // Unused lanes repeat the first primitive.
                 let mut row = [primitives[0].vertices()[v][k]; LANES];
                 for (x, primitive) in row.iter_mut().zip(primitives) {
@@ -293,7 +293,7 @@ impl SimdKernel for PackVertices<'_> {
                 }
                 let rounded = &mut packet.rows[3 * v + k];
                 for lane in 0..LANES {
-                    rounded[lane] = round_to_grid((row[lane] - origin[k]) * per_unit);
+                    rounded[lane] = round_to_grid((row[lane] - origin) * per_unit);
                 }
             }
         }
