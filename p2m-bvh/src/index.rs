@@ -45,8 +45,7 @@ impl<T: Real, S: PrimitiveSet<T>, V: Volume> TreeIndex<T, S, V> {
     where
         S: Sync,
     {
-        check_set(&set)?;
-        let tree = PacketTree::build(&set, options);
+        let tree = PacketTree::build_checked(&set, options)?;
         Ok(Self { set, scalar: PhantomData, tree })
     }
 

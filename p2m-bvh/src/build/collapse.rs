@@ -8,7 +8,6 @@
 
 use crate::build::split::SplitNode;
 use crate::tree::node_ref::{NodeRef, WIDTH};
-use p2m_core::Aabb;
 use std::ops::Range;
 
 /// A binary tree whose leaves are single packets. Children come after their parents.
@@ -17,68 +16,52 @@ pub(crate) struct PacketBinaryTree {
 }
 
 struct BinaryNode {
-    bounds: Aabb<f64>,
+    /// Half of the surface area of the box around the node, in any unit.
+    half_area: f64,
     content: Content,
 }
 
-/// The content of a binary node: a packet or two nodes, by their numbers.
+/// The content of a binary node: a packet, or a node and the next one, by their numbers.
 #[derive(Clone, Copy)]
 enum Content {
-    Packet(usize),
-    Nodes([usize; 2]),
-}
-
-/// The cheapest forest of at most a certain number of trees below a binary node.
-#[derive(Clone, Copy, Default)]
-struct Forest {
-    cost: f64,
-    /// The number of trees below the first child; 0 if the forest is a single tree.
-    left: usize,
+    Packet(u32),
+    Nodes(u32),
 }
 
 impl PacketBinaryTree {
-    /// Continues a tree of splits down to single packets. `leaf_packets` has the packets of each leaf of that tree.
-    pub(crate) fn new(
-        splits: &[SplitNode<Aabb<f64>>],
-        leaf_packets: &[Range<usize>],
-        packet_boxes: &[Aabb<f64>],
-    ) -> Self {
-        /// The source of a node: a node of the splits, or several packets of one leaf.
-        enum Source {
-            Split(usize),
-            Packets(Range<usize>),
-        }
-        let mut binary = Self { nodes: Vec::with_capacity((2 * packet_boxes.len()).saturating_sub(1)) };
-        if splits.is_empty() {
-            return binary;
-        }
-        let mut sources = std::collections::VecDeque::from([Source::Split(0)]);
-        let mut numbered = 1;
-        while let Some(source) = sources.pop_front() {
-            let packets = match source {
-                Source::Split(at) if let Some(children) = splits[at].children() => {
-                    binary.nodes.push(BinaryNode {
-                        bounds: splits[at].volume,
-                        content: Content::Nodes([numbered, numbered + 1]),
-                    });
-                    sources.extend(children.map(Source::Split));
-                    numbered += 2;
-                    continue;
-                }
-                Source::Split(at) => leaf_packets[at].clone(),
-                Source::Packets(packets) => packets,
-            };
-            let bounds = packet_boxes[packets.clone()].iter().fold(Aabb::empty(), |a, b| a.union(b));
-            if packets.len() == 1 {
-                binary.nodes.push(BinaryNode { bounds, content: Content::Packet(packets.start) });
+    /// Continues a tree of splits down to single packets. `packets_of` returns the numbers of the packets of a leaf, of
+    /// which it has one at least.
+    pub(crate) fn new(splits: &[SplitNode], mut packets_of: impl FnMut(&SplitNode) -> Range<u32>) -> Self {
+        let mut nodes: Vec<BinaryNode> = Vec::with_capacity(splits.len());
+        // The leaves with several packets.
+        let mut pending = Vec::new();
+        for (at, split) in splits.iter().enumerate() {
+            let content = if split.count == 0 {
+                Content::Nodes(split.first)
             } else {
-                let middle = packets.start + packets.len() / 2;
-                binary.nodes.push(BinaryNode { bounds, content: Content::Nodes([numbered, numbered + 1]) });
-                sources.extend([packets.start..middle, middle..packets.end].map(Source::Packets));
-                numbered += 2;
+                let packets = packets_of(split);
+                if packets.len() > 1 {
+                    pending.push((at, packets.clone()));
+                }
+                Content::Packet(packets.start)
+            };
+            nodes.push(BinaryNode { half_area: split.half_area, content });
+        }
+        while let Some((at, packets)) = pending.pop() {
+            let half_area = nodes[at].half_area;
+            let child = nodes.len();
+            nodes[at].content = Content::Nodes(u32::try_from(child).expect("a leaf has few packets"));
+            let middle = packets.start + (packets.end - packets.start) / 2;
+            for (child, half) in
+                [packets.start..middle, middle..packets.end].into_iter().enumerate().map(|(i, half)| (child + i, half))
+            {
+                nodes.push(BinaryNode { half_area, content: Content::Packet(half.start) });
+                if half.len() > 1 {
+                    pending.push((child, half));
+                }
             }
         }
-        binary
+        Self { nodes }
     }
 
     /// Returns the root, the children of all nodes, and the number of nodes on the longest path. Parents
@@ -86,7 +69,7 @@ impl PacketBinaryTree {
     pub(crate) fn collapse(&self) -> (NodeRef, Vec<[NodeRef; WIDTH]>, usize) {
         let Some(root) = self.nodes.first() else { return (NodeRef::NONE, Vec::new(), 0) };
         if let Content::Packet(packet) = root.content {
-            return (NodeRef::packet(packet), Vec::new(), 0);
+            return (NodeRef::packet(packet as usize), Vec::new(), 0);
         }
         let forests = self.forests();
         let mut nodes = vec![[NodeRef::NONE; WIDTH]];
@@ -100,11 +83,12 @@ impl PacketBinaryTree {
             // by its children, which is so for the node itself.
             let mut subtrees = vec![(at, WIDTH, true)];
             while let Some((at, slots, is_opened)) = subtrees.pop() {
-                let forest = forests[at][slots - 1];
+                let forests = &forests[at];
+                let left = usize::from(forests.left[if is_opened { 0 } else { slots - 1 }]);
                 let child = match self.nodes[at].content {
-                    Content::Packet(packet) => NodeRef::packet(packet),
-                    Content::Nodes([a, b]) if is_opened || (slots > 1 && forest.left > 0) => {
-                        let left = if is_opened { forests[at][0].left } else { forest.left };
+                    Content::Packet(packet) => NodeRef::packet(packet as usize),
+                    Content::Nodes(a) if is_opened || (slots > 1 && left > 0) => {
+                        let (a, b) = (a as usize, a as usize + 1);
                         subtrees.extend([(b, slots - left, false), (a, left, false)]);
                         continue;
                     }
@@ -121,29 +105,48 @@ impl PacketBinaryTree {
         (NodeRef::node(0), nodes, longest)
     }
 
-    /// The cheapest forests of at most 1, 2, .. trees below each node. `left` of the forest of one tree is the number
-    /// of children of its root that are below the first child.
-    fn forests(&self) -> Vec<[Forest; WIDTH]> {
-        let scene_area = half_area(&self.nodes[0].bounds);
-        let mut forests = vec![[Forest::default(); WIDTH]; self.nodes.len()];
+    /// The cheapest forests below each node.
+    fn forests(&self) -> Vec<Forests> {
+        let scene_area = self.nodes[0].half_area;
+        let mut forests = vec![Forests::default(); self.nodes.len()];
         for (at, node) in self.nodes.iter().enumerate().rev() {
-            let Content::Nodes([a, b]) = node.content else { continue };
-            let best = |slots: usize| {
-                let split = |left: usize| forests[a][left - 1].cost + forests[b][slots - left - 1].cost;
-                let all = (1..slots).map(|left| Forest { cost: split(left), left });
-                all.min_by(|x, y| x.cost.total_cmp(&y.cost)).expect("two slots or more")
-            };
-            let mut chosen = [Forest::default(); WIDTH];
-            let below = best(WIDTH);
-            let area = half_area(&node.bounds) / scene_area;
+            let Content::Nodes(a) = node.content else { continue };
+            let area = node.half_area / scene_area;
             let visit = NODE_COST + if area.is_nan() { 1.0 } else { area };
-            chosen[0] = Forest { cost: visit + below.cost, left: below.left };
-            let single = Forest { cost: chosen[0].cost, left: 0 };
-            for slots in 2..=WIDTH {
-                let split = best(slots);
-                chosen[slots - 1] = if split.cost < single.cost { split } else { single };
+            forests[at] = Forests::above(visit, &forests[a as usize], &forests[a as usize + 1]);
+        }
+        forests
+    }
+}
+
+/// The cheapest forests of at most 1, 2, .. trees below a binary node.
+#[derive(Clone, Copy, Default)]
+struct Forests {
+    costs: [f64; WIDTH],
+    /// The number of trees of each forest that are below the first child; 0 if the forest is a single tree. For the
+    /// forest of one tree it is the number of children of its root that are below the first child.
+    left: [u8; WIDTH],
+}
+
+impl Forests {
+    /// The forests below a node with these children. A visit of the node costs `visit`.
+    fn above(visit: f64, a: &Self, b: &Self) -> Self {
+        let best = |slots: usize| {
+            let (mut cost, mut left) = (f64::INFINITY, 0);
+            for i in 1..slots {
+                let sum = a.costs[i - 1] + b.costs[slots - i - 1];
+                (cost, left) = if sum < cost { (sum, i) } else { (cost, left) };
             }
-            forests[at] = chosen;
+            (cost, u8::try_from(left).expect("a node has eight slots"))
+        };
+        let mut forests = Self::default();
+        let (below, left) = best(WIDTH);
+        let single = visit + below;
+        (forests.costs[0], forests.left[0]) = (single, left);
+        for slots in 2..=WIDTH {
+            let (cost, left) = best(slots);
+            (forests.costs[slots - 1], forests.left[slots - 1]) =
+                if cost < single { (cost, left) } else { (single, 0) };
         }
         forests
     }
@@ -153,43 +156,42 @@ impl PacketBinaryTree {
 /// areas are equal.
 const NODE_COST: f64 = 1e-3;
 
-/// Half of the surface area of a box, which is infinite if it overflows.
-fn half_area(bounds: &Aabb<f64>) -> f64 {
-    let side = bounds.max - bounds.min;
-    side.x * side.y + side.y * side.z + side.z * side.x
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
     use nalgebra::Point3;
+    use p2m_core::Aabb;
     use rand::{Rng, RngExt};
 
-    /// Builds a tree with random splits over packets along a line.
-    fn binary(random: &mut impl Rng, packets: Range<usize>, nodes: &mut Vec<BinaryNode>) -> usize {
-        let at = nodes.len();
+    /// Builds a tree with random splits over packets along a line, below the node `at`.
+    fn binary(random: &mut impl Rng, packets: Range<usize>, at: usize, nodes: &mut Vec<BinaryNode>) {
         let corner = |i: usize| Point3::new(i as f64, (i * i % 7) as f64, (i % 3) as f64);
         let bounds = packets.clone().map(|i| Aabb::from_points(&[corner(i), corner(i + 1)]));
-        let bounds = bounds.fold(Aabb::empty(), |a, b| a.union(&b));
-        nodes.push(BinaryNode { bounds, content: Content::Packet(packets.start) });
+        let side = bounds.fold(Aabb::empty(), |a, b| a.union(&b));
+        let side = side.max - side.min;
+        nodes[at].half_area = side.x * side.y + side.y * side.z + side.z * side.x;
+        nodes[at].content = Content::Packet(packets.start as u32);
         if packets.len() > 1 {
             let middle = random.random_range(packets.start + 1..packets.end);
-            let children = [packets.start..middle, middle..packets.end].map(|half| binary(random, half, nodes));
-            nodes[at].content = Content::Nodes(children);
+            let child = nodes.len();
+            nodes[at].content = Content::Nodes(child as u32);
+            nodes.extend([0, 1].map(|_| BinaryNode { half_area: 0.0, content: Content::Packet(0) }));
+            binary(random, packets.start..middle, child, nodes);
+            binary(random, middle..packets.end, child + 1, nodes);
         }
-        at
     }
 
     /// Returns the costs of all forests of at most `slots` trees below a node.
     fn all_forests(tree: &PacketBinaryTree, at: usize, slots: usize) -> Vec<f64> {
-        let Content::Nodes([a, b]) = tree.nodes[at].content else { return vec![0.0] };
+        let Content::Nodes(a) = tree.nodes[at].content else { return vec![0.0] };
+        let a = a as usize;
         let split = |slots: usize| {
             (1..slots).flat_map(move |left| {
-                let right = all_forests(tree, b, slots - left);
+                let right = all_forests(tree, a + 1, slots - left);
                 all_forests(tree, a, left).into_iter().flat_map(move |x| right.clone().into_iter().map(move |y| x + y))
             })
         };
-        let area = half_area(&tree.nodes[at].bounds) / half_area(&tree.nodes[0].bounds);
+        let area = tree.nodes[at].half_area / tree.nodes[0].half_area;
         let best = split(WIDTH).fold(f64::INFINITY, f64::min);
         std::iter::once(NODE_COST + area + best).chain(split(slots)).collect()
     }
@@ -200,10 +202,10 @@ mod tests {
             let mut random = p2m_testkit::rng("collapse", case);
             // The number of choices grows exponentially with that of packets.
             let len = 2 + case as usize % p2m_testkit::amount(10, 8);
-            let mut tree = PacketBinaryTree { nodes: Vec::new() };
-            binary(&mut random, 0..len, &mut tree.nodes);
+            let mut tree = PacketBinaryTree { nodes: vec![BinaryNode { half_area: 0.0, content: Content::Packet(0) }] };
+            binary(&mut random, 0..len, 0, &mut tree.nodes);
             let expected = all_forests(&tree, 0, 1)[0];
-            let found = tree.forests()[0][0].cost;
+            let found = tree.forests()[0].costs[0];
             assert!((found - expected).abs() < 1e-12 * expected, "{len}: {found} for {expected}");
             // The collapsed tree has as many children in all as there are nodes and packets below the root.
             let (root, nodes, depth) = tree.collapse();

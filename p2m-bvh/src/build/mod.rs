@@ -1,8 +1,8 @@
 //! Building a tree.
 //!
-//! Primitives are split top-down into a binary tree ([`split`], by the surface-area heuristic of [`sah`]). The leaves
-//! of that tree become packets, and its nodes are merged into nodes of eight children ([`collapse`]). Finally all nodes
-//! are bounded from the leaves to the root ([`packet_tree`]).
+//! Primitives are split top-down into a binary tree ([`split`], by the surface-area heuristic of [`sah`]) whose leaves
+//! are packets. Its nodes are merged into nodes of eight children ([`collapse`]). Finally the packets are made, and all
+//! nodes are bounded from the leaves to the root ([`packet_tree`]).
 
 mod collapse;
 mod options;
@@ -10,6 +10,5 @@ mod packet_tree;
 mod primitive;
 mod sah;
 mod split;
-mod split_tree;
 
 pub use options::{SplitOptions, SplitRule, TreeOptions};

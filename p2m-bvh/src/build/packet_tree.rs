@@ -2,16 +2,18 @@
 
 use crate::build::collapse::PacketBinaryTree;
 use crate::build::options::TreeOptions;
-use crate::build::split_tree::SplitTree;
+use crate::build::primitive::BuildPrimitive;
+use crate::build::split::{SplitNode, split, to_u32};
 use crate::packet::{Kind, LANES, Member, Members, Packet};
 use crate::tree::frame::Frame;
 use crate::tree::frame_line::half_extent;
 use crate::tree::node_ref::{NodeRef, WIDTH};
-use crate::tree::wide_node::WideNode;
+use crate::tree::wide_node::{VolumeNodes, WideNode};
 use crate::tree::{Leaves, PacketTree};
 use crate::volume::Volume;
+use bytemuck::Zeroable;
 use p2m_core::engine::simd::Isa;
-use p2m_core::{Aabb, Primitive, PrimitiveId, PrimitiveSet, Real};
+use p2m_core::{Aabb, BuildError, Primitive, PrimitiveId, PrimitiveSet, Real, check_set};
 use std::ops::Range;
 
 /// The least unit of a packet, as a part of the unit of the tree: 2^-36. Finer units would bring nothing.
@@ -24,58 +26,74 @@ impl<V: Volume> PacketTree<V> {
     /// O(n log n) expected time, and O(K n) more for k-DOPs; O(n) memory.
     #[must_use]
     pub fn build<T: Real, S: PrimitiveSet<T> + Sync + ?Sized>(set: &S, options: &V::Options) -> Self {
-        let box_and_kind = |i: usize| {
-            let primitive = set.get(PrimitiveId::new(i));
-            (primitive.aabb(), Kind::of(&primitive))
-        };
-        let (boxes, kinds): (Vec<Aabb<T>>, Vec<Kind>) = (0..set.len()).map(box_and_kind).unzip();
-        Self::build_from_boxes(&boxes, &kinds, &|id| Member::from_primitive(&set.get(id)), options)
+        let (bounds, _) = scene_box(set, options.splits().parallel);
+        Self::build_within(bounds, set, options)
     }
 
-    /// Builds the tree from the boxes and kinds of all primitives. The function does not depend on the type of the
-    /// set, so it is compiled once for each scalar.
-    fn build_from_boxes<T: Real>(
-        boxes: &[Aabb<T>],
-        kinds: &[Kind],
+    /// Checks a set as [`check_set`] does and builds the tree over it. Both read the whole set, so they do it at once.
+    pub(crate) fn build_checked<T: Real, S: PrimitiveSet<T> + Sync + ?Sized>(
+        set: &S,
+        options: &V::Options,
+    ) -> Result<Self, BuildError> {
+        if set.len() > PrimitiveId::MAX_COUNT {
+            return Err(BuildError::TooMany { len: set.len() });
+        }
+        let (bounds, is_finite) = scene_box(set, options.splits().parallel);
+        if !is_finite {
+            check_set(set)?;
+        }
+        Ok(Self::build_within(bounds, set, options))
+    }
+
+    /// Builds the tree over a set with this box around it.
+    fn build_within<T: Real, S: PrimitiveSet<T> + Sync + ?Sized>(
+        bounds: Aabb<f64>,
+        set: &S,
+        options: &V::Options,
+    ) -> Self {
+        let frame = Frame::around(&bounds);
+        let place = |i: usize| {
+            let id = PrimitiveId::new(i);
+            let primitive = set.get(id);
+            BuildPrimitive::new(&frame, &primitive.aabb().to_f64(), Kind::of(&primitive), id)
+        };
+        let primitives = map_numbers(set.len(), options.splits().parallel, place);
+        Self::build_from_primitives(primitives, bounds, &|id| Member::from_primitive(&set.get(id)), options)
+    }
+
+    /// Builds the tree from all primitives, which stand in the frame around `bounds`. The function does not depend on
+    /// the type of the set, so it is compiled once.
+    fn build_from_primitives(
+        mut primitives: Vec<BuildPrimitive>,
+        bounds: Aabb<f64>,
         members: Members<'_>,
         options: &V::Options,
     ) -> Self {
         let (shared, options) = (options.shared(), options.splits());
-        let mut binary = SplitTree::build(boxes, options, |id| boxes[id.index()].to_f64(), Aabb::union);
-        let bounds = binary.nodes.first().map_or(Aabb::empty(), |root| root.volume);
+        let frame = Frame::around(&bounds);
+        let splits = split(&mut primitives, &frame, members, options);
         // Each leaf becomes one packet or several, because a packet has primitives of one kind.
-        let mut ranges: Vec<(Range<usize>, Kind)> = Vec::new();
-        let mut leaf_packets = vec![0..0; binary.nodes.len()];
-        for (at, node) in binary.nodes.iter().enumerate() {
-            let leaf = node.range();
-            let ids = &mut binary.order[leaf.clone()];
-            // Primitives of a kind are sorted by id, because neighbours in the user's order tend to be
-            // neighbours in memory.
-            ids.sort_unstable_by_key(|id| (kinds[id.index()], *id));
-            let first = ranges.len();
-            for run in ids.chunk_by(|a, b| kinds[a.index()] == kinds[b.index()]) {
-                let kind = kinds[run[0].index()];
-                for ids in run.chunks(LANES) {
-                    let from = ranges.last().filter(|_| ranges.len() > first).map_or(leaf.start, |(r, _)| r.end);
-                    ranges.push((from..from + ids.len(), kind));
+        let mut packet_ids: Vec<Range<u32>> = Vec::new();
+        let packets_of = |leaf: &SplitNode| {
+            let first_packet = to_u32(packet_ids.len());
+            let mut first = leaf.first;
+            for run in primitives[leaf.range()].chunk_by(BuildPrimitive::is_same_kind) {
+                for packet in run.chunks(LANES) {
+                    let end = first + to_u32(packet.len());
+                    packet_ids.push(first..end);
+                    first = end;
                 }
             }
-            leaf_packets[at] = first..ranges.len();
-        }
-        let frame = Frame::around(&bounds);
-        let order = binary.order;
-        let pack = |(range, kind): &(Range<usize>, Kind)| {
-            let ids = &order[range.clone()];
-            let primitives = gather(members, ids);
-            let bounds = common_box(&primitives);
-            let enclosed = V::Node::enclose(&shared, &frame, &primitives, &bounds);
-            (Packet::new(ids, &primitives, *kind, &bounds, frame.unit * MIN_UNIT_RATIO), (bounds, enclosed))
+            first_packet..to_u32(packet_ids.len())
         };
-        let (packed, bounded): (Vec<_>, Vec<_>) = map(&ranges, options.parallel, pack).into_iter().unzip();
-        let (packet_boxes, packet_bounds): (Vec<_>, Vec<_>) = bounded.into_iter().unzip();
-        let leaves = Leaves::new(packed);
-        let (root, children, depth) = PacketBinaryTree::new(&binary.nodes, &leaf_packets, &packet_boxes).collapse();
-        let nodes = children.into_iter().map(V::Node::new).collect();
+        let binary = PacketBinaryTree::new(&splits, packets_of);
+        drop(splits);
+        let order = map(&primitives, options.parallel, BuildPrimitive::id);
+        drop(primitives);
+        let (root, children, depth) = binary.collapse();
+        drop(binary);
+        let ids_of = |packet: usize| &order[packet_ids[packet].start as usize..packet_ids[packet].end as usize];
+        let (leaves, packet_bounds) = pack::<V>(packet_ids.len(), &ids_of, members, &frame, &shared, options.parallel);
         let mut tree = Self {
             isa: Isa::best(),
             shared,
@@ -85,9 +103,9 @@ impl<V: Volume> PacketTree<V> {
             root_bounds: V::Node::EMPTY,
             root,
             depth,
-            nodes,
+            nodes: children.into_iter().map(V::Node::new).collect(),
             leaves,
-            len: boxes.len(),
+            len: order.len(),
         };
         tree.bound_nodes(&packet_bounds);
         tree
@@ -132,43 +150,99 @@ impl<V: Volume> PacketTree<V> {
 
     /// Fits the tree to moved primitives. The function does not depend on the type of the set, so it is compiled once.
     fn refit_to(&mut self, members: Members<'_>, parallel: bool) {
-        let packet_boxes = map(&self.leaves.packets, parallel, |packet| common_box(&gather(members, packet.ids())));
-        self.bounds = packet_boxes.iter().fold(Aabb::empty(), |a, b| a.union(b));
+        let boxes = map(&self.leaves.packets, parallel, |packet| {
+            packet.ids().iter().fold(Aabb::empty(), |all, id| all.union(&members(*id).bounds))
+        });
+        self.bounds = boxes.iter().fold(Aabb::empty(), |all, one| all.union(one));
         self.frame = Frame::around(&self.bounds);
         self.half_extent = half_extent(&self.frame, &self.bounds);
-        let min_unit = self.frame.unit * MIN_UNIT_RATIO;
-        let pack = |(packet, bounds): &(&Packet, &Aabb<f64>)| {
-            let primitives = gather(members, packet.ids());
-            // A primitive of the new set may be of another kind.
-            let first = primitives[0].kind;
-            let kind = if primitives.iter().all(|primitive| primitive.kind == first) { first } else { Kind::Box };
-            let enclosed = V::Node::enclose(&self.shared, &self.frame, &primitives, bounds);
-            (Packet::new(packet.ids(), &primitives, kind, bounds, min_unit), enclosed)
-        };
-        let bounded: Vec<_> = self.leaves.packets.iter().zip(&packet_boxes).collect();
-        let (packed, packet_bounds): (Vec<_>, Vec<_>) = map(&bounded, parallel, pack).into_iter().unzip();
-        self.leaves = Leaves::new(packed);
+        let ids_of = |packet: usize| self.leaves.packets[packet].ids();
+        let (leaves, packet_bounds) = pack::<V>(boxes.len(), &ids_of, members, &self.frame, &self.shared, parallel);
+        self.leaves = leaves;
         self.bound_nodes(&packet_bounds);
     }
 }
 
-/// The members with some ids.
-fn gather(members: Members<'_>, ids: &[PrimitiveId]) -> Vec<Member> {
-    ids.iter().map(|id| members(*id)).collect()
+/// The box around a set, and whether all its primitives are finite.
+fn scene_box<T: Real, S: PrimitiveSet<T> + Sync + ?Sized>(set: &S, parallel: bool) -> (Aabb<f64>, bool) {
+    let len = set.len();
+    let of_chunk = |chunk: usize| {
+        let (mut all, mut is_finite) = (Aabb::empty(), true);
+        for i in chunk * CHUNK..len.min((chunk + 1) * CHUNK) {
+            let primitive = set.get(PrimitiveId::new(i));
+            all = all.union(&primitive.aabb());
+            is_finite &= primitive.is_finite();
+        }
+        (all, is_finite)
+    };
+    let chunks = map_numbers(len.div_ceil(CHUNK), parallel, of_chunk);
+    let (all, is_finite) =
+        chunks.iter().fold((Aabb::empty(), true), |(all, is_finite), chunk| (all.union(&chunk.0), is_finite & chunk.1));
+    (all.to_f64(), is_finite)
 }
 
-/// The box around some primitives.
-fn common_box(primitives: &[Member]) -> Aabb<f64> {
-    primitives.iter().fold(Aabb::empty(), |all, one| all.union(&one.bounds))
+/// The bounds of a node of a tree.
+type Bounds<V> = <<V as VolumeNodes>::Node as WideNode>::Bounds;
+
+/// Makes packets of the primitives whose ids a function returns, and bounds them in the frame of the tree.
+fn pack<'a, V: Volume>(
+    packets: usize,
+    ids_of: &(dyn Fn(usize) -> &'a [PrimitiveId] + Sync),
+    members: Members<'_>,
+    frame: &Frame,
+    shared: &V::Shared,
+    parallel: bool,
+) -> (Leaves, Vec<Bounds<V>>) {
+    let pack_chunk = |first: usize, chunk: &mut [Packet]| {
+        let (mut vertices, mut bounded) = (Vec::new(), Vec::with_capacity(chunk.len()));
+        let mut primitives = Vec::with_capacity(LANES);
+        for (i, packet) in chunk.iter_mut().enumerate() {
+            let ids = ids_of(first + i);
+            primitives.clear();
+            primitives.extend(ids.iter().map(|id| members(*id)));
+            let bounds = primitives.iter().fold(Aabb::empty(), |all: Aabb<f64>, one: &Member| all.union(&one.bounds));
+            bounded.push(V::Node::enclose(shared, frame, &primitives, &bounds));
+            *packet = Packet::new(ids, &primitives, &bounds, frame.unit * MIN_UNIT_RATIO, &mut vertices);
+        }
+        // The lists of all chunks are in memory together with the list of all vertices.
+        vertices.shrink_to_fit();
+        (vertices, bounded)
+    };
+    let mut packed = map_numbers(packets, parallel, |_| Packet::zeroed());
+    let chunks = map_chunks(&mut packed, parallel, pack_chunk);
+    let (vertices, bounds): (Vec<_>, Vec<_>) = chunks.into_iter().unzip();
+    (Leaves::new(packed, PACKET_CHUNK, vertices), bounds.concat())
 }
 
 /// Maps a slice in order, on all threads if `parallel` is set and the feature `rayon` is on.
 fn map<A: Sync, B: Send>(all: &[A], parallel: bool, f: impl Fn(&A) -> B + Sync) -> Vec<B> {
+    map_numbers(all.len(), parallel, |i| f(&all[i]))
+}
+
+/// Maps the chunks of [`PACKET_CHUNK`] packets like [`map`]. The function gets the number of the first packet as well.
+fn map_chunks<B: Send>(packets: &mut [Packet], parallel: bool, f: impl Fn(usize, &mut [Packet]) -> B + Sync) -> Vec<B> {
     #[cfg(feature = "rayon")]
     if parallel {
         use rayon::prelude::*;
-        return all.par_iter().map(&f).collect();
+        let chunks = packets.par_chunks_mut(PACKET_CHUNK).enumerate();
+        return chunks.map(|(i, chunk)| f(i * PACKET_CHUNK, chunk)).collect();
     }
     let _ = parallel;
-    all.iter().map(f).collect()
+    packets.chunks_mut(PACKET_CHUNK).enumerate().map(|(i, chunk)| f(i * PACKET_CHUNK, chunk)).collect()
+}
+
+/// The number of primitives that a thread handles at a time.
+const CHUNK: usize = 1 << 14;
+/// The number of packets that a thread makes at a time.
+const PACKET_CHUNK: usize = 1 << 9;
+
+/// Maps the numbers below `len` in order, on all threads if `parallel` is set and the feature `rayon` is on.
+fn map_numbers<B: Send>(len: usize, parallel: bool, f: impl Fn(usize) -> B + Sync) -> Vec<B> {
+    #[cfg(feature = "rayon")]
+    if parallel {
+        use rayon::prelude::*;
+        return (0..len).into_par_iter().map(&f).collect();
+    }
+    let _ = parallel;
+    (0..len).map(f).collect()
 }

@@ -1,35 +1,44 @@
 //! Top-down splits.
 //!
 //! A node is split in two by the [`SplitRule`](crate::SplitRule) of the options, unless testing all its primitives is
-//! cheaper by the cost of that rule. If the rule returns no border (it is the rule of medians, or boxes and their
-//! centres do not separate the primitives, or their extent overflows), each child gets half of them in the order of
-//! their centres along the longest axis. Below half of [`MAX_SPLIT_DEPTH`] every node is
-//! split like that, so that no input makes the tree deep.
+//! cheaper by the cost of that rule. If the rule returns no border (it is the rule of medians, or centres do not
+//! separate the primitives), each child gets half of them in the order of their centres along the longest axis. Below
+//! half of [`MAX_SPLIT_DEPTH`] every node is split like that, so that no input makes the tree deep.
+//!
+//! Boxes are in f32, in a frame. A node that is much smaller than its frame gets a frame of its own, so that the details
+//! of a scene are split as well as the whole of it.
 
 use crate::build::options::SplitOptions;
 use crate::build::primitive::{BuildPrimitive, GrowingBox};
-use crate::build::sah::{SplitPlane, best_split, to_f64};
+use crate::build::sah::{SplitPlane, best_split};
+use crate::packet::Members;
 use crate::tree::MAX_DEPTH;
+use crate::tree::frame::Frame;
+use p2m_core::Aabb;
 use p2m_core::engine::simd::{InstructionSet, Isa, SimdKernel};
-use p2m_core::{Aabb, PrimitiveId, Real};
 
 /// The largest depth of a node below the root, whatever the input. Half of it is for splits by cost and half for
 /// halving, which suffices because sets have at most 2^30 primitives. A tree of eight children per node may have two
 /// nodes more on a path: the root itself, and one above the packets of a leaf with several kinds.
 pub(crate) const MAX_SPLIT_DEPTH: usize = MAX_DEPTH - 2;
 
+/// A node that is longer than this part of the unit of its frame keeps the frame. A coordinate of a shorter node would
+/// have fewer than 14 of the 24 bits of f32.
+const MIN_SIDE: f32 = 1.0 / 1024.0;
+
 /// A node of the binary tree: either a leaf with `count` primitives from index `first` on, or, if `count` is 0, the
 /// parent of the nodes `first` and `first + 1`.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) struct SplitNode<V> {
-    /// A volume that contains everything below the node.
-    pub(crate) volume: V,
+pub(crate) struct SplitNode {
+    /// Half of the surface area of the box around the node, in the frame of the scene.
+    pub(crate) half_area: f64,
     pub(crate) first: u32,
     pub(crate) count: u32,
 }
 
-impl<V> SplitNode<V> {
+impl SplitNode {
     /// The children of an inner node; `None` for a leaf.
+    #[cfg(test)]
     pub(crate) fn children(&self) -> Option<[usize; 2]> {
         (self.count == 0).then_some([self.first as usize, self.first as usize + 1])
     }
@@ -41,109 +50,192 @@ impl<V> SplitNode<V> {
     }
 }
 
-/// Splits boxes, and returns the nodes without volumes and the primitives in the order of the leaves.
+/// Splits primitives, which stand in the frame of the scene, and sorts them into the order of the leaves. Returns the
+/// nodes; node 0 is the root, and no primitives have no nodes.
 ///
-/// The primitives of one leaf are in no particular order. Siblings are side by side, and everything below the left one
-/// comes before everything below the right one.
-pub(crate) fn split<T: Real>(boxes: &[Aabb<T>], options: &SplitOptions) -> (Vec<SplitNode<()>>, Vec<PrimitiveId>) {
-    let mut primitives: Vec<BuildPrimitive> =
-        boxes.iter().enumerate().map(|(i, b)| BuildPrimitive::new(b, PrimitiveId::new(i))).collect();
-    let nodes = if primitives.is_empty() { Vec::new() } else { subtree(&mut primitives, 0, 0, options) };
-    (nodes, primitives.into_iter().map(|i| i.id).collect())
+/// The primitives of one leaf are sorted by [`BuildPrimitive::rank`]. Siblings are side by side, and everything below the left one
+/// comes before everything below the right one. Parents come before children.
+pub(crate) fn split(
+    primitives: &mut [BuildPrimitive],
+    frame: &Frame,
+    members: Members<'_>,
+    options: &SplitOptions,
+) -> Vec<SplitNode> {
+    if primitives.is_empty() {
+        return Vec::new();
+    }
+    let splitter = Splitter { isa: Isa::best(), frame, members, options };
+    let root = splitter.root(primitives);
+    splitter.subtree(primitives, 0, root)
+}
+
+/// What is known of a node before it is split.
+#[derive(Clone, Copy)]
+struct Part {
+    /// The box around the primitives.
+    bounds: GrowingBox,
+    /// The box around twice the centres of the primitives.
+    centres: GrowingBox,
+    /// The unit of the frame of the primitives, in units of the frame of the scene.
+    unit: f64,
+    /// Whether no other frame would be finer.
+    is_finest: bool,
+    depth: usize,
+}
+
+impl Part {
+    fn half_area(&self) -> f64 {
+        f64::from(self.bounds.half_area()) * (self.unit * self.unit)
+    }
 }
 
 /// The least number of primitives for which the two sides of a split are built on different threads.
 #[cfg(feature = "rayon")]
-const MIN_PRIMITIVES_TO_FORK: usize = 1 << 12;
+const MIN_PRIMITIVES_TO_FORK: usize = 1 << 13;
 
-/// The tree over some primitives, which have the indices from `first` on. Its nodes are numbered from its root,
-/// which is 0.
-fn subtree(
-    primitives: &mut [BuildPrimitive],
-    first: usize,
-    depth: usize,
-    options: &SplitOptions,
-) -> Vec<SplitNode<()>> {
-    #[cfg(feature = "rayon")]
-    if options.parallel && primitives.len() >= MIN_PRIMITIVES_TO_FORK {
-        let Some(left) = divide(primitives, depth, options) else { return vec![leaf(primitives, first)] };
-        let (a, b) = primitives.split_at_mut(left);
-        let (a, b) =
-            rayon::join(|| subtree(a, first, depth + 1, options), || subtree(b, first + left, depth + 1, options));
-        return joined(&a, &b);
-    }
-    let mut nodes = vec![SplitNode { volume: (), first: 0, count: 0 }];
-    // The nodes that still have to be split: their numbers, the ranges of their primitives and their depths.
-    let mut pending = vec![(0usize, 0..primitives.len(), depth)];
-    while let Some((at, range, depth)) = pending.pop() {
-        let here = &mut primitives[range.clone()];
-        match divide(here, depth, options) {
-            None => nodes[at] = leaf(here, first + range.start),
-            Some(left) => {
-                let child = nodes.len();
-                nodes[at] = SplitNode { volume: (), first: to_u32(child), count: 0 };
-                nodes.extend([SplitNode { volume: (), first: 0, count: 0 }; 2]);
-                let middle = range.start + left;
-                pending.push((child + 1, middle..range.end, depth + 1));
-                pending.push((child, range.start..middle, depth + 1));
-            }
-        }
-    }
-    nodes
+/// What all splits of a tree have in common.
+struct Splitter<'a> {
+    isa: Isa,
+    /// The frame of the scene.
+    frame: &'a Frame,
+    members: Members<'a>,
+    options: &'a SplitOptions,
 }
 
-fn leaf(primitives: &[BuildPrimitive], first: usize) -> SplitNode<()> {
-    SplitNode { volume: (), first: to_u32(first), count: to_u32(primitives.len()) }
+impl Splitter<'_> {
+    /// What is known of a root over primitives in the frame of the scene.
+    fn root(&self, primitives: &[BuildPrimitive]) -> Part {
+        let [bounds, centres] = self.isa.run(BoundPrimitives(primitives));
+        Part { bounds, centres, unit: 1.0, is_finest: false, depth: 0 }
+    }
+
+    /// The tree over some primitives, which have the indices from `first` on. Its nodes are numbered from its root,
+    /// which is 0.
+    fn subtree(&self, primitives: &mut [BuildPrimitive], first: usize, part: Part) -> Vec<SplitNode> {
+        #[cfg(feature = "rayon")]
+        if self.options.parallel && primitives.len() >= MIN_PRIMITIVES_TO_FORK {
+            let Some((left, [a, b])) = self.divide(primitives, &part) else {
+                return vec![leaf(&part, first, primitives)];
+            };
+            let (before, after) = primitives.split_at_mut(left);
+            let (a, b) = rayon::join(|| self.subtree(before, first, a), || self.subtree(after, first + left, b));
+            return joined(part.half_area(), &a, &b);
+        }
+        let unknown = SplitNode { half_area: 0.0, first: 0, count: 0 };
+        let mut nodes = vec![unknown];
+        // The nodes that still have to be split: their numbers, the ranges of their primitives and what is known of
+        // them.
+        let mut pending = vec![(0usize, 0..primitives.len(), part)];
+        while let Some((at, range, part)) = pending.pop() {
+            let here = &mut primitives[range.clone()];
+            match self.divide(here, &part) {
+                None => nodes[at] = leaf(&part, first + range.start, here),
+                Some((left, [a, b])) => {
+                    let child = nodes.len();
+                    nodes[at] = SplitNode { half_area: part.half_area(), first: to_u32(child), count: 0 };
+                    nodes.extend([unknown; 2]);
+                    let middle = range.start + left;
+                    pending.push((child + 1, middle..range.end, b));
+                    pending.push((child, range.start..middle, a));
+                }
+            }
+        }
+        nodes
+    }
+
+    /// Sorts the primitives of a node into two sides and returns how many are on the left, and the two sides; `None` if
+    /// the node is to be a leaf.
+    fn divide(&self, primitives: &mut [BuildPrimitive], part: &Part) -> Option<(usize, [Part; 2])> {
+        let Self { isa, options, .. } = *self;
+        let leaf_cost = to_f64(primitives.len().next_multiple_of(options.block.max(1)));
+        let may_be_leaf = primitives.len() <= options.max_leaf;
+        // A split costs its node at least.
+        if primitives.len() <= 1 || (may_be_leaf && options.node_cost >= leaf_cost) {
+            return None;
+        }
+        let part = &self.in_finer_frame(primitives, part);
+        let plane = if part.depth < MAX_SPLIT_DEPTH / 2 {
+            best_split(isa, primitives, &part.bounds, &part.centres, options)
+        } else {
+            None
+        };
+        let (left, bounds, centres) = match plane {
+            Some(SplitPlane { cost, .. }) if may_be_leaf && f64::from(cost) + options.node_cost >= leaf_cost => {
+                return None;
+            }
+            // Both sides have primitives, because `best_split` considers no other planes.
+            Some(plane) => {
+                let (left, centres) = isa.run(Partition { primitives, plane: &plane });
+                (left, plane.bounds, centres)
+            }
+            None if may_be_leaf => return None,
+            None => {
+                let axis = part.centres.longest_axis();
+                let middle = primitives.len() / 2;
+                primitives.select_nth_unstable_by(middle, |a, b| {
+                    a.centre()[axis].total_cmp(&b.centre()[axis]).then(a.id().cmp(&b.id()))
+                });
+                let (before, after) = primitives.split_at(middle);
+                let ([a, c], [b, d]) = (isa.run(BoundPrimitives(before)), isa.run(BoundPrimitives(after)));
+                (middle, [a, b], [c, d])
+            }
+        };
+        let side = |i: usize| Part { bounds: bounds[i], centres: centres[i], depth: part.depth + 1, ..*part };
+        Some((left, [side(0), side(1)]))
+    }
+
+    /// Places the primitives of a node into a frame of their own if they are much smaller than theirs.
+    fn in_finer_frame(&self, primitives: &mut [BuildPrimitive], part: &Part) -> Part {
+        if part.is_finest || part.bounds.longest_side() >= MIN_SIDE {
+            return *part;
+        }
+        self.placed_anew(primitives, part)
+    }
+
+    #[cold]
+    fn placed_anew(&self, primitives: &mut [BuildPrimitive], part: &Part) -> Part {
+        let bounds = primitives
+            .iter()
+            .fold(Aabb::empty(), |all: Aabb<f64>, primitive| all.union(&(self.members)(primitive.id()).bounds));
+        let frame = Frame::around(&bounds);
+        for primitive in primitives.iter_mut() {
+            *primitive = BuildPrimitive::from_member(&frame, &(self.members)(primitive.id()), primitive.id());
+        }
+        let [bounds, centres] = self.isa.run(BoundPrimitives(primitives));
+        let is_finest = bounds.longest_side() < MIN_SIDE;
+        Part { bounds, centres, unit: frame.unit * self.frame.per_unit, is_finest, depth: part.depth }
+    }
+}
+
+/// Makes a leaf and sorts its primitives.
+fn leaf(part: &Part, first: usize, primitives: &mut [BuildPrimitive]) -> SplitNode {
+    primitives.sort_unstable_by_key(BuildPrimitive::rank);
+    SplitNode { half_area: part.half_area(), first: to_u32(first), count: to_u32(primitives.len()) }
 }
 
 /// Joins two subtrees below a new root, in the order of [`split`].
 #[cfg(feature = "rayon")]
-fn joined(a: &[SplitNode<()>], b: &[SplitNode<()>]) -> Vec<SplitNode<()>> {
-    let shifted = |node: &SplitNode<()>, by: usize| match node.count {
+fn joined(half_area: f64, a: &[SplitNode], b: &[SplitNode]) -> Vec<SplitNode> {
+    let shifted = |node: &SplitNode, by: usize| match node.count {
         0 => SplitNode { first: node.first + to_u32(by), ..*node },
         _ => *node,
     };
     let (shift_a, shift_b) = (2, 1 + a.len());
     let mut nodes = Vec::with_capacity(1 + a.len() + b.len());
-    nodes.extend([SplitNode { volume: (), first: 1, count: 0 }, shifted(&a[0], shift_a), shifted(&b[0], shift_b)]);
+    nodes.extend([SplitNode { half_area, first: 1, count: 0 }, shifted(&a[0], shift_a), shifted(&b[0], shift_b)]);
     nodes.extend(a[1..].iter().map(|node| shifted(node, shift_a)));
     nodes.extend(b[1..].iter().map(|node| shifted(node, shift_b)));
     nodes
 }
 
-fn to_u32(n: usize) -> u32 {
+/// A number of nodes or primitives in 32 bits.
+pub(crate) fn to_u32(n: usize) -> u32 {
     u32::try_from(n).expect("fewer than 2^30 primitives give fewer than 2^31 nodes")
 }
 
-/// Sorts the primitives of a node into two sides and returns how many are on the left, or `None` if the node is to
-/// be a leaf.
-fn divide(primitives: &mut [BuildPrimitive], depth: usize, options: &SplitOptions) -> Option<usize> {
-    if primitives.len() <= 1 {
-        return None;
-    }
-    let [bounds, centres] = Isa::best().run(BoundPrimitives(primitives));
-    let may_be_leaf = primitives.len() <= options.max_leaf;
-    let plane = if depth < MAX_SPLIT_DEPTH / 2 { best_split(primitives, &bounds, &centres, options) } else { None };
-    match plane {
-        Some(SplitPlane { cost, .. })
-            if may_be_leaf
-                && cost + options.node_cost >= to_f64(primitives.len().next_multiple_of(options.block.max(1))) =>
-        {
-            None
-        }
-        // Both sides have primitives, because `best_split` considers no other planes.
-        Some(SplitPlane { binning, bin, .. }) => {
-            Some(partition(primitives, |primitive| binning.bin_of(primitive) < bin))
-        }
-        None if may_be_leaf => None,
-        None => {
-            let axis = centres.longest_axis();
-            let middle = primitives.len() / 2;
-            primitives
-                .select_nth_unstable_by(middle, |a, b| a.centre(axis).total_cmp(&b.centre(axis)).then(a.id.cmp(&b.id)));
-            Some(middle)
-        }
-    }
+#[allow(clippy::cast_precision_loss, reason = "counts are far below 2^53")]
+fn to_f64(n: usize) -> f64 {
+    n as f64
 }
 
 /// A SIMD kernel that returns the box around some primitives and the box around their centres. It uses the instruction
@@ -157,69 +249,90 @@ impl SimdKernel for BoundPrimitives<'_> {
     fn run<I: InstructionSet>(self) -> [GrowingBox; 2] {
         let (mut bounds, mut centres) = (GrowingBox::EMPTY, GrowingBox::EMPTY);
         for primitive in self.0 {
-            bounds.add(&primitive.bounds);
-            let centre = [primitive.centre(0), primitive.centre(1), primitive.centre(2)];
-            centres.add(&GrowingBox::new(centre, centre));
+            bounds.add::<I>(&primitive.bounds());
+            centres.add::<I>(&primitive.centre_box());
         }
         [bounds, centres]
     }
 }
 
-/// Moves the primitives for which `is_left` holds to the front and returns their number. The order of the
-/// result is deterministic.
-fn partition(primitives: &mut [BuildPrimitive], is_left: impl Fn(&BuildPrimitive) -> bool) -> usize {
-    let mut split = 0;
-    for i in 0..primitives.len() {
-        if is_left(&primitives[i]) {
-            primitives.swap(i, split);
-            split += 1;
+/// A SIMD kernel that moves the primitives below a plane to the front and returns their number, and the boxes around the
+/// centres of both sides. The order of the result is deterministic.
+struct Partition<'a> {
+    primitives: &'a mut [BuildPrimitive],
+    plane: &'a SplitPlane,
+}
+
+impl SimdKernel for Partition<'_> {
+    type Output = (usize, [GrowingBox; 2]);
+
+    #[inline(always)]
+    fn run<I: InstructionSet>(self) -> (usize, [GrowingBox; 2]) {
+        let Self { primitives, plane } = self;
+        let mut split = 0;
+        let [mut left, mut right] = [GrowingBox::EMPTY; 2];
+        for i in 0..primitives.len() {
+            let primitive = primitives[i];
+            let is_left = plane.is_left(&primitive);
+            // Every primitive is swapped, so no branch depends on its side.
+            primitives[i] = primitives[split];
+            primitives[split] = primitive;
+            split += usize::from(is_left);
+            let centre = primitive.centre_box();
+            left.add::<I>(&centre.only_if(is_left));
+            right.add::<I>(&centre.only_if(!is_left));
         }
+        (split, [left, right])
     }
-    split
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::packet::Member;
     use nalgebra::Point3;
+    use p2m_core::PrimitiveId;
     #[cfg(feature = "rayon")]
     use rand::RngExt;
 
-    struct Topology {
-        nodes: Vec<SplitNode<()>>,
-        order: Vec<PrimitiveId>,
+    /// Splits points as a build does, and returns the nodes and the order of the points.
+    fn topology(points: &[Point3<f64>], options: &SplitOptions) -> (Vec<SplitNode>, Vec<usize>) {
+        let frame = Frame::around(&Aabb::from_points(points));
+        let member = |id: PrimitiveId| Member::from_primitive(&p2m_core::Point::new(points[id.index()]));
+        let placed = |i| BuildPrimitive::from_member(&frame, &member(PrimitiveId::new(i)), PrimitiveId::new(i));
+        let mut primitives: Vec<_> = (0..points.len()).map(placed).collect();
+        let nodes = split(&mut primitives, &frame, &member, options);
+        (nodes, primitives.iter().map(|primitive| primitive.id().index()).collect())
     }
 
-    fn depth(h: &Topology) -> usize {
+    fn depth(nodes: &[SplitNode]) -> usize {
         let mut deepest = 0;
         let mut pending = vec![(0, 0)];
         while let Some((at, depth)) = pending.pop() {
             deepest = deepest.max(depth);
-            if let Some(children) = h.nodes[at].children() {
+            if let Some(children) = nodes[at].children() {
                 pending.extend(children.map(|c| (c, depth + 1)));
             }
         }
         deepest
     }
 
-    fn check(boxes: &[Aabb<f64>]) -> Topology {
-        let (nodes, order) = split(boxes, &SplitOptions::default());
-        let h = Topology { nodes, order };
-        let mut ids: Vec<usize> = h.order.iter().map(|id| id.index()).collect();
+    fn check(points: &[Point3<f64>]) -> Vec<SplitNode> {
+        let (nodes, mut ids) = topology(points, &SplitOptions::default());
         ids.sort_unstable();
-        assert!(ids.iter().copied().eq(0..boxes.len()), "every primitive once");
-        let mut covered: Vec<usize> = h.nodes.iter().flat_map(|n| n.children().map_or(n.range(), |_| 0..0)).collect();
+        assert!(ids.into_iter().eq(0..points.len()), "every primitive once");
+        let mut covered: Vec<usize> = nodes.iter().flat_map(|n| n.children().map_or(n.range(), |_| 0..0)).collect();
         covered.sort_unstable();
-        assert!(covered.into_iter().eq(0..boxes.len()), "every index in one leaf");
-        assert!(depth(&h) <= MAX_SPLIT_DEPTH);
-        for node in h.nodes.iter().filter(|n| n.children().is_none()) {
+        assert!(covered.into_iter().eq(0..points.len()), "every index in one leaf");
+        assert!(depth(&nodes) <= MAX_SPLIT_DEPTH);
+        for node in nodes.iter().filter(|n| n.children().is_none()) {
             assert!((1..=SplitOptions::default().max_leaf).contains(&node.range().len()));
         }
-        h
+        nodes
     }
 
-    fn point(x: f64, y: f64, z: f64) -> Aabb<f64> {
-        Aabb::from_points(&[Point3::new(x, y, z)])
+    fn point(x: f64, y: f64, z: f64) -> Point3<f64> {
+        Point3::new(x, y, z)
     }
 
     #[test]
@@ -238,8 +351,22 @@ mod tests {
     #[test]
     fn geometric_progressions_do_not_make_the_tree_deep() {
         // Equal bins separate one primitive at a time, which would give 1900 levels without a limit.
-        let boxes: Vec<_> = (-950..950).map(|e| point(2f64.powi(e), 0.0, 0.0)).collect();
-        assert!(depth(&check(&boxes)) > MAX_SPLIT_DEPTH / 2);
+        let points: Vec<_> = (-950..950).map(|e| point(2f64.powi(e), 0.0, 0.0)).collect();
+        assert!(depth(&check(&points)) > MAX_SPLIT_DEPTH / 2);
+    }
+
+    #[test]
+    fn details_of_a_large_scene_are_split_as_well_as_the_whole_of_it() {
+        // In a frame of the whole scene, all points of the small grid would have the same coordinates. They would be
+        // split in the order of their ids, which jumps over the grid.
+        let grid = (0..1024).map(|i| i * 397 % 1024).map(|i| point(f64::from(i % 32), f64::from(i / 32), 0.0));
+        let points: Vec<_> = grid.chain([point(1e12, 1e12, 1e12)]).collect();
+        let (nodes, order) = topology(&points, &SplitOptions::default());
+        for leaf in nodes.iter().filter(|node| node.count > 0) {
+            let inside = order[leaf.range()].iter().filter(|id| **id < 1024).map(|id| points[*id]);
+            let bounds = Aabb::from_points(&inside.collect::<Vec<_>>());
+            assert!(bounds.is_empty() || (bounds.max - bounds.min).max() < 16.0, "{bounds:?}");
+        }
     }
 
     #[cfg(feature = "rayon")]
@@ -247,12 +374,12 @@ mod tests {
     fn the_tree_is_the_same_for_any_number_of_threads() {
         let mut rng = p2m_testkit::rng("splits by threads", 0);
         let mut next = || rng.random::<f64>();
-        let boxes: Vec<Aabb<f64>> =
+        let points: Vec<Point3<f64>> =
             (0..p2m_testkit::amount(60_000, 20_000)).map(|_| point(next(), next(), next())).collect();
-        let expected = split(&boxes, &SplitOptions::default().with_parallel(false));
+        let expected = topology(&points, &SplitOptions::default().with_parallel(false));
         for threads in [1, 2, 5] {
             let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
-            assert!(pool.install(|| split(&boxes, &SplitOptions::default())) == expected, "{threads} threads");
+            assert!(pool.install(|| topology(&points, &SplitOptions::default())) == expected, "{threads} threads");
         }
     }
 }

@@ -489,7 +489,7 @@ mod tests {
             let queries: Vec<_> = (0..8).map(|_| query(&mut rng, &shapes) * scale).collect();
             let shapes: Vec<Shape<f64>> = shapes.iter().map(|s| scaled(s, scale)).collect();
             let ids: Vec<PrimitiveId> = (0..len).map(PrimitiveId::new).collect();
-            let (packet, _) = Packet::new(&ids, &members(&shapes), kind, &shapes.aabb(), scale * 2f64.powi(-36));
+            let packet = Packet::new(&ids, &members(&shapes), &shapes.aabb(), scale * 2f64.powi(-36), &mut Vec::new());
             assert_eq!((packet.ids(), packet.lanes().count_ones() as usize), (ids.as_slice(), len));
             for q in queries {
                 let Some(local) = packet.local(&q.coords.into()) else {
@@ -548,7 +548,7 @@ mod tests {
             .collect();
         let ids: Vec<PrimitiveId> = (0..LANES).map(PrimitiveId::new).collect();
         let bounds = shapes.aabb().union(&Aabb::from_points(&[Point3::origin(), Point3::from([40_000.0; 3])]));
-        let (packet, _) = Packet::new(&ids, &members(&shapes), Kind::Triangle, &bounds, 0.0);
+        let packet = Packet::new(&ids, &members(&shapes), &bounds, 0.0, &mut Vec::new());
         for tiny in [1e-10, 1e-22, 1e-24, 1e-30, 1e-40, 0.0] {
             let local = packet.local(&[-tiny, 1000.0, 1000.0]).expect("near");
             for isa in Isa::available() {
@@ -573,7 +573,7 @@ mod tests {
         let ids = [PrimitiveId::new(0)];
         for size in [1e-200, 1e200, f64::MAX] {
             let set = [p2m_core::Segment::new(Point3::from([-size; 3]), Point3::from([size; 3]))];
-            let (packet, _) = Packet::new(&ids, &members(&set), Kind::Segment, &set.aabb(), 0.0);
+            let packet = Packet::new(&ids, &members(&set), &set.aabb(), 0.0, &mut Vec::new());
             assert!(packet.local(&[0.0; 3]).is_none(), "{size}");
         }
     }

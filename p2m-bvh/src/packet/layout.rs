@@ -3,7 +3,7 @@
 use super::member::{Kind, Member};
 use nalgebra::Point3;
 use p2m_core::engine::real::to_f64_array;
-use p2m_core::engine::simd::prefetch;
+use p2m_core::engine::simd::{InstructionSet, Isa, SimdKernel, prefetch};
 use p2m_core::engine::vector::{V3, power_of_two};
 use p2m_core::storage::as_ids;
 use p2m_core::{Aabb, Collector, PrimitiveId, Projection};
@@ -56,20 +56,22 @@ impl Packet {
         }
     }
 
-    /// Packs at most sixteen primitives with these ids and returns the packet with its exact vertices, each once.
+    /// Packs at most sixteen primitives with these ids, and appends their exact vertices, each once, to `vertices`.
     ///
-    /// The primitives are all of `kind`, or of any kinds if `kind` is [`Kind::Box`]. `bounds` is the box around all of
-    /// them. The unit of the frame is at least `finest`, because a finer one would bring nothing.
+    /// If the primitives are of several kinds, the packet gets their boxes. `bounds` is the box around all of them. The
+    /// unit of the frame is at least `finest`, because a finer one would bring nothing.
     ///
     /// # Panics
     /// Panics if there are more than sixteen ids, or none.
     pub fn new(
         ids: &[PrimitiveId],
         primitives: &[Member],
-        kind: Kind,
         bounds: &Aabb<f64>,
         finest: f64,
-    ) -> (Self, Vec<V3>) {
+        vertices: &mut Vec<V3>,
+    ) -> Self {
+        let first = primitives[0].kind;
+        let kind = if primitives.iter().all(|primitive| primitive.kind == first) { first } else { Kind::Box };
         let [min, max] = [to_f64_array(&bounds.min), to_f64_array(&bounds.max)];
         let size = (0..3).map(|k| max[k] - min[k]).fold(0.0, f64::max);
         let unit = frame_unit(size).max(finest);
@@ -81,27 +83,22 @@ impl Packet {
             per_unit: if unit > 0.0 { unit.recip() } else { 0.0 },
             ids: [ids[0].number(); LANES],
             corners: [[0; LANES]; 3],
-            vertex_offset: 0,
+            vertex_offset: u32::try_from(vertices.len()).expect("a primitive has three vertices at most"),
             len: u8::try_from(ids.len()).expect("at most sixteen"),
             kind: kind as u8,
             unused: [0; 2],
         };
-        let mut exact = Vec::new();
-        for lane in 0..LANES {
-            let index = if lane < ids.len() { lane } else { 0 };
-            let primitive = &primitives[index];
-            packet.ids[lane] = ids[index].number();
-            if kind == Kind::Box {
-                packet.quantize(lane, 0, to_f64_array(&primitive.bounds.min), f64::floor);
-                packet.quantize(lane, 1, to_f64_array(&primitive.bounds.max), f64::ceil);
-            } else {
-                for (v, vertex) in primitive.vertices().iter().enumerate() {
-                    packet.quantize(lane, v, *vertex, round);
-                    packet.corners[v][lane] = find_or_push(&mut exact, *vertex);
-                }
+        packet.ids.iter_mut().zip(ids).for_each(|(number, id)| *number = id.number());
+        if kind == Kind::Box {
+            for lane in 0..LANES {
+                let bounds = &primitives[if lane < ids.len() { lane } else { 0 }].bounds;
+                packet.quantize(lane, 0, to_f64_array(&bounds.min), f64::floor);
+                packet.quantize(lane, 1, to_f64_array(&bounds.max), f64::ceil);
             }
+        } else {
+            Isa::best().run(PackVertices { packet: &mut packet, primitives, vertices });
         }
-        (packet, exact)
+        packet
     }
 
     /// Stores a vertex in the rows, rounded to the grid of the frame by `round`.
@@ -271,24 +268,109 @@ fn largest(rows: &[[u8; LANES]]) -> u8 {
     rows.iter().flatten().fold(0, |largest, number| largest.max(*number))
 }
 
-/// Returns the index of a vertex in a list of at most 48, and appends the vertex if it is not there yet. Two vertices
-/// are the same if they have the same bits.
-#[allow(clippy::cast_possible_truncation, reason = "at most 48")]
-fn find_or_push(list: &mut Vec<V3>, vertex: V3) -> u8 {
-    let bits = vertex.map(f64::to_bits);
-    let index = list.iter().position(|v| v.map(f64::to_bits) == bits).unwrap_or(list.len());
-    if index == list.len() {
-        list.push(vertex);
-    }
-    index as u8
+/// A SIMD kernel that stores the vertices of primitives of one kind in a packet. It uses the instruction set only
+/// through the compiler.
+struct PackVertices<'a> {
+    packet: &'a mut Packet,
+    primitives: &'a [Member],
+    vertices: &'a mut Vec<V3>,
 }
 
-/// Rounds a number below 2^51 to the nearest integer, ties to even. The function of the library is a call on processors
-/// without an instruction for it.
+impl SimdKernel for PackVertices<'_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn run<I: InstructionSet>(self) {
+        let Self { packet, primitives, vertices } = self;
+        let count = primitives[0].vertices().len();
+        let (origin, per_unit) = (packet.origin, packet.per_unit);
+        for v in 0..count {
+            for (k, origin) in origin.into_iter().enumerate() {
+                // Unused lanes repeat the first primitive.
+                let mut row = [primitives[0].vertices()[v][k]; LANES];
+                for (x, primitive) in row.iter_mut().zip(primitives) {
+                    *x = primitive.vertices()[v][k];
+                }
+                let rounded = &mut packet.rows[3 * v + k];
+                for lane in 0..LANES {
+                    rounded[lane] = round_to_grid((row[lane] - origin) * per_unit);
+                }
+            }
+        }
+        let mut exact = ExactVertices::new(vertices);
+        for v in 0..count {
+            for (lane, primitive) in primitives.iter().enumerate() {
+                packet.corners[v][lane] = exact.find_or_push(&primitive.vertices()[v]);
+            }
+            let first = packet.corners[v][0];
+            packet.corners[v][primitives.len()..].fill(first);
+        }
+    }
+}
+
+/// The largest number of vertices of a packet.
+const MAX_VERTICES: usize = 3 * LANES;
+
+/// The exact vertices of one packet, which are the last ones of a list.
+struct ExactVertices<'a> {
+    list: &'a mut Vec<V3>,
+    /// The index of the first vertex of the packet.
+    first: usize,
+    /// A key of each vertex; different vertices may have equal ones.
+    keys: [u32; MAX_VERTICES],
+}
+
+impl<'a> ExactVertices<'a> {
+    #[inline(always)]
+    fn new(list: &'a mut Vec<V3>) -> Self {
+        Self { first: list.len(), list, keys: [0; MAX_VERTICES] }
+    }
+
+    /// Returns the index of a vertex, and appends the vertex if it is not there yet. Two vertices are the same if they
+    /// have the same bits.
+    #[inline(always)]
+    #[allow(
+        clippy::cast_possible_truncation,
+        reason = "the key is a part of the bits, and there are at most 48 vertices"
+    )]
+    fn find_or_push(&mut self, vertex: &V3) -> u8 {
+        let [x, y, z] = vertex.map(f64::to_bits);
+        let mixed = x ^ y.rotate_left(21) ^ z.rotate_left(43);
+        let key = (mixed >> 32) as u32 ^ mixed as u32;
+        // All keys are compared, in lanes.
+        let mut found = u32::MAX;
+        for (i, other) in self.keys.iter().enumerate() {
+            found = found.min(if *other == key { i as u32 } else { u32::MAX });
+        }
+        let (found, count) = (found as usize, self.list.len() - self.first);
+        // Equal vertices have equal keys.
+        if found < count {
+            let known = &self.list[self.first..];
+            let is_same = |other: &V3| other.map(f64::to_bits) == [x, y, z];
+            if is_same(&known[found]) {
+                return found as u8;
+            }
+            if let Some(index) = known.iter().position(is_same) {
+                return index as u8;
+            }
+        }
+        self.keys[count] = key;
+        self.list.push(*vertex);
+        count as u8
+    }
+}
+
+/// Rounds a number to the nearest integer of the grid, ties to even.
 #[inline(always)]
-fn round(x: f64) -> f64 {
-    const SHIFT: f64 = power_of_two(52) + power_of_two(51);
-    (x + SHIFT) - SHIFT
+#[allow(clippy::cast_possible_truncation, reason = "the lowest bits are the integer")]
+fn round_to_grid(x: f64) -> u16 {
+    // At this size the unit in the last place is 1. The function of the library is a call on processors without an
+    // instruction for it.
+    const SHIFT: f64 = power_of_two(52);
+    // A frame without a unit may give NaN, which becomes 0.
+    let x = if x > 0.0 { x } else { 0.0 };
+    let x = if x < GRID_MAX { x } else { GRID_MAX };
+    (x + SHIFT).to_bits() as u16
 }
 
 /// The smallest power of two of which `size` is at most 65534 times as large; 0 for a size of 0.

@@ -302,10 +302,10 @@ mod tests {
             let packet = if kind == Kind::Box {
                 let all: Vec<_> =
                     ids.iter().map(|id| Member::from_primitive(&WithoutVertices(soup.get(*id)))).collect();
-                Packet::new(&ids, &all, kind, &bounds, 0.0).0
+                Packet::new(&ids, &all, &bounds, 0.0, &mut Vec::new())
             } else {
                 let all: Vec<_> = ids.iter().map(|id| Member::from_primitive(&soup.get(*id))).collect();
-                Packet::new(&ids, &all, kind, &bounds, 0.0).0
+                Packet::new(&ids, &all, &bounds, 0.0, &mut Vec::new())
             };
             let size = (bounds.max - bounds.min).norm();
             for _ in 0..8 {

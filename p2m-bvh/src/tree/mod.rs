@@ -146,24 +146,30 @@ impl<V: VolumeNodes> PacketTree<V> {
 }
 
 impl Leaves {
-    /// Stores packets and puts their vertices one packet after the other.
+    /// Stores packets and puts their vertices one packet after the other. `vertices` has those of as many packets at a
+    /// time as `chunk`, in which the packets count from 0.
     #[allow(
         clippy::cast_possible_truncation,
         reason = "ids leave two bits, and a primitive has three vertices at most"
     )]
-    pub(crate) fn new(packed: Vec<(Packet, Vec<[f64; 3]>)>) -> Self {
-        let mut vertices = Vec::with_capacity(packed.iter().map(|(_, packet_vertices)| packet_vertices.len()).sum());
-        let append = |(mut packet, packet_vertices): (Packet, Vec<[f64; 3]>)| {
-            packet.vertex_offset = vertices.len() as u32;
-            vertices.extend(packet_vertices);
-            packet
-        };
-        let packets: Vec<Packet> = packed.into_iter().map(append).collect();
-        let end = vertices.len() as u32;
-        let offsets = packets.iter().map(|packet| packet.vertex_offset).chain([end]);
-        let vertex_offsets = offsets.collect::<Vec<_>>().into();
+    pub(crate) fn new(mut packets: Vec<Packet>, chunk: usize, vertices: Vec<Vec<[f64; 3]>>) -> Self {
+        let mut vertex_offsets = Vec::with_capacity(packets.len() + 1);
+        let mut first = 0;
+        for (packets, vertices) in packets.chunks_mut(chunk).zip(&vertices) {
+            for packet in packets {
+                packet.vertex_offset += first;
+                vertex_offsets.push(packet.vertex_offset);
+            }
+            first += vertices.len() as u32;
+        }
+        vertex_offsets.push(first);
         let has_non_triangles = packets.iter().any(|packet| !packet.has_triangles());
-        Self { packets: packets.into(), vertices: vertices.into(), vertex_offsets, has_non_triangles }
+        Self {
+            packets: packets.into(),
+            vertices: vertices.concat().into(),
+            vertex_offsets: vertex_offsets.into(),
+            has_non_triangles,
+        }
     }
 
     /// Prefetches a packet.
