@@ -29,10 +29,11 @@ use crate::octree::lattice::{
     BoundBoxes, FilterAtCorners, FilterLanes, LatticeDistances, LatticeLimits, ReachChildren,
 };
 use crate::octree::refinement::{
-    Candidate, CellTask, KnownDistances, NS_PER_BLOCK, NS_PER_PACKET, OpenCell, Place, RefinedCell, Refinement,
-    TreeProbe,
+    Candidate, CellTask, KnownDistances, NS_PER_BLOCK, NS_PER_PACKET, OpenCandidate, OpenCell, Place, RefinedCell,
+    Refinement, TreeProbe,
 };
 use crate::options::Domain;
+use p2m_bvh::engine::node::NodeRef;
 use p2m_core::Isa;
 use p2m_core::engine::vector::{V3, norm_squared, sub};
 
@@ -78,27 +79,28 @@ impl Refinement<'_> {
     pub(crate) fn refine_root(&self, task: &mut CellTask, low: V3, side: f64, place: Place) -> RefinedCell {
         let at = |c: usize| -> V3 { std::array::from_fn(|k| low[k] + if c >> k & 1 == 1 { side } else { 0.0 }) };
         let corners = std::array::from_fn(|c| Corner { x: at(c), y: self.nearest(task, at(c)) });
-        let root = Candidate { child: self.tree.root, bounds: *self.tree.bounds(), index: 0, lanes: u16::MAX };
+        let (bounds, child) = (*self.tree.bounds(), self.tree.root);
+        let root = Candidate { bounds, child, parent: NodeRef::NONE, index: 0, lanes: u16::MAX };
         self.refine_unfiltered(task, Cube { low, side, level: 0, corners }, vec![root], place)
     }
 
     /// Splits a cell that an earlier pass has left open.
     pub(crate) fn split_open(&self, task: &mut CellTask, cell: &OpenCell, place: Place) -> RefinedCell {
-        let OpenCell { cube, candidates, has_packets, .. } = cell;
+        let (OpenCell { cube, has_packets, .. }, candidates) = (cell, self.candidates_of(cell));
         if *has_packets {
-            self.sample_centre(cube, candidates, task);
+            self.sample_centre(cube, &candidates, task);
         }
-        self.split(task, cube, candidates, *has_packets, None, place)
+        self.split(task, cube, &candidates, *has_packets, None, place)
     }
 
     /// Finishes a cell that no pass has split.
     pub(crate) fn finish_open(&self, task: &mut CellTask, cell: &OpenCell, place: Place) -> RefinedCell {
-        let OpenCell { cube, candidates, .. } = cell;
+        let cube = &cell.cube;
         if !cell.may_have_list() {
             return self.finish_cell(task, RefinedCell::Tree, place);
         }
         let dominators = Dominators::from_corners(&cube.corners, self.slack);
-        self.filter_at_corners(task, cube, candidates.clone(), &dominators, |task, candidates, known| {
+        self.filter_at_corners(task, cube, self.candidates_of(cell), &dominators, |task, candidates, known| {
             self.sample_centre(cube, &candidates, task);
             self.count_passing(cube, &candidates, known, &mut task.centre);
             let list = self.build_list(cube, &candidates, known, task);
@@ -172,7 +174,7 @@ impl Refinement<'_> {
                 } else {
                     for (bounds, child) in self.tree.child_boxes(candidate.child) {
                         if dominators.keeps_box(&cube.corners, &bounds) {
-                            opened.push(Candidate { bounds, child, ..*candidate });
+                            opened.push(Candidate { bounds, child, parent: candidate.child, ..*candidate });
                         }
                     }
                 }
@@ -284,6 +286,7 @@ impl Refinement<'_> {
         if resolution <= task.resolution {
             return self.split(task, cube, &candidates, has_packets, known, place);
         }
+        let candidates = candidates.iter().map(OpenCandidate::from).collect();
         let cell = OpenCell { cube: *cube, candidates, has_packets, resolution, place };
         task.spent += Spent::reserved_for(&cell);
         task.open.push(cell);

@@ -49,7 +49,7 @@ pub(crate) struct OpenCell {
     /// The cube of the cell.
     pub(crate) cube: Cube,
     /// Nodes or packets of the tree that can hold the answer in the cell.
-    pub(crate) candidates: Vec<Candidate>,
+    pub(crate) candidates: Vec<OpenCandidate>,
     /// Whether all candidates are packets.
     pub(crate) has_packets: bool,
     /// The resolution from which on a split is worth its memory.
@@ -117,10 +117,37 @@ pub(crate) struct Candidate {
     pub(crate) bounds: Aabb<f64>,
     /// The node or the packet.
     pub(crate) child: NodeRef,
+    /// The node of which it is a child, or [`NodeRef::NONE`] for the root of the tree.
+    pub(crate) parent: NodeRef,
     /// The index of the packet among the candidates of the parent.
     pub(crate) index: u32,
     /// The lanes of the packet that can hold the answer, as bits.
     pub(crate) lanes: u16,
+}
+
+/// A candidate of an open cell. It has no box, because open cells may have most of the candidates in memory.
+pub(crate) struct OpenCandidate {
+    child: NodeRef,
+    parent: NodeRef,
+    lanes: u16,
+}
+
+impl From<&Candidate> for OpenCandidate {
+    fn from(&Candidate { child, parent, lanes, .. }: &Candidate) -> Self {
+        Self { child, parent, lanes }
+    }
+}
+
+impl Refinement<'_> {
+    /// Returns the candidates of an open cell.
+    pub(crate) fn candidates_of(&self, cell: &OpenCell) -> Vec<Candidate> {
+        let candidates = cell.candidates.iter().map(|&OpenCandidate { child, parent, lanes }| {
+            let found = (parent != NodeRef::NONE).then(|| self.tree.child_boxes(parent).find(|(_, c)| *c == child));
+            let bounds = found.flatten().map_or(*self.tree.bounds(), |(bounds, _)| bounds);
+            Candidate { bounds, child, parent, index: 0, lanes }
+        });
+        candidates.collect()
+    }
 }
 
 /// The distances from the lattice of the parent of a cell, which include those from the corners of the cell.

@@ -183,10 +183,8 @@ impl Voronoi {
         drop(sites);
         (self.low, self.high) = (low, high);
         (self.neighbours, self.filters) = (neighbours, filters);
-        self.locator = locator.or_else(|| {
-            reporter.begin_stage(BuildStage::Locator);
-            Some(build_locator(&self.neighbours))
-        });
+        reporter.begin_stage(BuildStage::Locator);
+        self.locator = Some(locator.unwrap_or_else(|| build_locator(&self.neighbours)));
         self.report.filtered = self.filters.count();
         blocks.shrink_to_fit();
         self.blocks = blocks.into();
