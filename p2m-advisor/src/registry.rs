@@ -54,7 +54,7 @@ pub static BACKENDS: &[BackendEntry] = &[
         has_kdop_directions: false,
         has_p2m_settings: false,
         cost: CostModel {
-            build_seconds_per_primitive: 0.75e-6,
+            build_seconds_per_primitive: 0.37e-6,
             near_query_seconds: 700e-9,
             box_query_seconds: 1200e-9,
             bytes_per_primitive: 65.0,
@@ -80,7 +80,7 @@ pub static BACKENDS: &[BackendEntry] = &[
         has_kdop_directions: true,
         has_p2m_settings: false,
         cost: CostModel {
-            build_seconds_per_primitive: 0.8e-6,
+            build_seconds_per_primitive: 0.4e-6,
             near_query_seconds: 750e-9,
             box_query_seconds: 1250e-9,
             bytes_per_primitive: 66.0,
@@ -106,7 +106,7 @@ pub static BACKENDS: &[BackendEntry] = &[
         has_kdop_directions: false,
         has_p2m_settings: false,
         cost: CostModel {
-            build_seconds_per_primitive: 10e-6,
+            build_seconds_per_primitive: 6.5e-6,
             near_query_seconds: 640e-9,
             box_query_seconds: 690e-9,
             bytes_per_primitive: 235.0,
@@ -132,7 +132,7 @@ pub static BACKENDS: &[BackendEntry] = &[
         has_kdop_directions: false,
         has_p2m_settings: true,
         cost: CostModel {
-            build_seconds_per_primitive: 32e-6,
+            build_seconds_per_primitive: 21e-6,
             near_query_seconds: 430e-9,
             box_query_seconds: 500e-9,
             bytes_per_primitive: 330.0,
