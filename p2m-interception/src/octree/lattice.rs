@@ -520,8 +520,8 @@ mod tests {
             let mut row = [0.0; WIDTH];
             raise_to_interpolated(&mut row, &CUBE_CORNERS.map(|at| square(at).sqrt()), side.recip());
             let largest = CUBE_CORNERS.iter().map(|at| square(*at)).fold(0.0, f64::max) / (side * side);
-            for at in 0..LATTICE_POINTS {
-                let (bound, exact) = (f64::from(row[at]), square(at) / (side * side));
+            for (at, bound) in row.into_iter().enumerate().take(LATTICE_POINTS) {
+                let (bound, exact) = (f64::from(bound), square(at) / (side * side));
                 assert!(bound <= exact, "case {case}, point {at}: {bound} for {exact}");
                 close += usize::from(set.len() == 1 && bound >= exact - largest * 2f64.powi(-17));
             }
