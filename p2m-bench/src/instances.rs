@@ -2,7 +2,7 @@
 
 use crate::measure::{Effort, MedianRange};
 use crate::our_indexes::aabb_options;
-use crate::rounds::{checksum, rotated, thread_seconds};
+use crate::rounds::{checksum, checksum_of_closest, rotated, thread_seconds};
 use anyhow::{Context, Result, bail};
 use nalgebra::{Isometry3, Point3, Vector3};
 use p2m_bvh::AabbTree;
@@ -91,11 +91,11 @@ pub(crate) fn print(scenes: &[impl AsRef<Path> + Sync], size: &Size, effort: &Ef
             };
             let mut answers: Vec<Option<Closest<f64>>> = vec![None; queries.len()];
             let single = thread_seconds(|| index.closest_points_one_by_one(&queries, &mut answers)).1;
-            sums[0][at] = Some(sum_of(&answers));
+            sums[0][at] = Some(checksum_of_closest(&answers));
             let batch = BatchOptions::default().with_parallel(false);
             let batch =
                 thread_seconds(|| closest_points_into(index, &queries, &Default::default(), &batch, &mut answers)).1;
-            sums[1][at] = Some(sum_of(&answers));
+            sums[1][at] = Some(checksum_of_closest(&answers));
             let mut sum = 0;
             let hits = thread_seconds(|| {
                 for ray in &rays {
@@ -123,11 +123,6 @@ pub(crate) fn print(scenes: &[impl AsRef<Path> + Sync], size: &Size, effort: &Ef
     }
     println!("{table}");
     Ok(equal)
-}
-
-fn sum_of(answers: &[Option<Closest<f64>>]) -> u64 {
-    let answers = answers.iter().flatten();
-    checksum(0, answers.map(|answer| (answer.distance.to_bits(), answer.primitive.index() as u64)))
 }
 
 /// Answers to single queries, as a method that dispatches once for each.

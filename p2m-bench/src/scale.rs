@@ -9,7 +9,7 @@ use crate::measure::{BuildFigures, MedianRange, measure_build};
 use crate::memory;
 use crate::plot::{Mark, Plot, Series};
 use crate::report::provenance;
-use crate::rounds::{checksum, thread_seconds};
+use crate::rounds::{checksum, checksum_of_closest, thread_seconds};
 use anyhow::{Context, Result, bail};
 use nalgebra::Point3;
 use p2m_advisor::{BACKENDS, BackendEntry, BuildSettings, Index};
@@ -36,7 +36,7 @@ const LATENCY_ROUNDS: usize = 5;
 /// A build that takes less time than this is repeated.
 const SHORT_BUILD_SECONDS: f64 = 1.0;
 
-/// What is measured.
+/// The scenes, indexes and queries that are measured, and the limits.
 pub(crate) struct Request {
     /// The backends by their names in the registry.
     pub(crate) backends: Vec<String>,
@@ -192,7 +192,7 @@ fn measure_set(index: &dyn Index<f64>, queries: &[Point3<f64>], rounds: usize) -
             }
         });
         single.push(seconds.1);
-        sum = sum_of(&answers);
+        sum = checksum_of_closest(&answers);
         let one_thread = BatchOptions::default().with_parallel(false);
         let seconds = thread_seconds(|| {
             closest_points_into(index, queries, &QueryOptions::default(), &one_thread, &mut answers);
@@ -206,13 +206,8 @@ fn measure_set(index: &dyn Index<f64>, queries: &[Point3<f64>], rounds: usize) -
         single: each(&single),
         batch: each(&batch),
         visits: visits.map(|count| count as f64 / counted.len() as f64),
-        checksum: checksum(sum, [(sum_of(&answers), 0)].into_iter()),
+        checksum: checksum(sum, [(checksum_of_closest(&answers), 0)].into_iter()),
     }
-}
-
-fn sum_of(answers: &[Option<Closest<f64>>]) -> u64 {
-    let answers = answers.iter().flatten();
-    checksum(0, answers.map(|answer| (answer.distance.to_bits(), answer.primitive.index() as u64)))
 }
 
 /// Returns the nanoseconds of a read whose address is the result of the last read, in an array of this many bytes.

@@ -69,7 +69,7 @@ pub(crate) fn split(
     splitter.subtree(primitives, 0, root)
 }
 
-/// What is known of a node before it is split.
+/// A node that is not split yet, with the boxes that its split needs.
 #[derive(Clone, Copy)]
 struct Part {
     /// The box around the primitives.
@@ -93,7 +93,7 @@ impl Part {
 #[cfg(feature = "rayon")]
 const MIN_PRIMITIVES_TO_FORK: usize = 1 << 13;
 
-/// What all splits of a tree have in common.
+/// The data that all splits of a tree share.
 struct Splitter<'a> {
     isa: Isa,
     /// The frame of the scene.
@@ -103,7 +103,7 @@ struct Splitter<'a> {
 }
 
 impl Splitter<'_> {
-    /// What is known of a root over primitives in the frame of the scene.
+    /// Returns the root over primitives that stand in the frame of the scene.
     fn root(&self, primitives: &[BuildPrimitive]) -> Part {
         let [bounds, centres] = self.isa.run(BoundPrimitives(primitives));
         Part { bounds, centres, unit: 1.0, is_finest: false, depth: 0 }
@@ -123,8 +123,7 @@ impl Splitter<'_> {
         }
         let unknown = SplitNode { half_area: 0.0, first: 0, count: 0 };
         let mut nodes = vec![unknown];
-        // The nodes that still have to be split: their numbers, the ranges of their primitives and what is known of
-        // them.
+        // The nodes that still have to be split: their numbers, the ranges of their primitives, and their boxes.
         let mut pending = vec![(0usize, 0..primitives.len(), part)];
         while let Some((at, range, part)) = pending.pop() {
             let here = &mut primitives[range.clone()];

@@ -9,7 +9,7 @@ use std::sync::atomic::{AtomicU64, Ordering};
 /// The tests of a packet at a point that the list of an open cell takes at most: at eight corners, and at the centre.
 const TESTS_PER_OPEN_PACKET: usize = 9;
 
-/// What cells take of the budgets.
+/// The amounts that cells take of the budgets.
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct Spent {
     /// Bytes of cells and lists.

@@ -4,7 +4,7 @@ use crate::list::block::{BLOCK_WIDTH, Block, BoundKind, Entry, round_reference};
 use crate::list::corner_test::{DistancesAtPoint, NearestVertices};
 use crate::octree::budget::Spent;
 use crate::octree::cell::{Cube, LATTICE_CENTRE};
-use crate::octree::lattice::{BoundFromCorners, FEW};
+use crate::octree::lattice::{BoundFromCorners, NEAREST_BOX_COUNT};
 use crate::octree::refinement::{
     Candidate, CellCentre, CellTask, KnownDistances, NS_PER_BLOCK, NS_PER_NODE, NS_PER_PACKET, RefinedCell, Refinement,
     TreeProbe,
@@ -25,7 +25,7 @@ impl Refinement<'_> {
         &self,
         task: &mut CellTask,
         candidates: &[Candidate],
-        few: [(f64, usize); FEW],
+        few: [(f64, usize); NEAREST_BOX_COUNT],
         x: V3,
     ) -> V3 {
         let mut best = (f64::INFINITY, 0, 0);
@@ -53,7 +53,7 @@ impl Refinement<'_> {
     /// Bounds the distances from the centre of a cell to the boxes of all candidates, and finds the nearest point.
     pub(crate) fn sample_centre(&self, cube: &Cube, candidates: &[Candidate], task: &mut CellTask) {
         let x = cube.point(LATTICE_CENTRE);
-        let mut few = [(f64::INFINITY, 0); FEW];
+        let mut few = [(f64::INFINITY, 0); NEAREST_BOX_COUNT];
         task.centre.box_squares.clear();
         for (number, candidate) in candidates.iter().enumerate() {
             let square = candidate.bounds.lower_bound(&x.into());

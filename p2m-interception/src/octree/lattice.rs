@@ -8,16 +8,14 @@
 use crate::list::corner_test::{Corner, Dominators, exclusion_of, least_of_lanes};
 use crate::octree::cell::{CHILD_CORNERS, CUBE_CORNERS, Cube, LATTICE_POINTS};
 use crate::octree::refinement::{Candidate, KnownDistances};
-use p2m_bvh::engine::packet::{self, LANES, Locals, PLACES, Packet, at_most, smallest};
+use p2m_bvh::engine::packet::{LANES, Locals, PLACES, Packet, ROUND_UP, at_most, smallest};
 use p2m_core::engine::simd::{Doubles, Float, InstructionSet, Lanes, SimdKernel};
 use p2m_core::engine::vector::{V3, norm_squared, sub};
 
 /// The number of points of a lattice, rounded up to whole vectors.
 const WIDTH: usize = LATTICE_POINTS.next_multiple_of(16);
 /// The number of candidates that are tried as the nearest one to a point.
-pub(crate) const FEW: usize = 4;
-/// A factor that exceeds the roundings of a sum of three squares in f32.
-const ROUND_UP: f32 = 1.0 + 16.0 * f32::EPSILON;
+pub(crate) const NEAREST_BOX_COUNT: usize = 4;
 /// The reciprocal of [`ROUND_UP`], rounded down.
 const ROUND_DOWN: f32 = 1.0 - 16.0 * f32::EPSILON;
 
@@ -101,9 +99,9 @@ pub(crate) struct Lattice {
     /// For each candidate lower bounds of the squared distances from the lattice to its box, in sides of the cell.
     squares: Vec<[f32; WIDTH]>,
     /// For each lattice point the few smallest of these bounds in ascending order.
-    few_squares: [[f32; WIDTH]; FEW],
+    few_squares: [[f32; WIDTH]; NEAREST_BOX_COUNT],
     /// The candidates that have them.
-    few_numbers: [[u32; WIDTH]; FEW],
+    few_numbers: [[u32; WIDTH]; NEAREST_BOX_COUNT],
     /// For each candidate the children that its box may reach, as bits.
     children: Vec<u8>,
     /// For each candidate the lanes that may hold the answer in each child, as bits.
@@ -116,8 +114,8 @@ impl Default for Lattice {
     fn default() -> Self {
         Self {
             squares: Vec::new(),
-            few_squares: [[0.0; WIDTH]; FEW],
-            few_numbers: [[0; WIDTH]; FEW],
+            few_squares: [[0.0; WIDTH]; NEAREST_BOX_COUNT],
+            few_numbers: [[0; WIDTH]; NEAREST_BOX_COUNT],
             children: Vec::new(),
             lanes: Vec::new(),
             locals: Locals::default(),
@@ -128,7 +126,7 @@ impl Default for Lattice {
 impl Lattice {
     /// Returns the few candidates whose boxes are nearest to a lattice point, the nearest first, with lower bounds of
     /// their squared distances. If there are fewer candidates, the other bounds are infinite.
-    pub(crate) fn nearest_boxes(&self, at: usize, side: f64) -> [(f64, usize); FEW] {
+    pub(crate) fn nearest_boxes(&self, at: usize, side: f64) -> [(f64, usize); NEAREST_BOX_COUNT] {
         std::array::from_fn(|i| (f64::from(self.few_squares[i][at]) * side * side, self.few_numbers[i][at] as usize))
     }
 
@@ -158,7 +156,7 @@ impl SimdKernel for BoundBoxes<'_> {
         let Self { lattice, cube, candidates, from_corners } = self;
         let Lattice { squares, few_squares, few_numbers, .. } = lattice;
         let (half, per_side) = (cube.side * 0.5, cube.side.recip());
-        *few_squares = [[f32::INFINITY; WIDTH]; FEW];
+        *few_squares = [[f32::INFINITY; WIDTH]; NEAREST_BOX_COUNT];
         squares.clear();
         squares.reserve(candidates.len());
         for (number, candidate) in candidates.iter().enumerate() {
@@ -427,7 +425,7 @@ fn keep_lanes<I: InstructionSet>(
     corners: &[usize; 8],
     lanes: u16,
 ) -> u16 {
-    let (per_unit, round_up) = (I::Doubles::splat(packet.per_unit()), I::Eight::splat(packet::ROUND_UP));
+    let (per_unit, round_up) = (I::Doubles::splat(packet.per_unit()), I::Eight::splat(ROUND_UP));
     let mut kept = u32::from(lanes) & packet.lanes();
     let (mut error_above, mut least) = ([0.0; 8], [0.0; 8]);
     for i in 0..8 {

@@ -30,7 +30,7 @@ const MAX_CELLS_PER_CHUNK: usize = 64;
 /// The least number of chunks into which the cells of a pass are divided, if there are enough.
 const MIN_CHUNKS: usize = 256;
 
-/// What becomes of an open cell.
+/// A function that splits or finishes an open cell.
 type FateOf<'a> = fn(&Refinement<'a>, &mut CellTask, &OpenCell, Place) -> RefinedCell;
 
 /// An octree between two passes.
@@ -40,7 +40,7 @@ pub(crate) struct Passes {
     pub(crate) refined: RefinedCells,
     /// The cells that are open.
     open: Vec<OpenCell>,
-    /// What the cells take of the budgets.
+    /// The amounts that the cells take of the budgets.
     pub(crate) spent: Spent,
     /// The resolution of the last pass.
     pub(crate) resolution: f64,
@@ -93,7 +93,7 @@ impl Passes {
         fate_of: FateOf<'a>,
     ) -> Vec<OpenCell> {
         let chunk_len = (cells.len() / MIN_CHUNKS).clamp(1, MAX_CELLS_PER_CHUNK);
-        // What was spent for the chunks that are kept so far, or nothing if no more chunks are kept.
+        // The amounts that the chunks which are kept so far have taken, or `None` if no more chunks are kept.
         let kept = Mutex::new(Some(self.spent));
         let current = || *kept.lock().expect("no thread panics");
         let mut done = 0;

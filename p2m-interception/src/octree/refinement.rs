@@ -159,7 +159,7 @@ pub(crate) struct KnownDistances<'a> {
     pub(crate) corners: &'a [usize; 8],
 }
 
-/// What one thread makes: some finished cells, some open ones, and memory that is used again for each cell.
+/// The work of one thread: the cells that it finished, those that it left open, and memory that each cell uses again.
 #[derive(Default)]
 pub(crate) struct CellTask {
     /// The resolution of the pass.
@@ -172,9 +172,9 @@ pub(crate) struct CellTask {
     pub(crate) open: Vec<OpenCell>,
     /// The numbers of the cells that the task began with.
     pub(crate) roots: Vec<usize>,
-    /// What had been spent before the task, or by an earlier time.
+    /// The amounts that had been spent before the task, or by an earlier time.
     pub(crate) before: Spent,
-    /// What has been spent, with what was spent before.
+    /// The amounts that have been spent, those from before the task included.
     pub(crate) spent: Spent,
     /// The memory of the current split.
     pub(crate) lattice: Lattice,

@@ -26,7 +26,7 @@ pub(crate) struct EdgeAdjacency {
     pub(crate) is_exact: bool,
 }
 
-/// What lists need to know of a triangulation and the primitives on its sites, apart from lengths.
+/// The topology of a triangulation and of the primitives on its sites, which lists are built from.
 pub(crate) struct SiteTopology {
     /// The vertices and edges of all primitives.
     pub(crate) adjacency: EdgeAdjacency,
