@@ -145,6 +145,11 @@ pub(crate) struct IncidenceLists<V = u32> {
 }
 
 impl<V: Copy + Default> IncidenceLists<V> {
+    /// Makes the lists of all items, one list after the other, from the index of the first item of each and the end.
+    pub(crate) fn from_parts(firsts: Vec<u32>, items: Vec<V>) -> Self {
+        Self { firsts, items }
+    }
+
     /// Collects the lists from pairs of a site and an item.
     pub(crate) fn new(sites: usize, pairs: impl Iterator<Item = (u32, V)> + Clone) -> Self {
         let mut firsts = vec![0u32; sites + 1];

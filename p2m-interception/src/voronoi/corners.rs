@@ -6,6 +6,7 @@ use crate::parallel_chunks::map_chunks_in_order;
 use crate::voronoi::adjacency::IncidenceLists;
 use crate::voronoi::budget::Limits;
 use crate::voronoi::circumsphere;
+use crate::voronoi::flood::{Flood, FloodedCorners};
 use p2m_bvh::PacketTree;
 use p2m_bvh::engine::range::Selection;
 use p2m_core::engine::vector::{V3, norm_squared, sub};
@@ -38,9 +39,23 @@ impl CellCorner {
     /// A corner that could not be computed.
     const UNKNOWN: Self = Self { position: [0.0; 3], error: 0.0, radius: 0.0, first_packet: 0, is_crowded: true };
 
+    /// Computes the corner of a tetrahedron. It counts as crowded until its packets are known.
+    fn of_tetrahedron(delaunay: &Delaunay, tetrahedron: [u32; 4]) -> Self {
+        let (sites, unit) = (delaunay.sites(), delaunay.unit());
+        let own_site = tetrahedron.into_iter().map(|v| v as usize).find(|v| *v >= BOUNDING);
+        let centre = circumsphere::circumcentre(&tetrahedron.map(|v| sites[v as usize]));
+        let (Some(site), Some(centre)) = (own_site, centre) else { return Self::UNKNOWN };
+        Self {
+            position: centre.position.map(|x| x * unit),
+            error: centre.error * unit,
+            radius: norm_squared(sub(centre.position, sites[site])).sqrt() * unit * (1.0 + 8.0 * f64::EPSILON),
+            ..Self::UNKNOWN
+        }
+    }
+
     /// Collects the packets that may intersect the ball of the corner. The result is `false` if there are more than
     /// `max_packets`, or if the ball cannot be decided.
-    fn collect_ball(
+    pub(crate) fn collect_ball(
         &self,
         tree: &PacketTree,
         limits: Limits<'_>,
@@ -69,25 +84,36 @@ pub(crate) struct CellCorners {
     packets: Vec<u32>,
     /// The packets of balls that were crowded while sites were added, each with the number of its corner.
     late_packets: Vec<(u32, u32)>,
+    /// The packets of all balls if floods found them. Then there are no others.
+    flooded: Option<FloodedCorners>,
 }
 
 impl CellCorners {
-    /// Computes the corners of all tetrahedra. Those that an earlier triangulation had as well are copied from
-    /// `reused`.
-    pub(crate) fn new(
+    /// Computes the corners of all tetrahedra, and finds their packets. If the tree has to be searched for these, those
+    /// of balls that an earlier triangulation had as well are copied from `reused`.
+    pub(crate) fn new<'b>(
         tree: &PacketTree,
         delaunay: &Delaunay,
         limits: Limits<'_>,
-        reused: Option<&ReusedCorners<'_>>,
+        reused: impl FnOnce() -> Option<ReusedCorners<'b>>,
         progress: &dyn Fn(usize, usize),
     ) -> Self {
         let count = delaunay.tetrahedra().len();
+        let mut all = compute_corners(delaunay, limits.parallel);
+        let flooded = Flood::new(tree, delaunay, &all, limits).and_then(|flood| flood.find(progress));
+        if let Some(flooded) = flooded {
+            all.push(CellCorner::UNKNOWN);
+            let mut corners = Self { all, flooded: Some(flooded), ..Self::default() };
+            corners.mark_flooded_crowds(CROWDED_BALL_PACKETS.min(limits.max_list_packets));
+            return corners;
+        }
         let mut corners = Self { all: Vec::with_capacity(count + 1), ..Self::default() };
+        let reused = reused();
         map_chunks_in_order(
             count,
             CORNERS_PER_TASK,
             limits.parallel,
-            |chunk| Self::compute_chunk(tree, delaunay, limits, reused, chunk),
+            |numbers| Self::search_chunk(tree, delaunay, limits, reused.as_ref(), &all, numbers),
             |chunk: Self| {
                 corners.append(chunk, limits);
                 progress(corners.all.len(), count);
@@ -97,43 +123,39 @@ impl CellCorners {
         corners
     }
 
-    /// Computes the corners of some tetrahedra.
-    fn compute_chunk(
+    /// Marks the corners that floods found with more than `max_packets` packets as crowded, and all others as not.
+    fn mark_flooded_crowds(&mut self, max_packets: usize) {
+        let counts = self.flooded.iter().flat_map(|flooded| &flooded.packet_counts);
+        for (corner, count) in self.all.iter_mut().zip(counts) {
+            corner.is_crowded = *count as usize > max_packets;
+        }
+    }
+
+    /// Searches the tree for the packets of some of the corners `all`.
+    fn search_chunk(
         tree: &PacketTree,
         delaunay: &Delaunay,
         limits: Limits<'_>,
         reused: Option<&ReusedCorners<'_>>,
+        all: &[CellCorner],
         numbers: Range<usize>,
     ) -> Self {
-        let (sites, unit) = (delaunay.sites(), delaunay.unit());
         let mut corners = Self::default();
         let mut selections: Vec<Selection> = Vec::new();
-        for tetrahedron in &delaunay.tetrahedra()[numbers] {
+        for (tetrahedron, mut corner) in delaunay.tetrahedra()[numbers.clone()].iter().zip(all[numbers].iter().copied())
+        {
             if let Some((reused, number)) = reused.and_then(|reused| Some((reused, reused.find(tetrahedron)?))) {
-                corners.push(reused.corners.all[number], reused.corners.packets(number).iter().copied());
+                corner.is_crowded = reused.corners.all[number].is_crowded;
+                corners.push(corner, reused.corners.packets(number).iter().copied());
                 continue;
             }
             selections.clear();
-            let mut corner = CellCorner::UNKNOWN;
             if limits.budget.is_exceeded() {
-                corners.push(corner, std::iter::empty());
+                corners.push(CellCorner::UNKNOWN, std::iter::empty());
                 continue;
             }
-            let own_site = tetrahedron.iter().map(|v| *v as usize).find(|v| *v >= BOUNDING);
-            if let (Some(site), Some(centre)) =
-                (own_site, circumsphere::circumcentre(&tetrahedron.map(|v| sites[v as usize])))
-            {
-                corner.position = centre.position.map(|x| x * unit);
-                corner.error = centre.error * unit;
-                corner.radius =
-                    norm_squared(sub(centre.position, sites[site])).sqrt() * unit * (1.0 + 8.0 * f64::EPSILON);
-                corner.is_crowded = !corner.collect_ball(
-                    tree,
-                    limits,
-                    CROWDED_BALL_PACKETS.min(limits.max_list_packets),
-                    &mut selections,
-                );
-            }
+            let most = CROWDED_BALL_PACKETS.min(limits.max_list_packets);
+            corner.is_crowded = corner.radius <= 0.0 || !corner.collect_ball(tree, limits, most, &mut selections);
             let kept = if corner.is_crowded { &[] } else { &selections[..] };
             corners.push(corner, kept.iter().map(|s| s.packet));
         }
@@ -142,6 +164,10 @@ impl CellCorners {
 
     /// Finds the packets of crowded balls as well, unless they are too many for a list.
     pub(crate) fn find_packets_of_crowded(&mut self, tree: &PacketTree, limits: Limits<'_>) {
+        if self.is_flooded() {
+            self.mark_flooded_crowds(limits.max_list_packets);
+            return;
+        }
         if limits.max_list_packets <= CROWDED_BALL_PACKETS || self.count_crowded() == 0 {
             return;
         }
@@ -187,6 +213,11 @@ impl CellCorners {
         self.all.extend(chunk.all.into_iter().map(moved));
     }
 
+    /// Returns whether floods found the packets. Those of one ball are not at hand then.
+    pub(crate) fn is_flooded(&self) -> bool {
+        self.flooded.is_some()
+    }
+
     /// Returns the number of corners that are crowded or unknown.
     pub(crate) fn count_crowded(&self) -> usize {
         // The last corner only marks the end.
@@ -201,6 +232,9 @@ impl CellCorners {
     /// Takes the packets of all balls, and returns for each of `packet_count` packets the numbers of its corners in
     /// ascending order.
     pub(crate) fn take_corners_of_packets(&mut self, packet_count: usize) -> IncidenceLists {
+        if let Some(flooded) = self.flooded.take() {
+            return flooded.of_packets;
+        }
         let numbers = 0..self.all.len() - 1;
         let found = numbers.flat_map(|number| self.packets(number).iter().map(move |packet| (*packet, to_u32(number))));
         let mut corners = IncidenceLists::new(packet_count, found.chain(self.late_packets.iter().copied()));
@@ -217,6 +251,17 @@ impl CellCorners {
         self.packets.extend(packets);
         self.all.push(CellCorner { first_packet, ..corner });
     }
+}
+
+/// Computes the corners of all tetrahedra. Their packets are not known yet.
+pub(crate) fn compute_corners(delaunay: &Delaunay, parallel: bool) -> Vec<CellCorner> {
+    let mut corners = Vec::with_capacity(delaunay.tetrahedra().len() + 1);
+    let work = |numbers: Range<usize>| -> Vec<CellCorner> {
+        let tetrahedra = &delaunay.tetrahedra()[numbers];
+        tetrahedra.iter().map(|tetrahedron| CellCorner::of_tetrahedron(delaunay, *tetrahedron)).collect()
+    };
+    map_chunks_in_order(delaunay.tetrahedra().len(), CORNERS_PER_TASK, parallel, work, |chunk| corners.extend(chunk));
+    corners
 }
 
 /// Converts a number to 32 bits, of which there are enough: budgets see to that.

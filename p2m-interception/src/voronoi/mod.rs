@@ -25,6 +25,7 @@ pub(crate) mod corners;
 pub(crate) mod crowded;
 pub(crate) mod excluded_features;
 pub(crate) mod feature_relevance;
+pub(crate) mod flood;
 pub(crate) mod grid_locator;
 #[cfg(feature = "kiddo")]
 pub(crate) mod kd_tree_locator;
@@ -32,6 +33,7 @@ pub(crate) mod list_filter;
 pub(crate) mod locator;
 pub(crate) mod neighbour_block;
 pub(crate) mod neighbours;
+pub(crate) mod number_set;
 pub(crate) mod packet_cells;
 #[cfg(all(feature = "kiddo", feature = "rstar"))]
 pub(crate) mod paper;

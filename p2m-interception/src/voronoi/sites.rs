@@ -69,7 +69,7 @@ impl Sites {
         let (mut topology, mut corners) = run_both(
             parallel,
             || early_topology(&delaunay),
-            || CellCorners::new(tree, &delaunay, limits, None, &progress),
+            || CellCorners::new(tree, &delaunay, limits, || None, &progress),
         );
         for _ in 0..MAX_ROUNDS {
             let new_sites = CrowdedClusters { tree, corners: &corners, bounds, limits }
@@ -86,11 +86,12 @@ impl Sites {
                 points.truncate(count_before);
                 break;
             };
-            let reused = ReusedCorners::new(&delaunay, &corners, &next, count_before);
+            let reused =
+                || (!corners.is_flooded()).then(|| ReusedCorners::new(&delaunay, &corners, &next, count_before));
             let (next_topology, all) = run_both(
                 parallel,
                 || early_topology(&next),
-                || CellCorners::new(tree, &next, limits, Some(&reused), &progress),
+                || CellCorners::new(tree, &next, limits, reused, &progress),
             );
             let (crowded_before, crowded_after) = (corners.count_crowded(), all.count_crowded());
             added.extend(new_sites);
