@@ -4,7 +4,8 @@ use crate::list::corner_test::{DistancesAtPoint, LaneDistances, LeastOfLanes};
 use crate::voronoi::cell_polytope::CornerPoints;
 use p2m_bvh::PacketTree;
 use p2m_bvh::engine::packet::{LANES, Locals, PLACES, Packet};
-use p2m_core::engine::simd::{InstructionSet, SimdKernel};
+use p2m_core::engine::side_by_side::{Eight, SIDE_BY_SIDE, triangles};
+use p2m_core::engine::simd::{Doubles, InstructionSet, SimdKernel};
 use p2m_core::engine::vector::V3;
 use p2m_core::{Best, QueryOptions};
 
@@ -51,7 +52,10 @@ impl CornerValues {
         self.values.clear();
         self.tests += corners.positions.len();
         self.near_lanes = tree.isa().run(EvaluateCorners { corners, packet, values: &mut self.values });
-        self.evaluate_far_packets(corners, packet, tree);
+        if packet.has_vertices() && corners.max_upper_bound * packet.per_unit() >= FILTER_RANGE_UNITS {
+            let (values, lanes) = (&mut self.values[..], self.near_lanes);
+            self.tests += tree.isa().run(EvaluateAtFarCorners { corners, packet, tree, lanes, values });
+        }
         self.lanes_below.clear();
         for values in &self.values {
             let mut lanes = 0;
@@ -67,34 +71,6 @@ impl CornerValues {
     pub(crate) fn raise_above_zero(&mut self, corner: usize) {
         self.lanes_below[corner] = 0;
         self.values[corner].iter_mut().for_each(|value| *value = value.max(f32::MIN_POSITIVE));
-    }
-
-    /// Evaluates primitives at the corners that are so far from the packet that its filter is too imprecise.
-    #[allow(clippy::cast_possible_truncation, reason = "rounded down")]
-    fn evaluate_far_packets(&mut self, corners: &CornerPoints, packet: &Packet, tree: &PacketTree) {
-        let per_unit = packet.per_unit();
-        if !packet.has_vertices() || corners.max_upper_bound * per_unit < FILTER_RANGE_UNITS {
-            return;
-        }
-        for (i, values) in self.values.iter_mut().enumerate() {
-            let upper_bound = corners.upper_bounds[i];
-            if upper_bound * per_unit < FILTER_RANGE_UNITS {
-                continue;
-            }
-            for lane in (0..LANES).filter(|lane| self.near_lanes >> lane & 1 == 1) {
-                if values[lane] > 0.0 {
-                    continue;
-                }
-                self.tests += 1;
-                let mut best = Best::<f64>::new(&QueryOptions::default());
-                packet.offer(lane, &tree.leaves.vertices, corners.positions[i], f64::INFINITY, &mut best);
-                let Some(closest) = best.finish() else { continue };
-                // The bound is lowered by the rounding of the kernel.
-                let least = closest.distance * (1.0 - 1e-14) - upper_bound * 1e-14 - corners.errors[i];
-                let value = (least - upper_bound) * (least + upper_bound) * per_unit * per_unit;
-                values[lane] = values[lane].max((value as f32).next_down());
-            }
-        }
     }
 }
 
@@ -139,5 +115,89 @@ impl SimdKernel for EvaluateCorners<'_> {
             }
         }
         (near_lanes & packet.lanes()) as u16
+    }
+}
+
+/// A SIMD kernel that evaluates primitives at the corners that are so far from the packet that its filter is too
+/// imprecise, where it has not excluded them. It returns the number of evaluations.
+struct EvaluateAtFarCorners<'a> {
+    corners: &'a CornerPoints,
+    packet: &'a Packet,
+    tree: &'a PacketTree,
+    /// The lanes in question.
+    lanes: u16,
+    values: &'a mut [[f32; LANES]],
+}
+
+impl EvaluateAtFarCorners<'_> {
+    /// Evaluates the primitives of some corners and lanes, which have places in `eight`.
+    #[inline(always)]
+    fn evaluate<D: Doubles>(&mut self, eight: &Eight<3>, places: &[(usize, usize)]) {
+        let nearest = triangles::<D>(eight, false);
+        for (place, &(corner, lane)) in places.iter().enumerate() {
+            match nearest.square_and_lower_bound(place) {
+                Some((square, _)) => self.raise(corner, lane, square.sqrt()),
+                None => self.evaluate_single(corner, lane),
+            }
+        }
+    }
+
+    /// Evaluates the primitive in a lane at a corner.
+    #[cold]
+    fn evaluate_single(&mut self, corner: usize, lane: usize) {
+        let mut best = Best::<f64>::new(&QueryOptions::default());
+        let vertices = &self.tree.leaves.vertices;
+        self.packet.offer(lane, vertices, self.corners.positions[corner], f64::INFINITY, &mut best);
+        if let Some(closest) = best.finish() {
+            self.raise(corner, lane, closest.distance);
+        }
+    }
+
+    /// Raises a value to that of a distance.
+    #[inline(always)]
+    #[allow(clippy::cast_possible_truncation, reason = "rounded down")]
+    fn raise(&mut self, corner: usize, lane: usize, distance: f64) {
+        let (upper_bound, per_unit) = (self.corners.upper_bounds[corner], self.packet.per_unit());
+        // The bound is lowered by the rounding of the kernel.
+        let least = distance * (1.0 - 1e-14) - upper_bound * 1e-14 - self.corners.errors[corner];
+        let value = (least - upper_bound) * (least + upper_bound) * per_unit * per_unit;
+        let to = &mut self.values[corner][lane];
+        *to = to.max((value as f32).next_down());
+    }
+}
+
+impl SimdKernel for EvaluateAtFarCorners<'_> {
+    type Output = usize;
+
+    #[inline(always)]
+    fn run<I: InstructionSet>(mut self) -> usize {
+        let (mut eight, mut places, mut pending, mut tests) = (Eight::default(), [(0, 0); SIDE_BY_SIDE], 0, 0);
+        for corner in 0..self.values.len() {
+            if self.corners.upper_bounds[corner] * self.packet.per_unit() < FILTER_RANGE_UNITS {
+                continue;
+            }
+            for lane in 0..LANES {
+                if self.lanes >> lane & 1 == 0 || self.values[corner][lane] > 0.0 {
+                    continue;
+                }
+                tests += 1;
+                let Some(vertices) = self.packet.triangle_corners(lane, &self.tree.leaves.vertices) else {
+                    self.evaluate_single(corner, lane);
+                    continue;
+                };
+                eight.set(pending, &self.corners.positions[corner], vertices);
+                places[pending] = (corner, lane);
+                pending += 1;
+                if pending == SIDE_BY_SIDE {
+                    self.evaluate::<I::Doubles>(&eight, &places);
+                    pending = 0;
+                }
+            }
+        }
+        if pending > 0 {
+            // The other places have a triangle already, or none.
+            self.evaluate::<I::Doubles>(&eight, &places[..pending]);
+        }
+        tests
     }
 }
