@@ -28,9 +28,9 @@ const TRIED_PACKETS: usize = 64;
 /// Floods are given up if they test more balls for each packet, first among those that are tried, then among all.
 /// Usually they test a few hundred (observed).
 const MAX_TESTED_PER_PACKET: [usize; 2] = [1500, 3000];
-/// Larger balls are left to searches of the tree. The unit is 2^40 times the slack, which is at least a hundred scene
-/// sizes.
-const MAX_RADIUS: f64 = 1.0 / 32.0;
+/// Larger balls are left to searches of the tree. The unit is 2^40 times the slack, about the distance of the bounding
+/// sites.
+const MAX_RADIUS: f64 = 1.0;
 
 /// The corners of all packets.
 pub(crate) struct FloodedCorners {
@@ -229,10 +229,16 @@ impl SimdKernel for FloodPacket<'_, '_> {
             packet.squares_at_points::<I>(&positions[..count], &mut locals, &mut squares);
             for (place, &tetrahedron) in tetrahedra[..count].iter().enumerate() {
                 let corner = &flood.corners[tetrahedron as usize];
+                let aside: V3 = std::array::from_fn(|k| {
+                    (low[k] - corner.position[k]).max(corner.position[k] - high[k]).max(0.0)
+                });
+                let box_square = norm_squared(aside) * (1.0 - 16.0 * f64::EPSILON);
+                // The filter of the packet is imprecise far away, where its box excludes more.
                 let is_within = |radius: f64| {
                     let limit = ((radius * per_unit) as f32 + locals.excess[place]) * ROUND_UP;
-                    locals.far >> place & 1 == 1
-                        || at_most::<I::Wide>(&squares[place], limit * limit * ROUND_UP) & packet.lanes() != 0
+                    box_square <= radius * radius
+                        && (locals.far >> place & 1 == 1
+                            || at_most::<I::Wide>(&squares[place], limit * limit * ROUND_UP) & packet.lanes() != 0)
                 };
                 let radius = corner.radius + 2.0 * corner.error + slack;
                 let outer = corner.radius + corner.error;
@@ -242,12 +248,7 @@ impl SimdKernel for FloodPacket<'_, '_> {
                     if !is_within(crossed.max(radius)) {
                         continue;
                     }
-                    // The filter of the packet is too imprecise far away. The box excludes more there.
-                    let aside: V3 = std::array::from_fn(|k| {
-                        (low[k] - corner.position[k]).max(corner.position[k] - high[k]).max(0.0)
-                    });
-                    let is_box_within = norm_squared(aside) <= radius * radius * (1.0 + 16.0 * f64::EPSILON);
-                    if flood.is_precise(corner) && is_box_within && is_within(radius) {
+                    if flood.is_precise(corner) && is_within(radius) {
                         found.push(tetrahedron);
                     }
                 }
