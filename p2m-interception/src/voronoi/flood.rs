@@ -12,7 +12,7 @@ use crate::parallel_chunks::map_chunks_in_order;
 use crate::voronoi::adjacency::IncidenceLists;
 use crate::voronoi::budget::Limits;
 use crate::voronoi::corners::{CellCorner, to_u32};
-use crate::voronoi::number_set::NumberSet;
+use crate::voronoi::local_numbers::LocalNumbers;
 use p2m_bvh::PacketTree;
 use p2m_bvh::engine::packet::{LANES, Locals, PLACES, ROUND_UP, at_most};
 use p2m_bvh::engine::range::Selection;
@@ -60,10 +60,8 @@ pub(crate) struct Flood<'a> {
 /// The state of a flood, reused from packet to packet.
 #[derive(Default)]
 struct FloodState {
-    /// The tetrahedra that were reached.
-    reached: NumberSet,
-    /// The same tetrahedra in the order in which they are tested.
-    queue: Vec<u32>,
+    /// The tetrahedra that were reached, in the order in which they are tested.
+    reached: LocalNumbers,
     /// The tetrahedra whose balls the packet intersects.
     found: Vec<u32>,
 }
@@ -107,7 +105,7 @@ impl<'a> Flood<'a> {
         let step = packet_count.div_ceil(TRIED_PACKETS).max(1);
         for packet in (0..packet_count).step_by(step) {
             self.run(packet, &mut state, TRIED_PACKETS * MAX_TESTED_PER_PACKET[0]);
-            tried = [tried[0] + state.queue.len(), tried[1] + state.found.len()];
+            tried = [tried[0] + state.reached.keys().len(), tried[1] + state.found.len()];
             if tried[0] > TRIED_PACKETS * MAX_TESTED_PER_PACKET[0] {
                 return None;
             }
@@ -128,7 +126,7 @@ impl<'a> Flood<'a> {
                 state.found.sort_unstable();
                 chunk.corners.extend_from_slice(&state.found);
                 chunk.counts.push(state.found.len());
-                chunk.tested += state.queue.len();
+                chunk.tested += state.reached.keys().len();
             }
             budget.charge(chunk.tested);
             chunk
@@ -201,26 +199,23 @@ impl SimdKernel for FloodPacket<'_, '_> {
     #[inline(always)]
     #[allow(clippy::cast_possible_truncation, reason = "rounded up; sixteen lanes")]
     fn run<I: InstructionSet>(self) {
-        let Self { flood, packet, state: FloodState { reached, queue, found }, max_tested } = self;
+        let Self { flood, packet, state: FloodState { reached, found }, max_tested } = self;
         let packet = &flood.tree.leaves.packets[packet];
         let (slack, per_unit) = (flood.limits.slack, packet.per_unit());
         let bounds = packet.bounds_of(packet.lanes() as u16);
         let [low, high] = [to_f64_array(&bounds.min), to_f64_array(&bounds.max)];
         reached.clear();
-        queue.clear();
         found.clear();
         for lane in 0..packet.ids().len() {
             let start = flood.tetrahedron_of_site[flood.delaunay.site_of(packet.vertices_of(lane).0[0])];
-            if reached.insert(start) {
-                queue.push(start);
-            }
+            reached.number(start);
         }
         let (mut locals, mut squares) = (Locals::default(), [[0.0; LANES]; PLACES]);
         let mut done = 0;
-        while done < queue.len() && queue.len() <= max_tested {
-            let count = PLACES.min(queue.len() - done);
+        while done < reached.keys().len() && reached.keys().len() <= max_tested {
+            let count = PLACES.min(reached.keys().len() - done);
             let mut tetrahedra = [0; PLACES];
-            tetrahedra[..count].copy_from_slice(&queue[done..done + count]);
+            tetrahedra[..count].copy_from_slice(&reached.keys()[done..done + count]);
             done += count;
             let mut positions = [[0.0; 3]; PLACES];
             for (position, tetrahedron) in positions.iter_mut().zip(&tetrahedra[..count]) {
@@ -229,9 +224,8 @@ impl SimdKernel for FloodPacket<'_, '_> {
             packet.squares_at_points::<I>(&positions[..count], &mut locals, &mut squares);
             for (place, &tetrahedron) in tetrahedra[..count].iter().enumerate() {
                 let corner = &flood.corners[tetrahedron as usize];
-                let aside: V3 = std::array::from_fn(|k| {
-                    (low[k] - corner.position[k]).max(corner.position[k] - high[k]).max(0.0)
-                });
+                let aside: V3 =
+                    std::array::from_fn(|k| (low[k] - corner.position[k]).max(corner.position[k] - high[k]).max(0.0));
                 let box_square = norm_squared(aside) * (1.0 - 16.0 * f64::EPSILON);
                 // The filter of the packet is imprecise far away, where its box excludes more.
                 let is_within = |radius: f64| {
@@ -253,8 +247,8 @@ impl SimdKernel for FloodPacket<'_, '_> {
                     }
                 }
                 for next in flood.delaunay.neighbours()[tetrahedron as usize] {
-                    if next != Delaunay::NONE && reached.insert(next) {
-                        queue.push(next);
+                    if next != Delaunay::NONE {
+                        reached.number(next);
                     }
                 }
             }

@@ -30,10 +30,10 @@ pub(crate) mod grid_locator;
 #[cfg(feature = "kiddo")]
 pub(crate) mod kd_tree_locator;
 pub(crate) mod list_filter;
+pub(crate) mod local_numbers;
 pub(crate) mod locator;
 pub(crate) mod neighbour_block;
 pub(crate) mod neighbours;
-pub(crate) mod number_set;
 pub(crate) mod packet_cells;
 #[cfg(all(feature = "kiddo", feature = "rstar"))]
 pub(crate) mod paper;

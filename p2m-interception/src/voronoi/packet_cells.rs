@@ -11,12 +11,11 @@ use crate::delaunay::Delaunay;
 use crate::voronoi::cell::CellContext;
 use crate::voronoi::cell_polytope::CornerPoints;
 use crate::voronoi::corner_values::CornerValues;
-use crate::voronoi::corners::to_u32;
 use crate::voronoi::excluded_features::{ExcludedFeatures, RegionPoints};
 use crate::voronoi::feature_relevance::{CellInfo, LanesOver, PrimitiveFeatures, RelevanceContext};
+use crate::voronoi::local_numbers::LocalNumbers;
 use p2m_bvh::engine::packet::LANES;
 use p2m_core::engine::simd::{Doubles, InstructionSet, Portable, SimdKernel};
-use rustc_hash::FxHashMap;
 use std::ops::Range;
 
 /// The lengths of a cell that gets a list.
@@ -44,8 +43,8 @@ pub(crate) struct PacketInCell {
 pub(crate) struct PacketCells {
     /// The number of the packet.
     packet: u32,
-    /// The number of each corner in this structure, by its tetrahedron.
-    numbers: FxHashMap<u32, u32>,
+    /// The numbers of the corners in this structure, by their tetrahedra.
+    corner_numbers: LocalNumbers,
     /// The near corners, then those that an edge joins to one.
     corners: CornerPoints,
     /// For each near corner the four corners that an edge joins to it, opposite to the vertices of its tetrahedron, or
@@ -55,8 +54,14 @@ pub(crate) struct PacketCells {
     tetrahedra: Vec<[u32; 4]>,
     /// The values of the corner test.
     pub(crate) values: CornerValues,
-    /// The cells with their near corners, sorted: the site in the upper half, and the corner in the lower half.
-    corners_of_cells: Vec<u64>,
+    /// The numbers of the sites of near tetrahedra.
+    site_numbers: LocalNumbers,
+    /// For each of these sites whether it has a list, and the number of its near corners.
+    near_counts: Vec<(bool, usize)>,
+    /// For each vertex of the tetrahedra of near corners the number of its site.
+    sites_of_corners: Vec<[u32; 4]>,
+    /// The near corners of all cells, one cell after the other, in ascending order in each.
+    corners_of_cells: Vec<u32>,
     /// The sites of the cells that have near corners, each with its range in `corners_of_cells`.
     cells: Vec<(u32, Range<usize>)>,
     /// For each near corner, and for each of the four edges there, the lanes whose value is not above zero at exactly
@@ -89,53 +94,51 @@ impl PacketCells {
         let (delaunay, corners, slack) = (&cells.sites.delaunay, &cells.sites.corners, cells.limits.slack);
         self.packet = packet;
         self.prepared = 0;
-        self.numbers.clear();
+        self.corner_numbers.clear();
+        self.site_numbers.clear();
         self.corners.clear();
         self.neighbours.clear();
         self.tetrahedra.clear();
-        self.corners_of_cells.clear();
-        self.cells.clear();
-        let has_list = |site: &u32| sizes[*site as usize].is_some();
+        self.near_counts.clear();
+        self.sites_of_corners.clear();
         let push = |points: &mut CornerPoints, tetrahedron: u32| {
             let corner = &corners.all[tetrahedron as usize];
             points.push(corner.position, corner.radius + corner.error + slack, corner.error);
         };
         for &tetrahedron in near_tetrahedra {
             let vertices = delaunay.tetrahedra()[tetrahedron as usize];
-            if vertices.iter().any(has_list) {
-                let number = to_u32(self.tetrahedra.len());
-                self.numbers.insert(tetrahedron, number);
+            let numbers = vertices.map(|site| {
+                let (number, is_new) = self.site_numbers.number(site);
+                if is_new {
+                    self.near_counts.push((sizes[site as usize].is_some(), 0));
+                }
+                number
+            });
+            if numbers.iter().any(|number| self.near_counts[*number as usize].0) {
+                self.corner_numbers.number(tetrahedron);
                 push(&mut self.corners, tetrahedron);
                 self.tetrahedra.push(vertices);
-                self.corners_of_cells.extend(
-                    vertices.into_iter().filter(has_list).map(|site| u64::from(site) << 32 | u64::from(number)),
-                );
+                self.sites_of_corners.push(numbers);
+                numbers.iter().for_each(|number| self.near_counts[*number as usize].1 += 1);
             }
         }
-        self.corners_of_cells.sort_unstable();
-        let mut first = 0;
-        for of_one in self.corners_of_cells.chunk_by(|a, b| a >> 32 == b >> 32) {
-            self.cells.push(((of_one[0] >> 32) as u32, first..first + of_one.len()));
-            first += of_one.len();
-        }
+        self.collect_corners_of_cells();
         let near = self.tetrahedra.len();
-        for &tetrahedron in near_tetrahedra {
-            if !self.numbers.contains_key(&tetrahedron) {
-                continue;
-            }
-            let (vertices, neighbours) =
-                (delaunay.tetrahedra()[tetrahedron as usize], delaunay.neighbours()[tetrahedron as usize]);
+        for corner in 0..near {
+            let neighbours = delaunay.neighbours()[self.corner_numbers.keys()[corner] as usize];
+            let has_list = self.sites_of_corners[corner].map(|number| self.near_counts[number as usize].0);
             self.neighbours.push(std::array::from_fn(|face| {
                 // The edge belongs to the cells of the three vertices of the face. No cell with an unknown corner
                 // has a list.
-                let is_needed = (0..4).any(|v| v != face && has_list(&vertices[v]));
+                let is_needed = (0..4).any(|v| v != face && has_list[v]);
                 if !is_needed || neighbours[face] == Delaunay::NONE {
                     return Delaunay::NONE;
                 }
-                *self.numbers.entry(neighbours[face]).or_insert_with(|| {
+                let (number, is_new) = self.corner_numbers.number(neighbours[face]);
+                if is_new {
                     push(&mut self.corners, neighbours[face]);
-                    to_u32(self.corners.positions.len() - 1)
-                })
+                }
+                number
             }));
         }
         let tree = cells.tree;
@@ -145,6 +148,31 @@ impl PacketCells {
             self.values.raise_above_zero(corner);
         }
         self.find_crossings();
+    }
+
+    /// Collects the near corners of each cell that gets a list.
+    fn collect_corners_of_cells(&mut self) {
+        self.cells.clear();
+        let mut first = 0;
+        for (&site, (has_list, count)) in self.site_numbers.keys().iter().zip(&mut self.near_counts) {
+            if *has_list {
+                self.cells.push((site, first..first + *count));
+            }
+            // The count becomes the place of the next corner.
+            let end = first + if *has_list { *count } else { 0 };
+            (*count, first) = (first, end);
+        }
+        self.corners_of_cells.clear();
+        self.corners_of_cells.resize(first, 0);
+        for (corner, numbers) in (0..).zip(&self.sites_of_corners) {
+            for number in numbers {
+                let (has_list, next) = &mut self.near_counts[*number as usize];
+                if *has_list {
+                    self.corners_of_cells[*next] = corner;
+                    *next += 1;
+                }
+            }
+        }
     }
 
     /// Finds the lanes that each edge from a near corner crosses.
@@ -167,7 +195,7 @@ impl PacketCells {
     /// Returns the near corners of a cell.
     #[inline(always)]
     fn near_corners(&self, range: Range<usize>) -> impl Iterator<Item = usize> {
-        self.corners_of_cells[range].iter().map(|corner| corner_in(*corner))
+        self.corners_of_cells[range].iter().map(|corner| *corner as usize)
     }
 
     /// Returns the lanes whose value is not above zero at some corner of a cell.
@@ -184,7 +212,7 @@ impl PacketCells {
             self.regions[lane].clear();
         }
         for &corner in &self.corners_of_cells[range] {
-            let corner = corner_in(corner);
+            let corner = corner as usize;
             let position = self.corners.positions[corner];
             for lane in Bits(lanes & self.values.lanes_below[corner]) {
                 self.regions[lane].push(position);
@@ -290,12 +318,6 @@ impl Iterator for Bits {
         self.0 &= self.0.wrapping_sub(1);
         (index < LANES).then_some(index)
     }
-}
-
-/// Returns the corner of an entry of [`PacketCells::corners_of_cells`].
-#[inline(always)]
-fn corner_in(entry: u64) -> usize {
-    usize::try_from(entry & u64::from(u32::MAX)).expect("32 bits")
 }
 
 #[cfg(test)]
