@@ -25,9 +25,9 @@ use std::ops::Range;
 const PACKETS_PER_TASK: usize = 64;
 /// The number of packets that are tried first.
 const TRIED_PACKETS: usize = 64;
-/// Floods are given up if they test more balls for each packet, first among those that are tried, then among all.
-/// Usually they test a few hundred (observed).
-const MAX_TESTED_PER_PACKET: [usize; 2] = [1500, 3000];
+/// Floods are given up if they test each ball with more packets than this on average, first for the packets that are
+/// tried, then for all. Usually it is eight, and thirty take about as long as a search of the tree (observed).
+const MAX_PACKETS_PER_BALL: [usize; 2] = [24, 32];
 /// Larger balls are left to searches of the tree. The unit is 2^40 times the slack, about the distance of the bounding
 /// sites.
 const MAX_RADIUS: f64 = 1.0;
@@ -101,18 +101,18 @@ impl<'a> Flood<'a> {
     pub(crate) fn find(&self, progress: &dyn Fn(usize, usize)) -> Option<FloodedCorners> {
         let packet_count = self.tree.leaves.packets.len();
         let mut state = FloodState::default();
-        let mut tried = [0; 2];
+        let max_tested = MAX_PACKETS_PER_BALL.map(|most| self.corners.len().saturating_mul(most));
+        let (mut tried, max_tried) = ([0; 2], max_tested[0] / packet_count.max(1) * TRIED_PACKETS);
         let step = packet_count.div_ceil(TRIED_PACKETS).max(1);
         for packet in (0..packet_count).step_by(step) {
-            self.run(packet, &mut state, TRIED_PACKETS * MAX_TESTED_PER_PACKET[0]);
+            self.run(packet, &mut state, max_tried);
             tried = [tried[0] + state.reached.keys().len(), tried[1] + state.found.len()];
-            if tried[0] > TRIED_PACKETS * MAX_TESTED_PER_PACKET[0] {
+            if tried[0] > max_tried {
                 return None;
             }
         }
         let mut packet_counts = vec![0; self.corners.len()];
         let of_tree = self.search_tree(&mut packet_counts);
-        let max_tested = MAX_TESTED_PER_PACKET[1].saturating_mul(packet_count);
         let budget = self.limits.budget;
         let work = |numbers: Range<usize>| {
             let mut state = FloodState::default();
@@ -121,7 +121,7 @@ impl<'a> Flood<'a> {
                 if budget.is_exceeded() {
                     break;
                 }
-                self.run(number, &mut state, max_tested);
+                self.run(number, &mut state, max_tested[1]);
                 state.found.extend_from_slice(of_tree.get(number));
                 state.found.sort_unstable();
                 chunk.corners.extend_from_slice(&state.found);
@@ -136,7 +136,7 @@ impl<'a> Flood<'a> {
         let mut items: Vec<u32> = Vec::with_capacity(tried[1] * step + tried[1] * step / 8);
         map_chunks_in_order(packet_count, PACKETS_PER_TASK, self.limits.parallel, work, |chunk: FoundChunk| {
             tested += chunk.tested;
-            if tested > max_tested || !budget.fits::<u32>(items.len() + chunk.corners.len()) {
+            if tested > max_tested[1] || !budget.fits::<u32>(items.len() + chunk.corners.len()) {
                 return;
             }
             let mut first = items.len();
@@ -148,7 +148,7 @@ impl<'a> Flood<'a> {
             items.extend_from_slice(&chunk.corners);
             progress(firsts.len(), packet_count);
         });
-        if tested > max_tested || firsts.len() < packet_count {
+        if tested > max_tested[1] || firsts.len() < packet_count {
             return None;
         }
         firsts.push(to_u32(items.len()));
