@@ -16,6 +16,9 @@ use std::ops::Range;
 /// A ball that intersects more packets than this is crowded.
 pub(crate) const CROWDED_BALL_PACKETS: usize = 24;
 
+/// Floods find the packets of all balls again if at least one of this many is new.
+const FLOODED_PART_DIVISOR: usize = 4;
+
 /// The number of corners that one task computes.
 const CORNERS_PER_TASK: usize = 1024;
 
@@ -89,18 +92,23 @@ pub(crate) struct CellCorners {
 }
 
 impl CellCorners {
-    /// Computes the corners of all tetrahedra, and finds their packets. If the tree has to be searched for these, those
-    /// of balls that an earlier triangulation had as well are copied from `reused`.
-    pub(crate) fn new<'b>(
+    /// Computes the corners of all tetrahedra, and finds their packets. If few balls are new, the packets of the others
+    /// are copied from `reused`, which has those of an earlier triangulation.
+    pub(crate) fn new(
         tree: &PacketTree,
         delaunay: &Delaunay,
         limits: Limits<'_>,
-        reused: impl FnOnce() -> Option<ReusedCorners<'b>>,
+        reused: Option<&ReusedCorners<'_>>,
         progress: &dyn Fn(usize, usize),
     ) -> Self {
         let count = delaunay.tetrahedra().len();
         let mut all = compute_corners(delaunay, limits.parallel);
-        let flooded = Flood::new(tree, delaunay, &all, limits).and_then(|flood| flood.find(progress));
+        let is_flooded = reused.is_none_or(|reused| {
+            let new_count = delaunay.tetrahedra().iter().filter(|t| reused.find(t).is_none()).count();
+            new_count * FLOODED_PART_DIVISOR > count
+        });
+        let flood = if is_flooded { Flood::new(tree, delaunay, &all, limits) } else { None };
+        let flooded = flood.and_then(|flood| flood.find(progress));
         if let Some(flooded) = flooded {
             all.push(CellCorner::UNKNOWN);
             let mut corners = Self { all, flooded: Some(flooded), ..Self::default() };
@@ -108,12 +116,11 @@ impl CellCorners {
             return corners;
         }
         let mut corners = Self { all: Vec::with_capacity(count + 1), ..Self::default() };
-        let reused = reused();
         map_chunks_in_order(
             count,
             CORNERS_PER_TASK,
             limits.parallel,
-            |numbers| Self::search_chunk(tree, delaunay, limits, reused.as_ref(), &all, numbers),
+            |numbers| Self::search_chunk(tree, delaunay, limits, reused, &all, numbers),
             |chunk: Self| {
                 corners.append(chunk, limits);
                 progress(corners.all.len(), count);
@@ -164,7 +171,7 @@ impl CellCorners {
 
     /// Finds the packets of crowded balls as well, unless they are too many for a list.
     pub(crate) fn find_packets_of_crowded(&mut self, tree: &PacketTree, limits: Limits<'_>) {
-        if self.is_flooded() {
+        if self.flooded.is_some() {
             self.mark_flooded_crowds(limits.max_list_packets);
             return;
         }
@@ -213,9 +220,22 @@ impl CellCorners {
         self.all.extend(chunk.all.into_iter().map(moved));
     }
 
-    /// Returns whether floods found the packets. Those of one ball are not at hand then.
-    pub(crate) fn is_flooded(&self) -> bool {
-        self.flooded.is_some()
+    /// Sorts the packets that floods found by balls, so that they can be reused.
+    pub(crate) fn list_packets_of_balls(&mut self, tree: &PacketTree) {
+        let Some(FloodedCorners { of_packets, packet_counts }) = self.flooded.take() else { return };
+        let mut total = 0;
+        for (corner, count) in self.all.iter_mut().zip(packet_counts.into_iter().chain([0])) {
+            corner.first_packet = to_u32(total);
+            total += if corner.is_crowded { 0 } else { count as usize };
+        }
+        self.packets = vec![0; total];
+        let mut next: Vec<u32> = self.all.iter().map(|corner| corner.first_packet).collect();
+        for packet in 0..tree.leaves.packets.len() {
+            for &corner in of_packets.get(packet).iter().filter(|corner| !self.all[**corner as usize].is_crowded) {
+                self.packets[next[corner as usize] as usize] = to_u32(packet);
+                next[corner as usize] += 1;
+            }
+        }
     }
 
     /// Returns the number of corners that are crowded or unknown.

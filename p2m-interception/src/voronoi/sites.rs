@@ -69,7 +69,7 @@ impl Sites {
         let (mut topology, mut corners) = run_both(
             parallel,
             || early_topology(&delaunay),
-            || CellCorners::new(tree, &delaunay, limits, || None, &progress),
+            || CellCorners::new(tree, &delaunay, limits, None, &progress),
         );
         for _ in 0..MAX_ROUNDS {
             let new_sites = CrowdedClusters { tree, corners: &corners, bounds, limits }
@@ -86,18 +86,14 @@ impl Sites {
                 points.truncate(count_before);
                 break;
             };
-            let crowded_before = corners.count_crowded();
-            // What floods found is not used again, so its memory is free for the next floods.
-            let earlier = (!corners.is_flooded()).then_some((delaunay, corners));
-            let reused = || {
-                earlier.as_ref().map(|(delaunay, corners)| ReusedCorners::new(delaunay, corners, &next, count_before))
-            };
+            corners.list_packets_of_balls(tree);
+            let reused = ReusedCorners::new(&delaunay, &corners, &next, count_before);
             let (next_topology, all) = run_both(
                 parallel,
                 || early_topology(&next),
-                || CellCorners::new(tree, &next, limits, reused, &progress),
+                || CellCorners::new(tree, &next, limits, Some(&reused), &progress),
             );
-            let crowded_after = all.count_crowded();
+            let (crowded_before, crowded_after) = (corners.count_crowded(), all.count_crowded());
             added.extend(new_sites);
             (delaunay, corners, topology) = (next, all, next_topology);
             // Points do not help everywhere. Between long thin triangles there would have to be too many.
