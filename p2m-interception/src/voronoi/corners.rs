@@ -332,3 +332,51 @@ fn sorted(mut sites: [u32; 4]) -> [u32; 4] {
     sites.sort_unstable();
     sites
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::voronoi::budget::BuildBudget;
+    use nalgebra::Point3;
+    use p2m_bvh::SplitOptions;
+    use p2m_core::Segment;
+    use p2m_testkit::{rng, vector};
+
+    /// Balls that are not crowded keep their packets when these are sorted by balls, and a later triangulation of the
+    /// same sites takes them over.
+    #[test]
+    fn packets_that_floods_found_are_reused() {
+        let mut rng = rng("reused packets", 0);
+        let segments: Vec<Segment<f64>> = (0..600)
+            .map(|_| {
+                let a = Point3::from(vector(&mut rng));
+                Segment::new(a, a + vector(&mut rng))
+            })
+            .collect();
+        let tree: PacketTree = PacketTree::build(&segments[..], &SplitOptions::default());
+        let budget = &BuildBudget::new(1e6, 1e6, segments.len());
+        let limits = Limits { slack: 1e-9, max_list_packets: 6, max_added_sites: 0, parallel: false, budget };
+        let delaunay = Delaunay::new(&tree.leaves.vertices, 300.0).expect("finite");
+        let mut corners = CellCorners::new(&tree, &delaunay, limits, None, &|_, _| ());
+        let mut expected = vec![Vec::new(); delaunay.tetrahedra().len()];
+        let flooded = corners.flooded.as_ref().expect("few packets");
+        for packet in 0..tree.leaves.packets.len() {
+            flooded.of_packets.get(packet).iter().for_each(|corner| expected[*corner as usize].push(to_u32(packet)));
+        }
+        corners.list_packets_of_balls(&tree);
+        let reused = ReusedCorners::new(&delaunay, &corners, &delaunay, tree.leaves.vertices.len());
+        let later = CellCorners::new(&tree, &delaunay, limits, Some(&reused), &|_, _| ());
+        assert!(later.flooded.is_none());
+        let mut crowded = 0;
+        for (number, expected) in expected.iter().enumerate() {
+            let is_crowded = corners.all[number].is_crowded;
+            crowded += usize::from(is_crowded);
+            assert!(is_crowded || expected.len() <= limits.max_list_packets, "{number}");
+            assert_eq!(later.all[number].is_crowded, is_crowded, "{number}");
+            for corners in [&corners, &later] {
+                assert_eq!(corners.packets(number), if is_crowded { &[] } else { &expected[..] }, "{number}");
+            }
+        }
+        assert!(crowded > 0 && crowded < expected.len(), "{crowded} of {}", expected.len());
+    }
+}

@@ -4,11 +4,12 @@
 //! other sites. A site that is a point of the scene dominates its own cell. The tree answers in the cells of the other,
 //! auxiliary sites. A cell is the convex hull of the circumcentres of its Delaunay tetrahedra.
 //! By the corner test, a primitive can be the answer in the cell only if it intersects one of the circumscribed balls.
-//! So one ball query for each tetrahedron serves the lists of four cells. (The paper grows each list by flooding, and
-//! clips the cells.) Six artificial sites far outside make all cells bounded.
+//! So the packets of each ball, which a [`flood`] finds, serve the lists of four cells. (The paper grows each list by
+//! flooding over cells, and clips the cells.) Six artificial sites far outside make all cells bounded.
 //!
-//! The modules from sites to lists are [`corners`], [`crowded`], [`packet_cells`], [`cell_packets`] and [`cells`]. A
-//! query is located by a [`locator`], walks over the [`neighbours`] of sites, and searches a list ([`query`]).
+//! The modules from sites to lists are [`corners`], [`flood`], [`crowded`], [`packet_cells`], [`cell_packets`] and
+//! [`cells`]. A query is located by a [`locator`], walks over the [`neighbours`] of sites, and searches a list
+//! ([`query`]).
 //! docs/proofs/p2m.md has the proofs.
 
 pub(crate) mod adjacency;
