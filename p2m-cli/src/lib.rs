@@ -28,6 +28,7 @@ mod output;
 mod p2m_args;
 mod picture;
 mod progress;
+mod pump;
 mod query;
 mod query_args;
 mod ray;
