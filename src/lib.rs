@@ -130,7 +130,7 @@ pub use p2m_interception::RegionTree;
 #[cfg(feature = "interception")]
 pub use p2m_interception::{
     BuildListFilter, BuildLocator, Domain, InterceptionIndex, ListFilter, Locator, LocatorSites, OctreeIndex,
-    OctreeOptions, OctreeReport, P2mIndex, P2mOptions, P2mReport, Region, Voronoi,
+    OctreeOptions, OctreeReport, OctreeSoFar, P2mIndex, P2mOptions, P2mReport, Region, Voronoi,
 };
 #[cfg(all(feature = "kiddo", feature = "rstar"))]
 pub use p2m_interception::{PaperIndex, PaperOptions};

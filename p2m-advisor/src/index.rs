@@ -5,7 +5,8 @@ use crate::p2m_settings::P2mSettings;
 use p2m_bvh::SplitOptions;
 use p2m_core::storage::Writer;
 use p2m_core::{Index, Real};
-use p2m_interception::{OctreeReport, P2mReport, Progress};
+use p2m_interception::{OctreeReport, OctreeSoFar, P2mReport, Progress};
+use std::ops::ControlFlow;
 
 /// An index that was built or loaded, with the details that reports have about it.
 pub struct BuiltIndex<'a, T: Real = f64> {
@@ -63,6 +64,9 @@ pub struct BuildSettings<'p> {
     /// A function that is called with the progress of the build, by backends that
     /// [report it](crate::BackendEntry::reports_progress).
     pub progress: &'p (dyn Fn(Progress) + Sync),
+    /// A function that sees what an octree would be if its refinement ended now, and may end it
+    /// ([`OctreeIndex::build_until`](p2m_interception::OctreeIndex::build_until)).
+    pub visit_octree: &'p (dyn Fn(&OctreeSoFar) -> ControlFlow<()> + Sync),
 }
 
 impl Default for BuildSettings<'_> {
@@ -73,6 +77,7 @@ impl Default for BuildSettings<'_> {
             p2m: P2mSettings::default(),
             octree_budget_scale: 1.0,
             progress: &|_| (),
+            visit_octree: &|_| ControlFlow::Continue(()),
         }
     }
 }
@@ -106,6 +111,12 @@ impl<'p> BuildSettings<'p> {
     #[must_use]
     pub fn with_progress(self, progress: &'p (dyn Fn(Progress) + Sync)) -> Self {
         Self { progress, ..self }
+    }
+
+    /// Sets the function that may end the refinement of an octree.
+    #[must_use]
+    pub fn with_visit_octree(self, visit_octree: &'p (dyn Fn(&OctreeSoFar) -> ControlFlow<()> + Sync)) -> Self {
+        Self { visit_octree, ..self }
     }
 
     /// The splits of trees, with the choice of threads.

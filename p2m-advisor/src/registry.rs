@@ -173,7 +173,8 @@ fn build_octree<'a, T: Real>(soup: &'a Soup<T>, settings: &BuildSettings<'_>) ->
     let (memory, work) = (options.memory, options.work);
     let scale = settings.octree_budget_scale;
     let options = options.with_memory(memory * scale).with_work(work * scale);
-    let index = OctreeIndex::build_with_progress(soup, &options, settings.progress)?;
+    let index =
+        OctreeIndex::build_until(soup, &options, settings.progress, &mut |so_far| (settings.visit_octree)(so_far))?;
     let report = index.report();
     Ok(BuiltIndex::new(index, IndexDetails::Octree(report)))
 }

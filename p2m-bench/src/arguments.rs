@@ -122,7 +122,7 @@ pub(crate) struct PointsArguments {
     #[arg(long, default_value_t = 5)]
     pub(crate) rounds: usize,
     /// Queries in a round
-    #[arg(long, default_value_t = 500_000)]
+    #[arg(long, default_value_t = 50_000)]
     pub(crate) queries: usize,
     /// Number of times that each index is built
     #[arg(long, default_value_t = 1)]

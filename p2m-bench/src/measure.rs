@@ -16,8 +16,8 @@ const SLOW_NANOSECONDS: f64 = 20_000.0;
 /// The number of queries in a round of a backend that is slower than [`SLOW_NANOSECONDS`].
 const SLOW_QUERIES: usize = 20_000;
 
-/// The longest time that a round of an exhaustive backend may take, in nanoseconds.
-const EXHAUSTIVE_ROUND_NANOSECONDS: f64 = 1e9;
+/// The longest time that a round of a slow backend may take, in nanoseconds.
+const SLOW_ROUND_NANOSECONDS: f64 = 1e9;
 
 /// An index is not built again once its builds have taken this many seconds in all.
 const MAX_BUILD_SECONDS: f64 = 10.0;
@@ -129,9 +129,7 @@ pub(crate) fn measure_set(scene: &Scene, set: QuerySet, entries: &mut [Entry<'_>
 /// Measures the given queries and appends the figures to every entry.
 pub(crate) fn measure(queries: Vec<Point3<f64>>, entries: &mut [Entry<'_>], rounds: usize) {
     let queries = Queries::new(queries);
-    let rounds_of = |entry: &Entry<'_>| {
-        Rounds::new(&queries, Answer::NONE, |q, a| entry.answer(q, a), |ns| affordable(entry.backend, ns))
-    };
+    let rounds_of = |entry: &Entry<'_>| Rounds::new(&queries, Answer::NONE, |q, a| entry.answer(q, a), affordable);
     let mut all: Vec<Rounds<Answer, Unavailable>> = entries.iter().map(rounds_of).collect();
     let mut figures = vec![SetFigures::default(); all.len()];
     for round in 0..rounds {
@@ -163,13 +161,11 @@ impl Entry<'_> {
 
 /// Returns the number of queries in a round for a backend of the given speed.
 #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "saturates, and is not negative")]
-fn affordable(backend: &Backend, nanoseconds: f64) -> usize {
+fn affordable(nanoseconds: f64) -> usize {
     if nanoseconds <= SLOW_NANOSECONDS {
         usize::MAX
-    } else if backend.is_exhaustive {
-        SLOW_QUERIES.min((EXHAUSTIVE_ROUND_NANOSECONDS / nanoseconds) as usize)
     } else {
-        SLOW_QUERIES
+        SLOW_QUERIES.min((SLOW_ROUND_NANOSECONDS / nanoseconds) as usize)
     }
 }
 
@@ -181,8 +177,7 @@ mod tests {
 
     #[test]
     fn slow_backends_get_fewer_queries() {
-        let [brute, aabb] = ["brute", "aabb"].map(|name| backends::ALL.iter().find(|b| b.name == name).unwrap());
-        assert_eq!([affordable(aabb, 1e3), affordable(aabb, 1e6), affordable(brute, 1e6)], [usize::MAX, 20_000, 1000]);
+        assert_eq!([1e3, 3e4, 1e6].map(affordable), [usize::MAX, 20_000, 1000]);
     }
 
     /// Measures all backends over a scene of these elements with little effort.

@@ -119,9 +119,15 @@ pub(crate) fn print(
             let scene = scene(*distribution, count)?;
             let is_built = |name: &&&str| scene.len() <= MAX_OCTREE_POINTS || !name.starts_with("octree");
             let selected: Vec<&Backend> = BACKENDS.iter().filter(is_built).map(|name| by_name(name)).collect();
-            let mut entries = build_all(&scene, &selected, effort.builds);
+            let what = format!("{}, {} points", scene.name, scene.len());
+            let mut entries = Vec::new();
+            for backend in selected {
+                entries.extend(build_all(&scene, &[backend], effort.builds));
+                eprintln!("{what}: {} is built", backend.name);
+            }
             for set in sets {
                 measure_set(&scene, *set, &mut entries, effort);
+                eprintln!("{what}: {set} is measured");
             }
             let entry_of = |name: &str| entries.iter().find(|entry| entry.backend.name == name);
             let built =

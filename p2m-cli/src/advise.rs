@@ -78,7 +78,8 @@ pub(crate) struct Args {
 
 pub(crate) fn run(streams: &Streams, args: &Args) -> anyhow::Result<()> {
     let format = args.scene.format()?;
-    let scene = read_scene(streams, &args.scene, format)?;
+    let pool = args.threads.pool()?;
+    let scene = read_scene(streams, &pool, &args.scene, format)?;
     let points = args
         .points
         .as_ref()
@@ -98,7 +99,6 @@ pub(crate) fn run(streams: &Streams, args: &Args) -> anyhow::Result<()> {
     if let Some(time) = args.time {
         workload = workload.with_max_time(Duration::try_from_secs_f64(time).unwrap_or(Duration::MAX));
     }
-    let pool = args.threads.pool()?;
     let advice = pool.install(|| recommend(&scene.soup, &workload)).with_context(|| args.scene.name())?;
     if args.json {
         let estimates: Vec<Value> = advice.estimates.iter().map(estimate_json).collect();

@@ -1,5 +1,6 @@
 //! The values of `--backend`, which come from the registry of backends, and the building or loading of an index.
 
+use crate::interrupt::StoppableWork;
 use crate::progress::{Progress, Unit};
 use crate::streams::Streams;
 use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
@@ -8,8 +9,10 @@ use p2m_advisor::{
 };
 use p2m_core::Soup;
 use p2m_core::storage::Reader;
-use p2m_interception::{BuildStage, StageTimes};
+use p2m_interception::{BuildStage, OctreeSoFar, StageTimes};
 use rayon::ThreadPool;
+use std::ops::ControlFlow;
+use std::sync::OnceLock;
 use std::time::{Duration, Instant};
 
 /// A backend of the registry.
@@ -124,11 +127,32 @@ impl<'a> SceneSource<'a> {
                 times.tell(progress);
                 bar.advance_to((progress.part * 100.0) as u64);
             };
-            pool.install(|| backend.build(self.soup, &settings.with_progress(&report)))?
+            let shows_progress = streams.shows_progress();
+            let work = OnceLock::new();
+            let visit = |so_far: &OctreeSoFar| {
+                // Users who see no progress do not see either that the refinement can end early.
+                if shows_progress {
+                    work.get_or_init(StoppableWork::start);
+                    bar.set_note(octree_note(so_far));
+                }
+                if StoppableWork::is_stopped() { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
+            };
+            let settings = settings.with_progress(&report).with_visit_octree(&visit);
+            pool.install(|| backend.build(self.soup, &settings))?
         } else {
             let _progress = Progress::start(streams, "building the index", None, Unit::None);
             pool.install(|| backend.build(self.soup, &settings))?
         };
         Ok(PreparedIndex { built, is_loaded: false, stages: times.finish() })
     }
+}
+
+/// Returns what a progress bar says about an octree whose refinement goes on.
+fn octree_note(so_far: &OctreeSoFar) -> String {
+    let (cells, megabytes) = (so_far.cells, so_far.bytes as f64 / 1e6);
+    let length = so_far.mean_list_length();
+    if StoppableWork::is_stopped() {
+        return format!(", ending early with {cells} cells, lists of {length:.1} packets, {megabytes:.0} MB");
+    }
+    format!(", so far {cells}, lists of {length:.1} packets, {megabytes:.0} MB (Ctrl-C ends here)")
 }

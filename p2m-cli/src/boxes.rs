@@ -123,10 +123,10 @@ pub(crate) fn run(streams: &Streams, args: &Args) -> anyhow::Result<()> {
     };
     Output::refuse_inputs(&args.out, &[&args.scene.path])?;
     let format = args.scene.format()?;
-    let scene = read_scene(streams, &args.scene, format)?;
+    let pool = args.threads.pool()?;
+    let scene = read_scene(streams, &pool, &args.scene, format)?;
     let progress = Progress::start(streams, "building", None, Unit::None);
     let levels = usize::from(args.levels);
-    let pool = args.threads.pool()?;
     let drawn = pool.install(|| match args.k {
         None => AabbTree::build(&scene.soup, &Default::default())
             .map(|tree| panels(tree.tree(), levels, ["box", "boxes"], |bounds| box_edges(bounds).collect()))

@@ -64,13 +64,13 @@ pub(crate) fn run(streams: &Streams, args: &Args) -> anyhow::Result<()> {
     Output::refuse_inputs(&args.out, &[&scene_args.path])?;
     Output::refuse_terminal(streams, &args.out, Format::P2m.name())?;
     let format = scene_args.format()?;
+    let pool = args.index_args.threads.pool()?;
     let start = Instant::now();
-    let scene = read_scene(streams, scene_args, format)?;
+    let scene = read_scene(streams, &pool, scene_args, format)?;
     let read_time = start.elapsed();
     // The file is opened before the work, which would be lost if its name were wrong.
     let mut output = Output::open(streams, Some(&args.out))?;
 
-    let pool = args.index_args.threads.pool()?;
     let start = Instant::now();
     let (backend, kdop_directions, p2m) = args.index_args.choice(None, &scene.soup, DEFAULT_QUERY_COUNT, &pool)?;
     let source = SceneSource { soup: &scene.soup, kdop_directions, p2m, saved: None };

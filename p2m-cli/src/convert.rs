@@ -6,6 +6,7 @@ use crate::json;
 use crate::modify::{self, Modifiers};
 use crate::output::Output;
 use crate::streams::Streams;
+use crate::threads::ThreadArgs;
 use crate::usage::{one_of, usage};
 use anyhow::{Context, anyhow};
 use p2m_core::{Element, PrimitiveSet};
@@ -69,7 +70,8 @@ pub(crate) fn run(streams: &Streams, args: &Args) -> anyhow::Result<()> {
     let target = Target::new(streams, &args.to_file, args.to, None)?;
     target.check_report(args.json)?;
     Output::refuse_inputs(&args.to_file, &[&args.from_file])?;
-    let (read, saved) = read_scene_and_index(streams, &args.from_file, from, false)?;
+    let pool = ThreadArgs::default().pool()?;
+    let (read, saved) = read_scene_and_index(streams, &pool, &args.from_file, from, false)?;
     let has_index = saved.is_some_and(|reader| p2m_core::storage::kind(&reader).is_ok());
     let before = Counts::of(&read.soup);
     let polygons = count_cut_polygons(&read);

@@ -58,12 +58,13 @@ pub(crate) fn run(streams: &Streams, args: &Args) -> anyhow::Result<()> {
     }
     let motion = args.scenes.motion()?;
     let formats = args.scenes.formats()?;
-    let scenes = args.scenes.read(streams, formats)?.map(|(scene, _)| scene);
+    let pool = args.threads.pool()?;
+    let scenes = args.scenes.read(streams, &pool, formats)?.map(|(scene, _)| scene);
     let names = args.scenes.names();
     let mut options = PairOptions::default().with_max_distance(limit);
     options.motion = motion;
     let progress = Progress::start(streams, "comparing", None, Unit::None);
-    let found = args.threads.pool()?.install(|| {
+    let found = pool.install(|| {
         let build = |k: usize| {
             AabbTree::<f64, &Soup<f64>>::build(&scenes[k].soup, &Default::default()).with_context(|| names[k].clone())
         };

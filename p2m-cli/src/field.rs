@@ -124,8 +124,9 @@ pub(crate) fn run(streams: &Streams, args: &Args) -> anyhow::Result<()> {
         }
     }
     let format = scene_args.format()?;
+    let pool = args.index_args.threads.pool()?;
     let start = Instant::now();
-    let (scene, saved) = read_scene_and_index(streams, &scene_args.path, format, scene_args.map)?;
+    let (scene, saved) = read_scene_and_index(streams, &pool, &scene_args.path, format, scene_args.map)?;
     let read_time = start.elapsed();
     let soup = &scene.soup;
     let grid =
@@ -134,7 +135,6 @@ pub(crate) fn run(streams: &Streams, args: &Args) -> anyhow::Result<()> {
     let mut output = Output::open(streams, Some(&args.out))?;
     let picture = args.slice.as_ref().map(|path| Output::open(streams, Some(path))).transpose()?;
 
-    let pool = args.index_args.threads.pool()?;
     let start = Instant::now();
     let has_lists = args.index_args.is_unspecified() && args.refine.is_none();
     let lists = if has_lists { candidate_lists(streams, soup, &grid, &pool) } else { None };

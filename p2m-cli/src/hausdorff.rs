@@ -72,7 +72,8 @@ pub(crate) fn run(streams: &Streams, args: &Args) -> anyhow::Result<()> {
     let motion = args.scenes.motion()?;
     let formats = args.scenes.formats()?;
     let names = args.scenes.names();
-    let [(first, first_saved), (mut second, mut second_saved)] = args.scenes.read(streams, formats)?;
+    let pool = args.threads.pool()?;
+    let [(first, first_saved), (mut second, mut second_saved)] = args.scenes.read(streams, &pool, formats)?;
     if let Some(motion) = motion.as_ref().map(Motion::new) {
         let moved = second.soup.map_positions(|p| motion.apply(p.coords.into()).into());
         moved.with_context(|| format!("{}: moved by --transform", names[1]))?;
@@ -82,7 +83,6 @@ pub(crate) fn run(streams: &Streams, args: &Args) -> anyhow::Result<()> {
     let (scenes, saved) = ([first, second], [first_saved, second_saved]);
     let bounds = scenes[0].soup.aabb().union(&scenes[1].soup.aabb());
     let tolerance = args.tolerance.unwrap_or_else(|| (bounds.max - bounds.min).norm() / 1e4);
-    let pool = args.threads.pool()?;
     let prepare = |k: usize| {
         let saved = saved[k].as_ref();
         let backend = args.backend.unwrap_or_else(|| saved_or_default(saved));

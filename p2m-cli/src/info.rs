@@ -5,6 +5,7 @@ use crate::json;
 use crate::output::Output;
 use crate::progress::{Progress, Unit};
 use crate::streams::Streams;
+use crate::threads::ThreadArgs;
 use anyhow::Context;
 use p2m_mixed::statistics::figure::{Count, Exact, Figure, Share};
 use p2m_mixed::statistics::{Counts, Extremes, ObjectCounts, Statistics, objects};
@@ -44,7 +45,8 @@ Examples:
 
 pub(crate) fn run(streams: &Streams, args: &Args) -> anyhow::Result<()> {
     let format = args.scene.format()?;
-    let (scene, saved) = read_scene_and_index(streams, &args.scene.path, format, args.scene.map)?;
+    let pool = ThreadArgs::default().pool()?;
+    let (scene, saved) = read_scene_and_index(streams, &pool, &args.scene.path, format, args.scene.map)?;
     let index = saved.and_then(|reader| p2m_core::storage::kind(&reader).ok());
     let progress = Progress::start(streams, "counting", None, Unit::None);
     let statistics = Statistics::of(&scene.soup);

@@ -1,6 +1,7 @@
 //! Reads input files. The name `-` stands for the standard input.
 
 use crate::progress::{Progress, Unit};
+use crate::pump::pump;
 use crate::streams::Streams;
 use crate::usage::{one_of, usage};
 use crate::zstd::{ZstdReader, is_zstd};
@@ -10,6 +11,7 @@ use nalgebra::Point3;
 use p2m_core::Ray;
 use p2m_core::storage::{LoadError, Reader, SavedFile};
 use p2m_mixed::{Format, PointFormat, ReadError, Scene, load_scene};
+use rayon::ThreadPool;
 use std::fs::{File, Metadata};
 use std::io::{self, BufRead, BufReader, Read};
 use std::path::{Path, PathBuf};
@@ -109,6 +111,7 @@ pub(crate) fn or_option(error: &ReadError, option: &str) -> anyhow::Error {
 /// Reads a scene. Of a saved index, which is mapped if `is_mapped` is set, it returns the reader of the index as well.
 pub(crate) fn read_scene_and_index(
     streams: &Streams,
+    pool: &ThreadPool,
     path: &Path,
     format: Format,
     is_mapped: bool,
@@ -119,7 +122,7 @@ pub(crate) fn read_scene_and_index(
         return Err(usage("--map needs the file of a saved index, which is not compressed"));
     }
     if format != Format::P2m {
-        return Ok((read_plain_scene(streams, path, format)?, None));
+        return Ok((read_plain_scene(streams, pool, path, format)?, None));
     }
     let load = |file: SavedFile| -> Result<_, LoadError> {
         let reader = file.checked()?;
@@ -144,13 +147,19 @@ fn map(path: &Path) -> Result<SavedFile, LoadError> {
 }
 
 /// Reads a scene.
-pub(crate) fn read_scene(streams: &Streams, args: &SceneArgs, format: Format) -> anyhow::Result<Scene> {
-    Ok(read_scene_and_index(streams, &args.path, format, args.map)?.0)
+pub(crate) fn read_scene(
+    streams: &Streams,
+    pool: &ThreadPool,
+    args: &SceneArgs,
+    format: Format,
+) -> anyhow::Result<Scene> {
+    Ok(read_scene_and_index(streams, pool, &args.path, format, args.map)?.0)
 }
 
 /// Reads a scene from a file without an index.
-fn read_plain_scene(streams: &Streams, path: &Path, format: Format) -> anyhow::Result<Scene> {
-    Ok(p2m_mixed::read_scene_from(open(streams, path)?, format, &name(path))?)
+fn read_plain_scene(streams: &Streams, pool: &ThreadPool, path: &Path, format: Format) -> anyhow::Result<Scene> {
+    let reader = open(streams, path)?;
+    Ok(pump(pool, reader, |reader| p2m_mixed::read_scene_from(reader, format, &name(path)))?)
 }
 
 /// Reads the points of a file.

@@ -1,11 +1,48 @@
 //! Signals such as Ctrl-C. They remove unfinished files and end the program with 128 plus their number as
-//! its exit code.
+//! its exit code, except that the first Ctrl-C during work that can end early only ends that work.
 
 use std::path::{Path, PathBuf};
+use std::sync::atomic::{AtomicU8, Ordering};
 use std::sync::{Mutex, MutexGuard, PoisonError};
 
 /// The files that are not finished yet, and the folders that are removed if they are empty without these.
 static UNFINISHED: Mutex<Vec<PathBuf>> = Mutex::new(Vec::new());
+
+/// The state of work that can end early: [`UNSTOPPABLE`], [`STOPPABLE`] or [`STOPPED`].
+static STOP: AtomicU8 = AtomicU8::new(UNSTOPPABLE);
+/// There is no work that can end early.
+const UNSTOPPABLE: u8 = 0;
+/// The next Ctrl-C ends the work early.
+const STOPPABLE: u8 = 1;
+/// The work ends as soon as it can.
+const STOPPED: u8 = 2;
+
+/// Work that can end early with a result. While it exists, the first Ctrl-C asks it to end, and does not end the
+/// program.
+pub(crate) struct StoppableWork(());
+
+impl StoppableWork {
+    pub(crate) fn start() -> Self {
+        STOP.store(STOPPABLE, Ordering::Relaxed);
+        Self(())
+    }
+
+    /// Returns whether the work has to end.
+    pub(crate) fn is_stopped() -> bool {
+        STOP.load(Ordering::Relaxed) == STOPPED
+    }
+}
+
+impl Drop for StoppableWork {
+    fn drop(&mut self) {
+        STOP.store(UNSTOPPABLE, Ordering::Relaxed);
+    }
+}
+
+/// Asks work that can end early to end. Returns whether there is such work that was not asked before.
+fn stop_work() -> bool {
+    STOP.compare_exchange(STOPPABLE, STOPPED, Ordering::Relaxed, Ordering::Relaxed).is_ok()
+}
 
 /// Locks the list of unfinished files. The lock is held while a file is created or renamed, so that a signal finds
 /// every unfinished file on the list.
@@ -31,7 +68,7 @@ impl Drop for Listed {
 }
 
 /// Listens for SIGINT, SIGTERM, SIGHUP and SIGQUIT, which then remove unfinished files and end the process, with 128
-/// plus the number of the signal as its exit code.
+/// plus the number of the signal as its exit code. A first SIGINT during work that can end early only ends that work.
 ///
 /// A signal that the process was started to ignore stays ignored. On systems without these signals nothing happens.
 ///
@@ -43,7 +80,7 @@ pub fn listen() -> std::io::Result<()> {
     Ok(())
 }
 
-/// Starts a thread that handles the first signal among those that are not ignored (see [`is_ignored`]).
+/// Starts a thread that handles signals that are not ignored (see [`is_ignored`]).
 #[cfg(unix)]
 fn wait_for_signals() -> std::io::Result<()> {
     use signal_hook::consts::{SIGHUP, SIGINT, SIGQUIT, SIGTERM};
@@ -51,7 +88,7 @@ fn wait_for_signals() -> std::io::Result<()> {
     let signals: Vec<i32> = [SIGINT, SIGTERM, SIGHUP, SIGQUIT].into_iter().filter(|&s| !is_ignored(s)).collect();
     let mut signals = signal_hook::iterator::Signals::new(signals)?;
     std::thread::Builder::new().spawn(move || {
-        if let Some(signal) = signals.forever().next() {
+        if let Some(signal) = signals.forever().find(|&signal| signal != SIGINT || !stop_work()) {
             // The lock is kept until the end, so that no file is created or finished any more.
             let files = unfinished();
             // A folder is listed before the files in it.
@@ -81,5 +118,21 @@ fn is_ignored(signal: i32) -> bool {
     match mask.and_then(|mask| u64::from_str_radix(mask.trim(), 16).ok()) {
         Some(mask) => mask >> (signal - 1) & 1 == 1,
         None => signal == signal_hook::consts::SIGHUP,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_first_interruption_ends_work_and_the_second_one_the_program() {
+        assert!(!stop_work() && !StoppableWork::is_stopped());
+        let work = StoppableWork::start();
+        assert!(!StoppableWork::is_stopped());
+        assert!(stop_work() && StoppableWork::is_stopped());
+        assert!(!stop_work());
+        drop(work);
+        assert!(!stop_work() && !StoppableWork::is_stopped());
     }
 }

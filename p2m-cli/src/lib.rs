@@ -28,6 +28,7 @@ mod output;
 mod p2m_args;
 mod picture;
 mod progress;
+mod pump;
 mod query;
 mod query_args;
 mod ray;
@@ -78,7 +79,8 @@ Examples:
   p2m generate torus-knot --out knot.obj
 
 The exit code is 0 for success, 1 for what could not be read, written or done, and 2 for wrong usage; 128 plus the number of \
-the signal after an interruption (130 for Ctrl-C), which leaves no half-written file.";
+the signal after an interruption (130 for Ctrl-C), which leaves no half-written file. While a progress bar says that Ctrl-C ends the \
+refinement of an octree, the first one only does that, and the run goes on with a coarser index.";
 
 #[derive(Subcommand)]
 enum Command {

@@ -2,15 +2,17 @@
 
 use crate::streams::Streams;
 use indicatif::{HumanDuration, ProgressBar, ProgressDrawTarget, ProgressState, ProgressStyle};
-use std::sync::Arc;
 use std::sync::atomic::{AtomicU64, Ordering};
 use std::sync::mpsc::{self, RecvTimeoutError, Sender};
+use std::sync::{Arc, Mutex, PoisonError};
 use std::thread::JoinHandle;
 use std::time::Duration;
 
 /// A piece of work. Its progress bar disappears when it is dropped.
 pub(crate) struct Progress {
     done: Arc<AtomicU64>,
+    /// The state of the work in words, after the label.
+    note: Arc<Mutex<String>>,
     /// The thread that draws, and the channel that stops it; `None` without a terminal.
     drawing: Option<(Sender<()>, JoinHandle<()>)>,
 }
@@ -36,12 +38,13 @@ impl Progress {
     /// Starts a bar with the label `what`, such as `reading scene.ply`. `total` is the amount of work, if it is known.
     pub(crate) fn start(streams: &Streams, what: &str, total: Option<u64>, unit: Unit) -> Self {
         let done = Arc::new(AtomicU64::new(0));
+        let note = Arc::new(Mutex::new(String::new()));
         // On a terminal that cannot move its cursor the bar hides itself.
         if !streams.shows_progress() {
-            return Self { done, drawing: None };
+            return Self { done, note, drawing: None };
         }
         let (stop, stopped) = mpsc::channel();
-        let (position, what) = (Arc::clone(&done), what.to_owned());
+        let (position, shown, what) = (Arc::clone(&done), Arc::clone(&note), what.to_owned());
         let draw = move || {
             if stopped.recv_timeout(DELAY) != Err(RecvTimeoutError::Timeout) {
                 return;
@@ -50,8 +53,8 @@ impl Progress {
             if let Ok(style) = ProgressStyle::with_template(&template(total, unit)) {
                 bar.set_style(style.tick_chars("-\\|/ ").with_key("left", write_time_left));
             }
-            bar.set_message(what);
             while stopped.recv_timeout(REFRESH_INTERVAL) == Err(RecvTimeoutError::Timeout) {
+                bar.set_message(what.clone() + &shown.lock().unwrap_or_else(PoisonError::into_inner));
                 bar.set_position(position.load(Ordering::Relaxed));
                 bar.tick();
             }
@@ -59,12 +62,17 @@ impl Progress {
         };
         // Without a thread to draw there is no bar; the work goes on.
         let drawing = std::thread::Builder::new().spawn(draw).ok().map(|thread| (stop, thread));
-        Self { done, drawing }
+        Self { done, note, drawing }
     }
 
     /// Sets the amount of work that is done. It never decreases.
     pub(crate) fn advance_to(&self, count: u64) {
         self.done.fetch_max(count, Ordering::Relaxed);
+    }
+
+    /// Sets a text after the label.
+    pub(crate) fn set_note(&self, note: String) {
+        *self.note.lock().unwrap_or_else(PoisonError::into_inner) = note;
     }
 
     /// Adds to the amount of work that is done.

@@ -160,14 +160,14 @@ pub(crate) fn run(streams: &Streams, args: &Args) -> anyhow::Result<()> {
     query_args.check(scene_args, args.points.as_deref(), "points")?;
     args.check()?;
     let (format, out_format) = (scene_args.format()?, query_args.format(streams)?);
+    let pool = query_args.threads.pool()?;
     let start = Instant::now();
-    let (scene, saved) = read_scene_and_index(streams, &scene_args.path, format, scene_args.map)?;
+    let (scene, saved) = read_scene_and_index(streams, &pool, &scene_args.path, format, scene_args.map)?;
     let (queries, sample) = queries(streams, args, &scene.soup.aabb())?;
     let read_time = start.elapsed();
     // The file is opened before the work, which would be lost if its name were wrong.
     let mut output = Output::open(streams, Some(&query_args.out))?;
 
-    let pool = query_args.threads.pool()?;
     let start = Instant::now();
     let saved = saved.as_ref();
     let region = sample.as_deref().map_or(QueryRegion::SceneBox, QueryRegion::Like);

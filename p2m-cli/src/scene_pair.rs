@@ -9,6 +9,7 @@ use p2m_core::pair::isometry_of_matrix;
 use p2m_core::storage::Reader;
 use p2m_core::{Feature, PrimitiveId};
 use p2m_mixed::{Format, Scene};
+use rayon::ThreadPool;
 use serde_json::{Value, json};
 use std::path::{Path, PathBuf};
 
@@ -57,8 +58,13 @@ impl ScenePairArgs {
     }
 
     /// Reads the scenes as they are in their files, and the readers of saved indexes.
-    pub(crate) fn read(&self, streams: &Streams, formats: [Format; 2]) -> anyhow::Result<[(Scene, Option<Reader>); 2]> {
-        let read = |path: &Path, format| read_scene_and_index(streams, path, format, false);
+    pub(crate) fn read(
+        &self,
+        streams: &Streams,
+        pool: &ThreadPool,
+        formats: [Format; 2],
+    ) -> anyhow::Result<[(Scene, Option<Reader>); 2]> {
+        let read = |path: &Path, format| read_scene_and_index(streams, pool, path, format, false);
         Ok([read(&self.first, formats[0])?, read(&self.second, formats[1])?])
     }
 }

@@ -11,6 +11,7 @@ use crate::usage::{bytes, one_of};
 use p2m_advisor::BackendEntry;
 use p2m_mixed::{Format, PieceOptions, Skipped};
 use p2m_shards::{ShardError, ShardOptions, ShardWriter, ShardedIndex, shard_file};
+use rayon::ThreadPool;
 use serde_json::{Value, json};
 use std::ops::ControlFlow;
 use std::path::{Path, PathBuf};
@@ -108,7 +109,7 @@ pub(crate) fn run(streams: &Streams, args: &Args) -> anyhow::Result<()> {
     drop(files);
     let mut skipped = Vec::new();
     for (path, format) in args.scenes.iter().zip(formats) {
-        let found = add(streams, &mut writer, path, format)?;
+        let found = add(streams, &pool, &mut writer, path, format)?;
         skipped.extend(found.into_iter().map(|kind| (input::name(path), kind)));
     }
     let mut times = Times { read: start.elapsed(), ..Times::default() };
@@ -121,12 +122,18 @@ pub(crate) fn run(streams: &Streams, args: &Args) -> anyhow::Result<()> {
 
 /// Adds the primitives of a file, and returns the records that were skipped. The file is read in pieces if that is
 /// possible, so that it may be larger than memory.
-fn add(streams: &Streams, writer: &mut ShardWriter, path: &Path, format: Format) -> anyhow::Result<Vec<Skipped>> {
+fn add(
+    streams: &Streams,
+    pool: &ThreadPool,
+    writer: &mut ShardWriter,
+    path: &Path,
+    format: Format,
+) -> anyhow::Result<Vec<Skipped>> {
     if Format::from_path(path).ok() == Some(format) && input::is_plain_file(path) {
         let _progress = Progress::start(streams, &format!("reading {}", input::name(path)), None, Unit::None);
-        return Ok(writer.add_file(path, &PieceOptions::default())?.skipped);
+        return Ok(pool.install(|| writer.add_file(path, &PieceOptions::default()))?.skipped);
     }
-    let (scene, _) = read_scene_and_index(streams, path, format, false)?;
+    let (scene, _) = read_scene_and_index(streams, pool, path, format, false)?;
     writer.add_scene(&scene)?;
     Ok(scene.skipped)
 }

@@ -93,12 +93,12 @@ pub(crate) fn run(streams: &Streams, args: &Args) -> anyhow::Result<()> {
         Output::refuse_inputs(out, &[&scene_args.path])?;
     }
     let format = scene_args.format()?;
+    let pool = args.index_args.threads.pool()?;
     let start = Instant::now();
-    let (scene, saved) = read_scene_and_index(streams, &scene_args.path, format, scene_args.map)?;
+    let (scene, saved) = read_scene_and_index(streams, &pool, &scene_args.path, format, scene_args.map)?;
     let read_time = start.elapsed();
     let picture = args.out.as_ref().map(|out| Output::open(streams, Some(out))).transpose()?;
 
-    let pool = args.index_args.threads.pool()?;
     let start = Instant::now();
     let saved = saved.as_ref();
     let (backend, kdop_directions, p2m) = args.index_args.choice(saved, &scene.soup, DEFAULT_QUERY_COUNT, &pool)?;

@@ -3,7 +3,7 @@
 use anyhow::anyhow;
 use rayon::ThreadPool;
 
-#[derive(clap::Args)]
+#[derive(Default, clap::Args)]
 pub(crate) struct ThreadArgs {
     /// How many threads to use for all work, building and advice included, up to 1024; all cores by default
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024), allow_negative_numbers = true)]

@@ -6,6 +6,7 @@ use crate::output::Output;
 use crate::progress::{Progress, Unit};
 use crate::sampling::{Queries as QueryPoints, Region};
 use crate::streams::Streams;
+use crate::threads::ThreadArgs;
 use crate::usage::{one_of, positive, whole_number};
 use anyhow::{Context, bail};
 use clap::ArgGroup;
@@ -126,7 +127,8 @@ pub(crate) fn run(streams: &Streams, args: &Args) -> anyhow::Result<()> {
     if args.html.is_some() && args.html == args.csv {
         bail!("--html and --csv name the same file");
     }
-    let scene = read_scene(streams, &args.scene, args.scene.format()?)?;
+    let pool = ThreadArgs::default().pool()?;
+    let scene = read_scene(streams, &pool, &args.scene, args.scene.format()?)?;
     if scene.soup.is_empty() {
         bail!("{}: there is nothing in it", args.scene.name());
     }

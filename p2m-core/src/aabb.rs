@@ -55,6 +55,7 @@ impl<T: Real> Aabb<T> {
     }
 
     /// Returns whether all coordinates are finite. Those of the [`empty`](Self::empty) box are not.
+    #[inline]
     #[must_use]
     pub fn is_finite(&self) -> bool {
         self.min.iter().chain(self.max.iter()).all(|x| x.is_finite())

@@ -2,6 +2,7 @@
 
 use crate::list::several::Lists;
 use crate::octree::Octree;
+use crate::options::{OctreeOptions, OctreeSoFar};
 use crate::partition::Partition;
 use crate::progress::Progress;
 use crate::voronoi::Voronoi;
@@ -16,6 +17,7 @@ use p2m_core::{
     PrimitiveId, PrimitiveSet, QueryOptions, Real, Shape, StatsCollector, check_set, shape_of,
 };
 use std::marker::PhantomData;
+use std::ops::ControlFlow;
 
 /// An interception index whose cells are cubes.
 ///
@@ -27,7 +29,7 @@ use std::marker::PhantomData;
 /// The alias has the methods of [`InterceptionIndex`] and the traits of queries:
 ///
 /// - [`build`](BuildIndex::build) and [`build_with_progress`](InterceptionIndex::build_with_progress) build it with
-///   [`OctreeOptions`](crate::OctreeOptions).
+///   [`OctreeOptions`](crate::OctreeOptions), and [`build_until`](OctreeIndex::build_until) ends the build early.
 /// - [`closest_point`](ClosestPoint::closest_point),
 ///   [`closest_point_with`](ClosestPoint::closest_point_with) and
 ///   [`closest_points_into`](ClosestPoint::closest_points_into) return the nearest primitive;
@@ -282,6 +284,47 @@ impl<T: Real, S: PrimitiveSet<T> + Sync, P: Partition> BuildIndex<T, S> for Inte
 
     fn build(set: S, options: &P::Options) -> Result<Self, BuildError> {
         Self::build_with_progress(set, options, &|_| ())
+    }
+}
+
+impl<T: Real, S: PrimitiveSet<T> + Sync> OctreeIndex<T, S> {
+    /// Builds the index as [`build_with_progress`](InterceptionIndex::build_with_progress), until `visit` ends its
+    /// refinement. The index is complete then, and its answers are those of any other index, but its cells are coarser,
+    /// so queries take longer.
+    ///
+    /// `visit` is called between the chunks of the refinement, from the calling thread, with what the octree would be.
+    /// After it returned [`ControlFlow::Break`], the cells that would have been split get their lists, which takes a
+    /// part of the time that was spent so far. The index depends only on how many calls `visit` continued, and not on
+    /// the number of threads.
+    ///
+    /// ```
+    /// use nalgebra::Point3;
+    /// use p2m_core::{ClosestPoint, Segment};
+    /// use p2m_interception::{OctreeIndex, OctreeOptions};
+    /// use std::ops::ControlFlow;
+    ///
+    /// let wire = |i: i32| Segment::new(Point3::new(f64::from(i), 0.0, 0.0), Point3::new(f64::from(i), 9.0, 2.0));
+    /// let wires: Vec<Segment<f64>> = (0..1000).map(wire).collect();
+    /// let index = OctreeIndex::build_until(&wires[..], &OctreeOptions::default(), &|_| (), &mut |so_far| {
+    ///     if so_far.cells < 500 { ControlFlow::Continue(()) } else { ControlFlow::Break(()) }
+    /// })?;
+    /// assert!(index.report().lists < 5000);
+    /// assert_eq!(index.closest_point(&Point3::new(7.0, -1.0, 0.0)).expect("not empty").distance, 1.0);
+    /// # Ok::<(), p2m_core::BuildError>(())
+    /// ```
+    ///
+    /// # Errors
+    ///
+    /// It fails if a coordinate is not finite, and if there are more primitives than ids.
+    pub fn build_until(
+        set: S,
+        options: &OctreeOptions,
+        progress: &(dyn Fn(Progress) + Sync),
+        visit: &mut dyn FnMut(&OctreeSoFar) -> ControlFlow<()>,
+    ) -> Result<Self, BuildError> {
+        check_set(&set)?;
+        let partition = Octree::build_until(&set, options, progress, visit);
+        Ok(Self { set, scalar: PhantomData, partition })
     }
 }
 

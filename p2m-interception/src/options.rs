@@ -92,6 +92,31 @@ impl OctreeOptions {
     }
 }
 
+/// What an octree would be if its refinement ended now.
+///
+/// All numbers are upper bounds, because lists that are not made yet may turn out shorter than what is reserved for
+/// them.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[non_exhaustive]
+pub struct OctreeSoFar {
+    /// The number of cells.
+    pub cells: usize,
+    /// The number of cells with a list.
+    pub lists: usize,
+    /// The number of packets in all lists.
+    pub entries: usize,
+    /// The memory of cells and lists in bytes.
+    pub bytes: usize,
+}
+
+impl OctreeSoFar {
+    /// Returns the mean number of packets in a list.
+    #[must_use]
+    pub fn mean_list_length(&self) -> f64 {
+        self.entries as f64 / self.lists.max(1) as f64
+    }
+}
+
 /// The statistics of an octree.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 #[non_exhaustive]
@@ -112,7 +137,8 @@ pub struct OctreeReport {
     pub tree_bytes: usize,
     /// The number of tests of a packet at a point while building.
     pub work: u64,
-    /// The resolution at which all cells were refined. It is less than requested if a budget would have been exceeded.
+    /// The resolution at which all cells were refined. It is less than requested if a budget would have been exceeded,
+    /// or if the refinement was ended early.
     pub resolution: f64,
 }
 

@@ -168,6 +168,8 @@ impl Output<'_> {
 pub(crate) struct SceneBuilder<'a> {
     pub(crate) skipped: SkippedRecords,
     output: Output<'a>,
+    /// Whether a vertex is not finite.
+    has_non_finite: bool,
     corners: Vec<Point3<f64>>,
     triangulator: Triangulator,
     /// The sum of the squares of the numbers of vertices of large polygons so far.
@@ -214,6 +216,7 @@ impl<'a> SceneBuilder<'a> {
         let count = self.vertex_count() as u64;
         let vertex = u32::try_from(count).ok().filter(|&vertex| vertex < u32::MAX);
         let vertex = vertex.ok_or(Reason::ElementTooLarge { count: count + 1, limit: u64::from(u32::MAX) })?;
+        self.has_non_finite |= !is_finite(&position);
         match &mut self.output.pieces {
             None => _ = self.output.soup.push_position(position),
             Some(pieces) => pieces.push_position(position)?,
@@ -250,7 +253,7 @@ impl<'a> SceneBuilder<'a> {
     /// Returns whether the coordinates of a vertex are finite, so that it may be part of a primitive.
     #[inline]
     pub(crate) fn is_finite(&mut self, vertex: u32) -> Result<bool, Reason> {
-        Ok(self.output.position(vertex)?.iter().all(|x| x.is_finite()))
+        Ok(!self.has_non_finite || is_finite(&self.output.position(vertex)?))
     }
 
     /// Starts an object with this name. Primitives under an empty name belong to no object.
@@ -292,6 +295,10 @@ impl<'a> SceneBuilder<'a> {
         objects.end(soup.len());
         Scene { soup, sources, objects: objects.list, skipped: self.skipped.finish() }
     }
+}
+
+fn is_finite(position: &Point3<f64>) -> bool {
+    position.iter().all(|x| x.is_finite())
 }
 
 /// Returns the number of a source. `u32::MAX` stands for sources that u32 cannot number.

@@ -34,6 +34,39 @@ impl Scalar {
     }
 }
 
+/// A source of the numbers in binary files.
+pub(crate) trait Bytes {
+    type Error;
+
+    fn array<const N: usize>(&mut self) -> Result<[u8; N], Self::Error>;
+
+    fn ordered<const N: usize>(&mut self, big_endian: bool) -> Result<[u8; N], Self::Error> {
+        let mut bytes = self.array()?;
+        if big_endian {
+            bytes.reverse();
+        }
+        Ok(bytes)
+    }
+
+    /// Reads a number and rounds it to double precision. Only large integers of 64 bits are not exact.
+    #[inline]
+    #[allow(clippy::cast_precision_loss, reason = "documented")]
+    fn number(&mut self, scalar: Scalar, big_endian: bool) -> Result<f64, Self::Error> {
+        Ok(match scalar {
+            Scalar::I8 => f64::from(i8::from_le_bytes(self.array()?)),
+            Scalar::U8 => f64::from(u8::from_le_bytes(self.array()?)),
+            Scalar::I16 => f64::from(i16::from_le_bytes(self.ordered(big_endian)?)),
+            Scalar::U16 => f64::from(u16::from_le_bytes(self.ordered(big_endian)?)),
+            Scalar::I32 => f64::from(i32::from_le_bytes(self.ordered(big_endian)?)),
+            Scalar::U32 => f64::from(u32::from_le_bytes(self.ordered(big_endian)?)),
+            Scalar::I64 => i64::from_le_bytes(self.ordered(big_endian)?) as f64,
+            Scalar::U64 => u64::from_le_bytes(self.ordered(big_endian)?) as f64,
+            Scalar::F32 => f64::from(f32::from_le_bytes(self.ordered(big_endian)?)),
+            Scalar::F64 => f64::from_le_bytes(self.ordered(big_endian)?),
+        })
+    }
+}
+
 /// Reads numbers from a binary file and knows the offset of each.
 pub(crate) struct ByteReader<R> {
     reader: R,
@@ -41,6 +74,21 @@ pub(crate) struct ByteReader<R> {
     start: u64,
     /// The offset of the next byte.
     offset: u64,
+}
+
+impl<R: BufRead> Bytes for ByteReader<R> {
+    type Error = Reason;
+
+    fn array<const N: usize>(&mut self) -> Result<[u8; N], Reason> {
+        self.start = self.offset;
+        let mut bytes = [0; N];
+        self.reader.read_exact(&mut bytes).map_err(|e| match e.kind() {
+            ErrorKind::UnexpectedEof => Reason::UnexpectedEnd,
+            _ => Reason::Io(e),
+        })?;
+        self.offset += N as u64;
+        Ok(bytes)
+    }
 }
 
 impl<R: BufRead> ByteReader<R> {
@@ -54,40 +102,19 @@ impl<R: BufRead> ByteReader<R> {
         self.start
     }
 
-    pub(crate) fn array<const N: usize>(&mut self) -> Result<[u8; N], Reason> {
-        self.start = self.offset;
-        let mut bytes = [0; N];
-        self.reader.read_exact(&mut bytes).map_err(|e| match e.kind() {
-            ErrorKind::UnexpectedEof => Reason::UnexpectedEnd,
-            _ => Reason::Io(e),
-        })?;
-        self.offset += N as u64;
-        Ok(bytes)
+    /// Returns the reader, for reading blocks of bytes.
+    pub(crate) fn blocks(&mut self) -> &mut R {
+        &mut self.reader
     }
 
-    fn ordered<const N: usize>(&mut self, big_endian: bool) -> Result<[u8; N], Reason> {
-        let mut bytes = self.array()?;
-        if big_endian {
-            bytes.reverse();
-        }
-        Ok(bytes)
+    /// Notes that bytes were read from [`Self::blocks`].
+    pub(crate) fn skip_blocks(&mut self, bytes: u64) {
+        self.offset += bytes;
     }
 
-    /// Reads a number and rounds it to double precision. Only large integers of 64 bits are not exact.
-    #[allow(clippy::cast_precision_loss, reason = "documented")]
-    pub(crate) fn number(&mut self, scalar: Scalar, big_endian: bool) -> Result<f64, Reason> {
-        Ok(match scalar {
-            Scalar::I8 => f64::from(i8::from_le_bytes(self.array()?)),
-            Scalar::U8 => f64::from(u8::from_le_bytes(self.array()?)),
-            Scalar::I16 => f64::from(i16::from_le_bytes(self.ordered(big_endian)?)),
-            Scalar::U16 => f64::from(u16::from_le_bytes(self.ordered(big_endian)?)),
-            Scalar::I32 => f64::from(i32::from_le_bytes(self.ordered(big_endian)?)),
-            Scalar::U32 => f64::from(u32::from_le_bytes(self.ordered(big_endian)?)),
-            Scalar::I64 => i64::from_le_bytes(self.ordered(big_endian)?) as f64,
-            Scalar::U64 => u64::from_le_bytes(self.ordered(big_endian)?) as f64,
-            Scalar::F32 => f64::from(f32::from_le_bytes(self.ordered(big_endian)?)),
-            Scalar::F64 => f64::from_le_bytes(self.ordered(big_endian)?),
-        })
+    /// Returns the offset of the next byte.
+    pub(crate) fn offset(&self) -> u64 {
+        self.offset
     }
 
     /// Skips this number of bytes.

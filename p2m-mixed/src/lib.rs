@@ -34,6 +34,7 @@
 pub mod adapters;
 mod answers;
 mod assemble;
+mod blocks;
 mod builder;
 mod bytes;
 mod camera;
@@ -54,6 +55,7 @@ mod scene;
 pub mod statistics;
 mod stl;
 mod text;
+mod tokenizer;
 mod vector;
 mod weld;
 mod write;
@@ -83,6 +85,7 @@ pub use write::{
 pub mod engine {
     pub use crate::answers::npy_header;
     pub use crate::format::{unknown_extension, unknown_format};
+    pub use crate::read::read_scene_in_blocks;
     pub mod weld {
         pub use crate::weld::*;
     }

@@ -1,9 +1,10 @@
 //! Reads OFF files, the object file format of Geomview, as text or binary.
 
 use crate::builder::SceneBuilder;
-use crate::bytes::{ByteReader, Scalar};
+use crate::bytes::{ByteReader, Bytes, Scalar};
 use crate::polygon::MAX_CORNERS;
-use crate::text::{LineReader, Tokenizer, parse_integer, parse_number, quote};
+use crate::text::{LineReader, parse_integer, parse_number, quote};
+use crate::tokenizer::Tokenizer;
 use crate::{FileLocation, HeaderProblem, ReadError, Reason, Scene};
 use nalgebra::Point3;
 use p2m_core::Element;

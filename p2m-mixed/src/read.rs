@@ -1,14 +1,15 @@
 //! Reading a scene in any format.
 
+use crate::blocks::{BLOCK_BYTES, Source};
+use crate::builder::SceneBuilder;
 use crate::error::ReadError;
 use crate::format::Format;
-use crate::obj::read_obj;
 use crate::off::read_off;
 use crate::open::open;
-use crate::ply::read_ply;
 use crate::saved::read_p2m;
 use crate::scene::Scene;
 use crate::stl::read_stl;
+use crate::{obj, ply};
 use std::io::BufRead;
 use std::path::Path;
 
@@ -38,9 +39,23 @@ pub fn read_scene(path: &Path) -> Result<Scene, ReadError> {
 /// # Errors
 /// The errors are those of [`read_scene`].
 pub fn read_scene_from(reader: impl BufRead, format: Format, name: &str) -> Result<Scene, ReadError> {
+    read_scene_in_blocks(reader, format, name, BLOCK_BYTES)
+}
+
+/// Reads a scene in blocks of about this number of bytes, or sequentially if it is 0. The result is the same.
+///
+/// # Errors
+/// The errors are those of [`read_scene`].
+pub fn read_scene_in_blocks(
+    reader: impl BufRead,
+    format: Format,
+    name: &str,
+    block_bytes: usize,
+) -> Result<Scene, ReadError> {
+    let builder = SceneBuilder::default();
     match format {
-        Format::Obj => read_obj(reader, name),
-        Format::Ply => read_ply(reader, name),
+        Format::Obj => obj::read(Source::with_block_bytes(reader, block_bytes), name, builder, &mut || false),
+        Format::Ply => ply::read(Source::with_block_bytes(reader, block_bytes), name, builder),
         Format::Stl => read_stl(reader, name),
         Format::Off => read_off(reader, name),
         Format::P2m => read_p2m(reader, name),

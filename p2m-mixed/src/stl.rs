@@ -1,9 +1,10 @@
 //! Reads STL files, which have only triangles, as text or binary.
 
 use crate::builder::SceneBuilder;
-use crate::bytes::ByteReader;
+use crate::bytes::{ByteReader, Bytes};
 use crate::polygon::MAX_CORNERS;
-use crate::text::{LineReader, Tokenizer, is_space, parse_finite, quote};
+use crate::text::{LineReader, is_space, parse_finite, quote};
+use crate::tokenizer::Tokenizer;
 use crate::{FileLocation, HeaderProblem, ReadError, Reason, Scene};
 use hashbrown::HashTable;
 use hashbrown::hash_table::Entry;

@@ -4,6 +4,8 @@
 //! UTF-8.
 
 use crate::Reason;
+use crate::blocks::Source;
+use memchr::{memchr2, memchr2_iter, memrchr2};
 use std::io::{self, BufRead, ErrorKind};
 
 /// Longer texts are shortened in messages.
@@ -20,8 +22,15 @@ pub(crate) fn quote(bytes: &[u8]) -> String {
 
 /// Parses a number, which may be NaN or infinite. A number beyond the range of f64 is infinite.
 pub(crate) fn parse_number(token: &[u8]) -> Result<f64, Reason> {
-    let number = std::str::from_utf8(token).ok().and_then(|s| s.parse::<f64>().ok());
-    number.ok_or_else(|| Reason::BadNumber { text: quote(token) })
+    fast_float2::parse(token).map_err(|_| Reason::BadNumber { text: quote(token) })
+}
+
+/// Parses the number at the start of `text`, which ends at a blank or at the end of the text, and returns it with the
+/// bytes after it.
+pub(crate) fn parse_number_at_start(text: &[u8]) -> Option<(f64, &[u8])> {
+    let (number, length) = fast_float2::parse_partial(text).ok()?;
+    let rest = &text[length..];
+    rest.first().is_none_or(|&b| is_space(b)).then_some((number, rest))
 }
 
 /// Parses a finite number.
@@ -37,11 +46,19 @@ pub(crate) fn parse_integer(token: &[u8]) -> Result<i64, Reason> {
         [b'+', rest @ ..] => (false, rest),
         _ => (false, token),
     };
-    if digits.is_empty() || !digits.iter().all(u8::is_ascii_digit) {
-        return Err(Reason::BadNumber { text: quote(token) });
+    let (mut value, mut is_decimal) = (0, !digits.is_empty());
+    for digit in digits {
+        is_decimal &= digit.is_ascii_digit();
+        let digit = i64::from(digit & 0xf);
+        // Eighteen digits do not overflow.
+        value =
+            if digits.len() <= 18 { 10 * value + digit } else { i64::saturating_mul(value, 10).saturating_add(digit) };
     }
-    let value = digits.iter().fold(0i64, |v, d| v.saturating_mul(10).saturating_add(i64::from(d - b'0')));
-    Ok(if negative { -value } else { value })
+    match (is_decimal, negative) {
+        (false, _) => Err(Reason::BadNumber { text: quote(token) }),
+        (true, false) => Ok(value),
+        (true, true) => Ok(-value),
+    }
 }
 
 /// Returns the text without white space around it.
@@ -53,6 +70,26 @@ pub(crate) fn trim(bytes: &[u8]) -> &[u8] {
 
 pub(crate) fn is_space(byte: u8) -> bool {
     matches!(byte, b' ' | b'\t' | b'\r' | b'\n' | 0x0b | 0x0c)
+}
+
+/// Returns the line of `bytes` that begins at `start`, without its end, and the start of the next one.
+pub(crate) fn line_end(bytes: &[u8], start: usize) -> (&[u8], usize) {
+    let end = memchr2(b'\n', b'\r', &bytes[start..]).map_or(bytes.len(), |length| start + length);
+    let is_pair = bytes[end..].starts_with(b"\r\n");
+    (&bytes[start..end], (end + 1 + usize::from(is_pair)).min(bytes.len()))
+}
+
+/// Counts the lines of a text that ends with a line end.
+pub(crate) fn count_lines(bytes: &[u8]) -> u64 {
+    let is_end = |&at: &usize| bytes[at] == b'\n' || bytes.get(at + 1) != Some(&b'\n');
+    memchr2_iter(b'\n', b'\r', bytes).filter(is_end).count() as u64
+}
+
+/// Returns the length of the part of `bytes` up to the last line end that is complete whatever follows, or 0.
+pub(crate) fn last_line_end(bytes: &[u8]) -> usize {
+    // A `\n` may follow a `\r`.
+    let certain = bytes.strip_suffix(b"\r").unwrap_or(bytes);
+    memrchr2(b'\n', b'\r', certain).map_or(0, |at| at + 1)
 }
 
 /// Returns the buffered bytes of `reader`, which are empty only at the end of the text.
@@ -67,11 +104,10 @@ pub(crate) fn fill_buffer(reader: &mut impl BufRead) -> io::Result<&[u8]> {
     reader.fill_buf() // the buffer is borrowed again, because a borrow cannot leave the loop
 }
 
-/// Appends the bytes up to and including the next one for which `ends` is true, at most `max_count`, and
-/// returns their number.
+/// Appends the bytes up to and including the first one that `find` finds, at most `max_count`, and returns their number.
 pub(crate) fn read_until(
     reader: &mut impl BufRead,
-    ends: impl Fn(u8) -> bool,
+    find: impl Fn(&[u8]) -> Option<usize>,
     max_count: usize,
     buffer: &mut Vec<u8>,
 ) -> io::Result<usize> {
@@ -79,7 +115,7 @@ pub(crate) fn read_until(
     while read < max_count {
         let bytes = fill_buffer(reader)?;
         let bytes = &bytes[..bytes.len().min(max_count - read)];
-        let end = bytes.iter().position(|&b| ends(b));
+        let end = find(bytes);
         let take = end.map_or(bytes.len(), |end| end + 1);
         buffer.extend_from_slice(&bytes[..take]);
         reader.consume(take);
@@ -181,7 +217,7 @@ impl<R: BufRead> LineReader<R> {
     }
 
     /// Ends the line at the start of a comment.
-    fn end_at_comment(&mut self) {
+    pub(crate) fn end_at_comment(&mut self) {
         if let Some(at) = self.buffer.iter().position(|&b| b == b'#') {
             self.buffer.truncate(at);
         }
@@ -221,7 +257,7 @@ impl<R: BufRead> LineReader<R> {
     fn append(&mut self) -> std::io::Result<bool> {
         self.end_line()?;
         let start = self.buffer.len();
-        match read_until(&mut self.reader, |b| matches!(b, b'\n' | b'\r'), usize::MAX, &mut self.buffer)? {
+        match read_until(&mut self.reader, |bytes| memchr2(b'\n', b'\r', bytes), usize::MAX, &mut self.buffer)? {
             0 => return Ok(false),
             read => self.read += read as u64,
         }
@@ -237,72 +273,26 @@ impl<R: BufRead> LineReader<R> {
     }
 }
 
-/// Reads the tokens of a text, whatever lines they are on.
-pub(crate) struct Tokenizer<R> {
-    lines: LineReader<R>,
-    /// The end of the last token in the current line.
-    at: usize,
-    /// Whether `#` starts a comment.
-    has_comments: bool,
-}
-
-impl<R: BufRead> Tokenizer<R> {
-    pub(crate) fn new(lines: LineReader<R>) -> Self {
-        Self { lines, at: 0, has_comments: false }
-    }
-
-    pub(crate) fn with_comments(lines: LineReader<R>) -> Self {
-        Self { has_comments: true, ..Self::new(lines) }
-    }
-
-    /// Returns the number of the line that the last token is on.
-    pub(crate) fn line(&self) -> u64 {
-        self.lines.line()
-    }
-
-    /// Returns the next token, on this line or a later one.
-    pub(crate) fn next(&mut self) -> Result<&[u8], Reason> {
-        loop {
-            if let Some(token) = self.find() {
-                return Ok(&self.lines.bytes()[token]);
-            }
-            self.at = 0;
-            if !self.lines.read().map_err(Reason::Io)? {
-                return Err(Reason::UnexpectedEnd);
-            }
-            if self.has_comments {
-                self.lines.end_at_comment();
-            }
+impl<R: BufRead> LineReader<Source<R>> {
+    /// Returns the reader and the number of lines before its position, for reading blocks of lines.
+    pub(crate) fn blocks(&mut self) -> (&mut Source<R>, u64) {
+        if let Err(error) = self.end_line() {
+            self.reader.return_error(error);
         }
+        (&mut self.reader, self.next - 1)
     }
 
-    /// Returns the next token on this line.
-    pub(crate) fn next_on_line(&mut self) -> Option<&[u8]> {
-        self.find().map(|token| &self.lines.bytes()[token])
-    }
-
-    fn find(&mut self) -> Option<std::ops::Range<usize>> {
-        let bytes = self.lines.bytes();
-        let start = self.at + bytes[self.at..].iter().take_while(|&&b| is_space(b)).count();
-        let end = start + bytes[start..].iter().take_while(|&&b| !is_space(b)).count();
-        self.at = end;
-        (start < end).then_some(start..end)
-    }
-
-    /// Returns the rest of this line.
-    pub(crate) fn rest_of_line(&mut self) -> &[u8] {
-        let start = std::mem::replace(&mut self.at, self.lines.bytes().len());
-        &self.lines.bytes()[start..]
-    }
-
-    pub(crate) fn into_lines(self) -> LineReader<R> {
-        self.lines
+    /// Notes that lines were read from [`Self::blocks`].
+    pub(crate) fn skip_lines(&mut self, lines: u64, bytes: u64) {
+        self.next += lines;
+        self.read += bytes;
     }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use rand::RngExt;
 
     #[test]
     fn words_know_their_line_across_continuations() {
@@ -343,6 +333,32 @@ mod tests {
         assert_eq!(parse_integer(b"99999999999999999999").unwrap(), i64::MAX);
         for bad in [&b""[..], b"-", b"1.0", b"0x1", b"--1", b"1e3"] {
             assert!(matches!(parse_integer(bad), Err(Reason::BadNumber { .. })), "{bad:?}");
+        }
+    }
+
+    #[test]
+    fn numbers_are_those_of_the_standard_library() {
+        let mut rng = p2m_testkit::rng("numbers of text", 0);
+        for _ in 0..200_000 {
+            let length = rng.random_range(0..12);
+            let mut token: Vec<u8> =
+                (0..length).map(|_| b"0123456789+-.eEinfatyNI_x "[rng.random_range(0..26)]).collect();
+            if rng.random_bool(0.5) {
+                token = format!("{}{:?}", ["", "-", "+"][rng.random_range(0..3)], f64::from_bits(rng.random())).into();
+            }
+            if rng.random_bool(0.1) {
+                token = ["inf", "NaN", "Infinity", "+inf", "-nan"][rng.random_range(0..5)].into();
+            }
+            let expected = std::str::from_utf8(&token).ok().and_then(|s| s.parse::<f64>().ok());
+            let found = parse_number(&token).ok();
+            assert_eq!(found.map(f64::to_bits), expected.map(f64::to_bits), "{}", quote(&token));
+            // Only a token is followed by a blank.
+            if !token.contains(&b' ') {
+                let line = [&token[..], b" 7"].concat();
+                let at_start = parse_number_at_start(&line);
+                assert_eq!(at_start.map(|(x, _)| x.to_bits()), expected.map(f64::to_bits), "{}", quote(&token));
+                assert!(at_start.is_none_or(|(_, rest)| rest == b" 7"));
+            }
         }
     }
 

@@ -137,7 +137,7 @@ impl Scene {
     #[staticmethod]
     fn read(py: Python<'_>, path: PathBuf) -> PyResult<Self> {
         let file = path.clone();
-        let scene = run_owned(py, 1, 1, None, move |_| p2m_mixed::read_scene(&file))?;
+        let scene = run_owned(py, crate::threads::default_threads(), 1, None, move |_| p2m_mixed::read_scene(&file))?;
         scene.map(Self::new).map_err(|error| read_error(&error, &path))
     }
 

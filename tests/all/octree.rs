@@ -6,12 +6,13 @@
 use nalgebra::{Point3, Vector3};
 use p2m::backend::{Collector, StatsCollector};
 use p2m::{
-    Aabb, BruteForce, BuildIndex, ClosestPoint, Domain, Isa, OctreeIndex, OctreeOptions, OctreeReport, Point,
-    PrimitiveId, PrimitiveSet, Projection, Segment, Shape, Soup,
+    Aabb, BruteForce, BuildIndex, ClosestPoint, Domain, Isa, OctreeIndex, OctreeOptions, OctreeReport, OctreeSoFar,
+    Point, PrimitiveId, PrimitiveSet, Projection, Segment, Shape, Soup,
 };
 use p2m_testkit::scenes::{self, KINDS, Kinds, LAYOUTS, Layout, kinds_and_layout};
 use p2m_testkit::{amount, cases, rng};
 use rand::{Rng, RngExt};
+use std::ops::ControlFlow;
 use std::sync::Mutex;
 
 fn sheet(len: usize) -> Soup<f64> {
@@ -120,6 +121,68 @@ fn budgets_are_kept() {
     let mean_length = |report: &OctreeReport| report.entries as f64 / report.lists as f64;
     assert_eq!(finer.resolution, 30.0 * OctreeOptions::default().resolution);
     assert!(mean_length(&finer) < 0.8 * mean_length(&default_report), "{finer}, {default_report}");
+}
+
+/// Builds an octree whose refinement ends after `calls` visits, and returns it with the last visit and their number.
+fn built_until<'a>(
+    soup: &'a Soup<f64>,
+    options: &OctreeOptions,
+    calls: usize,
+) -> (OctreeIndex<f64, &'a Soup<f64>>, OctreeSoFar, usize) {
+    let (mut last, mut count) = (OctreeSoFar::default(), 0);
+    let index = OctreeIndex::build_until(soup, options, &|_| (), &mut |so_far| {
+        assert!(so_far.cells >= last.cells, "{so_far:?} after {last:?}");
+        (last, count) = (*so_far, count + 1);
+        if count >= calls { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
+    });
+    (index.expect("valid"), last, count)
+}
+
+#[test]
+fn a_refinement_that_ends_early_gives_an_exact_index() {
+    let (mut lists, mut announced) = (0, 0);
+    for case in cases(60, 8) {
+        let (mut rng, (kinds, layout)) = (rng("octree ends early", case), kinds_and_layout(case));
+        let soup = scenes::soup(&mut rng, kinds, layout, amount(3_000, 600));
+        let brute = BruteForce::new(&soup).expect("valid");
+        let options = |parallel| {
+            let memory = [190.0, 20.0][case as usize % 2];
+            let splits = p2m::bvh::SplitOptions::default().with_parallel(parallel);
+            OctreeOptions::default().with_memory(memory).with_splits(splits)
+        };
+        let (whole, last, all_calls) = built_until(&soup, &options(true), usize::MAX);
+        assert_eq!(whole.report(), built(&soup, &options(true)).report());
+        check_so_far(&whole.report(), &last);
+        let key = |c: p2m::Closest<f64>| (c.distance.to_bits(), c.primitive);
+        for calls in [1, 2, rng.random_range(1..=all_calls), rng.random_range(1..=all_calls), all_calls - 1] {
+            let (index, last, count) = built_until(&soup, &options(true), calls);
+            assert!(count <= calls.max(1), "nobody asks after the end");
+            let report = index.report();
+            check_so_far(&report, &last);
+            (lists, announced) = (lists + report.lists, announced + last.lists);
+            assert!(report.bytes <= whole.report().bytes && report.work <= whole.report().work);
+            let (alone, ..) = built_until(&soup, &options(false), calls);
+            assert_eq!(report, alone.report(), "case {case}, {calls} of {all_calls} calls");
+            for _ in 0..amount(60, 20) {
+                let q = query(&mut rng, &soup);
+                let [found, same] = [&index, &alone].map(|index| index.closest_point(&q).map(key));
+                assert_eq!(found, brute.closest_point(&q).map(key), "case {case}, {calls} calls, {q}");
+                assert_eq!(found, same);
+                let lengths = [&index, &alone].map(|index| index.partition().list_length(&q));
+                assert_eq!(lengths[0], lengths[1], "case {case}, {calls} calls, {q}");
+            }
+        }
+    }
+    // Nearly all cells that are open at the end get their lists.
+    println!("{lists} lists of {announced}");
+    assert!(lists as f64 > 0.98 * announced as f64, "{lists} of {announced}");
+}
+
+/// Checks that what an octree was announced to be bounds what it is.
+fn check_so_far(report: &OctreeReport, so_far: &OctreeSoFar) {
+    assert_eq!(so_far.cells, report.lists + report.singles + report.trees, "{so_far:?} {report:?}");
+    assert!(report.lists <= so_far.lists && report.entries <= so_far.entries, "{so_far:?} {report:?}");
+    assert!(report.bytes <= so_far.bytes, "{so_far:?} {report:?}");
 }
 
 #[test]

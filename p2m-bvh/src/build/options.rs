@@ -57,12 +57,6 @@ impl Default for SplitOptions {
 }
 
 impl SplitOptions {
-    /// The options for trees that are built more often than they are queried: nodes are split at the median. The time
-    /// that this saves and costs is in docs/splits.md.
-    #[must_use]
-    pub fn fast() -> Self {
-        Self::default().with_rule(SplitRule::Median)
-    }
     /// Sets the rule by which nodes are split.
     #[must_use]
     pub fn with_rule(self, rule: SplitRule) -> Self {

@@ -24,7 +24,7 @@ use crate::octree::code::{CellCode, CodeWriter, FALLBACK_CODE, Row};
 use crate::octree::domain::DomainCube;
 use crate::octree::passes::Passes;
 use crate::octree::refinement::{Refinement, TreeProbe};
-use crate::options::{OctreeOptions, OctreeReport};
+use crate::options::{OctreeOptions, OctreeReport, OctreeSoFar};
 use crate::partition::Partition;
 use crate::progress::{BuildStage, Progress};
 use nalgebra::Point3;
@@ -34,6 +34,7 @@ use p2m_core::engine::vector::V3;
 use p2m_core::storage::Array;
 use p2m_core::{Best, Isa, PrimitiveId, PrimitiveSet, QueryOptions, Real, StatsCollector};
 use std::collections::HashMap;
+use std::ops::ControlFlow;
 
 /// The resolution above which cells do not become finer any more.
 const MAX_RESOLUTION: f64 = 1e9;
@@ -73,6 +74,7 @@ impl Octree {
         options: &OctreeOptions,
         cube: &DomainCube,
         progress: &(dyn Fn(Progress) + Sync),
+        visit: &mut dyn FnMut(&OctreeSoFar) -> ControlFlow<()>,
     ) {
         let tree = &self.tree;
         let lowest_owners = lowest_owners(tree);
@@ -105,7 +107,8 @@ impl Octree {
             budgets,
             finished: FinishedPart::new(progress),
         };
-        let Some(Passes { refined, spent, resolution, .. }) = Passes::run(&refinement, cube.low, cube.side) else {
+        let Some(Passes { refined, spent, resolution, .. }) = Passes::run(&refinement, cube.low, cube.side, visit)
+        else {
             return;
         };
         self.report.work = u64::try_from(spent.tests).unwrap_or(0);
@@ -125,16 +128,14 @@ impl Octree {
         (self.rows, self.blocks) = (codes.rows.into(), codes.blocks.into());
         self.report.bytes = self.memory() - self.tree.memory();
     }
-}
 
-impl Partition for Octree {
-    type Options = OctreeOptions;
-    type Report = OctreeReport;
-
-    fn build<T: Real, S: PrimitiveSet<T> + Sync + ?Sized>(
+    /// Builds the octree over a set whose bounding boxes are finite, until `visit` ends its refinement
+    /// ([`OctreeIndex::build_until`](crate::OctreeIndex::build_until)).
+    pub(crate) fn build_until<T: Real, S: PrimitiveSet<T> + Sync + ?Sized>(
         set: &S,
         options: &OctreeOptions,
         progress: &(dyn Fn(Progress) + Sync),
+        visit: &mut dyn FnMut(&OctreeSoFar) -> ControlFlow<()>,
     ) -> Self {
         progress(Progress { stage: BuildStage::Tree, part: 0.0 });
         let tree = PacketTree::build(set, &options.splits);
@@ -150,10 +151,23 @@ impl Partition for Octree {
             report: OctreeReport { tree_bytes, ..OctreeReport::default() },
         };
         if let Some(cube) = DomainCube::from_tree(&octree.tree, options) {
-            octree.refine_within_budgets(set, options, &cube, progress);
+            octree.refine_within_budgets(set, options, &cube, progress, visit);
         }
         progress(Progress { stage: BuildStage::Octree, part: 1.0 });
         octree
+    }
+}
+
+impl Partition for Octree {
+    type Options = OctreeOptions;
+    type Report = OctreeReport;
+
+    fn build<T: Real, S: PrimitiveSet<T> + Sync + ?Sized>(
+        set: &S,
+        options: &OctreeOptions,
+        progress: &(dyn Fn(Progress) + Sync),
+    ) -> Self {
+        Self::build_until(set, options, progress, &mut |_| ControlFlow::Continue(()))
     }
 
     fn tree(&self) -> &PacketTree {

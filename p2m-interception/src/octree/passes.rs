@@ -5,6 +5,9 @@
 //! ones first, and ends where their children would exceed a budget. Then the build ends as well, and each cell that is
 //! still open gets a list. So a build can end after any cell of a pass, and it uses its budgets.
 //!
+//! A caller may end the build early in the same way: it sees after each chunk what the octree would be
+//! ([`OctreeSoFar`]).
+//!
 //! The cells of a pass are refined in chunks, on all threads, and the chunks are kept one after the other. Which chunk
 //! is the last one to be kept depends only on what they take together, and not on the number of threads. A chunk that
 //! exceeds a budget by itself ends at once, so each thread wastes at most what is left of the budgets.
@@ -12,8 +15,10 @@
 use crate::list::block::Block;
 use crate::octree::budget::Spent;
 use crate::octree::refinement::{CellTask, OpenCell, Place, RefinedCell, RefinedCells, Refinement};
+use crate::options::OctreeSoFar;
 use crate::parallel_chunks::map_chunks_in_order;
 use p2m_core::engine::vector::V3;
+use std::ops::ControlFlow;
 use std::sync::Mutex;
 
 /// The resolution of the first pass, unless the last one is lower.
@@ -44,11 +49,49 @@ pub(crate) struct Passes {
     pub(crate) spent: Spent,
     /// The resolution of the last pass.
     pub(crate) resolution: f64,
+    /// The cells and lists.
+    counts: Counts,
+}
+
+/// The numbers of cells and lists, where each open cell that may have a list counts as one with all of its candidates.
+#[derive(Default)]
+struct Counts {
+    cells: usize,
+    lists: usize,
+    entries: usize,
+}
+
+impl Counts {
+    /// Adds cells that are finished or split, the blocks of their lists, and cells that are open. The cells that a task
+    /// begins with count as open before, and `roots` has their numbers.
+    fn add(&mut self, made: &[RefinedCell], blocks: &[Block], open: &[OpenCell], roots: &[usize]) {
+        let is_split = |cell: &RefinedCell| matches!(cell, RefinedCell::Split(_));
+        let leaves = made.iter().filter(|cell| !is_split(cell)).count();
+        self.cells = self.cells + leaves - roots.len();
+        self.lists += made.iter().filter(|cell| matches!(cell, RefinedCell::List(..))).count();
+        self.entries += blocks.iter().map(|block| usize::from(block.len)).sum::<usize>();
+        let lists = open.iter().filter(|cell| cell.may_have_list());
+        self.lists += lists.clone().count();
+        self.entries += lists.map(|cell| cell.candidates.len()).sum::<usize>();
+    }
+
+    /// Removes the lists of open cells, which are refined.
+    fn remove_lists(&mut self, open: &[OpenCell]) {
+        let lists = open.iter().filter(|cell| cell.may_have_list());
+        self.lists -= lists.clone().count();
+        self.entries -= lists.map(|cell| cell.candidates.len()).sum::<usize>();
+    }
 }
 
 impl Passes {
-    /// Refines the cube of the domain. The result is `None` if even the coarsest cells exceed a budget.
-    pub(crate) fn run(refinement: &Refinement<'_>, low: V3, side: f64) -> Option<Self> {
+    /// Refines the cube of the domain, until `visit` ends it. The result is `None` if even the coarsest cells exceed a
+    /// budget.
+    pub(crate) fn run(
+        refinement: &Refinement<'_>,
+        low: V3,
+        side: f64,
+        visit: &mut dyn FnMut(&OctreeSoFar) -> ControlFlow<()>,
+    ) -> Option<Self> {
         let resolution = FIRST_RESOLUTION.min(refinement.last_resolution);
         let mut task = CellTask::new(resolution, Spent::default());
         let number = task.add_cell();
@@ -56,10 +99,13 @@ impl Passes {
         if task.spent.exceeds(refinement.budgets) {
             return None;
         }
+        let mut counts = Counts::default();
+        counts.add(&task.cells, &task.blocks, &task.open, &[]);
         let refined = RefinedCells { cells: task.cells, blocks: vec![task.blocks] };
-        let mut passes = Self { refined, open: task.open, spent: task.spent, resolution };
+        let mut passes = Self { refined, open: task.open, spent: task.spent, resolution, counts };
         let mut is_kept = true;
-        while is_kept && !passes.open.is_empty() {
+        let mut is_stopped = visit(&passes.so_far()).is_break();
+        while is_kept && !is_stopped && !passes.open.is_empty() {
             let spent = passes.spent.part_of(refinement.budgets);
             let step = spent.powf(-1.0 / POWER_OF_RESOLUTION).clamp(MIN_STEP, MAX_STEP);
             let next = (passes.resolution * step).min(refinement.last_resolution);
@@ -68,7 +114,10 @@ impl Passes {
             // Cells of about the same value stay in the order of their places, so that neighbours follow each other.
             valuable.sort_by(|a, b| a.resolution.log2().floor().total_cmp(&b.resolution.log2().floor()));
             passes.open = rest;
-            let left = passes.make(refinement, valuable, next, Refinement::split_open);
+            let left = passes.make(refinement, valuable, next, Refinement::split_open, &mut |passes| {
+                is_stopped |= visit(&passes.so_far()).is_break();
+                is_stopped
+            });
             is_kept = left.is_empty();
             passes.open.extend(left);
             if is_kept {
@@ -79,18 +128,25 @@ impl Passes {
             passes.resolution = refinement.last_resolution;
         }
         let open = std::mem::take(&mut passes.open);
-        passes.make(refinement, open, 0.0, Refinement::finish_open);
+        passes.make(refinement, open, 0.0, Refinement::finish_open, &mut |_| false);
         Some(passes)
     }
 
-    /// Determines what becomes of open cells, the first ones first, until a budget is exceeded. It returns the cells
-    /// that are still open then.
+    /// Returns what the octree would be if all open cells got their lists now.
+    fn so_far(&self) -> OctreeSoFar {
+        let Counts { cells, lists, entries } = self.counts;
+        OctreeSoFar { cells, lists, entries, bytes: usize::try_from(self.spent.bytes).unwrap_or(0) }
+    }
+
+    /// Determines what becomes of open cells, the first ones first, until a budget is exceeded or `is_last` returns
+    /// `true` after a chunk. It returns the cells that are still open then.
     fn make<'a>(
         &mut self,
         refinement: &Refinement<'a>,
         mut cells: Vec<OpenCell>,
         resolution: f64,
         fate_of: FateOf<'a>,
+        is_last: &mut dyn FnMut(&Self) -> bool,
     ) -> Vec<OpenCell> {
         let chunk_len = (cells.len() / MIN_CHUNKS).clamp(1, MAX_CELLS_PER_CHUNK);
         // The amounts that the chunks which are kept so far have taken, or `None` if no more chunks are kept.
@@ -130,6 +186,8 @@ impl Passes {
                 }
                 *kept = Some(spent);
                 done = range.end;
+                self.counts.remove_lists(&cells[range.clone()]);
+                self.counts.add(&made, &blocks, &open, &roots);
                 let first = self.refined.cells.len();
                 self.refined.append((made, blocks));
                 for (cell, root) in cells[range].iter().zip(roots) {
@@ -140,6 +198,9 @@ impl Passes {
                     cell
                 }));
                 self.spent = spent;
+                if is_last(self) {
+                    *kept = None;
+                }
             },
         );
         cells.split_off(done)

@@ -2,6 +2,7 @@
 
 mod positions;
 
+use crate::blocks::Source;
 use crate::builder::SceneBuilder;
 use crate::error::{FileLocation, ReadError, Reason};
 use crate::format::Format;
@@ -153,9 +154,9 @@ pub fn read_scene_in_pieces<E: From<ReadError>>(
         Format::Obj => {
             let is_file = path.metadata().is_ok_and(|m| m.is_file());
             let mut has_objects = || is_file && open(path, &name).is_ok_and(obj::has_objects);
-            obj::read(reader, &name, builder, &mut has_objects)
+            obj::read(Source::new(reader), &name, builder, &mut has_objects)
         }
-        Format::Ply => ply::read(reader, &name, builder),
+        Format::Ply => ply::read(Source::new(reader), &name, builder),
         Format::Stl => stl::read(reader, &name, builder),
         Format::Off => off::read(reader, &name, builder),
         Format::P2m => read_p2m(reader, &name).and_then(|scene| {

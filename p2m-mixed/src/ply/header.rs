@@ -3,6 +3,7 @@
 use crate::bytes::Scalar;
 use crate::text::{Tokens, fill_buffer, parse_integer, quote, read_until};
 use crate::{FileLocation, HeaderProblem, ReadError, Reason};
+use memchr::{memchr, memchr2};
 use std::collections::HashSet;
 use std::io::{self, BufRead};
 
@@ -81,7 +82,7 @@ pub(super) fn read_header(reader: &mut impl BufRead, file: &str) -> Result<Heade
     loop {
         line.clear();
         let read = match end {
-            Some(end) => read_until(reader, |b| b == end, MAX_LINE_BYTES, &mut line),
+            Some(end) => read_until(reader, |bytes| memchr(end, bytes), MAX_LINE_BYTES, &mut line),
             None => first_line(reader, &mut line).map(|found| {
                 end = Some(found);
                 line.len()
@@ -126,7 +127,7 @@ pub(super) fn read_header(reader: &mut impl BufRead, file: &str) -> Result<Heade
 /// last line is ambiguous: the byte after `end_header` and `\r` may be a `\n`, or the number 10 as the first byte
 /// of the data.
 fn first_line(reader: &mut impl BufRead, line: &mut Vec<u8>) -> io::Result<u8> {
-    read_until(reader, |b| matches!(b, b'\n' | b'\r'), MAX_LINE_BYTES, line)?;
+    read_until(reader, |bytes| memchr2(b'\n', b'\r', bytes), MAX_LINE_BYTES, line)?;
     if line.last() != Some(&b'\r') {
         return Ok(b'\n');
     }

@@ -4,15 +4,18 @@ mod data;
 mod header;
 mod members;
 mod plan;
+mod rows;
 
+use crate::blocks::Source;
 use crate::builder::SceneBuilder;
 use crate::points::row::Row;
 use crate::{FileLocation, HeaderProblem, ReadError, Reason, Scene};
-use data::Data;
+use data::{Data, Numbers};
 use header::read_header;
 use members::Members;
 use nalgebra::Point3;
 use plan::{Coordinates, ElementPlan, has_vertex_list};
+use rows::ReadRow;
 use std::io::BufRead;
 
 /// Reads a PLY file. `name` is the name of the file in messages.
@@ -50,11 +53,15 @@ use std::io::BufRead;
 /// than three vertices or more than [`MAX_CORNERS`](crate::MAX_CORNERS), and errors of `reader`. No memory is allocated
 /// for data that the header only announces.
 pub fn read_ply(reader: impl BufRead, name: &str) -> Result<Scene, ReadError> {
-    read(reader, name, SceneBuilder::default())
+    read(Source::new(reader), name, SceneBuilder::default())
 }
 
 /// Reads a PLY file into a builder, and returns the scene or its last piece.
-pub(crate) fn read(mut reader: impl BufRead, name: &str, builder: SceneBuilder<'_>) -> Result<Scene, ReadError> {
+pub(crate) fn read(
+    mut reader: Source<impl BufRead>,
+    name: &str,
+    builder: SceneBuilder<'_>,
+) -> Result<Scene, ReadError> {
     let header = read_header(&mut reader, name)?;
     let fail = |reason| ReadError::new(name, FileLocation::File, reason);
 
@@ -92,20 +99,23 @@ pub(crate) fn read(mut reader: impl BufRead, name: &str, builder: SceneBuilder<'
                 members.builder.skipped.add(&[b"element ", element.name.as_slice()].concat(), element.count);
             }
             ElementPlan::Vertices(xyz) => {
-                for _ in 0..element.count {
+                let in_blocks =
+                    VertexRows { element, coordinates: xyz, is_cloud }.read_blocks(&mut data, &mut members)?;
+                for _ in in_blocks..element.count {
                     let (position, bad) = vertex(&mut data, &element.properties, xyz)?;
                     // No primitive of a cloud uses a vertex that is not finite.
                     let bad = bad.filter(|_| !is_cloud);
                     members
                         .vertex(Point3::from(position), bad.map(|(location, _)| location))
-                        .map_err(|reason| data.error(reason))?;
+                        .map_err(|reason| data.error(|| reason))?;
                 }
                 members.end_vertices(name)?;
                 count_skipped_properties(&mut members.builder, element, &xyz.map(|(at, _)| at));
             }
             ElementPlan::Members(plan) => {
                 members.start_element(plan);
-                for number in 0..usize::try_from(element.count).unwrap_or(usize::MAX) {
+                let in_blocks = members.read_blocks(&mut data, element, plan)?;
+                for number in in_blocks..usize::try_from(element.count).unwrap_or(usize::MAX) {
                     members.read(&mut data, &element.properties, plan, number)?;
                 }
                 members.end_element();
@@ -119,6 +129,43 @@ pub(crate) fn read(mut reader: impl BufRead, name: &str, builder: SceneBuilder<'
         members.builder.push_point_cloud().map_err(fail)?;
     }
     members.finish(name)
+}
+
+/// Reads vertices in blocks.
+struct VertexRows<'a> {
+    element: &'a header::Element,
+    coordinates: &'a Coordinates<3>,
+    is_cloud: bool,
+}
+
+impl ReadRow<Vec<Point3<f64>>> for VertexRows<'_> {
+    /// A vertex of a primitive that is not finite, and those after it, are left to the sequential reader, which finds
+    /// the location of its coordinate.
+    fn read<N: Numbers>(&self, numbers: &mut N, positions: &mut Vec<Point3<f64>>) -> Result<(), N::Error> {
+        let (position, bad) = vertex(numbers, &self.element.properties, self.coordinates)?;
+        if let Some((_, coordinate)) = bad.filter(|_| !self.is_cloud) {
+            return Err(numbers.error(|| Reason::NonFinite { text: coordinate.to_string() }));
+        }
+        positions.push(Point3::from(position));
+        Ok(())
+    }
+}
+
+impl VertexRows<'_> {
+    /// Reads vertices and returns their number.
+    fn read_blocks(
+        &self,
+        data: &mut Data<'_, Source<impl BufRead>>,
+        members: &mut Members<'_>,
+    ) -> Result<u64, ReadError> {
+        let file = data.file();
+        data.read_rows(&self.element.properties, self.element.count, self, |rows| {
+            for (row, &position) in rows.parsed[..rows.count].iter().enumerate() {
+                members.vertex(position, None).map_err(|reason| rows.error(file, row, reason, self))?;
+            }
+            Ok(())
+        })
+    }
 }
 
 /// Reads the vertices of a PLY file as rows, whose coordinates have to be finite. Elements after the vertices
@@ -146,7 +193,7 @@ pub(crate) fn read_vertices<R: Row<N>, const N: usize>(
         if let Some((location, coordinate)) = bad {
             return Err(ReadError::new(name, location, Reason::NonFinite { text: coordinate.to_string() }));
         }
-        rows.push(R::new(numbers).map_err(|reason| data.error(reason))?);
+        rows.push(R::new(numbers).map_err(|reason| data.error(|| reason))?);
     }
     Ok(rows)
 }
@@ -171,11 +218,11 @@ fn skip_properties(data: &mut Data<'_, impl BufRead>, properties: &[header::Prop
 type NonFiniteCoordinate = (FileLocation, f64);
 
 /// Reads a vertex, and the last of its coordinates that is not finite.
-fn vertex<const N: usize>(
-    data: &mut Data<'_, impl BufRead>,
+fn vertex<D: Numbers, const N: usize>(
+    data: &mut D,
     properties: &[header::Property],
     coordinates: &Coordinates<N>,
-) -> Result<([f64; N], Option<NonFiniteCoordinate>), ReadError> {
+) -> Result<([f64; N], Option<NonFiniteCoordinate>), D::Error> {
     let mut position = [0.0; N];
     let mut bad = None;
     for (k, property) in properties.iter().enumerate() {

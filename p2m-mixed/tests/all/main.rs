@@ -2,6 +2,7 @@
 
 mod adapters;
 mod answers;
+mod blocks;
 mod common;
 mod generator;
 mod generator_kinds;

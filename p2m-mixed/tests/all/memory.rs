@@ -1,6 +1,6 @@
 //! Reading takes at most three times the memory of the scene, for large files of every format.
 
-use crate::common::written;
+use crate::common::{measured_on_one_thread, written};
 use nalgebra::Point3;
 use p2m_core::{Element, PrimitiveSet, Soup};
 use p2m_mixed::{Format, Scene, read_scene, read_scene_from};
@@ -10,9 +10,9 @@ use p2m_testkit::amount;
 const FIXED: usize = 1 << 17;
 
 /// Reads a scene, and returns it with its memory and the largest memory while it was read.
-fn measure(read: impl FnOnce() -> Scene) -> (Scene, usize, usize) {
+fn measure(read: impl FnOnce() -> Scene + Send) -> (Scene, usize, usize) {
     let mut scene = None;
-    let taken = allocation_counter::measure(|| scene = Some(read()));
+    let taken = measured_on_one_thread(|| scene = Some(read()));
     (scene.expect("a scene"), usize::try_from(taken.bytes_current).expect("not negative"), taken.bytes_max as usize)
 }
 

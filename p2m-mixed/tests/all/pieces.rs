@@ -1,6 +1,9 @@
 //! The pieces of a file make up its scene.
 
-use crate::common::{ENCODINGS, RICH_OBJ, RICH_OFF, RICH_STL, rich_binary_off, rich_binary_stl, rich_ply, written};
+use crate::common::{
+    ENCODINGS, RICH_OBJ, RICH_OFF, RICH_STL, measured_on_one_thread, rich_binary_off, rich_binary_stl, rich_ply,
+    written,
+};
 use nalgebra::Point3;
 use p2m_core::{Element, PrimitiveId, PrimitiveSet, Soup};
 use p2m_mixed::{Format, Object, PieceOptions, PieceSummary, ReadError, Scene, read_scene, read_scene_in_pieces};
@@ -321,7 +324,7 @@ fn memory_is_that_of_two_pieces_and_of_the_vertices_that_are_allowed() {
         let options = PieceOptions::default().with_max_position_bytes(0).with_max_primitives(1000);
         let mut count = 0;
         let mut summary = None;
-        let taken = allocation_counter::measure(|| {
+        let taken = measured_on_one_thread(|| {
             let read = read_scene_in_pieces(&file.path, &options, &mut |piece| {
                 count += piece.soup.len();
                 Ok::<(), ReadError>(())
@@ -329,7 +332,7 @@ fn memory_is_that_of_two_pieces_and_of_the_vertices_that_are_allowed() {
             summary = Some(read.unwrap());
         });
         assert_eq!((count, summary.unwrap().primitive_count), (scene.soup.len(), scene.soup.len() as u64));
-        let whole = allocation_counter::measure(|| drop(read_scene(&file.path).unwrap())).bytes_max;
+        let whole = measured_on_one_thread(|| drop(read_scene(&file.path).unwrap())).bytes_max;
         println!("{format}: {} bytes instead of {whole}", taken.bytes_max);
         assert!(taken.bytes_max < MAX_BYTES && whole > 3 * MAX_BYTES, "{format}: {} of {whole}", taken.bytes_max);
     }

@@ -3,7 +3,7 @@
 mod literal;
 
 use super::row::Row;
-use crate::bytes::{ByteReader, Scalar};
+use crate::bytes::{ByteReader, Bytes, Scalar};
 use crate::text::quote;
 use crate::{FileLocation, HeaderProblem, ReadError, Reason};
 use literal::{Value, parse};

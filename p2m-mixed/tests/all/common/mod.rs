@@ -20,6 +20,12 @@ pub(crate) fn off(bytes: impl AsRef<[u8]>) -> Result<Scene, ReadError> {
     read_off(bytes.as_ref(), "t.off")
 }
 
+/// Runs `work` on a single thread, and returns the bytes that it allocated.
+pub(crate) fn measured_on_one_thread(work: impl FnOnce() + Send) -> allocation_counter::AllocationInfo {
+    let pool = rayon::ThreadPoolBuilder::new().num_threads(1).build().unwrap();
+    pool.install(|| allocation_counter::measure(work))
+}
+
 pub(crate) fn written(scene: &Scene, format: Format) -> Vec<u8> {
     let mut file = Vec::new();
     write_scene(scene, format, &mut file).unwrap();

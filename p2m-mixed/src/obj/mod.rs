@@ -1,9 +1,15 @@
 //! Reads the geometry of Wavefront OBJ files.
 
+mod block;
+mod keywords;
+
+use crate::blocks::{Source, for_each_block};
 use crate::builder::SceneBuilder;
 use crate::polygon::MAX_CORNERS;
-use crate::text::{LineReader, Tokens, parse_integer, parse_number, quote};
+use crate::text::{LineReader, Tokens, parse_number};
 use crate::{FileLocation, ReadError, Reason, Scene};
+use block::{Block, Kind, vertex_of};
+use keywords::{is_free_form, is_known};
 use nalgebra::Point3;
 use p2m_core::Element;
 use std::io::BufRead;
@@ -43,36 +49,39 @@ use std::ops::Range;
 /// [`Reason::PolygonsTooLarge`], and errors of `reader`. A file without bytes, and one without vertices that has
 /// statements unknown to OBJ, returns [`Reason::NoVertex`].
 pub fn read_obj(reader: impl BufRead, name: &str) -> Result<Scene, ReadError> {
-    read(reader, name, SceneBuilder::default(), &mut || false)
+    read(Source::new(reader), name, SceneBuilder::default(), &mut || false)
 }
 
 /// Reads an OBJ file into a builder, and returns the scene or its last piece. `has_objects` returns whether the file
 /// has statements `o`, as far as that is known before they are read. It is called at most once, for a statement `g`.
 pub(crate) fn read(
-    reader: impl BufRead,
+    mut source: Source<impl BufRead>,
     name: &str,
     builder: SceneBuilder<'_>,
     has_objects: &mut dyn FnMut() -> bool,
 ) -> Result<Scene, ReadError> {
-    let mut lines = LineReader::new(reader, 0);
+    let fail = |(line, reason)| ReadError::new(name, FileLocation::Line(line), reason);
     let mut parser = Parser::new(builder, has_objects);
-    let mut is_empty = true;
+    for_each_block(
+        &mut source,
+        |bytes| Some(block::cut(bytes)),
+        block::parse,
+        |bytes, block| parser.add_block(bytes, &block).map(|()| None).map_err(fail),
+    )?;
+    let mut is_empty = parser.line == 0;
+    let mut lines = LineReader::new(source, parser.line);
     loop {
         match lines.read_continued() {
             Ok(true) => is_empty = false,
             Ok(false) => break,
-            Err(e) => return Err(ReadError::new(name, FileLocation::Line(lines.line()), Reason::Io(e))),
+            Err(e) => return Err(fail((lines.line(), Reason::Io(e)))),
         }
-        let mut tokens = Tokens::new(lines.bytes());
-        parser.line = lines.line();
-        parser
-            .statement(&mut tokens)
-            .map_err(|reason| ReadError::new(name, FileLocation::Line(lines.line() + tokens.line_offset()), reason))?;
+        parser.add_statement(lines.bytes(), lines.line()).map_err(fail)?;
     }
     if is_empty {
         return Err(ReadError::new(name, FileLocation::File, Reason::NoVertex));
     }
-    parser.add_deferred().map_err(|(line, reason)| ReadError::new(name, FileLocation::Line(line), reason))?;
+    parser.add_deferred().map_err(fail)?;
     parser.finish().map_err(|reason| ReadError::new(name, FileLocation::File, reason))
 }
 
@@ -88,8 +97,8 @@ pub(crate) fn has_objects(reader: impl BufRead) -> bool {
     false
 }
 
-/// A statement that makes primitives of its vertices.
-#[derive(Clone, Copy)]
+/// The kind of a statement that makes primitives of its vertices.
+#[derive(Clone, Copy, PartialEq, Eq)]
 enum Shape {
     Polygon,
     Polyline,
@@ -128,7 +137,7 @@ struct Parser<'a, 'b> {
     find_objects: &'a mut dyn FnMut() -> bool,
     /// The vertices of the current statement.
     vertices: Vec<u32>,
-    /// The first line of the current statement.
+    /// The first line of the current statement, or the last line of the last block.
     line: u64,
     /// The line of the first reference of the statement to a vertex that is not defined yet.
     forward_line: Option<u64>,
@@ -155,6 +164,79 @@ impl<'a, 'b> Parser<'a, 'b> {
             deferred: Vec::new(),
             deferred_vertices: Vec::new(),
         }
+    }
+
+    /// Adds the statements of a block. The error has its line.
+    fn add_block(&mut self, bytes: &[u8], block: &Block) -> Result<(), (u64, Reason)> {
+        let lines_before = self.line;
+        let (mut positions, mut references) = (block.positions.as_slice(), block.references.as_slice());
+        for statement in &block.statements {
+            let line = lines_before + 1 + u64::from(statement.line);
+            let text = &bytes[statement.start as usize..];
+            match statement.kind {
+                Kind::Vertices => {
+                    let run;
+                    (run, positions) = positions.split_at(statement.count as usize);
+                    for (line, &position) in (line..).zip(run) {
+                        self.builder.push_vertex(position).map_err(|reason| (line, reason))?;
+                    }
+                }
+                Kind::Shape(shape) => {
+                    let own;
+                    (own, references) = references.split_at(statement.count as usize);
+                    self.line = line;
+                    if self.resolve(own) {
+                        self.shape(shape).map_err(|reason| (line, reason))?;
+                    } else {
+                        self.add_statement_at_start(text, line)?;
+                    }
+                }
+                Kind::Skipped => self.builder.skipped.add(block::keyword(text), u64::from(statement.count)),
+                Kind::Other => self.add_statement_at_start(text, line)?,
+            }
+        }
+        self.line = lines_before + u64::from(block.lines);
+        Ok(())
+    }
+
+    /// Takes the references of a statement on one line as its vertices. Returns whether there is no error.
+    fn resolve(&mut self, references: &[i32]) -> bool {
+        let count = self.builder.vertex_count();
+        self.vertices.clear();
+        let mut is_forward = false;
+        for &reference in references {
+            let index = reference.unsigned_abs();
+            let vertex = if reference > 0 {
+                Some(index - 1)
+            } else {
+                u32::try_from(count).ok().and_then(|c| c.checked_sub(index))
+            };
+            let Some(vertex) = vertex else { return false };
+            if vertex as usize >= count {
+                is_forward = true;
+            } else if !self.builder.is_finite(vertex).unwrap_or(false) {
+                return false;
+            }
+            self.vertices.push(vertex);
+        }
+        self.forward_line = is_forward.then_some(self.line);
+        true
+    }
+
+    /// Parses the first statement of a text. `line` is its line, and the error has its own.
+    fn add_statement_at_start(&mut self, text: &[u8], line: u64) -> Result<(), (u64, Reason)> {
+        let mut lines = LineReader::new(text, line - 1);
+        match lines.read_continued() {
+            Ok(_) => self.add_statement(lines.bytes(), line),
+            Err(e) => Err((line, Reason::Io(e))),
+        }
+    }
+
+    /// Parses a statement. `line` is its line, and the error has its own.
+    fn add_statement(&mut self, text: &[u8], line: u64) -> Result<(), (u64, Reason)> {
+        let mut tokens = Tokens::new(text);
+        self.line = line;
+        self.statement(&mut tokens).map_err(|reason| (line + tokens.line_offset(), reason))
     }
 
     /// Parses a statement. After an error, the last token of `tokens` is the one that the error is about.
@@ -330,82 +412,4 @@ impl<'a, 'b> Parser<'a, 'b> {
         let found = self.vertices.len() as u64;
         if found < needed { Err(Reason::TooFewVertices { found, needed }) } else { Ok(()) }
     }
-}
-
-/// Returns whether a keyword belongs to free-form curves and surfaces, superseded keywords included.
-fn is_free_form(keyword: &[u8]) -> bool {
-    matches!(
-        keyword,
-        b"cstype"
-            | b"deg"
-            | b"bmat"
-            | b"step"
-            | b"curv"
-            | b"curv2"
-            | b"surf"
-            | b"parm"
-            | b"trim"
-            | b"hole"
-            | b"scrv"
-            | b"sp"
-            | b"end"
-            | b"con"
-            | b"bzp"
-            | b"bsp"
-            | b"cdc"
-            | b"cdp"
-            | b"res"
-    )
-}
-
-/// Returns whether a keyword is one of OBJ that does not affect the geometry.
-fn is_known(keyword: &[u8]) -> bool {
-    matches!(
-        keyword,
-        b"vt"
-            | b"vn"
-            | b"vp"
-            | b"g"
-            | b"s"
-            | b"o"
-            | b"mg"
-            | b"usemtl"
-            | b"mtllib"
-            | b"usemap"
-            | b"maplib"
-            | b"bevel"
-            | b"c_interp"
-            | b"d_interp"
-            | b"lod"
-            | b"shadow_obj"
-            | b"trace_obj"
-            | b"ctech"
-            | b"stech"
-            | b"call"
-            | b"csh"
-    )
-}
-
-/// Returns the index, counted from 0, of the vertex that a reference like `7/1/2` refers to, which may be defined
-/// later. `count` is the number of vertices so far.
-fn vertex_of(token: &[u8], count: usize) -> Result<u32, Reason> {
-    let bad = || Reason::BadNumber { text: quote(token) };
-    let mut parts = token.split(|&b| b == b'/');
-    let index = parts.next().and_then(|part| parse_integer(part).ok()).ok_or_else(bad)?;
-    // Texture coordinate and normal are not used, but they have to be numbers if they are present.
-    for part in parts.by_ref().take(2) {
-        if !part.is_empty() {
-            parse_integer(part).map_err(|_| bad())?;
-        }
-    }
-    if parts.next().is_some() {
-        return Err(bad());
-    }
-    let count = count as u64;
-    let vertex = match index {
-        0 => return Err(Reason::IndexZero),
-        1.. => Some(index.unsigned_abs() - 1),
-        _ => count.checked_sub(index.unsigned_abs()),
-    };
-    vertex.and_then(|i| u32::try_from(i).ok()).ok_or(Reason::IndexOutOfRange { index, count })
 }
