@@ -4,7 +4,7 @@
 const FIXED_BUFFER_BYTES: usize = 1 << 17;
 
 /// Runs `work`, and panics if it allocated more than `bytes` at a time in addition to [`FIXED_BUFFER_BYTES`]. Only
-/// this thread is measured, because readers work on one thread.
+/// this thread is measured, because readers work on one thread without the feature `rayon`.
 pub fn at_most<T>(bytes: usize, work: impl FnOnce() -> T) -> T {
     let mut result = None;
     let taken = allocation_counter::measure(|| result = Some(work())).bytes_max as usize;

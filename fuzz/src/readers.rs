@@ -1,9 +1,10 @@
-//! Checks the promises of readers for any file: reading does not panic and takes memory in proportion to the size of
-//! the file, and the scene can be written in every format and reads back as the same.
+//! Checks the promises of readers for any file: reading does not panic, is the same in blocks of any size, and takes
+//! memory in proportion to the size of the file, and the scene can be written in every format and reads back as the same.
 
 use super::memory;
 use nalgebra::Point3;
 use p2m_core::{BruteForce, ClosestPoint, Element, Point, PrimitiveSet, Soup};
+use p2m_mixed::engine::read_scene_in_blocks;
 use p2m_mixed::{
     AnswerFormat, AnswerWriter, Format, Object, PointFormat, Scene, read_points_from, read_scene_from, stl_rounding,
     write_ply_ascii, write_scene, write_stl,
@@ -18,8 +19,22 @@ fn measured<T>(file: &[u8], read: impl FnOnce() -> T) -> T {
     memory::at_most(MEMORY_PER_BYTE * file.len(), read)
 }
 
+/// Checks that blocks of any size give the scene or the error of sequential reading.
+fn check_blocks(file: &[u8], format: Format) {
+    let outcome = |block_bytes| {
+        let scene = read_scene_in_blocks(file, format, "fuzz", block_bytes).map_err(|error| error.to_string())?;
+        let elements: Vec<_> = scene.soup.elements().collect();
+        Ok::<_, String>((bits(&scene.soup), elements, scene.sources, scene.objects, scene.skipped))
+    };
+    let expected = outcome(0);
+    for block_bytes in [1, 16, 256] {
+        assert_eq!(outcome(block_bytes), expected, "blocks of {block_bytes} bytes");
+    }
+}
+
 /// Reads a scene, writes it, and reads it again.
 pub fn scene(file: &[u8], format: Format) {
+    check_blocks(file, format);
     let scene = match measured(file, || read_scene_from(file, format, "fuzz")) {
         Ok(scene) => scene,
         Err(error) => return assert!(!error.to_string().is_empty()),

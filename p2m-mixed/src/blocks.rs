@@ -6,6 +6,7 @@
 //! errors as the sequential reader alone.
 
 use crate::text::fill_buffer;
+#[cfg(feature = "rayon")]
 use std::collections::VecDeque;
 use std::io::{self, BufRead, Read};
 
@@ -156,6 +157,7 @@ pub(crate) fn for_each_block<R: BufRead, P: Send, E>(
 }
 
 /// A block, and what it was parsed into.
+#[cfg(feature = "rayon")]
 struct Slot<P> {
     bytes: Vec<u8>,
     parsed: Option<P>,
