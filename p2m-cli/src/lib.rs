@@ -47,6 +47,7 @@ mod summary;
 mod threads;
 mod tradeoff;
 mod usage;
+mod view;
 mod zstd;
 
 pub use interrupt::listen;
@@ -98,6 +99,7 @@ enum Command {
     Convert(convert::Args),
     Generate(generate::Args),
     Boxes(boxes::Args),
+    View(view::Args),
     Completions(shell::Completions),
     Man(shell::Man),
 }
@@ -120,6 +122,7 @@ impl Command {
             Self::Convert(_) => "p2m convert".to_owned(),
             Self::Generate(args) => format!("p2m generate {}", args.name()),
             Self::Boxes(_) => "p2m boxes".to_owned(),
+            Self::View(_) => "p2m view".to_owned(),
             Self::Completions(_) => "p2m completions".to_owned(),
             Self::Man(_) => "p2m man".to_owned(),
         }
@@ -141,6 +144,7 @@ impl Command {
             Self::Convert(args) => convert::run(streams, args),
             Self::Generate(args) => generate::run(streams, args),
             Self::Boxes(args) => boxes::run(streams, args),
+            Self::View(args) => view::run(streams, args),
             Self::Completions(args) => shell::completions(streams, args, Cli::command()),
             Self::Man(args) => shell::man(streams, args, Cli::command()),
         }

@@ -25,3 +25,4 @@ mod terminal;
 mod tradeoff;
 mod transcript;
 mod usage;
+mod view;

@@ -4,7 +4,7 @@ use crate::common::*;
 use std::fs;
 use tempfile::TempDir;
 
-const COMMANDS: [&str; 16] = [
+const COMMANDS: [&str; 17] = [
     "query",
     "build",
     "shard",
@@ -17,6 +17,7 @@ const COMMANDS: [&str; 16] = [
     "ray",
     "info",
     "boxes",
+    "view",
     "convert",
     "generate",
     "completions",

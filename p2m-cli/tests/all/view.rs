@@ -1,0 +1,33 @@
+//! Tests of `p2m view`.
+
+use crate::common::*;
+use std::fs;
+use tempfile::TempDir;
+
+#[test]
+fn a_page_has_what_was_asked_for() {
+    let folder = TempDir::new().unwrap();
+    let page = path(&folder, "page.html");
+    let parts = ["\"answers\":{", "\"field\":{", "\"cells\":{"];
+    for (options, expected) in [
+        (&["--random", "7"][..], [true, false, false]),
+        (&["--field", "8", "--unit", "metres"], [false, true, false]),
+        (&["--levels", "2"], [false, false, true]),
+    ] {
+        table(&[&["view", SCENE, "--out", &page], options].concat());
+        let html = fs::read_to_string(&page).unwrap();
+        assert_eq!(parts.map(|part| html.contains(part)), expected, "{options:?}");
+        assert_eq!(html.contains("\"unit\":\"metres\""), expected[1], "{options:?}");
+    }
+}
+
+#[test]
+fn what_cannot_be_shown_is_told() {
+    let folder = TempDir::new().unwrap();
+    let page = path(&folder, "page.html");
+    assert!(failure(&["view", SCENE, "--signed", "--out", &page], 2).contains("--signed needs"));
+    assert!(failure(&["view", SCENE, "--out", SCENE], 1).contains("it is an input"));
+    failure(&["view", SCENE], 2);
+    failure(&["view", SCENE, "--random", "100001", "--out", &page], 2);
+    assert!(!fs::exists(&page).unwrap());
+}

@@ -1,0 +1,11 @@
+//! Pages that show a scene in a browser, each in one HTML file that needs no other file and no network.
+//!
+//! A [`View`] collects what a page shows. [`View::html`] puts it as JSON into a template with a script
+//! (`assets/viewer.js`, made of the folder `web`), which draws it with three.js.
+
+mod decimate;
+mod frame;
+mod packed;
+mod view;
+
+pub use view::{Level, UpAxis, View};

@@ -1,0 +1,414 @@
+//! The page of a scene.
+
+use crate::decimate::{MAX_PRIMITIVES, is_distinct, representatives};
+use crate::frame::Frame;
+use crate::packed::Packed;
+use nalgebra::Point3;
+use p2m_core::{Aabb, Closest, Feature, PrimitiveId, PrimitiveSet, Soup};
+use p2m_field::Grid;
+use p2m_mixed::{Object, Scene};
+use serde::Serialize;
+
+const TEMPLATE: &str = include_str!("view.html");
+const SCRIPT: &str = include_str!("../assets/viewer.js");
+
+/// The axis that points up in a picture.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "lowercase")]
+pub enum UpAxis {
+    /// The axis y, as in most scans and in models for films and games.
+    Y,
+    /// The axis z, as in CAD and maps.
+    #[default]
+    Z,
+}
+
+/// The boxes of one level of a tree.
+#[derive(Clone, Debug)]
+pub struct Level {
+    /// The text above the level.
+    pub title: String,
+    /// The boxes.
+    pub boxes: Vec<Aabb<f64>>,
+}
+
+/// The content of a page. Everything but the scene is optional.
+///
+/// # Limits
+/// A scene of more than 10^6 primitives is drawn coarser, with a note on the page: vertices in the same cell of a grid
+/// become one. Answers are not affected.
+#[derive(Debug)]
+pub struct View<'a> {
+    scene: &'a Scene,
+    frame: Frame,
+    data: Data,
+    /// The heading of the page.
+    pub title: String,
+    /// A sentence below the heading, which is also the text alternative of the picture.
+    pub summary: String,
+    /// The command and the versions that made the page.
+    pub about: String,
+}
+
+#[derive(Debug, Serialize)]
+struct Data {
+    unit: String,
+    up: UpAxis,
+    notes: Vec<String>,
+    frame: Frame,
+    scene: SceneData,
+    object_names: Vec<String>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    answers: Option<AnswerData>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    cells: Option<CellData>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    field: Option<FieldData>,
+}
+
+/// The primitives of a scene: positions in the frame, and the numbers of vertices of each kind of primitives.
+#[derive(Debug, Serialize)]
+struct SceneData {
+    positions: Packed,
+    triangles: Packed,
+    segments: Packed,
+    points: Packed,
+    objects: Vec<ObjectData>,
+}
+
+/// The first and the last number of an object's primitives of each kind, or those between objects, without a name.
+#[derive(Debug, Serialize)]
+struct ObjectData {
+    name: Option<String>,
+    triangles: [usize; 2],
+    segments: [usize; 2],
+    points: [usize; 2],
+}
+
+/// Arrays with an entry for each query. A distance that is no number stands for no answer.
+#[derive(Debug, Serialize)]
+struct AnswerData {
+    queries: Packed,
+    points: Packed,
+    distances: Packed,
+    lower_bounds: Packed,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    signed: Option<Packed>,
+    primitives: Packed,
+    /// Vertices 0 to 2 have the codes 0 to 2, edges the codes 3 to 5 and the face 6.
+    features: Packed,
+    /// The numbers of vertices of the primitives.
+    sizes: Packed,
+    /// The vertices of the primitives in the frame, three for each.
+    vertices: Packed,
+    /// The numbers of objects from 1, and 0 for none.
+    objects: Packed,
+}
+
+#[derive(Debug, Serialize)]
+struct CellData {
+    title: String,
+    levels: Vec<LevelData>,
+}
+
+#[derive(Debug, Serialize)]
+struct LevelData {
+    title: String,
+    boxes: Packed,
+}
+
+#[derive(Debug, Serialize)]
+struct FieldData {
+    counts: [usize; 3],
+    origin: [f32; 3],
+    spacing: f64,
+    values: Packed,
+}
+
+impl<'a> View<'a> {
+    /// Starts a page of a scene, whose picture contains the box `around` as well.
+    #[must_use]
+    pub fn new(scene: &'a Scene, around: &Aabb<f64>) -> Self {
+        let frame = Frame::of(&scene.soup.aabb().union(around));
+        let mut notes = Vec::new();
+        let data = scene_data(scene, &frame, &mut notes);
+        let object_names = scene.objects.iter().map(|object| object.name.clone()).collect();
+        let data = Data {
+            unit: "units".to_owned(),
+            up: UpAxis::Z,
+            notes,
+            frame,
+            scene: data,
+            object_names,
+            answers: None,
+            cells: None,
+            field: None,
+        };
+        Self { scene, frame, data, title: "A scene".to_owned(), summary: String::new(), about: String::new() }
+    }
+
+    /// Sets the axis that points up.
+    #[must_use]
+    pub fn with_up(mut self, up: UpAxis) -> Self {
+        self.data.up = up;
+        self
+    }
+
+    /// Sets the name of the unit of lengths, which legends show.
+    #[must_use]
+    pub fn with_unit(mut self, unit: &str) -> Self {
+        unit.clone_into(&mut self.data.unit);
+        self
+    }
+
+    /// Shows a sentence above the panel.
+    #[must_use]
+    pub fn with_note(mut self, note: String) -> Self {
+        self.data.notes.push(note);
+        self
+    }
+
+    /// Shows queries with their closest points. `signed` has signed distances, or is empty.
+    ///
+    /// # Panics
+    /// If the slices have different lengths, or an answer names a primitive that the scene does not have.
+    #[must_use]
+    pub fn with_answers(
+        mut self,
+        queries: &[Point3<f64>],
+        answers: &[Option<Closest<f64>>],
+        signed: Option<&[f64]>,
+    ) -> Self {
+        assert_eq!(queries.len(), answers.len(), "an answer for each query");
+        assert!(signed.is_none_or(|signed| signed.len() == queries.len()), "a signed distance for each query");
+        let number = |get: fn(&Closest<f64>) -> f64| -> Vec<f64> {
+            answers.iter().map(|answer| answer.as_ref().map_or(f64::NAN, get)).collect()
+        };
+        let soup = &self.scene.soup;
+        let vertices = |answer: &Option<Closest<f64>>| {
+            let mut vertices = [[0.0; 3]; 3];
+            if let Some(answer) = answer {
+                for (vertex, &i) in vertices.iter_mut().zip(soup.element(answer.primitive).indices()) {
+                    *vertex = self.frame.position(&soup.positions()[i as usize]);
+                }
+            }
+            vertices
+        };
+        let size = |answer: &Option<Closest<f64>>| answer.map_or(0, |a| soup.element(a.primitive).indices().len());
+        let object =
+            |answer: &Option<Closest<f64>>| answer.map_or(0, |a| object_number(&self.scene.objects, a.primitive));
+        let feature = |answer: &Option<Closest<f64>>| match answer.map(|answer| answer.feature) {
+            Some(Feature::Vertex(i)) => i,
+            Some(Feature::Edge(i)) => 3 + i,
+            Some(Feature::Face) | None => 6,
+        };
+        let point = |answer: &Option<Closest<f64>>| answer.map_or([f64::NAN; 3], |answer| answer.point.coords.into());
+        self.data.answers = Some(AnswerData {
+            queries: Packed::new(&queries.iter().flat_map(|q| [q.x, q.y, q.z]).collect::<Vec<f64>>()),
+            points: Packed::new(&answers.iter().flat_map(point).collect::<Vec<f64>>()),
+            distances: Packed::new(&number(|answer| answer.distance)),
+            lower_bounds: Packed::new(&number(|answer| answer.lower_bound)),
+            signed: signed.map(Packed::new),
+            primitives: Packed::new(&answers.iter().map(primitive).collect::<Vec<u32>>()),
+            features: Packed::new(&answers.iter().map(feature).collect::<Vec<u8>>()),
+            sizes: Packed::new(&answers.iter().map(size).map(|n| u8::try_from(n).unwrap_or(0)).collect::<Vec<u8>>()),
+            vertices: Packed::new(&answers.iter().flat_map(vertices).flatten().collect::<Vec<f32>>()),
+            objects: Packed::new(&answers.iter().map(object).collect::<Vec<u32>>()),
+        });
+        self
+    }
+
+    /// Shows the boxes of an index, level by level, under a title.
+    #[must_use]
+    pub fn with_levels(mut self, title: &str, levels: &[Level]) -> Self {
+        let level = |level: &Level| {
+            let ends = level.boxes.iter().flat_map(|bounds| [bounds.min, bounds.max]);
+            let boxes: Vec<f32> = ends.flat_map(|point| self.frame.position(&point)).collect();
+            LevelData { title: level.title.clone(), boxes: Packed::new(&boxes) }
+        };
+        let levels: Vec<LevelData> = levels.iter().map(level).collect();
+        self.data.cells = (!levels.is_empty()).then(|| CellData { title: title.to_owned(), levels });
+        self
+    }
+
+    /// Shows slices of a field, whose values are those of [`p2m_field::distances`]: x runs fastest.
+    ///
+    /// # Panics
+    /// If the number of values is not that of the points of the grid.
+    #[must_use]
+    pub fn with_field(mut self, grid: &Grid, values: &[f32]) -> Self {
+        assert_eq!(grid.len(), values.len(), "a value for each point of the grid");
+        self.data.field = Some(FieldData {
+            counts: grid.counts(),
+            origin: self.frame.position(&grid.origin()),
+            spacing: self.frame.length(grid.spacing()),
+            values: Packed::new(values),
+        });
+        self
+    }
+
+    /// Returns the page as HTML.
+    ///
+    /// # Errors
+    /// An error of the conversion to JSON, which all pages that this type can hold are free of.
+    pub fn html(&self) -> serde_json::Result<String> {
+        // A script element ends at the first `</script`, even within a string.
+        let data = serde_json::to_string(&self.data)?.replace('<', "\\u003c");
+        let texts =
+            [("about", escaped(&self.about)), ("summary", escaped(&self.summary)), ("title", escaped(&self.title))];
+        // Each placeholder is replaced within the template alone, so texts that look like one stay as they are.
+        let mut page = String::with_capacity(TEMPLATE.len() + SCRIPT.len() + data.len());
+        let mut rest = TEMPLATE;
+        while let Some((before, after)) = rest.split_once("{{") {
+            let (name, after) = after.split_once("}}").unwrap_or((after, ""));
+            page.push_str(before);
+            match name {
+                "data" => page.push_str(&data),
+                "script" => page.push_str(SCRIPT),
+                _ => page.extend(texts.iter().filter(|text| text.0 == name).map(|text| text.1.as_str())),
+            }
+            rest = after;
+        }
+        page.push_str(rest);
+        Ok(page)
+    }
+}
+
+/// Escapes text for use between tags and in attributes.
+fn escaped(text: &str) -> String {
+    text.replace('&', "&amp;").replace('<', "&lt;").replace('>', "&gt;").replace('"', "&quot;")
+}
+
+/// Returns the id of the primitive of an answer.
+fn primitive(answer: &Option<Closest<f64>>) -> u32 {
+    answer.and_then(|answer| u32::try_from(answer.primitive.index()).ok()).unwrap_or(u32::MAX)
+}
+
+/// Returns the number of the object of a primitive from 1, or 0 if it belongs to none.
+fn object_number(objects: &[Object], id: PrimitiveId) -> u32 {
+    let number = objects.partition_point(|object| object.ids.start <= id.index());
+    let is_in = number > 0 && objects[number - 1].ids.contains(&id.index());
+    if is_in { u32::try_from(number).unwrap_or(0) } else { 0 }
+}
+
+/// Packs the primitives of a scene, object by object.
+fn scene_data(scene: &Scene, frame: &Frame, notes: &mut Vec<String>) -> SceneData {
+    let soup = &scene.soup;
+    let positions: Vec<[f32; 3]> = soup.positions().iter().map(|p| frame.position(p)).collect();
+    let stand_ins = (soup.len() > MAX_PRIMITIVES).then(|| representatives(soup, &positions));
+    let mut drawn = Drawn::default();
+    let mut objects = Vec::new();
+    let mut next = 0;
+    for object in &scene.objects {
+        objects.extend(drawn.object(soup, None, next..object.ids.start, stand_ins.as_deref()));
+        objects.extend(drawn.object(soup, Some(&object.name), object.ids.clone(), stand_ins.as_deref()));
+        next = object.ids.end;
+    }
+    objects.extend(drawn.object(soup, None, next..soup.len(), stand_ins.as_deref()));
+    if stand_ins.is_some() {
+        let count = (drawn.triangles.len() / 3) + (drawn.segments.len() / 2) + drawn.points.len();
+        notes.push(format!(
+            "The scene has {} primitives. The picture has {count}: vertices that are close to each other are drawn as \
+             one. Answers are those of the whole scene.",
+            soup.len()
+        ));
+    }
+    SceneData {
+        positions: Packed::new(positions.as_flattened()),
+        triangles: Packed::new(&drawn.triangles),
+        segments: Packed::new(&drawn.segments),
+        points: Packed::new(&drawn.points),
+        objects,
+    }
+}
+
+/// The numbers of the vertices of all primitives that are drawn.
+#[derive(Default)]
+struct Drawn {
+    triangles: Vec<u32>,
+    segments: Vec<u32>,
+    points: Vec<u32>,
+}
+
+impl Drawn {
+    /// Adds the primitives with these ids, unless there are none.
+    fn object(
+        &mut self,
+        soup: &Soup<f64>,
+        name: Option<&String>,
+        ids: std::ops::Range<usize>,
+        stand_ins: Option<&[u32]>,
+    ) -> Option<ObjectData> {
+        if ids.is_empty() {
+            return None;
+        }
+        let before = self.counts();
+        for element in ids.map(|id| soup.element(PrimitiveId::new(id))) {
+            let indices = element.indices();
+            let is_kept = stand_ins.is_none_or(|stand_ins| match indices {
+                &[i] => stand_ins[i as usize] == i,
+                _ => is_distinct(indices, stand_ins),
+            });
+            if is_kept {
+                let list = match indices.len() {
+                    1 => &mut self.points,
+                    2 => &mut self.segments,
+                    _ => &mut self.triangles,
+                };
+                list.extend(indices.iter().map(|&i| stand_ins.map_or(i, |stand_ins| stand_ins[i as usize])));
+            }
+        }
+        let after = self.counts();
+        let [triangles, segments, points] = std::array::from_fn(|k| [before[k], after[k]]);
+        Some(ObjectData { name: name.cloned(), triangles, segments, points })
+    }
+
+    fn counts(&self) -> [usize; 3] {
+        [self.triangles.len() / 3, self.segments.len() / 2, self.points.len()]
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use p2m_core::Element;
+    use serde_json::Value;
+
+    fn scene() -> Scene {
+        let positions = [[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]].map(Point3::from).to_vec();
+        let elements = [Element::Point(0), Element::Segment([0, 1]), Element::Triangle([0, 1, 2]), Element::Point(2)];
+        let mut scene = Scene::from(Soup::new(positions, elements).unwrap());
+        scene.objects = vec![Object { name: "<b>".to_owned(), ids: 1..3 }];
+        scene
+    }
+
+    fn data(page: &str) -> Value {
+        let (_, rest) = page.split_once("id=\"data\">").unwrap();
+        serde_json::from_str(rest.split_once("</script>").unwrap().0).unwrap()
+    }
+
+    #[test]
+    fn a_page_has_all_parts_once_and_nothing_is_from_elsewhere() {
+        let scene = scene();
+        let mut view = View::new(&scene, &Aabb::empty());
+        view.title = "a < b & {{data}}".to_owned();
+        let page = view.html().unwrap();
+        assert!(page.contains("<title>a &lt; b &amp; {{data}}</title>"));
+        assert_eq!(page.matches("</script>").count(), 2);
+        for foreign in [" src=", "<link", "@import", "url("] {
+            assert!(!page.replace(SCRIPT, "").contains(foreign), "{foreign}");
+        }
+    }
+
+    #[test]
+    fn objects_have_the_ranges_of_their_primitives() {
+        let page = View::new(&scene(), &Aabb::empty()).html().unwrap();
+        let objects = data(&page)["scene"]["objects"].clone();
+        let ranges = |i: usize| ["triangles", "segments", "points"].map(|kind| objects[i][kind].to_string());
+        assert_eq!(objects.as_array().unwrap().len(), 3);
+        assert_eq!((objects[0]["name"].is_null(), ranges(0)), (true, ["[0,0]", "[0,0]", "[0,1]"].map(String::from)));
+        assert_eq!((&objects[1]["name"], ranges(1)), (&"<b>".into(), ["[0,1]", "[0,1]", "[1,1]"].map(String::from)));
+        assert_eq!((objects[2]["name"].is_null(), ranges(2)), (true, ["[1,1]", "[1,1]", "[1,2]"].map(String::from)));
+        assert_eq!([0, 1, 2, 3].map(|id| object_number(&scene().objects, PrimitiveId::new(id))), [0, 1, 1, 0]);
+    }
+}

@@ -1,0 +1,145 @@
+// Query points, their closest points, and the answer that is selected.
+
+import * as three from "three";
+import { ColourScale } from "./colours.js";
+
+export class AnswersLayer {
+  constructor(answers, frame) {
+    Object.assign(this, answers);
+    this.frame = frame;
+    this.length = answers.distances.length;
+    // The values that give colours: signed distances where there are some.
+    this.values = answers.signed ?? answers.distances;
+    const [low, high] = limits(this.values);
+    this.scale = new ColourScale(low < 0 ? "diverging" : "sequential", low < 0 ? low : 0, high);
+    this.from = frame.positions(answers.queries);
+    this.to = frame.positions(answers.points);
+    this.colours = this.scale.colours(this.values);
+
+    this.dots = points(this.from, this.colours, 6);
+    this.feet = points(this.to, this.colours, 3);
+    const ends = new Float32Array(6 * this.length);
+    const endColours = new Uint8Array(6 * this.length);
+    for (let i = 0; i < this.length; i++) {
+      for (const [end, from] of [[0, this.from], [3, this.to]]) {
+        ends.set(from.subarray(3 * i, 3 * i + 3), 6 * i + end);
+        endColours.set(this.colours.subarray(3 * i, 3 * i + 3), 6 * i + end);
+      }
+    }
+    const geometry = new three.BufferGeometry();
+    geometry.setAttribute("position", new three.BufferAttribute(ends, 3));
+    geometry.setAttribute("color", new three.BufferAttribute(endColours, 3, true));
+    this.segments = new three.LineSegments(geometry, new three.LineBasicMaterial({ vertexColors: true }));
+    this.group = new three.Group();
+    this.group.add(this.dots, this.feet, this.segments);
+    this.selection = new three.Group();
+    this.selected = -1;
+    this.hasSphere = true;
+  }
+
+  isAnswered(i) {
+    return !Number.isNaN(this.distances[i]);
+  }
+
+  // Selects an answer, and draws its primitive, its feature, its segment and the sphere of its lower bound.
+  select(i, colours) {
+    this.selected = i;
+    this.selection.clear();
+    if (i < 0) return;
+    const at = (array, k) => new three.Vector3(...array.subarray(3 * k, 3 * k + 3));
+    const query = at(this.from, i);
+    this.selection.add(marker(query, colours.selected, 11));
+    if (!this.isAnswered(i)) return;
+    const foot = at(this.to, i);
+    this.selection.add(marker(foot, colours.selected, 9), line([query, foot], colours.selected));
+    const size = this.sizes[i];
+    const vertices = [0, 1, 2].slice(0, size).map((k) => at(this.vertices, 3 * i + k));
+    if (size === 3) {
+      const face = new three.BufferGeometry().setFromPoints(vertices);
+      const material = new three.MeshBasicMaterial({
+        color: colours.selected, side: three.DoubleSide, transparent: true, opacity: 0.35, depthTest: false,
+      });
+      const drawn = new three.Mesh(face, material);
+      drawn.renderOrder = 2;
+      this.selection.add(drawn);
+    }
+    if (size > 1) this.selection.add(line([...vertices, vertices[0]].slice(0, size === 3 ? 4 : 2), colours.selected));
+    // The feature that holds the closest point is drawn once more, over everything else.
+    const [kind, number] = this.feature(i);
+    if (kind === "vertex") this.selection.add(marker(vertices[number], colours.feature, 13));
+    if (kind === "edge") {
+      this.selection.add(line([vertices[number], vertices[(number + 1) % size]], colours.feature));
+    }
+    const radius = this.lower_bounds[i] / this.frame.scale;
+    if (this.hasSphere && radius > 0) {
+      const sphere = new three.Mesh(
+        new three.SphereGeometry(1, 32, 20),
+        new three.MeshBasicMaterial({ color: colours.selected, transparent: true, opacity: 0.14, depthWrite: false }),
+      );
+      sphere.scale.setScalar(radius);
+      sphere.position.copy(query);
+      this.selection.add(sphere);
+    }
+  }
+
+  // Returns the kind of the feature of an answer, and its number within the primitive.
+  feature(i) {
+    const code = this.features[i];
+    return code === 6 ? ["face", 0] : code < 3 ? ["vertex", code] : ["edge", code - 3];
+  }
+
+  featureName(i) {
+    const [kind, number] = this.feature(i);
+    return kind === "face" ? kind : `${kind}${number}`;
+  }
+
+  // Returns the answer whose query or closest point is the nearest to a place on the screen, if one is within `radius`
+  // pixels.
+  pick(camera, size, x, y, radius) {
+    const projected = new three.Vector3();
+    let [found, best] = [-1, radius * radius];
+    for (let i = 0; i < this.length; i++) {
+      for (const array of [this.from, this.to]) {
+        projected.fromArray(array, 3 * i).project(camera);
+        if (Math.abs(projected.z) > 1) continue;
+        const [dx, dy] = [((projected.x + 1) / 2) * size.x - x, ((1 - projected.y) / 2) * size.y - y];
+        const square = dx * dx + dy * dy;
+        if (square < best) [found, best] = [i, square];
+      }
+    }
+    return found;
+  }
+}
+
+// Returns the smallest and the largest number among values, of which some may be no numbers.
+export function limits(values) {
+  let [low, high] = [Infinity, -Infinity];
+  for (const value of values) {
+    if (value < low) low = value;
+    if (value > high) high = value;
+  }
+  return low <= high ? [low, high] : [0, 1];
+}
+
+// Makes dots of a size in pixels.
+export function points(positions, colours, size) {
+  const geometry = new three.BufferGeometry();
+  geometry.setAttribute("position", new three.BufferAttribute(positions, 3));
+  geometry.setAttribute("color", new three.BufferAttribute(colours, 3, true));
+  return new three.Points(geometry, new three.PointsMaterial({ size, sizeAttenuation: false, vertexColors: true }));
+}
+
+function marker(position, color, size) {
+  const geometry = new three.BufferGeometry().setFromPoints([position]);
+  const material = new three.PointsMaterial({ color, size, sizeAttenuation: false, depthTest: false });
+  const drawn = new three.Points(geometry, material);
+  drawn.renderOrder = 3;
+  return drawn;
+}
+
+function line(vertices, color) {
+  const geometry = new three.BufferGeometry().setFromPoints(vertices);
+  const drawn = new three.Line(geometry, new three.LineBasicMaterial({ color, depthTest: false }));
+  drawn.renderOrder = 3;
+  return drawn;
+}

@@ -1,0 +1,51 @@
+// The data of the page: one JSON value, in which each large array is text (base64 of compressed numbers).
+
+const ARRAYS = { f32: Float32Array, f64: Float64Array, u32: Uint32Array, u8: Uint8Array };
+
+// Returns the typed array that an object `{type, deflate}` describes. Machines with other than little-endian numbers
+// run no browser, so bytes are not swapped.
+async function unpack(packed) {
+  const text = atob(packed.deflate);
+  const bytes = new Uint8Array(text.length);
+  for (let i = 0; i < text.length; i++) bytes[i] = text.charCodeAt(i);
+  const stream = new Blob([bytes]).stream().pipeThrough(new DecompressionStream("deflate"));
+  return new ARRAYS[packed.type](await new Response(stream).arrayBuffer());
+}
+
+// Replaces each packed array within a value by its typed array.
+async function unpackAll(value) {
+  if (Array.isArray(value)) return Promise.all(value.map(unpackAll));
+  if (value === null || typeof value !== "object") return value;
+  if (typeof value.deflate === "string") return unpack(value);
+  const entries = Object.entries(value).map(async ([key, part]) => [key, await unpackAll(part)]);
+  return Object.fromEntries(await Promise.all(entries));
+}
+
+// Reads the data of the page.
+export async function readData() {
+  const element = document.getElementById("data");
+  const data = await unpackAll(JSON.parse(element.textContent));
+  element.remove();
+  return data;
+}
+
+// The frame of the page: the GPU computes in f32, so positions are divided by a scale and are relative to the centre of
+// the scene. A scene far from the origin is drawn as well as any other.
+export class Frame {
+  constructor({ origin, scale }) {
+    this.scale = scale;
+    this.origin = origin.map((x) => x / scale);
+  }
+
+  // Returns the positions in the frame of `count` points from the index `first` on.
+  positions(points, first = 0, count = points.length / 3) {
+    const out = new Float32Array(3 * count);
+    for (let i = 0; i < out.length; i++) out[i] = points[3 * first + i] / this.scale - this.origin[i % 3];
+    return out;
+  }
+
+  // Returns the coordinates in the unit of the scene of a position in the frame.
+  coordinates(position) {
+    return [0, 1, 2].map((k) => (position[k] + this.origin[k]) * this.scale);
+  }
+}

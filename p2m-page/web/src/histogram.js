@@ -1,0 +1,52 @@
+// A histogram of values as SVG, whose bars have the colours of the scale.
+
+import { count, element, short } from "./text.js";
+
+const BINS = 48;
+const [WIDTH, HEIGHT] = [288, 96];
+
+// Returns the numbers of values in equal parts of the range between two limits. Values outside count to the outermost
+// parts, so that no value is lost.
+export function bins(values, low, high) {
+  const counts = new Array(BINS).fill(0);
+  for (const value of values) {
+    if (Number.isNaN(value)) continue;
+    const at = Math.floor((BINS * (value - low)) / (high - low));
+    counts[Math.max(0, Math.min(BINS - 1, at))]++;
+  }
+  return counts;
+}
+
+export function histogram(values, scale, what, unit) {
+  const { low, high } = scale;
+  const counts = bins(values, low, high);
+  const most = counts.reduce((a, b) => Math.max(a, b), 1);
+  const width = WIDTH / BINS;
+  const ends = (i) => [low + ((high - low) * i) / BINS, low + ((high - low) * (i + 1)) / BINS];
+  const bars = counts.map((n, i) => {
+    const height = (HEIGHT * n) / most;
+    const [from, to] = ends(i);
+    const bar = element("rect", {
+      x: i * width, y: HEIGHT - height, width: width - 0.5, height, fill: scale.css((from + to) / 2),
+    });
+    bar.append(element("title", {}, `${short(from)} to ${short(to)} ${unit}: ${count(n)}`));
+    return bar;
+  });
+  const mode = counts.indexOf(Math.max(...counts));
+  const [from, to] = ends(mode);
+  const label = `Histogram of ${what} from ${short(low)} to ${short(high)} ${unit}. ` +
+    `The most frequent are those from ${short(from)} to ${short(to)}, with ${count(counts[mode])} of ` +
+    `${count(counts.reduce((a, b) => a + b, 0))}.`;
+  const base = element("line", { x1: 0, x2: WIDTH, y1: HEIGHT, y2: HEIGHT, stroke: "currentColor" });
+  return element("svg", { viewBox: `0 0 ${WIDTH} ${HEIGHT + 1}`, role: "img", "aria-label": label }, ...bars, base);
+}
+
+// Returns the legend of a scale: its gradient, its limits and its middle, with the unit.
+export function legend(scale, what, unit) {
+  const middle = scale.isDiverging && scale.low < 0 && scale.high > 0 ? 0 : (scale.low + scale.high) / 2;
+  const bar = element("div", { class: "gradient" });
+  bar.style.background = scale.gradient();
+  const ticks = [scale.low, middle, scale.high].map((value) => element("span", {}, short(value)));
+  return element("div", { class: "legend" }, element("div", {}, `${what} (${unit})`), bar,
+    element("div", { class: "ticks" }, ...ticks));
+}

@@ -1,0 +1,83 @@
+// The scene: its triangles, segments and points, of which each object can be hidden.
+
+import * as three from "three";
+
+// The kinds of primitives, with the number of vertices of each.
+const KINDS = [["triangles", 3], ["segments", 2], ["points", 1]];
+
+export class SceneLayer {
+  // `scene` has positions in the frame (f32) and for each kind the numbers of vertices. `objects` are names with the
+  // first and the last number of their primitives of each kind; primitives of no object have an entry without a name.
+  constructor(scene, colours) {
+    this.group = new three.Group();
+    this.objects = scene.objects.map((object) => ({ ...object, isVisible: true }));
+    const positions = new three.BufferAttribute(scene.positions, 3);
+    this.parts = [];
+    this.materials = {
+      triangles: new three.MeshLambertMaterial({
+        color: colours.surface, side: three.DoubleSide, flatShading: true,
+        polygonOffset: true, polygonOffsetFactor: 1, polygonOffsetUnits: 1,
+      }),
+      segments: new three.LineBasicMaterial({ color: colours.line }),
+      points: new three.PointsMaterial({ color: colours.line, size: 3, sizeAttenuation: false }),
+    };
+    for (const [kind, size] of KINDS) {
+      const indices = scene[kind];
+      if (indices.length === 0) continue;
+      const geometry = new three.BufferGeometry();
+      geometry.setAttribute("position", positions);
+      geometry.setIndex(new three.BufferAttribute(indices, 1));
+      geometry.boundingSphere = new three.Sphere(new three.Vector3(), 4);
+      const Class = { triangles: three.Mesh, segments: three.LineSegments, points: three.Points }[kind];
+      const drawn = new Class(geometry, this.materials[kind]);
+      this.group.add(drawn);
+      this.parts.push({ kind, size, indices, geometry, drawn });
+    }
+  }
+
+  setColours(colours) {
+    this.materials.triangles.color.set(colours.surface);
+    this.materials.segments.color.set(colours.line);
+    this.materials.points.color.set(colours.line);
+  }
+
+  setWireframe(isOn) {
+    this.materials.triangles.wireframe = isOn;
+  }
+
+  setOpacity(opacity) {
+    const { triangles } = this.materials;
+    triangles.transparent = opacity < 1;
+    triangles.opacity = opacity;
+    triangles.depthWrite = opacity === 1;
+    triangles.needsUpdate = true;
+  }
+
+  // Shows or hides an object, by its number.
+  show(number, isVisible) {
+    this.objects[number].isVisible = isVisible;
+    this.update();
+  }
+
+  // Draws the primitives of visible objects only.
+  update() {
+    for (const { kind, size, indices, geometry } of this.parts) {
+      const shown = this.objects.filter((object) => object.isVisible);
+      const isWhole = shown.length === this.objects.length;
+      const ranges = shown.map((object) => object[kind]).map(([a, b]) => indices.subarray(size * a, size * b));
+      const total = ranges.reduce((sum, range) => sum + range.length, 0);
+      const kept = isWhole ? indices : new Uint32Array(total);
+      let at = 0;
+      for (const range of isWhole ? [] : ranges) {
+        kept.set(range, at);
+        at += range.length;
+      }
+      geometry.setIndex(new three.BufferAttribute(kept, 1));
+    }
+  }
+
+  // Returns the numbers of drawn primitives of each kind.
+  drawnCounts() {
+    return Object.fromEntries(this.parts.map(({ kind, size, geometry }) => [kind, geometry.index.count / size]));
+  }
+}

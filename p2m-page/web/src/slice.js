@@ -1,0 +1,104 @@
+// A slice through the field: distances in colours, lines of equal distance, and the line of distance zero.
+
+import * as three from "three";
+import { ColourScale } from "./colours.js";
+import { limits } from "./answers.js";
+
+// The number of pixels along the longer side of a slice.
+const PIXELS = 512;
+// The number of lines of equal distance between zero and the largest distance.
+const LINES = 8;
+
+export class SliceLayer {
+  // `field` has counts of grid points, their values with x running fastest, and the first point and the spacing in the
+  // frame.
+  constructor(field) {
+    Object.assign(this, field);
+    const [low, high] = limits(this.values);
+    this.scale = new ColourScale(low < 0 ? "diverging" : "sequential", low < 0 ? low : 0, high);
+    this.canvas = document.createElement("canvas");
+    this.texture = new three.CanvasTexture(this.canvas);
+    this.texture.colorSpace = three.SRGBColorSpace;
+    this.texture.generateMipmaps = false;
+    this.texture.minFilter = three.LinearFilter;
+    const material = new three.MeshBasicMaterial({ map: this.texture, side: three.DoubleSide });
+    this.mesh = new three.Mesh(new three.BufferGeometry(), material);
+    this.setPlane(2, (this.counts[2] - 1) / 2);
+  }
+
+  // Returns the interpolated value at real indices; no number where one of the eight values around is none.
+  value(at) {
+    const low = at.map((x, k) => Math.min(Math.floor(x), this.counts[k] - 2));
+    let sum = 0;
+    for (let corner = 0; corner < 8; corner++) {
+      const bits = [corner & 1, (corner >> 1) & 1, corner >> 2];
+      const weight = bits.reduce((w, bit, k) => w * (bit ? at[k] - low[k] : 1 - at[k] + low[k]), 1);
+      const [i, j, l] = bits.map((bit, k) => low[k] + bit);
+      if (weight > 0) sum += weight * this.values[i + this.counts[0] * (j + this.counts[1] * l)];
+    }
+    return sum;
+  }
+
+  // Draws the plane across an axis at a real index.
+  setPlane(axis, place) {
+    this.axis = axis;
+    this.place = Math.max(0, Math.min(this.counts[axis] - 1, place));
+    const [u, v] = [0, 1, 2].filter((k) => k !== axis);
+    const sides = [u, v].map((k) => this.counts[k] - 1);
+    const [width, height] = sides.map((side) => Math.max(2, Math.round((PIXELS * side) / Math.max(...sides))));
+    const values = new Float32Array(width * height);
+    const at = [0, 0, 0];
+    at[axis] = this.place;
+    for (let y = 0; y < height; y++) {
+      at[v] = (sides[1] * y) / (height - 1);
+      for (let x = 0; x < width; x++) {
+        at[u] = (sides[0] * x) / (width - 1);
+        values[x + width * y] = this.value(at);
+      }
+    }
+    this.draw(values, width, height);
+    const corner = (x, y) => {
+      const position = [...this.origin];
+      position[axis] += this.place * this.spacing;
+      position[u] += sides[0] * x * this.spacing;
+      position[v] += sides[1] * y * this.spacing;
+      return new three.Vector3(...position);
+    };
+    const geometry = new three.BufferGeometry().setFromPoints([corner(0, 0), corner(1, 0), corner(1, 1), corner(0, 1)]);
+    // The first row of the canvas is at v = 0, and a texture begins at its last row.
+    geometry.setAttribute("uv", new three.Float32BufferAttribute([0, 1, 1, 1, 1, 0, 0, 0], 2));
+    geometry.setIndex([0, 1, 2, 0, 2, 3]);
+    this.mesh.geometry.dispose();
+    this.mesh.geometry = geometry;
+  }
+
+  draw(values, width, height) {
+    Object.assign(this.canvas, { width, height });
+    const context = this.canvas.getContext("2d");
+    const image = context.createImageData(width, height);
+    const step = Math.max(-this.scale.low, this.scale.high) / LINES;
+    const colour = [0, 0, 0];
+    for (let y = 0; y < height; y++) {
+      for (let x = 0; x < width; x++) {
+        const i = x + width * y;
+        const value = values[i];
+        this.scale.write(value, colour, 0);
+        const neighbours = [x + 1 < width ? values[i + 1] : value, y + 1 < height ? values[i + width] : value];
+        const isCrossing = (f) => neighbours.some((other) => f(other) !== f(value) && !Number.isNaN(other - value));
+        if (isCrossing((d) => d < 0)) colour.fill(0);
+        else if (isCrossing((d) => Math.floor(d / step))) colour.forEach((c, k) => (colour[k] = 0.8 * c));
+        image.data.set([...colour, 255], 4 * i);
+      }
+    }
+    context.putImageData(image, 0, 0);
+    if (this.texture.image !== this.canvas || this.size !== `${width}x${height}`) this.texture.dispose();
+    this.size = `${width}x${height}`;
+    this.texture.needsUpdate = true;
+  }
+
+  // Returns the value at a position in the frame, which is in the plane.
+  valueAt(position) {
+    const at = [0, 1, 2].map((k) => (position.getComponent(k) - this.origin[k]) / this.spacing);
+    return this.value(at.map((x, k) => Math.max(0, Math.min(this.counts[k] - 1, x))));
+  }
+}

@@ -1,0 +1,38 @@
+// Numbers and elements for people to read.
+
+// Returns a number with at most four digits, for legends and summaries.
+export function short(value) {
+  if (value === null || value === undefined || Number.isNaN(value)) return "undefined";
+  return String(Number(value.toPrecision(4)));
+}
+
+// Returns a whole number with separators of thousands.
+export function count(value) {
+  return value.toLocaleString("en-US");
+}
+
+// Returns a count with the singular or the plural of its noun.
+export function counted(value, noun) {
+  const plural = noun.endsWith("y") ? `${noun.slice(0, -1)}ies` : noun.endsWith("x") ? `${noun}es` : `${noun}s`;
+  return `${count(value)} ${value === 1 ? noun : plural}`;
+}
+
+// Makes an element with attributes and children. A child that is no element is text.
+export function element(name, attributes = {}, ...children) {
+  const isSvg = ["svg", "rect", "text", "line", "g", "title"].includes(name);
+  const made = isSvg ? document.createElementNS("http://www.w3.org/2000/svg", name) : document.createElement(name);
+  for (const [key, value] of Object.entries(attributes)) {
+    if (key.startsWith("on")) made.addEventListener(key.slice(2), value);
+    else if (value === true) made.setAttribute(key, "");
+    else if (value !== false && value !== undefined) made.setAttribute(key, value);
+  }
+  made.append(...children);
+  return made;
+}
+
+// Makes a check box with a label.
+export function checkbox(label, isOn, change, id) {
+  const box = element("input", { type: "checkbox", id, onchange: () => change(box.checked) });
+  box.checked = isOn;
+  return element("label", {}, box, ` ${label}`);
+}

@@ -1,0 +1,453 @@
+// The page: the picture, the panel beside it, and what mouse and keyboard do.
+
+import * as three from "three";
+import { OrbitControls } from "three/examples/jsm/controls/OrbitControls.js";
+import { AnswersLayer } from "./answers.js";
+import { CellsLayer } from "./cells.js";
+import { Frame, readData } from "./data.js";
+import { histogram, legend } from "./histogram.js";
+import { SceneLayer } from "./scene.js";
+import { SliceLayer } from "./slice.js";
+import { checkbox, count, counted, element, short } from "./text.js";
+
+const COLOURS = {
+  light: { background: "#f7f8fa", surface: "#aeb6c0", line: "#4b5563", selected: "#d55e00", feature: "#c000c0" },
+  dark: { background: "#111417", surface: "#7d8792", line: "#aab4c0", selected: "#ff9040", feature: "#ff60ff" },
+};
+
+// The number of rows of a page of the table.
+const ROWS = 50;
+// The distance in pixels within which a click selects an answer.
+const PICK_RADIUS = 12;
+// The number of lines above which a page begins with fewer things shown, because the picture would be full of them.
+const MANY_SEGMENTS = 20000;
+
+const KEYS = [
+  ["arrow keys", "turn the view"],
+  ["+ and -", "move nearer and farther"],
+  ["f", "fit the view to the scene"],
+  ["n and p", "next and previous answer"],
+  ["x, y and z", "lay the slice across this axis"],
+  ["[ and ]", "move the slice"],
+  ["l and k", "next and previous level of boxes"],
+  ["d", "dark or light"],
+  ["?", "show or hide this list"],
+];
+
+class Viewer {
+  constructor(data) {
+    this.data = data;
+    this.unit = data.unit;
+    this.frame = new Frame(data.frame);
+    this.canvas = document.getElementById("picture");
+    this.theme = matchMedia("(prefers-color-scheme: dark)").matches ? "dark" : "light";
+    this.renderer = new three.WebGLRenderer({ canvas: this.canvas, antialias: true, preserveDrawingBuffer: true });
+    this.renderer.setPixelRatio(Math.min(2, devicePixelRatio));
+    this.world = new three.Scene();
+    this.camera = new three.PerspectiveCamera(45, 1, 0.001, 100);
+    this.camera.up.set(...(data.up === "y" ? [0, 1, 0] : [0, 0, 1]));
+    this.controls = new OrbitControls(this.camera, this.canvas);
+    this.controls.addEventListener("change", () => this.draw());
+    this.light = new three.DirectionalLight(0xffffff, 2.2);
+    this.camera.add(this.light);
+    this.world.add(this.camera, new three.AmbientLight(0xffffff, 1.1));
+
+    this.scene = new SceneLayer(data.scene, this.colours);
+    this.world.add(this.scene.group);
+    if (data.answers) this.addLayer("answers", new AnswersLayer(data.answers, this.frame), "group");
+    if (this.answers) this.world.add(this.answers.selection);
+    if (data.cells) this.addLayer("cells", new CellsLayer(data.cells, this.frame, this.colours), "group");
+    if (data.field) this.addLayer("slice", new SliceLayer(data.field), "mesh");
+    if (this.cells) this.cells.group.visible = false;
+    if (this.slice) this.scene.setOpacity(0.25);
+
+    this.makePanel();
+    this.listen();
+    this.setTheme(this.theme);
+    this.fit();
+    this.resize();
+    new ResizeObserver(() => this.resize()).observe(this.canvas.parentElement);
+  }
+
+  get colours() {
+    return COLOURS[this.theme];
+  }
+
+  addLayer(name, layer, drawn) {
+    this[name] = layer;
+    this.world.add(layer[drawn]);
+  }
+
+  setTheme(theme) {
+    this.theme = theme;
+    document.documentElement.dataset.theme = theme;
+    this.world.background = new three.Color(this.colours.background);
+    this.scene.setColours(this.colours);
+    if (this.cells) {
+      this.cells.colours = this.colours;
+      this.cells.show(this.cells.level);
+    }
+    if (this.answers) this.answers.select(this.answers.selected, this.colours);
+    this.draw();
+  }
+
+  // Draws once at the next frame, however often it is called until then.
+  draw() {
+    if (this.isPending) return;
+    this.isPending = true;
+    requestAnimationFrame(() => {
+      this.isPending = false;
+      const start = performance.now();
+      this.renderer.render(this.world, this.camera);
+      this.frames = (this.frames ?? 0) + 1;
+      this.frameTime = performance.now() - start;
+    });
+  }
+
+  resize() {
+    const { clientWidth, clientHeight } = this.canvas.parentElement;
+    this.renderer.setSize(clientWidth, clientHeight, false);
+    this.camera.aspect = clientWidth / Math.max(1, clientHeight);
+    this.camera.updateProjectionMatrix();
+    this.draw();
+  }
+
+  fit() {
+    this.controls.target.set(0, 0, 0);
+    const direction = this.data.up === "y" ? [1, 0.7, 1.6] : [1, -1.6, 0.9];
+    const narrow = Math.min(1, this.canvas.parentElement.clientWidth / this.canvas.parentElement.clientHeight || 1);
+    this.camera.position.set(...direction).setLength((2.3 * this.data.frame.radius) / narrow);
+    this.camera.near = this.data.frame.radius / 1000;
+    this.camera.far = this.data.frame.radius * 100;
+    this.camera.updateProjectionMatrix();
+    this.controls.update();
+    this.draw();
+  }
+
+  // Turns the view by angles, and moves it by a factor of the distance.
+  turn(around, up, factor) {
+    const offset = this.camera.position.clone().sub(this.controls.target);
+    const toY = new three.Quaternion().setFromUnitVectors(this.camera.up, new three.Vector3(0, 1, 0));
+    const spherical = new three.Spherical().setFromVector3(offset.applyQuaternion(toY));
+    spherical.theta += around;
+    spherical.phi = Math.max(0.01, Math.min(Math.PI - 0.01, spherical.phi + up));
+    spherical.radius *= factor;
+    offset.setFromSpherical(spherical).applyQuaternion(toY.invert());
+    this.camera.position.copy(this.controls.target).add(offset);
+    this.controls.update();
+    this.draw();
+  }
+
+  // ---- the panel
+
+  makePanel() {
+    const panel = document.getElementById("panel");
+    const add = (title, id, ...children) => {
+      const section = element("section", { id, "aria-label": title }, element("h2", {}, title), ...children);
+      panel.append(section);
+      return section;
+    };
+    if (this.data.notes.length > 0) {
+      add("Notes", "notes", element("ul", {}, ...this.data.notes.map((note) => element("li", {}, note))));
+    }
+    if (this.answers) this.makeAnswers(add);
+    if (this.slice) this.makeSlice(add);
+    this.makeShown(add);
+    if (this.cells) this.makeCells(add);
+    if (this.scene.objects.some((object) => object.name !== null)) this.makeObjects(add);
+    const keys = KEYS.map(([key, what]) => [element("dt", {}, element("kbd", {}, key)), element("dd", {}, what)]);
+    this.help = element("details", { id: "keys" }, element("summary", {}, "Mouse and keyboard"),
+      element("p", {}, "Drag to turn, drag with the right button to move, and turn the wheel to come nearer. Click a " +
+        "query point to read its answer. The keys act while the picture has the focus."),
+      element("dl", {}, ...keys.flat()));
+    panel.append(this.help, document.getElementById("about"));
+  }
+
+  makeShown(add) {
+    const boxes = [];
+    const box = (label, isOn, change, id) =>
+      boxes.push(checkbox(label, isOn, (value) => { change(value); this.draw(); }, id));
+    box("scene", true, (on) => (this.scene.group.visible = on), "show-scene");
+    if (this.data.scene.triangles.length > 0) {
+      box("wireframe", false, (on) => this.scene.setWireframe(on), "show-wireframe");
+      box("transparent", !!this.slice, (on) => this.scene.setOpacity(on ? 0.25 : 1), "show-through");
+    }
+    if (this.answers) {
+      const { answers } = this;
+      const isCrowded = answers.length > MANY_SEGMENTS;
+      answers.segments.visible = !isCrowded;
+      box("query points", true, (on) => (answers.dots.visible = on), "show-queries");
+      box("closest points", true, (on) => (answers.feet.visible = on), "show-closest");
+      box("segments to closest points", !isCrowded, (on) => (answers.segments.visible = on), "show-segments");
+      box("sphere of the lower bound", true, (on) => {
+        answers.hasSphere = on;
+        answers.select(answers.selected, this.colours);
+      }, "show-sphere");
+    }
+    if (this.slice) box("slice of the field", true, (on) => (this.slice.mesh.visible = on), "show-slice");
+    if (this.cells) box("boxes of the index", false, (on) => (this.cells.group.visible = on), "show-cells");
+    const theme = element("button", { type: "button", id: "theme", onclick: () => this.toggleTheme() }, "Dark or light");
+    const fit = element("button", { type: "button", id: "fit", onclick: () => this.fit() }, "Fit the view");
+    add("Show", "show", element("div", { class: "boxes" }, ...boxes), element("p", {}, fit, " ", theme));
+  }
+
+  toggleTheme() {
+    this.setTheme(this.theme === "dark" ? "light" : "dark");
+  }
+
+  makeObjects(add) {
+    const boxes = this.scene.objects.map((object, i) => {
+      const size = object.triangles[1] - object.triangles[0] + object.segments[1] - object.segments[0] +
+        object.points[1] - object.points[0];
+      const name = object.name ?? "of no object";
+      return checkbox(`${name} (${counted(size, "primitive")})`, true, (on) => {
+        this.scene.show(i, on);
+        this.draw();
+      });
+    });
+    const set = (isOn) => {
+      boxes.forEach((label, i) => {
+        label.firstChild.checked = isOn;
+        this.scene.objects[i].isVisible = isOn;
+      });
+      this.scene.update();
+      this.draw();
+    };
+    const button = (text, isOn) => element("button", { type: "button", onclick: () => set(isOn) }, text);
+    add(`Objects (${count(boxes.length)})`, "objects", element("p", {}, button("All", true), " ", button("None", false)),
+      element("div", { class: "boxes scrolled", tabindex: "0" }, ...boxes));
+  }
+
+  makeAnswers(add) {
+    const { answers } = this;
+    const what = answers.signed ? "signed distance" : "distance";
+    const section = add("Distances", "distances", legend(answers.scale, what, this.unit),
+      histogram(answers.values, answers.scale, what, this.unit));
+    section.dataset.low = answers.scale.low;
+    this.answerText = element("dl", { id: "answer", "aria-live": "polite" });
+    const step = (by) => element("button", { type: "button", onclick: () => this.step(by) }, by > 0 ? "Next" : "Previous");
+    add("Answer", "selected", element("p", {}, step(-1), " ", step(1)), this.answerText);
+    this.table = element("table", { id: "table" });
+    this.tablePage = 0;
+    const pages = element("p", {});
+    const turn = (by) => element("button", { type: "button", onclick: () => this.turnTable(by) },
+      by > 0 ? "Next rows" : "Previous rows");
+    pages.append(turn(-1), " ", turn(1));
+    const details = element("details", { id: "answers" }, element("summary", {}, "All answers as a table"), pages,
+      element("div", { class: "scrolled", tabindex: "0" }, this.table));
+    document.getElementById("panel").append(details);
+    this.turnTable(0);
+    this.select(-1);
+  }
+
+  turnTable(by) {
+    const { answers } = this;
+    const last = Math.max(0, Math.ceil(answers.length / ROWS) - 1);
+    this.tablePage = Math.max(0, Math.min(last, this.tablePage + by));
+    const first = this.tablePage * ROWS;
+    const head = ["query", "x", "y", "z", answers.signed ? "signed distance" : "distance", "primitive", "feature"];
+    const rows = [];
+    for (let i = first; i < Math.min(answers.length, first + ROWS); i++) {
+      const select = element("button", { type: "button", onclick: () => this.select(i) }, String(i));
+      const cells = answers.isAnswered(i)
+        ? [...answers.points.subarray(3 * i, 3 * i + 3), answers.values[i], answers.primitives[i],
+            answers.featureName(i)]
+        : ["no answer", "", "", "", "", ""];
+      rows.push(element("tr", {}, element("td", {}, select), ...cells.map((cell) => element("td", {}, String(cell)))));
+    }
+    this.table.replaceChildren(
+      element("caption", {}, `Closest points, rows ${count(first)} to ${count(first + rows.length - 1)} of ` +
+        `${count(answers.length)}`),
+      element("thead", {}, element("tr", {}, ...head.map((name) => element("th", { scope: "col" }, name)))),
+      element("tbody", {}, ...rows));
+  }
+
+  select(i) {
+    const { answers } = this;
+    answers.select(i, this.colours);
+    const rows = [];
+    const row = (name, value) => rows.push(element("dt", {}, name), element("dd", {}, String(value)));
+    if (i < 0) {
+      row("none", "Click a query point, or press n.");
+    } else {
+      const vector = (array) => [...array.subarray(3 * i, 3 * i + 3)].join(", ");
+      row("number", `${i} of ${answers.length}`);
+      row("query", vector(answers.queries));
+      if (answers.isAnswered(i)) {
+        row("closest point", vector(answers.points));
+        row("distance", answers.distances[i]);
+        if (answers.signed) row("signed distance", answers.signed[i]);
+        row("certainly at least", answers.lower_bounds[i]);
+        row("primitive", `${["", "point", "segment", "triangle"][answers.sizes[i]]} ${answers.primitives[i]}`);
+        row("feature", answers.featureName(i));
+        const object = this.objectOf(answers.objects?.[i]);
+        if (object) row("object", object);
+      } else {
+        row("answer", "none");
+      }
+    }
+    this.answerText.replaceChildren(...rows);
+    this.draw();
+  }
+
+  objectOf(number) {
+    return number === undefined || number === 0 ? null : this.data.object_names[number - 1];
+  }
+
+  step(by) {
+    const { length, selected } = this.answers;
+    if (length > 0) this.select((((selected < 0 && by < 0 ? 0 : selected) + by) % length + length) % length);
+  }
+
+  makeCells(add) {
+    const { cells } = this;
+    const text = element("output", { id: "level" });
+    const range = element("input", {
+      type: "range", min: 0, max: cells.levels.length - 1, step: 1, value: cells.level, "aria-label": "level",
+      oninput: () => this.showLevel(Number(range.value)),
+    });
+    this.levelRange = range;
+    this.levelText = text;
+    const parts = cells.hasLengths ? [legend(cells.scale, "length of the list", "primitives")] : [];
+    add(this.data.cells.title, "index", range, element("p", {}, text), ...parts);
+    text.textContent = cells.title();
+  }
+
+  showLevel(level) {
+    this.cells.show(Math.max(0, Math.min(this.cells.levels.length - 1, level)));
+    this.cells.group.visible = true;
+    document.getElementById("show-cells").checked = true;
+    this.levelRange.value = this.cells.level;
+    this.levelText.textContent = this.cells.title();
+    this.draw();
+  }
+
+  makeSlice(add) {
+    const { slice } = this;
+    const what = slice.scale.isDiverging ? "signed distance" : "distance";
+    const axes = [0, 1, 2].map((axis) => {
+      const radio = element("input", {
+        type: "radio", name: "axis", value: axis, onchange: () => this.moveSlice(axis, 0.5),
+      });
+      radio.checked = axis === slice.axis;
+      return element("label", {}, radio, ` ${"xyz"[axis]} `);
+    });
+    this.axisRadios = axes.map((label) => label.firstChild);
+    this.sliceRange = element("input", {
+      type: "range", min: 0, max: 1, step: 0.001, value: 0.5, "aria-label": "position of the slice",
+      oninput: () => this.moveSlice(slice.axis, Number(this.sliceRange.value)),
+    });
+    this.sliceText = element("output", { id: "slice-text" });
+    this.pointerText = element("output", { id: "slice-value" });
+    add("Slice of the field", "field", element("p", {}, "across ", ...axes), this.sliceRange,
+      element("p", {}, this.sliceText), element("p", {}, this.pointerText), legend(slice.scale, what, this.unit),
+      element("p", { class: "small" }, "The black line is distance zero. Lines of equal distance are darker. The keys " +
+        "[ and ] move the slice, and Shift and the mouse drag it."));
+    this.moveSlice(slice.axis, 0.5);
+  }
+
+  // Moves the slice to a part of the field along an axis.
+  moveSlice(axis, part) {
+    const { slice } = this;
+    const t = Math.max(0, Math.min(1, part));
+    slice.setPlane(axis, t * (slice.counts[axis] - 1));
+    this.slicePart = t;
+    this.axisRadios.forEach((radio, k) => (radio.checked = k === axis));
+    this.sliceRange.value = t;
+    const position = slice.origin.map((x) => x);
+    position[axis] += slice.place * slice.spacing;
+    const coordinate = this.frame.coordinates(position)[axis];
+    this.sliceText.textContent = `${"xyz"[axis]} = ${short(coordinate)} ${this.unit}`;
+    this.draw();
+  }
+
+  // ---- mouse and keyboard
+
+  listen() {
+    const { canvas } = this;
+    let pressed = null;
+    canvas.addEventListener("pointerdown", (event) => {
+      pressed = [event.clientX, event.clientY];
+      this.isDragging = event.shiftKey && !!this.slice;
+      this.controls.enabled = !this.isDragging;
+      if (this.isDragging) canvas.setPointerCapture(event.pointerId);
+    }, { capture: true });
+    canvas.addEventListener("pointermove", (event) => {
+      if (this.isDragging) this.moveSlice(this.slice.axis, this.slicePart - event.movementY / canvas.clientHeight);
+      else this.readSlice(event);
+    });
+    canvas.addEventListener("pointerup", (event) => {
+      const isClick = pressed && Math.hypot(event.clientX - pressed[0], event.clientY - pressed[1]) < 4;
+      pressed = null;
+      this.isDragging = false;
+      this.controls.enabled = true;
+      if (isClick && this.answers) this.select(this.pick(event));
+    });
+    canvas.addEventListener("keydown", (event) => this.press(event));
+  }
+
+  pick(event) {
+    const rectangle = this.canvas.getBoundingClientRect();
+    const size = { x: rectangle.width, y: rectangle.height };
+    const [x, y] = [event.clientX - rectangle.left, event.clientY - rectangle.top];
+    return this.answers.pick(this.camera, size, x, y, PICK_RADIUS);
+  }
+
+  // Shows the distance where the pointer is over the slice.
+  readSlice(event) {
+    if (!this.slice?.mesh.visible) return;
+    const rectangle = this.canvas.getBoundingClientRect();
+    const place = new three.Vector2(
+      (2 * (event.clientX - rectangle.left)) / rectangle.width - 1,
+      1 - (2 * (event.clientY - rectangle.top)) / rectangle.height,
+    );
+    const caster = new three.Raycaster();
+    caster.setFromCamera(place, this.camera);
+    const [hit] = caster.intersectObject(this.slice.mesh);
+    if (!hit) {
+      this.pointerText.textContent = "";
+      return;
+    }
+    const at = this.frame.coordinates(hit.point.toArray()).map(short).join(", ");
+    this.pointerText.textContent = `${short(this.slice.valueAt(hit.point))} ${this.unit} at ${at}`;
+  }
+
+  press(event) {
+    if (event.ctrlKey || event.metaKey || event.altKey) return;
+    const { slice, cells, answers } = this;
+    const actions = {
+      ArrowLeft: () => this.turn(-0.1, 0, 1), ArrowRight: () => this.turn(0.1, 0, 1),
+      ArrowUp: () => this.turn(0, -0.1, 1), ArrowDown: () => this.turn(0, 0.1, 1),
+      "+": () => this.turn(0, 0, 0.9), "=": () => this.turn(0, 0, 0.9), "-": () => this.turn(0, 0, 1 / 0.9),
+      f: () => this.fit(), d: () => this.toggleTheme(),
+      n: answers && (() => this.step(1)), p: answers && (() => this.step(-1)),
+      x: slice && (() => this.moveSlice(0, 0.5)), y: slice && (() => this.moveSlice(1, 0.5)),
+      z: slice && (() => this.moveSlice(2, 0.5)),
+      "[": slice && (() => this.moveSlice(slice.axis, this.slicePart - 0.02)),
+      "]": slice && (() => this.moveSlice(slice.axis, this.slicePart + 0.02)),
+      l: cells && (() => this.showLevel(cells.level + 1)), k: cells && (() => this.showLevel(cells.level - 1)),
+      "?": () => { this.help.open = !this.help.open; },
+    };
+    const action = actions[event.key];
+    if (!action) return;
+    event.preventDefault();
+    action();
+  }
+}
+
+// Says what is missing where the page cannot draw.
+function fail(error) {
+  const reason = typeof DecompressionStream === "undefined" ? "this browser is too old for it" : error.message;
+  document.getElementById("failure").textContent =
+    `The picture cannot be drawn: ${reason}. The figures above and the tables of the program do not need it.`;
+}
+
+readData().then((data) => {
+  // Tests read what is shown from here.
+  window.viewer = new Viewer(data);
+  document.documentElement.dataset.ready = "true";
+}).catch((error) => {
+  fail(error);
+  document.documentElement.dataset.ready = "failed";
+  console.error(error);
+});
