@@ -7,6 +7,8 @@ use crate::output::Output;
 use crate::progress::{Progress, Unit};
 use crate::streams::Streams;
 use crate::threads::ThreadArgs;
+use crate::tree_levels::TreeLevels;
+use crate::up::Up;
 use anyhow::{Context, bail};
 use clap::ValueEnum;
 use nalgebra::Point3;
@@ -70,23 +72,6 @@ pub(crate) struct Args {
     /// Report as one JSON object on the standard output, instead of the titles on the standard error
     #[arg(long)]
     json: bool,
-}
-
-#[derive(Clone, Copy, PartialEq, Eq, ValueEnum)]
-enum Up {
-    /// As in most scans and models for films and games; z then points to the viewer of the front
-    Y,
-    /// As in CAD and maps
-    Z,
-}
-
-impl Up {
-    /// Rotates points with this axis up so that z is up.
-    fn rotate_to_z_up<'a>(self, points: impl Iterator<Item = &'a mut Point3<f64>>) {
-        if self == Self::Y {
-            points.for_each(|p| *p = Point3::new(p.x, -p.z, p.y));
-        }
-    }
 }
 
 #[derive(Clone, Copy, PartialEq, Eq, ValueEnum)]
@@ -197,10 +182,8 @@ fn panels<V: Volume>(
     [one, many]: [&str; 2],
     edges: impl Fn(&V) -> Vec<[Point3<f64>; 2]>,
 ) -> Vec<(DrawnLevel, Panel)> {
-    let nodes: Vec<_> = tree.parts().collect();
-    let deepest = nodes.iter().map(|node| node.depth).max();
-    let panel = |level: Option<usize>, show: &dyn Fn(&TreeNode<V>) -> bool| {
-        let shown: Vec<_> = nodes.iter().filter(|node| show(node)).collect();
+    let tree_levels = TreeLevels::new(tree);
+    let panel = |level: Option<usize>, shown: Vec<&TreeNode<V>>| {
         let title = level.map_or("leaves".to_owned(), |level| format!("level {level}"));
         let noun = if shown.len() == 1 { one } else { many };
         let panel = Panel {
@@ -209,12 +192,9 @@ fn panels<V: Volume>(
         };
         (DrawnLevel { level, boxes: shown.len() }, panel)
     };
-    let is_leaf = |node: &TreeNode<V>| tree.primitives(node).is_some();
-    let drawn = deepest.map_or(0, |deepest| levels.min(deepest + 1));
-    let mut panels: Vec<_> = (0..drawn)
-        .map(|level| panel(Some(level), &|node| node.depth == level || (node.depth < level && is_leaf(node))))
-        .collect();
-    panels.push(panel(None, &is_leaf));
+    let drawn = levels.min(tree_levels.count());
+    let mut panels: Vec<_> = (0..drawn).map(|level| panel(Some(level), tree_levels.level(level))).collect();
+    panels.push(panel(None, tree_levels.leaves()));
     panels
 }
 

@@ -46,6 +46,8 @@ mod streams;
 mod summary;
 mod threads;
 mod tradeoff;
+mod tree_levels;
+mod up;
 mod usage;
 mod view;
 mod zstd;

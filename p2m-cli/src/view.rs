@@ -9,17 +9,18 @@ use crate::sampling::{Queries, Region};
 use crate::sign_rule::SignRule;
 use crate::streams::Streams;
 use crate::threads::ThreadArgs;
+use crate::tree_levels::TreeLevels;
+use crate::up::Up;
 use crate::usage::{not_negative, one_of, positive, usage, whole_number};
 use anyhow::{Context, bail};
-use clap::ValueEnum;
 use nalgebra::Point3;
 use p2m_advisor::P2mSettings;
-use p2m_bvh::AabbTree;
+use p2m_bvh::{AabbTree, PacketTree};
 use p2m_core::{Aabb, BuildIndex, Closest, PrimitiveSet, QueryOptions};
 use p2m_field::{FieldOptions, Grid, distances, signed_distances};
 use p2m_mixed::PointFormat;
 use p2m_mixed::statistics::Counts;
-use p2m_page::{Level, UpAxis, View};
+use p2m_page::{Level, View};
 use rayon::prelude::*;
 use std::io::Write as _;
 use std::path::{Path, PathBuf};
@@ -106,14 +107,6 @@ pub(crate) struct Args {
 /// The largest number of query points of a page.
 const MAX_QUERIES: u64 = 100_000;
 
-#[derive(Clone, Copy, PartialEq, Eq, ValueEnum)]
-enum Up {
-    /// As in most scans and models for films and games
-    Y,
-    /// As in CAD and maps
-    Z,
-}
-
 pub(crate) fn run(streams: &Streams, args: &Args) -> anyhow::Result<()> {
     if args.signed.is_some() && args.field.is_none() && args.points.is_none() && args.random.is_none() {
         return Err(usage("--signed needs --field, --random or --points"));
@@ -135,15 +128,11 @@ pub(crate) fn run(streams: &Streams, args: &Args) -> anyhow::Result<()> {
     let signed = args.signed.map(|rule| rule.prepare(streams, &*index, &scene.soup)).transpose();
     let signed = signed.with_context(|| args.scene.name())?;
 
-    let around =
-        queries.iter().flatten().fold(Aabb::empty(), |bounds, query| bounds.union(&Aabb::from_points(&[*query])));
+    let around = Aabb::from_points(queries.as_deref().unwrap_or_default());
     let around = grid.as_ref().map_or(around, |grid| {
         around.union(&Aabb { min: grid.origin(), max: grid.point(grid.counts().map(|n| n - 1)) })
     });
-    let mut view = View::new(&scene, &around).with_unit(&args.unit).with_up(match args.up {
-        Up::Y => UpAxis::Y,
-        Up::Z => UpAxis::Z,
-    });
+    let mut view = View::new(&scene, &around).with_unit(&args.unit).with_up(args.up.into());
     let file = args.scene.path.file_name().map(|file| file.to_string_lossy().into_owned());
     view.title = format!("{} in p2m", file.unwrap_or_else(|| args.scene.name()));
     view.summary = counted(&Counts::of(&scene.soup));
@@ -179,7 +168,7 @@ pub(crate) fn run(streams: &Streams, args: &Args) -> anyhow::Result<()> {
     if args.levels > 0 {
         let tree = pool.install(|| AabbTree::build(&scene.soup, &Default::default()));
         let tree = tree.with_context(|| args.scene.name())?;
-        view = view.with_levels("Boxes of the AABB tree", &levels(&tree, usize::from(args.levels)));
+        view = view.with_levels("Boxes of the AABB tree", &levels(tree.tree(), usize::from(args.levels)));
     }
     view.about = format!("p2m {}, scene {}, index {}", env!("CARGO_PKG_VERSION"), args.scene.name(), backend.name);
     if let Some((_, rule)) = &signed {
@@ -192,20 +181,14 @@ pub(crate) fn run(streams: &Streams, args: &Args) -> anyhow::Result<()> {
     Ok(())
 }
 
-/// Returns the boxes of each level: its nodes and the leaves above it, which together hold the whole scene.
-fn levels<S: PrimitiveSet<f64>>(tree: &AabbTree<f64, S>, count: usize) -> Vec<Level> {
-    let tree = tree.tree();
-    let nodes: Vec<_> = tree.parts().collect();
-    let deepest = nodes.iter().map(|node| node.depth + 1).max().unwrap_or(0);
+/// Returns the boxes of the first levels.
+fn levels(tree: &PacketTree, count: usize) -> Vec<Level> {
+    let tree_levels = TreeLevels::new(tree);
     let level = |level: usize| {
-        let is_shown = |node: &&_| {
-            let node: &p2m_bvh::TreeNode<_> = node;
-            node.depth == level || (node.depth < level && tree.primitives(node).is_some())
-        };
-        let boxes: Vec<Aabb<f64>> = nodes.iter().filter(is_shown).map(|node| node.volume).collect();
+        let boxes: Vec<Aabb<f64>> = tree_levels.level(level).iter().map(|node| node.volume).collect();
         Level { title: format!("level {level}: {} boxes", boxes.len()), boxes }
     };
-    (0..count.min(deepest)).map(level).collect()
+    (0..count.min(tree_levels.count())).map(level).collect()
 }
 
 impl Args {

@@ -92,7 +92,7 @@ impl OctreeOptions {
     }
 }
 
-/// What an octree would be if its refinement ended now.
+/// The size of an octree if its refinement ended now.
 ///
 /// All numbers are upper bounds, because lists that are not made yet may turn out shorter than what is reserved for
 /// them.

@@ -1,6 +1,6 @@
 //! Building scenes from named parts.
 
-use crate::scene::{Object, Scene, object_of};
+use crate::scene::{Object, Scene, object_number, object_of};
 use nalgebra::Point3;
 use p2m_core::{BuildError, Element, PrimitiveId, PrimitiveSet, Soup};
 use std::ops::Range;
@@ -141,6 +141,15 @@ impl Scene {
     #[must_use]
     pub fn object_of(&self, id: PrimitiveId) -> Option<&Object> {
         object_of(&self.objects, id)
+    }
+
+    /// Returns the number of the named part that a primitive is in, which counts `objects`.
+    ///
+    /// # Complexity
+    /// O(log n) for n parts.
+    #[must_use]
+    pub fn object_number(&self, id: PrimitiveId) -> Option<usize> {
+        object_number(&self.objects, id)
     }
 }
 

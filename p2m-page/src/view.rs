@@ -6,7 +6,7 @@ use crate::packed::Packed;
 use nalgebra::Point3;
 use p2m_core::{Aabb, Closest, Feature, PrimitiveId, PrimitiveSet, Soup};
 use p2m_field::Grid;
-use p2m_mixed::{Object, Scene};
+use p2m_mixed::Scene;
 use serde::Serialize;
 
 const TEMPLATE: &str = include_str!("view.html");
@@ -195,8 +195,10 @@ impl<'a> View<'a> {
             vertices
         };
         let size = |answer: &Option<Closest<f64>>| answer.map_or(0, |a| soup.element(a.primitive).indices().len());
-        let object =
-            |answer: &Option<Closest<f64>>| answer.map_or(0, |a| object_number(&self.scene.objects, a.primitive));
+        let object = |answer: &Option<Closest<f64>>| {
+            let number = answer.and_then(|answer| self.scene.object_number(answer.primitive));
+            number.and_then(|number| u32::try_from(number + 1).ok()).unwrap_or(0)
+        };
         let feature = |answer: &Option<Closest<f64>>| match answer.map(|answer| answer.feature) {
             Some(Feature::Vertex(i)) => i,
             Some(Feature::Edge(i)) => 3 + i,
@@ -284,13 +286,6 @@ fn primitive(answer: &Option<Closest<f64>>) -> u32 {
     answer.and_then(|answer| u32::try_from(answer.primitive.index()).ok()).unwrap_or(u32::MAX)
 }
 
-/// Returns the number of the object of a primitive from 1, or 0 if it belongs to none.
-fn object_number(objects: &[Object], id: PrimitiveId) -> u32 {
-    let number = objects.partition_point(|object| object.ids.start <= id.index());
-    let is_in = number > 0 && objects[number - 1].ids.contains(&id.index());
-    if is_in { u32::try_from(number).unwrap_or(0) } else { 0 }
-}
-
 /// Packs the primitives of a scene, object by object.
 fn scene_data(scene: &Scene, frame: &Frame, notes: &mut Vec<String>) -> SceneData {
     let soup = &scene.soup;
@@ -372,6 +367,7 @@ impl Drawn {
 mod tests {
     use super::*;
     use p2m_core::Element;
+    use p2m_mixed::Object;
     use serde_json::Value;
 
     fn scene() -> Scene {
@@ -409,6 +405,7 @@ mod tests {
         assert_eq!((objects[0]["name"].is_null(), ranges(0)), (true, ["[0,0]", "[0,0]", "[0,1]"].map(String::from)));
         assert_eq!((&objects[1]["name"], ranges(1)), (&"<b>".into(), ["[0,1]", "[0,1]", "[1,1]"].map(String::from)));
         assert_eq!((objects[2]["name"].is_null(), ranges(2)), (true, ["[1,1]", "[1,1]", "[1,2]"].map(String::from)));
-        assert_eq!([0, 1, 2, 3].map(|id| object_number(&scene().objects, PrimitiveId::new(id))), [0, 1, 1, 0]);
+        let numbers = [0, 1, 2, 3].map(|id| scene().object_number(PrimitiveId::new(id)).map_or(0, |number| number + 1));
+        assert_eq!(numbers, [0, 1, 1, 0]);
     }
 }

@@ -119,7 +119,7 @@ fn trim_start(text: &[u8]) -> &[u8] {
     &text[text.iter().take_while(|&&b| is_space(b)).count()..]
 }
 
-/// What a statement on one line was parsed into.
+/// The result of parsing a statement on one line.
 enum Parsed {
     Nothing,
     Run(Kind),

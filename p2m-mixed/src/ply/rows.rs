@@ -122,7 +122,7 @@ impl Numbers for LineRows<'_> {
     }
 }
 
-/// Binary rows.
+/// The rows of a block of binary numbers.
 struct ByteRows<'a> {
     /// The bytes that were not read yet.
     rest: &'a [u8],
@@ -190,7 +190,7 @@ impl Numbers for ByteRows<'_> {
 
 /// The rows of a block, up to the first one that is left to the sequential reader.
 pub(super) struct Rows<'a, T> {
-    /// What the rows were parsed into.
+    /// The values of the rows.
     pub(super) parsed: T,
     /// The number of rows that are wanted.
     pub(super) count: usize,

@@ -122,7 +122,7 @@ export function limits(values) {
 }
 
 // Makes dots of a size in pixels.
-export function points(positions, colours, size) {
+function points(positions, colours, size) {
   const geometry = new three.BufferGeometry();
   geometry.setAttribute("position", new three.BufferAttribute(positions, 3));
   geometry.setAttribute("color", new three.BufferAttribute(colours, 3, true));

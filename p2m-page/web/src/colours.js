@@ -8,15 +8,11 @@ const DIVERGING = ["#053061", "#2166ac", "#4393c3", "#92c5de", "#d9d9d9", "#f4a5
 const rgb = (hex) => [1, 3, 5].map((at) => parseInt(hex.slice(at, at + 2), 16));
 const STOPS = { sequential: SEQUENTIAL.map(rgb), diverging: DIVERGING.map(rgb) };
 
-// A map from values to colours between two limits, which the user can change.
+// A map from values to colours between two limits.
 export class ColourScale {
   constructor(kind, low, high) {
     this.stops = STOPS[kind];
     this.isDiverging = kind === "diverging";
-    this.setLimits(low, high);
-  }
-
-  setLimits(low, high) {
     this.low = low;
     this.high = high > low ? high : low + (Math.abs(low) || 1);
   }

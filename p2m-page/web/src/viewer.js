@@ -56,7 +56,7 @@ class Viewer {
     this.world.add(this.scene.group);
     if (data.answers) this.addLayer("answers", new AnswersLayer(data.answers, this.frame), "group");
     if (this.answers) this.world.add(this.answers.selection);
-    if (data.cells) this.addLayer("cells", new CellsLayer(data.cells, this.frame, this.colours), "group");
+    if (data.cells) this.addLayer("cells", new CellsLayer(data.cells, this.colours), "group");
     if (data.field) this.addLayer("slice", new SliceLayer(data.field), "mesh");
     if (this.cells) this.cells.group.visible = false;
     if (this.slice) this.scene.setOpacity(0.25);
@@ -83,10 +83,7 @@ class Viewer {
     document.documentElement.dataset.theme = theme;
     this.world.background = new three.Color(this.colours.background);
     this.scene.setColours(this.colours);
-    if (this.cells) {
-      this.cells.colours = this.colours;
-      this.cells.show(this.cells.level);
-    }
+    if (this.cells) this.cells.setColours(this.colours);
     if (this.answers) this.answers.select(this.answers.selected, this.colours);
     this.draw();
   }
@@ -221,9 +218,8 @@ class Viewer {
   makeAnswers(add) {
     const { answers } = this;
     const what = answers.signed ? "signed distance" : "distance";
-    const section = add("Distances", "distances", legend(answers.scale, what, this.unit),
+    add("Distances", "distances", legend(answers.scale, what, this.unit),
       histogram(answers.values, answers.scale, what, this.unit));
-    section.dataset.low = answers.scale.low;
     this.answerText = element("dl", { id: "answer", "aria-live": "polite" });
     const step = (by) => element("button", { type: "button", onclick: () => this.step(by) }, by > 0 ? "Next" : "Previous");
     add("Answer", "selected", element("p", {}, step(-1), " ", step(1)), this.answerText);
@@ -308,8 +304,7 @@ class Viewer {
     });
     this.levelRange = range;
     this.levelText = text;
-    const parts = cells.hasLengths ? [legend(cells.scale, "length of the list", "primitives")] : [];
-    add(this.data.cells.title, "index", range, element("p", {}, text), ...parts);
+    add(this.data.cells.title, "index", range, element("p", {}, text));
     text.textContent = cells.title();
   }
 
