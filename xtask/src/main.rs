@@ -3,6 +3,7 @@
 //! A task prints the commands that it starts, so that each can be started alone. The first command that fails ends it.
 #![forbid(unsafe_code)]
 
+mod builds;
 mod deep;
 mod licences;
 mod memory;
@@ -24,7 +25,7 @@ struct Task {
 /// The result of a task, with a message if it failed.
 type Outcome = Result<(), String>;
 
-const TASKS: [Task; 13] = [
+const TASKS: [Task; 14] = [
     Task {
         name: "quick",
         arguments: "[FILTER]",
@@ -73,6 +74,12 @@ const TASKS: [Task; 13] = [
         arguments: "[ARGUMENTS]",
         about: "Measure against rivals: `cargo xtask bench query SCENE`",
         run: |rest| cargo(&["run", "--locked", "--release", "--package", "p2m-bench", "--"], rest),
+    },
+    Task {
+        name: "builds",
+        arguments: "BASE SCENE..",
+        about: "Compare the builds of indexes with those of an earlier revision, in turns",
+        run: builds::run,
     },
     Task {
         name: "fuzz",
