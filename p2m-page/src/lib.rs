@@ -6,6 +6,7 @@
 mod decimate;
 mod frame;
 mod packed;
+pub mod template;
 mod view;
 
 pub use view::{Level, UpAxis, View};

@@ -3,6 +3,7 @@
 use crate::decimate::{MAX_PRIMITIVES, is_distinct, representatives};
 use crate::frame::Frame;
 use crate::packed::Packed;
+use crate::template::{STYLE, escape, fill, script_data};
 use nalgebra::Point3;
 use p2m_core::{Aabb, Closest, Feature, PrimitiveId, PrimitiveSet, Soup};
 use p2m_field::Grid;
@@ -254,31 +255,11 @@ impl<'a> View<'a> {
     /// # Errors
     /// An error of the conversion to JSON, which all pages that this type can hold are free of.
     pub fn html(&self) -> serde_json::Result<String> {
-        // A script element ends at the first `</script`, even within a string.
-        let data = serde_json::to_string(&self.data)?.replace('<', "\\u003c");
-        let texts =
-            [("about", escaped(&self.about)), ("summary", escaped(&self.summary)), ("title", escaped(&self.title))];
-        // Each placeholder is replaced within the template alone, so texts that look like one stay as they are.
-        let mut page = String::with_capacity(TEMPLATE.len() + SCRIPT.len() + data.len());
-        let mut rest = TEMPLATE;
-        while let Some((before, after)) = rest.split_once("{{") {
-            let (name, after) = after.split_once("}}").unwrap_or((after, ""));
-            page.push_str(before);
-            match name {
-                "data" => page.push_str(&data),
-                "script" => page.push_str(SCRIPT),
-                _ => page.extend(texts.iter().filter(|text| text.0 == name).map(|text| text.1.as_str())),
-            }
-            rest = after;
-        }
-        page.push_str(rest);
-        Ok(page)
+        let [about, summary, title] = [&self.about, &self.summary, &self.title].map(|text| escape(text));
+        let data = script_data(&self.data)?;
+        let texts = [("about", &*about), ("summary", &summary), ("title", &title), ("data", &data)];
+        Ok(fill(TEMPLATE, &[&texts[..], &[("style", STYLE), ("script", SCRIPT)]].concat()))
     }
-}
-
-/// Escapes text for use between tags and in attributes.
-fn escaped(text: &str) -> String {
-    text.replace('&', "&amp;").replace('<', "&lt;").replace('>', "&gt;").replace('"', "&quot;")
 }
 
 /// Returns the id of the primitive of an answer.

@@ -8,6 +8,7 @@ use crate::provenance::Provenance;
 use crate::settings::{SETTINGS, Setting};
 use crate::text;
 use p2m_core::kernel::ERROR_CONSTANT;
+use p2m_page::template::{STYLE, escape, fill, script_data};
 use serde::Serialize;
 
 /// A quantity of each backend as a function of another quantity. It becomes a plot and a table.
@@ -64,21 +65,13 @@ impl Page<'_> {
     /// An error of the conversion to JSON, which all pages that this type can hold are free of.
     pub fn html(&self) -> serde_json::Result<String> {
         let data = PageData { page: self, settings: SETTINGS, exact_limit: 2.0 * ERROR_CONSTANT };
-        // A script element ends at the first `</script`, even within a string.
-        let json = serde_json::to_string(&data)?.replace('<', "\\u003c");
         let sets = self.scenes.iter().flat_map(|scene| scene.sets.iter().map(move |set| (scene, set)));
         let tables: String =
             sets.map(|(scene, set)| format!("{}, {}\n\n{}\n", scene.name, set.name, text::table(set))).collect();
-        // The template has its placeholders in the reverse order, so that each is found before any name that looks
-        // like it.
-        let page = TEMPLATE.replacen("{{script}}", SCRIPT, 1).replacen("{{data}}", &json, 1);
-        Ok(page.replacen("{{tables}}", &escaped(&tables), 1))
+        let texts =
+            [("tables", &*escape(&tables)), ("data", &script_data(&data)?), ("script", SCRIPT), ("style", STYLE)];
+        Ok(fill(TEMPLATE, &texts))
     }
-}
-
-/// Escapes text for use between tags.
-fn escaped(text: &str) -> String {
-    text.replace('&', "&amp;").replace('<', "&lt;").replace('>', "&gt;")
 }
 
 #[cfg(test)]

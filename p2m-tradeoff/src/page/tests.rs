@@ -29,10 +29,10 @@ fn element<'a>(page: &'a str, start: &str, end: &str) -> &'a str {
 
 #[test]
 fn the_template_has_each_placeholder_once_and_nothing_is_from_elsewhere() {
-    for placeholder in ["{{script}}", "{{data}}", "{{tables}}"] {
+    for placeholder in ["{{style}}", "{{script}}", "{{data}}", "{{tables}}"] {
         assert_eq!(TEMPLATE.matches(placeholder).count(), 1, "{placeholder}");
     }
-    assert_eq!(TEMPLATE.matches("{{").count(), 3);
+    assert_eq!(TEMPLATE.matches("{{").count(), 4);
     assert!(!SCRIPT.contains("</script") && !SCRIPT.contains("{{"));
     for foreign in ["http:", "https:", "src=", "<link", "url(", "@import", "import("] {
         assert!(!page().contains(foreign), "{foreign}");
@@ -69,7 +69,7 @@ fn the_data_have_every_measurement() {
 fn a_reader_without_a_script_has_the_tables() {
     let page = page();
     let tables = element(&page, "<noscript>", "</noscript>");
-    assert!(tables.contains("a \"scene\", of two, 1x") && tables.contains("epsilon 0.1"), "{tables}");
+    assert!(tables.contains("a &quot;scene&quot;, of two, 1x") && tables.contains("epsilon 0.1"), "{tables}");
 }
 
 /// Runs the script of the page with a document that keeps what is written into it. Each test of the script is an
