@@ -29,8 +29,8 @@ const HELP: &str = "\
 The page is one HTML file, which any browser opens without a network. It shows the triangles, segments and points of the \
 scene, whose objects can be hidden. With queries it shows their closest points, coloured by distance: a click on a query \
 point prints its answer and draws the primitive, the feature and the sphere of the lower bound. With --field it shows a \
-slice of the distance field that can be moved, and with --levels the boxes of the AABB tree. All of it can be done with \
-the keyboard.
+slice of the distance field that can be moved, with --lists a slice through the cells of an octree or a P2M index, and \
+with --levels the boxes of the AABB tree. All of it can be done with the keyboard.
 
 Numbers on the page are those of `p2m query`, in full. Scenes of more than a million primitives are drawn coarser, which \
 a note on the page says.
@@ -38,6 +38,7 @@ a note on the page says.
 Examples:
   p2m view scene.obj --random 1000 --out page.html
   p2m view bunny.obj --field 64 --signed --up y --out field.html
+  p2m view bunny.obj --backend p2m --lists 128 --out cells.html
   p2m view city.obj --points scan.xyz --unit metres --levels 8 --out city.html";
 
 /// Write a page that shows a scene, its closest points and its distance field in a browser
@@ -80,6 +81,11 @@ pub(crate) struct Args {
     #[arg(long, value_name = "RULE", num_args = 0..=1, require_equals = true, default_missing_value = "auto", value_enum)]
     signed: Option<SignRule>,
 
+    /// Show slices through the cells of an index with lists, coloured by the length of the list at each point of a grid
+    /// with N points along its longest side; needs --backend octree or p2m, or a saved index of these
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(2..=256), allow_negative_numbers = true, conflicts_with = "field")]
+    lists: Option<u32>,
+
     /// Show the boxes of the first N levels of the AABB tree
     #[arg(long, value_name = "N", default_value_t = 0, value_parser = clap::value_parser!(u8).range(0..=16), allow_negative_numbers = true)]
     levels: u8,
@@ -117,7 +123,8 @@ pub(crate) fn run(streams: &Streams, args: &Args) -> anyhow::Result<()> {
     let pool = args.threads.pool()?;
     let (scene, saved) = read_scene_and_index(streams, &pool, &args.scene.path, format, args.scene.map)?;
     let queries = args.queries(streams, &scene.soup.aabb())?;
-    let grid = args.field.map(|n| Grid::around(&scene.soup.aabb(), n as usize, args.box_scale)).transpose();
+    let resolution = args.field.or(args.lists);
+    let grid = resolution.map(|n| Grid::around(&scene.soup.aabb(), n as usize, args.box_scale)).transpose();
     let grid = grid.with_context(|| args.scene.name())?;
     let mut output = Output::open(streams, Some(&args.out))?;
 
@@ -125,6 +132,9 @@ pub(crate) fn run(streams: &Streams, args: &Args) -> anyhow::Result<()> {
     let backend = args.backend.unwrap_or_else(|| saved_or_default(saved));
     let source = SceneSource { soup: &scene.soup, kdop_directions: None, p2m: P2mSettings::default(), saved };
     let index = source.prepare(streams, backend, &pool).with_context(|| args.scene.name())?.built.index;
+    if args.lists.is_some() && index.list_lengths().is_empty() {
+        return Err(usage(format!("--lists needs an index with lists: {} has none", backend.name)));
+    }
     let signed = args.signed.map(|rule| rule.prepare(streams, &*index, &scene.soup)).transpose();
     let signed = signed.with_context(|| args.scene.name())?;
 
@@ -153,7 +163,17 @@ pub(crate) fn run(streams: &Streams, args: &Args) -> anyhow::Result<()> {
             &format!("; {} query points and their closest points, found by {}", queries.len(), backend.name);
         view = view.with_answers(queries, &answers, signs.as_deref());
     }
-    if let Some(grid) = &grid {
+    if let (Some(grid), Some(_)) = (&grid, args.lists) {
+        let [x, y, z] = grid.counts();
+        let length = |number: usize| {
+            let point = grid.point([number % x, number / x % y, number / (x * y)]);
+            index.list_length(&point).map_or(f32::NAN, |length| length as f32)
+        };
+        let lengths: Vec<f32> = pool.install(|| (0..grid.len()).into_par_iter().map(length).collect());
+        view.summary += &format!("; lengths of the lists of {} at {x} x {y} x {z} points", backend.name);
+        view = view.with_list_lengths(grid, &lengths);
+    }
+    if let (Some(grid), Some(_)) = (&grid, args.field) {
         let progress = Progress::start(streams, "filling the grid", Some(grid.len() as u64), Unit::Items("points"));
         let count = |points: usize| progress.add(points as u64);
         let options = FieldOptions::default();

@@ -65,6 +65,8 @@ struct Data {
     cells: Option<CellData>,
     #[serde(skip_serializing_if = "Option::is_none")]
     field: Option<FieldData>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    lists: Option<FieldData>,
 }
 
 /// The primitives of a scene: positions in the frame, and the numbers of vertices of each kind of primitives.
@@ -144,6 +146,7 @@ impl<'a> View<'a> {
             answers: None,
             cells: None,
             field: None,
+            lists: None,
         };
         Self { scene, frame, data, title: "A scene".to_owned(), summary: String::new(), about: String::new() }
     }
@@ -240,14 +243,29 @@ impl<'a> View<'a> {
     /// If the number of values is not that of the points of the grid.
     #[must_use]
     pub fn with_field(mut self, grid: &Grid, values: &[f32]) -> Self {
+        self.data.field = Some(self.field_data(grid, values));
+        self
+    }
+
+    /// Shows slices through the cells of an index, coloured by the lengths of their lists: for each point of a grid, x
+    /// running fastest, the number of primitives in the list there, or no number where the tree answers.
+    ///
+    /// # Panics
+    /// If the number of lengths is not that of the points of the grid.
+    #[must_use]
+    pub fn with_list_lengths(mut self, grid: &Grid, lengths: &[f32]) -> Self {
+        self.data.lists = Some(self.field_data(grid, lengths));
+        self
+    }
+
+    fn field_data(&self, grid: &Grid, values: &[f32]) -> FieldData {
         assert_eq!(grid.len(), values.len(), "a value for each point of the grid");
-        self.data.field = Some(FieldData {
+        FieldData {
             counts: grid.counts(),
             origin: self.frame.position(&grid.origin()),
             spacing: self.frame.length(grid.spacing()),
             values: Packed::new(values),
-        });
-        self
+        }
     }
 
     /// Returns the page as HTML.

@@ -8,11 +8,12 @@ use tempfile::TempDir;
 fn a_page_has_what_was_asked_for() {
     let folder = TempDir::new().unwrap();
     let page = path(&folder, "page.html");
-    let parts = ["\"answers\":{", "\"field\":{", "\"cells\":{"];
+    let parts = ["\"answers\":{", "\"field\":{", "\"cells\":{", "\"lists\":{"];
     for (options, expected) in [
-        (&["--random", "7"][..], [true, false, false]),
-        (&["--field", "8", "--unit", "metres"], [false, true, false]),
-        (&["--levels", "2"], [false, false, true]),
+        (&["--random", "7"][..], [true, false, false, false]),
+        (&["--field", "8", "--unit", "metres"], [false, true, false, false]),
+        (&["--levels", "2"], [false, false, true, false]),
+        (&["--lists", "8", "--backend", "octree"], [false, false, false, true]),
     ] {
         table(&[&["view", SCENE, "--out", &page], options].concat());
         let html = fs::read_to_string(&page).unwrap();
@@ -28,6 +29,8 @@ fn what_cannot_be_shown_is_told() {
     assert!(failure(&["view", SCENE, "--signed", "--out", &page], 2).contains("--signed needs"));
     assert!(failure(&["view", SCENE, "--out", SCENE], 1).contains("it is an input"));
     failure(&["view", SCENE], 2);
+    failure(&["view", SCENE, "--field", "8", "--lists", "8", "--out", &page], 2);
+    assert!(failure(&["view", SCENE, "--lists", "8", "--out", &page], 2).contains("aabb has none"));
     failure(&["view", SCENE, "--random", "100001", "--out", &page], 2);
     assert!(!fs::exists(&page).unwrap());
 }

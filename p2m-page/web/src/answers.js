@@ -2,6 +2,7 @@
 
 import * as three from "three";
 import { ColourScale } from "./colours.js";
+import { short } from "./text.js";
 
 export class AnswersLayer {
   constructor(answers, frame) {
@@ -11,7 +12,7 @@ export class AnswersLayer {
     // The values that give colours: signed distances where there are some.
     this.values = answers.signed ?? answers.distances;
     const [low, high] = limits(this.values);
-    this.scale = new ColourScale(low < 0 ? "diverging" : "sequential", low < 0 ? low : 0, high);
+    this.scale = new ColourScale(low < 0 ? "diverging" : "sequential", low < 0 ? low : 0, high, short);
     this.from = frame.positions(answers.queries);
     this.to = frame.positions(answers.points);
     this.colours = this.scale.colours(this.values);

@@ -8,9 +8,10 @@ const DIVERGING = ["#053061", "#2166ac", "#4393c3", "#92c5de", "#d9d9d9", "#f4a5
 const rgb = (hex) => [1, 3, 5].map((at) => parseInt(hex.slice(at, at + 2), 16));
 const STOPS = { sequential: SEQUENTIAL.map(rgb), diverging: DIVERGING.map(rgb) };
 
-// A map from values to colours between two limits.
+// A map from values to colours between two limits. `text` returns a value as text for legends.
 export class ColourScale {
-  constructor(kind, low, high) {
+  constructor(kind, low, high, text) {
+    this.text = text;
     this.stops = STOPS[kind];
     this.isDiverging = kind === "diverging";
     this.low = low;

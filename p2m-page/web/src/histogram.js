@@ -46,7 +46,7 @@ export function legend(scale, what, unit) {
   const middle = scale.isDiverging && scale.low < 0 && scale.high > 0 ? 0 : (scale.low + scale.high) / 2;
   const bar = element("div", { class: "gradient" });
   bar.style.background = scale.gradient();
-  const ticks = [scale.low, middle, scale.high].map((value) => element("span", {}, short(value)));
+  const ticks = [scale.low, middle, scale.high].map((value) => element("span", {}, scale.text(value)));
   return element("div", { class: "legend" }, element("div", {}, `${what} (${unit})`), bar,
     element("div", { class: "ticks" }, ...ticks));
 }

@@ -1,8 +1,10 @@
-// A slice through the field: distances in colours, lines of equal distance, and the line of distance zero.
+// A slice through a field: values in colours. Distances have lines of equal distance, and the line of distance zero.
+// Lengths of lists are constant within each cell of an index, and have colours by their logarithms.
 
 import * as three from "three";
 import { ColourScale } from "./colours.js";
 import { limits } from "./answers.js";
+import { short } from "./text.js";
 
 // The number of pixels along the longer side of a slice.
 const PIXELS = 512;
@@ -11,11 +13,17 @@ const LINES = 8;
 
 export class SliceLayer {
   // `field` has counts of grid points, their values with x running fastest, and the first point and the spacing in the
-  // frame.
-  constructor(field) {
+  // frame. `hasCells` tells that the values are the lengths of lists.
+  constructor(field, hasCells) {
     Object.assign(this, field);
+    this.hasCells = hasCells;
     const [low, high] = limits(this.values);
-    this.scale = new ColourScale(low < 0 ? "diverging" : "sequential", low < 0 ? low : 0, high);
+    if (hasCells) {
+      this.values = this.values.map(Math.log2);
+      this.scale = new ColourScale("sequential", 0, Math.max(1, Math.log2(high)), (value) => short(2 ** value));
+    } else {
+      this.scale = new ColourScale(low < 0 ? "diverging" : "sequential", low < 0 ? low : 0, high, short);
+    }
     this.canvas = document.createElement("canvas");
     this.texture = new three.CanvasTexture(this.canvas);
     this.texture.colorSpace = three.SRGBColorSpace;
@@ -26,8 +34,13 @@ export class SliceLayer {
     this.setPlane(2, (this.counts[2] - 1) / 2);
   }
 
-  // Returns the interpolated value at real indices; no number where one of the eight values around is none.
+  // Returns the value at real indices: that of the nearest grid point in a field of cells, and else the interpolated
+  // one, which is no number where one of the eight values around is none.
   value(at) {
+    if (this.hasCells) {
+      const [i, j, l] = at.map(Math.round);
+      return this.values[i + this.counts[0] * (j + this.counts[1] * l)];
+    }
     const low = at.map((x, k) => Math.min(Math.floor(x), this.counts[k] - 2));
     let sum = 0;
     for (let corner = 0; corner < 8; corner++) {
@@ -83,7 +96,7 @@ export class SliceLayer {
         const i = x + width * y;
         const value = values[i];
         this.scale.write(value, colour, 0);
-        const neighbours = [x + 1 < width ? values[i + 1] : value, y + 1 < height ? values[i + width] : value];
+        const neighbours = this.hasCells ? [] : [x + 1 < width ? values[i + 1] : value, y + 1 < height ? values[i + width] : value];
         const isCrossing = (f) => neighbours.some((other) => f(other) !== f(value) && !Number.isNaN(other - value));
         if (isCrossing((d) => d < 0)) colour.fill(0);
         else if (isCrossing((d) => Math.floor(d / step))) colour.forEach((c, k) => (colour[k] = 0.8 * c));
@@ -100,5 +113,11 @@ export class SliceLayer {
   valueAt(position) {
     const at = [0, 1, 2].map((k) => (position.getComponent(k) - this.origin[k]) / this.spacing);
     return this.value(at.map((x, k) => Math.max(0, Math.min(this.counts[k] - 1, x))));
+  }
+  // Returns the value at a position in the frame in words.
+  textAt(position, unit) {
+    const value = this.valueAt(position);
+    if (this.hasCells && Number.isNaN(value)) return "no list: the tree answers";
+    return `${this.scale.text(value)} ${unit}`;
   }
 }

@@ -57,7 +57,8 @@ class Viewer {
     if (data.answers) this.addLayer("answers", new AnswersLayer(data.answers, this.frame), "group");
     if (this.answers) this.world.add(this.answers.selection);
     if (data.cells) this.addLayer("cells", new CellsLayer(data.cells, this.colours), "group");
-    if (data.field) this.addLayer("slice", new SliceLayer(data.field), "mesh");
+    const field = data.field ?? data.lists;
+    if (field) this.addLayer("slice", new SliceLayer(field, !!data.lists), "mesh");
     if (this.cells) this.cells.group.visible = false;
     if (this.slice) this.scene.setOpacity(0.25);
 
@@ -181,7 +182,7 @@ class Viewer {
         answers.select(answers.selected, this.colours);
       }, "show-sphere");
     }
-    if (this.slice) box("slice of the field", true, (on) => (this.slice.mesh.visible = on), "show-slice");
+    if (this.slice) box("slice", true, (on) => (this.slice.mesh.visible = on), "show-slice");
     if (this.cells) box("boxes of the index", false, (on) => (this.cells.group.visible = on), "show-cells");
     const theme = element("button", { type: "button", id: "theme", onclick: () => this.toggleTheme() }, "Dark or light");
     const fit = element("button", { type: "button", id: "fit", onclick: () => this.fit() }, "Fit the view");
@@ -319,7 +320,8 @@ class Viewer {
 
   makeSlice(add) {
     const { slice } = this;
-    const what = slice.scale.isDiverging ? "signed distance" : "distance";
+    const what = slice.hasCells ? "length of the list" : slice.scale.isDiverging ? "signed distance" : "distance";
+    this.sliceUnit = slice.hasCells ? "primitives" : this.unit;
     const axes = [0, 1, 2].map((axis) => {
       const radio = element("input", {
         type: "radio", name: "axis", value: axis, onchange: () => this.moveSlice(axis, 0.5),
@@ -334,10 +336,13 @@ class Viewer {
     });
     this.sliceText = element("output", { id: "slice-text" });
     this.pointerText = element("output", { id: "slice-value" });
-    add("Slice of the field", "field", element("p", {}, "across ", ...axes), this.sliceRange,
-      element("p", {}, this.sliceText), element("p", {}, this.pointerText), legend(slice.scale, what, this.unit),
-      element("p", { class: "small" }, "The black line is distance zero. Lines of equal distance are darker. The keys " +
-        "[ and ] move the slice, and Shift and the mouse drag it."));
+    const about = slice.hasCells
+      ? "A query evaluates only primitives of the list of its cell. Where a cell has no list the slice is grey, and the " +
+        "tree answers."
+      : "The black line is distance zero. Lines of equal distance are darker.";
+    add(slice.hasCells ? "Slice through the cells" : "Slice of the field", "field", element("p", {}, "across ", ...axes), this.sliceRange,
+      element("p", {}, this.sliceText), element("p", {}, this.pointerText), legend(slice.scale, what, this.sliceUnit),
+      element("p", { class: "small" }, `${about} The keys [ and ] move the slice, and Shift and the mouse drag it.`));
     this.moveSlice(slice.axis, 0.5);
   }
 
@@ -404,7 +409,7 @@ class Viewer {
       return;
     }
     const at = this.frame.coordinates(hit.point.toArray()).map(short).join(", ");
-    this.pointerText.textContent = `${short(this.slice.valueAt(hit.point))} ${this.unit} at ${at}`;
+    this.pointerText.textContent = `${this.slice.textAt(hit.point, this.sliceUnit)} at ${at}`;
   }
 
   press(event) {

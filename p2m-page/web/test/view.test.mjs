@@ -7,7 +7,7 @@ import { existsSync, mkdtempSync, readFileSync, writeFileSync } from "node:fs";
 import { tmpdir } from "node:os";
 import { join } from "node:path";
 import { after, before, test } from "node:test";
-import { pathToFileURL } from "node:url";
+import { fileURLToPath, pathToFileURL } from "node:url";
 import { chromium } from "playwright-core";
 
 const PROGRAM = process.env.P2M;
@@ -15,12 +15,30 @@ const BROWSER = ["/usr/bin/chromium", "/usr/bin/google-chrome"].find(existsSync)
 const SCENE = new URL("../../../scenes/knot_and_cables.obj", import.meta.url);
 const skip = !PROGRAM ? "P2M does not name the program" : !BROWSER ? "Chromium is not installed" : false;
 
-let browser, page, answers;
+let browser, page, answers, folder;
 const problems = [];
+
+// Opens a page in a window of its own. What goes wrong there is collected in `problems`.
+async function open(html) {
+  const opened = await browser.newPage({ viewport: { width: 1200, height: 800 } });
+  opened.on("console", (message) => message.type() === "error" && problems.push(message.text()));
+  opened.on("pageerror", (error) => problems.push(error.message));
+  opened.on("request", (request) => request.url().startsWith("http") && problems.push(request.url()));
+  await opened.goto(pathToFileURL(html).href);
+  await opened.waitForFunction(() => document.documentElement.dataset.ready);
+  return opened;
+}
+
+// Makes the page of a scene and opens it.
+function view(scene, ...options) {
+  const html = join(folder, "other.html");
+  execFileSync(PROGRAM, ["view", scene, ...options, "--out", html], { stdio: "pipe" });
+  return open(html);
+}
 
 before(async () => {
   if (skip) return;
-  const folder = mkdtempSync(join(tmpdir(), "p2m-page-"));
+  folder = mkdtempSync(join(tmpdir(), "p2m-page-"));
   const [scene, html, csv] = ["scene.obj", "page.html", "answers.csv"].map((name) => join(folder, name));
   writeFileSync(scene, `o all\n${readFileSync(SCENE, "utf8")}`);
   const queries = ["--random", "40", "--seed", "3", "--box-scale", "1.2"];
@@ -31,12 +49,7 @@ before(async () => {
     executablePath: BROWSER,
     args: ["--no-sandbox", "--use-gl=angle", "--use-angle=swiftshader", "--enable-unsafe-swiftshader"],
   });
-  page = await browser.newPage({ viewport: { width: 1200, height: 800 } });
-  page.on("console", (message) => message.type() === "error" && problems.push(message.text()));
-  page.on("pageerror", (error) => problems.push(error.message));
-  page.on("request", (request) => request.url().startsWith("http") && problems.push(request.url()));
-  await page.goto(pathToFileURL(html).href);
-  await page.waitForFunction(() => document.documentElement.dataset.ready);
+  page = await open(html);
 });
 
 after(async () => browser?.close());
@@ -103,6 +116,46 @@ test("an object can be hidden, and levels of boxes shown", { skip }, async () =>
   assert.match(await page.textContent("#level"), /^level 2: /);
   assert.ok(await page.isChecked("#show-cells"));
 });
+
+test("a slice through cells tells the length of the list where the pointer is", { skip }, async () => {
+  for (const backend of ["octree", "p2m"]) {
+    const lists = await view(fileURLToPath(SCENE), "--backend", backend, "--lists", "32");
+    const stats = JSON.parse(execFileSync(PROGRAM, ["stats", fileURLToPath(SCENE), "--backend", backend, "--json"],
+      { stdio: "pipe" }));
+    const longest = await lists.evaluate(() => window.viewer.slice.values.reduce((a, b) => Math.max(a, b || 0), 0));
+    assert.ok(2 ** longest > 1 && Math.round(2 ** longest) <= stats.lists.max, `${backend}: ${2 ** longest}`);
+    await lists.mouse.move(430, 430);
+    assert.match(await lists.textContent("#slice-value"), /^(\d+ primitives|no list: the tree answers) at /);
+    await lists.close();
+  }
+});
+
+// A scene of each kind is drawn, and the picture is not empty unless the scene is.
+const SCENES = {
+  mesh: "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 2 3\nf 1 2 4\n",
+  lines: "v 0 0 0\nv 1 0 0\nv 0 1 0\nl 1 2 3\n",
+  points: "v 0 0 0\nv 1 0 0\nv 0 1 2\np 1 2 3\n",
+  mixed: "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 2 3\nl 1 4\np 4\n",
+  "far from the origin": "v 1000000 5000000 0\nv 1000001 5000000 0\nv 1000000 5000001 0\nf 1 2 3\n",
+  empty: "OFF\n0 0 0\n",
+};
+for (const [kind, text] of Object.entries(SCENES)) {
+  test(`a scene is drawn: ${kind}`, { skip }, async () => {
+    const file = join(folder, text.startsWith("OFF") ? "kind.off" : "kind.obj");
+    writeFileSync(file, text);
+    const other = await view(file);
+    const isDrawn = await other.evaluate(() => {
+      const { viewer } = window;
+      viewer.renderer.render(viewer.world, viewer.camera);
+      const gl = viewer.renderer.getContext();
+      const pixels = new Uint8Array(4 * gl.drawingBufferWidth * gl.drawingBufferHeight);
+      gl.readPixels(0, 0, gl.drawingBufferWidth, gl.drawingBufferHeight, gl.RGBA, gl.UNSIGNED_BYTE, pixels);
+      return new Set(new Uint32Array(pixels.buffer)).size > 1;
+    });
+    assert.equal(isDrawn, kind !== "empty");
+    await other.close();
+  });
+}
 
 test("nothing failed and nothing was fetched", { skip }, () => {
   assert.deepEqual(problems, []);
