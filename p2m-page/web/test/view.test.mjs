@@ -3,37 +3,25 @@
 
 import assert from "node:assert/strict";
 import { execFileSync } from "node:child_process";
-import { existsSync, mkdtempSync, readFileSync, writeFileSync } from "node:fs";
+import { mkdtempSync, readFileSync, writeFileSync } from "node:fs";
 import { tmpdir } from "node:os";
 import { join } from "node:path";
 import { after, before, test } from "node:test";
-import { fileURLToPath, pathToFileURL } from "node:url";
-import { chromium } from "playwright-core";
+import { fileURLToPath } from "node:url";
+import { BROWSER, launch, open } from "./browser.mjs";
 
 const PROGRAM = process.env.P2M;
-const BROWSER = ["/usr/bin/chromium", "/usr/bin/google-chrome"].find(existsSync);
 const SCENE = new URL("../../../scenes/knot_and_cables.obj", import.meta.url);
 const skip = !PROGRAM ? "P2M does not name the program" : !BROWSER ? "Chromium is not installed" : false;
 
 let browser, page, answers, folder;
 const problems = [];
 
-// Opens a page in a window of its own. What goes wrong there is collected in `problems`.
-async function open(html) {
-  const opened = await browser.newPage({ viewport: { width: 1200, height: 800 } });
-  opened.on("console", (message) => message.type() === "error" && problems.push(message.text()));
-  opened.on("pageerror", (error) => problems.push(error.message));
-  opened.on("request", (request) => request.url().startsWith("http") && problems.push(request.url()));
-  await opened.goto(pathToFileURL(html).href);
-  await opened.waitForFunction(() => document.documentElement.dataset.ready);
-  return opened;
-}
-
 // Makes the page of a scene and opens it.
 function view(scene, ...options) {
   const html = join(folder, "other.html");
   execFileSync(PROGRAM, ["view", scene, ...options, "--out", html], { stdio: "pipe" });
-  return open(html);
+  return open(browser, html, (problem) => problems.push(problem));
 }
 
 before(async () => {
@@ -45,11 +33,8 @@ before(async () => {
   execFileSync(PROGRAM, ["view", scene, ...queries, "--field", "24", "--levels", "4", "--out", html], { stdio: "pipe" });
   execFileSync(PROGRAM, ["query", scene, ...queries, "--out", csv], { stdio: "pipe" });
   answers = readFileSync(csv, "utf8").trim().split("\n").slice(1).map((line) => line.split(","));
-  browser = await chromium.launch({
-    executablePath: BROWSER,
-    args: ["--no-sandbox", "--use-gl=angle", "--use-angle=swiftshader", "--enable-unsafe-swiftshader"],
-  });
-  page = await open(html);
+  browser = await launch();
+  page = await open(browser, html, (problem) => problems.push(problem));
 });
 
 after(async () => browser?.close());
