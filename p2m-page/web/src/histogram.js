@@ -41,12 +41,17 @@ export function histogram(values, scale, what, unit) {
   return element("svg", { viewBox: `0 0 ${WIDTH} ${HEIGHT + 1}`, role: "img", "aria-label": label }, ...bars, base);
 }
 
-// Returns the legend of a scale: its gradient, its limits and its middle, with the unit.
+// Returns the legend of a scale: its gradient, its limits and a value between them, with the unit. The value between is
+// zero for a scale with two directions, at its place, unless that is too close to a limit.
 export function legend(scale, what, unit) {
-  const middle = scale.isDiverging && scale.low < 0 && scale.high > 0 ? 0 : (scale.low + scale.high) / 2;
+  const { low, high } = scale;
+  const zero = (0 - low) / (high - low);
+  const place = scale.isDiverging && zero > 0.2 && zero < 0.8 ? zero : 0.5;
   const bar = element("div", { class: "gradient" });
   bar.style.background = scale.gradient();
-  const ticks = [scale.low, middle, scale.high].map((value) => element("span", {}, scale.text(value)));
+  const middle = element("span", { class: "middle" }, scale.text(place === zero ? 0 : low + place * (high - low)));
+  middle.style.left = `${100 * place}%`;
+  const ends = [low, high].map((value) => element("span", {}, scale.text(value)));
   return element("div", { class: "legend" }, element("div", {}, `${what} (${unit})`), bar,
-    element("div", { class: "ticks" }, ...ticks));
+    element("div", { class: "ticks" }, ends[0], middle, ends[1]));
 }

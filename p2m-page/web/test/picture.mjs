@@ -1,0 +1,12 @@
+// Writes a picture of a page as a browser shows it: node test/picture.mjs PAGE.html PICTURE.png [dark]
+
+import { BROWSER, launch, open } from "./browser.mjs";
+
+const [, , html, picture, theme] = process.argv;
+if (!picture || !BROWSER) throw new Error("this needs Chromium, a page, and the file of the picture");
+const browser = await launch();
+const page = await open(browser, html, (problem) => { throw new Error(problem); });
+if (theme === "dark") await page.click("#theme");
+await page.evaluate(() => new Promise(requestAnimationFrame));
+await page.screenshot({ path: picture });
+await browser.close();
