@@ -11,7 +11,7 @@ import { SliceLayer } from "./slice.js";
 import { checkbox, count, counted, element, short } from "./text.js";
 
 const COLOURS = {
-  light: { background: "#f7f8fa", surface: "#aeb6c0", line: "#4b5563", selected: "#d55e00", feature: "#c000c0" },
+  light: { background: "#f7f8fa", surface: "#858e9a", line: "#4b5563", selected: "#d55e00", feature: "#c000c0" },
   dark: { background: "#111417", surface: "#7d8792", line: "#aab4c0", selected: "#ff9040", feature: "#ff60ff" },
 };
 
