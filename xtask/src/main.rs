@@ -9,6 +9,7 @@ mod memory;
 mod package;
 mod promises;
 mod python;
+mod wasm;
 
 use std::path::Path;
 use std::process::{Command, ExitCode};
@@ -24,7 +25,7 @@ struct Task {
 /// The result of a task, with a message if it failed.
 type Outcome = Result<(), String>;
 
-const TASKS: [Task; 13] = [
+const TASKS: [Task; 14] = [
     Task {
         name: "quick",
         arguments: "[FILTER]",
@@ -55,6 +56,12 @@ const TASKS: [Task; 13] = [
         arguments: "",
         about: "Check what the manifests promise: lock files, Rust versions, features, targets",
         run: |_| promises::check(),
+    },
+    Task {
+        name: "wasm",
+        arguments: "",
+        about: "Check the library for WebAssembly, where a compiler for it is at hand or can be downloaded",
+        run: |_| wasm::check(),
     },
     Task {
         name: "package",
