@@ -4,13 +4,15 @@ use crate::decimate::{MAX_PRIMITIVES, is_distinct, representatives};
 use crate::frame::Frame;
 use crate::packed::Packed;
 use nalgebra::Point3;
-use p2m_core::{Aabb, Closest, Feature, PrimitiveId, PrimitiveSet, Soup};
+use p2m_core::{Aabb, Closest, Element, Feature, PrimitiveId, PrimitiveSet, Soup};
 use p2m_field::Grid;
 use p2m_mixed::Scene;
 use serde::Serialize;
 
 const TEMPLATE: &str = include_str!("view.html");
 const SCRIPT: &str = include_str!("../assets/viewer.js");
+/// The library as a module of WebAssembly, which `cargo xtask wasm --build` makes of the crate p2m-live.
+const MODULE: &[u8] = include_bytes!("../assets/live.wasm");
 
 /// The axis that points up in a picture.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
@@ -64,6 +66,19 @@ struct Data {
     cells: Option<CellData>,
     #[serde(skip_serializing_if = "Option::is_none")]
     field: Option<FieldData>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    live: Option<LiveData>,
+}
+
+/// The data of live queries: the module, and the exact scene with its primitives in the order of their ids.
+#[derive(Debug, Serialize)]
+struct LiveData {
+    module: Packed,
+    coordinates: Packed,
+    /// The numbers of vertices of the primitives.
+    sizes: Packed,
+    /// The vertices of the primitives, one after the other.
+    indices: Packed,
 }
 
 /// The primitives of a scene: positions in the frame, and the numbers of vertices of each kind of primitives.
@@ -143,6 +158,7 @@ impl<'a> View<'a> {
             answers: None,
             cells: None,
             field: None,
+            live: None,
         };
         Self { scene, frame, data, title: "A scene".to_owned(), summary: String::new(), about: String::new() }
     }
@@ -245,6 +261,30 @@ impl<'a> View<'a> {
             origin: self.frame.position(&grid.origin()),
             spacing: self.frame.length(grid.spacing()),
             values: Packed::new(values),
+        });
+        self
+    }
+
+    /// Lets the page answer queries wherever the mouse is: it gets the library, compiled to WebAssembly, and the exact
+    /// vertices of the scene. The page builds the indexes itself when it is opened.
+    #[must_use]
+    pub fn with_live_queries(mut self) -> Self {
+        let soup = &self.scene.soup;
+        let coordinates: Vec<f64> = soup.positions().iter().flat_map(|p| [p.x, p.y, p.z]).collect();
+        let (mut sizes, mut indices) = (Vec::with_capacity(soup.len()), Vec::new());
+        for element in soup.elements() {
+            sizes.push(match element {
+                Element::Point(_) => 1u8,
+                Element::Segment(_) => 2,
+                Element::Triangle(_) => 3,
+            });
+            indices.extend_from_slice(element.indices());
+        }
+        self.data.live = Some(LiveData {
+            module: Packed::smaller(MODULE),
+            coordinates: Packed::new(&coordinates),
+            sizes: Packed::new(&sizes),
+            indices: Packed::new(&indices),
         });
         self
     }
@@ -366,7 +406,6 @@ impl Drawn {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use p2m_core::Element;
     use p2m_mixed::Object;
     use serde_json::Value;
 

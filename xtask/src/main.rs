@@ -59,9 +59,9 @@ const TASKS: [Task; 14] = [
     },
     Task {
         name: "wasm",
-        arguments: "",
-        about: "Check the library for WebAssembly, where a compiler for it is at hand or can be downloaded",
-        run: |_| wasm::check(),
+        arguments: "[--build]",
+        about: "Check the library for WebAssembly, where a compiler can be found or downloaded, or build the module",
+        run: wasm::run,
     },
     Task {
         name: "package",

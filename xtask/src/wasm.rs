@@ -1,11 +1,11 @@
-//! Checks the library for WebAssembly.
+//! Checks the library for WebAssembly, and builds the module of pages.
 //!
 //! The compiler is the current one if it has the standard library of the target. Else it is that of Debian, whose
 //! packages are unpacked below the target folder: they contain the sources of the standard library, which cargo then
 //! compiles. Nothing is installed on the machine, and where the packages are missing the task is skipped.
 
 use crate::promises::{numbers, promised_version};
-use crate::{Outcome, output, run, start};
+use crate::{Outcome, output, start};
 use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::Command;
@@ -14,18 +14,102 @@ const TARGET: &str = "wasm32-unknown-unknown";
 /// All features of the facade that concern what is searched and how. Threads do not exist on the target.
 const FEATURES: &str = "advisor,bvh,field,instances,interception,kdop,mixed,shards";
 
-/// Checks the library, or says why it cannot be checked here.
-pub(crate) fn check() -> Outcome {
+/// The crate of the module, and the sources that give its functions to the script of pages.
+const MODULE: &str = "p2m-live";
+/// The module, which is part of each page that answers queries.
+const MODULE_FILE: &str = "p2m-page/assets/live.wasm";
+/// A checksum of the sources of the module. Those of the library are not part of it, because its answers do not change:
+/// the tests of pages in a browser compare the answers of the module with those of the program.
+const STAMP_FILE: &str = "p2m-page/assets/live.stamp";
+/// The module is in each page, and in the package of p2m-page.
+const MAX_MODULE_BYTES: u64 = 1 << 20;
+
+/// Checks the library, or says why it cannot be checked here. With `--build` it builds the module.
+pub(crate) fn run(arguments: &[String]) -> Outcome {
+    let builds = match arguments {
+        [] => false,
+        [argument] if argument == "--build" => true,
+        _ => return Err("the only argument of this task is --build".to_owned()),
+    };
+    if !builds {
+        check_stamp()?;
+    }
     match Compiler::find()? {
+        Ok(compiler) if builds => build(&compiler),
         Ok(compiler) => {
             let library = ["check", "--locked", "--package", "p2m", "--no-default-features", "--features", FEATURES];
-            start(&mut compiler.cargo(&library))
+            start(&mut compiler.cargo(&library))?;
+            start(&mut compiler.cargo(&["check", "--locked", "--package", MODULE]))
         }
         Err(why) => {
-            println!("\n== skipped: there is no compiler for {TARGET} (rustup target add {TARGET}): {why}");
+            let message = format!("there is no compiler for {TARGET} (rustup target add {TARGET}): {why}");
+            if builds {
+                return Err(message);
+            }
+            println!("\n== skipped: {message}");
             Ok(())
         }
     }
+}
+
+/// Builds the module, and writes it and the checksum of its sources.
+fn build(compiler: &Compiler) -> Outcome {
+    let mut cargo = compiler.cargo(&["build", "--locked", "--package", MODULE, "--profile", "module"]);
+    // Paths of this machine are not part of the module, and vectors of 128 bits are part of every browser.
+    let mut flags = "-Ctarget-feature=+simd128".to_owned();
+    let workspace = std::env::current_dir().map_err(|error| format!("the current folder: {error}"))?;
+    let home = std::env::var_os("CARGO_HOME").map(PathBuf::from);
+    let home = home.or_else(|| Some(PathBuf::from(std::env::var_os("HOME")?).join(".cargo")));
+    for folder in [Some(&workspace), home.as_ref(), compiler.packages.as_ref()].into_iter().flatten() {
+        flags += &format!(" --remap-path-prefix={}=", folder.display());
+    }
+    if let Some(packages) = &compiler.packages {
+        // The standard library is compiled as well, so that panics need no messages: they end the module in any case.
+        flags += " -Zunstable-options -Cpanic=immediate-abort -Zlocation-detail=none";
+        cargo.args(["-Zpanic-immediate-abort", "--config", "profile.module.panic='immediate-abort'"]);
+        let folder = packages.join("usr/bin");
+        let entries = fs::read_dir(&folder).map_err(|error| format!("{}: {error}", folder.display()))?;
+        let mut paths = entries.filter_map(|entry| Some(entry.ok()?.path()));
+        let is_linker = |path: &PathBuf| path.file_name().is_some_and(|n| n.to_string_lossy().starts_with("wasm-ld"));
+        let linker = paths.find(is_linker).ok_or_else(|| format!("{}: has no wasm-ld", folder.display()))?;
+        cargo.env("CARGO_TARGET_WASM32_UNKNOWN_UNKNOWN_LINKER", linker);
+    }
+    start(cargo.env("RUSTFLAGS", flags))?;
+    let built = compiler.target.join(TARGET).join("module").join(MODULE.replace('-', "_")).with_extension("wasm");
+    let bytes = fs::metadata(&built).map_err(|error| format!("{}: {error}", built.display()))?.len();
+    println!("{MODULE_FILE}: {bytes} bytes");
+    if bytes > MAX_MODULE_BYTES {
+        return Err(format!("the module has more than the {MAX_MODULE_BYTES} bytes that are allowed"));
+    }
+    fs::copy(&built, MODULE_FILE).map_err(|error| format!("{MODULE_FILE}: {error}"))?;
+    fs::write(STAMP_FILE, stamp()?).map_err(|error| format!("{STAMP_FILE}: {error}"))
+}
+
+/// Checks that the module was built of the sources of its crate.
+fn check_stamp() -> Outcome {
+    let written = fs::read_to_string(STAMP_FILE).map_err(|error| format!("{STAMP_FILE}: {error}"))?;
+    if written == stamp()? {
+        return Ok(());
+    }
+    Err(format!("{MODULE_FILE} was built of other sources than those of {MODULE}: run `cargo xtask wasm --build`"))
+}
+
+/// Returns a checksum of the sources of the module, as text.
+fn stamp() -> Result<String, String> {
+    let folder = Path::new(MODULE).join("src");
+    let entries = fs::read_dir(&folder).map_err(|error| format!("{}: {error}", folder.display()))?;
+    let mut files: Vec<PathBuf> = entries.filter_map(|entry| Some(entry.ok()?.path())).collect();
+    files.sort();
+    // FNV-1a, which is enough to notice a change.
+    let mut hash = 0xcbf2_9ce4_8422_2325_u64;
+    for file in files {
+        let text = fs::read_to_string(&file).map_err(|error| format!("{}: {error}", file.display()))?;
+        // Lines end differently on other systems.
+        for byte in text.bytes().filter(|&byte| byte != b'\r') {
+            hash = (hash ^ u64::from(byte)).wrapping_mul(0x0000_0100_0000_01b3);
+        }
+    }
+    Ok(format!("{hash:016x}\n"))
 }
 
 /// A compiler for the target.
@@ -55,7 +139,7 @@ impl Compiler {
         cargo.args(arguments).args(["--target", TARGET]).env("CARGO_TARGET_DIR", &self.target);
         if let Some(packages) = &self.packages {
             // To compile a standard library is an unstable option, which this variable allows.
-            cargo.args(["-Zbuild-std=std,panic_abort"]).env("RUSTC_BOOTSTRAP", "1");
+            cargo.arg("-Zbuild-std=std").env("RUSTC_BOOTSTRAP", "1");
             cargo.env("RUSTC", compiler(packages)).env("LD_LIBRARY_PATH", libraries(packages));
         }
         cargo
@@ -93,7 +177,7 @@ fn unpack_packages(folder: &Path) -> Outcome {
     for entry in fs::read_dir(&unpacked).map_err(failed)? {
         let package = entry.map_err(failed)?.path();
         let [from, to] = [&package, &unpacked].map(|path| path.to_string_lossy().into_owned());
-        run("dpkg", &["-x", &from, &to], &[])?;
+        start(Command::new("dpkg").args(["-x", &from, &to]))?;
         fs::remove_file(&package).map_err(failed)?;
     }
     // The folder has its name only once it is complete.

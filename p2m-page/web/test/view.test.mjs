@@ -1,63 +1,26 @@
-// Opens a page of the program in a browser, and compares what it shows with the answers of `p2m query`. The variable P2M
-// names the program. The tests are skipped where that or Chromium is missing.
+// Opens a page of the program in a browser, and compares what it shows with the answers of `p2m query`.
 
 import assert from "node:assert/strict";
-import { execFileSync } from "node:child_process";
-import { existsSync, mkdtempSync, readFileSync, writeFileSync } from "node:fs";
-import { tmpdir } from "node:os";
-import { join } from "node:path";
 import { after, before, test } from "node:test";
-import { pathToFileURL } from "node:url";
-import { chromium } from "playwright-core";
+import { Page, parsed, skip } from "./browser.mjs";
 
-const PROGRAM = process.env.P2M;
-const BROWSER = ["/usr/bin/chromium", "/usr/bin/google-chrome"].find(existsSync);
-const SCENE = new URL("../../../scenes/knot_and_cables.obj", import.meta.url);
-const skip = !PROGRAM ? "P2M does not name the program" : !BROWSER ? "Chromium is not installed" : false;
-
-let browser, page, answers;
-const problems = [];
+let opened, page, answers;
 
 before(async () => {
   if (skip) return;
-  const folder = mkdtempSync(join(tmpdir(), "p2m-page-"));
-  const [scene, html, csv] = ["scene.obj", "page.html", "answers.csv"].map((name) => join(folder, name));
-  writeFileSync(scene, `o all\n${readFileSync(SCENE, "utf8")}`);
   const queries = ["--random", "40", "--seed", "3", "--box-scale", "1.2"];
-  execFileSync(PROGRAM, ["view", scene, ...queries, "--field", "24", "--levels", "4", "--out", html], { stdio: "pipe" });
-  execFileSync(PROGRAM, ["query", scene, ...queries, "--out", csv], { stdio: "pipe" });
-  answers = readFileSync(csv, "utf8").trim().split("\n").slice(1).map((line) => line.split(","));
-  browser = await chromium.launch({
-    executablePath: BROWSER,
-    args: ["--no-sandbox", "--use-gl=angle", "--use-angle=swiftshader", "--enable-unsafe-swiftshader"],
-  });
-  page = await browser.newPage({ viewport: { width: 1200, height: 800 } });
-  page.on("console", (message) => message.type() === "error" && problems.push(message.text()));
-  page.on("pageerror", (error) => problems.push(error.message));
-  page.on("request", (request) => request.url().startsWith("http") && problems.push(request.url()));
-  await page.goto(pathToFileURL(html).href);
-  await page.waitForFunction(() => document.documentElement.dataset.ready);
+  opened = await Page.open(...queries, "--field", "24", "--levels", "4");
+  page = opened.tab;
+  answers = opened.query(...queries);
 });
 
-after(async () => browser?.close());
-
-const read = (name) =>
-  page.evaluate((name) => {
-    const term = [...document.querySelectorAll("#answer dt")].find((dt) => dt.textContent === name);
-    return term?.nextElementSibling.textContent;
-  }, name);
+after(async () => opened?.close());
 
 test("ten answers read as those of the program", { skip }, async () => {
   await page.focus("#picture");
   for (let i = 0; i < 10; i++) {
     await page.keyboard.press("n");
-    const [qx, qy, qz, x, y, z, distance, primitive, feature] = answers[i];
-    const numbers = async (name) => (await read(name)).split(", ").map(Number);
-    assert.deepEqual(await numbers("query"), [qx, qy, qz].map(Number));
-    assert.deepEqual(await numbers("closest point"), [x, y, z].map(Number));
-    assert.deepEqual(await numbers("distance"), [Number(distance)]);
-    assert.equal((await read("primitive")).split(" ")[1], primitive);
-    assert.equal(await read("feature"), feature);
+    assert.deepEqual(await opened.answer("answer"), parsed(answers[i]));
   }
 });
 
@@ -105,5 +68,5 @@ test("an object can be hidden, and levels of boxes shown", { skip }, async () =>
 });
 
 test("nothing failed and nothing was fetched", { skip }, () => {
-  assert.deepEqual(problems, []);
+  assert.deepEqual(opened.problems, []);
 });

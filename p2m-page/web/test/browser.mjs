@@ -1,0 +1,70 @@
+// The program and the browser of the tests. The variable P2M names the program. Tests are skipped where that or
+// Chromium is missing.
+
+import { execFileSync } from "node:child_process";
+import { existsSync, mkdtempSync, readFileSync, writeFileSync } from "node:fs";
+import { tmpdir } from "node:os";
+import { join } from "node:path";
+import { pathToFileURL } from "node:url";
+import { chromium } from "playwright-core";
+
+const PROGRAM = process.env.P2M;
+const BROWSER = ["/usr/bin/chromium", "/usr/bin/google-chrome"].find(existsSync);
+const SCENE = new URL("../../../scenes/knot_and_cables.obj", import.meta.url);
+export const skip = !PROGRAM ? "P2M does not name the program" : !BROWSER ? "Chromium is not installed" : false;
+
+// A page of the scene that `p2m view` wrote with these arguments.
+export class Page {
+  static async open(...args) {
+    const self = new Page();
+    self.folder = mkdtempSync(join(tmpdir(), "p2m-page-"));
+    self.scene = join(self.folder, "scene.obj");
+    writeFileSync(self.scene, `o all\n${readFileSync(SCENE, "utf8")}`);
+    const html = join(self.folder, "page.html");
+    execFileSync(PROGRAM, ["view", self.scene, ...args, "--out", html], { stdio: "pipe" });
+    self.browser = await chromium.launch({
+      executablePath: BROWSER,
+      args: ["--no-sandbox", "--use-gl=angle", "--use-angle=swiftshader", "--enable-unsafe-swiftshader"],
+    });
+    self.tab = await self.browser.newPage({ viewport: { width: 1200, height: 800 } });
+    // What must not happen: errors, and requests of the page.
+    self.problems = [];
+    self.tab.on("console", (message) => message.type() === "error" && self.problems.push(message.text()));
+    self.tab.on("pageerror", (error) => self.problems.push(error.message));
+    self.tab.on("request", (request) => request.url().startsWith("http") && self.problems.push(request.url()));
+    await self.tab.goto(pathToFileURL(html).href);
+    await self.tab.waitForFunction(() => document.documentElement.dataset.ready);
+    return self;
+  }
+
+  // Returns the rows that `p2m query` prints for these arguments.
+  query(...args) {
+    const csv = join(this.folder, "answers.csv");
+    execFileSync(PROGRAM, ["query", this.scene, ...args, "--out", csv], { stdio: "pipe" });
+    return readFileSync(csv, "utf8").trim().split("\n").slice(1).map((line) => line.split(","));
+  }
+
+  // Returns what stands beside a term of a list.
+  read(list, name) {
+    return this.tab.evaluate(([list, name]) => {
+      const term = [...document.querySelectorAll(`#${list} dt`)].find((dt) => dt.textContent === name);
+      return term?.nextElementSibling.textContent;
+    }, [list, name]);
+  }
+
+  // Returns the answer that a list shows, in the columns of `p2m query`.
+  async answer(list) {
+    const numbers = async (name) => (await this.read(list, name)).split(/,\s+/).map(Number);
+    return [...(await numbers("query")), ...(await numbers("closest point")), ...(await numbers("distance")),
+      Number((await this.read(list, "primitive")).split(" ")[1]), await this.read(list, "feature")];
+  }
+
+  close() {
+    return this.browser.close();
+  }
+}
+
+// Returns a row of `p2m query` with numbers as such.
+export function parsed(row) {
+  return row.slice(0, 9).map((cell, i) => (i < 8 ? Number(cell) : cell));
+}
