@@ -7,6 +7,7 @@ mod deep;
 mod licences;
 mod memory;
 mod package;
+mod pages;
 mod promises;
 mod python;
 mod wasm;
@@ -25,7 +26,7 @@ struct Task {
 /// The result of a task, with a message if it failed.
 type Outcome = Result<(), String>;
 
-const TASKS: [Task; 14] = [
+const TASKS: [Task; 15] = [
     Task {
         name: "quick",
         arguments: "[FILTER]",
@@ -74,6 +75,12 @@ const TASKS: [Task; 14] = [
         arguments: "[--rivals] [TESTS]",
         about: "Build the Python package and run its tests in a virtual environment, or compare it with others",
         run: python::check,
+    },
+    Task {
+        name: "pages",
+        arguments: "",
+        about: "Check the script of pages and test them in Chromium, where it is installed or can be",
+        run: |_| pages::run(),
     },
     Task {
         name: "bench",
