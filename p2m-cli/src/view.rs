@@ -86,7 +86,7 @@ pub(crate) struct Args {
     #[arg(long, value_name = "N", default_value_t = 0, value_parser = clap::value_parser!(u8).range(0..=16), allow_negative_numbers = true)]
     levels: u8,
 
-    /// Whether the page answers queries where the mouse is: `auto` stands for scenes of at most 20,000 primitives
+    /// Whether the page answers queries where the mouse is: `auto` stands for scenes of at most 10,000 primitives
     #[arg(long, value_name = "WHEN", value_enum, default_value_t = Live::Auto)]
     live: Live,
 
@@ -121,9 +121,9 @@ enum Live {
     Never,
 }
 
-/// The number of primitives above which a page has no live queries unless they are asked for. The page of a scene of
-/// this size is built within about a second.
-const MAX_LIVE_PRIMITIVES: usize = 20_000;
+/// The number of primitives above which a page has no live queries unless they are asked for. For a scene of this size
+/// the page builds indexes for a few seconds.
+const MAX_LIVE_PRIMITIVES: usize = 10_000;
 
 /// The largest number of query points of a page.
 const MAX_QUERIES: u64 = 100_000;
