@@ -32,6 +32,8 @@ point prints its answer and draws the primitive, the feature and the sphere of t
 slice of the distance field that can be moved, with --lists a slice through the cells of an octree or a P2M index, and \
 with --levels the boxes of the AABB tree. All of it can be done with the keyboard.
 
+Queries are answered live where the mouse is, by the library in the page, compiled to WebAssembly. --live says when.
+
 Numbers on the page are those of `p2m query`, in full. Scenes of more than a million primitives are drawn coarser, which \
 a note on the page says.
 
@@ -90,6 +92,10 @@ pub(crate) struct Args {
     #[arg(long, value_name = "N", default_value_t = 0, value_parser = clap::value_parser!(u8).range(0..=16), allow_negative_numbers = true)]
     levels: u8,
 
+    /// Whether the page answers queries where the mouse is: `auto` stands for scenes of at most 10,000 primitives
+    #[arg(long, value_name = "WHEN", value_enum, default_value_t = Live::Auto)]
+    live: Live,
+
     /// The index to search [default: that of a saved file, else aabb]
     #[arg(long, value_parser = backends(|_| true))]
     backend: Option<Backend>,
@@ -109,6 +115,21 @@ pub(crate) struct Args {
     #[command(flatten)]
     threads: ThreadArgs,
 }
+
+/// When a page answers queries itself.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, clap::ValueEnum)]
+enum Live {
+    /// If the scene is small
+    Auto,
+    /// Always
+    Always,
+    /// Never
+    Never,
+}
+
+/// The number of primitives above which a page has no live queries unless they are asked for. For a scene of this size
+/// the page builds indexes for a few seconds.
+const MAX_LIVE_PRIMITIVES: usize = 10_000;
 
 /// The largest number of query points of a page.
 const MAX_QUERIES: u64 = 100_000;
@@ -184,6 +205,10 @@ pub(crate) fn run(streams: &Streams, args: &Args) -> anyhow::Result<()> {
         let [x, y, z] = grid.counts();
         view.summary += &format!("; a field of {x} x {y} x {z} points");
         view = view.with_field(grid, &values);
+    }
+    let is_small = scene.soup.len() <= MAX_LIVE_PRIMITIVES;
+    if args.live == Live::Always || (args.live == Live::Auto && is_small) {
+        view = view.with_live_queries();
     }
     if args.levels > 0 {
         let tree = pool.install(|| AabbTree::build(&scene.soup, &Default::default()));

@@ -5,13 +5,15 @@ use crate::frame::Frame;
 use crate::packed::Packed;
 use crate::template::{STYLE, escape, fill, script_data};
 use nalgebra::Point3;
-use p2m_core::{Aabb, Closest, Feature, PrimitiveId, PrimitiveSet, Soup};
+use p2m_core::{Aabb, Closest, Element, Feature, PrimitiveId, PrimitiveSet, Soup};
 use p2m_field::Grid;
 use p2m_mixed::Scene;
 use serde::Serialize;
 
 const TEMPLATE: &str = include_str!("view.html");
 const SCRIPT: &str = include_str!("../assets/viewer.js");
+/// The library as a module of WebAssembly, which `cargo xtask wasm --build` makes of the crate p2m-live.
+const MODULE: &[u8] = include_bytes!("../assets/live.wasm");
 
 /// The axis that points up in a picture.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
@@ -67,6 +69,19 @@ struct Data {
     field: Option<FieldData>,
     #[serde(skip_serializing_if = "Option::is_none")]
     lists: Option<FieldData>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    live: Option<LiveData>,
+}
+
+/// The data of live queries: the module, and the exact scene with its primitives in the order of their ids.
+#[derive(Debug, Serialize)]
+struct LiveData {
+    module: Packed,
+    coordinates: Packed,
+    /// The numbers of vertices of the primitives.
+    sizes: Packed,
+    /// The vertices of the primitives, one after the other.
+    indices: Packed,
 }
 
 /// The primitives of a scene: positions in the frame, and the numbers of vertices of each kind of primitives.
@@ -147,6 +162,7 @@ impl<'a> View<'a> {
             cells: None,
             field: None,
             lists: None,
+            live: None,
         };
         Self { scene, frame, data, title: "A scene".to_owned(), summary: String::new(), about: String::new() }
     }
@@ -268,6 +284,30 @@ impl<'a> View<'a> {
         }
     }
 
+    /// Lets the page answer queries wherever the mouse is: it gets the library, compiled to WebAssembly, and the exact
+    /// vertices of the scene. The page builds the indexes itself when it is opened.
+    #[must_use]
+    pub fn with_live_queries(mut self) -> Self {
+        let soup = &self.scene.soup;
+        let coordinates: Vec<f64> = soup.positions().iter().flat_map(|p| [p.x, p.y, p.z]).collect();
+        let (mut sizes, mut indices) = (Vec::with_capacity(soup.len()), Vec::new());
+        for element in soup.elements() {
+            sizes.push(match element {
+                Element::Point(_) => 1u8,
+                Element::Segment(_) => 2,
+                Element::Triangle(_) => 3,
+            });
+            indices.extend_from_slice(element.indices());
+        }
+        self.data.live = Some(LiveData {
+            module: Packed::smaller(MODULE),
+            coordinates: Packed::new(&coordinates),
+            sizes: Packed::new(&sizes),
+            indices: Packed::new(&indices),
+        });
+        self
+    }
+
     /// Returns the page as HTML.
     ///
     /// # Errors
@@ -365,7 +405,6 @@ impl Drawn {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use p2m_core::Element;
     use p2m_mixed::Object;
     use serde_json::Value;
 

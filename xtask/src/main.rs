@@ -8,8 +8,10 @@ mod deep;
 mod licences;
 mod memory;
 mod package;
+mod pages;
 mod promises;
 mod python;
+mod wasm;
 
 use std::path::Path;
 use std::process::{Command, ExitCode};
@@ -25,7 +27,7 @@ struct Task {
 /// The result of a task, with a message if it failed.
 type Outcome = Result<(), String>;
 
-const TASKS: [Task; 14] = [
+const TASKS: [Task; 16] = [
     Task {
         name: "quick",
         arguments: "[FILTER]",
@@ -58,6 +60,12 @@ const TASKS: [Task; 14] = [
         run: |_| promises::check(),
     },
     Task {
+        name: "wasm",
+        arguments: "[--build]",
+        about: "Check the library for WebAssembly, where a compiler can be found or downloaded, or build the module",
+        run: wasm::run,
+    },
+    Task {
         name: "package",
         arguments: "",
         about: "Pack the crates as for publishing, and check what is in them and the licences of dependencies",
@@ -68,6 +76,12 @@ const TASKS: [Task; 14] = [
         arguments: "[--rivals] [TESTS]",
         about: "Build the Python package and run its tests in a virtual environment, or compare it with others",
         run: python::check,
+    },
+    Task {
+        name: "pages",
+        arguments: "",
+        about: "Check the script of pages and test them in Chromium, where it is installed or can be",
+        run: |_| pages::run(),
     },
     Task {
         name: "bench",

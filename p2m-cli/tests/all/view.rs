@@ -23,6 +23,23 @@ fn a_page_has_what_was_asked_for() {
 }
 
 #[test]
+fn small_scenes_have_live_queries_unless_they_are_refused() {
+    let folder = TempDir::new().unwrap();
+    let (page, sphere) = (path(&folder, "page.html"), path(&folder, "sphere.ply"));
+    table(&["generate", "ico-sphere", "--frequency", "32", "--out", &sphere]);
+    for (scene, options, expected) in [
+        (SCENE, &[][..], true),
+        (SCENE, &["--live", "never"], false),
+        (&sphere, &[], false),
+        (&sphere, &["--live", "always"], true),
+    ] {
+        table(&[&["view", scene, "--out", &page], options].concat());
+        let html = fs::read_to_string(&page).unwrap();
+        assert_eq!(html.contains("\"live\":{"), expected, "{scene} {options:?}");
+    }
+}
+
+#[test]
 fn what_cannot_be_shown_is_told() {
     let folder = TempDir::new().unwrap();
     let page = path(&folder, "page.html");

@@ -45,53 +45,21 @@ export class AnswersLayer {
   // Selects an answer, and draws its primitive, its feature, its segment and the sphere of its lower bound.
   select(i, colours) {
     this.selected = i;
-    this.selection.clear();
+    empty(this.selection);
     if (i < 0) return;
     const at = (array, k) => new three.Vector3(...array.subarray(3 * k, 3 * k + 3));
     const query = at(this.from, i);
-    this.selection.add(marker(query, colours.selected, 11));
-    if (!this.isAnswered(i)) return;
-    const foot = at(this.to, i);
-    this.selection.add(marker(foot, colours.selected, 9), line([query, foot], colours.selected));
-    const size = this.sizes[i];
-    const vertices = [0, 1, 2].slice(0, size).map((k) => at(this.vertices, 3 * i + k));
-    if (size === 3) {
-      const face = new three.BufferGeometry().setFromPoints(vertices);
-      const material = new three.MeshBasicMaterial({
-        color: colours.selected, side: three.DoubleSide, transparent: true, opacity: 0.35, depthTest: false,
-      });
-      const drawn = new three.Mesh(face, material);
-      drawn.renderOrder = 2;
-      this.selection.add(drawn);
+    if (!this.isAnswered(i)) {
+      this.selection.add(marker(query, colours.selected, 11));
+      return;
     }
-    if (size > 1) this.selection.add(line([...vertices, vertices[0]].slice(0, size === 3 ? 4 : 2), colours.selected));
-    // The feature that holds the closest point is drawn once more, over everything else.
-    const [kind, number] = this.feature(i);
-    if (kind === "vertex") this.selection.add(marker(vertices[number], colours.feature, 13));
-    if (kind === "edge") {
-      this.selection.add(line([vertices[number], vertices[(number + 1) % size]], colours.feature));
-    }
-    const radius = this.lower_bounds[i] / this.frame.scale;
-    if (this.hasSphere && radius > 0) {
-      const sphere = new three.Mesh(
-        new three.SphereGeometry(1, 32, 20),
-        new three.MeshBasicMaterial({ color: colours.selected, transparent: true, opacity: 0.14, depthWrite: false }),
-      );
-      sphere.scale.setScalar(radius);
-      sphere.position.copy(query);
-      this.selection.add(sphere);
-    }
-  }
-
-  // Returns the kind of the feature of an answer, and its number within the primitive.
-  feature(i) {
-    const code = this.features[i];
-    return code === 6 ? ["face", 0] : code < 3 ? ["vertex", code] : ["edge", code - 3];
+    const vertices = [0, 1, 2].slice(0, this.sizes[i]).map((k) => at(this.vertices, 3 * i + k));
+    const radius = this.hasSphere ? this.lower_bounds[i] / this.frame.scale : 0;
+    drawAnswer(this.selection, query, at(this.to, i), vertices, featureOf(this.features[i]), radius, colours);
   }
 
   featureName(i) {
-    const [kind, number] = this.feature(i);
-    return kind === "face" ? kind : `${kind}${number}`;
+    return featureName(this.features[i]);
   }
 
   // Returns the answer whose query or closest point is the nearest to a place on the screen, if one is within `radius`
@@ -109,6 +77,56 @@ export class AnswersLayer {
       }
     }
     return found;
+  }
+}
+
+// Returns the kind of the feature with a code, and its number within the primitive.
+export function featureOf(code) {
+  return code === 6 ? ["face", 0] : code < 3 ? ["vertex", code] : ["edge", code - 3];
+}
+
+export function featureName(code) {
+  const [kind, number] = featureOf(code);
+  return kind === "face" ? kind : `${kind}${number}`;
+}
+
+// Removes everything from a group, and frees its memory on the GPU.
+export function empty(group) {
+  for (const { geometry, material } of group.children) {
+    geometry.dispose();
+    material.dispose();
+  }
+  group.clear();
+}
+
+// Adds an answer to a group: the query, the segment to its closest point, the primitive with these vertices, its
+// feature and the sphere of the lower bound.
+export function drawAnswer(group, query, foot, vertices, feature, radius, colours) {
+  const { selected } = colours;
+  group.add(marker(query, selected, 11), marker(foot, selected, 9), line([query, foot], selected));
+  const size = vertices.length;
+  if (size === 3) {
+    const face = new three.BufferGeometry().setFromPoints(vertices);
+    const material = new three.MeshBasicMaterial({
+      color: colours.selected, side: three.DoubleSide, transparent: true, opacity: 0.35, depthTest: false,
+    });
+    const drawn = new three.Mesh(face, material);
+    drawn.renderOrder = 2;
+    group.add(drawn);
+  }
+  if (size > 1) group.add(line([...vertices, vertices[0]].slice(0, size === 3 ? 4 : 2), colours.selected));
+  // The feature that holds the closest point is drawn once more, over everything else.
+  const [kind, number] = size > 0 ? feature : ["none", 0];
+  if (kind === "vertex") group.add(marker(vertices[number], colours.feature, 13));
+  if (kind === "edge") group.add(line([vertices[number], vertices[(number + 1) % size]], colours.feature));
+  if (radius > 0) {
+    const sphere = new three.Mesh(
+      new three.SphereGeometry(1, 32, 20),
+      new three.MeshBasicMaterial({ color: colours.selected, transparent: true, opacity: 0.14, depthWrite: false }),
+    );
+    sphere.scale.setScalar(radius);
+    sphere.position.copy(query);
+    group.add(sphere);
   }
 }
 
@@ -130,7 +148,7 @@ function points(positions, colours, size) {
   return new three.Points(geometry, new three.PointsMaterial({ size, sizeAttenuation: false, vertexColors: true }));
 }
 
-function marker(position, color, size) {
+export function marker(position, color, size) {
   const geometry = new three.BufferGeometry().setFromPoints([position]);
   const material = new three.PointsMaterial({ color, size, sizeAttenuation: false, depthTest: false });
   const drawn = new three.Points(geometry, material);
@@ -138,7 +156,7 @@ function marker(position, color, size) {
   return drawn;
 }
 
-function line(vertices, color) {
+export function line(vertices, color) {
   const geometry = new three.BufferGeometry().setFromPoints(vertices);
   const drawn = new three.Line(geometry, new three.LineBasicMaterial({ color, depthTest: false }));
   drawn.renderOrder = 3;

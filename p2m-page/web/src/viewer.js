@@ -6,6 +6,7 @@ import { AnswersLayer } from "./answers.js";
 import { CellsLayer } from "./cells.js";
 import { Frame, readData } from "./data.js";
 import { histogram, legend } from "./histogram.js";
+import { LiveQueries } from "./live.js";
 import { SceneLayer } from "./scene.js";
 import { SliceLayer } from "./slice.js";
 import { checkbox, count, counted, element, short } from "./text.js";
@@ -30,6 +31,7 @@ const KEYS = [
   ["x, y and z", "lay the slice across this axis"],
   ["[ and ]", "move the slice"],
   ["l and k", "next and previous level of boxes"],
+  ["q", "let the live query follow the mouse, or stop"],
   ["d", "dark or light"],
   ["?", "show or hide this list"],
 ];
@@ -59,6 +61,7 @@ class Viewer {
     if (data.cells) this.addLayer("cells", new CellsLayer(data.cells, this.colours), "group");
     const field = data.field ?? data.lists;
     if (field) this.addLayer("slice", new SliceLayer(field, !!data.lists), "mesh");
+    if (data.live) this.addLayer("live", new LiveQueries(this, data.live), "group");
     if (this.cells) this.cells.group.visible = false;
     if (this.slice) this.scene.setOpacity(0.25);
 
@@ -86,6 +89,7 @@ class Viewer {
     this.scene.setColours(this.colours);
     if (this.cells) this.cells.setColours(this.colours);
     if (this.answers) this.answers.select(this.answers.selected, this.colours);
+    this.live?.redraw();
     this.draw();
   }
 
@@ -148,6 +152,7 @@ class Viewer {
     if (this.data.notes.length > 0) {
       add("Notes", "notes", element("ul", {}, ...this.data.notes.map((note) => element("li", {}, note))));
     }
+    this.live?.makePanel(add);
     if (this.answers) this.makeAnswers(add);
     if (this.slice) this.makeSlice(add);
     this.makeShown(add);
@@ -181,6 +186,13 @@ class Viewer {
         answers.hasSphere = on;
         answers.select(answers.selected, this.colours);
       }, "show-sphere");
+    }
+    if (this.live) {
+      box("live query", true, (on) => (this.live.group.visible = on), "show-live");
+      box("sphere of its lower bound", true, (on) => {
+        this.live.hasSphere = on;
+        this.live.redraw();
+      }, "show-live-sphere");
     }
     if (this.slice) box("slice", true, (on) => (this.slice.mesh.visible = on), "show-slice");
     if (this.cells) box("boxes of the index", false, (on) => (this.cells.group.visible = on), "show-cells");
@@ -375,6 +387,7 @@ class Viewer {
     canvas.addEventListener("pointermove", (event) => {
       if (this.isDragging) this.moveSlice(this.slice.axis, this.slicePart - event.movementY / canvas.clientHeight);
       else this.readSlice(event);
+      this.live?.follow(event);
     });
     canvas.addEventListener("pointerup", (event) => {
       const isClick = pressed && Math.hypot(event.clientX - pressed[0], event.clientY - pressed[1]) < 4;
@@ -419,7 +432,7 @@ class Viewer {
       ArrowLeft: () => this.turn(-0.1, 0, 1), ArrowRight: () => this.turn(0.1, 0, 1),
       ArrowUp: () => this.turn(0, -0.1, 1), ArrowDown: () => this.turn(0, 0.1, 1),
       "+": () => this.turn(0, 0, 0.9), "=": () => this.turn(0, 0, 0.9), "-": () => this.turn(0, 0, 1 / 0.9),
-      f: () => this.fit(), d: () => this.toggleTheme(),
+      f: () => this.fit(), d: () => this.toggleTheme(), q: this.live && (() => this.live.toggle()),
       n: answers && (() => this.step(1)), p: answers && (() => this.step(-1)),
       x: slice && (() => this.moveSlice(0, 0.5)), y: slice && (() => this.moveSlice(1, 0.5)),
       z: slice && (() => this.moveSlice(2, 0.5)),
@@ -446,6 +459,12 @@ readData().then((data) => {
   // Tests read what is shown from here.
   window.viewer = new Viewer(data);
   document.documentElement.dataset.ready = "true";
+  const { live } = window.viewer;
+  live?.start().then(() => (document.documentElement.dataset.live = "ready"), (error) => {
+    live.say(`Live queries do not work here: ${error.message}.`);
+    document.documentElement.dataset.live = "failed";
+    console.error(error);
+  });
 }).catch((error) => {
   fail(error);
   document.documentElement.dataset.ready = "failed";

@@ -5,10 +5,9 @@ import { execFileSync } from "node:child_process";
 import { mkdtempSync, statSync } from "node:fs";
 import { tmpdir } from "node:os";
 import { join } from "node:path";
-import { BROWSER, launch, open } from "./browser.mjs";
+import { PROGRAM, launch, openTab, skip } from "./browser.mjs";
 
-const PROGRAM = process.env.P2M;
-if (!PROGRAM || !BROWSER) throw new Error("this needs Chromium, and the variable P2M, which names the program");
+if (skip) throw new Error(skip);
 
 // The number of frames that are timed.
 const FRAMES = 20;
@@ -22,7 +21,7 @@ for (const frequency of [22, 71, 223]) {
   execFileSync(PROGRAM, ["generate", "ico-sphere", "--frequency", String(frequency), "--out", scene], { stdio: "pipe" });
   execFileSync(PROGRAM, ["view", scene, "--random", "1000", "--out", html], { stdio: "pipe" });
   const start = performance.now();
-  const page = await open(browser, html, (problem) => { throw new Error(problem); });
+  const page = await openTab(browser, html, (problem) => { throw new Error(problem); });
   const ready = (performance.now() - start) / 1000;
   const rate = await page.evaluate(async (frames) => {
     const { viewer } = window;

@@ -1,11 +1,11 @@
 // Writes a picture of a page as a browser shows it: node test/picture.mjs PAGE.html PICTURE.png [dark]
 
-import { BROWSER, launch, open } from "./browser.mjs";
+import { launch, openTab } from "./browser.mjs";
 
 const [, , html, picture, theme] = process.argv;
-if (!picture || !BROWSER) throw new Error("this needs Chromium, a page, and the file of the picture");
+if (!picture) throw new Error("this needs a page, and the file of the picture");
 const browser = await launch();
-const page = await open(browser, html, (problem) => { throw new Error(problem); });
+const page = await openTab(browser, html, (problem) => { throw new Error(problem); });
 if (theme === "dark") await page.click("#theme");
 await page.evaluate(() => new Promise(requestAnimationFrame));
 await page.screenshot({ path: picture });

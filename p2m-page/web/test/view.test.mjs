@@ -1,61 +1,27 @@
-// Opens a page of the program in a browser, and compares what it shows with the answers of `p2m query`. The variable P2M
-// names the program. The tests are skipped where that or Chromium is missing.
+// Opens a page of the program in a browser, and compares what it shows with the answers of `p2m query`.
 
 import assert from "node:assert/strict";
 import { execFileSync } from "node:child_process";
-import { mkdtempSync, readFileSync, writeFileSync } from "node:fs";
-import { tmpdir } from "node:os";
-import { join } from "node:path";
 import { after, before, test } from "node:test";
-import { fileURLToPath } from "node:url";
-import { BROWSER, launch, open } from "./browser.mjs";
+import { PROGRAM, Page, parsed, skip } from "./browser.mjs";
 
-const PROGRAM = process.env.P2M;
-const SCENE = new URL("../../../scenes/knot_and_cables.obj", import.meta.url);
-const skip = !PROGRAM ? "P2M does not name the program" : !BROWSER ? "Chromium is not installed" : false;
-
-let browser, page, answers, folder;
-const problems = [];
-
-// Makes the page of a scene and opens it.
-function view(scene, ...options) {
-  const html = join(folder, "other.html");
-  execFileSync(PROGRAM, ["view", scene, ...options, "--out", html], { stdio: "pipe" });
-  return open(browser, html, (problem) => problems.push(problem));
-}
+let opened, page, answers;
 
 before(async () => {
   if (skip) return;
-  folder = mkdtempSync(join(tmpdir(), "p2m-page-"));
-  const [scene, html, csv] = ["scene.obj", "page.html", "answers.csv"].map((name) => join(folder, name));
-  writeFileSync(scene, `o all\n${readFileSync(SCENE, "utf8")}`);
   const queries = ["--random", "40", "--seed", "3", "--box-scale", "1.2"];
-  execFileSync(PROGRAM, ["view", scene, ...queries, "--field", "24", "--levels", "4", "--out", html], { stdio: "pipe" });
-  execFileSync(PROGRAM, ["query", scene, ...queries, "--out", csv], { stdio: "pipe" });
-  answers = readFileSync(csv, "utf8").trim().split("\n").slice(1).map((line) => line.split(","));
-  browser = await launch();
-  page = await open(browser, html, (problem) => problems.push(problem));
+  opened = await Page.open(...queries, "--field", "24", "--levels", "4");
+  page = opened.tab;
+  answers = opened.query(...queries);
 });
 
-after(async () => browser?.close());
-
-const read = (name) =>
-  page.evaluate((name) => {
-    const term = [...document.querySelectorAll("#answer dt")].find((dt) => dt.textContent === name);
-    return term?.nextElementSibling.textContent;
-  }, name);
+after(async () => opened?.close());
 
 test("ten answers read as those of the program", { skip }, async () => {
   await page.focus("#picture");
   for (let i = 0; i < 10; i++) {
     await page.keyboard.press("n");
-    const [qx, qy, qz, x, y, z, distance, primitive, feature] = answers[i];
-    const numbers = async (name) => (await read(name)).split(", ").map(Number);
-    assert.deepEqual(await numbers("query"), [qx, qy, qz].map(Number));
-    assert.deepEqual(await numbers("closest point"), [x, y, z].map(Number));
-    assert.deepEqual(await numbers("distance"), [Number(distance)]);
-    assert.equal((await read("primitive")).split(" ")[1], primitive);
-    assert.equal(await read("feature"), feature);
+    assert.deepEqual(await opened.answer("answer"), parsed(answers[i]));
   }
 });
 
@@ -104,8 +70,8 @@ test("an object can be hidden, and levels of boxes shown", { skip }, async () =>
 
 test("a slice through cells tells the length of the list where the pointer is", { skip }, async () => {
   for (const backend of ["octree", "p2m"]) {
-    const lists = await view(fileURLToPath(SCENE), "--backend", backend, "--lists", "32");
-    const stats = JSON.parse(execFileSync(PROGRAM, ["stats", fileURLToPath(SCENE), "--backend", backend, "--json"],
+    const lists = await opened.view(opened.scene, "--backend", backend, "--lists", "32");
+    const stats = JSON.parse(execFileSync(PROGRAM, ["stats", opened.scene, "--backend", backend, "--json"],
       { stdio: "pipe" }));
     const longest = await lists.evaluate(() => window.viewer.slice.values.reduce((a, b) => Math.max(a, b || 0), 0));
     assert.ok(2 ** longest > 1 && Math.round(2 ** longest) <= stats.lists.max, `${backend}: ${2 ** longest}`);
@@ -126,9 +92,8 @@ const SCENES = {
 };
 for (const [kind, text] of Object.entries(SCENES)) {
   test(`a scene is drawn: ${kind}`, { skip }, async () => {
-    const file = join(folder, text.startsWith("OFF") ? "kind.off" : "kind.obj");
-    writeFileSync(file, text);
-    const other = await view(file);
+    const file = opened.write(text.startsWith("OFF") ? "kind.off" : "kind.obj", text);
+    const other = await opened.view(file);
     const isDrawn = await other.evaluate(() => {
       const { viewer } = window;
       viewer.renderer.render(viewer.world, viewer.camera);
@@ -143,5 +108,5 @@ for (const [kind, text] of Object.entries(SCENES)) {
 }
 
 test("nothing failed and nothing was fetched", { skip }, () => {
-  assert.deepEqual(problems, []);
+  assert.deepEqual(opened.problems, []);
 });

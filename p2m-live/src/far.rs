@@ -1,0 +1,144 @@
+//! The scene in f32, a million units from the origin.
+
+use crate::ordinary;
+use crate::scene::answer;
+use p2m::nalgebra::Point3;
+use p2m::{AabbTree, BuildIndex, ClosestPoint, PrimitiveSet, Soup};
+use std::sync::Arc;
+
+/// The offset of the scene in each coordinate, which is a million units from the origin. Numbers of f32 are 1/16 apart
+/// there.
+pub const OFFSET: f64 = 577_350.25;
+/// The longest side that the scene has at least, in units: a smaller one is enlarged by a power of two, because
+/// vertices that are 1/16 apart would not resemble it.
+const MIN_SIDE: f64 = 16.0;
+
+/// An answer far from the origin, beside that of ordinary arithmetic. All of it is in the frame of the scene.
+#[derive(Clone, Copy, Debug)]
+#[non_exhaustive]
+pub struct FarAnswer {
+    /// The query as f32 represents it.
+    pub query: Point3<f64>,
+    /// The closest point in p2m, from the weights of the vertices of its primitive.
+    pub point: Point3<f64>,
+    /// The distance in p2m.
+    pub distance: f64,
+    /// The closest point in ordinary arithmetic.
+    pub ordinary_point: Point3<f64>,
+    /// The distance in ordinary arithmetic.
+    pub ordinary_distance: f64,
+    /// The distance in f64, of the same vertices and the same query.
+    pub true_distance: f64,
+}
+
+impl FarAnswer {
+    /// The number of values of an answer as an array.
+    pub const LEN: usize = 12;
+
+    /// Returns the values in the order of the fields.
+    #[must_use]
+    pub fn values(&self) -> [f64; Self::LEN] {
+        let [query, point, other] = [self.query, self.point, self.ordinary_point].map(<[f64; 3]>::from);
+        let mut values = [0.0; Self::LEN];
+        for (part, (vector, number)) in values.chunks_exact_mut(4).zip([
+            (query, self.true_distance),
+            (point, self.distance),
+            (other, self.ordinary_distance),
+        ]) {
+            part[..3].copy_from_slice(&vector);
+            part[3] = number;
+        }
+        values
+    }
+}
+
+/// A scene whose vertices are rounded to f32 after it was moved away from the origin, with trees in f32 and in f64.
+pub struct FarScene {
+    scale: f64,
+    centre: Point3<f64>,
+    index: AabbTree<f32, Soup<f32>>,
+    exact: AabbTree<f64, Arc<Soup<f64>>>,
+}
+
+impl FarScene {
+    /// Moves a scene. `None` stands for an empty scene, and for one that f32 cannot represent.
+    pub(crate) fn new(soup: &Soup<f64>) -> Option<Self> {
+        let bounds = soup.aabb();
+        if bounds.is_empty() {
+            return None;
+        }
+        let side = (bounds.max - bounds.min).max();
+        let scale = if side > 0.0 { (MIN_SIDE / side).log2().ceil().max(0.0).exp2() } else { 1.0 };
+        let centre = Point3::from(bounds.min.coords * 0.5 + bounds.max.coords * 0.5);
+        let moved: Vec<Point3<f32>> = soup.positions().iter().map(|p| rounded(p, &centre, scale)).collect();
+        let widened = moved.iter().map(|p| p.cast::<f64>()).collect();
+        let index = AabbTree::build(Soup::new(moved, soup.elements()).ok()?, &Default::default()).ok()?;
+        let widened = Arc::new(Soup::new(widened, soup.elements()).ok()?);
+        let exact = AabbTree::build(widened, &Default::default()).ok()?;
+        Some(Self { scale, centre, index, exact })
+    }
+
+    /// Returns how many times the scene is enlarged.
+    #[must_use]
+    pub fn scale(&self) -> f64 {
+        self.scale
+    }
+
+    /// Answers a query, which is moved and rounded as the scene is.
+    #[must_use]
+    pub fn query(&self, query: &Point3<f64>) -> Option<FarAnswer> {
+        let query = rounded(query, &self.centre, self.scale);
+        let closest = self.index.closest_point(&query)?;
+        let exact = answer(&self.exact, &query.cast())?;
+        let (ordinary_point, ordinary_distance) = ordinary::closest_point(self.index.set(), &query)?;
+        let vertices = self.exact.set().element(closest.primitive);
+        let weighted = vertices.indices().iter().zip(closest.barycentric).map(|(&i, weight)| {
+            // Weights of f32 add up to one only nearly, so the vertices are relative to the offset.
+            self.back(&self.exact.set().positions()[i as usize]).coords * f64::from(weight)
+        });
+        Some(FarAnswer {
+            query: self.back(&query.cast()),
+            point: Point3::from(weighted.fold(p2m::nalgebra::Vector3::zeros(), |sum, part| sum + part)),
+            distance: f64::from(closest.distance) / self.scale,
+            ordinary_point: self.back(&ordinary_point.cast()),
+            ordinary_distance: f64::from(ordinary_distance) / self.scale,
+            true_distance: exact.closest.distance / self.scale,
+        })
+    }
+
+    /// Returns a point far from the origin in the frame of the scene.
+    fn back(&self, point: &Point3<f64>) -> Point3<f64> {
+        Point3::from(std::array::from_fn(|k| (point[k] - OFFSET) / self.scale + self.centre[k]))
+    }
+}
+
+#[allow(clippy::cast_possible_truncation, reason = "the loss of digits is what the page shows")]
+fn rounded(point: &Point3<f64>, centre: &Point3<f64>, scale: f64) -> Point3<f32> {
+    Point3::from(std::array::from_fn(|k| ((point[k] - centre[k]) * scale + OFFSET) as f32))
+}
+
+#[cfg(test)]
+mod tests {
+    use crate::scene::tests::{live, queries};
+
+    #[test]
+    fn distances_far_away_are_accurate_where_those_of_ordinary_arithmetic_jump() {
+        let mut live = live();
+        let scale = live.build_far().unwrap();
+        assert_eq!(scale, 2.0);
+        let far = live.far().unwrap();
+        let mut worst = 0.0f64;
+        for query in queries() {
+            let answer = far.query(&query).unwrap();
+            // Half a spacing of f32, in each coordinate.
+            assert!((answer.query - query).amax() <= 1.0 / 32.0 / scale);
+            // The unit roundoff of f32 twice: for the distance, and for the frame of the page.
+            let bound = f64::from(f32::EPSILON) * answer.true_distance;
+            assert!((answer.distance - answer.true_distance).abs() <= bound, "{answer:?}");
+            let measured = (answer.point - answer.query).norm();
+            assert!((measured - answer.true_distance).abs() <= 16.0 * f64::from(f32::EPSILON) * 16.0, "{answer:?}");
+            worst = worst.max((answer.ordinary_distance - answer.true_distance).abs());
+        }
+        assert!(worst > 0.01, "{worst}");
+    }
+}

@@ -1,0 +1,53 @@
+//! Checks the script of pages, and tests pages in a browser.
+
+use crate::{Outcome, cargo, output, start};
+use std::path::{Path, PathBuf};
+use std::process::Command;
+
+/// The folder of the script and its tests.
+const FOLDER: &str = "p2m-page/web";
+/// Where the tests look for a browser.
+const BROWSERS: [&str; 2] = ["/usr/bin/chromium", "/usr/bin/google-chrome"];
+
+/// Checks that the script in the assets is what the sources make, and runs the tests, or says why it cannot here.
+pub(crate) fn run() -> Outcome {
+    if output("npm", &["--version"]).is_err() {
+        println!("\n== skipped: there is no npm for the script of pages");
+        return Ok(());
+    }
+    if let Err(why) = start(&mut npm(&["ci", "--no-audit", "--no-fund", "--loglevel=error"])) {
+        println!("\n== skipped: the packages that the script of pages needs cannot be installed\n{why}");
+        return Ok(());
+    }
+    start(&mut npm(&["run", "check"]))?;
+    if let Err(why) = find_browser() {
+        println!("\n== skipped: there is no Chromium for the tests of pages: {why}");
+        return Ok(());
+    }
+    // With the features of `cargo test --workspace`, little is compiled after the other tests.
+    cargo(&["build", "--locked", "--workspace", "--bin", "p2m"], &[])?;
+    let target = PathBuf::from(std::env::var_os("CARGO_TARGET_DIR").unwrap_or_else(|| "target".into()));
+    let program = target.join("debug").join(format!("p2m{}", std::env::consts::EXE_SUFFIX));
+    let program = std::path::absolute(&program).map_err(|error| format!("{}: {error}", program.display()))?;
+    start(npm(&["test"]).env("P2M", program))
+}
+
+fn npm(arguments: &[&str]) -> Command {
+    let mut npm = Command::new("npm");
+    npm.args(arguments).current_dir(FOLDER);
+    npm
+}
+
+/// Installs a browser if there is none and if this user may install packages.
+fn find_browser() -> Outcome {
+    if BROWSERS.iter().any(|path| Path::new(path).exists()) {
+        return Ok(());
+    }
+    if output("id", &["-u"])?.trim() != "0" {
+        return Err("only root can install it".to_owned());
+    }
+    let install = ["-y", "-qq", "--no-install-recommends", "install", "chromium"];
+    output("apt-get", &install)
+        .or_else(|_| output("apt-get", &["update"]).and_then(|_| output("apt-get", &install)))
+        .map(drop)
+}
