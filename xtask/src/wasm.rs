@@ -38,8 +38,8 @@ pub(crate) fn run(arguments: &[String]) -> Outcome {
         Ok(compiler) if builds => build(&compiler),
         Ok(compiler) => {
             let library = ["check", "--locked", "--package", "p2m", "--no-default-features", "--features", FEATURES];
-            start(&mut compiler.cargo(&library))?;
-            start(&mut compiler.cargo(&["check", "--locked", "--package", MODULE]))
+            start(&mut compiler.cargo(&library, "std,panic_abort"))?;
+            start(&mut compiler.cargo(&["check", "--locked", "--package", MODULE], "std,panic_abort"))
         }
         Err(why) => {
             let message = format!("there is no compiler for {TARGET} (rustup target add {TARGET}): {why}");
@@ -54,7 +54,7 @@ pub(crate) fn run(arguments: &[String]) -> Outcome {
 
 /// Builds the module, and writes it and the checksum of its sources.
 fn build(compiler: &Compiler) -> Outcome {
-    let mut cargo = compiler.cargo(&["build", "--locked", "--package", MODULE, "--profile", "module"]);
+    let mut cargo = compiler.cargo(&["build", "--locked", "--package", MODULE, "--profile", "module"], "std");
     // Paths of this machine are not part of the module, and vectors of 128 bits are part of every browser.
     let mut flags = "-Ctarget-feature=+simd128".to_owned();
     let workspace = std::env::current_dir().map_err(|error| format!("the current folder: {error}"))?;
@@ -133,13 +133,14 @@ impl Compiler {
         Ok(unpack_packages(&packages).map(|()| Self { packages: Some(packages), target: target.join("wasm") }))
     }
 
-    /// Returns a command of cargo for the target.
-    fn cargo(&self, arguments: &[&str]) -> Command {
+    /// Returns a command of cargo for the target. The crates of the standard library are those that it compiles if the
+    /// compiler comes without them; panics that abort at once need no crate.
+    fn cargo(&self, arguments: &[&str], standard_library: &str) -> Command {
         let mut cargo = Command::new("cargo");
         cargo.args(arguments).args(["--target", TARGET]).env("CARGO_TARGET_DIR", &self.target);
         if let Some(packages) = &self.packages {
             // To compile a standard library is an unstable option, which this variable allows.
-            cargo.arg("-Zbuild-std=std").env("RUSTC_BOOTSTRAP", "1");
+            cargo.arg(format!("-Zbuild-std={standard_library}")).env("RUSTC_BOOTSTRAP", "1");
             cargo.env("RUSTC", compiler(packages)).env("LD_LIBRARY_PATH", libraries(packages));
         }
         cargo
