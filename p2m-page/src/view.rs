@@ -1,6 +1,7 @@
 //! The page of a scene.
 
 use crate::decimate::{MAX_PRIMITIVES, is_distinct, representatives};
+use crate::deviations::{DeviationData, Deviations};
 use crate::frame::Frame;
 use crate::packed::Packed;
 use nalgebra::Point3;
@@ -64,6 +65,8 @@ struct Data {
     cells: Option<CellData>,
     #[serde(skip_serializing_if = "Option::is_none")]
     field: Option<FieldData>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    deviations: Option<DeviationData>,
 }
 
 /// The primitives of a scene: positions in the frame, and the numbers of vertices of each kind of primitives.
@@ -143,6 +146,7 @@ impl<'a> View<'a> {
             answers: None,
             cells: None,
             field: None,
+            deviations: None,
         };
         Self { scene, frame, data, title: "A scene".to_owned(), summary: String::new(), about: String::new() }
     }
@@ -246,6 +250,21 @@ impl<'a> View<'a> {
             spacing: self.frame.length(grid.spacing()),
             values: Packed::new(values),
         });
+        self
+    }
+
+    /// Shows a scan, coloured by its deviations from the scene, with their histogram and their statistics.
+    ///
+    /// Of more than 10^6 points only every second one, or every third one and so on, is drawn, with a note on the page.
+    /// The statistics are those of all points.
+    ///
+    /// # Panics
+    /// If there is not one value and one primitive for each position of the scan.
+    #[must_use]
+    pub fn with_deviations(mut self, deviations: &Deviations<'_>) -> Self {
+        let (data, note) = DeviationData::new(deviations);
+        self.data.deviations = Some(data);
+        self.data.notes.extend(note);
         self
     }
 

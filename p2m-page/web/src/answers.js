@@ -19,7 +19,7 @@ export class AnswersLayer {
     this.dots = points(this.from, this.colours, 6);
     this.feet = points(this.to, this.colours, 3);
     const ends = new Float32Array(6 * this.length);
-    const endColours = new Uint8Array(6 * this.length);
+    const endColours = new Uint16Array(6 * this.length);
     for (let i = 0; i < this.length; i++) {
       for (const [end, from] of [[0, this.from], [3, this.to]]) {
         ends.set(from.subarray(3 * i, 3 * i + 3), 6 * i + end);
@@ -122,14 +122,14 @@ export function limits(values) {
 }
 
 // Makes dots of a size in pixels.
-function points(positions, colours, size) {
+export function points(positions, colours, size) {
   const geometry = new three.BufferGeometry();
   geometry.setAttribute("position", new three.BufferAttribute(positions, 3));
   geometry.setAttribute("color", new three.BufferAttribute(colours, 3, true));
   return new three.Points(geometry, new three.PointsMaterial({ size, sizeAttenuation: false, vertexColors: true }));
 }
 
-function marker(position, color, size) {
+export function marker(position, color, size) {
   const geometry = new three.BufferGeometry().setFromPoints([position]);
   const material = new three.PointsMaterial({ color, size, sizeAttenuation: false, depthTest: false });
   const drawn = new three.Points(geometry, material);
