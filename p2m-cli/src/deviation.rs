@@ -17,7 +17,7 @@ use anyhow::{Context, anyhow};
 use nalgebra::Point3;
 use p2m_advisor::{BuiltIndex, Index, P2mSettings};
 use p2m_core::batch::{self, BatchOptions};
-use p2m_core::{Aabb, Closest, QueryOptions};
+use p2m_core::{Closest, QueryOptions};
 use p2m_field::deviation::{DeviationStatistics, OutsideTolerance, outside};
 use p2m_field::sign::SignError;
 use p2m_mixed::statistics::figure::{Count, Figure};
@@ -205,7 +205,7 @@ pub(crate) fn run(streams: &Streams, args: &Args) -> anyhow::Result<()> {
                 written.with_context(|| output.cannot_write())?;
             }
             Some(DeviationFormat::Html) => {
-                let mut view = View::new(&scene, &Aabb::from_points(points)).with_unit(&args.unit);
+                let mut view = View::new(&scene, &Deviations::bounds(&scan.soup)).with_unit(&args.unit);
                 view = view.with_up(args.up.into()).with_deviations(&Deviations {
                     scan: &scan.soup,
                     values: &values,

@@ -2,7 +2,8 @@
 
 use crate::decimate::MAX_PRIMITIVES;
 use crate::packed::Packed;
-use p2m_core::Soup;
+use nalgebra::Point3;
+use p2m_core::{Aabb, Soup};
 use p2m_field::deviation::DeviationStatistics;
 use serde::Serialize;
 
@@ -23,6 +24,16 @@ pub struct Deviations<'a> {
     pub limit: f64,
     /// The largest absolute value that counts as within the tolerance at first, if there is a tolerance.
     pub tolerance: Option<f64>,
+}
+
+impl Deviations<'_> {
+    /// Returns the box of the points of a scan that are finite, which the picture of a page has to contain.
+    #[must_use]
+    pub fn bounds(scan: &Soup<f64>) -> Aabb<f64> {
+        let is_finite = |point: &&Point3<f64>| point.iter().all(|x| x.is_finite());
+        let add = |bounds: Aabb<f64>, point: &Point3<f64>| bounds.union(&Aabb { min: *point, max: *point });
+        scan.positions().iter().filter(is_finite).fold(Aabb::empty(), add)
+    }
 }
 
 /// The number of equal parts by which the values of a scan are described that has too many points to draw.
@@ -101,7 +112,14 @@ impl DeviationData {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use nalgebra::Point3;
+
+    #[test]
+    fn points_that_are_not_finite_are_outside_of_the_picture() {
+        let points = [[1.0, 2.0, 3.0], [f64::NAN, 0.0, 0.0], [0.0, 4.0, 1.0], [0.0, f64::INFINITY, 0.0]];
+        let bounds = Deviations::bounds(&Soup::new(points.map(Point3::from).to_vec(), []).unwrap());
+        assert_eq!((bounds.min, bounds.max), ([0.0, 2.0, 1.0].into(), [1.0, 4.0, 3.0].into()));
+        assert!(Deviations::bounds(&Soup::default()).is_empty());
+    }
 
     #[test]
     fn a_scan_of_too_many_points_is_thinned_and_described_by_quantiles() {

@@ -3,7 +3,6 @@
 use crate::errors::value_error;
 use crate::scene::Scene;
 use numpy::PyReadonlyArray1;
-use p2m_core::Aabb;
 use p2m_field::deviation::DeviationStatistics;
 use p2m_mixed::{VertexValues, write_ply_with_values};
 use p2m_page::{Deviations, UpAxis, View, diverging_colour};
@@ -47,7 +46,7 @@ pub(crate) fn deviation_page(
     let (scan, [title, summary, unit]) = (&*scan.shared, texts);
     let statistics = &DeviationStatistics::of(values);
     let deviations = &Deviations { scan, values, primitives, statistics, is_signed, limit, tolerance };
-    let mut view = View::new(&scene.shared.0, &Aabb::from_points(scan.positions()))
+    let mut view = View::new(&scene.shared.0, &Deviations::bounds(scan))
         .with_unit(&unit)
         .with_up(if is_y_up { UpAxis::Y } else { UpAxis::Z })
         .with_deviations(deviations);

@@ -20,6 +20,9 @@ export class DeviationsLayer {
     this.drawn = frame.positions(data.positions);
     this.colours = new Uint16Array(3 * this.length);
     this.dots = points(this.drawn, this.colours, this.length > MANY_POINTS ? 2 : 4);
+    // Points that are not finite are not drawn.
+    const sphere = new three.Sphere(new three.Vector3(), 4);
+    this.dots.geometry.boundingSphere = sphere;
     this.group = new three.Group();
     this.selection = new three.Group();
     this.group.add(this.selection);
@@ -27,6 +30,7 @@ export class DeviationsLayer {
     if (data.triangles.length > 0) {
       const geometry = new three.BufferGeometry();
       for (const name of ["position", "color"]) geometry.setAttribute(name, this.dots.geometry.getAttribute(name));
+      geometry.boundingSphere = sphere;
       geometry.setIndex(new three.BufferAttribute(data.triangles, 1));
       const material = new three.MeshLambertMaterial({
         vertexColors: true, side: three.DoubleSide, flatShading: true,
