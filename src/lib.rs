@@ -48,6 +48,7 @@
 //! | the primitives that intersect a box | [`BoxQuery`] | trees and brute force |
 //! | the primitive nearest to a segment or a triangle, or whether one is near | [`pair::PairQuery`] | trees and brute force |
 //! | the first contact of a moving ball | [`pair::MovingBall`] | trees and brute force |
+//! | the statistics of deviations of a scan | `field::deviation::DeviationStatistics` | signed distances |
 //! | the Hausdorff distance of two scenes | `field::hausdorff_distance` | every index |
 //! | the nearest points of two scenes, one of which may move | [`pair::PairQuery::closest_pair`] | trees and brute force |
 //! | most of these in a scene larger than memory | `shards::ShardedIndex` | shards of every index |

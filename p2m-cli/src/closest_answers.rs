@@ -8,12 +8,21 @@ use crate::streams::Streams;
 use crate::summary::AnswerSummary;
 use nalgebra::Point3;
 use p2m_core::Closest;
-use p2m_mixed::{AnswerEncoder, AnswerFormat, AnswerRecord, AnswerWriter, Object};
+use p2m_mixed::{AnswerColumn, AnswerEncoder, AnswerFormat, AnswerRecord, AnswerWriter, Object};
 use rayon::ThreadPool;
 use std::time::Duration;
 
 /// The closest primitive, if there is one, and the distance with a sign, which is NaN where no signs are asked for.
 pub(crate) type ClosestAnswer = (Option<Closest<f64>>, f64);
+
+/// Returns columns with that of signed distances after that of distances, if there are signs.
+pub(crate) fn with_signed(mut columns: Vec<AnswerColumn>, has_signs: bool) -> Vec<AnswerColumn> {
+    if has_signs {
+        let distance = columns.iter().position(|column| *column == AnswerColumn::Distance);
+        columns.insert(distance.map_or(columns.len(), |at| at + 1), AnswerColumn::Signed);
+    }
+    columns
+}
 
 /// A source of answers: an index in memory or one in shards.
 pub(crate) trait Source: Sync {

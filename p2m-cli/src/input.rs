@@ -86,7 +86,7 @@ pub(crate) fn point_format(path: &Path, given: Option<PointFormat>, option: &str
 }
 
 /// Returns the name of a file without the extension of a compression. A directory has no format, and is refused.
-fn uncompressed_name(path: &Path) -> anyhow::Result<PathBuf> {
+pub(crate) fn uncompressed_name(path: &Path) -> anyhow::Result<PathBuf> {
     if path.is_dir() {
         bail!("{}: cannot be read: is a directory", path.display());
     }
@@ -99,7 +99,7 @@ fn is_compressed(path: &Path) -> bool {
 }
 
 /// The error that the standard input has no format.
-fn unnamed(option: &str, names: &[&str]) -> anyhow::Error {
+pub(crate) fn unnamed(option: &str, names: &[&str]) -> anyhow::Error {
     usage(format!("the standard input has no extension that names its format: add {option} {}", names.join("|")))
 }
 

@@ -12,6 +12,7 @@ mod boxes;
 mod build;
 mod closest_answers;
 mod convert;
+mod deviation;
 mod distance;
 mod field;
 mod field_summary;
@@ -35,6 +36,7 @@ mod ray;
 mod ray_answers;
 mod ray_summary;
 mod sampling;
+mod scan;
 mod scene_pair;
 mod shard;
 mod shard_query;
@@ -92,6 +94,7 @@ enum Command {
     Shard(shard::Args),
     Distance(distance::Args),
     Hausdorff(hausdorff::Args),
+    Deviation(deviation::Args),
     Stats(stats::Args),
     Field(field::Args),
     Advise(advise::Args),
@@ -115,6 +118,7 @@ impl Command {
             Self::Shard(_) => "p2m shard".to_owned(),
             Self::Distance(_) => "p2m distance".to_owned(),
             Self::Hausdorff(_) => "p2m hausdorff".to_owned(),
+            Self::Deviation(_) => "p2m deviation".to_owned(),
             Self::Stats(_) => "p2m stats".to_owned(),
             Self::Field(_) => "p2m field".to_owned(),
             Self::Advise(_) => "p2m advise".to_owned(),
@@ -137,6 +141,7 @@ impl Command {
             Self::Shard(args) => shard::run(streams, args),
             Self::Distance(args) => distance::run(streams, args),
             Self::Hausdorff(args) => hausdorff::run(streams, args),
+            Self::Deviation(args) => deviation::run(streams, args),
             Self::Stats(args) => stats::run(streams, args),
             Self::Field(args) => field::run(streams, args),
             Self::Advise(args) => advise::run(streams, args),

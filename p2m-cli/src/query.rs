@@ -3,7 +3,7 @@
 use crate::accuracy::Accuracy;
 use crate::answering::{BlockSize, answer_each};
 use crate::backend::{BackendChoice, PreparedIndex, SceneSource, backend_choices};
-use crate::closest_answers::{ClosestAnswer, Source, Task};
+use crate::closest_answers::{ClosestAnswer, Source, Task, with_signed};
 use crate::input::{self, SceneArgs, point_format, read_points, read_scene_and_index};
 use crate::json;
 use crate::kdop_directions::requested;
@@ -274,11 +274,7 @@ impl Args {
         if self.has_many_answers() {
             columns.insert(0, AnswerColumn::Number);
         }
-        if self.signed.is_some() {
-            let distance = columns.iter().position(|column| *column == AnswerColumn::Distance);
-            columns.insert(distance.map_or(columns.len(), |at| at + 1), AnswerColumn::Signed);
-        }
-        columns
+        with_signed(columns, self.signed.is_some())
     }
 
     /// Refuses combinations of arguments that contradict each other.

@@ -10,6 +10,7 @@
 //!   approximates within a bound \[Barill2018\].
 //! - **Hausdorff distances** are the largest values of the distance field of one scene on another scene, between
 //!   certified bounds ([`hausdorff_distance`]).
+//! - **Deviations** are the signed distances of the points of a scan, and [`deviation`] has their statistics.
 //! - **Output**: [`write_field`] writes NPY, VTI or raw values, [`write_cells`] writes the cells of an octree, and
 //!   [`slice()`] draws a layer of a grid.
 //!
@@ -36,6 +37,7 @@
 
 mod by_lists;
 mod by_queries;
+pub mod deviation;
 mod format;
 mod grid;
 pub mod grid_candidates;

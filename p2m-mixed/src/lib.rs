@@ -77,7 +77,8 @@ pub use saved::{load_scene, read_p2m, save_scene, write_p2m};
 pub use scene::{Object, Scene, Skipped};
 pub use stl::read_stl;
 pub use write::{
-    StlRounding, WriteError, stl_rounding, write_obj, write_off, write_ply, write_ply_ascii, write_scene, write_stl,
+    StlRounding, VertexValues, WriteError, stl_rounding, write_obj, write_off, write_ply, write_ply_ascii,
+    write_ply_with_values, write_scene, write_stl,
 };
 
 /// The parts of this crate that its sibling crates use. They are not part of the public interface.

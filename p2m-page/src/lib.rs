@@ -3,10 +3,14 @@
 //! A [`View`] collects what a page shows. [`View::html`] puts it as JSON into a template with a script
 //! (`assets/viewer.js`, made of the folder `web`), which draws it with three.js.
 
+mod colours;
 mod decimate;
+mod deviations;
 mod frame;
 mod packed;
 pub mod template;
 mod view;
 
+pub use colours::diverging_colour;
+pub use deviations::Deviations;
 pub use view::{Level, UpAxis, View};

@@ -1,6 +1,7 @@
 //! The page of a scene.
 
 use crate::decimate::{MAX_PRIMITIVES, is_distinct, representatives};
+use crate::deviations::{DeviationData, Deviations};
 use crate::frame::Frame;
 use crate::packed::Packed;
 use crate::template::{STYLE, escape, fill, script_data};
@@ -71,6 +72,8 @@ struct Data {
     lists: Option<FieldData>,
     #[serde(skip_serializing_if = "Option::is_none")]
     live: Option<LiveData>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    deviations: Option<DeviationData>,
 }
 
 /// The data of live queries: the module, and the exact scene with its primitives in the order of their ids.
@@ -163,6 +166,7 @@ impl<'a> View<'a> {
             field: None,
             lists: None,
             live: None,
+            deviations: None,
         };
         Self { scene, frame, data, title: "A scene".to_owned(), summary: String::new(), about: String::new() }
     }
@@ -305,6 +309,21 @@ impl<'a> View<'a> {
             sizes: Packed::new(&sizes),
             indices: Packed::new(&indices),
         });
+        self
+    }
+
+    /// Shows a scan, coloured by its deviations from the scene, with their histogram and their statistics.
+    ///
+    /// Of more than 10^6 points only every second one, or every third one and so on, is drawn, with a note on the page.
+    /// The statistics are those of all points.
+    ///
+    /// # Panics
+    /// If there is not one value and one primitive for each position of the scan.
+    #[must_use]
+    pub fn with_deviations(mut self, deviations: &Deviations<'_>) -> Self {
+        let (data, note) = DeviationData::new(deviations);
+        self.data.deviations = Some(data);
+        self.data.notes.extend(note);
         self
     }
 

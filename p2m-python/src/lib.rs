@@ -10,6 +10,7 @@
 mod advise;
 mod columns;
 mod contacts;
+mod deviations;
 mod errors;
 mod fields;
 mod hausdorff;
@@ -35,6 +36,8 @@ use pyo3::prelude::*;
 mod _p2m {
     #[pymodule_export]
     use super::advise::advise;
+    #[pymodule_export]
+    use super::deviations::{deviation_page, deviation_ply, deviation_statistics};
     #[pymodule_export]
     use super::hausdorff::hausdorff;
     #[pymodule_export]

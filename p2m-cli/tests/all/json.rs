@@ -45,6 +45,7 @@ fn every_key_is_documented() {
         &["query", &site, "--random", "2", "--out", &answers, "--json"],
         &["distance", &scene, &scene, "--json"],
         &["hausdorff", &scene, &scene, "--json"],
+        &["deviation", &scene, &scene, "--unsigned", "--tolerance", "1", "--json"],
     ] {
         keys(&json(arguments), &mut found);
     }

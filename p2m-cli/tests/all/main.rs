@@ -6,6 +6,7 @@ mod boxes;
 mod build;
 mod common;
 mod convert;
+mod deviation;
 mod distance;
 mod field;
 mod files;

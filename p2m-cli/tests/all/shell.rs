@@ -4,12 +4,13 @@ use crate::common::*;
 use std::fs;
 use tempfile::TempDir;
 
-const COMMANDS: [&str; 17] = [
+const COMMANDS: [&str; 18] = [
     "query",
     "build",
     "shard",
     "distance",
     "hausdorff",
+    "deviation",
     "stats",
     "field",
     "advise",

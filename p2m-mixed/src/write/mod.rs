@@ -9,7 +9,7 @@ mod stl;
 pub use error::WriteError;
 pub use obj::write_obj;
 pub use off::write_off;
-pub use ply::{write_ply, write_ply_ascii};
+pub use ply::{VertexValues, write_ply, write_ply_ascii, write_ply_with_values};
 pub use stl::{StlRounding, stl_rounding, write_stl};
 
 use crate::{Format, Scene};

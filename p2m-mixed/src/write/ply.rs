@@ -24,7 +24,31 @@ use std::io::{self, Write};
 /// # Errors
 /// Errors of `writer`.
 pub fn write_ply(scene: &Scene, writer: impl Write) -> Result<(), WriteError> {
-    write(&scene.soup, Rows { writer, is_text: false })
+    write(&scene.soup, None, Rows { writer, is_text: false })
+}
+
+/// A number and a colour for each position of a scene, which viewers show.
+#[derive(Clone, Copy, Debug)]
+pub struct VertexValues<'a> {
+    /// The name of the property of type `double` that has the numbers, a word of ASCII letters.
+    pub name: &'a str,
+    /// The numbers, one for each position.
+    pub values: &'a [f64],
+    /// Red, green and blue, one colour for each position: the properties `red`, `green` and `blue` of type `uchar`.
+    pub colours: &'a [[u8; 3]],
+}
+
+/// Writes a scene as [`write_ply`] does, with a number and a colour for each vertex.
+///
+/// # Errors
+/// Errors of `writer`.
+///
+/// # Panics
+/// If there is not one number and one colour for each position of the scene.
+pub fn write_ply_with_values(scene: &Scene, values: &VertexValues<'_>, writer: impl Write) -> Result<(), WriteError> {
+    let count = scene.soup.positions().len();
+    assert_eq!([values.values.len(), values.colours.len()], [count; 2], "a value and a colour for each position");
+    write(&scene.soup, Some(values), Rows { writer, is_text: false })
 }
 
 /// Writes a scene as [`write_ply`] does, but as text. Numbers have the fewest digits that read back as the same number.
@@ -32,7 +56,7 @@ pub fn write_ply(scene: &Scene, writer: impl Write) -> Result<(), WriteError> {
 /// # Errors
 /// Errors of `writer`.
 pub fn write_ply_ascii(scene: &Scene, writer: impl Write) -> Result<(), WriteError> {
-    write(&scene.soup, Rows { writer, is_text: true })
+    write(&scene.soup, None, Rows { writer, is_text: true })
 }
 
 /// A point, as a kind of primitive. Kinds are the numbers of vertices.
@@ -42,7 +66,7 @@ const EDGE: usize = 2;
 /// A triangle, as a kind of primitive.
 const FACE: usize = 3;
 
-fn write(soup: &Soup<f64>, mut rows: Rows<impl Write>) -> Result<(), WriteError> {
+fn write(soup: &Soup<f64>, values: Option<&VertexValues<'_>>, mut rows: Rows<impl Write>) -> Result<(), WriteError> {
     let positions = soup.positions();
     let kinds = if is_point_cloud(soup) { Some(Vec::new()) } else { kinds_in_order(soup) };
     let with_ids = kinds.is_none();
@@ -57,6 +81,10 @@ fn write(soup: &Soup<f64>, mut rows: Rows<impl Write>) -> Result<(), WriteError>
     let format = if rows.is_text { "ascii" } else { "binary_little_endian" };
     let mut header = format!("ply\nformat {format} 1.0\nelement vertex {}\n", positions.len());
     header += "property double x\nproperty double y\nproperty double z\n";
+    if let Some(values) = values {
+        let colours = "property uchar red\nproperty uchar green\nproperty uchar blue\n";
+        header += &format!("property double {}\n{colours}", values.name);
+    }
     // More programs support signed indices.
     let index = if i32::try_from(positions.len()).is_ok() { "int" } else { "uint" };
     for &kind in &kinds {
@@ -76,8 +104,12 @@ fn write(soup: &Soup<f64>, mut rows: Rows<impl Write>) -> Result<(), WriteError>
     rows.writer.write_all(header.as_bytes())?;
     rows.writer.write_all(b"end_header\n")?;
 
-    for p in positions {
+    for (i, p) in positions.iter().enumerate() {
         rows.position(p)?;
+        if let Some(values) = values {
+            rows.writer.write_all(&values.values[i].to_le_bytes())?;
+            rows.writer.write_all(&values.colours[i])?;
+        }
     }
     for kind in kinds {
         if with_ids {

@@ -2,7 +2,6 @@
 
 import * as three from "three";
 import { ColourScale } from "./colours.js";
-import { short } from "./text.js";
 
 export class AnswersLayer {
   constructor(answers, frame) {
@@ -12,7 +11,7 @@ export class AnswersLayer {
     // The values that give colours: signed distances where there are some.
     this.values = answers.signed ?? answers.distances;
     const [low, high] = limits(this.values);
-    this.scale = new ColourScale(low < 0 ? "diverging" : "sequential", low < 0 ? low : 0, high, short);
+    this.scale = new ColourScale(low < 0 ? "diverging" : "sequential", low < 0 ? low : 0, high);
     this.from = frame.positions(answers.queries);
     this.to = frame.positions(answers.points);
     this.colours = this.scale.colours(this.values);
@@ -20,7 +19,7 @@ export class AnswersLayer {
     this.dots = points(this.from, this.colours, 6);
     this.feet = points(this.to, this.colours, 3);
     const ends = new Float32Array(6 * this.length);
-    const endColours = new Uint8Array(6 * this.length);
+    const endColours = new Uint16Array(6 * this.length);
     for (let i = 0; i < this.length; i++) {
       for (const [end, from] of [[0, this.from], [3, this.to]]) {
         ends.set(from.subarray(3 * i, 3 * i + 3), 6 * i + end);
@@ -141,7 +140,7 @@ export function limits(values) {
 }
 
 // Makes dots of a size in pixels.
-function points(positions, colours, size) {
+export function points(positions, colours, size) {
   const geometry = new three.BufferGeometry();
   geometry.setAttribute("position", new three.BufferAttribute(positions, 3));
   geometry.setAttribute("color", new three.BufferAttribute(colours, 3, true));

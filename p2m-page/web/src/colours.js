@@ -1,5 +1,7 @@
 // Colour scales, and their legends.
 
+import { short } from "./text.js";
+
 // Points of the scale "viridis", which has evenly rising lightness and is readable with any colour vision.
 const SEQUENTIAL = ["#440154", "#472d7b", "#3b528b", "#2c728e", "#21918c", "#28ae80", "#5ec962", "#addc30", "#fde725"];
 // Blue for negative values and red for positive ones, with grey at zero.
@@ -8,9 +10,15 @@ const DIVERGING = ["#053061", "#2166ac", "#4393c3", "#92c5de", "#d9d9d9", "#f4a5
 const rgb = (hex) => [1, 3, 5].map((at) => parseInt(hex.slice(at, at + 2), 16));
 const STOPS = { sequential: SEQUENTIAL.map(rgb), diverging: DIVERGING.map(rgb) };
 
+// The light of each byte of a colour in sRGB.
+const LIGHT = Array.from({ length: 256 }, (_, byte) => {
+  const x = byte / 255;
+  return 65535 * (x <= 0.04045 ? x / 12.92 : ((x + 0.055) / 1.055) ** 2.4);
+});
+
 // A map from values to colours between two limits. `text` returns a value as text for legends.
 export class ColourScale {
-  constructor(kind, low, high, text) {
+  constructor(kind, low, high, text = short) {
     this.text = text;
     this.stops = STOPS[kind];
     this.isDiverging = kind === "diverging";
@@ -40,10 +48,15 @@ export class ColourScale {
     return `rgb(${out.map(Math.round).join(",")})`;
   }
 
-  // Returns the colours of all values, as three bytes each.
+  // Returns the colours of all values as the GPU needs them: three numbers each, which are proportional to light and are
+  // at most 65535.
   colours(values) {
-    const out = new Uint8Array(3 * values.length);
-    for (let i = 0; i < values.length; i++) this.write(values[i], out, 3 * i);
+    const bytes = new Uint8Array(3);
+    const out = new Uint16Array(3 * values.length);
+    for (let i = 0; i < values.length; i++) {
+      this.write(values[i], bytes, 0);
+      for (let k = 0; k < 3; k++) out[3 * i + k] = LIGHT[bytes[k]];
+    }
     return out;
   }
 

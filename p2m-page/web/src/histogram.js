@@ -17,9 +17,10 @@ export function bins(values, low, high) {
   return counts;
 }
 
-export function histogram(values, scale, what, unit) {
+// Returns a histogram between the limits of a scale. Each value stands for `weight` values, and lines are drawn at `marks`.
+export function histogram(values, scale, what, unit, { weight = 1, marks = [] } = {}) {
   const { low, high } = scale;
-  const counts = bins(values, low, high);
+  const counts = bins(values, low, high).map((n) => Math.round(n * weight));
   const most = counts.reduce((a, b) => Math.max(a, b), 1);
   const width = WIDTH / BINS;
   const ends = (i) => [low + ((high - low) * i) / BINS, low + ((high - low) * (i + 1)) / BINS];
@@ -36,9 +37,14 @@ export function histogram(values, scale, what, unit) {
   const [from, to] = ends(mode);
   const label = `Histogram of ${what} from ${short(low)} to ${short(high)} ${unit}. ` +
     `The most frequent are those from ${short(from)} to ${short(to)}, with ${count(counts[mode])} of ` +
-    `${count(counts.reduce((a, b) => a + b, 0))}.`;
+    `${count(counts.reduce((a, b) => a + b, 0))}.` +
+    (marks.length > 0 ? ` The tolerance is marked at ${marks.map(short).join(" and ")} ${unit}.` : "");
+  const lines = marks.filter((x) => x >= low && x <= high).map((value) => {
+    const x = (WIDTH * (value - low)) / (high - low);
+    return element("line", { x1: x, x2: x, y1: 0, y2: HEIGHT, stroke: "currentColor", "stroke-dasharray": "4 3" });
+  });
   const base = element("line", { x1: 0, x2: WIDTH, y1: HEIGHT, y2: HEIGHT, stroke: "currentColor" });
-  return element("svg", { viewBox: `0 0 ${WIDTH} ${HEIGHT + 1}`, role: "img", "aria-label": label }, ...bars, base);
+  return element("svg", { viewBox: `0 0 ${WIDTH} ${HEIGHT + 1}`, role: "img", "aria-label": label }, ...bars, ...lines, base);
 }
 
 // Returns the legend of a scale: its gradient, its limits and a value between them, with the unit. The value between is

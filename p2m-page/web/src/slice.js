@@ -22,7 +22,7 @@ export class SliceLayer {
       this.values = this.values.map(Math.log2);
       this.scale = new ColourScale("sequential", 0, Math.max(1, Math.log2(high)), (value) => short(2 ** value));
     } else {
-      this.scale = new ColourScale(low < 0 ? "diverging" : "sequential", low < 0 ? low : 0, high, short);
+      this.scale = new ColourScale(low < 0 ? "diverging" : "sequential", low < 0 ? low : 0, high);
     }
     this.canvas = document.createElement("canvas");
     this.texture = new three.CanvasTexture(this.canvas);

@@ -5,6 +5,7 @@ import { OrbitControls } from "three/examples/jsm/controls/OrbitControls.js";
 import { AnswersLayer } from "./answers.js";
 import { CellsLayer } from "./cells.js";
 import { Frame, readData } from "./data.js";
+import { DeviationsLayer, DeviationsPanel } from "./deviations.js";
 import { histogram, legend } from "./histogram.js";
 import { LiveQueries } from "./live.js";
 import { SceneLayer } from "./scene.js";
@@ -27,7 +28,7 @@ const KEYS = [
   ["arrow keys", "turn the view"],
   ["+ and -", "move nearer and farther"],
   ["f", "fit the view to the scene"],
-  ["n and p", "next and previous answer"],
+  ["n and p", "next and previous answer or point"],
   ["x, y and z", "lay the slice across this axis"],
   ["[ and ]", "move the slice"],
   ["l and k", "next and previous level of boxes"],
@@ -62,8 +63,10 @@ class Viewer {
     const field = data.field ?? data.lists;
     if (field) this.addLayer("slice", new SliceLayer(field, !!data.lists), "mesh");
     if (data.live) this.addLayer("live", new LiveQueries(this, data.live), "group");
+    if (data.deviations) this.addLayer("deviations", new DeviationsLayer(data.deviations, this.frame), "group");
     if (this.cells) this.cells.group.visible = false;
     if (this.slice) this.scene.setOpacity(0.25);
+    if (this.deviations) this.scene.setOpacity(0.12);
 
     this.makePanel();
     this.listen();
@@ -90,6 +93,7 @@ class Viewer {
     if (this.cells) this.cells.setColours(this.colours);
     if (this.answers) this.answers.select(this.answers.selected, this.colours);
     this.live?.redraw();
+    if (this.deviations) this.deviations.select(this.deviations.selected, this.colours);
     this.draw();
   }
 
@@ -153,6 +157,7 @@ class Viewer {
       add("Notes", "notes", element("ul", {}, ...this.data.notes.map((note) => element("li", {}, note))));
     }
     this.live?.makePanel(add);
+    if (this.deviations) this.deviationsPanel = new DeviationsPanel(this, add);
     if (this.answers) this.makeAnswers(add);
     if (this.slice) this.makeSlice(add);
     this.makeShown(add);
@@ -161,7 +166,7 @@ class Viewer {
     const keys = KEYS.map(([key, what]) => [element("dt", {}, element("kbd", {}, key)), element("dd", {}, what)]);
     this.help = element("details", { id: "keys" }, element("summary", {}, "Mouse and keyboard"),
       element("p", {}, "Drag to turn, drag with the right button to move, and turn the wheel to come nearer. Click a " +
-        "query point to read its answer. The keys act while the picture has the focus."),
+        "query point or a point of a scan to read its answer. The keys act while the picture has the focus."),
       element("dl", {}, ...keys.flat()));
     panel.append(this.help, document.getElementById("about"));
   }
@@ -173,8 +178,9 @@ class Viewer {
     box("scene", true, (on) => (this.scene.group.visible = on), "show-scene");
     if (this.data.scene.triangles.length > 0) {
       box("wireframe", false, (on) => this.scene.setWireframe(on), "show-wireframe");
-      box("transparent", !!this.slice, (on) => this.scene.setOpacity(on ? 0.25 : 1), "show-through");
+      box("transparent", !!(this.slice || this.deviations), (on) => this.scene.setOpacity(on ? 0.25 : 1), "show-through");
     }
+    if (this.deviationsPanel) this.deviationsPanel.makeBoxes(box);
     if (this.answers) {
       const { answers } = this;
       const isCrowded = answers.length > MANY_SEGMENTS;
@@ -388,6 +394,7 @@ class Viewer {
       if (this.isDragging) this.moveSlice(this.slice.axis, this.slicePart - event.movementY / canvas.clientHeight);
       else this.readSlice(event);
       this.live?.follow(event);
+      if (this.deviationsPanel) this.deviationsPanel.hover(event);
     });
     canvas.addEventListener("pointerup", (event) => {
       const isClick = pressed && Math.hypot(event.clientX - pressed[0], event.clientY - pressed[1]) < 4;
@@ -395,6 +402,7 @@ class Viewer {
       this.isDragging = false;
       this.controls.enabled = true;
       if (isClick && this.answers) this.select(this.pick(event));
+      if (isClick && this.deviationsPanel) this.deviationsPanel.select(this.deviationsPanel.pick(event));
     });
     canvas.addEventListener("keydown", (event) => this.press(event));
   }
@@ -427,13 +435,16 @@ class Viewer {
 
   press(event) {
     if (event.ctrlKey || event.metaKey || event.altKey) return;
-    const { slice, cells, answers } = this;
+    const { slice, cells, answers, deviationsPanel } = this;
+    const step = answers ? (by) => this.step(by) : deviationsPanel && ((by) => deviationsPanel.step(by));
     const actions = {
       ArrowLeft: () => this.turn(-0.1, 0, 1), ArrowRight: () => this.turn(0.1, 0, 1),
       ArrowUp: () => this.turn(0, -0.1, 1), ArrowDown: () => this.turn(0, 0.1, 1),
       "+": () => this.turn(0, 0, 0.9), "=": () => this.turn(0, 0, 0.9), "-": () => this.turn(0, 0, 1 / 0.9),
       f: () => this.fit(), d: () => this.toggleTheme(), q: this.live && (() => this.live.toggle()),
       n: answers && (() => this.step(1)), p: answers && (() => this.step(-1)),
+      f: () => this.fit(), d: () => this.toggleTheme(),
+      n: step && (() => step(1)), p: step && (() => step(-1)),
       x: slice && (() => this.moveSlice(0, 0.5)), y: slice && (() => this.moveSlice(1, 0.5)),
       z: slice && (() => this.moveSlice(2, 0.5)),
       "[": slice && (() => this.moveSlice(slice.axis, this.slicePart - 0.02)),

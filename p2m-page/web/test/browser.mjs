@@ -67,8 +67,8 @@ export class Page {
   }
 
   // Returns what stands beside a term of a list.
-  read(list, name) {
-    return this.tab.evaluate(([list, name]) => {
+  read(list, name, tab = this.tab) {
+    return tab.evaluate(([list, name]) => {
       const term = [...document.querySelectorAll(`#${list} dt`)].find((dt) => dt.textContent === name);
       return term?.nextElementSibling.textContent;
     }, [list, name]);

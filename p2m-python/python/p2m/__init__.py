@@ -12,14 +12,15 @@ array([2., 5.])
 [[1.0, 1.0, 0.0], [4.0, 0.0, 0.0]]
 
 `read` reads scenes from files, and `Scene.of` takes meshes of trimesh, Open3D, PyVista and meshio. `Index` has the
-queries. `hausdorff` returns the Hausdorff distance of two scenes. `load` loads saved indexes, and `advise` tells which
-backend a scene calls for. `Ask` and the module `p2m.dask` ask a saved index from any number of processes.
-`write_shards` and `Shards` are for scenes that are larger than memory.
+queries. `hausdorff` returns the Hausdorff distance of two scenes, and `deviation` compares a scan with a mesh. `load`
+loads saved indexes, and `advise` tells which backend a scene calls for. `Ask` and the module `p2m.dask` ask a saved
+index from any number of processes. `write_shards` and `Shards` are for scenes that are larger than memory.
 """
 
 from __future__ import annotations
 
 from ._ask import Ask
+from ._deviation import Deviation, deviation
 from ._hausdorff import HausdorffDistance, hausdorff
 from ._index import Estimate, Index, advise, load
 from ._opened import clear_opened
@@ -45,6 +46,7 @@ __all__ = [
     "ClosestPoints",
     "ClosestToShapes",
     "Counts",
+    "Deviation",
     "Estimate",
     "FirstHits",
     "HausdorffDistance",
@@ -59,6 +61,7 @@ __all__ = [
     "advise",
     "backends",
     "clear_opened",
+    "deviation",
     "hausdorff",
     "load",
     "read",

@@ -17,6 +17,9 @@ __all__ = [
     "advise",
     "backends",
     "default_threads",
+    "deviation_page",
+    "deviation_ply",
+    "deviation_statistics",
     "hausdorff",
     "load",
     "load_bytes",
@@ -42,6 +45,19 @@ def advise(
     max_seconds: float | None,
     threads: int,
 ) -> list[dict[str, Any]]: ...
+def deviation_statistics(values: NDArray[np.float64]) -> dict[str, Any]: ...
+def deviation_page(
+    scan: Scene,
+    values: NDArray[np.float64],
+    primitives: NDArray[np.uint32],
+    scene: Scene,
+    is_signed: bool,
+    limit: float,
+    tolerance: float | None,
+    is_y_up: bool,
+    texts: tuple[str, str, str],
+) -> str: ...
+def deviation_ply(scan: Scene, values: NDArray[np.float64], limit: float) -> bytes: ...
 def hausdorff(
     first: Scene,
     first_index: Index | None,

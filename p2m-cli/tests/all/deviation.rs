@@ -1,0 +1,175 @@
+//! Tests of `p2m deviation`.
+
+use crate::common::*;
+use p2m_testkit::{models, normal_number, rng};
+use serde_json::Value;
+use std::fmt::Write as _;
+use std::fs;
+use tempfile::TempDir;
+
+/// A cube from 0 to 2, whose triangles face outwards.
+const CUBE: &str = "v 0 0 0\nv 2 0 0\nv 2 2 0\nv 0 2 0\nv 0 0 2\nv 2 0 2\nv 2 2 2\nv 0 2 2\n\
+    f 4 3 2 1\nf 5 6 7 8\nf 1 2 6 5\nf 2 3 7 6\nf 3 4 8 7\nf 4 1 5 8\n";
+
+fn statistic(report: &Value, key: &str) -> f64 {
+    report["statistics"][key].as_f64().unwrap_or_else(|| panic!("{key}: {report}"))
+}
+
+#[test]
+fn outside_is_positive_and_inside_negative() {
+    let folder = TempDir::new().unwrap();
+    let cube = write(&folder, "cube.obj", CUBE);
+    let scan = write(&folder, "scan.xyz", "1 1 3\n1 1 1.5\n1 1 2\n3 1 1\n");
+    let report = json(&["deviation", &scan, &cube, "--tolerance", "0.5", "--json"]);
+    assert_eq!((statistic(&report, "mean"), statistic(&report, "min"), statistic(&report, "max")), (0.375, -0.5, 1.0));
+    assert_eq!((statistic(&report, "mean_absolute"), statistic(&report, "rms")), (0.625, 0.75));
+    assert_eq!((&report["above"], &report["below"], &report["limit"]), (&2.into(), &0.into(), &0.5.into()));
+    assert_eq!((&report["sign_rule"], &report["missing"]), (&"closed".into(), &0.into()));
+    let text = table(&["deviation", &scan, &cube, "--tolerance", "0.25", "--unit", "mm"]);
+    for line in ["mean                                0.375 mm", "below -0.25                         1 (25 %)"] {
+        assert!(text.contains(line), "{text}");
+    }
+    // Without signs, and with the standard input as the scan.
+    let arguments = ["deviation", "-", &cube, "--scan-format", "xyz", "--unsigned", "--json"];
+    let output = p2m_with(&arguments, fs::read(&scan).unwrap());
+    let report: Value = serde_json::from_slice(&output.stdout).unwrap();
+    assert_eq!(
+        (statistic(&report, "mean"), &report["signed"], &report["sign_rule"]),
+        (0.625, &false.into(), &Value::Null)
+    );
+}
+
+#[test]
+fn the_table_is_that_of_query_with_signs() {
+    let folder = TempDir::new().unwrap();
+    let (knot, ball) = (path(&folder, "knot.ply"), path(&folder, "ball.ply"));
+    let (table_path, expected) = (path(&folder, "table.csv"), path(&folder, "expected.csv"));
+    table(&["generate", "torus-knot", "--out", &knot]);
+    table(&["generate", "ico-sphere", "--out", &ball]);
+    table(&["deviation", &ball, &knot, "--out", &table_path]);
+    table(&["query", &knot, "--points", &ball, "--signed", "--out", &expected]);
+    assert_eq!(fs::read_to_string(table_path).unwrap(), fs::read_to_string(expected).unwrap());
+    for backend in ["kdop", "octree", "p2m"] {
+        let reports = [&["--threads", "1"][..], &["--backend", backend]]
+            .map(|options| json(&[&["deviation", &ball, &knot, "--json"], options].concat())["statistics"].clone());
+        assert_eq!(reports[0], reports[1], "{backend}");
+    }
+}
+
+#[test]
+fn coloured_files_have_the_deviations_and_the_faces() {
+    let folder = TempDir::new().unwrap();
+    let cube = write(&folder, "cube.obj", CUBE);
+    let larger = write(&folder, "larger.obj", CUBE.replace("2 2 2", "2 2 3"));
+    let cloud = path(&folder, "cloud.ply");
+    table(&["deviation", &larger, &cube, "--limit", "1", "--out", &cloud]);
+    let bytes = fs::read(&cloud).unwrap();
+    let header_end = bytes.windows(11).position(|window| window == b"end_header\n").unwrap() + 11;
+    let header = text(&bytes[..header_end]);
+    assert!(header.contains("element vertex 8\n") && header.contains("element face 12\n"), "{header}");
+    assert!(header.contains("property double deviation\nproperty uchar red\nproperty uchar green\n"), "{header}");
+    let record = |i: usize| &bytes[header_end + 35 * i..][..35];
+    let deviation = |i: usize| f64::from_le_bytes(record(i)[24..32].try_into().unwrap());
+    assert_eq!([0, 6, 7].map(deviation), [0.0, 1.0, 0.0]);
+    assert_eq!([&record(0)[32..], &record(6)[32..]], [[0xd9, 0xd9, 0xd9], [0x67, 0x00, 0x1f]]);
+    // The file reads back as the scan, and so does the file of a cloud.
+    let report = json(&["deviation", &cloud, &cube, "--json"]);
+    assert_eq!((&report["deviations"], statistic(&report, "max")), (&8.into(), 1.0));
+    let points = write(&folder, "points.csv", "x,y,z\n1,1,3\n");
+    table(&["deviation", &points, &cube, "--out", &cloud]);
+    assert_eq!(json(&["deviation", &cloud, &cube, "--json"])["deviations"], 1);
+}
+
+#[test]
+fn a_page_has_the_deviations() {
+    let folder = TempDir::new().unwrap();
+    let cube = write(&folder, "cube.obj", CUBE);
+    let page = path(&folder, "page.html");
+    table(&["deviation", &cube, &cube, "--unit", "metres", "--out", &page]);
+    let html = fs::read_to_string(&page).unwrap();
+    assert!(html.contains("\"deviations\":{\"total\":8,") && html.contains("\"unit\":\"metres\""));
+    assert!(html.contains("8 deviations, positive outside: mean 0 metres"));
+}
+
+#[test]
+fn scans_that_are_empty_equal_or_not_finite_have_statistics() {
+    let folder = TempDir::new().unwrap();
+    let cube = write(&folder, "cube.obj", CUBE);
+    let empty = write(&folder, "empty.xyz", "");
+    let report = json(&["deviation", &empty, &cube, "--tolerance", "1", "--json"]);
+    assert_eq!((&report["deviations"], &report["statistics"]["mean"]), (&0.into(), &Value::Null));
+    let text = table(&["deviation", &empty, &cube]);
+    assert_eq!(text, "points with a deviation  0\npoints without one       0\n");
+    for out in ["empty.csv", "empty.ply", "empty.html"] {
+        table(&["deviation", &empty, &cube, "--out", &path(&folder, out)]);
+    }
+    let report = json(&["deviation", &cube, &cube, "--json"]);
+    assert_eq!((statistic(&report, "rms"), &report["limit"]), (0.0, &1.0.into()));
+    // A vertex that nothing uses may be infinite.
+    let scan = write(&folder, "odd.obj", format!("{CUBE}v inf 0 0\nv 1 1 3\n"));
+    let report = json(&["deviation", &scan, &cube, "--json"]);
+    assert_eq!((&report["deviations"], &report["missing"]), (&9.into(), &1.into()));
+    // A point of a file of points may not be.
+    let scan = write(&folder, "nan.xyz", "nan 0 0\n");
+    assert!(failure(&["deviation", &scan, &cube], 1).contains("nan.xyz"));
+    let nothing = write(&folder, "nothing.off", "OFF\n0 0 0\n");
+    let report = json(&["deviation", &cube, &nothing, "--json"]);
+    assert_eq!((&report["deviations"], &report["missing"]), (&0.into(), &8.into()));
+}
+
+#[test]
+fn what_has_no_sign_is_told() {
+    let folder = TempDir::new().unwrap();
+    let open = write(&folder, "open.obj", CUBE.replace("f 5 6 7 8\n", ""));
+    let scan = write(&folder, "scan.xyz", "1 1 -1\n");
+    let output = p2m(&["deviation", &scan, &open]);
+    assert_eq!(output.code, 0);
+    assert!(text(&output.stderr).contains("warning  ") && text(&output.stderr).contains("winding numbers decide"));
+    assert_eq!(text(&p2m(&["deviation", &scan, &open, "--sign", "winding"]).stderr).matches("warning").count(), 0);
+    assert!(failure(&["deviation", &scan, &open, "--sign", "closed"], 1).contains("see --sign and --unsigned"));
+    let cables = write(&folder, "cables.obj", "v 0 0 0\nv 1 0 0\nl 1 2\n");
+    assert!(failure(&["deviation", &scan, &cables], 1).contains("add --unsigned"));
+    let report = json(&["deviation", &scan, &cables, "--unsigned", "--json"]);
+    assert_eq!(statistic(&report, "max"), 2f64.sqrt());
+    assert!(failure(&["deviation", &scan, &open, "--out", "-"], 2).contains("--out FILE"));
+    assert!(failure(&["deviation", &scan, &open, "--out", "a.npy"], 1).contains("expected one of csv, ply, html"));
+    assert!(failure(&["deviation", &scan, &open, "--out", &scan], 1).contains("unknown extension"));
+    let csv = write(&folder, "scan.csv", "1,1,1\n");
+    assert!(failure(&["deviation", &csv, &open, "--out", &csv], 1).contains("it is an input"));
+    failure(&["deviation", &scan, &open, "--unsigned", "--sign", "closed"], 2);
+    failure(&["deviation", "-", "-"], 2);
+    for limit in ["0", "-1", "nan"] {
+        failure(&["deviation", &scan, &open, "--limit", limit], 2);
+    }
+}
+
+/// Noise along the normals of a real mesh comes back as the mean and the root mean square of the deviations.
+#[test]
+fn deviations_of_a_noisy_dragon_are_the_noise() {
+    let Some(folder) = models() else { return };
+    let dragon = folder.join("dragon_100k.obj");
+    let Ok(content) = fs::read_to_string(&dragon) else {
+        eprintln!("skipped: no {}", dragon.display());
+        return;
+    };
+    let numbers = |line: &str| -> Vec<f64> { line.split_whitespace().skip(1).map(|w| w.parse().unwrap()).collect() };
+    let of = |kind: &str| content.lines().filter(|line| line.starts_with(kind)).map(numbers).collect::<Vec<_>>();
+    let (vertices, faces) = (of("v "), of("f "));
+    let vertex = |i: f64| nalgebra::Vector3::from_row_slice(&vertices[i as usize - 1]);
+    let (mut rng, sigma) = (rng("noisy dragon", 0), 1e-5);
+    let (mut scan, mut sum, mut squares, mut count) = (String::new(), 0.0, 0.0, 0.0);
+    for face in faces.iter().step_by(20) {
+        let [a, b, c] = [0, 1, 2].map(|k| vertex(face[k]));
+        let noise = sigma * normal_number(&mut rng);
+        let point = (a + b + c) / 3.0 + (b - a).cross(&(c - a)).normalize() * noise;
+        writeln!(scan, "{} {} {}", point.x, point.y, point.z).unwrap();
+        (sum, squares, count) = (sum + noise, squares + noise * noise, count + 1.0);
+    }
+    let folder = TempDir::new().unwrap();
+    let scan = write(&folder, "scan.xyz", scan);
+    let report = json(&["deviation", &scan, dragon.to_str().unwrap(), "--json"]);
+    let (mean, rms) = (sum / count, f64::sqrt(squares / count));
+    assert_eq!((report["deviations"].as_f64(), &report["sign_rule"]), (Some(count), &"closed".into()));
+    assert!((statistic(&report, "mean") - mean).abs() < 0.01 * sigma, "{mean}: {report}");
+    assert!((statistic(&report, "rms") - rms).abs() < 0.01 * sigma, "{rms}: {report}");
+}

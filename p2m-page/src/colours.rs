@@ -1,0 +1,54 @@
+//! The colours of signed numbers. The script of the page has the same scale.
+
+/// Blue for negative numbers and red for positive ones, with grey at zero, which people with any colour vision tell
+/// apart.
+const DIVERGING: [[u8; 3]; 9] = [
+    [0x05, 0x30, 0x61],
+    [0x21, 0x66, 0xac],
+    [0x43, 0x93, 0xc3],
+    [0x92, 0xc5, 0xde],
+    [0xd9, 0xd9, 0xd9],
+    [0xf4, 0xa5, 0x82],
+    [0xd6, 0x60, 0x4d],
+    [0xb2, 0x18, 0x2b],
+    [0x67, 0x00, 0x1f],
+];
+/// The colour of what is no number.
+const UNDEFINED: [u8; 3] = [128; 3];
+
+/// Returns red, green and blue of a number on a scale from blue at `-limit` over grey at zero to red at `limit`, as
+/// pages show it. Numbers beyond the limit have the colours of its ends, and NaN is grey.
+#[must_use]
+#[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "places and colours are in range")]
+pub fn diverging_colour(value: f64, limit: f64) -> [u8; 3] {
+    if value.is_nan() {
+        return UNDEFINED;
+    }
+    let last = DIVERGING.len() - 1;
+    // A scale without a width has the colour of zero at zero.
+    let part = if value == 0.0 { 0.0 } else { (value / limit).clamp(-1.0, 1.0) };
+    let place = (0.5 + 0.5 * part) * last as f64;
+    let i = (place as usize).min(last - 1);
+    let f = place - i as f64;
+    std::array::from_fn(|k| (f64::from(DIVERGING[i][k]) * (1.0 - f) + f64::from(DIVERGING[i + 1][k]) * f) as u8)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn colours_are_those_of_the_script() {
+        let hex = DIVERGING.map(|[r, g, b]| format!("\"#{r:02x}{g:02x}{b:02x}\"")).join(",");
+        assert!(include_str!("../assets/viewer.js").contains(&hex), "{hex}");
+    }
+
+    #[test]
+    fn the_ends_and_the_middle_have_their_colours() {
+        let of = |value| diverging_colour(value, 2.0);
+        assert_eq!([of(-2.0), of(-3.0), of(0.0)], [DIVERGING[0], DIVERGING[0], DIVERGING[4]]);
+        assert_eq!([of(2.0), of(f64::INFINITY), of(f64::NAN)], [DIVERGING[8], DIVERGING[8], UNDEFINED]);
+        assert_eq!(of(1.0), DIVERGING[6]);
+        assert_eq!([diverging_colour(0.0, 0.0), diverging_colour(1.0, 0.0)], [DIVERGING[4], DIVERGING[8]]);
+    }
+}

@@ -1,0 +1,271 @@
+"""Deviations of a scan from a mesh, with their statistics, figures and pages."""
+
+from __future__ import annotations
+
+import os
+import warnings
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, Literal
+
+import numpy as np
+from numpy.typing import NDArray
+
+from . import _p2m
+from ._arrays import Progress, coordinates, not_negative
+from ._index import Index
+from ._scene import Scene
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
+# The largest number of points that a figure draws.
+_MAX_DRAWN = 50_000
+
+
+class Deviation:
+    """The deviations of the points of a scan from a scene, which `deviation` computes."""
+
+    __slots__ = ("_index", "_points", "_scan", "is_signed", "limit", "statistics", "tolerance", "unit", "values")
+
+    values: NDArray[np.float64]
+    """The deviation of each point: positive outside, nan for a point that is not finite or whose side is not
+    defined. Without signs they are distances."""
+    statistics: dict[str, Any]
+    """``count`` and ``missing``, the numbers of deviations and of nan, and in the unit of the scan ``mean``,
+    ``mean_absolute``, ``rms``, ``standard_deviation`` (with the count as the divisor), ``min``, ``max``, and
+    ``percentile_p`` and ``absolute_percentile_p`` for p of 1, 5, 25, 50, 75, 95 and 99, as ``numpy.percentile`` has
+    them. Without any deviation they are nan."""
+    is_signed: bool
+    """Whether the deviations have signs."""
+    tolerance: float | None
+    """The tolerance that was given."""
+    limit: float
+    """The absolute deviation from which on colours do not change."""
+    unit: str
+    """The name of the unit of lengths."""
+
+    def __init__(
+        self,
+        values: NDArray[np.float64],
+        points: NDArray[Any],
+        scan: Scene | None,
+        index: Index,
+        is_signed: bool,
+        tolerance: float | None,
+        limit: float | None,
+        unit: str,
+    ) -> None:
+        self.values = values
+        self.statistics = _p2m.deviation_statistics(values)
+        self.is_signed = is_signed
+        self.tolerance = tolerance
+        self.unit = unit
+        usual = tolerance or self.statistics["absolute_percentile_95"]
+        self.limit = limit or (usual if usual > 0 else 1.0)
+        self._points = points
+        self._scan = scan
+        self._index = index
+
+    def __repr__(self) -> str:
+        mean, rms = self.statistics["mean"], self.statistics["rms"]
+        return f"Deviation(points={len(self.values)}, mean={mean:.4g}, rms={rms:.4g})"
+
+    def outside(self, tolerance: float | None = None) -> tuple[int, int]:
+        """Return how many deviations are above a tolerance and how many below its negative.
+
+        Parameters
+        ----------
+        tolerance : float, optional
+            The tolerance, which itself is inside; by default the one that `deviation` was given.
+        """
+        limit = self.tolerance if tolerance is None else not_negative(tolerance, "tolerance")
+        if limit is None:
+            raise ValueError("tolerance: none is given")
+        return int(np.sum(self.values > limit)), int(np.sum(self.values < -limit))
+
+    def figure(self) -> Figure:
+        """Return a figure of matplotlib: the scan, coloured by its deviations, and their histogram.
+
+        Of more than 50,000 points every second one, or every third one and so on, is drawn. The histogram has all.
+        The figure belongs to no window: ``figure.savefig("deviation.png")`` writes it, and notebooks show it.
+
+        Raises
+        ------
+        ImportError
+            If matplotlib is not installed.
+        """
+        try:
+            from matplotlib.figure import Figure
+        except ImportError as error:
+            raise ImportError("figures need matplotlib: pip install matplotlib") from error
+        what = "deviation" if self.is_signed else "distance"
+        low = -self.limit if self.is_signed else 0.0
+        colours = "RdBu_r" if self.is_signed else "viridis"
+        figure = Figure(figsize=(11, 5), layout="constrained")
+        space: Any = figure.add_subplot(1, 2, 1, projection="3d")
+        step = max(1, -(-len(self.values) // _MAX_DRAWN))
+        drawn = self._points[::step]
+        dots = space.scatter(*drawn.T, c=self.values[::step], s=2, cmap=colours, vmin=low, vmax=self.limit)
+        space.set_aspect("equal")
+        figure.colorbar(dots, ax=space, label=f"{what} ({self.unit})", extend="both" if self.is_signed else "max")
+        bars = figure.add_subplot(1, 2, 2)
+        numbers = self.values[np.isfinite(self.values)]
+        bars.hist(np.clip(numbers, low, self.limit), bins=64, range=(low, self.limit), color="0.5")
+        if self.tolerance is not None:
+            for mark in (-self.tolerance, self.tolerance) if self.is_signed else (self.tolerance,):
+                bars.axvline(mark, color="black", linestyle="--")
+        bars.set_xlabel(f"{what} ({self.unit}), ends include what is beyond")
+        bars.set_ylabel("points")
+        mean, rms = self.statistics["mean"], self.statistics["rms"]
+        bars.set_title(f"mean {mean:.4g}, root mean square {rms:.4g} {self.unit}")
+        return figure
+
+    def save(self, path: str | os.PathLike[str], *, up: Literal["y", "z"] = "z") -> None:
+        """Write a page or a file of points.
+
+        Parameters
+        ----------
+        path : path
+            A name that ends in ``.html`` is that of a page, which any browser opens without a network. One that ends in
+            ``.ply`` is that of the scan with the property ``deviation`` and colours from blue (inside) to red
+            (outside), with its triangles if it has some.
+        up : {"y", "z"}, optional
+            The axis that points up on the page.
+
+        Raises
+        ------
+        ValueError
+            For another ending.
+        OSError
+            If the file cannot be written.
+        """
+        target = Path(path)
+        if up not in ("y", "z"):
+            raise ValueError(f"up: {up!r} is none of 'y', 'z'")
+        if self._scan is None:
+            none = np.empty(0, np.uint32)
+            scan = _p2m.Scene(self._points.reshape(-1), none, none, none)
+        else:
+            scan = self._scan._raw
+        if target.suffix == ".ply":
+            target.write_bytes(_p2m.deviation_ply(scan, self.values, self.limit))
+            return
+        if target.suffix != ".html":
+            raise ValueError(f"path: {target.name!r} ends neither in .html nor in .ply")
+        primitives = np.full(len(self.values), np.iinfo(np.uint32).max, np.uint32)
+        finite = np.isfinite(self._points).all(axis=1)
+        primitives[finite] = self._index.closest(self._points[finite], fields="primitive").primitive
+        what = "deviations, positive outside" if self.is_signed else "distances"
+        count, mean, rms = (self.statistics[key] for key in ("count", "mean", "rms"))
+        summary = f"{count:,} {what}: mean {mean:.4g} {self.unit}, root mean square {rms:.4g} {self.unit}"
+        texts = ("Deviations in p2m", summary, self.unit)
+        scene = self._index.scene._raw
+        page = _p2m.deviation_page(
+            scan, self.values, primitives, scene, self.is_signed, self.limit, self.tolerance, up == "y", texts
+        )
+        target.write_text(page, encoding="utf-8")
+
+
+def deviation(
+    scan: Any,
+    mesh: Any,
+    *,
+    tolerance: float | None = None,
+    limit: float | None = None,
+    sign: Literal["auto", "closed", "winding"] | None = "auto",
+    unit: str = "units",
+    threads: int | None = None,
+    progress: Progress = None,
+) -> Deviation:
+    """Return how far the points of a scan are from a mesh: values, statistics, figures and pages.
+
+    Parameters
+    ----------
+    scan : array_like of shape (n, 3), Scene or object
+        The points, or an object that `Scene.of` makes a scene of, whose vertices are the points. A list or an array is
+        points, and a pair is a mesh.
+    mesh : Index, Scene or object
+        The scene that the scan is compared with. An index of any backend is used, and for other objects a tree of boxes
+        is built.
+    tolerance : float, optional
+        The tolerance that figures, pages and `Deviation.outside` mark, in the unit of the mesh.
+    limit : float, optional
+        The absolute deviation from which on colours do not change. By default it is the tolerance, or else the 95th
+        percentile of absolute deviations.
+    sign : {"auto", "closed", "winding"} or None, optional
+        The rule that decides which points are inside, as for `Index.signed_distance`; None for distances without signs,
+        which scenes with segments or points need. Where ``"auto"`` finds no closed surface, winding numbers decide, with
+        a warning: near holes the sign is a guess, and both sides of a single sheet are outside.
+    unit : str, optional
+        The name of the unit of lengths, for figures and pages.
+    threads, progress
+        As for `Index.closest`.
+
+    Returns
+    -------
+    Deviation
+        The deviations, positive outside.
+
+    Raises
+    ------
+    ValueError
+        If the scene has segments or points and `sign` is not None, or for a wrong argument.
+
+    Examples
+    --------
+    >>> import numpy as np, p2m
+    >>> corners = [[0, 0, 0], [1, 0, 0], [0, 1, 0], [0, 0, 1]]
+    >>> solid = p2m.Scene(corners, triangles=[[0, 2, 1], [0, 1, 3], [0, 3, 2], [1, 2, 3]])
+    >>> found = p2m.deviation([[0.125, 0.25, 0.25], [0.25, -0.5, 0.25], [0, 0, 0]], solid, tolerance=0.25)
+    >>> found.values
+    array([-0.125,  0.5  ,  0.   ])
+    >>> found.statistics["mean"], found.outside()
+    (0.125, (1, 0))
+    """
+    if sign not in ("auto", "closed", "winding", None):
+        raise ValueError(f"sign: {sign!r} is none of 'auto', 'closed', 'winding', None")
+    tolerance = None if tolerance is None else not_negative(tolerance, "tolerance")
+    limit = None if limit is None else not_negative(limit, "limit")
+    index = mesh if isinstance(mesh, Index) else Index(mesh, threads=threads)
+    is_points = isinstance(scan, (np.ndarray, list))
+    if is_points:
+        array = np.asarray(scan)
+        points = array if array.dtype == np.float32 else array.astype(np.float64, copy=False)
+        if points.ndim != 2 or points.shape[1] != 3:
+            raise ValueError(f"scan: the shape is {points.shape} instead of (n, 3)")
+    else:
+        scene = scan.scene if isinstance(scan, Index) else Scene.of(scan)
+        points = scene.vertices
+    finite = np.isfinite(points).all(axis=1)
+    queries = coordinates(points if finite.all() else points[finite], "scan")
+
+    def measured(rule: Literal["auto", "closed", "winding"] | None) -> NDArray[np.float64]:
+        if rule is None:
+            return index.distance(queries, threads=threads, progress=progress)
+        return index.signed_distance(queries, sign=rule, threads=threads, progress=progress)
+
+    if sign == "auto":
+        try:
+            numbers = measured("closed")
+        except ValueError:
+            numbers = measured("winding")
+            warnings.warn(
+                "the mesh is not closed, or its triangles have different orientations: winding numbers decide which "
+                "points are inside. Near holes the sign is a guess, and both sides of a single sheet are outside",
+                stacklevel=2,
+            )
+    else:
+        numbers = measured(sign)
+    # A scene without primitives has infinite distances.
+    values = np.full(len(points), np.nan)
+    values[finite] = np.where(np.isfinite(numbers), numbers, np.nan)
+    return Deviation(
+        values,
+        points,
+        None if is_points else scene,
+        index,
+        sign is not None,
+        tolerance,
+        limit,
+        unit,
+    )
