@@ -37,22 +37,23 @@ use std::time::{Duration, Instant};
 fn help() -> String {
     format!(
         "\
-The deviation of a point is its distance from the scene, positive outside and negative inside. It is that of the surface \
-and not of its vertices. The points of a scan are those of its file, or all vertices if it is a mesh, each once; vertices that \
-only segments and points use, or nothing, count as well.
+The deviation of a point is its distance from the scene, positive outside and negative inside. It is that of the \
+surface and not of its vertices. The points of a scan are those of its file, or all vertices if it is a mesh, each \
+once; vertices that only segments and points use, or nothing, count as well.
 
-If the triangles are no closed surface, winding numbers decide which points are inside, and a warning says so. Then the sign \
-is a guess near borders of holes, and both sides of a single sheet are outside. A scene of segments or points has no inside: \
-it needs --unsigned, with which deviations are distances.
+If the triangles are no closed surface, winding numbers decide which points are inside, and a warning says so. Then \
+the sign is a guess near borders of holes, and both sides of a single sheet are outside. A scene of segments or \
+points has no inside: it needs --unsigned, with which deviations are distances.
 
-Statistics are printed on the standard output: the mean, the mean of absolute values, the root mean square, the standard \
-deviation, the extremes and percentiles, and with --tolerance the numbers of points above and below it. A point without a \
-deviation is one whose coordinates are not finite or whose side is not defined; nothing else includes it.
+Statistics are printed on the standard output: the mean, the mean of absolute values, the root mean square, the \
+standard deviation, the extremes and percentiles, and with --tolerance the numbers of points above and below it. A \
+point without a deviation is one whose coordinates are not finite or whose side is not defined; nothing else \
+includes it.
 
-With --out, CSV is the table that `p2m query --signed` writes, where signed_distance is the deviation. PLY is the scan with \
-the property deviation and colours from blue (inside) over grey to red (outside); triangles are kept. HTML is a page that any \
-browser opens without a network: it shows the coloured scan, the scene, a histogram and the statistics, and tolerance and \
-colours can be changed there.
+With --out, CSV is the table that `p2m query --signed` writes, where signed_distance is the deviation. PLY is the \
+scan with the property deviation and colours from blue (inside) over grey to red (outside); triangles are kept. HTML \
+is a page that any browser opens without a network: it shows the coloured scan, the scene, a histogram and the \
+statistics, and tolerance and colours can be changed there.
 
 {}
 
@@ -193,7 +194,7 @@ pub(crate) fn run(streams: &Streams, args: &Args) -> anyhow::Result<()> {
     // Where all deviations are 0, any limit gives the same colours.
     let usual_limit = || Some(statistics.usual_limit()).filter(|limit| *limit > 0.0).unwrap_or(1.0);
     let limit = args.limit.or(args.tolerance.filter(|tolerance| *tolerance > 0.0)).unwrap_or_else(usual_limit);
-    let found = Found { args, statistics, outside: args.tolerance.map(|x| outside(&values, x)), limit, rule };
+    let found = DeviationReport { args, statistics, outside: args.tolerance.map(|x| outside(&values, x)), limit, rule };
 
     let mut bytes = 0;
     if let Some(mut output) = output {
@@ -319,8 +320,8 @@ impl<'a> Answers<'a> {
     }
 }
 
-/// The result of a run, for people and for programs.
-struct Found<'a> {
+/// The statistics of a run, as text for people or as JSON for programs.
+struct DeviationReport<'a> {
     args: &'a Args,
     statistics: DeviationStatistics,
     outside: Option<OutsideTolerance>,
@@ -329,7 +330,7 @@ struct Found<'a> {
     rule: Option<&'static str>,
 }
 
-impl Found<'_> {
+impl DeviationReport<'_> {
     /// Returns the part of a report about the deviations.
     fn report(&self) -> Value {
         let named = self.statistics.named();

@@ -134,6 +134,9 @@ const MAX_LIVE_PRIMITIVES: usize = 10_000;
 /// The largest number of query points of a page.
 const MAX_QUERIES: u64 = 100_000;
 
+/// The sides of scenes whose distances, and much smaller and larger ones, f32 represents.
+const F32_SIDES: std::ops::Range<f64> = 1e-30..1e30;
+
 pub(crate) fn run(streams: &Streams, args: &Args) -> anyhow::Result<()> {
     if args.signed.is_some() && args.field.is_none() && args.points.is_none() && args.random.is_none() {
         return Err(usage("--signed needs --field, --random or --points"));
@@ -147,6 +150,11 @@ pub(crate) fn run(streams: &Streams, args: &Args) -> anyhow::Result<()> {
     let resolution = args.field.or(args.lists);
     let grid = resolution.map(|n| Grid::around(&scene.soup.aabb(), n as usize, args.box_scale)).transpose();
     let grid = grid.with_context(|| args.scene.name())?;
+    let bounds = scene.soup.aabb();
+    let side = if bounds.is_empty() { 0.0 } else { (bounds.max - bounds.min).amax() };
+    if args.field.is_some() && side != 0.0 && !F32_SIDES.contains(&side) {
+        bail!("{}: --field has numbers of f32, which cannot hold lengths of about {side:e}", args.scene.name());
+    }
     let mut output = Output::open(streams, Some(&args.out))?;
 
     let saved = saved.as_ref();
@@ -166,7 +174,8 @@ pub(crate) fn run(streams: &Streams, args: &Args) -> anyhow::Result<()> {
     let mut view = View::new(&scene, &around).with_unit(&args.unit).with_up(args.up.into());
     let file = args.scene.path.file_name().map(|file| file.to_string_lossy().into_owned());
     view.title = format!("{} in p2m", file.unwrap_or_else(|| args.scene.name()));
-    view.summary = counted(&Counts::of(&scene.soup));
+    let is_empty = scene.soup.is_empty();
+    view.summary = if is_empty { "an empty scene".to_owned() } else { counted(&Counts::of(&scene.soup)) };
     if let Some(queries) = &queries {
         let options = QueryOptions::default();
         let options = args.max_distance.map_or(options, |limit| options.with_max_distance(limit));
@@ -231,7 +240,8 @@ fn levels(tree: &PacketTree, count: usize) -> Vec<Level> {
     let tree_levels = TreeLevels::new(tree);
     let level = |level: usize| {
         let boxes: Vec<Aabb<f64>> = tree_levels.level(level).iter().map(|node| node.volume).collect();
-        Level { title: format!("level {level}: {} boxes", boxes.len()), boxes }
+        let noun = if boxes.len() == 1 { "box" } else { "boxes" };
+        Level { title: format!("level {level}: {} {noun}", boxes.len()), boxes }
     };
     (0..count.min(tree_levels.count())).map(level).collect()
 }

@@ -45,7 +45,7 @@ pub struct DeviationStatistics {
     pub count: usize,
     /// The number of values that are not finite, which nothing else here includes.
     pub missing: usize,
-    /// The mean.
+    /// The mean of the deviations.
     pub mean: f64,
     /// The mean of the absolute values.
     pub mean_absolute: f64,
@@ -171,8 +171,7 @@ impl DeviationStatistics {
         all
     }
 
-    /// Returns the 95th percentile of the absolute values, by which colours are limited unless something else is
-    /// asked for.
+    /// Returns the 95th percentile of the absolute values, which limits colours by default.
     #[must_use]
     pub fn usual_limit(&self) -> f64 {
         self.absolute_percentiles[5]

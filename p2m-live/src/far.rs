@@ -2,15 +2,16 @@
 
 use crate::ordinary;
 use crate::scene::answer;
-use p2m::nalgebra::Point3;
+use p2m::nalgebra::{Point3, Vector3};
 use p2m::{AabbTree, BuildIndex, ClosestPoint, PrimitiveSet, Soup};
 use std::sync::Arc;
 
 /// The offset of the scene in each coordinate, which is a million units from the origin. Numbers of f32 are 1/16 apart
 /// there.
 pub const OFFSET: f64 = 577_350.25;
-/// The longest side that the scene has at least, in units: a smaller one is enlarged by a power of two, because
-/// vertices that are 1/16 apart would not resemble it.
+/// The longest side that the scene has at least, in units, and half of what it has at most. It is scaled by a power of
+/// two, because vertices that are 1/16 apart would not resemble a smaller scene, and a larger one would leave the range
+/// in which they are 1/16 apart.
 const MIN_SIDE: f64 = 16.0;
 
 /// An answer far from the origin, beside that of ordinary arithmetic. All of it is in the frame of the scene.
@@ -68,7 +69,7 @@ impl FarScene {
             return None;
         }
         let side = (bounds.max - bounds.min).max();
-        let scale = if side > 0.0 { (MIN_SIDE / side).log2().ceil().max(0.0).exp2() } else { 1.0 };
+        let scale = if side > 0.0 { (MIN_SIDE / side).log2().ceil().exp2() } else { 1.0 };
         let centre = Point3::from(bounds.min.coords * 0.5 + bounds.max.coords * 0.5);
         let moved: Vec<Point3<f32>> = soup.positions().iter().map(|p| rounded(p, &centre, scale)).collect();
         let widened = moved.iter().map(|p| p.cast::<f64>()).collect();
@@ -78,7 +79,7 @@ impl FarScene {
         Some(Self { scale, centre, index, exact })
     }
 
-    /// Returns how many times the scene is enlarged.
+    /// Returns the factor by which the scene is scaled.
     #[must_use]
     pub fn scale(&self) -> f64 {
         self.scale
@@ -93,12 +94,12 @@ impl FarScene {
         let (ordinary_point, ordinary_distance) = ordinary::closest_point(self.index.set(), &query)?;
         let vertices = self.exact.set().element(closest.primitive);
         let weighted = vertices.indices().iter().zip(closest.barycentric).map(|(&i, weight)| {
-            // Weights of f32 add up to one only nearly, so the vertices are relative to the offset.
-            self.back(&self.exact.set().positions()[i as usize]).coords * f64::from(weight)
+            // Weights of f32 add up to one only nearly, so the vertices are relative to a point near them.
+            self.from_centre(&self.exact.set().positions()[i as usize]) * f64::from(weight)
         });
         Some(FarAnswer {
             query: self.back(&query.cast()),
-            point: Point3::from(weighted.fold(p2m::nalgebra::Vector3::zeros(), |sum, part| sum + part)),
+            point: self.centre + weighted.fold(Vector3::zeros(), |sum, part| sum + part),
             distance: f64::from(closest.distance) / self.scale,
             ordinary_point: self.back(&ordinary_point.cast()),
             ordinary_distance: f64::from(ordinary_distance) / self.scale,
@@ -108,7 +109,12 @@ impl FarScene {
 
     /// Returns a point far from the origin in the frame of the scene.
     fn back(&self, point: &Point3<f64>) -> Point3<f64> {
-        Point3::from(std::array::from_fn(|k| (point[k] - OFFSET) / self.scale + self.centre[k]))
+        self.centre + self.from_centre(point)
+    }
+
+    /// Returns the vector from the centre of the scene to a point far from the origin, in the unit of the scene.
+    fn from_centre(&self, point: &Point3<f64>) -> Vector3<f64> {
+        point.coords.map(|x| (x - OFFSET) / self.scale)
     }
 }
 
@@ -119,7 +125,31 @@ fn rounded(point: &Point3<f64>, centre: &Point3<f64>, scale: f64) -> Point3<f32>
 
 #[cfg(test)]
 mod tests {
+    use super::FarScene;
     use crate::scene::tests::{live, queries};
+    use p2m::nalgebra::{Point3, Vector3};
+    use p2m::{Element, Soup};
+
+    /// Scenes that are large, tiny or far from the origin themselves are treated as any other.
+    #[test]
+    fn the_closest_point_is_where_the_distance_says() {
+        for (size, origin) in [(1.0, 0.0), (1.0, 1e6), (1e20, 0.0), (1e20, 3e22), (1e-200, 0.0), (1e200, 0.0)] {
+            let at = |x: f64, y: f64, z: f64| Point3::from(Vector3::repeat(origin) + Vector3::new(x, y, z) * size);
+            let positions = vec![at(0.0, 0.0, 0.0), at(1.0, 0.1, 0.0), at(0.0, 1.0, 0.3)];
+            let soup = Soup::new(positions, [Element::Triangle([0, 1, 2])]).unwrap();
+            let far = FarScene::new(&soup).unwrap();
+            for query in [at(0.3, 0.2, 0.9), at(1.4, 1.1, 0.2), at(-0.4, 0.2, -0.3)] {
+                let answer = far.query(&query).unwrap();
+                let measured = ((answer.point - answer.query) / size).norm();
+                let rounding = 2.0 * f64::EPSILON * origin / size;
+                assert!(
+                    (measured - answer.true_distance / size).abs() <= 1e-6 + rounding,
+                    "{size} {origin} {answer:?}"
+                );
+                assert!((answer.distance / answer.true_distance - 1.0).abs() <= f64::from(f32::EPSILON), "{answer:?}");
+            }
+        }
+    }
 
     #[test]
     fn distances_far_away_are_accurate_where_those_of_ordinary_arithmetic_jump() {

@@ -13,7 +13,7 @@ const DIVERGING: [[u8; 3]; 9] = [
     [0xb2, 0x18, 0x2b],
     [0x67, 0x00, 0x1f],
 ];
-/// The colour of what is no number.
+/// The colour of NaN.
 const UNDEFINED: [u8; 3] = [128; 3];
 
 /// Returns red, green and blue of a number on a scale from blue at `-limit` over grey at zero to red at `limit`, as

@@ -101,6 +101,8 @@ struct SceneData {
 #[derive(Debug, Serialize)]
 struct ObjectData {
     name: Option<String>,
+    /// The number of its primitives in the scene. Fewer are drawn of a scene that is drawn coarser.
+    count: usize,
     triangles: [usize; 2],
     segments: [usize; 2],
     points: [usize; 2],
@@ -395,7 +397,7 @@ impl Drawn {
         if ids.is_empty() {
             return None;
         }
-        let before = self.counts();
+        let (before, count) = (self.counts(), ids.len());
         for element in ids.map(|id| soup.element(PrimitiveId::new(id))) {
             let indices = element.indices();
             let is_kept = stand_ins.is_none_or(|stand_ins| match indices {
@@ -413,7 +415,7 @@ impl Drawn {
         }
         let after = self.counts();
         let [triangles, segments, points] = std::array::from_fn(|k| [before[k], after[k]]);
-        Some(ObjectData { name: name.cloned(), triangles, segments, points })
+        Some(ObjectData { name: name.cloned(), count, triangles, segments, points })
     }
 
     fn counts(&self) -> [usize; 3] {

@@ -49,5 +49,8 @@ fn what_cannot_be_shown_is_told() {
     failure(&["view", SCENE, "--field", "8", "--lists", "8", "--out", &page], 2);
     assert!(failure(&["view", SCENE, "--lists", "8", "--out", &page], 2).contains("aabb has none"));
     failure(&["view", SCENE, "--random", "100001", "--out", &page], 2);
+    let tiny = path(&folder, "tiny.obj");
+    fs::write(&tiny, "v 0 0 0\nv 1e-200 0 0\nl 1 2\n").unwrap();
+    assert!(failure(&["view", &tiny, "--field", "8", "--out", &page], 1).contains("numbers of f32"));
     assert!(!fs::exists(&page).unwrap());
 }

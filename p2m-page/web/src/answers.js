@@ -14,6 +14,12 @@ export class AnswersLayer {
     this.scale = new ColourScale(low < 0 ? "diverging" : "sequential", low < 0 ? low : 0, high);
     this.from = frame.positions(answers.queries);
     this.to = frame.positions(answers.points);
+    this.answeredCount = 0;
+    for (let i = 0; i < this.length; i++) {
+      if (this.isAnswered(i)) this.answeredCount++;
+      // Without an answer, the closest point and the segment are drawn where the query is.
+      else this.to.set(this.from.subarray(3 * i, 3 * i + 3), 3 * i);
+    }
     this.colours = this.scale.colours(this.values);
 
     this.dots = points(this.from, this.colours, 6);

@@ -21,6 +21,7 @@ export class CellsLayer {
   // Shows a level, by its number.
   show(number) {
     this.level = number;
+    for (const child of this.group.children) child.geometry.dispose();
     this.group.clear();
     const { boxes } = this.levels[number];
     const corners = EDGES.flat();

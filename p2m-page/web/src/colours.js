@@ -48,8 +48,8 @@ export class ColourScale {
     return `rgb(${out.map(Math.round).join(",")})`;
   }
 
-  // Returns the colours of all values as the GPU needs them: three numbers each, which are proportional to light and are
-  // at most 65535.
+  // Returns the colours of all values as the GPU needs them: three numbers each, which are proportional to light and at
+  // most 65535.
   colours(values) {
     const bytes = new Uint8Array(3);
     const out = new Uint16Array(3 * values.length);

@@ -128,8 +128,8 @@ export class DeviationsPanel {
       ...Object.values(this.inputs), this.parts);
     this.pointText = element("dl", { id: "deviation", "aria-live": "polite" });
     this.pointerText = element("output", { id: "deviation-pointer" });
-    const step = (by) => element("button", { type: "button", onclick: () => this.step(by) }, by > 0 ? "Next" : "Previous");
-    add("Point", "point", element("p", {}, step(-1), " ", step(1), " ", this.pointerText), this.pointText);
+    const step = (by, text) => element("button", { type: "button", onclick: () => this.step(by) }, text);
+    add("Point", "point", element("p", {}, step(-1, "Previous"), " ", step(1, "Next"), " ", this.pointerText), this.pointText);
     this.makeTables(add);
     this.redraw();
     this.select(-1);
@@ -141,8 +141,8 @@ export class DeviationsPanel {
     const part = (x) => Math.max(0, Math.min(1, 1 + Math.log10(x / most) / 4));
     const box = element("input", { type: "number", id, min: 0, step: "any", value, class: "number" });
     const slider = element("input", {
-      type: "range", min: 0, max: 1, step: 0.001, value: value === "" ? 1 : part(value), "aria-label": `${label}, slider`,
-      id: `${id}-slider`,
+      type: "range", id: `${id}-slider`, min: 0, max: 1, step: 0.001, value: value === "" ? 1 : part(value),
+      "aria-label": `${label}, slider`,
     });
     box.addEventListener("input", () => {
       if (box.value !== "") slider.value = part(Number(box.value));

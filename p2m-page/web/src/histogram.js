@@ -17,7 +17,8 @@ export function bins(values, low, high) {
   return counts;
 }
 
-// Returns a histogram between the limits of a scale. Each value stands for `weight` values, and lines are drawn at `marks`.
+// Returns a histogram between the limits of a scale. Each value stands for `weight` values, and lines are drawn at
+// `marks`.
 export function histogram(values, scale, what, unit, { weight = 1, marks = [] } = {}) {
   const { low, high } = scale;
   const counts = bins(values, low, high).map((n) => Math.round(n * weight));

@@ -58,8 +58,9 @@ export class LiveQueries {
       row.rate = this.measure(row.number);
     }
     this.farScale = this.module.p2m_build_far();
+    this.inputs.forEach((input) => (input.disabled = false));
     this.farBox.disabled = this.farScale === 0;
-    this.say("");
+    this.say(this.farScale === 0 ? "f32 cannot represent this scene far from the origin." : "");
     this.setQuery(this.frame.coordinates([0, 0, 0]));
   }
 
@@ -77,17 +78,18 @@ export class LiveQueries {
   makePanel(add) {
     this.message = element("p", { id: "live-message", role: "status" });
     this.inputs = [0, 1, 2].map((axis) => element("input", {
-      type: "number", step: "any", id: `live-${"xyz"[axis]}`, "aria-label": `${"xyz"[axis]} of the query`,
+      type: "number", step: "any", disabled: true, id: `live-${"xyz"[axis]}`, "aria-label": `${"xyz"[axis]} of the query`,
       oninput: () => this.readInputs(), onkeydown: (event) => this.stepInput(event, axis),
     }));
     this.followBox = checkbox("the query follows the mouse", true, (on) => (this.isFollowing = on), "live-follow");
-    this.farLabel = checkbox("a million units from the origin, in f32", false, (on) => this.setFar(on), "live-far");
+    this.farLabel = checkbox("compare f32 arithmetic far from the origin", false, (on) => this.setFar(on), "live-far");
     this.farBox = this.farLabel.firstChild;
+    this.farBox.disabled = true;
     const depth = element("input", {
       type: "range", min: -1, max: 1, step: 0.01, value: 0, "aria-label": "depth of the plane of the mouse",
       oninput: () => { this.depth = Number(depth.value); },
     });
-    this.answerText = element("dl", { id: "live-answer" });
+    this.answerText = element("dl", { id: "live-answer", "aria-live": "polite" });
     this.workTable = element("table", { id: "live-work" });
     this.speedTable = element("table", { id: "live-speed" });
     this.farText = element("div", { id: "live-far-text" });
@@ -181,6 +183,8 @@ export class LiveQueries {
     if (this.isFar) this.drawFar();
     else if (answer) this.draw(answer);
     this.showAnswer(answer, isSame);
+    // Far from the origin the query is another one, because it is rounded.
+    this.answerText.hidden = this.workTable.hidden = this.isFar;
     this.showWork(answers);
     this.viewer.draw();
   }
@@ -206,10 +210,10 @@ export class LiveQueries {
     if (answer) {
       row("closest point", answer.point.join(",\n"));
       row("distance", answer.distance);
-      row("certainly at least", answer.lowerBound);
+      row("lower bound", answer.lowerBound);
       row("primitive", `${KINDS[this.live.sizes[answer.primitive]]} ${answer.primitive}`);
       row("feature", featureName(answer.feature));
-      row("agreement", isSame ? `all ${this.rows.length} indexes give the same bits` : "the indexes differ");
+      row("agreement", isSame ? `the ${this.rows.length} indexes give equal answers, bit for bit` : "the indexes differ");
     } else {
       row("answer", "none");
     }
@@ -243,12 +247,13 @@ export class LiveQueries {
       [named("p2m", colours.selected), far.p2m.distance, errors[0], this.worst[0]],
       [named("ordinary f32", colours.feature), far.ordinary.distance, errors[1], this.worst[1]],
     ].map(([name, ...values]) => [name, ...values.map(short)]));
-    const enlarged = this.farScale > 1 ? `, enlarged ${count(this.farScale)} times,` : "";
+    const scaled = this.farScale === 1 ? "" : `, scaled by ${short(this.farScale)},`;
     this.farText.replaceChildren(
-      element("p", { class: "small" }, `The scene${enlarged} was moved a million units away from the origin, and its ` +
-        "vertices and the query were rounded to f32 there, in which coordinates are 1/16 of a unit apart. Both get " +
-        `the same numbers, whose distance is ${short(far.distance)} ${unit}. Ordinary arithmetic rounds the closest ` +
-        "point and measures to it, so it jumps. p2m gives the weights of the vertices, and measures before it rounds."),
+      element("p", { class: "small" }, `The scene${scaled} was moved a million units away from the origin, and its ` +
+        "vertices and the query were rounded to f32 there, in which coordinates are 1/16 of a unit apart. The true " +
+        `distance of the rounded query from the rounded scene is ${short(far.distance)} ${unit}. Ordinary arithmetic ` +
+        "rounds the closest point to such coordinates before it measures, so its distance jumps while the query moves. " +
+        "p2m measures before it rounds, and gives the closest point by the weights of the vertices."),
       table);
   }
 }

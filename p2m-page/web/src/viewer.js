@@ -125,6 +125,9 @@ class Viewer {
     this.camera.position.set(...direction).setLength((2.3 * this.data.frame.radius) / narrow);
     this.camera.near = this.data.frame.radius / 1000;
     this.camera.far = this.data.frame.radius * 100;
+    // The scene stays between the planes that bound the picture.
+    this.controls.minDistance = this.data.frame.radius / 100;
+    this.controls.maxDistance = this.data.frame.radius * 50;
     this.camera.updateProjectionMatrix();
     this.controls.update();
     this.draw();
@@ -137,7 +140,8 @@ class Viewer {
     const spherical = new three.Spherical().setFromVector3(offset.applyQuaternion(toY));
     spherical.theta += around;
     spherical.phi = Math.max(0.01, Math.min(Math.PI - 0.01, spherical.phi + up));
-    spherical.radius *= factor;
+    const { minDistance, maxDistance } = this.controls;
+    spherical.radius = Math.max(minDistance, Math.min(maxDistance, spherical.radius * factor));
     offset.setFromSpherical(spherical).applyQuaternion(toY.invert());
     this.camera.position.copy(this.controls.target).add(offset);
     this.controls.update();
@@ -213,10 +217,8 @@ class Viewer {
 
   makeObjects(add) {
     const boxes = this.scene.objects.map((object, i) => {
-      const size = object.triangles[1] - object.triangles[0] + object.segments[1] - object.segments[0] +
-        object.points[1] - object.points[0];
-      const name = object.name ?? "of no object";
-      return checkbox(`${name} (${counted(size, "primitive")})`, true, (on) => {
+      const name = object.name ?? "primitives of no object";
+      return checkbox(`${name} (${counted(object.count, "primitive")})`, true, (on) => {
         this.scene.show(i, on);
         this.draw();
       });
@@ -237,8 +239,13 @@ class Viewer {
   makeAnswers(add) {
     const { answers } = this;
     const what = answers.signed ? "signed distance" : "distance";
-    add("Distances", "distances", legend(answers.scale, what, this.unit),
-      histogram(answers.values, answers.scale, what, this.unit));
+    const missing = answers.length - answers.answeredCount;
+    const parts = [];
+    if (missing > 0) parts.push(element("p", {}, `${count(missing)} of ${counted(answers.length, "query")} have no answer.`));
+    if (answers.answeredCount > 0) {
+      parts.push(legend(answers.scale, what, this.unit), histogram(answers.values, answers.scale, what, this.unit));
+    }
+    add("Distances", "distances", ...parts);
     this.answerText = element("dl", { id: "answer", "aria-live": "polite" });
     const step = (by) => element("button", { type: "button", onclick: () => this.step(by) }, by > 0 ? "Next" : "Previous");
     add("Answer", "selected", element("p", {}, step(-1), " ", step(1)), this.answerText);
@@ -292,7 +299,7 @@ class Viewer {
         row("closest point", vector(answers.points));
         row("distance", answers.distances[i]);
         if (answers.signed) row("signed distance", answers.signed[i]);
-        row("certainly at least", answers.lower_bounds[i]);
+        row("lower bound", answers.lower_bounds[i]);
         row("primitive", `${["", "point", "segment", "triangle"][answers.sizes[i]]} ${answers.primitives[i]}`);
         row("feature", answers.featureName(i));
         const object = this.objectOf(answers.objects?.[i]);
@@ -302,6 +309,7 @@ class Viewer {
       }
     }
     this.answerText.replaceChildren(...rows);
+    if (i >= 0) this.answerText.scrollIntoView({ block: "nearest" });
     this.draw();
   }
 
@@ -404,6 +412,11 @@ class Viewer {
       if (isClick && this.answers) this.select(this.pick(event));
       if (isClick && this.deviationsPanel) this.deviationsPanel.select(this.deviationsPanel.pick(event));
     });
+    canvas.addEventListener("pointercancel", () => {
+      pressed = null;
+      this.isDragging = false;
+      this.controls.enabled = true;
+    });
     canvas.addEventListener("keydown", (event) => this.press(event));
   }
 
@@ -434,7 +447,9 @@ class Viewer {
   }
 
   press(event) {
-    if (event.ctrlKey || event.metaKey || event.altKey) return;
+    // Some keyboards have the brackets on keys that need AltGr, which counts as Ctrl and Alt.
+    const isBracket = event.key === "[" || event.key === "]";
+    if (!isBracket && (event.ctrlKey || event.metaKey || event.altKey)) return;
     const { slice, cells, answers, deviationsPanel } = this;
     const step = answers ? (by) => this.step(by) : deviationsPanel && ((by) => deviationsPanel.step(by));
     const actions = {
@@ -452,7 +467,7 @@ class Viewer {
       l: cells && (() => this.showLevel(cells.level + 1)), k: cells && (() => this.showLevel(cells.level - 1)),
       "?": () => { this.help.open = !this.help.open; },
     };
-    const action = actions[event.key];
+    const action = actions[event.key.length === 1 ? event.key.toLowerCase() : event.key];
     if (!action) return;
     event.preventDefault();
     action();

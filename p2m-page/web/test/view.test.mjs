@@ -81,6 +81,23 @@ test("a slice through cells tells the length of the list where the pointer is", 
   }
 });
 
+test("queries without an answer are counted, and their closest points are not drawn", { skip }, async () => {
+  for (const [limit, text] of [["0", /^5 of 5 queries have no answer\.$/], ["0.4", /^\d of 5 queries have no answer\./]]) {
+    const other = await opened.view(opened.scene, "--random", "5", "--seed", "3", "--max-distance", limit);
+    assert.match(await other.textContent("#distances p"), text);
+    assert.equal(await other.locator("#distances svg").count(), limit === "0" ? 0 : 1);
+    await other.close();
+  }
+});
+
+test("the view cannot leave the scene", { skip }, async () => {
+  await page.focus("#picture");
+  for (let i = 0; i < 80; i++) await page.keyboard.press("-");
+  const [distance, far] = await page.evaluate(() => [window.viewer.camera.position.length(), window.viewer.camera.far]);
+  assert.ok(distance < far);
+  await page.keyboard.press("f");
+});
+
 // A scene of each kind is drawn, and the picture is not empty unless the scene is.
 const SCENES = {
   mesh: "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 2 3\nf 1 2 4\n",
