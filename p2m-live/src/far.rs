@@ -95,7 +95,7 @@ impl FarScene {
         let vertices = self.exact.set().element(closest.primitive);
         let weighted = vertices.indices().iter().zip(closest.barycentric).map(|(&i, weight)| {
             // Weights of f32 add up to one only nearly, so the vertices are relative to a point near them.
-            self.from_centre(&self.exact.set().positions()[i as usize]) * f64::from(weight)
+            self.relative_to_centre(&self.exact.set().positions()[i as usize]) * f64::from(weight)
         });
         Some(FarAnswer {
             query: self.back(&query.cast()),
@@ -109,11 +109,11 @@ impl FarScene {
 
     /// Returns a point far from the origin in the frame of the scene.
     fn back(&self, point: &Point3<f64>) -> Point3<f64> {
-        self.centre + self.from_centre(point)
+        self.centre + self.relative_to_centre(point)
     }
 
     /// Returns the vector from the centre of the scene to a point far from the origin, in the unit of the scene.
-    fn from_centre(&self, point: &Point3<f64>) -> Vector3<f64> {
+    fn relative_to_centre(&self, point: &Point3<f64>) -> Vector3<f64> {
         point.coords.map(|x| (x - OFFSET) / self.scale)
     }
 }
