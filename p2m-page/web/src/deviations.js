@@ -129,7 +129,8 @@ export class DeviationsPanel {
     this.pointText = element("dl", { id: "deviation", "aria-live": "polite" });
     this.pointerText = element("output", { id: "deviation-pointer" });
     const step = (by, text) => element("button", { type: "button", onclick: () => this.step(by) }, text);
-    add("Point", "point", element("p", {}, step(-1, "Previous"), " ", step(1, "Next"), " ", this.pointerText), this.pointText);
+    const steps = element("p", {}, step(-1, "Previous"), " ", step(1, "Next"), " ", this.pointerText);
+    add("Point", "point", steps, this.pointText);
     this.makeTables(add);
     this.redraw();
     this.select(-1);

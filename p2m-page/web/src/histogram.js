@@ -45,7 +45,8 @@ export function histogram(values, scale, what, unit, { weight = 1, marks = [] } 
     return element("line", { x1: x, x2: x, y1: 0, y2: HEIGHT, stroke: "currentColor", "stroke-dasharray": "4 3" });
   });
   const base = element("line", { x1: 0, x2: WIDTH, y1: HEIGHT, y2: HEIGHT, stroke: "currentColor" });
-  return element("svg", { viewBox: `0 0 ${WIDTH} ${HEIGHT + 1}`, role: "img", "aria-label": label }, ...bars, ...lines, base);
+  const viewBox = `0 0 ${WIDTH} ${HEIGHT + 1}`;
+  return element("svg", { viewBox, role: "img", "aria-label": label }, ...bars, ...lines, base);
 }
 
 // Returns the legend of a scale: its gradient, its limits and a value between them, with the unit. The value between is

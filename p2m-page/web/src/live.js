@@ -78,7 +78,8 @@ export class LiveQueries {
   makePanel(add) {
     this.message = element("p", { id: "live-message", role: "status" });
     this.inputs = [0, 1, 2].map((axis) => element("input", {
-      type: "number", step: "any", disabled: true, id: `live-${"xyz"[axis]}`, "aria-label": `${"xyz"[axis]} of the query`,
+      type: "number", step: "any", disabled: true, id: `live-${"xyz"[axis]}`,
+      "aria-label": `${"xyz"[axis]} of the query`,
       oninput: () => this.readInputs(), onkeydown: (event) => this.stepInput(event, axis),
     }));
     this.followBox = checkbox("the query follows the mouse", true, (on) => (this.isFollowing = on), "live-follow");
@@ -213,7 +214,8 @@ export class LiveQueries {
       row("lower bound", answer.lowerBound);
       row("primitive", `${KINDS[this.live.sizes[answer.primitive]]} ${answer.primitive}`);
       row("feature", featureName(answer.feature));
-      row("agreement", isSame ? `the ${this.rows.length} indexes give equal answers, bit for bit` : "the indexes differ");
+      const indexes = `the ${this.rows.length} indexes`;
+      row("agreement", isSame ? `${indexes} give equal answers, bit for bit` : `${indexes} differ`);
     } else {
       row("answer", "none");
     }
@@ -252,8 +254,8 @@ export class LiveQueries {
       element("p", { class: "small" }, `The scene${scaled} was moved a million units away from the origin, and its ` +
         "vertices and the query were rounded to f32 there, in which coordinates are 1/16 of a unit apart. The true " +
         `distance of the rounded query from the rounded scene is ${short(far.distance)} ${unit}. Ordinary arithmetic ` +
-        "rounds the closest point to such coordinates before it measures, so its distance jumps while the query moves. " +
-        "p2m measures before it rounds, and gives the closest point by the weights of the vertices."),
+        "rounds the closest point to such coordinates before it measures, so its distance jumps while the query " +
+        "moves. p2m measures before it rounds, and gives the closest point by the weights of the vertices."),
       table);
   }
 }

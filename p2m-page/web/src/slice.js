@@ -96,7 +96,9 @@ export class SliceLayer {
         const i = x + width * y;
         const value = values[i];
         this.scale.write(value, colour, 0);
-        const neighbours = this.hasCells ? [] : [x + 1 < width ? values[i + 1] : value, y + 1 < height ? values[i + width] : value];
+        const beside = [x + 1 < width ? values[i + 1] : value, y + 1 < height ? values[i + width] : value];
+        // Lines are not drawn between cells.
+        const neighbours = this.hasCells ? [] : beside;
         const isCrossing = (f) => neighbours.some((other) => f(other) !== f(value) && !Number.isNaN(other - value));
         if (isCrossing((d) => d < 0)) colour.fill(0);
         else if (isCrossing((d) => Math.floor(d / step))) colour.forEach((c, k) => (colour[k] = 0.8 * c));

@@ -182,7 +182,8 @@ class Viewer {
     box("scene", true, (on) => (this.scene.group.visible = on), "show-scene");
     if (this.data.scene.triangles.length > 0) {
       box("wireframe", false, (on) => this.scene.setWireframe(on), "show-wireframe");
-      box("transparent", !!(this.slice || this.deviations), (on) => this.scene.setOpacity(on ? 0.25 : 1), "show-through");
+      const isThrough = !!(this.slice || this.deviations);
+      box("transparent", isThrough, (on) => this.scene.setOpacity(on ? 0.25 : 1), "show-through");
     }
     if (this.deviationsPanel) this.deviationsPanel.makeBoxes(box);
     if (this.answers) {
@@ -233,7 +234,7 @@ class Viewer {
     };
     const button = (text, isOn) => element("button", { type: "button", onclick: () => set(isOn) }, text);
     add(`Objects (${count(boxes.length)})`, "objects", element("p", {}, button("All", true), " ", button("None", false)),
-      element("div", { class: "boxes scrolled", tabindex: "0" }, ...boxes));
+      element("div", { class: "boxes scrolled", tabindex: "0", role: "region", "aria-label": "objects" }, ...boxes));
   }
 
   makeAnswers(add) {
@@ -241,13 +242,15 @@ class Viewer {
     const what = answers.signed ? "signed distance" : "distance";
     const missing = answers.length - answers.answeredCount;
     const parts = [];
-    if (missing > 0) parts.push(element("p", {}, `${count(missing)} of ${counted(answers.length, "query")} have no answer.`));
+    const all = counted(answers.length, "query");
+    if (missing > 0) parts.push(element("p", {}, `${count(missing)} of ${all} have no answer.`));
     if (answers.answeredCount > 0) {
       parts.push(legend(answers.scale, what, this.unit), histogram(answers.values, answers.scale, what, this.unit));
     }
     add("Distances", "distances", ...parts);
     this.answerText = element("dl", { id: "answer", "aria-live": "polite" });
-    const step = (by) => element("button", { type: "button", onclick: () => this.step(by) }, by > 0 ? "Next" : "Previous");
+    const step = (by) =>
+      element("button", { type: "button", onclick: () => this.step(by) }, by > 0 ? "Next" : "Previous");
     add("Answer", "selected", element("p", {}, step(-1), " ", step(1)), this.answerText);
     this.table = element("table", { id: "table" });
     this.tablePage = 0;
@@ -256,7 +259,7 @@ class Viewer {
       by > 0 ? "Next rows" : "Previous rows");
     pages.append(turn(-1), " ", turn(1));
     const details = element("details", { id: "answers" }, element("summary", {}, "All answers as a table"), pages,
-      element("div", { class: "scrolled", tabindex: "0" }, this.table));
+      element("div", { class: "scrolled", tabindex: "0", role: "region", "aria-label": "answers" }, this.table));
     document.getElementById("panel").append(details);
     this.turnTable(0);
     this.select(-1);
@@ -361,12 +364,13 @@ class Viewer {
       oninput: () => this.moveSlice(slice.axis, Number(this.sliceRange.value)),
     });
     this.sliceText = element("output", { id: "slice-text" });
-    this.pointerText = element("output", { id: "slice-value" });
+    this.pointerText = element("output", { id: "slice-value", "aria-live": "off" });
     const about = slice.hasCells
-      ? "A query evaluates only primitives of the list of its cell. Where a cell has no list the slice is grey, and the " +
-        "tree answers."
+      ? "A query evaluates only primitives of the list of its cell. Where a cell has no list the slice is grey, and " +
+        "the AABB tree below the cells answers."
       : "The black line is distance zero. Lines of equal distance are darker.";
-    add(slice.hasCells ? "Slice through the cells" : "Slice of the field", "field", element("p", {}, "across ", ...axes), this.sliceRange,
+    const title = slice.hasCells ? "Slice through the cells" : "Slice of the field";
+    add(title, "field", element("p", {}, "across the axis ", ...axes), this.sliceRange,
       element("p", {}, this.sliceText), element("p", {}, this.pointerText), legend(slice.scale, what, this.sliceUnit),
       element("p", { class: "small" }, `${about} The keys [ and ] move the slice, and Shift and the mouse drag it.`));
     this.moveSlice(slice.axis, 0.5);
@@ -409,6 +413,8 @@ class Viewer {
       pressed = null;
       this.isDragging = false;
       this.controls.enabled = true;
+      // A finger has no position before it touches.
+      if (isClick && event.pointerType === "touch") this.live?.follow(event);
       if (isClick && this.answers) this.select(this.pick(event));
       if (isClick && this.deviationsPanel) this.deviationsPanel.select(this.deviationsPanel.pick(event));
     });

@@ -23,7 +23,8 @@ function contrast(a, b) {
 
 // Returns the colours of a style by name, each with that of light and that of dark pages.
 const colours = (style) =>
-  Object.fromEntries([...style.matchAll(/--(\w+): light-dark\((#\w{6}), (#\w{6})\)/g)].map(([, name, ...both]) => [name, both]));
+  Object.fromEntries([...style.matchAll(/--(\w+): light-dark\((#\w{6}), (#\w{6})\)/g)]
+    .map(([, name, ...both]) => [name, both]));
 
 test("text and marks have enough contrast", () => {
   const { ink, accent, paper, soft } = colours(read("p2m-page/src/style.css"));
