@@ -42,7 +42,8 @@ pub(crate) fn run(arguments: &[String]) -> Outcome {
     let clone = folder.join("clone");
     let [base, here] = [*revision, "HEAD"].map(|name| output("git", &["rev-parse", "--short", name]));
     let (base, here) = (base?, here?);
-    let (base, here) = (base.trim(), here.trim());
+    let is_changed = !output("git", &["status", "--porcelain", "--untracked-files=no"])?.is_empty();
+    let (base, here) = (base.trim(), format!("{}{}", here.trim(), if is_changed { "+changes" } else { "" }));
     // A clone of an earlier run is kept, so that nothing is compiled again.
     if clone.exists() {
         start(Command::new("git").arg("-C").arg(&clone).args(["fetch", "--quiet"]))?;

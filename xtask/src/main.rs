@@ -91,7 +91,7 @@ const TASKS: [Task; 16] = [
     },
     Task {
         name: "builds",
-        arguments: "BASE SCENE..",
+        arguments: "BASE SCENE.. [--backends NAMES]",
         about: "Compare the builds of indexes with those of an earlier revision, in turns",
         run: builds::run,
     },

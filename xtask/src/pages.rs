@@ -15,10 +15,11 @@ pub(crate) fn run() -> Outcome {
         println!("\n== skipped: there is no npm for the script of pages");
         return Ok(());
     }
-    if let Err(why) = start(&mut npm(&["ci", "--no-audit", "--no-fund", "--loglevel=error"])) {
-        println!("\n== skipped: the packages that the script of pages needs cannot be installed\n{why}");
+    if let Err(why) = output("npm", &["view", "esbuild", "version"]) {
+        println!("\n== skipped: the registry of the packages that the script of pages needs cannot be reached\n{why}");
         return Ok(());
     }
+    start(&mut npm(&["ci", "--no-audit", "--no-fund", "--loglevel=error"]))?;
     start(&mut npm(&["run", "check"]))?;
     if let Err(why) = find_browser() {
         println!("\n== skipped: there is no Chromium for the tests of pages: {why}");

@@ -44,7 +44,7 @@ class Viewer {
     this.frame = new Frame(data.frame);
     this.canvas = document.getElementById("picture");
     this.theme = matchMedia("(prefers-color-scheme: dark)").matches ? "dark" : "light";
-    this.renderer = new three.WebGLRenderer({ canvas: this.canvas, antialias: true, preserveDrawingBuffer: true });
+    this.renderer = makeRenderer(this.canvas);
     this.renderer.setPixelRatio(Math.min(2, devicePixelRatio));
     this.world = new three.Scene();
     this.camera = new three.PerspectiveCamera(45, 1, 0.001, 100);
@@ -480,11 +480,23 @@ class Viewer {
   }
 }
 
-// Says what is missing where the page cannot draw.
+// Returns what draws the picture. Without WebGL it draws nothing, and the panel has all numbers all the same.
+function makeRenderer(canvas) {
+  try {
+    return new three.WebGLRenderer({ canvas, antialias: true, preserveDrawingBuffer: true });
+  } catch {
+    document.getElementById("failure").textContent =
+      "The picture cannot be drawn, because this browser has no WebGL. The panel has all numbers.";
+    const nothing = () => {};
+    return { render: nothing, setSize: nothing, setPixelRatio: nothing };
+  }
+}
+
+// Says what is missing where the page cannot be shown.
 function fail(error) {
   const reason = typeof DecompressionStream === "undefined" ? "this browser is too old for it" : error.message;
   document.getElementById("failure").textContent =
-    `The picture cannot be drawn: ${reason}. The figures above and the tables of the program do not need it.`;
+    `The page cannot be shown: ${reason}.`;
 }
 
 readData().then((data) => {

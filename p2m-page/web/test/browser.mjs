@@ -13,11 +13,12 @@ const BROWSER = ["/usr/bin/chromium", "/usr/bin/google-chrome"].find(existsSync)
 const SCENE = new URL("../../../scenes/knot_and_cables.obj", import.meta.url);
 export const skip = !PROGRAM ? "P2M does not name the program" : !BROWSER ? "Chromium is not installed" : false;
 
-// Starts the browser, which draws without a graphics processor.
-export function launch() {
+// Starts the browser, which draws without a graphics processor, or not at all.
+export function launch(draws = true) {
+  const drawing = ["--use-gl=angle", "--use-angle=swiftshader", "--enable-unsafe-swiftshader"];
   return chromium.launch({
     executablePath: BROWSER,
-    args: ["--no-sandbox", "--use-gl=angle", "--use-angle=swiftshader", "--enable-unsafe-swiftshader"],
+    args: ["--no-sandbox", ...(draws ? drawing : ["--disable-3d-apis"])],
   });
 }
 

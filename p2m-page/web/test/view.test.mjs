@@ -2,8 +2,9 @@
 
 import assert from "node:assert/strict";
 import { execFileSync } from "node:child_process";
+import { join } from "node:path";
 import { after, before, test } from "node:test";
-import { PROGRAM, Page, parsed, skip } from "./browser.mjs";
+import { PROGRAM, Page, launch, openTab, parsed, skip } from "./browser.mjs";
 
 let opened, page, answers;
 
@@ -87,6 +88,19 @@ test("queries without an answer are counted, and their closest points are not dr
     assert.match(await other.textContent("#distances p"), text);
     assert.equal(await other.locator("#distances svg").count(), limit === "0" ? 0 : 1);
     await other.close();
+  }
+});
+
+test("without WebGL the panel has all answers", { skip }, async () => {
+  const browser = await launch(false);
+  try {
+    const other = await openTab(browser, join(opened.folder, "page.html"), () => {});
+    assert.match(await other.textContent("#failure"), /has no WebGL/);
+    assert.match(await other.textContent("#distances p"), /have no answer/);
+    await other.locator("#selected button >> nth=1").click();
+    assert.equal(await other.locator("#answer dt").first().textContent(), "number");
+  } finally {
+    await browser.close();
   }
 });
 
