@@ -363,9 +363,10 @@ fn scene_data(scene: &Scene, frame: &Frame, notes: &mut Vec<String>) -> SceneDat
     if stand_ins.is_some() {
         let count = (drawn.triangles.len() / 3) + (drawn.segments.len() / 2) + drawn.points.len();
         notes.push(format!(
-            "The scene has {} primitives. The picture has {count}: vertices that are close to each other are drawn as \
+            "The scene has {} primitives. The picture has {}: vertices that are close to each other are drawn as \
              one. Answers are those of the whole scene.",
-            soup.len()
+            thousands(soup.len()),
+            thousands(count)
         ));
     }
     SceneData {
@@ -375,6 +376,14 @@ fn scene_data(scene: &Scene, frame: &Frame, notes: &mut Vec<String>) -> SceneDat
         points: Packed::new(&drawn.points),
         objects,
     }
+}
+
+/// Returns a number with separators of thousands.
+fn thousands(number: usize) -> String {
+    let digits = number.to_string();
+    let parts: Vec<&str> =
+        digits.as_bytes().rchunks(3).rev().filter_map(|part| std::str::from_utf8(part).ok()).collect();
+    parts.join(",")
 }
 
 /// The numbers of the vertices of all primitives that are drawn.
@@ -397,7 +406,7 @@ impl Drawn {
         if ids.is_empty() {
             return None;
         }
-        let (before, count) = (self.counts(), ids.len());
+        let (before, count, first_id) = (self.counts(), ids.len(), ids.start);
         for element in ids.map(|id| soup.element(PrimitiveId::new(id))) {
             let indices = element.indices();
             let is_kept = stand_ins.is_none_or(|stand_ins| match indices {
@@ -412,6 +421,11 @@ impl Drawn {
                 };
                 list.extend(indices.iter().map(|&i| stand_ins.map_or(i, |stand_ins| stand_ins[i as usize])));
             }
+        }
+        if let Some(stand_ins) = stand_ins.filter(|_| self.counts() == before) {
+            // An object that is smaller than a cell of the grid is drawn as a point, so that it can be seen.
+            let vertex = soup.element(PrimitiveId::new(first_id)).indices()[0];
+            self.points.push(stand_ins[vertex as usize]);
         }
         let after = self.counts();
         let [triangles, segments, points] = std::array::from_fn(|k| [before[k], after[k]]);
@@ -453,6 +467,15 @@ mod tests {
         for foreign in [" src=", "<link", "@import", "url("] {
             assert!(!page.replace(SCRIPT, "").contains(foreign), "{foreign}");
         }
+    }
+
+    #[test]
+    fn an_object_in_one_cell_of_the_grid_is_drawn_as_a_point() {
+        let scene = scene();
+        let mut drawn = Drawn::default();
+        let object = drawn.object(&scene.soup, Some(&"small".to_owned()), 1..3, Some(&[0, 0, 0])).unwrap();
+        assert_eq!((object.count, object.triangles, object.segments, object.points), (2, [0, 0], [0, 0], [0, 1]));
+        assert_eq!(drawn.points, [0]);
     }
 
     #[test]
