@@ -16,7 +16,7 @@ from ._index import Index
 from ._scene import Scene
 
 if TYPE_CHECKING:
-    from matplotlib.figure import Figure
+    from matplotlib.figure import Figure as _Figure
 
 # The largest number of points that a figure draws.
 _MAX_DRAWN = 50_000
@@ -83,7 +83,7 @@ class Deviation:
             raise ValueError("tolerance: none is given")
         return int(np.sum(self.values > limit)), int(np.sum(self.values < -limit))
 
-    def figure(self) -> Figure:
+    def figure(self) -> _Figure:
         """Return a figure of matplotlib: the scan, coloured by its deviations, and their histogram.
 
         Of more than 50,000 points every second one, or every third one and so on, is drawn. The histogram has all.
