@@ -6,12 +6,12 @@ use crate::closest_answers::{ClosestAnswer, with_signed};
 use crate::input::{SceneArgs, is_standard, name, read_scene_and_index};
 use crate::json;
 use crate::output::Output;
+use crate::page::{PageArgs, about, file_name};
 use crate::scan::ScanFormat;
 use crate::sign_rule::{SignRule, SignedIndex};
 use crate::streams::Streams;
 use crate::summary::{IndexSummary, RunSummary, SceneSummary};
 use crate::threads::ThreadArgs;
-use crate::up::Up;
 use crate::usage::{finite_not_negative, one_of, positive, usage};
 use anyhow::{Context, anyhow};
 use nalgebra::Point3;
@@ -24,13 +24,13 @@ use p2m_mixed::statistics::figure::{Count, Figure};
 use p2m_mixed::{
     AnswerColumn, AnswerEncoder, AnswerFormat, AnswerRecord, AnswerWriter, Scene, VertexValues, write_ply_with_values,
 };
-use p2m_page::{Deviations, View, diverging_colour};
+use p2m_page::{Deviations, diverging_colour};
 use rayon::ThreadPool;
 use rayon::prelude::*;
 use serde_json::{Value, json};
 use std::fmt::Write as _;
 use std::io::Write as _;
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 use std::time::{Duration, Instant};
 
 /// The text of the help. Each paragraph is one line, so that it wraps at the width of the terminal.
@@ -107,13 +107,8 @@ pub(crate) struct Args {
     #[arg(long, value_parser = backends(|_| true))]
     backend: Option<Backend>,
 
-    /// Which axis points up on the page
-    #[arg(long, value_enum, default_value_t = Up::Z)]
-    up: Up,
-
-    /// The name of the unit of lengths, for the table and the page
-    #[arg(long, value_name = "NAME", default_value = "units")]
-    unit: String,
+    #[command(flatten)]
+    page: PageArgs,
 
     /// Report as one JSON object on the standard output, instead of the table
     #[arg(long)]
@@ -206,8 +201,8 @@ pub(crate) fn run(streams: &Streams, args: &Args) -> anyhow::Result<()> {
                 written.with_context(|| output.cannot_write())?;
             }
             Some(DeviationFormat::Html) => {
-                let mut view = View::new(&scene, &Deviations::bounds(&scan.soup)).with_unit(&args.unit);
-                view = view.with_up(args.up.into()).with_deviations(&Deviations {
+                let view = args.page.view(&scene, &Deviations::bounds(&scan.soup));
+                let mut view = view.with_deviations(&Deviations {
                     scan: &scan.soup,
                     values: &values,
                     primitives: &primitives,
@@ -219,12 +214,8 @@ pub(crate) fn run(streams: &Streams, args: &Args) -> anyhow::Result<()> {
                 let [scan_name, scene_name] = [&args.scan, &args.scene.path].map(|path| file_name(path));
                 view.title = format!("{scan_name} and {scene_name} in p2m");
                 view.summary = found.summary();
-                let version = env!("CARGO_PKG_VERSION");
-                let (scan, scene) = (name(&args.scan), args.scene.name());
-                view.about = format!("p2m {version}, scan {scan}, scene {scene}, index {}", backend.name);
-                if let Some(rule) = rule {
-                    view.about += &format!(", signs by the rule {rule}");
-                }
+                let files = format!("scan {}, scene {}", name(&args.scan), args.scene.name());
+                view.about = about(&files, backend.name, rule);
                 output.write_all(view.html()?.as_bytes()).with_context(|| output.cannot_write())?;
             }
             Some(DeviationFormat::Csv) | None => {}
@@ -356,7 +347,7 @@ impl DeviationReport<'_> {
             ("points without one".to_owned(), Count(self.statistics.missing as u64).to_string()),
         ];
         if self.statistics.count > 0 {
-            let unit = &self.args.unit;
+            let unit = &self.args.page.unit;
             let named = self.statistics.named();
             rows.extend(named.into_iter().map(|named| (named.label, format!("{} {unit}", Figure(named.value)))));
         }
@@ -383,19 +374,12 @@ impl DeviationReport<'_> {
     /// Returns the sentence below the heading of the page.
     fn summary(&self) -> String {
         let DeviationStatistics { count, mean, rms, min, max, .. } = self.statistics;
-        let unit = &self.args.unit;
+        let unit = &self.args.page.unit;
         let what = if self.rule.is_some() { "deviations, positive outside" } else { "distances" };
         let count = Count(count as u64);
         let [mean, rms, min, max] = [mean, rms, min, max].map(Figure);
         format!("{count} {what}: mean {mean} {unit}, root mean square {rms} {unit}, from {min} to {max} {unit}")
     }
-}
-
-/// Returns the name of a file without its folder, or that of the standard input.
-fn file_name(path: &Path) -> String {
-    path.file_name()
-        .filter(|_| !is_standard(path))
-        .map_or_else(|| name(path), |name| name.to_string_lossy().into_owned())
 }
 
 impl Args {

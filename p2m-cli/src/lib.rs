@@ -27,6 +27,7 @@ mod kdop_directions;
 mod modify;
 mod output;
 mod p2m_args;
+mod page;
 mod picture;
 mod progress;
 mod pump;

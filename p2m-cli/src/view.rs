@@ -4,13 +4,13 @@ use crate::backend::{Backend, SceneSource, backends, saved_or_default};
 use crate::info::counted;
 use crate::input::{SceneArgs, point_format, read_points, read_scene_and_index};
 use crate::output::Output;
+use crate::page::{PageArgs, about, file_name};
 use crate::progress::{Progress, Unit};
 use crate::sampling::{Queries, Region};
 use crate::sign_rule::SignRule;
 use crate::streams::Streams;
 use crate::threads::ThreadArgs;
 use crate::tree_levels::TreeLevels;
-use crate::up::Up;
 use crate::usage::{not_negative, one_of, positive, usage, whole_number};
 use anyhow::{Context, bail};
 use nalgebra::Point3;
@@ -20,7 +20,7 @@ use p2m_core::{Aabb, BuildIndex, Closest, PrimitiveSet, QueryOptions};
 use p2m_field::{FieldOptions, Grid, distances, signed_distances};
 use p2m_mixed::PointFormat;
 use p2m_mixed::statistics::Counts;
-use p2m_page::{Level, View};
+use p2m_page::Level;
 use rayon::prelude::*;
 use std::io::Write as _;
 use std::path::{Path, PathBuf};
@@ -100,13 +100,8 @@ pub(crate) struct Args {
     #[arg(long, value_parser = backends(|_| true))]
     backend: Option<Backend>,
 
-    /// Which axis points up
-    #[arg(long, value_enum, default_value_t = Up::Z)]
-    up: Up,
-
-    /// The name of the unit of lengths, for legends
-    #[arg(long, value_name = "NAME", default_value = "units")]
-    unit: String,
+    #[command(flatten)]
+    page: PageArgs,
 
     /// Where to write the page; `-` is the standard output
     #[arg(long, value_name = "FILE")]
@@ -146,11 +141,11 @@ pub(crate) fn run(streams: &Streams, args: &Args) -> anyhow::Result<()> {
     let format = args.scene.format()?;
     let pool = args.threads.pool()?;
     let (scene, saved) = read_scene_and_index(streams, &pool, &args.scene.path, format, args.scene.map)?;
-    let queries = args.queries(streams, &scene.soup.aabb())?;
-    let resolution = args.field.or(args.lists);
-    let grid = resolution.map(|n| Grid::around(&scene.soup.aabb(), n as usize, args.box_scale)).transpose();
-    let grid = grid.with_context(|| args.scene.name())?;
     let bounds = scene.soup.aabb();
+    let queries = args.queries(streams, &bounds)?;
+    let resolution = args.field.or(args.lists);
+    let grid = resolution.map(|n| Grid::around(&bounds, n as usize, args.box_scale)).transpose();
+    let grid = grid.with_context(|| args.scene.name())?;
     let side = if bounds.is_empty() { 0.0 } else { (bounds.max - bounds.min).amax() };
     if args.field.is_some() && side != 0.0 && !F32_SIDES.contains(&side) {
         bail!("{}: --field has numbers of f32, which cannot hold lengths of about {side:e}", args.scene.name());
@@ -171,9 +166,8 @@ pub(crate) fn run(streams: &Streams, args: &Args) -> anyhow::Result<()> {
     let around = grid.as_ref().map_or(around, |grid| {
         around.union(&Aabb { min: grid.origin(), max: grid.point(grid.counts().map(|n| n - 1)) })
     });
-    let mut view = View::new(&scene, &around).with_unit(&args.unit).with_up(args.up.into());
-    let file = args.scene.path.file_name().map(|file| file.to_string_lossy().into_owned());
-    view.title = format!("{} in p2m", file.unwrap_or_else(|| args.scene.name()));
+    let mut view = args.page.view(&scene, &around);
+    view.title = format!("{} in p2m", file_name(&args.scene.path));
     let is_empty = scene.soup.is_empty();
     view.summary = if is_empty { "an empty scene".to_owned() } else { counted(&Counts::of(&scene.soup)) };
     if let Some(queries) = &queries {
@@ -224,10 +218,8 @@ pub(crate) fn run(streams: &Streams, args: &Args) -> anyhow::Result<()> {
         let tree = tree.with_context(|| args.scene.name())?;
         view = view.with_levels("Boxes of the AABB tree", &levels(tree.tree(), usize::from(args.levels)));
     }
-    view.about = format!("p2m {}, scene {}, index {}", env!("CARGO_PKG_VERSION"), args.scene.name(), backend.name);
-    if let Some((_, rule)) = &signed {
-        view.about += &format!(", signs by the rule {rule}");
-    }
+    let rule = signed.as_ref().map(|(_, rule)| *rule);
+    view.about = about(&format!("scene {}", args.scene.name()), backend.name, rule);
     let page = view.html()?;
     output.write_all(page.as_bytes()).with_context(|| output.cannot_write())?;
     output.finish()?;

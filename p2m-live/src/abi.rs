@@ -1,8 +1,8 @@
 //! The functions that the script of a page calls.
 //!
 //! The script asks for the address of an array, writes it, and calls [`p2m_load`]. Then it builds indexes one by one,
-//! and queries them: a query returns 1 if there is an answer, whose values are at [`p2m_answer`]. Addresses are valid
-//! until the next call of [`p2m_reserve`]. Backends have the numbers of [`Backend::ALL`].
+//! and queries them: a query returns 1 if there is an answer, whose values are at [`p2m_answer`]. The memory may
+//! grow in each call, which detaches the arrays that the script has made over it. Backends have the numbers of [`Backend::ALL`].
 #![allow(unsafe_code, reason = "names that are exported as they are could be those of other functions of a program")]
 
 use crate::far::FarAnswer;
@@ -10,7 +10,7 @@ use crate::scene::{Answer, Backend, Live};
 use p2m::nalgebra::Point3;
 use std::cell::RefCell;
 
-/// What the script has written, the scene, and what the script reads.
+/// The arrays that the script writes, the scene, and the values that the script reads.
 #[derive(Default)]
 struct State {
     coordinates: Vec<f64>,
@@ -92,7 +92,7 @@ pub extern "C" fn p2m_query_far(x: f64, y: f64, z: f64) -> u32 {
     })
 }
 
-/// Answers so many queries around the scene, and returns the number of answers.
+/// Answers `count` queries around the scene, and returns the number of answers.
 #[cfg_attr(target_arch = "wasm32", unsafe(no_mangle))]
 pub extern "C" fn p2m_answer_many(backend: usize, count: u32) -> usize {
     let Some(&backend) = Backend::ALL.get(backend) else { return 0 };

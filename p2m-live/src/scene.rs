@@ -4,8 +4,8 @@ use crate::far::FarScene;
 use p2m::backend::{Best, StatsCollector};
 use p2m::nalgebra::Point3;
 use p2m::{
-    AabbTree, BuildError, BuildIndex, Closest, Element, Feature, Inspect, KdopTree, OctreeIndex, P2mIndex,
-    PrimitiveSet, QueryOptions, Soup,
+    AabbTree, BuildError, BuildIndex, Closest, Element, Inspect, KdopTree, OctreeIndex, P2mIndex, PrimitiveSet,
+    QueryOptions, Soup,
 };
 use std::sync::Arc;
 
@@ -72,19 +72,14 @@ impl Answer {
     /// The number of values of an answer as an array.
     pub const LEN: usize = 10;
 
-    /// Returns the closest point, the distance, the lower bound, the primitive, the code of the feature and the work.
-    /// Vertices 0 to 2 have the codes 0 to 2, edges the codes 3 to 5, and the face has 6.
+    /// Returns the closest point, the distance, the lower bound, the primitive, the [code](p2m::Feature::code) of the
+    /// feature, and the work.
     #[must_use]
     pub fn values(&self) -> [f64; Self::LEN] {
         let Closest { point, distance, lower_bound, primitive, feature, .. } = self.closest;
-        let feature = match feature {
-            Feature::Vertex(i) => i,
-            Feature::Edge(i) => 3 + i,
-            Feature::Face => 6,
-        };
         let [nodes, packets, primitives] = self.work.map(|count| count as f64);
         let id = primitive.index() as f64;
-        [point.x, point.y, point.z, distance, lower_bound, id, f64::from(feature), nodes, packets, primitives]
+        [point.x, point.y, point.z, distance, lower_bound, id, f64::from(feature.code()), nodes, packets, primitives]
     }
 }
 

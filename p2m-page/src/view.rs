@@ -9,6 +9,7 @@ use nalgebra::Point3;
 use p2m_core::{Aabb, Closest, Element, Feature, PrimitiveId, PrimitiveSet, Soup};
 use p2m_field::Grid;
 use p2m_mixed::Scene;
+use p2m_mixed::statistics::figure::Count;
 use serde::Serialize;
 
 const TEMPLATE: &str = include_str!("view.html");
@@ -118,7 +119,7 @@ struct AnswerData {
     #[serde(skip_serializing_if = "Option::is_none")]
     signed: Option<Packed>,
     primitives: Packed,
-    /// Vertices 0 to 2 have the codes 0 to 2, edges the codes 3 to 5 and the face 6.
+    /// The codes of the features.
     features: Packed,
     /// The numbers of vertices of the primitives.
     sizes: Packed,
@@ -220,16 +221,12 @@ impl<'a> View<'a> {
             }
             vertices
         };
-        let size = |answer: &Option<Closest<f64>>| answer.map_or(0, |a| soup.element(a.primitive).indices().len());
+        let size = |answer: &Option<Closest<f64>>| answer.map_or(0, |a| vertex_count(&soup.element(a.primitive)));
         let object = |answer: &Option<Closest<f64>>| {
             let number = answer.and_then(|answer| self.scene.object_number(answer.primitive));
             number.and_then(|number| u32::try_from(number + 1).ok()).unwrap_or(0)
         };
-        let feature = |answer: &Option<Closest<f64>>| match answer.map(|answer| answer.feature) {
-            Some(Feature::Vertex(i)) => i,
-            Some(Feature::Edge(i)) => 3 + i,
-            Some(Feature::Face) | None => 6,
-        };
+        let feature = |answer: &Option<Closest<f64>>| answer.map_or(Feature::Face, |answer| answer.feature).code();
         let point = |answer: &Option<Closest<f64>>| answer.map_or([f64::NAN; 3], |answer| answer.point.coords.into());
         self.data.answers = Some(AnswerData {
             queries: Packed::new(&queries.iter().flat_map(|q| [q.x, q.y, q.z]).collect::<Vec<f64>>()),
@@ -239,7 +236,7 @@ impl<'a> View<'a> {
             signed: signed.map(Packed::new),
             primitives: Packed::new(&answers.iter().map(primitive).collect::<Vec<u32>>()),
             features: Packed::new(&answers.iter().map(feature).collect::<Vec<u8>>()),
-            sizes: Packed::new(&answers.iter().map(size).map(|n| u8::try_from(n).unwrap_or(0)).collect::<Vec<u8>>()),
+            sizes: Packed::new(&answers.iter().map(size).collect::<Vec<u8>>()),
             vertices: Packed::new(&answers.iter().flat_map(vertices).flatten().collect::<Vec<f32>>()),
             objects: Packed::new(&answers.iter().map(object).collect::<Vec<u32>>()),
         });
@@ -298,11 +295,7 @@ impl<'a> View<'a> {
         let coordinates: Vec<f64> = soup.positions().iter().flat_map(|p| [p.x, p.y, p.z]).collect();
         let (mut sizes, mut indices) = (Vec::with_capacity(soup.len()), Vec::new());
         for element in soup.elements() {
-            sizes.push(match element {
-                Element::Point(_) => 1u8,
-                Element::Segment(_) => 2,
-                Element::Triangle(_) => 3,
-            });
+            sizes.push(vertex_count(&element));
             indices.extend_from_slice(element.indices());
         }
         self.data.live = Some(LiveData {
@@ -365,8 +358,8 @@ fn scene_data(scene: &Scene, frame: &Frame, notes: &mut Vec<String>) -> SceneDat
         notes.push(format!(
             "The scene has {} primitives. The picture has {}: vertices that are close to each other are drawn as \
              one. Answers are those of the whole scene.",
-            thousands(soup.len()),
-            thousands(count)
+            Count(soup.len() as u64),
+            Count(count as u64)
         ));
     }
     SceneData {
@@ -378,12 +371,9 @@ fn scene_data(scene: &Scene, frame: &Frame, notes: &mut Vec<String>) -> SceneDat
     }
 }
 
-/// Returns a number with separators of thousands.
-fn thousands(number: usize) -> String {
-    let digits = number.to_string();
-    let parts: Vec<&str> =
-        digits.as_bytes().rchunks(3).rev().filter_map(|part| std::str::from_utf8(part).ok()).collect();
-    parts.join(",")
+/// Returns the number of vertices of a primitive.
+fn vertex_count(element: &Element) -> u8 {
+    u8::try_from(element.indices().len()).unwrap_or(0)
 }
 
 /// The numbers of the vertices of all primitives that are drawn.

@@ -15,15 +15,6 @@ pub(crate) const NO_PRIMITIVE: i64 = -1;
 /// The number that stands for no feature.
 pub(crate) const NO_FEATURE: u8 = 255;
 
-/// Returns the number of a feature: vertices are 0 to 2, edges 3 to 5, and the face is 6.
-pub(crate) fn feature_number(feature: Feature) -> u8 {
-    match feature {
-        Feature::Vertex(i) => i,
-        Feature::Edge(i) => 3 + i,
-        Feature::Face => 6,
-    }
-}
-
 /// Arrays that are borrowed for writing, each as long as the answers. Those that are not asked for are missing.
 pub(crate) struct Arrays<'py> {
     distance: Option<PyReadwriteArray1<'py, f64>>,
@@ -130,7 +121,7 @@ impl Columns<'_> {
             column[i] = closest.map_or(Point3::new(f64::NAN, f64::NAN, f64::NAN), |c| c.point);
         }
         if let Some(column) = &mut self.feature {
-            column[i] = closest.map_or(NO_FEATURE, |c| feature_number(c.feature));
+            column[i] = closest.map_or(NO_FEATURE, |c| c.feature.code());
         }
         if let Some(column) = &mut self.barycentric {
             column[i] = closest.map_or([f64::NAN; 3], |c| c.barycentric);
@@ -174,7 +165,7 @@ impl Columns<'_> {
         }
         if let (Some(column), Some(features), Some(distances)) = (feature, features, known_distance) {
             for ((number, feature), distance) in column.iter_mut().zip(features).zip(distances) {
-                *number = if *distance < f64::INFINITY { feature_number(feature) } else { NO_FEATURE };
+                *number = if *distance < f64::INFINITY { feature.code() } else { NO_FEATURE };
             }
         }
     }

@@ -1,6 +1,6 @@
 //! First contacts of balls that move along segments.
 
-use crate::columns::{NO_FEATURE, NO_PRIMITIVE, borrowed, feature_number, halves, slice};
+use crate::columns::{NO_FEATURE, NO_PRIMITIVE, borrowed, halves, slice};
 use crate::index::Index;
 use crate::parts::{Split, answer_in_parts};
 use crate::queries::{BadRow, batch_options, check_finite, not_finite};
@@ -85,7 +85,7 @@ impl ContactColumns<'_> {
             column[i] = contact.map_or([f64::NAN; 3], |contact| contact.point.coords.into());
         }
         if let Some(column) = &mut self.feature {
-            column[i] = contact.map_or(NO_FEATURE, |contact| feature_number(contact.feature));
+            column[i] = contact.map_or(NO_FEATURE, |contact| contact.feature.code());
         }
     }
 }

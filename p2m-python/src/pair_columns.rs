@@ -1,8 +1,9 @@
 //! Columns of near pairs of primitives in arrays of NumPy. Arrays of two have the first scene first.
 
-use crate::columns::{NO_FEATURE, NO_PRIMITIVE, borrowed, feature_number, halves, slice};
+use crate::columns::{NO_FEATURE, NO_PRIMITIVE, borrowed, halves, slice};
 use crate::parts::Split;
 use numpy::PyReadwriteArray1;
+use p2m_core::Feature;
 use p2m_core::pair::ClosestPair;
 use pyo3::exceptions::PyTypeError;
 use pyo3::prelude::*;
@@ -106,7 +107,7 @@ impl PairColumns<'_> {
             column[i] = pair.map_or([[f64::NAN; 3]; 2], |pair| pair.points.map(|point| point.coords.into()));
         }
         if let Some(column) = &mut self.features {
-            column[i] = pair.map_or([NO_FEATURE; 2], |pair| pair.features.map(feature_number));
+            column[i] = pair.map_or([NO_FEATURE; 2], |pair| pair.features.map(Feature::code));
         }
         if let Some(column) = &mut self.barycentric {
             column[i] = pair.map_or([[f64::NAN; 3]; 2], |pair| pair.barycentric);

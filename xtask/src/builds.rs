@@ -2,10 +2,10 @@
 //!
 //! `p2m-bench` of both revisions runs in turns, once a round, so that a change of the load of the machine meets both.
 
-use crate::{Outcome, output, start};
+use crate::{Outcome, output, start, target_folder};
 use std::collections::BTreeMap;
 use std::fs;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 use std::process::Command;
 
 /// The names of both programs.
@@ -38,7 +38,7 @@ pub(crate) fn run(arguments: &[String]) -> Outcome {
     if scenes.is_empty() {
         return Err(usage.into());
     }
-    let folder = std::env::var_os("CARGO_TARGET_DIR").map_or_else(|| "target".into(), PathBuf::from).join("builds");
+    let folder = target_folder().join("builds");
     let clone = folder.join("clone");
     let [base, here] = [*revision, "HEAD"].map(|name| output("git", &["rev-parse", "--short", name]));
     let (base, here) = (base?, here?);

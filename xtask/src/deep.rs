@@ -1,6 +1,6 @@
 //! Runs all tests with all of their cases, and counts the cases.
 
-use crate::{Outcome, start};
+use crate::{Outcome, absolute_target_folder, start};
 use std::collections::BTreeMap;
 use std::path::Path;
 use std::process::Command;
@@ -9,8 +9,7 @@ use std::{env, fs};
 /// Runs the deep suite, then prints how many loops over cases each file of tests ran, and how many cases these took. A
 /// loop that failed is not counted.
 pub(crate) fn run(filter: &[String]) -> Outcome {
-    let target = env::var_os("CARGO_TARGET_DIR").unwrap_or_else(|| "target".into());
-    let log = env::current_dir().map_err(|e| e.to_string())?.join(target).join("deep-cases");
+    let log = absolute_target_folder()?.join("deep-cases");
     // Tests append to the file, so it starts empty.
     if let Some(folder) = log.parent() {
         fs::create_dir_all(folder).map_err(|e| format!("{}: {e}", folder.display()))?;

@@ -13,7 +13,7 @@ mod promises;
 mod python;
 mod wasm;
 
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use std::process::{Command, ExitCode};
 
 /// A task, its arguments and its description in one sentence.
@@ -161,6 +161,22 @@ fn docs() -> Outcome {
     let mut command = Command::new("cargo");
     command.args(["doc", "--locked", "--workspace", "--no-deps"]).env("RUSTDOCFLAGS", "-D warnings");
     start(&mut command)
+}
+
+/// Returns the folder for what is compiled and for files of tasks.
+fn target_folder() -> PathBuf {
+    std::env::var_os("CARGO_TARGET_DIR").unwrap_or_else(|| "target".into()).into()
+}
+
+/// Returns the absolute path of that folder.
+fn absolute_target_folder() -> Result<PathBuf, String> {
+    let target = target_folder();
+    std::path::absolute(&target).map_err(|error| format!("{}: {error}", target.display()))
+}
+
+/// Returns the path of the program that a build without `--release` makes.
+fn debug_program() -> Result<PathBuf, String> {
+    Ok(absolute_target_folder()?.join("debug").join(format!("p2m{}", std::env::consts::EXE_SUFFIX)))
 }
 
 /// Runs cargo with arguments, followed by the remaining arguments of the task.

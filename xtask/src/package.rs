@@ -1,6 +1,6 @@
 //! Packs the crates as for publishing, without a registry, and checks what is in their packages.
 
-use crate::{Outcome, cargo, licences, output};
+use crate::{Outcome, cargo, licences, output, target_folder};
 use std::fs;
 use std::path::{Path, PathBuf};
 
@@ -18,8 +18,7 @@ const MANIFEST_KEYS: [&str; 8] =
 pub(crate) fn run() -> Outcome {
     licences::check()?;
     let published = published_crates()?;
-    let target = PathBuf::from(std::env::var_os("CARGO_TARGET_DIR").unwrap_or_else(|| "target".into()));
-    let target = target.join("packages");
+    let target = target_folder().join("packages");
     // A package that an earlier run has left, perhaps of another version, could be checked in place of the new one.
     if target.exists() {
         fs::remove_dir_all(&target).map_err(|error| format!("{}: {error}", target.display()))?;

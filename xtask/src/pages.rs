@@ -1,7 +1,7 @@
 //! Checks the script of pages, and tests pages in a browser.
 
-use crate::{Outcome, cargo, output, start};
-use std::path::{Path, PathBuf};
+use crate::{Outcome, cargo, debug_program, output, start};
+use std::path::Path;
 use std::process::Command;
 
 /// The folder of the script and its tests.
@@ -27,10 +27,7 @@ pub(crate) fn run() -> Outcome {
     }
     // With the features of `cargo test --workspace`, little is compiled after the other tests.
     cargo(&["build", "--locked", "--workspace", "--bin", "p2m"], &[])?;
-    let target = PathBuf::from(std::env::var_os("CARGO_TARGET_DIR").unwrap_or_else(|| "target".into()));
-    let program = target.join("debug").join(format!("p2m{}", std::env::consts::EXE_SUFFIX));
-    let program = std::path::absolute(&program).map_err(|error| format!("{}: {error}", program.display()))?;
-    start(npm(&["test"]).env("P2M", program))
+    start(npm(&["test"]).env("P2M", debug_program()?))
 }
 
 fn npm(arguments: &[&str]) -> Command {

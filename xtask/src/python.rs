@@ -1,8 +1,8 @@
 //! Builds the Python package, installs it into a virtual environment, and runs its tests there.
 
-use crate::{Outcome, cargo, output, run};
+use crate::{Outcome, absolute_target_folder, cargo, debug_program, output, run};
 use std::fs;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 use std::process::Command;
 
 /// The oldest version of Python that the package supports.
@@ -38,8 +38,7 @@ pub(crate) fn check(filter: &[String]) -> Outcome {
         println!("\n== skipped: there is no Python {}.{} or newer with venv", MIN_VERSION.0, MIN_VERSION.1);
         return Ok(());
     };
-    let target = PathBuf::from(std::env::var_os("CARGO_TARGET_DIR").unwrap_or_else(|| "target".into()));
-    let target = std::path::absolute(&target).map_err(|error| format!("{}: {error}", target.display()))?;
+    let target = absolute_target_folder()?;
     let environment = target.join(if compares { "python-rivals-env" } else { "python-env" });
     let bin = environment.join(if cfg!(windows) { "Scripts" } else { "bin" });
     let own_python = text(&bin.join("python"))?;
@@ -66,7 +65,7 @@ pub(crate) fn check(filter: &[String]) -> Outcome {
         crate::start(command.arg("-m").args(arguments).env(variable.0, variable.1).current_dir(folder))
     };
     // The program answers the same queries.
-    let program = target.join("debug").join(format!("p2m{}", std::env::consts::EXE_SUFFIX));
+    let program = debug_program()?;
     let program = ("P2M_PROGRAM", program.as_path());
     let filter: Vec<&str> = filter.iter().map(String::as_str).collect();
     let tests = |of: &'static str| [&["pytest", "-rs", "--durations=5", of], &filter[..]].concat();

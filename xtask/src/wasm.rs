@@ -5,7 +5,7 @@
 //! compiles. Nothing is installed on the machine, and where the packages are missing the task is skipped.
 
 use crate::promises::{numbers, promised_version};
-use crate::{Outcome, output, start};
+use crate::{Outcome, absolute_target_folder, output, start};
 use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::Command;
@@ -123,8 +123,7 @@ struct Compiler {
 impl Compiler {
     /// Returns a compiler, or within `Ok` the reason why there is none.
     fn find() -> Result<Result<Self, String>, String> {
-        let target = PathBuf::from(std::env::var_os("CARGO_TARGET_DIR").unwrap_or_else(|| "target".into()));
-        let target = std::path::absolute(&target).map_err(|error| format!("{}: {error}", target.display()))?;
+        let target = absolute_target_folder()?;
         let libraries = output("rustc", &["--print", "target-libdir", "--target", TARGET]);
         if libraries.is_ok_and(|folder| Path::new(folder.trim()).is_dir()) {
             return Ok(Ok(Self { packages: None, target: target.join("wasm") }));

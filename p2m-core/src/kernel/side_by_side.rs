@@ -569,12 +569,7 @@ mod tests {
             );
             counts[7] += SIDE_BY_SIDE - features.len();
             for feature in features {
-                let code = match feature {
-                    Feature::Vertex(i) => i,
-                    Feature::Edge(i) => 3 + i,
-                    Feature::Face => 6,
-                };
-                counts[usize::from(code)] += 1;
+                counts[usize::from(feature.code())] += 1;
             }
         }
         println!("certain lanes by feature, and others: {counts:?}");

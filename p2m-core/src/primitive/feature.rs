@@ -14,6 +14,19 @@ pub enum Feature {
     Face,
 }
 
+impl Feature {
+    /// Returns the code of the feature in arrays: vertices 0 to 2 have the codes 0 to 2, edges the codes 3 to 5, and the
+    /// face has 6.
+    #[must_use]
+    pub fn code(self) -> u8 {
+        match self {
+            Self::Vertex(i) => i,
+            Self::Edge(i) => 3 + i,
+            Self::Face => 6,
+        }
+    }
+}
+
 impl std::fmt::Display for Feature {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         match self {

@@ -10,8 +10,7 @@ export class AnswersLayer {
     this.length = answers.distances.length;
     // The values that give colours: signed distances where there are some.
     this.values = answers.signed ?? answers.distances;
-    const [low, high] = limits(this.values);
-    this.scale = new ColourScale(low < 0 ? "diverging" : "sequential", low < 0 ? low : 0, high);
+    this.scale = distanceScale(this.values);
     this.from = frame.positions(answers.queries);
     this.to = frame.positions(answers.points);
     this.answeredCount = 0;
@@ -133,6 +132,15 @@ export function drawAnswer(group, query, foot, vertices, feature, radius, colour
     sphere.position.copy(query);
     group.add(sphere);
   }
+}
+
+// The kinds of primitives, by their numbers of vertices.
+export const KINDS = ["", "point", "segment", "triangle"];
+
+// Returns the scale of distances, which have a sign if some of them are negative.
+export function distanceScale(values) {
+  const [low, high] = limits(values);
+  return new ColourScale(low < 0 ? "diverging" : "sequential", low < 0 ? low : 0, high);
 }
 
 // Returns the smallest and the largest number among values, of which some may be no numbers.

@@ -1,10 +1,10 @@
 // A scan, whose points have the colours of their deviations, with the panel beside it.
 
 import * as three from "three";
-import { marker, points } from "./answers.js";
+import { empty, marker, points } from "./answers.js";
 import { ColourScale } from "./colours.js";
 import { histogram, legend } from "./histogram.js";
-import { count, element, short } from "./text.js";
+import { count, element, fillList, namedRow, short, stepped, tableHead } from "./text.js";
 
 // The distance in pixels within which a point is read.
 const PICK_RADIUS = 6;
@@ -91,7 +91,7 @@ export class DeviationsLayer {
   // Marks a point, by its number among those that are drawn.
   select(i, colours) {
     this.selected = i;
-    this.selection.clear();
+    empty(this.selection);
     if (i < 0) return;
     this.selection.add(marker(new three.Vector3(...this.drawn.subarray(3 * i, 3 * i + 3)), colours.feature, 12));
   }
@@ -188,10 +188,9 @@ export class DeviationsPanel {
 
   makeTables(add) {
     const { layer, viewer: { unit } } = this;
-    const row = (name, value) => element("tr", {}, element("th", { scope: "row" }, name), element("td", {}, value));
-    const rows = layer.statistics.map(({ label, value }) => row(label, value === null ? "none" : String(value)));
+    const rows = layer.statistics.map(({ label, value }) => namedRow(label, value ?? "none"));
     const counts = [["with", layer.total - layer.missing], ["without", layer.missing]]
-      .map(([word, n]) => row(`points ${word} a ${this.what}`, count(n)));
+      .map(([word, n]) => namedRow(`points ${word} a ${this.what}`, count(n)));
     add("Statistics", "statistics", element("table", { id: "statistics-table" },
       element("caption", {}, `${layer.is_signed ? "Deviations" : "Distances"} in ${unit}`),
       element("tbody", {}, ...counts, ...rows)));
@@ -199,9 +198,8 @@ export class DeviationsPanel {
       const select = element("button", { type: "button", onclick: () => this.select(i) }, String(i * layer.stride));
       return element("tr", {}, element("td", {}, select), element("td", {}, String(layer.values[i])));
     });
-    const head = element("tr", {}, ...["point", this.what].map((name) => element("th", { scope: "col" }, name)));
-    const table = element("table", { id: "largest" }, element("thead", {}, head), element("tbody", {}, ...largest));
-    add("Largest deviations", "largest-deviations", table);
+    add("Largest deviations", "largest-deviations",
+      element("table", { id: "largest" }, tableHead(["point", this.what]), element("tbody", {}, ...largest)));
   }
 
   // Adds the check boxes of what is shown. `box` makes one.
@@ -212,9 +210,9 @@ export class DeviationsPanel {
   }
 
   pick(event) {
-    const { left, top, width, height } = this.viewer.canvas.getBoundingClientRect();
     if (!this.layer.group.visible) return -1;
-    return this.layer.pick(this.viewer.camera, { x: width, y: height }, event.clientX - left, event.clientY - top);
+    const { size, x, y } = this.viewer.pointer(event);
+    return this.layer.pick(this.viewer.camera, size, x, y);
   }
 
   // Shows the deviation of the point under the pointer, once a frame.
@@ -230,7 +228,7 @@ export class DeviationsPanel {
 
   step(by) {
     const { length, selected } = this.layer;
-    if (length > 0) this.select((((selected < 0 && by < 0 ? 0 : selected) + by) % length + length) % length);
+    if (length > 0) this.select(stepped(selected, by, length));
   }
 
   select(i) {
@@ -242,8 +240,7 @@ export class DeviationsPanel {
       [this.what, Number.isNaN(layer.values[i]) ? "none" : layer.values[i]],
       ...(Number.isNaN(layer.values[i]) ? [] : [["primitive", layer.primitives[i]]]),
     ];
-    this.pointText.replaceChildren(
-      ...rows.flatMap(([name, value]) => [element("dt", {}, name), element("dd", {}, String(value))]));
+    fillList(this.pointText, rows);
     viewer.draw();
   }
 }

@@ -1,15 +1,14 @@
 // Live queries: the library itself, compiled to WebAssembly, answers them in the page.
 
 import * as three from "three";
-import { drawAnswer, empty, featureName, featureOf, line, marker } from "./answers.js";
-import { checkbox, count, element, short } from "./text.js";
+import { KINDS, drawAnswer, empty, featureName, featureOf, line, marker } from "./answers.js";
+import { checkbox, count, element, fillList, namedRow, short, tableHead } from "./text.js";
 
 // The indexes in the order of their numbers in the module.
 const BACKENDS = ["AABB tree", "k-DOP tree", "octree", "P2M index"];
 // The milliseconds for which the queries of an index are measured, after as long a time in which the browser finds out
 // what it has to optimise.
 const MEASURED_TIME = 100;
-const KINDS = ["", "point", "segment", "triangle"];
 
 export class LiveQueries {
   // `viewer` has the scene, the camera and the picture; `live` has the bytes of the module and the exact scene.
@@ -120,11 +119,8 @@ export class LiveQueries {
   // Moves the query to where the pointer is in the plane.
   follow(event) {
     if (!this.isFollowing || !this.query || event.buttons !== 0) return;
-    const { camera, canvas, controls, data } = this.viewer;
-    const { left, top, width, height } = canvas.getBoundingClientRect();
-    const place = new three.Vector2((2 * (event.clientX - left)) / width - 1, 1 - (2 * (event.clientY - top)) / height);
-    const caster = new three.Raycaster();
-    caster.setFromCamera(place, camera);
+    const { camera, controls, data } = this.viewer;
+    const caster = this.viewer.pointer(event).caster();
     const towards = camera.position.clone().sub(controls.target).normalize();
     const through = controls.target.clone().addScaledVector(towards, this.depth * data.frame.radius);
     const plane = new three.Plane().setFromNormalAndCoplanarPoint(towards, through);
@@ -206,7 +202,7 @@ export class LiveQueries {
 
   showAnswer(answer, isSame) {
     const rows = [];
-    const row = (name, value) => rows.push(element("dt", {}, name), element("dd", {}, String(value)));
+    const row = (name, value) => rows.push([name, value]);
     row("query", this.query.join(",\n"));
     if (answer) {
       row("closest point", answer.point.join(",\n"));
@@ -219,7 +215,7 @@ export class LiveQueries {
     } else {
       row("answer", "none");
     }
-    this.answerText.replaceChildren(...rows);
+    fillList(this.answerText, rows);
   }
 
   showWork(answers) {
@@ -262,11 +258,8 @@ export class LiveQueries {
 
 // Fills a table. The first cell of each row names it.
 function fill(table, caption, head, rows) {
-  const row = ([name, ...cells]) => element("tr", {}, element("th", { scope: "row" }, name),
-    ...cells.map((cell) => element("td", {}, String(cell))));
-  table.replaceChildren(element("caption", {}, caption),
-    element("thead", {}, element("tr", {}, ...head.map((name) => element("th", { scope: "col" }, name)))),
-    element("tbody", {}, ...rows.map(row)));
+  table.replaceChildren(element("caption", {}, caption), tableHead(head),
+    element("tbody", {}, ...rows.map((row) => namedRow(...row))));
 }
 
 // Waits until the page was drawn. A page that is not visible is not drawn, so it waits for a moment only.

@@ -3,7 +3,7 @@
 
 import * as three from "three";
 import { ColourScale } from "./colours.js";
-import { limits } from "./answers.js";
+import { distanceScale, limits } from "./answers.js";
 import { short } from "./text.js";
 
 // The number of pixels along the longer side of a slice.
@@ -13,16 +13,16 @@ const LINES = 8;
 
 export class SliceLayer {
   // `field` has counts of grid points, their values with x running fastest, and the first point and the spacing in the
-  // frame. `hasCells` tells that the values are the lengths of lists.
+  // frame. `hasCells` says that the values are the lengths of lists.
   constructor(field, hasCells) {
     Object.assign(this, field);
     this.hasCells = hasCells;
-    const [low, high] = limits(this.values);
     if (hasCells) {
+      const longest = limits(this.values)[1];
       this.values = this.values.map(Math.log2);
-      this.scale = new ColourScale("sequential", 0, Math.max(1, Math.log2(high)), (value) => short(2 ** value));
+      this.scale = new ColourScale("sequential", 0, Math.max(1, Math.log2(longest)), (value) => short(2 ** value));
     } else {
-      this.scale = new ColourScale(low < 0 ? "diverging" : "sequential", low < 0 ? low : 0, high);
+      this.scale = distanceScale(this.values);
     }
     this.canvas = document.createElement("canvas");
     this.texture = new three.CanvasTexture(this.canvas);

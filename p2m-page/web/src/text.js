@@ -30,6 +30,29 @@ export function element(name, attributes = {}, ...children) {
   return made;
 }
 
+// Replaces the content of a list by terms, each with its text.
+export function fillList(list, rows) {
+  list.replaceChildren(
+    ...rows.flatMap(([term, text]) => [element("dt", {}, term), element("dd", {}, String(text))]));
+}
+
+// Makes the row of the names of columns.
+export function tableHead(names) {
+  return element("thead", {}, element("tr", {}, ...names.map((name) => element("th", { scope: "col" }, name))));
+}
+
+// Makes the row of a table whose first cell names it.
+export function namedRow(name, ...cells) {
+  return element("tr", {}, element("th", { scope: "row" }, name),
+    ...cells.map((cell) => element("td", {}, String(cell))));
+}
+
+// Returns the number of the entry of a list of `length` that is `by` places from the selected one, or from the
+// beginning if none is selected. The list has no end.
+export function stepped(selected, by, length) {
+  return (((selected < 0 && by < 0 ? 0 : selected) + by) % length + length) % length;
+}
+
 // Makes a check box with a label.
 export function checkbox(label, isOn, change, id) {
   const box = element("input", { type: "checkbox", id, onchange: () => change(box.checked) });

@@ -2,7 +2,7 @@
 
 import * as three from "three";
 import { OrbitControls } from "three/examples/jsm/controls/OrbitControls.js";
-import { AnswersLayer } from "./answers.js";
+import { AnswersLayer, KINDS } from "./answers.js";
 import { CellsLayer } from "./cells.js";
 import { Frame, readData } from "./data.js";
 import { DeviationsLayer, DeviationsPanel } from "./deviations.js";
@@ -10,7 +10,7 @@ import { histogram, legend } from "./histogram.js";
 import { LiveQueries } from "./live.js";
 import { SceneLayer } from "./scene.js";
 import { SliceLayer } from "./slice.js";
-import { checkbox, count, counted, element, short } from "./text.js";
+import { checkbox, count, counted, element, fillList, short, stepped, tableHead } from "./text.js";
 
 const COLOURS = {
   light: { background: "#f7f8fa", surface: "#858e9a", line: "#4b5563", selected: "#d55e00", feature: "#c000c0" },
@@ -283,15 +283,14 @@ class Viewer {
     this.table.replaceChildren(
       element("caption", {}, `Closest points, rows ${count(first)} to ${count(first + rows.length - 1)} of ` +
         `${count(answers.length)}`),
-      element("thead", {}, element("tr", {}, ...head.map((name) => element("th", { scope: "col" }, name)))),
-      element("tbody", {}, ...rows));
+      tableHead(head), element("tbody", {}, ...rows));
   }
 
   select(i) {
     const { answers } = this;
     answers.select(i, this.colours);
     const rows = [];
-    const row = (name, value) => rows.push(element("dt", {}, name), element("dd", {}, String(value)));
+    const row = (name, value) => rows.push([name, value]);
     if (i < 0) {
       row("none", "Click a query point, or press n.");
     } else {
@@ -303,7 +302,7 @@ class Viewer {
         row("distance", answers.distances[i]);
         if (answers.signed) row("signed distance", answers.signed[i]);
         row("lower bound", answers.lower_bounds[i]);
-        row("primitive", `${["", "point", "segment", "triangle"][answers.sizes[i]]} ${answers.primitives[i]}`);
+        row("primitive", `${KINDS[answers.sizes[i]]} ${answers.primitives[i]}`);
         row("feature", answers.featureName(i));
         const object = this.objectOf(answers.objects?.[i]);
         if (object) row("object", object);
@@ -311,7 +310,7 @@ class Viewer {
         row("answer", "none");
       }
     }
-    this.answerText.replaceChildren(...rows);
+    fillList(this.answerText, rows);
     if (i >= 0) this.answerText.scrollIntoView({ block: "nearest" });
     this.draw();
   }
@@ -322,7 +321,7 @@ class Viewer {
 
   step(by) {
     const { length, selected } = this.answers;
-    if (length > 0) this.select((((selected < 0 && by < 0 ? 0 : selected) + by) % length + length) % length);
+    if (length > 0) this.select(stepped(selected, by, length));
   }
 
   makeCells(add) {
@@ -396,6 +395,11 @@ class Viewer {
   listen() {
     const { canvas } = this;
     let pressed = null;
+    const release = () => {
+      pressed = null;
+      this.isDragging = false;
+      this.controls.enabled = true;
+    };
     canvas.addEventListener("pointerdown", (event) => {
       pressed = [event.clientX, event.clientY];
       this.isDragging = event.shiftKey && !!this.slice;
@@ -410,40 +414,38 @@ class Viewer {
     });
     canvas.addEventListener("pointerup", (event) => {
       const isClick = pressed && Math.hypot(event.clientX - pressed[0], event.clientY - pressed[1]) < 4;
-      pressed = null;
-      this.isDragging = false;
-      this.controls.enabled = true;
+      release();
       // A finger has no position before it touches.
       if (isClick && event.pointerType === "touch") this.live?.follow(event);
       if (isClick && this.answers) this.select(this.pick(event));
       if (isClick && this.deviationsPanel) this.deviationsPanel.select(this.deviationsPanel.pick(event));
     });
-    canvas.addEventListener("pointercancel", () => {
-      pressed = null;
-      this.isDragging = false;
-      this.controls.enabled = true;
-    });
+    canvas.addEventListener("pointercancel", release);
     canvas.addEventListener("keydown", (event) => this.press(event));
   }
 
+  // Returns the size of the picture and the position of the pointer in it, in pixels from its upper left corner, and a
+  // function that makes the ray from the camera through the pointer.
+  pointer(event) {
+    const { left, top, width, height } = this.canvas.getBoundingClientRect();
+    const [x, y] = [event.clientX - left, event.clientY - top];
+    const caster = () => {
+      const made = new three.Raycaster();
+      made.setFromCamera(new three.Vector2((2 * x) / width - 1, 1 - (2 * y) / height), this.camera);
+      return made;
+    };
+    return { size: { x: width, y: height }, x, y, caster };
+  }
+
   pick(event) {
-    const rectangle = this.canvas.getBoundingClientRect();
-    const size = { x: rectangle.width, y: rectangle.height };
-    const [x, y] = [event.clientX - rectangle.left, event.clientY - rectangle.top];
+    const { size, x, y } = this.pointer(event);
     return this.answers.pick(this.camera, size, x, y, PICK_RADIUS);
   }
 
   // Shows the distance where the pointer is over the slice.
   readSlice(event) {
     if (!this.slice?.mesh.visible) return;
-    const rectangle = this.canvas.getBoundingClientRect();
-    const place = new three.Vector2(
-      (2 * (event.clientX - rectangle.left)) / rectangle.width - 1,
-      1 - (2 * (event.clientY - rectangle.top)) / rectangle.height,
-    );
-    const caster = new three.Raycaster();
-    caster.setFromCamera(place, this.camera);
-    const [hit] = caster.intersectObject(this.slice.mesh);
+    const [hit] = this.pointer(event).caster().intersectObject(this.slice.mesh);
     if (!hit) {
       this.pointerText.textContent = "";
       return;
@@ -463,8 +465,6 @@ class Viewer {
       ArrowUp: () => this.turn(0, -0.1, 1), ArrowDown: () => this.turn(0, 0.1, 1),
       "+": () => this.turn(0, 0, 0.9), "=": () => this.turn(0, 0, 0.9), "-": () => this.turn(0, 0, 1 / 0.9),
       f: () => this.fit(), d: () => this.toggleTheme(), q: this.live && (() => this.live.toggle()),
-      n: answers && (() => this.step(1)), p: answers && (() => this.step(-1)),
-      f: () => this.fit(), d: () => this.toggleTheme(),
       n: step && (() => step(1)), p: step && (() => step(-1)),
       x: slice && (() => this.moveSlice(0, 0.5)), y: slice && (() => this.moveSlice(1, 0.5)),
       z: slice && (() => this.moveSlice(2, 0.5)),
@@ -495,8 +495,7 @@ function makeRenderer(canvas) {
 // Says what is missing where the page cannot be shown.
 function fail(error) {
   const reason = typeof DecompressionStream === "undefined" ? "this browser is too old for it" : error.message;
-  document.getElementById("failure").textContent =
-    `The page cannot be shown: ${reason}.`;
+  document.getElementById("failure").textContent = `The page cannot be shown: ${reason}.`;
 }
 
 readData().then((data) => {
