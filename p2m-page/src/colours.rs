@@ -1,23 +1,23 @@
-//! The colours of signed numbers. The script of the page has the same scale.
+//! The colours of signed numbers. The script of the page has the same scale for light pages.
 
 /// Blue for negative numbers and red for positive ones, with grey at zero, which people with any colour vision tell
 /// apart.
 const DIVERGING: [[u8; 3]; 9] = [
     [0x05, 0x30, 0x61],
-    [0x21, 0x66, 0xac],
-    [0x43, 0x93, 0xc3],
-    [0x92, 0xc5, 0xde],
-    [0xd9, 0xd9, 0xd9],
-    [0xf4, 0xa5, 0x82],
-    [0xd6, 0x60, 0x4d],
-    [0xb2, 0x18, 0x2b],
+    [0x1a, 0x55, 0x9a],
+    [0x33, 0x79, 0xb8],
+    [0x60, 0x89, 0xb4],
+    [0x88, 0x88, 0x88],
+    [0xbd, 0x78, 0x62],
+    [0xc2, 0x51, 0x3c],
+    [0xa1, 0x1f, 0x2b],
     [0x67, 0x00, 0x1f],
 ];
 /// The colour of NaN.
 const UNDEFINED: [u8; 3] = [128; 3];
 
 /// Returns red, green and blue of a number on a scale from blue at `-limit` over grey at zero to red at `limit`, as
-/// pages show it. Numbers beyond the limit have the colours of its ends, and NaN is grey.
+/// light pages show it. Numbers beyond the limit have the colours of its ends, and NaN is grey.
 #[must_use]
 #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "places and colours are in range")]
 pub fn diverging_colour(value: f64, limit: f64) -> [u8; 3] {

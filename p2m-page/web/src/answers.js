@@ -19,27 +19,30 @@ export class AnswersLayer {
       // Without an answer, the closest point and the segment are drawn where the query is.
       else this.to.set(this.from.subarray(3 * i, 3 * i + 3), 3 * i);
     }
-    this.colours = this.scale.colours(this.values);
-
-    this.dots = points(this.from, this.colours, 6);
-    this.feet = points(this.to, this.colours, 3);
+    this.dots = points(this.from, new Uint16Array(3 * this.length), 6);
+    this.feet = points(this.to, new Uint16Array(3 * this.length), 3);
     const ends = new Float32Array(6 * this.length);
-    const endColours = new Uint16Array(6 * this.length);
     for (let i = 0; i < this.length; i++) {
-      for (const [end, from] of [[0, this.from], [3, this.to]]) {
-        ends.set(from.subarray(3 * i, 3 * i + 3), 6 * i + end);
-        endColours.set(this.colours.subarray(3 * i, 3 * i + 3), 6 * i + end);
-      }
+      for (const [end, from] of [[0, this.from], [3, this.to]]) ends.set(from.subarray(3 * i, 3 * i + 3), 6 * i + end);
     }
     const geometry = new three.BufferGeometry();
     geometry.setAttribute("position", new three.BufferAttribute(ends, 3));
-    geometry.setAttribute("color", new three.BufferAttribute(endColours, 3, true));
+    geometry.setAttribute("color", new three.BufferAttribute(new Uint16Array(ends.length), 3, true));
     this.segments = new three.LineSegments(geometry, new three.LineBasicMaterial({ vertexColors: true }));
     this.group = new three.Group();
     this.group.add(this.dots, this.feet, this.segments);
     this.selection = new three.Group();
     this.selected = -1;
     this.hasSphere = true;
+  }
+
+  setTheme(theme) {
+    this.scale.setTheme(theme);
+    for (const [{ geometry }, times] of [[this.dots, 1], [this.feet, 1], [this.segments, 2]]) {
+      const colours = geometry.getAttribute("color");
+      this.scale.writeAll(this.values, colours.array, times);
+      colours.needsUpdate = true;
+    }
   }
 
   isAnswered(i) {
@@ -66,8 +69,8 @@ export class AnswersLayer {
     return featureName(this.features[i]);
   }
 
-  // Returns the answer whose query or closest point is the nearest to a place on the screen, if one is within `radius`
-  // pixels.
+  // Returns the answer whose query or closest point is the nearest to a position on the screen, if one is within
+  // `radius` pixels.
   pick(camera, size, x, y, radius) {
     const projected = new three.Vector3();
     let [found, best] = [-1, radius * radius];

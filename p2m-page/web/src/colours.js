@@ -1,14 +1,34 @@
-// Colour scales, and their legends.
+// The colours of the picture for light and for dark pages, and colour scales.
 
 import { short } from "./text.js";
 
-// Points of the scale "viridis", which has evenly rising lightness and is readable with any colour vision.
-const SEQUENTIAL = ["#440154", "#472d7b", "#3b528b", "#2c728e", "#21918c", "#28ae80", "#5ec962", "#addc30", "#fde725"];
-// Blue for negative values and red for positive ones, with grey at zero.
-const DIVERGING = ["#053061", "#2166ac", "#4393c3", "#92c5de", "#d9d9d9", "#f4a582", "#d6604d", "#b2182b", "#67001f"];
+// The colours of what has no scale.
+export const THEMES = {
+  light: {
+    background: "#f7f8fa", surface: "#858e9a", line: "#4b5563",
+    selected: "#c24e00", live: "#0b62a8", feature: "#c000c0",
+  },
+  dark: {
+    background: "#111417", surface: "#7d8792", line: "#aab4c0",
+    selected: "#ff9040", live: "#6ab8ee", feature: "#ff60ff",
+  },
+};
+
+// The scales for light and for dark pages. All their colours differ enough from the background to be seen as lines.
+// The sequential ones are parts of "viridis", which has evenly rising lightness and is readable with any colour vision.
+// The diverging ones are blue for negative values and red for positive ones, with grey at zero.
+export const SCALES = {
+  sequential: {
+    light: ["#440154", "#472d7b", "#3b528b", "#2c728e", "#21918c", "#1f9f88"],
+    dark: ["#2c728e", "#21918c", "#28ae80", "#5ec962", "#addc30", "#fde725"],
+  },
+  diverging: {
+    light: ["#053061", "#1a559a", "#3379b8", "#6089b4", "#888888", "#bd7862", "#c2513c", "#a11f2b", "#67001f"],
+    dark: ["#b3dcff", "#7cc0f5", "#4f9fdc", "#5a86ab", "#707070", "#b0735f", "#e0805f", "#ff9a70", "#ffc09f"],
+  },
+};
 
 const rgb = (hex) => [1, 3, 5].map((at) => parseInt(hex.slice(at, at + 2), 16));
-const STOPS = { sequential: SEQUENTIAL.map(rgb), diverging: DIVERGING.map(rgb) };
 
 // The light of each byte of a colour in sRGB.
 const LIGHT = Array.from({ length: 256 }, (_, byte) => {
@@ -20,10 +40,15 @@ const LIGHT = Array.from({ length: 256 }, (_, byte) => {
 export class ColourScale {
   constructor(kind, low, high, text = short) {
     this.text = text;
-    this.stops = STOPS[kind];
+    this.kind = kind;
+    this.setTheme("light");
     this.isDiverging = kind === "diverging";
     this.low = low;
     this.high = high > low ? high : low + (Math.abs(low) || 1);
+  }
+
+  setTheme(theme) {
+    this.stops = SCALES[this.kind][theme].map(rgb);
   }
 
   // Writes the three bytes of the colour of a value. The middle of a diverging scale is zero. A value that is no number
@@ -36,9 +61,9 @@ export class ColourScale {
       return;
     }
     const last = this.stops.length - 1;
-    const place = Math.max(0, Math.min(last, t * last));
-    const i = Math.min(last - 1, Math.floor(place));
-    const f = place - i;
+    const stop = Math.max(0, Math.min(last, t * last));
+    const i = Math.min(last - 1, Math.floor(stop));
+    const f = stop - i;
     for (let k = 0; k < 3; k++) out[at + k] = this.stops[i][k] * (1 - f) + this.stops[i + 1][k] * f;
   }
 
@@ -48,16 +73,15 @@ export class ColourScale {
     return `rgb(${out.map(Math.round).join(",")})`;
   }
 
-  // Returns the colours of all values as the GPU needs them: three numbers each, which are proportional to light and at
-  // most 65535.
-  colours(values) {
+  // Writes the colours of all values as the GPU needs them: three numbers each, which are proportional to light and at
+  // most 65535. Each colour is written `times` times.
+  writeAll(values, out, times = 1) {
     const bytes = new Uint8Array(3);
-    const out = new Uint16Array(3 * values.length);
-    for (let i = 0; i < values.length; i++) {
-      this.write(values[i], bytes, 0);
-      for (let k = 0; k < 3; k++) out[3 * i + k] = LIGHT[bytes[k]];
+    let at = 0;
+    for (const value of values) {
+      this.write(value, bytes, 0);
+      for (let i = 0; i < times; i++) for (let k = 0; k < 3; k++) out[at++] = LIGHT[bytes[k]];
     }
-    return out;
   }
 
   // Returns a gradient in CSS from the low limit to the high one.

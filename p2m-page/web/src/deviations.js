@@ -3,7 +3,7 @@
 import * as three from "three";
 import { empty, marker, points } from "./answers.js";
 import { ColourScale } from "./colours.js";
-import { histogram, legend } from "./histogram.js";
+import { Figure, histogram, legend } from "./histogram.js";
 import { count, element, fillList, namedRow, short, stepped, tableHead } from "./text.js";
 
 // The distance in pixels within which a point is read.
@@ -41,6 +41,7 @@ export class DeviationsLayer {
       this.dots.visible = false;
     }
     this.group.add(this.dots);
+    this.theme = "light";
     this.setLimit(data.limit);
   }
 
@@ -48,7 +49,13 @@ export class DeviationsLayer {
   setLimit(limit) {
     this.limit = limit;
     this.scale = new ColourScale(this.is_signed ? "diverging" : "sequential", this.is_signed ? -limit : 0, limit);
-    this.colours.set(this.scale.colours(this.values));
+    this.setTheme(this.theme);
+  }
+
+  setTheme(theme) {
+    this.theme = theme;
+    this.scale.setTheme(theme);
+    this.scale.writeAll(this.values, this.colours);
     this.dots.geometry.getAttribute("color").needsUpdate = true;
   }
 
@@ -71,14 +78,14 @@ export class DeviationsLayer {
     return [above, below, all - above - below].map((n) => Math.round(n * weight));
   }
 
-  // Returns the point that is in front of all others within some pixels around a place on the screen, or -1.
+  // Returns the point that is in front of all others within some pixels around a position on the screen, or -1.
   pick(camera, size, x, y) {
     camera.updateMatrixWorld();
     const matrix = new three.Matrix4().multiplyMatrices(camera.projectionMatrix, camera.matrixWorldInverse).elements;
-    const place = this.drawn;
+    const { drawn } = this;
     let [found, nearest] = [-1, Infinity];
     for (let i = 0; i < this.length; i++) {
-      const [px, py, pz] = [place[3 * i], place[3 * i + 1], place[3 * i + 2]];
+      const [px, py, pz] = [drawn[3 * i], drawn[3 * i + 1], drawn[3 * i + 2]];
       const w = matrix[3] * px + matrix[7] * py + matrix[11] * pz + matrix[15];
       if (!(w > 0) || w >= nearest) continue;
       const dx = ((matrix[0] * px + matrix[4] * py + matrix[8] * pz + matrix[12]) / w + 1) * 0.5 * size.x - x;
@@ -118,13 +125,14 @@ export class DeviationsPanel {
     const { layer } = this;
     this.what = layer.is_signed ? "deviation" : "distance";
     this.tolerance = layer.tolerance;
-    this.figures = element("div", { id: "deviation-figures" });
+    this.figure = new Figure(() => this.makeFigure(), { id: "deviation-figures" });
+    viewer.figures.push(this.figure);
     this.parts = element("p", { id: "deviation-parts", "aria-live": "polite" });
     this.inputs = {
       limit: this.numberInput("limit", "Limit of colours", layer.limit, (x) => x > 0 && this.setLimit(x)),
       tolerance: this.numberInput("tolerance", "Tolerance", layer.tolerance ?? "", (x) => this.setTolerance(x)),
     };
-    add(layer.is_signed ? "Deviations, positive outside" : "Distances", "deviations", this.figures,
+    add(layer.is_signed ? "Deviations, positive outside" : "Distances", "deviations", this.figure.element,
       ...Object.values(this.inputs), this.parts);
     this.pointText = element("dl", { id: "deviation", "aria-live": "polite" });
     this.pointerText = element("output", { id: "deviation-pointer" });
@@ -166,13 +174,18 @@ export class DeviationsPanel {
     this.redraw();
   }
 
-  // Draws the legend and the histogram, and writes how many points are within the tolerance.
-  redraw() {
+  makeFigure() {
     const { layer, tolerance, viewer: { unit } } = this;
     const [values, weight] = layer.population();
     const marks = tolerance === null ? [] : layer.is_signed ? [-tolerance, tolerance] : [tolerance];
-    this.figures.replaceChildren(legend(layer.scale, this.what, unit),
-      histogram(values, layer.scale, `${this.what}s`, unit, { weight, marks }));
+    return [legend(layer.scale, this.what, unit),
+      ...histogram(values, layer.scale, `${this.what}s`, unit, { weight, marks })];
+  }
+
+  // Draws the legend and the histogram, and writes how many points are within the tolerance.
+  redraw() {
+    const { layer, tolerance } = this;
+    this.figure.update();
     if (tolerance === null) {
       this.parts.textContent = "With a tolerance, this counts the points outside of it.";
     } else {

@@ -1,6 +1,6 @@
 // A histogram of values as SVG, whose bars have the colours of the scale.
 
-import { count, element, short } from "./text.js";
+import { count, element, namedRow, short, tableHead } from "./text.js";
 
 const BINS = 48;
 const [WIDTH, HEIGHT] = [288, 96];
@@ -17,8 +17,23 @@ export function bins(values, low, high) {
   return counts;
 }
 
-// Returns a histogram between the limits of a scale. Each value stands for `weight` values, and lines are drawn at
-// `marks`.
+// A legend and a histogram, which are made again when the values or the colours change.
+export class Figure {
+  // `make` returns the elements.
+  constructor(make, attributes = {}) {
+    this.make = make;
+    this.element = element("div", attributes);
+  }
+
+  update() {
+    const isOpen = this.element.querySelector("details")?.open ?? false;
+    this.element.replaceChildren(...this.make());
+    this.element.querySelectorAll("details").forEach((table) => (table.open = isOpen));
+  }
+}
+
+// Returns a histogram between the limits of a scale, as a picture and as a table. Each value stands for `weight`
+// values, and lines are drawn at `marks`.
 export function histogram(values, scale, what, unit, { weight = 1, marks = [] } = {}) {
   const { low, high } = scale;
   const counts = bins(values, low, high).map((n) => Math.round(n * weight));
@@ -46,19 +61,23 @@ export function histogram(values, scale, what, unit, { weight = 1, marks = [] } 
   });
   const base = element("line", { x1: 0, x2: WIDTH, y1: HEIGHT, y2: HEIGHT, stroke: "currentColor" });
   const viewBox = `0 0 ${WIDTH} ${HEIGHT + 1}`;
-  return element("svg", { viewBox, role: "img", "aria-label": label }, ...bars, ...lines, base);
+  const rows = counts.map((n, i) => [ends(i), n]).filter(([, n]) => n > 0)
+    .map(([[from, to], n]) => namedRow(`${short(from)} to ${short(to)}`, count(n)));
+  const table = element("details", {}, element("summary", {}, "Histogram as a table"),
+    element("table", {}, tableHead([`${what} (${unit})`, "number"]), element("tbody", {}, ...rows)));
+  return [element("svg", { viewBox, role: "img", "aria-label": label }, ...bars, ...lines, base), table];
 }
 
 // Returns the legend of a scale: its gradient, its limits and a value between them, with the unit. The value between is
-// zero for a scale with two directions, at its place, unless that is too close to a limit.
+// zero for a scale with two directions, where zero is, unless that is too close to a limit.
 export function legend(scale, what, unit) {
   const { low, high } = scale;
   const zero = (0 - low) / (high - low);
-  const place = scale.isDiverging && zero > 0.2 && zero < 0.8 ? zero : 0.5;
+  const part = scale.isDiverging && zero > 0.2 && zero < 0.8 ? zero : 0.5;
   const bar = element("div", { class: "gradient" });
   bar.style.background = scale.gradient();
-  const middle = element("span", { class: "middle" }, scale.text(place === zero ? 0 : low + place * (high - low)));
-  middle.style.left = `${100 * place}%`;
+  const middle = element("span", { class: "middle" }, scale.text(part === zero ? 0 : low + part * (high - low)));
+  middle.style.left = `${100 * part}%`;
   const ends = [low, high].map((value) => element("span", {}, scale.text(value)));
   return element("div", { class: "legend" }, element("div", {}, `${what} (${unit})`), bar,
     element("div", { class: "ticks" }, ends[0], middle, ends[1]));

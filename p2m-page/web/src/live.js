@@ -1,4 +1,5 @@
-// Live queries: the library itself, compiled to WebAssembly, answers them in the page.
+// Live queries: the library itself, compiled to WebAssembly, answers them in the page. It runs in a worker, so the page
+// can be used meanwhile, and queries are answered as soon as the first index is built.
 
 import * as three from "three";
 import { KINDS, drawAnswer, empty, featureName, featureOf, line, marker } from "./answers.js";
@@ -6,10 +7,6 @@ import { checkbox, count, element, fillList, namedRow, short, tableHead } from "
 
 // The indexes in the order of their numbers in the module.
 const BACKENDS = ["AABB tree", "k-DOP tree", "octree", "P2M index"];
-// The milliseconds for which the queries of an index are measured, after as long a time in which the browser finds out
-// what it has to optimise.
-const MEASURED_TIME = 100;
-
 export class LiveQueries {
   // `viewer` has the scene, the camera and the picture; `live` has the bytes of the module and the exact scene.
   constructor(viewer, live) {
@@ -30,55 +27,68 @@ export class LiveQueries {
     }
   }
 
-  // Loads the scene and builds the indexes one after the other. The page is drawn in between.
+  // Builds the indexes one after the other. An index whose build fails, because the browser has too little memory, ends
+  // its worker, so the others are built by a new one.
   async start() {
-    const { coordinates, sizes, indices, module } = this.live;
-    const { instance } = await WebAssembly.instantiate(module, {});
-    this.module = instance.exports;
-    const write = (number, array) => {
-      const address = this.module.p2m_reserve(number, array.length);
-      new array.constructor(this.module.memory.buffer, address, array.length).set(array);
-    };
-    [coordinates, sizes, indices].forEach((array, number) => write(number, array));
-    if (this.module.p2m_load() === 0) throw new Error("the scene of the page is damaged");
+    this.failed = [];
+    while (!(await this.buildAll()));
+    const missing = this.failed.map(({ name, reason }) => `The ${name} could not be built: ${reason}.`);
+    if (this.farScale === 0) missing.push("f32 cannot represent this scene far from the origin.");
+    this.say(missing.join(" "));
+    this.farBox.disabled = this.farScale === 0;
+  }
+
+  // Builds the indexes that have not failed. The result says whether all could be built.
+  async buildAll() {
+    this.worker?.terminate();
+    this.worker = startWorker();
+    // Promises of the calls that are not answered yet.
+    const calls = [];
+    this.calls = calls;
+    this.worker.onmessage = ({ data }) => settle(calls.shift(), data);
+    this.worker.onerror = (event) => settle(calls.shift(), { error: event.message });
     this.rows = [];
+    this.isAsked = this.isChanged = false;
+    if (!(await this.call("load", this.live))) throw new Error("the scene of the page is damaged");
     for (const [number, name] of BACKENDS.entries()) {
+      if (this.failed.some((failed) => failed.number === number)) continue;
       this.say(`Building the ${name} ...`);
-      await painted();
-      const start = performance.now();
-      const bytes = this.module.p2m_build(number);
-      const time = performance.now() - start;
-      if (bytes > 0) this.rows.push({ number, name, bytes, time });
+      try {
+        const { bytes, time } = await this.call("build", number);
+        if (bytes > 0) this.rows.push({ number, name, bytes, time });
+      } catch (error) {
+        this.failed.push({ number, name, reason: error.message });
+        return false;
+      }
+      if (this.query) this.ask();
+      else this.allowQueries();
     }
     for (const row of this.rows) {
       this.say(`Measuring the ${row.name} ...`);
-      await painted();
-      this.measure(row.number);
-      row.rate = this.measure(row.number);
+      row.rate = await this.call("measure", row.number);
+      this.showSpeed();
     }
-    this.farScale = this.module.p2m_build_far();
-    this.inputs.forEach((input) => (input.disabled = false));
-    this.farBox.disabled = this.farScale === 0;
-    this.say(this.farScale === 0 ? "f32 cannot represent this scene far from the origin." : "");
-    this.setQuery(this.frame.coordinates([0, 0, 0]));
+    this.farScale = await this.call("buildFar");
+    return true;
   }
 
-  // Returns the number of queries a second at points around the scene.
-  measure(number) {
-    let [answered, size, start, time] = [0, 64, performance.now(), 0];
-    while (time < MEASURED_TIME) {
-      answered += this.module.p2m_answer_many(number, size);
-      time = performance.now() - start;
-      size *= 2;
-    }
-    return answered / (time / 1000);
+  // Calls a function of the worker, which answers in the order of the calls.
+  call(name, ...values) {
+    return new Promise((resolve, reject) => {
+      this.calls.push({ resolve, reject });
+      this.worker.postMessage({ name, values });
+    });
+  }
+
+  allowQueries() {
+    this.inputs.forEach((input) => (input.disabled = false));
+    this.setQuery(this.frame.coordinates([0, 0, 0]));
   }
 
   makePanel(add) {
     this.message = element("p", { id: "live-message", role: "status" });
     this.inputs = [0, 1, 2].map((axis) => element("input", {
       type: "number", step: "any", disabled: true, id: `live-${"xyz"[axis]}`,
-      "aria-label": `${"xyz"[axis]} of the query`,
       oninput: () => this.readInputs(), onkeydown: (event) => this.stepInput(event, axis),
     }));
     this.followBox = checkbox("the query follows the mouse", true, (on) => (this.isFollowing = on), "live-follow");
@@ -96,7 +106,8 @@ export class LiveQueries {
     add("Live query", "live", this.message,
       element("div", { class: "boxes" }, this.followBox, this.farLabel),
       element("p", { class: "small" }, "The mouse moves the query in a plane that faces you. Its depth: ", depth),
-      element("p", { class: "coordinates" }, ...this.inputs),
+      element("fieldset", { class: "coordinates" }, element("legend", {}, "Query"),
+        ...this.inputs.map((input, axis) => element("label", {}, "xyz"[axis], input))),
       this.farText, this.answerText, this.workTable, this.speedTable);
   }
 
@@ -108,7 +119,7 @@ export class LiveQueries {
     this.isFar = isFar;
     this.worst = [0, 0];
     this.farBox.checked = isFar;
-    this.redraw();
+    this.ask();
   }
 
   toggle() {
@@ -131,14 +142,13 @@ export class LiveQueries {
   setQuery(query) {
     this.query = query;
     query.forEach((x, k) => (this.inputs[k].value = x));
-    this.redraw();
+    this.ask();
   }
 
   readInputs() {
     const query = this.inputs.map((input) => (input.value === "" ? NaN : Number(input.value)));
-    if (!query.every(Number.isFinite)) return;
     this.query = query;
-    this.redraw();
+    this.ask();
   }
 
   // The arrow keys move a coordinate by a hundredth of the scene.
@@ -150,39 +160,47 @@ export class LiveQueries {
     this.setQuery(this.query.map((x, k) => (k === axis ? x + direction * step : x)));
   }
 
-  // Returns the values of the answer of an index, or `null` if there is none.
-  ask(number, query) {
-    if (this.module.p2m_query(number, ...query) === 0) return null;
-    const values = [...new Float64Array(this.module.memory.buffer, this.module.p2m_answer(), 10)];
-    const [x, y, z, distance, lowerBound, primitive, feature, nodes, packets, primitives] = values;
-    return { point: [x, y, z], distance, lowerBound, primitive, feature, work: [nodes, packets, primitives] };
+  // Asks the worker. While it answers, only the newest of further queries is kept.
+  async ask() {
+    this.isChanged = true;
+    if (this.isAsked || !this.query) return;
+    this.isAsked = true;
+    while (this.isChanged) {
+      this.isChanged = false;
+      const { query, isFar, rows } = this;
+      const isQuery = query.every(Number.isFinite);
+      try {
+        const answers = isQuery ? await this.call("query", rows.map(({ number }) => number), query) : [];
+        const far = isQuery && isFar ? await this.call("queryFar", query) : null;
+        this.answered = { query, isQuery, rows: [...rows], answers, far };
+      } catch {
+        // The worker has ended, and its successor is asked again.
+        return;
+      }
+      this.redraw();
+    }
+    this.isAsked = false;
   }
 
-  askFar(query) {
-    if (this.module.p2m_query_far(...query) === 0) return null;
-    const values = [...new Float64Array(this.module.memory.buffer, this.module.p2m_answer(), 12)];
-    const part = (at) => ({ point: values.slice(at, at + 3), distance: values[at + 3] });
-    const [exact, p2m, ordinary] = [0, 4, 8].map(part);
-    return { query: exact.point, distance: exact.distance, p2m, ordinary };
-  }
-
-  // Answers the query, draws the answer and shows its values.
+  // Draws the last answer and shows its values.
   redraw() {
-    if (!this.query) return;
+    if (!this.answered) return;
+    const { isQuery, rows, answers, far } = this.answered;
     empty(this.group);
-    const answers = this.rows.map(({ number }) => this.ask(number, this.query));
     // The first answer stands for all, because all have the same bits, which is compared here.
     const [answer] = answers;
     const key = (a) => a && [...a.point, a.distance, a.primitive, a.feature].join();
     const isSame = answers.every((other) => key(other) === key(answer));
     this.answer = answer;
     if (!this.isFar) this.farText.replaceChildren();
-    if (this.isFar) this.drawFar();
+    if (this.isFar) this.drawFar(far);
     else if (answer) this.draw(answer);
-    this.showAnswer(answer, isSame);
+    this.showAnswer(answer, isQuery, isSame);
     // Far from the origin the query is another one, because it is rounded.
     this.answerText.hidden = this.workTable.hidden = this.isFar;
-    this.showWork(answers);
+    fill(this.workTable, "Work of this query", ["index", "nodes", "packets", "evaluated"],
+      rows.map(({ name }, i) => [name, ...(answers[i] ? answers[i].work : ["", "", ""])]));
+    this.showSpeed();
     this.viewer.draw();
   }
 
@@ -197,43 +215,46 @@ export class LiveQueries {
       .map((i) => this.at(this.live.coordinates.subarray(3 * i, 3 * i + 3)));
     const radius = this.hasSphere ? lowerBound / this.frame.scale : 0;
     const { colours } = this.viewer;
-    drawAnswer(this.group, this.at(this.query), this.at(point), vertices, featureOf(feature), radius, colours);
+    drawAnswer(this.group, this.at(this.answered.query), this.at(point), vertices, featureOf(feature), radius,
+      { selected: colours.live, feature: colours.feature });
   }
 
-  showAnswer(answer, isSame) {
+  showAnswer(answer, isQuery, isSame) {
     const rows = [];
     const row = (name, value) => rows.push([name, value]);
-    row("query", this.query.join(",\n"));
-    if (answer) {
+    row("query", isQuery ? this.answered.query.join(",\n") : "Each coordinate has to be a number.");
+    if (!isQuery) {
+      // There is nothing to answer.
+    } else if (answer) {
       row("closest point", answer.point.join(",\n"));
       row("distance", answer.distance);
       row("lower bound", answer.lowerBound);
       row("primitive", `${KINDS[this.live.sizes[answer.primitive]]} ${answer.primitive}`);
       row("feature", featureName(answer.feature));
-      const indexes = `the ${this.rows.length} indexes`;
-      row("agreement", isSame ? `${indexes} give equal answers, bit for bit` : `${indexes} differ`);
+      const indexes = `the ${this.answered.rows.length} indexes`;
+      if (this.answered.rows.length > 1) {
+        row("agreement", isSame ? `${indexes} give equal answers, bit for bit` : `${indexes} differ`);
+      }
     } else {
       row("answer", "none");
     }
     fillList(this.answerText, rows);
   }
 
-  showWork(answers) {
-    fill(this.workTable, "Work of this query", ["index", "nodes", "packets", "evaluated"],
-      this.rows.map(({ name }, i) => [name, ...(answers[i] ? answers[i].work : ["", "", ""])]));
+  showSpeed() {
+    const rate = (row) => (row.rate === undefined ? "" : count(Number(row.rate.toPrecision(2))));
     fill(this.speedTable, "Speed in this browser, at points around the scene", ["index", "queries/s", "build", "size"],
-      this.rows.map(({ name, rate, time, bytes }) =>
-        [name, count(Number(rate.toPrecision(2))), `${short(time)} ms`, `${count(Math.ceil(bytes / 1000))} kB`]));
+      this.rows.map((row) =>
+        [row.name, rate(row), `${short(row.time)} ms`, `${count(Math.ceil(row.bytes / 1000))} kB`]));
   }
 
   // Draws the answers of a query far from the origin, and shows their errors.
-  drawFar() {
-    const far = this.askFar(this.query);
+  drawFar(far) {
     this.far = far;
     if (!far) return;
     const { colours } = this.viewer;
     const query = this.at(far.query);
-    drawAnswer(this.group, query, this.at(far.p2m.point), [], null, 0, colours);
+    drawAnswer(this.group, query, this.at(far.p2m.point), [], null, 0, { ...colours, selected: colours.live });
     const foot = this.at(far.ordinary.point);
     this.group.add(line([query, foot], colours.feature), marker(foot, colours.feature, 6));
     const errors = [far.p2m, far.ordinary].map(({ distance }) => Math.abs(distance - far.distance));
@@ -242,7 +263,7 @@ export class LiveQueries {
     const named = (name, colour) => element("span", {}, element("span", { style: `color: ${colour}` }, "● "), name);
     const table = element("table", { id: "live-far-table" });
     fill(table, "Distances in f32, and their errors", ["", "distance", "error", "largest"], [
-      [named("p2m", colours.selected), far.p2m.distance, errors[0], this.worst[0]],
+      [named("p2m", colours.live), far.p2m.distance, errors[0], this.worst[0]],
       [named("ordinary f32", colours.feature), far.ordinary.distance, errors[1], this.worst[1]],
     ].map(([name, ...values]) => [name, ...values.map(short)]));
     const scaled = this.farScale === 1 ? "" : `, scaled by ${short(this.farScale)},`;
@@ -262,13 +283,14 @@ function fill(table, caption, head, rows) {
     element("tbody", {}, ...rows.map((row) => namedRow(...row))));
 }
 
-// Waits until the page was drawn. A page that is not visible is not drawn, so it waits for a moment only.
-function painted() {
-  return new Promise((resolve) => {
-    const timer = setTimeout(resolve, 100);
-    requestAnimationFrame(() => setTimeout(() => {
-      clearTimeout(timer);
-      resolve();
-    }, 0));
-  });
+// Starts the worker, whose script is part of this one, because a page that is a file may not read others.
+function startWorker() {
+  const address = URL.createObjectURL(new Blob([WORKER_SCRIPT], { type: "text/javascript" }));
+  return new Worker(address);
+}
+
+// Ends the promise of a call of the worker by what the worker says.
+function settle(call, { result, error }) {
+  if (error === undefined) call?.resolve(result);
+  else call?.reject(new Error(error));
 }

@@ -52,16 +52,21 @@ export class SliceLayer {
     return sum;
   }
 
+  setTheme(theme) {
+    this.scale.setTheme(theme);
+    this.setPlane(this.axis, this.index);
+  }
+
   // Draws the plane across an axis at a real index.
-  setPlane(axis, place) {
+  setPlane(axis, index) {
     this.axis = axis;
-    this.place = Math.max(0, Math.min(this.counts[axis] - 1, place));
+    this.index = Math.max(0, Math.min(this.counts[axis] - 1, index));
     const [u, v] = [0, 1, 2].filter((k) => k !== axis);
     const sides = [u, v].map((k) => this.counts[k] - 1);
     const [width, height] = sides.map((side) => Math.max(2, Math.round((PIXELS * side) / Math.max(...sides))));
     const values = new Float32Array(width * height);
     const at = [0, 0, 0];
-    at[axis] = this.place;
+    at[axis] = this.index;
     for (let y = 0; y < height; y++) {
       at[v] = (sides[1] * y) / (height - 1);
       for (let x = 0; x < width; x++) {
@@ -72,7 +77,7 @@ export class SliceLayer {
     this.draw(values, width, height);
     const corner = (x, y) => {
       const position = [...this.origin];
-      position[axis] += this.place * this.spacing;
+      position[axis] += this.index * this.spacing;
       position[u] += sides[0] * x * this.spacing;
       position[v] += sides[1] * y * this.spacing;
       return new three.Vector3(...position);

@@ -4,35 +4,35 @@ import * as three from "three";
 import { OrbitControls } from "three/examples/jsm/controls/OrbitControls.js";
 import { AnswersLayer, KINDS } from "./answers.js";
 import { CellsLayer } from "./cells.js";
+import { THEMES } from "./colours.js";
 import { Frame, readData } from "./data.js";
 import { DeviationsLayer, DeviationsPanel } from "./deviations.js";
-import { histogram, legend } from "./histogram.js";
+import { Figure, histogram, legend } from "./histogram.js";
 import { LiveQueries } from "./live.js";
 import { SceneLayer } from "./scene.js";
 import { SliceLayer } from "./slice.js";
 import { checkbox, count, counted, element, fillList, short, stepped, tableHead } from "./text.js";
 
-const COLOURS = {
-  light: { background: "#f7f8fa", surface: "#858e9a", line: "#4b5563", selected: "#d55e00", feature: "#c000c0" },
-  dark: { background: "#111417", surface: "#7d8792", line: "#aab4c0", selected: "#ff9040", feature: "#ff60ff" },
-};
-
 // The number of rows of a page of the table.
 const ROWS = 50;
 // The distance in pixels within which a click selects an answer.
 const PICK_RADIUS = 12;
-// The number of lines above which a page begins with fewer things shown, because the picture would be full of them.
-const MANY_SEGMENTS = 20000;
+// The number of answers above which a page begins without segments to closest points, which would fill the picture.
+const MANY_ANSWERS = 20_000;
 
+// The keys, what they do, and the property of the viewer without which they do nothing.
 const KEYS = [
   ["arrow keys", "turn the view"],
-  ["+ and -", "move nearer and farther"],
+  ["Shift and arrow keys", "move the view"],
+  ["+ and -", "come nearer and go farther"],
   ["f", "fit the view to the scene"],
-  ["n and p", "next and previous answer or point"],
-  ["x, y and z", "lay the slice across this axis"],
-  ["[ and ]", "move the slice"],
-  ["l and k", "next and previous level of boxes"],
-  ["q", "let the live query follow the mouse, or stop"],
+  ["n and p", "next and previous answer", "answers"],
+  ["n and p", "next and previous point", "deviations"],
+  ["x, y and z", "lay the slice across this axis", "slice"],
+  ["[ and ]", "move the slice", "slice"],
+  ["v", "read the slice in the middle of the picture", "slice"],
+  ["l and k", "next and previous level of boxes", "cells"],
+  ["q", "let the live query follow the mouse, or stop", "live"],
   ["d", "dark or light"],
   ["?", "show or hide this list"],
 ];
@@ -43,7 +43,9 @@ class Viewer {
     this.unit = data.unit;
     this.frame = new Frame(data.frame);
     this.canvas = document.getElementById("picture");
-    this.theme = matchMedia("(prefers-color-scheme: dark)").matches ? "dark" : "light";
+    this.theme = "light";
+    // All figures, which have the colours of a scale, which depend on the theme.
+    this.figures = [];
     this.renderer = makeRenderer(this.canvas);
     this.renderer.setPixelRatio(Math.min(2, devicePixelRatio));
     this.world = new three.Scene();
@@ -70,14 +72,14 @@ class Viewer {
 
     this.makePanel();
     this.listen();
-    this.setTheme(this.theme);
+    this.followSystem();
     this.fit();
     this.resize();
     new ResizeObserver(() => this.resize()).observe(this.canvas.parentElement);
   }
 
   get colours() {
-    return COLOURS[this.theme];
+    return THEMES[this.theme];
   }
 
   addLayer(name, layer, drawn) {
@@ -90,11 +92,27 @@ class Viewer {
     document.documentElement.dataset.theme = theme;
     this.world.background = new three.Color(this.colours.background);
     this.scene.setColours(this.colours);
-    if (this.cells) this.cells.setColours(this.colours);
-    if (this.answers) this.answers.select(this.answers.selected, this.colours);
+    this.cells?.setColours(this.colours);
+    for (const layer of [this.answers, this.slice, this.deviations]) layer?.setTheme(theme);
+    for (const layer of [this.answers, this.deviations]) layer?.select(layer.selected, this.colours);
     this.live?.redraw();
-    if (this.deviations) this.deviations.select(this.deviations.selected, this.colours);
+    this.figures.forEach((figure) => figure.update());
     this.draw();
+  }
+
+  // Takes the theme of the system, and its changes until another one is chosen in the page.
+  followSystem() {
+    const system = matchMedia("(prefers-color-scheme: dark)");
+    const follow = () => this.setTheme(system.matches ? "dark" : "light");
+    system.addEventListener("change", () => this.isThemeChosen || follow());
+    follow();
+  }
+
+  // Makes a figure, and returns its element.
+  figure(make) {
+    const figure = new Figure(make);
+    this.figures.push(figure);
+    return figure.element;
   }
 
   // Draws once at the next frame, however often it is called until then.
@@ -148,6 +166,19 @@ class Viewer {
     this.draw();
   }
 
+  // Moves the view across itself by parts of the distance.
+  pan(right, up) {
+    const { camera, controls: { target } } = this;
+    const distance = camera.position.distanceTo(target);
+    camera.updateMatrix();
+    const [x, y] = [0, 1].map((k) => new three.Vector3().setFromMatrixColumn(camera.matrix, k));
+    const shift = x.multiplyScalar(right * distance).addScaledVector(y, up * distance);
+    target.add(shift);
+    camera.position.add(shift);
+    this.controls.update();
+    this.draw();
+  }
+
   // ---- the panel
 
   makePanel() {
@@ -167,7 +198,8 @@ class Viewer {
     this.makeShown(add);
     if (this.cells) this.makeCells(add);
     if (this.scene.objects.some((object) => object.name !== null)) this.makeObjects(add);
-    const keys = KEYS.map(([key, what]) => [element("dt", {}, element("kbd", {}, key)), element("dd", {}, what)]);
+    const keys = KEYS.filter(([, , needed]) => !needed || this[needed])
+      .map(([key, what]) => [element("dt", {}, element("kbd", {}, key)), element("dd", {}, what)]);
     this.help = element("details", { id: "keys" }, element("summary", {}, "Mouse and keyboard"),
       element("p", {}, "Drag to turn, drag with the right button to move, and turn the wheel to come nearer. Click a " +
         "query point or a point of a scan to read its answer. The keys act while the picture has the focus."),
@@ -188,7 +220,7 @@ class Viewer {
     if (this.deviationsPanel) this.deviationsPanel.makeBoxes(box);
     if (this.answers) {
       const { answers } = this;
-      const isCrowded = answers.length > MANY_SEGMENTS;
+      const isCrowded = answers.length > MANY_ANSWERS;
       answers.segments.visible = !isCrowded;
       box("query points", true, (on) => (answers.dots.visible = on), "show-queries");
       box("closest points", true, (on) => (answers.feet.visible = on), "show-closest");
@@ -207,12 +239,14 @@ class Viewer {
     }
     if (this.slice) box("slice", true, (on) => (this.slice.mesh.visible = on), "show-slice");
     if (this.cells) box("boxes of the index", false, (on) => (this.cells.group.visible = on), "show-cells");
-    const theme = element("button", { type: "button", id: "theme", onclick: () => this.toggleTheme() }, "Dark or light");
+    const toggle = () => this.toggleTheme();
+    const theme = element("button", { type: "button", id: "theme", onclick: toggle }, "Dark or light");
     const fit = element("button", { type: "button", id: "fit", onclick: () => this.fit() }, "Fit the view");
     add("Show", "show", element("div", { class: "boxes" }, ...boxes), element("p", {}, fit, " ", theme));
   }
 
   toggleTheme() {
+    this.isThemeChosen = true;
     this.setTheme(this.theme === "dark" ? "light" : "dark");
   }
 
@@ -233,7 +267,8 @@ class Viewer {
       this.draw();
     };
     const button = (text, isOn) => element("button", { type: "button", onclick: () => set(isOn) }, text);
-    add(`Objects (${count(boxes.length)})`, "objects", element("p", {}, button("All", true), " ", button("None", false)),
+    add(`Objects (${count(boxes.length)})`, "objects",
+      element("p", {}, button("All", true), " ", button("None", false)),
       element("div", { class: "boxes scrolled", tabindex: "0", role: "region", "aria-label": "objects" }, ...boxes));
   }
 
@@ -245,7 +280,8 @@ class Viewer {
     const all = counted(answers.length, "query");
     if (missing > 0) parts.push(element("p", {}, `${count(missing)} of ${all} have no answer.`));
     if (answers.answeredCount > 0) {
-      parts.push(legend(answers.scale, what, this.unit), histogram(answers.values, answers.scale, what, this.unit));
+      parts.push(this.figure(() => [legend(answers.scale, what, this.unit),
+        ...histogram(answers.values, answers.scale, what, this.unit)]));
     }
     add("Distances", "distances", ...parts);
     this.answerText = element("dl", { id: "answer", "aria-live": "polite" });
@@ -363,14 +399,15 @@ class Viewer {
       oninput: () => this.moveSlice(slice.axis, Number(this.sliceRange.value)),
     });
     this.sliceText = element("output", { id: "slice-text" });
-    this.pointerText = element("output", { id: "slice-value", "aria-live": "off" });
+    this.sliceValue = element("output", { id: "slice-value" });
     const about = slice.hasCells
       ? "A query evaluates only primitives of the list of its cell. Where a cell has no list the slice is grey, and " +
         "the AABB tree below the cells answers."
       : "The black line is distance zero. Lines of equal distance are darker.";
     const title = slice.hasCells ? "Slice through the cells" : "Slice of the field";
     add(title, "field", element("p", {}, "across the axis ", ...axes), this.sliceRange,
-      element("p", {}, this.sliceText), element("p", {}, this.pointerText), legend(slice.scale, what, this.sliceUnit),
+      element("p", {}, this.sliceText), element("p", {}, this.sliceValue),
+      this.figure(() => [legend(slice.scale, what, this.sliceUnit)]),
       element("p", { class: "small" }, `${about} The keys [ and ] move the slice, and Shift and the mouse drag it.`));
     this.moveSlice(slice.axis, 0.5);
   }
@@ -384,9 +421,8 @@ class Viewer {
     this.axisRadios.forEach((radio, k) => (radio.checked = k === axis));
     this.sliceRange.value = t;
     const position = slice.origin.map((x) => x);
-    position[axis] += slice.place * slice.spacing;
-    const coordinate = this.frame.coordinates(position)[axis];
-    this.sliceText.textContent = `${"xyz"[axis]} = ${short(coordinate)} ${this.unit}`;
+    position[axis] += slice.index * slice.spacing;
+    this.sliceText.textContent = `${"xyz"[axis]} = ${this.coordinateTexts(position)[axis]} ${this.unit}`;
     this.draw();
   }
 
@@ -429,12 +465,15 @@ class Viewer {
   pointer(event) {
     const { left, top, width, height } = this.canvas.getBoundingClientRect();
     const [x, y] = [event.clientX - left, event.clientY - top];
-    const caster = () => {
-      const made = new three.Raycaster();
-      made.setFromCamera(new three.Vector2((2 * x) / width - 1, 1 - (2 * y) / height), this.camera);
-      return made;
-    };
+    const caster = () => this.caster((2 * x) / width - 1, 1 - (2 * y) / height);
     return { size: { x: width, y: height }, x, y, caster };
+  }
+
+  // Returns the ray from the camera through a position of the picture, whose coordinates are from -1 to 1.
+  caster(x, y) {
+    const caster = new three.Raycaster();
+    caster.setFromCamera(new three.Vector2(x, y), this.camera);
+    return caster;
   }
 
   pick(event) {
@@ -442,16 +481,25 @@ class Viewer {
     return this.answers.pick(this.camera, size, x, y, PICK_RADIUS);
   }
 
-  // Shows the distance where the pointer is over the slice.
+  // Shows the value of the slice where the pointer is, or in the middle of the picture if there is no event.
   readSlice(event) {
     if (!this.slice?.mesh.visible) return;
-    const [hit] = this.pointer(event).caster().intersectObject(this.slice.mesh);
+    const caster = event ? this.pointer(event).caster() : this.caster(0, 0);
+    const [hit] = caster.intersectObject(this.slice.mesh);
+    // The pointer moves all the time, which nobody wants to hear.
+    this.sliceValue.setAttribute("aria-live", event ? "off" : "polite");
     if (!hit) {
-      this.pointerText.textContent = "";
+      this.sliceValue.textContent = event ? "" : "The slice is not in the middle of the picture.";
       return;
     }
-    const at = this.frame.coordinates(hit.point.toArray()).map(short).join(", ");
-    this.pointerText.textContent = `${this.slice.textAt(hit.point, this.sliceUnit)} at ${at}`;
+    const at = this.coordinateTexts(hit.point.toArray()).join(", ");
+    this.sliceValue.textContent = `${this.slice.textAt(hit.point, this.sliceUnit)} at ${at}`;
+  }
+
+  // Returns the coordinates of a position in the frame as texts, to a hundred thousandth of the radius of the scene.
+  coordinateTexts(position) {
+    const digits = Math.max(0, Math.min(100, 5 - Math.floor(Math.log10(this.data.frame.radius * this.frame.scale))));
+    return this.frame.coordinates(position).map((x) => String(Number(x.toFixed(digits))));
   }
 
   press(event) {
@@ -461,19 +509,23 @@ class Viewer {
     const { slice, cells, answers, deviationsPanel } = this;
     const step = answers ? (by) => this.step(by) : deviationsPanel && ((by) => deviationsPanel.step(by));
     const actions = {
+      ShiftArrowLeft: () => this.pan(-0.05, 0), ShiftArrowRight: () => this.pan(0.05, 0),
+      ShiftArrowUp: () => this.pan(0, 0.05), ShiftArrowDown: () => this.pan(0, -0.05),
       ArrowLeft: () => this.turn(-0.1, 0, 1), ArrowRight: () => this.turn(0.1, 0, 1),
       ArrowUp: () => this.turn(0, -0.1, 1), ArrowDown: () => this.turn(0, 0.1, 1),
       "+": () => this.turn(0, 0, 0.9), "=": () => this.turn(0, 0, 0.9), "-": () => this.turn(0, 0, 1 / 0.9),
       f: () => this.fit(), d: () => this.toggleTheme(), q: this.live && (() => this.live.toggle()),
       n: step && (() => step(1)), p: step && (() => step(-1)),
       x: slice && (() => this.moveSlice(0, 0.5)), y: slice && (() => this.moveSlice(1, 0.5)),
-      z: slice && (() => this.moveSlice(2, 0.5)),
+      z: slice && (() => this.moveSlice(2, 0.5)), v: slice && (() => this.readSlice(null)),
       "[": slice && (() => this.moveSlice(slice.axis, this.slicePart - 0.02)),
       "]": slice && (() => this.moveSlice(slice.axis, this.slicePart + 0.02)),
       l: cells && (() => this.showLevel(cells.level + 1)), k: cells && (() => this.showLevel(cells.level - 1)),
       "?": () => { this.help.open = !this.help.open; },
     };
-    const action = actions[event.key.length === 1 ? event.key.toLowerCase() : event.key];
+    const isShifted = event.shiftKey && event.key.startsWith("Arrow");
+    const key = event.key.length === 1 ? event.key.toLowerCase() : event.key;
+    const action = actions[isShifted ? `Shift${key}` : key];
     if (!action) return;
     event.preventDefault();
     action();

@@ -4,6 +4,7 @@
 import assert from "node:assert/strict";
 import { readFileSync } from "node:fs";
 import { test } from "node:test";
+import { SCALES, THEMES } from "../src/colours.js";
 
 const read = (path) => readFileSync(new URL(`../../../${path}`, import.meta.url), "utf8");
 
@@ -39,11 +40,25 @@ test("text and marks have enough contrast", () => {
 });
 
 test("pictures have enough contrast", () => {
-  const themes = [...read("p2m-page/web/src/viewer.js").matchAll(/(?:light|dark): \{ background: "(#\w{6})"(.*) \}/g)];
-  assert.equal(themes.length, 2);
-  for (const [, background, others] of themes) {
-    const drawn = others.match(/#\w{6}/g);
-    assert.ok(drawn.length >= 4);
+  for (const theme of ["light", "dark"]) {
+    const { background, ...others } = THEMES[theme];
+    const scales = [SCALES.sequential[theme], SCALES.diverging[theme]];
+    const drawn = [...Object.values(others), ...scales.flat()];
+    assert.equal(drawn.length, 20);
     for (const colour of drawn) assert.ok(contrast(colour, background) >= 3, `${colour} on ${background}`);
+  }
+});
+
+test("the lightness of scales rises, or changes in one direction from the middle to both ends", () => {
+  for (const theme of ["light", "dark"]) {
+    const sign = theme === "light" ? -1 : 1;
+    const [sequential, diverging] = [SCALES.sequential[theme], SCALES.diverging[theme]]
+      .map((colours) => colours.map(luminance));
+    const rises = (values) => values.every((value, i) => i === 0 || value > values[i - 1]);
+    assert.ok(rises(sequential));
+    for (const half of [diverging.slice(4), diverging.slice(0, 5).reverse()]) {
+      // Grey and the colour beside it may be equally light.
+      assert.ok(rises(half.slice(1).map((x) => sign * x)), `${theme}: ${half}`);
+    }
   }
 });

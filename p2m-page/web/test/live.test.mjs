@@ -17,13 +17,25 @@ before(async () => {
 
 after(async () => page?.close());
 
-const query = async () => (await page.read("live-answer", "query")).split(/,\s+/).map(Number);
+// Moves the mouse and waits until the query under it is answered.
+const move = async (x, y) => {
+  await tab.mouse.move(x, y);
+  await answered();
+};
+const answered = () => tab.waitForFunction(() => {
+  const { live } = window.viewer;
+  return !live.isAsked && live.answered.query === live.query;
+});
+const query = async () => {
+  await answered();
+  return (await page.read("live-answer", "query")).split(/,\s+/).map(Number);
+};
 
 test("ten answers where the mouse is are those of the program", { skip }, async () => {
   assert.equal(await tab.evaluate(() => document.documentElement.dataset.live), "ready");
   const shown = [];
   for (let i = 0; i < 10; i++) {
-    await tab.mouse.move(120 + 60 * i, 200 + 37 * ((i * i) % 11));
+    await move(120 + 60 * i, 200 + 37 * ((i * i) % 11));
     assert.equal(await page.read("live-answer", "agreement"), "the 4 indexes give equal answers, bit for bit");
     shown.push(await page.answer("live-answer"));
   }
@@ -66,13 +78,43 @@ test("the keyboard moves the query", { skip }, async () => {
 
 test("far from the origin ordinary arithmetic jumps", { skip }, async () => {
   await tab.check("#live-far");
-  for (let i = 0; i < 20; i++) await tab.mouse.move(300 + 7 * i, 400 - 5 * i);
+  for (let i = 0; i < 20; i++) await move(300 + 7 * i, 400 - 5 * i);
   const { worst, far } = await tab.evaluate(() => ({ worst: window.viewer.live.worst, far: window.viewer.live.far }));
   assert.ok(worst[0] < 1e-6 && worst[1] > 1e-3, String(worst));
   assert.ok(Math.abs(far.p2m.distance - far.distance) < 1e-6);
   assert.equal(await tab.locator("#live-far-table tbody tr").count(), 2);
   await tab.uncheck("#live-far");
+  await answered();
   assert.equal(await tab.locator("#live-far-table").count(), 0);
+});
+
+test("a coordinate that is no number has no answer", { skip }, async () => {
+  const [x] = await query();
+  await tab.fill("#live-x", "");
+  await answered();
+  assert.equal(await page.read("live-answer", "query"), "Each coordinate has to be a number.");
+  assert.equal(await page.read("live-answer", "distance"), undefined);
+  await tab.fill("#live-x", String(x));
+  assert.equal((await query())[0], x);
+});
+
+test("without an index that cannot be built the others answer", { skip }, async () => {
+  const other = await Page.open();
+  // The worker fails as it does when the browser has too little memory for the second index.
+  await other.tab.waitForFunction(() => document.documentElement.dataset.live);
+  await other.tab.evaluate(async () => {
+    const { live } = window.viewer;
+    const { call } = live;
+    live.call = (name, ...values) =>
+      name === "build" && values[0] === 1 ? Promise.reject(new Error("unreachable")) : call.call(live, name, ...values);
+    await live.start();
+  });
+  assert.match(await other.tab.textContent("#live-message"), /^The k-DOP tree could not be built: unreachable\.$/);
+  await other.tab.mouse.move(400, 400);
+  await other.tab.waitForFunction(() => window.viewer.live.answered.rows.length === 3);
+  assert.equal(await other.read("live-answer", "agreement"), "the 3 indexes give equal answers, bit for bit");
+  assert.deepEqual(other.problems, []);
+  await other.close();
 });
 
 test("a page without live queries has no panel for them", { skip }, async () => {

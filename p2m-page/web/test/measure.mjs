@@ -18,7 +18,8 @@ console.log("| triangles | page, MB | seconds until it is ready | frames a secon
 // Each edge of the icosahedron is cut into so many parts, which makes 20 times the square of this number of triangles.
 for (const frequency of [22, 71, 223]) {
   const [scene, html] = ["scene.ply", "page.html"].map((name) => join(folder, name));
-  execFileSync(PROGRAM, ["generate", "ico-sphere", "--frequency", String(frequency), "--out", scene], { stdio: "pipe" });
+  const sphere = ["generate", "ico-sphere", "--frequency", String(frequency)];
+  execFileSync(PROGRAM, [...sphere, "--out", scene], { stdio: "pipe" });
   execFileSync(PROGRAM, ["view", scene, "--random", "1000", "--live", "never", "--out", html], { stdio: "pipe" });
   const start = performance.now();
   const page = await openTab(browser, html, (problem) => { throw new Error(problem); });

@@ -104,6 +104,65 @@ test("without WebGL the panel has all answers", { skip }, async () => {
   }
 });
 
+test("the keyboard alone moves the view and reads the slice", { skip }, async () => {
+  await page.focus("#picture");
+  await page.keyboard.press("f");
+  const state = () => page.evaluate(() => {
+    const { camera, controls: { target } } = window.viewer;
+    return [camera.position.clone().sub(target).toArray(), target.toArray()];
+  });
+  const [offset, target] = await state();
+  await page.keyboard.press("Shift+ArrowRight");
+  await page.keyboard.press("Shift+ArrowUp");
+  const [same, moved] = await state();
+  same.forEach((x, k) => assert.ok(Math.abs(x - offset[k]) < 1e-6));
+  assert.ok(Math.hypot(...moved.map((x, k) => x - target[k])) > 0.01);
+  await page.keyboard.press("v");
+  const [value, at] = (await page.textContent("#slice-value")).split(" at ");
+  const position = at.split(", ").map(Number);
+  const [[, , , , , , distance]] = opened.query("--points", opened.write("middle.xyz", position.join(" ")));
+  // The field has 24 points along its longest side, and is linear between them.
+  assert.ok(Math.abs(Number.parseFloat(value) - Number(distance)) < 0.1, `${value}, not ${distance}`);
+  assert.equal(await page.getAttribute("#slice-value", "aria-live"), "polite");
+  await page.keyboard.press("f");
+});
+
+test("the histogram is a table too, and has the colours of the theme", { skip }, async () => {
+  const state = () => page.evaluate(() => {
+    const rows = [...document.querySelectorAll("#distances table tbody td")].map((cell) => Number(cell.textContent));
+    const fill = document.querySelector("#distances rect").getAttribute("fill");
+    const colours = window.viewer.answers.dots.geometry.getAttribute("color").array;
+    return [rows.reduce((a, b) => a + b, 0), fill, [...colours]];
+  });
+  const [sum, fill, colours] = await state();
+  assert.equal(sum, 40);
+  await page.click("#theme");
+  const [same, other, others] = await state();
+  assert.equal(same, 40);
+  assert.notEqual(other, fill);
+  assert.notDeepEqual(others, colours);
+  await page.click("#theme");
+  assert.deepEqual(await state(), [sum, fill, colours]);
+});
+
+test("the theme follows the system until one is chosen", { skip }, async () => {
+  const other = await opened.view(opened.scene);
+  for (const colorScheme of ["dark", "light"]) {
+    await other.emulateMedia({ colorScheme });
+    await other.waitForFunction((theme) => document.documentElement.dataset.theme === theme, colorScheme);
+  }
+  await other.click("#theme");
+  for (const colorScheme of ["dark", "light"]) {
+    await other.emulateMedia({ colorScheme });
+    // The event of a change comes with the next picture.
+    await other.evaluate(() => new Promise((done) => requestAnimationFrame(() => requestAnimationFrame(done))));
+    assert.equal(await other.evaluate(() => document.documentElement.dataset.theme), "dark");
+  }
+  // Keys that do nothing in this page are not listed.
+  assert.doesNotMatch(await other.textContent("#keys"), /slice|level/);
+  await other.close();
+});
+
 test("the view cannot leave the scene", { skip }, async () => {
   await page.focus("#picture");
   for (let i = 0; i < 80; i++) await page.keyboard.press("-");
