@@ -4,7 +4,14 @@ use crate::delaunay::tetrahedron::{NO_NEIGHBOUR, Tetrahedron};
 
 /// Removes the gaps of removed tetrahedra and sorts the others by the last of their vertices, so that tetrahedra near
 /// each other on the curve are near in memory. It returns their vertices and neighbours.
-pub(crate) fn compact(tetrahedra: Vec<Tetrahedron>, sites: usize) -> (Vec<[u32; 4]>, Vec<[u32; 4]>) {
+///
+/// The first tetrahedra were those with the vertices `kept` before others were removed and created. The last vector has
+/// for each tetrahedron its number among these, or [`NO_NEIGHBOUR`] if it is a new one. It is empty if `kept` is.
+pub(crate) fn compact(
+    tetrahedra: Vec<Tetrahedron>,
+    sites: usize,
+    kept: &[[u32; 4]],
+) -> (Vec<[u32; 4]>, Vec<[u32; 4]>, Vec<u32>) {
     let last_vertex = |t: &Tetrahedron| t.vertices.into_iter().fold(0, u32::max) as usize;
     let is_alive = |t: &Tetrahedron| t.vertices[0] != NO_NEIGHBOUR;
     // The vector first counts the tetrahedra of each last vertex, then has the number of the next one.
@@ -29,5 +36,13 @@ pub(crate) fn compact(tetrahedra: Vec<Tetrahedron>, sites: usize) -> (Vec<[u32; 
         neighbours[*new_number as usize] =
             t.neighbours.map(|n| new_numbers.get(n as usize).copied().unwrap_or(NO_NEIGHBOUR));
     }
-    (vertices, neighbours)
+    // A tetrahedron that was removed is never created again, because a site is inside of its sphere. So one with the
+    // same number and the same vertices is the one of before.
+    let mut old_numbers = vec![NO_NEIGHBOUR; if kept.is_empty() { 0 } else { total as usize }];
+    for (old_number, (new_number, (t, old))) in (0..).zip(new_numbers.iter().zip(tetrahedra.iter().zip(kept))) {
+        if t.vertices == *old {
+            old_numbers[*new_number as usize] = old_number;
+        }
+    }
+    (vertices, neighbours, old_numbers)
 }

@@ -156,6 +156,14 @@ impl Insertion {
         Isa::best().run(InsertAll { insertion: self, sites })
     }
 
+    /// Replaces the first tetrahedra by those of a triangulation of some of the sites, given by vertices and neighbours.
+    pub(crate) fn continue_from<'a>(&mut self, tetrahedra: impl Iterator<Item = (&'a [u32; 4], &'a [u32; 4])>) {
+        self.tetrahedra.clear();
+        self.tetrahedra.extend(
+            tetrahedra.map(|(vertices, neighbours)| Tetrahedron { vertices: *vertices, neighbours: *neighbours }),
+        );
+    }
+
     /// Returns all tetrahedra, removed ones included.
     pub(crate) fn into_tetrahedra(self) -> Vec<Tetrahedron> {
         self.tetrahedra

@@ -339,3 +339,67 @@ fn the_same_points_give_the_same_triangulation() {
     assert!(a.memory() >= 32 * a.tetrahedra().len() + 24 * a.sites().len() + 4 * points.len());
     assert!(a.work().spheres > 0 && a.work().created as usize > a.tetrahedra().len());
 }
+
+/// Adds points to a triangulation of the first ones, and checks the result. It returns the part of the tetrahedra that
+/// was kept.
+fn valid_extension(points: &[[f64; 3]], first: usize) -> f64 {
+    let old = Delaunay::new(&points[..first], REACH).unwrap();
+    let all = Delaunay::new(points, REACH).unwrap();
+    let (extended, old_numbers) = old.extend(points, REACH, usize::MAX).unwrap();
+    assert_eq!(extended.check(), Ok(()), "{first} of {points:?}");
+    assert_eq!((extended.sites(), extended.unit()), (all.sites(), all.unit()));
+    assert!((0..points.len()).all(|i| extended.site_of(i) == all.site_of(i)));
+    assert_eq!(old_numbers.len(), extended.tetrahedra().len());
+    // The number of the site of the extended triangulation that is each site of the old one.
+    let mut new_sites: Vec<usize> = (0..old.sites().len()).collect();
+    (0..first).for_each(|i| new_sites[old.site_of(i)] = extended.site_of(i));
+    let mut found = vec![false; old.tetrahedra().len()];
+    for (vertices, number) in extended.tetrahedra().iter().zip(&old_numbers) {
+        if *number != Delaunay::NONE {
+            let old_vertices = old.tetrahedra()[*number as usize].map(|v| new_sites[v as usize]);
+            assert_eq!(vertices.map(|v| v as usize), old_vertices);
+            assert!(!std::mem::replace(&mut found[*number as usize], true), "each number occurs once");
+        }
+    }
+    // A tetrahedron is kept if and only if no new site is inside of its sphere.
+    if old_numbers.iter().any(|number| *number != Delaunay::NONE) {
+        let added: BTreeSet<usize> = (first..points.len()).map(|i| extended.site_of(i)).collect();
+        for (vertices, is_found) in old.tetrahedra().iter().zip(&found) {
+            let [a, b, c, d] = vertices.map(|v| extended.sites()[new_sites[v as usize]]);
+            let is_inside = |site: &usize| insphere(a, b, c, d, extended.sites()[*site]) == Ordering::Greater;
+            assert_eq!(*is_found, !added.iter().any(is_inside));
+        }
+    }
+    found.iter().filter(|is_found| **is_found).count() as f64 / found.len() as f64
+}
+
+#[test]
+fn points_can_be_added() {
+    let mut random = rng("extended triangulations", 0);
+    let mut kept = [0.0, 0.0];
+    let count = amount(400, 40);
+    for case in 0..count {
+        let points = match case % 4 {
+            0 => small_integers(&mut random),
+            1 => on_a_sphere(&mut random, 60),
+            _ => {
+                // The corners of the box are among the first points, so that the others are inside.
+                let corners = (0..8).map(|i| [i & 1, i >> 1 & 1, i >> 2].map(|x| f64::from(2 * x - 1)));
+                corners.chain(uniform(&mut random, 60)).collect()
+            }
+        };
+        let first = if case % 4 < 2 { random.random_range(0..=points.len()) } else { 60 };
+        kept[usize::from(case % 4 > 1)] += valid_extension(&points, first) / count as f64;
+    }
+    // Half of the cases are points in a box whose corners are known, and keep most tetrahedra.
+    assert!(kept[0] > 0.05 && kept[1] > 0.25, "{kept:?}");
+}
+
+#[test]
+fn everything_is_built_again_if_points_are_outside() {
+    let points = [[0.0; 3], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0], [3.0, 0.0, 0.0]];
+    assert_eq!(valid_extension(&points, 4), 0.0);
+    assert!(valid_extension(&points, 5) == 1.0, "nothing is added");
+    let few = Delaunay::new(&points[..4], REACH).unwrap().extend(&points, REACH, 6);
+    assert_eq!(few.unwrap_err(), DelaunayError::TooMany { len: 5 });
+}

@@ -81,6 +81,50 @@ impl Delaunay {
     ///
     /// It fails as [`new`](Self::new), and with [`DelaunayError::TooMany`] as soon as there are more tetrahedra.
     pub fn within(points: &[[f64; 3]], reach: f64, max_tetrahedra: usize) -> Result<Self, DelaunayError> {
+        Ok(Self::build(points, reach, max_tetrahedra, None)?.0)
+    }
+
+    /// Adds points to a triangulation. `points` begins with the points that it has, in their order, and `reach` is
+    /// that of before. The result is the triangulation of all points, and for each of its tetrahedra the number that it
+    /// has in this one, or [`NONE`](Self::NONE) if it is new. At most `max_tetrahedra` tetrahedra may exist at a time,
+    /// and eight times as many may be created.
+    ///
+    /// The tetrahedra satisfy the same definition as those of [`new`](Self::new), but where more than four sites are
+    /// cospherical there are several such triangulations, and they may be others. [`work`](Self::work) is the work of
+    /// adding.
+    ///
+    /// # Errors
+    ///
+    /// It fails as [`within`](Self::within).
+    ///
+    /// # Panics
+    ///
+    /// It panics if there are fewer points than this triangulation has.
+    ///
+    /// # Complexity
+    ///
+    /// Sites are sorted again, in O(n log n) time for n points. Each point that is added takes the time of a point in
+    /// [`new`](Self::new), unless points outside of the box of the others are added: then everything is built again.
+    pub fn extend(
+        &self,
+        points: &[[f64; 3]],
+        reach: f64,
+        max_tetrahedra: usize,
+    ) -> Result<(Self, Vec<u32>), DelaunayError> {
+        assert!(points.len() >= self.site_of.len(), "the points of before are the first ones");
+        let (delaunay, mut old_numbers) = Self::build(points, reach, max_tetrahedra, Some(self))?;
+        old_numbers.resize(delaunay.tetrahedra.len(), Self::NONE);
+        Ok((delaunay, old_numbers))
+    }
+
+    /// Triangulates points, of which the first ones may have a triangulation already. The second result has for each
+    /// tetrahedron its number there, and is empty if everything was built.
+    fn build(
+        points: &[[f64; 3]],
+        reach: f64,
+        max_tetrahedra: usize,
+        earlier: Option<&Self>,
+    ) -> Result<(Self, Vec<u32>), DelaunayError> {
         let too_many = DelaunayError::TooMany { len: points.len() };
         if !(Self::MIN_REACH..=Self::MAX_REACH).contains(&reach) {
             return Err(DelaunayError::Reach { reach });
@@ -92,13 +136,30 @@ impl Delaunay {
             return Err(too_many);
         }
         let scale::ScaledSites { sites, unit, site_of } = scale::sites_of(points, reach);
+        // Sites in another unit may be rounded differently, and the bounding sites of another box are elsewhere.
+        let earlier = earlier.filter(|old| old.unit == unit && old.sites[..BOUNDING] == sites[..BOUNDING]);
+        let kept = earlier.map_or_else(Vec::new, |old| old.renumbered_tetrahedra(&site_of));
         let mut insertion = Insertion::new(&sites, max_tetrahedra);
-        if !insertion.insert_all(order::rounds(BOUNDING..sites.len())) {
+        let mut is_known = vec![false; sites.len()];
+        if let Some(old) = earlier {
+            insertion.continue_from(kept.iter().zip(&old.neighbours));
+            kept.iter().flatten().for_each(|site| is_known[*site as usize] = true);
+        }
+        if !insertion.insert_all(order::rounds(BOUNDING..sites.len()).filter(|site| !is_known[*site])) {
             return Err(too_many);
         }
         let work = insertion.work;
-        let (tetrahedra, neighbours) = compact::compact(insertion.into_tetrahedra(), sites.len());
-        Ok(Self { sites, unit, site_of, tetrahedra, neighbours, work })
+        let (tetrahedra, neighbours, old_numbers) = compact::compact(insertion.into_tetrahedra(), sites.len(), &kept);
+        Ok((Self { sites, unit, site_of, tetrahedra, neighbours, work }, old_numbers))
+    }
+
+    /// Returns the vertices of all tetrahedra as numbers of other sites, in which the points have these numbers.
+    fn renumbered_tetrahedra(&self, site_of: &[u32]) -> Vec<[u32; 4]> {
+        let mut new_numbers: Vec<u32> = (0..).take(self.sites.len()).collect();
+        for (old, new) in self.site_of.iter().zip(site_of) {
+            new_numbers[*old as usize] = *new;
+        }
+        self.tetrahedra.iter().map(|vertices| vertices.map(|v| new_numbers[v as usize])).collect()
     }
 
     /// Returns the six bounding sites, then the distinct points along a Hilbert curve, all divided by

@@ -119,14 +119,19 @@ impl FarPartBuilder {
         let mut max_lead = 0.0f64;
         for entry in entries {
             let packet = &tree.leaves.packets[entry.packet as usize];
-            self.values.compute(&part.corners, packet, tree);
-            let lanes = self.values.near_lanes & entry.lanes;
+            let is_at_site = |lane: usize| {
+                let (positions, count) = packet.vertices_of(lane);
+                positions[..count].iter().any(|position| cells.sites.delaunay.site_of(*position) == site)
+            };
+            let others = (0..LANES).filter(|lane| entry.lanes >> lane & 1 == 1 && !is_at_site(*lane));
+            let others = others.fold(0, |lanes, lane| lanes | 1 << lane);
+            if others == 0 {
+                continue;
+            }
+            self.values.compute(&part.corners, packet, others, tree);
+            let lanes = self.values.near_lanes;
             let from_site = SiteDistances::new(tree, packet, &y);
             for lane in (0..LANES).filter(|lane| lanes >> lane & 1 == 1) {
-                let (positions, count) = packet.vertices_of(lane);
-                if positions[..count].iter().any(|position| cells.sites.delaunay.site_of(*position) == site) {
-                    continue;
-                }
                 let distance = from_site.least(1 << lane);
                 // The distance has to be so large that the slack is negligible in the function at the site.
                 if distance * packet.unit() < 64.0 * slack {

@@ -47,11 +47,12 @@ impl<'a> SiteDistances<'a> {
 }
 
 impl CornerValues {
-    /// Computes the values of a packet at some corners.
-    pub(crate) fn compute(&mut self, corners: &CornerPoints, packet: &Packet, tree: &PacketTree) {
+    /// Computes the values of some lanes of a packet at some corners. Other lanes have values as well, which may be
+    /// lower, and are not near.
+    pub(crate) fn compute(&mut self, corners: &CornerPoints, packet: &Packet, lanes: u16, tree: &PacketTree) {
         self.values.clear();
         self.tests += corners.positions.len();
-        self.near_lanes = tree.isa().run(EvaluateCorners { corners, packet, values: &mut self.values });
+        self.near_lanes = lanes & tree.isa().run(EvaluateCorners { corners, packet, values: &mut self.values });
         if packet.has_vertices() && corners.max_upper_bound * packet.per_unit() >= FILTER_RANGE_UNITS {
             let (values, lanes) = (&mut self.values[..], self.near_lanes);
             self.tests += tree.isa().run(EvaluateAtFarCorners { corners, packet, tree, lanes, values });

@@ -10,7 +10,6 @@ use crate::voronoi::flood::{Flood, FloodedCorners};
 use p2m_bvh::PacketTree;
 use p2m_bvh::engine::range::Selection;
 use p2m_core::engine::vector::{V3, norm_squared, sub};
-use rustc_hash::FxHashMap;
 use std::ops::Range;
 
 /// A ball that intersects more packets than this is crowded.
@@ -101,26 +100,51 @@ impl CellCorners {
         reused: Option<&ReusedCorners<'_>>,
         progress: &dyn Fn(usize, usize),
     ) -> Self {
-        let count = delaunay.tetrahedra().len();
-        let mut all = compute_corners(delaunay, limits.parallel);
-        let is_flooded = reused.is_none_or(|reused| {
-            let new_count = delaunay.tetrahedra().iter().filter(|t| reused.find(t).is_none()).count();
-            new_count * FLOODED_PART_DIVISOR > count
+        let are_most_known = reused.is_some_and(|reused| {
+            let count = delaunay.tetrahedra().len();
+            let new_count = (0..count).filter(|number| reused.find(*number).is_none()).count();
+            new_count * FLOODED_PART_DIVISOR <= count
         });
-        let flood = if is_flooded { Flood::new(tree, delaunay, &all, limits) } else { None };
-        let flooded = flood.and_then(|flood| flood.find(progress));
-        if let Some(flooded) = flooded {
-            all.push(CellCorner::UNKNOWN);
-            let mut corners = Self { all, flooded: Some(flooded), ..Self::default() };
-            corners.mark_flooded_crowds(CROWDED_BALL_PACKETS.min(limits.max_list_packets));
-            return corners;
-        }
+        let found = if are_most_known {
+            Err(compute_corners(delaunay, limits.parallel))
+        } else {
+            Self::flood(tree, delaunay, limits, progress)
+        };
+        found.unwrap_or_else(|all| Self::search(tree, limits, &all, reused, progress))
+    }
+
+    /// Computes the corners of all tetrahedra, and finds their packets by floods. If that takes too long the result is
+    /// an error that has the corners without packets.
+    pub(crate) fn flood(
+        tree: &PacketTree,
+        delaunay: &Delaunay,
+        limits: Limits<'_>,
+        progress: &dyn Fn(usize, usize),
+    ) -> Result<Self, Vec<CellCorner>> {
+        let mut all = compute_corners(delaunay, limits.parallel);
+        let flooded = Flood::new(tree, delaunay, &all, limits).and_then(|flood| flood.find(progress));
+        let Some(flooded) = flooded else { return Err(all) };
+        all.push(CellCorner::UNKNOWN);
+        let mut corners = Self { all, flooded: Some(flooded), ..Self::default() };
+        corners.mark_flooded_crowds(CROWDED_BALL_PACKETS.min(limits.max_list_packets));
+        Ok(corners)
+    }
+
+    /// Finds the packets of the corners `all` by searches of the tree, or copies them from `reused`.
+    pub(crate) fn search(
+        tree: &PacketTree,
+        limits: Limits<'_>,
+        all: &[CellCorner],
+        reused: Option<&ReusedCorners<'_>>,
+        progress: &dyn Fn(usize, usize),
+    ) -> Self {
+        let count = all.len();
         let mut corners = Self { all: Vec::with_capacity(count + 1), ..Self::default() };
         map_chunks_in_order(
             count,
             CORNERS_PER_TASK,
             limits.parallel,
-            |numbers| Self::search_chunk(tree, delaunay, limits, reused, &all, numbers),
+            |numbers| Self::search_chunk(tree, limits, reused, all, numbers),
             |chunk: Self| {
                 corners.append(chunk, limits);
                 progress(corners.all.len(), count);
@@ -141,7 +165,6 @@ impl CellCorners {
     /// Searches the tree for the packets of some of the corners `all`.
     fn search_chunk(
         tree: &PacketTree,
-        delaunay: &Delaunay,
         limits: Limits<'_>,
         reused: Option<&ReusedCorners<'_>>,
         all: &[CellCorner],
@@ -149,8 +172,8 @@ impl CellCorners {
     ) -> Self {
         let mut corners = Self::default();
         let mut selections: Vec<Selection> = Vec::new();
-        for (tetrahedron, mut corner) in delaunay.tetrahedra()[numbers.clone()].iter().zip(all[numbers].iter().copied())
-        {
+        for tetrahedron in numbers {
+            let mut corner = all[tetrahedron];
             if let Some((reused, number)) = reused.and_then(|reused| Some((reused, reused.find(tetrahedron)?))) {
                 corner.is_crowded = reused.corners.all[number].is_crowded;
                 corners.push(corner, reused.corners.packets(number).iter().copied());
@@ -289,48 +312,20 @@ pub(crate) fn to_u32(n: usize) -> u32 {
     u32::try_from(n).expect("numbers of 32 bits")
 }
 
-/// The corners of an earlier triangulation, found by the sites of another triangulation.
+/// The corners of an earlier triangulation, found by the tetrahedra of one that has more sites.
 pub(crate) struct ReusedCorners<'a> {
     /// The corners of the earlier triangulation.
     pub(crate) corners: &'a CellCorners,
-    /// The numbers of its tetrahedra, by their sorted sites.
-    pub(crate) numbers: FxHashMap<[u32; 4], usize>,
-    /// For each site of the new triangulation the same site of the earlier one, or [`ReusedCorners::NEW`].
-    pub(crate) previous_sites: Vec<u32>,
+    /// For each tetrahedron of the later triangulation the number that it has in the earlier one, or
+    /// [`Delaunay::NONE`].
+    pub(crate) old_numbers: &'a [u32],
 }
 
-impl<'a> ReusedCorners<'a> {
-    /// Marks a site that the earlier triangulation does not have.
-    const NEW: u32 = u32::MAX;
-
-    /// Compares two triangulations. The points of the earlier one are the first `points` points of the new one.
-    #[allow(clippy::float_cmp, reason = "the same or not")]
-    pub(crate) fn new(earlier: &Delaunay, corners: &'a CellCorners, later: &Delaunay, points: usize) -> Self {
-        let mut previous_sites = vec![Self::NEW; later.sites().len()];
-        let mut numbers = FxHashMap::default();
-        // Sites in another unit may be rounded differently, and the bounding sites of another box are elsewhere.
-        if earlier.unit() == later.unit() {
-            if earlier.sites()[..BOUNDING] == later.sites()[..BOUNDING] {
-                (0..BOUNDING).for_each(|site| previous_sites[site] = to_u32(site));
-            }
-            for point in 0..points {
-                previous_sites[later.site_of(point)] = to_u32(earlier.site_of(point));
-            }
-            numbers.extend(earlier.tetrahedra().iter().enumerate().map(|(number, t)| (sorted(*t), number)));
-        }
-        Self { corners, numbers, previous_sites }
-    }
-
+impl ReusedCorners<'_> {
     /// Returns the number that a tetrahedron has in the earlier triangulation, if it was there.
-    fn find(&self, tetrahedron: &[u32; 4]) -> Option<usize> {
-        let previous_sites = tetrahedron.map(|v| self.previous_sites[v as usize]);
-        if previous_sites.contains(&Self::NEW) { None } else { self.numbers.get(&sorted(previous_sites)).copied() }
+    fn find(&self, tetrahedron: usize) -> Option<usize> {
+        self.old_numbers.get(tetrahedron).filter(|number| **number != Delaunay::NONE).map(|number| *number as usize)
     }
-}
-
-fn sorted(mut sites: [u32; 4]) -> [u32; 4] {
-    sites.sort_unstable();
-    sites
 }
 
 #[cfg(test)]
@@ -364,7 +359,8 @@ mod tests {
             flooded.of_packets.get(packet).iter().for_each(|corner| expected[*corner as usize].push(to_u32(packet)));
         }
         corners.list_packets_of_balls(&tree);
-        let reused = ReusedCorners::new(&delaunay, &corners, &delaunay, tree.leaves.vertices.len());
+        let old_numbers: Vec<u32> = (0..).take(delaunay.tetrahedra().len()).collect();
+        let reused = ReusedCorners { corners: &corners, old_numbers: &old_numbers };
         let later = CellCorners::new(&tree, &delaunay, limits, Some(&reused), &|_, _| ());
         assert!(later.flooded.is_none());
         let mut crowded = 0;

@@ -1,7 +1,7 @@
 //! The choice of sites that are added because of crowded balls.
 
 use crate::voronoi::budget::Limits;
-use crate::voronoi::corners::{CellCorner, CellCorners};
+use crate::voronoi::corners::{CROWDED_BALL_PACKETS, CellCorner};
 use p2m_bvh::PacketTree;
 use p2m_bvh::engine::packet::LANES;
 use p2m_bvh::engine::range::Selection;
@@ -39,7 +39,7 @@ pub(crate) struct CrowdedClusters<'a> {
     /// The tree over the packets.
     pub(crate) tree: &'a PacketTree,
     /// The corners of all cells.
-    pub(crate) corners: &'a CellCorners,
+    pub(crate) corners: &'a [CellCorner],
     /// The box of the vertices.
     pub(crate) bounds: &'a Aabb<f64>,
     /// The limits of the build.
@@ -59,10 +59,31 @@ fn grid_cell(position: &V3, size: f64) -> GridCell {
 impl CrowdedClusters<'_> {
     /// Chooses points for the crowded balls, at most `budget` of them.
     pub(crate) fn choose_sites(&self, budget: usize) -> Vec<AddedSite> {
-        // Each cluster is stored as its first corner and the number of its corners.
+        self.choose_sites_of_clusters(&self.clusters(|corner| corner.is_crowded), budget)
+    }
+
+    /// Chooses points, at most `budget` of them, when it is not known yet which balls are crowded. A cluster counts as
+    /// crowded if its first ball is. This takes one search for each cluster instead of one for each ball, and later
+    /// triangulations show what it misses.
+    pub(crate) fn choose_probable_sites(&self, budget: usize) -> Vec<AddedSite> {
+        let mut clusters = self.clusters(|_| true);
+        let max_packets = CROWDED_BALL_PACKETS.min(self.limits.max_list_packets);
+        let mut selections = Vec::new();
+        clusters.retain(|(number, count)| {
+            selections.clear();
+            *count >= MIN_BALLS_FOR_AUXILIARY_SITE
+                && !self.limits.budget.is_exceeded()
+                && !self.corners[*number].collect_ball(self.tree, self.limits, max_packets, &mut selections)
+        });
+        self.choose_sites_of_clusters(&clusters, budget)
+    }
+
+    /// Returns the clusters of the corners for which `is_member` is true. Each is its first corner, and the number of
+    /// its corners.
+    fn clusters(&self, is_member: impl Fn(&CellCorner) -> bool) -> Vec<(usize, usize)> {
         let mut clusters: FxHashMap<GridCell, (usize, usize)> = FxHashMap::default();
-        for (number, corner) in self.corners.all.iter().enumerate() {
-            if corner.is_crowded
+        for (number, corner) in self.corners.iter().enumerate() {
+            if is_member(corner)
                 && corner.radius > 0.0
                 && self.is_near_scene(&corner.position)
                 && corner.error < corner.radius * MAX_ERROR_RADIUS_PART
@@ -75,13 +96,17 @@ impl CrowdedClusters<'_> {
         }
         let mut clusters: Vec<(usize, usize)> = clusters.into_values().collect();
         clusters.sort_unstable();
+        clusters
+    }
+
+    fn choose_sites_of_clusters(&self, clusters: &[(usize, usize)], budget: usize) -> Vec<AddedSite> {
         let mut occupied_cells: FxHashSet<GridCell> = FxHashSet::default();
         let mut added = Vec::new();
-        for (number, count) in clusters {
+        for &(number, count) in clusters {
             if added.len() >= budget || self.limits.budget.is_exceeded() {
                 break;
             }
-            let corner = &self.corners.all[number];
+            let corner = &self.corners[number];
             let nearest_points = self.nearest_points(corner);
             let deep_count =
                 nearest_points.partition_point(|(distance, _)| *distance < corner.radius * DEEP_RADIUS_PART);
@@ -135,5 +160,51 @@ impl CrowdedClusters<'_> {
         self.limits.budget.charge(tests + points.len());
         points.sort_by(|a: &(f64, V3), b| a.0.total_cmp(&b.0));
         points
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::delaunay::Delaunay;
+    use crate::voronoi::budget::BuildBudget;
+    use crate::voronoi::corners::compute_corners;
+    use nalgebra::Point3;
+    use p2m_bvh::SplitOptions;
+    use p2m_core::engine::vector::norm_squared;
+    use p2m_core::{Segment, Shape};
+    use p2m_testkit::{rng, vector};
+
+    /// Sites are added in the middle of a sphere before any ball is known to be crowded, and none are added over a
+    /// plane.
+    #[test]
+    fn probable_sites_are_where_balls_are_crowded() {
+        for is_sphere in [true, false] {
+            let mut rng = rng("probable sites", 0);
+            let shapes: Vec<Shape<f64>> = (0..3000)
+                .map(|_| {
+                    let [a, b] = [(); 2].map(|()| vector(&mut rng));
+                    let [a, b] = if is_sphere {
+                        [a.normalize(), (a.normalize() + b * 1e-3).normalize()]
+                    } else {
+                        [a, a + b * 1e-3].map(|mut p| {
+                            p.z = 0.0;
+                            p
+                        })
+                    };
+                    Segment::new(Point3::from(a), Point3::from(b)).into()
+                })
+                .collect();
+            let tree: PacketTree = PacketTree::build(&shapes[..], &SplitOptions::default());
+            let delaunay = Delaunay::new(&tree.leaves.vertices, 300.0).expect("finite");
+            let budget = &BuildBudget::new(1e6, 1e6, shapes.len());
+            let limits = Limits { slack: 1e-9, max_list_packets: 256, max_added_sites: 100, parallel: false, budget };
+            let bounds = Aabb { min: Point3::new(-1.0, -1.0, -1.0), max: Point3::new(1.0, 1.0, 1.0) };
+            let corners = compute_corners(&delaunay, false);
+            let clusters = CrowdedClusters { tree: &tree, corners: &corners, bounds: &bounds, limits };
+            let sites = clusters.choose_probable_sites(100);
+            assert_eq!(!sites.is_empty(), is_sphere, "{}", sites.len());
+            assert!(sites.iter().all(|site| site.anchor.is_some() && norm_squared(site.position).sqrt() < 0.5));
+        }
     }
 }

@@ -142,7 +142,7 @@ impl PacketCells {
             }));
         }
         let tree = cells.tree;
-        self.values.compute(&self.corners, &tree.leaves.packets[packet as usize], tree);
+        self.values.compute(&self.corners, &tree.leaves.packets[packet as usize], u16::MAX, tree);
         // The packet does not intersect the balls of the other corners.
         for corner in near..self.corners.positions.len() {
             self.values.raise_above_zero(corner);

@@ -9,14 +9,15 @@
 //! a point of the scene gives.
 //!
 //! The corners are the circumcentres of Delaunay tetrahedra, whose balls have no site inside. So points are added in
-//! rounds, each with new tetrahedra, until no ball is crowded, a round does not help, or the budget is spent.
+//! rounds, each with new tetrahedra, until no ball is crowded, a round does not help, or the budget is spent. Each
+//! round extends the triangulation of the one before.
 
 use crate::delaunay::{BOUNDING, Delaunay};
 use crate::parallel_chunks::run_both;
 use crate::progress::{BuildStage, ProgressReporter};
 use crate::voronoi::adjacency::SiteTopology;
 use crate::voronoi::budget::{Limits, max_tetrahedra};
-use crate::voronoi::corners::{CellCorners, ReusedCorners};
+use crate::voronoi::corners::{CellCorner, CellCorners, ReusedCorners};
 use crate::voronoi::crowded::{AddedSite, CrowdedClusters};
 use p2m_bvh::PacketTree;
 use p2m_core::Aabb;
@@ -42,6 +43,103 @@ pub(crate) struct Sites {
     pub(crate) added: usize,
 }
 
+/// The sites while points are added.
+struct GrowingSites<'a> {
+    tree: &'a PacketTree,
+    bounds: &'a Aabb<f64>,
+    limits: Limits<'a>,
+    reporter: &'a ProgressReporter<'a>,
+    /// The vertices, then the added points.
+    points: Vec<V3>,
+    /// The points that were added.
+    added: Vec<AddedSite>,
+    /// The triangulation of the points.
+    delaunay: Delaunay,
+    /// The topology of the triangulation. It is collected beside the balls if there are threads for it, and later
+    /// otherwise, because only that of the last triangulation is needed.
+    topology: Option<SiteTopology>,
+    /// The corners of the triangulation, with the packets of their balls.
+    corners: CellCorners,
+}
+
+impl<'a> GrowingSites<'a> {
+    /// Triangulates the vertices of a tree and finds the packets of all balls. It returns `None` if there are too many
+    /// tetrahedra.
+    ///
+    /// Floods are given up where very many balls are crowded. Then sites are added before all packets are known,
+    /// because most of these balls vanish.
+    fn new(
+        tree: &'a PacketTree,
+        bounds: &'a Aabb<f64>,
+        limits: Limits<'a>,
+        reporter: &'a ProgressReporter<'a>,
+    ) -> Option<Self> {
+        let points = tree.leaves.vertices.to_vec();
+        reporter.begin_stage(BuildStage::Delaunay);
+        let delaunay = Delaunay::within(&points, BOUNDING_DISTANCE, max_tetrahedra(points.len())).ok()?;
+        reporter.begin_stage(BuildStage::Balls);
+        let (added, corners) = (Vec::new(), CellCorners::default());
+        let mut sites = Self { tree, bounds, limits, reporter, points, added, delaunay, topology: None, corners };
+        let (topology, flooded) = sites.collect_topology_beside(&sites.delaunay, || {
+            CellCorners::flood(tree, &sites.delaunay, limits, &sites.progress())
+        });
+        sites.topology = topology;
+        match flooded {
+            Ok(corners) => sites.corners = corners,
+            Err(all) => {
+                let probable = sites.clusters(&all).choose_probable_sites(sites.count_left());
+                if probable.is_empty() || !sites.add(probable, false) {
+                    sites.corners = CellCorners::search(tree, limits, &all, None, &sites.progress());
+                }
+            }
+        }
+        Some(sites)
+    }
+
+    /// Adds points, and finds the packets of all balls. The packets of balls that remain are those of before, if they
+    /// are known. It returns `false` and adds nothing if there would be too many tetrahedra.
+    fn add(&mut self, new_sites: Vec<AddedSite>, are_packets_known: bool) -> bool {
+        let count_before = self.points.len();
+        self.points.extend(new_sites.iter().map(|site| site.position));
+        self.reporter.begin_stage(BuildStage::Delaunay);
+        let extended = self.delaunay.extend(&self.points, BOUNDING_DISTANCE, max_tetrahedra(self.points.len()));
+        self.reporter.begin_stage(BuildStage::Balls);
+        let Ok((next, old_numbers)) = extended else {
+            self.points.truncate(count_before);
+            return false;
+        };
+        self.added.extend(new_sites);
+        self.corners.list_packets_of_balls(self.tree);
+        let reused = ReusedCorners { corners: &self.corners, old_numbers: &old_numbers };
+        let reused = are_packets_known.then_some(&reused);
+        let (topology, corners) = self.collect_topology_beside(&next, || {
+            CellCorners::new(self.tree, &next, self.limits, reused, &self.progress())
+        });
+        (self.delaunay, self.topology, self.corners) = (next, topology, corners);
+        true
+    }
+
+    /// Collects the topology of a triangulation beside another task, if there are threads for it.
+    fn collect_topology_beside<R>(&self, delaunay: &Delaunay, other: impl FnOnce() -> R) -> (Option<SiteTopology>, R) {
+        let (tree, parallel) = (self.tree, self.limits.parallel);
+        run_both(parallel, || parallel.then(|| SiteTopology::new(tree, delaunay)), other)
+    }
+
+    /// Returns the number of points that may still be added.
+    fn count_left(&self) -> usize {
+        self.limits.max_added_sites - self.added.len()
+    }
+
+    fn clusters<'b>(&'b self, corners: &'b [CellCorner]) -> CrowdedClusters<'b> {
+        CrowdedClusters { tree: self.tree, corners, bounds: self.bounds, limits: self.limits }
+    }
+
+    fn progress(&self) -> impl Fn(usize, usize) + use<'a> {
+        let reporter = self.reporter;
+        move |done, all| reporter.advance([5.0, 30.0], done, all)
+    }
+}
+
 impl Sites {
     /// Chooses the sites of the vertices of a tree, which lie in `bounds`, and of added points. It returns `None` if
     /// that exceeds the budget.
@@ -51,56 +149,23 @@ impl Sites {
         limits: Limits<'_>,
         reporter: &ProgressReporter<'_>,
     ) -> Option<Self> {
-        let progress = |done, all| reporter.advance([5.0, 30.0], done, all);
-        let triangulate = |points: &[V3]| {
-            reporter.begin_stage(BuildStage::Delaunay);
-            let delaunay = Delaunay::within(points, BOUNDING_DISTANCE, max_tetrahedra(points.len())).ok();
-            reporter.begin_stage(BuildStage::Balls);
-            delaunay
-        };
-        let vertices = &tree.leaves.vertices;
-        let mut points = vertices.to_vec();
-        let mut added: Vec<AddedSite> = Vec::new();
-        let mut delaunay = triangulate(&points)?;
-        // The topology is collected beside the balls if there are threads for it, and at the end otherwise, because
-        // only that of the last triangulation is needed.
-        let parallel = limits.parallel;
-        let early_topology = |delaunay: &Delaunay| parallel.then(|| SiteTopology::new(tree, delaunay));
-        let (mut topology, mut corners) = run_both(
-            parallel,
-            || early_topology(&delaunay),
-            || CellCorners::new(tree, &delaunay, limits, None, &progress),
-        );
+        let mut growing = GrowingSites::new(tree, bounds, limits, reporter)?;
         for _ in 0..MAX_ROUNDS {
-            let new_sites = CrowdedClusters { tree, corners: &corners, bounds, limits }
-                .choose_sites(limits.max_added_sites - added.len());
+            let new_sites = growing.clusters(&growing.corners.all).choose_sites(growing.count_left());
             if limits.budget.is_exceeded() {
                 return None;
             }
-            if new_sites.is_empty() {
+            let (crowded_before, ball_count) = (growing.corners.count_crowded(), growing.corners.all.len());
+            if new_sites.is_empty() || !growing.add(new_sites, true) {
                 break;
             }
-            points.extend(new_sites.iter().map(|a| a.position));
-            let count_before = points.len() - new_sites.len();
-            let Some(next) = triangulate(&points) else {
-                points.truncate(count_before);
-                break;
-            };
-            corners.list_packets_of_balls(tree);
-            let reused = ReusedCorners::new(&delaunay, &corners, &next, count_before);
-            let (next_topology, all) = run_both(
-                parallel,
-                || early_topology(&next),
-                || CellCorners::new(tree, &next, limits, Some(&reused), &progress),
-            );
-            let (crowded_before, crowded_after) = (corners.count_crowded(), all.count_crowded());
-            added.extend(new_sites);
-            (delaunay, corners, topology) = (next, all, next_topology);
+            let crowded_after = growing.corners.count_crowded();
             // Points do not help everywhere. Between long thin triangles there would have to be too many.
-            if crowded_after * 8 > crowded_before * 7 && crowded_after * 16 > corners.all.len() {
+            if crowded_after * 8 > crowded_before * 7 && crowded_after * 16 > ball_count {
                 break;
             }
         }
+        let GrowingSites { points, added, delaunay, topology, mut corners, .. } = growing;
         corners.find_packets_of_crowded(tree, limits);
         if limits.budget.is_exceeded() {
             return None;
@@ -108,9 +173,10 @@ impl Sites {
         // A site at a point of the scene is not an auxiliary one.
         let mut anchors: Vec<(usize, V3)> = Vec::new();
         let mut is_known = vec![false; delaunay.sites().len()];
-        let is_on_scene = |i: usize| i < vertices.len() || added[i - vertices.len()].anchor.is_none();
+        let vertex_count = tree.leaves.vertices.len();
+        let is_on_scene = |i: usize| i < vertex_count || added[i - vertex_count].anchor.is_none();
         (0..points.len()).filter(|i| is_on_scene(*i)).for_each(|i| is_known[delaunay.site_of(i)] = true);
-        for (i, point) in (vertices.len()..).zip(&added) {
+        for (i, point) in (vertex_count..).zip(&added) {
             let site = delaunay.site_of(i);
             if let Some(anchor) = point.anchor.filter(|_| !is_known[site]) {
                 is_known[site] = true;
