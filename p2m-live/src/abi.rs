@@ -67,7 +67,7 @@ pub extern "C" fn p2m_build(backend: usize) -> usize {
     with_state(|state| state.live.build(backend).ok().flatten().unwrap_or(0))
 }
 
-/// Builds the scene far from the origin. It returns how many times the scene is enlarged, or 0 if there is none.
+/// Builds the scene far from the origin. It returns the scale of the scene, or 0 if there is none.
 #[cfg_attr(target_arch = "wasm32", unsafe(no_mangle))]
 pub extern "C" fn p2m_build_far() -> f64 {
     with_state(|state| state.live.build_far().unwrap_or(0.0))

@@ -9,10 +9,12 @@ use std::sync::Arc;
 /// The offset of the scene in each coordinate, which is a million units from the origin. Numbers of f32 are 1/16 apart
 /// there.
 pub const OFFSET: f64 = 577_350.25;
-/// The longest side that the scene has at least, in units, and half of what it has at most. It is scaled by a power of
-/// two, because vertices that are 1/16 apart would not resemble a smaller scene, and a larger one would leave the range
-/// in which they are 1/16 apart.
+/// The least longest side of the scene, in units. A smaller scene is enlarged by a power of two, because vertices that
+/// are 1/16 apart would not resemble it.
 const MIN_SIDE: f64 = 16.0;
+/// The largest longest side of the scene, in units. A larger scene is reduced by a power of two, because it would leave
+/// the range in which numbers are 1/16 apart.
+const MAX_SIDE: f64 = 65536.0;
 
 /// An answer far from the origin, beside that of ordinary arithmetic. All of it is in the frame of the scene.
 #[derive(Clone, Copy, Debug)]
@@ -69,7 +71,11 @@ impl FarScene {
             return None;
         }
         let side = (bounds.max - bounds.min).max();
-        let scale = if side > 0.0 { (MIN_SIDE / side).log2().ceil().exp2() } else { 1.0 };
+        let scale = match side {
+            ..MIN_SIDE if side > 0.0 => (MIN_SIDE / side).log2().ceil().exp2(),
+            MAX_SIDE.. => (MAX_SIDE / side).log2().floor().exp2(),
+            _ => 1.0,
+        };
         let centre = Point3::from(bounds.min.coords * 0.5 + bounds.max.coords * 0.5);
         let moved: Vec<Point3<f32>> = soup.positions().iter().map(|p| rounded(p, &centre, scale)).collect();
         let widened = moved.iter().map(|p| p.cast::<f64>()).collect();
@@ -148,6 +154,18 @@ mod tests {
                 );
                 assert!((answer.distance / answer.true_distance - 1.0).abs() <= f64::from(f32::EPSILON), "{answer:?}");
             }
+        }
+    }
+
+    /// A city of some kilometres keeps its size, so ordinary arithmetic is off by a part of 1/16 of its unit.
+    #[test]
+    fn only_tiny_and_huge_scenes_are_scaled() {
+        for (side, scale) in
+            [(0.75, 32.0), (8.0, 2.0), (16.0, 1.0), (3000.0, 1.0), (65536.0, 1.0), (1e5, 0.5), (3e5, 0.125)]
+        {
+            let positions = vec![Point3::origin(), Point3::new(side, 0.0, 0.0), Point3::new(0.0, side, 0.0)];
+            let soup = Soup::new(positions, [Element::Triangle([0, 1, 2])]).unwrap();
+            assert_eq!(FarScene::new(&soup).unwrap().scale(), scale, "{side}");
         }
     }
 

@@ -4,7 +4,7 @@ use crate::far::FarScene;
 use p2m::backend::{Best, StatsCollector};
 use p2m::nalgebra::Point3;
 use p2m::{
-    AabbTree, BuildError, BuildIndex, Closest, Element, Inspect, KdopTree, OctreeIndex, P2mIndex, PrimitiveSet,
+    Aabb, AabbTree, BuildError, BuildIndex, Closest, Element, Inspect, KdopTree, OctreeIndex, P2mIndex, PrimitiveSet,
     QueryOptions, Soup,
 };
 use std::sync::Arc;
@@ -87,6 +87,8 @@ impl Answer {
 #[derive(Default)]
 pub struct Live {
     soup: Arc<Soup<f64>>,
+    /// The box of the scene, if there is one.
+    bounds: Option<Aabb<f64>>,
     indexes: [Option<Box<dyn PageIndex>>; Backend::ALL.len()],
     far: Option<FarScene>,
 }
@@ -110,7 +112,8 @@ impl Live {
                 _ => return None,
             });
         }
-        Some(Self { soup: Arc::new(Soup::new(positions, elements).ok()?), ..Self::default() })
+        let soup = Soup::new(positions, elements).ok()?;
+        Some(Self { bounds: Some(soup.aabb()), soup: Arc::new(soup), ..Self::default() })
     }
 
     /// Returns the number of primitives.
@@ -150,8 +153,7 @@ impl Live {
     /// number of answers. The caller measures the time.
     #[must_use]
     pub fn answer_many(&self, backend: Backend, count: u32) -> usize {
-        let Some(index) = self.indexes[backend as usize].as_deref() else { return 0 };
-        let bounds = self.soup.aabb();
+        let (Some(index), Some(bounds)) = (self.indexes[backend as usize].as_deref(), self.bounds) else { return 0 };
         // Multiples of these numbers modulo one, which are powers of the reciprocal of the root of x^4 = x + 1, leave
         // no large gaps.
         const STEPS: [f64; 3] = [0.819_172_513_396_164_4, 0.671_043_606_703_789_2, 0.549_700_477_901_970_1];
@@ -164,7 +166,7 @@ impl Live {
         (0..count).filter(|&i| index.answer(&point(i)).is_some()).count()
     }
 
-    /// Builds the scene that is far from the origin in f32, and returns how many times it is enlarged. `None` stands
+    /// Builds the scene that is far from the origin in f32, and returns its scale. `None` stands
     /// for a scene that f32 cannot represent.
     pub fn build_far(&mut self) -> Option<f64> {
         self.far = FarScene::new(&self.soup);

@@ -14,10 +14,10 @@ const DIVERGING: [[u8; 3]; 9] = [
     [0x67, 0x00, 0x1f],
 ];
 /// The colour of NaN.
-const UNDEFINED: [u8; 3] = [128; 3];
+const UNDEFINED: [u8; 3] = [0x9a, 0x5f, 0xc0];
 
 /// Returns red, green and blue of a number on a scale from blue at `-limit` over grey at zero to red at `limit`, as
-/// light pages show it. Numbers beyond the limit have the colours of its ends, and NaN is grey.
+/// light pages show it. Numbers beyond the limit have the colours of its ends, and NaN is violet.
 #[must_use]
 #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "places and colours are in range")]
 pub fn diverging_colour(value: f64, limit: f64) -> [u8; 3] {
@@ -40,7 +40,10 @@ mod tests {
     #[test]
     fn colours_are_those_of_the_script() {
         let hex = DIVERGING.map(|[r, g, b]| format!("\"#{r:02x}{g:02x}{b:02x}\"")).join(",");
-        assert!(include_str!("../assets/viewer.js").contains(&hex), "{hex}");
+        let undefined = UNDEFINED.map(|x| format!("{x:02x}")).concat();
+        for hex in [hex, format!("\"#{undefined}\"")] {
+            assert!(include_str!("../assets/viewer.js").contains(&hex), "{hex}");
+        }
     }
 
     #[test]

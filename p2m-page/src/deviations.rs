@@ -4,7 +4,7 @@ use crate::decimate::MAX_PRIMITIVES;
 use crate::packed::Packed;
 use nalgebra::Point3;
 use p2m_core::{Aabb, Soup};
-use p2m_field::deviation::DeviationStatistics;
+use p2m_field::deviation::{DeviationStatistics, outside};
 use serde::Serialize;
 
 /// The deviations of a scan from the scene of a page.
@@ -58,6 +58,8 @@ pub(crate) struct DeviationData {
     is_signed: bool,
     limit: f64,
     tolerance: Option<f64>,
+    /// The numbers of values above the tolerance and below its negative.
+    outside_tolerance: Option<[usize; 2]>,
 }
 
 #[derive(Debug, Serialize)]
@@ -104,6 +106,10 @@ impl DeviationData {
             is_signed: deviations.is_signed,
             limit: deviations.limit,
             tolerance: deviations.tolerance,
+            outside_tolerance: deviations.tolerance.map(|tolerance| {
+                let outside = outside(values, tolerance);
+                [outside.above, outside.below]
+            }),
         };
         (data, note)
     }
@@ -134,10 +140,12 @@ mod tests {
             statistics: &statistics,
             is_signed: true,
             limit: 1.0,
-            tolerance: None,
+            tolerance: Some(10.0),
         };
         let (data, note) = DeviationData::new(&deviations);
         assert_eq!((data.stride, data.total), (3, count));
+        // These are counted among all points.
+        assert_eq!(data.outside_tolerance, Some([count - 1_000_011, 999_990]));
         assert_eq!(
             note.unwrap(),
             "The scan has 2000001 points, of which 666667 are drawn. The statistics are those of all."

@@ -154,18 +154,14 @@ fn unpack_packages(folder: &Path) -> Outcome {
     if cfg!(not(all(target_os = "linux", target_arch = "x86_64"))) {
         return Err("packages of Debian are unpacked on x86-64 alone".to_owned());
     }
-    if output("apt-cache", &["show", "rustc-web"]).is_err() {
+    // The list of packages may be missing, or so old that it has an older compiler.
+    let standard_library = find_standard_library().or_else(|_| {
         output("apt-get", &["update"])?;
-    }
+        find_standard_library()
+    })?;
     // The names of two packages contain a version.
-    let standard_library = dependency("libstd-rust-web-dev", "libstd-rust-web-")?;
     let llvm = dependency(&standard_library, "libllvm")?;
     let linker = llvm.replace("libllvm", "lld-");
-    // The name of the standard library ends with the version of the compiler.
-    let version = standard_library.trim_start_matches("libstd-rust-web-");
-    if numbers(version) < numbers(&promised_version()?) {
-        return Err(format!("the compiler of the package rustc-web has the version {version}, which is too old"));
-    }
     let names = ["rustc-web", "rust-web-src", "libstd-rust-web-dev", &standard_library, &llvm, &linker];
     let unpacked = folder.with_extension("part");
     let failed = |error| format!("{}: {error}", unpacked.display());
@@ -182,6 +178,17 @@ fn unpack_packages(folder: &Path) -> Outcome {
     }
     // The folder has its name only once it is complete.
     fs::rename(&unpacked, folder).map_err(failed)
+}
+
+/// Returns the package of the standard library, whose compiler is new enough.
+fn find_standard_library() -> Result<String, String> {
+    let standard_library = dependency("libstd-rust-web-dev", "libstd-rust-web-")?;
+    // The name of the standard library ends with the version of the compiler.
+    let version = standard_library.trim_start_matches("libstd-rust-web-");
+    if numbers(version) < numbers(&promised_version()?) {
+        return Err(format!("the compiler of the package rustc-web has the version {version}, which is too old"));
+    }
+    Ok(standard_library)
 }
 
 /// Returns the package that a package depends on and whose name has a prefix.

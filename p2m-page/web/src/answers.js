@@ -36,12 +36,13 @@ export class AnswersLayer {
     this.hasSphere = true;
   }
 
-  setTheme(theme) {
+  setTheme(theme, colours) {
     this.scale.setTheme(theme);
+    this.select(this.selected, colours);
     for (const [{ geometry }, times] of [[this.dots, 1], [this.feet, 1], [this.segments, 2]]) {
-      const colours = geometry.getAttribute("color");
-      this.scale.writeAll(this.values, colours.array, times);
-      colours.needsUpdate = true;
+      const attribute = geometry.getAttribute("color");
+      this.scale.writeAll(this.values, attribute.array, times);
+      attribute.needsUpdate = true;
     }
   }
 
@@ -65,6 +66,14 @@ export class AnswersLayer {
     drawAnswer(this.selection, query, at(this.to, i), vertices, featureOf(this.features[i]), radius, colours);
   }
 
+  // Returns the terms and texts of an answer.
+  rows(i) {
+    return answerRows({
+      point: this.points.subarray(3 * i, 3 * i + 3), distance: this.distances[i], signed: this.signed?.[i],
+      lowerBound: this.lower_bounds[i], size: this.sizes[i], primitive: this.primitives[i], feature: this.features[i],
+    });
+  }
+
   featureName(i) {
     return featureName(this.features[i]);
   }
@@ -72,10 +81,11 @@ export class AnswersLayer {
   // Returns the answer whose query or closest point is the nearest to a position on the screen, if one is within
   // `radius` pixels.
   pick(camera, size, x, y, radius) {
+    const ends = [[this.dots, this.from], [this.feet, this.to]].filter(([dots]) => dots.visible);
     const projected = new three.Vector3();
     let [found, best] = [-1, radius * radius];
     for (let i = 0; i < this.length; i++) {
-      for (const array of [this.from, this.to]) {
+      for (const [, array] of ends) {
         projected.fromArray(array, 3 * i).project(camera);
         if (Math.abs(projected.z) > 1) continue;
         const [dx, dy] = [((projected.x + 1) / 2) * size.x - x, ((1 - projected.y) / 2) * size.y - y];
@@ -90,6 +100,19 @@ export class AnswersLayer {
 // Returns the kind of the feature with a code, and its number within the primitive.
 export function featureOf(code) {
   return code === 6 ? ["face", 0] : code < 3 ? ["vertex", code] : ["edge", code - 3];
+}
+
+// Returns the terms and texts of an answer for a list. `size` is the number of vertices of the primitive, and `signed`
+// the signed distance if there is one.
+export function answerRows({ point, distance, signed, lowerBound, size, primitive, feature }) {
+  return [
+    ["closest point", [...point].join(", ")],
+    ["distance", distance],
+    ...(signed === undefined ? [] : [["signed distance", signed]]),
+    ["lower bound", lowerBound],
+    ["primitive", `${KINDS[size]} ${primitive}`],
+    ["feature", featureName(feature)],
+  ];
 }
 
 export function featureName(code) {

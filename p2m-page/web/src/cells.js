@@ -14,7 +14,7 @@ export class CellsLayer {
     this.show(Math.min(3, this.levels.length - 1));
   }
 
-  setColours(colours) {
+  setTheme(theme, colours) {
     this.material.color.set(colours.line);
   }
 

@@ -2,7 +2,7 @@
 
 import { short } from "./text.js";
 
-// The colours of what has no scale.
+// The background, and the colours of what is drawn in one colour.
 export const THEMES = {
   light: {
     background: "#f7f8fa", surface: "#858e9a", line: "#4b5563",
@@ -14,7 +14,7 @@ export const THEMES = {
   },
 };
 
-// The scales for light and for dark pages. All their colours differ enough from the background to be seen as lines.
+// The scales for light and for dark pages. All their colours have a contrast of at least 3 with the background.
 // The sequential ones are parts of "viridis", which has evenly rising lightness and is readable with any colour vision.
 // The diverging ones are blue for negative values and red for positive ones, with grey at zero.
 export const SCALES = {
@@ -28,9 +28,14 @@ export const SCALES = {
   },
 };
 
+// The least limit of a half of a diverging scale, as a part of the limit of the other half.
+const LEAST_HALF = 0.05;
+// The colour of a value that is no number.
+export const UNDEFINED = "#9a5fc0";
+
 const rgb = (hex) => [1, 3, 5].map((at) => parseInt(hex.slice(at, at + 2), 16));
 
-// The light of each byte of a colour in sRGB.
+// For each byte of a colour in sRGB the linear light, which is at most 65535.
 const LIGHT = Array.from({ length: 256 }, (_, byte) => {
   const x = byte / 255;
   return 65535 * (x <= 0.04045 ? x / 12.92 : ((x + 0.055) / 1.055) ** 2.4);
@@ -51,13 +56,17 @@ export class ColourScale {
     this.stops = SCALES[this.kind][theme].map(rgb);
   }
 
-  // Writes the three bytes of the colour of a value. The middle of a diverging scale is zero. A value that is no number
-  // is grey.
+  // Writes the three bytes of the colour of a value. The middle of a diverging scale is zero, and each of its halves
+  // reaches to its limit, or to a part of the other limit if that is farther, so that rounding has no strong colours.
   write(value, out, at) {
     let t = (value - this.low) / (this.high - this.low);
-    if (this.isDiverging) t = 0.5 + 0.5 * Math.max(-1, Math.min(1, value / Math.max(-this.low, this.high)));
+    if (this.isDiverging) {
+      const [below, above] = [-this.low, this.high];
+      const limit = value < 0 ? Math.max(below, LEAST_HALF * above) : Math.max(above, LEAST_HALF * below);
+      t = 0.5 + 0.5 * Math.max(-1, Math.min(1, value / limit));
+    }
     if (Number.isNaN(t)) {
-      out[at] = out[at + 1] = out[at + 2] = 128;
+      rgb(UNDEFINED).forEach((byte, k) => (out[at + k] = byte));
       return;
     }
     const last = this.stops.length - 1;
@@ -86,7 +95,7 @@ export class ColourScale {
 
   // Returns a gradient in CSS from the low limit to the high one.
   gradient() {
-    const steps = Array.from({ length: 17 }, (_, i) => this.css(this.low + ((this.high - this.low) * i) / 16));
+    const steps = Array.from({ length: 65 }, (_, i) => this.css(this.low + ((this.high - this.low) * i) / 64));
     return `linear-gradient(to right, ${steps.join(", ")})`;
   }
 }

@@ -3,8 +3,8 @@
 import * as three from "three";
 import { empty, marker, points } from "./answers.js";
 import { ColourScale } from "./colours.js";
-import { Figure, histogram, legend } from "./histogram.js";
-import { count, element, fillList, namedRow, short, stepped, tableHead } from "./text.js";
+import { histogram, legend } from "./histogram.js";
+import { count, element, fillList, namedRow, reveal, short, stepped, tableHead } from "./text.js";
 
 // The distance in pixels within which a point is read.
 const PICK_RADIUS = 6;
@@ -41,7 +41,6 @@ export class DeviationsLayer {
       this.dots.visible = false;
     }
     this.group.add(this.dots);
-    this.theme = "light";
     this.setLimit(data.limit);
   }
 
@@ -49,12 +48,17 @@ export class DeviationsLayer {
   setLimit(limit) {
     this.limit = limit;
     this.scale = new ColourScale(this.is_signed ? "diverging" : "sequential", this.is_signed ? -limit : 0, limit);
-    this.setTheme(this.theme);
+    if (this.theme) this.colourPoints();
   }
 
-  setTheme(theme) {
+  setTheme(theme, colours) {
     this.theme = theme;
-    this.scale.setTheme(theme);
+    this.colourPoints();
+    this.select(this.selected, colours);
+  }
+
+  colourPoints() {
+    this.scale.setTheme(this.theme);
     this.scale.writeAll(this.values, this.colours);
     this.dots.geometry.getAttribute("color").needsUpdate = true;
   }
@@ -67,6 +71,11 @@ export class DeviationsLayer {
 
   // Returns the numbers of points with a deviation above a tolerance, below its negative, and within it.
   outside(tolerance) {
+    // The program has counted all points for its tolerance.
+    if (tolerance === this.tolerance) {
+      const [above, below] = this.outside_tolerance;
+      return [above, below, this.total - this.missing - above - below];
+    }
     const [values, weight] = this.population();
     let [above, below, all] = [0, 0, 0];
     for (const value of values) {
@@ -99,7 +108,8 @@ export class DeviationsLayer {
   select(i, colours) {
     this.selected = i;
     empty(this.selection);
-    if (i < 0) return;
+    // A point that is not finite is nowhere.
+    if (i < 0 || !this.drawn.subarray(3 * i, 3 * i + 3).every(Number.isFinite)) return;
     this.selection.add(marker(new three.Vector3(...this.drawn.subarray(3 * i, 3 * i + 3)), colours.feature, 12));
   }
 
@@ -125,8 +135,7 @@ export class DeviationsPanel {
     const { layer } = this;
     this.what = layer.is_signed ? "deviation" : "distance";
     this.tolerance = layer.tolerance;
-    this.figure = new Figure(() => this.makeFigure(), { id: "deviation-figures" });
-    viewer.figures.push(this.figure);
+    this.figure = viewer.figure(() => this.makeFigure(), { id: "deviation-figures" });
     this.parts = element("p", { id: "deviation-parts", "aria-live": "polite" });
     this.inputs = {
       limit: this.numberInput("limit", "Limit of colours", layer.limit, (x) => x > 0 && this.setLimit(x)),
@@ -135,7 +144,7 @@ export class DeviationsPanel {
     add(layer.is_signed ? "Deviations, positive outside" : "Distances", "deviations", this.figure.element,
       ...Object.values(this.inputs), this.parts);
     this.pointText = element("dl", { id: "deviation", "aria-live": "polite" });
-    this.pointerText = element("output", { id: "deviation-pointer" });
+    this.pointerText = element("output", { id: "deviation-pointer", "aria-live": "off" });
     const step = (by, text) => element("button", { type: "button", onclick: () => this.step(by) }, text);
     const steps = element("p", {}, step(-1, "Previous"), " ", step(1, "Next"), " ", this.pointerText);
     add("Point", "point", steps, this.pointText);
@@ -154,7 +163,9 @@ export class DeviationsPanel {
       "aria-label": `${label}, slider`,
     });
     box.addEventListener("input", () => {
-      if (box.value !== "") slider.value = part(Number(box.value));
+      // A number below zero is no limit and no tolerance, as the browser says.
+      if (!box.checkValidity()) return;
+      if (Number(box.value) > 0) slider.value = part(Number(box.value));
       change(box.value === "" ? null : Number(box.value));
     });
     slider.addEventListener("input", () => {
@@ -177,7 +188,9 @@ export class DeviationsPanel {
   makeFigure() {
     const { layer, tolerance, viewer: { unit } } = this;
     const [values, weight] = layer.population();
-    const marks = tolerance === null ? [] : layer.is_signed ? [-tolerance, tolerance] : [tolerance];
+    const hasTwoSides = layer.is_signed && tolerance > 0;
+    const marks = tolerance === null ? [] : hasTwoSides ? [-tolerance, tolerance] : [tolerance];
+    if (layer.total === layer.missing) return [];
     return [legend(layer.scale, this.what, unit),
       ...histogram(values, layer.scale, `${this.what}s`, unit, { weight, marks })];
   }
@@ -191,8 +204,9 @@ export class DeviationsPanel {
     } else {
       const [above, below, within] = layer.outside(tolerance);
       const share = (n) => `${count(n)} (${short((100 * n) / Math.max(1, above + below + within))} %)`;
-      const under = layer.is_signed ? `${share(below)} below -${tolerance}, ` : "";
-      const rounded = layer.quantiles ? " Counts are to 0.01 %, because not all points are on the page." : "";
+      const under = layer.is_signed ? `${share(below)} below ${tolerance > 0 ? -tolerance : 0}, ` : "";
+      const isRounded = layer.quantiles && tolerance !== layer.tolerance;
+      const rounded = isRounded ? " Counts are to 0.01 %, because not all points are on the page." : "";
       this.parts.textContent =
         `${share(above)} above ${tolerance}, ${under}${share(within)} within the tolerance.${rounded}`;
     }
@@ -211,7 +225,8 @@ export class DeviationsPanel {
       const select = element("button", { type: "button", onclick: () => this.select(i) }, String(i * layer.stride));
       return element("tr", {}, element("td", {}, select), element("td", {}, String(layer.values[i])));
     });
-    add("Largest deviations", "largest-deviations",
+    const where = layer.stride > 1 ? " of the points on the page" : "";
+    add(`Largest deviations${where}`, "largest-deviations",
       element("table", { id: "largest" }, tableHead(["point", this.what]), element("tbody", {}, ...largest)));
   }
 
@@ -248,12 +263,13 @@ export class DeviationsPanel {
     const { layer, viewer } = this;
     layer.select(i, viewer.colours);
     const rows = i < 0 ? [["none", "Click a point of the scan, or press n."]] : [
-      ["number", `${i * layer.stride} of ${layer.total}`],
+      ["number", `${count(i * layer.stride)} of ${count(layer.total)}`],
       ["point", [...layer.positions.subarray(3 * i, 3 * i + 3)].join(", ")],
       [this.what, Number.isNaN(layer.values[i]) ? "none" : layer.values[i]],
       ...(Number.isNaN(layer.values[i]) ? [] : [["primitive", layer.primitives[i]]]),
     ];
     fillList(this.pointText, rows);
+    if (i >= 0) reveal(this.pointText);
     viewer.draw();
   }
 }

@@ -19,16 +19,21 @@ export function bins(values, low, high) {
 
 // A legend and a histogram, which are made again when the values or the colours change.
 export class Figure {
-  // `make` returns the elements.
+  // `make` returns the pictures, and last a table if there is one.
   constructor(make, attributes = {}) {
     this.make = make;
-    this.element = element("div", attributes);
+    this.pictures = element("div");
+    this.details = element("details", { hidden: true }, element("summary", {}, "Histogram as a table"));
+    this.element = element("div", attributes, this.pictures, this.details);
   }
 
   update() {
-    const isOpen = this.element.querySelector("details")?.open ?? false;
-    this.element.replaceChildren(...this.make());
-    this.element.querySelectorAll("details").forEach((table) => (table.open = isOpen));
+    const made = this.make();
+    const table = made.at(-1)?.tagName === "TABLE" ? made.pop() : null;
+    this.pictures.replaceChildren(...made);
+    // The summary stays, which may have the focus of the keyboard.
+    this.details.hidden = !table;
+    this.details.replaceChildren(this.details.firstChild, ...(table ? [table] : []));
   }
 }
 
@@ -39,6 +44,13 @@ export function histogram(values, scale, what, unit, { weight = 1, marks = [] } 
   const counts = bins(values, low, high).map((n) => Math.round(n * weight));
   const most = counts.reduce((a, b) => Math.max(a, b), 1);
   const width = WIDTH / BINS;
+  const isBelow = values.some((value) => value < low);
+  const isAbove = values.some((value) => value > high);
+  // The outermost bars have the values beyond the limits as well.
+  const range = (i) => {
+    const [from, to] = ends(i).map(short);
+    return i === 0 && isBelow ? `less than ${to}` : i === BINS - 1 && isAbove ? `${from} or more` : `${from} to ${to}`;
+  };
   const ends = (i) => [low + ((high - low) * i) / BINS, low + ((high - low) * (i + 1)) / BINS];
   const bars = counts.map((n, i) => {
     const height = (HEIGHT * n) / most;
@@ -46,13 +58,12 @@ export function histogram(values, scale, what, unit, { weight = 1, marks = [] } 
     const bar = element("rect", {
       x: i * width, y: HEIGHT - height, width: width - 0.5, height, fill: scale.css((from + to) / 2),
     });
-    bar.append(element("title", {}, `${short(from)} to ${short(to)} ${unit}: ${count(n)}`));
+    bar.append(element("title", {}, `${range(i)} ${unit}: ${count(n)}`));
     return bar;
   });
   const mode = counts.indexOf(Math.max(...counts));
-  const [from, to] = ends(mode);
   const label = `Histogram of ${what} from ${short(low)} to ${short(high)} ${unit}. ` +
-    `The most frequent are those from ${short(from)} to ${short(to)}, with ${count(counts[mode])} of ` +
+    `The most frequent are ${range(mode)}, with ${count(counts[mode])} of ` +
     `${count(counts.reduce((a, b) => a + b, 0))}.` +
     (marks.length > 0 ? ` The tolerance is marked at ${marks.map(short).join(" and ")} ${unit}.` : "");
   const lines = marks.filter((x) => x >= low && x <= high).map((value) => {
@@ -61,10 +72,8 @@ export function histogram(values, scale, what, unit, { weight = 1, marks = [] } 
   });
   const base = element("line", { x1: 0, x2: WIDTH, y1: HEIGHT, y2: HEIGHT, stroke: "currentColor" });
   const viewBox = `0 0 ${WIDTH} ${HEIGHT + 1}`;
-  const rows = counts.map((n, i) => [ends(i), n]).filter(([, n]) => n > 0)
-    .map(([[from, to], n]) => namedRow(`${short(from)} to ${short(to)}`, count(n)));
-  const table = element("details", {}, element("summary", {}, "Histogram as a table"),
-    element("table", {}, tableHead([`${what} (${unit})`, "number"]), element("tbody", {}, ...rows)));
+  const rows = counts.map((n, i) => [i, n]).filter(([, n]) => n > 0).map(([i, n]) => namedRow(range(i), count(n)));
+  const table = element("table", {}, tableHead([`${what} (${unit})`, "number"]), element("tbody", {}, ...rows));
   return [element("svg", { viewBox, role: "img", "aria-label": label }, ...bars, ...lines, base), table];
 }
 

@@ -1,17 +1,17 @@
-// Live queries: the library itself, compiled to WebAssembly, answers them in the page. It runs in a worker, so the page
-// can be used meanwhile, and queries are answered as soon as the first index is built.
+// Live queries: the library itself, compiled to WebAssembly, answers them in the page. Each index is in a worker of its
+// own, so the page can be used while it is built, and the indexes that are ready answer meanwhile.
 
 import * as three from "three";
-import { KINDS, drawAnswer, empty, featureName, featureOf, line, marker } from "./answers.js";
-import { checkbox, count, element, fillList, namedRow, short, tableHead } from "./text.js";
+import { answerRows, drawAnswer, empty, featureOf, line, marker } from "./answers.js";
+import { checkbox, count, element, fillList, fillTable, short } from "./text.js";
 
 // The indexes in the order of their numbers in the module.
 const BACKENDS = ["AABB tree", "k-DOP tree", "octree", "P2M index"];
 export class LiveQueries {
-  // `viewer` has the scene, the camera and the picture; `live` has the bytes of the module and the exact scene.
-  constructor(viewer, live) {
+  // `viewer` has the scene, the camera and the picture; `scene` has the bytes of the module and the exact scene.
+  constructor(viewer, scene) {
     this.viewer = viewer;
-    this.live = live;
+    this.scene = scene;
     this.frame = viewer.frame;
     this.group = new three.Group();
     this.isFollowing = true;
@@ -19,70 +19,83 @@ export class LiveQueries {
     this.hasSphere = true;
     // The part of the radius of the scene by which the plane is nearer to the viewer than the centre.
     this.depth = 0;
-    this.first = [];
-    let at = 0;
-    for (const size of live.sizes) {
-      this.first.push(at);
-      at += size;
+    // For each primitive the place of its first vertex among the indices.
+    this.firstIndices = [];
+    let next = 0;
+    for (const size of scene.sizes) {
+      this.firstIndices.push(next);
+      next += size;
     }
+    // The indexes that are ready.
+    this.indexes = [];
+    this.failures = [];
   }
 
-  // Builds the indexes one after the other. An index whose build fails, because the browser has too little memory, ends
-  // its worker, so the others are built by a new one.
+  // Builds all indexes at the same time, then measures them one after the other.
   async start() {
-    this.failed = [];
-    while (!(await this.buildAll()));
-    const missing = this.failed.map(({ name, reason }) => `The ${name} could not be built: ${reason}.`);
-    if (this.farScale === 0) missing.push("f32 cannot represent this scene far from the origin.");
-    this.say(missing.join(" "));
-    this.farBox.disabled = this.farScale === 0;
-  }
-
-  // Builds the indexes that have not failed. The result says whether all could be built.
-  async buildAll() {
-    this.worker?.terminate();
-    this.worker = startWorker();
-    // Promises of the calls that are not answered yet.
-    const calls = [];
-    this.calls = calls;
-    this.worker.onmessage = ({ data }) => settle(calls.shift(), data);
-    this.worker.onerror = (event) => settle(calls.shift(), { error: event.message });
-    this.rows = [];
-    this.isAsked = this.isChanged = false;
-    if (!(await this.call("load", this.live))) throw new Error("the scene of the page is damaged");
-    for (const [number, name] of BACKENDS.entries()) {
-      if (this.failed.some((failed) => failed.number === number)) continue;
-      this.say(`Building the ${name} ...`);
-      try {
-        const { bytes, time } = await this.call("build", number);
-        if (bytes > 0) this.rows.push({ number, name, bytes, time });
-      } catch (error) {
-        this.failed.push({ number, name, reason: error.message });
-        return false;
-      }
-      if (this.query) this.ask();
-      else this.allowQueries();
+    if (this.scene.sizes.length === 0) {
+      this.say("The scene is empty.");
+      return;
     }
-    for (const row of this.rows) {
-      this.say(`Measuring the ${row.name} ...`);
-      row.rate = await this.call("measure", row.number);
+    const building = new Set(BACKENDS);
+    const showStage = () => this.say(building.size > 0 ? `Building: ${[...building].join(", ")} ...` : "");
+    showStage();
+    await Promise.all(BACKENDS.map(async (name, number) => {
+      const index = await this.build(number, name);
+      building.delete(name);
+      if (index) this.add(index);
+      showStage();
+    }));
+    if (this.indexes.length === 0) throw new Error(this.failures.join(" ") || "no index could be built");
+    for (const index of this.indexes) {
+      this.say(`Measuring the ${index.name} ...`);
+      index.rate = await this.ask(index, "measure", index.number);
       this.showSpeed();
     }
-    this.farScale = await this.call("buildFar");
-    return true;
+    const [first] = this.indexes;
+    this.farScale = (await this.ask(first, "buildFar")) ?? 0;
+    this.farBox.disabled = this.farScale === 0;
+    if (this.farScale === 0) this.failures.push("f32 cannot represent this scene far from the origin.");
+    this.say(this.failures.join(" "));
   }
 
-  // Calls a function of the worker, which answers in the order of the calls.
-  call(name, ...values) {
-    return new Promise((resolve, reject) => {
-      this.calls.push({ resolve, reject });
-      this.worker.postMessage({ name, values });
-    });
+  // Builds an index in a worker. The result is `null` if this index is not built for such a scene, or if the browser
+  // has too little memory.
+  async build(number, name) {
+    const worker = new RemoteModule();
+    try {
+      if (!(await worker.call("load", this.scene))) throw new Error("the scene of the page is damaged");
+      const { bytes, time } = await worker.call("build", number);
+      if (bytes > 0) return { number, name, worker, bytes, time };
+    } catch (error) {
+      this.failures.push(`The ${name} could not be built: ${error.message}.`);
+    }
+    worker.end();
+    return null;
   }
 
-  allowQueries() {
+  // Adds an index that is ready.
+  add(index) {
+    this.indexes.push(index);
+    this.indexes.sort((a, b) => a.number - b.number);
+    if (this.query) {
+      this.answerQuery();
+      return;
+    }
     this.inputs.forEach((input) => (input.disabled = false));
     this.setQuery(this.frame.coordinates([0, 0, 0]));
+  }
+
+  // Calls a function of the worker of an index. The result is `null` if it fails, which is said.
+  async ask(index, name, ...values) {
+    try {
+      return await index.worker.call(name, ...values);
+    } catch (error) {
+      this.failures.push(`The ${index.name} has failed: ${error.message}.`);
+      this.say(this.failures.join(" "));
+      this.indexes = this.indexes.filter((other) => other !== index);
+      return null;
+    }
   }
 
   makePanel(add) {
@@ -91,20 +104,20 @@ export class LiveQueries {
       type: "number", step: "any", disabled: true, id: `live-${"xyz"[axis]}`,
       oninput: () => this.readInputs(), onkeydown: (event) => this.stepInput(event, axis),
     }));
-    this.followBox = checkbox("the query follows the mouse", true, (on) => (this.isFollowing = on), "live-follow");
-    this.farLabel = checkbox("compare f32 arithmetic far from the origin", false, (on) => this.setFar(on), "live-far");
-    this.farBox = this.farLabel.firstChild;
+    const follow = checkbox("the query follows the mouse", true, (on) => this.setFollowing(on), "live-follow");
+    const far = checkbox("compare f32 arithmetic far from the origin", false, (on) => this.setFar(on), "live-far");
+    [this.followBox, this.farBox] = [follow.firstChild, far.firstChild];
     this.farBox.disabled = true;
     const depth = element("input", {
-      type: "range", min: -1, max: 1, step: 0.01, value: 0, "aria-label": "depth of the plane of the mouse",
-      oninput: () => { this.depth = Number(depth.value); },
+      type: "range", min: -1, max: 1, step: 0.01, value: 0, "aria-label": "depth of the query",
+      oninput: () => this.setDepth(Number(depth.value)),
     });
     this.answerText = element("dl", { id: "live-answer", "aria-live": "polite" });
     this.workTable = element("table", { id: "live-work" });
     this.speedTable = element("table", { id: "live-speed" });
     this.farText = element("div", { id: "live-far-text" });
     add("Live query", "live", this.message,
-      element("div", { class: "boxes" }, this.followBox, this.farLabel),
+      element("div", { class: "boxes" }, follow, far),
       element("p", { class: "small" }, "The mouse moves the query in a plane that faces you. Its depth: ", depth),
       element("fieldset", { class: "coordinates" }, element("legend", {}, "Query"),
         ...this.inputs.map((input, axis) => element("label", {}, "xyz"[axis], input))),
@@ -117,89 +130,101 @@ export class LiveQueries {
 
   setFar(isFar) {
     this.isFar = isFar;
-    this.worst = [0, 0];
+    this.largestErrors = [0, 0];
     this.farBox.checked = isFar;
-    this.ask();
+    this.answerQuery();
   }
 
-  toggle() {
-    this.isFollowing = !this.isFollowing;
-    this.followBox.firstChild.checked = this.isFollowing;
+  setFollowing(isFollowing) {
+    this.isFollowing = isFollowing;
+    this.followBox.checked = isFollowing;
+  }
+
+  // Returns the direction from the centre of the picture to the viewer.
+  towardsViewer() {
+    const { camera, controls } = this.viewer;
+    return camera.position.clone().sub(controls.target).normalize();
+  }
+
+  // Moves the query together with its plane.
+  setDepth(depth) {
+    const step = (depth - this.depth) * this.viewer.data.frame.radius * this.frame.scale;
+    this.depth = depth;
+    const towards = this.towardsViewer().toArray();
+    if (this.query) this.setQuery(this.query.map((x, k) => x + step * towards[k]));
   }
 
   // Moves the query to where the pointer is in the plane.
   follow(event) {
-    if (!this.isFollowing || !this.query || event.buttons !== 0) return;
-    const { camera, controls, data } = this.viewer;
+    if (!this.isFollowing || !this.group.visible || !this.query || event.buttons !== 0) return;
+    const { controls, data } = this.viewer;
     const caster = this.viewer.pointer(event).caster();
-    const towards = camera.position.clone().sub(controls.target).normalize();
+    const towards = this.towardsViewer();
     const through = controls.target.clone().addScaledVector(towards, this.depth * data.frame.radius);
     const plane = new three.Plane().setFromNormalAndCoplanarPoint(towards, through);
     const hit = caster.ray.intersectPlane(plane, new three.Vector3());
+    // The mouse moves all the time, and screen readers would read each answer.
+    this.answerText.setAttribute("aria-live", "off");
     if (hit) this.setQuery(this.frame.coordinates(hit.toArray()));
   }
 
   setQuery(query) {
     this.query = query;
     query.forEach((x, k) => (this.inputs[k].value = x));
-    this.ask();
+    this.answerQuery();
   }
 
   readInputs() {
-    const query = this.inputs.map((input) => (input.value === "" ? NaN : Number(input.value)));
-    this.query = query;
-    this.ask();
+    // What was typed stays until the mouse is to be followed again.
+    this.setFollowing(false);
+    this.answerText.setAttribute("aria-live", "polite");
+    this.query = this.inputs.map((input) => (input.value === "" ? NaN : Number(input.value)));
+    this.answerQuery();
   }
 
   // The arrow keys move a coordinate by a hundredth of the scene.
   stepInput(event, axis) {
     const direction = { ArrowUp: 1, ArrowDown: -1 }[event.key];
-    if (!direction || !this.query) return;
+    if (!direction || !Number.isFinite(this.query?.[axis])) return;
     event.preventDefault();
+    this.setFollowing(false);
+    this.answerText.setAttribute("aria-live", "polite");
     const step = (this.viewer.data.frame.radius * this.frame.scale) / 100;
     this.setQuery(this.query.map((x, k) => (k === axis ? x + direction * step : x)));
   }
 
-  // Asks the worker. While it answers, only the newest of further queries is kept.
-  async ask() {
+  // Lets all indexes answer the query. While they do, only the newest of further queries is kept.
+  async answerQuery() {
     this.isChanged = true;
-    if (this.isAsked || !this.query) return;
-    this.isAsked = true;
+    if (this.isBusy || !this.query) return;
+    this.isBusy = true;
     while (this.isChanged) {
       this.isChanged = false;
-      const { query, isFar, rows } = this;
-      const isQuery = query.every(Number.isFinite);
-      try {
-        const answers = isQuery ? await this.call("query", rows.map(({ number }) => number), query) : [];
-        const far = isQuery && isFar ? await this.call("queryFar", query) : null;
-        this.answered = { query, isQuery, rows: [...rows], answers, far };
-      } catch {
-        // The worker has ended, and its successor is asked again.
-        return;
-      }
+      const { query, isFar, indexes } = this;
+      const isValid = query.every(Number.isFinite);
+      const answers = isValid
+        ? await Promise.all(indexes.map((index) => this.ask(index, "query", index.number, query))) : [];
+      const far = isValid && isFar ? await this.ask(indexes[0], "queryFar", query) : null;
+      this.shown = { query, isValid, indexes, answers, far };
       this.redraw();
     }
-    this.isAsked = false;
+    this.isBusy = false;
   }
 
   // Draws the last answer and shows its values.
   redraw() {
-    if (!this.answered) return;
-    const { isQuery, rows, answers, far } = this.answered;
+    if (!this.shown) return;
+    const { indexes, answers, far } = this.shown;
     empty(this.group);
-    // The first answer stands for all, because all have the same bits, which is compared here.
-    const [answer] = answers;
-    const key = (a) => a && [...a.point, a.distance, a.primitive, a.feature].join();
-    const isSame = answers.every((other) => key(other) === key(answer));
-    this.answer = answer;
-    if (!this.isFar) this.farText.replaceChildren();
-    if (this.isFar) this.drawFar(far);
-    else if (answer) this.draw(answer);
-    this.showAnswer(answer, isQuery, isSame);
     // Far from the origin the query is another one, because it is rounded.
     this.answerText.hidden = this.workTable.hidden = this.isFar;
-    fill(this.workTable, "Work of this query", ["index", "nodes", "packets", "evaluated"],
-      rows.map(({ name }, i) => [name, ...(answers[i] ? answers[i].work : ["", "", ""])]));
+    this.farText.replaceChildren();
+    if (this.isFar && far) this.drawFar(far);
+    // The first answer is drawn. The panel says whether the others are equal.
+    else if (!this.isFar && answers[0]) this.draw(answers[0]);
+    this.showAnswer();
+    fillTable(this.workTable, "Work of this query", ["index", "nodes", "packets", "evaluated"],
+      indexes.map(({ name }, i) => [name, ...(answers[i] ? answers[i].work : ["", "", ""])]));
     this.showSpeed();
     this.viewer.draw();
   }
@@ -210,66 +235,67 @@ export class LiveQueries {
   }
 
   draw({ point, lowerBound, primitive, feature }) {
-    const first = this.first[primitive];
-    const vertices = [...this.live.indices.subarray(first, first + this.live.sizes[primitive])]
-      .map((i) => this.at(this.live.coordinates.subarray(3 * i, 3 * i + 3)));
+    const { indices, sizes, coordinates } = this.scene;
+    const first = this.firstIndices[primitive];
+    const vertices = [...indices.subarray(first, first + sizes[primitive])]
+      .map((i) => this.at(coordinates.subarray(3 * i, 3 * i + 3)));
     const radius = this.hasSphere ? lowerBound / this.frame.scale : 0;
     const { colours } = this.viewer;
-    drawAnswer(this.group, this.at(this.answered.query), this.at(point), vertices, featureOf(feature), radius,
+    drawAnswer(this.group, this.at(this.shown.query), this.at(point), vertices, featureOf(feature), radius,
       { selected: colours.live, feature: colours.feature });
   }
 
-  showAnswer(answer, isQuery, isSame) {
-    const rows = [];
-    const row = (name, value) => rows.push([name, value]);
-    row("query", isQuery ? this.answered.query.join(",\n") : "Each coordinate has to be a number.");
-    if (!isQuery) {
-      // There is nothing to answer.
-    } else if (answer) {
-      row("closest point", answer.point.join(",\n"));
-      row("distance", answer.distance);
-      row("lower bound", answer.lowerBound);
-      row("primitive", `${KINDS[this.live.sizes[answer.primitive]]} ${answer.primitive}`);
-      row("feature", featureName(answer.feature));
-      const indexes = `the ${this.answered.rows.length} indexes`;
-      if (this.answered.rows.length > 1) {
-        row("agreement", isSame ? `${indexes} give equal answers, bit for bit` : `${indexes} differ`);
-      }
-    } else {
-      row("answer", "none");
+  showAnswer() {
+    const { query, isValid, indexes, answers } = this.shown;
+    const [answer] = answers;
+    const rows = [["query", isValid ? query.join(",\n") : "Each coordinate has to be a number."]];
+    if (answer) {
+      rows.push(...answerRows({ ...answer, size: this.scene.sizes[answer.primitive] }));
+      const key = (a) => a && [...a.point, a.distance, a.lowerBound, a.primitive, a.feature].join();
+      const isSame = answers.every((other) => key(other) === key(answer));
+      const all = `the ${indexes.length} indexes`;
+      if (indexes.length > 1) rows.push(["agreement", isSame ? `${all} give equal answers` : `${all} differ`]);
+    } else if (isValid) {
+      rows.push(["answer", "none"]);
     }
     fillList(this.answerText, rows);
   }
 
   showSpeed() {
-    const rate = (row) => (row.rate === undefined ? "" : count(Number(row.rate.toPrecision(2))));
-    fill(this.speedTable, "Speed in this browser, at points around the scene", ["index", "queries/s", "build", "size"],
-      this.rows.map((row) =>
-        [row.name, rate(row), `${short(row.time)} ms`, `${count(Math.ceil(row.bytes / 1000))} kB`]));
+    const rate = (index) => (index.rate ? count(Number(index.rate.toPrecision(2))) : "");
+    fillTable(this.speedTable, "Speed in this browser, at points around the scene",
+      ["index", "queries/s", "build", "size"],
+      this.indexes.map((index) =>
+        [index.name, rate(index), `${short(index.time)} ms`, `${count(Math.ceil(index.bytes / 1000))} kB`]));
   }
 
   // Draws the answers of a query far from the origin, and shows their errors.
   drawFar(far) {
-    this.far = far;
-    if (!far) return;
     const { colours } = this.viewer;
-    const query = this.at(far.query);
-    drawAnswer(this.group, query, this.at(far.p2m.point), [], null, 0, { ...colours, selected: colours.live });
-    const foot = this.at(far.ordinary.point);
-    this.group.add(line([query, foot], colours.feature), marker(foot, colours.feature, 6));
+    const [query, point, foot] = [far.query, far.p2m.point, far.ordinary.point].map((p) => this.at(p));
+    const isFinite = (vector) => vector.toArray().every(Number.isFinite);
+    if (isFinite(query) && isFinite(point)) {
+      drawAnswer(this.group, query, point, [], null, 0, { ...colours, selected: colours.live });
+    }
+    if (isFinite(query) && isFinite(foot)) {
+      this.group.add(line([query, foot], colours.feature), marker(foot, colours.feature, 6));
+    }
     const errors = [far.p2m, far.ordinary].map(({ distance }) => Math.abs(distance - far.distance));
-    this.worst = this.worst.map((error, i) => Math.max(error, errors[i]));
+    // An infinite error is shown, and says nothing about later queries.
+    const finite = errors.map((error) => (Number.isFinite(error) ? error : 0));
+    this.largestErrors = this.largestErrors.map((error, i) => Math.max(error, finite[i]));
     const { unit } = this.viewer;
     const named = (name, colour) => element("span", {}, element("span", { style: `color: ${colour}` }, "● "), name);
     const table = element("table", { id: "live-far-table" });
-    fill(table, "Distances in f32, and their errors", ["", "distance", "error", "largest"], [
-      [named("p2m", colours.live), far.p2m.distance, errors[0], this.worst[0]],
-      [named("ordinary f32", colours.feature), far.ordinary.distance, errors[1], this.worst[1]],
+    fillTable(table, "Distances in f32, and their errors", ["", "distance", "error", "largest"], [
+      [named("p2m", colours.live), far.p2m.distance, errors[0], this.largestErrors[0]],
+      [named("ordinary f32", colours.feature), far.ordinary.distance, errors[1], this.largestErrors[1]],
     ].map(([name, ...values]) => [name, ...values.map(short)]));
     const scaled = this.farScale === 1 ? "" : `, scaled by ${short(this.farScale)},`;
     this.farText.replaceChildren(
       element("p", { class: "small" }, `The scene${scaled} was moved a million units away from the origin, and its ` +
-        "vertices and the query were rounded to f32 there, in which coordinates are 1/16 of a unit apart. The true " +
+        "vertices and the query were rounded to f32 there, whose numbers are 1/16 of a unit apart" +
+        (this.farScale === 1 ? "" : `, which is ${short(1 / (16 * this.farScale))} here`) + ". The true " +
         `distance of the rounded query from the rounded scene is ${short(far.distance)} ${unit}. Ordinary arithmetic ` +
         "rounds the closest point to such coordinates before it measures, so its distance jumps while the query " +
         "moves. p2m measures before it rounds, and gives the closest point by the weights of the vertices."),
@@ -277,20 +303,35 @@ export class LiveQueries {
   }
 }
 
-// Fills a table. The first cell of each row names it.
-function fill(table, caption, head, rows) {
-  table.replaceChildren(element("caption", {}, caption), tableHead(head),
-    element("tbody", {}, ...rows.map((row) => namedRow(...row))));
-}
+// A module of WebAssembly in a worker, whose script is part of this one, because a page that is a file may not read
+// others.
+class RemoteModule {
+  constructor() {
+    this.address = URL.createObjectURL(new Blob([WORKER_SCRIPT], { type: "text/javascript" }));
+    this.worker = new Worker(this.address);
+    // The calls that are not answered yet. Answers come in the order of the calls.
+    this.calls = [];
+    this.worker.onmessage = ({ data }) => this.settle(data);
+    this.worker.onerror = ({ message }) => this.settle({ error: message ?? "the browser starts no worker" });
+  }
 
-// Starts the worker, whose script is part of this one, because a page that is a file may not read others.
-function startWorker() {
-  const address = URL.createObjectURL(new Blob([WORKER_SCRIPT], { type: "text/javascript" }));
-  return new Worker(address);
-}
+  // Calls a function of the worker.
+  call(name, ...values) {
+    return new Promise((resolve, reject) => {
+      this.calls.push({ resolve, reject });
+      this.worker.postMessage({ name, values });
+    });
+  }
 
-// Ends the promise of a call of the worker by what the worker says.
-function settle(call, { result, error }) {
-  if (error === undefined) call?.resolve(result);
-  else call?.reject(new Error(error));
+  settle({ result, error }) {
+    // The script has been read if there is an answer.
+    URL.revokeObjectURL(this.address);
+    const call = this.calls.shift();
+    if (error === undefined) call?.resolve(result);
+    else call?.reject(new Error(error));
+  }
+
+  end() {
+    this.worker.terminate();
+  }
 }

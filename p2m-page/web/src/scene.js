@@ -35,7 +35,7 @@ export class SceneLayer {
     }
   }
 
-  setColours(colours) {
+  setTheme(theme, colours) {
     this.materials.triangles.color.set(colours.surface);
     this.materials.segments.color.set(colours.line);
     this.materials.points.color.set(colours.line);

@@ -34,27 +34,27 @@ export class SliceLayer {
     this.setPlane(2, (this.counts[2] - 1) / 2);
   }
 
-  // Returns the value at real indices: that of the nearest grid point in a field of cells, and else the interpolated
-  // one, which is no number where one of the eight values around is none.
-  value(at) {
-    if (this.hasCells) {
-      const [i, j, l] = at.map(Math.round);
-      return this.values[i + this.counts[0] * (j + this.counts[1] * l)];
-    }
-    const low = at.map((x, k) => Math.min(Math.floor(x), this.counts[k] - 2));
+  // Returns the parts of the value at a real index along an axis: pairs of a step into the values and a weight. A field
+  // of cells has that of the nearest grid point, and another one those of the points on both sides.
+  parts(axis, at) {
+    const stride = [1, this.counts[0], this.counts[0] * this.counts[1]][axis];
+    if (this.hasCells) return [[stride * Math.round(at), 1]];
+    const low = Math.max(0, Math.min(Math.floor(at), this.counts[axis] - 2));
+    return [[low, low + 1 - at], [low + 1, at - low]].filter(([, weight]) => weight > 0)
+      .map(([index, weight]) => [stride * index, weight]);
+  }
+
+  // Returns the value that is the product of the parts along the three axes. It is no number where one of the values
+  // around is none.
+  value(u, v, w) {
     let sum = 0;
-    for (let corner = 0; corner < 8; corner++) {
-      const bits = [corner & 1, (corner >> 1) & 1, corner >> 2];
-      const weight = bits.reduce((w, bit, k) => w * (bit ? at[k] - low[k] : 1 - at[k] + low[k]), 1);
-      const [i, j, l] = bits.map((bit, k) => low[k] + bit);
-      if (weight > 0) sum += weight * this.values[i + this.counts[0] * (j + this.counts[1] * l)];
-    }
+    for (const [i, a] of u) for (const [j, b] of v) for (const [l, c] of w) sum += a * b * c * this.values[i + j + l];
     return sum;
   }
 
   setTheme(theme) {
     this.scale.setTheme(theme);
-    this.setPlane(this.axis, this.index);
+    this.draw();
   }
 
   // Draws the plane across an axis at a real index.
@@ -65,16 +65,14 @@ export class SliceLayer {
     const sides = [u, v].map((k) => this.counts[k] - 1);
     const [width, height] = sides.map((side) => Math.max(2, Math.round((PIXELS * side) / Math.max(...sides))));
     const values = new Float32Array(width * height);
-    const at = [0, 0, 0];
-    at[axis] = this.index;
+    const across = this.parts(axis, this.index);
+    const columns = Array.from({ length: width }, (_, x) => this.parts(u, (sides[0] * x) / (width - 1)));
     for (let y = 0; y < height; y++) {
-      at[v] = (sides[1] * y) / (height - 1);
-      for (let x = 0; x < width; x++) {
-        at[u] = (sides[0] * x) / (width - 1);
-        values[x + width * y] = this.value(at);
-      }
+      const row = this.parts(v, (sides[1] * y) / (height - 1));
+      for (let x = 0; x < width; x++) values[x + width * y] = this.value(columns[x], row, across);
     }
-    this.draw(values, width, height);
+    this.drawn = { values, width, height };
+    this.draw();
     const corner = (x, y) => {
       const position = [...this.origin];
       position[axis] += this.index * this.spacing;
@@ -90,7 +88,9 @@ export class SliceLayer {
     this.mesh.geometry = geometry;
   }
 
-  draw(values, width, height) {
+  // Draws the values of the plane in their colours.
+  draw() {
+    const { values, width, height } = this.drawn;
     Object.assign(this.canvas, { width, height });
     const context = this.canvas.getContext("2d");
     const image = context.createImageData(width, height);
@@ -101,13 +101,16 @@ export class SliceLayer {
         const i = x + width * y;
         const value = values[i];
         this.scale.write(value, colour, 0);
-        const beside = [x + 1 < width ? values[i + 1] : value, y + 1 < height ? values[i + width] : value];
         // Lines are not drawn between cells.
-        const neighbours = this.hasCells ? [] : beside;
-        const isCrossing = (f) => neighbours.some((other) => f(other) !== f(value) && !Number.isNaN(other - value));
-        if (isCrossing((d) => d < 0)) colour.fill(0);
-        else if (isCrossing((d) => Math.floor(d / step))) colour.forEach((c, k) => (colour[k] = 0.8 * c));
-        image.data.set([...colour, 255], 4 * i);
+        if (!this.hasCells) {
+          for (const other of [x + 1 < width ? values[i + 1] : value, y + 1 < height ? values[i + width] : value]) {
+            if (Number.isNaN(other - value)) continue;
+            if (value < 0 !== other < 0) colour.fill(0);
+            else if (Math.floor(value / step) !== Math.floor(other / step)) darken(colour);
+          }
+        }
+        for (let k = 0; k < 3; k++) image.data[4 * i + k] = colour[k];
+        image.data[4 * i + 3] = 255;
       }
     }
     context.putImageData(image, 0, 0);
@@ -119,12 +122,17 @@ export class SliceLayer {
   // Returns the value at a position in the frame, which is in the plane.
   valueAt(position) {
     const at = [0, 1, 2].map((k) => (position.getComponent(k) - this.origin[k]) / this.spacing);
-    return this.value(at.map((x, k) => Math.max(0, Math.min(this.counts[k] - 1, x))));
+    return this.value(...at.map((x, k) => this.parts(k, Math.max(0, Math.min(this.counts[k] - 1, x)))));
   }
+
   // Returns the value at a position in the frame in words.
   textAt(position, unit) {
     const value = this.valueAt(position);
     if (this.hasCells && Number.isNaN(value)) return "no list: the tree answers";
     return `${this.scale.text(value)} ${unit}`;
   }
+}
+
+function darken(colour) {
+  for (let k = 0; k < 3; k++) colour[k] *= 0.8;
 }

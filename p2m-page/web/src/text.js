@@ -3,7 +3,8 @@
 // Returns a number with at most four digits, for legends and summaries.
 export function short(value) {
   if (value === null || value === undefined || Number.isNaN(value)) return "undefined";
-  return String(Number(value.toPrecision(4)));
+  const rounded = Number(value.toPrecision(4));
+  return rounded !== 0 && Math.abs(rounded) < 1e-3 ? rounded.toExponential() : String(rounded);
 }
 
 // Returns a whole number with separators of thousands.
@@ -39,6 +40,18 @@ export function fillList(list, rows) {
 // Makes the row of the names of columns.
 export function tableHead(names) {
   return element("thead", {}, element("tr", {}, ...names.map((name) => element("th", { scope: "col" }, name))));
+}
+
+// Fills a table with rows, of which the first cell names the row.
+export function fillTable(table, caption, head, rows) {
+  table.replaceChildren(element("caption", {}, caption), tableHead(head),
+    element("tbody", {}, ...rows.map((row) => namedRow(...row))));
+}
+
+// Scrolls the panel to an element, unless the whole page would scroll.
+export function reveal(shown) {
+  const panel = document.getElementById("panel");
+  if (panel.scrollHeight > panel.clientHeight) shown.scrollIntoView({ block: "nearest" });
 }
 
 // Makes the row of a table whose first cell names it.

@@ -2,7 +2,7 @@
 
 import * as three from "three";
 import { OrbitControls } from "three/examples/jsm/controls/OrbitControls.js";
-import { AnswersLayer, KINDS } from "./answers.js";
+import { AnswersLayer } from "./answers.js";
 import { CellsLayer } from "./cells.js";
 import { THEMES } from "./colours.js";
 import { Frame, readData } from "./data.js";
@@ -11,16 +11,18 @@ import { Figure, histogram, legend } from "./histogram.js";
 import { LiveQueries } from "./live.js";
 import { SceneLayer } from "./scene.js";
 import { SliceLayer } from "./slice.js";
-import { checkbox, count, counted, element, fillList, short, stepped, tableHead } from "./text.js";
+import { checkbox, count, counted, element, fillList, reveal, short, stepped, tableHead } from "./text.js";
 
 // The number of rows of a page of the table.
 const ROWS = 50;
+// The distance from the middle of the scene to which the view can be moved, in radii of the scene.
+const MAX_PAN = 2;
 // The distance in pixels within which a click selects an answer.
 const PICK_RADIUS = 12;
 // The number of answers above which a page begins without segments to closest points, which would fill the picture.
 const MANY_ANSWERS = 20_000;
 
-// The keys, what they do, and the property of the viewer without which they do nothing.
+// The keys, what they do, and the property that the viewer has in pages where they do it.
 const KEYS = [
   ["arrow keys", "turn the view"],
   ["Shift and arrow keys", "move the view"],
@@ -67,8 +69,9 @@ class Viewer {
     if (data.live) this.addLayer("live", new LiveQueries(this, data.live), "group");
     if (data.deviations) this.addLayer("deviations", new DeviationsLayer(data.deviations, this.frame), "group");
     if (this.cells) this.cells.group.visible = false;
-    if (this.slice) this.scene.setOpacity(0.25);
-    if (this.deviations) this.scene.setOpacity(0.12);
+    // The opacity of a transparent scene. Colours of a scan are seen through it.
+    this.opacity = this.deviations ? 0.12 : 0.25;
+    if (this.slice || this.deviations) this.scene.setOpacity(this.opacity);
 
     this.makePanel();
     this.listen();
@@ -91,10 +94,9 @@ class Viewer {
     this.theme = theme;
     document.documentElement.dataset.theme = theme;
     this.world.background = new three.Color(this.colours.background);
-    this.scene.setColours(this.colours);
-    this.cells?.setColours(this.colours);
-    for (const layer of [this.answers, this.slice, this.deviations]) layer?.setTheme(theme);
-    for (const layer of [this.answers, this.deviations]) layer?.select(layer.selected, this.colours);
+    for (const layer of [this.scene, this.cells, this.answers, this.slice, this.deviations]) {
+      layer?.setTheme(theme, this.colours);
+    }
     this.live?.redraw();
     this.figures.forEach((figure) => figure.update());
     this.draw();
@@ -108,11 +110,11 @@ class Viewer {
     follow();
   }
 
-  // Makes a figure, and returns its element.
-  figure(make) {
-    const figure = new Figure(make);
+  // Makes a figure whose colours follow the theme.
+  figure(make, attributes) {
+    const figure = new Figure(make, attributes);
     this.figures.push(figure);
-    return figure.element;
+    return figure;
   }
 
   // Draws once at the next frame, however often it is called until then.
@@ -121,10 +123,7 @@ class Viewer {
     this.isPending = true;
     requestAnimationFrame(() => {
       this.isPending = false;
-      const start = performance.now();
       this.renderer.render(this.world, this.camera);
-      this.frames = (this.frames ?? 0) + 1;
-      this.frameTime = performance.now() - start;
     });
   }
 
@@ -140,7 +139,9 @@ class Viewer {
     this.controls.target.set(0, 0, 0);
     const direction = this.data.up === "y" ? [1, 0.7, 1.6] : [1, -1.6, 0.9];
     const narrow = Math.min(1, this.canvas.parentElement.clientWidth / this.canvas.parentElement.clientHeight || 1);
-    this.camera.position.set(...direction).setLength((2.3 * this.data.frame.radius) / narrow);
+    // From here the sphere around the scene fills the height of the picture.
+    const distance = this.data.frame.radius / Math.sin((this.camera.fov / 360) * Math.PI);
+    this.camera.position.set(...direction).setLength(distance / narrow);
     this.camera.near = this.data.frame.radius / 1000;
     this.camera.far = this.data.frame.radius * 100;
     // The scene stays between the planes that bound the picture.
@@ -173,8 +174,9 @@ class Viewer {
     camera.updateMatrix();
     const [x, y] = [0, 1].map((k) => new three.Vector3().setFromMatrixColumn(camera.matrix, k));
     const shift = x.multiplyScalar(right * distance).addScaledVector(y, up * distance);
-    target.add(shift);
-    camera.position.add(shift);
+    const before = target.clone();
+    target.add(shift).clampLength(0, MAX_PAN * this.data.frame.radius);
+    camera.position.add(target).sub(before);
     this.controls.update();
     this.draw();
   }
@@ -215,7 +217,7 @@ class Viewer {
     if (this.data.scene.triangles.length > 0) {
       box("wireframe", false, (on) => this.scene.setWireframe(on), "show-wireframe");
       const isThrough = !!(this.slice || this.deviations);
-      box("transparent", isThrough, (on) => this.scene.setOpacity(on ? 0.25 : 1), "show-through");
+      box("transparent", isThrough, (on) => this.scene.setOpacity(on ? this.opacity : 1), "show-through");
     }
     if (this.deviationsPanel) this.deviationsPanel.makeBoxes(box);
     if (this.answers) {
@@ -281,7 +283,7 @@ class Viewer {
     if (missing > 0) parts.push(element("p", {}, `${count(missing)} of ${all} have no answer.`));
     if (answers.answeredCount > 0) {
       parts.push(this.figure(() => [legend(answers.scale, what, this.unit),
-        ...histogram(answers.values, answers.scale, what, this.unit)]));
+        ...histogram(answers.values, answers.scale, what, this.unit)]).element);
     }
     add("Distances", "distances", ...parts);
     this.answerText = element("dl", { id: "answer", "aria-live": "polite" });
@@ -330,16 +332,10 @@ class Viewer {
     if (i < 0) {
       row("none", "Click a query point, or press n.");
     } else {
-      const vector = (array) => [...array.subarray(3 * i, 3 * i + 3)].join(", ");
       row("number", `${i} of ${answers.length}`);
-      row("query", vector(answers.queries));
+      row("query", [...answers.queries.subarray(3 * i, 3 * i + 3)].join(", "));
       if (answers.isAnswered(i)) {
-        row("closest point", vector(answers.points));
-        row("distance", answers.distances[i]);
-        if (answers.signed) row("signed distance", answers.signed[i]);
-        row("lower bound", answers.lower_bounds[i]);
-        row("primitive", `${KINDS[answers.sizes[i]]} ${answers.primitives[i]}`);
-        row("feature", answers.featureName(i));
+        rows.push(...answers.rows(i));
         const object = this.objectOf(answers.objects?.[i]);
         if (object) row("object", object);
       } else {
@@ -347,7 +343,7 @@ class Viewer {
       }
     }
     fillList(this.answerText, rows);
-    if (i >= 0) this.answerText.scrollIntoView({ block: "nearest" });
+    if (i >= 0) reveal(this.answerText);
     this.draw();
   }
 
@@ -401,13 +397,13 @@ class Viewer {
     this.sliceText = element("output", { id: "slice-text" });
     this.sliceValue = element("output", { id: "slice-value" });
     const about = slice.hasCells
-      ? "A query evaluates only primitives of the list of its cell. Where a cell has no list the slice is grey, and " +
-        "the AABB tree below the cells answers."
-      : "The black line is distance zero. Lines of equal distance are darker.";
+      ? "A query evaluates only primitives of the list of its cell. Where a cell has no list the slice is violet, " +
+        "and the AABB tree below the cells answers."
+      : `${slice.scale.isDiverging ? "The black line is distance zero. " : ""}Lines of equal distance are darker.`;
     const title = slice.hasCells ? "Slice through the cells" : "Slice of the field";
     add(title, "field", element("p", {}, "across the axis ", ...axes), this.sliceRange,
       element("p", {}, this.sliceText), element("p", {}, this.sliceValue),
-      this.figure(() => [legend(slice.scale, what, this.sliceUnit)]),
+      this.figure(() => [legend(slice.scale, what, this.sliceUnit)]).element,
       element("p", { class: "small" }, `${about} The keys [ and ] move the slice, and Shift and the mouse drag it.`));
     this.moveSlice(slice.axis, 0.5);
   }
@@ -483,10 +479,14 @@ class Viewer {
 
   // Shows the value of the slice where the pointer is, or in the middle of the picture if there is no event.
   readSlice(event) {
-    if (!this.slice?.mesh.visible) return;
+    if (!this.slice) return;
+    if (!this.slice.mesh.visible) {
+      this.sliceValue.textContent = event ? "" : "The slice is not shown.";
+      return;
+    }
     const caster = event ? this.pointer(event).caster() : this.caster(0, 0);
     const [hit] = caster.intersectObject(this.slice.mesh);
-    // The pointer moves all the time, which nobody wants to hear.
+    // The pointer moves all the time, and screen readers would read each value.
     this.sliceValue.setAttribute("aria-live", event ? "off" : "polite");
     if (!hit) {
       this.sliceValue.textContent = event ? "" : "The slice is not in the middle of the picture.";
@@ -507,6 +507,8 @@ class Viewer {
     const isBracket = event.key === "[" || event.key === "]";
     if (!isBracket && (event.ctrlKey || event.metaKey || event.altKey)) return;
     const { slice, cells, answers, deviationsPanel } = this;
+    const shiftSlice = (by) => this.moveSlice(slice.axis, this.slicePart + by);
+    const turnSlice = (axis) => this.moveSlice(axis, axis === slice.axis ? this.slicePart : 0.5);
     const step = answers ? (by) => this.step(by) : deviationsPanel && ((by) => deviationsPanel.step(by));
     const actions = {
       ShiftArrowLeft: () => this.pan(-0.05, 0), ShiftArrowRight: () => this.pan(0.05, 0),
@@ -514,14 +516,20 @@ class Viewer {
       ArrowLeft: () => this.turn(-0.1, 0, 1), ArrowRight: () => this.turn(0.1, 0, 1),
       ArrowUp: () => this.turn(0, -0.1, 1), ArrowDown: () => this.turn(0, 0.1, 1),
       "+": () => this.turn(0, 0, 0.9), "=": () => this.turn(0, 0, 0.9), "-": () => this.turn(0, 0, 1 / 0.9),
-      f: () => this.fit(), d: () => this.toggleTheme(), q: this.live && (() => this.live.toggle()),
+      f: () => this.fit(), d: () => this.toggleTheme(),
+      q: this.live && (() => this.live.setFollowing(!this.live.isFollowing)),
       n: step && (() => step(1)), p: step && (() => step(-1)),
-      x: slice && (() => this.moveSlice(0, 0.5)), y: slice && (() => this.moveSlice(1, 0.5)),
-      z: slice && (() => this.moveSlice(2, 0.5)), v: slice && (() => this.readSlice(null)),
-      "[": slice && (() => this.moveSlice(slice.axis, this.slicePart - 0.02)),
-      "]": slice && (() => this.moveSlice(slice.axis, this.slicePart + 0.02)),
+      x: slice && (() => turnSlice(0)), y: slice && (() => turnSlice(1)), z: slice && (() => turnSlice(2)),
+      "[": slice && (() => shiftSlice(-0.02)), "]": slice && (() => shiftSlice(0.02)),
+      v: slice && (() => {
+        this.readSlice(null);
+        reveal(this.sliceValue);
+      }),
       l: cells && (() => this.showLevel(cells.level + 1)), k: cells && (() => this.showLevel(cells.level - 1)),
-      "?": () => { this.help.open = !this.help.open; },
+      "?": () => {
+        this.help.open = !this.help.open;
+        if (this.help.open) reveal(this.help);
+      },
     };
     const isShifted = event.shiftKey && event.key.startsWith("Arrow");
     const key = event.key.length === 1 ? event.key.toLowerCase() : event.key;
@@ -532,7 +540,7 @@ class Viewer {
   }
 }
 
-// Returns what draws the picture. Without WebGL it draws nothing, and the panel has all numbers all the same.
+// Returns the renderer. Without WebGL it draws nothing, and the panel has all numbers all the same.
 function makeRenderer(canvas) {
   try {
     return new three.WebGLRenderer({ canvas, antialias: true, preserveDrawingBuffer: true });

@@ -1,8 +1,8 @@
-// The worker of live queries: it has the module of WebAssembly with the scene and the indexes, so that the page can be
-// used while indexes are built. Each message calls one of the functions below, in order, and is answered by its result.
+// A worker of live queries: it has the module of WebAssembly with the scene and an index. Each message calls one of the
+// functions below, in order, and is answered by its result.
 
-// The milliseconds for which the queries of an index are measured, after as long a time in which the browser finds out
-// what it has to optimise.
+// The milliseconds for which the queries of an index are measured, after a warm-up of the same length, in which the
+// browser compiles them.
 const MEASURED_TIME = 100;
 
 let module;
@@ -28,21 +28,20 @@ const FUNCTIONS = {
 
   // Returns the number of queries a second at points around the scene.
   measure(number) {
-    countQueries(number);
-    return countQueries(number);
+    measureRate(number);
+    return measureRate(number);
   },
 
-  // Builds the scene far from the origin, and returns how many times it is enlarged, or 0 if there is none.
+  // Builds the scene far from the origin, and returns its scale, or 0 if there is none.
   buildFar: () => module.p2m_build_far(),
 
-  // Returns the answers of indexes to a query.
-  query: (numbers, query) => numbers.map((number) => readAnswer(number, query)),
+  // Returns the answer of an index to a query, or `null` if there is none.
+  query: readAnswer,
 
   // Returns the answer to a query far from the origin.
   queryFar: readFarAnswer,
 };
 
-// Returns the values of the answer of an index, or `null` if there is none.
 function readAnswer(number, query) {
   if (module.p2m_query(number, ...query) === 0) return null;
   const [x, y, z, distance, lowerBound, primitive, feature, ...work] = lastValues(10);
@@ -61,7 +60,7 @@ function lastValues(length) {
   return [...new Float64Array(module.memory.buffer, module.p2m_answer(), length)];
 }
 
-function countQueries(number) {
+function measureRate(number) {
   let [answered, size, start, time] = [0, 64, performance.now(), 0];
   while (time < MEASURED_TIME) {
     answered += module.p2m_answer_many(number, size);
@@ -72,8 +71,8 @@ function countQueries(number) {
 }
 
 // Messages are taken one after the other, because a query could else be answered before the module is loaded.
-let last = Promise.resolve();
+let queue = Promise.resolve();
 onmessage = ({ data: { name, values } }) => {
-  last = last.then(() => FUNCTIONS[name](...values)).then(
+  queue = queue.then(() => FUNCTIONS[name](...values)).then(
     (result) => postMessage({ result }), (error) => postMessage({ error: error.message }));
 };

@@ -4,7 +4,7 @@
 import assert from "node:assert/strict";
 import { readFileSync } from "node:fs";
 import { test } from "node:test";
-import { SCALES, THEMES } from "../src/colours.js";
+import { SCALES, THEMES, UNDEFINED } from "../src/colours.js";
 
 const read = (path) => readFileSync(new URL(`../../../${path}`, import.meta.url), "utf8");
 
@@ -43,8 +43,8 @@ test("pictures have enough contrast", () => {
   for (const theme of ["light", "dark"]) {
     const { background, ...others } = THEMES[theme];
     const scales = [SCALES.sequential[theme], SCALES.diverging[theme]];
-    const drawn = [...Object.values(others), ...scales.flat()];
-    assert.equal(drawn.length, 20);
+    const drawn = [...Object.values(others), ...scales.flat(), UNDEFINED];
+    assert.equal(drawn.length, 21);
     for (const colour of drawn) assert.ok(contrast(colour, background) >= 3, `${colour} on ${background}`);
   }
 });

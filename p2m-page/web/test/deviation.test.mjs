@@ -51,6 +51,18 @@ test("a page of deviations reads as the program, and its tolerance and colours c
   assert.deepEqual(await parts(), counted(0.05));
   assert.match(await page.getAttribute("#deviation-figures svg", "aria-label"), /marked at -0.05 and 0.05/);
 
+  // The outermost parts of the histogram have what is beyond the limit, and say so.
+  await page.fill("#limit", "0.1");
+  const parts48 = await page.$$eval("#deviation-figures tbody tr", (rows) =>
+    rows.map((row) => [...row.cells].map((cell) => cell.textContent)));
+  const bin = (0.2 / 48);
+  const expected = values.filter((value) => value >= 0.1 - bin).length;
+  assert.match(parts48.at(-1)[0], /^0\.09583 or more$/);
+  assert.ok(Math.abs(Number(parts48.at(-1)[1].replaceAll(",", "")) - expected) <= 1, `${parts48.at(-1)}, ${expected}`);
+  // A number below zero changes nothing.
+  await page.fill("#tolerance", "-1");
+  assert.deepEqual(await parts(), counted(0.05));
+
   // The limit of colours changes the colours, the legend and nothing else.
   const colours = () => page.evaluate(() => [...window.viewer.deviations.colours.subarray(0, 300)]);
   const first = await colours();
@@ -60,6 +72,7 @@ test("a page of deviations reads as the program, and its tolerance and colours c
   assert.deepEqual(await parts(), counted(0.05));
 
   // A click reads the point in front.
+  const numbered = (i) => `${i.toLocaleString("en-US")} of ${values.length.toLocaleString("en-US")}`;
   const [number, ...place] = await page.evaluate(() => {
     const { viewer } = window;
     const { deviations: layer, camera } = viewer;
@@ -71,7 +84,7 @@ test("a page of deviations reads as the program, and its tolerance and colours c
     return [i, left + ((at.x + 1) / 2) * width, top + ((1 - at.y) / 2) * height];
   });
   await page.mouse.click(...place);
-  assert.equal(await opened.read("deviation", "number", page), `${number} of ${values.length}`);
+  assert.equal(await opened.read("deviation", "number", page), numbered(number));
   await page.mouse.move(place[0] + 1, place[1]);
   await page.waitForFunction(() => document.querySelector("#deviation-pointer").textContent.endsWith("at the pointer"));
 
@@ -81,6 +94,6 @@ test("a page of deviations reads as the program, and its tolerance and colours c
   await page.click("#largest button >> nth=0");
   const sizes = values.map(Math.abs);
   const largest = sizes.indexOf(Math.max(...sizes));
-  assert.equal(await opened.read("deviation", "number", page), `${largest} of ${values.length}`);
+  assert.equal(await opened.read("deviation", "number", page), numbered(largest));
   assert.deepEqual(opened.problems, []);
 });

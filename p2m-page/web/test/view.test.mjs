@@ -127,6 +127,34 @@ test("the keyboard alone moves the view and reads the slice", { skip }, async ()
   await page.keyboard.press("f");
 });
 
+test("the view contains the scene, and cannot be moved away from it", { skip }, async () => {
+  await page.focus("#picture");
+  await page.keyboard.press("f");
+  const corners = await page.evaluate(() => {
+    const { camera, scene } = window.viewer;
+    camera.updateMatrixWorld();
+    const positions = scene.parts[0].geometry.getAttribute("position").array;
+    const all = Array.from({ length: positions.length / 3 }, (_, i) =>
+      camera.position.clone().fromArray(positions, 3 * i).project(camera));
+    return all.map(({ x, y }) => Math.max(Math.abs(x), Math.abs(y)));
+  });
+  assert.ok(Math.max(...corners) < 1 && Math.max(...corners) > 0.4, String(Math.max(...corners)));
+  for (let i = 0; i < 200; i++) await page.keyboard.press("Shift+ArrowRight");
+  const distance = await page.evaluate(() => window.viewer.controls.target.length() / window.viewer.data.frame.radius);
+  assert.ok(distance > 1 && distance < 2.001, String(distance));
+  await page.keyboard.press("f");
+});
+
+test("in a narrow window an answer does not scroll the picture away", { skip }, async () => {
+  const other = await opened.view(opened.scene, "--random", "20", "--seed", "3");
+  await other.setViewportSize({ width: 320, height: 640 });
+  await other.focus("#picture");
+  await other.keyboard.press("n");
+  assert.equal(await other.evaluate(() => scrollY), 0);
+  assert.ok(await other.evaluate(() => document.documentElement.scrollWidth) <= 320);
+  await other.close();
+});
+
 test("the histogram is a table too, and has the colours of the theme", { skip }, async () => {
   const state = () => page.evaluate(() => {
     const rows = [...document.querySelectorAll("#distances table tbody td")].map((cell) => Number(cell.textContent));
