@@ -119,6 +119,7 @@ impl Delaunay {
 
     /// Triangulates points, of which the first ones may have a triangulation already. The second result has for each
     /// tetrahedron its number there, and is empty if everything was built.
+    #[allow(clippy::float_cmp, reason = "the same or not")]
     fn build(
         points: &[[f64; 3]],
         reach: f64,
