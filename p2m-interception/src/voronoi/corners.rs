@@ -13,7 +13,7 @@ use p2m_core::engine::vector::{V3, norm_squared, sub};
 use std::ops::Range;
 
 /// A ball that intersects more packets than this is crowded.
-pub(crate) const CROWDED_BALL_PACKETS: usize = 24;
+const CROWDED_BALL_PACKETS: usize = 24;
 
 /// Floods find the packets of all balls again if at least one of this many is new.
 const FLOODED_PART_DIVISOR: usize = 4;
@@ -35,6 +35,13 @@ pub(crate) struct CellCorner {
     /// Whether the corner has no packets: it is unknown, or its ball intersects too many. The limit is
     /// [`CROWDED_BALL_PACKETS`] as long as sites are added, and that of a list afterwards.
     pub(crate) is_crowded: bool,
+}
+
+impl Limits<'_> {
+    /// Returns the largest number of packets of a ball that is not crowded while sites are added.
+    pub(crate) fn max_uncrowded_packets(self) -> usize {
+        CROWDED_BALL_PACKETS.min(self.max_list_packets)
+    }
 }
 
 impl CellCorner {
@@ -126,7 +133,7 @@ impl CellCorners {
         let Some(flooded) = flooded else { return Err(all) };
         all.push(CellCorner::UNKNOWN);
         let mut corners = Self { all, flooded: Some(flooded), ..Self::default() };
-        corners.mark_flooded_crowds(CROWDED_BALL_PACKETS.min(limits.max_list_packets));
+        corners.mark_flooded_crowds(limits.max_uncrowded_packets());
         Ok(corners)
     }
 
@@ -184,7 +191,7 @@ impl CellCorners {
                 corners.push(CellCorner::UNKNOWN, std::iter::empty());
                 continue;
             }
-            let most = CROWDED_BALL_PACKETS.min(limits.max_list_packets);
+            let most = limits.max_uncrowded_packets();
             corner.is_crowded = corner.radius <= 0.0 || !corner.collect_ball(tree, limits, most, &mut selections);
             let kept = if corner.is_crowded { &[] } else { &selections[..] };
             corners.push(corner, kept.iter().map(|s| s.packet));

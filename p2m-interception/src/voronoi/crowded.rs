@@ -1,7 +1,7 @@
 //! The choice of sites that are added because of crowded balls.
 
 use crate::voronoi::budget::Limits;
-use crate::voronoi::corners::{CROWDED_BALL_PACKETS, CellCorner};
+use crate::voronoi::corners::CellCorner;
 use p2m_bvh::PacketTree;
 use p2m_bvh::engine::packet::LANES;
 use p2m_bvh::engine::range::Selection;
@@ -67,7 +67,7 @@ impl CrowdedClusters<'_> {
     /// triangulations show what it misses.
     pub(crate) fn choose_probable_sites(&self, budget: usize) -> Vec<AddedSite> {
         let mut clusters = self.clusters(|_| true);
-        let max_packets = CROWDED_BALL_PACKETS.min(self.limits.max_list_packets);
+        let max_packets = self.limits.max_uncrowded_packets();
         let mut selections = Vec::new();
         clusters.retain(|(number, count)| {
             selections.clear();

@@ -58,7 +58,7 @@ struct GrowingSites<'a> {
     /// The topology of the triangulation. It is collected beside the balls if there are threads for it, and later
     /// otherwise, because only that of the last triangulation is needed.
     topology: Option<SiteTopology>,
-    /// The corners of the triangulation, with the packets of their balls.
+    /// The corners of the triangulation, with the packets of their balls. There are none until these are known.
     corners: CellCorners,
 }
 
@@ -88,7 +88,7 @@ impl<'a> GrowingSites<'a> {
             Ok(corners) => sites.corners = corners,
             Err(all) => {
                 let probable = sites.clusters(&all).choose_probable_sites(sites.count_left());
-                if probable.is_empty() || !sites.add(probable, false) {
+                if probable.is_empty() || !sites.add(probable) {
                     sites.corners = CellCorners::search(tree, limits, &all, None, &sites.progress());
                 }
             }
@@ -96,9 +96,9 @@ impl<'a> GrowingSites<'a> {
         Some(sites)
     }
 
-    /// Adds points, and finds the packets of all balls. The packets of balls that remain are those of before, if they
-    /// are known. It returns `false` and adds nothing if there would be too many tetrahedra.
-    fn add(&mut self, new_sites: Vec<AddedSite>, are_packets_known: bool) -> bool {
+    /// Adds points, and finds the packets of all balls. The packets of balls that remain are those of before, if there
+    /// are corners already. It returns `false` and adds nothing if there would be too many tetrahedra.
+    fn add(&mut self, new_sites: Vec<AddedSite>) -> bool {
         let count_before = self.points.len();
         self.points.extend(new_sites.iter().map(|site| site.position));
         self.reporter.begin_stage(BuildStage::Delaunay);
@@ -111,7 +111,7 @@ impl<'a> GrowingSites<'a> {
         self.added.extend(new_sites);
         self.corners.list_packets_of_balls(self.tree);
         let reused = ReusedCorners { corners: &self.corners, old_numbers: &old_numbers };
-        let reused = are_packets_known.then_some(&reused);
+        let reused = (!self.corners.all.is_empty()).then_some(&reused);
         let (topology, corners) = self.collect_topology_beside(&next, || {
             CellCorners::new(self.tree, &next, self.limits, reused, &self.progress())
         });
@@ -156,7 +156,7 @@ impl Sites {
                 return None;
             }
             let (crowded_before, ball_count) = (growing.corners.count_crowded(), growing.corners.all.len());
-            if new_sites.is_empty() || !growing.add(new_sites, true) {
+            if new_sites.is_empty() || !growing.add(new_sites) {
                 break;
             }
             let crowded_after = growing.corners.count_crowded();

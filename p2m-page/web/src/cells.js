@@ -7,10 +7,10 @@ const EDGES = [0, 1, 2, 3, 4, 5, 6, 7].flatMap((corner) =>
   [1, 2, 4].filter((bit) => !(corner & bit)).map((bit) => [corner, corner | bit]));
 
 export class CellsLayer {
-  constructor(cells, colours) {
+  constructor(cells) {
     this.levels = cells.levels;
     this.group = new three.Group();
-    this.material = new three.LineBasicMaterial({ color: colours.line });
+    this.material = new three.LineBasicMaterial();
     this.show(Math.min(3, this.levels.length - 1));
   }
 

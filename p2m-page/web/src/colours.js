@@ -34,6 +34,7 @@ const LEAST_HALF = 0.05;
 export const UNDEFINED = "#9a5fc0";
 
 const rgb = (hex) => [1, 3, 5].map((at) => parseInt(hex.slice(at, at + 2), 16));
+const UNDEFINED_BYTES = rgb(UNDEFINED);
 
 // For each byte of a colour in sRGB the linear light, which is at most 65535.
 const LIGHT = Array.from({ length: 256 }, (_, byte) => {
@@ -56,17 +57,19 @@ export class ColourScale {
     this.stops = SCALES[this.kind][theme].map(rgb);
   }
 
-  // Writes the three bytes of the colour of a value. The middle of a diverging scale is zero, and each of its halves
-  // reaches to its limit, or to a part of the other limit if that is farther, so that rounding has no strong colours.
+  // Returns the part of a diverging scale at which a value is. The middle is zero, and each half reaches to its limit,
+  // or to a part of the other limit if that is farther, so that rounding has no strong colours.
+  part(value) {
+    const [below, above] = [-this.low, this.high];
+    const limit = value < 0 ? Math.max(below, LEAST_HALF * above) : Math.max(above, LEAST_HALF * below);
+    return 0.5 + 0.5 * Math.max(-1, Math.min(1, value / limit));
+  }
+
+  // Writes the three bytes of the colour of a value.
   write(value, out, at) {
-    let t = (value - this.low) / (this.high - this.low);
-    if (this.isDiverging) {
-      const [below, above] = [-this.low, this.high];
-      const limit = value < 0 ? Math.max(below, LEAST_HALF * above) : Math.max(above, LEAST_HALF * below);
-      t = 0.5 + 0.5 * Math.max(-1, Math.min(1, value / limit));
-    }
+    const t = this.isDiverging ? this.part(value) : (value - this.low) / (this.high - this.low);
     if (Number.isNaN(t)) {
-      rgb(UNDEFINED).forEach((byte, k) => (out[at + k] = byte));
+      for (let k = 0; k < 3; k++) out[at + k] = UNDEFINED_BYTES[k];
       return;
     }
     const last = this.stops.length - 1;

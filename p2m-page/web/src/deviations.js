@@ -3,7 +3,6 @@
 import * as three from "three";
 import { empty, marker, points } from "./answers.js";
 import { ColourScale } from "./colours.js";
-import { histogram, legend } from "./histogram.js";
 import { count, element, fillList, namedRow, reveal, short, stepped, tableHead } from "./text.js";
 
 // The distance in pixels within which a point is read.
@@ -135,7 +134,7 @@ export class DeviationsPanel {
     const { layer } = this;
     this.what = layer.is_signed ? "deviation" : "distance";
     this.tolerance = layer.tolerance;
-    this.figure = viewer.figure(() => this.makeFigure(), { id: "deviation-figures" });
+    this.figure = viewer.figure(() => this.readFigure(), { id: "deviation-figures" });
     this.parts = element("p", { id: "deviation-parts", "aria-live": "polite" });
     this.inputs = {
       limit: this.numberInput("limit", "Limit of colours", layer.limit, (x) => x > 0 && this.setLimit(x)),
@@ -185,14 +184,13 @@ export class DeviationsPanel {
     this.redraw();
   }
 
-  makeFigure() {
-    const { layer, tolerance, viewer: { unit } } = this;
+  readFigure() {
+    const { layer, tolerance, what, viewer: { unit } } = this;
+    if (layer.total === layer.missing) return {};
     const [values, weight] = layer.population();
     const hasTwoSides = layer.is_signed && tolerance > 0;
     const marks = tolerance === null ? [] : hasTwoSides ? [-tolerance, tolerance] : [tolerance];
-    if (layer.total === layer.missing) return [];
-    return [legend(layer.scale, this.what, unit),
-      ...histogram(values, layer.scale, `${this.what}s`, unit, { weight, marks })];
+    return { scale: layer.scale, what, unit, values, options: { name: `${what}s`, weight, marks } };
   }
 
   // Draws the legend and the histogram, and writes how many points are within the tolerance.

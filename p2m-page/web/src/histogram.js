@@ -17,29 +17,31 @@ export function bins(values, low, high) {
   return counts;
 }
 
-// A legend and a histogram, which are made again when the values or the colours change.
+// The legend of a scale and a histogram of values, which are made again when the values or the colours change.
 export class Figure {
-  // `make` returns the pictures, and last a table if there is one.
-  constructor(make, attributes = {}) {
-    this.make = make;
+  // `read` returns what is shown: the scale, a name and the unit of the values, and those of which there is a histogram
+  // with its options. Without a scale nothing is shown, and without values there is only the legend.
+  constructor(read, attributes = {}) {
+    this.read = read;
     this.pictures = element("div");
     this.details = element("details", { hidden: true }, element("summary", {}, "Histogram as a table"));
     this.element = element("div", attributes, this.pictures, this.details);
   }
 
   update() {
-    const made = this.make();
-    const table = made.at(-1)?.tagName === "TABLE" ? made.pop() : null;
-    this.pictures.replaceChildren(...made);
+    const { scale, what, unit, values, options } = this.read();
+    const { picture, table } = values ? histogram(values, scale, what, unit, options) : {};
+    const pictures = scale ? [legend(scale, what, unit), picture] : [];
+    this.pictures.replaceChildren(...pictures.filter(Boolean));
     // The summary stays, which may have the focus of the keyboard.
     this.details.hidden = !table;
-    this.details.replaceChildren(this.details.firstChild, ...(table ? [table] : []));
+    this.details.replaceChildren(...[this.details.firstChild, table].filter(Boolean));
   }
 }
 
 // Returns a histogram between the limits of a scale, as a picture and as a table. Each value stands for `weight`
 // values, and lines are drawn at `marks`.
-export function histogram(values, scale, what, unit, { weight = 1, marks = [] } = {}) {
+function histogram(values, scale, what, unit, { name = what, weight = 1, marks = [] } = {}) {
   const { low, high } = scale;
   const counts = bins(values, low, high).map((n) => Math.round(n * weight));
   const most = counts.reduce((a, b) => Math.max(a, b), 1);
@@ -62,7 +64,7 @@ export function histogram(values, scale, what, unit, { weight = 1, marks = [] } 
     return bar;
   });
   const mode = counts.indexOf(Math.max(...counts));
-  const label = `Histogram of ${what} from ${short(low)} to ${short(high)} ${unit}. ` +
+  const label = `Histogram of ${name} from ${short(low)} to ${short(high)} ${unit}. ` +
     `The most frequent are ${range(mode)}, with ${count(counts[mode])} of ` +
     `${count(counts.reduce((a, b) => a + b, 0))}.` +
     (marks.length > 0 ? ` The tolerance is marked at ${marks.map(short).join(" and ")} ${unit}.` : "");
@@ -73,13 +75,13 @@ export function histogram(values, scale, what, unit, { weight = 1, marks = [] } 
   const base = element("line", { x1: 0, x2: WIDTH, y1: HEIGHT, y2: HEIGHT, stroke: "currentColor" });
   const viewBox = `0 0 ${WIDTH} ${HEIGHT + 1}`;
   const rows = counts.map((n, i) => [i, n]).filter(([, n]) => n > 0).map(([i, n]) => namedRow(range(i), count(n)));
-  const table = element("table", {}, tableHead([`${what} (${unit})`, "number"]), element("tbody", {}, ...rows));
-  return [element("svg", { viewBox, role: "img", "aria-label": label }, ...bars, ...lines, base), table];
+  const table = element("table", {}, tableHead([`${name} (${unit})`, "number"]), element("tbody", {}, ...rows));
+  return { picture: element("svg", { viewBox, role: "img", "aria-label": label }, ...bars, ...lines, base), table };
 }
 
 // Returns the legend of a scale: its gradient, its limits and a value between them, with the unit. The value between is
 // zero for a scale with two directions, where zero is, unless that is too close to a limit.
-export function legend(scale, what, unit) {
+function legend(scale, what, unit) {
   const { low, high } = scale;
   const zero = (0 - low) / (high - low);
   const part = scale.isDiverging && zero > 0.2 && zero < 0.8 ? zero : 0.5;

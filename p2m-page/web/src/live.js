@@ -7,6 +7,7 @@ import { checkbox, count, element, fillList, fillTable, short } from "./text.js"
 
 // The indexes in the order of their numbers in the module.
 const BACKENDS = ["AABB tree", "k-DOP tree", "octree", "P2M index"];
+
 export class LiveQueries {
   // `viewer` has the scene, the camera and the picture; `scene` has the bytes of the module and the exact scene.
   constructor(viewer, scene) {
@@ -14,7 +15,6 @@ export class LiveQueries {
     this.scene = scene;
     this.frame = viewer.frame;
     this.group = new three.Group();
-    this.isFollowing = true;
     this.isFar = false;
     this.hasSphere = true;
     // The part of the radius of the scene by which the plane is nearer to the viewer than the centre.
@@ -52,8 +52,8 @@ export class LiveQueries {
       index.rate = await this.ask(index, "measure", index.number);
       this.showSpeed();
     }
-    const [first] = this.indexes;
-    this.farScale = (await this.ask(first, "buildFar")) ?? 0;
+    [this.farIndex] = this.indexes;
+    this.farScale = (this.farIndex && (await this.ask(this.farIndex, "buildFar"))) ?? 0;
     this.farBox.disabled = this.farScale === 0;
     if (this.farScale === 0) this.failures.push("f32 cannot represent this scene far from the origin.");
     this.say(this.failures.join(" "));
@@ -94,6 +94,7 @@ export class LiveQueries {
       this.failures.push(`The ${index.name} has failed: ${error.message}.`);
       this.say(this.failures.join(" "));
       this.indexes = this.indexes.filter((other) => other !== index);
+      if (this.farIndex === index) this.farIndex = undefined;
       return null;
     }
   }
@@ -112,7 +113,7 @@ export class LiveQueries {
       type: "range", min: -1, max: 1, step: 0.01, value: 0, "aria-label": "depth of the query",
       oninput: () => this.setDepth(Number(depth.value)),
     });
-    this.answerText = element("dl", { id: "live-answer", "aria-live": "polite" });
+    this.answerText = element("dl", { id: "live-answer" });
     this.workTable = element("table", { id: "live-work" });
     this.speedTable = element("table", { id: "live-speed" });
     this.farText = element("div", { id: "live-far-text" });
@@ -122,6 +123,7 @@ export class LiveQueries {
       element("fieldset", { class: "coordinates" }, element("legend", {}, "Query"),
         ...this.inputs.map((input, axis) => element("label", {}, "xyz"[axis], input))),
       this.farText, this.answerText, this.workTable, this.speedTable);
+    this.setFollowing(true);
   }
 
   say(text) {
@@ -135,9 +137,12 @@ export class LiveQueries {
     this.answerQuery();
   }
 
+  // Lets the query follow the mouse, or keeps what is typed. The mouse moves all the time, so screen readers read only
+  // answers to what is typed.
   setFollowing(isFollowing) {
     this.isFollowing = isFollowing;
     this.followBox.checked = isFollowing;
+    this.answerText.setAttribute("aria-live", isFollowing ? "off" : "polite");
   }
 
   // Returns the direction from the centre of the picture to the viewer.
@@ -163,8 +168,6 @@ export class LiveQueries {
     const through = controls.target.clone().addScaledVector(towards, this.depth * data.frame.radius);
     const plane = new three.Plane().setFromNormalAndCoplanarPoint(towards, through);
     const hit = caster.ray.intersectPlane(plane, new three.Vector3());
-    // The mouse moves all the time, and screen readers would read each answer.
-    this.answerText.setAttribute("aria-live", "off");
     if (hit) this.setQuery(this.frame.coordinates(hit.toArray()));
   }
 
@@ -175,9 +178,7 @@ export class LiveQueries {
   }
 
   readInputs() {
-    // What was typed stays until the mouse is to be followed again.
     this.setFollowing(false);
-    this.answerText.setAttribute("aria-live", "polite");
     this.query = this.inputs.map((input) => (input.value === "" ? NaN : Number(input.value)));
     this.answerQuery();
   }
@@ -188,7 +189,6 @@ export class LiveQueries {
     if (!direction || !Number.isFinite(this.query?.[axis])) return;
     event.preventDefault();
     this.setFollowing(false);
-    this.answerText.setAttribute("aria-live", "polite");
     const step = (this.viewer.data.frame.radius * this.frame.scale) / 100;
     this.setQuery(this.query.map((x, k) => (k === axis ? x + direction * step : x)));
   }
@@ -204,7 +204,7 @@ export class LiveQueries {
       const isValid = query.every(Number.isFinite);
       const answers = isValid
         ? await Promise.all(indexes.map((index) => this.ask(index, "query", index.number, query))) : [];
-      const far = isValid && isFar ? await this.ask(indexes[0], "queryFar", query) : null;
+      const far = isValid && isFar && this.farIndex ? await this.ask(this.farIndex, "queryFar", query) : null;
       this.shown = { query, isValid, indexes, answers, far };
       this.redraw();
     }

@@ -8,18 +8,18 @@ const KINDS = [["triangles", 3], ["segments", 2], ["points", 1]];
 export class SceneLayer {
   // `scene` has positions in the frame (f32) and for each kind the numbers of vertices. `objects` are names with the
   // first and the last number of their primitives of each kind; primitives of no object have an entry without a name.
-  constructor(scene, colours) {
+  constructor(scene) {
     this.group = new three.Group();
     this.objects = scene.objects.map((object) => ({ ...object, isVisible: true }));
     const positions = new three.BufferAttribute(scene.positions, 3);
     this.parts = [];
     this.materials = {
       triangles: new three.MeshLambertMaterial({
-        color: colours.surface, side: three.DoubleSide, flatShading: true,
+        side: three.DoubleSide, flatShading: true,
         polygonOffset: true, polygonOffsetFactor: 1, polygonOffsetUnits: 1,
       }),
-      segments: new three.LineBasicMaterial({ color: colours.line }),
-      points: new three.PointsMaterial({ color: colours.line, size: 3, sizeAttenuation: false }),
+      segments: new three.LineBasicMaterial(),
+      points: new three.PointsMaterial({ size: 3, sizeAttenuation: false }),
     };
     for (const [kind, size] of KINDS) {
       const indices = scene[kind];

@@ -31,7 +31,8 @@ export class SliceLayer {
     this.texture.minFilter = three.LinearFilter;
     const material = new three.MeshBasicMaterial({ map: this.texture, side: three.DoubleSide });
     this.mesh = new three.Mesh(new three.BufferGeometry(), material);
-    this.setPlane(2, (this.counts[2] - 1) / 2);
+    // The panel sets the plane.
+    this.axis = 2;
   }
 
   // Returns the parts of the value at a real index along an axis: pairs of a step into the values and a weight. A field

@@ -7,7 +7,7 @@ import { CellsLayer } from "./cells.js";
 import { THEMES } from "./colours.js";
 import { Frame, readData } from "./data.js";
 import { DeviationsLayer, DeviationsPanel } from "./deviations.js";
-import { Figure, histogram, legend } from "./histogram.js";
+import { Figure } from "./histogram.js";
 import { LiveQueries } from "./live.js";
 import { SceneLayer } from "./scene.js";
 import { SliceLayer } from "./slice.js";
@@ -45,7 +45,6 @@ class Viewer {
     this.unit = data.unit;
     this.frame = new Frame(data.frame);
     this.canvas = document.getElementById("picture");
-    this.theme = "light";
     // All figures, which have the colours of a scale, which depend on the theme.
     this.figures = [];
     this.renderer = makeRenderer(this.canvas);
@@ -59,11 +58,11 @@ class Viewer {
     this.camera.add(this.light);
     this.world.add(this.camera, new three.AmbientLight(0xffffff, 1.1));
 
-    this.scene = new SceneLayer(data.scene, this.colours);
+    this.scene = new SceneLayer(data.scene);
     this.world.add(this.scene.group);
     if (data.answers) this.addLayer("answers", new AnswersLayer(data.answers, this.frame), "group");
     if (this.answers) this.world.add(this.answers.selection);
-    if (data.cells) this.addLayer("cells", new CellsLayer(data.cells, this.colours), "group");
+    if (data.cells) this.addLayer("cells", new CellsLayer(data.cells), "group");
     const field = data.field ?? data.lists;
     if (field) this.addLayer("slice", new SliceLayer(field, !!data.lists), "mesh");
     if (data.live) this.addLayer("live", new LiveQueries(this, data.live), "group");
@@ -111,8 +110,8 @@ class Viewer {
   }
 
   // Makes a figure whose colours follow the theme.
-  figure(make, attributes) {
-    const figure = new Figure(make, attributes);
+  figure(read, attributes) {
+    const figure = new Figure(read, attributes);
     this.figures.push(figure);
     return figure;
   }
@@ -282,8 +281,8 @@ class Viewer {
     const all = counted(answers.length, "query");
     if (missing > 0) parts.push(element("p", {}, `${count(missing)} of ${all} have no answer.`));
     if (answers.answeredCount > 0) {
-      parts.push(this.figure(() => [legend(answers.scale, what, this.unit),
-        ...histogram(answers.values, answers.scale, what, this.unit)]).element);
+      const { scale, values } = answers;
+      parts.push(this.figure(() => ({ scale, what, unit: this.unit, values })).element);
     }
     add("Distances", "distances", ...parts);
     this.answerText = element("dl", { id: "answer", "aria-live": "polite" });
@@ -403,7 +402,7 @@ class Viewer {
     const title = slice.hasCells ? "Slice through the cells" : "Slice of the field";
     add(title, "field", element("p", {}, "across the axis ", ...axes), this.sliceRange,
       element("p", {}, this.sliceText), element("p", {}, this.sliceValue),
-      this.figure(() => [legend(slice.scale, what, this.sliceUnit)]).element,
+      this.figure(() => ({ scale: slice.scale, what, unit: this.sliceUnit })).element,
       element("p", { class: "small" }, `${about} The keys [ and ] move the slice, and Shift and the mouse drag it.`));
     this.moveSlice(slice.axis, 0.5);
   }

@@ -8,7 +8,7 @@ const MEASURED_TIME = 100;
 let module;
 
 const FUNCTIONS = {
-  // Loads the module and the scene, and returns whether the arrays of the scene fit each other.
+  // Loads the module and the scene, before any other call, and returns whether the arrays of the scene fit each other.
   async load({ module: bytes, coordinates, sizes, indices }) {
     const { instance } = await WebAssembly.instantiate(bytes, {});
     module = instance.exports;
@@ -70,9 +70,10 @@ function measureRate(number) {
   return answered / (time / 1000);
 }
 
-// Messages are taken one after the other, because a query could else be answered before the module is loaded.
-let queue = Promise.resolve();
-onmessage = ({ data: { name, values } }) => {
-  queue = queue.then(() => FUNCTIONS[name](...values)).then(
-    (result) => postMessage({ result }), (error) => postMessage({ error: error.message }));
+onmessage = async ({ data: { name, values } }) => {
+  try {
+    postMessage({ result: await FUNCTIONS[name](...values) });
+  } catch (error) {
+    postMessage({ error: error.message });
+  }
 };
