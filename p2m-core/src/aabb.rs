@@ -27,7 +27,8 @@ impl<T: Real> Aabb<T> {
     #[inline(always)]
     #[must_use]
     pub fn from_points(points: &[Point3<T>]) -> Self {
-        points.iter().fold(Self::empty(), |b, p| b.union(&Self { min: *p, max: *p }))
+        let Some((first, rest)) = points.split_first() else { return Self::empty() };
+        rest.iter().fold(Self { min: *first, max: *first }, |b, p| b.union(&Self { min: *p, max: *p }))
     }
 
     /// Returns the smallest box around two boxes. A NaN coordinate of either makes the result NaN on that axis.
@@ -58,7 +59,8 @@ impl<T: Real> Aabb<T> {
     #[inline]
     #[must_use]
     pub fn is_finite(&self) -> bool {
-        self.min.iter().chain(self.max.iter()).all(|x| x.is_finite())
+        // There is no early end, so that the comparisons are made in lanes.
+        self.min.iter().chain(self.max.iter()).fold(true, |all, x| all & x.is_finite())
     }
 
     /// Returns whether `other` lies in this box.

@@ -2,11 +2,12 @@
 
 use std::ops::Range;
 
-/// The number of chunks whose results exist before they are consumed. Their memory is needed twice.
-const CHUNKS_PER_GROUP: usize = 32;
+/// The number of chunks at most that are begun and not consumed yet. Their results are in memory.
+#[cfg(feature = "rayon")]
+const MAX_OPEN_CHUNKS: usize = 32;
 
 /// Splits 0..count into chunks of `chunk_len`, and passes the result of `work` on each chunk to `take`, in the order of
-/// the chunks. If `parallel`, the chunks of a group are worked on by all threads.
+/// the chunks. If `parallel`, all threads work on the chunks, and this one consumes results between its own chunks.
 pub(crate) fn map_chunks_in_order<R: Send>(
     count: usize,
     chunk_len: usize,
@@ -14,19 +15,120 @@ pub(crate) fn map_chunks_in_order<R: Send>(
     work: impl Fn(Range<usize>) -> R + Sync,
     mut take: impl FnMut(R),
 ) {
-    let chunks: Vec<Range<usize>> =
-        (0..count).step_by(chunk_len).map(|first| first..count.min(first + chunk_len)).collect();
+    let work = |chunk: usize| work(chunk * chunk_len..count.min((chunk + 1) * chunk_len));
+    let chunks = count.div_ceil(chunk_len);
     #[cfg(feature = "rayon")]
-    if parallel {
-        use rayon::prelude::*;
-        for group in chunks.chunks(CHUNKS_PER_GROUP) {
-            let results: Vec<R> = group.par_iter().cloned().map(&work).collect();
-            results.into_iter().for_each(&mut take);
-        }
+    if parallel && chunks > 1 && rayon::current_num_threads() > 1 {
+        OpenChunks::new(chunks).run(work, take);
         return;
     }
-    let _ = (parallel, CHUNKS_PER_GROUP);
-    chunks.into_iter().for_each(|chunk| take(work(chunk)));
+    let _ = parallel;
+    (0..chunks).for_each(|chunk| take(work(chunk)));
+}
+
+/// The chunks that are begun and not consumed yet.
+///
+/// No thread waits for a certain other one, so work may use threads itself. A thread that finds nothing to begin leaves
+/// the scope, in which all threads work, and a new scope begins where chunks are left.
+#[cfg(feature = "rayon")]
+struct OpenChunks<R>(std::sync::Mutex<OpenChunksState<R>>);
+
+#[cfg(feature = "rayon")]
+struct OpenChunksState<R> {
+    /// The number of chunks that are not begun.
+    left: usize,
+    /// The number of the next chunk.
+    next: usize,
+    /// The results of the chunks before the next one that are not consumed, where they are known.
+    results: std::collections::VecDeque<Option<R>>,
+    /// The number of other threads that are asked to work.
+    helpers: usize,
+}
+
+#[cfg(feature = "rayon")]
+impl<R: Send> OpenChunks<R> {
+    fn new(chunks: usize) -> Self {
+        let results = std::collections::VecDeque::with_capacity(MAX_OPEN_CHUNKS);
+        Self(std::sync::Mutex::new(OpenChunksState { left: chunks, next: 0, results, helpers: 0 }))
+    }
+
+    fn run(&self, work: impl Fn(usize) -> R + Sync, mut take: impl FnMut(R)) {
+        let max_helpers = rayon::current_num_threads() - 1;
+        while self.lock().has_more() {
+            rayon::in_place_scope(|scope| {
+                loop {
+                    while self.lock().add_helper(max_helpers) {
+                        scope.spawn(|_| self.help(&work));
+                    }
+                    if let Some(result) = self.lock().take_first() {
+                        take(result);
+                    } else if !self.work_on_next(&work) {
+                        break;
+                    }
+                }
+            });
+            while let Some(result) = self.lock().take_first() {
+                take(result);
+            }
+        }
+    }
+
+    /// Works on chunks until none may be begun.
+    fn help(&self, work: &impl Fn(usize) -> R) {
+        while self.work_on_next(work) {}
+        self.lock().helpers -= 1;
+    }
+
+    /// Works on the next chunk. Returns `false` if none may be begun.
+    fn work_on_next(&self, work: &impl Fn(usize) -> R) -> bool {
+        let Some(chunk) = self.lock().begin() else { return false };
+        let result = work(chunk);
+        self.lock().finish(chunk, result);
+        true
+    }
+
+    fn lock(&self) -> std::sync::MutexGuard<'_, OpenChunksState<R>> {
+        self.0.lock().expect("no thread panics while it has the lock")
+    }
+}
+
+#[cfg(feature = "rayon")]
+impl<R> OpenChunksState<R> {
+    /// Returns whether chunks are left to be worked on or to be consumed.
+    fn has_more(&self) -> bool {
+        self.left > 0 || !self.results.is_empty()
+    }
+
+    /// Counts one more helper, if another one may have something to do.
+    fn add_helper(&mut self, max_helpers: usize) -> bool {
+        let has_work = self.left > self.helpers && self.results.len() + self.helpers < MAX_OPEN_CHUNKS;
+        let is_added = has_work && self.helpers < max_helpers;
+        self.helpers += usize::from(is_added);
+        is_added
+    }
+
+    /// Begins the next chunk and returns its number; `None` if all are begun, or as many as may be open.
+    fn begin(&mut self) -> Option<usize> {
+        if self.left == 0 || self.results.len() >= MAX_OPEN_CHUNKS {
+            return None;
+        }
+        self.left -= 1;
+        self.next += 1;
+        self.results.push_back(None);
+        Some(self.next - 1)
+    }
+
+    fn finish(&mut self, chunk: usize, result: R) {
+        let first = self.next - self.results.len();
+        self.results[chunk - first] = Some(result);
+    }
+
+    /// Removes the result of the first open chunk, if it is known.
+    fn take_first(&mut self) -> Option<R> {
+        let result = self.results.front_mut()?.take()?;
+        self.results.pop_front();
+        Some(result)
+    }
 }
 
 /// Returns the results of two functions. If `parallel`, another thread may run the first one at the same time.
@@ -46,4 +148,45 @@ pub(crate) fn run_both<A: Send, B>(
     }
     let _ = parallel;
     (aside(), here())
+}
+
+#[cfg(all(test, feature = "rayon"))]
+mod tests {
+    use super::*;
+    use std::sync::atomic::{AtomicUsize, Ordering};
+
+    /// Chunks of very different lengths are consumed in order, each once, and few are open at a time.
+    #[test]
+    fn results_come_in_order_from_any_number_of_threads() {
+        for threads in [1, 2, 3, 8] {
+            let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().expect("threads");
+            for (count, chunk_len) in [(0, 4), (1, 4), (9, 2), (1000, 7), (200, 1)] {
+                let (open, most) = (AtomicUsize::new(0), AtomicUsize::new(0));
+                let mut taken = Vec::new();
+                let work = |range: Range<usize>| {
+                    most.fetch_max(open.fetch_add(1, Ordering::SeqCst) + 1, Ordering::SeqCst);
+                    // Meanwhile other threads begin as many chunks as they may.
+                    if range.start == 0 {
+                        std::thread::sleep(std::time::Duration::from_millis(30));
+                    }
+                    // The work uses threads itself.
+                    let steps = if range.start.is_multiple_of(5) { 20_000 } else { 10 };
+                    let step = |i: usize| std::hint::black_box(i) + range.start;
+                    let [a, b] = [0..steps / 2, steps / 2..steps];
+                    let (a, b) = rayon::join(|| a.map(step).sum::<usize>(), || b.map(step).sum::<usize>());
+                    (range.clone(), a + b - steps * (steps - 1) / 2)
+                };
+                pool.install(|| {
+                    map_chunks_in_order(count, chunk_len, true, work, |(range, sum)| {
+                        open.fetch_sub(1, Ordering::SeqCst);
+                        let steps = if range.start.is_multiple_of(5) { 20_000 } else { 10 };
+                        assert_eq!(sum, steps * range.start);
+                        taken.extend(range);
+                    });
+                });
+                assert!(taken.into_iter().eq(0..count), "{threads} threads");
+                assert!(most.into_inner() <= MAX_OPEN_CHUNKS);
+            }
+        }
+    }
 }

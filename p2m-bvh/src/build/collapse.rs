@@ -6,7 +6,7 @@
 //! rays; the difference is that leaves stay as they are here. A greedy choice from the root would leave the lowest
 //! nodes half empty.
 
-use crate::build::split::SplitNode;
+use crate::build::split::{SplitNode, to_u32};
 use crate::tree::node_ref::{NodeRef, WIDTH};
 use std::ops::Range;
 
@@ -29,39 +29,20 @@ enum Content {
 }
 
 impl PacketBinaryTree {
-    /// Continues a tree of splits down to single packets. `packets_of` returns the numbers of the packets of a leaf, of
-    /// which it has one at least.
-    pub(crate) fn new(splits: &[SplitNode], mut packets_of: impl FnMut(&SplitNode) -> Range<u32>) -> Self {
-        let mut nodes: Vec<BinaryNode> = Vec::with_capacity(splits.len());
-        // The leaves with several packets.
-        let mut pending = Vec::new();
-        for (at, split) in splits.iter().enumerate() {
+    /// Takes over a tree of splits. Returns the ranges of the primitives of its packets as well.
+    pub(crate) fn new(splits: &[SplitNode]) -> (Self, Vec<Range<u32>>) {
+        let mut packets = Vec::with_capacity(splits.len().div_ceil(2));
+        let node = |split: &SplitNode| {
             let content = if split.count == 0 {
                 Content::Nodes(split.first)
             } else {
-                let packets = packets_of(split);
-                if packets.len() > 1 {
-                    pending.push((at, packets.clone()));
-                }
-                Content::Packet(packets.start)
+                packets.push(split.first..split.first + split.count);
+                Content::Packet(to_u32(packets.len() - 1))
             };
-            nodes.push(BinaryNode { half_area: split.half_area, content });
-        }
-        while let Some((at, packets)) = pending.pop() {
-            let half_area = nodes[at].half_area;
-            let child = nodes.len();
-            nodes[at].content = Content::Nodes(u32::try_from(child).expect("a leaf has few packets"));
-            let middle = packets.start + (packets.end - packets.start) / 2;
-            for (child, half) in
-                [packets.start..middle, middle..packets.end].into_iter().enumerate().map(|(i, half)| (child + i, half))
-            {
-                nodes.push(BinaryNode { half_area, content: Content::Packet(half.start) });
-                if half.len() > 1 {
-                    pending.push((child, half));
-                }
-            }
-        }
-        Self { nodes }
+            BinaryNode { half_area: split.half_area, content }
+        };
+        let nodes = splits.iter().map(node).collect();
+        (Self { nodes }, packets)
     }
 
     /// Returns the root, the children of all nodes, and the number of nodes on the longest path. Parents

@@ -3,7 +3,8 @@
 use crate::build::collapse::PacketBinaryTree;
 use crate::build::options::TreeOptions;
 use crate::build::primitive::BuildPrimitive;
-use crate::build::split::{SplitNode, split, to_u32};
+use crate::build::run_both;
+use crate::build::split::{split, to_u32};
 use crate::packet::{Kind, LANES, Member, Members, Packet};
 use crate::tree::frame::Frame;
 use crate::tree::frame_line::half_extent;
@@ -11,10 +12,8 @@ use crate::tree::node_ref::{NodeRef, WIDTH};
 use crate::tree::wide_node::{VolumeNodes, WideNode};
 use crate::tree::{Leaves, PacketTree};
 use crate::volume::Volume;
-use bytemuck::Zeroable;
 use p2m_core::engine::simd::Isa;
 use p2m_core::{Aabb, BuildError, Primitive, PrimitiveId, PrimitiveSet, Real, check_set};
-use std::ops::Range;
 
 /// The least unit of a packet, as a part of the unit of the tree: 2^-36. Finer units would bring nothing.
 const MIN_UNIT_RATIO: f64 = 1.0 / (1u64 << 36) as f64;
@@ -72,28 +71,15 @@ impl<V: Volume> PacketTree<V> {
         let (shared, options) = (options.shared(), options.splits());
         let frame = Frame::around(&bounds);
         let splits = split(&mut primitives, &frame, members, options);
-        // Each leaf becomes one packet or several, because a packet has primitives of one kind.
-        let mut packet_ids: Vec<Range<u32>> = Vec::new();
-        let packets_of = |leaf: &SplitNode| {
-            let first_packet = to_u32(packet_ids.len());
-            let mut first = leaf.first;
-            for run in primitives[leaf.range()].chunk_by(BuildPrimitive::is_same_kind) {
-                for packet in run.chunks(LANES) {
-                    let end = first + to_u32(packet.len());
-                    packet_ids.push(first..end);
-                    first = end;
-                }
-            }
-            first_packet..to_u32(packet_ids.len())
-        };
-        let binary = PacketBinaryTree::new(&splits, packets_of);
+        let (binary, packet_ids) = PacketBinaryTree::new(&splits);
         drop(splits);
         let order = map(&primitives, options.parallel, BuildPrimitive::id);
         drop(primitives);
-        let (root, children, depth) = binary.collapse();
-        drop(binary);
         let ids_of = |packet: usize| &order[packet_ids[packet].start as usize..packet_ids[packet].end as usize];
-        let (leaves, packet_bounds) = pack::<V>(packet_ids.len(), &ids_of, members, &frame, &shared, options.parallel);
+        let pack = || pack::<V>(packet_ids.len(), &ids_of, members, &frame, &shared, options.parallel);
+        // The nodes are needed only after the packets, and only packets can be made on several threads.
+        let collapse = move || binary.collapse();
+        let ((root, children, depth), (leaves, packet_bounds)) = run_both(options.parallel, collapse, pack);
         let mut tree = Self {
             isa: Isa::best(),
             shared,
@@ -185,6 +171,9 @@ fn scene_box<T: Real, S: PrimitiveSet<T> + Sync + ?Sized>(set: &S, parallel: boo
 type Bounds<V> = <<V as VolumeNodes>::Node as WideNode>::Bounds;
 
 /// Makes packets of the primitives whose ids a function returns, and bounds them in the frame of the tree.
+///
+/// All threads make a group of packets, with lists of vertices that the next groups fill again. The vertices of a group
+/// are joined while the next one is made, so they are never twice in memory.
 fn pack<'a, V: Volume>(
     packets: usize,
     ids_of: &(dyn Fn(usize) -> &'a [PrimitiveId] + Sync),
@@ -193,8 +182,9 @@ fn pack<'a, V: Volume>(
     shared: &V::Shared,
     parallel: bool,
 ) -> (Leaves, Vec<Bounds<V>>) {
-    let pack_chunk = |first: usize, chunk: &mut [Packet]| {
-        let (mut vertices, mut bounded) = (Vec::new(), Vec::with_capacity(chunk.len()));
+    let pack_chunk = |(first, chunk, vertices): (usize, &mut [Packet], &mut Vec<[f64; 3]>)| {
+        vertices.clear();
+        let mut bounded = Vec::with_capacity(chunk.len());
         let mut primitives = Vec::with_capacity(LANES);
         for (i, packet) in chunk.iter_mut().enumerate() {
             let ids = ids_of(first + i);
@@ -202,16 +192,73 @@ fn pack<'a, V: Volume>(
             primitives.extend(ids.iter().map(|id| members(*id)));
             let bounds = primitives.iter().fold(Aabb::empty(), |all: Aabb<f64>, one: &Member| all.union(&one.bounds));
             bounded.push(V::Node::enclose(shared, frame, &primitives, &bounds));
-            *packet = Packet::new(ids, &primitives, &bounds, frame.unit * MIN_UNIT_RATIO, &mut vertices);
+            *packet = Packet::new(ids, &primitives, &bounds, frame.unit * MIN_UNIT_RATIO, vertices);
         }
-        // The lists of all chunks are in memory together with the list of all vertices.
-        vertices.shrink_to_fit();
-        (vertices, bounded)
+        bounded
     };
-    let mut packed = map_numbers(packets, parallel, |_| Packet::zeroed());
-    let chunks = map_chunks(&mut packed, parallel, pack_chunk);
-    let (vertices, bounds): (Vec<_>, Vec<_>) = chunks.into_iter().unzip();
-    (Leaves::new(packed, PACKET_CHUNK, vertices), bounds.concat())
+    // The system clears the pages of the array when they are first written.
+    let mut packed: Vec<Packet> = bytemuck::zeroed_vec(packets);
+    let mut bounds = Vec::with_capacity(packets);
+    let mut joined = JoinedVertices::new(packets);
+    let no_lists = || vec![Vec::new(); CHUNKS_PER_GROUP];
+    let (mut waiting, mut spare): ((&mut [Packet], _), _) = ((&mut [], no_lists()), no_lists());
+    for (group, packets) in packed.chunks_mut(CHUNKS_PER_GROUP * PACKET_CHUNK).enumerate() {
+        let mut lists = spare;
+        let chunks = packets.chunks_mut(PACKET_CHUNK).zip(&mut lists).enumerate();
+        let first = |chunk: usize| (group * CHUNKS_PER_GROUP + chunk) * PACKET_CHUNK;
+        let chunks = chunks.map(|(i, (chunk, list))| (first(i), chunk, list)).collect();
+        let (waiting_packets, waiting_lists) = waiting;
+        let join_waiting = || joined.append(waiting_packets, &waiting_lists);
+        let ((), bounded) = run_both(parallel, join_waiting, || map_owned(chunks, parallel, pack_chunk));
+        bounds.extend(bounded.into_iter().flatten());
+        (waiting, spare) = ((packets, lists), waiting_lists);
+    }
+    joined.append(waiting.0, &waiting.1);
+    (joined.finish(packed), bounds)
+}
+
+/// The vertices of all packets in one array, in the order of the packets, and the offsets of the packets in it.
+struct JoinedVertices {
+    packets: usize,
+    vertices: Vec<[f64; 3]>,
+    offsets: Vec<u32>,
+    has_non_triangles: bool,
+}
+
+impl JoinedVertices {
+    fn new(packets: usize) -> Self {
+        Self { packets, vertices: Vec::new(), offsets: Vec::with_capacity(packets + 1), has_non_triangles: false }
+    }
+
+    /// Appends the vertices of the next packets. Each list has those of [`PACKET_CHUNK`] packets, which count from 0.
+    fn append(&mut self, packets: &mut [Packet], lists: &[Vec<[f64; 3]>]) {
+        for (chunk, list) in packets.chunks_mut(PACKET_CHUNK).zip(lists) {
+            let first = to_u32(self.vertices.len());
+            for packet in &mut *chunk {
+                packet.vertex_offset += first;
+                self.offsets.push(packet.vertex_offset);
+                self.has_non_triangles |= !packet.has_triangles();
+            }
+            if self.vertices.capacity() - self.vertices.len() < list.len() {
+                // The packets that follow probably have as many vertices as those that are here.
+                let known = self.vertices.len() + list.len();
+                let all = known * self.packets / self.offsets.len();
+                self.vertices.reserve_exact(list.len().max(all + all / 64 - self.vertices.len()));
+            }
+            self.vertices.extend_from_slice(list);
+        }
+    }
+
+    fn finish(mut self, packets: Vec<Packet>) -> Leaves {
+        self.offsets.push(to_u32(self.vertices.len()));
+        self.vertices.shrink_to_fit();
+        Leaves {
+            packets: packets.into(),
+            vertices: self.vertices.into(),
+            vertex_offsets: self.offsets.into(),
+            has_non_triangles: self.has_non_triangles,
+        }
+    }
 }
 
 /// Maps a slice in order, on all threads if `parallel` is set and the feature `rayon` is on.
@@ -219,22 +266,23 @@ fn map<A: Sync, B: Send>(all: &[A], parallel: bool, f: impl Fn(&A) -> B + Sync) 
     map_numbers(all.len(), parallel, |i| f(&all[i]))
 }
 
-/// Maps the chunks of [`PACKET_CHUNK`] packets like [`map`]. The function gets the number of the first packet as well.
-fn map_chunks<B: Send>(packets: &mut [Packet], parallel: bool, f: impl Fn(usize, &mut [Packet]) -> B + Sync) -> Vec<B> {
+/// Maps the items of a list in order, on all threads if `parallel` is set and the feature `rayon` is on.
+fn map_owned<A: Send, B: Send>(all: Vec<A>, parallel: bool, f: impl Fn(A) -> B + Sync) -> Vec<B> {
     #[cfg(feature = "rayon")]
     if parallel {
         use rayon::prelude::*;
-        let chunks = packets.par_chunks_mut(PACKET_CHUNK).enumerate();
-        return chunks.map(|(i, chunk)| f(i * PACKET_CHUNK, chunk)).collect();
+        return all.into_par_iter().map(&f).collect();
     }
     let _ = parallel;
-    packets.chunks_mut(PACKET_CHUNK).enumerate().map(|(i, chunk)| f(i * PACKET_CHUNK, chunk)).collect()
+    all.into_iter().map(f).collect()
 }
 
 /// The number of primitives that a thread handles at a time.
 const CHUNK: usize = 1 << 14;
 /// The number of packets that a thread makes at a time.
-const PACKET_CHUNK: usize = 1 << 9;
+const PACKET_CHUNK: usize = 1 << 7;
+/// The number of chunks of packets that are made before their vertices are joined.
+const CHUNKS_PER_GROUP: usize = 1 << 6;
 
 /// Maps the numbers below `len` in order, on all threads if `parallel` is set and the feature `rayon` is on.
 fn map_numbers<B: Send>(len: usize, parallel: bool, f: impl Fn(usize) -> B + Sync) -> Vec<B> {

@@ -109,6 +109,11 @@ impl GrowingBox {
         I::Eight::load(&self.0).min(I::Eight::load(&other.0)).store(&mut self.0);
     }
 
+    /// The box around both boxes.
+    pub(crate) fn union(&self, other: &Self) -> Self {
+        Self(std::array::from_fn(|k| self.0[k].min(other.0[k])))
+    }
+
     /// The box if the condition holds, and otherwise one that adds nothing to others. There is no branch.
     #[inline(always)]
     pub(crate) fn only_if(&self, condition: bool) -> Self {

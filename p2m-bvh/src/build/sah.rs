@@ -2,6 +2,7 @@
 
 use crate::build::options::{SplitOptions, SplitRule};
 use crate::build::primitive::{BuildPrimitive, GrowingBox};
+use crate::build::run_both;
 use p2m_core::engine::simd::{InstructionSet, Isa, SimdKernel};
 
 /// The number of bins along an axis.
@@ -92,22 +93,31 @@ impl SplitPlane {
 /// The number of times that [`SplitRule::AdaptiveSah`] samples the cost again around the best position.
 const RESAMPLINGS: usize = 2;
 
-/// The cheapest split that the rule finds; `None` if there is none, or if the rule does not compare costs.
+/// The cheapest split that the rule finds; `None` if there is none, or if the rule does not compare costs. The primitives
+/// are sorted into bins by as many tasks.
 pub(crate) fn best_split(
     isa: Isa,
     primitives: &[BuildPrimitive],
     bounds: &GrowingBox,
     centres: &GrowingBox,
     options: &SplitOptions,
+    tasks: usize,
 ) -> Option<SplitPlane> {
     let (node_area, block) = (bounds.half_area(), options.block.max(1));
     let binning = Binning::of(centres);
     match options.rule {
         SplitRule::Median => None,
-        SplitRule::Sah => isa.run(FindBorder { primitives, axes: [0, 1, 2], binning, node_area, block }),
+        SplitRule::Sah => {
+            let axes = [0, 1, 2];
+            let bins = fill_bins(isa, primitives, axes, &binning, tasks);
+            isa.run(FindBorder { bins: &bins, axes, binning, node_area, block })
+        }
         SplitRule::AdaptiveSah => {
             let axes = [bounds.longest_axis()];
-            let border_of = |binning| isa.run(FindBorder { primitives, axes, binning, node_area, block });
+            let border_of = |binning| {
+                let bins = fill_bins(isa, primitives, axes, &binning, tasks);
+                isa.run(FindBorder { bins: &bins, axes, binning, node_area, block })
+            };
             let mut best = border_of(binning)?;
             for _ in 0..RESAMPLINGS {
                 let finer = border_of(best.binning.refined_at(best.axis, best.bin));
@@ -127,6 +137,12 @@ struct Bins {
 
 impl Bins {
     const EMPTY: Self = Self { boxes: [GrowingBox::EMPTY; BINS], counts: [0; BINS] };
+
+    /// Adds the primitives of other bins of the same division.
+    fn add(&mut self, other: &Self) {
+        self.boxes.iter_mut().zip(&other.boxes).for_each(|(bin, other)| *bin = bin.union(other));
+        self.counts.iter_mut().zip(&other.counts).for_each(|(count, other)| *count += other);
+    }
 
     /// The box around the primitives of some bins.
     #[inline(always)]
@@ -179,10 +195,58 @@ fn test_cost(n: u32, block: usize) -> f32 {
     tested as f32
 }
 
-/// A SIMD kernel that sorts primitives into bins and returns the cheapest border of some axes. It uses the instruction
-/// set only through the compiler.
-struct FindBorder<'a, const N: usize> {
+/// Sorts primitives into the bins of some axes by as many tasks.
+fn fill_bins<const N: usize>(
+    isa: Isa,
+    primitives: &[BuildPrimitive],
+    axes: [usize; N],
+    binning: &Binning,
+    tasks: usize,
+) -> [Bins; N] {
+    if tasks <= 1 {
+        return isa.run(FillBins { primitives, axes, binning });
+    }
+    let (before, after) = primitives.split_at(primitives.len() / 2);
+    let (mut bins, others) = run_both(
+        true,
+        || fill_bins(isa, before, axes, binning, tasks / 2),
+        || fill_bins(isa, after, axes, binning, tasks / 2),
+    );
+    bins.iter_mut().zip(&others).for_each(|(bins, others)| bins.add(others));
+    bins
+}
+
+/// A SIMD kernel that sorts primitives into the bins of some axes. It uses the instruction set only through the
+/// compiler.
+struct FillBins<'a, const N: usize> {
     primitives: &'a [BuildPrimitive],
+    axes: [usize; N],
+    binning: &'a Binning,
+}
+
+impl<const N: usize> SimdKernel for FillBins<'_, N> {
+    type Output = [Bins; N];
+
+    #[inline(always)]
+    fn run<I: InstructionSet>(self) -> [Bins; N] {
+        let Self { primitives, axes, binning } = self;
+        let mut bins = [Bins::EMPTY; N];
+        for primitive in primitives {
+            let numbers = binning.bins_of(primitive);
+            for i in 0..N {
+                let bin = (numbers[axes[i]] as usize) % BINS;
+                bins[i].boxes[bin].add::<I>(&primitive.bounds());
+                bins[i].counts[bin] += 1;
+            }
+        }
+        bins
+    }
+}
+
+/// A SIMD kernel that returns the cheapest border of the bins of some axes. It uses the instruction set only through the
+/// compiler.
+struct FindBorder<'a, const N: usize> {
+    bins: &'a [Bins; N],
     axes: [usize; N],
     binning: Binning,
     node_area: f32,
@@ -194,16 +258,7 @@ impl<const N: usize> SimdKernel for FindBorder<'_, N> {
 
     #[inline(always)]
     fn run<I: InstructionSet>(self) -> Option<SplitPlane> {
-        let Self { primitives, axes, binning, node_area, block } = self;
-        let mut bins = [Bins::EMPTY; N];
-        for primitive in primitives {
-            let numbers = binning.bins_of(primitive);
-            for i in 0..N {
-                let bin = (numbers[axes[i]] as usize) % BINS;
-                bins[i].boxes[bin].add::<I>(&primitive.bounds());
-                bins[i].counts[bin] += 1;
-            }
-        }
+        let Self { bins, axes, binning, node_area, block } = self;
         let mut best = (0, 0, f32::INFINITY);
         for (i, bins) in bins.iter().enumerate() {
             let (bin, cost) = bins.cheapest_border::<I>(node_area, block);

@@ -10,8 +10,9 @@
 
 use crate::build::options::SplitOptions;
 use crate::build::primitive::{BuildPrimitive, GrowingBox};
+use crate::build::run_both;
 use crate::build::sah::{SplitPlane, best_split};
-use crate::packet::Members;
+use crate::packet::{LANES, Members};
 use crate::tree::MAX_DEPTH;
 use crate::tree::frame::Frame;
 use p2m_core::Aabb;
@@ -26,8 +27,8 @@ pub(crate) const MAX_SPLIT_DEPTH: usize = MAX_DEPTH - 2;
 /// have fewer than 14 of the 24 bits of f32.
 const MIN_SIDE: f32 = 1.0 / 1024.0;
 
-/// A node of the binary tree: either a leaf with `count` primitives from index `first` on, or, if `count` is 0, the
-/// parent of the nodes `first` and `first + 1`.
+/// A node of the binary tree: either the parent of the nodes `first` and `first + 1`, if `count` is 0, or the leaf of one
+/// packet, which gets `count` primitives of one kind from index `first` on.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct SplitNode {
     /// Half of the surface area of the box around the node, in the frame of the scene.
@@ -37,24 +38,29 @@ pub(crate) struct SplitNode {
 }
 
 impl SplitNode {
+    /// A node whose content is not known yet.
+    const UNKNOWN: Self = Self { half_area: 0.0, first: 0, count: 0 };
+
     /// The children of an inner node; `None` for a leaf.
     #[cfg(test)]
     pub(crate) fn children(&self) -> Option<[usize; 2]> {
         (self.count == 0).then_some([self.first as usize, self.first as usize + 1])
     }
 
-    /// The indices of the primitives of a leaf in the order of the leaves; an empty range for an inner node.
+    /// The indices of the primitives of a leaf in the order of the leaves.
+    #[cfg(test)]
     pub(crate) fn range(&self) -> std::ops::Range<usize> {
-        let first = if self.count == 0 { 0 } else { self.first as usize };
-        first..first + self.count as usize
+        assert!(self.count > 0, "a leaf");
+        self.first as usize..self.first as usize + self.count as usize
     }
 }
 
 /// Splits primitives, which stand in the frame of the scene, and sorts them into the order of the leaves. Returns the
 /// nodes; node 0 is the root, and no primitives have no nodes.
 ///
-/// The primitives of one leaf are sorted by [`BuildPrimitive::rank`]. Siblings are side by side, and everything below the left one
-/// comes before everything below the right one. Parents come before children.
+/// The primitives of one leaf are sorted by [`BuildPrimitive::rank`]. Siblings are side by side, and everything below the
+/// left one comes before everything below the right one. Parents come before children. Neither the nodes nor the order
+/// depend on the number of threads: sides have the same primitives in whichever order, and a leaf sorts its own.
 pub(crate) fn split(
     primitives: &mut [BuildPrimitive],
     frame: &Frame,
@@ -93,6 +99,10 @@ impl Part {
 #[cfg(feature = "rayon")]
 const MIN_PRIMITIVES_TO_FORK: usize = 1 << 13;
 
+/// The least number of primitives of a node that several threads divide.
+#[cfg(feature = "rayon")]
+const MIN_PRIMITIVES_TO_SHARE: usize = 1 << 15;
+
 /// The data that all splits of a tree share.
 struct Splitter<'a> {
     isa: Isa,
@@ -105,8 +115,19 @@ struct Splitter<'a> {
 impl Splitter<'_> {
     /// Returns the root over primitives that stand in the frame of the scene.
     fn root(&self, primitives: &[BuildPrimitive]) -> Part {
-        let [bounds, centres] = self.isa.run(BoundPrimitives(primitives));
+        let [bounds, centres] = bounds_of(self.isa, primitives, self.tasks(primitives.len(), 0));
         Part { bounds, centres, unit: 1.0, is_finest: false, depth: 0 }
+    }
+
+    /// The number of tasks that divide a node at this depth. Nodes near the root are fewer than the threads, so several
+    /// threads divide each of them.
+    fn tasks(&self, len: usize, depth: usize) -> usize {
+        #[cfg(feature = "rayon")]
+        if self.options.parallel && len >= MIN_PRIMITIVES_TO_SHARE && depth < usize::BITS as usize {
+            return (rayon::current_num_threads() >> depth).max(1);
+        }
+        let _ = (len, depth);
+        1
     }
 
     /// The tree over some primitives, which have the indices from `first` on. Its nodes are numbered from its root,
@@ -115,24 +136,25 @@ impl Splitter<'_> {
         #[cfg(feature = "rayon")]
         if self.options.parallel && primitives.len() >= MIN_PRIMITIVES_TO_FORK {
             let Some((left, [a, b])) = self.divide(primitives, &part) else {
-                return vec![leaf(&part, first, primitives)];
+                let mut nodes = vec![SplitNode::UNKNOWN];
+                add_leaves(&mut nodes, 0, first, primitives, part.half_area());
+                return nodes;
             };
             let (before, after) = primitives.split_at_mut(left);
-            let (a, b) = rayon::join(|| self.subtree(before, first, a), || self.subtree(after, first + left, b));
+            let (a, b) = run_both(true, || self.subtree(before, first, a), || self.subtree(after, first + left, b));
             return joined(part.half_area(), &a, &b);
         }
-        let unknown = SplitNode { half_area: 0.0, first: 0, count: 0 };
-        let mut nodes = vec![unknown];
+        let mut nodes = vec![SplitNode::UNKNOWN];
         // The nodes that still have to be split: their numbers, the ranges of their primitives, and their boxes.
         let mut pending = vec![(0usize, 0..primitives.len(), part)];
         while let Some((at, range, part)) = pending.pop() {
             let here = &mut primitives[range.clone()];
             match self.divide(here, &part) {
-                None => nodes[at] = leaf(&part, first + range.start, here),
+                None => add_leaves(&mut nodes, at, first + range.start, here, part.half_area()),
                 Some((left, [a, b])) => {
                     let child = nodes.len();
                     nodes[at] = SplitNode { half_area: part.half_area(), first: to_u32(child), count: 0 };
-                    nodes.extend([unknown; 2]);
+                    nodes.extend([SplitNode::UNKNOWN; 2]);
                     let middle = range.start + left;
                     pending.push((child + 1, middle..range.end, b));
                     pending.push((child, range.start..middle, a));
@@ -153,8 +175,9 @@ impl Splitter<'_> {
             return None;
         }
         let part = &self.in_finer_frame(primitives, part);
+        let tasks = self.tasks(primitives.len(), part.depth);
         let plane = if part.depth < MAX_SPLIT_DEPTH / 2 {
-            best_split(isa, primitives, &part.bounds, &part.centres, options)
+            best_split(isa, primitives, &part.bounds, &part.centres, options, tasks)
         } else {
             None
         };
@@ -164,7 +187,7 @@ impl Splitter<'_> {
             }
             // Both sides have primitives, because `best_split` considers no other planes.
             Some(plane) => {
-                let (left, centres) = isa.run(Partition { primitives, plane: &plane });
+                let (left, centres) = partition(isa, primitives, &plane, tasks);
                 (left, plane.bounds, centres)
             }
             None if may_be_leaf => return None,
@@ -175,7 +198,7 @@ impl Splitter<'_> {
                     a.centre()[axis].total_cmp(&b.centre()[axis]).then(a.id().cmp(&b.id()))
                 });
                 let (before, after) = primitives.split_at(middle);
-                let ([a, c], [b, d]) = (isa.run(BoundPrimitives(before)), isa.run(BoundPrimitives(after)));
+                let ([a, c], [b, d]) = (bounds_of(isa, before, tasks), bounds_of(isa, after, tasks));
                 (middle, [a, b], [c, d])
             }
         };
@@ -200,16 +223,45 @@ impl Splitter<'_> {
         for primitive in primitives.iter_mut() {
             *primitive = BuildPrimitive::from_member(&frame, &(self.members)(primitive.id()), primitive.id());
         }
-        let [bounds, centres] = self.isa.run(BoundPrimitives(primitives));
+        let [bounds, centres] = bounds_of(self.isa, primitives, 1);
         let is_finest = bounds.longest_side() < MIN_SIDE;
         Part { bounds, centres, unit: frame.unit * self.frame.per_unit, is_finest, depth: part.depth }
     }
 }
 
-/// Makes a leaf and sorts its primitives.
-fn leaf(part: &Part, first: usize, primitives: &mut [BuildPrimitive]) -> SplitNode {
+/// Adds the leaves of a node that is not split: one for each packet, because a packet has at most [`LANES`] primitives
+/// of one kind. They are halved until each is alone, below the node itself, whose number is `at`. The primitives, which
+/// have the indices from `first` on, are sorted.
+fn add_leaves(nodes: &mut Vec<SplitNode>, at: usize, first: usize, primitives: &mut [BuildPrimitive], half_area: f64) {
     primitives.sort_unstable_by_key(BuildPrimitive::rank);
-    SplitNode { half_area: part.half_area(), first: to_u32(first), count: to_u32(primitives.len()) }
+    // Ranks are sorted by the kind first.
+    let is_one_kind = primitives.first().zip(primitives.last()).is_none_or(|(first, last)| first.is_same_kind(last));
+    if is_one_kind && primitives.len() <= LANES {
+        nodes[at] = SplitNode { half_area, first: to_u32(first), count: to_u32(primitives.len()) };
+        return;
+    }
+    let mut packets = Vec::new();
+    let mut packet_first = to_u32(first);
+    for packet in primitives.chunk_by(BuildPrimitive::is_same_kind).flat_map(|run| run.chunks(LANES)) {
+        let count = to_u32(packet.len());
+        packets.push(SplitNode { half_area, first: packet_first, count });
+        packet_first += count;
+    }
+    halve_leaves(nodes, at, &packets);
+}
+
+/// Makes a node the root of a balanced tree over some leaves.
+fn halve_leaves(nodes: &mut Vec<SplitNode>, at: usize, leaves: &[SplitNode]) {
+    if let [leaf] = leaves {
+        nodes[at] = *leaf;
+        return;
+    }
+    let child = nodes.len();
+    nodes[at] = SplitNode { half_area: leaves[0].half_area, first: to_u32(child), count: 0 };
+    nodes.extend([SplitNode::UNKNOWN; 2]);
+    let (before, after) = leaves.split_at(leaves.len() / 2);
+    halve_leaves(nodes, child, before);
+    halve_leaves(nodes, child + 1, after);
 }
 
 /// Joins two subtrees below a new root, in the order of [`split`].
@@ -235,6 +287,48 @@ pub(crate) fn to_u32(n: usize) -> u32 {
 #[allow(clippy::cast_precision_loss, reason = "counts are far below 2^53")]
 fn to_f64(n: usize) -> f64 {
     n as f64
+}
+
+/// Returns the box around some primitives and the box around their centres, computed by as many tasks.
+fn bounds_of(isa: Isa, primitives: &[BuildPrimitive], tasks: usize) -> [GrowingBox; 2] {
+    if tasks <= 1 {
+        return isa.run(BoundPrimitives(primitives));
+    }
+    let (before, after) = primitives.split_at(primitives.len() / 2);
+    let ([a, c], [b, d]) = run_both(true, || bounds_of(isa, before, tasks / 2), || bounds_of(isa, after, tasks / 2));
+    [a.union(&b), c.union(&d)]
+}
+
+/// Moves the primitives below a plane to the front by as many tasks, and returns their number and the boxes around the
+/// centres of both sides. The order within a side depends on the number of tasks.
+fn partition(
+    isa: Isa,
+    primitives: &mut [BuildPrimitive],
+    plane: &SplitPlane,
+    tasks: usize,
+) -> (usize, [GrowingBox; 2]) {
+    if tasks <= 1 {
+        return isa.run(Partition { primitives, plane });
+    }
+    let (before, after) = primitives.split_at_mut(primitives.len() / 2);
+    let ((a, [a_left, a_right]), (b, [b_left, b_right])) =
+        run_both(true, || partition(isa, before, plane, tasks / 2), || partition(isa, after, plane, tasks / 2));
+    // The right side of the first half and the left side of the second one are neighbours and change places. Only as
+    // many primitives move as the smaller one has.
+    let moved = b.min(before.len() - a);
+    swap(&mut before[a..a + moved], &mut after[b - moved..b], tasks);
+    (a + b, [a_left.union(&b_left), a_right.union(&b_right)])
+}
+
+/// Exchanges the contents of two slices by as many tasks.
+fn swap(a: &mut [BuildPrimitive], b: &mut [BuildPrimitive], tasks: usize) {
+    if tasks <= 1 {
+        a.swap_with_slice(b);
+        return;
+    }
+    let middle = a.len() / 2;
+    let ((a, a_after), (b, b_after)) = (a.split_at_mut(middle), b.split_at_mut(middle));
+    run_both(true, || swap(a, b, tasks / 2), || swap(a_after, b_after, tasks / 2));
 }
 
 /// A SIMD kernel that returns the box around some primitives and the box around their centres. It uses the instruction
@@ -320,7 +414,8 @@ mod tests {
         let (nodes, mut ids) = topology(points, &SplitOptions::default());
         ids.sort_unstable();
         assert!(ids.into_iter().eq(0..points.len()), "every primitive once");
-        let mut covered: Vec<usize> = nodes.iter().flat_map(|n| n.children().map_or(n.range(), |_| 0..0)).collect();
+        let leaves = nodes.iter().filter(|node| node.children().is_none());
+        let mut covered: Vec<usize> = leaves.flat_map(SplitNode::range).collect();
         covered.sort_unstable();
         assert!(covered.into_iter().eq(0..points.len()), "every index in one leaf");
         assert!(depth(&nodes) <= MAX_SPLIT_DEPTH);
@@ -374,7 +469,7 @@ mod tests {
         let mut rng = p2m_testkit::rng("splits by threads", 0);
         let mut next = || rng.random::<f64>();
         let points: Vec<Point3<f64>> =
-            (0..p2m_testkit::amount(60_000, 20_000)).map(|_| point(next(), next(), next())).collect();
+            (0..p2m_testkit::amount(100_000, 40_000)).map(|_| point(next(), next(), next())).collect();
         let expected = topology(&points, &SplitOptions::default().with_parallel(false));
         for threads in [1, 2, 5] {
             let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();

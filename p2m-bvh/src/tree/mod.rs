@@ -146,32 +146,6 @@ impl<V: VolumeNodes> PacketTree<V> {
 }
 
 impl Leaves {
-    /// Stores packets and puts their vertices one packet after the other. `vertices` has those of as many packets at a
-    /// time as `chunk`, in which the packets count from 0.
-    #[allow(
-        clippy::cast_possible_truncation,
-        reason = "ids leave two bits, and a primitive has three vertices at most"
-    )]
-    pub(crate) fn new(mut packets: Vec<Packet>, chunk: usize, vertices: Vec<Vec<[f64; 3]>>) -> Self {
-        let mut vertex_offsets = Vec::with_capacity(packets.len() + 1);
-        let mut first = 0;
-        for (packets, vertices) in packets.chunks_mut(chunk).zip(&vertices) {
-            for packet in packets {
-                packet.vertex_offset += first;
-                vertex_offsets.push(packet.vertex_offset);
-            }
-            first += vertices.len() as u32;
-        }
-        vertex_offsets.push(first);
-        let has_non_triangles = packets.iter().any(|packet| !packet.has_triangles());
-        Self {
-            packets: packets.into(),
-            vertices: vertices.concat().into(),
-            vertex_offsets: vertex_offsets.into(),
-            has_non_triangles,
-        }
-    }
-
     /// Prefetches a packet.
     #[inline(always)]
     #[doc(hidden)]

@@ -92,7 +92,7 @@ pub trait Primitive<T: Real> {
     fn intersect_ray(&self, ray: &Ray) -> Option<RayHit>;
 
     /// Returns whether all coordinates are finite.
-    #[inline]
+    #[inline(always)]
     fn is_finite(&self) -> bool {
         self.aabb().is_finite()
     }

@@ -37,7 +37,7 @@ use std::sync::Arc;
 const MAX_NEIGHBOURS: usize = 1024;
 
 /// The number of sites whose lists one task builds.
-const SITES_PER_TASK: usize = 1024;
+const SITES_PER_TASK: usize = 256;
 
 /// The sites with their lists.
 pub(crate) struct VoronoiLists {
