@@ -73,14 +73,14 @@ impl Delaunay {
             let (tetrahedra, neighbours) = (self.tetrahedra.len(), self.neighbours.len());
             return Err(Invalid::Length { tetrahedra, neighbours });
         }
-        let mut used = vec![false; self.sites.len()];
+        let mut used = vec![false; self.sites().len()];
         let mut outer = [false; 8];
         for (i, vertices) in self.tetrahedra.iter().enumerate() {
             let orientation = Invalid::Orientation { tetrahedron: i };
             for v in vertices {
                 *used.get_mut(*v as usize).ok_or(orientation)? = true;
             }
-            let [a, b, c, d] = vertices.map(|v| self.sites[v as usize]);
+            let [a, b, c, d] = vertices.map(|v| self.sites()[v as usize]);
             if orientation_3d(a, b, c, d) != Ordering::Greater {
                 return Err(orientation);
             }
@@ -94,7 +94,7 @@ impl Delaunay {
                     continue;
                 }
                 let apex = self.apex(i, face, next).ok_or(Invalid::Neighbour { tetrahedron: i, vertex: k })?;
-                if insphere(a, b, c, d, self.sites[apex as usize]) == Ordering::Greater {
+                if insphere(a, b, c, d, self.sites()[apex as usize]) == Ordering::Greater {
                     return Err(Invalid::Sphere { tetrahedron: i, vertex: k });
                 }
             }

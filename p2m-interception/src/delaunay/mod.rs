@@ -31,6 +31,7 @@ mod tetrahedron;
 mod triangulation;
 
 pub use check::Invalid;
+pub(crate) use scale::ScaledSites;
 pub use tetrahedron::{BOUNDING, Work};
 pub use triangulation::{Delaunay, DelaunayError};
 

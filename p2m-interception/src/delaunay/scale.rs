@@ -10,36 +10,39 @@ use p2m_core::engine::vector::power_of_two;
 use p2m_core::engine::vector::{V3, exponent, larger, largest, scale_by_power};
 
 /// The sites of some points.
+#[derive(Clone, Debug)]
 pub(crate) struct ScaledSites {
-    /// The bounding sites, then the distinct points along the curve.
-    pub(crate) sites: Vec<V3>,
+    /// The bounding sites, then the distinct points along the curve, divided by the unit.
+    pub(crate) positions: Vec<V3>,
     /// The unit of the sites, a power of two.
     pub(crate) unit: f64,
     /// For each point the number of its site.
     pub(crate) site_of: Vec<u32>,
 }
 
-/// Makes the sites of finite points, of which there are fewer than
-/// [`Delaunay::MAX_POINTS`](super::Delaunay::MAX_POINTS).
-#[allow(clippy::cast_possible_truncation, reason = "fewer than numbers")]
-pub(crate) fn sites_of(points: &[V3], reach: f64) -> ScaledSites {
-    let largest = largest(points);
-    let unit = if largest == 0.0 { 0 } else { exponent(largest) };
-    let scaled: Vec<V3> = points.iter().map(|p| p.map(|x| scale(x, unit))).collect();
-    let mut order: Vec<u32> = (0..points.len() as u32).collect();
-    sort_along_curve(&scaled, &mut order);
-    let mut sites = Vec::with_capacity(BOUNDING + points.len());
-    sites.extend(bounding_sites(&scaled, reach));
-    let mut site_of = vec![0; points.len()];
-    for i in order {
-        let p = scaled[i as usize];
-        if sites.len() == BOUNDING || sites[sites.len() - 1] != p {
-            sites.push(p);
+impl ScaledSites {
+    /// Makes the sites of finite points, of which there are fewer than
+    /// [`Delaunay::MAX_POINTS`](super::Delaunay::MAX_POINTS).
+    #[allow(clippy::cast_possible_truncation, reason = "fewer than numbers")]
+    pub(crate) fn new(points: &[V3], reach: f64) -> Self {
+        let largest = largest(points);
+        let unit = if largest == 0.0 { 0 } else { exponent(largest) };
+        let scaled: Vec<V3> = points.iter().map(|p| p.map(|x| scale(x, unit))).collect();
+        let mut order: Vec<u32> = (0..points.len() as u32).collect();
+        sort_along_curve(&scaled, &mut order);
+        let mut positions = Vec::with_capacity(BOUNDING + points.len());
+        positions.extend(bounding_sites(&scaled, reach));
+        let mut site_of = vec![0; points.len()];
+        for i in order {
+            let p = scaled[i as usize];
+            if positions.len() == BOUNDING || positions[positions.len() - 1] != p {
+                positions.push(p);
+            }
+            site_of[i as usize] = positions.len() as u32 - 1;
         }
-        site_of[i as usize] = sites.len() as u32 - 1;
+        positions.shrink_to_fit();
+        Self { positions, unit: scale_by_power(1.0, unit), site_of }
     }
-    sites.shrink_to_fit();
-    ScaledSites { sites, unit: scale_by_power(1.0, unit), site_of }
 }
 
 /// Returns x 2^-unit, or 0 if that is too small for the predicates, and never -0.

@@ -263,7 +263,7 @@ fn the_check_finds_what_is_broken() {
     assert_eq!(broken(&|d| d.tetrahedra[inner][0] = u32::MAX), Invalid::Orientation { tetrahedron: inner });
     assert!(matches!(broken(&|d| d.neighbours.truncate(3)), Invalid::Length { .. }));
     let unused = good.sites().len();
-    assert_eq!(broken(&|d| d.sites.push([0.0; 3])), Invalid::Unused { site: unused });
+    assert_eq!(broken(&|d| d.scaled.positions.push([0.0; 3])), Invalid::Unused { site: unused });
     // The octahedron has no faces without the tetrahedra.
     assert_eq!(
         broken(&|d| [&mut d.tetrahedra, &mut d.neighbours].into_iter().for_each(Vec::clear)),
@@ -272,7 +272,7 @@ fn the_check_finds_what_is_broken() {
     // A site is moved a little, which puts it into a sphere if one is near.
     let moved = |site: usize| {
         let mut delaunay = good.clone();
-        delaunay.sites[site][0] += 1e-3;
+        delaunay.scaled.positions[site][0] += 1e-3;
         delaunay.check()
     };
     let found: Vec<_> = (BOUNDING..good.sites().len()).map(moved).filter(Result::is_err).collect();

@@ -1,8 +1,11 @@
 //! The finished triangulation, and its construction from all steps.
 
+use crate::delaunay::compact::{self, CompactTetrahedra};
 use crate::delaunay::insert::Insertion;
+use crate::delaunay::order;
+use crate::delaunay::scale::ScaledSites;
 use crate::delaunay::tetrahedron::{BOUNDING, NO_NEIGHBOUR, Work};
-use crate::delaunay::{compact, order, scale};
+use crate::parallel_chunks::run_both;
 
 /// The reason why a set of points has no triangulation.
 #[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]
@@ -31,9 +34,7 @@ pub enum DelaunayError {
 /// The Delaunay tetrahedra of points inside an octahedron of six bounding sites.
 #[derive(Clone, Debug)]
 pub struct Delaunay {
-    pub(crate) sites: Vec<[f64; 3]>,
-    pub(crate) unit: f64,
-    pub(crate) site_of: Vec<u32>,
+    pub(crate) scaled: ScaledSites,
     pub(crate) tetrahedra: Vec<[u32; 4]>,
     pub(crate) neighbours: Vec<[u32; 4]>,
     pub(crate) work: Work,
@@ -81,7 +82,7 @@ impl Delaunay {
     ///
     /// It fails as [`new`](Self::new), and with [`DelaunayError::TooMany`] as soon as there are more tetrahedra.
     pub fn within(points: &[[f64; 3]], reach: f64, max_tetrahedra: usize) -> Result<Self, DelaunayError> {
-        Ok(Self::build(points, reach, max_tetrahedra, None)?.0)
+        Ok(Self::build_beside(points, reach, max_tetrahedra, None, false, |_| ())?.0)
     }
 
     /// Adds points to a triangulation. `points` begins with the points that it has, in their order, and `reach` is
@@ -111,21 +112,28 @@ impl Delaunay {
         reach: f64,
         max_tetrahedra: usize,
     ) -> Result<(Self, Vec<u32>), DelaunayError> {
-        assert!(points.len() >= self.site_of.len(), "the points of before are the first ones");
-        let (delaunay, mut old_numbers) = Self::build(points, reach, max_tetrahedra, Some(self))?;
+        let (delaunay, mut old_numbers, ()) =
+            Self::build_beside(points, reach, max_tetrahedra, Some(self), false, |_| ())?;
         old_numbers.resize(delaunay.tetrahedra.len(), Self::NONE);
         Ok((delaunay, old_numbers))
     }
 
-    /// Triangulates points, of which the first ones may have a triangulation already. The second result has for each
-    /// tetrahedron its number there, and is empty if everything was built.
+    /// Triangulates points as [`within`](Self::within), or as [`extend`](Self::extend) if the first ones have a
+    /// triangulation already. The second result is that of `extend`, but empty if everything was built.
+    /// The third one is that of `other`, which gets the sites. If `parallel`, another thread inserts sites meanwhile.
     #[allow(clippy::float_cmp, reason = "the same or not")]
-    fn build(
+    pub(crate) fn build_beside<R>(
         points: &[[f64; 3]],
         reach: f64,
         max_tetrahedra: usize,
         earlier: Option<&Self>,
-    ) -> Result<(Self, Vec<u32>), DelaunayError> {
+        parallel: bool,
+        other: impl FnOnce(&ScaledSites) -> R,
+    ) -> Result<(Self, Vec<u32>, R), DelaunayError> {
+        assert!(
+            earlier.is_none_or(|old| points.len() >= old.scaled.site_of.len()),
+            "the points of before are the first ones"
+        );
         let too_many = DelaunayError::TooMany { len: points.len() };
         if !(Self::MIN_REACH..=Self::MAX_REACH).contains(&reach) {
             return Err(DelaunayError::Reach { reach });
@@ -136,28 +144,43 @@ impl Delaunay {
         if points.len() > Self::MAX_POINTS {
             return Err(too_many);
         }
-        let scale::ScaledSites { sites, unit, site_of } = scale::sites_of(points, reach);
+        let scaled = ScaledSites::new(points, reach);
         // Sites in another unit may be rounded differently, and the bounding sites of another box are elsewhere.
-        let earlier = earlier.filter(|old| old.unit == unit && old.sites[..BOUNDING] == sites[..BOUNDING]);
-        let kept = earlier.map_or_else(Vec::new, |old| old.renumbered_tetrahedra(&site_of));
-        let mut insertion = Insertion::new(&sites, max_tetrahedra);
+        let has_same_frame =
+            |old: &ScaledSites| old.unit == scaled.unit && old.positions[..BOUNDING] == scaled.positions[..BOUNDING];
+        let earlier = earlier.filter(|old| has_same_frame(&old.scaled));
+        let (built, other) =
+            run_both(parallel, || Self::insert_sites(&scaled, max_tetrahedra, earlier), || other(&scaled));
+        let ((tetrahedra, neighbours, old_numbers), work) = built.ok_or(too_many)?;
+        Ok((Self { scaled, tetrahedra, neighbours, work }, old_numbers, other))
+    }
+
+    /// Inserts all sites into the octahedron, or into a triangulation of some of them. It returns `None` if there are
+    /// too many tetrahedra.
+    fn insert_sites(
+        scaled: &ScaledSites,
+        max_tetrahedra: usize,
+        earlier: Option<&Self>,
+    ) -> Option<(CompactTetrahedra, Work)> {
+        let sites = &scaled.positions;
+        let kept = earlier.map_or_else(Vec::new, |old| old.renumbered_tetrahedra(&scaled.site_of));
+        let mut insertion = Insertion::new(sites, max_tetrahedra);
         let mut is_known = vec![false; sites.len()];
         if let Some(old) = earlier {
             insertion.continue_from(kept.iter().zip(&old.neighbours));
             kept.iter().flatten().for_each(|site| is_known[*site as usize] = true);
         }
         if !insertion.insert_all(order::rounds(BOUNDING..sites.len()).filter(|site| !is_known[*site])) {
-            return Err(too_many);
+            return None;
         }
         let work = insertion.work;
-        let (tetrahedra, neighbours, old_numbers) = compact::compact(insertion.into_tetrahedra(), sites.len(), &kept);
-        Ok((Self { sites, unit, site_of, tetrahedra, neighbours, work }, old_numbers))
+        Some((compact::compact(insertion.into_tetrahedra(), sites.len(), &kept), work))
     }
 
     /// Returns the vertices of all tetrahedra as numbers of other sites, in which the points have these numbers.
     fn renumbered_tetrahedra(&self, site_of: &[u32]) -> Vec<[u32; 4]> {
-        let mut new_numbers: Vec<u32> = (0..).take(self.sites.len()).collect();
-        for (old, new) in self.site_of.iter().zip(site_of) {
+        let mut new_numbers: Vec<u32> = (0..).take(self.scaled.positions.len()).collect();
+        for (old, new) in self.scaled.site_of.iter().zip(site_of) {
             new_numbers[*old as usize] = *new;
         }
         self.tetrahedra.iter().map(|vertices| vertices.map(|v| new_numbers[v as usize])).collect()
@@ -168,7 +191,7 @@ impl Delaunay {
     /// second is above.
     #[must_use]
     pub fn sites(&self) -> &[[f64; 3]] {
-        &self.sites
+        &self.scaled.positions
     }
 
     /// Returns the unit of the sites, a power of two that may be subnormal. A site times the unit is exactly the
@@ -176,7 +199,7 @@ impl Delaunay {
     /// below 2 units.
     #[must_use]
     pub fn unit(&self) -> f64 {
-        self.unit
+        self.scaled.unit
     }
 
     /// Returns the number of the site of a point.
@@ -185,7 +208,7 @@ impl Delaunay {
     /// It panics if there is no such point.
     #[must_use]
     pub fn site_of(&self, point: usize) -> usize {
-        self.site_of[point] as usize
+        self.scaled.site_of[point] as usize
     }
 
     /// Returns the sites of each tetrahedron, positively oriented:
@@ -211,8 +234,8 @@ impl Delaunay {
     /// Returns the heap memory in bytes.
     #[must_use]
     pub fn memory(&self) -> usize {
-        size_of::<[f64; 3]>() * self.sites.capacity()
-            + size_of::<u32>() * self.site_of.capacity()
+        size_of::<[f64; 3]>() * self.scaled.positions.capacity()
+            + size_of::<u32>() * self.scaled.site_of.capacity()
             + size_of::<[u32; 4]>() * (self.tetrahedra.capacity() + self.neighbours.capacity())
     }
 }

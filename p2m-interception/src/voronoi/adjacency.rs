@@ -1,6 +1,6 @@
 //! The adjacency of primitives: which vertices and edges they share, and with whom.
 
-use crate::delaunay::Delaunay;
+use crate::delaunay::{Delaunay, ScaledSites};
 use p2m_bvh::PacketTree;
 use p2m_bvh::engine::packet::LANES;
 use p2m_core::PrimitiveId;
@@ -35,14 +35,11 @@ pub(crate) struct SiteTopology {
 }
 
 impl SiteTopology {
-    /// Collects the topology of the packets of a tree and the triangulation of their vertices.
-    pub(crate) fn new(tree: &PacketTree, delaunay: &Delaunay) -> Self {
+    /// Adds the tetrahedra of a triangulation to the edges of primitives on its sites.
+    pub(crate) fn new(adjacency: EdgeAdjacency, delaunay: &Delaunay) -> Self {
         let tetrahedra = (0..).zip(delaunay.tetrahedra());
         let incident = tetrahedra.flat_map(|(number, tetrahedron)| tetrahedron.iter().map(move |v| (*v, number)));
-        Self {
-            adjacency: EdgeAdjacency::from_tree(tree, delaunay),
-            incident_tetrahedra: IncidenceLists::new(delaunay.sites().len(), incident),
-        }
+        Self { adjacency, incident_tetrahedra: IncidenceLists::new(delaunay.sites().len(), incident) }
     }
 }
 
@@ -61,12 +58,13 @@ pub(crate) const NO_PRIMITIVE: u32 = u32::MAX;
 type VisitLane<'a> = &'a mut dyn FnMut(usize, usize, PrimitiveId, &[usize]);
 
 impl EdgeAdjacency {
-    /// Collects the vertices and edges of the packets of a tree.
+    /// Collects the vertices and edges of the packets of a tree, whose vertices have these sites.
     #[allow(clippy::cast_possible_truncation, clippy::float_cmp, reason = "numbers of 32 bits; the same or not")]
-    pub(crate) fn from_tree(tree: &PacketTree, delaunay: &Delaunay) -> Self {
+    pub(crate) fn from_tree(tree: &PacketTree, sites: &ScaledSites) -> Self {
         let leaves = &tree.leaves;
-        let count = delaunay.sites().len();
-        let position = |site: usize| delaunay.sites()[site].map(|x| x * delaunay.unit());
+        let count = sites.positions.len();
+        let site_of = |vertex: usize| sites.site_of[vertex] as usize;
+        let position = |site: usize| sites.positions[site].map(|x| x * sites.unit);
         // For each site the primitive with the lowest id, and its packet and lane.
         let mut owners = vec![(PrimitiveId::new(0), NO_PRIMITIVE); count];
         let mut edge_owners: FxHashMap<(u32, u32), EdgeTriangles> =
@@ -75,7 +73,7 @@ impl EdgeAdjacency {
             for (number, packet) in leaves.packets.iter().enumerate().filter(|(_, p)| p.has_vertices()) {
                 for (lane, id) in packet.ids().iter().enumerate() {
                     let (positions, count) = packet.vertices_of(lane);
-                    let sites = positions.map(|position| delaunay.site_of(position));
+                    let sites = positions.map(site_of);
                     visit(number, lane, *id, &sites[..count]);
                 }
             }
@@ -116,7 +114,7 @@ impl EdgeAdjacency {
         let mut owners: Vec<u32> = owners.into_iter().map(|(_, primitive)| primitive).collect();
         // Vertices that one site represents may differ where coordinates are too small for sites. Then nothing is
         // known to be shared.
-        let is_exact = (0..leaves.vertices.len()).all(|v| position(delaunay.site_of(v)) == leaves.vertices[v]);
+        let is_exact = (0..leaves.vertices.len()).all(|v| position(site_of(v)) == leaves.vertices[v]);
         if !is_exact {
             owned_by_lower_id.fill([0; LANES]);
             owners.fill(NO_PRIMITIVE);

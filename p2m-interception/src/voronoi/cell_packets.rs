@@ -21,6 +21,9 @@ use std::ops::Range;
 /// The number of packets that one task examines.
 const PACKETS_PER_TASK: usize = 64;
 
+/// The number of sites whose cells one task measures.
+const SITES_PER_TASK: usize = 1024;
+
 /// A packet in the list of a cell.
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct ListedPacket {
@@ -47,7 +50,7 @@ impl CellPackets {
         adjacency: &EdgeAdjacency,
         incident_tetrahedra: &IncidenceLists,
         near_tetrahedra: IncidenceLists,
-        is_hub: impl Fn(usize) -> bool,
+        is_hub: impl Fn(usize) -> bool + Sync,
         report: &mut P2mReport,
         reporter: &ProgressReporter<'_>,
     ) -> Self {
@@ -60,7 +63,11 @@ impl CellPackets {
         };
         let size_of = |site: usize| has_list(site).then(|| cells.measure(site, incident_tetrahedra.get(site)));
         let packet_count = cells.tree.leaves.packets.len();
-        let mut sizes: Vec<Option<CellSize>> = (0..sites.len()).map(size_of).collect();
+        let mut sizes: Vec<Option<CellSize>> = Vec::with_capacity(sites.len());
+        let measure = |sites: Range<usize>| sites.map(size_of).collect();
+        map_chunks_in_order(sites.len(), SITES_PER_TASK, cells.limits.parallel, measure, |chunk: Vec<_>| {
+            sizes.extend(chunk);
+        });
         // One vector of all would be copied as it grows.
         let mut packets: Vec<Vec<PacketInCell>> = Vec::new();
         let (mut packets_in_cells, mut candidates) = (0, vec![0u32; sites.len()]);

@@ -12,10 +12,10 @@
 //! rounds, each with new tetrahedra, until no ball is crowded, a round does not help, or the budget is spent. Each
 //! round extends the triangulation of the one before.
 
-use crate::delaunay::{BOUNDING, Delaunay};
+use crate::delaunay::{BOUNDING, Delaunay, DelaunayError};
 use crate::parallel_chunks::run_both;
 use crate::progress::{BuildStage, ProgressReporter};
-use crate::voronoi::adjacency::SiteTopology;
+use crate::voronoi::adjacency::{EdgeAdjacency, SiteTopology};
 use crate::voronoi::budget::{Limits, max_tetrahedra};
 use crate::voronoi::corners::{CellCorner, CellCorners, ReusedCorners};
 use crate::voronoi::crowded::{AddedSite, CrowdedClusters};
@@ -76,11 +76,11 @@ impl<'a> GrowingSites<'a> {
     ) -> Option<Self> {
         let points = tree.leaves.vertices.to_vec();
         reporter.begin_stage(BuildStage::Delaunay);
-        let delaunay = Delaunay::within(&points, BOUNDING_DISTANCE, max_tetrahedra(points.len())).ok()?;
+        let (delaunay, _, adjacency) = triangulate(tree, &points, None, limits).ok()?;
         reporter.begin_stage(BuildStage::Balls);
         let (added, corners) = (Vec::new(), CellCorners::default());
         let mut sites = Self { tree, bounds, limits, reporter, points, added, delaunay, topology: None, corners };
-        let (topology, flooded) = sites.collect_topology_beside(&sites.delaunay, || {
+        let (topology, flooded) = collect_topology_beside(adjacency, &sites.delaunay, limits, || {
             CellCorners::flood(tree, &sites.delaunay, limits, &sites.progress())
         });
         sites.topology = topology;
@@ -102,9 +102,9 @@ impl<'a> GrowingSites<'a> {
         let count_before = self.points.len();
         self.points.extend(new_sites.iter().map(|site| site.position));
         self.reporter.begin_stage(BuildStage::Delaunay);
-        let extended = self.delaunay.extend(&self.points, BOUNDING_DISTANCE, max_tetrahedra(self.points.len()));
+        let extended = triangulate(self.tree, &self.points, Some(&self.delaunay), self.limits);
         self.reporter.begin_stage(BuildStage::Balls);
-        let Ok((next, old_numbers)) = extended else {
+        let Ok((next, old_numbers, adjacency)) = extended else {
             self.points.truncate(count_before);
             return false;
         };
@@ -112,17 +112,11 @@ impl<'a> GrowingSites<'a> {
         self.corners.list_packets_of_balls(self.tree);
         let reused = ReusedCorners { corners: &self.corners, old_numbers: &old_numbers };
         let reused = (!self.corners.all.is_empty()).then_some(&reused);
-        let (topology, corners) = self.collect_topology_beside(&next, || {
+        let (topology, corners) = collect_topology_beside(adjacency, &next, self.limits, || {
             CellCorners::new(self.tree, &next, self.limits, reused, &self.progress())
         });
         (self.delaunay, self.topology, self.corners) = (next, topology, corners);
         true
-    }
-
-    /// Collects the topology of a triangulation beside another task, if there are threads for it.
-    fn collect_topology_beside<R>(&self, delaunay: &Delaunay, other: impl FnOnce() -> R) -> (Option<SiteTopology>, R) {
-        let (tree, parallel) = (self.tree, self.limits.parallel);
-        run_both(parallel, || parallel.then(|| SiteTopology::new(tree, delaunay)), other)
     }
 
     /// Returns the number of points that may still be added.
@@ -138,6 +132,32 @@ impl<'a> GrowingSites<'a> {
         let reporter = self.reporter;
         move |done, all| reporter.advance([5.0, 30.0], done, all)
     }
+}
+
+/// Triangulates points, beginning with an earlier triangulation of the first ones if there is one. The second result has
+/// for each tetrahedron its number there. The third one has the edges of the primitives, if another thread could collect
+/// them meanwhile.
+#[allow(clippy::type_complexity, reason = "the names are in the comment")]
+fn triangulate(
+    tree: &PacketTree,
+    points: &[V3],
+    earlier: Option<&Delaunay>,
+    limits: Limits<'_>,
+) -> Result<(Delaunay, Vec<u32>, Option<EdgeAdjacency>), DelaunayError> {
+    let (parallel, max_tetrahedra) = (limits.parallel, max_tetrahedra(points.len()));
+    Delaunay::build_beside(points, BOUNDING_DISTANCE, max_tetrahedra, earlier, parallel, |sites| {
+        parallel.then(|| EdgeAdjacency::from_tree(tree, sites))
+    })
+}
+
+/// Completes the topology of a triangulation beside another task, if the edges of the primitives are known already.
+fn collect_topology_beside<R>(
+    adjacency: Option<EdgeAdjacency>,
+    delaunay: &Delaunay,
+    limits: Limits<'_>,
+    other: impl FnOnce() -> R,
+) -> (Option<SiteTopology>, R) {
+    run_both(limits.parallel, || adjacency.map(|adjacency| SiteTopology::new(adjacency, delaunay)), other)
 }
 
 impl Sites {
@@ -185,7 +205,8 @@ impl Sites {
         }
         anchors.sort_unstable_by_key(|(site, _)| *site);
         let added = added.iter().filter(|point| point.anchor.is_none()).count();
-        let topology = topology.unwrap_or_else(|| SiteTopology::new(tree, &delaunay));
+        let topology =
+            topology.unwrap_or_else(|| SiteTopology::new(EdgeAdjacency::from_tree(tree, &delaunay.scaled), &delaunay));
         Some(Self { delaunay, corners, topology, anchors, added })
     }
 
