@@ -62,6 +62,8 @@ pub(crate) enum Command {
     Delaunay(DelaunayArguments),
     /// Times batches on the AABB tree by order and threads, in wall time
     Batch(BatchArguments),
+    /// Compares builds on several numbers of threads, in wall time
+    Threads(ThreadsArguments),
     /// Compares a tree that follows a twisted scene with trees that are built anew
     Refit(BatchArguments),
     /// Compares a scene of moving instances of meshes with one index over all of them; fails if an answer differs
@@ -82,7 +84,7 @@ pub(crate) enum Command {
 #[derive(Args)]
 pub(crate) struct ScaleArguments {
     /// Backends of the registry
-    #[arg(long, value_delimiter = ',', default_value = "aabb,kdop,octree,p2m")]
+    #[arg(long, value_delimiter = ',', default_value = "aabb,kdop,octree,p2m", value_parser = index_names())]
     pub(crate) backends: Vec<String>,
     /// Numbers of triangles, in ascending order
     #[arg(long, value_delimiter = ',', default_values_t = [10_000, 100_000, 1_000_000, 10_000_000, 100_000_000])]
@@ -319,6 +321,22 @@ pub(crate) struct BatchArguments {
 }
 
 #[derive(Args)]
+pub(crate) struct ThreadsArguments {
+    /// Files of scenes
+    #[arg(required = true)]
+    pub(crate) scenes: Vec<PathBuf>,
+    /// Indexes
+    #[arg(long, value_delimiter = ',', default_value = "aabb,kdop,octree,p2m", value_parser = index_names())]
+    pub(crate) backends: Vec<String>,
+    /// Numbers of threads; times are compared with those of the first
+    #[arg(long, value_delimiter = ',', default_values_t = [1, 2])]
+    pub(crate) threads: Vec<usize>,
+    /// Rounds; another number of threads begins in each
+    #[arg(long, default_value_t = 5, value_parser = clap::builder::RangedU64ValueParser::<usize>::new().range(1..))]
+    pub(crate) rounds: usize,
+}
+
+#[derive(Args)]
 pub(crate) struct InstancesArguments {
     #[command(flatten)]
     pub(crate) rounds: Rounds,
@@ -500,6 +518,10 @@ pub(crate) struct FieldArguments {
 
 fn backend_names() -> PossibleValuesParser {
     backends::ALL.iter().map(|backend| backend.name).collect::<Vec<_>>().into()
+}
+
+fn index_names() -> PossibleValuesParser {
+    p2m_advisor::BACKENDS.iter().map(|backend| backend.name).collect::<Vec<_>>().into()
 }
 
 fn ray_names() -> PossibleValuesParser {

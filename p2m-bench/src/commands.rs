@@ -4,7 +4,7 @@ use crate::arguments::{
     AdversariesArguments, AdviseArguments, BatchArguments, Command, Common, CompareArguments, DelaunayArguments,
     ExtremePairsArguments, ExtremesArguments, FieldArguments, InstancesArguments, KdopArguments, PairsArguments,
     PaperArguments, PointsArguments, ProgramArguments, QueryArguments, RayArguments, ReportArguments, RivalArguments,
-    SavedArguments, ScaleArguments, SplitsArguments, VerifyArguments,
+    SavedArguments, ScaleArguments, SplitsArguments, ThreadsArguments, VerifyArguments,
 };
 use crate::backend::Backend;
 use crate::measure::Effort;
@@ -12,7 +12,7 @@ use crate::report::provenance;
 use crate::scene::Scene;
 use crate::{
     adversaries, advise, backends, batch, candidates, delaunay, extremes, field, instances, kdop, measure, octree,
-    pairs, paper, points, program, rays, refit, report, saved, scale, shards, splits, tradeoff, verify,
+    pairs, paper, points, program, rays, refit, report, saved, scale, shards, splits, threads, tradeoff, verify,
 };
 use anyhow::{Context, Result};
 use clap::ValueEnum as _;
@@ -31,6 +31,7 @@ pub(crate) fn run(command: Command) -> Result<bool> {
         Command::Octree(arguments) => compare_octrees(&arguments),
         Command::Delaunay(arguments) => triangulate(&arguments),
         Command::Batch(arguments) => time_batches(&arguments),
+        Command::Threads(arguments) => compare_threads(&arguments),
         Command::Refit(arguments) => time_refits(&arguments),
         Command::Instances(arguments) => time_instances(&arguments),
         Command::Program(arguments) => time_program(&arguments),
@@ -221,6 +222,13 @@ fn time_batches(arguments: &BatchArguments) -> Result<bool> {
         if is_good { "All answers are those of single queries." } else { "DIFFERENCES from single queries." }
     );
     Ok(is_good)
+}
+
+/// Times builds on several numbers of threads. No result counts as bad.
+fn compare_threads(arguments: &ThreadsArguments) -> Result<bool> {
+    let ThreadsArguments { scenes, backends, threads, rounds } = arguments;
+    let about = format!("Wall time of builds, median of {rounds} rounds in turns.");
+    all_good(scenes, &about, |scene| threads::print(&scene, backends, threads, *rounds).map(|()| true))
 }
 
 /// Times refits, and returns whether refitted trees answer as those that are built anew.

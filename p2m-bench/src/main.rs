@@ -47,6 +47,7 @@ mod scale;
 mod scene;
 mod shards;
 mod splits;
+mod threads;
 mod tradeoff;
 mod verify;
 

@@ -2,7 +2,8 @@
 
 use std::ops::Range;
 
-/// The number of chunks at most that are begun and not consumed yet. Their results are in memory.
+/// The number of chunks at most that are begun and not consumed yet, for up to sixteen threads. Their results are in
+/// memory.
 #[cfg(feature = "rayon")]
 const MAX_OPEN_CHUNKS: usize = 32;
 
@@ -43,31 +44,43 @@ struct OpenChunksState<R> {
     results: std::collections::VecDeque<Option<R>>,
     /// The number of other threads that are asked to work.
     helpers: usize,
+    /// The number of other threads.
+    max_helpers: usize,
+    /// The number of chunks that may be open.
+    max_open: usize,
 }
 
 #[cfg(feature = "rayon")]
 impl<R: Send> OpenChunks<R> {
     fn new(chunks: usize) -> Self {
-        let results = std::collections::VecDeque::with_capacity(MAX_OPEN_CHUNKS);
-        Self(std::sync::Mutex::new(OpenChunksState { left: chunks, next: 0, results, helpers: 0 }))
+        let threads = rayon::current_num_threads();
+        Self(std::sync::Mutex::new(OpenChunksState {
+            left: chunks,
+            next: 0,
+            results: std::collections::VecDeque::new(),
+            helpers: 0,
+            max_helpers: threads - 1,
+            max_open: MAX_OPEN_CHUNKS.max(2 * threads),
+        }))
     }
 
     fn run(&self, work: impl Fn(usize) -> R + Sync, mut take: impl FnMut(R)) {
-        let max_helpers = rayon::current_num_threads() - 1;
         while self.lock().has_more() {
             rayon::in_place_scope(|scope| {
                 loop {
-                    while self.lock().add_helper(max_helpers) {
+                    while self.lock().add_helper() {
                         scope.spawn(|_| self.help(&work));
                     }
-                    if let Some(result) = self.lock().take_first() {
+                    if let Some(result) = self.take_first() {
                         take(result);
-                    } else if !self.work_on_next(&work) {
+                    } else if let Some(chunk) = self.begin() {
+                        self.finish(chunk, work(chunk));
+                    } else {
                         break;
                     }
                 }
             });
-            while let Some(result) = self.lock().take_first() {
+            while let Some(result) = self.take_first() {
                 take(result);
             }
         }
@@ -75,16 +88,35 @@ impl<R: Send> OpenChunks<R> {
 
     /// Works on chunks until none may be begun.
     fn help(&self, work: &impl Fn(usize) -> R) {
-        while self.work_on_next(work) {}
-        self.lock().helpers -= 1;
+        while let Some(chunk) = self.begin_or_leave() {
+            self.finish(chunk, work(chunk));
+        }
     }
 
-    /// Works on the next chunk. Returns `false` if none may be begun.
-    fn work_on_next(&self, work: &impl Fn(usize) -> R) -> bool {
-        let Some(chunk) = self.lock().begin() else { return false };
-        let result = work(chunk);
-        self.lock().finish(chunk, result);
-        true
+    // Each of these functions gives the lock back before it returns, so nobody has it while a chunk is worked on or
+    // consumed.
+
+    fn begin(&self) -> Option<usize> {
+        let mut state = self.lock();
+        state.begin()
+    }
+
+    /// Begins the next chunk, or counts one helper less if none may be begun.
+    fn begin_or_leave(&self) -> Option<usize> {
+        let mut state = self.lock();
+        let chunk = state.begin();
+        state.helpers -= usize::from(chunk.is_none());
+        chunk
+    }
+
+    fn finish(&self, chunk: usize, result: R) {
+        let mut state = self.lock();
+        state.finish(chunk, result);
+    }
+
+    fn take_first(&self) -> Option<R> {
+        let mut state = self.lock();
+        state.take_first()
     }
 
     fn lock(&self) -> std::sync::MutexGuard<'_, OpenChunksState<R>> {
@@ -100,16 +132,16 @@ impl<R> OpenChunksState<R> {
     }
 
     /// Counts one more helper, if another one may have something to do.
-    fn add_helper(&mut self, max_helpers: usize) -> bool {
-        let has_work = self.left > self.helpers && self.results.len() + self.helpers < MAX_OPEN_CHUNKS;
-        let is_added = has_work && self.helpers < max_helpers;
+    fn add_helper(&mut self) -> bool {
+        let has_work = self.left > self.helpers && self.results.len() + self.helpers < self.max_open;
+        let is_added = has_work && self.helpers < self.max_helpers;
         self.helpers += usize::from(is_added);
         is_added
     }
 
     /// Begins the next chunk and returns its number; `None` if all are begun, or as many as may be open.
     fn begin(&mut self) -> Option<usize> {
-        if self.left == 0 || self.results.len() >= MAX_OPEN_CHUNKS {
+        if self.left == 0 || self.results.len() >= self.max_open {
             return None;
         }
         self.left -= 1;
@@ -179,6 +211,8 @@ mod tests {
                 pool.install(|| {
                     map_chunks_in_order(count, chunk_len, true, work, |(range, sum)| {
                         open.fetch_sub(1, Ordering::SeqCst);
+                        // Results are consumed without the lock: another thread may run a helper meanwhile.
+                        rayon::join(std::thread::yield_now, std::thread::yield_now);
                         let steps = if range.start.is_multiple_of(5) { 20_000 } else { 10 };
                         assert_eq!(sum, steps * range.start);
                         taken.extend(range);

@@ -185,22 +185,32 @@ fn check_so_far(report: &OctreeReport, so_far: &OctreeSoFar) {
     assert!(report.bytes <= so_far.bytes, "{so_far:?} {report:?}");
 }
 
+/// Budgets end the refinement in the middle of a pass, while several threads are at work.
 #[test]
 fn cells_do_not_depend_on_the_number_of_threads() {
     let soup = sheet(amount(5_000, 2_000));
     let mut rng = rng("octree threads", 0);
     let points: Vec<_> = (0..amount(2000, 400)).map(|_| query(&mut rng, &soup)).collect();
-    let cells = |parallel| {
-        let splits = p2m::bvh::SplitOptions::default().with_parallel(parallel);
-        let index = built(&soup, &OctreeOptions::default().with_splits(splits));
-        let lists: Vec<_> = points.iter().map(|point| index.partition().list_length(point)).collect();
-        (index.report(), lists)
-    };
-    let expected = cells(false);
-    for _ in 0..3 {
-        assert!(cells(true) == expected);
+    let pools = [2, 3, 8].map(|threads| rayon::ThreadPoolBuilder::new().num_threads(threads).build().expect("threads"));
+    let mut ended_early = 0;
+    for part in [1.0, 0.5, 0.3, 0.2, 0.1, 0.05] {
+        let default = OctreeOptions::default();
+        for default in [default.with_memory(default.memory * part), default.with_work(default.work * part)] {
+            let cells = |parallel| {
+                let splits = p2m::bvh::SplitOptions::default().with_parallel(parallel);
+                let index = built(&soup, &default.with_splits(splits));
+                let lists: Vec<_> = points.iter().map(|point| index.partition().list_length(point)).collect();
+                (index.report(), lists)
+            };
+            let expected = cells(false);
+            for pool in &pools {
+                assert!(pool.install(|| cells(true)) == expected, "{} threads, {part}", pool.current_num_threads());
+            }
+            ended_early += usize::from(expected.0.resolution < default.resolution);
+            assert!(part < 1.0 || expected.1.iter().flatten().count() > points.len() / 2);
+        }
     }
-    assert!(expected.1.iter().flatten().count() > points.len() / 2);
+    assert!(ended_early > 0);
 }
 
 #[test]

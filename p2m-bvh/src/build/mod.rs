@@ -1,8 +1,8 @@
 //! Building a tree.
 //!
 //! Primitives are split top-down into a binary tree ([`split`], by the surface-area heuristic of [`sah`]) whose leaves
-//! are packets. Its nodes are merged into nodes of eight children ([`collapse`]). Finally the packets are made, and all
-//! nodes are bounded from the leaves to the root ([`packet_tree`]).
+//! are packets. Its nodes are merged into nodes of eight children ([`collapse`]), beside which the packets are made.
+//! Finally all nodes are bounded from the leaves to the root ([`packet_tree`]).
 
 mod collapse;
 mod options;
@@ -25,4 +25,14 @@ pub(crate) fn run_both<A: Send, B: Send>(
     }
     let _ = parallel;
     (a(), b())
+}
+
+/// Returns the number of threads that work if `parallel` is set.
+pub(crate) fn thread_count(parallel: bool) -> usize {
+    #[cfg(feature = "rayon")]
+    if parallel {
+        return rayon::current_num_threads();
+    }
+    let _ = parallel;
+    1
 }

@@ -3,8 +3,8 @@
 use crate::build::collapse::PacketBinaryTree;
 use crate::build::options::TreeOptions;
 use crate::build::primitive::BuildPrimitive;
-use crate::build::run_both;
 use crate::build::split::{split, to_u32};
+use crate::build::{run_both, thread_count};
 use crate::packet::{Kind, LANES, Member, Members, Packet};
 use crate::tree::frame::Frame;
 use crate::tree::frame_line::half_extent;
@@ -173,7 +173,7 @@ type Bounds<V> = <<V as VolumeNodes>::Node as WideNode>::Bounds;
 /// Makes packets of the primitives whose ids a function returns, and bounds them in the frame of the tree.
 ///
 /// All threads make a group of packets, with lists of vertices that the next groups fill again. The vertices of a group
-/// are joined while the next one is made, so they are never twice in memory.
+/// are joined while the next one is made, so the lists of few groups are in memory beside them.
 fn pack<'a, V: Volume>(
     packets: usize,
     ids_of: &(dyn Fn(usize) -> &'a [PrimitiveId] + Sync),
@@ -200,18 +200,19 @@ fn pack<'a, V: Volume>(
     let mut packed: Vec<Packet> = bytemuck::zeroed_vec(packets);
     let mut bounds = Vec::with_capacity(packets);
     let mut joined = JoinedVertices::new(packets);
-    let no_lists = || vec![Vec::new(); CHUNKS_PER_GROUP];
+    let chunks_per_group = MIN_CHUNKS_PER_GROUP.max(4 * thread_count(parallel));
+    let no_lists = || vec![Vec::new(); chunks_per_group];
     let (mut waiting, mut spare): ((&mut [Packet], _), _) = ((&mut [], no_lists()), no_lists());
-    for (group, packets) in packed.chunks_mut(CHUNKS_PER_GROUP * PACKET_CHUNK).enumerate() {
+    for (group, group_packets) in packed.chunks_mut(chunks_per_group * PACKET_CHUNK).enumerate() {
         let mut lists = spare;
-        let chunks = packets.chunks_mut(PACKET_CHUNK).zip(&mut lists).enumerate();
-        let first = |chunk: usize| (group * CHUNKS_PER_GROUP + chunk) * PACKET_CHUNK;
+        let chunks = group_packets.chunks_mut(PACKET_CHUNK).zip(&mut lists).enumerate();
+        let first = |chunk: usize| (group * chunks_per_group + chunk) * PACKET_CHUNK;
         let chunks = chunks.map(|(i, (chunk, list))| (first(i), chunk, list)).collect();
         let (waiting_packets, waiting_lists) = waiting;
         let join_waiting = || joined.append(waiting_packets, &waiting_lists);
         let ((), bounded) = run_both(parallel, join_waiting, || map_owned(chunks, parallel, pack_chunk));
         bounds.extend(bounded.into_iter().flatten());
-        (waiting, spare) = ((packets, lists), waiting_lists);
+        (waiting, spare) = ((group_packets, lists), waiting_lists);
     }
     joined.append(waiting.0, &waiting.1);
     (joined.finish(packed), bounds)
@@ -242,8 +243,9 @@ impl JoinedVertices {
             if self.vertices.capacity() - self.vertices.len() < list.len() {
                 // The packets that follow probably have as many vertices as those that are here.
                 let known = self.vertices.len() + list.len();
-                let all = known * self.packets / self.offsets.len();
-                self.vertices.reserve_exact(list.len().max(all + all / 64 - self.vertices.len()));
+                let all = known as u64 * self.packets as u64 / self.offsets.len() as u64;
+                let more = usize::try_from(all + all / 64).unwrap_or(0).saturating_sub(self.vertices.len());
+                self.vertices.reserve_exact(more.max(list.len()));
             }
             self.vertices.extend_from_slice(list);
         }
@@ -281,8 +283,8 @@ fn map_owned<A: Send, B: Send>(all: Vec<A>, parallel: bool, f: impl Fn(A) -> B +
 const CHUNK: usize = 1 << 14;
 /// The number of packets that a thread makes at a time.
 const PACKET_CHUNK: usize = 1 << 7;
-/// The number of chunks of packets that are made before their vertices are joined.
-const CHUNKS_PER_GROUP: usize = 1 << 6;
+/// The number of chunks of packets that are made before their vertices are joined, for up to four threads.
+const MIN_CHUNKS_PER_GROUP: usize = 1 << 4;
 
 /// Maps the numbers below `len` in order, on all threads if `parallel` is set and the feature `rayon` is on.
 fn map_numbers<B: Send>(len: usize, parallel: bool, f: impl Fn(usize) -> B + Sync) -> Vec<B> {

@@ -29,8 +29,9 @@ impl BuildPrimitive {
     #[inline(always)]
     #[allow(clippy::cast_possible_truncation, reason = "rounding is allowed")]
     pub(crate) fn new(frame: &Frame, bounds: &Aabb<f64>, kind: Kind, id: PrimitiveId) -> Self {
-        let [a, b, c] = frame.place(&[bounds.min.x, bounds.min.y, bounds.min.z]).map(|x| x as f32);
-        let [d, e, f] = frame.place(&[bounds.max.x, bounds.max.y, bounds.max.z]).map(|x| -x as f32);
+        // The sum has no negative zero. The smaller one of two zeros would depend on the order of the primitives.
+        let [a, b, c] = frame.place(&[bounds.min.x, bounds.min.y, bounds.min.z]).map(|x| x as f32 + 0.0);
+        let [d, e, f] = frame.place(&[bounds.max.x, bounds.max.y, bounds.max.z]).map(|x| -x as f32 + 0.0);
         // An id is less than 2^30, so it has the bits of a number below 2.
         Self([a, b, c, f32::from_bits(id.number()), d, e, f, FIRST_KIND + f32::from(kind as u8)])
     }

@@ -93,8 +93,8 @@ impl SplitPlane {
 /// The number of times that [`SplitRule::AdaptiveSah`] samples the cost again around the best position.
 const RESAMPLINGS: usize = 2;
 
-/// The cheapest split that the rule finds; `None` if there is none, or if the rule does not compare costs. The primitives
-/// are sorted into bins by as many tasks.
+/// The cheapest split that the rule finds; `None` if there is none, or if the rule does not compare costs. The
+/// primitives are sorted into bins by about as many tasks.
 pub(crate) fn best_split(
     isa: Isa,
     primitives: &[BuildPrimitive],
@@ -195,7 +195,7 @@ fn test_cost(n: u32, block: usize) -> f32 {
     tested as f32
 }
 
-/// Sorts primitives into the bins of some axes by as many tasks.
+/// Sorts primitives into the bins of some axes by about as many tasks.
 fn fill_bins<const N: usize>(
     isa: Isa,
     primitives: &[BuildPrimitive],
@@ -209,8 +209,8 @@ fn fill_bins<const N: usize>(
     let (before, after) = primitives.split_at(primitives.len() / 2);
     let (mut bins, others) = run_both(
         true,
-        || fill_bins(isa, before, axes, binning, tasks / 2),
-        || fill_bins(isa, after, axes, binning, tasks / 2),
+        || fill_bins(isa, before, axes, binning, tasks.div_ceil(2)),
+        || fill_bins(isa, after, axes, binning, tasks.div_ceil(2)),
     );
     bins.iter_mut().zip(&others).for_each(|(bins, others)| bins.add(others));
     bins
@@ -243,8 +243,8 @@ impl<const N: usize> SimdKernel for FillBins<'_, N> {
     }
 }
 
-/// A SIMD kernel that returns the cheapest border of the bins of some axes. It uses the instruction set only through the
-/// compiler.
+/// A SIMD kernel that returns the cheapest border of the bins of some axes. It uses the instruction set only through
+/// the compiler.
 struct FindBorder<'a, const N: usize> {
     bins: &'a [Bins; N],
     axes: [usize; N],

@@ -5,13 +5,13 @@
 //! separate the primitives), each child gets half of them in the order of their centres along the longest axis. Below
 //! half of [`MAX_SPLIT_DEPTH`] every node is split like that, so that no input makes the tree deep.
 //!
-//! Boxes are in f32, in a frame. A node that is much smaller than its frame gets a frame of its own, so that the details
-//! of a scene are split as well as the whole of it.
+//! Boxes are in f32, in a frame. A node that is much smaller than its frame gets a frame of its own, so that the
+//! details of a scene are split as well as the whole of it.
 
 use crate::build::options::SplitOptions;
 use crate::build::primitive::{BuildPrimitive, GrowingBox};
-use crate::build::run_both;
 use crate::build::sah::{SplitPlane, best_split};
+use crate::build::{run_both, thread_count};
 use crate::packet::{LANES, Members};
 use crate::tree::MAX_DEPTH;
 use crate::tree::frame::Frame;
@@ -20,15 +20,15 @@ use p2m_core::engine::simd::{InstructionSet, Isa, SimdKernel};
 
 /// The largest depth of a node below the root, whatever the input. Half of it is for splits by cost and half for
 /// halving, which suffices because sets have at most 2^30 primitives. A tree of eight children per node may have two
-/// nodes more on a path: the root itself, and one above the packets of a leaf with several kinds.
+/// nodes more on a path: the root itself, and one above the leaves of a node that is not split.
 pub(crate) const MAX_SPLIT_DEPTH: usize = MAX_DEPTH - 2;
 
 /// A node that is longer than this part of the unit of its frame keeps the frame. A coordinate of a shorter node would
 /// have fewer than 14 of the 24 bits of f32.
 const MIN_SIDE: f32 = 1.0 / 1024.0;
 
-/// A node of the binary tree: either the parent of the nodes `first` and `first + 1`, if `count` is 0, or the leaf of one
-/// packet, which gets `count` primitives of one kind from index `first` on.
+/// A node of the binary tree: either the parent of the nodes `first` and `first + 1`, if `count` is 0, or the leaf of
+/// one packet, which gets `count` primitives of one kind from index `first` on.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct SplitNode {
     /// Half of the surface area of the box around the node, in the frame of the scene.
@@ -58,9 +58,9 @@ impl SplitNode {
 /// Splits primitives, which stand in the frame of the scene, and sorts them into the order of the leaves. Returns the
 /// nodes; node 0 is the root, and no primitives have no nodes.
 ///
-/// The primitives of one leaf are sorted by [`BuildPrimitive::rank`]. Siblings are side by side, and everything below the
-/// left one comes before everything below the right one. Parents come before children. Neither the nodes nor the order
-/// depend on the number of threads: sides have the same primitives in whichever order, and a leaf sorts its own.
+/// The primitives of one leaf are sorted by [`BuildPrimitive::rank`]. Siblings are side by side, and everything below
+/// the left one comes before everything below the right one. Parents come before children. Neither the nodes nor the
+/// order depend on the number of threads: sides have the same primitives in whichever order, and a leaf sorts its own.
 pub(crate) fn split(
     primitives: &mut [BuildPrimitive],
     frame: &Frame,
@@ -100,7 +100,6 @@ impl Part {
 const MIN_PRIMITIVES_TO_FORK: usize = 1 << 13;
 
 /// The least number of primitives of a node that several threads divide.
-#[cfg(feature = "rayon")]
 const MIN_PRIMITIVES_TO_SHARE: usize = 1 << 15;
 
 /// The data that all splits of a tree share.
@@ -122,12 +121,10 @@ impl Splitter<'_> {
     /// The number of tasks that divide a node at this depth. Nodes near the root are fewer than the threads, so several
     /// threads divide each of them.
     fn tasks(&self, len: usize, depth: usize) -> usize {
-        #[cfg(feature = "rayon")]
-        if self.options.parallel && len >= MIN_PRIMITIVES_TO_SHARE && depth < usize::BITS as usize {
-            return (rayon::current_num_threads() >> depth).max(1);
+        if len < MIN_PRIMITIVES_TO_SHARE {
+            return 1;
         }
-        let _ = (len, depth);
-        1
+        (thread_count(self.options.parallel) >> depth.min(31)).max(1)
     }
 
     /// The tree over some primitives, which have the indices from `first` on. Its nodes are numbered from its root,
@@ -281,7 +278,7 @@ fn joined(half_area: f64, a: &[SplitNode], b: &[SplitNode]) -> Vec<SplitNode> {
 
 /// A number of nodes or primitives in 32 bits.
 pub(crate) fn to_u32(n: usize) -> u32 {
-    u32::try_from(n).expect("fewer than 2^30 primitives give fewer than 2^31 nodes")
+    u32::try_from(n).expect("2^30 primitives have less than 2^32 nodes or vertices")
 }
 
 #[allow(clippy::cast_precision_loss, reason = "counts are far below 2^53")]
@@ -289,18 +286,19 @@ fn to_f64(n: usize) -> f64 {
     n as f64
 }
 
-/// Returns the box around some primitives and the box around their centres, computed by as many tasks.
+/// Returns the box around some primitives and the box around their centres, computed by about as many tasks.
 fn bounds_of(isa: Isa, primitives: &[BuildPrimitive], tasks: usize) -> [GrowingBox; 2] {
     if tasks <= 1 {
         return isa.run(BoundPrimitives(primitives));
     }
     let (before, after) = primitives.split_at(primitives.len() / 2);
-    let ([a, c], [b, d]) = run_both(true, || bounds_of(isa, before, tasks / 2), || bounds_of(isa, after, tasks / 2));
+    let ([a, c], [b, d]) =
+        run_both(true, || bounds_of(isa, before, tasks.div_ceil(2)), || bounds_of(isa, after, tasks.div_ceil(2)));
     [a.union(&b), c.union(&d)]
 }
 
-/// Moves the primitives below a plane to the front by as many tasks, and returns their number and the boxes around the
-/// centres of both sides. The order within a side depends on the number of tasks.
+/// Moves the primitives below a plane to the front by about as many tasks, and returns their number and the boxes
+/// around the centres of both sides. The order within a side depends on the number of tasks.
 fn partition(
     isa: Isa,
     primitives: &mut [BuildPrimitive],
@@ -311,8 +309,11 @@ fn partition(
         return isa.run(Partition { primitives, plane });
     }
     let (before, after) = primitives.split_at_mut(primitives.len() / 2);
-    let ((a, [a_left, a_right]), (b, [b_left, b_right])) =
-        run_both(true, || partition(isa, before, plane, tasks / 2), || partition(isa, after, plane, tasks / 2));
+    let ((a, [a_left, a_right]), (b, [b_left, b_right])) = run_both(
+        true,
+        || partition(isa, before, plane, tasks.div_ceil(2)),
+        || partition(isa, after, plane, tasks.div_ceil(2)),
+    );
     // The right side of the first half and the left side of the second one are neighbours and change places. Only as
     // many primitives move as the smaller one has.
     let moved = b.min(before.len() - a);
@@ -320,7 +321,7 @@ fn partition(
     (a + b, [a_left.union(&b_left), a_right.union(&b_right)])
 }
 
-/// Exchanges the contents of two slices by as many tasks.
+/// Exchanges the contents of two slices by about as many tasks.
 fn swap(a: &mut [BuildPrimitive], b: &mut [BuildPrimitive], tasks: usize) {
     if tasks <= 1 {
         a.swap_with_slice(b);
@@ -328,7 +329,7 @@ fn swap(a: &mut [BuildPrimitive], b: &mut [BuildPrimitive], tasks: usize) {
     }
     let middle = a.len() / 2;
     let ((a, a_after), (b, b_after)) = (a.split_at_mut(middle), b.split_at_mut(middle));
-    run_both(true, || swap(a, b, tasks / 2), || swap(a_after, b_after, tasks / 2));
+    run_both(true, || swap(a, b, tasks.div_ceil(2)), || swap(a_after, b_after, tasks.div_ceil(2)));
 }
 
 /// A SIMD kernel that returns the box around some primitives and the box around their centres. It uses the instruction
@@ -349,8 +350,8 @@ impl SimdKernel for BoundPrimitives<'_> {
     }
 }
 
-/// A SIMD kernel that moves the primitives below a plane to the front and returns their number, and the boxes around the
-/// centres of both sides. The order of the result is deterministic.
+/// A SIMD kernel that moves the primitives below a plane to the front and returns their number, and the boxes around
+/// the centres of both sides. The order of the result is deterministic.
 struct Partition<'a> {
     primitives: &'a mut [BuildPrimitive],
     plane: &'a SplitPlane,

@@ -132,7 +132,7 @@ impl Delaunay {
     ) -> Result<(Self, Vec<u32>, R), DelaunayError> {
         assert!(
             earlier.is_none_or(|old| points.len() >= old.scaled.site_of.len()),
-            "the points of before are the first ones"
+            "a triangulation is extended by points, none is removed"
         );
         let too_many = DelaunayError::TooMany { len: points.len() };
         if !(Self::MIN_REACH..=Self::MAX_REACH).contains(&reach) {

@@ -3,7 +3,7 @@
 use crate::list::block::{BLOCK_WIDTH, Block};
 use crate::octree::refinement::OpenCell;
 use crate::progress::{BuildStage, Progress};
-use std::ops::{AddAssign, SubAssign};
+use std::ops::{Add, AddAssign, Sub, SubAssign};
 use std::sync::atomic::{AtomicU64, Ordering};
 
 /// The tests of a packet at a point that the list of an open cell takes at most: at eight corners, and at the centre.
@@ -36,23 +36,42 @@ impl Spent {
         self.bytes > budgets.bytes || self.tests > budgets.tests
     }
 
+    /// Returns the larger one of both amounts of each budget.
+    pub(crate) fn max(self, other: Self) -> Self {
+        Self { bytes: self.bytes.max(other.bytes), tests: self.tests.max(other.tests) }
+    }
+
     /// Returns the part of a budget that has been spent, of the one that is closer to its end.
     pub(crate) fn part_of(self, budgets: Self) -> f64 {
         (self.bytes as f64 / budgets.bytes as f64).max(self.tests as f64 / budgets.tests as f64)
     }
 }
 
+impl Add for Spent {
+    type Output = Self;
+
+    fn add(self, other: Self) -> Self {
+        Self { bytes: self.bytes + other.bytes, tests: self.tests + other.tests }
+    }
+}
+
+impl Sub for Spent {
+    type Output = Self;
+
+    fn sub(self, other: Self) -> Self {
+        Self { bytes: self.bytes - other.bytes, tests: self.tests - other.tests }
+    }
+}
+
 impl AddAssign for Spent {
     fn add_assign(&mut self, other: Self) {
-        self.bytes += other.bytes;
-        self.tests += other.tests;
+        *self = *self + other;
     }
 }
 
 impl SubAssign for Spent {
     fn sub_assign(&mut self, other: Self) {
-        self.bytes -= other.bytes;
-        self.tests -= other.tests;
+        *self = *self - other;
     }
 }
 

@@ -303,7 +303,7 @@ impl Refinement<'_> {
         known: Option<KnownDistances<'_>>,
         place: Place,
     ) -> RefinedCell {
-        if task.spent.exceeds(self.budgets) {
+        if task.exceeds(self.budgets) {
             return RefinedCell::Tree;
         }
         let from_corners = if known.is_some() { &task.centre.from_corners[..] } else { &[] };

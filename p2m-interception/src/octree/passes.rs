@@ -10,7 +10,7 @@
 //!
 //! The cells of a pass are refined in chunks, on all threads, and the chunks are kept one after the other. Which chunk
 //! is the last one to be kept depends only on what they take together, and not on the number of threads. A chunk that
-//! exceeds a budget by itself ends at once, so each thread wastes at most what is left of the budgets.
+//! exceeds a budget ends at once, so each thread wastes at most what is left of the budgets.
 
 use crate::list::block::Block;
 use crate::octree::budget::Spent;
@@ -18,7 +18,7 @@ use crate::octree::refinement::{CellTask, OpenCell, Place, RefinedCell, RefinedC
 use crate::options::OctreeSoFar;
 use crate::parallel_chunks::map_chunks_in_order;
 use p2m_core::engine::vector::V3;
-use std::ops::ControlFlow;
+use std::ops::{ControlFlow, Range};
 use std::sync::Mutex;
 
 /// The resolution of the first pass, unless the last one is lower.
@@ -152,39 +152,38 @@ impl Passes {
         // The amounts that the chunks which are kept so far have taken, or `None` if no more chunks are kept.
         let kept = Mutex::new(Some(self.spent));
         let current = || *kept.lock().expect("no thread panics");
+        let set_current = |spent: Option<Spent>| *kept.lock().expect("no thread panics") = spent;
+        let refine = |range: Range<usize>, before: Spent| {
+            let mut task = CellTask::new(resolution, before);
+            for cell in &cells[range.clone()] {
+                task.spent -= Spent::reserved_for(cell);
+                let number = task.add_cell();
+                task.cells[number] = fate_of(refinement, &mut task, cell, Place { number, ..cell.place });
+                task.roots.push(number);
+            }
+            (range, task)
+        };
         let mut done = 0;
         map_chunks_in_order(
             cells.len(),
             chunk_len,
             refinement.parallel,
-            |range| {
-                let mut task = CellTask::new(resolution, current()?);
-                for cell in &cells[range.clone()] {
-                    task.spent -= Spent::reserved_for(cell);
-                    let number = task.add_cell();
-                    task.cells[number] = fate_of(refinement, &mut task, cell, Place { number, ..cell.place });
-                    task.roots.push(number);
-                }
-                let CellTask { cells: made, blocks, open, roots, spent, before, .. } = task;
-                Some((
-                    range,
-                    roots,
-                    (made, blocks),
-                    open,
-                    Spent { bytes: spent.bytes - before.bytes, tests: spent.tests - before.tests },
-                ))
-            },
+            |range| Some(refine(range, current()?)),
             |chunk| {
-                let mut kept = kept.lock().expect("no thread panics");
-                let (Some(mut spent), Some((range, roots, (made, blocks), open, more))) = (*kept, chunk) else {
-                    return;
-                };
-                spent += more;
-                if spent.exceeds(refinement.budgets) {
-                    *kept = None;
+                let (Some(spent), Some((range, mut task))) = (current(), chunk) else { return };
+                // The task may have begun before the chunks in front of it were kept. Whether it is kept depends on
+                // their amounts, so a task that ended early without need begins again.
+                if task.is_truncated && !(spent + task.peak).exceeds(refinement.budgets) {
+                    task = refine(range.clone(), spent).1;
+                }
+                let own = task.spent - task.before;
+                if (spent + task.peak.max(own)).exceeds(refinement.budgets) {
+                    set_current(None);
                     return;
                 }
-                *kept = Some(spent);
+                let spent = spent + own;
+                set_current(Some(spent));
+                let CellTask { cells: made, blocks, open, roots, .. } = task;
                 done = range.end;
                 self.counts.remove_lists(&cells[range.clone()]);
                 self.counts.add(&made, &blocks, &open, &roots);
@@ -199,7 +198,7 @@ impl Passes {
                 }));
                 self.spent = spent;
                 if is_last(self) {
-                    *kept = None;
+                    set_current(None);
                 }
             },
         );

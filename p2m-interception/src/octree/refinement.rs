@@ -176,6 +176,10 @@ pub(crate) struct CellTask {
     pub(crate) before: Spent,
     /// The amounts that have been spent, those from before the task included.
     pub(crate) spent: Spent,
+    /// The largest amounts that the task itself had spent before a split.
+    pub(crate) peak: Spent,
+    /// Whether cells were not split because a budget was exceeded.
+    pub(crate) is_truncated: bool,
     /// The memory of the current split.
     pub(crate) lattice: Lattice,
     /// Vectors for the distances of splits: one for each cell on the path to the current one.
@@ -188,6 +192,14 @@ impl CellTask {
     /// Begins a task of a pass.
     pub(crate) fn new(resolution: f64, before: Spent) -> Self {
         Self { resolution, before, spent: before, ..Self::default() }
+    }
+
+    /// Returns whether no cell may be split any more, because a budget is exceeded.
+    pub(crate) fn exceeds(&mut self, budgets: Spent) -> bool {
+        self.peak = self.peak.max(self.spent - self.before);
+        let exceeds = self.spent.exceeds(budgets);
+        self.is_truncated |= exceeds;
+        exceeds
     }
 
     /// Adds a cell and returns its number.

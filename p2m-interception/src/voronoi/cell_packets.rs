@@ -22,7 +22,7 @@ use std::ops::Range;
 const PACKETS_PER_TASK: usize = 64;
 
 /// The number of sites whose cells one task measures.
-const SITES_PER_TASK: usize = 1024;
+const MEASURED_SITES_PER_TASK: usize = 1024;
 
 /// A packet in the list of a cell.
 #[derive(Clone, Copy, Debug, Default)]
@@ -65,7 +65,7 @@ impl CellPackets {
         let packet_count = cells.tree.leaves.packets.len();
         let mut sizes: Vec<Option<CellSize>> = Vec::with_capacity(sites.len());
         let measure = |sites: Range<usize>| sites.map(size_of).collect();
-        map_chunks_in_order(sites.len(), SITES_PER_TASK, cells.limits.parallel, measure, |chunk: Vec<_>| {
+        map_chunks_in_order(sites.len(), MEASURED_SITES_PER_TASK, cells.limits.parallel, measure, |chunk: Vec<_>| {
             sizes.extend(chunk);
         });
         // One vector of all would be copied as it grows.

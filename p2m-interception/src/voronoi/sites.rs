@@ -76,7 +76,7 @@ impl<'a> GrowingSites<'a> {
     ) -> Option<Self> {
         let points = tree.leaves.vertices.to_vec();
         reporter.begin_stage(BuildStage::Delaunay);
-        let (delaunay, _, adjacency) = triangulate(tree, &points, None, limits).ok()?;
+        let Triangulated { delaunay, adjacency, .. } = triangulate(tree, &points, None, limits).ok()?;
         reporter.begin_stage(BuildStage::Balls);
         let (added, corners) = (Vec::new(), CellCorners::default());
         let mut sites = Self { tree, bounds, limits, reporter, points, added, delaunay, topology: None, corners };
@@ -104,7 +104,7 @@ impl<'a> GrowingSites<'a> {
         self.reporter.begin_stage(BuildStage::Delaunay);
         let extended = triangulate(self.tree, &self.points, Some(&self.delaunay), self.limits);
         self.reporter.begin_stage(BuildStage::Balls);
-        let Ok((next, old_numbers, adjacency)) = extended else {
+        let Ok(Triangulated { delaunay: next, old_numbers, adjacency }) = extended else {
             self.points.truncate(count_before);
             return false;
         };
@@ -134,20 +134,27 @@ impl<'a> GrowingSites<'a> {
     }
 }
 
-/// Triangulates points, beginning with an earlier triangulation of the first ones if there is one. The second result has
-/// for each tetrahedron its number there. The third one has the edges of the primitives, if another thread could collect
-/// them meanwhile.
-#[allow(clippy::type_complexity, reason = "the names are in the comment")]
+/// A triangulation of the points, with results that come with it.
+struct Triangulated {
+    delaunay: Delaunay,
+    /// For each tetrahedron its number in the earlier triangulation, as [`Delaunay::extend`] returns it.
+    old_numbers: Vec<u32>,
+    /// The edges of the primitives, if there were threads to collect them meanwhile.
+    adjacency: Option<EdgeAdjacency>,
+}
+
+/// Triangulates points, beginning with an earlier triangulation of the first ones if there is one.
 fn triangulate(
     tree: &PacketTree,
     points: &[V3],
     earlier: Option<&Delaunay>,
     limits: Limits<'_>,
-) -> Result<(Delaunay, Vec<u32>, Option<EdgeAdjacency>), DelaunayError> {
+) -> Result<Triangulated, DelaunayError> {
     let (parallel, max_tetrahedra) = (limits.parallel, max_tetrahedra(points.len()));
-    Delaunay::build_beside(points, BOUNDING_DISTANCE, max_tetrahedra, earlier, parallel, |sites| {
-        parallel.then(|| EdgeAdjacency::from_tree(tree, sites))
-    })
+    let collect_edges = |sites: &_| parallel.then(|| EdgeAdjacency::from_tree(tree, sites));
+    let (delaunay, old_numbers, adjacency) =
+        Delaunay::build_beside(points, BOUNDING_DISTANCE, max_tetrahedra, earlier, parallel, collect_edges)?;
+    Ok(Triangulated { delaunay, old_numbers, adjacency })
 }
 
 /// Completes the topology of a triangulation beside another task, if the edges of the primitives are known already.
