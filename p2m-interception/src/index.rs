@@ -293,6 +293,7 @@ impl<T: Real, S: PrimitiveSet<T> + Sync> OctreeIndex<T, S> {
     /// so queries take longer.
     ///
     /// `visit` is called between the chunks of the refinement, from the calling thread, with what the octree would be.
+    /// Other threads work on the next chunks meanwhile.
     /// After it returned [`ControlFlow::Break`], the cells that would have been split get their lists, which takes a
     /// part of the time that was spent so far. The index depends only on how many calls `visit` continued, and not on
     /// the number of threads.

@@ -2,8 +2,7 @@
 
 use std::ops::Range;
 
-/// The number of chunks at most that are begun and not consumed yet, for up to sixteen threads. Their results are in
-/// memory.
+/// The largest number of chunks that are begun and not consumed yet, for up to sixteen threads.
 #[cfg(feature = "rayon")]
 const MAX_OPEN_CHUNKS: usize = 32;
 
