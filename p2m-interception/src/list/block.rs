@@ -214,9 +214,10 @@ impl Block {
         assert_eq!(y.map(f64::to_bits), round_reference(y).map(f64::to_bits), "a point that blocks can have");
         block.y = y.map(|x| (x / REFERENCE_UNIT) as i16);
         block.bounds = [[255; BLOCK_WIDTH]; 8];
+        let per_unit = power_of_two(-exponent);
         for (i, entry) in entries.iter().enumerate() {
             for (row, f) in block.bounds.iter_mut().zip(entry.f) {
-                row[i] = ((f - min_f) / unit) as u8;
+                row[i] = ((f - min_f) * per_unit) as u8;
             }
         }
         block

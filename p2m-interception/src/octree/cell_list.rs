@@ -123,7 +123,8 @@ impl Refinement<'_> {
         let largest = squares.iter().fold(1.0, |a: f64, x| a.max(*x));
         let margin = largest * 2f64.powi(-46) + 4.0 * self.slack * frame.per_unit * largest.sqrt();
         let has_boxes = centre.passing_boxes < centre.passing_corners;
-        let mut entries: Vec<(f64, Entry)> = Vec::with_capacity(candidates.len());
+        // The keys are sorted, and the entries follow, because an entry is four times as large as its key.
+        let (mut entries, mut keys) = (Vec::with_capacity(candidates.len()), Vec::with_capacity(candidates.len()));
         let (mut count, mut bounds) = (0, Vec::with_capacity(1));
         for (candidate, from_corners) in candidates.iter().zip(&centre.from_corners) {
             let number = candidate.child.number();
@@ -140,8 +141,10 @@ impl Refinement<'_> {
                 self.bound_from_corners(&[Candidate { lanes, ..*candidate }], known, &mut bounds);
             }
             let from_corners = bounds[0];
-            // Packets that are nearer to the cell come into earlier blocks.
+            // Packets that are nearer to the cell come into earlier blocks. The bits of positive numbers have the order
+            // of the numbers.
             let order: f64 = from_corners.iter().map(|least| least * least).sum();
+            keys.push((order.to_bits(), candidate.child.number(), entries.len()));
             let mut entry = Entry {
                 packet: u32::try_from(number).expect("packets have numbers"),
                 lanes,
@@ -156,10 +159,10 @@ impl Refinement<'_> {
                     (from_corners[i] * length) * (from_corners[i] * length) - squares[i] - margin
                 });
             }
-            entries.push((order, entry));
+            entries.push(entry);
         }
-        match &mut entries[..] {
-            [(_, Entry { packet, lanes, .. })] if count == 1 => {
+        match &entries[..] {
+            [Entry { packet, lanes, .. }] if count == 1 => {
                 RefinedCell::Single(*packet, u8::try_from(lanes.trailing_zeros()).expect("sixteen lanes"))
             }
             entries
@@ -170,8 +173,8 @@ impl Refinement<'_> {
                 RefinedCell::Tree
             }
             entries => {
-                entries.sort_unstable_by(|a, b| a.0.total_cmp(&b.0).then(a.1.packet.cmp(&b.1.packet)));
-                let entries: Vec<Entry> = entries.iter().map(|e| e.1).collect();
+                keys.sort_unstable();
+                let entries: Vec<Entry> = keys.iter().map(|(_, _, entry)| entries[*entry]).collect();
                 let bounds = if has_boxes { BoundKind::Boxes } else { BoundKind::Corners { level: cube.level, y } };
                 let first = u32::try_from(task.blocks.len()).expect("a task has few blocks");
                 task.blocks.extend(Block::from_list(&entries, bounds));

@@ -33,7 +33,7 @@ use p2m_core::engine::real::{from_f64_array, to_f64_array};
 use p2m_core::engine::vector::V3;
 use p2m_core::storage::Array;
 use p2m_core::{Best, Isa, PrimitiveId, PrimitiveSet, QueryOptions, Real, StatsCollector};
-use std::collections::HashMap;
+use rustc_hash::{FxBuildHasher, FxHashMap};
 use std::ops::ControlFlow;
 
 /// The resolution above which cells do not become finer any more.
@@ -214,15 +214,21 @@ impl Partition for Octree {
 /// Returns for each vertex of a tree the primitive with the lowest id that has this vertex, bit for bit.
 fn lowest_owners(tree: &PacketTree) -> Vec<PrimitiveId> {
     let leaves = &tree.leaves;
-    let mut lowest_owners: HashMap<[u64; 3], PrimitiveId> = HashMap::with_capacity(leaves.vertices.len());
-    let key = |v: &V3| v.map(f64::to_bits);
+    let mut owners = vec![PrimitiveId::new(PrimitiveId::MAX_COUNT - 1); leaves.vertices.len()];
     for packet in leaves.packets.iter().filter(|p| p.has_vertices()) {
         for (lane, id) in packet.ids().iter().enumerate() {
             let (corners, count) = packet.vertices_of(lane);
             for &v in &corners[..count] {
-                lowest_owners.entry(key(&leaves.vertices[v])).and_modify(|o| *o = (*o).min(*id)).or_insert(*id);
+                owners[v] = owners[v].min(*id);
             }
         }
     }
-    leaves.vertices.iter().map(|v| lowest_owners[&key(v)]).collect()
+    // Packets do not share vertices, so a vertex of the scene may be several ones of the tree.
+    let key = |v: &V3| v.map(f64::to_bits);
+    let mut lowest: FxHashMap<[u64; 3], PrimitiveId> =
+        FxHashMap::with_capacity_and_hasher(owners.len(), FxBuildHasher);
+    for (v, owner) in leaves.vertices.iter().zip(&owners) {
+        lowest.entry(key(v)).and_modify(|o| *o = (*o).min(*owner)).or_insert(*owner);
+    }
+    leaves.vertices.iter().map(|v| lowest[&key(v)]).collect()
 }
