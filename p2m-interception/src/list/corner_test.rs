@@ -10,7 +10,6 @@
 //! The filters of packets and boxes bound the distances from corners to primitives, so the test keeps too many
 //! primitives rather than too few.
 
-use nalgebra::Point3;
 use p2m_bvh::engine::packet::{LANES, Packet, at_most, smallest};
 use p2m_core::Aabb;
 use p2m_core::engine::simd::{InstructionSet, SimdKernel};
@@ -55,14 +54,40 @@ impl Dominators {
         }
         Self { rows, count }
     }
+}
 
-    /// Returns whether anything in a box can be nearer than all dominators somewhere in the cell.
-    pub(crate) fn keeps_box(&self, corners: &[Corner; 8], bounds: &Aabb<f64>) -> bool {
-        let squared = corners.map(|c| bounds.lower_bound(&Point3::from(c.x)));
-        // The lower bound of a box is too large by a few roundings at most. A loop without branches is vectorized.
-        let is_near =
-            |row: &[f64; 8]| (0..8).fold(false, |near, i| near | (squared[i] <= row[i] * row[i] * DISTANCE_ROUND_UP));
-        self.rows[..self.count].iter().all(is_near)
+/// The corner test of boxes in a cube.
+pub(crate) struct BoxTest {
+    /// The corners of the cube with the lowest and with the highest coordinates.
+    ends: [V3; 2],
+    /// The squared distances up to which a box is kept: one row of eight corners for each dominator.
+    limits: [[f64; 8]; 8],
+    /// The number of dominators.
+    count: usize,
+}
+
+impl BoxTest {
+    /// Prepares the test, given the corners of a cube. Bit k of the number of a corner tells on which side of axis k it
+    /// is.
+    pub(crate) fn new(dominators: &Dominators, corners: &[Corner; 8]) -> Self {
+        // The lower bound of a box is too large by a few roundings at most.
+        let limits = dominators.rows.map(|row| row.map(|distance| distance * distance * DISTANCE_ROUND_UP));
+        Self { ends: [corners[0].x, corners[7].x], limits, count: dominators.count }
+    }
+
+    /// Returns whether anything in a box can be nearer than all dominators somewhere in the cube.
+    pub(crate) fn keeps(&self, bounds: &Aabb<f64>) -> bool {
+        // Corners share their coordinates, so there are only two distances on each axis.
+        let square = |k: usize, x: f64| {
+            let outside = (bounds.min[k] - x).max(x - bounds.max[k]).max(0.0);
+            outside * outside
+        };
+        let squares: [V3; 2] = self.ends.map(|end| std::array::from_fn(|k| square(k, end[k])));
+        let squared: [f64; 8] =
+            std::array::from_fn(|i| squares[i & 1][0] + squares[i >> 1 & 1][1] + squares[i >> 2][2]);
+        // A loop without branches is vectorized.
+        let is_near = |row: &[f64; 8]| (0..8).fold(false, |near, i| near | (squared[i] <= row[i]));
+        self.limits[..self.count].iter().all(is_near)
     }
 }
 
@@ -167,5 +192,40 @@ impl SimdKernel for LeastOfLanes<'_> {
     fn run<I: InstructionSet>(self) -> f64 {
         let Self { distances: LaneDistances { squared, error_above }, lanes } = self;
         least_of_lanes::<I>(squared, *error_above, &exclusion_of(lanes))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use nalgebra::{Point3, Vector3};
+    use p2m_testkit::rng;
+    use rand::RngExt;
+
+    #[test]
+    fn boxes_are_kept_by_the_definition() {
+        let mut rng = rng("boxes in cubes", 0);
+        let (mut kept, mut tests) = (0, 0);
+        for round in 0..2_000 {
+            let (low, side) = ([0; 3].map(|_| rng.random_range(-1.0..1.0)), rng.random_range(0.1..1.0));
+            let corners: [Corner; 8] = std::array::from_fn(|c| Corner {
+                x: std::array::from_fn(|k| low[k] + if c >> k & 1 == 1 { side } else { 0.0 }),
+                y: if round % 9 == c { [f64::INFINITY; 3] } else { [0; 3].map(|_| rng.random_range(-1.5..1.5)) },
+            });
+            let dominators = Dominators::from_corners(&corners, 1e-3);
+            let test = BoxTest::new(&dominators, &corners);
+            for _ in 0..20 {
+                let min = Point3::from([0; 3].map(|_| rng.random_range(-3.0..3.0)));
+                let bounds = Aabb { min, max: min + Vector3::from([0; 3].map(|_| rng.random_range(0.0..0.5))) };
+                let is_near = |y: &V3| {
+                    let limit = |x: &V3| norm_squared(sub(*x, *y)).sqrt() + 1e-3;
+                    corners.iter().any(|c| bounds.lower_bound(&Point3::from(c.x)).sqrt() <= limit(&c.x) * (1.0 + 1e-14))
+                };
+                let expected = corners.iter().filter(|c| c.y[0].is_finite()).all(|c| is_near(&c.y));
+                assert_eq!(test.keeps(&bounds), expected, "{corners:?} {bounds:?}");
+                (kept, tests) = (kept + usize::from(expected), tests + 1);
+            }
+        }
+        assert!(kept * 10 > tests && kept * 10 < 9 * tests, "{kept} of {tests}");
     }
 }

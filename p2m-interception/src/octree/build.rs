@@ -20,7 +20,7 @@
 //! ([`passes`](crate::octree::passes)).
 
 use crate::list::block::{BLOCK_WIDTH, MAX_LEVEL};
-use crate::list::corner_test::{Corner, Dominators};
+use crate::list::corner_test::{BoxTest, Corner, Dominators};
 use crate::octree::budget::Spent;
 use crate::octree::cell::{CHILD_CORNERS, CUBE_CORNERS, Cube, LATTICE_CENTRE, LATTICE_POINTS, cube_corner_at};
 use crate::octree::cell_list::MAX_LIST_PACKETS;
@@ -73,6 +73,17 @@ impl Refinement<'_> {
     /// Returns the point of the scene that is nearest to `x`.
     pub(crate) fn nearest(&self, task: &mut CellTask, x: V3) -> V3 {
         self.probe_tree(task, x).nearest
+    }
+
+    /// Returns the point of the scene that is nearest to a lattice point, which the task may know already.
+    fn nearest_to_lattice_point(&self, task: &mut CellTask, x: V3) -> V3 {
+        let key = x.map(f64::to_bits);
+        if let Some(known) = task.nearest_points.get(&key) {
+            return *known;
+        }
+        let nearest = self.nearest(task, x);
+        task.nearest_points.insert(key, nearest);
+        nearest
     }
 
     /// Refines the cube of the domain.
@@ -162,7 +173,8 @@ impl Refinement<'_> {
     /// Opens the candidates of a cell until all are packets, or until there are too many. Returns whether all are
     /// packets.
     fn open_candidates(&self, cube: &Cube, dominators: &Dominators, candidates: &mut Vec<Candidate>) -> bool {
-        candidates.retain(|c| dominators.keeps_box(&cube.corners, &c.bounds));
+        let test = BoxTest::new(dominators, &cube.corners);
+        candidates.retain(|c| test.keeps(&c.bounds));
         while candidates.len() <= MAX_OPENED {
             if candidates.iter().all(|candidate| candidate.child.is_packet()) {
                 return true;
@@ -173,7 +185,7 @@ impl Refinement<'_> {
                     opened.push(*candidate);
                 } else {
                     for (bounds, child) in self.tree.child_boxes(candidate.child) {
-                        if dominators.keeps_box(&cube.corners, &bounds) {
+                        if test.keeps(&bounds) {
                             opened.push(Candidate { bounds, child, parent: candidate.child, ..*candidate });
                         }
                     }
@@ -314,7 +326,7 @@ impl Refinement<'_> {
             if let Some(known) = cube_corner_at(at) {
                 corner.y = cube.corners[known].y;
             } else if !has_packets {
-                corner.y = self.nearest(task, corner.x);
+                corner.y = self.nearest_to_lattice_point(task, corner.x);
             } else if at != LATTICE_CENTRE {
                 let few = task.lattice.nearest_boxes(at, cube.side);
                 corner.y = self.nearest_of_few(task, candidates, few, corner.x);

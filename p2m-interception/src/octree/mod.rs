@@ -225,8 +225,7 @@ fn lowest_owners(tree: &PacketTree) -> Vec<PrimitiveId> {
     }
     // Packets do not share vertices, so a vertex of the scene may be several ones of the tree.
     let key = |v: &V3| v.map(f64::to_bits);
-    let mut lowest: FxHashMap<[u64; 3], PrimitiveId> =
-        FxHashMap::with_capacity_and_hasher(owners.len(), FxBuildHasher);
+    let mut lowest: FxHashMap<[u64; 3], PrimitiveId> = FxHashMap::with_capacity_and_hasher(owners.len(), FxBuildHasher);
     for (v, owner) in leaves.vertices.iter().zip(&owners) {
         lowest.entry(key(v)).and_modify(|o| *o = (*o).min(*owner)).or_insert(*owner);
     }

@@ -10,6 +10,7 @@ use p2m_bvh::PacketTree;
 use p2m_bvh::engine::node::NodeRef;
 use p2m_core::engine::vector::V3;
 use p2m_core::{Aabb, PrimitiveId};
+use rustc_hash::FxHashMap;
 
 /// The time in which a query tests a packet of a list or of the tree, in nanoseconds. The three times were observed on
 /// one processor. Only their ratios matter, and the cells depend on each of them.
@@ -180,6 +181,9 @@ pub(crate) struct CellTask {
     pub(crate) peak: Spent,
     /// Whether cells were not split because a budget was exceeded.
     pub(crate) is_truncated: bool,
+    /// The nearest points of the scene that the tree found, by the bits of the lattice points. Neighbouring cells share
+    /// lattice points.
+    pub(crate) nearest_points: FxHashMap<[u64; 3], V3>,
     /// The memory of the current split.
     pub(crate) lattice: Lattice,
     /// Vectors for the distances of splits: one for each cell on the path to the current one.
