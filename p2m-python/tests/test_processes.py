@@ -154,10 +154,11 @@ import sys, time, signal, threading, os
 import numpy as np, p2m
 sys.path.insert(0, {tests!r})
 from conftest import sphere
-scene = p2m.Scene(*sphere(200, 400))
+work = {work!r}
+# The work takes several times as long as the interrupt waits.
+scene = p2m.Scene(*sphere(*(400, 800) if work in ("octree", "p2m", "hausdorff") else (200, 400)))
 # A process that runs in the background may have been started with the signal ignored.
 signal.signal(signal.SIGINT, signal.default_int_handler)
-work = {work!r}
 threads = {threads}
 small = p2m.Scene(*sphere(20, 40))
 index = None if work in ("octree", "p2m") else p2m.Index(scene, "brute")
