@@ -5,6 +5,8 @@
 
 use nalgebra::{Point3, Vector3};
 use p2m::backend::{Collector, StatsCollector};
+#[cfg(feature = "mixed")]
+use p2m::scene::generate::{IcoSphere, ico_sphere};
 use p2m::{
     Aabb, BruteForce, BuildIndex, ClosestPoint, Domain, Isa, OctreeIndex, OctreeOptions, OctreeReport, OctreeSoFar,
     Point, PrimitiveId, PrimitiveSet, Projection, Segment, Shape, Soup,
@@ -188,17 +190,29 @@ fn check_so_far(report: &OctreeReport, so_far: &OctreeSoFar) {
 /// Budgets end the refinement in the middle of a pass, while several threads are at work.
 #[test]
 fn cells_do_not_depend_on_the_number_of_threads() {
-    let soup = sheet(amount(5_000, 2_000));
+    check_threads(&sheet(amount(5_000, 2_000)), &[1.0, 0.5, 0.3, 0.2, 0.1, 0.05]);
+}
+
+/// All triangles are about equally near to the middle of a sphere, so searches there are charged to the budget of work.
+#[cfg(feature = "mixed")]
+#[test]
+fn cells_of_a_sphere_do_not_depend_on_the_number_of_threads() {
+    let sphere = ico_sphere(&IcoSphere { frequency: 25 }).expect("valid");
+    check_threads(&sphere, &[0.2, 0.05]);
+}
+
+/// Checks that octrees over a scene are the same on several threads, with parts of the default budgets.
+fn check_threads(soup: &Soup<f64>, parts: &[f64]) {
     let mut rng = rng("octree threads", 0);
-    let points: Vec<_> = (0..amount(2000, 400)).map(|_| query(&mut rng, &soup)).collect();
+    let points: Vec<_> = (0..amount(2000, 400)).map(|_| query(&mut rng, soup)).collect();
     let pools = [2, 3, 8].map(|threads| rayon::ThreadPoolBuilder::new().num_threads(threads).build().expect("threads"));
     let mut ended_early = 0;
-    for part in [1.0, 0.5, 0.3, 0.2, 0.1, 0.05] {
+    for &part in parts {
         let default = OctreeOptions::default();
         for default in [default.with_memory(default.memory * part), default.with_work(default.work * part)] {
             let cells = |parallel| {
                 let splits = p2m::bvh::SplitOptions::default().with_parallel(parallel);
-                let index = built(&soup, &default.with_splits(splits));
+                let index = built(soup, &default.with_splits(splits));
                 let lists: Vec<_> = points.iter().map(|point| index.partition().list_length(point)).collect();
                 (index.report(), lists)
             };

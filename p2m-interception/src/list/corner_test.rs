@@ -67,8 +67,8 @@ pub(crate) struct BoxTest {
 }
 
 impl BoxTest {
-    /// Prepares the test, given the corners of a cube. Bit k of the number of a corner tells on which side of axis k it
-    /// is.
+    /// Prepares the test, given the corners of a cube. A corner has the higher coordinate on axis k if bit k of its
+    /// number is set.
     pub(crate) fn new(dominators: &Dominators, corners: &[Corner; 8]) -> Self {
         // The lower bound of a box is too large by a few roundings at most.
         let limits = dominators.rows.map(|row| row.map(|distance| distance * distance * DISTANCE_ROUND_UP));

@@ -353,7 +353,7 @@ impl Refinement<'_> {
             });
             task.spent += Spent::new(CODE_BYTES_PER_SPLIT, tests);
         } else {
-            // The children need 19 searches of the tree, each of which tests some packets.
+            // The children need at most 19 searches of the tree, each of which tests some packets.
             task.spent += Spent::new(CODE_BYTES_PER_SPLIT, 19 * 8);
             task.lattice.keep_all_lanes();
         }

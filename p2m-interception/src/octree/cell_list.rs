@@ -104,8 +104,8 @@ impl Refinement<'_> {
         self.isa().run(BoundFromCorners { packets: &self.tree.leaves.packets, candidates, known, bounds });
     }
 
-    /// Builds the list of a cell as it is stored, or a cell without a list if the tree is better. The centre of the cell
-    /// was sampled before.
+    /// Builds the list of a cell as it is stored, or a cell without a list if the tree is better. The centre of the
+    /// cell was sampled before.
     pub(crate) fn build_list(
         &self,
         cube: &Cube,
@@ -141,8 +141,8 @@ impl Refinement<'_> {
                 self.bound_from_corners(&[Candidate { lanes, ..*candidate }], known, &mut bounds);
             }
             let from_corners = bounds[0];
-            // Packets that are nearer to the cell come into earlier blocks. The bits of positive numbers have the order
-            // of the numbers.
+            // Packets that are nearer to the cell come into earlier blocks. The sum is not negative, and the bits of such
+            // numbers have the order of the numbers.
             let order: f64 = from_corners.iter().map(|least| least * least).sum();
             keys.push((order.to_bits(), candidate.child.number(), entries.len()));
             let mut entry = Entry {

@@ -18,6 +18,7 @@ use crate::octree::refinement::{CellTask, OpenCell, Place, RefinedCell, RefinedC
 use crate::options::OctreeSoFar;
 use crate::parallel_chunks::map_chunks_in_order;
 use p2m_core::engine::vector::V3;
+use rustc_hash::FxHashMap;
 use std::ops::{ControlFlow, Range};
 use std::sync::Mutex;
 
@@ -101,8 +102,9 @@ impl Passes {
         }
         let mut counts = Counts::default();
         counts.add(&task.cells, &task.blocks, &task.open, &[]);
-        let refined = RefinedCells { cells: task.cells, blocks: vec![task.blocks] };
-        let mut passes = Self { refined, open: task.open, spent: task.spent, resolution, counts };
+        let CellTask { cells, blocks, open, spent, .. } = task;
+        let refined = RefinedCells { cells, blocks: vec![blocks] };
+        let mut passes = Self { refined, open, spent, resolution, counts };
         let mut is_kept = true;
         let mut is_stopped = visit(&passes.so_far()).is_break();
         while is_kept && !is_stopped && !passes.open.is_empty() {
@@ -161,6 +163,8 @@ impl Passes {
                 task.cells[number] = fate_of(refinement, &mut task, cell, Place { number, ..cell.place });
                 task.roots.push(number);
             }
+            // Tasks that wait for others need no memory for this.
+            task.nearest_points = FxHashMap::default();
             (range, task)
         };
         let mut done = 0;

@@ -181,8 +181,8 @@ pub(crate) struct CellTask {
     pub(crate) peak: Spent,
     /// Whether cells were not split because a budget was exceeded.
     pub(crate) is_truncated: bool,
-    /// The nearest points of the scene that the tree found, by the bits of the lattice points. Neighbouring cells share
-    /// lattice points.
+    /// The nearest points of the scene that the tree found, by the bits of the lattice points. They are remembered
+    /// because neighbouring cells share lattice points.
     pub(crate) nearest_points: FxHashMap<[u64; 3], V3>,
     /// The memory of the current split.
     pub(crate) lattice: Lattice,
