@@ -169,8 +169,8 @@ impl Block {
         while size > 254.0 * power_of_two(exponent) || largest > 8_388_000.0 * power_of_two(exponent) {
             exponent += 1;
         }
-        let unit = power_of_two(exponent);
-        let origin = low.map(|x| (x / unit).floor() * unit);
+        let (unit, per_unit) = (power_of_two(exponent), power_of_two(-exponent));
+        let origin = low.map(|x| (x * per_unit).floor() * unit);
         let mut block = Self::new(entries, LEVEL_OF_BOXES);
         block.exponent = exponent as i8;
         for (k, x) in origin.into_iter().enumerate() {
@@ -180,8 +180,8 @@ impl Block {
             ([255; BLOCK_WIDTH], [255; BLOCK_WIDTH], [255; BLOCK_WIDTH]);
         for (i, entry) in entries.iter().enumerate() {
             for (k, origin) in origin.iter().enumerate() {
-                block.bounds[k][i] = ((f64::from(entry.bounds[0][k]) - origin) / unit).floor() as u8;
-                block.bounds[3 + k][i] = ((f64::from(entry.bounds[1][k]) - origin) / unit).ceil() as u8;
+                block.bounds[k][i] = ((f64::from(entry.bounds[0][k]) - origin) * per_unit).floor() as u8;
+                block.bounds[3 + k][i] = ((f64::from(entry.bounds[1][k]) - origin) * per_unit).ceil() as u8;
             }
         }
         block
@@ -204,7 +204,7 @@ impl Block {
         while top - min_f > 254.0 * power_of_two(exponent) && exponent < 100 {
             exponent += 1;
         }
-        let unit = power_of_two(exponent);
+        let (unit, per_unit) = (power_of_two(exponent), power_of_two(-exponent));
         // The base is lowered by the rounding of the sum in `lower_bounds`.
         let base = min_f - unit / 256.0 - min_f.abs() * power_of_two(-20);
         let base = (base as f32).next_down();
@@ -214,7 +214,6 @@ impl Block {
         assert_eq!(y.map(f64::to_bits), round_reference(y).map(f64::to_bits), "a point that blocks can have");
         block.y = y.map(|x| (x / REFERENCE_UNIT) as i16);
         block.bounds = [[255; BLOCK_WIDTH]; 8];
-        let per_unit = power_of_two(-exponent);
         for (i, entry) in entries.iter().enumerate() {
             for (row, f) in block.bounds.iter_mut().zip(entry.f) {
                 row[i] = ((f - min_f) * per_unit) as u8;

@@ -141,10 +141,10 @@ impl Refinement<'_> {
                 self.bound_from_corners(&[Candidate { lanes, ..*candidate }], known, &mut bounds);
             }
             let from_corners = bounds[0];
-            // Packets that are nearer to the cell come into earlier blocks. The sum is not negative, and the bits of such
-            // numbers have the order of the numbers.
+            // Packets that are nearer to the cell come into earlier blocks. The sum is not negative, and the bits of
+            // such numbers have the order of the numbers.
             let order: f64 = from_corners.iter().map(|least| least * least).sum();
-            keys.push((order.to_bits(), candidate.child.number(), entries.len()));
+            keys.push((order.to_bits(), number, entries.len()));
             let mut entry = Entry {
                 packet: u32::try_from(number).expect("packets have numbers"),
                 lanes,
