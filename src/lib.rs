@@ -98,7 +98,7 @@
 pub use nalgebra;
 /// Which index a scene and its queries call for.
 #[cfg(feature = "advisor")]
-pub use p2m_advisor as advisor;
+pub use p2m_backends as advisor;
 /// Everything else about trees of boxes: their nodes and packets, and trees of other volumes.
 #[cfg(feature = "bvh")]
 pub use p2m_bvh as bvh;

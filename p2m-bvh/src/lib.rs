@@ -25,7 +25,7 @@
 //! of the same parts.
 #![forbid(unsafe_code)]
 
-mod build;
+mod construct;
 mod index;
 mod packet;
 mod pairs;
@@ -33,7 +33,7 @@ mod traverse;
 mod tree;
 mod volume;
 
-pub use build::{SplitOptions, SplitRule};
+pub use construct::{SplitOptions, SplitRule};
 pub use index::TreeIndex;
 pub use tree::PacketTree;
 pub use tree::view::TreeNode;
@@ -105,7 +105,7 @@ pub mod engine {
     }
     /// The interface of bounding volumes.
     pub mod volume {
-        pub use crate::build::TreeOptions;
+        pub use crate::construct::TreeOptions;
         pub use crate::traverse::compiled::CompiledSearches;
         pub use crate::tree::rounded::Rounded;
         pub use crate::tree::wide_node::{VolumeNodes, WideNode};

@@ -1,6 +1,6 @@
 //! The bounding volumes that a tree may have.
 
-use crate::build::{SplitOptions, TreeOptions};
+use crate::construct::{SplitOptions, TreeOptions};
 use crate::traverse::compiled::CompiledSearches;
 use crate::tree::PacketTree;
 use p2m_core::Aabb;

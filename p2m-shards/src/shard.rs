@@ -1,7 +1,7 @@
 //! A shard in memory: a part of the scene with its index and the ids of its primitives in the whole scene.
 
 use crate::{ShardEntry, ShardError};
-use p2m_advisor::BackendEntry;
+use p2m_backends::BackendEntry;
 use p2m_core::storage::{Array, LoadError, SavedFile, require};
 use p2m_core::{Index, PrimitiveId, PrimitiveSet, Shape, Soup, shape_of};
 use p2m_mixed::load_scene;

@@ -6,7 +6,7 @@ use nalgebra::Point3;
 use p2m::batch::{BatchOptions, ClosestColumns, closest_columns_into, closest_points_into, distances, map};
 use p2m::{AabbTree, BuildIndex, Closest, ClosestPoint, Feature, Isa, KdopTree, NearQuery, OctreeIndex, P2mIndex};
 use p2m::{PrimitiveId, PrimitiveSet, QueryOptions, Real, Soup};
-use p2m_advisor::{BACKENDS, BuildSettings};
+use p2m_backends::{BACKENDS, BuildSettings};
 use p2m_testkit::scenes::{self, Kinds, Layout, narrow};
 use p2m_testkit::{amount, cases, rng};
 use rand::{Rng, RngExt};

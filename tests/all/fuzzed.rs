@@ -1,13 +1,13 @@
-//! Runs the checks of the fuzz targets on their seeds and on inputs that once failed (`fuzz/crashes`), without a
+//! Runs the checks of the fuzz targets on their seeds and on inputs that once failed (`tools/fuzz/crashes`), without a
 //! nightly compiler.
 //!
-//! `P2M_FUZZED=fuzz/corpus cargo test --test all fuzzed::` adds a folder that has a folder for each target, such as
+//! `P2M_FUZZED=tools/fuzz/corpus cargo test --test all fuzzed::` adds a folder that has a folder for each target, such as
 //! fuzzing leaves behind. `P2M_BLESS=1 cargo test --test all fuzzed::seeds_are` writes the seeds of scenes and saved
 //! indexes anew.
 #![cfg(all(feature = "bvh", feature = "interception", feature = "kdop", feature = "mixed"))]
 
 #[allow(unreachable_pub, reason = "a crate of its own")]
-#[path = "../../fuzz/src/lib.rs"]
+#[path = "../../tools/fuzz/src/lib.rs"]
 mod fuzz;
 
 use fuzz::{QUESTIONS, backends, pairs, queries, rays, readers, saved, scene};
@@ -43,7 +43,7 @@ const TARGETS: [(&str, Check); 12] = [
 ];
 
 fn folder(name: &str) -> PathBuf {
-    Path::new(env!("CARGO_MANIFEST_DIR")).join("fuzz").join(name)
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("tools/fuzz").join(name)
 }
 
 /// Returns the sorted files of a folder, and none if the folder does not exist.

@@ -3,7 +3,7 @@
 
 use p2m::field::{HausdorffOptions, hausdorff_distance, one_sided_hausdorff_distance};
 use p2m::{BruteForce, Real, Soup};
-use p2m_advisor::{BACKENDS, BuildSettings, Index};
+use p2m_backends::{BACKENDS, BuildSettings, Index};
 use p2m_testkit::scenes::{self, kinds_and_layout, narrow};
 use p2m_testkit::{cases, rng};
 use std::ops::ControlFlow;

@@ -6,7 +6,7 @@ use crate::agreement::agrees_with;
 use nalgebra::{Point3, Vector3};
 use p2m::storage::{SavedFile, Writer};
 use p2m::{Aabb, BoxQuery, BruteForce, CertifiedQuery, PrimitiveSet, QueryOptions, Ray, RayQuery, Real, Soup};
-use p2m_advisor::{BACKENDS, BuildSettings, Index};
+use p2m_backends::{BACKENDS, BuildSettings, Index};
 use p2m_testkit::near_check;
 use p2m_testkit::scenes::{extreme_soups, narrow, queries, random_soups, to_f32};
 

@@ -10,7 +10,7 @@ use p2m::{
     AabbTree, BruteForce, BuildIndex, CertifiedQuery, Closest, ClosestPoint, Element, Hit, NearQuery, PrimitiveId,
     PrimitiveSet, QueryOptions, Ray, RayQuery, Soup,
 };
-use p2m_advisor::{BACKENDS, BackendEntry};
+use p2m_backends::{BACKENDS, BackendEntry};
 use p2m_testkit::scenes::{self, KINDS, LAYOUTS, Layout};
 use p2m_testkit::{amount, cases, rng};
 use rand::{Rng, RngExt};

@@ -114,7 +114,7 @@ impl<V: VolumeNodes> Visitor<V> for BallSearch<'_, V> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::build::SplitOptions;
+    use crate::construct::SplitOptions;
     use nalgebra::{Point3, Vector3};
     use p2m_core::{Aabb, Isa, Primitive, Segment, Triangle};
     use p2m_testkit::vector;

@@ -2,7 +2,7 @@
 
 use crate::reference::{Object, moved_soup, scene};
 use nalgebra::Point3;
-use p2m_advisor::{BACKENDS, BuildSettings};
+use p2m_backends::{BACKENDS, BuildSettings};
 use p2m_core::{
     Aabb, BoxQuery, BruteForce, CertifiedQuery, Closest, ClosestPoint, Index, Inspect, NearQuery, PrimitiveId,
     PrimitiveSet, QueryCost, QueryOptions, Ray, RayQuery, Real, Soup,

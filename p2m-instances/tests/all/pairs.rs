@@ -3,7 +3,7 @@
 
 use crate::reference::{Expected, Object, motion, moved_soup, scene};
 use nalgebra::Isometry3;
-use p2m_advisor::{BACKENDS, BuildSettings};
+use p2m_backends::{BACKENDS, BuildSettings};
 use p2m_bvh::AabbTree;
 use p2m_core::pair::{ClosestPair, PairOptions, PairQuery};
 use p2m_core::{BruteForce, BuildIndex, Index, PrimitiveId, PrimitiveSet, Shape, Soup};

@@ -21,7 +21,7 @@ use hashbrown::HashTable;
 use nalgebra::Point3;
 pub use names::shard_file;
 use names::{begin_run, files_of_runs, run_of, unfinished_manifest};
-use p2m_advisor::{BackendEntry, BuildSettings};
+use p2m_backends::{BackendEntry, BuildSettings};
 use p2m_core::storage::Writer;
 use p2m_core::{BuildError, Element, PrimitiveId, PrimitiveSet, Shape, Soup};
 use p2m_mixed::{PieceOptions, PieceSummary, Scene, read_scene_in_pieces, save_scene};

@@ -1,0 +1,117 @@
+"""Runs the programs of users who reported that other libraries are slow or run out of memory, in one call each.
+
+    pip install ./p2m-python[compare]
+    python bindings/python/benchmarks/users.py
+
+It needs Linux, whose kernel tells the peak memory. Each program runs in a process of its own, on one thread. Libraries
+that are slow get fewer points.
+"""
+
+from __future__ import annotations
+
+import os
+import subprocess
+import sys
+import time
+from pathlib import Path
+from typing import Any
+
+os.environ["IGL_NUM_THREADS"] = "1"
+
+import numpy as np
+
+import p2m
+
+CARRIED = Path(__file__).resolve().parents[3] / "scenes" / "knot_and_cables.obj"
+SMALL_CALL_POINTS = 10
+
+
+def few_triangles() -> tuple[np.ndarray, np.ndarray]:
+    """Return ten triangles."""
+    rng = np.random.default_rng(1)
+    return rng.normal(size=(12, 3)), np.array([[i, i + 1, i + 2] for i in range(10)])
+
+
+def tube() -> tuple[np.ndarray, np.ndarray]:
+    """Return the closed tube of the carried scene, of 3,600 triangles."""
+    scene = p2m.read(CARRIED)
+    return scene.vertices, scene.triangles
+
+
+def p2m_closest(mesh: Any, points: np.ndarray) -> Any:
+    return p2m.Index(mesh, threads=1).closest(points, fields=("distance", "primitive", "point"))
+
+
+def trimesh_closest(mesh: Any, points: np.ndarray) -> Any:
+    import trimesh
+
+    return trimesh.proximity.closest_point(trimesh.Trimesh(*mesh, process=False), points)
+
+
+def p2m_signed(mesh: Any, points: np.ndarray) -> Any:
+    return p2m.Index(mesh, threads=1).signed_distance(points)
+
+
+def trimesh_signed(mesh: Any, points: np.ndarray) -> Any:
+    import trimesh
+
+    return trimesh.proximity.signed_distance(trimesh.Trimesh(*mesh, process=False), points)
+
+
+def p2m_small_calls(mesh: Any, points: np.ndarray) -> Any:
+    index = p2m.Index(mesh, threads=1)
+    return [index.signed_distance(few) for few in points.reshape(-1, SMALL_CALL_POINTS, 3)]
+
+
+def igl_small_calls(mesh: Any, points: np.ndarray) -> Any:
+    import igl
+
+    return [igl.signed_distance(few, *mesh) for few in points.reshape(-1, SMALL_CALL_POINTS, 3)]
+
+
+PROGRAMS: list[tuple[str, str, Any, Any, int]] = [
+    ("closest points on ten triangles", "p2m", p2m_closest, few_triangles, 500_000),
+    ("closest points on ten triangles", "trimesh", trimesh_closest, few_triangles, 500_000),
+    ("signed distances from the tube", "p2m", p2m_signed, tube, 1_000_000),
+    ("signed distances from the tube", "trimesh", trimesh_signed, tube, 20_000),
+    ("signed distances, ten points a call", "p2m", p2m_small_calls, tube, 100_000),
+    ("signed distances, ten points a call", "libigl", igl_small_calls, tube, 1_000),
+]
+
+
+def status(key: str) -> int:
+    """Return a number of bytes from the status of this process."""
+    line = next(line for line in Path("/proc/self/status").read_text().splitlines() if line.startswith(key))
+    return int(line.split()[1]) * 1024
+
+
+def run(number: int) -> None:
+    """Run one program and print its CPU time in seconds and its peak memory in bytes, besides the points."""
+    _, _, program, make, count = PROGRAMS[number]
+    mesh = make()
+    low, high = mesh[0].min(axis=0), mesh[0].max(axis=0)
+    points = np.random.default_rng(2).uniform(low, high, (count, 3))
+    # The first call imports the library.
+    program(mesh, points[:SMALL_CALL_POINTS])
+    Path("/proc/self/clear_refs").write_text("5")
+    before = status("VmRSS:")
+    start = time.process_time()
+    program(mesh, points)
+    print(time.process_time() - start, status("VmHWM:") - before)
+
+
+def main() -> None:
+    if len(sys.argv) > 1:
+        return run(int(sys.argv[1]))
+    print("| program | library | points | CPU time, s | time a point, us | peak memory, MB |")
+    print("| --- | --- | --- | --- | --- | --- |")
+    for number, (name, library, _, _, count) in enumerate(PROGRAMS):
+        command = [sys.executable, __file__, str(number)]
+        output = subprocess.run(command, check=True, capture_output=True, text=True).stdout
+        seconds, memory = map(float, output.split())
+        each = f"{seconds / count * 1e6:,.2f}"
+        print(f"| {name} | {library} | {count:,} | {seconds:.2f} | {each} | {memory / 1e6:,.0f} |", flush=True)
+
+
+if __name__ == "__main__":
+    main()

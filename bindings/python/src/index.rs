@@ -1,0 +1,206 @@
+//! Indexes as objects of Python.
+
+use crate::errors::{build_error, sign_error};
+use crate::scene::{Scene, SharedScene};
+use crate::searchable::{BUILD_UNITS, Built, Settings, build};
+use crate::signs::{SignRule, Signed};
+use crate::threads::pool;
+use crate::work::{FIRST_STEP_QUERIES, Monitor, Threads, run_batch, run_owned};
+use p2m_backends::{BackendEntry, KdopDirections, SearchStructure};
+use p2m_core::{Index as AnyIndex, PrimitiveSet};
+use pyo3::exceptions::PyValueError;
+use pyo3::prelude::*;
+use pyo3::types::PyDict;
+use std::collections::HashMap;
+use std::path::PathBuf;
+use std::sync::{Arc, Mutex, PoisonError};
+
+/// A batch whose expected time is shorter runs on the calling thread.
+const MIN_PARALLEL_NANOSECONDS: f64 = 2e6;
+/// The expected time of a query that uses a structure.
+const QUERY_NANOSECONDS: f64 = 1000.0;
+/// The expected time of an exhaustive search for each primitive.
+const EXHAUSTIVE_NANOSECONDS_PER_PRIMITIVE: f64 = 50.0;
+
+/// An index. `p2m.Index` has its documentation. It never changes, so all threads may query it.
+#[pyclass(frozen, module = "p2m._p2m")]
+pub(crate) struct Index {
+    pub(crate) scene: SharedScene,
+    pub(crate) built: Built,
+    pub(crate) backend: &'static BackendEntry,
+    /// The file that the index came from.
+    pub(crate) origin: Option<Origin>,
+    /// The signs that were prepared so far.
+    signs: Mutex<HashMap<SignRule, Arc<Signed>>>,
+}
+
+/// The file that an index came from.
+#[derive(Clone)]
+pub(crate) struct Origin {
+    pub(crate) path: PathBuf,
+    pub(crate) checksum: String,
+    pub(crate) is_mapped: bool,
+}
+
+impl Index {
+    pub(crate) fn new(
+        scene: SharedScene,
+        built: Built,
+        backend: &'static BackendEntry,
+        origin: Option<Origin>,
+    ) -> Self {
+        Self { scene, built, backend, origin, signs: Mutex::default() }
+    }
+
+    /// Returns the index without the type of its backend.
+    pub(crate) fn any(&self) -> Arc<dyn AnyIndex> {
+        Arc::clone(&self.built.index) as Arc<dyn AnyIndex>
+    }
+
+    /// Returns the expected time of a query.
+    fn query_nanoseconds(&self) -> f64 {
+        match self.backend.structure {
+            SearchStructure::Exhaustive => EXHAUSTIVE_NANOSECONDS_PER_PRIMITIVE * self.scene.len() as f64,
+            _ => QUERY_NANOSECONDS,
+        }
+    }
+
+    /// Returns the number of queries of the first step of a batch, which should not take long.
+    #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "it is clamped")]
+    pub(crate) fn first_step(&self) -> usize {
+        (MIN_PARALLEL_NANOSECONDS / self.query_nanoseconds().max(1.0)).clamp(1.0, FIRST_STEP_QUERIES as f64) as usize
+    }
+
+    /// Returns where a batch of so many queries runs.
+    pub(crate) fn threads_for(&self, py: Python<'_>, queries: usize, threads: usize) -> PyResult<Threads> {
+        if threads == 1 || self.query_nanoseconds() * (queries as f64) < MIN_PARALLEL_NANOSECONDS {
+            return Ok(Threads::Calling);
+        }
+        pool(py, threads).map(Threads::Pool)
+    }
+
+    /// Runs a batch of so many queries, detached from the interpreter, where [`threads_for`](Self::threads_for) says.
+    pub(crate) fn run<R: Send, E: Send>(
+        &self,
+        py: Python<'_>,
+        queries: usize,
+        threads: usize,
+        progress: Option<Py<PyAny>>,
+        work: impl FnOnce(&Threads, &Monitor) -> Result<R, E> + Send,
+    ) -> PyResult<R>
+    where
+        PyErr: From<E>,
+    {
+        let threads = self.threads_for(py, queries, threads)?;
+        let monitor = threads.monitor(queries, self.first_step(), progress);
+        run_batch(py, &threads, &monitor, || work(&threads, &monitor))?.map_err(PyErr::from)
+    }
+
+    /// Returns the signs of a rule, which are prepared by the first call.
+    pub(crate) fn signs(&self, py: Python<'_>, rule: SignRule, threads: usize) -> PyResult<Arc<Signed>> {
+        let prepared = || self.signs.lock().unwrap_or_else(PoisonError::into_inner);
+        if let Some(signed) = prepared().get(&rule) {
+            return Ok(Arc::clone(signed));
+        }
+        // Two threads may both prepare the same signs; the lock must not be held while the interpreter is detached.
+        let (index, scene) = (self.any(), self.scene.clone());
+        let signed = run_owned(py, threads, 1, None, move |_| rule.prepare(&index, &scene))?.map_err(sign_error)?;
+        let signed = Arc::new(signed);
+        prepared().insert(rule, Arc::clone(&signed));
+        Ok(signed)
+    }
+}
+
+/// Returns the entry of a backend by its name.
+pub(crate) fn backend(name: &str) -> PyResult<&'static BackendEntry> {
+    BackendEntry::find(name).ok_or_else(|| {
+        let names: Vec<String> = p2m_backends::BACKENDS.iter().map(|backend| format!("'{backend}'")).collect();
+        PyValueError::new_err(format!("backend: '{name}' is none of 'auto', {}", names.join(", ")))
+    })
+}
+
+/// Returns the directions of k-DOPs by their number of faces or the name `scene`.
+fn kdop_directions(name: &str) -> PyResult<KdopDirections> {
+    let name_of = |directions: KdopDirections| match directions {
+        KdopDirections::Scene => "scene".to_owned(),
+        _ => directions.faces().to_string(),
+    };
+    KdopDirections::ALL
+        .into_iter()
+        .find(|&directions| name_of(directions) == name)
+        .ok_or_else(|| PyValueError::new_err(format!("directions: {name} is none of 6, 14, 18, 26, 'scene'")))
+}
+
+#[pymethods]
+impl Index {
+    /// Builds an index of a backend of the registry.
+    #[staticmethod]
+    #[pyo3(signature = (scene, backend, threads, progress, directions=None, resolution=None))]
+    fn build(
+        py: Python<'_>,
+        scene: &Scene,
+        backend: &str,
+        threads: usize,
+        progress: Option<Py<PyAny>>,
+        directions: Option<&str>,
+        resolution: Option<f64>,
+    ) -> PyResult<Self> {
+        let entry = self::backend(backend)?;
+        let settings = Settings { directions: directions.map(kdop_directions).transpose()?, resolution };
+        let shared = scene.shared.clone();
+        let built =
+            run_owned(py, threads, BUILD_UNITS, progress, move |monitor| build(entry, shared, &settings, monitor))?;
+        let unknown = || PyValueError::new_err(format!("backend: '{backend}' has no Python form"));
+        let built = built.ok_or_else(unknown)?.map_err(build_error)?;
+        Ok(Self::new(scene.shared.clone(), built, entry, None))
+    }
+
+    /// Returns an index over the same primitives at other positions.
+    fn refitted(&self, py: Python<'_>, scene: &Scene, threads: usize) -> PyResult<Self> {
+        let (index, shared) = (Arc::clone(&self.built.index), scene.shared.clone());
+        let refitted = run_owned(py, threads, 1, None, move |_| index.refitted(&shared))?;
+        let refused = || {
+            PyValueError::new_err(format!(
+                "the backend '{}' has no refit: build a new index, or use 'aabb' or 'kdop' for scenes that move",
+                self.backend.name
+            ))
+        };
+        let index = refitted.ok_or_else(refused)?.map_err(build_error)?;
+        let built = Built { index, ..self.built.clone() };
+        Ok(Self::new(scene.shared.clone(), built, self.backend, None))
+    }
+
+    /// Returns the scene.
+    fn scene(&self) -> Scene {
+        Scene { shared: self.scene.clone() }
+    }
+
+    /// Returns the name of the backend.
+    fn backend(&self) -> &'static str {
+        self.backend.name
+    }
+
+    /// Returns the file that the index came from, its checksum, and whether it is mapped.
+    fn origin(&self) -> Option<(PathBuf, String, bool)> {
+        self.origin.clone().map(|origin| (origin.path, origin.checksum, origin.is_mapped))
+    }
+
+    /// Returns what is known of the index, by names.
+    fn info<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
+        let info = PyDict::new(py);
+        let index = &self.built.index;
+        info.set_item("backend", self.backend.name)?;
+        info.set_item("summary", self.backend.summary)?;
+        info.set_item("primitives", self.scene.len())?;
+        info.set_item("memory_bytes", index.memory_bytes())?;
+        info.set_item("parts", index.parts().into_iter().collect::<HashMap<_, _>>())?;
+        info.set_item("casts_rays", index.as_ray_query().is_some())?;
+        info.set_item("answers_pairs", index.as_pair_query().is_some())?;
+        info.set_item("is_saveable", self.backend.is_saveable())?;
+        info.set_item("surface_area", index.surface_area())?;
+        info.set_item("cells", index.cells())?;
+        info.set_item("directions", self.built.directions.as_ref().map(|directions| directions.faces))?;
+        info.set_item("path", self.origin.as_ref().map(|origin| origin.path.clone()))?;
+        Ok(info)
+    }
+}

@@ -1,0 +1,73 @@
+//! The native part of the Python package `p2m`.
+//!
+//! The classes here take and fill contiguous arrays of NumPy. Shapes, other types of arrays, records of answers and
+//! the documentation for users are in Python (`python/p2m`). Every build and every batch runs detached from the
+//! interpreter, on threads that never call it (the module `work`).
+//!
+//! `unsafe` stands in two places, which map saved files and shards where the user asked for it.
+#![deny(unsafe_code)]
+
+mod advise;
+mod columns;
+mod contacts;
+mod deviations;
+mod errors;
+mod fields;
+mod hausdorff;
+mod index;
+mod pair_columns;
+mod pairs;
+mod parts;
+mod queries;
+mod rays;
+mod saved;
+mod scene;
+mod searchable;
+mod sharded;
+mod signs;
+mod threads;
+mod watched;
+mod work;
+
+use pyo3::prelude::*;
+
+/// The functions and classes that the Python files of the package use.
+#[pymodule]
+mod _p2m {
+    #[pymodule_export]
+    use super::advise::advise;
+    #[pymodule_export]
+    use super::deviations::{deviation_page, deviation_ply, deviation_statistics};
+    #[pymodule_export]
+    use super::hausdorff::hausdorff;
+    #[pymodule_export]
+    use super::index::Index;
+    #[pymodule_export]
+    use super::pair_columns::PairList;
+    #[pymodule_export]
+    use super::queries::NearList;
+    #[pymodule_export]
+    use super::rays::HitList;
+    #[pymodule_export]
+    use super::saved::{load, load_bytes};
+    #[pymodule_export]
+    use super::scene::Scene;
+    #[pymodule_export]
+    use super::sharded::{ShardWriter, Shards};
+    #[pymodule_export]
+    use super::threads::default_threads;
+
+    use p2m_backends::BACKENDS;
+    use pyo3::prelude::*;
+
+    /// Returns the names of all backends.
+    #[pyfunction]
+    fn backends() -> Vec<&'static str> {
+        BACKENDS.iter().map(|backend| backend.name).collect()
+    }
+
+    #[pymodule_init]
+    fn init(module: &Bound<'_, PyModule>) -> PyResult<()> {
+        module.add("__version__", env!("CARGO_PKG_VERSION"))
+    }
+}

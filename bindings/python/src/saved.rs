@@ -1,0 +1,129 @@
+//! Saving and loading indexes.
+
+use crate::errors::{build_error, io_error, load_error, value_error};
+use crate::index::{Index, Origin, backend};
+use crate::scene::SharedScene;
+use crate::searchable::{self, Built, Settings};
+use crate::work::{Monitor, run_owned};
+use p2m_backends::BackendEntry;
+use p2m_core::storage::{self, LoadError, SavedFile, Writer};
+use p2m_mixed::{load_scene, save_scene};
+use pyo3::exceptions::PyValueError;
+use pyo3::prelude::*;
+use pyo3::types::PyBytes;
+use std::fs::File;
+use std::io::{self, BufWriter, Write};
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+
+/// Maps the file at a path.
+#[allow(unsafe_code, reason = "the user asked for it and was told what it needs")]
+fn map(path: &Path) -> Result<SavedFile, LoadError> {
+    // SAFETY: the documentation of `p2m.load` says that with `map=True` nobody may change the file.
+    unsafe { SavedFile::map(path) }
+}
+
+/// A scene and its index from a saved file.
+type Loaded = (SharedScene, Option<(&'static BackendEntry, Built)>);
+
+/// Loads the scene of a file, and its index if it has one.
+fn load_file(file: &SavedFile) -> Result<Loaded, LoadError> {
+    let reader = file.checked()?;
+    let scene = SharedScene(Arc::new(load_scene(reader)?));
+    let Some(backend) = BackendEntry::from_saved(reader) else {
+        return match storage::kind(reader) {
+            // There is an index, of a kind that nobody knows.
+            Ok(found) => Err(LoadError::OtherKind { found, expected: "one of p2m.backends()".to_owned() }),
+            Err(_) => Ok((scene, None)),
+        };
+    };
+    let built = searchable::load(backend, scene.clone(), reader).transpose()?;
+    Ok((scene, built.map(|built| (backend, built))))
+}
+
+/// Loads an index from the file at a path.
+#[pyfunction]
+#[pyo3(signature = (path, map, threads))]
+pub(crate) fn load(py: Python<'_>, path: PathBuf, map: bool, threads: usize) -> PyResult<Index> {
+    let name = path.display().to_string();
+    let file = path.clone();
+    let loaded = run_owned(py, threads, 1, None, move |_| {
+        let saved = if map { self::map(&file) } else { SavedFile::open(&file) }?;
+        let loaded = load_file(&saved)?;
+        Ok::<_, LoadError>((loaded, format!("{:016x}", saved.checksum())))
+    })?;
+    let ((scene, index), checksum) = loaded.map_err(|error| load_error(&error, &name))?;
+    let Some((backend, built)) = index else {
+        return Err(PyValueError::new_err(format!("{name} has a scene but no index: read it with p2m.read")));
+    };
+    Ok(Index::new(scene, built, backend, Some(Origin { path, checksum, is_mapped: map })))
+}
+
+/// Loads an index from the bytes of `Index.to_bytes`. An index of a backend that has no saved form is built anew.
+#[pyfunction]
+pub(crate) fn load_bytes(py: Python<'_>, bytes: &[u8], backend: &str, threads: usize) -> PyResult<Index> {
+    let name = "the pickled index";
+    let loaded = py.detach(|| SavedFile::read_with_length(bytes, bytes.len() as u64).and_then(|file| load_file(&file)));
+    let (scene, index) = loaded.map_err(|error| load_error(&error, name))?;
+    if let Some((backend, built)) = index {
+        return Ok(Index::new(scene, built, backend, None));
+    }
+    let entry = self::backend(backend)?;
+    let shared = scene.clone();
+    let built = run_owned(py, threads, 1, None, move |monitor: &Monitor| {
+        searchable::build(entry, shared, &Settings::default(), monitor)
+    })?;
+    let built = built.ok_or_else(|| value_error(format!("{name} has the unknown backend '{backend}'")))?;
+    Ok(Index::new(scene, built.map_err(build_error)?, entry, None))
+}
+
+/// Writes a scene and its index.
+fn write(scene: &SharedScene, built: &Built, out: impl Write) -> io::Result<()> {
+    let mut writer = Writer::default();
+    save_scene(&scene.0, &mut writer);
+    built.index.save(&mut writer);
+    if let Some(directions) = &built.directions {
+        directions.save(&mut writer);
+    }
+    writer.write(out)
+}
+
+/// Writes a file under another name, and renames it when it is complete, unless the work was cancelled.
+fn write_file(scene: &SharedScene, built: &Built, path: &Path, monitor: &Monitor) -> io::Result<()> {
+    let mut unfinished = path.as_os_str().to_owned();
+    unfinished.push(format!(".{}.unfinished", std::process::id()));
+    let unfinished = PathBuf::from(unfinished);
+    let written = File::create(&unfinished).and_then(|file| {
+        let mut out = BufWriter::new(file);
+        write(scene, built, &mut out)?;
+        out.flush()
+    });
+    let finished = written.and_then(|()| {
+        if monitor.is_cancelled() { std::fs::remove_file(&unfinished) } else { std::fs::rename(&unfinished, path) }
+    });
+    if finished.is_err() {
+        // The first error is the one to report.
+        let _ = std::fs::remove_file(&unfinished);
+    }
+    finished
+}
+
+#[pymethods]
+impl Index {
+    /// Saves the index with its scene.
+    fn save(&self, py: Python<'_>, path: PathBuf) -> PyResult<()> {
+        if !self.backend.is_saveable() {
+            return Err(value_error(format!("the backend '{}' has no saved form", self.backend.name)));
+        }
+        let (scene, built, file) = (self.scene.clone(), self.built.clone(), path.clone());
+        let saved = run_owned(py, 1, 1, None, move |monitor| write_file(&scene, &built, &file, monitor))?;
+        saved.map_err(|error| io_error(&error, &path))
+    }
+
+    /// Returns the index with its scene in the format of saved files; only the scene if the backend has no saved form.
+    fn to_bytes<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyBytes>> {
+        let mut bytes = Vec::new();
+        py.detach(|| write(&self.scene, &self.built, &mut bytes)).map_err(value_error)?;
+        Ok(PyBytes::new(py, &bytes))
+    }
+}

@@ -1,0 +1,133 @@
+"""Tests of deviations against NumPy and the program."""
+
+from __future__ import annotations
+
+import builtins
+import json
+import os
+import subprocess
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+import p2m
+
+SCENES = Path(__file__).resolve().parents[3] / "scenes"
+
+
+def cube(size: float = 2.0, offset: float = 0.0) -> p2m.Scene:
+    """Return a closed cube whose triangles face outwards."""
+    corners = np.array([[x, y, z] for x in (0, 1) for y in (0, 1) for z in (0, 1)], float) * size + offset
+    quads = [[0, 1, 3, 2], [4, 6, 7, 5], [0, 4, 5, 1], [2, 3, 7, 6], [0, 2, 6, 4], [1, 5, 7, 3]]
+    return p2m.Scene(corners, triangles=[part for a, b, c, d in quads for part in ([a, b, c], [a, c, d])])
+
+
+@pytest.mark.parametrize("offset", [0.0, 1e6])
+@pytest.mark.parametrize("dtype", [np.float64, np.float32])
+def test_noise_on_a_face_is_its_statistics(offset: float, dtype: type) -> None:
+    rng = np.random.default_rng(3)
+    noise = rng.normal(scale=0.01, size=5000)
+    points = np.column_stack([rng.uniform(0.5, 1.5, (5000, 2)), 2.0 + noise]) + offset
+    points = points.astype(dtype)
+    expected = points[:, 2].astype(float) - (2.0 + offset)
+    found = p2m.deviation(points, cube(offset=offset), tolerance=0.015)
+    assert np.abs(found.values - expected).max() <= 1e-15 * (1.0 + 4.0 * offset)
+    statistics = found.statistics
+    values = found.values
+    assert (statistics["count"], statistics["missing"]) == (5000, 0)
+    assert np.isclose(statistics["mean"], values.mean(), rtol=1e-9, atol=1e-18)
+    assert np.isclose(statistics["rms"], np.sqrt(np.mean(values**2)), rtol=1e-12)
+    assert np.isclose(statistics["standard_deviation"], values.std(), rtol=1e-9)
+    assert np.isclose(statistics["mean_absolute"], np.abs(values).mean(), rtol=1e-12)
+    for percent in (1, 5, 25, 50, 75, 95, 99):
+        assert np.isclose(statistics[f"percentile_{percent}"], np.percentile(values, percent), rtol=1e-9, atol=1e-15)
+        of_absolute = np.percentile(np.abs(values), percent)
+        assert np.isclose(statistics[f"absolute_percentile_{percent}"], of_absolute, rtol=1e-9, atol=1e-15)
+    assert found.outside() == ((values > 0.015).sum(), (values < -0.015).sum())
+    assert found.outside(0.0)[0] == (expected > 0).sum()
+
+
+def test_scans_without_deviations_have_nan() -> None:
+    found = p2m.deviation(np.array([[1.0, 1.0, 3.0], [np.nan, 0.0, 0.0], [np.inf, 0.0, 0.0]]), cube())
+    assert found.values[0] == 1.0
+    assert np.isnan(found.values[1:]).all()
+    assert (found.statistics["count"], found.statistics["missing"]) == (1, 2)
+    empty = p2m.deviation(np.empty((0, 3)), cube())
+    assert (len(empty.values), empty.limit, np.isnan(empty.statistics["mean"])) == (0, 1.0, True)
+    same = p2m.deviation(cube(), cube())
+    assert (same.statistics["rms"], len(same.values)) == (0.0, 8)
+    nothing = p2m.deviation([[0.0, 0.0, 0.0]], p2m.Scene(np.empty((0, 3))), sign=None)
+    assert nothing.statistics["missing"] == 1
+
+
+def test_signs_are_those_that_are_asked_for() -> None:
+    whole = cube()
+    hole = p2m.Scene(whole.vertices, triangles=whole.triangles[:-2])
+    with pytest.warns(UserWarning, match="winding numbers decide"):
+        found = p2m.deviation([[1.0, 1.0, 0.5]], hole)
+    assert found.values[0] == -0.5
+    with pytest.raises(ValueError, match="open"):
+        p2m.deviation([[1.0, 1.0, 0.5]], hole, sign="closed")
+    cables = p2m.Scene([[0, 0, 0], [4, 0, 0]], segments=[[0, 1]])
+    with pytest.raises(ValueError, match="no side"):
+        p2m.deviation([[1.0, 1.0, 0.5]], cables)
+    assert p2m.deviation([[1.0, 3.0, 4.0]], cables, sign=None).values[0] == 5.0
+    for wrong in ({"sign": "normal"}, {"tolerance": -1.0}, {"limit": float("nan")}):
+        with pytest.raises(ValueError):
+            p2m.deviation([[1.0, 3.0, 4.0]], cables, **wrong)  # type: ignore[arg-type]
+    with pytest.raises(ValueError, match="instead of"):
+        p2m.deviation([1.0, 3.0, 4.0], cables)
+
+
+def test_pages_and_files_have_the_deviations(tmp_path: Path) -> None:
+    found = p2m.deviation(cube(2.5), cube(), limit=1.0, unit="mm")
+    found.save(tmp_path / "page.html", up="y")
+    html = (tmp_path / "page.html").read_text(encoding="utf-8")
+    data = json.loads(html.split('id="data">')[1].split("</script>")[0])
+    assert (data["deviations"]["total"], data["unit"], data["up"]) == (8, "mm", "y")
+    found.save(tmp_path / "scan.ply")
+    scan = p2m.read(tmp_path / "scan.ply")
+    assert np.array_equal(scan.vertices, cube(2.5).vertices)
+    assert len(scan.triangles) == 12
+    points = p2m.deviation(np.array([[1.0, 1.0, 3.0], [np.nan, 0.0, 0.0]]), cube())
+    points.save(tmp_path / "page.html")
+    with pytest.raises(ValueError, match="ends neither"):
+        found.save(tmp_path / "scan.png")
+
+
+def test_figures_need_matplotlib(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
+    found = p2m.deviation(cube(2.5), cube(), tolerance=0.1)
+    try:
+        import matplotlib  # noqa: F401
+    except ImportError:
+        pass
+    else:
+        figure = found.figure()
+        figure.savefig(tmp_path / "figure.png")
+        assert (tmp_path / "figure.png").stat().st_size > 10_000
+    imported = builtins.__import__
+
+    def without(name: str, *rest: Any, **options: Any) -> Any:
+        if name.startswith("matplotlib"):
+            raise ImportError(name)
+        return imported(name, *rest, **options)
+
+    monkeypatch.setattr(builtins, "__import__", without)
+    with pytest.raises(ImportError, match="pip install matplotlib"):
+        found.figure()
+
+
+def test_the_program_has_the_same_statistics(tmp_path: Path) -> None:
+    program = os.environ.get("P2M_PROGRAM")
+    if program is None:
+        pytest.skip("P2M_PROGRAM does not name the program")
+    np.save(tmp_path / "scan.npy", np.random.default_rng(5).uniform(-1.0, 3.0, (2000, 3)))
+    lines = [f"v {x} {y} {z}" for x, y, z in cube().vertices]
+    lines += [f"f {a + 1} {b + 1} {c + 1}" for a, b, c in cube().triangles]
+    (tmp_path / "cube.obj").write_text("\n".join(lines))
+    command = [program, "deviation", tmp_path / "scan.npy", tmp_path / "cube.obj", "--json"]
+    report = json.loads(subprocess.run(command, check=True, capture_output=True, text=True).stdout)
+    statistics = p2m.deviation(np.load(tmp_path / "scan.npy"), p2m.read(tmp_path / "cube.obj")).statistics
+    assert report["statistics"] == {key: value for key, value in statistics.items() if key not in ("count", "missing")}

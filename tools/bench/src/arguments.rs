@@ -1,0 +1,540 @@
+//! The command line of `p2m-bench`: its commands and their arguments.
+
+use crate::backend::ScalarKind;
+use crate::measure::Effort;
+use crate::points::Distribution;
+use crate::{backends, rays};
+use clap::builder::PossibleValuesParser;
+use clap::{Args, Parser, Subcommand};
+use p2m_testkit::queries::QuerySet;
+use std::path::PathBuf;
+
+/// Measures p2m and other libraries.
+#[derive(Parser)]
+#[command(after_help = "\
+The default release build is portable. For the native rows of other libraries:\n  \
+RUSTFLAGS=\"-C target-cpu=native\" cargo run --release -p p2m-bench -- query ...\n\
+Both can add to the same --csv file; its column `label` names the build.\n\
+Times are thread CPU times; pin the process as well: taskset -c 1 p2m-bench query ...")]
+pub(crate) struct Cli {
+    #[command(subcommand)]
+    pub(crate) command: Command,
+}
+
+#[derive(Subcommand)]
+pub(crate) enum Command {
+    /// Build time, memory, time per query and agreement of all backends
+    Query(QueryArguments),
+    /// Compares our exact backends with brute force, bit for bit, in f64 and f32; fails on any difference
+    Verify(VerifyArguments),
+    /// Compares split rules of the AABB tree: build, nodes and primitives visited, time per query
+    Splits(SplitsArguments),
+    /// Redraws the figures of the k-DOP tree's manual: build, nodes and leaves visited, time per query
+    Kdop(KdopArguments),
+    /// Times rays: the figures of the k-DOP tree's manual, or the first hit against other libraries; fails if ours
+    /// differ
+    Ray(RayArguments),
+    /// Repeats the evaluation of the P2M paper, for docs/paper.md: prints tables and draws plots; fails if ours differ
+    Paper(PaperArguments),
+    /// Compares speed with accuracy for all backends and settings: writes report.html and report.csv
+    Report(ReportArguments),
+    /// Checks the accuracy contract where other libraries fail, for docs/extremes.md; fails if ours break it
+    Extremes(ExtremesArguments),
+    /// Checks distances between primitives where other libraries fail, for docs/extremes.md; fails if ours break the
+    /// contract
+    ExtremePairs(ExtremePairsArguments),
+    /// Compares two records of `report`: times that changed beyond noise, and errors that changed
+    Compare(CompareArguments),
+    /// Compares the backend that is recommended for 10^5 and 10^7 queries with the best one
+    Advise(AdviseArguments),
+    /// Times distance fields on a grid, against other libraries and the figures of an article; fails if ours differ
+    Field(FieldArguments),
+    /// Builds over adversarial scenes, for docs/adversaries.md; fails if a budget is exceeded or an answer is wrong
+    Adversaries(AdversariesArguments),
+    /// Runs one external library over one adversarial scene, for `adversaries`
+    #[command(hide = true)]
+    Rival(RivalArguments),
+    /// Compares saving and loading indexes with building them
+    Saved(SavedArguments),
+    /// Compares settings of the octree: resolution, domain, threads
+    Octree(BatchArguments),
+    /// Times Delaunay triangulations of scenes, grids, a sphere, a plane and a line; fails if any is not valid
+    Delaunay(DelaunayArguments),
+    /// Times batches on the AABB tree by order and threads, in wall time
+    Batch(BatchArguments),
+    /// Compares builds on several numbers of threads, in wall time
+    Threads(ThreadsArguments),
+    /// Compares a tree that follows a twisted scene with trees that are built anew
+    Refit(BatchArguments),
+    /// Compares a scene of moving instances of meshes with one index over all of them; fails if an answer differs
+    Instances(InstancesArguments),
+    /// Compares the program, from the first query to the complete file, with one batch of the library, in wall time
+    Program(ProgramArguments),
+    /// Measures builds, memory and queries of scenes that grow, for docs/scale.md; fails if ours differ
+    Scale(ScaleArguments),
+    /// Compares indexes over point clouds with KD-trees, for docs/scale.md; fails if ours differ
+    Points(PointsArguments),
+    /// Times distances between two scenes at many poses, and between a scene and an arm of capsules, against parry3d
+    Pairs(PairsArguments),
+    /// Writes a generated terrain as shards and asks them within a limit of memory; fails if an answer differs
+    Shards(ShardsArguments),
+}
+
+/// The arguments of `scale`.
+#[derive(Args)]
+pub(crate) struct ScaleArguments {
+    /// Backends of the registry
+    #[arg(long, value_delimiter = ',', default_value = "aabb,kdop,octree,p2m", value_parser = index_names())]
+    pub(crate) backends: Vec<String>,
+    /// Numbers of triangles, in ascending order
+    #[arg(long, value_delimiter = ',', default_values_t = [10_000, 100_000, 1_000_000, 10_000_000, 100_000_000])]
+    pub(crate) sizes: Vec<usize>,
+    /// Query sets
+    #[arg(long, value_delimiter = ',', default_values_t = [QuerySet::Box10, QuerySet::Box1, QuerySet::Near])]
+    pub(crate) sets: Vec<QuerySet>,
+    /// Queries in a round
+    #[arg(long, default_value_t = 200_000)]
+    pub(crate) queries: usize,
+    /// Rounds of queries, and builds that take less than a second
+    #[arg(long, default_value_t = 5, value_parser = clap::builder::RangedU64ValueParser::<usize>::new().range(1..))]
+    pub(crate) rounds: usize,
+    /// The largest number of heap bytes at a time; a size that would take more is left out for that index
+    #[arg(long, default_value_t = 20_000_000_000)]
+    pub(crate) max_memory: usize,
+    /// The longest time of a build in seconds; a size that would take longer is left out for that index
+    #[arg(long, default_value_t = 900.0)]
+    pub(crate) max_seconds: f64,
+    #[command(flatten)]
+    pub(crate) document: Document,
+}
+
+/// The arguments of `points`.
+#[derive(Args)]
+pub(crate) struct PointsArguments {
+    /// Distributions of the points [default: all]
+    #[arg(long, value_enum, value_delimiter = ',')]
+    pub(crate) distributions: Vec<Distribution>,
+    /// Numbers of points
+    #[arg(long, value_delimiter = ',', default_values_t = [100_000, 1_000_000, 10_000_000])]
+    pub(crate) counts: Vec<usize>,
+    /// Query sets
+    #[arg(long, value_delimiter = ',', default_values_t = [QuerySet::Box10, QuerySet::Box1, QuerySet::Near, QuerySet::Surface])]
+    pub(crate) sets: Vec<QuerySet>,
+    /// Rounds; another backend begins in each
+    #[arg(long, default_value_t = 5)]
+    pub(crate) rounds: usize,
+    /// Queries in a round
+    #[arg(long, default_value_t = 50_000)]
+    pub(crate) queries: usize,
+    /// Number of times that each index is built
+    #[arg(long, default_value_t = 1)]
+    pub(crate) builds: usize,
+    /// Seed of the query sets
+    #[arg(long, default_value_t = 1)]
+    pub(crate) seed: u64,
+    #[command(flatten)]
+    pub(crate) document: Document,
+}
+
+/// The arguments of `shards`.
+#[derive(Args)]
+pub(crate) struct ShardsArguments {
+    /// The least number of triangles of the terrain, which is generated in tiles of 500,000
+    #[arg(long, default_value_t = 10_000_000)]
+    pub(crate) triangles: u64,
+
+    /// The largest length of the file of a shard in bytes
+    #[arg(long, default_value_t = 1 << 28)]
+    pub(crate) max_bytes: u64,
+
+    /// The largest amount of shards in memory in bytes
+    #[arg(long, default_value_t = 1 << 30)]
+    pub(crate) max_memory: u64,
+
+    /// The number of queries of each set
+    #[arg(long, default_value_t = 1_000_000)]
+    pub(crate) queries: usize,
+
+    /// The number of queries of each set that are compared with brute force
+    #[arg(long, default_value_t = 16)]
+    pub(crate) checked: usize,
+
+    /// Build one tree over all triangles as well, and compare all answers
+    #[arg(long)]
+    pub(crate) whole: bool,
+
+    /// The folder for the shards, if it is not that for temporary files
+    #[arg(long)]
+    pub(crate) folder: Option<PathBuf>,
+}
+
+/// The arguments that `query` and `verify` share.
+#[derive(Args)]
+pub(crate) struct Common {
+    /// Files of scenes
+    #[arg(required = true)]
+    pub(crate) scenes: Vec<PathBuf>,
+    /// Query sets
+    #[arg(long, value_delimiter = ',', default_values_t = QuerySet::ALL)]
+    pub(crate) sets: Vec<QuerySet>,
+    /// Scalars of backends
+    #[arg(long, value_enum, value_delimiter = ',', default_values_t = [ScalarKind::Single, ScalarKind::Double])]
+    pub(crate) scalar: Vec<ScalarKind>,
+    /// Seed of the query sets
+    #[arg(long, default_value_t = 1)]
+    pub(crate) seed: u64,
+}
+
+#[derive(Args)]
+pub(crate) struct QueryArguments {
+    #[command(flatten)]
+    pub(crate) common: Common,
+    /// Backends
+    #[arg(long, value_delimiter = ',', default_value = backends::DEFAULT, value_parser = backend_names())]
+    pub(crate) backends: Vec<String>,
+    /// Rounds; another backend begins in each
+    #[arg(long, default_value_t = 5)]
+    pub(crate) rounds: usize,
+    /// Queries in a round; backends slower than 20 us a query get at most 20,000, brute force as many as take a second
+    #[arg(long, default_value_t = 200_000)]
+    pub(crate) queries: usize,
+    /// Number of times that each index is built
+    #[arg(long, default_value_t = 5)]
+    pub(crate) builds: usize,
+    /// Record to create or to append to, as comma-separated values; a file with other columns is an error
+    #[arg(long)]
+    pub(crate) csv: Option<PathBuf>,
+    /// Name of this build in tables and record [default: native with AVX2 at compile time, else portable]
+    #[arg(long)]
+    pub(crate) label: Option<String>,
+}
+
+#[derive(Args)]
+pub(crate) struct VerifyArguments {
+    #[command(flatten)]
+    pub(crate) common: Common,
+    /// Backends [default: all exact ones of ours]
+    #[arg(long, value_delimiter = ',', value_parser = backend_names())]
+    pub(crate) backends: Vec<String>,
+    /// Queries of each set
+    #[arg(long, default_value_t = 5000)]
+    pub(crate) queries: usize,
+}
+
+/// The arguments of the commands that measure in rounds.
+#[derive(Args)]
+pub(crate) struct Rounds {
+    /// Files of scenes
+    #[arg(required = true)]
+    pub(crate) scenes: Vec<PathBuf>,
+    /// Rounds; another backend begins in each
+    #[arg(long, default_value_t = 5, value_parser = clap::builder::RangedU64ValueParser::<usize>::new().range(1..))]
+    pub(crate) rounds: usize,
+    /// Queries in a round [default: 50,000 for splits, 100,000 for kdop, 1,000,000 for octree, batch and
+    /// instances]
+    #[arg(long)]
+    pub(crate) queries: Option<usize>,
+    /// Seed of the query sets
+    #[arg(long, default_value_t = 1)]
+    pub(crate) seed: u64,
+}
+
+impl Rounds {
+    /// Returns the effort with a number of queries that the user may change.
+    pub(crate) fn effort(&self, default_queries: usize) -> Effort {
+        let &Self { rounds, queries, seed, .. } = self;
+        Effort { rounds, queries: queries.unwrap_or(default_queries), builds: rounds, seed }
+    }
+}
+
+/// The query sets of settings that are compared.
+#[derive(Args)]
+pub(crate) struct Sets {
+    /// Query sets
+    #[arg(long, value_delimiter = ',', default_values_t = [QuerySet::Box10, QuerySet::Box1, QuerySet::Near, QuerySet::Surface])]
+    pub(crate) sets: Vec<QuerySet>,
+}
+
+#[derive(Args)]
+pub(crate) struct SplitsArguments {
+    #[command(flatten)]
+    pub(crate) rounds: Rounds,
+    #[command(flatten)]
+    pub(crate) sets: Sets,
+}
+
+#[derive(Args)]
+pub(crate) struct KdopArguments {
+    #[command(flatten)]
+    pub(crate) rounds: Rounds,
+    /// Measure each scene in seven orientations
+    #[arg(long)]
+    pub(crate) turned: bool,
+    /// Query set
+    #[arg(long, default_value_t = QuerySet::Box1)]
+    pub(crate) set: QuerySet,
+}
+
+#[derive(Args)]
+pub(crate) struct RayArguments {
+    /// Files of scenes
+    #[arg(required = true)]
+    pub(crate) scenes: Vec<PathBuf>,
+    /// Measure each scene in seven orientations
+    #[arg(long)]
+    pub(crate) turned: bool,
+    /// Measure the first hit against other libraries instead of the manual's tables
+    #[arg(long)]
+    pub(crate) rivals: bool,
+    /// Measure the first hit with these backends only
+    #[arg(long, value_delimiter = ',', value_parser = ray_names())]
+    pub(crate) backends: Vec<String>,
+    /// Query sets at which rays begin [default: 1x for the manual's tables, 10x and 1x against other libraries]
+    #[arg(long, value_delimiter = ',')]
+    pub(crate) sets: Vec<QuerySet>,
+    /// Rays in a round [default: 20 per primitive for the manual's tables, 200,000 against other libraries]
+    #[arg(long, value_parser = clap::value_parser!(u64).range(1..))]
+    pub(crate) rays: Option<u64>,
+    /// Rounds; another backend begins in each
+    #[arg(long, default_value_t = 5)]
+    pub(crate) rounds: usize,
+    /// Seed of the rays
+    #[arg(long, default_value_t = 1)]
+    pub(crate) seed: u64,
+    /// Record of times against other libraries to create or to append to, as comma-separated values
+    #[arg(long)]
+    pub(crate) csv: Option<PathBuf>,
+    /// Name of this build in tables and record [default: native with AVX2 at compile time, else portable]
+    #[arg(long)]
+    pub(crate) label: Option<String>,
+}
+
+#[derive(Args)]
+pub(crate) struct BatchArguments {
+    #[command(flatten)]
+    pub(crate) rounds: Rounds,
+    #[command(flatten)]
+    pub(crate) sets: Sets,
+    /// Numbers of threads
+    #[arg(long, value_delimiter = ',', default_values_t = [1, 2])]
+    pub(crate) threads: Vec<usize>,
+}
+
+#[derive(Args)]
+pub(crate) struct ThreadsArguments {
+    /// Files of scenes
+    #[arg(required = true)]
+    pub(crate) scenes: Vec<PathBuf>,
+    /// Indexes
+    #[arg(long, value_delimiter = ',', default_value = "aabb,kdop,octree,p2m", value_parser = index_names())]
+    pub(crate) backends: Vec<String>,
+    /// Numbers of threads; times are compared with those of the first
+    #[arg(long, value_delimiter = ',', default_values_t = [1, 2])]
+    pub(crate) threads: Vec<usize>,
+    /// Rounds; another number of threads begins in each
+    #[arg(long, default_value_t = 5, value_parser = clap::builder::RangedU64ValueParser::<usize>::new().range(1..))]
+    pub(crate) rounds: usize,
+}
+
+#[derive(Args)]
+pub(crate) struct InstancesArguments {
+    #[command(flatten)]
+    pub(crate) rounds: Rounds,
+    /// Instances
+    #[arg(long, default_value_t = 10_000, value_parser = clap::builder::RangedU64ValueParser::<usize>::new().range(1..))]
+    pub(crate) instances: usize,
+    /// Largest number of triangles of an object; larger meshes are simplified [default: no limit]
+    #[arg(long)]
+    pub(crate) triangles: Option<usize>,
+    /// Rays in a round
+    #[arg(long, default_value_t = 200_000)]
+    pub(crate) rays: usize,
+}
+
+#[derive(Args)]
+pub(crate) struct ProgramArguments {
+    #[command(flatten)]
+    pub(crate) rounds: Rounds,
+    /// Number of threads
+    #[arg(long, default_value_t = 2)]
+    pub(crate) threads: usize,
+}
+
+#[derive(Args)]
+pub(crate) struct PairsArguments {
+    /// File of the scene that stays
+    pub(crate) scene: PathBuf,
+    /// File of the scene that is moved
+    pub(crate) other: PathBuf,
+    /// Number of poses in each set
+    #[arg(long, default_value_t = 1000, value_parser = clap::builder::RangedU64ValueParser::<usize>::new().range(1..))]
+    pub(crate) poses: usize,
+    /// Number of poses of the arm
+    #[arg(long, default_value_t = 100_000, value_parser = clap::builder::RangedU64ValueParser::<usize>::new().range(1..))]
+    pub(crate) arms: usize,
+    /// Rounds; another competitor begins in each
+    #[arg(long, default_value_t = 5, value_parser = clap::builder::RangedU64ValueParser::<usize>::new().range(1..))]
+    pub(crate) rounds: usize,
+    /// Seed of the poses
+    #[arg(long, default_value_t = 1)]
+    pub(crate) seed: u64,
+}
+
+#[derive(Args)]
+pub(crate) struct DelaunayArguments {
+    /// Files of scenes, whose vertices are triangulated in addition to generated points
+    pub(crate) scenes: Vec<PathBuf>,
+    /// Rounds over all inputs
+    #[arg(long, default_value_t = 5, value_parser = clap::builder::RangedU64ValueParser::<usize>::new().range(1..))]
+    pub(crate) rounds: usize,
+}
+
+/// The document that gets the tables of a command.
+#[derive(Args)]
+pub(crate) struct Document {
+    /// The document whose blocks of this command are replaced [default: print the blocks]
+    #[arg(long, value_name = "DOCUMENT")]
+    pub(crate) write: Option<PathBuf>,
+}
+
+#[derive(Args)]
+pub(crate) struct PaperArguments {
+    /// The folder of models [default: that of the variable P2M_MODELS, or ../shared/models]
+    #[arg(long)]
+    pub(crate) models: Option<PathBuf>,
+    /// Measure less of everything, in minutes
+    #[arg(long)]
+    pub(crate) quick: bool,
+    /// The folder for plots [default: that of the document's name beside it, or target/paper]
+    #[arg(long)]
+    pub(crate) plots: Option<PathBuf>,
+    #[command(flatten)]
+    pub(crate) document: Document,
+}
+
+#[derive(Args)]
+pub(crate) struct ReportArguments {
+    /// The folder of models [default: that of the variable P2M_MODELS, or ../shared/models]; generated scenes replace
+    /// missing models
+    #[arg(long)]
+    pub(crate) models: Option<PathBuf>,
+    /// Measure three scenes with fewer queries, in two minutes
+    #[arg(long)]
+    pub(crate) quick: bool,
+    /// The folder for report.html and report.csv [default: docs, and target/report with --quick]
+    #[arg(long)]
+    pub(crate) out: Option<PathBuf>,
+    /// Name of this build in page and record [default: native with AVX2 at compile time, else portable]
+    #[arg(long)]
+    pub(crate) label: Option<String>,
+}
+
+#[derive(Args)]
+pub(crate) struct ExtremesArguments {
+    /// Answers about isolated primitives that are checked
+    #[arg(long, default_value_t = 1_000_000)]
+    pub(crate) cases: u64,
+    /// Scenes of each family, which every backend queries
+    #[arg(long, default_value_t = 4)]
+    pub(crate) scenes: u64,
+    /// Seed of all random numbers
+    #[arg(long, default_value_t = 1)]
+    pub(crate) seed: u64,
+    #[command(flatten)]
+    pub(crate) document: Document,
+}
+
+#[derive(Args)]
+pub(crate) struct ExtremePairsArguments {
+    /// Pairs of primitives that are checked
+    #[arg(long, default_value_t = 1_000_000)]
+    pub(crate) cases: u64,
+    /// Seed of all random numbers
+    #[arg(long, default_value_t = 1)]
+    pub(crate) seed: u64,
+    #[command(flatten)]
+    pub(crate) document: Document,
+}
+
+#[derive(Args)]
+pub(crate) struct CompareArguments {
+    /// The earlier record
+    pub(crate) first: PathBuf,
+    /// The later record
+    pub(crate) second: PathBuf,
+}
+
+#[derive(Args)]
+pub(crate) struct SavedArguments {
+    /// Files of scenes
+    #[arg(required = true)]
+    pub(crate) scenes: Vec<PathBuf>,
+    /// Number of times that each index is loaded
+    #[arg(long, default_value_t = 5, value_parser = clap::builder::RangedU64ValueParser::<usize>::new().range(1..))]
+    pub(crate) rounds: usize,
+}
+
+#[derive(Args)]
+pub(crate) struct AdversariesArguments {
+    /// Primitives of each scene
+    #[arg(long, default_value_t = 20_000, value_parser = clap::builder::RangedU64ValueParser::<usize>::new().range(1..))]
+    pub(crate) primitives: usize,
+    #[command(flatten)]
+    pub(crate) document: Document,
+}
+
+#[derive(Args)]
+pub(crate) struct RivalArguments {
+    /// Name of the backend
+    pub(crate) backend: String,
+    /// Name of the scene
+    pub(crate) adversary: String,
+    /// Primitives of the scene
+    pub(crate) primitives: usize,
+}
+
+#[derive(Args)]
+pub(crate) struct AdviseArguments {
+    /// Files of scenes; those of less than 1,000 primitives are left out
+    #[arg(required = true)]
+    pub(crate) scenes: Vec<PathBuf>,
+}
+
+#[derive(Args)]
+pub(crate) struct FieldArguments {
+    /// Files of scenes
+    #[arg(required = true)]
+    pub(crate) scenes: Vec<PathBuf>,
+    /// Points along the longest side of the grid
+    #[arg(long, default_value_t = 256, value_parser = clap::builder::RangedU64ValueParser::<usize>::new().range(2..=2048))]
+    pub(crate) resolution: usize,
+    /// Fill every n-th slab of sixteen layers only
+    #[arg(long, default_value_t = 1, value_parser = clap::builder::RangedU64ValueParser::<usize>::new().range(1..))]
+    pub(crate) stride: usize,
+    /// Print only the figures of the article beside ours
+    #[arg(long)]
+    pub(crate) article: bool,
+}
+
+fn backend_names() -> PossibleValuesParser {
+    backends::ALL.iter().map(|backend| backend.name).collect::<Vec<_>>().into()
+}
+
+fn index_names() -> PossibleValuesParser {
+    p2m_backends::BACKENDS.iter().map(|backend| backend.name).collect::<Vec<_>>().into()
+}
+
+fn ray_names() -> PossibleValuesParser {
+    rays::ALL.iter().map(|backend| backend.name).collect::<Vec<_>>().into()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use clap::CommandFactory;
+
+    #[test]
+    fn the_command_line_is_consistent() {
+        Cli::command().debug_assert();
+    }
+}

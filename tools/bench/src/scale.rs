@@ -1,0 +1,338 @@
+//! `p2m-bench scale`: the costs of each index as the scene grows, for docs/scale.md.
+//!
+//! The scene is a torus knot of more and more triangles. A size is left out for an index whose build would exceed the
+//! limits on memory or on time, as far as its last build tells.
+
+use crate::backend::Unavailable;
+use crate::blocks::Blocks;
+use crate::measure::{BuildFigures, MedianRange, measure_build};
+use crate::memory;
+use crate::plot::{Mark, Plot, Series};
+use crate::report::provenance;
+use crate::rounds::{checksum, checksum_of_closest, thread_seconds};
+use anyhow::{Context, Result, bail};
+use nalgebra::Point3;
+use p2m_backends::{BACKENDS, BackendEntry, BuildSettings, Index};
+use p2m_core::batch::{BatchOptions, closest_points_into};
+use p2m_core::{Closest, PrimitiveSet, QueryOptions, Soup, StatsCollector};
+use p2m_mixed::generate::{TorusKnot, torus_knot};
+use p2m_testkit::queries::QuerySet;
+use p2m_testkit::rng;
+use p2m_tradeoff::Table;
+use rand::seq::SliceRandom;
+use std::hint::black_box;
+use std::path::{Path, PathBuf};
+
+/// The blocks of docs/scale.md.
+pub(crate) const BLOCKS: Blocks<3> = Blocks { command: "scale", names: ["provenance", "builds", "queries"] };
+/// The number of triangles around the tube of the knot for each along it, so that triangles are about as wide as long.
+const SIDES_PER_RING: f64 = 0.06;
+/// The number of queries whose visits are counted.
+const COUNTED: usize = 2000;
+/// The number of dependent reads by which the latency of memory is measured.
+const READS: usize = 2_000_000;
+/// The number of times that the latency is measured.
+const LATENCY_ROUNDS: usize = 5;
+/// A build that takes less time than this is repeated.
+const SHORT_BUILD_SECONDS: f64 = 1.0;
+
+/// The scenes, indexes and queries that are measured, and the limits.
+pub(crate) struct Request {
+    /// The backends by their names in the registry.
+    pub(crate) backends: Vec<String>,
+    /// The numbers of triangles in ascending order.
+    pub(crate) sizes: Vec<usize>,
+    /// The sets of queries.
+    pub(crate) sets: Vec<QuerySet>,
+    /// The number of queries of a round.
+    pub(crate) queries: usize,
+    /// The number of rounds.
+    pub(crate) rounds: usize,
+    /// The largest number of heap bytes at a time, the scene included.
+    pub(crate) max_memory: usize,
+    /// The longest time of a build in seconds.
+    pub(crate) max_seconds: f64,
+    /// The document whose blocks are replaced, with its plots in a folder of the same name beside it.
+    pub(crate) document: Option<PathBuf>,
+}
+
+/// A curve of a plot: what follows the name of the backend, the style, and the value for a size.
+type Curve<'a> = (&'a str, Mark, &'a dyn Fn(&Costs) -> f64);
+
+/// The costs of an index over one scene.
+struct Costs {
+    triangles: usize,
+    build_seconds: f64,
+    /// The bytes of the index without the scene.
+    owned: usize,
+    /// The largest number of bytes of the build without the scene.
+    peak: usize,
+    /// The nanoseconds of one dependent read in an array as large as the index.
+    latency: f64,
+    sets: Vec<SetCosts>,
+}
+
+/// The costs of a query of one set.
+struct SetCosts {
+    /// Nanoseconds of a query, asked one by one.
+    single: f64,
+    /// Nanoseconds of a query of a batch.
+    batch: f64,
+    /// The numbers of visited nodes, packets and primitives of a query.
+    visits: [f64; 3],
+    /// A checksum of all answers.
+    checksum: u64,
+}
+
+impl SetCosts {
+    /// Returns the number of nodes, packets and primitives that a query reads.
+    fn reads(&self) -> f64 {
+        self.visits.iter().sum()
+    }
+}
+
+/// Measures and publishes all costs, and returns whether all backends have the same answers.
+pub(crate) fn run(request: &Request) -> Result<bool> {
+    BLOCKS.check(request.document.as_deref())?;
+    let entries: Vec<&'static BackendEntry> =
+        request.backends.iter().map(|name| entry_of(name)).collect::<Result<_>>()?;
+    let mut costs: Vec<Vec<Costs>> = entries.iter().map(|_| Vec::new()).collect();
+    let mut is_equal = true;
+    for &size in &request.sizes {
+        let (soup, scene_bytes) = memory::measured(|| knot(size));
+        let soup = soup?;
+        let queries: Vec<Vec<Point3<f64>>> =
+            request.sets.iter().map(|set| set.generate(&soup, request.queries, 1)).collect();
+        let mut sums = Vec::new();
+        for (entry, costs) in entries.iter().zip(&mut costs) {
+            if let Some(reason) = obstacle(costs, soup.len(), scene_bytes, request) {
+                eprintln!("{} is not built over {} triangles: {reason}", entry.name, soup.len());
+                continue;
+            }
+            let found = measure(entry, &soup, &queries, request.rounds)?;
+            eprintln!("{}, {} triangles: built in {:.2} s", entry.name, soup.len(), found.build_seconds);
+            sums.push(found.sets.iter().map(|set| set.checksum).collect::<Vec<_>>());
+            costs.push(found);
+        }
+        is_equal &= sums.windows(2).all(|pair| pair[0] == pair[1]);
+    }
+    publish(request, &entries, &costs)?;
+    Ok(is_equal)
+}
+
+/// Returns the entry of the registry with a name.
+fn entry_of(name: &str) -> Result<&'static BackendEntry> {
+    let entry = BACKENDS.iter().find(|entry| entry.name == name);
+    entry.with_context(|| format!("there is no backend {name}"))
+}
+
+/// Returns a torus knot with about this number of triangles.
+#[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "numbers of rings and sides are small")]
+fn knot(triangles: usize) -> Result<Soup<f64>> {
+    let vertices = triangles as f64 / 2.0;
+    let rings = (vertices / SIDES_PER_RING).sqrt().round().max(3.0);
+    let sides = (vertices / rings).round().max(3.0);
+    Ok(torus_knot(&TorusKnot { rings: rings as u32, sides: sides as u32, ..Default::default() })?)
+}
+
+/// Returns the reason why an index should not be built over so many triangles, if its last build tells one.
+fn obstacle(costs: &[Costs], triangles: usize, scene_bytes: usize, request: &Request) -> Option<String> {
+    let last = costs.last()?;
+    let factor = triangles as f64 / last.triangles as f64;
+    let (bytes, seconds) = (last.peak as f64 * factor + scene_bytes as f64, last.build_seconds * factor);
+    if bytes > request.max_memory as f64 {
+        return Some(format!("it would take {:.1} GB", bytes / 1e9));
+    }
+    (seconds > request.max_seconds).then(|| format!("it would take {seconds:.0} s"))
+}
+
+/// Builds an index and measures its queries.
+fn measure(
+    entry: &'static BackendEntry,
+    soup: &Soup<f64>,
+    queries: &[Vec<Point3<f64>>],
+    rounds: usize,
+) -> Result<Costs> {
+    let settings = BuildSettings::default().with_parallel(false);
+    let mut figures = BuildFigures::default();
+    let mut index = None;
+    while figures.seconds.len() < rounds && figures.seconds.iter().sum::<f64>() < SHORT_BUILD_SECONDS {
+        drop(index.take());
+        let before = memory::current();
+        let built = measure_build(&mut figures, before, || {
+            entry.build(soup, &settings).map_err(|error| Unavailable(error.to_string()))
+        });
+        match built {
+            Ok(built) => index = Some(built.index),
+            Err(Unavailable(why)) => bail!("{} over {} triangles: {why}", entry.name, soup.len()),
+        }
+    }
+    let index = index.context("there has to be at least one round")?;
+    let sets = queries.iter().map(|queries| measure_set(&*index, queries, rounds)).collect();
+    drop(index);
+    Ok(Costs {
+        triangles: soup.len(),
+        build_seconds: MedianRange::of(&figures.seconds).map_or(f64::NAN, |range| range.median),
+        owned: figures.owned,
+        peak: figures.peak,
+        latency: latency(figures.owned),
+        sets,
+    })
+}
+
+/// Measures the queries of a set, one by one and as a batch in turns.
+fn measure_set(index: &dyn Index<f64>, queries: &[Point3<f64>], rounds: usize) -> SetCosts {
+    let mut answers: Vec<Option<Closest<f64>>> = vec![None; queries.len()];
+    let (mut single, mut batch) = (Vec::new(), Vec::new());
+    let mut sum = 0;
+    for _ in 0..rounds {
+        let seconds = thread_seconds(|| {
+            for (query, answer) in queries.iter().zip(&mut answers) {
+                *answer = index.closest_point(query);
+            }
+        });
+        single.push(seconds.1);
+        sum = checksum_of_closest(&answers);
+        let one_thread = BatchOptions::default().with_parallel(false);
+        let seconds = thread_seconds(|| {
+            closest_points_into(index, queries, &QueryOptions::default(), &one_thread, &mut answers);
+        });
+        batch.push(seconds.1);
+    }
+    let counted = &queries[..COUNTED.min(queries.len())];
+    let visits = StatsCollector::count_queries(counted, |query, stats| index.inspect(query, stats));
+    let each = |seconds: &[f64]| MedianRange::of(seconds).map_or(f64::NAN, |s| s.median * 1e9 / queries.len() as f64);
+    SetCosts {
+        single: each(&single),
+        batch: each(&batch),
+        visits: visits.map(|count| count as f64 / counted.len() as f64),
+        checksum: checksum(sum, [(checksum_of_closest(&answers), 0)].into_iter()),
+    }
+}
+
+/// Returns the nanoseconds of a read whose address is the result of the last read, in an array of this many bytes.
+fn latency(bytes: usize) -> f64 {
+    const LINE: usize = 64;
+    let lines = (bytes / LINE).max(2);
+    let mut order: Vec<u32> = (0..u32::try_from(lines).unwrap_or(u32::MAX)).collect();
+    order.shuffle(&mut rng("latency", 0));
+    // Each line has the number of the line that is read next, on one cycle through all of them.
+    let mut next = vec![[0u32; LINE / size_of::<u32>()]; lines];
+    for pair in order.windows(2) {
+        next[pair[0] as usize][0] = pair[1];
+    }
+    next[order[order.len() - 1] as usize][0] = order[0];
+    drop(order);
+    let walk = |steps: usize| (0..steps).fold(0u32, |at, _| black_box(next[at as usize][0]));
+    // The least of some times is taken, because other processes share the caches.
+    let times = (0..LATENCY_ROUNDS).map(|_| thread_seconds(|| black_box(walk(READS))).1);
+    times.fold(f64::INFINITY, f64::min) * 1e9 / READS as f64
+}
+
+/// Prints the tables or replaces the blocks of the document, and writes the plots beside it.
+fn publish(request: &Request, entries: &[&'static BackendEntry], costs: &[Vec<Costs>]) -> Result<()> {
+    let mut builds = Table::new(
+        ["triangles", "index", "build s", "us a triangle", "bytes a triangle", "peak of the build"].map(str::to_owned),
+    );
+    let heads = ["triangles", "index", "set", "one by one", "batch", "nodes", "packets", "primitives", "read", "reads"];
+    let mut queries = Table::new(heads.map(str::to_owned));
+    for (entry, costs) in entries.iter().zip(costs) {
+        for cost in costs {
+            let each = |bytes: usize| format!("{:.0}", bytes as f64 / cost.triangles as f64);
+            let first = [cost.triangles.to_string(), entry.name.to_owned()];
+            let us = cost.build_seconds * 1e6 / cost.triangles as f64;
+            let seconds = [format!("{:.3}", cost.build_seconds), format!("{us:.2}")];
+            builds.push([&first[..], &seconds, &[each(cost.owned), each(cost.peak)]].concat());
+            for (set, found) in request.sets.iter().zip(&cost.sets) {
+                let times = [found.single, found.batch].map(|ns| format!("{ns:.0}"));
+                let visits = found.visits.map(|count| format!("{count:.1}"));
+                let floor = [format!("{:.1}", cost.latency), format!("{:.0}", found.reads() * cost.latency)];
+                queries.push([&first[..], &[set.to_string()], &times, &visits, &floor].concat());
+            }
+        }
+    }
+    let Request { queries: count, rounds, .. } = request;
+    let origin =
+        format!("{}\nOne thread, thread CPU time, medians of {rounds} rounds of {count} queries.", provenance(None));
+    BLOCKS.publish(request.document.as_deref(), &[origin, builds.to_string(), queries.to_string()])?;
+    let folder = request.document.as_ref().map_or_else(|| PathBuf::from("target/scale"), |d| d.with_extension(""));
+    std::fs::create_dir_all(&folder).with_context(|| folder.display().to_string())?;
+    draw(request, entries, costs, &folder)
+}
+
+/// Draws a plot of the builds, one of the memory, and one of each set of queries.
+fn draw(request: &Request, entries: &[&'static BackendEntry], costs: &[Vec<Costs>], folder: &Path) -> Result<()> {
+    let plot = |file: String, y: &'static str, curves: &[Curve<'_>]| {
+        let series = entries.iter().zip(costs).enumerate().flat_map(|(colour, (entry, costs))| {
+            curves.iter().map(move |(suffix, mark, value)| Series {
+                name: format!("{}{suffix}", entry.name),
+                mark: *mark,
+                colour,
+                points: costs.iter().map(|cost| (cost.triangles as f64, value(cost))).collect(),
+            })
+        });
+        Plot { x: "triangles", y, series: series.collect() }.write(&folder.join(file))
+    };
+    let each = |amount: f64, cost: &Costs| amount / cost.triangles as f64;
+    plot(
+        "build.svg".to_owned(),
+        "microseconds of the build a triangle",
+        &[("", Mark::Line, &|cost| each(cost.build_seconds * 1e6, cost))],
+    )?;
+    plot(
+        "bytes.svg".to_owned(),
+        "bytes a triangle",
+        &[
+            ("", Mark::Line, &|cost| each(cost.owned as f64, cost)),
+            (", peak", Mark::Dashes, &|cost| each(cost.peak as f64, cost)),
+        ],
+    )?;
+    for (at, set) in request.sets.iter().enumerate() {
+        plot(
+            format!("queries-{set}.svg"),
+            "nanoseconds a query",
+            &[
+                ("", Mark::Line, &|cost| cost.sets[at].single),
+                (", batch", Mark::Dashes, &|cost| cost.sets[at].batch),
+                (", reads", Mark::Cross, &|cost| cost.sets[at].reads() * cost.latency),
+            ],
+        )?;
+    }
+    Ok(())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn knots_have_about_the_wanted_number_of_triangles() {
+        for wanted in [10_000, 123_456, 1_000_000] {
+            let found = knot(wanted).unwrap().len();
+            assert!(found.abs_diff(wanted) * 20 < wanted, "{found} instead of {wanted}");
+        }
+    }
+
+    #[test]
+    fn builds_beyond_a_limit_are_not_tried() {
+        let folder = tempfile::tempdir().unwrap();
+        let mut request = Request {
+            backends: Vec::new(),
+            sizes: Vec::new(),
+            sets: Vec::new(),
+            queries: 0,
+            rounds: 1,
+            max_memory: 2_000_000,
+            max_seconds: 20.0,
+            document: Some(folder.path().join("scale.md")),
+        };
+        let last =
+            Costs { triangles: 1000, build_seconds: 1.0, owned: 50_000, peak: 100_000, latency: 1.0, sets: Vec::new() };
+        assert_eq!(obstacle(&[], 1_000_000, 0, &request), None);
+        let costs = [last];
+        assert_eq!(obstacle(&costs, 10_000, 500_000, &request), None);
+        assert!(obstacle(&costs, 10_000, 1_500_000, &request).unwrap().contains("GB"));
+        request.max_seconds = 5.0;
+        assert_eq!(obstacle(&costs, 10_000, 0, &request).unwrap(), "it would take 10 s");
+    }
+}

@@ -1,0 +1,217 @@
+//! The tasks for changing p2m, each as one command: `cargo xtask` lists them.
+//!
+//! A task prints the commands that it starts, so that each can be started alone. The first command that fails ends it.
+#![forbid(unsafe_code)]
+
+mod builds;
+mod deep;
+mod licences;
+mod memory;
+mod package;
+mod pages;
+mod promises;
+mod python;
+mod wasm;
+
+use std::path::{Path, PathBuf};
+use std::process::{Command, ExitCode};
+
+/// A task, its arguments and its description in one sentence.
+struct Task {
+    name: &'static str,
+    arguments: &'static str,
+    about: &'static str,
+    run: fn(&[String]) -> Outcome,
+}
+
+/// The result of a task, with a message if it failed.
+type Outcome = Result<(), String>;
+
+const TASKS: [Task; 16] = [
+    Task {
+        name: "quick",
+        arguments: "[FILTER]",
+        about: "Test the contract and the agreement of all backends, or the tests of them that a filter names",
+        run: |rest| cargo(&["test", "--locked", "--package", "p2m", "--test", "all", "--"], rest),
+    },
+    Task {
+        name: "test",
+        arguments: "[FILTER]",
+        about: "Run all tests, with a small part of their cases",
+        run: |rest| cargo(&["test", "--locked", "--workspace"], rest),
+    },
+    Task {
+        name: "deep",
+        arguments: "[FILTER]",
+        about: "Run all tests with all of their cases, and count these",
+        run: deep::run,
+    },
+    Task { name: "lint", arguments: "", about: "Check the format and the lints of all code", run: |_| lint() },
+    Task {
+        name: "docs",
+        arguments: "",
+        about: "Make the documentation, in which no link may be broken",
+        run: |_| docs(),
+    },
+    Task {
+        name: "promises",
+        arguments: "",
+        about: "Check what the manifests promise: lock files, Rust versions, features, targets",
+        run: |_| promises::check(),
+    },
+    Task {
+        name: "wasm",
+        arguments: "[--build]",
+        about: "Check the library for WebAssembly, where a compiler can be found or downloaded, or build the module",
+        run: wasm::run,
+    },
+    Task {
+        name: "package",
+        arguments: "",
+        about: "Pack the crates as for publishing, and check what is in them and the licences of dependencies",
+        run: |_| package::run(),
+    },
+    Task {
+        name: "python",
+        arguments: "[--rivals] [TESTS]",
+        about: "Build the Python package and run its tests in a virtual environment, or compare it with others",
+        run: python::check,
+    },
+    Task {
+        name: "pages",
+        arguments: "",
+        about: "Check the script of pages and test them in Chromium, where it is installed or can be",
+        run: |_| pages::run(),
+    },
+    Task {
+        name: "bench",
+        arguments: "[ARGUMENTS]",
+        about: "Measure against rivals: `cargo xtask bench query SCENE`",
+        run: |rest| cargo(&["run", "--locked", "--release", "--package", "p2m-bench", "--"], rest),
+    },
+    Task {
+        name: "builds",
+        arguments: "BASE SCENE.. [--backends NAMES]",
+        about: "Compare the builds of indexes with those of an earlier revision, in turns",
+        run: builds::run,
+    },
+    Task {
+        name: "fuzz",
+        arguments: "[SECONDS] [TARGET]..",
+        about: "Fuzz each target for so many seconds, 60 by default",
+        run: |rest| run("tools/fuzz/run", if rest.is_empty() { &["60"] } else { &[] }, rest),
+    },
+    Task {
+        name: "memory",
+        arguments: "",
+        about: "Run the tests of vector kernels and of saved files under valgrind, where it is installed",
+        run: |_| memory::run(),
+    },
+    Task {
+        name: "measure",
+        arguments: "[REVISION] [STEP]..",
+        about: "Measure what tests, builds and checks cost in a fresh clone",
+        run: |rest| run(".ci/measure", &[], rest),
+    },
+    Task {
+        name: "ci",
+        arguments: "",
+        about: "Run everything that a change has to pass",
+        run: |rest| run(".ci/run", &[], rest),
+    },
+];
+
+fn main() -> ExitCode {
+    let mut arguments = std::env::args().skip(1);
+    let name = arguments.next();
+    let rest: Vec<String> = arguments.collect();
+    let Some(task) = TASKS.iter().find(|task| name.as_deref() == Some(task.name)) else {
+        println!("Usage: cargo xtask TASK\n");
+        for Task { name, arguments, about, .. } in &TASKS {
+            println!("  {:<30} {about}", format!("{name} {arguments}"));
+        }
+        // A request for help is not an error.
+        let wants_help = name.as_deref().is_none_or(|name| ["help", "-h", "--help"].contains(&name));
+        return if wants_help { ExitCode::SUCCESS } else { ExitCode::from(2) };
+    };
+    // Paths of tasks are relative to the workspace, wherever the task is called.
+    let root =
+        Path::new(env!("CARGO_MANIFEST_DIR")).ancestors().nth(2).expect("this crate is in a folder of the workspace");
+    let outcome = std::env::set_current_dir(root).map_err(|e| format!("{}: {e}", root.display()));
+    match outcome.and_then(|()| (task.run)(&rest)) {
+        Ok(()) => ExitCode::SUCCESS,
+        Err(why) => {
+            eprintln!("error: {why}");
+            ExitCode::FAILURE
+        }
+    }
+}
+
+/// Runs clippy: all lints for libraries and programs, while tests may compare floats exactly, cast, and panic.
+fn lint() -> Outcome {
+    cargo(&["fmt", "--all", "--check"], &[])?;
+    let clippy = ["clippy", "--locked", "--workspace"];
+    let denied = ["--", "-D", "warnings"];
+    let allowed = ["-A", "clippy::float_cmp", "-A", "clippy::cast_possible_truncation"];
+    cargo(&[&clippy[..], &["--lib", "--bins"], &denied].concat(), &[])?;
+    let tests = ["--tests", "--examples"];
+    cargo(&[&clippy[..], &tests, &denied, &allowed, &["-A", "clippy::missing_panics_doc"]].concat(), &[])
+}
+
+fn docs() -> Outcome {
+    let mut command = Command::new("cargo");
+    command.args(["doc", "--locked", "--workspace", "--no-deps"]).env("RUSTDOCFLAGS", "-D warnings");
+    start(&mut command)
+}
+
+/// Returns the folder for what is compiled and for files of tasks.
+fn target_folder() -> PathBuf {
+    std::env::var_os("CARGO_TARGET_DIR").unwrap_or_else(|| "target".into()).into()
+}
+
+/// Returns the absolute path of that folder.
+fn absolute_target_folder() -> Result<PathBuf, String> {
+    let target = target_folder();
+    std::path::absolute(&target).map_err(|error| format!("{}: {error}", target.display()))
+}
+
+/// Returns the path of the program that a build without `--release` makes.
+fn debug_program() -> Result<PathBuf, String> {
+    Ok(absolute_target_folder()?.join("debug").join(format!("p2m{}", std::env::consts::EXE_SUFFIX)))
+}
+
+/// Runs cargo with arguments, followed by the remaining arguments of the task.
+fn cargo(arguments: &[&str], rest: &[String]) -> Outcome {
+    run("cargo", arguments, rest)
+}
+
+fn run(program: &str, arguments: &[&str], rest: &[String]) -> Outcome {
+    start(Command::new(program).args(arguments).args(rest))
+}
+
+/// Prints a command, runs it and waits for its end.
+fn start(command: &mut Command) -> Outcome {
+    let words: Vec<String> = [command.get_program()]
+        .into_iter()
+        .chain(command.get_args())
+        .map(|word| word.to_string_lossy().into_owned())
+        .collect();
+    let settings: Vec<String> = command
+        .get_envs()
+        .filter_map(|(name, value)| Some(format!("{}={:?} ", name.to_string_lossy(), value?)))
+        .collect();
+    let line = format!("{}{}", settings.concat(), words.join(" "));
+    println!("\n== {line}");
+    let status = command.status().map_err(|e| format!("{line}: cannot be started: {e}"))?;
+    if status.success() { Ok(()) } else { Err(format!("{line}: ended with {status}")) }
+}
+
+/// Returns the standard output of a command that succeeds.
+fn output(program: &str, arguments: &[&str]) -> Result<String, String> {
+    let line = format!("{program} {}", arguments.join(" "));
+    let output = Command::new(program).args(arguments).output().map_err(|e| format!("{line}: {e}"))?;
+    if !output.status.success() {
+        return Err(format!("{line}: {}", String::from_utf8_lossy(&output.stderr).trim()));
+    }
+    Ok(String::from_utf8_lossy(&output.stdout).into_owned())
+}

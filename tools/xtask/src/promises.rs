@@ -1,0 +1,113 @@
+//! Checks the promises that the manifests make to users of p2m.
+
+use crate::{Outcome, cargo, output};
+use std::fs;
+use std::path::Path;
+
+/// The targets for which the library is checked if their standard library is installed: 32 bits, and other processors.
+/// WebAssembly has a task of its own.
+const TARGETS: [&str; 2] = ["i686-unknown-linux-gnu", "aarch64-unknown-linux-gnu"];
+
+pub(crate) fn check() -> Outcome {
+    check_lock_files()?;
+    check_rust_version()?;
+    let library = ["check", "--locked", "--package", "p2m", "--no-default-features"];
+    cargo(&library, &[])?;
+    for feature in features()? {
+        cargo(&[&library[..], &["--features", &feature]].concat(), &[])?;
+    }
+    cargo(&["check", "--locked", "--package", "p2m-mixed", "--features", "rstar"], &[])?;
+    // Without its features the program has no parts of the paper.
+    cargo(&["check", "--locked", "--package", "p2m-cli", "--no-default-features"], &[])?;
+    check_targets()
+}
+
+/// Returns the features of the facade apart from `default`, as the manifest of the workspace lists them.
+fn features() -> Result<Vec<String>, String> {
+    let manifest = fs::read_to_string("Cargo.toml").map_err(|error| format!("Cargo.toml: {error}"))?;
+    let lines = manifest.lines().skip_while(|line| *line != "[features]").skip(1);
+    let lines = lines.take_while(|line| !line.starts_with('[')).filter(|line| !line.starts_with('#'));
+    let names: Vec<String> = lines.filter_map(|line| Some(line.split_once(" = ")?.0.to_owned())).collect();
+    if names.is_empty() {
+        return Err("Cargo.toml has no features".to_owned());
+    }
+    Ok(names.into_iter().filter(|name| name != "default").collect())
+}
+
+/// Checks that both lock files belong to their manifests.
+fn check_lock_files() -> Outcome {
+    for manifest in ["Cargo.toml", "tools/fuzz/Cargo.toml"] {
+        output("cargo", &["metadata", "--locked", "--format-version", "1", "--manifest-path", manifest])?;
+    }
+    Ok(())
+}
+
+/// Checks that the promised version of Rust compiles all of the source, and that no dependency needs a newer one.
+///
+/// Only a compiler of that version can tell what the source needs: lints know the versions of functions, but not those
+/// of the language.
+fn check_rust_version() -> Outcome {
+    let promised = promised_version()?;
+    let promised = promised.as_str();
+    let readme = fs::read_to_string("README.md").map_err(|e| format!("README.md: {e}"))?;
+    if !readme.contains(&format!("Rust ({promised} or newer)")) {
+        return Err(format!("README.md does not say that Rust {promised} is needed"));
+    }
+    let metadata = output("cargo", &["metadata", "--locked", "--format-version", "1"])?;
+    for needed in metadata.split("\"rust_version\":\"").skip(1).filter_map(|rest| rest.split('"').next()) {
+        if numbers(needed) > numbers(promised) {
+            return Err(format!("a dependency needs Rust {needed}, but {promised} is promised"));
+        }
+    }
+    // The promised compiler is the current one, or rustup has it.
+    let current = output("rustc", &["--version"])?;
+    let is_promised = |version: &str| version.split(' ').nth(1).is_some_and(|v| v.starts_with(&format!("{promised}.")));
+    if is_promised(&current) {
+        println!("Rust {promised} is promised, and compiles all of this");
+        return Ok(());
+    }
+    for toolchain in [format!("+{promised}"), format!("+{promised}.0")] {
+        if output("rustc", &[&toolchain, "--version"]).is_ok_and(|version| is_promised(&version)) {
+            return cargo(&[&toolchain, "check", "--locked", "--package", "p2m", "--package", "p2m-cli"], &[]);
+        }
+    }
+    Err(format!("Rust {promised} is promised, but is not installed, so nothing can check the promise"))
+}
+
+/// Returns the version of Rust that the manifest of the workspace promises.
+pub(crate) fn promised_version() -> Result<String, String> {
+    let manifest = fs::read_to_string("Cargo.toml").map_err(|e| format!("Cargo.toml: {e}"))?;
+    let mut lines = manifest.lines();
+    let version = lines.find_map(|line| line.strip_prefix("rust-version = \"")?.strip_suffix('"'));
+    version.map(str::to_owned).ok_or_else(|| "Cargo.toml promises no version of Rust".to_owned())
+}
+
+/// Returns the numbers of a version.
+pub(crate) fn numbers(version: &str) -> Vec<u32> {
+    let mut numbers: Vec<u32> = version.split('.').map_while(|number| number.parse().ok()).collect();
+    numbers.resize(3, 0);
+    numbers
+}
+
+fn check_targets() -> Outcome {
+    let sysroot = output("rustc", &["--print", "sysroot"])?;
+    for target in TARGETS {
+        if Path::new(sysroot.trim()).join("lib/rustlib").join(target).join("lib").is_dir() {
+            cargo(&["check", "--locked", "--package", "p2m", "--target", target], &[])?;
+        } else {
+            println!("\n== skipped: the standard library of {target} is not installed (rustup target add {target})");
+        }
+    }
+    Ok(())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn versions_are_compared_by_their_numbers() {
+        assert!(numbers("1.95") > numbers("1.90.1") && numbers("1.9") < numbers("1.10"));
+        assert_eq!(numbers("1.95"), numbers("1.95.0"));
+    }
+}
