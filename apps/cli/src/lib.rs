@@ -4,63 +4,23 @@
 
 #![deny(unsafe_code)]
 
-mod accuracy;
-mod advise;
-mod answering;
-mod backend;
-mod boxes;
-mod build;
-mod closest_answers;
-mod convert;
-mod deviation;
-mod distance;
-mod field;
-mod field_summary;
-mod generate;
-mod hausdorff;
-mod index_args;
-mod info;
-mod input;
-mod interrupt;
-mod json;
-mod kdop_directions;
-mod modify;
-mod output;
-mod p2m_args;
+mod answers;
+mod compare;
+mod index;
+mod io;
+mod measure;
 mod page;
-mod picture;
-mod progress;
-mod pump;
 mod query;
-mod query_args;
 mod ray;
-mod ray_answers;
-mod ray_summary;
-mod sampling;
-mod scan;
-mod scene_pair;
-mod shard;
-mod shard_query;
-mod shard_ray;
+mod scene;
 mod shell;
-mod sign_rule;
-mod stats;
-mod streams;
-mod summary;
-mod threads;
-mod tradeoff;
-mod tree_levels;
-mod up;
-mod usage;
-mod view;
-mod zstd;
 
-pub use interrupt::listen;
-pub use streams::Streams;
+pub use io::interrupt::listen;
+pub use io::streams::Streams;
 
 use clap::{CommandFactory, FromArgMatches, Parser, Subcommand};
 use std::ffi::OsString;
-use std::io::{self, Write};
+use std::io::Write;
 
 /// Closest points and hits of rays in scenes of triangles, segments and points
 #[derive(Parser)]
@@ -91,21 +51,21 @@ refinement of an octree, the first one only does that, and the run goes on with 
 #[derive(Subcommand)]
 enum Command {
     Query(query::Args),
-    Build(build::Args),
-    Shard(shard::Args),
-    Distance(distance::Args),
-    Hausdorff(hausdorff::Args),
-    Deviation(deviation::Args),
-    Stats(stats::Args),
-    Field(field::Args),
-    Advise(advise::Args),
-    Tradeoff(tradeoff::Args),
+    Build(scene::build::Args),
+    Shard(scene::shard::Args),
+    Distance(compare::distance::Args),
+    Hausdorff(compare::hausdorff::Args),
+    Deviation(compare::deviation::Args),
+    Stats(measure::stats::Args),
+    Field(query::field::Args),
+    Advise(measure::advise::Args),
+    Tradeoff(measure::tradeoff::Args),
     Ray(ray::Args),
-    Info(info::Args),
-    Convert(convert::Args),
-    Generate(generate::Args),
-    Boxes(boxes::Args),
-    View(view::Args),
+    Info(scene::info::Args),
+    Convert(scene::convert::Args),
+    Generate(scene::generate::Args),
+    Boxes(page::boxes::Args),
+    View(page::view::Args),
     Completions(shell::Completions),
     Man(shell::Man),
 }
@@ -138,21 +98,21 @@ impl Command {
     fn run(&self, streams: &Streams) -> anyhow::Result<()> {
         match self {
             Self::Query(args) => query::run(streams, args),
-            Self::Build(args) => build::run(streams, args),
-            Self::Shard(args) => shard::run(streams, args),
-            Self::Distance(args) => distance::run(streams, args),
-            Self::Hausdorff(args) => hausdorff::run(streams, args),
-            Self::Deviation(args) => deviation::run(streams, args),
-            Self::Stats(args) => stats::run(streams, args),
-            Self::Field(args) => field::run(streams, args),
-            Self::Advise(args) => advise::run(streams, args),
-            Self::Tradeoff(args) => tradeoff::run(streams, args),
+            Self::Build(args) => scene::build::run(streams, args),
+            Self::Shard(args) => scene::shard::run(streams, args),
+            Self::Distance(args) => compare::distance::run(streams, args),
+            Self::Hausdorff(args) => compare::hausdorff::run(streams, args),
+            Self::Deviation(args) => compare::deviation::run(streams, args),
+            Self::Stats(args) => measure::stats::run(streams, args),
+            Self::Field(args) => query::field::run(streams, args),
+            Self::Advise(args) => measure::advise::run(streams, args),
+            Self::Tradeoff(args) => measure::tradeoff::run(streams, args),
             Self::Ray(args) => ray::run(streams, args),
-            Self::Info(args) => info::run(streams, args),
-            Self::Convert(args) => convert::run(streams, args),
-            Self::Generate(args) => generate::run(streams, args),
-            Self::Boxes(args) => boxes::run(streams, args),
-            Self::View(args) => view::run(streams, args),
+            Self::Info(args) => scene::info::run(streams, args),
+            Self::Convert(args) => scene::convert::run(streams, args),
+            Self::Generate(args) => scene::generate::run(streams, args),
+            Self::Boxes(args) => page::boxes::run(streams, args),
+            Self::View(args) => page::view::run(streams, args),
             Self::Completions(args) => shell::completions(streams, args, Cli::command()),
             Self::Man(args) => shell::man(streams, args, Cli::command()),
         }
@@ -182,7 +142,7 @@ pub fn run(streams: &Streams, arguments: impl IntoIterator<Item = OsString>) -> 
         Err(error) => {
             // An error of writing the message cannot be reported anywhere.
             let _ = writeln!(streams.stderr(), "error: {error:#}");
-            if error.is::<usage::Usage>() {
+            if error.is::<crate::io::usage::Usage>() {
                 let _ = writeln!(streams.stderr(), "\nFor more information, try '{} --help'.", command.path());
                 return 2;
             }
@@ -192,7 +152,9 @@ pub fn run(streams: &Streams, arguments: impl IntoIterator<Item = OsString>) -> 
 }
 
 fn is_closed_pipe(error: &anyhow::Error) -> bool {
-    error.chain().any(|e| e.downcast_ref::<io::Error>().is_some_and(|e| e.kind() == io::ErrorKind::BrokenPipe))
+    error
+        .chain()
+        .any(|e| e.downcast_ref::<std::io::Error>().is_some_and(|e| e.kind() == std::io::ErrorKind::BrokenPipe))
 }
 
 #[cfg(test)]

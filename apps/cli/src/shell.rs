@@ -1,7 +1,7 @@
 //! `p2m completions` and `p2m man`: completions of shells and manual pages.
 
-use crate::output::Output;
-use crate::streams::Streams;
+use crate::io::output::Output;
+use crate::io::streams::Streams;
 use anyhow::Context;
 use clap_complete::Shell;
 use std::io::Write;

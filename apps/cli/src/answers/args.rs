@@ -1,0 +1,72 @@
+//! The arguments that `query` and `ray` share.
+
+use crate::index::kdop_directions::KdopFaces;
+use crate::io::input::{SceneArgs, is_standard, or_option};
+use crate::io::output::Output;
+use crate::io::streams::Streams;
+use crate::io::threads::ThreadArgs;
+use crate::io::usage::{one_of, usage};
+use p2m_mixed::AnswerFormat;
+use serde_json::{Value, json};
+use std::path::{Path, PathBuf};
+
+#[derive(clap::Args)]
+pub(crate) struct QueryArgs {
+    /// How many faces the polytopes of --backend kdop have [default: 14, or as a saved index]
+    #[arg(long, value_name = "K", value_enum, ignore_case = true, allow_negative_numbers = true)]
+    pub(crate) k: Option<KdopFaces>,
+
+    /// Where to write the answers; `-` is the standard output.
+    ///
+    /// The file appears under this name when it is complete, and does not if the run is interrupted (one that is ended
+    /// by SIGKILL leaves a file `.p2m-*` beside it). A symbolic link is followed; a dangling one is refused,
+    /// and so is a file that is also an input.
+    #[arg(long, value_name = "FILE", default_value = "-")]
+    pub(crate) out: PathBuf,
+
+    /// The format of the answers, if the extension of their file does not name it; CSV is the default
+    #[arg(long, value_name = "FORMAT", value_parser = one_of::<AnswerFormat>(AnswerFormat::NAMES), ignore_case = true)]
+    out_format: Option<AnswerFormat>,
+
+    /// Report the summary as one JSON object on the standard output; needs --out FILE
+    #[arg(long)]
+    pub(crate) json: bool,
+
+    #[command(flatten)]
+    pub(crate) threads: ThreadArgs,
+}
+
+impl QueryArgs {
+    /// Refuses impossible combinations of arguments before any work. `file` has the queries, which messages call
+    /// `what`.
+    pub(crate) fn check(&self, scene: &SceneArgs, file: Option<&Path>, what: &str) -> anyhow::Result<()> {
+        if self.json && is_standard(&self.out) {
+            return Err(usage(
+                "--json reports on the standard output, so the answers have to go to a file: add --out FILE",
+            ));
+        }
+        if is_standard(&scene.path) && file.is_some_and(is_standard) {
+            return Err(usage(format!("the standard input cannot be both the scene and the {what}")));
+        }
+        let inputs: Vec<&Path> = std::iter::once(scene.path.as_path()).chain(file).collect();
+        Output::refuse_inputs(&self.out, &inputs)
+    }
+
+    /// Returns the format of the answers: the given one, or else that of the extension, or CSV without an extension.
+    pub(crate) fn format(&self, streams: &Streams) -> anyhow::Result<AnswerFormat> {
+        let format = match self.out_format {
+            Some(format) => format,
+            None if is_standard(&self.out) || self.out.extension().is_none() => AnswerFormat::Csv,
+            None => AnswerFormat::from_path(&self.out).map_err(|e| or_option(&e, "--out-format"))?,
+        };
+        if format != AnswerFormat::Csv {
+            Output::refuse_terminal(streams, &self.out, format.name())?;
+        }
+        Ok(format)
+    }
+
+    /// Returns the part of a report about the file of the answers.
+    pub(crate) fn output_json(&self, format: AnswerFormat, bytes: u64) -> Value {
+        json!({ "file": self.out.display().to_string(), "format": format.name(), "bytes": bytes })
+    }
+}

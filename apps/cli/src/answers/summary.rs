@@ -1,0 +1,228 @@
+//! Summaries of a run: its scene, its index and its answers, as text for people or as JSON for programs.
+
+use crate::io::json::{self, stats};
+use crate::scene::info::counted;
+use p2m_backends::{ChosenDirections, IndexDetails};
+use p2m_core::Closest;
+use p2m_mixed::statistics::Counts;
+use p2m_mixed::{Format, Scene, Skipped};
+use p2m_tradeoff::RunningStats;
+use serde_json::{Value, json};
+use std::fmt::{self, Write};
+use std::time::Duration;
+
+/// The summary of a scene.
+pub(crate) struct SceneSummary<'a> {
+    pub(crate) name: String,
+    /// The name of the format of its file.
+    pub(crate) format: &'static str,
+    pub(crate) counts: Counts,
+    pub(crate) skipped: &'a [Skipped],
+}
+
+impl<'a> SceneSummary<'a> {
+    pub(crate) fn new(name: String, format: Format, scene: &'a Scene) -> Self {
+        Self { name, format: format.name(), counts: Counts::of(&scene.soup), skipped: &scene.skipped }
+    }
+}
+
+/// The summary of a scene and of the index over it.
+pub(crate) struct IndexSummary<'a> {
+    pub(crate) scene: SceneSummary<'a>,
+    pub(crate) backend: &'a str,
+    pub(crate) details: IndexDetails,
+    /// Whether the index was loaded from a file.
+    pub(crate) is_loaded: bool,
+    /// The time to read the scene.
+    pub(crate) read_time: Duration,
+    /// The time to build or load the index.
+    pub(crate) build_time: Duration,
+}
+
+impl IndexSummary<'_> {
+    /// Returns the part of a report that describes the scene and the index, as an object.
+    pub(crate) fn json(&self, command: &str) -> Value {
+        let (faces, reason) = match &self.details {
+            IndexDetails::Kdop(directions) => (Some(directions.faces), directions.reason.as_ref()),
+            _ => (None, None),
+        };
+        json!({
+            "p2m": command,
+            "version": json::VERSION,
+            "scene": {
+                "file": self.scene.name,
+                "format": self.scene.format,
+                "primitives": json::counts(&self.scene.counts),
+                "skipped": json::skipped(self.scene.skipped),
+            },
+            "backend": self.backend,
+            "loaded": self.is_loaded,
+            "faces": faces,
+            "directions_reason": reason,
+        })
+    }
+
+    /// Returns the numbers of cells of an interception index; null for other backends.
+    pub(crate) fn cells(&self) -> Value {
+        match &self.details {
+            IndexDetails::Octree(report) => json!({
+                "list_cells": report.lists,
+                "single_primitive_cells": report.singles,
+                "fallback_cells": report.trees,
+                "bytes": report.bytes,
+                "tree_bytes": report.tree_bytes,
+                "packet_tests": report.work,
+                "resolution": json::number(report.resolution),
+            }),
+            IndexDetails::P2m(report) => json!({
+                "list_cells": report.lists,
+                "fallback_cells": report.trees,
+                "packets": report.entries,
+                "primitives": report.primitives,
+                "bytes": report.bytes,
+                "tree_bytes": report.tree_bytes,
+            }),
+            _ => Value::Null,
+        }
+    }
+
+    /// Writes lines about the scene and the index, with a line for the note if there is one.
+    pub(crate) fn write(&self, text: &mut String, note: Option<String>) -> fmt::Result {
+        writeln!(text, "scene    {}", self.scene.name)?;
+        writeln!(text, "         {}", counted(&self.scene.counts))?;
+        if self.scene.counts.total() == 0 {
+            writeln!(text, "note     the scene is empty: there is nothing to find")?;
+        }
+        if let Some(note) = note {
+            writeln!(text, "note     {note}")?;
+        }
+        if !self.scene.skipped.is_empty() {
+            let list: Vec<String> = self.scene.skipped.iter().map(ToString::to_string).collect();
+            writeln!(text, "skipped  {}", list.join(", "))?;
+        }
+        let faces = match &self.details {
+            IndexDetails::Kdop(directions) => format!(", {} faces", directions.faces),
+            _ => String::new(),
+        };
+        let verb = if self.is_loaded { "loaded" } else { "built" };
+        writeln!(text, "backend  {}{faces}, {verb} in {:.3?}", self.backend, self.build_time)?;
+        match &self.details {
+            IndexDetails::Kdop(ChosenDirections { reason: Some(reason), .. }) => writeln!(text, "k-DOPs   {reason}")?,
+            IndexDetails::Octree(report) => writeln!(text, "cells    {report}")?,
+            IndexDetails::P2m(report) => writeln!(text, "cells    {report}")?,
+            _ => {}
+        }
+        Ok(())
+    }
+}
+
+/// The summary of a run that answers queries or rays.
+pub(crate) struct RunSummary<'a> {
+    pub(crate) index: IndexSummary<'a>,
+    pub(crate) threads: usize,
+    /// The time that the queries took.
+    pub(crate) query_time: Duration,
+}
+
+impl RunSummary<'_> {
+    /// Returns the report of a command. `answers` is its part about the answers, and `out` describes their file.
+    pub(crate) fn json(&self, command: &str, answers: Value, out: &Value) -> Value {
+        let end = json!({
+            "seconds": {
+                "read": self.index.read_time.as_secs_f64(),
+                "build": self.index.build_time.as_secs_f64(),
+                "query": self.query_time.as_secs_f64(),
+            },
+            "out": out,
+        });
+        json::joined([self.index.json(command), json!({ "threads": self.threads }), answers, end])
+    }
+
+    /// Returns lines about the scene, the index and the speed of `count` queries. The queries are called `many` in the
+    /// plural and `one` in the singular.
+    pub(crate) fn text(&self, many: &str, one: &str, count: u64) -> String {
+        let mut text = String::new();
+        // Writing to a string does not fail.
+        let _ = self.write(&mut text, many, one, count);
+        text
+    }
+
+    #[allow(clippy::cast_precision_loss, reason = "counts for people to read")]
+    fn write(&self, text: &mut String, many: &str, one: &str, count: u64) -> fmt::Result {
+        let note = (count == 0).then(|| format!("there are no {many}: nothing is computed"));
+        self.index.write(text, note)?;
+        let threads = if self.threads == 1 { "thread" } else { "threads" };
+        write!(text, "{many:9}{count} in {:.3?} on {} {threads}", self.query_time, self.threads)?;
+        let seconds = self.query_time.as_secs_f64();
+        if count > 0 && seconds > 0.0 {
+            let count = count as f64;
+            write!(text, ": {:.0} ns per {one}, {:.0} {many}/s", seconds * 1e9 / count, count / seconds)?;
+        }
+        writeln!(text)
+    }
+}
+
+/// The summary of the answers of closest-point queries.
+#[derive(Debug, Default)]
+pub(crate) struct AnswerSummary {
+    queries: u64,
+    /// The number of queries without an answer.
+    unanswered: u64,
+    distances: RunningStats,
+    /// The upper bounds of the errors of the distances.
+    errors: RunningStats,
+}
+
+impl AnswerSummary {
+    /// Adds a query with one answer or none.
+    pub(crate) fn add(&mut self, answer: Option<&Closest<f64>>) {
+        self.add_all(answer.map_or(&[], std::slice::from_ref));
+    }
+
+    /// Adds a query with any number of answers.
+    pub(crate) fn add_all(&mut self, answers: &[Closest<f64>]) {
+        self.queries += 1;
+        self.unanswered += u64::from(answers.is_empty());
+        for closest in answers {
+            self.distances.add(closest.distance);
+            self.errors.add(closest.distance - closest.lower_bound);
+        }
+    }
+
+    pub(crate) fn queries(&self) -> u64 {
+        self.queries
+    }
+
+    /// Returns the part of a report about queries that came from `source`.
+    pub(crate) fn json(&self, cells: &Value, max_distance: &Value, accuracy: &Value, source: &Value) -> Value {
+        json!({
+            "cells": cells,
+            "max_distance": max_distance,
+            "accuracy": accuracy,
+            "source": source,
+            "queries": self.queries,
+            "answered": self.queries - self.unanswered,
+            "unanswered": self.unanswered,
+            "answers": self.distances.count(),
+            "distance": stats(&self.distances),
+            "error": stats(&self.errors),
+        })
+    }
+}
+
+impl fmt::Display for AnswerSummary {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let answers = self.distances.count();
+        writeln!(f, "answers  {answers}, without answer {}", self.unanswered)?;
+        if answers > 0 {
+            writeln!(f, "distance {}", self.distances)?;
+            writeln!(
+                f,
+                "accuracy distances are too large by at most {:?}, on average by at most {:?}",
+                self.errors.max(),
+                self.errors.mean()
+            )?;
+        }
+        Ok(())
+    }
+}

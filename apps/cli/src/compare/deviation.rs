@@ -1,0 +1,410 @@
+//! `p2m deviation`: how far the points of a scan are from a scene.
+
+use crate::answers::blocks::{BlockSize, QueryStream, Steps, answer_all};
+use crate::answers::summary::{IndexSummary, RunSummary, SceneSummary};
+use crate::answers::with_signed;
+use crate::compare::scan::ScanFormat;
+use crate::index::backend::{Backend, PreparedIndex, SceneSource, backends, saved_or_default};
+use crate::index::sign_rule::{SignRule, SignedIndex};
+use crate::io::input::{SceneArgs, is_standard, name, read_scene_and_index};
+use crate::io::json;
+use crate::io::output::Output;
+use crate::io::streams::Streams;
+use crate::io::threads::ThreadArgs;
+use crate::io::usage::{finite_not_negative, one_of, positive, usage};
+use crate::page::source::{PageArgs, about, file_name};
+use crate::query::answers::ClosestAnswer;
+use anyhow::{Context, anyhow};
+use nalgebra::Point3;
+use p2m_backends::{BuiltIndex, Index, P2mSettings};
+use p2m_core::batch::{self, BatchOptions};
+use p2m_core::{Closest, QueryOptions};
+use p2m_field::deviation::{DeviationStatistics, OutsideTolerance, outside};
+use p2m_field::sign::SignError;
+use p2m_mixed::statistics::figure::{Count, Figure};
+use p2m_mixed::{
+    AnswerColumn, AnswerEncoder, AnswerFormat, AnswerRecord, AnswerWriter, Scene, VertexValues, write_ply_with_values,
+};
+use p2m_page::{Deviations, diverging_colour};
+use rayon::ThreadPool;
+use rayon::prelude::*;
+use serde_json::{Value, json};
+use std::fmt::Write as _;
+use std::io::Write as _;
+use std::path::PathBuf;
+use std::time::{Duration, Instant};
+
+/// The text of the help. Each paragraph is one line, so that it wraps at the width of the terminal.
+fn help() -> String {
+    format!(
+        "\
+The deviation of a point is its distance from the scene, positive outside and negative inside. It is that of the \
+surface and not of its vertices. The points of a scan are those of its file, or all vertices if it is a mesh, each \
+once; vertices that only segments and points use, or nothing, count as well.
+
+If the triangles are no closed surface, winding numbers decide which points are inside, and a warning says so. Then \
+the sign is a guess near borders of holes, and both sides of a single sheet are outside. A scene of segments or \
+points has no inside: it needs --unsigned, with which deviations are distances.
+
+Statistics are printed on the standard output: the mean, the mean of absolute values, the root mean square, the \
+standard deviation, the extremes and percentiles, and with --tolerance the numbers of points above and below it. A \
+point without a deviation is one whose coordinates are not finite or whose side is not defined; nothing else \
+includes it.
+
+With --out, CSV is the table that `p2m query --signed` writes, where signed_distance is the deviation. PLY is the \
+scan with the property deviation and colours from blue (inside) over grey to red (outside); triangles are kept. HTML \
+is a page that any browser opens without a network: it shows the coloured scan, the scene, a histogram and the \
+statistics, and tolerance and colours can be changed there.
+
+{}
+
+Examples:
+  p2m deviation scan.ply part.stl --tolerance 0.05
+  p2m deviation scan.xyz part.obj --tolerance 0.05 --unit mm --out page.html
+  p2m deviation print.stl design.stl --out deviations.csv --json
+  p2m deviation points.npy cables.obj --unsigned --limit 0.2 --out coloured.ply",
+        json::STABILITY
+    )
+}
+
+/// Find how far the points of a scan are from a scene: statistics, colours and a histogram
+#[derive(clap::Args)]
+#[command(after_help = help())]
+pub(crate) struct Args {
+    /// Scan: an XYZ, TXT, CSV or NPY file of points, or a PLY, OBJ, STL or OFF file, whose vertices are the points; `-`
+    /// is the standard input
+    #[arg(value_name = "SCAN")]
+    scan: PathBuf,
+
+    #[command(flatten)]
+    scene: SceneArgs,
+
+    /// The format of the scan, if its extension does not name it
+    #[arg(long, value_name = "FORMAT", value_parser = one_of::<ScanFormat>(ScanFormat::NAMES), ignore_case = true)]
+    scan_format: Option<ScanFormat>,
+
+    /// Give distances without signs, as scenes with segments or points need it
+    #[arg(long, conflicts_with = "sign")]
+    unsigned: bool,
+
+    /// The rule that decides which points are inside
+    #[arg(long, value_name = "RULE", value_enum, default_value = "auto")]
+    sign: SignRule,
+
+    /// Count the points whose deviation is above this length or below its negative, in the unit of the scene
+    #[arg(long, value_name = "LENGTH", value_parser = finite_not_negative, allow_negative_numbers = true)]
+    tolerance: Option<f64>,
+
+    /// The deviation from which on colours do not change [default: the tolerance, or else the 95th percentile of
+    /// absolute deviations]
+    #[arg(long, value_name = "LENGTH", value_parser = positive, allow_negative_numbers = true)]
+    limit: Option<f64>,
+
+    /// Write the deviations as well: a table (.csv), a coloured cloud or mesh (.ply) or a page (.html)
+    #[arg(long, value_name = "FILE")]
+    out: Option<PathBuf>,
+
+    /// The index to search [default: that of a saved file, else aabb]
+    #[arg(long, value_parser = backends(|_| true))]
+    backend: Option<Backend>,
+
+    #[command(flatten)]
+    page: PageArgs,
+
+    /// Report as one JSON object on the standard output, instead of the table
+    #[arg(long)]
+    json: bool,
+
+    #[command(flatten)]
+    threads: ThreadArgs,
+}
+
+p2m_mixed::formats! {
+    /// The formats of files of deviations.
+    DeviationFormat {
+        /// A table of answers.
+        Csv = "csv",
+        /// The scan with a number and a colour for each vertex.
+        Ply = "ply",
+        /// A page for browsers.
+        Html = "html" | "htm",
+    }
+}
+
+pub(crate) fn run(streams: &Streams, args: &Args) -> anyhow::Result<()> {
+    let out_format = args.out_format()?;
+    if is_standard(&args.scan) && is_standard(&args.scene.path) {
+        return Err(usage("the standard input cannot be both the scan and the scene"));
+    }
+    if let Some(out) = &args.out {
+        Output::refuse_inputs(out, &[&args.scan, &args.scene.path])?;
+    }
+    let scan_format = ScanFormat::of(&args.scan, args.scan_format, "--scan-format")?;
+    let format = args.scene.format()?;
+    let pool = args.threads.pool()?;
+    let start = Instant::now();
+    let (scene, saved) = read_scene_and_index(streams, &pool, &args.scene.path, format, args.scene.map)?;
+    let scan = scan_format.read(streams, &pool, &args.scan)?;
+    let read_time = start.elapsed();
+    // The file is opened before the work, which would be lost if its name were wrong.
+    let mut output = args.out.as_ref().map(|out| Output::open(streams, Some(out))).transpose()?;
+
+    let start = Instant::now();
+    let saved = saved.as_ref();
+    let backend = args.backend.unwrap_or_else(|| saved_or_default(saved));
+    let source = SceneSource { soup: &scene.soup, kdop_directions: None, p2m: P2mSettings::default(), saved };
+    let PreparedIndex { built: BuiltIndex { index, details }, is_loaded, .. } =
+        source.prepare(streams, backend, &pool).with_context(|| args.scene.name())?;
+    let prepare =
+        |rule: SignRule| rule.prepare(streams, &*index, &scene.soup).map_err(|error| args.without_sign(error));
+    let signed = if args.unsigned { None } else { Some(prepare(args.sign)?) };
+    let build_time = start.elapsed();
+    let rule = signed.as_ref().map(|(_, rule)| *rule);
+    if rule == Some("winding") && args.sign == SignRule::Auto {
+        streams.print_summary(format_args!(
+            "warning  {} is not closed, or its triangles have different orientations: winding numbers decide which \
+             points are inside. Near holes the sign is a guess, and both sides of a single sheet are outside\n",
+            args.scene.name()
+        ));
+    }
+
+    let points = scan.soup.positions();
+    let mut answers = Answers::new(&*index, signed.as_ref().map(|(signed, _)| signed));
+    let query_time = match (&mut output, out_format) {
+        (Some(output), Some(DeviationFormat::Csv)) => {
+            let encoder = AnswerEncoder::new(AnswerFormat::Csv, &scene.objects, &args.columns(&scene));
+            let cannot_write = output.cannot_write();
+            let failed = |error| anyhow::Error::new(error).context(cannot_write.clone());
+            let writer = AnswerWriter::with_columns(output, encoder.clone(), Some(points.len() as u64));
+            let mut writer = writer.map_err(failed)?;
+            let encode = |record: &AnswerRecord<'_>, out: &mut Vec<u8>| encoder.encode(record, out);
+            let write = |count, records: &[u8]| writer.write_encoded(count, records).map_err(failed);
+            let time = answers.add(streams, &pool, points, encode, write)?;
+            writer.finish().map_err(failed)?;
+            time
+        }
+        _ => answers.add(streams, &pool, points, |_, _| (), |_, _| Ok(()))?,
+    };
+    let Answers { values, primitives, .. } = answers;
+    let statistics = DeviationStatistics::of(&values);
+    // Where all deviations are 0, any limit gives the same colours.
+    let usual_limit = || Some(statistics.usual_limit()).filter(|limit| *limit > 0.0).unwrap_or(1.0);
+    let limit = args.limit.or(args.tolerance.filter(|tolerance| *tolerance > 0.0)).unwrap_or_else(usual_limit);
+    let found = DeviationReport { args, statistics, outside: args.tolerance.map(|x| outside(&values, x)), limit, rule };
+
+    let mut bytes = 0;
+    if let Some(mut output) = output {
+        match out_format {
+            Some(DeviationFormat::Ply) => {
+                let colours: Vec<[u8; 3]> = values.iter().map(|value| diverging_colour(*value, limit)).collect();
+                let values = VertexValues { name: "deviation", values: &values, colours: &colours };
+                let written = write_ply_with_values(&scan, &values, &mut output);
+                written.with_context(|| output.cannot_write())?;
+            }
+            Some(DeviationFormat::Html) => {
+                let view = args.page.view(&scene, &Deviations::bounds(&scan.soup));
+                let mut view = view.with_deviations(&Deviations {
+                    scan: &scan.soup,
+                    values: &values,
+                    primitives: &primitives,
+                    statistics: &statistics,
+                    is_signed: rule.is_some(),
+                    limit,
+                    tolerance: args.tolerance,
+                });
+                let [scan_name, scene_name] = [&args.scan, &args.scene.path].map(|path| file_name(path));
+                view.title = format!("{scan_name} and {scene_name} in p2m");
+                view.summary = found.summary();
+                let files = format!("scan {}, scene {}", name(&args.scan), args.scene.name());
+                view.about = about(&files, backend.name, rule);
+                output.write_all(view.html()?.as_bytes()).with_context(|| output.cannot_write())?;
+            }
+            Some(DeviationFormat::Csv) | None => {}
+        }
+        bytes = output.bytes();
+        output.finish()?;
+    }
+
+    let summary = SceneSummary::new(args.scene.name(), format, &scene);
+    let index = IndexSummary { scene: summary, backend: backend.name, details, is_loaded, read_time, build_time };
+    let run = RunSummary { index, threads: pool.current_num_threads(), query_time };
+    if args.json {
+        let out = args.out.as_ref().zip(out_format).map_or(
+            Value::Null,
+            |(out, format)| json!({ "file": out.display().to_string(), "format": format.name(), "bytes": bytes }),
+        );
+        let scan = json!({
+            "file": name(&args.scan),
+            "format": scan_format.name(),
+            "points": points.len(),
+            "skipped": json::skipped(&scan.skipped),
+        });
+        let report = json::joined([json!({ "scan": scan }), found.report()]);
+        return json::print(streams, &run.json("deviation", report, &out));
+    }
+    streams.print_summary(format_args!("{}", run.text("points", "point", points.len() as u64)));
+    if !scan.skipped.is_empty() {
+        let list: Vec<String> = scan.skipped.iter().map(ToString::to_string).collect();
+        streams.print_summary(format_args!("note     of the scan is skipped: {}\n", list.join(", ")));
+    }
+    if let Some(out) = &args.out {
+        streams.print_summary(format_args!("written  {}, {bytes} bytes\n", out.display()));
+    }
+    let mut output = Output::open(streams, None)?;
+    write!(output, "{}", found.table()).with_context(|| output.cannot_write())?;
+    output.finish()
+}
+
+/// The answers to the points of a scan, and where they come from.
+struct Answers<'a> {
+    index: &'a dyn Index,
+    signed: Option<&'a SignedIndex<'a>>,
+    /// The deviation of each point, or NaN.
+    values: Vec<f64>,
+    /// The closest primitive of each point.
+    primitives: Vec<u32>,
+}
+
+impl<'a> Answers<'a> {
+    /// Starts without answers.
+    fn new(index: &'a dyn Index, signed: Option<&'a SignedIndex<'a>>) -> Self {
+        Self { index, signed, values: Vec::new(), primitives: Vec::new() }
+    }
+
+    /// Answers points on all threads of a pool, and writes a record of each. Returns the time that the answers took.
+    fn add(
+        &mut self,
+        streams: &Streams,
+        pool: &ThreadPool,
+        points: &[Point3<f64>],
+        encode: impl Fn(&AnswerRecord<'_>, &mut Vec<u8>) + Sync,
+        write: impl FnMut(u64, &[u8]) -> anyhow::Result<()>,
+    ) -> anyhow::Result<Duration> {
+        let Self { index, signed, values, primitives } = self;
+        let (index, signed) = (*index, *signed);
+        let with_deviation = |(point, answer): (&Point3<f64>, Option<Closest<f64>>)| {
+            let deviation = answer.and_then(|answer| match signed {
+                Some(signed) => signed.with_sign(point, answer).distance(),
+                None => Some(answer.distance),
+            });
+            (answer, deviation.unwrap_or(f64::NAN))
+        };
+        let steps = Steps {
+            answer: |points: &[Point3<f64>]| {
+                let mut answers = vec![None; points.len()];
+                let (options, batch) = (QueryOptions::default(), BatchOptions::default());
+                batch::closest_points_into(index, points, &options, &batch, &mut answers);
+                Ok(points.par_iter().zip(answers).map(with_deviation).collect())
+            },
+            encode: |number, query: &_, (answer, deviation): &ClosestAnswer, out: &mut _| {
+                encode(&AnswerRecord { number, query, answer: answer.as_ref(), signed_distance: *deviation }, out);
+                1
+            },
+            take: |_: &_, (answer, deviation): &ClosestAnswer| {
+                values.push(*deviation);
+                primitives.push(answer.map_or(u32::MAX, |answer| answer.primitive.number()));
+            },
+            write,
+        };
+        let iter = points.iter().copied();
+        let queries = QueryStream { name: "points", count: points.len() as u64, iter, block_size: BlockSize::Adaptive };
+        answer_all(streams, pool, queries, steps)
+    }
+}
+
+/// The statistics of a run, as text for people or as JSON for programs.
+struct DeviationReport<'a> {
+    args: &'a Args,
+    statistics: DeviationStatistics,
+    outside: Option<OutsideTolerance>,
+    limit: f64,
+    /// The rule of signs, if there are any.
+    rule: Option<&'static str>,
+}
+
+impl DeviationReport<'_> {
+    /// Returns the part of a report about the deviations.
+    fn report(&self) -> Value {
+        let named = self.statistics.named();
+        let statistics: serde_json::Map<String, Value> =
+            named.into_iter().map(|named| (named.key, json::number(named.value))).collect();
+        json!({
+            "signed": self.rule.is_some(),
+            "sign_rule": self.rule,
+            "deviations": self.statistics.count,
+            "missing": self.statistics.missing,
+            "statistics": statistics,
+            "tolerance": self.args.tolerance,
+            "above": self.outside.map(|outside| outside.above),
+            "below": self.outside.map(|outside| outside.below),
+            "limit": self.limit,
+        })
+    }
+
+    /// Returns the table of statistics.
+    fn table(&self) -> String {
+        let mut rows = vec![
+            ("points with a deviation".to_owned(), Count(self.statistics.count as u64).to_string()),
+            ("points without one".to_owned(), Count(self.statistics.missing as u64).to_string()),
+        ];
+        if self.statistics.count > 0 {
+            let unit = &self.args.page.unit;
+            let named = self.statistics.named();
+            rows.extend(named.into_iter().map(|named| (named.label, format!("{} {unit}", Figure(named.value)))));
+        }
+        if let (Some(tolerance), Some(outside)) = (self.args.tolerance, self.outside) {
+            let part = |count: usize| {
+                let percent = Figure(100.0 * count as f64 / self.statistics.count.max(1) as f64);
+                format!("{} ({percent} %)", Count(count as u64))
+            };
+            rows.push((format!("above {tolerance}"), part(outside.above)));
+            if self.rule.is_some() {
+                rows.push((format!("below -{tolerance}"), part(outside.below)));
+            }
+            rows.push((format!("within {tolerance}"), part(self.statistics.count - outside.above - outside.below)));
+        }
+        let width = rows.iter().map(|(label, _)| label.len()).max().unwrap_or(0);
+        let mut text = String::new();
+        for (label, value) in rows {
+            // Writing to a string does not fail.
+            let _ = writeln!(text, "{label:width$}  {value}");
+        }
+        text
+    }
+
+    /// Returns the sentence below the heading of the page.
+    fn summary(&self) -> String {
+        let DeviationStatistics { count, mean, rms, min, max, .. } = self.statistics;
+        let unit = &self.args.page.unit;
+        let what = if self.rule.is_some() { "deviations, positive outside" } else { "distances" };
+        let count = Count(count as u64);
+        let [mean, rms, min, max] = [mean, rms, min, max].map(Figure);
+        format!("{count} {what}: mean {mean} {unit}, root mean square {rms} {unit}, from {min} to {max} {unit}")
+    }
+}
+
+impl Args {
+    /// Returns the format of the file, if there is one.
+    fn out_format(&self) -> anyhow::Result<Option<DeviationFormat>> {
+        let Some(out) = &self.out else { return Ok(None) };
+        if is_standard(out) {
+            return Err(usage("the statistics go to the standard output, so the deviations need a file: --out FILE"));
+        }
+        Ok(Some(DeviationFormat::from_path(out)?))
+    }
+
+    /// Returns the columns of the table, which are those of `p2m query --signed`.
+    fn columns(&self, scene: &Scene) -> Vec<AnswerColumn> {
+        with_signed(AnswerColumn::defaults(AnswerFormat::Csv, !scene.objects.is_empty()), !self.unsigned)
+    }
+
+    /// Returns the error of a scene that has no sign by the rule.
+    fn without_sign(&self, error: SignError) -> anyhow::Error {
+        let advice = match error {
+            SignError::OtherKinds { .. } => ": add --unsigned for distances without signs",
+            SignError::Open { .. } | SignError::NotOriented { .. } => ": see --sign and --unsigned",
+            _ => "",
+        };
+        anyhow!("{}: {error}{advice}", self.scene.name())
+    }
+}

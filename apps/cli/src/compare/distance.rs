@@ -1,0 +1,121 @@
+//! `p2m distance`: finds the nearest points of two scenes.
+
+use crate::compare::scene_pair::{ScenePairArgs, line_of_point, report_of_point};
+use crate::io::json;
+use crate::io::output::Output;
+use crate::io::progress::{Progress, Unit};
+use crate::io::streams::Streams;
+use crate::io::threads::ThreadArgs;
+use crate::io::usage::usage;
+use anyhow::Context;
+use p2m_bvh::AabbTree;
+use p2m_core::pair::{ClosestPair, PairOptions, PairQuery};
+use p2m_core::{BuildIndex, Soup};
+use p2m_mixed::{Format, Scene};
+use serde_json::{Value, json};
+use std::io::Write as _;
+
+fn help() -> String {
+    format!(
+        "\
+The distance is 0 if the scenes intersect: whether two primitives do is decided without rounding. Only surfaces count, so a \
+scene inside of a closed one has the distance from its surface. The lower bound is certified: no two points of the scenes \
+are nearer.
+
+{}
+
+Examples:
+  p2m distance robot.ply cell.ply
+  p2m distance arm.obj cell.obj --transform pose.txt
+  p2m distance a.stl b.stl --max-distance 0.01 --json",
+        json::STABILITY
+    )
+}
+
+/// Find the nearest points of two scenes, and whether the scenes intersect
+#[derive(clap::Args)]
+#[command(after_help = help())]
+pub(crate) struct Args {
+    #[command(flatten)]
+    scenes: ScenePairArgs,
+
+    /// The largest distance of an answer; a search that stays within it takes less time
+    #[arg(long, value_name = "DISTANCE", allow_negative_numbers = true)]
+    max_distance: Option<f64>,
+
+    #[command(flatten)]
+    threads: ThreadArgs,
+
+    /// Report as one JSON object
+    #[arg(long)]
+    json: bool,
+}
+
+pub(crate) fn run(streams: &Streams, args: &Args) -> anyhow::Result<()> {
+    let limit = args.max_distance.unwrap_or(f64::INFINITY);
+    if limit.is_nan() || limit < 0.0 {
+        return Err(usage(format!("--max-distance {limit}: a distance is not negative")));
+    }
+    let motion = args.scenes.motion()?;
+    let formats = args.scenes.formats()?;
+    let pool = args.threads.pool()?;
+    let scenes = args.scenes.read(streams, &pool, formats)?.map(|(scene, _)| scene);
+    let names = args.scenes.names();
+    let mut options = PairOptions::default().with_max_distance(limit);
+    options.motion = motion;
+    let progress = Progress::start(streams, "comparing", None, Unit::None);
+    let found = pool.install(|| {
+        let build = |k: usize| {
+            AabbTree::<f64, &Soup<f64>>::build(&scenes[k].soup, &Default::default()).with_context(|| names[k].clone())
+        };
+        Ok::<_, anyhow::Error>(build(0)?.closest_pair(&build(1)?, &options))
+    })?;
+    drop(progress);
+    if args.json {
+        return json::print(streams, &report(&names, formats, &scenes, found.as_ref(), limit));
+    }
+    let mut output = Output::open(streams, None)?;
+    write!(output, "{}", text(&names, &scenes, found.as_ref(), limit)).with_context(|| output.cannot_write())?;
+    output.finish()
+}
+
+fn text(names: &[String; 2], scenes: &[Scene; 2], found: Option<&ClosestPair<f64>>, limit: f64) -> String {
+    let Some(pair) = found else {
+        let is_empty = scenes.iter().any(|scene| scene.soup.elements().next().is_none());
+        return if is_empty { "a scene is empty\n".to_owned() } else { format!("nothing is within {limit}\n") };
+    };
+    let mut lines = if pair.is_intersecting {
+        "the scenes intersect\n".to_owned()
+    } else {
+        format!("distance {}, certainly at least {}\n", pair.distance, pair.lower_bound)
+    };
+    for k in 0..2 {
+        lines += &line_of_point(&names[k], &scenes[k], pair.points[k], pair.primitives[k], Some(pair.features[k]));
+    }
+    lines
+}
+
+fn report(
+    names: &[String; 2],
+    formats: [Format; 2],
+    scenes: &[Scene; 2],
+    found: Option<&ClosestPair<f64>>,
+    limit: f64,
+) -> Value {
+    let side = |k: usize| {
+        let found = found.map(|pair| {
+            let [before, after] = report_of_point(&scenes[k], pair.points[k], pair.primitives[k]);
+            json::joined([before, json!({ "feature": pair.features[k].to_string() }), after])
+        });
+        json!({ "file": names[k], "format": formats[k].name(), "nearest": found })
+    };
+    json!({
+        "p2m": "distance",
+        "version": json::VERSION,
+        "scenes": [side(0), side(1)],
+        "max_distance": json::number(limit),
+        "distance": found.map(|pair| json::number(pair.distance)),
+        "lower_bound": found.map(|pair| json::number(pair.lower_bound)),
+        "intersect": found.map(|pair| pair.is_intersecting),
+    })
+}

@@ -1,0 +1,155 @@
+//! `p2m hausdorff`: finds how far points of two scenes are from the other scene at most.
+
+use crate::compare::scene_pair::{ScenePairArgs, line_of_point, report_of_point};
+use crate::index::backend::{Backend, SceneSource, backends, saved_or_default};
+use crate::io::json;
+use crate::io::output::Output;
+use crate::io::progress::{Progress, Unit};
+use crate::io::streams::Streams;
+use crate::io::threads::ThreadArgs;
+use crate::io::usage::finite_not_negative;
+use anyhow::{Context, anyhow};
+use p2m_backends::P2mSettings;
+use p2m_core::PrimitiveSet;
+use p2m_core::pair::Motion;
+use p2m_field::{Direction, HausdorffDistance, HausdorffOptions, hausdorff_distance, one_sided_hausdorff_distance};
+use p2m_mixed::{Format, Scene};
+use serde_json::{Value, json};
+use std::io::Write as _;
+use std::ops::ControlFlow;
+
+fn help() -> String {
+    format!(
+        "\
+The Hausdorff distance is the largest distance of a point of either scene from the other scene. All points of triangles, segments \
+and points count, not only vertices. Both bounds are certified: they hold in spite of rounding. Primitives are cut until the \
+bounds differ by no more than the tolerance, or until the limit of queries; where whole faces are equally far, a smaller tolerance \
+takes more cuts.
+
+{}
+
+Examples:
+  p2m hausdorff scan.ply part.stl
+  p2m hausdorff coarse.obj fine.obj --one-sided --tolerance 0.001
+  p2m hausdorff a.obj b.obj --transform pose.txt --json",
+        json::STABILITY
+    )
+}
+
+/// Find the Hausdorff distance of two scenes: how far a point of one is from the other at most
+#[derive(clap::Args)]
+#[command(after_help = help())]
+pub(crate) struct Args {
+    #[command(flatten)]
+    scenes: ScenePairArgs,
+
+    /// The largest difference of the bounds, in the unit of the scenes [default: the diagonal of both scenes / 10000]
+    #[arg(long, value_name = "LENGTH", value_parser = finite_not_negative, allow_negative_numbers = true)]
+    tolerance: Option<f64>,
+
+    /// Find how far points of the first scene are from the second one, and not the reverse
+    #[arg(long)]
+    one_sided: bool,
+
+    /// The largest number of queries besides those of vertices, each of which takes 80 bytes. The bounds are then
+    /// those that were reached
+    #[arg(long, value_name = "N", default_value_t = HausdorffOptions::<f64>::new(0.0).max_queries, allow_negative_numbers = true)]
+    max_queries: u64,
+
+    /// Which index of both scenes [default: that of a saved file, else aabb]
+    #[arg(long, value_parser = backends(|_| true))]
+    backend: Option<Backend>,
+
+    #[command(flatten)]
+    threads: ThreadArgs,
+
+    /// Report as one JSON object
+    #[arg(long)]
+    json: bool,
+}
+
+pub(crate) fn run(streams: &Streams, args: &Args) -> anyhow::Result<()> {
+    let motion = args.scenes.motion()?;
+    let formats = args.scenes.formats()?;
+    let names = args.scenes.names();
+    let pool = args.threads.pool()?;
+    let [(first, first_saved), (mut second, mut second_saved)] = args.scenes.read(streams, &pool, formats)?;
+    if let Some(motion) = motion.as_ref().map(Motion::new) {
+        let moved = second.soup.map_positions(|p| motion.apply(p.coords.into()).into());
+        moved.with_context(|| format!("{}: moved by --transform", names[1]))?;
+        // The saved index is that of the scene before.
+        second_saved = None;
+    }
+    let (scenes, saved) = ([first, second], [first_saved, second_saved]);
+    let bounds = scenes[0].soup.aabb().union(&scenes[1].soup.aabb());
+    let tolerance = args.tolerance.unwrap_or_else(|| (bounds.max - bounds.min).norm() / 1e4);
+    let prepare = |k: usize| {
+        let saved = saved[k].as_ref();
+        let backend = args.backend.unwrap_or_else(|| saved_or_default(saved));
+        let source = SceneSource { soup: &scenes[k].soup, kdop_directions: None, p2m: P2mSettings::default(), saved };
+        Ok::<_, anyhow::Error>(source.prepare(streams, backend, &pool).with_context(|| names[k].clone())?.built.index)
+    };
+    let options = HausdorffOptions::new(tolerance).with_max_queries(args.max_queries);
+    // One side alone needs no index of the first scene.
+    let indexes = if args.one_sided { [None, Some(prepare(1)?)] } else { [Some(prepare(0)?), Some(prepare(1)?)] };
+    let progress = Progress::start(streams, "comparing", None, Unit::None);
+    let [a, b] = [0, 1].map(|k: usize| &scenes[k].soup);
+    let mut go_on = |_: &_| ControlFlow::Continue(());
+    let found = pool.install(|| match &indexes {
+        [Some(index_a), Some(index_b)] => hausdorff_distance((a, &**index_a), (b, &**index_b), &options, &mut go_on),
+        [_, Some(index)] => one_sided_hausdorff_distance(a, &**index, &options, &mut go_on),
+        [_, None] => Ok(None),
+    })?;
+    drop(progress);
+    let found = found.ok_or_else(|| anyhow!("a scene is empty, so there is no Hausdorff distance"))?;
+    if args.json {
+        return json::print(streams, &report(&names, formats, &scenes, &found, tolerance, args.one_sided));
+    }
+    let mut output = Output::open(streams, None)?;
+    write!(output, "{}", text(&names, &scenes, &found)).with_context(|| output.cannot_write())?;
+    output.finish()
+}
+
+fn text(names: &[String; 2], scenes: &[Scene; 2], found: &HausdorffDistance<f64>) -> String {
+    let [from, to] = match found.direction {
+        Direction::FirstToSecond => [0, 1],
+        Direction::SecondToFirst => [1, 0],
+    };
+    let line = |k: usize| line_of_point(&names[k], &scenes[k], found.points[k], found.primitives[k], None);
+    format!(
+        "at least {} and at most {}\nfarthest from {}:\n{}closest to it:\n{}",
+        found.lower_bound,
+        found.upper_bound,
+        names[to],
+        line(from),
+        line(to)
+    )
+}
+
+fn report(
+    names: &[String; 2],
+    formats: [Format; 2],
+    scenes: &[Scene; 2],
+    found: &HausdorffDistance<f64>,
+    tolerance: f64,
+    is_one_sided: bool,
+) -> Value {
+    let side = |k: usize| {
+        let point = json::joined(report_of_point(&scenes[k], found.points[k], found.primitives[k]));
+        json!({ "file": names[k], "format": formats[k].name(), "farthest": point })
+    };
+    json!({
+        "p2m": "hausdorff",
+        "version": json::VERSION,
+        "scenes": [side(0), side(1)],
+        "one_sided": is_one_sided,
+        "tolerance": json::number(tolerance),
+        "lower_bound": json::number(found.lower_bound),
+        "upper_bound": json::number(found.upper_bound),
+        "from": match found.direction {
+            Direction::FirstToSecond => 0,
+            Direction::SecondToFirst => 1,
+        },
+        "queries": found.queries,
+    })
+}

@@ -1,0 +1,83 @@
+//! Scans: files of points, or of scenes whose vertices are the points.
+
+use crate::io::input::{is_standard, or_option, read_points, read_scene_and_index, uncompressed_name, unnamed};
+use crate::io::streams::Streams;
+use anyhow::Context;
+use p2m_core::{Element, Soup};
+use p2m_mixed::engine::{unknown_extension, unknown_format};
+use p2m_mixed::{Format, PointFormat, Scene, UnknownFormat};
+use rayon::ThreadPool;
+use std::path::Path;
+use std::str::FromStr;
+
+/// The format of a scan.
+#[derive(Clone, Copy, Debug)]
+pub(crate) enum ScanFormat {
+    /// A file of a scene. PLY files are read as scenes, so that their triangles are known.
+    Scene(Format),
+    /// A file of points.
+    Points(PointFormat),
+}
+
+impl ScanFormat {
+    /// The names of all formats, which are also the extensions of files.
+    pub(crate) const NAMES: &'static [&'static str] = &["xyz", "txt", "csv", "npy", "ply", "obj", "stl", "off", "p2m"];
+
+    /// Returns the format of a scan: the given one, or else that of the extension.
+    pub(crate) fn of(path: &Path, given: Option<Self>, option: &str) -> anyhow::Result<Self> {
+        match given {
+            Some(format) => Ok(format),
+            None if is_standard(path) => Err(unnamed(option, Self::NAMES)),
+            None => {
+                let name = uncompressed_name(path)?;
+                let extension = name.extension().map(|e| e.to_string_lossy().into_owned()).unwrap_or_default();
+                let unknown = |_| or_option(&unknown_extension(&name, extension.clone(), Self::NAMES), option);
+                extension.parse().map_err(unknown)
+            }
+        }
+    }
+
+    /// Returns the name of the format.
+    pub(crate) fn name(self) -> &'static str {
+        match self {
+            Self::Scene(format) => format.name(),
+            Self::Points(format) => format.name(),
+        }
+    }
+
+    /// Reads a scan as a scene. Points of a file of points are primitives.
+    pub(crate) fn read(self, streams: &Streams, pool: &ThreadPool, path: &Path) -> anyhow::Result<Scene> {
+        match self {
+            Self::Scene(format) => Ok(read_scene_and_index(streams, pool, path, format, false)?.0),
+            Self::Points(format) => {
+                let points = read_points(streams, path, format)?;
+                let elements = (0..u32::try_from(points.len()).unwrap_or(u32::MAX)).map(Element::Point);
+                Ok(Soup::new(points, elements).with_context(|| path.display().to_string())?.into())
+            }
+        }
+    }
+}
+
+impl FromStr for ScanFormat {
+    type Err = UnknownFormat;
+
+    fn from_str(name: &str) -> Result<Self, UnknownFormat> {
+        let scene = name.parse().map(Self::Scene);
+        scene.or_else(|_| name.parse().map(Self::Points)).map_err(|_: UnknownFormat| unknown_format(name, Self::NAMES))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn all_formats_of_scenes_and_points_are_formats_of_scans() {
+        for name in Format::NAMES.iter().chain(PointFormat::NAMES) {
+            assert!(ScanFormat::NAMES.contains(name), "{name}");
+        }
+        for name in ScanFormat::NAMES {
+            assert!(name.parse::<ScanFormat>().is_ok(), "{name}");
+        }
+    }
+}

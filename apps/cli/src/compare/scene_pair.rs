@@ -1,0 +1,135 @@
+//! The arguments of commands that are about two scenes, and what they print about a point of each.
+
+use crate::io::input::{name, read_scene_and_index, scene_format};
+use crate::io::streams::Streams;
+use crate::io::usage::{one_of, usage};
+use anyhow::Context;
+use nalgebra::{Isometry3, Matrix3, Point3};
+use p2m_core::pair::isometry_of_matrix;
+use p2m_core::storage::Reader;
+use p2m_core::{Feature, PrimitiveId};
+use p2m_mixed::{Format, Scene};
+use rayon::ThreadPool;
+use serde_json::{Value, json};
+use std::path::{Path, PathBuf};
+
+#[derive(clap::Args)]
+pub(crate) struct ScenePairArgs {
+    /// First scene: an OBJ, PLY, STL or OFF file, or an index that `p2m build` saved; `-` is the standard input. Files
+    /// that gzip or zstd has compressed are decompressed
+    #[arg(value_name = "A")]
+    first: PathBuf,
+
+    /// Second scene
+    #[arg(value_name = "B")]
+    second: PathBuf,
+
+    /// The format of the first scene, if its extension does not name it
+    #[arg(long, value_name = "FORMAT", value_parser = one_of::<Format>(Format::NAMES), ignore_case = true)]
+    format: Option<Format>,
+
+    /// The format of the second scene, if its extension does not name it
+    #[arg(long, value_name = "FORMAT", value_parser = one_of::<Format>(Format::NAMES), ignore_case = true)]
+    second_format: Option<Format>,
+
+    /// Move the second scene by a rotation and a translation: the 12 or 16 numbers of a matrix, row by row, or a file
+    /// that has them
+    #[arg(long, value_name = "MATRIX|FILE", allow_hyphen_values = true)]
+    transform: Option<String>,
+}
+
+impl ScenePairArgs {
+    /// Returns the names of the scenes in messages.
+    pub(crate) fn names(&self) -> [String; 2] {
+        [&self.first, &self.second].map(|path| name(path))
+    }
+
+    /// Returns the formats of the scenes.
+    pub(crate) fn formats(&self) -> anyhow::Result<[Format; 2]> {
+        Ok([
+            scene_format(&self.first, self.format, "--format")?,
+            scene_format(&self.second, self.second_format, "--second-format")?,
+        ])
+    }
+
+    /// Returns the motion of the second scene.
+    pub(crate) fn motion(&self) -> anyhow::Result<Option<Isometry3<f64>>> {
+        self.transform.as_deref().map(parse_motion).transpose()
+    }
+
+    /// Reads the scenes as they are in their files, and the readers of saved indexes.
+    pub(crate) fn read(
+        &self,
+        streams: &Streams,
+        pool: &ThreadPool,
+        formats: [Format; 2],
+    ) -> anyhow::Result<[(Scene, Option<Reader>); 2]> {
+        let read = |path: &Path, format| read_scene_and_index(streams, pool, path, format, false);
+        Ok([read(&self.first, formats[0])?, read(&self.second, formats[1])?])
+    }
+}
+
+/// Parses a matrix, or reads it from the file of that name.
+fn parse_motion(text: &str) -> anyhow::Result<Isometry3<f64>> {
+    let numbers = |text: &str| -> Option<Vec<f64>> {
+        let words = text.split(|c: char| c.is_whitespace() || ",;[]".contains(c)).filter(|word| !word.is_empty());
+        words.map(|word| word.parse().ok()).collect()
+    };
+    let (matrix, place) = match numbers(text) {
+        Some(matrix) => (matrix, "--transform".to_owned()),
+        None => {
+            let content =
+                std::fs::read_to_string(text).with_context(|| format!("--transform {text}: cannot be read"))?;
+            let matrix = numbers(&content).with_context(|| format!("--transform {text}: has something but numbers"))?;
+            (matrix, format!("--transform {text}"))
+        }
+    };
+    let is_affine = matrix.len() == 12 || (matrix.len() == 16 && matrix[12..] == [0.0, 0.0, 0.0, 1.0]);
+    if !is_affine {
+        let count = matrix.len();
+        return Err(usage(format!("{place}: {count} numbers are no matrix of 12, or of 16 with the last row 0 0 0 1")));
+    }
+    let rotation = Matrix3::from_fn(|row, column| matrix[4 * row + column]);
+    let deviation = (rotation * rotation.transpose() - Matrix3::identity()).amax();
+    // The comparison is false for NaN.
+    let is_rotation = deviation <= 1e-6 && rotation.determinant() > 0.0;
+    if !is_rotation || !matrix.iter().all(|x| x.is_finite()) {
+        return Err(usage(format!("{place}: the first three columns are no rotation, or a number is not finite")));
+    }
+    Ok(isometry_of_matrix(&matrix))
+}
+
+/// Returns the word for the kind of a primitive.
+fn kind(scene: &Scene, primitive: PrimitiveId) -> &'static str {
+    match scene.soup.element(primitive).indices().len() {
+        1 => "point",
+        2 => "segment",
+        _ => "triangle",
+    }
+}
+
+/// Returns a line about a point of a primitive and the feature that contains it, if that is known.
+pub(crate) fn line_of_point(
+    name: &str,
+    scene: &Scene,
+    point: Point3<f64>,
+    primitive: PrimitiveId,
+    feature: Option<Feature>,
+) -> String {
+    let (kind, number) = (kind(scene, primitive), primitive.index());
+    let feature = feature.map_or(String::new(), |feature| format!(" ({feature})"));
+    let object = scene.object_of(primitive).map_or(String::new(), |object| format!(" of {}", object.name));
+    format!("{name}: {} {} {}, {kind} {number}{feature}{object}\n", point.x, point.y, point.z)
+}
+
+/// Returns the report of a point of a primitive: the keys before and after that of the feature.
+pub(crate) fn report_of_point(scene: &Scene, point: Point3<f64>, primitive: PrimitiveId) -> [Value; 2] {
+    [
+        json!({
+            "point": [point.x, point.y, point.z],
+            "primitive": primitive.index(),
+            "kind": kind(scene, primitive),
+        }),
+        json!({ "object": scene.object_of(primitive).map(|object| &object.name) }),
+    ]
+}

@@ -1,0 +1,79 @@
+//! The arguments of commands that are about an index: its scene, its backend and its directions.
+
+use crate::index::backend::{Backend, BackendChoice, backend_choices};
+use crate::index::kdop_directions::{KdopFaces, requested};
+use crate::index::p2m_args::P2mArgs;
+use crate::io::input::SceneArgs;
+use crate::io::threads::ThreadArgs;
+use p2m_backends::{KdopDirections, P2mSettings, QueryRegion, Workload};
+use p2m_core::Soup;
+use p2m_core::storage::Reader;
+use rayon::ThreadPool;
+
+#[derive(clap::Args)]
+pub(crate) struct IndexArgs {
+    #[command(flatten)]
+    pub(crate) scene: SceneArgs,
+
+    /// Which index [default: that of a saved file if the command searches it, else aabb]
+    #[arg(long, value_parser = backend_choices())]
+    backend: Option<BackendChoice>,
+
+    /// How many faces the polytopes of --backend kdop have [default: 14]
+    #[arg(long, value_name = "K", value_enum, ignore_case = true, allow_negative_numbers = true)]
+    k: Option<KdopFaces>,
+
+    #[command(flatten)]
+    pub(crate) p2m: P2mArgs,
+
+    #[command(flatten)]
+    pub(crate) threads: ThreadArgs,
+}
+
+/// The number of queries that `--backend auto` chooses an index for if the command does not say how many there are.
+pub(crate) const DEFAULT_QUERY_COUNT: u64 = 10_000_000;
+
+impl IndexArgs {
+    /// Refuses `--k` for a backend without k-DOPs, and `--locator` and `--filter` for another one than p2m, as far as the
+    /// backend is known before any work.
+    pub(crate) fn check(&self) -> anyhow::Result<()> {
+        let (may_have_kdops, may_have_p2m_settings) = match self.backend {
+            Some(BackendChoice::Auto) => (true, true),
+            Some(BackendChoice::Named(backend)) => (backend.has_kdop_directions, backend.has_p2m_settings),
+            None => (false, false),
+        };
+        self.p2m.settings(may_have_p2m_settings)?;
+        requested(may_have_kdops, self.k).map(|_| ())
+    }
+
+    /// Returns the backend that was named, if one was.
+    pub(crate) fn named(&self) -> Option<Backend> {
+        match self.backend {
+            Some(BackendChoice::Named(backend)) => Some(backend),
+            _ => None,
+        }
+    }
+
+    /// Whether the user left the choice of the index to the program.
+    pub(crate) fn is_unspecified(&self) -> bool {
+        self.named().is_none() && self.k.is_none() && self.p2m.is_unspecified()
+    }
+
+    /// Returns the backend, the directions of its k-DOPs and its settings as a P2M index. Without a named backend it is that of the file, or with
+    /// `auto` the best one for this number of queries in the box of the scene.
+    ///
+    /// # Errors
+    /// For directions with a backend that has no k-DOPs, and for settings of a P2M index with another one.
+    pub(crate) fn choice(
+        &self,
+        saved: Option<&Reader>,
+        soup: &Soup<f64>,
+        queries: u64,
+        pool: &ThreadPool,
+    ) -> anyhow::Result<(Backend, Option<KdopDirections>, P2mSettings)> {
+        let workload = Workload::new(queries, QueryRegion::SceneBox);
+        let backend = BackendChoice::resolve(self.backend, saved, soup, &workload, pool)?;
+        let p2m = self.p2m.settings(backend.has_p2m_settings)?;
+        Ok((backend, requested(backend.has_kdop_directions, self.k)?, p2m))
+    }
+}

@@ -1,0 +1,158 @@
+//! The values of `--backend`, which come from the registry of backends, and the building or loading of an index.
+
+use crate::io::interrupt::StoppableWork;
+use crate::io::progress::{Progress, Unit};
+use crate::io::streams::Streams;
+use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
+use p2m_backends::{
+    BACKENDS, BackendEntry, BuildSettings, BuiltIndex, KdopDirections, P2mSettings, Workload, recommend,
+};
+use p2m_core::Soup;
+use p2m_core::storage::Reader;
+use p2m_interception::{BuildStage, OctreeSoFar, StageTimes};
+use rayon::ThreadPool;
+use std::ops::ControlFlow;
+use std::sync::OnceLock;
+use std::time::{Duration, Instant};
+
+/// A backend of the registry.
+pub(crate) type Backend = &'static BackendEntry;
+
+/// The name that leaves the choice of the backend to the advisor.
+const AUTO: &str = "auto";
+
+/// A value of `--backend` where the program may choose.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum BackendChoice {
+    /// The user names a backend.
+    Named(Backend),
+    /// The advisor chooses.
+    Auto,
+}
+
+/// A parser of the names of all backends that `fits` accepts.
+pub(crate) fn backends(fits: fn(&BackendEntry) -> bool) -> impl TypedValueParser<Value = Backend> {
+    let values = BACKENDS.iter().filter(move |backend| fits(backend)).map(possible_value);
+    PossibleValuesParser::new(values).map(|name| named(&name))
+}
+
+/// A parser of the names of all backends and of `auto`.
+pub(crate) fn backend_choices() -> impl TypedValueParser<Value = BackendChoice> {
+    let auto = PossibleValue::new(AUTO)
+        .help("The one that `p2m advise` recommends for the queries of the command, or for ten million in the box");
+    let values = BACKENDS.iter().map(possible_value).chain([auto]);
+    PossibleValuesParser::new(values)
+        .map(|name| if name == AUTO { BackendChoice::Auto } else { BackendChoice::Named(named(&name)) })
+}
+
+fn possible_value(backend: &BackendEntry) -> PossibleValue {
+    PossibleValue::new(backend.name).help(backend.summary)
+}
+
+fn named(name: &str) -> Backend {
+    BackendEntry::find(name).expect("the parser accepts the names of backends alone")
+}
+
+/// Returns the backend of the index in the file of the scene, or else the default one.
+pub(crate) fn saved_or_default(saved: Option<&Reader>) -> Backend {
+    saved.and_then(BackendEntry::from_saved).unwrap_or_else(BackendEntry::default_backend)
+}
+
+impl BackendChoice {
+    /// Returns the named backend, the one that the advisor recommends, or without a choice that of the file.
+    pub(crate) fn resolve(
+        choice: Option<Self>,
+        saved: Option<&Reader>,
+        soup: &Soup<f64>,
+        workload: &Workload<'_>,
+        pool: &ThreadPool,
+    ) -> anyhow::Result<Backend> {
+        match choice {
+            Some(Self::Named(backend)) => Ok(backend),
+            None => Ok(saved_or_default(saved)),
+            Some(Self::Auto) => Ok(pool.install(|| recommend(soup, workload))?.backend()),
+        }
+    }
+}
+
+/// The stages of a build and their times.
+pub(crate) type Stages = Vec<(BuildStage, Duration)>;
+
+/// An index that is ready for queries.
+pub(crate) struct PreparedIndex<'a> {
+    pub(crate) built: BuiltIndex<'a>,
+    /// Whether the index was loaded from a file.
+    pub(crate) is_loaded: bool,
+    /// The stages of the build; empty for backends without stages and for loaded indexes.
+    pub(crate) stages: Stages,
+}
+
+/// The scene of an index, and the file that may have the index.
+#[derive(Clone, Copy)]
+pub(crate) struct SceneSource<'a> {
+    pub(crate) soup: &'a Soup<f64>,
+    /// The directions of k-DOPs that are requested; `None` for those of the file, or else the default ones.
+    pub(crate) kdop_directions: Option<KdopDirections>,
+    /// The requested parts of a P2M index. A saved one has the default parts.
+    pub(crate) p2m: P2mSettings,
+    /// The file that has the scene, if it is one that may have an index as well.
+    pub(crate) saved: Option<&'a Reader>,
+}
+
+impl<'a> SceneSource<'a> {
+    /// Loads the index of the backend from the file, or builds it with the threads of a pool if the file has none that
+    /// fits.
+    pub(crate) fn prepare(
+        self,
+        streams: &Streams,
+        backend: Backend,
+        pool: &ThreadPool,
+    ) -> anyhow::Result<PreparedIndex<'a>> {
+        let may_be_saved = self.p2m == P2mSettings::default();
+        if let Some(reader) = self.saved.filter(|reader| may_be_saved && backend.is_in(reader, self.kdop_directions)) {
+            let _progress = Progress::start(streams, "loading the index", None, Unit::None);
+            return Ok(PreparedIndex {
+                built: pool.install(|| backend.load(self.soup, reader))?,
+                is_loaded: true,
+                stages: Stages::new(),
+            });
+        }
+        let settings = BuildSettings::default().with_kdop_directions(self.kdop_directions).with_p2m(self.p2m);
+        let start = Instant::now();
+        let times = StageTimes::new(move || start.elapsed());
+        let built = if backend.reports_progress {
+            let bar = Progress::start(streams, "finding cells", Some(100), Unit::Percent);
+            #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "a part is from 0 to 1")]
+            let report = |progress: p2m_interception::Progress| {
+                times.tell(progress);
+                bar.advance_to((progress.part * 100.0) as u64);
+            };
+            let shows_progress = streams.shows_progress();
+            let work = OnceLock::new();
+            let visit = |so_far: &OctreeSoFar| {
+                // Users who see no progress do not see either that the refinement can end early.
+                if shows_progress {
+                    work.get_or_init(StoppableWork::start);
+                    bar.set_note(octree_note(so_far));
+                }
+                if StoppableWork::is_stopped() { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
+            };
+            let settings = settings.with_progress(&report).with_visit_octree(&visit);
+            pool.install(|| backend.build(self.soup, &settings))?
+        } else {
+            let _progress = Progress::start(streams, "building the index", None, Unit::None);
+            pool.install(|| backend.build(self.soup, &settings))?
+        };
+        Ok(PreparedIndex { built, is_loaded: false, stages: times.finish() })
+    }
+}
+
+/// Returns what a progress bar says about an octree whose refinement goes on.
+fn octree_note(so_far: &OctreeSoFar) -> String {
+    let (cells, megabytes) = (so_far.cells, so_far.bytes as f64 / 1e6);
+    let length = so_far.mean_list_length();
+    if StoppableWork::is_stopped() {
+        return format!(", ending early with {cells} cells, lists of {length:.1} packets, {megabytes:.0} MB");
+    }
+    format!(", so far {cells}, lists of {length:.1} packets, {megabytes:.0} MB (Ctrl-C ends here)")
+}

@@ -1,0 +1,245 @@
+//! Reads input files. The name `-` stands for the standard input.
+
+use crate::io::progress::{Progress, Unit};
+use crate::io::read_pipeline::pump;
+use crate::io::streams::Streams;
+use crate::io::usage::{one_of, usage};
+use crate::io::zstd::{ZstdReader, is_zstd};
+use anyhow::{Context, anyhow, bail};
+use flate2::bufread::MultiGzDecoder;
+use nalgebra::Point3;
+use p2m_core::Ray;
+use p2m_core::storage::{LoadError, Reader, SavedFile};
+use p2m_mixed::{Format, PointFormat, ReadError, Scene, load_scene};
+use rayon::ThreadPool;
+use std::fs::{File, Metadata};
+use std::io::{self, BufRead, BufReader, Read};
+use std::path::{Path, PathBuf};
+
+/// The size of buffers for reading, in bytes.
+const BUFFER_BYTES: usize = 1 << 16;
+/// The name of the standard input and the standard output.
+pub(crate) const STANDARD: &str = "-";
+
+/// A scene to read.
+#[derive(clap::Args)]
+pub(crate) struct SceneArgs {
+    /// Scene: an OBJ, PLY, STL or OFF file, or an index that `p2m build` saved; `-` is the standard input. Files that
+    /// gzip or zstd has compressed are decompressed
+    #[arg(value_name = "SCENE")]
+    pub(crate) path: PathBuf,
+
+    /// The format of the scene, if its extension does not name it
+    #[arg(long, value_name = "FORMAT", value_parser = one_of::<Format>(Format::NAMES), ignore_case = true)]
+    format: Option<Format>,
+
+    /// Map a saved index into memory instead of copying it, so that processes share it. It is checked as well.
+    ///
+    /// Nobody may change or truncate the file while the command runs: what then happens is undefined.
+    #[arg(long)]
+    pub(crate) map: bool,
+}
+
+impl SceneArgs {
+    /// Returns the name of the scene in messages.
+    pub(crate) fn name(&self) -> String {
+        name(&self.path)
+    }
+
+    /// Returns whether the user names the format.
+    pub(crate) fn has_format(&self) -> bool {
+        self.format.is_some()
+    }
+
+    /// Returns the format of the scene.
+    pub(crate) fn format(&self) -> anyhow::Result<Format> {
+        scene_format(&self.path, self.format, "--format")
+    }
+}
+
+/// Whether `path` stands for the standard input or output.
+pub(crate) fn is_standard(path: &Path) -> bool {
+    path == Path::new(STANDARD)
+}
+
+/// Returns the name of an input in messages.
+pub(crate) fn name(path: &Path) -> String {
+    if is_standard(path) { "standard input".to_owned() } else { path.display().to_string() }
+}
+
+/// Returns the format of a scene: the given one, or else that of the extension.
+pub(crate) fn scene_format(path: &Path, given: Option<Format>, option: &str) -> anyhow::Result<Format> {
+    match given {
+        Some(format) => Ok(format),
+        None if is_standard(path) => Err(unnamed(option, Format::NAMES)),
+        None => Format::from_path(&uncompressed_name(path)?).map_err(|e| or_option(&e, option)),
+    }
+}
+
+/// Returns the format of points or rays: the given one, or else that of the extension.
+pub(crate) fn point_format(path: &Path, given: Option<PointFormat>, option: &str) -> anyhow::Result<PointFormat> {
+    match given {
+        Some(format) => Ok(format),
+        None if is_standard(path) => Err(unnamed(option, PointFormat::NAMES)),
+        None => PointFormat::from_path(&uncompressed_name(path)?).map_err(|e| or_option(&e, option)),
+    }
+}
+
+/// Returns the name of a file without the extension of a compression. A directory has no format, and is refused.
+pub(crate) fn uncompressed_name(path: &Path) -> anyhow::Result<PathBuf> {
+    if path.is_dir() {
+        bail!("{}: cannot be read: is a directory", path.display());
+    }
+    Ok(if is_compressed(path) { path.with_extension("") } else { path.to_owned() })
+}
+
+/// Returns whether a name has the extension of a compression.
+fn is_compressed(path: &Path) -> bool {
+    path.extension().is_some_and(|e| e.eq_ignore_ascii_case("gz") || e.eq_ignore_ascii_case("zst"))
+}
+
+/// The error that the standard input has no format.
+pub(crate) fn unnamed(option: &str, names: &[&str]) -> anyhow::Error {
+    usage(format!("the standard input has no extension that names its format: add {option} {}", names.join("|")))
+}
+
+/// The error of an unknown extension, with the option that names the format.
+pub(crate) fn or_option(error: &ReadError, option: &str) -> anyhow::Error {
+    anyhow!("{error}, or name the format with {option}")
+}
+
+/// Reads a scene. Of a saved index, which is mapped if `is_mapped` is set, it returns the reader of the index as well.
+pub(crate) fn read_scene_and_index(
+    streams: &Streams,
+    pool: &ThreadPool,
+    path: &Path,
+    format: Format,
+    is_mapped: bool,
+) -> anyhow::Result<(Scene, Option<Reader>)> {
+    // A file that is missing is an error of mapping it.
+    let is_no_file = is_standard(path) || (path.exists() && !path.is_file());
+    if is_mapped && (format != Format::P2m || is_no_file || is_compressed(path)) {
+        return Err(usage("--map needs the file of a saved index, which is not compressed"));
+    }
+    if format != Format::P2m {
+        return Ok((read_plain_scene(streams, pool, path, format)?, None));
+    }
+    let load = |file: SavedFile| -> Result<_, LoadError> {
+        let reader = file.checked()?;
+        Ok((load_scene(reader)?, Some(reader.clone())))
+    };
+    let file = if is_mapped { map(path) } else { SavedFile::read_with_length(open(streams, path)?, length(path)) };
+    file.and_then(load).with_context(|| name(path))
+}
+
+/// Returns the length of a file in bytes, or 0 where it is not known, as for a pipe.
+fn length(path: &Path) -> u64 {
+    path.metadata().ok().filter(Metadata::is_file).map_or(0, |metadata| metadata.len())
+}
+
+/// Maps the file of a saved index.
+fn map(path: &Path) -> Result<SavedFile, LoadError> {
+    // SAFETY: `--map` says that the user has to keep the file unchanged.
+    #[allow(unsafe_code, reason = "the user asked for it and was told what it needs")]
+    unsafe {
+        SavedFile::map(path)
+    }
+}
+
+/// Reads a scene.
+pub(crate) fn read_scene(
+    streams: &Streams,
+    pool: &ThreadPool,
+    args: &SceneArgs,
+    format: Format,
+) -> anyhow::Result<Scene> {
+    Ok(read_scene_and_index(streams, pool, &args.path, format, args.map)?.0)
+}
+
+/// Reads a scene from a file without an index.
+fn read_plain_scene(streams: &Streams, pool: &ThreadPool, path: &Path, format: Format) -> anyhow::Result<Scene> {
+    let reader = open(streams, path)?;
+    Ok(pump(pool, reader, |reader| p2m_mixed::read_scene_from(reader, format, &name(path)))?)
+}
+
+/// Reads the points of a file.
+pub(crate) fn read_points(streams: &Streams, path: &Path, format: PointFormat) -> anyhow::Result<Vec<Point3<f64>>> {
+    Ok(p2m_mixed::read_points_from(open(streams, path)?, format, &name(path))?)
+}
+
+/// Reads the rays of a file.
+pub(crate) fn read_rays(streams: &Streams, path: &Path, format: PointFormat) -> anyhow::Result<Vec<Ray>> {
+    Ok(p2m_mixed::read_rays_from(open(streams, path)?, format, &name(path))?)
+}
+
+/// Opens a file, shows the progress of reading, and decompresses what gzip or zstd has compressed.
+fn open<'a>(streams: &'a Streams, path: &Path) -> anyhow::Result<Box<dyn BufRead + 'a>> {
+    let mut raw = open_raw(streams, path)?;
+    let start = raw.fill_buf().with_context(|| format!("{}: cannot be read", name(path)))?;
+    if start.starts_with(&GZIP_MAGIC) {
+        return Ok(Box::new(BufReader::with_capacity(BUFFER_BYTES, MultiGzDecoder::new(raw))));
+    }
+    if is_zstd(start) {
+        return Ok(Box::new(BufReader::with_capacity(BUFFER_BYTES, ZstdReader::new(raw))));
+    }
+    Ok(Box::new(raw))
+}
+
+/// Returns whether a path is a file, and not a pipe, whose content is not compressed.
+pub(crate) fn is_plain_file(path: &Path) -> bool {
+    let is_compressed = || -> io::Result<bool> {
+        let mut reader = BufReader::new(File::open(path)?);
+        let start = reader.fill_buf()?;
+        Ok(start.starts_with(&GZIP_MAGIC) || is_zstd(start))
+    };
+    path.is_file() && is_compressed().is_ok_and(|is_compressed| !is_compressed)
+}
+
+/// The first bytes of what gzip has compressed.
+const GZIP_MAGIC: [u8; 3] = [0x1f, 0x8b, 8];
+
+/// Opens a file and shows the progress of reading.
+fn open_raw<'a>(streams: &'a Streams, path: &Path) -> anyhow::Result<ProgressReader<'a>> {
+    let name = name(path);
+    let what = format!("reading {name}");
+    if is_standard(path) {
+        let reader = Box::new(BufReader::with_capacity(BUFFER_BYTES, streams.stdin()));
+        return Ok(ProgressReader { reader, progress: Progress::start(streams, &what, None, Unit::Bytes) });
+    }
+    let cannot_read = || format!("{name}: cannot be read");
+    let file = File::open(path).with_context(cannot_read)?;
+    let metadata = file.metadata().with_context(cannot_read)?;
+    // Some systems open a directory and fail only at its first line.
+    if metadata.is_dir() {
+        return Err(io::Error::from(io::ErrorKind::IsADirectory)).with_context(cannot_read);
+    }
+    // A pipe has no length.
+    let total = metadata.is_file().then_some(metadata.len());
+    let reader = Box::new(BufReader::with_capacity(BUFFER_BYTES, file));
+    Ok(ProgressReader { reader, progress: Progress::start(streams, &what, total, Unit::Bytes) })
+}
+
+/// A reader that shows its progress.
+struct ProgressReader<'a> {
+    reader: Box<dyn BufRead + 'a>,
+    progress: Progress,
+}
+
+impl Read for ProgressReader<'_> {
+    fn read(&mut self, buffer: &mut [u8]) -> io::Result<usize> {
+        let count = self.reader.read(buffer)?;
+        self.progress.add(count as u64);
+        Ok(count)
+    }
+}
+
+impl BufRead for ProgressReader<'_> {
+    fn fill_buf(&mut self) -> io::Result<&[u8]> {
+        self.reader.fill_buf()
+    }
+
+    fn consume(&mut self, count: usize) {
+        self.progress.add(count as u64);
+        self.reader.consume(count);
+    }
+}

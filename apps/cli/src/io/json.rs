@@ -1,0 +1,69 @@
+//! Reports for programs.
+//!
+//! Each report is one object on the standard output. Its key `"p2m"` names its kind, and `"version"` its version.
+//! Within a version keys are added, never removed, renamed or given another meaning. Values that do not exist or are
+//! not finite are null.
+
+use crate::io::streams::Streams;
+use anyhow::Context;
+use p2m_mixed::Skipped;
+use p2m_mixed::statistics::Counts;
+use p2m_tradeoff::RunningStats;
+use serde_json::{Value, json};
+use std::io::{self, Write};
+
+/// The version of all reports.
+pub(crate) const VERSION: u32 = 2;
+
+/// The paragraph about `--json` in the help of each command.
+pub(crate) const STABILITY: &str = "\
+Reports of --json are one object. Its key \"p2m\" names the kind of the report and \"version\" its version, now 2: within a \
+version keys are added, but not removed, renamed or given another meaning. Lengths are in the unit of the scene, times in \
+seconds; what does not exist is null, and so is what is infinite, like the end of a range without one.";
+
+/// Writes a report to the standard output.
+pub(crate) fn print(streams: &Streams, report: &Value) -> anyhow::Result<()> {
+    let write = || -> io::Result<()> {
+        let mut output = streams.stdout();
+        serde_json::to_writer_pretty(&mut output, report)?;
+        writeln!(output)?;
+        output.flush()
+    };
+    write().context("the standard output: cannot be written")
+}
+
+/// Merges several objects into one.
+pub(crate) fn joined<const N: usize>(parts: [Value; N]) -> Value {
+    let mut all = serde_json::Map::new();
+    for part in parts {
+        if let Value::Object(part) = part {
+            all.extend(part);
+        }
+    }
+    Value::Object(all)
+}
+
+/// Converts a number to JSON; to null if it is not finite.
+pub(crate) fn number(x: f64) -> Value {
+    // serde_json writes null as well. The condition stands here because reports rely on it.
+    if x.is_finite() { json!(x) } else { Value::Null }
+}
+
+/// Converts the numbers of primitives of each kind.
+pub(crate) fn counts(counts: &Counts) -> Value {
+    json!({ "triangles": counts.triangles, "segments": counts.segments, "points": counts.points })
+}
+
+/// Converts least, greatest and mean number; to null if there are no numbers.
+pub(crate) fn stats(stats: &RunningStats) -> Value {
+    if stats.count() == 0 {
+        return Value::Null;
+    }
+    json!({ "min": number(stats.min()), "max": number(stats.max()), "mean": number(stats.mean()) })
+}
+
+/// Lists the records of a file that were skipped.
+pub(crate) fn skipped(skipped: &[Skipped]) -> Value {
+    let one = |s: &Skipped| json!({ "kind": s.what, "count": s.count });
+    skipped.iter().map(one).collect()
+}

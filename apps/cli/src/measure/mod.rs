@@ -1,0 +1,5 @@
+//! Commands that measure indexes: their structure, their cost, and their error.
+
+pub(crate) mod advise;
+pub(crate) mod stats;
+pub(crate) mod tradeoff;

@@ -1,0 +1,272 @@
+//! `p2m tradeoff`: measures the costs and the errors of each backend with each setting over a scene.
+
+use crate::answers::queries::{Queries as QueryPoints, Region};
+use crate::index::backend::{Backend, backends};
+use crate::io::input::{SceneArgs, point_format, read_points, read_scene};
+use crate::io::output::Output;
+use crate::io::progress::{Progress, Unit};
+use crate::io::streams::Streams;
+use crate::io::threads::ThreadArgs;
+use crate::io::usage::{one_of, positive, whole_number};
+use anyhow::{Context, bail};
+use clap::ArgGroup;
+use nalgebra::Point3;
+use p2m_backends::{BACKENDS, BuildSettings, Index, SearchStructure};
+use p2m_bvh::AabbTree;
+use p2m_core::{BuildIndex, CertifiedQuery, PrimitiveSet, Soup};
+use p2m_mixed::{PointFormat, Scene};
+use p2m_tradeoff::page::Page;
+use p2m_tradeoff::queries::Queries;
+use p2m_tradeoff::rounds::thread_seconds;
+use p2m_tradeoff::settings::SETTINGS;
+use p2m_tradeoff::{
+    Build, Competitor, Effort, Provenance, SceneFigures, SetFigures, Truth, clock_nanoseconds, measure, record::record,
+    text,
+};
+use std::io::Write as _;
+use std::path::{Path, PathBuf};
+
+const HELP: &str = "\
+Every backend is built over the scene, on one thread, and answers the same queries with every setting, in turns: the default, certified \
+answers and less exact ones. The table has for each the nanoseconds of a query (the median of the rounds), how many times \
+as fast that is as the default of the same backend, the largest error of the distance relative to it and what one query in a thousand \
+exceeds, the largest error in units of u M (u is 2^-53, M the distance to the farthest corner of the nearest primitive), what the certified \
+lower bound leaves open, how long single queries take, the seconds to build, and what is wrong.
+
+The page of --html shows the same as plots with explanations, in one file that needs nothing else.
+
+Examples:
+  p2m tradeoff scene.obj --random 20000
+  p2m tradeoff scene.obj --points scan.xyz --backends aabb,p2m --html tradeoff.html --csv tradeoff.csv";
+
+/// Say what each backend and each setting costs over a scene, and how wrong it is
+#[derive(clap::Args)]
+#[command(after_help = HELP)]
+#[command(group = ArgGroup::new("queries").required(true).args(["points", "grid", "random"]))]
+pub(crate) struct Args {
+    #[command(flatten)]
+    scene: SceneArgs,
+
+    /// Query the points of this XYZ, TXT, CSV, NPY or PLY file; `-` is the standard input
+    #[arg(long, value_name = "FILE")]
+    points: Option<PathBuf>,
+
+    /// The format of the points, if the extension of their file does not name it
+    #[arg(long, value_name = "FORMAT", value_parser = one_of::<PointFormat>(PointFormat::NAMES), ignore_case = true, requires = "points")]
+    points_format: Option<PointFormat>,
+
+    /// Query a grid of N x N x N points that fills the scaled box of the scene
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u64).range(1..=512), allow_negative_numbers = true)]
+    grid: Option<u64>,
+
+    /// Query N uniformly distributed points in the scaled box of the scene
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u64).range(1..=100_000_000), allow_negative_numbers = true)]
+    random: Option<u64>,
+
+    /// Scale the box of the scene about its centre by this factor before filling it
+    #[arg(long, value_name = "S", default_value_t = 1.05, value_parser = positive, allow_negative_numbers = true, conflicts_with = "points")]
+    box_scale: f64,
+
+    /// Seed of the random points
+    #[arg(long, value_name = "K", default_value_t = 0, value_parser = whole_number, allow_negative_numbers = true, conflicts_with_all = ["points", "grid"])]
+    seed: u64,
+
+    /// Backends to compare
+    #[arg(long, value_parser = backends(|_| true), value_delimiter = ',', default_values = default_backends())]
+    backends: Vec<Backend>,
+
+    /// Rounds, in which all take turns
+    #[arg(long, value_name = "N", default_value_t = 5, value_parser = clap::builder::RangedU64ValueParser::<usize>::new().range(1..=1000), allow_negative_numbers = true)]
+    rounds: usize,
+
+    /// The most seconds that a round of one setting takes: slow ones get fewer queries
+    #[arg(long, value_name = "S", default_value_t = 0.1, value_parser = positive, allow_negative_numbers = true)]
+    round_seconds: f64,
+
+    /// Write a page with plots and explanations
+    #[arg(long, value_name = "FILE")]
+    html: Option<PathBuf>,
+
+    /// Write a record of comma-separated values
+    #[arg(long, value_name = "FILE")]
+    csv: Option<PathBuf>,
+}
+
+/// Returns the names of the backends that are compared by default: all but exhaustive searches.
+fn default_backends() -> impl Iterator<Item = &'static str> {
+    let has_index = |backend: &Backend| backend.structure != SearchStructure::Exhaustive;
+    BACKENDS.iter().filter(has_index).map(|backend| backend.name)
+}
+
+/// An index that was built for the comparison, with its cost.
+struct MeasuredIndex<'a> {
+    backend: Backend,
+    index: Box<dyn Index + 'a>,
+    cost: Build,
+}
+
+impl<'a> MeasuredIndex<'a> {
+    /// Builds an index on one thread, and measures the time. Bytes are not counted.
+    fn build(backend: Backend, soup: &'a Soup<f64>) -> anyhow::Result<Self> {
+        let settings = BuildSettings::default().with_parallel(false);
+        let (built, seconds) = thread_seconds(|| backend.build(soup, &settings));
+        Ok(Self { backend, index: built?.index, cost: Build { seconds, bytes_per_primitive: None } })
+    }
+}
+
+/// The sentence of the page about the truth that answers are compared with.
+const TRUTH: &str = "The truth is what certified answers say: the nearest primitive, and its distance rounded once.";
+
+pub(crate) fn run(streams: &Streams, args: &Args) -> anyhow::Result<()> {
+    let outputs = [&args.html, &args.csv];
+    let inputs: Vec<&Path> =
+        [Some(&args.scene.path), args.points.as_ref()].into_iter().flatten().map(PathBuf::as_path).collect();
+    for path in outputs.into_iter().flatten() {
+        Output::refuse_inputs(path, &inputs)?;
+    }
+    if args.html.is_some() && args.html == args.csv {
+        bail!("--html and --csv name the same file");
+    }
+    let pool = ThreadArgs::default().pool()?;
+    let scene = read_scene(streams, &pool, &args.scene, args.scene.format()?)?;
+    if scene.soup.is_empty() {
+        bail!("{}: there is nothing in it", args.scene.name());
+    }
+    let (queries, description) = args.queries(streams, &scene)?;
+    // The files are opened before the work, which would be lost if a name were wrong.
+    let [html, csv] = outputs.map(|path| path.as_ref().map(|path| Output::open(streams, Some(path))).transpose());
+    let (html, csv) = (html?, csv?);
+    let figures = args.measure(streams, &scene, queries, description).with_context(|| args.scene.name())?;
+
+    let (provenance, clock) = (Provenance::collect(None, None), clock_nanoseconds());
+    let scenes = std::slice::from_ref(&figures);
+    if let Some(output) = html {
+        let backends: Vec<_> = args.backends.iter().map(|backend| (backend.name, backend.summary)).collect();
+        let effort =
+            format!("One thread, one call at a time, {} rounds in turns; one build of each index.", args.rounds);
+        let page = Page {
+            provenance: &provenance,
+            effort: &effort,
+            truth: TRUTH,
+            clock,
+            scenes,
+            sweeps: &[],
+            backends: &backends,
+        };
+        save(output, &page.html()?)?;
+    }
+    if let Some(output) = csv {
+        save(output, &record(&provenance, scenes, args.seed, clock))?;
+    }
+    let tables: Vec<String> = figures.sets.iter().map(|set| text::table(set).to_string()).collect();
+    save(Output::open(streams, None)?, &tables.concat())
+}
+
+fn save(mut output: Output<'_>, text: &str) -> anyhow::Result<()> {
+    output.write_all(text.as_bytes()).with_context(|| output.cannot_write())?;
+    output.finish()
+}
+
+impl Args {
+    /// Returns the queries and a sentence that describes them. Points that are not finite are left out, because they
+    /// have no answers that could be compared.
+    fn queries(&self, streams: &Streams, scene: &Scene) -> anyhow::Result<(Vec<Point3<f64>>, String)> {
+        let region = Region::around(&scene.soup.aabb(), self.box_scale);
+        let (queries, description) = match (&self.points, self.grid) {
+            (Some(path), _) => {
+                let points = read_points(streams, path, point_format(path, self.points_format, "--points-format")?)?;
+                (points, format!("The points of {}.", crate::io::input::name(path)))
+            }
+            (None, Some(side)) => (
+                QueryPoints::grid(region, side).collect(),
+                format!(
+                    "A grid of {side} points along each axis of the box of the scene, scaled by {}.",
+                    self.box_scale
+                ),
+            ),
+            _ => (
+                QueryPoints::random(region, self.random.unwrap_or(0), self.seed).collect(),
+                format!("Random points of the box of the scene, scaled by {}.", self.box_scale),
+            ),
+        };
+        let queries: Vec<_> = queries.into_iter().filter(|p: &Point3<f64>| p.iter().all(|x| x.is_finite())).collect();
+        if queries.is_empty() {
+            bail!("there is no finite point");
+        }
+        Ok((queries, description))
+    }
+
+    /// Builds the indexes and measures all settings of all backends.
+    fn measure(
+        &self,
+        streams: &Streams,
+        scene: &Scene,
+        queries: Vec<Point3<f64>>,
+        description: String,
+    ) -> anyhow::Result<SceneFigures> {
+        let soup = &scene.soup;
+        let progress =
+            Progress::start(streams, "building indexes", Some(self.backends.len() as u64), Unit::Items("backends"));
+        let mut indexes = Vec::new();
+        for (i, backend) in self.backends.iter().enumerate() {
+            if self.backends[..i].contains(backend) {
+                continue;
+            }
+            indexes.push(MeasuredIndex::build(backend, soup)?);
+            progress.add(1);
+        }
+        drop(progress);
+        let truths = truths(soup, &queries)?;
+        let competitors: Vec<Competitor<'_>> = indexes
+            .iter()
+            .flat_map(|index| {
+                let name = index.backend.name;
+                SETTINGS.iter().map(move |setting| Competitor::new(name, &*index.index, setting, index.cost))
+            })
+            .collect();
+        let progress = Progress::start(streams, "measuring", Some(100), Unit::Percent);
+        let effort = Effort { rounds: self.rounds, seconds: self.round_seconds };
+        #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "from 0 to 100")]
+        let show_progress = |part: f64| progress.advance_to((part * 100.0) as u64);
+        let curves = measure(&competitors, &Queries::new(queries), &truths, &effort, &show_progress);
+        drop(progress);
+        let contents = format!(
+            "{} triangles, {} segments, {} points.",
+            soup.triangles().len(),
+            soup.segments().len(),
+            soup.points().len()
+        );
+        let name = match (&self.points, self.grid) {
+            (Some(_), _) => "points",
+            (None, Some(_)) => "grid",
+            (None, None) => "random",
+        };
+        let set = SetFigures { name: name.to_owned(), about: description, curves };
+        Ok(SceneFigures {
+            name: self.scene.name(),
+            about: contents,
+            primitives: soup.len(),
+            sets: vec![set],
+            notes: Vec::new(),
+        })
+    }
+}
+
+/// Returns the certified answers to all queries.
+#[allow(clippy::cast_possible_truncation, reason = "ids are below 2^30")]
+fn truths(soup: &Soup<f64>, queries: &[Point3<f64>]) -> anyhow::Result<Vec<Truth>> {
+    let tree = AabbTree::build(soup, &Default::default())?;
+    let truth = |query: &Point3<f64>| {
+        let closest = tree.certified_closest_point(query, &Default::default())?;
+        let closest = closest.context("the scene is not empty, and queries are finite")?;
+        let shape = soup.get(closest.primitive);
+        let max_vertex_distance = shape.vertices().iter().map(|vertex| (vertex - query).norm()).fold(0.0, f64::max);
+        Ok(Truth {
+            distance: closest.distance,
+            residual: 0.0,
+            max_vertex_distance,
+            id: closest.primitive.index() as u32,
+        })
+    };
+    queries.iter().map(truth).collect()
+}

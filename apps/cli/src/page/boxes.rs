@@ -1,0 +1,206 @@
+//! `p2m boxes`: draws the boxes of the AABB tree, or the polytopes of the k-DOP tree, level by level.
+
+use crate::index::kdop_directions::KdopFaces;
+use crate::io::input::{SceneArgs, read_scene};
+use crate::io::json;
+use crate::io::output::Output;
+use crate::io::progress::{Progress, Unit};
+use crate::io::streams::Streams;
+use crate::io::threads::ThreadArgs;
+use crate::page::tree_levels::TreeLevels;
+use crate::page::up_axis::Up;
+use anyhow::{Context, bail};
+use clap::ValueEnum;
+use nalgebra::Point3;
+use p2m_backends::KdopVisitor;
+use p2m_bvh::{AabbTree, PacketTree, SplitOptions, TreeNode, Volume};
+use p2m_core::{BuildIndex, Soup};
+use p2m_kdop::{KdopTree, Polytope};
+use p2m_mixed::picture::{Panel, View, box_edges, write_picture_ply, write_svg};
+use p2m_mixed::statistics::figure::Count;
+use serde_json::json;
+use std::path::PathBuf;
+
+fn help() -> String {
+    format!(
+        "\
+Each panel (in a PLY file: each value of the vertex property 'panel') shows one level of the tree: its nodes and the \
+leaves above it, which together hold the whole scene. The last one shows the leaves alone. Dots are vertices of the \
+scene, at most 4000 of them.
+
+{}
+
+Examples:
+  p2m boxes bunny.obj --out boxes.svg
+  p2m boxes scene.ply --levels 5 --view top --out boxes.svg
+  p2m boxes scene.ply --k 14 --levels 2 --out polytopes.svg
+  p2m boxes scene.ply --levels 12 --out boxes.ply",
+        json::STABILITY
+    )
+}
+
+/// Draw the boxes of the AABB tree over a scene (or the polytopes of the k-DOP tree), level by level, as SVG or PLY
+#[derive(clap::Args)]
+#[command(after_help = help())]
+pub(crate) struct Args {
+    #[command(flatten)]
+    scene: SceneArgs,
+
+    /// Where to write the picture: a name that ends in .svg or .ply
+    #[arg(long, value_name = "FILE")]
+    out: PathBuf,
+
+    /// The number of levels to draw, from the root on; levels that the tree does not have are left out
+    #[arg(long, value_name = "N", default_value_t = 7, value_parser = clap::value_parser!(u8).range(0..=64))]
+    levels: u8,
+
+    /// Draw the polytopes of the k-DOP tree with as many faces
+    #[arg(long, value_name = "K", value_enum, ignore_case = true, allow_negative_numbers = true)]
+    k: Option<KdopFaces>,
+
+    /// From where an SVG picture is seen
+    #[arg(long, value_enum, default_value_t = ViewName::Isometric)]
+    view: ViewName,
+
+    /// Which axis points up in an SVG picture
+    #[arg(long, value_enum, default_value_t = Up::Z)]
+    up: Up,
+
+    #[command(flatten)]
+    threads: ThreadArgs,
+
+    /// Report as one JSON object on the standard output, instead of the titles on the standard error
+    #[arg(long)]
+    json: bool,
+}
+
+#[derive(Clone, Copy, PartialEq, Eq, ValueEnum)]
+enum ViewName {
+    /// From a corner
+    Isometric,
+    /// Along y: x to the right
+    Front,
+    /// Along -x: y to the right
+    Side,
+    /// Along -z: x to the right, y up
+    Top,
+}
+
+impl From<ViewName> for View {
+    fn from(name: ViewName) -> Self {
+        match name {
+            ViewName::Isometric => Self::Isometric,
+            ViewName::Front => Self::Front,
+            ViewName::Side => Self::Side,
+            ViewName::Top => Self::Top,
+        }
+    }
+}
+
+/// The largest number of vertices that a picture shows.
+const MAX_DOTS: usize = 4000;
+
+pub(crate) fn run(streams: &Streams, args: &Args) -> anyhow::Result<()> {
+    let is_ply = match args.out.extension().and_then(|e| e.to_str()).map(str::to_lowercase).as_deref() {
+        Some("svg") => false,
+        Some("ply") => true,
+        _ => bail!("{}: the name of a picture ends in .svg or .ply", args.out.display()),
+    };
+    Output::refuse_inputs(&args.out, &[&args.scene.path])?;
+    let format = args.scene.format()?;
+    let pool = args.threads.pool()?;
+    let scene = read_scene(streams, &pool, &args.scene, format)?;
+    let progress = Progress::start(streams, "building", None, Unit::None);
+    let levels = usize::from(args.levels);
+    let drawn = pool.install(|| match args.k {
+        None => AabbTree::build(&scene.soup, &Default::default())
+            .map(|tree| panels(tree.tree(), levels, ["box", "boxes"], |bounds| box_edges(bounds).collect()))
+            .map(|panels| (panels, None)),
+        Some(KdopFaces(directions)) => directions
+            .build(&scene.soup, SplitOptions::default(), PolytopePanels { levels })
+            .map(|(panels, directions)| (panels, Some(directions))),
+    });
+    let (drawn, directions) = drawn.with_context(|| args.scene.name())?;
+    let reason = directions.as_ref().and_then(|directions| directions.reason.as_ref());
+    drop(progress);
+    let (drawn, mut panels): (Vec<DrawnLevel>, Vec<Panel>) = drawn.into_iter().unzip();
+    let mut output = Output::open(streams, Some(&args.out))?;
+    let written = if is_ply {
+        write_picture_ply(&panels, &mut output)
+    } else {
+        let mut dots = dots(&scene.soup);
+        args.up.rotate_to_z_up(panels.iter_mut().flat_map(|panel| &mut panel.lines).flatten().chain(&mut dots));
+        write_svg(&panels, &dots, args.view.into(), &mut output)
+    };
+    written.with_context(|| output.cannot_write())?;
+    output.finish()?;
+    if args.json {
+        let panels: Vec<_> = drawn.iter().map(|d| json!({"level": d.level, "boxes": d.boxes})).collect();
+        let report = json!({
+            "p2m": "boxes",
+            "version": json::VERSION,
+            "scene": { "file": args.scene.name(), "format": format.name() },
+            "out": { "file": args.out.display().to_string() },
+            "faces": directions.as_ref().map(|directions| directions.faces),
+            "directions_reason": reason,
+            "panels": panels,
+        });
+        return json::print(streams, &report);
+    }
+    panels.iter().for_each(|panel| streams.print_summary(format_args!("{}\n", panel.title)));
+    if let Some(reason) = reason {
+        streams.print_summary(format_args!("k-DOPs: {reason}\n"));
+    }
+    Ok(())
+}
+
+/// The content of a panel.
+struct DrawnLevel {
+    /// The level, or `None` for the leaves.
+    level: Option<usize>,
+    /// The number of boxes or polytopes.
+    boxes: usize,
+}
+
+/// Draws the panels of a k-DOP tree.
+struct PolytopePanels {
+    levels: usize,
+}
+
+impl KdopVisitor<&Soup<f64>> for PolytopePanels {
+    type Output = Vec<(DrawnLevel, Panel)>;
+    fn visit<const K: usize>(self, tree: KdopTree<f64, &Soup<f64>, K>) -> Self::Output {
+        let edges = |kdop: &_| Polytope::new(kdop, tree.directions()).edges().collect();
+        panels(tree.tree(), self.levels, ["polytope", "polytopes"], edges)
+    }
+}
+
+/// Returns a panel for each of the first levels, and one for the leaves.
+fn panels<V: Volume>(
+    tree: &PacketTree<V>,
+    levels: usize,
+    [one, many]: [&str; 2],
+    edges: impl Fn(&V) -> Vec<[Point3<f64>; 2]>,
+) -> Vec<(DrawnLevel, Panel)> {
+    let tree_levels = TreeLevels::new(tree);
+    let panel = |level: Option<usize>, shown: Vec<&TreeNode<V>>| {
+        let title = level.map_or("leaves".to_owned(), |level| format!("level {level}"));
+        let noun = if shown.len() == 1 { one } else { many };
+        let panel = Panel {
+            title: format!("{title}: {} {noun}", Count(shown.len() as u64)),
+            lines: shown.iter().flat_map(|node| edges(&node.volume)).collect(),
+        };
+        (DrawnLevel { level, boxes: shown.len() }, panel)
+    };
+    let drawn = levels.min(tree_levels.count());
+    let mut panels: Vec<_> = (0..drawn).map(|level| panel(Some(level), tree_levels.level(level))).collect();
+    panels.push(panel(None, tree_levels.leaves()));
+    panels
+}
+
+/// Returns vertices of the primitives, evenly spaced in the order of the scene.
+fn dots(soup: &Soup<f64>) -> Vec<Point3<f64>> {
+    let used: Vec<u32> = soup.elements().flat_map(|e| e.indices().to_vec()).collect();
+    let step = used.len().div_ceil(MAX_DOTS).max(1);
+    used.iter().step_by(step).map(|&i| soup.positions()[i as usize]).collect()
+}

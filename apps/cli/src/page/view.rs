@@ -1,0 +1,254 @@
+//! `p2m view`: a page that shows a scene, its answers, its field and the boxes of its tree in a browser.
+
+use crate::answers::queries::{Queries, Region};
+use crate::index::backend::{Backend, SceneSource, backends, saved_or_default};
+use crate::index::sign_rule::SignRule;
+use crate::io::input::{SceneArgs, point_format, read_points, read_scene_and_index};
+use crate::io::output::Output;
+use crate::io::progress::{Progress, Unit};
+use crate::io::streams::Streams;
+use crate::io::threads::ThreadArgs;
+use crate::io::usage::{not_negative, one_of, positive, usage, whole_number};
+use crate::page::source::{PageArgs, about, file_name};
+use crate::page::tree_levels::TreeLevels;
+use crate::scene::info::counted;
+use anyhow::{Context, bail};
+use nalgebra::Point3;
+use p2m_backends::P2mSettings;
+use p2m_bvh::{AabbTree, PacketTree};
+use p2m_core::{Aabb, BuildIndex, Closest, PrimitiveSet, QueryOptions};
+use p2m_field::{FieldOptions, Grid, distances, signed_distances};
+use p2m_mixed::PointFormat;
+use p2m_mixed::statistics::Counts;
+use p2m_page::Level;
+use rayon::prelude::*;
+use std::io::Write as _;
+use std::path::{Path, PathBuf};
+
+const HELP: &str = "\
+The page is one HTML file, which any browser opens without a network. It shows the triangles, segments and points of the \
+scene, whose objects can be hidden. With queries it shows their closest points, coloured by distance: a click on a query \
+point prints its answer and draws the primitive, the feature and the sphere of the lower bound. With --field it shows a \
+slice of the distance field that can be moved, with --lists a slice through the cells of an octree or a P2M index, and \
+with --levels the boxes of the AABB tree. All of it can be done with the keyboard.
+
+Queries are answered live where the mouse is, by the library in the page, compiled to WebAssembly. --live says when.
+
+Numbers on the page are those of `p2m query`, in full. Scenes of more than a million primitives are drawn coarser, which \
+a note on the page says.
+
+Examples:
+  p2m view scene.obj --random 1000 --out page.html
+  p2m view bunny.obj --field 64 --signed --up y --out field.html
+  p2m view bunny.obj --backend p2m --lists 128 --out cells.html
+  p2m view city.obj --points scan.xyz --unit metres --levels 8 --out city.html";
+
+/// Write a page that shows a scene, its closest points and its distance field in a browser
+#[derive(clap::Args)]
+#[command(after_help = HELP)]
+pub(crate) struct Args {
+    #[command(flatten)]
+    scene: SceneArgs,
+
+    /// Show the closest points of the points of this XYZ, TXT, CSV, NPY or PLY file; `-` is the standard input
+    #[arg(long, value_name = "FILE", conflicts_with = "random")]
+    points: Option<PathBuf>,
+
+    /// The format of the points, if the extension of their file does not name it
+    #[arg(long, value_name = "FORMAT", value_parser = one_of::<PointFormat>(PointFormat::NAMES), ignore_case = true, requires = "points")]
+    points_format: Option<PointFormat>,
+
+    /// Show the closest points of N uniformly distributed points in the scaled box of the scene
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u64).range(0..=MAX_QUERIES), allow_negative_numbers = true)]
+    random: Option<u64>,
+
+    /// Scale the box of the scene about its centre by this factor, for random points and the field
+    #[arg(long, value_name = "S", default_value_t = 1.2, value_parser = positive, allow_negative_numbers = true)]
+    box_scale: f64,
+
+    /// Seed of the random points
+    #[arg(long, value_name = "K", default_value_t = 0, value_parser = whole_number, allow_negative_numbers = true, requires = "random")]
+    seed: u64,
+
+    /// Give no answers farther than this, in the unit of the scene
+    #[arg(long, value_name = "R", value_parser = not_negative, allow_negative_numbers = true)]
+    max_distance: Option<f64>,
+
+    /// Show slices of the distance field on a grid with N points along its longest side
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(2..=256), allow_negative_numbers = true)]
+    field: Option<u32>,
+
+    /// Negative distances inside; needs a scene of triangles [possible values of RULE: auto, closed, winding; default:
+    /// auto]
+    #[arg(long, value_name = "RULE", num_args = 0..=1, require_equals = true, default_missing_value = "auto", value_enum)]
+    signed: Option<SignRule>,
+
+    /// Show slices through the cells of an index with lists, coloured by the length of the list at each point of a grid
+    /// with N points along its longest side; needs --backend octree or p2m, or a saved index of these
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(2..=256), allow_negative_numbers = true, conflicts_with = "field")]
+    lists: Option<u32>,
+
+    /// Show the boxes of the first N levels of the AABB tree
+    #[arg(long, value_name = "N", default_value_t = 0, value_parser = clap::value_parser!(u8).range(0..=16), allow_negative_numbers = true)]
+    levels: u8,
+
+    /// Whether the page answers queries where the mouse is: `auto` stands for scenes of at most 10,000 primitives
+    #[arg(long, value_name = "WHEN", value_enum, default_value_t = Live::Auto)]
+    live: Live,
+
+    /// The index to search [default: that of a saved file, else aabb]
+    #[arg(long, value_parser = backends(|_| true))]
+    backend: Option<Backend>,
+
+    #[command(flatten)]
+    page: PageArgs,
+
+    /// Where to write the page; `-` is the standard output
+    #[arg(long, value_name = "FILE")]
+    out: PathBuf,
+
+    #[command(flatten)]
+    threads: ThreadArgs,
+}
+
+/// When a page answers queries itself.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, clap::ValueEnum)]
+enum Live {
+    /// If the scene is small
+    Auto,
+    /// Always
+    Always,
+    /// Never
+    Never,
+}
+
+/// The number of primitives above which a page has no live queries unless they are asked for. For a scene of this size
+/// the page builds indexes for a few seconds.
+const MAX_LIVE_PRIMITIVES: usize = 10_000;
+
+/// The largest number of query points of a page.
+const MAX_QUERIES: u64 = 100_000;
+
+/// The sides of scenes whose distances, and much smaller and larger ones, f32 represents.
+const F32_SIDES: std::ops::Range<f64> = 1e-30..1e30;
+
+pub(crate) fn run(streams: &Streams, args: &Args) -> anyhow::Result<()> {
+    if args.signed.is_some() && args.field.is_none() && args.points.is_none() && args.random.is_none() {
+        return Err(usage("--signed needs --field, --random or --points"));
+    }
+    let inputs: Vec<&Path> = std::iter::once(args.scene.path.as_path()).chain(args.points.as_deref()).collect();
+    Output::refuse_inputs(&args.out, &inputs)?;
+    let format = args.scene.format()?;
+    let pool = args.threads.pool()?;
+    let (scene, saved) = read_scene_and_index(streams, &pool, &args.scene.path, format, args.scene.map)?;
+    let bounds = scene.soup.aabb();
+    let queries = args.queries(streams, &bounds)?;
+    let resolution = args.field.or(args.lists);
+    let grid = resolution.map(|n| Grid::around(&bounds, n as usize, args.box_scale)).transpose();
+    let grid = grid.with_context(|| args.scene.name())?;
+    let side = if bounds.is_empty() { 0.0 } else { (bounds.max - bounds.min).amax() };
+    if args.field.is_some() && side != 0.0 && !F32_SIDES.contains(&side) {
+        bail!("{}: --field has numbers of f32, which cannot hold lengths of about {side:e}", args.scene.name());
+    }
+    let mut output = Output::open(streams, Some(&args.out))?;
+
+    let saved = saved.as_ref();
+    let backend = args.backend.unwrap_or_else(|| saved_or_default(saved));
+    let source = SceneSource { soup: &scene.soup, kdop_directions: None, p2m: P2mSettings::default(), saved };
+    let index = source.prepare(streams, backend, &pool).with_context(|| args.scene.name())?.built.index;
+    if args.lists.is_some() && index.list_lengths().is_empty() {
+        return Err(usage(format!("--lists needs an index with lists: {} has none", backend.name)));
+    }
+    let signed = args.signed.map(|rule| rule.prepare(streams, &*index, &scene.soup)).transpose();
+    let signed = signed.with_context(|| args.scene.name())?;
+
+    let around = Aabb::from_points(queries.as_deref().unwrap_or_default());
+    let around = grid.as_ref().map_or(around, |grid| {
+        around.union(&Aabb { min: grid.origin(), max: grid.point(grid.counts().map(|n| n - 1)) })
+    });
+    let mut view = args.page.view(&scene, &around);
+    view.title = format!("{} in p2m", file_name(&args.scene.path));
+    let is_empty = scene.soup.is_empty();
+    view.summary = if is_empty { "an empty scene".to_owned() } else { counted(&Counts::of(&scene.soup)) };
+    if let Some(queries) = &queries {
+        let options = QueryOptions::default();
+        let options = args.max_distance.map_or(options, |limit| options.with_max_distance(limit));
+        let _progress = Progress::start(streams, "answering", None, Unit::None);
+        let answers: Vec<Option<Closest<f64>>> =
+            pool.install(|| queries.par_iter().map(|query| index.closest_point_with(query, &options)).collect());
+        let signs: Option<Vec<f64>> = signed.as_ref().map(|(signed, _)| {
+            let sign = |(query, answer): (&Point3<f64>, &Option<Closest<f64>>)| {
+                let distance = answer.and_then(|answer| signed.with_sign(query, answer).distance());
+                distance.unwrap_or(f64::NAN)
+            };
+            pool.install(|| queries.par_iter().zip(&answers).map(sign).collect())
+        });
+        view.summary +=
+            &format!("; {} query points and their closest points, found by {}", queries.len(), backend.name);
+        view = view.with_answers(queries, &answers, signs.as_deref());
+    }
+    if let (Some(grid), Some(_)) = (&grid, args.lists) {
+        let [x, y, z] = grid.counts();
+        let length = |number: usize| {
+            let point = grid.point([number % x, number / x % y, number / (x * y)]);
+            index.list_length(&point).map_or(f32::NAN, |length| length as f32)
+        };
+        let lengths: Vec<f32> = pool.install(|| (0..grid.len()).into_par_iter().map(length).collect());
+        view.summary += &format!("; lengths of the lists of {} at {x} x {y} x {z} points", backend.name);
+        view = view.with_list_lengths(grid, &lengths);
+    }
+    if let (Some(grid), Some(_)) = (&grid, args.field) {
+        let progress = Progress::start(streams, "filling the grid", Some(grid.len() as u64), Unit::Items("points"));
+        let count = |points: usize| progress.add(points as u64);
+        let options = FieldOptions::default();
+        let values = pool.install(|| match &signed {
+            Some((signed, _)) => signed_distances(signed, grid, &options, &count),
+            None => distances(&*index, grid, &options, &count),
+        })?;
+        let [x, y, z] = grid.counts();
+        view.summary += &format!("; a field of {x} x {y} x {z} points");
+        view = view.with_field(grid, &values);
+    }
+    let is_small = scene.soup.len() <= MAX_LIVE_PRIMITIVES;
+    if args.live == Live::Always || (args.live == Live::Auto && is_small) {
+        view = view.with_live_queries();
+    }
+    if args.levels > 0 {
+        let tree = pool.install(|| AabbTree::build(&scene.soup, &Default::default()));
+        let tree = tree.with_context(|| args.scene.name())?;
+        view = view.with_levels("Boxes of the AABB tree", &levels(tree.tree(), usize::from(args.levels)));
+    }
+    let rule = signed.as_ref().map(|(_, rule)| *rule);
+    view.about = about(&format!("scene {}", args.scene.name()), backend.name, rule);
+    let page = view.html()?;
+    output.write_all(page.as_bytes()).with_context(|| output.cannot_write())?;
+    output.finish()?;
+    streams.print_summary(format_args!("{}\nwritten  {}, {} bytes\n", view.summary, args.out.display(), page.len()));
+    Ok(())
+}
+
+/// Returns the boxes of the first levels.
+fn levels(tree: &PacketTree, count: usize) -> Vec<Level> {
+    let tree_levels = TreeLevels::new(tree);
+    let level = |level: usize| {
+        let boxes: Vec<Aabb<f64>> = tree_levels.level(level).iter().map(|node| node.volume).collect();
+        let noun = if boxes.len() == 1 { "box" } else { "boxes" };
+        Level { title: format!("level {level}: {} {noun}", boxes.len()), boxes }
+    };
+    (0..count.min(tree_levels.count())).map(level).collect()
+}
+
+impl Args {
+    /// Returns the query points, if there are any to show.
+    fn queries(&self, streams: &Streams, bounds: &Aabb<f64>) -> anyhow::Result<Option<Vec<Point3<f64>>>> {
+        if let Some(path) = &self.points {
+            let points = read_points(streams, path, point_format(path, self.points_format, "--points-format")?)?;
+            if points.len() as u64 > MAX_QUERIES {
+                bail!("{}: {} points are too many to show: at most {MAX_QUERIES}", path.display(), points.len());
+            }
+            return Ok(Some(points));
+        }
+        let region = Region::around(bounds, self.box_scale);
+        Ok(self.random.map(|count| Queries::random(region, count, self.seed).collect()))
+    }
+}

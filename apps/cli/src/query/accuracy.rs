@@ -1,0 +1,68 @@
+//! The arguments about the accuracy of answers: two that trade accuracy for speed, and one that certifies answers.
+
+use crate::answers::blocks::answer_each;
+use crate::io::usage::finite_not_negative;
+use nalgebra::Point3;
+use p2m_core::batch::{self, BatchOptions};
+use p2m_core::{CertifiedQuery, Closest, ClosestPoint, QueryOptions};
+use serde_json::{Value, json};
+
+#[derive(clap::Args)]
+#[command(next_help_heading = "Accuracy")]
+pub(crate) struct Accuracy {
+    /// Distances may be too large by this part of themselves: 0.01 allows for one per cent
+    #[arg(long, value_name = "E", value_parser = finite_not_negative, allow_negative_numbers = true, conflicts_with = "certified")]
+    epsilon: Option<f64>,
+
+    /// Answer with the best that N visits of nodes and packets find; more are made only until anything is found.
+    ///
+    /// With 0 the interception indexes (octree, p2m) answer from the cell of the query alone.
+    #[arg(long, alias = "budget", value_name = "N", value_parser = clap::value_parser!(u32), allow_negative_numbers = true, conflicts_with = "certified")]
+    max_visits: Option<u32>,
+
+    /// Prove every answer: the primitive that is nearest in exact arithmetic, and its distance, rounded once
+    #[arg(long)]
+    certified: bool,
+}
+
+impl Accuracy {
+    /// Returns the options of queries, with these limits of accuracy and this largest distance.
+    pub(crate) fn options(&self, max_distance: Option<f64>) -> QueryOptions<f64> {
+        let defaults = QueryOptions::default();
+        defaults
+            .with_max_distance(max_distance.unwrap_or(defaults.max_distance))
+            .with_epsilon(self.epsilon.unwrap_or(defaults.epsilon))
+            .with_max_visits(self.max_visits.unwrap_or(defaults.max_visits))
+    }
+
+    /// Returns whether answers are certified.
+    pub(crate) fn is_certified(&self) -> bool {
+        self.certified
+    }
+
+    /// Answers queries, certified or not, on all threads of the current pool.
+    pub(crate) fn answer<I: ClosestPoint<f64> + CertifiedQuery<f64> + Sync + ?Sized>(
+        &self,
+        index: &I,
+        queries: &[Point3<f64>],
+        options: &QueryOptions<f64>,
+    ) -> Vec<Option<Closest<f64>>> {
+        if self.certified {
+            return answer_each(queries, |query| {
+                index.certified_closest_point(query, options).expect("primitives of scenes have vertices")
+            });
+        }
+        let mut answers = vec![None; queries.len()];
+        batch::closest_points_into(index, queries, options, &BatchOptions::default(), &mut answers);
+        answers
+    }
+
+    /// Returns the part of a report about accuracy.
+    pub(crate) fn json(&self) -> Value {
+        json!({
+            "epsilon": self.epsilon,
+            "max_visits": self.max_visits,
+            "certified": self.certified,
+        })
+    }
+}

@@ -1,0 +1,86 @@
+//! The answers of `p2m query`: closest points of any source, written as a table.
+
+use crate::answers::blocks::{BlockSize, QueryStream, Steps, answer_all};
+use crate::answers::queries::Queries;
+use crate::answers::summary::AnswerSummary;
+use crate::io::output::Output;
+use crate::io::streams::Streams;
+use crate::query::args::Args;
+use nalgebra::Point3;
+use p2m_core::Closest;
+use p2m_mixed::{AnswerEncoder, AnswerFormat, AnswerRecord, AnswerWriter, Object};
+use rayon::ThreadPool;
+use std::time::Duration;
+
+/// The closest primitive, if there is one, and the distance with a sign, which is NaN where no signs are asked for.
+pub(crate) type ClosestAnswer = (Option<Closest<f64>>, f64);
+
+/// A source of answers: an index in memory or one in shards.
+pub(crate) trait Source: Sync {
+    /// The number of queries that it is best asked at a time.
+    const BLOCK_SIZE: BlockSize;
+
+    /// Answers some queries on all threads of the current pool, each with the closest point.
+    fn closest(&self, queries: &[Point3<f64>]) -> anyhow::Result<Vec<ClosestAnswer>>;
+
+    /// Answers some queries on all threads of the current pool, each with any number of near primitives.
+    fn near(&self, queries: &[Point3<f64>]) -> anyhow::Result<Vec<Vec<Closest<f64>>>>;
+}
+
+/// The queries to answer, and the file for their answers.
+pub(crate) struct Task<'a, 's> {
+    pub(crate) streams: &'a Streams,
+    pub(crate) args: &'a Args,
+    pub(crate) pool: &'a ThreadPool,
+    pub(crate) queries: Queries,
+    pub(crate) output: &'a mut Output<'s>,
+    pub(crate) format: AnswerFormat,
+    pub(crate) objects: &'a [Object],
+}
+
+impl Task<'_, '_> {
+    /// Answers all queries and writes their answers. Returns a summary, and the time that answering took.
+    pub(crate) fn run<S: Source>(self, source: &S) -> anyhow::Result<(AnswerSummary, Duration)> {
+        let cannot_write = self.output.cannot_write();
+        let failed = |error| anyhow::Error::new(error).context(cannot_write.clone());
+        let has_many = self.args.has_many_answers();
+        let encoder = AnswerEncoder::new(self.format, self.objects, &self.args.columns(self.format, self.objects));
+        // Only with one answer for each query it is known before how many there are.
+        let count = Some(self.queries.len()).filter(|_| !has_many);
+        let mut writer = AnswerWriter::with_columns(self.output, encoder, count).map_err(failed)?;
+        let encoder = writer.encoder();
+        let queries =
+            QueryStream { name: "queries", count: self.queries.len(), iter: self.queries, block_size: S::BLOCK_SIZE };
+        let write = |count, records: &[u8]| writer.write_encoded(count, records).map_err(failed);
+        let mut summary = AnswerSummary::default();
+        let time = if has_many {
+            let steps = Steps {
+                answer: |queries: &[_]| source.near(queries),
+                encode: |number, query: &_, answers: &Vec<_>, out: &mut _| {
+                    for answer in answers {
+                        let record = AnswerRecord { number, query, answer: Some(answer), signed_distance: f64::NAN };
+                        encoder.encode(&record, out);
+                    }
+                    answers.len() as u64
+                },
+                take: |_: &_, answers: &Vec<_>| summary.add_all(answers),
+                write,
+            };
+            answer_all(self.streams, self.pool, queries, steps)?
+        } else {
+            let steps = Steps {
+                answer: |queries: &[_]| source.closest(queries),
+                encode: |number, query: &_, (answer, signed_distance): &ClosestAnswer, out: &mut _| {
+                    let answer = answer.as_ref();
+                    encoder.encode(&AnswerRecord { number, query, answer, signed_distance: *signed_distance }, out);
+                    1
+                },
+                take: |_: &_, (answer, _): &ClosestAnswer| summary.add(answer.as_ref()),
+                write,
+            };
+            answer_all(self.streams, self.pool, queries, steps)?
+        };
+        writer.finish().map_err(failed)?;
+        Ok((summary, time))
+    }
+}

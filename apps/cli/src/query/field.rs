@@ -1,0 +1,313 @@
+//! `p2m field`: distances from a scene on a grid or an octree.
+
+use crate::answers::summary::{IndexSummary, SceneSummary};
+use crate::index::args::IndexArgs;
+use crate::index::backend::{SceneSource, saved_or_default};
+use crate::index::sign_rule::{SignRule, SignedIndex};
+use crate::io::input::{is_standard, or_option, read_scene_and_index};
+use crate::io::json;
+use crate::io::output::Output;
+use crate::io::progress::{Progress, Unit};
+use crate::io::streams::Streams;
+use crate::io::usage::{not_negative, one_of, positive, usage};
+use crate::page::picture::write_png;
+use crate::query::field_summary::{ComputedField, FieldSummary};
+use anyhow::{Context, anyhow};
+use nalgebra::Point3;
+use p2m_backends::{Index, IndexDetails, P2mSettings};
+use p2m_core::{Aabb, PrimitiveSet, Soup};
+use p2m_field::FieldFormat;
+use p2m_field::grid_candidates::{CandidateLists, MAX_COORDINATE};
+
+use p2m_field::{
+    FieldOptions, Grid, RefineOptions, distances, distances_by_lists, refined, signed_distances,
+    signed_distances_by_lists, slice, write_cells, write_field,
+};
+use rayon::ThreadPool;
+use serde_json::json;
+use std::path::PathBuf;
+use std::time::Instant;
+
+fn help() -> String {
+    format!(
+        "\
+The grid covers the scaled box of the scene: N points along its longest side, ends included, and as many along the others at \
+the same spacing. Values are rounded to f32. Unless a backend is named, distances come from lists of what can be nearest in blocks of the grid if \
+it has as many points as the scene has primitives, which is faster and has the same values; an AABB tree decides signs.
+
+NPY files are arrays of NumPy, field[i, j, k] with x, y and z; VTI files are images of VTK, with origin and spacing; RAW files have the \
+values alone, little-endian, x fastest. With --refine the file is NPY: an array of cells with the fields origin, size and values (at \
+the corners: x runs fastest, z slowest).
+
+With --signed distances are negative inside. Inside of a closed surface is decided by its normals, and by rays where these are ambiguous. For other \
+surfaces (with holes, or with inconsistent orientation) it is decided by winding numbers: a point is inside if more than half of all directions hit \
+a back. The distance is NaN where the sign is undefined.
+
+{}
+
+Examples:
+  p2m field bunny.obj --resolution 256 --signed --out bunny.vti --slice bunny.png
+  p2m field scan.ply --resolution 512 --band 0.02 --out band.npy
+  p2m field part.stl --refine 0.001 --signed --out cells.npy --json",
+        json::STABILITY
+    )
+}
+
+/// Compute the distance from a scene at each point of a grid, signed or not
+#[derive(clap::Args)]
+#[command(after_help = help())]
+pub(crate) struct Args {
+    #[command(flatten)]
+    index_args: IndexArgs,
+
+    /// Points along the longest side of the grid
+    #[arg(long, value_name = "N", default_value_t = 64, value_parser = clap::value_parser!(u32).range(2..=1 << 12), allow_negative_numbers = true)]
+    resolution: u32,
+
+    /// Scale the box of the scene about its centre by this factor before filling it
+    #[arg(long, value_name = "S", default_value_t = 1.2, value_parser = positive, allow_negative_numbers = true)]
+    box_scale: f64,
+
+    /// Negative distances inside; needs a scene of triangles [possible values of RULE: auto, closed, winding; default:
+    /// auto]
+    #[arg(long, value_name = "RULE", num_args = 0..=1, require_equals = true, default_missing_value = "auto", value_enum)]
+    signed: Option<SignRule>,
+
+    /// Compute distances up to this value only, in the unit of the scene; farther points have this value
+    #[arg(long, value_name = "W", value_parser = not_negative, allow_negative_numbers = true, conflicts_with = "refine")]
+    band: Option<f64>,
+
+    /// An octree instead of a grid, cut where the surface is while the interpolated distance is off by more than this,
+    /// in the middle of a cell, of its faces or its edges
+    #[arg(long, value_name = "ERROR", value_parser = positive, allow_negative_numbers = true, conflicts_with_all = ["resolution", "slice", "out_format"])]
+    refine: Option<f64>,
+
+    /// The largest number of times that a cell is cut
+    #[arg(long, value_name = "D", default_value_t = 8, value_parser = clap::value_parser!(u32).range(0..=16), requires = "refine", allow_negative_numbers = true)]
+    depth: u32,
+
+    /// Where to write the field
+    #[arg(long, value_name = "FILE")]
+    out: PathBuf,
+
+    /// The format of the field, if the extension of its file does not name it
+    #[arg(long, value_name = "FORMAT", value_parser = one_of::<FieldFormat>(FieldFormat::NAMES), ignore_case = true)]
+    out_format: Option<FieldFormat>,
+
+    /// A picture of the layer in the middle, across z: a PNG file
+    #[arg(long, value_name = "FILE")]
+    slice: Option<PathBuf>,
+
+    /// Report as one JSON object on the standard output, instead of a summary on the standard error
+    #[arg(long)]
+    json: bool,
+}
+
+pub(crate) fn run(streams: &Streams, args: &Args) -> anyhow::Result<()> {
+    let scene_args = &args.index_args.scene;
+    if args.json && is_standard(&args.out) {
+        return Err(usage("--json reports on the standard output, so the field has to go to a file"));
+    }
+    let out_format = args.format()?;
+    Output::refuse_inputs(&args.out, &[&scene_args.path])?;
+    Output::refuse_terminal(streams, &args.out, out_format.name())?;
+    if let Some(slice) = &args.slice {
+        Output::refuse_inputs(slice, &[&scene_args.path])?;
+        if slice == &args.out || is_standard(slice) {
+            return Err(usage("--slice needs a file of its own"));
+        }
+        if !slice.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("png")) {
+            return Err(usage(format!(
+                "--slice {}: the picture is a PNG file, so its name ends in .png",
+                slice.display()
+            )));
+        }
+    }
+    let format = scene_args.format()?;
+    let pool = args.index_args.threads.pool()?;
+    let start = Instant::now();
+    let (scene, saved) = read_scene_and_index(streams, &pool, &scene_args.path, format, scene_args.map)?;
+    let read_time = start.elapsed();
+    let soup = &scene.soup;
+    let grid =
+        Grid::around(&soup.aabb(), args.resolution as usize, args.box_scale).with_context(|| scene_args.name())?;
+    // The files are opened before the work, which would be lost if a name were wrong.
+    let mut output = Output::open(streams, Some(&args.out))?;
+    let picture = args.slice.as_ref().map(|path| Output::open(streams, Some(path))).transpose()?;
+
+    let start = Instant::now();
+    let has_lists = args.index_args.is_unspecified() && args.refine.is_none();
+    let lists = if has_lists { candidate_lists(streams, soup, &grid, &pool) } else { None };
+    let mut backend_name = LISTS_NAME;
+    let (mut details, mut is_loaded) = (IndexDetails::None, false);
+    let mut index = None;
+    if lists.is_none() || args.signed.is_some() {
+        let (backend, kdop_directions, p2m) = match lists {
+            // With lists the index decides signs alone.
+            Some(_) => (saved_or_default(saved.as_ref()), None, P2mSettings::default()),
+            None => args.index_args.choice(saved.as_ref(), soup, grid.len() as u64, &pool)?,
+        };
+        let source = SceneSource { soup, kdop_directions, p2m, saved: saved.as_ref() };
+        let prepared = source.prepare(streams, backend, &pool).with_context(|| scene_args.name())?;
+        if lists.is_none() {
+            backend_name = backend.name;
+        }
+        (details, is_loaded) = (prepared.built.details, prepared.is_loaded);
+        index = Some(prepared.built.index);
+    }
+    let index = match (&index, args.signed) {
+        (Some(index), Some(rule)) => {
+            let (signed, rule) = rule.prepare(streams, &**index, soup).with_context(|| scene_args.name())?;
+            Some(FieldIndex::Signed(signed, rule))
+        }
+        (Some(index), None) => Some(FieldIndex::Unsigned(&**index)),
+        (None, _) => None,
+    };
+    let source = DistanceSource { lists, index };
+    let build_time = start.elapsed();
+
+    let start = Instant::now();
+    let progress = match args.refine {
+        Some(_) => Progress::start(streams, "cutting cells", None, Unit::None),
+        None => Progress::start(streams, "filling the grid", Some(grid.len() as u64), Unit::Items("points")),
+    };
+    let field = pool.install(|| args.compute(&source, &grid, &progress))?;
+    drop(progress);
+    let field_time = start.elapsed();
+    match &field {
+        ComputedField::Cells(cells) => write_cells(cells, &mut output),
+        ComputedField::Grid(values) => write_field(&grid, values, out_format, &mut output),
+    }
+    .with_context(|| output.cannot_write())?;
+    let bytes = output.bytes();
+    output.finish()?;
+    if let (Some(mut picture), ComputedField::Grid(values)) = (picture, &field) {
+        let (size, pixels) = slice(&grid, values, 2, grid.counts()[2] / 2);
+        let size = size.map(u32::try_from);
+        let [Ok(width), Ok(height)] = size else { return Err(anyhow!("the slice is too large for a picture")) };
+        write_png(&mut picture, [width, height], &pixels)?;
+        picture.finish()?;
+    }
+
+    let (summary, backend) = (SceneSummary::new(scene_args.name(), format, &scene), backend_name);
+    let index = IndexSummary { scene: summary, backend, details, is_loaded, read_time, build_time };
+    let report = FieldSummary {
+        grid: &grid,
+        field: &field,
+        signs: source.index.as_ref().and_then(FieldIndex::rule),
+        threads: if args.refine.is_some() { 1 } else { pool.current_num_threads() },
+        field_time,
+    };
+    if args.json {
+        let end = json!({
+            "seconds": {
+                "read": read_time.as_secs_f64(),
+                "build": build_time.as_secs_f64(),
+                "field": field_time.as_secs_f64(),
+            },
+            "out": { "file": args.out.display().to_string(), "format": out_format.name(), "bytes": bytes },
+        });
+        return json::print(streams, &json::joined([index.json("field"), report.json(), end]));
+    }
+    let mut text = String::new();
+    // Writing to a string does not fail.
+    let _ = index.write(&mut text, None);
+    let _ = report.write(&mut text);
+    streams.print_summary(format_args!("{text}written  {}, {bytes} bytes\n", args.out.display()));
+    Ok(())
+}
+
+impl Args {
+    /// Returns the format of the field: the given one, or else that of the extension.
+    fn format(&self) -> anyhow::Result<FieldFormat> {
+        match self.out_format {
+            Some(format) => Ok(format),
+            None if self.refine.is_some() => match FieldFormat::from_path(&self.out) {
+                Ok(FieldFormat::Vti | FieldFormat::Raw) => {
+                    Err(usage("--refine writes cells as NPY: choose another name"))
+                }
+                _ => Ok(FieldFormat::Npy),
+            },
+            None => FieldFormat::from_path(&self.out).map_err(|e| or_option(&e, "--out-format")),
+        }
+    }
+
+    /// Computes the distances.
+    fn compute(&self, source: &DistanceSource<'_>, grid: &Grid, progress: &Progress) -> anyhow::Result<ComputedField> {
+        if let Some(error) = self.refine {
+            let counts = grid.counts();
+            let bounds = Aabb { min: grid.origin(), max: grid.point(counts.map(|n| n - 1)) };
+            let distance = |point: &Point3<f64>| source.index.as_ref().map_or(f64::NAN, |index| index.distance(point));
+            let cells = refined(&bounds, &distance, &RefineOptions::new(error).with_depth(self.depth));
+            return Ok(ComputedField::Cells(cells));
+        }
+        let mut options = FieldOptions::default();
+        if let Some(band) = self.band {
+            options = options.with_band(band);
+        }
+        let count = |points: usize| progress.add(points as u64);
+        let values = match (&source.lists, &source.index) {
+            (Some(lists), Some(FieldIndex::Signed(signed, _))) => {
+                signed_distances_by_lists(lists, signed, grid, &options, &count)?
+            }
+            (Some(lists), _) => distances_by_lists(lists, grid, &options, &count)?,
+            (None, Some(FieldIndex::Signed(signed, _))) => signed_distances(signed, grid, &options, &count)?,
+            (None, Some(FieldIndex::Unsigned(index))) => distances(*index, grid, &options, &count)?,
+            (None, None) => return Err(anyhow!("there are neither lists nor an index")),
+        };
+        Ok(ComputedField::Grid(values))
+    }
+}
+
+/// The source of distances: lists or an index. An index beside lists decides signs.
+struct DistanceSource<'a> {
+    lists: Option<CandidateLists<'a, Soup<f64>>>,
+    index: Option<FieldIndex<'a>>,
+}
+
+/// The name of lists in reports, in place of that of a backend.
+const LISTS_NAME: &str = "lists";
+
+/// Returns lists of candidates, unless the grid is too coarse for them to pay, coordinates are out of their range, or
+/// memory is short.
+fn candidate_lists<'a>(
+    streams: &Streams,
+    soup: &'a Soup<f64>,
+    grid: &Grid,
+    pool: &ThreadPool,
+) -> Option<CandidateLists<'a, Soup<f64>>> {
+    let last = grid.point(grid.counts().map(|n| n - 1));
+    if grid.len() < soup.len() {
+        return None;
+    }
+    let is_in_range = |point: &Point3<f64>| point.iter().all(|x| x.abs() <= MAX_COORDINATE);
+    let is_in_range = is_in_range(&grid.origin()) && is_in_range(&last);
+    let _progress = Progress::start(streams, "sorting primitives", None, Unit::None);
+    pool.install(|| CandidateLists::new(soup)).filter(|_| is_in_range)
+}
+
+/// An index with or without signs.
+enum FieldIndex<'a> {
+    Unsigned(&'a dyn Index),
+    /// The signs, and the name of the rule that decides them.
+    Signed(SignedIndex<'a>, &'static str),
+}
+
+impl FieldIndex<'_> {
+    /// The name of the rule that decides signs.
+    fn rule(&self) -> Option<&'static str> {
+        match self {
+            Self::Unsigned(_) => None,
+            Self::Signed(_, rule) => Some(rule),
+        }
+    }
+
+    /// The distance of a point, signed if there are signs; NaN if it is undefined.
+    fn distance(&self, point: &Point3<f64>) -> f64 {
+        let distance = match self {
+            Self::Unsigned(index) => index.closest_point(point).map(|answer| answer.distance),
+            Self::Signed(signed, _) => signed.closest_point(point).and_then(|answer| answer.distance()),
+        };
+        distance.unwrap_or(f64::NAN)
+    }
+}

@@ -1,0 +1,113 @@
+//! `p2m build`: saves an index in a file that other commands use.
+
+use crate::answers::summary::{IndexSummary, SceneSummary};
+use crate::index::args::{DEFAULT_QUERY_COUNT, IndexArgs};
+use crate::index::backend::{PreparedIndex, SceneSource};
+use crate::io::input::read_scene;
+use crate::io::json;
+use crate::io::output::Output;
+use crate::io::streams::Streams;
+use crate::io::usage::usage;
+use anyhow::Context;
+use p2m_core::storage::Writer;
+use p2m_mixed::{Format, save_scene};
+use serde_json::json;
+use std::path::PathBuf;
+use std::time::Instant;
+
+fn help() -> String {
+    format!(
+        "\
+The file has the scene, too, so every command takes it in place of one. A command that searches by another backend, or with \
+another --k, builds its own index from that scene.
+
+A file can be read by programs with the same version of the format, on little-endian processors. It is checked before use: \
+what is damaged, cut off or contradictory is refused. Only with --map must nobody change the file while a command uses it. \
+This command writes a new file and renames it, so a command that has mapped the old one is not disturbed.
+
+{}
+
+Examples:
+  p2m build bunny.obj --backend p2m --out bunny.p2m
+  p2m query bunny.p2m --random 100000 --out answers.csv
+  p2m build turned.stl --backend kdop --k 18 --out turned.p2m",
+        json::STABILITY
+    )
+}
+
+/// Build an index over a scene and save it, for other commands to load instead of building it
+#[derive(clap::Args)]
+#[command(after_help = help())]
+pub(crate) struct Args {
+    #[command(flatten)]
+    index_args: IndexArgs,
+
+    /// Where to write the file, usually a name that ends in .p2m
+    #[arg(long, value_name = "FILE")]
+    out: PathBuf,
+
+    /// Report as one JSON object on the standard output, instead of a summary on the standard error
+    #[arg(long)]
+    json: bool,
+}
+
+pub(crate) fn run(streams: &Streams, args: &Args) -> anyhow::Result<()> {
+    let scene_args = &args.index_args.scene;
+    args.index_args.check()?;
+    if let Some(backend) = args.index_args.named().filter(|backend| !backend.is_saveable()) {
+        return Err(usage(format!("--backend {backend} has no index to save")));
+    }
+    args.index_args.p2m.check_saveable()?;
+    if args.json && crate::io::input::is_standard(&args.out) {
+        return Err(usage("--json reports on the standard output, so the index has to go to a file"));
+    }
+    Output::refuse_inputs(&args.out, &[&scene_args.path])?;
+    Output::refuse_terminal(streams, &args.out, Format::P2m.name())?;
+    let format = scene_args.format()?;
+    let pool = args.index_args.threads.pool()?;
+    let start = Instant::now();
+    let scene = read_scene(streams, &pool, scene_args, format)?;
+    let read_time = start.elapsed();
+    // The file is opened before the work, which would be lost if its name were wrong.
+    let mut output = Output::open(streams, Some(&args.out))?;
+
+    let start = Instant::now();
+    let (backend, kdop_directions, p2m) = args.index_args.choice(None, &scene.soup, DEFAULT_QUERY_COUNT, &pool)?;
+    let source = SceneSource { soup: &scene.soup, kdop_directions, p2m, saved: None };
+    let PreparedIndex { built, is_loaded, .. } =
+        source.prepare(streams, backend, &pool).with_context(|| scene_args.name())?;
+    let build_time = start.elapsed();
+
+    let start = Instant::now();
+    output = output.with_progress(streams);
+    let mut writer = Writer::default();
+    save_scene(&scene, &mut writer);
+    built.save(&mut writer);
+    writer.write(&mut output).with_context(|| output.cannot_write())?;
+    let bytes = output.bytes();
+    output.finish()?;
+    let write_time = start.elapsed();
+
+    let summary = SceneSummary::new(scene_args.name(), format, &scene);
+    let (backend, details) = (backend.name, built.details.clone());
+    let index = IndexSummary { scene: summary, backend, details, is_loaded, read_time, build_time };
+    let out = args.out.display();
+    if args.json {
+        let end = json!({
+            "threads": pool.current_num_threads(),
+            "cells": index.cells(),
+            "seconds": {
+                "read": read_time.as_secs_f64(),
+                "build": build_time.as_secs_f64(),
+                "write": write_time.as_secs_f64(),
+            },
+            "out": { "file": out.to_string(), "bytes": bytes },
+        });
+        return json::print(streams, &json::joined([index.json("build"), end]));
+    }
+    let mut text = String::new();
+    // Writing to a string does not fail.
+    let _ = index.write(&mut text, None);
+    streams.print_summary(format_args!("{text}written  {out}, {bytes} bytes in {write_time:.3?}\n"));
+    Ok(())
+}

@@ -1,0 +1,300 @@
+//! `p2m generate`: generates scenes.
+
+use crate::io::input::is_standard;
+use crate::io::json;
+use crate::io::progress::{Progress, Unit};
+use crate::io::streams::Streams;
+use crate::io::usage::{finite, one_of, whole_number};
+use crate::scene::convert::Target;
+use crate::scene::modify::{self, Modifiers};
+use clap::{Args as ClapArgs, Subcommand, value_parser};
+use p2m_mixed::generate::{
+    CableBundle, Cone, Cylinder, IcoSphere, Kind, KnotAndCables, MixedSizes, SkewedGear, Sphere, TorusKnot,
+};
+use p2m_mixed::{Format, Scene};
+use serde_json::{Value, json};
+use std::path::PathBuf;
+
+/// Make a scene from nothing, the same on every machine
+#[derive(ClapArgs)]
+#[command(after_help = help())]
+pub(crate) struct Args {
+    #[command(subcommand)]
+    kind: Command,
+}
+
+fn help() -> String {
+    format!(
+        "\
+Each kind of scene has options of its own, and all can be changed on the way (see p2m generate KIND --help). {}
+
+{}
+
+Examples:
+  p2m generate knot-and-cables --out knot_and_cables.obj
+  p2m generate skewed-gear --rotate-x 45 --rotate-y 45 --out gear.ply
+  p2m generate ico-sphere --subdivide 2 --displace 0.1 | p2m info - --format obj",
+        modify::ORDER,
+        json::STABILITY
+    )
+}
+
+impl Args {
+    /// The name of the kind of scene on the command line.
+    pub(crate) fn name(&self) -> &'static str {
+        self.kind.parts().0.name()
+    }
+}
+
+/// The file that the scene is written to, and the changes before that.
+#[derive(ClapArgs)]
+struct Destination {
+    /// Where to write the scene; `-` is the standard output. The file appears under this name when it is complete
+    #[arg(long, value_name = "FILE", default_value = "-")]
+    out: PathBuf,
+
+    /// The format, if the extension does not name it; OBJ on the standard output
+    #[arg(long, value_name = "FORMAT", value_parser = one_of::<Format>(Format::NAMES), ignore_case = true)]
+    to: Option<Format>,
+
+    /// Report as one JSON object on the standard output; needs --out FILE
+    #[arg(long)]
+    json: bool,
+
+    #[command(flatten)]
+    modifiers: Modifiers,
+}
+
+#[derive(Subcommand)]
+enum Command {
+    /// A torus knot of triangles with cables of segments around it
+    #[command(after_help = "Example:\n  p2m generate knot-and-cables --rings 600 --sides 24 --out fine.obj")]
+    KnotAndCables {
+        /// Rings of vertices along the knot
+        #[arg(long, default_value_t = KnotAndCables::default().rings, value_parser = value_parser!(u32).range(3..))]
+        rings: u32,
+        /// Vertices of each ring
+        #[arg(long, default_value_t = KnotAndCables::default().sides, value_parser = value_parser!(u32).range(3..))]
+        sides: u32,
+        /// Cables
+        #[arg(long, default_value_t = KnotAndCables::default().cables)]
+        cables: u32,
+        /// Segments of each cable
+        #[arg(long, default_value_t = KnotAndCables::default().cable_segments, value_parser = value_parser!(u32).range(1..))]
+        cable_segments: u32,
+        #[command(flatten)]
+        destination: Destination,
+    },
+
+    /// A closed tube of triangles along a torus knot
+    #[command(after_help = "Example:\n  p2m generate torus-knot --p 3 --q 5 --tube-radius 0.2 --out knot.ply")]
+    TorusKnot {
+        /// Turns around the axis of the torus
+        #[arg(long, default_value_t = TorusKnot::default().p)]
+        p: u32,
+        /// Turns around the tube of the torus; no common divisor with P
+        #[arg(long, default_value_t = TorusKnot::default().q)]
+        q: u32,
+        /// Rings of vertices along the knot
+        #[arg(long, default_value_t = TorusKnot::default().rings, value_parser = value_parser!(u32).range(3..))]
+        rings: u32,
+        /// Vertices of each ring
+        #[arg(long, default_value_t = TorusKnot::default().sides, value_parser = value_parser!(u32).range(3..))]
+        sides: u32,
+        /// The radius of the tube, where those of the torus are 2 and 0.8
+        #[arg(long, value_name = "R", default_value_t = TorusKnot::default().tube_radius, value_parser = finite, allow_negative_numbers = true)]
+        tube_radius: f64,
+        #[command(flatten)]
+        destination: Destination,
+    },
+
+    /// A helical gear around the z axis, of thin triangles alone
+    #[command(after_help = "Example:\n  p2m generate skewed-gear --rotate-x 45 --rotate-y 45 --out gear.ply")]
+    SkewedGear {
+        /// Teeth
+        #[arg(long, default_value_t = SkewedGear::default().teeth, value_parser = value_parser!(u32).range(3..))]
+        teeth: u32,
+        /// Points of the outline for each tooth: the more, the thinner the triangles
+        #[arg(long, default_value_t = SkewedGear::default().points, value_parser = value_parser!(u32).range(4..))]
+        points: u32,
+        #[command(flatten)]
+        destination: Destination,
+    },
+
+    /// The unit sphere by latitude and longitude, its triangles thin at the poles
+    #[command(after_help = "Example:\n  p2m generate sphere --meridians 360 --bands 180 --out sphere.stl")]
+    Sphere {
+        /// Vertices of each parallel
+        #[arg(long, default_value_t = Sphere::default().meridians, value_parser = value_parser!(u32).range(3..))]
+        meridians: u32,
+        /// Bands between the parallels, those at the poles included
+        #[arg(long, default_value_t = Sphere::default().bands, value_parser = value_parser!(u32).range(2..))]
+        bands: u32,
+        #[command(flatten)]
+        destination: Destination,
+    },
+
+    /// The unit sphere as a subdivided icosahedron, its triangles alike
+    #[command(after_help = "Example:\n  p2m generate ico-sphere --frequency 100 --out sphere.ply")]
+    IcoSphere {
+        /// Into how many parts each edge of the icosahedron is cut
+        #[arg(long, default_value_t = IcoSphere::default().frequency, value_parser = value_parser!(u32).range(1..))]
+        frequency: u32,
+        #[command(flatten)]
+        destination: Destination,
+    },
+
+    /// A closed cone of radius 1 from z = -1 to its apex at z = 1
+    #[command(after_help = "Example:\n  p2m generate cone --sides 6 --bands 1 --cap-bands 1 --out pyramid.off")]
+    Cone {
+        /// Vertices around
+        #[arg(long, default_value_t = Cone::default().sides, value_parser = value_parser!(u32).range(3..))]
+        sides: u32,
+        /// Bands of the slope
+        #[arg(long, default_value_t = Cone::default().bands, value_parser = value_parser!(u32).range(1..))]
+        bands: u32,
+        /// Rings of triangles of the base
+        #[arg(long, default_value_t = Cone::default().cap_bands, value_parser = value_parser!(u32).range(1..))]
+        cap_bands: u32,
+        #[command(flatten)]
+        destination: Destination,
+    },
+
+    /// A closed cylinder of radius 1 from z = -1 to z = 1
+    #[command(after_help = "Example:\n  p2m generate cylinder --scale 10 --translate 0 0 5 --out can.obj")]
+    Cylinder {
+        /// Vertices around
+        #[arg(long, default_value_t = Cylinder::default().sides, value_parser = value_parser!(u32).range(3..))]
+        sides: u32,
+        /// Bands of the wall
+        #[arg(long, default_value_t = Cylinder::default().bands, value_parser = value_parser!(u32).range(1..))]
+        bands: u32,
+        /// Rings of triangles of each cap
+        #[arg(long, default_value_t = Cylinder::default().cap_bands, value_parser = value_parser!(u32).range(1..))]
+        cap_bands: u32,
+        #[command(flatten)]
+        destination: Destination,
+    },
+
+    /// Twisted strands of segments along a knot
+    #[command(after_help = "Example:\n  p2m generate cable-bundle --strands 19 --twists 12 --out bundle.obj")]
+    CableBundle {
+        /// Strands
+        #[arg(long, default_value_t = CableBundle::default().strands, value_parser = value_parser!(u32).range(1..))]
+        strands: u32,
+        /// Segments of each strand
+        #[arg(long, default_value_t = CableBundle::default().segments, value_parser = value_parser!(u32).range(1..))]
+        segments: u32,
+        /// How often the bundle turns about itself
+        #[arg(long, value_name = "T", default_value_t = CableBundle::default().twists, value_parser = finite, allow_negative_numbers = true)]
+        twists: f64,
+        /// The radius of the bundle, where the knot's torus has radii 2 and 0.8
+        #[arg(long, value_name = "R", default_value_t = CableBundle::default().radius, value_parser = finite, allow_negative_numbers = true)]
+        radius: f64,
+        #[command(flatten)]
+        destination: Destination,
+    },
+
+    /// Random triangles, segments and points with sizes over orders of magnitude
+    #[command(
+        after_help = "Example:\n  p2m generate mixed-sizes --triangles 100000 --decades 9 --seed 7 --out mixed.ply"
+    )]
+    MixedSizes {
+        /// Triangles
+        #[arg(long, default_value_t = MixedSizes::default().triangles)]
+        triangles: u32,
+        /// Segments
+        #[arg(long, default_value_t = MixedSizes::default().segments)]
+        segments: u32,
+        /// Points
+        #[arg(long, default_value_t = MixedSizes::default().points)]
+        points: u32,
+        /// The largest size is 10^D times the least one
+        #[arg(long, value_name = "D", default_value_t = MixedSizes::default().decades, value_parser = finite, allow_negative_numbers = true)]
+        decades: f64,
+        /// Another seed makes another scene
+        #[arg(long, value_name = "K", default_value_t = MixedSizes::default().seed, value_parser = whole_number, allow_negative_numbers = true)]
+        seed: u64,
+        #[command(flatten)]
+        destination: Destination,
+    },
+}
+
+impl Command {
+    /// Returns the kind of scene with its options, these options as a report names them, and the target of the scene.
+    fn parts(&self) -> (Kind, Value, &Destination) {
+        match *self {
+            Self::KnotAndCables { rings, sides, cables, cable_segments, ref destination } => {
+                let options = KnotAndCables { rings, sides, cables, cable_segments };
+                let json =
+                    json!({ "rings": rings, "sides": sides, "cables": cables, "cable_segments": cable_segments });
+                (Kind::KnotAndCables(options), json, destination)
+            }
+            Self::TorusKnot { p, q, rings, sides, tube_radius, ref destination } => {
+                let options = TorusKnot { p, q, rings, sides, tube_radius };
+                let json = json!({ "p": p, "q": q, "rings": rings, "sides": sides, "tube_radius": tube_radius });
+                (Kind::TorusKnot(options), json, destination)
+            }
+            Self::SkewedGear { teeth, points, ref destination } => {
+                let options = SkewedGear { teeth, points };
+                (Kind::SkewedGear(options), json!({ "teeth": teeth, "points": points }), destination)
+            }
+            Self::Sphere { meridians, bands, ref destination } => {
+                let options = Sphere { meridians, bands };
+                (Kind::Sphere(options), json!({ "meridians": meridians, "bands": bands }), destination)
+            }
+            Self::IcoSphere { frequency, ref destination } => {
+                let options = IcoSphere { frequency };
+                (Kind::IcoSphere(options), json!({ "frequency": frequency }), destination)
+            }
+            Self::Cone { sides, bands, cap_bands, ref destination } => {
+                let options = Cone { sides, bands, cap_bands };
+                let json = json!({ "sides": sides, "bands": bands, "cap_bands": cap_bands });
+                (Kind::Cone(options), json, destination)
+            }
+            Self::Cylinder { sides, bands, cap_bands, ref destination } => {
+                let options = Cylinder { sides, bands, cap_bands };
+                let json = json!({ "sides": sides, "bands": bands, "cap_bands": cap_bands });
+                (Kind::Cylinder(options), json, destination)
+            }
+            Self::CableBundle { strands, segments, twists, radius, ref destination } => {
+                let options = CableBundle { strands, segments, twists, radius };
+                let json = json!({ "strands": strands, "segments": segments, "twists": twists, "radius": radius });
+                (Kind::CableBundle(options), json, destination)
+            }
+            Self::MixedSizes { triangles, segments, points, decades, seed, ref destination } => {
+                let options = MixedSizes { triangles, segments, points, decades, seed };
+                let json = json!({
+                    "triangles": triangles, "segments": segments, "points": points, "decades": decades, "seed": seed
+                });
+                (Kind::MixedSizes(options), json, destination)
+            }
+        }
+    }
+}
+
+pub(crate) fn run(streams: &Streams, args: &Args) -> anyhow::Result<()> {
+    let (kind, options, destination) = args.kind.parts();
+    let target = Target::new(streams, &destination.out, destination.to, Some(Format::Obj))?;
+    target.check_report(destination.json)?;
+    let progress = Progress::start(streams, "making the scene", None, Unit::None);
+    let soup = kind.generate().map_err(modify::refused)?;
+    drop(progress);
+    let scene = destination.modifiers.apply(streams, Scene::from(soup))?;
+    let written = target.write(streams, &scene)?;
+    if destination.json {
+        let report = json!({
+            "p2m": "generate",
+            "version": json::VERSION,
+            "kind": kind.name(),
+            "options": options,
+            "changes": destination.modifiers.json(),
+            "out": written.json(),
+        });
+        return json::print(streams, &report);
+    }
+    if !is_standard(&destination.out) {
+        streams.print_summary(format_args!("made     {}\n{}", kind.description(), written.text()));
+    }
+    Ok(())
+}

@@ -1,0 +1,168 @@
+//! The changes that `p2m convert` and `p2m generate` apply to scenes.
+
+use crate::io::progress::{Progress, Unit};
+use crate::io::streams::Streams;
+use crate::io::usage::{finite, positive, usage};
+use p2m_core::{Element, PrimitiveSet, Soup};
+use p2m_mixed::generate::{GenerateError, Subdivide, Transform, gapped, penetrating, subdivide};
+use p2m_mixed::{Object, Scene};
+use serde_json::{Value, json};
+
+/// The changes to a scene.
+#[derive(clap::Args)]
+#[command(next_help_heading = "Changes, applied in this order")]
+pub(crate) struct Modifiers {
+    /// Cut each triangle into four and each segment into two, N times
+    #[arg(long, value_name = "N", allow_negative_numbers = true)]
+    subdivide: Option<u32>,
+
+    /// While subdividing, displace the middle of each edge by up to this part of its length, at most 0.5
+    #[arg(long, value_name = "A", value_parser = finite, allow_negative_numbers = true, requires = "subdivide")]
+    displace: Option<f64>,
+
+    /// Seed of the displacements
+    #[arg(long, value_name = "K", default_value_t = Subdivide::default().seed, allow_negative_numbers = true, requires = "displace")]
+    displace_seed: u64,
+
+    /// Shrink each primitive about its centroid to this part of its size, which opens gaps between them
+    #[arg(long, value_name = "F", value_parser = finite, allow_negative_numbers = true, conflicts_with = "penetrate")]
+    gap: Option<f64>,
+
+    /// Enlarge each primitive about its centroid by this factor, so that they run through each other
+    #[arg(long, value_name = "F", value_parser = finite, allow_negative_numbers = true)]
+    penetrate: Option<f64>,
+
+    /// Rotate about the x axis, counter-clockwise seen from its positive end
+    #[arg(long, value_name = "DEGREES", value_parser = finite, allow_negative_numbers = true)]
+    rotate_x: Option<f64>,
+
+    /// Rotate about the y axis
+    #[arg(long, value_name = "DEGREES", value_parser = finite, allow_negative_numbers = true)]
+    rotate_y: Option<f64>,
+
+    /// Rotate about the z axis
+    #[arg(long, value_name = "DEGREES", value_parser = finite, allow_negative_numbers = true)]
+    rotate_z: Option<f64>,
+
+    /// Scale about the origin
+    #[arg(long, value_name = "F", value_parser = positive, allow_negative_numbers = true)]
+    scale: Option<f64>,
+
+    /// Move by this vector
+    #[arg(long, value_names = ["X", "Y", "Z"], num_args = 3, value_parser = finite, allow_negative_numbers = true)]
+    translate: Option<Vec<f64>>,
+}
+
+/// The paragraph of the help about these options.
+pub(crate) const ORDER: &str = "\
+Changes are applied in the order in which this help lists them, whatever their order on the command line; for another one, \
+chain runs: p2m convert a.obj - --to ply --rotate-z 30 | p2m convert - b.obj --from ply --subdivide 1.";
+
+impl Modifiers {
+    /// Returns the scene after all changes. The parts of a subdivided primitive keep its name.
+    pub(crate) fn apply(&self, streams: &Streams, scene: Scene) -> anyhow::Result<Scene> {
+        self.changed(streams, scene).map_err(refused)
+    }
+
+    fn changed(&self, streams: &Streams, mut scene: Scene) -> Result<Scene, GenerateError> {
+        if let Some(levels) = self.subdivide {
+            let _progress = Progress::start(streams, "subdividing", None, Unit::None);
+            let options = Subdivide { levels, amplitude: self.displace.unwrap_or(0.0), seed: self.displace_seed };
+            let objects = subdivided_objects(&scene, levels);
+            let soup = subdivide(&scene.soup, &options)?;
+            scene = with_soup(&scene, soup, objects);
+        }
+        let resized = match (self.gap, self.penetrate) {
+            (Some(factor), _) => Some(gapped(&scene.soup, factor)?),
+            (_, Some(factor)) => Some(penetrating(&scene.soup, factor)?),
+            _ => None,
+        };
+        if let Some(soup) = resized {
+            let objects = scene.objects.clone();
+            scene = with_soup(&scene, soup, objects);
+        }
+        if let Some(transform) = self.transform() {
+            scene.soup = transform.apply(&scene.soup)?;
+        }
+        Ok(scene)
+    }
+
+    fn transform(&self) -> Option<Transform> {
+        let mut transform = Transform::default();
+        if let Some(degrees) = self.rotate_x {
+            transform = transform.rotated_x(degrees);
+        }
+        if let Some(degrees) = self.rotate_y {
+            transform = transform.rotated_y(degrees);
+        }
+        if let Some(degrees) = self.rotate_z {
+            transform = transform.rotated_z(degrees);
+        }
+        if let Some(factor) = self.scale {
+            transform = transform.scaled(factor);
+        }
+        if let Some(&[x, y, z]) = self.translate.as_deref() {
+            transform = transform.translated([x, y, z]);
+        }
+        (transform != Transform::default()).then_some(transform)
+    }
+
+    /// Returns the requested changes in the order in which they are applied.
+    pub(crate) fn json(&self) -> Value {
+        let mut changes = Vec::new();
+        let mut push = |name: &str, value: Option<Value>| {
+            if let Some(value) = value {
+                changes.push(json!({ "change": name, "by": value }));
+            }
+        };
+        push("subdivide", self.subdivide.map(Value::from));
+        push("displace", self.displace.map(Value::from));
+        push("gap", self.gap.map(Value::from));
+        push("penetrate", self.penetrate.map(Value::from));
+        push("rotate_x", self.rotate_x.map(Value::from));
+        push("rotate_y", self.rotate_y.map(Value::from));
+        push("rotate_z", self.rotate_z.map(Value::from));
+        push("scale", self.scale.map(Value::from));
+        push("translate", self.translate.clone().map(Value::from));
+        Value::from(changes)
+    }
+}
+
+/// Returns a scene with other primitives. The list of skipped records stays.
+fn with_soup(scene: &Scene, soup: Soup<f64>, objects: Vec<Object>) -> Scene {
+    let mut changed = Scene::from(soup);
+    changed.objects = objects;
+    changed.skipped.clone_from(&scene.skipped);
+    changed
+}
+
+/// Returns the ranges of the parts of named primitives after this number of subdivisions. The parts of each primitive
+/// follow one another where the primitive was.
+fn subdivided_objects(scene: &Scene, levels: u32) -> Vec<Object> {
+    if scene.objects.is_empty() {
+        return Vec::new();
+    }
+    // The subdivision itself refuses too many parts.
+    let parts = |element| match element {
+        Element::Point(_) => 1,
+        Element::Segment(_) => 1usize.checked_shl(levels).unwrap_or(usize::MAX),
+        Element::Triangle(_) => 1usize.checked_shl(2 * levels.min(100)).unwrap_or(usize::MAX),
+    };
+    let mut starts = Vec::with_capacity(scene.soup.len() + 1);
+    let mut next = 0usize;
+    for element in scene.soup.elements() {
+        starts.push(next);
+        next = next.saturating_add(parts(element));
+    }
+    starts.push(next);
+    let moved = |o: &Object| Object { name: o.name.clone(), ids: starts[o.ids.start]..starts[o.ids.end] };
+    scene.objects.iter().map(moved).collect()
+}
+
+/// Converts an error of an option into one of usage.
+pub(crate) fn refused(error: GenerateError) -> anyhow::Error {
+    match error {
+        GenerateError::Build(_) => anyhow::Error::from(error).context("the scene cannot be made"),
+        _ => usage(error.to_string()),
+    }
+}

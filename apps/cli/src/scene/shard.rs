@@ -1,0 +1,215 @@
+//! `p2m shard`: writes scenes as an index in shards.
+
+use crate::index::backend::{Backend, backends};
+use crate::io::input::{self, read_scene_and_index};
+use crate::io::interrupt::{Listed, unfinished};
+use crate::io::json;
+use crate::io::progress::{Progress, Unit};
+use crate::io::streams::Streams;
+use crate::io::threads::ThreadArgs;
+use crate::io::usage::{bytes, one_of};
+use p2m_backends::BackendEntry;
+use p2m_mixed::{Format, PieceOptions, Skipped};
+use p2m_shards::{ShardError, ShardOptions, ShardWriter, ShardedIndex, shard_file};
+use rayon::ThreadPool;
+use serde_json::{Value, json};
+use std::ops::ControlFlow;
+use std::path::{Path, PathBuf};
+use std::time::{Duration, Instant};
+
+fn help() -> String {
+    format!(
+        "\
+The scenes are joined in the order in which they are named: primitives are numbered on from one to the next. \
+`p2m query` and `p2m ray` take the folder in place of a scene, load a shard when a query needs it, and give the \
+answers of one index over all, apart from the last bits of lower bounds. With --epsilon or --max-visits an answer may \
+differ from that of one index, because these options permit several answers. `p2m query` and `p2m ray` refuse a \
+folder of more than 2^30 primitives, because such ids do not fit into a table of answers.
+
+Space is divided so that the file of a shard is at most as long as --max-bytes says. While the folder is written, one \
+shard is in memory at a time. Files are read in pieces. Compressed files, saved indexes, the standard input, and files \
+without the extension of their format are read as a whole, so they have to fit into memory. In measurements, pieces \
+and shards took at most 30 MB plus 2.6 times --max-bytes. Temporary files in the folder take 88 bytes for each \
+primitive, and twice that for a while. While a file is read, they also take at most 24 bytes for each of its vertices.
+
+The file manifest.json appears last, so a folder without it is unfinished, and an index that is replaced stays until \
+then. Each run writes files of its own, and the next run with --replace removes what killed runs have left. The \
+manifest has the box, the number of primitives and the checksum of each shard. A query fails if it needs a shard that \
+is missing, damaged or another one.
+
+{}
+
+Examples:
+  p2m shard city.obj --max-bytes 500MB --out city/
+  p2m shard north.ply south.ply --out country/ --replace
+  p2m query city/ --points scan.xyz --max-memory 2GB --out answers.npy",
+        json::STABILITY
+    )
+}
+
+/// Divide scenes that are larger than memory into shards, each with its index, in a folder
+#[derive(clap::Args)]
+#[command(after_help = help())]
+pub(crate) struct Args {
+    /// Scenes: OBJ, PLY, STL or OFF files, or indexes that `p2m build` saved; `-` is the standard input
+    #[arg(value_name = "SCENE", required = true)]
+    scenes: Vec<PathBuf>,
+
+    /// The format of the scenes, if their extensions do not name it
+    #[arg(long, value_name = "FORMAT", value_parser = one_of::<Format>(Format::NAMES), ignore_case = true)]
+    format: Option<Format>,
+
+    /// The largest length of the file of a shard, such as 500MB or 2GiB. A shard has at least one primitive, which
+    /// takes about 2.5 kB
+    #[arg(long, value_name = "BYTES", default_value = "1GiB", value_parser = bytes)]
+    max_bytes: u64,
+
+    /// The index of each shard [default: aabb]
+    #[arg(long, value_parser = backends(BackendEntry::is_saveable))]
+    backend: Option<Backend>,
+
+    /// Where to write the files, a folder that is made if it is not there
+    #[arg(long, value_name = "FOLDER")]
+    out: PathBuf,
+
+    /// Replace the index in shards that the folder has, when the new one is complete
+    #[arg(long)]
+    replace: bool,
+
+    /// Report as one JSON object on the standard output, instead of a summary on the standard error
+    #[arg(long)]
+    json: bool,
+
+    #[command(flatten)]
+    threads: ThreadArgs,
+}
+
+/// The times of a run.
+#[derive(Default)]
+struct Times {
+    read: Duration,
+    write: Duration,
+}
+
+pub(crate) fn run(streams: &Streams, args: &Args) -> anyhow::Result<()> {
+    let format_of = |path: &PathBuf| input::scene_format(path, args.format, "--format");
+    let formats: Vec<Format> = args.scenes.iter().map(format_of).collect::<Result<_, _>>()?;
+    let backend = args.backend.unwrap_or_else(BackendEntry::default_backend);
+    let options =
+        ShardOptions::default().with_max_bytes(args.max_bytes).with_backend(backend).with_replace(args.replace);
+    let pool = args.threads.pool()?;
+
+    let start = Instant::now();
+    let mut files = unfinished();
+    let is_new = !args.out.exists();
+    let mut writer = ShardWriter::new(&args.out, options).map_err(name_the_option)?;
+    let first = args.out.join(shard_file(writer.run(), 0));
+    let paths = is_new.then_some(&args.out).into_iter().chain([&first]);
+    let listed = paths.map(|path| Listed::new(&mut files, path)).collect();
+    drop(files);
+    let mut skipped = Vec::new();
+    for (path, format) in args.scenes.iter().zip(formats) {
+        let found = add(streams, &pool, &mut writer, path, format)?;
+        skipped.extend(found.into_iter().map(|kind| (input::name(path), kind)));
+    }
+    let mut times = Times { read: start.elapsed(), ..Times::default() };
+
+    let start = Instant::now();
+    let index = finish(streams, args, writer, listed, &pool)?;
+    times.write = start.elapsed();
+    report(streams, args, &index, &skipped, &times)
+}
+
+/// Adds the primitives of a file, and returns the records that were skipped. The file is read in pieces if that is
+/// possible, so that it may be larger than memory.
+fn add(
+    streams: &Streams,
+    pool: &ThreadPool,
+    writer: &mut ShardWriter,
+    path: &Path,
+    format: Format,
+) -> anyhow::Result<Vec<Skipped>> {
+    if Format::from_path(path).ok() == Some(format) && input::is_plain_file(path) {
+        let _progress = Progress::start(streams, &format!("reading {}", input::name(path)), None, Unit::None);
+        return Ok(pool.install(|| writer.add_file(path, &PieceOptions::default()))?.skipped);
+    }
+    let (scene, _) = read_scene_and_index(streams, pool, path, format, false)?;
+    writer.add_scene(&scene)?;
+    Ok(scene.skipped)
+}
+
+/// Builds all shards. Until the last one is written, an interruption removes those that are there. The folder, if it
+/// is new, and the first file are listed already.
+fn finish(
+    streams: &Streams,
+    args: &Args,
+    writer: ShardWriter,
+    mut listed: Vec<Listed>,
+    pool: &rayon::ThreadPool,
+) -> anyhow::Result<ShardedIndex> {
+    let total = writer.primitive_count();
+    let bar = Progress::start(streams, "building shards", Some(total), Unit::Items("primitives"));
+    let (run, mut finished) = (writer.run(), 0);
+    let mut progress = |done| {
+        bar.advance_to(done);
+        if done == total {
+            listed.clear();
+        } else {
+            finished += 1;
+            listed.push(Listed::new(&mut unfinished(), &args.out.join(shard_file(run, finished))));
+        }
+        ControlFlow::Continue(())
+    };
+    pool.install(|| writer.finish_with_progress(&mut progress)).map_err(name_the_option)
+}
+
+/// Adds the option that replaces an index to the error that there is one already.
+fn name_the_option(error: ShardError) -> anyhow::Error {
+    match error {
+        ShardError::Exists { .. } => anyhow::anyhow!("{error}: give --replace to replace it"),
+        other => other.into(),
+    }
+}
+
+fn report(
+    streams: &Streams,
+    args: &Args,
+    index: &ShardedIndex,
+    skipped: &[(String, Skipped)],
+    times: &Times,
+) -> anyhow::Result<()> {
+    let manifest = index.manifest();
+    let lengths = || manifest.shards.iter().map(|shard| shard.bytes);
+    let (count, total, largest) = (manifest.shards.len(), lengths().sum::<u64>(), lengths().max().unwrap_or(0));
+    let scenes: Vec<String> = args.scenes.iter().map(|path| input::name(path)).collect();
+    if args.json {
+        let skip = |(file, kind): &(String, Skipped)| json!({ "file": file, "kind": kind.what, "count": kind.count });
+        return json::print(
+            streams,
+            &json!({
+                "p2m": "shard",
+                "version": json::VERSION,
+                "scenes": scenes,
+                "primitives": json::counts(&manifest.counts()),
+                "skipped": skipped.iter().map(skip).collect::<Value>(),
+                "backend": manifest.backend,
+                "shards": { "count": count, "bytes": total, "largest_bytes": largest, "max_bytes": args.max_bytes },
+                "seconds": { "read": times.read.as_secs_f64(), "write": times.write.as_secs_f64() },
+                "out": { "folder": args.out.display().to_string() },
+            }),
+        );
+    }
+    for scene in &scenes {
+        streams.print_summary(format_args!("scene    {scene}\n"));
+    }
+    streams.print_summary(format_args!("         {}\n", crate::scene::info::counted(&manifest.counts())));
+    for (file, kind) in skipped {
+        streams.print_summary(format_args!("skipped  {kind} in {file}\n"));
+    }
+    let (backend, folder) = (&manifest.backend, args.out.display());
+    streams.print_summary(format_args!(
+        "backend  {backend}\nread     in {:.3?}\nwritten  {folder}, {count} shards, {total} bytes, the largest {largest}, in {:.3?}\n",
+        times.read, times.write
+    ));
+    Ok(())
+}
