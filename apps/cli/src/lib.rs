@@ -17,6 +17,9 @@ mod shell;
 
 pub use io::interrupt::listen;
 pub use io::streams::Streams;
+/// The measuring loop of `p2m tradeoff`, for p2m-bench. It may change in any release.
+#[doc(hidden)]
+pub use measure::harness;
 
 use clap::{CommandFactory, FromArgMatches, Parser, Subcommand};
 use std::ffi::OsString;

@@ -6,9 +6,9 @@ use crate::scene::Scene;
 use anyhow::Result;
 use nalgebra::Point3;
 use p2m_backends::{BACKENDS, BackendEntry, BuildSettings, QueryRegion, SearchStructure, Workload, recommend};
+use p2m_cli::harness::Table;
 use p2m_core::{QueryOptions, Soup};
 use p2m_testkit::queries::QuerySet;
-use p2m_tradeoff::Table;
 
 /// The number of queries that are timed.
 pub(crate) const QUERIES: usize = 20_000;

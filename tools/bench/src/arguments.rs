@@ -36,15 +36,11 @@ pub(crate) enum Command {
     Ray(RayArguments),
     /// Repeats the evaluation of the P2M paper, for docs/paper.md: prints tables and draws plots; fails if ours differ
     Paper(PaperArguments),
-    /// Compares speed with accuracy for all backends and settings: writes report.html and report.csv
-    Report(ReportArguments),
     /// Checks the accuracy contract where other libraries fail, for docs/extremes.md; fails if ours break it
     Extremes(ExtremesArguments),
     /// Checks distances between primitives where other libraries fail, for docs/extremes.md; fails if ours break the
     /// contract
     ExtremePairs(ExtremePairsArguments),
-    /// Compares two records of `report`: times that changed beyond noise, and errors that changed
-    Compare(CompareArguments),
     /// Compares the backend that is recommended for 10^5 and 10^7 queries with the best one
     Advise(AdviseArguments),
     /// Times distance fields on a grid, against other libraries and the figures of an article; fails if ours differ
@@ -413,23 +409,6 @@ pub(crate) struct PaperArguments {
 }
 
 #[derive(Args)]
-pub(crate) struct ReportArguments {
-    /// The folder of models [default: that of the variable P2M_MODELS, or ../shared/models]; generated scenes replace
-    /// missing models
-    #[arg(long)]
-    pub(crate) models: Option<PathBuf>,
-    /// Measure three scenes with fewer queries, in two minutes
-    #[arg(long)]
-    pub(crate) quick: bool,
-    /// The folder for report.html and report.csv [default: docs, and target/report with --quick]
-    #[arg(long)]
-    pub(crate) out: Option<PathBuf>,
-    /// Name of this build in page and record [default: native with AVX2 at compile time, else portable]
-    #[arg(long)]
-    pub(crate) label: Option<String>,
-}
-
-#[derive(Args)]
 pub(crate) struct ExtremesArguments {
     /// Answers about isolated primitives that are checked
     #[arg(long, default_value_t = 1_000_000)]
@@ -454,14 +433,6 @@ pub(crate) struct ExtremePairsArguments {
     pub(crate) seed: u64,
     #[command(flatten)]
     pub(crate) document: Document,
-}
-
-#[derive(Args)]
-pub(crate) struct CompareArguments {
-    /// The earlier record
-    pub(crate) first: PathBuf,
-    /// The later record
-    pub(crate) second: PathBuf,
 }
 
 #[derive(Args)]

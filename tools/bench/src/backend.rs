@@ -3,8 +3,8 @@
 use crate::queries::QuerySlice;
 use crate::scene::Scene;
 use nalgebra::Point3;
+use p2m_cli::harness::queries::Scalar as _;
 use p2m_core::Soup;
-use p2m_tradeoff::queries::Scalar as _;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 
 /// The answer to a query.
@@ -64,7 +64,7 @@ impl<C: BenchIndex> ErasedIndex for C {
 }
 
 /// A scalar, with access to the scene in that scalar.
-pub(crate) trait Scalar: p2m_tradeoff::queries::Scalar {
+pub(crate) trait Scalar: p2m_cli::harness::queries::Scalar {
     /// Returns the scene in this scalar and its heap bytes, or an error if the scene overflows the scalar.
     fn soup(scene: &Scene) -> Result<(&Soup<Self>, usize), Unavailable>;
 }

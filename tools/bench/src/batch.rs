@@ -5,10 +5,10 @@ use crate::scene::Scene;
 use anyhow::{Context, Result};
 use nalgebra::Point3;
 use p2m_bvh::AabbTree;
+use p2m_cli::harness::Table;
 use p2m_core::batch::{BatchOptions, closest_points_into};
 use p2m_core::{BuildIndex, Closest, ClosestPoint};
 use p2m_testkit::queries::QuerySet;
-use p2m_tradeoff::Table;
 use std::time::Instant;
 
 /// Prints wall times of batches over a scene, and returns whether all answers equal those of single queries.

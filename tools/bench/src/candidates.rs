@@ -5,12 +5,12 @@ use crate::scene::Scene;
 use anyhow::{Context, Result};
 use cpu_time::ThreadTime;
 use p2m_bvh::AabbTree;
+use p2m_cli::harness::Table;
 use p2m_core::engine::side_by_side::{Eight, EightNearest, SIDE_BY_SIDE, triangles};
 use p2m_core::engine::simd::{InstructionSet, Isa, SimdKernel};
 use p2m_core::engine::vector::V3;
 use p2m_core::{BuildIndex, ClosestPoint, PrimitiveSet, Projection, Shape};
 use p2m_testkit::queries::QuerySet;
-use p2m_tradeoff::Table;
 use std::hint::black_box;
 
 /// A query point and the triangle that is nearest to it.

@@ -1,10 +1,10 @@
 //! The commands of `p2m-bench`: each reads its scenes, runs the measurement and prints the result.
 
 use crate::arguments::{
-    AdversariesArguments, AdviseArguments, BatchArguments, Command, Common, CompareArguments, DelaunayArguments,
-    ExtremePairsArguments, ExtremesArguments, FieldArguments, InstancesArguments, KdopArguments, PairsArguments,
-    PaperArguments, PointsArguments, ProgramArguments, QueryArguments, RayArguments, ReportArguments, RivalArguments,
-    SavedArguments, ScaleArguments, SplitsArguments, ThreadsArguments, VerifyArguments,
+    AdversariesArguments, AdviseArguments, BatchArguments, Command, Common, DelaunayArguments, ExtremePairsArguments,
+    ExtremesArguments, FieldArguments, InstancesArguments, KdopArguments, PairsArguments, PaperArguments,
+    PointsArguments, ProgramArguments, QueryArguments, RayArguments, RivalArguments, SavedArguments, ScaleArguments,
+    SplitsArguments, ThreadsArguments, VerifyArguments,
 };
 use crate::backend::Backend;
 use crate::measure::Effort;
@@ -12,12 +12,12 @@ use crate::report::provenance;
 use crate::scene::Scene;
 use crate::{
     adversaries, advise, backends, batch, candidates, delaunay, extremes, field, instances, kdop, measure, octree,
-    pairs, paper, points, program, rays, refit, report, saved, scale, shards, splits, threads, tradeoff, verify,
+    pairs, paper, points, program, rays, refit, report, saved, scale, shards, splits, threads, verify,
 };
-use anyhow::{Context, Result};
+use anyhow::Result;
 use clap::ValueEnum as _;
+use p2m_cli::harness::Table;
 use p2m_testkit::queries::QuerySet;
-use p2m_tradeoff::Table;
 use std::path::PathBuf;
 
 /// Runs a command, and returns whether it found what it has to find.
@@ -44,10 +44,8 @@ pub(crate) fn run(command: Command) -> Result<bool> {
         Command::Adversaries(arguments) => run_adversaries(&arguments),
         Command::Rival(arguments) => run_external(&arguments),
         Command::Saved(arguments) => compare_saved(&arguments),
-        Command::Report(arguments) => write_report(&arguments),
         Command::Extremes(arguments) => check_extremes(&arguments),
         Command::ExtremePairs(arguments) => check_extreme_pairs(&arguments),
-        Command::Compare(arguments) => compare_records(&arguments),
         Command::Paper(arguments) => repeat_paper(&arguments),
     }
 }
@@ -104,14 +102,6 @@ fn default_models() -> PathBuf {
     std::env::var_os("P2M_MODELS").map_or_else(|| PathBuf::from("../shared/models"), PathBuf::from)
 }
 
-/// Writes the report, and returns whether all promises were kept.
-fn write_report(arguments: &ReportArguments) -> Result<bool> {
-    let ReportArguments { models, quick, out, label } = arguments;
-    let models = models.clone().unwrap_or_else(default_models);
-    let out = out.clone().unwrap_or_else(|| PathBuf::from(if *quick { "target/report" } else { "docs" }));
-    tradeoff::write(&models, *quick, &out, &provenance(label.as_deref()))
-}
-
 /// Checks extreme input, and returns whether our backends kept all promises.
 fn check_extremes(arguments: &ExtremesArguments) -> Result<bool> {
     let &ExtremesArguments { cases, scenes, seed, ref document } = arguments;
@@ -121,18 +111,6 @@ fn check_extremes(arguments: &ExtremesArguments) -> Result<bool> {
 fn check_extreme_pairs(arguments: &ExtremePairsArguments) -> Result<bool> {
     let &ExtremePairsArguments { cases, seed, ref document } = arguments;
     extremes::pairs::run(cases, seed, document.write.as_deref(), &provenance(None))
-}
-
-/// Prints a table of differences. Only records that cannot be compared are an error.
-fn compare_records(arguments: &CompareArguments) -> Result<bool> {
-    let read = |path: &PathBuf| -> Result<Vec<p2m_tradeoff::record::Line>> {
-        let name = || path.display().to_string();
-        let text = std::fs::read_to_string(path).with_context(name)?;
-        p2m_tradeoff::record::read_record(&text).with_context(name)
-    };
-    let (first, second) = (read(&arguments.first)?, read(&arguments.second)?);
-    print!("{}", p2m_tradeoff::compare::compare(&first, &second)?);
-    Ok(true)
 }
 
 /// Builds over adversarial scenes, and returns whether all budgets were kept and all answers are right.

@@ -6,9 +6,9 @@ use crate::memory;
 use crate::rounds::thread_seconds;
 use crate::scene::Scene;
 use anyhow::{Context, Result};
+use p2m_cli::harness::Table;
 use p2m_interception::delaunay::{Delaunay, Work};
 use p2m_testkit::{rng, vector};
-use p2m_tradeoff::Table;
 use std::path::PathBuf;
 
 /// The distance of the bounding sites from the centre of the scene, in half diagonals, for queries in ten

@@ -7,8 +7,8 @@
 use nalgebra::Point3;
 use p2m_core::{Real, Soup};
 
-pub(crate) use double::{prepare as parry_double, shapes as double};
-pub(crate) use single::{prepare as parry_single, shapes as single};
+pub(crate) use double::prepare as parry_double;
+pub(crate) use single::prepare as parry_single;
 
 /// Generates the adapter for one of the two crates of parry, which have the same names for different types.
 macro_rules! parry {
@@ -63,7 +63,7 @@ macro_rules! parry {
             }
 
             /// Copies the positions, as a user of parry has to, and returns a function that builds the shapes.
-            pub(crate) fn shapes(scene: &Scene) -> Result<impl FnOnce() -> Result<Parry, Unavailable> + use<>, Unavailable> {
+            fn shapes(scene: &Scene) -> Result<impl FnOnce() -> Result<Parry, Unavailable> + use<>, Unavailable> {
                 let (soup, _) = <$scalar as Scalar>::soup(scene)?;
                 if !soup.points().is_empty() {
                     return Err(Unavailable("no shape for points".to_owned()));

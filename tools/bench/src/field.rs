@@ -10,13 +10,13 @@ use crate::rounds::{rotated, thread_seconds};
 use crate::scene::Scene;
 use anyhow::{Context as _, Result, anyhow};
 use p2m_bvh::AabbTree;
+use p2m_cli::harness::Table;
 use p2m_core::{BruteForce, BuildIndex, ClosestPoint, PrimitiveSet, Soup};
 use p2m_field::grid_candidates::CandidateLists;
 use p2m_field::sign::{SignError, SignedDistance};
 use p2m_field::{FieldOptions, Grid, distances, distances_by_lists, signed_distances, signed_distances_by_lists};
 use p2m_interception::{Domain, OctreeIndex, P2mIndex};
 use p2m_mixed::generate::{IcoSphere, ico_sphere};
-use p2m_tradeoff::Table;
 
 /// The number of layers of the grid in a slab, which methods fill in turn.
 const LAYERS: usize = 16;

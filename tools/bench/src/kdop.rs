@@ -11,11 +11,11 @@ use crate::scene::Scene;
 use anyhow::Result;
 use nalgebra::{Point3, Rotation3, Vector3};
 use p2m_bvh::{AabbOptions, AabbTree};
+use p2m_cli::harness::Table;
 use p2m_core::{BuildIndex, Soup, StatsCollector};
 use p2m_kdop::{DirectionChoice, Directions, KdopOptions, KdopTree};
 use p2m_testkit::left_first::LeftFirst;
 use p2m_testkit::queries::QuerySet;
-use p2m_tradeoff::Table;
 use std::f64::consts::PI;
 
 /// Rotation angles about the x axis and then the y axis, in multiples of pi.

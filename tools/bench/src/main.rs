@@ -48,11 +48,10 @@ mod scene;
 mod shards;
 mod splits;
 mod threads;
-mod tradeoff;
 mod verify;
 
 use clap::Parser as _;
-use p2m_tradeoff::queries;
+use p2m_cli::harness::queries;
 use std::process::ExitCode;
 
 fn main() -> anyhow::Result<ExitCode> {

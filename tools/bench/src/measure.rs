@@ -9,7 +9,7 @@ use crate::scene::Scene;
 use nalgebra::Point3;
 use p2m_testkit::queries::QuerySet;
 
-pub(crate) use p2m_tradeoff::MedianRange;
+pub(crate) use p2m_cli::harness::MedianRange;
 
 /// Backends that need more nanoseconds for a query than this get [`SLOW_QUERIES`] queries.
 const SLOW_NANOSECONDS: f64 = 20_000.0;

@@ -6,10 +6,10 @@ use crate::our_indexes::{octree_options, over_soup_with};
 use crate::scene::Scene;
 use anyhow::{Context, Result};
 use nalgebra::{Point3, Vector3};
+use p2m_cli::harness::Table;
 use p2m_core::{Aabb, BuildIndex, PrimitiveSet};
 use p2m_interception::{Domain, OctreeIndex, OctreeOptions};
 use p2m_testkit::queries::QuerySet;
-use p2m_tradeoff::Table;
 use std::time::Instant;
 
 /// The options of a setting for a scene.

@@ -7,10 +7,10 @@ use crate::scene::Scene;
 use anyhow::{Context, Result};
 use nalgebra::{Point3, Rotation3, Vector3};
 use p2m_bvh::AabbTree;
+use p2m_cli::harness::Table;
 use p2m_core::{BuildIndex, ClosestPoint, PrimitiveSet, Soup};
 use p2m_interception::{OctreeIndex, P2mIndex};
 use p2m_testkit::queries::QuerySet;
-use p2m_tradeoff::Table;
 use std::hint::black_box;
 
 /// The angles by which one end of a scene is turned against the other, in degrees.

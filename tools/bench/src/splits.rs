@@ -6,10 +6,10 @@ use crate::our_indexes::over_soup_with;
 use crate::scene::Scene;
 use nalgebra::Point3;
 use p2m_bvh::{AabbOptions, AabbTree, SplitRule};
+use p2m_cli::harness::Table;
 use p2m_core::BuildIndex;
 use p2m_core::StatsCollector;
 use p2m_testkit::queries::QuerySet;
-use p2m_tradeoff::Table;
 
 fn options(rule: SplitRule) -> AabbOptions {
     AabbOptions::default().with_parallel(false).with_rule(rule)

@@ -4,7 +4,7 @@ use crate::measure::MedianRange;
 use crate::scene::Scene;
 use anyhow::{Context, Result};
 use p2m_backends::{BackendEntry, BuildSettings};
-use p2m_tradeoff::Table;
+use p2m_cli::harness::Table;
 use std::time::Instant;
 
 /// Prints the table of a scene. All numbers of threads build once in each round.

@@ -4,8 +4,8 @@ use crate::agree::{Agreement, Answers, compare_round};
 use crate::backend::{Answer, Backend, BoxedIndex, ScalarKind, Unavailable};
 use crate::queries::Queries;
 use crate::scene::Scene;
+use p2m_cli::harness::Table;
 use p2m_testkit::queries::QuerySet;
-use p2m_tradeoff::Table;
 use std::thread;
 
 /// Compares `backends` with the oracle of their scalar on every set, prints counts, and returns whether all

@@ -1,12 +1,12 @@
 //! Summaries of a run: its scene, its index and its answers, as text for people or as JSON for programs.
 
+use crate::answers::running_stats::RunningStats;
 use crate::io::json::{self, stats};
 use crate::scene::info::counted;
 use p2m_backends::{ChosenDirections, IndexDetails};
 use p2m_core::Closest;
 use p2m_mixed::statistics::Counts;
 use p2m_mixed::{Format, Scene, Skipped};
-use p2m_tradeoff::RunningStats;
 use serde_json::{Value, json};
 use std::fmt::{self, Write};
 use std::time::Duration;

@@ -4,11 +4,11 @@
 //! Within a version keys are added, never removed, renamed or given another meaning. Values that do not exist or are
 //! not finite are null.
 
+use crate::answers::running_stats::RunningStats;
 use crate::io::streams::Streams;
 use anyhow::Context;
 use p2m_mixed::Skipped;
 use p2m_mixed::statistics::Counts;
-use p2m_tradeoff::RunningStats;
 use serde_json::{Value, json};
 use std::io::{self, Write};
 

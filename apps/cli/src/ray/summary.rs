@@ -1,8 +1,8 @@
 //! The summary of the answers of rays, as text for people or as JSON for programs.
 
+use crate::answers::running_stats::RunningStats;
 use crate::io::json::stats;
 use p2m_core::Hit;
-use p2m_tradeoff::RunningStats;
 use serde_json::{Value, json};
 use std::fmt;
 

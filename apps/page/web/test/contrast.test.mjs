@@ -29,7 +29,7 @@ const colours = (style) =>
 
 test("text and marks have enough contrast", () => {
   const { ink, accent, paper, soft } = colours(read("apps/page/src/style.css"));
-  const marks = Object.values(colours(read("p2m-tradeoff/src/page/report.html")));
+  const marks = Object.values(colours(read("apps/cli/src/measure/tradeoff/page/report.html")));
   assert.equal(marks.length, 8);
   for (const theme of [0, 1]) {
     for (const text of [ink, accent]) {

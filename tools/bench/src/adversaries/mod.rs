@@ -15,13 +15,13 @@ use external::{Outcome, QUERIES};
 use nalgebra::Point3;
 use p2m_bvh::AabbTree;
 use p2m_bvh::{PacketTree, Volume};
+use p2m_cli::harness::{Provenance, Table};
 use p2m_core::{Aabb, BruteForce, ClosestPoint, Inspect, PrimitiveSet, QueryCost, Soup};
 use p2m_interception::{BuildStage, Progress};
 use p2m_interception::{OctreeIndex, P2mIndex};
 use p2m_kdop::KdopTree;
 use p2m_kdop::{Kdop, KdopOptions};
 use p2m_testkit::adversaries::{ADVERSARIES, Adversary, queries};
-use p2m_tradeoff::{Provenance, Table};
 use std::path::Path;
 use std::sync::atomic::{AtomicBool, Ordering};
 

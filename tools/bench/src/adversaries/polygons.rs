@@ -1,9 +1,9 @@
 //! Files of polygons that take as long to triangulate as a file may make it.
 
 use crate::rounds::thread_seconds;
+use p2m_cli::harness::Table;
 use p2m_mixed::{MAX_CORNERS, Reason, read_obj};
 use p2m_testkit::scenes::square_spiral;
-use p2m_tradeoff::Table;
 use std::fmt::Write as _;
 
 /// The numbers of polygons in the files. The last file exceeds the budget.

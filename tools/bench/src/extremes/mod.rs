@@ -14,8 +14,8 @@ pub(crate) use counts::ROUNDING;
 use crate::blocks::Blocks;
 use anyhow::Result;
 use external::LIBRARIES;
+use p2m_cli::harness::{Provenance, Table};
 use p2m_testkit::extremes::Extreme;
-use p2m_tradeoff::{Provenance, Table};
 use std::path::Path;
 use std::time::Instant;
 

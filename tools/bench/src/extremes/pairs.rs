@@ -4,11 +4,11 @@ use super::counts::Counts;
 use super::threads;
 use crate::blocks::Blocks;
 use anyhow::Result;
+use p2m_cli::harness::{Provenance, Table};
 use p2m_core::Real;
 use p2m_core::pair::{ERROR_CONSTANT_OF_PAIRS, NearestPair, nearest_pair};
 use p2m_testkit::families::{Family, Span, pair_in, shape};
 use p2m_testkit::oracle::Distance;
-use p2m_tradeoff::{Provenance, Table};
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::path::Path;
 

@@ -13,7 +13,7 @@ use crate::report::significant;
 use crate::rounds::{rotated, thread_seconds};
 use crate::scene::Scene;
 use anyhow::Result;
-use p2m_tradeoff::Table;
+use p2m_cli::harness::Table;
 use std::hint::black_box;
 
 /// The kind of a competitor tells with what its answers are compared.

@@ -4,7 +4,7 @@ use super::scenes::stem;
 use super::study::Study;
 use super::surfaces::quality;
 use crate::scene::Scene;
-use p2m_tradeoff::Table;
+use p2m_cli::harness::Table;
 
 /// Returns the time of a backend's query in microseconds, with the minimum and maximum of all rounds.
 fn query(study: &Study, name: &str) -> String {

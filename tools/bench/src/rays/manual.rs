@@ -7,11 +7,11 @@ use crate::backend::catch;
 use crate::measure::{Effort, MedianRange};
 use crate::scene::Scene;
 use anyhow::{Result, anyhow};
+use p2m_cli::harness::Table;
 use p2m_core::Ray;
 use p2m_kdop::Directions;
 use p2m_testkit::left_first::LeftFirst;
 use p2m_testkit::queries::QuerySet;
-use p2m_tradeoff::Table;
 
 const COLUMNS: [&str; 5] = ["aabb", "kdop-6", "kdop-14", "kdop-18", "kdop-26"];
 const HEAD: [&str; 5] = ["AABB", "6-DOP", "14-DOP", "18-DOP", "26-DOP"];

@@ -9,9 +9,9 @@ use crate::memory;
 use crate::report::{Line, Record, significant};
 use crate::scene::Scene;
 use anyhow::Result;
+use p2m_cli::harness::Provenance;
+use p2m_cli::harness::Table;
 use p2m_testkit::queries::QuerySet;
-use p2m_tradeoff::Provenance;
-use p2m_tradeoff::Table;
 
 /// A backend in a scene.
 struct Entry<'a> {

@@ -3,13 +3,13 @@
 //! A new way to trade accuracy for speed needs a variant of [`Accuracy`], a line of [`SETTINGS`] and an arm of each
 //! method of this module.
 
+use p2m_core::QueryOptions;
 use p2m_core::kernel::ERROR_CONSTANT;
-use p2m_core::{QueryOptions, Real};
 use serde::Serialize;
 
 /// The kind of answer that a query requests.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Accuracy {
+pub(crate) enum Accuracy {
     /// The closest point up to rounding errors.
     Exact,
     /// The certified nearest primitive, with its distance rounded once.
@@ -22,25 +22,25 @@ pub enum Accuracy {
 
 /// A setting of accuracy.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
-pub struct Setting {
+pub(crate) struct Setting {
     /// The name in tables, plots and records.
-    pub name: &'static str,
+    pub(crate) name: &'static str,
     /// A phrase that explains the setting to readers of a page.
-    pub about: &'static str,
+    pub(crate) about: &'static str,
     /// The kind of answer.
     #[serde(skip)]
-    pub accuracy: Accuracy,
+    pub(crate) accuracy: Accuracy,
 }
 
 /// The setting of a call without options, which the other settings are compared with.
-pub const DEFAULT: Setting = Setting {
+pub(crate) const DEFAULT: Setting = Setting {
     name: "default",
     about: "f64, no options: the closest point, up to rounding errors",
     accuracy: Accuracy::Exact,
 };
 
 /// All settings, the default one first.
-pub const SETTINGS: &[Setting] = &[
+pub(crate) const SETTINGS: &[Setting] = &[
     DEFAULT,
     Setting {
         name: "certified",
@@ -70,19 +70,17 @@ const fn within(name: &'static str, epsilon: f64, about: &'static str) -> Settin
 
 impl Setting {
     /// Returns the options of a query.
-    #[must_use]
-    pub fn options<T: Real>(&self) -> QueryOptions<T> {
+    pub(crate) fn options(&self) -> QueryOptions<f64> {
         let defaults = QueryOptions::default();
         match self.accuracy {
             Accuracy::Exact | Accuracy::Certified => defaults,
             Accuracy::MaxVisits(visits) => defaults.with_max_visits(visits),
-            Accuracy::Epsilon(epsilon) => defaults.with_epsilon(T::round_from_f64(epsilon)),
+            Accuracy::Epsilon(epsilon) => defaults.with_epsilon(epsilon),
         }
     }
 
     /// Returns the accuracy that answers promise.
-    #[must_use]
-    pub fn promise(&self) -> Promise {
+    pub(crate) fn promise(&self) -> Promise {
         match self.accuracy {
             Accuracy::Exact => Promise::Within(0.0),
             Accuracy::Certified => Promise::OneUlp,
@@ -94,7 +92,7 @@ impl Setting {
 
 /// The error that an answer may have.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Promise {
+pub(crate) enum Promise {
     /// The answer promises nothing but its lower bound.
     Nothing,
     /// The error is at most one unit in the last place.
@@ -105,8 +103,7 @@ pub enum Promise {
 
 impl Promise {
     /// Returns whether an answer with this error keeps the promise. `unit` is u M.
-    #[must_use]
-    pub fn is_kept(self, error: f64, distance: f64, unit: f64) -> bool {
+    pub(crate) fn is_kept(self, error: f64, distance: f64, unit: f64) -> bool {
         match self {
             Self::Nothing => true,
             Self::OneUlp => error <= distance.next_up() - distance,
@@ -132,7 +129,7 @@ mod tests {
     #[test]
     fn options_and_promises_are_of_the_same_size() {
         for setting in SETTINGS {
-            let options: QueryOptions<f64> = setting.options();
+            let options = setting.options();
             match setting.promise() {
                 Promise::Nothing => assert!(options.max_visits < u32::MAX, "{}", setting.name),
                 Promise::OneUlp => assert_eq!(setting.accuracy, Accuracy::Certified),

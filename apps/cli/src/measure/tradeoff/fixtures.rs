@@ -1,9 +1,9 @@
 //! Results for tests.
 
-use crate::curve::{Build, Curve, Latency, Point, SceneFigures, SetFigures};
-use crate::errors::{ErrorQuantiles, Errors};
-use crate::provenance::Provenance;
-use crate::quantiles::MedianRange;
+use crate::measure::harness::MedianRange;
+use crate::measure::harness::Provenance;
+use crate::measure::tradeoff::curve::{Build, Curve, Latency, Point, SceneFigures, SetFigures};
+use crate::measure::tradeoff::errors::{ErrorQuantiles, Errors};
 
 /// Returns a provenance with characters that files have to escape.
 pub(crate) fn provenance() -> Provenance {
@@ -23,7 +23,7 @@ pub(crate) fn point(setting: &str, ns: f64, error: f64, seconds: f64) -> Point {
         relative: worst(error),
         gap: 1e-15,
         bounds_above_truth: 0,
-        other_ids: Some(0),
+        other_ids: 0,
         broken: 0,
     };
     Point {
@@ -33,7 +33,7 @@ pub(crate) fn point(setting: &str, ns: f64, error: f64, seconds: f64) -> Point {
         nanoseconds: MedianRange { median: ns, min: ns * 0.95, max: ns * 1.1 },
         errors,
         latency: Some(Latency { p50: 100, p90: 200, p99: 400, p999: 800, max: 1600 }),
-        build: Build { seconds, bytes_per_primitive: Some(65.5) },
+        build: Build { seconds, bytes_per_primitive: 65.5 },
     }
 }
 
@@ -47,6 +47,5 @@ pub(crate) fn scene() -> SceneFigures {
         about: "2 triangles & 1 segment".to_owned(),
         primitives: 3,
         sets: vec![SetFigures { name: "1x".to_owned(), about: "uniform".to_owned(), curves: vec![tree, cells] }],
-        notes: vec!["bvh is left out: <no> reason".to_owned()],
     }
 }

@@ -1,15 +1,14 @@
 //! Results as a table for a terminal.
 
-use crate::curve::{Curve, Latency, SetFigures};
-use crate::errors::Errors;
-use crate::table::Table;
+use crate::measure::harness::Table;
+use crate::measure::tradeoff::curve::{Curve, Latency, SetFigures};
+use crate::measure::tradeoff::errors::Errors;
 
 /// The smallest number of queries that has a 99.9th percentile.
 const MIN_QUERIES_FOR_P999: usize = 1000;
 
 /// Returns a table with a row for each setting of each backend.
-#[must_use]
-pub fn table(set: &SetFigures) -> Table {
+pub(crate) fn table(set: &SetFigures) -> Table {
     let head = [
         "backend",
         "setting",
@@ -45,7 +44,7 @@ pub fn table(set: &SetFigures) -> Table {
                 latency(|l| l.p50, 2),
                 latency(|l| l.p999, MIN_QUERIES_FOR_P999),
                 seconds(point.build.seconds),
-                bytes(point.build.bytes_per_primitive),
+                format!("{:.0}", point.build.bytes_per_primitive),
                 failures(&point.errors),
             ]);
         }
@@ -88,15 +87,10 @@ fn seconds(value: f64) -> String {
     }
 }
 
-/// Formats bytes for each primitive, if they were measured.
-fn bytes(value: Option<f64>) -> String {
-    value.map_or("-".to_owned(), |bytes| format!("{bytes:.0}"))
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::fixtures;
+    use crate::measure::tradeoff::fixtures;
 
     #[test]
     fn every_point_has_a_row() {

@@ -1,4 +1,26 @@
 //! `p2m tradeoff`: measures the costs and the errors of each backend with each setting over a scene.
+//!
+//! A backend answers faster if it may be less accurate. [`settings`] lists the settings of accuracy. [`rounds`] runs all
+//! backends with all settings in turns, and compares their answers with the truth. A [`curve::Curve`] has the results of
+//! one backend, and a [`curve::Point`] those of one of its settings. The results become a page ([`page`]), a table
+//! ([`text`]) or a record ([`record`]).
+
+mod curve;
+mod errors;
+#[cfg(test)]
+mod fixtures;
+mod page;
+mod record;
+mod rounds;
+mod settings;
+mod text;
+
+use curve::{Build, SceneFigures, SetFigures};
+use errors::Truth;
+use page::Page;
+use record::record;
+use rounds::{Competitor, Effort, clock_nanoseconds, measure};
+use settings::SETTINGS;
 
 use crate::answers::queries::{Queries as QueryPoints, Region};
 use crate::index::backend::{Backend, backends};
@@ -8,6 +30,9 @@ use crate::io::progress::{Progress, Unit};
 use crate::io::streams::Streams;
 use crate::io::threads::ThreadArgs;
 use crate::io::usage::{one_of, positive, whole_number};
+use crate::measure::harness::Provenance;
+use crate::measure::harness::queries::Queries;
+use crate::measure::harness::rounds::thread_seconds;
 use anyhow::{Context, bail};
 use clap::ArgGroup;
 use nalgebra::Point3;
@@ -15,14 +40,6 @@ use p2m_backends::{BACKENDS, BuildSettings, Index, SearchStructure};
 use p2m_bvh::AabbTree;
 use p2m_core::{BuildIndex, CertifiedQuery, PrimitiveSet, Soup};
 use p2m_mixed::{PointFormat, Scene};
-use p2m_tradeoff::page::Page;
-use p2m_tradeoff::queries::Queries;
-use p2m_tradeoff::rounds::thread_seconds;
-use p2m_tradeoff::settings::SETTINGS;
-use p2m_tradeoff::{
-    Build, Competitor, Effort, Provenance, SceneFigures, SetFigures, Truth, clock_nanoseconds, measure, record::record,
-    text,
-};
 use std::io::Write as _;
 use std::path::{Path, PathBuf};
 
@@ -106,11 +123,14 @@ struct MeasuredIndex<'a> {
 }
 
 impl<'a> MeasuredIndex<'a> {
-    /// Builds an index on one thread, and measures the time. Bytes are not counted.
+    /// Builds an index on one thread, and measures the time.
     fn build(backend: Backend, soup: &'a Soup<f64>) -> anyhow::Result<Self> {
         let settings = BuildSettings::default().with_parallel(false);
         let (built, seconds) = thread_seconds(|| backend.build(soup, &settings));
-        Ok(Self { backend, index: built?.index, cost: Build { seconds, bytes_per_primitive: None } })
+        let index = built?.index;
+        #[allow(clippy::cast_precision_loss, reason = "less than 2^53 bytes")]
+        let bytes_per_primitive = index.memory_bytes() as f64 / soup.len() as f64;
+        Ok(Self { backend, index, cost: Build { seconds, bytes_per_primitive } })
     }
 }
 
@@ -144,15 +164,7 @@ pub(crate) fn run(streams: &Streams, args: &Args) -> anyhow::Result<()> {
         let backends: Vec<_> = args.backends.iter().map(|backend| (backend.name, backend.summary)).collect();
         let effort =
             format!("One thread, one call at a time, {} rounds in turns; one build of each index.", args.rounds);
-        let page = Page {
-            provenance: &provenance,
-            effort: &effort,
-            truth: TRUTH,
-            clock,
-            scenes,
-            sweeps: &[],
-            backends: &backends,
-        };
+        let page = Page { provenance: &provenance, effort: &effort, truth: TRUTH, clock, scenes, backends: &backends };
         save(output, &page.html()?)?;
     }
     if let Some(output) = csv {
@@ -220,8 +232,8 @@ impl Args {
         let competitors: Vec<Competitor<'_>> = indexes
             .iter()
             .flat_map(|index| {
-                let name = index.backend.name;
-                SETTINGS.iter().map(move |setting| Competitor::new(name, &*index.index, setting, index.cost))
+                let (backend, build) = (index.backend.name, index.cost);
+                SETTINGS.iter().map(move |setting| Competitor { backend, setting, index: &*index.index, build })
             })
             .collect();
         let progress = Progress::start(streams, "measuring", Some(100), Unit::Percent);
@@ -242,18 +254,11 @@ impl Args {
             (None, None) => "random",
         };
         let set = SetFigures { name: name.to_owned(), about: description, curves };
-        Ok(SceneFigures {
-            name: self.scene.name(),
-            about: contents,
-            primitives: soup.len(),
-            sets: vec![set],
-            notes: Vec::new(),
-        })
+        Ok(SceneFigures { name: self.scene.name(), about: contents, primitives: soup.len(), sets: vec![set] })
     }
 }
 
 /// Returns the certified answers to all queries.
-#[allow(clippy::cast_possible_truncation, reason = "ids are below 2^30")]
 fn truths(soup: &Soup<f64>, queries: &[Point3<f64>]) -> anyhow::Result<Vec<Truth>> {
     let tree = AabbTree::build(soup, &Default::default())?;
     let truth = |query: &Point3<f64>| {
@@ -261,12 +266,7 @@ fn truths(soup: &Soup<f64>, queries: &[Point3<f64>]) -> anyhow::Result<Vec<Truth
         let closest = closest.context("the scene is not empty, and queries are finite")?;
         let shape = soup.get(closest.primitive);
         let max_vertex_distance = shape.vertices().iter().map(|vertex| (vertex - query).norm()).fold(0.0, f64::max);
-        Ok(Truth {
-            distance: closest.distance,
-            residual: 0.0,
-            max_vertex_distance,
-            id: closest.primitive.index() as u32,
-        })
+        Ok(Truth { distance: closest.distance, max_vertex_distance, primitive: closest.primitive })
     };
     queries.iter().map(truth).collect()
 }

@@ -3,44 +3,29 @@
 //! The page is a template with a script, and this module puts the results into it as JSON. The script draws the plots
 //! and the tables in the browser.
 
-use crate::curve::SceneFigures;
-use crate::provenance::Provenance;
-use crate::settings::{SETTINGS, Setting};
-use crate::text;
+use crate::measure::harness::Provenance;
+use crate::measure::tradeoff::curve::SceneFigures;
+use crate::measure::tradeoff::settings::{SETTINGS, Setting};
+use crate::measure::tradeoff::text;
 use p2m_core::kernel::ERROR_CONSTANT;
 use p2m_page::template::{STYLE, escape, fill, script_data};
 use serde::Serialize;
 
-/// A quantity of each backend as a function of another quantity. It becomes a plot and a table.
-#[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct Sweep {
-    /// The heading of its section.
-    pub title: String,
-    /// A sentence about the measurement.
-    pub about: String,
-    /// The names of the given and of the measured quantity.
-    pub axes: [&'static str; 2],
-    /// The names of backends, and their points.
-    pub lines: Vec<(String, Vec<(f64, f64)>)>,
-}
-
 /// The content of a page.
 #[derive(Clone, Copy, Debug, Serialize)]
-pub struct Page<'a> {
+pub(crate) struct Page<'a> {
     /// The origin of the figures.
-    pub provenance: &'a Provenance,
+    pub(crate) provenance: &'a Provenance,
     /// Sentences about the amount of work: rounds, queries, seed and duration.
-    pub effort: &'a str,
+    pub(crate) effort: &'a str,
     /// Sentences about the truth that answers were compared with.
-    pub truth: &'a str,
+    pub(crate) truth: &'a str,
     /// The time to read the clock, in nanoseconds.
-    pub clock: f64,
+    pub(crate) clock: f64,
     /// The results for each scene. There is at least one, and all scenes have the same sets of queries.
-    pub scenes: &'a [SceneFigures],
-    /// The results that depend on another quantity.
-    pub sweeps: &'a [Sweep],
+    pub(crate) scenes: &'a [SceneFigures],
     /// The names of backends, and phrases that describe them.
-    pub backends: &'a [(&'a str, &'a str)],
+    pub(crate) backends: &'a [(&'a str, &'a str)],
 }
 
 /// The value that the script reads.
@@ -63,7 +48,7 @@ impl Page<'_> {
     ///
     /// # Errors
     /// An error of the conversion to JSON, which all pages that this type can hold are free of.
-    pub fn html(&self) -> serde_json::Result<String> {
+    pub(crate) fn html(&self) -> serde_json::Result<String> {
         let data = PageData { page: self, settings: SETTINGS, exact_limit: 2.0 * ERROR_CONSTANT };
         let sets = self.scenes.iter().flat_map(|scene| scene.sets.iter().map(move |set| (scene, set)));
         let tables: String =

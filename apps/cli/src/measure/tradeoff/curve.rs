@@ -1,24 +1,24 @@
 //! The results of a measurement: for each scene and each set of queries a curve for each backend, which has a point
 //! for each setting.
 
-use crate::errors::Errors;
-use crate::quantiles::MedianRange;
-use crate::settings::DEFAULT;
+use crate::measure::harness::MedianRange;
+use crate::measure::tradeoff::errors::Errors;
+use crate::measure::tradeoff::settings::DEFAULT;
 use p2m_core::engine::stats::percentile;
 use serde::Serialize;
 
 /// The cost of an index before its first query.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
-pub struct Build {
+pub(crate) struct Build {
     /// The time to build it on one thread, in seconds.
-    pub seconds: f64,
-    /// The heap memory besides the scene, in bytes for each primitive; `None` if it was not measured.
-    pub bytes_per_primitive: Option<f64>,
+    pub(crate) seconds: f64,
+    /// The heap memory besides the scene, in bytes per primitive.
+    pub(crate) bytes_per_primitive: f64,
 }
 
 /// Percentiles of the wall time of single queries, in nanoseconds. The time to read the clock is included.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
-pub struct Latency {
+pub(crate) struct Latency {
     /// The median time.
     pub p50: u64,
     /// The 90th percentile.
@@ -28,13 +28,12 @@ pub struct Latency {
     /// The 99.9th percentile.
     pub p999: u64,
     /// The longest time.
-    pub max: u64,
+    pub(crate) max: u64,
 }
 
 impl Latency {
     /// Computes the percentiles of times in any order. Returns `None` if there are none.
-    #[must_use]
-    pub fn of(mut nanoseconds: Vec<u64>) -> Option<Self> {
+    pub(crate) fn of(mut nanoseconds: Vec<u64>) -> Option<Self> {
         nanoseconds.sort_unstable();
         let at = |per_mille| percentile(&nanoseconds, per_mille, 1000);
         Some(Self { p50: at(500)?, p90: at(900)?, p99: at(990)?, p999: at(999)?, max: at(1000)? })
@@ -43,64 +42,61 @@ impl Latency {
 
 /// The results of one setting of one backend.
 #[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct Point {
+pub(crate) struct Point {
     /// The name of the setting.
-    pub setting: String,
+    pub(crate) setting: String,
     /// The number of queries of a round.
-    pub queries: usize,
+    pub(crate) queries: usize,
     /// The number of rounds.
-    pub rounds: usize,
+    pub(crate) rounds: usize,
     /// The thread CPU time per query in nanoseconds, over the rounds.
-    pub nanoseconds: MedianRange,
+    pub(crate) nanoseconds: MedianRange,
     /// The errors of the answers.
-    pub errors: Errors,
+    pub(crate) errors: Errors,
     /// The times of single queries.
-    pub latency: Option<Latency>,
+    pub(crate) latency: Option<Latency>,
     /// The cost of the index.
-    pub build: Build,
+    pub(crate) build: Build,
 }
 
 /// The results of one backend.
 #[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct Curve {
+pub(crate) struct Curve {
     /// The name of the backend.
-    pub name: String,
+    pub(crate) name: String,
     /// The results of its settings, at least one.
-    pub points: Vec<Point>,
+    pub(crate) points: Vec<Point>,
 }
 
 impl Curve {
     /// Returns the point of the default setting, or else the first one.
-    #[must_use]
-    pub fn default_point(&self) -> Option<&Point> {
+    pub(crate) fn default_point(&self) -> Option<&Point> {
         self.points.iter().find(|point| point.setting == DEFAULT.name).or(self.points.first())
     }
 }
 
 /// The results for one set of queries.
 #[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct SetFigures {
+pub(crate) struct SetFigures {
     /// The name of the set.
-    pub name: String,
+    pub(crate) name: String,
     /// A sentence that describes the queries.
-    pub about: String,
+    pub(crate) about: String,
     /// The results of the backends.
-    pub curves: Vec<Curve>,
+    pub(crate) curves: Vec<Curve>,
 }
 
 /// The results for one scene.
 #[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct SceneFigures {
+pub(crate) struct SceneFigures {
     /// The name of the scene.
-    pub name: String,
+    pub(crate) name: String,
     /// A sentence that describes the scene.
-    pub about: String,
+    pub(crate) about: String,
     /// The number of primitives.
-    pub primitives: usize,
+    pub(crate) primitives: usize,
     /// The results for the sets of queries.
-    pub sets: Vec<SetFigures>,
-    /// Sentences about results that are missing.
-    pub notes: Vec<String>,
+    pub(crate) sets: Vec<SetFigures>,
 }
 
 #[cfg(test)]

@@ -32,7 +32,7 @@ const settingTable = (set) =>
         error(errors.scaled.max),
         error(errors.scaled.p999),
         error(errors.gap),
-        isNone(errors.other_ids) ? "-" : percentage(errors.other_ids, errors.compared),
+        percentage(errors.other_ids, errors.compared),
         remarks(set, candidate),
       ];
     }),
@@ -74,7 +74,7 @@ const buildTable = (set) =>
     1,
     set.curves.map((curve) => {
       const { seconds: time, bytes_per_primitive: bytes } = defaultPoint(curve).build;
-      return [curve.name, seconds(time), isNone(bytes) ? "-" : bytes.toFixed(0)];
+      return [curve.name, seconds(time), bytes.toFixed(0)];
     }),
   );
 function summaryTable() {
@@ -96,19 +96,6 @@ function summaryTable() {
   return `${table(head, 2, rows, "words")}<p>${sum("broken")} of ${sum("compared")} answers have a larger error than
 their setting promises (other libraries and limits of visits promise nothing but lower bounds).</p>`;
 }
-function sweepSection({ title, about, axes: [given, measured], lines }) {
-  const names = lines.map(([name]) => name);
-  const series = lines.map(([name, points]) => ({
-    name,
-    points: points.map(([x, y]) => ({ x, y, note: `${name}: ${figure(y)} at ${x}` })),
-  }));
-  const all = [...new Set(lines.flatMap(([, points]) => points.map(([x]) => x)))].sort((a, b) => a - b);
-  const value = (points, x) => points.filter((point) => point[0] === x).map(([, y]) => figure(y))[0] ?? "-";
-  const rows = all.map((x) => [x, ...lines.map(([, points]) => value(points, x))]);
-  return `<h3>${escaped(title)}</h3><p>${words(about)}</p>${plot(given, measured, series)}
-<p>${names.map((name) => `<label>${swatch(name)}</label>`).join("")}</p>${table([given, ...names], 1, rows)}`;
-}
-
 const terms = (all) =>
   all.map(([name, meaning]) => `<dt>${escaped(name)}</dt><dd>${words(meaning)}</dd>`).join("\n");
 function selector(id, label, names) {
@@ -139,9 +126,7 @@ function showSet() {
 <p>Rows have ${maxQueries(set)} queries unless the remarks state another number.</p>${settingTable(set)}
 <h2>The time of single queries, in ns</h2><div id="latencies"></div>${latencyTable(set)}
 <h2>Building</h2>
-<p>The table has the seconds on one thread, and the heap bytes for each primitive besides the scene, if they were
-measured.</p>${buildTable(set)}
-${scene.notes.map((note) => `<p>${words(note)}</p>`).join("")}
+<p>The table has the seconds on one thread, and the heap bytes per primitive besides the scene.</p>${buildTable(set)}
 <h2>Break-even: the number of queries from which on a longer build pays</h2>
 <p>The cheapest index, with its build: ${words(turnsInWords(costs(set.curves)))}.</p>
 <div id="totals"></div>${breakEvenTable(set)}`;
@@ -185,9 +170,6 @@ byId("selectors").innerHTML =
   );
 byId("measure").value = relative ? "0" : "2";
 byId("summary").innerHTML = summaryTable();
-byId("sweeps").innerHTML = data.sweeps.length
-  ? `<h2>With size and with threads</h2>${data.sweeps.map(sweepSection).join("")}`
-  : "";
 byId("backends").innerHTML = terms(data.backends);
 byId("settings").innerHTML = terms(data.settings.map(({ name, about }) => [name, about]));
 byId("truth").textContent = data.truth;

@@ -4,7 +4,7 @@
 //! Competitors that take turns see the same temperature and load of the machine, so their ratios are more stable than
 //! their times. Another one begins in every round ([`rotated`]), because the first one after a pause is slower.
 
-use crate::queries::{Queries, QuerySlice, sample_indices};
+use crate::measure::harness::queries::{Queries, QuerySlice, sample_indices};
 use cpu_time::ThreadTime;
 use std::hint::black_box;
 

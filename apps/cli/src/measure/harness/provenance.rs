@@ -62,17 +62,17 @@ impl Provenance {
     #[must_use]
     pub fn collect(label: Option<&str>, checkout: Option<&Path>) -> Self {
         let native = cfg!(target_feature = "avx2");
-        let rustflags = env!("P2M_TRADEOFF_RUSTFLAGS");
+        let rustflags = env!("P2M_HARNESS_RUSTFLAGS");
         Self {
             label: label.unwrap_or(if native { "native" } else { "portable" }).to_owned(),
             date: output("date", &["-u", "+%Y-%m-%dT%H:%MZ"]).unwrap_or_default(),
             commit: checkout.map_or_else(|| concat!("version ", env!("CARGO_PKG_VERSION")).to_owned(), commit),
             cpu: format!("{} (has {})", cpu_model(), features!(detected)),
-            rustc: env!("P2M_TRADEOFF_RUSTC").to_owned(),
+            rustc: env!("P2M_HARNESS_RUSTC").to_owned(),
             flags: format!(
                 "{} opt-level {} RUSTFLAGS \"{rustflags}\"",
-                env!("P2M_TRADEOFF_PROFILE"),
-                env!("P2M_TRADEOFF_OPT_LEVEL")
+                env!("P2M_HARNESS_PROFILE"),
+                env!("P2M_HARNESS_OPT_LEVEL")
             ),
             target_features: features!(compiled),
             command: command(),
