@@ -36,6 +36,28 @@ pub struct TreeIndex<T: Real, S, V: Volume> {
 }
 
 impl<T: Real, S: PrimitiveSet<T>, V: Volume> TreeIndex<T, S, V> {
+    /// Builds the tree over `set` with default options. Pass a reference to borrow the scene, or an `Arc` to share it.
+    ///
+    /// ```
+    /// use p2m_bvh::AabbTree;
+    /// use p2m_core::{ClosestPoint, Soup};
+    ///
+    /// let positions = [[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]];
+    /// let tree = AabbTree::new(Soup::from_arrays(&positions, &[[0u32, 1, 2]])?)?;
+    /// assert_eq!(tree.closest_point(&[0.25, 0.25, 2.0]).unwrap().distance, 2.0);
+    /// # Ok::<(), p2m_core::BuildError>(())
+    /// ```
+    ///
+    /// # Errors
+    /// The errors are those of [`build_with`](Self::build_with).
+    pub fn new(set: S) -> Result<Self, BuildError>
+    where
+        S: Sync,
+        V::Options: Default,
+    {
+        Self::build_with(set, &V::Options::default())
+    }
+
     /// Builds the tree. Unlike [`BuildIndex::build`] this works as well for volumes without default options, such as
     /// k-DOPs of any K.
     ///
@@ -104,7 +126,7 @@ impl<T: Real, S: PrimitiveSet<T>, V: Volume> TreeIndex<T, S, V> {
     /// let mut tree = AabbTree::build(soup, &Default::default())?;
     /// let raised = |soup: &mut Soup<f64>| soup.map_positions(|p| p + Vector3::new(0.0, 0.0, 2.0));
     /// tree.refit_in_place(&Default::default(), raised)?;
-    /// assert_eq!(tree.closest_point(&Point3::origin()).unwrap().distance, 2.0);
+    /// assert_eq!(tree.closest_point(&[0.0; 3]).unwrap().distance, 2.0);
     /// # Ok::<(), p2m_core::BuildError>(())
     /// ```
     ///

@@ -18,11 +18,11 @@ use std::sync::Arc;
 /// let soup: Arc<Soup<f64>> = Arc::default();
 /// let index: Box<dyn Index> = Box::new(BruteForce::new(soup)?);
 /// let index = std::thread::spawn(move || {
-///     assert!(index.closest_point(&Point3::origin()).is_none());
+///     assert!(index.closest_point(&[0.0; 3]).is_none());
 ///     index
 /// });
 /// let index = index.join().expect("no panic");
-/// assert!(index.k_nearest(&Point3::origin(), 3, 1.0).is_empty());
+/// assert!(index.k_nearest(&[0.0; 3], 3, 1.0).is_empty());
 /// assert!(index.as_ray_query().is_some());
 /// # Ok::<(), p2m_core::BuildError>(())
 /// ```

@@ -1,6 +1,6 @@
 //! The traits that backends implement: queries for the closest point, and building.
 
-use crate::{Best, Closest, Found, PrimitiveSet, QueryOptions, Real};
+use crate::{Best, Closest, Found, Position, PrimitiveSet, QueryOptions, Real};
 use nalgebra::Point3;
 
 /// Queries for the closest point of a scene. A backend writes one method, [`search`](Self::search).
@@ -45,9 +45,9 @@ use nalgebra::Point3;
 ///
 /// let index = BruteForce::new([Point::new(Point3::new(1.0, 0.0, 0.0))]).unwrap();
 /// let index: &dyn ClosestPoint<f64> = &index;
-/// assert_eq!(index.closest_point(&Point3::origin()).unwrap().distance, 1.0);
+/// assert_eq!(index.closest_point(&[0.0; 3]).unwrap().distance, 1.0);
 /// let near = QueryOptions::default().with_max_distance(0.5);
-/// assert!(index.closest_point_with(&Point3::origin(), &near).is_none());
+/// assert!(index.closest_point_with(&[0.0; 3], &near).is_none());
 /// ```
 #[diagnostic::on_unimplemented(
     message = "`{Self}` answers no closest-point queries with coordinates of type `{T}`",
@@ -59,17 +59,20 @@ pub trait ClosestPoint<T: Real> {
     fn search(&self, query: &Point3<T>, best: &mut Best<T>);
 
     /// Returns the closest point subject to `options`, or `None` if nothing is within the largest distance.
-    fn closest_point_with(&self, query: &Point3<T>, options: &QueryOptions<T>) -> Option<Closest<T>> {
+    #[inline]
+    fn closest_point_with(&self, query: &dyn Position<T>, options: &QueryOptions<T>) -> Option<Closest<T>> {
+        let query = query.point();
         if !query.iter().all(|x| x.is_finite()) {
             return None;
         }
         let mut best = Best::new(options);
-        self.search(query, &mut best);
+        self.search(&query, &mut best);
         best.finish()
     }
 
     /// Returns the closest point, or `None` for an empty set and for a query that is not finite.
-    fn closest_point(&self, query: &Point3<T>) -> Option<Closest<T>> {
+    #[inline]
+    fn closest_point(&self, query: &dyn Position<T>) -> Option<Closest<T>> {
         self.closest_point_with(query, &QueryOptions::default())
     }
 

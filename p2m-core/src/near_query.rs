@@ -5,7 +5,7 @@
 //! same collector finds the primitives among which a [certified](crate::CertifiedQuery) answer is chosen.
 
 use crate::query::answer::{answer, square_within};
-use crate::{Closest, Collector, Key, PrimitiveId, Projection, QueryOptions, Real};
+use crate::{Closest, Collector, Key, Position, PrimitiveId, Projection, QueryOptions, Real};
 use nalgebra::Point3;
 use std::collections::BinaryHeap;
 use std::ops::ControlFlow;
@@ -41,7 +41,7 @@ pub trait NearQuery<T: Real> {
 
     /// Returns the nearest primitives, at most `k` and none beyond the radius, nearest first. The radius is in units of
     /// the scene and may be infinite.
-    fn k_nearest(&self, query: &Point3<T>, k: usize, radius: T) -> Vec<Closest<T>> {
+    fn k_nearest(&self, query: &dyn Position<T>, k: usize, radius: T) -> Vec<Closest<T>> {
         let mut near = Near::nearest(k, radius);
         search_near_if_valid(self, query, &mut near);
         near.finish()
@@ -49,7 +49,7 @@ pub trait NearQuery<T: Real> {
 
     /// Returns all primitives within the radius, nearest first. [`visit_within`](Self::visit_within) stores
     /// none of them.
-    fn all_within(&self, query: &Point3<T>, radius: T) -> Vec<Closest<T>> {
+    fn all_within(&self, query: &dyn Position<T>, radius: T) -> Vec<Closest<T>> {
         self.k_nearest(query, usize::MAX, radius)
     }
 
@@ -57,7 +57,7 @@ pub trait NearQuery<T: Real> {
     /// depends on the backend.
     fn visit_within(
         &self,
-        query: &Point3<T>,
+        query: &dyn Position<T>,
         radius: T,
         visit: &mut dyn FnMut(&Closest<T>) -> ControlFlow<()>,
     ) -> ControlFlow<()> {
@@ -71,7 +71,7 @@ pub trait NearQuery<T: Real> {
     }
 
     /// Returns whether any primitive is within the radius. The search ends at the first one that it finds.
-    fn is_any_within(&self, query: &Point3<T>, radius: T) -> bool {
+    fn is_any_within(&self, query: &dyn Position<T>, radius: T) -> bool {
         let mut end = |_: PrimitiveId, _: &Projection| ControlFlow::Break(());
         let mut near = Near::all(radius, &mut end);
         search_near_if_valid(self, query, &mut near);
@@ -84,7 +84,7 @@ pub trait NearQuery<T: Real> {
     /// consistent. Of the options only the largest distance is used.
     fn closest_point_among(
         &self,
-        query: &Point3<T>,
+        query: &dyn Position<T>,
         options: &QueryOptions<T>,
         among: &mut dyn FnMut(PrimitiveId) -> bool,
     ) -> Option<Closest<T>> {
@@ -97,12 +97,13 @@ pub trait NearQuery<T: Real> {
 /// Calls [`NearQuery::search_near`] unless the query or the radius makes the answer empty.
 pub(crate) fn search_near_if_valid<T: Real>(
     index: &(impl NearQuery<T> + ?Sized),
-    query: &Point3<T>,
+    query: &dyn Position<T>,
     near: &mut Near<'_>,
 ) {
+    let query = query.point();
     // The comparison is false for a radius of NaN.
     if query.iter().all(|x| x.is_finite()) && !near.is_done() && near.radius >= 0.0 {
-        index.search_near(query, near);
+        index.search_near(&query, near);
     }
 }
 

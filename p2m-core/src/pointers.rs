@@ -38,9 +38,6 @@ macro_rules! point_to {
             fn search(&self, query: &Point3<T>, best: &mut Best<T>) {
                 (**self).search(query, best);
             }
-            fn closest_point_with(&self, query: &Point3<T>, options: &QueryOptions<T>) -> Option<Closest<T>> {
-                (**self).closest_point_with(query, options)
-            }
             fn answer_queries(
                 &self,
                 queries: &[Point3<T>],

@@ -22,6 +22,13 @@ impl<T: Real> Position<T> for Point3<T> {
     }
 }
 
+impl<T: Real, P: Position<T> + ?Sized> Position<T> for &P {
+    #[inline(always)]
+    fn point(&self) -> Point3<T> {
+        (**self).point()
+    }
+}
+
 impl Position<f64> for [f64; 3] {
     #[inline(always)]
     fn point(&self) -> Point3<f64> {

@@ -124,6 +124,29 @@ pub struct InterceptionIndex<T: Real, S, P> {
 }
 
 impl<T: Real, S: PrimitiveSet<T>, P: Partition> InterceptionIndex<T, S, P> {
+    /// Builds the index over `set` with default options. Pass a reference to borrow the scene, or an `Arc` to share it.
+    ///
+    /// # Errors
+    /// The errors are those of [`build_with`](Self::build_with).
+    pub fn new(set: S) -> Result<Self, BuildError>
+    where
+        S: Sync,
+    {
+        Self::build_with(set, &P::Options::default())
+    }
+
+    /// Builds the index with `options`.
+    ///
+    /// # Errors
+    /// [`BuildError::NonFinite`] for a coordinate that is not finite, and [`BuildError::TooMany`] for more than 2^30
+    /// primitives.
+    pub fn build_with(set: S, options: &P::Options) -> Result<Self, BuildError>
+    where
+        S: Sync,
+    {
+        Self::build_with_progress(set, options, &|_| ())
+    }
+
     /// Builds the index as [`BuildIndex::build`] and reports the progress. `progress` is called for each stage that
     /// begins, from the calling thread, and for each percent, from any thread. [`StageTimes`](crate::StageTimes) sums
     /// the times of the stages.

@@ -35,7 +35,7 @@ use std::fmt;
 /// assert!(choice.is_turned());
 /// let directions = choice.directions::<6>().unwrap();
 /// let tree = KdopTree::<f64, _, 6>::build_with(&boards, &KdopOptions::new(directions)).unwrap();
-/// assert_eq!(tree.closest_point(&Point3::origin()).unwrap().distance, 0.0);
+/// assert_eq!(tree.closest_point(&[0.0; 3]).unwrap().distance, 0.0);
 /// println!("{choice}");
 /// ```
 #[derive(Clone, Debug, PartialEq)]

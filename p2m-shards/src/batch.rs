@@ -29,10 +29,6 @@ impl ClosestPoint<f64> for Stoppable<'_> {
         self.index.search(query, best);
     }
 
-    fn closest_point_with(&self, query: &Point3<f64>, options: &QueryOptions<f64>) -> Option<Closest<f64>> {
-        self.index.closest_point_with(query, options)
-    }
-
     fn answer_queries(
         &self,
         queries: &[Point3<f64>],

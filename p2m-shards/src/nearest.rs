@@ -4,7 +4,8 @@ use crate::{Shard, ShardError, ShardedIndex};
 use nalgebra::Point3;
 use p2m_core::kernel::ERROR_CONSTANT;
 use p2m_core::{
-    Aabb, Best, BruteForce, CertifiedQuery, Closest, Collector, Key, Primitive, PrimitiveSet, QueryOptions, Real, Shape,
+    Aabb, Best, BruteForce, CertifiedQuery, Closest, Collector, Key, Position, Primitive, PrimitiveSet, QueryOptions,
+    Real, Shape,
 };
 use std::sync::Arc;
 
@@ -265,7 +266,7 @@ impl ShardedIndex {
     ///
     /// # Errors
     /// It returns the [errors of loading a shard](ShardError#loading-a-shard).
-    pub fn closest_point(&self, query: &Point3<f64>) -> Result<Option<ShardClosest>, ShardError> {
+    pub fn closest_point(&self, query: &impl Position<f64>) -> Result<Option<ShardClosest>, ShardError> {
         self.closest_point_with(query, &QueryOptions::default())
     }
 
@@ -279,9 +280,10 @@ impl ShardedIndex {
     /// It takes the time of a query of each shard that can have the answer, and O(s) for the boxes of s shards.
     pub fn closest_point_with(
         &self,
-        query: &Point3<f64>,
+        query: &impl Position<f64>,
         options: &QueryOptions<f64>,
     ) -> Result<Option<ShardClosest>, ShardError> {
+        let query = &query.point();
         if !may_have_answer(query, options.max_distance) {
             return Ok(None);
         }
@@ -303,9 +305,10 @@ impl ShardedIndex {
     /// It returns the [errors of loading a shard](ShardError#loading-a-shard).
     pub fn certified_closest_point(
         &self,
-        query: &Point3<f64>,
+        query: &impl Position<f64>,
         options: &QueryOptions<f64>,
     ) -> Result<Option<ShardClosest>, ShardError> {
+        let query = &query.point();
         let mut search = CertifiedSearch::new(query, options);
         self.search(query, &mut search)?;
         search.finish(query, options)
@@ -316,7 +319,13 @@ impl ShardedIndex {
     ///
     /// # Errors
     /// It returns the [errors of loading a shard](ShardError#loading-a-shard).
-    pub fn k_nearest(&self, query: &Point3<f64>, k: usize, radius: f64) -> Result<Vec<ShardClosest>, ShardError> {
+    pub fn k_nearest(
+        &self,
+        query: &impl Position<f64>,
+        k: usize,
+        radius: f64,
+    ) -> Result<Vec<ShardClosest>, ShardError> {
+        let query = &query.point();
         let mut search = NearSearch::new(query, k, radius);
         self.search(query, &mut search)?;
         Ok(search.finish())
@@ -335,7 +344,7 @@ impl ShardedIndex {
     ///
     /// # Errors
     /// It returns the [errors of loading a shard](ShardError#loading-a-shard).
-    pub fn all_within(&self, query: &Point3<f64>, radius: f64) -> Result<Vec<ShardClosest>, ShardError> {
+    pub fn all_within(&self, query: &impl Position<f64>, radius: f64) -> Result<Vec<ShardClosest>, ShardError> {
         self.k_nearest(query, usize::MAX, radius)
     }
 
@@ -343,7 +352,8 @@ impl ShardedIndex {
     ///
     /// # Errors
     /// It returns the [errors of loading a shard](ShardError#loading-a-shard).
-    pub fn is_any_within(&self, query: &Point3<f64>, radius: f64) -> Result<bool, ShardError> {
+    pub fn is_any_within(&self, query: &impl Position<f64>, radius: f64) -> Result<bool, ShardError> {
+        let query = &query.point();
         let may_have_any = is_finite(query) && radius >= 0.0;
         let mut order = ByBound::new(&self.boxes, query);
         while may_have_any && let Some((number, _)) = order.take(limit(radius)) {

@@ -17,7 +17,8 @@ impl ShardedIndex {
     /// # Errors
     /// It returns [`ShardError::NoInside`] for a scene with segments or points, [`ShardError::NoRays`] if the backend
     /// casts no rays, and the [errors of loading a shard](ShardError#loading-a-shard).
-    pub fn is_inside(&self, query: &Point3<f64>) -> Result<bool, ShardError> {
+    pub fn is_inside(&self, query: &impl Position<f64>) -> Result<bool, ShardError> {
+        let query = &query.point();
         self.check_inside()?;
         self.shortest_ray(query).map_or(Ok(false), |ray| Ok(self.crossings(&ray)? % 2 == 1))
     }

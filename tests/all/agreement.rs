@@ -322,13 +322,13 @@ fn past_failures<I: BuildIndex<f64, Vec<Shape<f64>>, Error = BuildError>>() {
         let found = index.closest_point_with(&Point3::new(0.3, 1.0, 0.0), &options).expect("not empty");
         assert!(found.lower_bound <= 6.775, "{found:?}");
         let limited = options.with_max_distance(10.0);
-        assert!(index.closest_point_with(&Point3::origin(), &limited).is_some(), "epsilon {epsilon}");
+        assert!(index.closest_point_with(&[0.0; 3], &limited).is_some(), "epsilon {epsilon}");
         let beyond = options.with_max_distance(6.9);
-        assert!(index.closest_point_with(&Point3::origin(), &beyond).is_none(), "epsilon {epsilon}");
+        assert!(index.closest_point_with(&[0.0; 3], &beyond).is_none(), "epsilon {epsilon}");
     }
     // A search with unlimited epsilon evaluates the hint first and nothing else.
     let hinted = QueryOptions::default().with_epsilon(f64::INFINITY).with_hint(PrimitiveId::new(60));
-    let found = index.closest_point_with(&Point3::origin(), &hinted).expect("not empty");
+    let found = index.closest_point_with(&[0.0; 3], &hinted).expect("not empty");
     assert!(found.primitive.index() == 60 || found.primitive.index() == 0, "{found:?}");
 }
 
@@ -337,7 +337,7 @@ fn past_failures<I: BuildIndex<f64, Vec<Shape<f64>>, Error = BuildError>>() {
 fn the_radius_is_inclusive_for_subnormal_distances_in_f32() {
     let eta = f32::from_bits(1);
     let index = AabbTree::build([Point::new(Point3::new(eta, eta, 0.0))], &Default::default()).expect("finite");
-    let found = index.closest_point_with(&Point3::origin(), &QueryOptions::default().with_max_distance(eta));
+    let found = index.closest_point_with(&[0.0; 3], &QueryOptions::default().with_max_distance(eta));
     assert_eq!(found.map(|c| c.distance), Some(eta));
 }
 
@@ -349,7 +349,7 @@ where
     let segment = |a: f64, b: f64| Shape::from(Segment::new(Point3::new(a, 0.0, 0.0), Point3::new(b, 0.0, 0.0)));
     // An empty scene has no answer.
     let index = build(vec![]).expect("an empty scene is a scene");
-    assert_eq!(index.closest_point(&Point3::origin()), None);
+    assert_eq!(index.closest_point(&[0.0; 3]), None);
     // The scene has one primitive.
     let index = build(vec![segment(0.0, 2.0)]).expect("finite");
     let found = index.closest_point(&Point3::new(1.0, 3.0, 4.0)).expect("there is one");

@@ -19,7 +19,7 @@ fn project<T: Real>(query: [T; 3], vertices: &[[T; 3]]) -> Projection {
 }
 
 fn answer<T: Real>(query: [T; 3], vertices: &[[T; 3]]) -> Closest<T> {
-    BruteForce::new([shape(vertices)]).expect("finite").closest_point(&query.into()).expect("one primitive")
+    BruteForce::new([shape(vertices)]).expect("finite").closest_point(&Point3::from(query)).expect("one primitive")
 }
 
 fn case(name: &str, seed: u64) -> Case {
@@ -378,7 +378,7 @@ fn n6_queries_that_are_not_finite_have_no_answer() {
         }
     }
     let none = BruteForce::new(Vec::<Shape<f64>>::new()).expect("empty sets are fine");
-    assert_eq!(none.closest_point(&Point3::origin()), None);
+    assert_eq!(none.closest_point(&[0.0; 3]), None);
     let set: &dyn Fn() -> usize = &|| PrimitiveSet::<f64>::len(&Vec::<Shape<f64>>::new());
     assert_eq!(set(), 0);
 }

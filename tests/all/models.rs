@@ -35,8 +35,9 @@ fn is_in_full() -> bool {
 
 /// Returns the distance bits and the primitive of each answer, computed by two threads.
 fn answers<T: Real, I: ClosestPoint<T> + Sync>(index: &I, queries: &[Point3<T>]) -> Vec<(u64, usize)> {
-    let one =
-        |q| index.closest_point(q).map(|c| (c.distance.to_f64().to_bits(), c.primitive.index())).expect("an answer");
+    let one = |q: &Point3<T>| {
+        index.closest_point(q).map(|c| (c.distance.to_f64().to_bits(), c.primitive.index())).expect("an answer")
+    };
     std::thread::scope(|scope| {
         let (left, right) = queries.split_at(queries.len() / 2);
         let left = scope.spawn(move || left.iter().map(one).collect::<Vec<_>>());

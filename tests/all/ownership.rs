@@ -229,7 +229,7 @@ fn a_tree_answers_for_whatever_a_change_left() {
         Ok(())
     });
     assert_eq!(error, Err(BuildError::OtherLength { len: 1, expected: ball().len() }));
-    assert!(tree.closest_point(&Point3::origin()).is_none());
+    assert!(tree.closest_point(&[0.0; 3]).is_none());
     assert!(tree.refit(ball(), &Default::default()).is_err());
 }
 

@@ -468,7 +468,7 @@ fn a_batch_with_queries_that_are_not_finite_answers_the_others() {
         let fields = |answer: Option<Closest<f64>>| answer.as_ref().map(compared_fields);
         let expected: Vec<_> = queries.iter().map(|query| fields(index.closest_point(query))).collect();
         // What stood in the slice before is no answer.
-        let mut found = vec![index.closest_point(&Point3::origin()); len];
+        let mut found = vec![index.closest_point(&[0.0; 3]); len];
         index.closest_points_into(&queries, &Default::default(), &mut found);
         assert_eq!(found.into_iter().map(fields).collect::<Vec<_>>(), expected, "case {case}");
     }

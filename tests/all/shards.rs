@@ -306,7 +306,7 @@ fn closed_surfaces_have_an_inside() {
     let folder = tempfile::tempdir().unwrap();
     let point = Soup::new(vec![Point3::origin()], [Element::Point(0)]).unwrap();
     let shards = write(rng, folder.path(), &point, ShardOptions::default());
-    assert!(matches!(shards.is_inside(&Point3::origin()), Err(ShardError::NoInside)));
+    assert!(matches!(shards.is_inside(&[0.0; 3]), Err(ShardError::NoInside)));
 }
 
 #[test]
@@ -370,7 +370,7 @@ fn a_file_in_pieces_has_the_ids_and_objects_of_its_scene() {
 /// Returns the message of the error of a query for which all shards are needed.
 fn error_of(folder: &Path) -> String {
     match ShardedIndex::open(folder) {
-        Ok(shards) => shards.k_nearest(&Point3::origin(), usize::MAX, f64::INFINITY).unwrap_err().to_string(),
+        Ok(shards) => shards.k_nearest(&[0.0; 3], usize::MAX, f64::INFINITY).unwrap_err().to_string(),
         Err(error) => error.to_string(),
     }
 }
@@ -408,7 +408,7 @@ fn a_wrong_file_is_an_error_that_names_it() {
     fs::copy(other.join(same.expect("both spheres are divided alike").file), &file).unwrap();
     assert!(error_of(folder).ends_with("not the shard that the manifest describes: its checksum differs"));
     fs::write(&file, &bytes).unwrap();
-    assert!(ShardedIndex::open(folder).unwrap().closest_point(&Point3::origin()).unwrap().is_some());
+    assert!(ShardedIndex::open(folder).unwrap().closest_point(&[0.0; 3]).unwrap().is_some());
 
     let manifest = folder.join(MANIFEST_FILE);
     let text = fs::read_to_string(&manifest).unwrap();

@@ -180,9 +180,9 @@ impl Index {
             let work = |threads: &Threads, monitor: &Monitor| {
                 check_finite(points)?;
                 let parts = answer_in_parts(points.len(), (), threads, monitor, &|range, ()| {
-                    let all = |query: &_| index.all_within(&Position::point(query), radius);
                     let options = batch_options(range.len(), false);
-                    let answers = batch::map(&points[range], &options, Position::point, all);
+                    let answers =
+                        batch::map(&points[range], &options, Position::point, |query| index.all_within(query, radius));
                     Flat { counts: answers.iter().map(Vec::len).collect(), answers: answers.concat() }
                 });
                 let total = parts.iter().map(|part| part.answers.len()).sum();
@@ -219,9 +219,10 @@ impl Index {
             let work = |threads: &Threads, monitor: &Monitor| {
                 check_finite(points)?;
                 answer_in_parts(points.len(), out, threads, monitor, &|range, out: &mut [bool]| {
-                    let any = |query: &_| index.is_any_within(&Position::point(query), radius);
                     let options = batch_options(range.len(), false);
-                    let answers = batch::map(&points[range], &options, Position::point, any);
+                    let answers = batch::map(&points[range], &options, Position::point, |query| {
+                        index.is_any_within(query, radius)
+                    });
                     out.copy_from_slice(&answers);
                 });
                 Ok::<(), BadRow>(())

@@ -2,7 +2,7 @@
 
 use crate::work::Monitor;
 use nalgebra::Point3;
-use p2m_core::{Best, Closest, ClosestPoint, Found, QueryOptions};
+use p2m_core::{Best, ClosestPoint, Found, QueryOptions};
 use std::time::Instant;
 
 /// An index that answers queries in steps, and leaves the rest out when the work is cancelled.
@@ -17,10 +17,6 @@ pub(crate) struct Watched<'a, I: ?Sized> {
 impl<I: ClosestPoint<f64> + ?Sized> ClosestPoint<f64> for Watched<'_, I> {
     fn search(&self, query: &Point3<f64>, best: &mut Best<f64>) {
         self.index.search(query, best);
-    }
-
-    fn closest_point_with(&self, query: &Point3<f64>, options: &QueryOptions<f64>) -> Option<Closest<f64>> {
-        self.index.closest_point_with(query, options)
     }
 
     fn answer_queries(

@@ -7,8 +7,7 @@ use super::candidate::Candidate;
 use super::decide::{decide, is_within};
 use crate::near_query::{Near, search_near_if_valid};
 use crate::real::to_f64_array;
-use crate::{Closest, NearQuery, Primitive, PrimitiveId, PrimitiveSet, QueryOptions, Real, Shape};
-use nalgebra::Point3;
+use crate::{Closest, NearQuery, Position, Primitive, PrimitiveId, PrimitiveSet, QueryOptions, Real, Shape};
 
 /// An error of certifying an answer.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, thiserror::Error)]
@@ -40,7 +39,7 @@ pub enum CertifyError {
 /// let segment = Segment::new(Point3::new(-3.0, 0.0, 0.0), Point3::new(3.0, 2.0, 0.0));
 /// let scene = [Shape::Segment(segment), Shape::Point(Point::new(Point3::new(-0.9_f64.sqrt(), 0.0, 0.0)))];
 /// let index = BruteForce::new(&scene).unwrap();
-/// let answer = index.certified_closest_point(&Point3::origin(), &Default::default()).unwrap().unwrap();
+/// let answer = index.certified_closest_point(&[0.0; 3], &Default::default()).unwrap().unwrap();
 /// assert_eq!(answer.primitive.index(), 1);
 /// assert!(answer.lower_bound <= answer.distance);
 /// ```
@@ -60,7 +59,7 @@ pub trait CertifiedQuery<T: Real>: NearQuery<T> {
     /// It returns [`CertifyError::NoVertices`] if a primitive that may be nearest has no vertices.
     fn certified_closest_point(
         &self,
-        query: &Point3<T>,
+        query: &dyn Position<T>,
         options: &QueryOptions<T>,
     ) -> Result<Option<Closest<T>>, CertifyError> {
         let mut near = Near::for_certification(options.max_distance);
@@ -84,7 +83,7 @@ pub trait CertifiedQuery<T: Real>: NearQuery<T> {
         if candidates.is_empty() {
             return Ok(None);
         }
-        let query = to_f64_array(query);
+        let query = to_f64_array(&query.point());
         let decision = decide(query, &candidates);
         let winner = &candidates[decision.winner];
         if options.max_distance < T::INFINITY && !is_within(query, winner.vertices, options.max_distance.to_f64()) {

@@ -18,7 +18,7 @@
 //!
 //! let ball = ico_sphere(&IcoSphere::default()).unwrap();
 //! let signed = SignedDistance::new(BruteForce::new(&ball).unwrap(), &ball)?;
-//! let centre = signed.closest_point(&Point3::origin()).unwrap();
+//! let centre = signed.closest_point(&[0.0; 3]).unwrap();
 //! assert_eq!(centre.sign, Sign::Inside);
 //! assert!(centre.distance().unwrap() < -0.9);
 //! # Ok::<(), p2m_field::sign::SignError>(())
@@ -36,7 +36,7 @@ pub use winding::WindingNumbers;
 use nalgebra::Point3;
 use p2m_bvh::TreeIndex;
 use p2m_core::batch::{self, BatchOptions};
-use p2m_core::{Aabb, BuildIndex, Closest, ClosestPoint, PrimitiveId, QueryOptions, Real, Soup};
+use p2m_core::{Aabb, BuildIndex, Closest, ClosestPoint, Position, PrimitiveId, QueryOptions, Real, Soup};
 use pseudonormal::Pseudonormals;
 use std::sync::Arc;
 use topology::{RayTree, Topology};
@@ -60,7 +60,7 @@ use types::check_kinds;
 ///
 /// let ball: Arc<Soup<f64>> = Arc::new(ico_sphere(&IcoSphere::default()).unwrap());
 /// let world = World { walls: SignedDistance::build(ball)? };
-/// let inside = std::thread::spawn(move || world.walls.closest_point(&Point3::origin()).unwrap().sign);
+/// let inside = std::thread::spawn(move || world.walls.closest_point(&[0.0; 3]).unwrap().sign);
 /// assert_eq!(inside.join().unwrap(), Sign::Inside);
 /// # Ok::<(), p2m_field::sign::SignError>(())
 /// ```
@@ -172,7 +172,7 @@ impl<I, S: SharedSoup> SignedDistance<I, S> {
     }
 
     /// Returns the closest point and the sign of a query.
-    pub fn closest_point<T: Real>(&self, query: &Point3<T>) -> Option<Signed<T>>
+    pub fn closest_point<T: Real>(&self, query: &impl Position<T>) -> Option<Signed<T>>
     where
         I: ClosestPoint<T>,
     {
@@ -181,12 +181,13 @@ impl<I, S: SharedSoup> SignedDistance<I, S> {
 
     /// Returns the closest point within the limits of `options`, and the sign of a query. With an epsilon the sign
     /// follows from the approximate closest point.
-    pub fn closest_point_with<T: Real>(&self, query: &Point3<T>, options: &QueryOptions<T>) -> Option<Signed<T>>
+    pub fn closest_point_with<T: Real>(&self, query: &impl Position<T>, options: &QueryOptions<T>) -> Option<Signed<T>>
     where
         I: ClosestPoint<T>,
     {
-        let closest = self.index.closest_point_with(query, options)?;
-        Some(Signed { closest, sign: self.rule.sign(query, &closest) })
+        let query = query.point();
+        let closest = self.index.closest_point_with(&query, options)?;
+        Some(self.with_sign(&query, closest))
     }
 
     /// Returns the closest points and the signs of queries, in their order, computed as a [`batch`].

@@ -20,7 +20,7 @@ fn square() -> Arc<Tree> {
 #[test]
 fn a_scene_without_primitives_has_no_answers() {
     let mut scene: Instances<f64> = Instances::default();
-    let origin = Point3::origin();
+    let origin = Point3::<f64>::origin();
     let ray = Ray::new(&origin, &Vector3::x()).expect("a direction");
     assert_eq!((scene.closest_point(&origin), scene.first_intersection(&ray)), (None, None));
     let nothing: Arc<dyn Index> = Arc::new(BruteForce::new(Soup::<f64>::default()).expect("valid"));

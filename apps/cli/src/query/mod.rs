@@ -99,7 +99,7 @@ impl Source for WholeIndex<'_> {
     }
 
     fn near(&self, queries: &[Point3<f64>]) -> anyhow::Result<Vec<Vec<Closest<f64>>>> {
-        let near = |query: &_| match self.args.near() {
+        let near = |query: &Point3<f64>| match self.args.near() {
             (None, radius) => self.index.all_within(query, radius),
             (Some(k), radius) => self.index.k_nearest(query, k, radius),
         };

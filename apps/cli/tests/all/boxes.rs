@@ -66,7 +66,7 @@ fn polytopes_of_the_k_dop_tree_hold_the_scene_and_fit_closer() {
         assert!(all.contains(&p2m_core::PrimitiveSet::aabb(&scene)), "{k}");
         // The mean distance from corners of polytopes to the scene is smaller if they fit more closely.
         let index = p2m_bvh::AabbTree::<f64, _>::build_with(&scene, &Default::default()).unwrap();
-        let distance = |p| p2m_core::ClosestPoint::closest_point(&index, p).unwrap().distance;
+        let distance = |p: &nalgebra::Point3<f64>| p2m_core::ClosestPoint::closest_point(&index, p).unwrap().distance;
         picture.positions().iter().map(distance).sum::<f64>() / picture.positions().len() as f64
     });
     assert!(sums[0] > sums[1] && sums[1] > sums[2], "{sums:?}");

@@ -111,7 +111,7 @@ mod tests {
 
     fn answer(distance: f64, lower_bound: f64, id: usize) -> Option<Closest<f64>> {
         let site = [Point::new(Point3::origin())];
-        let mut closest = BruteForce::new(&site).unwrap().closest_point(&Point3::origin())?;
+        let mut closest = BruteForce::new(&site).unwrap().closest_point(&[0.0; 3])?;
         (closest.distance, closest.lower_bound, closest.primitive) = (distance, lower_bound, PrimitiveId::new(id));
         Some(closest)
     }
