@@ -22,7 +22,7 @@ use std::ops::ControlFlow;
 /// use p2m_core::{BruteForce, NearQuery, Point, QueryOptions};
 ///
 /// let index = BruteForce::new([4.0, 1.0, 2.0, 1.0].map(|x| Point::new(Point3::new(x, 0.0, 0.0)))).unwrap();
-/// let origin = Point3::origin();
+/// let origin = Point3::<f64>::origin();
 /// let ids = |near: Vec<p2m_core::Closest<f64>>| near.iter().map(|c| c.primitive.index()).collect::<Vec<_>>();
 /// assert_eq!(ids(index.k_nearest(&origin, 3, f64::INFINITY)), [1, 3, 2]);
 /// assert_eq!(ids(index.all_within(&origin, 1.0)), [1, 3]);

@@ -22,7 +22,7 @@ from distributed import Client, LocalCluster, wait
 
 import p2m
 import p2m.dask
-from p2m._opened import open_index
+from p2m._index_cache import open_index
 
 BLOCK_POINTS = 250_000
 MEGABYTE = 1 << 20

@@ -357,7 +357,7 @@ def test_a_process_opens_shards_once(tmp_path: Path, monkeypatch: pytest.MonkeyP
     p2m.clear_opened()
     lazy = p2m.dask.distance(da.from_array(POINTS, chunks=(50, 3)), tmp_path / "site")
     assert np.array_equal(lazy.compute(), shards.distance(POINTS))
-    assert p2m._opened.open_shards(tmp_path / "site").loads <= len(shards.shards)
+    assert p2m._index_cache.open_shards(tmp_path / "site").loads <= len(shards.shards)
     (tmp_path / "site" / shards.shards[2].file).unlink()
     p2m.clear_opened()
     with pytest.raises(FileNotFoundError, match=shards.shards[2].file):

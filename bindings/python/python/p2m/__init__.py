@@ -23,7 +23,7 @@ from ._ask import Ask
 from ._deviation import Deviation, deviation
 from ._hausdorff import HausdorffDistance, hausdorff
 from ._index import Estimate, Index, advise, load
-from ._opened import clear_opened
+from ._index_cache import clear_opened
 from ._p2m import __version__, backends
 from ._records import (
     AllHits,

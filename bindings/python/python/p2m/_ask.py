@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from ._arrays import FIELDS, checked_limits, outputs, thread_count
 from ._index import Index
-from ._opened import index_source, opened
+from ._index_cache import index_source, opened
 from ._shards import Shards
 
 

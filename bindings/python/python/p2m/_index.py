@@ -593,13 +593,6 @@ class Index(PointQueries, PairQueries):
     def __deepcopy__(self, memo: object) -> Index:
         return self
 
-    def __reduce__(self) -> tuple[Any, ...]:
-        origin = self._raw.origin()
-        if origin is not None:
-            path, checksum, is_mapped = origin
-            return _load_pickled, (os.fspath(path), checksum, is_mapped, self._threads)
-        return _load_bytes, (self._raw.to_bytes(), self.backend, self._threads)
-
     def _objects(self) -> list[tuple[str, int, int]]:
         return self._raw.scene().objects()
 
@@ -850,16 +843,6 @@ def load(path: str | os.PathLike[str], map: bool = False, *, threads: int | None
     absolute = os.path.abspath(os.fspath(path))
     own = None if threads is None else thread_count(threads)
     return Index._from_raw(_p2m.load(absolute, map, thread_count(threads)), own)
-
-
-def _load_pickled(path: str, checksum: str, is_mapped: bool, threads: int | None) -> Index:
-    from ._opened import open_index
-
-    return open_index(path, checksum=checksum, map=is_mapped, threads=threads)
-
-
-def _load_bytes(data: bytes, backend: str, threads: int | None) -> Index:
-    return Index._from_raw(_p2m.load_bytes(data, backend, thread_count(threads)), threads)
 
 
 class Estimate(NamedTuple):

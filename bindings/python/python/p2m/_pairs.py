@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -22,9 +22,6 @@ from ._arrays import (
     thread_count,
 )
 from ._records import BallContacts, ClosestPairs, ClosestToShapes
-
-if TYPE_CHECKING:
-    from ._index import Index
 
 _FLOAT64, _INT64 = np.dtype(np.float64), np.dtype(np.int64)
 _UINT8, _BOOL = np.dtype(np.uint8), np.dtype(np.bool_)
@@ -196,7 +193,7 @@ class PairQueries:
 
     def closest_pair(
         self,
-        other: Index,
+        other: PairQueries,
         transform: ArrayLike | None = None,
         *,
         max_distance: float | None = None,
@@ -246,7 +243,7 @@ class PairQueries:
 
     def closest_pairs(
         self,
-        other: Index,
+        other: PairQueries,
         transforms: ArrayLike,
         *,
         max_distance: float | None = None,
@@ -290,7 +287,7 @@ class PairQueries:
 
     def _closest_pairs(
         self,
-        other: Index,
+        other: PairQueries,
         matrices: NDArray[np.float64] | None,
         max_distance: float | None,
         certified: bool,
@@ -310,7 +307,7 @@ class PairQueries:
 
     def do_intersect(
         self,
-        other: Index,
+        other: PairQueries,
         transform: ArrayLike | None = None,
         *,
         threads: int | None = None,
@@ -348,7 +345,7 @@ class PairQueries:
 
     def pairs_within(
         self,
-        other: Index,
+        other: PairQueries,
         distance: float,
         transform: ArrayLike | None = None,
         *,

@@ -183,9 +183,6 @@ class Shards(PointQueries):
     def __deepcopy__(self, memo: object) -> Shards:
         return self
 
-    def __reduce__(self) -> tuple[Any, ...]:
-        return _load_pickled, (self._path, self._manifest_checksum, self._max_bytes, self._is_mapped, self._threads)
-
     def _objects(self) -> list[tuple[str, int, int]]:
         return self._raw.objects()
 
@@ -460,14 +457,6 @@ def manifest_checksum(folder: str) -> str | None:
             return None
     checksum = document.get("checksum") if isinstance(document, dict) else None
     return checksum if isinstance(checksum, str) else None
-
-
-def _load_pickled(
-    path: str, checksum: str | None, max_bytes: int | None, is_mapped: bool, threads: int | None
-) -> Shards:
-    from ._opened import open_shards
-
-    return open_shards(path, checksum=checksum, max_bytes=max_bytes, map=is_mapped, threads=threads)
 
 
 def write_shards(

@@ -14,7 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ._arrays import FIELDS
-from ._opened import IndexFile
+from ._index_cache import IndexFile
 from ._shards import SHARD_FIELDS, Shards
 
 Columns = dict[str, NDArray[Any]]

@@ -63,7 +63,7 @@ except ImportError:
 
 from ._arrays import FIELDS, HIT_FIELDS, checked_limits, coordinates, not_negative, outputs, thread_count
 from ._index import Index
-from ._opened import IndexFile, index_source, opened
+from ._index_cache import IndexFile, index_source, opened
 from ._records import ClosestPoints, FirstHits, Record
 from ._shards import is_shard_folder
 from ._shuffle import Columns, Query, Sent, ask, join, send_to_nearest, send_to_others

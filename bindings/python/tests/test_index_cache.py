@@ -15,15 +15,15 @@ import pytest
 from conftest import mixed_scene, sphere
 
 import p2m
-from p2m import _opened
-from p2m._opened import open_index
+from p2m import _index_cache
+from p2m._index_cache import open_index
 
 
 @pytest.fixture
 def loads(monkeypatch: pytest.MonkeyPatch) -> Iterator[list[str]]:
     """Count the files that are loaded, each of which takes a while."""
     seen: list[str] = []
-    load = _opened._p2m.load
+    load = _index_cache._p2m.load
 
     class Counting:
         @staticmethod
@@ -33,7 +33,7 @@ def loads(monkeypatch: pytest.MonkeyPatch) -> Iterator[list[str]]:
             return load(path, is_mapped, threads)
 
     p2m.clear_opened()
-    monkeypatch.setattr(_opened, "_p2m", Counting)
+    monkeypatch.setattr(_index_cache, "_p2m", Counting)
     yield seen
     p2m.clear_opened()
 
@@ -89,7 +89,7 @@ def test_a_replaced_file_is_opened_anew(path: Path, loads: list[str]) -> None:
     assert len(loads) == 2
     np.testing.assert_array_equal(second.scene.vertices, other.scene.vertices)
     assert not np.array_equal(first.scene.vertices, second.scene.vertices)
-    assert len(_opened._entries) == 1
+    assert len(_index_cache._entries) == 1
 
 
 def test_shards_replaced_while_they_are_opened_are_opened_anew_or_an_error(
@@ -98,23 +98,23 @@ def test_shards_replaced_while_they_are_opened_are_opened_anew_or_an_error(
     folder, scenes = tmp_path / "site", [mixed_scene(1), mixed_scene(3)]
     p2m.write_shards(scenes[0], folder)
     opened = p2m.Shards(folder)
-    source = _opened.index_source(opened, False)
-    read_checksum = _opened.manifest_checksum
+    source = _index_cache.index_source(opened, False)
+    read_checksum = _index_cache.manifest_checksum
 
     def replace_after_reading(path: str) -> str | None:
         found = read_checksum(path)
-        monkeypatch.setattr(_opened, "manifest_checksum", read_checksum)
+        monkeypatch.setattr(_index_cache, "manifest_checksum", read_checksum)
         p2m.write_shards(scenes[1], folder, replace=True)
         return found
 
-    monkeypatch.setattr(_opened, "manifest_checksum", replace_after_reading)
-    second = _opened.open_shards(folder)
+    monkeypatch.setattr(_index_cache, "manifest_checksum", replace_after_reading)
+    second = _index_cache.open_shards(folder)
     assert second._manifest_checksum == read_checksum(str(folder)) != opened._manifest_checksum
     assert len(second) == len(p2m.Index(scenes[1]))
     p2m.write_shards(scenes[0], folder, replace=True)
-    monkeypatch.setattr(_opened, "manifest_checksum", replace_after_reading)
+    monkeypatch.setattr(_index_cache, "manifest_checksum", replace_after_reading)
     with pytest.raises(ValueError, match="is not the manifest that the shards came from"):
-        _opened.opened(source, 1)
+        _index_cache.opened(source, 1)
 
 
 def test_few_indexes_are_kept(tmp_path: Path, loads: list[str]) -> None:
@@ -122,7 +122,7 @@ def test_few_indexes_are_kept(tmp_path: Path, loads: list[str]) -> None:
     for path in paths:
         p2m.Index(mixed_scene()).save(path)
         open_index(path)
-    assert len(_opened._entries) == _opened.MAX_OPENED < len(paths)
+    assert len(_index_cache._entries) == _index_cache.MAX_OPENED < len(paths)
     open_index(paths[-1])
     assert len(loads) == 6
     open_index(paths[0])
@@ -131,7 +131,7 @@ def test_few_indexes_are_kept(tmp_path: Path, loads: list[str]) -> None:
 
 def test_errors_are_raised_again(path: Path, tmp_path: Path, loads: list[str]) -> None:
     checksum = p2m.load(path)._raw.origin()[1]
-    assert _opened.read_checksum(str(path)) == checksum
+    assert _index_cache.read_checksum(str(path)) == checksum
     damaged = tmp_path / "damaged.p2m"
     data = bytearray(path.read_bytes())
     data[len(data) // 2] ^= 1
@@ -149,14 +149,14 @@ def test_errors_are_raised_again(path: Path, tmp_path: Path, loads: list[str]) -
             open_index(tmp_path)
         with pytest.raises(ValueError, match=f"its checksum is {checksum} instead of 0123456789abcdef"):
             open_index(path, checksum="0123456789abcdef")
-    assert loads == [str(damaged), str(text)] * 2 and not _opened._entries
+    assert loads == [str(damaged), str(text)] * 2 and not _index_cache._entries
     assert len(open_index(path, checksum=checksum)) == len(mixed_scene())
 
 
 @pytest.mark.skipif(not hasattr(os, "fork"), reason="this system cannot fork")
 def test_a_child_does_not_wait_for_a_file_that_a_thread_of_its_parent_opens(path: Path, loads: list[str]) -> None:
     worker = threading.Thread(target=open_index, args=(path,))
-    with _opened._lock:
+    with _index_cache._lock:
         worker.start()
         child = os.fork()
         if child == 0:

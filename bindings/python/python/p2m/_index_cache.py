@@ -1,7 +1,8 @@
-"""Indexes of files, of which a process opens each once."""
+"""The cache of open index files in each process, and the pickling of indexes, which refers to their files."""
 
 from __future__ import annotations
 
+import copyreg
 import errno
 import os
 import threading
@@ -268,3 +269,37 @@ def index_source(index: Any, map: bool) -> IndexFile | Index:
 def opened(source: IndexFile | Index, threads: int | None) -> Index | Shards:
     """Return the index or the shards of a source."""
     return source.open(threads) if isinstance(source, IndexFile) else source
+
+
+def _load_index(path: str, checksum: str, is_mapped: bool, threads: int | None) -> Index:
+    return open_index(path, checksum=checksum, map=is_mapped, threads=threads)
+
+
+def _load_bytes(data: bytes, backend: str, threads: int | None) -> Index:
+    return Index._from_raw(_p2m.load_bytes(data, backend, thread_count(threads)), threads)
+
+
+def _load_shards(
+    path: str, checksum: str | None, max_bytes: int | None, is_mapped: bool, threads: int | None
+) -> Shards:
+    return open_shards(path, checksum=checksum, max_bytes=max_bytes, map=is_mapped, threads=threads)
+
+
+def _reduce_index(index: Index) -> tuple[Any, ...]:
+    """Pickle an index as the path of its file, or as bytes if it came from no file."""
+    origin = index._raw.origin()
+    if origin is not None:
+        path, checksum, is_mapped = origin
+        return _load_index, (os.fspath(path), checksum, is_mapped, index._threads)
+    return _load_bytes, (index._raw.to_bytes(), index.backend, index._threads)
+
+
+def _reduce_shards(shards: Shards) -> tuple[Any, ...]:
+    """Pickle an index in shards as the path of its folder."""
+    return _load_shards, (
+        shards._path, shards._manifest_checksum, shards._max_bytes, shards._is_mapped, shards._threads
+    )
+
+
+copyreg.pickle(Index, _reduce_index)
+copyreg.pickle(Shards, _reduce_shards)
