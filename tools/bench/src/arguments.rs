@@ -2,7 +2,6 @@
 
 use crate::backend::ScalarKind;
 use crate::measure::Effort;
-use crate::points::Distribution;
 use crate::{backends, rays};
 use clap::builder::PossibleValuesParser;
 use clap::{Args, Parser, Subcommand};
@@ -72,8 +71,6 @@ pub(crate) enum Command {
     Program(ProgramArguments),
     /// Measures builds, memory and queries of scenes that grow, for docs/scale.md; fails if ours differ
     Scale(ScaleArguments),
-    /// Compares indexes over point clouds with KD-trees, for docs/scale.md; fails if ours differ
-    Points(PointsArguments),
     /// Times distances between two scenes at many poses, and between a scene and an arm of capsules, against parry3d
     Pairs(PairsArguments),
     /// Writes a generated terrain as shards and asks them within a limit of memory; fails if an answer differs
@@ -104,34 +101,6 @@ pub(crate) struct ScaleArguments {
     /// The longest time of a build in seconds; a size that would take longer is left out for that index
     #[arg(long, default_value_t = 900.0)]
     pub(crate) max_seconds: f64,
-    #[command(flatten)]
-    pub(crate) document: Document,
-}
-
-/// The arguments of `points`.
-#[derive(Args)]
-pub(crate) struct PointsArguments {
-    /// Distributions of the points [default: all]
-    #[arg(long, value_enum, value_delimiter = ',')]
-    pub(crate) distributions: Vec<Distribution>,
-    /// Numbers of points
-    #[arg(long, value_delimiter = ',', default_values_t = [100_000, 1_000_000, 10_000_000])]
-    pub(crate) counts: Vec<usize>,
-    /// Query sets
-    #[arg(long, value_delimiter = ',', default_values_t = [QuerySet::Box10, QuerySet::Box1, QuerySet::Near, QuerySet::Surface])]
-    pub(crate) sets: Vec<QuerySet>,
-    /// Rounds; another backend begins in each
-    #[arg(long, default_value_t = 5)]
-    pub(crate) rounds: usize,
-    /// Queries in a round
-    #[arg(long, default_value_t = 50_000)]
-    pub(crate) queries: usize,
-    /// Number of times that each index is built
-    #[arg(long, default_value_t = 1)]
-    pub(crate) builds: usize,
-    /// Seed of the query sets
-    #[arg(long, default_value_t = 1)]
-    pub(crate) seed: u64,
     #[command(flatten)]
     pub(crate) document: Document,
 }

@@ -3,7 +3,7 @@
 use crate::arguments::{
     AdversariesArguments, AdviseArguments, BatchArguments, Command, Common, CompareArguments, DelaunayArguments,
     ExtremePairsArguments, ExtremesArguments, FieldArguments, InstancesArguments, KdopArguments, PairsArguments,
-    PaperArguments, PointsArguments, ProgramArguments, QueryArguments, RayArguments, ReportArguments, RivalArguments,
+    PaperArguments, ProgramArguments, QueryArguments, RayArguments, ReportArguments, RivalArguments,
     SavedArguments, ScaleArguments, SplitsArguments, ThreadsArguments, VerifyArguments,
 };
 use crate::backend::Backend;
@@ -12,10 +12,9 @@ use crate::report::provenance;
 use crate::scene::Scene;
 use crate::{
     adversaries, advise, backends, batch, candidates, delaunay, extremes, field, instances, kdop, measure, octree,
-    pairs, paper, points, program, rays, refit, report, saved, scale, shards, splits, threads, tradeoff, verify,
+    pairs, paper, program, rays, refit, report, saved, scale, shards, splits, threads, tradeoff, verify,
 };
 use anyhow::{Context, Result};
-use clap::ValueEnum as _;
 use p2m_testkit::queries::QuerySet;
 use p2m_tradeoff::Table;
 use std::path::PathBuf;
@@ -37,7 +36,6 @@ pub(crate) fn run(command: Command) -> Result<bool> {
         Command::Program(arguments) => time_program(&arguments),
         Command::Pairs(arguments) => time_pairs(&arguments),
         Command::Scale(arguments) => measure_scale(arguments),
-        Command::Points(arguments) => compare_clouds(&arguments),
         Command::Shards(arguments) => shards::run(&arguments),
         Command::Advise(arguments) => check_advice(&arguments),
         Command::Field(arguments) => fill_fields(&arguments),
@@ -274,16 +272,6 @@ fn measure_scale(arguments: ScaleArguments) -> Result<bool> {
     let ScaleArguments { backends, sizes, sets, queries, rounds, max_memory, max_seconds, document } = arguments;
     let document = document.write;
     scale::run(&scale::Request { backends, sizes, sets, queries, rounds, max_memory, max_seconds, document })
-}
-
-/// Times indexes over point clouds beside KD-trees, and returns whether ours agree.
-fn compare_clouds(arguments: &PointsArguments) -> Result<bool> {
-    let &PointsArguments { ref distributions, ref counts, ref sets, rounds, queries, builds, seed, ref document } =
-        arguments;
-    let effort = Effort { rounds, queries, builds, seed };
-    let all = points::Distribution::value_variants();
-    let distributions = if distributions.is_empty() { all } else { distributions };
-    points::print(distributions, counts, sets, &effort, document.write.as_deref())
 }
 
 /// Returns the scene alone, or in seven orientations.

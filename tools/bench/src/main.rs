@@ -36,7 +36,6 @@ mod pairs;
 mod paper;
 mod plot;
 mod point_trees;
-mod points;
 mod program;
 mod rays;
 mod refit;
@@ -72,6 +71,5 @@ mod tests {
         crate::extremes::pairs::BLOCKS.check(Some(&document("extremes.md"))).unwrap();
         crate::adversaries::BLOCKS.check(Some(&document("adversaries.md"))).unwrap();
         crate::scale::BLOCKS.check(Some(&document("scale.md"))).unwrap();
-        crate::points::BLOCKS.check(Some(&document("scale.md"))).unwrap();
     }
 }
