@@ -26,8 +26,6 @@ pub(crate) enum Command {
     Query(QueryArguments),
     /// Compares our exact backends with brute force, bit for bit, in f64 and f32; fails on any difference
     Verify(VerifyArguments),
-    /// Compares split rules of the AABB tree: build, nodes and primitives visited, time per query
-    Splits(SplitsArguments),
     /// Redraws the figures of the k-DOP tree's manual: build, nodes and leaves visited, time per query
     Kdop(KdopArguments),
     /// Times rays: the figures of the k-DOP tree's manual, or the first hit against other libraries; fails if ours
@@ -44,8 +42,6 @@ pub(crate) enum Command {
     ExtremePairs(ExtremePairsArguments),
     /// Compares two records of `report`: times that changed beyond noise, and errors that changed
     Compare(CompareArguments),
-    /// Compares the backend that is recommended for 10^5 and 10^7 queries with the best one
-    Advise(AdviseArguments),
     /// Times distance fields on a grid, against other libraries and the figures of an article; fails if ours differ
     Field(FieldArguments),
     /// Builds over adversarial scenes, for docs/adversaries.md; fails if a budget is exceeded or an answer is wrong
@@ -53,22 +49,10 @@ pub(crate) enum Command {
     /// Runs one external library over one adversarial scene, for `adversaries`
     #[command(hide = true)]
     Rival(RivalArguments),
-    /// Compares saving and loading indexes with building them
-    Saved(SavedArguments),
-    /// Compares settings of the octree: resolution, domain, threads
-    Octree(BatchArguments),
-    /// Times Delaunay triangulations of scenes, grids, a sphere, a plane and a line; fails if any is not valid
-    Delaunay(DelaunayArguments),
-    /// Times batches on the AABB tree by order and threads, in wall time
-    Batch(BatchArguments),
     /// Compares builds on several numbers of threads, in wall time
     Threads(ThreadsArguments),
-    /// Compares a tree that follows a twisted scene with trees that are built anew
-    Refit(BatchArguments),
     /// Compares a scene of moving instances of meshes with one index over all of them; fails if an answer differs
     Instances(InstancesArguments),
-    /// Compares the program, from the first query to the complete file, with one batch of the library, in wall time
-    Program(ProgramArguments),
     /// Measures builds, memory and queries of scenes that grow, for docs/scale.md; fails if ours differ
     Scale(ScaleArguments),
     /// Times distances between two scenes at many poses, and between a scene and an arm of capsules, against parry3d
@@ -199,8 +183,7 @@ pub(crate) struct Rounds {
     /// Rounds; another backend begins in each
     #[arg(long, default_value_t = 5, value_parser = clap::builder::RangedU64ValueParser::<usize>::new().range(1..))]
     pub(crate) rounds: usize,
-    /// Queries in a round [default: 50,000 for splits, 100,000 for kdop, 1,000,000 for octree, batch and
-    /// instances]
+    /// Queries in a round [default: 100,000 for kdop, 1,000,000 for instances]
     #[arg(long)]
     pub(crate) queries: Option<usize>,
     /// Seed of the query sets
@@ -214,22 +197,6 @@ impl Rounds {
         let &Self { rounds, queries, seed, .. } = self;
         Effort { rounds, queries: queries.unwrap_or(default_queries), builds: rounds, seed }
     }
-}
-
-/// The query sets of settings that are compared.
-#[derive(Args)]
-pub(crate) struct Sets {
-    /// Query sets
-    #[arg(long, value_delimiter = ',', default_values_t = [QuerySet::Box10, QuerySet::Box1, QuerySet::Near, QuerySet::Surface])]
-    pub(crate) sets: Vec<QuerySet>,
-}
-
-#[derive(Args)]
-pub(crate) struct SplitsArguments {
-    #[command(flatten)]
-    pub(crate) rounds: Rounds,
-    #[command(flatten)]
-    pub(crate) sets: Sets,
 }
 
 #[derive(Args)]
@@ -279,17 +246,6 @@ pub(crate) struct RayArguments {
 }
 
 #[derive(Args)]
-pub(crate) struct BatchArguments {
-    #[command(flatten)]
-    pub(crate) rounds: Rounds,
-    #[command(flatten)]
-    pub(crate) sets: Sets,
-    /// Numbers of threads
-    #[arg(long, value_delimiter = ',', default_values_t = [1, 2])]
-    pub(crate) threads: Vec<usize>,
-}
-
-#[derive(Args)]
 pub(crate) struct ThreadsArguments {
     /// Files of scenes
     #[arg(required = true)]
@@ -321,15 +277,6 @@ pub(crate) struct InstancesArguments {
 }
 
 #[derive(Args)]
-pub(crate) struct ProgramArguments {
-    #[command(flatten)]
-    pub(crate) rounds: Rounds,
-    /// Number of threads
-    #[arg(long, default_value_t = 2)]
-    pub(crate) threads: usize,
-}
-
-#[derive(Args)]
 pub(crate) struct PairsArguments {
     /// File of the scene that stays
     pub(crate) scene: PathBuf,
@@ -347,15 +294,6 @@ pub(crate) struct PairsArguments {
     /// Seed of the poses
     #[arg(long, default_value_t = 1)]
     pub(crate) seed: u64,
-}
-
-#[derive(Args)]
-pub(crate) struct DelaunayArguments {
-    /// Files of scenes, whose vertices are triangulated in addition to generated points
-    pub(crate) scenes: Vec<PathBuf>,
-    /// Rounds over all inputs
-    #[arg(long, default_value_t = 5, value_parser = clap::builder::RangedU64ValueParser::<usize>::new().range(1..))]
-    pub(crate) rounds: usize,
 }
 
 /// The document that gets the tables of a command.
@@ -434,16 +372,6 @@ pub(crate) struct CompareArguments {
 }
 
 #[derive(Args)]
-pub(crate) struct SavedArguments {
-    /// Files of scenes
-    #[arg(required = true)]
-    pub(crate) scenes: Vec<PathBuf>,
-    /// Number of times that each index is loaded
-    #[arg(long, default_value_t = 5, value_parser = clap::builder::RangedU64ValueParser::<usize>::new().range(1..))]
-    pub(crate) rounds: usize,
-}
-
-#[derive(Args)]
 pub(crate) struct AdversariesArguments {
     /// Primitives of each scene
     #[arg(long, default_value_t = 20_000, value_parser = clap::builder::RangedU64ValueParser::<usize>::new().range(1..))]
@@ -460,13 +388,6 @@ pub(crate) struct RivalArguments {
     pub(crate) adversary: String,
     /// Primitives of the scene
     pub(crate) primitives: usize,
-}
-
-#[derive(Args)]
-pub(crate) struct AdviseArguments {
-    /// Files of scenes; those of less than 1,000 primitives are left out
-    #[arg(required = true)]
-    pub(crate) scenes: Vec<PathBuf>,
 }
 
 #[derive(Args)]

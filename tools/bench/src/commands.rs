@@ -1,22 +1,20 @@
 //! The commands of `p2m-bench`: each reads its scenes, runs the measurement and prints the result.
 
 use crate::arguments::{
-    AdversariesArguments, AdviseArguments, BatchArguments, Command, Common, CompareArguments, DelaunayArguments,
-    ExtremePairsArguments, ExtremesArguments, FieldArguments, InstancesArguments, KdopArguments, PairsArguments,
-    PaperArguments, ProgramArguments, QueryArguments, RayArguments, ReportArguments, RivalArguments,
-    SavedArguments, ScaleArguments, SplitsArguments, ThreadsArguments, VerifyArguments,
+    AdversariesArguments, Command, Common, CompareArguments, ExtremePairsArguments, ExtremesArguments, FieldArguments,
+    InstancesArguments, KdopArguments, PairsArguments, PaperArguments, QueryArguments, RayArguments, ReportArguments,
+    RivalArguments, ScaleArguments, ThreadsArguments, VerifyArguments,
 };
 use crate::backend::Backend;
 use crate::measure::Effort;
 use crate::report::provenance;
 use crate::scene::Scene;
 use crate::{
-    adversaries, advise, backends, batch, candidates, delaunay, extremes, field, instances, kdop, measure, octree,
-    pairs, paper, program, rays, refit, report, saved, scale, shards, splits, threads, tradeoff, verify,
+    adversaries, backends, extremes, field, instances, kdop, measure, pairs, paper, rays, report, scale, shards,
+    threads, tradeoff, verify,
 };
 use anyhow::{Context, Result};
 use p2m_testkit::queries::QuerySet;
-use p2m_tradeoff::Table;
 use std::path::PathBuf;
 
 /// Runs a command, and returns whether it found what it has to find.
@@ -24,24 +22,16 @@ pub(crate) fn run(command: Command) -> Result<bool> {
     match command {
         Command::Query(arguments) => query(&arguments),
         Command::Verify(arguments) => verify(&arguments),
-        Command::Splits(arguments) => compare_splits(&arguments),
         Command::Kdop(arguments) => compare_kdops(&arguments),
         Command::Ray(arguments) => cast_rays(&arguments),
-        Command::Octree(arguments) => compare_octrees(&arguments),
-        Command::Delaunay(arguments) => triangulate(&arguments),
-        Command::Batch(arguments) => time_batches(&arguments),
         Command::Threads(arguments) => compare_threads(&arguments),
-        Command::Refit(arguments) => time_refits(&arguments),
         Command::Instances(arguments) => time_instances(&arguments),
-        Command::Program(arguments) => time_program(&arguments),
         Command::Pairs(arguments) => time_pairs(&arguments),
         Command::Scale(arguments) => measure_scale(arguments),
         Command::Shards(arguments) => shards::run(&arguments),
-        Command::Advise(arguments) => check_advice(&arguments),
         Command::Field(arguments) => fill_fields(&arguments),
         Command::Adversaries(arguments) => run_adversaries(&arguments),
         Command::Rival(arguments) => run_external(&arguments),
-        Command::Saved(arguments) => compare_saved(&arguments),
         Command::Report(arguments) => write_report(&arguments),
         Command::Extremes(arguments) => check_extremes(&arguments),
         Command::ExtremePairs(arguments) => check_extreme_pairs(&arguments),
@@ -144,28 +134,6 @@ fn run_external(arguments: &RivalArguments) -> Result<bool> {
     Ok(true)
 }
 
-/// Prints a table that compares recommended backends with the best ones. It always succeeds.
-fn check_advice(arguments: &AdviseArguments) -> Result<bool> {
-    println!("{}", provenance(None));
-    let mut table = Table::new(advise::HEADINGS);
-    let mut worst = [1.0f64, 0.0];
-    for path in &arguments.scenes {
-        let scene = Scene::read(path)?;
-        if scene.len() >= 1000 {
-            let [ratio, share] = advise::add_rows(&scene, &mut table)?;
-            worst = [worst[0].max(ratio), worst[1].max(share)];
-        }
-    }
-    println!(
-        "One thread, thread CPU time; totals are building and all queries, from {} of them. At worst {:.2} times the best, and \
-         {:.1} % of the job for advice.\n\n{table}",
-        advise::QUERIES,
-        worst[0],
-        100.0 * worst[1]
-    );
-    Ok(true)
-}
-
 /// Prints the origin of figures and a line about the measurement, measures scenes one by one, and returns whether all
 /// are good.
 fn all_good(scenes: &[PathBuf], about: &str, mut measure: impl FnMut(Scene) -> Result<bool>) -> Result<bool> {
@@ -187,53 +155,11 @@ fn fill_fields(arguments: &FieldArguments) -> Result<bool> {
     })
 }
 
-/// Times saved indexes, and returns whether they answer as those that were built.
-fn compare_saved(arguments: &SavedArguments) -> Result<bool> {
-    all_good(&arguments.scenes, "", |scene| saved::print(&scene, arguments.rounds))
-}
-
-/// Compares settings of the octree, and returns whether all octrees agree.
-fn compare_octrees(arguments: &BatchArguments) -> Result<bool> {
-    let BatchArguments { rounds, sets, threads } = arguments;
-    let effort = Effort { builds: 3, ..rounds.effort(1_000_000) };
-    let about = in_rounds("Thread CPU time unless a column says otherwise", &effort);
-    all_good(&rounds.scenes, &about, |scene| octree::print(&scene, &sets.sets, threads, &effort))
-}
-
-/// Times Delaunay triangulations, and returns whether all are valid.
-fn triangulate(arguments: &DelaunayArguments) -> Result<bool> {
-    println!("{}", provenance(None));
-    println!("One thread, thread CPU time.");
-    delaunay::print(&arguments.scenes, arguments.rounds)
-}
-
-/// Times batches, and returns whether all agree with single queries.
-fn time_batches(arguments: &BatchArguments) -> Result<bool> {
-    let BatchArguments { rounds, sets, threads } = arguments;
-    let effort = rounds.effort(1_000_000);
-    let about = in_rounds("Wall time", &effort);
-    let is_good = all_good(&rounds.scenes, &about, |scene| {
-        Ok(batch::print(&scene, &sets.sets, threads, &effort)? & candidates::print(&scene, &sets.sets, &effort)?)
-    })?;
-    println!(
-        "{}",
-        if is_good { "All answers are those of single queries." } else { "DIFFERENCES from single queries." }
-    );
-    Ok(is_good)
-}
-
 /// Times builds on several numbers of threads. No result counts as bad.
 fn compare_threads(arguments: &ThreadsArguments) -> Result<bool> {
     let ThreadsArguments { scenes, backends, threads, rounds } = arguments;
     let about = format!("Wall time of builds, median of {rounds} rounds in turns.");
     all_good(scenes, &about, |scene| threads::print(&scene, backends, threads, *rounds).map(|()| true))
-}
-
-/// Times refits, and returns whether refitted trees answer as those that are built anew.
-fn time_refits(arguments: &BatchArguments) -> Result<bool> {
-    let BatchArguments { rounds, sets, .. } = arguments;
-    let effort = rounds.effort(100_000);
-    all_good(&rounds.scenes, &in_rounds("CPU time", &effort), |scene| refit::print(&scene, &sets.sets, &effort))
 }
 
 /// Times a scene of instances, and returns whether it answers as one index over all of them.
@@ -246,17 +172,6 @@ fn time_instances(arguments: &InstancesArguments) -> Result<bool> {
     let is_good = one_thread.install(|| instances::print(&rounds.scenes, &size, &effort))?;
     println!("{}", if is_good { "All answers are equal." } else { "DIFFERENT answers." });
     Ok(is_good)
-}
-
-/// Times the program beside its library. No result counts as bad.
-fn time_program(arguments: &ProgramArguments) -> Result<bool> {
-    let ProgramArguments { rounds, threads } = arguments;
-    let effort = rounds.effort(2_000_000);
-    println!("{}\n{}", provenance(None), in_rounds("Wall time", &effort));
-    for path in &rounds.scenes {
-        program::print(&Scene::read(path)?, path, *threads, &effort)?;
-    }
-    Ok(true)
 }
 
 /// Times distances between scenes, and returns whether our exact answers agree.
@@ -325,14 +240,6 @@ fn cast_rays(arguments: &RayArguments) -> Result<bool> {
         }
     }
     Ok(is_good)
-}
-
-/// Compares split rules, and returns whether all trees agree.
-fn compare_splits(arguments: &SplitsArguments) -> Result<bool> {
-    let SplitsArguments { rounds, sets } = arguments;
-    let effort = rounds.effort(50_000);
-    let about = in_rounds("One thread, thread CPU time", &effort);
-    all_good(&rounds.scenes, &about, |scene| Ok(splits::print(&scene, &sets.sets, &effort)))
 }
 
 /// Compares our exact backends with brute force, and returns whether all answers are equal.
