@@ -10,7 +10,6 @@ use p2m::{
     Aabb, AabbTree, BoxQuery, BruteForce, BuildError, BuildIndex, ClosestLeaf, ClosestPoint, Isa, KdopOptions,
     KdopTree, Primitive, PrimitiveSet, Soup,
 };
-use p2m_testkit::left_first::LeftFirst;
 use p2m_testkit::queries::QuerySet;
 use p2m_testkit::scenes::{self, KINDS, LAYOUTS, kinds_and_layout};
 use p2m_testkit::{amount, cases, rng};
@@ -119,35 +118,6 @@ fn visits_fall_with_the_number_of_faces_on_a_turned_gear() {
     check_work_falls(&scenes::skewed_gear(amount(2000, 600)), amount([70, 66, 58], [74, 70, 64]));
     if let Some(soup) = model("gear_skewed_57k_rotated.ply") {
         check_work_falls(&soup, [65, 66, 53]);
-    }
-}
-
-/// Compares the search that visits the nearest of eight children first, with the bound of two half-spaces, with the
-/// manual's search.
-#[test]
-fn far_fewer_nodes_are_visited_than_from_left_to_right() {
-    let mut all = vec![("a skewed gear", scenes::skewed_gear(amount(2000, 600)))];
-    for name in ["dragon_100k.obj", "gear_skewed_57k_rotated.ply"] {
-        all.extend(model(name).map(|soup| (name, soup)));
-    }
-    for (name, soup) in all {
-        let queries = QuerySet::Box1.generate(&soup, amount(500, 60), 1);
-        let tree = built::<14>(&soup);
-        let [nodes, packets] = work(&tree, &queries);
-        let left_first = LeftFirst::from_packets(tree.tree());
-        let mut sums = [0; 2];
-        for query in &queries {
-            let (distance, work) = left_first.distance(&&soup, query);
-            assert_eq!(distance, tree.closest_point(query).expect("not empty").distance);
-            sums = [sums[0] + work.nodes, sums[1] + work.leaves];
-        }
-        println!(
-            "{name}: {nodes} nodes and {packets} packets, left first {} nodes, of them {} leaves",
-            sums[0], sums[1]
-        );
-        // The nodes of the manual's search are binary and include the leaves.
-        assert!(sums[0] * 10 >= amount(40, 33) * (nodes + packets), "{name}: {} of {nodes} and {packets}", sums[0]);
-        assert!(sums[1] > packets, "{name}");
     }
 }
 

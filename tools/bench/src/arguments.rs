@@ -1,7 +1,6 @@
 //! The command line of `p2m-bench`: its commands and their arguments.
 
 use crate::backend::ScalarKind;
-use crate::measure::Effort;
 use crate::{backends, rays};
 use clap::builder::PossibleValuesParser;
 use clap::{Args, Parser, Subcommand};
@@ -26,10 +25,7 @@ pub(crate) enum Command {
     Query(QueryArguments),
     /// Compares our exact backends with brute force, bit for bit, in f64 and f32; fails on any difference
     Verify(VerifyArguments),
-    /// Redraws the figures of the k-DOP tree's manual: build, nodes and leaves visited, time per query
-    Kdop(KdopArguments),
-    /// Times rays: the figures of the k-DOP tree's manual, or the first hit against other libraries; fails if ours
-    /// differ
+    /// Times the first hits of rays against other libraries; fails if ours differ
     Ray(RayArguments),
     /// Repeats the evaluation of the P2M paper, for docs/paper.md: prints tables and draws plots; fails if ours differ
     Paper(PaperArguments),
@@ -174,70 +170,27 @@ pub(crate) struct VerifyArguments {
     pub(crate) queries: usize,
 }
 
-/// The arguments of the commands that measure in rounds.
-#[derive(Args)]
-pub(crate) struct Rounds {
-    /// Files of scenes
-    #[arg(required = true)]
-    pub(crate) scenes: Vec<PathBuf>,
-    /// Rounds; another backend begins in each
-    #[arg(long, default_value_t = 5, value_parser = clap::builder::RangedU64ValueParser::<usize>::new().range(1..))]
-    pub(crate) rounds: usize,
-    /// Queries in a round [default: 100,000 for kdop, 1,000,000 for instances]
-    #[arg(long)]
-    pub(crate) queries: Option<usize>,
-    /// Seed of the query sets
-    #[arg(long, default_value_t = 1)]
-    pub(crate) seed: u64,
-}
-
-impl Rounds {
-    /// Returns the effort with a number of queries that the user may change.
-    pub(crate) fn effort(&self, default_queries: usize) -> Effort {
-        let &Self { rounds, queries, seed, .. } = self;
-        Effort { rounds, queries: queries.unwrap_or(default_queries), builds: rounds, seed }
-    }
-}
-
-#[derive(Args)]
-pub(crate) struct KdopArguments {
-    #[command(flatten)]
-    pub(crate) rounds: Rounds,
-    /// Measure each scene in seven orientations
-    #[arg(long)]
-    pub(crate) turned: bool,
-    /// Query set
-    #[arg(long, default_value_t = QuerySet::Box1)]
-    pub(crate) set: QuerySet,
-}
-
 #[derive(Args)]
 pub(crate) struct RayArguments {
     /// Files of scenes
     #[arg(required = true)]
     pub(crate) scenes: Vec<PathBuf>,
-    /// Measure each scene in seven orientations
-    #[arg(long)]
-    pub(crate) turned: bool,
-    /// Measure the first hit against other libraries instead of the manual's tables
-    #[arg(long)]
-    pub(crate) rivals: bool,
-    /// Measure the first hit with these backends only
+    /// Backends [default: all]
     #[arg(long, value_delimiter = ',', value_parser = ray_names())]
     pub(crate) backends: Vec<String>,
-    /// Query sets at which rays begin [default: 1x for the manual's tables, 10x and 1x against other libraries]
-    #[arg(long, value_delimiter = ',')]
+    /// Query sets at which rays begin
+    #[arg(long, value_delimiter = ',', default_values_t = [QuerySet::Box10, QuerySet::Box1])]
     pub(crate) sets: Vec<QuerySet>,
-    /// Rays in a round [default: 20 per primitive for the manual's tables, 200,000 against other libraries]
-    #[arg(long, value_parser = clap::value_parser!(u64).range(1..))]
-    pub(crate) rays: Option<u64>,
+    /// Rays in a round
+    #[arg(long, default_value_t = 200_000, value_parser = clap::builder::RangedU64ValueParser::<usize>::new().range(1..))]
+    pub(crate) rays: usize,
     /// Rounds; another backend begins in each
     #[arg(long, default_value_t = 5)]
     pub(crate) rounds: usize,
     /// Seed of the rays
     #[arg(long, default_value_t = 1)]
     pub(crate) seed: u64,
-    /// Record of times against other libraries to create or to append to, as comma-separated values
+    /// Record of times to create or to append to, as comma-separated values
     #[arg(long)]
     pub(crate) csv: Option<PathBuf>,
     /// Name of this build in tables and record [default: native with AVX2 at compile time, else portable]
@@ -263,8 +216,18 @@ pub(crate) struct ThreadsArguments {
 
 #[derive(Args)]
 pub(crate) struct InstancesArguments {
-    #[command(flatten)]
-    pub(crate) rounds: Rounds,
+    /// Files of scenes
+    #[arg(required = true)]
+    pub(crate) scenes: Vec<PathBuf>,
+    /// Rounds; another backend begins in each
+    #[arg(long, default_value_t = 5, value_parser = clap::builder::RangedU64ValueParser::<usize>::new().range(1..))]
+    pub(crate) rounds: usize,
+    /// Queries in a round
+    #[arg(long, default_value_t = 1_000_000)]
+    pub(crate) queries: usize,
+    /// Seed of the query sets
+    #[arg(long, default_value_t = 1)]
+    pub(crate) seed: u64,
     /// Instances
     #[arg(long, default_value_t = 10_000, value_parser = clap::builder::RangedU64ValueParser::<usize>::new().range(1..))]
     pub(crate) instances: usize,

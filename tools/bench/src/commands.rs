@@ -2,19 +2,18 @@
 
 use crate::arguments::{
     AdversariesArguments, Command, Common, CompareArguments, ExtremePairsArguments, ExtremesArguments, FieldArguments,
-    InstancesArguments, KdopArguments, PairsArguments, PaperArguments, QueryArguments, RayArguments, ReportArguments,
-    RivalArguments, ScaleArguments, ThreadsArguments, VerifyArguments,
+    InstancesArguments, PairsArguments, PaperArguments, QueryArguments, RayArguments, ReportArguments, RivalArguments,
+    ScaleArguments, ThreadsArguments, VerifyArguments,
 };
 use crate::backend::Backend;
 use crate::measure::Effort;
 use crate::report::provenance;
 use crate::scene::Scene;
 use crate::{
-    adversaries, backends, extremes, field, instances, kdop, measure, pairs, paper, rays, report, scale, shards,
-    threads, tradeoff, verify,
+    adversaries, backends, extremes, field, instances, measure, pairs, paper, rays, report, scale, shards, threads,
+    tradeoff, verify,
 };
 use anyhow::{Context, Result};
-use p2m_testkit::queries::QuerySet;
 use std::path::PathBuf;
 
 /// Runs a command, and returns whether it found what it has to find.
@@ -22,7 +21,6 @@ pub(crate) fn run(command: Command) -> Result<bool> {
     match command {
         Command::Query(arguments) => query(&arguments),
         Command::Verify(arguments) => verify(&arguments),
-        Command::Kdop(arguments) => compare_kdops(&arguments),
         Command::Ray(arguments) => cast_rays(&arguments),
         Command::Threads(arguments) => compare_threads(&arguments),
         Command::Instances(arguments) => time_instances(&arguments),
@@ -164,12 +162,12 @@ fn compare_threads(arguments: &ThreadsArguments) -> Result<bool> {
 
 /// Times a scene of instances, and returns whether it answers as one index over all of them.
 fn time_instances(arguments: &InstancesArguments) -> Result<bool> {
-    let &InstancesArguments { ref rounds, instances, triangles, rays } = arguments;
-    let effort = rounds.effort(1_000_000);
+    let &InstancesArguments { ref scenes, rounds, queries, seed, instances, triangles, rays } = arguments;
+    let effort = Effort { rounds, queries, builds: rounds, seed };
     println!("{}\n{}", provenance(None), in_rounds("CPU time of one thread", &effort));
     let size = instances::Size { instances, triangles, rays };
     let one_thread = rayon::ThreadPoolBuilder::new().num_threads(1).build()?;
-    let is_good = one_thread.install(|| instances::print(&rounds.scenes, &size, &effort))?;
+    let is_good = one_thread.install(|| instances::print(scenes, &size, &effort))?;
     println!("{}", if is_good { "All answers are equal." } else { "DIFFERENT answers." });
     Ok(is_good)
 }
@@ -189,55 +187,17 @@ fn measure_scale(arguments: ScaleArguments) -> Result<bool> {
     scale::run(&scale::Request { backends, sizes, sets, queries, rounds, max_memory, max_seconds, document })
 }
 
-/// Returns the scene alone, or in seven orientations.
-fn orientations(scene: Scene, turned: bool) -> Result<Vec<Scene>> {
-    if turned { kdop::orientations(&scene) } else { Ok(vec![scene]) }
-}
-
-/// Compares k-DOP trees, and returns whether all trees agree.
-fn compare_kdops(arguments: &KdopArguments) -> Result<bool> {
-    let KdopArguments { rounds, turned, set } = arguments;
-    let effort = rounds.effort(100_000);
-    all_good(&rounds.scenes, &in_rounds(&format!("One thread, thread CPU time, set {set}"), &effort), |scene| {
-        let mut is_good = true;
-        for scene in &orientations(scene, *turned)? {
-            is_good &= kdop::print(scene, *set, &effort);
-        }
-        Ok(is_good)
-    })
-}
-
 /// Times rays, and returns whether all trees agree.
 fn cast_rays(arguments: &RayArguments) -> Result<bool> {
-    let RayArguments { scenes, turned, rivals: with_external, backends, sets, rays, rounds, seed, csv, label } =
-        arguments;
-    let against_external = *with_external || !backends.is_empty();
+    let &RayArguments { ref scenes, ref backends, ref sets, rays, rounds, seed, ref csv, ref label } = arguments;
     let provenance = provenance(label.as_deref());
     let mut record = csv.as_deref().map(report::Record::open).transpose()?;
     println!("{provenance}");
     println!("One thread, thread CPU time, {rounds} rounds in turns, seed {seed}.");
-    let default_sets: &[QuerySet] =
-        if against_external { &[QuerySet::Box10, QuerySet::Box1] } else { &[QuerySet::Box1] };
-    let sets = if sets.is_empty() { default_sets } else { sets };
-    if !against_external {
-        rays::manual::print_cited();
-    }
+    let effort = Effort { rounds, queries: rays, builds: 1, seed };
     let mut is_good = true;
     for path in scenes {
-        for scene in &orientations(Scene::read(path)?, *turned)? {
-            let count = rays.map_or(
-                Ok(if against_external { 200_000 } else { rays::manual::RAYS_EACH * scene.len() }),
-                usize::try_from,
-            )?;
-            let effort = Effort { rounds: *rounds, queries: count, builds: 1, seed: *seed };
-            if against_external {
-                is_good &= rays::versus::print(scene, sets, backends, &effort, &provenance, record.as_mut())?;
-            } else {
-                for set in sets {
-                    is_good &= rays::manual::print(scene, *set, &effort)?;
-                }
-            }
-        }
+        is_good &= rays::versus::print(&Scene::read(path)?, sets, backends, &effort, &provenance, record.as_mut())?;
     }
     Ok(is_good)
 }

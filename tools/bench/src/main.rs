@@ -22,7 +22,6 @@ mod external;
 mod extremes;
 mod field;
 mod instances;
-mod kdop;
 mod kinds;
 mod measure;
 mod memory;

@@ -14,7 +14,6 @@ pub mod enclosure;
 pub mod extremes;
 pub mod families;
 pub mod interception_check;
-pub mod left_first;
 mod line_and_primitive;
 pub mod line_filter;
 mod models;
