@@ -19,7 +19,6 @@ pub mod line_filter;
 mod models;
 pub mod near_check;
 pub mod oracle;
-pub mod paper;
 pub mod queries;
 mod ratio;
 pub mod ray_check;
