@@ -135,7 +135,7 @@ pub use p2m_interception::{
 };
 #[cfg(all(feature = "kiddo", feature = "rstar"))]
 pub use p2m_interception::{PaperIndex, PaperOptions};
-/// Everything else about k-DOPs: polytopes, overlap of trees, directions from a scene.
+/// Everything else about k-DOPs: polytopes, directions from a scene.
 #[cfg(feature = "kdop")]
 pub use p2m_kdop as kdop;
 #[cfg(feature = "kdop")]

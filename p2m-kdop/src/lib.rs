@@ -38,11 +38,9 @@ mod direction_table;
 mod directions;
 mod kdop;
 mod lower_bound;
-mod moved_heights;
 mod node;
 mod options;
 mod orientation;
-mod overlap;
 mod polytope;
 #[cfg(test)]
 mod tests;
@@ -52,7 +50,6 @@ pub use direction_choice::DirectionChoice;
 pub use directions::{Directions, DirectionsError};
 pub use kdop::Kdop;
 pub use options::KdopOptions;
-pub use overlap::Overlap;
 pub use p2m_bvh::{SplitOptions, SplitRule, TreeNode};
 pub use polytope::{Polytope, write_polytopes_ply};
 

@@ -8,7 +8,7 @@ use p2m::bvh::{TreeIndex, Volume};
 use p2m::kdop::Directions;
 use p2m::{
     Aabb, AabbTree, BoxQuery, BruteForce, BuildError, BuildIndex, ClosestLeaf, ClosestPoint, Isa, KdopOptions,
-    KdopTree, Primitive, PrimitiveSet, Soup,
+    KdopTree, Point, Primitive, PrimitiveSet, Soup,
 };
 use p2m_testkit::queries::QuerySet;
 use p2m_testkit::scenes::{self, KINDS, LAYOUTS, kinds_and_layout};
@@ -118,6 +118,24 @@ fn visits_fall_with_the_number_of_faces_on_a_turned_gear() {
     check_work_falls(&scenes::skewed_gear(amount(2000, 600)), amount([70, 66, 58], [74, 70, 64]));
     if let Some(soup) = model("gear_skewed_57k_rotated.ply") {
         check_work_falls(&soup, [65, 66, 53]);
+    }
+}
+
+#[test]
+fn boxes_of_any_size_hold_their_points() {
+    for size in [1e-300, 1e150, 1e300, 0.5 * f64::MAX, 0.7 * f64::MAX, f64::MAX] {
+        for size in [size, -size] {
+            let points: Vec<_> = (0..40).map(|i| Point3::from([size * (1.0 - f64::from(i) / 99.0); 3])).collect();
+            let set: Vec<_> = points.iter().copied().map(Point::new).collect();
+            let tree = KdopTree::<f64, _, 26>::build(&set, &Default::default()).expect("finite");
+            let mut found = Vec::new();
+            tree.primitives_in_box_into(
+                &Aabb::from_points(&[[-f64::MAX; 3], [f64::MAX; 3]].map(Point3::from)),
+                &mut found,
+            );
+            assert_eq!(found.len(), points.len(), "{size:e}");
+            assert!(points.iter().all(|p| tree.intersects_box(&Aabb { min: *p, max: *p })), "{size:e}");
+        }
     }
 }
 

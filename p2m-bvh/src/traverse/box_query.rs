@@ -4,7 +4,6 @@ use crate::traverse::STACK_LEN;
 use crate::tree::PacketTree;
 use crate::tree::node_ref::NodeRef;
 use crate::tree::wide_node::{VolumeNodes, WideNode};
-use crate::volume::Volume;
 use nalgebra::Point3;
 use p2m_core::{Aabb, PrimitiveId};
 use std::ops::ControlFlow;
@@ -79,31 +78,5 @@ impl<V: VolumeNodes> PacketTree<V> {
             at = nearest.1;
         }
         if at == NodeRef::NONE { &[] } else { self.leaves.packets[at.number()].ids() }
-    }
-}
-
-impl<V: Volume> PacketTree<V> {
-    /// Visits the leaves whose volumes may intersect a box, until `visit` breaks. Use
-    /// [`BoxQuery`](p2m_core::BoxQuery) to get exactly the primitives that intersect the box.
-    pub fn visit_leaves_in_box(
-        &self,
-        bounds: &Aabb<f64>,
-        mut visit: impl FnMut(&[PrimitiveId]) -> ControlFlow<()>,
-    ) -> ControlFlow<()> {
-        if bounds.is_empty() {
-            return ControlFlow::Continue(());
-        }
-        let around = V::around_box(self.directions(), bounds);
-        let mut pending: Vec<_> = self.root().into_iter().collect();
-        while let Some(node) = pending.pop() {
-            if !node.volume.may_intersect(&around) {
-                continue;
-            }
-            match self.primitives(&node) {
-                Some(ids) => visit(ids)?,
-                None => pending.extend(self.children(&node)),
-            }
-        }
-        ControlFlow::Continue(())
     }
 }
