@@ -60,7 +60,7 @@ mod stats_collector;
 pub mod storage;
 
 pub use aabb::Aabb;
-pub use box_query::{BoxQuery, ClosestLeaf};
+pub use box_query::BoxQuery;
 pub use brute_force::BruteForce;
 pub use certified::{CertifiedQuery, CertifyError, shape_of};
 pub use dyn_index::Index;
