@@ -111,9 +111,9 @@ pub use p2m_core as backend;
 pub use p2m_core::pair;
 pub use p2m_core::{
     Aabb, BoxQuery, BruteForce, BuildError, BuildIndex, CertifiedQuery, CertifyError, Closest, ClosestPoint, Element,
-    Feature, Hit, Index, Indexed, Inspect, Isa, NearQuery, OfKind, Point, Position, Primitive, PrimitiveDefect,
-    PrimitiveId, PrimitiveSet, Projection, QueryCost, QueryOptions, Ray, RayError, RayHit, RayQuery, Real, Segment,
-    Shape, Side, Soup, Triangle, batch, check_primitive, storage,
+    Feature, Hit, Index, Inspect, Isa, NearQuery, Point, PointSet, Position, Primitive, PrimitiveDefect, PrimitiveId,
+    PrimitiveSet, Projection, QueryCost, QueryOptions, Ray, RayError, RayHit, RayQuery, Real, Segment, SegmentSet,
+    Shape, Side, Soup, Triangle, TriangleSet, batch, check_primitive, storage,
 };
 /// Distance fields, on which side of a surface a point is, and Hausdorff distances.
 #[cfg(feature = "field")]
