@@ -110,10 +110,10 @@ pub use p2m_core as backend;
 /// The nearest points of two scenes, one of which may have moved, and of a scene and a shape.
 pub use p2m_core::pair;
 pub use p2m_core::{
-    Aabb, BoxQuery, BruteForce, BuildError, BuildIndex, CertifiedQuery, CertifyError, Closest, ClosestLeaf,
-    ClosestPoint, Element, Feature, Hit, Index, Indexed, Inspect, Isa, NearQuery, OfKind, Point, Position, Primitive,
-    PrimitiveDefect, PrimitiveId, PrimitiveSet, Projection, QueryCost, QueryOptions, Ray, RayError, RayHit, RayQuery,
-    Real, Segment, Shape, Side, Soup, Triangle, batch, check_primitive, storage,
+    Aabb, BoxQuery, BruteForce, BuildError, BuildIndex, CertifiedQuery, CertifyError, Closest, ClosestPoint, Element,
+    Feature, Hit, Index, Inspect, Isa, NearQuery, Point, PointSet, Position, Primitive, PrimitiveDefect, PrimitiveId,
+    PrimitiveSet, Projection, QueryCost, QueryOptions, Ray, RayError, RayHit, RayQuery, Real, Segment, SegmentSet,
+    Shape, Side, Soup, Triangle, TriangleSet, batch, check_primitive, storage,
 };
 /// Distance fields, on which side of a surface a point is, and Hausdorff distances.
 #[cfg(feature = "field")]
@@ -135,7 +135,7 @@ pub use p2m_interception::{
 };
 #[cfg(all(feature = "kiddo", feature = "rstar"))]
 pub use p2m_interception::{PaperIndex, PaperOptions};
-/// Everything else about k-DOPs: polytopes, overlap of trees, directions from a scene.
+/// Everything else about k-DOPs: polytopes, directions from a scene.
 #[cfg(feature = "kdop")]
 pub use p2m_kdop as kdop;
 #[cfg(feature = "kdop")]

@@ -9,9 +9,9 @@ use p2m_core::engine::answer_one_by_one;
 use p2m_core::pair::PairQuery;
 use p2m_core::storage::{self, LoadError, Reader, Writer};
 use p2m_core::{
-    Aabb, Best, BoxQuery, BuildError, BuildIndex, CertifiedQuery, Closest, ClosestLeaf, ClosestPoint, Collector, Found,
-    Hits, Index, Inspect, Isa, Near, NearQuery, Point, Primitive, PrimitiveId, PrimitiveSet, QueryOptions, Ray,
-    RayCollector, RayQuery, Real, Shape, StatsCollector, check_set, shape_of,
+    Aabb, Best, BoxQuery, BuildError, BuildIndex, CertifiedQuery, ClosestPoint, Collector, Found, Hits, Index, Inspect,
+    Isa, Near, NearQuery, Point, Primitive, PrimitiveId, PrimitiveSet, QueryOptions, Ray, RayCollector, RayQuery, Real,
+    Shape, StatsCollector, check_set, shape_of,
 };
 use std::marker::PhantomData;
 use std::ops::ControlFlow;
@@ -337,21 +337,6 @@ where
 impl<T: Real, S: PrimitiveSet<T>, V: Volume> BoxQuery<T> for TreeIndex<T, S, V> {
     fn visit_box(&self, bounds: &Aabb<T>, visit: &mut dyn FnMut(PrimitiveId) -> ControlFlow<()>) -> ControlFlow<()> {
         self.tree.visit_box(&bounds.to_f64(), |id| self.set.get(id).intersects_box(bounds), visit)
-    }
-}
-
-impl<T: Real, S: PrimitiveSet<T>, V: Volume> ClosestLeaf<T> for TreeIndex<T, S, V> {
-    fn closest_leaf(&self, query: &Point3<T>) -> Option<Closest<T>> {
-        if !query.iter().all(|x| x.is_finite()) {
-            return None;
-        }
-        let mut best = Best::new(&QueryOptions::default());
-        for &id in self.tree.nearest_leaf(&query.map(T::to_f64), |skipped| best.record_skipped(skipped)) {
-            if let Some(projection) = self.set.get(id).project_within(query, best.prune_above()) {
-                best.offer(id, projection);
-            }
-        }
-        best.finish()
     }
 }
 

@@ -57,8 +57,8 @@ pub type AabbOptions = SplitOptions;
 /// - [`with_isa`](TreeIndex::with_isa) selects an instruction set.
 ///
 /// Queries are methods of the traits that it implements: [`ClosestPoint`](p2m_core::ClosestPoint),
-/// [`NearQuery`](p2m_core::NearQuery), [`BoxQuery`](p2m_core::BoxQuery), [`RayQuery`](p2m_core::RayQuery),
-/// [`ClosestLeaf`](p2m_core::ClosestLeaf) and [`CertifiedQuery`](p2m_core::CertifiedQuery).
+/// [`NearQuery`](p2m_core::NearQuery), [`BoxQuery`](p2m_core::BoxQuery), [`RayQuery`](p2m_core::RayQuery)
+/// and [`CertifiedQuery`](p2m_core::CertifiedQuery).
 pub type AabbTree<T, S> = TreeIndex<T, S, Aabb<f64>>;
 
 /// The internals of this crate that its sibling crates use. They may change at any time.

@@ -21,12 +21,6 @@ pub trait Volume: CompiledSearches {
 
     /// The directions of the faces, from the data that all volumes of a tree share.
     fn directions(shared: &Self::Shared) -> &Self::Directions;
-
-    /// The volume around a box.
-    fn around_box(directions: &Self::Directions, bounds: &Aabb<f64>) -> Self;
-
-    /// Whether two volumes may have a point in common. The result is never `false` if they have one.
-    fn may_intersect(&self, other: &Self) -> bool;
 }
 
 impl Volume for Aabb<f64> {
@@ -35,14 +29,6 @@ impl Volume for Aabb<f64> {
 
     fn directions((): &()) -> &() {
         &()
-    }
-
-    fn around_box((): &(), bounds: &Aabb<f64>) -> Self {
-        *bounds
-    }
-
-    fn may_intersect(&self, other: &Self) -> bool {
-        self.intersects(other)
     }
 }
 

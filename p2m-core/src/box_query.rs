@@ -1,7 +1,6 @@
-//! Queries by boxes, and the approximate query for the closest point of one leaf.
+//! Queries by boxes.
 
-use crate::{Aabb, BruteForce, Closest, Primitive, PrimitiveId, PrimitiveSet, Real};
-use nalgebra::Point3;
+use crate::{Aabb, BruteForce, Primitive, PrimitiveId, PrimitiveSet, Real};
 use std::ops::ControlFlow;
 
 /// Queries for the primitives of a scene that intersect a box. A backend writes
@@ -67,21 +66,4 @@ impl<T: Real, S: PrimitiveSet<T>> BoxQuery<T> for BruteForce<S> {
             .filter(|id| self.set().get(*id).intersects_box(bounds))
             .try_for_each(visit)
     }
-}
-
-/// An approximate query for the closest point: that of the leaf that a single descent of a tree reaches.
-///
-/// `distance` is that of a point of the scene, so it is never below the true one (apart from the error of N1), but it
-/// may exceed it by any factor. `lower_bound` is certified as in [`ClosestPoint`](crate::ClosestPoint), by the bounds
-/// of the branches that were skipped. If both are equal, the answer is exact. The answer is `None` for an empty set and
-/// for a query that is not finite. The leaf depends on the tree, so the answers of backends differ.
-///
-/// # References
-/// The query is `GetClosestLeafNode` of \[Cavarga2021\].
-pub trait ClosestLeaf<T: Real> {
-    /// Returns the closest point among the primitives of one leaf.
-    ///
-    /// # Complexity
-    /// It takes O(depth).
-    fn closest_leaf(&self, query: &Point3<T>) -> Option<Closest<T>>;
 }

@@ -39,8 +39,8 @@ mod dyn_index;
 mod error;
 mod exact;
 mod index;
-mod indexed;
 pub mod kernel;
+mod kind_set;
 mod near_query;
 pub mod pair;
 mod pointers;
@@ -60,14 +60,14 @@ mod stats_collector;
 pub mod storage;
 
 pub use aabb::Aabb;
-pub use box_query::{BoxQuery, ClosestLeaf};
+pub use box_query::BoxQuery;
 pub use brute_force::BruteForce;
 pub use certified::{CertifiedQuery, CertifyError, shape_of};
 pub use dyn_index::Index;
 pub use error::BuildError;
 pub use index::{BuildIndex, ClosestPoint};
-pub use indexed::{Indexed, OfKind};
 pub use kernel::Key;
+pub use kind_set::{KindSet, PointSet, SegmentSet, TriangleSet};
 pub use near_query::{Near, NearQuery};
 pub use position::Position;
 pub use primitive::{

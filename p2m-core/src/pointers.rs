@@ -6,8 +6,8 @@
 use crate::pair::search::PairSide;
 use crate::pair::{Hull, Motion, PairQuery};
 use crate::{
-    Aabb, Best, BoxQuery, CertifiedQuery, Closest, ClosestLeaf, ClosestPoint, Found, Hits, Inspect, Near, NearQuery,
-    PrimitiveId, PrimitiveSet, QueryOptions, Ray, RayQuery, Real, Shape, StatsCollector,
+    Aabb, Best, BoxQuery, CertifiedQuery, ClosestPoint, Found, Hits, Inspect, Near, NearQuery, PrimitiveId,
+    PrimitiveSet, QueryOptions, Ray, RayQuery, Real, Shape, StatsCollector,
 };
 use nalgebra::Point3;
 use std::ops::ControlFlow;
@@ -114,12 +114,6 @@ macro_rules! point_to {
                 visit: &mut dyn FnMut(PrimitiveId) -> ControlFlow<()>,
             ) -> ControlFlow<()> {
                 (**self).visit_box(bounds, visit)
-            }
-        }
-
-        impl<T: Real, $target: ClosestLeaf<T> + ?Sized> ClosestLeaf<T> for $pointer {
-            fn closest_leaf(&self, query: &Point3<T>) -> Option<Closest<T>> {
-                (**self).closest_leaf(query)
             }
         }
     };

@@ -38,11 +38,9 @@ mod direction_table;
 mod directions;
 mod kdop;
 mod lower_bound;
-mod moved_heights;
 mod node;
 mod options;
 mod orientation;
-mod overlap;
 mod polytope;
 #[cfg(test)]
 mod tests;
@@ -52,7 +50,6 @@ pub use direction_choice::DirectionChoice;
 pub use directions::{Directions, DirectionsError};
 pub use kdop::Kdop;
 pub use options::KdopOptions;
-pub use overlap::Overlap;
 pub use p2m_bvh::{SplitOptions, SplitRule, TreeNode};
 pub use polytope::{Polytope, write_polytopes_ply};
 
@@ -71,8 +68,8 @@ pub use polytope::{Polytope, write_polytopes_ply};
 /// - [`with_isa`](p2m_bvh::TreeIndex::with_isa) selects an instruction set.
 ///
 /// Queries are methods of the traits that it implements: [`ClosestPoint`](p2m_core::ClosestPoint),
-/// [`NearQuery`](p2m_core::NearQuery), [`BoxQuery`](p2m_core::BoxQuery), [`RayQuery`](p2m_core::RayQuery),
-/// [`ClosestLeaf`](p2m_core::ClosestLeaf) and [`CertifiedQuery`](p2m_core::CertifiedQuery).
+/// [`NearQuery`](p2m_core::NearQuery), [`BoxQuery`](p2m_core::BoxQuery), [`RayQuery`](p2m_core::RayQuery)
+/// and [`CertifiedQuery`](p2m_core::CertifiedQuery).
 pub type KdopTree<T, S, const K: usize = 14> = p2m_bvh::TreeIndex<T, S, Kdop<K>>;
 
 /// The internals of this crate that its sibling crates use. They may change at any time.

@@ -20,7 +20,7 @@ use p2m_core::engine::ray::RayCandidates;
 use p2m_core::engine::vector::V3;
 use p2m_core::pair::Motion;
 use p2m_core::storage::{LoadError, Reader, Writer, require};
-use p2m_core::{Aabb, Hits, Near, Ray};
+use p2m_core::{Hits, Near, Ray};
 
 impl<const K: usize> Volume for Kdop<K> {
     type Options = KdopOptions<K>;
@@ -28,14 +28,6 @@ impl<const K: usize> Volume for Kdop<K> {
 
     fn directions(table: &DirectionTable<K>) -> &Directions<K> {
         &table.directions
-    }
-
-    fn around_box(directions: &Directions<K>, bounds: &Aabb<f64>) -> Self {
-        Kdop::from_box(directions, bounds)
-    }
-
-    fn may_intersect(&self, other: &Self) -> bool {
-        Kdop::may_intersect(self, other)
     }
 }
 

@@ -23,7 +23,6 @@ mod ownership;
 mod p2m;
 mod packets;
 mod pairs;
-mod paper_route;
 mod pruning;
 mod ray_collectors;
 mod ray_counters;

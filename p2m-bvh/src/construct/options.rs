@@ -19,16 +19,6 @@ pub enum SplitRule {
 impl SplitRule {
     /// All rules, the default one first.
     pub const ALL: [Self; 3] = [Self::Sah, Self::AdaptiveSah, Self::Median];
-
-    /// The name of the rule in tables.
-    #[must_use]
-    pub const fn name(self) -> &'static str {
-        match self {
-            Self::Sah => "sah",
-            Self::AdaptiveSah => "adaptive-sah",
-            Self::Median => "median",
-        }
-    }
 }
 
 /// Options of splitting a set. Most programs need only `rule` and `parallel`.

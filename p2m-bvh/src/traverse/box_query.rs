@@ -1,11 +1,9 @@
-//! Box queries, and the descent to a single leaf.
+//! Box queries.
 
 use crate::traverse::STACK_LEN;
 use crate::tree::PacketTree;
 use crate::tree::node_ref::NodeRef;
 use crate::tree::wide_node::{VolumeNodes, WideNode};
-use crate::volume::Volume;
-use nalgebra::Point3;
 use p2m_core::{Aabb, PrimitiveId};
 use std::ops::ControlFlow;
 
@@ -50,58 +48,6 @@ impl<V: VolumeNodes> PacketTree<V> {
                     stack[len] = (node.children()[slot], is_inside);
                     len += 1;
                 }
-            }
-        }
-        ControlFlow::Continue(())
-    }
-
-    /// Descends from the root to a leaf, each time to the child with the least lower bound, and returns the
-    /// primitives of that leaf. `skipped` is called with the squared lower bounds of all other children. An empty set
-    /// gives an empty slice.
-    ///
-    /// # Complexity
-    /// O(depth).
-    pub fn nearest_leaf(&self, query: &Point3<f64>, mut skipped: impl FnMut(f64)) -> &[PrimitiveId] {
-        let mut at = self.root;
-        while at != NodeRef::NONE && !at.is_packet() {
-            let mut nearest = (f64::INFINITY, NodeRef::NONE);
-            for (bounds, child) in self.child_boxes(at) {
-                let bound = bounds.lower_bound(query);
-                let farther = if bound < nearest.0 || nearest.1 == NodeRef::NONE {
-                    std::mem::replace(&mut nearest, (bound, child))
-                } else {
-                    (bound, child)
-                };
-                if farther.1 != NodeRef::NONE {
-                    skipped(farther.0);
-                }
-            }
-            at = nearest.1;
-        }
-        if at == NodeRef::NONE { &[] } else { self.leaves.packets[at.number()].ids() }
-    }
-}
-
-impl<V: Volume> PacketTree<V> {
-    /// Visits the leaves whose volumes may intersect a box, until `visit` breaks. Use
-    /// [`BoxQuery`](p2m_core::BoxQuery) to get exactly the primitives that intersect the box.
-    pub fn visit_leaves_in_box(
-        &self,
-        bounds: &Aabb<f64>,
-        mut visit: impl FnMut(&[PrimitiveId]) -> ControlFlow<()>,
-    ) -> ControlFlow<()> {
-        if bounds.is_empty() {
-            return ControlFlow::Continue(());
-        }
-        let around = V::around_box(self.directions(), bounds);
-        let mut pending: Vec<_> = self.root().into_iter().collect();
-        while let Some(node) = pending.pop() {
-            if !node.volume.may_intersect(&around) {
-                continue;
-            }
-            match self.primitives(&node) {
-                Some(ids) => visit(ids)?,
-                None => pending.extend(self.children(&node)),
             }
         }
         ControlFlow::Continue(())

@@ -1,4 +1,4 @@
-//! A view of the nodes of a tree, for searches through pairs of trees and for pictures.
+//! A view of the nodes of a tree, for pictures.
 
 use crate::tree::PacketTree;
 use crate::tree::node_ref::NodeRef;

@@ -1,8 +1,6 @@
 //! The command line of `p2m-bench`: its commands and their arguments.
 
 use crate::backend::ScalarKind;
-use crate::measure::Effort;
-use crate::points::Distribution;
 use crate::{backends, rays};
 use clap::builder::PossibleValuesParser;
 use clap::{Args, Parser, Subcommand};
@@ -27,12 +25,7 @@ pub(crate) enum Command {
     Query(QueryArguments),
     /// Compares our exact backends with brute force, bit for bit, in f64 and f32; fails on any difference
     Verify(VerifyArguments),
-    /// Compares split rules of the AABB tree: build, nodes and primitives visited, time per query
-    Splits(SplitsArguments),
-    /// Redraws the figures of the k-DOP tree's manual: build, nodes and leaves visited, time per query
-    Kdop(KdopArguments),
-    /// Times rays: the figures of the k-DOP tree's manual, or the first hit against other libraries; fails if ours
-    /// differ
+    /// Times the first hits of rays against other libraries; fails if ours differ
     Ray(RayArguments),
     /// Repeats the evaluation of the P2M paper, for docs/paper.md: prints tables and draws plots; fails if ours differ
     Paper(PaperArguments),
@@ -41,8 +34,6 @@ pub(crate) enum Command {
     /// Checks distances between primitives where other libraries fail, for docs/extremes.md; fails if ours break the
     /// contract
     ExtremePairs(ExtremePairsArguments),
-    /// Compares the backend that is recommended for 10^5 and 10^7 queries with the best one
-    Advise(AdviseArguments),
     /// Times distance fields on a grid, against other libraries and the figures of an article; fails if ours differ
     Field(FieldArguments),
     /// Builds over adversarial scenes, for docs/adversaries.md; fails if a budget is exceeded or an answer is wrong
@@ -50,26 +41,12 @@ pub(crate) enum Command {
     /// Runs one external library over one adversarial scene, for `adversaries`
     #[command(hide = true)]
     Rival(RivalArguments),
-    /// Compares saving and loading indexes with building them
-    Saved(SavedArguments),
-    /// Compares settings of the octree: resolution, domain, threads
-    Octree(BatchArguments),
-    /// Times Delaunay triangulations of scenes, grids, a sphere, a plane and a line; fails if any is not valid
-    Delaunay(DelaunayArguments),
-    /// Times batches on the AABB tree by order and threads, in wall time
-    Batch(BatchArguments),
     /// Compares builds on several numbers of threads, in wall time
     Threads(ThreadsArguments),
-    /// Compares a tree that follows a twisted scene with trees that are built anew
-    Refit(BatchArguments),
     /// Compares a scene of moving instances of meshes with one index over all of them; fails if an answer differs
     Instances(InstancesArguments),
-    /// Compares the program, from the first query to the complete file, with one batch of the library, in wall time
-    Program(ProgramArguments),
     /// Measures builds, memory and queries of scenes that grow, for docs/scale.md; fails if ours differ
     Scale(ScaleArguments),
-    /// Compares indexes over point clouds with KD-trees, for docs/scale.md; fails if ours differ
-    Points(PointsArguments),
     /// Times distances between two scenes at many poses, and between a scene and an arm of capsules, against parry3d
     Pairs(PairsArguments),
     /// Writes a generated terrain as shards and asks them within a limit of memory; fails if an answer differs
@@ -100,34 +77,6 @@ pub(crate) struct ScaleArguments {
     /// The longest time of a build in seconds; a size that would take longer is left out for that index
     #[arg(long, default_value_t = 900.0)]
     pub(crate) max_seconds: f64,
-    #[command(flatten)]
-    pub(crate) document: Document,
-}
-
-/// The arguments of `points`.
-#[derive(Args)]
-pub(crate) struct PointsArguments {
-    /// Distributions of the points [default: all]
-    #[arg(long, value_enum, value_delimiter = ',')]
-    pub(crate) distributions: Vec<Distribution>,
-    /// Numbers of points
-    #[arg(long, value_delimiter = ',', default_values_t = [100_000, 1_000_000, 10_000_000])]
-    pub(crate) counts: Vec<usize>,
-    /// Query sets
-    #[arg(long, value_delimiter = ',', default_values_t = [QuerySet::Box10, QuerySet::Box1, QuerySet::Near, QuerySet::Surface])]
-    pub(crate) sets: Vec<QuerySet>,
-    /// Rounds; another backend begins in each
-    #[arg(long, default_value_t = 5)]
-    pub(crate) rounds: usize,
-    /// Queries in a round
-    #[arg(long, default_value_t = 50_000)]
-    pub(crate) queries: usize,
-    /// Number of times that each index is built
-    #[arg(long, default_value_t = 1)]
-    pub(crate) builds: usize,
-    /// Seed of the query sets
-    #[arg(long, default_value_t = 1)]
-    pub(crate) seed: u64,
     #[command(flatten)]
     pub(crate) document: Document,
 }
@@ -217,103 +166,32 @@ pub(crate) struct VerifyArguments {
     pub(crate) queries: usize,
 }
 
-/// The arguments of the commands that measure in rounds.
-#[derive(Args)]
-pub(crate) struct Rounds {
-    /// Files of scenes
-    #[arg(required = true)]
-    pub(crate) scenes: Vec<PathBuf>,
-    /// Rounds; another backend begins in each
-    #[arg(long, default_value_t = 5, value_parser = clap::builder::RangedU64ValueParser::<usize>::new().range(1..))]
-    pub(crate) rounds: usize,
-    /// Queries in a round [default: 50,000 for splits, 100,000 for kdop, 1,000,000 for octree, batch and
-    /// instances]
-    #[arg(long)]
-    pub(crate) queries: Option<usize>,
-    /// Seed of the query sets
-    #[arg(long, default_value_t = 1)]
-    pub(crate) seed: u64,
-}
-
-impl Rounds {
-    /// Returns the effort with a number of queries that the user may change.
-    pub(crate) fn effort(&self, default_queries: usize) -> Effort {
-        let &Self { rounds, queries, seed, .. } = self;
-        Effort { rounds, queries: queries.unwrap_or(default_queries), builds: rounds, seed }
-    }
-}
-
-/// The query sets of settings that are compared.
-#[derive(Args)]
-pub(crate) struct Sets {
-    /// Query sets
-    #[arg(long, value_delimiter = ',', default_values_t = [QuerySet::Box10, QuerySet::Box1, QuerySet::Near, QuerySet::Surface])]
-    pub(crate) sets: Vec<QuerySet>,
-}
-
-#[derive(Args)]
-pub(crate) struct SplitsArguments {
-    #[command(flatten)]
-    pub(crate) rounds: Rounds,
-    #[command(flatten)]
-    pub(crate) sets: Sets,
-}
-
-#[derive(Args)]
-pub(crate) struct KdopArguments {
-    #[command(flatten)]
-    pub(crate) rounds: Rounds,
-    /// Measure each scene in seven orientations
-    #[arg(long)]
-    pub(crate) turned: bool,
-    /// Query set
-    #[arg(long, default_value_t = QuerySet::Box1)]
-    pub(crate) set: QuerySet,
-}
-
 #[derive(Args)]
 pub(crate) struct RayArguments {
     /// Files of scenes
     #[arg(required = true)]
     pub(crate) scenes: Vec<PathBuf>,
-    /// Measure each scene in seven orientations
-    #[arg(long)]
-    pub(crate) turned: bool,
-    /// Measure the first hit against other libraries instead of the manual's tables
-    #[arg(long)]
-    pub(crate) rivals: bool,
-    /// Measure the first hit with these backends only
+    /// Backends [default: all]
     #[arg(long, value_delimiter = ',', value_parser = ray_names())]
     pub(crate) backends: Vec<String>,
-    /// Query sets at which rays begin [default: 1x for the manual's tables, 10x and 1x against other libraries]
-    #[arg(long, value_delimiter = ',')]
+    /// Query sets at which rays begin
+    #[arg(long, value_delimiter = ',', default_values_t = [QuerySet::Box10, QuerySet::Box1])]
     pub(crate) sets: Vec<QuerySet>,
-    /// Rays in a round [default: 20 per primitive for the manual's tables, 200,000 against other libraries]
-    #[arg(long, value_parser = clap::value_parser!(u64).range(1..))]
-    pub(crate) rays: Option<u64>,
+    /// Rays in a round
+    #[arg(long, default_value_t = 200_000, value_parser = clap::builder::RangedU64ValueParser::<usize>::new().range(1..))]
+    pub(crate) rays: usize,
     /// Rounds; another backend begins in each
     #[arg(long, default_value_t = 5)]
     pub(crate) rounds: usize,
     /// Seed of the rays
     #[arg(long, default_value_t = 1)]
     pub(crate) seed: u64,
-    /// Record of times against other libraries to create or to append to, as comma-separated values
+    /// Record of times to create or to append to, as comma-separated values
     #[arg(long)]
     pub(crate) csv: Option<PathBuf>,
     /// Name of this build in tables and record [default: native with AVX2 at compile time, else portable]
     #[arg(long)]
     pub(crate) label: Option<String>,
-}
-
-#[derive(Args)]
-pub(crate) struct BatchArguments {
-    #[command(flatten)]
-    pub(crate) rounds: Rounds,
-    #[command(flatten)]
-    pub(crate) sets: Sets,
-    /// Numbers of threads
-    #[arg(long, value_delimiter = ',', default_values_t = [1, 2])]
-    pub(crate) threads: Vec<usize>,
 }
 
 #[derive(Args)]
@@ -334,8 +212,18 @@ pub(crate) struct ThreadsArguments {
 
 #[derive(Args)]
 pub(crate) struct InstancesArguments {
-    #[command(flatten)]
-    pub(crate) rounds: Rounds,
+    /// Files of scenes
+    #[arg(required = true)]
+    pub(crate) scenes: Vec<PathBuf>,
+    /// Rounds; another backend begins in each
+    #[arg(long, default_value_t = 5, value_parser = clap::builder::RangedU64ValueParser::<usize>::new().range(1..))]
+    pub(crate) rounds: usize,
+    /// Queries in a round
+    #[arg(long, default_value_t = 1_000_000)]
+    pub(crate) queries: usize,
+    /// Seed of the query sets
+    #[arg(long, default_value_t = 1)]
+    pub(crate) seed: u64,
     /// Instances
     #[arg(long, default_value_t = 10_000, value_parser = clap::builder::RangedU64ValueParser::<usize>::new().range(1..))]
     pub(crate) instances: usize,
@@ -345,15 +233,6 @@ pub(crate) struct InstancesArguments {
     /// Rays in a round
     #[arg(long, default_value_t = 200_000)]
     pub(crate) rays: usize,
-}
-
-#[derive(Args)]
-pub(crate) struct ProgramArguments {
-    #[command(flatten)]
-    pub(crate) rounds: Rounds,
-    /// Number of threads
-    #[arg(long, default_value_t = 2)]
-    pub(crate) threads: usize,
 }
 
 #[derive(Args)]
@@ -374,15 +253,6 @@ pub(crate) struct PairsArguments {
     /// Seed of the poses
     #[arg(long, default_value_t = 1)]
     pub(crate) seed: u64,
-}
-
-#[derive(Args)]
-pub(crate) struct DelaunayArguments {
-    /// Files of scenes, whose vertices are triangulated in addition to generated points
-    pub(crate) scenes: Vec<PathBuf>,
-    /// Rounds over all inputs
-    #[arg(long, default_value_t = 5, value_parser = clap::builder::RangedU64ValueParser::<usize>::new().range(1..))]
-    pub(crate) rounds: usize,
 }
 
 /// The document that gets the tables of a command.
@@ -436,16 +306,6 @@ pub(crate) struct ExtremePairsArguments {
 }
 
 #[derive(Args)]
-pub(crate) struct SavedArguments {
-    /// Files of scenes
-    #[arg(required = true)]
-    pub(crate) scenes: Vec<PathBuf>,
-    /// Number of times that each index is loaded
-    #[arg(long, default_value_t = 5, value_parser = clap::builder::RangedU64ValueParser::<usize>::new().range(1..))]
-    pub(crate) rounds: usize,
-}
-
-#[derive(Args)]
 pub(crate) struct AdversariesArguments {
     /// Primitives of each scene
     #[arg(long, default_value_t = 20_000, value_parser = clap::builder::RangedU64ValueParser::<usize>::new().range(1..))]
@@ -462,13 +322,6 @@ pub(crate) struct RivalArguments {
     pub(crate) adversary: String,
     /// Primitives of the scene
     pub(crate) primitives: usize,
-}
-
-#[derive(Args)]
-pub(crate) struct AdviseArguments {
-    /// Files of scenes; those of less than 1,000 primitives are left out
-    #[arg(required = true)]
-    pub(crate) scenes: Vec<PathBuf>,
 }
 
 #[derive(Args)]

@@ -8,7 +8,7 @@ use crate::our_indexes::{
     aabb, aabb_in_batch, kdop, kdop_in_batch, kdop_in_frame, kdop_of_scene, long_lists, octree, octree_in_batch,
     over_soup_with, p2m, p2m_in_batch, p2m_options, registered,
 };
-use crate::point_trees::{kiddo_double, kiddo_single, nanoflann_double, nanoflann_single};
+use crate::point_trees::{kiddo_double, kiddo_single};
 use p2m_backends::{BACKENDS, BackendEntry, SearchStructure};
 use p2m_interception::{KdTreeLocator, P2mOptions, RegionTree};
 use p2m_mixed::adapters::{ParryIndex, RstarIndex};
@@ -82,15 +82,13 @@ fn settings() -> Vec<Backend> {
 }
 
 /// Returns external libraries.
-fn external() -> [Backend; 7] {
+fn external() -> [Backend; 5] {
     [
         Backend { is_ours: false, scalar: ScalarKind::Single, ..Backend::new(YARDSTICK, parry_single) },
         Backend { is_ours: false, ..Backend::new(YARDSTICK_DOUBLE, parry_double) },
         Backend { is_ours: false, ..Backend::new("bvh", bvh) },
         Backend { is_ours: false, ..Backend::new("kiddo", kiddo_double) },
         Backend { is_ours: false, scalar: ScalarKind::Single, ..Backend::new("kiddo-f32", kiddo_single) },
-        Backend { is_ours: false, ..Backend::new("nanoflann", nanoflann_double) },
-        Backend { is_ours: false, scalar: ScalarKind::Single, ..Backend::new("nanoflann-f32", nanoflann_single) },
     ]
 }
 

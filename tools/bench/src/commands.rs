@@ -1,23 +1,19 @@
 //! The commands of `p2m-bench`: each reads its scenes, runs the measurement and prints the result.
 
 use crate::arguments::{
-    AdversariesArguments, AdviseArguments, BatchArguments, Command, Common, DelaunayArguments, ExtremePairsArguments,
-    ExtremesArguments, FieldArguments, InstancesArguments, KdopArguments, PairsArguments, PaperArguments,
-    PointsArguments, ProgramArguments, QueryArguments, RayArguments, RivalArguments, SavedArguments, ScaleArguments,
-    SplitsArguments, ThreadsArguments, VerifyArguments,
+    AdversariesArguments, Command, Common, ExtremePairsArguments, ExtremesArguments, FieldArguments,
+    InstancesArguments, PairsArguments, PaperArguments, QueryArguments, RayArguments, RivalArguments, ScaleArguments,
+    ThreadsArguments, VerifyArguments,
 };
 use crate::backend::Backend;
 use crate::measure::Effort;
 use crate::report::provenance;
 use crate::scene::Scene;
 use crate::{
-    adversaries, advise, backends, batch, candidates, delaunay, extremes, field, instances, kdop, measure, octree,
-    pairs, paper, points, program, rays, refit, report, saved, scale, shards, splits, threads, verify,
+    adversaries, backends, extremes, field, instances, measure, pairs, paper, rays, report, scale, shards, threads,
+    verify,
 };
 use anyhow::Result;
-use clap::ValueEnum as _;
-use p2m_cli::harness::Table;
-use p2m_testkit::queries::QuerySet;
 use std::path::PathBuf;
 
 /// Runs a command, and returns whether it found what it has to find.
@@ -25,25 +21,15 @@ pub(crate) fn run(command: Command) -> Result<bool> {
     match command {
         Command::Query(arguments) => query(&arguments),
         Command::Verify(arguments) => verify(&arguments),
-        Command::Splits(arguments) => compare_splits(&arguments),
-        Command::Kdop(arguments) => compare_kdops(&arguments),
         Command::Ray(arguments) => cast_rays(&arguments),
-        Command::Octree(arguments) => compare_octrees(&arguments),
-        Command::Delaunay(arguments) => triangulate(&arguments),
-        Command::Batch(arguments) => time_batches(&arguments),
         Command::Threads(arguments) => compare_threads(&arguments),
-        Command::Refit(arguments) => time_refits(&arguments),
         Command::Instances(arguments) => time_instances(&arguments),
-        Command::Program(arguments) => time_program(&arguments),
         Command::Pairs(arguments) => time_pairs(&arguments),
         Command::Scale(arguments) => measure_scale(arguments),
-        Command::Points(arguments) => compare_clouds(&arguments),
         Command::Shards(arguments) => shards::run(&arguments),
-        Command::Advise(arguments) => check_advice(&arguments),
         Command::Field(arguments) => fill_fields(&arguments),
         Command::Adversaries(arguments) => run_adversaries(&arguments),
         Command::Rival(arguments) => run_external(&arguments),
-        Command::Saved(arguments) => compare_saved(&arguments),
         Command::Extremes(arguments) => check_extremes(&arguments),
         Command::ExtremePairs(arguments) => check_extreme_pairs(&arguments),
         Command::Paper(arguments) => repeat_paper(&arguments),
@@ -124,28 +110,6 @@ fn run_external(arguments: &RivalArguments) -> Result<bool> {
     Ok(true)
 }
 
-/// Prints a table that compares recommended backends with the best ones. It always succeeds.
-fn check_advice(arguments: &AdviseArguments) -> Result<bool> {
-    println!("{}", provenance(None));
-    let mut table = Table::new(advise::HEADINGS);
-    let mut worst = [1.0f64, 0.0];
-    for path in &arguments.scenes {
-        let scene = Scene::read(path)?;
-        if scene.len() >= 1000 {
-            let [ratio, share] = advise::add_rows(&scene, &mut table)?;
-            worst = [worst[0].max(ratio), worst[1].max(share)];
-        }
-    }
-    println!(
-        "One thread, thread CPU time; totals are building and all queries, from {} of them. At worst {:.2} times the best, and \
-         {:.1} % of the job for advice.\n\n{table}",
-        advise::QUERIES,
-        worst[0],
-        100.0 * worst[1]
-    );
-    Ok(true)
-}
-
 /// Prints the origin of figures and a line about the measurement, measures scenes one by one, and returns whether all
 /// are good.
 fn all_good(scenes: &[PathBuf], about: &str, mut measure: impl FnMut(Scene) -> Result<bool>) -> Result<bool> {
@@ -167,41 +131,6 @@ fn fill_fields(arguments: &FieldArguments) -> Result<bool> {
     })
 }
 
-/// Times saved indexes, and returns whether they answer as those that were built.
-fn compare_saved(arguments: &SavedArguments) -> Result<bool> {
-    all_good(&arguments.scenes, "", |scene| saved::print(&scene, arguments.rounds))
-}
-
-/// Compares settings of the octree, and returns whether all octrees agree.
-fn compare_octrees(arguments: &BatchArguments) -> Result<bool> {
-    let BatchArguments { rounds, sets, threads } = arguments;
-    let effort = Effort { builds: 3, ..rounds.effort(1_000_000) };
-    let about = in_rounds("Thread CPU time unless a column says otherwise", &effort);
-    all_good(&rounds.scenes, &about, |scene| octree::print(&scene, &sets.sets, threads, &effort))
-}
-
-/// Times Delaunay triangulations, and returns whether all are valid.
-fn triangulate(arguments: &DelaunayArguments) -> Result<bool> {
-    println!("{}", provenance(None));
-    println!("One thread, thread CPU time.");
-    delaunay::print(&arguments.scenes, arguments.rounds)
-}
-
-/// Times batches, and returns whether all agree with single queries.
-fn time_batches(arguments: &BatchArguments) -> Result<bool> {
-    let BatchArguments { rounds, sets, threads } = arguments;
-    let effort = rounds.effort(1_000_000);
-    let about = in_rounds("Wall time", &effort);
-    let is_good = all_good(&rounds.scenes, &about, |scene| {
-        Ok(batch::print(&scene, &sets.sets, threads, &effort)? & candidates::print(&scene, &sets.sets, &effort)?)
-    })?;
-    println!(
-        "{}",
-        if is_good { "All answers are those of single queries." } else { "DIFFERENCES from single queries." }
-    );
-    Ok(is_good)
-}
-
 /// Times builds on several numbers of threads. No result counts as bad.
 fn compare_threads(arguments: &ThreadsArguments) -> Result<bool> {
     let ThreadsArguments { scenes, backends, threads, rounds } = arguments;
@@ -209,34 +138,16 @@ fn compare_threads(arguments: &ThreadsArguments) -> Result<bool> {
     all_good(scenes, &about, |scene| threads::print(&scene, backends, threads, *rounds).map(|()| true))
 }
 
-/// Times refits, and returns whether refitted trees answer as those that are built anew.
-fn time_refits(arguments: &BatchArguments) -> Result<bool> {
-    let BatchArguments { rounds, sets, .. } = arguments;
-    let effort = rounds.effort(100_000);
-    all_good(&rounds.scenes, &in_rounds("CPU time", &effort), |scene| refit::print(&scene, &sets.sets, &effort))
-}
-
 /// Times a scene of instances, and returns whether it answers as one index over all of them.
 fn time_instances(arguments: &InstancesArguments) -> Result<bool> {
-    let &InstancesArguments { ref rounds, instances, triangles, rays } = arguments;
-    let effort = rounds.effort(1_000_000);
+    let &InstancesArguments { ref scenes, rounds, queries, seed, instances, triangles, rays } = arguments;
+    let effort = Effort { rounds, queries, builds: rounds, seed };
     println!("{}\n{}", provenance(None), in_rounds("CPU time of one thread", &effort));
     let size = instances::Size { instances, triangles, rays };
     let one_thread = rayon::ThreadPoolBuilder::new().num_threads(1).build()?;
-    let is_good = one_thread.install(|| instances::print(&rounds.scenes, &size, &effort))?;
+    let is_good = one_thread.install(|| instances::print(scenes, &size, &effort))?;
     println!("{}", if is_good { "All answers are equal." } else { "DIFFERENT answers." });
     Ok(is_good)
-}
-
-/// Times the program beside its library. No result counts as bad.
-fn time_program(arguments: &ProgramArguments) -> Result<bool> {
-    let ProgramArguments { rounds, threads } = arguments;
-    let effort = rounds.effort(2_000_000);
-    println!("{}\n{}", provenance(None), in_rounds("Wall time", &effort));
-    for path in &rounds.scenes {
-        program::print(&Scene::read(path)?, path, *threads, &effort)?;
-    }
-    Ok(true)
 }
 
 /// Times distances between scenes, and returns whether our exact answers agree.
@@ -254,75 +165,19 @@ fn measure_scale(arguments: ScaleArguments) -> Result<bool> {
     scale::run(&scale::Request { backends, sizes, sets, queries, rounds, max_memory, max_seconds, document })
 }
 
-/// Times indexes over point clouds beside KD-trees, and returns whether ours agree.
-fn compare_clouds(arguments: &PointsArguments) -> Result<bool> {
-    let &PointsArguments { ref distributions, ref counts, ref sets, rounds, queries, builds, seed, ref document } =
-        arguments;
-    let effort = Effort { rounds, queries, builds, seed };
-    let all = points::Distribution::value_variants();
-    let distributions = if distributions.is_empty() { all } else { distributions };
-    points::print(distributions, counts, sets, &effort, document.write.as_deref())
-}
-
-/// Returns the scene alone, or in seven orientations.
-fn orientations(scene: Scene, turned: bool) -> Result<Vec<Scene>> {
-    if turned { kdop::orientations(&scene) } else { Ok(vec![scene]) }
-}
-
-/// Compares k-DOP trees, and returns whether all trees agree.
-fn compare_kdops(arguments: &KdopArguments) -> Result<bool> {
-    let KdopArguments { rounds, turned, set } = arguments;
-    let effort = rounds.effort(100_000);
-    all_good(&rounds.scenes, &in_rounds(&format!("One thread, thread CPU time, set {set}"), &effort), |scene| {
-        let mut is_good = true;
-        for scene in &orientations(scene, *turned)? {
-            is_good &= kdop::print(scene, *set, &effort);
-        }
-        Ok(is_good)
-    })
-}
-
 /// Times rays, and returns whether all trees agree.
 fn cast_rays(arguments: &RayArguments) -> Result<bool> {
-    let RayArguments { scenes, turned, rivals: with_external, backends, sets, rays, rounds, seed, csv, label } =
-        arguments;
-    let against_external = *with_external || !backends.is_empty();
+    let &RayArguments { ref scenes, ref backends, ref sets, rays, rounds, seed, ref csv, ref label } = arguments;
     let provenance = provenance(label.as_deref());
     let mut record = csv.as_deref().map(report::Record::open).transpose()?;
     println!("{provenance}");
     println!("One thread, thread CPU time, {rounds} rounds in turns, seed {seed}.");
-    let default_sets: &[QuerySet] =
-        if against_external { &[QuerySet::Box10, QuerySet::Box1] } else { &[QuerySet::Box1] };
-    let sets = if sets.is_empty() { default_sets } else { sets };
-    if !against_external {
-        rays::manual::print_cited();
-    }
+    let effort = Effort { rounds, queries: rays, builds: 1, seed };
     let mut is_good = true;
     for path in scenes {
-        for scene in &orientations(Scene::read(path)?, *turned)? {
-            let count = rays.map_or(
-                Ok(if against_external { 200_000 } else { rays::manual::RAYS_EACH * scene.len() }),
-                usize::try_from,
-            )?;
-            let effort = Effort { rounds: *rounds, queries: count, builds: 1, seed: *seed };
-            if against_external {
-                is_good &= rays::versus::print(scene, sets, backends, &effort, &provenance, record.as_mut())?;
-            } else {
-                for set in sets {
-                    is_good &= rays::manual::print(scene, *set, &effort)?;
-                }
-            }
-        }
+        is_good &= rays::versus::print(&Scene::read(path)?, sets, backends, &effort, &provenance, record.as_mut())?;
     }
     Ok(is_good)
-}
-
-/// Compares split rules, and returns whether all trees agree.
-fn compare_splits(arguments: &SplitsArguments) -> Result<bool> {
-    let SplitsArguments { rounds, sets } = arguments;
-    let effort = rounds.effort(50_000);
-    let about = in_rounds("One thread, thread CPU time", &effort);
-    all_good(&rounds.scenes, &about, |scene| Ok(splits::print(&scene, &sets.sets, &effort)))
 }
 
 /// Compares our exact backends with brute force, and returns whether all answers are equal.

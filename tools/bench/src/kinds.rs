@@ -5,7 +5,9 @@ use crate::our_indexes::{aabb_options, id_of, over_set};
 use crate::scene::Scene;
 use nalgebra::Point3;
 use p2m_bvh::AabbTree;
-use p2m_core::{BuildIndex, ClosestPoint, Indexed, PrimitiveId, PrimitiveSet, QueryOptions, Triangle};
+use p2m_core::{
+    BuildIndex, ClosestPoint, KindSet, PrimitiveId, PrimitiveSet, QueryOptions, Soup, Triangle, TriangleSet,
+};
 
 /// Prepares the AABB tree over a vector of triangles, for scenes without other primitives.
 pub(crate) fn aabb_of_triangles(scene: &Scene) -> Result<Prepared<'_>, Unavailable> {
@@ -20,7 +22,7 @@ pub(crate) fn aabb_of_set(scene: &Scene) -> Result<Prepared<'_>, Unavailable> {
     over_set(set, scene.double_bytes, |set| AabbTree::build(set, &aabb_options()))
 }
 
-fn triangles(scene: &Scene) -> Result<Indexed<'_, f64, 3>, Unavailable> {
+fn triangles(scene: &Scene) -> Result<TriangleSet<&Soup<f64>>, Unavailable> {
     let set = scene.double.triangle_set();
     if set.len() < scene.len() {
         return Err(Unavailable("the scene has other primitives than triangles".to_owned()));
@@ -40,11 +42,11 @@ struct KindTrees<'a>(Vec<KindTree<'a>>);
 impl<'a> KindTrees<'a> {
     fn add<const N: usize>(
         &mut self,
-        set: Indexed<'a, f64, N>,
+        set: KindSet<&'a Soup<f64>, N>,
         ids: impl Iterator<Item = PrimitiveId>,
     ) -> Result<(), Unavailable>
     where
-        Indexed<'a, f64, N>: PrimitiveSet<f64>,
+        KindSet<&'a Soup<f64>, N>: PrimitiveSet<f64>,
     {
         if !set.is_empty() {
             let index = AabbTree::build(set, &aabb_options()).map_err(|error| Unavailable(error.to_string()))?;

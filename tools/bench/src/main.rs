@@ -11,42 +11,31 @@
 #![forbid(unsafe_code)]
 
 mod adversaries;
-mod advise;
 mod agree;
 mod arguments;
 mod backend;
 mod backends;
-mod batch;
 mod blocks;
 mod bvh_crate;
-mod candidates;
 mod commands;
-mod delaunay;
 mod external;
 mod extremes;
 mod field;
 mod instances;
-mod kdop;
 mod kinds;
 mod measure;
 mod memory;
-mod octree;
 mod our_indexes;
 mod pairs;
 mod paper;
 mod plot;
 mod point_trees;
-mod points;
-mod program;
 mod rays;
-mod refit;
 mod report;
 mod rounds;
-mod saved;
 mod scale;
 mod scene;
 mod shards;
-mod splits;
 mod threads;
 mod verify;
 
@@ -71,6 +60,5 @@ mod tests {
         crate::extremes::pairs::BLOCKS.check(Some(&document("extremes.md"))).unwrap();
         crate::adversaries::BLOCKS.check(Some(&document("adversaries.md"))).unwrap();
         crate::scale::BLOCKS.check(Some(&document("scale.md"))).unwrap();
-        crate::points::BLOCKS.check(Some(&document("scale.md"))).unwrap();
     }
 }

@@ -1,7 +1,4 @@
-//! KD-trees of the crate kiddo and of the C++ library nanoflann, for scenes of points only.
-//!
-//! Both are built with their default settings. nanoflann is compiled with the feature `nanoflann`; its tree is not
-//! counted as memory, because the allocator of this program does not see it.
+//! The KD-tree of the crate kiddo with its default settings, for scenes of points only.
 
 use crate::backend::{Answer, BenchIndex, BoxedIndex, Prepared, Scalar, Unavailable};
 use crate::scene::Scene;
@@ -48,58 +45,3 @@ struct Kiddo<T: Copy + Default>(ImmutableKdTree<T, 3>);
 
 kiddo!(kiddo_double, f64);
 kiddo!(kiddo_single, f32);
-
-#[cfg(feature = "nanoflann")]
-mod nanoflann {
-    use super::*;
-
-    impl<T: Scalar + p2m_nanoflann::Scalar> BenchIndex for p2m_nanoflann::KdTree<T> {
-        type Scalar = T;
-
-        fn query(&self, query: &Point3<T>) -> Answer {
-            let mut answer = [Answer::NONE];
-            self.queries(std::slice::from_ref(query), &mut answer);
-            answer[0]
-        }
-
-        fn queries(&self, queries: &[Point3<T>], answers: &mut [Answer]) {
-            let coordinates: Vec<[T; 3]> = queries.iter().map(|query| query.coords.into()).collect();
-            let (mut squares, mut numbers) = (vec![T::zero(); queries.len()], vec![0; queries.len()]);
-            self.nearest(&coordinates, &mut squares, &mut numbers);
-            for ((answer, square), id) in answers.iter_mut().zip(squares).zip(numbers) {
-                *answer = Answer { distance: square.to_f64().sqrt(), id };
-            }
-        }
-    }
-
-    /// Prepares the KD-tree of nanoflann in a scalar.
-    pub(super) fn prepare<T: Scalar + p2m_nanoflann::Scalar>(scene: &Scene) -> Result<Prepared<'_>, Unavailable> {
-        let points = points::<T>(scene)?;
-        let build = move || {
-            let tree = p2m_nanoflann::KdTree::new(points).ok_or_else(|| Unavailable("no tree".to_owned()))?;
-            Ok(Box::new(tree) as BoxedIndex<'_>)
-        };
-        Ok(Prepared { build: Box::new(build), borrowed: 0 })
-    }
-}
-
-/// Prepares the KD-tree of nanoflann in f64.
-pub(crate) fn nanoflann_double(scene: &Scene) -> Result<Prepared<'_>, Unavailable> {
-    #[cfg(feature = "nanoflann")]
-    return nanoflann::prepare::<f64>(scene);
-    #[cfg(not(feature = "nanoflann"))]
-    without_nanoflann(scene)
-}
-
-/// Prepares the KD-tree of nanoflann in f32.
-pub(crate) fn nanoflann_single(scene: &Scene) -> Result<Prepared<'_>, Unavailable> {
-    #[cfg(feature = "nanoflann")]
-    return nanoflann::prepare::<f32>(scene);
-    #[cfg(not(feature = "nanoflann"))]
-    without_nanoflann(scene)
-}
-
-#[cfg(not(feature = "nanoflann"))]
-fn without_nanoflann(_: &Scene) -> Result<Prepared<'_>, Unavailable> {
-    Err(Unavailable("this program was compiled without the feature `nanoflann`".to_owned()))
-}

@@ -3,8 +3,8 @@
 use super::bytes::Bytes;
 use p2m::kdop::Directions;
 use p2m::{
-    AabbTree, BoxQuery, BuildError, BuildIndex, CertifiedQuery, ClosestLeaf, ClosestPoint, Domain, Isa, KdopTree,
-    NearQuery, OctreeIndex, OctreeOptions, P2mIndex, P2mOptions, PrimitiveSet, RayQuery, Real, Soup,
+    AabbTree, BoxQuery, BuildError, BuildIndex, CertifiedQuery, ClosestPoint, Domain, Isa, KdopTree, NearQuery,
+    OctreeIndex, OctreeOptions, P2mIndex, P2mOptions, PrimitiveSet, RayQuery, Real, Soup,
 };
 
 /// An index that answers the queries of all backends.
@@ -12,8 +12,8 @@ pub trait Index<T: Real>: ClosestPoint<T> + NearQuery<T> + CertifiedQuery<T> + S
 impl<T: Real, I: ClosestPoint<T> + NearQuery<T> + CertifiedQuery<T> + Sync> Index<T> for I {}
 
 /// An index that answers ray and box queries as well.
-pub trait Tree<T: Real>: Index<T> + RayQuery<T> + BoxQuery<T> + ClosestLeaf<T> {}
-impl<T: Real, I: Index<T> + RayQuery<T> + BoxQuery<T> + ClosestLeaf<T>> Tree<T> for I {}
+pub trait Tree<T: Real>: Index<T> + RayQuery<T> + BoxQuery<T> {}
+impl<T: Real, I: Index<T> + RayQuery<T> + BoxQuery<T>> Tree<T> for I {}
 
 /// The names of the trees.
 pub const TREES: [&str; 4] = ["aabb", "kdop-6", "kdop-14", "kdop-26"];

@@ -5,7 +5,7 @@ use super::external::{parry_double, parry_single};
 use crate::backend::{Prepared, Unavailable};
 use crate::our_indexes::{aabb_options, instruction_set};
 use crate::scene::Scene;
-use anyhow::{Result, anyhow};
+use anyhow::Result;
 use p2m_bvh::AabbTree;
 use p2m_bvh::{TreeIndex, Volume};
 use p2m_core::{Aabb, BruteForce, BuildIndex, Isa, Soup};
@@ -89,9 +89,4 @@ pub(crate) fn all_trees(scene: &Scene) -> Result<Vec<(String, Box<dyn OurCaster 
     all.extend(with_each("kdop-18", &TreeIndex::<_, _, Kdop<18>>::build(soup, &kdop_options())?));
     all.extend(with_each("kdop-26", &TreeIndex::<_, _, Kdop<26>>::build(soup, &kdop_options())?));
     Ok(all)
-}
-
-/// Returns the backend of that name.
-pub(crate) fn by_name(name: &str) -> Result<&'static RayBackend> {
-    ALL.iter().find(|backend| backend.name == name).ok_or_else(|| anyhow!("there is no competitor {name}"))
 }

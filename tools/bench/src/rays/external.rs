@@ -28,7 +28,7 @@ macro_rules! parry {
                         Ray::new(Vector::new(o.x, o.y, o.z), Vector::new(d.x, d.y, d.z))
                     };
                     let pairs = rays.$rays.iter().map(of).zip(outcomes);
-                    let found = |parameter: $scalar, id: usize| Outcome { hits: 1, parameter: parameter.into(), id };
+                    let found = |parameter: $scalar, id: usize| Outcome::hit(parameter.into(), id);
                     if self.normal {
                         pairs.for_each(|(ray, outcome)| {
                             let hit = self.mesh.cast_local_ray_and_get_normal(&ray, <$scalar>::MAX, false);

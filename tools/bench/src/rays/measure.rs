@@ -1,6 +1,6 @@
 //! Times rounds of rays in thread CPU time, with the backends taking turns to begin, and compares the answers.
 
-use super::backend::{Function, OurCaster, Outcome, RayIndex, Rays};
+use super::backend::{OurCaster, Outcome, RayIndex, Rays};
 use super::backends::{all_trees, brute};
 use crate::backend::{Unavailable, catch};
 use crate::measure::Effort;
@@ -22,15 +22,7 @@ const MAX_COMPARED_WITH_BRUTE: usize = 200;
 /// diagonal of the box: a thousand units of the last place.
 pub(crate) const ROUNDING: f64 = 1000.0 / (1u32 << 24) as f64;
 
-/// An index together with the function that it is measured with.
-pub(crate) struct Competitor<'a> {
-    /// The index that answers.
-    pub(crate) index: &'a RayIndex<'a>,
-    /// The function that is measured.
-    pub(crate) function: Function,
-}
-
-/// The differences between the answers of a competitor and those of our first competitor with the same function.
+/// The differences between the answers of a competitor and those of our first competitor.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(crate) struct Differences {
     /// The number of rays that were compared.
@@ -53,7 +45,7 @@ impl Differences {
 
     fn add(&mut self, outcome: &Outcome, expected: &Outcome, exact: bool, diagonal: f64) {
         self.compared += 1;
-        match (outcome.hits > 0, expected.hits > 0) {
+        match (outcome.is_hit, expected.is_hit) {
             (false, true) => self.missed += 1,
             (true, false) => self.added += 1,
             (false, false) => {}
@@ -99,9 +91,9 @@ pub(crate) fn first_chunk(scene: &Scene, set: QuerySet, effort: &Effort) -> Rays
     chunks(scene, set, effort).next().expect("at least one")
 }
 
-/// Measures all competitors, which take turns to begin a chunk.
-pub(crate) fn measure(scene: &Scene, set: QuerySet, competitors: &[Competitor<'_>], effort: &Effort) -> Vec<Figures> {
-    let mut all = vec![Figures::default(); competitors.len()];
+/// Measures the first hits of all competitors, which take turns to begin a chunk.
+pub(crate) fn measure(scene: &Scene, set: QuerySet, indexes: &[&RayIndex<'_>], effort: &Effort) -> Vec<Figures> {
+    let mut all = vec![Figures::default(); indexes.len()];
     for round in 0..effort.rounds {
         for figures in &mut all {
             (figures.rays, figures.hits) = (0, 0);
@@ -109,25 +101,25 @@ pub(crate) fn measure(scene: &Scene, set: QuerySet, competitors: &[Competitor<'_
             figures.checksums.push(0);
         }
         for (chunk, rays) in chunks(scene, set, effort).enumerate() {
-            let mut outcomes = vec![Vec::new(); competitors.len()];
-            for at in rotated(competitors.len(), round + chunk) {
+            let mut outcomes = vec![Vec::new(); indexes.len()];
+            for at in rotated(indexes.len(), round + chunk) {
                 if all[at].failure.is_none() {
-                    outcomes[at] = answer_chunk(&competitors[at], &rays, &mut all[at]);
+                    outcomes[at] = answer_chunk(indexes[at], &rays, &mut all[at]);
                 }
             }
-            compare(scene, competitors, &outcomes, &mut all);
+            compare(scene, indexes, &outcomes, &mut all);
         }
     }
     all
 }
 
 /// Lets one competitor answer a chunk, and adds the cost to its last round.
-fn answer_chunk(competitor: &Competitor<'_>, rays: &Rays, figures: &mut Figures) -> Vec<Outcome> {
+fn answer_chunk(index: &RayIndex<'_>, rays: &Rays, figures: &mut Figures) -> Vec<Outcome> {
     let mut outcomes = vec![Outcome::NONE; rays.len()];
     let answer = |rays: &Rays, outcomes: &mut [Outcome]| {
         catch(|| {
-            match competitor.index {
-                RayIndex::Ours(index) => index.answer(competitor.function, rays, outcomes),
+            match index {
+                RayIndex::Ours(index) => index.first(rays, outcomes),
                 RayIndex::External(index) => index.first(rays, outcomes),
             }
             Ok(())
@@ -139,23 +131,21 @@ fn answer_chunk(competitor: &Competitor<'_>, rays: &Rays, figures: &mut Figures)
     }
     figures.failure = outcome.err();
     figures.rays += rays.len();
-    figures.hits += outcomes.iter().map(|outcome| outcome.hits).sum::<usize>();
-    let answers = outcomes.iter().map(|o| (o.parameter.to_bits() ^ o.hits as u64, o.id as u64));
+    figures.hits += outcomes.iter().filter(|outcome| outcome.is_hit).count();
+    let answers = outcomes.iter().map(|o| (o.parameter.to_bits() ^ u64::from(o.is_hit), o.id as u64));
     if let Some(sum) = figures.checksums.last_mut() {
         *sum = checksum(*sum, answers);
     }
     outcomes
 }
 
-fn compare(scene: &Scene, competitors: &[Competitor<'_>], outcomes: &[Vec<Outcome>], all: &mut [Figures]) {
-    let is_ours = |competitor: &Competitor<'_>| matches!(competitor.index, RayIndex::Ours(_));
+fn compare(scene: &Scene, indexes: &[&RayIndex<'_>], outcomes: &[Vec<Outcome>], all: &mut [Figures]) {
+    let is_ours = |index: &RayIndex<'_>| matches!(index, RayIndex::Ours(_));
     let diagonal = scene.diagonal();
-    for ((competitor, own_outcomes), figures) in competitors.iter().zip(outcomes).zip(all) {
-        let same = |(other, _): &(&Competitor<'_>, _)| is_ours(other) && other.function == competitor.function;
-        if let Some((_, expected)) = competitors.iter().zip(outcomes).find(same) {
-            for (outcome, expected) in own_outcomes.iter().zip(expected) {
-                figures.differences.add(outcome, expected, is_ours(competitor), diagonal);
-            }
+    let Some(expected) = indexes.iter().position(|index| is_ours(index)) else { return };
+    for ((index, own_outcomes), figures) in indexes.iter().zip(outcomes).zip(all) {
+        for (outcome, expected) in own_outcomes.iter().zip(&outcomes[expected]) {
+            figures.differences.add(outcome, expected, is_ours(index), diagonal);
         }
     }
 }
@@ -209,20 +199,14 @@ mod tests {
     }
 
     impl OurCaster for Wrong<'_> {
-        fn answer(&self, _: Function, rays: &Rays, outcomes: &mut [Outcome]) {
+        fn first(&self, rays: &Rays, outcomes: &mut [Outcome]) {
             for (ray, outcome) in rays.ours.iter().zip(outcomes) {
-                *outcome = self.0.first_intersection(ray).map(Self::moved).map_or(Outcome::NONE, |hit| Outcome {
-                    hits: 1,
-                    parameter: hit.parameter,
-                    id: hit.primitive.index(),
-                });
+                let hit = self.0.first_intersection(ray).map(Self::moved);
+                *outcome = hit.map_or(Outcome::NONE, |hit| Outcome::hit(hit.parameter, hit.primitive.index()));
             }
         }
         fn hits(&self, ray: &Ray) -> (Option<Hit>, Vec<Hit>) {
             (self.0.first_intersection(ray).map(Self::moved), self.0.all_intersections(ray))
-        }
-        fn work(&self, _: &[Ray]) -> [usize; 3] {
-            [0; 3]
         }
     }
 
@@ -236,7 +220,7 @@ mod tests {
 
     #[test]
     fn each_kind_of_difference_is_counted_as_such() {
-        let hit = |parameter| Outcome { hits: 1, parameter, id: 3 };
+        let hit = |parameter| Outcome::hit(parameter, 3);
         let differences = |exact, pairs: &[[Outcome; 2]]| {
             let mut sum = Differences::default();
             pairs.iter().for_each(|[outcome, expected]| sum.add(outcome, expected, exact, 1.0));
@@ -249,10 +233,9 @@ mod tests {
             [hit(3.0), hit(3.0)],
             [hit(3.0_f64.next_up()), hit(3.0)],
             [hit(4.0), hit(3.0)],
-            [Outcome { hits: 2, ..hit(3.0) }, hit(3.0)],
             [Outcome { id: 4, ..hit(3.0) }, hit(3.0)],
         ];
-        let clean = Differences { compared: 8, missed: 1, added: 1, other: 4, largest: 0.0 };
+        let clean = Differences { compared: 7, missed: 1, added: 1, other: 3, largest: 0.0 };
         assert_eq!(differences(true, &pairs), clean);
         assert_eq!(differences(false, &pairs), Differences { other: 1, largest: 0.25, ..clean });
         assert!(differences(true, &pairs[2..4]).is_clean() && !differences(true, &pairs[..1]).is_clean());
@@ -276,9 +259,8 @@ mod tests {
             Some((backend.name, build().unwrap()))
         };
         let indexes: Vec<_> = ALL.iter().filter_map(built).collect();
-        let competitors: Vec<_> =
-            indexes.iter().map(|(_, index)| Competitor { index, function: Function::First }).collect();
-        let figures = measure(&scene, QuerySet::Box1, &competitors, &EFFORT);
+        let figures =
+            measure(&scene, QuerySet::Box1, &indexes.iter().map(|(_, index)| index).collect::<Vec<_>>(), &EFFORT);
         for ((name, index), figures) in indexes.iter().zip(&figures) {
             check(name, matches!(index, RayIndex::Ours(_)), figures);
         }
@@ -303,7 +285,7 @@ mod tests {
     }
 
     #[test]
-    fn all_functions_agree_and_a_wrong_index_does_not() {
+    fn right_indexes_agree_and_a_wrong_one_does_not() {
         let scene = scene(&TRIANGLES);
         let wrong = || Wrong(BruteForce::new(&scene.double).unwrap());
         let indexes = [
@@ -311,12 +293,9 @@ mod tests {
             RayIndex::Ours(all_trees(&scene).unwrap().remove(0).1),
             RayIndex::Ours(Box::new(wrong())),
         ];
-        for function in Function::ALL {
-            let competitors: Vec<_> = indexes.iter().map(|index| Competitor { index, function }).collect();
-            let figures = measure(&scene, QuerySet::Box1, &competitors, &EFFORT);
-            assert!(figures[..2].iter().all(|figures| figures.differences.is_clean()), "{function:?}");
-            assert!(!figures[2].differences.is_clean(), "{function:?}");
-        }
+        let figures = measure(&scene, QuerySet::Box1, &indexes.each_ref(), &EFFORT);
+        assert!(figures[..2].iter().all(|figures| figures.differences.is_clean()));
+        assert!(!figures[2].differences.is_clean());
         let rays = first_chunk(&scene, QuerySet::Box1, &EFFORT);
         assert!(verify(&scene, &rays).unwrap().is_ok());
         let trees: [(String, Box<dyn OurCaster + '_>); 1] = [("wrong".into(), Box::new(wrong()))];

@@ -1,11 +1,10 @@
-//! `p2m-bench ray`: compares ray casting with parry, and redraws the ray figures in the manual of CGAL's k-DOP tree.
+//! `p2m-bench ray`: compares ray casting with parry.
 //!
 //! Rays begin at the points of a query set and have directions that are evenly distributed on the sphere.
 
 mod backend;
 mod backends;
 mod external;
-pub(crate) mod manual;
 mod measure;
 pub(crate) mod versus;
 

@@ -1,8 +1,8 @@
 //! Compares the first hit with parry.
 
-use super::backend::{Function, RayBackend, RayIndex};
+use super::backend::{RayBackend, RayIndex};
 use super::backends::{ALL, YARDSTICK, YARDSTICK_PARAMETER};
-use super::measure::{Competitor, Differences, Figures, ROUNDING, first_chunk, measure, verify};
+use super::measure::{Differences, Figures, ROUNDING, first_chunk, measure, verify};
 use crate::backend::{Unavailable, catch};
 use crate::measure::{BuildFigures, Effort, MedianRange, measure_build};
 use crate::memory;
@@ -38,12 +38,11 @@ pub(crate) fn print(
             Err(Unavailable(why)) => notes.push(format!("{} is left out: {why}", backend.name)),
         }
     }
-    let competitors: Vec<_> =
-        entries.iter().map(|entry| Competitor { index: &entry.index, function: Function::First }).collect();
+    let indexes: Vec<_> = entries.iter().map(|entry| &entry.index).collect();
     let mut rows: Vec<Vec<String>> =
         entries.iter().map(|e| vec![e.backend.name.to_owned(), e.backend.scalar.to_owned()]).collect();
     for set in sets {
-        let all = measure(scene, *set, &competitors, effort);
+        let all = measure(scene, *set, &indexes, effort);
         for ((entry, figures), row) in entries.iter().zip(&all).zip(&mut rows) {
             row.push(cell(figures, reference_medians(&entries, &all)));
             clean &= matches!(entry.index, RayIndex::External(_)) || is_clean(figures);

@@ -1,10 +1,12 @@
 //! The primitives of one kind of a soup, as a set.
 
 use crate::{Point, PrimitiveId, PrimitiveSet, Real, Segment, Soup, Triangle};
-use nalgebra::Point3;
 use std::ops::Deref;
 
-/// The primitives of one kind of a borrowed [`Soup`]: triangles for N = 3, segments for N = 2, points for N = 1.
+/// The primitives of one kind of a [`Soup`]: triangles for N = 3, segments for N = 2, points for N = 1.
+///
+/// The type is written as [`TriangleSet`], [`SegmentSet`] or [`PointSet`]. `S` is a pointer to the soup:
+/// [`Soup::triangle_set`] borrows the soup, and with `Box<Soup<f64>>` or `Arc<Soup<f64>>` the set owns or shares it.
 ///
 /// An index over it compiles to the kernel of that kind alone. Primitives are numbered in the order of the soup. If the
 /// soup has other kinds as well, [`Soup::triangle_ids`], [`Soup::segment_ids`] and [`Soup::point_ids`] map these
@@ -23,44 +25,36 @@ use std::ops::Deref;
 /// assert_eq!(id.index(), 2);
 /// # Ok::<(), p2m_core::BuildError>(())
 /// ```
-#[derive(Clone, Copy, Debug)]
-pub struct Indexed<'a, T: Real, const N: usize> {
-    positions: &'a [Point3<T>],
-    elements: &'a [[u32; N]],
-}
-
-impl<T: Real, const N: usize> Indexed<'_, T, N> {
-    /// Returns the vertices of a primitive.
-    #[inline(always)]
-    fn vertices(&self, id: PrimitiveId) -> [Point3<T>; N] {
-        self.elements[id.index()].map(|i| self.positions[i as usize])
-    }
-}
-
-/// The primitives of one kind of a soup that the set owns or shares, as [`Indexed`] has those of a borrowed one.
 ///
-/// `S` is a pointer to the soup, such as `Arc<Soup<f64>>` or `Box<Soup<f64>>`.
+/// An index that shares the soup can be a field of a struct:
 ///
 /// ```
-/// use p2m_core::{BruteForce, ClosestPoint, OfKind, Soup};
+/// use p2m_core::{BruteForce, ClosestPoint, Soup, TriangleSet};
 /// use nalgebra::Point3;
 /// use std::sync::Arc;
 ///
 /// struct Walls {
-///     index: BruteForce<OfKind<Arc<Soup<f64>>, 3>>,
+///     index: BruteForce<TriangleSet<Arc<Soup<f64>>>>,
 /// }
 ///
 /// let soup = Soup::from_arrays(&[[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]], &[[0u32, 1, 2]])?;
-/// let walls = Walls { index: BruteForce::new(OfKind::new(Arc::new(soup)))? };
+/// let walls = Walls { index: BruteForce::new(TriangleSet::new(Arc::new(soup)))? };
 /// assert_eq!(walls.index.closest_point(&Point3::new(0.2, 0.2, 3.0)).unwrap().distance, 3.0);
 /// # Ok::<(), p2m_core::BuildError>(())
 /// ```
-#[derive(Clone, Debug)]
-pub struct OfKind<S, const N: usize> {
+#[derive(Clone, Copy, Debug)]
+pub struct KindSet<S, const N: usize> {
     soup: S,
 }
 
-impl<S, const N: usize> OfKind<S, N> {
+/// The triangles of a soup.
+pub type TriangleSet<S> = KindSet<S, 3>;
+/// The segments of a soup.
+pub type SegmentSet<S> = KindSet<S, 2>;
+/// The points of a soup.
+pub type PointSet<S> = KindSet<S, 1>;
+
+impl<S, const N: usize> KindSet<S, N> {
     /// Creates the set of the primitives with N vertices.
     pub fn new(soup: S) -> Self {
         Self { soup }
@@ -72,11 +66,11 @@ impl<S, const N: usize> OfKind<S, N> {
     }
 }
 
-/// Implements the set of primitives of one kind, given their number of vertices, their type, the method of a soup that
-/// returns them as a set, and an expression that makes a primitive of its vertices.
+/// Implements the set of primitives of one kind, given the type of the set, that of a primitive, the method of a soup
+/// that returns its elements, a pattern for such an element, and its indices.
 macro_rules! set_of_kind {
-    ($n:literal, $primitive:ident, $set:ident, $vertices:pat, $value:expr) => {
-        impl<T: Real> PrimitiveSet<T> for Indexed<'_, T, $n> {
+    ($set:ident, $primitive:ident, $elements:ident, $element:pat, [$($index:ident),+]) => {
+        impl<T: Real, S: Deref<Target = Soup<T>>> PrimitiveSet<T> for $set<S> {
             type Primitive<'b>
                 = $primitive<T>
             where
@@ -84,56 +78,40 @@ macro_rules! set_of_kind {
 
             #[inline(always)]
             fn len(&self) -> usize {
-                self.elements.len()
+                self.soup.$elements().len()
             }
 
             #[inline(always)]
             fn get(&self, id: PrimitiveId) -> $primitive<T> {
-                let $vertices = self.vertices(id);
-                $value
-            }
-        }
-
-        impl<T: Real, S: Deref<Target = Soup<T>>> PrimitiveSet<T> for OfKind<S, $n> {
-            type Primitive<'b>
-                = $primitive<T>
-            where
-                Self: 'b;
-
-            #[inline(always)]
-            fn len(&self) -> usize {
-                self.soup.$set().len()
-            }
-
-            #[inline(always)]
-            fn get(&self, id: PrimitiveId) -> $primitive<T> {
-                self.soup.$set().get(id)
+                let soup = &*self.soup;
+                let $element = soup.$elements()[id.index()];
+                $primitive::new($(soup.positions()[$index as usize]),+)
             }
         }
     };
 }
 
-set_of_kind!(1, Point, point_set, [a], Point::new(a));
-set_of_kind!(2, Segment, segment_set, [a, b], Segment::new(a, b));
-set_of_kind!(3, Triangle, triangle_set, [a, b, c], Triangle::new(a, b, c));
+set_of_kind!(PointSet, Point, points, a, [a]);
+set_of_kind!(SegmentSet, Segment, segments, [a, b], [a, b]);
+set_of_kind!(TriangleSet, Triangle, triangles, [a, b, c], [a, b, c]);
 
 impl<T: Real> Soup<T> {
     /// Returns the triangles of the soup as a set.
     #[must_use]
-    pub fn triangle_set(&self) -> Indexed<'_, T, 3> {
-        Indexed { positions: self.positions(), elements: self.triangles() }
+    pub fn triangle_set(&self) -> TriangleSet<&Self> {
+        KindSet::new(self)
     }
 
     /// Returns the segments of the soup as a set.
     #[must_use]
-    pub fn segment_set(&self) -> Indexed<'_, T, 2> {
-        Indexed { positions: self.positions(), elements: self.segments() }
+    pub fn segment_set(&self) -> SegmentSet<&Self> {
+        KindSet::new(self)
     }
 
     /// Returns the points of the soup as a set.
     #[must_use]
-    pub fn point_set(&self) -> Indexed<'_, T, 1> {
-        Indexed { positions: self.positions(), elements: self.points().as_chunks().0 }
+    pub fn point_set(&self) -> PointSet<&Self> {
+        KindSet::new(self)
     }
 
     /// Returns the ids of the triangles in their order: the i-th one is that of triangle i of [`Soup::triangle_set`].
@@ -162,6 +140,7 @@ impl<T: Real> Soup<T> {
 mod tests {
     use super::*;
     use crate::{Element, Shape};
+    use nalgebra::Point3;
 
     #[test]
     fn sets_of_a_kind_are_the_soup_without_the_others() {
@@ -189,14 +168,14 @@ mod tests {
             assert_eq!(Shape::Point(soup.point_set().get(PrimitiveId::new(i))), point);
         }
         let shared = std::sync::Arc::new(soup.clone());
-        let owned: OfKind<_, 2> = OfKind::new(Box::new(soup.clone()));
-        assert_eq!(PrimitiveSet::<f64>::len(&owned), 2);
+        let owned = SegmentSet::new(Box::new(soup.clone()));
+        assert_eq!(owned.len(), 2);
         let id = PrimitiveId::new(1);
-        assert_eq!(PrimitiveSet::<f64>::get(&owned, id), soup.segment_set().get(id));
-        let points: OfKind<_, 1> = OfKind::new(std::sync::Arc::clone(&shared));
-        assert_eq!(PrimitiveSet::<f64>::get(&points, id), soup.point_set().get(id));
-        let triangles: OfKind<_, 3> = OfKind::new(&*shared);
-        assert_eq!(PrimitiveSet::<f64>::len(&triangles), 1);
+        assert_eq!(owned.get(id), soup.segment_set().get(id));
+        let points = PointSet::new(std::sync::Arc::clone(&shared));
+        assert_eq!(points.get(id), soup.point_set().get(id));
+        let triangles = TriangleSet::new(&*shared);
+        assert_eq!(triangles.len(), 1);
         assert_eq!((soup.triangle_set().len(), soup.segment_set().len(), soup.point_set().len()), (1, 2, 2));
     }
 }
