@@ -106,7 +106,6 @@ pub mod engine {
     /// The interface of bounding volumes.
     pub mod volume {
         pub use crate::construct::TreeOptions;
-        pub use crate::traverse::compiled::CompiledSearches;
         pub use crate::tree::rounded::Rounded;
         pub use crate::tree::wide_node::{VolumeNodes, WideNode};
     }

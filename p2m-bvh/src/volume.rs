@@ -1,19 +1,35 @@
 //! The bounding volumes that a tree may have.
 
 use crate::construct::{SplitOptions, TreeOptions};
-use crate::traverse::compiled::CompiledSearches;
+use crate::traverse::evaluate::{finish, finish_nearest};
+use crate::traverse::pairs::TreeSide;
+use crate::traverse::primitive_fn::{EvaluateFn, IntersectFn, evaluation, intersection};
+use crate::traverse::several::Several;
+use crate::traverse::walkers::Walkers;
 use crate::tree::PacketTree;
-use p2m_core::Aabb;
+use crate::tree::wide_node::VolumeNodes;
+use nalgebra::Point3;
+use p2m_core::engine::pairs::PairSide;
+use p2m_core::engine::query::BestF64;
+use p2m_core::engine::ray::RayCandidates;
+use p2m_core::engine::real::to_f64_array;
+use p2m_core::engine::vector::V3;
+use p2m_core::pair::Motion;
+use p2m_core::{Aabb, Best, Hits, Near, PrimitiveId, PrimitiveSet, Ray, RayCollector, Real};
 
 /// The bounding volume of the nodes of a [`PacketTree`]: [`Aabb<f64>`] or a k-DOP of the crate p2m-kdop.
 ///
 /// The trait is sealed, because searches rest on proofs about the rounding of the nodes. Everything else about a tree
 /// is the same for all volumes.
+///
+/// Hidden methods search a tree with the collectors of the library. They depend neither on the set nor on the scalar,
+/// so they are compiled once for each volume, in the crate that defines it, and not in every crate that calls them
+/// (decision 013).
 #[diagnostic::on_unimplemented(
     message = "`{Self}` is not a bounding volume of trees",
     note = "volumes are `Aabb<f64>` and k-DOPs with an even K from 6 to 26"
 )]
-pub trait Volume: CompiledSearches {
+pub trait Volume: VolumeNodes {
     /// The options with which a tree is built.
     type Options: TreeOptions<Self::Shared>;
     /// The directions of the faces of all volumes of a tree. For boxes, which need none, the type is `()`.
@@ -21,6 +37,41 @@ pub trait Volume: CompiledSearches {
 
     /// The directions of the faces, from the data that all volumes of a tree share.
     fn directions(shared: &Self::Shared) -> &Self::Directions;
+
+    /// Searches for the nearest primitive.
+    #[doc(hidden)]
+    fn nearest(tree: &PacketTree<Self>, query: V3, minimum: &mut BestF64, evaluate: EvaluateFn<'_, BestF64>);
+
+    /// Searches for the nearest primitives of several query points, those of the first `count` searches.
+    #[doc(hidden)]
+    fn nearest_of_several(
+        tree: &PacketTree<Self>,
+        walkers: &mut Walkers<Self>,
+        several: &mut Several<'_, Self>,
+        count: usize,
+    );
+
+    /// Searches for the primitives near a point.
+    #[doc(hidden)]
+    fn near<'n>(tree: &PacketTree<Self>, query: V3, near: &mut Near<'n>, evaluate: EvaluateFn<'_, Near<'n>>);
+
+    /// Searches for the hits of a ray.
+    #[doc(hidden)]
+    fn rays<'r>(
+        tree: &PacketTree<Self>,
+        ray: &'r Ray,
+        radius: f64,
+        hits: &mut Hits<'r>,
+        intersect: IntersectFn<'_, 'r>,
+    );
+
+    /// Searches for the primitives that a ray may hit.
+    #[doc(hidden)]
+    fn ray_candidates(tree: &PacketTree<Self>, ray: &Ray, radius: f64, candidates: &mut RayCandidates<'_>);
+
+    /// Passes a tree, after some motions in their order, to a search for pairs.
+    #[doc(hidden)]
+    fn as_pair_side(tree: &PacketTree<Self>, motions: &[Motion], search: &mut dyn FnMut(&dyn PairSide));
 }
 
 impl Volume for Aabb<f64> {
@@ -30,6 +81,35 @@ impl Volume for Aabb<f64> {
     fn directions((): &()) -> &() {
         &()
     }
+
+    fn nearest(tree: &PacketTree, query: V3, minimum: &mut BestF64, evaluate: EvaluateFn<'_, BestF64>) {
+        tree.run(query, minimum, evaluate, finish_nearest);
+    }
+
+    fn nearest_of_several(
+        tree: &PacketTree,
+        walkers: &mut Walkers<Self>,
+        several: &mut Several<'_, Self>,
+        count: usize,
+    ) {
+        walkers.search(tree, several, count);
+    }
+
+    fn near<'n>(tree: &PacketTree, query: V3, near: &mut Near<'n>, evaluate: EvaluateFn<'_, Near<'n>>) {
+        tree.run(query, near, evaluate, finish);
+    }
+
+    fn rays<'r>(tree: &PacketTree, ray: &'r Ray, radius: f64, hits: &mut Hits<'r>, intersect: IntersectFn<'_, 'r>) {
+        tree.run_ray(ray, radius, hits, intersect);
+    }
+
+    fn ray_candidates(tree: &PacketTree, ray: &Ray, radius: f64, candidates: &mut RayCandidates<'_>) {
+        tree.run_ray(ray, radius, candidates, &|_, _| None);
+    }
+
+    fn as_pair_side(tree: &PacketTree, motions: &[Motion], search: &mut dyn FnMut(&dyn PairSide)) {
+        search(&TreeSide::new(tree, motions));
+    }
 }
 
 impl<V: Volume> PacketTree<V> {
@@ -37,5 +117,36 @@ impl<V: Volume> PacketTree<V> {
     #[must_use]
     pub fn directions(&self) -> &V::Directions {
         V::directions(&self.shared)
+    }
+
+    /// Offers to `best` the primitives of `set` that may be the nearest.
+    #[inline]
+    #[doc(hidden)]
+    pub fn search_nearest<T: Real, S: PrimitiveSet<T> + ?Sized>(&self, set: &S, query: &Point3<T>, best: &mut Best<T>) {
+        V::nearest(self, to_f64_array(query), best.minimum(), &evaluation(set, query));
+    }
+
+    /// Offers to `near` the primitives of `set` that it could want.
+    #[inline]
+    #[doc(hidden)]
+    pub fn search_near<T: Real, S: PrimitiveSet<T> + ?Sized>(&self, set: &S, query: &Point3<T>, near: &mut Near<'_>) {
+        V::near(self, to_f64_array(query), near, &evaluation(set, query));
+    }
+
+    /// Offers to `hits` the hits of a ray with `set` that it could want.
+    #[inline]
+    #[doc(hidden)]
+    pub fn search_hits<'r, T: Real, S: PrimitiveSet<T> + ?Sized>(&self, set: &S, ray: &'r Ray, hits: &mut Hits<'r>) {
+        let only_crossings = hits.only_crossings();
+        let Some(radius) = self.search_radius(ray, only_crossings) else { return };
+        V::rays(self, ray, radius, hits, &intersection(set, ray, only_crossings));
+    }
+
+    /// Calls `visit` for the primitives that a ray may hit.
+    #[inline]
+    #[doc(hidden)]
+    pub fn search_ray_candidates(&self, ray: &Ray, visit: &mut dyn FnMut(PrimitiveId, &[V3]) -> f64) {
+        let Some(radius) = self.search_radius(ray, false) else { return };
+        V::ray_candidates(self, ray, radius, &mut RayCandidates::new(visit));
     }
 }

@@ -1,6 +1,6 @@
 //! The options of the indexes, and the statistics of what was built.
 
-use crate::voronoi::MAX_LIST_PACKETS;
+use crate::list::block::{BLOCK_WIDTH, MAX_BLOCKS};
 use crate::voronoi::list_filter::BuildListFilter;
 use crate::voronoi::locator::BuildLocator;
 use p2m_bvh::SplitOptions;
@@ -238,7 +238,8 @@ impl P2mOptions {
     /// 40 times as long as by default (docs/p2m.md has figures).
     #[must_use]
     pub fn with_long_lists(self) -> Self {
-        self.with_max_extra_sites(0.0).with_max_list_packets(MAX_LIST_PACKETS).with_memory(1e5).with_work(1e6)
+        let max_list_packets = MAX_BLOCKS * BLOCK_WIDTH;
+        self.with_max_extra_sites(0.0).with_max_list_packets(max_list_packets).with_memory(1e5).with_work(1e6)
     }
     /// Returns the options of the paper \[Zong2023\]: [long lists](Self::with_long_lists), the locator
     /// [`KdTreeLocator`](crate::KdTreeLocator), and the filter [`RegionTree`](crate::RegionTree) for each list of more

@@ -12,7 +12,7 @@ use p2m_bvh::engine::nearest::{EvaluateFn, finish, finish_nearest};
 use p2m_bvh::engine::pairs::TreeSide;
 use p2m_bvh::engine::ray::IntersectFn;
 use p2m_bvh::engine::several::{Several, Walkers};
-use p2m_bvh::engine::volume::{CompiledSearches, TreeOptions, VolumeNodes};
+use p2m_bvh::engine::volume::{TreeOptions, VolumeNodes};
 use p2m_bvh::{PacketTree, SplitOptions, Volume};
 use p2m_core::engine::pairs::PairSide;
 use p2m_core::engine::query::BestF64;
@@ -29,39 +29,7 @@ impl<const K: usize> Volume for Kdop<K> {
     fn directions(table: &DirectionTable<K>) -> &Directions<K> {
         &table.directions
     }
-}
 
-/// The section of a file that has the normals, as three numbers each.
-const DIRECTIONS_SECTION: &str = "tree/directions";
-/// The section of a file that has 1 if the first three directions are orthogonal, and 0 otherwise.
-const ORTHOGONAL_SECTION: &str = "tree/orthogonal";
-
-impl<const K: usize> VolumeNodes for Kdop<K> {
-    type Shared = DirectionTable<K>;
-    type Node = KdopNode<K>;
-
-    fn name() -> String {
-        format!("kdop-{K}")
-    }
-    fn save_shared(table: &DirectionTable<K>, writer: &mut Writer<'_>) {
-        let normals = table.directions.normals().map(<[f64; 3]>::from);
-        writer.put_copy(DIRECTIONS_SECTION, normals.as_flattened());
-        writer.put_copy(ORTHOGONAL_SECTION, &[u8::from(table.directions.starts_orthogonal())]);
-    }
-    fn load_shared(reader: &Reader) -> Result<DirectionTable<K>, LoadError> {
-        let numbers = reader.array::<f64>(DIRECTIONS_SECTION)?;
-        let is_orthogonal = reader.one::<u8>(ORTHOGONAL_SECTION)?;
-        require(is_orthogonal <= 1, ORTHOGONAL_SECTION, "the number is neither 0 nor 1")?;
-        let (normals, rest) = numbers.as_chunks::<3>();
-        let normals: Vec<Vector3<f64>> = normals.iter().copied().map(Vector3::from).collect();
-        let directions = Directions::from_normals(&normals, is_orthogonal == 1).filter(|_| rest.is_empty());
-        let directions =
-            directions.ok_or_else(|| LoadError::inconsistent(DIRECTIONS_SECTION, "they bound no polytope"))?;
-        Ok(DirectionTable::new(&directions))
-    }
-}
-
-impl<const K: usize> CompiledSearches for Kdop<K> {
     #[inline(never)]
     fn nearest(tree: &PacketTree<Self>, query: V3, minimum: &mut BestF64, evaluate: EvaluateFn<'_, BestF64>) {
         tree.run(query, minimum, evaluate, finish_nearest);
@@ -101,6 +69,36 @@ impl<const K: usize> CompiledSearches for Kdop<K> {
     #[inline(never)]
     fn as_pair_side(tree: &PacketTree<Self>, motions: &[Motion], search: &mut dyn FnMut(&dyn PairSide)) {
         search(&TreeSide::new(tree, motions));
+    }
+}
+
+/// The section of a file that has the normals, as three numbers each.
+const DIRECTIONS_SECTION: &str = "tree/directions";
+/// The section of a file that has 1 if the first three directions are orthogonal, and 0 otherwise.
+const ORTHOGONAL_SECTION: &str = "tree/orthogonal";
+
+impl<const K: usize> VolumeNodes for Kdop<K> {
+    type Shared = DirectionTable<K>;
+    type Node = KdopNode<K>;
+
+    fn name() -> String {
+        format!("kdop-{K}")
+    }
+    fn save_shared(table: &DirectionTable<K>, writer: &mut Writer<'_>) {
+        let normals = table.directions.normals().map(<[f64; 3]>::from);
+        writer.put_copy(DIRECTIONS_SECTION, normals.as_flattened());
+        writer.put_copy(ORTHOGONAL_SECTION, &[u8::from(table.directions.starts_orthogonal())]);
+    }
+    fn load_shared(reader: &Reader) -> Result<DirectionTable<K>, LoadError> {
+        let numbers = reader.array::<f64>(DIRECTIONS_SECTION)?;
+        let is_orthogonal = reader.one::<u8>(ORTHOGONAL_SECTION)?;
+        require(is_orthogonal <= 1, ORTHOGONAL_SECTION, "the number is neither 0 nor 1")?;
+        let (normals, rest) = numbers.as_chunks::<3>();
+        let normals: Vec<Vector3<f64>> = normals.iter().copied().map(Vector3::from).collect();
+        let directions = Directions::from_normals(&normals, is_orthogonal == 1).filter(|_| rest.is_empty());
+        let directions =
+            directions.ok_or_else(|| LoadError::inconsistent(DIRECTIONS_SECTION, "they bound no polytope"))?;
+        Ok(DirectionTable::new(&directions))
     }
 }
 

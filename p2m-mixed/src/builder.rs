@@ -1,7 +1,7 @@
 //! The scene that a reader builds, statement by statement.
 
 use crate::Reason;
-use crate::pieces::Pieces;
+use crate::pieces::state::Pieces;
 use crate::polygon::{CHECK_REPEATS_ABOVE_CORNERS, MAX_CORNER_SQUARES, Triangulator};
 use crate::scene::{Object, Scene, Skipped};
 use crate::text::{quote, trim};

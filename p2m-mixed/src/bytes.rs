@@ -1,7 +1,19 @@
-//! A reader of the numbers in binary files.
+//! Buffered bytes, and a reader of the numbers in binary files.
 
 use crate::Reason;
-use std::io::{BufRead, ErrorKind};
+use std::io::{self, BufRead, ErrorKind};
+
+/// Returns the buffered bytes of `reader`, which are empty only at the end of the text.
+pub(crate) fn fill_buffer(reader: &mut impl BufRead) -> io::Result<&[u8]> {
+    loop {
+        match reader.fill_buf() {
+            Err(e) if e.kind() == ErrorKind::Interrupted => {}
+            Err(e) => return Err(e),
+            Ok(_) => break,
+        }
+    }
+    reader.fill_buf() // the buffer is borrowed again, because a borrow cannot leave the loop
+}
 
 /// The types of numbers in binary files.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -144,17 +156,10 @@ impl<R: BufRead> ByteReader<R> {
 
     /// Skips buffered bytes, at most `max_count`, and returns their number, which is 0 at the end of the file.
     fn discard(&mut self, max_count: u64) -> Result<u64, Reason> {
-        loop {
-            match self.reader.fill_buf() {
-                Ok(buffer) => {
-                    let passed = buffer.len().min(usize::try_from(max_count).unwrap_or(usize::MAX));
-                    self.reader.consume(passed);
-                    self.offset += passed as u64;
-                    return Ok(passed as u64);
-                }
-                Err(e) if e.kind() == ErrorKind::Interrupted => {}
-                Err(e) => return Err(Reason::Io(e)),
-            }
-        }
+        let bytes = fill_buffer(&mut self.reader).map_err(Reason::Io)?;
+        let passed = bytes.len().min(usize::try_from(max_count).unwrap_or(usize::MAX));
+        self.reader.consume(passed);
+        self.offset += passed as u64;
+        Ok(passed as u64)
     }
 }

@@ -5,8 +5,9 @@
 
 use crate::Reason;
 use crate::blocks::Source;
+use crate::bytes::fill_buffer;
 use memchr::{memchr2, memchr2_iter, memrchr2};
-use std::io::{self, BufRead, ErrorKind};
+use std::io::{self, BufRead};
 
 /// Longer texts are shortened in messages.
 const MAX_QUOTED_BYTES: usize = 40;
@@ -90,18 +91,6 @@ pub(crate) fn last_line_end(bytes: &[u8]) -> usize {
     // A `\n` may follow a `\r`.
     let certain = bytes.strip_suffix(b"\r").unwrap_or(bytes);
     memrchr2(b'\n', b'\r', certain).map_or(0, |at| at + 1)
-}
-
-/// Returns the buffered bytes of `reader`, which are empty only at the end of the text.
-pub(crate) fn fill_buffer(reader: &mut impl BufRead) -> io::Result<&[u8]> {
-    loop {
-        match reader.fill_buf() {
-            Err(e) if e.kind() == ErrorKind::Interrupted => {}
-            Err(e) => return Err(e),
-            Ok(_) => break,
-        }
-    }
-    reader.fill_buf() // the buffer is borrowed again, because a borrow cannot leave the loop
 }
 
 /// Appends the bytes up to and including the first one that `find` finds, at most `max_count`, and returns their number.

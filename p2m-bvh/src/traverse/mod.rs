@@ -1,7 +1,6 @@
 //! Traversals of a tree, which visit the nearest child first.
 
 pub(crate) mod box_query;
-pub(crate) mod compiled;
 pub(crate) mod evaluate;
 pub(crate) mod groups;
 pub(crate) mod nearest;

@@ -84,7 +84,8 @@ pub trait WideNode: Rows + Copy + Debug + Send + Sync {
     }
 }
 
-/// A bounding volume that has a type of nodes.
+/// What trees and traversals need of a bounding volume. Searches, which [`Volume`](crate::Volume) adds, need them in
+/// turn.
 pub trait VolumeNodes: Sized {
     /// The data that all volumes of a tree share.
     type Shared: Clone + Debug + Send + Sync;

@@ -25,6 +25,9 @@ pub(crate) const MAX_LEVEL: u8 = 30;
 /// The number of packets in a block.
 pub(crate) const BLOCK_WIDTH: usize = 8;
 
+/// The largest number of blocks in a list.
+pub(crate) const MAX_BLOCKS: usize = 256;
+
 /// A packet of a list, as the build hands it to a block.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Entry {
@@ -116,7 +119,7 @@ pub(crate) struct BlockQuery {
 }
 
 impl Block {
-    /// Returns the blocks of a list of at most 256 * 8 entries, which is not empty.
+    /// Returns the blocks of a list, which are at least one and at most [`MAX_BLOCKS`].
     pub(crate) fn from_list(entries: &[Entry], bounds: BoundKind) -> impl Iterator<Item = Self> {
         let count = entries.len().div_ceil(BLOCK_WIDTH);
         entries.chunks(BLOCK_WIDTH).enumerate().map(move |(i, entries)| {

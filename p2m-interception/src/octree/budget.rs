@@ -1,13 +1,8 @@
 //! The budgets of a refinement, and how far it has come.
 
-use crate::list::block::{BLOCK_WIDTH, Block};
-use crate::octree::refinement::OpenCell;
 use crate::progress::{BuildStage, Progress};
 use std::ops::{Add, AddAssign, Sub, SubAssign};
 use std::sync::atomic::{AtomicU64, Ordering};
-
-/// The tests of a packet at a point that the list of an open cell takes at most: at eight corners, and at the centre.
-const TESTS_PER_OPEN_PACKET: usize = 9;
 
 /// The amounts that cells take of the budgets.
 #[derive(Clone, Copy, Debug, Default)]
@@ -23,12 +18,6 @@ impl Spent {
     pub(crate) fn new(bytes: usize, tests: usize) -> Self {
         let [bytes, tests] = [bytes, tests].map(|n| i64::try_from(n).unwrap_or(i64::MAX));
         Self { bytes, tests }
-    }
-
-    /// Returns what the list of an open cell takes at most. It is reserved until the cell is split or finished.
-    pub(crate) fn reserved_for(cell: &OpenCell) -> Self {
-        let packets = if cell.may_have_list() { cell.candidates.len() } else { 0 };
-        Self::new(packets.div_ceil(BLOCK_WIDTH) * size_of::<Block>(), packets * TESTS_PER_OPEN_PACKET)
     }
 
     /// Returns whether a budget is exceeded.
@@ -72,6 +61,39 @@ impl AddAssign for Spent {
 impl SubAssign for Spent {
     fn sub_assign(&mut self, other: Self) {
         *self = *self - other;
+    }
+}
+
+/// What a task takes of the budgets.
+#[derive(Default)]
+pub(crate) struct Account {
+    /// The amounts that had been spent before the task, or by an earlier time.
+    before: Spent,
+    /// The amounts that have been spent, those from before the task included.
+    pub(crate) spent: Spent,
+    /// The largest amounts that the task itself had spent before a split.
+    pub(crate) peak: Spent,
+    /// Whether cells were not split because a budget was exceeded.
+    pub(crate) is_truncated: bool,
+}
+
+impl Account {
+    /// Begins with the amounts that have been spent before.
+    pub(crate) fn new(before: Spent) -> Self {
+        Self { before, spent: before, ..Self::default() }
+    }
+
+    /// Returns what the task itself has spent.
+    pub(crate) fn own(&self) -> Spent {
+        self.spent - self.before
+    }
+
+    /// Returns whether no cell may be split any more, because a budget is exceeded.
+    pub(crate) fn exceeds(&mut self, budgets: Spent) -> bool {
+        self.peak = self.peak.max(self.own());
+        let exceeds = self.spent.exceeds(budgets);
+        self.is_truncated |= exceeds;
+        exceeds
     }
 }
 

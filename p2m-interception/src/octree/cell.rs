@@ -1,107 +1,83 @@
-//! The cubes of an octree, and the lattice of the corners of their children.
+//! The cells of an octree that is being built.
 
-use crate::list::corner_test::Corner;
-use p2m_core::Aabb;
-use p2m_core::engine::vector::V3;
+use crate::list::block::{BLOCK_WIDTH, Block};
+use crate::octree::budget::Spent;
+use crate::octree::candidate::OpenCandidate;
+use crate::octree::cube::Cube;
+use crate::octree::split_rule::MAX_LIST_PACKETS;
 
-/// A cube with its corners. Corner c lies on the upper side along axis k if bit k of c is set.
+/// The tests of a packet at a point that the list of an open cell takes at most: at eight corners, and at the centre.
+const TESTS_PER_OPEN_PACKET: usize = 9;
+
+/// A cell of an octree that is being built.
+#[derive(Clone, Copy, Debug)]
+pub(crate) enum RefinedCell {
+    /// The tree answers in the cell.
+    Tree,
+    /// One primitive is the nearest everywhere in the cell. The fields are its packet and its lane.
+    Single(u32, u8),
+    /// The cell has a list. The fields are the number of the task that made it, and its first block there.
+    List(u32, u32),
+    /// The cell is split. Its eight children begin at this number. Child c lies above the centre on axis k if bit k of
+    /// c is set.
+    Split(usize),
+}
+
+/// The cells of an octree that is being built, or of a part of it.
+#[derive(Default)]
+pub(crate) struct RefinedCells {
+    /// The cells.
+    pub(crate) cells: Vec<RefinedCell>,
+    /// The blocks of all lists, as each task made them.
+    pub(crate) blocks: Vec<Vec<Block>>,
+}
+
+impl RefinedCells {
+    /// Appends the cells and blocks of a task, whose numbers begin at zero.
+    pub(crate) fn append(&mut self, (cells, blocks): (Vec<RefinedCell>, Vec<Block>)) {
+        let first = self.cells.len();
+        let task = u32::try_from(self.blocks.len()).expect("few tasks");
+        self.cells.extend(cells.into_iter().map(|cell| match cell {
+            RefinedCell::Split(children) => RefinedCell::Split(first + children),
+            RefinedCell::List(_, block) => RefinedCell::List(task, block),
+            other => other,
+        }));
+        self.blocks.push(blocks);
+    }
+}
+
+/// A cell that a later pass splits if the budgets allow it.
+pub(crate) struct OpenCell {
+    /// The place of the cell. The tree answers in it until the cell is finished.
+    pub(crate) place: Place,
+    /// The cube of the cell.
+    pub(crate) cube: Cube,
+    /// Nodes or packets of the tree that can hold the answer in the cell.
+    pub(crate) candidates: Vec<OpenCandidate>,
+    /// Whether all candidates are packets.
+    pub(crate) has_packets: bool,
+    /// The resolution from which on a split is worth its memory.
+    pub(crate) resolution: f64,
+}
+
+impl OpenCell {
+    /// Returns whether the cell gets a list if it is not split.
+    pub(crate) fn may_have_list(&self) -> bool {
+        self.has_packets && self.candidates.len() <= MAX_LIST_PACKETS
+    }
+
+    /// Returns what the list of the cell takes at most. It is reserved until the cell is split or finished.
+    pub(crate) fn reserved(&self) -> Spent {
+        let packets = if self.may_have_list() { self.candidates.len() } else { 0 };
+        Spent::new(packets.div_ceil(BLOCK_WIDTH) * size_of::<Block>(), packets * TESTS_PER_OPEN_PACKET)
+    }
+}
+
+/// The place of a cell among those of a task or of an octree.
 #[derive(Clone, Copy)]
-pub(crate) struct Cube {
-    /// The corner with the least coordinates.
-    pub(crate) low: V3,
-    /// The length of an edge.
-    pub(crate) side: f64,
-    /// The number of halvings from the cube of the domain.
-    pub(crate) level: u8,
-    /// The corners with their dominators.
-    pub(crate) corners: [Corner; 8],
-}
-
-/// The number of corners that the children of a cube have together: 3 on each axis.
-pub(crate) const LATTICE_POINTS: usize = 27;
-/// The lattice point in the centre of the cube.
-pub(crate) const LATTICE_CENTRE: usize = LATTICE_POINTS / 2;
-
-/// For each child of a cube the lattice points at its corners.
-pub(crate) const CHILD_CORNERS: [[usize; 8]; 8] = {
-    let mut all = [[0; 8]; 8];
-    let mut child = 0;
-    while child < 8 {
-        let mut corner = 0;
-        while corner < 8 {
-            let mut step = 1;
-            let mut k = 0;
-            while k < 3 {
-                all[child][corner] += step * ((child >> k & 1) + (corner >> k & 1));
-                step *= 3;
-                k += 1;
-            }
-            corner += 1;
-        }
-        child += 1;
-    }
-    all
-};
-
-/// The lattice points at the corners of the cube.
-pub(crate) const CUBE_CORNERS: [usize; 8] = {
-    let mut all = CHILD_CORNERS[0];
-    let mut corner = 0;
-    while corner < 8 {
-        all[corner] *= 2;
-        corner += 1;
-    }
-    all
-};
-
-/// Returns the corner of the cube at a lattice point, if there is one.
-pub(crate) fn cube_corner_at(at: usize) -> Option<usize> {
-    CUBE_CORNERS.into_iter().position(|corner| corner == at)
-}
-
-impl Cube {
-    /// Returns a lattice point. It is exact, since the coordinates of cubes are dyadic.
-    pub(crate) fn point(&self, at: usize) -> V3 {
-        let steps = [at % 3, at / 3 % 3, at / 9];
-        std::array::from_fn(|k| self.low[k] + self.side * 0.5 * steps[k] as f64)
-    }
-
-    /// Returns the cube as a box.
-    pub(crate) fn bounds(&self) -> Aabb<f64> {
-        Aabb { min: self.low.into(), max: self.low.map(|x| x + self.side).into() }
-    }
-
-    /// Returns the eight children, given the corners on the whole lattice.
-    pub(crate) fn children(&self, lattice: &[Corner; LATTICE_POINTS]) -> [Self; 8] {
-        std::array::from_fn(|child| Self {
-            low: lattice[CHILD_CORNERS[child][0]].x,
-            side: self.side * 0.5,
-            level: self.level + 1,
-            corners: CHILD_CORNERS[child].map(|at| lattice[at]),
-        })
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn children_share_the_lattice() {
-        let cube =
-            Cube { low: [-1.0, 2.0, 0.5], side: 4.0, level: 3, corners: [Corner { x: [0.0; 3], y: [0.0; 3] }; 8] };
-        let lattice: [Corner; LATTICE_POINTS] =
-            std::array::from_fn(|at| Corner { x: cube.point(at), y: cube.point(at) });
-        assert_eq!(cube.point(LATTICE_CENTRE), [1.0, 4.0, 2.5]);
-        assert_eq!((0..LATTICE_POINTS).filter_map(cube_corner_at).collect::<Vec<_>>(), [0, 1, 2, 3, 4, 5, 6, 7]);
-        for (c, child) in cube.children(&lattice).iter().enumerate() {
-            assert_eq!((child.side, child.level), (2.0, 4));
-            for (i, corner) in child.corners.iter().enumerate() {
-                for k in 0..3 {
-                    let steps = (c >> k & 1) + (i >> k & 1);
-                    assert_eq!(corner.x[k], cube.low[k] + 2.0 * steps as f64);
-                }
-            }
-        }
-    }
+pub(crate) struct Place {
+    /// The number of the cell.
+    pub(crate) number: usize,
+    /// The part of the domain that the cell covers.
+    pub(crate) part: f64,
 }

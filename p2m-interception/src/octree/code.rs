@@ -3,7 +3,7 @@
 //! The three highest bits of a code say its kind, the other bits are a number.
 
 use crate::list::block::Block;
-use crate::octree::refinement::{RefinedCell, RefinedCells};
+use crate::octree::cell::{RefinedCell, RefinedCells};
 use crate::options::OctreeReport;
 use p2m_bvh::engine::packet::LANES;
 

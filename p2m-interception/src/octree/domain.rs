@@ -1,18 +1,16 @@
-//! The domain of an octree: the cube around it, and where queries are expected.
+//! The domain of an octree, and the cube around it.
 
 use crate::options::{Domain, OctreeOptions};
+use nalgebra::{Point3, Vector3};
 use p2m_bvh::PacketTree;
 use p2m_core::Aabb;
 use p2m_core::engine::real::to_f64_array;
 use p2m_core::engine::vector::V3;
 
 /// The side of [`Domain::Everywhere`], in sizes of the scene.
-const EVERYWHERE_SCENE_SIZES: f64 = 10.0;
-/// The boxes in which queries are expected, uniformly in each: the side in sizes of the scene, and the weight. The
-/// boxes are nested, so queries are denser near the scene.
-const QUERY_BOXES: [(f64, f64); 4] = [(EVERYWHERE_SCENE_SIZES, 1.0), (4.0, 0.3), (2.0, 0.3), (1.05, 1.0)];
+pub(crate) const EVERYWHERE_SCENE_SIZES: f64 = 10.0;
 
-/// The cube of a domain with what the refinement derives from it.
+/// The cube of a domain.
 pub(crate) struct DomainCube {
     /// The low corner of the cube.
     pub(crate) low: V3,
@@ -20,8 +18,12 @@ pub(crate) struct DomainCube {
     pub(crate) side: f64,
     /// The slack of the corner test: a dominator has to be nearer by this much.
     pub(crate) slack: f64,
-    /// The boxes in which queries are uniform, each with the number of queries in a unit of volume.
-    pub(crate) uniform_boxes: Vec<(Aabb<f64>, f64)>,
+    /// The domain.
+    pub(crate) domain: Aabb<f64>,
+    /// The centre of the scene.
+    pub(crate) scene_centre: Point3<f64>,
+    /// The lengths of the scene's box, which are not zero.
+    pub(crate) scene_extent: Vector3<f64>,
 }
 
 impl DomainCube {
@@ -61,21 +63,14 @@ impl DomainCube {
         let low: V3 = std::array::from_fn(|k| ((domain_centre[k] - side * 0.5) / grain).floor() * grain);
         let scene_corners = [to_f64_array(&bounds.min), to_f64_array(&bounds.max)];
         let scale = side * 4.0 + low.iter().chain(scene_corners.as_flattened()).fold(0.0f64, |a, x| a.max(x.abs()));
-        let uniform_box = |scale: f64, weight: f64| {
-            let half = extent * (scale * 0.5);
-            let bounds = Aabb { min: centre - half, max: centre + half };
-            (bounds, weight / (half * 2.0).product())
-        };
-        let uniform_boxes = match options.domain {
-            Domain::Everywhere => QUERY_BOXES.map(|(scale, weight)| uniform_box(scale, weight)).to_vec(),
-            Domain::Box(_) | Domain::Band(_) => vec![(domain, 1.0 / span.product())],
-        };
         Some(Self {
             low,
             side,
             // The rounding of keys, of dominators and of locating a query is below 2^-46 of `scale`.
             slack: scale / (1u64 << 42) as f64,
-            uniform_boxes,
+            domain,
+            scene_centre: centre,
+            scene_extent: extent,
         })
     }
 }

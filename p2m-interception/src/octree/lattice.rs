@@ -6,8 +6,8 @@
 //! the packet may reach.
 
 use crate::list::corner_test::{Corner, Dominators, exclusion_of, least_of_lanes};
-use crate::octree::cell::{CHILD_CORNERS, CUBE_CORNERS, Cube, LATTICE_POINTS};
-use crate::octree::refinement::{Candidate, KnownDistances};
+use crate::octree::candidate::Candidate;
+use crate::octree::cube::{CHILD_CORNERS, CUBE_CORNERS, Cube, LATTICE_POINTS};
 use p2m_bvh::engine::packet::{LANES, Locals, PLACES, Packet, ROUND_UP, at_most, smallest};
 use p2m_core::engine::simd::{Doubles, Float, InstructionSet, Lanes, SimdKernel};
 use p2m_core::engine::vector::{V3, norm_squared, sub};
@@ -92,6 +92,15 @@ impl LatticeDistances {
         (self.squared[to], self.least[to], self.error_above[to]) =
             (other.squared[from], other.least[from], other.error_above[from]);
     }
+}
+
+/// The distances from the lattice of the parent of a cell, which include those from the corners of the cell.
+#[derive(Clone, Copy)]
+pub(crate) struct KnownDistances<'a> {
+    /// The distances to each packet of the parent.
+    pub(crate) distances: &'a [LatticeDistances],
+    /// The points of the lattice that are the corners of the cell.
+    pub(crate) corners: &'a [usize; 8],
 }
 
 /// The memory of a split, which is used again for each one.

@@ -1,20 +1,24 @@
 //! The partition of the domain into cubes: an octree whose leaves have interception lists.
 //!
-//! A query locates its leaf by the bits of its coordinates ([`query`]). The build ([`build`]) starts from the tree
-//! over the packets, refines a cube ([`domain`]) and encodes the result ([`code`]). docs/proofs/octree.md has the
-//! proofs.
+//! A query locates its leaf by the bits of its coordinates ([`query`]). The build starts from the tree over the
+//! packets, refines a cube ([`domain`]) in [`passes`] and encodes the result ([`code`]). [`refinement`] refines one
+//! cell, and [`split_rule`] says whether it is worth it. docs/proofs/octree.md has the proofs.
 
 pub(crate) mod budget;
-pub(crate) mod build;
+pub(crate) mod candidate;
 pub(crate) mod cell;
 pub(crate) mod cell_list;
 pub(crate) mod code;
+pub(crate) mod cube;
 pub(crate) mod domain;
 pub(crate) mod lattice;
 pub(crate) mod passes;
 pub(crate) mod query;
 pub(crate) mod refinement;
 pub(crate) mod saved;
+pub(crate) mod scene_tree;
+pub(crate) mod split_rule;
+pub(crate) mod task;
 mod validate;
 
 use crate::list::block::{Block, MAX_LEVEL};
@@ -23,7 +27,9 @@ use crate::octree::budget::{FinishedPart, Spent};
 use crate::octree::code::{CellCode, CodeWriter, FALLBACK_CODE, Row};
 use crate::octree::domain::DomainCube;
 use crate::octree::passes::Passes;
-use crate::octree::refinement::{Refinement, TreeProbe};
+use crate::octree::refinement::Refinement;
+use crate::octree::scene_tree::{SceneTree, TreeProbe};
+use crate::octree::split_rule::ExpectedQueries;
 use crate::options::{OctreeOptions, OctreeReport, OctreeSoFar};
 use crate::partition::Partition;
 use crate::progress::{BuildStage, Progress};
@@ -95,13 +101,9 @@ impl Octree {
             return;
         }
         let refinement = Refinement {
-            tree,
-            lowest_owners: &lowest_owners,
-            search: &search,
+            scene: SceneTree { tree, lowest_owners: &lowest_owners, search: &search, slack: cube.slack },
+            queries: ExpectedQueries::new(options.domain, cube, tree.packets().0),
             domain: options.domain,
-            slack: cube.slack,
-            uniform_boxes: &cube.uniform_boxes,
-            inv_packet_count: 1.0 / tree.packets().0 as f64,
             last_resolution,
             parallel: options.splits.parallel,
             budgets,

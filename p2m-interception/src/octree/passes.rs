@@ -14,11 +14,12 @@
 
 use crate::list::block::Block;
 use crate::octree::budget::Spent;
-use crate::octree::refinement::{CellTask, OpenCell, Place, RefinedCell, RefinedCells, Refinement};
+use crate::octree::cell::{OpenCell, Place, RefinedCell, RefinedCells};
+use crate::octree::refinement::Refinement;
+use crate::octree::task::{CellTask, Scratch};
 use crate::options::OctreeSoFar;
 use crate::parallel_chunks::map_chunks_in_order;
 use p2m_core::engine::vector::V3;
-use rustc_hash::FxHashMap;
 use std::ops::{ControlFlow, Range};
 use std::sync::Mutex;
 
@@ -97,12 +98,13 @@ impl Passes {
         let mut task = CellTask::new(resolution, Spent::default());
         let number = task.add_cell();
         task.cells[number] = refinement.refine_root(&mut task, low, side, Place { number, part: 1.0 });
-        if task.spent.exceeds(refinement.budgets) {
+        let spent = task.account.spent;
+        if spent.exceeds(refinement.budgets) {
             return None;
         }
         let mut counts = Counts::default();
         counts.add(&task.cells, &task.blocks, &task.open, &[]);
-        let CellTask { cells, blocks, open, spent, .. } = task;
+        let CellTask { cells, blocks, open, .. } = task;
         let refined = RefinedCells { cells, blocks: vec![blocks] };
         let mut passes = Self { refined, open, spent, resolution, counts };
         let mut is_kept = true;
@@ -158,13 +160,13 @@ impl Passes {
         let refine = |range: Range<usize>, before: Spent| {
             let mut task = CellTask::new(resolution, before);
             for cell in &cells[range.clone()] {
-                task.spent -= Spent::reserved_for(cell);
+                task.account.spent -= cell.reserved();
                 let number = task.add_cell();
                 task.cells[number] = fate_of(refinement, &mut task, cell, Place { number, ..cell.place });
                 task.roots.push(number);
             }
             // Tasks that wait for others need no memory for this.
-            task.nearest_points = FxHashMap::default();
+            task.scratch = Scratch::default();
             (range, task)
         };
         let mut done = 0;
@@ -177,11 +179,11 @@ impl Passes {
                 let (Some(spent), Some((range, mut task))) = (current(), chunk) else { return };
                 // The task may have begun before the chunks in front of it were kept. Whether it is kept depends on
                 // their amounts, so a task that ended early without need begins again.
-                if task.is_truncated && !(spent + task.peak).exceeds(refinement.budgets) {
+                if task.account.is_truncated && !(spent + task.account.peak).exceeds(refinement.budgets) {
                     task = refine(range.clone(), spent).1;
                 }
-                let own = task.spent - task.before;
-                if (spent + task.peak.max(own)).exceeds(refinement.budgets) {
+                let own = task.account.own();
+                if (spent + task.account.peak.max(own)).exceeds(refinement.budgets) {
                     set_current(None);
                     return;
                 }
@@ -207,19 +209,5 @@ impl Passes {
             },
         );
         cells.split_off(done)
-    }
-}
-
-impl RefinedCells {
-    /// Appends the cells and blocks of a task, whose numbers begin at zero.
-    fn append(&mut self, (cells, blocks): (Vec<RefinedCell>, Vec<Block>)) {
-        let first = self.cells.len();
-        let task = u32::try_from(self.blocks.len()).expect("few tasks");
-        self.cells.extend(cells.into_iter().map(|cell| match cell {
-            RefinedCell::Split(children) => RefinedCell::Split(first + children),
-            RefinedCell::List(_, block) => RefinedCell::List(task, block),
-            other => other,
-        }));
-        self.blocks.push(blocks);
     }
 }

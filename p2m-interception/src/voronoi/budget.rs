@@ -59,6 +59,11 @@ pub(crate) fn max_tetrahedra(vertices: usize) -> usize {
     vertices.max(MIN_PRIMITIVES_FOR_BUDGET).saturating_mul(TETRAHEDRA_PER_VERTEX).min(u32::MAX as usize / 4)
 }
 
+/// Converts a number to 32 bits, of which there are enough: budgets see to that.
+pub(crate) fn to_u32(n: usize) -> u32 {
+    u32::try_from(n).expect("numbers of 32 bits")
+}
+
 /// The limits of a build, which all of its stages share.
 #[derive(Clone, Copy)]
 pub(crate) struct Limits<'a> {

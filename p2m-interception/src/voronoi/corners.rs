@@ -1,15 +1,13 @@
-//! The corners of all Voronoi cells: the circumcentres of Delaunay tetrahedra, with the packets that intersect their
-//! balls.
+//! The corners of all Voronoi cells, with the packets that intersect their balls.
 
-use crate::delaunay::{BOUNDING, Delaunay};
+use crate::delaunay::Delaunay;
 use crate::parallel_chunks::map_chunks_in_order;
 use crate::voronoi::adjacency::IncidenceLists;
-use crate::voronoi::budget::Limits;
-use crate::voronoi::circumsphere;
+use crate::voronoi::budget::{Limits, to_u32};
+use crate::voronoi::corner::{CORNERS_PER_TASK, CellCorner, compute_corners};
 use crate::voronoi::flood::{Flood, FloodedCorners};
 use p2m_bvh::PacketTree;
 use p2m_bvh::engine::range::Selection;
-use p2m_core::engine::vector::{V3, norm_squared, sub};
 use std::ops::Range;
 
 /// A ball that intersects more packets than this is crowded.
@@ -18,69 +16,10 @@ const CROWDED_BALL_PACKETS: usize = 24;
 /// Floods find the packets of all balls again if at least one of this many is new.
 const FLOODED_PART_DIVISOR: usize = 4;
 
-/// The number of corners that one task computes.
-const CORNERS_PER_TASK: usize = 1024;
-
-/// A corner of Voronoi cells, in coordinates of the scene.
-#[derive(Clone, Copy)]
-pub(crate) struct CellCorner {
-    /// The position of the corner.
-    pub(crate) position: V3,
-    /// An upper bound of the error of the position.
-    pub(crate) error: f64,
-    /// The distance to the four sites around it, or zero if the corner is unknown.
-    pub(crate) radius: f64,
-    /// The index of the first of its packets in [`CellCorners::packets`].
-    pub(crate) first_packet: u32,
-    /// Whether the corner has no packets: it is unknown, or its ball intersects too many. The limit is
-    /// [`CROWDED_BALL_PACKETS`] as long as sites are added, and that of a list afterwards.
-    pub(crate) is_crowded: bool,
-}
-
 impl Limits<'_> {
     /// Returns the largest number of packets of a ball that is not crowded while sites are added.
     pub(crate) fn max_uncrowded_packets(self) -> usize {
         CROWDED_BALL_PACKETS.min(self.max_list_packets)
-    }
-}
-
-impl CellCorner {
-    /// A corner that could not be computed.
-    const UNKNOWN: Self = Self { position: [0.0; 3], error: 0.0, radius: 0.0, first_packet: 0, is_crowded: true };
-
-    /// Computes the corner of a tetrahedron. It counts as crowded until its packets are known.
-    fn of_tetrahedron(delaunay: &Delaunay, tetrahedron: [u32; 4]) -> Self {
-        let (sites, unit) = (delaunay.sites(), delaunay.unit());
-        let own_site = tetrahedron.into_iter().map(|v| v as usize).find(|v| *v >= BOUNDING);
-        let centre = circumsphere::circumcentre(&tetrahedron.map(|v| sites[v as usize]));
-        let (Some(site), Some(centre)) = (own_site, centre) else { return Self::UNKNOWN };
-        Self {
-            position: centre.position.map(|x| x * unit),
-            error: centre.error * unit,
-            radius: norm_squared(sub(centre.position, sites[site])).sqrt() * unit * (1.0 + 8.0 * f64::EPSILON),
-            ..Self::UNKNOWN
-        }
-    }
-
-    /// Collects the packets that may intersect the ball of the corner. The result is `false` if there are more than
-    /// `max_packets`, or if the ball cannot be decided.
-    pub(crate) fn collect_ball(
-        &self,
-        tree: &PacketTree,
-        limits: Limits<'_>,
-        max_packets: usize,
-        selections: &mut Vec<Selection>,
-    ) -> bool {
-        let mut tests = 0;
-        let is_complete = tree.ball(
-            self.position,
-            self.radius + 2.0 * self.error + limits.slack,
-            max_packets,
-            selections,
-            &mut tests,
-        );
-        limits.budget.charge(tests);
-        is_complete
     }
 }
 
@@ -301,22 +240,6 @@ impl CellCorners {
         self.packets.extend(packets);
         self.all.push(CellCorner { first_packet, ..corner });
     }
-}
-
-/// Computes the corners of all tetrahedra. Their packets are not known yet.
-pub(crate) fn compute_corners(delaunay: &Delaunay, parallel: bool) -> Vec<CellCorner> {
-    let mut corners = Vec::with_capacity(delaunay.tetrahedra().len() + 1);
-    let work = |numbers: Range<usize>| -> Vec<CellCorner> {
-        let tetrahedra = &delaunay.tetrahedra()[numbers];
-        tetrahedra.iter().map(|tetrahedron| CellCorner::of_tetrahedron(delaunay, *tetrahedron)).collect()
-    };
-    map_chunks_in_order(delaunay.tetrahedra().len(), CORNERS_PER_TASK, parallel, work, |chunk| corners.extend(chunk));
-    corners
-}
-
-/// Converts a number to 32 bits, of which there are enough: budgets see to that.
-pub(crate) fn to_u32(n: usize) -> u32 {
-    u32::try_from(n).expect("numbers of 32 bits")
 }
 
 /// The corners of an earlier triangulation, found by the tetrahedra of one that has more sites.

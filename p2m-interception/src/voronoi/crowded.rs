@@ -1,7 +1,7 @@
 //! The choice of sites that are added because of crowded balls.
 
 use crate::voronoi::budget::Limits;
-use crate::voronoi::corners::CellCorner;
+use crate::voronoi::corner::CellCorner;
 use p2m_bvh::PacketTree;
 use p2m_bvh::engine::packet::LANES;
 use p2m_bvh::engine::range::Selection;
@@ -168,7 +168,7 @@ mod tests {
     use super::*;
     use crate::delaunay::Delaunay;
     use crate::voronoi::budget::BuildBudget;
-    use crate::voronoi::corners::compute_corners;
+    use crate::voronoi::corner::compute_corners;
     use nalgebra::Point3;
     use p2m_bvh::SplitOptions;
     use p2m_core::engine::vector::norm_squared;

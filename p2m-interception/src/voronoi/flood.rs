@@ -10,8 +10,8 @@
 use crate::delaunay::Delaunay;
 use crate::parallel_chunks::map_chunks_in_order;
 use crate::voronoi::adjacency::IncidenceLists;
-use crate::voronoi::budget::Limits;
-use crate::voronoi::corners::{CellCorner, to_u32};
+use crate::voronoi::budget::{Limits, to_u32};
+use crate::voronoi::corner::CellCorner;
 use crate::voronoi::local_numbers::LocalNumbers;
 use p2m_bvh::PacketTree;
 use p2m_bvh::engine::packet::{LANES, Locals, PLACES, ROUND_UP, at_most};
@@ -260,7 +260,7 @@ impl SimdKernel for FloodPacket<'_, '_> {
 mod tests {
     use super::*;
     use crate::voronoi::budget::BuildBudget;
-    use crate::voronoi::corners::compute_corners;
+    use crate::voronoi::corner::compute_corners;
     use nalgebra::{Point3, Vector3};
     use p2m_bvh::SplitOptions;
     use p2m_core::{Primitive, Segment, Shape, Triangle};

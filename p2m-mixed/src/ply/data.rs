@@ -1,9 +1,8 @@
 //! The numbers after the header of a PLY file, in any encoding.
 
 use super::header::{Encoding, Header, Layout};
-use super::rows::Start;
 use crate::bytes::{ByteReader, Bytes, Scalar};
-use crate::text::{LineReader, parse_integer, parse_number, quote};
+use crate::text::{LineReader, count_lines, parse_integer, parse_number, quote};
 use crate::tokenizer::Tokenizer;
 use crate::{FileLocation, ReadError, Reason};
 use std::io::BufRead;
@@ -55,6 +54,25 @@ pub(super) fn parse_coordinate(token: &[u8], scalar: Scalar) -> Result<f64, Reas
         parse_integer(token)?; // numbers that are not integers are an error
     }
     parse_number(token)
+}
+
+/// The position of a row, and its encoding.
+#[derive(Clone, Copy)]
+pub(super) enum Start {
+    /// The number of lines before a row of text.
+    Line(u64),
+    /// The number of bytes before a binary row.
+    Byte { offset: u64, big_endian: bool },
+}
+
+impl Start {
+    /// Returns the position after some bytes, which are whole rows.
+    pub(super) fn after(self, bytes: &[u8]) -> Self {
+        match self {
+            Self::Line(lines) => Self::Line(lines + count_lines(bytes)),
+            Self::Byte { offset, big_endian } => Self::Byte { offset: offset + bytes.len() as u64, big_endian },
+        }
+    }
 }
 
 /// Reads the numbers of a PLY file sequentially.

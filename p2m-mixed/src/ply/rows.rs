@@ -1,31 +1,12 @@
 //! Reading the members of an element in blocks.
 
-use super::data::{Data, Encoded, Numbers, parse_coordinate};
+use super::data::{Data, Encoded, Numbers, Start, parse_coordinate};
 use super::header::{Layout, Property};
 use crate::blocks::{Source, for_each_block};
 use crate::bytes::{Bytes, Scalar};
-use crate::text::{Tokens, count_lines, last_line_end, line_end, parse_integer};
+use crate::text::{Tokens, last_line_end, line_end, parse_integer};
 use crate::{FileLocation, ReadError, Reason};
 use std::io::BufRead;
-
-/// The position of a row, and its encoding.
-#[derive(Clone, Copy)]
-pub(super) enum Start {
-    /// The number of lines before a row of text.
-    Line(u64),
-    /// The number of bytes before a binary row.
-    Byte { offset: u64, big_endian: bool },
-}
-
-impl Start {
-    /// Returns the position after some bytes, which are whole rows.
-    fn after(self, bytes: &[u8]) -> Self {
-        match self {
-            Self::Line(lines) => Self::Line(lines + count_lines(bytes)),
-            Self::Byte { offset, big_endian } => Self::Byte { offset: offset + bytes.len() as u64, big_endian },
-        }
-    }
-}
 
 /// A function that reads a row, which is a member of an element, in any encoding.
 pub(super) trait ReadRow<T>: Sync {

@@ -1,12 +1,26 @@
 //! Heights: upper bounds on the contents of nodes along a direction.
 
-use super::side::WIDTH;
-use crate::kernel::vector::power_of_two;
+use super::place::WIDTH;
+use crate::kernel::vector::{V3, dot, power_of_two};
 use crate::simd::Lanes;
 
 /// The part of the sum of all factors that is added as slack. Coordinates of a frame are at most 4, and there are at
 /// most four roundings of 2^-24 of each term.
 const SLACK: f64 = power_of_two(-19);
+
+/// The lengths of vectors that have a direction.
+const PLAIN_LENGTHS: std::ops::RangeInclusive<f64> = power_of_two(-400)..=power_of_two(400);
+
+/// Returns a vector of length 1 along `v`, unless the length of `v` overflows or vanishes.
+pub(super) fn unit(v: V3) -> Option<V3> {
+    let length = dot(v, v).sqrt();
+    PLAIN_LENGTHS.contains(&length).then(|| v.map(|x| x / length))
+}
+
+/// Returns the least and the largest of some heights.
+pub(super) fn extent(heights: impl Iterator<Item = f64>) -> [f64; 2] {
+    heights.fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], x| [low.min(x), high.max(x)])
+}
 
 /// A direction of a frame, as the weighted sum of three rows of numbers of a node.
 ///

@@ -1,8 +1,7 @@
 //! The primitives of a packet as hulls, and the pairs of those of two packets.
 
-use super::directions::{extent, unit};
-use super::side::NO_NODE;
-use super::support::Supports;
+use super::height::{extent, unit};
+use super::place::NO_NODE;
 use crate::kernel::arithmetic::cross;
 use crate::kernel::vector::{V3, dot, sub};
 use crate::pair::{Hull, Pairs, bounds_of, nearest_of_hulls};
@@ -65,9 +64,9 @@ impl Hulls {
     }
 }
 
-/// Offers the pairs of the primitives of two packets. `supports` tells whether heights may be compared, and in which
-/// direction.
-pub(super) fn search_packets(a: &Hulls, b: &Hulls, supports: &Supports, pairs: &mut Pairs<'_>) {
+/// Offers the pairs of the primitives of two packets. Heights are compared along `direction` and along normals, unless
+/// they have no margin.
+pub(super) fn search_packets(a: &Hulls, b: &Hulls, margin: Option<f64>, direction: Option<V3>, pairs: &mut Pairs<'_>) {
     let prune = pairs.prune_above();
     let (near_a, near_b) = (a.near(&b.bounds, prune), b.near(&a.bounds, prune));
     let offer = |i: usize, j: usize, pairs: &mut Pairs<'_>| {
@@ -76,7 +75,7 @@ pub(super) fn search_packets(a: &Hulls, b: &Hulls, supports: &Supports, pairs: &
         if a.boxes[i].gap_squared(&b.boxes[j]) > prune || !pairs.can_change(ids) {
             return;
         }
-        if supports.margin.is_some_and(|margin| is_apart(a, i, b, j, supports.direction, prune.sqrt() + margin)) {
+        if margin.is_some_and(|margin| is_apart(a, i, b, j, direction, prune.sqrt() + margin)) {
             return;
         }
         pairs.offer_result(ids, nearest_of_hulls(a.hull(i), b.hull(j), pairs.kernel_limit()));

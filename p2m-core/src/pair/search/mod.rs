@@ -5,9 +5,9 @@
 //! A search holds pairs of nodes, of which one is cut into its children at a time: the one with the larger box. Pairs
 //! that are certainly farther apart than the best pair so far are left out. Two bounds tell that.
 //!
-//! - **Directions** (the file `directions`). The other node of the pair is between two planes in each of a few
-//!   directions: the axes of both frames, and for a shape those that are orthogonal to its edges and to an axis. The
-//!   distances of eight children from what is between the planes are bounded side by side, in f32.
+//! - **Directions** (the files `directions` and `slab`). The other node of the pair is between two planes in each of a
+//!   few directions: the axes of both frames, and for a shape those that are orthogonal to its edges and to an axis.
+//!   The distances of eight children from what is between the planes are bounded side by side, in f32.
 //! - **The direction of the best pair** (the file `support`). Where two surfaces are nearest, they face each other and
 //!   are nearly flat. A box around such a part reaches towards the other surface by as much as the box is wide, but the
 //!   part itself does so by the square of that only. So the extents of nodes along the direction of the best pair are
@@ -26,16 +26,19 @@
 mod directions;
 mod height;
 mod hulls;
+mod place;
 mod side;
+mod slab;
 mod support;
 
 use super::Pairs;
 use directions::Directions;
-pub use directions::{ChildBounds, Slab, bound_children};
 pub use height::{Height, Rows};
 use hulls::search_packets;
 pub use hulls::{Hulls, MAX_HULLS};
-pub use side::{Children, NO_NODE, PairSide, Place, Placement, ShapeSide, WIDTH};
+pub use place::{NO_NODE, Place, WIDTH};
+pub use side::{Children, PairSide, Placement, ShapeSide};
+pub use slab::{ChildBounds, Slab, bound_children};
 use support::Supports;
 
 /// Two nodes that may contain a near pair.
@@ -96,7 +99,7 @@ impl Search<'_, '_, '_> {
                         }
                     }
                     let [a, b] = &loaded;
-                    search_packets(a, b, &self.supports, self.pairs);
+                    search_packets(a, b, self.supports.margin, self.supports.direction, self.pairs);
                     self.supports.follow(self.pairs);
                 }
                 [_, true] => self.cut(0, places),

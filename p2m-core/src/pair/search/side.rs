@@ -1,39 +1,13 @@
 //! The two sides of a search for pairs: trees, which other crates implement, and single shapes.
 
-use super::directions::{Slab, extent, unit};
-use super::height::Height;
+use super::height::{Height, extent, unit};
 use super::hulls::Hulls;
+use super::place::{NO_NODE, Place, WIDTH};
+use super::slab::Slab;
 use crate::kernel::arithmetic::cross;
 use crate::kernel::vector::{V3, dot, largest, sub};
 use crate::pair::{Hull, bounds_of};
 use crate::{Aabb, PrimitiveId};
-
-/// The number of children of a node.
-pub const WIDTH: usize = 8;
-
-/// The number that stands for no node, which unused slots have.
-pub const NO_NODE: u32 = u32::MAX;
-
-/// A node or a packet of primitives, given by a number of its side, with the place where its bounds are.
-#[derive(Clone, Copy, Debug)]
-pub struct Place {
-    /// The number of the node.
-    pub node: u32,
-    /// The number of its parent; [`NO_NODE`] for the root.
-    pub parent: u32,
-    /// The slot of the parent.
-    pub slot: u8,
-    /// The sum of the sides of its box, rounded.
-    pub size: f32,
-}
-
-impl Place {
-    /// Makes the place of a root.
-    #[must_use]
-    pub fn root(node: u32) -> Self {
-        Self { node, parent: NO_NODE, slot: 0, size: f32::INFINITY }
-    }
-}
 
 /// The eight children of a node, with bounds on their distances from something.
 #[derive(Clone, Copy, Debug)]

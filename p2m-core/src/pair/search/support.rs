@@ -1,7 +1,8 @@
 //! Extents of nodes along the direction of the best pair, from their vertices.
 
-use super::directions::unit;
-use super::side::{PairSide, Place};
+use super::height::unit;
+use super::place::Place;
+use super::side::PairSide;
 use crate::kernel::vector::V3;
 use crate::pair::Pairs;
 use std::collections::HashMap;
