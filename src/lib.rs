@@ -110,8 +110,8 @@ pub use p2m_core as backend;
 /// The nearest points of two scenes, one of which may have moved, and of a scene and a shape.
 pub use p2m_core::pair;
 pub use p2m_core::{
-    Aabb, BoxQuery, BruteForce, BuildError, BuildIndex, CertifiedQuery, CertifyError, Closest, ClosestLeaf,
-    ClosestPoint, Element, Feature, Hit, Index, Indexed, Inspect, Isa, NearQuery, OfKind, Point, Position, Primitive,
+    Aabb, AnyIndex, BoxQuery, BruteForce, BuildError, BuildIndex, CertifiedQuery, CertifyError, Closest, ClosestLeaf,
+    ClosestPoint, Element, Feature, Hit, Indexed, Inspect, Isa, NearQuery, OfKind, Point, Position, Primitive,
     PrimitiveDefect, PrimitiveId, PrimitiveSet, Projection, QueryCost, QueryOptions, Ray, RayError, RayHit, RayQuery,
     Real, Segment, Shape, Side, Soup, Triangle, batch, check_primitive, storage,
 };

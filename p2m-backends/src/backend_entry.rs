@@ -54,7 +54,7 @@ pub struct BackendEntry {
     pub summary: &'static str,
     /// The structure that is searched.
     pub structure: SearchStructure,
-    /// Whether [`Index::as_ray_query`](crate::Index::as_ray_query) returns something.
+    /// Whether [`AnyIndex::as_ray_query`](crate::AnyIndex::as_ray_query) returns something.
     pub casts_rays: bool,
     /// Whether a build calls [`BuildSettings::progress`].
     pub reports_progress: bool,

@@ -4,21 +4,21 @@ use crate::kdop_directions::{ChosenDirections, KdopDirections};
 use crate::p2m_settings::P2mSettings;
 use p2m_bvh::SplitOptions;
 use p2m_core::storage::Writer;
-use p2m_core::{Index, Real};
+use p2m_core::{AnyIndex, Real};
 use p2m_interception::{OctreeReport, OctreeSoFar, P2mReport, Progress};
 use std::ops::ControlFlow;
 
 /// An index that was built or loaded, with the details that reports have about it.
 pub struct BuiltIndex<'a, T: Real = f64> {
     /// The index itself.
-    pub index: Box<dyn Index<T> + 'a>,
+    pub index: Box<dyn AnyIndex<T> + 'a>,
     /// The details of its backend.
     pub details: IndexDetails,
 }
 
 impl<'a, T: Real> BuiltIndex<'a, T> {
     /// Puts an index behind the pointer.
-    pub(crate) fn new(index: impl Index<T> + 'a, details: IndexDetails) -> Self {
+    pub(crate) fn new(index: impl AnyIndex<T> + 'a, details: IndexDetails) -> Self {
         Self { index: Box::new(index), details }
     }
 }

@@ -1,6 +1,6 @@
 //! The registry of backends, and the choice between them for a scene and a workload.
 //!
-//! [`BACKENDS`] lists every backend with the functions that build and load its index as one [`Index`].
+//! [`BACKENDS`] lists every backend with the functions that build and load its index as one [`AnyIndex`].
 //!
 //! [`recommend`] estimates for each backend the time to build its index and to answer all queries, and its memory. It
 //! recommends the one with the least time among those that fit into the memory. The estimates come from a sample of the
@@ -35,7 +35,7 @@ pub use cost_model::CostModel;
 pub use estimate::{Advice, Estimate};
 pub use index::{BuildSettings, BuiltIndex, IndexDetails};
 pub use kdop_directions::{ChosenDirections, KdopDirections, KdopVisitor};
-pub use p2m_core::Index;
+pub use p2m_core::AnyIndex;
 pub use p2m_settings::{ListFilterKind, LocatorKind, P2mSettings};
 pub use recommend::recommend;
 pub use registry::BACKENDS;

@@ -1,11 +1,11 @@
 //! The registry of backends: one table that the program `p2m`, the advisor, measurements and tests read.
 //!
 //! A new backend joins them with one entry of [`BACKENDS`] and, if its index has a type of its own, with an
-//! implementation of [`Index`] for that type, as the module `index` has for the others. The values of `--backend`, the
+//! implementation of [`AnyIndex`] for that type, as the module `index` has for the others. The values of `--backend`, the
 //! files of `p2m build`, the estimates of `p2m advise`, the list of `p2m-bench` and the tests of agreement all come
 //! from that entry.
 //!
-//! Indexes are behind one pointer, [`Box<dyn Index>`](Index), with a borrowed [`Soup`] as the set. The pointer costs
+//! Indexes are behind one pointer, [`Box<dyn AnyIndex>`](AnyIndex), with a borrowed [`Soup`] as the set. The pointer costs
 //! one indirect call for each query, or for each batch of queries. In rounds of `p2m tradeoff` it makes no measurable
 //! difference to queries of 700 to 1000 ns, so no command needs the types behind it. The searches below that call are
 //! compiled for each index. Code that needs another set uses the types of the index crates instead.
@@ -16,7 +16,7 @@ use crate::index::{BuildSettings, BuiltIndex, IndexDetails};
 use crate::kdop_directions::{KdopDirections, KdopVisitor};
 use p2m_bvh::AabbTree;
 use p2m_core::storage::{self, LoadError, Reader, Saved};
-use p2m_core::{BruteForce, BuildError, BuildIndex, Index, PrimitiveSet, Real, Soup};
+use p2m_core::{AnyIndex, BruteForce, BuildError, BuildIndex, PrimitiveSet, Real, Soup};
 use p2m_interception::{Octree, OctreeIndex, OctreeOptions, P2mIndex, Voronoi};
 use p2m_kdop::KdopTree;
 use std::marker::PhantomData;
@@ -219,7 +219,7 @@ fn has_kind(reader: &Reader, kind: &str) -> bool {
 struct BoxTree<'a>(PhantomData<&'a ()>);
 
 impl<'a, T: Real, S: PrimitiveSet<T> + Send + Sync + 'a> KdopVisitor<S, T> for BoxTree<'a> {
-    type Output = Box<dyn Index<T> + 'a>;
+    type Output = Box<dyn AnyIndex<T> + 'a>;
     fn visit<const K: usize>(self, tree: KdopTree<T, S, K>) -> Self::Output {
         Box::new(tree)
     }

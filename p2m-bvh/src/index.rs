@@ -9,9 +9,9 @@ use p2m_core::engine::answer_one_by_one;
 use p2m_core::pair::PairQuery;
 use p2m_core::storage::{self, LoadError, Reader, Writer};
 use p2m_core::{
-    Aabb, Best, BoxQuery, BuildError, BuildIndex, CertifiedQuery, Closest, ClosestLeaf, ClosestPoint, Collector, Found,
-    Hits, Index, Inspect, Isa, Near, NearQuery, Point, Primitive, PrimitiveId, PrimitiveSet, QueryOptions, Ray,
-    RayCollector, RayQuery, Real, Shape, StatsCollector, check_set, shape_of,
+    Aabb, AnyIndex, Best, BoxQuery, BuildError, BuildIndex, CertifiedQuery, Closest, ClosestLeaf, ClosestPoint,
+    Collector, Found, Hits, Inspect, Isa, Near, NearQuery, Point, Primitive, PrimitiveId, PrimitiveSet, QueryOptions,
+    Ray, RayCollector, RayQuery, Real, Shape, StatsCollector, check_set, shape_of,
 };
 use std::marker::PhantomData;
 use std::ops::ControlFlow;
@@ -262,7 +262,7 @@ impl<T: Real, S: PrimitiveSet<T>, V: Volume> ClosestPoint<T> for TreeIndex<T, S,
     }
 }
 
-impl<T: Real, S: PrimitiveSet<T> + Send + Sync, V: Volume> Index<T> for TreeIndex<T, S, V> {
+impl<T: Real, S: PrimitiveSet<T> + Send + Sync, V: Volume> AnyIndex<T> for TreeIndex<T, S, V> {
     fn save<'s>(&'s self, writer: &mut Writer<'s>) {
         self.save(writer);
     }

@@ -6,7 +6,7 @@ use crate::nearest::{
 use crate::{Shard, ShardError, ShardedIndex};
 use nalgebra::Point3;
 use p2m_core::batch::{BatchOptions, closest_points_into};
-use p2m_core::{Best, Closest, ClosestPoint, Found, Index, Key, Position, QueryOptions};
+use p2m_core::{AnyIndex, Best, Closest, ClosestPoint, Found, Key, Position, QueryOptions};
 use rayon::prelude::*;
 
 /// The number that stands for no shard.
@@ -17,7 +17,7 @@ pub type Proceed<'a> = dyn Fn(usize) -> bool + Sync + 'a;
 
 /// The index of a shard, which leaves out queries when it is not to go on.
 struct Stoppable<'a> {
-    index: &'a dyn Index,
+    index: &'a dyn AnyIndex,
     proceed: &'a Proceed<'a>,
 }
 

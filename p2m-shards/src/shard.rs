@@ -3,7 +3,7 @@
 use crate::{ShardEntry, ShardError};
 use p2m_backends::BackendEntry;
 use p2m_core::storage::{Array, LoadError, SavedFile, require};
-use p2m_core::{Index, PrimitiveId, PrimitiveSet, Shape, Soup, shape_of};
+use p2m_core::{AnyIndex, PrimitiveId, PrimitiveSet, Shape, Soup, shape_of};
 use p2m_mixed::load_scene;
 use std::fs;
 use std::path::Path;
@@ -17,7 +17,7 @@ const MEMORY_BYTES_PER_PRIMITIVE: u64 = 40;
 /// A part of the scene in memory.
 pub struct Shard {
     soup: Arc<Soup<f64>>,
-    index: Box<dyn Index + 'static>,
+    index: Box<dyn AnyIndex + 'static>,
     ids: Array<u64>,
 }
 
@@ -69,7 +69,7 @@ impl Shard {
 
     /// Returns the index over the primitives.
     #[must_use]
-    pub fn index(&self) -> &dyn Index {
+    pub fn index(&self) -> &dyn AnyIndex {
         &*self.index
     }
 

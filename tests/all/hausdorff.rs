@@ -3,12 +3,12 @@
 
 use p2m::field::{HausdorffOptions, hausdorff_distance, one_sided_hausdorff_distance};
 use p2m::{BruteForce, Real, Soup};
-use p2m_backends::{BACKENDS, BuildSettings, Index};
+use p2m_backends::{AnyIndex, BACKENDS, BuildSettings};
 use p2m_testkit::scenes::{self, kinds_and_layout, narrow};
 use p2m_testkit::{cases, rng};
 use std::ops::ControlFlow;
 
-fn check<T: Real>(case: u64, [a, b]: [&Soup<T>; 2], indexes: [&dyn Index<T>; 2]) {
+fn check<T: Real>(case: u64, [a, b]: [&Soup<T>; 2], indexes: [&dyn AnyIndex<T>; 2]) {
     let options = HausdorffOptions::new(T::round_from_f64(1e-3)).with_max_queries(20_000);
     let mut go_on = |_: &_| ControlFlow::Continue(());
     let brute = [a, b].map(|soup| BruteForce::new(soup).expect("valid"));

@@ -6,7 +6,7 @@ use crate::agreement::agrees_with;
 use nalgebra::{Point3, Vector3};
 use p2m::storage::{SavedFile, Writer};
 use p2m::{Aabb, BoxQuery, BruteForce, CertifiedQuery, PrimitiveSet, QueryOptions, Ray, RayQuery, Real, Soup};
-use p2m_backends::{BACKENDS, BuildSettings, Index};
+use p2m_backends::{AnyIndex, BACKENDS, BuildSettings};
 use p2m_testkit::near_check;
 use p2m_testkit::scenes::{extreme_soups, narrow, queries, random_soups, to_f32};
 
@@ -14,7 +14,7 @@ use p2m_testkit::scenes::{extreme_soups, narrow, queries, random_soups, to_f32};
 type Case = (u64, Soup<f64>, Vec<Point3<f64>>);
 
 /// Checks the index of every backend over scenes in f64.
-fn in_f64(cases: impl Iterator<Item = Case>, check: impl Fn(u64, &Soup<f64>, &[Point3<f64>], &dyn Index)) {
+fn in_f64(cases: impl Iterator<Item = Case>, check: impl Fn(u64, &Soup<f64>, &[Point3<f64>], &dyn AnyIndex)) {
     for (seed, soup, queries) in cases {
         for backend in BACKENDS {
             let built = backend.build(&soup, &BuildSettings::default()).expect("valid scene");
@@ -24,7 +24,7 @@ fn in_f64(cases: impl Iterator<Item = Case>, check: impl Fn(u64, &Soup<f64>, &[P
 }
 
 /// Checks the index of every backend over scenes that are rounded to f32.
-fn in_f32(cases: impl Iterator<Item = Case>, check: impl Fn(u64, &Soup<f32>, &[Point3<f32>], &dyn Index<f32>)) {
+fn in_f32(cases: impl Iterator<Item = Case>, check: impl Fn(u64, &Soup<f32>, &[Point3<f32>], &dyn AnyIndex<f32>)) {
     for (seed, soup, queries) in cases {
         let soup = narrow(&soup).expect("fits f32");
         let queries: Vec<_> = queries.into_iter().map(to_f32).collect();
@@ -42,12 +42,12 @@ fn random_cases(name: &'static str) -> impl Iterator<Item = Case> {
     })
 }
 
-fn nearest<T: Real>(seed: u64, soup: &Soup<T>, queries: &[Point3<T>], index: &dyn Index<T>) {
+fn nearest<T: Real>(seed: u64, soup: &Soup<T>, queries: &[Point3<T>], index: &dyn AnyIndex<T>) {
     let brute = BruteForce::new(soup).expect("valid scene");
     agrees_with(&brute, seed, soup.len(), queries, &index);
 }
 
-fn near<T: Real>(seed: u64, soup: &Soup<T>, queries: &[Point3<T>], index: &dyn Index<T>) {
+fn near<T: Real>(seed: u64, soup: &Soup<T>, queries: &[Point3<T>], index: &dyn AnyIndex<T>) {
     near_check::agrees(seed, soup, queries, index);
 }
 

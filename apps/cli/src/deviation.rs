@@ -15,7 +15,7 @@ use crate::threads::ThreadArgs;
 use crate::usage::{finite_not_negative, one_of, positive, usage};
 use anyhow::{Context, anyhow};
 use nalgebra::Point3;
-use p2m_backends::{BuiltIndex, Index, P2mSettings};
+use p2m_backends::{AnyIndex, BuiltIndex, P2mSettings};
 use p2m_core::batch::{self, BatchOptions};
 use p2m_core::{Closest, QueryOptions};
 use p2m_field::deviation::{DeviationStatistics, OutsideTolerance, outside};
@@ -256,7 +256,7 @@ pub(crate) fn run(streams: &Streams, args: &Args) -> anyhow::Result<()> {
 
 /// The answers to the points of a scan, and where they come from.
 struct Answers<'a> {
-    index: &'a dyn Index,
+    index: &'a dyn AnyIndex,
     signed: Option<&'a SignedIndex<'a>>,
     /// The deviation of each point, or NaN.
     values: Vec<f64>,
@@ -266,7 +266,7 @@ struct Answers<'a> {
 
 impl<'a> Answers<'a> {
     /// Starts without answers.
-    fn new(index: &'a dyn Index, signed: Option<&'a SignedIndex<'a>>) -> Self {
+    fn new(index: &'a dyn AnyIndex, signed: Option<&'a SignedIndex<'a>>) -> Self {
         Self { index, signed, values: Vec::new(), primitives: Vec::new() }
     }
 

@@ -14,7 +14,7 @@ use crate::summary::{IndexSummary, SceneSummary};
 use crate::usage::{not_negative, one_of, positive, usage};
 use anyhow::{Context, anyhow};
 use nalgebra::Point3;
-use p2m_backends::{Index, IndexDetails, P2mSettings};
+use p2m_backends::{AnyIndex, IndexDetails, P2mSettings};
 use p2m_core::{Aabb, PrimitiveSet, Soup};
 use p2m_field::FieldFormat;
 use p2m_field::grid_candidates::{CandidateLists, MAX_COORDINATE};
@@ -288,7 +288,7 @@ fn candidate_lists<'a>(
 
 /// An index with or without signs.
 enum FieldIndex<'a> {
-    Unsigned(&'a dyn Index),
+    Unsigned(&'a dyn AnyIndex),
     /// The signs, and the name of the rule that decides them.
     Signed(SignedIndex<'a>, &'static str),
 }

@@ -20,7 +20,7 @@ use anyhow::Context;
 use clap::ArgGroup;
 use clap::builder::{PossibleValuesParser, TypedValueParser};
 use nalgebra::Point3;
-use p2m_backends::{BuiltIndex, Index, QueryRegion, Workload};
+use p2m_backends::{AnyIndex, BuiltIndex, QueryRegion, Workload};
 use p2m_core::{Aabb, Closest, PrimitiveSet, QueryOptions};
 use p2m_mixed::{AnswerColumn, AnswerFormat, Object, PointFormat};
 use rayon::prelude::*;
@@ -204,7 +204,7 @@ pub(crate) fn run(streams: &Streams, args: &Args) -> anyhow::Result<()> {
 
 /// An index over the whole scene, with signs if they are asked for.
 struct WholeIndex<'a> {
-    index: &'a dyn Index,
+    index: &'a dyn AnyIndex,
     signed: Option<&'a SignedIndex<'a>>,
     args: &'a Args,
 }

@@ -13,7 +13,7 @@ use crate::summary::{IndexSummary, SceneSummary};
 use crate::usage::{positive, whole_number};
 use anyhow::{Context, bail};
 use nalgebra::{Point3, Vector3};
-use p2m_backends::{BuiltIndex, Index};
+use p2m_backends::{AnyIndex, BuiltIndex};
 use p2m_bvh::AabbTree;
 use p2m_core::{BuildIndex, ListStats, PrimitiveSet, QueryCost, RayQuery, Soup, Stat, StatsCollector};
 use p2m_mixed::Camera;
@@ -209,7 +209,7 @@ fn centroid_sample(soup: &Soup<f64>, count: u64) -> Vec<Point3<f64>> {
 
 /// Returns the number by which a primitive is coloured: the length of the list at its centroid, or for trees the number
 /// of packets that a query there filters.
-fn query_cost(index: &dyn Index, centroid: &Point3<f64>) -> f64 {
+fn query_cost(index: &dyn AnyIndex, centroid: &Point3<f64>) -> f64 {
     let packets = || StatsCollector::count_query(centroid, |query, collector| index.inspect(query, collector))[1];
     index.list_length(centroid).unwrap_or_else(packets) as f64
 }

@@ -11,7 +11,7 @@ use crate::usage::{one_of, positive, whole_number};
 use anyhow::{Context, bail};
 use clap::ArgGroup;
 use nalgebra::Point3;
-use p2m_backends::{BACKENDS, BuildSettings, Index, SearchStructure};
+use p2m_backends::{AnyIndex, BACKENDS, BuildSettings, SearchStructure};
 use p2m_bvh::AabbTree;
 use p2m_core::{BuildIndex, CertifiedQuery, PrimitiveSet, Soup};
 use p2m_mixed::{PointFormat, Scene};
@@ -101,7 +101,7 @@ fn default_backends() -> impl Iterator<Item = &'static str> {
 /// An index that was built for the comparison, with its cost.
 struct MeasuredIndex<'a> {
     backend: Backend,
-    index: Box<dyn Index + 'a>,
+    index: Box<dyn AnyIndex + 'a>,
     cost: Build,
 }
 

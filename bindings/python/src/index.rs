@@ -7,7 +7,7 @@ use crate::signs::{SignRule, Signed};
 use crate::threads::pool;
 use crate::work::{FIRST_STEP_QUERIES, Monitor, Threads, run_batch, run_owned};
 use p2m_backends::{BackendEntry, KdopDirections, SearchStructure};
-use p2m_core::{Index as AnyIndex, PrimitiveSet};
+use p2m_core::{AnyIndex, PrimitiveSet};
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;

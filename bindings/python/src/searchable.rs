@@ -8,7 +8,7 @@ use crate::work::Monitor;
 use p2m_backends::{BackendEntry, ChosenDirections, KdopDirections};
 use p2m_bvh::{AabbTree, SplitOptions, TreeIndex, Volume};
 use p2m_core::storage::{LoadError, Reader};
-use p2m_core::{BruteForce, BuildError, BuildIndex, Index};
+use p2m_core::{AnyIndex, BruteForce, BuildError, BuildIndex};
 use p2m_interception::{
     InterceptionIndex, Octree, OctreeIndex, OctreeOptions, P2mIndex, P2mOptions, Progress, Voronoi,
 };
@@ -20,7 +20,7 @@ use std::sync::Arc;
 pub(crate) const BUILD_UNITS: usize = 100;
 
 /// An index over a shared scene.
-pub(crate) trait Searchable: Index<f64> {
+pub(crate) trait Searchable: AnyIndex<f64> {
     /// Returns a copy that is fitted to a scene in which the same primitives have moved, or nothing if the backend
     /// has to build anew.
     fn refitted(&self, scene: &SharedScene) -> Option<Result<Arc<dyn Searchable>, BuildError>>;

@@ -4,7 +4,7 @@ use crate::reference::{Object, moved_soup, scene};
 use nalgebra::Point3;
 use p2m_backends::{BACKENDS, BuildSettings};
 use p2m_core::{
-    Aabb, BoxQuery, BruteForce, CertifiedQuery, Closest, ClosestPoint, Index, Inspect, NearQuery, PrimitiveId,
+    Aabb, AnyIndex, BoxQuery, BruteForce, CertifiedQuery, Closest, ClosestPoint, Inspect, NearQuery, PrimitiveId,
     PrimitiveSet, QueryCost, QueryOptions, Ray, RayQuery, Real, Soup,
 };
 use p2m_instances::Instances;
@@ -30,7 +30,7 @@ fn size_of(bounds: &Aabb<f64>) -> f64 {
 fn check(
     rng: &mut impl Rng,
     case: u64,
-    scene: &Instances<f64, dyn Index<f64> + '_>,
+    scene: &Instances<f64, dyn AnyIndex<f64> + '_>,
     moved: &Soup<f64>,
     queries: &[Point3<f64>],
 ) {

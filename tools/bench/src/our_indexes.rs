@@ -3,7 +3,7 @@
 use crate::backend::{Answer, BenchIndex, BoxedIndex, Prepared, Scalar, ScalarKind, Unavailable};
 use crate::scene::Scene;
 use nalgebra::Point3;
-use p2m_backends::{BackendEntry, BuildSettings, BuiltIndex, Index};
+use p2m_backends::{AnyIndex, BackendEntry, BuildSettings, BuiltIndex};
 use p2m_bvh::{AabbOptions, AabbTree};
 use p2m_core::batch::{self, BatchOptions, ClosestColumns};
 use p2m_core::{BuildError, BuildIndex, Closest, ClosestPoint, Isa, PrimitiveId, QueryOptions, Soup};
@@ -24,7 +24,7 @@ impl<I: ClosestPoint<f64> + Sync> BenchIndex for OneByOne<I> {
 }
 
 /// An index of the registry, which is queried through a pointer.
-struct Registered<'a, T: Scalar>(Box<dyn Index<T> + 'a>);
+struct Registered<'a, T: Scalar>(Box<dyn AnyIndex<T> + 'a>);
 
 impl<T: Scalar> BenchIndex for Registered<'_, T> {
     type Scalar = T;

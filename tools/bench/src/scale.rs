@@ -12,7 +12,7 @@ use crate::report::provenance;
 use crate::rounds::{checksum, checksum_of_closest, thread_seconds};
 use anyhow::{Context, Result, bail};
 use nalgebra::Point3;
-use p2m_backends::{BACKENDS, BackendEntry, BuildSettings, Index};
+use p2m_backends::{AnyIndex, BACKENDS, BackendEntry, BuildSettings};
 use p2m_core::batch::{BatchOptions, closest_points_into};
 use p2m_core::{Closest, PrimitiveSet, QueryOptions, Soup, StatsCollector};
 use p2m_mixed::generate::{TorusKnot, torus_knot};
@@ -181,7 +181,7 @@ fn measure(
 }
 
 /// Measures the queries of a set, one by one and as a batch in turns.
-fn measure_set(index: &dyn Index<f64>, queries: &[Point3<f64>], rounds: usize) -> SetCosts {
+fn measure_set(index: &dyn AnyIndex<f64>, queries: &[Point3<f64>], rounds: usize) -> SetCosts {
     let mut answers: Vec<Option<Closest<f64>>> = vec![None; queries.len()];
     let (mut single, mut batch) = (Vec::new(), Vec::new());
     let mut sum = 0;

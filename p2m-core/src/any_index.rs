@@ -5,18 +5,18 @@ use crate::storage::Writer;
 use crate::{BoxQuery, BruteForce, CertifiedQuery, ClosestPoint, Inspect, PrimitiveSet, RayQuery, Real};
 use std::sync::Arc;
 
-/// Everything that an index can do, as a trait that can be used as `dyn Index<T>`.
+/// Everything that an index can do, as a trait that can be used as `dyn AnyIndex<T>`.
 ///
 /// Every index answers closest-point, near and certified queries, and reports its costs. Rays, boxes and pairs are optional.
 /// Indexes can be sent to other threads and shared among them.
 ///
 /// ```
 /// use nalgebra::Point3;
-/// use p2m_core::{BruteForce, ClosestPoint, Index, NearQuery, Point, RayQuery, Soup};
+/// use p2m_core::{BruteForce, ClosestPoint, AnyIndex, NearQuery, Point, RayQuery, Soup};
 /// use std::sync::Arc;
 ///
 /// let soup: Arc<Soup<f64>> = Arc::default();
-/// let index: Box<dyn Index> = Box::new(BruteForce::new(soup)?);
+/// let index: Box<dyn AnyIndex> = Box::new(BruteForce::new(soup)?);
 /// let index = std::thread::spawn(move || {
 ///     assert!(index.closest_point(&Point3::origin()).is_none());
 ///     index
@@ -27,10 +27,10 @@ use std::sync::Arc;
 /// # Ok::<(), p2m_core::BuildError>(())
 /// ```
 #[diagnostic::on_unimplemented(
-    message = "`{Self}` is not an index that can be used as `dyn Index<{T}>`",
+    message = "`{Self}` is not an index that can be used as `dyn AnyIndex<{T}>`",
     note = "the scene of an index has to be `Send` and `Sync`, so share it by `Arc` and not by `Rc`"
 )]
-pub trait Index<T: Real = f64>: ClosestPoint<T> + CertifiedQuery<T> + Inspect<T> + Send + Sync {
+pub trait AnyIndex<T: Real = f64>: ClosestPoint<T> + CertifiedQuery<T> + Inspect<T> + Send + Sync {
     /// Adds the index to a file, without its scene. An index without a saved form adds nothing.
     fn save<'s>(&'s self, writer: &mut Writer<'s>);
 
@@ -56,7 +56,7 @@ pub trait Index<T: Real = f64>: ClosestPoint<T> + CertifiedQuery<T> + Inspect<T>
     }
 }
 
-impl<T: Real, S: PrimitiveSet<T> + Send + Sync> Index<T> for BruteForce<S> {
+impl<T: Real, S: PrimitiveSet<T> + Send + Sync> AnyIndex<T> for BruteForce<S> {
     fn save<'s>(&'s self, _: &mut Writer<'s>) {}
 
     fn primitive_count(&self) -> usize {
@@ -83,7 +83,7 @@ impl<T: Real, S: PrimitiveSet<T> + Send + Sync> Index<T> for BruteForce<S> {
 /// Implements the trait for a pointer type by its target.
 macro_rules! index_behind {
     ($target:ident, $pointer:ty) => {
-        impl<T: Real, $target: Index<T> + ?Sized> Index<T> for $pointer {
+        impl<T: Real, $target: AnyIndex<T> + ?Sized> AnyIndex<T> for $pointer {
             fn save<'s>(&'s self, writer: &mut Writer<'s>) {
                 (**self).save(writer);
             }
