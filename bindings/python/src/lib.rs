@@ -26,7 +26,6 @@ mod searchable;
 mod sharded;
 mod signs;
 mod threads;
-mod watched;
 mod work;
 
 use pyo3::prelude::*;
