@@ -11,10 +11,11 @@ use p2m_core::storage::{self, LoadError, Reader, Writer};
 use p2m_core::{
     Aabb, AnyIndex, Best, BoxQuery, BuildError, BuildIndex, CertifiedQuery, Closest, ClosestLeaf, ClosestPoint,
     Collector, Found, Hits, Inspect, Isa, Near, NearQuery, Point, Primitive, PrimitiveId, PrimitiveSet, QueryOptions,
-    Ray, RayCollector, RayQuery, Real, Shape, StatsCollector, check_set, shape_of,
+    Ray, RayCollector, RayQuery, Real, Refitted, Shape, Soup, StatsCollector, check_set, shape_of,
 };
 use std::marker::PhantomData;
 use std::ops::ControlFlow;
+use std::sync::Arc;
 
 /// A [`PacketTree`] with the set that it was built over.
 ///
@@ -285,6 +286,19 @@ impl<T: Real, S: PrimitiveSet<T> + Send + Sync, V: Volume> AnyIndex<T> for TreeI
 
     fn as_pair_query(&self) -> Option<&(dyn PairQuery<T> + Sync)> {
         Some(self)
+    }
+
+    fn refitted(&self, soup: Arc<Soup<T>>) -> Option<Refitted<T>> {
+        let refitted = self.check_fit(soup.len()).and_then(|()| check_set(&soup)).map(|()| {
+            let mut tree = self.tree.clone();
+            tree.refit_with(&soup, true);
+            Arc::new(TreeIndex { set: soup, scalar: PhantomData, tree }) as Arc<dyn AnyIndex<T>>
+        });
+        Some(refitted)
+    }
+
+    fn surface_area(&self) -> Option<f64> {
+        Some(self.surface_area())
     }
 }
 

@@ -2,8 +2,24 @@
 
 use crate::pair::PairQuery;
 use crate::storage::Writer;
-use crate::{BoxQuery, BruteForce, CertifiedQuery, ClosestPoint, Inspect, PrimitiveSet, RayQuery, Real};
+use crate::{
+    BoxQuery, BruteForce, BuildError, CertifiedQuery, ClosestPoint, Inspect, PrimitiveSet, RayQuery, Real, Soup,
+};
 use std::sync::Arc;
+
+/// The summary of an index of cells.
+#[derive(Clone, Debug, PartialEq)]
+pub struct CellSummary {
+    /// A phrase for people.
+    pub text: String,
+    /// Numbers by their names in reports.
+    pub counts: Vec<(&'static str, u64)>,
+    /// The fineness of the cells, of an index that has a setting for it.
+    pub resolution: Option<f64>,
+}
+
+/// The result of fitting an index to a moved scene, which it shares.
+pub type Refitted<T> = Result<Arc<dyn AnyIndex<T>>, BuildError>;
 
 /// Everything that an index can do, as a trait that can be used as `dyn AnyIndex<T>`.
 ///
@@ -54,6 +70,24 @@ pub trait AnyIndex<T: Real = f64>: ClosestPoint<T> + CertifiedQuery<T> + Inspect
     fn as_pair_query(&self) -> Option<&(dyn PairQuery<T> + Sync)> {
         None
     }
+
+    /// Returns a copy that is fitted to a scene in which the same primitives have moved, or `None` if an index of this
+    /// kind has to be built anew. The errors are [`BuildError::OtherLength`] for a scene with another number of
+    /// primitives, and [`BuildError::NonFinite`].
+    fn refitted(&self, soup: Arc<Soup<T>>) -> Option<Refitted<T>> {
+        let _ = soup;
+        None
+    }
+
+    /// Returns the sum of the areas of all boxes of a tree, which measures its quality.
+    fn surface_area(&self) -> Option<f64> {
+        None
+    }
+
+    /// Returns the summary of the cells of an index that has cells.
+    fn cells(&self) -> Option<CellSummary> {
+        None
+    }
 }
 
 impl<T: Real, S: PrimitiveSet<T> + Send + Sync> AnyIndex<T> for BruteForce<S> {
@@ -78,6 +112,14 @@ impl<T: Real, S: PrimitiveSet<T> + Send + Sync> AnyIndex<T> for BruteForce<S> {
     fn as_pair_query(&self) -> Option<&(dyn PairQuery<T> + Sync)> {
         Some(self)
     }
+
+    fn refitted(&self, soup: Arc<Soup<T>>) -> Option<Refitted<T>> {
+        let (len, expected) = (soup.len(), self.set().len());
+        if len != expected {
+            return Some(Err(BuildError::OtherLength { len, expected }));
+        }
+        Some(BruteForce::new(soup).map(|index| Arc::new(index) as Arc<dyn AnyIndex<T>>))
+    }
 }
 
 /// Implements the trait for a pointer type by its target.
@@ -101,6 +143,15 @@ macro_rules! index_behind {
             }
             fn as_pair_query(&self) -> Option<&(dyn PairQuery<T> + Sync)> {
                 (**self).as_pair_query()
+            }
+            fn refitted(&self, soup: Arc<Soup<T>>) -> Option<Refitted<T>> {
+                (**self).refitted(soup)
+            }
+            fn surface_area(&self) -> Option<f64> {
+                (**self).surface_area()
+            }
+            fn cells(&self) -> Option<CellSummary> {
+                (**self).cells()
             }
         }
     };

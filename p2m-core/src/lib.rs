@@ -60,7 +60,7 @@ mod stats_collector;
 pub mod storage;
 
 pub use aabb::Aabb;
-pub use any_index::AnyIndex;
+pub use any_index::{AnyIndex, CellSummary, Refitted};
 pub use box_query::{BoxQuery, ClosestLeaf};
 pub use brute_force::BruteForce;
 pub use certified::{CertifiedQuery, CertifyError, shape_of};

@@ -13,7 +13,7 @@ use p2m_bvh::engine::several::answer_in_groups;
 use p2m_core::engine::answer_one_by_one;
 use p2m_core::storage::{self, LoadError, Reader, Saved, Writer};
 use p2m_core::{
-    AnyIndex, Best, BuildError, BuildIndex, CertifiedQuery, ClosestPoint, Collector, Found, Inspect, Isa, Near,
+    AnyIndex, Best, BuildError, BuildIndex, CellSummary, CertifiedQuery, ClosestPoint, Collector, Found, Inspect, Isa, Near,
     NearQuery, PrimitiveId, PrimitiveSet, QueryOptions, Real, Shape, StatsCollector, check_set, shape_of,
 };
 use std::marker::PhantomData;
@@ -263,6 +263,10 @@ impl<T: Real, S: PrimitiveSet<T> + Send + Sync, P: Partition + Saved + Send + Sy
 
     fn memory_bytes(&self) -> usize {
         self.memory()
+    }
+
+    fn cells(&self) -> Option<CellSummary> {
+        Some(self.report().into())
     }
 }
 

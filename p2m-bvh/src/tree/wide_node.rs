@@ -85,7 +85,7 @@ pub trait WideNode: Rows + Copy + Debug + Send + Sync {
 }
 
 /// A bounding volume that has a type of nodes.
-pub trait VolumeNodes: Sized {
+pub trait VolumeNodes: Clone + 'static {
     /// The data that all volumes of a tree share.
     type Shared: Clone + Debug + Send + Sync;
     /// The type of the nodes.
