@@ -13,8 +13,8 @@ use p2m_bvh::engine::several::answer_in_groups;
 use p2m_core::engine::answer_one_by_one;
 use p2m_core::storage::{self, LoadError, Reader, Saved, Writer};
 use p2m_core::{
-    AnyIndex, Best, BuildError, BuildIndex, CellSummary, CertifiedQuery, ClosestPoint, Collector, Found, Inspect, Isa, Near,
-    NearQuery, PrimitiveId, PrimitiveSet, QueryOptions, Real, Shape, StatsCollector, check_set, shape_of,
+    AnyIndex, Best, BuildError, BuildIndex, CellSummary, CertifiedQuery, ClosestPoint, Collector, Found, Inspect, Isa,
+    Near, NearQuery, PrimitiveId, PrimitiveSet, QueryOptions, Real, Shape, StatsCollector, check_set, shape_of,
 };
 use std::marker::PhantomData;
 use std::ops::ControlFlow;

@@ -10,13 +10,14 @@ use p2m_testkit::queries::QuerySet;
 use p2m_testkit::scenes::{self, KINDS, LAYOUTS, kinds_and_layout};
 use p2m_testkit::{amount, cases, rng};
 use rand::RngExt;
+use std::sync::Arc;
 
 fn model(name: &str) -> Option<Soup<f64>> {
     let path = p2m_testkit::model_files().into_iter().find(|path| path.ends_with(name));
     if path.is_none() {
         println!("skipped: no model {name}");
     }
-    path.map(|path| p2m::scene::read_scene(&path).expect("readable").soup)
+    path.map(|path| Arc::unwrap_or_clone(p2m::scene::read_scene(&path).expect("readable").soup))
 }
 
 fn manual<const K: usize>(soup: &Soup<f64>) -> LeftFirst<K>

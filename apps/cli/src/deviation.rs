@@ -15,7 +15,7 @@ use crate::threads::ThreadArgs;
 use crate::usage::{finite_not_negative, one_of, positive, usage};
 use anyhow::{Context, anyhow};
 use nalgebra::Point3;
-use p2m_backends::{AnyIndex, BuiltIndex, P2mSettings};
+use p2m_backends::{AnyIndex, P2mSettings};
 use p2m_core::batch::{self, BatchOptions};
 use p2m_core::{Closest, QueryOptions};
 use p2m_field::deviation::{DeviationStatistics, OutsideTolerance, outside};
@@ -152,10 +152,10 @@ pub(crate) fn run(streams: &Streams, args: &Args) -> anyhow::Result<()> {
     let saved = saved.as_ref();
     let backend = args.backend.unwrap_or_else(|| saved_or_default(saved));
     let source = SceneSource { soup: &scene.soup, kdop_directions: None, p2m: P2mSettings::default(), saved };
-    let PreparedIndex { built: BuiltIndex { index, details }, is_loaded, .. } =
+    let PreparedIndex { built, is_loaded, .. } =
         source.prepare(streams, backend, &pool).with_context(|| args.scene.name())?;
-    let prepare =
-        |rule: SignRule| rule.prepare(streams, &*index, &scene.soup).map_err(|error| args.without_sign(error));
+    let index = &*built.index;
+    let prepare = |rule: SignRule| rule.prepare(streams, index, &scene.soup).map_err(|error| args.without_sign(error));
     let signed = if args.unsigned { None } else { Some(prepare(args.sign)?) };
     let build_time = start.elapsed();
     let rule = signed.as_ref().map(|(_, rule)| *rule);
@@ -168,7 +168,7 @@ pub(crate) fn run(streams: &Streams, args: &Args) -> anyhow::Result<()> {
     }
 
     let points = scan.soup.positions();
-    let mut answers = Answers::new(&*index, signed.as_ref().map(|(signed, _)| signed));
+    let mut answers = Answers::new(index, signed.as_ref().map(|(signed, _)| signed));
     let query_time = match (&mut output, out_format) {
         (Some(output), Some(DeviationFormat::Csv)) => {
             let encoder = AnswerEncoder::new(AnswerFormat::Csv, &scene.objects, &args.columns(&scene));
@@ -225,7 +225,8 @@ pub(crate) fn run(streams: &Streams, args: &Args) -> anyhow::Result<()> {
     }
 
     let summary = SceneSummary::new(args.scene.name(), format, &scene);
-    let index = IndexSummary { scene: summary, backend: backend.name, details, is_loaded, read_time, build_time };
+    let index =
+        IndexSummary { scene: summary, backend: backend.name, built: Some(&built), is_loaded, read_time, build_time };
     let run = RunSummary { index, threads: pool.current_num_threads(), query_time };
     if args.json {
         let out = args.out.as_ref().zip(out_format).map_or(

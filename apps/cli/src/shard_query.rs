@@ -11,7 +11,6 @@ use crate::streams::Streams;
 use crate::summary::{IndexSummary, RunSummary, SceneSummary};
 use crate::usage::usage;
 use nalgebra::Point3;
-use p2m_backends::IndexDetails;
 use p2m_core::{Closest, PrimitiveId};
 use p2m_shards::{ShardClosest, ShardedIndex, folder_of};
 use rayon::prelude::*;
@@ -138,8 +137,7 @@ pub(crate) fn summarize(
 ) -> IndexSummary<'_> {
     let manifest = index.manifest();
     let scene = SceneSummary { name, format: "p2m-shards", counts: manifest.counts(), skipped: &[] };
-    let details = IndexDetails::None;
-    IndexSummary { scene, backend: &manifest.backend, details, is_loaded: true, read_time, build_time }
+    IndexSummary { scene, backend: &manifest.backend, built: None, is_loaded: true, read_time, build_time }
 }
 
 /// Returns the line of a summary about the shards and how often they were loaded.

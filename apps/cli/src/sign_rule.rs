@@ -3,7 +3,7 @@
 use crate::progress::{Progress, Unit};
 use crate::streams::Streams;
 use clap::ValueEnum;
-use p2m_backends::Index;
+use p2m_backends::AnyIndex;
 use p2m_core::Soup;
 use p2m_field::sign::{SignError, SignedDistance};
 

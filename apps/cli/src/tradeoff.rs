@@ -25,6 +25,7 @@ use p2m_tradeoff::{
 };
 use std::io::Write as _;
 use std::path::{Path, PathBuf};
+use std::sync::Arc;
 
 const HELP: &str = "\
 Every backend is built over the scene, on one thread, and answers the same queries with every setting, in turns: the default, certified \
@@ -99,17 +100,17 @@ fn default_backends() -> impl Iterator<Item = &'static str> {
 }
 
 /// An index that was built for the comparison, with its cost.
-struct MeasuredIndex<'a> {
+struct MeasuredIndex {
     backend: Backend,
-    index: Box<dyn AnyIndex + 'a>,
+    index: Arc<dyn AnyIndex>,
     cost: Build,
 }
 
-impl<'a> MeasuredIndex<'a> {
+impl MeasuredIndex {
     /// Builds an index on one thread, and measures the time. Bytes are not counted.
-    fn build(backend: Backend, soup: &'a Soup<f64>) -> anyhow::Result<Self> {
+    fn build(backend: Backend, soup: &Arc<Soup<f64>>) -> anyhow::Result<Self> {
         let settings = BuildSettings::default().with_parallel(false);
-        let (built, seconds) = thread_seconds(|| backend.build(soup, &settings));
+        let (built, seconds) = thread_seconds(|| backend.build(Arc::clone(soup), &settings));
         Ok(Self { backend, index: built?.index, cost: Build { seconds, bytes_per_primitive: None } })
     }
 }

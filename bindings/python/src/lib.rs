@@ -22,7 +22,6 @@ mod queries;
 mod rays;
 mod saved;
 mod scene;
-mod searchable;
 mod sharded;
 mod signs;
 mod threads;

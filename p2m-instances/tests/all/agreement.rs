@@ -18,7 +18,7 @@ use std::sync::Arc;
 /// Builds the index of a random backend.
 fn object<'a>(rng: &mut impl Rng, soup: &'a Soup<f64>) -> Object<'a, f64> {
     let backend = &BACKENDS[rng.random_range(0..BACKENDS.len())];
-    (soup, Arc::from(backend.build(soup, &BuildSettings::default()).expect("valid").index))
+    (soup, backend.build(Arc::new(soup.clone()), &BuildSettings::default()).expect("valid").index)
 }
 
 /// Returns the length of the longest side of a box, or 1 for an empty one.
@@ -198,8 +198,8 @@ fn answers_in_f32_are_those_of_the_moved_scene_in_f64() {
             .iter()
             .map(|soup| {
                 let backend = &BACKENDS[rng.random_range(0..BACKENDS.len())];
-                let built = backend.build_f32(soup, &BuildSettings::default()).expect("valid");
-                (soup, Arc::from(built.index))
+                let built = backend.build_f32(Arc::new(soup.clone()), &BuildSettings::default()).expect("valid");
+                (soup, built.index)
             })
             .collect();
         let (scene, expected) = scene(&mut rng, &objects, size);

@@ -9,6 +9,7 @@ use p2m_backends::{BACKENDS, BackendEntry, BuildSettings, QueryRegion, SearchStr
 use p2m_core::{QueryOptions, Soup};
 use p2m_testkit::queries::QuerySet;
 use p2m_tradeoff::Table;
+use std::sync::Arc;
 
 /// The number of queries that are timed.
 pub(crate) const QUERIES: usize = 20_000;
@@ -79,8 +80,14 @@ pub(crate) const HEADINGS: [&str; 9] = [
     "each, times the best",
 ];
 
-fn cost(backend: &'static BackendEntry, soup: &Soup<f64>, sets: &[Vec<Point3<f64>>; 2], count: usize) -> Result<Cost> {
-    let (built, build) = thread_seconds(|| backend.build(soup, &BuildSettings::default().with_parallel(false)));
+fn cost(
+    backend: &'static BackendEntry,
+    soup: &Arc<Soup<f64>>,
+    sets: &[Vec<Point3<f64>>; 2],
+    count: usize,
+) -> Result<Cost> {
+    let (built, build) =
+        thread_seconds(|| backend.build(Arc::clone(soup), &BuildSettings::default().with_parallel(false)));
     let index = built?.index;
     let query = sets.each_ref().map(|queries| {
         let queries = &queries[..count];

@@ -13,7 +13,8 @@ use std::time::Instant;
 
 /// Prints wall times of batches over a scene, and returns whether all answers equal those of single queries.
 pub(crate) fn print(scene: &Scene, sets: &[QuerySet], threads: &[usize], effort: &Effort) -> Result<bool> {
-    let tree = AabbTree::build(&scene.double, &Default::default()).context("the scene was checked when it was read")?;
+    let tree =
+        AabbTree::build(&*scene.double, &Default::default()).context("the scene was checked when it was read")?;
     let mut head = vec!["set".to_owned(), "one by one".to_owned()];
     for n in threads {
         head.extend(["in order", "curve"].map(|strategy| format!("{strategy}, {n} thr")));

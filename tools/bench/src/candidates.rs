@@ -31,7 +31,8 @@ impl SimdKernel for Evaluate<'_> {
 /// Prints CPU times for one candidate, each of which is the nearest triangle of a query. Returns whether the lanes have
 /// the bits of the evaluation one at a time; it says nothing for a scene without triangles.
 pub(crate) fn print(scene: &Scene, sets: &[QuerySet], effort: &Effort) -> Result<bool> {
-    let tree = AabbTree::build(&scene.double, &Default::default()).context("the scene was checked when it was read")?;
+    let tree =
+        AabbTree::build(&*scene.double, &Default::default()).context("the scene was checked when it was read")?;
     let isas = Isa::available();
     let mut table =
         Table::new(["set".to_owned(), "one at a time".to_owned()].into_iter().chain(isas.iter().map(Isa::to_string)));

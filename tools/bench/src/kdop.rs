@@ -89,7 +89,7 @@ fn count(queries: &[Point3<f64>], visit: impl Fn(&Point3<f64>, &mut StatsCollect
 }
 
 fn boxes(scene: &Scene, queries: &[Point3<f64>]) -> Work {
-    let tree = AabbTree::build(&scene.double, &AabbOptions::default()).expect("built before");
+    let tree = AabbTree::build(&*scene.double, &AabbOptions::default()).expect("built before");
     count(queries, |query, counting| tree.visit(query, counting))
 }
 
@@ -98,13 +98,13 @@ fn work_of_default<const K: usize>(scene: &Scene, queries: &[Point3<f64>]) -> (W
 where
     Directions<K>: Default,
 {
-    let tree = KdopTree::<f64, _, K>::build(&scene.double, &KdopOptions::default()).expect("built before");
+    let tree = KdopTree::<f64, _, K>::build(&*scene.double, &KdopOptions::default()).expect("built before");
     let work = count(queries, |query, counting| tree.visit(query, counting));
     let left_first = LeftFirst::from_packets(tree.tree());
     let some: Vec<_> = queries.iter().step_by(20).collect();
     let mut sums = [0usize; 2];
     for query in &some {
-        let (_, work) = left_first.distance(&&scene.double, query);
+        let (_, work) = left_first.distance(&&*scene.double, query);
         sums = [sums[0] + work.nodes, sums[1] + work.leaves];
     }
     (work, Some(sums.map(|sum| sum as f64 / some.len() as f64)))
@@ -112,6 +112,6 @@ where
 
 fn work_of_scene(scene: &Scene, choice: &DirectionChoice, queries: &[Point3<f64>]) -> Work {
     let directions = choice.directions::<14>().expect("seven directions");
-    let tree = KdopTree::build_with(&scene.double, &KdopOptions::new(directions)).expect("built before");
+    let tree = KdopTree::build_with(&*scene.double, &KdopOptions::new(directions)).expect("built before");
     count(queries, |query, counting| tree.visit(query, counting))
 }

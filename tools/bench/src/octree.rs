@@ -57,7 +57,7 @@ pub(crate) fn print(scene: &Scene, sets: &[QuerySet], threads: &[usize], effort:
             let mut seconds = Vec::new();
             for _ in 0..effort.builds {
                 let start = Instant::now();
-                let index = pool.install(|| OctreeIndex::build(&scene.double, &options));
+                let index = pool.install(|| OctreeIndex::build(&*scene.double, &options));
                 seconds.push(start.elapsed().as_secs_f64());
                 report = Some(index.context("the scene was checked when it was read")?.report());
             }

@@ -42,7 +42,7 @@ pub(crate) fn print(scene: &Scene, path: &Path, threads: usize, effort: &Effort)
         Table::new(["backend", "answers", "program, ns per query", "library, ns per query", "program / library"]);
     for name in BACKENDS {
         let backend = BackendEntry::find(name).context("a backend of the registry")?;
-        let built = pool.install(|| backend.build(&scene.double, &BuildSettings::default()))?;
+        let built = pool.install(|| backend.build(Arc::clone(&scene.double), &BuildSettings::default()))?;
         let mut answers = vec![None; queries.len()];
         for format in FORMATS {
             let out = folder.path().join(format!("answers.{format}"));

@@ -19,7 +19,7 @@ const TWISTS: [f64; 6] = [0.0, 45.0, 90.0, 180.0, 360.0, 1080.0];
 /// Prints the quality and the speed of refitted and of rebuilt trees over twisted forms of a scene. Returns whether both
 /// have the same answers.
 pub(crate) fn print(scene: &Scene, sets: &[QuerySet], effort: &Effort) -> Result<bool> {
-    let soup = &scene.double;
+    let soup = &*scene.double;
     let checked = "the scene was checked when it was read";
     let mut tree = AabbTree::build(soup.clone(), &Default::default()).context(checked)?;
     let area = tree.surface_area();

@@ -10,6 +10,7 @@ use p2m_testkit::queries::QuerySet;
 use p2m_tradeoff::Table;
 use std::fs::File;
 use std::io::BufWriter;
+use std::sync::Arc;
 use std::time::Instant;
 
 /// The number of queries whose answers are compared.
@@ -20,12 +21,12 @@ pub(crate) fn print(scene: &Scene, rounds: usize) -> Result<bool> {
     let folder = tempfile::tempdir()?;
     let path = folder.path().join("index.p2m");
     let queries = QuerySet::Box1.generate(&scene.double, QUERIES, 1);
-    let file_scene = p2m_mixed::Scene::from(scene.double.clone());
+    let file_scene = p2m_mixed::Scene::from((*scene.double).clone());
     let mut table = Table::new(HEAD);
     let mut clean = true;
     for backend in BACKENDS.iter().filter(|backend| backend.is_saveable()) {
         let start = Instant::now();
-        let built = backend.build(&scene.double, &BuildSettings::default().with_parallel(false))?;
+        let built = backend.build(Arc::clone(&scene.double), &BuildSettings::default().with_parallel(false))?;
         let build = start.elapsed().as_secs_f64();
         let mut writer = Writer::default();
         save_scene(&file_scene, &mut writer);
@@ -42,7 +43,7 @@ pub(crate) fn print(scene: &Scene, rounds: usize) -> Result<bool> {
             let checked = start.elapsed();
             let again = load_scene(file.unchecked())?;
             let loaded = start.elapsed();
-            let index = backend.load(&again.soup, file.unchecked())?.index;
+            let index = backend.load(again.soup, file.unchecked())?.index;
             starts.push((start.elapsed() - checked + opened).as_secs_f64() * 1e3);
             scenes.push((loaded - checked).as_secs_f64() * 1e3);
             checks.push((checked - opened).as_secs_f64() * 1e3);

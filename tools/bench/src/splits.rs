@@ -26,7 +26,7 @@ pub(crate) fn print(scene: &Scene, sets: &[QuerySet], effort: &Effort) -> bool {
     let mut table = Table::new(["split", "build s", "nodes", "depth"].into_iter().chain(sets.iter().map(|s| s.name())));
     let mut clean = true;
     for (rule, entry) in SplitRule::ALL.iter().zip(&entries) {
-        let tree = AabbTree::build(&scene.double, &options(*rule)).expect("built before");
+        let tree = AabbTree::build(&*scene.double, &options(*rule)).expect("built before");
         let (nodes, depth) = tree.tree().parts().fold((0, 0), |(n, deepest), part| (n + 1, part.depth.max(deepest)));
         let seconds = MedianRange::of(&entry.build.seconds).map_or(f64::NAN, |s| s.median);
         let mut row =

@@ -126,7 +126,7 @@ fn left_first<const K: usize>(scene: &Scene, rays: &[&Ray]) -> [f64; 2]
 where
     Directions<K>: Default,
 {
-    let tree = LeftFirst::<K>::from_primitives(&scene.double, &Directions::default());
+    let tree = LeftFirst::<K>::from_primitives(&*scene.double, &Directions::default());
     let work = tree.along_all(rays.iter().copied());
     [work.nodes, work.leaves].map(|sum| sum as f64 / rays.len() as f64)
 }

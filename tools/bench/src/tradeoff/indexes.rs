@@ -5,17 +5,15 @@ use crate::bvh_crate;
 use crate::external;
 use crate::measure::{BuildFigures, measure_build};
 use crate::memory;
-use crate::our_indexes::{aabb_options, octree_options, p2m_options};
 use crate::scene::Scene;
 use nalgebra::Point3;
-use p2m_bvh::AabbTree;
+use p2m_backends::{AnyIndex, BACKENDS, BackendEntry, BuildSettings, SearchStructure};
+use p2m_core::QueryOptions;
 use p2m_core::batch::{BatchOptions, closest_points_into};
-use p2m_core::{BruteForce, BuildIndex, CertifiedQuery, ClosestPoint, QueryOptions, Soup};
-use p2m_interception::{OctreeIndex, P2mIndex};
-use p2m_kdop::{KdopOptions, KdopTree};
 use p2m_tradeoff::queries::QuerySlice;
 use p2m_tradeoff::settings::{Promise, SETTINGS, Setting};
 use p2m_tradeoff::{Answer, AnswerQuery, Build, Competitor, MedianRange};
+use std::sync::{Arc, LazyLock};
 use std::time::Instant;
 
 /// An index is not built again once its builds have taken this many seconds in all.
@@ -30,23 +28,19 @@ pub(super) trait Built: Sync {
 }
 
 /// An index of ours.
-struct Ours<I>(I);
+struct Ours(Arc<dyn AnyIndex>);
 
-impl<I: ClosestPoint<f64> + CertifiedQuery<f64> + Sync> Built for Ours<I> {
+impl Built for Ours {
     fn competitor(&self, name: &str, setting: &Setting, build: Build) -> Competitor<'_> {
-        Competitor::new(name, &self.0, setting, build)
+        Competitor::new(name, &*self.0, setting, build)
     }
 
     fn batch(&self, queries: QuerySlice<'_>) -> Option<f64> {
-        Some(seconds_of_batch(&self.0, queries))
+        let mut answers = vec![None; queries.double.len()];
+        let start = Instant::now();
+        closest_points_into(&*self.0, queries.double, &QueryOptions::default(), &BatchOptions::default(), &mut answers);
+        Some(start.elapsed().as_secs_f64())
     }
-}
-
-fn seconds_of_batch(index: &(impl ClosestPoint<f64> + Sync), queries: QuerySlice<'_>) -> f64 {
-    let mut answers = vec![None; queries.double.len()];
-    let start = Instant::now();
-    closest_points_into(index, queries.double, &QueryOptions::default(), &BatchOptions::default(), &mut answers);
-    start.elapsed().as_secs_f64()
 }
 
 /// An external library, which has no settings.
@@ -78,8 +72,8 @@ impl<C: BenchIndex> Built for External<C> {
 /// An index before it is built.
 type PreparedIndex<'a> = Result<Prepared<'a, Box<dyn Built + 'a>>, Unavailable>;
 
-/// Prepares a scene for the build.
-type PrepareFn = for<'a> fn(&'a Scene) -> PreparedIndex<'a>;
+/// A function that prepares a scene for the build.
+type Prepare = Box<dyn for<'a> Fn(&'a Scene) -> PreparedIndex<'a> + Send + Sync>;
 
 /// A backend in the list.
 pub(super) struct Candidate {
@@ -88,74 +82,63 @@ pub(super) struct Candidate {
     /// A description for readers who have not seen the backend.
     pub(super) about: &'static str,
     /// Prepares the scene: in f64 for our backends, in its own scalar for an external library.
-    prepare: PrepareFn,
+    prepare: Prepare,
     /// Whether the backend has settings.
     pub(super) has_settings: bool,
 }
 
-/// All backends, in the order of tables and colours.
-pub(super) const ALL: &[Candidate] = &[
-    Candidate {
-        name: "aabb",
-        about: "our tree of boxes (`AabbTree`); quick to build, answers every kind of question",
-        prepare: |s| ours::<AabbTree<_, _>>(s, aabb_options()),
-        has_settings: true,
-    },
-    Candidate {
-        name: "kdop",
-        about: "our tree of polytopes with 14 faces (`KdopTree`), which fit closer what does not lie along the axes",
-        prepare: |s| ours::<KdopTree<_, _, 14>>(s, KdopOptions::default().with_splits(aabb_options())),
-        has_settings: true,
-    },
-    Candidate {
-        name: "octree",
-        about: "our cubes with lists of what can be nearest in them (`OctreeIndex`)",
-        prepare: |s| ours::<OctreeIndex<_, _>>(s, octree_options(1.0)),
-        has_settings: true,
-    },
-    Candidate {
-        name: "p2m",
-        about: "our cells of the vertices with lists of what can be nearest in them (`P2mIndex`), one query at a time",
-        prepare: |s| ours::<P2mIndex<_, _>>(s, p2m_options()),
-        has_settings: true,
-    },
-    Candidate {
-        name: "brute",
-        about: "every primitive, every time (`BruteForce`)",
-        prepare: |s| ours::<BruteForce<_>>(s, ()),
-        has_settings: false,
-    },
-    Candidate {
-        name: "parry3d",
-        about: "the crate parry3d 0.31, in f32: `TriMesh` and `Polyline`, the latter within the answer of the former",
-        prepare: |s| external_index(external::single(s)?),
-        has_settings: false,
-    },
-    Candidate {
-        name: "parry3d-f64",
-        about: "the same in f64",
-        prepare: |s| external_index(external::double(s)?),
-        has_settings: false,
-    },
-    Candidate {
-        name: "bvh",
-        about: "the crate bvh 0.13 in f64, `Bvh::nearest_to`; it leaves the distance to a primitive to its user: here it is the \
-                closest point on a triangle of Ericson's Real-Time Collision Detection, 5.1.5",
-        prepare: |s| external_index(bvh_crate::tree(s)),
-        has_settings: false,
-    },
-];
+/// All backends, in the order of tables and colours: those of the registry, exhaustive searches last, and external
+/// libraries.
+pub(super) static ALL: LazyLock<Vec<Candidate>> = LazyLock::new(|| {
+    let mut ours: Vec<&'static BackendEntry> = BACKENDS.iter().collect();
+    ours.sort_by_key(|entry| entry.structure == SearchStructure::Exhaustive);
+    ours.into_iter().map(of_registry).chain(external()).collect()
+});
 
-fn ours<'a, I>(scene: &'a Scene, options: I::Options) -> PreparedIndex<'a>
-where
-    I: BuildIndex<f64, &'a Soup<f64>, Options: 'a> + CertifiedQuery<f64> + Sync + 'a,
-{
+/// Makes the candidate of an entry of the registry.
+fn of_registry(entry: &'static BackendEntry) -> Candidate {
+    Candidate {
+        name: entry.name,
+        about: entry.summary,
+        prepare: Box::new(move |scene| registered(entry, scene)),
+        has_settings: entry.structure != SearchStructure::Exhaustive,
+    }
+}
+
+/// Prepares an index of ours, which is built on one thread, because thread CPU time is measured.
+fn registered<'a>(entry: &'static BackendEntry, scene: &'a Scene) -> PreparedIndex<'a> {
     let (soup, borrowed) = f64::soup(scene)?;
     let build = move || {
-        let index = I::build(soup, &options).map_err(|error| Unavailable(error.to_string()))?;
+        let built = entry.build(Arc::clone(soup), &BuildSettings::default().with_parallel(false));
+        let index = built.map_err(|error| Unavailable(error.to_string()))?.index;
         Ok(Box::new(Ours(index)) as Box<dyn Built>)
     };
     Ok(Prepared { build: Box::new(build), borrowed })
+}
+
+/// Returns external libraries.
+fn external() -> [Candidate; 3] {
+    [
+        Candidate {
+            name: "parry3d",
+            about: "the crate parry3d 0.31, in f32: `TriMesh` and `Polyline`, the latter within the answer of the former",
+            prepare: Box::new(|s| external_index(external::single(s)?)),
+            has_settings: false,
+        },
+        Candidate {
+            name: "parry3d-f64",
+            about: "the same in f64",
+            prepare: Box::new(|s| external_index(external::double(s)?)),
+            has_settings: false,
+        },
+        Candidate {
+            name: "bvh",
+            about: "the crate bvh 0.13 in f64, `Bvh::nearest_to`; it leaves the distance to a primitive to its user: here \
+                    it is the closest point on a triangle of Ericson's Real-Time Collision Detection, 5.1.5",
+            prepare: Box::new(|s| external_index(bvh_crate::tree(s))),
+            has_settings: false,
+        },
+    ]
 }
 
 /// Prepares an external library; copies of the scene count as its own memory.
@@ -177,8 +160,8 @@ pub(super) struct Index<'a> {
 /// Builds every backend over a scene, and returns the reasons why others are missing.
 pub(super) fn build_all(scene: &Scene, builds: usize) -> (Vec<Index<'_>>, Vec<String>) {
     let (mut indexes, mut notes) = (Vec::new(), Vec::new());
-    for candidate in ALL {
-        match build(scene, candidate.prepare, builds) {
+    for candidate in &*ALL {
+        match build(scene, &candidate.prepare, builds) {
             Ok((built, build)) => indexes.push(Index { candidate, built, build }),
             Err(Unavailable(why)) => notes.push(format!("`{}` is left out here: {why}.", candidate.name)),
         }
@@ -187,7 +170,7 @@ pub(super) fn build_all(scene: &Scene, builds: usize) -> (Vec<Index<'_>>, Vec<St
 }
 
 /// Builds an index at least once; the seconds are the median.
-fn build(scene: &Scene, prepare: PrepareFn, builds: usize) -> Result<(Box<dyn Built + '_>, Build), Unavailable> {
+fn build<'a>(scene: &'a Scene, prepare: &Prepare, builds: usize) -> Result<(Box<dyn Built + 'a>, Build), Unavailable> {
     let mut figures = BuildFigures::default();
     loop {
         let before = memory::current();
@@ -225,10 +208,11 @@ mod tests {
         let scene = Scene::new("knot".to_owned(), soup).unwrap();
         let (indexes, notes) = build_all(&scene, 1);
         assert_eq!((indexes.len(), notes.len()), (ALL.len(), 0), "{notes:?}");
-        assert_eq!(competitors(&indexes, false).len(), 4 * SETTINGS.len() + 4);
+        let (ours, with_settings) = (BACKENDS.len(), ALL.iter().filter(|candidate| candidate.has_settings).count());
+        assert_eq!(competitors(&indexes, false).len(), with_settings * SETTINGS.len() + ALL.len() - with_settings);
         assert_eq!(competitors(&indexes, true).len(), ALL.len());
         let queries = Queries::new(vec![Point3::new(1.0, 2.0, 3.0); 100]);
-        assert_eq!(indexes.iter().filter_map(|index| index.built.batch(queries.all())).count(), 5);
+        assert_eq!(indexes.iter().filter_map(|index| index.built.batch(queries.all())).count(), ours);
         // The number of bytes is not asserted, because other tests of this program allocate and free at the same time.
         assert!(indexes.iter().all(|index| index.build.seconds > 0.0 && index.build.bytes_per_primitive.is_some()));
     }

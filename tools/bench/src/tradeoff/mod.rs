@@ -94,7 +94,7 @@ fn measure_scene(
         sets.push(figures);
     }
     let threads = threads.then(|| sweeps::threads(scene, &indexes, profile, SEED)).transpose()?;
-    let soup = &scene.double;
+    let soup = &*scene.double;
     let contents =
         [(soup.triangles().len(), "triangles"), (soup.segments().len(), "segments"), (soup.points().len(), "points")];
     let contents = contents.into_iter().filter(|(count, _)| *count > 0).map(|(count, what)| format!("{count} {what}"));

@@ -15,7 +15,7 @@ pub(super) const ABOUT: &str =
 /// Returns the true distances of queries, computed on all cores.
 #[allow(clippy::cast_possible_truncation, reason = "ids are below 2^30")]
 pub(super) fn truths(scene: &Scene, queries: &[Point3<f64>]) -> Vec<Truth> {
-    let tree = AabbTree::build(&scene.double, &Default::default()).expect("a scene is finite");
+    let tree = AabbTree::build(&*scene.double, &Default::default()).expect("a scene is finite");
     let truth = |query: &Point3<f64>| {
         let closest = tree.certified_closest_point(query, &Default::default()).expect("primitives have vertices");
         let id = closest.expect("a scene is not empty, and queries are finite").primitive;
