@@ -85,7 +85,7 @@
 //! | `mint` | [`Position`]s of the crate mint in scenes and batches | no |
 //! | `serde` | [`Soup`] and indexes as values of serde, in the form of saved files | no |
 //! | `kdop` | [`KdopTree`] | yes |
-//! | `advisor` | `advisor`: which index a scene and its queries call for | no |
+//! | `backends` | `backends`: every index by its name, and which one a scene and its queries call for | no |
 //! | `field` | [`field`]: distances on grids, signs, winding numbers, Hausdorff distances | yes |
 //! | `instances` | [`instances`]: scenes of moving objects | yes |
 //! | `shards` | `shards`: scenes larger than memory, in shards that are loaded on demand | no |
@@ -96,9 +96,9 @@
 
 /// The library of points and vectors that the interface uses, so that programs need not match its version.
 pub use nalgebra;
-/// Which index a scene and its queries call for.
-#[cfg(feature = "advisor")]
-pub use p2m_backends as advisor;
+/// The registry of indexes by their names, and which one a scene and its queries call for.
+#[cfg(feature = "backends")]
+pub use p2m_backends as backends;
 /// Everything else about trees of boxes: their nodes and packets, and trees of other volumes.
 #[cfg(feature = "bvh")]
 pub use p2m_bvh as bvh;
@@ -110,8 +110,8 @@ pub use p2m_core as backend;
 /// The nearest points of two scenes, one of which may have moved, and of a scene and a shape.
 pub use p2m_core::pair;
 pub use p2m_core::{
-    Aabb, BoxQuery, BruteForce, BuildError, BuildIndex, CertifiedQuery, CertifyError, Closest, ClosestPoint, Element,
-    Feature, Hit, Index, Inspect, Isa, NearQuery, Point, PointSet, Position, Primitive, PrimitiveDefect, PrimitiveId,
+    Aabb, AnyIndex, BoxQuery, BruteForce, BuildError, BuildIndex, CertifiedQuery, CertifyError, Closest, ClosestPoint,
+    Element, Feature, Hit, Inspect, Isa, NearQuery, Point, PointSet, Position, Primitive, PrimitiveDefect, PrimitiveId,
     PrimitiveSet, Projection, QueryCost, QueryOptions, Ray, RayError, RayHit, RayQuery, Real, Segment, SegmentSet,
     Shape, Side, Soup, Triangle, TriangleSet, batch, check_primitive, storage,
 };

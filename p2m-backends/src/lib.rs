@@ -1,42 +1,30 @@
-//! The registry of backends, and the choice between them for a scene and a workload.
+//! The registry of backends: every index by its name, and the choice between them for a scene and a workload.
 //!
-//! [`BACKENDS`] lists every backend with the functions that build and load its index as one [`Index`].
+//! [`BACKENDS`] lists every backend with what it can do. An entry builds and loads its index as one [`AnyIndex`], over a
+//! scene that the index shares.
 //!
-//! [`recommend`] estimates for each backend the time to build its index and to answer all queries, and its memory. It
-//! recommends the one with the least time among those that fit into the memory. The estimates come from a sample of the
-//! scene, over which every index that may win is built and timed: a few neighbourhoods for queries near the surface,
-//! and primitives from everywhere for other queries. The results are scaled to the whole scene: builds by the number of
-//! primitives, queries by a growth for each doubling of the scene ([`CostModel`]).
+//! ```
+//! use nalgebra::Point3;
+//! use p2m_backends::{BackendEntry, BuildSettings};
+//! use p2m_mixed::generate::{IcoSphere, ico_sphere};
+//! use std::sync::Arc;
 //!
-//! Some backends are not measured. An index that takes longer to build than a tree takes for the whole job cannot win.
-//! Indexes with cells are left out for scenes of slivers, where most cells would fall back to the tree.
+//! let ball = Arc::new(ico_sphere(&IcoSphere::default()).unwrap());
+//! let backend = BackendEntry::find("octree").expect("a name of the registry");
+//! let index = backend.build(ball, &BuildSettings::default())?.index;
+//! assert!(index.closest_point(&Point3::new(0.0, 0.0, 3.0)).is_some());
+//! # Ok::<(), p2m_core::BuildError>(())
+//! ```
 //!
-//! All indexes that may win are built over a sample of 300 primitives, and those that may still win over a sample that
-//! is as large as a small part of the expected time of the job permits. If there is no time for the smallest sample,
-//! the figures of docs/paper.md decide.
-//!
-//! Estimates are for one thread. They depend on the machine and its load, so the advice may differ from run to run
-//! where two backends are about equally good.
+//! [`recommend`] builds and times the backends over a sample of a scene, and recommends one of them.
 #![forbid(unsafe_code)]
 
-mod backend_entry;
-mod cost_model;
-mod estimate;
-mod index;
-mod kdop_directions;
-mod p2m_settings;
-mod recommend;
+mod advice;
 mod registry;
-mod sample;
-mod workload;
 
-pub use backend_entry::{BackendEntry, SearchStructure};
-pub use cost_model::CostModel;
-pub use estimate::{Advice, Estimate};
-pub use index::{BuildSettings, BuiltIndex, IndexDetails};
-pub use kdop_directions::{ChosenDirections, KdopDirections, KdopVisitor};
-pub use p2m_core::Index;
-pub use p2m_settings::{ListFilterKind, LocatorKind, P2mSettings};
-pub use recommend::recommend;
-pub use registry::BACKENDS;
-pub use workload::{QueryRegion, Workload};
+pub use advice::{Advice, Estimate, QueryRegion, Workload, recommend};
+pub use p2m_core::AnyIndex;
+pub use registry::{
+    BACKENDS, BackendEntry, BuildSettings, BuiltIndex, ChosenDirections, CostModel, IndexVisitor, KdopDirections,
+    KdopVisitor, ListFilterKind, LocatorKind, P2mSettings, SearchStructure,
+};

@@ -9,12 +9,13 @@ use p2m_core::engine::answer_one_by_one;
 use p2m_core::pair::PairQuery;
 use p2m_core::storage::{self, LoadError, Reader, Writer};
 use p2m_core::{
-    Aabb, Best, BoxQuery, BuildError, BuildIndex, CertifiedQuery, ClosestPoint, Collector, Found, Hits, Index, Inspect,
-    Isa, Near, NearQuery, Point, Primitive, PrimitiveId, PrimitiveSet, QueryOptions, Ray, RayCollector, RayQuery, Real,
-    Shape, StatsCollector, check_set, shape_of,
+    Aabb, AnyIndex, Best, BoxQuery, BuildError, BuildIndex, CertifiedQuery, ClosestPoint, Collector, Found, Hits,
+    Inspect, Isa, Near, NearQuery, Point, Primitive, PrimitiveId, PrimitiveSet, QueryOptions, Ray, RayCollector,
+    RayQuery, Real, Refitted, Shape, Soup, StatsCollector, check_set, shape_of,
 };
 use std::marker::PhantomData;
 use std::ops::ControlFlow;
+use std::sync::Arc;
 
 /// A [`PacketTree`] with the set that it was built over.
 ///
@@ -284,7 +285,7 @@ impl<T: Real, S: PrimitiveSet<T>, V: Volume> ClosestPoint<T> for TreeIndex<T, S,
     }
 }
 
-impl<T: Real, S: PrimitiveSet<T> + Send + Sync, V: Volume> Index<T> for TreeIndex<T, S, V> {
+impl<T: Real, S: PrimitiveSet<T> + Send + Sync, V: Volume> AnyIndex<T> for TreeIndex<T, S, V> {
     fn save<'s>(&'s self, writer: &mut Writer<'s>) {
         self.save(writer);
     }
@@ -307,6 +308,19 @@ impl<T: Real, S: PrimitiveSet<T> + Send + Sync, V: Volume> Index<T> for TreeInde
 
     fn as_pair_query(&self) -> Option<&(dyn PairQuery<T> + Sync)> {
         Some(self)
+    }
+
+    fn refitted(&self, soup: Arc<Soup<T>>) -> Option<Refitted<T>> {
+        let refitted = self.check_fit(soup.len()).and_then(|()| check_set(&soup)).map(|()| {
+            let mut tree = self.tree.clone();
+            tree.refit_with(&soup, true);
+            Arc::new(TreeIndex { set: soup, scalar: PhantomData, tree }) as Arc<dyn AnyIndex<T>>
+        });
+        Some(refitted)
+    }
+
+    fn surface_area(&self) -> Option<f64> {
+        Some(self.surface_area())
     }
 }
 

@@ -29,13 +29,13 @@
 #![deny(unsafe_code)]
 
 mod aabb;
+mod any_index;
 mod approx_impls;
 pub mod batch;
 mod box_query;
 mod brute_force;
 mod certified;
 mod curve;
-mod dyn_index;
 mod error;
 mod exact;
 mod index;
@@ -60,10 +60,10 @@ mod stats_collector;
 pub mod storage;
 
 pub use aabb::Aabb;
+pub use any_index::{AnyIndex, CellSummary, Refitted};
 pub use box_query::BoxQuery;
 pub use brute_force::BruteForce;
 pub use certified::{CertifiedQuery, CertifyError, shape_of};
-pub use dyn_index::Index;
 pub use error::BuildError;
 pub use index::{BuildIndex, ClosestPoint};
 pub use kernel::Key;

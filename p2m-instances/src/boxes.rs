@@ -3,10 +3,10 @@
 use crate::Instances;
 use crate::instance::{Instance, shape, size};
 use nalgebra::Point3;
-use p2m_core::{Aabb, BoxQuery, Index, Primitive, PrimitiveId, Real};
+use p2m_core::{Aabb, AnyIndex, BoxQuery, Primitive, PrimitiveId, Real};
 use std::ops::ControlFlow;
 
-impl<T: Real, I: Index<T> + ?Sized> BoxQuery<T> for Instances<T, I> {
+impl<T: Real, I: AnyIndex<T> + ?Sized> BoxQuery<T> for Instances<T, I> {
     fn visit_box(&self, bounds: &Aabb<T>, visit: &mut dyn FnMut(PrimitiveId) -> ControlFlow<()>) -> ControlFlow<()> {
         let bounds = bounds.to_f64();
         match &self.tree {
@@ -19,7 +19,7 @@ impl<T: Real, I: Index<T> + ?Sized> BoxQuery<T> for Instances<T, I> {
 }
 
 /// Calls `visit` for the primitives of an instance that intersect a box after the motion.
-fn visit_instance<T: Real, I: Index<T> + ?Sized>(
+fn visit_instance<T: Real, I: AnyIndex<T> + ?Sized>(
     instance: &Instance<I>,
     bounds: &Aabb<f64>,
     visit: &mut dyn FnMut(PrimitiveId) -> ControlFlow<()>,

@@ -4,7 +4,7 @@ use crate::instance::Instance;
 use crate::instances::{InstanceBox, InstanceTree};
 use crate::{InstanceError, InstanceId, Instances};
 use nalgebra::Isometry3;
-use p2m_core::{BuildIndex, Index, PrimitiveId, Real};
+use p2m_core::{AnyIndex, BuildIndex, PrimitiveId, Real};
 use std::ops::Deref;
 use std::sync::Arc;
 
@@ -21,7 +21,7 @@ const MAX_AREA_GROWTH: f64 = 4.0 / 3.0;
 /// The end of an edit takes O(n log n) for n instances if any was added or removed. It takes O(n) after motions alone,
 /// unless the boxes have become so large that the tree is built anew.
 #[derive(Debug)]
-pub struct Edit<'a, T: Real, I: Index<T> + ?Sized> {
+pub struct Edit<'a, T: Real, I: AnyIndex<T> + ?Sized> {
     scene: &'a mut Instances<T, I>,
     /// The tree before the edit, if there was one and it still has the same instances.
     tree: Option<InstanceTree>,
@@ -29,7 +29,7 @@ pub struct Edit<'a, T: Real, I: Index<T> + ?Sized> {
     has_moved: bool,
 }
 
-impl<'a, T: Real, I: Index<T> + ?Sized> Edit<'a, T, I> {
+impl<'a, T: Real, I: AnyIndex<T> + ?Sized> Edit<'a, T, I> {
     pub(crate) fn new(scene: &'a mut Instances<T, I>) -> Self {
         let tree = scene.tree.take();
         Self { scene, tree, has_moved: false }
@@ -104,7 +104,7 @@ impl<'a, T: Real, I: Index<T> + ?Sized> Edit<'a, T, I> {
     }
 }
 
-impl<T: Real, I: Index<T> + ?Sized> Deref for Edit<'_, T, I> {
+impl<T: Real, I: AnyIndex<T> + ?Sized> Deref for Edit<'_, T, I> {
     type Target = Instances<T, I>;
 
     fn deref(&self) -> &Self::Target {
@@ -112,7 +112,7 @@ impl<T: Real, I: Index<T> + ?Sized> Deref for Edit<'_, T, I> {
     }
 }
 
-impl<T: Real, I: Index<T> + ?Sized> Drop for Edit<'_, T, I> {
+impl<T: Real, I: AnyIndex<T> + ?Sized> Drop for Edit<'_, T, I> {
     fn drop(&mut self) {
         let scene = &mut *self.scene;
         let options = Default::default();

@@ -4,7 +4,7 @@ use crate::InstanceError;
 use crate::object::Object;
 use nalgebra::Isometry3;
 use p2m_core::pair::{Hull, Motion};
-use p2m_core::{Aabb, Index, PrimitiveId, Real, Shape};
+use p2m_core::{Aabb, AnyIndex, PrimitiveId, Real, Shape};
 use std::fmt::{self, Display, Formatter};
 use std::ops::Range;
 use std::sync::Arc;
@@ -130,7 +130,7 @@ impl<I: ?Sized> Instance<I> {
     /// Panics if the index has lost a primitive that it had when the instance was added.
     pub(crate) fn moved<T: Real>(&self, local: PrimitiveId, vertices: &[[f64; 3]]) -> Hull
     where
-        I: Index<T>,
+        I: AnyIndex<T>,
     {
         let hull = if vertices.is_empty() {
             Hull::of(&self.object.index.shape(local).expect("the index has all primitives that it was added with"))

@@ -5,17 +5,17 @@ use crate::object::Objects;
 use crate::{Edit, Instance, InstanceId};
 use nalgebra::Point3;
 use p2m_bvh::AabbTree;
-use p2m_core::{Aabb, Feature, Index, Primitive, PrimitiveId, PrimitiveSet, Projection, Ray, RayHit, Real, Shape};
+use p2m_core::{Aabb, AnyIndex, Feature, Primitive, PrimitiveId, PrimitiveSet, Projection, Ray, RayHit, Real, Shape};
 use std::marker::PhantomData;
 
 /// A scene of instances of indexes, which is an index itself.
 ///
-/// `I` is the type of the indexes, such as `AabbTree<f64, Soup<f64>>`. Instances of `dyn Index<T>`, the default, may
+/// `I` is the type of the indexes, such as `AabbTree<f64, Soup<f64>>`. Instances of `dyn AnyIndex<T>`, the default, may
 /// have indexes of different types. [The crate](crate) has the contract and an example.
 ///
 /// Queries are methods of [`ClosestPoint`](p2m_core::ClosestPoint), [`NearQuery`](p2m_core::NearQuery),
 /// [`RayQuery`](p2m_core::RayQuery) and [`BoxQuery`](p2m_core::BoxQuery). A scene in f64 is also a
-/// [`CertifiedQuery`](p2m_core::CertifiedQuery) and an [`Index`], so instances of it can be part of another scene.
+/// [`CertifiedQuery`](p2m_core::CertifiedQuery) and an [`AnyIndex`], so instances of it can be part of another scene.
 /// Certified answers in f32 are left out, because the moved vertices are not in f32.
 ///
 /// The scene is a [`PrimitiveSet`] of the moved primitives in f64, over which another index can be built.
@@ -30,7 +30,7 @@ use std::marker::PhantomData;
 /// reaches before the answer is known. Rays and boxes test all primitives of an object whose index does not answer
 /// them. A scene takes at most 400 bytes for each instance besides its name.
 #[derive(Debug)]
-pub struct Instances<T: Real = f64, I: ?Sized = dyn Index<T>> {
+pub struct Instances<T: Real = f64, I: ?Sized = dyn AnyIndex<T>> {
     /// The instances in the order of their ids.
     pub(crate) instances: Vec<Instance<I>>,
     pub(crate) next_id: u64,
@@ -71,13 +71,13 @@ impl Primitive<f64> for InstanceBox {
     }
 }
 
-impl<T: Real, I: Index<T> + ?Sized> Default for Instances<T, I> {
+impl<T: Real, I: AnyIndex<T> + ?Sized> Default for Instances<T, I> {
     fn default() -> Self {
         Self::new()
     }
 }
 
-impl<T: Real, I: Index<T> + ?Sized> Instances<T, I> {
+impl<T: Real, I: AnyIndex<T> + ?Sized> Instances<T, I> {
     /// Creates a scene without instances.
     #[must_use]
     pub fn new() -> Self {
@@ -151,7 +151,7 @@ impl<T: Real, I: Index<T> + ?Sized> Instances<T, I> {
 }
 
 /// The moved primitives in f64, for scenes of both scalars.
-impl<T: Real, I: Index<T> + ?Sized> PrimitiveSet<f64> for Instances<T, I> {
+impl<T: Real, I: AnyIndex<T> + ?Sized> PrimitiveSet<f64> for Instances<T, I> {
     type Primitive<'a>
         = Shape<f64>
     where

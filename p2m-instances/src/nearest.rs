@@ -7,7 +7,7 @@ use p2m_core::kernel::power_of_two;
 use p2m_core::pair::PairQuery;
 use p2m_core::storage::Writer;
 use p2m_core::{
-    Best, BoxQuery, CertifiedQuery, ClosestPoint, Collector, Found, Index, Inspect, Near, NearQuery, Primitive,
+    AnyIndex, Best, BoxQuery, CertifiedQuery, ClosestPoint, Collector, Found, Inspect, Near, NearQuery, Primitive,
     PrimitiveId, QueryOptions, RayQuery, Real, Shape, StatsCollector,
 };
 
@@ -16,7 +16,7 @@ const ROUND_UP: f64 = 1.0 + 8.0 * f64::EPSILON;
 /// A square of f64 below this one may have lost digits, so that it excludes nothing: 2^-800.
 const MIN_SQUARE: f64 = power_of_two(-800);
 
-impl<T: Real, I: Index<T> + ?Sized> Instances<T, I> {
+impl<T: Real, I: AnyIndex<T> + ?Sized> Instances<T, I> {
     /// Offers to a collector every primitive that it could want. `query` is finite.
     fn visit<C: Collector>(&self, query: &Point3<T>, collector: &mut C) {
         let query = query.map(T::to_f64);
@@ -33,7 +33,7 @@ impl<T: Real, I: Index<T> + ?Sized> Instances<T, I> {
     }
 }
 
-impl<T: Real, I: Index<T> + ?Sized> Instances<T, I> {
+impl<T: Real, I: AnyIndex<T> + ?Sized> Instances<T, I> {
     /// Offers the primitive of an id, if the scene has it.
     fn offer_primitive(&self, id: Option<PrimitiveId>, query: &Point3<T>, best: &mut Best<T>) {
         if let Some((instance, local)) = id.and_then(|id| self.owner_of(id)) {
@@ -48,7 +48,7 @@ fn distance_limit(collector: &impl Collector) -> f64 {
 }
 
 /// Offers to a collector every primitive of an instance that it could want.
-fn search_instance<T: Real, I: Index<T> + ?Sized, C: Collector>(
+fn search_instance<T: Real, I: AnyIndex<T> + ?Sized, C: Collector>(
     instance: &Instance<I>,
     query: &Point3<f64>,
     collector: &mut C,
@@ -79,7 +79,7 @@ fn search_instance<T: Real, I: Index<T> + ?Sized, C: Collector>(
 }
 
 /// Offers a moved primitive to a collector. `vertices` are those in the frame of the object, if they are known.
-fn offer<T: Real, I: Index<T> + ?Sized, C: Collector>(
+fn offer<T: Real, I: AnyIndex<T> + ?Sized, C: Collector>(
     instance: &Instance<I>,
     local: PrimitiveId,
     vertices: &[[f64; 3]],
@@ -97,7 +97,7 @@ fn offer<T: Real, I: Index<T> + ?Sized, C: Collector>(
     }
 }
 
-impl<T: Real, I: Index<T> + ?Sized> ClosestPoint<T> for Instances<T, I> {
+impl<T: Real, I: AnyIndex<T> + ?Sized> ClosestPoint<T> for Instances<T, I> {
     fn search(&self, query: &Point3<T>, best: &mut Best<T>) {
         self.offer_primitive(best.hint(), query, best);
         self.visit(query, best.minimum());
@@ -125,19 +125,19 @@ impl<T: Real, I: Index<T> + ?Sized> ClosestPoint<T> for Instances<T, I> {
     }
 }
 
-impl<T: Real, I: Index<T> + ?Sized> NearQuery<T> for Instances<T, I> {
+impl<T: Real, I: AnyIndex<T> + ?Sized> NearQuery<T> for Instances<T, I> {
     fn search_near(&self, query: &Point3<T>, near: &mut Near<'_>) {
         self.visit(query, near);
     }
 }
 
-impl<I: Index<f64> + ?Sized> CertifiedQuery<f64> for Instances<f64, I> {
+impl<I: AnyIndex<f64> + ?Sized> CertifiedQuery<f64> for Instances<f64, I> {
     fn shape(&self, id: PrimitiveId) -> Option<Shape<f64>> {
         self.owner_of(id).map(|(instance, local)| shape(&instance.moved(local, &[])))
     }
 }
 
-impl<T: Real, I: Index<T> + ?Sized> Inspect<T> for Instances<T, I> {
+impl<T: Real, I: AnyIndex<T> + ?Sized> Inspect<T> for Instances<T, I> {
     /// Counts the moved primitives that are evaluated, and neither nodes nor packets.
     fn inspect(&self, query: &Point3<T>, stats: &mut StatsCollector<T>) {
         self.visit(query, stats);
@@ -156,7 +156,7 @@ impl<T: Real, I: Index<T> + ?Sized> Inspect<T> for Instances<T, I> {
 }
 
 /// A scene has no saved form.
-impl<I: Index<f64> + ?Sized> Index<f64> for Instances<f64, I> {
+impl<I: AnyIndex<f64> + ?Sized> AnyIndex<f64> for Instances<f64, I> {
     fn save<'s>(&'s self, _: &mut Writer<'s>) {}
 
     fn primitive_count(&self) -> usize {

@@ -1,7 +1,7 @@
 //! Objects: what instances of one index share.
 
 use crate::InstanceError;
-use p2m_core::{Aabb, Index, Primitive, PrimitiveId, Real};
+use p2m_core::{Aabb, AnyIndex, Primitive, PrimitiveId, Real};
 use std::collections::HashMap;
 use std::sync::{Arc, Weak};
 
@@ -21,7 +21,7 @@ impl<I: ?Sized> Object<I> {
     /// Measures the scene of an index.
     fn new<T: Real>(index: &Arc<I>) -> Result<Self, InstanceError>
     where
-        I: Index<T>,
+        I: AnyIndex<T>,
     {
         let count = index.primitive_count();
         let mut bounds = Aabb::<T>::empty();
@@ -48,7 +48,7 @@ impl<I: ?Sized> Objects<I> {
     /// Returns the object of an index.
     pub(crate) fn of<T: Real>(&mut self, index: &Arc<I>) -> Result<Arc<Object<I>>, InstanceError>
     where
-        I: Index<T>,
+        I: AnyIndex<T>,
     {
         // An object keeps its index alive, so no other index has its address.
         let address = Arc::as_ptr(index).cast::<()>().addr();

@@ -5,9 +5,9 @@ use crate::instances::Instances;
 use nalgebra::Point3;
 use p2m_core::engine::pairs::{PairSide, ShapeSide};
 use p2m_core::pair::{ClosestPair, Hull, Motion, PairOptions, PairQuery, closest_as_guess};
-use p2m_core::{Aabb, Index, Near, NearQuery, PrimitiveId, Real};
+use p2m_core::{Aabb, AnyIndex, Near, NearQuery, PrimitiveId, Real};
 
-impl<T: Real, I: Index<T> + ?Sized> PairQuery<T> for Instances<T, I> {
+impl<T: Real, I: AnyIndex<T> + ?Sized> PairQuery<T> for Instances<T, I> {
     fn primitive_count(&self) -> usize {
         self.count_primitives()
     }
@@ -58,7 +58,7 @@ impl<T: Real, I: Index<T> + ?Sized> PairQuery<T> for Instances<T, I> {
 
 /// Calls `search` with the trees of an instance, or with each of its primitives if it has none, and returns the last
 /// result.
-fn visit_instance<T: Real, I: Index<T> + ?Sized>(
+fn visit_instance<T: Real, I: AnyIndex<T> + ?Sized>(
     instance: &Instance<I>,
     motions: &[Motion],
     near: &Aabb<f64>,
@@ -96,7 +96,7 @@ fn norm(vector: [f64; 3]) -> f64 {
 /// One instance of a scene, as a scene of its own whose ids are those of the object.
 struct Alone<'a, I: ?Sized>(&'a Instance<I>);
 
-impl<T: Real, I: Index<T> + ?Sized> PairQuery<T> for Alone<'_, I> {
+impl<T: Real, I: AnyIndex<T> + ?Sized> PairQuery<T> for Alone<'_, I> {
     fn primitive_count(&self) -> usize {
         self.0.primitives().len()
     }
@@ -126,7 +126,7 @@ impl<T: Real, I: Index<T> + ?Sized> PairQuery<T> for Alone<'_, I> {
     }
 }
 
-impl<T: Real, I: Index<T> + ?Sized> Instances<T, I> {
+impl<T: Real, I: AnyIndex<T> + ?Sized> Instances<T, I> {
     /// Returns each two instances that are within a distance of each other, with their nearest pair. The distance is
     /// inclusive, in units of the scene. With the distance 0 it finds the instances that intersect. The ids of a pair
     /// are those of the scene. The first instance was added before the second, and pairs are in the order of instances.

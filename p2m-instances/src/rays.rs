@@ -3,12 +3,12 @@
 use crate::Instances;
 use crate::instance::{Instance, size};
 use p2m_core::kernel::power_of_two;
-use p2m_core::{Crossing, Hits, Index, PrimitiveId, Ray, RayCollector, RayQuery, Real};
+use p2m_core::{AnyIndex, Crossing, Hits, PrimitiveId, Ray, RayCollector, RayQuery, Real};
 
 /// A direction whose largest component is smaller than this loses digits when it is turned: 2^-900.
 const MIN_DIRECTION: f64 = power_of_two(-900);
 
-impl<T: Real, I: Index<T> + ?Sized> RayQuery<T> for Instances<T, I> {
+impl<T: Real, I: AnyIndex<T> + ?Sized> RayQuery<T> for Instances<T, I> {
     fn search_ray<'r>(&self, ray: &'r Ray, hits: &mut Hits<'r>) {
         let only_crossings = hits.only_crossings();
         self.visit_instances(ray, &mut |instance, limit| {
@@ -37,7 +37,7 @@ impl<T: Real, I: Index<T> + ?Sized> RayQuery<T> for Instances<T, I> {
     }
 }
 
-impl<T: Real, I: Index<T> + ?Sized> Instances<T, I> {
+impl<T: Real, I: AnyIndex<T> + ?Sized> Instances<T, I> {
     /// Calls `visit` for the instances that a ray may hit, with the parameter above which hits are not needed. It
     /// returns that parameter from then on.
     fn visit_instances(&self, ray: &Ray, visit: &mut dyn FnMut(&Instance<I>, f64) -> f64) {
@@ -60,7 +60,7 @@ impl<T: Real, I: Index<T> + ?Sized> Instances<T, I> {
 
 /// Calls `visit` for the primitives of an instance that a ray may hit up to a parameter. It returns that parameter from
 /// then on.
-fn visit_instance<T: Real, I: Index<T> + ?Sized>(
+fn visit_instance<T: Real, I: AnyIndex<T> + ?Sized>(
     instance: &Instance<I>,
     ray: &Ray,
     limit: f64,

@@ -13,8 +13,8 @@ use p2m_bvh::engine::several::answer_in_groups;
 use p2m_core::engine::answer_one_by_one;
 use p2m_core::storage::{self, LoadError, Reader, Saved, Writer};
 use p2m_core::{
-    Best, BuildError, BuildIndex, CertifiedQuery, ClosestPoint, Collector, Found, Index, Inspect, Isa, Near, NearQuery,
-    PrimitiveId, PrimitiveSet, QueryOptions, Real, Shape, StatsCollector, check_set, shape_of,
+    AnyIndex, Best, BuildError, BuildIndex, CellSummary, CertifiedQuery, ClosestPoint, Collector, Found, Inspect, Isa,
+    Near, NearQuery, PrimitiveId, PrimitiveSet, QueryOptions, Real, Shape, StatsCollector, check_set, shape_of,
 };
 use std::marker::PhantomData;
 use std::ops::ControlFlow;
@@ -273,7 +273,7 @@ impl<T: Real, S: PrimitiveSet<T>, P: Partition> ClosestPoint<T> for Interception
     }
 }
 
-impl<T: Real, S: PrimitiveSet<T> + Send + Sync, P: Partition + Saved + Send + Sync> Index<T>
+impl<T: Real, S: PrimitiveSet<T> + Send + Sync, P: Partition + Saved + Send + Sync> AnyIndex<T>
     for InterceptionIndex<T, S, P>
 {
     fn save<'s>(&'s self, writer: &mut Writer<'s>) {
@@ -286,6 +286,10 @@ impl<T: Real, S: PrimitiveSet<T> + Send + Sync, P: Partition + Saved + Send + Sy
 
     fn memory_bytes(&self) -> usize {
         self.memory()
+    }
+
+    fn cells(&self) -> Option<CellSummary> {
+        Some(self.report().into())
     }
 }
 

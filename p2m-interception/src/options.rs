@@ -4,7 +4,7 @@ use crate::list::block::{BLOCK_WIDTH, MAX_BLOCKS};
 use crate::voronoi::list_filter::BuildListFilter;
 use crate::voronoi::locator::BuildLocator;
 use p2m_bvh::SplitOptions;
-use p2m_core::Aabb;
+use p2m_core::{Aabb, CellSummary};
 
 /// The part of space where queries are expected. Cells are made only there, and the tree answers elsewhere with
 /// the same results.
@@ -152,6 +152,20 @@ impl std::fmt::Display for OctreeReport {
         write!(f, "{:.1} MB of cells, {:.1} MB of tree, {work} tests", megabytes(*bytes), megabytes(*tree_bytes))?;
         let digits = if *resolution < 0.01 { 5 } else { 2 };
         write!(f, ", resolution {resolution:.digits$}")
+    }
+}
+
+impl From<OctreeReport> for CellSummary {
+    fn from(report: OctreeReport) -> Self {
+        let counts = vec![
+            ("list_cells", report.lists as u64),
+            ("single_primitive_cells", report.singles as u64),
+            ("fallback_cells", report.trees as u64),
+            ("bytes", report.bytes as u64),
+            ("tree_bytes", report.tree_bytes as u64),
+            ("packet_tests", report.work),
+        ];
+        Self { text: report.to_string(), counts, resolution: Some(report.resolution) }
     }
 }
 
@@ -383,5 +397,19 @@ impl std::fmt::Display for P2mReport {
         }
         write!(f, "{trees} left to the tree; {added} sites added on the scene and {auxiliary} beside it; ")?;
         write!(f, "{:.1} MB of cells, {:.1} MB of tree", megabytes(bytes), megabytes(tree_bytes))
+    }
+}
+
+impl From<P2mReport> for CellSummary {
+    fn from(report: P2mReport) -> Self {
+        let counts = vec![
+            ("list_cells", report.lists as u64),
+            ("fallback_cells", report.trees as u64),
+            ("packets", report.entries as u64),
+            ("primitives", report.primitives as u64),
+            ("bytes", report.bytes as u64),
+            ("tree_bytes", report.tree_bytes as u64),
+        ];
+        Self { text: report.to_string(), counts, resolution: None }
     }
 }

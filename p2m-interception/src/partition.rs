@@ -10,7 +10,7 @@ use p2m_bvh::engine::several::Several;
 use p2m_core::engine::query::BestF64;
 use p2m_core::engine::real::to_f64_array;
 use p2m_core::engine::vector::V3;
-use p2m_core::{Aabb, Best, Collector, Isa, Near, PrimitiveId, PrimitiveSet, Real};
+use p2m_core::{Aabb, Best, CellSummary, Collector, Isa, Near, PrimitiveId, PrimitiveSet, Real};
 
 /// A partition with its lists, over a set of primitives that it does not store. Every method that takes a set has to
 /// be given the set that the partition was built over.
@@ -21,7 +21,7 @@ pub trait Partition: CellQuery + Sized {
     /// The options of a build.
     type Options: Default;
     /// The statistics of a partition.
-    type Report;
+    type Report: Into<CellSummary>;
 
     /// Builds the partition over a set whose bounding boxes are finite. `progress` is called for each stage that
     /// begins, from the calling thread, and for each percent, from any thread.

@@ -4,6 +4,7 @@ use crate::scene::{Object, Scene, object_number, object_of};
 use nalgebra::Point3;
 use p2m_core::{BuildError, Element, PrimitiveId, PrimitiveSet, Soup};
 use std::ops::Range;
+use std::sync::Arc;
 
 impl Scene {
     /// Adds a part under a name and returns the ids of its primitives.
@@ -50,8 +51,10 @@ impl Scene {
         let (Ok(first), Ok(_), true) = (u32::try_from(first), last, end <= PrimitiveId::MAX_COUNT) else {
             return Err(BuildError::TooMany { len: end });
         };
+        // An index that shares the primitives keeps them as they were.
+        let soup = Arc::make_mut(&mut self.soup);
         for position in part.positions() {
-            self.soup.push_position(*position);
+            soup.push_position(*position);
         }
         let shifted = |i: u32| i + first;
         let mut next = [0; 3];
@@ -65,7 +68,7 @@ impl Scene {
             self.sources.push(*count);
             *count += 1;
             // This never fails, because the part is valid and the number of primitives was checked.
-            self.soup.push(element)?;
+            soup.push(element)?;
         }
         let name = name.trim();
         if !name.is_empty() {

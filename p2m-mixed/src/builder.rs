@@ -8,6 +8,7 @@ use crate::text::{quote, trim};
 use nalgebra::Point3;
 use p2m_core::{Element, PrimitiveSet, Soup};
 use std::mem::take;
+use std::sync::Arc;
 
 /// The largest number of kinds of skipped records with a count of their own. Further kinds, as a file of noise has
 /// them, share one count.
@@ -146,7 +147,7 @@ impl Output<'_> {
             Some(pieces) if self.soup.len() >= pieces.max_primitives() => {
                 let objects = self.objects.end_piece(self.soup.len());
                 let (soup, sources) = (take(&mut self.soup), take(&mut self.sources));
-                pieces.visit(Scene { soup, sources, objects, skipped: Vec::new() })
+                pieces.visit(Scene { soup: Arc::new(soup), sources, objects, skipped: Vec::new() })
             }
             _ => Ok(()),
         }
@@ -293,7 +294,7 @@ impl<'a> SceneBuilder<'a> {
         soup.shrink_to_fit();
         sources.shrink_to_fit();
         objects.end(soup.len());
-        Scene { soup, sources, objects: objects.list, skipped: self.skipped.finish() }
+        Scene { soup: Arc::new(soup), sources, objects: objects.list, skipped: self.skipped.finish() }
     }
 }
 

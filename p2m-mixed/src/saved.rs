@@ -5,6 +5,7 @@ use nalgebra::Point3;
 use p2m_core::storage::{LoadError, Reader, SavedFile, Writer, require};
 use p2m_core::{Element, Soup};
 use std::io::{self, BufRead, Write};
+use std::sync::Arc;
 
 /// `(n, 3)` f64: the positions.
 const POSITIONS: &str = "scene/positions";
@@ -99,7 +100,7 @@ pub fn load_scene(reader: &Reader) -> Result<Scene, LoadError> {
         let what = text(own[0]).ok_or_else(|| LoadError::inconsistent(SKIPPED, "a name is missing"))?;
         skipped.push(Skipped { what, count: own[1], is_plural: own[2] != 0 });
     }
-    Ok(Scene { soup, sources, objects, skipped })
+    Ok(Scene { soup: Arc::new(soup), sources, objects, skipped })
 }
 
 /// Reads the scene from a file of a saved index. `name` is the name of the file in messages.

@@ -3,6 +3,7 @@
 use p2m_core::{Element, PrimitiveId, Soup};
 use std::fmt;
 use std::ops::Range;
+use std::sync::Arc;
 
 /// A scene that was read from a file or built of parts that were [added](Scene::add).
 #[derive(Debug, Clone, Default, PartialEq)]
@@ -11,8 +12,8 @@ pub struct Scene {
     /// The primitives, numbered in the order of the file.
     ///
     /// Polygons are divided into triangles, which have consecutive ids and the winding of the polygon. Coordinates are
-    /// f64; for an f32 scene make a `Soup<f32>` of the rounded positions and the elements.
-    pub soup: Soup<f64>,
+    /// f64; for an f32 scene make a `Soup<f32>` of the rounded positions and the elements. Indexes can share them.
+    pub soup: Arc<Soup<f64>>,
     /// The source of each primitive: `sources[id]` is the number of its statement among the statements of the same
     /// kind, counted from 0 in the order of the file.
     ///
@@ -43,7 +44,7 @@ impl From<Soup<f64>> for Scene {
             *count - 1
         };
         let sources = soup.elements().map(next).collect();
-        Self { soup, sources, objects: Vec::new(), skipped: Vec::new() }
+        Self { soup: Arc::new(soup), sources, objects: Vec::new(), skipped: Vec::new() }
     }
 }
 

@@ -5,8 +5,8 @@ use crate::nearest::{
 };
 use crate::{Shard, ShardError, ShardedIndex};
 use nalgebra::Point3;
-use p2m_core::batch::{BatchOptions, closest_points_into};
-use p2m_core::{Best, Closest, ClosestPoint, Found, Index, Key, Position, QueryOptions};
+use p2m_core::batch::{BatchOptions, Interruptible, closest_points_into};
+use p2m_core::{Closest, Key, Position, QueryOptions};
 use rayon::prelude::*;
 
 /// The number that stands for no shard.
@@ -14,37 +14,6 @@ const NONE: u32 = u32::MAX;
 
 /// A function that is called with a number of answered queries, and returns whether to go on.
 pub type Proceed<'a> = dyn Fn(usize) -> bool + Sync + 'a;
-
-/// The index of a shard, which leaves out queries when it is not to go on.
-struct Stoppable<'a> {
-    index: &'a dyn Index,
-    proceed: &'a Proceed<'a>,
-}
-
-/// The number of queries between two questions whether to go on.
-const QUERIES_PER_STEP: usize = 1 << 10;
-
-impl ClosestPoint<f64> for Stoppable<'_> {
-    fn search(&self, query: &Point3<f64>, best: &mut Best<f64>) {
-        self.index.search(query, best);
-    }
-
-    fn answer_queries(
-        &self,
-        queries: &[Point3<f64>],
-        options: &QueryOptions<f64>,
-        answered: &mut dyn FnMut(usize, Found<'_, f64>),
-    ) {
-        for (step, some) in queries.chunks(QUERIES_PER_STEP).enumerate() {
-            if !(self.proceed)(0) {
-                return;
-            }
-            let first = step * QUERIES_PER_STEP;
-            self.index.answer_queries(some, options, &mut |i, found| answered(first + i, found));
-            (self.proceed)(some.len());
-        }
-    }
-}
 
 /// The state of a query between the phases.
 #[derive(Clone, Copy)]
@@ -405,7 +374,13 @@ fn ask(
     proceed: &Proceed<'_>,
 ) -> Result<Vec<Option<Closest<f64>>>, ShardError> {
     let mut answers = vec![None; queries.len()];
-    let stoppable = Stoppable { index: shard.index(), proceed };
-    closest_points_into(&stoppable, queries, options, &BatchOptions::default(), &mut answers);
+    let interruptible = Interruptible::new(shard.index(), |left, answer| {
+        if !proceed(0) {
+            return false;
+        }
+        answer(left);
+        proceed(left)
+    });
+    closest_points_into(&interruptible, queries, options, &BatchOptions::default(), &mut answers);
     if proceed(0) { Ok(answers) } else { Err(ShardError::Cancelled) }
 }

@@ -3,7 +3,7 @@
 use crate::{ShardEntry, ShardError};
 use p2m_backends::BackendEntry;
 use p2m_core::storage::{Array, LoadError, SavedFile, require};
-use p2m_core::{Index, PrimitiveId, PrimitiveSet, Shape, Soup, shape_of};
+use p2m_core::{AnyIndex, PrimitiveId, PrimitiveSet, Shape, Soup, shape_of};
 use p2m_mixed::load_scene;
 use std::fs;
 use std::path::Path;
@@ -17,7 +17,7 @@ const MEMORY_BYTES_PER_PRIMITIVE: u64 = 40;
 /// A part of the scene in memory.
 pub struct Shard {
     soup: Arc<Soup<f64>>,
-    index: Box<dyn Index + 'static>,
+    index: Arc<dyn AnyIndex>,
     ids: Array<u64>,
 }
 
@@ -37,13 +37,13 @@ impl Shard {
         }
         let load = || {
             let reader = saved.checked()?;
-            let soup = Arc::new(load_scene(reader)?.soup);
+            let soup = load_scene(reader)?.soup;
             let ids = reader.array::<u64>(IDS)?;
             require(ids.len() == soup.len(), IDS, "there is not one for each primitive")?;
             require(ids.is_sorted_by(|a, b| a < b), IDS, "they are not in ascending order")?;
             let backend = BackendEntry::from_saved(reader);
             let missing = LoadError::Missing { section: "index/kind".to_owned() };
-            let built = backend.ok_or(missing)?.load_shared(Arc::clone(&soup), reader)?;
+            let built = backend.ok_or(missing)?.load(Arc::clone(&soup), reader)?;
             Ok(Self { soup, index: built.index, ids })
         };
         let shard = load().map_err(load_error)?;
@@ -69,7 +69,7 @@ impl Shard {
 
     /// Returns the index over the primitives.
     #[must_use]
-    pub fn index(&self) -> &dyn Index {
+    pub fn index(&self) -> &dyn AnyIndex {
         &*self.index
     }
 

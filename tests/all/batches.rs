@@ -10,6 +10,7 @@ use p2m_backends::{BACKENDS, BuildSettings};
 use p2m_testkit::scenes::{self, Kinds, Layout, narrow};
 use p2m_testkit::{amount, cases, rng};
 use rand::{Rng, RngExt};
+use std::sync::Arc;
 
 /// Returns queries in, around, on and far from a scene, of which some are not finite.
 fn queries<T: Real>(rng: &mut impl Rng, soup: &Soup<T>, count: usize) -> Vec<Point3<T>> {
@@ -101,9 +102,9 @@ fn every_backend_answers_batches_of_every_size_as_single_queries() {
     for case in cases(12, 4) {
         let mut rng = rng("batches of every backend", case);
         let soup = scenes::soup(&mut rng, KINDS[case as usize % 4], LAYOUTS[case as usize % 6], amount(2000, 300));
-        let all = queries(&mut rng, &soup, 40);
+        let (all, soup) = (queries(&mut rng, &soup, 40), Arc::new(soup));
         for entry in BACKENDS {
-            let built = entry.build(&soup, &BuildSettings::default()).expect("valid");
+            let built = entry.build(Arc::clone(&soup), &BuildSettings::default()).expect("valid");
             for count in (0..=40).step_by(amount(1, 13)).chain([15, 16, 17, 40]) {
                 check(&*built.index, &all[..count], entry.name);
             }

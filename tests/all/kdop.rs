@@ -16,6 +16,7 @@ use p2m_testkit::{amount, cases, rng};
 use rand::RngExt;
 use std::cell::Cell;
 use std::ops::ControlFlow;
+use std::sync::Arc;
 
 type Tree<'a, const K: usize> = KdopTree<f64, &'a Soup<f64>, K>;
 
@@ -30,7 +31,7 @@ fn model(name: &str) -> Option<Soup<f64>> {
     if path.is_none() {
         println!("skipped: no model {name}");
     }
-    path.map(|path| p2m::scene::read_scene(&path).expect("readable").soup)
+    path.map(|path| Arc::unwrap_or_clone(p2m::scene::read_scene(&path).expect("readable").soup))
 }
 
 fn built<const K: usize>(soup: &Soup<f64>) -> Tree<'_, K>

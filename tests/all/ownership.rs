@@ -7,7 +7,7 @@ use p2m::batch::BatchOptions;
 use p2m::field::sign::{Sign, SignError, SignedDistance};
 use p2m::scene::generate::{IcoSphere, ico_sphere};
 use p2m::{
-    AabbTree, BruteForce, BuildError, BuildIndex, CertifiedQuery, ClosestPoint, Index, Inspect, KdopTree, NearQuery,
+    AabbTree, AnyIndex, BruteForce, BuildError, BuildIndex, CertifiedQuery, ClosestPoint, Inspect, KdopTree, NearQuery,
     OctreeIndex, P2mIndex, PrimitiveSet, Soup,
 };
 use p2m_testkit::rng;
@@ -61,7 +61,7 @@ fn pointers_answer_as_what_they_point_to() {
 #[test]
 fn one_trait_object_does_everything_in_any_thread() {
     let soup = Arc::new(ball());
-    let all: Vec<Box<dyn Index>> = vec![
+    let all: Vec<Box<dyn AnyIndex>> = vec![
         Box::new(BruteForce::new(Arc::clone(&soup)).expect("valid")),
         Box::new(AabbTree::build(Arc::clone(&soup), &Default::default()).expect("valid")),
         Box::new(KdopTree::<f64, _>::build(Arc::clone(&soup), &Default::default()).expect("valid")),

@@ -384,7 +384,7 @@ fn pairs_are_found_behind_pointers_and_in_batches() {
     let tree = AabbTree::build(&soup, &Default::default()).expect("valid");
     let kdop: KdopTree<f64, _> = KdopTree::build(&soup, &Default::default()).expect("valid");
     let brute = BruteForce::new(&soup).expect("valid");
-    let indexes: [&dyn p2m::Index; 3] = [&tree, &kdop, &brute];
+    let indexes: [&dyn p2m::AnyIndex; 3] = [&tree, &kdop, &brute];
     let pairs = indexes.map(|index| index.as_pair_query().expect("it answers queries for pairs"));
     let motions: Vec<_> = (0..20).map(|_| Isometry3::new(vector(&mut rng) * 3.0, vector(&mut rng))).collect();
     let expected: Vec<_> =
@@ -404,7 +404,7 @@ fn pairs_are_found_behind_pointers_and_in_batches() {
         }
     }
     let octree = p2m::OctreeIndex::build(&soup, &Default::default()).expect("valid");
-    assert!((&octree as &dyn p2m::Index).as_pair_query().is_none());
+    assert!((&octree as &dyn p2m::AnyIndex).as_pair_query().is_none());
 }
 
 /// The distances of a segment and a point from the shape differ by less than the error of the kernel, in either order.

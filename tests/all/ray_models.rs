@@ -15,10 +15,11 @@ use rand::{Rng, RngExt};
 use std::collections::HashMap;
 use std::ops::ControlFlow;
 use std::path::Path;
+use std::sync::Arc;
 
 fn read(path: &Path) -> (String, Soup<f64>) {
     let name = path.file_name().expect("a file").to_string_lossy().into_owned();
-    (name, p2m::scene::read_scene(path).expect("readable").soup)
+    (name, Arc::unwrap_or_clone(p2m::scene::read_scene(path).expect("readable").soup))
 }
 
 /// Returns the sums of the numbers that the cases return, computed on all cores.

@@ -3,33 +3,40 @@
 #![cfg(all(feature = "bvh", feature = "interception", feature = "kdop"))]
 
 use crate::agreement::agrees_with;
-use nalgebra::{Point3, Vector3};
+use nalgebra::{Isometry3, Point3, Vector3};
+use p2m::pair::{BallContact, ClosestPair, MovingBall, PairOptions, PairQuery};
 use p2m::storage::{SavedFile, Writer};
-use p2m::{Aabb, BoxQuery, BruteForce, CertifiedQuery, PrimitiveSet, QueryOptions, Ray, RayQuery, Real, Soup};
-use p2m_backends::{BACKENDS, BuildSettings, Index};
+use p2m::{
+    Aabb, BoxQuery, BruteForce, BuildError, CertifiedQuery, Element, PrimitiveId, PrimitiveSet, QueryOptions, Ray,
+    RayQuery, Real, Soup,
+};
+use p2m_backends::{AnyIndex, BACKENDS, BuildSettings};
 use p2m_testkit::near_check;
 use p2m_testkit::scenes::{extreme_soups, narrow, queries, random_soups, to_f32};
+use std::ops::ControlFlow;
+use std::sync::Arc;
 
 /// A scene in f64 with queries, and its seed.
 type Case = (u64, Soup<f64>, Vec<Point3<f64>>);
 
 /// Checks the index of every backend over scenes in f64.
-fn in_f64(cases: impl Iterator<Item = Case>, check: impl Fn(u64, &Soup<f64>, &[Point3<f64>], &dyn Index)) {
+fn in_f64(cases: impl Iterator<Item = Case>, check: impl Fn(u64, &Soup<f64>, &[Point3<f64>], &dyn AnyIndex)) {
     for (seed, soup, queries) in cases {
+        let soup = Arc::new(soup);
         for backend in BACKENDS {
-            let built = backend.build(&soup, &BuildSettings::default()).expect("valid scene");
+            let built = backend.build(Arc::clone(&soup), &BuildSettings::default()).expect("valid scene");
             check(seed, &soup, &queries, &*built.index);
         }
     }
 }
 
 /// Checks the index of every backend over scenes that are rounded to f32.
-fn in_f32(cases: impl Iterator<Item = Case>, check: impl Fn(u64, &Soup<f32>, &[Point3<f32>], &dyn Index<f32>)) {
+fn in_f32(cases: impl Iterator<Item = Case>, check: impl Fn(u64, &Soup<f32>, &[Point3<f32>], &dyn AnyIndex<f32>)) {
     for (seed, soup, queries) in cases {
-        let soup = narrow(&soup).expect("fits f32");
+        let soup = Arc::new(narrow(&soup).expect("fits f32"));
         let queries: Vec<_> = queries.into_iter().map(to_f32).collect();
         for backend in BACKENDS {
-            let built = backend.build_f32(&soup, &BuildSettings::default()).expect("valid scene");
+            let built = backend.build_f32(Arc::clone(&soup), &BuildSettings::default()).expect("valid scene");
             check(seed, &soup, &queries, &*built.index);
         }
     }
@@ -42,12 +49,12 @@ fn random_cases(name: &'static str) -> impl Iterator<Item = Case> {
     })
 }
 
-fn nearest<T: Real>(seed: u64, soup: &Soup<T>, queries: &[Point3<T>], index: &dyn Index<T>) {
+fn nearest<T: Real>(seed: u64, soup: &Soup<T>, queries: &[Point3<T>], index: &dyn AnyIndex<T>) {
     let brute = BruteForce::new(soup).expect("valid scene");
     agrees_with(&brute, seed, soup.len(), queries, &index);
 }
 
-fn near<T: Real>(seed: u64, soup: &Soup<T>, queries: &[Point3<T>], index: &dyn Index<T>) {
+fn near<T: Real>(seed: u64, soup: &Soup<T>, queries: &[Point3<T>], index: &dyn AnyIndex<T>) {
     near_check::agrees(seed, soup, queries, index);
 }
 
@@ -102,16 +109,119 @@ fn other_queries_agree_where_a_backend_answers_them() {
     });
 }
 
+/// The answers of all queries for pairs. Lower bounds are left out, because they depend on what a search evaluates.
+#[derive(Debug, Default, PartialEq)]
+struct PairAnswers<T: Real> {
+    closest: Vec<Option<ClosestPair<T>>>,
+    within: Vec<Vec<([PrimitiveId; 2], T)>>,
+    is_near: Vec<bool>,
+    contacts: Vec<Option<BallContact<T>>>,
+}
+
+impl<T: Real> PairAnswers<T> {
+    /// Asks a scene about triangles between queries, as shapes and as another scene, and about balls that move from one
+    /// query to the next.
+    fn new(scene: &impl PairQuery<T>, queries: &[Point3<T>]) -> Self {
+        let triangle = |i: u32| Element::Triangle([3 * i, 3 * i + 1, 3 * i + 2]);
+        let triangles = (0..u32::try_from(queries.len() / 3).expect("few queries")).map(triangle);
+        let other = Soup::new(queries.to_vec(), triangles).expect("finite");
+        let brute = BruteForce::new(&other).expect("finite");
+        let mut answers = Self::default();
+        let motion = Isometry3::new(Vector3::new(0.2, -0.1, 0.3), Vector3::new(0.5, 0.4, -0.3));
+        for options in [PairOptions::default(), PairOptions::default().with_motion(motion)] {
+            let nearest = scene.closest_pair(&brute, &options);
+            answers.closest.extend([nearest, scene.certified_closest_pair(&brute, &options)]);
+            answers.closest.push(brute.closest_pair(scene, &options));
+            let around = |nearest: Option<ClosestPair<T>>| {
+                let factor = T::round_from_f64(1.25);
+                options.with_max_distance(nearest.map_or(T::zero(), |nearest| nearest.distance * factor))
+            };
+            let (mut pairs, mut near) = (Vec::new(), Vec::new());
+            let _ = scene.visit_pairs_within(&brute, &around(nearest), &mut |pair| {
+                pairs.push((pair.primitives, pair.distance));
+                ControlFlow::Continue(())
+            });
+            answers.is_near.push(scene.is_any_pair_near(&brute, &around(nearest)));
+            answers.is_near.push(scene.is_any_pair_near(&brute, &options.with_max_distance(T::zero())));
+            for shape in (0..other.len()).map(|i| other.get(PrimitiveId::new(i))) {
+                let nearest = scene.closest_to(&shape, &options);
+                answers.closest.extend([nearest, scene.certified_closest_to(&shape, &options)]);
+                answers.is_near.push(scene.is_any_near(&shape, &around(nearest)));
+                let _ = scene.visit_near(&shape, &around(nearest), &mut |pair| {
+                    near.push((pair.primitives, pair.distance));
+                    ControlFlow::Continue(())
+                });
+            }
+            // Searches find them in any order.
+            for mut found in [pairs, near] {
+                found.sort_unstable_by(|a, b| a.0.cmp(&b.0).then(a.1.to_f64().total_cmp(&b.1.to_f64())));
+                answers.within.push(found);
+            }
+        }
+        answers.closest.iter_mut().flatten().for_each(|pair| pair.lower_bound = T::zero());
+        let balls = queries.windows(2).map(|ends| MovingBall::new(ends[0], ends[1], T::round_from_f64(0.01)));
+        answers.contacts = balls.map(|ball| ball.first_contact(scene)).collect();
+        answers
+    }
+}
+
+fn pairs<T: Real>(seed: u64, soup: &Soup<T>, queries: &[Point3<T>], index: &dyn AnyIndex<T>) {
+    if let Some(index) = index.as_pair_query() {
+        let brute = BruteForce::new(soup).expect("valid scene");
+        assert_eq!(PairAnswers::new(&index, queries), PairAnswers::new(&brute, queries), "seed {seed}");
+    }
+}
+
+#[test]
+fn pairs_agree_on_random_scenes_in_f64() {
+    in_f64(random_cases("pairs f64"), pairs);
+}
+
+#[test]
+fn pairs_agree_on_random_scenes_in_f32() {
+    in_f32(random_cases("pairs f32"), pairs);
+}
+
+/// Fits an index to a moved scene, and compares it with brute force.
+fn refit<T: Real>(seed: u64, soup: &Soup<T>, queries: &[Point3<T>], index: &dyn AnyIndex<T>) {
+    let mut moved = soup.clone();
+    moved.map_positions(|p| Point3::new(-p.z, p.x + p.y, p.y)).expect("in range");
+    let moved = Arc::new(moved);
+    let Some(refitted) = index.refitted(Arc::clone(&moved)) else { return };
+    let refitted = refitted.expect("the same primitives");
+    nearest(seed, &moved, queries, &*refitted);
+    near(seed, &moved, queries, &*refitted);
+    pairs(seed, &moved, queries, &*refitted);
+    assert_eq!(refitted.primitive_count(), soup.len());
+    // The index itself stays as it was.
+    nearest(seed, soup, queries, index);
+    let error = |soup: Soup<T>| index.refitted(Arc::new(soup)).expect("as before").err();
+    let shorter = Soup::new(soup.positions().to_vec(), soup.elements().skip(1)).expect("valid");
+    let other_length = BuildError::OtherLength { len: shorter.len(), expected: soup.len() };
+    assert_eq!(error(shorter), (!soup.is_empty()).then_some(other_length), "seed {seed}");
+}
+
+#[test]
+fn refitted_indexes_agree_on_random_scenes_in_f64() {
+    in_f64(random_cases("refit f64"), refit);
+}
+
+#[test]
+fn refitted_indexes_agree_on_random_scenes_in_f32() {
+    in_f32(random_cases("refit f32"), refit);
+}
+
 #[test]
 fn loaded_indexes_answer_as_brute_force() {
     for (seed, soup, queries) in random_cases("saved") {
+        let soup = Arc::new(soup);
         for backend in BACKENDS.iter().filter(|backend| backend.is_saveable()) {
-            let built = backend.build(&soup, &BuildSettings::default()).expect("valid scene");
+            let built = backend.build(Arc::clone(&soup), &BuildSettings::default()).expect("valid scene");
             let (mut writer, mut bytes) = (Writer::default(), Vec::new());
             built.save(&mut writer);
             writer.write(&mut bytes).expect("memory");
             let file = SavedFile::read(&bytes[..]).expect("read");
-            let loaded = backend.load(&soup, file.checked().expect("whole")).expect("an index");
+            let loaded = backend.load(Arc::clone(&soup), file.checked().expect("whole")).expect("an index");
             nearest(seed, &soup, &queries, &*loaded.index);
         }
     }

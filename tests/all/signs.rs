@@ -11,6 +11,7 @@ use p2m::{
 use p2m_testkit::queries::QuerySet;
 use p2m_testkit::{Cases, amount, cases, model_files, rng};
 use rand::RngExt;
+use std::sync::Arc;
 
 fn tree(soup: &Soup<f64>) -> AabbTree<f64, &Soup<f64>> {
     AabbTree::build(soup, &Default::default()).expect("valid")
@@ -63,7 +64,7 @@ fn signs_of_closed_models_are_those_of_rays() {
     let mut closed = 0;
     for path in model_files() {
         let name = path.file_name().expect("a file").to_string_lossy().into_owned();
-        let soup = p2m::scene::read_scene(&path).expect("readable").soup;
+        let soup = Arc::unwrap_or_clone(p2m::scene::read_scene(&path).expect("readable").soup);
         // The lines are too slow in this model, which has thousands of slivers in one plane along two axes.
         let is_gear = name == "gear_skewed_57k.ply";
         let intersects =
@@ -109,7 +110,7 @@ fn joined(parts: &[Soup<f64>]) -> Soup<f64> {
     for part in parts {
         scene.add("", part).expect("room");
     }
-    scene.soup
+    Arc::unwrap_or_clone(scene.soup)
 }
 
 fn flipped(soup: &Soup<f64>) -> Soup<f64> {
@@ -358,7 +359,7 @@ fn winding_numbers_of_closed_models_have_the_signs_of_rays() {
         if !["bunny.obj", "camel.off", "dragon_100k.obj", "lucy_100k.ply"].contains(&name.as_str()) {
             continue;
         }
-        let soup = p2m::scene::read_scene(&path).expect("readable").soup;
+        let soup = Arc::unwrap_or_clone(p2m::scene::read_scene(&path).expect("readable").soup);
         let winding = SignedDistance::with_winding_numbers(tree(&soup), &soup, 0.01).expect("triangles");
         let index = tree(&soup);
         for set in [QuerySet::Box1, QuerySet::Near] {

@@ -9,6 +9,7 @@ use p2m_testkit::counted_queries::{self, QueryMode};
 use p2m_testkit::queries::QuerySet;
 use std::fs;
 use std::path::{Path, PathBuf};
+use std::sync::Arc;
 use std::sync::Mutex;
 
 /// The number of queries of each set. A count divided by 200 has at most three decimals, so the table has all of them.
@@ -31,7 +32,11 @@ fn scan() -> Soup<f64> {
 /// Returns the scene of that name.
 pub(crate) fn scene(name: &str) -> Soup<f64> {
     let carried = Path::new(env!("CARGO_MANIFEST_DIR")).join("scenes").join(format!("{name}.obj"));
-    if name == "scan" { scan() } else { p2m::scene::read_scene(&carried).expect("a carried scene").soup }
+    if name == "scan" {
+        scan()
+    } else {
+        Arc::unwrap_or_clone(p2m::scene::read_scene(&carried).expect("a carried scene").soup)
+    }
 }
 
 /// Rounds to f32, which removes the last bits, in which logarithms and cosines differ between platforms.

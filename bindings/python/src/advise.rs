@@ -44,7 +44,7 @@ pub(crate) fn advise<'py>(
             None => QueryRegion::SceneBox,
         };
         let workload = Workload::new(queries, region).with_max_time(max_time);
-        recommend(&shared, &workload.with_max_bytes(max_bytes.unwrap_or(usize::MAX)))
+        recommend(&shared.soup, &workload.with_max_bytes(max_bytes.unwrap_or(usize::MAX)))
     })?;
     let advice = advice.map_err(build_error)?;
     PyList::new(py, advice.estimates.iter().map(|estimate| row(py, estimate)).collect::<PyResult<Vec<_>>>()?)

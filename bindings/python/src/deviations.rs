@@ -43,10 +43,10 @@ pub(crate) fn deviation_page(
     texts: [String; 3],
 ) -> PyResult<String> {
     let (values, primitives) = (values.as_slice()?, primitives.as_slice()?);
-    let (scan, [title, summary, unit]) = (&*scan.shared, texts);
+    let (scan, [title, summary, unit]) = (&*scan.shared.soup, texts);
     let statistics = &DeviationStatistics::of(values);
     let deviations = &Deviations { scan, values, primitives, statistics, is_signed, limit, tolerance };
-    let mut view = View::new(&scene.shared.0, &Deviations::bounds(scan))
+    let mut view = View::new(&scene.shared, &Deviations::bounds(scan))
         .with_unit(&unit)
         .with_up(if is_y_up { UpAxis::Y } else { UpAxis::Z })
         .with_deviations(deviations);
@@ -67,6 +67,6 @@ pub(crate) fn deviation_ply<'py>(
     let colours: Vec<[u8; 3]> = values.iter().map(|value| diverging_colour(*value, limit)).collect();
     let mut file = Vec::new();
     let values = VertexValues { name: "deviation", values, colours: &colours };
-    write_ply_with_values(&scan.shared.0, &values, &mut file).map_err(value_error)?;
+    write_ply_with_values(&scan.shared, &values, &mut file).map_err(value_error)?;
     Ok(PyBytes::new(py, &file))
 }

@@ -12,6 +12,7 @@ use p2m_field::{
     CandidateLists, FieldOptions, Grid, distances, distances_by_lists, signed_distances, signed_distances_by_lists,
 };
 use pyo3::prelude::*;
+use std::sync::Arc;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
 #[pymethods]
@@ -37,7 +38,7 @@ impl Index {
             Some(name) => Some(self.signs(py, SignRule::from_name(name)?, threads)?),
             None => None,
         };
-        let (index, scene) = (self.any(), self.scene.clone());
+        let (index, soup) = (self.any(), Arc::clone(&self.scene.soup));
         let values = run_owned(py, threads, grid.len(), progress, move |monitor| {
             let options = FieldOptions::default().with_band(band);
             let done = AtomicUsize::new(0);
@@ -48,8 +49,8 @@ impl Index {
             // Both ways return the same bits. Lists pay for grids that are finer than the scene.
             let last = grid.point(grid.counts().map(|n| n - 1));
             let is_in_range = [grid.origin(), last].iter().flat_map(|p| p.iter()).all(|x| x.abs() <= MAX_COORDINATE);
-            let has_lists = is_in_range && grid.len() >= scene.len();
-            let lists = if has_lists { CandidateLists::new(&scene) } else { None };
+            let has_lists = is_in_range && grid.len() >= soup.len();
+            let lists = if has_lists { CandidateLists::new(&*soup) } else { None };
             match (&lists, &signed) {
                 (Some(lists), Some(signed)) => signed_distances_by_lists(lists, signed, &grid, &options, &report),
                 (Some(lists), None) => distances_by_lists(lists, &grid, &options, &report),

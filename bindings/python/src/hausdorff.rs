@@ -28,7 +28,7 @@ pub(crate) fn hausdorff<'py>(
     progress: Option<Py<PyAny>>,
 ) -> PyResult<Option<Bound<'py, PyDict>>> {
     let options = HausdorffOptions::new(tolerance).with_max_queries(max_queries);
-    let (a, b) = (first.shared.clone(), second.scene.clone());
+    let (a, b) = (Arc::clone(&first.shared.soup), Arc::clone(&second.scene.soup));
     let (of_a, of_b) = (first_index.map(|index| Arc::clone(&index.built.index)), Arc::clone(&second.built.index));
     let limit = usize::try_from(max_queries).unwrap_or(usize::MAX);
     let vertices = a.positions().len() + if of_a.is_some() { b.positions().len() } else { 0 };
@@ -38,8 +38,8 @@ pub(crate) fn hausdorff<'py>(
             if monitor.is_cancelled() { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
         };
         match &of_a {
-            Some(of_a) => hausdorff_distance((&a, &**of_a), (&b, &*of_b), &options, &mut report),
-            None => one_sided_hausdorff_distance(&a, &*of_b, &options, &mut report),
+            Some(of_a) => hausdorff_distance((&*a, &**of_a), (&*b, &*of_b), &options, &mut report),
+            None => one_sided_hausdorff_distance(&*a, &*of_b, &options, &mut report),
         }
     })?;
     found.map_err(value_error)?.map(|found| parts(py, &found)).transpose()

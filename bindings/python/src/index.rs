@@ -2,12 +2,12 @@
 
 use crate::errors::{build_error, sign_error};
 use crate::scene::{Scene, SharedScene};
-use crate::searchable::{BUILD_UNITS, Built, Settings, build};
 use crate::signs::{SignRule, Signed};
 use crate::threads::pool;
 use crate::work::{FIRST_STEP_QUERIES, Monitor, Threads, run_batch, run_owned};
-use p2m_backends::{BackendEntry, KdopDirections, SearchStructure};
-use p2m_core::{Index as AnyIndex, PrimitiveSet};
+use p2m_backends::{BACKENDS, BackendEntry, BuildSettings, BuiltIndex, KdopDirections, SearchStructure};
+use p2m_core::{AnyIndex, BuildError, PrimitiveSet, Soup};
+use p2m_interception::Progress;
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
@@ -22,11 +22,14 @@ const QUERY_NANOSECONDS: f64 = 1000.0;
 /// The expected time of an exhaustive search for each primitive.
 const EXHAUSTIVE_NANOSECONDS_PER_PRIMITIVE: f64 = 50.0;
 
+/// The part of a build that is finished is counted in these units.
+const BUILD_UNITS: usize = 100;
+
 /// An index. `p2m.Index` has its documentation. It never changes, so all threads may query it.
 #[pyclass(frozen, module = "p2m._p2m")]
 pub(crate) struct Index {
     pub(crate) scene: SharedScene,
-    pub(crate) built: Built,
+    pub(crate) built: BuiltIndex,
     pub(crate) backend: &'static BackendEntry,
     /// The file that the index came from.
     pub(crate) origin: Option<Origin>,
@@ -45,7 +48,7 @@ pub(crate) struct Origin {
 impl Index {
     pub(crate) fn new(
         scene: SharedScene,
-        built: Built,
+        built: BuiltIndex,
         backend: &'static BackendEntry,
         origin: Option<Origin>,
     ) -> Self {
@@ -54,13 +57,13 @@ impl Index {
 
     /// Returns the index without the type of its backend.
     pub(crate) fn any(&self) -> Arc<dyn AnyIndex> {
-        Arc::clone(&self.built.index) as Arc<dyn AnyIndex>
+        Arc::clone(&self.built.index)
     }
 
     /// Returns the expected time of a query.
     fn query_nanoseconds(&self) -> f64 {
         match self.backend.structure {
-            SearchStructure::Exhaustive => EXHAUSTIVE_NANOSECONDS_PER_PRIMITIVE * self.scene.len() as f64,
+            SearchStructure::Exhaustive => EXHAUSTIVE_NANOSECONDS_PER_PRIMITIVE * self.scene.soup.len() as f64,
             _ => QUERY_NANOSECONDS,
         }
     }
@@ -103,20 +106,44 @@ impl Index {
             return Ok(Arc::clone(signed));
         }
         // Two threads may both prepare the same signs; the lock must not be held while the interpreter is detached.
-        let (index, scene) = (self.any(), self.scene.clone());
-        let signed = run_owned(py, threads, 1, None, move |_| rule.prepare(&index, &scene))?.map_err(sign_error)?;
+        let (index, soup) = (self.any(), Arc::clone(&self.scene.soup));
+        let signed = run_owned(py, threads, 1, None, move |_| rule.prepare(&index, &soup))?.map_err(sign_error)?;
         let signed = Arc::new(signed);
         prepared().insert(rule, Arc::clone(&signed));
         Ok(signed)
     }
 }
 
-/// Returns the entry of a backend by its name.
+/// Returns the entry of a backend by its name; `auto` is the default one.
 pub(crate) fn backend(name: &str) -> PyResult<&'static BackendEntry> {
-    BackendEntry::find(name).ok_or_else(|| {
-        let names: Vec<String> = p2m_backends::BACKENDS.iter().map(|backend| format!("'{backend}'")).collect();
+    let named = if name == "auto" { Some(BackendEntry::default_backend()) } else { BackendEntry::find(name) };
+    named.ok_or_else(|| {
+        let names: Vec<String> = BACKENDS.iter().map(|backend| format!("'{backend}'")).collect();
         PyValueError::new_err(format!("backend: '{name}' is none of 'auto', {}", names.join(", ")))
     })
+}
+
+/// Returns the names of the backends that fit as a phrase, those without a structure last.
+pub(crate) fn alternatives(fits: impl Fn(&BackendEntry) -> bool) -> String {
+    let mut fitting: Vec<&BackendEntry> = BACKENDS.iter().filter(|backend| fits(backend)).collect();
+    fitting.sort_by_key(|backend| backend.structure == SearchStructure::Exhaustive);
+    let names: Vec<String> = fitting.iter().map(|backend| format!("'{backend}'")).collect();
+    names.split_last().map_or_else(String::new, |(last, others)| format!("{} or {last}", others.join(", ")))
+}
+
+/// Builds an index. Cancelled work ends by unwinding.
+pub(crate) fn build(
+    backend: &BackendEntry,
+    soup: Arc<Soup<f64>>,
+    settings: BuildSettings<'_>,
+    monitor: &Monitor,
+) -> Result<BuiltIndex, BuildError> {
+    let progress = |progress: Progress| {
+        #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "a part is from 0 to 1")]
+        monitor.set_done((progress.part * BUILD_UNITS as f64) as usize);
+        monitor.unwind_if_cancelled();
+    };
+    backend.build(soup, &settings.with_progress(&progress))
 }
 
 /// Returns the directions of k-DOPs by their number of faces or the name `scene`.
@@ -146,27 +173,35 @@ impl Index {
         resolution: Option<f64>,
     ) -> PyResult<Self> {
         let entry = self::backend(backend)?;
-        let settings = Settings { directions: directions.map(kdop_directions).transpose()?, resolution };
-        let shared = scene.shared.clone();
+        for (option, is_given, is_used) in [
+            ("directions", directions.is_some(), entry.has_kdop_directions),
+            ("resolution", resolution.is_some(), entry.has_resolution),
+        ] {
+            if is_given && !is_used {
+                return Err(PyValueError::new_err(format!("{option}: the backend '{entry}' has none")));
+            }
+        }
+        let directions = directions.map(kdop_directions).transpose()?;
+        let settings = BuildSettings::default().with_kdop_directions(directions).with_resolution(resolution);
+        let soup = Arc::clone(&scene.shared.soup);
         let built =
-            run_owned(py, threads, BUILD_UNITS, progress, move |monitor| build(entry, shared, &settings, monitor))?;
-        let unknown = || PyValueError::new_err(format!("backend: '{backend}' has no Python form"));
-        let built = built.ok_or_else(unknown)?.map_err(build_error)?;
-        Ok(Self::new(scene.shared.clone(), built, entry, None))
+            run_owned(py, threads, BUILD_UNITS, progress, move |monitor| build(entry, soup, settings, monitor))?;
+        Ok(Self::new(scene.shared.clone(), built.map_err(build_error)?, entry, None))
     }
 
     /// Returns an index over the same primitives at other positions.
     fn refitted(&self, py: Python<'_>, scene: &Scene, threads: usize) -> PyResult<Self> {
-        let (index, shared) = (Arc::clone(&self.built.index), scene.shared.clone());
-        let refitted = run_owned(py, threads, 1, None, move |_| index.refitted(&shared))?;
+        let (index, soup) = (self.any(), Arc::clone(&scene.shared.soup));
+        let refitted = run_owned(py, threads, 1, None, move |_| index.refitted(soup))?;
         let refused = || {
             PyValueError::new_err(format!(
-                "the backend '{}' has no refit: build a new index, or use 'aabb' or 'kdop' for scenes that move",
-                self.backend.name
+                "the backend '{}' has no refit: build a new index, or use {} for scenes that move",
+                self.backend,
+                alternatives(|backend| backend.has_refit)
             ))
         };
         let index = refitted.ok_or_else(refused)?.map_err(build_error)?;
-        let built = Built { index, ..self.built.clone() };
+        let built = BuiltIndex { index, ..self.built.clone() };
         Ok(Self::new(scene.shared.clone(), built, self.backend, None))
     }
 
@@ -191,14 +226,14 @@ impl Index {
         let index = &self.built.index;
         info.set_item("backend", self.backend.name)?;
         info.set_item("summary", self.backend.summary)?;
-        info.set_item("primitives", self.scene.len())?;
+        info.set_item("primitives", self.scene.soup.len())?;
         info.set_item("memory_bytes", index.memory_bytes())?;
         info.set_item("parts", index.parts().into_iter().collect::<HashMap<_, _>>())?;
         info.set_item("casts_rays", index.as_ray_query().is_some())?;
         info.set_item("answers_pairs", index.as_pair_query().is_some())?;
         info.set_item("is_saveable", self.backend.is_saveable())?;
         info.set_item("surface_area", index.surface_area())?;
-        info.set_item("cells", index.cells())?;
+        info.set_item("cells", index.cells().map(|cells| cells.text))?;
         info.set_item("directions", self.built.directions.as_ref().map(|directions| directions.faces))?;
         info.set_item("path", self.origin.as_ref().map(|origin| origin.path.clone()))?;
         Ok(info)

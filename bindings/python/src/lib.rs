@@ -22,11 +22,9 @@ mod queries;
 mod rays;
 mod saved;
 mod scene;
-mod searchable;
 mod sharded;
 mod signs;
 mod threads;
-mod watched;
 mod work;
 
 use pyo3::prelude::*;

@@ -2,18 +2,17 @@
 
 use crate::columns::{borrowed, slice};
 use crate::errors::value_error;
-use crate::index::Index;
+use crate::index::{Index, alternatives};
 use crate::pair_columns::{PairArrays, PairColumns, PairList};
 use crate::parts::{Split, answer_in_parts};
 use crate::queries::{BadRow, batch_options, check_finite, not_finite};
 use crate::scene::triples;
-use crate::searchable::Searchable;
 use crate::work::{Monitor, Threads, run_owned};
 use nalgebra::{Isometry3, Point3};
 use numpy::{PyReadonlyArray1, ToPyArray};
 use p2m_core::batch;
 use p2m_core::pair::{ClosestPair, PairOptions, PairQuery, isometry_of_matrix};
-use p2m_core::{Primitive, Shape};
+use p2m_core::{AnyIndex, Primitive, Shape};
 use pyo3::exceptions::PyTypeError;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
@@ -33,8 +32,8 @@ pub(crate) fn motions(matrices: &PyReadonlyArray1<'_, f64>) -> PyResult<Vec<Isom
 
 /// Two indexes of which the second one may move.
 struct ScenePair {
-    first: Arc<dyn Searchable>,
-    second: Arc<dyn Searchable>,
+    first: Arc<dyn AnyIndex>,
+    second: Arc<dyn AnyIndex>,
     /// The motions; without one the scenes are as they are, and there is one answer.
     motions: Option<Vec<Isometry3<f64>>>,
     options: PairOptions<f64>,
@@ -125,8 +124,9 @@ impl Index {
     pub(crate) fn pair_query(&self) -> PyResult<AnyPairQuery<'_>> {
         self.built.index.as_pair_query().ok_or_else(|| {
             value_error(format!(
-                "the backend '{}' answers no queries for pairs: use 'aabb', 'kdop' or 'brute'",
-                self.backend.name
+                "the backend '{}' answers no queries for pairs: use {}",
+                self.backend,
+                alternatives(|backend| backend.answers_pairs)
             ))
         })
     }

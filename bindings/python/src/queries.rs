@@ -6,11 +6,10 @@ use crate::index::Index;
 use crate::parts::answer_in_parts;
 use crate::scene::{Coordinates, with_positions};
 use crate::signs::SignRule;
-use crate::watched::Watched;
 use crate::work::{Monitor, Threads};
 use nalgebra::Point3;
 use numpy::PyArray1;
-use p2m_core::batch::{self, BatchOptions, closest_columns_into};
+use p2m_core::batch::{self, BatchOptions, Interruptible, closest_columns_into};
 use p2m_core::{Closest, Position, QueryOptions};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
@@ -117,9 +116,9 @@ impl Index {
                         rows.columns.set(i, answer.as_ref());
                     });
                 } else {
-                    let watched = Watched { index, monitor };
+                    let interruptible = Interruptible::new(index, |left, answer| monitor.run_step(left, answer));
                     let batch = batch_options(points.len(), threads.is_parallel());
-                    columns.fill(|columns| closest_columns_into(&watched, points, &options, &batch, columns));
+                    columns.fill(|columns| closest_columns_into(&interruptible, points, &options, &batch, columns));
                 }
                 Ok::<(), BadRow>(())
             };

@@ -2,7 +2,7 @@
 
 use crate::columns::{NO_PRIMITIVE, borrowed, halves, slice};
 use crate::errors::value_error;
-use crate::index::Index;
+use crate::index::{Index, alternatives};
 use crate::parts::{Split, answer_in_parts};
 use crate::queries::{batch_options, not_finite};
 use crate::scene::triples;
@@ -200,8 +200,9 @@ impl Index {
     ) -> PyResult<Option<HitList>> {
         let Some(index) = self.built.index.as_ray_query() else {
             return Err(value_error(format!(
-                "the backend '{}' casts no rays: use 'aabb', 'kdop' or 'brute'",
-                self.backend.name
+                "the backend '{}' casts no rays: use {}",
+                self.backend,
+                alternatives(|backend| backend.casts_rays)
             )));
         };
         let cast = Cast { parent: self, index, range: [t_min, t_max], radius, mode, threads, progress };

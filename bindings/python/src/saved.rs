@@ -1,11 +1,10 @@
 //! Saving and loading indexes.
 
 use crate::errors::{build_error, io_error, load_error, value_error};
-use crate::index::{Index, Origin, backend};
+use crate::index::{Index, Origin, backend, build};
 use crate::scene::SharedScene;
-use crate::searchable::{self, Built, Settings};
 use crate::work::{Monitor, run_owned};
-use p2m_backends::BackendEntry;
+use p2m_backends::{BackendEntry, BuildSettings, BuiltIndex};
 use p2m_core::storage::{self, LoadError, SavedFile, Writer};
 use p2m_mixed::{load_scene, save_scene};
 use pyo3::exceptions::PyValueError;
@@ -24,12 +23,12 @@ fn map(path: &Path) -> Result<SavedFile, LoadError> {
 }
 
 /// A scene and its index from a saved file.
-type Loaded = (SharedScene, Option<(&'static BackendEntry, Built)>);
+type Loaded = (SharedScene, Option<(&'static BackendEntry, BuiltIndex)>);
 
 /// Loads the scene of a file, and its index if it has one.
 fn load_file(file: &SavedFile) -> Result<Loaded, LoadError> {
     let reader = file.checked()?;
-    let scene = SharedScene(Arc::new(load_scene(reader)?));
+    let scene = Arc::new(load_scene(reader)?);
     let Some(backend) = BackendEntry::from_saved(reader) else {
         return match storage::kind(reader) {
             // There is an index, of a kind that nobody knows.
@@ -37,8 +36,8 @@ fn load_file(file: &SavedFile) -> Result<Loaded, LoadError> {
             Err(_) => Ok((scene, None)),
         };
     };
-    let built = searchable::load(backend, scene.clone(), reader).transpose()?;
-    Ok((scene, built.map(|built| (backend, built))))
+    let built = backend.load(Arc::clone(&scene.soup), reader)?;
+    Ok((scene, Some((backend, built))))
 }
 
 /// Loads an index from the file at a path.
@@ -69,27 +68,22 @@ pub(crate) fn load_bytes(py: Python<'_>, bytes: &[u8], backend: &str, threads: u
         return Ok(Index::new(scene, built, backend, None));
     }
     let entry = self::backend(backend)?;
-    let shared = scene.clone();
-    let built = run_owned(py, threads, 1, None, move |monitor: &Monitor| {
-        searchable::build(entry, shared, &Settings::default(), monitor)
-    })?;
-    let built = built.ok_or_else(|| value_error(format!("{name} has the unknown backend '{backend}'")))?;
+    let soup = Arc::clone(&scene.soup);
+    let work = move |monitor: &Monitor| build(entry, soup, BuildSettings::default(), monitor);
+    let built = run_owned(py, threads, 1, None, work)?;
     Ok(Index::new(scene, built.map_err(build_error)?, entry, None))
 }
 
 /// Writes a scene and its index.
-fn write(scene: &SharedScene, built: &Built, out: impl Write) -> io::Result<()> {
+fn write(scene: &SharedScene, built: &BuiltIndex, out: impl Write) -> io::Result<()> {
     let mut writer = Writer::default();
-    save_scene(&scene.0, &mut writer);
-    built.index.save(&mut writer);
-    if let Some(directions) = &built.directions {
-        directions.save(&mut writer);
-    }
+    save_scene(scene, &mut writer);
+    built.save(&mut writer);
     writer.write(out)
 }
 
 /// Writes a file under another name, and renames it when it is complete, unless the work was cancelled.
-fn write_file(scene: &SharedScene, built: &Built, path: &Path, monitor: &Monitor) -> io::Result<()> {
+fn write_file(scene: &SharedScene, built: &BuiltIndex, path: &Path, monitor: &Monitor) -> io::Result<()> {
     let mut unfinished = path.as_os_str().to_owned();
     unfinished.push(format!(".{}.unfinished", std::process::id()));
     let unfinished = PathBuf::from(unfinished);

@@ -6,40 +6,15 @@ use crate::work::run_owned;
 use nalgebra::Point3;
 use numpy::{PyArray1, PyArray2, PyArrayMethods, PyReadonlyArray1, PyUntypedArrayMethods};
 use p2m_core::pair::Motion;
-use p2m_core::{Aabb, Element, Position, PrimitiveId, PrimitiveSet, Shape, Soup};
+use p2m_core::{Aabb, Element, Position, PrimitiveSet, Soup};
 use pyo3::exceptions::PyTypeError;
 use pyo3::prelude::*;
 use pyo3::types::PyBytes;
-use std::ops::Deref;
 use std::path::PathBuf;
 use std::sync::Arc;
 
-/// A scene that indexes share: a pointer to its primitives with their names.
-#[derive(Clone)]
-pub(crate) struct SharedScene(pub(crate) Arc<p2m_mixed::Scene>);
-
-impl Deref for SharedScene {
-    type Target = Soup<f64>;
-
-    #[inline(always)]
-    fn deref(&self) -> &Soup<f64> {
-        &self.0.soup
-    }
-}
-
-impl PrimitiveSet<f64> for SharedScene {
-    type Primitive<'a> = Shape<f64>;
-
-    #[inline(always)]
-    fn len(&self) -> usize {
-        self.0.soup.len()
-    }
-
-    #[inline(always)]
-    fn get(&self, id: PrimitiveId) -> Shape<f64> {
-        self.0.soup.get(id)
-    }
-}
+/// A scene that Python objects share. Indexes share its primitives.
+pub(crate) type SharedScene = Arc<p2m_mixed::Scene>;
 
 /// Coordinates in one of the two types that positions may have, three for each.
 #[derive(FromPyObject)]
@@ -103,7 +78,7 @@ pub(crate) struct Scene {
 
 impl Scene {
     pub(crate) fn new(scene: p2m_mixed::Scene) -> Self {
-        Self { shared: SharedScene(Arc::new(scene)) }
+        Self { shared: Arc::new(scene) }
     }
 }
 
@@ -151,7 +126,7 @@ impl Scene {
     /// Returns the scene in the format of saved indexes.
     fn to_bytes<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyBytes>> {
         let mut bytes = Vec::new();
-        py.detach(|| p2m_mixed::write_p2m(&self.shared.0, &mut bytes)).map_err(value_error)?;
+        py.detach(|| p2m_mixed::write_p2m(&self.shared, &mut bytes)).map_err(value_error)?;
         Ok(PyBytes::new(py, &bytes))
     }
 
@@ -160,8 +135,8 @@ impl Scene {
         let positions: Vec<Point3<f64>> =
             with_positions!(vertices, slice => slice.iter().map(Position::<f64>::point).collect());
         let moved = py.detach(|| {
-            let mut scene = (*self.shared.0).clone();
-            scene.soup.set_positions(positions).map(|()| scene)
+            let mut scene = (*self.shared).clone();
+            Arc::make_mut(&mut scene.soup).set_positions(positions).map(|()| scene)
         });
         moved.map(Self::new).map_err(build_error)
     }
@@ -170,9 +145,10 @@ impl Scene {
     fn transformed(&self, py: Python<'_>, transform: PyReadonlyArray1<'_, f64>) -> PyResult<Self> {
         let motions = motions(&transform)?;
         let moved = py.detach(|| {
-            let mut scene = (*self.shared.0).clone();
+            let mut scene = (*self.shared).clone();
+            let soup = Arc::make_mut(&mut scene.soup);
             for motion in motions.iter().map(Motion::new) {
-                scene.soup.map_positions(|position| motion.apply(position.coords.into()).into())?;
+                soup.map_positions(|position| motion.apply(position.coords.into()).into())?;
             }
             Ok(scene)
         });
@@ -181,54 +157,54 @@ impl Scene {
 
     /// Returns the number of vertices, triangles, segments and points.
     fn counts(&self) -> (usize, usize, usize, usize) {
-        let soup = &self.shared.0.soup;
+        let soup = &self.shared.soup;
         (soup.positions().len(), soup.triangles().len(), soup.segments().len(), soup.points().len())
     }
 
     /// Returns the corners of the box around all primitives, or nothing for an empty scene.
     fn bounds(&self, py: Python<'_>) -> Option<[[f64; 3]; 2]> {
-        let soup = &self.shared.0.soup;
+        let soup = &self.shared.soup;
         let Aabb { min, max } = py.detach(|| soup.aabb());
         (soup.len() > 0).then(|| [min.coords.into(), max.coords.into()])
     }
 
     fn vertices<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray2<f64>>> {
-        let positions = self.shared.0.soup.positions();
+        let positions = self.shared.soup.positions();
         PyArray1::from_slice(py, bytemuck::cast_slice(positions)).reshape([positions.len(), 3])
     }
 
     fn triangles<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray2<i64>>> {
-        index_rows(py, self.shared.0.soup.triangles())
+        index_rows(py, self.shared.soup.triangles())
     }
 
     fn segments<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray2<i64>>> {
-        index_rows(py, self.shared.0.soup.segments())
+        index_rows(py, self.shared.soup.segments())
     }
 
     fn points<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<i64>> {
-        PyArray1::from_iter(py, self.shared.0.soup.points().iter().map(|&i| i64::from(i)))
+        PyArray1::from_iter(py, self.shared.soup.points().iter().map(|&i| i64::from(i)))
     }
 
     /// Returns the ids of the primitives with so many vertices.
     fn ids<'py>(&self, py: Python<'py>, vertices: usize) -> Bound<'py, PyArray1<i64>> {
-        let elements = self.shared.0.soup.elements().enumerate();
+        let elements = self.shared.soup.elements().enumerate();
         let ids = elements.filter(|(_, element)| element.indices().len() == vertices);
         PyArray1::from_iter(py, ids.map(|(id, _)| i64::try_from(id).unwrap_or(-1)))
     }
 
     /// Returns the number of the statement that each primitive comes from.
     fn sources<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<i64>> {
-        PyArray1::from_iter(py, self.shared.0.sources.iter().map(|&source| i64::from(source)))
+        PyArray1::from_iter(py, self.shared.sources.iter().map(|&source| i64::from(source)))
     }
 
     /// Returns the names of the objects, with their first id and the one after their last.
     fn objects(&self) -> Vec<(String, usize, usize)> {
-        self.shared.0.objects.iter().map(|object| (object.name.clone(), object.ids.start, object.ids.end)).collect()
+        self.shared.objects.iter().map(|object| (object.name.clone(), object.ids.start, object.ids.end)).collect()
     }
 
     /// Returns what the reader left out.
     fn skipped(&self) -> Vec<String> {
-        self.shared.0.skipped.iter().map(ToString::to_string).collect()
+        self.shared.skipped.iter().map(ToString::to_string).collect()
     }
 }
 

@@ -599,7 +599,7 @@ impl ShardWriter {
     fn add(&self, py: Python<'_>, scene: &Scene) -> PyResult<()> {
         let mut writer = self.take()?;
         let shared = scene.shared.clone();
-        let added = py.detach(|| writer.add_scene(&shared.0).map(|()| writer));
+        let added = py.detach(|| writer.add_scene(&shared).map(|()| writer));
         let writer = added.map_err(|error| shard_error(&error))?;
         *self.writer.lock().unwrap_or_else(PoisonError::into_inner) = Some(writer);
         Ok(())

@@ -1,14 +1,13 @@
 //! Rules of signs, which are prepared once for an index.
 
-use crate::scene::SharedScene;
-use p2m_core::Index;
+use p2m_core::{AnyIndex, Soup};
 use p2m_field::sign::{SignError, SignedDistance};
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 use std::sync::Arc;
 
 /// An index with signs.
-pub(crate) type Signed = SignedDistance<Arc<dyn Index>, SharedScene>;
+pub(crate) type Signed = SignedDistance<Arc<dyn AnyIndex>, Arc<Soup<f64>>>;
 
 /// The largest error of winding numbers.
 const WINDING_NUMBER_ERROR: f64 = 0.01;
@@ -35,13 +34,13 @@ impl SignRule {
     }
 
     /// Prepares signs for an index over a scene.
-    pub(crate) fn prepare(self, index: &Arc<dyn Index>, scene: &SharedScene) -> Result<Signed, SignError> {
+    pub(crate) fn prepare(self, index: &Arc<dyn AnyIndex>, soup: &Arc<Soup<f64>>) -> Result<Signed, SignError> {
         if self != Self::Winding {
-            match SignedDistance::new(Arc::clone(index), scene.clone()) {
+            match SignedDistance::new(Arc::clone(index), Arc::clone(soup)) {
                 Err(SignError::Open { .. } | SignError::NotOriented { .. }) if self == Self::Auto => {}
                 other => return other,
             }
         }
-        SignedDistance::with_winding_numbers(Arc::clone(index), scene.clone(), WINDING_NUMBER_ERROR)
+        SignedDistance::with_winding_numbers(Arc::clone(index), Arc::clone(soup), WINDING_NUMBER_ERROR)
     }
 }

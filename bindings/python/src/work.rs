@@ -97,6 +97,20 @@ impl Monitor {
         self.poll_if_due(now);
     }
 
+    /// Answers the next step of a batch with so many queries left, unless the work was cancelled. Returns whether to go on.
+    ///
+    /// Batches of the library order all their queries and hand them to the index by the thousand. So the order of a
+    /// batch does not depend on how often it is watched, and steps cost nothing that can be measured.
+    pub(crate) fn run_step(&self, left: usize, answer: &mut dyn FnMut(usize)) -> bool {
+        if self.is_cancelled() {
+            return false;
+        }
+        let (count, start) = (self.step().min(left), Instant::now());
+        answer(count);
+        self.end_step(count, start);
+        true
+    }
+
     /// Polls if this thread has to, and has not done so for the interval.
     fn poll_if_due(&self, now: Instant) {
         if self.polls_itself {

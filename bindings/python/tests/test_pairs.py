@@ -23,7 +23,7 @@ from motions import random_rotation
 import p2m
 import p2m.compat.igl as igl
 
-PAIR_BACKENDS = ["aabb", "kdop", "brute"]
+PAIR_BACKENDS = [name for name in p2m.backends() if p2m.Index(p2m.Scene([[0, 0, 0]]), name).info["answers_pairs"]]
 BITS = ("distance", "points", "features", "barycentric", "is_intersecting")
 """The fields that are the same bits in every backend."""
 SHAPE_FIELDS = ("distance", "primitive", *BITS[1:], "lower_bound")

@@ -130,8 +130,13 @@ impl<V: Volume> PacketTree<V> {
     /// # Complexity
     /// O(n).
     pub fn refit<T: Real, S: PrimitiveSet<T> + Sync + ?Sized>(&mut self, set: &S, options: &V::Options) {
+        self.refit_with(set, options.splits().parallel);
+    }
+
+    /// Fits the tree as [`refit`](Self::refit) does, with all threads if `parallel` is set.
+    pub(crate) fn refit_with<T: Real, S: PrimitiveSet<T> + Sync + ?Sized>(&mut self, set: &S, parallel: bool) {
         assert_eq!(set.len(), self.len, "as many primitives as before");
-        self.refit_to(&|id| Member::from_primitive(&set.get(id)), options.splits().parallel);
+        self.refit_to(&|id| Member::from_primitive(&set.get(id)), parallel);
     }
 
     /// Fits the tree to moved primitives. The function does not depend on the type of the set, so it is compiled once.

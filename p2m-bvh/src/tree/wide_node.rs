@@ -86,7 +86,7 @@ pub trait WideNode: Rows + Copy + Debug + Send + Sync {
 
 /// What trees and traversals need of a bounding volume. Searches, which [`Volume`](crate::Volume) adds, need them in
 /// turn.
-pub trait VolumeNodes: Sized {
+pub trait VolumeNodes: Clone + 'static {
     /// The data that all volumes of a tree share.
     type Shared: Clone + Debug + Send + Sync;
     /// The type of the nodes.

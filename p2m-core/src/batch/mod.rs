@@ -8,10 +8,12 @@
 //! Each thread orders and answers a part of its own, so no step is left to one thread.
 
 mod columns;
+mod interruptible;
 mod order;
 mod parts;
 
 pub use columns::ClosestColumns;
+pub use interruptible::Interruptible;
 
 use crate::real::to_f64_array;
 use crate::{Closest, ClosestPoint, Position, QueryOptions, Real};

@@ -4,7 +4,7 @@ use crate::reference::{Object, moved_soup, scene};
 use nalgebra::Point3;
 use p2m_backends::{BACKENDS, BuildSettings};
 use p2m_core::{
-    Aabb, BoxQuery, BruteForce, CertifiedQuery, Closest, ClosestPoint, Index, Inspect, NearQuery, PrimitiveId,
+    Aabb, AnyIndex, BoxQuery, BruteForce, CertifiedQuery, Closest, ClosestPoint, Inspect, NearQuery, PrimitiveId,
     PrimitiveSet, QueryCost, QueryOptions, Ray, RayQuery, Real, Soup,
 };
 use p2m_instances::Instances;
@@ -18,7 +18,7 @@ use std::sync::Arc;
 /// Builds the index of a random backend.
 fn object<'a>(rng: &mut impl Rng, soup: &'a Soup<f64>) -> Object<'a, f64> {
     let backend = &BACKENDS[rng.random_range(0..BACKENDS.len())];
-    (soup, Arc::from(backend.build(soup, &BuildSettings::default()).expect("valid").index))
+    (soup, backend.build(Arc::new(soup.clone()), &BuildSettings::default()).expect("valid").index)
 }
 
 /// Returns the length of the longest side of a box, or 1 for an empty one.
@@ -30,7 +30,7 @@ fn size_of(bounds: &Aabb<f64>) -> f64 {
 fn check(
     rng: &mut impl Rng,
     case: u64,
-    scene: &Instances<f64, dyn Index<f64> + '_>,
+    scene: &Instances<f64, dyn AnyIndex<f64> + '_>,
     moved: &Soup<f64>,
     queries: &[Point3<f64>],
 ) {
@@ -198,8 +198,8 @@ fn answers_in_f32_are_those_of_the_moved_scene_in_f64() {
             .iter()
             .map(|soup| {
                 let backend = &BACKENDS[rng.random_range(0..BACKENDS.len())];
-                let built = backend.build_f32(soup, &BuildSettings::default()).expect("valid");
-                (soup, Arc::from(built.index))
+                let built = backend.build_f32(Arc::new(soup.clone()), &BuildSettings::default()).expect("valid");
+                (soup, built.index)
             })
             .collect();
         let (scene, expected) = scene(&mut rng, &objects, size);

@@ -3,7 +3,7 @@
 use nalgebra::{Isometry3, Point3, Quaternion, Translation3, UnitQuaternion, Vector3};
 use p2m_bvh::AabbTree;
 use p2m_core::{
-    BruteForce, BuildIndex, ClosestPoint, Element, Index, Inspect, NearQuery, PrimitiveId, Ray, RayQuery, Soup,
+    AnyIndex, BruteForce, BuildIndex, ClosestPoint, Element, Inspect, NearQuery, PrimitiveId, Ray, RayQuery, Soup,
 };
 use p2m_instances::{InstanceError, Instances};
 use std::sync::Arc;
@@ -23,12 +23,12 @@ fn a_scene_without_primitives_has_no_answers() {
     let origin = Point3::<f64>::origin();
     let ray = Ray::new(&origin, &Vector3::x()).expect("a direction");
     assert_eq!((scene.closest_point(&origin), scene.first_intersection(&ray)), (None, None));
-    let nothing: Arc<dyn Index> = Arc::new(BruteForce::new(Soup::<f64>::default()).expect("valid"));
+    let nothing: Arc<dyn AnyIndex> = Arc::new(BruteForce::new(Soup::<f64>::default()).expect("valid"));
     let id = scene.edit().add("nothing", &nothing, Isometry3::translation(1.0, 2.0, 3.0)).expect("valid");
     assert!(scene.bounds().is_empty() && scene.instance(id).is_some_and(|instance| instance.primitives().is_empty()));
     assert_eq!((scene.closest_point(&origin), scene.count(&ray)), (None, 0));
     // Empty instances before and behind take no ids.
-    let square: Arc<dyn Index> = square();
+    let square: Arc<dyn AnyIndex> = square();
     let mut edit = scene.edit();
     let square = edit.add("square", &square, Isometry3::identity()).expect("valid");
     edit.add("nothing again", &nothing, Isometry3::identity()).expect("valid");
@@ -212,11 +212,11 @@ fn points_that_a_far_motion_rounds_together_are_told_apart_by_their_ids() {
     let ids: Vec<u32> = (0..1728).rev().collect();
     let soup = Soup::new(points.iter().map(|p| Point3::from(*p)).collect(), ids.iter().map(|i| Element::Point(*i)));
     let soup = soup.expect("valid");
-    let tree: Arc<dyn Index + '_> = Arc::new(AabbTree::build(&soup, &Default::default()).expect("valid"));
+    let tree: Arc<dyn AnyIndex + '_> = Arc::new(AabbTree::build(&soup, &Default::default()).expect("valid"));
     let turned = Isometry3::new(Vector3::new(-7e11, 1e12, 3e11), Vector3::new(0.3, 0.2, 0.1));
     let mut inner = Instances::new();
     inner.edit().add("grid", &tree, Isometry3::identity()).expect("valid");
-    let inner: Arc<dyn Index + '_> = Arc::new(inner);
+    let inner: Arc<dyn AnyIndex + '_> = Arc::new(inner);
     for index in [&tree, &inner] {
         let mut scene = Instances::new();
         scene.edit().add("far", index, turned).expect("valid");

@@ -15,7 +15,7 @@ fn meshes_that_move_answer_as_one_index_over_all_of_them() {
     let files = model_files();
     let soups: Vec<Soup<f64>> = files
         .iter()
-        .map(|file| p2m_mixed::read_scene(file).expect("a scene").soup)
+        .map(|file| Arc::unwrap_or_clone(p2m_mixed::read_scene(file).expect("a scene").soup))
         .filter(|soup| soup.len() < 200_000)
         .collect();
     if soups.is_empty() {

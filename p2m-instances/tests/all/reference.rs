@@ -2,14 +2,14 @@
 
 use nalgebra::{Isometry3, Point3, Vector3};
 use p2m_core::pair::Motion;
-use p2m_core::{Element, Index, PrimitiveId, PrimitiveSet, Real, Soup};
+use p2m_core::{AnyIndex, Element, PrimitiveId, PrimitiveSet, Real, Soup};
 use p2m_instances::{InstanceId, Instances};
 use p2m_testkit::vector;
 use rand::{Rng, RngExt};
 use std::sync::Arc;
 
 /// An object: its scene and its index.
-pub(crate) type Object<'a, T> = (&'a Soup<T>, Arc<dyn Index<T> + 'a>);
+pub(crate) type Object<'a, T> = (&'a Soup<T>, Arc<dyn AnyIndex<T> + 'a>);
 
 /// An instance that a scene should have: its id, the number of its object, and its motion.
 pub(crate) type Expected = (InstanceId, usize, Isometry3<f64>);
@@ -44,7 +44,7 @@ pub(crate) fn scene<'a, T: Real>(
     rng: &mut impl Rng,
     objects: &[Object<'a, T>],
     size: f64,
-) -> (Instances<T, dyn Index<T> + 'a>, Vec<Expected>) {
+) -> (Instances<T, dyn AnyIndex<T> + 'a>, Vec<Expected>) {
     let (mut scene, mut expected) = (Instances::new(), Vec::<Expected>::new());
     for round in 0..rng.random_range(1..4) {
         let mut edit = scene.edit();

@@ -13,7 +13,7 @@ fn the_committed_scene_is_what_the_generator_makes() {
     let mut text = Vec::new();
     write_obj(&soup.clone().into(), &mut text).unwrap();
     assert!(text == std::fs::read(path).unwrap(), "p2m generate knot-and-cables --out scenes/knot_and_cables.obj");
-    assert_eq!(read_scene(path).unwrap().soup, soup);
+    assert_eq!(*read_scene(path).unwrap().soup, soup);
 }
 
 #[test]

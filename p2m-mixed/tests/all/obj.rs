@@ -299,7 +299,7 @@ fn written_scenes_read_back_bit_by_bit() {
     let mut text = Vec::new();
     write_obj(&soup.clone().into(), &mut text).unwrap();
     let again = obj(&text).unwrap().soup;
-    assert_eq!(again, soup);
+    assert_eq!(*again, soup);
     let bits = |s: &Soup<f64>| {
         s.positions().iter().flat_map(|p| p.iter().map(|x| x.to_bits()).collect::<Vec<_>>()).collect::<Vec<_>>()
     };

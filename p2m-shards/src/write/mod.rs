@@ -31,6 +31,7 @@ use std::fs::{self, File};
 use std::io::{self, BufWriter};
 use std::ops::ControlFlow;
 use std::path::{Path, PathBuf};
+use std::sync::Arc;
 use twox_hash::XxHash3_64;
 
 /// Options of writing shards.
@@ -289,7 +290,7 @@ impl ShardWriter {
             PartError::Io(error) => ShardError::Io { file: self.folder.clone(), error },
             PartError::Build(error) => ShardError::Build(error),
         })?;
-        let built = self.options.backend.build(&scene.soup, &BuildSettings::default())?;
+        let built = self.options.backend.build(Arc::clone(&scene.soup), &BuildSettings::default())?;
         let file = shard_file(self.run, self.manifest.shards.len());
         let path = self.folder.join(&file);
         // The file is there if it is the first one, or if it was too long and its part was divided.

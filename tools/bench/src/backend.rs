@@ -6,6 +6,7 @@ use nalgebra::Point3;
 use p2m_cli::harness::queries::Scalar as _;
 use p2m_core::Soup;
 use std::panic::{AssertUnwindSafe, catch_unwind};
+use std::sync::Arc;
 
 /// The answer to a query.
 #[derive(Clone, Copy, Debug)]
@@ -66,17 +67,17 @@ impl<C: BenchIndex> ErasedIndex for C {
 /// A scalar, with access to the scene in that scalar.
 pub(crate) trait Scalar: p2m_cli::harness::queries::Scalar {
     /// Returns the scene in this scalar and its heap bytes, or an error if the scene overflows the scalar.
-    fn soup(scene: &Scene) -> Result<(&Soup<Self>, usize), Unavailable>;
+    fn soup(scene: &Scene) -> Result<(&Arc<Soup<Self>>, usize), Unavailable>;
 }
 
 impl Scalar for f64 {
-    fn soup(scene: &Scene) -> Result<(&Soup<f64>, usize), Unavailable> {
+    fn soup(scene: &Scene) -> Result<(&Arc<Soup<f64>>, usize), Unavailable> {
         Ok((&scene.double, scene.double_bytes))
     }
 }
 
 impl Scalar for f32 {
-    fn soup(scene: &Scene) -> Result<(&Soup<f32>, usize), Unavailable> {
+    fn soup(scene: &Scene) -> Result<(&Arc<Soup<f32>>, usize), Unavailable> {
         let soup = scene.single.as_ref().ok_or_else(|| Unavailable("the scene overflows f32".to_owned()))?;
         Ok((soup, scene.single_bytes))
     }

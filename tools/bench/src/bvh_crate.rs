@@ -112,7 +112,7 @@ pub(crate) struct Tree {
 
 /// Copies the primitives, as a user of the crate has to, and returns a function that builds on one thread.
 pub(crate) fn tree(scene: &Scene) -> impl FnOnce() -> Result<Tree, Unavailable> + use<> {
-    let soup = &scene.double;
+    let soup = &*scene.double;
     let vertices = |i: usize| match *soup.get(PrimitiveId::new(i)).vertices() {
         [a, b, c] => Vertices::Triangle([a, b, c]),
         [a, b] => Vertices::Segment([a, b]),

@@ -134,7 +134,7 @@ fn ours<'a, I: ClosestPoint<f64> + Sync + 'a>(
 }
 
 fn methods<'a>(scene: &'a Scene, grid: &Grid) -> Result<Vec<Method<'a>>> {
-    let soup = &scene.double;
+    let soup = &*scene.double;
     let [x, y, z] = grid.counts();
     let domain = p2m_core::Aabb { min: grid.origin(), max: grid.point([x - 1, y - 1, z - 1]) };
     let options = one_thread();
@@ -210,17 +210,17 @@ pub(crate) fn print_article(scene: &Scene) -> Result<()> {
     let time = |run: &mut dyn FnMut()| thread_seconds(run).1;
     let mut table = Table::new(["what", "the article (cited)", "ours, s"]);
     let grid = Grid::around(&ball.double.aabb(), 45, 1.05)?;
-    let brute = BruteForce::new(&ball.double)?;
+    let brute = BruteForce::new(&*ball.double)?;
     let mut fields = [Vec::new(), Vec::new()];
     let seconds = time(&mut || fields[0] = distances(&brute, &grid, &one_thread(), &|_| ()).expect("memory"));
     let about = format!("45^3 points, {} triangles, brute force", ball.len());
     table.push(vec![about, "over 10 min (at least 5,000 triangles)".to_owned(), format!("{seconds:.2}")]);
-    let tree = AabbTree::build(&ball.double, &aabb_options())?;
+    let tree = AabbTree::build(&*ball.double, &aabb_options())?;
     let seconds = time(&mut || fields[1] = distances(&tree, &grid, &one_thread(), &|_| ()).expect("memory"));
     table.push(vec!["the same with the AABB tree".to_owned(), "-".to_owned(), format!("{seconds:.3}")]);
     assert!(fields[0] == fields[1], "fields of brute force and tree differ");
     let grid = Grid::around(&scene.double.aabb(), 100, 1.05)?;
-    let (tree, build) = thread_seconds(|| AabbTree::build(&scene.double, &aabb_options()));
+    let (tree, build) = thread_seconds(|| AabbTree::build(&*scene.double, &aabb_options()));
     let tree = tree?;
     let field = time(&mut || drop(distances(&tree, &grid, &one_thread(), &|_| ())));
     let name = &scene.name;
@@ -232,7 +232,7 @@ pub(crate) fn print_article(scene: &Scene) -> Result<()> {
     ]);
     let mut by_lists = Vec::new();
     let seconds = time(&mut || {
-        let lists = CandidateLists::new(&scene.double).expect("in range");
+        let lists = CandidateLists::new(&*scene.double).expect("in range");
         by_lists = distances_by_lists(&lists, &grid, &one_thread(), &|_| ()).expect("memory");
     });
     assert!(

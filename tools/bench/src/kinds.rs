@@ -78,7 +78,7 @@ impl BenchIndex for KindTrees<'_> {
 
 /// Prepares an AABB tree for each kind of primitive.
 pub(crate) fn aabb_by_kind(scene: &Scene) -> Result<Prepared<'_>, Unavailable> {
-    let soup = &scene.double;
+    let soup = &*scene.double;
     let build = move || {
         let mut trees = KindTrees(Vec::new());
         trees.add(soup.triangle_set(), soup.triangle_ids())?;

@@ -3,13 +3,14 @@
 use crate::backend::{Answer, BenchIndex, BoxedIndex, Prepared, Scalar, ScalarKind, Unavailable};
 use crate::scene::Scene;
 use nalgebra::Point3;
-use p2m_backends::{BackendEntry, BuildSettings, BuiltIndex, Index};
+use p2m_backends::{AnyIndex, BackendEntry, BuildSettings, BuiltIndex};
 use p2m_bvh::{AabbOptions, AabbTree};
 use p2m_core::batch::{self, BatchOptions, ClosestColumns};
 use p2m_core::{BuildError, BuildIndex, Closest, ClosestPoint, Isa, PrimitiveId, QueryOptions, Soup};
 use p2m_interception::{OctreeIndex, OctreeOptions, P2mIndex, P2mOptions};
 use p2m_kdop::{DirectionChoice, Directions, DirectionsError, KdopOptions, KdopTree};
 use std::fmt::Display;
+use std::sync::Arc;
 
 /// An index of ours that is queried through the trait [`ClosestPoint`], one query at a time.
 struct OneByOne<I>(I);
@@ -24,9 +25,9 @@ impl<I: ClosestPoint<f64> + Sync> BenchIndex for OneByOne<I> {
 }
 
 /// An index of the registry, which is queried through a pointer.
-struct Registered<'a, T: Scalar>(Box<dyn Index<T> + 'a>);
+struct Registered<T: Scalar>(Arc<dyn AnyIndex<T>>);
 
-impl<T: Scalar> BenchIndex for Registered<'_, T> {
+impl<T: Scalar> BenchIndex for Registered<T> {
     type Scalar = T;
 
     #[inline(always)]
@@ -104,7 +105,7 @@ where
     I: ClosestPoint<f64> + Sync + 'a,
     E: Display,
 {
-    over_set(&scene.double, scene.double_bytes, build)
+    over_set(&*scene.double, scene.double_bytes, build)
 }
 
 /// Prepares an index with the given options that borrows the scene as it is.
@@ -122,7 +123,7 @@ pub(crate) fn registered<'a>(
     scene: &'a Scene,
     scalar: ScalarKind,
 ) -> Result<Prepared<'a>, Unavailable> {
-    fn ready<'a, T: Scalar>(built: Result<BuiltIndex<'a, T>, BuildError>) -> Result<BoxedIndex<'a>, Unavailable> {
+    fn ready<T: Scalar>(built: Result<BuiltIndex<T>, BuildError>) -> Result<BoxedIndex<'static>, Unavailable> {
         let built = built.map_err(|error| Unavailable(error.to_string()))?;
         Ok(Box::new(Registered(built.index)))
     }
@@ -130,11 +131,11 @@ pub(crate) fn registered<'a>(
     match scalar {
         ScalarKind::Double => {
             let (soup, borrowed) = f64::soup(scene)?;
-            Ok(Prepared { build: Box::new(move || ready(entry.build(soup, &settings))), borrowed })
+            Ok(Prepared { build: Box::new(move || ready(entry.build(Arc::clone(soup), &settings))), borrowed })
         }
         ScalarKind::Single => {
             let (soup, borrowed) = f32::soup(scene)?;
-            Ok(Prepared { build: Box::new(move || ready(entry.build_f32(soup, &settings))), borrowed })
+            Ok(Prepared { build: Box::new(move || ready(entry.build_f32(Arc::clone(soup), &settings))), borrowed })
         }
     }
 }
@@ -187,7 +188,7 @@ where
     I: ClosestPoint<f64> + Sync + 'a,
     E: Display,
 {
-    Ok(prepared(&scene.double, scene.double_bytes, build, InOneBatch))
+    Ok(prepared(&*scene.double, scene.double_bytes, build, InOneBatch))
 }
 
 /// Prepares the AABB tree with the instruction set of that name for one batch call.
@@ -254,5 +255,5 @@ fn kdop_with<const K: usize>(
 
 /// Returns the directions that the scene calls for.
 pub(crate) fn scene_directions(scene: &Scene) -> DirectionChoice {
-    DirectionChoice::from_scene(&scene.double).expect("a scene is finite")
+    DirectionChoice::from_scene(&*scene.double).expect("a scene is finite")
 }

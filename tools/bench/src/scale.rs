@@ -12,7 +12,7 @@ use crate::report::provenance;
 use crate::rounds::{checksum, checksum_of_closest, thread_seconds};
 use anyhow::{Context, Result, bail};
 use nalgebra::Point3;
-use p2m_backends::{BACKENDS, BackendEntry, BuildSettings, Index};
+use p2m_backends::{AnyIndex, BackendEntry, BuildSettings};
 use p2m_cli::harness::Table;
 use p2m_core::batch::{BatchOptions, closest_points_into};
 use p2m_core::{Closest, PrimitiveSet, QueryOptions, Soup, StatsCollector};
@@ -22,6 +22,7 @@ use p2m_testkit::rng;
 use rand::seq::SliceRandom;
 use std::hint::black_box;
 use std::path::{Path, PathBuf};
+use std::sync::Arc;
 
 /// The blocks of docs/scale.md.
 pub(crate) const BLOCKS: Blocks<3> = Blocks { command: "scale", names: ["provenance", "builds", "queries"] };
@@ -100,7 +101,7 @@ pub(crate) fn run(request: &Request) -> Result<bool> {
     let mut is_equal = true;
     for &size in &request.sizes {
         let (soup, scene_bytes) = memory::measured(|| knot(size));
-        let soup = soup?;
+        let soup = Arc::new(soup?);
         let queries: Vec<Vec<Point3<f64>>> =
             request.sets.iter().map(|set| set.generate(&soup, request.queries, 1)).collect();
         let mut sums = Vec::new();
@@ -122,8 +123,7 @@ pub(crate) fn run(request: &Request) -> Result<bool> {
 
 /// Returns the entry of the registry with a name.
 fn entry_of(name: &str) -> Result<&'static BackendEntry> {
-    let entry = BACKENDS.iter().find(|entry| entry.name == name);
-    entry.with_context(|| format!("there is no backend {name}"))
+    BackendEntry::find(name).with_context(|| format!("there is no backend {name}"))
 }
 
 /// Returns a torus knot with about this number of triangles.
@@ -149,7 +149,7 @@ fn obstacle(costs: &[Costs], triangles: usize, scene_bytes: usize, request: &Req
 /// Builds an index and measures its queries.
 fn measure(
     entry: &'static BackendEntry,
-    soup: &Soup<f64>,
+    soup: &Arc<Soup<f64>>,
     queries: &[Vec<Point3<f64>>],
     rounds: usize,
 ) -> Result<Costs> {
@@ -160,7 +160,7 @@ fn measure(
         drop(index.take());
         let before = memory::current();
         let built = measure_build(&mut figures, before, || {
-            entry.build(soup, &settings).map_err(|error| Unavailable(error.to_string()))
+            entry.build(Arc::clone(soup), &settings).map_err(|error| Unavailable(error.to_string()))
         });
         match built {
             Ok(built) => index = Some(built.index),
@@ -181,7 +181,7 @@ fn measure(
 }
 
 /// Measures the queries of a set, one by one and as a batch in turns.
-fn measure_set(index: &dyn Index<f64>, queries: &[Point3<f64>], rounds: usize) -> SetCosts {
+fn measure_set(index: &dyn AnyIndex<f64>, queries: &[Point3<f64>], rounds: usize) -> SetCosts {
     let mut answers: Vec<Option<Closest<f64>>> = vec![None; queries.len()];
     let (mut single, mut batch) = (Vec::new(), Vec::new());
     let mut sum = 0;

@@ -7,15 +7,16 @@ use p2m_core::{PrimitiveSet, Real, Soup};
 use p2m_testkit::queries::diagonal;
 use p2m_testkit::scenes::narrow;
 use std::path::Path;
+use std::sync::Arc;
 
 /// A scene with the data about it that the harness needs.
 pub(crate) struct Scene {
     /// The name of the file.
     pub(crate) name: String,
     /// The scene in f64, as it was read.
-    pub(crate) double: Soup<f64>,
+    pub(crate) double: Arc<Soup<f64>>,
     /// The scene rounded to f32; `None` if that overflows.
-    pub(crate) single: Option<Soup<f32>>,
+    pub(crate) single: Option<Arc<Soup<f32>>>,
     /// Heap bytes of `double` without spare capacity, which count for an index that borrows the scene.
     pub(crate) double_bytes: usize,
     /// Heap bytes of `single` without spare capacity.
@@ -25,7 +26,7 @@ pub(crate) struct Scene {
 impl Scene {
     /// Reads a scene; an empty one is an error, because there is nothing to measure.
     pub(crate) fn read(path: &Path) -> Result<Self> {
-        let soup = p2m_mixed::read_scene(path)?.soup;
+        let soup = Arc::unwrap_or_clone(p2m_mixed::read_scene(path)?.soup);
         let name = path.file_name().unwrap_or(path.as_os_str()).to_string_lossy().into_owned();
         Self::new(name, soup)
     }
@@ -71,6 +72,7 @@ pub(crate) fn single_point(p: &Point3<f64>) -> Point3<f32> {
 }
 
 /// Returns the soup without spare capacity, and its heap bytes.
-fn trimmed<T: Real>(soup: &Soup<T>) -> (Soup<T>, usize) {
-    memory::measured(|| soup.clone())
+fn trimmed<T: Real>(soup: &Soup<T>) -> (Arc<Soup<T>>, usize) {
+    let (soup, bytes) = memory::measured(|| soup.clone());
+    (Arc::new(soup), bytes)
 }

@@ -5,6 +5,7 @@ use crate::scene::Scene;
 use anyhow::{Context, Result};
 use p2m_backends::{BackendEntry, BuildSettings};
 use p2m_cli::harness::Table;
+use std::sync::Arc;
 use std::time::Instant;
 
 /// Prints the table of a scene. All numbers of threads build once in each round.
@@ -24,7 +25,7 @@ pub(crate) fn print(scene: &Scene, backends: &[String], threads: &[usize], round
                 let at = (round + turn) % pools.len();
                 let (built, elapsed) = pools[at].install(|| {
                     let start = Instant::now();
-                    (backend.build(&scene.double, &BuildSettings::default()), start.elapsed())
+                    (backend.build(Arc::clone(&scene.double), &BuildSettings::default()), start.elapsed())
                 });
                 built?;
                 seconds[at].push(elapsed.as_secs_f64());

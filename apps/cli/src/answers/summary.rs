@@ -3,7 +3,7 @@
 use crate::answers::running_stats::RunningStats;
 use crate::io::json::{self, stats};
 use crate::scene::info::counted;
-use p2m_backends::{ChosenDirections, IndexDetails};
+use p2m_backends::{BuiltIndex, ChosenDirections};
 use p2m_core::Closest;
 use p2m_mixed::statistics::Counts;
 use p2m_mixed::{Format, Scene, Skipped};
@@ -30,7 +30,8 @@ impl<'a> SceneSummary<'a> {
 pub(crate) struct IndexSummary<'a> {
     pub(crate) scene: SceneSummary<'a>,
     pub(crate) backend: &'a str,
-    pub(crate) details: IndexDetails,
+    /// The index, unless it is in shards or lists alone are used.
+    pub(crate) built: Option<&'a BuiltIndex>,
     /// Whether the index was loaded from a file.
     pub(crate) is_loaded: bool,
     /// The time to read the scene.
@@ -42,10 +43,7 @@ pub(crate) struct IndexSummary<'a> {
 impl IndexSummary<'_> {
     /// Returns the part of a report that describes the scene and the index, as an object.
     pub(crate) fn json(&self, command: &str) -> Value {
-        let (faces, reason) = match &self.details {
-            IndexDetails::Kdop(directions) => (Some(directions.faces), directions.reason.as_ref()),
-            _ => (None, None),
-        };
+        let directions = self.directions();
         json!({
             "p2m": command,
             "version": json::VERSION,
@@ -57,33 +55,21 @@ impl IndexSummary<'_> {
             },
             "backend": self.backend,
             "loaded": self.is_loaded,
-            "faces": faces,
-            "directions_reason": reason,
+            "faces": directions.map(|directions| directions.faces),
+            "directions_reason": directions.and_then(|directions| directions.reason.as_ref()),
         })
     }
 
-    /// Returns the numbers of cells of an interception index; null for other backends.
+    /// Returns the directions of a k-DOP tree.
+    fn directions(&self) -> Option<&ChosenDirections> {
+        self.built?.directions.as_ref()
+    }
+
+    /// Returns the numbers of cells of an index; null for an index without cells.
     pub(crate) fn cells(&self) -> Value {
-        match &self.details {
-            IndexDetails::Octree(report) => json!({
-                "list_cells": report.lists,
-                "single_primitive_cells": report.singles,
-                "fallback_cells": report.trees,
-                "bytes": report.bytes,
-                "tree_bytes": report.tree_bytes,
-                "packet_tests": report.work,
-                "resolution": json::number(report.resolution),
-            }),
-            IndexDetails::P2m(report) => json!({
-                "list_cells": report.lists,
-                "fallback_cells": report.trees,
-                "packets": report.entries,
-                "primitives": report.primitives,
-                "bytes": report.bytes,
-                "tree_bytes": report.tree_bytes,
-            }),
-            _ => Value::Null,
-        }
+        let Some(cells) = self.built.and_then(|built| built.index.cells()) else { return Value::Null };
+        let counts = cells.counts.into_iter().map(|(name, count)| (name, count.into()));
+        counts.chain(cells.resolution.map(|resolution| ("resolution", json::number(resolution)))).collect()
     }
 
     /// Writes lines about the scene and the index, with a line for the note if there is one.
@@ -100,17 +86,14 @@ impl IndexSummary<'_> {
             let list: Vec<String> = self.scene.skipped.iter().map(ToString::to_string).collect();
             writeln!(text, "skipped  {}", list.join(", "))?;
         }
-        let faces = match &self.details {
-            IndexDetails::Kdop(directions) => format!(", {} faces", directions.faces),
-            _ => String::new(),
-        };
+        let faces = self.directions().map_or(String::new(), |directions| format!(", {} faces", directions.faces));
         let verb = if self.is_loaded { "loaded" } else { "built" };
         writeln!(text, "backend  {}{faces}, {verb} in {:.3?}", self.backend, self.build_time)?;
-        match &self.details {
-            IndexDetails::Kdop(ChosenDirections { reason: Some(reason), .. }) => writeln!(text, "k-DOPs   {reason}")?,
-            IndexDetails::Octree(report) => writeln!(text, "cells    {report}")?,
-            IndexDetails::P2m(report) => writeln!(text, "cells    {report}")?,
-            _ => {}
+        if let Some(reason) = self.directions().and_then(|directions| directions.reason.as_ref()) {
+            writeln!(text, "k-DOPs   {reason}")?;
+        }
+        if let Some(cells) = self.built.and_then(|built| built.index.cells()) {
+            writeln!(text, "cells    {}", cells.text)?;
         }
         Ok(())
     }

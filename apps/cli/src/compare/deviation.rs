@@ -16,7 +16,7 @@ use crate::page::source::{PageArgs, about, file_name};
 use crate::query::answers::ClosestAnswer;
 use anyhow::{Context, anyhow};
 use nalgebra::Point3;
-use p2m_backends::{BuiltIndex, Index, P2mSettings};
+use p2m_backends::{AnyIndex, P2mSettings};
 use p2m_core::batch::{self, BatchOptions};
 use p2m_core::{Closest, QueryOptions};
 use p2m_field::deviation::{DeviationStatistics, OutsideTolerance, outside};
@@ -153,10 +153,10 @@ pub(crate) fn run(streams: &Streams, args: &Args) -> anyhow::Result<()> {
     let saved = saved.as_ref();
     let backend = args.backend.unwrap_or_else(|| saved_or_default(saved));
     let source = SceneSource { soup: &scene.soup, kdop_directions: None, p2m: P2mSettings::default(), saved };
-    let PreparedIndex { built: BuiltIndex { index, details }, is_loaded, .. } =
+    let PreparedIndex { built, is_loaded, .. } =
         source.prepare(streams, backend, &pool).with_context(|| args.scene.name())?;
-    let prepare =
-        |rule: SignRule| rule.prepare(streams, &*index, &scene.soup).map_err(|error| args.without_sign(error));
+    let index = &*built.index;
+    let prepare = |rule: SignRule| rule.prepare(streams, index, &scene.soup).map_err(|error| args.without_sign(error));
     let signed = if args.unsigned { None } else { Some(prepare(args.sign)?) };
     let build_time = start.elapsed();
     let rule = signed.as_ref().map(|(_, rule)| *rule);
@@ -169,7 +169,7 @@ pub(crate) fn run(streams: &Streams, args: &Args) -> anyhow::Result<()> {
     }
 
     let points = scan.soup.positions();
-    let mut answers = Answers::new(&*index, signed.as_ref().map(|(signed, _)| signed));
+    let mut answers = Answers::new(index, signed.as_ref().map(|(signed, _)| signed));
     let query_time = match (&mut output, out_format) {
         (Some(output), Some(DeviationFormat::Csv)) => {
             let encoder = AnswerEncoder::new(AnswerFormat::Csv, &scene.objects, &args.columns(&scene));
@@ -226,7 +226,8 @@ pub(crate) fn run(streams: &Streams, args: &Args) -> anyhow::Result<()> {
     }
 
     let summary = SceneSummary::new(args.scene.name(), format, &scene);
-    let index = IndexSummary { scene: summary, backend: backend.name, details, is_loaded, read_time, build_time };
+    let index =
+        IndexSummary { scene: summary, backend: backend.name, built: Some(&built), is_loaded, read_time, build_time };
     let run = RunSummary { index, threads: pool.current_num_threads(), query_time };
     if args.json {
         let out = args.out.as_ref().zip(out_format).map_or(
@@ -257,7 +258,7 @@ pub(crate) fn run(streams: &Streams, args: &Args) -> anyhow::Result<()> {
 
 /// The answers to the points of a scan, and where they come from.
 struct Answers<'a> {
-    index: &'a dyn Index,
+    index: &'a dyn AnyIndex,
     signed: Option<&'a SignedIndex<'a>>,
     /// The deviation of each point, or NaN.
     values: Vec<f64>,
@@ -267,7 +268,7 @@ struct Answers<'a> {
 
 impl<'a> Answers<'a> {
     /// Starts without answers.
-    fn new(index: &'a dyn Index, signed: Option<&'a SignedIndex<'a>>) -> Self {
+    fn new(index: &'a dyn AnyIndex, signed: Option<&'a SignedIndex<'a>>) -> Self {
         Self { index, signed, values: Vec::new(), primitives: Vec::new() }
     }
 

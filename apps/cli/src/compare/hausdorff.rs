@@ -17,6 +17,7 @@ use p2m_mixed::{Format, Scene};
 use serde_json::{Value, json};
 use std::io::Write as _;
 use std::ops::ControlFlow;
+use std::sync::Arc;
 
 fn help() -> String {
     format!(
@@ -75,7 +76,7 @@ pub(crate) fn run(streams: &Streams, args: &Args) -> anyhow::Result<()> {
     let pool = args.threads.pool()?;
     let [(first, first_saved), (mut second, mut second_saved)] = args.scenes.read(streams, &pool, formats)?;
     if let Some(motion) = motion.as_ref().map(Motion::new) {
-        let moved = second.soup.map_positions(|p| motion.apply(p.coords.into()).into());
+        let moved = Arc::make_mut(&mut second.soup).map_positions(|p| motion.apply(p.coords.into()).into());
         moved.with_context(|| format!("{}: moved by --transform", names[1]))?;
         // The saved index is that of the scene before.
         second_saved = None;
@@ -93,7 +94,7 @@ pub(crate) fn run(streams: &Streams, args: &Args) -> anyhow::Result<()> {
     // One side alone needs no index of the first scene.
     let indexes = if args.one_sided { [None, Some(prepare(1)?)] } else { [Some(prepare(0)?), Some(prepare(1)?)] };
     let progress = Progress::start(streams, "comparing", None, Unit::None);
-    let [a, b] = [0, 1].map(|k: usize| &scenes[k].soup);
+    let [a, b] = [0, 1].map(|k: usize| &*scenes[k].soup);
     let mut go_on = |_: &_| ControlFlow::Continue(());
     let found = pool.install(|| match &indexes {
         [Some(index_a), Some(index_b)] => hausdorff_distance((a, &**index_a), (b, &**index_b), &options, &mut go_on),

@@ -12,7 +12,7 @@ use p2m_core::storage::Reader;
 use p2m_interception::{BuildStage, OctreeSoFar, StageTimes};
 use rayon::ThreadPool;
 use std::ops::ControlFlow;
-use std::sync::OnceLock;
+use std::sync::{Arc, OnceLock};
 use std::time::{Duration, Instant};
 
 /// A backend of the registry.
@@ -79,8 +79,8 @@ impl BackendChoice {
 pub(crate) type Stages = Vec<(BuildStage, Duration)>;
 
 /// An index that is ready for queries.
-pub(crate) struct PreparedIndex<'a> {
-    pub(crate) built: BuiltIndex<'a>,
+pub(crate) struct PreparedIndex {
+    pub(crate) built: BuiltIndex,
     /// Whether the index was loaded from a file.
     pub(crate) is_loaded: bool,
     /// The stages of the build; empty for backends without stages and for loaded indexes.
@@ -90,7 +90,7 @@ pub(crate) struct PreparedIndex<'a> {
 /// The scene of an index, and the file that may have the index.
 #[derive(Clone, Copy)]
 pub(crate) struct SceneSource<'a> {
-    pub(crate) soup: &'a Soup<f64>,
+    pub(crate) soup: &'a Arc<Soup<f64>>,
     /// The directions of k-DOPs that are requested; `None` for those of the file, or else the default ones.
     pub(crate) kdop_directions: Option<KdopDirections>,
     /// The requested parts of a P2M index. A saved one has the default parts.
@@ -99,7 +99,7 @@ pub(crate) struct SceneSource<'a> {
     pub(crate) saved: Option<&'a Reader>,
 }
 
-impl<'a> SceneSource<'a> {
+impl SceneSource<'_> {
     /// Loads the index of the backend from the file, or builds it with the threads of a pool if the file has none that
     /// fits.
     pub(crate) fn prepare(
@@ -107,12 +107,13 @@ impl<'a> SceneSource<'a> {
         streams: &Streams,
         backend: Backend,
         pool: &ThreadPool,
-    ) -> anyhow::Result<PreparedIndex<'a>> {
+    ) -> anyhow::Result<PreparedIndex> {
+        let soup = Arc::clone(self.soup);
         let may_be_saved = self.p2m == P2mSettings::default();
         if let Some(reader) = self.saved.filter(|reader| may_be_saved && backend.is_in(reader, self.kdop_directions)) {
             let _progress = Progress::start(streams, "loading the index", None, Unit::None);
             return Ok(PreparedIndex {
-                built: pool.install(|| backend.load(self.soup, reader))?,
+                built: pool.install(|| backend.load(soup, reader))?,
                 is_loaded: true,
                 stages: Stages::new(),
             });
@@ -138,10 +139,10 @@ impl<'a> SceneSource<'a> {
                 if StoppableWork::is_stopped() { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
             };
             let settings = settings.with_progress(&report).with_visit_octree(&visit);
-            pool.install(|| backend.build(self.soup, &settings))?
+            pool.install(|| backend.build(soup, &settings))?
         } else {
             let _progress = Progress::start(streams, "building the index", None, Unit::None);
-            pool.install(|| backend.build(self.soup, &settings))?
+            pool.install(|| backend.build(soup, &settings))?
         };
         Ok(PreparedIndex { built, is_loaded: false, stages: times.finish() })
     }

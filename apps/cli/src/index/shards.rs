@@ -3,7 +3,6 @@
 use crate::answers::summary::{IndexSummary, SceneSummary};
 use crate::io::input::SceneArgs;
 use crate::io::usage::usage;
-use p2m_backends::IndexDetails;
 use p2m_core::PrimitiveId;
 use p2m_shards::{ShardedIndex, folder_of};
 use std::path::{Path, PathBuf};
@@ -51,8 +50,7 @@ pub(crate) fn summarize(
 ) -> IndexSummary<'_> {
     let manifest = index.manifest();
     let scene = SceneSummary { name, format: "p2m-shards", counts: manifest.counts(), skipped: &[] };
-    let details = IndexDetails::None;
-    IndexSummary { scene, backend: &manifest.backend, details, is_loaded: true, read_time, build_time }
+    IndexSummary { scene, backend: &manifest.backend, built: None, is_loaded: true, read_time, build_time }
 }
 
 /// Returns the line of a summary about the shards and how often they were loaded.

@@ -3,7 +3,7 @@
 use crate::io::progress::{Progress, Unit};
 use crate::io::streams::Streams;
 use clap::ValueEnum;
-use p2m_backends::Index;
+use p2m_backends::AnyIndex;
 use p2m_core::Soup;
 use p2m_field::sign::{SignError, SignedDistance};
 
@@ -19,7 +19,7 @@ pub(crate) enum SignRule {
 }
 
 /// An index with signs, which borrows its scene.
-pub(crate) type SignedIndex<'a> = SignedDistance<&'a dyn Index, &'a Soup<f64>>;
+pub(crate) type SignedIndex<'a> = SignedDistance<&'a dyn AnyIndex, &'a Soup<f64>>;
 
 /// The largest error of winding numbers.
 const WINDING_NUMBER_ERROR: f64 = 0.01;
@@ -29,7 +29,7 @@ impl SignRule {
     pub(crate) fn prepare<'a>(
         self,
         streams: &Streams,
-        index: &'a dyn Index,
+        index: &'a dyn AnyIndex,
         soup: &'a Soup<f64>,
     ) -> Result<(SignedIndex<'a>, &'static str), SignError> {
         let _progress = Progress::start(streams, "looking for inside and outside", None, Unit::None);

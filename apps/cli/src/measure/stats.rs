@@ -13,7 +13,7 @@ use crate::io::usage::{positive, whole_number};
 use crate::page::picture::write_png;
 use anyhow::{Context, bail};
 use nalgebra::{Point3, Vector3};
-use p2m_backends::{BuiltIndex, Index};
+use p2m_backends::AnyIndex;
 use p2m_bvh::AabbTree;
 use p2m_core::{BuildIndex, ListStats, PrimitiveSet, QueryCost, RayQuery, Soup, Stat, StatsCollector};
 use p2m_mixed::Camera;
@@ -103,17 +103,18 @@ pub(crate) fn run(streams: &Streams, args: &Args) -> anyhow::Result<()> {
     let saved = saved.as_ref();
     let (backend, kdop_directions, p2m) = args.index_args.choice(saved, &scene.soup, DEFAULT_QUERY_COUNT, &pool)?;
     let source = SceneSource { soup: &scene.soup, kdop_directions, p2m, saved };
-    let PreparedIndex { built: BuiltIndex { index, details }, is_loaded, stages } =
+    let PreparedIndex { built, is_loaded, stages } =
         source.prepare(streams, backend, &pool).with_context(|| scene_args.name())?;
+    let index = &*built.index;
     let build_time = start.elapsed();
 
     let progress = Progress::start(streams, "querying", None, Unit::None);
     let region = Region::around(&scene.soup.aabb(), args.box_scale);
     let random: Vec<_> = Queries::random(region, args.queries, args.seed).collect();
     let stats = IndexStats {
-        lists: ListStats::from_index(&*index),
-        in_box: QueryCost::measure(&*index, &random),
-        on_scene: QueryCost::measure(&*index, &centroid_sample(&scene.soup, args.queries)),
+        lists: ListStats::from_index(index),
+        in_box: QueryCost::measure(index, &random),
+        on_scene: QueryCost::measure(index, &centroid_sample(&scene.soup, args.queries)),
         random_queries: random.len() as u64,
         memory: index.parts(),
         stages,
@@ -121,7 +122,7 @@ pub(crate) fn run(streams: &Streams, args: &Args) -> anyhow::Result<()> {
         is_loaded,
     };
     if let Some(mut output) = picture {
-        let values: Vec<f64> = centroids(&scene.soup).map(|centroid| query_cost(&*index, &centroid)).collect();
+        let values: Vec<f64> = centroids(&scene.soup).map(|centroid| query_cost(index, &centroid)).collect();
         if args.out.as_ref().is_some_and(|out| has_extension(out, "ply")) {
             write_values_ply(&scene.soup, &values, &mut output).with_context(|| output.cannot_write())?;
         } else {
@@ -132,7 +133,7 @@ pub(crate) fn run(streams: &Streams, args: &Args) -> anyhow::Result<()> {
     drop(progress);
 
     let (summary, backend) = (SceneSummary::new(scene_args.name(), format, &scene), backend.name);
-    let index = IndexSummary { scene: summary, backend, details, is_loaded, read_time, build_time };
+    let index = IndexSummary { scene: summary, backend, built: Some(&built), is_loaded, read_time, build_time };
     if args.json {
         let end = json!({
             "cells": index.cells(),
@@ -209,7 +210,7 @@ fn centroid_sample(soup: &Soup<f64>, count: u64) -> Vec<Point3<f64>> {
 
 /// Returns the number by which a primitive is coloured: the length of the list at its centroid, or for trees the number
 /// of packets that a query there filters.
-fn query_cost(index: &dyn Index, centroid: &Point3<f64>) -> f64 {
+fn query_cost(index: &dyn AnyIndex, centroid: &Point3<f64>) -> f64 {
     let packets = || StatsCollector::count_query(centroid, |query, collector| index.inspect(query, collector))[1];
     index.list_length(centroid).unwrap_or_else(packets) as f64
 }

@@ -113,11 +113,11 @@ pub(crate) fn run(streams: &Streams, args: &Args) -> anyhow::Result<()> {
     let progress = Progress::start(streams, "building", None, Unit::None);
     let levels = usize::from(args.levels);
     let drawn = pool.install(|| match args.k {
-        None => AabbTree::build(&scene.soup, &Default::default())
+        None => AabbTree::build(&*scene.soup, &Default::default())
             .map(|tree| panels(tree.tree(), levels, ["box", "boxes"], |bounds| box_edges(bounds).collect()))
             .map(|panels| (panels, None)),
         Some(KdopFaces(directions)) => directions
-            .build(&scene.soup, SplitOptions::default(), PolytopePanels { levels })
+            .build(&*scene.soup, SplitOptions::default(), PolytopePanels { levels })
             .map(|(panels, directions)| (panels, Some(directions))),
     });
     let (drawn, directions) = drawn.with_context(|| args.scene.name())?;

@@ -214,7 +214,7 @@ pub(crate) fn run(streams: &Streams, args: &Args) -> anyhow::Result<()> {
         view = view.with_live_queries();
     }
     if args.levels > 0 {
-        let tree = pool.install(|| AabbTree::build(&scene.soup, &Default::default()));
+        let tree = pool.install(|| AabbTree::build(&*scene.soup, &Default::default()));
         let tree = tree.with_context(|| args.scene.name())?;
         view = view.with_levels("Boxes of the AABB tree", &levels(tree.tree(), usize::from(args.levels)));
     }

@@ -14,7 +14,7 @@ use crate::page::picture::write_png;
 use crate::query::field_summary::{ComputedField, FieldSummary};
 use anyhow::{Context, anyhow};
 use nalgebra::Point3;
-use p2m_backends::{Index, IndexDetails, P2mSettings};
+use p2m_backends::{AnyIndex, P2mSettings};
 use p2m_core::{Aabb, PrimitiveSet, Soup};
 use p2m_field::FieldFormat;
 use p2m_field::grid_candidates::{CandidateLists, MAX_COORDINATE};
@@ -139,8 +139,7 @@ pub(crate) fn run(streams: &Streams, args: &Args) -> anyhow::Result<()> {
     let has_lists = args.index_args.is_unspecified() && args.refine.is_none();
     let lists = if has_lists { candidate_lists(streams, soup, &grid, &pool) } else { None };
     let mut backend_name = LISTS_NAME;
-    let (mut details, mut is_loaded) = (IndexDetails::None, false);
-    let mut index = None;
+    let mut prepared = None;
     if lists.is_none() || args.signed.is_some() {
         let (backend, kdop_directions, p2m) = match lists {
             // With lists the index decides signs alone.
@@ -148,19 +147,19 @@ pub(crate) fn run(streams: &Streams, args: &Args) -> anyhow::Result<()> {
             None => args.index_args.choice(saved.as_ref(), soup, grid.len() as u64, &pool)?,
         };
         let source = SceneSource { soup, kdop_directions, p2m, saved: saved.as_ref() };
-        let prepared = source.prepare(streams, backend, &pool).with_context(|| scene_args.name())?;
+        prepared = Some(source.prepare(streams, backend, &pool).with_context(|| scene_args.name())?);
         if lists.is_none() {
             backend_name = backend.name;
         }
-        (details, is_loaded) = (prepared.built.details, prepared.is_loaded);
-        index = Some(prepared.built.index);
     }
-    let index = match (&index, args.signed) {
-        (Some(index), Some(rule)) => {
-            let (signed, rule) = rule.prepare(streams, &**index, soup).with_context(|| scene_args.name())?;
+    let is_loaded = prepared.as_ref().is_some_and(|prepared| prepared.is_loaded);
+    let built = prepared.as_ref().map(|prepared| &prepared.built);
+    let index = match (built, args.signed) {
+        (Some(built), Some(rule)) => {
+            let (signed, rule) = rule.prepare(streams, &*built.index, soup).with_context(|| scene_args.name())?;
             Some(FieldIndex::Signed(signed, rule))
         }
-        (Some(index), None) => Some(FieldIndex::Unsigned(&**index)),
+        (Some(built), None) => Some(FieldIndex::Unsigned(&*built.index)),
         (None, _) => None,
     };
     let source = DistanceSource { lists, index };
@@ -190,7 +189,7 @@ pub(crate) fn run(streams: &Streams, args: &Args) -> anyhow::Result<()> {
     }
 
     let (summary, backend) = (SceneSummary::new(scene_args.name(), format, &scene), backend_name);
-    let index = IndexSummary { scene: summary, backend, details, is_loaded, read_time, build_time };
+    let index = IndexSummary { scene: summary, backend, built, is_loaded, read_time, build_time };
     let report = FieldSummary {
         grid: &grid,
         field: &field,
@@ -288,7 +287,7 @@ fn candidate_lists<'a>(
 
 /// An index with or without signs.
 enum FieldIndex<'a> {
-    Unsigned(&'a dyn Index),
+    Unsigned(&'a dyn AnyIndex),
     /// The signs, and the name of the rule that decides them.
     Signed(SignedIndex<'a>, &'static str),
 }

@@ -23,7 +23,7 @@ use crate::query::answers::{ClosestAnswer, Source, Task};
 use crate::query::args::queries;
 use anyhow::Context;
 use nalgebra::Point3;
-use p2m_backends::{BuiltIndex, Index, QueryRegion, Workload};
+use p2m_backends::{AnyIndex, QueryRegion, Workload};
 use p2m_core::{Closest, PrimitiveSet};
 use rayon::prelude::*;
 use std::time::Instant;
@@ -53,13 +53,14 @@ pub(crate) fn run(streams: &Streams, args: &Args) -> anyhow::Result<()> {
     let kdop_directions = requested(backend.has_kdop_directions, query_args.k)?;
     let p2m = args.p2m.settings(backend.has_p2m_settings)?;
     let source = SceneSource { soup: &scene.soup, kdop_directions, p2m, saved };
-    let PreparedIndex { built: BuiltIndex { index, details }, is_loaded, .. } =
+    let PreparedIndex { built, is_loaded, .. } =
         source.prepare(streams, backend, &pool).with_context(|| scene_args.name())?;
+    let index = &*built.index;
     let build_time = start.elapsed();
 
-    let signed = args.signed.map(|rule| rule.prepare(streams, &*index, &scene.soup)).transpose();
+    let signed = args.signed.map(|rule| rule.prepare(streams, index, &scene.soup)).transpose();
     let signed = signed.with_context(|| scene_args.name())?.map(|(signed, _)| signed);
-    let source = WholeIndex { index: &*index, signed: signed.as_ref(), args };
+    let source = WholeIndex { index, signed: signed.as_ref(), args };
     let objects = &scene.objects;
     let task = Task { streams, args, pool: &pool, queries, output: &mut output, format: out_format, objects };
     let (summary, query_time) = task.run(&source)?;
@@ -68,7 +69,7 @@ pub(crate) fn run(streams: &Streams, args: &Args) -> anyhow::Result<()> {
 
     let (backend, threads) = (backend.name, pool.current_num_threads());
     let scene = SceneSummary::new(scene_args.name(), format, &scene);
-    let index = IndexSummary { scene, backend, details, is_loaded, read_time, build_time };
+    let index = IndexSummary { scene, backend, built: Some(&built), is_loaded, read_time, build_time };
     let run = RunSummary { index, threads, query_time };
     if query_args.json {
         let report = args.report(&summary, &run.index.cells());
@@ -80,7 +81,7 @@ pub(crate) fn run(streams: &Streams, args: &Args) -> anyhow::Result<()> {
 
 /// An index over the whole scene, with signs if they are asked for.
 struct WholeIndex<'a> {
-    index: &'a dyn Index,
+    index: &'a dyn AnyIndex,
     signed: Option<&'a SignedIndex<'a>>,
     args: &'a Args,
 }

@@ -18,7 +18,7 @@ use crate::io::streams::Streams;
 use crate::ray::answers::{Task, WholeIndex};
 use crate::ray::args::rays;
 use anyhow::Context;
-use p2m_backends::{BackendEntry, BuiltIndex, P2mSettings};
+use p2m_backends::{BackendEntry, P2mSettings};
 use p2m_core::PrimitiveSet;
 use p2m_core::storage::Reader;
 use std::time::Instant;
@@ -46,11 +46,11 @@ pub(crate) fn run(streams: &Streams, args: &Args) -> anyhow::Result<()> {
     }
     let kdop_directions = requested(backend.has_kdop_directions, query_args.k)?;
     let source = SceneSource { soup: &scene.soup, kdop_directions, p2m: P2mSettings::default(), saved };
-    let PreparedIndex { built: BuiltIndex { index, details }, is_loaded, .. } =
+    let PreparedIndex { built, is_loaded, .. } =
         source.prepare(streams, backend, &pool).with_context(|| scene_args.name())?;
     let build_time = start.elapsed();
 
-    let index = index.as_ray_query().context("the backend casts no rays")?;
+    let index = built.index.as_ray_query().context("the backend casts no rays")?;
     let (output_file, objects) = (&mut output, scene.objects.as_slice());
     let task = Task { streams, pool: &pool, rays, output: output_file, format: out_format, objects };
     let (query_time, summary) = task.run(&WholeIndex(index), args.mode)?;
@@ -59,7 +59,7 @@ pub(crate) fn run(streams: &Streams, args: &Args) -> anyhow::Result<()> {
 
     let (backend, threads) = (backend.name, pool.current_num_threads());
     let scene = SceneSummary::new(scene_args.name(), format, &scene);
-    let index = IndexSummary { scene, backend, details, is_loaded, read_time, build_time };
+    let index = IndexSummary { scene, backend, built: Some(&built), is_loaded, read_time, build_time };
     let run = RunSummary { index, threads, query_time };
     if query_args.json {
         let report = args.report(summary.json());

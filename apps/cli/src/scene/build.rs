@@ -89,8 +89,8 @@ pub(crate) fn run(streams: &Streams, args: &Args) -> anyhow::Result<()> {
     let write_time = start.elapsed();
 
     let summary = SceneSummary::new(scene_args.name(), format, &scene);
-    let (backend, details) = (backend.name, built.details.clone());
-    let index = IndexSummary { scene: summary, backend, details, is_loaded, read_time, build_time };
+    let backend = backend.name;
+    let index = IndexSummary { scene: summary, backend, built: Some(&built), is_loaded, read_time, build_time };
     let out = args.out.display();
     if args.json {
         let end = json!({

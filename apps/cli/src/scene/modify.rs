@@ -7,6 +7,7 @@ use p2m_core::{Element, PrimitiveSet, Soup};
 use p2m_mixed::generate::{GenerateError, Subdivide, Transform, gapped, penetrating, subdivide};
 use p2m_mixed::{Object, Scene};
 use serde_json::{Value, json};
+use std::sync::Arc;
 
 /// The changes to a scene.
 #[derive(clap::Args)]
@@ -82,7 +83,7 @@ impl Modifiers {
             scene = with_soup(&scene, soup, objects);
         }
         if let Some(transform) = self.transform() {
-            scene.soup = transform.apply(&scene.soup)?;
+            scene.soup = Arc::new(transform.apply(&scene.soup)?);
         }
         Ok(scene)
     }

@@ -1,6 +1,7 @@
 //! Tests of `p2m field`: grids, octrees, signs and pictures.
 
 use crate::common::*;
+use p2m_backends::BACKENDS;
 use std::fs;
 use tempfile::TempDir;
 
@@ -19,7 +20,7 @@ fn backends_and_threads_give_the_same_field() {
         fs::read(out).unwrap()
     };
     let expected = field("brute.raw", &["--backend", "brute"]);
-    for backend in ["aabb", "kdop", "octree", "p2m"] {
+    for backend in BACKENDS.iter().map(|backend| backend.name) {
         assert!(field("other.raw", &["--backend", backend]) == expected, "{backend}");
     }
     // Without a named backend, distances come from lists.

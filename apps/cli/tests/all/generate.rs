@@ -53,7 +53,7 @@ fn every_kind_of_the_library_is_made() {
         assert_eq!(report["out"]["primitives"]["triangles"], soup.triangles().len());
         assert_eq!(report["out"]["bytes"], fs::metadata(&out).unwrap().len());
         // The scene is bit for bit that of the library.
-        assert_eq!(p2m_mixed::read_scene(out.as_ref()).unwrap().soup, soup, "{}", kind.name());
+        assert_eq!(*p2m_mixed::read_scene(out.as_ref()).unwrap().soup, soup, "{}", kind.name());
         // Each option has the same name on the command line and in the report, and changes the scene.
         for (name, default) in report["options"].as_object().unwrap() {
             // The value 7 is no default, and has no common divisor with the windings of a knot.
@@ -62,7 +62,7 @@ fn every_kind_of_the_library_is_made() {
             let report = json(&["generate", kind.name(), "--out", &out, "--json", &option, &value.to_string()]);
             assert_eq!(report["options"][name], value);
             let changed = p2m_mixed::read_scene(out.as_ref()).unwrap().soup;
-            assert_ne!(changed, soup, "{} {option}", kind.name());
+            assert_ne!(*changed, soup, "{} {option}", kind.name());
         }
     }
 }

@@ -1,6 +1,7 @@
 //! Tests of `p2m hausdorff`.
 
 use crate::common::*;
+use p2m_backends::BACKENDS;
 use tempfile::TempDir;
 
 const FLOOR: &str = "v 0 0 0\nv 4 0 0\nv 0 4 0\no floor\nf 1 2 3\n";
@@ -46,7 +47,7 @@ fn every_backend_and_number_of_threads_gives_the_same_report() {
     table(&["generate", "torus-knot", "--out", &ring]);
     let expected = json(&["hausdorff", &ball, &ring, "--json"]);
     assert!(expected["lower_bound"].as_f64().unwrap() > 1.0, "{expected}");
-    for backend in ["brute", "aabb", "kdop", "octree", "p2m"] {
+    for backend in BACKENDS.iter().map(|backend| backend.name) {
         assert_eq!(json(&["hausdorff", &ball, &ring, "--backend", backend, "--json"]), expected, "{backend}");
     }
     assert_eq!(json(&["hausdorff", &ball, &ring, "--threads", "1", "--json"]), expected);

@@ -1,6 +1,7 @@
 //! Tests of `p2m query`: tables, other formats and summaries.
 
 use crate::common::*;
+use p2m_backends::BACKENDS;
 use std::fs;
 use tempfile::TempDir;
 
@@ -65,7 +66,7 @@ fn objects_are_named_in_tables() {
         -1.0,-1.0,3.0,0.0,0.0,3.0,1.4142135623730951,2,edge0,wire\n0.0,0.0,9.0,0.0,0.0,5.0,4.0,0,vertex0,\n\
         100.0,0.0,0.0,,,,,,,\n"
     );
-    for backend in ["brute", "aabb", "kdop", "octree", "p2m"] {
+    for backend in BACKENDS.iter().map(|backend| backend.name) {
         assert_eq!(query(&scene, backend), expected);
     }
     let saved = path(&folder, "s.p2m");

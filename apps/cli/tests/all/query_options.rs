@@ -3,6 +3,7 @@
 use crate::common::*;
 use flate2::Compression;
 use flate2::write::GzEncoder;
+use p2m_backends::BACKENDS;
 use std::fs;
 use std::io::Write;
 use tempfile::TempDir;
@@ -21,7 +22,7 @@ fn several_answers_have_a_row_each() {
     let header = "number,qx,qy,qz,x,y,z,distance,primitive,feature\n";
     let two = "0,0.0,0.0,0.0,0.0,0.0,0.0,0.0,0,vertex0\n0,0.0,0.0,0.0,1.0,0.0,0.0,1.0,1,vertex0\n\
         1,2.5,0.0,0.0,3.0,0.0,0.0,0.5,2,vertex0\n1,2.5,0.0,0.0,1.0,0.0,0.0,1.5,1,vertex0\n";
-    for backend in ["brute", "aabb", "kdop", "octree", "p2m"] {
+    for backend in BACKENDS.iter().map(|backend| backend.name) {
         assert_eq!(run(&["--k-nearest", "2", "--backend", backend]), format!("{header}{two}"), "{backend}");
         let within = run(&["--within", "1", "--columns", "number,primitive", "--backend", backend]);
         assert_eq!(within, "number,primitive\n0,0\n0,1\n1,2\n", "{backend}");

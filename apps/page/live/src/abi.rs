@@ -2,11 +2,12 @@
 //!
 //! The script asks for the address of an array, writes it, and calls [`p2m_load`]. Then it builds indexes one by one,
 //! and queries them: a query returns 1 if there is an answer, whose values are at [`p2m_answer`]. The memory may
-//! grow in each call, which detaches the arrays that the script has made over it. Backends have the numbers of [`Backend::ALL`].
+//! grow in each call, which detaches the arrays that the script has made over it. Backends have the
+//! numbers of [`backend`](crate::backend).
 #![allow(unsafe_code, reason = "names that are exported as they are could be those of other functions of a program")]
 
 use crate::far::FarAnswer;
-use crate::scene::{Answer, Backend, Live};
+use crate::scene::{self, Answer, Live};
 use p2m::nalgebra::Point3;
 use std::cell::RefCell;
 
@@ -63,7 +64,7 @@ pub extern "C" fn p2m_load() -> u32 {
 /// Builds the index of a backend. It returns its size in bytes, or 0 if there is none.
 #[cfg_attr(target_arch = "wasm32", unsafe(no_mangle))]
 pub extern "C" fn p2m_build(backend: usize) -> usize {
-    let Some(&backend) = Backend::ALL.get(backend) else { return 0 };
+    let Some(backend) = scene::backend(backend) else { return 0 };
     with_state(|state| state.live.build(backend).ok().flatten().unwrap_or(0))
 }
 
@@ -76,7 +77,7 @@ pub extern "C" fn p2m_build_far() -> f64 {
 /// Answers a query with the index of a backend. The values are those of [`Answer::values`].
 #[cfg_attr(target_arch = "wasm32", unsafe(no_mangle))]
 pub extern "C" fn p2m_query(backend: usize, x: f64, y: f64, z: f64) -> u32 {
-    let Some(&backend) = Backend::ALL.get(backend) else { return 0 };
+    let Some(backend) = scene::backend(backend) else { return 0 };
     with_state(|state| {
         let answer = state.live.query(backend, &Point3::new(x, y, z));
         state.write(answer.map(|answer| answer.values()))
@@ -95,7 +96,7 @@ pub extern "C" fn p2m_query_far(x: f64, y: f64, z: f64) -> u32 {
 /// Answers `count` queries around the scene, and returns the number of answers.
 #[cfg_attr(target_arch = "wasm32", unsafe(no_mangle))]
 pub extern "C" fn p2m_answer_many(backend: usize, count: u32) -> usize {
-    let Some(&backend) = Backend::ALL.get(backend) else { return 0 };
+    let Some(backend) = scene::backend(backend) else { return 0 };
     with_state(|state| state.live.answer_many(backend, count))
 }
 

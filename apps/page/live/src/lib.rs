@@ -11,4 +11,4 @@ mod ordinary;
 mod scene;
 
 pub use far::{FarAnswer, FarScene, OFFSET};
-pub use scene::{Answer, Backend, Live, MAX_P2M_PRIMITIVES};
+pub use scene::{Answer, Live, MAX_VERTEX_CELL_PRIMITIVES, backend};

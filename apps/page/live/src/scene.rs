@@ -2,33 +2,18 @@
 
 use crate::far::FarScene;
 use p2m::backend::{Best, StatsCollector};
+use p2m::backends::{BACKENDS, BackendEntry, BuildSettings, IndexVisitor, SearchStructure};
 use p2m::nalgebra::Point3;
-use p2m::{
-    Aabb, AabbTree, BuildError, BuildIndex, Closest, Element, Inspect, KdopTree, OctreeIndex, P2mIndex, PrimitiveSet,
-    QueryOptions, Soup,
-};
+use p2m::{Aabb, AnyIndex, BuildError, Closest, Element, Inspect, PrimitiveSet, QueryOptions, Soup};
 use std::sync::Arc;
 
-/// The number of primitives above which no P2M index is built, because its build would take many seconds.
-pub const MAX_P2M_PRIMITIVES: usize = 50_000;
+/// The number of primitives above which no cells of vertices are built, because their build would take many seconds.
+pub const MAX_VERTEX_CELL_PRIMITIVES: usize = 50_000;
 
-/// An index that answers queries. The script of the page has the same order.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-#[non_exhaustive]
-pub enum Backend {
-    /// A tree of boxes.
-    Aabb,
-    /// A tree of k-DOPs of 14 faces.
-    Kdop,
-    /// An octree with lists.
-    Octree,
-    /// Voronoi cells with lists.
-    P2m,
-}
-
-impl Backend {
-    /// All backends in the order of their numbers.
-    pub const ALL: [Self; 4] = [Self::Aabb, Self::Kdop, Self::Octree, Self::P2m];
+/// Returns the backend with a number: the script of the page counts those of the registry but for exhaustive searches.
+#[must_use]
+pub fn backend(number: usize) -> Option<&'static BackendEntry> {
+    BACKENDS.iter().filter(|backend| backend.structure != SearchStructure::Exhaustive).nth(number)
 }
 
 /// The part of the interface of an index that a page needs. Each method of an object is compiled for each index, so
@@ -36,6 +21,16 @@ impl Backend {
 trait PageIndex {
     fn answer(&self, query: &Point3<f64>) -> Option<Answer>;
     fn bytes(&self) -> usize;
+}
+
+/// Puts an index behind the pointer of the page.
+struct ToPageIndex;
+
+impl IndexVisitor for ToPageIndex {
+    type Output = Box<dyn PageIndex>;
+    fn visit<I: AnyIndex<f64> + 'static>(self, index: I) -> Box<dyn PageIndex> {
+        Box::new(index)
+    }
 }
 
 impl<I: Inspect<f64>> PageIndex for I {
@@ -89,7 +84,7 @@ pub struct Live {
     soup: Arc<Soup<f64>>,
     /// The box of the scene, if there is one.
     bounds: Option<Aabb<f64>>,
-    indexes: [Option<Box<dyn PageIndex>>; Backend::ALL.len()],
+    indexes: Vec<(&'static BackendEntry, Box<dyn PageIndex>)>,
     far: Option<FarScene>,
 }
 
@@ -122,38 +117,37 @@ impl Live {
         self.soup.len()
     }
 
-    /// Builds the index of a backend. Its size in bytes is returned, or `None` if there is none: a P2M index of a large
-    /// scene is not built.
+    /// Builds the index of a backend. Its size in bytes is returned, or `None` if there is none: cells of vertices of a
+    /// large scene are not built.
     ///
     /// # Errors
     /// An error of the build.
-    pub fn build(&mut self, backend: Backend) -> Result<Option<usize>, BuildError> {
-        if backend == Backend::P2m && self.soup.len() > MAX_P2M_PRIMITIVES {
+    pub fn build(&mut self, backend: &'static BackendEntry) -> Result<Option<usize>, BuildError> {
+        if backend.structure == SearchStructure::VertexCells && self.soup.len() > MAX_VERTEX_CELL_PRIMITIVES {
             return Ok(None);
         }
-        let soup = Arc::clone(&self.soup);
-        let index: Box<dyn PageIndex> = match backend {
-            Backend::Aabb => Box::new(AabbTree::build(soup, &Default::default())?),
-            Backend::Kdop => Box::new(KdopTree::<f64, _>::build(soup, &Default::default())?),
-            Backend::Octree => Box::new(OctreeIndex::build(soup, &Default::default())?),
-            Backend::P2m => Box::new(P2mIndex::build(soup, &Default::default())?),
-        };
+        let (index, _) = backend.build_for(Arc::clone(&self.soup), &BuildSettings::default(), ToPageIndex)?;
         let bytes = index.bytes();
-        self.indexes[backend as usize] = Some(index);
+        self.indexes.push((backend, index));
         Ok(Some(bytes))
+    }
+
+    /// Returns the index of a backend, if it was built.
+    fn index(&self, backend: &BackendEntry) -> Option<&dyn PageIndex> {
+        self.indexes.iter().find(|(built, _)| *built == backend).map(|(_, index)| &**index)
     }
 
     /// Answers a query with the index of a backend, and counts the work. `None` stands for no answer or no index.
     #[must_use]
-    pub fn query(&self, backend: Backend, query: &Point3<f64>) -> Option<Answer> {
-        self.indexes[backend as usize].as_deref()?.answer(query)
+    pub fn query(&self, backend: &BackendEntry, query: &Point3<f64>) -> Option<Answer> {
+        self.index(backend)?.answer(query)
     }
 
     /// Answers `count` queries at points that are spread evenly in the box of the scene scaled by 1.2, and returns the
     /// number of answers. The caller measures the time.
     #[must_use]
-    pub fn answer_many(&self, backend: Backend, count: u32) -> usize {
-        let (Some(index), Some(bounds)) = (self.indexes[backend as usize].as_deref(), self.bounds) else { return 0 };
+    pub fn answer_many(&self, backend: &BackendEntry, count: u32) -> usize {
+        let (Some(index), Some(bounds)) = (self.index(backend), self.bounds) else { return 0 };
         // Multiples of these numbers modulo one, which are powers of the reciprocal of the root of x^4 = x + 1, leave
         // no large gaps.
         const STEPS: [f64; 3] = [0.819_172_513_396_164_4, 0.671_043_606_703_789_2, 0.549_700_477_901_970_1];
@@ -183,7 +177,7 @@ impl Live {
 #[cfg(test)]
 pub(crate) mod tests {
     use super::*;
-    use p2m::{BruteForce, ClosestPoint};
+    use p2m::{BruteForce, BuildIndex, ClosestPoint};
 
     /// Returns the arrays of a scene of a wavy surface, with a segment and a point above it.
     pub(crate) fn arrays() -> (Vec<f64>, Vec<u8>, Vec<u32>) {
@@ -218,14 +212,16 @@ pub(crate) mod tests {
     #[test]
     fn all_indexes_give_the_answers_of_brute_force() {
         let mut live = live();
-        for backend in Backend::ALL {
+        let backends: Vec<_> = (0..).map_while(backend).collect();
+        assert_eq!(backends.len() + 1, BACKENDS.len());
+        for &backend in &backends {
             assert!(live.query(backend, &Point3::origin()).is_none());
             assert!(live.build(backend).unwrap().unwrap() > 0);
         }
         let brute = BruteForce::build(Arc::clone(&live.soup), &()).unwrap();
         for query in queries() {
             let expected = brute.closest_point(&query).unwrap();
-            for backend in Backend::ALL {
+            for &backend in &backends {
                 let answer = live.query(backend, &query).unwrap();
                 // Certificates may differ in their last digit.
                 let mut closest = answer.closest;
@@ -237,7 +233,7 @@ pub(crate) mod tests {
                 assert_eq!(answer.values()[3], expected.distance);
             }
         }
-        assert_eq!(live.answer_many(Backend::Octree, 100), 100);
+        assert_eq!(live.answer_many(backends[2], 100), 100);
         assert_eq!(live.primitive_count(), 2 * 11 * 11 + 2);
     }
 
@@ -248,8 +244,9 @@ pub(crate) mod tests {
         assert!(Live::new(&coordinates[..30], &sizes, &indices).is_none());
         assert!(Live::new(&coordinates, &[4], &indices).is_none());
         let mut empty = Live::new(&[], &[], &[]).unwrap();
-        assert!(live().query(Backend::Aabb, &Point3::new(f64::NAN, 0.0, 0.0)).is_none());
-        assert!(empty.build(Backend::Aabb).is_ok() && empty.query(Backend::Aabb, &Point3::origin()).is_none());
+        let tree = BackendEntry::default_backend();
+        assert!(live().query(tree, &Point3::new(f64::NAN, 0.0, 0.0)).is_none());
+        assert!(empty.build(tree).is_ok() && empty.query(tree, &Point3::origin()).is_none());
         assert!(empty.build_far().is_none() && empty.far().is_none());
     }
 }

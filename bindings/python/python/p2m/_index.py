@@ -480,6 +480,7 @@ class Index(PointQueries, PairQueries):
         ``"aabb"``, a tree of boxes; ``"kdop"``, a tree of polytopes, for scenes askew to the axes; ``"octree"`` and
         ``"p2m"``, cells with lists, which take longer to build and answer many queries faster; ``"brute"``, no
         structure. ``"auto"`` is the tree of boxes, or with `queries` the backend that `p2m.advise` recommends.
+        `p2m.backends` returns all names.
     threads : int, optional
         The number of threads for the build and, unless they have their own, for queries. By default it is the
         environment variable ``RAYON_NUM_THREADS``, or else the number of processors that this process may use.
@@ -540,12 +541,8 @@ class Index(PointQueries, PairQueries):
         made = Scene.of(scene)
         self._threads = None if threads is None else thread_count(threads)
         count = thread_count(threads)
-        if backend == "auto":
-            backend = "aabb" if queries is None else advise(made, queries, threads=count)[0].backend
-        if directions is not None and backend != "kdop":
-            raise ValueError(f"directions: the backend {backend!r} has none")
-        if resolution is not None and backend != "octree":
-            raise ValueError(f"resolution: the backend {backend!r} has none")
+        if backend == "auto" and queries is not None:
+            backend = advise(made, queries, threads=count)[0].backend
         if resolution is not None and not 0.0 < resolution < float("inf"):
             raise ValueError(f"resolution: {resolution} is not positive and finite")
         named = None if directions is None else str(directions)

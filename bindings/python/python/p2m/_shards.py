@@ -464,7 +464,7 @@ def write_shards(
     folder: str | os.PathLike[str],
     max_bytes: int = 1 << 30,
     *,
-    backend: str = "aabb",
+    backend: str = "auto",
     replace: bool = False,
     threads: int | None = None,
     progress: Progress = None,

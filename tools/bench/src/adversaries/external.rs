@@ -42,7 +42,7 @@ pub(crate) fn attempt(name: &str, adversary: &str, count: usize) -> Result<()> {
     });
     match taken {
         Ok(answers) => {
-            let soup = &scene.double;
+            let soup = &*scene.double;
             let brute = BruteForce::new(soup).context("an adversary is finite")?;
             let wrong = queries.iter().zip(&answers).filter(|(query, answer)| {
                 let nearest = brute.closest_point(*query).expect("there are primitives").primitive;

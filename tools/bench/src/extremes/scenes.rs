@@ -202,17 +202,17 @@ fn check(row: usize, name: &str, soup: Soup<f64>, queries: Vec<Point3<f64>>, fin
         None => queries,
     };
     let queries = Queries::new(queries);
-    let double = Side::new(&scene.double, queries.all().double, findings, name);
+    let double = Side::new(&*scene.double, queries.all().double, findings, name);
     // A scene whose coordinates all underflow to zero is not checked in f32.
     let is_there = |soup: &&Soup<f32>| soup.positions().iter().any(|p| p.iter().any(|x| *x != 0.0));
-    let single = scene.single.as_ref().filter(is_there);
+    let single = scene.single.as_deref().filter(is_there);
     let single = single.map(|soup| Side::new(soup, queries.all().single, findings, name));
     let has_cells = [
-        OctreeIndex::build(&scene.double, &Default::default()).is_ok_and(|index| {
+        OctreeIndex::build(&*scene.double, &Default::default()).is_ok_and(|index| {
             let report = index.report();
             report.lists + report.singles > 0
         }),
-        P2mIndex::build(&scene.double, &Default::default()).is_ok_and(|index| index.report().lists > 0),
+        P2mIndex::build(&*scene.double, &Default::default()).is_ok_and(|index| index.report().lists > 0),
     ];
     let cells = &mut findings.cells[row];
     *cells = [cells[0] + 1, cells[1] + u64::from(has_cells[0]), cells[2] + u64::from(has_cells[1])];

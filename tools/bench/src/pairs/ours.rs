@@ -21,8 +21,8 @@ pub(super) struct Scenes<'a> {
 
 impl<'a> Scenes<'a> {
     pub(super) fn build(scene: &'a Scene, other: &'a Scene) -> Result<Self> {
-        let soups = [&scene.double, &other.double];
-        let single = match [&scene.single, &other.single] {
+        let soups = [&*scene.double, &*other.double];
+        let single = match [scene.single.as_deref(), other.single.as_deref()] {
             [Some(a), Some(b)] => {
                 Some([AabbTree::build(a, &Default::default())?, AabbTree::build(b, &Default::default())?])
             }

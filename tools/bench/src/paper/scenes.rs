@@ -10,6 +10,7 @@ use p2m_mixed::generate::{
     torus_knot,
 };
 use std::path::{Path, PathBuf};
+use std::sync::Arc;
 
 /// The displacement of the middle of an edge in a subdivision, relative to the length of the edge.
 const AMPLITUDE: f64 = 0.02;
@@ -67,7 +68,7 @@ impl Models {
 
     /// Returns a surface as it is, and torn in two ways.
     pub(super) fn torn(&self, name: &str) -> Result<[Scene; 3]> {
-        let own = self.read(name)?.double;
+        let own = Arc::unwrap_or_clone(self.read(name)?.double);
         let (apart, across) = (gapped(&own, 0.5)?, penetrating(&own, 5.0)?);
         let scenes = [("watertight", own), ("gapped", apart), ("penetrating", across)];
         let [a, b, c] = scenes.map(|(way, soup)| Scene::new(format!("{}, {way}", stem(name)), soup));

@@ -83,7 +83,7 @@ impl Study {
     /// Measures a scene, with a note on the standard error.
     pub(super) fn of(scene: &Scene, options: StudyOptions<'_>, effort: &Effort) -> Result<Self> {
         let start = Instant::now();
-        let soup = &scene.double;
+        let soup = &*scene.double;
         let far = QuerySet::Box10.generate(soup, effort.queries, effort.seed);
         let inside = IndexInternals::of(soup, &far, effort.rounds)?;
         let named = |names: &[&str]| -> Vec<&'static Backend> {

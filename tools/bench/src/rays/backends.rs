@@ -57,7 +57,7 @@ fn prepare<'a, V: Volume + 'a>(
 ) -> Result<Prepared<'a, RayIndex<'a>>, Unavailable> {
     let isa = instruction_set(isa)?;
     let build = move || {
-        let tree = TreeIndex::<f64, &Soup<f64>, V>::build_with(&scene.double, &options);
+        let tree = TreeIndex::<f64, &Soup<f64>, V>::build_with(&*scene.double, &options);
         Ok(RayIndex::Ours(Box::new(tree.map_err(|error| Unavailable(error.to_string()))?.with_isa(isa))))
     };
     Ok(Prepared { build: Box::new(build), borrowed: scene.double_bytes })
@@ -65,7 +65,7 @@ fn prepare<'a, V: Volume + 'a>(
 
 /// Builds brute force over a scene.
 pub(crate) fn brute(scene: &Scene) -> Result<Box<dyn OurCaster + '_>> {
-    Ok(Box::new(BruteForce::new(&scene.double)?))
+    Ok(Box::new(BruteForce::new(&*scene.double)?))
 }
 
 /// Builds every tree with every instruction set of this processor, and returns them with their names.
@@ -81,7 +81,7 @@ pub(crate) fn all_trees(scene: &Scene) -> Result<Vec<(String, Box<dyn OurCaster 
             move |isa| (format!("{name} with {isa}"), Box::new(tree.clone().with_isa(isa)) as Box<dyn OurCaster + 'a>);
         Isa::available().into_iter().map(with)
     }
-    let soup = &scene.double;
+    let soup = &*scene.double;
     let mut all = Vec::new();
     all.extend(with_each("aabb", &AabbTree::build(soup, &aabb_options())?));
     all.extend(with_each("kdop-6", &TreeIndex::<_, _, Kdop<6>>::build(soup, &kdop_options())?));

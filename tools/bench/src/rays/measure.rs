@@ -287,7 +287,7 @@ mod tests {
     #[test]
     fn right_indexes_agree_and_a_wrong_one_does_not() {
         let scene = scene(&TRIANGLES);
-        let wrong = || Wrong(BruteForce::new(&scene.double).unwrap());
+        let wrong = || Wrong(BruteForce::new(&*scene.double).unwrap());
         let indexes = [
             RayIndex::Ours(brute(&scene).unwrap()),
             RayIndex::Ours(all_trees(&scene).unwrap().remove(0).1),

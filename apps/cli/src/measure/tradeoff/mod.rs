@@ -36,12 +36,13 @@ use crate::measure::harness::rounds::thread_seconds;
 use anyhow::{Context, bail};
 use clap::ArgGroup;
 use nalgebra::Point3;
-use p2m_backends::{BACKENDS, BuildSettings, Index, SearchStructure};
+use p2m_backends::{AnyIndex, BACKENDS, BuildSettings, SearchStructure};
 use p2m_bvh::AabbTree;
 use p2m_core::{BuildIndex, CertifiedQuery, PrimitiveSet, Soup};
 use p2m_mixed::{PointFormat, Scene};
 use std::io::Write as _;
 use std::path::{Path, PathBuf};
+use std::sync::Arc;
 
 const HELP: &str = "\
 Every backend is built over the scene, on one thread, and answers the same queries with every setting, in turns: the default, certified \
@@ -116,17 +117,17 @@ fn default_backends() -> impl Iterator<Item = &'static str> {
 }
 
 /// An index that was built for the comparison, with its cost.
-struct MeasuredIndex<'a> {
+struct MeasuredIndex {
     backend: Backend,
-    index: Box<dyn Index + 'a>,
+    index: Arc<dyn AnyIndex>,
     cost: Build,
 }
 
-impl<'a> MeasuredIndex<'a> {
+impl MeasuredIndex {
     /// Builds an index on one thread, and measures the time.
-    fn build(backend: Backend, soup: &'a Soup<f64>) -> anyhow::Result<Self> {
+    fn build(backend: Backend, soup: &Arc<Soup<f64>>) -> anyhow::Result<Self> {
         let settings = BuildSettings::default().with_parallel(false);
-        let (built, seconds) = thread_seconds(|| backend.build(soup, &settings));
+        let (built, seconds) = thread_seconds(|| backend.build(Arc::clone(soup), &settings));
         let index = built?.index;
         #[allow(clippy::cast_precision_loss, reason = "less than 2^53 bytes")]
         let bytes_per_primitive = index.memory_bytes() as f64 / soup.len() as f64;

@@ -7,7 +7,7 @@ use crate::measure::tradeoff::curve::{Build, Curve, Latency, Point};
 use crate::measure::tradeoff::errors::{Errors, Truth};
 use crate::measure::tradeoff::settings::{Accuracy, Setting};
 use nalgebra::Point3;
-use p2m_backends::Index;
+use p2m_backends::AnyIndex;
 use p2m_core::{Closest, QueryOptions};
 use std::convert::Infallible;
 use std::time::Instant;
@@ -21,7 +21,7 @@ pub(crate) struct Competitor<'a> {
     pub(crate) backend: &'a str,
     pub(crate) setting: &'a Setting,
     /// The index that answers.
-    pub(crate) index: &'a dyn Index,
+    pub(crate) index: &'a dyn AnyIndex,
     /// The cost of its index.
     pub(crate) build: Build,
 }

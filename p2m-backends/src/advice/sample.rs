@@ -4,7 +4,7 @@
 //! scene. A *subsample* takes primitives from everywhere, so that most of the scene stays about as far from a query
 //! as it was.
 
-use crate::workload::QueryRegion;
+use super::workload::QueryRegion;
 use nalgebra::{Point3, Vector3};
 use p2m_core::{BuildError, Element, Primitive, PrimitiveId, PrimitiveSet, Soup};
 use rand_chacha::ChaCha8Rng;

@@ -1,50 +1,31 @@
-//! An index of any backend with the details of its backend, and the settings that it is built with.
+//! An index of any backend, and the settings that it is built with.
 
-use crate::kdop_directions::{ChosenDirections, KdopDirections};
-use crate::p2m_settings::P2mSettings;
+use super::kdop_directions::{ChosenDirections, KdopDirections};
+use super::p2m_settings::P2mSettings;
 use p2m_bvh::SplitOptions;
 use p2m_core::storage::Writer;
-use p2m_core::{Index, Real};
-use p2m_interception::{OctreeReport, OctreeSoFar, P2mReport, Progress};
+use p2m_core::{AnyIndex, Real};
+use p2m_interception::{OctreeSoFar, Progress};
 use std::ops::ControlFlow;
+use std::sync::Arc;
 
-/// An index that was built or loaded, with the details that reports have about it.
-pub struct BuiltIndex<'a, T: Real = f64> {
-    /// The index itself.
-    pub index: Box<dyn Index<T> + 'a>,
-    /// The details of its backend.
-    pub details: IndexDetails,
+/// An index that was built or loaded, with what reports have about it.
+#[derive(Clone)]
+pub struct BuiltIndex<T: Real = f64> {
+    /// The index itself, which shares its scene.
+    pub index: Arc<dyn AnyIndex<T>>,
+    /// The directions of a k-DOP tree.
+    pub directions: Option<ChosenDirections>,
 }
 
-impl<'a, T: Real> BuiltIndex<'a, T> {
-    /// Puts an index behind the pointer.
-    pub(crate) fn new(index: impl Index<T> + 'a, details: IndexDetails) -> Self {
-        Self { index: Box::new(index), details }
-    }
-}
-
-impl BuiltIndex<'_> {
-    /// Adds the index and its details to a file, without the scene.
+impl BuiltIndex {
+    /// Adds the index and its directions to a file, without the scene.
     pub fn save<'s>(&'s self, writer: &mut Writer<'s>) {
         self.index.save(writer);
-        if let IndexDetails::Kdop(directions) = &self.details {
+        if let Some(directions) = &self.directions {
             directions.save(writer);
         }
     }
-}
-
-/// The details of an index that only its backend has.
-#[derive(Clone, Debug, PartialEq)]
-#[non_exhaustive]
-pub enum IndexDetails {
-    /// The backend has none.
-    None,
-    /// The directions of a k-DOP tree.
-    Kdop(ChosenDirections),
-    /// The numbers of cells of an octree.
-    Octree(OctreeReport),
-    /// The numbers of cells of a P2M index.
-    P2m(P2mReport),
 }
 
 /// The settings that a build by name accepts. A backend ignores those that it does not have.
@@ -58,6 +39,8 @@ pub struct BuildSettings<'p> {
     pub kdop_directions: Option<KdopDirections>,
     /// The locator and the list filter of a P2M index; a grid and sorted lists by default.
     pub p2m: P2mSettings,
+    /// The fineness of the cells of an octree; `None` for that of its default options. Finer cells have larger budgets.
+    pub resolution: Option<f64>,
     /// The factor of the memory and work budgets of an octree, 1 by default. These budgets have a minimum, which is
     /// too large for a small sample of a scene.
     pub octree_budget_scale: f64,
@@ -75,6 +58,7 @@ impl Default for BuildSettings<'_> {
             is_parallel: true,
             kdop_directions: None,
             p2m: P2mSettings::default(),
+            resolution: None,
             octree_budget_scale: 1.0,
             progress: &|_| (),
             visit_octree: &|_| ControlFlow::Continue(()),
@@ -99,6 +83,12 @@ impl<'p> BuildSettings<'p> {
     #[must_use]
     pub fn with_p2m(self, p2m: P2mSettings) -> Self {
         Self { p2m, ..self }
+    }
+
+    /// Sets the fineness of the cells of an octree.
+    #[must_use]
+    pub fn with_resolution(self, resolution: Option<f64>) -> Self {
+        Self { resolution, ..self }
     }
 
     /// Sets the factor of the budgets of an octree.

@@ -1,13 +1,12 @@
 //! The recommendation: which backends are measured on which samples, and how the results are scaled to the scene.
 
-use crate::backend_entry::{BackendEntry, SearchStructure};
-use crate::estimate::{Advice, Estimate};
-use crate::index::BuildSettings;
-use crate::registry::BACKENDS;
-use crate::sample::{is_mostly_slivers, is_near_surface, neighbourhood_sample, sample_queries, subsample};
-use crate::workload::Workload;
+use super::estimate::{Advice, Estimate};
+use super::sample::{is_mostly_slivers, is_near_surface, neighbourhood_sample, sample_queries, subsample};
+use super::workload::Workload;
+use crate::registry::{BACKENDS, BackendEntry, BuildSettings, SearchStructure};
 use nalgebra::Point3;
 use p2m_core::{BuildError, Closest, PrimitiveSet, QueryOptions, Soup};
+use std::sync::Arc;
 use std::time::Instant;
 
 /// The part of the expected time of the job that advice may take.
@@ -136,6 +135,7 @@ impl<'a> Comparison<'a> {
             let size = if is_first { MIN_SAMPLE_PRIMITIVES.min(size) } else { size };
             let sample =
                 if self.is_near { neighbourhood_sample(self.soup, size)? } else { subsample(self.soup, size)? };
+            let sample = Arc::new(sample);
             self.sample_primitives = sample.len();
             let queries = sample_queries(self.soup, &sample, self.workload.region, query_count);
             for i in contenders {
@@ -225,12 +225,12 @@ struct Measured {
 }
 
 /// Builds a backend over a sample and times the queries.
-fn measure(backend: &BackendEntry, sample: &Soup<f64>, queries: &[Point3<f64>]) -> Result<Measured, BuildError> {
+fn measure(backend: &BackendEntry, sample: &Arc<Soup<f64>>, queries: &[Point3<f64>]) -> Result<Measured, BuildError> {
     // A small sample has to get as small a part of the budgets as it has of the scene.
     let budget_scale = (sample.len() as f64 / MIN_OCTREE_BUDGET_PRIMITIVES).min(1.0);
     let settings = BuildSettings::default().with_parallel(false).with_octree_budget_scale(budget_scale);
     let start = Instant::now();
-    let index = backend.build(sample, &settings)?.index;
+    let index = backend.build(Arc::clone(sample), &settings)?.index;
     let build_seconds = start.elapsed().as_secs_f64();
     let mut answers: Vec<Option<Closest<f64>>> = vec![None; queries.len()];
     // The second pass finds in the cache what it needs, as a query amid many others does.

@@ -5,7 +5,7 @@
 
 use p2m_bvh::SplitOptions;
 use p2m_core::storage::{self, LoadError, Reader, Writer};
-use p2m_core::{BuildError, PrimitiveSet, Real, Soup};
+use p2m_core::{BuildError, PrimitiveSet, Real};
 use p2m_kdop::{DirectionChoice, Directions, KdopOptions, KdopTree};
 
 /// The prefix of the kinds of k-DOP trees in saved files.
@@ -117,26 +117,26 @@ impl KdopDirections {
     ///
     /// # Errors
     /// The errors of [`TreeIndex::build_with`](p2m_bvh::TreeIndex::build_with).
-    pub fn build<'a, T: Real, V: KdopVisitor<&'a Soup<T>, T>>(
+    pub fn build<T: Real, S: PrimitiveSet<T> + Sync, V: KdopVisitor<S, T>>(
         self,
-        soup: &'a Soup<T>,
+        set: S,
         splits: SplitOptions,
         visitor: V,
     ) -> Result<(V::Output, ChosenDirections), BuildError> {
-        let choice = (self == Self::Scene).then(|| DirectionChoice::from_scene(soup)).transpose()?;
+        let choice = (self == Self::Scene).then(|| DirectionChoice::from_scene(&set)).transpose()?;
         let output = match self.faces() {
-            6 => build_tree::<6, _, _>(soup, splits, choice.as_ref(), visitor),
-            14 => build_tree::<14, _, _>(soup, splits, choice.as_ref(), visitor),
-            18 => build_tree::<18, _, _>(soup, splits, choice.as_ref(), visitor),
-            _ => build_tree::<26, _, _>(soup, splits, choice.as_ref(), visitor),
+            6 => build_tree::<6, _, _, _>(set, splits, choice.as_ref(), visitor),
+            14 => build_tree::<14, _, _, _>(set, splits, choice.as_ref(), visitor),
+            18 => build_tree::<18, _, _, _>(set, splits, choice.as_ref(), visitor),
+            _ => build_tree::<26, _, _, _>(set, splits, choice.as_ref(), visitor),
         }?;
         let faces = self.faces();
         Ok((output, ChosenDirections { faces, reason: choice.map(|choice| format!("{faces} {choice}")) }))
     }
 }
 
-fn build_tree<'a, const K: usize, T: Real, V: KdopVisitor<&'a Soup<T>, T>>(
-    soup: &'a Soup<T>,
+fn build_tree<const K: usize, T: Real, S: PrimitiveSet<T> + Sync, V: KdopVisitor<S, T>>(
+    set: S,
     splits: SplitOptions,
     choice: Option<&DirectionChoice>,
     visitor: V,
@@ -146,5 +146,5 @@ where
 {
     let directions = choice.map(|choice| choice.directions::<K>().expect("a choice has directions of every K here"));
     let options = KdopOptions::new(directions.unwrap_or_default()).with_splits(splits);
-    KdopTree::build_with(soup, &options).map(|tree| visitor.visit(tree))
+    KdopTree::build_with(set, &options).map(|tree| visitor.visit(tree))
 }

@@ -2,21 +2,37 @@
 
 use crate::pair::PairQuery;
 use crate::storage::Writer;
-use crate::{BoxQuery, BruteForce, CertifiedQuery, ClosestPoint, Inspect, PrimitiveSet, RayQuery, Real};
+use crate::{
+    BoxQuery, BruteForce, BuildError, CertifiedQuery, ClosestPoint, Inspect, PrimitiveSet, RayQuery, Real, Soup,
+};
 use std::sync::Arc;
 
-/// Everything that an index can do, as a trait that can be used as `dyn Index<T>`.
+/// The summary of an index of cells.
+#[derive(Clone, Debug, PartialEq)]
+pub struct CellSummary {
+    /// A phrase for people.
+    pub text: String,
+    /// Numbers by their names in reports.
+    pub counts: Vec<(&'static str, u64)>,
+    /// The fineness of the cells, of an index that has a setting for it.
+    pub resolution: Option<f64>,
+}
+
+/// The result of fitting an index to a moved scene, which it shares.
+pub type Refitted<T> = Result<Arc<dyn AnyIndex<T>>, BuildError>;
+
+/// Everything that an index can do, as a trait that can be used as `dyn AnyIndex<T>`.
 ///
 /// Every index answers closest-point, near and certified queries, and reports its costs. Rays, boxes and pairs are optional.
 /// Indexes can be sent to other threads and shared among them.
 ///
 /// ```
 /// use nalgebra::Point3;
-/// use p2m_core::{BruteForce, ClosestPoint, Index, NearQuery, Point, RayQuery, Soup};
+/// use p2m_core::{BruteForce, ClosestPoint, AnyIndex, NearQuery, Point, RayQuery, Soup};
 /// use std::sync::Arc;
 ///
 /// let soup: Arc<Soup<f64>> = Arc::default();
-/// let index: Box<dyn Index> = Box::new(BruteForce::new(soup)?);
+/// let index: Box<dyn AnyIndex> = Box::new(BruteForce::new(soup)?);
 /// let index = std::thread::spawn(move || {
 ///     assert!(index.closest_point(&[0.0; 3]).is_none());
 ///     index
@@ -27,10 +43,10 @@ use std::sync::Arc;
 /// # Ok::<(), p2m_core::BuildError>(())
 /// ```
 #[diagnostic::on_unimplemented(
-    message = "`{Self}` is not an index that can be used as `dyn Index<{T}>`",
+    message = "`{Self}` is not an index that can be used as `dyn AnyIndex<{T}>`",
     note = "the scene of an index has to be `Send` and `Sync`, so share it by `Arc` and not by `Rc`"
 )]
-pub trait Index<T: Real = f64>: ClosestPoint<T> + CertifiedQuery<T> + Inspect<T> + Send + Sync {
+pub trait AnyIndex<T: Real = f64>: ClosestPoint<T> + CertifiedQuery<T> + Inspect<T> + Send + Sync {
     /// Adds the index to a file, without its scene. An index without a saved form adds nothing.
     fn save<'s>(&'s self, writer: &mut Writer<'s>);
 
@@ -54,9 +70,27 @@ pub trait Index<T: Real = f64>: ClosestPoint<T> + CertifiedQuery<T> + Inspect<T>
     fn as_pair_query(&self) -> Option<&(dyn PairQuery<T> + Sync)> {
         None
     }
+
+    /// Returns a copy that is fitted to a scene in which the same primitives have moved, or `None` if an index of this
+    /// kind has to be built anew. The errors are [`BuildError::OtherLength`] for a scene with another number of
+    /// primitives, and [`BuildError::NonFinite`].
+    fn refitted(&self, soup: Arc<Soup<T>>) -> Option<Refitted<T>> {
+        let _ = soup;
+        None
+    }
+
+    /// Returns the sum of the areas of all boxes of a tree, which measures its quality.
+    fn surface_area(&self) -> Option<f64> {
+        None
+    }
+
+    /// Returns the summary of the cells of an index that has cells.
+    fn cells(&self) -> Option<CellSummary> {
+        None
+    }
 }
 
-impl<T: Real, S: PrimitiveSet<T> + Send + Sync> Index<T> for BruteForce<S> {
+impl<T: Real, S: PrimitiveSet<T> + Send + Sync> AnyIndex<T> for BruteForce<S> {
     fn save<'s>(&'s self, _: &mut Writer<'s>) {}
 
     fn primitive_count(&self) -> usize {
@@ -78,12 +112,20 @@ impl<T: Real, S: PrimitiveSet<T> + Send + Sync> Index<T> for BruteForce<S> {
     fn as_pair_query(&self) -> Option<&(dyn PairQuery<T> + Sync)> {
         Some(self)
     }
+
+    fn refitted(&self, soup: Arc<Soup<T>>) -> Option<Refitted<T>> {
+        let (len, expected) = (soup.len(), self.set().len());
+        if len != expected {
+            return Some(Err(BuildError::OtherLength { len, expected }));
+        }
+        Some(BruteForce::new(soup).map(|index| Arc::new(index) as Arc<dyn AnyIndex<T>>))
+    }
 }
 
 /// Implements the trait for a pointer type by its target.
 macro_rules! index_behind {
     ($target:ident, $pointer:ty) => {
-        impl<T: Real, $target: Index<T> + ?Sized> Index<T> for $pointer {
+        impl<T: Real, $target: AnyIndex<T> + ?Sized> AnyIndex<T> for $pointer {
             fn save<'s>(&'s self, writer: &mut Writer<'s>) {
                 (**self).save(writer);
             }
@@ -101,6 +143,15 @@ macro_rules! index_behind {
             }
             fn as_pair_query(&self) -> Option<&(dyn PairQuery<T> + Sync)> {
                 (**self).as_pair_query()
+            }
+            fn refitted(&self, soup: Arc<Soup<T>>) -> Option<Refitted<T>> {
+                (**self).refitted(soup)
+            }
+            fn surface_area(&self) -> Option<f64> {
+                (**self).surface_area()
+            }
+            fn cells(&self) -> Option<CellSummary> {
+                (**self).cells()
             }
         }
     };

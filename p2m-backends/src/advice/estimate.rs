@@ -1,7 +1,6 @@
 //! The expected costs of each backend, and the advice that follows from them.
 
-use crate::backend_entry::{BackendEntry, SearchStructure};
-use crate::cost_model::{EXHAUSTIVE_SECONDS_PER_PRIMITIVE, REFERENCE_PRIMITIVES};
+use crate::registry::{BackendEntry, EXHAUSTIVE_SECONDS_PER_PRIMITIVE, REFERENCE_PRIMITIVES, SearchStructure};
 
 /// The costs that are expected of a backend for a scene and a workload, on one thread.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -1,0 +1,379 @@
+//! The registry of backends: one table that the program `p2m`, the Python package, pages, shards, the advice,
+//! measurements and tests read.
+//!
+//! A new backend joins them with one entry of [`BACKENDS`], its [`IndexKind`], and the branches below that build and load
+//! its index. The values of `--backend` and of `backend=` in Python, the files of `p2m build`, the estimates of `p2m
+//! advise`, the list of `p2m-bench` and the tests of agreement all come from that entry.
+//!
+//! Indexes are behind one pointer, [`Arc<dyn AnyIndex>`](AnyIndex), and share their scene. The pointer costs one
+//! indirect call for each query, or for each batch of queries. In rounds of `p2m tradeoff` it makes no measurable
+//! difference to queries of 700 to 1000 ns, so no command needs the types behind it. The searches below that call are
+//! compiled for each index. [`BackendEntry::build_for`] passes the index to a function of its type instead, for programs
+//! that have to be small.
+
+mod backend_entry;
+mod cost_model;
+mod index;
+mod kdop_directions;
+mod p2m_settings;
+
+pub use backend_entry::{BackendEntry, SearchStructure};
+pub use cost_model::CostModel;
+pub(crate) use cost_model::{EXHAUSTIVE_SECONDS_PER_PRIMITIVE, REFERENCE_PRIMITIVES};
+pub use index::{BuildSettings, BuiltIndex};
+pub use kdop_directions::{ChosenDirections, KdopDirections, KdopVisitor};
+pub use p2m_settings::{ListFilterKind, LocatorKind, P2mSettings};
+
+use p2m_bvh::{AabbTree, PacketTree};
+use p2m_core::storage::{self, LoadError, Reader, Saved};
+use p2m_core::{AnyIndex, BruteForce, BuildError, BuildIndex, PrimitiveSet, Real, Soup};
+use p2m_interception::{Octree, OctreeIndex, OctreeOptions, P2mIndex, Voronoi};
+use p2m_kdop::KdopTree;
+use std::sync::Arc;
+
+/// All backends, the simplest one first. Tables and estimates keep this order.
+pub static BACKENDS: &[BackendEntry] = &[
+    BackendEntry {
+        name: "brute",
+        summary: "Every primitive, every time",
+        structure: SearchStructure::Exhaustive,
+        casts_rays: true,
+        answers_pairs: true,
+        has_refit: true,
+        reports_progress: false,
+        has_kdop_directions: false,
+        has_resolution: false,
+        has_p2m_settings: false,
+        cost: CostModel {
+            build_seconds_per_primitive: 0.04e-6,
+            near_query_seconds: 0.0,
+            box_query_seconds: 0.0,
+            bytes_per_primitive: 0.0,
+            near_growth: 2.0,
+            box_growth: 2.0,
+            sliver_query_factor: 1.0,
+            sample_correction: 1.0,
+        },
+        kind: IndexKind::Brute,
+    },
+    BackendEntry {
+        name: "aabb",
+        summary: "A tree of boxes",
+        structure: SearchStructure::Tree,
+        casts_rays: true,
+        answers_pairs: true,
+        has_refit: true,
+        reports_progress: false,
+        has_kdop_directions: false,
+        has_resolution: false,
+        has_p2m_settings: false,
+        cost: CostModel {
+            build_seconds_per_primitive: 0.37e-6,
+            near_query_seconds: 700e-9,
+            box_query_seconds: 1200e-9,
+            bytes_per_primitive: 65.0,
+            near_growth: 1.11,
+            box_growth: 1.27,
+            sliver_query_factor: 1.0,
+            sample_correction: 1.0,
+        },
+        kind: IndexKind::Aabb,
+    },
+    BackendEntry {
+        name: "kdop",
+        summary: "A tree of polytopes (k-DOPs), which fit closer what does not lie along the axes",
+        structure: SearchStructure::Tree,
+        casts_rays: true,
+        answers_pairs: true,
+        has_refit: true,
+        reports_progress: false,
+        has_kdop_directions: true,
+        has_resolution: false,
+        has_p2m_settings: false,
+        cost: CostModel {
+            build_seconds_per_primitive: 0.4e-6,
+            near_query_seconds: 750e-9,
+            box_query_seconds: 1250e-9,
+            bytes_per_primitive: 66.0,
+            near_growth: 1.11,
+            box_growth: 1.27,
+            sliver_query_factor: 0.75,
+            sample_correction: 1.08,
+        },
+        kind: IndexKind::Kdop,
+    },
+    BackendEntry {
+        name: "octree",
+        summary: "Cells in space with lists of what can be nearest there: no search, for more memory and a longer build",
+        structure: SearchStructure::SpaceCells,
+        casts_rays: false,
+        answers_pairs: false,
+        has_refit: false,
+        reports_progress: true,
+        has_kdop_directions: false,
+        has_resolution: true,
+        has_p2m_settings: false,
+        cost: CostModel {
+            build_seconds_per_primitive: 6.5e-6,
+            near_query_seconds: 640e-9,
+            box_query_seconds: 690e-9,
+            bytes_per_primitive: 235.0,
+            near_growth: 1.15,
+            box_growth: 1.23,
+            sliver_query_factor: 1.0,
+            sample_correction: 1.0,
+        },
+        kind: IndexKind::Octree,
+    },
+    BackendEntry {
+        name: "p2m",
+        summary: "Cells of the vertices with lists of what can be nearest there: fastest far from the scene",
+        structure: SearchStructure::VertexCells,
+        casts_rays: false,
+        answers_pairs: false,
+        has_refit: false,
+        reports_progress: true,
+        has_kdop_directions: false,
+        has_resolution: false,
+        has_p2m_settings: true,
+        cost: CostModel {
+            build_seconds_per_primitive: 21e-6,
+            near_query_seconds: 430e-9,
+            box_query_seconds: 500e-9,
+            bytes_per_primitive: 330.0,
+            near_growth: 1.12,
+            box_growth: 1.24,
+            sliver_query_factor: 1.0,
+            sample_correction: 1.0,
+        },
+        kind: IndexKind::P2m,
+    },
+];
+
+/// The type of the indexes of a backend.
+#[derive(Clone, Copy, PartialEq, Eq)]
+pub(crate) enum IndexKind {
+    Brute,
+    Aabb,
+    Kdop,
+    Octree,
+    P2m,
+}
+
+/// A function of an index, which is compiled for each type of index.
+pub trait IndexVisitor<T: Real = f64> {
+    /// The result of the visit.
+    type Output;
+    /// Receives the index.
+    fn visit<I: AnyIndex<T> + 'static>(self, index: I) -> Self::Output;
+}
+
+/// Puts an index behind the pointer.
+struct ToPointer;
+
+impl<T: Real> IndexVisitor<T> for ToPointer {
+    type Output = Arc<dyn AnyIndex<T>>;
+    fn visit<I: AnyIndex<T> + 'static>(self, index: I) -> Self::Output {
+        Arc::new(index)
+    }
+}
+
+/// Erases the number of faces of a k-DOP tree.
+struct OfAnyK<V>(V);
+
+impl<T: Real, S: PrimitiveSet<T> + Send + Sync + 'static, V: IndexVisitor<T>> KdopVisitor<S, T> for OfAnyK<V> {
+    type Output = V::Output;
+    fn visit<const K: usize>(self, tree: KdopTree<T, S, K>) -> V::Output {
+        self.0.visit(tree)
+    }
+}
+
+fn has_kind(reader: &Reader, kind: &str) -> bool {
+    storage::kind(reader).is_ok_and(|found| found == kind)
+}
+
+impl BackendEntry {
+    /// Builds an index over a scene.
+    ///
+    /// # Errors
+    /// [`BuildError`] for a scene with coordinates that are not finite, or with too many primitives.
+    pub fn build(&self, soup: Arc<Soup<f64>>, settings: &BuildSettings<'_>) -> Result<BuiltIndex, BuildError> {
+        let (index, directions) = self.build_for(soup, settings, ToPointer)?;
+        Ok(BuiltIndex { index, directions })
+    }
+
+    /// Builds an index over a scene in f32.
+    ///
+    /// # Errors
+    /// [`BuildError`] for a scene with coordinates that are not finite, or with too many primitives.
+    pub fn build_f32(&self, soup: Arc<Soup<f32>>, settings: &BuildSettings<'_>) -> Result<BuiltIndex<f32>, BuildError> {
+        let (index, directions) = self.build_for(soup, settings, ToPointer)?;
+        Ok(BuiltIndex { index, directions })
+    }
+
+    /// Builds an index over a scene and passes it to a function of its type. The directions of a k-DOP tree come with
+    /// the result.
+    ///
+    /// # Errors
+    /// [`BuildError`] for a scene with coordinates that are not finite, or with too many primitives.
+    pub fn build_for<T: Real, V: IndexVisitor<T>>(
+        &self,
+        soup: Arc<Soup<T>>,
+        settings: &BuildSettings<'_>,
+        visitor: V,
+    ) -> Result<(V::Output, Option<ChosenDirections>), BuildError> {
+        let output = match self.kind {
+            IndexKind::Brute => visitor.visit(BruteForce::build(soup, &())?),
+            IndexKind::Aabb => visitor.visit(AabbTree::build(soup, &settings.splits())?),
+            IndexKind::Kdop => {
+                let directions = settings.kdop_directions.unwrap_or(KdopDirections::Fourteen);
+                let (output, directions) = directions.build(soup, settings.splits(), OfAnyK(visitor))?;
+                return Ok((output, Some(directions)));
+            }
+            IndexKind::Octree => {
+                let options = OctreeOptions::default().with_splits(settings.splits());
+                let factor = settings.resolution.map_or(1.0, |resolution| resolution / options.resolution);
+                let options = options.with_finer_cells(factor);
+                let scale = settings.octree_budget_scale;
+                let (memory, work) = (options.memory * scale, options.work * scale);
+                let options = options.with_memory(memory).with_work(work);
+                let visit = &mut |so_far: &_| (settings.visit_octree)(so_far);
+                visitor.visit(OctreeIndex::build_until(soup, &options, settings.progress, visit)?)
+            }
+            IndexKind::P2m => {
+                let options = settings.p2m.options().with_splits(settings.splits());
+                visitor.visit(P2mIndex::build_with_progress(soup, &options, settings.progress)?)
+            }
+        };
+        Ok((output, None))
+    }
+
+    /// Whether indexes of this backend can be saved and loaded.
+    #[must_use]
+    pub fn is_saveable(&self) -> bool {
+        self.kind != IndexKind::Brute
+    }
+
+    /// Whether a saved file has an index of this backend, with these directions if it is a k-DOP tree.
+    #[must_use]
+    pub fn is_in(&self, reader: &Reader, directions: Option<KdopDirections>) -> bool {
+        match self.kind {
+            IndexKind::Brute => false,
+            IndexKind::Aabb => has_kind(reader, &PacketTree::<p2m_core::Aabb<f64>>::kind()),
+            IndexKind::Kdop => KdopDirections::saved_faces(directions, reader).is_some(),
+            IndexKind::Octree => has_kind(reader, &Octree::kind()),
+            IndexKind::P2m => has_kind(reader, &Voronoi::kind()),
+        }
+    }
+
+    /// Loads the index of a saved file over the scene that it was built over.
+    ///
+    /// # Errors
+    /// [`LoadError`], and always if the file has no index of this backend.
+    pub fn load(&self, soup: Arc<Soup<f64>>, reader: &Reader) -> Result<BuiltIndex, LoadError> {
+        let index: Arc<dyn AnyIndex> = match self.kind {
+            IndexKind::Brute => {
+                return Err(LoadError::OtherKind { found: storage::kind(reader)?, expected: self.name.to_owned() });
+            }
+            IndexKind::Aabb => Arc::new(AabbTree::load(soup, reader)?),
+            IndexKind::Kdop => {
+                let faces = KdopDirections::saved_faces(None, reader).unwrap_or(14);
+                let (index, directions) = KdopDirections::load(faces, soup, reader, OfAnyK(ToPointer))?;
+                return Ok(BuiltIndex { index, directions: Some(directions) });
+            }
+            IndexKind::Octree => Arc::new(OctreeIndex::load(soup, reader)?),
+            IndexKind::P2m => Arc::new(P2mIndex::load(soup, reader)?),
+        };
+        Ok(BuiltIndex { index, directions: None })
+    }
+
+    /// Returns the backend of this name.
+    #[must_use]
+    pub fn find(name: &str) -> Option<&'static Self> {
+        BACKENDS.iter().find(|backend| backend.name == name)
+    }
+
+    /// Returns the backend that is used where none is named: the tree of boxes, which is quick to build and answers
+    /// every kind of query.
+    ///
+    /// # Panics
+    /// It does not panic: the table has a tree.
+    #[must_use]
+    pub fn default_backend() -> &'static Self {
+        BACKENDS.iter().find(|backend| backend.structure == SearchStructure::Tree).expect("the table has a tree")
+    }
+
+    /// Returns the backend of the index in a saved file, if there is one.
+    #[must_use]
+    pub fn from_saved(reader: &Reader) -> Option<&'static Self> {
+        BACKENDS.iter().find(|backend| backend.is_in(reader, None))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use nalgebra::Point3;
+    use p2m_core::storage::{SavedFile, Writer};
+    use p2m_mixed::generate::{IcoSphere, ico_sphere};
+
+    #[test]
+    fn entries_are_what_they_say_of_themselves() {
+        let soup = Arc::new(ico_sphere(&IcoSphere::default()).unwrap());
+        let query = Point3::new(0.1, 0.2, 3.0);
+        for (i, backend) in BACKENDS.iter().enumerate() {
+            assert!(BACKENDS[..i].iter().all(|other| other != backend), "{backend}");
+            assert_eq!(BackendEntry::find(backend.name), Some(backend));
+            let built = backend.build(Arc::clone(&soup), &BuildSettings::default()).unwrap();
+            let answer = built.index.closest_point(&query);
+            assert!(answer.is_some());
+            assert_eq!(built.index.as_ray_query().is_some(), backend.casts_rays, "{backend}");
+            assert_eq!(built.index.memory_bytes() > 0, backend.structure != SearchStructure::Exhaustive, "{backend}");
+            assert_eq!(built.index.as_pair_query().is_some(), backend.answers_pairs, "{backend}");
+            assert_eq!(built.index.refitted(Arc::clone(&soup)).is_some(), backend.has_refit, "{backend}");
+            assert_eq!(built.index.surface_area().is_some(), backend.structure == SearchStructure::Tree, "{backend}");
+            assert_eq!(built.index.cells().is_some(), backend.structure.has_cells(), "{backend}");
+            assert_eq!(built.directions.is_some(), backend.has_kdop_directions, "{backend}");
+            let finer = BuildSettings::default().with_resolution(Some(3.0));
+            let finer = backend.build(Arc::clone(&soup), &finer).unwrap();
+            assert_eq!(finer.index.cells() != built.index.cells(), backend.has_resolution, "{backend}");
+            let mut file = Vec::new();
+            let mut writer = Writer::default();
+            built.save(&mut writer);
+            writer.write(&mut file).unwrap();
+            let file = SavedFile::read(&file[..]).unwrap();
+            let reader = file.checked().unwrap();
+            for other in BACKENDS {
+                assert_eq!(other.is_in(reader, None), other == backend && backend.is_saveable(), "{other} {backend}");
+            }
+            if backend.is_saveable() {
+                assert_eq!(BackendEntry::from_saved(reader), Some(backend));
+                let loaded = backend.load(Arc::clone(&soup), reader).unwrap();
+                assert_eq!(loaded.index.closest_point(&query), answer, "{backend}");
+                assert_eq!(loaded.directions, built.directions, "{backend}");
+                assert_eq!(loaded.index.cells(), built.index.cells(), "{backend}");
+            } else {
+                assert!(backend.load(Arc::clone(&soup), reader).is_err());
+            }
+        }
+        assert_eq!(BackendEntry::default_backend().name, "aabb");
+    }
+    #[cfg(all(feature = "kiddo", feature = "rstar"))]
+    #[test]
+    fn every_locator_and_filter_gives_the_same_answers() {
+        use super::{ListFilterKind, LocatorKind, P2mSettings};
+        let soup = Arc::new(ico_sphere(&IcoSphere::default()).unwrap());
+        let queries: Vec<_> = (0..100).map(|i| Point3::new(0.1 * f64::from(i), 0.2, 3.0 - f64::from(i % 7))).collect();
+        let backend = BackendEntry::find("p2m").unwrap();
+        let expected = backend.build(Arc::clone(&soup), &BuildSettings::default()).unwrap();
+        for locator in [LocatorKind::Grid, LocatorKind::KdTree] {
+            for list_filter in [ListFilterKind::Sorted, ListFilterKind::RTree] {
+                let p2m = P2mSettings { locator, list_filter };
+                let built = backend.build(Arc::clone(&soup), &BuildSettings::default().with_p2m(p2m)).unwrap();
+                for query in &queries {
+                    assert_eq!(built.index.closest_point(query), expected.index.closest_point(query), "{p2m:?}");
+                }
+            }
+        }
+    }
+}

@@ -1,0 +1,68 @@
+//! An index whose batches can be watched and ended early.
+
+use crate::{Best, ClosestPoint, Found, QueryOptions, Real};
+use nalgebra::Point3;
+
+/// An index that answers the queries of a batch in steps, and leaves the rest out when it is told to stop.
+///
+/// Before each step the function gets the number of queries that are left. It calls the second argument with the
+/// number of queries to answer in this step, which is at most that many, and returns whether to go on. All threads of
+/// a batch call it. The functions of [`batch`](crate::batch) order all queries first, so the answers and their order do
+/// not depend on the steps. Queries that are left out keep what was in their places.
+///
+/// ```
+/// use nalgebra::Point3;
+/// use p2m_core::batch::{BatchOptions, Interruptible, closest_points_into};
+/// use p2m_core::{BruteForce, Point};
+/// use std::sync::atomic::{AtomicUsize, Ordering};
+///
+/// let index = BruteForce::new([Point::new(Point3::origin())])?;
+/// let answered = AtomicUsize::new(0);
+/// let stopping = Interruptible::new(&index, |left, answer| {
+///     answer(left.min(2));
+///     answered.fetch_add(left.min(2), Ordering::Relaxed) < 2
+/// });
+/// let queries = [[1.0, 0.0, 0.0]; 9];
+/// let (in_order, mut answers) = (BatchOptions::default().with_reorder(false).with_parallel(false), [None; 9]);
+/// closest_points_into(&stopping, &queries, &Default::default(), &in_order, &mut answers);
+/// assert_eq!(answers.map(|answer| answer.is_some()), [true, true, true, true, false, false, false, false, false]);
+/// # Ok::<(), p2m_core::BuildError>(())
+/// ```
+pub struct Interruptible<'a, I: ?Sized, F> {
+    index: &'a I,
+    step: F,
+}
+
+impl<'a, I: ?Sized, F: Fn(usize, &mut dyn FnMut(usize)) -> bool> Interruptible<'a, I, F> {
+    /// Wraps an index, whose batches call the function before each step.
+    pub fn new(index: &'a I, step: F) -> Self {
+        Self { index, step }
+    }
+}
+
+impl<T: Real, I: ClosestPoint<T> + ?Sized, F: Fn(usize, &mut dyn FnMut(usize)) -> bool> ClosestPoint<T>
+    for Interruptible<'_, I, F>
+{
+    fn search(&self, query: &Point3<T>, best: &mut Best<T>) {
+        self.index.search(query, best);
+    }
+
+    fn answer_queries(
+        &self,
+        queries: &[Point3<T>],
+        options: &QueryOptions<T>,
+        answered: &mut dyn FnMut(usize, Found<'_, T>),
+    ) {
+        let mut first = 0;
+        while first < queries.len() {
+            let goes_on = (self.step)(queries.len() - first, &mut |count| {
+                let step = &queries[first..first + count];
+                self.index.answer_queries(step, options, &mut |i, found| answered(first + i, found));
+                first += count;
+            });
+            if !goes_on {
+                return;
+            }
+        }
+    }
+}
