@@ -6,7 +6,7 @@
 
 use nalgebra::Point3;
 use p2m::pair::{PairOptions, PairQuery};
-use p2m::{AabbTree, BuildIndex, Segment};
+use p2m::{AabbTree, Segment};
 
 fn main() -> anyhow::Result<()> {
     let mut arguments = std::env::args().skip(1);
@@ -14,7 +14,7 @@ fn main() -> anyhow::Result<()> {
     let radius: f64 = arguments.next().map_or(Ok(0.02), |text| text.parse())?;
     let scene = p2m::scene::read_scene(name.as_ref())?.soup;
     // The index has the mesh alone, borrowed from the scene of mesh and pipes.
-    let index = AabbTree::build(scene.triangle_set(), &Default::default())?;
+    let index = AabbTree::new(scene.triangle_set())?;
 
     let pipes = scene.segments().iter().map(|ends| ends.map(|i| scene.positions()[i as usize]));
     let nearest = |[a, b]: [Point3<f64>; 2]| index.closest_to(&Segment::new(a, b), &PairOptions::default());

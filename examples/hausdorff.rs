@@ -8,7 +8,7 @@ use anyhow::Context;
 use nalgebra::Vector3;
 use p2m::field::{HausdorffOptions, hausdorff_distance};
 use p2m::scene::generate::{IcoSphere, ico_sphere};
-use p2m::{AabbTree, BuildIndex, PrimitiveSet, Soup};
+use p2m::{AabbTree, PrimitiveSet, Soup};
 use std::ops::ControlFlow;
 use std::sync::Arc;
 use std::time::Instant;
@@ -27,7 +27,7 @@ fn main() -> anyhow::Result<()> {
     };
     let part: f64 = arguments.get(2).map_or(Ok(1e-4), |text| text.parse())?;
     let start = Instant::now();
-    let indexes = [AabbTree::build(&*a, &Default::default())?, AabbTree::build(&*b, &Default::default())?];
+    let indexes = [AabbTree::new(&*a)?, AabbTree::new(&*b)?];
     let build = start.elapsed();
     let bounds = a.aabb().union(&b.aabb());
     let options = HausdorffOptions::new(part * (bounds.max - bounds.min).norm());

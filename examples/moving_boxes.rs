@@ -4,7 +4,7 @@
 
 use p2m::instances::{InstanceId, Instances};
 use p2m::nalgebra::{Isometry3, Point3, Vector3};
-use p2m::{AabbTree, BuildIndex, ClosestPoint, Ray, RayQuery, Soup};
+use p2m::{AabbTree, ClosestPoint, Ray, RayQuery, Soup};
 use std::f64::consts::TAU;
 use std::sync::Arc;
 
@@ -14,7 +14,7 @@ fn cuboid(half: [f64; 3]) -> anyhow::Result<Arc<AabbTree<f64, Soup<f64>>>> {
     let positions: Vec<[f64; 3]> = (0..8).map(corner).collect();
     let quads = [[0u32, 2, 3, 1], [4, 5, 7, 6], [0, 1, 5, 4], [2, 6, 7, 3], [0, 4, 6, 2], [1, 3, 7, 5]];
     let triangles: Vec<[u32; 3]> = quads.iter().flat_map(|[a, b, c, d]| [[*a, *b, *c], [*a, *c, *d]]).collect();
-    Ok(Arc::new(AabbTree::build(Soup::from_arrays(&positions, &triangles)?, &Default::default())?))
+    Ok(Arc::new(AabbTree::new(Soup::from_arrays(&positions, &triangles)?)?))
 }
 
 /// Returns the place of box `i` of `count` at a time in turns of the innermost circle.

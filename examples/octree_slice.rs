@@ -9,7 +9,7 @@
 mod common;
 
 use nalgebra::Point3;
-use p2m::{BuildIndex, ClosestPoint, OctreeIndex, PrimitiveSet};
+use p2m::{ClosestPoint, OctreeIndex, PrimitiveSet};
 
 /// The number of pixels on each side.
 const PIXELS: u32 = 600;
@@ -20,7 +20,7 @@ fn main() -> anyhow::Result<()> {
     let out = arguments.next().unwrap_or_else(|| "octree_slice.png".to_owned());
     let side: f64 = arguments.next().map_or(Ok(1.5), |side| side.parse())?;
     let scene = p2m::scene::read_scene(name.as_ref())?.soup;
-    let index = OctreeIndex::build(&scene, &Default::default())?;
+    let index = OctreeIndex::new(&scene)?;
     println!("{}", index.report());
     let bounds = scene.aabb();
     let centre = nalgebra::center(&bounds.min, &bounds.max);

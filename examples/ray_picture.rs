@@ -10,8 +10,9 @@ mod common;
 
 use anyhow::{Context, ensure};
 use nalgebra::{Point3, Vector3};
+use p2m::core::Side;
 use p2m::scene::Camera;
-use p2m::{AabbTree, BuildIndex, PrimitiveSet, Ray, RayQuery, Side, Soup};
+use p2m::{AabbTree, PrimitiveSet, Ray, RayQuery, Soup};
 use rayon::prelude::*;
 
 /// The default direction from the middle of the scene towards the eye; y is up.
@@ -40,7 +41,7 @@ fn main() -> anyhow::Result<()> {
     let eye = if eye.is_empty() { EYE.to_vec() } else { eye };
     let scene = p2m::scene::read_scene(name.as_ref())?.soup;
     ensure!(!scene.is_empty(), "{name} is empty");
-    let index = AabbTree::build(&scene, &Default::default())?;
+    let index = AabbTree::new(&scene)?;
     let towards = <[f64; 3]>::try_from(eye).ok().map(Vector3::from);
     let camera = towards.and_then(|towards| Camera::before(&scene, &towards, width));
     let camera = camera.context("the direction to the eye is three numbers, and not along y")?;

@@ -6,7 +6,7 @@
 use anyhow::Context;
 use nalgebra::Point3;
 use p2m::scene::generate::{IcoSphere, ico_sphere};
-use p2m::{BruteForce, BuildIndex, Closest, ClosestPoint, OctreeIndex, QueryOptions, Soup};
+use p2m::{BruteForce, Closest, ClosestPoint, OctreeIndex, QueryOptions, Soup};
 
 /// Wraps with any index; the function is compiled for the index that it is called with.
 fn wrap<I: ClosestPoint<f64>>(index: &I, cloud: &[Point3<f64>]) -> Option<Vec<Closest<f64>>> {
@@ -19,7 +19,7 @@ fn main() -> anyhow::Result<()> {
     let mut arguments = std::env::args().skip(1);
     let name = arguments.next().unwrap_or_else(|| "scenes/knot_and_cables.obj".to_owned());
     let scene = p2m::scene::read_scene(name.as_ref())?.soup;
-    let index = OctreeIndex::build(&scene, &Default::default())?;
+    let index = OctreeIndex::new(&scene)?;
 
     let bounds = p2m::PrimitiveSet::aabb(&scene);
     let (centre, radius) = (nalgebra::center(&bounds.min, &bounds.max), (bounds.max - bounds.min).norm() * 0.6);

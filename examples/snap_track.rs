@@ -5,7 +5,7 @@
 //! them with the errors of a receiver, so the correct street is known.
 
 use nalgebra::Point3;
-use p2m::{BuildIndex, ClosestPoint, KdopTree, PrimitiveId, QueryOptions, Segment};
+use p2m::{ClosestPoint, KdopTree, PrimitiveId, QueryOptions, Segment};
 
 const STREETS: u32 = 40;
 const BLOCK: f64 = 100.0;
@@ -54,7 +54,7 @@ fn snap<I: ClosestPoint<f64>>(index: &I, track: impl Iterator<Item = Point3<f64>
 
 fn main() -> anyhow::Result<()> {
     let streets = streets();
-    let index = KdopTree::<f64, _, 6>::build(&streets, &Default::default())?;
+    let index = KdopTree::<f64, _, 6>::new(&streets)?;
     let track = track();
     let snapped = snap(&index, track.iter().map(|(position, _)| *position));
     let on_a_street = snapped.iter().flatten().count();

@@ -6,32 +6,23 @@
 //! return the same primitive and, bit for bit, the same distance from every index.
 //!
 //! ```
-//! use nalgebra::Point3;
-//! use p2m::{AabbTree, BuildIndex, ClosestPoint, Element, Feature, QueryOptions, Soup};
+//! use p2m::prelude::*;
+//! use p2m::{AabbTree, Element, Feature, QueryOptions, Soup};
 //!
-//! // A roof of two triangles and a cable beside it, over shared positions.
-//! let positions = vec![
-//!     Point3::new(0.0, 0.0, 0.0),
-//!     Point3::new(4.0, 0.0, 0.0),
-//!     Point3::new(4.0, 3.0, 0.0),
-//!     Point3::new(0.0, 3.0, 0.0),
-//!     Point3::new(5.0, 0.0, 2.0),
-//!     Point3::new(5.0, 3.0, 2.0),
-//! ];
-//! let scene = Soup::new(
-//!     positions,
-//!     [Element::Triangle([0, 1, 2]), Element::Triangle([0, 2, 3]), Element::Segment([4, 5])],
-//! )?;
-//! let index = AabbTree::build(&scene, &Default::default())?;
+//! // A roof of two triangles and a cable beside it.
+//! let roof = [[0.0, 0.0, 0.0], [4.0, 0.0, 0.0], [4.0, 3.0, 0.0], [0.0, 3.0, 0.0], [5.0, 0.0, 2.0], [5.0, 3.0, 2.0]];
+//! let mut scene: Soup = Soup::from_arrays(&roof, &[[0, 1, 2], [0, 2, 3]])?;
+//! scene.push(Element::Segment([4, 5]))?;
+//! let index = AabbTree::new(scene)?;
 //!
-//! let answer = index.closest_point(&Point3::new(3.0, 1.0, 2.0)).expect("the scene is not empty");
+//! let answer = index.closest_point(&[3.0, 1.0, 2.0]).expect("the scene is not empty");
 //! assert_eq!(answer.distance, 2.0);
 //! assert_eq!(answer.primitive.index(), 0); // the lowest id among equals: the cable is as near
 //! assert_eq!(answer.feature, Feature::Face);
 //!
 //! // Nothing within 1: no answer. The bound is inclusive.
 //! let near = QueryOptions::default().with_max_distance(1.0);
-//! assert!(index.closest_point_with(&Point3::new(3.0, 1.0, 2.0), &near).is_none());
+//! assert!(index.closest_point_with(&[3.0, 1.0, 2.0], &near).is_none());
 //! # Ok::<(), p2m::BuildError>(())
 //! ```
 //!
@@ -46,14 +37,14 @@
 //! | the k nearest, all within a distance, whether there is any, the closest that a filter admits | [`NearQuery`] | every index |
 //! | the hits of a ray | [`RayQuery`] | trees and brute force |
 //! | the primitives that intersect a box | [`BoxQuery`] | trees and brute force |
-//! | the primitive nearest to a segment or a triangle, or whether one is near | [`pair::PairQuery`] | trees and brute force |
+//! | the primitive nearest to a segment or a triangle, or whether one is near | [`PairQuery`] | trees and brute force |
 //! | the first contact of a moving ball | [`pair::MovingBall`] | trees and brute force |
 //! | the statistics of deviations of a scan | `field::deviation::DeviationStatistics` | signed distances |
 //! | the Hausdorff distance of two scenes | `field::hausdorff_distance` | every index |
 //! | the nearest points of two scenes, one of which may move | [`pair::PairQuery::closest_pair`] | trees and brute force |
 //! | most of these in a scene larger than memory | `shards::ShardedIndex` | shards of every index |
 //! | any of these in a scene of moving objects | [`instances::Instances`] | objects of every index |
-//! | the cost of a query | [`Inspect`] | every index |
+//! | the cost of a query | [`core::Inspect`] | every index |
 //!
 //! # Which index
 //!
@@ -65,7 +56,7 @@
 //! | [`AabbTree`] | a tree of boxes, split by the surface-area heuristic and searched nearest first | `bvh` |
 //! | [`OctreeIndex`] | cubic cells with short lists of the primitives that can be nearest in them; faster for many queries, and takes more memory | `interception` |
 //! | [`P2mIndex`] | Voronoi cells of the vertices with such lists; fastest far away, and takes the most memory | `interception` |
-//! | `PaperIndex` | the P2M index with the KD-tree, the R-trees and the long lists of the paper, for comparison | `kiddo`, `rstar` |
+//! | `paper::PaperIndex` | the P2M index with the KD-tree, the R-trees and the long lists of the paper, for comparison | `paper` |
 //! | [`KdopTree`] | a tree of polytopes of K faces, which fit primitives askew to the axes more closely than boxes | `kdop` |
 //!
 //! Functions over `I: ClosestPoint<T>` or `&dyn ClosestPoint<T>` leave the choice to the caller. The module `guide`
@@ -77,8 +68,8 @@
 //! |---|---|---|
 //! | `bvh` | [`AabbTree`] | yes |
 //! | `interception` | [`OctreeIndex`], [`P2mIndex`] | yes |
-//! | `kiddo` | `KdTreeLocator`, the paper's way to the nearest vertex, for [`P2mOptions`]: slower than the default | yes |
-//! | `rstar` | `RegionTree`, the paper's filter of long lists, for [`P2mOptions`]: slower than the default; with `kiddo` also `PaperIndex`; `scene::adapters::RstarIndex` | yes |
+//! | `lean` | all features of the default but `paper`: `default-features = false, features = ["lean"]` compiles 20 crates fewer | yes |
+//! | `paper` | `paper`: the index of the P2M paper, with the KD-tree of kiddo and the R-trees of rstar; slower than [`P2mIndex`] | yes |
 //! | `parry` | shapes of parry3d-f64 in [`scene`]s; its tree as an index, `scene::adapters::ParryIndex` | no |
 //! | `parry-f32` | shapes of parry3d in [`scene`]s | no |
 //! | `glam` | [`Position`]s of the crate glam in scenes and batches | no |
@@ -90,7 +81,7 @@
 //! | `instances` | [`instances`]: scenes of moving objects | yes |
 //! | `shards` | `shards`: scenes larger than memory, in shards that are loaded on demand | no |
 //! | `rayon` | building and [`batch`] on all cores | yes |
-//! | `mixed` | [`scene`]: reading scenes and points from files | yes |
+//! | `scene` | [`scene`]: reading scenes and points from files | yes |
 #![cfg_attr(docsrs, feature(doc_cfg))]
 #![forbid(unsafe_code)]
 
@@ -99,21 +90,19 @@ pub use nalgebra;
 /// The registry of indexes by their names, and which one a scene and its queries call for.
 #[cfg(feature = "backends")]
 pub use p2m_backends as backends;
-/// Everything else about trees of boxes: their nodes and packets, and trees of other volumes.
+/// Everything else about trees of boxes: split rules, nodes and packets, and trees of other volumes.
 #[cfg(feature = "bvh")]
 pub use p2m_bvh as bvh;
 #[cfg(feature = "bvh")]
-pub use p2m_bvh::{AabbOptions, AabbTree, SplitOptions, SplitRule};
-/// The parts of an index of your own, and of what examines others: collectors, the kernel, predicates. This is the
-/// crate `p2m-core` as a whole.
-pub use p2m_core as backend;
-/// The nearest points of two scenes, one of which may have moved, and of a scene and a shape.
-pub use p2m_core::pair;
+pub use p2m_bvh::{AabbTree, SplitOptions};
+/// Everything else about the contract: collectors, the kernel, predicates, and the parts of an index of your own. This
+/// is the crate `p2m-core` as a whole.
+pub use p2m_core as core;
+pub use p2m_core::pair::{self, PairQuery};
 pub use p2m_core::{
-    Aabb, AnyIndex, BoxQuery, BruteForce, BuildError, BuildIndex, CertifiedQuery, CertifyError, Closest, ClosestPoint,
-    Element, Feature, Hit, Inspect, Isa, NearQuery, Point, PointSet, Position, Primitive, PrimitiveDefect, PrimitiveId,
-    PrimitiveSet, Projection, QueryCost, QueryOptions, Ray, RayError, RayHit, RayQuery, Real, Segment, SegmentSet,
-    Shape, Side, Soup, Triangle, TriangleSet, batch, check_primitive, storage,
+    Aabb, AnyIndex, BoxQuery, BruteForce, BuildError, BuildIndex, CertifiedQuery, Closest, ClosestPoint, Element,
+    Feature, Hit, NearQuery, Point, Position, Primitive, PrimitiveId, PrimitiveSet, QueryOptions, Ray, RayHit,
+    RayQuery, Real, Segment, Shape, Soup, Triangle, batch, storage,
 };
 /// Distance fields, on which side of a surface a point is, and Hausdorff distances.
 #[cfg(feature = "field")]
@@ -121,37 +110,46 @@ pub use p2m_field as field;
 /// Scenes of moving objects: instances of indexes, each with a rotation and a translation.
 #[cfg(feature = "instances")]
 pub use p2m_instances as instances;
-/// Everything else about interception indexes: partitions, locators, Delaunay tetrahedra.
+/// Everything else about interception indexes: partitions, reports, Delaunay tetrahedra.
 #[cfg(feature = "interception")]
 pub use p2m_interception as interception;
-#[cfg(feature = "kiddo")]
-pub use p2m_interception::KdTreeLocator;
-#[cfg(feature = "rstar")]
-pub use p2m_interception::RegionTree;
 #[cfg(feature = "interception")]
-pub use p2m_interception::{
-    BuildListFilter, BuildLocator, Domain, InterceptionIndex, ListFilter, Locator, LocatorSites, OctreeIndex,
-    OctreeOptions, OctreeReport, OctreeSoFar, P2mIndex, P2mOptions, P2mReport, Region, Voronoi,
-};
-#[cfg(all(feature = "kiddo", feature = "rstar"))]
-pub use p2m_interception::{PaperIndex, PaperOptions};
+pub use p2m_interception::{OctreeIndex, OctreeOptions, P2mIndex, P2mOptions};
 /// Everything else about k-DOPs: polytopes, directions from a scene.
 #[cfg(feature = "kdop")]
 pub use p2m_kdop as kdop;
 #[cfg(feature = "kdop")]
 pub use p2m_kdop::{KdopOptions, KdopTree};
 /// Scenes from files and generators.
-#[cfg(feature = "mixed")]
+#[cfg(feature = "scene")]
 pub use p2m_mixed as scene;
 /// Scenes larger than memory: indexes in shards, which are loaded on demand.
 #[cfg(feature = "shards")]
 pub use p2m_shards as shards;
 
+/// The traits of queries, scenes and indexes, for `use p2m::prelude::*`.
+pub mod prelude {
+    pub use crate::{
+        AnyIndex, BoxQuery, BuildIndex, CertifiedQuery, ClosestPoint, NearQuery, PairQuery, Position, Primitive,
+        PrimitiveSet, RayQuery, Real,
+    };
+}
+
+/// The index of the P2M paper, for comparison: its KD-tree, its R-trees, and the traits by which a
+/// [`P2mIndex`] can have others.
+#[cfg(feature = "paper")]
+pub mod paper {
+    pub use p2m_interception::{
+        BuildListFilter, BuildLocator, KdTreeLocator, ListFilter, Locator, LocatorSites, PaperIndex, PaperOptions,
+        Region, RegionTree,
+    };
+}
+
 #[doc = include_str!("../docs/guide.md")]
-#[cfg(all(feature = "bvh", feature = "instances", feature = "interception", feature = "kdop", feature = "mixed"))]
+#[cfg(all(feature = "bvh", feature = "instances", feature = "interception", feature = "kdop", feature = "scene"))]
 pub mod guide {}
 
 /// The README's example, compiled and run.
-#[cfg(all(doctest, feature = "bvh", feature = "mixed"))]
+#[cfg(all(doctest, feature = "bvh", feature = "scene"))]
 #[doc = include_str!("../README.md")]
 struct Readme;

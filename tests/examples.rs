@@ -1,7 +1,7 @@
 //! Runs the example programs and checks their output.
-#![cfg(all(feature = "bvh", feature = "instances", feature = "interception", feature = "kdop", feature = "mixed"))]
+#![cfg(all(feature = "bvh", feature = "instances", feature = "interception", feature = "kdop", feature = "scene"))]
 
-use p2m::{AabbTree, BuildIndex, ClosestPoint};
+use p2m::{AabbTree, ClosestPoint};
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
@@ -52,7 +52,7 @@ fn cables_have_room_beside_the_tube() {
     assert!((clearance(&text) - clearance(&wide) - 0.01).abs() < 2e-6, "{text}{wide}");
     // The clearance is not below the distance of points of the axes, and barely above it.
     let scene = p2m::scene::read_scene("scenes/knot_and_cables.obj".as_ref()).expect("carried").soup;
-    let index = AabbTree::build(scene.triangle_set(), &Default::default()).expect("valid");
+    let index = AabbTree::new(scene.triangle_set()).expect("valid");
     let distances = scene.segments().iter().flat_map(|s| {
         let [a, b] = s.map(|i| scene.positions()[i as usize]);
         (0..=50).map(move |i| a + (b - a) * (f64::from(i) / 50.0))

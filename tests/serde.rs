@@ -14,7 +14,7 @@ fn scene() -> Arc<Soup<f64>> {
 fn indexes_come_back_with_their_scenes() {
     type Tree = AabbTree<f64, Arc<Soup<f64>>>;
     type Octree = OctreeIndex<f64, Arc<Soup<f64>>>;
-    let tree = Tree::build(scene(), &Default::default()).expect("valid");
+    let tree = Tree::new(scene()).expect("valid");
     let octree = Octree::build(scene(), &Default::default()).expect("valid");
     let tree_text = serde_json::to_string(&tree).expect("serialises");
     let octree_text = serde_json::to_string(&octree).expect("serialises");

@@ -44,7 +44,8 @@ impl<T: Real, S: PrimitiveSet<T>, V: Volume> TreeIndex<T, S, V> {
     /// use p2m_core::{ClosestPoint, Soup};
     ///
     /// let positions = [[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]];
-    /// let tree = AabbTree::new(Soup::from_arrays(&positions, &[[0u32, 1, 2]])?)?;
+    /// let scene: Soup = Soup::from_arrays(&positions, &[[0, 1, 2]])?;
+    /// let tree = AabbTree::new(scene)?;
     /// assert_eq!(tree.closest_point(&[0.25, 0.25, 2.0]).unwrap().distance, 2.0);
     /// # Ok::<(), p2m_core::BuildError>(())
     /// ```
@@ -120,11 +121,11 @@ impl<T: Real, S: PrimitiveSet<T>, V: Volume> TreeIndex<T, S, V> {
     /// ```
     /// use nalgebra::{Point3, Vector3};
     /// use p2m_bvh::AabbTree;
-    /// use p2m_core::{BuildIndex, ClosestPoint, Soup};
+    /// use p2m_core::{ClosestPoint, Soup};
     ///
     /// let positions = [[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]];
     /// let soup: Soup<f64> = Soup::from_arrays(&positions, &[[0u32, 1, 2]])?;
-    /// let mut tree = AabbTree::build(soup, &Default::default())?;
+    /// let mut tree = AabbTree::new(soup)?;
     /// let raised = |soup: &mut Soup<f64>| soup.map_positions(|p| p + Vector3::new(0.0, 0.0, 2.0));
     /// tree.refit_in_place(&Default::default(), raised)?;
     /// assert_eq!(tree.closest_point(&[0.0; 3]).unwrap().distance, 2.0);

@@ -7,14 +7,14 @@
 //!
 //! ```
 //! use p2m_bvh::AabbTree;
-//! use p2m_core::{BuildIndex, ClosestPoint, Segment};
+//! use p2m_core::{ClosestPoint, Segment};
 //! use nalgebra::Point3;
 //!
 //! let wires = [
 //!     Segment::new(Point3::new(0.0, 0.0, 0.0), Point3::new(4.0, 0.0, 0.0)),
 //!     Segment::new(Point3::new(0.0, 3.0, 0.0), Point3::new(4.0, 3.0, 0.0)),
 //! ];
-//! let tree = AabbTree::build(&wires, &Default::default()).unwrap();
+//! let tree = AabbTree::new(&wires).unwrap();
 //! let answer = tree.closest_point(&Point3::new(1.0, 2.0, 0.0)).unwrap();
 //! assert_eq!((answer.primitive.index(), answer.distance), (1, 1.0));
 //! ```
@@ -41,14 +41,12 @@ pub use volume::Volume;
 
 use p2m_core::Aabb;
 
-/// The options of an [`AabbTree`], which are those of its splits.
-pub type AabbOptions = SplitOptions;
-
 /// An AABB tree over a set of primitives, which it stores by value or as a reference.
 ///
 /// The type is an alias of [`TreeIndex`], whose methods are:
 ///
-/// - [`build_with`](TreeIndex::build_with) builds a tree, as [`BuildIndex::build`](p2m_core::BuildIndex::build) does;
+/// - [`new`](TreeIndex::new) builds a tree with default options, and [`build_with`](TreeIndex::build_with) with
+///   [`SplitOptions`], as [`BuildIndex::build`](p2m_core::BuildIndex::build) does;
 /// - [`refit`](TreeIndex::refit) fits the tree to moved primitives;
 /// - [`save`](TreeIndex::save) and [`load`](TreeIndex::load) write the tree to a file and read it;
 /// - [`set`](TreeIndex::set), [`tree`](TreeIndex::tree), [`memory`](TreeIndex::memory) and

@@ -75,7 +75,7 @@ impl Slot {
 /// assert_eq!(soup.segments(), &[[0, 1]]);
 /// ```
 #[derive(Clone, Debug, PartialEq)]
-pub struct Soup<T: Real> {
+pub struct Soup<T: Real = f64> {
     positions: Vec<Point3<T>>,
     points: Vec<u32>,
     segments: Vec<[u32; 2]>,

@@ -211,8 +211,8 @@ mod tests {
     use dashu_int::IBig;
     use nalgebra::{Point3, Vector3};
     use p2m_bvh::AabbTree;
+    use p2m_core::Soup;
     use p2m_core::engine::exact::{common_exponent, integer};
-    use p2m_core::{BuildIndex, Soup};
     use p2m_mixed::generate::{IcoSphere, ico_sphere};
     use p2m_testkit::{cases, normal_number, rng};
     use rand::RngExt;
@@ -306,7 +306,7 @@ mod tests {
 
     /// Returns the deviations of points from a closed surface.
     fn deviations(soup: &Soup<f64>, scan: &[Point3<f64>]) -> Vec<f64> {
-        let index = AabbTree::build(soup, &Default::default()).unwrap();
+        let index = AabbTree::new(soup).unwrap();
         let signed = SignedDistance::new(index, soup).unwrap();
         let answers = signed.closest_points(scan, &Default::default(), &Default::default());
         let deviation = |answer: &Option<Signed>| answer.and_then(|answer| answer.distance()).unwrap_or(f64::NAN);

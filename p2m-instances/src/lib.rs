@@ -6,13 +6,13 @@
 //! ```
 //! use nalgebra::{Isometry3, Point3};
 //! use p2m_bvh::AabbTree;
-//! use p2m_core::{BuildIndex, ClosestPoint, Soup};
+//! use p2m_core::{ClosestPoint, Soup};
 //! use p2m_instances::Instances;
 //! use std::sync::Arc;
 //!
 //! let positions = [[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]];
 //! let plate: Soup<f64> = Soup::from_arrays(&positions, &[[0u32, 1, 2]])?;
-//! let plate = Arc::new(AabbTree::build(plate, &Default::default())?);
+//! let plate = Arc::new(AabbTree::new(plate)?);
 //!
 //! let mut scene = Instances::new();
 //! let mut edit = scene.edit();

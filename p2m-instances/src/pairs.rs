@@ -134,12 +134,12 @@ impl<T: Real, I: AnyIndex<T> + ?Sized> Instances<T, I> {
     /// ```
     /// use nalgebra::{Isometry3, Point3};
     /// use p2m_bvh::AabbTree;
-    /// use p2m_core::{BuildIndex, Segment};
+    /// use p2m_core::{Segment};
     /// use p2m_instances::Instances;
     /// use std::sync::Arc;
     ///
     /// let rod = [Segment::new(Point3::new(0.0, 0.0, 0.0), Point3::new(1.0, 0.0, 0.0))];
-    /// let rod = Arc::new(AabbTree::build(rod, &Default::default())?);
+    /// let rod = Arc::new(AabbTree::new(rod)?);
     /// let mut scene = Instances::new();
     /// for (i, x) in [0.0, 1.5, 9.0].into_iter().enumerate() {
     ///     scene.edit().add(&format!("rod {i}"), &rod, Isometry3::translation(x, 0.0, 0.0))?;

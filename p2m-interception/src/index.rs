@@ -6,7 +6,7 @@ use crate::options::{OctreeOptions, OctreeSoFar};
 use crate::partition::Partition;
 use crate::progress::Progress;
 use crate::voronoi::Voronoi;
-#[cfg(all(feature = "kiddo", feature = "rstar"))]
+#[cfg(feature = "paper")]
 use crate::voronoi::paper::PaperVoronoi;
 use nalgebra::Point3;
 use p2m_bvh::engine::several::answer_in_groups;
@@ -88,14 +88,14 @@ pub type P2mIndex<T, S> = InterceptionIndex<T, S, Voronoi>;
 ///
 /// ```
 /// use nalgebra::Point3;
-/// use p2m_core::{BuildIndex, ClosestPoint, Segment};
+/// use p2m_core::{ClosestPoint, Segment};
 /// use p2m_interception::PaperIndex;
 ///
 /// let wires: Vec<Segment<f64>> = (0..20)
 ///     .map(|i| f64::from(i).sin_cos())
 ///     .map(|(x, y)| Segment::new(Point3::new(x, y, 0.0), Point3::new(-y, x, 1.0)))
 ///     .collect();
-/// let index = PaperIndex::build(&wires, &Default::default())?;
+/// let index = PaperIndex::new(&wires)?;
 /// assert_eq!(index.report().added, 0);
 /// assert!(index.closest_point(&Point3::new(2.0, 0.0, 0.0)).is_some_and(|answer| answer.distance < 1.5));
 /// # Ok::<(), p2m_core::BuildError>(())
@@ -107,7 +107,7 @@ pub type P2mIndex<T, S> = InterceptionIndex<T, S, Voronoi>;
 ///
 /// # References
 /// \[Zong2023\]
-#[cfg(all(feature = "kiddo", feature = "rstar"))]
+#[cfg(feature = "paper")]
 pub type PaperIndex<T, S> = InterceptionIndex<T, S, PaperVoronoi>;
 
 /// An interception index over a set of primitives, which it stores.

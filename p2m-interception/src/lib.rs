@@ -15,8 +15,7 @@
 //! - The partition [`Voronoi`] has the Voronoi cells of the scene's vertices and of some added points
 //!   (docs/proofs/p2m.md). A [`Locator`] returns a site near the query, and a walk over Delaunay neighbours ends at the
 //!   nearest site. A [`ListFilter`] may shorten the search of long lists. The [`delaunay`] tetrahedra are exact. With
-//!   the features `kiddo` and `rstar`, `PaperIndex` has this partition with the locator, the filter and the lists of the
-//!   paper.
+//!   the feature `paper`, `PaperIndex` has this partition with the locator, the filter and the lists of the paper.
 //!
 //! Lists are stored in blocks: up to eight packets, the lanes of each packet that can be the answer, and lower bounds
 //! on the distances to the packets.
@@ -29,14 +28,14 @@
 //!
 //! ```
 //! use p2m_interception::OctreeIndex;
-//! use p2m_core::{BuildIndex, ClosestPoint, Segment};
+//! use p2m_core::{ClosestPoint, Segment};
 //! use nalgebra::Point3;
 //!
 //! let wires = [
 //!     Segment::new(Point3::new(0.0, 0.0, 0.0), Point3::new(4.0, 0.0, 0.0)),
 //!     Segment::new(Point3::new(0.0, 3.0, 0.0), Point3::new(4.0, 3.0, 0.0)),
 //! ];
-//! let index = OctreeIndex::build(&wires, &Default::default()).unwrap();
+//! let index = OctreeIndex::new(&wires).unwrap();
 //! let answer = index.closest_point(&Point3::new(1.0, 2.0, 0.0)).unwrap();
 //! assert_eq!((answer.primitive.index(), answer.distance), (1, 1.0));
 //! ```
@@ -53,17 +52,17 @@ mod partition;
 mod progress;
 mod voronoi;
 
-#[cfg(all(feature = "kiddo", feature = "rstar"))]
+#[cfg(feature = "paper")]
 pub use index::PaperIndex;
 pub use index::{InterceptionIndex, OctreeIndex, P2mIndex};
 pub use octree::Octree;
 pub use options::{Domain, OctreeOptions, OctreeReport, OctreeSoFar, P2mOptions, P2mReport};
 pub use partition::Partition;
 pub use progress::{BuildStage, Progress, StageTimes};
-#[cfg(feature = "kiddo")]
+#[cfg(feature = "paper")]
 pub use voronoi::kd_tree_locator::KdTreeLocator;
-#[cfg(all(feature = "kiddo", feature = "rstar"))]
+#[cfg(feature = "paper")]
 pub use voronoi::paper::{PaperOptions, PaperVoronoi};
-#[cfg(feature = "rstar")]
+#[cfg(feature = "paper")]
 pub use voronoi::region_tree::RegionTree;
 pub use voronoi::{BuildListFilter, BuildLocator, ListFilter, Locator, LocatorSites, Region, Voronoi};

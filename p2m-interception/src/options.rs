@@ -258,7 +258,7 @@ impl P2mOptions {
     /// Returns the options of the paper \[Zong2023\]: [long lists](Self::with_long_lists), the locator
     /// [`KdTreeLocator`](crate::KdTreeLocator), and the filter [`RegionTree`](crate::RegionTree) for each list of more
     /// than 64 primitives.
-    #[cfg(all(feature = "kiddo", feature = "rstar"))]
+    #[cfg(feature = "paper")]
     #[must_use]
     pub fn as_in_paper() -> Self {
         let long = Self::default().with_long_lists();

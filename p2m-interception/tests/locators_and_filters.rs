@@ -193,7 +193,7 @@ fn the_kd_tree_leads_to_the_answer_in_degenerate_scenes() {
         let expected = answers(&BruteForce::new(soup).expect("valid"), &queries);
         let options = P2mOptions::default().with_locator(KdTreeLocator::build);
         assert_eq!(answers(&Index::build(soup, &options).expect("valid"), &queries), expected, "{name}");
-        let paper = PaperIndex::build(soup, &Default::default()).expect("valid");
+        let paper = PaperIndex::new(soup).expect("valid");
         assert_eq!(answers(&paper, &queries), expected, "{name}, as in the paper");
     }
 }

@@ -14,7 +14,7 @@ use std::fmt;
 /// The directions that were chosen for a scene, with the reasons. `Display` prints them as a sentence.
 ///
 /// ```
-/// use p2m_core::{BuildIndex, ClosestPoint, Triangle};
+/// use p2m_core::{ClosestPoint, Triangle};
 /// use p2m_kdop::{DirectionChoice, KdopOptions, KdopTree};
 /// use nalgebra::{Point3, Rotation3, Vector3};
 ///

@@ -10,7 +10,7 @@
 //! answers are bitwise those of [`BruteForce`](p2m_core::BruteForce).
 //!
 //! ```
-//! use p2m_core::{BuildIndex, ClosestPoint, Segment};
+//! use p2m_core::{ClosestPoint, Segment};
 //! use p2m_kdop::{Directions, KdopOptions, KdopTree};
 //! use nalgebra::{Point3, Vector3};
 //!
@@ -18,7 +18,7 @@
 //!     Segment::new(Point3::new(0.0, 0.0, 0.0), Point3::new(4.0, 4.0, 0.0)),
 //!     Segment::new(Point3::new(0.0, 3.0, 0.0), Point3::new(4.0, 7.0, 0.0)),
 //! ];
-//! let tree = KdopTree::<f64, _, 14>::build(&wires, &Default::default()).unwrap();
+//! let tree = KdopTree::<f64, _, 14>::new(&wires).unwrap();
 //! let answer = tree.closest_point(&Point3::new(1.0, 3.5, 0.0)).unwrap();
 //! assert_eq!(answer.primitive.index(), 1);
 //!

@@ -4,11 +4,12 @@
 
 use nalgebra::Point3;
 use p2m::bvh::{PacketTree, Volume};
+use p2m::core::{Inspect, QueryCost};
 use p2m::interception::Partition;
 use p2m::interception::delaunay::{Delaunay, DelaunayError};
 use p2m::{
-    AabbOptions, AabbTree, BruteForce, BuildError, BuildIndex, ClosestPoint, Inspect, KdopOptions, KdopTree,
-    OctreeIndex, OctreeOptions, P2mIndex, P2mOptions, Point, PrimitiveId, PrimitiveSet, QueryCost, Soup,
+    AabbTree, BruteForce, BuildError, BuildIndex, ClosestPoint, KdopOptions, KdopTree, OctreeIndex, OctreeOptions,
+    P2mIndex, P2mOptions, Point, PrimitiveId, PrimitiveSet, Soup, SplitOptions,
 };
 use p2m_testkit::adversaries::{ADVERSARIES, Adversary, queries};
 use p2m_testkit::ball::Ball;
@@ -61,8 +62,8 @@ fn check_work<I: ClosestPoint<f64> + Inspect<f64>, V: Volume>(
     );
 }
 
-fn splits() -> AabbOptions {
-    AabbOptions::default()
+fn splits() -> SplitOptions {
+    SplitOptions::default()
 }
 
 #[test]

@@ -6,10 +6,10 @@
 #![allow(clippy::float_cmp, reason = "bitwise equality is what is tested")]
 
 use nalgebra::{Point3, Vector3};
-#[cfg(all(feature = "kiddo", feature = "rstar"))]
-use p2m::PaperIndex;
-use p2m::backend::{Best, Key};
+use p2m::core::{Best, Key};
 use p2m::kdop::Directions;
+#[cfg(feature = "paper")]
+use p2m::paper::PaperIndex;
 use p2m::{
     AabbTree, BruteForce, BuildError, BuildIndex, Closest, ClosestPoint, Feature, KdopOptions, KdopTree, OctreeIndex,
     P2mIndex, Point, Primitive, PrimitiveId, PrimitiveSet, QueryOptions, Real, Segment, Shape, Soup, Triangle,
@@ -153,13 +153,13 @@ backends! {
     p2m_index: P2mIndex,
 }
 
-#[cfg(all(feature = "kiddo", feature = "rstar"))]
+#[cfg(feature = "paper")]
 backends! {
     paper_index: PaperIndex,
 }
 
 /// Generates the tests of scenes, too, because the registry has no entry for the index of the paper.
-#[cfg(all(feature = "kiddo", feature = "rstar"))]
+#[cfg(feature = "paper")]
 mod paper_index_on_scenes {
     use super::*;
     on_soups!(PaperIndex);
@@ -336,7 +336,7 @@ fn past_failures<I: BuildIndex<f64, Vec<Shape<f64>>, Error = BuildError>>() {
 #[test]
 fn the_radius_is_inclusive_for_subnormal_distances_in_f32() {
     let eta = f32::from_bits(1);
-    let index = AabbTree::build([Point::new(Point3::new(eta, eta, 0.0))], &Default::default()).expect("finite");
+    let index = AabbTree::new([Point::new(Point3::new(eta, eta, 0.0))]).expect("finite");
     let found = index.closest_point_with(&[0.0; 3], &QueryOptions::default().with_max_distance(eta));
     assert_eq!(found.map(|c| c.distance), Some(eta));
 }
@@ -392,7 +392,7 @@ fn the_returned_primitive_is_nearest_within_rounding() {
         let mut rng = rng("identity", seed);
         let (kinds, layout) = kinds_and_layout(seed);
         let soup = scenes::soup(&mut rng, kinds, layout, 25);
-        let index = AabbTree::build(&soup, &Default::default()).expect("valid");
+        let index = AabbTree::new(&soup).expect("valid");
         let queries: Vec<_> = (0..20).map(|_| scenes::query(&mut rng, soup.positions())).collect();
         let mut batch = vec![None; queries.len()];
         index.closest_points_into(&queries, &QueryOptions::default(), &mut batch);
@@ -448,7 +448,7 @@ fn scenes_can_be_permuted_duplicated_and_extended() {
         with_far.push(Point3::new(1e9, 1e9, 1e9));
         let far = u32::try_from(with_far.len() - 1).expect("small");
         let extended = Soup::new(with_far, elements.iter().copied().chain([p2m::Element::Point(far)])).expect("valid");
-        let build = |soup| AabbTree::build(soup, &Default::default()).expect("valid");
+        let build = |soup| AabbTree::new(soup).expect("valid");
         let [plain, shuffled, doubled, extended] = [&soup, &shuffled, &doubled, &extended].map(build);
         for _ in 0..40 {
             let q = scenes::query(&mut rng, soup.positions());

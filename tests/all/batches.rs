@@ -4,7 +4,8 @@
 
 use nalgebra::Point3;
 use p2m::batch::{BatchOptions, ClosestColumns, closest_columns_into, closest_points_into, distances, map};
-use p2m::{AabbTree, BuildIndex, Closest, ClosestPoint, Feature, Isa, KdopTree, NearQuery, OctreeIndex, P2mIndex};
+use p2m::core::Isa;
+use p2m::{AabbTree, Closest, ClosestPoint, Feature, KdopTree, NearQuery, OctreeIndex, P2mIndex};
 use p2m::{PrimitiveId, PrimitiveSet, QueryOptions, Real, Soup};
 use p2m_backends::{BACKENDS, BuildSettings};
 use p2m_testkit::scenes::{self, Kinds, Layout, narrow};
@@ -119,9 +120,9 @@ fn batches_in_f32_are_single_queries_and_f32_arrays_are_queries_in_f64() {
         let soup = scenes::soup(&mut rng, KINDS[case as usize % 4], Layout::Sheet, 300);
         let single: Soup<f32> = narrow(&soup).expect("fits f32");
         let all = queries(&mut rng, &single, 100);
-        check(&AabbTree::build(&single, &Default::default()).expect("valid"), &all, "aabb");
-        check(&OctreeIndex::build(&single, &Default::default()).expect("valid"), &all, "octree");
-        let tree = AabbTree::build(&soup, &Default::default()).expect("valid");
+        check(&AabbTree::new(&single).expect("valid"), &all, "aabb");
+        check(&OctreeIndex::new(&single).expect("valid"), &all, "octree");
+        let tree = AabbTree::new(&soup).expect("valid");
         let arrays: Vec<[f32; 3]> = all.iter().map(|q| q.coords.into()).collect();
         let double: Vec<Point3<f64>> = all.iter().map(|q| q.map(f64::from)).collect();
         assert_eq!(distances(&tree, &arrays), distances(&tree, &double));
@@ -134,7 +135,7 @@ fn every_instruction_set_answers_batches_alike() {
         let mut rng = rng("batches of instruction sets", case);
         let soup = scenes::soup(&mut rng, KINDS[case as usize % 4], LAYOUTS[case as usize % 6], amount(3000, 400));
         let all = queries(&mut rng, &soup, amount(300, 100));
-        let tree = AabbTree::build(&soup, &Default::default()).expect("valid");
+        let tree = AabbTree::new(&soup).expect("valid");
         let expected: Vec<_> = all.iter().map(|q| tree.closest_point(q).map(fields)).collect();
         for isa in Isa::available() {
             let answers = |index: &dyn ClosestPoint<f64>| {
@@ -142,9 +143,9 @@ fn every_instruction_set_answers_batches_alike() {
                 index.closest_points_into(&all, &QueryOptions::default(), &mut out);
                 out.into_iter().map(|closest| closest.map(fields)).collect::<Vec<_>>()
             };
-            let kdop: KdopTree<f64, _, 14> = KdopTree::build(&soup, &Default::default()).expect("valid");
-            let octree = OctreeIndex::build(&soup, &Default::default()).expect("valid");
-            let p2m = P2mIndex::build(&soup, &Default::default()).expect("valid");
+            let kdop: KdopTree<f64, _, 14> = KdopTree::new(&soup).expect("valid");
+            let octree = OctreeIndex::new(&soup).expect("valid");
+            let p2m = P2mIndex::new(&soup).expect("valid");
             assert!(answers(&tree.clone().with_isa(isa)) == expected, "aabb, {isa}");
             assert!(answers(&kdop.with_isa(isa)) == expected, "kdop, {isa}");
             assert!(answers(&octree.with_isa(isa)) == expected, "octree, {isa}");
@@ -159,8 +160,8 @@ fn a_large_batch_on_several_threads_is_single_queries() {
     // Queries that are far beyond the scene are searched for linearly, so the scene is small.
     let soup = scenes::soup(&mut rng, Kinds::Triangles, Layout::Strewn, 1000);
     let all = queries(&mut rng, &soup, amount(1_100_000, 20_000));
-    let octree = OctreeIndex::build(&soup, &Default::default()).expect("valid");
-    let tree = AabbTree::build(&soup, &Default::default()).expect("valid");
+    let octree = OctreeIndex::new(&soup).expect("valid");
+    let tree = AabbTree::new(&soup).expect("valid");
     for index in [&octree as &(dyn ClosestPoint<f64> + Sync), &tree] {
         let expected: Vec<_> = all.iter().map(|q| index.closest_point(q).map(fields)).collect();
         for threads in [1, 3] {
@@ -177,7 +178,7 @@ fn other_queries_are_mapped_to_their_results_in_order() {
     let mut rng = rng("mapped batches", 0);
     let soup = scenes::soup(&mut rng, Kinds::Mixed, Layout::Strewn, 1000);
     let all = queries(&mut rng, &soup, amount(100_000, 5000));
-    let tree = AabbTree::build(&soup, &Default::default()).expect("valid");
+    let tree = AabbTree::new(&soup).expect("valid");
     let nearest = |query: &Point3<f64>| tree.k_nearest(query, 3, f64::INFINITY).into_iter().map(fields).collect();
     let expected: Vec<Vec<_>> = all.iter().map(nearest).collect();
     for bits in 0..4 {

@@ -3,9 +3,10 @@
 #![allow(clippy::float_cmp, reason = "exact results are what is tested")]
 
 use nalgebra::Point3;
+use p2m::bvh::SplitRule;
 use p2m::{
     Aabb, AabbTree, BoxQuery, BruteForce, BuildIndex, ClosestPoint, Primitive, PrimitiveId, PrimitiveSet, Real, Shape,
-    Soup, SplitRule,
+    Soup,
 };
 use p2m_testkit::families::shape;
 use p2m_testkit::scenes::{self, Kinds, LAYOUTS, kinds_and_layout};
@@ -96,7 +97,7 @@ fn boxes_that_are_odd_have_stated_answers() {
     }
     let empty = <AabbTree<f64, Vec<Shape<f64>>>>::build(Vec::new(), &Default::default()).unwrap();
     assert!(!empty.intersects_box(&aabb([[-inf; 3], [inf; 3]])));
-    let tree = AabbTree::build([t], &Default::default()).unwrap();
+    let tree = AabbTree::new([t]).unwrap();
     assert!(tree.intersects_box(&aabb([[-inf; 3], [inf; 3]])) && !tree.intersects_box(&aabb([[1.0; 3], [-1.0; 3]])));
 }
 
@@ -173,7 +174,7 @@ fn trees_find_the_same_primitives_as_brute_force_in_random_scenes() {
         let mut rng = rng("boxes in scenes", case);
         let ((kinds, layout), rule) = (kinds_and_layout(case), rules[(case / 24) as usize % rules.len()]);
         let soup = scenes::soup(&mut rng, kinds, layout, amount(300, 120));
-        let tree = AabbTree::build(&soup, &p2m::AabbOptions::default().with_rule(rule)).unwrap();
+        let tree = AabbTree::build(&soup, &p2m::SplitOptions::default().with_rule(rule)).unwrap();
         let brute = BruteForce::new(&soup).unwrap();
         let (mut found, mut expected) = (Vec::new(), Vec::new());
         for _ in 0..amount(100, 10) {
@@ -195,7 +196,7 @@ fn split_rules_change_no_answer() {
         let soup = scenes::soup(&mut rng, Kinds::Mixed, layout, amount(500, 150));
         let brute = BruteForce::new(&soup).unwrap();
         for rule in SplitRule::ALL {
-            let tree = AabbTree::build(&soup, &p2m::AabbOptions::default().with_rule(rule)).unwrap();
+            let tree = AabbTree::build(&soup, &p2m::SplitOptions::default().with_rule(rule)).unwrap();
             for _ in 0..amount(50, 8) {
                 let query = random_box(&mut rng, &soup, &soup.aabb()).min;
                 let [a, b] = [tree.closest_point(&query).unwrap(), brute.closest_point(&query).unwrap()];
@@ -205,14 +206,14 @@ fn split_rules_change_no_answer() {
     }
 }
 
-#[cfg(feature = "mixed")]
+#[cfg(feature = "scene")]
 #[test]
 fn trees_find_the_same_primitives_as_brute_force_in_every_model() {
     let boxes_of_each = amount(10_000, 60);
     for path in p2m_testkit::model_files() {
         let soup = p2m::scene::read_scene(&path).expect("readable").soup;
         let name = path.file_name().expect("a file").to_string_lossy().into_owned();
-        let tree = AabbTree::build(&soup, &Default::default()).expect("valid");
+        let tree = AabbTree::new(&soup).expect("valid");
         let boxes = Boxes::new(&soup);
         let counts: Vec<[usize; 2]> = std::thread::scope(|scope| {
             let threads: Vec<_> = (0..2)

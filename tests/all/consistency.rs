@@ -2,14 +2,14 @@
 //! the smallest scene that it finds as Rust source.
 //!
 //! A scene has some primitives of a large one, which comes from each generator or is random of each kind and layout.
-#![cfg(all(feature = "bvh", feature = "interception", feature = "kdop", feature = "mixed"))]
+#![cfg(all(feature = "bvh", feature = "interception", feature = "kdop", feature = "scene"))]
 #![allow(clippy::float_cmp, reason = "bitwise equality is what is tested")]
 
 use nalgebra::Point3;
 use p2m::scene::generate::Kind;
 use p2m::{
-    Aabb, AabbTree, BoxQuery, BruteForce, BuildIndex, Closest, ClosestPoint, Element, KdopTree, NearQuery, OctreeIndex,
-    P2mIndex, PrimitiveId, PrimitiveSet, QueryOptions, RayQuery, Real, Soup,
+    Aabb, AabbTree, BoxQuery, BruteForce, Closest, ClosestPoint, Element, KdopTree, NearQuery, OctreeIndex, P2mIndex,
+    PrimitiveId, PrimitiveSet, QueryOptions, RayQuery, Real, Soup,
 };
 use p2m_testkit::near_check::compared_fields;
 use p2m_testkit::rays::{self, AIMS};
@@ -114,10 +114,10 @@ fn all<T: Real>(closest: &[Closest<T>]) -> impl PartialEq + Debug + use<T> {
 
 fn check<T: Real>(case: &Case, soup: &Soup<T>, point: impl Fn(&Point3<f64>) -> Point3<T>) -> Result<(), TestCaseError> {
     let brute = BruteForce::new(soup).expect("valid");
-    let tree = AabbTree::build(soup, &Default::default()).expect("valid");
-    let kdop = KdopTree::<T, _, 14>::build(soup, &Default::default()).expect("valid");
-    let octree = OctreeIndex::build(soup, &Default::default()).expect("valid");
-    let p2m = P2mIndex::build(soup, &Default::default()).expect("valid");
+    let tree = AabbTree::new(soup).expect("valid");
+    let kdop = KdopTree::<T, _, 14>::new(soup).expect("valid");
+    let octree = OctreeIndex::new(soup).expect("valid");
+    let p2m = P2mIndex::new(soup).expect("valid");
     let indexes: [(&str, &dyn Index<T>); 4] = [("aabb", &tree), ("kdop", &kdop), ("octree", &octree), ("p2m", &p2m)];
     for query in case.queries.iter().map(&point) {
         let expected = brute.closest_point(&query);

@@ -7,9 +7,10 @@
 #![allow(clippy::cast_possible_truncation, reason = "rounding to f32 is meant")]
 
 use nalgebra::Point3;
-use p2m::backend::Key;
+use p2m::core::Key;
+use p2m::core::Projection;
 use p2m::{BruteForce, Shape};
-use p2m::{Closest, ClosestPoint, Feature, Point, Primitive, PrimitiveSet, Projection, QueryOptions, Real};
+use p2m::{Closest, ClosestPoint, Feature, Point, Primitive, PrimitiveSet, QueryOptions, Real};
 use p2m_testkit::contract::{self, MAX_OBSERVED_ERROR};
 use p2m_testkit::families::{self, Case, Span, shape};
 use p2m_testkit::{cases, oracle::Distance, rng};

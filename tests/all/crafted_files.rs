@@ -1,5 +1,5 @@
 //! Saved indexes with right checksums and wrong contents: each is refused by a typed error, or searches in it end.
-#![cfg(all(feature = "bvh", feature = "interception", feature = "kdop", feature = "mixed"))]
+#![cfg(all(feature = "bvh", feature = "interception", feature = "kdop", feature = "scene"))]
 
 use super::saved::{INDEXES, Kind, answers_of, queries, scene};
 use cpu_time::ThreadTime;

@@ -6,8 +6,8 @@
 #![cfg(all(feature = "bvh", feature = "interception", feature = "kdop", feature = "rayon"))]
 
 use nalgebra::Point3;
-use p2m::backend::Isa;
 use p2m::batch::{BatchOptions, closest_points_into};
+use p2m::core::Isa;
 use p2m::{
     AabbTree, BuildIndex, Closest, ClosestPoint, Feature, KdopTree, OctreeIndex, P2mIndex, PrimitiveSet, QueryOptions,
     Real, Soup,

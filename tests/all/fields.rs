@@ -1,6 +1,6 @@
 //! Every value of a distance field has to be the answer of a single query, whatever method fills the field.
 
-#![cfg(all(feature = "bvh", feature = "interception", feature = "mixed"))]
+#![cfg(all(feature = "bvh", feature = "interception", feature = "scene"))]
 
 use base64::Engine as _;
 use nalgebra::Point3;
@@ -10,7 +10,7 @@ use p2m::field::{
     signed_distances, signed_distances_by_lists, slice, write_field,
 };
 use p2m::scene::generate::{IcoSphere, KnotAndCables, TorusKnot, ico_sphere, knot_and_cables, torus_knot};
-use p2m::{Aabb, AabbTree, BruteForce, BuildIndex, ClosestPoint, OctreeIndex, P2mIndex, PrimitiveSet, Soup};
+use p2m::{Aabb, AabbTree, BruteForce, ClosestPoint, OctreeIndex, P2mIndex, PrimitiveSet, Soup};
 use p2m_testkit::{amount, is_deep};
 use std::sync::atomic::{AtomicUsize, Ordering};
 
@@ -32,14 +32,14 @@ fn fields_are_single_answers_by_every_index_and_on_all_threads() {
     let high = Grid::new(around.origin(), around.spacing(), [13, 11, 19]).expect("finite");
     let grid = amount(around, high);
     let brute = BruteForce::new(&soup).expect("valid");
-    let tree = AabbTree::build(&soup, &Default::default()).expect("valid");
+    let tree = AabbTree::new(&soup).expect("valid");
     let expected: Vec<f32> =
         samples(&grid).map(|sample| tree.closest_point(&sample).expect("not empty").distance as f32).collect();
     for (n, sample) in samples(&grid).enumerate().step_by(amount(997, 97)) {
         assert_eq!(expected[n], brute.closest_point(&sample).expect("not empty").distance as f32);
     }
-    let octree = OctreeIndex::build(&soup, &Default::default()).expect("valid");
-    let p2m = P2mIndex::build(&soup, &Default::default()).expect("valid");
+    let octree = OctreeIndex::new(&soup).expect("valid");
+    let p2m = P2mIndex::new(&soup).expect("valid");
     {
         for parallel in [true, false] {
             let options = FieldOptions::default().with_parallel(parallel);
@@ -82,7 +82,7 @@ fn fields_by_lists_are_those_of_a_tree_on_models() {
     ] {
         let Some(path) = p2m_testkit::model_file(name) else { continue };
         let soup = p2m::scene::read_scene(&path).expect("a scene").soup;
-        let tree = AabbTree::build(&soup, &Default::default()).expect("valid");
+        let tree = AabbTree::new(&soup).expect("valid");
         let lists = CandidateLists::new(&soup).expect("plain");
         let bounds = soup.aabb();
         let corner = soup.positions()[soup.positions().len() / 2];
@@ -113,10 +113,10 @@ fn there_are_no_lists_of_what_is_out_of_range_or_not_its_vertices() {
         fn aabb(&self) -> Aabb<f64> {
             Aabb { min: Point3::new(-1.0, -1.0, -1.0), max: Point3::new(1.0, 1.0, 1.0) }
         }
-        fn project(&self, query: &Point3<f64>) -> p2m::Projection {
-            p2m::Projection::new(query, *query, p2m::Feature::Face, [1.0, 0.0, 0.0], 0.0)
+        fn project(&self, query: &Point3<f64>) -> p2m::core::Projection {
+            p2m::core::Projection::new(query, *query, p2m::Feature::Face, [1.0, 0.0, 0.0], 0.0)
         }
-        fn intersect_ray(&self, _: &p2m::Ray) -> Option<p2m::backend::RayHit> {
+        fn intersect_ray(&self, _: &p2m::Ray) -> Option<p2m::core::RayHit> {
             unreachable!("no rays are cast")
         }
     }
@@ -127,7 +127,7 @@ fn there_are_no_lists_of_what_is_out_of_range_or_not_its_vertices() {
 fn bands_are_cut_from_whole_fields() {
     let soup = knot();
     let grid = Grid::around(&soup.aabb(), amount(53, 21), 1.5).expect("a box");
-    let tree = AabbTree::build(&soup, &Default::default()).expect("valid");
+    let tree = AabbTree::new(&soup).expect("valid");
     let full_field = distances(&tree, &grid, &FieldOptions::default(), &|_| ()).expect("memory");
     let lists = CandidateLists::new(&soup).expect("plain");
     for band in [0.0, 1e-3, 0.05, 0.3, 100.0] {
@@ -149,7 +149,7 @@ fn bands_are_cut_from_whole_fields() {
 struct Counted<'a, I>(&'a I, AtomicUsize);
 
 impl<I: ClosestPoint<f64>> ClosestPoint<f64> for Counted<'_, I> {
-    fn search(&self, query: &Point3<f64>, best: &mut p2m::backend::Best<f64>) {
+    fn search(&self, query: &Point3<f64>, best: &mut p2m::core::Best<f64>) {
         self.1.fetch_add(1, Ordering::Relaxed);
         self.0.search(query, best);
     }
@@ -183,7 +183,7 @@ fn has_signs_of_answers(
 #[test]
 fn signs_of_fields_are_those_of_single_answers() {
     let (soup, min_inside) = (knot(), amount(500, 3));
-    let tree = |soup| AabbTree::build(soup, &Default::default()).expect("valid");
+    let tree = |soup| AabbTree::new(soup).expect("valid");
     has_signs_of_answers(&soup, &SignedDistance::new(tree(&soup), &soup).expect("closed"), min_inside);
     let winding = SignedDistance::with_winding_numbers(tree(&soup), &soup, 0.01).expect("triangles");
     has_signs_of_answers(&soup, &winding, min_inside);
@@ -200,7 +200,7 @@ fn signs_of_fields_are_those_of_single_answers() {
 fn an_empty_scene_is_infinitely_far() {
     let grid = Grid::new(Point3::origin(), 1.0, [3, 2, 2]).expect("valid");
     let empty: Soup<f64> = Soup::default();
-    let tree = AabbTree::build(&empty, &Default::default()).expect("valid");
+    let tree = AabbTree::new(&empty).expect("valid");
     for band in [f64::INFINITY, 2.0] {
         let field = distances(&tree, &grid, &FieldOptions::default().with_band(band), &|_| ());
         assert_eq!(field, Ok(vec![f32::INFINITY; 12]));
@@ -233,7 +233,7 @@ fn signs_by_lists_are_right_where_f32_has_no_digits() {
     };
     for (side, low, spacing) in [(1e40, -5e38, 1e39), (1e-44, -0.8e-45, 1.3e-45), (1.0, -0.25, 0.1)] {
         let soup = cube(side);
-        let tree = |soup| AabbTree::build(soup, &Default::default()).expect("valid");
+        let tree = |soup| AabbTree::new(soup).expect("valid");
         let signed = SignedDistance::new(tree(&soup), &soup).expect("closed");
         let winding = SignedDistance::with_winding_numbers(tree(&soup), &soup, 0.01).expect("triangles");
         let lists = CandidateLists::new(&soup).expect("plain");
@@ -253,7 +253,7 @@ fn signs_by_lists_are_right_where_f32_has_no_digits() {
 #[test]
 fn grids_of_any_shape_are_filled() {
     let soup = knot();
-    let tree = AabbTree::build(&soup, &Default::default()).expect("valid");
+    let tree = AabbTree::new(&soup).expect("valid");
     let lists = CandidateLists::new(&soup).expect("plain");
     for counts in [[1, 1, 1], [1, 97, 1], [130, 1, 1], [1, 1, 33], [3, 5, 17], [65, 64, 1], [2, 300, 16]] {
         let grid = Grid::new(Point3::new(-1.0, -0.5, -0.3), 0.03, counts).expect("valid");
@@ -265,8 +265,7 @@ fn grids_of_any_shape_are_filled() {
 #[test]
 fn refined_cells_tile_their_cube_and_follow_the_surface() {
     let ball = ico_sphere(&IcoSphere { frequency: amount(16, 6) }).expect("valid");
-    let signed =
-        SignedDistance::new(AabbTree::build(&ball, &Default::default()).expect("valid"), &ball).expect("closed");
+    let signed = SignedDistance::new(AabbTree::new(&ball).expect("valid"), &ball).expect("closed");
     let distance = |sample: &Point3<f64>| signed.closest_point(sample).and_then(|s| s.distance()).expect("defined");
     let mut last = 0;
     for error in amount(vec![0.1, 0.02, 0.004], vec![0.1, 0.02]) {

@@ -4,7 +4,7 @@
 //! `P2M_FUZZED=tools/fuzz/corpus cargo test --test all fuzzed::` adds a folder that has a folder for each target, such as
 //! fuzzing leaves behind. `P2M_BLESS=1 cargo test --test all fuzzed::seeds_are` writes the seeds of scenes and saved
 //! indexes anew.
-#![cfg(all(feature = "bvh", feature = "interception", feature = "kdop", feature = "mixed"))]
+#![cfg(all(feature = "bvh", feature = "interception", feature = "kdop", feature = "scene"))]
 
 #[allow(unreachable_pub, reason = "a crate of its own")]
 #[path = "../../tools/fuzz/src/lib.rs"]

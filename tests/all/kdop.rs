@@ -3,12 +3,13 @@
 #![allow(clippy::float_cmp, reason = "bitwise equality is what is tested")]
 
 use nalgebra::{Point3, Rotation3, Vector3};
-use p2m::backend::StatsCollector;
 use p2m::bvh::{TreeIndex, Volume};
+use p2m::core::Isa;
+use p2m::core::StatsCollector;
 use p2m::kdop::Directions;
 use p2m::{
-    Aabb, AabbTree, BoxQuery, BruteForce, BuildError, BuildIndex, ClosestPoint, Isa, KdopOptions, KdopTree, Point,
-    Primitive, PrimitiveSet, Soup,
+    Aabb, AabbTree, BoxQuery, BruteForce, BuildError, ClosestPoint, KdopOptions, KdopTree, Point, Primitive,
+    PrimitiveSet, Soup,
 };
 use p2m_testkit::queries::QuerySet;
 use p2m_testkit::scenes::{self, KINDS, LAYOUTS, kinds_and_layout};
@@ -38,7 +39,7 @@ fn built<const K: usize>(soup: &Soup<f64>) -> Tree<'_, K>
 where
     Directions<K>: Default,
 {
-    Tree::<K>::build(soup, &Default::default()).expect("valid")
+    Tree::<K>::new(soup).expect("valid")
 }
 
 #[test]
@@ -83,7 +84,7 @@ fn every_instruction_set_refitted_and_boxes_agree_with_brute_force() {
 /// Checks that more faces lead to fewer nodes and packets, and that k-DOPs visit fewer than boxes. `most` is the
 /// largest percentage of the nodes of 6 faces that 14, 18 and 26 faces may visit, for queries in the box.
 fn check_work_falls(soup: &Soup<f64>, max_percent: [usize; 3]) {
-    let boxes = AabbTree::build(soup, &Default::default()).expect("valid");
+    let boxes = AabbTree::new(soup).expect("valid");
     let trees = (built::<6>(soup), built::<14>(soup), built::<18>(soup), built::<26>(soup));
     for set in [QuerySet::Box10, QuerySet::Box1, QuerySet::Near, QuerySet::Surface] {
         let queries = set.generate(soup, amount(2000, 200), 1);
@@ -126,7 +127,7 @@ fn boxes_of_any_size_hold_their_points() {
         for size in [size, -size] {
             let points: Vec<_> = (0..40).map(|i| Point3::from([size * (1.0 - f64::from(i) / 99.0); 3])).collect();
             let set: Vec<_> = points.iter().copied().map(Point::new).collect();
-            let tree = KdopTree::<f64, _, 26>::build(&set, &Default::default()).expect("finite");
+            let tree = KdopTree::<f64, _, 26>::new(&set).expect("finite");
             let mut found = Vec::new();
             tree.primitives_in_box_into(
                 &Aabb::from_points(&[[-f64::MAX; 3], [f64::MAX; 3]].map(Point3::from)),

@@ -1,14 +1,11 @@
 //! Compares indexes with brute force, bit for bit, on real meshes: far from the origin, non-manifold, degenerate,
 //! lines, mixed. The tests are skipped, with a message, if there is no folder of models.
 
-#![cfg(all(feature = "bvh", feature = "interception", feature = "kdop", feature = "mixed"))]
+#![cfg(all(feature = "bvh", feature = "interception", feature = "kdop", feature = "scene"))]
 
 use nalgebra::Point3;
 use p2m::kdop::DirectionChoice;
-use p2m::{
-    AabbTree, BruteForce, BuildIndex, ClosestPoint, KdopOptions, KdopTree, OctreeIndex, P2mIndex, PrimitiveSet, Real,
-    Soup,
-};
+use p2m::{AabbTree, BruteForce, ClosestPoint, KdopOptions, KdopTree, OctreeIndex, P2mIndex, PrimitiveSet, Real, Soup};
 use p2m_testkit::queries::QuerySet;
 use p2m_testkit::scenes::narrow;
 use p2m_testkit::{amount, depth, model_files};
@@ -85,12 +82,12 @@ impl<'a, T: Real> Trees<'a, T> {
         let is_small = soup.len() <= max_primitives_for_all_indexes() || is_in_full();
         let frame_options = KdopOptions::new(choice.frame_directions::<26>().expect("thirteen"));
         Self(
-            AabbTree::build(soup, &Default::default()).expect("valid"),
-            KdopTree::build(soup, &Default::default()).expect("valid"),
+            AabbTree::new(soup).expect("valid"),
+            KdopTree::new(soup).expect("valid"),
             KdopTree::build_with(soup, &frame_options).expect("valid"),
-            is_small.then(|| OctreeIndex::build(soup, &Default::default()).expect("valid")),
+            is_small.then(|| OctreeIndex::new(soup).expect("valid")),
             // The cells are built from f64 for both scalars, and take a while.
-            (size_of::<T>() == 8 && is_small).then(|| P2mIndex::build(soup, &Default::default()).expect("valid")),
+            (size_of::<T>() == 8 && is_small).then(|| P2mIndex::new(soup).expect("valid")),
         )
     }
 }

@@ -3,7 +3,7 @@
 
 use nalgebra::Point3;
 use p2m::pair::{MovingBall, PairQuery};
-use p2m::{AabbTree, BruteForce, BuildIndex, KdopTree, PrimitiveId, PrimitiveSet, Real, Shape, Soup};
+use p2m::{AabbTree, BruteForce, KdopTree, PrimitiveId, PrimitiveSet, Real, Shape, Soup};
 use p2m_testkit::oracle::Distance;
 use p2m_testkit::scenes::{self, extreme_soups, kinds_and_layout, narrow};
 use p2m_testkit::{cases, rng};
@@ -33,8 +33,8 @@ fn largest(hull: &[V3]) -> f64 {
 
 /// Checks the contacts that brute force and the trees find, and returns whether there is one.
 fn check_all<T: Real>(case: u64, soup: &Soup<T>, ball: &MovingBall<T>) -> bool {
-    let aabb = AabbTree::build(soup, &Default::default()).expect("valid");
-    let kdop: KdopTree<T, _> = KdopTree::build(soup, &Default::default()).expect("valid");
+    let aabb = AabbTree::new(soup).expect("valid");
+    let kdop: KdopTree<T, _> = KdopTree::new(soup).expect("valid");
     check(case, soup, ball, &aabb);
     check(case, soup, ball, &kdop);
     check(case, soup, ball, &BruteForce::new(soup).expect("valid"))

@@ -4,15 +4,16 @@
 #![allow(clippy::float_cmp, reason = "bitwise equality is what is tested")]
 
 use nalgebra::Point3;
-use p2m::backend::Near;
-use p2m::{AabbTree, BuildIndex, ClosestPoint, NearQuery, PrimitiveId, PrimitiveSet, Projection, QueryOptions, Soup};
+use p2m::core::Near;
+use p2m::core::Projection;
+use p2m::{AabbTree, ClosestPoint, NearQuery, PrimitiveId, PrimitiveSet, QueryOptions, Soup};
 use p2m_testkit::rng;
 use p2m_testkit::scenes::{Kinds, Layout, soup};
 
 #[test]
 fn what_cannot_be_has_a_stated_answer() {
     let soup = soup(&mut rng("stated", 0), Kinds::Mixed, Layout::Uniform, 300);
-    let index = AabbTree::build(&soup, &Default::default()).expect("valid scene");
+    let index = AabbTree::new(&soup).expect("valid scene");
     let at = soup.positions()[0];
     for bad in [f64::NAN, f64::INFINITY, f64::NEG_INFINITY] {
         assert!(index.k_nearest(&Point3::new(0.0, bad, 0.0), 3, f64::INFINITY).is_empty());
@@ -23,7 +24,7 @@ fn what_cannot_be_has_a_stated_answer() {
     }
     assert!(index.is_any_within(&at, 0.0) && index.is_any_within(&at, f64::INFINITY));
     assert_eq!(index.all_within(&at, f64::INFINITY).len(), soup.len());
-    let empty = AabbTree::<f64, _>::build(Soup::new(vec![], []).expect("empty"), &Default::default()).expect("valid");
+    let empty = AabbTree::<f64, _>::new(Soup::new(vec![], []).expect("empty")).expect("valid");
     assert!(empty.k_nearest(&at, 3, f64::INFINITY).is_empty() && !empty.is_any_within(&at, f64::INFINITY));
 }
 
@@ -31,7 +32,7 @@ fn what_cannot_be_has_a_stated_answer() {
 #[test]
 fn searches_end_early() {
     let soup = soup(&mut rng("near sheet", 0), Kinds::Triangles, Layout::Sheet, 20_000);
-    let index = AabbTree::build(&soup, &Default::default()).expect("valid scene");
+    let index = AabbTree::new(&soup).expect("valid scene");
     let mut rng = rng("near counters", 0);
     let mut sums = [0; 4];
     for _ in 0..200 {
@@ -68,7 +69,7 @@ impl NearQuery<f64> for Counted<'_, AabbTree<f64, &Soup<f64>>> {
 
 struct Packets<'a, 'b>(&'a mut Near<'b>, &'a std::cell::Cell<usize>);
 
-impl p2m::backend::Collector for Packets<'_, '_> {
+impl p2m::core::Collector for Packets<'_, '_> {
     fn prune_above(&self) -> f64 {
         self.0.prune_above()
     }

@@ -4,12 +4,14 @@
 #![allow(clippy::float_cmp, reason = "bitwise equality is what is tested")]
 
 use nalgebra::{Point3, Vector3};
-use p2m::backend::{Collector, StatsCollector};
-#[cfg(feature = "mixed")]
+use p2m::core::{Collector, StatsCollector};
+use p2m::core::{Isa, Projection};
+use p2m::interception::{Domain, OctreeReport, OctreeSoFar};
+#[cfg(feature = "scene")]
 use p2m::scene::generate::{IcoSphere, ico_sphere};
 use p2m::{
-    Aabb, BruteForce, BuildIndex, ClosestPoint, Domain, Isa, OctreeIndex, OctreeOptions, OctreeReport, OctreeSoFar,
-    Point, PrimitiveId, PrimitiveSet, Projection, Segment, Shape, Soup,
+    Aabb, BruteForce, BuildIndex, ClosestPoint, OctreeIndex, OctreeOptions, Point, PrimitiveId, PrimitiveSet, Segment,
+    Shape, Soup,
 };
 use p2m_testkit::scenes::{self, KINDS, Kinds, LAYOUTS, Layout, kinds_and_layout};
 use p2m_testkit::{amount, cases, rng};
@@ -194,7 +196,7 @@ fn cells_do_not_depend_on_the_number_of_threads() {
 }
 
 /// All triangles are about equally near to the middle of a sphere, so searches there are charged to the budget of work.
-#[cfg(feature = "mixed")]
+#[cfg(feature = "scene")]
 #[test]
 fn cells_of_a_sphere_do_not_depend_on_the_number_of_threads() {
     let sphere = ico_sphere(&IcoSphere { frequency: 25 }).expect("valid");

@@ -1,14 +1,15 @@
 //! Indexes own, borrow and share their scenes, stand behind pointers, move between threads and follow moving scenes.
 
-#![cfg(all(feature = "bvh", feature = "field", feature = "interception", feature = "kdop", feature = "mixed"))]
+#![cfg(all(feature = "bvh", feature = "field", feature = "interception", feature = "kdop", feature = "scene"))]
 
 use nalgebra::{Point3, Rotation3, Vector3};
 use p2m::batch::BatchOptions;
+use p2m::core::Inspect;
 use p2m::field::sign::{Sign, SignError, SignedDistance};
 use p2m::scene::generate::{IcoSphere, ico_sphere};
 use p2m::{
-    AabbTree, AnyIndex, BruteForce, BuildError, BuildIndex, CertifiedQuery, ClosestPoint, Inspect, KdopTree, NearQuery,
-    OctreeIndex, P2mIndex, PrimitiveSet, Soup,
+    AabbTree, AnyIndex, BruteForce, BuildError, CertifiedQuery, ClosestPoint, KdopTree, NearQuery, OctreeIndex,
+    P2mIndex, PrimitiveSet, Soup,
 };
 use p2m_testkit::rng;
 use p2m_testkit::scenes::narrow;
@@ -40,13 +41,12 @@ impl<I: ClosestPoint<f64>> Collider<I> {
 fn pointers_answer_as_what_they_point_to() {
     let soup = Arc::new(ball());
     let expected = BruteForce::new(&*soup).expect("valid");
-    let tree: AabbTree<f64, Arc<Soup<f64>>> = AabbTree::build(Arc::clone(&soup), &Default::default()).expect("valid");
-    let boxed: AabbTree<f64, Box<Soup<f64>>> = AabbTree::build(Box::new(ball()), &Default::default()).expect("valid");
+    let tree: AabbTree<f64, Arc<Soup<f64>>> = AabbTree::new(Arc::clone(&soup)).expect("valid");
+    let boxed: AabbTree<f64, Box<Soup<f64>>> = AabbTree::new(Box::new(ball())).expect("valid");
     let counted = BruteForce::new(Rc::new(ball())).expect("valid");
     let shared: Arc<dyn ClosestPoint<f64> + Send + Sync> =
-        Arc::new(OctreeIndex::build(Arc::clone(&soup), &Default::default()).expect("valid"));
-    let dynamic: Box<dyn ClosestPoint<f64>> =
-        Box::new(KdopTree::<f64, _, 14>::build(Arc::clone(&soup), &Default::default()).expect("valid"));
+        Arc::new(OctreeIndex::new(Arc::clone(&soup)).expect("valid"));
+    let dynamic: Box<dyn ClosestPoint<f64>> = Box::new(KdopTree::<f64, _, 14>::new(Arc::clone(&soup)).expect("valid"));
     for query in queries(200) {
         let distance = expected.closest_point(&query).expect("not empty").distance;
         assert_eq!(Collider { index: &tree }.distance(&query), distance);
@@ -63,10 +63,10 @@ fn one_trait_object_does_everything_in_any_thread() {
     let soup = Arc::new(ball());
     let all: Vec<Box<dyn AnyIndex>> = vec![
         Box::new(BruteForce::new(Arc::clone(&soup)).expect("valid")),
-        Box::new(AabbTree::build(Arc::clone(&soup), &Default::default()).expect("valid")),
-        Box::new(KdopTree::<f64, _>::build(Arc::clone(&soup), &Default::default()).expect("valid")),
-        Box::new(OctreeIndex::build(Arc::clone(&soup), &Default::default()).expect("valid")),
-        Box::new(P2mIndex::build(Arc::clone(&soup), &Default::default()).expect("valid")),
+        Box::new(AabbTree::new(Arc::clone(&soup)).expect("valid")),
+        Box::new(KdopTree::<f64, _>::new(Arc::clone(&soup)).expect("valid")),
+        Box::new(OctreeIndex::new(Arc::clone(&soup)).expect("valid")),
+        Box::new(P2mIndex::new(Arc::clone(&soup)).expect("valid")),
     ];
     let ray = p2m::Ray::new(&Point3::new(0.1, 0.2, 9.0), &Vector3::new(0.0, 0.0, -1.0)).expect("a direction");
     let answers = all.into_iter().map(|index| {
@@ -95,15 +95,15 @@ fn one_trait_object_does_everything_in_any_thread() {
 #[test]
 fn indexes_are_unwind_safe() {
     fn is_unwind_safe<X: std::panic::UnwindSafe + std::panic::RefUnwindSafe>(_: &X) {}
-    is_unwind_safe(&AabbTree::build(Arc::new(ball()), &Default::default()).expect("valid"));
-    is_unwind_safe(&OctreeIndex::build(ball(), &Default::default()).expect("valid"));
+    is_unwind_safe(&AabbTree::new(Arc::new(ball())).expect("valid"));
+    is_unwind_safe(&OctreeIndex::new(ball()).expect("valid"));
 }
 
 #[test]
 fn signs_are_owned_cloned_sent_and_batched() {
     let soup = Arc::new(ball());
     let signed = SignedDistance::build(Arc::clone(&soup)).expect("closed");
-    let borrowed = SignedDistance::new(AabbTree::build(&*soup, &Default::default()).expect("valid"), &*soup).unwrap();
+    let borrowed = SignedDistance::new(AabbTree::new(&*soup).expect("valid"), &*soup).unwrap();
     let queries = queries(3000);
     let expected: Vec<_> = queries.iter().map(|query| borrowed.closest_point(query)).collect();
     assert!(expected.iter().flatten().any(|signed| signed.sign == Sign::Inside));
@@ -126,7 +126,7 @@ fn a_scene_in_f32_has_the_signs_of_the_same_scene_in_f64() {
     let single: Soup<f32> = narrow(&ball()).expect("fits f32");
     let positions: Vec<Point3<f64>> = single.positions().iter().map(|p| p.map(f64::from)).collect();
     let double = Arc::new(Soup::from_triangles(positions, single.triangles().to_vec()).expect("valid"));
-    let tree = AabbTree::build(Arc::new(single), &Default::default()).expect("valid");
+    let tree = AabbTree::new(Arc::new(single)).expect("valid");
     let signed = SignedDistance::new(tree, Arc::clone(&double)).expect("closed");
     let expected = SignedDistance::build(double).expect("closed");
     let mut inside = 0;
@@ -143,7 +143,7 @@ fn a_scene_in_f32_has_the_signs_of_the_same_scene_in_f64() {
 
 #[test]
 fn a_tree_follows_a_scene_in_place_and_tells_what_it_lost() {
-    let mut tree = AabbTree::build(ball(), &Default::default()).expect("valid");
+    let mut tree = AabbTree::new(ball()).expect("valid");
     let area = tree.surface_area();
     assert!(area > 10.0 && area < 1000.0, "{area}");
     // A rigid motion by a right angle keeps the quality.
@@ -161,7 +161,7 @@ fn a_tree_follows_a_scene_in_place_and_tells_what_it_lost() {
         let fields = |index: &dyn ClosestPoint<f64>| index.closest_point(&query).map(|c| (c.distance, c.primitive));
         assert_eq!(fields(&tree), fields(&brute));
     }
-    let rebuilt = AabbTree::build(tree.into_set(), &Default::default()).expect("valid");
+    let rebuilt = AabbTree::new(tree.into_set()).expect("valid");
     assert!(rebuilt.surface_area() < scattered);
     // A motion that fails leaves scene and tree as they were.
     let mut tree = rebuilt;
@@ -171,7 +171,7 @@ fn a_tree_follows_a_scene_in_place_and_tells_what_it_lost() {
     assert_eq!(tree.set(), &before);
     let short = tree.refit_in_place(&Default::default(), |soup| soup.set_positions(Vec::new()));
     assert_eq!(short, Err(BuildError::OtherPositionCount { len: 0, expected: before.positions().len() }));
-    let empty: AabbTree<f64, Soup<f64>> = AabbTree::build(Soup::default(), &Default::default()).expect("valid");
+    let empty: AabbTree<f64, Soup<f64>> = AabbTree::new(Soup::default()).expect("valid");
     assert_eq!(empty.surface_area(), 0.0);
 }
 
@@ -179,7 +179,7 @@ fn a_tree_follows_a_scene_in_place_and_tells_what_it_lost() {
 fn one_primitive_that_flies_away_does_not_hide_what_a_tree_lost() {
     let mut rng = rng("outlier", 0);
     let mut point = move || Point3::from([(); 3].map(|()| rng.random_range(-1.0..1.0)));
-    let mut tree = AabbTree::build(scattered(&mut point, 5000), &Default::default()).expect("valid");
+    let mut tree = AabbTree::new(scattered(&mut point, 5000)).expect("valid");
     let area = tree.surface_area();
     let mut soup = scattered(&mut point, 5000);
     let positions = soup.positions().iter().enumerate().map(|(i, p)| if i < 3 { p * 100.0 } else { *p }).collect();
@@ -207,7 +207,7 @@ fn a_tree_answers_for_whatever_a_change_left() {
             distance(tree) == distance(&brute)
         })
     };
-    let mut tree = AabbTree::build(ball(), &Default::default()).expect("valid");
+    let mut tree = AabbTree::new(ball()).expect("valid");
     let up = |p: Point3<f64>| p + Vector3::new(0.0, 0.0, 2.0);
     // The first motion is legal, the second one is not.
     let failed = tree.refit_in_place(&Default::default(), |soup| {
@@ -240,16 +240,16 @@ fn an_index_of_another_scene_has_no_signs() {
         soup.map_positions(|p| p + Vector3::new(5.0, 0.0, 0.0)).expect("finite");
         soup
     });
-    let index = || AabbTree::build(ball(), &Default::default()).expect("valid");
+    let index = || AabbTree::new(ball()).expect("valid");
     let other = SignError::OtherScene { triangle: 0, vertex: 0 };
     assert_eq!(SignedDistance::new(index(), Arc::clone(&shifted)).unwrap_err(), other);
     assert_eq!(SignedDistance::with_winding_numbers(index(), Arc::clone(&shifted), 0.01).unwrap_err(), other);
     // A scene of other kinds has that error, whatever the ids of its triangles are.
     let elements = [p2m::Element::Segment([2, 3]), p2m::Element::Point(3), p2m::Element::Triangle([0, 1, 2])];
     let mixed = Soup::new(ball().positions()[..4].to_vec(), elements).expect("valid");
-    let over_mixed = AabbTree::build(&mixed, &Default::default()).expect("valid");
+    let over_mixed = AabbTree::new(&mixed).expect("valid");
     assert_eq!(SignedDistance::new(over_mixed, &mixed).unwrap_err(), SignError::OtherKinds { others: 2 });
-    let empty = AabbTree::<f64, Soup<f64>>::build(Soup::default(), &Default::default()).expect("valid");
+    let empty = AabbTree::<f64, Soup<f64>>::new(Soup::default()).expect("valid");
     assert_eq!(SignedDistance::new(empty, shifted).unwrap_err(), other);
 }
 

@@ -4,11 +4,12 @@
 #![allow(clippy::float_cmp, reason = "bitwise equality is what is tested")]
 
 use nalgebra::{Point3, Vector3};
-use p2m::backend::StatsCollector;
+use p2m::core::Projection;
+use p2m::core::StatsCollector;
 use p2m::interception::{BuildStage, Partition, Progress};
 use p2m::{
-    Aabb, BruteForce, BuildIndex, Closest, ClosestPoint, P2mIndex, P2mOptions, Point, Primitive, PrimitiveSet,
-    Projection, Segment, Shape, Soup, Triangle,
+    Aabb, BruteForce, BuildIndex, Closest, ClosestPoint, P2mIndex, P2mOptions, Point, Primitive, PrimitiveSet, Segment,
+    Shape, Soup, Triangle,
 };
 use p2m_testkit::ball::Ball;
 use p2m_testkit::near_check::compared_fields;
@@ -18,7 +19,7 @@ use rand::{Rng, RngExt};
 use std::sync::Mutex;
 
 fn built<S: PrimitiveSet<f64> + Sync>(set: S) -> P2mIndex<f64, S> {
-    P2mIndex::build(set, &Default::default()).expect("valid")
+    P2mIndex::new(set).expect("valid")
 }
 
 /// Compares the default index of a set with brute force.
@@ -149,7 +150,7 @@ fn cells_do_not_depend_on_the_number_of_threads() {
     // Threads share 1024 sites or more, and the sphere has a site at each of its vertices.
     for shapes in [amount(sphere(40, 48), sphere(36, 32)), cylinder(amount(400, 200))] {
         let [one, all] = [false, true].map(|parallel| {
-            let splits = p2m::AabbOptions::default().with_parallel(parallel);
+            let splits = p2m::SplitOptions::default().with_parallel(parallel);
             P2mIndex::build(&shapes[..], &P2mOptions::default().with_splits(splits)).expect("valid")
         });
         assert_eq!(one.report(), all.report());
@@ -246,7 +247,7 @@ impl Primitive<f64> for Mixed {
             Self::Ball(ball) => ball.project(query),
         }
     }
-    fn intersect_ray(&self, _: &p2m::Ray) -> Option<p2m::backend::RayHit> {
+    fn intersect_ray(&self, _: &p2m::Ray) -> Option<p2m::core::RayHit> {
         unreachable!("no rays are cast")
     }
 }

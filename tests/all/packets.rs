@@ -3,10 +3,11 @@
 #![allow(clippy::float_cmp, reason = "bitwise equality is what is tested")]
 
 use nalgebra::{Point3, Vector3};
-use p2m::backend::{Best, Collector, StatsCollector};
+use p2m::core::{Best, Collector, StatsCollector};
+use p2m::core::{Isa, Projection};
 use p2m::{
-    AabbOptions, AabbTree, BruteForce, BuildError, BuildIndex, Closest, ClosestPoint, Isa, Point, Primitive,
-    PrimitiveId, PrimitiveSet, Projection, QueryOptions, Real, Segment, Shape, Soup, Triangle, batch,
+    AabbTree, BruteForce, BuildError, BuildIndex, Closest, ClosestPoint, Point, Primitive, PrimitiveId, PrimitiveSet,
+    QueryOptions, Real, Segment, Shape, Soup, SplitOptions, Triangle, batch,
 };
 use p2m_testkit::scenes::{self, Kinds, LAYOUTS, Layout, kinds_and_layout};
 use p2m_testkit::{amount, cases, rng};
@@ -51,7 +52,7 @@ fn every_instruction_set_answers_as_brute_force() {
         let queries: Vec<_> = queries.iter().map(scale).filter(|q| q.iter().all(|x| x.is_finite())).collect();
         let soup = Soup::new(soup.positions().iter().map(scale).collect(), soup.elements()).expect("finite");
         let brute = BruteForce::new(&soup).expect("valid");
-        let mut tree = AabbTree::build(&soup, &Default::default()).expect("valid");
+        let mut tree = AabbTree::new(&soup).expect("valid");
         for isa in Isa::available() {
             tree = tree.with_isa(isa);
             for q in &queries {
@@ -64,7 +65,7 @@ fn every_instruction_set_answers_as_brute_force() {
         }
         let (Some(single), true) = (scenes::narrow(&soup), e == 0) else { continue };
         let brute = BruteForce::new(&single).expect("valid");
-        let mut tree = AabbTree::build(&single, &Default::default()).expect("valid");
+        let mut tree = AabbTree::new(&single).expect("valid");
         for isa in Isa::available() {
             tree = tree.with_isa(isa);
             for q in queries.iter().map(|q| q.map(|x| x as f32)).filter(|q| q.iter().all(|x| x.is_finite())) {
@@ -99,7 +100,7 @@ fn collectors_of_more_than_the_nearest_get_all() {
     for case in cases.clone() {
         let (mut rng, (kinds, layout)) = (rng("collectors", case), kinds_and_layout(case));
         let soup = scenes::soup(&mut rng, kinds, layout, amount(400, 150));
-        let tree = AabbTree::build(&soup, &Default::default()).expect("valid");
+        let tree = AabbTree::new(&soup).expect("valid");
         for _ in 0..amount(50, 6) {
             let q = query(&mut rng, &soup);
             let nearest = tree.closest_point(&q).expect("not empty").distance;
@@ -124,7 +125,7 @@ fn a_tree_that_is_refitted_answers_as_one_that_is_built() {
     let mut rng = rng("refit", 0);
     for layout in LAYOUTS {
         let soup = scenes::soup(&mut rng, Kinds::Mixed, layout, 500);
-        let mut tree = AabbTree::build(soup.clone(), &Default::default()).expect("valid");
+        let mut tree = AabbTree::new(soup.clone()).expect("valid");
         let size = (soup.aabb().max - soup.aabb().min).norm();
         for step in 0..4 {
             // The motion is a twist, a shift by the size of the scene, and noise.
@@ -134,7 +135,7 @@ fn a_tree_that_is_refitted_answers_as_one_that_is_built() {
             };
             let moved =
                 Soup::new(tree.set().positions().iter().map(&mut moved).collect(), soup.elements()).expect("valid");
-            tree.refit(moved.clone(), &AabbOptions::default()).expect("as many");
+            tree.refit(moved.clone(), &SplitOptions::default()).expect("as many");
             let brute = BruteForce::new(&moved).expect("valid");
             for _ in 0..50 {
                 let q = query(&mut rng, &moved);
@@ -144,7 +145,7 @@ fn a_tree_that_is_refitted_answers_as_one_that_is_built() {
         let fewer = scenes::soup(&mut rng, Kinds::Mixed, layout, 40);
         let len = soup.len();
         let before = tree.closest_point(&[0.0; 3]);
-        let error = tree.refit(fewer.clone(), &AabbOptions::default());
+        let error = tree.refit(fewer.clone(), &SplitOptions::default());
         assert_eq!(error, Err(BuildError::OtherLength { len: fewer.len(), expected: len }));
         same(tree.closest_point(&[0.0; 3]), before, "as it was");
     }
@@ -157,7 +158,7 @@ fn trees_of_every_shape_are_built() {
     for base in [1.5f64, 2.0, 8.0, 16.0, 17.0, 100.0] {
         for n in [1, 2, 17, 33, 34, 40, 68, 69, 100] {
             let set: Vec<Point<f64>> = (0..n).map(|i| Point::new(Point3::new(base.powi(-i), 0.0, 0.0))).collect();
-            let tree = AabbTree::build(&set, &Default::default()).expect("valid");
+            let tree = AabbTree::new(&set).expect("valid");
             let brute = BruteForce::new(&set).expect("valid");
             for i in 0..n {
                 let q = Point3::new(base.powi(-i) * 1.25, 0.1, 0.0);
@@ -168,7 +169,7 @@ fn trees_of_every_shape_are_built() {
     for max_leaf in [0, 1, 2, 3, 4, 8, 16, 17, 100, 1000, usize::MAX] {
         for (layout, len) in [(Layout::Strewn, 300), (Layout::Sheet, 70), (Layout::Strewn, 5)] {
             let soup = scenes::soup(&mut rng, Kinds::Mixed, layout, len);
-            let mut options = AabbOptions::default();
+            let mut options = SplitOptions::default();
             options.max_leaf = max_leaf;
             let tree = AabbTree::build(&soup, &options).expect("valid");
             let brute = BruteForce::new(&soup).expect("valid");
@@ -194,10 +195,10 @@ fn refitted_packets_may_mix_kinds_and_zeros_keep_their_signs() {
         }
     };
     let of = |kind: &dyn Fn(usize) -> usize| -> Vec<Shape<f64>> { (0..40).map(|i| shape(kind(i), i)).collect() };
-    let mut tree = AabbTree::build(of(&|_| 2), &Default::default()).expect("valid");
+    let mut tree = AabbTree::new(of(&|_| 2)).expect("valid");
     for step in 0..6usize {
         let moved = of(&|i| [i % 3, 1, (i / 5) % 2, 2, i * i % 3, 0][step]);
-        tree.refit(moved.clone(), &AabbOptions::default()).expect("as many");
+        tree.refit(moved.clone(), &SplitOptions::default()).expect("as many");
         let brute = BruteForce::new(&moved).expect("valid");
         for i in 0..400 {
             let q = Point3::new(f64::from(i) * 0.1, f64::from(i % 7) * 0.3 - 0.9, f64::from(i % 5) * 0.2 - 0.4);
@@ -211,7 +212,7 @@ fn batches_are_single_queries() {
     for case in cases(6, 6) {
         let (mut rng, layout) = (rng("batches", case), LAYOUTS[(case % 6) as usize]);
         let soup = scenes::soup(&mut rng, Kinds::Mixed, layout, amount(500, 200));
-        let tree = AabbTree::build(&soup, &Default::default()).expect("valid");
+        let tree = AabbTree::new(&soup).expect("valid");
         // Threads take at least 512 queries each, so in shallow tests one case has enough queries for three threads.
         let count = amount(2000, if case == 0 { 1100 } else { 100 });
         let mut queries: Vec<_> = (0..count).map(|_| query(&mut rng, &soup)).collect();
@@ -241,8 +242,8 @@ fn trees_do_not_depend_on_the_number_of_threads() {
         let tree = tree.tree();
         tree.parts().map(|p| (p.volume, p.depth, tree.primitives(&p).map(<[_]>::to_vec))).collect::<Vec<_>>()
     };
-    let expected = boxes(AabbOptions::default().with_parallel(false));
-    assert!(expected == boxes(AabbOptions::default().with_parallel(true)));
+    let expected = boxes(SplitOptions::default().with_parallel(false));
+    assert!(expected == boxes(SplitOptions::default().with_parallel(true)));
     assert!(expected.len() > 2000);
 }
 
@@ -255,7 +256,7 @@ fn searches_do_little() {
     let queries: Vec<Point3<f64>> = (0..1000)
         .map(|_| soup.positions()[rng.random_range(0..soup.positions().len())] + Vector3::new(0.01, 0.02, 0.3))
         .collect();
-    let mut tree = AabbTree::build(&soup, &Default::default()).expect("valid");
+    let mut tree = AabbTree::new(&soup).expect("valid");
     for isa in Isa::available() {
         tree = tree.with_isa(isa);
         let mut sums = [0; 3];

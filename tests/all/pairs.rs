@@ -5,7 +5,7 @@
 
 use nalgebra::{Isometry3, Point3, Vector3};
 use p2m::pair::{ClosestPair, Motion, PairOptions, PairQuery};
-use p2m::{AabbTree, BruteForce, BuildIndex, Element, KdopTree, PrimitiveId, PrimitiveSet, Real, Shape, Soup};
+use p2m::{AabbTree, BruteForce, Element, KdopTree, PrimitiveId, PrimitiveSet, Real, Shape, Soup};
 use p2m_testkit::scenes::{self, kinds_and_layout};
 use p2m_testkit::{amount, cases, rng, vector};
 use rand::{Rng, RngExt};
@@ -47,8 +47,8 @@ fn check_scenes<T: Real>(case: u64, soups: [&Soup<T>; 2], moved: Option<Isometry
     let mut options = PairOptions::default().with_max_distance(limit);
     options.motion = moved;
     let expected = by_all_pairs(a, b, &options);
-    let [aabb_a, aabb_b] = soups.map(|soup| AabbTree::build(soup, &Default::default()).expect("valid"));
-    let kdop_b: KdopTree<T, _> = KdopTree::build(b, &Default::default()).expect("valid");
+    let [aabb_a, aabb_b] = soups.map(|soup| AabbTree::new(soup).expect("valid"));
+    let kdop_b: KdopTree<T, _> = KdopTree::new(b).expect("valid");
     let text = format!("{case}: {options:?}");
     assert_same(aabb_a.closest_pair(&aabb_b, &options), expected, &text);
     assert_same(aabb_a.closest_pair(&kdop_b, &options), expected, &text);
@@ -129,8 +129,8 @@ fn shapes_against_scenes_are_those_of_brute_force() {
         let bounds = soup.aabb();
         let size = (bounds.max - bounds.min).amax();
         let brute = BruteForce::new(&soup).expect("valid");
-        let tree = AabbTree::build(&soup, &Default::default()).expect("valid");
-        let kdop: KdopTree<f64, _> = KdopTree::build(&soup, &Default::default()).expect("valid");
+        let tree = AabbTree::new(&soup).expect("valid");
+        let kdop: KdopTree<f64, _> = KdopTree::new(&soup).expect("valid");
         for id in (0..shapes.len()).map(PrimitiveId::new) {
             let shape: Shape<f64> = shapes.get(id);
             let mut options = PairOptions::default();
@@ -209,7 +209,7 @@ fn a_scene_that_comes_from_far_away_has_the_pairs_of_its_rounded_vertices() {
             .map(|positions| Soup::new(positions, (0..625).map(Element::Point)).expect("valid"));
         let options = PairOptions::default().with_motion(moved);
         let expected = by_all_pairs(&a, &b, &options);
-        let [tree_a, tree_b] = [&a, &b].map(|soup| AabbTree::build(soup, &Default::default()).expect("valid"));
+        let [tree_a, tree_b] = [&a, &b].map(|soup| AabbTree::new(soup).expect("valid"));
         assert_same(tree_a.closest_pair(&tree_b, &options), expected, &format!("{case}"));
     }
 }
@@ -223,7 +223,7 @@ fn lower_bounds_hold_where_rounding_leaves_the_nearest_pair_out() {
     let segment = |[a, b]: [[f64; 3]; 2]| p2m::Segment::new(a.into(), b.into());
     let a = [Shape::from(segment(p)), Shape::from(far(0.999_999_999_999_957_6))];
     let b = [Shape::from(segment(q)), Shape::from(far(0.0))];
-    let [tree_a, tree_b] = [&a, &b].map(|shapes| AabbTree::build(shapes, &Default::default()).expect("valid"));
+    let [tree_a, tree_b] = [&a, &b].map(|shapes| AabbTree::new(shapes).expect("valid"));
     let exact = p2m_testkit::oracle::Distance::between(&p, &q);
     for hint in [[0, 0], [1, 1]] {
         let options = PairOptions::default().with_hint(hint.map(PrimitiveId::new));
@@ -236,7 +236,7 @@ fn lower_bounds_hold_where_rounding_leaves_the_nearest_pair_out() {
 #[test]
 fn equal_scenes_are_compared_in_few_steps() {
     let soup = scenes::soup(&mut rng("equal scenes", 0), scenes::Kinds::Segments, scenes::Layout::Strewn, 3_000);
-    let tree = AabbTree::build(&soup, &Default::default()).expect("valid");
+    let tree = AabbTree::new(&soup).expect("valid");
     let pair = tree.closest_pair(&tree, &PairOptions::default()).expect("not empty");
     assert_eq!((pair.distance, pair.is_intersecting, pair.primitives), (0.0, true, [PrimitiveId::new(0); 2]));
 }
@@ -245,7 +245,7 @@ fn equal_scenes_are_compared_in_few_steps() {
 fn nothing_is_near_an_empty_scene_or_beyond_the_range() {
     let soup = scenes::soup(&mut rng("pairs of nothing", 0), scenes::Kinds::Triangles, scenes::Layout::Sheet, 20);
     let empty: Soup<f64> = Soup::new(Vec::new(), []).expect("valid");
-    let [full, nothing] = [&soup, &empty].map(|soup| AabbTree::build(soup, &Default::default()).expect("valid"));
+    let [full, nothing] = [&soup, &empty].map(|soup| AabbTree::new(soup).expect("valid"));
     let options = PairOptions::default();
     assert_eq!(full.closest_pair(&nothing, &options), None);
     assert_eq!(nothing.closest_pair(&full, &options), None);
@@ -295,7 +295,7 @@ fn a_radius_is_taken_from_the_distance() {
         let soup = scenes::soup(&mut rng, kinds, layout, 40);
         let shapes = scenes::soup(&mut rng, kinds, layout, 3);
         let size = (soup.aabb().max - soup.aabb().min).amax();
-        let tree = AabbTree::build(&soup, &Default::default()).expect("valid");
+        let tree = AabbTree::new(&soup).expect("valid");
         let brute = BruteForce::new(&soup).expect("valid");
         for id in (0..shapes.len()).map(PrimitiveId::new) {
             let shape = shapes.get(id);
@@ -328,7 +328,7 @@ fn a_radius_is_taken_from_the_distance() {
             }
         }
     }
-    let tree = AabbTree::build([p2m::Point::new([0.0; 3].into())], &Default::default()).expect("valid");
+    let tree = AabbTree::new([p2m::Point::new([0.0; 3].into())]).expect("valid");
     for radius in [-1.0, f64::NAN] {
         let options = PairOptions::default().with_radius(radius);
         assert_eq!(tree.closest_to(&p2m::Point::new([0.0; 3].into()), &options), None, "{radius}");
@@ -361,7 +361,7 @@ fn certified_pairs_are_nearest_in_rational_arithmetic() {
         }
         let (exact, ids) = best.expect("neither is empty");
         ties += usize::from(equal > 0);
-        let [tree_a, tree_b] = [&a, &b].map(|soup| AabbTree::build(soup, &Default::default()).expect("valid"));
+        let [tree_a, tree_b] = [&a, &b].map(|soup| AabbTree::new(soup).expect("valid"));
         let found = tree_a.certified_closest_pair(&tree_b, &options).expect("neither is empty");
         assert_eq!(found.primitives, ids, "{text} {found:?}");
         // The length is the nearest f64 and the rest.
@@ -381,8 +381,8 @@ fn certified_pairs_are_nearest_in_rational_arithmetic() {
 fn pairs_are_found_behind_pointers_and_in_batches() {
     let mut rng = rng("pairs behind pointers", 0);
     let soup = scenes::soup(&mut rng, scenes::Kinds::Triangles, scenes::Layout::Strewn, 60);
-    let tree = AabbTree::build(&soup, &Default::default()).expect("valid");
-    let kdop: KdopTree<f64, _> = KdopTree::build(&soup, &Default::default()).expect("valid");
+    let tree = AabbTree::new(&soup).expect("valid");
+    let kdop: KdopTree<f64, _> = KdopTree::new(&soup).expect("valid");
     let brute = BruteForce::new(&soup).expect("valid");
     let indexes: [&dyn p2m::AnyIndex; 3] = [&tree, &kdop, &brute];
     let pairs = indexes.map(|index| index.as_pair_query().expect("it answers queries for pairs"));
@@ -403,7 +403,7 @@ fn pairs_are_found_behind_pointers_and_in_batches() {
             assert_same(*found, brute.closest_to(shape, &options), "a batch of shapes");
         }
     }
-    let octree = p2m::OctreeIndex::build(&soup, &Default::default()).expect("valid");
+    let octree = p2m::OctreeIndex::new(&soup).expect("valid");
     assert!((&octree as &dyn p2m::AnyIndex).as_pair_query().is_none());
 }
 
@@ -427,7 +427,7 @@ fn certified_pairs_distinguish_what_rounding_does_not() {
             [vec![a.into(), b.into()], vec![away.into()]].map(|hull| Distance::between(&hull, &[centre.into()]));
         let nearest = usize::from(exact[1].compare(&exact[0]).is_lt());
         let text = format!("{case}: {scene:?} {shape:?}");
-        let tree = AabbTree::build(&scene, &Default::default()).expect("valid");
+        let tree = AabbTree::new(&scene).expect("valid");
         let found = tree.certified_closest_to(&shape, &PairOptions::default()).expect("not empty");
         assert_eq!(found.primitives[0].index(), nearest, "{text}");
         assert_eq!(found.distance, exact[nearest].length()[0], "{text}");

@@ -4,7 +4,8 @@
 #![cfg(feature = "interception")]
 
 use nalgebra::{Point3, Vector3};
-use p2m::{BuildIndex, Element, P2mIndex, P2mOptions, P2mReport, PrimitiveSet, Real, Soup};
+use p2m::interception::P2mReport;
+use p2m::{BuildIndex, Element, P2mIndex, P2mOptions, PrimitiveSet, Real, Soup};
 use p2m_testkit::scenes::narrow;
 use p2m_testkit::{amount, cases, interception_check, rng, vector};
 

@@ -2,8 +2,8 @@
 #![cfg(all(feature = "bvh", feature = "kdop"))]
 
 use nalgebra::{Point3, Vector3};
-use p2m::backend::{Crossing, Hits, RayCollector, RayStatsCollector};
 use p2m::bvh::{TreeIndex, Volume};
+use p2m::core::{Crossing, Hits, RayCollector, RayStatsCollector};
 use p2m::kdop::Kdop;
 use p2m::{Aabb, Point, PrimitiveId, PrimitiveSet, Ray, Triangle};
 use std::ops::ControlFlow;

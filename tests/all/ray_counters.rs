@@ -1,10 +1,10 @@
 //! Checks the work of rays with counters, which are deterministic.
 #![cfg(all(feature = "bvh", feature = "kdop"))]
 
-use p2m::backend::{Hits, RayStatsCollector};
 use p2m::bvh::{TreeIndex, Volume};
+use p2m::core::{Hits, RayStatsCollector};
 use p2m::kdop::Directions;
-use p2m::{AabbTree, BuildIndex, KdopTree, Ray, Soup};
+use p2m::{AabbTree, KdopTree, Ray, Soup};
 use p2m_testkit::queries::QuerySet;
 use p2m_testkit::rng;
 use p2m_testkit::scenes::{self, KINDS, LAYOUTS};
@@ -30,13 +30,13 @@ fn built<const K: usize>(soup: &Soup<f64>) -> KdopTree<f64, &Soup<f64>, K>
 where
     Directions<K>: Default,
 {
-    KdopTree::build(soup, &Default::default()).expect("valid")
+    KdopTree::new(soup).expect("valid")
 }
 
 /// Checks that more faces lead to less work. `max_percent` is the largest percentage of the nodes and packets of 6 faces
 /// that 14, 18 and 26 faces may visit.
 fn check_work_falls(name: &str, soup: &Soup<f64>, max_percent: [[usize; 2]; 3]) {
-    let boxes = AabbTree::build(soup, &Default::default()).expect("valid");
+    let boxes = AabbTree::new(soup).expect("valid");
     let trees = (built::<6>(soup), built::<14>(soup), built::<18>(soup), built::<26>(soup));
     // Few rays from the wider box hit the scene.
     for (set, count) in [(QuerySet::Box10, 20_000), (QuerySet::Box1, 2000)] {
@@ -70,7 +70,7 @@ fn visits_fall_with_the_number_of_faces_on_a_turned_gear() {
 fn lines_that_pass_far_away_cost_nothing() {
     let mut rng = rng("far away", 0);
     let soup = scenes::soup(&mut rng, KINDS[0], LAYOUTS[0], 2000);
-    let (boxes, kdops) = (AabbTree::build(&soup, &Default::default()), built::<14>(&soup));
+    let (boxes, kdops) = (AabbTree::new(&soup), built::<14>(&soup));
     let boxes: AabbTree<f64, _> = boxes.expect("valid");
     for far in [1e12, 1e20, 1e100, 1e300] {
         let ray = |_| {

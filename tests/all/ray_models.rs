@@ -1,12 +1,13 @@
 //! Compares rays on real meshes with exact rational arithmetic, and checks that no line slips through a closed surface.
 //! The tests are skipped, with a message, if there is no folder of models.
 
-#![cfg(all(feature = "bvh", feature = "kdop", feature = "mixed"))]
+#![cfg(all(feature = "bvh", feature = "kdop", feature = "scene"))]
 
 use nalgebra::{Point3, Vector3};
-use p2m::backend::{Crossing, RayCollector};
 use p2m::bvh::{TreeIndex, Volume};
-use p2m::{Aabb, AabbTree, BuildIndex, Element, KdopTree, PrimitiveId, PrimitiveSet, Ray, Side, Soup};
+use p2m::core::Side;
+use p2m::core::{Crossing, RayCollector};
+use p2m::{Aabb, AabbTree, Element, KdopTree, PrimitiveId, PrimitiveSet, Ray, Soup};
 use p2m_testkit::line_filter::LineFilter;
 use p2m_testkit::ray_check::{Truth, agrees};
 use p2m_testkit::rays::{AIMS, ray};
@@ -44,8 +45,8 @@ fn every_model_is_met_as_exact_arithmetic_says() {
         let vertices = |i| soup.get(PrimitiveId::new(i)).vertices().iter().map(|v| v.coords.into()).collect();
         let primitives: Vec<Vec<[f64; 3]>> = (0..soup.len()).map(vertices).collect();
         let filter = LineFilter::new(&primitives);
-        let boxes = AabbTree::build(&soup, &Default::default()).expect("valid");
-        let kdops = KdopTree::<f64, _, 14>::build(&soup, &Default::default()).expect("valid");
+        let boxes = AabbTree::new(&soup).expect("valid");
+        let kdops = KdopTree::<f64, _, 14>::new(&soup).expect("valid");
         let bounds = soup.aabb();
         let size = (bounds.max - bounds.min).amax();
         let [asked, met, along, crossed] = on_all_cores(&cases, |i| {
@@ -155,8 +156,8 @@ fn closed_models_let_nothing_slip_through() {
     for path in model_files().iter().filter(|path| closed.iter().any(|name| path.ends_with(name))) {
         let (name, soup) = read(path);
         assert!(is_closed(&soup), "{name} should be closed");
-        let boxes = AabbTree::build(&soup, &Default::default()).expect("valid");
-        let kdops = KdopTree::<f64, _, 14>::build(&soup, &Default::default()).expect("valid");
+        let boxes = AabbTree::new(&soup).expect("valid");
+        let kdops = KdopTree::<f64, _, 14>::new(&soup).expect("valid");
         let bounds = soup.aabb();
         let [crossed, crossings] = on_all_cores(&cases, |i| {
             let line = line(&mut rng("lines of models", i), &soup, &bounds);

@@ -1,5 +1,5 @@
 //! Saved indexes return the same answers bit for bit, copied or mapped, and everything else is a typed error.
-#![cfg(all(feature = "bvh", feature = "interception", feature = "kdop", feature = "mixed"))]
+#![cfg(all(feature = "bvh", feature = "interception", feature = "kdop", feature = "scene"))]
 
 use nalgebra::Point3;
 use p2m::scene::{Scene, load_scene, save_scene};
@@ -221,7 +221,7 @@ fn rays_moved_sets_and_primitives_of_ones_own_work_as_before() {
     let reader = file.checked().expect("whole").clone();
     drop((file, bytes));
     let mut loaded = KdopTree::<f64, &Soup<f64>, 14>::load(&scene.soup, &reader).expect("an index");
-    let mut built = KdopTree::<f64, &Soup<f64>, 14>::build(&scene.soup, &Default::default()).expect("valid");
+    let mut built = KdopTree::<f64, &Soup<f64>, 14>::new(&scene.soup).expect("valid");
     assert_eq!(loaded.directions(), built.directions());
     let rays: Vec<Ray> =
         (0..200).map(|_| Ray::new(&Point3::from(vector(&mut rng) * 3.0), &vector(&mut rng)).expect("a ray")).collect();
@@ -239,7 +239,7 @@ fn rays_moved_sets_and_primitives_of_ones_own_work_as_before() {
 
     let balls: Vec<Ball> =
         (0..300).map(|_| Ball { centre: Point3::from(vector(&mut rng)), radius: rng.random_range(0.0..0.1) }).collect();
-    let index = P2mIndex::<f64, _>::build(&balls, &Default::default()).expect("valid");
+    let index = P2mIndex::<f64, _>::new(&balls).expect("valid");
     let (mut writer, mut bytes) = (Writer::default(), Vec::new());
     index.save(&mut writer);
     writer.write(&mut bytes).expect("memory");
@@ -281,7 +281,7 @@ fn single_precision_comes_back_as_well() {
         .map(|i| f32::from(i).sin_cos())
         .map(|(x, y)| Segment::new(Point3::new(x, y, x * y), Point3::new(-y, x, 1.0)))
         .collect();
-    let index = P2mIndex::<f32, _>::build(&wires, &Default::default()).expect("valid");
+    let index = P2mIndex::<f32, _>::new(&wires).expect("valid");
     let (mut writer, mut bytes) = (Writer::default(), Vec::new());
     index.save(&mut writer);
     writer.write(&mut bytes).expect("memory");

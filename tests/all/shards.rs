@@ -7,8 +7,8 @@ use p2m::shards::{
     MANIFEST_FILE, Manifest, ShardClosest, ShardError, ShardHit, ShardOptions, ShardWriter, ShardedIndex,
 };
 use p2m::{
-    AabbTree, BruteForce, BuildIndex, CertifiedQuery, Closest, ClosestPoint, Element, Hit, NearQuery, PrimitiveId,
-    PrimitiveSet, QueryOptions, Ray, RayQuery, Soup,
+    AabbTree, BruteForce, CertifiedQuery, Closest, ClosestPoint, Element, Hit, NearQuery, PrimitiveId, PrimitiveSet,
+    QueryOptions, Ray, RayQuery, Soup,
 };
 use p2m_backends::{BACKENDS, BackendEntry};
 use p2m_testkit::scenes::{self, KINDS, LAYOUTS, Layout};
@@ -269,7 +269,7 @@ fn many_queries_of_a_mesh_in_one_batch() {
     let folder = tempfile::tempdir().unwrap();
     let shards = write(rng, folder.path(), &soup, ShardOptions::default().with_max_bytes(40_000));
     assert!(shards.manifest().shards.len() > 4);
-    let index = AabbTree::build(&soup, &Default::default()).unwrap();
+    let index = AabbTree::new(&soup).unwrap();
     let points = queries(rng, &soup, amount(200_000, 5_000));
     let mut found = vec![None; points.len()];
     let shards = ShardedIndex::open_with_max_bytes(folder.path(), 0).unwrap();

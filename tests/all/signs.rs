@@ -1,20 +1,18 @@
 //! Compares signed distances with rays, which decide without rounding, and with surfaces whose distance is known.
 
-#![cfg(all(feature = "bvh", feature = "interception", feature = "mixed"))]
+#![cfg(all(feature = "bvh", feature = "interception", feature = "scene"))]
 
 use nalgebra::{Point3, Vector3};
 use p2m::field::sign::{Sign, SignError, SignedDistance, WindingNumbers, find_self_intersection};
 use p2m::scene::generate::{IcoSphere, SkewedGear, TorusKnot, Transform, ico_sphere, skewed_gear, torus_knot};
-use p2m::{
-    AabbTree, BruteForce, BuildIndex, Closest, Element, OctreeIndex, P2mIndex, PrimitiveSet, Ray, RayQuery, Soup,
-};
+use p2m::{AabbTree, BruteForce, Closest, Element, OctreeIndex, P2mIndex, PrimitiveSet, Ray, RayQuery, Soup};
 use p2m_testkit::queries::QuerySet;
 use p2m_testkit::{Cases, amount, cases, model_files, rng};
 use rand::RngExt;
 use std::sync::Arc;
 
 fn tree(soup: &Soup<f64>) -> AabbTree<f64, &Soup<f64>> {
-    AabbTree::build(soup, &Default::default()).expect("valid")
+    AabbTree::new(soup).expect("valid")
 }
 
 /// Returns whether a line to another point than the library's crosses the surface an odd number of times
@@ -242,9 +240,9 @@ fn what_is_no_closed_surface_is_refused() {
 fn every_backend_has_the_same_signs() {
     let soup = torus_knot(&TorusKnot { rings: 60, sides: 8, ..Default::default() }).expect("valid");
     let aabb = SignedDistance::new(tree(&soup), &soup).expect("closed");
-    let octree = OctreeIndex::build(&soup, &Default::default()).expect("valid");
+    let octree = OctreeIndex::new(&soup).expect("valid");
     let octree = SignedDistance::new(octree, &soup).expect("closed");
-    let p2m = P2mIndex::build(&soup, &Default::default()).expect("valid");
+    let p2m = P2mIndex::new(&soup).expect("valid");
     let p2m = SignedDistance::new(p2m, &soup).expect("closed");
     for query in QuerySet::Box1.generate_for_cases(&soup, &cases(1000, 100), 5) {
         let known = |c: Option<p2m::field::sign::Signed>| c.map(|c| (c.distance(), c.sign, c.closest.primitive));

@@ -4,7 +4,7 @@
 
 use crate::table::Row;
 use crate::tasks::{COUNTERS, Indexes, QUERIES, SCENES, Task, scene};
-use p2m::Isa;
+use p2m::core::Isa;
 use p2m_testkit::compiled;
 use std::path::Path;
 use std::process::Command;

@@ -18,7 +18,7 @@ mod table;
 mod tasks;
 
 use callgrind::{MEASURE, count_instructions, find_obstacle, run_everything};
-use p2m::Isa;
+use p2m::core::Isa;
 use p2m_testkit::compiled;
 use std::env;
 use std::path::Path;

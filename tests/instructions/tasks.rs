@@ -1,10 +1,11 @@
 //! The queries that are counted: each set of queries on each index of a scene.
 
 use nalgebra::Point3;
-use p2m::backend::{Best, Hits, RayStatsCollector, StatsCollector};
+use p2m::core::{Best, Hits, RayStatsCollector, StatsCollector};
+use p2m::core::{Inspect, Isa};
 use p2m::scene::generate::{IcoSphere, Subdivide, ico_sphere, subdivide};
 use p2m::storage::{SavedFile, Writer};
-use p2m::{AabbTree, BuildIndex, ClosestPoint, Inspect, Isa, KdopTree, OctreeIndex, P2mIndex, Ray, Soup};
+use p2m::{AabbTree, ClosestPoint, KdopTree, OctreeIndex, P2mIndex, Ray, Soup};
 use p2m_testkit::counted_queries::{self, QueryMode};
 use p2m_testkit::queries::QuerySet;
 use std::fs;
@@ -140,10 +141,10 @@ impl<'a> Indexes<'a> {
         Self {
             soup,
             rays: rays(soup),
-            aabb: AabbTree::build(soup, &Default::default()).expect("valid"),
-            kdop: KdopTree::build(soup, &Default::default()).expect("valid"),
-            octree: OctreeIndex::build(soup, &Default::default()).expect("valid"),
-            p2m: P2mIndex::build(soup, &Default::default()).expect("valid"),
+            aabb: AabbTree::new(soup).expect("valid"),
+            kdop: KdopTree::new(soup).expect("valid"),
+            octree: OctreeIndex::new(soup).expect("valid"),
+            p2m: P2mIndex::new(soup).expect("valid"),
         }
     }
 

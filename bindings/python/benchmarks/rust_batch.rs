@@ -8,7 +8,7 @@ use cpu_time::ProcessTime;
 use nalgebra::Point3;
 use p2m_bvh::AabbTree;
 use p2m_core::batch::{BatchOptions, ClosestColumns, closest_columns_into};
-use p2m_core::{BuildIndex, ClosestPoint, QueryOptions};
+use p2m_core::{ClosestPoint, QueryOptions};
 use p2m_interception::OctreeIndex;
 use std::error::Error;
 use std::io::{BufRead, Write, stdin, stdout};
@@ -31,8 +31,8 @@ fn main() -> Outcome {
     let threads = threads.parse()?;
     let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build()?;
     pool.install(|| match backend.as_str() {
-        "aabb" => answer_rounds(&AabbTree::build(&scene, &Default::default())?, &points, threads > 1),
-        "octree" => answer_rounds(&OctreeIndex::build(&scene, &Default::default())?, &points, threads > 1),
+        "aabb" => answer_rounds(&AabbTree::new(&scene)?, &points, threads > 1),
+        "octree" => answer_rounds(&OctreeIndex::new(&scene)?, &points, threads > 1),
         _ => Err(format!("{backend}: the backends are aabb and octree").into()),
     })
 }

@@ -358,7 +358,7 @@ mod tests {
         }
         assert_eq!(BackendEntry::default_backend().name, "aabb");
     }
-    #[cfg(all(feature = "kiddo", feature = "rstar"))]
+    #[cfg(feature = "paper")]
     #[test]
     fn every_locator_and_filter_gives_the_same_answers() {
         use super::{ListFilterKind, LocatorKind, P2mSettings};

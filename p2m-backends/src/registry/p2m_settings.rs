@@ -1,9 +1,9 @@
 //! The settings of a P2M index that a build by name accepts: its locator and the filter of its long lists.
 
-#[cfg(feature = "kiddo")]
+#[cfg(feature = "paper")]
 use p2m_interception::KdTreeLocator;
 use p2m_interception::P2mOptions;
-#[cfg(feature = "rstar")]
+#[cfg(feature = "paper")]
 use p2m_interception::RegionTree;
 
 /// The structure by which a P2M index finds a site near a query. Answers do not depend on it.
@@ -14,7 +14,7 @@ pub enum LocatorKind {
     #[default]
     Grid,
     /// The KD-tree of the crate kiddo, which is that of the paper. Queries take up to three times as long.
-    #[cfg(feature = "kiddo")]
+    #[cfg(feature = "paper")]
     KdTree,
 }
 
@@ -27,7 +27,7 @@ pub enum ListFilterKind {
     Sorted,
     /// An R-tree of the crate rstar for each list, which is that of the paper. Queries take up to ten times as long
     /// where lists are long.
-    #[cfg(feature = "rstar")]
+    #[cfg(feature = "paper")]
     RTree,
 }
 
@@ -58,12 +58,12 @@ impl P2mSettings {
     pub(crate) fn options(self) -> P2mOptions {
         let options = match self.locator {
             LocatorKind::Grid => P2mOptions::default(),
-            #[cfg(feature = "kiddo")]
+            #[cfg(feature = "paper")]
             LocatorKind::KdTree => P2mOptions::default().with_locator(KdTreeLocator::build),
         };
         match self.list_filter {
             ListFilterKind::Sorted => options,
-            #[cfg(feature = "rstar")]
+            #[cfg(feature = "paper")]
             ListFilterKind::RTree => options.with_list_filter(RegionTree::build),
         }
     }

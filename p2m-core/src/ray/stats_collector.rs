@@ -12,10 +12,10 @@ use std::ops::ControlFlow;
 /// ```
 /// use nalgebra::{Point3, Vector3};
 /// use p2m_bvh::AabbTree;
-/// use p2m_core::{BuildIndex, Hits, Point, Ray, RayStatsCollector};
+/// use p2m_core::{Hits, Point, Ray, RayStatsCollector};
 ///
 /// let points = [0.0, 1.0, 2.0].map(|x| Point::new(Point3::new(x, 0.0, 0.0)));
-/// let tree = AabbTree::build(&points, &Default::default()).unwrap();
+/// let tree = AabbTree::new(&points).unwrap();
 /// let rays = [Ray::new(&Point3::new(-1.0, 0.0, 0.0), &Vector3::x()).unwrap()];
 /// let [_nodes, _packets, primitives] =
 ///     RayStatsCollector::count_rays(&rays, &Hits::all(), |ray, stats| tree.visit_ray(ray, stats));

@@ -3,9 +3,7 @@
 use super::*;
 use nalgebra::Vector3;
 use p2m_bvh::AabbTree;
-use p2m_core::{
-    Aabb, BruteForce, BuildIndex, Element, Feature, Primitive, PrimitiveSet, Projection, QueryOptions, Ray, RayHit,
-};
+use p2m_core::{Aabb, BruteForce, Element, Feature, Primitive, PrimitiveSet, Projection, QueryOptions, Ray, RayHit};
 use p2m_testkit::scenes::{self, extreme_soups, kinds_and_layout, narrow};
 use p2m_testkit::{amount, cases, rng};
 use rand::RngExt;
@@ -16,12 +14,12 @@ fn go_on<T: Real>(_: &HausdorffProgress<T>) -> ControlFlow<()> {
 }
 
 fn both<T: Real>(a: &Soup<T>, b: &Soup<T>, options: &HausdorffOptions<T>) -> Option<HausdorffDistance<T>> {
-    let [index_a, index_b] = [a, b].map(|soup| AabbTree::build(soup, &Default::default()).expect("valid"));
+    let [index_a, index_b] = [a, b].map(|soup| AabbTree::new(soup).expect("valid"));
     hausdorff_distance((a, &index_a), (b, &index_b), options, &mut go_on).expect("vertices")
 }
 
 fn one_sided<T: Real>(a: &Soup<T>, b: &Soup<T>, options: &HausdorffOptions<T>) -> Option<HausdorffDistance<T>> {
-    let index = AabbTree::build(b, &Default::default()).expect("valid");
+    let index = AabbTree::new(b).expect("valid");
     one_sided_hausdorff_distance(a, &index, options, &mut go_on).expect("vertices")
 }
 

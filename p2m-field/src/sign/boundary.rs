@@ -8,7 +8,7 @@
 
 use nalgebra::Point3;
 use p2m_bvh::TreeIndex;
-use p2m_core::{Aabb, BuildError, BuildIndex, ClosestPoint, PrimitiveSet, Soup};
+use p2m_core::{Aabb, BuildError, ClosestPoint, PrimitiveSet, Soup};
 use p2m_mixed::engine::weld::{VertexWelder, group_by_vertex};
 use std::f64::consts::PI;
 
@@ -58,7 +58,7 @@ impl Boundary {
         });
         pushed?;
         let has_tree = edges.len() * MIN_TRIANGLES_PER_EDGE <= soup.len();
-        let edges = has_tree.then(|| TreeIndex::build(edges, &Default::default())).transpose()?;
+        let edges = has_tree.then(|| TreeIndex::new(edges)).transpose()?;
         Ok(Self { edges, length: length * (1.0 + 1e-9) })
     }
 

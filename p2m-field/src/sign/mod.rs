@@ -36,7 +36,7 @@ pub use winding::WindingNumbers;
 use nalgebra::Point3;
 use p2m_bvh::TreeIndex;
 use p2m_core::batch::{self, BatchOptions};
-use p2m_core::{Aabb, BuildIndex, Closest, ClosestPoint, Position, PrimitiveId, QueryOptions, Real, Soup};
+use p2m_core::{Aabb, Closest, ClosestPoint, Position, PrimitiveId, QueryOptions, Real, Soup};
 use pseudonormal::Pseudonormals;
 use std::sync::Arc;
 use topology::{RayTree, Topology};
@@ -113,7 +113,7 @@ impl SharedDistance {
     /// # Errors
     /// It returns the errors of [`SignedDistance::new`].
     pub fn build(soup: Arc<Soup<f64>>) -> Result<Self, SignError> {
-        Self::new(TreeIndex::build(Arc::clone(&soup), &Default::default())?, soup)
+        Self::new(TreeIndex::new(Arc::clone(&soup))?, soup)
     }
 }
 
@@ -295,6 +295,6 @@ fn check_scene<T: Real>(index: &impl ClosestPoint<T>, soup: &Soup<f64>) -> Resul
 /// plane along two axes.
 pub fn find_self_intersection(soup: &Soup<f64>) -> Result<Option<[PrimitiveId; 2]>, SignError> {
     let topology = Topology::new(soup)?;
-    let rays = RayTree::build(soup, &Default::default())?;
+    let rays = RayTree::new(soup)?;
     Ok(topology.find_self_intersection(soup, &rays).map(|pair| pair.map(PrimitiveId::new)))
 }

@@ -15,7 +15,7 @@ use super::topology::{NO_TRIANGLE, RayTree, Topology};
 use super::types::{ClosestFeature, Counter, SharedSoup, Sign, SignError};
 use nalgebra::{Point3, Vector3};
 use p2m_bvh::TreeIndex;
-use p2m_core::{Aabb, BuildIndex, ClosestPoint, Feature, Ray, RayQuery, Real, Soup};
+use p2m_core::{Aabb, ClosestPoint, Feature, Ray, RayQuery, Real, Soup};
 use p2m_mixed::engine::vector::{V3, add, cross, dot, largest, length, scaled, sub};
 
 /// The smallest sine that is not ambiguous: 2^-20. The limit applies to the angle between the offset and the tangent
@@ -55,7 +55,7 @@ enum Front {
 impl<S: SharedSoup> Pseudonormals<S> {
     pub(super) fn new<T: Real>(soup: S, index: &impl ClosestPoint<T>) -> Result<Self, SignError> {
         let Topology { welder, neighbours, components, is_fan } = Topology::new(&soup)?;
-        let rays = TreeIndex::build(soup.clone(), &Default::default())?;
+        let rays = TreeIndex::new(soup.clone())?;
         let mut vertex_normals = vec![[0.0; 3]; welder.vertex_count];
         let mut is_unambiguous = is_fan;
         for triangle in soup.triangles() {

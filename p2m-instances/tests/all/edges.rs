@@ -2,9 +2,7 @@
 
 use nalgebra::{Isometry3, Point3, Quaternion, Translation3, UnitQuaternion, Vector3};
 use p2m_bvh::AabbTree;
-use p2m_core::{
-    AnyIndex, BruteForce, BuildIndex, ClosestPoint, Element, Inspect, NearQuery, PrimitiveId, Ray, RayQuery, Soup,
-};
+use p2m_core::{AnyIndex, BruteForce, ClosestPoint, Element, Inspect, NearQuery, PrimitiveId, Ray, RayQuery, Soup};
 use p2m_instances::{InstanceError, Instances};
 use std::sync::Arc;
 
@@ -14,7 +12,7 @@ type Tree = AabbTree<f64, Soup<f64>>;
 fn square() -> Arc<Tree> {
     let positions = [[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [1.0, 1.0, 0.0], [0.0, 1.0, 0.0]];
     let soup = Soup::from_arrays(&positions, &[[0u32, 1, 2], [0, 2, 3]]).expect("valid");
-    Arc::new(Tree::build(soup, &Default::default()).expect("valid"))
+    Arc::new(Tree::new(soup).expect("valid"))
 }
 
 #[test]
@@ -212,7 +210,7 @@ fn points_that_a_far_motion_rounds_together_are_told_apart_by_their_ids() {
     let ids: Vec<u32> = (0..1728).rev().collect();
     let soup = Soup::new(points.iter().map(|p| Point3::from(*p)).collect(), ids.iter().map(|i| Element::Point(*i)));
     let soup = soup.expect("valid");
-    let tree: Arc<dyn AnyIndex + '_> = Arc::new(AabbTree::build(&soup, &Default::default()).expect("valid"));
+    let tree: Arc<dyn AnyIndex + '_> = Arc::new(AabbTree::new(&soup).expect("valid"));
     let turned = Isometry3::new(Vector3::new(-7e11, 1e12, 3e11), Vector3::new(0.3, 0.2, 0.1));
     let mut inner = Instances::new();
     inner.edit().add("grid", &tree, Isometry3::identity()).expect("valid");

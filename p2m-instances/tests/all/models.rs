@@ -3,7 +3,7 @@
 use crate::reference::{Expected, Object, moved_soup};
 use nalgebra::{Isometry3, Point3, Vector3};
 use p2m_bvh::AabbTree;
-use p2m_core::{BuildIndex, ClosestPoint, NearQuery, PrimitiveSet, Ray, RayQuery, Soup};
+use p2m_core::{ClosestPoint, NearQuery, PrimitiveSet, Ray, RayQuery, Soup};
 use p2m_instances::Instances;
 use p2m_testkit::near_check::compared_fields;
 use p2m_testkit::{amount, model_files, ray_check, rng, vector};
@@ -23,7 +23,7 @@ fn meshes_that_move_answer_as_one_index_over_all_of_them() {
     }
     let mut rng = rng("moving meshes", 0);
     let objects: Vec<Object<'_, f64>> = (soups.iter())
-        .map(|soup| -> Object<'_, f64> { (soup, Arc::new(AabbTree::build(soup, &Default::default()).expect("valid"))) })
+        .map(|soup| -> Object<'_, f64> { (soup, Arc::new(AabbTree::new(soup).expect("valid"))) })
         .collect();
     let mut scene = Instances::new();
     let mut expected: Vec<Expected> = Vec::new();
@@ -43,7 +43,7 @@ fn meshes_that_move_answer_as_one_index_over_all_of_them() {
         }
         drop(edit);
         let moved = moved_soup(&objects, &expected);
-        let index = AabbTree::build(&moved, &Default::default()).expect("valid");
+        let index = AabbTree::new(&moved).expect("valid");
         let mut hits = 0;
         for _ in 0..amount(20_000, 2_000) {
             let query = Point3::from(vector(&mut rng) * size * 3.0);

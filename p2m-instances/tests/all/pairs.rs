@@ -6,7 +6,7 @@ use nalgebra::Isometry3;
 use p2m_backends::{BACKENDS, BuildSettings};
 use p2m_bvh::AabbTree;
 use p2m_core::pair::{ClosestPair, PairOptions, PairQuery};
-use p2m_core::{AnyIndex, BruteForce, BuildIndex, PrimitiveId, PrimitiveSet, Shape, Soup};
+use p2m_core::{AnyIndex, BruteForce, PrimitiveId, PrimitiveSet, Shape, Soup};
 use p2m_instances::Instances;
 use p2m_testkit::scenes::{self, kinds_and_layout};
 use p2m_testkit::{cases, rng};
@@ -145,7 +145,7 @@ fn instances_with_and_without_trees_are_compared() {
         let soups = [0, 1].map(|_| scenes::soup(&mut rng, kinds, layout, 12));
         let size = soups.iter().map(|soup| (soup.aabb().max - soup.aabb().min).amax()).fold(0.0, f64::max);
         let brute = Arc::new(BruteForce::new(&soups[0]).expect("valid")) as Arc<dyn AnyIndex<f64> + '_>;
-        let tree = AabbTree::build(&soups[1], &Default::default()).expect("valid");
+        let tree = AabbTree::new(&soups[1]).expect("valid");
         let tree = Arc::new(tree) as Arc<dyn AnyIndex<f64> + '_>;
         let objects: Vec<Object<'_, f64>> = vec![(&soups[0], brute), (&soups[1], tree)];
         let (scene, expected) = scene(&mut rng, &objects, size);

@@ -251,7 +251,7 @@ mod tests {
     use super::*;
     use crate::P2mIndex;
     use crate::voronoi::neighbour_block::NEIGHBOURS_PER_BLOCK;
-    use p2m_core::{BruteForce, BuildIndex, ClosestPoint, Soup};
+    use p2m_core::{BruteForce, ClosestPoint, Soup};
     use p2m_testkit::{adversaries, amount, rng, vector};
     use rand::RngExt;
 
@@ -260,7 +260,7 @@ mod tests {
     fn a_hub_has_no_neighbours_and_the_tree_answers_in_its_cell() {
         for (count, is_hub) in [(400, false), (1_400, true)] {
             let soup = adversaries::Adversary::named("star").soup(count);
-            let index = P2mIndex::<f64, &Soup<f64>>::build(&soup, &Default::default()).expect("valid");
+            let index = P2mIndex::<f64, &Soup<f64>>::new(&soup).expect("valid");
             let sites = &index.partition().neighbours.sites;
             let most = sites.iter().map(|site| site.block_count as usize * NEIGHBOURS_PER_BLOCK).max().expect("sites");
             assert!(most < MAX_NEIGHBOURS + NEIGHBOURS_PER_BLOCK && (most >= count) != is_hub, "{count}: {most}");

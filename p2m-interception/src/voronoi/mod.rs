@@ -33,7 +33,7 @@ pub(crate) mod excluded_features;
 pub(crate) mod feature_relevance;
 pub(crate) mod flood;
 pub(crate) mod grid_locator;
-#[cfg(feature = "kiddo")]
+#[cfg(feature = "paper")]
 pub(crate) mod kd_tree_locator;
 pub(crate) mod list_filter;
 pub(crate) mod local_numbers;
@@ -41,11 +41,11 @@ pub(crate) mod locator;
 pub(crate) mod neighbour_block;
 pub(crate) mod neighbours;
 pub(crate) mod packet_cells;
-#[cfg(all(feature = "kiddo", feature = "rstar"))]
+#[cfg(feature = "paper")]
 pub(crate) mod paper;
 pub(crate) mod primitive_frame;
 pub(crate) mod query;
-#[cfg(feature = "rstar")]
+#[cfg(feature = "paper")]
 pub(crate) mod region_tree;
 pub(crate) mod saved;
 pub(crate) mod site;

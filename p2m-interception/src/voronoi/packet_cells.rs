@@ -327,7 +327,7 @@ mod tests {
     use crate::{P2mIndex, Partition};
     use nalgebra::Point3;
     use p2m_core::engine::vector::V3;
-    use p2m_core::{BruteForce, BuildIndex, ClosestPoint, Segment, Shape, Triangle};
+    use p2m_core::{BruteForce, ClosestPoint, Segment, Shape, Triangle};
     use p2m_testkit::{amount, cases, rng, vector};
     use rand::RngExt;
 
@@ -354,7 +354,7 @@ mod tests {
                 let [b, c] = [(); 2].map(|()| a + vector(&mut rng));
                 shapes.push(if rng.random() { Triangle::new(a, b, c).into() } else { Segment::new(a, b).into() });
             }
-            let index = P2mIndex::<f64, &[Shape<f64>]>::build(&shapes[..], &Default::default()).expect("valid");
+            let index = P2mIndex::<f64, &[Shape<f64>]>::new(&shapes[..]).expect("valid");
             let brute = BruteForce::new(&shapes[..]).expect("valid");
             let vertices: Vec<V3> = shapes
                 .iter()

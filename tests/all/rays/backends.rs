@@ -1,12 +1,10 @@
 //! The backends that cast rays, and the comparison of all of them with the exact hits.
 
 use nalgebra::{Point3, Vector3};
-use p2m::backend::{Crossing, Hits, RayCollector};
+use p2m::core::{Crossing, Hits, RayCollector};
+use p2m::core::{Isa, Side};
 use p2m::kdop::Directions;
-use p2m::{
-    AabbTree, BruteForce, BuildIndex, Element, Isa, KdopTree, PrimitiveId, PrimitiveSet, Ray, RayQuery, Real, Side,
-    Soup,
-};
+use p2m::{AabbTree, BruteForce, Element, KdopTree, PrimitiveId, PrimitiveSet, Ray, RayQuery, Real, Soup};
 use p2m_testkit::ray_check::{Truth, agrees};
 use p2m_testkit::rays::{AIMS, ray};
 use p2m_testkit::scenes::{self, kinds_and_layout};
@@ -23,7 +21,7 @@ pub(super) fn kdops<'a, T: Real, S: PrimitiveSet<T> + Sync + Copy + 'a, const K:
 ) where
     Directions<K>: Default,
 {
-    let tree = KdopTree::<T, S, K>::build(set, &Default::default()).expect("valid");
+    let tree = KdopTree::<T, S, K>::new(set).expect("valid");
     all.extend(
         Isa::available()
             .into_iter()
@@ -76,7 +74,7 @@ pub(super) fn backends<'a, T: Real, S: PrimitiveSet<T> + Sync + Copy + 'a>(set: 
 /// Returns brute force, boxes and 14-DOPs. They are few because each tree is compiled for each type of set.
 pub(super) fn few_backends<'a, T: Real, S: PrimitiveSet<T> + Sync + Copy + 'a>(set: S) -> Vec<Index<'a, T>> {
     let mut all: Vec<Index<'a, T>> = vec![("brute force".to_owned(), Box::new(BruteForce::new(set).expect("valid")))];
-    let boxes = AabbTree::<T, S>::build(set, &Default::default()).expect("valid");
+    let boxes = AabbTree::<T, S>::new(set).expect("valid");
     for isa in Isa::available() {
         all.push((format!("boxes, {isa}"), Box::new(boxes.clone().with_isa(isa))));
     }

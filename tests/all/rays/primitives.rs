@@ -2,11 +2,9 @@
 
 use super::backends::{Index, few_backends, soup_of};
 use nalgebra::{Point3, Vector3};
-use p2m::backend::{Crossing, RayHit};
-use p2m::{
-    Aabb, AabbTree, BruteForce, BuildIndex, Feature, Hit, KdopTree, Primitive, PrimitiveId, Projection, Ray, RayError,
-    RayQuery, Real, Side,
-};
+use p2m::core::{Crossing, RayHit};
+use p2m::core::{Projection, RayError, Side};
+use p2m::{Aabb, AabbTree, BruteForce, Feature, Hit, KdopTree, Primitive, PrimitiveId, Ray, RayQuery, Real};
 use p2m_testkit::ray_check::agrees;
 use p2m_testkit::{amount, cases, rng};
 use rand::RngExt;
@@ -190,9 +188,9 @@ fn packets_that_became_mixed_keep_the_radius() {
     let mut place = || -> [f64; 3] { std::array::from_fn(|_| rng.random_range(-2.0..2.0)) };
     let triangles = soup_of(&(0..64).map(|_| vec![place(), place(), place()]).collect::<Vec<_>>());
     let others = soup_of(&(0..64).map(|i| (0..1 + i % 2).map(|_| place()).collect()).collect::<Vec<_>>());
-    let mut boxes = AabbTree::<f64, _>::build(&triangles, &Default::default()).expect("valid");
+    let mut boxes = AabbTree::<f64, _>::new(&triangles).expect("valid");
     boxes.refit(&others, &Default::default()).expect("as many");
-    let mut kdops = KdopTree::<f64, _, 14>::build(&triangles, &Default::default()).expect("valid");
+    let mut kdops = KdopTree::<f64, _, 14>::new(&triangles).expect("valid");
     kdops.refit(&others, &Default::default()).expect("as many");
     let trees: [&dyn RayQuery<f64>; 2] = [&boxes, &kdops];
     let brute = BruteForce::new(&others).expect("valid");

@@ -2,7 +2,8 @@
 
 use super::backends::{backends, rays, scaled, soup_of};
 use nalgebra::{Point3, Vector3};
-use p2m::{AabbTree, BuildIndex, Ray, RayQuery, Side};
+use p2m::core::Side;
+use p2m::{AabbTree, Ray, RayQuery};
 use p2m_testkit::ray_check::bits;
 use p2m_testkit::scenes::{self, Kinds, LAYOUTS};
 use p2m_testkit::{cases, rng};
@@ -16,7 +17,7 @@ fn ranges_in_a_row_share_the_hits_out() {
     for seed in cases.clone() {
         let mut rng = rng("ranges in a row", seed);
         let soup = scenes::soup(&mut rng, Kinds::Triangles, LAYOUTS[seed as usize % 6], 60);
-        let tree = AabbTree::build(&soup, &Default::default()).expect("valid");
+        let tree = AabbTree::new(&soup).expect("valid");
         for ray in rays(&mut rng, &soup) {
             let all = tree.all_intersections(&ray.line());
             if all.iter().any(|hit| hit.side == Side::Along) {

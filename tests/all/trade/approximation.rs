@@ -5,11 +5,11 @@
 #![allow(clippy::float_cmp, reason = "bitwise equality is what is tested")]
 
 use nalgebra::Point3;
-use p2m::backend::{Best, Inspect, StatsCollector};
+use p2m::core::{Best, Inspect, StatsCollector};
 use p2m::scene::generate::Kind;
 use p2m::{
-    AabbTree, BruteForce, BuildIndex, CertifiedQuery, Closest, ClosestPoint, KdopTree, OctreeIndex, P2mIndex,
-    Primitive, PrimitiveSet, QueryOptions, Real, Soup,
+    AabbTree, BruteForce, CertifiedQuery, Closest, ClosestPoint, KdopTree, OctreeIndex, P2mIndex, Primitive,
+    PrimitiveSet, QueryOptions, Real, Soup,
 };
 use p2m_testkit::near_check::compared_fields;
 use p2m_testkit::oracle::Distance;
@@ -104,10 +104,10 @@ impl<T: Real> Case<'_, T> {
 
 fn check_scene<T: Real>(soup: &Soup<T>, queries: &[Point3<T>], counts: &mut [usize; 2]) {
     let brute = BruteForce::new(soup).expect("valid");
-    let tree = AabbTree::build(soup, &Default::default()).expect("valid");
-    let kdop = KdopTree::<T, _, 14>::build(soup, &Default::default()).expect("valid");
-    let octree = OctreeIndex::build(soup, &Default::default()).expect("valid");
-    let p2m = P2mIndex::build(soup, &Default::default()).expect("valid");
+    let tree = AabbTree::new(soup).expect("valid");
+    let kdop = KdopTree::<T, _, 14>::new(soup).expect("valid");
+    let octree = OctreeIndex::new(soup).expect("valid");
+    let p2m = P2mIndex::new(soup).expect("valid");
     let indexes: [(&str, &dyn Index<T>); 4] = [("aabb", &tree), ("kdop", &kdop), ("octree", &octree), ("p2m", &p2m)];
     for query in queries {
         let Some(exact) = tree.closest_point(query) else { continue };
@@ -196,7 +196,7 @@ fn approximate_answers_keep_what_they_promise() {
 #[test]
 fn slivers_side_by_side_keep_epsilon() {
     let soup = scenes::skewed_gear(amount(3000, 800));
-    let tree = AabbTree::build(&soup, &Default::default()).expect("valid");
+    let tree = AabbTree::new(&soup).expect("valid");
     for case in cases(40_000, 1_500) {
         let mut rng = p2m_testkit::rng("slivers side by side", case);
         let query = Point3::from([0; 3].map(|_| rng.random_range(-1.2..1.2)));
@@ -216,9 +216,9 @@ fn budgets_are_kept_and_pay() {
     let options = p2m::scene::generate::TorusKnot::default();
     let options = amount(options, p2m::scene::generate::TorusKnot { rings: 60, sides: 8, ..options });
     let soup = p2m::scene::generate::torus_knot(&options).expect("valid options");
-    let tree = AabbTree::build(&soup, &Default::default()).expect("valid");
-    let octree = OctreeIndex::build(&soup, &Default::default()).expect("valid");
-    let p2m = P2mIndex::build(&soup, &Default::default()).expect("valid");
+    let tree = AabbTree::new(&soup).expect("valid");
+    let octree = OctreeIndex::new(&soup).expect("valid");
+    let p2m = P2mIndex::new(&soup).expect("valid");
     let indexes: [(&str, &dyn Index<f64>); 3] = [("aabb", &tree), ("octree", &octree), ("p2m", &p2m)];
     let mut rng = p2m_testkit::rng("budgets", 0);
     let queries: Vec<_> =
@@ -251,7 +251,7 @@ fn budgets_are_kept_and_pay() {
 fn what_is_certain_leaves_nothing_open() {
     let mut rng = p2m_testkit::rng("certain cells", 0);
     let soup = scenes::soup(&mut rng, scenes::Kinds::Triangles, scenes::Layout::Uniform, 300);
-    let index = P2mIndex::build(&soup, &Default::default()).expect("valid");
+    let index = P2mIndex::new(&soup).expect("valid");
     let mut exact = 0;
     for _ in 0..200 {
         let query = Point3::from([0; 3].map(|_| rng.random_range(-4.0..4.0)));

@@ -4,9 +4,10 @@
 //! `P2M_DEEP=100 cargo test --profile deep --test all near_ties` runs 150,000 queries on each backend.
 
 use nalgebra::{Point3, Vector3};
+use p2m::core::CertifyError;
 use p2m::{
-    AabbTree, BruteForce, BuildIndex, CertifiedQuery, CertifyError, ClosestPoint, Element, KdopTree, OctreeIndex,
-    P2mIndex, PrimitiveSet, QueryOptions, Real, Soup,
+    AabbTree, BruteForce, CertifiedQuery, ClosestPoint, Element, KdopTree, OctreeIndex, P2mIndex, PrimitiveSet,
+    QueryOptions, Real, Soup,
 };
 use p2m_testkit::oracle::Distance;
 use p2m_testkit::scenes::{self, kinds_and_layout, narrow};
@@ -40,10 +41,10 @@ fn is_within_a_unit<T: Real>(true_one: &Distance, distance: T) -> bool {
 /// named another primitive.
 fn check<T: Real>(soup: &Soup<T>, queries: &[Point3<T>]) -> [usize; 2] {
     let brute = BruteForce::new(soup).expect("valid");
-    let tree = AabbTree::build(soup, &Default::default()).expect("valid");
-    let kdop = KdopTree::<T, _, 14>::build(soup, &Default::default()).expect("valid");
-    let octree = OctreeIndex::build(soup, &Default::default()).expect("valid");
-    let p2m = P2mIndex::build(soup, &Default::default()).expect("valid");
+    let tree = AabbTree::new(soup).expect("valid");
+    let kdop = KdopTree::<T, _, 14>::new(soup).expect("valid");
+    let octree = OctreeIndex::new(soup).expect("valid");
+    let p2m = P2mIndex::new(soup).expect("valid");
     let indexes: [(&str, &dyn Index<T>); 5] =
         [("brute", &brute), ("aabb", &tree), ("kdop", &kdop), ("octree", &octree), ("p2m", &p2m)];
     let mut counts = [0; 2];
@@ -151,7 +152,8 @@ fn ordinary_scenes_of_both_scalars_are_certified() {
 
 #[test]
 fn what_cannot_be_certified_is_told() {
-    use p2m::{Aabb, Feature, Primitive, PrimitiveId, Projection};
+    use p2m::core::Projection;
+    use p2m::{Aabb, Feature, Primitive, PrimitiveId};
     struct Ball;
     impl Primitive<f64> for Ball {
         fn aabb(&self) -> Aabb<f64> {
@@ -161,11 +163,11 @@ fn what_cannot_be_certified_is_told() {
             let point = Point3::from(query.coords.normalize());
             Projection::new(query, self.aabb().clamp(point), Feature::Face, [1.0, 0.0, 0.0], 1e-15)
         }
-        fn intersect_ray(&self, _: &p2m::Ray) -> Option<p2m::backend::RayHit> {
+        fn intersect_ray(&self, _: &p2m::Ray) -> Option<p2m::core::RayHit> {
             unreachable!("no rays are cast")
         }
     }
-    let tree = AabbTree::build([Ball], &Default::default()).expect("valid");
+    let tree = AabbTree::new([Ball]).expect("valid");
     let query = Point3::new(3.0, 0.0, 0.0);
     let error = CertifyError::NoVertices { id: PrimitiveId::new(0) };
     assert_eq!(tree.certified_closest_point(&query, &Default::default()), Err(error));

@@ -4,7 +4,7 @@ use crate::backend::{Answer, BenchIndex, BoxedIndex, Prepared, Scalar, ScalarKin
 use crate::scene::Scene;
 use nalgebra::Point3;
 use p2m_backends::{AnyIndex, BackendEntry, BuildSettings, BuiltIndex};
-use p2m_bvh::{AabbOptions, AabbTree};
+use p2m_bvh::{AabbTree, SplitOptions};
 use p2m_core::batch::{self, BatchOptions, ClosestColumns};
 use p2m_core::{BuildError, BuildIndex, Closest, ClosestPoint, Isa, PrimitiveId, QueryOptions, Soup};
 use p2m_interception::{OctreeIndex, OctreeOptions, P2mIndex, P2mOptions};
@@ -141,8 +141,8 @@ pub(crate) fn registered<'a>(
 }
 
 /// Returns options that build on one thread, because thread CPU time is measured.
-pub(crate) fn aabb_options() -> AabbOptions {
-    AabbOptions::default().with_parallel(false)
+pub(crate) fn aabb_options() -> SplitOptions {
+    SplitOptions::default().with_parallel(false)
 }
 
 /// Returns the instruction set of that name, or the best one if no name is given.

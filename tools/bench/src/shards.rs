@@ -8,7 +8,7 @@ use nalgebra::Point3;
 use p2m_bvh::AabbTree;
 use p2m_cli::harness::Table;
 use p2m_core::batch::{BatchOptions, closest_points_into};
-use p2m_core::{BruteForce, BuildIndex, Closest, ClosestPoint, Key, Primitive, PrimitiveSet, QueryOptions, Soup};
+use p2m_core::{BruteForce, Closest, ClosestPoint, Key, Primitive, PrimitiveSet, QueryOptions, Soup};
 use p2m_shards::{ShardClosest, ShardOptions, ShardWriter, ShardedIndex};
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
@@ -161,7 +161,7 @@ pub(crate) fn run(arguments: &ShardsArguments) -> Result<bool> {
                 whole.push(p2m_core::Element::Triangle(triangle.map(|corner| first + corner)))?;
             }
         }
-        let tree = AabbTree::build(whole, &Default::default())?;
+        let tree = AabbTree::new(whole)?;
         table.push(work.row("build one tree", triangles, String::new()));
         for ((name, queries), answers) in sets.iter().zip(&answers) {
             let mut out: Vec<Option<Closest<f64>>> = vec![None; queries.len()];

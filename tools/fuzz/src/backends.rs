@@ -1,10 +1,12 @@
 //! Selects a backend by a number.
 
 use super::bytes::Bytes;
+use p2m::core::Isa;
+use p2m::interception::Domain;
 use p2m::kdop::Directions;
 use p2m::{
-    AabbTree, BoxQuery, BuildError, BuildIndex, CertifiedQuery, ClosestPoint, Domain, Isa, KdopTree, NearQuery,
-    OctreeIndex, OctreeOptions, P2mIndex, P2mOptions, PrimitiveSet, RayQuery, Real, Soup,
+    AabbTree, BoxQuery, BuildError, BuildIndex, CertifiedQuery, ClosestPoint, KdopTree, NearQuery, OctreeIndex,
+    OctreeOptions, P2mIndex, P2mOptions, PrimitiveSet, RayQuery, Real, Soup,
 };
 
 /// An index that answers the queries of all backends.
@@ -33,7 +35,7 @@ fn kdop<'a, T: Real, const K: usize>(soup: &'a Soup<T>, isa: Isa) -> Result<Box<
 where
     Directions<K>: Default,
 {
-    Ok(Box::new(KdopTree::<T, _, K>::build(soup, &Default::default())?.with_isa(isa)))
+    Ok(Box::new(KdopTree::<T, _, K>::new(soup)?.with_isa(isa)))
 }
 
 /// Builds a tree, with any instruction set.
@@ -43,7 +45,7 @@ where
 pub fn tree<'a, T: Real>(bytes: &mut Bytes<'_>, soup: &'a Soup<T>) -> Built<'a, dyn Tree<T> + 'a> {
     let (name, isa) = (bytes.pick(&TREES), isa(bytes));
     let built = match name {
-        "aabb" => Box::new(AabbTree::<T, _>::build(soup, &Default::default())?.with_isa(isa)),
+        "aabb" => Box::new(AabbTree::<T, _>::new(soup)?.with_isa(isa)),
         "kdop-6" => kdop::<T, 6>(soup, isa)?,
         "kdop-14" => kdop::<T, 14>(soup, isa)?,
         _ => kdop::<T, 26>(soup, isa)?,
@@ -86,7 +88,7 @@ pub fn index<'a, T: Real>(bytes: &mut Bytes<'_>, soup: &'a Soup<T>) -> Built<'a,
         "rstar" => Box::new(p2m::scene::adapters::RstarIndex::build(soup, &())?),
         #[cfg(feature = "parry")]
         "parry" => Box::new(p2m::scene::adapters::ParryIndex::build(soup, &())?),
-        _ => Box::new(AabbTree::build(soup, &Default::default())?),
+        _ => Box::new(AabbTree::new(soup)?),
     };
     Ok((name, built))
 }

@@ -3,7 +3,7 @@
 use super::scene::vertices;
 use super::subject::{Subject, compared_fields};
 use nalgebra::Point3;
-use p2m::backend::kernel::ERROR_CONSTANT;
+use p2m::core::kernel::ERROR_CONSTANT;
 use p2m::{Closest, PrimitiveSet, QueryOptions, Real, Soup};
 use p2m_testkit::contract;
 use p2m_testkit::oracle::Distance;

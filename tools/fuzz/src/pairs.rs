@@ -8,7 +8,7 @@ use super::scene::{SceneDraft, vertices};
 use nalgebra::{Isometry3, Quaternion, Translation3, UnitQuaternion, Vector3};
 use p2m::field::{HausdorffOptions, hausdorff_distance};
 use p2m::pair::{ClosestPair, Motion, MovingBall, PairOptions, PairQuery};
-use p2m::{AabbTree, BruteForce, BuildIndex, KdopTree, PrimitiveId, PrimitiveSet, Real, Soup};
+use p2m::{AabbTree, BruteForce, KdopTree, PrimitiveId, PrimitiveSet, Real, Soup};
 use p2m_testkit::oracle::Distance;
 use p2m_testkit::scenes::narrow;
 use std::ops::ControlFlow;
@@ -102,9 +102,9 @@ fn check_in<T: Real>(soups: [&Soup<T>; 2], motion: Option<Isometry3<f64>>, seed:
     options.motion = motion;
     let moved = motion.as_ref().map(Motion::new);
     let [brute_a, brute_b] = soups.map(|soup| BruteForce::new(soup).expect("finite"));
-    let [tree_a, tree_b] = soups.map(|soup| AabbTree::<T, _>::build(soup, &Default::default()).expect("finite"));
-    let kdop_a: KdopTree<T, _, 26> = KdopTree::build(a, &Default::default()).expect("finite");
-    let kdop_b: KdopTree<T, _, 14> = KdopTree::build(b, &Default::default()).expect("finite");
+    let [tree_a, tree_b] = soups.map(|soup| AabbTree::<T, _>::new(soup).expect("finite"));
+    let kdop_a: KdopTree<T, _, 26> = KdopTree::new(a).expect("finite");
+    let kdop_b: KdopTree<T, _, 14> = KdopTree::new(b).expect("finite");
     let expected = brute_a.closest_pair(&brute_b, &options);
     let same = |found: Option<ClosestPair<T>>, expected: Option<ClosestPair<T>>, how: &str| {
         let fields = [&found, &expected].map(|pair| pair.as_ref().map(compared_fields));

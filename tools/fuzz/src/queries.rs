@@ -11,7 +11,7 @@ use super::bytes::Bytes;
 use super::scene::SceneDraft;
 use super::subject::Subject;
 use nalgebra::Point3;
-use p2m::{AabbTree, BruteForce, BuildError, BuildIndex, Real, Soup};
+use p2m::{AabbTree, BruteForce, BuildError, Real, Soup};
 use p2m_testkit::near_check;
 use p2m_testkit::scenes::{narrow, to_f32};
 
@@ -100,5 +100,5 @@ fn check_build_error(draft: &SceneDraft) {
     let id = draft.soup().expect_err("not finite");
     let error = Some(BuildError::NonFinite { id });
     assert_eq!(BruteForce::new::<f64>(&shapes).err(), error);
-    assert_eq!(AabbTree::<f64, _>::build(&shapes, &Default::default()).err(), error);
+    assert_eq!(AabbTree::<f64, _>::new(&shapes).err(), error);
 }

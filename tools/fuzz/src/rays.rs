@@ -6,7 +6,8 @@ use super::backends::tree;
 use super::bytes::Bytes;
 use super::scene::{SceneDraft, vertices};
 use nalgebra::{Point3, Vector3};
-use p2m::{BruteForce, PrimitiveSet, Ray, RayError, Real, Soup};
+use p2m::core::RayError;
+use p2m::{BruteForce, PrimitiveSet, Ray, Real, Soup};
 use p2m_testkit::ray_check::{Truth, agrees};
 use p2m_testkit::scenes::narrow;
 

@@ -9,10 +9,11 @@ use super::bytes::Bytes;
 use super::memory;
 use cpu_time::ThreadTime;
 use nalgebra::Point3;
+use p2m::core::Inspect;
 use p2m::scene::{Scene, load_scene, read_p2m, save_scene, write_p2m};
 use p2m::storage::{LoadError, Reader, SavedFile, Writer};
 use p2m::{
-    AabbTree, BuildIndex, CertifiedQuery, ClosestPoint, Element, Inspect, KdopTree, NearQuery, OctreeIndex, P2mIndex,
+    AabbTree, BuildIndex, CertifiedQuery, ClosestPoint, Element, KdopTree, NearQuery, OctreeIndex, P2mIndex,
     PrimitiveId, QueryOptions, Soup,
 };
 use p2m_testkit::saved_file::{HEADER_BYTES, correct_checksums, entries, section};

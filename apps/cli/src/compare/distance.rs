@@ -9,8 +9,8 @@ use crate::io::threads::ThreadArgs;
 use crate::io::usage::usage;
 use anyhow::Context;
 use p2m_bvh::AabbTree;
+use p2m_core::Soup;
 use p2m_core::pair::{ClosestPair, PairOptions, PairQuery};
-use p2m_core::{BuildIndex, Soup};
 use p2m_mixed::{Format, Scene};
 use serde_json::{Value, json};
 use std::io::Write as _;
@@ -65,9 +65,7 @@ pub(crate) fn run(streams: &Streams, args: &Args) -> anyhow::Result<()> {
     options.motion = motion;
     let progress = Progress::start(streams, "comparing", None, Unit::None);
     let found = pool.install(|| {
-        let build = |k: usize| {
-            AabbTree::<f64, &Soup<f64>>::build(&scenes[k].soup, &Default::default()).with_context(|| names[k].clone())
-        };
+        let build = |k: usize| AabbTree::<f64, &Soup<f64>>::new(&scenes[k].soup).with_context(|| names[k].clone());
         Ok::<_, anyhow::Error>(build(0)?.closest_pair(&build(1)?, &options))
     })?;
     drop(progress);

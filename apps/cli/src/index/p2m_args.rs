@@ -24,7 +24,7 @@ impl ValueEnum for Locator {
     fn value_variants<'a>() -> &'a [Self] {
         &[
             Self(LocatorKind::Grid),
-            #[cfg(feature = "kiddo")]
+            #[cfg(feature = "paper")]
             Self(LocatorKind::KdTree),
         ]
     }
@@ -32,7 +32,7 @@ impl ValueEnum for Locator {
     fn to_possible_value(&self) -> Option<PossibleValue> {
         match self.0 {
             LocatorKind::Grid => Some(PossibleValue::new("grid").help("A grid with a vertex in each cell")),
-            #[cfg(feature = "kiddo")]
+            #[cfg(feature = "paper")]
             LocatorKind::KdTree => {
                 Some(PossibleValue::new("kd-tree").help("A KD-tree, as in the paper: up to three times as slow"))
             }
@@ -49,7 +49,7 @@ impl ValueEnum for ListFilter {
     fn value_variants<'a>() -> &'a [Self] {
         &[
             Self(ListFilterKind::Sorted),
-            #[cfg(feature = "rstar")]
+            #[cfg(feature = "paper")]
             Self(ListFilterKind::RTree),
         ]
     }
@@ -57,7 +57,7 @@ impl ValueEnum for ListFilter {
     fn to_possible_value(&self) -> Option<PossibleValue> {
         match self.0 {
             ListFilterKind::Sorted => Some(PossibleValue::new("sorted").help("In the order of bounds on distances")),
-            #[cfg(feature = "rstar")]
+            #[cfg(feature = "paper")]
             ListFilterKind::RTree => Some(
                 PossibleValue::new("r-tree")
                     .help("By R-trees, as in the paper: up to ten times as slow for long lists"),

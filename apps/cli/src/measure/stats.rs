@@ -15,7 +15,7 @@ use anyhow::{Context, bail};
 use nalgebra::{Point3, Vector3};
 use p2m_backends::AnyIndex;
 use p2m_bvh::AabbTree;
-use p2m_core::{BuildIndex, ListStats, PrimitiveSet, QueryCost, RayQuery, Soup, Stat, StatsCollector};
+use p2m_core::{ListStats, PrimitiveSet, QueryCost, RayQuery, Soup, Stat, StatsCollector};
 use p2m_mixed::Camera;
 use p2m_mixed::picture::{value_colours, write_values_ply};
 use p2m_mixed::statistics::figure::Count;
@@ -170,7 +170,7 @@ impl Args {
     fn draw(&self, soup: &Soup<f64>, values: &[f64], output: &mut Output<'_>) -> anyhow::Result<()> {
         let camera = Camera::before(soup, &self.eye, self.width).filter(|_| !soup.is_empty());
         let camera = camera.context("nothing to draw: the scene is empty or has no extent")?;
-        let tree = AabbTree::build(soup, &Default::default())?;
+        let tree = AabbTree::new(soup)?;
         let colours = value_colours(values);
         let [width, height] = camera.size();
         let pixel = |row: u32, column: u32| -> [u8; 3] {

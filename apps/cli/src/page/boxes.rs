@@ -14,7 +14,7 @@ use clap::ValueEnum;
 use nalgebra::Point3;
 use p2m_backends::KdopVisitor;
 use p2m_bvh::{AabbTree, PacketTree, SplitOptions, TreeNode, Volume};
-use p2m_core::{BuildIndex, Soup};
+use p2m_core::Soup;
 use p2m_kdop::{KdopTree, Polytope};
 use p2m_mixed::picture::{Panel, View, box_edges, write_picture_ply, write_svg};
 use p2m_mixed::statistics::figure::Count;
@@ -113,7 +113,7 @@ pub(crate) fn run(streams: &Streams, args: &Args) -> anyhow::Result<()> {
     let progress = Progress::start(streams, "building", None, Unit::None);
     let levels = usize::from(args.levels);
     let drawn = pool.install(|| match args.k {
-        None => AabbTree::build(&*scene.soup, &Default::default())
+        None => AabbTree::new(&*scene.soup)
             .map(|tree| panels(tree.tree(), levels, ["box", "boxes"], |bounds| box_edges(bounds).collect()))
             .map(|panels| (panels, None)),
         Some(KdopFaces(directions)) => directions

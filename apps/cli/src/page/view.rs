@@ -16,7 +16,7 @@ use anyhow::{Context, bail};
 use nalgebra::Point3;
 use p2m_backends::P2mSettings;
 use p2m_bvh::{AabbTree, PacketTree};
-use p2m_core::{Aabb, BuildIndex, Closest, PrimitiveSet, QueryOptions};
+use p2m_core::{Aabb, Closest, PrimitiveSet, QueryOptions};
 use p2m_field::{FieldOptions, Grid, distances, signed_distances};
 use p2m_mixed::PointFormat;
 use p2m_mixed::statistics::Counts;
@@ -214,7 +214,7 @@ pub(crate) fn run(streams: &Streams, args: &Args) -> anyhow::Result<()> {
         view = view.with_live_queries();
     }
     if args.levels > 0 {
-        let tree = pool.install(|| AabbTree::build(&*scene.soup, &Default::default()));
+        let tree = pool.install(|| AabbTree::new(&*scene.soup));
         let tree = tree.with_context(|| args.scene.name())?;
         view = view.with_levels("Boxes of the AABB tree", &levels(tree.tree(), usize::from(args.levels)));
     }

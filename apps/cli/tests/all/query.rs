@@ -372,7 +372,7 @@ fn accuracy_is_traded_within_what_is_told() {
     }
 }
 
-#[cfg(all(feature = "kiddo", feature = "rstar"))]
+#[cfg(feature = "paper")]
 #[test]
 fn the_parts_of_a_p2m_index_may_be_chosen() {
     let folder = TempDir::new().unwrap();

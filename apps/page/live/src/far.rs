@@ -3,7 +3,7 @@
 use crate::ordinary;
 use crate::scene::answer;
 use p2m::nalgebra::{Point3, Vector3};
-use p2m::{AabbTree, BuildIndex, ClosestPoint, PrimitiveSet, Soup};
+use p2m::{AabbTree, ClosestPoint, PrimitiveSet, Soup};
 use std::sync::Arc;
 
 /// The offset of the scene in each coordinate, which is a million units from the origin. Numbers of f32 are 1/16 apart
@@ -79,9 +79,9 @@ impl FarScene {
         let centre = Point3::from(bounds.min.coords * 0.5 + bounds.max.coords * 0.5);
         let moved: Vec<Point3<f32>> = soup.positions().iter().map(|p| rounded(p, &centre, scale)).collect();
         let widened = moved.iter().map(|p| p.cast::<f64>()).collect();
-        let index = AabbTree::build(Soup::new(moved, soup.elements()).ok()?, &Default::default()).ok()?;
+        let index = AabbTree::new(Soup::new(moved, soup.elements()).ok()?).ok()?;
         let widened = Arc::new(Soup::new(widened, soup.elements()).ok()?);
-        let exact = AabbTree::build(widened, &Default::default()).ok()?;
+        let exact = AabbTree::new(widened).ok()?;
         Some(Self { scale, centre, index, exact })
     }
 

@@ -1,10 +1,11 @@
 //! The scene of a page, its indexes and its answers.
 
 use crate::far::FarScene;
-use p2m::backend::{Best, StatsCollector};
 use p2m::backends::{BACKENDS, BackendEntry, BuildSettings, IndexVisitor, SearchStructure};
+use p2m::core::Inspect;
+use p2m::core::{Best, StatsCollector};
 use p2m::nalgebra::Point3;
-use p2m::{Aabb, AnyIndex, BuildError, Closest, Element, Inspect, PrimitiveSet, QueryOptions, Soup};
+use p2m::{Aabb, AnyIndex, BuildError, Closest, Element, PrimitiveSet, QueryOptions, Soup};
 use std::sync::Arc;
 
 /// The number of primitives above which no cells of vertices are built, because their build would take many seconds.

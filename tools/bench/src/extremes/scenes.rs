@@ -9,7 +9,7 @@ use crate::scene::Scene;
 use nalgebra::Point3;
 use p2m_backends::BackendEntry;
 use p2m_core::kernel::ERROR_CONSTANT;
-use p2m_core::{BruteForce, BuildIndex, ClosestPoint, PrimitiveId, PrimitiveSet, Real, Soup};
+use p2m_core::{BruteForce, ClosestPoint, PrimitiveId, PrimitiveSet, Real, Soup};
 use p2m_interception::{OctreeIndex, P2mIndex};
 use p2m_testkit::extremes::Extreme;
 use p2m_testkit::truth::Truth;
@@ -208,11 +208,11 @@ fn check(row: usize, name: &str, soup: Soup<f64>, queries: Vec<Point3<f64>>, fin
     let single = scene.single.as_deref().filter(is_there);
     let single = single.map(|soup| Side::new(soup, queries.all().single, findings, name));
     let has_cells = [
-        OctreeIndex::build(&*scene.double, &Default::default()).is_ok_and(|index| {
+        OctreeIndex::new(&*scene.double).is_ok_and(|index| {
             let report = index.report();
             report.lists + report.singles > 0
         }),
-        P2mIndex::build(&*scene.double, &Default::default()).is_ok_and(|index| index.report().lists > 0),
+        P2mIndex::new(&*scene.double).is_ok_and(|index| index.report().lists > 0),
     ];
     let cells = &mut findings.cells[row];
     *cells = [cells[0] + 1, cells[1] + u64::from(has_cells[0]), cells[2] + u64::from(has_cells[1])];

@@ -7,7 +7,7 @@ use anyhow::Result;
 use nalgebra::Isometry3;
 use p2m_bvh::AabbTree;
 use p2m_core::pair::{ClosestPair, PairOptions, PairQuery};
-use p2m_core::{BuildIndex, Real, Soup};
+use p2m_core::{Real, Soup};
 use p2m_kdop::KdopTree;
 
 type Poses = [Isometry3<f64>];
@@ -23,13 +23,11 @@ impl<'a> Scenes<'a> {
     pub(super) fn build(scene: &'a Scene, other: &'a Scene) -> Result<Self> {
         let soups = [&*scene.double, &*other.double];
         let single = match [scene.single.as_deref(), other.single.as_deref()] {
-            [Some(a), Some(b)] => {
-                Some([AabbTree::build(a, &Default::default())?, AabbTree::build(b, &Default::default())?])
-            }
+            [Some(a), Some(b)] => Some([AabbTree::new(a)?, AabbTree::new(b)?]),
             _ => None,
         };
-        let [a, b] = soups.map(|soup| AabbTree::build(soup, &Default::default()));
-        let [c, d] = soups.map(|soup| KdopTree::build(soup, &Default::default()));
+        let [a, b] = soups.map(|soup| AabbTree::new(soup));
+        let [c, d] = soups.map(|soup| KdopTree::new(soup));
         Ok(Self { trees: [a?, b?], kdops: [c?, d?], single })
     }
 

@@ -38,7 +38,7 @@ use clap::ArgGroup;
 use nalgebra::Point3;
 use p2m_backends::{AnyIndex, BACKENDS, BuildSettings, SearchStructure};
 use p2m_bvh::AabbTree;
-use p2m_core::{BuildIndex, CertifiedQuery, PrimitiveSet, Soup};
+use p2m_core::{CertifiedQuery, PrimitiveSet, Soup};
 use p2m_mixed::{PointFormat, Scene};
 use std::io::Write as _;
 use std::path::{Path, PathBuf};
@@ -261,7 +261,7 @@ impl Args {
 
 /// Returns the certified answers to all queries.
 fn truths(soup: &Soup<f64>, queries: &[Point3<f64>]) -> anyhow::Result<Vec<Truth>> {
-    let tree = AabbTree::build(soup, &Default::default())?;
+    let tree = AabbTree::new(soup)?;
     let truth = |query: &Point3<f64>| {
         let closest = tree.certified_closest_point(query, &Default::default())?;
         let closest = closest.context("the scene is not empty, and queries are finite")?;
