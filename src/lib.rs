@@ -44,7 +44,7 @@
 //! | the nearest points of two scenes, one of which may move | [`pair::PairQuery::closest_pair`] | trees and brute force |
 //! | most of these in a scene larger than memory | `shards::ShardedIndex` | shards of every index |
 //! | any of these in a scene of moving objects | [`instances::Instances`] | objects of every index |
-//! | the cost of a query | [`core::Inspect`] | every index |
+//! | the cost of a query | [`core::IndexStats`] | every index |
 //!
 //! # Which index
 //!

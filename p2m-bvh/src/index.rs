@@ -1,7 +1,7 @@
 //! A tree together with its set, which is the index that users build and query.
 
 use crate::traverse::groups::answer_in_groups;
-use crate::traverse::walkers::Walkers;
+use crate::traverse::interleaved_traversal::InterleavedTraversal;
 use crate::{PacketTree, Volume};
 
 use nalgebra::Point3;
@@ -9,8 +9,8 @@ use p2m_core::engine::answer_one_by_one;
 use p2m_core::pair::PairQuery;
 use p2m_core::storage::{self, LoadError, Reader, Writer};
 use p2m_core::{
-    Aabb, AnyIndex, Best, BoxQuery, BuildError, BuildIndex, CertifiedQuery, ClosestPoint, Collector, Found, Hits,
-    Inspect, Isa, Near, NearQuery, Point, Primitive, PrimitiveId, PrimitiveSet, QueryOptions, Ray, RayCollector,
+    Aabb, AnyIndex, BatchAnswer, Best, BoxQuery, BuildError, BuildIndex, CertifiedQuery, ClosestPoint, Collector, Hits,
+    IndexStats, Isa, Near, NearQuery, Point, Primitive, PrimitiveId, PrimitiveSet, QueryOptions, Ray, RayCollector,
     RayQuery, Real, Refitted, Shape, Soup, StatsCollector, check_set, shape_of,
 };
 use std::marker::PhantomData;
@@ -253,7 +253,7 @@ impl<T: Real, S: PrimitiveSet<T> + Sync, V: Volume> Drop for RefitOnDrop<'_, T, 
     }
 }
 
-impl<T: Real, S: PrimitiveSet<T>, V: Volume> Inspect<T> for TreeIndex<T, S, V> {
+impl<T: Real, S: PrimitiveSet<T>, V: Volume> IndexStats<T> for TreeIndex<T, S, V> {
     fn inspect(&self, query: &Point3<T>, counting: &mut StatsCollector<T>) {
         self.visit(query, counting);
     }
@@ -273,9 +273,9 @@ impl<T: Real, S: PrimitiveSet<T>, V: Volume> ClosestPoint<T> for TreeIndex<T, S,
         &self,
         queries: &[Point3<T>],
         options: &QueryOptions<T>,
-        answered: &mut dyn FnMut(usize, Found<'_, T>),
+        answered: &mut dyn FnMut(usize, BatchAnswer<'_, T>),
     ) {
-        match Walkers::new(&self.tree) {
+        match InterleavedTraversal::new(&self.tree) {
             Some(mut walkers) if !options.is_approximate() => {
                 answer_in_groups(&self.tree, &self.set, queries, options, answered, |count, several| {
                     V::nearest_of_several(&self.tree, &mut walkers, several, count);

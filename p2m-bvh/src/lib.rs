@@ -72,10 +72,10 @@ pub mod engine {
         pub use crate::traverse::search_state::SearchState;
     }
     /// Several searches that take turns.
-    pub mod several {
+    pub mod interleaved {
         pub use crate::traverse::groups::answer_in_groups;
-        pub use crate::traverse::several::{PacketVisit, SEARCHES, Several};
-        pub use crate::traverse::walkers::Walkers;
+        pub use crate::traverse::interleaved_search::{InterleavedSearch, PacketVisit, SEARCHES};
+        pub use crate::traverse::interleaved_traversal::InterleavedTraversal;
     }
     /// Nodes and their frame.
     pub mod node {

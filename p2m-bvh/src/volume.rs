@@ -2,10 +2,10 @@
 
 use crate::construct::{SplitOptions, TreeOptions};
 use crate::traverse::evaluate::{finish, finish_nearest};
+use crate::traverse::interleaved_search::InterleavedSearch;
+use crate::traverse::interleaved_traversal::InterleavedTraversal;
 use crate::traverse::pairs::TreeSide;
 use crate::traverse::primitive_fn::{EvaluateFn, IntersectFn, evaluation, intersection};
-use crate::traverse::several::Several;
-use crate::traverse::walkers::Walkers;
 use crate::tree::PacketTree;
 use crate::tree::wide_node::VolumeNodes;
 use nalgebra::Point3;
@@ -46,8 +46,8 @@ pub trait Volume: VolumeNodes {
     #[doc(hidden)]
     fn nearest_of_several(
         tree: &PacketTree<Self>,
-        walkers: &mut Walkers<Self>,
-        several: &mut Several<'_, Self>,
+        walkers: &mut InterleavedTraversal<Self>,
+        several: &mut InterleavedSearch<'_, Self>,
         count: usize,
     );
 
@@ -88,8 +88,8 @@ impl Volume for Aabb<f64> {
 
     fn nearest_of_several(
         tree: &PacketTree,
-        walkers: &mut Walkers<Self>,
-        several: &mut Several<'_, Self>,
+        walkers: &mut InterleavedTraversal<Self>,
+        several: &mut InterleavedSearch<'_, Self>,
         count: usize,
     ) {
         walkers.search(tree, several, count);

@@ -3,7 +3,7 @@
 use crate::pair::PairQuery;
 use crate::storage::Writer;
 use crate::{
-    BoxQuery, BruteForce, BuildError, CertifiedQuery, ClosestPoint, Inspect, PrimitiveSet, RayQuery, Real, Soup,
+    BoxQuery, BruteForce, BuildError, CertifiedQuery, ClosestPoint, IndexStats, PrimitiveSet, RayQuery, Real, Soup,
 };
 use std::sync::Arc;
 
@@ -46,7 +46,7 @@ pub type Refitted<T> = Result<Arc<dyn AnyIndex<T>>, BuildError>;
     message = "`{Self}` is not an index that can be used as `dyn AnyIndex<{T}>`",
     note = "the scene of an index has to be `Send` and `Sync`, so share it by `Arc` and not by `Rc`"
 )]
-pub trait AnyIndex<T: Real = f64>: ClosestPoint<T> + CertifiedQuery<T> + Inspect<T> + Send + Sync {
+pub trait AnyIndex<T: Real = f64>: ClosestPoint<T> + CertifiedQuery<T> + IndexStats<T> + Send + Sync {
     /// Adds the index to a file, without its scene. An index without a saved form adds nothing.
     fn save<'s>(&'s self, writer: &mut Writer<'s>);
 

@@ -1,7 +1,7 @@
 //! Brute force: every query evaluates every primitive. All other indexes are tested against it.
 
 use crate::{
-    Best, BuildError, BuildIndex, CertifiedQuery, ClosestPoint, Collector, Inspect, Near, NearQuery, Primitive,
+    Best, BuildError, BuildIndex, CertifiedQuery, ClosestPoint, Collector, IndexStats, Near, NearQuery, Primitive,
     PrimitiveId, PrimitiveSet, Real, Shape, StatsCollector, check_set, shape_of,
 };
 use nalgebra::Point3;
@@ -65,7 +65,7 @@ impl<T: Real, S: PrimitiveSet<T>> CertifiedQuery<T> for BruteForce<S> {
     }
 }
 
-impl<T: Real, S: PrimitiveSet<T>> Inspect<T> for BruteForce<S> {
+impl<T: Real, S: PrimitiveSet<T>> IndexStats<T> for BruteForce<S> {
     fn inspect(&self, query: &Point3<T>, stats: &mut StatsCollector<T>) {
         for id in (0..self.set.len()).map(PrimitiveId::new) {
             stats.offer(id, self.set.get(id).project(query));

@@ -1,6 +1,6 @@
 //! The traits that backends implement: queries for the closest point, and building.
 
-use crate::{Best, Closest, Found, Position, PrimitiveSet, QueryOptions, Real};
+use crate::{BatchAnswer, Best, Closest, Position, PrimitiveSet, QueryOptions, Real};
 use nalgebra::Point3;
 
 /// Queries for the closest point of a scene. A backend writes one method, [`search`](Self::search).
@@ -86,7 +86,7 @@ pub trait ClosestPoint<T: Real> {
         &self,
         queries: &[Point3<T>],
         options: &QueryOptions<T>,
-        answered: &mut dyn FnMut(usize, Found<'_, T>),
+        answered: &mut dyn FnMut(usize, BatchAnswer<'_, T>),
     ) {
         answer_one_by_one(self, queries, options, answered);
     }
@@ -109,7 +109,7 @@ pub fn answer_one_by_one<T: Real, I: ClosestPoint<T> + ?Sized>(
     index: &I,
     queries: &[Point3<T>],
     options: &QueryOptions<T>,
-    answered: &mut dyn FnMut(usize, Found<'_, T>),
+    answered: &mut dyn FnMut(usize, BatchAnswer<'_, T>),
 ) {
     let template = Best::new(options);
     for (i, query) in queries.iter().enumerate() {

@@ -74,13 +74,13 @@ pub use primitive::{
     Feature, Point, Primitive, PrimitiveDefect, Projection, Segment, Shape, Triangle, check_primitive,
 };
 pub use primitive_id::PrimitiveId;
-pub use query::{Best, Closest, Collector, Found, QueryOptions};
+pub use query::{BatchAnswer, Best, Closest, Collector, QueryOptions};
 pub use ray::{Crossing, Hit, Hits, Ray, RayCollector, RayError, RayHit, RayQuery, RayStatsCollector, Side};
 pub use real::Real;
 pub use set::{PrimitiveSet, check_set};
 pub use simd::Isa;
 pub use soup::{Element, Soup};
-pub use stats::{Inspect, ListStats, QueryCost, Stat};
+pub use stats::{IndexStats, ListStats, QueryCost, Stat};
 pub use stats_collector::StatsCollector;
 
 /// Internal items for the sibling crates of this project. It is not part of the public API and may change
@@ -115,7 +115,7 @@ pub mod engine {
     }
     /// Exact projection onto rays, and the margin of ray filters.
     pub mod ray {
-        pub use crate::ray::{RayCandidates, UNDERFLOW_MARGIN as TINY, project_onto_ray as foot};
+        pub use crate::ray::{RayCandidates, UNDERFLOW_MARGIN, project_onto_ray};
     }
     /// Conversion of points to and from f64.
     pub mod real {

@@ -6,7 +6,7 @@
 use crate::pair::search::PairSide;
 use crate::pair::{Hull, Motion, PairQuery};
 use crate::{
-    Aabb, Best, BoxQuery, CertifiedQuery, ClosestPoint, Found, Hits, Inspect, Near, NearQuery, PrimitiveId,
+    Aabb, BatchAnswer, Best, BoxQuery, CertifiedQuery, ClosestPoint, Hits, IndexStats, Near, NearQuery, PrimitiveId,
     PrimitiveSet, QueryOptions, Ray, RayQuery, Real, Shape, StatsCollector,
 };
 use nalgebra::Point3;
@@ -42,7 +42,7 @@ macro_rules! point_to {
                 &self,
                 queries: &[Point3<T>],
                 options: &QueryOptions<T>,
-                answered: &mut dyn FnMut(usize, Found<'_, T>),
+                answered: &mut dyn FnMut(usize, BatchAnswer<'_, T>),
             ) {
                 (**self).answer_queries(queries, options, answered);
             }
@@ -83,7 +83,7 @@ macro_rules! point_to {
             }
         }
 
-        impl<T: Real, $target: Inspect<T> + ?Sized> Inspect<T> for $pointer {
+        impl<T: Real, $target: IndexStats<T> + ?Sized> IndexStats<T> for $pointer {
             fn inspect(&self, query: &Point3<T>, stats: &mut StatsCollector<T>) {
                 (**self).inspect(query, stats);
             }

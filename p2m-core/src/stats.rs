@@ -4,7 +4,7 @@ use crate::{Real, StatsCollector};
 use nalgebra::Point3;
 
 /// The interface by which statistics of an index are collected.
-pub trait Inspect<T: Real> {
+pub trait IndexStats<T: Real> {
     /// Searches for the nearest primitive with a collector that counts the work.
     fn inspect(&self, query: &Point3<T>, stats: &mut StatsCollector<T>);
 
@@ -46,7 +46,7 @@ impl ListStats {
     ///
     /// # Complexity
     /// It takes O(n log n) for n lists.
-    pub fn from_index<T: Real>(index: &(impl Inspect<T> + ?Sized)) -> Option<Self> {
+    pub fn from_index<T: Real>(index: &(impl IndexStats<T> + ?Sized)) -> Option<Self> {
         let mut lengths = index.list_lengths();
         lengths.sort_unstable();
         let (count, max) = (lengths.len(), *lengths.last()?);
@@ -99,7 +99,7 @@ pub struct QueryCost {
 
 impl QueryCost {
     /// Measures some queries. All numbers are zero without queries.
-    pub fn measure<T: Real>(index: &(impl Inspect<T> + ?Sized), queries: &[Point3<T>]) -> Self {
+    pub fn measure<T: Real>(index: &(impl IndexStats<T> + ?Sized), queries: &[Point3<T>]) -> Self {
         let mut stats = [Stat::default(); 3];
         for query in queries {
             let counts = StatsCollector::count_query(query, |query, collector| index.inspect(query, collector));
@@ -123,7 +123,7 @@ mod tests {
     /// An index with lists of 1 to 200 primitives. A query evaluates the list whose length is its x.
     struct TestLists;
 
-    impl Inspect<f64> for TestLists {
+    impl IndexStats<f64> for TestLists {
         fn inspect(&self, query: &Point3<f64>, stats: &mut StatsCollector<f64>) {
             stats.visit_node();
             for i in 0..self.list_length(query).unwrap_or(0) {

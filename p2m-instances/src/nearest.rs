@@ -7,8 +7,8 @@ use p2m_core::kernel::power_of_two;
 use p2m_core::pair::PairQuery;
 use p2m_core::storage::Writer;
 use p2m_core::{
-    AnyIndex, Best, BoxQuery, CertifiedQuery, ClosestPoint, Collector, Found, Inspect, Near, NearQuery, Primitive,
-    PrimitiveId, QueryOptions, RayQuery, Real, Shape, StatsCollector,
+    AnyIndex, BatchAnswer, Best, BoxQuery, CertifiedQuery, ClosestPoint, Collector, IndexStats, Near, NearQuery,
+    Primitive, PrimitiveId, QueryOptions, RayQuery, Real, Shape, StatsCollector,
 };
 
 /// The factor 1 + 16 u, by which a value of a few roundings becomes an upper bound.
@@ -108,7 +108,7 @@ impl<T: Real, I: AnyIndex<T> + ?Sized> ClosestPoint<T> for Instances<T, I> {
         &self,
         queries: &[Point3<T>],
         options: &QueryOptions<T>,
-        answered: &mut dyn FnMut(usize, Found<'_, T>),
+        answered: &mut dyn FnMut(usize, BatchAnswer<'_, T>),
     ) {
         let template = Best::new(options);
         let mut last = None;
@@ -137,7 +137,7 @@ impl<I: AnyIndex<f64> + ?Sized> CertifiedQuery<f64> for Instances<f64, I> {
     }
 }
 
-impl<T: Real, I: AnyIndex<T> + ?Sized> Inspect<T> for Instances<T, I> {
+impl<T: Real, I: AnyIndex<T> + ?Sized> IndexStats<T> for Instances<T, I> {
     /// Counts the moved primitives that are evaluated, and neither nodes nor packets.
     fn inspect(&self, query: &Point3<T>, stats: &mut StatsCollector<T>) {
         self.visit(query, stats);

@@ -1,20 +1,21 @@
 //! The index: a partition together with the set that it was built over.
 
-use crate::list::several::Lists;
+use crate::list::interleaved_lists::InterleavedLists;
 use crate::octree::Octree;
-use crate::options::{OctreeOptions, OctreeSoFar};
+use crate::options::{OctreeOptions, RefinementProgress};
 use crate::partition::Partition;
 use crate::progress::Progress;
 use crate::voronoi::Voronoi;
 #[cfg(feature = "paper")]
 use crate::voronoi::paper::PaperVoronoi;
 use nalgebra::Point3;
-use p2m_bvh::engine::several::answer_in_groups;
+use p2m_bvh::engine::interleaved::answer_in_groups;
 use p2m_core::engine::answer_one_by_one;
 use p2m_core::storage::{self, LoadError, Reader, Saved, Writer};
 use p2m_core::{
-    AnyIndex, Best, BuildError, BuildIndex, CellSummary, CertifiedQuery, ClosestPoint, Collector, Found, Inspect, Isa,
-    Near, NearQuery, PrimitiveId, PrimitiveSet, QueryOptions, Real, Shape, StatsCollector, check_set, shape_of,
+    AnyIndex, BatchAnswer, Best, BuildError, BuildIndex, CellSummary, CertifiedQuery, ClosestPoint, Collector,
+    IndexStats, Isa, Near, NearQuery, PrimitiveId, PrimitiveSet, QueryOptions, Real, Shape, StatsCollector, check_set,
+    shape_of,
 };
 use std::marker::PhantomData;
 use std::ops::ControlFlow;
@@ -232,7 +233,7 @@ impl<T: Real, S: PrimitiveSet<T>, P: Saved> InterceptionIndex<T, S, P> {
     }
 }
 
-impl<T: Real, S: PrimitiveSet<T>, P: Partition> Inspect<T> for InterceptionIndex<T, S, P> {
+impl<T: Real, S: PrimitiveSet<T>, P: Partition> IndexStats<T> for InterceptionIndex<T, S, P> {
     fn inspect(&self, query: &Point3<T>, counting: &mut StatsCollector<T>) {
         self.visit(query, counting);
     }
@@ -260,13 +261,13 @@ impl<T: Real, S: PrimitiveSet<T>, P: Partition> ClosestPoint<T> for Interception
         &self,
         queries: &[Point3<T>],
         options: &QueryOptions<T>,
-        answered: &mut dyn FnMut(usize, Found<'_, T>),
+        answered: &mut dyn FnMut(usize, BatchAnswer<'_, T>),
     ) {
         if options.is_approximate() {
             // Searches that take turns do not count the sites that they visit, which the options may limit.
             return answer_one_by_one(self, queries, options, answered);
         }
-        let (partition, mut lists) = (&self.partition, Lists::new());
+        let (partition, mut lists) = (&self.partition, InterleavedLists::new());
         answer_in_groups(partition.tree(), &self.set, queries, options, answered, |count, several| {
             partition.search_several(count, several, &mut lists);
         });
@@ -336,7 +337,7 @@ impl<T: Real, S: PrimitiveSet<T> + Sync> OctreeIndex<T, S> {
     /// let index = OctreeIndex::build_until(&wires[..], &OctreeOptions::default(), &|_| (), &mut |so_far| {
     ///     if so_far.cells < 500 { ControlFlow::Continue(()) } else { ControlFlow::Break(()) }
     /// })?;
-    /// assert!(index.report().lists < 5000);
+    /// assert!(index.report().list_cells < 5000);
     /// assert_eq!(index.closest_point(&Point3::new(7.0, -1.0, 0.0)).expect("not empty").distance, 1.0);
     /// # Ok::<(), p2m_core::BuildError>(())
     /// ```
@@ -348,7 +349,7 @@ impl<T: Real, S: PrimitiveSet<T> + Sync> OctreeIndex<T, S> {
         set: S,
         options: &OctreeOptions,
         progress: &(dyn Fn(Progress) + Sync),
-        visit: &mut dyn FnMut(&OctreeSoFar) -> ControlFlow<()>,
+        visit: &mut dyn FnMut(&RefinementProgress) -> ControlFlow<()>,
     ) -> Result<Self, BuildError> {
         check_set(&set)?;
         let partition = Octree::build_until(&set, options, progress, visit);

@@ -56,7 +56,7 @@ mod voronoi;
 pub use index::PaperIndex;
 pub use index::{InterceptionIndex, OctreeIndex, P2mIndex};
 pub use octree::Octree;
-pub use options::{Domain, OctreeOptions, OctreeReport, OctreeSoFar, P2mOptions, P2mReport};
+pub use options::{Domain, OctreeOptions, OctreeReport, P2mOptions, P2mReport, RefinementProgress};
 pub use partition::Partition;
 pub use progress::{BuildStage, Progress, StageTimes};
 #[cfg(feature = "paper")]

@@ -98,22 +98,22 @@ impl OctreeOptions {
 /// them.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[non_exhaustive]
-pub struct OctreeSoFar {
+pub struct RefinementProgress {
     /// The number of cells.
     pub cells: usize,
     /// The number of cells with a list.
-    pub lists: usize,
+    pub list_cells: usize,
     /// The number of packets in all lists.
     pub entries: usize,
     /// The memory of cells and lists in bytes.
     pub bytes: usize,
 }
 
-impl OctreeSoFar {
+impl RefinementProgress {
     /// Returns the mean number of packets in a list.
     #[must_use]
     pub fn mean_list_length(&self) -> f64 {
-        self.entries as f64 / self.lists.max(1) as f64
+        self.entries as f64 / self.list_cells.max(1) as f64
     }
 }
 
@@ -122,11 +122,11 @@ impl OctreeSoFar {
 #[non_exhaustive]
 pub struct OctreeReport {
     /// The number of cells with a list.
-    pub lists: usize,
+    pub list_cells: usize,
     /// The number of cells in which one primitive is the nearest everywhere.
-    pub singles: usize,
+    pub single_cells: usize,
     /// The number of cells that the tree answers, outside of the domain or because a list would be long.
-    pub trees: usize,
+    pub fallback_cells: usize,
     /// The number of packets in all lists.
     pub entries: usize,
     /// The number of halvings of the domain on the longest path to a cell.
@@ -144,11 +144,14 @@ pub struct OctreeReport {
 
 impl std::fmt::Display for OctreeReport {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        let Self { lists, singles, trees, entries, bytes, tree_bytes, work, resolution, .. } = self;
-        let mean = *entries as f64 / (*lists).max(1) as f64;
+        let Self { list_cells, single_cells, fallback_cells, entries, bytes, tree_bytes, work, resolution, .. } = self;
+        let mean = *entries as f64 / (*list_cells).max(1) as f64;
         let megabytes = |bytes: usize| bytes as f64 / 1e6;
-        write!(f, "{lists} cells with lists of {mean:.1} packets on average, {singles} with one primitive, ")?;
-        write!(f, "{trees} left to the tree; ")?;
+        write!(
+            f,
+            "{list_cells} cells with lists of {mean:.1} packets on average, {single_cells} with one primitive, "
+        )?;
+        write!(f, "{fallback_cells} left to the tree; ")?;
         write!(f, "{:.1} MB of cells, {:.1} MB of tree, {work} tests", megabytes(*bytes), megabytes(*tree_bytes))?;
         let digits = if *resolution < 0.01 { 5 } else { 2 };
         write!(f, ", resolution {resolution:.digits$}")
@@ -158,9 +161,9 @@ impl std::fmt::Display for OctreeReport {
 impl From<OctreeReport> for CellSummary {
     fn from(report: OctreeReport) -> Self {
         let counts = vec![
-            ("list_cells", report.lists as u64),
-            ("single_primitive_cells", report.singles as u64),
-            ("fallback_cells", report.trees as u64),
+            ("list_cells", report.list_cells as u64),
+            ("single_primitive_cells", report.single_cells as u64),
+            ("fallback_cells", report.fallback_cells as u64),
             ("bytes", report.bytes as u64),
             ("tree_bytes", report.tree_bytes as u64),
             ("packet_tests", report.work),
@@ -304,7 +307,7 @@ impl P2mOptions {
 #[non_exhaustive]
 pub struct P2mReport {
     /// The number of cells with a list.
-    pub lists: usize,
+    pub list_cells: usize,
     /// The number of lists that have a filter.
     pub filtered: usize,
     /// The number of points of the scene that were added to its vertices as sites.
@@ -313,7 +316,7 @@ pub struct P2mReport {
     pub auxiliary: usize,
     /// The number of other cells that the tree answers. If they are more than a quarter of all cells, the tree answers
     /// everything and no cells are stored.
-    pub trees: usize,
+    pub fallback_cells: usize,
     /// The number of packets that were examined for lists: those that intersect a ball at a corner of the cell.
     pub candidates: usize,
     /// The largest number of packets that were examined for one list.
@@ -332,11 +335,11 @@ pub struct P2mReport {
 impl From<P2mReport> for [u64; 11] {
     fn from(report: P2mReport) -> Self {
         let P2mReport {
-            lists,
+            list_cells,
             filtered,
             added,
             auxiliary,
-            trees,
+            fallback_cells,
             candidates,
             max_candidates,
             entries,
@@ -344,8 +347,20 @@ impl From<P2mReport> for [u64; 11] {
             bytes,
             tree_bytes,
         } = report;
-        [lists, filtered, added, auxiliary, trees, candidates, max_candidates, entries, primitives, bytes, tree_bytes]
-            .map(|n| n as u64)
+        [
+            list_cells,
+            filtered,
+            added,
+            auxiliary,
+            fallback_cells,
+            candidates,
+            max_candidates,
+            entries,
+            primitives,
+            bytes,
+            tree_bytes,
+        ]
+        .map(|n| n as u64)
     }
 }
 
@@ -353,11 +368,11 @@ impl From<[u64; 11]> for P2mReport {
     #[allow(clippy::cast_possible_truncation, reason = "numbers to report")]
     fn from(numbers: [u64; 11]) -> Self {
         let [
-            lists,
+            list_cells,
             filtered,
             added,
             auxiliary,
-            trees,
+            fallback_cells,
             candidates,
             max_candidates,
             entries,
@@ -366,11 +381,11 @@ impl From<[u64; 11]> for P2mReport {
             tree_bytes,
         ] = numbers.map(|n| n as usize);
         Self {
-            lists,
+            list_cells,
             filtered,
             added,
             auxiliary,
-            trees,
+            fallback_cells,
             candidates,
             max_candidates,
             entries,
@@ -383,19 +398,21 @@ impl From<[u64; 11]> for P2mReport {
 
 impl std::fmt::Display for P2mReport {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        let Self { lists, filtered, added, auxiliary, trees, entries, primitives, bytes, tree_bytes, .. } = self;
-        let mean = |count: &usize| *count as f64 / (*lists).max(1) as f64;
+        let Self {
+            list_cells, filtered, added, auxiliary, fallback_cells, entries, primitives, bytes, tree_bytes, ..
+        } = self;
+        let mean = |count: &usize| *count as f64 / (*list_cells).max(1) as f64;
         let megabytes = |bytes: &usize| *bytes as f64 / 1e6;
         write!(
             f,
-            "{lists} cells with lists of {:.1} primitives in {:.1} packets on average, ",
+            "{list_cells} cells with lists of {:.1} primitives in {:.1} packets on average, ",
             mean(primitives),
             mean(entries)
         )?;
         if *filtered > 0 {
             write!(f, "{filtered} of them filtered, ")?;
         }
-        write!(f, "{trees} left to the tree; {added} sites added on the scene and {auxiliary} beside it; ")?;
+        write!(f, "{fallback_cells} left to the tree; {added} sites added on the scene and {auxiliary} beside it; ")?;
         write!(f, "{:.1} MB of cells, {:.1} MB of tree", megabytes(bytes), megabytes(tree_bytes))
     }
 }
@@ -403,8 +420,8 @@ impl std::fmt::Display for P2mReport {
 impl From<P2mReport> for CellSummary {
     fn from(report: P2mReport) -> Self {
         let counts = vec![
-            ("list_cells", report.lists as u64),
-            ("fallback_cells", report.trees as u64),
+            ("list_cells", report.list_cells as u64),
+            ("fallback_cells", report.fallback_cells as u64),
             ("packets", report.entries as u64),
             ("primitives", report.primitives as u64),
             ("bytes", report.bytes as u64),

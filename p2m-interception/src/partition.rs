@@ -1,12 +1,12 @@
 //! The interface of a partition of space into cells with interception lists.
 
-use crate::list::several::Lists;
+use crate::list::interleaved_lists::InterleavedLists;
 use crate::progress::Progress;
 use nalgebra::Point3;
 use p2m_bvh::PacketTree;
 use p2m_bvh::engine::evaluation;
+use p2m_bvh::engine::interleaved::InterleavedSearch;
 use p2m_bvh::engine::nearest::{EvaluateFn, SearchState, finish};
-use p2m_bvh::engine::several::Several;
 use p2m_core::engine::query::BestF64;
 use p2m_core::engine::real::to_f64_array;
 use p2m_core::engine::vector::V3;
@@ -101,5 +101,10 @@ pub(crate) trait CellQuery {
 
     /// Searches for the primitives that may be the nearest to each of several queries: those of the first `count`
     /// searches of `several`, which take turns.
-    fn search_several(&self, count: usize, several: &mut Several<'_, Aabb<f64>>, lists: &mut Lists);
+    fn search_several(
+        &self,
+        count: usize,
+        several: &mut InterleavedSearch<'_, Aabb<f64>>,
+        lists: &mut InterleavedLists,
+    );
 }

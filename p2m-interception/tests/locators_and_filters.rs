@@ -128,7 +128,7 @@ fn every_locator_leads_to_the_answer() {
         for (name, locator) in locators {
             let index = Index::build(&soup, &P2mOptions::default().with_locator(locator)).expect("valid");
             assert_eq!(index.report().filtered, 0);
-            lists += index.report().lists;
+            lists += index.report().list_cells;
             assert_eq!(answers(&index, &queries), expected, "case {case}: {kinds:?} {layout:?}, {name}");
         }
     }
@@ -151,7 +151,7 @@ fn a_saved_index_has_a_grid_instead_of_another_locator() {
     let file = SavedFile::read(&bytes[..]).expect("complete");
     let loaded = Index::load(&soup, file.checked().expect("whole")).expect("an index");
     let built = Index::build(&soup, &options).expect("valid");
-    assert!(built.report().lists > 100, "{}", built.report());
+    assert!(built.report().list_cells > 100, "{}", built.report());
     assert_eq!(answers(&loaded, &queries), answers(&built, &queries));
     // Queries visit the same packets, so the lists and the sites at which queries end are the same.
     assert_eq!(packets(&loaded, &queries), packets(&built, &queries));
@@ -205,7 +205,7 @@ fn walks_from_the_kd_tree_are_short_and_end_at_the_same_site() {
     let soup = scenes::soup(&mut rng, Kinds::Triangles, Layout::Uniform, 600);
     let kd_tree = P2mOptions::default().with_locator(KdTreeLocator::build);
     let [grid, kd_tree] = [P2mOptions::default(), kd_tree].map(|options| Index::build(&soup, &options).expect("valid"));
-    assert!(kd_tree.report().lists > 100, "{}", kd_tree.report());
+    assert!(kd_tree.report().list_cells > 100, "{}", kd_tree.report());
     let bounds = soup.positions().iter().fold(0.0f64, |all, p| all.max(p.coords.amax()));
     for scale in [1.0, 3.0, 9.0] {
         let queries: Vec<_> = (0..300).map(|_| Point3::from(vector(&mut rng) * (bounds * scale))).collect();

@@ -8,10 +8,10 @@ use crate::direction_table::DirectionTable;
 use crate::node::KdopNode;
 use crate::{Directions, Kdop, KdopOptions};
 use nalgebra::Vector3;
+use p2m_bvh::engine::interleaved::{InterleavedSearch, InterleavedTraversal};
 use p2m_bvh::engine::nearest::{EvaluateFn, finish, finish_nearest};
 use p2m_bvh::engine::pairs::TreeSide;
 use p2m_bvh::engine::ray::IntersectFn;
-use p2m_bvh::engine::several::{Several, Walkers};
 use p2m_bvh::engine::volume::{TreeOptions, VolumeNodes};
 use p2m_bvh::{PacketTree, SplitOptions, Volume};
 use p2m_core::engine::pairs::PairSide;
@@ -38,8 +38,8 @@ impl<const K: usize> Volume for Kdop<K> {
     #[inline(never)]
     fn nearest_of_several(
         tree: &PacketTree<Self>,
-        walkers: &mut Walkers<Self>,
-        several: &mut Several<'_, Self>,
+        walkers: &mut InterleavedTraversal<Self>,
+        several: &mut InterleavedSearch<'_, Self>,
         count: usize,
     ) {
         walkers.search(tree, several, count);

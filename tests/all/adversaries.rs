@@ -4,7 +4,7 @@
 
 use nalgebra::Point3;
 use p2m::bvh::{PacketTree, Volume};
-use p2m::core::{Inspect, QueryCost};
+use p2m::core::{IndexStats, QueryCost};
 use p2m::interception::Partition;
 use p2m::interception::delaunay::{Delaunay, DelaunayError};
 use p2m::{
@@ -38,7 +38,7 @@ fn answers(index: &impl ClosestPoint<f64>, queries: &[Point3<f64>]) -> Vec<Optio
 }
 
 /// Compares an index with brute force, and the work of its queries with the size of the tree.
-fn check_work<I: ClosestPoint<f64> + Inspect<f64>, V: Volume>(
+fn check_work<I: ClosestPoint<f64> + IndexStats<f64>, V: Volume>(
     name: &str,
     index: &I,
     tree: &PacketTree<V>,
@@ -90,14 +90,14 @@ fn every_backend(adversary: &Adversary) {
     let report = octree.report();
     let (bytes, work) = (options.memory * 10_000.0, options.work * 10_000.0);
     assert!(report.bytes as f64 <= bytes && report.work as f64 <= work, "{name}: {report}");
-    assert!(report.depth <= 30 && report.entries <= 256 * report.lists, "{name}: {report}");
+    assert!(report.depth <= 30 && report.entries <= 256 * report.list_cells, "{name}: {report}");
     assert!(octree.list_lengths().into_iter().all(|len| len <= 256 * 16), "{name}");
 
     let options = P2mOptions::default();
     let p2m = P2mIndex::build(soup, &options).expect("valid");
     check_work(&format!("{name}, p2m"), &p2m, p2m.partition().tree(), soup);
     let report = p2m.report();
-    let sites = report.lists + report.trees + report.auxiliary;
+    let sites = report.list_cells + report.fallback_cells + report.auxiliary;
     // A vertex that several packets have counts several times.
     let vertices: usize = (0..soup.len()).map(|i| p2m::Primitive::vertices(&soup.get(PrimitiveId::new(i))).len()).sum();
     assert!(sites <= 6 + 3 * vertices / 2 + soup.len(), "{name}: {report}");
@@ -105,11 +105,11 @@ fn every_backend(adversary: &Adversary) {
         report.bytes as f64 <= options.memory * count() as f64 + (MAX_BYTES_PER_SITE * sites) as f64,
         "{name}: {report}"
     );
-    assert!(report.entries <= options.max_list_packets * report.lists, "{name}: {report}");
+    assert!(report.entries <= options.max_list_packets * report.list_cells, "{name}: {report}");
     assert!(p2m.list_lengths().into_iter().all(|len| len <= options.max_list_packets * 16), "{name}");
     // With fewer primitives the budget is sufficient.
     if is_deep() && ["skew points", "skew wires", "helices", "moment curve"].contains(&name) {
-        assert!(report.lists == 0 && report.bytes == 0, "{name}: {report}");
+        assert!(report.list_cells == 0 && report.bytes == 0, "{name}: {report}");
     }
 }
 
@@ -142,7 +142,7 @@ fn cells_of_vertices_that_take_too_much_are_left_to_the_tree() {
     let soup = &Adversary::named("grid").soup(count());
     let built = |options: &P2mOptions| P2mIndex::build(soup, options).expect("valid");
     let unlimited = built(&P2mOptions::default());
-    assert_eq!((unlimited.report().lists, unlimited.report().trees), (count(), 0));
+    assert_eq!((unlimited.report().list_cells, unlimited.report().fallback_cells), (count(), 0));
     let queries = queries(soup, query_count());
     for (memory, work) in
         [(100.0, 1e5), (1.0, 1e5), (1e5, 20.0), (0.0, 1e5), (1e5, -1.0), (f64::NAN, 1e5), (1e5, f64::NAN)]
@@ -152,7 +152,10 @@ fn cells_of_vertices_that_take_too_much_are_left_to_the_tree() {
             let options = P2mOptions::default().with_memory(memory * part).with_work(work * part);
             let index = built(&options.with_splits(splits().with_parallel(parallel)));
             let report = index.report();
-            assert!(report.lists == 0 && report.bytes == 0 && report.trees >= count(), "{memory} {work}: {report}");
+            assert!(
+                report.list_cells == 0 && report.bytes == 0 && report.fallback_cells >= count(),
+                "{memory} {work}: {report}"
+            );
             assert_eq!(answers(&index, &queries), answers(&unlimited, &queries));
         }
     }
@@ -176,7 +179,7 @@ fn indexes_with_unlimited_budgets_answer_as_brute_force() {
         for options in [options, long_lists] {
             let p2m = P2mIndex::build(soup, &options).expect("valid");
             assert_eq!(answers(&p2m, &queries), expected, "{name}: {}", p2m.report());
-            assert!(name != "grid" || p2m.report().lists == soup.len(), "{}", p2m.report());
+            assert!(name != "grid" || p2m.report().list_cells == soup.len(), "{}", p2m.report());
         }
     }
 }

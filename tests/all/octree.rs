@@ -6,7 +6,7 @@
 use nalgebra::{Point3, Vector3};
 use p2m::core::{Collector, StatsCollector};
 use p2m::core::{Isa, Projection};
-use p2m::interception::{Domain, OctreeReport, OctreeSoFar};
+use p2m::interception::{Domain, OctreeReport, RefinementProgress};
 #[cfg(feature = "scene")]
 use p2m::scene::generate::{IcoSphere, ico_sphere};
 use p2m::{
@@ -101,7 +101,7 @@ fn budgets_are_kept() {
     let default_report = built(&soup, &OctreeOptions::default()).report();
     assert!(
         default_report.bytes as f64 <= OctreeOptions::default().memory * count
-            && default_report.lists > soup.len() / 20,
+            && default_report.list_cells > soup.len() / 20,
         "{default_report}"
     );
     for memory in [amount(60.0, 20.0), 10.0, 0.001, 0.0, -1.0, f64::NAN] {
@@ -122,7 +122,7 @@ fn budgets_are_kept() {
     assert!(fine.bytes > default_report.bytes && fine.resolution == 1.0, "{fine}");
     // Thirty times the default resolution fits into thirty times the budgets, and has shorter lists.
     let finer = built(&soup, &OctreeOptions::default().with_finer_cells(30.0)).report();
-    let mean_length = |report: &OctreeReport| report.entries as f64 / report.lists as f64;
+    let mean_length = |report: &OctreeReport| report.entries as f64 / report.list_cells as f64;
     assert_eq!(finer.resolution, 30.0 * OctreeOptions::default().resolution);
     assert!(mean_length(&finer) < 0.8 * mean_length(&default_report), "{finer}, {default_report}");
 }
@@ -132,8 +132,8 @@ fn built_until<'a>(
     soup: &'a Soup<f64>,
     options: &OctreeOptions,
     calls: usize,
-) -> (OctreeIndex<f64, &'a Soup<f64>>, OctreeSoFar, usize) {
-    let (mut last, mut count) = (OctreeSoFar::default(), 0);
+) -> (OctreeIndex<f64, &'a Soup<f64>>, RefinementProgress, usize) {
+    let (mut last, mut count) = (RefinementProgress::default(), 0);
     let index = OctreeIndex::build_until(soup, options, &|_| (), &mut |so_far| {
         assert!(so_far.cells >= last.cells, "{so_far:?} after {last:?}");
         (last, count) = (*so_far, count + 1);
@@ -163,7 +163,7 @@ fn a_refinement_that_ends_early_gives_an_exact_index() {
             assert!(count <= calls.max(1), "nobody asks after the end");
             let report = index.report();
             check_so_far(&report, &last);
-            (lists, announced) = (lists + report.lists, announced + last.lists);
+            (lists, announced) = (lists + report.list_cells, announced + last.list_cells);
             assert!(report.bytes <= whole.report().bytes && report.work <= whole.report().work);
             let (alone, ..) = built_until(&soup, &options(false), calls);
             assert_eq!(report, alone.report(), "case {case}, {calls} of {all_calls} calls");
@@ -183,9 +183,9 @@ fn a_refinement_that_ends_early_gives_an_exact_index() {
 }
 
 /// Checks that what an octree was announced to be bounds what it is.
-fn check_so_far(report: &OctreeReport, so_far: &OctreeSoFar) {
-    assert_eq!(so_far.cells, report.lists + report.singles + report.trees, "{so_far:?} {report:?}");
-    assert!(report.lists <= so_far.lists && report.entries <= so_far.entries, "{so_far:?} {report:?}");
+fn check_so_far(report: &OctreeReport, so_far: &RefinementProgress) {
+    assert_eq!(so_far.cells, report.list_cells + report.single_cells + report.fallback_cells, "{so_far:?} {report:?}");
+    assert!(report.list_cells <= so_far.list_cells && report.entries <= so_far.entries, "{so_far:?} {report:?}");
     assert!(report.bytes <= so_far.bytes, "{so_far:?} {report:?}");
 }
 
@@ -363,7 +363,7 @@ fn budgets_without_end_are_those_that_suffice() {
     let soup = scenes::soup(&mut rng("budgets without end", 0), Kinds::Mixed, Layout::Uniform, 300);
     let enough = built(&soup, &OctreeOptions::default().with_memory(1e4).with_work(1e4)).report();
     let default_report = built(&soup, &OctreeOptions::default()).report();
-    assert!(enough.bytes >= default_report.bytes && enough.lists > 0, "{enough}\n{default_report}");
+    assert!(enough.bytes >= default_report.bytes && enough.list_cells > 0, "{enough}\n{default_report}");
     for budget in [1e15, f64::MAX, f64::INFINITY] {
         let report = built(&soup, &OctreeOptions::default().with_memory(budget).with_work(budget)).report();
         assert_eq!(report.bytes, enough.bytes, "{budget:e}: {report}");

@@ -4,7 +4,7 @@
 
 use nalgebra::{Point3, Rotation3, Vector3};
 use p2m::batch::BatchOptions;
-use p2m::core::Inspect;
+use p2m::core::IndexStats;
 use p2m::field::sign::{Sign, SignError, SignedDistance};
 use p2m::scene::generate::{IcoSphere, ico_sphere};
 use p2m::{

@@ -129,17 +129,19 @@ fn cylinder(n: u32) -> Vec<Shape<f64>> {
 fn round_shapes_have_short_lists() {
     let sphere = sphere(amount(48, 26), amount(64, 40));
     let report = built(&sphere[..]).report();
-    let mean = report.primitives as f64 / report.lists as f64;
+    let mean = report.primitives as f64 / report.list_cells as f64;
     println!("sphere: {report}");
     // Vertices that nearly coincide, at the poles, have no lists of their own.
-    assert!(report.trees < 100 && report.added == 0 && mean < 40.0, "{report}");
+    assert!(report.fallback_cells < 100 && report.added == 0 && mean < 40.0, "{report}");
     assert!((1..100).contains(&report.auxiliary), "{report}");
     let alone = P2mIndex::build(&sphere[..], &P2mOptions::default().with_max_extra_sites(0.0)).expect("valid").report();
-    assert!(alone.lists == 0 && alone.auxiliary == 0 && alone.trees > sphere.len() / 3, "{alone}");
+    assert!(alone.list_cells == 0 && alone.auxiliary == 0 && alone.fallback_cells > sphere.len() / 3, "{alone}");
     let report = built(&cylinder(amount(400, 200))[..]).report();
     println!("cylinder: {report}");
     assert!(
-        report.added > amount(50, 20) && report.lists > amount(500, 250) && report.trees * 4 < report.lists,
+        report.added > amount(50, 20)
+            && report.list_cells > amount(500, 250)
+            && report.fallback_cells * 4 < report.list_cells,
         "{report}"
     );
 }
@@ -388,18 +390,20 @@ fn lists_that_are_too_long_are_left_to_the_tree() {
     };
     let default_report = report(128);
     assert!(
-        default_report.lists > soup.len() / 3
-            && default_report.trees == 0
-            && default_report.entries > 2 * default_report.lists,
+        default_report.list_cells > soup.len() / 3
+            && default_report.fallback_cells == 0
+            && default_report.entries > 2 * default_report.list_cells,
         "{default_report}"
     );
     let short = report(12);
     assert!(
-        short.trees > soup.len() / 30 && short.bytes < default_report.bytes && short.entries <= 12 * short.lists,
+        short.fallback_cells > soup.len() / 30
+            && short.bytes < default_report.bytes
+            && short.entries <= 12 * short.list_cells,
         "{short}"
     );
     let none = report(0);
-    assert!(none.lists == 0 && none.trees == default_report.lists && none.bytes == 0, "{none}");
+    assert!(none.list_cells == 0 && none.fallback_cells == default_report.list_cells && none.bytes == 0, "{none}");
 }
 
 /// The counters detect lost lists, lost bounds, lost hints and lost paths to answers far away.
@@ -453,7 +457,7 @@ fn a_part_of_a_flat_town_is_built_within_its_memory() {
 fn a_batch_with_queries_that_are_not_finite_answers_the_others() {
     let soup = scenes::skewed_gear(20);
     let index = built(&soup);
-    assert!(index.report().lists > 100, "{:?}", index.report());
+    assert!(index.report().list_cells > 100, "{:?}", index.report());
     for case in cases(200, 40) {
         let mut rng = rng("not-finite", case);
         let len = rng.random_range(0..70);

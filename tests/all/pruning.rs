@@ -213,7 +213,7 @@ fn books_agree() {
         let mut all = queries(&mut numbers, &soup, amount(600, 60));
         all.extend((0..amount(200, 20)).map(|_| numbers.integer_point(24).map(|x| 0.5 * x - 2.0)));
         let report = agrees(&format!("case {case}"), &soup, &P2mOptions::default(), &all);
-        lists += report.lists;
+        lists += report.list_cells;
         primitives += report.primitives;
     }
     println!("{lists} lists of {primitives}");
@@ -258,7 +258,7 @@ fn duplicates_agree() {
         let mut all = queries(&mut numbers, &soup, amount(600, 48));
         all.extend(in_the_middle(&mut numbers, amount(800, 48)));
         let report = agrees(&format!("case {case}"), &soup, &P2mOptions::default(), &all);
-        lists += report.lists;
+        lists += report.list_cells;
         primitives += report.primitives;
     }
     println!("{lists} lists of {primitives}");
@@ -299,7 +299,7 @@ fn snapped_vertices_of_round_shapes_agree() {
         }));
         let report = agrees(&format!("case {case}"), &soup, &P2mOptions::default(), &all);
         println!("{report}");
-        assert!(report.added + report.auxiliary > 0 && report.lists > amount(500, 150), "{report}");
+        assert!(report.added + report.auxiliary > 0 && report.list_cells > amount(500, 150), "{report}");
     }
 }
 
@@ -342,7 +342,7 @@ fn round_shapes() -> [(&'static str, Lathe); 6] {
 fn has_sites_and_lists(name: &str, report: &P2mReport) {
     println!("{name}: {report}");
     let long = name == "of long triangles";
-    assert!(report.lists > amount(900, 200), "{name}: {report}");
+    assert!(report.list_cells > amount(900, 200), "{name}: {report}");
     assert_eq!(report.auxiliary > 0, long || ["sphere", "cylinder", "spiked"].contains(&name), "{name}: {report}");
     assert_eq!(report.added > 0, long, "{name}: {report}");
 }
@@ -396,8 +396,8 @@ fn odd_options_agree() {
             assert!(added > 1e-9 || report.added + report.auxiliary == 0, "{added} {longest}: {report}");
             report
         });
-        assert_eq!(reports[0].lists, 0, "{added}: no list of none");
-        assert!(reports[3].lists > 200, "{added}: {}", reports[3]);
+        assert_eq!(reports[0].list_cells, 0, "{added}: no list of none");
+        assert!(reports[3].list_cells > 200, "{added}: {}", reports[3]);
         assert_eq!(reports[3].auxiliary > 0, added > 1.0, "{added}: {}", reports[3]);
         assert_eq!(reports[4], reports[5], "{added}: 2048 is the most");
     }

@@ -2,7 +2,7 @@
 
 use nalgebra::Point3;
 use p2m::core::{Best, Hits, RayStatsCollector, StatsCollector};
-use p2m::core::{Inspect, Isa};
+use p2m::core::{IndexStats, Isa};
 use p2m::scene::generate::{IcoSphere, Subdivide, ico_sphere, subdivide};
 use p2m::storage::{SavedFile, Writer};
 use p2m::{AabbTree, ClosestPoint, KdopTree, OctreeIndex, P2mIndex, Ray, Soup};
@@ -76,7 +76,7 @@ struct Counted<'a, I> {
     counts: Mutex<Counts>,
 }
 
-impl<I: Inspect<f64>> ClosestPoint<f64> for Counted<'_, I> {
+impl<I: IndexStats<f64>> ClosestPoint<f64> for Counted<'_, I> {
     fn search(&self, query: &Point3<f64>, best: &mut Best<f64>) {
         best.offer_hint(self.soup, query);
         let mut counting = StatsCollector::new(best.clone());
@@ -88,7 +88,7 @@ impl<I: Inspect<f64>> ClosestPoint<f64> for Counted<'_, I> {
 }
 
 /// Returns the queries of all sets of closest points, for an index that counts and the same index as a trait object.
-fn point_tasks<'a, I: Inspect<f64> + Sync>(
+fn point_tasks<'a, I: IndexStats<f64> + Sync>(
     backend: &'static str,
     index: &'a I,
     object: &'a counted_queries::Index<'a>,

@@ -5,7 +5,7 @@ use super::p2m_settings::P2mSettings;
 use p2m_bvh::SplitOptions;
 use p2m_core::storage::Writer;
 use p2m_core::{AnyIndex, Real};
-use p2m_interception::{OctreeSoFar, Progress};
+use p2m_interception::{Progress, RefinementProgress};
 use std::ops::ControlFlow;
 use std::sync::Arc;
 
@@ -49,7 +49,7 @@ pub struct BuildSettings<'p> {
     pub progress: &'p (dyn Fn(Progress) + Sync),
     /// A function that sees what an octree would be if its refinement ended now, and may end it
     /// ([`OctreeIndex::build_until`](p2m_interception::OctreeIndex::build_until)).
-    pub visit_octree: &'p (dyn Fn(&OctreeSoFar) -> ControlFlow<()> + Sync),
+    pub visit_octree: &'p (dyn Fn(&RefinementProgress) -> ControlFlow<()> + Sync),
 }
 
 impl Default for BuildSettings<'_> {
@@ -105,7 +105,7 @@ impl<'p> BuildSettings<'p> {
 
     /// Sets the function that may end the refinement of an octree.
     #[must_use]
-    pub fn with_visit_octree(self, visit_octree: &'p (dyn Fn(&OctreeSoFar) -> ControlFlow<()> + Sync)) -> Self {
+    pub fn with_visit_octree(self, visit_octree: &'p (dyn Fn(&RefinementProgress) -> ControlFlow<()> + Sync)) -> Self {
         Self { visit_octree, ..self }
     }
 

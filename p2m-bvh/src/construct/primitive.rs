@@ -107,7 +107,7 @@ impl GrowingBox {
     /// Adds a box.
     #[inline(always)]
     pub(crate) fn add<I: InstructionSet>(&mut self, other: &Self) {
-        I::Eight::load(&self.0).min(I::Eight::load(&other.0)).store(&mut self.0);
+        I::F32x8::load(&self.0).min(I::F32x8::load(&other.0)).store(&mut self.0);
     }
 
     /// The box around both boxes.

@@ -1,7 +1,7 @@
 //! The line of a ray in f64, scaled so that lengths along it can be bounded.
 
 use p2m_core::Ray;
-use p2m_core::engine::ray::{TINY, foot};
+use p2m_core::engine::ray::{UNDERFLOW_MARGIN, project_onto_ray};
 use p2m_core::engine::vector::power_of_two;
 
 /// The line of a ray, scaled so that the largest component of its direction is 1 or -1.
@@ -58,8 +58,8 @@ impl RayLine {
     #[inline(never)]
     pub fn from_afar(ray: &Ray, radius: f64, point: &[f64; 3]) -> Self {
         let line = Self::from_ray(ray, radius);
-        let (origin, origin_length) = foot(ray, point, line.axis);
-        let origin_error = origin.iter().fold(0.0, |a: f64, x| a.max(x.abs())) * LENGTH_ROUNDING + TINY;
+        let (origin, origin_length) = project_onto_ray(ray, point, line.axis);
+        let origin_error = origin.iter().fold(0.0, |a: f64, x| a.max(x.abs())) * LENGTH_ROUNDING + UNDERFLOW_MARGIN;
         let origin_error = origin_error + ray.origin_error;
         Self { origin, origin_length, origin_error, ..line }
     }
@@ -85,7 +85,9 @@ impl RayLine {
         let length = parameter * self.divisor;
         (
             length - self.origin_length,
-            (length.abs() + self.origin_length.abs()) * LENGTH_ROUNDING + self.divisor * TINY + self.origin_error,
+            (length.abs() + self.origin_length.abs()) * LENGTH_ROUNDING
+                + self.divisor * UNDERFLOW_MARGIN
+                + self.origin_error,
         )
     }
 }

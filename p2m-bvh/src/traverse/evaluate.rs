@@ -6,7 +6,7 @@ use crate::traverse::search_state::{Candidate, SearchState};
 use crate::tree::Leaves;
 use p2m_core::Collector;
 use p2m_core::engine::query::BestF64;
-use p2m_core::engine::side_by_side::{Eight, SIDE_BY_SIDE, certain_vertex_squares};
+use p2m_core::engine::side_by_side::{SIDE_BY_SIDE, TriangleLanes, certain_vertex_squares};
 use p2m_core::engine::simd::{InstructionSet, SimdKernel};
 
 /// Above this number of pending candidates, ties at shared vertices are sorted out before any candidate is evaluated.
@@ -43,7 +43,7 @@ impl<C: Collector> SearchState<'_, C> {
     #[inline(always)]
     #[allow(clippy::float_cmp, reason = "ties are equality of bits")]
     fn drop_shared_vertex_ties<I: InstructionSet>(&mut self) {
-        let mut eight = Eight::<3>::default();
+        let mut eight = TriangleLanes::<3>::default();
         let count = self.pending_len.min(SIDE_BY_SIDE);
         for (lane, candidate) in self.pending[..count].iter().enumerate() {
             let packet = &self.leaves.packets[candidate.packet as usize];

@@ -1,12 +1,12 @@
 //! The division of queries into groups of searches that take turns.
 
-use crate::traverse::several::{SEARCHES, Several};
+use crate::traverse::interleaved_search::{InterleavedSearch, SEARCHES};
 use crate::tree::PacketTree;
 use crate::tree::wide_node::VolumeNodes;
 use nalgebra::Point3;
 use p2m_core::engine::query::BestF64;
 use p2m_core::engine::real::to_f64_array;
-use p2m_core::{Best, Collector, Found, Primitive, PrimitiveId, PrimitiveSet, QueryOptions, Real};
+use p2m_core::{BatchAnswer, Best, Collector, Primitive, PrimitiveId, PrimitiveSet, QueryOptions, Real};
 use std::cell::Cell;
 
 /// Answers queries in groups, and calls `answered` once for each with its position and its answer. `search` searches
@@ -18,8 +18,8 @@ pub fn answer_in_groups<T: Real, S: PrimitiveSet<T>, V: VolumeNodes>(
     set: &S,
     queries: &[Point3<T>],
     options: &QueryOptions<T>,
-    answered: &mut dyn FnMut(usize, Found<'_, T>),
-    mut search: impl FnMut(usize, &mut Several<'_, V>),
+    answered: &mut dyn FnMut(usize, BatchAnswer<'_, T>),
+    mut search: impl FnMut(usize, &mut InterleavedSearch<'_, V>),
 ) {
     let template = Best::new(options);
     let mut group = [0; SEARCHES];
@@ -29,7 +29,7 @@ pub fn answer_in_groups<T: Real, S: PrimitiveSet<T>, V: VolumeNodes>(
             best.offer(id, projection);
         }
     };
-    let mut several = Several::new(tree, template.minimum_ref(), &evaluate);
+    let mut several = InterleavedSearch::new(tree, template.minimum_ref(), &evaluate);
     let mut numbers = 0..queries.len();
     loop {
         let mut count = 0;
@@ -55,7 +55,7 @@ pub fn answer_in_groups<T: Real, S: PrimitiveSet<T>, V: VolumeNodes>(
         }
         search(count, &mut several);
         for (number, minimum) in group[..count].iter().zip(several.minimums()) {
-            answered(*number, Found::new(minimum));
+            answered(*number, BatchAnswer::new(minimum));
         }
         if count < SEARCHES {
             return;

@@ -3,14 +3,14 @@
 pub(crate) mod box_query;
 pub(crate) mod evaluate;
 pub(crate) mod groups;
+pub(crate) mod interleaved_search;
+pub(crate) mod interleaved_traversal;
 pub(crate) mod nearest;
 pub(crate) mod pairs;
 pub(crate) mod primitive_fn;
 pub(crate) mod range;
 pub(crate) mod ray;
 pub(crate) mod search_state;
-pub(crate) mod several;
-pub(crate) mod walkers;
 
 use crate::tree::node_ref::{NodeRef, WIDTH};
 use crate::tree::wide_node::{VolumeNodes, WideNode};
@@ -86,7 +86,7 @@ fn traverse_with_stack<I: InstructionSet, V: VolumeNodes, W: Visitor<V>, const L
         } else {
             visitor.visit_node();
             let node = &tree.nodes[at.number()];
-            let bounds: I::Eight = visitor.bounds(node);
+            let bounds: I::F32x8 = visitor.bounds(node);
             let entries: &mut [u32; WIDTH] = (&mut keys[top..top + WIDTH]).try_into().expect("eight keys");
             let count = bounds.sorted_keys(visitor.limit(), entries);
             parents[top..top + WIDTH].fill(at.0);

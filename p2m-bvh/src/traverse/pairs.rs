@@ -155,7 +155,7 @@ impl<V: VolumeNodes> SimdKernel for Cut<'_, V> {
     #[inline(always)]
     fn run<I: InstructionSet>(self) -> Children {
         let node = &self.tree.nodes[self.node.number()];
-        let bounds = bound_children::<I::Eight, _>(node, self.slabs, self.triples);
+        let bounds = bound_children::<I::F32x8, _>(node, self.slabs, self.triples);
         let (mut squares, mut gaps, mut sizes) = ([0.0f32; WIDTH], [0.0f32; WIDTH], [0.0f32; WIDTH]);
         bounds.squares.store(&mut squares);
         bounds.gaps.store(&mut gaps);
@@ -209,7 +209,7 @@ impl<V: VolumeNodes> SimdKernel for Support<'_, V> {
             }
             let wide = &tree.nodes[node.number()];
             let mut heights = [0.0f32; WIDTH];
-            height.of_children::<I::Eight, _>(wide).store(&mut heights);
+            height.of_children::<I::F32x8, _>(wide).store(&mut heights);
             let from = pending.len();
             for (x, child) in heights.iter().zip(wide.children()) {
                 let bound = (f64::from(*x) + f64::from(height.slack)) * tree.frame.unit + offset;

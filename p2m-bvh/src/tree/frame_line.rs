@@ -6,7 +6,7 @@
 use crate::packet::RayLine;
 use crate::tree::frame::Frame;
 use crate::tree::ray_slab::MIN_SLAB_GROWTH;
-use p2m_core::engine::ray::TINY;
+use p2m_core::engine::ray::UNDERFLOW_MARGIN;
 use p2m_core::engine::vector::power_of_two;
 use p2m_core::{Aabb, Ray};
 
@@ -31,7 +31,8 @@ pub fn misses_scene(ray: &Ray, radius: f64, frame: &Frame, half_extent: &[f64; 3
     let towards = [c[0] - o[0], c[1] - o[1], c[2] - o[2]];
     // The half extent is enlarged for the rounding in this function (the rounding of the centre is part of it already)
     // and for parameters that underflow to zero.
-    let half = [0, 1, 2].map(|k: usize| half_extent[k] + o[k].abs() * ROUNDING + d[k].abs() * TINY + radius);
+    let half =
+        [0, 1, 2].map(|k: usize| half_extent[k] + o[k].abs() * ROUNDING + d[k].abs() * UNDERFLOW_MARGIN + radius);
     // All conditions are combined into one branch, because several branches would be mispredicted.
     let away = |k: usize| (towards[k] > half[k]) & (d[k] <= 0.0) | (towards[k] < -half[k]) & (d[k] >= 0.0);
     let goes_away = (ray.min >= 0.0) & (away(0) | away(1) | away(2));
@@ -39,7 +40,7 @@ pub fn misses_scene(ray: &Ray, radius: f64, frame: &Frame, half_extent: &[f64; 3
         let offset = (towards[i] * d[j] - towards[j] * d[i]).abs();
         let least = half[i] * d[j].abs() + half[j] * d[i].abs();
         // An offset that overflowed excludes nothing.
-        (offset > least + TINY) & (offset <= f64::MAX)
+        (offset > least + UNDERFLOW_MARGIN) & (offset <= f64::MAX)
     };
     goes_away | is_beside(0, 1) | is_beside(1, 2) | is_beside(2, 0)
 }
@@ -47,7 +48,7 @@ pub fn misses_scene(ray: &Ray, radius: f64, frame: &Frame, half_extent: &[f64; 3
 /// Half of the extent of a scene along each axis, enlarged for the rounding of its centre and of [`misses_scene`].
 pub fn half_extent(frame: &Frame, bounds: &Aabb<f64>) -> [f64; 3] {
     let half = |k: usize| (bounds.max[k] * 0.5 - bounds.min[k] * 0.5) * (1.0 + MIN_SLAB_GROWTH);
-    std::array::from_fn(|k| half(k) + frame.centre[k].abs() * ROUNDING + TINY)
+    std::array::from_fn(|k| half(k) + frame.centre[k].abs() * ROUNDING + UNDERFLOW_MARGIN)
 }
 
 /// The piece of a line that lies in the box of a scene, in the frame of its nodes.

@@ -1,7 +1,7 @@
 //! The columns of the answers of a batch.
 
 use super::parts::Split;
-use crate::{Feature, Found, Real};
+use crate::{BatchAnswer, Feature, Real};
 use nalgebra::Point3;
 
 /// The columns of the answers that a caller asks for, each with one value for each query.
@@ -99,12 +99,12 @@ impl<T: Real> ClosestColumns<'_, T> {
 /// A place for answers to queries for the closest point.
 pub(super) trait Sink<T: Real>: Split {
     /// Stores the answer to the query at a position.
-    fn set(&mut self, position: usize, found: Found<'_, T>);
+    fn set(&mut self, position: usize, found: BatchAnswer<'_, T>);
 }
 
 impl<T: Real> Sink<T> for ClosestColumns<'_, T> {
     #[inline(always)]
-    fn set(&mut self, i: usize, found: Found<'_, T>) {
+    fn set(&mut self, i: usize, found: BatchAnswer<'_, T>) {
         if let (None, None, None, None) = (&self.point, &self.feature, &self.barycentric, &self.lower_bound) {
             // The rest of an answer need not be computed.
             let (distance, primitive) = found.distance_and_index().unwrap_or((T::INFINITY, Self::NO_PRIMITIVE));
@@ -127,7 +127,7 @@ impl<T: Real> Split for ClosestColumns<'_, T> {
 }
 
 impl<T: Real> ClosestColumns<'_, T> {
-    fn set_all(&mut self, i: usize, found: Found<'_, T>) {
+    fn set_all(&mut self, i: usize, found: BatchAnswer<'_, T>) {
         let nan = T::round_from_f64(f64::NAN);
         let closest = found.closest();
         if let Some(column) = &mut self.distance {
@@ -153,7 +153,7 @@ impl<T: Real> ClosestColumns<'_, T> {
 
 impl<T: Real> Sink<T> for &mut [Option<crate::Closest<T>>] {
     #[inline(always)]
-    fn set(&mut self, i: usize, found: Found<'_, T>) {
+    fn set(&mut self, i: usize, found: BatchAnswer<'_, T>) {
         self[i] = found.closest();
     }
 }

@@ -1,6 +1,6 @@
 //! An index whose batches can be watched and ended early.
 
-use crate::{Best, ClosestPoint, Found, QueryOptions, Real};
+use crate::{BatchAnswer, Best, ClosestPoint, QueryOptions, Real};
 use nalgebra::Point3;
 
 /// An index that answers the queries of a batch in steps, and leaves the rest out when it is told to stop.
@@ -51,7 +51,7 @@ impl<T: Real, I: ClosestPoint<T> + ?Sized, F: Fn(usize, &mut dyn FnMut(usize)) -
         &self,
         queries: &[Point3<T>],
         options: &QueryOptions<T>,
-        answered: &mut dyn FnMut(usize, Found<'_, T>),
+        answered: &mut dyn FnMut(usize, BatchAnswer<'_, T>),
     ) {
         let mut first = 0;
         while first < queries.len() {

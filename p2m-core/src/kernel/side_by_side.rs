@@ -31,18 +31,18 @@ pub type Row = [f64; SIDE_BY_SIDE];
 /// The query points and the vertices of eight primitives. `vertices[v][k]` has coordinate k of vertex v of each of
 /// them.
 #[derive(Clone, Debug)]
-pub struct Eight<const N: usize> {
+pub struct TriangleLanes<const N: usize> {
     queries: [Row; 3],
     vertices: [[Row; 3]; N],
 }
 
-impl<const N: usize> Default for Eight<N> {
+impl<const N: usize> Default for TriangleLanes<N> {
     fn default() -> Self {
         Self { queries: [[0.0; SIDE_BY_SIDE]; 3], vertices: [[[0.0; SIDE_BY_SIDE]; 3]; N] }
     }
 }
 
-impl<const N: usize> Eight<N> {
+impl<const N: usize> TriangleLanes<N> {
     /// Copies a lane to another one.
     #[inline(always)]
     pub fn copy_lane(&mut self, from: usize, to: usize) {
@@ -76,7 +76,7 @@ impl<const N: usize> Eight<N> {
 
 /// The nearest points of eight primitives.
 #[derive(Clone, Debug)]
-pub struct EightNearest {
+pub struct LaneResults {
     square: Row,
     point: [Row; 3],
     weights: [Row; 3],
@@ -90,7 +90,7 @@ pub struct EightNearest {
     skipped: u8,
 }
 
-impl EightNearest {
+impl LaneResults {
     /// Returns whether the primitive in a lane was left out, and has to be computed with others.
     #[inline(always)]
     #[must_use]
@@ -187,14 +187,14 @@ impl<D: Doubles> BestFeature<D> {
         vertex: [D; 3],
         size: D,
         is_uncertain: D::Mask,
-    ) -> EightNearest {
+    ) -> LaneResults {
         let is_vertex = self.feature.is_at_most(D::splat(2.0));
         let point = select(is_vertex, vertex, clamp(add(query, self.offset), low, high));
         let zero = D::splat(0.0);
         let [x, y, z] = self.offset;
         let is_zero = x.equals(zero) & y.equals(zero) & z.equals(zero);
         let is_plain = D::splat(SQUARE_MIN).is_at_most(self.square) & self.square.is_below(D::splat(SQUARE_MAX));
-        let mut result = EightNearest {
+        let mut result = LaneResults {
             square: [0.0; SIDE_BY_SIDE],
             point: [[0.0; SIDE_BY_SIDE]; 3],
             weights: [[0.0; SIDE_BY_SIDE]; 3],
@@ -263,7 +263,7 @@ struct NearestVertices<D: Doubles> {
 
 impl<D: Doubles> NearestVertices<D> {
     #[inline(always)]
-    fn new(eight: &Eight<3>) -> Self {
+    fn new(eight: &TriangleLanes<3>) -> Self {
         let (query, vertices) = eight.load::<D>();
         let offsets = [sub(vertices[0], query), sub(vertices[1], query), sub(vertices[2], query)];
         let offset_bounds = bounds(&offsets);
@@ -299,10 +299,10 @@ impl<D: Doubles> NearestVertices<D> {
 
     /// Returns the results of the triangles whose nearest point is certainly a vertex, without the others.
     #[inline(always)]
-    fn certain(&self) -> EightNearest {
+    fn certain(&self) -> LaneResults {
         let point = self.nearest.of_vectors(self.vertices);
         let found = self.vertex.store(self.query, [point, point], point, self.size, !self.is_certain());
-        EightNearest { skipped: self.uncertain_lanes(), ..found }
+        LaneResults { skipped: self.uncertain_lanes(), ..found }
     }
 }
 
@@ -310,7 +310,7 @@ impl<D: Doubles> NearestVertices<D> {
 /// the single kernel, and infinity for the others.
 #[inline(always)]
 #[must_use]
-pub fn certain_vertex_squares<D: Doubles>(eight: &Eight<3>) -> Row {
+pub fn certain_vertex_squares<D: Doubles>(eight: &TriangleLanes<3>) -> Row {
     let around = NearestVertices::<D>::new(eight);
     let mut squares = [0.0; SIDE_BY_SIDE];
     D::select(around.is_certain(), around.vertex.square, D::splat(f64::INFINITY)).store(&mut squares);
@@ -322,7 +322,7 @@ pub fn certain_vertex_squares<D: Doubles>(eight: &Eight<3>) -> Row {
 /// If `may_skip`, and a vertex is the nearest point of most of them, the others are left out.
 #[inline(always)]
 #[must_use]
-pub fn triangles<D: Doubles>(eight: &Eight<3>, may_skip: bool) -> EightNearest {
+pub fn triangles<D: Doubles>(eight: &TriangleLanes<3>, may_skip: bool) -> LaneResults {
     let around = NearestVertices::<D>::new(eight);
     if may_skip && around.uncertain_lanes().count_ones() <= MAX_SKIPPED {
         return around.certain();
@@ -431,7 +431,7 @@ fn face_weights<D: Doubles>([wn, wf, wa]: [D; 3], longest: Choice<D>, lines: &[E
 /// Computes the nearest points of eight segments.
 #[inline(always)]
 #[must_use]
-pub fn segments<D: Doubles>(eight: &Eight<2>) -> EightNearest {
+pub fn segments<D: Doubles>(eight: &TriangleLanes<2>) -> LaneResults {
     let (query, vertices) = eight.load::<D>();
     let (zero, one) = (D::splat(0.0), D::splat(1.0));
     let offsets = [sub(vertices[0], query), sub(vertices[1], query)];
@@ -463,18 +463,18 @@ mod tests {
     use p2m_testkit::families;
     use rand::{Rng, RngExt};
 
-    struct Triangles<'a>(&'a Eight<3>, bool);
-    struct Segments<'a>(&'a Eight<2>);
+    struct Triangles<'a>(&'a TriangleLanes<3>, bool);
+    struct Segments<'a>(&'a TriangleLanes<2>);
 
     impl SimdKernel for Triangles<'_> {
-        type Output = EightNearest;
+        type Output = LaneResults;
         #[inline(always)]
-        fn run<I: InstructionSet>(self) -> EightNearest {
+        fn run<I: InstructionSet>(self) -> LaneResults {
             triangles::<I::Doubles>(self.0, self.1)
         }
     }
 
-    struct CertainVertices<'a>(&'a Eight<3>);
+    struct CertainVertices<'a>(&'a TriangleLanes<3>);
 
     impl SimdKernel for CertainVertices<'_> {
         type Output = Row;
@@ -485,9 +485,9 @@ mod tests {
     }
 
     impl SimdKernel for Segments<'_> {
-        type Output = EightNearest;
+        type Output = LaneResults;
         #[inline(always)]
-        fn run<I: InstructionSet>(self) -> EightNearest {
+        fn run<I: InstructionSet>(self) -> LaneResults {
             segments::<I::Doubles>(self.0)
         }
     }
@@ -523,11 +523,11 @@ mod tests {
     /// features of the certain lanes.
     fn compare<const N: usize>(
         rng: &mut impl Rng,
-        run: impl Fn(Isa, &Eight<N>, bool) -> EightNearest,
+        run: impl Fn(Isa, &TriangleLanes<N>, bool) -> LaneResults,
         single: impl Fn([f64; 3], [[f64; 3]; N]) -> Projection,
     ) -> Vec<Feature> {
         let cases: Vec<_> = (0..SIDE_BY_SIDE).map(|_| case(rng, N)).collect();
-        let mut eight = Eight::default();
+        let mut eight = TriangleLanes::default();
         for (lane, (query, vertices)) in cases.iter().enumerate() {
             eight.set(lane, query, std::array::from_fn(|v| &vertices[v]));
         }

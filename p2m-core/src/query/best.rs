@@ -4,7 +4,7 @@ use super::answer::{ROUND_DOWN, ROUND_UP, answer, square_within};
 use super::closest::Closest;
 use super::collector::Collector;
 use super::options::QueryOptions;
-use crate::kernel::side_by_side::EightNearest;
+use crate::kernel::side_by_side::LaneResults;
 use crate::{Key, Primitive, PrimitiveId, PrimitiveSet, Projection, Real};
 use nalgebra::Point3;
 use std::marker::PhantomData;
@@ -139,7 +139,7 @@ impl BestF64 {
     /// only if the candidate is the best one so far.
     #[inline(always)]
     #[allow(clippy::float_cmp, reason = "ties are equality of bits")]
-    pub fn offer_lane(&mut self, id: PrimitiveId, found: &EightNearest, lane: usize) -> bool {
+    pub fn offer_lane(&mut self, id: PrimitiveId, found: &LaneResults, lane: usize) -> bool {
         let Some((square, lower_bound)) = found.square_and_lower_bound(lane) else { return false };
         self.certified = if lower_bound < self.certified { lower_bound } else { self.certified };
         let best_square = self.key.square_above();

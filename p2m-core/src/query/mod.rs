@@ -17,14 +17,14 @@
 mod forward;
 
 pub(crate) mod answer;
+mod batch_answer;
 mod best;
 mod closest;
 mod collector;
-mod found;
 mod options;
 
+pub use batch_answer::BatchAnswer;
 pub use best::{Best, BestF64};
 pub use closest::Closest;
 pub use collector::Collector;
-pub use found::Found;
 pub use options::QueryOptions;

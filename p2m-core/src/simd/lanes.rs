@@ -163,7 +163,7 @@ pub fn lane_of_key(key: u32) -> usize {
 /// An instruction set, given by its types of lanes.
 pub trait InstructionSet {
     /// The type of eight f32.
-    type Eight: EightLanes;
+    type F32x8: EightLanes;
     /// The type of eight or sixteen f32, whichever the instruction set computes with faster.
     type Wide: Lanes;
     /// The type of eight f64.

@@ -29,13 +29,13 @@ mod tests {
         #[inline(always)]
         fn run<I: InstructionSet>(self) -> Self::Output {
             let (mut numbers, mut masks) = chunks::<I::Wide>(self.0, self.1);
-            let (more_numbers, more_masks) = chunks::<I::Eight>(self.0, self.1);
+            let (more_numbers, more_masks) = chunks::<I::F32x8>(self.0, self.1);
             numbers.extend(more_numbers);
             masks.extend(more_masks);
             for half in [0, 8] {
                 let mut keys = [0; 8];
-                let x = I::Eight::load(&self.0[0][half..]);
-                let x = x.max(I::Eight::splat(0.0).sub(x));
+                let x = I::F32x8::load(&self.0[0][half..]);
+                let x = x.max(I::F32x8::splat(0.0).sub(x));
                 let limit = x.smallest() * 2.0;
                 masks.push(u32::try_from(x.sorted_keys(limit, &mut keys)).expect("eight"));
                 masks.extend(keys);

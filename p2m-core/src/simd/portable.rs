@@ -7,7 +7,7 @@ use wide::{f32x8, f64x4};
 
 /// Eight f32 in a vector of the crate `wide`.
 #[derive(Clone, Copy)]
-pub struct Eight(f32x8);
+pub struct F32x8(f32x8);
 
 /// Eight f64, as the first four and the last four.
 #[derive(Clone, Copy)]
@@ -17,12 +17,12 @@ pub struct EightDoubles(f64x4, f64x4);
 pub struct Portable;
 
 impl InstructionSet for Portable {
-    type Eight = Eight;
-    type Wide = Eight;
+    type F32x8 = F32x8;
+    type Wide = F32x8;
     type Doubles = EightDoubles;
 }
 
-impl Eight {
+impl F32x8 {
     #[inline(always)]
     fn convert<A: Copy + Into<f32>>(from: &[A]) -> Self {
         let from: &[A; 8] = from[..8].try_into().expect("eight numbers");
@@ -37,7 +37,7 @@ impl Eight {
     }
 }
 
-impl Lanes for Eight {
+impl Lanes for F32x8 {
     const LEN: usize = 8;
 
     #[inline(always)]
@@ -117,7 +117,7 @@ impl Lanes for Eight {
     }
 }
 
-impl EightLanes for Eight {
+impl EightLanes for F32x8 {
     #[inline(always)]
     fn sorted_keys(self, limit: f32, keys: &mut [u32; 8]) -> usize {
         *keys = [0; 8];
@@ -207,7 +207,7 @@ impl Doubles for EightDoubles {
     }
     #[inline(always)]
     fn load_f32(from: &[f32]) -> Self {
-        let [a, b] = Eight::load(from).widen();
+        let [a, b] = F32x8::load(from).widen();
         Self(a, b)
     }
     #[inline(always)]

@@ -4,7 +4,7 @@ use crate::reference::{Object, moved_soup, scene};
 use nalgebra::Point3;
 use p2m_backends::{BACKENDS, BuildSettings};
 use p2m_core::{
-    Aabb, AnyIndex, BoxQuery, BruteForce, CertifiedQuery, Closest, ClosestPoint, Inspect, NearQuery, PrimitiveId,
+    Aabb, AnyIndex, BoxQuery, BruteForce, CertifiedQuery, Closest, ClosestPoint, IndexStats, NearQuery, PrimitiveId,
     PrimitiveSet, QueryCost, QueryOptions, Ray, RayQuery, Real, Soup,
 };
 use p2m_instances::Instances;

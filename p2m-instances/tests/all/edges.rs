@@ -2,7 +2,7 @@
 
 use nalgebra::{Isometry3, Point3, Quaternion, Translation3, UnitQuaternion, Vector3};
 use p2m_bvh::AabbTree;
-use p2m_core::{AnyIndex, BruteForce, ClosestPoint, Element, Inspect, NearQuery, PrimitiveId, Ray, RayQuery, Soup};
+use p2m_core::{AnyIndex, BruteForce, ClosestPoint, Element, IndexStats, NearQuery, PrimitiveId, Ray, RayQuery, Soup};
 use p2m_instances::{InstanceError, Instances};
 use std::sync::Arc;
 
@@ -156,7 +156,7 @@ fn a_scene_keeps_its_answers_while_all_instances_move_far_apart() {
         edit.add("square", &square, Isometry3::translation(f64::from(i), 0.0, 0.0)).expect("valid");
     }
     drop(edit);
-    assert!(scene.memory_bytes() < 400 * 300, "{:?}", Inspect::parts(&scene));
+    assert!(scene.memory_bytes() < 400 * 300, "{:?}", IndexStats::parts(&scene));
     for step in 1..30 {
         let at =
             |i: f64| Vector3::new(i, (i * 0.7).sin() * f64::from(step * step), (i * i).cos() * f64::from(step * 9));

@@ -325,7 +325,7 @@ mod tests {
         #[inline(always)]
         fn run<I: InstructionSet>(self) -> [f32; BLOCK_WIDTH] {
             let mut bounds = [0.0; BLOCK_WIDTH];
-            self.0.lower_bounds::<I::Eight>(self.1).store(&mut bounds);
+            self.0.lower_bounds::<I::F32x8>(self.1).store(&mut bounds);
             bounds
         }
     }

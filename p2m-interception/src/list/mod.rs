@@ -6,5 +6,5 @@
 
 pub(crate) mod block;
 pub(crate) mod corner_test;
+pub(crate) mod interleaved_lists;
 pub(crate) mod search;
-pub(crate) mod several;

@@ -51,7 +51,7 @@ pub(crate) fn search_list<I: InstructionSet, C: Collector>(
             record_skipped_blocks::<I, C>(std::iter::once(first).chain(rest).skip(number), query, state);
             return;
         }
-        let bounds: I::Eight = block.lower_bounds(query);
+        let bounds: I::F32x8 = block.lower_bounds(query);
         let mut keys = [0u32; BLOCK_WIDTH];
         let count = bounds.sorted_keys(state.limit(), &mut keys);
         block.prefetch_packets(tree, &keys, count);
@@ -81,7 +81,7 @@ fn record_skipped_blocks<'b, I: InstructionSet, C: Collector>(
 ) {
     let mut bounds = [0.0; BLOCK_WIDTH];
     for block in blocks {
-        block.lower_bounds::<I::Eight>(query).store(&mut bounds);
+        block.lower_bounds::<I::F32x8>(query).store(&mut bounds);
         state.record_skipped(bounds[..usize::from(block.len)].iter().copied().fold(f32::INFINITY, f32::min));
     }
 }

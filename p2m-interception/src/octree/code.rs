@@ -75,17 +75,17 @@ impl CodeWriter<'_> {
         let is_split = |cell: usize| matches!(self.refined.cells[cell], RefinedCell::Split(_));
         match self.refined.cells[cell] {
             RefinedCell::Tree => {
-                self.report.trees += 1;
+                self.report.fallback_cells += 1;
                 FALLBACK_CODE
             }
             RefinedCell::Single(packet, lane) => {
-                self.report.singles += 1;
+                self.report.single_cells += 1;
                 pack(KIND_SINGLE, packet as usize * LANES + usize::from(lane))
             }
             RefinedCell::List(task, number) => {
                 let list = &self.refined.blocks[task as usize][number as usize..];
                 let list = &list[..=usize::from(list[0].following)];
-                self.report.lists += 1;
+                self.report.list_cells += 1;
                 self.report.entries += list.iter().map(|block| usize::from(block.len)).sum::<usize>();
                 let first = self.blocks.len();
                 self.blocks.extend_from_slice(list);

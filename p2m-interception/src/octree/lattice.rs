@@ -434,19 +434,19 @@ fn keep_lanes<I: InstructionSet>(
     corners: &[usize; 8],
     lanes: u16,
 ) -> u16 {
-    let (per_unit, round_up) = (I::Doubles::splat(packet.per_unit()), I::Eight::splat(ROUND_UP));
+    let (per_unit, round_up) = (I::Doubles::splat(packet.per_unit()), I::F32x8::splat(ROUND_UP));
     let mut kept = u32::from(lanes) & packet.lanes();
     let (mut error_above, mut least) = ([0.0; 8], [0.0; 8]);
     for i in 0..8 {
         (error_above[i], least[i]) = (distances.error_above[corners[i]], distances.least[corners[i]]);
     }
-    let (error_above, least) = (I::Eight::load(&error_above), I::Eight::load(&least));
+    let (error_above, least) = (I::F32x8::load(&error_above), I::F32x8::load(&least));
     let mut limits = [[0.0; 8]; 8];
     let mut is_near_to_all = true;
     for (limits, row) in limits.iter_mut().zip(&dominators.rows[..dominators.count]) {
         (I::Doubles::load(row) * per_unit).store_f32(limits);
         // The filter exceeds the distance by `error_above` at most.
-        let limit = I::Eight::load(limits).add(error_above).mul(round_up);
+        let limit = I::F32x8::load(limits).add(error_above).mul(round_up);
         let limit = limit.mul(limit).mul(round_up);
         limit.store(limits);
         is_near_to_all &= least.at_most(limit) != 0;

@@ -30,7 +30,7 @@ use crate::octree::passes::Passes;
 use crate::octree::refinement::Refinement;
 use crate::octree::scene_tree::{SceneTree, TreeProbe};
 use crate::octree::split_rule::ExpectedQueries;
-use crate::options::{OctreeOptions, OctreeReport, OctreeSoFar};
+use crate::options::{OctreeOptions, OctreeReport, RefinementProgress};
 use crate::partition::Partition;
 use crate::progress::{BuildStage, Progress};
 use nalgebra::Point3;
@@ -80,7 +80,7 @@ impl Octree {
         options: &OctreeOptions,
         cube: &DomainCube,
         progress: &(dyn Fn(Progress) + Sync),
-        visit: &mut dyn FnMut(&OctreeSoFar) -> ControlFlow<()>,
+        visit: &mut dyn FnMut(&RefinementProgress) -> ControlFlow<()>,
     ) {
         let tree = &self.tree;
         let lowest_owners = lowest_owners(tree);
@@ -137,7 +137,7 @@ impl Octree {
         set: &S,
         options: &OctreeOptions,
         progress: &(dyn Fn(Progress) + Sync),
-        visit: &mut dyn FnMut(&OctreeSoFar) -> ControlFlow<()>,
+        visit: &mut dyn FnMut(&RefinementProgress) -> ControlFlow<()>,
     ) -> Self {
         progress(Progress { stage: BuildStage::Tree, part: 0.0 });
         let tree = PacketTree::build(set, &options.splits);
@@ -197,7 +197,7 @@ impl Partition for Octree {
     }
 
     fn list_lengths(&self) -> Vec<usize> {
-        let mut lengths = vec![1; self.report.singles];
+        let mut lengths = vec![1; self.report.single_cells];
         // The lists lie one after the other in the array.
         let mut rest = &self.blocks[..];
         while let Some(first) = rest.first() {

@@ -6,7 +6,7 @@
 //! still open gets a list. So a build can end after any cell of a pass, and it uses its budgets.
 //!
 //! A caller may end the build early in the same way: it sees after each chunk what the octree would be
-//! ([`OctreeSoFar`]).
+//! ([`RefinementProgress`]).
 //!
 //! The cells of a pass are refined in chunks, on all threads, and the chunks are kept one after the other. Which chunk
 //! is the last one to be kept depends only on what they take together, and not on the number of threads. A chunk that
@@ -17,7 +17,7 @@ use crate::octree::budget::Spent;
 use crate::octree::cell::{OpenCell, Place, RefinedCell, RefinedCells};
 use crate::octree::refinement::Refinement;
 use crate::octree::task::{CellTask, Scratch};
-use crate::options::OctreeSoFar;
+use crate::options::RefinementProgress;
 use crate::parallel_chunks::map_chunks_in_order;
 use p2m_core::engine::vector::V3;
 use std::ops::{ControlFlow, Range};
@@ -38,7 +38,7 @@ const MAX_CELLS_PER_CHUNK: usize = 64;
 const MIN_CHUNKS: usize = 256;
 
 /// A function that splits or finishes an open cell.
-type FateOf<'a> = fn(&Refinement<'a>, &mut CellTask, &OpenCell, Place) -> RefinedCell;
+type CellAction<'a> = fn(&Refinement<'a>, &mut CellTask, &OpenCell, Place) -> RefinedCell;
 
 /// An octree between two passes.
 #[derive(Default)]
@@ -92,7 +92,7 @@ impl Passes {
         refinement: &Refinement<'_>,
         low: V3,
         side: f64,
-        visit: &mut dyn FnMut(&OctreeSoFar) -> ControlFlow<()>,
+        visit: &mut dyn FnMut(&RefinementProgress) -> ControlFlow<()>,
     ) -> Option<Self> {
         let resolution = FIRST_RESOLUTION.min(refinement.last_resolution);
         let mut task = CellTask::new(resolution, Spent::default());
@@ -118,7 +118,7 @@ impl Passes {
             // Cells of about the same value stay in the order of their places, so that neighbours follow each other.
             valuable.sort_by(|a, b| a.resolution.log2().floor().total_cmp(&b.resolution.log2().floor()));
             passes.open = rest;
-            let left = passes.make(refinement, valuable, next, Refinement::split_open, &mut |passes| {
+            let left = passes.process_open_cells(refinement, valuable, next, Refinement::split_open, &mut |passes| {
                 is_stopped |= visit(&passes.so_far()).is_break();
                 is_stopped
             });
@@ -132,24 +132,24 @@ impl Passes {
             passes.resolution = refinement.last_resolution;
         }
         let open = std::mem::take(&mut passes.open);
-        passes.make(refinement, open, 0.0, Refinement::finish_open, &mut |_| false);
+        passes.process_open_cells(refinement, open, 0.0, Refinement::finish_open, &mut |_| false);
         Some(passes)
     }
 
     /// Returns what the octree would be if all open cells got their lists now.
-    fn so_far(&self) -> OctreeSoFar {
+    fn so_far(&self) -> RefinementProgress {
         let Counts { cells, lists, entries } = self.counts;
-        OctreeSoFar { cells, lists, entries, bytes: usize::try_from(self.spent.bytes).unwrap_or(0) }
+        RefinementProgress { cells, list_cells: lists, entries, bytes: usize::try_from(self.spent.bytes).unwrap_or(0) }
     }
 
-    /// Determines what becomes of open cells, the first ones first, until a budget is exceeded or `is_last` returns
-    /// `true` after a chunk. It returns the cells that are still open then.
-    fn make<'a>(
+    /// Splits or finishes open cells in order until a budget is exceeded or `is_last` returns `true` after a chunk.
+    /// Returns the cells that are still open then.
+    fn process_open_cells<'a>(
         &mut self,
         refinement: &Refinement<'a>,
         mut cells: Vec<OpenCell>,
         resolution: f64,
-        fate_of: FateOf<'a>,
+        fate_of: CellAction<'a>,
         is_last: &mut dyn FnMut(&Self) -> bool,
     ) -> Vec<OpenCell> {
         let chunk_len = (cells.len() / MIN_CHUNKS).clamp(1, MAX_CELLS_PER_CHUNK);

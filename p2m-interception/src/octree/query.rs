@@ -1,15 +1,15 @@
 //! The search of an octree: a query descends to its leaf and searches the list of the leaf.
 
 use crate::list::block::{Block, BlockQuery, MAX_LEVEL};
+use crate::list::interleaved_lists::{InterleavedLists, SearchInterleaved};
 use crate::list::search;
-use crate::list::several::{Lists, SearchSeveral};
 use crate::octree::Octree;
 use crate::octree::code::{CellCode, FALLBACK_CODE, KIND_LIST, KIND_ONE_LEVEL, KIND_SHIFT, KIND_SINGLE};
 use crate::partition::{CellQuery, are_lists_enough};
 use nalgebra::Point3;
+use p2m_bvh::engine::interleaved::InterleavedSearch;
 use p2m_bvh::engine::nearest::{EvaluateFn, SearchState, finish, finish_nearest};
 use p2m_bvh::engine::packet::LANES;
-use p2m_bvh::engine::several::Several;
 use p2m_bvh::engine::volume::Rounded;
 use p2m_core::engine::query::BestF64;
 use p2m_core::engine::real::to_f64_array;
@@ -99,12 +99,17 @@ impl CellQuery for Octree {
         self.query_with(query, near, evaluate, finish);
     }
 
-    fn search_several(&self, count: usize, several: &mut Several<'_, Aabb<f64>>, lists: &mut Lists) {
-        self.tree.isa().run(SearchSeveral { partition: self, count, several, lists });
+    fn search_several(
+        &self,
+        count: usize,
+        several: &mut InterleavedSearch<'_, Aabb<f64>>,
+        lists: &mut InterleavedLists,
+    ) {
+        self.tree.isa().run(SearchInterleaved { partition: self, count, several, lists });
     }
 }
 
-impl SimdKernel for SearchSeveral<'_, '_, Octree> {
+impl SimdKernel for SearchInterleaved<'_, '_, Octree> {
     type Output = ();
 
     #[inline(always)]

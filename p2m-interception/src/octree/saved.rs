@@ -15,9 +15,9 @@ struct Header {
     cells_per_length: f64,
     resolution: f64,
     work: u64,
-    lists: u64,
-    singles: u64,
-    trees: u64,
+    list_cells: u64,
+    single_cells: u64,
+    fallback_cells: u64,
     entries: u64,
     depth: u64,
     bytes: u64,
@@ -32,18 +32,28 @@ impl Saved for Octree {
     }
 
     fn save<'a>(&'a self, writer: &mut Writer<'a>) {
-        let OctreeReport { lists, singles, trees, entries, depth, bytes, tree_bytes, work, resolution } = self.report;
-        let [lists, singles, trees, entries, depth, bytes, tree_bytes] =
-            [lists, singles, trees, entries, depth, bytes, tree_bytes].map(|n| n as u64);
+        let OctreeReport {
+            list_cells,
+            single_cells,
+            fallback_cells,
+            entries,
+            depth,
+            bytes,
+            tree_bytes,
+            work,
+            resolution,
+        } = self.report;
+        let [list_cells, single_cells, fallback_cells, entries, depth, bytes, tree_bytes] =
+            [list_cells, single_cells, fallback_cells, entries, depth, bytes, tree_bytes].map(|n| n as u64);
         let Self { low, cells_per_length, root, .. } = *self;
         let header = Header {
             low,
             cells_per_length,
             resolution,
             work,
-            lists,
-            singles,
-            trees,
+            list_cells,
+            single_cells,
+            fallback_cells,
             entries,
             depth,
             bytes,
@@ -60,11 +70,21 @@ impl Saved for Octree {
     #[allow(clippy::cast_possible_truncation, reason = "numbers to report")]
     fn load(reader: &Reader, primitives: usize) -> Result<Self, LoadError> {
         let header: Header = reader.one(OCTREE)?;
-        let Header { lists, singles, trees, entries, depth, bytes, tree_bytes, .. } = header;
-        let [lists, singles, trees, entries, depth, bytes, tree_bytes] =
-            [lists, singles, trees, entries, depth, bytes, tree_bytes].map(|n| n as usize);
+        let Header { list_cells, single_cells, fallback_cells, entries, depth, bytes, tree_bytes, .. } = header;
+        let [list_cells, single_cells, fallback_cells, entries, depth, bytes, tree_bytes] =
+            [list_cells, single_cells, fallback_cells, entries, depth, bytes, tree_bytes].map(|n| n as usize);
         let Header { low, cells_per_length, resolution, work, root, .. } = header;
-        let report = OctreeReport { lists, singles, trees, entries, depth, bytes, tree_bytes, work, resolution };
+        let report = OctreeReport {
+            list_cells,
+            single_cells,
+            fallback_cells,
+            entries,
+            depth,
+            bytes,
+            tree_bytes,
+            work,
+            resolution,
+        };
         require(header.unused == 0, OCTREE, "a number that has no use is not 0")?;
         let (rows, blocks) = (reader.array(CODES)?, reader.array(LISTS)?);
         let tree = PacketTree::load(reader, primitives)?;

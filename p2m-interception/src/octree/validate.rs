@@ -20,7 +20,7 @@ pub(super) const LISTS: &str = "octree/lists";
 pub(super) fn check(octree: &Octree) -> Result<(), LoadError> {
     let report = &octree.report;
     require(octree.low.iter().all(|x| x.is_finite()), OCTREE, "the cube of the domain is not finite")?;
-    let cells = [report.singles, report.lists, report.trees];
+    let cells = [report.single_cells, report.list_cells, report.fallback_cells];
     let codes = octree.rows.len().saturating_mul(8).saturating_add(1);
     require(cells.iter().all(|count| *count <= codes), OCTREE, "the report has more cells than there are codes")?;
     let lane_masks = octree.tree.lane_masks();

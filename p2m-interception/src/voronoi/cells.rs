@@ -112,7 +112,7 @@ impl CellContext<'_> {
                 let record = &mut filled_sites[result.site];
                 (record.owner, record.list) = (adjacency.owners[result.site], FALLBACK);
                 match result.list {
-                    CellList::Tree => report.trees += usize::from(result.site >= BOUNDING),
+                    CellList::Tree => report.fallback_cells += usize::from(result.site >= BOUNDING),
                     CellList::Auxiliary(anchor) => {
                         (record.owner, record.list) = (anchor, AUXILIARY_SITE);
                         report.auxiliary += 1;
@@ -125,7 +125,7 @@ impl CellContext<'_> {
                         if let Some(filter) = result.filter {
                             filters.add(result.site, filter);
                         }
-                        report.lists += 1;
+                        report.list_cells += 1;
                     }
                 }
                 reporter.advance([80.0, 100.0], result.site, sites.len());

@@ -4,7 +4,7 @@ use crate::list::corner_test::{DistancesAtPoint, LaneDistances, LeastOfLanes};
 use crate::voronoi::cell_polytope::CornerPoints;
 use p2m_bvh::PacketTree;
 use p2m_bvh::engine::packet::{LANES, Locals, PLACES, Packet};
-use p2m_core::engine::side_by_side::{Eight, SIDE_BY_SIDE, triangles};
+use p2m_core::engine::side_by_side::{SIDE_BY_SIDE, TriangleLanes, triangles};
 use p2m_core::engine::simd::{Doubles, InstructionSet, SimdKernel};
 use p2m_core::engine::vector::V3;
 use p2m_core::{Best, QueryOptions};
@@ -133,7 +133,7 @@ struct EvaluateAtFarCorners<'a> {
 impl EvaluateAtFarCorners<'_> {
     /// Evaluates the primitives of some corners and lanes, which have places in `eight`.
     #[inline(always)]
-    fn evaluate<D: Doubles>(&mut self, eight: &Eight<3>, places: &[(usize, usize)]) {
+    fn evaluate<D: Doubles>(&mut self, eight: &TriangleLanes<3>, places: &[(usize, usize)]) {
         let nearest = triangles::<D>(eight, false);
         for (place, &(corner, lane)) in places.iter().enumerate() {
             match nearest.square_and_lower_bound(place) {
@@ -172,7 +172,7 @@ impl SimdKernel for EvaluateAtFarCorners<'_> {
 
     #[inline(always)]
     fn run<I: InstructionSet>(mut self) -> usize {
-        let (mut eight, mut places, mut pending, mut tests) = (Eight::default(), [(0, 0); SIDE_BY_SIDE], 0, 0);
+        let (mut eight, mut places, mut pending, mut tests) = (TriangleLanes::default(), [(0, 0); SIDE_BY_SIDE], 0, 0);
         for corner in 0..self.values.len() {
             if self.corners.upper_bounds[corner] * self.packet.per_unit() < FILTER_RANGE_UNITS {
                 continue;

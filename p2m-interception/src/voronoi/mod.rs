@@ -151,13 +151,13 @@ impl Voronoi {
         let budget = &BuildBudget::new(options.memory, options.work, tree.packets().1);
         let limits = Limits { parallel, slack, max_list_packets, max_added_sites, budget };
         let Some(mut sites) = Sites::new(tree, &bounds, limits, reporter) else {
-            self.report.trees = tree.leaves.vertices.len();
+            self.report.fallback_cells = tree.leaves.vertices.len();
             return;
         };
         // A query that finds its cell without a list costs more than a few lists save.
         let fallback_count = sites.count_fallback_cells();
         if fallback_count * FALLBACK_CELLS_DIVISOR > sites.delaunay.sites().len() {
-            self.report.trees = fallback_count;
+            self.report.fallback_cells = fallback_count;
             return;
         }
         let corners_of_packets = sites.corners.take_corners_of_packets(tree.leaves.packets.len());
@@ -179,7 +179,7 @@ impl Voronoi {
         let Some(VoronoiLists { neighbours, locator, mut blocks, filters }) =
             cells.build_lists(corners_of_packets, build_locator, &mut report, reporter)
         else {
-            self.report.trees = sites.delaunay.sites().len();
+            self.report.fallback_cells = sites.delaunay.sites().len();
             return;
         };
         self.report = report;

@@ -281,11 +281,11 @@ impl WalkStep {
         query: &V3,
         query_offset: &QueryOffset,
     ) {
-        let NeighbourBounds { gains, margins, ties, edges }: NeighbourBounds<I::Eight> =
+        let NeighbourBounds { gains, margins, ties, edges }: NeighbourBounds<I::F32x8> =
             table.blocks[block].bound_query(query_offset);
         self.ties |= ties | edges;
         // The open neighbours are those that are not certainly farther.
-        let mut open = I::Eight::splat(0.0).sub(margins).at_most(gains);
+        let mut open = I::F32x8::splat(0.0).sub(margins).at_most(gains);
         if open == 0 {
             return;
         }

@@ -1,14 +1,14 @@
 //! The structure of the paper: cells of vertices with a KD-tree, long lists and R-trees.
 
-use crate::list::several::Lists;
+use crate::list::interleaved_lists::InterleavedLists;
 use crate::options::{P2mOptions, P2mReport};
 use crate::partition::{CellQuery, Partition};
 use crate::progress::Progress;
 use crate::voronoi::Voronoi;
 use nalgebra::Point3;
 use p2m_bvh::PacketTree;
+use p2m_bvh::engine::interleaved::InterleavedSearch;
 use p2m_bvh::engine::nearest::{EvaluateFn, SearchState};
-use p2m_bvh::engine::several::Several;
 use p2m_core::engine::query::BestF64;
 use p2m_core::engine::vector::V3;
 use p2m_core::{Aabb, Collector, Isa, Near, PrimitiveId, PrimitiveSet, Real};
@@ -85,7 +85,12 @@ impl CellQuery for PaperVoronoi {
         self.0.query_near(query, near, evaluate);
     }
 
-    fn search_several(&self, count: usize, several: &mut Several<'_, Aabb<f64>>, lists: &mut Lists) {
+    fn search_several(
+        &self,
+        count: usize,
+        several: &mut InterleavedSearch<'_, Aabb<f64>>,
+        lists: &mut InterleavedLists,
+    ) {
         self.0.search_several(count, several, lists);
     }
 }

@@ -5,8 +5,8 @@
 //! next step before the other queries take theirs. So most of the latency of memory is hidden.
 
 use crate::list::block::{Block, BlockQuery};
+use crate::list::interleaved_lists::{InterleavedLists, SearchInterleaved};
 use crate::list::search;
-use crate::list::several::{Lists, SearchSeveral};
 use crate::partition::{CellQuery, are_lists_enough};
 use crate::voronoi::Voronoi;
 use crate::voronoi::list_filter::{ListFilter, ListFilters};
@@ -14,9 +14,9 @@ use crate::voronoi::neighbours::{LocatedSite, NeighbourTable};
 use crate::voronoi::site::{AUXILIARY_SITE, Site};
 use nalgebra::Point3;
 use p2m_bvh::PacketTree;
+use p2m_bvh::engine::interleaved::{InterleavedSearch, SEARCHES};
 use p2m_bvh::engine::nearest::{EvaluateFn, Search, SearchState, finish, finish_nearest};
 use p2m_bvh::engine::packet::LANES;
-use p2m_bvh::engine::several::{SEARCHES, Several};
 use p2m_bvh::engine::volume::Rounded;
 use p2m_core::engine::adaptive::RANGE;
 use p2m_core::engine::query::BestF64;
@@ -61,8 +61,13 @@ impl CellQuery for Voronoi {
         self.query_with(query, near, evaluate, finish);
     }
 
-    fn search_several(&self, count: usize, several: &mut Several<'_, Aabb<f64>>, lists: &mut Lists) {
-        self.tree.isa().run(SearchSeveral { partition: self, count, several, lists });
+    fn search_several(
+        &self,
+        count: usize,
+        several: &mut InterleavedSearch<'_, Aabb<f64>>,
+        lists: &mut InterleavedLists,
+    ) {
+        self.tree.isa().run(SearchInterleaved { partition: self, count, several, lists });
     }
 }
 
@@ -234,7 +239,7 @@ fn block_query(tree: &PacketTree, query: &V3) -> BlockQuery {
     BlockQuery { rounded: Rounded::of(local), local, cells: [0.0; 3] }
 }
 
-impl SimdKernel for SearchSeveral<'_, '_, Voronoi> {
+impl SimdKernel for SearchInterleaved<'_, '_, Voronoi> {
     type Output = ();
 
     #[inline(always)]
@@ -303,8 +308,8 @@ impl Voronoi {
         search: usize,
         located: &LocatedSite,
         position: &V3,
-        several: &mut Several<'_, Aabb<f64>>,
-        lists: &mut Lists,
+        several: &mut InterleavedSearch<'_, Aabb<f64>>,
+        lists: &mut InterleavedLists,
     ) {
         let site = &self.neighbours.sites[located.site];
         if let Some((packet, lane)) = Self::known_answer(located, site, position).filter(|_| site.has_list()) {

@@ -19,7 +19,7 @@ impl<const K: usize> SimdKernel for LowerBounds<'_, K> {
     #[inline(always)]
     fn run<I: InstructionSet>(self) -> [f32; WIDTH] {
         let mut bounds = [0.0; WIDTH];
-        self.0.lower_bounds::<I::Eight>(self.1, self.2).store(&mut bounds);
+        self.0.lower_bounds::<I::F32x8>(self.1, self.2).store(&mut bounds);
         bounds
     }
 }

@@ -20,7 +20,7 @@ impl<N: WideNode> SimdKernel for Entries<'_, N> {
     #[inline(always)]
     fn run<I: InstructionSet>(self) -> [f32; WIDTH] {
         let mut entries = [0.0; WIDTH];
-        self.0.entries::<I::Eight>(self.1).store(&mut entries);
+        self.0.entries::<I::F32x8>(self.1).store(&mut entries);
         entries
     }
 }

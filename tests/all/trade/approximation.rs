@@ -5,7 +5,7 @@
 #![allow(clippy::float_cmp, reason = "bitwise equality is what is tested")]
 
 use nalgebra::Point3;
-use p2m::core::{Best, Inspect, StatsCollector};
+use p2m::core::{Best, IndexStats, StatsCollector};
 use p2m::scene::generate::Kind;
 use p2m::{
     AabbTree, BruteForce, CertifiedQuery, Closest, ClosestPoint, KdopTree, OctreeIndex, P2mIndex, Primitive,
@@ -22,8 +22,8 @@ use std::sync::Mutex;
 const EXPONENTS: [i32; 3] = [0, -350, 450];
 
 /// An index with counters.
-trait Index<T: Real>: ClosestPoint<T> + Inspect<T> + Sync {}
-impl<T: Real, I: ClosestPoint<T> + Inspect<T> + Sync> Index<T> for I {}
+trait Index<T: Real>: ClosestPoint<T> + IndexStats<T> + Sync {}
+impl<T: Real, I: ClosestPoint<T> + IndexStats<T> + Sync> Index<T> for I {}
 
 struct Case<'a, T: Real> {
     soup: &'a Soup<T>,

@@ -9,7 +9,7 @@ use super::bytes::Bytes;
 use super::memory;
 use cpu_time::ThreadTime;
 use nalgebra::Point3;
-use p2m::core::Inspect;
+use p2m::core::IndexStats;
 use p2m::scene::{Scene, load_scene, read_p2m, save_scene, write_p2m};
 use p2m::storage::{LoadError, Reader, SavedFile, Writer};
 use p2m::{
@@ -37,9 +37,9 @@ pub enum Reached {
 }
 
 /// An index that answers all kinds of queries that every index has.
-trait LoadedIndex: ClosestPoint<f64> + NearQuery<f64> + CertifiedQuery<f64> + Inspect<f64> {}
+trait LoadedIndex: ClosestPoint<f64> + NearQuery<f64> + CertifiedQuery<f64> + IndexStats<f64> {}
 
-impl<I: ClosestPoint<f64> + NearQuery<f64> + CertifiedQuery<f64> + Inspect<f64>> LoadedIndex for I {}
+impl<I: ClosestPoint<f64> + NearQuery<f64> + CertifiedQuery<f64> + IndexStats<f64>> LoadedIndex for I {}
 
 type LoadResult<'a> = Result<Box<dyn LoadedIndex + 'a>, LoadError>;
 

@@ -9,7 +9,7 @@ use p2m_backends::{
 };
 use p2m_core::Soup;
 use p2m_core::storage::Reader;
-use p2m_interception::{BuildStage, OctreeSoFar, StageTimes};
+use p2m_interception::{BuildStage, RefinementProgress, StageTimes};
 use rayon::ThreadPool;
 use std::ops::ControlFlow;
 use std::sync::{Arc, OnceLock};
@@ -130,7 +130,7 @@ impl SceneSource<'_> {
             };
             let shows_progress = streams.shows_progress();
             let work = OnceLock::new();
-            let visit = |so_far: &OctreeSoFar| {
+            let visit = |so_far: &RefinementProgress| {
                 // Users who see no progress do not see either that the refinement can end early.
                 if shows_progress {
                     work.get_or_init(StoppableWork::start);
@@ -149,7 +149,7 @@ impl SceneSource<'_> {
 }
 
 /// Returns what a progress bar says about an octree whose refinement goes on.
-fn octree_note(so_far: &OctreeSoFar) -> String {
+fn octree_note(so_far: &RefinementProgress) -> String {
     let (cells, megabytes) = (so_far.cells, so_far.bytes as f64 / 1e6);
     let length = so_far.mean_list_length();
     if StoppableWork::is_stopped() {

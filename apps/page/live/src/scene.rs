@@ -2,7 +2,7 @@
 
 use crate::far::FarScene;
 use p2m::backends::{BACKENDS, BackendEntry, BuildSettings, IndexVisitor, SearchStructure};
-use p2m::core::Inspect;
+use p2m::core::IndexStats;
 use p2m::core::{Best, StatsCollector};
 use p2m::nalgebra::Point3;
 use p2m::{Aabb, AnyIndex, BuildError, Closest, Element, PrimitiveSet, QueryOptions, Soup};
@@ -34,7 +34,7 @@ impl IndexVisitor for ToPageIndex {
     }
 }
 
-impl<I: Inspect<f64>> PageIndex for I {
+impl<I: IndexStats<f64>> PageIndex for I {
     fn answer(&self, query: &Point3<f64>) -> Option<Answer> {
         answer(self, query)
     }
@@ -44,7 +44,7 @@ impl<I: Inspect<f64>> PageIndex for I {
 }
 
 /// Answers a query and counts its work. One search does both, because a second one would be compiled for each index.
-pub(crate) fn answer(index: &impl Inspect<f64>, query: &Point3<f64>) -> Option<Answer> {
+pub(crate) fn answer(index: &impl IndexStats<f64>, query: &Point3<f64>) -> Option<Answer> {
     if !query.iter().all(|x| x.is_finite()) {
         return None;
     }

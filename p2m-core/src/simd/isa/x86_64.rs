@@ -52,11 +52,11 @@ pub(super) fn prefetch(at: *const u8) {
 
 /// Eight lanes in a 256-bit register.
 #[derive(Clone, Copy)]
-pub(super) struct Eight(__m256);
+pub(super) struct F32x8(__m256);
 
 /// Sixteen lanes in a 512-bit register.
 #[derive(Clone, Copy)]
-pub(super) struct Sixteen(__m512);
+pub(super) struct F32x16(__m512);
 
 /// Eight f64 in two 256-bit registers.
 #[derive(Clone, Copy)]
@@ -72,14 +72,14 @@ pub(super) struct Avx2;
 pub(super) struct Avx512;
 
 impl InstructionSet for Avx2 {
-    type Eight = Eight;
-    type Wide = Eight;
+    type F32x8 = F32x8;
+    type Wide = F32x8;
     type Doubles = Pair;
 }
 
 impl InstructionSet for Avx512 {
-    type Eight = Eight;
-    type Wide = Sixteen;
+    type F32x8 = F32x8;
+    type Wide = F32x16;
     type Doubles = EightDoubles;
 }
 
@@ -96,7 +96,7 @@ macro_rules! intrinsics {
     };
 }
 
-impl Lanes for Eight {
+impl Lanes for F32x8 {
     const LEN: usize = 8;
 
     #[inline(always)]
@@ -158,7 +158,7 @@ impl Lanes for Eight {
     }
 }
 
-impl EightLanes for Eight {
+impl EightLanes for F32x8 {
     #[inline(always)]
     fn sorted_keys(self, limit: f32, keys: &mut [u32; 8]) -> usize {
         // SAFETY: the processor has the instructions, see the head of the file; the array has 32 bytes to write.
@@ -192,7 +192,7 @@ unsafe fn exchange<const SMALLER: i32>(x: __m256i, partner: __m256i) -> __m256i 
     unsafe { _mm256_blend_epi32::<SMALLER>(_mm256_max_epi32(x, partner), _mm256_min_epi32(x, partner)) }
 }
 
-impl Lanes for Sixteen {
+impl Lanes for F32x16 {
     const LEN: usize = 16;
 
     #[inline(always)]

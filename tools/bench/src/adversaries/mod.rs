@@ -16,7 +16,7 @@ use nalgebra::Point3;
 use p2m_bvh::AabbTree;
 use p2m_bvh::{PacketTree, Volume};
 use p2m_cli::harness::{Provenance, Table};
-use p2m_core::{Aabb, BruteForce, ClosestPoint, Inspect, PrimitiveSet, QueryCost, Soup};
+use p2m_core::{Aabb, BruteForce, ClosestPoint, IndexStats, PrimitiveSet, QueryCost, Soup};
 use p2m_interception::{BuildStage, Progress};
 use p2m_interception::{OctreeIndex, P2mIndex};
 use p2m_kdop::KdopTree;
@@ -79,7 +79,7 @@ struct Trial<'a> {
 
 impl Trial<'_> {
     /// Adds the row of an index.
-    fn row<I: ClosestPoint<f64> + Inspect<f64>>(&mut self, budget: &Budget, index: &I, taken: &BuildCost) {
+    fn row<I: ClosestPoint<f64> + IndexStats<f64>>(&mut self, budget: &Budget, index: &I, taken: &BuildCost) {
         let count = self.soup.len();
         let allowed = count.max(MIN_PRIMITIVES_FOR_BUDGET);
         let answers = self.queries.iter().map(|q| index.closest_point(q)).map(key);
@@ -182,7 +182,7 @@ fn add_rows(adversary: &'static Adversary, count: usize, table: &mut Table) -> R
         measure_since(BuildStage::Tree, |progress| OctreeIndex::build_with_progress(soup, &options, progress));
     let index = index?;
     let report = index.report();
-    let fallback = match report.lists + report.singles {
+    let fallback = match report.list_cells + report.single_cells {
         0 => "the tree".to_owned(),
         _ if report.resolution < options.resolution => format!("resolution {:.3}", report.resolution),
         _ => "no".to_owned(),
@@ -194,10 +194,13 @@ fn add_rows(adversary: &'static Adversary, count: usize, table: &mut Table) -> R
         measure_since(BuildStage::Delaunay, |progress| P2mIndex::build_with_progress(soup, &options, progress));
     let index = index?;
     let report = index.report();
-    let fallback = match report.lists {
+    let fallback = match report.list_cells {
         0 => "the tree".to_owned(),
-        _ if report.trees > 0 => {
-            format!("{:.1} % of cells", 100.0 * report.trees as f64 / (report.lists + report.trees) as f64)
+        _ if report.fallback_cells > 0 => {
+            format!(
+                "{:.1} % of cells",
+                100.0 * report.fallback_cells as f64 / (report.list_cells + report.fallback_cells) as f64
+            )
         }
         _ => "no".to_owned(),
     };

@@ -210,9 +210,9 @@ fn check(row: usize, name: &str, soup: Soup<f64>, queries: Vec<Point3<f64>>, fin
     let has_cells = [
         OctreeIndex::new(&*scene.double).is_ok_and(|index| {
             let report = index.report();
-            report.lists + report.singles > 0
+            report.list_cells + report.single_cells > 0
         }),
-        P2mIndex::new(&*scene.double).is_ok_and(|index| index.report().lists > 0),
+        P2mIndex::new(&*scene.double).is_ok_and(|index| index.report().list_cells > 0),
     ];
     let cells = &mut findings.cells[row];
     *cells = [cells[0] + 1, cells[1] + u64::from(has_cells[0]), cells[2] + u64::from(has_cells[1])];

@@ -117,7 +117,7 @@ impl Figures<'_> {
             "packets looked at for a list",
             |s| {
                 let report = &s.inside.report;
-                Some(report.candidates as f64 / (report.lists + report.trees).max(1) as f64)
+                Some(report.candidates as f64 / (report.list_cells + report.fallback_cells).max(1) as f64)
             },
             |s| Some(s.inside.report.max_candidates as f64),
         )

@@ -131,7 +131,7 @@ impl IndexInternals {
             lists: ListStats::from_index(&index),
             visits: QueryCost::measure(&index, queries),
             stages,
-            parts: p2m_core::Inspect::parts(&index),
+            parts: p2m_core::IndexStats::parts(&index),
             breakdown: Breakdown::of(&index, queries, rounds),
         })
     }

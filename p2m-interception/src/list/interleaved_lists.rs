@@ -2,7 +2,7 @@
 
 use crate::list::block::{BLOCK_WIDTH, Block, BlockQuery};
 use p2m_bvh::PacketTree;
-use p2m_bvh::engine::several::{PacketVisit, SEARCHES, Several};
+use p2m_bvh::engine::interleaved::{InterleavedSearch, PacketVisit, SEARCHES};
 use p2m_core::Aabb;
 use p2m_core::engine::simd::{EightLanes, InstructionSet, lane_of_key, value_of_key};
 
@@ -22,21 +22,21 @@ struct Cursor {
 }
 
 /// The search of several queries, which take turns, in a partition. Each partition implements the SIMD kernel.
-pub(crate) struct SearchSeveral<'a, 'b, P> {
+pub(crate) struct SearchInterleaved<'a, 'b, P> {
     pub(crate) partition: &'a P,
     /// The number of searches of `several` that have begun.
     pub(crate) count: usize,
-    pub(crate) several: &'a mut Several<'b, Aabb<f64>>,
-    pub(crate) lists: &'a mut Lists,
+    pub(crate) several: &'a mut InterleavedSearch<'b, Aabb<f64>>,
+    pub(crate) lists: &'a mut InterleavedLists,
 }
 
 /// The lists that several queries search. It is large, so a batch makes one and uses it for all of its queries.
-pub(crate) struct Lists {
+pub(crate) struct InterleavedLists {
     cursors: [Cursor; SEARCHES],
     len: usize,
 }
 
-impl Lists {
+impl InterleavedLists {
     /// Creates the state without lists.
     pub(crate) fn new() -> Self {
         let none = Cursor {
@@ -73,7 +73,7 @@ impl Lists {
         &mut self,
         tree: &PacketTree,
         blocks: &[Block],
-        several: &mut Several<'_, Aabb<f64>>,
+        several: &mut InterleavedSearch<'_, Aabb<f64>>,
     ) {
         // The first `count` entries of `active` are the cursors of lists that were not searched to their ends, and the
         // first `opening` entries of `opened` are those whose next block has to be bounded.
@@ -127,9 +127,9 @@ impl Lists {
         tree: &PacketTree,
         block: &Block,
         cursor: &mut Cursor,
-        several: &Several<'_, Aabb<f64>>,
+        several: &InterleavedSearch<'_, Aabb<f64>>,
     ) {
-        let bounds: I::Eight = block.lower_bounds_of_used(&cursor.query);
+        let bounds: I::F32x8 = block.lower_bounds_of_used(&cursor.query);
         cursor.left = bounds.sorted_keys(several.limit(cursor.search as usize), &mut cursor.keys) as u32;
         let nearest = cursor.keys[cursor.left.wrapping_sub(1) as usize & 7];
         tree.leaves.prefetch(block.packets[lane_of_key(nearest)] as usize);

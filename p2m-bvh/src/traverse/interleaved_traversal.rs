@@ -4,7 +4,7 @@
 //! bounded, and then all packets are filtered, so the memory has arrived and the loops have no branch that depends on
 //! the kind of a child.
 
-use crate::traverse::several::{PacketVisit, SEARCHES, Several};
+use crate::traverse::interleaved_search::{InterleavedSearch, PacketVisit, SEARCHES};
 use crate::traverse::{SHORT_STACK_DEPTH, SHORT_STACK_LEN};
 use crate::tree::PacketTree;
 use crate::tree::node_ref::{NodeRef, WIDTH};
@@ -24,13 +24,13 @@ struct Stack {
 }
 
 /// The traversals of several searches. They are large, so a batch makes them once for all of its queries.
-pub struct Walkers<V: VolumeNodes> {
+pub struct InterleavedTraversal<V: VolumeNodes> {
     stacks: [Stack; SEARCHES],
     /// The query point of each search in the frame of the tree.
     queries: Vec<Option<<V::Node as WideNode>::Query>>,
 }
 
-impl<V: VolumeNodes> Walkers<V> {
+impl<V: VolumeNodes> InterleavedTraversal<V> {
     /// Creates traversals that have not begun, or returns `None` for a tree that is too deep for them.
     pub fn new(tree: &PacketTree<V>) -> Option<Self> {
         let stack = Stack { keys: [0; SHORT_STACK_LEN], parents: [0; SHORT_STACK_LEN], len: 0, next: NodeRef::NONE };
@@ -40,16 +40,16 @@ impl<V: VolumeNodes> Walkers<V> {
 
     /// Searches the tree for the queries of the first `count` searches of `several`.
     #[inline(always)]
-    pub fn search(&mut self, tree: &PacketTree<V>, several: &mut Several<'_, V>, count: usize) {
+    pub fn search(&mut self, tree: &PacketTree<V>, several: &mut InterleavedSearch<'_, V>, count: usize) {
         tree.isa.run(SearchInTurns { walkers: self, tree, several, count });
     }
 }
 
 /// The traversals of several searches as a kernel that is compiled for each instruction set.
 struct SearchInTurns<'a, 'b, V: VolumeNodes> {
-    walkers: &'a mut Walkers<V>,
+    walkers: &'a mut InterleavedTraversal<V>,
     tree: &'a PacketTree<V>,
-    several: &'a mut Several<'b, V>,
+    several: &'a mut InterleavedSearch<'b, V>,
     count: usize,
 }
 
@@ -60,7 +60,7 @@ impl<V: VolumeNodes> SimdKernel for SearchInTurns<'_, '_, V> {
     #[allow(clippy::cast_possible_truncation, reason = "at most sixteen searches")]
     fn run<I: InstructionSet>(self) {
         let Self { walkers, tree, several, count } = self;
-        let Walkers { stacks, queries } = walkers;
+        let InterleavedTraversal { stacks, queries } = walkers;
         queries.clear();
         // The first `active_count` of these are the searches that go on.
         let mut active = [0u8; SEARCHES];
@@ -90,7 +90,7 @@ impl<V: VolumeNodes> SimdKernel for SearchInTurns<'_, '_, V> {
                 let stack = &mut stacks[usize::from(search) % SEARCHES];
                 let Some(query) = &queries[usize::from(search)] else { continue };
                 let node = &tree.nodes[stack.next.number()];
-                let bounds: I::Eight = node.lower_bounds(&tree.shared, query);
+                let bounds: I::F32x8 = node.lower_bounds(&tree.shared, query);
                 let top = stack.len;
                 let keys: &mut [u32; WIDTH] = (&mut stack.keys[top..top + WIDTH]).try_into().expect("eight keys");
                 stack.len += bounds.sorted_keys(several.limit(usize::from(search)), keys);

@@ -6,12 +6,12 @@ use std::marker::PhantomData;
 
 /// The answer to one query of a batch. It converts to [`Closest`], or to those parts of it that are asked for.
 #[derive(Clone, Copy, Debug)]
-pub struct Found<'a, T: Real> {
+pub struct BatchAnswer<'a, T: Real> {
     minimum: &'a BestF64,
     scalar: PhantomData<T>,
 }
 
-impl<'a, T: Real> Found<'a, T> {
+impl<'a, T: Real> BatchAnswer<'a, T> {
     /// Wraps the running minimum of a search that has ended.
     #[inline(always)]
     #[doc(hidden)]
@@ -37,7 +37,7 @@ impl<'a, T: Real> Found<'a, T> {
 impl<T: Real> Best<T> {
     /// Returns the answer so far, which converts to the parts that are asked for.
     #[must_use]
-    pub fn found(&self) -> Found<'_, T> {
-        Found::new(self.minimum_ref())
+    pub fn found(&self) -> BatchAnswer<'_, T> {
+        BatchAnswer::new(self.minimum_ref())
     }
 }

@@ -10,7 +10,7 @@ use crate::tree::PacketTree;
 use crate::tree::frame::Frame;
 use crate::tree::wide_node::VolumeNodes;
 use p2m_core::engine::query::BestF64;
-use p2m_core::engine::side_by_side::{Eight, EightNearest, SIDE_BY_SIDE, segments, triangles};
+use p2m_core::engine::side_by_side::{LaneResults, SIDE_BY_SIDE, TriangleLanes, segments, triangles};
 use p2m_core::engine::simd::{Doubles, Float, InstructionSet, Isa, Lanes, SimdKernel};
 use p2m_core::engine::vector::V3;
 use p2m_core::{Collector, PrimitiveId};
@@ -139,7 +139,7 @@ impl<V: VolumeNodes> Searches<'_, V> {
     /// Offers results to the collectors of their searches. The kernel for single primitives computes those that are
     /// not certain.
     #[inline(always)]
-    fn take(&mut self, candidates: &[Candidate], found: &EightNearest) {
+    fn take(&mut self, candidates: &[Candidate], found: &LaneResults) {
         for (i, candidate) in candidates.iter().enumerate() {
             if found.was_skipped(i) {
                 continue;
@@ -164,7 +164,7 @@ impl<V: VolumeNodes> Searches<'_, V> {
 }
 
 /// The state of several searches. It is large, so a batch makes one and uses it for all of its queries.
-pub struct Several<'a, V: VolumeNodes> {
+pub struct InterleavedSearch<'a, V: VolumeNodes> {
     searches: Searches<'a, V>,
     candidates: [Candidate; CANDIDATE_ROOM],
     candidate_count: usize,
@@ -178,8 +178,8 @@ pub struct Several<'a, V: VolumeNodes> {
     rows: LimitRows,
     /// The squared distances that the filters found, in the frames of their packets.
     squares: [[f32; LANES]; SEARCHES],
-    triangles: Waiting<3>,
-    segments: Waiting<2>,
+    triangles: LaneQueue<3>,
+    segments: LaneQueue<2>,
 }
 
 /// A function that offers a primitive to the collector of the search with this number, unless its key exceeds a square.
@@ -189,7 +189,7 @@ pub(crate) type EvaluateSearchFn<'a> = &'a dyn Fn(usize, &mut BestF64, Primitive
 /// A factor for bounds that are computed in f64 with a few roundings of their own.
 const ROUND_UP_F64: f64 = 1.0 + 4.0 * f64::EPSILON;
 
-impl<'a, V: VolumeNodes> Several<'a, V> {
+impl<'a, V: VolumeNodes> InterleavedSearch<'a, V> {
     /// Creates the state of searches that have not begun. `template` is a collector without a candidate.
     pub fn new(tree: &'a PacketTree<V>, template: &BestF64, evaluate: EvaluateSearchFn<'a>) -> Self {
         Self {
@@ -206,8 +206,8 @@ impl<'a, V: VolumeNodes> Several<'a, V> {
             locals: Locals::default(),
             rows: LimitRows::new(),
             squares: [[0.0; LANES]; SEARCHES],
-            triangles: Waiting::default(),
-            segments: Waiting::default(),
+            triangles: LaneQueue::default(),
+            segments: LaneQueue::default(),
         }
     }
 
@@ -471,7 +471,7 @@ impl<'a, V: VolumeNodes> Several<'a, V> {
 
 /// A SIMD kernel that filters packets.
 struct Filter<'a, 'b, V: VolumeNodes> {
-    several: &'a mut Several<'b, V>,
+    several: &'a mut InterleavedSearch<'b, V>,
     visits: &'a [PacketVisit],
 }
 
@@ -485,19 +485,19 @@ impl<V: VolumeNodes> SimdKernel for Filter<'_, '_, V> {
 }
 
 /// Candidates of one kind that wait for evaluation: those in the first `len` lanes.
-struct Waiting<const N: usize> {
-    eight: Eight<N>,
+struct LaneQueue<const N: usize> {
+    eight: TriangleLanes<N>,
     candidates: [Candidate; SIDE_BY_SIDE],
     len: usize,
 }
 
-impl<const N: usize> Default for Waiting<N> {
+impl<const N: usize> Default for LaneQueue<N> {
     fn default() -> Self {
-        Self { eight: Eight::default(), candidates: [Candidate::default(); SIDE_BY_SIDE], len: 0 }
+        Self { eight: TriangleLanes::default(), candidates: [Candidate::default(); SIDE_BY_SIDE], len: 0 }
     }
 }
 
-impl<const N: usize> Waiting<N> {
+impl<const N: usize> LaneQueue<N> {
     /// Adds a candidate, and returns whether all lanes are full.
     #[inline(always)]
     fn push(&mut self, query: &V3, vertices: [&V3; N], candidate: Candidate) -> bool {
@@ -509,25 +509,25 @@ impl<const N: usize> Waiting<N> {
 }
 
 /// Evaluates eight triangles with an instruction set.
-struct EvaluateTriangles<'a>(&'a Eight<3>, bool);
+struct EvaluateTriangles<'a>(&'a TriangleLanes<3>, bool);
 
 impl SimdKernel for EvaluateTriangles<'_> {
-    type Output = EightNearest;
+    type Output = LaneResults;
 
     #[inline(always)]
-    fn run<I: InstructionSet>(self) -> EightNearest {
+    fn run<I: InstructionSet>(self) -> LaneResults {
         triangles::<I::Doubles>(self.0, self.1)
     }
 }
 
 /// Evaluates eight segments with an instruction set.
-struct EvaluateSegments<'a>(&'a Eight<2>);
+struct EvaluateSegments<'a>(&'a TriangleLanes<2>);
 
 impl SimdKernel for EvaluateSegments<'_> {
-    type Output = EightNearest;
+    type Output = LaneResults;
 
     #[inline(always)]
-    fn run<I: InstructionSet>(self) -> EightNearest {
+    fn run<I: InstructionSet>(self) -> LaneResults {
         segments::<I::Doubles>(self.0)
     }
 }
