@@ -1,98 +1,6 @@
 //! The file formats of scenes, points and answers, with their names and extensions.
 
-use crate::{FileLocation, ReadError, Reason};
-use std::path::Path;
-
-/// The error for a name that belongs to no format.
-///
-/// ```
-/// let error = "step".parse::<p2m_mixed::Format>().unwrap_err();
-/// assert_eq!(error.to_string(), "unknown format 'step', expected one of obj, ply, stl, off, p2m");
-/// ```
-#[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
-#[error("unknown format '{name}', expected one of {}", supported.join(", "))]
-#[non_exhaustive]
-pub struct UnknownFormat {
-    /// The unknown name.
-    pub name: String,
-    /// The names of the formats that are supported here.
-    pub supported: &'static [&'static str],
-}
-
-/// Defines an enum of formats with their names, which are also the extensions of files.
-#[doc(hidden)]
-#[macro_export]
-macro_rules! formats {
-    (
-        $(#[$doc:meta])* $format:ident {
-            $($(#[$variant_doc:meta])* $variant:ident = $name:literal $(| $other:literal)*,)*
-        }
-    ) => {
-        $(#[$doc])*
-        #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
-        #[non_exhaustive]
-        pub enum $format {
-            $($(#[$variant_doc])* $variant,)*
-        }
-
-        impl $format {
-            /// The names of all formats, which are also the extensions of files.
-            pub const NAMES: &'static [&'static str] = &[$($name, $($other,)*)*];
-
-            /// Returns the name of the format, which is the usual extension of its files.
-            #[must_use]
-            pub fn name(self) -> &'static str {
-                match self {
-                    $(Self::$variant => $name,)*
-                }
-            }
-
-            fn named(name: &str) -> Option<Self> {
-                match name.to_ascii_lowercase().as_str() {
-                    $($name $(| $other)* => Some(Self::$variant),)*
-                    _ => None,
-                }
-            }
-
-            /// Returns the format that the extension of a file stands for, in any case.
-            ///
-            /// # Errors
-            /// `Reason::UnknownExtension` if the extension belongs to no format.
-            pub fn from_path(path: &std::path::Path) -> Result<Self, $crate::ReadError> {
-                let extension = path.extension().map(|e| e.to_string_lossy().into_owned()).unwrap_or_default();
-                let known = Self::named(&extension);
-                known.ok_or_else(|| $crate::engine::unknown_extension(path, extension, Self::NAMES))
-            }
-        }
-
-        impl std::fmt::Display for $format {
-            fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-                f.pad(self.name())
-            }
-        }
-
-        impl std::str::FromStr for $format {
-            type Err = $crate::UnknownFormat;
-
-            /// Returns the format with this name, in any case.
-            fn from_str(name: &str) -> Result<Self, $crate::UnknownFormat> {
-                Self::named(name).ok_or_else(|| $crate::engine::unknown_format(name, Self::NAMES))
-            }
-        }
-    };
-}
-
-/// Returns the error for a file whose extension belongs to no format.
-pub fn unknown_extension(path: &Path, extension: String, supported: &'static [&'static str]) -> ReadError {
-    let reason = Reason::UnknownExtension { extension, supported };
-    ReadError::new(&path.display().to_string(), FileLocation::File, reason)
-}
-
-/// Returns the error for a name that belongs to no format.
-#[must_use]
-pub fn unknown_format(name: &str, supported: &'static [&'static str]) -> UnknownFormat {
-    UnknownFormat { name: name.to_owned(), supported }
-}
+use p2m_core::formats;
 
 formats! {
     /// The file formats of scenes, all of which can be read and written.
@@ -102,6 +10,8 @@ formats! {
     ///
     /// assert_eq!("STL".parse(), Ok(Format::Stl));
     /// assert_eq!(Format::from_path("a/b.off".as_ref()).unwrap().to_string(), "off");
+    /// let error = "step".parse::<Format>().unwrap_err();
+    /// assert_eq!(error.to_string(), "unknown format 'step', expected one of obj, ply, stl, off, p2m");
     /// ```
     Format {
         /// Wavefront OBJ is a text format, see [`read_obj`](crate::read_obj) and [`write_obj`](crate::write_obj).
@@ -149,6 +59,7 @@ formats! {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use std::path::Path;
 
     #[test]
     fn names_and_extensions_in_any_case() {

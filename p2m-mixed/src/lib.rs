@@ -56,8 +56,6 @@ pub mod statistics;
 mod stl;
 mod text;
 mod tokenizer;
-mod vector;
-mod weld;
 mod write;
 
 pub use answers::{
@@ -65,9 +63,10 @@ pub use answers::{
 };
 pub use camera::Camera;
 pub use error::{FileLocation, HeaderProblem, ReadError, Reason};
-pub use format::{AnswerFormat, Format, PointFormat, UnknownFormat};
+pub use format::{AnswerFormat, Format, PointFormat};
 pub use obj::read_obj;
 pub use off::read_off;
+pub use p2m_core::{UnknownExtension, UnknownFormat};
 pub use pieces::{PieceOptions, PieceSummary, read_scene_in_pieces};
 pub use ply::read_ply;
 pub use points::{read_points, read_points_from, read_rays, read_rays_from};
@@ -85,12 +84,5 @@ pub use write::{
 #[doc(hidden)]
 pub mod engine {
     pub use crate::answers::npy_header;
-    pub use crate::format::{unknown_extension, unknown_format};
     pub use crate::read::read_scene_in_blocks;
-    pub mod weld {
-        pub use crate::weld::*;
-    }
-    pub mod vector {
-        pub use crate::vector::*;
-    }
 }

@@ -129,7 +129,7 @@ pub fn read_scene_in_pieces<E: From<ReadError>>(
     options: &PieceOptions,
     visit: &mut dyn FnMut(Scene) -> Result<(), E>,
 ) -> Result<PieceSummary, E> {
-    let format = Format::from_path(path)?;
+    let format = Format::from_path(path).map_err(ReadError::from)?;
     let name = path.display().to_string();
     let reader = open(path, &name)?;
     let mut summary = PieceSummary::default();

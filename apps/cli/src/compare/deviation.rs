@@ -80,7 +80,7 @@ pub(crate) struct Args {
     scene: SceneArgs,
 
     /// The format of the scan, if its extension does not name it
-    #[arg(long, value_name = "FORMAT", value_parser = one_of::<ScanFormat>(ScanFormat::NAMES), ignore_case = true)]
+    #[arg(long, value_name = "FORMAT", value_parser = one_of::<ScanFormat>(ScanFormat::names()), ignore_case = true)]
     scan_format: Option<ScanFormat>,
 
     /// Give distances without signs, as scenes with segments or points need it
@@ -119,7 +119,7 @@ pub(crate) struct Args {
     threads: ThreadArgs,
 }
 
-p2m_mixed::formats! {
+p2m_core::formats! {
     /// The formats of files of deviations.
     DeviationFormat {
         /// A table of answers.

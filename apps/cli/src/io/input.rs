@@ -8,9 +8,9 @@ use crate::io::zstd::{ZstdReader, is_zstd};
 use anyhow::{Context, anyhow, bail};
 use flate2::bufread::MultiGzDecoder;
 use nalgebra::Point3;
-use p2m_core::Ray;
 use p2m_core::storage::{LoadError, Reader, SavedFile};
-use p2m_mixed::{Format, PointFormat, ReadError, Scene, load_scene};
+use p2m_core::{Ray, UnknownExtension};
+use p2m_mixed::{Format, PointFormat, Scene, load_scene};
 use rayon::ThreadPool;
 use std::fs::{File, Metadata};
 use std::io::{self, BufRead, BufReader, Read};
@@ -104,7 +104,7 @@ pub(crate) fn unnamed(option: &str, names: &[&str]) -> anyhow::Error {
 }
 
 /// The error of an unknown extension, with the option that names the format.
-pub(crate) fn or_option(error: &ReadError, option: &str) -> anyhow::Error {
+pub(crate) fn or_option(error: &UnknownExtension, option: &str) -> anyhow::Error {
     anyhow!("{error}, or name the format with {option}")
 }
 

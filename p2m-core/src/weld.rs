@@ -3,8 +3,8 @@
 //! Files often repeat positions, STL files for each triangle, and some have positions that no primitive uses. Topology,
 //! components and statistics are therefore about welded vertices.
 
+use crate::{PrimitiveSet, Soup};
 use nalgebra::Point3;
-use p2m_core::{PrimitiveSet, Soup};
 
 /// The vertex id of a position that no primitive uses.
 pub const UNUSED: u32 = u32::MAX;
