@@ -1,4 +1,4 @@
-//! The file formats of scenes, points and answers, with their names and extensions.
+//! The file formats of scenes and points, with their names and extensions.
 
 use p2m_core::formats;
 
@@ -44,18 +44,6 @@ formats! {
     }
 }
 
-formats! {
-    /// The file formats of answers, see [`AnswerWriter`](crate::AnswerWriter).
-    AnswerFormat {
-        /// This is a text table.
-        Csv = "csv",
-        /// This is a structured array of NumPy.
-        Npy = "npy",
-        /// This is a point cloud of the queries, which have the answers as properties.
-        Ply = "ply",
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -69,10 +57,10 @@ mod tests {
             assert_eq!(format.to_string(), name.to_lowercase());
         }
         assert_eq!("txt".parse(), Ok(PointFormat::Xyz));
-        assert_eq!("npy".parse(), Ok(AnswerFormat::Npy));
+        assert_eq!("npy".parse(), Ok(PointFormat::Npy));
         assert!("".parse::<Format>().is_err() && ".stl".parse::<Format>().is_err());
         let error = PointFormat::from_path(Path::new("q.las")).unwrap_err();
         assert_eq!(error.to_string(), "q.las: unknown extension 'las', expected one of xyz, txt, csv, npy, ply");
-        assert!(AnswerFormat::from_path(Path::new("csv")).is_err(), "a name is no extension");
+        assert!(PointFormat::from_path(Path::new("csv")).is_err(), "a name is no extension");
     }
 }

@@ -4,7 +4,6 @@
 //!   [`Scene::add`] and similar methods build a scene from named parts. [`Scene::skipped`] lists the data of a file
 //!   that the reader left out. [`read_scene_in_pieces`] reads files larger than the memory.
 //! - **Queries**: [`read_points`] and [`read_rays`] read query points and rays from XYZ, CSV, NPY and PLY files.
-//! - **Answers**: [`AnswerWriter`], [`HitWriter`] and [`NumberWriter`] write the answers to queries.
 //! - **Generators**: [`generate`] makes scenes that are the same on every platform.
 //! - **Statistics**: [`statistics`] describes a scene, and [`picture`] and [`Camera`] draw it.
 //!
@@ -32,7 +31,6 @@
 
 #[cfg(any(feature = "parry", feature = "parry-f32", feature = "rstar"))]
 pub mod adapters;
-mod answers;
 mod assemble;
 mod blocks;
 mod builder;
@@ -58,12 +56,9 @@ mod text;
 mod tokenizer;
 mod write;
 
-pub use answers::{
-    AnswerColumn, AnswerEncoder, AnswerRecord, AnswerWriter, HitEncoder, HitWriter, NumberEncoder, NumberWriter,
-};
 pub use camera::Camera;
 pub use error::{FileLocation, HeaderProblem, ReadError, Reason};
-pub use format::{AnswerFormat, Format, PointFormat};
+pub use format::{Format, PointFormat};
 pub use obj::read_obj;
 pub use off::read_off;
 pub use p2m_core::{UnknownExtension, UnknownFormat};
@@ -83,6 +78,6 @@ pub use write::{
 /// The parts of this crate that its sibling crates use. They are not part of the public interface.
 #[doc(hidden)]
 pub mod engine {
-    pub use crate::answers::npy_header;
     pub use crate::read::read_scene_in_blocks;
+    pub use crate::scene::object_number;
 }

@@ -39,7 +39,7 @@ use std::path::Path;
 /// The vertices are the points, whatever the primitives are.
 ///
 /// # Files of answers
-/// A file that an [`AnswerWriter`](crate::AnswerWriter) wrote can be read as its queries, in each of its formats.
+/// A file of answers that the program `p2m` wrote can be read as its queries, in each of its formats.
 ///
 /// # Errors
 /// [`ReadError`] with the location for numbers that are invalid or not finite, rows of fewer than three numbers,

@@ -1,7 +1,6 @@
 //! Tests of readers, writers, generators and adapters in one program, whose allocator counts bytes for each thread.
 
 mod adapters;
-mod answers;
 mod blocks;
 mod common;
 mod generator;

@@ -6,10 +6,8 @@ use crate::common::{
 };
 use nalgebra::Point3;
 use p2m_core::Ray;
-use p2m_mixed::{
-    AnswerFormat, AnswerWriter, Format, HitWriter, PointFormat, ReadError, Scene, read_points_from, read_rays_from,
-};
-use p2m_testkit::{cases, rng};
+use p2m_mixed::{Format, PointFormat, ReadError, Scene, read_points_from, read_rays_from};
+use p2m_testkit::{cases, point_file, rng};
 use rand::{Rng, RngExt};
 
 /// A limit far above the memory that the files need, and far below the memory that their headers can announce.
@@ -81,11 +79,10 @@ fn check_points(points: Result<Vec<Point3<f64>>, ReadError>) -> bool {
         }
         Ok(points) => {
             assert!(points.iter().flat_map(|p| p.iter()).all(|x| x.is_finite()));
-            for format in [AnswerFormat::Csv, AnswerFormat::Npy, AnswerFormat::Ply] {
-                let mut writer = AnswerWriter::new(Vec::new(), format, points.len() as u64).unwrap();
-                points.iter().for_each(|p| writer.write(p, None).unwrap());
-                let file = writer.finish().unwrap();
-                assert_eq!(read_points_from(&file[..], format.name().parse().unwrap(), "t").unwrap(), points);
+            let rows: Vec<[f64; 3]> = points.iter().map(|p| p.coords.into()).collect();
+            for &format in PointFormat::ALL {
+                let file = point_file(format.name(), &rows);
+                assert_eq!(read_points_from(&file[..], format, "t").unwrap(), points, "{format}");
             }
             true
         }
@@ -99,11 +96,12 @@ fn check_rays(rays: Result<Vec<Ray>, ReadError>) -> bool {
             false
         }
         Ok(rays) => {
-            for format in [AnswerFormat::Csv, AnswerFormat::Npy, AnswerFormat::Ply] {
-                let mut writer = HitWriter::new(Vec::new(), format, None).unwrap();
-                (0..).zip(&rays).for_each(|(number, ray)| writer.write(number, ray, None).unwrap());
-                let file = writer.finish().unwrap();
-                assert_eq!(read_rays_from(&file[..], format.name().parse().unwrap(), "t").unwrap(), rays);
+            let numbers = |ray: &Ray| [ray.origin().coords, ray.direction()].map(<[f64; 3]>::from);
+            let rows: Vec<[f64; 6]> =
+                rays.iter().map(|ray| numbers(ray).as_flattened().try_into().expect("six")).collect();
+            for &format in PointFormat::ALL {
+                let file = point_file(format.name(), &rows);
+                assert_eq!(read_rays_from(&file[..], format, "t").unwrap(), rays, "{format}");
             }
             true
         }

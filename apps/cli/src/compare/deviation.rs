@@ -2,7 +2,7 @@
 
 use crate::answers::blocks::{BlockSize, QueryStream, Steps, answer_all};
 use crate::answers::summary::{IndexSummary, RunSummary, SceneSummary};
-use crate::answers::with_signed;
+use crate::answers::table::{AnswerColumn, AnswerEncoder, AnswerFormat, AnswerRecord, Table};
 use crate::compare::scan::ScanFormat;
 use crate::index::backend::{Backend, PreparedIndex, SceneSource, backends, saved_or_default};
 use crate::index::sign_rule::{SignRule, SignedIndex};
@@ -22,9 +22,7 @@ use p2m_core::{Closest, QueryOptions};
 use p2m_field::deviation::{DeviationStatistics, OutsideTolerance, outside};
 use p2m_field::sign::SignError;
 use p2m_mixed::statistics::figure::{Count, Figure};
-use p2m_mixed::{
-    AnswerColumn, AnswerEncoder, AnswerFormat, AnswerRecord, AnswerWriter, Scene, VertexValues, write_ply_with_values,
-};
+use p2m_mixed::{Scene, VertexValues, write_ply_with_values};
 use p2m_page::{Deviations, diverging_colour};
 use rayon::ThreadPool;
 use rayon::prelude::*;
@@ -172,15 +170,15 @@ pub(crate) fn run(streams: &Streams, args: &Args) -> anyhow::Result<()> {
     let mut answers = Answers::new(&*index, signed.as_ref().map(|(signed, _)| signed));
     let query_time = match (&mut output, out_format) {
         (Some(output), Some(DeviationFormat::Csv)) => {
-            let encoder = AnswerEncoder::new(AnswerFormat::Csv, &scene.objects, &args.columns(&scene));
+            let encoder = AnswerEncoder::new(AnswerFormat::Csv, &scene.objects, args.columns(&scene));
             let cannot_write = output.cannot_write();
             let failed = |error| anyhow::Error::new(error).context(cannot_write.clone());
-            let writer = AnswerWriter::with_columns(output, encoder.clone(), Some(points.len() as u64));
-            let mut writer = writer.map_err(failed)?;
+            let count = Some(points.len() as u64);
+            let mut table = Table::new(output, encoder.header(), count).map_err(failed)?;
             let encode = |record: &AnswerRecord<'_>, out: &mut Vec<u8>| encoder.encode(record, out);
-            let write = |count, records: &[u8]| writer.write_encoded(count, records).map_err(failed);
+            let write = |count, records: &[u8]| table.write(count, records).map_err(failed);
             let time = answers.add(streams, &pool, points, encode, write)?;
-            writer.finish().map_err(failed)?;
+            table.finish().map_err(failed)?;
             time
         }
         _ => answers.add(streams, &pool, points, |_, _| (), |_, _| Ok(()))?,
@@ -395,7 +393,7 @@ impl Args {
 
     /// Returns the columns of the table, which are those of `p2m query --signed`.
     fn columns(&self, scene: &Scene) -> Vec<AnswerColumn> {
-        with_signed(AnswerColumn::defaults(AnswerFormat::Csv, !scene.objects.is_empty()), !self.unsigned)
+        AnswerColumn::defaults(AnswerFormat::Csv, !scene.objects.is_empty(), !self.unsigned)
     }
 
     /// Returns the error of a scene that has no sign by the rule.

@@ -1,11 +1,10 @@
 //! Files of answers have the documented bytes, and can be read as their queries.
 
+use super::super::{AnswerColumn, AnswerEncoder, AnswerFormat, AnswerRecord, Table};
 use nalgebra::Point3;
 use p2m_core::{BruteForce, Closest, ClosestPoint, Element, Feature, Soup};
-use p2m_mixed::{AnswerFormat, AnswerWriter, Format, PointFormat, read_points_from, read_scene_from};
+use p2m_mixed::{Format, read_points_from, read_scene_from};
 use std::io::ErrorKind;
-
-const FORMATS: [AnswerFormat; 3] = [AnswerFormat::Csv, AnswerFormat::Npy, AnswerFormat::Ply];
 
 /// Returns queries with answers of every feature, and queries without an answer.
 fn answers() -> Vec<(Point3<f64>, Option<Closest<f64>>)> {
@@ -30,18 +29,26 @@ fn answers() -> Vec<(Point3<f64>, Option<Closest<f64>>)> {
     answers
 }
 
+fn encoder(format: AnswerFormat) -> AnswerEncoder<'static> {
+    AnswerEncoder::new(format, &[], AnswerColumn::defaults(format, false, false))
+}
+
 fn write(answers: &[(Point3<f64>, Option<Closest<f64>>)], format: AnswerFormat) -> Vec<u8> {
-    let mut writer = AnswerWriter::new(Vec::new(), format, answers.len() as u64).unwrap();
-    for (query, answer) in answers {
-        writer.write(query, answer.as_ref()).unwrap();
+    let encoder = encoder(format);
+    let mut table = Table::new(Vec::new(), encoder.header(), Some(answers.len() as u64)).unwrap();
+    for (number, (query, answer)) in (0..).zip(answers) {
+        let mut record = Vec::new();
+        let answer = answer.as_ref();
+        encoder.encode(&AnswerRecord { number, query, answer, signed_distance: f64::NAN }, &mut record);
+        table.write(1, &record).unwrap();
     }
-    writer.finish().unwrap()
+    table.finish().unwrap()
 }
 
 #[test]
 fn every_format_asks_the_same_questions_again() {
     let answers = answers();
-    for format in FORMATS {
+    for &format in AnswerFormat::ALL {
         for answers in [&answers[..], &[]] {
             let file = write(answers, format);
             let again = read_points_from(&file[..], format.name().parse().unwrap(), "a").unwrap();
@@ -149,19 +156,18 @@ fn a_cloud_has_the_documented_properties() {
 
 #[test]
 fn the_count_has_to_be_right() {
-    let query = Point3::origin();
-    for format in FORMATS {
-        let mut writer = AnswerWriter::new(Vec::new(), format, 2).unwrap();
-        writer.write(&query, None).unwrap();
-        let error = writer.finish().unwrap_err();
+    for &format in AnswerFormat::ALL {
+        let table = |count| Table::new(Vec::new(), encoder(format).header(), Some(count)).unwrap();
+        let mut one = table(2);
+        one.write(1, b"").unwrap();
+        let error = one.finish().unwrap_err();
         assert_eq!(error.kind(), ErrorKind::InvalidInput);
         assert_eq!(error.to_string(), "there are 1 answers, not the 2 announced");
-        let mut writer = AnswerWriter::new(Vec::new(), format, 1).unwrap();
-        writer.write(&query, None).unwrap();
-        let error = writer.write(&query, None).unwrap_err();
+        let mut two = table(1);
+        two.write(1, b"").unwrap();
+        let error = two.write(1, b"").unwrap_err();
         assert_eq!(error.kind(), ErrorKind::InvalidInput);
         assert_eq!(error.to_string(), "there are more answers than the 1 announced");
-        writer.finish().unwrap();
     }
 }
 
@@ -192,18 +198,4 @@ fn numpy_reads_the_array() {
     let output = python(&script).unwrap();
     std::fs::remove_dir_all(&folder).unwrap();
     assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
-}
-
-#[test]
-fn vertices_of_a_ply_file_are_points() {
-    let text = "ply\nformat ascii 1.0\nelement face 1\nproperty list uchar int vertex_indices\nelement vertex 2\n\
-        property float y\nproperty float x\nproperty uchar c\nproperty int z\nelement other 5\nproperty int a\nend_header\n\
-        3 9 9 9\n2 1 0 3\n5 4 0 6\nwhat follows is not read";
-    let read = |text: &str| read_points_from(text.as_bytes(), PointFormat::Ply, "q.ply");
-    assert_eq!(read(text).unwrap(), [Point3::new(1.0, 2.0, 3.0), Point3::new(4.0, 5.0, 6.0)]);
-    let message = |text: &str| read(text).unwrap_err().to_string();
-    assert_eq!(message(&text.replace("5 4 0", "5 inf 0")), "q.ply:15: coordinate 'inf' is not finite");
-    assert_eq!(message(&text.replace("5 4 0 6\nwhat follows is not read", "")), "q.ply:15: unexpected end of file");
-    assert_eq!(message(&text.replace("vertex 2", "vertices 2")), "q.ply: bad header: there is no element 'vertex'");
-    assert_eq!(message(&text.replace("float x", "float r")), "q.ply: bad header: element 'vertex' has no property 'x'");
 }

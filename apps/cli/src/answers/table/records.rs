@@ -1,11 +1,11 @@
 //! Files of a header and records, whose number may be part of the header.
 
-use crate::AnswerFormat;
+use super::AnswerFormat;
+use p2m_field::engine::npy_header;
 use std::io::{self, ErrorKind, Write};
 
-/// Writes a header and records.
-#[derive(Debug)]
-pub(super) struct Records<W> {
+/// A file of a header and records.
+pub(crate) struct Table<W> {
     writer: W,
     header: Header,
     /// The number of records, if it was announced.
@@ -13,13 +13,10 @@ pub(super) struct Records<W> {
     written: u64,
     /// All records, if the header needs their number and it was not announced.
     buffered: Vec<u8>,
-    /// The room in which a record is encoded before it is written.
-    record: Vec<u8>,
 }
 
 /// The header before the records.
-#[derive(Debug)]
-pub(super) enum Header {
+pub(crate) enum Header {
     /// The header of a text table is a line without the number of records.
     Line(String),
     /// The header of an array of NumPy, with its fields.
@@ -28,26 +25,18 @@ pub(super) enum Header {
     Ply(Vec<(&'static str, &'static str)>),
 }
 
-impl<W: Write> Records<W> {
-    pub(super) fn new(mut writer: W, header: Header, count: Option<u64>) -> io::Result<Self> {
+impl<W: Write> Table<W> {
+    /// Starts a file of `count` records. Without a count, NPY and PLY files are kept in memory until they are finished,
+    /// because their header has the number of records.
+    pub(crate) fn new(mut writer: W, header: Header, count: Option<u64>) -> io::Result<Self> {
         if count.is_some() || matches!(header, Header::Line(_)) {
             writer.write_all(&header.bytes(count.unwrap_or(0)))?;
         }
-        Ok(Self { writer, header, count, written: 0, buffered: Vec::new(), record: Vec::new() })
+        Ok(Self { writer, header, count, written: 0, buffered: Vec::new() })
     }
 
-    /// Encodes a record and writes it.
-    pub(super) fn write(&mut self, encode: impl FnOnce(&mut Vec<u8>)) -> io::Result<()> {
-        let mut record = std::mem::take(&mut self.record);
-        record.clear();
-        encode(&mut record);
-        let written = self.append(1, &record);
-        self.record = record;
-        written
-    }
-
-    /// Writes `count` encoded records.
-    pub(super) fn append(&mut self, count: u64, bytes: &[u8]) -> io::Result<()> {
+    /// Writes `count` encoded records. More than announced are an error.
+    pub(crate) fn write(&mut self, count: u64, bytes: &[u8]) -> io::Result<()> {
         self.written = self.written.saturating_add(count);
         if let Some(announced) = self.count.filter(|announced| *announced < self.written) {
             let message = format!("there are more answers than the {announced} announced");
@@ -60,17 +49,12 @@ impl<W: Write> Records<W> {
         self.writer.write_all(bytes)
     }
 
-    /// Returns the number of records so far.
-    pub(super) fn count(&self) -> u64 {
-        self.written
-    }
-
     fn is_buffered(&self) -> bool {
         self.count.is_none() && !matches!(self.header, Header::Line(_))
     }
 
-    /// Ends the file and returns the flushed writer.
-    pub(super) fn finish(mut self) -> io::Result<W> {
+    /// Ends the file and returns the flushed writer. Fewer records than announced are an error.
+    pub(crate) fn finish(mut self) -> io::Result<W> {
         if let Some(count) = self.count.filter(|count| *count > self.written) {
             let message = format!("there are {} answers, not the {count} announced", self.written);
             return Err(io::Error::new(ErrorKind::InvalidInput, message));
@@ -98,25 +82,6 @@ impl Header {
             }
         }
     }
-}
-
-/// Returns a header of an NPY file of version 1.0, padded to a multiple of 64 bytes as NumPy does.
-///
-/// # Panics
-/// If the header is longer than 2^16 - 1 bytes.
-pub fn npy_header(descr: &str, shape: &str, is_fortran: bool) -> Vec<u8> {
-    let order = if is_fortran { "True" } else { "False" };
-    let mut description = format!("{{'descr': {descr}, 'fortran_order': {order}, 'shape': {shape}, }}");
-    // Magic, version and length take 10 bytes, and a line end comes last.
-    while !(10 + description.len() + 1).is_multiple_of(64) {
-        description.push(' ');
-    }
-    description.push('\n');
-    let length = u16::try_from(description.len()).expect("a few hundred bytes");
-    let mut header = b"\x93NUMPY\x01\x00".to_vec();
-    header.extend(length.to_le_bytes());
-    header.extend(description.into_bytes());
-    header
 }
 
 /// Appends numbers to a record, little-endian.

@@ -1,10 +1,11 @@
 //! The columns of answers, and their encoding as records of any format.
 
+use super::AnswerFormat;
 use super::names::Names;
 use super::records::{Header, integer_bytes, put_columns, put_integer, put_numbers, put_text};
-use crate::{AnswerFormat, Object};
 use nalgebra::Point3;
 use p2m_core::{Closest, Feature};
+use p2m_mixed::Object;
 
 /// A column of a file of answers. A column may consist of several numbers.
 ///
@@ -24,8 +25,7 @@ use p2m_core::{Closest, Feature};
 /// Without an answer, fields of CSV are empty, and numbers of NPY and PLY are NaN or -1; the query and its number are
 /// always there.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-#[non_exhaustive]
-pub enum AnswerColumn {
+pub(crate) enum AnswerColumn {
     /// The number of the query, from 0.
     Number,
     /// The query point.
@@ -51,7 +51,7 @@ pub enum AnswerColumn {
 
 impl AnswerColumn {
     /// All columns, in the order in which files have them by default.
-    pub const ALL: [Self; 10] = [
+    pub(crate) const ALL: [Self; 10] = [
         Self::Number,
         Self::Query,
         Self::Point,
@@ -65,8 +65,7 @@ impl AnswerColumn {
     ];
 
     /// Returns the name of the column on the command line.
-    #[must_use]
-    pub const fn name(self) -> &'static str {
+    pub(crate) const fn name(self) -> &'static str {
         match self {
             Self::Number => "number",
             Self::Query => "query",
@@ -82,13 +81,13 @@ impl AnswerColumn {
     }
 
     /// Returns the columns that files of a format have by default. Only text has a column of objects, if there are any.
-    #[must_use]
-    pub fn defaults(format: AnswerFormat, has_objects: bool) -> Vec<Self> {
+    pub(crate) fn defaults(format: AnswerFormat, has_objects: bool, has_signs: bool) -> Vec<Self> {
         let is_default = |column: &Self| match column {
             Self::Query | Self::Point | Self::Distance | Self::Primitive | Self::Feature => true,
             Self::LowerBound | Self::Barycentric => format == AnswerFormat::Npy,
             Self::Object => format == AnswerFormat::Csv && has_objects,
-            Self::Number | Self::Signed => false,
+            Self::Signed => has_signs,
+            Self::Number => false,
         };
         Self::ALL.into_iter().filter(is_default).collect()
     }
@@ -141,35 +140,32 @@ impl AnswerColumn {
 
 /// A query with one answer, or none.
 #[derive(Clone, Copy, Debug)]
-pub struct AnswerRecord<'a> {
+pub(crate) struct AnswerRecord<'a> {
     /// The number of the query, from 0.
-    pub number: u64,
+    pub(crate) number: u64,
     /// The query point.
-    pub query: &'a Point3<f64>,
+    pub(crate) query: &'a Point3<f64>,
     /// The answer.
-    pub answer: Option<&'a Closest<f64>>,
+    pub(crate) answer: Option<&'a Closest<f64>>,
     /// The distance with the sign of the side. Only the column [`AnswerColumn::Signed`] has it.
-    pub signed_distance: f64,
+    pub(crate) signed_distance: f64,
 }
 
-/// Encodes answers as the records of an [`AnswerWriter`](crate::AnswerWriter), for programs that encode on several
-/// threads.
-#[derive(Clone, Debug)]
-pub struct AnswerEncoder {
+/// Encodes answers as records.
+pub(crate) struct AnswerEncoder<'a> {
     format: AnswerFormat,
     columns: Vec<AnswerColumn>,
-    names: Names,
+    names: Names<'a>,
 }
 
-impl AnswerEncoder {
-    /// Makes an encoder of some columns, in this order. The objects are [`Scene::objects`](crate::Scene::objects).
-    #[must_use]
-    pub fn new(format: AnswerFormat, objects: &[Object], columns: &[AnswerColumn]) -> Self {
-        Self { format, columns: columns.to_vec(), names: Names::new(objects) }
+impl<'a> AnswerEncoder<'a> {
+    /// Makes an encoder of some columns, in this order. The objects are those of the scene.
+    pub(crate) fn new(format: AnswerFormat, objects: &'a [Object], columns: Vec<AnswerColumn>) -> Self {
+        Self { format, columns, names: Names(objects) }
     }
 
     /// Returns the header of a file.
-    pub(super) fn header(&self) -> Header {
+    pub(crate) fn header(&self) -> Header {
         let columns = self.columns.iter();
         match self.format {
             AnswerFormat::Csv => {
@@ -189,7 +185,7 @@ impl AnswerEncoder {
     }
 
     /// Appends a record.
-    pub fn encode(&self, record: &AnswerRecord<'_>, out: &mut Vec<u8>) {
+    pub(crate) fn encode(&self, record: &AnswerRecord<'_>, out: &mut Vec<u8>) {
         if self.format != AnswerFormat::Csv {
             return self.columns.iter().for_each(|column| self.put_bytes(*column, record, out));
         }

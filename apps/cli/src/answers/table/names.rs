@@ -1,43 +1,33 @@
 //! The column with the names of objects in tables.
 
-use crate::scene::{Object, object_number, object_of};
 use p2m_core::PrimitiveId;
-use std::sync::Arc;
+use p2m_mixed::Object;
+use p2m_mixed::engine::object_number;
 
 /// The objects of a scene. If there are none, tables have no column of names.
-#[derive(Clone, Debug, Default)]
-pub(super) struct Names(Arc<[Object]>);
+pub(super) struct Names<'a>(pub(super) &'a [Object]);
 
-impl Names {
-    pub(super) fn new(objects: &[Object]) -> Self {
-        Self(objects.into())
-    }
-
+impl Names<'_> {
     /// Returns the header of a table with these columns, followed by the column of names.
     pub(super) fn header(&self, columns: &str) -> String {
         if self.0.is_empty() { columns.to_owned() } else { format!("{columns},object") }
     }
 
-    /// Returns whether there are no objects.
-    pub(super) fn is_empty(&self) -> bool {
-        self.0.is_empty()
-    }
-
     /// Writes the name of the object that the primitive belongs to, if there is one.
     pub(super) fn write(&self, out: &mut Vec<u8>, primitive: Option<PrimitiveId>) {
-        if let Some(object) = primitive.and_then(|id| object_of(&self.0, id)) {
-            out.extend(field(&object.name).as_bytes());
+        if let Some(number) = primitive.and_then(|id| self.number(id)) {
+            out.extend(field(&self.0[number].name).as_bytes());
         }
     }
 
     /// Returns the number of the object that the primitive belongs to.
     pub(super) fn number(&self, primitive: PrimitiveId) -> Option<usize> {
-        object_number(&self.0, primitive)
+        object_number(self.0, primitive)
     }
 
     /// Ends the line of a table, with a column of names if there are objects.
     pub(super) fn end_line(&self, out: &mut Vec<u8>, primitive: Option<PrimitiveId>) {
-        if !self.is_empty() {
+        if !self.0.is_empty() {
             out.push(b',');
             self.write(out, primitive);
         }
