@@ -5,7 +5,7 @@
 //!   that the reader left out. [`read_scene_in_pieces`] reads files larger than the memory.
 //! - **Queries**: [`read_points`] and [`read_rays`] read query points and rays from XYZ, CSV, NPY and PLY files.
 //! - **Generators**: [`generate`] makes scenes that are the same on every platform.
-//! - **Statistics**: [`statistics`] describes a scene, and [`picture`] and [`Camera`] draw it.
+//! - **Statistics**: [`statistics`] describes a scene.
 //!
 //! A [`ReadError`] has the file, the location in it and the reason.
 //!
@@ -35,14 +35,12 @@ mod assemble;
 mod blocks;
 mod builder;
 mod bytes;
-mod camera;
 mod error;
 mod format;
 pub mod generate;
 mod obj;
 mod off;
 mod open;
-pub mod picture;
 mod pieces;
 mod ply;
 mod points;
@@ -56,7 +54,6 @@ mod text;
 mod tokenizer;
 mod write;
 
-pub use camera::Camera;
 pub use error::{FileLocation, HeaderProblem, ReadError, Reason};
 pub use format::{Format, PointFormat};
 pub use obj::read_obj;

@@ -12,7 +12,6 @@ mod models;
 mod npy;
 mod obj;
 mod off;
-mod picture;
 mod pieces;
 mod ply;
 mod polygons;

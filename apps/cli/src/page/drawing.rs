@@ -1,4 +1,4 @@
-//! Line drawings, such as the bounding volumes of a tree level by level.
+//! Line drawings, such as the bounding volumes of a tree level by level, and scenes in colours.
 //!
 //! A [`Panel`] is one of the drawings in an SVG file ([`write_svg`]), and a value of the property `panel` in a PLY file
 //! ([`write_picture_ply`]). [`box_edges`] returns the lines of a box.
@@ -8,16 +8,15 @@ use p2m_core::{Aabb, Element, PrimitiveSet, Soup};
 use std::io::{self, Write};
 
 /// A drawing with a title.
-#[derive(Clone, Debug, Default, PartialEq)]
-pub struct Panel {
+pub(crate) struct Panel {
     /// The title above the drawing.
-    pub title: String,
+    pub(crate) title: String,
     /// The line segments, in units of the scene. Coordinates have to be finite.
-    pub lines: Vec<[Point3<f64>; 2]>,
+    pub(crate) lines: Vec<[Point3<f64>; 2]>,
 }
 
 /// Returns the twelve edges of a box.
-pub fn box_edges(bounds: &Aabb<f64>) -> impl Iterator<Item = [Point3<f64>; 2]> + use<> {
+pub(crate) fn box_edges(bounds: &Aabb<f64>) -> impl Iterator<Item = [Point3<f64>; 2]> + use<> {
     let corners = [bounds.min, bounds.max];
     (0..12).map(move |edge: usize| {
         // The edge runs along `axis`, at one of the four corners in the plane of the other two axes.
@@ -31,17 +30,16 @@ pub fn box_edges(bounds: &Aabb<f64>) -> impl Iterator<Item = [Point3<f64>; 2]> +
     })
 }
 
-/// The direction of view, with z upwards.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub enum View {
-    /// This is the view from a corner, in which all three axes are equally long.
-    #[default]
+/// The direction of view, with z upwards. The help of the command line shows these texts.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, clap::ValueEnum)]
+pub(crate) enum View {
+    /// From a corner
     Isometric,
-    /// This is the view along y, with x to the right.
+    /// Along y: x to the right
     Front,
-    /// This is the view along -x, with y to the right.
+    /// Along -x: y to the right
     Side,
-    /// This is the view along -z, with x to the right and y upwards.
+    /// Along -z: x to the right, y up
     Top,
 }
 
@@ -94,10 +92,12 @@ const MAX_COLUMNS: usize = 4;
 /// Writes the panels side by side. Each is drawn over `backdrop`, which are points of the scene.
 ///
 /// All panels have the same scale. Coordinates are rounded to a tenth of a unit, and a panel has a side of 300 units.
-///
-/// # Errors
-/// Errors of `writer`.
-pub fn write_svg(panels: &[Panel], backdrop: &[Point3<f64>], view: View, mut writer: impl Write) -> io::Result<()> {
+pub(crate) fn write_svg(
+    panels: &[Panel],
+    backdrop: &[Point3<f64>],
+    view: View,
+    mut writer: impl Write,
+) -> io::Result<()> {
     let lines = || panels.iter().flat_map(|panel| &panel.lines);
     let frame = Frame::around(lines().flatten().chain(backdrop));
     let [right, up] = view.axes();
@@ -141,10 +141,8 @@ pub fn write_svg(panels: &[Panel], backdrop: &[Point3<f64>], view: View, mut wri
 
 /// Writes the lines of all panels as edges of a binary PLY file. Vertices have a colour and the property `panel`, which
 /// is the number of their panel, counted from 0.
-///
-/// # Errors
-/// Errors of `writer`, and [`io::ErrorKind::InvalidInput`] for more than 2^31 - 1 vertices.
-pub fn write_picture_ply(panels: &[Panel], mut writer: impl Write) -> io::Result<()> {
+/// More than 2^31 - 1 vertices are an error.
+pub(crate) fn write_picture_ply(panels: &[Panel], mut writer: impl Write) -> io::Result<()> {
     let count: usize = panels.iter().map(|panel| panel.lines.len()).sum();
     let edges = i32::try_from(count).ok().filter(|n| n.checked_mul(2).is_some());
     let edges = edges.ok_or_else(|| io::Error::new(io::ErrorKind::InvalidInput, "too many lines for a PLY file"))?;
@@ -174,8 +172,7 @@ pub fn write_picture_ply(panels: &[Panel], mut writer: impl Write) -> io::Result
 
 /// Returns a colour for each value, from blue for the smallest over green to red for the largest, by the logarithm of
 /// the value. Values that are not positive are blue.
-#[must_use]
-pub fn value_colours(values: &[f64]) -> Vec<[u8; 3]> {
+pub(crate) fn value_colours(values: &[f64]) -> Vec<[u8; 3]> {
     let logarithms = || values.iter().filter(|x| **x > 0.0).map(|x| x.ln());
     let (smallest, largest) =
         (logarithms().fold(f64::INFINITY, f64::min), logarithms().fold(f64::NEG_INFINITY, f64::max));
@@ -186,13 +183,8 @@ pub fn value_colours(values: &[f64]) -> Vec<[u8; 3]> {
 
 /// Writes a scene as a binary PLY file in which each primitive has the colour of its value ([`value_colours`]).
 /// Primitives share no vertices, and vertices have the value as the property `value`.
-///
-/// # Errors
-/// Errors of `writer`, and [`io::ErrorKind::InvalidInput`] for more than 2^31 - 1 vertices.
-///
-/// # Panics
-/// If the values are not one for each primitive.
-pub fn write_values_ply(soup: &Soup<f64>, values: &[f64], mut writer: impl Write) -> io::Result<()> {
+/// There has to be a value for each primitive. More than 2^31 - 1 vertices are an error.
+pub(crate) fn write_values_ply(soup: &Soup<f64>, values: &[f64], mut writer: impl Write) -> io::Result<()> {
     assert_eq!(soup.len(), values.len(), "a value for each primitive");
     let [points, segments, triangles] = [soup.points().len(), soup.segments().len(), soup.triangles().len()];
     let vertices = points + 2 * segments + 3 * triangles;
@@ -248,3 +240,6 @@ fn shade(t: f64) -> [u8; 3] {
 fn escape(text: &str) -> String {
     text.replace('&', "&amp;").replace('<', "&lt;").replace('>', "&gt;")
 }
+
+#[cfg(test)]
+mod tests;

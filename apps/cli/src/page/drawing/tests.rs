@@ -1,8 +1,8 @@
 //! Pictures have the expected content at every scale.
 
+use super::{Panel, View, box_edges, write_picture_ply, write_svg};
 use nalgebra::Point3;
 use p2m_core::{Aabb, Element};
-use p2m_mixed::picture::{Panel, View, box_edges, write_picture_ply, write_svg};
 
 fn unit() -> Aabb<f64> {
     Aabb { min: Point3::origin(), max: Point3::new(1.0, 2.0, 4.0) }

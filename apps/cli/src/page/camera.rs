@@ -7,8 +7,7 @@ use p2m_core::{PrimitiveSet, Ray, Soup};
 const EYE_DISTANCE_DIAGONALS: f64 = 2.0;
 
 /// An eye, and a picture in a plane through the centre of the scene, in which y is up.
-#[derive(Clone, Debug)]
-pub struct Camera {
+pub(crate) struct Camera {
     eye: Point3<f64>,
     /// The directions to the right, upwards and towards the eye.
     axes: [Vector3<f64>; 3],
@@ -18,7 +17,6 @@ pub struct Camera {
     pixel: f64,
     /// The width and height of the picture in pixels.
     size: [u32; 2],
-    diagonal: f64,
 }
 
 impl Camera {
@@ -26,9 +24,8 @@ impl Camera {
     ///
     /// `towards` is the direction from the centre of the scene to the eye. Returns `None` if it is vertical, zero
     /// or not finite.
-    #[must_use]
     #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "clamped")]
-    pub fn before(scene: &Soup<f64>, towards: &Vector3<f64>, width: u32) -> Option<Self> {
+    pub(crate) fn before(scene: &Soup<f64>, towards: &Vector3<f64>, width: u32) -> Option<Self> {
         let bounds = scene.aabb();
         let middle = nalgebra::center(&bounds.min, &bounds.max);
         let diagonal = Some((bounds.max - bounds.min).norm()).filter(|d| *d > 0.0).unwrap_or(1.0);
@@ -55,42 +52,22 @@ impl Camera {
             corner,
             pixel,
             size: [width, height],
-            diagonal,
         })
     }
 
     /// Returns the width and height of the picture in pixels.
-    #[must_use]
-    pub fn size(&self) -> [u32; 2] {
+    pub(crate) fn size(&self) -> [u32; 2] {
         self.size
     }
 
-    /// Returns the side of a pixel, in units of the scene.
-    #[must_use]
-    pub fn pixel(&self) -> f64 {
-        self.pixel
-    }
-
     /// Returns the unit vectors to the right in the picture, upwards in the picture, and towards the eye.
-    #[must_use]
-    pub fn axes(&self) -> &[Vector3<f64>; 3] {
+    pub(crate) fn axes(&self) -> &[Vector3<f64>; 3] {
         &self.axes
-    }
-
-    /// Returns the depth of a point behind the centre of the scene, in diagonals. Points of the scene have depths from
-    /// -0.5 to 0.5.
-    #[must_use]
-    pub fn depth(&self, point: &Point3<f64>) -> f64 {
-        (self.eye - point).dot(&self.axes[2]) / self.diagonal - EYE_DISTANCE_DIAGONALS
     }
 
     /// Returns the ray from the eye through a point of the picture, which is given in pixels from the upper left
     /// corner. The ray has a radius of 0.75 pixels.
-    ///
-    /// # Panics
-    /// If the extent of the scene exceeds the range of f64.
-    #[must_use]
-    pub fn ray(&self, [x, y]: [f64; 2]) -> Ray {
+    pub(crate) fn ray(&self, [x, y]: [f64; 2]) -> Ray {
         let point = self.corner + self.axes[0] * (x * self.pixel) - self.axes[1] * (y * self.pixel);
         let ray = Ray::through(&self.eye, &point).and_then(|ray| ray.with_radius(self.pixel * 0.75));
         ray.expect("the eye is not in the picture")
