@@ -78,9 +78,7 @@
 //! | `bvh` | [`AabbTree`] | yes |
 //! | `interception` | [`OctreeIndex`], [`P2mIndex`] | yes |
 //! | `kiddo` | `KdTreeLocator`, the paper's way to the nearest vertex, for [`P2mOptions`]: slower than the default | yes |
-//! | `rstar` | `RegionTree`, the paper's filter of long lists, for [`P2mOptions`]: slower than the default; with `kiddo` also `PaperIndex`; `scene::adapters::RstarIndex` | yes |
-//! | `parry` | shapes of parry3d-f64 in [`scene`]s; its tree as an index, `scene::adapters::ParryIndex` | no |
-//! | `parry-f32` | shapes of parry3d in [`scene`]s | no |
+//! | `rstar` | `RegionTree`, the paper's filter of long lists, for [`P2mOptions`]: slower than the default; with `kiddo` also `PaperIndex` | yes |
 //! | `glam` | [`Position`]s of the crate glam in scenes and batches | no |
 //! | `mint` | [`Position`]s of the crate mint in scenes and batches | no |
 //! | `serde` | [`Soup`] and indexes as values of serde, in the form of saved files | no |

@@ -9,8 +9,7 @@
 //!
 //! A [`ReadError`] has the file, the location in it and the reason.
 //!
-//! The features `parry`, `parry-f32` and `rstar` add the module `adapters` and shapes of parry as parts of scenes. The
-//! feature `mint` lets [`Scene::add_points`] and similar methods take positions of the crate mint.
+//! The feature `mint` lets [`Scene::add_points`] and similar methods take positions of the crate mint.
 //!
 //! ```
 //! use p2m_core::{BruteForce, ClosestPoint};
@@ -29,8 +28,6 @@
 #![cfg_attr(docsrs, feature(doc_cfg))]
 #![forbid(unsafe_code)]
 
-#[cfg(any(feature = "parry", feature = "parry-f32", feature = "rstar"))]
-pub mod adapters;
 mod assemble;
 mod blocks;
 mod builder;

@@ -6,7 +6,7 @@
 //! indexes anew.
 #![cfg(all(feature = "bvh", feature = "interception", feature = "kdop", feature = "mixed"))]
 
-#[allow(unreachable_pub, reason = "a crate of its own")]
+#[allow(unreachable_pub, unexpected_cfgs, reason = "a crate of its own, with its own features")]
 #[path = "../../tools/fuzz/src/lib.rs"]
 mod fuzz;
 

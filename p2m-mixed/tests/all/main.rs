@@ -1,6 +1,5 @@
-//! Tests of readers, writers, generators and adapters in one program, whose allocator counts bytes for each thread.
+//! Tests of readers, writers and generators in one program, whose allocator counts bytes for each thread.
 
-mod adapters;
 mod blocks;
 mod common;
 mod generator;

@@ -4,6 +4,7 @@
 #![forbid(unsafe_code)]
 #![allow(clippy::missing_panics_doc, reason = "a test kit panics where a test should fail")]
 
+pub mod adapters;
 pub mod adversaries;
 pub mod ball;
 pub mod compiled;

@@ -16,17 +16,6 @@ type Entry = GeomWithData<Rectangle<[f64; 3]>, PrimitiveId>;
 ///
 /// Boxes are visited nearest first, until the next one is farther than the incumbent.
 ///
-/// ```
-/// use nalgebra::Point3;
-/// use p2m_core::{BuildIndex, ClosestPoint, Segment};
-/// use p2m_mixed::adapters::RstarIndex;
-///
-/// let wires = [Segment::new(Point3::new(0.0, 0.0, 0.0), Point3::new(4.0, 0.0, 0.0))];
-/// let index = RstarIndex::build(&wires, &())?;
-/// assert_eq!(index.closest_point(&Point3::new(1.0, 2.0, 0.0)).unwrap().distance, 2.0);
-/// # Ok::<(), p2m_core::BuildError>(())
-/// ```
-///
 /// # Complexity
 /// Building takes O(n log n), and a query is expected to take O(log n).
 #[derive(Debug, Clone)]

@@ -16,17 +16,6 @@ const MAX_BOUND: f64 = 1e300;
 
 /// An index over a set of primitives that uses the tree of boxes of parry.
 ///
-/// ```
-/// use nalgebra::Point3;
-/// use p2m_core::{BuildIndex, ClosestPoint, Segment};
-/// use p2m_mixed::adapters::ParryIndex;
-///
-/// let wires = [Segment::new(Point3::new(0.0, 0.0, 0.0), Point3::new(4.0, 0.0, 0.0))];
-/// let index = ParryIndex::build(&wires, &())?;
-/// assert_eq!(index.closest_point(&Point3::new(1.0, 2.0, 0.0)).unwrap().distance, 2.0);
-/// # Ok::<(), p2m_core::BuildError>(())
-/// ```
-///
 /// # Complexity
 /// Building takes O(n log n), and a query is expected to take O(log n).
 pub struct ParryIndex<T: Real, S> {
