@@ -2,21 +2,20 @@
 
 mod positions;
 
-use crate::blocks::Source;
 use crate::builder::SceneBuilder;
-use crate::error::{FileLocation, ReadError, Reason};
-use crate::format::Format;
+use crate::error::{ReadError, Reason};
+use crate::formats::Format;
 use crate::open::open;
-use crate::saved::read_p2m;
+use crate::parse::blocks::Source;
 use crate::scene::{Scene, Skipped};
-use crate::{obj, off, ply, stl};
 use hashbrown::HashTable;
 use hashbrown::hash_table::Entry;
 use nalgebra::Point3;
 use p2m_core::{PrimitiveId, PrimitiveSet, Soup};
 use positions::PositionStore;
+use std::fs::File;
 use std::hash::{BuildHasher, RandomState};
-use std::io;
+use std::io::{self, BufReader};
 use std::ops::ControlFlow;
 use std::path::{Path, PathBuf};
 
@@ -145,24 +144,9 @@ pub fn read_scene_in_pieces<E: From<ReadError>>(
             }
         }
     };
-    let positions = match format {
-        Format::Stl => Positions::OfPiece(Vec::new()),
-        _ => Positions::OfFile(PositionStore::new(options.max_position_bytes, options.folder.clone())),
-    };
-    let builder = SceneBuilder::in_pieces(Pieces::new(options.piece_len(), positions, &mut send));
-    let last = match format {
-        Format::Obj => {
-            let is_file = path.metadata().is_ok_and(|m| m.is_file());
-            let mut has_objects = || is_file && open(path, &name).is_ok_and(obj::has_objects);
-            obj::read(Source::new(reader), &name, builder, &mut has_objects)
-        }
-        Format::Ply => ply::read(Source::new(reader), &name, builder),
-        Format::Stl => stl::read(reader, &name, builder),
-        Format::Off => off::read(reader, &name, builder),
-        Format::P2m => read_p2m(reader, &name).and_then(|scene| {
-            divide(scene, builder).map_err(|reason| ReadError::new(&name, FileLocation::File, reason))
-        }),
-    };
+    let store = PositionStore::new(options.max_position_bytes, options.folder.clone());
+    let builder = SceneBuilder::in_pieces(Pieces::new(options.piece_len(), path, store, &mut send));
+    let last = format.read(Source::new(reader), &name, builder);
     let mut last = match (last, error.take()) {
         (_, Some(error)) => return Err(error),
         (last, None) => last?,
@@ -174,32 +158,6 @@ pub fn read_scene_in_pieces<E: From<ReadError>>(
         visit(last)?;
     }
     Ok(summary)
-}
-
-/// Adds the primitives of a scene to a builder, and returns its last piece.
-fn divide(scene: Scene, mut builder: SceneBuilder<'_>) -> Result<Scene, Reason> {
-    for &position in scene.soup.positions() {
-        builder.push_vertex(position)?;
-    }
-    let mut objects = scene.objects.iter().peekable();
-    for (id, element) in scene.soup.elements().enumerate() {
-        while let Some(object) = objects.peek()
-            && object.ids.start <= id
-        {
-            if id < object.ids.end {
-                if id == object.ids.start {
-                    builder.start_run(object.name.as_bytes());
-                }
-                break;
-            }
-            builder.start_run(b"");
-            objects.next();
-        }
-        builder.push(element, scene.sources[id] as usize)?;
-    }
-    let mut last = builder.finish();
-    last.skipped = scene.skipped;
-    Ok(last)
 }
 
 /// A function that takes a full piece and returns whether reading goes on.
@@ -216,6 +174,7 @@ enum Positions {
 /// The state of a builder of pieces.
 pub(crate) struct Pieces<'a> {
     max_primitives: usize,
+    path: &'a Path,
     positions: Positions,
     indices: IndexTable,
     visitor: &'a mut Visitor<'a>,
@@ -224,8 +183,20 @@ pub(crate) struct Pieces<'a> {
 }
 
 impl<'a> Pieces<'a> {
-    fn new(max_primitives: usize, positions: Positions, visitor: &'a mut Visitor<'a>) -> Self {
-        Self { max_primitives, positions, indices: IndexTable::default(), visitor, has_ended: false }
+    fn new(max_primitives: usize, path: &'a Path, store: PositionStore, visitor: &'a mut Visitor<'a>) -> Self {
+        let (positions, indices) = (Positions::OfFile(store), IndexTable::default());
+        Self { max_primitives, path, positions, indices, visitor, has_ended: false }
+    }
+
+    /// Keeps only the vertices of the current piece, and these in memory.
+    pub(crate) fn keep_vertices_of_pieces(&mut self) {
+        self.positions = Positions::OfPiece(Vec::new());
+    }
+
+    /// Opens the file another time, unless it is a pipe or cannot be opened.
+    pub(crate) fn open_again(&self) -> Option<BufReader<File>> {
+        let is_file = self.path.metadata().is_ok_and(|m| m.is_file());
+        is_file.then(|| open(self.path, "").ok()).flatten()
     }
 
     /// Returns the number of primitives of a full piece.

@@ -8,12 +8,26 @@ mod table;
 
 pub use rays::{read_rays, read_rays_from};
 
+use crate::ReadError;
 use crate::open::open;
-use crate::{PointFormat, ReadError};
 use nalgebra::Point3;
 use read::read;
 use std::io::BufRead;
 use std::path::Path;
+
+p2m_core::formats! {
+    /// The file formats of query points and rays, see [`read_points`](crate::read_points).
+    PointFormat {
+        /// This is text with columns that are separated by white space.
+        Xyz = "xyz" | "txt",
+        /// This is text with columns that are separated by commas or semicolons.
+        Csv = "csv",
+        /// This is an array of NumPy.
+        Npy = "npy",
+        /// The points are the vertices of a PLY file.
+        Ply = "ply",
+    }
+}
 
 /// Reads query points from a file. Its extension, in any case, selects the format.
 ///

@@ -5,7 +5,7 @@
 //! format: it continues where the last block was joined, so both readers together give the same scene and the same
 //! errors as the sequential reader alone.
 
-use crate::text::fill_buffer;
+use crate::parse::text::fill_buffer;
 #[cfg(feature = "rayon")]
 use std::collections::VecDeque;
 use std::io::{self, BufRead, Read};

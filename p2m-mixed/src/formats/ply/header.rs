@@ -1,7 +1,7 @@
 //! The header of a PLY file, which declares the elements and their properties.
 
-use crate::bytes::Scalar;
-use crate::text::{Tokens, fill_buffer, parse_integer, quote, read_until};
+use crate::parse::bytes::Scalar;
+use crate::parse::text::{Tokens, fill_buffer, parse_integer, quote, read_until};
 use crate::{FileLocation, HeaderProblem, ReadError, Reason};
 use memchr::{memchr, memchr2};
 use std::collections::HashSet;

@@ -2,11 +2,15 @@
 
 mod block;
 mod keywords;
+mod writer;
 
-use crate::blocks::{Source, for_each_block};
+pub use writer::write_obj;
+pub(super) use writer::write_obj as write;
+
 use crate::builder::SceneBuilder;
+use crate::parse::blocks::{Source, for_each_block};
+use crate::parse::text::{LineReader, Tokens, parse_number};
 use crate::polygon::MAX_CORNERS;
-use crate::text::{LineReader, Tokens, parse_number};
 use crate::{FileLocation, ReadError, Reason, Scene};
 use block::{Block, Kind, vertex_of};
 use keywords::{is_free_form, is_known};
@@ -49,19 +53,17 @@ use std::ops::Range;
 /// [`Reason::PolygonsTooLarge`], and errors of `reader`. A file without bytes, and one without vertices that has
 /// statements unknown to OBJ, returns [`Reason::NoVertex`].
 pub fn read_obj(reader: impl BufRead, name: &str) -> Result<Scene, ReadError> {
-    read(Source::new(reader), name, SceneBuilder::default(), &mut || false)
+    read(Source::new(reader), name, SceneBuilder::default())
 }
 
-/// Reads an OBJ file into a builder, and returns the scene or its last piece. `has_objects` returns whether the file
-/// has statements `o`, as far as that is known before they are read. It is called at most once, for a statement `g`.
-pub(crate) fn read(
+/// Reads an OBJ file into a builder.
+pub(super) fn read(
     mut source: Source<impl BufRead>,
     name: &str,
     builder: SceneBuilder<'_>,
-    has_objects: &mut dyn FnMut() -> bool,
 ) -> Result<Scene, ReadError> {
     let fail = |(line, reason)| ReadError::new(name, FileLocation::Line(line), reason);
-    let mut parser = Parser::new(builder, has_objects);
+    let mut parser = Parser::new(builder);
     for_each_block(
         &mut source,
         |bytes| Some(block::cut(bytes)),
@@ -87,7 +89,7 @@ pub(crate) fn read(
 
 /// Returns whether an OBJ file has statements `o`. An error of the reader ends the search, because it occurs again when
 /// the file is read.
-pub(crate) fn has_objects(reader: impl BufRead) -> bool {
+fn has_objects(reader: impl BufRead) -> bool {
     let mut lines = LineReader::new(reader, 0);
     while lines.read_continued().unwrap_or(false) {
         if Tokens::new(lines.bytes()).next() == Some(b"o") {
@@ -116,8 +118,8 @@ enum Deferred {
     ClearObjects,
 }
 
-struct Parser<'a, 'b> {
-    builder: SceneBuilder<'b>,
+struct Parser<'a> {
+    builder: SceneBuilder<'a>,
     /// The number of statements `f` so far.
     faces: usize,
     /// The number of statements `l` so far.
@@ -134,7 +136,6 @@ struct Parser<'a, 'b> {
     has_groups: bool,
     /// Whether groups are no objects, because statements `o` follow.
     ignores_groups: bool,
-    find_objects: &'a mut dyn FnMut() -> bool,
     /// The vertices of the current statement.
     vertices: Vec<u32>,
     /// The first line of the current statement, or the last line of the last block.
@@ -145,8 +146,8 @@ struct Parser<'a, 'b> {
     deferred_vertices: Vec<u32>,
 }
 
-impl<'a, 'b> Parser<'a, 'b> {
-    fn new(builder: SceneBuilder<'b>, find_objects: &'a mut dyn FnMut() -> bool) -> Self {
+impl<'a> Parser<'a> {
+    fn new(builder: SceneBuilder<'a>) -> Self {
         Self {
             builder,
             faces: 0,
@@ -157,7 +158,6 @@ impl<'a, 'b> Parser<'a, 'b> {
             has_objects: false,
             has_groups: false,
             ignores_groups: false,
-            find_objects,
             vertices: Vec::new(),
             line: 0,
             forward_line: None,
@@ -274,7 +274,8 @@ impl<'a, 'b> Parser<'a, 'b> {
                 }
                 if keyword == b"g" && !self.has_objects && !self.has_groups {
                     self.has_groups = true;
-                    self.ignores_groups = (self.find_objects)();
+                    // A scene that is read as a whole still has all groups when an object follows.
+                    self.ignores_groups = self.builder.open_again().is_some_and(has_objects);
                 }
                 if keyword == b"o" || !(self.has_objects || self.ignores_groups) {
                     self.object(tokens.rest());

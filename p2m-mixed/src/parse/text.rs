@@ -4,7 +4,7 @@
 //! UTF-8.
 
 use crate::Reason;
-use crate::blocks::Source;
+use crate::parse::blocks::Source;
 use memchr::{memchr2, memchr2_iter, memrchr2};
 use std::io::{self, BufRead, ErrorKind};
 

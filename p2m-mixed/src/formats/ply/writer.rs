@@ -1,7 +1,6 @@
 //! Writes scenes as PLY.
 
-use super::error::WriteError;
-use crate::Scene;
+use crate::{Scene, WriteError};
 use nalgebra::Point3;
 use p2m_core::{Element, PrimitiveSet, Soup};
 use std::io::{self, Write};

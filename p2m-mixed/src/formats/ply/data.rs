@@ -2,9 +2,9 @@
 
 use super::header::{Encoding, Header, Layout};
 use super::rows::Start;
-use crate::bytes::{ByteReader, Bytes, Scalar};
-use crate::text::{LineReader, parse_integer, parse_number, quote};
-use crate::tokenizer::Tokenizer;
+use crate::parse::bytes::{ByteReader, Bytes, Scalar};
+use crate::parse::text::{LineReader, parse_integer, parse_number, quote};
+use crate::parse::tokenizer::Tokenizer;
 use crate::{FileLocation, ReadError, Reason};
 use std::io::BufRead;
 

@@ -1,7 +1,6 @@
 //! Writes scenes as STL.
 
-use super::error::WriteError;
-use crate::Scene;
+use crate::{Scene, WriteError};
 use nalgebra::Vector3;
 use p2m_core::{Element, PrimitiveId, PrimitiveSet, Soup};
 use std::io::Write;

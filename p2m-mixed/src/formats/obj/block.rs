@@ -5,8 +5,8 @@
 
 use super::Shape;
 use crate::Reason;
+use crate::parse::text::{is_space, line_end, parse_integer, parse_number_at_start, quote};
 use crate::polygon::MAX_CORNERS;
-use crate::text::{is_space, line_end, parse_integer, parse_number_at_start, quote};
 use nalgebra::Point3;
 
 /// The most digits of a reference that is parsed here.
@@ -48,7 +48,7 @@ pub(super) struct Block {
 
 /// Returns the length of the part of `bytes` up to the end of the last complete statement.
 pub(super) fn cut(bytes: &[u8]) -> usize {
-    let mut end = crate::text::last_line_end(bytes);
+    let mut end = crate::parse::text::last_line_end(bytes);
     loop {
         // The line before `end`, without its end.
         let line = bytes[..end].strip_suffix(b"\n").unwrap_or(&bytes[..end]);

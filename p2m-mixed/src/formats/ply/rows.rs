@@ -2,9 +2,9 @@
 
 use super::data::{Data, Encoded, Numbers, parse_coordinate};
 use super::header::{Layout, Property};
-use crate::blocks::{Source, for_each_block};
-use crate::bytes::{Bytes, Scalar};
-use crate::text::{Tokens, count_lines, last_line_end, line_end, parse_integer};
+use crate::parse::blocks::{Source, for_each_block};
+use crate::parse::bytes::{Bytes, Scalar};
+use crate::parse::text::{Tokens, count_lines, last_line_end, line_end, parse_integer};
 use crate::{FileLocation, ReadError, Reason};
 use std::io::BufRead;
 

@@ -5,9 +5,13 @@ mod header;
 mod members;
 mod plan;
 mod rows;
+mod writer;
 
-use crate::blocks::Source;
+pub(super) use writer::write_ply as write;
+pub use writer::{VertexValues, write_ply, write_ply_ascii, write_ply_with_values};
+
 use crate::builder::SceneBuilder;
+use crate::parse::blocks::Source;
 use crate::points::row::Row;
 use crate::{FileLocation, HeaderProblem, ReadError, Reason, Scene};
 use data::{Data, Numbers};
@@ -56,8 +60,8 @@ pub fn read_ply(reader: impl BufRead, name: &str) -> Result<Scene, ReadError> {
     read(Source::new(reader), name, SceneBuilder::default())
 }
 
-/// Reads a PLY file into a builder, and returns the scene or its last piece.
-pub(crate) fn read(
+/// Reads a PLY file into a builder.
+pub(super) fn read(
     mut reader: Source<impl BufRead>,
     name: &str,
     builder: SceneBuilder<'_>,

@@ -1,8 +1,8 @@
 //! Tokens of a text as a stream.
 
 use crate::Reason;
-use crate::blocks::Source;
-use crate::text::{LineReader, is_space};
+use crate::parse::blocks::Source;
+use crate::parse::text::{LineReader, is_space};
 use std::io::BufRead;
 
 /// Reads the tokens of a text, whatever lines they are on.

@@ -1,7 +1,7 @@
 //! Writes scenes as OBJ.
 
-use super::error::{WriteError, finite_or_origin};
-use crate::Scene;
+use crate::write::finite_or_origin;
+use crate::{Scene, WriteError};
 use p2m_core::{Element, PrimitiveSet};
 use std::io::Write;
 

@@ -1,10 +1,16 @@
 //! Reads OFF files, the object file format of Geomview, as text or binary.
 
+mod writer;
+
+pub use writer::write_off;
+pub(super) use writer::write_off as write;
+
 use crate::builder::SceneBuilder;
-use crate::bytes::{ByteReader, Bytes, Scalar};
+use crate::parse::blocks::Source;
+use crate::parse::bytes::{ByteReader, Bytes, Scalar};
+use crate::parse::text::{LineReader, parse_integer, parse_number, quote};
+use crate::parse::tokenizer::Tokenizer;
 use crate::polygon::MAX_CORNERS;
-use crate::text::{LineReader, parse_integer, parse_number, quote};
-use crate::tokenizer::Tokenizer;
 use crate::{FileLocation, HeaderProblem, ReadError, Reason, Scene};
 use nalgebra::Point3;
 use p2m_core::Element;
@@ -35,11 +41,11 @@ use std::io::BufRead;
 /// without vertices or with more than [`MAX_CORNERS`], and errors of `reader`. No memory is allocated for data that the
 /// header only announces.
 pub fn read_off(reader: impl BufRead, name: &str) -> Result<Scene, ReadError> {
-    read(reader, name, SceneBuilder::default())
+    read(Source::new(reader), name, SceneBuilder::default())
 }
 
-/// Reads an OFF file into a builder, and returns the scene or its last piece.
-pub(crate) fn read(reader: impl BufRead, name: &str, builder: SceneBuilder<'_>) -> Result<Scene, ReadError> {
+/// Reads an OFF file into a builder.
+pub(super) fn read(reader: Source<impl BufRead>, name: &str, builder: SceneBuilder<'_>) -> Result<Scene, ReadError> {
     let mut tokens = Tokenizer::with_comments(LineReader::new(reader, 0));
     let fail = |line, reason| ReadError::new(name, FileLocation::Line(line), reason);
     let header = read_header(&mut tokens).map_err(|reason| fail(tokens.line(), reason))?;

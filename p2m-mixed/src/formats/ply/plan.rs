@@ -2,8 +2,8 @@
 
 use super::header;
 use crate::HeaderProblem;
-use crate::bytes::Scalar;
-use crate::text::quote;
+use crate::parse::bytes::Scalar;
+use crate::parse::text::quote;
 use header::Layout;
 
 /// The property with the id of a primitive, for files that have primitives in another order.

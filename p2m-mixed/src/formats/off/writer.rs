@@ -1,7 +1,7 @@
 //! Writes scenes as OFF.
 
-use super::error::{WriteError, finite_or_origin};
-use crate::Scene;
+use crate::write::finite_or_origin;
+use crate::{Scene, WriteError};
 use p2m_core::PrimitiveSet;
 use std::io::Write;
 

@@ -1,10 +1,16 @@
 //! Reads STL files, which have only triangles, as text or binary.
 
+mod writer;
+
+pub(super) use writer::write_stl as write;
+pub use writer::{StlRounding, stl_rounding, write_stl};
+
 use crate::builder::SceneBuilder;
-use crate::bytes::{ByteReader, Bytes};
+use crate::parse::blocks::Source;
+use crate::parse::bytes::{ByteReader, Bytes};
+use crate::parse::text::{LineReader, is_space, parse_finite, quote};
+use crate::parse::tokenizer::Tokenizer;
 use crate::polygon::MAX_CORNERS;
-use crate::text::{LineReader, is_space, parse_finite, quote};
-use crate::tokenizer::Tokenizer;
 use crate::{FileLocation, HeaderProblem, ReadError, Reason, Scene};
 use hashbrown::HashTable;
 use hashbrown::hash_table::Entry;
@@ -34,11 +40,16 @@ const DETECTION_BYTES: u64 = 1024;
 /// invalid numbers, unexpected words, an early end, and errors of `reader`. No memory is allocated for facets that
 /// the header only announces.
 pub fn read_stl(reader: impl BufRead, name: &str) -> Result<Scene, ReadError> {
-    read(reader, name, SceneBuilder::default())
+    read(Source::new(reader), name, SceneBuilder::default())
 }
 
-/// Reads an STL file into a builder, and returns the scene or its last piece.
-pub(crate) fn read(mut reader: impl BufRead, name: &str, builder: SceneBuilder<'_>) -> Result<Scene, ReadError> {
+/// Reads an STL file into a builder.
+pub(super) fn read(
+    mut reader: Source<impl BufRead>,
+    name: &str,
+    mut builder: SceneBuilder<'_>,
+) -> Result<Scene, ReadError> {
+    builder.keep_vertices_of_pieces();
     let fail = |reason| ReadError::new(name, FileLocation::File, reason);
     let mut head = Vec::new();
     reader.by_ref().take(DETECTION_BYTES).read_to_end(&mut head).map_err(|e| fail(Reason::Io(e)))?;

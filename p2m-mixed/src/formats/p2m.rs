@@ -1,10 +1,11 @@
 //! Scenes as sections of the files of saved indexes.
 
-use crate::{FileLocation, Object, ReadError, Reason, Scene, Skipped};
+use crate::builder::SceneBuilder;
+use crate::{FileLocation, Object, ReadError, Reason, Scene, Skipped, WriteError};
 use nalgebra::Point3;
 use p2m_core::storage::{LoadError, Reader, SavedFile, Writer, require};
 use p2m_core::{Element, Soup};
-use std::io::{self, BufRead, Write};
+use std::io::{BufRead, Write};
 
 /// `(n, 3)` f64: the positions.
 const POSITIONS: &str = "scene/positions";
@@ -20,6 +21,8 @@ const TEXTS: &str = "scene/texts";
 const OBJECTS: &str = "scene/objects";
 /// `(n, 3)` u64: for each kind of skipped records the length of its name, the count, and whether the name is a plural.
 const SKIPPED: &str = "scene/skipped";
+
+pub(super) use write_p2m as write;
 
 /// Adds the sections of a scene to a file.
 ///
@@ -107,8 +110,41 @@ pub fn load_scene(reader: &Reader) -> Result<Scene, LoadError> {
 /// # Errors
 /// [`ReadError`] with [`Reason::Saved`] if the file is damaged or has no scene.
 pub fn read_p2m(reader: impl BufRead, name: &str) -> Result<Scene, ReadError> {
+    read(reader, name, SceneBuilder::default())
+}
+
+/// Reads the scene from a file of a saved index, and adds it to a builder only if that makes pieces.
+pub(super) fn read(reader: impl BufRead, name: &str, builder: SceneBuilder<'_>) -> Result<Scene, ReadError> {
     let load = || load_scene(SavedFile::read(reader)?.checked()?);
-    load().map_err(|error| ReadError::new(name, FileLocation::File, Reason::Saved(error)))
+    let scene = load().map_err(Reason::Saved);
+    let scene = scene.and_then(|scene| if builder.makes_pieces() { divide(scene, builder) } else { Ok(scene) });
+    scene.map_err(|reason| ReadError::new(name, FileLocation::File, reason))
+}
+
+/// Adds the primitives of a scene to a builder of pieces, and returns its last piece.
+fn divide(scene: Scene, mut builder: SceneBuilder<'_>) -> Result<Scene, Reason> {
+    for &position in scene.soup.positions() {
+        builder.push_vertex(position)?;
+    }
+    let mut objects = scene.objects.iter().peekable();
+    for (id, element) in scene.soup.elements().enumerate() {
+        while let Some(object) = objects.peek()
+            && object.ids.start <= id
+        {
+            if id < object.ids.end {
+                if id == object.ids.start {
+                    builder.start_run(object.name.as_bytes());
+                }
+                break;
+            }
+            builder.start_run(b"");
+            objects.next();
+        }
+        builder.push(element, scene.sources[id] as usize)?;
+    }
+    let mut last = builder.finish();
+    last.skipped = scene.skipped;
+    Ok(last)
 }
 
 /// Writes a scene as a file of saved indexes that has no index. Reading it returns the same scene, including
@@ -116,8 +152,8 @@ pub fn read_p2m(reader: impl BufRead, name: &str) -> Result<Scene, ReadError> {
 ///
 /// # Errors
 /// Errors of `writer`.
-pub fn write_p2m(scene: &Scene, writer: impl Write) -> io::Result<()> {
+pub fn write_p2m(scene: &Scene, writer: impl Write) -> Result<(), WriteError> {
     let mut sections = Writer::default();
     save_scene(scene, &mut sections);
-    sections.write(writer)
+    Ok(sections.write(writer)?)
 }
