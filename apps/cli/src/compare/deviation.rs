@@ -6,7 +6,7 @@ use crate::answers::table::{AnswerColumn, AnswerEncoder, AnswerFormat, AnswerRec
 use crate::compare::scan::ScanFormat;
 use crate::index::backend::{Backend, PreparedIndex, SceneSource, backends, saved_or_default};
 use crate::index::sign_rule::{SignRule, SignedIndex};
-use crate::io::input::{SceneArgs, is_standard, name, read_scene_and_index};
+use crate::io::input::{SceneArgs, format_list, is_standard, name, read_scene_and_index};
 use crate::io::json;
 use crate::io::output::Output;
 use crate::io::streams::Streams;
@@ -65,13 +65,19 @@ Examples:
     )
 }
 
+fn scan_help() -> String {
+    let formats = format_list(|_| true, "or");
+    format!(
+        "Scan: an XYZ, TXT, CSV or NPY file of points, or an {formats} file, whose vertices are the points; `-` is the \
+         standard input"
+    )
+}
+
 /// Find how far the points of a scan are from a scene: statistics, colours and a histogram
 #[derive(clap::Args)]
 #[command(after_help = help())]
 pub(crate) struct Args {
-    /// Scan: an XYZ, TXT, CSV or NPY file of points, or a PLY, OBJ, STL or OFF file, whose vertices are the points; `-`
-    /// is the standard input
-    #[arg(value_name = "SCAN")]
+    #[arg(value_name = "SCAN", help = scan_help())]
     scan: PathBuf,
 
     #[command(flatten)]
