@@ -11,7 +11,6 @@ mod common;
 use anyhow::{Context, ensure};
 use nalgebra::{Point3, Vector3};
 use p2m::core::Side;
-use p2m::scene::Camera;
 use p2m::{AabbTree, PrimitiveSet, Ray, RayQuery, Soup};
 use rayon::prelude::*;
 
@@ -44,7 +43,8 @@ fn main() -> anyhow::Result<()> {
     let index = AabbTree::new(&scene)?;
     let towards = <[f64; 3]>::try_from(eye).ok().map(Vector3::from);
     let camera = towards.and_then(|towards| Camera::before(&scene, &towards, width));
-    let camera = camera.context("the direction to the eye is three numbers, and not along y")?;
+    let camera =
+        camera.context("the direction to the eye is three numbers, and not along y; the scene has an extent")?;
     let step = 1.0 / f64::from(RAYS);
     let pixel = |(row, column): (u32, u32)| {
         let mut sum = Vector3::zeros();
@@ -55,10 +55,49 @@ fn main() -> anyhow::Result<()> {
         }
         <[f64; 3]>::from(sum * step * step).map(byte)
     };
-    let [width, height] = camera.size();
-    let rows = (0..height).into_par_iter();
+    let rows = (0..width).into_par_iter();
     let bytes: Vec<u8> = rows.flat_map_iter(|row| (0..width).flat_map(move |column| pixel((row, column)))).collect();
-    common::write_png(&out, camera.size(), &bytes)
+    common::write_png(&out, [width; 2], &bytes)
+}
+
+/// An eye, and a square picture of the whole scene in a plane through its centre, in which y is up.
+struct Camera {
+    eye: Point3<f64>,
+    /// The upper left corner of the picture.
+    corner: Point3<f64>,
+    /// The directions to the right, upwards and towards the eye.
+    axes: [Vector3<f64>; 3],
+    /// The diagonal of the box of the scene, and the side of a pixel.
+    diagonal: f64,
+    pixel: f64,
+}
+
+impl Camera {
+    fn before(scene: &Soup<f64>, towards: &Vector3<f64>, width: u32) -> Option<Self> {
+        let bounds = scene.aabb();
+        let diagonal = Some((bounds.max - bounds.min).norm()).filter(|diagonal| *diagonal > 0.0)?;
+        let back = towards.try_normalize(0.0)?;
+        let right = Vector3::y().cross(&back).try_normalize(0.0)?;
+        let up = back.cross(&right);
+        let centre = nalgebra::center(&bounds.min, &bounds.max);
+        // Seen from the eye, the ball around the box is larger than its diagonal by a thirtieth.
+        let side = 1.04 * diagonal;
+        let corner = centre + (up - right) * (0.5 * side);
+        let (eye, pixel) = (centre + back * (2.0 * diagonal), side / f64::from(width));
+        Some(Self { eye, corner, axes: [right, up, back], diagonal, pixel })
+    }
+
+    /// Returns the ray through a point of the picture, in pixels from the upper left corner.
+    fn ray(&self, [x, y]: [f64; 2]) -> Ray {
+        let point = self.corner + (self.axes[0] * x - self.axes[1] * y) * self.pixel;
+        let ray = Ray::through(&self.eye, &point).and_then(|ray| ray.with_radius(self.pixel * 0.75));
+        ray.expect("the eye is not in the picture")
+    }
+
+    /// Returns the depth of a point behind the centre of the scene, in diagonals: from -0.5 to 0.5.
+    fn depth(&self, point: &Point3<f64>) -> f64 {
+        (self.eye - point).dot(&self.axes[2]) / self.diagonal - 2.0
+    }
 }
 
 #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "from 0 to 255")]
@@ -85,10 +124,10 @@ fn colour(camera: &Camera, scene: &Soup<f64>, index: &impl RayQuery<f64>, ray: &
 
 /// Returns the brightness of a surface.
 fn light(camera: &Camera, index: &impl RayQuery<f64>, point: &Point3<f64>, normal: &Vector3<f64>) -> f64 {
-    let to_light: Vector3<f64> = camera.axes().iter().zip(LIGHT).map(|(axis, x)| axis * x).sum();
+    let to_light: Vector3<f64> = camera.axes.iter().zip(LIGHT).map(|(axis, x)| axis * x).sum();
     let cosine = normal.dot(&to_light.normalize());
     // The ray starts beside the surface, so that the surface does not shade itself.
-    let start = point + normal * camera.pixel();
+    let start = point + normal * camera.pixel;
     let is_lit = cosine > 0.0 && Ray::new(&start, &to_light).is_ok_and(|ray| !index.do_intersect(&ray));
     0.22 + 0.3 * (0.5 + 0.5 * cosine) + if is_lit { 0.5 * cosine } else { 0.0 }
 }

@@ -70,8 +70,6 @@
 //! | `interception` | [`OctreeIndex`], [`P2mIndex`] | yes |
 //! | `lean` | all features of the default but `paper`: `default-features = false, features = ["lean"]` compiles 20 crates fewer | yes |
 //! | `paper` | `paper`: the index of the P2M paper, with the KD-tree of kiddo and the R-trees of rstar; slower than [`P2mIndex`] | yes |
-//! | `parry` | shapes of parry3d-f64 in [`scene`]s; its tree as an index, `scene::adapters::ParryIndex` | no |
-//! | `parry-f32` | shapes of parry3d in [`scene`]s | no |
 //! | `glam` | [`Position`]s of the crate glam in scenes and batches | no |
 //! | `mint` | [`Position`]s of the crate mint in scenes and batches | no |
 //! | `serde` | [`Soup`] and indexes as values of serde, in the form of saved files | no |

@@ -38,6 +38,7 @@ mod certified;
 mod curve;
 mod error;
 mod exact;
+mod format;
 mod index;
 pub mod kernel;
 mod kind_set;
@@ -58,6 +59,7 @@ mod soup;
 mod stats;
 mod stats_collector;
 pub mod storage;
+mod weld;
 
 pub use aabb::Aabb;
 pub use any_index::{AnyIndex, CellSummary, Refitted};
@@ -65,6 +67,7 @@ pub use box_query::BoxQuery;
 pub use brute_force::BruteForce;
 pub use certified::{CertifiedQuery, CertifyError, shape_of};
 pub use error::BuildError;
+pub use format::{UnknownExtension, UnknownFormat};
 pub use index::{BuildIndex, ClosestPoint};
 pub use kernel::Key;
 pub use kind_set::{KindSet, PointSet, SegmentSet, TriangleSet};
@@ -136,6 +139,10 @@ pub mod engine {
     /// Vectors of three f64.
     pub mod vector {
         pub use crate::kernel::vector::*;
+    }
+    /// Welding of vertices.
+    pub mod weld {
+        pub use crate::weld::*;
     }
     /// The kernel for eight primitives side by side.
     pub mod side_by_side {

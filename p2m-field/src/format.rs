@@ -1,6 +1,6 @@
 //! The file formats of distance fields.
 
-p2m_mixed::formats! {
+p2m_core::formats! {
     /// The file formats of distance fields, which [`write_field`](crate::write_field) describes.
     FieldFormat {
         /// This is an array of NumPy.

@@ -1,6 +1,6 @@
 //! Building scenes from named parts.
 
-use crate::scene::{Object, Scene, object_number, object_of};
+use crate::scene::{Object, Scene, object_number};
 use nalgebra::Point3;
 use p2m_core::{BuildError, Element, PrimitiveId, PrimitiveSet, Soup};
 use std::ops::Range;
@@ -143,7 +143,7 @@ impl Scene {
     /// O(log n) for n parts.
     #[must_use]
     pub fn object_of(&self, id: PrimitiveId) -> Option<&Object> {
-        object_of(&self.objects, id)
+        self.object_number(id).map(|number| &self.objects[number])
     }
 
     /// Returns the number of the named part that a primitive is in, which counts `objects`.

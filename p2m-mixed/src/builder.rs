@@ -1,12 +1,14 @@
 //! The scene that a reader builds, statement by statement.
 
 use crate::Reason;
+use crate::parse::text::{quote, trim};
 use crate::pieces::state::Pieces;
 use crate::polygon::{CHECK_REPEATS_ABOVE_CORNERS, MAX_CORNER_SQUARES, Triangulator};
 use crate::scene::{Object, Scene, Skipped};
-use crate::text::{quote, trim};
 use nalgebra::Point3;
 use p2m_core::{Element, PrimitiveSet, Soup};
+use std::fs::File;
+use std::io::BufReader;
 use std::mem::take;
 use std::sync::Arc;
 
@@ -182,6 +184,21 @@ impl<'a> SceneBuilder<'a> {
     pub(crate) fn in_pieces(pieces: Pieces<'a>) -> Self {
         let output = Output { pieces: Some(Box::new(pieces)), ..Output::default() };
         Self { output, ..Self::default() }
+    }
+
+    /// Returns whether it makes pieces.
+    pub(crate) fn makes_pieces(&self) -> bool {
+        self.output.pieces.is_some()
+    }
+
+    /// Says that primitives use no vertices of earlier pieces, which are then not kept.
+    pub(crate) fn keep_vertices_of_pieces(&mut self) {
+        self.output.pieces.iter_mut().for_each(|pieces| pieces.keep_vertices_of_pieces());
+    }
+
+    /// Opens the file another time, if it is read in pieces and can be read twice.
+    pub(crate) fn open_again(&self) -> Option<BufReader<File>> {
+        self.output.pieces.as_ref()?.open_again()
     }
 
     /// Returns the number of vertices.

@@ -1,6 +1,6 @@
 //! Errors of readers: the file, the location in it, and the reason.
 
-use p2m_core::{BuildError, RayError};
+use p2m_core::{BuildError, RayError, UnknownExtension};
 use std::fmt;
 
 /// The error of a file that cannot be read.
@@ -26,6 +26,12 @@ pub struct ReadError {
 impl ReadError {
     pub(crate) fn new(file: &str, location: FileLocation, reason: Reason) -> Self {
         Self { file: file.to_owned(), location, reason }
+    }
+}
+
+impl From<UnknownExtension> for ReadError {
+    fn from(UnknownExtension { file, extension, supported }: UnknownExtension) -> Self {
+        Self { file, location: FileLocation::File, reason: Reason::UnknownExtension { extension, supported } }
     }
 }
 

@@ -1,17 +1,15 @@
 //! Scenes of triangles, segments and points, with their readers, writers, generators and statistics.
 //!
-//! - **Scenes**: [`read_scene`] reads OBJ, PLY, STL and OFF files into a [`Scene`], and [`write_scene`] writes them.
+//! - **Scenes**: [`read_scene`] reads files of every [`Format`] into a [`Scene`], and [`write_scene`] writes them.
 //!   [`Scene::add`] and similar methods build a scene from named parts. [`Scene::skipped`] lists the data of a file
 //!   that the reader left out. [`read_scene_in_pieces`] reads files larger than the memory.
 //! - **Queries**: [`read_points`] and [`read_rays`] read query points and rays from XYZ, CSV, NPY and PLY files.
-//! - **Answers**: [`AnswerWriter`], [`HitWriter`] and [`NumberWriter`] write the answers to queries.
 //! - **Generators**: [`generate`] makes scenes that are the same on every platform.
-//! - **Statistics**: [`statistics`] describes a scene, and [`picture`] and [`Camera`] draw it.
+//! - **Statistics**: [`statistics`] describes a scene.
 //!
 //! A [`ReadError`] has the file, the location in it and the reason.
 //!
-//! The features `parry`, `parry-f32` and `rstar` add the module `adapters` and shapes of parry as parts of scenes. The
-//! feature `mint` lets [`Scene::add_points`] and similar methods take positions of the crate mint.
+//! The feature `mint` lets [`Scene::add_points`] and similar methods take positions of the crate mint.
 //!
 //! ```
 //! use p2m_core::{BruteForce, ClosestPoint};
@@ -30,67 +28,39 @@
 #![cfg_attr(docsrs, feature(doc_cfg))]
 #![forbid(unsafe_code)]
 
-#[cfg(any(feature = "parry", feature = "parry-f32", feature = "rstar"))]
-pub mod adapters;
-mod answers;
 mod assemble;
-mod blocks;
 mod builder;
-mod bytes;
-mod camera;
 mod error;
-mod format;
+mod formats;
 pub mod generate;
-mod obj;
-mod off;
 mod open;
-pub mod picture;
+mod parse;
 mod pieces;
-mod ply;
 mod points;
 mod polygon;
 mod read;
-mod saved;
 mod scene;
 pub mod statistics;
-mod stl;
-mod text;
-mod tokenizer;
-mod vector;
-mod weld;
 mod write;
 
-pub use answers::{
-    AnswerColumn, AnswerEncoder, AnswerRecord, AnswerWriter, HitEncoder, HitWriter, NumberEncoder, NumberWriter,
-};
-pub use camera::Camera;
 pub use error::{FileLocation, HeaderProblem, ReadError, Reason};
-pub use format::{AnswerFormat, Format, PointFormat, UnknownFormat};
-pub use obj::read_obj;
-pub use off::read_off;
+pub use formats::Format;
+pub use formats::obj::{read_obj, write_obj};
+pub use formats::off::{read_off, write_off};
+pub use formats::p2m::{load_scene, read_p2m, save_scene, write_p2m};
+pub use formats::ply::{VertexValues, read_ply, write_ply, write_ply_ascii, write_ply_with_values};
+pub use formats::stl::{StlRounding, read_stl, stl_rounding, write_stl};
+pub use p2m_core::{UnknownExtension, UnknownFormat};
 pub use pieces::{PieceOptions, PieceSummary, read_scene_in_pieces};
-pub use ply::read_ply;
-pub use points::{read_points, read_points_from, read_rays, read_rays_from};
+pub use points::{PointFormat, read_points, read_points_from, read_rays, read_rays_from};
 pub use polygon::MAX_CORNERS;
 pub use read::{read_scene, read_scene_from};
-pub use saved::{load_scene, read_p2m, save_scene, write_p2m};
 pub use scene::{Object, Scene, Skipped};
-pub use stl::read_stl;
-pub use write::{
-    StlRounding, VertexValues, WriteError, stl_rounding, write_obj, write_off, write_ply, write_ply_ascii,
-    write_ply_with_values, write_scene, write_stl,
-};
+pub use write::{WriteError, write_scene};
 
 /// The parts of this crate that its sibling crates use. They are not part of the public interface.
 #[doc(hidden)]
 pub mod engine {
-    pub use crate::answers::npy_header;
-    pub use crate::format::{unknown_extension, unknown_format};
     pub use crate::read::read_scene_in_blocks;
-    pub mod weld {
-        pub use crate::weld::*;
-    }
-    pub mod vector {
-        pub use crate::vector::*;
-    }
+    pub use crate::scene::object_number;
 }

@@ -1,19 +1,15 @@
 //! Reading a scene in any format.
 
-use crate::blocks::{BLOCK_BYTES, Source};
 use crate::builder::SceneBuilder;
 use crate::error::ReadError;
-use crate::format::Format;
-use crate::off::read_off;
+use crate::formats::Format;
 use crate::open::open;
-use crate::saved::read_p2m;
+use crate::parse::blocks::{BLOCK_BYTES, Source};
 use crate::scene::Scene;
-use crate::stl::read_stl;
-use crate::{obj, ply};
 use std::io::BufRead;
 use std::path::Path;
 
-/// Reads a scene from a file. Its extension, in any case, selects the format: obj, ply, stl, off or p2m.
+/// Reads a scene from a file. Its extension, in any case, is the name of its [`Format`].
 ///
 /// # Errors
 /// [`ReadError`] has the file, the location and the reason. No scene is returned for a file with an error.
@@ -26,7 +22,8 @@ pub fn read_scene(path: &Path) -> Result<Scene, ReadError> {
 /// Reads a scene from any reader, such as the standard input. `name` is the name of the file in messages.
 ///
 /// The file is read once from its start to its end. That takes at most three times the memory of the finished scene,
-/// whatever the file announces, besides small buffers and the longest line of a text.
+/// whatever the file announces, besides small buffers and the longest line of a text. The file of a saved index is in
+/// memory in addition.
 ///
 /// ```
 /// use p2m_mixed::{Format, read_scene_from};
@@ -52,12 +49,5 @@ pub fn read_scene_in_blocks(
     name: &str,
     block_bytes: usize,
 ) -> Result<Scene, ReadError> {
-    let builder = SceneBuilder::default();
-    match format {
-        Format::Obj => obj::read(Source::with_block_bytes(reader, block_bytes), name, builder, &mut || false),
-        Format::Ply => ply::read(Source::with_block_bytes(reader, block_bytes), name, builder),
-        Format::Stl => read_stl(reader, name),
-        Format::Off => read_off(reader, name),
-        Format::P2m => read_p2m(reader, name),
-    }
+    format.read(Source::with_block_bytes(reader, block_bytes), name, SceneBuilder::default())
 }

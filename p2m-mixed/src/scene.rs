@@ -59,13 +59,9 @@ pub struct Object {
     pub ids: Range<usize>,
 }
 
-/// Returns the object that a primitive belongs to. Objects have to be in ascending order.
-pub(crate) fn object_of(objects: &[Object], id: PrimitiveId) -> Option<&Object> {
-    object_number(objects, id).map(|number| &objects[number])
-}
-
-/// Returns the number of the object that a primitive belongs to.
-pub(crate) fn object_number(objects: &[Object], id: PrimitiveId) -> Option<usize> {
+/// Returns the number of the object that a primitive belongs to. Objects have to be in ascending order.
+#[must_use]
+pub fn object_number(objects: &[Object], id: PrimitiveId) -> Option<usize> {
     let number = objects.partition_point(|object| object.ids.start <= id.index()).checked_sub(1)?;
     objects[number].ids.contains(&id.index()).then_some(number)
 }

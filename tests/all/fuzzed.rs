@@ -6,41 +6,31 @@
 //! indexes anew.
 #![cfg(all(feature = "bvh", feature = "interception", feature = "kdop", feature = "scene"))]
 
-#[allow(unreachable_pub, reason = "a crate of its own")]
+#[allow(unreachable_pub, unexpected_cfgs, reason = "a crate of its own, with its own features")]
 #[path = "../../tools/fuzz/src/lib.rs"]
 mod fuzz;
 
-use fuzz::{QUESTIONS, backends, pairs, queries, rays, readers, saved, scene};
-use p2m::scene::{Format, PointFormat};
+use fuzz::readers::Reader;
+use fuzz::{QUESTIONS, backends, pairs, queries, rays, saved, scene};
 use rand::RngExt;
 use std::collections::BTreeSet;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::path::{Path, PathBuf};
 
-type Check = fn(&[u8]);
+type Check = Box<dyn Fn(&[u8])>;
 
-const TARGETS: [(&str, Check); 12] = [
-    ("obj", |file| readers::scene(file, Format::Obj)),
-    ("ply", |file| readers::scene(file, Format::Ply)),
-    ("stl", |file| readers::scene(file, Format::Stl)),
-    ("off", |file| readers::scene(file, Format::Off)),
-    ("xyz", |file| readers::points(file, PointFormat::Xyz)),
-    ("csv", |file| readers::points(file, PointFormat::Csv)),
-    ("npy", |file| readers::points(file, PointFormat::Npy)),
-    ("ply_points", |file| readers::points(file, PointFormat::Ply)),
-    ("queries", |input| {
-        queries::check(input);
-    }),
-    ("rays", |input| {
-        rays::check(input);
-    }),
-    ("pairs", |input| {
-        pairs::check(input);
-    }),
-    ("saved", |input| {
-        saved::check(input);
-    }),
-];
+/// Returns the names of the targets, which are those of the folders of their seeds, and their checks.
+fn targets() -> Vec<(String, Check)> {
+    let others: [(&str, fn(&[u8])); 4] = [
+        ("queries", |input| _ = queries::check(input)),
+        ("rays", |input| _ = rays::check(input)),
+        ("pairs", |input| _ = pairs::check(input)),
+        ("saved", |input| _ = saved::check(input)),
+    ];
+    let readers = Reader::all().into_iter();
+    let readers = readers.map(|reader| (reader.name(), Box::new(move |file: &[u8]| reader.check(file)) as Check));
+    readers.chain(others.map(|(name, check)| (name.to_owned(), Box::new(check) as Check))).collect()
+}
 
 fn folder(name: &str) -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("tools/fuzz").join(name)
@@ -63,13 +53,13 @@ fn every_seed_and_everything_that_once_failed_passes() {
     let mut folders = vec![folder("seeds"), folder("crashes")];
     folders.extend(std::env::var_os("P2M_FUZZED").map(PathBuf::from));
     let mut failed = Vec::new();
-    for (target, check) in TARGETS {
+    for (target, check) in targets() {
         let mut count = 0;
-        for file in folders.iter().flat_map(|folder| files(&folder.join(target))) {
+        for file in folders.iter().flat_map(|folder| files(&folder.join(&target))) {
             let input = std::fs::read(&file).expect("readable");
             count += 1;
             if catch_unwind(AssertUnwindSafe(|| check(&input))).is_err() {
-                let content = match target {
+                let content = match target.as_str() {
                     "queries" => queries::describe(&input),
                     "rays" => rays::describe(&input),
                     "pairs" => pairs::describe(&input),
@@ -90,9 +80,9 @@ fn what_once_failed_is_explained() {
     let text = std::fs::read_to_string(folder("crashes/README.md")).expect("a page");
     let lines = text.lines().filter_map(|line| line.strip_prefix("| `")?.split('`').next());
     let explained: BTreeSet<String> = lines.map(str::to_owned).collect();
-    let there = TARGETS.iter().flat_map(|(target, _)| {
-        let name = move |file: &PathBuf| format!("{target}/{}", file.file_name().expect("a file").display());
-        files(&folder("crashes").join(target)).iter().map(name).collect::<Vec<_>>()
+    let there = targets().into_iter().flat_map(|(target, _)| {
+        let name = |file: &PathBuf| format!("{target}/{}", file.file_name().expect("a file").display());
+        files(&folder("crashes").join(&target)).iter().map(name).collect::<Vec<_>>()
     });
     assert_eq!(explained, there.collect());
 }

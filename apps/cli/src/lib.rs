@@ -27,7 +27,7 @@ use std::io::Write;
 
 /// Closest points and hits of rays in scenes of triangles, segments and points
 #[derive(Parser)]
-#[command(name = "p2m", version, after_help = EXAMPLES)]
+#[command(name = "p2m", version, after_help = examples())]
 struct Cli {
     /// Print no summary, no note and no progress on the standard error; errors are printed
     #[arg(long, short, global = true)]
@@ -37,8 +37,10 @@ struct Cli {
     command: Command,
 }
 
-const EXAMPLES: &str = "\
-Scenes are OBJ, PLY, STL and OFF files, and indexes that `p2m build` saved. A `-` in place of a file is the standard input or output.
+fn examples() -> String {
+    format!(
+        "\
+Scenes are {} files, and indexes that `p2m build` saved. A `-` in place of a file is the standard input or output.
 
 Examples:
   p2m query scene.obj --random 1000 --out answers.csv
@@ -49,7 +51,10 @@ Examples:
 
 The exit code is 0 for success, 1 for what could not be read, written or done, and 2 for wrong usage; 128 plus the number of \
 the signal after an interruption (130 for Ctrl-C), which leaves no half-written file. While a progress bar says that Ctrl-C ends the \
-refinement of an octree, the first one only does that, and the run goes on with a coarser index.";
+refinement of an octree, the first one only does that, and the run goes on with a coarser index.",
+        io::input::format_list(|_| true, "and")
+    )
+}
 
 #[derive(Subcommand)]
 enum Command {

@@ -42,6 +42,17 @@ pub fn add_scaled<T: Number>(a: [T; 3], s: T, b: [T; 3]) -> [T; 3] {
     [a[0] + s * b[0], a[1] + s * b[1], a[2] + s * b[2]]
 }
 
+/// Returns s a.
+pub fn scaled(a: V3, s: f64) -> V3 {
+    a.map(|x| x * s)
+}
+
+/// Returns the length, without overflow or underflow of intermediate results.
+pub fn length(a: V3) -> f64 {
+    let size = largest(&[a]);
+    if size > 0.0 && size.is_finite() { size * norm_squared(a.map(|x| x / size)).sqrt() } else { size }
+}
+
 /// Returns the smaller number by a comparison, which compiles to one instruction. The operands must not be NaN.
 #[inline(always)]
 pub fn smaller<T: Float>(a: T, b: T) -> T {

@@ -28,8 +28,8 @@ pub struct QueryOptions<T: Real> {
     ///
     /// The interception indexes count the sites on the way to a cell and the packets of its list; with a limit of 0
     /// their answer comes from the cell alone. If there is a largest distance as well, `None` says that nothing was
-    /// found within it, and not that nothing is there. [`BruteForce`](crate::BruteForce) and the adapters for the
-    /// trees of parry3d and rstar ignore the limit and answer exactly.
+    /// found within it, and not that nothing is there. [`BruteForce`](crate::BruteForce) ignores the limit
+    /// and answers exactly.
     pub max_visits: u32,
 }
 

@@ -8,8 +8,8 @@
 
 use nalgebra::Point3;
 use p2m_bvh::TreeIndex;
+use p2m_core::engine::weld::{VertexWelder, group_by_vertex};
 use p2m_core::{Aabb, BuildError, ClosestPoint, PrimitiveSet, Soup};
-use p2m_mixed::engine::weld::{VertexWelder, group_by_vertex};
 use std::f64::consts::PI;
 
 /// The boundary has a tree of its edges only if it has at least this many triangles for each edge.

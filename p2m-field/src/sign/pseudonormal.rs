@@ -15,8 +15,9 @@ use super::topology::{NO_TRIANGLE, RayTree, Topology};
 use super::types::{ClosestFeature, Counter, SharedSoup, Sign, SignError};
 use nalgebra::{Point3, Vector3};
 use p2m_bvh::TreeIndex;
+use p2m_core::engine::arithmetic::cross;
+use p2m_core::engine::vector::{V3, add, dot, largest, length, scaled, sub};
 use p2m_core::{Aabb, ClosestPoint, Feature, Ray, RayQuery, Real, Soup};
-use p2m_mixed::engine::vector::{V3, add, cross, dot, largest, length, scaled, sub};
 
 /// The smallest sine that is not ambiguous: 2^-20. The limit applies to the angle between the offset and the tangent
 /// plane, and to the angle of a triangle at its first vertex.

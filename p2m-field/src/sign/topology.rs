@@ -3,8 +3,8 @@
 use super::types::{SignError, check_kinds};
 use nalgebra::Point3;
 use p2m_bvh::TreeIndex;
+use p2m_core::engine::weld::{UNUSED, UnionFind, VertexWelder, group_by_vertex};
 use p2m_core::{Aabb, Crossing, PrimitiveId, Ray, RayCollector, Soup};
-use p2m_mixed::engine::weld::{UNUSED, UnionFind, VertexWelder, group_by_vertex};
 use std::ops::ControlFlow;
 
 /// The tree in which rays are cast.

@@ -14,8 +14,9 @@
 use super::boundary::Boundary;
 use super::types::{Counter, SharedSoup, Sign, SignError, check_kinds};
 use nalgebra::Point3;
+use p2m_core::engine::arithmetic::cross;
+use p2m_core::engine::vector::{V3, add, dot, length, scaled, sub};
 use p2m_core::kernel::power_of_two;
-use p2m_mixed::engine::vector::{V3, add, cross, dot, length, scaled, sub};
 use std::f64::consts::PI;
 use std::ops::Range;
 

@@ -3,17 +3,15 @@
 mod positions;
 pub(crate) mod state;
 
-use crate::blocks::Source;
 use crate::builder::SceneBuilder;
-use crate::error::{FileLocation, ReadError, Reason};
-use crate::format::Format;
+use crate::error::ReadError;
+use crate::formats::Format;
 use crate::open::open;
-use crate::saved::read_p2m;
+use crate::parse::blocks::Source;
 use crate::scene::{Scene, Skipped};
-use crate::{obj, off, ply, stl};
 use p2m_core::{PrimitiveId, PrimitiveSet};
 use positions::PositionStore;
-use state::{Pieces, Positions};
+use state::Pieces;
 use std::ops::ControlFlow;
 use std::path::{Path, PathBuf};
 
@@ -126,7 +124,7 @@ pub fn read_scene_in_pieces<E: From<ReadError>>(
     options: &PieceOptions,
     visit: &mut dyn FnMut(Scene) -> Result<(), E>,
 ) -> Result<PieceSummary, E> {
-    let format = Format::from_path(path)?;
+    let format = Format::from_path(path).map_err(ReadError::from)?;
     let name = path.display().to_string();
     let reader = open(path, &name)?;
     let mut summary = PieceSummary::default();
@@ -142,24 +140,9 @@ pub fn read_scene_in_pieces<E: From<ReadError>>(
             }
         }
     };
-    let positions = match format {
-        Format::Stl => Positions::OfPiece(Vec::new()),
-        _ => Positions::OfFile(PositionStore::new(options.max_position_bytes, options.folder.clone())),
-    };
-    let builder = SceneBuilder::in_pieces(Pieces::new(options.piece_len(), positions, &mut send));
-    let last = match format {
-        Format::Obj => {
-            let is_file = path.metadata().is_ok_and(|m| m.is_file());
-            let mut has_objects = || is_file && open(path, &name).is_ok_and(obj::has_objects);
-            obj::read(Source::new(reader), &name, builder, &mut has_objects)
-        }
-        Format::Ply => ply::read(Source::new(reader), &name, builder),
-        Format::Stl => stl::read(reader, &name, builder),
-        Format::Off => off::read(reader, &name, builder),
-        Format::P2m => read_p2m(reader, &name).and_then(|scene| {
-            divide(scene, builder).map_err(|reason| ReadError::new(&name, FileLocation::File, reason))
-        }),
-    };
+    let store = PositionStore::new(options.max_position_bytes, options.folder.clone());
+    let builder = SceneBuilder::in_pieces(Pieces::new(options.piece_len(), path, store, &mut send));
+    let last = format.read(Source::new(reader), &name, builder);
     let mut last = match (last, error.take()) {
         (_, Some(error)) => return Err(error),
         (last, None) => last?,
@@ -171,30 +154,4 @@ pub fn read_scene_in_pieces<E: From<ReadError>>(
         visit(last)?;
     }
     Ok(summary)
-}
-
-/// Adds the primitives of a scene to a builder, and returns its last piece.
-fn divide(scene: Scene, mut builder: SceneBuilder<'_>) -> Result<Scene, Reason> {
-    for &position in scene.soup.positions() {
-        builder.push_vertex(position)?;
-    }
-    let mut objects = scene.objects.iter().peekable();
-    for (id, element) in scene.soup.elements().enumerate() {
-        while let Some(object) = objects.peek()
-            && object.ids.start <= id
-        {
-            if id < object.ids.end {
-                if id == object.ids.start {
-                    builder.start_run(object.name.as_bytes());
-                }
-                break;
-            }
-            builder.start_run(b"");
-            objects.next();
-        }
-        builder.push(element, scene.sources[id] as usize)?;
-    }
-    let mut last = builder.finish();
-    last.skipped = scene.skipped;
-    Ok(last)
 }

@@ -2,20 +2,23 @@
 
 use super::positions::PositionStore;
 use crate::error::Reason;
+use crate::open::open;
 use crate::scene::Scene;
 use hashbrown::HashTable;
 use hashbrown::hash_table::Entry;
 use nalgebra::Point3;
 use p2m_core::Soup;
+use std::fs::File;
 use std::hash::{BuildHasher, RandomState};
-use std::io;
+use std::io::{self, BufReader};
 use std::ops::ControlFlow;
+use std::path::Path;
 
 /// A function that takes a full piece and returns whether reading goes on.
 type Visitor<'a> = dyn FnMut(Scene) -> ControlFlow<()> + 'a;
 
 /// The positions of vertices that primitives may use.
-pub(super) enum Positions {
+enum Positions {
     /// The vertices of the file.
     OfFile(PositionStore),
     /// The vertices since the last call of [`Pieces::forget_old_vertices`].
@@ -25,6 +28,7 @@ pub(super) enum Positions {
 /// The state of a builder of pieces.
 pub(crate) struct Pieces<'a> {
     max_primitives: usize,
+    path: &'a Path,
     positions: Positions,
     indices: IndexTable,
     visitor: &'a mut Visitor<'a>,
@@ -33,8 +37,25 @@ pub(crate) struct Pieces<'a> {
 }
 
 impl<'a> Pieces<'a> {
-    pub(super) fn new(max_primitives: usize, positions: Positions, visitor: &'a mut Visitor<'a>) -> Self {
-        Self { max_primitives, positions, indices: IndexTable::default(), visitor, has_ended: false }
+    pub(super) fn new(
+        max_primitives: usize,
+        path: &'a Path,
+        store: PositionStore,
+        visitor: &'a mut Visitor<'a>,
+    ) -> Self {
+        let (positions, indices) = (Positions::OfFile(store), IndexTable::default());
+        Self { max_primitives, path, positions, indices, visitor, has_ended: false }
+    }
+
+    /// Keeps only the vertices of the current piece, and these in memory.
+    pub(crate) fn keep_vertices_of_pieces(&mut self) {
+        self.positions = Positions::OfPiece(Vec::new());
+    }
+
+    /// Opens the file another time, unless it is a pipe or cannot be opened.
+    pub(crate) fn open_again(&self) -> Option<BufReader<File>> {
+        let is_file = self.path.metadata().is_ok_and(|m| m.is_file());
+        is_file.then(|| open(self.path, "").ok()).flatten()
     }
 
     /// Returns the number of primitives of a full piece.

@@ -8,12 +8,26 @@ mod table;
 
 pub use rays::{read_rays, read_rays_from};
 
+use crate::ReadError;
 use crate::open::open;
-use crate::{PointFormat, ReadError};
 use nalgebra::Point3;
 use read::read;
 use std::io::BufRead;
 use std::path::Path;
+
+p2m_core::formats! {
+    /// The file formats of query points and rays, see [`read_points`](crate::read_points).
+    PointFormat {
+        /// This is text with columns that are separated by white space.
+        Xyz = "xyz" | "txt",
+        /// This is text with columns that are separated by commas or semicolons.
+        Csv = "csv",
+        /// This is an array of NumPy.
+        Npy = "npy",
+        /// The points are the vertices of a PLY file.
+        Ply = "ply",
+    }
+}
 
 /// Reads query points from a file. Its extension, in any case, selects the format.
 ///
@@ -39,7 +53,7 @@ use std::path::Path;
 /// The vertices are the points, whatever the primitives are.
 ///
 /// # Files of answers
-/// A file that an [`AnswerWriter`](crate::AnswerWriter) wrote can be read as its queries, in each of its formats.
+/// A file of answers that the program `p2m` wrote can be read as its queries, in each of its formats.
 ///
 /// # Errors
 /// [`ReadError`] with the location for numbers that are invalid or not finite, rows of fewer than three numbers,

@@ -44,8 +44,7 @@ impl Row<6> for Ray {
 ///   `y`, `z`, `dx`, `dy`, `dz`.
 /// - The vertices of a PLY file are the origins, and their normals `nx`, `ny`, `nz` are the directions.
 ///
-/// A file that a [`HitWriter`](crate::HitWriter) or a [`NumberWriter`](crate::NumberWriter) wrote can be read as its
-/// rays, in each of its formats.
+/// A file of answers that the program `p2m` wrote can be read as its rays, in each of its formats.
 ///
 /// # Errors
 /// The errors are those of [`read_points`](crate::read_points), and [`Reason::Ray`] for a direction that is zero.

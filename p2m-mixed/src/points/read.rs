@@ -2,7 +2,7 @@
 
 use super::row::Row;
 use super::{npy, table};
-use crate::ply::read_vertices;
+use crate::formats::ply::read_vertices;
 use crate::{PointFormat, ReadError};
 use std::io::BufRead;
 

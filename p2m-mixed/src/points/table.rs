@@ -1,7 +1,7 @@
 //! Readers of text tables: XYZ and CSV.
 
 use super::row::Row;
-use crate::text::{LineReader, Tokens, parse_finite, parse_number, quote};
+use crate::parse::text::{LineReader, Tokens, parse_finite, parse_number, quote};
 use crate::{FileLocation, ReadError, Reason};
 use std::io::BufRead;
 

@@ -13,8 +13,8 @@ mod shape;
 pub use notes::{MIN_FAR_DIAGONALS, MIN_SPREAD_ORDERS, Note};
 pub use objects::{ObjectCounts, objects};
 
-use crate::weld::{UNUSED, VertexWelder, group_by_vertex};
 use nalgebra::Point3;
+use p2m_core::engine::weld::{UNUSED, VertexWelder, group_by_vertex};
 use p2m_core::kernel::SLIVER_SINE;
 use p2m_core::{Aabb, Element, PrimitiveSet, Soup};
 use shape::{TriangleMeasures, length};

@@ -4,9 +4,10 @@
 //! range, and exact integers where a triangle is so flat that its area would be mostly rounding error. Results beyond
 //! the range of f64 are rounded to the nearest number.
 
-use crate::vector::{V3, cross, largest, norm_squared, sub};
 use dashu_int::{IBig, ops::BitTest};
 use nalgebra::Point3;
+use p2m_core::engine::arithmetic::cross;
+use p2m_core::engine::vector::{V3, largest, norm_squared, sub};
 use p2m_core::kernel::power_of_two;
 
 /// Triangles whose height is below 2^-26 of the longest edge are measured in integers. Floating-point arithmetic has an

@@ -1,7 +1,5 @@
-//! Tests of readers, writers, generators and adapters in one program, whose allocator counts bytes for each thread.
+//! Tests of readers, writers and generators in one program, whose allocator counts bytes for each thread.
 
-mod adapters;
-mod answers;
 mod blocks;
 mod common;
 mod generator;
@@ -13,7 +11,6 @@ mod models;
 mod npy;
 mod obj;
 mod off;
-mod picture;
 mod pieces;
 mod ply;
 mod polygons;

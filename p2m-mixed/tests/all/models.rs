@@ -1,6 +1,6 @@
 //! Real models have the numbers of primitives that the list of models states.
 
-use crate::common::{bits, read_back};
+use crate::common::{bits, lossless, read_back};
 use p2m_mixed::{Format, WriteError, read_scene, stl_rounding, write_stl};
 use std::path::PathBuf;
 
@@ -56,7 +56,7 @@ fn models() -> impl Iterator<Item = (PathBuf, &'static str, [usize; 2])> {
 fn models_are_written_and_read_back_as_the_same_scene() {
     for (path, name, [_, segments]) in models() {
         let scene = read_scene(&path).unwrap();
-        for format in [Format::Obj, Format::Ply, Format::Off] {
+        for format in lossless() {
             let again = read_back(&scene, format);
             assert_eq!(again.soup, scene.soup, "{name} as {format}");
             assert_eq!(bits(&again), bits(&scene), "{name} as {format}");

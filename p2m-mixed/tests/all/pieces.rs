@@ -1,9 +1,6 @@
 //! The pieces of a file make up its scene.
 
-use crate::common::{
-    ENCODINGS, RICH_OBJ, RICH_OFF, RICH_STL, measured_on_one_thread, rich_binary_off, rich_binary_stl, rich_ply,
-    written,
-};
+use crate::common::{lossless, measured_on_one_thread, rich_files, written};
 use nalgebra::Point3;
 use p2m_core::{Element, PrimitiveId, PrimitiveSet, Soup};
 use p2m_mixed::{Format, Object, PieceOptions, PieceSummary, ReadError, Scene, read_scene, read_scene_in_pieces};
@@ -103,19 +100,6 @@ fn check(bytes: impl AsRef<[u8]>, format: Format) -> bool {
     valid[0]
 }
 
-/// Returns files of every format with everything that it can have.
-fn rich_files() -> Vec<(Vec<u8>, Format)> {
-    let mut files = vec![
-        (RICH_OBJ.into(), Format::Obj),
-        (RICH_STL.into(), Format::Stl),
-        (rich_binary_stl(), Format::Stl),
-        (RICH_OFF.into(), Format::Off),
-        (rich_binary_off(), Format::Off),
-    ];
-    files.extend(ENCODINGS.map(|encoding| (rich_ply(encoding), Format::Ply)));
-    files
-}
-
 /// Returns a scene of random primitives of the kinds of a format, some of which are in objects.
 fn random_scene(rng: &mut impl Rng, format: Format) -> Scene {
     let vertices = rng.random_range(1..30);
@@ -125,7 +109,7 @@ fn random_scene(rng: &mut impl Rng, format: Format) -> Scene {
     let elements = (0..count).map(|_| {
         let mut vertex = || rng.random_range(0..vertices);
         let corners = [vertex(), vertex(), vertex()];
-        match if format == Format::Stl { 0 } else { rng.random_range(0..3) } {
+        match if format.is_lossless() { rng.random_range(0..3) } else { 0 } {
             0 => Element::Triangle(corners),
             1 => Element::Segment([corners[0], corners[1]]),
             _ => Element::Point(corners[0]),
@@ -148,7 +132,7 @@ fn random_scene(rng: &mut impl Rng, format: Format) -> Scene {
 
 #[test]
 fn pieces_of_rich_files_make_up_their_scenes() {
-    for (bytes, format) in rich_files() {
+    for (bytes, format, _) in rich_files() {
         assert!(check(&bytes, format), "{format}");
     }
 }
@@ -157,7 +141,7 @@ fn pieces_of_rich_files_make_up_their_scenes() {
 fn pieces_of_random_scenes_make_up_the_scenes() {
     for case in cases(400, 20) {
         let mut rng = rng("pieces of scenes", case);
-        for format in [Format::Obj, Format::Ply, Format::Stl, Format::Off, Format::P2m] {
+        for &format in Format::ALL {
             let scene = random_scene(&mut rng, format);
             assert!(check(written(&scene, format), format), "{format}");
         }
@@ -170,7 +154,7 @@ fn damaged_files_have_the_same_errors_in_pieces() {
     let cases = cases(1000, 60);
     for case in cases.clone() {
         let mut rng = rng("pieces of damaged files", case);
-        for (mut bytes, format) in rich_files() {
+        for (mut bytes, format, _) in rich_files() {
             let at = rng.random_range(0..bytes.len());
             match rng.random_range(0..4) {
                 0 => bytes.truncate(at),
@@ -258,7 +242,8 @@ impl From<ReadError> for Stop {
 
 #[test]
 fn an_error_of_the_visitor_ends_reading_and_is_returned() {
-    for (mut bytes, format) in rich_files() {
+    // A damaged file of a saved index has no pieces.
+    for (mut bytes, format, _) in rich_files().into_iter().filter(|(_, format, _)| *format != Format::P2m) {
         bytes.truncate(bytes.len() - 1);
         bytes.extend(b"\nwrong");
         let file = SceneFile::new(&bytes, format);
@@ -290,7 +275,7 @@ fn an_error_of_the_visitor_ends_reading_and_is_returned() {
 fn scattered_scene(vertices: u32, format: Format) -> Scene {
     let position = |i: u32| Point3::new(f64::from(i), f64::from(i % 3) * 0.1, -0.0);
     let elements = (0..2 * vertices).map(|i| match i % 5 {
-        0 if format != Format::Stl => Element::Segment([i / 2, vertices - 1 - i / 2]),
+        0 if format.is_lossless() => Element::Segment([i / 2, vertices - 1 - i / 2]),
         1 => Element::Triangle([i / 2, i % vertices, (7 * i) % vertices]),
         _ => Element::Triangle([i / 2, (i / 2 + 1) % vertices, (i / 2 + 2) % vertices]),
     });
@@ -299,7 +284,7 @@ fn scattered_scene(vertices: u32, format: Format) -> Scene {
 
 #[test]
 fn vertices_beyond_the_memory_are_in_a_temporary_file() {
-    for format in [Format::Obj, Format::Ply, Format::Off] {
+    for format in lossless() {
         let file = SceneFile::new(written(&scattered_scene(20_000, format), format), format);
         let options = PieceOptions::default().with_max_position_bytes(0).with_max_primitives(997);
         assert!(check_with(&file.path, &options));
@@ -313,7 +298,8 @@ fn vertices_beyond_the_memory_are_in_a_temporary_file() {
 #[test]
 fn memory_is_that_of_two_pieces_and_of_the_vertices_that_are_allowed() {
     const MAX_BYTES: u64 = 1 << 20;
-    for format in [Format::Obj, Format::Ply, Format::Stl, Format::Off] {
+    // A file of a saved index is read as a whole.
+    for &format in Format::ALL.iter().filter(|format| **format != Format::P2m) {
         let mut scene = scattered_scene(60_000, format);
         if format == Format::Ply {
             // The faces of a file with several kinds have ids, so they stay in memory.

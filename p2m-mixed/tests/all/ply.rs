@@ -3,7 +3,7 @@
 use crate::common::{ENCODINGS, Encoding, N, Ply, elements, p, ply, rich_ply, s, skipped, t};
 use nalgebra::Point3;
 use p2m_core::Element;
-use p2m_mixed::{FileLocation, HeaderProblem, ReadError, Reason};
+use p2m_mixed::{FileLocation, HeaderProblem, PointFormat, ReadError, Reason, read_points_from};
 
 const XYZ: &str = "property float x\nproperty float y\nproperty float z";
 const LIST: &str = "property list uchar int vertex_indices";
@@ -449,4 +449,18 @@ fn announced_sizes_are_not_believed() {
         let file = Ply::new(encoding, &format!("element vertex 4294967296\n{XYZ}"));
         assert!(matches!(file.read().unwrap_err().reason, Reason::ElementTooLarge { .. }));
     }
+}
+
+#[test]
+fn vertices_of_a_ply_file_are_points() {
+    let text = "ply\nformat ascii 1.0\nelement face 1\nproperty list uchar int vertex_indices\nelement vertex 2\n\
+        property float y\nproperty float x\nproperty uchar c\nproperty int z\nelement other 5\nproperty int a\nend_header\n\
+        3 9 9 9\n2 1 0 3\n5 4 0 6\nwhat follows is not read";
+    let read = |text: &str| read_points_from(text.as_bytes(), PointFormat::Ply, "q.ply");
+    assert_eq!(read(text).unwrap(), [Point3::new(1.0, 2.0, 3.0), Point3::new(4.0, 5.0, 6.0)]);
+    let message = |text: &str| read(text).unwrap_err().to_string();
+    assert_eq!(message(&text.replace("5 4 0", "5 inf 0")), "q.ply:15: coordinate 'inf' is not finite");
+    assert_eq!(message(&text.replace("5 4 0 6\nwhat follows is not read", "")), "q.ply:15: unexpected end of file");
+    assert_eq!(message(&text.replace("vertex 2", "vertices 2")), "q.ply: bad header: there is no element 'vertex'");
+    assert_eq!(message(&text.replace("float x", "float r")), "q.ply: bad header: element 'vertex' has no property 'x'");
 }

@@ -1,15 +1,12 @@
 //! Broken files give an error or a scene, but no panic, and take little memory. Scenes are written and read again.
 
 use crate::common::{
-    ENCODINGS, RICH_NPY, RICH_OBJ, RICH_OFF, RICH_STL, elements, npy, obj, off, ply, read_back, rich_binary_off,
-    rich_binary_stl, rich_ply, stl,
+    ENCODINGS, RICH_NPY, elements, lossless, npy, obj, off, ply, read_back, rich_files, rich_ply, stl,
 };
 use nalgebra::Point3;
 use p2m_core::Ray;
-use p2m_mixed::{
-    AnswerFormat, AnswerWriter, Format, HitWriter, PointFormat, ReadError, Scene, read_points_from, read_rays_from,
-};
-use p2m_testkit::{cases, rng};
+use p2m_mixed::{Format, PointFormat, ReadError, Scene, read_points_from, read_rays_from, read_scene_from};
+use p2m_testkit::{cases, point_file, rng};
 use rand::{Rng, RngExt};
 
 /// A limit far above the memory that the files need, and far below the memory that their headers can announce.
@@ -22,18 +19,17 @@ fn with_little_memory(work: impl FnOnce()) {
 }
 
 /// A function that reads a file, checks the result, and returns whether the file is valid.
-type Reader = fn(&[u8]) -> bool;
+type Reader = Box<dyn Fn(&[u8]) -> bool>;
 
 /// Returns files, how to read them, and the number of lengths at which a truncated file is still valid.
 fn files() -> Vec<(Vec<u8>, Reader, usize)> {
     let anywhere = usize::MAX;
-    let mut files: Vec<(Vec<u8>, Reader, usize)> = vec![
-        (RICH_OBJ.into(), |b| check(obj(b)), anywhere),
-        // A text needs neither a line end nor text after the word `endsolid`, which occurs twice.
-        (RICH_STL.into(), |b| check(stl(b)), 9),
-        (rich_binary_stl(), |b| check(stl(b)), 0),
-        (RICH_OFF.into(), |b| check(off(b)), 1),
-        (rich_binary_off(), |b| check(off(b)), 0),
+    let read_scene = |format| move |b: &[u8]| check(read_scene_from(b, format, "t"));
+    let mut files: Vec<(Vec<u8>, Reader, usize)> = rich_files()
+        .into_iter()
+        .map(|(bytes, format, most)| (bytes, Box::new(read_scene(format)) as Reader, most))
+        .collect();
+    let others: [(Vec<u8>, fn(&[u8]) -> bool, usize); 5] = [
         (npy(RICH_NPY, &[0; 2 * 44]), |b| check_points(read_points_from(b, PointFormat::Npy, "t")), 0),
         (b"qx;qy;qz\n1;2;-0.0\n".into(), |b| check_points(read_points_from(b, PointFormat::Csv, "t")), anywhere),
         (
@@ -48,10 +44,10 @@ fn files() -> Vec<(Vec<u8>, Reader, usize)> {
         ),
         (b"1 2 3\n# c\n4 5 6\n".into(), |b| check_points(read_points_from(b, PointFormat::Xyz, "t")), anywhere),
     ];
-    files.extend(ENCODINGS.map(|e| (rich_ply(e), (|b| check(ply(b))) as Reader, 3)));
+    files.extend(others.map(|(bytes, read, most)| (bytes, Box::new(read) as Reader, most)));
     // Data after the vertices is not read.
-    let points: Reader = |b| check_points(read_points_from(b, PointFormat::Ply, "t"));
-    files.extend(ENCODINGS.map(|e| (rich_ply(e), points, anywhere)));
+    let points = |b: &[u8]| check_points(read_points_from(b, PointFormat::Ply, "t"));
+    files.extend(ENCODINGS.map(|e| (rich_ply(e), Box::new(points) as Reader, anywhere)));
     files
 }
 
@@ -64,7 +60,7 @@ fn check(scene: Result<Scene, ReadError>) -> bool {
         Ok(scene) => {
             let expected = elements(&scene);
             assert_eq!(scene.sources.len(), expected.len());
-            for format in [Format::Obj, Format::Ply, Format::Off] {
+            for format in lossless() {
                 assert_eq!(elements(&read_back(&scene, format)), expected, "{format}");
             }
             assert_eq!(read_back(&scene, Format::Obj).objects, scene.objects);
@@ -81,11 +77,10 @@ fn check_points(points: Result<Vec<Point3<f64>>, ReadError>) -> bool {
         }
         Ok(points) => {
             assert!(points.iter().flat_map(|p| p.iter()).all(|x| x.is_finite()));
-            for format in [AnswerFormat::Csv, AnswerFormat::Npy, AnswerFormat::Ply] {
-                let mut writer = AnswerWriter::new(Vec::new(), format, points.len() as u64).unwrap();
-                points.iter().for_each(|p| writer.write(p, None).unwrap());
-                let file = writer.finish().unwrap();
-                assert_eq!(read_points_from(&file[..], format.name().parse().unwrap(), "t").unwrap(), points);
+            let rows: Vec<[f64; 3]> = points.iter().map(|p| p.coords.into()).collect();
+            for &format in PointFormat::ALL {
+                let file = point_file(format.name(), &rows);
+                assert_eq!(read_points_from(&file[..], format, "t").unwrap(), points, "{format}");
             }
             true
         }
@@ -99,11 +94,12 @@ fn check_rays(rays: Result<Vec<Ray>, ReadError>) -> bool {
             false
         }
         Ok(rays) => {
-            for format in [AnswerFormat::Csv, AnswerFormat::Npy, AnswerFormat::Ply] {
-                let mut writer = HitWriter::new(Vec::new(), format, None).unwrap();
-                (0..).zip(&rays).for_each(|(number, ray)| writer.write(number, ray, None).unwrap());
-                let file = writer.finish().unwrap();
-                assert_eq!(read_rays_from(&file[..], format.name().parse().unwrap(), "t").unwrap(), rays);
+            let numbers = |ray: &Ray| [ray.origin().coords, ray.direction()].map(<[f64; 3]>::from);
+            let rows: Vec<[f64; 6]> =
+                rays.iter().map(|ray| numbers(ray).as_flattened().try_into().expect("six")).collect();
+            for &format in PointFormat::ALL {
+                let file = point_file(format.name(), &rows);
+                assert_eq!(read_rays_from(&file[..], format, "t").unwrap(), rays, "{format}");
             }
             true
         }
@@ -174,11 +170,10 @@ fn noise() {
             let (mut rng, length) = (rng("noise", case), case as usize * 677 % 2000);
             let mut bytes = vec![0; length];
             rng.fill_bytes(&mut bytes);
-            check(obj(&bytes));
-            check(ply(&bytes));
-            check(stl(&bytes));
-            check(off(&bytes));
-            for format in [PointFormat::Xyz, PointFormat::Csv, PointFormat::Npy, PointFormat::Ply] {
+            for &format in Format::ALL {
+                check(read_scene_from(&bytes[..], format, "t"));
+            }
+            for &format in PointFormat::ALL {
                 check_points(read_points_from(&bytes[..], format, "t"));
                 check_rays(read_rays_from(&bytes[..], format, "t"));
             }

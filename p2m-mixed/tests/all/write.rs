@@ -1,13 +1,11 @@
 //! Scenes are written and read again in every format.
 
-use crate::common::{bits, elements, obj, p, ply, read_back, s, t, written};
+use crate::common::{bits, elements, lossless, obj, p, ply, read_back, s, t, written};
 use nalgebra::Point3;
 use p2m_core::{Element, PrimitiveSet, Soup};
 use p2m_mixed::{
     Format, HeaderProblem, Reason, Scene, WriteError, stl_rounding, write_ply_ascii, write_scene, write_stl,
 };
-
-const LOSSLESS: [Format; 3] = [Format::Obj, Format::Ply, Format::Off];
 
 fn scene(positions: Vec<Point3<f64>>, elements: impl IntoIterator<Item = Element>) -> Scene {
     Soup::new(positions, elements).unwrap().into()
@@ -29,7 +27,7 @@ fn ascii(scene: &Scene) -> Scene {
 }
 
 fn check_same(scene: &Scene) {
-    for format in LOSSLESS {
+    for format in lossless() {
         let again = read_back(scene, format);
         assert_eq!(again.soup, scene.soup, "{format}");
         assert_eq!(bits(&again), bits(scene), "{format}");
@@ -80,14 +78,18 @@ fn points_that_are_not_all_vertices_stay_what_they_are() {
 }
 
 #[test]
-fn positions_without_primitives_survive_in_ply_only() {
+fn positions_without_primitives_survive_in_ply_and_p2m_only() {
     let empty = scene(awkward(), []);
     let nothing = scene(Vec::new(), []);
-    for format in LOSSLESS {
+    for format in lossless() {
         let again = read_back(&empty, format);
         // The file is not read as a point cloud.
         assert_eq!(again.soup.len(), 0, "{format}");
-        assert_eq!(bits(&again), bits(if format == Format::Ply { &empty } else { &nothing }), "{format}");
+        assert_eq!(
+            bits(&again),
+            bits(if matches!(format, Format::Ply | Format::P2m) { &empty } else { &nothing }),
+            "{format}"
+        );
     }
     assert_eq!(bits(&ascii(&empty)), bits(&empty));
     assert_eq!(read_back(&empty, Format::Stl).soup, nothing.soup);
@@ -248,7 +250,7 @@ impl std::io::Write for Full {
 #[test]
 fn a_full_disk_is_reported_wherever_it_is_noticed() {
     let scene = scene(awkward()[..3].iter().map(|p| p.map(|x| x.clamp(-1.0, 1.0))).collect(), [t(0, 1, 2)]);
-    for format in [Format::Obj, Format::Ply, Format::Off, Format::Stl] {
+    for &format in Format::ALL {
         let length = written(&scene, format).len();
         for room in 0..=length {
             let error = write_scene(&scene, format, Full(room)).unwrap_err();

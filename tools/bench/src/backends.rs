@@ -11,7 +11,7 @@ use crate::our_indexes::{
 use crate::point_trees::{kiddo_double, kiddo_single};
 use p2m_backends::{BACKENDS, BackendEntry, SearchStructure};
 use p2m_interception::{KdTreeLocator, P2mOptions, RegionTree};
-use p2m_mixed::adapters::{ParryIndex, RstarIndex};
+use p2m_testkit::adapters::{ParryIndex, RstarIndex};
 use std::sync::LazyLock;
 
 /// Every backend, in the order of the tables.

@@ -53,8 +53,8 @@ pub fn tree<'a, T: Real>(bytes: &mut Bytes<'_>, soup: &'a Soup<T>) -> Built<'a, 
     Ok((name, built))
 }
 
-/// Builds an index of any backend, with any instruction set and some options. A tree of another crate is built if its
-/// feature is on, and the tree of boxes otherwise.
+/// Builds an index of any backend, with any instruction set and some options. The tree of parry is built if its feature
+/// is on, and the tree of boxes otherwise.
 ///
 /// # Errors
 /// Returns the errors of the build.
@@ -84,10 +84,9 @@ pub fn index<'a, T: Real>(bytes: &mut Bytes<'_>, soup: &'a Soup<T>) -> Built<'a,
             };
             Box::new(P2mIndex::build(soup, &options)?.with_isa(isa))
         }
-        #[cfg(feature = "rstar")]
-        "rstar" => Box::new(p2m::scene::adapters::RstarIndex::build(soup, &())?),
+        "rstar" => Box::new(p2m_testkit::adapters::RstarIndex::build(soup, &())?),
         #[cfg(feature = "parry")]
-        "parry" => Box::new(p2m::scene::adapters::ParryIndex::build(soup, &())?),
+        "parry" => Box::new(p2m_testkit::adapters::ParryIndex::build(soup, &())?),
         _ => Box::new(AabbTree::new(soup)?),
     };
     Ok((name, built))

@@ -2,12 +2,11 @@
 //! memory in proportion to the size of the file, and the scene can be written in every format and reads back as the same.
 
 use super::memory;
-use nalgebra::Point3;
-use p2m_core::{BruteForce, ClosestPoint, Element, Point, PrimitiveSet, Soup};
+use p2m_core::{Element, PrimitiveSet, Soup};
 use p2m_mixed::engine::read_scene_in_blocks;
 use p2m_mixed::{
-    AnswerFormat, AnswerWriter, Format, Object, PointFormat, Scene, read_points_from, read_scene_from, stl_rounding,
-    write_ply_ascii, write_scene, write_stl,
+    Format, Object, PointFormat, Scene, read_points_from, read_scene_from, stl_rounding, write_ply_ascii, write_scene,
+    write_stl,
 };
 
 /// The memory that a reader may take for each byte of the file, in addition to buffers of a fixed size.
@@ -32,8 +31,44 @@ fn check_blocks(file: &[u8], format: Format) {
     }
 }
 
+/// A reader of files.
+#[derive(Clone, Copy)]
+pub enum Reader {
+    /// Files of scenes.
+    Scene(Format),
+    /// Files of points.
+    Points(PointFormat),
+}
+
+impl Reader {
+    /// Returns the readers of all formats but that of saved indexes, which [`saved`](super::saved) checks.
+    pub fn all() -> Vec<Self> {
+        let scenes = Format::ALL.iter().filter(|format| **format != Format::P2m);
+        scenes
+            .map(|format| Self::Scene(*format))
+            .chain(PointFormat::ALL.iter().map(|format| Self::Points(*format)))
+            .collect()
+    }
+
+    /// Returns the name of the reader, which is that of the folder of its seeds.
+    pub fn name(self) -> String {
+        match self {
+            Self::Scene(format) => format.to_string(),
+            Self::Points(format) => format!("{format}_points"),
+        }
+    }
+
+    /// Checks the promises for a file.
+    pub fn check(self, file: &[u8]) {
+        match self {
+            Self::Scene(format) => scene(file, format),
+            Self::Points(format) => points(file, format),
+        }
+    }
+}
+
 /// Reads a scene, writes it, and reads it again.
-pub fn scene(file: &[u8], format: Format) {
+fn scene(file: &[u8], format: Format) {
     check_blocks(file, format);
     let scene = match measured(file, || read_scene_from(file, format, "fuzz")) {
         Ok(scene) => scene,
@@ -43,13 +78,13 @@ pub fn scene(file: &[u8], format: Format) {
     check_objects(&scene.objects, scene.soup.len());
     assert!(scene.skipped.iter().all(|s| s.count > 0 && !s.to_string().is_empty()));
 
-    for format in [Format::Obj, Format::Off, Format::Ply] {
+    for &format in Format::ALL.iter().filter(|format| format.is_lossless()) {
         let mut written = Vec::new();
         write_scene(&scene, format, &mut written).unwrap();
         let again = read_scene_from(&written[..], format, "again").unwrap();
-        assert!(again.skipped.is_empty(), "{format}: {:?}", again.skipped);
+        assert!(again.skipped.is_empty() || format == Format::P2m, "{format}: {:?}", again.skipped);
         let expected = match format {
-            Format::Ply => bits(&scene.soup),
+            Format::Ply | Format::P2m => bits(&scene.soup),
             // The documentation of the writers has these exceptions.
             _ if scene.soup.len() == 0 => Vec::new(),
             _ => bits(&scene.soup).into_iter().map(finite_or_origin).collect(),
@@ -113,26 +148,18 @@ fn finite_or_origin(position: [u64; 3]) -> [u64; 3] {
     if position.iter().all(|x| f64::from_bits(*x).is_finite()) { position } else { [0; 3] }
 }
 
-/// Reads points, answers them, and reads the queries from the answers.
-pub fn points(file: &[u8], format: PointFormat) {
+/// Reads points, writes them in every format, and reads them again.
+fn points(file: &[u8], format: PointFormat) {
     let points = match measured(file, || read_points_from(file, format, "fuzz")) {
         Ok(points) => points,
         Err(error) => return assert!(!error.to_string().is_empty()),
     };
     assert!(points.iter().flat_map(|p| p.iter()).all(|x| x.is_finite()));
-    let scene = [Point::new(Point3::new(0.5, -1.0, 1e-3))];
-    let index = BruteForce::new(&scene).unwrap();
-    for format in [AnswerFormat::Csv, AnswerFormat::Npy, AnswerFormat::Ply] {
-        let mut writer = AnswerWriter::new(Vec::new(), format, points.len() as u64).unwrap();
-        for (i, point) in points.iter().enumerate() {
-            let answer = index.closest_point(point);
-            writer.write(point, answer.as_ref().filter(|_| i % 3 != 1)).unwrap();
-        }
-        let written = writer.finish().unwrap();
-        let again = read_points_from(&written[..], format.name().parse().unwrap(), "again").unwrap();
-        let bits = |points: &[Point3<f64>]| -> Vec<[u64; 3]> {
-            points.iter().map(|p| [p.x.to_bits(), p.y.to_bits(), p.z.to_bits()]).collect()
-        };
-        assert_eq!(bits(&again), bits(&points), "{format}");
+    let rows: Vec<[f64; 3]> = points.iter().map(|point| point.coords.into()).collect();
+    let bits = |p: &[f64; 3]| p.map(f64::to_bits);
+    for &format in PointFormat::ALL {
+        let written = p2m_testkit::point_file(format.name(), &rows);
+        let again = read_points_from(&written[..], format, "again").unwrap();
+        assert!(again.iter().map(|p| bits(&p.coords.into())).eq(rows.iter().map(bits)), "{format}");
     }
 }

@@ -4,6 +4,7 @@
 #![forbid(unsafe_code)]
 #![allow(clippy::missing_panics_doc, reason = "a test kit panics where a test should fail")]
 
+pub mod adapters;
 pub mod adversaries;
 pub mod ball;
 pub mod compiled;
@@ -19,6 +20,7 @@ pub mod line_filter;
 mod models;
 pub mod near_check;
 pub mod oracle;
+mod point_file;
 pub mod queries;
 mod ratio;
 pub mod ray_check;
@@ -32,6 +34,7 @@ pub mod truth;
 pub use depth::{Cases, amount, cases, depth, is_deep};
 pub use models::{all_model_files, model_file, model_files, models};
 use nalgebra::Vector3;
+pub use point_file::point_file;
 use rand::{Rng, RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 pub use surface::normal as normal_number;

@@ -16,7 +16,6 @@ pub(crate) fn check() -> Outcome {
     for feature in features()? {
         cargo(&[&library[..], &["--features", &feature]].concat(), &[])?;
     }
-    cargo(&["check", "--locked", "--package", "p2m-mixed", "--features", "rstar"], &[])?;
     // Without its features the program has no parts of the paper.
     cargo(&["check", "--locked", "--package", "p2m-cli", "--no-default-features"], &[])?;
     check_targets()

@@ -1,12 +1,12 @@
 //! The arguments that `query` and `ray` share.
 
+use crate::answers::table::AnswerFormat;
 use crate::index::kdop_directions::KdopFaces;
 use crate::io::input::{SceneArgs, is_standard, or_option};
 use crate::io::output::Output;
 use crate::io::streams::Streams;
 use crate::io::threads::ThreadArgs;
 use crate::io::usage::{one_of, usage};
-use p2m_mixed::AnswerFormat;
 use serde_json::{Value, json};
 use std::path::{Path, PathBuf};
 

@@ -2,11 +2,11 @@
 
 use crate::answers::blocks::{BlockSize, QueryStream, Steps, answer_all};
 use crate::answers::summary::{IndexSummary, RunSummary, SceneSummary};
-use crate::answers::with_signed;
+use crate::answers::table::{AnswerColumn, AnswerEncoder, AnswerFormat, AnswerRecord, Table};
 use crate::compare::scan::ScanFormat;
 use crate::index::backend::{Backend, PreparedIndex, SceneSource, backends, saved_or_default};
 use crate::index::sign_rule::{SignRule, SignedIndex};
-use crate::io::input::{SceneArgs, is_standard, name, read_scene_and_index};
+use crate::io::input::{SceneArgs, format_list, is_standard, name, read_scene_and_index};
 use crate::io::json;
 use crate::io::output::Output;
 use crate::io::streams::Streams;
@@ -22,9 +22,7 @@ use p2m_core::{Closest, QueryOptions};
 use p2m_field::deviation::{DeviationStatistics, OutsideTolerance, outside};
 use p2m_field::sign::SignError;
 use p2m_mixed::statistics::figure::{Count, Figure};
-use p2m_mixed::{
-    AnswerColumn, AnswerEncoder, AnswerFormat, AnswerRecord, AnswerWriter, Scene, VertexValues, write_ply_with_values,
-};
+use p2m_mixed::{Scene, VertexValues, write_ply_with_values};
 use p2m_page::{Deviations, diverging_colour};
 use rayon::ThreadPool;
 use rayon::prelude::*;
@@ -67,20 +65,26 @@ Examples:
     )
 }
 
+fn scan_help() -> String {
+    let formats = format_list(|_| true, "or");
+    format!(
+        "Scan: an XYZ, TXT, CSV or NPY file of points, or an {formats} file, whose vertices are the points; `-` is the \
+         standard input"
+    )
+}
+
 /// Find how far the points of a scan are from a scene: statistics, colours and a histogram
 #[derive(clap::Args)]
 #[command(after_help = help())]
 pub(crate) struct Args {
-    /// Scan: an XYZ, TXT, CSV or NPY file of points, or a PLY, OBJ, STL or OFF file, whose vertices are the points; `-`
-    /// is the standard input
-    #[arg(value_name = "SCAN")]
+    #[arg(value_name = "SCAN", help = scan_help())]
     scan: PathBuf,
 
     #[command(flatten)]
     scene: SceneArgs,
 
     /// The format of the scan, if its extension does not name it
-    #[arg(long, value_name = "FORMAT", value_parser = one_of::<ScanFormat>(ScanFormat::NAMES), ignore_case = true)]
+    #[arg(long, value_name = "FORMAT", value_parser = one_of::<ScanFormat>(ScanFormat::names()), ignore_case = true)]
     scan_format: Option<ScanFormat>,
 
     /// Give distances without signs, as scenes with segments or points need it
@@ -119,7 +123,7 @@ pub(crate) struct Args {
     threads: ThreadArgs,
 }
 
-p2m_mixed::formats! {
+p2m_core::formats! {
     /// The formats of files of deviations.
     DeviationFormat {
         /// A table of answers.
@@ -172,15 +176,15 @@ pub(crate) fn run(streams: &Streams, args: &Args) -> anyhow::Result<()> {
     let mut answers = Answers::new(index, signed.as_ref().map(|(signed, _)| signed));
     let query_time = match (&mut output, out_format) {
         (Some(output), Some(DeviationFormat::Csv)) => {
-            let encoder = AnswerEncoder::new(AnswerFormat::Csv, &scene.objects, &args.columns(&scene));
+            let encoder = AnswerEncoder::new(AnswerFormat::Csv, &scene.objects, args.columns(&scene));
             let cannot_write = output.cannot_write();
             let failed = |error| anyhow::Error::new(error).context(cannot_write.clone());
-            let writer = AnswerWriter::with_columns(output, encoder.clone(), Some(points.len() as u64));
-            let mut writer = writer.map_err(failed)?;
+            let count = Some(points.len() as u64);
+            let mut table = Table::new(output, encoder.header(), count).map_err(failed)?;
             let encode = |record: &AnswerRecord<'_>, out: &mut Vec<u8>| encoder.encode(record, out);
-            let write = |count, records: &[u8]| writer.write_encoded(count, records).map_err(failed);
+            let write = |count, records: &[u8]| table.write(count, records).map_err(failed);
             let time = answers.add(streams, &pool, points, encode, write)?;
-            writer.finish().map_err(failed)?;
+            table.finish().map_err(failed)?;
             time
         }
         _ => answers.add(streams, &pool, points, |_, _| (), |_, _| Ok(()))?,
@@ -396,7 +400,7 @@ impl Args {
 
     /// Returns the columns of the table, which are those of `p2m query --signed`.
     fn columns(&self, scene: &Scene) -> Vec<AnswerColumn> {
-        with_signed(AnswerColumn::defaults(AnswerFormat::Csv, !scene.objects.is_empty()), !self.unsigned)
+        AnswerColumn::defaults(AnswerFormat::Csv, !scene.objects.is_empty(), !self.unsigned)
     }
 
     /// Returns the error of a scene that has no sign by the rule.

@@ -3,12 +3,12 @@
 use crate::io::input::{is_standard, or_option, read_points, read_scene_and_index, uncompressed_name, unnamed};
 use crate::io::streams::Streams;
 use anyhow::Context;
-use p2m_core::{Element, Soup};
-use p2m_mixed::engine::{unknown_extension, unknown_format};
-use p2m_mixed::{Format, PointFormat, Scene, UnknownFormat};
+use p2m_core::{Element, Soup, UnknownExtension, UnknownFormat};
+use p2m_mixed::{Format, PointFormat, Scene};
 use rayon::ThreadPool;
 use std::path::Path;
 use std::str::FromStr;
+use std::sync::LazyLock;
 
 /// The format of a scan.
 #[derive(Clone, Copy, Debug)]
@@ -20,19 +20,26 @@ pub(crate) enum ScanFormat {
 }
 
 impl ScanFormat {
-    /// The names of all formats, which are also the extensions of files.
-    pub(crate) const NAMES: &'static [&'static str] = &["xyz", "txt", "csv", "npy", "ply", "obj", "stl", "off", "p2m"];
+    /// Returns the names of all formats, which are also the extensions of files.
+    pub(crate) fn names() -> &'static [&'static str] {
+        static NAMES: LazyLock<Vec<&str>> = LazyLock::new(|| {
+            let of_scenes = Format::NAMES.iter().filter(|name| !PointFormat::NAMES.contains(name));
+            PointFormat::NAMES.iter().chain(of_scenes).copied().collect()
+        });
+        &NAMES
+    }
 
     /// Returns the format of a scan: the given one, or else that of the extension.
     pub(crate) fn of(path: &Path, given: Option<Self>, option: &str) -> anyhow::Result<Self> {
         match given {
             Some(format) => Ok(format),
-            None if is_standard(path) => Err(unnamed(option, Self::NAMES)),
+            None if is_standard(path) => Err(unnamed(option, Self::names())),
             None => {
                 let name = uncompressed_name(path)?;
                 let extension = name.extension().map(|e| e.to_string_lossy().into_owned()).unwrap_or_default();
-                let unknown = |_| or_option(&unknown_extension(&name, extension.clone(), Self::NAMES), option);
-                extension.parse().map_err(unknown)
+                extension.parse().map_err(|UnknownFormat { name: extension, supported }| {
+                    or_option(&UnknownExtension { file: name.display().to_string(), extension, supported }, option)
+                })
             }
         }
     }
@@ -62,8 +69,8 @@ impl FromStr for ScanFormat {
     type Err = UnknownFormat;
 
     fn from_str(name: &str) -> Result<Self, UnknownFormat> {
-        let scene = name.parse().map(Self::Scene);
-        scene.or_else(|_| name.parse().map(Self::Points)).map_err(|_: UnknownFormat| unknown_format(name, Self::NAMES))
+        let format = name.parse().map(Self::Scene).or_else(|_| name.parse().map(Self::Points));
+        format.map_err(|error: UnknownFormat| UnknownFormat { supported: Self::names(), ..error })
     }
 }
 
@@ -74,9 +81,9 @@ mod tests {
     #[test]
     fn all_formats_of_scenes_and_points_are_formats_of_scans() {
         for name in Format::NAMES.iter().chain(PointFormat::NAMES) {
-            assert!(ScanFormat::NAMES.contains(name), "{name}");
+            assert!(ScanFormat::names().contains(name), "{name}");
         }
-        for name in ScanFormat::NAMES {
+        for name in ScanFormat::names() {
             assert!(name.parse::<ScanFormat>().is_ok(), "{name}");
         }
     }

@@ -1,6 +1,6 @@
 //! The arguments of commands that are about two scenes, and what they print about a point of each.
 
-use crate::io::input::{name, read_scene_and_index, scene_format};
+use crate::io::input::{COMPRESSED, name, read_scene_and_index, scene_format, scene_help};
 use crate::io::streams::Streams;
 use crate::io::usage::{one_of, usage};
 use anyhow::Context;
@@ -15,9 +15,7 @@ use std::path::{Path, PathBuf};
 
 #[derive(clap::Args)]
 pub(crate) struct ScenePairArgs {
-    /// First scene: an OBJ, PLY, STL or OFF file, or an index that `p2m build` saved; `-` is the standard input. Files
-    /// that gzip or zstd has compressed are decompressed
-    #[arg(value_name = "A")]
+    #[arg(value_name = "A", help = scene_help("First scene") + COMPRESSED)]
     first: PathBuf,
 
     /// Second scene

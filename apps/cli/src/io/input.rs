@@ -8,9 +8,9 @@ use crate::io::zstd::{ZstdReader, is_zstd};
 use anyhow::{Context, anyhow, bail};
 use flate2::bufread::MultiGzDecoder;
 use nalgebra::Point3;
-use p2m_core::Ray;
 use p2m_core::storage::{LoadError, Reader, SavedFile};
-use p2m_mixed::{Format, PointFormat, ReadError, Scene, load_scene};
+use p2m_core::{Ray, UnknownExtension};
+use p2m_mixed::{Format, PointFormat, Scene, load_scene};
 use rayon::ThreadPool;
 use std::fs::{File, Metadata};
 use std::io::{self, BufRead, BufReader, Read};
@@ -21,12 +21,28 @@ const BUFFER_BYTES: usize = 1 << 16;
 /// The name of the standard input and the standard output.
 pub(crate) const STANDARD: &str = "-";
 
+/// The end of the help of files that may be compressed.
+pub(crate) const COMPRESSED: &str = ". Files that gzip or zstd has compressed are decompressed";
+
+/// Returns the help of a scene with this name.
+pub(crate) fn scene_help(name: &str) -> String {
+    let formats = format_list(|_| true, "or");
+    format!("{name}: an {formats} file, or an index that `p2m build` saved; `-` is the standard input")
+}
+
+/// Returns a list of the formats of scenes, such as `OBJ, PLY or OFF`, in which `last` comes before the last one. Saved
+/// indexes are not in it.
+pub(crate) fn format_list(is_listed: impl Fn(Format) -> bool, last: &str) -> String {
+    let listed = Format::ALL.iter().filter(|format| **format != Format::P2m && is_listed(**format));
+    let mut names: Vec<_> = listed.map(|format| format.name().to_uppercase()).collect();
+    let end = names.pop().expect("a format of scenes");
+    format!("{} {last} {end}", names.join(", "))
+}
+
 /// A scene to read.
 #[derive(clap::Args)]
 pub(crate) struct SceneArgs {
-    /// Scene: an OBJ, PLY, STL or OFF file, or an index that `p2m build` saved; `-` is the standard input. Files that
-    /// gzip or zstd has compressed are decompressed
-    #[arg(value_name = "SCENE")]
+    #[arg(value_name = "SCENE", help = scene_help("Scene") + COMPRESSED)]
     pub(crate) path: PathBuf,
 
     /// The format of the scene, if its extension does not name it
@@ -104,7 +120,7 @@ pub(crate) fn unnamed(option: &str, names: &[&str]) -> anyhow::Error {
 }
 
 /// The error of an unknown extension, with the option that names the format.
-pub(crate) fn or_option(error: &ReadError, option: &str) -> anyhow::Error {
+pub(crate) fn or_option(error: &UnknownExtension, option: &str) -> anyhow::Error {
     anyhow!("{error}, or name the format with {option}")
 }
 

@@ -7,16 +7,15 @@ use crate::io::output::Output;
 use crate::io::progress::{Progress, Unit};
 use crate::io::streams::Streams;
 use crate::io::threads::ThreadArgs;
+use crate::page::drawing::{Panel, View, box_edges, write_picture_ply, write_svg};
 use crate::page::tree_levels::TreeLevels;
 use crate::page::up_axis::Up;
 use anyhow::{Context, bail};
-use clap::ValueEnum;
 use nalgebra::Point3;
 use p2m_backends::KdopVisitor;
 use p2m_bvh::{AabbTree, PacketTree, SplitOptions, TreeNode, Volume};
 use p2m_core::Soup;
 use p2m_kdop::{KdopTree, Polytope};
-use p2m_mixed::picture::{Panel, View, box_edges, write_picture_ply, write_svg};
 use p2m_mixed::statistics::figure::Count;
 use serde_json::json;
 use std::path::PathBuf;
@@ -59,8 +58,8 @@ pub(crate) struct Args {
     k: Option<KdopFaces>,
 
     /// From where an SVG picture is seen
-    #[arg(long, value_enum, default_value_t = ViewName::Isometric)]
-    view: ViewName,
+    #[arg(long, value_enum, default_value_t = View::Isometric)]
+    view: View,
 
     /// Which axis points up in an SVG picture
     #[arg(long, value_enum, default_value_t = Up::Z)]
@@ -72,29 +71,6 @@ pub(crate) struct Args {
     /// Report as one JSON object on the standard output, instead of the titles on the standard error
     #[arg(long)]
     json: bool,
-}
-
-#[derive(Clone, Copy, PartialEq, Eq, ValueEnum)]
-enum ViewName {
-    /// From a corner
-    Isometric,
-    /// Along y: x to the right
-    Front,
-    /// Along -x: y to the right
-    Side,
-    /// Along -z: x to the right, y up
-    Top,
-}
-
-impl From<ViewName> for View {
-    fn from(name: ViewName) -> Self {
-        match name {
-            ViewName::Isometric => Self::Isometric,
-            ViewName::Front => Self::Front,
-            ViewName::Side => Self::Side,
-            ViewName::Top => Self::Top,
-        }
-    }
 }
 
 /// The largest number of vertices that a picture shows.
@@ -130,7 +106,7 @@ pub(crate) fn run(streams: &Streams, args: &Args) -> anyhow::Result<()> {
     } else {
         let mut dots = dots(&scene.soup);
         args.up.rotate_to_z_up(panels.iter_mut().flat_map(|panel| &mut panel.lines).flatten().chain(&mut dots));
-        write_svg(&panels, &dots, args.view.into(), &mut output)
+        write_svg(&panels, &dots, args.view, &mut output)
     };
     written.with_context(|| output.cannot_write())?;
     output.finish()?;

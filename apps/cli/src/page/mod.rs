@@ -1,6 +1,8 @@
 //! Commands that draw a scene, and what pages show.
 
 pub(crate) mod boxes;
+pub(crate) mod camera;
+pub(crate) mod drawing;
 pub(crate) mod picture;
 pub(crate) mod source;
 pub(crate) mod tree_levels;

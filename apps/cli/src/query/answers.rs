@@ -3,12 +3,13 @@
 use crate::answers::blocks::{BlockSize, QueryStream, Steps, answer_all};
 use crate::answers::queries::Queries;
 use crate::answers::summary::AnswerSummary;
+use crate::answers::table::{AnswerEncoder, AnswerFormat, AnswerRecord, Table};
 use crate::io::output::Output;
 use crate::io::streams::Streams;
 use crate::query::args::Args;
 use nalgebra::Point3;
 use p2m_core::Closest;
-use p2m_mixed::{AnswerEncoder, AnswerFormat, AnswerRecord, AnswerWriter, Object};
+use p2m_mixed::Object;
 use rayon::ThreadPool;
 use std::time::Duration;
 
@@ -44,14 +45,13 @@ impl Task<'_, '_> {
         let cannot_write = self.output.cannot_write();
         let failed = |error| anyhow::Error::new(error).context(cannot_write.clone());
         let has_many = self.args.has_many_answers();
-        let encoder = AnswerEncoder::new(self.format, self.objects, &self.args.columns(self.format, self.objects));
+        let encoder = AnswerEncoder::new(self.format, self.objects, self.args.columns(self.format, self.objects));
         // Only with one answer for each query it is known before how many there are.
         let count = Some(self.queries.len()).filter(|_| !has_many);
-        let mut writer = AnswerWriter::with_columns(self.output, encoder, count).map_err(failed)?;
-        let encoder = writer.encoder();
+        let mut table = Table::new(self.output, encoder.header(), count).map_err(failed)?;
         let queries =
             QueryStream { name: "queries", count: self.queries.len(), iter: self.queries, block_size: S::BLOCK_SIZE };
-        let write = |count, records: &[u8]| writer.write_encoded(count, records).map_err(failed);
+        let write = |count, records: &[u8]| table.write(count, records).map_err(failed);
         let mut summary = AnswerSummary::default();
         let time = if has_many {
             let steps = Steps {
@@ -80,7 +80,7 @@ impl Task<'_, '_> {
             };
             answer_all(self.streams, self.pool, queries, steps)?
         };
-        writer.finish().map_err(failed)?;
+        table.finish().map_err(failed)?;
         Ok((summary, time))
     }
 }

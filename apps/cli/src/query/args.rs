@@ -3,7 +3,7 @@
 use crate::answers::args::QueryArgs;
 use crate::answers::queries::{Queries, Region};
 use crate::answers::summary::AnswerSummary;
-use crate::answers::with_signed;
+use crate::answers::table::{AnswerColumn, AnswerFormat};
 use crate::index::backend::{BackendChoice, backend_choices};
 use crate::index::p2m_args::P2mArgs;
 use crate::index::sign_rule::SignRule;
@@ -16,7 +16,7 @@ use clap::ArgGroup;
 use clap::builder::{PossibleValuesParser, TypedValueParser};
 use nalgebra::Point3;
 use p2m_core::{Aabb, QueryOptions};
-use p2m_mixed::{AnswerColumn, AnswerFormat, Object, PointFormat};
+use p2m_mixed::{Object, PointFormat};
 use serde_json::{Value, json};
 use std::path::PathBuf;
 
@@ -183,11 +183,11 @@ impl Args {
         if !self.columns.is_empty() {
             return self.columns.clone();
         }
-        let mut columns = AnswerColumn::defaults(format, !objects.is_empty());
+        let mut columns = AnswerColumn::defaults(format, !objects.is_empty(), self.signed.is_some());
         if self.has_many_answers() {
             columns.insert(0, AnswerColumn::Number);
         }
-        with_signed(columns, self.signed.is_some())
+        columns
     }
 
     /// Refuses combinations of arguments that contradict each other.

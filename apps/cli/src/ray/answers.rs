@@ -1,12 +1,13 @@
 //! The loop that answers rays and writes their hits or counts, whichever index they are asked of.
 
 use crate::answers::blocks::{Steps, answer_all};
+use crate::answers::table::{AnswerFormat, HitEncoder, NumberEncoder, Table};
 use crate::io::output::Output;
 use crate::io::streams::Streams;
 use crate::ray::args::{Mode, Rays};
 use crate::ray::summary::RaySummary;
 use p2m_core::{Hit, Ray, RayQuery};
-use p2m_mixed::{AnswerFormat, HitWriter, NumberWriter, Object};
+use p2m_mixed::Object;
 use rayon::ThreadPool;
 use rayon::prelude::*;
 use std::time::Duration;
@@ -103,8 +104,8 @@ impl Task<'_, '_> {
     ) -> anyhow::Result<(Duration, RaySummary)> {
         let cannot_write = self.output.cannot_write();
         let failed = |error| anyhow::Error::new(error).context(cannot_write.clone());
-        let mut writer = NumberWriter::new(self.output, self.format, name, self.rays.count).map_err(failed)?;
-        let encoder = writer.encoder();
+        let encoder = NumberEncoder::new(self.format, name);
+        let mut table = Table::new(self.output, encoder.header(), Some(self.rays.count)).map_err(failed)?;
         let steps = Steps {
             answer: |rays: &[_]| rays.par_iter().map(&count).collect(),
             encode: |number, ray: &_, count: &u64, out: &mut _| {
@@ -112,10 +113,10 @@ impl Task<'_, '_> {
                 1
             },
             take: |_: &_, count: &u64| summary.add(*count),
-            write: |count, records: &[u8]| writer.write_encoded(count, records).map_err(failed),
+            write: |count, records: &[u8]| table.write(count, records).map_err(failed),
         };
         let time = answer_all(self.streams, self.pool, self.rays, steps)?;
-        writer.finish().map_err(failed)?;
+        table.finish().map_err(failed)?;
         Ok((time, summary))
     }
 
@@ -130,8 +131,8 @@ impl Task<'_, '_> {
     ) -> anyhow::Result<(Duration, RaySummary)> {
         let cannot_write = self.output.cannot_write();
         let failed = |error| anyhow::Error::new(error).context(cannot_write.clone());
-        let mut writer = HitWriter::with_objects(self.output, self.format, records, self.objects).map_err(failed)?;
-        let encoder = writer.encoder();
+        let encoder = HitEncoder::new(self.format, self.objects);
+        let mut table = Table::new(self.output, encoder.header(), records).map_err(failed)?;
         let steps = Steps {
             answer: |rays: &[_]| rays.par_iter().map(&intersect).collect(),
             encode: |number, ray: &_, answer: &A, out: &mut _| {
@@ -144,10 +145,10 @@ impl Task<'_, '_> {
                 hits.len() as u64
             },
             take: |_: &_, answer: &A| summary.add_hits(slice(answer)),
-            write: |count, records: &[u8]| writer.write_encoded(count, records).map_err(failed),
+            write: |count, records: &[u8]| table.write(count, records).map_err(failed),
         };
         let time = answer_all(self.streams, self.pool, self.rays, steps)?;
-        writer.finish().map_err(failed)?;
+        table.finish().map_err(failed)?;
         Ok((time, summary))
     }
 }

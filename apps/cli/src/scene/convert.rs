@@ -1,6 +1,6 @@
 //! `p2m convert`: converts scenes from one format to another, with changes on request.
 
-use crate::io::input::{self, is_standard, or_option, read_scene_and_index, scene_format};
+use crate::io::input::{self, format_list, is_standard, or_option, read_scene_and_index, scene_format, scene_help};
 use crate::io::json;
 use crate::io::output::Output;
 use crate::io::streams::Streams;
@@ -20,8 +20,7 @@ use std::path::{Path, PathBuf};
 #[derive(clap::Args)]
 #[command(after_help = help())]
 pub(crate) struct Args {
-    /// Scene: an OBJ, PLY, STL or OFF file, or an index that `p2m build` saved; `-` is the standard input
-    #[arg(value_name = "IN")]
+    #[arg(value_name = "IN", help = scene_help("Scene"))]
     from_file: PathBuf,
 
     /// Where to write it; `-` is the standard output. The file appears under this name when it is complete
@@ -47,7 +46,7 @@ pub(crate) struct Args {
 fn help() -> String {
     format!(
         "\
-OBJ, PLY and OFF files hold the whole geometry: the same positions bit by bit, the same primitives in the same order. Polygons are cut into \
+{} files hold the whole geometry: the same positions bit by bit, the same primitives in the same order. Polygons are cut into \
 triangles. STL \
 files hold triangles alone, in single precision and without shared vertices. The losses of a conversion are reported on the standard \
 error; what a format cannot hold at all is an error.
@@ -60,6 +59,7 @@ Examples:
   p2m convert scene.obj scene.ply
   p2m convert part.stl - --to obj --rotate-x 90 --scale 0.001 | p2m info - --format obj
   p2m convert dragon.ply shards.ply --subdivide 1 --displace 0.1 --gap 0.8",
+        format_list(Format::is_lossless, "and"),
         modify::ORDER,
         json::STABILITY
     )
@@ -149,7 +149,8 @@ impl<'a> Target<'a> {
         match write_scene(scene, self.format, &mut output) {
             Ok(()) => {}
             Err(e @ WriteError::NotATriangle { .. }) => {
-                return Err(anyhow!("{}: {e}: choose obj, ply or off", output.cannot_write()));
+                let others = format_list(Format::is_lossless, "or").to_lowercase();
+                return Err(anyhow!("{}: {e}: choose {others}", output.cannot_write()));
             }
             // The caller needs the error of the system itself: a closed pipe is no error.
             Err(WriteError::Io(e)) => return Err(e).with_context(|| output.cannot_write()),

@@ -51,8 +51,7 @@ Examples:
 #[derive(clap::Args)]
 #[command(after_help = help())]
 pub(crate) struct Args {
-    /// Scenes: OBJ, PLY, STL or OFF files, or indexes that `p2m build` saved; `-` is the standard input
-    #[arg(value_name = "SCENE", required = true)]
+    #[arg(value_name = "SCENE", required = true, help = input::scene_help("Each scene"))]
     scenes: Vec<PathBuf>,
 
     /// The format of the scenes, if their extensions do not name it

@@ -344,7 +344,7 @@ def _runs(padded: NDArray[Any]) -> list[NDArray[Any]]:
 
 
 def read(path: str | os.PathLike[str]) -> Scene:
-    """Read a scene from a file. Its extension selects the format: obj, ply, stl, off, or p2m for a saved index.
+    """Read a scene from a file. Its extension selects the format, such as ply, or p2m for a saved index.
 
     Parameters
     ----------

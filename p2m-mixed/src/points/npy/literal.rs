@@ -26,7 +26,7 @@ impl fmt::Display for Value<'_> {
             Ok(())
         };
         match self {
-            Self::Text(text) => write!(f, "'{}'", crate::text::quote(text)),
+            Self::Text(text) => write!(f, "'{}'", crate::parse::text::quote(text)),
             Self::Integer(n) => write!(f, "{n}"),
             Self::Boolean(b) => f.write_str(if *b { "True" } else { "False" }),
             Self::Tuple(items) => {

@@ -3,8 +3,8 @@
 mod literal;
 
 use super::row::Row;
-use crate::bytes::{ByteReader, Bytes, Scalar};
-use crate::text::quote;
+use crate::parse::bytes::{ByteReader, Bytes, Scalar};
+use crate::parse::text::quote;
 use crate::{FileLocation, HeaderProblem, ReadError, Reason};
 use literal::{Value, parse};
 use std::io::BufRead;

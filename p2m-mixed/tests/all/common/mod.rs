@@ -205,6 +205,28 @@ pub(crate) fn rich_binary_off() -> Vec<u8> {
     file
 }
 
+/// Returns files of every format that use every part of it. The numbers say at how many lengths a file that is cut off is
+/// still valid.
+pub(crate) fn rich_files() -> Vec<(Vec<u8>, Format, usize)> {
+    let mut files: Vec<(Vec<u8>, Format, usize)> = vec![
+        (RICH_OBJ.into(), Format::Obj, usize::MAX),
+        // A text needs neither a line end nor text after the word `endsolid`, which occurs twice.
+        (RICH_STL.into(), Format::Stl, 9),
+        (rich_binary_stl(), Format::Stl, 0),
+        (RICH_OFF.into(), Format::Off, 1),
+        (rich_binary_off(), Format::Off, 0),
+        (written(&obj(RICH_OBJ).unwrap(), Format::P2m), Format::P2m, 0),
+    ];
+    files.extend(ENCODINGS.map(|encoding| (rich_ply(encoding), Format::Ply, 3)));
+    assert!(Format::ALL.iter().all(|format| files.iter().any(|(_, of, _)| of == format)), "a file for each format");
+    files
+}
+
+/// Returns the formats whose files hold every scene.
+pub(crate) fn lossless() -> impl Iterator<Item = Format> {
+    Format::ALL.iter().copied().filter(|format| format.is_lossless())
+}
+
 /// Descriptions of an array that use every part of the grammar.
 pub(crate) const RICH_NPY: &str = "{'descr': [('a', '<U2'), (('t', 'query'), '>f4', (3,)), ('b', [('c', '|V4'), \
     ('d', '<i4', (2, 2))]), ('e', '|S4')], 'fortran_order': False, 'shape': (2,), }";

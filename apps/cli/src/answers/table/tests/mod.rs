@@ -1,0 +1,4 @@
+//! Tests of tables of answers.
+
+mod answers;
+mod rays;

@@ -1,0 +1,93 @@
+//! Names of file formats, which are also the extensions of files.
+
+/// The error for a name that belongs to no format.
+#[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
+#[error("unknown format '{name}', expected one of {}", supported.join(", "))]
+pub struct UnknownFormat {
+    /// The unknown name.
+    pub name: String,
+    /// The names of the formats that are supported here.
+    pub supported: &'static [&'static str],
+}
+
+/// The error for a file whose extension belongs to no format.
+#[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
+#[error("{file}: unknown extension '{extension}', expected one of {}", supported.join(", "))]
+pub struct UnknownExtension {
+    /// The name of the file.
+    pub file: String,
+    /// The extension, which is empty if there is none.
+    pub extension: String,
+    /// The extensions that are supported here.
+    pub supported: &'static [&'static str],
+}
+
+/// Defines an enum of formats with their names, which are also the extensions of files.
+#[doc(hidden)]
+#[macro_export]
+macro_rules! formats {
+    (
+        $(#[$doc:meta])* $format:ident {
+            $($(#[$variant_doc:meta])* $variant:ident = $name:literal $(| $other:literal)*,)*
+        }
+    ) => {
+        $(#[$doc])*
+        #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+        #[non_exhaustive]
+        pub enum $format {
+            $($(#[$variant_doc])* $variant,)*
+        }
+
+        impl $format {
+            /// All formats.
+            pub const ALL: &'static [Self] = &[$(Self::$variant),*];
+
+            /// The names of all formats, which are also the extensions of files.
+            pub const NAMES: &'static [&'static str] = &[$($name, $($other,)*)*];
+
+            /// Returns the name of the format, which is the usual extension of its files.
+            #[must_use]
+            pub fn name(self) -> &'static str {
+                match self {
+                    $(Self::$variant => $name,)*
+                }
+            }
+
+            fn named(name: &str) -> Option<Self> {
+                match name.to_ascii_lowercase().as_str() {
+                    $($name $(| $other)* => Some(Self::$variant),)*
+                    _ => None,
+                }
+            }
+
+            /// Returns the format that the extension of a file stands for, in any case.
+            ///
+            /// # Errors
+            /// [`UnknownExtension`]($crate::UnknownExtension) if the extension belongs to no format.
+            pub fn from_path(path: &std::path::Path) -> Result<Self, $crate::UnknownExtension> {
+                let extension = path.extension().map(|e| e.to_string_lossy().into_owned()).unwrap_or_default();
+                Self::named(&extension).ok_or_else(|| $crate::UnknownExtension {
+                    file: path.display().to_string(),
+                    extension,
+                    supported: Self::NAMES,
+                })
+            }
+        }
+
+        impl std::fmt::Display for $format {
+            fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+                f.pad(self.name())
+            }
+        }
+
+        impl std::str::FromStr for $format {
+            type Err = $crate::UnknownFormat;
+
+            /// Returns the format with this name, in any case.
+            fn from_str(name: &str) -> Result<Self, $crate::UnknownFormat> {
+                let unknown = || $crate::UnknownFormat { name: name.to_owned(), supported: Self::NAMES };
+                Self::named(name).ok_or_else(unknown)
+            }
+        }
+    };
+}

@@ -1,0 +1,99 @@
+//! The formats of scenes: a module for each, and their table.
+//!
+//! The module of a format has two functions, which the table calls. `read` reads a file into a builder, and returns the
+//! scene or its last piece. `write` writes a scene.
+
+pub(crate) mod obj;
+pub(crate) mod off;
+pub(crate) mod p2m;
+pub(crate) mod ply;
+pub(crate) mod stl;
+
+use crate::builder::SceneBuilder;
+use crate::parse::blocks::Source;
+use crate::{ReadError, Scene, WriteError};
+use std::io::{BufRead, Write};
+
+/// Makes [`Format`] of a table: the name of a format, which is the extension of its files, its module, and whether its
+/// files hold every scene.
+macro_rules! scene_formats {
+    ($($(#[$doc:meta])* $variant:ident = $name:literal, $module:ident, is_lossless: $is_lossless:literal;)*) => {
+        p2m_core::formats! {
+            /// The file formats of scenes, all of which can be read and written.
+            ///
+            /// ```
+            /// use p2m_mixed::Format;
+            ///
+            /// assert_eq!("STL".parse(), Ok(Format::Stl));
+            /// assert_eq!(Format::from_path("a/b.off".as_ref()).unwrap().to_string(), "off");
+            /// let error = "step".parse::<Format>().unwrap_err();
+            /// assert!(error.to_string().starts_with("unknown format 'step', expected one of obj, ply"));
+            /// ```
+            Format { $($(#[$doc])* $variant = $name,)* }
+        }
+
+        impl Format {
+            /// Returns whether files hold the primitives of every scene, of all kinds, and the bits of their positions.
+            #[must_use]
+            pub fn is_lossless(self) -> bool {
+                match self {
+                    $(Self::$variant => $is_lossless,)*
+                }
+            }
+
+            pub(crate) fn read(
+                self,
+                source: Source<impl BufRead>,
+                name: &str,
+                builder: SceneBuilder<'_>,
+            ) -> Result<Scene, ReadError> {
+                match self {
+                    $(Self::$variant => $module::read(source, name, builder),)*
+                }
+            }
+
+            pub(crate) fn write(self, scene: &Scene, writer: impl Write) -> Result<(), WriteError> {
+                match self {
+                    $(Self::$variant => $module::write(scene, writer),)*
+                }
+            }
+        }
+    };
+}
+
+scene_formats! {
+    /// Wavefront OBJ is a text format, see [`read_obj`](crate::read_obj) and [`write_obj`](crate::write_obj).
+    Obj = "obj", obj, is_lossless: true;
+    /// This is the Stanford polygon format, see [`read_ply`](crate::read_ply) and [`write_ply`](crate::write_ply).
+    Ply = "ply", ply, is_lossless: true;
+    /// Stereolithography files have triangles in single precision, see [`read_stl`](crate::read_stl) and
+    /// [`write_stl`](crate::write_stl).
+    Stl = "stl", stl, is_lossless: false;
+    /// This is the object file format of Geomview, see [`read_off`](crate::read_off) and
+    /// [`write_off`](crate::write_off).
+    Off = "off", off, is_lossless: true;
+    /// Files of saved indexes can have a scene, see [`read_p2m`](crate::read_p2m) and [`write_p2m`](crate::write_p2m).
+    P2m = "p2m", p2m, is_lossless: true;
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::PointFormat;
+    use std::path::Path;
+
+    #[test]
+    fn names_and_extensions_in_any_case() {
+        for (name, format) in [("obj", Format::Obj), ("Ply", Format::Ply), ("STL", Format::Stl), ("oFF", Format::Off)] {
+            assert_eq!(name.parse(), Ok(format));
+            assert_eq!(Format::from_path(Path::new(&format!("a.b.{name}"))).unwrap(), format);
+            assert_eq!(format.to_string(), name.to_lowercase());
+        }
+        assert_eq!("txt".parse(), Ok(PointFormat::Xyz));
+        assert_eq!("npy".parse(), Ok(PointFormat::Npy));
+        assert!("".parse::<Format>().is_err() && ".stl".parse::<Format>().is_err());
+        let error = PointFormat::from_path(Path::new("q.las")).unwrap_err();
+        assert_eq!(error.to_string(), "q.las: unknown extension 'las', expected one of xyz, txt, csv, npy, ply");
+        assert!(PointFormat::from_path(Path::new("csv")).is_err(), "a name is no extension");
+    }
+}

@@ -1,0 +1,173 @@
+//! The plan of a PLY file: how each element of its header is read.
+
+use super::header;
+use crate::HeaderProblem;
+use crate::parse::bytes::Scalar;
+use crate::parse::text::quote;
+use header::Layout;
+
+/// The property with the id of a primitive, for files that have primitives in another order.
+const ID_PROPERTY: &str = "p2m_id";
+
+/// The index of each coordinate among the properties, and its type.
+pub(super) type Coordinates<const N: usize> = [(usize, Scalar); N];
+
+/// How an element is read, with the indices and types of its properties.
+pub(super) enum ElementPlan {
+    Vertices(Coordinates<3>),
+    Members(MemberPlan),
+    Skip,
+}
+
+/// The plan of an element that makes primitives.
+pub(super) struct MemberPlan {
+    pub(super) kind: Kind,
+    /// The index and type of the property with the id.
+    pub(super) id: Option<(usize, Scalar)>,
+}
+
+/// The kind of an element that makes primitives, with the indices and types of its properties.
+pub(super) enum Kind {
+    Face(usize, List),
+    Strip(usize, List),
+    Edge([(usize, Scalar); 2]),
+    Point((usize, Scalar)),
+}
+
+/// The form in which the vertices of a member make primitives.
+#[derive(Clone, Copy, PartialEq, Eq)]
+pub(super) enum Form {
+    Polygon,
+    Strip,
+    Segment,
+    Point,
+}
+
+/// The types of a list of vertices: those of its count and of its items.
+#[derive(Clone, Copy)]
+pub(super) struct List {
+    pub(super) count: Scalar,
+    pub(super) item: Scalar,
+}
+
+impl ElementPlan {
+    pub(super) fn of(element: &header::Element) -> Result<Self, HeaderProblem> {
+        let kind = match element.name.as_slice() {
+            b"vertex" => return Ok(Self::Vertices(coordinates(element, ["x", "y", "z"])?)),
+            b"edge" => {
+                Kind::Edge([scalar(element, "edge", "vertex1", true)?, scalar(element, "edge", "vertex2", true)?])
+            }
+            b"face" => {
+                let (at, list) = list(element, "face")?;
+                Kind::Face(at, list)
+            }
+            b"tristrips" => {
+                let (at, list) = list(element, "tristrips")?;
+                Kind::Strip(at, list)
+            }
+            // An element of this name from another program may have another meaning.
+            b"point" => match scalar(element, "point", "vertex_index", true) {
+                Ok(vertex) => Kind::Point(vertex),
+                Err(_) => return Ok(Self::Skip),
+            },
+            _ => return Ok(Self::Skip),
+        };
+        let id = match element.find(&[ID_PROPERTY]) {
+            Some(_) if !matches!(kind, Kind::Strip(..)) => Some(scalar(element, "face", ID_PROPERTY, true)?),
+            _ => None,
+        };
+        Ok(Self::Members(MemberPlan { kind, id }))
+    }
+}
+
+impl MemberPlan {
+    pub(super) fn form(&self) -> Form {
+        match self.kind {
+            Kind::Face(..) => Form::Polygon,
+            Kind::Strip(..) => Form::Strip,
+            Kind::Edge(_) => Form::Segment,
+            Kind::Point(_) => Form::Point,
+        }
+    }
+
+    pub(super) fn is_point(&self) -> bool {
+        matches!(self.kind, Kind::Point(_))
+    }
+
+    /// Returns the indices of the properties that are read.
+    pub(super) fn used(&self) -> Vec<usize> {
+        let mut used = match self.kind {
+            Kind::Face(at, _) | Kind::Strip(at, _) | Kind::Point((at, _)) => vec![at],
+            Kind::Edge(ends) => ends.map(|(at, _)| at).to_vec(),
+        };
+        used.extend(self.id.map(|(at, _)| at));
+        used
+    }
+}
+
+/// Returns the number of primitives if they have ids, otherwise `None`. It is an error if only some of them do.
+pub(super) fn ids(elements: &[header::Element], plans: &[ElementPlan]) -> Result<Option<u64>, HeaderProblem> {
+    let (mut with, mut without) = (0u64, None);
+    for (element, plan) in elements.iter().zip(plans) {
+        if let ElementPlan::Members(members) = plan
+            && element.count > 0
+        {
+            match (&members.id, &members.kind) {
+                (Some(_), _) => with = with.saturating_add(element.count),
+                (None, Kind::Face(..)) => without = Some("face"),
+                (None, Kind::Strip(..)) => without = Some("tristrips"),
+                (None, Kind::Edge(_)) => without = Some("edge"),
+                (None, Kind::Point(_)) => without = Some("point"),
+            }
+        }
+    }
+    match without {
+        _ if with == 0 => Ok(None),
+        Some(element) => Err(HeaderProblem::MissingProperty { element, property: ID_PROPERTY }),
+        None => Ok(Some(with)),
+    }
+}
+
+pub(super) fn coordinates<const N: usize>(
+    element: &header::Element,
+    names: [&'static str; N],
+) -> Result<Coordinates<N>, HeaderProblem> {
+    let mut found = [(0, Scalar::F64); N];
+    for (found, name) in found.iter_mut().zip(names) {
+        *found = scalar(element, "vertex", name, false)?;
+    }
+    Ok(found)
+}
+
+/// Returns whether an element has a list of vertices, by the usual names of such a list.
+pub(super) fn has_vertex_list(element: &header::Element) -> bool {
+    element.properties.iter().any(|p| matches!(p.layout, Layout::List { .. }) && p.name.starts_with(b"vertex_ind"))
+}
+
+fn scalar(
+    element: &header::Element,
+    name: &'static str,
+    property: &'static str,
+    integer: bool,
+) -> Result<(usize, Scalar), HeaderProblem> {
+    let at = element.find(&[property]).ok_or(HeaderProblem::MissingProperty { element: name, property })?;
+    match element.properties[at].layout {
+        Layout::Scalar(scalar) if scalar.is_integer() || !integer => Ok((at, scalar)),
+        _ => {
+            Err(HeaderProblem::BadType { name: property.to_owned(), declared: element.properties[at].declared.clone() })
+        }
+    }
+}
+
+fn list(element: &header::Element, name: &'static str) -> Result<(usize, List), HeaderProblem> {
+    let property = "vertex_indices";
+    let at =
+        element.find(&[property, "vertex_index"]).ok_or(HeaderProblem::MissingProperty { element: name, property })?;
+    match element.properties[at].layout {
+        Layout::List { count, item } if item.is_integer() => Ok((at, List { count, item })),
+        _ => {
+            let header::Property { name, declared, .. } = &element.properties[at];
+            Err(HeaderProblem::BadType { name: quote(name), declared: declared.clone() })
+        }
+    }
+}

@@ -1,0 +1,280 @@
+//! Reading the members of an element in blocks.
+
+use super::data::{Data, Encoded, Numbers, Start, parse_coordinate};
+use super::header::{Layout, Property};
+use crate::parse::blocks::{Source, for_each_block};
+use crate::parse::bytes::{Bytes, Scalar};
+use crate::parse::text::{Tokens, last_line_end, line_end, parse_integer};
+use crate::{FileLocation, ReadError, Reason};
+use std::io::BufRead;
+
+/// A function that reads a row, which is a member of an element, in any encoding.
+pub(super) trait ReadRow<T>: Sync {
+    fn read<N: Numbers>(&self, numbers: &mut N, parsed: &mut T) -> Result<(), N::Error>;
+}
+
+/// The error of a row that is left to the sequential reader, which has the location and the reason of an error.
+#[derive(Debug)]
+pub(super) struct Unusual;
+
+/// The numbers in a block.
+trait RowsOfBlock: Numbers {
+    /// Returns the end of the row that was read last.
+    fn position(&self) -> usize;
+
+    /// Returns whether there are no more rows.
+    fn is_end(&self) -> bool;
+}
+
+/// Reads rows up to the first one that is left to the sequential reader, and appends their ends.
+fn read_all<T>(rows: &mut impl RowsOfBlock, read_row: &impl ReadRow<T>, parsed: &mut T, ends: &mut Vec<usize>) {
+    while !rows.is_end() && read_row.read(rows, parsed).is_ok() {
+        ends.push(rows.position());
+    }
+}
+
+/// The rows of a text, each of which is on one line.
+struct LineRows<'a> {
+    bytes: &'a [u8],
+    /// The start of the next line.
+    next: usize,
+    line: Tokens<'a>,
+    /// Whether no number of the current row was read yet.
+    is_start: bool,
+}
+
+impl<'a> LineRows<'a> {
+    fn new(bytes: &'a [u8]) -> Self {
+        Self { bytes, next: 0, line: Tokens::new(&[]), is_start: true }
+    }
+
+    fn token(&mut self) -> Result<&'a [u8], Unusual> {
+        loop {
+            if let Some(token) = self.line.next() {
+                self.is_start = false;
+                return Ok(token);
+            }
+            if !self.is_start || self.is_end() {
+                return Err(Unusual);
+            }
+            let line;
+            (line, self.next) = line_end(self.bytes, self.next);
+            self.line = Tokens::new(line);
+        }
+    }
+}
+
+impl RowsOfBlock for LineRows<'_> {
+    fn position(&self) -> usize {
+        self.next
+    }
+
+    fn is_end(&self) -> bool {
+        self.next == self.bytes.len()
+    }
+}
+
+impl Numbers for LineRows<'_> {
+    type Error = Unusual;
+
+    fn error(&self, _: impl FnOnce() -> Reason) -> Unusual {
+        Unusual
+    }
+
+    fn location(&self) -> FileLocation {
+        FileLocation::File
+    }
+
+    fn end_element(&mut self) -> Result<(), Unusual> {
+        self.is_start = true;
+        if self.line.next().is_none() { Ok(()) } else { Err(Unusual) }
+    }
+
+    fn coordinate(&mut self, scalar: Scalar) -> Result<f64, Unusual> {
+        parse_coordinate(self.token()?, scalar).map_err(|_| Unusual)
+    }
+
+    fn integer(&mut self, _: Scalar) -> Result<i64, Unusual> {
+        parse_integer(self.token()?).map_err(|_| Unusual)
+    }
+
+    fn skip_numbers(&mut self, count: u64, _: Scalar) -> Result<(), Unusual> {
+        (0..count).try_for_each(|_| self.token().map(|_| ()))
+    }
+}
+
+/// The rows of a block of binary numbers.
+struct ByteRows<'a> {
+    /// The bytes that were not read yet.
+    rest: &'a [u8],
+    /// The number of bytes of the block.
+    length: usize,
+    big_endian: bool,
+}
+
+impl<'a> ByteRows<'a> {
+    fn new(bytes: &'a [u8], big_endian: bool) -> Self {
+        Self { rest: bytes, length: bytes.len(), big_endian }
+    }
+}
+
+impl RowsOfBlock for ByteRows<'_> {
+    fn position(&self) -> usize {
+        self.length - self.rest.len()
+    }
+
+    fn is_end(&self) -> bool {
+        self.rest.is_empty()
+    }
+}
+
+impl Bytes for ByteRows<'_> {
+    type Error = Unusual;
+
+    fn array<const N: usize>(&mut self) -> Result<[u8; N], Unusual> {
+        let (array, rest) = self.rest.split_first_chunk().ok_or(Unusual)?;
+        self.rest = rest;
+        Ok(*array)
+    }
+}
+
+impl Numbers for ByteRows<'_> {
+    type Error = Unusual;
+
+    fn error(&self, _: impl FnOnce() -> Reason) -> Unusual {
+        Unusual
+    }
+
+    fn location(&self) -> FileLocation {
+        FileLocation::File
+    }
+
+    fn end_element(&mut self) -> Result<(), Unusual> {
+        Ok(())
+    }
+
+    fn coordinate(&mut self, scalar: Scalar) -> Result<f64, Unusual> {
+        self.number(scalar, self.big_endian)
+    }
+
+    #[allow(clippy::cast_possible_truncation, reason = "integers of up to 32 bits are exact in f64")]
+    fn integer(&mut self, scalar: Scalar) -> Result<i64, Unusual> {
+        self.coordinate(scalar).map(|x| x as i64)
+    }
+
+    fn skip_numbers(&mut self, count: u64, scalar: Scalar) -> Result<(), Unusual> {
+        let bytes = count.checked_mul(scalar.size() as u64).and_then(|bytes| usize::try_from(bytes).ok());
+        self.rest = bytes.and_then(|bytes| self.rest.get(bytes..)).ok_or(Unusual)?;
+        Ok(())
+    }
+}
+
+/// The rows of a block, up to the first one that is left to the sequential reader.
+pub(super) struct Rows<'a, T> {
+    /// The values of the rows.
+    pub(super) parsed: T,
+    /// The number of rows that are wanted.
+    pub(super) count: usize,
+    /// The end of each row in the block.
+    ends: Vec<usize>,
+    start: Start,
+    bytes: &'a [u8],
+}
+
+impl<T> Rows<'_, T> {
+    /// Returns an error for this reason, located as if a row had just been read. `read_row` reads it again.
+    pub(super) fn error(&self, file: &str, row: usize, reason: Reason, read_row: &impl ReadRow<T>) -> ReadError
+    where
+        T: Default,
+    {
+        let start = row.checked_sub(1).map_or(0, |before| self.ends[before]);
+        let mut data = Data::at(self.start.after(&self.bytes[..start]), &self.bytes[start..], file);
+        let _ = read_row.read(&mut data, &mut T::default());
+        data.error(|| reason)
+    }
+}
+
+impl<R: BufRead> Data<'_, Source<R>> {
+    /// Reads rows of an element in blocks, at most `count`, and returns their number. The others are left to the
+    /// sequential reader.
+    ///
+    /// `read_row` parses a row, and `add` adds the rows of a block.
+    pub(super) fn read_rows<T: Default + Send>(
+        &mut self,
+        properties: &[Property],
+        count: u64,
+        read_row: &impl ReadRow<T>,
+        mut add: impl FnMut(Rows<'_, T>) -> Result<(), ReadError>,
+    ) -> Result<u64, ReadError> {
+        let (source, start) = match &mut self.source {
+            Encoded::Text(tokens) => match tokens.blocks() {
+                Some((source, lines)) => (source, Start::Line(lines)),
+                None => return Ok(0),
+            },
+            Encoded::Binary { bytes, big_endian } => {
+                let start = Start::Byte { offset: bytes.offset(), big_endian: *big_endian };
+                (bytes.blocks(), start)
+            }
+        };
+        if !source.has_blocks_of(count) {
+            return Ok(0);
+        }
+        let mut uncut = count;
+        let cut = |bytes: &[u8]| match start {
+            Start::Line(_) => Some(last_line_end(bytes)),
+            Start::Byte { big_endian, .. } if uncut > 0 => Some(cut_rows(bytes, properties, big_endian, &mut uncut)),
+            Start::Byte { .. } => None,
+        };
+        let parse = |bytes: &[u8]| {
+            let (mut parsed, mut ends) = (T::default(), Vec::new());
+            match start {
+                Start::Line(_) => read_all(&mut LineRows::new(bytes), read_row, &mut parsed, &mut ends),
+                Start::Byte { big_endian, .. } => {
+                    read_all(&mut ByteRows::new(bytes, big_endian), read_row, &mut parsed, &mut ends);
+                }
+            }
+            (parsed, ends)
+        };
+        let mut next = start;
+        let mut left = count;
+        let mut passed = 0;
+        let added = for_each_block(source, cut, parse, |bytes, (parsed, ends)| {
+            let wanted = ends.len().min(usize::try_from(left).unwrap_or(usize::MAX));
+            let used = wanted.checked_sub(1).map_or(0, |last| ends[last]);
+            add(Rows { parsed, count: wanted, ends, start: next, bytes })?;
+            next = next.after(&bytes[..used]);
+            passed += used as u64;
+            left -= wanted as u64;
+            Ok((left == 0 || used < bytes.len()).then_some(used))
+        });
+        match (&mut self.source, start, next) {
+            (Encoded::Text(tokens), Start::Line(from), Start::Line(to)) => tokens.skip_lines(to - from, passed),
+            (Encoded::Binary { bytes, .. }, ..) => bytes.skip_blocks(passed),
+            _ => {}
+        }
+        added.map(|()| count - left)
+    }
+}
+
+/// Returns the length of the whole rows in `bytes`, at most `count`, and subtracts their number from `count`.
+fn cut_rows(bytes: &[u8], properties: &[Property], big_endian: bool, count: &mut u64) -> usize {
+    let scalar_size = |p: &Property| match p.layout {
+        Layout::Scalar(scalar) => Some(scalar.size() as u64),
+        Layout::List { .. } => None,
+    };
+    if let Some(size) = properties.iter().map(scalar_size).sum::<Option<u64>>().filter(|&size| size > 0) {
+        let rows = (bytes.len() as u64 / size).min(*count);
+        *count -= rows;
+        return usize::try_from(rows * size).unwrap_or(0);
+    }
+    let mut end = 0;
+    let mut data = ByteRows::new(bytes, big_endian);
+    while *count > 0 && properties.iter().all(|property| data.skip(property.layout).is_ok()) {
+        end = data.position();
+        *count -= 1;
+        if end == bytes.len() {
+            break;
+        }
+    }
+    end
+}

@@ -1,0 +1,228 @@
+//! Blocks of a file, which all threads parse while one thread joins them in order.
+//!
+//! A block is a part of a file that can be parsed without what is before it. What a block leaves open, such as a
+//! relative index, is settled when blocks are joined. Whatever is unusual is left to the sequential reader of the
+//! format: it continues where the last block was joined, so both readers together give the same scene and the same
+//! errors as the sequential reader alone.
+
+use crate::parse::bytes::fill_buffer;
+#[cfg(feature = "rayon")]
+use std::collections::VecDeque;
+use std::io::{self, BufRead, Read};
+
+/// The size of a block in bytes. A block is parsed in about a tenth of a millisecond.
+pub(crate) const BLOCK_BYTES: usize = 1 << 15;
+/// The number of blocks that are read for each thread while the blocks before them are parsed.
+#[cfg(feature = "rayon")]
+const BLOCKS_PER_THREAD: usize = 4;
+/// The number of bytes of a typical row.
+const BYTES_PER_ROW: usize = 32;
+/// A line or row longer than this number of blocks is left to the sequential reader.
+const MAX_BLOCKS_PER_ROW: usize = 32;
+
+/// A reader to which bytes can be returned.
+pub(crate) struct Source<R> {
+    reader: R,
+    /// Bytes that come before those of `reader`.
+    returned: Vec<u8>,
+    /// The number of bytes of `returned` that were read again.
+    at: usize,
+    /// An error of `reader` after the bytes of `returned`.
+    error: Option<io::Error>,
+    /// The size of a block, or 0 if there are no blocks.
+    block_bytes: usize,
+}
+
+impl<R: BufRead> Source<R> {
+    pub(crate) fn new(reader: R) -> Self {
+        Self::with_block_bytes(reader, BLOCK_BYTES)
+    }
+
+    /// Sets the size of blocks. With 0 there are no blocks, and the sequential reader reads everything.
+    pub(crate) fn with_block_bytes(reader: R, block_bytes: usize) -> Self {
+        Self { reader, returned: Vec::new(), at: 0, error: None, block_bytes }
+    }
+
+    /// Takes an error of the reader, which the next read returns.
+    pub(crate) fn return_error(&mut self, error: io::Error) {
+        self.error = Some(error);
+    }
+
+    /// Returns bytes that were read last.
+    fn return_bytes(&mut self, bytes: &[u8]) {
+        self.returned.splice(..self.at, bytes.iter().copied());
+        self.at = 0;
+    }
+
+    /// Appends at most `max_count` bytes and returns their number, which is 0 only at the end of the file.
+    fn append(&mut self, max_count: usize, block: &mut Vec<u8>) -> io::Result<usize> {
+        let bytes = fill_buffer(self)?;
+        let count = bytes.len().min(max_count);
+        block.extend_from_slice(&bytes[..count]);
+        self.consume(count);
+        Ok(count)
+    }
+
+    /// Returns whether this number of rows is worth reading in blocks.
+    pub(crate) fn has_blocks_of(&self, rows: u64) -> bool {
+        self.block_bytes > 0 && rows >= (self.block_bytes / BYTES_PER_ROW) as u64
+    }
+
+    /// Reads the next block. `cut` returns the length of the longest block at the start of some bytes, which is 0 if
+    /// more bytes are needed, or `None` if no block is wanted. Returns `None`, and no byte is read, at the end of the
+    /// file, before an error, and if there is no block.
+    fn next_block(&mut self, cut: &mut impl FnMut(&[u8]) -> Option<usize>) -> Option<Vec<u8>> {
+        let mut block = Vec::new();
+        let mut want = self.block_bytes;
+        while want > 0 && want <= self.block_bytes * MAX_BLOCKS_PER_ROW {
+            while block.len() < want {
+                match self.append(want - block.len(), &mut block) {
+                    Ok(0) => break,
+                    Ok(_) => {}
+                    Err(error) => {
+                        self.return_error(error);
+                        break;
+                    }
+                }
+            }
+            let Some(length) = cut(&block) else { break };
+            if length > 0 {
+                self.return_bytes(&block[length..]);
+                block.truncate(length);
+                return Some(block);
+            }
+            if block.len() < want {
+                break;
+            }
+            want *= 2;
+        }
+        self.return_bytes(&block);
+        None
+    }
+}
+
+impl<R: BufRead> Read for Source<R> {
+    fn read(&mut self, buffer: &mut [u8]) -> io::Result<usize> {
+        let bytes = self.fill_buf()?;
+        let count = bytes.len().min(buffer.len());
+        buffer[..count].copy_from_slice(&bytes[..count]);
+        self.consume(count);
+        Ok(count)
+    }
+}
+
+impl<R: BufRead> BufRead for Source<R> {
+    fn fill_buf(&mut self) -> io::Result<&[u8]> {
+        if self.at < self.returned.len() {
+            return Ok(&self.returned[self.at..]);
+        }
+        match self.error.take() {
+            Some(error) => Err(error),
+            None => self.reader.fill_buf(),
+        }
+    }
+
+    fn consume(&mut self, count: usize) {
+        if self.at < self.returned.len() {
+            self.at += count;
+        } else {
+            self.reader.consume(count);
+        }
+    }
+}
+
+/// Parses blocks of a file, with the feature `rayon` on all threads of the current pool, and passes each with its
+/// bytes to `join`, in order and on this thread.
+///
+/// Blocks end where `cut` says (see [`Source::next_block`]). `join` may return a number of bytes of its block to say
+/// that the rest of the block, and all blocks after it, are not wanted; these bytes are the next of the source then.
+pub(crate) fn for_each_block<R: BufRead, P: Send, E>(
+    source: &mut Source<R>,
+    mut cut: impl FnMut(&[u8]) -> Option<usize>,
+    parse: impl Fn(&[u8]) -> P + Sync,
+    mut join: impl FnMut(&[u8], P) -> Result<Option<usize>, E>,
+) -> Result<(), E> {
+    #[cfg(feature = "rayon")]
+    if rayon::current_num_threads() > 1 {
+        return for_each_block_on_threads(source, &mut cut, &parse, &mut join);
+    }
+    while let Some(block) = source.next_block(&mut cut) {
+        let parsed = parse(&block);
+        if let Some(used) = join(&block, parsed)? {
+            source.return_bytes(&block[used..]);
+            break;
+        }
+    }
+    Ok(())
+}
+
+/// A block, and what it was parsed into.
+#[cfg(feature = "rayon")]
+struct Slot<P> {
+    bytes: Vec<u8>,
+    parsed: Option<P>,
+}
+
+/// Joins the blocks of one round and reads those of the round after the next, while other threads parse the blocks of
+/// the next round.
+#[cfg(feature = "rayon")]
+fn for_each_block_on_threads<R: BufRead, P: Send, E>(
+    source: &mut Source<R>,
+    cut: &mut impl FnMut(&[u8]) -> Option<usize>,
+    parse: &(impl Fn(&[u8]) -> P + Sync),
+    join: &mut impl FnMut(&[u8], P) -> Result<Option<usize>, E>,
+) -> Result<(), E> {
+    let blocks_per_round = rayon::current_num_threads() * BLOCKS_PER_THREAD;
+    let mut parsed = VecDeque::<Slot<P>>::new();
+    // A small file is one block, which needs no other thread.
+    let mut next = read_round(source, cut, 1);
+    if let Some(slot) = next.front_mut() {
+        slot.parsed = Some(parse(&slot.bytes));
+    }
+    loop {
+        let mut after = VecDeque::new();
+        let mut stopped = Ok(None);
+        let all_joined = rayon::in_place_scope(|scope| {
+            for slot in next.iter_mut().filter(|slot| slot.parsed.is_none()) {
+                scope.spawn(|_| slot.parsed = Some(parse(&slot.bytes)));
+            }
+            while let Some(Slot { bytes, parsed: Some(block) }) = parsed.pop_front() {
+                match join(&bytes, block) {
+                    Ok(None) => {}
+                    Ok(Some(used)) => {
+                        stopped = Ok(Some(bytes[used..].to_vec()));
+                        return false;
+                    }
+                    Err(error) => {
+                        stopped = Err(error);
+                        return false;
+                    }
+                }
+            }
+            after = read_round(source, cut, blocks_per_round);
+            true
+        });
+        if !all_joined {
+            let mut bytes = stopped?.unwrap_or_default();
+            for slot in parsed.iter().chain(&next) {
+                bytes.extend_from_slice(&slot.bytes);
+            }
+            source.return_bytes(&bytes);
+            return Ok(());
+        }
+        if next.is_empty() {
+            return Ok(());
+        }
+        parsed = std::mem::replace(&mut next, after);
+    }
+}
+
+#[cfg(feature = "rayon")]
+fn read_round<R: BufRead, P>(
+    source: &mut Source<R>,
+    cut: &mut impl FnMut(&[u8]) -> Option<usize>,
+    count: usize,
+) -> VecDeque<Slot<P>> {
+    let blocks = std::iter::from_fn(|| source.next_block(cut));
+    blocks.take(count).map(|bytes| Slot { bytes, parsed: None }).collect()
+}
