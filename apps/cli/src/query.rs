@@ -184,7 +184,7 @@ pub(crate) fn run(streams: &Streams, args: &Args) -> anyhow::Result<()> {
 
     let signed = args.signed.map(|rule| rule.prepare(streams, index, &scene.soup)).transpose();
     let signed = signed.with_context(|| scene_args.name())?.map(|(signed, _)| signed);
-    let source = WholeIndex { index: index, signed: signed.as_ref(), args };
+    let source = WholeIndex { index, signed: signed.as_ref(), args };
     let objects = &scene.objects;
     let task = Task { streams, args, pool: &pool, queries, output: &mut output, format: out_format, objects };
     let (summary, query_time) = task.run(&source)?;
