@@ -1,7 +1,6 @@
 //! The scene in f32, a million units from the origin.
 
 use crate::ordinary;
-use crate::scene::answer;
 use p2m::nalgebra::{Point3, Vector3};
 use p2m::{AabbTree, ClosestPoint, PrimitiveSet, Soup};
 use std::sync::Arc;
@@ -96,7 +95,7 @@ impl FarScene {
     pub fn query(&self, query: &Point3<f64>) -> Option<FarAnswer> {
         let query = rounded(query, &self.centre, self.scale);
         let closest = self.index.closest_point(&query)?;
-        let exact = answer(&self.exact, &query.cast())?;
+        let exact = self.exact.closest_point(&query.cast::<f64>())?;
         let (ordinary_point, ordinary_distance) = ordinary::closest_point(self.index.set(), &query)?;
         let vertices = self.exact.set().element(closest.primitive);
         let weighted = vertices.indices().iter().zip(closest.barycentric).map(|(&i, weight)| {
@@ -109,7 +108,7 @@ impl FarScene {
             distance: f64::from(closest.distance) / self.scale,
             ordinary_point: self.back(&ordinary_point.cast()),
             ordinary_distance: f64::from(ordinary_distance) / self.scale,
-            true_distance: exact.closest.distance / self.scale,
+            true_distance: exact.distance / self.scale,
         })
     }
 
