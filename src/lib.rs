@@ -68,7 +68,7 @@
 //! |---|---|---|
 //! | `bvh` | [`AabbTree`] | yes |
 //! | `interception` | [`OctreeIndex`], [`P2mIndex`] | yes |
-//! | `lean` | all features of the default but `paper`: `default-features = false, features = ["lean"]` compiles 20 crates fewer | yes |
+//! | `lean` | all features of the default but `paper`: `default-features = false, features = ["lean"]` compiles 29 crates fewer | yes |
 //! | `paper` | `paper`: the index of the P2M paper, with the KD-tree of kiddo and the R-trees of rstar; slower than [`P2mIndex`] | yes |
 //! | `glam` | [`Position`]s of the crate glam in scenes and batches | no |
 //! | `mint` | [`Position`]s of the crate mint in scenes and batches | no |
