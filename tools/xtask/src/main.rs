@@ -5,12 +5,12 @@
 
 mod builds;
 mod deep;
-mod licences;
 mod memory;
 mod package;
 mod pages;
 mod promises;
 mod python;
+mod tools;
 mod wasm;
 
 use std::path::{Path, PathBuf};

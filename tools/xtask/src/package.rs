@@ -1,6 +1,6 @@
 //! Packs the crates as for publishing, without a registry, and checks what is in their packages.
 
-use crate::{Outcome, cargo, licences, output, target_folder};
+use crate::{Outcome, cargo, output, target_folder, tools};
 use std::fs;
 use std::path::{Path, PathBuf};
 
@@ -16,7 +16,7 @@ const MANIFEST_KEYS: [&str; 8] =
 
 /// Packs each crate that is published, unpacks it again and checks it, and checks the licences of dependencies.
 pub(crate) fn run() -> Outcome {
-    licences::check()?;
+    tools::deny()?;
     let published = published_crates()?;
     let target = target_folder().join("packages");
     // A package that an earlier run has left, perhaps of another version, could be checked in place of the new one.

@@ -1,6 +1,6 @@
 //! Checks the promises that the manifests make to users of p2m.
 
-use crate::{Outcome, cargo, output};
+use crate::{Outcome, cargo, output, tools};
 use std::fs;
 use std::path::Path;
 
@@ -11,26 +11,9 @@ const TARGETS: [&str; 2] = ["i686-unknown-linux-gnu", "aarch64-unknown-linux-gnu
 pub(crate) fn check() -> Outcome {
     check_lock_files()?;
     check_rust_version()?;
-    let library = ["check", "--locked", "--package", "p2m", "--no-default-features"];
-    cargo(&library, &[])?;
-    for feature in features()? {
-        cargo(&[&library[..], &["--features", &feature]].concat(), &[])?;
-    }
     // Without its features the program has no parts of the paper.
-    cargo(&["check", "--locked", "--package", "p2m-cli", "--no-default-features"], &[])?;
+    tools::each_feature(&["p2m", "p2m-mixed", "p2m-cli"])?;
     check_targets()
-}
-
-/// Returns the features of the facade apart from `default`, as the manifest of the workspace lists them.
-fn features() -> Result<Vec<String>, String> {
-    let manifest = fs::read_to_string("Cargo.toml").map_err(|error| format!("Cargo.toml: {error}"))?;
-    let lines = manifest.lines().skip_while(|line| *line != "[features]").skip(1);
-    let lines = lines.take_while(|line| !line.starts_with('[')).filter(|line| !line.starts_with('#'));
-    let names: Vec<String> = lines.filter_map(|line| Some(line.split_once(" = ")?.0.to_owned())).collect();
-    if names.is_empty() {
-        return Err("Cargo.toml has no features".to_owned());
-    }
-    Ok(names.into_iter().filter(|name| name != "default").collect())
 }
 
 /// Checks that both lock files belong to their manifests.

@@ -2,7 +2,7 @@
 
 use crate::{Outcome, absolute_target_folder, cargo, debug_program, output, run};
 use std::fs;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use std::process::Command;
 
 /// The oldest version of Python that the package supports.
@@ -39,12 +39,8 @@ pub(crate) fn check(filter: &[String]) -> Outcome {
         return Ok(());
     };
     let target = absolute_target_folder()?;
-    let environment = target.join(if compares { "python-rivals-env" } else { "python-env" });
-    let bin = environment.join(if cfg!(windows) { "Scripts" } else { "bin" });
+    let bin = environment(&python, if compares { "python-rivals-env" } else { "python-env" })?;
     let own_python = text(&bin.join("python"))?;
-    if output(&own_python, &["--version"]).is_err() {
-        run(&python, &["-m", "venv", &text(&environment)?], &[])?;
-    }
     if let Err(why) = install_needed(&own_python, &NEEDED) {
         println!("\n== skipped: the packages that the tests need cannot be installed\n{why}");
         return Ok(());
@@ -85,8 +81,18 @@ pub(crate) fn check(filter: &[String]) -> Outcome {
     in_folder(PACKAGE, &["mypy.stubtest", "--mypy-config-file", "pyproject.toml", "p2m"], program)
 }
 
+/// Returns the folder of programs of a virtual environment below the target folder, which is made if it is absent.
+pub(crate) fn environment(python: &str, name: &str) -> Result<PathBuf, String> {
+    let environment = absolute_target_folder()?.join(name);
+    let bin = environment.join(if cfg!(windows) { "Scripts" } else { "bin" });
+    if output(&text(&bin.join("python"))?, &["--version"]).is_err() {
+        run(python, &["-m", "venv", &text(&environment)?], &[])?;
+    }
+    Ok(bin)
+}
+
 /// Returns the first Python of the path that is new enough and can make virtual environments.
-fn find_python() -> Option<String> {
+pub(crate) fn find_python() -> Option<String> {
     let (major, minor) = MIN_VERSION;
     let check = format!("import sys, venv, ensurepip; assert sys.version_info >= ({major}, {minor})");
     let names = ["python3", "python", "python3.14", "python3.13", "python3.12", "python3.11"];
@@ -94,7 +100,7 @@ fn find_python() -> Option<String> {
 }
 
 /// Installs what is missing, without a look at the registry if nothing is.
-fn install_needed(python: &str, needed: &[&str]) -> Result<(), String> {
+pub(crate) fn install_needed(python: &str, needed: &[&str]) -> Result<(), String> {
     let install = ["-m", "pip", "install", "--quiet", "--disable-pip-version-check"];
     let offline = [&install[..], &["--no-index"], needed].concat();
     if output(python, &offline).is_ok() {
@@ -134,6 +140,6 @@ fn copy_files(from: &Path, to: &Path) -> Result<(), String> {
 }
 
 /// Returns a path as text.
-fn text(path: &Path) -> Result<String, String> {
+pub(crate) fn text(path: &Path) -> Result<String, String> {
     path.to_str().map(str::to_owned).ok_or_else(|| format!("{}: is not Unicode", path.display()))
 }
