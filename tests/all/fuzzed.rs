@@ -21,15 +21,15 @@ type Check = Box<dyn Fn(&[u8])>;
 
 /// Returns the names of the targets, which are those of the folders of their seeds, and their checks.
 fn targets() -> Vec<(String, Check)> {
-    let others: [(&str, fn(&[u8])); 4] = [
-        ("queries", |input| _ = queries::check(input)),
-        ("rays", |input| _ = rays::check(input)),
-        ("pairs", |input| _ = pairs::check(input)),
-        ("saved", |input| _ = saved::check(input)),
+    let others: [(&str, Check); 4] = [
+        ("queries", Box::new(|input| _ = queries::check(input))),
+        ("rays", Box::new(|input| _ = rays::check(input))),
+        ("pairs", Box::new(|input| _ = pairs::check(input))),
+        ("saved", Box::new(|input| _ = saved::check(input))),
     ];
     let readers = Reader::all().into_iter();
     let readers = readers.map(|reader| (reader.name(), Box::new(move |file: &[u8]| reader.check(file)) as Check));
-    readers.chain(others.map(|(name, check)| (name.to_owned(), Box::new(check) as Check))).collect()
+    readers.chain(others.map(|(name, check)| (name.to_owned(), check))).collect()
 }
 
 fn folder(name: &str) -> PathBuf {

@@ -24,30 +24,20 @@ type Reader = Box<dyn Fn(&[u8]) -> bool>;
 /// Returns files, how to read them, and the number of lengths at which a truncated file is still valid.
 fn files() -> Vec<(Vec<u8>, Reader, usize)> {
     let anywhere = usize::MAX;
-    let read_scene = |format| move |b: &[u8]| check(read_scene_from(b, format, "t"));
-    let mut files: Vec<(Vec<u8>, Reader, usize)> = rich_files()
-        .into_iter()
-        .map(|(bytes, format, most)| (bytes, Box::new(read_scene(format)) as Reader, most))
-        .collect();
-    let others: [(Vec<u8>, fn(&[u8]) -> bool, usize); 5] = [
-        (npy(RICH_NPY, &[0; 2 * 44]), |b| check_points(read_points_from(b, PointFormat::Npy, "t")), 0),
-        (b"qx;qy;qz\n1;2;-0.0\n".into(), |b| check_points(read_points_from(b, PointFormat::Csv, "t")), anywhere),
-        (
-            npy("{'descr': '<f4', 'fortran_order': False, 'shape': (1, 6)}\n", &[60; 24]),
-            |b| check_rays(read_rays_from(b, PointFormat::Npy, "t")),
-            0,
-        ),
-        (
-            b"ox,oy,oz,dx,dy,dz\n1,2,3,4,5,6\n".into(),
-            |b| check_rays(read_rays_from(b, PointFormat::Csv, "t")),
-            anywhere,
-        ),
-        (b"1 2 3\n# c\n4 5 6\n".into(), |b| check_points(read_points_from(b, PointFormat::Xyz, "t")), anywhere),
+    let scene = |format| Box::new(move |b: &[u8]| check(read_scene_from(b, format, "t"))) as Reader;
+    let points = |format| Box::new(move |b: &[u8]| check_points(read_points_from(b, format, "t"))) as Reader;
+    let rays = |format| Box::new(move |b: &[u8]| check_rays(read_rays_from(b, format, "t"))) as Reader;
+    let single = "{'descr': '<f4', 'fortran_order': False, 'shape': (1, 6)}\n";
+    let mut files = vec![
+        (npy(RICH_NPY, &[0; 2 * 44]), points(PointFormat::Npy), 0),
+        (b"qx;qy;qz\n1;2;-0.0\n".into(), points(PointFormat::Csv), anywhere),
+        (npy(single, &[60; 24]), rays(PointFormat::Npy), 0),
+        (b"ox,oy,oz,dx,dy,dz\n1,2,3,4,5,6\n".into(), rays(PointFormat::Csv), anywhere),
+        (b"1 2 3\n# c\n4 5 6\n".into(), points(PointFormat::Xyz), anywhere),
     ];
-    files.extend(others.map(|(bytes, read, most)| (bytes, Box::new(read) as Reader, most)));
+    files.extend(rich_files().into_iter().map(|(bytes, format, most)| (bytes, scene(format), most)));
     // Data after the vertices is not read.
-    let points = |b: &[u8]| check_points(read_points_from(b, PointFormat::Ply, "t"));
-    files.extend(ENCODINGS.map(|e| (rich_ply(e), Box::new(points) as Reader, anywhere)));
+    files.extend(ENCODINGS.map(|e| (rich_ply(e), points(PointFormat::Ply), anywhere)));
     files
 }
 
