@@ -27,8 +27,6 @@ pub(crate) enum Command {
     Verify(VerifyArguments),
     /// Times the first hits of rays against other libraries; fails if ours differ
     Ray(RayArguments),
-    /// Repeats the evaluation of the P2M paper, for docs/paper.md: prints tables and draws plots; fails if ours differ
-    Paper(PaperArguments),
     /// Checks the accuracy contract where other libraries fail, for docs/extremes.md; fails if ours break it
     Extremes(ExtremesArguments),
     /// Checks distances between primitives where other libraries fail, for docs/extremes.md; fails if ours break the
@@ -36,11 +34,6 @@ pub(crate) enum Command {
     ExtremePairs(ExtremePairsArguments),
     /// Times distance fields on a grid, against other libraries and the figures of an article; fails if ours differ
     Field(FieldArguments),
-    /// Builds over adversarial scenes, for docs/adversaries.md; fails if a budget is exceeded or an answer is wrong
-    Adversaries(AdversariesArguments),
-    /// Runs one external library over one adversarial scene, for `adversaries`
-    #[command(hide = true)]
-    Rival(RivalArguments),
     /// Compares builds on several numbers of threads, in wall time
     Threads(ThreadsArguments),
     /// Compares a scene of moving instances of meshes with one index over all of them; fails if an answer differs
@@ -264,21 +257,6 @@ pub(crate) struct Document {
 }
 
 #[derive(Args)]
-pub(crate) struct PaperArguments {
-    /// The folder of models [default: that of the variable P2M_MODELS, or ../shared/models]
-    #[arg(long)]
-    pub(crate) models: Option<PathBuf>,
-    /// Measure less of everything, in minutes
-    #[arg(long)]
-    pub(crate) quick: bool,
-    /// The folder for plots [default: that of the document's name beside it, or target/paper]
-    #[arg(long)]
-    pub(crate) plots: Option<PathBuf>,
-    #[command(flatten)]
-    pub(crate) document: Document,
-}
-
-#[derive(Args)]
 pub(crate) struct ExtremesArguments {
     /// Answers about isolated primitives that are checked
     #[arg(long, default_value_t = 1_000_000)]
@@ -303,25 +281,6 @@ pub(crate) struct ExtremePairsArguments {
     pub(crate) seed: u64,
     #[command(flatten)]
     pub(crate) document: Document,
-}
-
-#[derive(Args)]
-pub(crate) struct AdversariesArguments {
-    /// Primitives of each scene
-    #[arg(long, default_value_t = 20_000, value_parser = clap::builder::RangedU64ValueParser::<usize>::new().range(1..))]
-    pub(crate) primitives: usize,
-    #[command(flatten)]
-    pub(crate) document: Document,
-}
-
-#[derive(Args)]
-pub(crate) struct RivalArguments {
-    /// Name of the backend
-    pub(crate) backend: String,
-    /// Name of the scene
-    pub(crate) adversary: String,
-    /// Primitives of the scene
-    pub(crate) primitives: usize,
 }
 
 #[derive(Args)]

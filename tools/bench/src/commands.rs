@@ -1,18 +1,14 @@
 //! The commands of `p2m-bench`: each reads its scenes, runs the measurement and prints the result.
 
 use crate::arguments::{
-    AdversariesArguments, Command, Common, ExtremePairsArguments, ExtremesArguments, FieldArguments,
-    InstancesArguments, PairsArguments, PaperArguments, QueryArguments, RayArguments, RivalArguments, ScaleArguments,
-    ThreadsArguments, VerifyArguments,
+    Command, Common, ExtremePairsArguments, ExtremesArguments, FieldArguments, InstancesArguments, PairsArguments,
+    QueryArguments, RayArguments, ScaleArguments, ThreadsArguments, VerifyArguments,
 };
 use crate::backend::Backend;
 use crate::measure::Effort;
 use crate::report::provenance;
 use crate::scene::Scene;
-use crate::{
-    adversaries, backends, extremes, field, instances, measure, pairs, paper, rays, report, scale, shards, threads,
-    verify,
-};
+use crate::{backends, extremes, field, instances, measure, pairs, rays, report, scale, shards, threads, verify};
 use anyhow::Result;
 use std::path::PathBuf;
 
@@ -28,11 +24,8 @@ pub(crate) fn run(command: Command) -> Result<bool> {
         Command::Scale(arguments) => measure_scale(arguments),
         Command::Shards(arguments) => shards::run(&arguments),
         Command::Field(arguments) => fill_fields(&arguments),
-        Command::Adversaries(arguments) => run_adversaries(&arguments),
-        Command::Rival(arguments) => run_external(&arguments),
         Command::Extremes(arguments) => check_extremes(&arguments),
         Command::ExtremePairs(arguments) => check_extreme_pairs(&arguments),
-        Command::Paper(arguments) => repeat_paper(&arguments),
     }
 }
 
@@ -74,20 +67,6 @@ fn query(arguments: &QueryArguments) -> Result<bool> {
     Ok(is_good)
 }
 
-/// Repeats the evaluation of the paper, and returns whether the answers of our backends are bitwise equal.
-fn repeat_paper(arguments: &PaperArguments) -> Result<bool> {
-    let PaperArguments { models, quick, plots, document } = arguments;
-    let models = models.clone().unwrap_or_else(default_models);
-    let beside = document.write.as_ref().map(|document| document.with_extension(""));
-    let plots = plots.clone().or(beside).unwrap_or_else(|| PathBuf::from("target/paper"));
-    paper::run(&models, *quick, document.write.as_deref(), &plots)
-}
-
-/// Returns the default folder of models.
-fn default_models() -> PathBuf {
-    std::env::var_os("P2M_MODELS").map_or_else(|| PathBuf::from("../shared/models"), PathBuf::from)
-}
-
 /// Checks extreme input, and returns whether our backends kept all promises.
 fn check_extremes(arguments: &ExtremesArguments) -> Result<bool> {
     let &ExtremesArguments { cases, scenes, seed, ref document } = arguments;
@@ -97,17 +76,6 @@ fn check_extremes(arguments: &ExtremesArguments) -> Result<bool> {
 fn check_extreme_pairs(arguments: &ExtremePairsArguments) -> Result<bool> {
     let &ExtremePairsArguments { cases, seed, ref document } = arguments;
     extremes::pairs::run(cases, seed, document.write.as_deref(), &provenance(None))
-}
-
-/// Builds over adversarial scenes, and returns whether all budgets were kept and all answers are right.
-fn run_adversaries(arguments: &AdversariesArguments) -> Result<bool> {
-    adversaries::run(arguments.primitives, arguments.document.write.as_deref(), &provenance(None))
-}
-
-/// Runs an external library over one scene, and prints the outcome for the process that started this one.
-fn run_external(arguments: &RivalArguments) -> Result<bool> {
-    adversaries::attempt(&arguments.backend, &arguments.adversary, arguments.primitives)?;
-    Ok(true)
 }
 
 /// Prints the origin of figures and a line about the measurement, measures scenes one by one, and returns whether all

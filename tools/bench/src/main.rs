@@ -10,7 +10,6 @@
 //! of a record, say which build it was.
 #![forbid(unsafe_code)]
 
-mod adversaries;
 mod agree;
 mod arguments;
 mod backend;
@@ -27,8 +26,6 @@ mod measure;
 mod memory;
 mod our_indexes;
 mod pairs;
-mod paper;
-mod plot;
 mod point_trees;
 mod rays;
 mod report;
@@ -55,10 +52,8 @@ mod tests {
     #[test]
     fn documents_have_the_blocks_of_their_commands() {
         let document = |name: &str| Path::new(env!("CARGO_MANIFEST_DIR")).join("../../docs").join(name);
-        crate::paper::BLOCKS.check(Some(&document("paper.md"))).unwrap();
         crate::extremes::BLOCKS.check(Some(&document("extremes.md"))).unwrap();
         crate::extremes::pairs::BLOCKS.check(Some(&document("extremes.md"))).unwrap();
-        crate::adversaries::BLOCKS.check(Some(&document("adversaries.md"))).unwrap();
         crate::scale::BLOCKS.check(Some(&document("scale.md"))).unwrap();
     }
 }

@@ -7,7 +7,6 @@ use crate::backend::Unavailable;
 use crate::blocks::Blocks;
 use crate::measure::{BuildFigures, MedianRange, measure_build};
 use crate::memory;
-use crate::plot::{Mark, Plot, Series};
 use crate::report::provenance;
 use crate::rounds::{checksum, checksum_of_closest, thread_seconds};
 use anyhow::{Context, Result, bail};
@@ -21,7 +20,7 @@ use p2m_testkit::queries::QuerySet;
 use p2m_testkit::rng;
 use rand::seq::SliceRandom;
 use std::hint::black_box;
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 use std::sync::Arc;
 
 /// The blocks of docs/scale.md.
@@ -53,12 +52,9 @@ pub(crate) struct Request {
     pub(crate) max_memory: usize,
     /// The longest time of a build in seconds.
     pub(crate) max_seconds: f64,
-    /// The document whose blocks are replaced, with its plots in a folder of the same name beside it.
+    /// The document whose blocks are replaced.
     pub(crate) document: Option<PathBuf>,
 }
-
-/// A curve of a plot: what follows the name of the backend, the style, and the value for a size.
-type Curve<'a> = (&'a str, Mark, &'a dyn Fn(&Costs) -> f64);
 
 /// The costs of an index over one scene.
 struct Costs {
@@ -229,7 +225,7 @@ fn latency(bytes: usize) -> f64 {
     times.fold(f64::INFINITY, f64::min) * 1e9 / READS as f64
 }
 
-/// Prints the tables or replaces the blocks of the document, and writes the plots beside it.
+/// Prints the tables or replaces the blocks of the document.
 fn publish(request: &Request, entries: &[&'static BackendEntry], costs: &[Vec<Costs>]) -> Result<()> {
     let mut builds = Table::new(
         ["triangles", "index", "build s", "us a triangle", "bytes a triangle", "peak of the build"].map(str::to_owned),
@@ -254,51 +250,7 @@ fn publish(request: &Request, entries: &[&'static BackendEntry], costs: &[Vec<Co
     let Request { queries: count, rounds, .. } = request;
     let origin =
         format!("{}\nOne thread, thread CPU time, medians of {rounds} rounds of {count} queries.", provenance(None));
-    BLOCKS.publish(request.document.as_deref(), &[origin, builds.to_string(), queries.to_string()])?;
-    let folder = request.document.as_ref().map_or_else(|| PathBuf::from("target/scale"), |d| d.with_extension(""));
-    std::fs::create_dir_all(&folder).with_context(|| folder.display().to_string())?;
-    draw(request, entries, costs, &folder)
-}
-
-/// Draws a plot of the builds, one of the memory, and one of each set of queries.
-fn draw(request: &Request, entries: &[&'static BackendEntry], costs: &[Vec<Costs>], folder: &Path) -> Result<()> {
-    let plot = |file: String, y: &'static str, curves: &[Curve<'_>]| {
-        let series = entries.iter().zip(costs).enumerate().flat_map(|(colour, (entry, costs))| {
-            curves.iter().map(move |(suffix, mark, value)| Series {
-                name: format!("{}{suffix}", entry.name),
-                mark: *mark,
-                colour,
-                points: costs.iter().map(|cost| (cost.triangles as f64, value(cost))).collect(),
-            })
-        });
-        Plot { x: "triangles", y, series: series.collect() }.write(&folder.join(file))
-    };
-    let each = |amount: f64, cost: &Costs| amount / cost.triangles as f64;
-    plot(
-        "build.svg".to_owned(),
-        "microseconds of the build a triangle",
-        &[("", Mark::Line, &|cost| each(cost.build_seconds * 1e6, cost))],
-    )?;
-    plot(
-        "bytes.svg".to_owned(),
-        "bytes a triangle",
-        &[
-            ("", Mark::Line, &|cost| each(cost.owned as f64, cost)),
-            (", peak", Mark::Dashes, &|cost| each(cost.peak as f64, cost)),
-        ],
-    )?;
-    for (at, set) in request.sets.iter().enumerate() {
-        plot(
-            format!("queries-{set}.svg"),
-            "nanoseconds a query",
-            &[
-                ("", Mark::Line, &|cost| cost.sets[at].single),
-                (", batch", Mark::Dashes, &|cost| cost.sets[at].batch),
-                (", reads", Mark::Cross, &|cost| cost.sets[at].reads() * cost.latency),
-            ],
-        )?;
-    }
-    Ok(())
+    BLOCKS.publish(request.document.as_deref(), &[origin, builds.to_string(), queries.to_string()])
 }
 
 #[cfg(test)]

@@ -9,8 +9,6 @@ mod primitives;
 mod scenes;
 mod threads;
 
-pub(crate) use counts::ROUNDING;
-
 use crate::blocks::Blocks;
 use anyhow::Result;
 use external::LIBRARIES;
