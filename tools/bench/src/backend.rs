@@ -108,14 +108,20 @@ impl ScalarKind {
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Unavailable(pub(crate) String);
 
+impl Unavailable {
+    pub(crate) fn because(error: impl std::fmt::Display) -> Self {
+        Self(error.to_string())
+    }
+}
+
 /// An index of any backend that is ready for queries.
-pub(crate) type BoxedIndex<'a> = Box<dyn ErasedIndex + 'a>;
+pub(crate) type BoxedIndex = Box<dyn ErasedIndex>;
 
 /// A backend before it is built. Copies and conversions of the scene were made already and are not timed, but they
 /// count as memory of the index.
-pub(crate) struct Prepared<'a, V = BoxedIndex<'a>> {
+pub(crate) struct Prepared {
     /// Builds the index; this call is timed.
-    pub(crate) build: Box<dyn FnOnce() -> Result<V, Unavailable> + 'a>,
+    pub(crate) build: Box<dyn FnOnce() -> Result<BoxedIndex, Unavailable>>,
     /// Heap bytes of the scene that the index keeps borrowing.
     pub(crate) borrowed: usize,
 }
@@ -135,20 +141,20 @@ pub(crate) struct Backend {
 }
 
 /// A function that copies and converts a scene as far as a build needs it.
-type Prepare = Box<dyn for<'a> Fn(&'a Scene) -> Result<Prepared<'a>, Unavailable> + Send + Sync>;
+type Prepare = Box<dyn Fn(&Scene) -> Result<Prepared, Unavailable> + Send + Sync>;
 
 impl Backend {
     /// Makes a backend of ours in f64 that does not visit every primitive.
     pub(crate) fn new(
         name: &'static str,
-        prepare: impl for<'a> Fn(&'a Scene) -> Result<Prepared<'a>, Unavailable> + Send + Sync + 'static,
+        prepare: impl Fn(&Scene) -> Result<Prepared, Unavailable> + Send + Sync + 'static,
     ) -> Self {
         let scalar = ScalarKind::Double;
         Self { name, scalar, is_ours: true, is_exhaustive: false, prepare: Box::new(prepare) }
     }
 
     /// Builds the index, and turns a panic into an error.
-    pub(crate) fn build<'a>(&self, scene: &'a Scene) -> Result<BoxedIndex<'a>, Unavailable> {
+    pub(crate) fn build(&self, scene: &Scene) -> Result<BoxedIndex, Unavailable> {
         catch(|| ((self.prepare)(scene)?.build)())
     }
 }

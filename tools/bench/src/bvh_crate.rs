@@ -7,34 +7,17 @@ use bvh::bounding_hierarchy::BHShape;
 use bvh::bvh::Bvh;
 use bvh::point_query::PointDistance;
 use nalgebra::Point3;
-use p2m_core::{PrimitiveId, PrimitiveSet};
+use p2m_core::{PrimitiveId, PrimitiveSet, Shape};
 
-/// A primitive of one to three vertices, with the index of its leaf.
+/// A primitive with the index of its leaf.
 struct Primitive {
-    vertices: Vertices,
+    shape: Shape<f64>,
     node: usize,
-}
-
-/// The vertices of a triangle, a segment or a point.
-enum Vertices {
-    Triangle([Point3<f64>; 3]),
-    Segment([Point3<f64>; 2]),
-    Point([Point3<f64>; 1]),
-}
-
-impl Vertices {
-    fn all(&self) -> &[Point3<f64>] {
-        match self {
-            Self::Triangle(vertices) => vertices,
-            Self::Segment(vertices) => vertices,
-            Self::Point(vertices) => vertices,
-        }
-    }
 }
 
 impl Bounded<f64, 3> for Primitive {
     fn aabb(&self) -> Aabb<f64, 3> {
-        self.vertices.all().iter().fold(Aabb::empty(), |bounds, vertex| bounds.grow(vertex))
+        self.shape.vertices().iter().fold(Aabb::empty(), |bounds, vertex| bounds.grow(vertex))
     }
 }
 
@@ -50,11 +33,13 @@ impl BHShape<f64, 3> for Primitive {
 impl PointDistance<f64, 3> for Primitive {
     #[inline(always)]
     fn distance_squared(&self, query: Point3<f64>) -> f64 {
-        match &self.vertices {
-            Vertices::Triangle(vertices) => (query - on_triangle(&query, vertices)).norm_squared(),
-            Vertices::Segment(vertices) => (query - on_segment(&query, vertices)).norm_squared(),
-            Vertices::Point([vertex]) => (query - vertex).norm_squared(),
-        }
+        let nearest = match &self.shape {
+            Shape::Triangle(triangle) => on_triangle(&query, &triangle.vertices),
+            Shape::Segment(segment) => on_segment(&query, &segment.vertices),
+            Shape::Point(point) => point.position,
+            _ => unreachable!("a soup has no other shapes"),
+        };
+        (query - nearest).norm_squared()
     }
 }
 
@@ -105,27 +90,19 @@ pub(crate) fn on_triangle(query: &Point3<f64>, [a, b, c]: &[Point3<f64>; 3]) -> 
 }
 
 /// The tree and the primitives that it refers to.
-pub(crate) struct Tree {
+struct Tree {
     tree: Bvh<f64, 3>,
     primitives: Vec<Primitive>,
 }
 
-/// Copies the primitives, as a user of the crate has to, and returns a function that builds on one thread.
-pub(crate) fn tree(scene: &Scene) -> impl FnOnce() -> Result<Tree, Unavailable> + use<> {
+/// Prepares the backend of the list. It copies the primitives, as a user of the crate has to, and builds on one thread.
+#[allow(clippy::unnecessary_wraps, reason = "every backend is prepared by a function of this type")]
+pub(crate) fn prepare(scene: &Scene) -> Result<Prepared, Unavailable> {
     let soup = &*scene.double;
-    let vertices = |i: usize| match *soup.get(PrimitiveId::new(i)).vertices() {
-        [a, b, c] => Vertices::Triangle([a, b, c]),
-        [a, b] => Vertices::Segment([a, b]),
-        ref others => Vertices::Point([others[0]]),
-    };
-    let mut primitives: Vec<_> = (0..soup.len()).map(|i| Primitive { vertices: vertices(i), node: 0 }).collect();
-    move || Ok(Tree { tree: Bvh::build(&mut primitives), primitives })
-}
-
-/// Prepares the backend of the list.
-pub(crate) fn prepare(scene: &Scene) -> Result<Prepared<'_>, Unavailable> {
-    let build = tree(scene);
-    Ok(Prepared { build: Box::new(move || Ok(Box::new(build()?) as BoxedIndex<'_>)), borrowed: 0 })
+    let shapes = (0..soup.len()).map(|i| soup.get(PrimitiveId::new(i)));
+    let mut primitives: Vec<_> = shapes.map(|shape| Primitive { shape, node: 0 }).collect();
+    let build = move || Ok(Box::new(Tree { tree: Bvh::build(&mut primitives), primitives }) as BoxedIndex);
+    Ok(Prepared { build: Box::new(build), borrowed: 0 })
 }
 
 impl BenchIndex for Tree {

@@ -56,14 +56,8 @@ macro_rules! parry {
                 }
             }
 
-            /// Prepares the backend of the list.
-            pub(crate) fn prepare<'a>(scene: &'a Scene) -> Result<Prepared<'a>, Unavailable> {
-                let build = shapes(scene)?;
-                Ok(Prepared { build: Box::new(move || Ok(Box::new(build()?) as BoxedIndex<'a>)), borrowed: 0 })
-            }
-
-            /// Copies the positions, as a user of parry has to, and returns a function that builds the shapes.
-            fn shapes(scene: &Scene) -> Result<impl FnOnce() -> Result<Parry, Unavailable> + use<>, Unavailable> {
+            /// Prepares the backend of the list. It copies the positions, as a user of parry has to.
+            pub(crate) fn prepare(scene: &Scene) -> Result<Prepared, Unavailable> {
                 let (soup, _) = <$scalar as Scalar>::soup(scene)?;
                 if !soup.points().is_empty() {
                     return Err(Unavailable("no shape for points".to_owned()));
@@ -74,16 +68,14 @@ macro_rules! parry {
                 let (triangle_positions, triangles) = used_positions(soup, soup.triangles());
                 let (segment_positions, segments) = used_positions(soup, soup.segments());
                 let (triangle_positions, segment_positions) = (vectors(triangle_positions), vectors(segment_positions));
-                let build = move || -> Result<Parry, Unavailable> {
+                let build = move || {
                     // parry does not accept an empty mesh.
-                    let mesh = (!triangles.is_empty())
-                        .then(|| TriMesh::new(triangle_positions, triangles))
-                        .transpose()
-                        .map_err(|error| Unavailable(error.to_string()))?;
+                    let mesh = (!triangles.is_empty()).then(|| TriMesh::new(triangle_positions, triangles));
+                    let mesh = mesh.transpose().map_err(Unavailable::because)?;
                     let lines = (!segments.is_empty()).then(|| Polyline::new(segment_positions, Some(segments)));
-                    Ok(Parry { mesh, lines })
+                    Ok(Box::new(Parry { mesh, lines }) as BoxedIndex)
                 };
-                Ok(build)
+                Ok(Prepared { build: Box::new(build), borrowed: 0 })
             }
         }
     };

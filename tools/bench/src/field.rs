@@ -1,6 +1,7 @@
-//! `p2m-bench field`: compares distance fields on a grid with parry3d and with the figures of an article on AABB trees.
+//! `p2m-bench field`: compares distance fields on a grid with those of parry3d.
 
 use crate::backend::{Answer, Prepared, Unavailable};
+use crate::command::{all_good, at_least_one};
 use crate::external::{parry_double, parry_single};
 use crate::measure::MedianRange;
 use crate::memory::measured;
@@ -9,14 +10,16 @@ use crate::queries::Queries;
 use crate::rounds::{rotated, thread_seconds};
 use crate::scene::Scene;
 use anyhow::{Context as _, Result, anyhow};
+use clap::Args;
+use clap::builder::RangedU64ValueParser;
 use p2m_bvh::AabbTree;
 use p2m_cli::harness::Table;
-use p2m_core::{BruteForce, BuildIndex, ClosestPoint, PrimitiveSet, Soup};
+use p2m_core::{BuildIndex, ClosestPoint, PrimitiveSet, Soup};
 use p2m_field::grid_candidates::CandidateLists;
 use p2m_field::sign::{SignError, SignedDistance};
 use p2m_field::{FieldOptions, Grid, distances, distances_by_lists, signed_distances, signed_distances_by_lists};
 use p2m_interception::{Domain, OctreeIndex, P2mIndex};
-use p2m_mixed::generate::{IcoSphere, ico_sphere};
+use std::path::PathBuf;
 
 /// The number of layers of the grid in a slab, which methods fill in turn.
 const LAYERS: usize = 16;
@@ -36,9 +39,27 @@ struct Method<'a> {
     difference: f64,
 }
 
+#[derive(Args)]
+pub(crate) struct Arguments {
+    /// Files of scenes
+    #[arg(required = true)]
+    scenes: Vec<PathBuf>,
+    /// Points along the longest side of the grid
+    #[arg(long, default_value_t = 256, value_parser = RangedU64ValueParser::<usize>::new().range(2..=2048))]
+    resolution: usize,
+    /// Fill every n-th slab of sixteen layers only
+    #[arg(long, default_value_t = 1, value_parser = at_least_one())]
+    stride: usize,
+}
+
+/// Times distance fields, and returns whether ours are equal.
+pub(crate) fn run(arguments: &Arguments) -> Result<bool> {
+    all_good(&arguments.scenes, "", |scene| print(&scene, arguments.resolution, arguments.stride))
+}
+
 /// Prints the table of a scene for every `stride`-th slab of the grid, and returns whether all fields of
 /// ours are equal.
-pub(crate) fn print(scene: &Scene, resolution: usize, stride: usize) -> Result<bool> {
+fn print(scene: &Scene, resolution: usize, stride: usize) -> Result<bool> {
     let bounds = scene.double.aabb();
     let grid = Grid::around(&bounds, resolution, 1.05)?;
     let [x, y, z] = grid.counts();
@@ -178,7 +199,7 @@ fn methods<'a>(scene: &'a Scene, grid: &Grid) -> Result<Vec<Method<'a>>> {
     Ok(all)
 }
 
-fn external_method<'a>(name: &'static str, prepared: Result<Prepared<'a>, Unavailable>) -> Option<Method<'a>> {
+fn external_method<'a>(name: &'static str, prepared: Result<Prepared, Unavailable>) -> Option<Method<'a>> {
     let build = prepared.ok()?.build;
     let ((index, bytes), seconds) = thread_seconds(|| measured(build));
     let index = index.ok()?;
@@ -201,45 +222,4 @@ fn external_method<'a>(name: &'static str, prepared: Result<Prepared<'a>, Unavai
 
 fn one_thread() -> FieldOptions {
     FieldOptions::default().with_parallel(false)
-}
-
-/// Prints the figures of the article beside ours.
-pub(crate) fn print_article(scene: &Scene) -> Result<()> {
-    let ball = ico_sphere(&IcoSphere { frequency: 16 })?;
-    let ball = Scene::new("ico-sphere".to_owned(), ball)?;
-    let time = |run: &mut dyn FnMut()| thread_seconds(run).1;
-    let mut table = Table::new(["what", "the article (cited)", "ours, s"]);
-    let grid = Grid::around(&ball.double.aabb(), 45, 1.05)?;
-    let brute = BruteForce::new(&*ball.double)?;
-    let mut fields = [Vec::new(), Vec::new()];
-    let seconds = time(&mut || fields[0] = distances(&brute, &grid, &one_thread(), &|_| ()).expect("memory"));
-    let about = format!("45^3 points, {} triangles, brute force", ball.len());
-    table.push(vec![about, "over 10 min (at least 5,000 triangles)".to_owned(), format!("{seconds:.2}")]);
-    let tree = AabbTree::build(&*ball.double, &aabb_options())?;
-    let seconds = time(&mut || fields[1] = distances(&tree, &grid, &one_thread(), &|_| ()).expect("memory"));
-    table.push(vec!["the same with the AABB tree".to_owned(), "-".to_owned(), format!("{seconds:.3}")]);
-    assert!(fields[0] == fields[1], "fields of brute force and tree differ");
-    let grid = Grid::around(&scene.double.aabb(), 100, 1.05)?;
-    let (tree, build) = thread_seconds(|| AabbTree::build(&*scene.double, &aabb_options()));
-    let tree = tree?;
-    let field = time(&mut || drop(distances(&tree, &grid, &one_thread(), &|_| ())));
-    let name = &scene.name;
-    table.push(vec![format!("AABB tree of {name}"), "0.05 s on average (the bunny)".to_owned(), format!("{build:.3}")]);
-    table.push(vec![
-        format!("field of {name}, 100 points a side"),
-        "1.25 s (the tree is about 4 % of it)".to_owned(),
-        format!("{:.3}, of which the tree is {:.1} %", build + field, 100.0 * build / (build + field)),
-    ]);
-    let mut by_lists = Vec::new();
-    let seconds = time(&mut || {
-        let lists = CandidateLists::new(&*scene.double).expect("in range");
-        by_lists = distances_by_lists(&lists, &grid, &one_thread(), &|_| ()).expect("memory");
-    });
-    assert!(
-        by_lists == distances(&tree, &grid, &one_thread(), &|_| ()).expect("memory"),
-        "fields of lists and tree differ"
-    );
-    table.push(vec!["the same by lists".to_owned(), "-".to_owned(), format!("{seconds:.3}")]);
-    println!("\n## The article's figures\n\nOne thread, thread CPU time.\n\n{table}");
-    Ok(())
 }

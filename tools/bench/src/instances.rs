@@ -1,9 +1,11 @@
 //! `p2m-bench instances`: compares a scene of moving instances with one index over all of its moved triangles.
 
-use crate::measure::{Effort, MedianRange};
+use crate::command::{Rounds, at_least_one, provenance};
+use crate::measure::MedianRange;
 use crate::our_indexes::aabb_options;
 use crate::rounds::{checksum, checksum_of_closest, rotated, thread_seconds};
 use anyhow::{Context, Result, bail};
+use clap::Args;
 use nalgebra::{Isometry3, Point3, Vector3};
 use p2m_bvh::AabbTree;
 use p2m_cli::harness::Table;
@@ -15,7 +17,7 @@ use p2m_testkit::{rng, vector};
 use rand::RngExt;
 use rand_chacha::ChaCha8Rng;
 use std::collections::HashMap;
-use std::path::Path;
+use std::path::PathBuf;
 use std::sync::Arc;
 
 /// One index over all is left out if there are more triangles than this, for lack of memory.
@@ -27,29 +29,50 @@ const STEP: f64 = 0.02;
 type Tree<S> = AabbTree<f64, S>;
 type InstanceScene = Instances<f64, Tree<Soup<f64>>>;
 
-/// The size of a measurement.
-pub(crate) struct Size {
-    /// The number of instances.
-    pub(crate) instances: usize,
-    /// The largest number of triangles of an object; larger meshes are simplified.
-    pub(crate) triangles: Option<usize>,
-    /// The number of rays in a round.
-    pub(crate) rays: usize,
+#[derive(Args)]
+pub(crate) struct Arguments {
+    /// Files of scenes
+    #[arg(required = true)]
+    scenes: Vec<PathBuf>,
+    #[command(flatten)]
+    rounds: Rounds,
+    /// Queries in a round
+    #[arg(long, default_value_t = 1_000_000)]
+    queries: usize,
+    /// Instances
+    #[arg(long, default_value_t = 10_000, value_parser = at_least_one())]
+    instances: usize,
+    /// Largest number of triangles of an object; larger meshes are simplified [default: no limit]
+    #[arg(long)]
+    triangles: Option<usize>,
+    /// Rays in a round
+    #[arg(long, default_value_t = 200_000)]
+    rays: usize,
+}
+
+/// Times a scene of instances, and returns whether it answers as one index over all of them.
+pub(crate) fn run(arguments: &Arguments) -> Result<bool> {
+    let about = arguments.rounds.describe("CPU time of one thread", arguments.queries, "queries");
+    println!("{}\n{about}", provenance());
+    let one_thread = rayon::ThreadPoolBuilder::new().num_threads(1).build()?;
+    let is_good = one_thread.install(|| print(arguments))?;
+    println!("{}", if is_good { "All answers are equal." } else { "DIFFERENT answers." });
+    Ok(is_good)
 }
 
 /// Times updates, points and rays in a scene of instances of meshes. Returns whether all answers are equal.
-pub(crate) fn print(scenes: &[impl AsRef<Path> + Sync], size: &Size, effort: &Effort) -> Result<bool> {
-    let objects: Vec<Arc<Tree<Soup<f64>>>> = (scenes.iter())
+fn print(arguments: &Arguments) -> Result<bool> {
+    let objects: Vec<Arc<Tree<Soup<f64>>>> = (arguments.scenes.iter())
         .map(|path| {
-            let soup = object(&p2m_mixed::read_scene(path.as_ref())?.soup, size.triangles)?;
+            let soup = object(&p2m_mixed::read_scene(path)?.soup, arguments.triangles)?;
             Ok(Arc::new(AabbTree::build(soup, &aabb_options())?))
         })
         .collect::<Result<_>>()?;
-    let mut bench = Bench::new(objects, size.instances, effort.seed)?;
+    let mut bench = Bench::new(objects, arguments.instances, arguments.rounds.seed)?;
     let total: usize = bench.scene.instances().map(|instance| instance.primitives().len()).sum();
     println!(
         "\n{} instances of {} objects of {} triangles, {total} triangles in all.\n",
-        size.instances,
+        arguments.instances,
         bench.objects.len(),
         bench.objects.iter().map(|object| object.set().len().to_string()).collect::<Vec<_>>().join(", "),
     );
@@ -59,15 +82,15 @@ pub(crate) fn print(scenes: &[impl AsRef<Path> + Sync], size: &Size, effort: &Ef
     };
     let bounds = bench.scene.bounds();
     let mut at = || Point3::from(std::array::from_fn(|k| bench.rng.random_range(bounds.min[k]..bounds.max[k])));
-    let queries: Vec<_> = (0..effort.queries).map(|_| at()).collect();
-    let origins: Vec<_> = (0..size.rays).map(|_| at()).collect();
+    let queries: Vec<_> = (0..arguments.queries).map(|_| at()).collect();
+    let origins: Vec<_> = (0..arguments.rays).map(|_| at()).collect();
     let rays = origins.iter().map(|origin| Ray::new(origin, &vector(&mut bench.rng)));
     let rays = rays.collect::<Result<Vec<_>, _>>().context("directions are not zero")?;
     // Each row has the times of the scene of instances, then those of the one index.
     let rows = ["build", "move", "points, one by one", "points, batch", "first hits of rays"];
     let mut seconds: Vec<[Vec<f64>; 2]> = vec![Default::default(); rows.len()];
     let mut equal = true;
-    for round in 0..effort.rounds {
+    for round in 0..arguments.rounds.rounds {
         bench.step();
         seconds[0][0].push(thread_seconds(|| bench.build()).1);
         seconds[1][0].push(thread_seconds(|| bench.update()).1);

@@ -2,34 +2,29 @@
 //!
 //! `p2m-bench query` builds every backend over a scene and lets them answer sets of queries in turns, in one process,
 //! on one thread, one call at a time. `p2m-bench verify` compares our exact backends with brute force, bit for bit.
-//! [`arguments`] declares the command line and [`commands`] runs it; each other module is one command or a part that
-//! several of them use.
+//! Each command is a module with its arguments and a function `run`, which returns whether it found what it has to find;
+//! [`command`] has what they share, and the other modules are parts that several of them use.
 //!
 //! The default build is portable. Figures of libraries that need compile-time target features come from `RUSTFLAGS="-C
-//! target-cpu=native" cargo run --release -p p2m-bench -- query ...`. The line above the tables, and the column `label`
-//! of a record, say which build it was.
+//! target-cpu=native" cargo run --release -p p2m-bench -- query ...`. The line above the tables says which build it was.
 #![forbid(unsafe_code)]
 
-mod adversaries;
 mod agree;
-mod arguments;
 mod backend;
 mod backends;
 mod blocks;
 mod bvh_crate;
-mod commands;
+mod command;
 mod external;
 mod extremes;
 mod field;
 mod instances;
-mod kinds;
 mod measure;
 mod memory;
 mod our_indexes;
 mod pairs;
-mod paper;
-mod plot;
 mod point_trees;
+mod query;
 mod rays;
 mod report;
 mod rounds;
@@ -39,26 +34,80 @@ mod shards;
 mod threads;
 mod verify;
 
-use clap::Parser as _;
+use clap::{Parser, Subcommand};
 use p2m_cli::harness::queries;
 use std::process::ExitCode;
 
+/// Measures p2m and other libraries.
+#[derive(Parser)]
+#[command(after_help = "\
+The default release build is portable. For the native rows of other libraries:\n  \
+RUSTFLAGS=\"-C target-cpu=native\" cargo run --release -p p2m-bench -- query ...\n\
+Times are thread CPU times; pin the process as well: taskset -c 1 p2m-bench query ...")]
+struct Cli {
+    #[command(subcommand)]
+    command: Command,
+}
+
+#[derive(Subcommand)]
+enum Command {
+    /// Build time, memory, time per query and agreement of all backends
+    Query(query::Arguments),
+    /// Compares our exact backends with brute force, bit for bit, in f64 and f32; fails on any difference
+    Verify(verify::Arguments),
+    /// Times the first hits of rays against parry3d; fails if ours differ
+    Ray(rays::Arguments),
+    /// Checks the accuracy contract where other libraries fail, for docs/extremes.md; fails if ours break it
+    Extremes(extremes::Arguments),
+    /// Checks distances between primitives where other libraries fail, for docs/extremes.md; fails if ours break the
+    /// contract
+    ExtremePairs(extremes::pairs::Arguments),
+    /// Times distance fields on a grid, against parry3d; fails if ours differ
+    Field(field::Arguments),
+    /// Compares builds on several numbers of threads, in wall time
+    Threads(threads::Arguments),
+    /// Compares a scene of moving instances of meshes with one index over all of them; fails if an answer differs
+    Instances(instances::Arguments),
+    /// Measures builds, memory and queries of scenes that grow, for docs/scale.md; fails if ours differ
+    Scale(scale::Arguments),
+    /// Times distances between two scenes at many poses, and between a scene and an arm of capsules, against parry3d
+    Pairs(pairs::Arguments),
+    /// Writes a generated terrain as shards and asks them within a limit of memory; fails if an answer differs
+    Shards(shards::Arguments),
+}
+
 fn main() -> anyhow::Result<ExitCode> {
-    let is_good = commands::run(arguments::Cli::parse().command)?;
+    let is_good = match Cli::parse().command {
+        Command::Query(arguments) => query::run(&arguments),
+        Command::Verify(arguments) => verify::run(&arguments),
+        Command::Ray(arguments) => rays::run(&arguments),
+        Command::Extremes(arguments) => extremes::run(&arguments),
+        Command::ExtremePairs(arguments) => extremes::pairs::run(&arguments),
+        Command::Field(arguments) => field::run(&arguments),
+        Command::Threads(arguments) => threads::run(&arguments),
+        Command::Instances(arguments) => instances::run(&arguments),
+        Command::Scale(arguments) => scale::run(&arguments),
+        Command::Pairs(arguments) => pairs::run(&arguments),
+        Command::Shards(arguments) => shards::run(&arguments),
+    }?;
     Ok(if is_good { ExitCode::SUCCESS } else { ExitCode::FAILURE })
 }
 
 #[cfg(test)]
 mod tests {
+    use clap::CommandFactory as _;
     use std::path::Path;
+
+    #[test]
+    fn the_command_line_is_consistent() {
+        crate::Cli::command().debug_assert();
+    }
 
     #[test]
     fn documents_have_the_blocks_of_their_commands() {
         let document = |name: &str| Path::new(env!("CARGO_MANIFEST_DIR")).join("../../docs").join(name);
-        crate::paper::BLOCKS.check(Some(&document("paper.md"))).unwrap();
         crate::extremes::BLOCKS.check(Some(&document("extremes.md"))).unwrap();
         crate::extremes::pairs::BLOCKS.check(Some(&document("extremes.md"))).unwrap();
-        crate::adversaries::BLOCKS.check(Some(&document("adversaries.md"))).unwrap();
         crate::scale::BLOCKS.check(Some(&document("scale.md"))).unwrap();
     }
 }

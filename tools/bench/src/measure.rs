@@ -7,7 +7,6 @@ use crate::queries::{Queries, QuerySlice};
 use crate::rounds::{Rounds, checksum, rotated, thread_seconds};
 use crate::scene::Scene;
 use nalgebra::Point3;
-use p2m_testkit::queries::QuerySet;
 
 pub(crate) use p2m_cli::harness::MedianRange;
 
@@ -21,19 +20,6 @@ const SLOW_ROUND_NANOSECONDS: f64 = 1e9;
 
 /// An index is not built again once its builds have taken this many seconds in all.
 const MAX_BUILD_SECONDS: f64 = 10.0;
-
-/// The amount of work that a measurement does.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct Effort {
-    /// The number of rounds of queries.
-    pub(crate) rounds: usize,
-    /// The number of queries in a round.
-    pub(crate) queries: usize,
-    /// The number of times that each index is built.
-    pub(crate) builds: usize,
-    /// The seed of the query sets.
-    pub(crate) seed: u64,
-}
 
 /// The cost of an index before its first query.
 #[derive(Clone, Debug, Default)]
@@ -62,11 +48,11 @@ pub(crate) struct SetFigures {
 }
 
 /// A backend in a scene, with its index and its measurements.
-pub(crate) struct Entry<'a> {
+pub(crate) struct Entry {
     /// The backend that was built.
-    pub(crate) backend: &'a Backend,
+    pub(crate) backend: &'static Backend,
     /// The index, or the reason why there is none.
-    pub(crate) index: Result<BoxedIndex<'a>, Unavailable>,
+    pub(crate) index: Result<BoxedIndex, Unavailable>,
     /// The cost of the builds.
     pub(crate) build: BuildFigures,
     /// The measurements on the query sets, in the order in which they were measured.
@@ -74,8 +60,8 @@ pub(crate) struct Entry<'a> {
 }
 
 /// Builds all backends `builds` times, in turns, and keeps the last index of each.
-pub(crate) fn build_all<'a>(scene: &'a Scene, backends: &[&'a Backend], builds: usize) -> Vec<Entry<'a>> {
-    let mut entries: Vec<Entry<'a>> = backends
+pub(crate) fn build_all(scene: &Scene, backends: &[&'static Backend], builds: usize) -> Vec<Entry> {
+    let mut entries: Vec<Entry> = backends
         .iter()
         .map(|&backend| Entry {
             backend,
@@ -84,7 +70,7 @@ pub(crate) fn build_all<'a>(scene: &'a Scene, backends: &[&'a Backend], builds: 
             sets: Vec::new(),
         })
         .collect();
-    for round in 0..builds.max(1) {
+    for round in 0..builds {
         for at in rotated(entries.len(), round) {
             let entry = &mut entries[at];
             let failed = round > 0 && entry.index.is_err();
@@ -96,7 +82,7 @@ pub(crate) fn build_all<'a>(scene: &'a Scene, backends: &[&'a Backend], builds: 
     entries
 }
 
-fn build_once<'a>(scene: &'a Scene, entry: &mut Entry<'a>) {
+fn build_once(scene: &Scene, entry: &mut Entry) {
     // The previous index is dropped before the clock starts.
     entry.index = Err(Unavailable("not built".to_owned()));
     let before = memory::current();
@@ -121,15 +107,10 @@ pub(crate) fn measure_build<V>(
     Ok(index)
 }
 
-/// Measures one query set and appends the figures to every entry.
-pub(crate) fn measure_set(scene: &Scene, set: QuerySet, entries: &mut [Entry<'_>], effort: &Effort) {
-    measure(set.generate(&scene.double, effort.queries, effort.seed), entries, effort.rounds);
-}
-
 /// Measures the given queries and appends the figures to every entry.
-pub(crate) fn measure(queries: Vec<Point3<f64>>, entries: &mut [Entry<'_>], rounds: usize) {
+pub(crate) fn measure(queries: Vec<Point3<f64>>, entries: &mut [Entry], rounds: usize) {
     let queries = Queries::new(queries);
-    let rounds_of = |entry: &Entry<'_>| Rounds::new(&queries, Answer::NONE, |q, a| entry.answer(q, a), affordable);
+    let rounds_of = |entry: &Entry| Rounds::new(&queries, Answer::NONE, |q, a| entry.answer(q, a), affordable);
     let mut all: Vec<Rounds<Answer, Unavailable>> = entries.iter().map(rounds_of).collect();
     let mut figures = vec![SetFigures::default(); all.len()];
     for round in 0..rounds {
@@ -153,7 +134,7 @@ pub(crate) fn measure(queries: Vec<Point3<f64>>, entries: &mut [Entry<'_>], roun
     }
 }
 
-impl Entry<'_> {
+impl Entry {
     fn answer(&self, queries: QuerySlice<'_>, answers: &mut [Answer]) -> Result<(), Unavailable> {
         self.index.as_ref().map_err(Clone::clone)?.answer(queries, answers)
     }
@@ -174,6 +155,7 @@ mod tests {
     use super::*;
     use crate::backends;
     use p2m_core::{Element, Soup};
+    use p2m_testkit::queries::QuerySet;
 
     #[test]
     fn slow_backends_get_fewer_queries() {
@@ -181,12 +163,13 @@ mod tests {
     }
 
     /// Measures all backends over a scene of these elements with little effort.
-    fn measured(elements: &[Element], check: impl FnOnce(&[Entry<'_>])) {
+    fn measured(elements: &[Element], check: impl FnOnce(&[Entry])) {
         let p = [[1.0, 0.0, 0.0], [2.0, 0.0, 1.0], [1.0, 3.0, 0.0], [5.0, 1.0, 2.0]].map(Point3::from).to_vec();
         let scene = Scene::new("test".into(), Soup::new(p, elements.iter().copied()).unwrap()).unwrap();
-        let effort = Effort { rounds: 2, queries: p2m_testkit::amount(300, 60), builds: 2, seed: 1 };
-        let mut entries = build_all(&scene, &backends::ALL.iter().collect::<Vec<_>>(), effort.builds);
-        QuerySet::ALL.iter().for_each(|set| measure_set(&scene, *set, &mut entries, &effort));
+        let mut entries = build_all(&scene, &backends::ALL.iter().collect::<Vec<_>>(), 2);
+        for set in QuerySet::ALL {
+            measure(set.generate(&scene.double, p2m_testkit::amount(300, 60), 1), &mut entries, 2);
+        }
         check(&entries);
     }
 
@@ -195,7 +178,7 @@ mod tests {
         measured(&[Element::Triangle([0, 1, 2]), Element::Segment([2, 3])], |entries| {
             for entry in entries {
                 let name = entry.backend.name;
-                if ["aabb-tri", "aabb-set"].contains(&name) || name.starts_with("kiddo") {
+                if name.starts_with("kiddo") {
                     assert!(entry.index.is_err());
                     continue;
                 }
@@ -219,8 +202,7 @@ mod tests {
                 let absent = entry.index.as_ref().err();
                 // The tree of the crate bvh computes distances with our primitives, so it has all shapes.
                 let has_shapes = entry.backend.is_ours || entry.backend.name == "bvh";
-                let is_of_triangles = ["aabb-tri", "aabb-set"].contains(&entry.backend.name);
-                assert_eq!(absent.is_some(), !has_shapes || is_of_triangles);
+                assert_eq!(absent.is_some(), !has_shapes);
                 assert!(entry.sets.iter().all(|set| set.is_err() == absent.is_some()));
             }
         });

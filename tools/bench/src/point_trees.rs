@@ -29,11 +29,11 @@ macro_rules! kiddo {
         }
 
         /// Prepares the KD-tree of kiddo in a scalar.
-        pub(crate) fn $name(scene: &Scene) -> Result<Prepared<'_>, Unavailable> {
+        pub(crate) fn $name(scene: &Scene) -> Result<Prepared, Unavailable> {
             let points = points::<$scalar>(scene)?;
             let build = move || {
                 let tree = ImmutableKdTree::new_from_slice(&points);
-                Ok(Box::new(Kiddo(tree.map_err(|error| Unavailable(format!("{error:?}")))?)) as BoxedIndex<'_>)
+                Ok(Box::new(Kiddo(tree.map_err(|error| Unavailable(format!("{error:?}")))?)) as BoxedIndex)
             };
             Ok(Prepared { build: Box::new(build), borrowed: 0 })
         }

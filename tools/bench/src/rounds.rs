@@ -2,7 +2,7 @@
 
 use p2m_core::Closest;
 
-pub(crate) use p2m_cli::harness::rounds::{Rounds, rotated, thread_seconds, time_answers};
+pub(crate) use p2m_cli::harness::rounds::{Rounds, rotated, thread_seconds};
 
 /// Returns a checksum of answers, each given by the bits of its number and the id of its primitive. It depends on every
 /// bit and on the order of the answers. `start` is the checksum of the answers before these, or 0.

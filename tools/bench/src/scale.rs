@@ -5,12 +5,12 @@
 
 use crate::backend::Unavailable;
 use crate::blocks::Blocks;
+use crate::command::{Document, at_least_one, index_names, provenance};
 use crate::measure::{BuildFigures, MedianRange, measure_build};
 use crate::memory;
-use crate::plot::{Mark, Plot, Series};
-use crate::report::provenance;
 use crate::rounds::{checksum, checksum_of_closest, thread_seconds};
-use anyhow::{Context, Result, bail};
+use anyhow::{Context as _, Result, bail};
+use clap::Args;
 use nalgebra::Point3;
 use p2m_backends::{AnyIndex, BackendEntry, BuildSettings};
 use p2m_cli::harness::Table;
@@ -21,7 +21,6 @@ use p2m_testkit::queries::QuerySet;
 use p2m_testkit::rng;
 use rand::seq::SliceRandom;
 use std::hint::black_box;
-use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 /// The blocks of docs/scale.md.
@@ -37,28 +36,32 @@ const LATENCY_ROUNDS: usize = 5;
 /// A build that takes less time than this is repeated.
 const SHORT_BUILD_SECONDS: f64 = 1.0;
 
-/// The scenes, indexes and queries that are measured, and the limits.
-pub(crate) struct Request {
-    /// The backends by their names in the registry.
-    pub(crate) backends: Vec<String>,
-    /// The numbers of triangles in ascending order.
-    pub(crate) sizes: Vec<usize>,
-    /// The sets of queries.
-    pub(crate) sets: Vec<QuerySet>,
-    /// The number of queries of a round.
-    pub(crate) queries: usize,
-    /// The number of rounds.
-    pub(crate) rounds: usize,
-    /// The largest number of heap bytes at a time, the scene included.
-    pub(crate) max_memory: usize,
-    /// The longest time of a build in seconds.
-    pub(crate) max_seconds: f64,
-    /// The document whose blocks are replaced, with its plots in a folder of the same name beside it.
-    pub(crate) document: Option<PathBuf>,
+#[derive(Args)]
+pub(crate) struct Arguments {
+    /// Backends of the registry
+    #[arg(long, value_delimiter = ',', default_value = "aabb,kdop,octree,p2m", value_parser = index_names())]
+    backends: Vec<String>,
+    /// Numbers of triangles, in ascending order
+    #[arg(long, value_delimiter = ',', default_values_t = [10_000, 100_000, 1_000_000, 10_000_000, 100_000_000])]
+    sizes: Vec<usize>,
+    /// Query sets
+    #[arg(long, value_delimiter = ',', default_values_t = [QuerySet::Box10, QuerySet::Box1, QuerySet::Near])]
+    sets: Vec<QuerySet>,
+    /// Queries in a round
+    #[arg(long, default_value_t = 200_000)]
+    queries: usize,
+    /// Rounds of queries, and builds that take less than a second
+    #[arg(long, default_value_t = 5, value_parser = at_least_one())]
+    rounds: usize,
+    /// The largest number of heap bytes at a time; a size that would take more is left out for that index
+    #[arg(long, default_value_t = 20_000_000_000)]
+    max_memory: usize,
+    /// The longest time of a build in seconds; a size that would take longer is left out for that index
+    #[arg(long, default_value_t = 900.0)]
+    max_seconds: f64,
+    #[command(flatten)]
+    document: Document,
 }
-
-/// A curve of a plot: what follows the name of the backend, the style, and the value for a size.
-type Curve<'a> = (&'a str, Mark, &'a dyn Fn(&Costs) -> f64);
 
 /// The costs of an index over one scene.
 struct Costs {
@@ -93,10 +96,10 @@ impl SetCosts {
 }
 
 /// Measures and publishes all costs, and returns whether all backends have the same answers.
-pub(crate) fn run(request: &Request) -> Result<bool> {
-    BLOCKS.check(request.document.as_deref())?;
+pub(crate) fn run(request: &Arguments) -> Result<bool> {
+    BLOCKS.check(request.document.write.as_deref())?;
     let entries: Vec<&'static BackendEntry> =
-        request.backends.iter().map(|name| entry_of(name)).collect::<Result<_>>()?;
+        request.backends.iter().filter_map(|name| BackendEntry::find(name)).collect();
     let mut costs: Vec<Vec<Costs>> = entries.iter().map(|_| Vec::new()).collect();
     let mut is_equal = true;
     for &size in &request.sizes {
@@ -121,11 +124,6 @@ pub(crate) fn run(request: &Request) -> Result<bool> {
     Ok(is_equal)
 }
 
-/// Returns the entry of the registry with a name.
-fn entry_of(name: &str) -> Result<&'static BackendEntry> {
-    BackendEntry::find(name).with_context(|| format!("there is no backend {name}"))
-}
-
 /// Returns a torus knot with about this number of triangles.
 #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "numbers of rings and sides are small")]
 fn knot(triangles: usize) -> Result<Soup<f64>> {
@@ -136,7 +134,7 @@ fn knot(triangles: usize) -> Result<Soup<f64>> {
 }
 
 /// Returns the reason why an index should not be built over so many triangles, if its last build tells one.
-fn obstacle(costs: &[Costs], triangles: usize, scene_bytes: usize, request: &Request) -> Option<String> {
+fn obstacle(costs: &[Costs], triangles: usize, scene_bytes: usize, request: &Arguments) -> Option<String> {
     let last = costs.last()?;
     let factor = triangles as f64 / last.triangles as f64;
     let (bytes, seconds) = (last.peak as f64 * factor + scene_bytes as f64, last.build_seconds * factor);
@@ -160,7 +158,7 @@ fn measure(
         drop(index.take());
         let before = memory::current();
         let built = measure_build(&mut figures, before, || {
-            entry.build(Arc::clone(soup), &settings).map_err(|error| Unavailable(error.to_string()))
+            entry.build(Arc::clone(soup), &settings).map_err(Unavailable::because)
         });
         match built {
             Ok(built) => index = Some(built.index),
@@ -229,8 +227,8 @@ fn latency(bytes: usize) -> f64 {
     times.fold(f64::INFINITY, f64::min) * 1e9 / READS as f64
 }
 
-/// Prints the tables or replaces the blocks of the document, and writes the plots beside it.
-fn publish(request: &Request, entries: &[&'static BackendEntry], costs: &[Vec<Costs>]) -> Result<()> {
+/// Prints the tables or replaces the blocks of the document.
+fn publish(request: &Arguments, entries: &[&'static BackendEntry], costs: &[Vec<Costs>]) -> Result<()> {
     let mut builds = Table::new(
         ["triangles", "index", "build s", "us a triangle", "bytes a triangle", "peak of the build"].map(str::to_owned),
     );
@@ -251,54 +249,10 @@ fn publish(request: &Request, entries: &[&'static BackendEntry], costs: &[Vec<Co
             }
         }
     }
-    let Request { queries: count, rounds, .. } = request;
+    let Arguments { queries: count, rounds, .. } = request;
     let origin =
-        format!("{}\nOne thread, thread CPU time, medians of {rounds} rounds of {count} queries.", provenance(None));
-    BLOCKS.publish(request.document.as_deref(), &[origin, builds.to_string(), queries.to_string()])?;
-    let folder = request.document.as_ref().map_or_else(|| PathBuf::from("target/scale"), |d| d.with_extension(""));
-    std::fs::create_dir_all(&folder).with_context(|| folder.display().to_string())?;
-    draw(request, entries, costs, &folder)
-}
-
-/// Draws a plot of the builds, one of the memory, and one of each set of queries.
-fn draw(request: &Request, entries: &[&'static BackendEntry], costs: &[Vec<Costs>], folder: &Path) -> Result<()> {
-    let plot = |file: String, y: &'static str, curves: &[Curve<'_>]| {
-        let series = entries.iter().zip(costs).enumerate().flat_map(|(colour, (entry, costs))| {
-            curves.iter().map(move |(suffix, mark, value)| Series {
-                name: format!("{}{suffix}", entry.name),
-                mark: *mark,
-                colour,
-                points: costs.iter().map(|cost| (cost.triangles as f64, value(cost))).collect(),
-            })
-        });
-        Plot { x: "triangles", y, series: series.collect() }.write(&folder.join(file))
-    };
-    let each = |amount: f64, cost: &Costs| amount / cost.triangles as f64;
-    plot(
-        "build.svg".to_owned(),
-        "microseconds of the build a triangle",
-        &[("", Mark::Line, &|cost| each(cost.build_seconds * 1e6, cost))],
-    )?;
-    plot(
-        "bytes.svg".to_owned(),
-        "bytes a triangle",
-        &[
-            ("", Mark::Line, &|cost| each(cost.owned as f64, cost)),
-            (", peak", Mark::Dashes, &|cost| each(cost.peak as f64, cost)),
-        ],
-    )?;
-    for (at, set) in request.sets.iter().enumerate() {
-        plot(
-            format!("queries-{set}.svg"),
-            "nanoseconds a query",
-            &[
-                ("", Mark::Line, &|cost| cost.sets[at].single),
-                (", batch", Mark::Dashes, &|cost| cost.sets[at].batch),
-                (", reads", Mark::Cross, &|cost| cost.sets[at].reads() * cost.latency),
-            ],
-        )?;
-    }
-    Ok(())
+        format!("{}\nOne thread, thread CPU time, medians of {rounds} rounds of {count} queries.", provenance());
+    BLOCKS.publish(request.document.write.as_deref(), &[origin, builds.to_string(), queries.to_string()])
 }
 
 #[cfg(test)]
@@ -315,8 +269,7 @@ mod tests {
 
     #[test]
     fn builds_beyond_a_limit_are_not_tried() {
-        let folder = tempfile::tempdir().unwrap();
-        let mut request = Request {
+        let mut request = Arguments {
             backends: Vec::new(),
             sizes: Vec::new(),
             sets: Vec::new(),
@@ -324,7 +277,7 @@ mod tests {
             rounds: 1,
             max_memory: 2_000_000,
             max_seconds: 20.0,
-            document: Some(folder.path().join("scale.md")),
+            document: Document { write: None },
         };
         let last =
             Costs { triangles: 1000, build_seconds: 1.0, owned: 50_000, peak: 100_000, latency: 1.0, sets: Vec::new() };

@@ -1,9 +1,9 @@
 //! `p2m-bench shards`: writes a terrain that is generated tile by tile as shards, asks them within a limit of memory,
 //! and compares answers with brute force, which generates the tiles anew.
 
-use crate::arguments::ShardsArguments;
 use crate::memory;
 use anyhow::{Context, Result};
+use clap::Args;
 use nalgebra::Point3;
 use p2m_bvh::AabbTree;
 use p2m_cli::harness::Table;
@@ -13,12 +13,38 @@ use p2m_shards::{ShardClosest, ShardOptions, ShardWriter, ShardedIndex};
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 use rayon::prelude::*;
+use std::path::PathBuf;
 use std::time::Instant;
 
 /// The number of cells along a side of a tile, each of which has two triangles.
 const CELLS: u32 = 500;
 /// The number of triangles of a tile.
 const TILE_TRIANGLES: u64 = 2 * (CELLS as u64) * (CELLS as u64);
+
+#[derive(Args)]
+pub(crate) struct Arguments {
+    /// The least number of triangles of the terrain, which is generated in tiles of 500,000
+    #[arg(long, default_value_t = 10_000_000)]
+    triangles: u64,
+    /// The largest length of the file of a shard in bytes
+    #[arg(long, default_value_t = 1 << 28)]
+    max_bytes: u64,
+    /// The largest amount of shards in memory in bytes
+    #[arg(long, default_value_t = 1 << 30)]
+    max_memory: u64,
+    /// The number of queries of each set
+    #[arg(long, default_value_t = 1_000_000)]
+    queries: usize,
+    /// The number of queries of each set that are compared with brute force
+    #[arg(long, default_value_t = 16)]
+    checked: usize,
+    /// Build one tree over all triangles as well, and compare all answers
+    #[arg(long)]
+    whole: bool,
+    /// The folder for the shards, if it is not that for temporary files
+    #[arg(long)]
+    folder: Option<PathBuf>,
+}
 
 /// A square terrain of tiles, each with a side of length 1.
 #[derive(Clone, Copy)]
@@ -105,7 +131,7 @@ impl Work {
 
 /// Writes and asks shards, and returns whether their answers are those of brute force and, if it is asked for, of one
 /// index over everything.
-pub(crate) fn run(arguments: &ShardsArguments) -> Result<bool> {
+pub(crate) fn run(arguments: &Arguments) -> Result<bool> {
     let terrain = Terrain::with_triangles(arguments.triangles);
     let triangles = u64::from(terrain.tiles()) * TILE_TRIANGLES;
     let folder = match &arguments.folder {

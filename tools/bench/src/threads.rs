@@ -1,15 +1,42 @@
 //! `p2m-bench threads`: compares the wall time of builds on several numbers of threads.
 
+use crate::command::{all_good, at_least_one, index_names};
 use crate::measure::MedianRange;
+use crate::rounds::rotated;
 use crate::scene::Scene;
 use anyhow::{Context, Result};
+use clap::Args;
 use p2m_backends::{BackendEntry, BuildSettings};
 use p2m_cli::harness::Table;
+use std::path::PathBuf;
 use std::sync::Arc;
 use std::time::Instant;
 
+#[derive(Args)]
+pub(crate) struct Arguments {
+    /// Files of scenes
+    #[arg(required = true)]
+    scenes: Vec<PathBuf>,
+    /// Indexes
+    #[arg(long, value_delimiter = ',', default_value = "aabb,kdop,octree,p2m", value_parser = index_names())]
+    backends: Vec<String>,
+    /// Numbers of threads; times are compared with those of the first
+    #[arg(long, value_delimiter = ',', default_values_t = [1, 2])]
+    threads: Vec<usize>,
+    /// Rounds; another number of threads begins in each
+    #[arg(long, default_value_t = 5, value_parser = at_least_one())]
+    rounds: usize,
+}
+
+/// Times builds on several numbers of threads. No result counts as bad.
+pub(crate) fn run(arguments: &Arguments) -> Result<bool> {
+    let about = format!("Wall time of builds, median of {} rounds in turns.", arguments.rounds);
+    all_good(&arguments.scenes, &about, |scene| print(&scene, arguments).map(|()| true))
+}
+
 /// Prints the table of a scene. All numbers of threads build once in each round.
-pub(crate) fn print(scene: &Scene, backends: &[String], threads: &[usize], rounds: usize) -> Result<()> {
+fn print(scene: &Scene, arguments: &Arguments) -> Result<()> {
+    let Arguments { backends, threads, rounds, .. } = arguments;
     let columns = threads.iter().map(|count| format!("s, {count} thr"));
     let ratios = threads[1..].iter().map(|count| format!("{} / {count} thr", threads[0]));
     let mut table = Table::new(std::iter::once("index".to_owned()).chain(columns).chain(ratios));
@@ -20,9 +47,8 @@ pub(crate) fn print(scene: &Scene, backends: &[String], threads: &[usize], round
     for name in backends {
         let backend = BackendEntry::find(name).context("a backend of the registry")?;
         let mut seconds = vec![Vec::new(); pools.len()];
-        for round in 0..rounds {
-            for turn in 0..pools.len() {
-                let at = (round + turn) % pools.len();
+        for round in 0..*rounds {
+            for at in rotated(pools.len(), round) {
                 let (built, elapsed) = pools[at].install(|| {
                     let start = Instant::now();
                     (backend.build(Arc::clone(&scene.double), &BuildSettings::default()), start.elapsed())

@@ -2,15 +2,47 @@
 
 use crate::agree::{Agreement, Answers, compare_round};
 use crate::backend::{Answer, Backend, BoxedIndex, ScalarKind, Unavailable};
+use crate::command::{Common, all_good, backend_names};
 use crate::queries::Queries;
 use crate::scene::Scene;
+use anyhow::Result;
+use clap::Args;
 use p2m_cli::harness::Table;
 use p2m_testkit::queries::QuerySet;
 use std::thread;
 
+#[derive(Args)]
+pub(crate) struct Arguments {
+    #[command(flatten)]
+    common: Common,
+    /// Backends [default: all exact ones of ours]
+    #[arg(long, value_delimiter = ',', value_parser = backend_names())]
+    backends: Vec<String>,
+    /// Queries of each set
+    #[arg(long, default_value_t = 5000)]
+    queries: usize,
+    /// Seed of the query sets
+    #[arg(long, default_value_t = 1)]
+    seed: u64,
+}
+
+/// Compares our exact backends with brute force, and returns whether all answers are equal.
+pub(crate) fn run(arguments: &Arguments) -> Result<bool> {
+    let Arguments { common, backends, queries, seed } = arguments;
+    let oracles = common.select(|b| b.is_ours && b.is_exhaustive);
+    let is_named = |b: &Backend| backends.is_empty() || backends.iter().any(|name| name == b.name);
+    let backends = common.select(|b| b.is_ours && !b.is_exhaustive && is_named(b));
+    let about = format!("{queries} queries of each set, seed {seed}: how many answers equal those of brute force.");
+    let is_equal = all_good(&common.scenes, &about, |scene| {
+        Ok(verify(&scene, &oracles, &backends, &common.sets, *queries, *seed))
+    })?;
+    println!("\n{}", if is_equal { "All equal." } else { "DIFFERENCES, see above." });
+    Ok(is_equal)
+}
+
 /// Compares `backends` with the oracle of their scalar on every set, prints counts, and returns whether all
 /// answers are equal.
-pub(crate) fn verify(
+fn verify(
     scene: &Scene,
     oracles: &[&Backend],
     backends: &[&Backend],
@@ -68,7 +100,7 @@ pub(crate) fn verify(
 }
 
 /// Returns the answers to all queries, computed on all cores.
-fn answer(index: &BoxedIndex<'_>, queries: &Queries) -> Result<Vec<Answer>, Unavailable> {
+fn answer(index: &BoxedIndex, queries: &Queries) -> Result<Vec<Answer>, Unavailable> {
     let mut answers = vec![Answer::NONE; queries.len()];
     let threads = thread::available_parallelism().map_or(1, usize::from);
     let length = queries.len().div_ceil(threads).max(1);

@@ -10,69 +10,57 @@ use std::f64::consts::TAU;
 /// A family of adversarial scenes.
 #[derive(Clone, Copy, Debug)]
 pub struct Adversary {
-    /// The name in tables.
+    /// The name in messages.
     pub name: &'static str,
-    /// A description of the scene and of what it makes slow or large.
-    pub about: &'static str,
     make: fn(usize) -> Vec<Shape<f64>>,
 }
 
-/// All families, in the order of the tables.
+/// All families, each with what the scene makes slow or large.
 pub const ADVERSARIES: &[Adversary] = &[
-    Adversary { name: "identical", about: "the same triangle again and again: nothing to split by", make: identical },
-    Adversary { name: "one place", about: "points at one place: no size at all", make: coincident_points },
-    Adversary { name: "nested", about: "triangles in a corner, over 1000 octaves: deep trees", make: nested },
-    Adversary {
-        name: "staircase",
-        about: "segments of which each is longer than all before, over 580 octaves: every split by cost takes one off",
-        make: staircase,
-    },
-    Adversary {
-        name: "fan",
-        about: "triangles with one apex, as narrow as they are many: long lists",
-        make: triangle_fan,
-    },
-    Adversary { name: "comb", about: "long thin triangles through one point: boxes that overlap", make: comb },
-    Adversary {
-        name: "star",
-        about: "segments from one point to a sphere: one site has all others around it",
-        make: star,
-    },
-    Adversary { name: "sphere", about: "points on a sphere: all are nearest in the middle", make: sphere },
-    Adversary {
-        name: "spheres",
-        about: "the same points on sixteen concentric spheres: the same again",
-        make: spheres,
-    },
-    Adversary {
-        name: "skew points",
-        about: "points on two skew lines: all pairs make Delaunay tetrahedra",
-        make: skew_points,
-    },
-    Adversary { name: "skew wires", about: "two skew wires of segments: the same", make: skew_wires },
-    Adversary { name: "helices", about: "two helices around each other: the same", make: helices },
-    Adversary { name: "moment curve", about: "points (t, t^2, t^3): every pair is an edge", make: moment_curve },
-    Adversary { name: "grid", about: "points of a grid: cospherical everywhere", make: grid },
-    Adversary {
-        name: "needles",
-        about: "long thin triangles at random in a box: boxes that separate nothing",
-        make: needles,
-    },
-    Adversary { name: "sheets", about: "large parallel squares on top of each other: no vertex is near", make: sheets },
-    Adversary { name: "line", about: "segments on a line but for rounding: flat tetrahedra", make: line },
-    Adversary { name: "plane", about: "triangles in an askew plane but for rounding: the same", make: plane },
-    Adversary { name: "huge and tiny", about: "triangles of 10^6 and of 1 in turns", make: |n| sizes(n, 1e6) },
-    Adversary { name: "huger and tiny", about: "triangles of 10^12 and of 1 in turns", make: |n| sizes(n, 1e12) },
-    Adversary {
-        name: "one over all",
-        about: "a huge triangle over tiny ones: in the way of every split",
-        make: one_over_all,
-    },
-    Adversary {
-        name: "two clouds",
-        about: "two dense clouds of points far apart: grids that are empty",
-        make: two_clouds,
-    },
+    // The same triangle again and again: nothing to split by.
+    Adversary { name: "identical", make: identical },
+    // Points at one place: no size at all.
+    Adversary { name: "one place", make: coincident_points },
+    // Triangles in a corner, over 1000 octaves: deep trees.
+    Adversary { name: "nested", make: nested },
+    // Segments of which each is longer than all before, over 580 octaves: every split by cost takes one off.
+    Adversary { name: "staircase", make: staircase },
+    // Triangles with one apex, as narrow as they are many: long lists.
+    Adversary { name: "fan", make: triangle_fan },
+    // Long thin triangles through one point: boxes that overlap.
+    Adversary { name: "comb", make: comb },
+    // Segments from one point to a sphere: one site has all others around it.
+    Adversary { name: "star", make: star },
+    // Points on a sphere: all are nearest in the middle.
+    Adversary { name: "sphere", make: sphere },
+    // The same points on sixteen concentric spheres: all are nearest in the middle again.
+    Adversary { name: "spheres", make: spheres },
+    // Points on two skew lines: all pairs make Delaunay tetrahedra.
+    Adversary { name: "skew points", make: skew_points },
+    // Two skew wires of segments: all pairs again.
+    Adversary { name: "skew wires", make: skew_wires },
+    // Two helices around each other: all pairs again.
+    Adversary { name: "helices", make: helices },
+    // Points (t, t^2, t^3): every pair is an edge.
+    Adversary { name: "moment curve", make: moment_curve },
+    // Points of a grid: cospherical everywhere.
+    Adversary { name: "grid", make: grid },
+    // Long thin triangles at random in a box: boxes that separate nothing.
+    Adversary { name: "needles", make: needles },
+    // Large parallel squares on top of each other: no vertex is near.
+    Adversary { name: "sheets", make: sheets },
+    // Segments on a line but for rounding: flat tetrahedra.
+    Adversary { name: "line", make: line },
+    // Triangles in an askew plane but for rounding: flat tetrahedra again.
+    Adversary { name: "plane", make: plane },
+    // Triangles of 10^6 and of 1 in turns.
+    Adversary { name: "huge and tiny", make: |n| sizes(n, 1e6) },
+    // Triangles of 10^12 and of 1 in turns.
+    Adversary { name: "huger and tiny", make: |n| sizes(n, 1e12) },
+    // A huge triangle over tiny ones: in the way of every split.
+    Adversary { name: "one over all", make: one_over_all },
+    // Two dense clouds of points far apart: grids that are empty.
+    Adversary { name: "two clouds", make: two_clouds },
 ];
 
 impl Adversary {

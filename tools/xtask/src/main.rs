@@ -3,7 +3,6 @@
 //! A task prints the commands that it starts, so that each can be started alone. The first command that fails ends it.
 #![forbid(unsafe_code)]
 
-mod builds;
 mod deep;
 mod memory;
 mod package;
@@ -27,7 +26,7 @@ struct Task {
 /// The result of a task, with a message if it failed.
 type Outcome = Result<(), String>;
 
-const TASKS: [Task; 16] = [
+const TASKS: [Task; 13] = [
     Task {
         name: "quick",
         arguments: "[FILTER]",
@@ -84,18 +83,6 @@ const TASKS: [Task; 16] = [
         run: |_| pages::run(),
     },
     Task {
-        name: "bench",
-        arguments: "[ARGUMENTS]",
-        about: "Measure against rivals: `cargo xtask bench query SCENE`",
-        run: |rest| cargo(&["run", "--locked", "--release", "--package", "p2m-bench", "--"], rest),
-    },
-    Task {
-        name: "builds",
-        arguments: "BASE SCENE.. [--backends NAMES]",
-        about: "Compare the builds of indexes with those of an earlier revision, in turns",
-        run: builds::run,
-    },
-    Task {
         name: "fuzz",
         arguments: "[SECONDS] [TARGET]..",
         about: "Fuzz each target for so many seconds, 60 by default",
@@ -106,12 +93,6 @@ const TASKS: [Task; 16] = [
         arguments: "",
         about: "Run the tests of vector kernels and of saved files under valgrind, where it is installed",
         run: |_| memory::run(),
-    },
-    Task {
-        name: "measure",
-        arguments: "[REVISION] [STEP]..",
-        about: "Measure what tests, builds and checks cost in a fresh clone",
-        run: |rest| run(".ci/measure", &[], rest),
     },
     Task {
         name: "ci",

@@ -1,7 +1,7 @@
 //! Counts of wrong answers of a subject in a family of cases.
 
 /// Errors above this multiple of u M are no roundings: it is twice the bound that is proved for our kernel.
-pub(crate) const ROUNDING: f64 = 16.0;
+pub(super) const ROUNDING: f64 = 16.0;
 
 /// The counts of one subject in one family.
 #[derive(Clone, Copy, Debug, Default)]

@@ -92,7 +92,7 @@ pub(super) fn list() -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::extremes::ROUNDING;
+    use crate::extremes::counts::ROUNDING;
 
     #[test]
     fn libraries_are_wrong_and_ours_are_right() {

@@ -9,43 +9,44 @@ mod primitives;
 mod scenes;
 mod threads;
 
-pub(crate) use counts::ROUNDING;
-
 use crate::blocks::Blocks;
+use crate::command::{Document, provenance};
 use anyhow::Result;
+use clap::Args;
 use external::LIBRARIES;
-use p2m_cli::harness::{Provenance, Table};
+use p2m_cli::harness::Table;
 use p2m_testkit::extremes::Extreme;
-use std::path::Path;
 use std::time::Instant;
 
 /// The blocks of docs/extremes.md.
 pub(crate) const BLOCKS: Blocks<5> =
     Blocks { command: "extremes", names: ["provenance", "checks", "primitives", "scenes", "examples"] };
 
-/// The number of checks.
-pub(crate) struct Amount {
-    /// The number of answers about isolated primitives.
-    pub(crate) cases: u64,
-    /// The number of scenes of each family.
-    pub(crate) scenes: u64,
-    /// The seed of all random numbers.
-    pub(crate) seed: u64,
+#[derive(Args)]
+pub(crate) struct Arguments {
+    /// Answers about isolated primitives that are checked
+    #[arg(long, default_value_t = 1_000_000)]
+    cases: u64,
+    /// Scenes of each family, which every backend queries
+    #[arg(long, default_value_t = 4)]
+    scenes: u64,
+    /// Seed of all random numbers
+    #[arg(long, default_value_t = 1)]
+    seed: u64,
+    #[command(flatten)]
+    document: Document,
 }
 
 /// Checks everything and publishes the blocks. Returns whether our backends broke no promise.
-pub(crate) fn run(amount: &Amount, document: Option<&Path>, provenance: &Provenance) -> Result<bool> {
+pub(crate) fn run(arguments: &Arguments) -> Result<bool> {
+    let (document, seed) = (arguments.document.write.as_deref(), arguments.seed);
     BLOCKS.check(document)?;
-    // Panics of external libraries are caught and counted; a message for each would bury the report.
-    let default_hook = std::panic::take_hook();
-    std::panic::set_hook(Box::new(|_| ()));
     let start = Instant::now();
-    let (alone, together) = (primitives::run(amount.cases, amount.seed), scenes::run(amount.scenes, amount.seed));
-    let examples = examples::list();
-    std::panic::set_hook(default_hook);
-    let tables = [checks(&alone, &together), of_primitives(&alone), of_scenes(&together)];
-    let [checks, of_primitives, of_scenes] = tables;
-    BLOCKS.publish(document, &[provenance.to_string(), checks, of_primitives, of_scenes, examples])?;
+    let (alone, together, examples) = without_messages(|| {
+        (primitives::run(arguments.cases, seed), scenes::run(arguments.scenes, seed), examples::list())
+    });
+    let [checks, primitives] = [checks(&alone, &together), of_primitives(&alone)];
+    BLOCKS.publish(document, &[provenance().to_string(), checks, primitives, of_scenes(&together), examples])?;
     alone.shown.iter().chain(&together.shown).for_each(|what| eprintln!("BROKEN {what}"));
     let broken = alone.broken + together.broken;
     println!(
@@ -55,6 +56,16 @@ pub(crate) fn run(amount: &Amount, document: Option<&Path>, provenance: &Provena
         start.elapsed()
     );
     Ok(broken == 0)
+}
+
+/// Runs checks without messages of panics. Those of external libraries are caught and counted, and a message for each
+/// would bury the report.
+fn without_messages<V>(check: impl FnOnce() -> V) -> V {
+    let default_hook = std::panic::take_hook();
+    std::panic::set_hook(Box::new(|_| ()));
+    let found = check();
+    std::panic::set_hook(default_hook);
+    found
 }
 
 /// Formats the numbers of checks.
@@ -112,10 +123,10 @@ mod tests {
 
     #[test]
     fn ours_break_nothing_over_single_primitives() {
-        let amount = Amount { cases: p2m_testkit::amount(30_000, 3_000), scenes: 0, seed: 7 };
-        let alone = primitives::run(amount.cases, amount.seed);
-        assert!(alone.checked.iter().all(|count| *count >= amount.cases / 2), "{:?}", alone.checked);
-        assert!(alone.invariant > amount.cases * 2 / 3, "{}", alone.invariant);
+        let cases = p2m_testkit::amount(30_000, 3_000);
+        let alone = primitives::run(cases, 7);
+        assert!(alone.checked.iter().all(|count| *count >= cases / 2), "{:?}", alone.checked);
+        assert!(alone.invariant > cases * 2 / 3, "{}", alone.invariant);
         assert_eq!(alone.broken, 0, "{:?}", alone.shown);
     }
 

@@ -3,14 +3,15 @@
 use super::counts::Counts;
 use super::threads;
 use crate::blocks::Blocks;
+use crate::command::{Document, provenance};
 use anyhow::Result;
-use p2m_cli::harness::{Provenance, Table};
+use clap::Args;
+use p2m_cli::harness::Table;
 use p2m_core::Real;
 use p2m_core::pair::{ERROR_CONSTANT_OF_PAIRS, NearestPair, nearest_pair};
 use p2m_testkit::families::{Family, Span, pair_in, shape};
 use p2m_testkit::oracle::Distance;
 use std::panic::{AssertUnwindSafe, catch_unwind};
-use std::path::Path;
 
 /// The block of docs/extremes.md.
 pub(crate) const BLOCKS: Blocks<1> = Blocks { command: "extreme-pairs", names: ["pairs"] };
@@ -61,6 +62,15 @@ impl threads::Findings for Findings {
     }
 }
 
+impl Findings {
+    fn ours_are_within_their_bound(&self) -> bool {
+        self.rows.iter().flat_map(|row| &row[..2]).all(|counts| {
+            let Counts { worst, failed, panicked, .. } = counts.distances;
+            worst <= ERROR_CONSTANT_OF_PAIRS && (failed, panicked, counts.wrong_intersections) == (0, 0, 0)
+        })
+    }
+}
+
 fn row_of(family: &Family) -> usize {
     match family {
         Family::Lattice => 0,
@@ -72,14 +82,37 @@ fn row_of(family: &Family) -> usize {
     }
 }
 
+#[derive(Args)]
+pub(crate) struct Arguments {
+    /// Pairs of primitives that are checked
+    #[arg(long, default_value_t = 1_000_000)]
+    cases: u64,
+    /// Seed of all random numbers
+    #[arg(long, default_value_t = 1)]
+    seed: u64,
+    #[command(flatten)]
+    document: Document,
+}
+
 /// Checks pairs of primitives, half of them in each scalar, and publishes the block. Returns whether ours are all within
 /// their bound.
-pub(crate) fn run(cases: u64, seed: u64, document: Option<&Path>, provenance: &Provenance) -> Result<bool> {
+pub(crate) fn run(arguments: &Arguments) -> Result<bool> {
+    let document = arguments.document.write.as_deref();
     BLOCKS.check(document)?;
-    // Panics of external libraries are caught and counted; a message for each would bury the report.
-    let default_hook = std::panic::take_hook();
-    std::panic::set_hook(Box::new(|_| ()));
-    let found = threads::run("distances of pairs", cases.div_ceil(2 * CHUNK), |chunk, found: &mut Findings| {
+    let found = super::without_messages(|| check(arguments.cases, arguments.seed));
+    let mut table = Table::new([""].into_iter().chain(SUBJECTS));
+    for (name, row) in ROWS.iter().zip(&found.rows) {
+        table.push(std::iter::once((*name).to_owned()).chain(row.iter().map(cell)).collect());
+    }
+    let total: u64 = found.rows.as_flattened().iter().map(|counts| counts.distances.cases).sum();
+    let provenance = provenance();
+    let text = format!("{provenance}\n\n{table}\n{total} distances were compared with rational arithmetic.\n");
+    BLOCKS.publish(document, &[text])?;
+    Ok(found.ours_are_within_their_bound())
+}
+
+fn check(cases: u64, seed: u64) -> Findings {
+    threads::run("distances of pairs", cases.div_ceil(2 * CHUNK), |chunk, found: &mut Findings| {
         let mut rng = p2m_testkit::rng("extreme pairs", (seed << 32) + chunk);
         for _ in 0..CHUNK {
             for (scalar, span) in [Span::F64, Span::F32].iter().enumerate() {
@@ -97,20 +130,7 @@ pub(crate) fn run(cases: u64, seed: u64, document: Option<&Path>, provenance: &P
                 }
             }
         }
-    });
-    std::panic::set_hook(default_hook);
-    let mut table = Table::new([""].into_iter().chain(SUBJECTS));
-    for (name, row) in ROWS.iter().zip(&found.rows) {
-        table.push(std::iter::once((*name).to_owned()).chain(row.iter().map(cell)).collect());
-    }
-    let total: u64 = found.rows.as_flattened().iter().map(|counts| counts.distances.cases).sum();
-    let text = format!("{provenance}\n\n{table}\n{total} distances were compared with rational arithmetic.\n");
-    BLOCKS.publish(document, &[text])?;
-    let ours = found.rows.iter().flat_map(|row| &row[..2]);
-    Ok(ours.into_iter().all(|counts| {
-        let Counts { worst, failed, panicked, .. } = counts.distances;
-        worst <= ERROR_CONSTANT_OF_PAIRS && (failed, panicked, counts.wrong_intersections) == (0, 0, 0)
-    }))
+    })
 }
 
 /// Adds an answer, or a panic.
@@ -173,7 +193,6 @@ parry!(parry_single, parry3d, f32);
 mod tests {
     #[test]
     fn ours_are_within_their_bound() {
-        let provenance = crate::report::provenance(None);
-        assert!(super::run(4_000, 3, None, &provenance).unwrap());
+        assert!(super::check(4_000, 3).ours_are_within_their_bound());
     }
 }

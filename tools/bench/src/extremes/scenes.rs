@@ -255,7 +255,7 @@ fn check(row: usize, name: &str, soup: Soup<f64>, queries: Vec<Point3<f64>>, fin
     }
 }
 
-fn answers(index: &BoxedIndex<'_>, queries: &Queries) -> Result<Vec<Answer>, Unavailable> {
+fn answers(index: &BoxedIndex, queries: &Queries) -> Result<Vec<Answer>, Unavailable> {
     let mut answers = vec![Answer::NONE; queries.len()];
     index.answer(queries.all(), &mut answers)?;
     Ok(answers)

@@ -8,13 +8,16 @@ mod external;
 mod ours;
 mod poses;
 
-use crate::measure::{Effort, MedianRange};
+use crate::command::{Rounds, at_least_one, provenance};
+use crate::measure::MedianRange;
 use crate::report::significant;
 use crate::rounds::{rotated, thread_seconds};
 use crate::scene::Scene;
 use anyhow::Result;
+use clap::Args;
 use p2m_cli::harness::Table;
 use std::hint::black_box;
+use std::path::PathBuf;
 
 /// The kind of a competitor tells with what its answers are compared.
 #[derive(Clone, Copy, PartialEq, Eq)]
@@ -55,29 +58,49 @@ const ROUND_SECONDS: f64 = 2.0;
 /// The competitor whose times the others are compared with.
 const YARDSTICK: &str = "parry3d-f64";
 
+#[derive(Args)]
+pub(crate) struct Arguments {
+    /// File of the scene that stays
+    scene: PathBuf,
+    /// File of the scene that is moved
+    other: PathBuf,
+    /// Number of poses in each set
+    #[arg(long, default_value_t = 1000, value_parser = at_least_one())]
+    poses: usize,
+    /// Number of poses of the arm
+    #[arg(long, default_value_t = 100_000, value_parser = at_least_one())]
+    arms: usize,
+    #[command(flatten)]
+    rounds: Rounds,
+}
+
 /// Prints times of the distances of two scenes, of which the second is scaled to the size of the first and moved, and
 /// of the distances of an arm from the first. Returns whether our exact answers agree.
-pub(crate) fn print(scene: &Scene, other: &Scene, arms: usize, effort: &Effort) -> Result<bool> {
-    let other = Scene::new(other.name.clone(), poses::scaled_to(&other.double, scene.diagonal())?)?;
+pub(crate) fn run(arguments: &Arguments) -> Result<bool> {
+    let Rounds { rounds, seed } = arguments.rounds;
+    let about = arguments.rounds.describe("One thread, thread CPU time", arguments.poses, "poses");
+    println!("{}\n{about}", provenance());
+    let (scene, other) = (&Scene::read(&arguments.scene)?, Scene::read(&arguments.other)?);
+    let other = Scene::new(other.name, poses::scaled_to(&other.double, scene.diagonal())?)?;
     let (ours, theirs) = (ours::Scenes::build(scene, &other)?, external::Scenes::build(scene, &other)?);
     println!("\n## {} and {}, scaled to the same diagonal\n", scene.describe(), other.describe());
     println!("Microseconds per pose as median (minimum), and the speed relative to {YARDSTICK}.\n");
     let mut table = Table::new(["set", "poses", "median distance", "competitor", "time", "speed", "answers"]);
     let mut is_good = true;
     for set in poses::Set::ALL {
-        let questions = set.poses(&ours.trees, scene.diagonal(), effort);
+        let questions = set.poses(&ours.trees, scene.diagonal(), arguments.poses, seed);
         let mut competitors = ours.competitors(set, scene.diagonal());
         competitors.extend(theirs.competitors(set));
-        is_good &= measure(&mut table, set.name(), &questions, &competitors, scene, effort.rounds);
+        is_good &= measure(&mut table, set.name(), &questions, &competitors, scene, rounds);
     }
     println!("{table}");
     println!("\n## An arm of six capsules beside {}\n", scene.describe());
     println!("Microseconds per pose of the arm, which is six capsules.\n");
     let mut table = Table::new(["set", "poses", "median distance", "competitor", "time", "speed", "answers"]);
-    let questions = arm::walk(&scene.double, arms, effort.seed);
+    let questions = arm::walk(&scene.double, arguments.arms, seed);
     let mut competitors = arm::competitors(&ours);
     competitors.extend(theirs.arm_competitors());
-    is_good &= measure(&mut table, "arm", &questions, &competitors, scene, effort.rounds);
+    is_good &= measure(&mut table, "arm", &questions, &competitors, scene, rounds);
     println!("{table}");
     Ok(is_good)
 }

@@ -26,8 +26,8 @@ impl<'a> Scenes<'a> {
             [Some(a), Some(b)] => Some([AabbTree::new(a)?, AabbTree::new(b)?]),
             _ => None,
         };
-        let [a, b] = soups.map(|soup| AabbTree::new(soup));
-        let [c, d] = soups.map(|soup| KdopTree::new(soup));
+        let [a, b] = soups.map(AabbTree::new);
+        let [c, d] = soups.map(KdopTree::new);
         Ok(Self { trees: [a?, b?], kdops: [c?, d?], single })
     }
 

@@ -1,6 +1,5 @@
 //! Poses of the second scene, relative to the first.
 
-use crate::measure::Effort;
 use anyhow::Result;
 use nalgebra::{Isometry3, Point3, Translation3, UnitQuaternion, Vector3};
 use p2m_bvh::AabbTree;
@@ -38,13 +37,13 @@ impl Set {
     }
 
     /// Returns the poses of the set.
-    pub(super) fn poses(self, trees: &Trees<'_>, diagonal: f64, effort: &Effort) -> Vec<Isometry3<f64>> {
-        let mut rng = rng(self.name(), effort.seed);
+    pub(super) fn poses(self, trees: &Trees<'_>, diagonal: f64, count: usize, seed: u64) -> Vec<Isometry3<f64>> {
+        let mut rng = rng(self.name(), seed);
         let centres = [&trees[0], &trees[1]].map(|tree| centre(tree.set()));
         let placed = |turn: UnitQuaternion<f64>, offset: Vector3<f64>| {
             Isometry3::from_parts(Translation3::from(centres[0].coords + offset - turn * centres[1].coords), turn)
         };
-        (0..effort.queries)
+        (0..count)
             .map(|i| {
                 let (turn, direction) = (turn(&mut rng), direction(&mut rng));
                 match self {

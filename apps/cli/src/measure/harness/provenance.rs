@@ -7,7 +7,7 @@ use std::process::Command;
 /// The origin of figures, which every table and every line of a record states.
 #[derive(Clone, Debug, Serialize)]
 pub struct Provenance {
-    /// The name of the build: `portable` or `native` unless the user names it.
+    /// The name of the build, `portable` or `native`.
     pub label: String,
     /// The date and time, in UTC.
     pub date: String,
@@ -60,11 +60,11 @@ impl Provenance {
     /// Collects the origin of figures of this program. A program that runs from a checkout passes its path; any other
     /// is identified by its version.
     #[must_use]
-    pub fn collect(label: Option<&str>, checkout: Option<&Path>) -> Self {
-        let native = cfg!(target_feature = "avx2");
+    pub fn collect(checkout: Option<&Path>) -> Self {
+        let label = if cfg!(target_feature = "avx2") { "native" } else { "portable" };
         let rustflags = env!("P2M_HARNESS_RUSTFLAGS");
         Self {
-            label: label.unwrap_or(if native { "native" } else { "portable" }).to_owned(),
+            label: label.to_owned(),
             date: output("date", &["-u", "+%Y-%m-%dT%H:%MZ"]).unwrap_or_default(),
             commit: checkout.map_or_else(|| concat!("version ", env!("CARGO_PKG_VERSION")).to_owned(), commit),
             cpu: format!("{} (has {})", cpu_model(), features!(detected)),
@@ -77,13 +77,6 @@ impl Provenance {
             target_features: features!(compiled),
             command: command(),
         }
-    }
-
-    /// Returns everything but the command and the date, in one line.
-    #[must_use]
-    pub fn machine(&self) -> String {
-        let Self { label, commit, cpu, rustc, flags, .. } = self;
-        format!("{cpu}; build `{label}`: {rustc}, {flags}; commit {commit}")
     }
 
     /// The names of the columns of [`Provenance::fields`].

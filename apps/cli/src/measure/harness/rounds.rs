@@ -27,7 +27,7 @@ pub fn thread_seconds<V>(work: impl FnOnce() -> V) -> (V, f64) {
 ///
 /// # Errors
 /// The reason why the competitor has no answers.
-pub fn time_answers<Q, A, E>(
+fn time_answers<Q, A, E>(
     questions: Q,
     answers: &mut [A],
     answer: impl FnOnce(Q, &mut [A]) -> Result<(), E>,

@@ -159,7 +159,7 @@ pub(crate) fn run(streams: &Streams, args: &Args) -> anyhow::Result<()> {
     let (html, csv) = (html?, csv?);
     let figures = args.measure(streams, &scene, queries, description).with_context(|| args.scene.name())?;
 
-    let (provenance, clock) = (Provenance::collect(None, None), clock_nanoseconds());
+    let (provenance, clock) = (Provenance::collect(None), clock_nanoseconds());
     let scenes = std::slice::from_ref(&figures);
     if let Some(output) = html {
         let backends: Vec<_> = args.backends.iter().map(|backend| (backend.name, backend.summary)).collect();
