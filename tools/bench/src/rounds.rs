@@ -1,4 +1,4 @@
-//! The parts that all measuring loops of this program share: the rounds of p2m-tradeoff, and a checksum of answers.
+//! The parts that all measuring loops of this program share: the rounds of `p2m_cli::harness`, and a checksum of answers.
 
 use p2m_core::Closest;
 
