@@ -43,6 +43,11 @@ impl<R: BufRead> Source<R> {
         Self { reader, returned: Vec::new(), at: 0, error: None, block_bytes }
     }
 
+    /// Returns the reader, for formats that are not read in blocks, before anything is read.
+    pub(crate) fn into_reader(self) -> R {
+        self.reader
+    }
+
     /// Takes an error of the reader, which the next read returns.
     pub(crate) fn return_error(&mut self, error: io::Error) {
         self.error = Some(error);

@@ -45,8 +45,8 @@ pub fn read_off(reader: impl BufRead, name: &str) -> Result<Scene, ReadError> {
 }
 
 /// Reads an OFF file into a builder.
-pub(super) fn read(reader: Source<impl BufRead>, name: &str, builder: SceneBuilder<'_>) -> Result<Scene, ReadError> {
-    let mut tokens = Tokenizer::with_comments(LineReader::new(reader, 0));
+pub(super) fn read(source: Source<impl BufRead>, name: &str, builder: SceneBuilder<'_>) -> Result<Scene, ReadError> {
+    let mut tokens = Tokenizer::with_comments(LineReader::new(source.into_reader(), 0));
     let fail = |line, reason| ReadError::new(name, FileLocation::Line(line), reason);
     let header = read_header(&mut tokens).map_err(|reason| fail(tokens.line(), reason))?;
     let Some(counts) = header.counts else {

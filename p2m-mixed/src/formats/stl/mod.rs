@@ -45,11 +45,12 @@ pub fn read_stl(reader: impl BufRead, name: &str) -> Result<Scene, ReadError> {
 
 /// Reads an STL file into a builder.
 pub(super) fn read(
-    mut reader: Source<impl BufRead>,
+    source: Source<impl BufRead>,
     name: &str,
     mut builder: SceneBuilder<'_>,
 ) -> Result<Scene, ReadError> {
     builder.keep_vertices_of_pieces();
+    let mut reader = source.into_reader();
     let fail = |reason| ReadError::new(name, FileLocation::File, reason);
     let mut head = Vec::new();
     reader.by_ref().take(DETECTION_BYTES).read_to_end(&mut head).map_err(|e| fail(Reason::Io(e)))?;
