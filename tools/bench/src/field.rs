@@ -25,14 +25,14 @@ use std::path::PathBuf;
 const LAYERS: usize = 16;
 
 /// Fills a slab of the field.
-type Fill<'a> = Box<dyn Fn(&Grid) -> Vec<f32> + 'a>;
+type Fill<'a> = dyn Fn(&Grid) -> Vec<f32> + 'a;
 
 /// A method that is built.
 struct Method<'a> {
     name: &'static str,
     seconds: f64,
     bytes: usize,
-    fill: Fill<'a>,
+    fill: Box<Fill<'a>>,
     /// The time of each slab, in nanoseconds per point.
     times: Vec<f64>,
     /// The largest difference from the first method, in diagonals.
@@ -55,6 +55,12 @@ pub(crate) struct Arguments {
 /// Times distance fields, and returns whether ours are equal.
 pub(crate) fn run(arguments: &Arguments) -> Result<bool> {
     all_good(&arguments.scenes, "", |scene| print(&scene, arguments.resolution, arguments.stride))
+}
+
+impl<'a> Method<'a> {
+    fn new(name: &'static str, seconds: f64, bytes: usize, fill: impl Fn(&Grid) -> Vec<f32> + 'a) -> Self {
+        Self { name, seconds, bytes, fill: Box::new(fill), times: Vec::new(), difference: 0.0 }
+    }
 }
 
 /// Prints the table of a scene for every `stride`-th slab of the grid, and returns whether all fields of
@@ -150,8 +156,8 @@ fn ours<'a, I: ClosestPoint<f64> + Sync + 'a>(
     options: FieldOptions,
 ) -> Result<Method<'a>> {
     let (index, seconds, bytes) = built(build)?;
-    let fill = Box::new(move |grid: &Grid| distances(&index, grid, &options, &|_| ()).expect("memory"));
-    Ok(Method { name, seconds, bytes, fill, times: Vec::new(), difference: 0.0 })
+    let fill = move |grid: &Grid| distances(&index, grid, &options, &|_| ()).expect("memory");
+    Ok(Method::new(name, seconds, bytes, fill))
 }
 
 fn methods<'a>(scene: &'a Scene, grid: &Grid) -> Result<Vec<Method<'a>>> {
@@ -168,14 +174,14 @@ fn methods<'a>(scene: &'a Scene, grid: &Grid) -> Result<Vec<Method<'a>>> {
         ours("p2m", || Ok(P2mIndex::build(soup, &p2m_options())?), options)?,
     ];
     let (lists, seconds, bytes) = built(|| CandidateLists::new(soup).context("a scene out of range"))?;
-    let fill = Box::new(move |grid: &Grid| distances_by_lists(&lists, grid, &options, &|_| ()).expect("memory"));
-    all.push(Method { name: "lists", seconds, bytes, fill, times: Vec::new(), difference: 0.0 });
+    let fill = move |grid: &Grid| distances_by_lists(&lists, grid, &options, &|_| ()).expect("memory");
+    all.push(Method::new("lists", seconds, bytes, fill));
     if soup.triangles().len() == soup.len() {
         if let Ok((signed, seconds, bytes)) =
             built(|| Ok(SignedDistance::new(AabbTree::build(soup, &aabb_options())?, soup)?))
         {
-            let fill = Box::new(move |grid: &Grid| signed_distances(&signed, grid, &options, &|_| ()).expect("memory"));
-            all.push(Method { name: "aabb, signed", seconds, bytes, fill, times: Vec::new(), difference: 0.0 });
+            let fill = move |grid: &Grid| signed_distances(&signed, grid, &options, &|_| ()).expect("memory");
+            all.push(Method::new("aabb, signed", seconds, bytes, fill));
         }
         let variants: [(&'static str, Sided<'a>); 2] = [
             ("lists, signed", |tree, soup| SignedDistance::new(tree, soup)),
@@ -187,10 +193,10 @@ fn methods<'a>(scene: &'a Scene, grid: &Grid) -> Result<Vec<Method<'a>>> {
                 Ok((lists, sided(AabbTree::build(soup, &aabb_options())?, soup)?))
             });
             if let Ok(((lists, signed), seconds, bytes)) = both {
-                let fill = Box::new(move |grid: &Grid| {
+                let fill = move |grid: &Grid| {
                     signed_distances_by_lists(&lists, &signed, grid, &options, &|_| ()).expect("memory")
-                });
-                all.push(Method { name, seconds, bytes, fill, times: Vec::new(), difference: 0.0 });
+                };
+                all.push(Method::new(name, seconds, bytes, fill));
             }
         }
     }
@@ -204,7 +210,7 @@ fn external_method<'a>(name: &'static str, prepared: Result<Prepared, Unavailabl
     let ((index, bytes), seconds) = thread_seconds(|| measured(build));
     let index = index.ok()?;
     #[allow(clippy::cast_possible_truncation, reason = "fields are f32")]
-    let fill = Box::new(move |grid: &Grid| {
+    let fill = move |grid: &Grid| {
         let [x, y, z] = grid.counts();
         let mut values = Vec::with_capacity(grid.len());
         let mut answers = vec![Answer::NONE; x];
@@ -216,8 +222,8 @@ fn external_method<'a>(name: &'static str, prepared: Result<Prepared, Unavailabl
             values.extend(answers.iter().map(|answer| answer.distance as f32));
         }
         values
-    });
-    Some(Method { name, seconds, bytes, fill, times: Vec::new(), difference: 0.0 })
+    };
+    Some(Method::new(name, seconds, bytes, fill))
 }
 
 fn one_thread() -> FieldOptions {

@@ -113,7 +113,9 @@ fn print(arguments: &Arguments) -> Result<bool> {
                 (_, None) => continue,
             };
             let mut answers: Vec<Option<Closest<f64>>> = vec![None; queries.len()];
-            let single = thread_seconds(|| index.closest_points_one_by_one(&queries, &mut answers)).1;
+            let single = thread_seconds(|| {
+                queries.iter().zip(&mut answers).for_each(|(query, answer)| *answer = index.closest_point(query));
+            });
             sums[0][at] = Some(checksum_of_closest(&answers));
             let batch = BatchOptions::default().with_parallel(false);
             let batch =
@@ -127,7 +129,7 @@ fn print(arguments: &Arguments) -> Result<bool> {
                 }
             });
             sums[2][at] = Some(sum);
-            for (row, time) in [single, batch, hits.1].into_iter().enumerate() {
+            for (row, time) in [single.1, batch, hits.1].into_iter().enumerate() {
                 seconds[2 + row][at].push(time);
             }
         }
@@ -146,19 +148,6 @@ fn print(arguments: &Arguments) -> Result<bool> {
     }
     println!("{table}");
     Ok(equal)
-}
-
-/// Answers to single queries, as a method that dispatches once for each.
-trait OneByOne {
-    fn closest_points_one_by_one(&self, queries: &[Point3<f64>], answers: &mut [Option<Closest<f64>>]);
-}
-
-impl OneByOne for dyn ClosestPoint<f64> + Sync + '_ {
-    fn closest_points_one_by_one(&self, queries: &[Point3<f64>], answers: &mut [Option<Closest<f64>>]) {
-        for (query, answer) in queries.iter().zip(answers) {
-            *answer = self.closest_point(query);
-        }
-    }
 }
 
 /// A scene of instances in motion.

@@ -127,12 +127,6 @@ impl std::str::FromStr for QuerySet {
     }
 }
 
-/// Generates points that are uniform in the box of a scene that is not empty, scaled about its centre.
-#[must_use]
-pub fn scaled_box(soup: &Soup<f64>, scale: f64, count: usize, seed: u64) -> Vec<Point3<f64>> {
-    in_box(&Frame::new(soup), scale, count, &mut ChaCha8Rng::seed_from_u64(seed))
-}
-
 /// Returns the diagonal of a scene's box, and 1 for a scene that is one point. It is the unit of
 /// offsets and differences.
 #[must_use]
