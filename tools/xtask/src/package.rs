@@ -105,7 +105,7 @@ fn faults(unpacked: &Path, bytes: u64, limit: u64) -> Result<Vec<String>, String
 fn size(folder: &Path) -> Result<u64, String> {
     let failed = |error| format!("{}: {error}", folder.display());
     let mut bytes = 0;
-    for entry in fs::read_dir(&folder).map_err(failed)? {
+    for entry in fs::read_dir(folder).map_err(failed)? {
         let path = entry.map_err(failed)?.path();
         bytes += if path.is_dir() { size(&path)? } else { fs::metadata(&path).map_err(failed)?.len() };
     }
