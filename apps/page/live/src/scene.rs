@@ -2,7 +2,7 @@
 
 use crate::far::FarScene;
 use p2m::backend::{Best, StatsCollector};
-use p2m::backends::{BACKENDS, BackendEntry, BuildSettings, IndexVisitor, SearchStructure};
+use p2m::backends::{BACKENDS, BackendEntry, IndexVisitor, SearchStructure};
 use p2m::nalgebra::Point3;
 use p2m::{Aabb, AnyIndex, BuildError, Closest, Element, Inspect, PrimitiveSet, QueryOptions, Soup};
 use std::sync::Arc;
@@ -126,7 +126,7 @@ impl Live {
         if backend.structure == SearchStructure::VertexCells && self.soup.len() > MAX_VERTEX_CELL_PRIMITIVES {
             return Ok(None);
         }
-        let (index, _) = backend.build_for(Arc::clone(&self.soup), &BuildSettings::default(), ToPageIndex)?;
+        let index = backend.build_default(Arc::clone(&self.soup), ToPageIndex)?;
         let bytes = index.bytes();
         self.indexes.push((backend, index));
         Ok(Some(bytes))
