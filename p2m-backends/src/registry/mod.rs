@@ -8,8 +8,8 @@
 //! Indexes are behind one pointer, [`Arc<dyn AnyIndex>`](AnyIndex), and share their scene. The pointer costs one
 //! indirect call for each query, or for each batch of queries. In rounds of `p2m tradeoff` it makes no measurable
 //! difference to queries of 700 to 1000 ns, so no command needs the types behind it. The searches below that call are
-//! compiled for each index. [`BackendEntry::build_for`] passes the index to a function of its type instead, for programs
-//! that have to be small.
+//! compiled for each index. [`BackendEntry::build_default`] passes the index to a function of its type instead, for
+//! programs that have to be small.
 
 mod backend_entry;
 mod cost_model;
@@ -168,23 +168,13 @@ pub trait IndexVisitor<T: Real = f64> {
     fn visit<I: AnyIndex<T> + 'static>(self, index: I) -> Self::Output;
 }
 
-/// Puts an index behind the pointer.
-struct ToPointer;
-
-impl<T: Real> IndexVisitor<T> for ToPointer {
-    type Output = Arc<dyn AnyIndex<T>>;
-    fn visit<I: AnyIndex<T> + 'static>(self, index: I) -> Self::Output {
-        Arc::new(index)
-    }
-}
-
 /// Erases the number of faces of a k-DOP tree.
-struct OfAnyK<V>(V);
+struct OfAnyK;
 
-impl<T: Real, S: PrimitiveSet<T> + Send + Sync + 'static, V: IndexVisitor<T>> KdopVisitor<S, T> for OfAnyK<V> {
-    type Output = V::Output;
-    fn visit<const K: usize>(self, tree: KdopTree<T, S, K>) -> V::Output {
-        self.0.visit(tree)
+impl<T: Real, S: PrimitiveSet<T> + Send + Sync + 'static> KdopVisitor<S, T> for OfAnyK {
+    type Output = Arc<dyn AnyIndex<T>>;
+    fn visit<const K: usize>(self, tree: KdopTree<T, S, K>) -> Self::Output {
+        Arc::new(tree)
     }
 }
 
@@ -198,8 +188,7 @@ impl BackendEntry {
     /// # Errors
     /// [`BuildError`] for a scene with coordinates that are not finite, or with too many primitives.
     pub fn build(&self, soup: Arc<Soup<f64>>, settings: &BuildSettings<'_>) -> Result<BuiltIndex, BuildError> {
-        let (index, directions) = self.build_for(soup, settings, ToPointer)?;
-        Ok(BuiltIndex { index, directions })
+        self.build_in(soup, settings)
     }
 
     /// Builds an index over a scene in f32.
@@ -207,28 +196,18 @@ impl BackendEntry {
     /// # Errors
     /// [`BuildError`] for a scene with coordinates that are not finite, or with too many primitives.
     pub fn build_f32(&self, soup: Arc<Soup<f32>>, settings: &BuildSettings<'_>) -> Result<BuiltIndex<f32>, BuildError> {
-        let (index, directions) = self.build_for(soup, settings, ToPointer)?;
-        Ok(BuiltIndex { index, directions })
+        self.build_in(soup, settings)
     }
 
-    /// Builds an index over a scene and passes it to a function of its type. The directions of a k-DOP tree come with
-    /// the result.
-    ///
-    /// # Errors
-    /// [`BuildError`] for a scene with coordinates that are not finite, or with too many primitives.
-    pub fn build_for<T: Real, V: IndexVisitor<T>>(
-        &self,
-        soup: Arc<Soup<T>>,
-        settings: &BuildSettings<'_>,
-        visitor: V,
-    ) -> Result<(V::Output, Option<ChosenDirections>), BuildError> {
-        let output = match self.kind {
-            IndexKind::Brute => visitor.visit(BruteForce::build(soup, &())?),
-            IndexKind::Aabb => visitor.visit(AabbTree::build(soup, &settings.splits())?),
+    /// Builds an index in the scalar `T`.
+    fn build_in<T: Real>(&self, soup: Arc<Soup<T>>, settings: &BuildSettings<'_>) -> Result<BuiltIndex<T>, BuildError> {
+        let index: Arc<dyn AnyIndex<T>> = match self.kind {
+            IndexKind::Brute => Arc::new(BruteForce::build(soup, &())?),
+            IndexKind::Aabb => Arc::new(AabbTree::build(soup, &settings.splits())?),
             IndexKind::Kdop => {
                 let directions = settings.kdop_directions.unwrap_or(KdopDirections::Fourteen);
-                let (output, directions) = directions.build(soup, settings.splits(), OfAnyK(visitor))?;
-                return Ok((output, Some(directions)));
+                let (index, directions) = directions.build(soup, settings.splits(), OfAnyK)?;
+                return Ok(BuiltIndex { index, directions: Some(directions) });
             }
             IndexKind::Octree => {
                 let options = OctreeOptions::default().with_splits(settings.splits());
@@ -238,14 +217,33 @@ impl BackendEntry {
                 let (memory, work) = (options.memory * scale, options.work * scale);
                 let options = options.with_memory(memory).with_work(work);
                 let visit = &mut |so_far: &_| (settings.visit_octree)(so_far);
-                visitor.visit(OctreeIndex::build_until(soup, &options, settings.progress, visit)?)
+                Arc::new(OctreeIndex::build_until(soup, &options, settings.progress, visit)?)
             }
             IndexKind::P2m => {
                 let options = settings.p2m.options().with_splits(settings.splits());
-                visitor.visit(P2mIndex::build_with_progress(soup, &options, settings.progress)?)
+                Arc::new(P2mIndex::build_with_progress(soup, &options, settings.progress)?)
             }
         };
-        Ok((output, None))
+        Ok(BuiltIndex { index, directions: None })
+    }
+
+    /// Builds an index with default options, and passes it to a function of its type. A program that needs neither
+    /// settings nor all of [`AnyIndex`] contains less code with it.
+    ///
+    /// # Errors
+    /// [`BuildError`] for a scene with coordinates that are not finite, or with too many primitives.
+    pub fn build_default<T: Real, V: IndexVisitor<T>>(
+        &self,
+        soup: Arc<Soup<T>>,
+        visitor: V,
+    ) -> Result<V::Output, BuildError> {
+        Ok(match self.kind {
+            IndexKind::Brute => visitor.visit(BruteForce::build(soup, &())?),
+            IndexKind::Aabb => visitor.visit(AabbTree::new(soup)?),
+            IndexKind::Kdop => visitor.visit(KdopTree::<T, _, 14>::new(soup)?),
+            IndexKind::Octree => visitor.visit(OctreeIndex::new(soup)?),
+            IndexKind::P2m => visitor.visit(P2mIndex::new(soup)?),
+        })
     }
 
     /// Whether indexes of this backend can be saved and loaded.
@@ -278,7 +276,7 @@ impl BackendEntry {
             IndexKind::Aabb => Arc::new(AabbTree::load(soup, reader)?),
             IndexKind::Kdop => {
                 let faces = KdopDirections::saved_faces(None, reader).unwrap_or(14);
-                let (index, directions) = KdopDirections::load(faces, soup, reader, OfAnyK(ToPointer))?;
+                let (index, directions) = KdopDirections::load(faces, soup, reader, OfAnyK)?;
                 return Ok(BuiltIndex { index, directions: Some(directions) });
             }
             IndexKind::Octree => Arc::new(OctreeIndex::load(soup, reader)?),

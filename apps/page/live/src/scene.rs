@@ -1,9 +1,8 @@
 //! The scene of a page, its indexes and its answers.
 
 use crate::far::FarScene;
-use p2m::backends::{BACKENDS, BackendEntry, BuildSettings, IndexVisitor, SearchStructure};
-use p2m::core::IndexStats;
-use p2m::core::{Best, StatsCollector};
+use p2m::backends::{BACKENDS, BackendEntry, IndexVisitor, SearchStructure};
+use p2m::core::{Best, IndexStats, StatsCollector};
 use p2m::nalgebra::Point3;
 use p2m::{Aabb, AnyIndex, BuildError, Closest, Element, PrimitiveSet, QueryOptions, Soup};
 use std::sync::Arc;
@@ -127,7 +126,7 @@ impl Live {
         if backend.structure == SearchStructure::VertexCells && self.soup.len() > MAX_VERTEX_CELL_PRIMITIVES {
             return Ok(None);
         }
-        let (index, _) = backend.build_for(Arc::clone(&self.soup), &BuildSettings::default(), ToPageIndex)?;
+        let index = backend.build_default(Arc::clone(&self.soup), ToPageIndex)?;
         let bytes = index.bytes();
         self.indexes.push((backend, index));
         Ok(Some(bytes))
