@@ -103,7 +103,7 @@ pub struct PieceSummary {
 /// # Errors
 /// The errors are those of [`read_scene`](crate::read_scene), with the same locations and reasons, except that only a
 /// piece is limited to 2^30 primitives. Pieces before the error have been visited then. An error of the temporary file
-/// is a [`Reason::Io`]. An error of `visit` ends reading and is returned.
+/// is a [`Reason::Io`](crate::Reason::Io). An error of `visit` ends reading and is returned.
 ///
 /// # Complexity
 /// Time is that of [`read_scene`](crate::read_scene), and each vertex that is not in memory when it is used takes the
