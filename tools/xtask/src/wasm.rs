@@ -12,7 +12,7 @@ use std::process::Command;
 
 const TARGET: &str = "wasm32-unknown-unknown";
 /// All features of the facade that concern what is searched and how. Threads do not exist on the target.
-const FEATURES: &str = "backends,bvh,field,instances,interception,kdop,mixed,shards";
+const FEATURES: &str = "backends,bvh,field,instances,interception,kdop,scene,shards";
 
 /// The crate of the module, and the sources that give its functions to the script of pages.
 const MODULE: &str = "p2m-live";
