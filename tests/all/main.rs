@@ -30,6 +30,5 @@ mod ray_models;
 mod rays;
 mod registry;
 mod saved;
-mod shards;
 mod signs;
 mod trade;

@@ -244,10 +244,9 @@ impl Shards {
                 check_finite(points)?;
                 let answer = |points: &[_], proceed: &Proceed<'_>| {
                     if certified {
-                        return self.index.certified_closest_points_while(points, &options, proceed);
+                        return self.index.batch().with_proceed(proceed).certified_closest_points(points, &options);
                     }
-                    let mut answers = vec![None; points.len()];
-                    self.index.closest_points_while(points, &options, &mut answers, proceed).map(|()| answers)
+                    self.index.batch().with_proceed(proceed).closest_points(points, &options)
                 };
                 Self::answer_batches(points, ANSWERS_PER_PART, monitor, answer, |i, one: &Option<_>| {
                     columns.set_with_id(i, one.as_ref().map(with_id));
@@ -276,7 +275,7 @@ impl Shards {
             let work = |_: &Threads, monitor: &Monitor| {
                 check_finite(points)?;
                 let answer = |points: &[_], proceed: &Proceed<'_>| {
-                    self.index.all_k_nearest_while(points, k, max_distance, proceed)
+                    self.index.batch().with_proceed(proceed).k_nearest(points, k, max_distance)
                 };
                 let points_per_part = (ANSWERS_PER_PART / k.max(1)).max(1);
                 Self::answer_batches(points, points_per_part, monitor, answer, |i, near: &Vec<ShardClosest>| {
@@ -369,7 +368,7 @@ impl Shards {
             let work = |_: &Threads, monitor: &Monitor| {
                 check_finite(points)?;
                 let answer = |points: &[_], proceed: &Proceed<'_>| {
-                    self.index.closest_points_in_shard_while(shard, points, &options, proceed)
+                    self.index.batch().with_proceed(proceed).closest_points_in_shard(shard, points, &options)
                 };
                 Self::answer_batches(points, ANSWERS_PER_PART, monitor, answer, |i, one: &Option<_>| {
                     columns.set_with_id(i, one.as_ref().map(|(answer, _)| with_id(answer)));
