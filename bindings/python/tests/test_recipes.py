@@ -11,7 +11,7 @@ from pathlib import Path
 import pytest
 
 PACKAGE = Path(__file__).resolve().parents[1]
-CARRIED = PACKAGE.parent / "scenes" / "knot_and_cables.obj"
+CARRIED = PACKAGE.parents[1] / "scenes" / "knot_and_cables.obj"
 
 
 def run(script: str, *arguments: str) -> str:
