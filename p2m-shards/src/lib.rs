@@ -53,7 +53,7 @@
 //! within the distance that was found. In each phase a shard is loaded at most once and answers all queries that need
 //! it. Several processes share these phases by [`nearest_shard`](ShardedIndex::nearest_shard),
 //! [`shards_within`](ShardedIndex::shards_within) and
-//! [`closest_points_in_shard_while`](ShardedIndex::closest_points_in_shard_while).
+//! [`closest_points_in_shard`](ShardBatch::closest_points_in_shard).
 
 #![deny(unsafe_code)]
 
@@ -64,11 +64,12 @@ mod index;
 mod manifest;
 mod nearest;
 mod rays;
+mod search;
 mod shard;
 mod signs;
 mod write;
 
-pub use batch::Proceed;
+pub use batch::{Proceed, ShardBatch};
 pub use error::ShardError;
 pub use index::ShardedIndex;
 pub use manifest::{MANIFEST_FILE, Manifest, ObjectEntry, ShardEntry, folder_of};

@@ -1,13 +1,16 @@
 //! Queries for near primitives: what each shard finds is compared until no other shard can be near enough.
 
+use crate::batch::{Proceed, go_on};
+use crate::search::{Search, collect, least};
 use crate::{Shard, ShardError, ShardedIndex};
 use nalgebra::Point3;
+use p2m_core::batch::{BatchOptions, Interruptible, closest_points_into};
 use p2m_core::kernel::ERROR_CONSTANT;
 use p2m_core::{
     Aabb, Best, BruteForce, CertifiedQuery, Closest, Collector, Key, Position, Primitive, PrimitiveSet, QueryOptions,
     Real, Shape,
 };
-use std::sync::Arc;
+use rayon::prelude::*;
 
 /// The answer to a query for a near primitive of a sharded index.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -23,114 +26,38 @@ pub struct ShardClosest {
 
 impl ShardClosest {
     /// Makes the answer of an answer of a shard.
-    pub(crate) fn new(number: usize, shard: &Shard, closest: Closest<f64>) -> Self {
+    fn new(number: usize, shard: &Shard, closest: Closest<f64>) -> Self {
         Self { id: shard.global_id(closest.primitive), shard: number, closest }
     }
+}
 
-    /// Returns whether this answer wins against another one, which is of another shard.
-    #[allow(clippy::float_cmp, reason = "keys decide among equal distances")]
-    fn wins(&self, shard: &Shard, other: &Self, other_shard: &Shard, query: &Point3<f64>) -> bool {
-        let (distance, least) = (self.closest.distance, other.closest.distance);
-        if distance != least {
-            return distance < least;
-        }
-        let key = |shard: &Shard, answer: &Self| key(shard, &answer.closest, query);
-        (key(shard, self), self.id) < (key(other_shard, other), other.id)
-    }
+/// Returns the squared distance of a query from a box, by the arithmetic of the kernel.
+fn bound(query: &Point3<f64>, bounds: &Aabb<f64>) -> f64 {
+    bounds.lower_bound(query)
 }
 
 /// Returns the key of the primitive of an answer, which is its squared distance as the kernel computes it: a square
 /// with a tier.
-pub(crate) fn key(shard: &Shard, closest: &Closest<f64>, query: &Point3<f64>) -> Key {
+fn key(shard: &Shard, closest: &Closest<f64>, query: &Point3<f64>) -> Key {
     shard.soup().get(closest.primitive).project(query).key
 }
 
-/// The shards in the order of the bounds of their boxes.
-pub(crate) struct ByBound {
-    bounds: Vec<f64>,
-}
-
-impl ByBound {
-    pub(crate) fn new(boxes: &[Aabb<f64>], query: &Point3<f64>) -> Self {
-        Self { bounds: boxes.iter().map(|bounds| bounds.lower_bound(query)).collect() }
+/// Returns the largest squared lower bound at which a shard may still have something within a distance, or NaN if that
+/// is no number.
+fn limit(distance: f64) -> f64 {
+    if distance.is_nan() {
+        return f64::NAN;
     }
-
-    /// Takes the shard with the least bound, if that is at most the limit on squared distances.
-    ///
-    /// Few shards are taken, so looking for each among all costs less than sorting them.
-    pub(crate) fn take(&mut self, limit: f64) -> Option<(usize, f64)> {
-        let (number, bound) = least(self.bounds.iter().copied(), limit)?;
-        self.bounds[number] = f64::NAN;
-        Some((number, bound))
-    }
-}
-
-/// Returns the place and the value of the least of some bounds that are at most a limit.
-pub(crate) fn least(bounds: impl Iterator<Item = f64>, limit: f64) -> Option<(usize, f64)> {
-    bounds.enumerate().fold(None, |best: Option<(usize, f64)>, (number, bound)| {
-        if bound <= limit && best.is_none_or(|(_, least)| bound < least) { Some((number, bound)) } else { best }
-    })
-}
-
-/// Returns the largest squared lower bound at which a shard may still have something within a distance.
-pub(crate) fn limit(distance: f64) -> f64 {
     Best::<f64>::new(&QueryOptions::default().with_max_distance(distance)).prune_above()
 }
 
-/// The best answer of some shards.
-pub(crate) struct Merged<'a> {
-    query: &'a Point3<f64>,
-    options: QueryOptions<f64>,
-    /// The largest error of a distance from the query.
-    error: f64,
-    best: Option<(ShardClosest, Arc<Shard>)>,
-    /// The least lower bound of the shards that were asked.
-    lower_bound: f64,
-}
-
-impl<'a> Merged<'a> {
-    pub(crate) fn new(index: &ShardedIndex, query: &'a Point3<f64>, options: &QueryOptions<f64>) -> Self {
-        let mut options = *options;
-        // A hint is an id within one shard.
-        options.hint = None;
-        Self { query, options, error: index.largest_error(query), best: None, lower_bound: f64::INFINITY }
-    }
-
-    /// Returns the options of the next shard.
-    ///
-    /// The largest distance is the best distance plus the error of the kernel, because a shard without an answer within
-    /// it then has no primitive below the lower bound of the best answer.
-    pub(crate) fn options(&self) -> QueryOptions<f64> {
-        let reach = self.best.as_ref().map_or(f64::INFINITY, |(best, _)| reach(best.closest.distance, self.error));
-        self.options.with_max_distance(self.options.max_distance.min(reach))
-    }
-
-    /// Takes the answer of a shard, whose box has the squared distance `bound`.
-    pub(crate) fn offer(&mut self, number: usize, shard: &Arc<Shard>, bound: f64, answer: Option<Closest<f64>>) {
-        let Some(closest) = answer else {
-            if self.options.max_visits < u32::MAX {
-                // A search that ended early may have missed everything, so it is only known that nothing of the shard
-                // is nearer than its box.
-                self.lower_bound = self.lower_bound.min(distance_below(bound));
-            }
-            return;
-        };
-        self.lower_bound = self.lower_bound.min(closest.lower_bound);
-        let answer = ShardClosest::new(number, shard, closest);
-        if self.best.as_ref().is_none_or(|(best, best_shard)| answer.wins(shard, best, best_shard, self.query)) {
-            self.best = Some((answer, Arc::clone(shard)));
-        }
-    }
-
-    pub(crate) fn finish(self) -> Option<ShardClosest> {
-        let (mut best, _) = self.best?;
-        best.closest.lower_bound = self.lower_bound;
-        Some(best)
-    }
+/// Returns the largest distance of a query that has no answer unless its coordinates are finite.
+fn largest_distance(query: &Point3<f64>, max_distance: f64) -> f64 {
+    if is_finite(query) { max_distance } else { f64::NAN }
 }
 
 /// Returns a distance that exceeds another one by at least an error.
-pub(crate) fn reach(distance: f64, error: f64) -> f64 {
+fn reach(distance: f64, error: f64) -> f64 {
     ((distance + error) * (1.0 + 4.0 * f64::EPSILON)).next_up()
 }
 
@@ -139,123 +66,218 @@ fn distance_below(bound: f64) -> f64 {
     (bound.min(f64::MAX).sqrt() * (1.0 - 8.0 * f64::EPSILON) - 4.0 * f64::from_bits(1)).max(0.0)
 }
 
-/// The state of a query while shards are asked.
-pub(crate) trait Search {
-    /// Returns the largest distance of an answer that can still matter, or NaN if the query has none.
-    fn largest(&self) -> f64;
-
-    /// Returns the square above which a lower bound rules a shard out. It is negative if the query has no answer.
-    fn prune_above(&self) -> f64 {
-        let largest = self.largest();
-        if largest.is_nan() { -1.0 } else { limit(largest) }
-    }
-
-    /// Asks a shard.
-    fn ask(&mut self, query: &Point3<f64>, number: usize, shard: &Shard);
+/// A search for the closest point.
+pub(crate) struct ClosestSearch {
+    query: Point3<f64>,
+    /// The options, without a hint, which is an id within one shard.
+    options: QueryOptions<f64>,
+    /// The largest error of a distance from the query.
+    error: f64,
+    best: Option<ShardClosest>,
+    /// The key of the best answer, if others may be as near.
+    key: Option<Key>,
+    /// The least lower bound of the shards that were asked.
+    lower_bound: f64,
 }
 
-/// A search for a certified answer.
-pub(crate) struct CertifiedSearch {
-    /// The certified answers of shards with their primitives.
-    winners: Vec<(ShardClosest, Shape<f64>)>,
-    largest: f64,
-}
-
-impl CertifiedSearch {
-    pub(crate) fn new(query: &Point3<f64>, options: &QueryOptions<f64>) -> Self {
-        let largest = if may_have_answer(query, options.max_distance) { options.max_distance } else { f64::NAN };
-        Self { winners: Vec::new(), largest }
+impl ClosestSearch {
+    pub(crate) fn new(index: &ShardedIndex, query: &Point3<f64>, options: &QueryOptions<f64>) -> Self {
+        let mut options = options.with_max_distance(largest_distance(query, options.max_distance));
+        options.hint = None;
+        let error = index.largest_error(query);
+        Self { query: *query, options, error, best: None, key: None, lower_bound: f64::INFINITY }
     }
 
-    /// Returns the answer, for which rational arithmetic decides among the nearest primitives of the shards.
-    pub(crate) fn finish(
-        mut self,
-        query: &Point3<f64>,
-        options: &QueryOptions<f64>,
-    ) -> Result<Option<ShardClosest>, ShardError> {
-        if self.winners.len() < 2 {
-            return Ok(self.winners.pop().map(|(answer, _)| answer));
-        }
-        // Of equally near primitives the first one wins.
-        self.winners.sort_unstable_by_key(|(answer, _)| answer.id);
-        let shapes: Vec<Shape<f64>> = self.winners.iter().map(|(_, shape)| *shape).collect();
-        let few = BruteForce::new(shapes)?;
-        let decided = few.certified_closest_point(query, options).ok().flatten();
-        Ok(decided.map(|decided| {
-            let (mut winner, _) = self.winners[decided.primitive.index()];
-            let primitive = winner.closest.primitive;
-            winner.closest = decided;
-            winner.closest.primitive = primitive;
-            winner
-        }))
-    }
-}
-
-impl Search for CertifiedSearch {
+    /// Returns the largest distance of an answer that can still matter.
+    ///
+    /// It is the best distance plus the error of the kernel, because a shard without an answer within it then has no
+    /// primitive below the lower bound of the best answer.
     fn largest(&self) -> f64 {
-        self.largest
+        let largest = self.options.max_distance;
+        self.best.map_or(largest, |best| largest.min(reach(best.closest.distance, self.error)))
     }
 
-    fn ask(&mut self, query: &Point3<f64>, number: usize, shard: &Shard) {
-        let within = QueryOptions::default().with_max_distance(self.largest);
-        // A query cannot fail here, because every primitive of a scene has vertices.
-        let answer = shard.index().certified_closest_point(query, &within).ok().flatten();
-        if let Some((closest, shape)) = answer.and_then(|one| Some((one, shard.shape(one.primitive)?))) {
-            self.winners.push((ShardClosest::new(number, shard, closest), shape));
-            // A primitive that is nearer by less than the rounding of that distance still counts.
-            self.largest = self.largest.min(closest.distance.next_up());
+    /// Takes the answer of a shard.
+    #[allow(clippy::float_cmp, reason = "keys decide among equal distances")]
+    fn offer(&mut self, number: usize, shard: &Shard, closest: Closest<f64>) {
+        self.lower_bound = self.lower_bound.min(closest.lower_bound);
+        let answer = ShardClosest::new(number, shard, closest);
+        let wins = self.best.is_none_or(|best| {
+            if closest.distance != best.closest.distance {
+                return closest.distance < best.closest.distance;
+            }
+            (Some(key(shard, &closest, &self.query)), answer.id) < (self.key, best.id)
+        });
+        if wins {
+            (self.best, self.key) = (Some(answer), None);
         }
     }
-}
 
-/// A search for a number of near primitives.
-pub(crate) struct NearSearch {
-    k: usize,
-    /// The primitives that were found, in order.
-    found: Vec<Near>,
-    largest: f64,
-}
-
-/// A near primitive and the key that orders it among others.
-struct Near {
-    key: Key,
-    answer: ShardClosest,
-}
-
-impl NearSearch {
-    pub(crate) fn new(query: &Point3<f64>, k: usize, radius: f64) -> Self {
-        // The comparison is false for a radius of NaN.
-        let has_answers = k > 0 && is_finite(query) && radius >= 0.0;
-        Self { k, found: Vec::new(), largest: if has_answers { radius } else { f64::NAN } }
-    }
-
-    pub(crate) fn finish(self) -> Vec<ShardClosest> {
-        self.found.into_iter().map(|near| near.answer).collect()
+    /// Returns the answer of the only shard that was asked, with its key.
+    pub(crate) fn finish_with_key(mut self, shard: &Shard) -> Option<(ShardClosest, Key)> {
+        self.prepare_for_others(shard);
+        let key = self.key;
+        self.finish().zip(key)
     }
 }
 
-impl Search for NearSearch {
-    fn largest(&self) -> f64 {
-        self.largest
+impl Search for ClosestSearch {
+    type Answer = Option<ShardClosest>;
+
+    fn bound(&self, bounds: &Aabb<f64>) -> f64 {
+        bounds.lower_bound(&self.query)
     }
 
-    fn ask(&mut self, query: &Point3<f64>, number: usize, shard: &Shard) {
-        let near = shard.index().k_nearest(query, self.k, self.largest);
-        self.found.extend(near.into_iter().map(|closest| Near {
-            key: key(shard, &closest, query),
-            answer: ShardClosest::new(number, shard, closest),
-        }));
-        self.found.sort_unstable_by_key(|near| (near.key, near.answer.id));
-        self.found.truncate(self.k);
-        if let Some(last) = self.found.get(self.k - 1) {
-            self.largest = last.answer.closest.distance;
+    fn limit(&self) -> f64 {
+        limit(self.largest())
+    }
+
+    fn ask(&mut self, number: usize, shard: &Shard) -> Result<(), ShardError> {
+        let options = self.options.with_max_distance(self.largest());
+        if let Some(closest) = shard.index().closest_point_with(&self.query, &options) {
+            self.offer(number, shard, closest);
+        } else if self.options.max_visits < u32::MAX {
+            // A search that ended early may have missed everything, so it is only known that nothing of the shard is
+            // nearer than its box.
+            self.lower_bound = self.lower_bound.min(distance_below(self.bound(shard.bounds())));
+        }
+        Ok(())
+    }
+
+    /// Asks in the order of the batches of the library.
+    fn ask_first(
+        group: &mut [&mut Self],
+        number: usize,
+        shard: &Shard,
+        proceed: &Proceed<'_>,
+    ) -> Result<(), ShardError> {
+        // All queries of a batch have the same options, and those that have no answer ask no shard.
+        let Some(options) = group.first().map(|search| search.options) else { return Ok(()) };
+        let queries: Vec<Point3<f64>> = group.par_iter().map(|search| search.query).collect();
+        let mut answers = vec![None; queries.len()];
+        let interruptible = Interruptible::new(shard.index(), |left, answer| {
+            if !proceed(0) {
+                return false;
+            }
+            answer(left);
+            proceed(left)
+        });
+        closest_points_into(&interruptible, &queries, &options, &BatchOptions::default(), &mut answers);
+        go_on(proceed, 0)?;
+        group.par_iter_mut().zip(answers).for_each(|(search, answer)| {
+            if let Some(closest) = answer {
+                search.offer(number, shard, closest);
+            }
+        });
+        Ok(())
+    }
+
+    fn prepare_for_others(&mut self, shard: &Shard) {
+        // Without a key the best answer is that of the shard that was asked last.
+        if let (Some(best), None) = (&self.best, self.key) {
+            self.key = Some(key(shard, &best.closest, &self.query));
         }
     }
+
+    /// What an approximate search leaves out on purpose depends on the order of shards.
+    fn depends_on_order(&self) -> bool {
+        self.options.is_approximate()
+    }
+
+    fn finish(self) -> Option<ShardClosest> {
+        let mut best = self.best?;
+        best.closest.lower_bound = self.lower_bound;
+        Some(best)
+    }
+}
+
+/// Returns the search for a certified answer.
+pub(crate) fn certified(
+    query: &Point3<f64>,
+    options: &QueryOptions<f64>,
+) -> impl Search<Answer = Option<ShardClosest>> + use<> {
+    let max_distance = largest_distance(query, options.max_distance);
+    // A primitive that is nearer by less than the rounding of the best distance still counts.
+    let largest = move |found: &Option<(ShardClosest, Shape<f64>)>| {
+        found.as_ref().map_or(max_distance, |(best, _)| max_distance.min(best.closest.distance.next_up()))
+    };
+    collect(
+        *query,
+        None,
+        bound,
+        move |found| limit(largest(found)),
+        move |found, query, number, shard| {
+            let within = QueryOptions::default().with_max_distance(largest(found));
+            // A query cannot fail here, because every primitive of a scene has vertices.
+            let answer = shard.index().certified_closest_point(query, &within).ok().flatten();
+            let Some(closest) = answer else { return Ok(()) };
+            let next = (ShardClosest::new(number, shard, closest), shard.soup().get(closest.primitive));
+            *found = Some(match found.take() {
+                Some(best) => certainly_nearest(query, best, next)?,
+                None => next,
+            });
+            Ok(())
+        },
+        |found| found.map(|(answer, _)| answer),
+    )
+}
+
+/// Returns which of two answers is certainly the nearest one, for which rational arithmetic decides between their
+/// primitives.
+fn certainly_nearest(
+    query: &Point3<f64>,
+    first: (ShardClosest, Shape<f64>),
+    second: (ShardClosest, Shape<f64>),
+) -> Result<(ShardClosest, Shape<f64>), ShardError> {
+    // Of equally near primitives the one with the lowest id wins.
+    let [first, second] = if first.0.id < second.0.id { [first, second] } else { [second, first] };
+    let both = BruteForce::new([first.1, second.1])?;
+    let decided = both.certified_closest_point(query, &QueryOptions::default()).ok().flatten();
+    Ok(if decided.is_some_and(|closest| closest.primitive.index() == 1) { second } else { first })
+}
+
+/// Returns the search for at most `k` primitives within a distance.
+pub(crate) fn near(query: &Point3<f64>, k: usize, radius: f64) -> impl Search<Answer = Vec<ShardClosest>> + use<> {
+    // The comparison is false for a radius of NaN.
+    let radius = if k > 0 && radius >= 0.0 { largest_distance(query, radius) } else { f64::NAN };
+    let largest = move |found: &Vec<(Key, ShardClosest)>| {
+        found.get(k.wrapping_sub(1)).map_or(radius, |(_, last)| last.closest.distance)
+    };
+    collect(
+        *query,
+        Vec::new(),
+        bound,
+        move |found| limit(largest(found)),
+        move |found, query, number, shard| {
+            let near = shard.index().k_nearest(query, k, largest(found)).into_iter();
+            found.extend(near.map(|closest| (key(shard, &closest, query), ShardClosest::new(number, shard, closest))));
+            found.sort_unstable_by_key(|(key, answer)| (*key, answer.id));
+            found.truncate(k);
+            Ok(())
+        },
+        |found| found.into_iter().map(|(_, answer)| answer).collect(),
+    )
+}
+
+/// Returns the search that decides whether any primitive is within a distance.
+pub(crate) fn any_within(query: &Point3<f64>, radius: f64) -> impl Search<Answer = bool> + use<> {
+    let radius = if radius >= 0.0 { largest_distance(query, radius) } else { f64::NAN };
+    collect(
+        *query,
+        false,
+        bound,
+        move |is_within| if *is_within { f64::NAN } else { limit(radius) },
+        move |is_within, query, _, shard| {
+            *is_within = shard.index().is_any_within(query, radius);
+            Ok(())
+        },
+        |is_within| is_within,
+    )
 }
 
 impl ShardedIndex {
     /// Returns a bound on the error of the distance of every primitive (contract N1), rounded up.
-    pub(crate) fn largest_error(&self, query: &Point3<f64>) -> f64 {
+    fn largest_error(&self, query: &Point3<f64>) -> f64 {
         let farthest = (0..3).map(|k| (query[k] - self.bounds.min[k]).abs().max((self.bounds.max[k] - query[k]).abs()));
         // The sum of three distances along the axes is at least their Euclidean sum.
         let largest: f64 = farthest.sum::<f64>() * (1.0 + 8.0 * f64::EPSILON);
@@ -283,19 +305,7 @@ impl ShardedIndex {
         query: &impl Position<f64>,
         options: &QueryOptions<f64>,
     ) -> Result<Option<ShardClosest>, ShardError> {
-        let query = &query.point();
-        if !may_have_answer(query, options.max_distance) {
-            return Ok(None);
-        }
-        let mut merged = Merged::new(self, query, options);
-        let mut order = ByBound::new(&self.boxes, query);
-        loop {
-            let options = merged.options();
-            let Some((number, bound)) = order.take(limit(options.max_distance)) else { return Ok(merged.finish()) };
-            let shard = self.shard(number)?;
-            let answer = shard.index().closest_point_with(query, &options);
-            merged.offer(number, &shard, bound, answer);
-        }
+        self.answer(ClosestSearch::new(self, &query.point(), options))
     }
 
     /// Returns the certified closest point (contract N8): the primitive is certainly the nearest one, and its distance
@@ -308,10 +318,7 @@ impl ShardedIndex {
         query: &impl Position<f64>,
         options: &QueryOptions<f64>,
     ) -> Result<Option<ShardClosest>, ShardError> {
-        let query = &query.point();
-        let mut search = CertifiedSearch::new(query, options);
-        self.search(query, &mut search)?;
-        search.finish(query, options)
+        self.answer(certified(&query.point(), options))
     }
 
     /// Returns the nearest primitives, at most `k` and none beyond the radius, nearest first. The radius may be
@@ -325,19 +332,7 @@ impl ShardedIndex {
         k: usize,
         radius: f64,
     ) -> Result<Vec<ShardClosest>, ShardError> {
-        let query = &query.point();
-        let mut search = NearSearch::new(query, k, radius);
-        self.search(query, &mut search)?;
-        Ok(search.finish())
-    }
-
-    /// Asks the shards for one query, the nearest box first, as long as a shard may matter.
-    fn search(&self, query: &Point3<f64>, search: &mut impl Search) -> Result<(), ShardError> {
-        let mut order = ByBound::new(&self.boxes, query);
-        while let Some((number, _)) = order.take(search.prune_above()) {
-            search.ask(query, number, &*self.shard(number)?);
-        }
-        Ok(())
+        self.answer(near(&query.point(), k, radius))
     }
 
     /// Returns all primitives within the radius, nearest first.
@@ -353,21 +348,29 @@ impl ShardedIndex {
     /// # Errors
     /// It returns the [errors of loading a shard](ShardError#loading-a-shard).
     pub fn is_any_within(&self, query: &impl Position<f64>, radius: f64) -> Result<bool, ShardError> {
-        let query = &query.point();
-        let may_have_any = is_finite(query) && radius >= 0.0;
-        let mut order = ByBound::new(&self.boxes, query);
-        while may_have_any && let Some((number, _)) = order.take(limit(radius)) {
-            if self.shard(number)?.index().is_any_within(query, radius) {
-                return Ok(true);
-            }
-        }
-        Ok(false)
+        self.answer(any_within(&query.point(), radius))
     }
-}
 
-/// Returns whether a query may have an answer: its coordinates are finite, and its largest distance is a number.
-pub(crate) fn may_have_answer(query: &Point3<f64>, max_distance: f64) -> bool {
-    is_finite(query) && !max_distance.is_nan()
+    /// Returns the shard with the box that is nearest to a query, which is to be asked first, or `None` for a query
+    /// that is not finite, an empty scene, and where no box is within the largest distance.
+    ///
+    /// # Complexity
+    /// It takes O(s) for s shards, and loads none.
+    #[must_use]
+    pub fn nearest_shard(&self, query: &Point3<f64>, max_distance: f64) -> Option<usize> {
+        let limit = limit(largest_distance(query, max_distance));
+        least(self.boxes.iter().map(|bounds| bounds.lower_bound(query)), limit)
+    }
+
+    /// Returns all shards that may have a primitive as near as one that was found at `distance`, or a nearer one.
+    ///
+    /// # Complexity
+    /// It takes O(s) for s shards, and loads none.
+    pub fn shards_within(&self, query: &Point3<f64>, distance: f64) -> impl Iterator<Item = usize> {
+        let limit = limit(reach(distance, self.largest_error(query)));
+        let boxes = self.boxes.iter().enumerate();
+        boxes.filter(move |(_, bounds)| bounds.lower_bound(query) <= limit).map(|(number, _)| number)
+    }
 }
 
 /// Returns whether all coordinates of a query are finite.

@@ -1,5 +1,6 @@
 //! Rays: the hits of the shards whose boxes a ray may hit.
 
+use crate::search::{Search, collect};
 use crate::{Shard, ShardError, ShardedIndex};
 use p2m_core::{Aabb, Hit, Ray, RayQuery};
 
@@ -15,15 +16,20 @@ pub struct ShardHit {
     pub hit: Hit,
 }
 
+impl ShardHit {
+    fn new(number: usize, shard: &Shard, hit: Hit) -> Self {
+        Self { id: shard.global_id(hit.primitive), shard: number, hit }
+    }
+}
+
 /// The unit roundoff times the number of roundings of a parameter below, with room to spare.
 const SLACK: f64 = 8.0 * f64::EPSILON;
 
-/// Returns a lower bound on the parameters at which a ray may hit something in a box, or `None` if it hits nothing
-/// there.
+/// Returns a lower bound on the parameters at which a ray may hit something in a box, or NaN if it hits nothing there.
 ///
 /// A coordinate less the origin is rounded once, and the parameter of a plane once more, so both are known up to a
 /// factor; underflow adds a few smallest subnormals. Without these margins a hit on the face of a box could be lost.
-pub(crate) fn entry(ray: &Ray, bounds: &Aabb<f64>) -> Option<f64> {
+pub(crate) fn entry(ray: &Ray, bounds: &Aabb<f64>) -> f64 {
     let [mut first, mut last] = ray.range();
     let (origin, direction, radius) = (ray.origin(), ray.direction(), ray.radius());
     for k in 0..3 {
@@ -33,7 +39,7 @@ pub(crate) fn entry(ray: &Ray, bounds: &Aabb<f64>) -> Option<f64> {
         }
         if direction[k] == 0.0 {
             if origin[k] < low || origin[k] > high {
-                return None;
+                return f64::NAN;
             }
             continue;
         }
@@ -47,73 +53,107 @@ pub(crate) fn entry(ray: &Ray, bounds: &Aabb<f64>) -> Option<f64> {
             last = last.min(far + far.abs() * SLACK + 8.0 * f64::from_bits(1));
         }
     }
-    (first <= last).then_some(first)
+    if first <= last { first } else { f64::NAN }
+}
+
+/// Returns the queries of rays of a shard.
+fn ray_query(shard: &Shard) -> Result<&(dyn RayQuery<f64> + Sync), ShardError> {
+    shard.index().as_ray_query().ok_or_else(|| ShardError::NoRays { backend: shard.backend().to_owned() })
+}
+
+/// Returns the search for the first hit.
+pub(crate) fn first_hit(ray: &Ray) -> impl Search<Answer = Option<ShardHit>> + use<> {
+    collect(
+        *ray,
+        None,
+        entry,
+        |best: &Option<ShardHit>| best.map_or(f64::INFINITY, |best| best.hit.parameter),
+        |best, ray, number, shard| {
+            // The range ends at the best hit, at which another one with a lower id may be.
+            let end = best.map_or(ray.range()[1], |best| best.hit.parameter);
+            let shorter = ray.with_range(ray.range()[0], end).unwrap_or(*ray);
+            let hit = ray_query(shard)?.first_intersection(&shorter).map(|hit| ShardHit::new(number, shard, hit));
+            let is_first =
+                |hit: &ShardHit| best.is_none_or(|best| (hit.hit.parameter, hit.id) < (best.hit.parameter, best.id));
+            *best = hit.filter(is_first).or(*best);
+            Ok(())
+        },
+        |best| best,
+    )
+}
+
+/// Returns the search for all hits.
+pub(crate) fn all_hits(ray: &Ray) -> impl Search<Answer = Vec<ShardHit>> + use<> {
+    collect(
+        *ray,
+        Vec::new(),
+        entry,
+        |_| f64::INFINITY,
+        |all, ray, number, shard| {
+            let hits = ray_query(shard)?.all_intersections(ray).into_iter();
+            all.extend(hits.map(|hit| ShardHit::new(number, shard, hit)));
+            Ok(())
+        },
+        |mut all| {
+            all.sort_unstable_by(|a, b| a.hit.parameter.total_cmp(&b.hit.parameter).then(a.id.cmp(&b.id)));
+            all
+        },
+    )
+}
+
+/// Returns the search that adds up the counts of shards. Without a ray the sum is 0.
+pub(crate) fn counts<R: Send>(
+    ray: Option<Ray>,
+    count: fn(&dyn RayQuery<f64>, &Ray) -> usize,
+    finish: fn(usize) -> R,
+) -> impl Search<Answer = R> {
+    collect(
+        ray,
+        0,
+        |ray, bounds| ray.as_ref().map_or(f64::NAN, |ray| entry(ray, bounds)),
+        |_| f64::INFINITY,
+        move |sum, ray, _, shard| {
+            let index = ray_query(shard)?;
+            *sum += ray.as_ref().map_or(0, |ray| count(index, ray));
+            Ok(())
+        },
+        finish,
+    )
+}
+
+/// Returns the search for the number of hits.
+pub(crate) fn count(ray: &Ray) -> impl Search<Answer = usize> + use<> {
+    counts(Some(*ray), |index, ray| index.count(ray), |sum| sum)
+}
+
+/// Returns the search for the number of crossings.
+pub(crate) fn crossings(ray: &Ray) -> impl Search<Answer = usize> + use<> {
+    counts(Some(*ray), |index, ray| index.crossings(ray), |sum| sum)
+}
+
+/// Returns the search that decides whether anything is hit.
+pub(crate) fn any_hit(ray: &Ray) -> impl Search<Answer = bool> + use<> {
+    collect(
+        *ray,
+        false,
+        entry,
+        |is_hit| if *is_hit { f64::NAN } else { f64::INFINITY },
+        |is_hit, ray, _, shard| {
+            *is_hit = ray_query(shard)?.do_intersect(ray);
+            Ok(())
+        },
+        |is_hit| is_hit,
+    )
 }
 
 impl ShardedIndex {
-    /// Returns the shards that a ray may hit with their entries, the least entry first.
-    fn shards_along(&self, ray: &Ray) -> Vec<(f64, usize)> {
-        let hit = |(number, bounds)| Some((entry(ray, bounds)?, number));
-        let mut along: Vec<(f64, usize)> = self.boxes.iter().enumerate().filter_map(hit).collect();
-        along.sort_unstable_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
-        along
-    }
-
-    /// Returns the number of shards that a ray may hit.
-    pub(crate) fn count_shards_along(&self, ray: &Ray) -> usize {
-        self.boxes.iter().filter(|bounds| entry(ray, bounds).is_some()).count()
-    }
-
-    /// Returns whether a ray may hit a shard.
-    pub(crate) fn meets(&self, ray: &Ray, number: usize) -> bool {
-        entry(ray, &self.boxes[number]).is_some()
-    }
-
-    /// Returns the queries of rays of a shard.
-    pub(crate) fn ray_query<'a>(&self, shard: &'a Shard) -> Result<&'a (dyn RayQuery<f64> + Sync), ShardError> {
-        shard.index().as_ray_query().ok_or_else(|| ShardError::NoRays { backend: self.manifest().backend.clone() })
-    }
-
-    /// Calls a function with each shard that a ray may hit, in the order of their entries, until it returns `false`.
-    fn visit_along(
-        &self,
-        ray: &Ray,
-        mut visit: impl FnMut(usize, &Shard, &dyn RayQuery<f64>) -> bool,
-    ) -> Result<(), ShardError> {
-        for (_, number) in self.shards_along(ray) {
-            let shard = self.shard(number)?;
-            if !visit(number, &shard, self.ray_query(&shard)?) {
-                break;
-            }
-        }
-        Ok(())
-    }
-
     /// Returns the hit with the least parameter, and of equal parameters the one with the lowest id.
     ///
     /// # Errors
     /// It returns [`ShardError::NoRays`] if the backend casts no rays, and the
     /// [errors of loading a shard](ShardError#loading-a-shard).
     pub fn first_intersection(&self, ray: &Ray) -> Result<Option<ShardHit>, ShardError> {
-        let mut best: Option<ShardHit> = None;
-        for (entry, number) in self.shards_along(ray) {
-            if best.is_some_and(|best| entry > best.hit.parameter) {
-                break;
-            }
-            let shard = self.shard(number)?;
-            let rays = self.ray_query(&shard)?;
-            // The range ends at the best hit, at which another one with a lower id may be.
-            let end = best.map_or(ray.range()[1], |best| best.hit.parameter);
-            let shorter = ray.with_range(ray.range()[0], end).unwrap_or(*ray);
-            if let Some(hit) = rays.first_intersection(&shorter) {
-                let hit = ShardHit { id: shard.global_id(hit.primitive), shard: number, hit };
-                let is_first = |best: ShardHit| (hit.hit.parameter, hit.id) < (best.hit.parameter, best.id);
-                if best.is_none_or(is_first) {
-                    best = Some(hit);
-                }
-            }
-        }
-        Ok(best)
+        self.answer(first_hit(ray))
     }
 
     /// Returns all hits, ordered by parameter and of equal parameters by id.
@@ -121,14 +161,7 @@ impl ShardedIndex {
     /// # Errors
     /// It returns the errors of [`first_intersection`](Self::first_intersection).
     pub fn all_intersections(&self, ray: &Ray) -> Result<Vec<ShardHit>, ShardError> {
-        let mut all = Vec::new();
-        self.visit_along(ray, |number, shard, rays| {
-            let hits = rays.all_intersections(ray).into_iter();
-            all.extend(hits.map(|hit| ShardHit { id: shard.global_id(hit.primitive), shard: number, hit }));
-            true
-        })?;
-        all.sort_unstable_by(|a, b| a.hit.parameter.total_cmp(&b.hit.parameter).then(a.id.cmp(&b.id)));
-        Ok(all)
+        self.answer(all_hits(ray))
     }
 
     /// Returns the number of primitives that are hit.
@@ -136,12 +169,7 @@ impl ShardedIndex {
     /// # Errors
     /// It returns the errors of [`first_intersection`](Self::first_intersection).
     pub fn count(&self, ray: &Ray) -> Result<usize, ShardError> {
-        let mut count = 0;
-        self.visit_along(ray, |_, _, rays| {
-            count += rays.count(ray);
-            true
-        })?;
-        Ok(count)
+        self.answer(count(ray))
     }
 
     /// Returns how often the ray crosses the surface that the triangles form
@@ -150,12 +178,7 @@ impl ShardedIndex {
     /// # Errors
     /// It returns the errors of [`first_intersection`](Self::first_intersection).
     pub fn crossings(&self, ray: &Ray) -> Result<usize, ShardError> {
-        let mut count = 0;
-        self.visit_along(ray, |_, _, rays| {
-            count += rays.crossings(ray);
-            true
-        })?;
-        Ok(count)
+        self.answer(crossings(ray))
     }
 
     /// Returns whether the ray hits any primitive.
@@ -163,11 +186,6 @@ impl ShardedIndex {
     /// # Errors
     /// It returns the errors of [`first_intersection`](Self::first_intersection).
     pub fn do_intersect(&self, ray: &Ray) -> Result<bool, ShardError> {
-        let mut is_hit = false;
-        self.visit_along(ray, |_, _, rays| {
-            is_hit = rays.do_intersect(ray);
-            !is_hit
-        })?;
-        Ok(is_hit)
+        self.answer(any_hit(ray))
     }
 }

@@ -3,7 +3,7 @@
 use crate::{ShardEntry, ShardError};
 use p2m_backends::BackendEntry;
 use p2m_core::storage::{Array, LoadError, SavedFile, require};
-use p2m_core::{AnyIndex, PrimitiveId, PrimitiveSet, Shape, Soup, shape_of};
+use p2m_core::{Aabb, AnyIndex, PrimitiveId, PrimitiveSet, Soup};
 use p2m_mixed::load_scene;
 use std::fs;
 use std::path::Path;
@@ -17,6 +17,8 @@ const MEMORY_BYTES_PER_PRIMITIVE: u64 = 40;
 /// A part of the scene in memory.
 pub struct Shard {
     soup: Arc<Soup<f64>>,
+    bounds: Aabb<f64>,
+    backend: &'static BackendEntry,
     index: Arc<dyn AnyIndex>,
     ids: Array<u64>,
 }
@@ -41,16 +43,16 @@ impl Shard {
             let ids = reader.array::<u64>(IDS)?;
             require(ids.len() == soup.len(), IDS, "there is not one for each primitive")?;
             require(ids.is_sorted_by(|a, b| a < b), IDS, "they are not in ascending order")?;
-            let backend = BackendEntry::from_saved(reader);
             let missing = LoadError::Missing { section: "index/kind".to_owned() };
-            let built = backend.ok_or(missing)?.load(Arc::clone(&soup), reader)?;
-            Ok(Self { soup, index: built.index, ids })
+            let backend = BackendEntry::from_saved(reader).ok_or(missing)?;
+            let index = backend.load(Arc::clone(&soup), reader)?.index;
+            Ok(Self { bounds: soup.aabb(), soup, backend, index, ids })
         };
         let shard = load().map_err(load_error)?;
         if shard.soup.len() as u64 != entry.primitives {
             return Err(other("the number of its primitives differs"));
         }
-        if shard.soup.aabb() != entry.bounds() {
+        if shard.bounds != entry.bounds() {
             return Err(other("its box differs"));
         }
         Ok(shard)
@@ -67,6 +69,16 @@ impl Shard {
         &self.soup
     }
 
+    /// Returns the box of the primitives.
+    pub(crate) fn bounds(&self) -> &Aabb<f64> {
+        &self.bounds
+    }
+
+    /// Returns the name of the backend of the index.
+    pub(crate) fn backend(&self) -> &'static str {
+        self.backend.name
+    }
+
     /// Returns the index over the primitives.
     #[must_use]
     pub fn index(&self) -> &dyn AnyIndex {
@@ -80,11 +92,6 @@ impl Shard {
     #[must_use]
     pub fn global_id(&self, id: PrimitiveId) -> u64 {
         self.ids[id.index()]
-    }
-
-    /// Returns a primitive of the shard.
-    pub(crate) fn shape(&self, id: PrimitiveId) -> Option<Shape<f64>> {
-        shape_of(&*self.soup, id)
     }
 }
 

@@ -22,5 +22,4 @@ mod ray_models;
 mod rays;
 mod registry;
 mod saved;
-mod shards;
 mod trade;

@@ -4,7 +4,6 @@ use crate::io::output::Output;
 use crate::io::streams::Streams;
 use anyhow::Context;
 use clap_complete::Shell;
-use std::io::Write;
 use std::path::{Path, PathBuf};
 
 /// Print the completions of a shell
@@ -35,12 +34,12 @@ pub(crate) fn completions(streams: &Streams, args: &Completions, mut command: cl
     // The script is generated in memory, because the generator panics when its output is closed.
     let mut script = Vec::new();
     clap_complete::generate(args.shell, &mut command, "p2m", &mut script);
-    write(streams, None, &script)
+    Output::print(streams, script)
 }
 
 pub(crate) fn man(streams: &Streams, args: &Man, mut command: clap::Command) -> anyhow::Result<()> {
     command.build();
-    let Some(folder) = &args.out else { return write(streams, None, &page(&command)?) };
+    let Some(folder) = &args.out else { return Output::print(streams, page(&command)?) };
     std::fs::create_dir_all(folder).with_context(|| format!("{}: cannot be made", folder.display()))?;
     write_pages(streams, folder, &command)
 }
@@ -48,7 +47,7 @@ pub(crate) fn man(streams: &Streams, args: &Man, mut command: clap::Command) -> 
 /// Writes the page of a command and those of its subcommands, with names like `p2m-generate-knot.1`.
 fn write_pages(streams: &Streams, folder: &Path, command: &clap::Command) -> anyhow::Result<()> {
     let name = command.get_display_name().unwrap_or_else(|| command.get_name());
-    write(streams, Some(&folder.join(format!("{name}.1"))), &page(command)?)?;
+    Output::open(streams, Some(&folder.join(format!("{name}.1"))))?.finish_with(page(command)?)?;
     command.get_subcommands().filter(|c| c.get_name() != "help").try_for_each(|c| write_pages(streams, folder, c))
 }
 
@@ -56,10 +55,4 @@ fn page(command: &clap::Command) -> anyhow::Result<Vec<u8>> {
     let mut page = Vec::new();
     clap_mangen::Man::new(command.clone()).render(&mut page).context("the manual page cannot be made")?;
     Ok(page)
-}
-
-fn write(streams: &Streams, path: Option<&Path>, content: &[u8]) -> anyhow::Result<()> {
-    let mut output = Output::open(streams, path)?;
-    output.write_all(content).with_context(|| output.cannot_write())?;
-    output.finish()
 }

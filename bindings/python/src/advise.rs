@@ -1,30 +1,32 @@
 //! Advice on backends.
 
-use crate::errors::build_error;
-use crate::scene::{Coordinates, Scene, with_positions};
+use crate::arrays::{Coordinates, with_positions};
+use crate::errors::value_error;
+use crate::scene::Scene;
 use crate::work::run_owned;
 use nalgebra::Point3;
 use p2m_backends::{Estimate, QueryRegion, Workload, recommend};
 use p2m_core::Position;
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
-use pyo3::types::{PyDict, PyList};
 use std::time::Duration;
+
+/// The name of a backend, the times of its build and of a query, its memory and the total time; whether they are
+/// measured, the number of queries at which it breaks even, and the reason for its rank.
+type Row = (&'static str, (f64, f64, f64, f64), bool, Option<f64>, String);
 
 /// Returns the estimates of all backends, the recommended one first.
 #[pyfunction]
-#[pyo3(signature = (scene, queries, region, points, max_bytes, max_seconds, threads))]
-#[allow(clippy::too_many_arguments, reason = "the Python layer passes them all")]
-pub(crate) fn advise<'py>(
-    py: Python<'py>,
+pub(crate) fn advise(
+    py: Python<'_>,
     scene: &Scene,
     queries: u64,
     region: &str,
-    points: Option<Coordinates<'py>>,
+    points: Option<Coordinates<'_>>,
     max_bytes: Option<usize>,
     max_seconds: Option<f64>,
     threads: usize,
-) -> PyResult<Bound<'py, PyList>> {
+) -> PyResult<Vec<Row>> {
     let points: Option<Vec<Point3<f64>>> = match points {
         Some(points) => Some(with_positions!(points, slice => slice.iter().map(Position::<f64>::point).collect())),
         None => None,
@@ -46,19 +48,10 @@ pub(crate) fn advise<'py>(
         let workload = Workload::new(queries, region).with_max_time(max_time);
         recommend(&shared.soup, &workload.with_max_bytes(max_bytes.unwrap_or(usize::MAX)))
     })?;
-    let advice = advice.map_err(build_error)?;
-    PyList::new(py, advice.estimates.iter().map(|estimate| row(py, estimate)).collect::<PyResult<Vec<_>>>()?)
-}
-
-fn row<'py>(py: Python<'py>, estimate: &Estimate) -> PyResult<Bound<'py, PyDict>> {
-    let row = PyDict::new(py);
-    row.set_item("backend", estimate.backend.name)?;
-    row.set_item("build_seconds", estimate.build_seconds)?;
-    row.set_item("query_seconds", estimate.query_seconds)?;
-    row.set_item("memory_bytes", estimate.bytes)?;
-    row.set_item("total_seconds", estimate.total_seconds)?;
-    row.set_item("is_measured", estimate.is_measured)?;
-    row.set_item("break_even_queries", estimate.break_even)?;
-    row.set_item("reason", estimate.reason())?;
-    Ok(row)
+    let row = |estimate: &Estimate| {
+        let Estimate { backend, build_seconds, query_seconds, bytes, total_seconds, .. } = *estimate;
+        let costs = (build_seconds, query_seconds, bytes, total_seconds);
+        (backend.name, costs, estimate.is_measured, estimate.break_even, estimate.reason())
+    };
+    Ok(advice.map_err(value_error)?.estimates.iter().map(row).collect())
 }

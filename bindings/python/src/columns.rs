@@ -1,136 +1,153 @@
 //! Columns of answers in arrays of NumPy.
 
-use crate::errors::value_error;
+use crate::arrays::slice;
 use crate::parts::Split;
-use nalgebra::Point3;
-use numpy::{Element, PyArray1, PyArrayMethods, PyReadwriteArray1};
+use numpy::{Element, PyReadwriteArray1};
 use p2m_core::batch::ClosestColumns;
 use p2m_core::{Closest, Feature};
 use pyo3::exceptions::PyTypeError;
 use pyo3::prelude::*;
-use pyo3::types::PyDict;
 
 /// The number that stands for no primitive.
 pub(crate) const NO_PRIMITIVE: i64 = -1;
 /// The number that stands for no feature.
 pub(crate) const NO_FEATURE: u8 = 255;
 
-/// Arrays that are borrowed for writing, each as long as the answers. Those that are not asked for are missing.
-pub(crate) struct Arrays<'py> {
-    distance: Option<PyReadwriteArray1<'py, f64>>,
-    primitive: Option<PyReadwriteArray1<'py, i64>>,
-    point: Option<PyReadwriteArray1<'py, f64>>,
-    feature: Option<PyReadwriteArray1<'py, u8>>,
-    barycentric: Option<PyReadwriteArray1<'py, f64>>,
-    lower_bound: Option<PyReadwriteArray1<'py, f64>>,
+/// A value of a column, which is some items of a flat array.
+pub(crate) trait Value: Sized {
+    type Item: Element;
+
+    /// Returns the values of a flat array, which has nothing else.
+    fn of_flat(flat: &mut [Self::Item]) -> Option<&mut [Self]>;
 }
 
-/// Borrows an array of a dictionary for writing.
-pub(crate) fn borrowed<'py, T: Element>(
-    arrays: &Bound<'py, PyDict>,
-    name: &str,
-) -> PyResult<Option<PyReadwriteArray1<'py, T>>> {
-    let Some(array) = arrays.get_item(name)? else { return Ok(None) };
-    let array = array.cast_into::<PyArray1<T>>().map_err(|_| PyTypeError::new_err(format!("{name}: wrong array")))?;
-    let borrowed = array.try_readwrite().map_err(|_| {
-        value_error(format!(
-            "out: the array of {name} is read-only, or another array of this call or of a running one \
-                             has parts of its memory"
-        ))
-    })?;
-    Ok(Some(borrowed))
-}
+macro_rules! single_values {
+    ($($Item:ty),*) => {$(
+        impl Value for $Item {
+            type Item = Self;
 
-/// Returns an array as a slice.
-pub(crate) fn slice<'a, T: Element>(array: &'a mut Option<PyReadwriteArray1<'_, T>>) -> PyResult<Option<&'a mut [T]>> {
-    let contiguous = |_| PyTypeError::new_err("an array of answers is not contiguous");
-    array.as_mut().map(|array| array.as_slice_mut().map_err(contiguous)).transpose()
-}
-
-impl<'py> Arrays<'py> {
-    /// Borrows the arrays of a dictionary by their names.
-    pub(crate) fn borrow(arrays: &Bound<'py, PyDict>) -> PyResult<Self> {
-        Ok(Self {
-            distance: borrowed(arrays, "distance")?,
-            primitive: borrowed(arrays, "primitive")?,
-            point: borrowed(arrays, "point")?,
-            feature: borrowed(arrays, "feature")?,
-            barycentric: borrowed(arrays, "barycentric")?,
-            lower_bound: borrowed(arrays, "lower_bound")?,
-        })
-    }
-
-    /// Returns the columns, which have places for `len` answers.
-    pub(crate) fn columns(&mut self, len: usize) -> PyResult<Columns<'_>> {
-        let barycentric = slice(&mut self.barycentric)?.map(|flat| flat.as_chunks_mut().0);
-        let columns = Columns {
-            distance: slice(&mut self.distance)?,
-            primitive: slice(&mut self.primitive)?,
-            point: slice(&mut self.point)?.map(bytemuck::cast_slice_mut),
-            feature: slice(&mut self.feature)?,
-            barycentric,
-            lower_bound: slice(&mut self.lower_bound)?,
-        };
-        if columns.lengths().all(|other| other == len) {
-            return Ok(columns);
+            fn of_flat(flat: &mut [Self]) -> Option<&mut [Self]> {
+                Some(flat)
+            }
         }
-        Err(PyTypeError::new_err("an array of answers has another length"))
+    )*};
+}
+single_values!(f64, i64, i8, u8, bool);
+
+impl<V: Value, const N: usize> Value for [V; N] {
+    type Item = V::Item;
+
+    fn of_flat(flat: &mut [V::Item]) -> Option<&mut [Self]> {
+        let (values, rest) = V::of_flat(flat)?.as_chunks_mut();
+        rest.is_empty().then_some(values)
     }
 }
 
-/// Columns of answers, as NumPy has them.
-#[derive(Default)]
-pub(crate) struct Columns<'a> {
-    distance: Option<&'a mut [f64]>,
-    primitive: Option<&'a mut [i64]>,
-    point: Option<&'a mut [Point3<f64>]>,
-    feature: Option<&'a mut [u8]>,
-    barycentric: Option<&'a mut [[f64; 3]]>,
-    lower_bound: Option<&'a mut [f64]>,
+/// Returns a borrowed array as a column of so many values, if there is one.
+pub(crate) fn column<'a, V: Value>(
+    array: &'a mut Option<PyReadwriteArray1<'_, V::Item>>,
+    len: usize,
+) -> PyResult<Option<&'a mut [V]>> {
+    let Some(flat) = slice(array)? else { return Ok(None) };
+    match V::of_flat(flat) {
+        Some(column) if column.len() == len => Ok(Some(column)),
+        _ => Err(PyTypeError::new_err("an array of answers has another length")),
+    }
 }
 
-impl Columns<'_> {
-    fn lengths(&self) -> impl Iterator<Item = usize> {
-        [
-            self.distance.as_ref().map(|column| column.len()),
-            self.primitive.as_ref().map(|column| column.len()),
-            self.point.as_ref().map(|column| column.len()),
-            self.feature.as_ref().map(|column| column.len()),
-            self.barycentric.as_ref().map(|column| column.len()),
-            self.lower_bound.as_ref().map(|column| column.len()),
-        ]
-        .into_iter()
-        .flatten()
-    }
+/// Defines the columns of answers of a type: the arrays, of which those that are not asked for are missing, and the
+/// columns in them. Each column has a name, a type, the value of a missing answer, and a function of an answer.
+macro_rules! columns {
+    ($Arrays:ident, $Columns:ident, $Answer:ty, { $($name:ident: $Value:ty = $missing:expr, $value:expr;)* }) => {
+        /// Arrays that are borrowed for writing.
+        pub(crate) struct $Arrays<'py> {
+            $($name: Option<numpy::PyReadwriteArray1<'py, <$Value as $crate::columns::Value>::Item>>,)*
+        }
 
-    /// Writes an answer, or that there is none.
-    pub(crate) fn set(&mut self, i: usize, closest: Option<&Closest<f64>>) {
-        self.set_with_id(i, closest.map(|closest| (i64::from(closest.primitive.number()), closest)));
-    }
+        impl<'py> $Arrays<'py> {
+            /// Borrows the arrays of a dictionary by their names.
+            pub(crate) fn borrow(arrays: &Bound<'py, pyo3::types::PyDict>) -> PyResult<Self> {
+                Ok(Self { $($name: $crate::arrays::borrowed(arrays, stringify!($name))?,)* })
+            }
 
-    /// Writes an answer whose primitive has this id, or that there is none.
-    pub(crate) fn set_with_id(&mut self, i: usize, answer: Option<(i64, &Closest<f64>)>) {
-        let closest = answer.map(|(_, closest)| closest);
-        if let Some(column) = &mut self.distance {
-            column[i] = closest.map_or(f64::INFINITY, |c| c.distance);
+            /// Returns the columns, which have places for `len` answers.
+            pub(crate) fn columns(&mut self, len: usize) -> PyResult<$Columns<'_>> {
+                Ok($Columns { $($name: $crate::columns::column(&mut self.$name, len)?,)* })
+            }
         }
-        if let Some(column) = &mut self.primitive {
-            column[i] = answer.map_or(NO_PRIMITIVE, |(id, _)| id);
-        }
-        if let Some(column) = &mut self.point {
-            column[i] = closest.map_or(Point3::new(f64::NAN, f64::NAN, f64::NAN), |c| c.point);
-        }
-        if let Some(column) = &mut self.feature {
-            column[i] = closest.map_or(NO_FEATURE, |c| c.feature.code());
-        }
-        if let Some(column) = &mut self.barycentric {
-            column[i] = closest.map_or([f64::NAN; 3], |c| c.barycentric);
-        }
-        if let Some(column) = &mut self.lower_bound {
-            column[i] = closest.map_or(f64::INFINITY, |c| c.lower_bound);
-        }
-    }
 
+        /// Columns of answers, as NumPy has them.
+        #[derive(Default)]
+        pub(crate) struct $Columns<'a> {
+            $($name: Option<&'a mut [$Value]>,)*
+        }
+
+        impl $Columns<'_> {
+            /// Writes an answer, or that there is none.
+            pub(crate) fn set(&mut self, i: usize, answer: Option<&$Answer>) {
+                $(if let Some(column) = &mut self.$name {
+                    column[i] = answer.map_or($missing, $value);
+                })*
+            }
+
+            /// Writes answers, some of which may be missing, to the first places.
+            pub(crate) fn set_all<'b>(&mut self, answers: impl IntoIterator<Item = Option<&'b $Answer>>) {
+                answers.into_iter().enumerate().for_each(|(i, answer)| self.set(i, answer));
+            }
+        }
+
+        impl $crate::parts::Split for $Columns<'_> {
+            fn split(self, len: usize) -> (Self, Self) {
+                let (mut first, mut second) = (Self::default(), Self::default());
+                $((first.$name, second.$name) = self.$name.split(len);)*
+                (first, second)
+            }
+        }
+    };
+}
+pub(crate) use columns;
+
+/// Defines a class of Python for answers before they are columns. The function returns an answer of the list, if it
+/// is none that is missing.
+macro_rules! answer_list {
+    ($List:ident, $Item:ty, $Arrays:ident, $answer:expr) => {
+        /// Answers, before they are columns.
+        #[pyclass(frozen, module = "p2m._p2m")]
+        pub(crate) struct $List(pub(crate) Vec<$Item>);
+
+        #[pymethods]
+        impl $List {
+            fn __len__(&self) -> usize {
+                self.0.len()
+            }
+
+            /// Writes the columns of the arrays of `out`, which have a place for each answer of the list.
+            fn fill(&self, py: Python<'_>, out: &Bound<'_, pyo3::types::PyDict>) -> PyResult<()> {
+                let mut arrays = $Arrays::borrow(out)?;
+                let mut columns = arrays.columns(self.0.len())?;
+                py.detach(|| columns.set_all(self.0.iter().map($answer)));
+                Ok(())
+            }
+        }
+    };
+}
+pub(crate) use answer_list;
+
+/// The id of a primitive with the point of it that is closest to a query.
+pub(crate) type Near = (i64, Closest<f64>);
+
+columns! { ClosestArrays, ClosestValues, Near, {
+    distance: f64 = f64::INFINITY, |(_, closest)| closest.distance;
+    primitive: i64 = NO_PRIMITIVE, |(id, _)| *id;
+    point: [f64; 3] = [f64::NAN; 3], |(_, closest)| closest.point.coords.into();
+    feature: u8 = NO_FEATURE, |(_, closest)| closest.feature.code();
+    barycentric: [f64; 3] = [f64::NAN; 3], |(_, closest)| closest.barycentric;
+    lower_bound: f64 = f64::INFINITY, |(_, closest)| closest.lower_bound;
+}}
+
+answer_list!(NearList, Near, ClosestArrays, Some);
+
+impl ClosestValues<'_> {
     /// Lets a batch fill the columns.
     ///
     /// Primitives of a batch are u32. They are written to the first half of their column and spread from its end, so no
@@ -151,7 +168,7 @@ impl Columns<'_> {
         };
         columns.lower_bound = lower_bound;
         columns.barycentric = barycentric;
-        columns.point = point;
+        columns.point = point.map(bytemuck::cast_slice_mut);
         columns.feature = features.as_deref_mut();
         columns.primitive = primitive.as_deref_mut().map(|column| {
             let len = column.len();
@@ -180,35 +197,17 @@ fn spread(column: &mut [i64]) {
     }
 }
 
-/// Columns with several places for each query.
-pub(crate) struct Rows<'a> {
-    pub(crate) columns: Columns<'a>,
+/// Places for several answers of each query.
+pub(crate) struct Rows<C> {
+    pub(crate) columns: C,
     /// The number of places for each query.
     pub(crate) width: usize,
 }
 
-impl Split for Rows<'_> {
+impl<C: Split> Split for Rows<C> {
     fn split(self, len: usize) -> (Self, Self) {
-        let (width, at) = (self.width, len * self.width);
-        let (mut first, mut second) = (Columns::default(), Columns::default());
-        let columns = self.columns;
-        (first.distance, second.distance) = halves(columns.distance, at);
-        (first.primitive, second.primitive) = halves(columns.primitive, at);
-        (first.point, second.point) = halves(columns.point, at);
-        (first.feature, second.feature) = halves(columns.feature, at);
-        (first.barycentric, second.barycentric) = halves(columns.barycentric, at);
-        (first.lower_bound, second.lower_bound) = halves(columns.lower_bound, at);
+        let width = self.width;
+        let (first, second) = self.columns.split(len * width);
         (Self { columns: first, width }, Self { columns: second, width })
     }
-}
-
-/// The two parts of a column, if there is one.
-type Halves<'a, T> = (Option<&'a mut [T]>, Option<&'a mut [T]>);
-
-/// Divides a column in two, the first of so many places.
-pub(crate) fn halves<T>(column: Option<&mut [T]>, at: usize) -> Halves<'_, T> {
-    column.map_or((None, None), |column| {
-        let (first, second) = column.split_at_mut(at);
-        (Some(first), Some(second))
-    })
 }

@@ -29,8 +29,6 @@ pub(crate) fn deviation_statistics<'py>(
 /// Returns a page that shows a scan with its deviations from a scene, as HTML. `texts` has the title, the summary and
 /// the unit.
 #[pyfunction]
-#[pyo3(signature = (scan, values, primitives, scene, is_signed, limit, tolerance, is_y_up, texts))]
-#[allow(clippy::too_many_arguments, reason = "the Python layer passes them all")]
 pub(crate) fn deviation_page(
     scan: &Scene,
     values: PyReadonlyArray1<'_, f64>,

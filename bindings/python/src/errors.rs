@@ -1,9 +1,7 @@
 //! Exceptions of Python for the errors of the library.
 
-use p2m_core::BuildError;
 use p2m_core::storage::LoadError;
 use p2m_field::GridError;
-use p2m_field::sign::SignError;
 use p2m_mixed::{ReadError, Reason};
 use p2m_shards::ShardError;
 use pyo3::PyErr;
@@ -16,14 +14,9 @@ pub(crate) fn value_error(error: impl std::fmt::Display) -> PyErr {
     PyValueError::new_err(error.to_string())
 }
 
-/// The exception for a scene or an index that cannot be made.
-pub(crate) fn build_error(error: BuildError) -> PyErr {
-    value_error(error)
-}
-
-/// The exception for signs that a scene does not have.
-pub(crate) fn sign_error(error: SignError) -> PyErr {
-    value_error(error)
+/// The exception for a row that is not finite.
+pub(crate) fn not_finite(name: &str, row: usize) -> PyErr {
+    value_error(format!("{name}: row {row} has a coordinate that is not finite"))
 }
 
 /// The exception for a grid or a field that cannot be made.
@@ -66,8 +59,8 @@ pub(crate) fn load_error(error: &LoadError, name: &str) -> PyErr {
 }
 
 /// The exception for shards that cannot be written, opened or asked, with the name of the file.
-pub(crate) fn shard_error(error: &ShardError) -> PyErr {
-    match error {
+pub(crate) fn shard_error(error: ShardError) -> PyErr {
+    match &error {
         ShardError::Io { file, error } => io_error(error, file),
         ShardError::Load { file, error } => load_error(error, &file.display().to_string()),
         ShardError::Exists { .. } => PyFileExistsError::new_err(format!("{error}: give replace=True to replace it")),

@@ -18,8 +18,6 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 #[pymethods]
 impl Index {
     /// Returns the distances at the points of a grid from the indices `first` on, with x running fastest.
-    #[pyo3(signature = (origin, spacing, first, counts, sign, band, threads, progress))]
-    #[allow(clippy::too_many_arguments, reason = "the Python layer passes them all")]
     fn field<'py>(
         &self,
         py: Python<'py>,

@@ -15,8 +15,6 @@ use std::sync::Arc;
 /// Returns the Hausdorff distance of two scenes, or the one-sided one if there is no index of the first scene, by the
 /// names of its parts; `None` if a scene is empty.
 #[pyfunction]
-#[pyo3(signature = (first, first_index, second, tolerance, max_queries, threads, progress))]
-#[allow(clippy::too_many_arguments, reason = "the Python layer passes them all")]
 pub(crate) fn hausdorff<'py>(
     py: Python<'py>,
     first: &Scene,

@@ -1,12 +1,13 @@
 //! Indexes as objects of Python.
 
-use crate::errors::{build_error, sign_error};
+use crate::errors::value_error;
 use crate::scene::{Scene, SharedScene};
 use crate::signs::{SignRule, Signed};
 use crate::threads::pool;
 use crate::work::{FIRST_STEP_QUERIES, Monitor, Threads, run_batch, run_owned};
 use p2m_backends::{BACKENDS, BackendEntry, BuildSettings, BuiltIndex, KdopDirections, SearchStructure};
-use p2m_core::{AnyIndex, BuildError, PrimitiveSet, Soup};
+use p2m_core::pair::PairQuery;
+use p2m_core::{AnyIndex, BuildError, PrimitiveSet, RayQuery, Soup};
 use p2m_interception::Progress;
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
@@ -83,20 +84,34 @@ impl Index {
     }
 
     /// Runs a batch of so many queries, detached from the interpreter, where [`threads_for`](Self::threads_for) says.
-    pub(crate) fn run<R: Send, E: Send>(
+    pub(crate) fn run<R: Send>(
         &self,
         py: Python<'_>,
         queries: usize,
         threads: usize,
         progress: Option<Py<PyAny>>,
-        work: impl FnOnce(&Threads, &Monitor) -> Result<R, E> + Send,
-    ) -> PyResult<R>
-    where
-        PyErr: From<E>,
-    {
+        work: impl FnOnce(&Threads, &Monitor) -> PyResult<R> + Send,
+    ) -> PyResult<R> {
         let threads = self.threads_for(py, queries, threads)?;
         let monitor = threads.monitor(queries, self.first_step(), progress);
-        run_batch(py, &threads, &monitor, || work(&threads, &monitor))?.map_err(PyErr::from)
+        run_batch(py, &threads, &monitor, || work(&threads, &monitor))?
+    }
+
+    /// Returns the index as one that casts rays, or an error if its backend does not.
+    pub(crate) fn ray_query(&self) -> PyResult<&(dyn RayQuery<f64> + Sync)> {
+        let refused = || self.refused("casts no rays: use", |backend| backend.casts_rays);
+        self.built.index.as_ray_query().ok_or_else(refused)
+    }
+
+    /// Returns the index as one that answers queries for pairs, or an error if its backend does not.
+    pub(crate) fn pair_query(&self) -> PyResult<&(dyn PairQuery<f64> + Sync)> {
+        let refused = || self.refused("answers no queries for pairs: use", |backend| backend.answers_pairs);
+        self.built.index.as_pair_query().ok_or_else(refused)
+    }
+
+    /// Returns the exception for what the backend does not do, with the backends that do it.
+    fn refused(&self, lack: &str, fits: impl Fn(&BackendEntry) -> bool) -> PyErr {
+        value_error(format!("the backend '{}' {lack} {}", self.backend, alternatives(fits)))
     }
 
     /// Returns the signs of a rule, which are prepared by the first call.
@@ -107,7 +122,7 @@ impl Index {
         }
         // Two threads may both prepare the same signs; the lock must not be held while the interpreter is detached.
         let (index, soup) = (self.any(), Arc::clone(&self.scene.soup));
-        let signed = run_owned(py, threads, 1, None, move |_| rule.prepare(&index, &soup))?.map_err(sign_error)?;
+        let signed = run_owned(py, threads, 1, None, move |_| rule.prepare(&index, &soup))?.map_err(value_error)?;
         let signed = Arc::new(signed);
         prepared().insert(rule, Arc::clone(&signed));
         Ok(signed)
@@ -124,7 +139,7 @@ pub(crate) fn backend(name: &str) -> PyResult<&'static BackendEntry> {
 }
 
 /// Returns the names of the backends that fit as a phrase, those without a structure last.
-pub(crate) fn alternatives(fits: impl Fn(&BackendEntry) -> bool) -> String {
+fn alternatives(fits: impl Fn(&BackendEntry) -> bool) -> String {
     let mut fitting: Vec<&BackendEntry> = BACKENDS.iter().filter(|backend| fits(backend)).collect();
     fitting.sort_by_key(|backend| backend.structure == SearchStructure::Exhaustive);
     let names: Vec<String> = fitting.iter().map(|backend| format!("'{backend}'")).collect();
@@ -186,7 +201,7 @@ impl Index {
         let soup = Arc::clone(&scene.shared.soup);
         let built =
             run_owned(py, threads, BUILD_UNITS, progress, move |monitor| build(entry, soup, settings, monitor))?;
-        Ok(Self::new(scene.shared.clone(), built.map_err(build_error)?, entry, None))
+        Ok(Self::new(scene.shared.clone(), built.map_err(value_error)?, entry, None))
     }
 
     /// Returns an index over the same primitives at other positions.
@@ -194,13 +209,10 @@ impl Index {
         let (index, soup) = (self.any(), Arc::clone(&scene.shared.soup));
         let refitted = run_owned(py, threads, 1, None, move |_| index.refitted(soup))?;
         let refused = || {
-            PyValueError::new_err(format!(
-                "the backend '{}' has no refit: build a new index, or use {} for scenes that move",
-                self.backend,
-                alternatives(|backend| backend.has_refit)
-            ))
+            let lack = format!("the backend '{}' has no refit: build a new index, or use", self.backend);
+            value_error(format!("{lack} {} for scenes that move", alternatives(|backend| backend.has_refit)))
         };
-        let index = refitted.ok_or_else(refused)?.map_err(build_error)?;
+        let index = refitted.ok_or_else(refused)?.map_err(value_error)?;
         let built = BuiltIndex { index, ..self.built.clone() };
         Ok(Self::new(scene.shared.clone(), built, self.backend, None))
     }

@@ -6,8 +6,10 @@
 //!
 //! `unsafe` stands in two places, which map saved files and shards where the user asked for it.
 #![deny(unsafe_code)]
+#![allow(clippy::too_many_arguments, reason = "the Python layer passes all arguments of a call")]
 
 mod advise;
+mod arrays;
 mod columns;
 mod contacts;
 mod deviations;
@@ -24,6 +26,7 @@ mod saved;
 mod scene;
 mod sharded;
 mod signs;
+mod source;
 mod threads;
 mod work;
 
@@ -33,28 +36,20 @@ use pyo3::prelude::*;
 #[pymodule]
 mod _p2m {
     #[pymodule_export]
-    use super::advise::advise;
-    #[pymodule_export]
-    use super::deviations::{deviation_page, deviation_ply, deviation_statistics};
-    #[pymodule_export]
-    use super::hausdorff::hausdorff;
-    #[pymodule_export]
-    use super::index::Index;
-    #[pymodule_export]
-    use super::pair_columns::PairList;
-    #[pymodule_export]
-    use super::queries::NearList;
-    #[pymodule_export]
-    use super::rays::HitList;
-    #[pymodule_export]
-    use super::saved::{load, load_bytes};
-    #[pymodule_export]
-    use super::scene::Scene;
-    #[pymodule_export]
-    use super::sharded::{ShardWriter, Shards};
-    #[pymodule_export]
-    use super::threads::default_threads;
-
+    use super::{
+        advise::advise,
+        columns::NearList,
+        deviations::{deviation_page, deviation_ply, deviation_statistics},
+        hausdorff::hausdorff,
+        index::Index,
+        pair_columns::PairList,
+        queries::{closest, is_any_within, k_nearest, within},
+        rays::{HitList, rays},
+        saved::{load, load_bytes},
+        scene::Scene,
+        sharded::{ShardWriter, Shards},
+        threads::default_threads,
+    };
     use p2m_backends::BACKENDS;
     use pyo3::prelude::*;
 

@@ -1,19 +1,15 @@
 //! Queries for pairs: shapes near a scene, and two scenes, one of which may move.
 
-use crate::columns::{borrowed, slice};
-use crate::errors::value_error;
-use crate::index::{Index, alternatives};
+use crate::arrays::{borrowed, motions, slice, triples};
+use crate::index::Index;
 use crate::pair_columns::{PairArrays, PairColumns, PairList};
-use crate::parts::{Split, answer_in_parts};
-use crate::queries::{BadRow, batch_options, check_finite, not_finite};
-use crate::scene::triples;
+use crate::parts::{Split, answer_in_parts, batch_options, check_finite};
 use crate::work::{Monitor, Threads, run_owned};
 use nalgebra::{Isometry3, Point3};
 use numpy::{PyReadonlyArray1, ToPyArray};
 use p2m_core::batch;
-use p2m_core::pair::{ClosestPair, PairOptions, PairQuery, isometry_of_matrix};
+use p2m_core::pair::{ClosestPair, PairOptions, PairQuery};
 use p2m_core::{AnyIndex, Primitive, Shape};
-use pyo3::exceptions::PyTypeError;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 use std::ops::ControlFlow;
@@ -21,14 +17,6 @@ use std::sync::Arc;
 
 /// An index that answers queries for pairs.
 type AnyPairQuery<'a> = &'a (dyn PairQuery<f64> + Sync);
-
-/// Returns the motions of flat matrices.
-pub(crate) fn motions(matrices: &PyReadonlyArray1<'_, f64>) -> PyResult<Vec<Isometry3<f64>>> {
-    match matrices.as_slice().map(<[f64]>::as_chunks) {
-        Ok((matrices, [])) => Ok(matrices.iter().map(|matrix: &[f64; 16]| isometry_of_matrix(matrix)).collect()),
-        _ => Err(PyTypeError::new_err("the transforms are not contiguous matrices of 4 x 4 numbers")),
-    }
-}
 
 /// Two indexes of which the second one may move.
 struct ScenePair {
@@ -93,8 +81,8 @@ impl Shapes<'_> {
         monitor: &Monitor,
         answer: impl Fn(&Shape<f64>) -> A + Sync,
         store: impl Fn(&[A], O) + Sync,
-    ) -> Result<(), BadShape> {
-        check_finite(self.vertices).map_err(|BadRow(row)| BadShape(row / self.width))?;
+    ) -> PyResult<()> {
+        check_finite("shapes", self.vertices, self.width)?;
         let shape = |vertices: &[[f64; 3]]| Shape::from_vertices(vertices).expect("a shape has one to three vertices");
         let centre = |shape: &Shape<f64>| nalgebra::center(&shape.aabb().min, &shape.aabb().max);
         answer_in_parts(self.len(), out, threads, monitor, &|range, out| {
@@ -110,27 +98,7 @@ impl Shapes<'_> {
     }
 }
 
-/// A shape that is not finite.
-struct BadShape(usize);
-
-impl From<BadShape> for PyErr {
-    fn from(BadShape(row): BadShape) -> Self {
-        not_finite("shapes", row)
-    }
-}
-
 impl Index {
-    /// Returns the index as one that answers queries for pairs, or an error if its backend does not.
-    pub(crate) fn pair_query(&self) -> PyResult<AnyPairQuery<'_>> {
-        self.built.index.as_pair_query().ok_or_else(|| {
-            value_error(format!(
-                "the backend '{}' answers no queries for pairs: use {}",
-                self.backend,
-                alternatives(|backend| backend.answers_pairs)
-            ))
-        })
-    }
-
     /// Returns this index with another one and its motions. Both answer queries for pairs.
     fn with_other(
         &self,
@@ -151,9 +119,8 @@ impl Index {
 
 #[pymethods]
 impl Index {
-    /// Finds the nearest points of the scene and of shapes with so many vertices each, for the arrays of `out`.
-    #[pyo3(signature = (shapes, width, out, radius, max_distance, certified, threads, progress))]
-    #[allow(clippy::too_many_arguments, reason = "the Python layer passes them all")]
+    /// Finds the nearest points of the scene and of shapes with so many vertices each, for the arrays of `out`. If
+    /// `is_near` is one of them, it is written alone: whether any primitive is within the largest distance of a shape.
     fn closest_to(
         &self,
         py: Python<'_>,
@@ -169,48 +136,26 @@ impl Index {
         let index = self.pair_query()?;
         let shapes = Shapes { vertices: triples(shapes.as_slice())?, width };
         let options = PairOptions::default().with_radius(radius).with_max_distance(max_distance);
-        let mut arrays = PairArrays::borrow(out)?;
-        let columns = arrays.columns(shapes.len())?;
-        let answer = |shape: &Shape<f64>| {
-            if certified {
-                PairQuery::certified_closest_to(&index, shape, &options)
-            } else {
-                PairQuery::closest_to(&index, shape, &options)
+        let (mut arrays, mut decisions) = (PairArrays::borrow(out)?, borrowed::<bool>(out, "is_near")?);
+        let (columns, is_near) = (arrays.columns(shapes.len())?, slice(&mut decisions)?);
+        self.run(py, shapes.len(), threads, progress, |threads, monitor| match is_near {
+            Some(out) => {
+                let answer = |shape: &Shape<f64>| PairQuery::is_any_near(&index, shape, &options);
+                shapes.answer(out, threads, monitor, answer, |answers, out: &mut [bool]| out.copy_from_slice(answers))
             }
-        };
-        let store = |pairs: &[_], mut columns: PairColumns<'_>| columns.set_all(pairs);
-        let work = |threads: &Threads, monitor: &Monitor| shapes.answer(columns, threads, monitor, answer, store);
-        self.run(py, shapes.len(), threads, progress, work)
-    }
-
-    /// Writes to `out` whether any primitive is within a distance of each shape.
-    #[pyo3(signature = (shapes, width, out, radius, max_distance, threads, progress))]
-    #[allow(clippy::too_many_arguments, reason = "the Python layer passes them all")]
-    fn is_any_near(
-        &self,
-        py: Python<'_>,
-        shapes: PyReadonlyArray1<'_, f64>,
-        width: usize,
-        out: &Bound<'_, PyDict>,
-        radius: f64,
-        max_distance: f64,
-        threads: usize,
-        progress: Option<Py<PyAny>>,
-    ) -> PyResult<()> {
-        let index = self.pair_query()?;
-        let shapes = Shapes { vertices: triples(shapes.as_slice())?, width };
-        let options = PairOptions::default().with_radius(radius).with_max_distance(max_distance);
-        let mut array = borrowed::<bool>(out, "is_near")?;
-        let out = slice(&mut array)?.unwrap_or_default();
-        let answer = |shape: &Shape<f64>| PairQuery::is_any_near(&index, shape, &options);
-        let store = |answers: &[bool], out: &mut [bool]| out.copy_from_slice(answers);
-        let work = |threads: &Threads, monitor: &Monitor| shapes.answer(out, threads, monitor, answer, store);
-        self.run(py, shapes.len(), threads, progress, work)
+            None => {
+                let answer = |shape: &Shape<f64>| match certified {
+                    true => PairQuery::certified_closest_to(&index, shape, &options),
+                    false => PairQuery::closest_to(&index, shape, &options),
+                };
+                shapes.answer(columns, threads, monitor, answer, |pairs, mut columns: PairColumns<'_>| {
+                    columns.set_all(pairs.iter().map(Option::as_ref));
+                })
+            }
+        })
     }
 
     /// Returns the nearest pair of this scene and another one for each motion of the other one, or for none.
-    #[pyo3(signature = (other, transforms, max_distance, certified, threads, progress))]
-    #[allow(clippy::too_many_arguments, reason = "the Python layer passes them all")]
     fn closest_pairs(
         &self,
         py: Python<'_>,
@@ -229,11 +174,10 @@ impl Index {
                 PairQuery::closest_pair(&first, second, options)
             }
         })?;
-        Ok(PairList { list })
+        Ok(PairList(list))
     }
 
     /// Returns whether this scene and another one intersect, for each motion of the other one, or for none.
-    #[pyo3(signature = (other, transforms, threads, progress))]
     fn do_intersect<'py>(
         &self,
         py: Python<'py>,
@@ -251,7 +195,6 @@ impl Index {
 
     /// Returns all pairs of primitives within a distance, nearest first, and of equally near ones that with the lowest
     /// ids. The other scene has at most one motion.
-    #[pyo3(signature = (other, transforms, max_distance, threads))]
     fn pairs_within(
         &self,
         py: Python<'_>,
@@ -270,6 +213,6 @@ impl Index {
             list.sort_by(|a, b| a.distance.total_cmp(&b.distance).then(a.primitives.cmp(&b.primitives)));
             list
         })?;
-        Ok(PairList { list: lists.concat().into_iter().map(Some).collect() })
+        Ok(PairList(lists.concat().into_iter().map(Some).collect()))
     }
 }

@@ -1,6 +1,10 @@
 //! The division of queries of any kind among threads, in parts that are short enough to be watched.
 
+use crate::errors::not_finite;
 use crate::work::{Monitor, Threads};
+use p2m_core::Position;
+use p2m_core::batch::BatchOptions;
+use pyo3::PyResult;
 use std::ops::Range;
 use std::time::Instant;
 
@@ -19,6 +23,19 @@ impl Split for () {
 impl<T: Send> Split for &mut [T] {
     fn split(self, len: usize) -> (Self, Self) {
         self.split_at_mut(len)
+    }
+}
+
+impl<A: Split, B: Split> Split for (A, B) {
+    fn split(self, len: usize) -> (Self, Self) {
+        let ((first, first_other), (second, second_other)) = (self.0.split(len), self.1.split(len));
+        ((first, second), (first_other, second_other))
+    }
+}
+
+impl<A: Split> Split for Option<A> {
+    fn split(self, len: usize) -> (Self, Self) {
+        self.map(|places| places.split(len)).unzip()
     }
 }
 
@@ -70,4 +87,28 @@ fn halve<O: Split, R: Send>(
         || halve(second, second_out, parallel, monitor, answer, &mut others),
     );
     results.append(&mut others);
+}
+
+/// The number of rows that are checked at a time.
+const ROWS_PER_CHECK: usize = 1 << 10;
+
+/// Checks that all coordinates are finite, of which `width` rows are an argument. A block of rows is checked without
+/// branches.
+pub(crate) fn check_finite<P: Position<f64>>(name: &str, points: &[P], width: usize) -> PyResult<()> {
+    let is_finite = |point: &P| point.point().iter().fold(true, |all, x| all & x.is_finite());
+    for (block, rows) in points.chunks(ROWS_PER_CHECK).enumerate() {
+        if !rows.iter().fold(true, |all, row| all & is_finite(row)) {
+            let row = rows.iter().position(|row| !is_finite(row)).unwrap_or(0);
+            return Err(not_finite(name, (block * ROWS_PER_CHECK + row) / width));
+        }
+    }
+    Ok(())
+}
+
+/// The number of queries from which on their order along a curve saves more time than finding it takes.
+const MIN_ORDERED_QUERIES: usize = 256;
+
+/// The options of a batch of so many queries. Parts that were divided already are not divided again.
+pub(crate) fn batch_options(queries: usize, parallel: bool) -> BatchOptions {
+    BatchOptions::default().with_parallel(parallel).with_reorder(queries >= MIN_ORDERED_QUERIES)
 }

@@ -1,6 +1,6 @@
 //! Saving and loading indexes.
 
-use crate::errors::{build_error, io_error, load_error, value_error};
+use crate::errors::{io_error, load_error, value_error};
 use crate::index::{Index, Origin, backend, build};
 use crate::scene::SharedScene;
 use crate::work::{Monitor, run_owned};
@@ -42,7 +42,6 @@ fn load_file(file: &SavedFile) -> Result<Loaded, LoadError> {
 
 /// Loads an index from the file at a path.
 #[pyfunction]
-#[pyo3(signature = (path, map, threads))]
 pub(crate) fn load(py: Python<'_>, path: PathBuf, map: bool, threads: usize) -> PyResult<Index> {
     let name = path.display().to_string();
     let file = path.clone();
@@ -71,7 +70,7 @@ pub(crate) fn load_bytes(py: Python<'_>, bytes: &[u8], backend: &str, threads: u
     let soup = Arc::clone(&scene.soup);
     let work = move |monitor: &Monitor| build(entry, soup, BuildSettings::default(), monitor);
     let built = run_owned(py, threads, 1, None, work)?;
-    Ok(Index::new(scene, built.map_err(build_error)?, entry, None))
+    Ok(Index::new(scene, built.map_err(value_error)?, entry, None))
 }
 
 /// Writes a scene and its index.

@@ -1,7 +1,7 @@
 //! Scenes as objects of Python.
 
-use crate::errors::{build_error, read_error, value_error};
-use crate::pairs::motions;
+use crate::arrays::{Coordinates, motions, triples, with_positions};
+use crate::errors::{read_error, value_error};
 use crate::work::run_owned;
 use nalgebra::Point3;
 use numpy::{PyArray1, PyArray2, PyArrayMethods, PyReadonlyArray1, PyUntypedArrayMethods};
@@ -15,38 +15,6 @@ use std::sync::Arc;
 
 /// A scene that Python objects share. Indexes share its primitives.
 pub(crate) type SharedScene = Arc<p2m_mixed::Scene>;
-
-/// Coordinates in one of the two types that positions may have, three for each.
-#[derive(FromPyObject)]
-pub(crate) enum Coordinates<'py> {
-    F64(PyReadonlyArray1<'py, f64>),
-    F32(PyReadonlyArray1<'py, f32>),
-}
-
-/// Evaluates an expression with the coordinates as a slice of arrays of three, in either type.
-macro_rules! with_positions {
-    ($coordinates:expr, $slice:ident => $body:expr) => {
-        match &$coordinates {
-            $crate::scene::Coordinates::F64(array) => {
-                let $slice: &[[f64; 3]] = $crate::scene::triples(array.as_slice())?;
-                $body
-            }
-            $crate::scene::Coordinates::F32(array) => {
-                let $slice: &[[f32; 3]] = $crate::scene::triples(array.as_slice())?;
-                $body
-            }
-        }
-    };
-}
-pub(crate) use with_positions;
-
-/// Returns a contiguous array as arrays of three.
-pub(crate) fn triples<T, E>(slice: Result<&[T], E>) -> PyResult<&[[T; 3]]> {
-    match slice.map(<[T]>::as_chunks) {
-        Ok((triples, [])) => Ok(triples),
-        _ => Err(PyTypeError::new_err("an array is not contiguous, or its length is not a multiple of three")),
-    }
-}
 
 /// The coordinates and indices of a scene that is not checked yet.
 struct Parts {
@@ -104,7 +72,7 @@ impl Scene {
             segments: segments.to_vec(),
             points: points.as_slice().map_err(contiguous)?.to_vec(),
         };
-        let scene = py.detach(|| parts.soup().map(p2m_mixed::Scene::from)).map_err(build_error)?;
+        let scene = py.detach(|| parts.soup().map(p2m_mixed::Scene::from)).map_err(value_error)?;
         Ok(Self::new(scene))
     }
 
@@ -138,7 +106,7 @@ impl Scene {
             let mut scene = (*self.shared).clone();
             Arc::make_mut(&mut scene.soup).set_positions(positions).map(|()| scene)
         });
-        moved.map(Self::new).map_err(build_error)
+        moved.map(Self::new).map_err(value_error)
     }
 
     /// Returns a scene that a motion has moved, given as a flat matrix of 4 x 4 numbers. Coordinates are rounded.
@@ -150,9 +118,9 @@ impl Scene {
             for motion in motions.iter().map(Motion::new) {
                 soup.map_positions(|position| motion.apply(position.coords.into()).into())?;
             }
-            Ok(scene)
+            Ok::<_, p2m_core::BuildError>(scene)
         });
-        moved.map(Self::new).map_err(build_error)
+        moved.map(Self::new).map_err(value_error)
     }
 
     /// Returns the number of vertices, triangles, segments and points.

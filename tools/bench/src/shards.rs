@@ -159,9 +159,8 @@ pub(crate) fn run(arguments: &Arguments) -> Result<bool> {
     let mut answers = Vec::new();
     for (name, queries) in &sets {
         let index = ShardedIndex::open_with_max_bytes(&folder.path().join("shards"), arguments.max_memory)?;
-        let mut out = vec![None; queries.len()];
         let work = Work::start();
-        index.closest_points_into(queries, &QueryOptions::default(), &mut out)?;
+        let out = index.batch().closest_points(queries, &QueryOptions::default())?;
         let note = format!("{} loads of shards", index.loads());
         table.push(work.row(&format!("ask {name}"), queries.len() as u64, note));
         answers.push(out);

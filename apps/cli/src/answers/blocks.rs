@@ -30,6 +30,11 @@ pub(crate) enum BlockSize {
     Fixed(usize),
 }
 
+impl BlockSize {
+    /// The block size of an index in shards. A block may load every shard, however few queries it has.
+    pub(crate) const OF_SHARDS: Self = Self::Fixed(1 << 18);
+}
+
 /// A stream of points or rays to query with.
 pub(crate) struct QueryStream<I> {
     /// The name of the queries in messages, in the plural.
@@ -38,6 +43,13 @@ pub(crate) struct QueryStream<I> {
     pub(crate) count: u64,
     pub(crate) iter: I,
     pub(crate) block_size: BlockSize,
+}
+
+impl<I: Iterator> QueryStream<I> {
+    /// Returns the rest of the stream.
+    pub(crate) fn by_ref(&mut self) -> QueryStream<&mut I> {
+        QueryStream { name: self.name, count: self.count, iter: &mut self.iter, block_size: self.block_size }
+    }
 }
 
 /// The records of some answers.

@@ -136,13 +136,7 @@ p2m_core::formats! {
 }
 
 pub(crate) fn run(streams: &Streams, args: &Args) -> anyhow::Result<()> {
-    let out_format = args.out_format()?;
-    if is_standard(&args.scan) && is_standard(&args.scene.path) {
-        return Err(usage("the standard input cannot be both the scan and the scene"));
-    }
-    if let Some(out) = &args.out {
-        Output::refuse_inputs(out, &[&args.scan, &args.scene.path])?;
-    }
+    let out_format = args.check()?;
     let scan_format = ScanFormat::of(&args.scan, args.scan_format, "--scan-format")?;
     let format = args.scene.format()?;
     let pool = args.threads.pool()?;
@@ -177,57 +171,22 @@ pub(crate) fn run(streams: &Streams, args: &Args) -> anyhow::Result<()> {
     let query_time = match (&mut output, out_format) {
         (Some(output), Some(DeviationFormat::Csv)) => {
             let encoder = AnswerEncoder::new(AnswerFormat::Csv, &scene.objects, args.columns(&scene));
-            let cannot_write = output.cannot_write();
-            let failed = |error| anyhow::Error::new(error).context(cannot_write.clone());
-            let count = Some(points.len() as u64);
-            let mut table = Table::new(output, encoder.header(), count).map_err(failed)?;
-            let encode = |record: &AnswerRecord<'_>, out: &mut Vec<u8>| encoder.encode(record, out);
-            let write = |count, records: &[u8]| table.write(count, records).map_err(failed);
-            let time = answers.add(streams, &pool, points, encode, write)?;
-            table.finish().map_err(failed)?;
-            time
+            answers.add_to_table(streams, &pool, points, &encoder, output)?
         }
         _ => answers.add(streams, &pool, points, |_, _| (), |_, _| Ok(()))?,
     };
-    let Answers { values, primitives, .. } = answers;
-    let statistics = DeviationStatistics::of(&values);
-    // Where all deviations are 0, any limit gives the same colours.
-    let usual_limit = || Some(statistics.usual_limit()).filter(|limit| *limit > 0.0).unwrap_or(1.0);
-    let limit = args.limit.or(args.tolerance.filter(|tolerance| *tolerance > 0.0)).unwrap_or_else(usual_limit);
-    let found = DeviationReport { args, statistics, outside: args.tolerance.map(|x| outside(&values, x)), limit, rule };
-
-    let mut bytes = 0;
-    if let Some(mut output) = output {
+    let report = DeviationReport::new(args, &answers.values, rule);
+    let bytes = output.map_or(Ok(0), |mut output| {
         match out_format {
-            Some(DeviationFormat::Ply) => {
-                let colours: Vec<[u8; 3]> = values.iter().map(|value| diverging_colour(*value, limit)).collect();
-                let values = VertexValues { name: "deviation", values: &values, colours: &colours };
-                let written = write_ply_with_values(&scan, &values, &mut output);
-                written.with_context(|| output.cannot_write())?;
-            }
+            Some(DeviationFormat::Ply) => report.write_ply(&scan, &answers.values, &mut output)?,
             Some(DeviationFormat::Html) => {
-                let view = args.page.view(&scene, &Deviations::bounds(&scan.soup));
-                let mut view = view.with_deviations(&Deviations {
-                    scan: &scan.soup,
-                    values: &values,
-                    primitives: &primitives,
-                    statistics: &statistics,
-                    is_signed: rule.is_some(),
-                    limit,
-                    tolerance: args.tolerance,
-                });
-                let [scan_name, scene_name] = [&args.scan, &args.scene.path].map(|path| file_name(path));
-                view.title = format!("{scan_name} and {scene_name} in p2m");
-                view.summary = found.summary();
-                let files = format!("scan {}, scene {}", name(&args.scan), args.scene.name());
-                view.about = about(&files, backend.name, rule);
-                output.write_all(view.html()?.as_bytes()).with_context(|| output.cannot_write())?;
+                report.write_page(&scan, &scene, &answers, backend.name, &mut output)?;
             }
             Some(DeviationFormat::Csv) | None => {}
         }
-        bytes = output.bytes();
-        output.finish()?;
-    }
+        let bytes = output.bytes();
+        output.finish().map(|()| bytes)
+    })?;
 
     let summary = SceneSummary::new(args.scene.name(), format, &scene);
     let index =
@@ -244,8 +203,8 @@ pub(crate) fn run(streams: &Streams, args: &Args) -> anyhow::Result<()> {
             "points": points.len(),
             "skipped": json::skipped(&scan.skipped),
         });
-        let report = json::joined([json!({ "scan": scan }), found.report()]);
-        return json::print(streams, &run.json("deviation", report, &out));
+        let answers = json::joined([json!({ "scan": scan }), report.json()]);
+        return json::print(streams, &run.json("deviation", answers, &out));
     }
     streams.print_summary(format_args!("{}", run.text("points", "point", points.len() as u64)));
     if !scan.skipped.is_empty() {
@@ -255,9 +214,7 @@ pub(crate) fn run(streams: &Streams, args: &Args) -> anyhow::Result<()> {
     if let Some(out) = &args.out {
         streams.print_summary(format_args!("written  {}, {bytes} bytes\n", out.display()));
     }
-    let mut output = Output::open(streams, None)?;
-    write!(output, "{}", found.table()).with_context(|| output.cannot_write())?;
-    output.finish()
+    Output::print(streams, report.table())
 }
 
 /// The answers to the points of a scan, and where they come from.
@@ -274,6 +231,25 @@ impl<'a> Answers<'a> {
     /// Starts without answers.
     fn new(index: &'a dyn AnyIndex, signed: Option<&'a SignedIndex<'a>>) -> Self {
         Self { index, signed, values: Vec::new(), primitives: Vec::new() }
+    }
+
+    /// Answers points as [`add`](Self::add) does, and writes their table.
+    fn add_to_table(
+        &mut self,
+        streams: &Streams,
+        pool: &ThreadPool,
+        points: &[Point3<f64>],
+        encoder: &AnswerEncoder<'_>,
+        output: &mut Output<'_>,
+    ) -> anyhow::Result<Duration> {
+        let cannot_write = output.cannot_write();
+        let failed = |error| anyhow::Error::new(error).context(cannot_write.clone());
+        let mut table = Table::new(output, encoder.header(), Some(points.len() as u64)).map_err(failed)?;
+        let encode = |record: &AnswerRecord<'_>, out: &mut Vec<u8>| encoder.encode(record, out);
+        let write = |count, records: &[u8]| table.write(count, records).map_err(failed);
+        let time = self.add(streams, pool, points, encode, write)?;
+        table.finish().map_err(failed)?;
+        Ok(time)
     }
 
     /// Answers points on all threads of a pool, and writes a record of each. Returns the time that the answers took.
@@ -327,9 +303,54 @@ struct DeviationReport<'a> {
     rule: Option<&'static str>,
 }
 
-impl DeviationReport<'_> {
+impl<'a> DeviationReport<'a> {
+    /// Makes the statistics of deviations, to which a rule of signs belongs if there is one.
+    fn new(args: &'a Args, values: &[f64], rule: Option<&'static str>) -> Self {
+        let statistics = DeviationStatistics::of(values);
+        // Where all deviations are 0, any limit gives the same colours.
+        let usual_limit = || Some(statistics.usual_limit()).filter(|limit| *limit > 0.0).unwrap_or(1.0);
+        let limit = args.limit.or(args.tolerance.filter(|tolerance| *tolerance > 0.0)).unwrap_or_else(usual_limit);
+        let outside = args.tolerance.map(|tolerance| outside(values, tolerance));
+        Self { args, statistics, outside, limit, rule }
+    }
+
+    /// Writes the scan with a deviation and a colour for each vertex.
+    fn write_ply(&self, scan: &Scene, values: &[f64], output: &mut Output<'_>) -> anyhow::Result<()> {
+        let colours: Vec<[u8; 3]> = values.iter().map(|value| diverging_colour(*value, self.limit)).collect();
+        let values = VertexValues { name: "deviation", values, colours: &colours };
+        write_ply_with_values(scan, &values, &mut *output).with_context(|| output.cannot_write())
+    }
+
+    /// Writes the page of the scan and the scene.
+    fn write_page(
+        &self,
+        scan: &Scene,
+        scene: &Scene,
+        answers: &Answers<'_>,
+        backend: &str,
+        output: &mut Output<'_>,
+    ) -> anyhow::Result<()> {
+        let args = self.args;
+        let view = args.page.view(scene, &Deviations::bounds(&scan.soup));
+        let mut view = view.with_deviations(&Deviations {
+            scan: &scan.soup,
+            values: &answers.values,
+            primitives: &answers.primitives,
+            statistics: &self.statistics,
+            is_signed: self.rule.is_some(),
+            limit: self.limit,
+            tolerance: args.tolerance,
+        });
+        let [scan_name, scene_name] = [&args.scan, &args.scene.path].map(|path| file_name(path));
+        view.title = format!("{scan_name} and {scene_name} in p2m");
+        view.summary = self.summary();
+        let files = format!("scan {}, scene {}", name(&args.scan), args.scene.name());
+        view.about = about(&files, backend, self.rule);
+        output.write_all(view.html()?.as_bytes()).with_context(|| output.cannot_write())
+    }
+
     /// Returns the part of a report about the deviations.
-    fn report(&self) -> Value {
+    fn json(&self) -> Value {
         let named = self.statistics.named();
         let statistics: serde_json::Map<String, Value> =
             named.into_iter().map(|named| (named.key, json::number(named.value))).collect();
@@ -389,13 +410,20 @@ impl DeviationReport<'_> {
 }
 
 impl Args {
-    /// Returns the format of the file, if there is one.
-    fn out_format(&self) -> anyhow::Result<Option<DeviationFormat>> {
-        let Some(out) = &self.out else { return Ok(None) };
-        if is_standard(out) {
+    /// Refuses combinations of arguments that contradict each other, and returns the format of the file, if there is
+    /// one.
+    fn check(&self) -> anyhow::Result<Option<DeviationFormat>> {
+        if self.out.as_deref().is_some_and(is_standard) {
             return Err(usage("the statistics go to the standard output, so the deviations need a file: --out FILE"));
         }
-        Ok(Some(DeviationFormat::from_path(out)?))
+        let format = self.out.as_deref().map(DeviationFormat::from_path).transpose()?;
+        if is_standard(&self.scan) && is_standard(&self.scene.path) {
+            return Err(usage("the standard input cannot be both the scan and the scene"));
+        }
+        if let Some(out) = &self.out {
+            Output::refuse_inputs(out, &[&self.scan, &self.scene.path])?;
+        }
+        Ok(format)
     }
 
     /// Returns the columns of the table, which are those of `p2m query --signed`.

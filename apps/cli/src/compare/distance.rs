@@ -13,7 +13,6 @@ use p2m_core::Soup;
 use p2m_core::pair::{ClosestPair, PairOptions, PairQuery};
 use p2m_mixed::{Format, Scene};
 use serde_json::{Value, json};
-use std::io::Write as _;
 
 fn help() -> String {
     format!(
@@ -72,9 +71,7 @@ pub(crate) fn run(streams: &Streams, args: &Args) -> anyhow::Result<()> {
     if args.json {
         return json::print(streams, &report(&names, formats, &scenes, found.as_ref(), limit));
     }
-    let mut output = Output::open(streams, None)?;
-    write!(output, "{}", text(&names, &scenes, found.as_ref(), limit)).with_context(|| output.cannot_write())?;
-    output.finish()
+    Output::print(streams, text(&names, &scenes, found.as_ref(), limit))
 }
 
 fn text(names: &[String; 2], scenes: &[Scene; 2], found: Option<&ClosestPair<f64>>, limit: f64) -> String {

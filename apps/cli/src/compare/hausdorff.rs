@@ -15,7 +15,6 @@ use p2m_core::pair::Motion;
 use p2m_field::{Direction, HausdorffDistance, HausdorffOptions, hausdorff_distance, one_sided_hausdorff_distance};
 use p2m_mixed::{Format, Scene};
 use serde_json::{Value, json};
-use std::io::Write as _;
 use std::ops::ControlFlow;
 use std::sync::Arc;
 
@@ -106,9 +105,7 @@ pub(crate) fn run(streams: &Streams, args: &Args) -> anyhow::Result<()> {
     if args.json {
         return json::print(streams, &report(&names, formats, &scenes, &found, tolerance, args.one_sided));
     }
-    let mut output = Output::open(streams, None)?;
-    write!(output, "{}", text(&names, &scenes, &found)).with_context(|| output.cannot_write())?;
-    output.finish()
+    Output::print(streams, text(&names, &scenes, &found))
 }
 
 fn text(names: &[String; 2], scenes: &[Scene; 2], found: &HausdorffDistance<f64>) -> String {

@@ -5,6 +5,7 @@ use crate::io::input::SceneArgs;
 use crate::io::usage::usage;
 use p2m_core::PrimitiveId;
 use p2m_shards::{ShardedIndex, folder_of};
+use serde_json::{Value, json};
 use std::path::{Path, PathBuf};
 use std::time::Duration;
 
@@ -57,6 +58,11 @@ pub(crate) fn summarize(
 pub(crate) fn loads_line(index: &ShardedIndex) -> String {
     let (count, loads) = (index.manifest().shards.len(), index.loads());
     format!("shards   {count}, loaded {loads} {}\n", if loads == 1 { "time" } else { "times" })
+}
+
+/// Returns the part of a report about the shards.
+pub(crate) fn shards_json(index: &ShardedIndex, max_memory: Option<u64>) -> Value {
+    json!({ "count": index.manifest().shards.len(), "loads": index.loads(), "max_memory": max_memory })
 }
 
 /// Refuses options that say how to read a scene or to build an index.

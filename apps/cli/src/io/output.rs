@@ -93,6 +93,17 @@ impl<'a> Output<'a> {
         cannot_write(&self.name)
     }
 
+    /// Writes all of the content to the standard output.
+    pub(crate) fn print(streams: &'a Streams, content: impl AsRef<[u8]>) -> anyhow::Result<()> {
+        Self::open(streams, None)?.finish_with(content)
+    }
+
+    /// Writes content, and completes the output.
+    pub(crate) fn finish_with(mut self, content: impl AsRef<[u8]>) -> anyhow::Result<()> {
+        self.write_all(content.as_ref()).with_context(|| self.cannot_write())?;
+        self.finish()
+    }
+
     /// Completes the output, and gives a file its name.
     pub(crate) fn finish(self) -> anyhow::Result<()> {
         self.sink.finish().with_context(|| cannot_write(&self.name))

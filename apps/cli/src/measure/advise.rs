@@ -12,7 +12,6 @@ use p2m_backends::{Advice, Estimate, QueryRegion, Workload, recommend};
 use p2m_mixed::PointFormat;
 use serde_json::{Value, json};
 use std::fmt::Write as _;
-use std::io::Write;
 use std::path::PathBuf;
 use std::time::Duration;
 
@@ -118,9 +117,7 @@ pub(crate) fn run(streams: &Streams, args: &Args) -> anyhow::Result<()> {
     let mut text = String::new();
     // Writing to a string does not fail.
     let _ = write_table(&mut text, &advice);
-    let mut output = Output::open(streams, None)?;
-    output.write_all(text.as_bytes()).with_context(|| output.cannot_write())?;
-    output.finish()
+    Output::print(streams, text)
 }
 
 fn estimate_json(estimate: &Estimate) -> Value {

@@ -22,7 +22,6 @@ use p2m_mixed::statistics::figure::Count;
 use rayon::prelude::*;
 use serde_json::{Value, json};
 use std::fmt::{self, Write as _};
-use std::io::Write as _;
 use std::path::{Path, PathBuf};
 use std::time::Instant;
 
@@ -146,9 +145,7 @@ pub(crate) fn run(streams: &Streams, args: &Args) -> anyhow::Result<()> {
     // Writing to a string does not fail.
     let _ = index.write(&mut text, None);
     let _ = write!(text, "{stats}");
-    let mut output = Output::open(streams, None)?;
-    output.write_all(text.as_bytes()).with_context(|| output.cannot_write())?;
-    output.finish()
+    Output::print(streams, text)
 }
 
 fn has_extension(path: &Path, extension: &str) -> bool {

@@ -2,7 +2,7 @@
 
 use crate::answers::queries::{Queries, Region};
 use crate::index::backend::{Backend, SceneSource, backends, saved_or_default};
-use crate::index::sign_rule::SignRule;
+use crate::index::sign_rule::{SignRule, SignedIndex};
 use crate::io::input::{SceneArgs, point_format, read_points, read_scene_and_index};
 use crate::io::output::Output;
 use crate::io::progress::{Progress, Unit};
@@ -14,15 +14,15 @@ use crate::page::tree_levels::TreeLevels;
 use crate::scene::info::counted;
 use anyhow::{Context, bail};
 use nalgebra::Point3;
-use p2m_backends::P2mSettings;
+use p2m_backends::{AnyIndex, P2mSettings};
 use p2m_bvh::{AabbTree, PacketTree};
 use p2m_core::{Aabb, Closest, PrimitiveSet, QueryOptions};
 use p2m_field::{FieldOptions, Grid, distances, signed_distances};
-use p2m_mixed::PointFormat;
 use p2m_mixed::statistics::Counts;
-use p2m_page::Level;
+use p2m_mixed::{PointFormat, Scene};
+use p2m_page::{Level, View};
+use rayon::ThreadPool;
 use rayon::prelude::*;
-use std::io::Write as _;
 use std::path::{Path, PathBuf};
 
 const HELP: &str = "\
@@ -133,24 +133,14 @@ const MAX_QUERIES: u64 = 100_000;
 const F32_SIDES: std::ops::Range<f64> = 1e-30..1e30;
 
 pub(crate) fn run(streams: &Streams, args: &Args) -> anyhow::Result<()> {
-    if args.signed.is_some() && args.field.is_none() && args.points.is_none() && args.random.is_none() {
-        return Err(usage("--signed needs --field, --random or --points"));
-    }
-    let inputs: Vec<&Path> = std::iter::once(args.scene.path.as_path()).chain(args.points.as_deref()).collect();
-    Output::refuse_inputs(&args.out, &inputs)?;
+    args.check()?;
     let format = args.scene.format()?;
     let pool = args.threads.pool()?;
     let (scene, saved) = read_scene_and_index(streams, &pool, &args.scene.path, format, args.scene.map)?;
     let bounds = scene.soup.aabb();
     let queries = args.queries(streams, &bounds)?;
-    let resolution = args.field.or(args.lists);
-    let grid = resolution.map(|n| Grid::around(&bounds, n as usize, args.box_scale)).transpose();
-    let grid = grid.with_context(|| args.scene.name())?;
-    let side = if bounds.is_empty() { 0.0 } else { (bounds.max - bounds.min).amax() };
-    if args.field.is_some() && side != 0.0 && !F32_SIDES.contains(&side) {
-        bail!("{}: --field has numbers of f32, which cannot hold lengths of about {side:e}", args.scene.name());
-    }
-    let mut output = Output::open(streams, Some(&args.out))?;
+    let grid = args.grid(&bounds)?;
+    let output = Output::open(streams, Some(&args.out))?;
 
     let saved = saved.as_ref();
     let backend = args.backend.unwrap_or_else(|| saved_or_default(saved));
@@ -160,23 +150,73 @@ pub(crate) fn run(streams: &Streams, args: &Args) -> anyhow::Result<()> {
         return Err(usage(format!("--lists needs an index with lists: {} has none", backend.name)));
     }
     let signed = args.signed.map(|rule| rule.prepare(streams, &*index, &scene.soup)).transpose();
-    let signed = signed.with_context(|| args.scene.name())?;
+    let (signed, rule) = signed.with_context(|| args.scene.name())?.unzip();
+    let found = Found { streams, args, pool: &pool, backend, index: &*index, signed: signed.as_ref() };
+    let mut view = found.view(&scene, queries.as_deref(), grid.as_ref())?;
+    view.about = about(&format!("scene {}", args.scene.name()), backend.name, rule);
+    let page = view.html()?;
+    output.finish_with(&page)?;
+    streams.print_summary(format_args!("{}\nwritten  {}, {} bytes\n", view.summary, args.out.display(), page.len()));
+    Ok(())
+}
 
-    let around = Aabb::from_points(queries.as_deref().unwrap_or_default());
-    let around = grid.as_ref().map_or(around, |grid| {
-        around.union(&Aabb { min: grid.origin(), max: grid.point(grid.counts().map(|n| n - 1)) })
-    });
-    let mut view = args.page.view(&scene, &around);
-    view.title = format!("{} in p2m", file_name(&args.scene.path));
-    let is_empty = scene.soup.is_empty();
-    view.summary = if is_empty { "an empty scene".to_owned() } else { counted(&Counts::of(&scene.soup)) };
-    if let Some(queries) = &queries {
+/// What is found of a scene, to be shown on its page.
+struct Found<'a> {
+    streams: &'a Streams,
+    args: &'a Args,
+    pool: &'a ThreadPool,
+    backend: Backend,
+    index: &'a dyn AnyIndex,
+    signed: Option<&'a SignedIndex<'a>>,
+}
+
+impl Found<'_> {
+    /// Returns the view of a scene with all that the arguments ask for.
+    fn view<'v>(
+        &self,
+        scene: &'v Scene,
+        queries: Option<&[Point3<f64>]>,
+        grid: Option<&Grid>,
+    ) -> anyhow::Result<View<'v>> {
+        let around = Aabb::from_points(queries.unwrap_or_default());
+        let around = grid.map_or(around, |grid| {
+            around.union(&Aabb { min: grid.origin(), max: grid.point(grid.counts().map(|n| n - 1)) })
+        });
+        let args = self.args;
+        let mut view = args.page.view(scene, &around);
+        view.title = format!("{} in p2m", file_name(&args.scene.path));
+        let is_empty = scene.soup.is_empty();
+        view.summary = if is_empty { "an empty scene".to_owned() } else { counted(&Counts::of(&scene.soup)) };
+        if let Some(queries) = queries {
+            view = self.with_answers(view, queries);
+        }
+        if let (Some(grid), Some(_)) = (grid, args.lists) {
+            view = self.with_list_lengths(view, grid);
+        }
+        if let (Some(grid), Some(_)) = (grid, args.field) {
+            view = self.with_field(view, grid)?;
+        }
+        let is_small = scene.soup.len() <= MAX_LIVE_PRIMITIVES;
+        if args.live == Live::Always || (args.live == Live::Auto && is_small) {
+            view = view.with_live_queries();
+        }
+        if args.levels > 0 {
+            let tree = self.pool.install(|| AabbTree::new(&*scene.soup));
+            let tree = tree.with_context(|| args.scene.name())?;
+            view = view.with_levels("Boxes of the AABB tree", &levels(tree.tree(), usize::from(args.levels)));
+        }
+        Ok(view)
+    }
+
+    /// Adds query points and their closest points.
+    fn with_answers<'v>(&self, mut view: View<'v>, queries: &[Point3<f64>]) -> View<'v> {
+        let Self { pool, index, .. } = *self;
         let options = QueryOptions::default();
-        let options = args.max_distance.map_or(options, |limit| options.with_max_distance(limit));
-        let _progress = Progress::start(streams, "answering", None, Unit::None);
+        let options = self.args.max_distance.map_or(options, |limit| options.with_max_distance(limit));
+        let _progress = Progress::start(self.streams, "answering", None, Unit::None);
         let answers: Vec<Option<Closest<f64>>> =
             pool.install(|| queries.par_iter().map(|query| index.closest_point_with(query, &options)).collect());
-        let signs: Option<Vec<f64>> = signed.as_ref().map(|(signed, _)| {
+        let signs: Option<Vec<f64>> = self.signed.map(|signed| {
             let sign = |(query, answer): (&Point3<f64>, &Option<Closest<f64>>)| {
                 let distance = answer.and_then(|answer| signed.with_sign(query, answer).distance());
                 distance.unwrap_or(f64::NAN)
@@ -184,47 +224,37 @@ pub(crate) fn run(streams: &Streams, args: &Args) -> anyhow::Result<()> {
             pool.install(|| queries.par_iter().zip(&answers).map(sign).collect())
         });
         view.summary +=
-            &format!("; {} query points and their closest points, found by {}", queries.len(), backend.name);
-        view = view.with_answers(queries, &answers, signs.as_deref());
+            &format!("; {} query points and their closest points, found by {}", queries.len(), self.backend.name);
+        view.with_answers(queries, &answers, signs.as_deref())
     }
-    if let (Some(grid), Some(_)) = (&grid, args.lists) {
-        let [x, y, z] = grid.counts();
+
+    /// Adds the lengths of the lists at the points of a grid.
+    fn with_list_lengths<'v>(&self, mut view: View<'v>, grid: &Grid) -> View<'v> {
+        let ([x, y, z], index) = (grid.counts(), self.index);
         let length = |number: usize| {
             let point = grid.point([number % x, number / x % y, number / (x * y)]);
             index.list_length(&point).map_or(f32::NAN, |length| length as f32)
         };
-        let lengths: Vec<f32> = pool.install(|| (0..grid.len()).into_par_iter().map(length).collect());
-        view.summary += &format!("; lengths of the lists of {} at {x} x {y} x {z} points", backend.name);
-        view = view.with_list_lengths(grid, &lengths);
+        let lengths: Vec<f32> = self.pool.install(|| (0..grid.len()).into_par_iter().map(length).collect());
+        view.summary += &format!("; lengths of the lists of {} at {x} x {y} x {z} points", self.backend.name);
+        view.with_list_lengths(grid, &lengths)
     }
-    if let (Some(grid), Some(_)) = (&grid, args.field) {
-        let progress = Progress::start(streams, "filling the grid", Some(grid.len() as u64), Unit::Items("points"));
+
+    /// Adds the distances at the points of a grid.
+    fn with_field<'v>(&self, mut view: View<'v>, grid: &Grid) -> anyhow::Result<View<'v>> {
+        let points = Some(grid.len() as u64);
+        let progress = Progress::start(self.streams, "filling the grid", points, Unit::Items("points"));
         let count = |points: usize| progress.add(points as u64);
         let options = FieldOptions::default();
-        let values = pool.install(|| match &signed {
-            Some((signed, _)) => signed_distances(signed, grid, &options, &count),
-            None => distances(&*index, grid, &options, &count),
+        let Self { pool, index, signed, .. } = *self;
+        let values = pool.install(|| match signed {
+            Some(signed) => signed_distances(signed, grid, &options, &count),
+            None => distances(index, grid, &options, &count),
         })?;
         let [x, y, z] = grid.counts();
         view.summary += &format!("; a field of {x} x {y} x {z} points");
-        view = view.with_field(grid, &values);
+        Ok(view.with_field(grid, &values))
     }
-    let is_small = scene.soup.len() <= MAX_LIVE_PRIMITIVES;
-    if args.live == Live::Always || (args.live == Live::Auto && is_small) {
-        view = view.with_live_queries();
-    }
-    if args.levels > 0 {
-        let tree = pool.install(|| AabbTree::new(&*scene.soup));
-        let tree = tree.with_context(|| args.scene.name())?;
-        view = view.with_levels("Boxes of the AABB tree", &levels(tree.tree(), usize::from(args.levels)));
-    }
-    let rule = signed.as_ref().map(|(_, rule)| *rule);
-    view.about = about(&format!("scene {}", args.scene.name()), backend.name, rule);
-    let page = view.html()?;
-    output.write_all(page.as_bytes()).with_context(|| output.cannot_write())?;
-    output.finish()?;
-    streams.print_summary(format_args!("{}\nwritten  {}, {} bytes\n", view.summary, args.out.display(), page.len()));
-    Ok(())
 }
 
 /// Returns the boxes of the first levels.
@@ -239,6 +269,26 @@ fn levels(tree: &PacketTree, count: usize) -> Vec<Level> {
 }
 
 impl Args {
+    /// Refuses combinations of arguments that contradict each other.
+    fn check(&self) -> anyhow::Result<()> {
+        if self.signed.is_some() && self.field.is_none() && self.points.is_none() && self.random.is_none() {
+            return Err(usage("--signed needs --field, --random or --points"));
+        }
+        let inputs: Vec<&Path> = std::iter::once(self.scene.path.as_path()).chain(self.points.as_deref()).collect();
+        Output::refuse_inputs(&self.out, &inputs)
+    }
+
+    /// Returns the grid of distances or of lengths of lists, if there is one. `bounds` is the box of the scene.
+    fn grid(&self, bounds: &Aabb<f64>) -> anyhow::Result<Option<Grid>> {
+        let grid = self.field.or(self.lists).map(|n| Grid::around(bounds, n as usize, self.box_scale)).transpose();
+        let grid = grid.with_context(|| self.scene.name())?;
+        let side = if bounds.is_empty() { 0.0 } else { (bounds.max - bounds.min).amax() };
+        if self.field.is_some() && side != 0.0 && !F32_SIDES.contains(&side) {
+            bail!("{}: --field has numbers of f32, which cannot hold lengths of about {side:e}", self.scene.name());
+        }
+        Ok(grid)
+    }
+
     /// Returns the query points, if there are any to show.
     fn queries(&self, streams: &Streams, bounds: &Aabb<f64>) -> anyhow::Result<Option<Vec<Point3<f64>>>> {
         if let Some(path) = &self.points {

@@ -2,15 +2,19 @@
 
 use crate::answers::blocks::{BlockSize, QueryStream, Steps, answer_all};
 use crate::answers::queries::Queries;
-use crate::answers::summary::AnswerSummary;
+use crate::answers::summary::{AnswerSummary, IndexSummary, RunSummary};
 use crate::answers::table::{AnswerEncoder, AnswerFormat, AnswerRecord, Table};
+use crate::index::shards::{loads_line, shards_json};
+use crate::io::json;
 use crate::io::output::Output;
 use crate::io::streams::Streams;
 use crate::query::args::Args;
 use nalgebra::Point3;
 use p2m_core::Closest;
 use p2m_mixed::Object;
+use p2m_shards::ShardedIndex;
 use rayon::ThreadPool;
+use serde_json::json;
 use std::time::Duration;
 
 /// The closest primitive, if there is one, and the distance with a sign, which is NaN where no signs are asked for.
@@ -28,29 +32,55 @@ pub(crate) trait Source: Sync {
     fn near(&self, queries: &[Point3<f64>]) -> anyhow::Result<Vec<Vec<Closest<f64>>>>;
 }
 
-/// The queries to answer, and the file for their answers.
-pub(crate) struct Task<'a, 's> {
+/// A run that answers queries.
+pub(crate) struct Run<'a> {
     pub(crate) streams: &'a Streams,
     pub(crate) args: &'a Args,
     pub(crate) pool: &'a ThreadPool,
     pub(crate) queries: Queries,
-    pub(crate) output: &'a mut Output<'s>,
+    pub(crate) output: Output<'a>,
     pub(crate) format: AnswerFormat,
     pub(crate) objects: &'a [Object],
+    pub(crate) index: IndexSummary<'a>,
+    /// The shards, if the index is in shards.
+    pub(crate) shards: Option<&'a ShardedIndex>,
 }
 
-impl Task<'_, '_> {
+impl Run<'_> {
+    /// Answers all queries, writes their answers, and prints a summary.
+    pub(crate) fn finish(mut self, source: &impl Source) -> anyhow::Result<()> {
+        let (summary, query_time) = self.answer(source)?;
+        let Self { streams, args, pool, output, format, index, shards, .. } = self;
+        let bytes = output.bytes();
+        output.finish()?;
+        let run = RunSummary { index, threads: pool.current_num_threads(), query_time };
+        if args.query_args.json {
+            let shards = shards.map(|index| {
+                let (signs, closed_checked) = args.signed.map(|_| ("crossings", false)).unzip();
+                let signs = json!({ "signs": signs, "closed_checked": closed_checked });
+                json!({ "shards": json::joined([shards_json(index, args.max_memory), signs]) })
+            });
+            let report = json::joined([shards.unwrap_or_default(), args.report(&summary, &run.index.cells())]);
+            return json::print(streams, &run.json("query", report, &args.query_args.output_json(format, bytes)));
+        }
+        let loads = shards.map_or_else(String::new, loads_line);
+        streams.print_summary(format_args!("{}{loads}{summary}", run.text("queries", "query", summary.queries())));
+        if shards.is_some() && args.signed.is_some() {
+            streams.print_summary(format_args!("note     that the surface is closed was not checked\n"));
+        }
+        Ok(())
+    }
     /// Answers all queries and writes their answers. Returns a summary, and the time that answering took.
-    pub(crate) fn run<S: Source>(self, source: &S) -> anyhow::Result<(AnswerSummary, Duration)> {
+    fn answer<S: Source>(&mut self, source: &S) -> anyhow::Result<(AnswerSummary, Duration)> {
         let cannot_write = self.output.cannot_write();
         let failed = |error| anyhow::Error::new(error).context(cannot_write.clone());
         let has_many = self.args.has_many_answers();
         let encoder = AnswerEncoder::new(self.format, self.objects, self.args.columns(self.format, self.objects));
         // Only with one answer for each query it is known before how many there are.
         let count = Some(self.queries.len()).filter(|_| !has_many);
-        let mut table = Table::new(self.output, encoder.header(), count).map_err(failed)?;
-        let queries =
-            QueryStream { name: "queries", count: self.queries.len(), iter: self.queries, block_size: S::BLOCK_SIZE };
+        let mut table = Table::new(&mut self.output, encoder.header(), count).map_err(failed)?;
+        let (count, iter) = (self.queries.len(), &mut self.queries);
+        let queries = QueryStream { name: "queries", count, iter, block_size: S::BLOCK_SIZE };
         let write = |count, records: &[u8]| table.write(count, records).map_err(failed);
         let mut summary = AnswerSummary::default();
         let time = if has_many {

@@ -105,24 +105,7 @@ pub(crate) struct Args {
 
 pub(crate) fn run(streams: &Streams, args: &Args) -> anyhow::Result<()> {
     let scene_args = &args.index_args.scene;
-    if args.json && is_standard(&args.out) {
-        return Err(usage("--json reports on the standard output, so the field has to go to a file"));
-    }
-    let out_format = args.format()?;
-    Output::refuse_inputs(&args.out, &[&scene_args.path])?;
-    Output::refuse_terminal(streams, &args.out, out_format.name())?;
-    if let Some(slice) = &args.slice {
-        Output::refuse_inputs(slice, &[&scene_args.path])?;
-        if slice == &args.out || is_standard(slice) {
-            return Err(usage("--slice needs a file of its own"));
-        }
-        if !slice.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("png")) {
-            return Err(usage(format!(
-                "--slice {}: the picture is a PNG file, so its name ends in .png",
-                slice.display()
-            )));
-        }
-    }
+    let out_format = args.check(streams)?;
     let format = scene_args.format()?;
     let pool = args.index_args.threads.pool()?;
     let start = Instant::now();
@@ -180,12 +163,8 @@ pub(crate) fn run(streams: &Streams, args: &Args) -> anyhow::Result<()> {
     .with_context(|| output.cannot_write())?;
     let bytes = output.bytes();
     output.finish()?;
-    if let (Some(mut picture), ComputedField::Grid(values)) = (picture, &field) {
-        let (size, pixels) = slice(&grid, values, 2, grid.counts()[2] / 2);
-        let size = size.map(u32::try_from);
-        let [Ok(width), Ok(height)] = size else { return Err(anyhow!("the slice is too large for a picture")) };
-        write_png(&mut picture, [width, height], &pixels)?;
-        picture.finish()?;
+    if let (Some(picture), ComputedField::Grid(values)) = (picture, &field) {
+        draw_slice(&grid, values, picture)?;
     }
 
     let (summary, backend) = (SceneSummary::new(scene_args.name(), format, &scene), backend_name);
@@ -217,6 +196,30 @@ pub(crate) fn run(streams: &Streams, args: &Args) -> anyhow::Result<()> {
 }
 
 impl Args {
+    /// Refuses arguments that cannot be met before any work, and returns the format of the field.
+    fn check(&self, streams: &Streams) -> anyhow::Result<FieldFormat> {
+        let scene = &self.index_args.scene;
+        if self.json && is_standard(&self.out) {
+            return Err(usage("--json reports on the standard output, so the field has to go to a file"));
+        }
+        let out_format = self.format()?;
+        Output::refuse_inputs(&self.out, &[&scene.path])?;
+        Output::refuse_terminal(streams, &self.out, out_format.name())?;
+        if let Some(slice) = &self.slice {
+            Output::refuse_inputs(slice, &[&scene.path])?;
+            if slice == &self.out || is_standard(slice) {
+                return Err(usage("--slice needs a file of its own"));
+            }
+            if !slice.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("png")) {
+                return Err(usage(format!(
+                    "--slice {}: the picture is a PNG file, so its name ends in .png",
+                    slice.display()
+                )));
+            }
+        }
+        Ok(out_format)
+    }
+
     /// Returns the format of the field: the given one, or else that of the extension.
     fn format(&self) -> anyhow::Result<FieldFormat> {
         match self.out_format {
@@ -256,6 +259,15 @@ impl Args {
         };
         Ok(ComputedField::Grid(values))
     }
+}
+
+/// Draws the layer in the middle of a grid.
+fn draw_slice(grid: &Grid, values: &[f32], mut picture: Output<'_>) -> anyhow::Result<()> {
+    let (size, pixels) = slice(grid, values, 2, grid.counts()[2] / 2);
+    let size = size.map(u32::try_from);
+    let [Ok(width), Ok(height)] = size else { return Err(anyhow!("the slice is too large for a picture")) };
+    write_png(&mut picture, [width, height], &pixels)?;
+    picture.finish()
 }
 
 /// The source of distances: lists or an index. An index beside lists decides signs.

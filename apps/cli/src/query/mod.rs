@@ -5,32 +5,33 @@ pub(crate) mod answers;
 mod args;
 pub(crate) mod field;
 mod field_summary;
-mod sharded;
 
 pub(crate) use args::Args;
 
 use crate::answers::blocks::{BlockSize, answer_each};
-use crate::answers::summary::{IndexSummary, RunSummary, SceneSummary};
+use crate::answers::summary::{IndexSummary, SceneSummary};
 use crate::index::backend::{BackendChoice, PreparedIndex, SceneSource};
 use crate::index::kdop_directions::requested;
-use crate::index::shards::shard_folder;
-use crate::index::sign_rule::SignedIndex;
+use crate::index::shards::{open, refuse_options_of_builds, shard_folder, summarize};
+use crate::index::sign_rule::{SignRule, SignedIndex};
 use crate::io::input::read_scene_and_index;
-use crate::io::json;
 use crate::io::output::Output;
 use crate::io::streams::Streams;
-use crate::query::answers::{ClosestAnswer, Source, Task};
+use crate::io::usage::usage;
+use crate::query::answers::{ClosestAnswer, Run, Source};
 use crate::query::args::queries;
 use anyhow::Context;
 use nalgebra::Point3;
 use p2m_backends::{AnyIndex, QueryRegion, Workload};
-use p2m_core::{Closest, PrimitiveSet};
+use p2m_core::{Closest, PrimitiveId, PrimitiveSet};
+use p2m_shards::{ShardClosest, ShardedIndex};
 use rayon::prelude::*;
+use std::path::Path;
 use std::time::Instant;
 
 pub(crate) fn run(streams: &Streams, args: &Args) -> anyhow::Result<()> {
     if let Some(folder) = shard_folder(&args.scene.path, args.max_memory)? {
-        return sharded::run(streams, args, &folder);
+        return run_in_shards(streams, args, &folder);
     }
     let (scene_args, query_args) = (&args.scene, &args.query_args);
     query_args.check(scene_args, args.points.as_deref(), "points")?;
@@ -42,7 +43,7 @@ pub(crate) fn run(streams: &Streams, args: &Args) -> anyhow::Result<()> {
     let (queries, sample) = queries(streams, args, &scene.soup.aabb())?;
     let read_time = start.elapsed();
     // The file is opened before the work, which would be lost if its name were wrong.
-    let mut output = Output::open(streams, Some(&query_args.out))?;
+    let output = Output::open(streams, Some(&query_args.out))?;
 
     let start = Instant::now();
     let saved = saved.as_ref();
@@ -61,22 +62,50 @@ pub(crate) fn run(streams: &Streams, args: &Args) -> anyhow::Result<()> {
     let signed = args.signed.map(|rule| rule.prepare(streams, index, &scene.soup)).transpose();
     let signed = signed.with_context(|| scene_args.name())?.map(|(signed, _)| signed);
     let source = WholeIndex { index, signed: signed.as_ref(), args };
-    let objects = &scene.objects;
-    let task = Task { streams, args, pool: &pool, queries, output: &mut output, format: out_format, objects };
-    let (summary, query_time) = task.run(&source)?;
-    let bytes = output.bytes();
-    output.finish()?;
+    let (summary, backend) = (SceneSummary::new(scene_args.name(), format, &scene), backend.name);
+    let index = IndexSummary { scene: summary, backend, built: Some(&built), is_loaded, read_time, build_time };
+    let (objects, shards) = (&*scene.objects, None);
+    Run { streams, args, pool: &pool, queries, output, format: out_format, objects, index, shards }.finish(&source)
+}
 
-    let (backend, threads) = (backend.name, pool.current_num_threads());
-    let scene = SceneSummary::new(scene_args.name(), format, &scene);
-    let index = IndexSummary { scene, backend, built: Some(&built), is_loaded, read_time, build_time };
-    let run = RunSummary { index, threads, query_time };
-    if query_args.json {
-        let report = args.report(&summary, &run.index.cells());
-        return json::print(streams, &run.json("query", report, &query_args.output_json(out_format, bytes)));
+/// Answers queries by an index in shards, which are loaded as queries need them.
+fn run_in_shards(streams: &Streams, args: &Args, folder: &Path) -> anyhow::Result<()> {
+    let query_args = &args.query_args;
+    query_args.check(&args.scene, args.points.as_deref(), "points")?;
+    args.check()?;
+    let has_options_of_builds = args.backend.is_some() || query_args.k.is_some() || !args.p2m.is_unspecified();
+    refuse_options_of_builds(&args.scene, has_options_of_builds)?;
+    refuse_other_signs(args)?;
+    let format = query_args.format(streams)?;
+    let start = Instant::now();
+    let index = open(folder, args.max_memory, args.scene.map)?;
+    if args.signed.is_some() {
+        // Without points this checks that the scene has an inside.
+        index.batch().is_inside(&[] as &[Point3<f64>])?;
     }
-    streams.print_summary(format_args!("{}{summary}", run.text("queries", "query", summary.queries())));
-    Ok(())
+    let build_time = start.elapsed();
+    let start = Instant::now();
+    let (queries, _) = queries(streams, args, &index.bounds())?;
+    let read_time = start.elapsed();
+    let output = Output::open(streams, Some(&query_args.out))?;
+
+    let (pool, objects) = (query_args.threads.pool()?, index.manifest().objects());
+    let (source, shards) = (Shards { index: &index, args }, Some(&index));
+    let (objects, index) = (&*objects, summarize(args.scene.name(), &index, read_time, build_time));
+    Run { streams, args, pool: &pool, queries, output, format, objects, index, shards }.finish(&source)
+}
+
+/// Refuses rules of signs that shards do not have.
+fn refuse_other_signs(args: &Args) -> anyhow::Result<()> {
+    let (rule, reason) = match args.signed {
+        None | Some(SignRule::Auto) => return Ok(()),
+        Some(SignRule::Closed) => ("closed", "which cannot check that the surface is closed"),
+        Some(SignRule::Winding) => ("winding", "which has no winding numbers"),
+    };
+    Err(usage(format!(
+        "--signed={rule} is not for an index in shards, {reason}: use --signed, which counts crossings of a ray, if you \
+         know that the surface is closed"
+    )))
 }
 
 /// An index over the whole scene, with signs if they are asked for.
@@ -106,4 +135,47 @@ impl Source for WholeIndex<'_> {
         };
         Ok(answer_each(queries, near))
     }
+}
+
+/// An index in shards.
+struct Shards<'a> {
+    index: &'a ShardedIndex,
+    args: &'a Args,
+}
+
+impl Source for Shards<'_> {
+    const BLOCK_SIZE: BlockSize = BlockSize::OF_SHARDS;
+
+    fn closest(&self, queries: &[Point3<f64>]) -> anyhow::Result<Vec<ClosestAnswer>> {
+        let options = self.args.options();
+        let batch = self.index.batch();
+        let answers = match self.args.accuracy.is_certified() {
+            true => batch.certified_closest_points(queries, &options)?,
+            false => batch.closest_points(queries, &options)?,
+        };
+        if self.args.signed.is_none() {
+            return Ok(answers.into_par_iter().map(|answer| (answer.map(in_scene), f64::NAN)).collect());
+        }
+        let are_inside = batch.is_inside(queries)?;
+        let with_sign = |(answer, is_inside): (Option<ShardClosest>, bool)| {
+            let distance = answer.map_or(f64::NAN, |answer| answer.closest.distance);
+            // A point on the surface has the distance 0, which has no sign.
+            (answer.map(in_scene), if is_inside && distance > 0.0 { -distance } else { distance })
+        };
+        Ok(answers.into_par_iter().zip(are_inside).map(with_sign).collect())
+    }
+
+    fn near(&self, queries: &[Point3<f64>]) -> anyhow::Result<Vec<Vec<Closest<f64>>>> {
+        let (k, radius) = self.args.near();
+        let near = self.index.batch().k_nearest(queries, k.unwrap_or(usize::MAX), radius)?;
+        Ok(near.into_par_iter().map(|near| near.into_iter().map(in_scene).collect()).collect())
+    }
+}
+
+/// Returns an answer with the number of the primitive in the whole scene.
+#[allow(clippy::cast_possible_truncation, reason = "a scene has at most 2^30 primitives here")]
+fn in_scene(answer: ShardClosest) -> Closest<f64> {
+    let mut closest = answer.closest;
+    closest.primitive = PrimitiveId::new(answer.id as usize);
+    closest
 }

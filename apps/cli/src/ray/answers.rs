@@ -1,113 +1,131 @@
 //! The loop that answers rays and writes their hits or counts, whichever index they are asked of.
 
 use crate::answers::blocks::{Steps, answer_all};
+use crate::answers::summary::{IndexSummary, RunSummary};
 use crate::answers::table::{AnswerFormat, HitEncoder, NumberEncoder, Table};
+use crate::index::shards::{loads_line, shards_json};
+use crate::io::json;
 use crate::io::output::Output;
 use crate::io::streams::Streams;
-use crate::ray::args::{Mode, Rays};
+use crate::ray::args::{Args, Mode, Rays};
 use crate::ray::summary::RaySummary;
-use p2m_core::{Hit, Ray, RayQuery};
+use p2m_core::{Hit, PrimitiveId, Ray, RayQuery};
 use p2m_mixed::Object;
+use p2m_shards::{ShardBatch, ShardError, ShardHit, ShardedIndex};
 use rayon::ThreadPool;
 use rayon::prelude::*;
+use serde_json::json;
 use std::time::Duration;
 
 /// A source of hits: an index in memory or one in shards.
-pub(crate) trait RaySource: Sync {
-    /// Returns whether a ray hits anything.
-    fn do_intersect(&self, ray: &Ray) -> anyhow::Result<bool>;
-
-    /// Returns some hit.
-    fn any_intersection(&self, ray: &Ray) -> anyhow::Result<Option<Hit>>;
-
-    /// Returns the hit with the least parameter.
-    fn first_intersection(&self, ray: &Ray) -> anyhow::Result<Option<Hit>>;
-
-    /// Returns all hits, by parameter and then by primitive.
-    fn all_intersections(&self, ray: &Ray) -> anyhow::Result<Vec<Hit>>;
-
-    /// Returns the number of hits.
-    fn count(&self, ray: &Ray) -> anyhow::Result<usize>;
-
-    /// Returns the number of crossings of the surface of the triangles.
-    fn crossings(&self, ray: &Ray) -> anyhow::Result<usize>;
+#[derive(Clone, Copy)]
+pub(crate) enum RaySource<'a> {
+    Whole(&'a (dyn RayQuery<f64> + Sync)),
+    Shards(&'a ShardedIndex),
 }
 
-/// An index over the whole scene.
-pub(crate) struct WholeIndex<'a>(pub(crate) &'a (dyn RayQuery<f64> + Sync));
-
-impl RaySource for WholeIndex<'_> {
-    fn do_intersect(&self, ray: &Ray) -> anyhow::Result<bool> {
-        Ok(self.0.do_intersect(ray))
-    }
-
-    fn any_intersection(&self, ray: &Ray) -> anyhow::Result<Option<Hit>> {
-        Ok(self.0.any_intersection(ray))
-    }
-
-    fn first_intersection(&self, ray: &Ray) -> anyhow::Result<Option<Hit>> {
-        Ok(self.0.first_intersection(ray))
-    }
-
-    fn all_intersections(&self, ray: &Ray) -> anyhow::Result<Vec<Hit>> {
-        Ok(self.0.all_intersections(ray))
-    }
-
-    fn count(&self, ray: &Ray) -> anyhow::Result<usize> {
-        Ok(self.0.count(ray))
-    }
-
-    fn crossings(&self, ray: &Ray) -> anyhow::Result<usize> {
-        Ok(self.0.crossings(ray))
+impl<'a> RaySource<'a> {
+    /// Answers rays on all threads of the current pool, by a function of an index and a ray, or by one of shards and
+    /// all rays, whose answers are converted.
+    fn ask<A: Send, B>(
+        self,
+        rays: &[Ray],
+        whole: impl Fn(&dyn RayQuery<f64>, &Ray) -> A + Sync,
+        shards: impl Fn(ShardBatch<'a>, &[Ray]) -> Result<Vec<B>, ShardError>,
+        convert: impl Fn(B) -> A,
+    ) -> anyhow::Result<Vec<A>> {
+        match self {
+            Self::Whole(index) => Ok(rays.par_iter().map(|ray| whole(index, ray)).collect()),
+            Self::Shards(index) => Ok(shards(index.batch(), rays)?.into_iter().map(convert).collect()),
+        }
     }
 }
 
-/// The rays to answer, and the file for their answers.
-pub(crate) struct Task<'a, 's> {
+/// Returns a hit with the number of the primitive in the whole scene.
+#[allow(clippy::cast_possible_truncation, reason = "a scene has at most 2^30 primitives here")]
+fn in_scene(hit: ShardHit) -> Hit {
+    let mut in_scene = hit.hit;
+    in_scene.primitive = PrimitiveId::new(hit.id as usize);
+    in_scene
+}
+
+/// A run that answers rays.
+pub(crate) struct Run<'a> {
     pub(crate) streams: &'a Streams,
+    pub(crate) args: &'a Args,
     pub(crate) pool: &'a ThreadPool,
     pub(crate) rays: Rays<'a>,
-    pub(crate) output: &'a mut Output<'s>,
+    pub(crate) output: Output<'a>,
     pub(crate) format: AnswerFormat,
     pub(crate) objects: &'a [Object],
+    pub(crate) index: IndexSummary<'a>,
 }
 
-impl Task<'_, '_> {
+impl Run<'_> {
+    /// Answers all rays, writes the answers, and prints a summary.
+    pub(crate) fn finish(mut self, source: RaySource<'_>) -> anyhow::Result<()> {
+        let (query_time, summary) = self.answer(source)?;
+        let Self { streams, args, pool, output, format, index, .. } = self;
+        let bytes = output.bytes();
+        output.finish()?;
+        let run = RunSummary { index, threads: pool.current_num_threads(), query_time };
+        let shards = match source {
+            RaySource::Whole(_) => None,
+            RaySource::Shards(index) => Some(index),
+        };
+        if args.query_args.json {
+            let shards = shards.map(|index| json!({ "shards": shards_json(index, args.max_memory) }));
+            let report = json::joined([shards.unwrap_or_default(), args.report(summary.json())]);
+            return json::print(streams, &run.json("ray", report, &args.query_args.output_json(format, bytes)));
+        }
+        let (text, loads) = (run.text("rays", "ray", summary.rays()), shards.map_or_else(String::new, loads_line));
+        streams.print_summary(format_args!("{text}{loads}{summary}"));
+        Ok(())
+    }
     /// Answers all rays and writes the answers. Returns the time that answering took, and a summary.
-    pub(crate) fn run<S: RaySource>(self, source: &S, mode: Mode) -> anyhow::Result<(Duration, RaySummary)> {
+    fn answer(&mut self, source: RaySource<'_>) -> anyhow::Result<(Duration, RaySummary)> {
         let (hits, one_each) = (RaySummary::with_counts("hits"), Some(self.rays.count));
+        let mode = self.args.mode;
         match mode {
-            Mode::Intersects => {
-                self.counts("hit", RaySummary::default(), |ray| Ok(u64::from(source.do_intersect(ray)?)))
+            Mode::Intersects => self.counts("hit", RaySummary::default(), |rays| {
+                source.ask(rays, |index, ray| index.do_intersect(ray).into(), ShardBatch::do_intersect, u64::from)
+            }),
+            Mode::Count => self.counts("count", hits, |rays| {
+                source.ask(rays, |index, ray| index.count(ray) as u64, ShardBatch::count, |count| count as u64)
+            }),
+            Mode::Crossings => self.counts("crossings", RaySummary::with_counts("crossed"), |rays| {
+                source.ask(rays, |index, ray| index.crossings(ray) as u64, ShardBatch::crossings, |count| count as u64)
+            }),
+            Mode::Any | Mode::First => {
+                let hit = |index: &dyn RayQuery<f64>, ray: &_| match mode {
+                    Mode::Any => index.any_intersection(ray),
+                    _ => index.first_intersection(ray),
+                };
+                let hits = |rays: &[_]| source.ask(rays, hit, ShardBatch::first_intersections, |hit| hit.map(in_scene));
+                self.hits(one_each, RaySummary::default(), hits, Option::as_slice)
             }
-            Mode::Count => self.counts("count", hits, |ray| Ok(source.count(ray)? as u64)),
-            Mode::Crossings => {
-                let crossed = RaySummary::with_counts("crossed");
-                self.counts("crossings", crossed, |ray| Ok(source.crossings(ray)? as u64))
+            Mode::All => {
+                let all = |index: &dyn RayQuery<f64>, ray: &_| index.all_intersections(ray);
+                let in_scene = |hits: Vec<_>| hits.into_iter().map(in_scene).collect();
+                let all = |rays: &[_]| source.ask(rays, all, ShardBatch::all_intersections, in_scene);
+                self.hits(None, hits, all, Vec::as_slice)
             }
-            Mode::Any => {
-                self.hits(one_each, RaySummary::default(), |ray| source.any_intersection(ray), Option::as_slice)
-            }
-            Mode::First => {
-                self.hits(one_each, RaySummary::default(), |ray| source.first_intersection(ray), Option::as_slice)
-            }
-            Mode::All => self.hits(None, hits, |ray| source.all_intersections(ray), Vec::as_slice),
         }
     }
 
     /// Writes a count for each ray.
     fn counts(
-        self,
+        &mut self,
         name: &'static str,
         mut summary: RaySummary,
-        count: impl Fn(&Ray) -> anyhow::Result<u64> + Sync,
+        count: impl Fn(&[Ray]) -> anyhow::Result<Vec<u64>> + Sync,
     ) -> anyhow::Result<(Duration, RaySummary)> {
         let cannot_write = self.output.cannot_write();
         let failed = |error| anyhow::Error::new(error).context(cannot_write.clone());
         let encoder = NumberEncoder::new(self.format, name);
-        let mut table = Table::new(self.output, encoder.header(), Some(self.rays.count)).map_err(failed)?;
+        let mut table = Table::new(&mut self.output, encoder.header(), Some(self.rays.count)).map_err(failed)?;
         let steps = Steps {
-            answer: |rays: &[_]| rays.par_iter().map(&count).collect(),
+            answer: count,
             encode: |number, ray: &_, count: &u64, out: &mut _| {
                 encoder.encode(number, ray, *count, out);
                 1
@@ -115,7 +133,7 @@ impl Task<'_, '_> {
             take: |_: &_, count: &u64| summary.add(*count),
             write: |count, records: &[u8]| table.write(count, records).map_err(failed),
         };
-        let time = answer_all(self.streams, self.pool, self.rays, steps)?;
+        let time = answer_all(self.streams, self.pool, self.rays.by_ref(), steps)?;
         table.finish().map_err(failed)?;
         Ok((time, summary))
     }
@@ -123,18 +141,18 @@ impl Task<'_, '_> {
     /// Writes the hits of each ray, which `slice` takes from its answer. `records` is the number of records if each ray
     /// has exactly one; otherwise each hit has one.
     fn hits<A: Send + Sync>(
-        self,
+        &mut self,
         records: Option<u64>,
         mut summary: RaySummary,
-        intersect: impl Fn(&Ray) -> anyhow::Result<A> + Sync,
+        intersect: impl Fn(&[Ray]) -> anyhow::Result<Vec<A>> + Sync,
         slice: fn(&A) -> &[Hit],
     ) -> anyhow::Result<(Duration, RaySummary)> {
         let cannot_write = self.output.cannot_write();
         let failed = |error| anyhow::Error::new(error).context(cannot_write.clone());
         let encoder = HitEncoder::new(self.format, self.objects);
-        let mut table = Table::new(self.output, encoder.header(), records).map_err(failed)?;
+        let mut table = Table::new(&mut self.output, encoder.header(), records).map_err(failed)?;
         let steps = Steps {
-            answer: |rays: &[_]| rays.par_iter().map(&intersect).collect(),
+            answer: intersect,
             encode: |number, ray: &_, answer: &A, out: &mut _| {
                 let hits = slice(answer);
                 if hits.is_empty() && records.is_some() {
@@ -147,7 +165,7 @@ impl Task<'_, '_> {
             take: |_: &_, answer: &A| summary.add_hits(slice(answer)),
             write: |count, records: &[u8]| table.write(count, records).map_err(failed),
         };
-        let time = answer_all(self.streams, self.pool, self.rays, steps)?;
+        let time = answer_all(self.streams, self.pool, self.rays.by_ref(), steps)?;
         table.finish().map_err(failed)?;
         Ok((time, summary))
     }

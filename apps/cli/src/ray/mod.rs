@@ -2,30 +2,30 @@
 
 mod answers;
 mod args;
-mod sharded;
 mod summary;
 
 pub(crate) use args::Args;
 
-use crate::answers::summary::{IndexSummary, RunSummary, SceneSummary};
+use crate::answers::blocks::BlockSize;
+use crate::answers::summary::{IndexSummary, SceneSummary};
 use crate::index::backend::{Backend, PreparedIndex, SceneSource, saved_or_default};
 use crate::index::kdop_directions::requested;
-use crate::index::shards::shard_folder;
+use crate::index::shards::{open, refuse_options_of_builds, shard_folder, summarize};
 use crate::io::input::read_scene_and_index;
-use crate::io::json;
 use crate::io::output::Output;
 use crate::io::streams::Streams;
-use crate::ray::answers::{Task, WholeIndex};
+use crate::ray::answers::{RaySource, Run};
 use crate::ray::args::rays;
 use anyhow::Context;
 use p2m_backends::{BackendEntry, P2mSettings};
 use p2m_core::PrimitiveSet;
 use p2m_core::storage::Reader;
+use std::path::Path;
 use std::time::Instant;
 
 pub(crate) fn run(streams: &Streams, args: &Args) -> anyhow::Result<()> {
     if let Some(folder) = shard_folder(&args.scene.path, args.max_memory)? {
-        return sharded::run(streams, args, &folder);
+        return run_in_shards(streams, args, &folder);
     }
     let (scene_args, query_args) = (&args.scene, &args.query_args);
     args.check()?;
@@ -36,7 +36,7 @@ pub(crate) fn run(streams: &Streams, args: &Args) -> anyhow::Result<()> {
     let rays = rays(streams, args, &scene.soup.aabb())?;
     let read_time = start.elapsed();
     // The file is opened before the work, which would be lost if its name were wrong.
-    let mut output = Output::open(streams, Some(&query_args.out))?;
+    let output = Output::open(streams, Some(&query_args.out))?;
 
     let start = Instant::now();
     let saved = saved.as_ref();
@@ -51,22 +51,29 @@ pub(crate) fn run(streams: &Streams, args: &Args) -> anyhow::Result<()> {
     let build_time = start.elapsed();
 
     let index = built.index.as_ray_query().context("the backend casts no rays")?;
-    let (output_file, objects) = (&mut output, scene.objects.as_slice());
-    let task = Task { streams, pool: &pool, rays, output: output_file, format: out_format, objects };
-    let (query_time, summary) = task.run(&WholeIndex(index), args.mode)?;
-    let bytes = output.bytes();
-    output.finish()?;
+    let (summary, backend) = (SceneSummary::new(scene_args.name(), format, &scene), backend.name);
+    let summary = IndexSummary { scene: summary, backend, built: Some(&built), is_loaded, read_time, build_time };
+    let (objects, index, source) = (scene.objects.as_slice(), summary, RaySource::Whole(index));
+    Run { streams, args, pool: &pool, rays, output, format: out_format, objects, index }.finish(source)
+}
 
-    let (backend, threads) = (backend.name, pool.current_num_threads());
-    let scene = SceneSummary::new(scene_args.name(), format, &scene);
-    let index = IndexSummary { scene, backend, built: Some(&built), is_loaded, read_time, build_time };
-    let run = RunSummary { index, threads, query_time };
-    if query_args.json {
-        let report = args.report(summary.json());
-        return json::print(streams, &run.json("ray", report, &query_args.output_json(out_format, bytes)));
-    }
-    streams.print_summary(format_args!("{}{summary}", run.text("rays", "ray", summary.rays())));
-    Ok(())
+/// Answers rays by an index in shards, which are loaded as rays need them.
+fn run_in_shards(streams: &Streams, args: &Args, folder: &Path) -> anyhow::Result<()> {
+    let query_args = &args.query_args;
+    args.check()?;
+    refuse_options_of_builds(&args.scene, args.backend.is_some() || query_args.k.is_some())?;
+    let format = query_args.format(streams)?;
+    let start = Instant::now();
+    let shards = open(folder, args.max_memory, args.scene.map)?;
+    let build_time = start.elapsed();
+    let start = Instant::now();
+    let mut rays = rays(streams, args, &shards.bounds())?;
+    rays.block_size = BlockSize::OF_SHARDS;
+    let read_time = start.elapsed();
+    let output = Output::open(streams, Some(&query_args.out))?;
+    let (pool, objects) = (query_args.threads.pool()?, shards.manifest().objects());
+    let (objects, index) = (&*objects, summarize(args.scene.name(), &shards, read_time, build_time));
+    Run { streams, args, pool: &pool, rays, output, format, objects, index }.finish(RaySource::Shards(&shards))
 }
 
 /// Returns the backend of a saved index that casts rays, or else the default one.

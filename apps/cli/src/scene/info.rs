@@ -6,13 +6,11 @@ use crate::io::output::Output;
 use crate::io::progress::{Progress, Unit};
 use crate::io::streams::Streams;
 use crate::io::threads::ThreadArgs;
-use anyhow::Context;
 use p2m_mixed::statistics::figure::{Count, Exact, Figure, Share};
 use p2m_mixed::statistics::{Counts, Extremes, ObjectCounts, Statistics, objects};
 use p2m_mixed::{Format, Scene};
 use serde_json::{Value, json};
 use std::fmt::{self, Write as _};
-use std::io::Write as _;
 
 /// Report the content of a scene, and properties that may cause problems
 #[derive(clap::Args)]
@@ -56,10 +54,8 @@ pub(crate) fn run(streams: &Streams, args: &Args) -> anyhow::Result<()> {
     if args.json {
         return json::print(streams, &report(&name, format, index, &scene, &objects, &statistics));
     }
-    let mut output = Output::open(streams, None)?;
-    write!(output, "{}", TextReport { name, format, index, scene: &scene, objects: &objects, statistics: &statistics })
-        .with_context(|| output.cannot_write())?;
-    output.finish()
+    let report = TextReport { name, format, index, scene: &scene, objects: &objects, statistics: &statistics };
+    Output::print(streams, report.to_string())
 }
 
 fn report(

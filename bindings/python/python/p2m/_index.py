@@ -130,13 +130,12 @@ class PointQueries:
         if objects is not None and "primitive" not in columns:
             columns["primitive"] = np.empty(len(objects), np.int64)
         count = thread_count(threads, self._threads)
+        rows = queries.reshape(-1)
         if progress is None:
-            raw = self._raw
-            raw.closest(queries.reshape(-1), columns, largest, error, max_visits, certified, count, None)
+            _p2m.closest(self._raw, rows, columns, largest, error, max_visits, certified, count, None)
         else:
             with callback(progress, "answering", "points") as call:
-                raw = self._raw
-                raw.closest(queries.reshape(-1), columns, largest, error, max_visits, certified, count, call)
+                _p2m.closest(self._raw, rows, columns, largest, error, max_visits, certified, count, call)
         if objects is not None:
             self._fill_objects(columns["primitive"], objects)
         return ClosestPoints(arrays)
@@ -227,7 +226,7 @@ class PointQueries:
         if objects is not None and "primitive" not in columns:
             columns["primitive"] = np.empty(len(objects), np.int64)
         with callback(progress, "answering", "points") as call:
-            self._raw.k_nearest(queries.reshape(-1), int(k), columns, largest, self._count(threads), call)
+            _p2m.k_nearest(self._raw, queries.reshape(-1), int(k), columns, largest, self._count(threads), call)
         if objects is not None:
             self._fill_objects(columns["primitive"], objects)
         return ClosestPoints(arrays)
@@ -270,7 +269,7 @@ class PointQueries:
         rows = queries.reshape(-1)
         splits = np.zeros(len(rows) // 3 + 1, np.int64)
         with callback(progress, "answering", "points") as call:
-            found = self._raw.within(rows, number, splits[1:], self._count(threads), call)
+            found = _p2m.within(self._raw, rows, number, splits[1:], self._count(threads), call)
         np.cumsum(splits, out=splits)
         arrays = outputs(fields, (len(found),), None, FIELDS, ("distance", "primitive"))
         columns = flat(arrays)
@@ -318,7 +317,7 @@ class PointQueries:
         array = one_output(out, "is_within", _BOOL, queries.shape[:-1])
         with callback(progress, "answering", "points") as call:
             columns = {"is_within": array.reshape(-1)}
-            self._raw.is_any_within(queries.reshape(-1), number, columns, self._count(threads), call)
+            _p2m.is_any_within(self._raw, queries.reshape(-1), number, columns, self._count(threads), call)
         return array
 
     @overload
@@ -448,19 +447,20 @@ class PointQueries:
         with callback(progress, "casting", "rays") as call:
             if mode == "first":
                 arrays = outputs(fields, leading, None, HIT_FIELDS, ("t", "primitive"))
-                self._raw.rays(start, step, mode, flat(arrays), t_min, t_max, size, count, call)
+                _p2m.rays(self._raw, start, step, mode, flat(arrays), t_min, t_max, size, count, call)
                 return FirstHits(arrays)
             if mode == "all":
                 outputs(fields, (0,), None, HIT_FIELDS, ("t", "primitive"))
                 splits = np.zeros(number + 1, np.int64)
-                hits = self._raw.rays(start, step, mode, {"value": splits[1:]}, t_min, t_max, size, count, call)
+                counts = {"value": splits[1:]}
+                hits = _p2m.rays(self._raw, start, step, mode, counts, t_min, t_max, size, count, call)
                 np.cumsum(splits, out=splits)
                 assert hits is not None
                 arrays = outputs(fields, (len(hits),), None, HIT_FIELDS, ("t", "primitive"))
                 hits.fill(flat(arrays))
                 return AllHits({"splits": splits, **arrays})
             values: NDArray[Any] = np.empty(number, np.bool_ if mode == "any" else np.int64)
-            self._raw.rays(start, step, mode, {"value": values}, t_min, t_max, size, count, call)
+            _p2m.rays(self._raw, start, step, mode, {"value": values}, t_min, t_max, size, count, call)
             return values.reshape(leading)
 
 
@@ -907,4 +907,4 @@ def advise(
     like = None if points is None else coordinates(points, "points").reshape(-1)
     raw = Scene.of(scene)._raw
     rows = _p2m.advise(raw, int(queries), region, like, max_bytes, max_seconds, thread_count(threads))
-    return [Estimate(**row) for row in rows]
+    return [Estimate(name, *costs, is_measured, even, reason) for name, costs, is_measured, even, reason in rows]

@@ -16,13 +16,18 @@ __all__ = [
     "__version__",
     "advise",
     "backends",
+    "closest",
     "default_threads",
     "deviation_page",
     "deviation_ply",
     "deviation_statistics",
     "hausdorff",
+    "is_any_within",
+    "k_nearest",
     "load",
     "load_bytes",
+    "rays",
+    "within",
 ]
 
 __version__: str
@@ -44,7 +49,7 @@ def advise(
     max_bytes: int | None,
     max_seconds: float | None,
     threads: int,
-) -> list[dict[str, Any]]: ...
+) -> list[tuple[str, tuple[float, float, float, float], bool, float | None, str]]: ...
 def deviation_statistics(values: NDArray[np.float64]) -> dict[str, Any]: ...
 def deviation_page(
     scan: Scene,
@@ -67,6 +72,54 @@ def hausdorff(
     threads: int,
     progress: _Progress,
 ) -> dict[str, Any] | None: ...
+def closest(
+    index: Index | Shards,
+    points: _Coordinates,
+    out: _Arrays,
+    max_distance: float,
+    epsilon: float,
+    max_visits: int | None,
+    certified: bool,
+    threads: int,
+    progress: _Progress,
+) -> None: ...
+def k_nearest(
+    index: Index | Shards,
+    points: _Coordinates,
+    k: int,
+    out: _Arrays,
+    max_distance: float,
+    threads: int,
+    progress: _Progress,
+) -> None: ...
+def within(
+    index: Index | Shards,
+    points: _Coordinates,
+    radius: float,
+    counts: NDArray[np.int64],
+    threads: int,
+    progress: _Progress,
+) -> NearList: ...
+def is_any_within(
+    index: Index | Shards,
+    points: _Coordinates,
+    radius: float,
+    out: _Arrays,
+    threads: int,
+    progress: _Progress,
+) -> None: ...
+def rays(
+    index: Index | Shards,
+    origins: NDArray[np.float64],
+    directions: NDArray[np.float64],
+    mode: str,
+    out: _Arrays,
+    t_min: float,
+    t_max: float,
+    radius: float,
+    threads: int,
+    progress: _Progress,
+) -> HitList | None: ...
 @final
 class Scene:
     def __new__(
@@ -127,42 +180,6 @@ class Index:
     def info(self) -> dict[str, Any]: ...
     def save(self, path: _Path) -> None: ...
     def to_bytes(self) -> bytes: ...
-    def closest(
-        self,
-        points: _Coordinates,
-        out: _Arrays,
-        max_distance: float,
-        epsilon: float,
-        max_visits: int | None,
-        certified: bool,
-        threads: int,
-        progress: _Progress,
-    ) -> None: ...
-    def k_nearest(
-        self,
-        points: _Coordinates,
-        k: int,
-        out: _Arrays,
-        max_distance: float,
-        threads: int,
-        progress: _Progress,
-    ) -> None: ...
-    def within(
-        self,
-        points: _Coordinates,
-        radius: float,
-        counts: NDArray[np.int64],
-        threads: int,
-        progress: _Progress,
-    ) -> NearList: ...
-    def is_any_within(
-        self,
-        points: _Coordinates,
-        radius: float,
-        out: _Arrays,
-        threads: int,
-        progress: _Progress,
-    ) -> None: ...
     def signed_distance(
         self,
         points: _Coordinates,
@@ -173,18 +190,6 @@ class Index:
         threads: int,
         progress: _Progress,
     ) -> None: ...
-    def rays(
-        self,
-        origins: NDArray[np.float64],
-        directions: NDArray[np.float64],
-        mode: str,
-        out: _Arrays,
-        t_min: float,
-        t_max: float,
-        radius: float,
-        threads: int,
-        progress: _Progress,
-    ) -> HitList | None: ...
     def field(
         self,
         origin: tuple[float, float, float],
@@ -204,16 +209,6 @@ class Index:
         radius: float,
         max_distance: float,
         certified: bool,
-        threads: int,
-        progress: _Progress,
-    ) -> None: ...
-    def is_any_near(
-        self,
-        shapes: NDArray[np.float64],
-        width: int,
-        out: _Arrays,
-        radius: float,
-        max_distance: float,
         threads: int,
         progress: _Progress,
     ) -> None: ...
@@ -261,26 +256,6 @@ class Shards:
     def shards(self) -> list[tuple[str, int, int, list[list[float]]]]: ...
     def checksum(self) -> str: ...
     def loads(self) -> int: ...
-    def closest(
-        self,
-        points: _Coordinates,
-        out: _Arrays,
-        max_distance: float,
-        epsilon: float,
-        max_visits: int | None,
-        certified: bool,
-        threads: int,
-        progress: _Progress,
-    ) -> None: ...
-    def k_nearest(
-        self,
-        points: _Coordinates,
-        k: int,
-        out: _Arrays,
-        max_distance: float,
-        threads: int,
-        progress: _Progress,
-    ) -> None: ...
     def nearest_shards(
         self, points: _Coordinates, out: _Arrays, max_distance: float, threads: int
     ) -> None: ...
@@ -296,22 +271,6 @@ class Shards:
         threads: int,
         progress: _Progress,
     ) -> None: ...
-    def within(
-        self,
-        points: _Coordinates,
-        radius: float,
-        counts: NDArray[np.int64],
-        threads: int,
-        progress: _Progress,
-    ) -> NearList: ...
-    def is_any_within(
-        self,
-        points: _Coordinates,
-        radius: float,
-        out: _Arrays,
-        threads: int,
-        progress: _Progress,
-    ) -> None: ...
     def is_inside(
         self,
         points: _Coordinates,
@@ -319,18 +278,6 @@ class Shards:
         threads: int,
         progress: _Progress,
     ) -> None: ...
-    def rays(
-        self,
-        origins: NDArray[np.float64],
-        directions: NDArray[np.float64],
-        mode: str,
-        out: _Arrays,
-        t_min: float,
-        t_max: float,
-        radius: float,
-        threads: int,
-        progress: _Progress,
-    ) -> HitList | None: ...
 
 @final
 class ShardWriter:

@@ -188,7 +188,7 @@ class PairQueries:
         answers: NDArray[np.bool_] = one_output(out, "is_near", _BOOL, (len(array),))
         count = thread_count(threads, self._threads)
         with callback(progress, "answering", "shapes") as call:
-            self._raw.is_any_near(array.reshape(-1), width, {"is_near": answers}, size, largest, count, call)
+            self._raw.closest_to(array.reshape(-1), width, {"is_near": answers}, size, largest, False, count, call)
         return answers
 
     def closest_pair(

@@ -71,10 +71,9 @@ class Shards(PointQueries):
 
     Notes
     -----
-    `closest` answers a batch in parts of 2**20 points, and `k_nearest` in parts of 2**20 answers. A part loads each
-    shard at most twice, so large batches need little memory and few reads of files. `within`, `is_any_within`,
-    `is_inside`, `rays`, the sides of `signed_distance`, and `closest` with `epsilon` or `max_visits` ask each point by
-    itself. They are slow where the shards that they need do not fit into `max_bytes`.
+    A batch is answered in parts: of 2**20 answers, of 2**18 rays, or for `within` of 2**16 points. A part loads each
+    shard at most twice, so large batches need little memory and few reads of files. Only `closest` with `epsilon` or
+    `max_visits` asks each point by itself, which is slow where the shards that it needs do not fit into `max_bytes`.
 
     Objects are pickled as the folder and the checksum of its manifest. A process that unpickles one several times opens
     the folder once (`p2m.clear_opened`).

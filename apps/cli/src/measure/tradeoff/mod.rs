@@ -40,7 +40,6 @@ use p2m_backends::{AnyIndex, BACKENDS, BuildSettings, SearchStructure};
 use p2m_bvh::AabbTree;
 use p2m_core::{CertifiedQuery, PrimitiveSet, Soup};
 use p2m_mixed::{PointFormat, Scene};
-use std::io::Write as _;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
@@ -166,18 +165,13 @@ pub(crate) fn run(streams: &Streams, args: &Args) -> anyhow::Result<()> {
         let effort =
             format!("One thread, one call at a time, {} rounds in turns; one build of each index.", args.rounds);
         let page = Page { provenance: &provenance, effort: &effort, truth: TRUTH, clock, scenes, backends: &backends };
-        save(output, &page.html()?)?;
+        output.finish_with(page.html()?)?;
     }
     if let Some(output) = csv {
-        save(output, &record(&provenance, scenes, args.seed, clock))?;
+        output.finish_with(record(&provenance, scenes, args.seed, clock))?;
     }
     let tables: Vec<String> = figures.sets.iter().map(|set| text::table(set).to_string()).collect();
-    save(Output::open(streams, None)?, &tables.concat())
-}
-
-fn save(mut output: Output<'_>, text: &str) -> anyhow::Result<()> {
-    output.write_all(text.as_bytes()).with_context(|| output.cannot_write())?;
-    output.finish()
+    Output::print(streams, tables.concat())
 }
 
 impl Args {

@@ -2,15 +2,16 @@
 //! whatever memory shards may take; and it answers nothing if the file of a shard is wrong.
 
 use nalgebra::{Point3, Vector3};
-use p2m::scene::{Object, PieceOptions, Scene};
-use p2m::shards::{
-    MANIFEST_FILE, Manifest, ShardClosest, ShardError, ShardHit, ShardOptions, ShardWriter, ShardedIndex,
-};
-use p2m::{
-    AabbTree, BruteForce, CertifiedQuery, Closest, ClosestPoint, Element, Hit, NearQuery, PrimitiveId, PrimitiveSet,
+use p2m_backends::{BACKENDS, BackendEntry};
+use p2m_bvh::AabbTree;
+use p2m_core::{
+    BruteForce, CertifiedQuery, Closest, ClosestPoint, Element, Hit, NearQuery, PrimitiveId, PrimitiveSet,
     QueryOptions, Ray, RayQuery, Soup,
 };
-use p2m_backends::{BACKENDS, BackendEntry};
+use p2m_mixed::{Object, PieceOptions, Scene};
+use p2m_shards::{
+    MANIFEST_FILE, Manifest, ShardClosest, ShardError, ShardHit, ShardOptions, ShardWriter, ShardedIndex,
+};
 use p2m_testkit::scenes::{self, KINDS, LAYOUTS, Layout};
 use p2m_testkit::{amount, cases, rng};
 use rand::{Rng, RngExt};
@@ -80,7 +81,7 @@ fn merged_answers(
     options: &QueryOptions<f64>,
 ) -> Vec<Option<ShardClosest>> {
     let ask = |number: usize, query: &Point3<f64>| {
-        shards.closest_points_in_shard_while(number, &[*query], options, &|_| true).unwrap()[0]
+        shards.batch().closest_points_in_shard(number, &[*query], options).unwrap()[0]
     };
     let answer = |query: &Point3<f64>| {
         let nearest = shards.nearest_shard(query, options.max_distance)?;
@@ -102,10 +103,9 @@ fn check_points(rng: &mut impl Rng, shards: &ShardedIndex, soup: &Soup<f64>, nam
     let beyond = [radius, f64::NAN, -1.0].map(|largest| default.with_max_distance(largest));
     for options in [default].into_iter().chain(beyond) {
         let expected: Vec<_> = points.iter().map(|query| brute.closest_point_with(query, &options)).collect();
-        let mut batch = vec![None; points.len()];
-        shards.closest_points_into(&points, &options, &mut batch).unwrap();
+        let batch = shards.batch().closest_points(&points, &options).unwrap();
         let merged = merged_answers(shards, &points, &options);
-        let all_certified = shards.certified_closest_points(&points, &options).unwrap();
+        let all_certified = shards.batch().certified_closest_points(&points, &options).unwrap();
         let merged: Vec<_> = merged.iter().map(|one| one.as_ref().map(of_shards)).collect();
         let expected_fields: Vec<_> = expected.iter().map(|one| one.as_ref().map(of_index)).collect();
         assert_eq!(merged, expected_fields, "{name}, shard by shard");
@@ -131,7 +131,7 @@ fn check_points(rng: &mut impl Rng, shards: &ShardedIndex, soup: &Soup<f64>, nam
     }
     for k in [0, 1, 3, 100] {
         let bits = |one: &ShardClosest| (of_shards(one), one.closest.lower_bound.to_bits());
-        let batch = shards.all_k_nearest(&points, k, radius * 3.0).unwrap();
+        let batch = shards.batch().k_nearest(&points, k, radius * 3.0).unwrap();
         for (query, batch) in points.iter().zip(batch) {
             let found: Vec<_> = shards.k_nearest(query, k, radius * 3.0).unwrap();
             let [batch, one_by_one] = [&batch, &found].map(|list| list.iter().map(bits).collect::<Vec<_>>());
@@ -145,6 +145,8 @@ fn check_points(rng: &mut impl Rng, shards: &ShardedIndex, soup: &Soup<f64>, nam
             );
         }
     }
+    let one_by_one: Vec<bool> = points.iter().map(|query| brute.is_any_within(query, radius)).collect();
+    assert_eq!(shards.batch().is_any_within(&points, radius).unwrap(), one_by_one, "{name}, any, batch");
     for query in &points {
         let found: Vec<_> = shards.all_within(query, radius).unwrap().iter().map(of_shards).collect();
         let expected: Vec<_> = brute.all_within(query, radius).iter().map(of_index).collect();
@@ -170,6 +172,7 @@ fn check_points(rng: &mut impl Rng, shards: &ShardedIndex, soup: &Soup<f64>, nam
 fn check_rays(rng: &mut impl Rng, shards: &ShardedIndex, soup: &Soup<f64>, name: &str) {
     let brute = BruteForce::new(soup).unwrap();
     let ends = queries(rng, soup, 24);
+    let mut rays = Vec::new();
     for pair in ends.chunks_exact(2) {
         let Ok(ray) = Ray::through(&pair[0], &pair[1]) else { continue };
         let axis = Vector3::from(std::array::from_fn(|k| if k == rng.random_range(0..3) { 1.0 } else { 0.0 }));
@@ -177,8 +180,18 @@ fn check_rays(rng: &mut impl Rng, shards: &ShardedIndex, soup: &Soup<f64>, name:
         let part = ray.with_range(-0.5, rng.random_range(-0.5..2.0)).unwrap();
         for ray in [ray, ray.line(), part, along, part.with_radius(0.05).unwrap()] {
             check_ray(shards, &brute, &ray, name);
+            rays.push(ray);
         }
     }
+    let (batch, each) = (shards.batch(), |index: &dyn Fn(&Ray) -> usize| rays.iter().map(index).collect::<Vec<_>>());
+    let first = rays.iter().map(|ray| shards.first_intersection(ray).unwrap()).collect::<Vec<_>>();
+    assert_eq!(batch.first_intersections(&rays).unwrap(), first, "{name}, batch");
+    let all = rays.iter().map(|ray| shards.all_intersections(ray).unwrap()).collect::<Vec<_>>();
+    assert_eq!(batch.all_intersections(&rays).unwrap(), all, "{name}, batch");
+    assert_eq!(batch.count(&rays).unwrap(), each(&|ray| brute.count(ray)), "{name}, batch");
+    assert_eq!(batch.crossings(&rays).unwrap(), each(&|ray| brute.crossings(ray)), "{name}, batch");
+    let is_hit = rays.iter().map(|ray| brute.do_intersect(ray)).collect::<Vec<_>>();
+    assert_eq!(batch.do_intersect(&rays).unwrap(), is_hit, "{name}, batch");
 }
 
 /// Compares all queries by a ray with those of brute force, and returns the number of hits.
@@ -271,29 +284,28 @@ fn many_queries_of_a_mesh_in_one_batch() {
     assert!(shards.manifest().shards.len() > 4);
     let index = AabbTree::new(&soup).unwrap();
     let points = queries(rng, &soup, amount(200_000, 5_000));
-    let mut found = vec![None; points.len()];
     let shards = ShardedIndex::open_with_max_bytes(folder.path(), 0).unwrap();
-    shards.closest_points_into(&points, &QueryOptions::default(), &mut found).unwrap();
+    let found = shards.batch().closest_points(&points, &QueryOptions::default()).unwrap();
     for (query, found) in points.iter().zip(&found) {
         let expected = index.closest_point(query);
         assert_eq!(found.as_ref().map(of_shards), expected.as_ref().map(of_index), "{query}");
     }
     // Each shard is loaded once for each phase.
     assert!(shards.loads() <= 2 * shards.manifest().shards.len() as u64, "{}", shards.loads());
-    let stopped = shards.closest_points_while(&points, &QueryOptions::default(), &mut found, &|_| false);
+    let stopped = shards.batch().with_proceed(&|_| false).closest_points(&points, &QueryOptions::default());
     assert_eq!(stopped.unwrap_err().to_string(), "the work was cancelled");
 }
 
 #[test]
 fn closed_surfaces_have_an_inside() {
-    let sphere = p2m::scene::generate::ico_sphere(&Default::default()).unwrap();
+    let sphere = p2m_mixed::generate::ico_sphere(&Default::default()).unwrap();
     let rng = &mut rng("inside of shards", 0);
     let folder = tempfile::tempdir().unwrap();
     let shards = write(rng, folder.path(), &sphere, ShardOptions::default().with_max_bytes(20_000));
     assert!(shards.manifest().shards.len() > 2);
     let random_point = |_| Point3::from(std::array::from_fn(|_| rng.random_range(-1.2..1.2)));
     let points: Vec<Point3<f64>> = (0..amount(10_000, 300)).map(random_point).collect();
-    let batch = shards.are_inside(&points).unwrap();
+    let batch = shards.batch().is_inside(&points).unwrap();
     for (query, is_inside) in points.into_iter().zip(batch) {
         assert_eq!(shards.is_inside(&query).unwrap(), is_inside, "{query}");
         let radius = query.coords.norm();
@@ -326,7 +338,7 @@ fn names_and_sources_are_kept() {
     let named: Vec<_> = objects.iter().map(|object| (&*object.name, object.ids.clone())).collect();
     assert_eq!(named, [("a", 0..2), ("b", 2..4)]);
     assert_eq!(shards.manifest().shards.len(), 4);
-    let scene = p2m::scene::read_scene(&folder.path().join(&shards.manifest().shards[3].file)).unwrap();
+    let scene = p2m_mixed::read_scene(&folder.path().join(&shards.manifest().shards[3].file)).unwrap();
     assert_eq!((scene.soup.len(), scene.sources), (1, vec![7]));
 }
 
@@ -340,7 +352,7 @@ fn a_file_in_pieces_has_the_ids_and_objects_of_its_scene() {
     }
     let path = folder.path().join("mixed.obj");
     fs::write(&path, text).unwrap();
-    let scene = p2m::scene::read_scene(&path).unwrap();
+    let scene = p2m_mixed::read_scene(&path).unwrap();
     let first = Soup::new(vec![Point3::new(1e3, 0.0, 0.0)], [Element::Point(0)]).unwrap();
     let options = ShardOptions::default().with_max_bytes(3_000);
     let mut writer = ShardWriter::new(&folder.path().join("small"), options).unwrap();
@@ -378,7 +390,7 @@ fn error_of(folder: &Path) -> String {
 #[test]
 fn a_wrong_file_is_an_error_that_names_it() {
     let rng = &mut rng("wrong shards", 0);
-    let sphere = p2m::scene::generate::ico_sphere(&Default::default()).unwrap();
+    let sphere = p2m_mixed::generate::ico_sphere(&Default::default()).unwrap();
     let options = ShardOptions::default().with_max_bytes(20_000);
     let write = |rng: &mut _, folder: &Path| write(rng, folder, &sphere, options.with_replace(true));
     let [folder, other] = [(); 2].map(|()| tempfile::tempdir().unwrap());
@@ -386,7 +398,7 @@ fn a_wrong_file_is_an_error_that_names_it() {
     write(rng, folder);
     let mut larger = sphere.clone();
     larger.map_positions(|p| p * 2.0).unwrap();
-    super::shards::write(rng, other, &larger, options);
+    crate::write(rng, other, &larger, options);
     let file = folder.join("0-00001.p2m");
     let bytes = fs::read(&file).unwrap();
 
@@ -427,7 +439,7 @@ fn an_index_is_only_replaced_on_purpose_and_unfinished_ones_leave_nothing() {
     let rng = &mut rng("replaced shards", 0);
     let parent = tempfile::tempdir().unwrap();
     let folder = parent.path().join("site");
-    let sphere = p2m::scene::generate::ico_sphere(&Default::default()).unwrap();
+    let sphere = p2m_mixed::generate::ico_sphere(&Default::default()).unwrap();
     let options = ShardOptions::default().with_max_bytes(20_000);
     let mut writer = ShardWriter::new(&folder, options).unwrap();
     writer.add_scene(&sphere.clone().into()).unwrap();
@@ -453,7 +465,7 @@ fn names(folder: &Path) -> Vec<String> {
 fn writer_of_sphere(folder: &Path, replace: bool) -> ShardWriter {
     let options = ShardOptions::default().with_max_bytes(20_000).with_replace(replace);
     let mut writer = ShardWriter::new(folder, options).unwrap();
-    writer.add_scene(&p2m::scene::generate::ico_sphere(&Default::default()).unwrap().into()).unwrap();
+    writer.add_scene(&p2m_mixed::generate::ico_sphere(&Default::default()).unwrap().into()).unwrap();
     writer
 }
 
@@ -534,7 +546,6 @@ fn shards_are_used_while_others_make_room() {
     let shards = ShardedIndex::open_with_max_bytes(folder.path(), 0).unwrap();
     // Approximate queries ask for shards one by one, on all threads at the same time.
     let options = QueryOptions::default().with_epsilon(0.01);
-    let mut answers = vec![None; positions.len()];
-    shards.closest_points_into(&positions, &options, &mut answers).unwrap();
+    let answers = shards.batch().closest_points(&positions, &options).unwrap();
     assert!(answers.iter().all(|answer| answer.is_some_and(|answer| answer.closest.distance == 0.0)));
 }

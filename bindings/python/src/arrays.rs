@@ -1,0 +1,71 @@
+//! Arguments that are arrays of NumPy.
+
+use crate::errors::value_error;
+use nalgebra::Isometry3;
+use numpy::{Element, PyArray1, PyArrayMethods, PyReadonlyArray1, PyReadwriteArray1};
+use p2m_core::pair::isometry_of_matrix;
+use pyo3::exceptions::PyTypeError;
+use pyo3::prelude::*;
+use pyo3::types::PyDict;
+
+/// Borrows an array of a dictionary for writing.
+pub(crate) fn borrowed<'py, T: Element>(
+    arrays: &Bound<'py, PyDict>,
+    name: &str,
+) -> PyResult<Option<PyReadwriteArray1<'py, T>>> {
+    let Some(array) = arrays.get_item(name)? else { return Ok(None) };
+    let array = array.cast_into::<PyArray1<T>>().map_err(|_| PyTypeError::new_err(format!("{name}: wrong array")))?;
+    let borrowed = array.try_readwrite().map_err(|_| {
+        value_error(format!(
+            "out: the array of {name} is read-only, or another array of this call or of a running one \
+                             has parts of its memory"
+        ))
+    })?;
+    Ok(Some(borrowed))
+}
+
+/// Returns an array as a slice.
+pub(crate) fn slice<'a, T: Element>(array: &'a mut Option<PyReadwriteArray1<'_, T>>) -> PyResult<Option<&'a mut [T]>> {
+    let contiguous = |_| PyTypeError::new_err("an array of answers is not contiguous");
+    array.as_mut().map(|array| array.as_slice_mut().map_err(contiguous)).transpose()
+}
+
+/// Coordinates in one of the two types that positions may have, three for each.
+#[derive(FromPyObject)]
+pub(crate) enum Coordinates<'py> {
+    F64(PyReadonlyArray1<'py, f64>),
+    F32(PyReadonlyArray1<'py, f32>),
+}
+
+/// Evaluates an expression with the coordinates as a slice of arrays of three, in either type.
+macro_rules! with_positions {
+    ($coordinates:expr, $slice:ident => $body:expr) => {
+        match &$coordinates {
+            $crate::arrays::Coordinates::F64(array) => {
+                let $slice: &[[f64; 3]] = $crate::arrays::triples(array.as_slice())?;
+                $body
+            }
+            $crate::arrays::Coordinates::F32(array) => {
+                let $slice: &[[f32; 3]] = $crate::arrays::triples(array.as_slice())?;
+                $body
+            }
+        }
+    };
+}
+pub(crate) use with_positions;
+
+/// Returns a contiguous array as arrays of three.
+pub(crate) fn triples<T, E>(slice: Result<&[T], E>) -> PyResult<&[[T; 3]]> {
+    match slice.map(<[T]>::as_chunks) {
+        Ok((triples, [])) => Ok(triples),
+        _ => Err(PyTypeError::new_err("an array is not contiguous, or its length is not a multiple of three")),
+    }
+}
+
+/// Returns the motions of flat matrices.
+pub(crate) fn motions(matrices: &PyReadonlyArray1<'_, f64>) -> PyResult<Vec<Isometry3<f64>>> {
+    match matrices.as_slice().map(<[f64]>::as_chunks) {
+        Ok((matrices, [])) => Ok(matrices.iter().map(|matrix: &[f64; 16]| isometry_of_matrix(matrix)).collect()),
+        _ => Err(PyTypeError::new_err("the transforms are not contiguous matrices of 4 x 4 numbers")),
+    }
+}

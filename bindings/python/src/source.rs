@@ -1,0 +1,76 @@
+//! What answers batches: an index over the whole scene, or one in shards. Both answer queries of all kinds in parts.
+
+use crate::errors::shard_error;
+use crate::index::Index;
+use crate::parts::{Split, answer_in_parts, batch_options};
+use crate::sharded::Shards;
+use nalgebra::Point3;
+use p2m_core::batch;
+use p2m_shards::{ShardBatch, ShardError};
+use pyo3::prelude::*;
+use std::ops::Range;
+
+/// An index of Python.
+#[derive(FromPyObject)]
+pub(crate) enum Source<'py> {
+    Whole(Bound<'py, Index>),
+    Shards(Bound<'py, Shards>),
+}
+
+/// What answers the queries of a part of a batch.
+pub(crate) enum Part<'a> {
+    /// An index, on this thread alone.
+    Whole(&'a Index),
+    /// Shards, on all threads of the current pool.
+    Shards(ShardBatch<'a>),
+}
+
+impl Source<'_> {
+    /// Answers a batch of queries, detached from the interpreter, in parts with the places for their answers, and
+    /// returns the results in the order of the parts. `check` is called first, and `per_part` is the number of queries
+    /// that shards answer at a time.
+    pub(crate) fn answer<O: Split, R: Send>(
+        &self,
+        py: Python<'_>,
+        (queries, per_part): (usize, usize),
+        out: O,
+        (threads, progress): (usize, Option<Py<PyAny>>),
+        check: impl FnOnce() -> PyResult<()> + Send,
+        answer: impl Fn(&Part<'_>, Range<usize>, O) -> PyResult<R> + Send + Sync,
+    ) -> PyResult<Vec<R>> {
+        match self {
+            Self::Whole(index) => {
+                let index = index.get();
+                index.run(py, queries, threads, progress, |threads, monitor| {
+                    check()?;
+                    let part = |range, out| answer(&Part::Whole(index), range, out);
+                    answer_in_parts(queries, out, threads, monitor, &part).into_iter().collect()
+                })
+            }
+            Self::Shards(shards) => {
+                let part = |batch: ShardBatch<'_>, range, out| answer(&Part::Shards(batch), range, out);
+                shards.get().answer(py, (queries, per_part), out, (threads, progress), check, part)
+            }
+        }
+    }
+}
+
+impl Part<'_> {
+    /// Answers queries by a function of an index and a query, or by one of shards and all queries, whose answers are
+    /// converted. `place` returns where a query is.
+    pub(crate) fn ask<Q: Sync, A: Send, B>(
+        &self,
+        queries: &[Q],
+        place: impl Fn(&Q) -> Point3<f64> + Sync,
+        whole: impl Fn(&Index, &Q) -> A + Sync,
+        shards: impl FnOnce(ShardBatch<'_>, &[Q]) -> Result<Vec<B>, ShardError>,
+        convert: impl Fn(B) -> A,
+    ) -> PyResult<Vec<A>> {
+        match *self {
+            Self::Whole(index) => {
+                Ok(batch::map(queries, &batch_options(queries.len(), false), place, |query| whole(index, query)))
+            }
+            Self::Shards(batch) => Ok(shards(batch, queries).map_err(shard_error)?.into_iter().map(convert).collect()),
+        }
+    }
+}

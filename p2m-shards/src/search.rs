@@ -1,0 +1,204 @@
+//! The search for the answer to a query of any kind, by itself or in a batch: shards are asked until no other one can
+//! matter.
+
+use crate::batch::{Proceed, go_on};
+use crate::{Shard, ShardError, ShardedIndex};
+use p2m_core::Aabb;
+use rayon::prelude::*;
+
+/// The state of a query while shards are asked.
+pub(crate) trait Search: Send + Sync + Sized {
+    /// What the query is answered with.
+    type Answer: Send;
+
+    /// Returns the bound of the box of a shard, by which shards are ordered. NaN rules the shard out.
+    fn bound(&self, bounds: &Aabb<f64>) -> f64;
+
+    /// Returns the largest bound of a shard that may still matter, or NaN if none does.
+    fn limit(&self) -> f64;
+
+    /// Asks a shard.
+    fn ask(&mut self, number: usize, shard: &Shard) -> Result<(), ShardError>;
+
+    /// Asks a shard for queries that have asked no other one, on all threads of the current pool.
+    fn ask_first(
+        group: &mut [&mut Self],
+        number: usize,
+        shard: &Shard,
+        proceed: &Proceed<'_>,
+    ) -> Result<(), ShardError> {
+        group.par_iter_mut().try_for_each(|search| {
+            search.ask(number, shard)?;
+            go_on(proceed, 1)
+        })
+    }
+
+    /// Takes from the shard that was asked last what is needed to compare its answer with those of others.
+    fn prepare_for_others(&mut self, _: &Shard) {}
+
+    /// Returns whether the answer depends on the order of the shards, which then has to be that of their bounds.
+    fn depends_on_order(&self) -> bool {
+        false
+    }
+
+    /// Returns the answer.
+    fn finish(self) -> Self::Answer;
+}
+
+/// A search that asks all shards in the same way.
+struct Collecting<Q, F, L, A, E> {
+    query: Q,
+    found: F,
+    bound: fn(&Q, &Aabb<f64>) -> f64,
+    limit: L,
+    ask: A,
+    finish: E,
+}
+
+/// Returns a search that collects what shards find, beginning with `found`: `bound` is [`Search::bound`] of the query,
+/// `limit` is [`Search::limit`] of what was found so far, `ask` adds what a shard finds, and `finish` makes the answer.
+pub(crate) fn collect<Q: Send + Sync, F: Send + Sync, R: Send>(
+    query: Q,
+    found: F,
+    bound: fn(&Q, &Aabb<f64>) -> f64,
+    limit: impl Fn(&F) -> f64 + Send + Sync,
+    ask: impl Fn(&mut F, &Q, usize, &Shard) -> Result<(), ShardError> + Send + Sync,
+    finish: impl Fn(F) -> R + Send + Sync,
+) -> impl Search<Answer = R> {
+    Collecting { query, found, bound, limit, ask, finish }
+}
+
+impl<Q, F, L, A, E, R> Search for Collecting<Q, F, L, A, E>
+where
+    Q: Send + Sync,
+    F: Send + Sync,
+    L: Fn(&F) -> f64 + Send + Sync,
+    A: Fn(&mut F, &Q, usize, &Shard) -> Result<(), ShardError> + Send + Sync,
+    E: Fn(F) -> R + Send + Sync,
+    R: Send,
+{
+    type Answer = R;
+
+    fn bound(&self, bounds: &Aabb<f64>) -> f64 {
+        (self.bound)(&self.query, bounds)
+    }
+
+    fn limit(&self) -> f64 {
+        (self.limit)(&self.found)
+    }
+
+    fn ask(&mut self, number: usize, shard: &Shard) -> Result<(), ShardError> {
+        (self.ask)(&mut self.found, &self.query, number, shard)
+    }
+
+    fn finish(self) -> R {
+        (self.finish)(self.found)
+    }
+}
+
+/// The state of a query of a batch.
+struct Pending<S> {
+    search: S,
+    /// The shard with the least bound, which the first phase asks, or [`NONE`].
+    first: usize,
+    /// The limit of the search.
+    limit: f64,
+}
+
+/// The number that stands for no shard.
+const NONE: usize = usize::MAX;
+
+impl ShardedIndex {
+    /// Asks the shards for one query, in the order of their bounds.
+    ///
+    /// Few shards are asked, so looking for each among all costs less than sorting them.
+    pub(crate) fn answer<S: Search>(&self, mut search: S) -> Result<S::Answer, ShardError> {
+        let mut bounds: Vec<f64> = self.boxes.iter().map(|bounds| search.bound(bounds)).collect();
+        let mut next = least(bounds.iter().copied(), search.limit());
+        while let Some(number) = next {
+            bounds[number] = f64::NAN;
+            let shard = self.shard(number)?;
+            search.ask(number, &shard)?;
+            next = least(bounds.iter().copied(), search.limit());
+            if next.is_some() {
+                search.prepare_for_others(&shard);
+            }
+        }
+        Ok(search.finish())
+    }
+
+    /// Asks the shards for a batch of queries in two phases, each of which loads a shard at most once: each query asks
+    /// the shard with the least bound, and then every other one that may matter.
+    pub(crate) fn answer_all<Q: Sync, S: Search>(
+        &self,
+        queries: &[Q],
+        begin: impl Fn(&Q) -> S + Sync,
+        proceed: &Proceed<'_>,
+    ) -> Result<Vec<S::Answer>, ShardError> {
+        let pending = |query: &Q| {
+            let search = begin(query);
+            let limit = if search.depends_on_order() { f64::NAN } else { search.limit() };
+            let first = least(self.boxes.iter().map(|bounds| search.bound(bounds)), limit).unwrap_or(NONE);
+            Pending { search, first, limit }
+        };
+        let mut all: Vec<Pending<S>> = queries.par_iter().map(pending).collect();
+        self.ask_first(&mut all, proceed)?;
+        // Most queries need no other shard, so those that do are found once.
+        let mut open: Vec<&mut Pending<S>> = all.iter_mut().filter(|one| !one.limit.is_nan()).collect();
+        for (number, bounds) in self.boxes.iter().enumerate() {
+            let is_needed = |one: &&mut &mut Pending<S>| one.first != number && one.search.bound(bounds) <= one.limit;
+            let group: Vec<_> = open.par_iter_mut().filter(is_needed).collect();
+            if group.is_empty() {
+                continue;
+            }
+            let shard = self.shard(number)?;
+            group.into_par_iter().try_for_each(|one| {
+                go_on(proceed, 0)?;
+                one.search.ask(number, &shard)?;
+                one.search.prepare_for_others(&shard);
+                one.limit = one.search.limit();
+                Ok::<(), ShardError>(())
+            })?;
+        }
+        let finish = |Pending { search, .. }: Pending<S>| {
+            if search.depends_on_order() {
+                return self.answer(search).and_then(|answer| go_on(proceed, 1).map(|()| answer));
+            }
+            Ok(search.finish())
+        };
+        all.into_par_iter().map(finish).collect()
+    }
+
+    /// Asks for each query the shard with the least bound. The limits of queries that need no other shard become NaN.
+    fn ask_first<S: Search>(&self, all: &mut [Pending<S>], proceed: &Proceed<'_>) -> Result<(), ShardError> {
+        let mut groups: Vec<Vec<&mut Pending<S>>> = self.boxes.iter().map(|_| Vec::new()).collect();
+        for one in all {
+            if let Some(group) = groups.get_mut(one.first) {
+                group.push(one);
+            } else {
+                one.limit = f64::NAN;
+            }
+        }
+        for (number, mut group) in groups.into_iter().enumerate().filter(|(_, group)| !group.is_empty()) {
+            let shard = self.shard(number)?;
+            let mut searches: Vec<&mut S> = group.iter_mut().map(|one| &mut one.search).collect();
+            S::ask_first(&mut searches, number, &shard, proceed)?;
+            group.into_par_iter().for_each(|one| {
+                let limit = one.search.limit();
+                let mut boxes = self.boxes.iter().enumerate();
+                let needs_others = boxes.any(|(other, bounds)| other != number && one.search.bound(bounds) <= limit);
+                one.limit = if needs_others { limit } else { f64::NAN };
+                if needs_others {
+                    one.search.prepare_for_others(&shard);
+                }
+            });
+        }
+        Ok(())
+    }
+}
+
+/// Returns the place of the least of some bounds that are at most a limit.
+pub(crate) fn least(bounds: impl Iterator<Item = f64>, limit: f64) -> Option<usize> {
+    let within = bounds.enumerate().filter(|(_, bound)| *bound <= limit);
+    within.reduce(|best, next| if next.1 < best.1 { next } else { best }).map(|(number, _)| number)
+}
