@@ -23,7 +23,7 @@ fn main() -> anyhow::Result<()> {
 
     let bounds = p2m::PrimitiveSet::aabb(&scene);
     let (centre, radius) = (nalgebra::center(&bounds.min, &bounds.max), (bounds.max - bounds.min).norm() * 0.6);
-    let sphere = ico_sphere(&IcoSphere { frequency: 30 })?;
+    let sphere = ico_sphere(&IcoSphere { frequency: 10 })?;
     let cloud: Vec<Point3<f64>> = sphere.positions().iter().map(|p| centre + p.coords * radius).collect();
     let answers = wrap(&index, &cloud).context("the scene is empty")?;
 

@@ -12,7 +12,7 @@
 //! use p2m_field::sign::{Signed, SignedDistance};
 //! use p2m_mixed::generate::{IcoSphere, ico_sphere};
 //!
-//! let ball = ico_sphere(&IcoSphere::default()).unwrap();
+//! let ball = ico_sphere(&IcoSphere { frequency: 6 }).unwrap();
 //! let signed = SignedDistance::new(BruteForce::new(&ball).unwrap(), &ball)?;
 //! // The scan is a little larger than the ball.
 //! let scan: Vec<Point3<f64>> = ball.positions().iter().map(|point| point * 1.01).collect();

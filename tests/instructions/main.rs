@@ -10,7 +10,7 @@
 //!   profile, so they are left out, with a message, if those are not the table's. The test fails for a query that takes
 //!   more instructions than the table has, beyond a tolerance, and prints a message for one that takes fewer.
 //!
-//! `CARGO_INCREMENTAL=0 P2M_BLESS=1 cargo test --test instructions` writes the table anew. The table is made for the
+//! `P2M_BLESS=1 cargo test --test instructions` writes the table anew. The table is made for the
 //! profile `test`, which optimises the libraries in which the counted code is compiled, and not this program.
 
 mod callgrind;
@@ -23,7 +23,7 @@ use p2m_testkit::compiled;
 use std::env;
 use std::path::Path;
 use std::process::ExitCode;
-use table::{COLUMNS, RENEWAL, Row, Table, compare, is_incremental, print_rows};
+use table::{COLUMNS, RENEWAL, Row, Table, compare, print_rows};
 use tasks::{Indexes, QUERIES, SCENES, Task, scene};
 
 fn main() -> ExitCode {
@@ -79,10 +79,6 @@ fn count_rows(scene: &str, indexes: Indexes<'_>) -> Vec<Row> {
 /// Measures everything, and compares it with the table or writes the table.
 fn check_table() -> ExitCode {
     let is_renewed = env::var_os("P2M_BLESS").is_some();
-    if is_renewed && is_incremental() {
-        println!("the table is for what is not compiled incrementally: {RENEWAL}");
-        return ExitCode::FAILURE;
-    }
     let mut table = Table::read();
     let compiler = format!("{}, {}, profile test", compiled::RUSTC, compiled::TARGET);
     let mut obstacle = find_obstacle();

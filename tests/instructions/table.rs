@@ -8,16 +8,13 @@ use std::{env, fs};
 /// The fraction by which the instructions of a query may exceed those of the table. The same code takes up to 0.4 %
 /// more or fewer at another address of the stack, and up to 0.2 % after a change of unrelated functions.
 const TOLERANCE: f64 = 0.02;
-/// The tolerance for crates that are compiled incrementally, in smaller parts with less inlining between them. The same
-/// code takes up to 3.8 % more instructions.
-const TOLERANCE_OF_INCREMENTAL: f64 = 0.06;
 /// The columns of figures.
 pub(crate) const COLUMNS: [&str; 5] = ["nodes", "packets", "primitives", "portable", "avx2"];
 /// Whether counters are compared without the tolerance. If the portable instruction set has fused multiply-add, bounds
 /// differ in their last bits from those of the table, and counters may differ.
 const IS_EXACT: bool = cfg!(all(target_arch = "x86_64", not(target_feature = "fma")));
 /// The command that renews the table.
-pub(crate) const RENEWAL: &str = "CARGO_INCREMENTAL=0 P2M_BLESS=1 cargo test --test instructions";
+pub(crate) const RENEWAL: &str = "P2M_BLESS=1 cargo test --test instructions";
 
 /// A row of the table: the figures of a query in columns, some of which may be unknown.
 #[derive(Clone, Debug, PartialEq)]
@@ -84,11 +81,6 @@ impl Table {
     }
 }
 
-/// Returns whether cargo compiles incrementally, as it does unless the environment says otherwise.
-pub(crate) fn is_incremental() -> bool {
-    env::var_os("CARGO_INCREMENTAL").is_none_or(|value| value != "0")
-}
-
 /// The difference of a figure from that of the table, beyond the tolerance.
 enum Change {
     None,
@@ -99,8 +91,7 @@ enum Change {
 impl Change {
     /// Classifies the change of a figure of a column.
     fn of(column: usize, before: f64, now: f64) -> Self {
-        let part = if is_incremental() { TOLERANCE_OF_INCREMENTAL } else { TOLERANCE };
-        let tolerance = if column < COUNTERS && IS_EXACT { 0.0 } else { part * before };
+        let tolerance = if column < COUNTERS && IS_EXACT { 0.0 } else { TOLERANCE * before };
         if now > before + tolerance {
             Self::More
         } else if now < before - tolerance {

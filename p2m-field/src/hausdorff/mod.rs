@@ -197,7 +197,7 @@ pub fn one_sided_hausdorff_distance<T: Real, I: HausdorffIndex<T> + ?Sized>(
 /// use std::ops::ControlFlow;
 ///
 /// // The distance of a convex surface from its translated copy is the length of the translation.
-/// let ball = ico_sphere(&IcoSphere { frequency: 4 })?;
+/// let ball = ico_sphere(&IcoSphere { frequency: 2 })?;
 /// let mut moved = ball.clone();
 /// moved.map_positions(|p| p + Vector3::new(0.3, 0.0, 0.4))?;
 /// let [a, b] = [BruteForce::new(&ball)?, BruteForce::new(&moved)?];
