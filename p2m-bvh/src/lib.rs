@@ -20,7 +20,7 @@
 //! ```
 //!
 //! The modules build on each other in this order: `packet` has the leaves, `tree` the nodes and the tree itself,
-//! `traverse` the searches, and `build` splits primitives top-down by a [`SplitRule`] into a binary tree and
+//! `traverse` the searches, and `construct` splits primitives top-down by a [`SplitRule`] into a binary tree and
 //! merges its nodes. The k-DOP tree (crate p2m-kdop) and the interception indexes (crate p2m-interception) consist
 //! of the same parts.
 #![forbid(unsafe_code)]
@@ -29,6 +29,8 @@ mod construct;
 mod index;
 mod packet;
 mod pairs;
+#[cfg(test)]
+mod tests;
 mod traverse;
 mod tree;
 mod volume;

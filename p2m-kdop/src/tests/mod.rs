@@ -1,4 +1,5 @@
-//! Tests of parts of this crate that are not public, with the scenes and the oracle of p2m-testkit.
+//! Tests with the scenes and the oracle of p2m-testkit.
 
 mod lower_bound;
 mod ray_entries;
+mod tree;

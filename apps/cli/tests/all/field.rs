@@ -16,7 +16,7 @@ fn backends_and_threads_give_the_same_field() {
     let folder = TempDir::new().unwrap();
     let field = |name: &str, more: &[&str]| {
         let out = path(&folder, name);
-        table(&[&["field", SCENE, "--resolution", "16", "--out", &out], more].concat());
+        table(&[&["field", SCENE, "--resolution", "20", "--out", &out], more].concat());
         fs::read(out).unwrap()
     };
     let expected = field("brute.raw", &["--backend", "brute"]);
@@ -28,7 +28,7 @@ fn backends_and_threads_give_the_same_field() {
     assert!(field("auto.raw", &["--backend", "auto"]) == expected);
     let report = |more: &[&str]| {
         let out = path(&folder, "reported.raw");
-        json(&[&["field", SCENE, "--resolution", "16", "--json", "--out", &out], more].concat())["backend"].clone()
+        json(&[&["field", SCENE, "--resolution", "20", "--json", "--out", &out], more].concat())["backend"].clone()
     };
     assert_eq!([report(&[]), report(&["--backend", "aabb"])], ["lists", "aabb"]);
     let vti = String::from_utf8(field("whole.vti", &[])).unwrap();
@@ -37,7 +37,7 @@ fn backends_and_threads_give_the_same_field() {
     assert_eq!(data[8..], expected);
     assert!(field("named", &["--out-format", "npy"]).ends_with(&expected));
     let band = path(&folder, "band.raw");
-    table(&["field", SCENE, "--resolution", "16", "--band", "0.1", "--out", &band]);
+    table(&["field", SCENE, "--resolution", "20", "--band", "0.1", "--out", &band]);
     let whole = path(&folder, "brute.raw");
     assert!(values(&band).iter().zip(values(&whole)).all(|(b, w)| *b == w.min(0.1)));
 }
@@ -97,7 +97,7 @@ fn cells_are_finer_for_smaller_errors() {
 fn the_summary_tells_the_grid() {
     let folder = TempDir::new().unwrap();
     let out = path(&folder, "f.npy");
-    let output = p2m(&["field", SCENE, "--resolution", "16", "--threads", "1", "--out", &out]);
+    let output = p2m(&["field", SCENE, "--resolution", "20", "--threads", "1", "--out", &out]);
     let summary = text(&output.stderr);
     for part in
         ["field    ", " points, ", "filled   in ", "on 1 thread: ", "ns per point", "distance min ", "written  "]

@@ -1,8 +1,8 @@
 //! Tests packets and wide nodes: every instruction set, other collectors, moved sets, batches, and the work of queries.
 #![allow(clippy::float_cmp, reason = "bitwise equality is what is tested")]
 
+use crate::{AabbTree, SplitOptions};
 use nalgebra::{Point3, Vector3};
-use p2m_bvh::{AabbTree, SplitOptions};
 use p2m_core::{Best, Collector, StatsCollector};
 use p2m_core::{
     BruteForce, BuildError, BuildIndex, Closest, ClosestPoint, Point, Primitive, PrimitiveId, PrimitiveSet,

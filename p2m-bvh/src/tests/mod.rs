@@ -1,0 +1,4 @@
+//! Tests with the scenes and the oracle of p2m-testkit.
+
+mod boxes;
+mod packets;
