@@ -50,6 +50,8 @@ mod options;
 mod parallel_chunks;
 mod partition;
 mod progress;
+#[cfg(test)]
+mod tests;
 mod voronoi;
 
 #[cfg(feature = "paper")]

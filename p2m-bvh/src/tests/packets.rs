@@ -169,8 +169,7 @@ fn trees_of_every_shape_are_built() {
     for max_leaf in [0, 1, 2, 3, 4, 8, 16, 17, 100, 1000, usize::MAX] {
         for (layout, len) in [(Layout::Strewn, 300), (Layout::Sheet, 70), (Layout::Strewn, 5)] {
             let soup = scenes::soup(&mut rng, Kinds::Mixed, layout, len);
-            let mut options = SplitOptions::default();
-            options.max_leaf = max_leaf;
+            let options = SplitOptions { max_leaf, ..SplitOptions::default() };
             let tree = AabbTree::build(&soup, &options).expect("valid");
             let brute = BruteForce::new(&soup).expect("valid");
             for _ in 0..50 {

@@ -14,7 +14,6 @@ pub mod depth;
 pub mod enclosure;
 pub mod extremes;
 pub mod families;
-pub mod interception_check;
 mod line_and_primitive;
 pub mod line_filter;
 mod models;

@@ -1,12 +1,13 @@
 //! Checks that primitives left out of lists are never the answer, and that added sites change no answer. In the scenes
 //! many primitives share a vertex or an edge, coincide, have vertices that nearly coincide, or are equally far from the
 //! middle of a round shape.
+use super::agreement;
+use crate::P2mReport;
+use crate::{P2mIndex, P2mOptions};
 use nalgebra::{Point3, Vector3};
 use p2m_core::{BuildIndex, Element, PrimitiveSet, Real, Soup};
-use p2m_interception::P2mReport;
-use p2m_interception::{P2mIndex, P2mOptions};
 use p2m_testkit::scenes::narrow;
-use p2m_testkit::{amount, cases, interception_check, rng, vector};
+use p2m_testkit::{amount, cases, rng, vector};
 
 /// The random numbers of a case of a test.
 struct Numbers(Box<dyn FnMut() -> Vector3<f64>>);
@@ -45,7 +46,7 @@ impl Numbers {
 fn agrees<T: Real>(name: &str, soup: &Soup<T>, options: &P2mOptions, queries: &[Point3<T>]) -> P2mReport {
     let index = P2mIndex::build(soup, options).expect("valid");
     let report = index.report();
-    interception_check::agrees(name, soup, index, queries);
+    agreement::agrees(name, soup, index, queries);
     report
 }
 

@@ -2,18 +2,19 @@
 //! the work of queries. `agreement` compares its answers with brute force on random scenes.
 #![allow(clippy::float_cmp, reason = "bitwise equality is what is tested")]
 
+use super::agreement;
+use crate::{BuildStage, Partition, Progress};
+use crate::{P2mIndex, P2mOptions};
 use nalgebra::{Point3, Vector3};
 use p2m_core::Projection;
 use p2m_core::StatsCollector;
 use p2m_core::{
     Aabb, BruteForce, BuildIndex, Closest, ClosestPoint, Point, Primitive, PrimitiveSet, Segment, Shape, Soup, Triangle,
 };
-use p2m_interception::{BuildStage, Partition, Progress};
-use p2m_interception::{P2mIndex, P2mOptions};
 use p2m_testkit::ball::Ball;
 use p2m_testkit::near_check::compared_fields;
 use p2m_testkit::scenes::{self, Kinds, Layout, kinds_and_layout};
-use p2m_testkit::{amount, cases, interception_check, rng, vector};
+use p2m_testkit::{amount, cases, rng, vector};
 use rand::{Rng, RngExt};
 use std::sync::Mutex;
 
@@ -23,7 +24,7 @@ fn built<S: PrimitiveSet<f64> + Sync>(set: S) -> P2mIndex<f64, S> {
 
 /// Compares the default index of a set with brute force.
 fn agrees<S: PrimitiveSet<f64> + Sync + Copy>(name: &str, set: S, queries: &[Point3<f64>]) {
-    interception_check::agrees(name, set, built(set), queries);
+    agreement::agrees(name, set, built(set), queries);
 }
 
 /// Returns queries on, near and between vertices, around, far from and beyond the domain of a scene of about size 1.
