@@ -2,6 +2,7 @@
 //!
 //! A [`View`] collects what a page shows. [`View::html`] puts it as JSON into a template with a script
 //! (`assets/viewer.js`, made of the folder `web`), which draws it with three.js.
+#![forbid(unsafe_code)]
 
 mod colours;
 mod decimate;
