@@ -239,7 +239,7 @@ def test_progress_is_told(threads: int) -> None:
     for ask in [
         lambda call: index.closest(points, threads=threads, progress=call),
         lambda call: index.k_nearest(points, 2, threads=threads, progress=call),
-        lambda call: p2m.Index(p2m.Scene(*sphere(50, 100)), "octree", threads=threads, progress=call),
+        lambda call: p2m.Index(p2m.Scene(*sphere(200, 400)), "octree", threads=threads, progress=call),
     ]:
         seen: list[tuple[int, int]] = []
         ask(lambda done, total: seen.append((done, total)))

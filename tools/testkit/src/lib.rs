@@ -9,6 +9,7 @@ pub mod adversaries;
 pub mod ball;
 pub mod compiled;
 pub mod contract;
+#[cfg(feature = "counted")]
 pub mod counted_queries;
 pub mod depth;
 pub mod enclosure;

@@ -12,7 +12,7 @@ use std::process::Command;
 
 const TARGET: &str = "wasm32-unknown-unknown";
 /// All features of the facade that concern what is searched and how. Threads do not exist on the target.
-const FEATURES: &str = "backends,bvh,field,instances,interception,kdop,scene,shards";
+const FEATURES: &str = "p2m/backends,p2m/bvh,p2m/field,p2m/instances,p2m/interception,p2m/kdop,p2m/scene,p2m/shards";
 
 /// The crate of the module, and the sources that give its functions to the script of pages.
 const MODULE: &str = "p2m-live";
@@ -39,9 +39,8 @@ pub(crate) fn run(arguments: &[String]) -> Outcome {
     match Compiler::find()? {
         Ok(compiler) if builds => build(&compiler),
         Ok(compiler) => {
-            let library = ["check", "--locked", "--package", "p2m", "--no-default-features", "--features", FEATURES];
-            start(&mut compiler.cargo(&library, "std,panic_abort"))?;
-            start(&mut compiler.cargo(&["check", "--locked", "--package", MODULE], "std,panic_abort"))
+            let packages = ["check", "--locked", "--package", "p2m", "--package", MODULE, "--no-default-features"];
+            start(compiler.cargo(&packages, "std,panic_abort").args(["--features", FEATURES]))
         }
         Err(why) => {
             let message = format!("there is no compiler for {TARGET} (rustup target add {TARGET}): {why}");
