@@ -25,8 +25,8 @@ pub(crate) fn run() -> Outcome {
         println!("\n== skipped: there is no Chromium for the tests of pages: {why}");
         return Ok(());
     }
-    // With the features of `cargo test --workspace`, little is compiled after the other tests.
-    cargo(&["build", "--locked", "--workspace", "--bin", "p2m"], &[])?;
+    // With the features of `cargo test --workspace` and of `cargo xtask python`, nothing is compiled anew after them.
+    cargo(&["build", "--locked", "--workspace", "--lib", "--examples", "--bin", "p2m"], &[])?;
     start(npm(&["test"]).env("P2M", debug_program()?))
 }
 
