@@ -10,7 +10,7 @@ use crate::tree::PacketTree;
 use crate::tree::wide_node::VolumeNodes;
 use nalgebra::Point3;
 use p2m_core::engine::pairs::PairSide;
-use p2m_core::engine::query::BestF64;
+use p2m_core::engine::query::{BestF64, CountedMinimum};
 use p2m_core::engine::ray::RayCandidates;
 use p2m_core::engine::real::to_f64_array;
 use p2m_core::engine::vector::V3;
@@ -49,6 +49,15 @@ pub trait Volume: VolumeNodes {
         walkers: &mut InterleavedTraversal<Self>,
         several: &mut InterleavedSearch<'_, Self>,
         count: usize,
+    );
+
+    /// Searches for the nearest primitive, and counts the work.
+    #[doc(hidden)]
+    fn counted<'c>(
+        tree: &PacketTree<Self>,
+        query: V3,
+        counted: &mut CountedMinimum<'c>,
+        evaluate: EvaluateFn<'_, CountedMinimum<'c>>,
     );
 
     /// Searches for the primitives near a point.
@@ -93,6 +102,15 @@ impl Volume for Aabb<f64> {
         count: usize,
     ) {
         walkers.search(tree, several, count);
+    }
+
+    fn counted<'c>(
+        tree: &PacketTree,
+        query: V3,
+        counted: &mut CountedMinimum<'c>,
+        evaluate: EvaluateFn<'_, CountedMinimum<'c>>,
+    ) {
+        tree.run(query, counted, evaluate, finish);
     }
 
     fn near<'n>(tree: &PacketTree, query: V3, near: &mut Near<'n>, evaluate: EvaluateFn<'_, Near<'n>>) {

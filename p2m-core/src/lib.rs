@@ -115,6 +115,7 @@ pub mod engine {
     /// The collector that searches are compiled for.
     pub mod query {
         pub use crate::query::BestF64;
+        pub use crate::stats_collector::CountedMinimum;
     }
     /// Exact projection onto rays, and the margin of ray filters.
     pub mod ray {

@@ -1,5 +1,6 @@
 //! A collector that counts the work of a search.
 
+use crate::query::BestF64;
 use crate::{Best, Collector, PrimitiveId, Projection, QueryOptions, Real};
 use nalgebra::Point3;
 
@@ -47,15 +48,45 @@ impl<T: Real> StatsCollector<T> {
 impl<T: Real> Collector for StatsCollector<T> {
     forward_collector_decisions!(best, []);
     fn offer(&mut self, id: PrimitiveId, projection: Projection) {
-        self.primitives += 1;
-        self.best.offer(id, projection);
+        self.minimum().offer(id, projection);
     }
     fn visit_node(&mut self) {
-        self.nodes += 1;
-        self.best.visit_node();
+        self.minimum().visit_node();
     }
     fn visit_packet(&mut self) {
-        self.packets += 1;
-        self.best.visit_packet();
+        self.minimum().visit_packet();
+    }
+}
+
+/// A [`StatsCollector`] of any scalar, for searches that are compiled once for all scalars.
+pub struct CountedMinimum<'a> {
+    minimum: &'a mut BestF64,
+    nodes: &'a mut usize,
+    packets: &'a mut usize,
+    primitives: &'a mut usize,
+}
+
+impl<T: Real> StatsCollector<T> {
+    /// Returns the collector that a search which is not generic over the scalar reports to.
+    #[doc(hidden)]
+    pub fn minimum(&mut self) -> CountedMinimum<'_> {
+        let Self { best, nodes, packets, primitives } = self;
+        CountedMinimum { minimum: best.minimum(), nodes, packets, primitives }
+    }
+}
+
+impl Collector for CountedMinimum<'_> {
+    forward_collector_decisions!(minimum, []);
+    fn offer(&mut self, id: PrimitiveId, projection: Projection) {
+        *self.primitives += 1;
+        self.minimum.offer(id, projection);
+    }
+    fn visit_node(&mut self) {
+        *self.nodes += 1;
+        self.minimum.visit_node();
+    }
+    fn visit_packet(&mut self) {
+        *self.packets += 1;
+        self.minimum.visit_packet();
     }
 }

@@ -15,7 +15,7 @@ use p2m_bvh::engine::ray::IntersectFn;
 use p2m_bvh::engine::volume::{TreeOptions, VolumeNodes};
 use p2m_bvh::{PacketTree, SplitOptions, Volume};
 use p2m_core::engine::pairs::PairSide;
-use p2m_core::engine::query::BestF64;
+use p2m_core::engine::query::{BestF64, CountedMinimum};
 use p2m_core::engine::ray::RayCandidates;
 use p2m_core::engine::vector::V3;
 use p2m_core::pair::Motion;
@@ -43,6 +43,16 @@ impl<const K: usize> Volume for Kdop<K> {
         count: usize,
     ) {
         walkers.search(tree, several, count);
+    }
+
+    #[inline(never)]
+    fn counted<'c>(
+        tree: &PacketTree<Self>,
+        query: V3,
+        counted: &mut CountedMinimum<'c>,
+        evaluate: EvaluateFn<'_, CountedMinimum<'c>>,
+    ) {
+        tree.run(query, counted, evaluate, finish);
     }
 
     #[inline(never)]
@@ -105,6 +115,8 @@ impl<const K: usize> VolumeNodes for Kdop<K> {
 /// The searches of a tree of k-DOPs with K faces.
 type Searches<const K: usize> = (
     fn(&PacketTree<Kdop<K>>, V3, &mut BestF64, EvaluateFn<'_, BestF64>),
+    fn(&PacketTree<Kdop<K>>, &mut InterleavedTraversal<Kdop<K>>, &mut InterleavedSearch<'_, Kdop<K>>, usize),
+    for<'c> fn(&PacketTree<Kdop<K>>, V3, &mut CountedMinimum<'c>, EvaluateFn<'_, CountedMinimum<'c>>),
     for<'n> fn(&PacketTree<Kdop<K>>, V3, &mut Near<'n>, EvaluateFn<'_, Near<'n>>),
     for<'r> fn(&PacketTree<Kdop<K>>, &'r Ray, f64, &mut Hits<'r>, IntersectFn<'_, 'r>),
     fn(&PacketTree<Kdop<K>>, &Ray, f64, &mut RayCandidates<'_>),
@@ -112,7 +124,15 @@ type Searches<const K: usize> = (
 );
 
 const fn searches<const K: usize>() -> Searches<K> {
-    (Kdop::<K>::nearest, Kdop::<K>::near, Kdop::<K>::rays, Kdop::<K>::ray_candidates, Kdop::<K>::as_pair_side)
+    (
+        Kdop::<K>::nearest,
+        Kdop::<K>::nearest_of_several,
+        Kdop::<K>::counted,
+        Kdop::<K>::near,
+        Kdop::<K>::rays,
+        Kdop::<K>::ray_candidates,
+        Kdop::<K>::as_pair_side,
+    )
 }
 
 /// The searches that this crate compiles: those for 6, 14, 18 and 26 faces, which have default directions.
