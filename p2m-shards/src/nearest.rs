@@ -151,8 +151,9 @@ impl Search for ClosestSearch {
         shard: &Shard,
         proceed: &Proceed<'_>,
     ) -> Result<(), ShardError> {
-        // All queries of a batch have the same options, and those that have no answer ask no shard.
-        let Some(options) = group.first().map(|search| search.options) else { return Ok(()) };
+        // All queries of a batch have the same options, except that a query which is not finite has no distance.
+        let options = group.iter().map(|search| search.options).find(|options| !options.max_distance.is_nan());
+        let Some(options) = options else { return Ok(()) };
         let queries: Vec<Point3<f64>> = group.par_iter().map(|search| search.query).collect();
         let mut answers = vec![None; queries.len()];
         let interruptible = Interruptible::new(shard.index(), |left, answer| {

@@ -27,9 +27,10 @@ pub(crate) trait Search: Send + Sync + Sized {
         shard: &Shard,
         proceed: &Proceed<'_>,
     ) -> Result<(), ShardError> {
-        group.par_iter_mut().try_for_each(|search| {
-            search.ask(number, shard)?;
-            go_on(proceed, 1)
+        // Threads share the progress, so they report several queries at a time.
+        group.par_chunks_mut(16).try_for_each(|searches| {
+            searches.iter_mut().try_for_each(|search| search.ask(number, shard))?;
+            go_on(proceed, searches.len())
         })
     }
 
@@ -141,7 +142,12 @@ impl ShardedIndex {
             let first = least(self.boxes.iter().map(|bounds| search.bound(bounds)), limit).unwrap_or(NONE);
             Pending { search, first, limit }
         };
-        let mut all: Vec<Pending<S>> = queries.par_iter().map(pending).collect();
+        let pending = |queries: &[Q]| {
+            go_on(proceed, 0)?;
+            Ok(queries.iter().map(pending).collect())
+        };
+        let chunks: Vec<Vec<Pending<S>>> = queries.par_chunks(1024).map(pending).collect::<Result<_, ShardError>>()?;
+        let mut all: Vec<Pending<S>> = chunks.into_iter().flatten().collect();
         self.ask_first(&mut all, proceed)?;
         // Most queries need no other shard, so those that do are found once.
         let mut open: Vec<&mut Pending<S>> = all.iter_mut().filter(|one| !one.limit.is_nan()).collect();

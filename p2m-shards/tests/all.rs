@@ -294,6 +294,15 @@ fn many_queries_of_a_mesh_in_one_batch() {
     assert!(shards.loads() <= 2 * shards.manifest().shards.len() as u64, "{}", shards.loads());
     let stopped = shards.batch().with_proceed(&|_| false).closest_points(&points, &QueryOptions::default());
     assert_eq!(stopped.unwrap_err().to_string(), "the work was cancelled");
+    // A query that is not finite has no answer, and takes none from the others.
+    let finite = points.iter().find(|query| query.iter().all(|x| x.is_finite())).expect("most are");
+    let in_first = |queries: &[Point3<f64>]| {
+        let answers = shards.batch().closest_points_in_shard(0, queries, &QueryOptions::default()).unwrap();
+        answers.iter().map(|answer| answer.as_ref().map(|(answer, _)| of_shards(answer))).collect::<Vec<_>>()
+    };
+    let alone = in_first(&[*finite]).remove(0);
+    assert!(alone.is_some());
+    assert_eq!(in_first(&[Point3::new(f64::NAN, 0.0, 0.0), *finite]), [None, alone]);
 }
 
 #[test]

@@ -2,8 +2,8 @@
 
 use crate::tasks::COUNTERS;
 use std::fmt::Write as _;
+use std::fs;
 use std::path::{Path, PathBuf};
-use std::{env, fs};
 
 /// The fraction by which the instructions of a query may exceed those of the table. The same code takes up to 0.4 %
 /// more or fewer at another address of the stack, and up to 0.2 % after a change of unrelated functions.

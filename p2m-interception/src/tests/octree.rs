@@ -1,5 +1,5 @@
 //! Tests the octree: domains, budgets, threads, instruction sets, progress, other collectors, and the work of queries.
-//! `agreement` compares its answers with brute force.
+//! `tests/all/agreement.rs` compares its answers with brute force.
 #![allow(clippy::float_cmp, reason = "bitwise equality is what is tested")]
 
 use crate::{Domain, OctreeReport, RefinementProgress};

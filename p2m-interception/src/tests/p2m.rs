@@ -1,5 +1,5 @@
 //! Tests the P2M index: ties in lattices, symmetric shapes, slivers, instruction sets, progress, other collectors, and
-//! the work of queries. `agreement` compares its answers with brute force on random scenes.
+//! the work of queries. `tests/all/agreement.rs` compares its answers with brute force on random scenes.
 #![allow(clippy::float_cmp, reason = "bitwise equality is what is tested")]
 
 use super::agreement;

@@ -70,6 +70,7 @@ impl Run<'_> {
         }
         Ok(())
     }
+
     /// Answers all queries and writes their answers. Returns a summary, and the time that answering took.
     fn answer<S: Source>(&mut self, source: &S) -> anyhow::Result<(AnswerSummary, Duration)> {
         let cannot_write = self.output.cannot_write();

@@ -82,6 +82,7 @@ impl Run<'_> {
         streams.print_summary(format_args!("{text}{loads}{summary}"));
         Ok(())
     }
+
     /// Answers all rays and writes the answers. Returns the time that answering took, and a summary.
     fn answer(&mut self, source: RaySource<'_>) -> anyhow::Result<(Duration, RaySummary)> {
         let (hits, one_each) = (RaySummary::with_counts("hits"), Some(self.rays.count));
