@@ -40,47 +40,68 @@ pub trait Volume: VolumeNodes {
 
     /// Searches for the nearest primitive.
     #[doc(hidden)]
-    fn nearest(tree: &PacketTree<Self>, query: V3, minimum: &mut BestF64, evaluate: EvaluateFn<'_, BestF64>);
+    #[inline(never)]
+    fn nearest(tree: &PacketTree<Self>, query: V3, minimum: &mut BestF64, evaluate: EvaluateFn<'_, BestF64>) {
+        tree.run(query, minimum, evaluate, finish_nearest);
+    }
 
     /// Searches for the nearest primitives of several query points, those of the first `count` searches.
     #[doc(hidden)]
+    #[inline(never)]
     fn nearest_of_several(
         tree: &PacketTree<Self>,
         walkers: &mut InterleavedTraversal<Self>,
         several: &mut InterleavedSearch<'_, Self>,
         count: usize,
-    );
+    ) {
+        walkers.search(tree, several, count);
+    }
 
     /// Searches for the nearest primitive, and counts the work.
     #[doc(hidden)]
+    #[inline(never)]
     fn counted<'c>(
         tree: &PacketTree<Self>,
         query: V3,
         counted: &mut CountedMinimum<'c>,
         evaluate: EvaluateFn<'_, CountedMinimum<'c>>,
-    );
+    ) {
+        tree.run(query, counted, evaluate, finish);
+    }
 
     /// Searches for the primitives near a point.
     #[doc(hidden)]
-    fn near<'n>(tree: &PacketTree<Self>, query: V3, near: &mut Near<'n>, evaluate: EvaluateFn<'_, Near<'n>>);
+    #[inline(never)]
+    fn near<'n>(tree: &PacketTree<Self>, query: V3, near: &mut Near<'n>, evaluate: EvaluateFn<'_, Near<'n>>) {
+        tree.run(query, near, evaluate, finish);
+    }
 
     /// Searches for the hits of a ray.
     #[doc(hidden)]
+    #[inline(never)]
     fn rays<'r>(
         tree: &PacketTree<Self>,
         ray: &'r Ray,
         radius: f64,
         hits: &mut Hits<'r>,
         intersect: IntersectFn<'_, 'r>,
-    );
+    ) {
+        tree.run_ray(ray, radius, hits, intersect);
+    }
 
     /// Searches for the primitives that a ray may hit.
     #[doc(hidden)]
-    fn ray_candidates(tree: &PacketTree<Self>, ray: &Ray, radius: f64, candidates: &mut RayCandidates<'_>);
+    #[inline(never)]
+    fn ray_candidates(tree: &PacketTree<Self>, ray: &Ray, radius: f64, candidates: &mut RayCandidates<'_>) {
+        tree.run_ray(ray, radius, candidates, &|_, _| None);
+    }
 
     /// Passes a tree, after some motions in their order, to a search for pairs.
     #[doc(hidden)]
-    fn as_pair_side(tree: &PacketTree<Self>, motions: &[Motion], search: &mut dyn FnMut(&dyn PairSide));
+    #[inline(never)]
+    fn as_pair_side(tree: &PacketTree<Self>, motions: &[Motion], search: &mut dyn FnMut(&dyn PairSide)) {
+        search(&TreeSide::new(tree, motions));
+    }
 }
 
 impl Volume for Aabb<f64> {
@@ -90,45 +111,27 @@ impl Volume for Aabb<f64> {
     fn directions((): &()) -> &() {
         &()
     }
-
-    fn nearest(tree: &PacketTree, query: V3, minimum: &mut BestF64, evaluate: EvaluateFn<'_, BestF64>) {
-        tree.run(query, minimum, evaluate, finish_nearest);
-    }
-
-    fn nearest_of_several(
-        tree: &PacketTree,
-        walkers: &mut InterleavedTraversal<Self>,
-        several: &mut InterleavedSearch<'_, Self>,
-        count: usize,
-    ) {
-        walkers.search(tree, several, count);
-    }
-
-    fn counted<'c>(
-        tree: &PacketTree,
-        query: V3,
-        counted: &mut CountedMinimum<'c>,
-        evaluate: EvaluateFn<'_, CountedMinimum<'c>>,
-    ) {
-        tree.run(query, counted, evaluate, finish);
-    }
-
-    fn near<'n>(tree: &PacketTree, query: V3, near: &mut Near<'n>, evaluate: EvaluateFn<'_, Near<'n>>) {
-        tree.run(query, near, evaluate, finish);
-    }
-
-    fn rays<'r>(tree: &PacketTree, ray: &'r Ray, radius: f64, hits: &mut Hits<'r>, intersect: IntersectFn<'_, 'r>) {
-        tree.run_ray(ray, radius, hits, intersect);
-    }
-
-    fn ray_candidates(tree: &PacketTree, ray: &Ray, radius: f64, candidates: &mut RayCandidates<'_>) {
-        tree.run_ray(ray, radius, candidates, &|_, _| None);
-    }
-
-    fn as_pair_side(tree: &PacketTree, motions: &[Motion], search: &mut dyn FnMut(&dyn PairSide)) {
-        search(&TreeSide::new(tree, motions));
-    }
 }
+
+/// The searches of a tree, which are compiled in the crate that names them for its volume.
+pub type Searches<V> = (
+    fn(&PacketTree<V>, V3, &mut BestF64, EvaluateFn<'_, BestF64>),
+    fn(&PacketTree<V>, &mut InterleavedTraversal<V>, &mut InterleavedSearch<'_, V>, usize),
+    for<'c> fn(&PacketTree<V>, V3, &mut CountedMinimum<'c>, EvaluateFn<'_, CountedMinimum<'c>>),
+    for<'n> fn(&PacketTree<V>, V3, &mut Near<'n>, EvaluateFn<'_, Near<'n>>),
+    for<'r> fn(&PacketTree<V>, &'r Ray, f64, &mut Hits<'r>, IntersectFn<'_, 'r>),
+    fn(&PacketTree<V>, &Ray, f64, &mut RayCandidates<'_>),
+    fn(&PacketTree<V>, &[Motion], &mut dyn FnMut(&dyn PairSide)),
+);
+
+/// Returns the searches of a tree with volumes `V`.
+pub const fn searches<V: Volume>() -> Searches<V> {
+    (V::nearest, V::nearest_of_several, V::counted, V::near, V::rays, V::ray_candidates, V::as_pair_side)
+}
+
+/// The searches that this crate compiles.
+#[doc(hidden)]
+pub static COMPILED_SEARCHES: Searches<Aabb<f64>> = searches();
 
 impl<V: Volume> PacketTree<V> {
     /// The directions of the faces of the volumes, as [`Volume::Directions`] describes them.
