@@ -3,7 +3,7 @@
 use crate::arrays::{Coordinates, borrowed, slice, with_positions};
 use crate::columns::{ClosestArrays, ClosestValues, Near, NearList, Rows};
 use crate::index::Index;
-use crate::parts::{answer_in_parts, batch_options, check_finite};
+use crate::parts::{answer_in_parts, batch_options, check_finite, joined};
 use crate::sharded::{ANSWERS_PER_PART, in_shards};
 use crate::signs::SignRule;
 use crate::source::{Part, Source};
@@ -11,7 +11,7 @@ use crate::work::{Monitor, Threads};
 use nalgebra::Point3;
 use numpy::PyReadwriteArray1;
 use p2m_core::batch::{Interruptible, closest_columns_into};
-use p2m_core::{Closest, Position, QueryOptions};
+use p2m_core::{AnyIndex, Closest, Position, QueryOptions};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 
@@ -27,6 +27,12 @@ fn query_options(max_distance: f64, epsilon: f64, max_visits: Option<u32>) -> Qu
 /// Returns an answer of an index over the whole scene with the id of its primitive.
 fn in_whole(closest: Closest<f64>) -> Near {
     (i64::from(closest.primitive.number()), closest)
+}
+
+/// Returns an index as one that answers queries by points, as all do.
+#[allow(clippy::unnecessary_wraps, reason = "other kinds of queries are refused by some indexes")]
+fn any_index(index: &Index) -> PyResult<&dyn AnyIndex> {
+    Ok(&*index.built.index)
 }
 
 /// Answers queries for the closest point into the arrays of `out`.
@@ -64,8 +70,9 @@ pub(crate) fn closest(
             let answers = part.ask(
                 &points[range],
                 Position::point,
+                any_index,
                 // Primitives of scenes have vertices, so no answer fails.
-                |index, query| index.built.index.certified_closest_point(query, &options).ok().flatten().map(in_whole),
+                |index, query| index.certified_closest_point(query, &options).ok().flatten().map(in_whole),
                 |shards, points| match certified {
                     true => shards.certified_closest_points(points, &options),
                     false => shards.closest_points(points, &options),
@@ -109,7 +116,8 @@ fn near<P: Position<f64>>(part: &Part<'_>, points: &[P], k: usize, radius: f64) 
     part.ask(
         points,
         Position::point,
-        |index, query| index.built.index.k_nearest(query, k, radius).into_iter().map(in_whole).collect(),
+        any_index,
+        |index, query| index.k_nearest(query, k, radius).into_iter().map(in_whole).collect(),
         |shards, points| shards.k_nearest(points, k, radius),
         |near| near.into_iter().map(in_shards).collect(),
     )
@@ -132,10 +140,10 @@ pub(crate) fn within(
         index.answer(py, size, counts, (threads, progress), check, |part, range, counts: &mut [i64]| {
             let answers = near(part, &points[range], usize::MAX, radius)?;
             write_counts(counts, answers.iter().map(Vec::len));
-            Ok(answers.concat())
+            Ok(joined(answers))
         })?
     });
-    Ok(NearList(parts.concat()))
+    Ok(NearList(joined(parts)))
 }
 
 /// Writes numbers to a column.
@@ -164,7 +172,8 @@ pub(crate) fn is_any_within(
             let answers = part.ask(
                 &points[range],
                 Position::point,
-                |index, query| index.built.index.is_any_within(query, radius),
+                any_index,
+                |index, query| index.is_any_within(query, radius),
                 |shards, points| shards.is_any_within(points, radius),
                 |is_within| is_within,
             )?;

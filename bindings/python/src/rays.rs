@@ -4,7 +4,7 @@ use crate::arrays::{borrowed, slice, triples};
 use crate::columns::{NO_PRIMITIVE, answer_list, columns};
 use crate::errors::{not_finite, value_error};
 use crate::index::Index;
-use crate::parts::Split;
+use crate::parts::{Split, joined};
 use crate::queries::write_counts;
 use crate::source::Source;
 use nalgebra::{Point3, Vector3};
@@ -77,9 +77,10 @@ impl Cast<'_, '_> {
         let size = (origins.len(), RAYS_PER_PART);
         index.answer(py, size, out, (threads, progress), check, |part, range, out| {
             let rays = range.map(ray).collect::<PyResult<Vec<Ray>>>()?;
-            let whole = |index: &Index, ray: &Ray| Ok(whole(index.ray_query()?, ray));
-            let answers = part.ask(&rays, |ray| ray.at(0.0), whole, &shards, |answer| Ok(convert(answer)))?;
-            Ok(store(answers.into_iter().collect::<PyResult<_>>()?, out))
+            let origin = |ray: &Ray| ray.at(0.0);
+            let answers =
+                part.ask(&rays, origin, Index::ray_query, |index, ray| whole(index, ray), &shards, &convert)?;
+            Ok(store(answers, out))
         })
     }
 }
@@ -162,10 +163,10 @@ pub(crate) fn rays(
                 |hits| hits.into_iter().map(in_shards).collect::<Vec<RayHit>>(),
                 |hits, values: &mut [i64]| {
                     write_counts(values, hits.iter().map(Vec::len));
-                    hits.concat()
+                    joined(hits)
                 },
             )?;
-            return Ok(Some(HitList(hits.concat())));
+            return Ok(Some(HitList(joined(hits))));
         }
         _ => {
             return Err(value_error(format!("mode: '{mode}' is none of 'first', 'all', 'count', 'any', 'crossings'")));

@@ -4,7 +4,7 @@ use crate::arrays::{Coordinates, borrowed, slice, with_positions};
 use crate::columns::{ClosestArrays, Near, column};
 use crate::errors::{shard_error, value_error};
 use crate::index::backend;
-use crate::parts::{Split, answer_in_parts, check_finite};
+use crate::parts::{Split, answer_in_parts, check_finite, joined};
 use crate::scene::Scene;
 use crate::work::{FIRST_STEP_QUERIES, Monitor, Threads, run_batch};
 use numpy::{PyArray1, PyReadonlyArray1};
@@ -185,7 +185,7 @@ impl Shards {
                     }
                     pairs
                 });
-                Ok(parts.concat())
+                Ok(joined(parts))
             };
             Self::run(py, points.len(), threads, None, work)
         })?;

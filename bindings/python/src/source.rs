@@ -57,17 +57,19 @@ impl Source<'_> {
 
 impl Part<'_> {
     /// Answers queries by a function of an index and a query, or by one of shards and all queries, whose answers are
-    /// converted. `place` returns where a query is.
-    pub(crate) fn ask<Q: Sync, A: Send, B>(
-        &self,
+    /// converted. `place` returns where a query is, and `as_kind` the index as one that answers queries of this kind.
+    pub(crate) fn ask<'a, Q: Sync, A: Send, B, I: Copy + Sync>(
+        &'a self,
         queries: &[Q],
         place: impl Fn(&Q) -> Point3<f64> + Sync,
-        whole: impl Fn(&Index, &Q) -> A + Sync,
+        as_kind: impl FnOnce(&'a Index) -> PyResult<I>,
+        whole: impl Fn(I, &Q) -> A + Sync,
         shards: impl FnOnce(ShardBatch<'_>, &[Q]) -> Result<Vec<B>, ShardError>,
         convert: impl Fn(B) -> A,
     ) -> PyResult<Vec<A>> {
         match *self {
             Self::Whole(index) => {
+                let index = as_kind(index)?;
                 Ok(batch::map(queries, &batch_options(queries.len(), false), place, |query| whole(index, query)))
             }
             Self::Shards(batch) => Ok(shards(batch, queries).map_err(shard_error)?.into_iter().map(convert).collect()),

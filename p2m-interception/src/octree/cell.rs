@@ -66,7 +66,7 @@ impl OpenCell {
         self.has_packets && self.candidates.len() <= MAX_LIST_PACKETS
     }
 
-    /// Returns what the list of the cell takes at most. It is reserved until the cell is split or finished.
+    /// Returns the most that the list of the cell may take. It is reserved until the cell is split or finished.
     pub(crate) fn reserved(&self) -> Spent {
         let packets = if self.may_have_list() { self.candidates.len() } else { 0 };
         Spent::new(packets.div_ceil(BLOCK_WIDTH) * size_of::<Block>(), packets * TESTS_PER_OPEN_PACKET)

@@ -26,7 +26,7 @@ use crate::octree::task::CellTask;
 use crate::options::Domain;
 use p2m_core::engine::vector::{V3, norm_squared, sub};
 
-/// The memory of the codes of a split at most. Eight rows with two levels stand for at least five splits.
+/// The most memory that the codes of a split take. Eight rows with two levels stand for at least five splits.
 const CODE_BYTES_PER_SPLIT: usize = (8 * size_of::<Row>()).div_ceil(5);
 
 /// A refinement of the cube of a domain: everything that is the same for all cells.

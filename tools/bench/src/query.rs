@@ -14,7 +14,7 @@ pub(crate) struct Arguments {
     backends: Vec<String>,
     #[command(flatten)]
     rounds: Rounds,
-    /// Queries in a round; backends slower than 20 us a query get at most 20,000, brute force as many as take a second
+    /// Queries in a round; backends slower than 20 us per query get at most 20,000, brute force as many as take a second
     #[arg(long, default_value_t = 200_000)]
     queries: usize,
     /// Number of times that each index is built

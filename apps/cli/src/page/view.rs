@@ -151,8 +151,8 @@ pub(crate) fn run(streams: &Streams, args: &Args) -> anyhow::Result<()> {
     }
     let signed = args.signed.map(|rule| rule.prepare(streams, &*index, &scene.soup)).transpose();
     let (signed, rule) = signed.with_context(|| args.scene.name())?.unzip();
-    let found = Found { streams, args, pool: &pool, backend, index: &*index, signed: signed.as_ref() };
-    let mut view = found.view(&scene, queries.as_deref(), grid.as_ref())?;
+    let source = PageSource { streams, args, pool: &pool, backend, index: &*index, signed: signed.as_ref() };
+    let mut view = source.view(&scene, queries.as_deref(), grid.as_ref())?;
     view.about = about(&format!("scene {}", args.scene.name()), backend.name, rule);
     let page = view.html()?;
     output.finish_with(&page)?;
@@ -160,8 +160,8 @@ pub(crate) fn run(streams: &Streams, args: &Args) -> anyhow::Result<()> {
     Ok(())
 }
 
-/// What is found of a scene, to be shown on its page.
-struct Found<'a> {
+/// The index and the signs of a scene, by which its page is computed.
+struct PageSource<'a> {
     streams: &'a Streams,
     args: &'a Args,
     pool: &'a ThreadPool,
@@ -170,7 +170,7 @@ struct Found<'a> {
     signed: Option<&'a SignedIndex<'a>>,
 }
 
-impl Found<'_> {
+impl PageSource<'_> {
     /// Returns the view of a scene with all that the arguments ask for.
     fn view<'v>(
         &self,
