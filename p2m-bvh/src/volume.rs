@@ -131,6 +131,7 @@ pub const fn searches<V: Volume>() -> Searches<V> {
 
 /// The searches that this crate compiles.
 #[doc(hidden)]
+#[cfg(not(test))]
 pub static COMPILED_SEARCHES: Searches<Aabb<f64>> = searches();
 
 impl<V: Volume> PacketTree<V> {

@@ -29,6 +29,14 @@ pub struct Edit<'a, T: Real, I: AnyIndex<T> + ?Sized> {
     has_moved: bool,
 }
 
+impl<T: Real, I: AnyIndex<T> + ?Sized> Instances<T, I> {
+    /// Begins to change the scene. The changes are complete when the edit is dropped, which `scene.edit().add(..)` does
+    /// at once.
+    pub fn edit(&mut self) -> Edit<'_, T, I> {
+        Edit::new(self)
+    }
+}
+
 impl<'a, T: Real, I: AnyIndex<T> + ?Sized> Edit<'a, T, I> {
     pub(crate) fn new(scene: &'a mut Instances<T, I>) -> Self {
         let tree = scene.tree.take();

@@ -1,6 +1,6 @@
 //! Errors of changing a scene of instances.
 
-use crate::InstanceId;
+use crate::id::InstanceId;
 use p2m_core::PrimitiveId;
 
 /// An error of changing a scene of instances, which is left as it was. Queries never fail.

@@ -1,24 +1,13 @@
 //! One instance of an object.
 
 use crate::InstanceError;
+use crate::id::InstanceId;
 use crate::object::Object;
 use nalgebra::Isometry3;
 use p2m_core::pair::{Hull, Motion};
 use p2m_core::{Aabb, AnyIndex, PrimitiveId, Real, Shape};
-use std::fmt::{self, Display, Formatter};
 use std::ops::Range;
 use std::sync::Arc;
-
-/// The id of an instance in its scene. It stays the same while other instances are added and removed, and no later
-/// instance of the scene has it.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
-pub struct InstanceId(pub(crate) u64);
-
-impl Display for InstanceId {
-    fn fmt(&self, f: &mut Formatter<'_>) -> fmt::Result {
-        self.0.fmt(f)
-    }
-}
 
 /// An instance: an object with a name and a motion.
 #[derive(Debug)]

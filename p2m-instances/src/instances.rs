@@ -2,7 +2,7 @@
 
 use crate::instance::shape;
 use crate::object::Objects;
-use crate::{Edit, Instance, InstanceId};
+use crate::{Instance, InstanceId};
 use nalgebra::Point3;
 use p2m_bvh::AabbTree;
 use p2m_core::{Aabb, AnyIndex, Feature, Primitive, PrimitiveId, PrimitiveSet, Projection, Ray, RayHit, Real, Shape};
@@ -82,12 +82,6 @@ impl<T: Real, I: AnyIndex<T> + ?Sized> Instances<T, I> {
     #[must_use]
     pub fn new() -> Self {
         Self { instances: Vec::new(), next_id: 0, objects: Objects::new(), tree: None, scalar: PhantomData }
-    }
-
-    /// Begins to change the scene. The changes are complete when the edit is dropped, which `scene.edit().add(..)` does
-    /// at once.
-    pub fn edit(&mut self) -> Edit<'_, T, I> {
-        Edit::new(self)
     }
 
     /// Returns the number of instances.

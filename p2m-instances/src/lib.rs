@@ -50,6 +50,7 @@
 mod boxes;
 mod edit;
 mod error;
+mod id;
 mod instance;
 mod instances;
 mod nearest;
@@ -59,5 +60,6 @@ mod rays;
 
 pub use edit::Edit;
 pub use error::InstanceError;
-pub use instance::{Instance, InstanceId};
+pub use id::InstanceId;
+pub use instance::Instance;
 pub use instances::Instances;

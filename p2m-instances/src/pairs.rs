@@ -1,6 +1,7 @@
 //! Queries for pairs of primitives.
 
-use crate::instance::{Instance, InstanceId};
+use crate::id::InstanceId;
+use crate::instance::Instance;
 use crate::instances::Instances;
 use nalgebra::Point3;
 use p2m_core::engine::pairs::{PairSide, ShapeSide};

@@ -74,6 +74,14 @@ pub type KdopTree<T, S, const K: usize = 14> = p2m_bvh::TreeIndex<T, S, Kdop<K>>
 
 /// The internals of this crate that its sibling crates use. They may change at any time.
 #[doc(hidden)]
+#[cfg(not(test))]
 pub mod engine {
-    pub use crate::volume::COMPILED_SEARCHES;
+    use crate::Kdop;
+    use p2m_bvh::engine::volume::{Searches, searches};
+
+    /// The searches of trees with 6, 14, 18 and 26 faces, which have default directions. A generic function is compiled
+    /// in each crate that calls it, unless a crate upstream has compiled it for the same parameters and it is never
+    /// inlined. The searches are such functions, so crates that use this one need not compile them.
+    pub static COMPILED_SEARCHES: (Searches<Kdop<6>>, Searches<Kdop<14>>, Searches<Kdop<18>>, Searches<Kdop<26>>) =
+        (searches(), searches(), searches(), searches());
 }

@@ -1,14 +1,10 @@
 //! k-DOPs as the bounding volumes of a tree.
-//!
-//! A generic function is compiled in each crate that calls it, unless a crate upstream has compiled it for the same
-//! parameters and it is never inlined. The searches of trees with 6, 14, 18 and 26 faces are such functions:
-//! [`COMPILED_SEARCHES`] names them, so this crate compiles them and its users need not.
 
 use crate::direction_table::DirectionTable;
 use crate::node::KdopNode;
 use crate::{Directions, Kdop, KdopOptions};
 use nalgebra::Vector3;
-use p2m_bvh::engine::volume::{Searches, TreeOptions, VolumeNodes, searches};
+use p2m_bvh::engine::volume::{TreeOptions, VolumeNodes};
 use p2m_bvh::{SplitOptions, Volume};
 use p2m_core::storage::{LoadError, Reader, Writer, require};
 
@@ -50,11 +46,6 @@ impl<const K: usize> VolumeNodes for Kdop<K> {
         Ok(DirectionTable::new(&directions))
     }
 }
-
-/// The searches that this crate compiles: those for 6, 14, 18 and 26 faces, which have default directions.
-#[doc(hidden)]
-pub static COMPILED_SEARCHES: (Searches<Kdop<6>>, Searches<Kdop<14>>, Searches<Kdop<18>>, Searches<Kdop<26>>) =
-    (searches(), searches(), searches(), searches());
 
 impl<const K: usize> TreeOptions<DirectionTable<K>> for KdopOptions<K> {
     fn splits(&self) -> &SplitOptions {

@@ -2,18 +2,10 @@
 
 use crate::nearest::{ClosestSearch, any_within, certified, near};
 use crate::rays::{all_hits, any_hit, count, crossings, first_hit};
-use crate::search::Search;
+use crate::search::{Proceed, Search};
 use crate::{ShardClosest, ShardError, ShardHit, ShardedIndex};
 use p2m_core::{Key, Position, QueryOptions, Ray};
 use rayon::prelude::*;
-
-/// A function that is called with a number of answered queries, and returns whether to go on.
-pub type Proceed<'a> = dyn Fn(usize) -> bool + Sync + 'a;
-
-/// Reports a number of answered queries, and returns [`ShardError::Cancelled`] if the batch is to end.
-pub(crate) fn go_on(proceed: &Proceed<'_>, answered: usize) -> Result<(), ShardError> {
-    if proceed(answered) { Ok(()) } else { Err(ShardError::Cancelled) }
-}
 
 /// A batch of queries. Its methods answer each query as the methods of [`ShardedIndex`] do, on all threads of the
 /// current pool, and return the answers in the order of the queries.

@@ -69,11 +69,12 @@ mod shard;
 mod signs;
 mod write;
 
-pub use batch::{Proceed, ShardBatch};
+pub use batch::ShardBatch;
 pub use error::ShardError;
 pub use index::ShardedIndex;
 pub use manifest::{MANIFEST_FILE, Manifest, ObjectEntry, ShardEntry, folder_of};
 pub use nearest::ShardClosest;
 pub use rays::ShardHit;
+pub use search::Proceed;
 pub use shard::Shard;
 pub use write::{ShardOptions, ShardWriter, shard_file};

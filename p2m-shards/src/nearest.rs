@@ -1,7 +1,6 @@
 //! Queries for near primitives: what each shard finds is compared until no other shard can be near enough.
 
-use crate::batch::{Proceed, go_on};
-use crate::search::{Search, collect, least};
+use crate::search::{Proceed, Search, collect, go_on, least};
 use crate::{Shard, ShardError, ShardedIndex};
 use nalgebra::Point3;
 use p2m_core::batch::{BatchOptions, Interruptible, closest_points_into};

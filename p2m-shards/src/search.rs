@@ -1,10 +1,17 @@
 //! The search for the answer to a query of any kind, by itself or in a batch: shards are asked until no other one can
 //! matter.
 
-use crate::batch::{Proceed, go_on};
 use crate::{Shard, ShardError, ShardedIndex};
 use p2m_core::Aabb;
 use rayon::prelude::*;
+
+/// A function that is called with a number of answered queries, and returns whether to go on.
+pub type Proceed<'a> = dyn Fn(usize) -> bool + Sync + 'a;
+
+/// Reports a number of answered queries, and returns [`ShardError::Cancelled`] if the batch is to end.
+pub(crate) fn go_on(proceed: &Proceed<'_>, answered: usize) -> Result<(), ShardError> {
+    if proceed(answered) { Ok(()) } else { Err(ShardError::Cancelled) }
+}
 
 /// The state of a query while shards are asked.
 pub(crate) trait Search: Send + Sync + Sized {

@@ -1,7 +1,8 @@
 //! The tests that compare backends with each other and with the oracle, in one program so that shared code is compiled
-//! once. `cargo test --test all signs::` runs those of one module.
+//! once. `cargo test --test all pairs::` runs those of one module.
 //!
-//! Two test programs are separate: `soak` needs its own allocator, and `examples` runs other programs.
+//! Four test programs are separate: `soak` needs its own allocator, `instructions` runs itself under valgrind, `examples`
+//! runs other programs, and `serde` needs a feature.
 
 mod adversaries;
 mod agreement;

@@ -1,6 +1,6 @@
 """Measures p2m.dask with one and two worker processes, beside one call in this process, and the memory of workers.
 
-    pip install './p2m-python[dask]'
+    pip install './bindings/python[dask]'
     python bindings/python/benchmarks/cluster.py MODEL --points 10000000
 
 It needs Linux, whose kernel tells the shared memory of processes. The points are uniform in the box of the model, and

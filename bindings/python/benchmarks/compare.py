@@ -1,6 +1,6 @@
 """Compares p2m with other libraries of Python that find closest points on meshes, all in one run.
 
-    pip install ./p2m-python[compare]
+    pip install ./bindings/python[compare]
     cargo build --release -p p2m-python --example rust_batch
     python bindings/python/benchmarks/compare.py ../shared/models/dragon_100k.obj ../shared/models/dragon_871k.ply \
         --rust target/release/examples/rust_batch

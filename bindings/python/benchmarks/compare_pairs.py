@@ -1,6 +1,6 @@
 """Compares p2m with other libraries of Python for pairs: two meshes, capsules near a mesh, and Hausdorff distances.
 
-    pip install ./p2m-python[compare,pairs]
+    pip install ./bindings/python[compare,pairs]
     python bindings/python/benchmarks/compare_pairs.py ../shared/models/dragon_100k.obj ../shared/models/armadillo.obj \
         --hausdorff ../shared/models/dragon_48k_nonmanifold.ply ../shared/models/dragon_871k.ply
 

@@ -1,6 +1,6 @@
 """Times signed deviations of a noisy scan from a mesh beside PyVista and Open3D.
 
-    pip install ./p2m-python pyvista open3d
+    pip install ./bindings/python pyvista open3d
     python bindings/python/benchmarks/deviation.py ../shared/models/dragon_100k.obj --points 1000000
 
 The scan has uniformly distributed points of the surface with normal noise along the normals of the triangles. Every

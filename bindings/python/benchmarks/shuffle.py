@@ -1,6 +1,6 @@
 """Measures p2m.dask with points that go to shards, beside blocks that each ask all shards, with two worker processes.
 
-    pip install './p2m-python[dask]'
+    pip install './bindings/python[dask]'
     python bindings/python/benchmarks/shuffle.py
 
 The scene and the points are uniform in a cube, so each block needs all shards. In the first runs one shard fits into

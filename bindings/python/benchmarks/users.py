@@ -1,6 +1,6 @@
 """Runs the programs of users who reported that other libraries are slow or run out of memory, in one call each.
 
-    pip install ./p2m-python[compare]
+    pip install ./bindings/python[compare]
     python bindings/python/benchmarks/users.py
 
 It needs Linux, whose kernel tells the peak memory. Each program runs in a process of its own, on one thread. Libraries

@@ -1,6 +1,6 @@
 """Makes the pictures and the tables of docs/python.md.
 
-    pip install ./p2m-python[compare,gallery]
+    pip install ./bindings/python[compare,gallery]
     python bindings/python/gallery/make.py --write
 
 It takes about two minutes. Without `--write` it prints the tables and leaves the document as it is. `--only NAME` makes

@@ -1,6 +1,6 @@
 """Asks a saved index for the points of a Zarr array, by two processes of Dask that map the file of the index.
 
-    pip install './p2m-python[dask]' zarr
+    pip install './bindings/python[dask]' zarr
     python bindings/python/recipes/dask_cluster.py
 
 The tests of the package run this script.

@@ -1,6 +1,6 @@
 """Asks a saved index for the points of a Parquet file, batch by batch, in one process with a thread for each core.
 
-    pip install './p2m-python[arrow]'
+    pip install './bindings/python[arrow]'
     python bindings/python/recipes/parquet_batches.py
 
 The points are a column of GeoArrow, which is read without a copy. The tests of the package run this script.

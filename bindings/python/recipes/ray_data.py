@@ -1,6 +1,6 @@
 """Asks a saved index for the points of Parquet files, by two actors of Ray Data, each of which opens the file once.
 
-    pip install './p2m-python[arrow]' ray pandas
+    pip install './bindings/python[arrow]' ray pandas
     python bindings/python/recipes/ray_data.py
 
 The tests of the package run this script only where Ray is installed.

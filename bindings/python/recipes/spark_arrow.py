@@ -1,6 +1,6 @@
 """Asks a saved index for the points of a data frame of Spark, by batches of Arrow in two processes of Python.
 
-    pip install './p2m-python[arrow]' pyspark pandas
+    pip install './bindings/python[arrow]' pyspark pandas
     python bindings/python/recipes/spark_arrow.py
 
 It needs Java 17 or newer. The tests of the package run this script only where PySpark is installed.

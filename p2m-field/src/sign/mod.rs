@@ -129,7 +129,7 @@ impl<I, S: SharedSoup> SignedDistance<I, S> {
     /// that part is inside of others. And no two sheets of the surface are closer to each other than the error of a
     /// distance, which is 16 u M, with the u of the index, if the farthest vertex of the closest triangle has the
     /// distance M. This is cited \[Baerentzen2005\] for distances without rounding, and observed on all models that are
-    /// closed and do not intersect themselves (`cargo test --test all signs::`).
+    /// closed and do not intersect themselves (`cargo test -p p2m-field --test all signs::`).
     ///
     /// # Errors
     /// [`SignError::OtherKinds`], [`SignError::Open`], [`SignError::NotOriented`], [`SignError::OtherScene`] and

@@ -3,7 +3,6 @@
 //! Vertices, references to them and skipped statements are parsed here, if each is on one line. All other statements,
 //! and those that may be an error, are only located.
 
-use super::Shape;
 use crate::Reason;
 use crate::parse::text::{is_space, line_end, parse_integer, parse_number_at_start, quote};
 use crate::polygon::MAX_CORNERS;
@@ -11,6 +10,14 @@ use nalgebra::Point3;
 
 /// The most digits of a reference that is parsed here.
 const MAX_DIGITS: usize = 9;
+
+/// The kind of a statement that makes primitives of its vertices.
+#[derive(Clone, Copy, PartialEq, Eq)]
+pub(super) enum Shape {
+    Polygon,
+    Polyline,
+    Points,
+}
 
 /// The kind of a statement, or of a run of statements on consecutive lines.
 #[derive(Clone, Copy, PartialEq, Eq)]

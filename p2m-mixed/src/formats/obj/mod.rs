@@ -12,7 +12,7 @@ use crate::parse::blocks::{Source, for_each_block};
 use crate::parse::text::{LineReader, Tokens, parse_number};
 use crate::polygon::MAX_CORNERS;
 use crate::{FileLocation, ReadError, Reason, Scene};
-use block::{Block, Kind, vertex_of};
+use block::{Block, Kind, Shape, vertex_of};
 use keywords::{is_free_form, is_known};
 use nalgebra::Point3;
 use p2m_core::Element;
@@ -97,14 +97,6 @@ fn has_objects(reader: impl BufRead) -> bool {
         }
     }
     false
-}
-
-/// The kind of a statement that makes primitives of its vertices.
-#[derive(Clone, Copy, PartialEq, Eq)]
-enum Shape {
-    Polygon,
-    Polyline,
-    Points,
 }
 
 /// A statement that is deferred to the end of the file, because it or one before it refers to a vertex that was not
