@@ -6,11 +6,10 @@
 //!
 //! **Bands.** A block is not halved any further if all of it is beyond the band.
 //!
-//! **Signs.** The sign of a closed surface changes only at the surface, by winding numbers as well. So a block that the
-//! surface does not cross has the sign of its centre, and two neighbouring points have the same sign if one of them is
-//! farther from the surface than from the other. The signs of other points are computed one by one. (If the surface
-//! intersects itself, a sign by pseudonormals is that of the part nearest to the point where it is computed.) Winding
-//! numbers of open surfaces vary little far from the boundary, so blocks there have one sign as well.
+//! **Signs.** The sign of a surface without a boundary changes only at the surface. So a block that the surface does not
+//! cross has the sign of its centre, and two neighbouring points have the same sign if one of them is farther from the
+//! surface than from the other. Points that are connected in this way have one sign. Winding numbers of surfaces with a
+//! boundary vary little far from the boundary, so points there have one sign as well.
 
 use crate::grid::{Grid, GridError};
 use crate::grid_candidates::{CandidateLists, Candidates, Detail, MAX_COORDINATE};
@@ -59,8 +58,8 @@ pub fn signed_distances_by_lists<S: PrimitiveSet<f64> + Sync + ?Sized, I: Closes
         let without = if distance > 0.0 { signed.sign_without_closest_point(point) } else { None };
         without.or_else(|| Some(signed.closest_point(point)?.sign)).unwrap_or(Sign::Outside)
     };
-    let within = |radius: f64, centre: &Point3<f64>| signed.sign_within(radius, centre);
-    let signs = Signs { at: &sign, within: &within, changes_only_at_surface: signed.changes_only_at_surface() };
+    let along = |path: f64, radius: f64, point: &Point3<f64>| signed.sign_along(path, radius, point);
+    let signs = Signs { at: &sign, along: &along };
     Sampler::new(lists, Some(signs), grid, options, progress)?.field()
 }
 
@@ -68,11 +67,9 @@ pub fn signed_distances_by_lists<S: PrimitiveSet<f64> + Sync + ?Sized, I: Closes
 struct Signs<'a> {
     /// Returns the sign of a point at this distance from the surface.
     at: &'a (dyn Fn(&Point3<f64>, f32) -> Sign + Sync),
-    /// Returns the common sign of all points within a radius of a centre that the surface does not separate from it, or
-    /// `None` if their signs may differ.
-    within: &'a (dyn Fn(f64, &Point3<f64>) -> Option<Sign> + Sync),
-    /// Whether two points have the same sign if the surface does not separate them.
-    changes_only_at_surface: bool,
+    /// Returns the common sign of all points that a path of at most this length, within a radius of a point and without
+    /// crossing the surface, connects with the point, or `None` if their signs may differ.
+    along: &'a (dyn Fn(f64, f64, &Point3<f64>) -> Option<Sign> + Sync),
 }
 
 /// Computes the values of a field by candidate lists.
@@ -216,7 +213,7 @@ impl<'a, S: PrimitiveSet<f64> + Sync + ?Sized> Sampler<'a, S> {
         let Aabb { min, max } = self.bounds(block);
         let centre = nalgebra::center(&min, &max);
         let radius = (max - centre).norm().max((centre - min).norm()) * (1.0 + 1e-9);
-        (signs.within)(radius, &centre)
+        (signs.along)(radius, radius, &centre)
     }
 
     /// Sets the values of a block that is beyond the band.
@@ -253,25 +250,42 @@ impl<'a, S: PrimitiveSet<f64> + Sync + ?Sized> Sampler<'a, S> {
         layers.fill(block.first, block.counts, |_| values.next().unwrap_or(f32::NAN));
     }
 
-    /// Computes the signs of the points of a block from their distances. A point takes the sign of the neighbour before
+    /// Computes the signs of the points of a block from their distances. A point is connected with the neighbour before
     /// it if the surface cannot be between them.
-    fn signs_of(&self, block: &Block, distances: &[f32], signs: &mut [Sign]) {
-        let [x, y, _] = block.counts;
+    fn signs_of(&self, block: &Block, distances: &[f32], out: &mut [Sign]) {
+        let Some(signs) = &self.signs else { return };
+        let [x, y, z] = block.counts;
         let at = |n: usize| {
             let offset = [n % x, n / x % y, n / (x * y)];
             self.grid.point([0, 1, 2].map(|k: usize| block.first[k] + offset[k]))
         };
-        let is_shared = self.signs.as_ref().is_some_and(|signs| signs.changes_only_at_surface);
+        // The first point of those with which each point is connected, the number of steps from there, and the largest
+        // number of steps from each first point.
+        let (mut first, mut steps, mut most) =
+            ([0; MAX_EVALUATED_POINTS], [0; MAX_EVALUATED_POINTS], [0; MAX_EVALUATED_POINTS]);
         for n in 0..distances.len() {
-            let before = [(1, x), (x, y), (x * y, block.counts[2])];
+            let before = [(1, x), (x, y), (x * y, z)];
             let neighbour = before.into_iter().find(|(step, count)| {
-                is_shared
-                    && n / step % count > 0
+                n / step % count > 0
                     && f64::from(distances[n - step].max(distances[n]).min(f32::MAX)) > self.max_neighbour_distance
             });
-            signs[n] = match neighbour {
-                Some((step, _)) => signs[n - step],
-                None => self.sign_at(&at(n), distances[n]),
+            (first[n], steps[n]) = neighbour.map_or((n, 0), |(step, _)| (first[n - step], steps[n - step] + 1));
+            most[first[n]] = most[first[n]].max(steps[n]);
+        }
+        for n in 0..distances.len() {
+            out[n] = if first[n] == n && most[n] > 0 {
+                let path = f64::from(most[n]) * self.max_neighbour_distance;
+                match (signs.along)(path, path, &at(n)) {
+                    Some(sign) => sign,
+                    None => {
+                        most[n] = 0;
+                        (signs.at)(&at(n), distances[n])
+                    }
+                }
+            } else if first[n] == n || most[first[n]] == 0 {
+                (signs.at)(&at(n), distances[n])
+            } else {
+                out[first[n]]
             };
         }
     }

@@ -6,9 +6,8 @@
 //!
 //! **Bands.** A block of points has no point in the band if the distance of its centre exceeds the band plus half of
 //! the diagonal of the block. Other blocks are divided into eight until they are empty or single points. Signs beyond
-//! the band equal those of single queries as well. Winding numbers are computed for each point. For a closed surface
-//! the sign of the centre holds for the whole block, because no surface crosses it; if the surface intersects itself,
-//! that is the sign of the part that is nearest to the centre.
+//! the band equal those of single queries as well: no surface crosses an empty block, so the sign of its centre holds for
+//! all of it, or winding numbers are computed for each point where they may differ.
 
 use crate::grid::{Grid, GridError};
 use crate::layers::Layers;
@@ -52,8 +51,12 @@ pub fn signed_distances<I: ClosestPoint<f64> + Sync, R: SharedSoup>(
     progress: &(dyn Fn(usize) + Sync),
 ) -> Result<Vec<f32>, GridError> {
     let near = |query: &Point3<f64>, closest: &Closest<f64>| signed.sign(query, closest);
-    let far = |point: &Point3<f64>| signed.sign_without_closest_point(point);
-    let signs = Some(Signs { near: &near, far: &far });
+    let around = |radius: f64, point: &Point3<f64>, closest: &Closest<f64>| {
+        let is_closed = signed.is_closed();
+        if is_closed { Some(signed.sign(point, closest)) } else { signed.sign_along(radius, radius, point) }
+    };
+    let far = |point: &Point3<f64>| signed.winding_numbers().sign(point);
+    let signs = Some(Signs { near: &near, around: &around, far: &far });
     let sampler = Sampler { index: signed.index(), signs, grid, options, band: options.checked_band() };
     sampler.field(progress)
 }
@@ -62,8 +65,11 @@ pub fn signed_distances<I: ClosestPoint<f64> + Sync, R: SharedSoup>(
 struct Signs<'a> {
     /// Returns the sign of a query by its closest point.
     near: &'a (dyn Fn(&Point3<f64>, &Closest<f64>) -> Sign + Sync),
-    /// Returns the sign of a point beyond the band, or `None` if the point has the sign of its block.
-    far: &'a (dyn Fn(&Point3<f64>) -> Option<Sign> + Sync),
+    /// Returns the common sign of all points within a radius of a point, by its closest point, which is farther. It is
+    /// `None` if their signs may differ.
+    around: &'a (dyn Fn(f64, &Point3<f64>, &Closest<f64>) -> Option<Sign> + Sync),
+    /// Returns the sign of a point beyond the band, where signs differ within a block.
+    far: &'a (dyn Fn(&Point3<f64>) -> Sign + Sync),
 }
 
 /// Computes the values of a field by queries to an index.
@@ -168,23 +174,31 @@ impl<I: ClosestPoint<f64> + Sync + ?Sized> Sampler<'_, I> {
         let last: [usize; 3] = std::array::from_fn(|k| first[k] + counts[k] - 1);
         let [low, high] = [self.grid.point(first), self.grid.point(last)];
         let centre = Point3::from(std::array::from_fn::<f64, 3, _>(|k| low[k] * 0.5 + high[k] * 0.5));
-        // If the surface is farther than this from the centre, no point of the block is in the band.
-        let band_from_centre = {
+        let radius = {
             let half: [f64; 3] = std::array::from_fn(|k| (high[k] - centre[k]).max(centre[k] - low[k]));
             let ulp = high.coords.amax().max(low.coords.amax()) * f64::EPSILON;
-            self.band + (half[0].hypot(half[1]).hypot(half[2]) + 4.0 * ulp) * (1.0 + 1e-9)
+            (half[0].hypot(half[1]).hypot(half[2]) + 4.0 * ulp) * (1.0 + 1e-9)
         };
+        // If the surface is farther than this from the centre, no point of the block is in the band.
+        let band_from_centre = self.band + radius;
         let mut options = QueryOptions::default();
         options.hint = hint.map(|hint| hint.primitive);
         let answer = self.index.closest_point_with(&centre, &options);
         let is_single = counts == [1; 3];
         if is_single || answer.is_none_or(|answer| answer.lower_bound > band_from_centre) {
-            let value = self.value(&centre, answer.as_ref());
-            let far = self.signs.as_ref().filter(|_| !is_single && answer.is_some());
-            layers.fill(first, counts, |number| {
-                let sign = far.and_then(|signs| (signs.far)(&self.grid.point(number)));
-                sign.map_or(value, |sign| signed_value(self.band, self.band, sign))
-            });
+            let value = match (&self.signs, &answer) {
+                (Some(signs), Some(closest)) if !is_single => match (signs.around)(radius, &centre, closest) {
+                    Some(sign) => signed_value(self.band, self.band, sign),
+                    None => {
+                        layers.fill(first, counts, |number| {
+                            signed_value(self.band, self.band, (signs.far)(&self.grid.point(number)))
+                        });
+                        return;
+                    }
+                },
+                _ => self.value(&centre, answer.as_ref()),
+            };
+            layers.fill(first, counts, |_| value);
             return;
         }
         let halves = counts.map(|n| [n.div_ceil(2), n / 2]);

@@ -106,13 +106,13 @@ impl<'a> ShardBatch<'a> {
         self.answer(queries, |query| any_within(&query.point(), radius))
     }
 
-    /// Answers as [`ShardedIndex::is_inside`].
+    /// Answers as [`ShardedIndex::contains`].
     ///
     /// # Errors
     /// They are those of [all batches](Self#errors).
-    pub fn is_inside(self, queries: &[impl Position<f64>]) -> Answers<bool> {
-        self.index.check_inside()?;
-        self.answer(queries, |query| self.index.inside(&query.point()))
+    pub fn contains(self, queries: &[impl Position<f64>]) -> Answers<bool> {
+        let rule = self.index.sign_rule()?;
+        self.answer(queries, |query| self.index.inside(rule, &query.point()))
     }
 
     /// Answers as [`ShardedIndex::first_intersection`].

@@ -2,6 +2,7 @@
 
 use crate::ShardError;
 use p2m_core::Aabb;
+use p2m_field::sign::SignRule;
 use p2m_mixed::Object;
 use p2m_mixed::statistics::Counts;
 use serde::{Deserialize, Serialize};
@@ -15,7 +16,7 @@ pub const MANIFEST_FILE: &str = "manifest.json";
 /// The value of `format` in a manifest.
 const FORMAT: &str = "p2m-shards";
 /// The version of the manifest that this library writes and reads.
-const VERSION: u32 = 1;
+const VERSION: u32 = 2;
 
 /// The description of a sharded index.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -29,6 +30,10 @@ pub struct Manifest {
     pub segments: u64,
     /// The number of points of the whole scene.
     pub points: u64,
+    /// Whether each edge of the triangles has an even number of triangles.
+    pub is_closed: bool,
+    /// Whether as many triangles run through each edge in one direction as in the other.
+    pub is_oriented: bool,
     /// The shards.
     pub shards: Vec<ShardEntry>,
     /// The named parts of the whole scene, in ascending order of ids.
@@ -96,6 +101,17 @@ impl Manifest {
         let mut counts = Counts::default();
         (counts.triangles, counts.segments, counts.points) = (self.triangles, self.segments, self.points);
         counts
+    }
+
+    /// Returns the rule that decides which points are inside, or `None` if the surface is open or the scene has segments
+    /// or points.
+    #[must_use]
+    pub fn sign_rule(&self) -> Option<SignRule> {
+        match (self.segments + self.points, self.is_oriented, self.is_closed) {
+            (0, true, _) => Some(SignRule::Winding),
+            (0, false, true) => Some(SignRule::Parity),
+            _ => None,
+        }
     }
 
     /// Returns the box of the whole scene, which is empty if the scene is.

@@ -104,8 +104,8 @@ pub(crate) fn all_hits(ray: &Ray) -> impl Search<Answer = Vec<ShardHit>> + use<>
 /// Returns the search that adds up the counts of shards. Without a ray the sum is 0.
 pub(crate) fn counts<R: Send>(
     ray: Option<Ray>,
-    count: fn(&dyn RayQuery<f64>, &Ray) -> usize,
-    finish: fn(usize) -> R,
+    count: fn(&dyn RayQuery<f64>, &Ray) -> i64,
+    finish: fn(i64) -> R,
 ) -> impl Search<Answer = R> {
     collect(
         ray,
@@ -123,12 +123,21 @@ pub(crate) fn counts<R: Send>(
 
 /// Returns the search for the number of hits.
 pub(crate) fn count(ray: &Ray) -> impl Search<Answer = usize> + use<> {
-    counts(Some(*ray), |index, ray| index.count(ray), |sum| sum)
+    counts(Some(*ray), |index, ray| as_sum(index.count(ray)), as_count)
 }
 
 /// Returns the search for the number of crossings.
 pub(crate) fn crossings(ray: &Ray) -> impl Search<Answer = usize> + use<> {
-    counts(Some(*ray), |index, ray| index.crossings(ray), |sum| sum)
+    counts(Some(*ray), |index, ray| as_sum(index.crossings(ray)), as_count)
+}
+
+/// Returns a count as a summand. A scene has fewer primitives than i64 counts.
+pub(crate) fn as_sum(count: usize) -> i64 {
+    i64::try_from(count).unwrap_or(i64::MAX)
+}
+
+fn as_count(sum: i64) -> usize {
+    usize::try_from(sum).unwrap_or(usize::MAX)
 }
 
 /// Returns the search that decides whether anything is hit.

@@ -8,6 +8,8 @@ use p2m_core::{
     BruteForce, CertifiedQuery, Closest, ClosestPoint, Element, Hit, NearQuery, PrimitiveId, PrimitiveSet,
     QueryOptions, Ray, RayQuery, Soup,
 };
+use p2m_field::sign::{SignRule, SignedDistance};
+use p2m_mixed::generate::Transform;
 use p2m_mixed::{Object, PieceOptions, Scene};
 use p2m_shards::{
     MANIFEST_FILE, Manifest, ShardClosest, ShardError, ShardHit, ShardOptions, ShardWriter, ShardedIndex,
@@ -314,20 +316,49 @@ fn closed_surfaces_have_an_inside() {
     assert!(shards.manifest().shards.len() > 2);
     let random_point = |_| Point3::from(std::array::from_fn(|_| rng.random_range(-1.2..1.2)));
     let points: Vec<Point3<f64>> = (0..amount(10_000, 300)).map(random_point).collect();
-    let batch = shards.batch().is_inside(&points).unwrap();
+    let batch = shards.batch().contains(&points).unwrap();
     for (query, is_inside) in points.into_iter().zip(batch) {
-        assert_eq!(shards.is_inside(&query).unwrap(), is_inside, "{query}");
+        assert_eq!(shards.contains(&query).unwrap(), is_inside, "{query}");
         let radius = query.coords.norm();
         // The sphere is a polyhedron, whose faces are a little inside.
         if !(0.98..=1.0).contains(&radius) {
             assert_eq!(is_inside, radius < 0.98, "{query}");
         }
     }
-    assert!(!shards.is_inside(&Point3::new(f64::NAN, 0.0, 0.0)).unwrap());
+    assert!(!shards.contains(&Point3::new(f64::NAN, 0.0, 0.0)).unwrap());
+    // Overlapping shells, and the same with half of their triangles turned: the rules are those of one index.
+    let mut scene = p2m_mixed::Scene::default();
+    scene.add("", &sphere).unwrap();
+    scene.add("", &Transform::default().translated([0.9, 0.2, 0.1]).apply(&sphere).unwrap()).unwrap();
+    let turned = scene
+        .soup
+        .triangles()
+        .iter()
+        .enumerate()
+        .map(|(i, [a, b, c])| if i % 2 == 0 { [*a, *b, *c] } else { [*a, *c, *b] });
+    let turned = Soup::from_triangles(scene.soup.positions().to_vec(), turned.collect()).unwrap();
+    for (soup, rule) in [(&*scene.soup, SignRule::Winding), (&turned, SignRule::Parity)] {
+        let folder = tempfile::tempdir().unwrap();
+        let shards = write(rng, folder.path(), soup, ShardOptions::default().with_max_bytes(20_000));
+        assert_eq!(shards.sign_rule().unwrap(), rule);
+        let signed = SignedDistance::new(AabbTree::new(soup).unwrap(), soup).unwrap();
+        assert_eq!(signed.rule(), rule);
+        let points: Vec<Point3<f64>> = (0..amount(10_000, 500))
+            .map(|_| Point3::from(std::array::from_fn(|_| rng.random_range(-1.2..2.2))))
+            .collect();
+        let (inside, expected) =
+            (shards.batch().contains(&points).unwrap(), signed.contains_each(&points, &Default::default()));
+        assert_eq!(inside, expected);
+        assert!(inside.iter().filter(|inside| **inside).count() > points.len() / 20);
+    }
+    let open = Soup::from_triangles(sphere.positions().to_vec(), sphere.triangles()[1..].to_vec()).unwrap();
+    let folder = tempfile::tempdir().unwrap();
+    let shards = write(rng, folder.path(), &open, ShardOptions::default());
+    assert!(matches!(shards.contains(&[0.0; 3]), Err(ShardError::Open)));
     let folder = tempfile::tempdir().unwrap();
     let point = Soup::new(vec![Point3::origin()], [Element::Point(0)]).unwrap();
     let shards = write(rng, folder.path(), &point, ShardOptions::default());
-    assert!(matches!(shards.is_inside(&[0.0; 3]), Err(ShardError::NoInside)));
+    assert!(matches!(shards.contains(&[0.0; 3]), Err(ShardError::NoInside)));
 }
 
 #[test]
@@ -435,8 +466,8 @@ fn a_wrong_file_is_an_error_that_names_it() {
     let text = fs::read_to_string(&manifest).unwrap();
     fs::write(&manifest, text.replacen("\"primitives\": ", "\"primitives\": 1", 1)).unwrap();
     assert!(error_of(folder).ends_with("the manifest is damaged: its checksum is wrong"), "{}", error_of(folder));
-    fs::write(&manifest, text.replacen("\"version\": 1", "\"version\": 2", 1)).unwrap();
-    assert!(error_of(folder).ends_with("the manifest has version 2, but this program reads version 1"));
+    fs::write(&manifest, text.replacen("\"version\": 2", "\"version\": 3", 1)).unwrap();
+    assert!(error_of(folder).ends_with("the manifest has version 3, but this program reads version 2"));
     fs::write(&manifest, "{}").unwrap();
     assert!(error_of(folder).contains("not the manifest of a sharded index"), "{}", error_of(folder));
     fs::remove_file(&manifest).unwrap();

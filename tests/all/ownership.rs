@@ -5,7 +5,7 @@
 use nalgebra::{Point3, Rotation3, Vector3};
 use p2m::batch::BatchOptions;
 use p2m::core::IndexStats;
-use p2m::field::sign::{Sign, SignError, SignedDistance};
+use p2m::field::sign::{Sign, SignError, SignRule, SignedDistance};
 use p2m::scene::generate::{IcoSphere, ico_sphere};
 use p2m::{
     AabbTree, AnyIndex, BruteForce, BuildError, CertifiedQuery, ClosestPoint, KdopTree, NearQuery, OctreeIndex,
@@ -108,7 +108,7 @@ fn signs_are_owned_cloned_sent_and_batched() {
     let expected: Vec<_> = queries.iter().map(|query| borrowed.closest_point(query)).collect();
     assert!(expected.iter().flatten().any(|signed| signed.sign == Sign::Inside));
     let copy = signed.clone();
-    assert_eq!(format!("{copy:?}"), "SignedDistance { rule: \"closed surface\", .. }");
+    assert_eq!(format!("{copy:?}"), "SignedDistance { rule: Winding, .. }");
     let of_thread = std::thread::spawn({
         let queries = queries.clone();
         move || queries.iter().map(|query| copy.closest_point(query)).collect::<Vec<_>>()
@@ -243,7 +243,7 @@ fn an_index_of_another_scene_has_no_signs() {
     let index = || AabbTree::new(ball()).expect("valid");
     let other = SignError::OtherScene { triangle: 0, vertex: 0 };
     assert_eq!(SignedDistance::new(index(), Arc::clone(&shifted)).unwrap_err(), other);
-    assert_eq!(SignedDistance::with_winding_numbers(index(), Arc::clone(&shifted), 0.01).unwrap_err(), other);
+    assert_eq!(SignedDistance::with_rule(index(), Arc::clone(&shifted), SignRule::Parity).unwrap_err(), other);
     // A scene of other kinds has that error, whatever the ids of its triangles are.
     let elements = [p2m::Element::Segment([2, 3]), p2m::Element::Point(3), p2m::Element::Triangle([0, 1, 2])];
     let mixed = Soup::new(ball().positions()[..4].to_vec(), elements).expect("valid");

@@ -186,6 +186,40 @@ pub(crate) fn is_any_within(
 
 #[pymethods]
 impl Index {
+    /// Returns the name of the rule that decides signs, and a sentence that says why, if the surface is open or not
+    /// consistently oriented.
+    fn sign_rule(&self, py: Python<'_>, sign: &str, threads: usize) -> PyResult<(&'static str, Option<&'static str>)> {
+        let signed = self.signs(py, SignRule::from_name(sign)?, threads)?;
+        Ok((signed.rule().name(), signed.note()))
+    }
+
+    /// Writes to `out` whether each point is inside.
+    fn contains(
+        &self,
+        py: Python<'_>,
+        points: Coordinates<'_>,
+        out: &Bound<'_, PyDict>,
+        sign: &str,
+        threads: usize,
+        progress: Option<Py<PyAny>>,
+    ) -> PyResult<()> {
+        let signed = self.signs(py, SignRule::from_name(sign)?, threads)?;
+        let mut array = borrowed::<bool>(out, "contains")?;
+        let out = slice(&mut array)?.unwrap_or_default();
+        with_positions!(points, points => {
+            let work = |threads: &Threads, monitor: &Monitor| {
+                check_finite("points", points, 1)?;
+                answer_in_parts(points.len(), out, threads, monitor, &|range, out: &mut [bool]| {
+                    let batch = batch_options(range.len(), false);
+                    let points: Vec<Point3<f64>> = points[range].iter().map(Position::point).collect();
+                    out.copy_from_slice(&signed.contains_each(&points, &batch));
+                });
+                Ok(())
+            };
+            self.run(py, points.len(), threads, progress, work)
+        })
+    }
+
     /// Writes signed distances to `out`.
     fn signed_distance(
         &self,

@@ -224,8 +224,8 @@ impl Shards {
         Ok(())
     }
 
-    /// Writes to `out` whether each query is inside of the closed surface that the triangles form.
-    fn is_inside(
+    /// Writes to `out` whether each query is inside of the surface that the triangles form.
+    fn contains(
         &self,
         py: Python<'_>,
         points: Coordinates<'_>,
@@ -233,12 +233,12 @@ impl Shards {
         threads: usize,
         progress: Option<Py<PyAny>>,
     ) -> PyResult<()> {
-        let mut array = borrowed::<bool>(out, "is_inside")?;
+        let mut array = borrowed::<bool>(out, "contains")?;
         let out = slice(&mut array)?.unwrap_or_default();
         with_positions!(points, points => {
             let (size, check) = ((points.len(), ANSWERS_PER_PART), || check_finite("points", points, 1));
             self.answer(py, size, out, (threads, progress), check, |batch, range, out: &mut [bool]| {
-                out.copy_from_slice(&batch.is_inside(&points[range]).map_err(shard_error)?);
+                out.copy_from_slice(&batch.contains(&points[range]).map_err(shard_error)?);
                 Ok(())
             })?;
         });

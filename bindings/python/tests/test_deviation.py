@@ -65,11 +65,11 @@ def test_scans_without_deviations_have_nan() -> None:
 def test_signs_are_those_that_are_asked_for() -> None:
     whole = cube()
     hole = p2m.Scene(whole.vertices, triangles=whole.triangles[:-2])
-    with pytest.warns(UserWarning, match="winding numbers decide"):
+    with pytest.warns(UserWarning, match="the surface is open"):
         found = p2m.deviation([[1.0, 1.0, 0.5]], hole)
     assert found.values[0] == -0.5
     with pytest.raises(ValueError, match="open"):
-        p2m.deviation([[1.0, 1.0, 0.5]], hole, sign="closed")
+        p2m.deviation([[1.0, 1.0, 0.5]], hole, sign="parity")
     cables = p2m.Scene([[0, 0, 0], [4, 0, 0]], segments=[[0, 1]])
     with pytest.raises(ValueError, match="no side"):
         p2m.deviation([[1.0, 1.0, 0.5]], cables)

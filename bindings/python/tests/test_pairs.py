@@ -434,7 +434,7 @@ def test_hausdorff_of_libigl_is_a_lower_bound() -> None:
 def test_signed_distances_may_be_limited(ball: p2m.Scene, queries: np.ndarray) -> None:
     for backend in ["aabb", "octree"]:
         index = p2m.Index(ball, backend)
-        for options in [{"sign": "closed"}, {"sign": "winding", "inside": "positive"}]:
+        for options in [{"sign": "parity"}, {"sign": "winding", "inside": "positive"}]:
             whole = index.signed_distance(queries, **options)
             limited = index.signed_distance(queries, max_distance=0.4, **options)
             near = np.abs(whole) <= 0.4

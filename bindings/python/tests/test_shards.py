@@ -124,18 +124,18 @@ def test_signed_distances_are_those_of_one_index(tmp_path: Path, options: Any) -
     shards = p2m.write_shards(scene, tmp_path / "ball", 10_000)
     assert len(shards.shards) > 4
     queries = np.concatenate([QUERIES * 0.7, vertices[:20]]).reshape(-1, 4, 3)
-    expected = p2m.Index(scene).signed_distance(queries, sign="closed", **options)
+    expected = p2m.Index(scene).signed_distance(queries, sign="parity", **options)
     found = shards.signed_distance(queries, **options)
     assert found.tobytes() == expected.tobytes() and np.any(found < 0) and np.any(found > 0)
     away = queries.reshape(-1, 3)[:300]
-    assert np.array_equal(shards.is_inside(away), p2m.Index(scene).signed_distance(away) < 0)
-    for sign in ["closed", "winding"]:
+    assert np.array_equal(shards.contains(away), p2m.Index(scene).signed_distance(away) < 0)
+    for sign in ["parity", "winding"]:
         with pytest.raises(ValueError, match=f"sign: '{sign}' is not for shards, which have only 'auto'"):
             shards.signed_distance(queries, sign=sign)  # type: ignore[arg-type]
 
 
 def test_scenes_with_points_have_no_inside(folder: Path) -> None:
-    for query in [p2m.Shards(folder).is_inside, p2m.Shards(folder).signed_distance]:
+    for query in [p2m.Shards(folder).contains, p2m.Shards(folder).signed_distance]:
         with pytest.raises(ValueError, match="no inside"):
             query(np.zeros((2, 3)))
 
@@ -196,7 +196,7 @@ def test_parts_are_one_scene(tmp_path: Path) -> None:
 def test_an_empty_scene_has_no_answers(tmp_path: Path) -> None:
     shards = p2m.write_shards([], tmp_path / "empty")
     assert len(shards) == 0 and shards.shards == [] and np.all(np.isnan(shards.bounds))
-    assert np.all(np.isinf(shards.distance(QUERIES))) and not np.any(shards.is_inside(QUERIES))
+    assert np.all(np.isinf(shards.distance(QUERIES))) and not np.any(shards.contains(QUERIES))
     answer = p2m.Index(p2m.Scene([])).closest(QUERIES, fields=FIELDS)
     assert_same(shards.closest(QUERIES, fields=FIELDS), answer)
 

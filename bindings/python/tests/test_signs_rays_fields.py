@@ -24,7 +24,7 @@ def test_signs_tell_inside_from_outside(ball: p2m.Scene) -> None:
     expected = None
     for backend in BACKENDS:
         index = p2m.Index(ball, backend)
-        for sign in ["auto", "closed", "winding"]:
+        for sign in ["auto", "parity", "winding"]:
             signed = index.signed_distance(points, sign=sign)
             np.testing.assert_array_equal(np.abs(signed), index.distance(points))
             assert ((signed < 0) == (radius < 1))[clear].all()
@@ -38,7 +38,7 @@ def test_open_surfaces_have_winding_numbers_alone(ball: p2m.Scene) -> None:
     index = p2m.Index(p2m.Scene(ball.vertices, ball.triangles[5:]))
     assert float(index.signed_distance([0, 0, 0])) < 0
     with pytest.raises(ValueError, match="open at edge"):
-        index.signed_distance([0, 0, 0], sign="closed")
+        index.signed_distance([0, 0, 0], sign="parity")
 
 
 @pytest.mark.parametrize("backend", ["aabb", "kdop"])

@@ -171,13 +171,28 @@ pub fn map<Q: Sync, R: Send>(
     answer: impl Fn(&Q) -> R + Sync,
 ) -> Vec<R> {
     let mut out: Vec<Option<R>> = std::iter::repeat_with(|| None).take(queries.len()).collect();
-    answer_parts(queries, out.as_mut_slice(), batch.parallel, &|queries, out| {
-        for i in order(queries, batch, |query| position(query).coords.into()) {
-            out[i as usize] = Some(answer(&queries[i as usize]));
+    map_parts_into(queries, batch, position, &mut out, |queries, order, out| {
+        for i in order {
+            out[*i as usize] = Some(answer(&queries[*i as usize]));
         }
     });
     // Each query was answered, so none is left out.
     out.into_iter().flatten().collect()
+}
+
+/// Answers parts of a batch by a function that takes the queries of a part, the order in which neighbours follow each
+/// other, and the places of their answers.
+#[doc(hidden)]
+pub fn map_parts_into<Q: Sync, R: Send>(
+    queries: &[Q],
+    batch: &BatchOptions,
+    position: impl Fn(&Q) -> Point3<f64> + Sync,
+    out: &mut [R],
+    answer: impl Fn(&[Q], &[u32], &mut [R]) + Sync,
+) {
+    answer_parts(queries, out, batch.parallel, &|queries, out| {
+        answer(queries, &order(queries, batch, |query| position(query).coords.into()), out);
+    });
 }
 
 /// Answers queries for the closest point into any place for answers.

@@ -1,7 +1,7 @@
 //! Collectors of hits: they decide which hits a search has to find, and keep them.
 
 use super::crossing::Crossing;
-use super::hit::Hit;
+use super::hit::{Hit, Side};
 use crate::PrimitiveId;
 use crate::kernel::vector::V3;
 use std::ops::ControlFlow;
@@ -59,6 +59,8 @@ pub struct Hits<'r> {
     /// The number of hits, in the modes that count.
     #[doc(hidden)]
     pub count: usize,
+    /// The number of crossings from back to front less those from front to back, in the mode of crossings.
+    pub(super) signed_count: i64,
 }
 
 /// A collector that passes all primitives which a ray may hit to a function, and tests none of them.
@@ -102,7 +104,7 @@ enum HitMode {
     All,
     /// The number of hits.
     Count,
-    /// The number of crossings of the surface.
+    /// The number of crossings of the surface, and their sum with signs.
     Crossings,
 }
 
@@ -138,7 +140,7 @@ impl Hits<'_> {
     }
 
     fn new(mode: HitMode) -> Self {
-        Self { mode, one: None, all: Vec::new(), count: 0 }
+        Self { mode, one: None, all: Vec::new(), count: 0, signed_count: 0 }
     }
 }
 
@@ -165,7 +167,11 @@ impl<'r> RayCollector<'r> for Hits<'r> {
             }
             HitMode::First => self.offer_first(primitive, crossing),
             HitMode::All => self.all.push(crossing.hit(primitive)),
-            HitMode::Count | HitMode::Crossings => self.count += 1,
+            HitMode::Count => self.count += 1,
+            HitMode::Crossings => {
+                self.count += 1;
+                self.signed_count += if crossing.side() == Side::Back { 1 } else { -1 };
+            }
         }
         ControlFlow::Continue(())
     }

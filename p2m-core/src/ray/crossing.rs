@@ -141,13 +141,20 @@ impl<'a> Crossing<'a> {
         Self { low: t, high: t, ..self }
     }
 
+    /// Returns the side of the primitive that the ray hits.
+    #[inline]
+    #[must_use]
+    pub fn side(&self) -> Side {
+        match &self.source {
+            HitSource::Face(_, side) => *side,
+            HitSource::Known(hit) => hit.side,
+        }
+    }
+
     /// Returns the hit with its parameter.
     #[must_use]
     pub fn hit(&self, primitive: PrimitiveId) -> Hit {
-        let side = match &self.source {
-            HitSource::Face(_, side) => *side,
-            HitSource::Known(hit) => hit.side,
-        };
+        let side = self.side();
         let Ray { origin, direction, .. } = *self.ray;
         Hit { primitive, parameter: self.parameter(), side, origin, direction, source: self.source }
     }

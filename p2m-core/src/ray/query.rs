@@ -120,6 +120,18 @@ pub trait RayQuery<T: Real> {
         self.search_ray(ray, &mut hits);
         hits.count
     }
+
+    /// Returns how often the ray crosses the surface from the back of a triangle to its front, less the number of
+    /// crossings from front to back. Crossings are those of [`crossings`](Self::crossings).
+    ///
+    /// For a closed surface whose neighbouring triangles have the same orientation, this is the winding number of the
+    /// origin of the ray, whatever its direction: 1 in a surface whose fronts are outside, and 2 where two of them
+    /// overlap.
+    fn signed_crossings(&self, ray: &Ray) -> i64 {
+        let mut hits = Hits::crossings();
+        self.search_ray(ray, &mut hits);
+        hits.signed_count
+    }
 }
 
 impl<T: Real, S: PrimitiveSet<T>> RayQuery<T> for BruteForce<S> {

@@ -2,86 +2,123 @@
 //!
 //! Two surfaces with the same boundary have the same solid angle up to multiples of 4 pi. So the gradient of the solid
 //! angle is an integral along the boundary, that of dl x r / |r|^3 (the law of Biot and Savart; **cited**: winding
-//! numbers are harmonic functions off the surface \[Jacobson2013\]). Let a point have the distance d from a boundary of
-//! length L. Then the winding number varies by at most r L / (4 pi (d - r)^2) within r of the point, unless a triangle
-//! is in between. It is constant if there is no boundary.
+//! numbers are harmonic functions off the surface \[Jacobson2013\]). Along a path that does not cross the surface, the
+//! winding number changes at most by the length of the path times the largest sum of l / (4 pi d^2) over the edges of
+//! the boundary, which have the length l and the distance d from a point of the path.
 
+use super::surface::Surface;
 use nalgebra::Point3;
-use p2m_bvh::TreeIndex;
-use p2m_core::engine::weld::{VertexWelder, group_by_vertex};
-use p2m_core::{Aabb, BuildError, ClosestPoint, PrimitiveSet, Soup};
+use p2m_core::Soup;
+use p2m_core::engine::vector::{V3, length, sub};
 use std::f64::consts::PI;
 
-/// The boundary has a tree of its edges only if it has at least this many triangles for each edge.
-const MIN_TRIANGLES_PER_EDGE: usize = 4;
-
-/// The edges through which triangles run more often in one direction than in the other.
+/// The edges through which triangles run more often in one direction than in the other, as a tree.
 #[derive(Clone)]
 pub(super) struct Boundary {
-    /// A tree of the edges, or `None` if there are so many edges that they are near to every point.
-    edges: Option<TreeIndex<f64, Soup<f64>, Aabb<f64>>>,
-    /// The total length of the edges, each multiplied by its excess of directions.
-    length: f64,
+    /// The nodes, from the root. The two children of a node are side by side.
+    nodes: Vec<Node>,
 }
 
+#[derive(Clone)]
+struct Node {
+    /// The corners of the box of the edges.
+    bounds: [V3; 2],
+    /// The length of the diagonal of the box.
+    diagonal: f64,
+    /// The total length of the edges over 4 pi.
+    length: f64,
+    /// The index of the first child, or 0 for a single edge.
+    children: usize,
+}
+
+/// The largest diagonal of a node that is not divided, in units of its distance.
+const MAX_DIAGONAL: f64 = 0.5;
+/// Room for the rounding of sums and distances.
+const INFLATION: f64 = 1.0 + 1e-9;
+
 impl Boundary {
-    /// # Errors
-    /// Errors of building a tree of the edges.
-    pub(super) fn new(soup: &Soup<f64>) -> Result<Self, BuildError> {
-        let welder = VertexWelder::new(soup);
-        let mut position_of = vec![0; welder.vertex_count];
+    pub(super) fn new(soup: &Soup<f64>, surface: &Surface) -> Self {
+        let mut position_of = vec![0; surface.welder.vertex_count];
         for i in soup.triangles().as_flattened() {
-            position_of[welder.vertex_ids[*i as usize] as usize] = *i;
+            position_of[surface.welder.vertex_ids[*i as usize] as usize] = *i as usize;
         }
-        // A half-edge is stored at its lower vertex, with the higher vertex and whether it runs upwards.
-        let half_edges = soup.triangles().iter().flat_map(|corners| {
-            let [a, b, c] = welder.weld(*corners);
-            let edges = [(a, b), (b, c), (c, a)].into_iter().filter(|(a, b)| a != b);
-            edges.map(|(a, b)| (a.min(b), (a.max(b), a < b)))
-        });
-        let (mut edges, mut length, mut low) = (Soup::default(), 0.0, 0u32);
-        let mut pushed = Ok(());
-        group_by_vertex(welder.vertex_count, half_edges, |half_edges: &[(u32, bool)]| {
-            for half_edges in half_edges.chunk_by(|x, y| x.0 == y.0) {
-                let upwards = half_edges.iter().filter(|half_edge| half_edge.1).count();
-                let excess = upwards.abs_diff(half_edges.len() - upwards);
-                if excess > 0 {
-                    let ends = [low, half_edges[0].0].map(|vertex| position_of[vertex as usize]);
-                    let [a, b] = ends.map(|i| soup.positions()[i as usize]);
-                    length += (b - a).norm() * excess as f64;
-                    let ends = [a, b].map(|end| edges.push_position(end));
-                    let element = p2m_core::Element::Segment(ends.map(|i| u32::try_from(i).unwrap_or(u32::MAX)));
-                    pushed = pushed.and(edges.push(element).map(|_| ()));
-                }
+        let position = |vertex: u32| -> V3 { soup.positions()[position_of[vertex as usize]].into() };
+        let mut edges: Vec<[V3; 2]> = surface.boundary.iter().map(|ends| ends.map(position)).collect();
+        let mut nodes = Vec::with_capacity(2 * edges.len());
+        if !edges.is_empty() {
+            nodes.push(Node::new(&edges));
+            build(&mut edges, 0, &mut nodes);
+        }
+        Self { nodes }
+    }
+
+    /// Returns an upper bound on the change of winding numbers along a path that does not cross the surface. The path has
+    /// at most the length `path`, and is within `radius` of `centre`. Changes of more than `enough` are not told apart.
+    pub(super) fn max_change(&self, path: f64, radius: f64, centre: &Point3<f64>, enough: f64) -> f64 {
+        let centre: V3 = (*centre).into();
+        let mut gradient = 0.0;
+        // Each level halves the edges, so there are at most 32 levels.
+        let mut stack = [0usize; 64];
+        let mut len = usize::from(!self.nodes.is_empty());
+        while len > 0 {
+            len -= 1;
+            let node = &self.nodes[stack[len]];
+            let beyond =
+                [0, 1, 2].map(|k| f64::max(node.bounds[0][k] - centre[k], centre[k] - node.bounds[1][k]).max(0.0));
+            let distance = length(beyond) - radius;
+            if node.children != 0 && node.diagonal > MAX_DIAGONAL * distance {
+                stack[len] = node.children;
+                stack[len + 1] = node.children + 1;
+                len += 2;
+            } else if distance > 0.0 {
+                gradient += node.length / distance / distance;
+            } else {
+                return f64::INFINITY;
             }
-            low += 1;
-        });
-        pushed?;
-        let has_tree = edges.len() * MIN_TRIANGLES_PER_EDGE <= soup.len();
-        let edges = has_tree.then(|| TreeIndex::new(edges)).transpose()?;
-        Ok(Self { edges, length: length * (1.0 + 1e-9) })
+            if gradient * path > enough {
+                break;
+            }
+        }
+        gradient * path * INFLATION
     }
+}
 
-    /// Returns whether the triangles have no boundary.
-    pub(super) fn is_empty(&self) -> bool {
-        self.length == 0.0
+impl Node {
+    fn new(edges: &[[V3; 2]]) -> Self {
+        let corners = edges.as_flattened();
+        let end =
+            |pick: fn(f64, f64) -> f64| corners.iter().fold(corners[0], |a, b| [0, 1, 2].map(|k| pick(a[k], b[k])));
+        let bounds = [end(f64::min), end(f64::max)];
+        let total: f64 = edges.iter().map(|[a, b]| length(sub(*b, *a))).sum();
+        let diagonal = length(sub(bounds[1], bounds[0]));
+        Self { bounds, diagonal, length: total / (4.0 * PI) * INFLATION, children: 0 }
     }
+}
 
-    /// Returns an upper bound on the change of winding numbers within `radius` of a point, if no triangle
-    /// is in between.
-    pub(super) fn max_change_within(&self, radius: f64, centre: &Point3<f64>) -> f64 {
-        let Some(edges) = &self.edges else { return f64::INFINITY };
-        let Some(closest) = edges.closest_point(centre) else { return 0.0 };
-        let gap = closest.lower_bound - radius;
-        if gap > 0.0 { radius * (self.length / gap) / gap / (4.0 * PI) * (1.0 + 1e-9) } else { f64::INFINITY }
+/// Appends the nodes below a node.
+fn build(edges: &mut [[V3; 2]], node: usize, nodes: &mut Vec<Node>) {
+    if edges.len() < 2 {
+        return;
     }
+    let [low, high] = nodes[node].bounds;
+    let extent = sub(high, low);
+    let axis = (0..3).fold(0, |longest, k| if extent[k] > extent[longest] { k } else { longest });
+    let (centre, half) = (|[a, b]: &[V3; 2]| a[axis] + b[axis], edges.len() / 2);
+    edges.select_nth_unstable_by(half, |a, b| centre(a).total_cmp(&centre(b)));
+    let (one, other) = edges.split_at_mut(half);
+    let children = nodes.len();
+    nodes[node].children = children;
+    nodes.push(Node::new(one));
+    nodes.push(Node::new(other));
+    build(one, children, nodes);
+    build(other, children + 1, nodes);
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
     use crate::sign::winding::WindingNumbers;
-    use p2m_core::BruteForce;
+    use p2m_core::{BruteForce, ClosestPoint};
     use p2m_mixed::generate::{IcoSphere, TorusKnot, ico_sphere, torus_knot};
     use p2m_testkit::vector;
     use rand::RngExt;
@@ -89,7 +126,7 @@ mod tests {
     #[test]
     fn winding_numbers_change_by_at_most_the_bound_of_the_boundary() {
         let knot = torus_knot(&TorusKnot::default()).expect("valid");
-        assert!(Boundary::new(&knot).expect("valid").is_empty());
+        assert!(Surface::new(&knot).expect("triangles").boundary.is_empty());
         let ball = ico_sphere(&IcoSphere { frequency: 8 }).expect("valid");
         let low = |t: &[u32; 3]| t.iter().all(|i| ball.positions()[*i as usize].x <= 0.0);
         let half = ball.triangles().iter().filter(|t| low(t)).copied().collect();
@@ -99,10 +136,10 @@ mod tests {
         rest.push(rest[500]);
         let holes = Soup::from_triangles(knot.positions().to_vec(), rest).expect("valid");
         for (soup, edges, name) in [(half, 24, "half a ball"), (holes, 6, "a hole")] {
-            let boundary = Boundary::new(&soup).expect("valid");
-            let found = boundary.edges.as_ref().expect("few").set().len();
+            let surface = Surface::new(&soup).expect("triangles");
+            let (boundary, found) = (Boundary::new(&soup, &surface), surface.boundary.len());
             assert!(found == edges || name == "half a ball" && found > 10, "{name}: {found} edges");
-            let winding = WindingNumbers::new(&soup, 0.01).expect("triangles");
+            let winding = WindingNumbers::new(&soup).expect("triangles");
             let surface = BruteForce::new(&soup).expect("valid");
             let (mut bounded, mut largest) = (0, 0.0f64);
             let cases = p2m_testkit::cases(2000, 60);
@@ -110,13 +147,13 @@ mod tests {
                 let mut rng = p2m_testkit::rng(name, case);
                 let centre = Point3::from(vector(&mut rng) * 1.5);
                 let radius = surface.closest_point(&centre).expect("not empty").distance * rng.random_range(0.01..0.99);
-                let bound = boundary.max_change_within(radius, &centre);
+                let bound = boundary.max_change(radius, radius, &centre, f64::INFINITY);
                 if bound > 0.5 {
                     continue;
                 }
                 bounded += 1;
                 let other = centre + vector(&mut rng).normalize() * radius;
-                let change = (winding.exact_number(&other) - winding.exact_number(&centre)).abs();
+                let change = (winding.sum(&other) - winding.sum(&centre)).abs();
                 assert!(change <= bound + 1e-9, "{name}, case {case}: {change} for {bound}");
                 largest = largest.max(change / bound);
             }

@@ -1,14 +1,12 @@
 //! Signed distances: the side of a surface that a point is on.
 //!
-//! [`SignedDistance`] adds a sign to the answers of any index over triangles, by one of two rules:
-//!
-//! - **Closed surfaces** ([`SignedDistance::new`]): a point is inside if a ray from it crosses the surface an odd
-//!   number of times. The angle-weighted pseudonormal at the closest point gives the same sign without a ray
-//!   \[Baerentzen2005\]. Where rounding makes its sign ambiguous, exact ray crossings decide.
-//! - **Any triangles** ([`SignedDistance::with_winding_numbers`]): a point is inside if its generalised winding number
-//!   \[Jacobson2013\] exceeds a half in magnitude. The triangles may have holes, be unconnected, or intersect each
-//!   other. Dipoles stand for far parts of the scene \[Barill2018\], within an error that is bounded
-//!   ([`WindingNumbers`]).
+//! [`SignedDistance`] adds a sign to the answers of any index over triangles. A point is inside if its generalised
+//! winding number \[Jacobson2013\] exceeds a half in magnitude ([`SignRule::Winding`]). The triangles may have holes, be
+//! unconnected, overlap or intersect each other. For a closed surface whose neighbouring triangles run through their
+//! common edges in opposite directions, the number is an integer: the signed number of crossings of a ray, which is
+//! decided without rounding. The normal at the closest point gives the same sign without a ray, and is used where that
+//! is proved. Surfaces that are closed but not consistently oriented have their signs by parity ([`SignRule::Parity`]),
+//! unless another rule is chosen.
 //!
 //! ```
 //! use nalgebra::Point3;
@@ -25,22 +23,28 @@
 //! ```
 
 mod boundary;
-mod pseudonormal;
-mod topology;
+mod caps;
+mod certificate;
+mod contains;
+mod crowding;
+mod edge_sums;
+mod solid_angles;
+mod surface;
 mod types;
 mod winding;
 
-pub use types::{SharedSoup, Sign, SignError, Signed};
+pub use edge_sums::EdgeSums;
+pub use types::{SharedSoup, Sign, SignError, SignRule, Signed};
 pub use winding::WindingNumbers;
 
+use certificate::Certificates;
 use nalgebra::Point3;
 use p2m_bvh::TreeIndex;
 use p2m_core::batch::{self, BatchOptions};
-use p2m_core::{Aabb, Closest, ClosestPoint, Position, PrimitiveId, QueryOptions, Real, Soup};
-use pseudonormal::Pseudonormals;
+use p2m_core::{Aabb, Closest, ClosestPoint, Position, QueryOptions, Ray, RayQuery, Real, Soup};
 use std::sync::Arc;
-use topology::{RayTree, Topology};
-use types::check_kinds;
+use surface::Surface;
+use types::{ClosestFeature, Counter, check_kinds, ray};
 
 /// An index over triangles whose answers have signs.
 ///
@@ -69,7 +73,7 @@ use types::check_kinds;
 #[derive(Clone)]
 pub struct SignedDistance<I, S> {
     index: I,
-    rule: SignRule<S>,
+    signs: Box<Signs<S>>,
 }
 
 /// Signed distances by an AABB tree over a scene that is shared.
@@ -78,37 +82,25 @@ pub type SharedDistance = SignedDistance<TreeIndex<f64, Arc<Soup<f64>>, Aabb<f64
 impl<I, S> std::fmt::Debug for SignedDistance<I, S> {
     /// Writes the name of the rule. The index and its tables are left out, because they are as large as the scene.
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        let rule = match &self.rule {
-            SignRule::Closed(_) => "closed surface",
-            SignRule::Winding(_) => "winding numbers",
-        };
-        f.debug_struct("SignedDistance").field("rule", &rule).finish_non_exhaustive()
+        f.debug_struct("SignedDistance").field("rule", &self.signs.rule).finish_non_exhaustive()
     }
 }
 
-/// The rule that decides the sign.
+/// What decides the signs of a scene.
 #[derive(Clone)]
-enum SignRule<S> {
-    Closed(Box<Pseudonormals<S>>),
-    Winding(Box<WindingNumbers<S>>),
-}
-
-impl<S: SharedSoup> SignRule<S> {
-    fn sign<T: Real>(&self, query: &Point3<T>, closest: &Closest<T>) -> Sign {
-        if closest.distance == T::zero() {
-            return Sign::Boundary;
-        }
-        let query = query.map(Real::to_f64);
-        match self {
-            Self::Closed(normals) => normals.sign(&query, &closest.into()),
-            Self::Winding(winding) => winding.sign(&query),
-        }
-    }
+struct Signs<S> {
+    soup: S,
+    rule: SignRule,
+    winding: WindingNumbers<S>,
+    /// What is proved about the normals of a surface whose signs change at the surface alone.
+    certificates: Option<Certificates>,
+    bounds: Aabb<f64>,
+    ray_count: Counter,
 }
 
 impl SharedDistance {
-    /// Builds an AABB tree over a closed surface, with signs as [`SignedDistance::new`] makes them. A scene of its own
-    /// is shared by `Arc::new(soup)`.
+    /// Builds an AABB tree over triangles, with signs as [`SignedDistance::new`] makes them. A scene of its own is shared
+    /// by `Arc::new(soup)`.
     ///
     /// # Errors
     /// It returns the errors of [`SignedDistance::new`].
@@ -118,52 +110,83 @@ impl SharedDistance {
 }
 
 impl<I, S: SharedSoup> SignedDistance<I, S> {
-    /// Makes signs for a closed surface. `index` has to be an index over `soup`.
+    /// Makes signs for any triangles. `index` has to be an index over `soup`.
     ///
-    /// The orientation of the surface is irrelevant, and parts of it may be inside of others. Vertices are welded where
-    /// they have the same coordinates. An empty scene is not an error.
+    /// The rule is [`SignRule::Winding`], except for surfaces that are closed but not consistently oriented, where it is
+    /// [`SignRule::Parity`]. A surface is closed if each of its edges has an even number of triangles, and consistently
+    /// oriented if as many of them run through the edge in one direction as in the other. Vertices are welded where they
+    /// have the same coordinates. An empty scene is not an error.
     ///
     /// # Accuracy
-    /// Signs are those of an exact count of crossings under two conditions. The surface does not intersect itself,
-    /// which [`find_self_intersection`] checks; otherwise the sign is that of the nearest part, which differs where
-    /// that part is inside of others. And no two sheets of the surface are closer to each other than the error of a
-    /// distance, which is 16 u M, with the u of the index, if the farthest vertex of the closest triangle has the
-    /// distance M. This is cited \[Baerentzen2005\] for distances without rounding, and observed on all models that are
-    /// closed and do not intersect themselves (`cargo test -p p2m-field --test all signs::`).
+    /// The signs of surfaces without a boundary are those of an exact count of crossings (proved, docs/proofs/fields.md).
+    /// Signs by winding numbers of surfaces with a boundary are certain but for the rounding of sums of solid angles,
+    /// whose bound is observed; where the bound does not decide, the sign is [`Sign::Undefined`].
     ///
     /// # Errors
-    /// [`SignError::OtherKinds`], [`SignError::Open`], [`SignError::NotOriented`], [`SignError::OtherScene`] and
-    /// [`SignError::Build`].
+    /// [`SignError::OtherKinds`], [`SignError::OtherScene`] and [`SignError::Build`].
     ///
     /// # Complexity
-    /// O(n log n) time. Memory is 13 bytes for each triangle, 28 bytes for each vertex, and a tree of boxes
-    /// for ambiguous queries.
+    /// O(n log n) time. Memory is 100 bytes for each triangle, 36 bytes for each vertex, and 300 bytes for each edge of
+    /// the boundary.
     pub fn new<T: Real>(index: I, soup: S) -> Result<Self, SignError>
     where
         I: ClosestPoint<T>,
     {
-        check_scene(&index, &soup)?;
-        let normals = Pseudonormals::new(soup, &index)?;
-        Ok(Self { index, rule: SignRule::Closed(Box::new(normals)) })
+        Self::prepare(index, soup, None)
     }
 
-    /// Makes signs by winding numbers. `index` has to be an index over `soup`.
-    ///
-    /// Winding numbers are computed to `accuracy`, for which 0.01 is a good choice. All triangles are summed up if that
-    /// accuracy does not decide on which side of a half the number is. Triangles of opposite orientations count with
-    /// opposite signs, and a surface may be inside out as a whole.
+    /// Makes signs by a rule of your choice.
     ///
     /// # Errors
-    /// [`SignError::OtherKinds`], [`SignError::OtherScene`], [`SignError::Accuracy`] and [`SignError::Build`].
+    /// Those of [`new`](Self::new), and [`SignError::Open`] for [`SignRule::Parity`] if an edge has an odd number of
+    /// triangles.
     ///
     /// # Complexity
-    /// The complexity is that of [`WindingNumbers::new`].
-    pub fn with_winding_numbers<T: Real>(index: I, soup: S, accuracy: f64) -> Result<Self, SignError>
+    /// The complexity is that of [`new`](Self::new).
+    pub fn with_rule<T: Real>(index: I, soup: S, rule: SignRule) -> Result<Self, SignError>
+    where
+        I: ClosestPoint<T>,
+    {
+        Self::prepare(index, soup, Some(rule))
+    }
+
+    fn prepare<T: Real>(index: I, soup: S, rule: Option<SignRule>) -> Result<Self, SignError>
     where
         I: ClosestPoint<T>,
     {
         check_scene(&index, &soup)?;
-        Ok(Self { index, rule: SignRule::Winding(Box::new(WindingNumbers::new(soup, accuracy)?)) })
+        Ok(Self { index, signs: Box::new(Signs::new(soup, rule, T::UNIT_ROUNDOFF)?) })
+    }
+
+    /// Returns the rule that decides signs.
+    pub fn rule(&self) -> SignRule {
+        self.signs.rule
+    }
+
+    /// Returns whether signs change at the surface alone, because it has no boundary as far as the rule is concerned.
+    pub fn is_closed(&self) -> bool {
+        self.signs.rule == SignRule::Parity || self.signs.winding.is_closed()
+    }
+
+    /// Returns a sentence for people that says why the rule was chosen, unless the surface has no boundary and its
+    /// triangles have the same orientation.
+    pub fn note(&self) -> Option<&'static str> {
+        match self.signs.rule {
+            _ if self.signs.winding.is_closed() => None,
+            SignRule::Winding => Some(
+                "the surface is open: points are inside where the winding number exceeds a half, which is a guess near \
+                 holes",
+            ),
+            SignRule::Parity => Some(
+                "the surface is closed, but its triangles have different orientations: points are inside where a ray \
+                 crosses it an odd number of times",
+            ),
+        }
+    }
+
+    /// Returns the winding numbers of the surface.
+    pub fn winding_numbers(&self) -> &WindingNumbers<S> {
+        &self.signs.winding
     }
 
     /// Returns the index.
@@ -215,45 +238,95 @@ impl<I, S: SharedSoup> SignedDistance<I, S> {
 
     /// Returns the sign of a query by its closest point.
     pub(crate) fn sign<T: Real>(&self, query: &Point3<T>, closest: &Closest<T>) -> Sign {
-        self.rule.sign(query, closest)
+        self.signs.sign(&query.map(Real::to_f64), &closest.into())
     }
 
-    /// Returns the sign of a point that is not on the surface, or `None` if the rule needs the closest point.
+    /// Returns the sign of a point that is not on the surface, or `None` if the closest point decides it with less work.
     pub(crate) fn sign_without_closest_point(&self, point: &Point3<f64>) -> Option<Sign> {
-        match &self.rule {
-            SignRule::Closed(_) => None,
-            SignRule::Winding(winding) => Some(winding.sign(point)),
-        }
+        (!self.is_closed()).then(|| self.signs.winding.sign(point))
     }
 
-    /// Returns whether points that the surface does not separate have the same sign. That is not the case for winding
-    /// numbers of an open surface.
-    pub(crate) fn changes_only_at_surface(&self) -> bool {
-        match &self.rule {
-            SignRule::Closed(_) => true,
-            SignRule::Winding(winding) => winding.is_closed(),
-        }
-    }
-
-    /// Returns the common sign of all points within `radius` of a centre that the surface does not separate from it, or
-    /// `None` if their signs may differ. The centre is not on the surface.
-    pub(crate) fn sign_within(&self, radius: f64, centre: &Point3<f64>) -> Option<Sign>
+    /// Returns the common sign of all points that a path of at most the length `path`, within `radius` of a point and
+    /// without crossing the surface, connects with the point. It is `None` if the signs may differ. The point is not on
+    /// the surface.
+    pub(crate) fn sign_along(&self, path: f64, radius: f64, point: &Point3<f64>) -> Option<Sign>
     where
         I: ClosestPoint<f64>,
     {
-        match &self.rule {
-            SignRule::Closed(_) => Some(self.closest_point(centre)?.sign),
-            SignRule::Winding(winding) => winding.sign_within(radius, centre),
+        if self.is_closed() {
+            Some(self.closest_point(point)?.sign)
+        } else {
+            self.signs.winding.sign_along(path, radius, point)
         }
     }
 
-    /// Returns the number of queries so far whose sign was ambiguous, so that rays or the sum of all
-    /// triangles decided it.
+    /// Returns the number of queries so far whose sign a ray or a winding number has decided, because the closest point
+    /// did not.
     pub fn ambiguous_count(&self) -> u64 {
-        match &self.rule {
-            SignRule::Closed(normals) => normals.ambiguous_count(),
-            SignRule::Winding(winding) => winding.ambiguous_count(),
+        self.signs.ray_count.get()
+    }
+}
+
+impl<S: SharedSoup> Signs<S> {
+    fn new(soup: S, rule: Option<SignRule>, roundoff: f64) -> Result<Self, SignError> {
+        let surface = Surface::new(&soup)?;
+        let is_closed = surface.open.is_none();
+        let rule = rule.unwrap_or(if is_closed && !surface.boundary.is_empty() {
+            SignRule::Parity
+        } else {
+            SignRule::Winding
+        });
+        if let (SignRule::Parity, Some((triangle, edge))) = (rule, surface.open) {
+            return Err(SignError::Open { triangle, edge });
         }
+        let rays = TreeIndex::new(soup.clone())?;
+        let winding = WindingNumbers::of_surface(soup.clone(), &surface, rays)?;
+        let changes_at_surface = rule == SignRule::Parity || winding.is_closed();
+        let certificates = changes_at_surface.then(|| Certificates::new(&soup, surface, winding.rays(), roundoff));
+        let bounds = soup.aabb();
+        Ok(Self { soup, rule, winding, certificates, bounds, ray_count: Counter::default() })
+    }
+
+    /// Returns the sign of a query by its closest point.
+    fn sign(&self, query: &Point3<f64>, closest: &ClosestFeature) -> Sign {
+        if closest.distance == 0.0 {
+            return Sign::Boundary;
+        }
+        if let Some(certificates) = &self.certificates {
+            if (0..3).any(|k| query[k] < self.bounds.min[k] || query[k] > self.bounds.max[k]) {
+                return Sign::Outside;
+            }
+            if let Some(side) = certificates.side(&self.soup, query, closest) {
+                return self.sign_of(certificates.winding_number(side, || self.crossings(query)));
+            }
+        }
+        self.ray_count.increment();
+        if closest.lower_bound <= 0.0 && self.is_on_surface(query) {
+            return Sign::Boundary;
+        }
+        if self.certificates.is_some() { self.sign_of(self.crossings(query)) } else { self.winding.sign(query) }
+    }
+
+    /// Returns the number of crossings of a ray, by which the rule decides.
+    fn crossings(&self, query: &Point3<f64>) -> i64 {
+        match self.rule {
+            SignRule::Winding => self.winding.crossings(query),
+            SignRule::Parity => i64::try_from(self.winding.unsigned_crossings(query)).unwrap_or(0),
+        }
+    }
+
+    fn sign_of(&self, crossings: i64) -> Sign {
+        let is_inside = match self.rule {
+            SignRule::Winding => crossings != 0,
+            SignRule::Parity => crossings % 2 != 0,
+        };
+        if is_inside { Sign::Inside } else { Sign::Outside }
+    }
+
+    /// Returns whether the query is exactly on a triangle.
+    fn is_on_surface(&self, query: &Point3<f64>) -> bool {
+        let here: Ray = ray(query).with_range(0.0, 0.0).expect("0 is a valid parameter");
+        self.winding.rays().do_intersect(&here)
     }
 }
 
@@ -276,25 +349,4 @@ fn check_scene<T: Real>(index: &impl ClosestPoint<T>, soup: &Soup<f64>) -> Resul
         }
     }
     Ok(())
-}
-
-/// Searches a closed surface for two triangles that intersect each other elsewhere than at common vertices.
-///
-/// The first triangle is the lowest one with an edge that intersects another triangle, and the second is the lowest one
-/// that this edge intersects. `None` means that no such pair was found.
-///
-/// Edges are cast as rays, whose directions are rounded, so triangles that barely touch may be missed or reported.
-/// Triangles with a common vertex are assumed to intersect only there, so sheets that coincide and have common
-/// vertices are missed.
-///
-/// # Errors
-/// [`SignError::OtherKinds`], [`SignError::Open`], [`SignError::NotOriented`] and [`SignError::Build`].
-///
-/// # Complexity
-/// One ray for each edge. A ray takes a few microseconds, or milliseconds where thousands of long slivers lie in one
-/// plane along two axes.
-pub fn find_self_intersection(soup: &Soup<f64>) -> Result<Option<[PrimitiveId; 2]>, SignError> {
-    let topology = Topology::new(soup)?;
-    let rays = RayTree::new(soup)?;
-    Ok(topology.find_self_intersection(soup, &rays).map(|pair| pair.map(PrimitiveId::new)))
 }

@@ -1,8 +1,40 @@
 //! The sign of a query, and the reasons why a scene has none.
 
-use p2m_core::{Closest, Feature, PrimitiveId, PrimitiveSet, Real, Soup};
+use nalgebra::{Point3, Vector3};
+use p2m_bvh::TreeIndex;
+use p2m_core::{Aabb, Closest, Feature, PrimitiveId, PrimitiveSet, Ray, Real, Soup};
 use std::ops::Deref;
 use std::sync::atomic::{AtomicU64, Ordering};
+
+/// The rule that decides which points are inside of a surface.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum SignRule {
+    /// A point is inside where the winding number exceeds a half in magnitude. For a surface without a boundary that is
+    /// where the crossings of a ray, counted with the directions in which they pass the surface, do not cancel. So
+    /// overlapping shells are united, a shell that is turned inward inside of another is a cavity, and a surface that is
+    /// turned inside out as a whole is solid.
+    Winding,
+    /// A point is inside where a ray crosses the surface an odd number of times. The orientation of triangles is
+    /// irrelevant, and what two shells share is outside.
+    Parity,
+}
+
+impl SignRule {
+    /// The name of the rule in reports.
+    #[must_use]
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Winding => "winding",
+            Self::Parity => "parity",
+        }
+    }
+}
+
+impl std::fmt::Display for SignRule {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.write_str(self.name())
+    }
+}
 
 /// The side of the surface that a point is on.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -11,10 +43,10 @@ pub enum Sign {
     Outside,
     /// The surface encloses the point.
     Inside,
-    /// The point is on the surface: its distance is 0. For closed surfaces a point that is exactly on a triangle also
-    /// has this sign if the error of its distance cannot exclude 0.
+    /// The point is on the surface: its distance is 0, or the error of its distance cannot exclude 0 and it is exactly on
+    /// a triangle.
     Boundary,
-    /// The sign is not defined, because the winding number is a half within the accuracy of f64.
+    /// The sign is not defined, because the winding number is a half in magnitude, apart from rounding.
     Undefined,
 }
 
@@ -39,19 +71,9 @@ pub enum SignError {
         /// The number of segments and points.
         others: usize,
     },
-    /// The surface has an edge with an odd number of triangles, so it is not closed.
-    #[error("the surface is open at edge {edge} of triangle {triangle}; winding numbers have signs for it")]
+    /// The surface has an edge with an odd number of triangles, so parity is not defined.
+    #[error("the surface is open at edge {edge} of triangle {triangle}, so parity has no signs; winding numbers have")]
     Open {
-        /// The lowest index of a triangle with such an edge.
-        triangle: usize,
-        /// The edge of that triangle, which runs from the vertex of this index to the next.
-        edge: usize,
-    },
-    /// Neighbouring triangles have opposite orientations: both run through their common edge in the same direction.
-    #[error(
-        "edge {edge} of triangle {triangle} has neighbours of the opposite orientation; winding numbers have signs, but those count by orientation"
-    )]
-    NotOriented {
         /// The lowest index of a triangle with such an edge.
         triangle: usize,
         /// The edge of that triangle, which runs from the vertex of this index to the next.
@@ -68,9 +90,6 @@ pub enum SignError {
     /// An index of the scene cannot be built.
     #[error(transparent)]
     Build(#[from] p2m_core::BuildError),
-    /// The accuracy of winding numbers is not above 0 and below 0.5.
-    #[error("{0} is no accuracy of winding numbers: it is above 0 and below 0.5")]
-    Accuracy(f64),
 }
 
 /// A closest point, and the side of the surface that the query is on.
@@ -141,4 +160,15 @@ pub(super) fn check_kinds(soup: &Soup<f64>) -> Result<(), SignError> {
         0 => Ok(()),
         others => Err(SignError::OtherKinds { others }),
     }
+}
+
+/// The tree in which rays are cast.
+pub(super) type RayTree<S> = TreeIndex<f64, S, Aabb<f64>>;
+
+/// The direction of rays, which is parallel to no edge or face that scenes usually have.
+const RAY_DIRECTION: [f64; 3] = [0.539_217, 0.283_165, 0.793_121];
+
+/// Returns the ray from a finite query whose crossings are counted.
+pub(super) fn ray(query: &Point3<f64>) -> Ray {
+    Ray::new(query, &Vector3::from(RAY_DIRECTION)).expect("the query is finite")
 }

@@ -4,7 +4,7 @@ use base64::Engine as _;
 use nalgebra::Point3;
 use p2m_bvh::AabbTree;
 use p2m_core::{Aabb, BruteForce, ClosestPoint, PrimitiveSet, Soup};
-use p2m_field::sign::SignedDistance;
+use p2m_field::sign::{SignRule, SignedDistance};
 use p2m_field::{
     CandidateLists, FieldOptions, Grid, GridError, RefineOptions, distances, distances_by_lists, refined,
     signed_distances, signed_distances_by_lists, slice, write_field,
@@ -185,14 +185,14 @@ fn signs_of_fields_are_those_of_single_answers() {
     let (soup, min_inside) = (knot(), amount(500, 3));
     let tree = |soup| AabbTree::new(soup).expect("valid");
     has_signs_of_answers(&soup, &SignedDistance::new(tree(&soup), &soup).expect("closed"), min_inside);
-    let winding = SignedDistance::with_winding_numbers(tree(&soup), &soup, 0.01).expect("triangles");
+    let winding = SignedDistance::with_rule(tree(&soup), &soup, SignRule::Parity).expect("closed");
     has_signs_of_answers(&soup, &winding, min_inside);
     // The sign of half a ball changes far from the surface where it is open, and is undefined in between.
     let ball = ico_sphere(&IcoSphere { frequency: 8 }).expect("valid");
     let is_low = |t: &[u32; 3]| t.iter().all(|i| ball.positions()[*i as usize].x <= 0.0);
     let half_ball = ball.triangles().iter().filter(|t| is_low(t)).copied().collect();
     let half_ball = Soup::from_triangles(ball.positions().to_vec(), half_ball).expect("valid");
-    let winding = SignedDistance::with_winding_numbers(tree(&half_ball), &half_ball, 0.01).expect("triangles");
+    let winding = SignedDistance::new(tree(&half_ball), &half_ball).expect("triangles");
     has_signs_of_answers(&half_ball, &winding, min_inside);
 }
 
@@ -235,7 +235,7 @@ fn signs_by_lists_are_right_where_f32_has_no_digits() {
         let soup = cube(side);
         let tree = |soup| AabbTree::new(soup).expect("valid");
         let signed = SignedDistance::new(tree(&soup), &soup).expect("closed");
-        let winding = SignedDistance::with_winding_numbers(tree(&soup), &soup, 0.01).expect("triangles");
+        let winding = SignedDistance::with_rule(tree(&soup), &soup, SignRule::Parity).expect("closed");
         let lists = CandidateLists::new(&soup).expect("plain");
         let grid = Grid::new(Point3::from([low; 3]), spacing, [12; 3]).expect("valid");
         let options = FieldOptions::default();

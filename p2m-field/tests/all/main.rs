@@ -2,4 +2,5 @@
 
 mod fields;
 mod hausdorff;
+mod sign_families;
 mod signs;

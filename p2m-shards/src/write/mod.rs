@@ -24,6 +24,7 @@ use names::{begin_run, files_of_runs, run_of, unfinished_manifest};
 use p2m_backends::{BackendEntry, BuildSettings};
 use p2m_core::storage::Writer;
 use p2m_core::{BuildError, Element, PrimitiveId, PrimitiveSet, Shape, Soup};
+use p2m_field::sign::{EdgeSums, SignRule};
 use p2m_mixed::{PieceOptions, PieceSummary, Scene, read_scene_in_pieces, save_scene};
 use partition::divide;
 use spill::{Record, Spill};
@@ -121,6 +122,8 @@ pub struct ShardWriter {
     /// The primitives, until they are divided.
     spill: Option<Spill>,
     manifest: Manifest,
+    /// The sums that tell whether the surface is closed.
+    edges: EdgeSums,
     /// The number of this run, with which the names of its files begin.
     run: u64,
     /// The files of this run, which are removed unless writing is finished: those of shards in their order.
@@ -149,11 +152,14 @@ impl ShardWriter {
             triangles: 0,
             segments: 0,
             points: 0,
+            is_closed: true,
+            is_oriented: true,
             shards: Vec::new(),
             objects: Vec::new(),
         };
         let (folder, written) = (folder.to_owned(), Vec::new());
-        let mut writer = Self { folder, options, spill: None, manifest, run: 0, written, is_new_folder };
+        let edges = EdgeSums::default();
+        let mut writer = Self { folder, options, spill: None, manifest, edges, run: 0, written, is_new_folder };
         // What fails from here on drops the writer, which removes what it has created.
         writer.run = begin_run(&writer.folder).map_err(ShardError::io(&writer.folder))?;
         writer.written.push(writer.folder.join(shard_file(writer.run, 0)));
@@ -233,6 +239,9 @@ impl ShardWriter {
             2 => &mut self.manifest.segments,
             _ => &mut self.manifest.triangles,
         } += 1;
+        if record.len == 3 {
+            self.edges.add(record.vertices);
+        }
         let spill = self.spill.as_mut().ok_or(ShardError::Cancelled)?;
         spill.push(&record).map_err(ShardError::io(&self.folder))
     }
@@ -256,6 +265,9 @@ impl ShardWriter {
         mut self,
         progress: &mut dyn FnMut(u64) -> ControlFlow<()>,
     ) -> Result<ShardedIndex, ShardError> {
+        let rule = self.edges.rule();
+        self.manifest.is_closed = rule.is_some();
+        self.manifest.is_oriented = rule == Some(SignRule::Winding);
         let expected = self.file_bytes();
         let mut parts: Vec<Spill> = self.spill.take().into_iter().filter(|spill| spill.len() > 0).collect();
         let (mut done, mut bytes_per_primitive, max_bytes) = (0, expected, self.options.max_bytes);

@@ -16,7 +16,7 @@ use p2m_bvh::AabbTree;
 use p2m_cli::harness::Table;
 use p2m_core::{BuildIndex, ClosestPoint, PrimitiveSet, Soup};
 use p2m_field::grid_candidates::CandidateLists;
-use p2m_field::sign::{SignError, SignedDistance};
+use p2m_field::sign::{SignError, SignRule, SignedDistance};
 use p2m_field::{FieldOptions, Grid, distances, distances_by_lists, signed_distances, signed_distances_by_lists};
 use p2m_interception::{Domain, OctreeIndex, P2mIndex};
 use std::path::PathBuf;
@@ -185,7 +185,7 @@ fn methods<'a>(scene: &'a Scene, grid: &Grid) -> Result<Vec<Method<'a>>> {
         }
         let variants: [(&'static str, Sided<'a>); 2] = [
             ("lists, signed", |tree, soup| SignedDistance::new(tree, soup)),
-            ("lists, winding", |tree, soup| SignedDistance::with_winding_numbers(tree, soup, 0.01)),
+            ("lists, winding", |tree, soup| SignedDistance::with_rule(tree, soup, SignRule::Winding)),
         ];
         for (name, sided) in variants {
             let both = built(|| {

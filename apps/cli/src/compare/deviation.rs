@@ -40,8 +40,8 @@ The deviation of a point is its distance from the scene, positive outside and ne
 surface and not of its vertices. The points of a scan are those of its file, or all vertices if it is a mesh, each \
 once; vertices that only segments and points use, or nothing, count as well.
 
-If the triangles are no closed surface, winding numbers decide which points are inside, and a warning says so. Then \
-the sign is a guess near borders of holes, and both sides of a single sheet are outside. A scene of segments or \
+If the surface is open, or its triangles have different orientations, a warning says what decides which points are \
+inside. For an open surface the sign is a guess near holes, and both sides of a single sheet are outside. A scene of segments or \
 points has no inside: it needs --unsigned, with which deviations are distances.
 
 Statistics are printed on the standard output: the mean, the mean of absolute values, the root mean square, the \
@@ -157,17 +157,15 @@ pub(crate) fn run(streams: &Streams, args: &Args) -> anyhow::Result<()> {
     let prepare = |rule: SignRule| rule.prepare(streams, index, &scene.soup).map_err(|error| args.without_sign(error));
     let signed = if args.unsigned { None } else { Some(prepare(args.sign)?) };
     let build_time = start.elapsed();
-    let rule = signed.as_ref().map(|(_, rule)| *rule);
-    if rule == Some("winding") && args.sign == SignRule::Auto {
-        streams.print_summary(format_args!(
-            "warning  {} is not closed, or its triangles have different orientations: winding numbers decide which \
-             points are inside. Near holes the sign is a guess, and both sides of a single sheet are outside\n",
-            args.scene.name()
-        ));
+    let rule = signed.as_ref().map(|signed| signed.rule().name());
+    if let Some(signed) = signed.as_ref().filter(|_| args.sign == SignRule::Auto)
+        && let Some(note) = signed.note()
+    {
+        streams.print_summary(format_args!("warning  {}: {note}\n", args.scene.name()));
     }
 
     let points = scan.soup.positions();
-    let mut answers = Answers::new(index, signed.as_ref().map(|(signed, _)| signed));
+    let mut answers = Answers::new(index, signed.as_ref());
     let query_time = match (&mut output, out_format) {
         (Some(output), Some(DeviationFormat::Csv)) => {
             let encoder = AnswerEncoder::new(AnswerFormat::Csv, &scene.objects, args.columns(&scene));
@@ -435,7 +433,7 @@ impl Args {
     fn without_sign(&self, error: SignError) -> anyhow::Error {
         let advice = match error {
             SignError::OtherKinds { .. } => ": add --unsigned for distances without signs",
-            SignError::Open { .. } | SignError::NotOriented { .. } => ": see --sign and --unsigned",
+            SignError::Open { .. } => ": see --sign and --unsigned",
             _ => "",
         };
         anyhow!("{}: {error}{advice}", self.scene.name())

@@ -5,42 +5,61 @@ use crate::io::streams::Streams;
 use clap::ValueEnum;
 use p2m_backends::AnyIndex;
 use p2m_core::Soup;
-use p2m_field::sign::{SignError, SignedDistance};
+use p2m_field::sign::{self, SignError, SignedDistance};
 
 /// A rule that decides which points are inside.
 #[derive(Clone, Copy, PartialEq, Eq, ValueEnum)]
 pub(crate) enum SignRule {
-    /// As a closed surface if it is one, otherwise by winding numbers
+    /// By winding numbers, or by parity if the surface is closed but its triangles have different orientations
     Auto,
-    /// By the normals of a closed surface; a surface that is not closed is an error
-    Closed,
-    /// By winding numbers
+    /// Inside where the winding number exceeds a half
     Winding,
+    /// Inside where a ray crosses the surface an odd number of times; an open surface is an error
+    Parity,
 }
 
 /// An index with signs, which borrows its scene.
 pub(crate) type SignedIndex<'a> = SignedDistance<&'a dyn AnyIndex, &'a Soup<f64>>;
 
-/// The largest error of winding numbers.
-const WINDING_NUMBER_ERROR: f64 = 0.01;
-
 impl SignRule {
-    /// Prepares signs for the index, and returns them with the name of the rule that decides them.
+    /// Prepares signs for the index.
     pub(crate) fn prepare<'a>(
         self,
         streams: &Streams,
         index: &'a dyn AnyIndex,
         soup: &'a Soup<f64>,
-    ) -> Result<(SignedIndex<'a>, &'static str), SignError> {
+    ) -> Result<SignedIndex<'a>, SignError> {
         let _progress = Progress::start(streams, "looking for inside and outside", None, Unit::None);
-        if self != Self::Winding {
-            match SignedDistance::new(index, soup) {
-                Ok(signed) => return Ok((signed, "closed")),
-                Err(SignError::Open { .. } | SignError::NotOriented { .. }) if self == Self::Auto => {}
-                Err(error) => return Err(error),
-            }
+        match self {
+            Self::Auto => SignedDistance::new(index, soup),
+            Self::Winding => SignedDistance::with_rule(index, soup, sign::SignRule::Winding),
+            Self::Parity => SignedDistance::with_rule(index, soup, sign::SignRule::Parity),
         }
-        let signed = SignedDistance::with_winding_numbers(index, soup, WINDING_NUMBER_ERROR)?;
-        Ok((signed, "winding"))
+    }
+}
+
+/// What reports say of signs.
+#[derive(Clone, Copy)]
+pub(crate) struct SignReport {
+    /// The name of the rule.
+    pub(crate) rule: &'static str,
+    /// A sentence that says why the rule was chosen, unless the surface is closed and consistently oriented.
+    note: Option<&'static str>,
+}
+
+impl SignReport {
+    pub(crate) fn new(signed: &SignedIndex<'_>) -> Self {
+        Self { rule: signed.rule().name(), note: signed.note() }
+    }
+
+    /// The report of signs that need no note.
+    pub(crate) fn of_rule(rule: sign::SignRule) -> Self {
+        Self { rule: rule.name(), note: None }
+    }
+
+    /// Returns the lines of a summary.
+    pub(crate) fn text(&self) -> String {
+        let note = self.note.map(|note| format!("note     {note}\n")).unwrap_or_default();
+        format!("signs    by {}\n{note}", self.rule)
     }
 }

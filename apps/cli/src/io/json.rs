@@ -13,7 +13,7 @@ use serde_json::{Value, json};
 use std::io::{self, Write};
 
 /// The version of all reports.
-pub(crate) const VERSION: u32 = 2;
+pub(crate) const VERSION: u32 = 3;
 
 /// The paragraph about `--json` in the help of each command.
 pub(crate) const STABILITY: &str = "\

@@ -78,7 +78,7 @@ pub(crate) struct Args {
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(2..=256), allow_negative_numbers = true)]
     field: Option<u32>,
 
-    /// Negative distances inside; needs a scene of triangles [possible values of RULE: auto, closed, winding; default:
+    /// Negative distances inside; needs a scene of triangles [possible values of RULE: auto, winding, parity; default:
     /// auto]
     #[arg(long, value_name = "RULE", num_args = 0..=1, require_equals = true, default_missing_value = "auto", value_enum)]
     signed: Option<SignRule>,
@@ -150,7 +150,8 @@ pub(crate) fn run(streams: &Streams, args: &Args) -> anyhow::Result<()> {
         return Err(usage(format!("--lists needs an index with lists: {} has none", backend.name)));
     }
     let signed = args.signed.map(|rule| rule.prepare(streams, &*index, &scene.soup)).transpose();
-    let (signed, rule) = signed.with_context(|| args.scene.name())?.unzip();
+    let signed = signed.with_context(|| args.scene.name())?;
+    let rule = signed.as_ref().map(|signed| signed.rule().name());
     let source = PageSource { streams, args, pool: &pool, backend, index: &*index, signed: signed.as_ref() };
     let mut view = source.view(&scene, queries.as_deref(), grid.as_ref())?;
     view.about = about(&format!("scene {}", args.scene.name()), backend.name, rule);

@@ -5,6 +5,7 @@ use crate::answers::queries::Queries;
 use crate::answers::summary::{AnswerSummary, IndexSummary, RunSummary};
 use crate::answers::table::{AnswerEncoder, AnswerFormat, AnswerRecord, Table};
 use crate::index::shards::{loads_line, shards_json};
+use crate::index::sign_rule::SignReport;
 use crate::io::json;
 use crate::io::output::Output;
 use crate::io::streams::Streams;
@@ -42,6 +43,8 @@ pub(crate) struct Run<'a> {
     pub(crate) format: AnswerFormat,
     pub(crate) objects: &'a [Object],
     pub(crate) index: IndexSummary<'a>,
+    /// What decides signs, if there are signs.
+    pub(crate) signs: Option<SignReport>,
     /// The shards, if the index is in shards.
     pub(crate) shards: Option<&'a ShardedIndex>,
 }
@@ -50,24 +53,20 @@ impl Run<'_> {
     /// Answers all queries, writes their answers, and prints a summary.
     pub(crate) fn finish(mut self, source: &impl Source) -> anyhow::Result<()> {
         let (summary, query_time) = self.answer(source)?;
-        let Self { streams, args, pool, output, format, index, shards, .. } = self;
+        let Self { streams, args, pool, output, format, index, signs, shards, .. } = self;
         let bytes = output.bytes();
         output.finish()?;
         let run = RunSummary { index, threads: pool.current_num_threads(), query_time };
         if args.query_args.json {
-            let shards = shards.map(|index| {
-                let (signs, closed_checked) = args.signed.map(|_| ("crossings", false)).unzip();
-                let signs = json!({ "signs": signs, "closed_checked": closed_checked });
-                json!({ "shards": json::joined([shards_json(index, args.max_memory), signs]) })
-            });
-            let report = json::joined([shards.unwrap_or_default(), args.report(&summary, &run.index.cells())]);
+            let shards = shards.map(|index| json!({ "shards": shards_json(index, args.max_memory) }));
+            let signs = json!({ "sign_rule": signs.map(|signs| signs.rule) });
+            let report = json::joined([shards.unwrap_or_default(), args.report(&summary, &run.index.cells()), signs]);
             return json::print(streams, &run.json("query", report, &args.query_args.output_json(format, bytes)));
         }
         let loads = shards.map_or_else(String::new, loads_line);
-        streams.print_summary(format_args!("{}{loads}{summary}", run.text("queries", "query", summary.queries())));
-        if shards.is_some() && args.signed.is_some() {
-            streams.print_summary(format_args!("note     that the surface is closed was not checked\n"));
-        }
+        let signs = signs.map(|signs| signs.text()).unwrap_or_default();
+        streams
+            .print_summary(format_args!("{}{loads}{summary}{signs}", run.text("queries", "query", summary.queries())));
         Ok(())
     }
 

@@ -122,10 +122,9 @@ pub(crate) struct Args {
     within: Option<f64>,
 
     /// Add a column of distances that are negative inside; needs a scene of triangles [possible values of RULE: auto,
-    /// closed, winding].
+    /// winding, parity].
     ///
-    /// An index in shards has only auto: a ray that crosses the surface an odd number of times begins inside. This is
-    /// right for a closed surface, and whether it is closed is not checked.
+    /// An index in shards has only auto, and an open surface has no signs there.
     #[arg(long, value_name = "RULE", num_args = 0..=1, require_equals = true, default_missing_value = "auto", value_enum, conflicts_with_all = ["k_nearest", "within"])]
     pub(crate) signed: Option<SignRule>,
 

@@ -3,7 +3,7 @@
 use crate::answers::summary::{IndexSummary, SceneSummary};
 use crate::index::args::IndexArgs;
 use crate::index::backend::{SceneSource, saved_or_default};
-use crate::index::sign_rule::{SignRule, SignedIndex};
+use crate::index::sign_rule::{SignReport, SignRule, SignedIndex};
 use crate::io::input::{is_standard, or_option, read_scene_and_index};
 use crate::io::json;
 use crate::io::output::Output;
@@ -39,9 +39,9 @@ NPY files are arrays of NumPy, field[i, j, k] with x, y and z; VTI files are ima
 values alone, little-endian, x fastest. With --refine the file is NPY: an array of cells with the fields origin, size and values (at \
 the corners: x runs fastest, z slowest).
 
-With --signed distances are negative inside. Inside of a closed surface is decided by its normals, and by rays where these are ambiguous. For other \
-surfaces (with holes, or with inconsistent orientation) it is decided by winding numbers: a point is inside if more than half of all directions hit \
-a back. The distance is NaN where the sign is undefined.
+With --signed distances are negative inside: where the winding number of the surface exceeds a half, also for surfaces with holes or overlapping \
+shells. Surfaces that are closed but have triangles of different orientations take the rule parity: inside is where a ray crosses the surface an odd \
+number of times. The distance is NaN where the winding number is exactly a half.
 
 {}
 
@@ -68,7 +68,7 @@ pub(crate) struct Args {
     #[arg(long, value_name = "S", default_value_t = 1.2, value_parser = positive, allow_negative_numbers = true)]
     box_scale: f64,
 
-    /// Negative distances inside; needs a scene of triangles [possible values of RULE: auto, closed, winding; default:
+    /// Negative distances inside; needs a scene of triangles [possible values of RULE: auto, winding, parity; default:
     /// auto]
     #[arg(long, value_name = "RULE", num_args = 0..=1, require_equals = true, default_missing_value = "auto", value_enum)]
     signed: Option<SignRule>,
@@ -139,8 +139,8 @@ pub(crate) fn run(streams: &Streams, args: &Args) -> anyhow::Result<()> {
     let built = prepared.as_ref().map(|prepared| &prepared.built);
     let index = match (built, args.signed) {
         (Some(built), Some(rule)) => {
-            let (signed, rule) = rule.prepare(streams, &*built.index, soup).with_context(|| scene_args.name())?;
-            Some(FieldIndex::Signed(signed, rule))
+            let signed = rule.prepare(streams, &*built.index, soup).with_context(|| scene_args.name())?;
+            Some(FieldIndex::Signed(signed))
         }
         (Some(built), None) => Some(FieldIndex::Unsigned(&*built.index)),
         (None, _) => None,
@@ -172,7 +172,7 @@ pub(crate) fn run(streams: &Streams, args: &Args) -> anyhow::Result<()> {
     let report = FieldSummary {
         grid: &grid,
         field: &field,
-        signs: source.index.as_ref().and_then(FieldIndex::rule),
+        signs: source.index.as_ref().and_then(FieldIndex::signs),
         threads: if args.refine.is_some() { 1 } else { pool.current_num_threads() },
         field_time,
     };
@@ -249,11 +249,11 @@ impl Args {
         }
         let count = |points: usize| progress.add(points as u64);
         let values = match (&source.lists, &source.index) {
-            (Some(lists), Some(FieldIndex::Signed(signed, _))) => {
+            (Some(lists), Some(FieldIndex::Signed(signed))) => {
                 signed_distances_by_lists(lists, signed, grid, &options, &count)?
             }
             (Some(lists), _) => distances_by_lists(lists, grid, &options, &count)?,
-            (None, Some(FieldIndex::Signed(signed, _))) => signed_distances(signed, grid, &options, &count)?,
+            (None, Some(FieldIndex::Signed(signed))) => signed_distances(signed, grid, &options, &count)?,
             (None, Some(FieldIndex::Unsigned(index))) => distances(*index, grid, &options, &count)?,
             (None, None) => return Err(anyhow!("there are neither lists nor an index")),
         };
@@ -300,16 +300,15 @@ fn candidate_lists<'a>(
 /// An index with or without signs.
 enum FieldIndex<'a> {
     Unsigned(&'a dyn AnyIndex),
-    /// The signs, and the name of the rule that decides them.
-    Signed(SignedIndex<'a>, &'static str),
+    Signed(SignedIndex<'a>),
 }
 
 impl FieldIndex<'_> {
-    /// The name of the rule that decides signs.
-    fn rule(&self) -> Option<&'static str> {
+    /// What decides signs.
+    fn signs(&self) -> Option<SignReport> {
         match self {
             Self::Unsigned(_) => None,
-            Self::Signed(_, rule) => Some(rule),
+            Self::Signed(signed) => Some(SignReport::new(signed)),
         }
     }
 
@@ -317,7 +316,7 @@ impl FieldIndex<'_> {
     fn distance(&self, point: &Point3<f64>) -> f64 {
         let distance = match self {
             Self::Unsigned(index) => index.closest_point(point).map(|answer| answer.distance),
-            Self::Signed(signed, _) => signed.closest_point(point).and_then(|answer| answer.distance()),
+            Self::Signed(signed) => signed.closest_point(point).and_then(|answer| answer.distance()),
         };
         distance.unwrap_or(f64::NAN)
     }

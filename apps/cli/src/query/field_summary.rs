@@ -1,5 +1,6 @@
 //! The summary of a distance field, as text for people or as JSON for programs.
 
+use crate::index::sign_rule::SignReport;
 use crate::io::json;
 use p2m_field::Grid;
 use serde_json::{Value, json};
@@ -19,7 +20,7 @@ pub(crate) struct FieldSummary<'a> {
     pub(crate) grid: &'a Grid,
     pub(crate) field: &'a ComputedField,
     /// The rule that decides signs, if there are signs.
-    pub(crate) signs: Option<&'static str>,
+    pub(crate) signs: Option<SignReport>,
     pub(crate) threads: usize,
     /// The time to fill the grid or to cut the cells.
     pub(crate) field_time: Duration,
@@ -51,7 +52,7 @@ impl FieldSummary<'_> {
         json!({
             "grid": grid,
             "cells": cells,
-            "signs": self.signs,
+            "sign_rule": self.signs.map(|signs| signs.rule),
             "values": { "min": json::number(min), "max": json::number(max), "inside": inside, "undefined": undefined },
             "threads": self.threads,
         })
@@ -74,8 +75,9 @@ impl FieldSummary<'_> {
             }
         }
         write!(text, "distance min {min}, max {max}")?;
-        if let Some(rule) = self.signs {
-            write!(text, "; {inside} values inside, {undefined} undefined, by the rule {rule}")?;
+        if let Some(signs) = self.signs {
+            write!(text, "; {inside} values inside, {undefined} undefined\n{}", signs.text())?;
+            return Ok(());
         }
         writeln!(text)
     }

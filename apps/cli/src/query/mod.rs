@@ -13,7 +13,7 @@ use crate::answers::summary::{IndexSummary, SceneSummary};
 use crate::index::backend::{BackendChoice, PreparedIndex, SceneSource};
 use crate::index::kdop_directions::requested;
 use crate::index::shards::{open, refuse_options_of_builds, shard_folder, summarize};
-use crate::index::sign_rule::{SignRule, SignedIndex};
+use crate::index::sign_rule::{SignReport, SignRule, SignedIndex};
 use crate::io::input::read_scene_and_index;
 use crate::io::output::Output;
 use crate::io::streams::Streams;
@@ -60,12 +60,14 @@ pub(crate) fn run(streams: &Streams, args: &Args) -> anyhow::Result<()> {
     let build_time = start.elapsed();
 
     let signed = args.signed.map(|rule| rule.prepare(streams, index, &scene.soup)).transpose();
-    let signed = signed.with_context(|| scene_args.name())?.map(|(signed, _)| signed);
+    let signed = signed.with_context(|| scene_args.name())?;
+    let signs = signed.as_ref().map(SignReport::new);
     let source = WholeIndex { index, signed: signed.as_ref(), args };
     let (summary, backend) = (SceneSummary::new(scene_args.name(), format, &scene), backend.name);
     let index = IndexSummary { scene: summary, backend, built: Some(&built), is_loaded, read_time, build_time };
     let (objects, shards) = (&*scene.objects, None);
-    Run { streams, args, pool: &pool, queries, output, format: out_format, objects, index, shards }.finish(&source)
+    Run { streams, args, pool: &pool, queries, output, format: out_format, objects, index, signs, shards }
+        .finish(&source)
 }
 
 /// Answers queries by an index in shards, which are loaded as queries need them.
@@ -79,10 +81,7 @@ fn run_in_shards(streams: &Streams, args: &Args, folder: &Path) -> anyhow::Resul
     let format = query_args.format(streams)?;
     let start = Instant::now();
     let index = open(folder, args.max_memory, args.scene.map)?;
-    if args.signed.is_some() {
-        // Without points this checks that the scene has an inside.
-        index.batch().is_inside(&[] as &[Point3<f64>])?;
-    }
+    let signs = args.signed.map(|_| index.sign_rule().map(SignReport::of_rule)).transpose()?;
     let build_time = start.elapsed();
     let start = Instant::now();
     let (queries, _) = queries(streams, args, &index.bounds())?;
@@ -92,20 +91,15 @@ fn run_in_shards(streams: &Streams, args: &Args, folder: &Path) -> anyhow::Resul
     let (pool, objects) = (query_args.threads.pool()?, index.manifest().objects());
     let (source, shards) = (Shards { index: &index, args }, Some(&index));
     let (objects, index) = (&*objects, summarize(args.scene.name(), &index, read_time, build_time));
-    Run { streams, args, pool: &pool, queries, output, format, objects, index, shards }.finish(&source)
+    Run { streams, args, pool: &pool, queries, output, format, objects, index, signs, shards }.finish(&source)
 }
 
-/// Refuses rules of signs that shards do not have.
+/// Refuses rules of signs that shards do not have: the surface decides theirs.
 fn refuse_other_signs(args: &Args) -> anyhow::Result<()> {
-    let (rule, reason) = match args.signed {
-        None | Some(SignRule::Auto) => return Ok(()),
-        Some(SignRule::Closed) => ("closed", "which cannot check that the surface is closed"),
-        Some(SignRule::Winding) => ("winding", "which has no winding numbers"),
-    };
-    Err(usage(format!(
-        "--signed={rule} is not for an index in shards, {reason}: use --signed, which counts crossings of a ray, if you \
-         know that the surface is closed"
-    )))
+    match args.signed {
+        None | Some(SignRule::Auto) => Ok(()),
+        Some(_) => Err(usage("--signed of an index in shards takes no rule: the surface decides it")),
+    }
 }
 
 /// An index over the whole scene, with signs if they are asked for.
@@ -156,7 +150,7 @@ impl Source for Shards<'_> {
         if self.args.signed.is_none() {
             return Ok(answers.into_par_iter().map(|answer| (answer.map(in_scene), f64::NAN)).collect());
         }
-        let are_inside = batch.is_inside(queries)?;
+        let are_inside = batch.contains(queries)?;
         let with_sign = |(answer, is_inside): (Option<ShardClosest>, bool)| {
             let distance = answer.map_or(f64::NAN, |answer| answer.closest.distance);
             // A point on the surface has the distance 0, which has no sign.

@@ -24,7 +24,7 @@ fn outside_is_positive_and_inside_negative() {
     assert_eq!((statistic(&report, "mean"), statistic(&report, "min"), statistic(&report, "max")), (0.375, -0.5, 1.0));
     assert_eq!((statistic(&report, "mean_absolute"), statistic(&report, "rms")), (0.625, 0.75));
     assert_eq!((&report["above"], &report["below"], &report["limit"]), (&2.into(), &0.into(), &0.5.into()));
-    assert_eq!((&report["sign_rule"], &report["missing"]), (&"closed".into(), &0.into()));
+    assert_eq!((&report["sign_rule"], &report["missing"]), (&"winding".into(), &0.into()));
     let text = table(&["deviation", &scan, &cube, "--tolerance", "0.25", "--unit", "mm"]);
     for line in ["mean                                0.375 mm", "below -0.25                         1 (25 %)"] {
         assert!(text.contains(line), "{text}");
@@ -124,9 +124,9 @@ fn what_has_no_sign_is_told() {
     let scan = write(&folder, "scan.xyz", "1 1 -1\n");
     let output = p2m(&["deviation", &scan, &open]);
     assert_eq!(output.code, 0);
-    assert!(text(&output.stderr).contains("warning  ") && text(&output.stderr).contains("winding numbers decide"));
+    assert!(text(&output.stderr).contains("warning  ") && text(&output.stderr).contains("the surface is open"));
     assert_eq!(text(&p2m(&["deviation", &scan, &open, "--sign", "winding"]).stderr).matches("warning").count(), 0);
-    assert!(failure(&["deviation", &scan, &open, "--sign", "closed"], 1).contains("see --sign and --unsigned"));
+    assert!(failure(&["deviation", &scan, &open, "--sign", "parity"], 1).contains("see --sign and --unsigned"));
     let cables = write(&folder, "cables.obj", "v 0 0 0\nv 1 0 0\nl 1 2\n");
     assert!(failure(&["deviation", &scan, &cables], 1).contains("add --unsigned"));
     let report = json(&["deviation", &scan, &cables, "--unsigned", "--json"]);
@@ -136,7 +136,7 @@ fn what_has_no_sign_is_told() {
     assert!(failure(&["deviation", &scan, &open, "--out", &scan], 1).contains("unknown extension"));
     let csv = write(&folder, "scan.csv", "1,1,1\n");
     assert!(failure(&["deviation", &csv, &open, "--out", &csv], 1).contains("it is an input"));
-    failure(&["deviation", &scan, &open, "--unsigned", "--sign", "closed"], 2);
+    failure(&["deviation", &scan, &open, "--unsigned", "--sign", "parity"], 2);
     failure(&["deviation", "-", "-"], 2);
     for limit in ["0", "-1", "nan"] {
         failure(&["deviation", &scan, &open, "--limit", limit], 2);
@@ -169,7 +169,7 @@ fn deviations_of_a_noisy_dragon_are_the_noise() {
     let scan = write(&folder, "scan.xyz", scan);
     let report = json(&["deviation", &scan, dragon.to_str().unwrap(), "--json"]);
     let (mean, rms) = (sum / count, f64::sqrt(squares / count));
-    assert_eq!((report["deviations"].as_f64(), &report["sign_rule"]), (Some(count), &"closed".into()));
+    assert_eq!((report["deviations"].as_f64(), &report["sign_rule"]), (Some(count), &"winding".into()));
     assert!((statistic(&report, "mean") - mean).abs() < 0.01 * sigma, "{mean}: {report}");
     assert!((statistic(&report, "rms") - rms).abs() < 0.01 * sigma, "{rms}: {report}");
 }

@@ -43,26 +43,26 @@ fn backends_and_threads_give_the_same_field() {
 }
 
 #[test]
-fn signs_are_told_by_closed_surfaces_and_by_winding_numbers() {
+fn signs_name_their_rule() {
     let folder = TempDir::new().unwrap();
     let knot = path(&folder, "knot.ply");
     table(&["generate", "torus-knot", "--out", &knot]);
-    let [closed, winding] = ["closed.raw", "winding.raw"].map(|name| path(&folder, name));
+    let [winding, parity] = ["winding.raw", "parity.raw"].map(|name| path(&folder, name));
     let picture = path(&folder, "slice.png");
     let report =
-        json(&["field", &knot, "--signed", "--resolution", "40", "--out", &closed, "--slice", &picture, "--json"]);
-    assert_eq!(report["signs"], "closed");
+        json(&["field", &knot, "--signed", "--resolution", "40", "--out", &winding, "--slice", &picture, "--json"]);
+    assert_eq!(report["sign_rule"], "winding");
     let counts: Vec<u64> = report["grid"]["counts"].as_array().unwrap().iter().map(|n| n.as_u64().unwrap()).collect();
-    let all = values(&closed);
+    let all = values(&winding);
     assert_eq!(counts.iter().product::<u64>(), all.len() as u64);
     let inside = all.iter().filter(|x| **x < 0.0).count();
     assert!(inside > 100);
     assert_eq!(report["values"]["inside"], inside);
     assert_eq!(report["values"]["undefined"], 0);
     assert!(fs::read(&picture).unwrap().starts_with(b"\x89PNG"));
-    let report = json(&["field", &knot, "--signed=winding", "--resolution", "40", "--out", &winding, "--json"]);
-    assert_eq!(report["signs"], "winding");
-    assert_eq!(values(&winding), all);
+    let report = json(&["field", &knot, "--signed=parity", "--resolution", "40", "--out", &parity, "--json"]);
+    assert_eq!(report["sign_rule"], "parity");
+    assert_eq!(values(&parity), all);
 
     // A surface with a hole has signs by winding numbers alone.
     let whole = path(&folder, "knot.obj");
@@ -71,8 +71,11 @@ fn signs_are_told_by_closed_surfaces_and_by_winding_numbers() {
     let cut = text.rfind("\nf ").unwrap();
     let open = write(&folder, "open.obj", &text[..=cut]);
     let out = path(&folder, "open.npy");
-    assert_eq!(json(&["field", &open, "--signed", "--resolution", "9", "--out", &out, "--json"])["signs"], "winding");
-    let message = failure(&["field", &open, "--signed=closed", "--out", &out], 1);
+    assert_eq!(
+        json(&["field", &open, "--signed", "--resolution", "9", "--out", &out, "--json"])["sign_rule"],
+        "winding"
+    );
+    let message = failure(&["field", &open, "--signed=parity", "--out", &out], 1);
     assert!(message.contains("open at edge"), "{message}");
     let message = failure(&["field", SCENE, "--signed", "--out", &out], 1);
     assert!(message.contains("480 of the primitives are no triangles"), "{message}");

@@ -48,7 +48,7 @@ fn the_json_report_has_the_same_figures() {
     let counts = |triangles: u32, segments: u32, points: u32| json!({ "triangles": triangles, "segments": segments, "points": points });
     let expected = json!({
         "p2m": "info",
-        "version": 2,
+        "version": 3,
         "file": scene,
         "format": "obj",
         "index": null,

@@ -285,7 +285,7 @@ fn the_json_summary_agrees_with_the_table() {
     assert!(error["min"].as_f64().unwrap() >= 0.0 && error["max"].as_f64().unwrap() < 1e-14, "{error}");
     let expected = serde_json::json!({
         "p2m": "query",
-        "version": 2,
+        "version": 3,
         "scene": {
             "file": SCENE,
             "format": "obj",
@@ -310,6 +310,7 @@ fn the_json_summary_agrees_with_the_table() {
             "max": distances.iter().fold(0.0f64, |a, &b| a.max(b)),
             "mean": distances.iter().sum::<f64>() / answered as f64,
         },
+        "sign_rule": null,
         "out": { "file": out, "format": "csv", "bytes": table.len() },
     });
     assert_eq!(rest, expected);

@@ -52,14 +52,14 @@ fn signed_distances_are_negative_inside() {
     let points = write(&folder, "q.csv", "x,y,z\n0.5,1,1\n-2,1,1\n0,1,1\n");
     let run = |more: &[&str]| table(&[&["query", &scene, "--points", &points], more].concat());
     let expected = "signed_distance\n-0.5\n2.0\n0.0\n";
-    for rule in ["--signed", "--signed=closed", "--signed=winding"] {
+    for rule in ["--signed", "--signed=parity", "--signed=winding"] {
         for backend in ["brute", "aabb", "octree", "p2m"] {
             assert_eq!(run(&[rule, "--columns", "signed", "--backend", backend]), expected, "{rule} {backend}");
         }
     }
     assert!(run(&["--signed"]).starts_with("qx,qy,qz,x,y,z,distance,signed_distance,primitive,feature\n"));
     let open = write(&folder, "open.obj", "v 0 0 0\nv 4 0 0\nv 0 4 0\nf 1 2 3\n");
-    let message = failure(&["query", &open, "--points", &points, "--signed=closed"], 1);
+    let message = failure(&["query", &open, "--points", &points, "--signed=parity"], 1);
     assert!(message.contains("open.obj"), "{message}");
     let message = failure(&["query", &scene, "--points", &points, "--columns", "signed"], 2);
     assert!(message.contains("the column signed needs --signed"), "{message}");

@@ -221,7 +221,7 @@ fn the_json_summary_agrees_with_the_table() {
     assert!(report.as_object_mut().unwrap().shift_remove("seconds").unwrap()["query"].as_f64().unwrap() > 0.0);
     let expected = serde_json::json!({
         "p2m": "ray",
-        "version": 2,
+        "version": 3,
         "scene": {
             "file": SCENE,
             "format": "obj",

@@ -100,21 +100,15 @@ fn signs_are_those_of_the_whole_surface() {
     assert!(expected.lines().filter(|line| *line == "0.0").count() > 100, "vertices are on the surface");
     assert_eq!(ask(&site), expected);
     let run = p2m(&["query", &site, "--random", "3", "--signed"]);
-    assert!(
-        text(&run.stderr).contains("note     that the surface is closed was not checked\n"),
-        "{}",
-        text(&run.stderr)
-    );
-    for (signed, signs, is_checked) in
-        [(&["--signed=auto"][..], json!("crossings"), json!(false)), (&[], json!(null), json!(null))]
-    {
+    assert!(text(&run.stderr).contains("signs    by winding\n"), "{}", text(&run.stderr));
+    for (signed, rule) in [(&["--signed=auto"][..], json!("winding")), (&[], json!(null))] {
         let out = path(&folder, "answers.csv");
         let report = json(&[&["query", &site, "--random", "3", "--json", "--out", &out], signed].concat());
-        assert_eq!((&report["shards"]["signs"], &report["shards"]["closed_checked"]), (&signs, &is_checked));
+        assert_eq!(report["sign_rule"], rule);
     }
-    for rule in ["closed", "winding"] {
+    for rule in ["parity", "winding"] {
         let message = failure(&["query", &site, "--random", "1", &format!("--signed={rule}")], 2);
-        assert!(message.contains(&format!("--signed={rule} is not for an index in shards")), "{message}");
+        assert!(message.contains("takes no rule"), "{message}");
     }
     let mixed = sharded(&folder);
     assert!(failure(&["query", &mixed, "--random", "1", "--signed"], 1).contains("which have no inside"));

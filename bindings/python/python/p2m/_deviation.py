@@ -172,7 +172,7 @@ def deviation(
     *,
     tolerance: float | None = None,
     limit: float | None = None,
-    sign: Literal["auto", "closed", "winding"] | None = "auto",
+    sign: Literal["auto", "winding", "parity"] | None = "auto",
     unit: str = "units",
     threads: int | None = None,
     progress: Progress = None,
@@ -192,10 +192,11 @@ def deviation(
     limit : float, optional
         The absolute deviation from which on colours do not change. By default it is the tolerance, or else the 95th
         percentile of absolute deviations.
-    sign : {"auto", "closed", "winding"} or None, optional
+    sign : {"auto", "winding", "parity"} or None, optional
         The rule that decides which points are inside, as for `Index.signed_distance`; None for distances without signs,
-        which scenes with segments or points need. Where ``"auto"`` finds no closed surface, winding numbers decide, with
-        a warning: near holes the sign is a guess, and both sides of a single sheet are outside.
+        which scenes with segments or points need. With ``"auto"`` a warning says what decides if the surface is open or
+        not consistently oriented. For an open surface the sign is a guess near holes, and both sides of a single sheet
+        are outside.
     unit : str, optional
         The name of the unit of lengths, for figures and pages.
     threads, progress
@@ -222,8 +223,8 @@ def deviation(
     >>> found.statistics["mean"], found.outside()
     (0.125, (1, 0))
     """
-    if sign not in ("auto", "closed", "winding", None):
-        raise ValueError(f"sign: {sign!r} is none of 'auto', 'closed', 'winding', None")
+    if sign not in ("auto", "winding", "parity", None):
+        raise ValueError(f"sign: {sign!r} is none of 'auto', 'winding', 'parity', None")
     tolerance = None if tolerance is None else not_negative(tolerance, "tolerance")
     limit = None if limit is None else not_negative(limit, "limit")
     index = mesh if isinstance(mesh, Index) else Index(mesh, threads=threads)
@@ -239,23 +240,13 @@ def deviation(
     finite = np.isfinite(points).all(axis=1)
     queries = coordinates(points if finite.all() else points[finite], "scan")
 
-    def measured(rule: Literal["auto", "closed", "winding"] | None) -> NDArray[np.float64]:
-        if rule is None:
-            return index.distance(queries, threads=threads, progress=progress)
-        return index.signed_distance(queries, sign=rule, threads=threads, progress=progress)
-
-    if sign == "auto":
-        try:
-            numbers = measured("closed")
-        except ValueError:
-            numbers = measured("winding")
-            warnings.warn(
-                "the mesh is not closed, or its triangles have different orientations: winding numbers decide which "
-                "points are inside. Near holes the sign is a guess, and both sides of a single sheet are outside",
-                stacklevel=2,
-            )
+    if sign is None:
+        rule, numbers = None, index.distance(queries, threads=threads, progress=progress)
     else:
-        numbers = measured(sign)
+        rule, note = index._raw.sign_rule(sign, index._count(threads))
+        if note is not None and sign == "auto":
+            warnings.warn(note, stacklevel=2)
+        numbers = index.signed_distance(queries, sign=sign, threads=threads, progress=progress)
     # A scene without primitives has infinite distances.
     values = np.full(len(points), np.nan)
     values[finite] = np.where(np.isfinite(numbers), numbers, np.nan)

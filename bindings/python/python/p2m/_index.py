@@ -32,7 +32,7 @@ _FLOAT64 = np.dtype(np.float64)
 _BOOL = np.dtype(np.bool_)
 
 if TYPE_CHECKING:
-    _Sign = Literal["auto", "closed", "winding"]
+    _Sign = Literal["auto", "winding", "parity"]
     _RayMode = Literal["first", "all", "count", "any", "crossings"]
 
 
@@ -610,13 +610,12 @@ class Index(PointQueries, PairQueries):
         ----------
         points, threads, progress
             As for `closest`.
-        sign : {"auto", "closed", "winding"}, optional
-            ``"closed"``: the scene is a closed surface, and a point is inside if a ray from it crosses the surface an
-            odd number of times; pseudonormals decide most points, and exact rays the rest. Pseudonormals may be wrong
-            if the surface intersects itself, or if parts of it lie on each other without being the same triangles;
-            ``rays(points, direction, "crossings") % 2`` counts crossings. ``"winding"``: a point is inside if its
-            generalised winding number exceeds a half in magnitude; the triangles may have holes and intersect each
-            other. ``"auto"``: as a closed surface if it is one, otherwise by winding numbers.
+        sign : {"auto", "winding", "parity"}, optional
+            The rule that decides which points are inside; `sign_rule` returns it. ``"winding"``: where the generalised
+            winding number exceeds a half in magnitude. Triangles may have holes, overlap and intersect each other. For
+            a closed surface with consistent orientations the number is an exact count of crossings. ``"parity"``: where
+            a ray crosses the surface an odd number of times, whatever the orientations; an open surface is an error.
+            ``"auto"``: winding, or parity if the surface is closed but not consistently oriented.
         inside : {"negative", "positive"}, optional
             The sign inside. trimesh has positive numbers there; Open3D, libigl and point-cloud-utils negative ones.
         max_distance : float, optional
@@ -633,7 +632,7 @@ class Index(PointQueries, PairQueries):
         Raises
         ------
         ValueError
-            If the scene has segments or points, which have no sides; with ``sign="closed"`` also if it is not closed.
+            If the scene has segments or points, which have no sides; with ``sign="parity"`` also if it is open.
 
         Notes
         -----
@@ -659,6 +658,72 @@ class Index(PointQueries, PairQueries):
             columns = {"signed_distance": array.reshape(-1)}
             self._raw.signed_distance(queries.reshape(-1), columns, sign, is_negative, largest, count, call)
         return array
+
+    def contains(
+        self,
+        points: ArrayLike,
+        *,
+        sign: _Sign = "auto",
+        out: NDArray[np.bool_] | None = None,
+        threads: int | None = None,
+        progress: Progress = None,
+    ) -> NDArray[np.bool_]:
+        """Return whether points are inside, without their distances.
+
+        Parameters
+        ----------
+        points, threads, progress
+            As for `closest`.
+        sign : {"auto", "winding", "parity"}, optional
+            The rule that decides which points are inside, as for `signed_distance`.
+        out : ndarray of bool, shape {..}, optional
+            The array that receives the answers.
+
+        Returns
+        -------
+        ndarray of bool, shape {..}
+            True where `signed_distance` is negative: points on the surface are not inside.
+
+        Raises
+        ------
+        ValueError
+            As for `signed_distance`.
+
+        Notes
+        -----
+        Points that are nearer to each other than to the surface share one query, so many points take far less time than
+        their signed distances.
+
+        Examples
+        --------
+        >>> import p2m
+        >>> corners = [[0, 0, 0], [1, 0, 0], [0, 1, 0], [0, 0, 1]]
+        >>> solid = p2m.Scene(corners, triangles=[[0, 2, 1], [0, 1, 3], [0, 3, 2], [1, 2, 3]])
+        >>> p2m.Index(solid).contains([[0.125, 0.25, 0.25], [0.5, -2.0, 0.25], [0.0, 0.0, 0.0]])
+        array([ True, False, False])
+        """
+        queries = coordinates(points, "points")
+        array = one_output(out, "contains", _BOOL, queries.shape[:-1])
+        count = self._count(threads)
+        with callback(progress, "answering", "points") as call:
+            self._raw.contains(queries.reshape(-1), {"contains": array.reshape(-1)}, sign, count, call)
+        return array
+
+    def sign_rule(self, sign: _Sign = "auto") -> str:
+        """Return the name of the rule that decides which points are inside: ``"winding"`` or ``"parity"``.
+
+        Parameters
+        ----------
+        sign : {"auto", "winding", "parity"}, optional
+            As for `signed_distance`.
+
+        Raises
+        ------
+        ValueError
+            As for `signed_distance`.
+        """
+        rule: str = self._raw.sign_rule(sign, self._count(None))[0]
+        return rule
 
     def field(
         self,
@@ -686,13 +751,13 @@ class Index(PointQueries, PairQueries):
             The number of points along each axis.
         signed : bool, optional
             Whether distances are negative inside.
-        sign : {"auto", "closed", "winding"}, optional
+        sign : {"auto", "winding", "parity"}, optional
             The rule of signs, as for `signed_distance`.
         band : float, optional
             The largest distance that is computed. Beyond it the field has this value, with the right sign.
         first : sequence of three int, optional
             The indices at which the field begins, for a field that is computed by parts. A part has the same bits as
-            the whole field, apart from wrong signs of surfaces that intersect themselves.
+            the whole field.
         out : ndarray of float32 or float64, shape (x, y, z), optional
             The array that receives the field, with any strides; it may be mapped from a file.
         threads, progress

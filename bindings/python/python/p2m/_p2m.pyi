@@ -180,6 +180,15 @@ class Index:
     def info(self) -> dict[str, Any]: ...
     def save(self, path: _Path) -> None: ...
     def to_bytes(self) -> bytes: ...
+    def sign_rule(self, sign: str, threads: int) -> tuple[str, str | None]: ...
+    def contains(
+        self,
+        points: _Coordinates,
+        out: _Arrays,
+        sign: str,
+        threads: int,
+        progress: _Progress,
+    ) -> None: ...
     def signed_distance(
         self,
         points: _Coordinates,
@@ -271,7 +280,7 @@ class Shards:
         threads: int,
         progress: _Progress,
     ) -> None: ...
-    def is_inside(
+    def contains(
         self,
         points: _Coordinates,
         out: _Arrays,

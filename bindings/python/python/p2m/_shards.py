@@ -185,7 +185,7 @@ class Shards(PointQueries):
     def _objects(self) -> list[tuple[str, int, int]]:
         return self._raw.objects()
 
-    def is_inside(
+    def contains(
         self,
         points: ArrayLike,
         *,
@@ -193,11 +193,10 @@ class Shards(PointQueries):
         threads: int | None = None,
         progress: Progress = None,
     ) -> NDArray[np.bool_]:
-        """Return whether points are inside of the closed surface that the triangles form.
+        """Return whether points are inside of the surface that the triangles form.
 
-        A point is inside if a ray from it crosses the surface an odd number of times. The ray is the one along an axis
-        that passes the fewest boxes of shards. That the surface is closed is not checked, and points on the surface are
-        on either side.
+        The rule is that of `Index.signed_distance` with ``sign="auto"`` for the whole scene, decided by a ray along the
+        axis that passes the fewest boxes of shards. Points on the surface are on either side.
 
         Parameters
         ----------
@@ -213,12 +212,12 @@ class Shards(PointQueries):
         Raises
         ------
         ValueError
-            If the scene has segments or points, or the backend casts no rays.
+            If the scene has segments or points or is open, or the backend casts no rays.
         """
         queries = coordinates(points, "points")
-        array = one_output(out, "is_inside", _BOOL, queries.shape[:-1])
+        array = one_output(out, "contains", _BOOL, queries.shape[:-1])
         with callback(progress, "answering", "points") as call:
-            self._raw.is_inside(queries.reshape(-1), {"is_inside": array.reshape(-1)}, self._count(threads), call)
+            self._raw.contains(queries.reshape(-1), {"contains": array.reshape(-1)}, self._count(threads), call)
         return array
 
     def signed_distance(
@@ -239,8 +238,7 @@ class Shards(PointQueries):
         points, threads, progress
             As for `closest`. Progress is that of the distances, and then of the sides.
         sign : {"auto"}, optional
-            The rule of `is_inside`, which takes the surface for closed. Whether it is closed is not checked, so
-            ``"closed"`` is an error, and shards have no winding numbers.
+            The rule of `contains`. The surface decides it, so other rules are errors.
         inside, max_distance, out
             As for `Index.signed_distance`.
 
@@ -252,7 +250,7 @@ class Shards(PointQueries):
         Raises
         ------
         ValueError
-            If the scene has segments or points, or the backend casts no rays.
+            If the scene has segments or points or is open, or the backend casts no rays.
 
         Examples
         --------
@@ -272,14 +270,14 @@ class Shards(PointQueries):
         if max_distance is not None:
             not_negative(max_distance, "max_distance")
         # Without queries this only checks that the scene has an inside.
-        self.is_inside(np.empty((0, 3)))
+        self.contains(np.empty((0, 3)))
         rows, flat = queries.reshape(-1, 3), array.reshape(-1)
         self.closest(
             rows, fields="distance", max_distance=max_distance, out=flat, threads=threads, progress=progress
         )
         decided = (flat > 0.0) & (flat < np.inf)
         is_inside = np.zeros(len(flat), np.bool_)
-        is_inside[decided] = self.is_inside(rows[decided], threads=threads, progress=progress)
+        is_inside[decided] = self.contains(rows[decided], threads=threads, progress=progress)
         if max_distance is not None and max_distance < float("inf"):
             flat[np.isinf(flat)] = np.nan
         np.negative(flat, out=flat, where=is_inside)

@@ -240,7 +240,7 @@ def signed_distance(
     points: Any,
     index: Any,
     *,
-    sign: Literal["auto", "closed", "winding"] = "auto",
+    sign: Literal["auto", "winding", "parity"] = "auto",
     inside: Literal["negative", "positive"] = "negative",
     max_distance: float | None = None,
     threads: int = 1,
@@ -273,7 +273,7 @@ def signed_distance(
     array([-0.125,  2.   ])
     """
     for name, value, known in [
-        ("sign", sign, ("auto", "closed", "winding")),
+        ("sign", sign, ("auto", "winding", "parity")),
         ("inside", inside, ("negative", "positive")),
     ]:
         if value not in known:
@@ -358,7 +358,7 @@ def field(
     *,
     chunks: Any = "auto",
     signed: bool = False,
-    sign: Literal["auto", "closed", "winding"] = "auto",
+    sign: Literal["auto", "winding", "parity"] = "auto",
     band: float | None = None,
     threads: int = 1,
     map: bool = False,

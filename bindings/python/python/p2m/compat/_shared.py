@@ -105,67 +105,6 @@ class ObjectCache(Generic[_T]):
         return len(self._made)
 
 
-DIRECTION = np.array([0.4395064, 0.6175986, 0.6522316])
-"""The direction of rays that tell inside from outside. Any one would do, and few surfaces have edges along this one."""
-
-
-class SignedIndex:
-    """An index over triangles, with the signs that a count of crossings gives.
-
-    `Index.signed_distance` takes the side of the nearest part of a closed surface. That is wrong where a surface that
-    intersects itself has this part inside of another one, and users of other packages have such surfaces.
-    """
-
-    def __init__(self, index: Index) -> None:
-        self.index = index
-        self._is_closed: bool | None = None
-
-    def is_closed(self) -> bool:
-        """Return whether the surface is closed and its triangles are oriented alike."""
-        if self._is_closed is None:
-            try:
-                self.index.signed_distance(np.empty((0, 3)), sign="closed")
-                self._is_closed = True
-            except ValueError:
-                self._is_closed = False
-        return self._is_closed
-
-    def signed_distance(
-        self, points: NDArray[Any], threads: int | None = None, *, by_winding: bool = False
-    ) -> NDArray[np.float64]:
-        """Return distances that are negative inside; nan where the side is not defined.
-
-        Inside of a closed surface is where a ray crosses it an odd number of times, or with `by_winding` where the
-        crossings in both directions are not equally many. Inside of other surfaces is where the winding number exceeds
-        a half in magnitude.
-        """
-        if not self.is_closed():
-            return self.index.signed_distance(points, sign="winding", threads=threads)
-        distance = self.index.distance(points, threads=threads)
-        crossings = self.index.rays(points, DIRECTION, "crossings", threads=threads)
-        np.negative(distance, out=distance, where=(crossings % 2 == 1) & (distance > 0.0))
-        if by_winding:
-            # Odd winding numbers are not 0. Only even numbers of crossings need a closer look.
-            rows = np.nonzero((crossings % 2 == 0) & (crossings > 0) & (distance > 0.0))[0]
-            wound = rows[self._is_wound(points[rows], crossings[rows], threads)]
-            distance[wound] *= -1.0
-        return distance
-
-    def _is_wound(self, points: NDArray[Any], crossings: NDArray[np.int64], threads: int | None) -> NDArray[np.bool_]:
-        """Return whether the winding number of a closed surface around points is not 0."""
-        hits = self.index.rays(points, DIRECTION, "all", fields="side", threads=threads)
-        side = hits.side.astype(np.int64)
-        sums = np.concatenate([[0], np.cumsum(side)])
-        number = sums[hits.splits[1:]] - sums[hits.splits[:-1]]
-        zeros = np.concatenate([[0], np.cumsum(side == 0)])
-        # A ray through an edge hits several triangles in one crossing.
-        is_clear = (np.diff(hits.splits) == crossings) & (zeros[hits.splits[1:]] == zeros[hits.splits[:-1]])
-        wound: NDArray[np.bool_] = number != 0
-        if not is_clear.all():
-            wound[~is_clear] = self.index.signed_distance(points[~is_clear], sign="winding", threads=threads) < 0.0
-        return wound
-
-
 class Hits(NamedTuple):
     """All hits of rays, ray by ray, nearest first."""
 

@@ -27,7 +27,7 @@ from numpy.typing import ArrayLike, NDArray
 from .._hausdorff import hausdorff as _hausdorff
 from .._index import Index
 from .._scene import Scene
-from ._shared import ContentCache, Hits, SignedIndex, all_hits, first_hits
+from ._shared import ContentCache, Hits, all_hits, first_hits
 
 __all__ = [
     "AABB",
@@ -74,7 +74,6 @@ class _Mesh:
             points=elements[:, 0] if width == 1 else None,
         )
         self.index = Index(scene)
-        self.signed = SignedIndex(self.index)
         self._normals: _Pseudonormals | None = None
 
     @property
@@ -160,10 +159,10 @@ def signed_distance(
     F : array_like of integers, shape (m, 3)
         The vertices of the triangles.
     sign_type : SignedDistanceType or int, optional
-        The rule of signs, also as an object of libigl. By pseudonormals, a point is inside of a closed surface if a ray
-        from it crosses the surface an odd number of times, and of a surface with holes if it is behind the closest
-        point, seen along the normal there. By winding numbers, which is the default as well, it is inside if its
-        winding number exceeds a half in magnitude. Unsigned distances are positive.
+        The rule of signs, also as an object of libigl. By winding numbers, which is the default as well, a point is
+        inside if its winding number exceeds a half in magnitude. By pseudonormals that is the same for a closed
+        surface, and a point is inside of a surface with holes if it is behind the closest point, seen along the normal
+        there. Unsigned distances are positive.
     lower_bound, upper_bound : float, optional
         The distances that are needed. As in libigl, with the larger of their magnitudes b, the points at a distance of
         b or more have no answer, nor have those nearer than ``b - (upper_bound - lower_bound)``.
@@ -209,13 +208,13 @@ def signed_distance(
     if is_normal:
         N = np.full((len(S), 3), np.nan)
         N[is_answered] = mesh.normals.at(I[is_answered], answer.feature[is_answered])
-        if mesh.signed.is_closed():
-            S[is_in] = mesh.signed.signed_distance(points[is_in])
+        if mesh.index._raw.sign_rule("auto", 1)[1] is None:
+            S[is_in] = mesh.index.signed_distance(points[is_in])
         else:
             behind = np.einsum("ij,ij->i", points - C, np.nan_to_num(N)) < 0.0
             S[behind & is_answered] *= -1.0
     elif rule is not SIGNED_DISTANCE_TYPE_UNSIGNED:
-        S[is_in] = mesh.signed.signed_distance(points[is_in], by_winding=True)
+        S[is_in] = mesh.index.signed_distance(points[is_in], sign="winding")
     return S, I, C, N
 
 

@@ -26,7 +26,7 @@ from numpy.typing import DTypeLike, NDArray
 from .._arrays import indices
 from .._index import Index
 from .._scene import Scene
-from ._shared import SignedIndex, all_hits, first_hits, ray_values
+from ._shared import all_hits, first_hits, ray_values
 
 __all__ = ["INVALID_ID", "Array", "RaycastingScene"]
 
@@ -61,7 +61,6 @@ class _Geometry(NamedTuple):
 
 class _Built(NamedTuple):
     tree: Index
-    signed: SignedIndex
     first: NDArray[np.int64]
     """The id of the first triangle of each geometry, and the number of all triangles."""
 
@@ -93,9 +92,9 @@ class RaycastingScene:
 
     - Everything is computed in float64, and rounded once at the end to `dtype`. Open3D has only float32. Inputs may be
       arrays and sequences of any real type, and meshes with float64 keep it.
-    - Crossings are counted exactly for closed surfaces, so `nsamples` has no effect. A surface with holes has winding
-      numbers, where Open3D counts the hits of a ray. A point whose side is not defined has the distance nan and the
-      occupancy 0.
+    - Signs are exact, so `nsamples` has no effect. Their rule is that of `p2m.Index.signed_distance`: overlapping shells
+      are united, and a surface with holes has winding numbers, where Open3D counts the hits of a ray. A point whose
+      side is not defined has the distance nan and the occupancy 0.
     - Hits are decided exactly. A ray through an edge or a vertex hits each of its triangles, and the first of equal
       hits is that with the lowest id.
     - In an empty scene distances are infinite and closest points nan, where Open3D answers with the origin.
@@ -186,7 +185,7 @@ class RaycastingScene:
                 triangles = np.concatenate([np.empty((0, 3), np.int64), *corners])
                 first = np.concatenate([[0], np.cumsum([len(part) for part in corners], dtype=np.int64)])
                 tree = Index(Scene(vertices, triangles=triangles), threads=self._threads)
-                self._built = _Built(tree, SignedIndex(tree), first)
+                self._built = _Built(tree, first)
             return self._built
 
     def compute_closest_points(self, query_points: Any, nthreads: int = 0) -> dict[str, Any]:
@@ -256,7 +255,9 @@ class RaycastingScene:
         ValueError
             If `nsamples` is not odd and positive.
         """
-        return _result(self._signed(query_points, nthreads, nsamples).astype(self._dtype), query_points)
+        points = self._sampled(query_points, nsamples)
+        distance = self._index().tree.signed_distance(points, threads=_threads(nthreads))
+        return _result(distance.astype(self._dtype), query_points)
 
     def compute_occupancy(self, query_points: Any, nthreads: int = 0, nsamples: int = 1) -> Any:
         """Return whether points are inside of the scene.
@@ -272,13 +273,14 @@ class RaycastingScene:
             1 where the signed distance is negative, and 0 elsewhere, also on the surface. It has the type of distances,
             as in Open3D.
         """
-        return _result((self._signed(query_points, nthreads, nsamples) < 0.0).astype(self._dtype), query_points)
+        points = self._sampled(query_points, nsamples)
+        inside = self._index().tree.contains(points, threads=_threads(nthreads))
+        return _result(inside.astype(self._dtype), query_points)
 
-    def _signed(self, query_points: Any, nthreads: int, nsamples: int) -> NDArray[np.float64]:
+    def _sampled(self, query_points: Any, nsamples: int) -> NDArray[Any]:
         if nsamples < 1 or nsamples % 2 == 0:
             raise ValueError(f"nsamples: {nsamples} is not odd and positive")
-        points = _rows(query_points, 3, "query_points")
-        return self._index().signed.signed_distance(points, _threads(nthreads))
+        return _rows(query_points, 3, "query_points")
 
     def cast_rays(self, rays: Any, nthreads: int = 0) -> dict[str, Any]:
         """Return the first hits of rays.

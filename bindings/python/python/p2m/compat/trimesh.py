@@ -37,7 +37,7 @@ from numpy.typing import ArrayLike, NDArray
 from .._arrays import coordinates
 from .._index import Index
 from .._scene import Scene
-from ._shared import ContentCache, ObjectCache, SignedIndex, all_hits, first_hits, ray_values
+from ._shared import ContentCache, ObjectCache, all_hits, first_hits, ray_values
 
 __all__ = [
     "ProximityQuery",
@@ -57,7 +57,6 @@ class _Indexes:
         if faces.size == 0:
             raise ValueError("mesh: there are no faces")
         self.surface = Index(Scene(vertices, triangles=faces))
-        self.signed = SignedIndex(self.surface)
         self._vertices: Index | None = None
         self._lock = threading.Lock()
 
@@ -159,13 +158,12 @@ def signed_distance(mesh: Any, points: ArrayLike) -> NDArray[np.float64]:
 
     Notes
     -----
-    Inside of a closed surface is where a ray crosses it an odd number of times, whatever the orientation of its faces.
-    trimesh compares with the normal of the nearest face where the closest point is inside of it, and casts rays
-    elsewhere. Inside of a surface with holes is where the winding number exceeds a half in magnitude, and the distance
-    is nan where it is a half within the accuracy of float64. In trimesh, points within 1e-8 of the surface have a
+    The rule of signs is that of `p2m.Index.signed_distance`: overlapping shells are united. trimesh compares with the
+    normal of the nearest face where the closest point is inside of it, and casts rays elsewhere. The distance is nan
+    where the winding number of an open surface is exactly a half. In trimesh, points within 1e-8 of the surface have a
     positive distance on either side.
     """
-    distance = _indexes(mesh).signed.signed_distance(_points(points))
+    distance = _indexes(mesh).surface.signed_distance(_points(points))
     np.negative(distance, out=distance, where=distance != 0.0)
     return distance
 
@@ -410,7 +408,7 @@ class RayMeshIntersector:
             Whether `signed_distance` is positive: points on the surface are not inside, and in trimesh they may be.
             Nor are those whose side is not defined.
         """
-        return signed_distance(self.mesh, points) > 0.0
+        return _indexes(self.mesh).surface.contains(_points(points))
 
 
 def _rays(ray_origins: ArrayLike, ray_directions: ArrayLike) -> tuple[NDArray[np.float64], NDArray[np.float64]]:

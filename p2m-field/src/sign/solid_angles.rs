@@ -1,0 +1,418 @@
+//! Sums of solid angles of triangles, between bounds.
+//!
+//! The solid angle of a triangle has a closed form \[VanOosterom1983\]. Divided by 4 pi it is the integral of K(x) . n
+//! over the triangle, where K(x) = (x - q) / (4 pi |x - q|^3). For the triangles of a node, which lie within r of its
+//! centre p, K is replaced by its Taylor polynomial of degree 1 at p: a dipole and its first moments \[Barill2018\].
+//!
+//! **Error (proved, docs/proofs/fields.md).** K is the gradient of -1 / (4 pi |x - q|), whose third derivatives in any
+//! directions are at most 3! / (4 pi rho^4) at a distance of rho. So the remainder is at most 3 I / (4 pi rho^4), with
+//! rho = |p - q| - r and I the integral of |x - p|^2 over the triangles. It is also at most a half for each triangle.
+//!
+//! Nodes are divided by the surface-area heuristic in 16 bins, for caps have very different sizes.
+//!
+//! A sum starts at the root. While its error is too large, the node with the largest error is replaced by its children,
+//! and a leaf by the solid angles of its triangles. Values and errors are rounded to multiples of a unit that is so
+//! large that sums are exact.
+
+use super::types::ray;
+use nalgebra::Point3;
+use p2m_core::engine::arithmetic::cross;
+use p2m_core::engine::vector::{V3, add, dot, length, scaled, sub};
+use p2m_core::kernel::power_of_two;
+use p2m_core::predicates::orientation_3d;
+use p2m_core::{Crossing, PrimitiveSet, Side, Soup};
+use std::cmp::Ordering;
+use std::f64::consts::PI;
+use std::ops::Range;
+
+/// A tree of triangles whose solid angles are summed up.
+#[derive(Clone)]
+pub(super) struct SolidAngles {
+    /// The vertices of the triangles, with coordinates multiplied by `scale`. Triangles of a node are consecutive.
+    triangles: Vec<[V3; 3]>,
+    /// The power of two that makes the largest coordinate about 1.
+    scale: f64,
+    /// The nodes, from the root. The two children of a node are side by side.
+    nodes: Vec<Node>,
+    /// The unit of values and errors.
+    unit: f64,
+}
+
+/// A group of triangles that a dipole approximates from far away.
+#[derive(Clone)]
+struct Node {
+    centre: V3,
+    /// The corners of the box of the triangles.
+    bounds: [V3; 2],
+    /// 3 / (4 pi) times the integral of the squared distance from the centre over the triangles.
+    spread: f64,
+    /// The sum of the normals times areas, divided by 4 pi.
+    normal: V3,
+    /// The sum of the outer products of these normals with the offsets of the centroids from the centre. Each row
+    /// belongs to one component of the normal.
+    moments: [V3; 3],
+    /// The range of the triangles.
+    triangles: Range<u32>,
+    /// The index of the first child, or 0 for a leaf.
+    children: u32,
+}
+
+/// A number of windings, and a bound on its error.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Estimate {
+    pub(super) value: f64,
+    pub(super) error: f64,
+}
+
+/// The largest number of triangles in a leaf.
+const MAX_LEAF_TRIANGLES: usize = 4;
+/// The bound on the rounding error of a solid angle over 4 pi, where the terms of its tangent do not cancel: 32 u.
+const ROUNDING: f64 = 16.0 * f64::EPSILON;
+/// Where the terms cancel more than this, the query is in an edge apart from rounding, and the angle is unknown.
+const MAX_CANCELLATION: f64 = (1u64 << 40) as f64;
+/// Nodes below this level are halved, so no path is long.
+const MAX_DIVIDED_DEPTH: usize = 48;
+/// Nodes allow for the rounding of their moments and of distances by this factor.
+const INFLATION: f64 = 1.0 + 1e-9;
+
+impl SolidAngles {
+    /// Builds the tree of a soup of triangles.
+    ///
+    /// # Complexity
+    /// O(n log n) time; about 130 bytes for each triangle.
+    pub(super) fn new(soup: &Soup<f64>) -> Self {
+        let largest = soup.positions().iter().map(|p| p.coords.amax()).fold(0.0, f64::max);
+        let scale = scale_of(largest);
+        let corner = |i: u32| scaled(soup.positions()[i as usize].into(), scale);
+        let mut triangles: Vec<[V3; 3]> = soup.triangles().iter().map(|corners| corners.map(corner)).collect();
+        // The sum of all values and errors is at most n, and f64 has 53 bits.
+        let bits = usize::BITS - triangles.len().leading_zeros();
+        let unit = power_of_two(i32::try_from(bits).unwrap_or(0) - 51);
+        let mut nodes = Vec::new();
+        if !triangles.is_empty() {
+            nodes.push(Node::new(&triangles, 0));
+            build(&mut triangles, 0, 0, &mut nodes, 0);
+        }
+        Self { triangles, scale, nodes, unit }
+    }
+
+    /// Returns the sum of the solid angles over 4 pi, refined until `is_enough` says that the estimate is. It is `None`
+    /// if the query is on an edge of a triangle, apart from rounding, and the estimate was not enough without it.
+    pub(super) fn estimate(&self, query: &Point3<f64>, is_enough: impl Fn(Estimate) -> bool) -> Option<Estimate> {
+        let zero = Estimate { value: 0.0, error: 0.0 };
+        let Some(root) = self.nodes.first() else { return Some(zero) };
+        let q = scaled((*query).into(), self.scale);
+        // Far away the solid angle vanishes: the area is at most 32 for each triangle.
+        if q.iter().any(|x| x.abs() > FAR) {
+            return Some(Estimate { value: 0.0, error: 1e-9 });
+        }
+        let mut sum = self.node(root, q);
+        let mut queue = Queue::new(self.unit);
+        queue.push(sum, 0);
+        while !is_enough(sum) {
+            let Some((estimate, number)) = queue.pop() else { break };
+            sum = sum.minus(estimate);
+            let node = &self.nodes[number as usize];
+            if node.children == 0 {
+                sum = sum.plus(self.triangles(node.triangles.clone(), q)?);
+            } else {
+                for child in [node.children, node.children + 1] {
+                    let estimate = self.node(&self.nodes[child as usize], q);
+                    sum = sum.plus(estimate);
+                    queue.push(estimate, child);
+                }
+            }
+        }
+        Some(sum)
+    }
+
+    /// Returns the solid angles of the triangles of a leaf over 4 pi.
+    fn triangles(&self, range: Range<u32>, q: V3) -> Option<Estimate> {
+        // The solid angle is twice the argument of a complex number. Arguments below pi / 4 are added as the argument of
+        // the product of their numbers.
+        let (mut product, mut error, mut sum) = ([1.0, 0.0], 0.0, 0.0);
+        for triangle in &self.triangles[range.start as usize..range.end as usize] {
+            let angle = HalfAngle::new(triangle, q)?;
+            error += angle.error;
+            let [x, y] = angle.tangent;
+            if y.abs() < x {
+                product = [product[0] * x - product[1] * y, product[0] * y + product[1] * x];
+            } else {
+                sum += if angle.is_positive(triangle, q)? { y.abs().atan2(x) } else { -y.abs().atan2(x) };
+            }
+        }
+        sum += product[1].atan2(product[0]);
+        Some(self.rounded(Estimate { value: sum / (2.0 * PI), error }))
+    }
+
+    /// Evaluates the Taylor polynomial of a node.
+    fn node(&self, node: &Node, q: V3) -> Estimate {
+        let offset = sub(node.centre, q);
+        let square = dot(offset, offset);
+        let distance = square.sqrt();
+        let beyond = |k: usize| (node.bounds[0][k] - q[k]).max(q[k] - node.bounds[1][k]).max(0.0);
+        let [x, y, z] = [beyond(0), beyond(1), beyond(2)];
+        let rho_square = x * x + y * y + z * z;
+        let most = 0.5 * f64::from(node.triangles.end - node.triangles.start);
+        let error = node.spread / (rho_square * rho_square);
+        let inverse = 1.0 / square;
+        let cube = inverse / distance;
+        let trace = node.moments[0][0] + node.moments[1][1] + node.moments[2][2];
+        let along = dot(offset, node.moments.map(|row| dot(row, offset)));
+        let value = cube * (dot(offset, node.normal) + trace - 3.0 * along * inverse);
+        // The comparison is false for NaN.
+        if error < most && value.abs() <= most {
+            self.rounded(Estimate { value, error: error + ROUNDING })
+        } else {
+            self.rounded(Estimate { value: 0.0, error: most })
+        }
+    }
+
+    /// Rounds the value to a multiple of the unit, and the error upwards.
+    fn rounded(&self, estimate: Estimate) -> Estimate {
+        // Adding a number of 2^52 units and subtracting it again rounds to a unit.
+        let shift = self.unit * (3u64 << 51) as f64;
+        let round = |x: f64| (x + shift) - shift;
+        Estimate { value: round(estimate.value), error: round(estimate.error) + 2.0 * self.unit }
+    }
+}
+
+/// Coordinates beyond this, in units of the largest one of the triangles, are so far away that up to 2^30 triangles
+/// have no solid angle that matters: at most 2^30 * 32 / (4 pi 2^80) < 1e-9.
+const FAR: f64 = (1u64 << 40) as f64;
+
+impl Estimate {
+    fn plus(self, other: Self) -> Self {
+        Self { value: self.value + other.value, error: self.error + other.error }
+    }
+
+    fn minus(self, other: Self) -> Self {
+        Self { value: self.value - other.value, error: self.error - other.error }
+    }
+}
+
+/// The end of a list.
+const END: u32 = u32::MAX;
+
+/// The nodes of a sum, in lists by the magnitudes of their errors.
+struct Queue {
+    entries: Vec<(Estimate, u32, u32)>,
+    /// The first entry of the list of each magnitude.
+    heads: [u32; 64],
+    /// A bit for each list that is not empty.
+    used: u64,
+    /// The exponent of the least magnitude.
+    least: u64,
+}
+
+impl Queue {
+    fn new(unit: f64) -> Self {
+        Self { entries: Vec::with_capacity(128), heads: [END; 64], used: 0, least: unit.to_bits() >> 52 }
+    }
+
+    #[allow(clippy::cast_possible_truncation, reason = "a sum has fewer than 2^32 nodes")]
+    fn push(&mut self, estimate: Estimate, node: u32) {
+        let list = ((estimate.error.to_bits() >> 52) - self.least).min(63);
+        let entry = self.entries.len() as u32;
+        self.entries.push((estimate, node, self.heads[list as usize]));
+        self.heads[list as usize] = entry;
+        self.used |= 1 << list;
+    }
+
+    /// Removes a node whose error is at least half of the largest one.
+    fn pop(&mut self) -> Option<(Estimate, u32)> {
+        let list = 63u32.checked_sub(self.used.leading_zeros())?;
+        let head = &mut self.heads[list as usize];
+        let (estimate, node, next) = self.entries[*head as usize];
+        *head = next;
+        if next == END {
+            self.used &= !(1 << list);
+        }
+        Some((estimate, node))
+    }
+}
+
+/// Appends the nodes below a node. Its triangles come after `first` others.
+#[allow(clippy::cast_possible_truncation, reason = "numbers of triangles are u32")]
+fn build(triangles: &mut [[V3; 3]], first: u32, node: usize, nodes: &mut Vec<Node>, depth: usize) {
+    if triangles.len() <= MAX_LEAF_TRIANGLES {
+        return;
+    }
+    let (min, max) = triangles.iter().fold(([f64::INFINITY; 3], [f64::NEG_INFINITY; 3]), |(min, max), t| {
+        let c = centroid(t);
+        ([0, 1, 2].map(|k| f64::min(min[k], c[k])), [0, 1, 2].map(|k| f64::max(max[k], c[k])))
+    });
+    let half = if depth < MAX_DIVIDED_DEPTH { divide(triangles, min, max) } else { triangles.len() / 2 };
+    let (one, other) = triangles.split_at_mut(half);
+    let (children, second) = (nodes.len(), first + half as u32);
+    nodes[node].children = children as u32;
+    nodes.push(Node::new(one, first));
+    nodes.push(Node::new(other, second));
+    build(one, first, children, nodes, depth + 1);
+    build(other, second, children + 1, nodes, depth + 1);
+}
+
+/// Reorders triangles so that the boxes of the first ones and of the others are small, and returns the number of the
+/// first ones. `min` and `max` are the corners of the box of the centroids.
+fn divide(triangles: &mut [[V3; 3]], min: V3, max: V3) -> usize {
+    const BINS: usize = 16;
+    const EMPTY: [V3; 2] = [[f64::INFINITY; 3], [f64::NEG_INFINITY; 3]];
+    let united =
+        |a: [V3; 2], b: [V3; 2]| [[0, 1, 2].map(|k| a[0][k].min(b[0][k])), [0, 1, 2].map(|k| a[1][k].max(b[1][k]))];
+    let area = |b: [V3; 2]| {
+        let [x, y, z] = sub(b[1], b[0]);
+        if x >= 0.0 { x * y + y * z + z * x } else { 0.0 }
+    };
+    let extent = sub(max, min);
+    #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "bins are below 16")]
+    let bin = |t: &[V3; 3], axis: usize| {
+        (((centroid(t)[axis] - min[axis]) / extent[axis] * BINS as f64) as usize).min(BINS - 1)
+    };
+    let mut best = (f64::INFINITY, 0, 0);
+    for axis in (0..3).filter(|k| extent[*k] > 0.0) {
+        let (mut boxes, mut counts) = ([EMPTY; BINS], [0usize; BINS]);
+        for t in triangles.iter() {
+            let b = bin(t, axis);
+            boxes[b] = t.iter().fold(boxes[b], |all, corner| united(all, [*corner, *corner]));
+            counts[b] += 1;
+        }
+        let mut after = [(EMPTY, 0); BINS + 1];
+        for b in (0..BINS).rev() {
+            after[b] = (united(after[b + 1].0, boxes[b]), after[b + 1].1 + counts[b]);
+        }
+        let (mut before, mut count) = (EMPTY, 0);
+        for b in 1..BINS {
+            before = united(before, boxes[b - 1]);
+            count += counts[b - 1];
+            let cost = area(before) * count as f64 + area(after[b].0) * after[b].1 as f64;
+            if count > 0 && after[b].1 > 0 && cost < best.0 {
+                best = (cost, axis, b);
+            }
+        }
+    }
+    let (cost, axis, first) = best;
+    if cost == f64::INFINITY {
+        return triangles.len() / 2;
+    }
+    let mut half = 0;
+    for i in 0..triangles.len() {
+        if bin(&triangles[i], axis) < first {
+            triangles.swap(i, half);
+            half += 1;
+        }
+    }
+    half
+}
+
+fn centroid([a, b, c]: &[V3; 3]) -> V3 {
+    scaled(add(add(*a, *b), *c), 1.0 / 3.0)
+}
+
+/// Returns the normal of a triangle whose length is the area.
+fn normal([a, b, c]: &[V3; 3]) -> V3 {
+    scaled(cross(sub(*b, *a), sub(*c, *a)), 0.5)
+}
+
+impl Node {
+    #[allow(clippy::cast_possible_truncation, reason = "numbers of triangles are u32")]
+    fn new(triangles: &[[V3; 3]], first: u32) -> Self {
+        let weighted = triangles.iter().fold((0.0, [0.0; 3]), |(weight, sum), t| {
+            let area = length(normal(t));
+            (weight + area, add(sum, scaled(centroid(t), area)))
+        });
+        let centre = match weighted {
+            (weight, sum) if weight > 0.0 => scaled(sum, 1.0 / weight),
+            // Triangles without area contribute nothing, so any centre will do.
+            _ => centroid(&triangles[0]),
+        };
+        let (mut normals, mut moments, mut spread) = ([0.0; 3], [[0.0; 3]; 3], 0.0);
+        for t in triangles {
+            let normal = normal(t);
+            let offsets = t.map(|corner| sub(corner, centre));
+            let offset = centroid(&offsets);
+            // The integral of a quadratic form over a triangle is a twelfth of its area times the sum of the form at the
+            // vertices and at their sum.
+            let sum = scaled(offset, 3.0);
+            let squares = offsets.iter().map(|o| dot(*o, *o)).sum::<f64>() + dot(sum, sum);
+            spread += length(normal) * squares / 12.0;
+            let dipole = scaled(normal, 0.25 / PI);
+            normals = add(normals, dipole);
+            moments = [0, 1, 2].map(|k| add(moments[k], scaled(offset, dipole[k])));
+        }
+        let corners = triangles.as_flattened();
+        let end =
+            |pick: fn(f64, f64) -> f64| corners.iter().fold(corners[0], |a, b| [0, 1, 2].map(|k| pick(a[k], b[k])));
+        let (bounds, spread) = ([end(f64::min), end(f64::max)], spread * (0.75 / PI) * INFLATION);
+        let triangles = first..first + triangles.len() as u32;
+        Self { centre, bounds, spread, normal: normals, moments, triangles, children: 0 }
+    }
+}
+
+/// Half of the solid angle of a triangle.
+struct HalfAngle {
+    /// The cosine and the sine of the half-angle, multiplied by a common factor. The sine is positive from the back of
+    /// the triangle, apart from rounding.
+    tangent: [f64; 2],
+    /// The product of the distances from the vertices, multiplied by the same factor.
+    size: f64,
+    /// The bound on the error of the solid angle over 4 pi, apart from the sign of half-angles near pi.
+    error: f64,
+}
+
+impl HalfAngle {
+    /// Returns `None` if the query is on an edge of the triangle, apart from rounding.
+    #[inline]
+    fn new(triangle: &[V3; 3], q: V3) -> Option<Self> {
+        let [a, b, c] = triangle.map(|corner| sub(corner, q));
+        let [la, lb, lc] = [a, b, c].map(|x| dot(x, x).sqrt());
+        let volume = dot(a, cross(b, c));
+        let size = la * lb * lc;
+        let other = size + dot(a, b) * lc + dot(b, c) * la + dot(c, a) * lb;
+        // The terms of both have errors of a few units of roundoff of their size.
+        let cancellation = size / (volume * volume + other * other).sqrt();
+        (cancellation < MAX_CANCELLATION).then(|| {
+            // Arguments stay within the range of f64 when four of them are multiplied.
+            let unit = cancellation / size;
+            Self { tangent: [other * unit, volume * unit], size: cancellation, error: ROUNDING * (1.0 + cancellation) }
+        })
+    }
+
+    /// Returns whether the query is behind the triangle. In its plane it is where a ray would begin, which is just
+    /// before the triangle. `None` is returned if the ray runs in the plane.
+    fn is_positive(&self, triangle: &[V3; 3], q: V3) -> Option<bool> {
+        if self.tangent[1].abs() > ROUNDING * self.size {
+            return Some(self.tangent[1] > 0.0);
+        }
+        match orientation_3d(triangle[0], triangle[1], triangle[2], q) {
+            Ordering::Less => Some(true),
+            Ordering::Greater => Some(false),
+            Ordering::Equal => {
+                let ray = ray(&q.into());
+                Some(Crossing::from_vertices(&ray, triangle, f64::INFINITY, true)?.side() == Side::Back)
+            }
+        }
+    }
+}
+
+/// Returns the sum of the solid angles of all triangles of a soup over 4 pi.
+pub(super) fn sum_of_all(soup: &Soup<f64>, query: &Point3<f64>) -> f64 {
+    let bounds = soup.aabb();
+    let scale = scale_of([bounds.min, bounds.max, *query].iter().map(|p| p.coords.amax()).fold(0.0, f64::max));
+    let q: V3 = (*query).into();
+    let corner = |i: u32| scaled(soup.positions()[i as usize].into(), scale);
+    let q = scaled(q, scale);
+    let one = |t: &[u32; 3]| {
+        let [a, b, c] = t.map(|i| sub(corner(i), q));
+        let [la, lb, lc] = [a, b, c].map(|x| dot(x, x).sqrt());
+        let volume = dot(a, cross(b, c));
+        let other = la * lb * lc + dot(a, b) * lc + dot(b, c) * la + dot(c, a) * lb;
+        if volume == 0.0 { 0.0 } else { volume.atan2(other) / (2.0 * PI) }
+    };
+    soup.triangles().iter().map(one).sum()
+}
+
+/// Returns the power of two that makes a number about 1.
+#[allow(clippy::cast_possible_truncation, reason = "exponents of f64")]
+fn scale_of(largest: f64) -> f64 {
+    power_of_two(if largest > 0.0 { -(largest.log2() as i32).clamp(-1000, 1000) } else { 0 })
+}

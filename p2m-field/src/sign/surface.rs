@@ -1,0 +1,78 @@
+//! The topology of a set of triangles: which of them are neighbours, and where their surface has a boundary.
+
+use super::types::{SignError, check_kinds};
+use p2m_core::Soup;
+use p2m_core::engine::weld::{UNUSED, UnionFind, VertexWelder, group_by_vertex};
+
+/// The neighbour of an edge that has none: other than two triangles have the edge, both triangles run through it in one
+/// direction, or the triangle has equal corners.
+pub(super) const NO_TRIANGLE: u32 = u32::MAX;
+
+/// The connections between triangles. Vertices are welded where they have the same coordinates.
+pub(super) struct Surface {
+    pub(super) welder: VertexWelder,
+    /// The triangle beyond each edge, or [`NO_TRIANGLE`].
+    pub(super) neighbours: Vec<[u32; 3]>,
+    /// Whether the triangles around each vertex form a single fan.
+    pub(super) is_fan: Vec<bool>,
+    /// The directed edges through which triangles run more often in this direction than in the other, once for each
+    /// time in excess. They are the boundary of the surface.
+    pub(super) boundary: Vec<[u32; 2]>,
+    /// The lowest triangle that has an edge with an odd number of triangles, and the number of that edge.
+    pub(super) open: Option<(usize, usize)>,
+}
+
+/// A half-edge, stored at its lower vertex: the higher vertex, whether it runs upwards, and 3 * triangle + edge.
+type HalfEdge = (u32, bool, u32);
+
+impl Surface {
+    /// # Errors
+    /// [`SignError::OtherKinds`].
+    #[allow(clippy::cast_possible_truncation, reason = "ids are below 2^30")]
+    pub(super) fn new(soup: &Soup<f64>) -> Result<Self, SignError> {
+        check_kinds(soup)?;
+        let welder = VertexWelder::new(soup);
+        let triangles = soup.triangles();
+        let half_edges = triangles.iter().enumerate().flat_map(|(t, corners)| {
+            let [a, b, c] = welder.weld(*corners);
+            // The edges of a triangle with equal corners cancel each other.
+            let has_edges = a != b && b != c && c != a;
+            let edges = [(a, b), (b, c), (c, a)].into_iter().enumerate().filter(move |_| has_edges);
+            edges.map(move |(i, (a, b))| (a.min(b), (a.max(b), a < b, (3 * t + i) as u32)))
+        });
+        let mut neighbours = vec![[NO_TRIANGLE; 3]; triangles.len()];
+        let mut fans = UnionFind::new(3 * triangles.len());
+        let (mut boundary, mut open): (_, Option<u32>) = (Vec::new(), None);
+        let mut low = 0u32;
+        group_by_vertex(welder.vertex_count, half_edges, |half_edges: &[HalfEdge]| {
+            for half_edges in half_edges.chunk_by(|x, y| x.0 == y.0) {
+                let upwards = half_edges.iter().filter(|half_edge| half_edge.1).count();
+                let downwards = half_edges.len() - upwards;
+                if upwards != downwards {
+                    let [from, to] = if upwards > downwards { [low, half_edges[0].0] } else { [half_edges[0].0, low] };
+                    boundary.extend(std::iter::repeat_n([from, to], upwards.abs_diff(downwards)));
+                    if half_edges.len() % 2 == 1 {
+                        open = half_edges.iter().map(|half_edge| half_edge.2).chain(open).min();
+                    }
+                } else if let [(_, _, one), (_, _, other)] = *half_edges {
+                    let next = |corner: u32| corner - corner % 3 + (corner + 1) % 3;
+                    neighbours[one as usize / 3][one as usize % 3] = other / 3;
+                    neighbours[other as usize / 3][other as usize % 3] = one / 3;
+                    fans.union(one, next(other));
+                    fans.union(next(one), other);
+                }
+            }
+            low += 1;
+        });
+        let (mut is_fan, mut fan_of) = (vec![true; welder.vertex_count], vec![UNUSED; welder.vertex_count]);
+        for (corner, position) in triangles.iter().flatten().enumerate() {
+            let (vertex, fan) = (welder.vertex_ids[*position as usize] as usize, fans.find(corner as u32));
+            if fan_of[vertex] == UNUSED {
+                fan_of[vertex] = fan;
+            }
+            is_fan[vertex] &= fan_of[vertex] == fan;
+        }
+        let place = |half_edge: u32| (half_edge as usize / 3, half_edge as usize % 3);
+        Ok(Self { welder, neighbours, is_fan, boundary, open: open.map(place) })
+    }
+}
