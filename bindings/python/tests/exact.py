@@ -141,7 +141,7 @@ class Mesh:
     def is_inside(self, point: np.ndarray) -> bool | None:
         """Return whether a ray from the point crosses the closed surface an odd number of times."""
         winding = self.winding_number(point)
-        return None if winding is None else winding % 2 == 1
+        return None if winding is None else winding != 0
 
     def winding_number(self, point: np.ndarray) -> int | None:
         """Return how often a closed surface is wound around a point, counted along a ray in the direction of z.

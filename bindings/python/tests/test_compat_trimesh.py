@@ -116,11 +116,11 @@ def test_queries_of_one_mesh_can_be_replaced() -> None:
     assert (mesh.nearest, mesh.ray) == before
 
 
-def test_crossings_decide_where_a_surface_intersects_itself() -> None:
-    """The nearest part of a point in two cubes is inside of the other one. Two crossings are outside."""
+def test_overlapping_shells_are_united() -> None:
+    """The nearest part of a point in two cubes is inside of the other one."""
     vertices = np.concatenate([CUBE_VERTICES, CUBE_VERTICES * 0.5 + [0.75, 0.25, 0.25]])
     mesh = SimpleNamespace(vertices=vertices, faces=np.concatenate([CUBE_TRIANGLES, CUBE_TRIANGLES + 8]))
     points = [[0.875, 0.5, 0.5], [0.625, 0.5, 0.5], [1.125, 0.5, 0.5], [0.70, 0.5, 0.5]]
     distance = trimesh.signed_distance(mesh, points)
-    np.testing.assert_allclose(distance, [-0.125, 0.125, 0.125, 0.05], rtol=1e-12)
-    assert trimesh.RayMeshIntersector(mesh).contains_points(points).tolist() == [False, True, True, True]
+    np.testing.assert_allclose(distance, [0.125, 0.125, 0.125, 0.05], rtol=1e-12)
+    assert trimesh.RayMeshIntersector(mesh).contains_points(points).tolist() == [True] * 4

@@ -27,7 +27,6 @@ import p2m
 from p2m.compat import igl as our_igl
 from p2m.compat import open3d as our_open3d
 from p2m.compat import trimesh as our_trimesh
-from p2m.compat._shared import SignedIndex
 
 DECIDED = int(os.environ.get("P2M_DECIDED", "25"))
 ROUNDING = 2.0**-53
@@ -137,7 +136,6 @@ def decide_triangles(
 
 def decide_signs(
     rival: str, name: str, mesh: Mesh, points: np.ndarray, ours: np.ndarray, theirs: np.ndarray, reason: str,
-    by_winding: bool = False,
 ) -> None:  # fmt: skip
     """Check that our insides are those of exact crossings, where others differ, and everywhere in a sample."""
     differs = np.asarray(ours) != np.asarray(theirs)
@@ -148,8 +146,7 @@ def decide_signs(
     for row in [*chosen(differs), *chosen(np.arange(len(points)))]:
         winding = mesh.winding_number(points[row])
         if winding is not None:
-            inside = winding != 0 if by_winding else winding % 2 == 1
-            assert bool(ours[row]) == inside, (name, points[row])
+            assert bool(ours[row]) == (winding != 0), (name, points[row])
             decided += bool(differs[row])
     note("signs", rival, name, int(differs.sum()), len(points), decided, reason)
 
@@ -475,7 +472,7 @@ def test_point_cloud_utils_on_models(model: tuple[str, p2m.Scene, Mesh]) -> None
     both = (answer.distance, answer.primitive), (distance, ids)
     decide_distances("point-cloud-utils", name, mesh, points, *both, 16 * ROUNDING, "cancellation in slivers")
     decide_triangles("point-cloud-utils", name, mesh, points, answer.primitive, ids, ROUNDING)
-    signed = SignedIndex(index).signed_distance(points, by_winding=True)
+    signed = index.signed_distance(points)
     rival, _, _ = pcu.signed_distance_to_mesh(points, scene.vertices, scene.triangles)
     clear = answer.distance > 64 * ROUNDING * mesh.size
     decide_signs(
@@ -486,7 +483,6 @@ def test_point_cloud_utils_on_models(model: tuple[str, p2m.Scene, Mesh]) -> None
         signed[clear] < 0,
         rival[clear] < 0,
         "fast winding numbers",
-        True,
     )
     pair = (np.abs(signed[clear]), ids[clear]), (np.abs(rival[clear]), ids[clear])
     decide_distances(
