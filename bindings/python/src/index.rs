@@ -8,13 +8,14 @@ use crate::work::{FIRST_STEP_QUERIES, Monitor, Threads, run_batch, run_owned};
 use p2m_backends::{BACKENDS, BackendEntry, BuildSettings, BuiltIndex, KdopDirections, SearchStructure};
 use p2m_core::pair::PairQuery;
 use p2m_core::{AnyIndex, BuildError, PrimitiveSet, RayQuery, Soup};
+use p2m_field::sign::Normals;
 use p2m_interception::Progress;
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 use std::collections::HashMap;
 use std::path::PathBuf;
-use std::sync::{Arc, Mutex, PoisonError};
+use std::sync::{Arc, Mutex, OnceLock, PoisonError};
 
 /// A batch whose expected time is shorter runs on the calling thread.
 const MIN_PARALLEL_NANOSECONDS: f64 = 2e6;
@@ -36,6 +37,8 @@ pub(crate) struct Index {
     pub(crate) origin: Option<Origin>,
     /// The signs that were prepared so far.
     signs: Mutex<HashMap<SignRule, Arc<Signed>>>,
+    /// The normals of the scene, once they are asked for.
+    normals: OnceLock<Normals>,
 }
 
 /// The file that an index came from.
@@ -53,7 +56,12 @@ impl Index {
         backend: &'static BackendEntry,
         origin: Option<Origin>,
     ) -> Self {
-        Self { scene, built, backend, origin, signs: Mutex::default() }
+        Self { scene, built, backend, origin, signs: Mutex::default(), normals: OnceLock::new() }
+    }
+
+    /// Returns the normals of the scene, which are computed at the first call.
+    pub(crate) fn surface_normals(&self, py: Python<'_>) -> &Normals {
+        py.detach(|| self.normals.get_or_init(|| Normals::new(&self.scene.soup)))
     }
 
     /// Returns the index without the type of its backend.
@@ -67,6 +75,11 @@ impl Index {
             SearchStructure::Exhaustive => EXHAUSTIVE_NANOSECONDS_PER_PRIMITIVE * self.scene.soup.len() as f64,
             _ => QUERY_NANOSECONDS,
         }
+    }
+
+    /// Returns whether a query takes about a microsecond.
+    pub(crate) fn has_fast_queries(&self) -> bool {
+        self.query_nanoseconds() <= QUERY_NANOSECONDS
     }
 
     /// Returns the number of queries of the first step of a batch, which should not take long.

@@ -9,9 +9,9 @@ use crate::signs::SignRule;
 use crate::source::{Part, Source};
 use crate::work::{Monitor, Threads};
 use nalgebra::Point3;
-use numpy::PyReadwriteArray1;
+use numpy::{PyReadonlyArray1, PyReadwriteArray1};
 use p2m_core::batch::{Interruptible, closest_columns_into};
-use p2m_core::{AnyIndex, Closest, Position, QueryOptions};
+use p2m_core::{AnyIndex, Closest, Feature, Position, PrimitiveId, QueryOptions};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 
@@ -184,8 +184,32 @@ pub(crate) fn is_any_within(
     Ok(())
 }
 
+/// The number of points whose sides are decided in the first step. They take at most some hundredths of a second.
+const FIRST_CONTAINS_STEP: usize = 1 << 16;
+
 #[pymethods]
 impl Index {
+    /// Writes the normals at features of primitives to `out`, and nan where there is none.
+    fn normals(
+        &self,
+        py: Python<'_>,
+        primitive: PyReadonlyArray1<'_, i64>,
+        feature: PyReadonlyArray1<'_, u8>,
+        out: &Bound<'_, PyDict>,
+    ) -> PyResult<()> {
+        let normals = self.surface_normals(py);
+        let mut array = borrowed::<f64>(out, "normal")?;
+        let out = slice(&mut array)?.unwrap_or_default();
+        let (primitive, feature) = (primitive.as_slice()?, feature.as_slice()?);
+        for ((place, primitive), code) in out.chunks_exact_mut(3).zip(primitive).zip(feature) {
+            let normal = Feature::from_code(*code)
+                .zip(usize::try_from(*primitive).ok().filter(|id| *id < PrimitiveId::MAX_COUNT))
+                .and_then(|(feature, id)| normals.at(PrimitiveId::new(id), feature));
+            place.copy_from_slice(&normal.map_or([f64::NAN; 3], Into::into));
+        }
+        Ok(())
+    }
+
     /// Returns the name of the rule that decides signs, and a sentence that says why, if the surface is open or not
     /// consistently oriented.
     fn sign_rule(&self, py: Python<'_>, sign: &str, threads: usize) -> PyResult<(&'static str, Option<&'static str>)> {
@@ -209,6 +233,10 @@ impl Index {
         with_positions!(points, points => {
             let work = |threads: &Threads, monitor: &Monitor| {
                 check_finite("points", points, 1)?;
+                // Points share queries with their neighbours, so parts have to be large.
+                if signed.is_closed() && self.has_fast_queries() {
+                    monitor.set_step(FIRST_CONTAINS_STEP);
+                }
                 answer_in_parts(points.len(), out, threads, monitor, &|range, out: &mut [bool]| {
                     let batch = batch_options(range.len(), false);
                     let points: Vec<Point3<f64>> = points[range].iter().map(Position::point).collect();

@@ -25,6 +25,17 @@ impl Feature {
             Self::Face => 6,
         }
     }
+
+    /// Returns the feature of a code, or `None` for other numbers.
+    #[must_use]
+    pub fn from_code(code: u8) -> Option<Self> {
+        match code {
+            0..=2 => Some(Self::Vertex(code)),
+            3..=5 => Some(Self::Edge(code - 3)),
+            6 => Some(Self::Face),
+            _ => None,
+        }
+    }
 }
 
 impl std::fmt::Display for Feature {

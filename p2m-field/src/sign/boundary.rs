@@ -126,7 +126,7 @@ mod tests {
     #[test]
     fn winding_numbers_change_by_at_most_the_bound_of_the_boundary() {
         let knot = torus_knot(&TorusKnot::default()).expect("valid");
-        assert!(Surface::new(&knot).expect("triangles").boundary.is_empty());
+        assert!(Surface::new(&knot).boundary.is_empty());
         let ball = ico_sphere(&IcoSphere { frequency: 8 }).expect("valid");
         let low = |t: &[u32; 3]| t.iter().all(|i| ball.positions()[*i as usize].x <= 0.0);
         let half = ball.triangles().iter().filter(|t| low(t)).copied().collect();
@@ -136,7 +136,7 @@ mod tests {
         rest.push(rest[500]);
         let holes = Soup::from_triangles(knot.positions().to_vec(), rest).expect("valid");
         for (soup, edges, name) in [(half, 24, "half a ball"), (holes, 6, "a hole")] {
-            let surface = Surface::new(&soup).expect("triangles");
+            let surface = Surface::new(&soup);
             let (boundary, found) = (Boundary::new(&soup, &surface), surface.boundary.len());
             assert!(found == edges || name == "half a ball" && found > 10, "{name}: {found} edges");
             let winding = WindingNumbers::new(&soup).expect("triangles");

@@ -28,12 +28,14 @@ mod certificate;
 mod contains;
 mod crowding;
 mod edge_sums;
+mod normals;
 mod solid_angles;
 mod surface;
 mod types;
 mod winding;
 
 pub use edge_sums::EdgeSums;
+pub use normals::Normals;
 pub use types::{SharedSoup, Sign, SignError, SignRule, Signed};
 pub use winding::WindingNumbers;
 
@@ -269,7 +271,8 @@ impl<I, S: SharedSoup> SignedDistance<I, S> {
 
 impl<S: SharedSoup> Signs<S> {
     fn new(soup: S, rule: Option<SignRule>, roundoff: f64) -> Result<Self, SignError> {
-        let surface = Surface::new(&soup)?;
+        check_kinds(&soup)?;
+        let surface = Surface::new(&soup);
         let is_closed = surface.open.is_none();
         let rule = rule.unwrap_or(if is_closed && !surface.boundary.is_empty() {
             SignRule::Parity

@@ -1,6 +1,5 @@
 //! The topology of a set of triangles: which of them are neighbours, and where their surface has a boundary.
 
-use super::types::{SignError, check_kinds};
 use p2m_core::Soup;
 use p2m_core::engine::weld::{UNUSED, UnionFind, VertexWelder, group_by_vertex};
 
@@ -26,25 +25,14 @@ pub(super) struct Surface {
 type HalfEdge = (u32, bool, u32);
 
 impl Surface {
-    /// # Errors
-    /// [`SignError::OtherKinds`].
-    #[allow(clippy::cast_possible_truncation, reason = "ids are below 2^30")]
-    pub(super) fn new(soup: &Soup<f64>) -> Result<Self, SignError> {
-        check_kinds(soup)?;
+    pub(super) fn new(soup: &Soup<f64>) -> Self {
         let welder = VertexWelder::new(soup);
         let triangles = soup.triangles();
-        let half_edges = triangles.iter().enumerate().flat_map(|(t, corners)| {
-            let [a, b, c] = welder.weld(*corners);
-            // The edges of a triangle with equal corners cancel each other.
-            let has_edges = a != b && b != c && c != a;
-            let edges = [(a, b), (b, c), (c, a)].into_iter().enumerate().filter(move |_| has_edges);
-            edges.map(move |(i, (a, b))| (a.min(b), (a.max(b), a < b, (3 * t + i) as u32)))
-        });
         let mut neighbours = vec![[NO_TRIANGLE; 3]; triangles.len()];
         let mut fans = UnionFind::new(3 * triangles.len());
         let (mut boundary, mut open): (_, Option<u32>) = (Vec::new(), None);
         let mut low = 0u32;
-        group_by_vertex(welder.vertex_count, half_edges, |half_edges: &[HalfEdge]| {
+        group_by_vertex(welder.vertex_count, half_edges(soup, &welder), |half_edges: &[HalfEdge]| {
             for half_edges in half_edges.chunk_by(|x, y| x.0 == y.0) {
                 let upwards = half_edges.iter().filter(|half_edge| half_edge.1).count();
                 let downwards = half_edges.len() - upwards;
@@ -73,6 +61,30 @@ impl Surface {
             is_fan[vertex] &= fan_of[vertex] == fan;
         }
         let place = |half_edge: u32| (half_edge as usize / 3, half_edge as usize % 3);
-        Ok(Self { welder, neighbours, is_fan, boundary, open: open.map(place) })
+        Self { welder, neighbours, is_fan, boundary, open: open.map(place) }
     }
+
+    /// Calls a function for each edge of the triangles, with 3 * triangle + edge for all triangles that have it.
+    pub(super) fn for_each_edge(&self, soup: &Soup<f64>, mut visit: impl FnMut(&[u32])) {
+        let mut ids = Vec::new();
+        group_by_vertex(self.welder.vertex_count, half_edges(soup, &self.welder), |half_edges: &[HalfEdge]| {
+            for half_edges in half_edges.chunk_by(|x, y| x.0 == y.0) {
+                ids.clear();
+                ids.extend(half_edges.iter().map(|half_edge| half_edge.2));
+                visit(&ids);
+            }
+        });
+    }
+}
+
+/// Returns the half-edges of triangles with their lower vertices.
+#[allow(clippy::cast_possible_truncation, reason = "ids are below 2^30")]
+fn half_edges(soup: &Soup<f64>, welder: &VertexWelder) -> impl Iterator<Item = (u32, HalfEdge)> + Clone {
+    soup.triangles().iter().enumerate().flat_map(|(t, corners)| {
+        let [a, b, c] = welder.weld(*corners);
+        // The edges of a triangle with equal corners cancel each other.
+        let has_edges = a != b && b != c && c != a;
+        let edges = [(a, b), (b, c), (c, a)].into_iter().enumerate().filter(move |_| has_edges);
+        edges.map(move |(i, (a, b))| (a.min(b), (a.max(b), a < b, (3 * t + i) as u32)))
+    })
 }

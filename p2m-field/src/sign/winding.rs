@@ -8,7 +8,7 @@ use super::boundary::Boundary;
 use super::caps::caps;
 use super::solid_angles::{Estimate, SolidAngles, sum_of_all};
 use super::surface::Surface;
-use super::types::{RayTree, SharedSoup, Sign, SignError, ray};
+use super::types::{RayTree, SharedSoup, Sign, SignError, check_kinds, ray};
 use nalgebra::Point3;
 use p2m_bvh::TreeIndex;
 use p2m_core::{Aabb, RayQuery, Soup};
@@ -53,7 +53,8 @@ impl<S: SharedSoup> WindingNumbers<S> {
     /// # Complexity
     /// O(n log n) time. Memory is 60 bytes for each triangle and 300 bytes for each edge of the boundary.
     pub fn new(soup: S) -> Result<Self, SignError> {
-        let surface = Surface::new(&soup)?;
+        check_kinds(&soup)?;
+        let surface = Surface::new(&soup);
         let rays = TreeIndex::new(soup.clone())?;
         Self::of_surface(soup, &surface, rays)
     }

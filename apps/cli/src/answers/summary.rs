@@ -154,12 +154,32 @@ pub(crate) struct AnswerSummary {
     distances: RunningStats,
     /// The upper bounds of the errors of the distances.
     errors: RunningStats,
+    /// The number of queries that are inside, if there are signs.
+    inside: Option<u64>,
 }
 
 impl AnswerSummary {
-    /// Adds a query with one answer or none.
-    pub(crate) fn add(&mut self, answer: Option<&Closest<f64>>) {
+    /// Adds a query with one answer or none, and whether it is inside if there are signs.
+    pub(crate) fn add(&mut self, answer: Option<&Closest<f64>>, is_inside: Option<bool>) {
         self.add_all(answer.map_or(&[], std::slice::from_ref));
+        self.count_side(is_inside);
+    }
+
+    /// Adds a query that was asked for its side alone.
+    pub(crate) fn add_side(&mut self, is_inside: Option<bool>) {
+        self.queries += 1;
+        self.count_side(is_inside);
+    }
+
+    fn count_side(&mut self, is_inside: Option<bool>) {
+        if let Some(is_inside) = is_inside {
+            self.inside = Some(self.inside.unwrap_or(0) + u64::from(is_inside));
+        }
+    }
+
+    /// Returns the number of queries that are inside, if there are signs.
+    pub(crate) fn inside(&self) -> Option<u64> {
+        self.inside
     }
 
     /// Adds a query with any number of answers.
@@ -196,7 +216,12 @@ impl AnswerSummary {
 impl fmt::Display for AnswerSummary {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let answers = self.distances.count();
-        writeln!(f, "answers  {answers}, without answer {}", self.unanswered)?;
+        if let Some(inside) = self.inside {
+            writeln!(f, "inside   {inside} of {}", self.queries)?;
+        }
+        if answers > 0 || self.inside.is_none() || self.unanswered > 0 {
+            writeln!(f, "answers  {answers}, without answer {}", self.unanswered)?;
+        }
         if answers > 0 {
             writeln!(f, "distance {}", self.distances)?;
             writeln!(

@@ -11,7 +11,7 @@ use crate::io::output::Output;
 use crate::io::streams::Streams;
 use crate::query::args::Args;
 use nalgebra::Point3;
-use p2m_core::Closest;
+use p2m_core::{Closest, Soup};
 use p2m_mixed::Object;
 use p2m_shards::ShardedIndex;
 use rayon::ThreadPool;
@@ -47,6 +47,8 @@ pub(crate) struct Run<'a> {
     pub(crate) signs: Option<SignReport>,
     /// The shards, if the index is in shards.
     pub(crate) shards: Option<&'a ShardedIndex>,
+    /// The scene, unless the index is in shards.
+    pub(crate) soup: Option<&'a Soup<f64>>,
 }
 
 impl Run<'_> {
@@ -59,7 +61,7 @@ impl Run<'_> {
         let run = RunSummary { index, threads: pool.current_num_threads(), query_time };
         if args.query_args.json {
             let shards = shards.map(|index| json!({ "shards": shards_json(index, args.max_memory) }));
-            let signs = json!({ "sign_rule": signs.map(|signs| signs.rule) });
+            let signs = json!({ "sign_rule": signs.map(|signs| signs.rule), "inside": summary.inside() });
             let report = json::joined([shards.unwrap_or_default(), args.report(&summary, &run.index.cells()), signs]);
             return json::print(streams, &run.json("query", report, &args.query_args.output_json(format, bytes)));
         }
@@ -75,7 +77,12 @@ impl Run<'_> {
         let cannot_write = self.output.cannot_write();
         let failed = |error| anyhow::Error::new(error).context(cannot_write.clone());
         let has_many = self.args.has_many_answers();
+        let (has_signs, only_inside) = (self.signs.is_some(), self.args.has_only_inside());
         let encoder = AnswerEncoder::new(self.format, self.objects, self.args.columns(self.format, self.objects));
+        let encoder = match self.soup {
+            Some(soup) => encoder.with_normals(soup),
+            None => encoder,
+        };
         // Only with one answer for each query it is known before how many there are.
         let count = Some(self.queries.len()).filter(|_| !has_many);
         let mut table = Table::new(&mut self.output, encoder.header(), count).map_err(failed)?;
@@ -105,7 +112,10 @@ impl Run<'_> {
                     encoder.encode(&AnswerRecord { number, query, answer, signed_distance: *signed_distance }, out);
                     1
                 },
-                take: |_: &_, (answer, _): &ClosestAnswer| summary.add(answer.as_ref()),
+                take: |_: &_, (answer, signed_distance): &ClosestAnswer| {
+                    let is_inside = has_signs.then_some(*signed_distance < 0.0);
+                    if only_inside { summary.add_side(is_inside) } else { summary.add(answer.as_ref(), is_inside) }
+                },
                 write,
             };
             answer_all(self.streams, self.pool, queries, steps)?

@@ -58,6 +58,7 @@ Examples:
   p2m query bunny.obj --points scan.xyz --max-distance 0.5 --out answers.csv
   p2m query scene.ply --random 100000 --seed 7 --box-scale 1.5 --backend aabb > answers.csv
   p2m query bunny.obj --points scan.csv.gz --signed --columns query,signed,primitive --out sides.csv
+  p2m query bunny.obj --random 1000000 --signed --columns query,inside --out occupancy.npy
   p2m query scene.obj --points scan.xyz --k-nearest 3 --out three.csv
   p2m query scene.obj --grid 64 --out field.npy --json
   p2m query city.obj --points scan.xyz --epsilon 0.01 --out rough.npy
@@ -189,10 +190,27 @@ impl Args {
         columns
     }
 
+    /// Returns whether a column has the normals of the scene.
+    pub(crate) fn has_normals(&self) -> bool {
+        self.columns.contains(&AnswerColumn::Normal)
+    }
+
+    /// Returns whether the columns tell inside from outside and need no distances.
+    pub(crate) fn has_only_inside(&self) -> bool {
+        let needs_none =
+            |c: &AnswerColumn| matches!(c, AnswerColumn::Number | AnswerColumn::Query | AnswerColumn::Inside);
+        self.columns.contains(&AnswerColumn::Inside) && self.columns.iter().all(needs_none)
+    }
+
     /// Refuses combinations of arguments that contradict each other.
     pub(crate) fn check(&self) -> anyhow::Result<()> {
-        if self.columns.contains(&AnswerColumn::Signed) && self.signed.is_none() {
-            return Err(usage("the column signed needs --signed"));
+        for column in [AnswerColumn::Signed, AnswerColumn::Inside] {
+            if self.columns.contains(&column) && self.signed.is_none() {
+                return Err(usage(format!("the column {} needs --signed", column.name())));
+            }
+        }
+        if self.has_normals() && self.has_many_answers() {
+            return Err(usage("the column normal is not for --k-nearest and --within"));
         }
         match (1..self.columns.len()).find(|i| self.columns[..*i].contains(&self.columns[*i])) {
             Some(twice) => Err(usage(format!("the column {} is named twice", self.columns[twice].name()))),

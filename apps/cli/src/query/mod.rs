@@ -23,6 +23,7 @@ use crate::query::args::queries;
 use anyhow::Context;
 use nalgebra::Point3;
 use p2m_backends::{AnyIndex, QueryRegion, Workload};
+use p2m_core::batch::BatchOptions;
 use p2m_core::{Closest, PrimitiveId, PrimitiveSet};
 use p2m_shards::{ShardClosest, ShardedIndex};
 use rayon::prelude::*;
@@ -66,8 +67,20 @@ pub(crate) fn run(streams: &Streams, args: &Args) -> anyhow::Result<()> {
     let (summary, backend) = (SceneSummary::new(scene_args.name(), format, &scene), backend.name);
     let index = IndexSummary { scene: summary, backend, built: Some(&built), is_loaded, read_time, build_time };
     let (objects, shards) = (&*scene.objects, None);
-    Run { streams, args, pool: &pool, queries, output, format: out_format, objects, index, signs, shards }
-        .finish(&source)
+    Run {
+        streams,
+        args,
+        pool: &pool,
+        queries,
+        output,
+        format: out_format,
+        objects,
+        index,
+        signs,
+        shards,
+        soup: Some(&scene.soup),
+    }
+    .finish(&source)
 }
 
 /// Answers queries by an index in shards, which are loaded as queries need them.
@@ -78,6 +91,9 @@ fn run_in_shards(streams: &Streams, args: &Args, folder: &Path) -> anyhow::Resul
     let has_options_of_builds = args.backend.is_some() || query_args.k.is_some() || !args.p2m.is_unspecified();
     refuse_options_of_builds(&args.scene, has_options_of_builds)?;
     refuse_other_signs(args)?;
+    if args.has_normals() {
+        return Err(usage("the column normal is not for an index in shards"));
+    }
     let format = query_args.format(streams)?;
     let start = Instant::now();
     let index = open(folder, args.max_memory, args.scene.map)?;
@@ -91,7 +107,8 @@ fn run_in_shards(streams: &Streams, args: &Args, folder: &Path) -> anyhow::Resul
     let (pool, objects) = (query_args.threads.pool()?, index.manifest().objects());
     let (source, shards) = (Shards { index: &index, args }, Some(&index));
     let (objects, index) = (&*objects, summarize(args.scene.name(), &index, read_time, build_time));
-    Run { streams, args, pool: &pool, queries, output, format, objects, index, signs, shards }.finish(&source)
+    Run { streams, args, pool: &pool, queries, output, format, objects, index, signs, shards, soup: None }
+        .finish(&source)
 }
 
 /// Refuses rules of signs that shards do not have: the surface decides theirs.
@@ -113,6 +130,9 @@ impl Source for WholeIndex<'_> {
     const BLOCK_SIZE: BlockSize = BlockSize::Adaptive;
 
     fn closest(&self, queries: &[Point3<f64>]) -> anyhow::Result<Vec<ClosestAnswer>> {
+        if let Some(signed) = self.signed.filter(|_| self.args.has_only_inside()) {
+            return Ok(only_inside(signed.contains_each(queries, &BatchOptions::default())));
+        }
         let answers = self.args.accuracy.answer(self.index, queries, &self.args.options());
         let with_sign = |(query, answer): (&Point3<f64>, Option<Closest<f64>>)| {
             let signed =
@@ -143,6 +163,9 @@ impl Source for Shards<'_> {
     fn closest(&self, queries: &[Point3<f64>]) -> anyhow::Result<Vec<ClosestAnswer>> {
         let options = self.args.options();
         let batch = self.index.batch();
+        if self.args.has_only_inside() {
+            return Ok(only_inside(batch.contains(queries)?));
+        }
         let answers = match self.args.accuracy.is_certified() {
             true => batch.certified_closest_points(queries, &options)?,
             false => batch.closest_points(queries, &options)?,
@@ -164,6 +187,11 @@ impl Source for Shards<'_> {
         let near = self.index.batch().k_nearest(queries, k.unwrap_or(usize::MAX), radius)?;
         Ok(near.into_par_iter().map(|near| near.into_iter().map(in_scene).collect()).collect())
     }
+}
+
+/// Returns answers that have a side and no distance.
+fn only_inside(are_inside: Vec<bool>) -> Vec<ClosestAnswer> {
+    are_inside.into_iter().map(|is_inside| (None, if is_inside { -1.0 } else { 1.0 })).collect()
 }
 
 /// Returns an answer with the number of the primitive in the whole scene.

@@ -311,6 +311,7 @@ fn the_json_summary_agrees_with_the_table() {
             "mean": distances.iter().sum::<f64>() / answered as f64,
         },
         "sign_rule": null,
+        "inside": null,
         "out": { "file": out, "format": "csv", "bytes": table.len() },
     });
     assert_eq!(rest, expected);

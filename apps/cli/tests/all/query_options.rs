@@ -58,6 +58,18 @@ fn signed_distances_are_negative_inside() {
         }
     }
     assert!(run(&["--signed"]).starts_with("qx,qy,qz,x,y,z,distance,signed_distance,primitive,feature\n"));
+    // The column inside needs no distances if it is alone, and says the same with them.
+    let (alone, other) = (run(&["--signed", "--columns", "inside"]), run(&["--signed", "--columns", "inside,signed"]));
+    assert_eq!((&*alone, &*other), ("inside\n1\n0\n0\n", "inside,signed_distance\n1,-0.5\n0,2.0\n0,0.0\n"));
+    let report = |columns: &str| {
+        let out = path(&folder, "inside.npy");
+        json(&["query", &scene, "--points", &points, "--signed", "--columns", columns, "--out", &out, "--json"])
+    };
+    let (alone, other) = (report("query,inside"), report("query,inside,distance"));
+    assert_eq!((&alone["inside"], &alone["answers"]), (&1.into(), &0.into()));
+    assert_eq!((&other["inside"], &other["answers"]), (&1.into(), &3.into()));
+    // The first query is nearest to the face at x = 0, and the second to its inside.
+    assert_eq!(run(&["--columns", "normal"]), "nx,ny,nz\n-1.0,0.0,0.0\n-1.0,0.0,0.0\n-1.0,0.0,0.0\n");
     let open = write(&folder, "open.obj", "v 0 0 0\nv 4 0 0\nv 0 4 0\nf 1 2 3\n");
     let message = failure(&["query", &open, "--points", &points, "--signed=parity"], 1);
     assert!(message.contains("open.obj"), "{message}");

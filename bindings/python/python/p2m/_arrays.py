@@ -33,6 +33,9 @@ FIELDS: dict[str, tuple[np.dtype[Any], tuple[int, ...]]] = {
 }
 """The type and the last axes of the columns of closest points."""
 
+CLOSEST_FIELDS = {**FIELDS, "normal": (_FLOAT64, (3,))}
+"""The columns of closest points, with those of whole indexes alone."""
+
 HIT_FIELDS: dict[str, tuple[np.dtype[Any], tuple[int, ...]]] = {
     "t": (_FLOAT64, ()),
     "primitive": (np.dtype(np.int64), ()),

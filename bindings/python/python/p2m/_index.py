@@ -11,6 +11,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from . import _p2m
 from ._arrays import (
+    CLOSEST_FIELDS,
     FIELDS,
     HIT_FIELDS,
     Out,
@@ -83,8 +84,8 @@ class PointQueries:
             Whether the primitive is certainly the nearest one and the distance is the true one, rounded once.
         fields : str or sequence of str, optional
             The arrays of the answer, by default those of `out` or else ``("distance", "primitive")``: any of
-            ``distance``, ``primitive``, ``point``, ``feature``, ``barycentric``, ``lower_bound`` and ``object``, which
-            `ClosestPoints` describes. What is not asked for is not computed.
+            ``distance``, ``primitive``, ``point``, ``feature``, ``barycentric``, ``lower_bound``, ``object`` and
+            ``normal``, which `ClosestPoints` describes. What is not asked for is not computed.
         out : dict of ndarray, ndarray or ClosestPoints, optional
             Contiguous arrays of the right type and shape, by field, that receive the answers; one array for one field.
             After an exception their content is undefined.
@@ -123,14 +124,19 @@ class PointQueries:
         """
         queries = coordinates(points, "points")
         shape = queries.shape[:-1]
-        arrays = outputs(fields, shape, out, FIELDS, ("distance", "primitive"))
+        arrays = outputs(fields, shape, out, CLOSEST_FIELDS, ("distance", "primitive"))
         largest, error = checked_limits(max_distance, epsilon, max_visits, certified)
-        columns = flat(arrays)
+        columns, rows = flat(arrays), queries.reshape(-1)
         objects = columns.pop("object", None)
         if objects is not None and "primitive" not in columns:
             columns["primitive"] = np.empty(len(objects), np.int64)
+        normals = columns.pop("normal", None)
+        if normals is not None:
+            if not isinstance(self._raw, _p2m.Index):
+                raise ValueError("fields: 'normal' is not for shards")
+            columns.setdefault("primitive", np.empty(len(rows) // 3, np.int64))
+            columns.setdefault("feature", np.empty(len(rows) // 3, np.uint8))
         count = thread_count(threads, self._threads)
-        rows = queries.reshape(-1)
         if progress is None:
             _p2m.closest(self._raw, rows, columns, largest, error, max_visits, certified, count, None)
         else:
@@ -138,6 +144,8 @@ class PointQueries:
                 _p2m.closest(self._raw, rows, columns, largest, error, max_visits, certified, count, call)
         if objects is not None:
             self._fill_objects(columns["primitive"], objects)
+        if normals is not None and isinstance(self._raw, _p2m.Index):
+            self._raw.normals(columns["primitive"], columns["feature"], {"normal": normals})
         return ClosestPoints(arrays)
 
     def _fill_objects(self, primitive: NDArray[np.int64], objects: NDArray[np.int64]) -> None:

@@ -79,6 +79,10 @@ class ClosestPoints(Record):
         Certified lower bounds on the true distances; infinite where there is no answer.
     object : ndarray of int64, shape {..}
         The numbers of the objects in ``scene.objects``; -1 for a primitive without object and where there is no answer.
+    normal : ndarray of float64, shape {.., 3}
+        The normals at the closest points, of `Index.closest` alone: that of the triangle, the sum of those of the
+        triangles at an edge, or at a vertex, each times its angle there, with the length 1. They are nan where there is
+        no answer, and on segments and points.
     """
 
     distance: NDArray[np.float64]
@@ -88,6 +92,7 @@ class ClosestPoints(Record):
     barycentric: NDArray[np.float64]
     lower_bound: NDArray[np.float64]
     object: NDArray[np.int64]
+    normal: NDArray[np.float64]
 
 
 class NearPrimitives(ClosestPoints):

@@ -4,7 +4,8 @@ use super::AnswerFormat;
 use super::names::Names;
 use super::records::{Header, integer_bytes, put_columns, put_integer, put_numbers, put_text};
 use nalgebra::Point3;
-use p2m_core::{Closest, Feature};
+use p2m_core::{Closest, Feature, Soup};
+use p2m_field::sign::Normals;
 use p2m_mixed::Object;
 
 /// A column of a file of answers. A column may consist of several numbers.
@@ -16,6 +17,8 @@ use p2m_mixed::Object;
 /// | `point` | `x,y,z` | `point`, `<f8`, shape `(3,)` | `double` `cx`, `cy`, `cz` |
 /// | `distance` | `distance` | `distance`, `<f8` | `double` `distance` |
 /// | `signed` | `signed_distance` | `signed_distance`, `<f8` | `double` `signed_distance` |
+/// | `inside` | `inside`, 1 or 0 | `inside`, `|b1` | `int` `inside` |
+/// | `normal` | `nx,ny,nz` | `normal`, `<f8`, shape `(3,)` | `double` `nx`, `ny`, `nz` |
 /// | `lower_bound` | `lower_bound` | `lower_bound`, `<f8` | `double` `lower_bound` |
 /// | `barycentric` | `w0,w1,w2` | `barycentric`, `<f8`, shape `(3,)` | `double` `w0`, `w1`, `w2` |
 /// | `primitive` | `primitive` | `primitive`, `<i4` | `int` `primitive` |
@@ -37,6 +40,10 @@ pub(crate) enum AnswerColumn {
     /// The distance with the sign of the side, in the unit of the scene: negative inside. It is NaN where the scene has
     /// no inside.
     Signed,
+    /// Whether the query is inside of the surface.
+    Inside,
+    /// The normal of the scene at the closest point, where that is on a triangle.
+    Normal,
     /// The certified lower bound of the distance, in the unit of the scene.
     LowerBound,
     /// The weights of the vertices of the primitive.
@@ -51,12 +58,14 @@ pub(crate) enum AnswerColumn {
 
 impl AnswerColumn {
     /// All columns, in the order in which files have them by default.
-    pub(crate) const ALL: [Self; 10] = [
+    pub(crate) const ALL: [Self; 12] = [
         Self::Number,
         Self::Query,
         Self::Point,
         Self::Distance,
         Self::Signed,
+        Self::Inside,
+        Self::Normal,
         Self::LowerBound,
         Self::Barycentric,
         Self::Primitive,
@@ -72,6 +81,8 @@ impl AnswerColumn {
             Self::Point => "point",
             Self::Distance => "distance",
             Self::Signed => "signed",
+            Self::Inside => "inside",
+            Self::Normal => "normal",
             Self::LowerBound => "lower_bound",
             Self::Barycentric => "barycentric",
             Self::Primitive => "primitive",
@@ -87,7 +98,7 @@ impl AnswerColumn {
             Self::LowerBound | Self::Barycentric => format == AnswerFormat::Npy,
             Self::Object => format == AnswerFormat::Csv && has_objects,
             Self::Signed => has_signs,
-            Self::Number => false,
+            Self::Number | Self::Inside | Self::Normal => false,
         };
         Self::ALL.into_iter().filter(is_default).collect()
     }
@@ -100,6 +111,8 @@ impl AnswerColumn {
             Self::Point => &["x", "y", "z"],
             Self::Distance => &["distance"],
             Self::Signed => &["signed_distance"],
+            Self::Inside => &["inside"],
+            Self::Normal => &["nx", "ny", "nz"],
             Self::LowerBound => &["lower_bound"],
             Self::Barycentric => &["w0", "w1", "w2"],
             Self::Primitive => &["primitive"],
@@ -116,6 +129,8 @@ impl AnswerColumn {
             Self::Point => "('point', '<f8', (3,))",
             Self::Distance => "('distance', '<f8')",
             Self::Signed => "('signed_distance', '<f8')",
+            Self::Inside => "('inside', '|b1')",
+            Self::Normal => "('normal', '<f8', (3,))",
             Self::LowerBound => "('lower_bound', '<f8')",
             Self::Barycentric => "('barycentric', '<f8', (3,))",
             Self::Primitive => "('primitive', '<i4')",
@@ -129,9 +144,9 @@ impl AnswerColumn {
         match self {
             Self::Query => ("double", &["x", "y", "z"]),
             Self::Point => ("double", &["cx", "cy", "cz"]),
-            Self::Primitive | Self::Object => ("int", self.text_names()),
+            Self::Primitive | Self::Object | Self::Inside => ("int", self.text_names()),
             Self::Feature => ("int", &["feature_kind", "feature_number"]),
-            Self::Number | Self::Distance | Self::Signed | Self::LowerBound | Self::Barycentric => {
+            Self::Number | Self::Distance | Self::Signed | Self::Normal | Self::LowerBound | Self::Barycentric => {
                 ("double", self.text_names())
             }
         }
@@ -147,7 +162,7 @@ pub(crate) struct AnswerRecord<'a> {
     pub(crate) query: &'a Point3<f64>,
     /// The answer.
     pub(crate) answer: Option<&'a Closest<f64>>,
-    /// The distance with the sign of the side. Only the column [`AnswerColumn::Signed`] has it.
+    /// The distance with the sign of the side, for the columns [`AnswerColumn::Signed`] and [`AnswerColumn::Inside`].
     pub(crate) signed_distance: f64,
 }
 
@@ -156,12 +171,24 @@ pub(crate) struct AnswerEncoder<'a> {
     format: AnswerFormat,
     columns: Vec<AnswerColumn>,
     names: Names<'a>,
+    /// The normals of the scene, for the column [`AnswerColumn::Normal`].
+    normals: Option<Normals>,
 }
 
 impl<'a> AnswerEncoder<'a> {
     /// Makes an encoder of some columns, in this order. The objects are those of the scene.
     pub(crate) fn new(format: AnswerFormat, objects: &'a [Object], columns: Vec<AnswerColumn>) -> Self {
-        Self { format, columns, names: Names(objects) }
+        Self { format, columns, names: Names(objects), normals: None }
+    }
+
+    /// Adds the normals of a scene, if a column needs them.
+    pub(crate) fn with_normals(mut self, soup: &Soup<f64>) -> Self {
+        self.normals = self.columns.contains(&AnswerColumn::Normal).then(|| Normals::new(soup));
+        self
+    }
+
+    fn normal(&self, answer: &Closest<f64>) -> Option<[f64; 3]> {
+        Some(self.normals.as_ref()?.at(answer.primitive, answer.feature)?.into())
     }
 
     /// Returns the header of a file.
@@ -207,10 +234,15 @@ impl<'a> AnswerEncoder<'a> {
         match (column, record.answer) {
             (AnswerColumn::Number, _) => put_integer(out, record.number),
             (AnswerColumn::Query, _) => three(out, record.query.coords.into()),
+            (AnswerColumn::Inside, _) => put_integer(out, u64::from(record.signed_distance < 0.0)),
             (_, None) => (1..column.text_names().len()).for_each(|_| out.push(b',')),
             (AnswerColumn::Point, Some(answer)) => three(out, answer.point.coords.into()),
             (AnswerColumn::Distance, Some(answer)) => put_text(out, answer.distance),
             (AnswerColumn::Signed, Some(_)) => put_text(out, record.signed_distance),
+            (AnswerColumn::Normal, Some(answer)) => match self.normal(answer) {
+                Some(normal) => three(out, normal),
+                None => out.extend_from_slice(b",,"),
+            },
             (AnswerColumn::LowerBound, Some(answer)) => put_text(out, answer.lower_bound),
             (AnswerColumn::Barycentric, Some(answer)) => three(out, answer.barycentric),
             (AnswerColumn::Primitive, Some(answer)) => put_integer(out, answer.primitive.index() as u64),
@@ -228,6 +260,11 @@ impl<'a> AnswerEncoder<'a> {
             AnswerColumn::Point => put_numbers(out, answer.map_or(&nan, |a| a.point.coords.as_ref())),
             AnswerColumn::Distance => put_numbers(out, &[answer.map_or(f64::NAN, |a| a.distance)]),
             AnswerColumn::Signed => put_numbers(out, &[answer.map_or(f64::NAN, |_| record.signed_distance)]),
+            AnswerColumn::Inside => match (record.signed_distance < 0.0, self.format) {
+                (is_inside, AnswerFormat::Ply) => out.extend(i32::from(is_inside).to_le_bytes()),
+                (is_inside, _) => out.push(u8::from(is_inside)),
+            },
+            AnswerColumn::Normal => put_numbers(out, &answer.and_then(|a| self.normal(a)).unwrap_or(nan)),
             AnswerColumn::LowerBound => put_numbers(out, &[answer.map_or(f64::NAN, |a| a.lower_bound)]),
             AnswerColumn::Barycentric => put_numbers(out, answer.map_or(&nan, |a| &a.barycentric)),
             AnswerColumn::Primitive => out.extend(index(answer.map(|a| a.primitive.index())).to_le_bytes()),

@@ -74,13 +74,6 @@ class _Mesh:
             points=elements[:, 0] if width == 1 else None,
         )
         self.index = Index(scene)
-        self._normals: _Pseudonormals | None = None
-
-    @property
-    def normals(self) -> _Pseudonormals:
-        if self._normals is None:
-            self._normals = _Pseudonormals(self.vertices, self.elements)
-        return self._normals
 
 
 _cache: ContentCache[_Mesh] = ContentCache(_Mesh)
@@ -196,7 +189,7 @@ def signed_distance(
     if mesh.elements.shape[1] != 3 or np.asarray(P).shape[1] != 3:
         raise ValueError("signed_distance: points have three coordinates, and elements are triangles")
     is_normal = rule is SIGNED_DISTANCE_TYPE_PSEUDONORMAL
-    fields = ("distance", "primitive", "point", *(("feature",) if is_normal else ()))
+    fields = ("distance", "primitive", "point", *(("normal",) if is_normal else ()))
     largest = max(abs(lower_bound), abs(upper_bound))
     smallest = max(largest - (upper_bound - lower_bound), 0.0) if largest < np.inf else 0.0
     answer = mesh.index.closest(points, max_distance=largest, fields=fields)
@@ -207,7 +200,7 @@ def signed_distance(
     is_answered = is_in & (I >= 0)
     if is_normal:
         N = np.full((len(S), 3), np.nan)
-        N[is_answered] = mesh.normals.at(I[is_answered], answer.feature[is_answered])
+        N[is_answered] = np.nan_to_num(answer.normal[is_answered])
         if mesh.index._raw.sign_rule("auto", 1)[1] is None:
             S[is_in] = mesh.index.signed_distance(points[is_in])
         else:
@@ -357,50 +350,6 @@ class AABB:
         missed = (I < 0) | (T > min_t)
         I[missed], T[missed], UV[missed] = -1, np.nan, np.nan
         return I, T, np.ascontiguousarray(UV)
-
-
-class _Pseudonormals:
-    """The normals of a mesh at its triangles, edges and vertices."""
-
-    def __init__(self, vertices: NDArray[np.float64], triangles: NDArray[np.int64]) -> None:
-        corners = vertices[triangles]
-        edges = np.roll(corners, -1, axis=1) - corners
-        length = np.linalg.norm(edges, axis=2)
-        with np.errstate(divide="ignore", invalid="ignore"):
-            units = np.nan_to_num(edges / length[:, :, None])
-        faces = _unit(np.cross(edges[:, 0], edges[:, 1]))
-        # The angle at vertex i lies between edge i and the reverse of edge i - 1. This form is accurate for all angles.
-        forward, backward = units, -np.roll(units, 1, axis=1)
-        angles = 2.0 * np.arctan2(
-            np.linalg.norm(forward - backward, axis=2), np.linalg.norm(forward + backward, axis=2)
-        )
-        at_vertices = np.zeros_like(vertices)
-        np.add.at(at_vertices, triangles, angles[:, :, None] * faces[:, None, :])
-        ends = np.stack([triangles, np.roll(triangles, -1, axis=1)], axis=2).reshape(-1, 2)
-        unique, number = np.unique(np.sort(ends, axis=1), axis=0, return_inverse=True)
-        at_edges = np.zeros((len(unique), 3))
-        np.add.at(at_edges, number.reshape(-1), np.repeat(faces, 3, axis=0))
-        self._faces = faces
-        self._edges = _unit(at_edges)[number.reshape(-1, 3)]
-        self._vertices = _unit(at_vertices)
-        self._triangles = triangles
-
-    def at(self, triangle: NDArray[np.int64], feature: NDArray[np.uint8]) -> NDArray[np.float64]:
-        """Return the normals at features of triangles: vertices 0 to 2, edges 3 to 5, or the face 6."""
-        normals = self._faces[triangle]
-        at_vertex = feature < 3
-        normals[at_vertex] = self._vertices[self._triangles[triangle[at_vertex], feature[at_vertex]]]
-        at_edge = (feature >= 3) & (feature < 6)
-        normals[at_edge] = self._edges[triangle[at_edge], feature[at_edge] - 3]
-        return normals
-
-
-def _unit(vectors: NDArray[np.float64]) -> NDArray[np.float64]:
-    """Return vectors with the length 1; (0, 0, 0) stays as it is."""
-    length = np.linalg.norm(vectors, axis=1, keepdims=True)
-    length[length == 0.0] = 1.0
-    unit: NDArray[np.float64] = vectors / length
-    return unit
 
 
 def _in_space(values: ArrayLike, name: str) -> NDArray[np.float64]:
