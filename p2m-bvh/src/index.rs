@@ -271,6 +271,10 @@ impl<T: Real, S: PrimitiveSet<T>, V: Volume> ClosestPoint<T> for TreeIndex<T, S,
         self.tree.search_nearest(&self.set, query, best);
     }
 
+    fn rays(&self) -> Option<&dyn RayQuery<T>> {
+        Some(self)
+    }
+
     fn answer_queries(
         &self,
         queries: &[Point3<T>],

@@ -1,6 +1,6 @@
 //! The traits that backends implement: queries for the closest point, and building.
 
-use crate::{BatchAnswer, Best, Closest, Position, PrimitiveSet, QueryOptions, Real};
+use crate::{BatchAnswer, Best, Closest, Position, PrimitiveSet, QueryOptions, RayQuery, Real};
 use nalgebra::Point3;
 
 /// Queries for the closest point of a scene. A backend writes one method, [`search`](Self::search).
@@ -100,6 +100,12 @@ pub trait ClosestPoint<T: Real> {
     fn closest_points_into(&self, queries: &[Point3<T>], options: &QueryOptions<T>, out: &mut [Option<Closest<T>>]) {
         assert_eq!(queries.len(), out.len(), "one answer for each query");
         self.answer_queries(queries, options, &mut |i, found| out[i] = found.closest());
+    }
+
+    /// Returns the index as one that casts rays with little work, if it is one.
+    #[doc(hidden)]
+    fn rays(&self) -> Option<&dyn RayQuery<T>> {
+        None
     }
 }
 

@@ -46,6 +46,9 @@ macro_rules! point_to {
             ) {
                 (**self).answer_queries(queries, options, answered);
             }
+            fn rays(&self) -> Option<&dyn RayQuery<T>> {
+                (**self).rays()
+            }
         }
 
         impl<T: Real, $target: NearQuery<T> + ?Sized> NearQuery<T> for $pointer {

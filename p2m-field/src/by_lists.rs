@@ -55,8 +55,10 @@ pub fn signed_distances_by_lists<S: PrimitiveSet<f64> + Sync + ?Sized, I: Closes
 ) -> Result<Vec<f32>, GridError> {
     let sign = |point: &Point3<f64>, distance: f32| {
         // Winding numbers need no closest point, unless the point is on the surface.
-        let without = if distance > 0.0 { signed.sign_without_closest_point(point) } else { None };
-        without.or_else(|| Some(signed.closest_point(point)?.sign)).unwrap_or(Sign::Outside)
+        if distance > 0.0 && !signed.is_closed() {
+            return signed.sign_without_closest_point(point);
+        }
+        signed.closest_point(point).map_or(Sign::Outside, |answer| answer.sign)
     };
     let along = |path: f64, radius: f64, point: &Point3<f64>| signed.sign_along(path, radius, point);
     let signs = Signs { at: &sign, along: &along };

@@ -55,7 +55,7 @@ pub fn signed_distances<I: ClosestPoint<f64> + Sync, R: SharedSoup>(
         let is_closed = signed.is_closed();
         if is_closed { Some(signed.sign(point, closest)) } else { signed.sign_along(radius, radius, point) }
     };
-    let far = |point: &Point3<f64>| signed.winding_numbers().sign(point);
+    let far = |point: &Point3<f64>| signed.sign_without_closest_point(point);
     let signs = Some(Signs { near: &near, around: &around, far: &far });
     let sampler = Sampler { index: signed.index(), signs, grid, options, band: options.checked_band() };
     sampler.field(progress)

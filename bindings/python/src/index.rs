@@ -77,11 +77,6 @@ impl Index {
         }
     }
 
-    /// Returns whether a query takes about a microsecond.
-    pub(crate) fn has_fast_queries(&self) -> bool {
-        self.query_nanoseconds() <= QUERY_NANOSECONDS
-    }
-
     /// Returns the number of queries of the first step of a batch, which should not take long.
     #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "it is clamped")]
     pub(crate) fn first_step(&self) -> usize {

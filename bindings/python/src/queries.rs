@@ -12,6 +12,7 @@ use nalgebra::Point3;
 use numpy::{PyReadonlyArray1, PyReadwriteArray1};
 use p2m_core::batch::{Interruptible, closest_columns_into};
 use p2m_core::{AnyIndex, Closest, Feature, Position, PrimitiveId, QueryOptions};
+use p2m_field::sign::Signed;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 
@@ -184,9 +185,6 @@ pub(crate) fn is_any_within(
     Ok(())
 }
 
-/// The number of points whose sides are decided in the first step. They take at most some hundredths of a second.
-const FIRST_CONTAINS_STEP: usize = 1 << 16;
-
 #[pymethods]
 impl Index {
     /// Writes the normals at features of primitives to `out`, and nan where there is none.
@@ -233,9 +231,13 @@ impl Index {
         with_positions!(points, points => {
             let work = |threads: &Threads, monitor: &Monitor| {
                 check_finite("points", points, 1)?;
-                // Points share queries with their neighbours, so parts have to be large.
-                if signed.is_closed() && self.has_fast_queries() {
-                    monitor.set_step(FIRST_CONTAINS_STEP);
+                if signed.is_closed() {
+                    // Points share queries with their neighbours, so all of them are ordered.
+                    let index = Interruptible::new(&*self.built.index, |left, answer| monitor.run_step(left, answer));
+                    let batch = batch_options(points.len(), threads.is_parallel());
+                    let points: Vec<Point3<f64>> = points.iter().map(Position::point).collect();
+                    out.copy_from_slice(&signed.contains_each_by(&index, &points, &batch));
+                    return Ok(());
                 }
                 answer_in_parts(points.len(), out, threads, monitor, &|range, out: &mut [bool]| {
                     let batch = batch_options(range.len(), false);
@@ -267,19 +269,25 @@ impl Index {
         let options = QueryOptions::default().with_max_distance(max_distance);
         // Without primitives there is nothing inside. The side of a point beyond the largest distance is not known.
         let missing = if max_distance < f64::INFINITY { f64::NAN } else { factor * f64::INFINITY };
+        let value_of = |answer: Option<&Signed>| {
+            answer.map_or(missing, |answer| answer.distance().map_or(f64::NAN, |distance| factor * distance))
+        };
         with_positions!(points, points => {
             let work = |threads: &Threads, monitor: &Monitor| {
                 check_finite("points", points, 1)?;
+                if signed.is_closed() {
+                    let index = Interruptible::new(&*self.built.index, |left, answer| monitor.run_step(left, answer));
+                    let batch = batch_options(points.len(), threads.is_parallel());
+                    let queries: Vec<Point3<f64>> = points.iter().map(Position::point).collect();
+                    let answers = signed.closest_points_by(&index, &queries, &options, &batch);
+                    out.iter_mut().zip(answers).for_each(|(value, answer)| *value = value_of(answer.as_ref()));
+                    return Ok(());
+                }
                 answer_in_parts(points.len(), out, threads, monitor, &|range, out: &mut [f64]| {
                     let batch = batch_options(range.len(), false);
                     let queries: Vec<Point3<f64>> = points[range].iter().map(Position::point).collect();
                     let answers = signed.closest_points(&queries, &options, &batch);
-                    for (value, answer) in out.iter_mut().zip(&answers) {
-                        *value = match answer {
-                            Some(answer) => answer.distance().map_or(f64::NAN, |distance| factor * distance),
-                            None => missing,
-                        };
-                    }
+                    out.iter_mut().zip(&answers).for_each(|(value, answer)| *value = value_of(answer.as_ref()));
                 });
                 Ok(())
             };

@@ -19,10 +19,11 @@ use super::crowding;
 use super::surface::{NO_TRIANGLE, Surface};
 use super::types::{ClosestFeature, RayTree, SharedSoup};
 use nalgebra::Point3;
+use p2m_bvh::TreeIndex;
 use p2m_core::engine::arithmetic::cross;
 use p2m_core::engine::vector::{V3, add, add_scaled, dot, largest, length, scaled, sub};
 use p2m_core::engine::weld::UnionFind;
-use p2m_core::{Feature, Soup};
+use p2m_core::{BuildError, Feature, Soup};
 use std::sync::atomic::{AtomicI64, Ordering};
 
 /// The smallest sine of a triangle that is no sliver: 2^-16. It is the length of the cross product of two edges,
@@ -43,7 +44,10 @@ const NO_PATCH: u32 = u32::MAX;
 const UNKNOWN: i64 = i64::MIN;
 
 /// What is known about the triangles of a surface without a boundary.
-pub(super) struct Certificates {
+pub(super) struct Certificates<S> {
+    soup: S,
+    /// The tree of the surface.
+    tree: RayTree<S>,
     /// The distance that other parts of the surface have from simple triangles.
     clearance: f64,
     /// The triangle beyond each edge, or [`NO_TRIANGLE`].
@@ -73,19 +77,30 @@ pub(super) struct PatchSide {
     is_front: bool,
 }
 
-impl Clone for Certificates {
+impl<S: Clone> Clone for Certificates<S> {
     fn clone(&self) -> Self {
         let fronts = self.fronts.iter().map(|front| AtomicI64::new(front.load(Ordering::Relaxed))).collect();
-        let Self { clearance, neighbours, vertex_ids, fans, patches, .. } = self;
-        let (neighbours, vertex_ids) = (neighbours.clone(), vertex_ids.clone());
-        Self { clearance: *clearance, neighbours, vertex_ids, fans: fans.clone(), patches: patches.clone(), fronts }
+        Self {
+            soup: self.soup.clone(),
+            tree: self.tree.clone(),
+            clearance: self.clearance,
+            neighbours: self.neighbours.clone(),
+            vertex_ids: self.vertex_ids.clone(),
+            fans: self.fans.clone(),
+            patches: self.patches.clone(),
+            fronts,
+        }
     }
 }
 
-impl Certificates {
+impl<S: SharedSoup> Certificates<S> {
     /// Finds the simple triangles of a surface without a boundary. `roundoff` is the unit roundoff of the index.
-    pub(super) fn new<S: SharedSoup>(soup: &S, surface: Surface, rays: &RayTree<S>, roundoff: f64) -> Self {
-        let Surface { welder, neighbours, is_fan, .. } = surface;
+    ///
+    /// # Errors
+    /// Errors of building a tree.
+    pub(super) fn new(soup: S, roundoff: f64) -> Result<Self, BuildError> {
+        let Surface { welder, neighbours, .. } = Surface::new(&soup);
+        let tree = TreeIndex::new(soup.clone())?;
         let bounds = soup.aabb();
         let extent = length((bounds.max - bounds.min).into());
         let clearance = CLEARANCE * roundoff * extent;
@@ -96,13 +111,20 @@ impl Certificates {
             fans: vec![Fan::default(); welder.vertex_count],
             patches: vec![NO_PATCH; soup.triangles().len()],
             fronts: Vec::new(),
+            soup,
+            tree,
         };
         // Elsewhere products of lengths may overflow or underflow.
         if (1e-90..1e90).contains(&extent) {
-            found.find_fans(soup, &is_fan);
-            found.find_patches(soup, rays);
+            found.find_fans();
+            found.find_patches();
         }
-        found
+        Ok(found)
+    }
+
+    /// Returns the tree of the surface.
+    pub(super) fn tree(&self) -> &RayTree<S> {
+        &self.tree
     }
 
     fn weld(&self, corners: [u32; 3]) -> [u32; 3] {
@@ -110,8 +132,9 @@ impl Certificates {
     }
 
     /// Computes the fans of simple vertices.
-    fn find_fans(&mut self, soup: &Soup<f64>, is_fan: &[bool]) {
-        let mut counts = vec![0u8; is_fan.len()];
+    fn find_fans(&mut self) {
+        let soup = &*self.soup;
+        let mut counts = vec![0u8; self.fans.len()];
         let normals: Vec<Option<V3>> = soup.triangles().iter().map(|t| unit_normal(corners(soup, *t))).collect();
         for (t, triangle) in soup.triangles().iter().enumerate() {
             let (corners, neighbours) = (corners(soup, *triangle), self.neighbours[t]);
@@ -120,7 +143,7 @@ impl Certificates {
                 // The edges of the triangle at the vertex need neighbours, or it is the end of an open fan.
                 let is_closed = neighbours[i] != NO_TRIANGLE && neighbours[(i + 2) % 3] != NO_TRIANGLE;
                 match normals[t] {
-                    Some(normal) if is_closed && is_fan[vertex as usize] && *count < MAX_VALENCE => {
+                    Some(normal) if is_closed && *count < MAX_VALENCE => {
                         let height = height(corners, i);
                         fan.reach = if *count == 0 { height } else { fan.reach.min(height) };
                         fan.normal = add(fan.normal, scaled(normal, angle(corners, i)));
@@ -130,8 +153,9 @@ impl Certificates {
                 }
             }
         }
-        // A fan that projects without overlap turns once around its vertex: from below an axis to above it.
-        let mut turns = vec![0u8; is_fan.len()];
+        // All triangles of a vertex turn once around it, from below an axis to above it, if and only if they are one fan
+        // that projects without overlap.
+        let mut turns = vec![0u8; self.fans.len()];
         for (t, triangle) in soup.triangles().iter().enumerate() {
             let corners = corners(soup, *triangle);
             for (i, vertex) in self.weld(*triangle).into_iter().enumerate() {
@@ -160,7 +184,8 @@ impl Certificates {
     }
 
     /// Finds the simple triangles, and joins those with common edges to patches.
-    fn find_patches<S: SharedSoup>(&mut self, soup: &S, rays: &RayTree<S>) {
+    fn find_patches(&mut self) {
+        let soup = &*self.soup;
         let triangles = soup.triangles();
         let welded: Vec<[u32; 3]> = triangles.iter().map(|corners| self.weld(*corners)).collect();
         let mut simple: Vec<bool> = (welded.iter().zip(triangles))
@@ -169,7 +194,7 @@ impl Certificates {
                 has_fans && unit_normal(corners(soup, *triangle)).is_some()
             })
             .collect();
-        crowding::exclude(&mut simple, soup, &welded, rays, self.clearance);
+        crowding::exclude(&mut simple, &self.soup, &welded, &self.tree, self.clearance);
         let mut sets = UnionFind::new(triangles.len());
         for (t, neighbours) in self.neighbours.iter().enumerate().filter(|(t, _)| simple[*t]) {
             for neighbour in neighbours.iter().filter(|n| simple.get(**n as usize) == Some(&true)) {
@@ -188,7 +213,8 @@ impl Certificates {
     }
 
     /// Returns the side of a patch from which the surface is reached from a query, or `None` if that is not proved.
-    pub(super) fn side(&self, soup: &Soup<f64>, query: &Point3<f64>, closest: &ClosestFeature) -> Option<PatchSide> {
+    pub(super) fn side(&self, query: &Point3<f64>, closest: &ClosestFeature) -> Option<PatchSide> {
+        let soup = &*self.soup;
         let triangle = closest.primitive.index();
         let patch = self.patches[triangle];
         if patch == NO_PATCH {
@@ -301,7 +327,7 @@ pub(super) fn corners(soup: &Soup<f64>, triangle: [u32; 3]) -> [V3; 3] {
 }
 
 /// Returns the unit normal of a triangle, or `None` if the triangle is a sliver.
-fn unit_normal(corners: [V3; 3]) -> Option<V3> {
+pub(super) fn unit_normal(corners: [V3; 3]) -> Option<V3> {
     let edges = [sub(corners[1], corners[0]), sub(corners[2], corners[0])];
     let size = largest(&edges);
     let normal = cross(edges[0], edges[1]);

@@ -1,17 +1,24 @@
 //! Which points are inside, without their distances.
 //!
 //! Points are taken in the order of a curve that fills their box, in blocks. If the ball around a block has no surface in
-//! it, all points of the block have the sign of its centre. Other blocks are divided once, and the points of blocks that
-//! still have no common sign are answered one by one.
+//! it, all points of the block have the sign of its centre. Elsewhere, if signs change at the surface alone, the surface in
+//! the box of the block lies between two parallel planes. The part of the box beyond either of them is convex and has no
+//! surface in it, so its points have the sign of one of them. Points between the planes are answered one by one.
 
+use super::certificate::{corners, unit_normal};
 use super::{SharedSoup, Sign, SignedDistance};
 use nalgebra::Point3;
 use p2m_core::batch::{BatchOptions, map_parts_into};
-use p2m_core::engine::vector::length;
-use p2m_core::{Closest, ClosestPoint, Position, QueryOptions, Real};
+use p2m_core::engine::vector::{V3, dot, largest, length, sub};
+use p2m_core::{Aabb, Closest, ClosestPoint, Position, QueryOptions, Real};
+use std::ops::{ControlFlow, Range};
 
-/// The numbers of points in blocks.
-const BLOCKS: [usize; 2] = [64, 8];
+/// The numbers of points in blocks, of which the last ones are divided by planes.
+const BLOCKS: [usize; 3] = [512, 128, 32];
+/// The most triangles between the planes of a block.
+const MAX_TRIANGLES: usize = 1024;
+/// Points are as far as this beyond a plane, in units of the largest offset: far more than the rounding of heights.
+const MIN_HEIGHT: f64 = 1.0 / (1u64 << 40) as f64;
 
 impl<I, S: SharedSoup> SignedDistance<I, S> {
     /// Returns whether a point is inside. Points on the surface are not, nor are points whose sign is not defined or that
@@ -26,36 +33,68 @@ impl<I, S: SharedSoup> SignedDistance<I, S> {
     /// Returns whether each of some points is inside, as [`contains`](Self::contains) does, in their order.
     ///
     /// # Complexity
-    /// Points that are nearer to each other than to the surface share a query, so there are far fewer queries than
-    /// points unless most points are near the surface.
+    /// Points that are nearer to each other than to the surface share a query, and so do most points beside a part of the
+    /// surface that is nearly flat. So there are far fewer queries than points, unless the points are few.
     pub fn contains_each<T: Real>(&self, points: &[Point3<T>], batch: &BatchOptions) -> Vec<bool>
     where
         I: ClosestPoint<T> + Sync,
-        S: Send,
     {
+        self.contains_each_by(&self.index, points, batch)
+    }
+
+    /// Does the same with an index that stands for that of these signs.
+    #[doc(hidden)]
+    pub fn contains_each_by<T: Real>(
+        &self,
+        index: &(impl ClosestPoint<T> + Sync + ?Sized),
+        points: &[Point3<T>],
+        batch: &BatchOptions,
+    ) -> Vec<bool>
+    where
+        I: ClosestPoint<T> + Sync,
+    {
+        // A query stands for several points.
+        self.signs.prepare_for(points.len() / 4);
         let mut out = vec![false; points.len()];
         let position = |point: &Point3<T>| point.map(Real::to_f64);
-        map_parts_into(points, batch, position, &mut out, |points, order, out| self.contains_part(points, order, out));
+        map_parts_into(points, batch, position, &mut out, |points, order, out| {
+            self.contains_part(index, points, order, out);
+        });
         out
     }
 
     /// Answers points in an order.
-    fn contains_part<T: Real>(&self, points: &[Point3<T>], order: &[u32], out: &mut [bool])
-    where
+    fn contains_part<T: Real>(
+        &self,
+        index: &(impl ClosestPoint<T> + ?Sized),
+        points: &[Point3<T>],
+        order: &[u32],
+        out: &mut [bool],
+    ) where
         I: ClosestPoint<T>,
     {
-        let mut blocks: Vec<&[u32]> = vec![order];
+        // Neighbours stand side by side from here on.
+        let points: Vec<Point3<T>> = order.iter().map(|i| points[*i as usize]).collect();
+        let mut inside = vec![false; points.len()];
+        let mut blocks = vec![0..points.len()];
+        let mut crossed: Vec<(Range<usize>, Ball<T>, usize)> = Vec::new();
         for size in BLOCKS {
-            let parts: Vec<&[u32]> = blocks.iter().flat_map(|block| block.chunks(size)).collect();
-            let balls: Vec<Ball<T>> = parts.iter().map(|part| Ball::around(points, part)).collect();
+            let starts =
+                blocks.iter().flat_map(|block| block.clone().step_by(size).map(|i| i..(i + size).min(block.end)));
+            let parts: Vec<Range<usize>> = starts.collect();
+            let balls: Vec<Ball<T>> = parts.iter().map(|part| Ball::around(&points[part.clone()])).collect();
             let centres: Vec<Point3<T>> = balls.iter().map(|ball| ball.centre).collect();
-            let answers = self.answers(&centres);
+            let answers = answers(index, &centres);
             let count = parts.len();
             blocks.clear();
+            crossed.clear();
             for ((part, ball), answer) in parts.into_iter().zip(balls).zip(answers) {
                 match answer.and_then(|answer| self.sign_in(&ball, &answer)) {
-                    Some(sign) => part.iter().for_each(|i| out[*i as usize] = sign == Sign::Inside),
-                    None => blocks.push(part),
+                    Some(sign) => inside[part].fill(sign == Sign::Inside),
+                    None => {
+                        blocks.push(part.clone());
+                        crossed.extend(answer.map(|answer| (part, ball, answer.primitive.index())));
+                    }
                 }
             }
             // Where winding numbers differ within most blocks, smaller ones do not pay.
@@ -63,55 +102,127 @@ impl<I, S: SharedSoup> SignedDistance<I, S> {
                 break;
             }
         }
-        let rest: Vec<u32> = blocks.concat();
-        let queries: Vec<Point3<T>> = rest.iter().map(|i| points[*i as usize]).collect();
-        for ((i, query), answer) in rest.into_iter().zip(&queries).zip(self.answers(&queries)) {
-            out[i as usize] = answer.is_some_and(|answer| self.sign(query, &answer) == Sign::Inside);
+        let (mut rest, mut sides) = (Vec::new(), Vec::new());
+        if self.is_closed() {
+            for (part, ball, triangle) in crossed {
+                self.divide(&points, part, &ball, triangle, &mut rest, &mut sides);
+            }
+        } else {
+            rest = blocks.into_iter().flatten().collect();
         }
-    }
-
-    fn answers<T: Real>(&self, queries: &[Point3<T>]) -> Vec<Option<Closest<T>>>
-    where
-        I: ClosestPoint<T>,
-    {
-        let mut answers = vec![None; queries.len()];
-        self.index.closest_points_into(queries, &QueryOptions::default(), &mut answers);
-        answers
+        let firsts = sides.iter().map(|side: &Vec<usize>| side[0]);
+        let asked: Vec<usize> = rest.iter().copied().chain(firsts).collect();
+        let queries: Vec<Point3<T>> = asked.iter().map(|i| points[*i]).collect();
+        for ((i, query), answer) in asked.into_iter().zip(&queries).zip(answers(index, &queries)) {
+            inside[i] = answer.is_some_and(|answer| self.sign(query, &answer) == Sign::Inside);
+        }
+        for side in sides {
+            let is_inside = inside[side[0]];
+            side.iter().for_each(|i| inside[*i] = is_inside);
+        }
+        for (i, is_inside) in order.iter().zip(inside) {
+            out[*i as usize] = is_inside;
+        }
     }
 
     /// Returns the common sign of all points of a ball, by the closest point of its centre, or `None` if the ball may
     /// have surface in it or signs may differ.
-    fn sign_in<T: Real>(&self, ball: &Ball<T>, closest: &Closest<T>) -> Option<Sign> {
+    fn sign_in<T: Real>(&self, ball: &Ball<T>, closest: &Closest<T>) -> Option<Sign>
+    where
+        I: ClosestPoint<T>,
+    {
         // False for NaN.
         if !(closest.lower_bound.to_f64() > ball.radius) {
             None
         } else if self.is_closed() {
             Some(self.sign(&ball.centre, closest))
         } else {
-            self.signs.winding.sign_along(ball.radius, ball.radius, &ball.centre.map(Real::to_f64))
+            let centre = ball.centre.map(Real::to_f64);
+            self.signs.winding.sign_along(ball.radius, ball.radius, &centre, self.index.rays())
         }
+    }
+
+    /// Divides the points of a block by planes that are parallel to a triangle. The points beyond each plane are a side,
+    /// and have one sign; the others are added to the rest.
+    fn divide<T: Real>(
+        &self,
+        points: &[Point3<T>],
+        part: Range<usize>,
+        ball: &Ball<T>,
+        triangle: usize,
+        rest: &mut Vec<usize>,
+        sides: &mut Vec<Vec<usize>>,
+    ) {
+        let (soup, Some(certificates)) = (&*self.signs.soup, self.signs.certificates.get()) else {
+            return rest.extend(part);
+        };
+        let (origin, bounds): (V3, _) = (ball.centre.map(Real::to_f64).into(), &ball.bounds);
+        let normal = unit_normal(corners(soup, soup.triangles()[triangle]));
+        let (mut low, mut high, mut most, mut count) = (f64::INFINITY, f64::NEG_INFINITY, ball.radius, 0);
+        let height = |point: V3| dot(sub(point, origin), normal.unwrap_or_default());
+        let tree = certificates.tree().tree();
+        let is_near = |id: p2m_core::PrimitiveId| {
+            let [a, b, c] = corners(soup, soup.triangles()[id.index()]);
+            (0..3).all(|k| a[k].min(b[k]).min(c[k]) <= bounds.max[k] && a[k].max(b[k]).max(c[k]) >= bounds.min[k])
+        };
+        let ended = tree.visit_box(bounds, is_near, &mut |id| {
+            let corners = corners(soup, soup.triangles()[id.index()]);
+            most = corners.iter().map(|corner| largest(&[sub(*corner, origin)])).fold(most, f64::max);
+            let [a, b, c] = corners.map(height);
+            (low, high) = (low.min(a).min(b).min(c), high.max(a).max(b).max(c));
+            count += 1;
+            if count > MAX_TRIANGLES { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
+        });
+        let margin = MIN_HEIGHT * most;
+        // False for NaN.
+        if normal.is_none() || ended.is_break() || !(margin > f64::MIN_POSITIVE && margin < f64::MAX) {
+            rest.extend(part);
+            return;
+        }
+        let (mut above, mut below) = (Vec::new(), Vec::new());
+        for i in part {
+            let height = height(points[i].map(Real::to_f64).into());
+            if height > high + margin {
+                above.push(i);
+            } else if height < low - margin {
+                below.push(i);
+            } else {
+                rest.push(i);
+            }
+        }
+        sides.extend([above, below].into_iter().filter(|side| !side.is_empty()));
     }
 }
 
-/// A ball around some points.
+/// Returns the closest points of queries, in their order.
+fn answers<T: Real>(index: &(impl ClosestPoint<T> + ?Sized), queries: &[Point3<T>]) -> Vec<Option<Closest<T>>> {
+    let mut answers = vec![None; queries.len()];
+    index.closest_points_into(queries, &QueryOptions::default(), &mut answers);
+    answers
+}
+
+/// A ball around some points, and their box.
 struct Ball<T: Real> {
     centre: Point3<T>,
     /// An upper bound on the distances of the points from the centre; NaN if a point is not finite.
     radius: f64,
+    bounds: Aabb<f64>,
 }
 
 impl<T: Real> Ball<T> {
-    fn around(points: &[Point3<T>], part: &[u32]) -> Self {
-        let all = || part.iter().map(|i| points[*i as usize].map(Real::to_f64));
+    fn around(points: &[Point3<T>]) -> Self {
+        let all = || points.iter().map(|point| point.map(Real::to_f64));
         let (mut low, mut high) = (Point3::from([f64::INFINITY; 3]), Point3::from([f64::NEG_INFINITY; 3]));
         for point in all() {
             (low, high) = (low.inf(&point), high.sup(&point));
         }
         // Halves are added, so that the sum does not overflow.
         let centre = Point3::from([0, 1, 2].map(|k: usize| T::round_from_f64(0.5 * low[k] + 0.5 * high[k])));
-        let exact = centre.map(Real::to_f64);
-        let distances = all().map(|point| length((point - exact).into()));
-        let radius = distances.fold(0.0, |most: f64, x| if x > most || x.is_nan() { x } else { most });
-        Self { centre, radius: radius * (1.0 + 1e-12) }
+        let exact: V3 = centre.map(Real::to_f64).into();
+        // No point is farther from the centre than the farthest corner of the box.
+        let far: V3 = [0, 1, 2].map(|k: usize| (high[k] - exact[k]).max(exact[k] - low[k]));
+        let is_finite = all().all(|point| point.iter().all(|x| x.is_finite()));
+        let radius = if is_finite { length(far) * (1.0 + 1e-12) } else { f64::NAN };
+        Self { centre, radius, bounds: Aabb { min: low, max: high } }
     }
 }

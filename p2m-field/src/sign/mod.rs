@@ -44,7 +44,7 @@ use nalgebra::Point3;
 use p2m_bvh::TreeIndex;
 use p2m_core::batch::{self, BatchOptions};
 use p2m_core::{Aabb, Closest, ClosestPoint, Position, QueryOptions, Ray, RayQuery, Real, Soup};
-use std::sync::Arc;
+use std::sync::{Arc, OnceLock};
 use surface::Surface;
 use types::{ClosestFeature, Counter, check_kinds, ray};
 
@@ -58,7 +58,7 @@ use types::{ClosestFeature, Counter, check_kinds, ray};
 /// use p2m_core::Soup;
 /// use p2m_field::sign::{Sign, SharedDistance, SignedDistance};
 /// use p2m_mixed::generate::{IcoSphere, ico_sphere};
-/// use std::sync::Arc;
+/// use std::sync::{Arc, OnceLock};
 ///
 /// struct World {
 ///     walls: SharedDistance,
@@ -88,17 +88,29 @@ impl<I, S> std::fmt::Debug for SignedDistance<I, S> {
     }
 }
 
+/// The number of queries that an index is asked at once.
+const BATCH_LEN: usize = 512;
+
 /// What decides the signs of a scene.
 #[derive(Clone)]
 struct Signs<S> {
     soup: S,
     rule: SignRule,
     winding: WindingNumbers<S>,
-    /// What is proved about the normals of a surface whose signs change at the surface alone.
-    certificates: Option<Certificates>,
+    /// Whether signs change at the surface alone.
+    is_closed: bool,
+    /// What is proved about the normals of a closed surface, once there are so many queries that it pays.
+    certificates: OnceLock<Certificates<S>>,
+    /// The number of times that somebody wanted to prepare the certificates.
+    preparations: Counter,
+    /// The unit roundoff of the index.
+    roundoff: f64,
     bounds: Aabb<f64>,
     ray_count: Counter,
 }
+
+/// Certificates are prepared when rays have decided this many signs for each triangle. So both take about the same time.
+const RAYS_PER_TRIANGLE: f64 = 0.5;
 
 impl SharedDistance {
     /// Builds an AABB tree over triangles, with signs as [`SignedDistance::new`] makes them. A scene of its own is shared
@@ -128,8 +140,8 @@ impl<I, S: SharedSoup> SignedDistance<I, S> {
     /// [`SignError::OtherKinds`], [`SignError::OtherScene`] and [`SignError::Build`].
     ///
     /// # Complexity
-    /// O(n log n) time. Memory is 100 bytes for each triangle, 36 bytes for each vertex, and 300 bytes for each edge of
-    /// the boundary.
+    /// O(n log n) time, and again when so many signs were asked for that certificates pay. Then memory is 100 bytes for
+    /// each triangle and 36 bytes for each vertex. An edge of the boundary takes 300 bytes.
     pub fn new<T: Real>(index: I, soup: S) -> Result<Self, SignError>
     where
         I: ClosestPoint<T>,
@@ -157,7 +169,8 @@ impl<I, S: SharedSoup> SignedDistance<I, S> {
         I: ClosestPoint<T>,
     {
         check_scene(&index, &soup)?;
-        Ok(Self { index, signs: Box::new(Signs::new(soup, rule, T::UNIT_ROUNDOFF)?) })
+        let signs = Signs::new(soup, rule, T::UNIT_ROUNDOFF, index.rays().is_some())?;
+        Ok(Self { index, signs: Box::new(signs) })
     }
 
     /// Returns the rule that decides signs.
@@ -167,7 +180,7 @@ impl<I, S: SharedSoup> SignedDistance<I, S> {
 
     /// Returns whether signs change at the surface alone, because it has no boundary as far as the rule is concerned.
     pub fn is_closed(&self) -> bool {
-        self.signs.rule == SignRule::Parity || self.signs.winding.is_closed()
+        self.signs.is_closed
     }
 
     /// Returns a sentence for people that says why the rule was chosen, unless the surface has no boundary and its
@@ -186,9 +199,13 @@ impl<I, S: SharedSoup> SignedDistance<I, S> {
         }
     }
 
-    /// Returns the winding numbers of the surface.
-    pub fn winding_numbers(&self) -> &WindingNumbers<S> {
-        &self.signs.winding
+    /// Returns the winding number of a point, as [`WindingNumbers::number`] does.
+    #[must_use]
+    pub fn winding_number<T: Real>(&self, point: &Point3<T>, accuracy: f64) -> f64
+    where
+        I: ClosestPoint<T>,
+    {
+        self.signs.winding.number_by(&point.map(Real::to_f64), accuracy, self.index.rays())
     }
 
     /// Returns the index.
@@ -224,28 +241,63 @@ impl<I, S: SharedSoup> SignedDistance<I, S> {
     ) -> Vec<Option<Signed<T>>>
     where
         I: ClosestPoint<T> + Sync,
-        S: Send,
     {
-        let mut closest = vec![None; queries.len()];
-        batch::closest_points_into(&self.index, queries, options, batch, &mut closest);
-        let pairs: Vec<(Point3<T>, Option<Closest<T>>)> = queries.iter().copied().zip(closest).collect();
-        let position = |pair: &(Point3<T>, _)| pair.0.map(Real::to_f64);
-        batch::map(&pairs, batch, position, |(query, closest)| closest.map(|closest| self.with_sign(query, closest)))
+        self.closest_points_by(&self.index, queries, options, batch)
+    }
+
+    /// Does the same with an index that stands for that of these signs.
+    #[doc(hidden)]
+    pub fn closest_points_by<T: Real>(
+        &self,
+        index: &(impl ClosestPoint<T> + Sync + ?Sized),
+        queries: &[Point3<T>],
+        options: &QueryOptions<T>,
+        batch: &BatchOptions,
+    ) -> Vec<Option<Signed<T>>>
+    where
+        I: ClosestPoint<T> + Sync,
+    {
+        self.signs.prepare_for(queries.len());
+        let mut out = vec![None; queries.len()];
+        let position = |query: &Point3<T>| query.map(Real::to_f64);
+        batch::map_parts_into(queries, batch, position, &mut out, |queries, order, out| {
+            // Queries go to the index in their order, so that signs are looked up in it as well.
+            let (mut asked, mut closest) = ([Point3::origin(); BATCH_LEN], [None; BATCH_LEN]);
+            for order in order.chunks(BATCH_LEN) {
+                let (asked, closest) = (&mut asked[..order.len()], &mut closest[..order.len()]);
+                asked.iter_mut().zip(order).for_each(|(query, i)| *query = queries[*i as usize]);
+                closest.fill(None);
+                index.closest_points_into(asked, options, closest);
+                for ((query, closest), i) in asked.iter().zip(closest.iter()).zip(order) {
+                    out[*i as usize] = closest.map(|closest| self.with_sign(query, closest));
+                }
+            }
+        });
+        out
     }
 
     /// Returns the answer to a query whose closest point is known, with its sign.
-    pub fn with_sign<T: Real>(&self, query: &Point3<T>, closest: Closest<T>) -> Signed<T> {
+    pub fn with_sign<T: Real>(&self, query: &Point3<T>, closest: Closest<T>) -> Signed<T>
+    where
+        I: ClosestPoint<T>,
+    {
         Signed { closest, sign: self.sign(query, &closest) }
     }
 
     /// Returns the sign of a query by its closest point.
-    pub(crate) fn sign<T: Real>(&self, query: &Point3<T>, closest: &Closest<T>) -> Sign {
-        self.signs.sign(&query.map(Real::to_f64), &closest.into())
+    pub(crate) fn sign<T: Real>(&self, query: &Point3<T>, closest: &Closest<T>) -> Sign
+    where
+        I: ClosestPoint<T>,
+    {
+        self.signs.sign(&query.map(Real::to_f64), &closest.into(), self.index.rays())
     }
 
-    /// Returns the sign of a point that is not on the surface, or `None` if the closest point decides it with less work.
-    pub(crate) fn sign_without_closest_point(&self, point: &Point3<f64>) -> Option<Sign> {
-        (!self.is_closed()).then(|| self.signs.winding.sign(point))
+    /// Returns the sign of a point that is not on the surface, without its closest point.
+    pub(crate) fn sign_without_closest_point(&self, point: &Point3<f64>) -> Sign
+    where
+        I: ClosestPoint<f64>,
+    {
+        self.signs.sign_without_closest_point(point, self.index.rays())
     }
 
     /// Returns the common sign of all points that a path of at most the length `path`, within `radius` of a point and
@@ -258,7 +310,7 @@ impl<I, S: SharedSoup> SignedDistance<I, S> {
         if self.is_closed() {
             Some(self.closest_point(point)?.sign)
         } else {
-            self.signs.winding.sign_along(path, radius, point)
+            self.signs.winding.sign_along(path, radius, point, self.index.rays())
         }
     }
 
@@ -270,7 +322,7 @@ impl<I, S: SharedSoup> SignedDistance<I, S> {
 }
 
 impl<S: SharedSoup> Signs<S> {
-    fn new(soup: S, rule: Option<SignRule>, roundoff: f64) -> Result<Self, SignError> {
+    fn new(soup: S, rule: Option<SignRule>, roundoff: f64, has_rays: bool) -> Result<Self, SignError> {
         check_kinds(&soup)?;
         let surface = Surface::new(&soup);
         let is_closed = surface.open.is_none();
@@ -282,39 +334,69 @@ impl<S: SharedSoup> Signs<S> {
         if let (SignRule::Parity, Some((triangle, edge))) = (rule, surface.open) {
             return Err(SignError::Open { triangle, edge });
         }
-        let rays = TreeIndex::new(soup.clone())?;
-        let winding = WindingNumbers::of_surface(soup.clone(), &surface, rays)?;
-        let changes_at_surface = rule == SignRule::Parity || winding.is_closed();
-        let certificates = changes_at_surface.then(|| Certificates::new(&soup, surface, winding.rays(), roundoff));
+        let winding = WindingNumbers::of_surface(soup.clone(), &surface, !has_rays)?;
+        let is_closed = rule == SignRule::Parity || winding.is_closed();
+        let (certificates, preparations, ray_count) = (OnceLock::new(), Counter::default(), Counter::default());
         let bounds = soup.aabb();
-        Ok(Self { soup, rule, winding, certificates, bounds, ray_count: Counter::default() })
+        Ok(Self { soup, rule, winding, is_closed, certificates, preparations, roundoff, bounds, ray_count })
     }
 
-    /// Returns the sign of a query by its closest point.
-    fn sign(&self, query: &Point3<f64>, closest: &ClosestFeature) -> Sign {
+    /// Prepares the certificates if that pays for so many queries.
+    fn prepare_for(&self, queries: usize) {
+        let rays = self.ray_count.get() as f64 + queries as f64;
+        let pays = self.is_closed && rays > RAYS_PER_TRIANGLE * self.soup.triangles().len() as f64;
+        // Only one thread prepares them. The others go on with rays, because a thread that waits for work that it could
+        // do itself may wait forever.
+        if pays && self.certificates.get().is_none() && self.preparations.is_first() {
+            // An index over the scene was built, so a tree can be built as well.
+            if let Ok(certificates) = Certificates::new(self.soup.clone(), self.roundoff) {
+                let _ = self.certificates.set(certificates);
+            }
+        }
+    }
+
+    /// Returns the sign of a query by its closest point. Rays are cast at `rays`, if there are any.
+    fn sign<T: Real>(&self, query: &Point3<f64>, closest: &ClosestFeature, rays: Option<&dyn RayQuery<T>>) -> Sign {
         if closest.distance == 0.0 {
             return Sign::Boundary;
         }
-        if let Some(certificates) = &self.certificates {
-            if (0..3).any(|k| query[k] < self.bounds.min[k] || query[k] > self.bounds.max[k]) {
-                return Sign::Outside;
-            }
-            if let Some(side) = certificates.side(&self.soup, query, closest) {
-                return self.sign_of(certificates.winding_number(side, || self.crossings(query)));
-            }
+        if self.is_closed && !self.is_in_bounds(query) {
+            return Sign::Outside;
+        }
+        let certificates = self.certificates.get();
+        if let Some((certificates, side)) = certificates.and_then(|all| Some((all, all.side(query, closest)?))) {
+            return self.sign_of(certificates.winding_number(side, || self.crossings(query, rays)));
         }
         self.ray_count.increment();
-        if closest.lower_bound <= 0.0 && self.is_on_surface(query) {
+        if certificates.is_none() {
+            self.prepare_for(0);
+        }
+        if closest.lower_bound <= 0.0 && self.is_on_surface(query, rays) {
             return Sign::Boundary;
         }
-        if self.certificates.is_some() { self.sign_of(self.crossings(query)) } else { self.winding.sign(query) }
+        self.sign_without_closest_point(query, rays)
+    }
+
+    /// Returns the sign of a point that is not on the surface.
+    fn sign_without_closest_point<T: Real>(&self, point: &Point3<f64>, rays: Option<&dyn RayQuery<T>>) -> Sign {
+        if !self.is_closed {
+            self.winding.sign(point, rays)
+        } else if self.is_in_bounds(point) {
+            self.sign_of(self.crossings(point, rays))
+        } else {
+            Sign::Outside
+        }
+    }
+
+    fn is_in_bounds(&self, point: &Point3<f64>) -> bool {
+        (0..3).all(|k| self.bounds.min[k] <= point[k] && point[k] <= self.bounds.max[k])
     }
 
     /// Returns the number of crossings of a ray, by which the rule decides.
-    fn crossings(&self, query: &Point3<f64>) -> i64 {
+    fn crossings<T: Real>(&self, query: &Point3<f64>, rays: Option<&dyn RayQuery<T>>) -> i64 {
         match self.rule {
-            SignRule::Winding => self.winding.crossings(query),
-            SignRule::Parity => i64::try_from(self.winding.unsigned_crossings(query)).unwrap_or(0),
+            SignRule::Winding => self.winding.crossings(query, rays),
+            SignRule::Parity => i64::try_from(self.winding.unsigned_crossings(&ray(query), rays)).unwrap_or(0),
         }
     }
 
@@ -327,9 +409,9 @@ impl<S: SharedSoup> Signs<S> {
     }
 
     /// Returns whether the query is exactly on a triangle.
-    fn is_on_surface(&self, query: &Point3<f64>) -> bool {
+    fn is_on_surface<T: Real>(&self, query: &Point3<f64>, rays: Option<&dyn RayQuery<T>>) -> bool {
         let here: Ray = ray(query).with_range(0.0, 0.0).expect("0 is a valid parameter");
-        self.winding.rays().do_intersect(&here)
+        self.winding.is_hit(&here, rays)
     }
 }
 
@@ -337,7 +419,7 @@ impl<S: SharedSoup> Signs<S> {
 ///
 /// A vertex is at the distance 0 from its scene, so no lower bound on its distance is above 0.
 fn check_scene<T: Real>(index: &impl ClosestPoint<T>, soup: &Soup<f64>) -> Result<(), SignError> {
-    const TRIANGLES: usize = 64;
+    const TRIANGLES: usize = 16;
     check_kinds(soup)?;
     let triangles = soup.triangles();
     for triangle in (0..triangles.len()).step_by(triangles.len().div_ceil(TRIANGLES).max(1)) {

@@ -1,7 +1,7 @@
 //! The topology of a set of triangles: which of them are neighbours, and where their surface has a boundary.
 
 use p2m_core::Soup;
-use p2m_core::engine::weld::{UNUSED, UnionFind, VertexWelder, group_by_vertex};
+use p2m_core::engine::weld::{VertexWelder, group_by_vertex};
 
 /// The neighbour of an edge that has none: other than two triangles have the edge, both triangles run through it in one
 /// direction, or the triangle has equal corners.
@@ -12,8 +12,6 @@ pub(super) struct Surface {
     pub(super) welder: VertexWelder,
     /// The triangle beyond each edge, or [`NO_TRIANGLE`].
     pub(super) neighbours: Vec<[u32; 3]>,
-    /// Whether the triangles around each vertex form a single fan.
-    pub(super) is_fan: Vec<bool>,
     /// The directed edges through which triangles run more often in this direction than in the other, once for each
     /// time in excess. They are the boundary of the surface.
     pub(super) boundary: Vec<[u32; 2]>,
@@ -27,9 +25,7 @@ type HalfEdge = (u32, bool, u32);
 impl Surface {
     pub(super) fn new(soup: &Soup<f64>) -> Self {
         let welder = VertexWelder::new(soup);
-        let triangles = soup.triangles();
-        let mut neighbours = vec![[NO_TRIANGLE; 3]; triangles.len()];
-        let mut fans = UnionFind::new(3 * triangles.len());
+        let mut neighbours = vec![[NO_TRIANGLE; 3]; soup.triangles().len()];
         let (mut boundary, mut open): (_, Option<u32>) = (Vec::new(), None);
         let mut low = 0u32;
         group_by_vertex(welder.vertex_count, half_edges(soup, &welder), |half_edges: &[HalfEdge]| {
@@ -43,25 +39,14 @@ impl Surface {
                         open = half_edges.iter().map(|half_edge| half_edge.2).chain(open).min();
                     }
                 } else if let [(_, _, one), (_, _, other)] = *half_edges {
-                    let next = |corner: u32| corner - corner % 3 + (corner + 1) % 3;
                     neighbours[one as usize / 3][one as usize % 3] = other / 3;
                     neighbours[other as usize / 3][other as usize % 3] = one / 3;
-                    fans.union(one, next(other));
-                    fans.union(next(one), other);
                 }
             }
             low += 1;
         });
-        let (mut is_fan, mut fan_of) = (vec![true; welder.vertex_count], vec![UNUSED; welder.vertex_count]);
-        for (corner, position) in triangles.iter().flatten().enumerate() {
-            let (vertex, fan) = (welder.vertex_ids[*position as usize] as usize, fans.find(corner as u32));
-            if fan_of[vertex] == UNUSED {
-                fan_of[vertex] = fan;
-            }
-            is_fan[vertex] &= fan_of[vertex] == fan;
-        }
         let place = |half_edge: u32| (half_edge as usize / 3, half_edge as usize % 3);
-        Self { welder, neighbours, is_fan, boundary, open: open.map(place) }
+        Self { welder, neighbours, boundary, open: open.map(place) }
     }
 
     /// Calls a function for each edge of the triangles, with 3 * triangle + edge for all triangles that have it.

@@ -116,9 +116,9 @@ impl<T: Real> Signed<T> {
 }
 
 /// A pointer to a scene: `&Soup<f64>` to borrow it, or `Arc<Soup<f64>>` to share it.
-pub trait SharedSoup: Deref<Target = Soup<f64>> + PrimitiveSet<f64> + Clone + Sync {}
+pub trait SharedSoup: Deref<Target = Soup<f64>> + PrimitiveSet<f64> + Clone + Send + Sync {}
 
-impl<S: Deref<Target = Soup<f64>> + PrimitiveSet<f64> + Clone + Sync> SharedSoup for S {}
+impl<S: Deref<Target = Soup<f64>> + PrimitiveSet<f64> + Clone + Send + Sync> SharedSoup for S {}
 
 /// The part of a closest point that the rule of signs needs, in f64.
 pub(super) struct ClosestFeature {
@@ -145,6 +145,10 @@ impl Counter {
     }
     pub(super) fn get(&self) -> u64 {
         self.0.load(Ordering::Relaxed)
+    }
+    /// Increments the counter, and returns whether it was zero.
+    pub(super) fn is_first(&self) -> bool {
+        self.0.fetch_add(1, Ordering::Relaxed) == 0
     }
 }
 

@@ -11,7 +11,7 @@ use super::surface::Surface;
 use super::types::{RayTree, SharedSoup, Sign, SignError, check_kinds, ray};
 use nalgebra::Point3;
 use p2m_bvh::TreeIndex;
-use p2m_core::{Aabb, RayQuery, Soup};
+use p2m_core::{Aabb, Ray, RayQuery, Real, Soup};
 
 /// The generalised winding numbers of a set of triangles.
 ///
@@ -29,7 +29,8 @@ use p2m_core::{Aabb, RayQuery, Soup};
 #[derive(Clone)]
 pub struct WindingNumbers<S> {
     soup: S,
-    rays: RayTree<S>,
+    /// The tree of the surface in which rays are cast, unless an index stands for it.
+    rays: Option<RayTree<S>>,
     /// The caps of a surface with a boundary.
     caps: Option<Box<Caps>>,
 }
@@ -55,11 +56,12 @@ impl<S: SharedSoup> WindingNumbers<S> {
     pub fn new(soup: S) -> Result<Self, SignError> {
         check_kinds(&soup)?;
         let surface = Surface::new(&soup);
-        let rays = TreeIndex::new(soup.clone())?;
-        Self::of_surface(soup, &surface, rays)
+        Self::of_surface(soup, &surface, true)
     }
 
-    pub(super) fn of_surface(soup: S, surface: &Surface, rays: RayTree<S>) -> Result<Self, SignError> {
+    /// Without a tree of its own, all methods need rays.
+    pub(super) fn of_surface(soup: S, surface: &Surface, has_tree: bool) -> Result<Self, SignError> {
+        let rays = has_tree.then(|| TreeIndex::new(soup.clone())).transpose()?;
         let caps = if surface.boundary.is_empty() {
             None
         } else {
@@ -81,10 +83,14 @@ impl<S: SharedSoup> WindingNumbers<S> {
     /// triangle of the caps that is summed up exactly. An accuracy below that has no effect.
     #[must_use]
     pub fn number(&self, query: &Point3<f64>, accuracy: f64) -> f64 {
+        self.number_by(query, accuracy, None::<&dyn RayQuery<f64>>)
+    }
+
+    pub(super) fn number_by<T: Real>(&self, query: &Point3<f64>, accuracy: f64, rays: Option<&dyn RayQuery<T>>) -> f64 {
         if query.iter().any(|x| !x.is_finite()) {
             return f64::NAN;
         }
-        self.estimate(query, |estimate| estimate.error <= accuracy).value
+        self.estimate(query, rays, |estimate| estimate.error <= accuracy).value
     }
 
     /// Returns the winding number of a point as the sum over all triangles.
@@ -101,9 +107,14 @@ impl<S: SharedSoup> WindingNumbers<S> {
     }
 
     /// Returns an estimate of the winding number of a finite point that is enough, or as good as it gets.
-    fn estimate(&self, query: &Point3<f64>, is_enough: impl Fn(Estimate) -> bool) -> Estimate {
+    fn estimate<T: Real>(
+        &self,
+        query: &Point3<f64>,
+        rays: Option<&dyn RayQuery<T>>,
+        is_enough: impl Fn(Estimate) -> bool,
+    ) -> Estimate {
         #[allow(clippy::cast_precision_loss, reason = "there are fewer than 2^30 crossings")]
-        let whole = self.crossings(query) as f64;
+        let whole = self.crossings(query, rays) as f64;
         let Some(caps) = &self.caps else { return Estimate { value: whole, error: 0.0 } };
         let less = |caps: Estimate| Estimate { value: whole - caps.value, error: caps.error };
         match caps.angles.estimate(query, |caps| is_enough(less(caps))) {
@@ -113,35 +124,43 @@ impl<S: SharedSoup> WindingNumbers<S> {
         }
     }
 
-    /// Returns the signed number of crossings of a ray from a point with the surface and its caps.
-    pub(super) fn crossings(&self, query: &Point3<f64>) -> i64 {
+    /// Returns the signed number of crossings of a ray from a point with the surface and its caps. The surface is that
+    /// of `rays`, if there are any.
+    pub(super) fn crossings<T: Real>(&self, query: &Point3<f64>, rays: Option<&dyn RayQuery<T>>) -> i64 {
         let ray = ray(query);
-        self.rays.signed_crossings(&ray) + self.caps.as_ref().map_or(0, |caps| caps.rays.signed_crossings(&ray))
-    }
-
-    /// Returns the number of crossings of a ray from a point with the surface.
-    pub(super) fn unsigned_crossings(&self, query: &Point3<f64>) -> usize {
-        self.rays.crossings(&ray(query))
+        let crossings = match (rays, &self.rays) {
+            (Some(rays), _) => rays.signed_crossings(&ray),
+            (None, Some(rays)) => rays.signed_crossings(&ray),
+            (None, None) => 0,
+        };
+        crossings + self.caps.as_ref().map_or(0, |caps| caps.rays.signed_crossings(&ray))
     }
 
     /// Returns the sign of a point that is not on the surface.
-    pub(crate) fn sign(&self, query: &Point3<f64>) -> Sign {
-        let estimate = self.estimate(query, Estimate::is_decided);
-        if !estimate.is_decided() {
-            return Sign::Undefined;
+    pub(crate) fn sign<T: Real>(&self, query: &Point3<f64>, rays: Option<&dyn RayQuery<T>>) -> Sign {
+        let estimate = self.estimate(query, rays, Estimate::is_decided);
+        match estimate.is_decided() {
+            true if estimate.value.abs() > 0.5 => Sign::Inside,
+            true => Sign::Outside,
+            false => Sign::Undefined,
         }
-        if estimate.value.abs() > 0.5 { Sign::Inside } else { Sign::Outside }
     }
 
     /// Returns the common sign of all points that a path of at most the length `path`, within `radius` of a point and
     /// without crossing the surface, connects with the point. It is `None` if they may differ.
-    pub(super) fn sign_along(&self, path: f64, radius: f64, point: &Point3<f64>) -> Option<Sign> {
+    pub(super) fn sign_along<T: Real>(
+        &self,
+        path: f64,
+        radius: f64,
+        point: &Point3<f64>,
+        rays: Option<&dyn RayQuery<T>>,
+    ) -> Option<Sign> {
         let change = self.caps.as_ref().map_or(0.0, |caps| caps.boundary.max_change(path, radius, point, 0.5));
         if change >= 0.5 {
             return None;
         }
         let is_clear = |estimate: Estimate| (estimate.value.abs() - 0.5).abs() > estimate.error + change;
-        let estimate = self.estimate(point, is_clear);
+        let estimate = self.estimate(point, rays, is_clear);
         is_clear(estimate).then(|| if estimate.value.abs() > 0.5 { Sign::Inside } else { Sign::Outside })
     }
 
@@ -149,8 +168,22 @@ impl<S: SharedSoup> WindingNumbers<S> {
         self.caps.is_none()
     }
 
-    pub(super) fn rays(&self) -> &RayTree<S> {
-        &self.rays
+    /// Returns the number of crossings of a ray with the surface, regardless of their directions.
+    pub(super) fn unsigned_crossings<T: Real>(&self, ray: &Ray, rays: Option<&dyn RayQuery<T>>) -> usize {
+        match (rays, &self.rays) {
+            (Some(rays), _) => rays.crossings(ray),
+            (None, Some(rays)) => rays.crossings(ray),
+            (None, None) => 0,
+        }
+    }
+
+    /// Returns whether a ray hits the surface.
+    pub(super) fn is_hit<T: Real>(&self, ray: &Ray, rays: Option<&dyn RayQuery<T>>) -> bool {
+        match (rays, &self.rays) {
+            (Some(rays), _) => rays.do_intersect(ray),
+            (None, Some(rays)) => rays.do_intersect(ray),
+            (None, None) => false,
+        }
     }
 }
 

@@ -212,11 +212,11 @@ fn signs_of_all_families_are_those_of_rational_crossings() {
             let queries = queries(&mut rng, &soup, points);
             let signed = SignedDistance::new(AabbTree::new(&soup).expect("valid"), &soup).expect("triangles");
             assert_eq!(signed.rule(), rule, "{name}");
-            for query in queries {
-                let answer = signed.closest_point(&query).expect("not empty");
-                let expected = if is_on(&soup, &answer.closest, &query) {
+            for query in &queries {
+                let answer = signed.closest_point(query).expect("not empty");
+                let expected = if is_on(&soup, &answer.closest, query) {
                     Sign::Boundary
-                } else if is_inside(&soup, rule, &query) {
+                } else if is_inside(&soup, rule, query) {
                     Sign::Inside
                 } else {
                     Sign::Outside
@@ -228,7 +228,18 @@ fn signs_of_all_families_are_those_of_rational_crossings() {
                     println!("{name}, case {case}: {} for {expected} at {query:?}, {:?}", answer.sign, answer.closest);
                 }
             }
-            by_rays += signed.ambiguous_count();
+            // A batch prepares certificates, which single queries do only after some rays.
+            let fresh = SignedDistance::new(AabbTree::new(&soup).expect("valid"), &soup).expect("triangles");
+            let batch = fresh.closest_points(&queries, &Default::default(), &Default::default());
+            for (query, answer) in queries.iter().zip(batch) {
+                let sign = signed.closest_point(query).map(|answer| answer.sign);
+                assert_eq!(answer.map(|answer| answer.sign), sign, "{name}, case {case}: {query:?}");
+            }
+            let found = signed.contains_each(&queries, &Default::default());
+            for (query, found) in queries.iter().zip(found) {
+                assert_eq!(found, signed.contains(query), "{name}, case {case}: {query:?}");
+            }
+            by_rays += fresh.ambiguous_count();
         }
         println!("{name:<24} {signs:>9} {inside:>9} {by_rays:>9} {wrong:>7}");
         total.insert(name, (signs, inside, wrong));

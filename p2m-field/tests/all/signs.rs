@@ -226,7 +226,7 @@ fn the_rule_follows_from_the_surface() {
     assert!(signed.closest_point(&[0.0; 3]).is_none());
     let signed = SignedDistance::new(tree(&whole), &whole).expect("triangles");
     assert!(signed.closest_point(&Point3::new(f64::NAN, 0.0, 0.0)).is_none());
-    assert!(signed.winding_numbers().number(&Point3::new(f64::NAN, 0.0, 0.0), 0.01).is_nan());
+    assert!(signed.winding_number(&Point3::new(f64::NAN, 0.0, 0.0), 0.01).is_nan());
 }
 
 #[test]
