@@ -22,7 +22,6 @@
 //! # Ok::<(), p2m_field::sign::SignError>(())
 //! ```
 
-mod boundary;
 mod caps;
 mod certificate;
 mod contains;

@@ -44,6 +44,8 @@ struct Node {
     centre: V3,
     /// The corners of the box of the triangles.
     bounds: [V3; 2],
+    /// The area of the triangles over 2 pi: times 1 / d^3 it bounds the gradient of the sum at the distance d.
+    area: f64,
     /// 3 / (4 pi) times the integral of the squared distance from the centre over the triangles.
     spread: f64,
     /// The sum of the normals times areas, divided by 4 pi.
@@ -72,6 +74,10 @@ const ROUNDING: f64 = 16.0 * f64::EPSILON;
 const MAX_CANCELLATION: f64 = (1u64 << 40) as f64;
 /// Nodes below this level are halved, so no path is long.
 const MAX_DIVIDED_DEPTH: usize = 48;
+/// A change of winding numbers that is taken from a node rather than from its children.
+const SMALL_CHANGE: f64 = 1e-4;
+/// The largest diagonal of a node whose gradient is not taken from its children, in units of its distance.
+const MAX_DIAGONAL: f64 = 0.5;
 /// Nodes allow for the rounding of their moments and of distances by this factor.
 const INFLATION: f64 = 1.0 + 1e-9;
 
@@ -124,6 +130,42 @@ impl SolidAngles {
             }
         }
         Some(sum)
+    }
+
+    /// Returns an upper bound on the change of the winding number of a surface with these caps along a path that does not
+    /// cross the surface. The path has at most the length `path`, and is within `radius` of `centre`. Changes of more than
+    /// `enough` are not told apart.
+    ///
+    /// A triangle at the distance d has a gradient of at most A / (2 pi d^3), with the area A. Where the path may cross the
+    /// triangle, the crossings of rays change as well, and their difference has a gradient of at most the sum of
+    /// l / (4 pi d^2) over the edges, which have the length l and the distance d (the law of Biot and Savart).
+    pub(super) fn max_change(&self, path: f64, radius: f64, centre: &Point3<f64>, enough: f64) -> f64 {
+        let (path, radius) = (path * self.scale, radius * self.scale * INFLATION);
+        let centre = scaled((*centre).into(), self.scale);
+        let beyond = |[low, high]: &[V3; 2]| {
+            length([0, 1, 2].map(|k| f64::max(low[k] - centre[k], centre[k] - high[k]).max(0.0))) - radius
+        };
+        let mut gradient = 0.0;
+        let mut stack = vec![0u32; usize::from(!self.nodes.is_empty())];
+        while let Some(number) = stack.pop() {
+            let node = &self.nodes[number as usize];
+            let distance = beyond(&node.bounds);
+            let bound = node.area / (distance * distance * distance);
+            let diagonal = length(sub(node.bounds[1], node.bounds[0]));
+            if distance > 0.0 && (bound * path < SMALL_CHANGE || diagonal < MAX_DIAGONAL * distance) {
+                gradient += bound;
+            } else if node.children > 0 {
+                stack.extend([node.children, node.children + 1]);
+            } else {
+                for triangle in &self.triangles[node.triangles.start as usize..node.triangles.end as usize] {
+                    gradient += triangle_gradient(triangle, beyond);
+                }
+            }
+            if !(gradient * path < enough) {
+                return f64::INFINITY;
+            }
+        }
+        gradient * path * INFLATION
     }
 
     /// Returns the solid angles of the triangles of a leaf over 4 pi.
@@ -325,7 +367,7 @@ impl Node {
             // Triangles without area contribute nothing, so any centre will do.
             _ => centroid(&triangles[0]),
         };
-        let (mut normals, mut moments, mut spread) = ([0.0; 3], [[0.0; 3]; 3], 0.0);
+        let (mut normals, mut moments, mut spread, mut area) = ([0.0; 3], [[0.0; 3]; 3], 0.0, 0.0);
         for t in triangles {
             let normal = normal(t);
             let offsets = t.map(|corner| sub(corner, centre));
@@ -334,6 +376,7 @@ impl Node {
             // vertices and at their sum.
             let sum = scaled(offset, 3.0);
             let squares = offsets.iter().map(|o| dot(*o, *o)).sum::<f64>() + dot(sum, sum);
+            area += length(normal);
             spread += length(normal) * squares / 12.0;
             let dipole = scaled(normal, 0.25 / PI);
             normals = add(normals, dipole);
@@ -343,9 +386,30 @@ impl Node {
         let end =
             |pick: fn(f64, f64) -> f64| corners.iter().fold(corners[0], |a, b| [0, 1, 2].map(|k| pick(a[k], b[k])));
         let (bounds, spread) = ([end(f64::min), end(f64::max)], spread * (0.75 / PI) * INFLATION);
+        let area = area * (0.5 / PI) * INFLATION;
         let triangles = first..first + triangles.len() as u32;
-        Self { centre, bounds, spread, normal: normals, moments, triangles, children: 0 }
+        Self { centre, bounds, area, spread, normal: normals, moments, triangles, children: 0 }
     }
+}
+
+/// Returns an upper bound on the gradient that a triangle contributes where no distance is below that of `beyond` from its
+/// box and the boxes of its edges.
+fn triangle_gradient(triangle: &[V3; 3], beyond: impl Fn(&[V3; 2]) -> f64) -> f64 {
+    let box_of = |corners: &[V3]| {
+        let end =
+            |pick: fn(f64, f64) -> f64| corners.iter().fold(corners[0], |a, b| [0, 1, 2].map(|k| pick(a[k], b[k])));
+        [end(f64::min), end(f64::max)]
+    };
+    let distance = beyond(&box_of(triangle));
+    let by_area = length(normal(triangle)) * (0.5 / PI) / (distance * distance * distance);
+    let edge = |i: usize| {
+        let ends = [triangle[i], triangle[(i + 1) % 3]];
+        let distance = beyond(&box_of(&ends));
+        let gradient = length(sub(ends[1], ends[0])) * (0.25 / PI) / (distance * distance);
+        if distance > 0.0 { gradient } else { f64::INFINITY }
+    };
+    let by_edges = edge(0) + edge(1) + edge(2);
+    if distance > 0.0 { by_area.min(by_edges) } else { by_edges }
 }
 
 /// Half of the solid angle of a triangle.

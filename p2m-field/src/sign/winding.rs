@@ -4,7 +4,6 @@
 //! For a closed surface it is an integer, which the crossings of one ray decide without rounding. A surface with a
 //! boundary is closed by caps, whose solid angles are subtracted again (the module `caps`).
 
-use super::boundary::Boundary;
 use super::caps::caps;
 use super::solid_angles::{Estimate, SolidAngles, sum_of_all};
 use super::surface::Surface;
@@ -39,7 +38,6 @@ pub struct WindingNumbers<S> {
 struct Caps {
     rays: TreeIndex<f64, Soup<f64>, Aabb<f64>>,
     angles: SolidAngles,
-    boundary: Boundary,
 }
 
 /// The bound on the rounding error of a sum of all solid angles over 4 pi (observed).
@@ -66,8 +64,7 @@ impl<S: SharedSoup> WindingNumbers<S> {
             None
         } else {
             let caps = caps(&soup, surface);
-            let (angles, boundary) = (SolidAngles::new(&caps), Boundary::new(&soup, surface));
-            Some(Box::new(Caps { rays: TreeIndex::new(caps)?, angles, boundary }))
+            Some(Box::new(Caps { angles: SolidAngles::new(&caps), rays: TreeIndex::new(caps)? }))
         };
         Ok(Self { soup, rays, caps })
     }
@@ -155,13 +152,19 @@ impl<S: SharedSoup> WindingNumbers<S> {
         point: &Point3<f64>,
         rays: Option<&dyn RayQuery<T>>,
     ) -> Option<Sign> {
-        let change = self.caps.as_ref().map_or(0.0, |caps| caps.boundary.max_change(path, radius, point, 0.5));
+        let change = self.max_change(path, radius, point);
         if change >= 0.5 {
             return None;
         }
         let is_clear = |estimate: Estimate| (estimate.value.abs() - 0.5).abs() > estimate.error + change;
         let estimate = self.estimate(point, rays, is_clear);
         is_clear(estimate).then(|| if estimate.value.abs() > 0.5 { Sign::Inside } else { Sign::Outside })
+    }
+
+    /// Returns an upper bound on the change of winding numbers along a path that does not cross the surface, has at most
+    /// the length `path`, and is within `radius` of a point. A change that may be a half is infinite.
+    fn max_change(&self, path: f64, radius: f64, point: &Point3<f64>) -> f64 {
+        self.caps.as_ref().map_or(0.0, |caps| caps.angles.max_change(path, radius, point, 0.5))
     }
 
     pub(super) fn is_closed(&self) -> bool {
@@ -191,5 +194,55 @@ impl Estimate {
     /// Returns whether the number is certainly above a half in magnitude, or certainly below it.
     fn is_decided(self) -> bool {
         (self.value.abs() - 0.5).abs() > self.error
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::sign::surface::Surface;
+    use p2m_core::{BruteForce, ClosestPoint};
+    use p2m_mixed::generate::{IcoSphere, TorusKnot, ico_sphere, torus_knot};
+    use p2m_testkit::vector;
+    use rand::RngExt;
+
+    #[test]
+    fn winding_numbers_change_by_at_most_their_bound() {
+        let knot = torus_knot(&TorusKnot::default()).expect("valid");
+        assert!(Surface::new(&knot).boundary.is_empty());
+        let ball = ico_sphere(&IcoSphere { frequency: 8 }).expect("valid");
+        let low = |t: &[u32; 3]| t.iter().all(|i| ball.positions()[*i as usize].x <= 0.0);
+        let half = ball.triangles().iter().filter(|t| low(t)).copied().collect();
+        let half = Soup::from_triangles(ball.positions().to_vec(), half).expect("valid");
+        // One triangle is missing, and another one is duplicated.
+        let mut rest = knot.triangles()[1..].to_vec();
+        rest.push(rest[500]);
+        let holes = Soup::from_triangles(knot.positions().to_vec(), rest).expect("valid");
+        for (soup, edges, name) in [(half, 24, "half a ball"), (holes, 6, "a hole")] {
+            let surface = Surface::new(&soup);
+            let found = surface.boundary.len();
+            assert!(found == edges || name == "half a ball" && found > 10, "{name}: {found} edges");
+            let winding = WindingNumbers::new(&soup).expect("triangles");
+            let surface = BruteForce::new(&soup).expect("valid");
+            let (mut bounded, mut largest) = (0, 0.0f64);
+            let cases = p2m_testkit::cases(2000, 60);
+            for case in cases.clone() {
+                let mut rng = p2m_testkit::rng(name, case);
+                let centre = Point3::from(vector(&mut rng) * 1.5);
+                let radius = surface.closest_point(&centre).expect("not empty").distance * rng.random_range(0.01..0.99);
+                let bound = winding.max_change(radius, radius, &centre);
+                if bound >= 0.5 {
+                    continue;
+                }
+                bounded += 1;
+                let other = centre + vector(&mut rng).normalize() * radius;
+                let change = (winding.sum(&other) - winding.sum(&centre)).abs();
+                assert!(change <= bound + 1e-9, "{name}, case {case}: {change} for {bound}");
+                largest = largest.max(change / bound);
+            }
+            println!("{name}: {bounded} are bounded, at most {largest:.2} of the bound");
+            let is_decisive = cases.have_more_than(500, bounded) && (cases.is_replay() || largest > 0.005);
+            assert!(is_decisive, "{name}: {bounded} are bounded, {largest}");
+        }
     }
 }
