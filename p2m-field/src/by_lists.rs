@@ -53,9 +53,12 @@ pub fn signed_distances_by_lists<S: PrimitiveSet<f64> + Sync + ?Sized, I: Closes
     options: &FieldOptions,
     progress: &(dyn Fn(usize) + Sync),
 ) -> Result<Vec<f32>, GridError> {
+    // The error of the distance of a point on the surface is far below this.
+    let bounds = lists.set().aabb().union(&Aabb { min: grid.origin(), max: grid.point(grid.counts().map(|n| n - 1)) });
+    let on_surface = 1e-9 * bounds.min.coords.amax().max(bounds.max.coords.amax());
     let sign = |point: &Point3<f64>, distance: f32| {
-        // Winding numbers need no closest point, unless the point is on the surface.
-        if distance > 0.0 && !signed.is_closed() {
+        // A ray is faster than a query, but does not tell that the point is on the surface.
+        if f64::from(distance) > on_surface {
             return signed.sign_without_closest_point(point);
         }
         signed.closest_point(point).map_or(Sign::Outside, |answer| answer.sign)

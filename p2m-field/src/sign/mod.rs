@@ -307,7 +307,7 @@ impl<I, S: SharedSoup> SignedDistance<I, S> {
         I: ClosestPoint<f64>,
     {
         if self.is_closed() {
-            Some(self.closest_point(point)?.sign)
+            Some(self.sign_without_closest_point(point))
         } else {
             self.signs.winding.sign_along(path, radius, point, self.index.rays())
         }
