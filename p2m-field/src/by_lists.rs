@@ -68,13 +68,16 @@ pub fn signed_distances_by_lists<S: PrimitiveSet<f64> + Sync + ?Sized, I: Closes
     Sampler::new(lists, Some(signs), grid, options, progress)?.field()
 }
 
+/// Returns the common sign of points around a point, by a length and a radius.
+type SignAlong<'a> = dyn Fn(f64, f64, &Point3<f64>) -> Option<Sign> + Sync + 'a;
+
 /// The functions that compute signs.
 struct Signs<'a> {
     /// Returns the sign of a point at this distance from the surface.
     at: &'a (dyn Fn(&Point3<f64>, f32) -> Sign + Sync),
     /// Returns the common sign of all points that a path of at most this length, within a radius of a point and without
     /// crossing the surface, connects with the point, or `None` if their signs may differ.
-    along: &'a (dyn Fn(f64, f64, &Point3<f64>) -> Option<Sign> + Sync),
+    along: &'a SignAlong<'a>,
 }
 
 /// Computes the values of a field by candidate lists.

@@ -61,13 +61,16 @@ pub fn signed_distances<I: ClosestPoint<f64> + Sync, R: SharedSoup>(
     sampler.field(progress)
 }
 
+/// Returns the common sign of points around a point, by a radius and the closest point.
+type SignAround<'a> = dyn Fn(f64, &Point3<f64>, &Closest<f64>) -> Option<Sign> + Sync + 'a;
+
 /// The functions that compute signs.
 struct Signs<'a> {
     /// Returns the sign of a query by its closest point.
     near: &'a (dyn Fn(&Point3<f64>, &Closest<f64>) -> Sign + Sync),
     /// Returns the common sign of all points within a radius of a point, by its closest point, which is farther. It is
     /// `None` if their signs may differ.
-    around: &'a (dyn Fn(f64, &Point3<f64>, &Closest<f64>) -> Option<Sign> + Sync),
+    around: &'a SignAround<'a>,
     /// Returns the sign of a point beyond the band, where signs differ within a block.
     far: &'a (dyn Fn(&Point3<f64>) -> Sign + Sync),
 }

@@ -5,9 +5,8 @@
 //!   [`distances_by_lists`] and [`signed_distances_by_lists`] need no index: they divide the grid into blocks and
 //!   evaluate the few primitives that can be nearest in a block for all of its points at once ([`grid_candidates`]).
 //!   Both ways return the same bits.
-//! - **Signs** tell inside from outside ([`sign`]): by pseudonormals and exact rays for closed surfaces
-//!   \[Baerentzen2005\], or by generalised winding numbers for any triangles \[Jacobson2013\], which a tree of dipoles
-//!   approximates within a bound \[Barill2018\].
+//! - **Signs** tell inside from outside ([`sign`]): by winding numbers \[Jacobson2013\], which are exact for closed
+//!   surfaces and certified for open ones \[Barill2018\], or by parity.
 //! - **Hausdorff distances** are the largest values of the distance field of one scene on another scene, between
 //!   certified bounds ([`hausdorff_distance`]).
 //! - **Deviations** are the signed distances of the points of a scan, and [`deviation`] has their statistics.

@@ -84,8 +84,8 @@ pub enum ShardError {
     /// A scene with segments or points has no inside.
     #[error("the scene has segments or points, which have no inside")]
     NoInside,
-    /// An open surface has no inside in shards, which have no winding numbers.
-    #[error("the surface is open, and shards have no winding numbers")]
+    /// An open surface has no inside in shards.
+    #[error("the surface is open, and shards decide signs only for closed surfaces")]
     Open,
     /// Writing or a batch of queries was cancelled.
     #[error("the work was cancelled")]

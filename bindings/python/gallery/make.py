@@ -339,7 +339,6 @@ def signed_distances(vertices: np.ndarray, triangles: np.ndarray, points: np.nda
     grid = pyvista.PolyData(points).compute_implicit_distance(polydata(vertices, triangles))
     return {
         "p2m": index.signed_distance(points),
-        'p2m, `sign="winding"`': index.signed_distance(points, sign="winding"),
         "Open3D": scene.compute_signed_distance(queries).numpy(),
         "Open3D, `nsamples=11`": scene.compute_signed_distance(queries, nsamples=11).numpy(),
         "trimesh": -trimesh.proximity.signed_distance(trimesh_mesh(vertices, triangles), points),

@@ -16,7 +16,7 @@ use super::surface::Surface;
 use nalgebra::Point3;
 use p2m_core::Soup;
 
-/// The number of no step on a path.
+/// Marks a vertex that is not on the path.
 const NONE: u32 = u32::MAX;
 
 /// Returns the triangles that close a surface, or none if it is closed.

@@ -1,7 +1,7 @@
 //! Signs by the normal at the closest point, where that is proved to decide, and by rays elsewhere.
 //!
-//! The segment from a query to the closest point of its index crosses no other part of the surface, except within the
-//! error of the distance from its end. So the query is on the side of the surface from which the segment arrives, if
+//! The segment from a query to its closest point crosses no other part of the surface, except perhaps nearer to the
+//! closest point than the error of the distance. So the query is on the side of the surface from which the segment arrives, if
 //! the surface is simple there. The side follows from the pseudonormal: the normal of the face, the sum of the unit
 //! normals of the two faces at an edge, or that of the faces around a vertex, each multiplied by its angle there
 //! \[Baerentzen2005\].
@@ -32,9 +32,9 @@ const MIN_SINE: f64 = 1.0 / (1 << 16) as f64;
 /// The smallest cosine between the normals of a fan and its pseudonormal: 2^-4.
 const MIN_COSINE: f64 = 1.0 / 16.0;
 /// The bound on the error of a pseudonormal: 2^-24. Normals of triangles that are no slivers have errors below
-/// 12 * 2^-53 / 2^-16 < 2^-33, and there are at most 2^9 of them around a vertex.
+/// 12 * 2^-53 / 2^-16 < 2^-33, and there are fewer than 2^8 of them around a vertex.
 const NORMAL_ERROR: f64 = 1.0 / (1 << 24) as f64;
-/// The largest number of triangles of a simple vertex.
+/// A vertex with this many triangles is not simple.
 const MAX_VALENCE: u8 = u8::MAX;
 /// The clearance of triangles, in units of the roundoff of the index and the size of the scene.
 const CLEARANCE: f64 = 128.0;
@@ -43,7 +43,7 @@ const NO_PATCH: u32 = u32::MAX;
 /// The winding number of a patch whose winding number is unknown.
 const UNKNOWN: i64 = i64::MIN;
 
-/// What is known about the triangles of a surface without a boundary.
+/// The simple triangles of a closed surface, and their patches.
 pub(super) struct Certificates<S> {
     soup: S,
     /// The tree of the surface.
@@ -94,7 +94,7 @@ impl<S: Clone> Clone for Certificates<S> {
 }
 
 impl<S: SharedSoup> Certificates<S> {
-    /// Finds the simple triangles of a surface without a boundary. `roundoff` is the unit roundoff of the index.
+    /// Finds the simple triangles of a closed surface. `roundoff` is the unit roundoff of the index.
     ///
     /// # Errors
     /// Errors of building a tree.

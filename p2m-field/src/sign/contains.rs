@@ -76,7 +76,7 @@ impl<I, S: SharedSoup> SignedDistance<I, S> {
         // Neighbours stand side by side from here on.
         let points: Vec<Point3<T>> = order.iter().map(|i| points[*i as usize]).collect();
         let mut inside = vec![false; points.len()];
-        let mut blocks = vec![0..points.len()];
+        let mut blocks: Vec<Range<usize>> = std::iter::once(0..points.len()).collect();
         let mut crossed: Vec<(Range<usize>, Ball<T>, usize)> = Vec::new();
         for size in BLOCKS {
             let starts =
@@ -131,8 +131,9 @@ impl<I, S: SharedSoup> SignedDistance<I, S> {
     where
         I: ClosestPoint<T>,
     {
-        // False for NaN.
-        if !(closest.lower_bound.to_f64() > ball.radius) {
+        // A radius of NaN is not below the bound.
+        let is_empty = closest.lower_bound.to_f64() > ball.radius;
+        if !is_empty {
             None
         } else if self.is_closed() {
             Some(self.sign(&ball.centre, closest))
@@ -174,8 +175,9 @@ impl<I, S: SharedSoup> SignedDistance<I, S> {
             if count > MAX_TRIANGLES { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
         });
         let margin = MIN_HEIGHT * most;
-        // False for NaN.
-        if normal.is_none() || ended.is_break() || !(margin > f64::MIN_POSITIVE && margin < f64::MAX) {
+        // A margin of NaN is not in the range.
+        let is_plain = margin > f64::MIN_POSITIVE && margin < f64::MAX;
+        if normal.is_none() || ended.is_break() || !is_plain {
             rest.extend(part);
             return;
         }

@@ -1,7 +1,7 @@
 //! Triangles that are near others without a common vertex.
 //!
 //! Groups of triangles that are consecutive in the leaves of the tree take the triangles in their common box from the
-//! tree. Pairs of which the boxes overlap are then told apart by separating axes.
+//! tree. Pairs whose boxes overlap are then tested for a separating axis.
 
 use super::certificate::{ROUNDING, corners};
 use super::types::{RayTree, SharedSoup};
@@ -17,7 +17,7 @@ const GROUP_LEN: usize = 16;
 /// What boxes are widened by, in units of the size of the scene: four times the rounding of coordinates to f32.
 const BOX_MARGIN: f64 = 1.0 / (1 << 22) as f64;
 
-/// Unmarks all triangles that another triangle without a common vertex may be within a distance of. `welded` has the
+/// Unmarks each triangle that may be within `distance` of a triangle with which it shares no vertex. `welded` has the
 /// vertices of the triangles.
 pub(super) fn exclude<S: SharedSoup>(
     marks: &mut [bool],

@@ -2,11 +2,13 @@
 //!
 //! [`SignedDistance`] adds a sign to the answers of any index over triangles. A point is inside if its generalised
 //! winding number \[Jacobson2013\] exceeds a half in magnitude ([`SignRule::Winding`]). The triangles may have holes, be
-//! unconnected, overlap or intersect each other. For a closed surface whose neighbouring triangles run through their
-//! common edges in opposite directions, the number is an integer: the signed number of crossings of a ray, which is
-//! decided without rounding. The normal at the closest point gives the same sign without a ray, and is used where that
-//! is proved. Surfaces that are closed but not consistently oriented have their signs by parity ([`SignRule::Parity`]),
-//! unless another rule is chosen.
+//! unconnected, overlap or intersect each other.
+//!
+//! A surface is *closed* if each edge has an even number of triangles. It is *oriented* if as many triangles run through
+//! each edge in one direction as in the other; every oriented surface is closed. The winding number of an oriented
+//! surface is an integer: the signed number of crossings of a ray, which is decided without rounding. The normal at the
+//! closest point gives the same sign without a ray, and is used where that is proved. Surfaces that are closed but not
+//! oriented have their signs by parity ([`SignRule::Parity`]), unless another rule is chosen.
 //!
 //! ```
 //! use nalgebra::Point3;
@@ -96,6 +98,8 @@ struct Signs<S> {
     soup: S,
     rule: SignRule,
     winding: WindingNumbers<S>,
+    /// Whether each edge has an even number of triangles.
+    is_even: bool,
     /// Whether signs change at the surface alone.
     is_closed: bool,
     /// What is proved about the normals of a closed surface, once there are so many queries that it pays.
@@ -108,7 +112,8 @@ struct Signs<S> {
     ray_count: Counter,
 }
 
-/// Certificates are prepared when rays have decided this many signs for each triangle. So both take about the same time.
+/// Certificates are prepared when the rays so far and the queries of the next batch exceed this number for each triangle:
+/// casting the rays would then take about as long.
 const RAYS_PER_TRIANGLE: f64 = 0.5;
 
 impl SharedDistance {
@@ -125,15 +130,14 @@ impl SharedDistance {
 impl<I, S: SharedSoup> SignedDistance<I, S> {
     /// Makes signs for any triangles. `index` has to be an index over `soup`.
     ///
-    /// The rule is [`SignRule::Winding`], except for surfaces that are closed but not consistently oriented, where it is
-    /// [`SignRule::Parity`]. A surface is closed if each of its edges has an even number of triangles, and consistently
-    /// oriented if as many of them run through the edge in one direction as in the other. Vertices are welded where they
-    /// have the same coordinates. An empty scene is not an error.
+    /// The rule is [`SignRule::Winding`], except for surfaces that are closed but not oriented, where it is
+    /// [`SignRule::Parity`] ([the module](self) defines both words). Vertices are welded where they have the same
+    /// coordinates. An empty scene is not an error.
     ///
     /// # Accuracy
-    /// The signs of surfaces without a boundary are those of an exact count of crossings (proved, docs/proofs/fields.md).
-    /// Signs by winding numbers of surfaces with a boundary are certain but for the rounding of sums of solid angles,
-    /// whose bound is observed; where the bound does not decide, the sign is [`Sign::Undefined`].
+    /// The signs of oriented surfaces, and those by parity, are those of an exact count of crossings (proved,
+    /// docs/proofs/fields.md). Other winding numbers have an error bound that is proved but for the rounding of solid
+    /// angles, where it is observed; where the bound does not decide, the sign is [`Sign::Undefined`].
     ///
     /// # Errors
     /// [`SignError::OtherKinds`], [`SignError::OtherScene`] and [`SignError::Build`].
@@ -177,19 +181,23 @@ impl<I, S: SharedSoup> SignedDistance<I, S> {
         self.signs.rule
     }
 
-    /// Returns whether signs change at the surface alone, because it has no boundary as far as the rule is concerned.
+    /// Returns whether the sign can change only at the surface. This holds for the rule parity, and for oriented surfaces
+    /// by the rule winding.
     pub fn is_closed(&self) -> bool {
         self.signs.is_closed
     }
 
-    /// Returns a sentence for people that says why the rule was chosen, unless the surface has no boundary and its
-    /// triangles have the same orientation.
+    /// Returns a sentence for people that says what the rule means for this surface, unless the surface is oriented.
     pub fn note(&self) -> Option<&'static str> {
         match self.signs.rule {
             _ if self.signs.winding.is_closed() => None,
+            SignRule::Winding if self.signs.is_even => Some(
+                "the surface is closed, but its triangles have different orientations: points are inside where the \
+                 winding number exceeds a half in magnitude, which means little there",
+            ),
             SignRule::Winding => Some(
-                "the surface is open: points are inside where the winding number exceeds a half, which is a guess near \
-                 holes",
+                "the surface is open: points are inside where the winding number exceeds a half in magnitude, which is a \
+                 guess near holes",
             ),
             SignRule::Parity => Some(
                 "the surface is closed, but its triangles have different orientations: points are inside where a ray \
@@ -324,12 +332,9 @@ impl<S: SharedSoup> Signs<S> {
     fn new(soup: S, rule: Option<SignRule>, roundoff: f64, has_rays: bool) -> Result<Self, SignError> {
         check_kinds(&soup)?;
         let surface = Surface::new(&soup);
-        let is_closed = surface.open.is_none();
-        let rule = rule.unwrap_or(if is_closed && !surface.boundary.is_empty() {
-            SignRule::Parity
-        } else {
-            SignRule::Winding
-        });
+        let is_even = surface.open.is_none();
+        let rule =
+            rule.unwrap_or(if is_even && !surface.boundary.is_empty() { SignRule::Parity } else { SignRule::Winding });
         if let (SignRule::Parity, Some((triangle, edge))) = (rule, surface.open) {
             return Err(SignError::Open { triangle, edge });
         }
@@ -337,7 +342,7 @@ impl<S: SharedSoup> Signs<S> {
         let is_closed = rule == SignRule::Parity || winding.is_closed();
         let (certificates, preparations, ray_count) = (OnceLock::new(), Counter::default(), Counter::default());
         let bounds = soup.aabb();
-        Ok(Self { soup, rule, winding, is_closed, certificates, preparations, roundoff, bounds, ray_count })
+        Ok(Self { soup, rule, winding, is_even, is_closed, certificates, preparations, roundoff, bounds, ray_count })
     }
 
     /// Prepares the certificates if that pays for so many queries.

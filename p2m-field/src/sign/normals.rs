@@ -78,7 +78,7 @@ impl Normals {
             Feature::Edge(i) => self.edges[triangle][usize::from(i)],
             Feature::Vertex(i) => self.vertices[self.triangles[triangle][usize::from(i)] as usize],
         };
-        (normal != [0.0; 3]).then(|| normal.into())
+        (dot(normal, normal) > 0.0).then(|| normal.into())
     }
 }
 

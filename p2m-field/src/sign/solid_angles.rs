@@ -1,16 +1,18 @@
 //! Sums of solid angles of triangles, between bounds.
 //!
 //! The solid angle of a triangle has a closed form \[VanOosterom1983\]. Divided by 4 pi it is the integral of K(x) . n
-//! over the triangle, where K(x) = (x - q) / (4 pi |x - q|^3). For the triangles of a node, which lie within r of its
-//! centre p, K is replaced by its Taylor polynomial of degree 1 at p: a dipole and its first moments \[Barill2018\].
+//! over the triangle, where K(x) = (x - q) / (4 pi |x - q|^3). For the triangles of a node with the centre p, K is
+//! replaced by its Taylor polynomial of degree 1 at p: a dipole and its first moments \[Barill2018\].
 //!
 //! **Error (proved, docs/proofs/fields.md).** K is the gradient of -1 / (4 pi |x - q|), whose third derivatives in any
 //! directions are at most 3! / (4 pi rho^4) at a distance of rho. So the remainder is at most 3 I / (4 pi rho^4), with
-//! rho = |p - q| - r and I the integral of |x - p|^2 over the triangles. It is also at most a half for each triangle.
+//! rho the distance of q from the box of the node and I the integral of |x - p|^2 over the triangles. Where this is not below a half for each
+//! triangle, the node has the value 0 and that error, since no solid angle exceeds 2 pi.
 //!
 //! Nodes are divided by the surface-area heuristic in 16 bins, for caps have very different sizes.
 //!
-//! A sum starts at the root. While its error is too large, the node with the largest error is replaced by its children,
+//! A sum starts at the root. While its error is too large, a node whose error is at least half of the
+//! largest is replaced by its children,
 //! and a leaf by the solid angles of its triangles. Values and errors are rounded to multiples of a unit that is so
 //! large that sums are exact.
 
@@ -133,8 +135,8 @@ impl SolidAngles {
     }
 
     /// Returns an upper bound on the change of the winding number of a surface with these caps along a path that does not
-    /// cross the surface. The path has at most the length `path`, and is within `radius` of `centre`. Changes of more than
-    /// `enough` are not told apart.
+    /// cross the surface. The path has at most the length `path`, and is within `radius` of `centre`. It is infinite if it
+    /// is not below `enough`.
     ///
     /// A triangle at the distance d has a gradient of at most A / (2 pi d^3), with the area A. Where the path may cross the
     /// triangle, the crossings of rays change as well, and their difference has a gradient of at most the sum of
@@ -161,7 +163,9 @@ impl SolidAngles {
                     gradient += triangle_gradient(triangle, beyond);
                 }
             }
-            if !(gradient * path < enough) {
+            // A gradient of NaN is not below it.
+            let is_below = gradient * path < enough;
+            if !is_below {
                 return f64::INFINITY;
             }
         }

@@ -9,13 +9,13 @@ use std::sync::atomic::{AtomicU64, Ordering};
 /// The rule that decides which points are inside of a surface.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum SignRule {
-    /// A point is inside where the winding number exceeds a half in magnitude. For a surface without a boundary that is
-    /// where the crossings of a ray, counted with the directions in which they pass the surface, do not cancel. So
-    /// overlapping shells are united, a shell that is turned inward inside of another is a cavity, and a surface that is
+    /// A point is inside where the winding number exceeds a half in magnitude. For an oriented surface that is where the
+    /// crossings of a ray, counted with the directions in which they pass the surface, do not cancel. So overlapping
+    /// shells of the same orientation are united, a shell that is turned inward inside of another is a cavity, and a surface that is
     /// turned inside out as a whole is solid.
     Winding,
     /// A point is inside where a ray crosses the surface an odd number of times. The orientation of triangles is
-    /// irrelevant, and what two shells share is outside.
+    /// irrelevant, and points inside both of two overlapping shells are outside.
     Parity,
 }
 
@@ -46,7 +46,7 @@ pub enum Sign {
     /// The point is on the surface: its distance is 0, or the error of its distance cannot exclude 0 and it is exactly on
     /// a triangle.
     Boundary,
-    /// The sign is not defined, because the winding number is a half in magnitude, apart from rounding.
+    /// The sign is not defined: rounding leaves it open on which side of a half the winding number of an open surface is.
     Undefined,
 }
 
@@ -72,7 +72,9 @@ pub enum SignError {
         others: usize,
     },
     /// The surface has an edge with an odd number of triangles, so parity is not defined.
-    #[error("the surface is open at edge {edge} of triangle {triangle}, so parity has no signs; winding numbers have")]
+    #[error(
+        "the surface is open at edge {edge} of triangle {triangle}: the rule parity needs a closed surface, the rule winding does not"
+    )]
     Open {
         /// The lowest index of a triangle with such an edge.
         triangle: usize,

@@ -145,7 +145,7 @@ fn queries(rng: &mut dyn Rng, soup: &Soup<f64>, count: usize) -> Vec<Point3<f64>
     let bounds = soup.aabb();
     let size = (bounds.max - bounds.min).norm();
     let mut one = |i: usize| {
-        if i % 3 == 0 {
+        if i.is_multiple_of(3) {
             return Point3::from([0, 1, 2].map(|k| rng.random_range(bounds.min[k]..=bounds.max[k])));
         }
         let triangle = soup.triangles()[rng.random_range(0..soup.triangles().len())];
@@ -171,11 +171,9 @@ fn crossings(soup: &Soup<f64>, query: &Point3<f64>) -> [i64; 2] {
         if passes(1) || passes(2) || corners.iter().all(|c| c.x < query.x) {
             continue;
         }
-        if let Some((side, parameter)) = crossing(&ray, &corners.map(Into::into)) {
-            if parameter >= 0.0 {
-                counts[0] += if side == Side::Back { 1 } else { -1 };
-                counts[1] += 1;
-            }
+        if let Some((side, _)) = crossing(&ray, &corners.map(Into::into)).filter(|(_, parameter)| *parameter >= 0.0) {
+            counts[0] += if side == Side::Back { 1 } else { -1 };
+            counts[1] += 1;
         }
     }
     counts

@@ -210,7 +210,7 @@ fn the_rule_follows_from_the_surface() {
     assert_eq!(found(&open, None), Ok((winding, false, Sign::Inside)));
     let error = found(&open, Some(parity)).expect_err("open");
     assert_eq!(error, SignError::Open { triangle: 2, edge: 1 });
-    let message = "the surface is open at edge 1 of triangle 2, so parity has no signs; winding numbers have";
+    let message = "the surface is open at edge 1 of triangle 2: the rule parity needs a closed surface, the rule winding does not";
     assert_eq!(error.to_string(), message);
     // Every second triangle is turned, so winding numbers cancel.
     let turned =

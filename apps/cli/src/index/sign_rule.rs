@@ -12,7 +12,7 @@ use p2m_field::sign::{self, SignError, SignedDistance};
 pub(crate) enum SignRule {
     /// By winding numbers, or by parity if the surface is closed but its triangles have different orientations
     Auto,
-    /// Inside where the winding number exceeds a half
+    /// Inside where the winding number exceeds a half in magnitude
     Winding,
     /// Inside where a ray crosses the surface an odd number of times; an open surface is an error
     Parity,
@@ -38,7 +38,7 @@ impl SignRule {
     }
 }
 
-/// What reports say of signs.
+/// The rule of signs and its note, for reports.
 #[derive(Clone, Copy)]
 pub(crate) struct SignReport {
     /// The name of the rule.

@@ -125,7 +125,7 @@ pub(crate) struct Args {
     /// Add a column of distances that are negative inside; needs a scene of triangles [possible values of RULE: auto,
     /// winding, parity].
     ///
-    /// An index in shards has only auto, and an open surface has no signs there.
+    /// For an index in shards, RULE must be auto, and the surface must be closed.
     #[arg(long, value_name = "RULE", num_args = 0..=1, require_equals = true, default_missing_value = "auto", value_enum, conflicts_with_all = ["k_nearest", "within"])]
     pub(crate) signed: Option<SignRule>,
 

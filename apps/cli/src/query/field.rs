@@ -39,9 +39,10 @@ NPY files are arrays of NumPy, field[i, j, k] with x, y and z; VTI files are ima
 values alone, little-endian, x fastest. With --refine the file is NPY: an array of cells with the fields origin, size and values (at \
 the corners: x runs fastest, z slowest).
 
-With --signed distances are negative inside: where the winding number of the surface exceeds a half, also for surfaces with holes or overlapping \
-shells. Surfaces that are closed but have triangles of different orientations take the rule parity: inside is where a ray crosses the surface an odd \
-number of times. The distance is NaN where the winding number is exactly a half.
+With --signed distances are negative inside: where the winding number of the surface exceeds a half in magnitude, also for \
+surfaces with holes or overlapping shells. Surfaces that are closed but have triangles of different orientations take the rule parity: inside is where a ray crosses the surface an odd \
+number of times. The distance is NaN where rounding leaves it open on which side of a half the number of an open \
+surface is.
 
 {}
 

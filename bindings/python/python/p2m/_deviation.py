@@ -194,8 +194,8 @@ def deviation(
         percentile of absolute deviations.
     sign : {"auto", "winding", "parity"} or None, optional
         The rule that decides which points are inside, as for `Index.signed_distance`; None for distances without signs,
-        which scenes with segments or points need. With ``"auto"`` a warning says what decides if the surface is open or
-        not consistently oriented. For an open surface the sign is a guess near holes, and both sides of a single sheet
+        which scenes with segments or points need. If the surface is open or not consistently oriented, ``"auto"`` warns
+        and names the rule that decides which points are inside. For an open surface the sign is a guess near holes, and both sides of a single sheet
         are outside.
     unit : str, optional
         The name of the unit of lengths, for figures and pages.

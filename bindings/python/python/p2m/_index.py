@@ -634,8 +634,8 @@ class Index(PointQueries, PairQueries):
         Returns
         -------
         ndarray of float64, shape {..}
-            The signed distances: 0 on the surface, nan where the side is not defined because the winding number is a
-            half within the accuracy of float64, and beyond `max_distance`.
+            The signed distances: 0 on the surface, nan where rounding leaves it open on which side of a
+            half the winding number of an open surface is, and beyond `max_distance`.
 
         Raises
         ------
@@ -644,7 +644,8 @@ class Index(PointQueries, PairQueries):
 
         Notes
         -----
-        The first call prepares the signs, which takes about as long as a build of the tree.
+        The first call finds the boundary of the surface. A call with about half as many points as the scene has
+        triangles also prepares what makes signs cheap, which takes a few times as long as a build of the tree.
 
         Examples
         --------
@@ -700,7 +701,7 @@ class Index(PointQueries, PairQueries):
         Notes
         -----
         Points that are nearer to each other than to the surface share one query, so many points take far less time than
-        their signed distances.
+        their signed distances. For an open surface this holds only far from its boundary.
 
         Examples
         --------

@@ -80,9 +80,10 @@ class ClosestPoints(Record):
     object : ndarray of int64, shape {..}
         The numbers of the objects in ``scene.objects``; -1 for a primitive without object and where there is no answer.
     normal : ndarray of float64, shape {.., 3}
-        The normals at the closest points, of `Index.closest` alone: that of the triangle, the sum of those of the
-        triangles at an edge, or at a vertex, each times its angle there, with the length 1. They are nan where there is
-        no answer, and on segments and points.
+        Unit normals at the closest points, only from `Index.closest`: on a face its normal, on an edge the sum of the
+        normals of its triangles, at a vertex the sum of the normals of its triangles, weighted by their angles there.
+        They are nan where there is no answer, on segments and points, and where triangles have no area or their normals
+        cancel.
     """
 
     distance: NDArray[np.float64]

@@ -195,8 +195,9 @@ class Shards(PointQueries):
     ) -> NDArray[np.bool_]:
         """Return whether points are inside of the surface that the triangles form.
 
-        The rule is that of `Index.signed_distance` with ``sign="auto"`` for the whole scene, decided by a ray along the
-        axis that passes the fewest boxes of shards. Points on the surface are on either side.
+        The rule is that of `Index.signed_distance` with ``sign="auto"`` for the whole scene. The ray runs along a
+        coordinate axis, in the one of six directions in which it passes the fewest boxes of shards. A point on the
+        surface may be reported as inside or outside, unlike by `Index.contains`.
 
         Parameters
         ----------
@@ -238,7 +239,7 @@ class Shards(PointQueries):
         points, threads, progress
             As for `closest`. Progress is that of the distances, and then of the sides.
         sign : {"auto"}, optional
-            The rule of `contains`. The surface decides it, so other rules are errors.
+            Only ``"auto"``: the surface decides the rule, which is that of `contains`. Other values are errors.
         inside, max_distance, out
             As for `Index.signed_distance`.
 

@@ -261,7 +261,7 @@ def signed_distance(
 
     Notes
     -----
-    Each process prepares the signs at its first block, which takes about as long as a build of the tree. Shards have
+    Each process prepares the signs at its first block. Shards have
     only the rule ``"auto"``, so other rules are an error of the computation.
 
     Examples

@@ -153,9 +153,9 @@ def signed_distance(
         The vertices of the triangles.
     sign_type : SignedDistanceType or int, optional
         The rule of signs, also as an object of libigl. By winding numbers, which is the default as well, a point is
-        inside if its winding number exceeds a half in magnitude. By pseudonormals that is the same for a closed
-        surface, and a point is inside of a surface with holes if it is behind the closest point, seen along the normal
-        there. Unsigned distances are positive.
+        inside if its winding number exceeds a half in magnitude. By pseudonormals the sign is the same for a
+        closed, consistently oriented surface. For any other surface, a point is inside if it is behind the closest
+        point, seen along the normal there. Unsigned distances are positive.
     lower_bound, upper_bound : float, optional
         The distances that are needed. As in libigl, with the larger of their magnitudes b, the points at a distance of
         b or more have no answer, nor have those nearer than ``b - (upper_bound - lower_bound)``.
@@ -181,8 +181,8 @@ def signed_distance(
     -----
     The magnitude of S is the distance. In libigl it is the distance times ``abs(1 - 2 w)`` with winding numbers w,
     which is wrong where w is not 0 or 1: for surfaces with holes, for several layers, for a surface that is inside out,
-    and in the fifth digit for all with fast winding numbers. Here S is nan where w is a half within the accuracy of
-    float64.
+    and in the fifth digit for all with fast winding numbers. Here S is nan where rounding leaves it open on which side of
+    a half w is.
     """
     rule = SignedDistanceType(int(getattr(sign_type, "value", sign_type)))
     points, mesh = _points_and_mesh(P, V, F)

@@ -92,8 +92,8 @@ class RaycastingScene:
 
     - Everything is computed in float64, and rounded once at the end to `dtype`. Open3D has only float32. Inputs may be
       arrays and sequences of any real type, and meshes with float64 keep it.
-    - Signs are exact, so `nsamples` has no effect. Their rule is that of `p2m.Index.signed_distance`: overlapping shells
-      are united, and a surface with holes has winding numbers, where Open3D counts the hits of a ray. A point whose
+    - Signs do not depend on rays in random directions, so `nsamples` has no effect. Their rule is that of
+      `p2m.Index.signed_distance`: overlapping shells of the same orientation are united, and a surface with holes has winding numbers, where Open3D counts the hits of a ray. A point whose
       side is not defined has the distance nan and the occupancy 0.
     - Hits are decided exactly. A ray through an edge or a vertex hits each of its triangles, and the first of equal
       hits is that with the lowest id.

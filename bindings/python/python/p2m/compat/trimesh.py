@@ -158,9 +158,9 @@ def signed_distance(mesh: Any, points: ArrayLike) -> NDArray[np.float64]:
 
     Notes
     -----
-    The rule of signs is that of `p2m.Index.signed_distance`: overlapping shells are united. trimesh compares with the
+    The rule of signs is that of `p2m.Index.signed_distance`: overlapping shells of the same orientation are united. trimesh compares with the
     normal of the nearest face where the closest point is inside of it, and casts rays elsewhere. The distance is nan
-    where the winding number of an open surface is exactly a half. In trimesh, points within 1e-8 of the surface have a
+    where rounding leaves it open on which side of a half the winding number of an open surface is. In trimesh, points within 1e-8 of the surface have a
     positive distance on either side.
     """
     distance = _indexes(mesh).surface.signed_distance(_points(points))
