@@ -40,7 +40,7 @@ pub(super) fn caps(soup: &Soup<f64>, surface: &Surface) -> Soup<f64> {
     for polygon in polygons(vertices.len(), &edges) {
         span(&polygon, &mut triangles);
     }
-    Soup::from_triangles(positions, triangles).unwrap_or_default()
+    Soup::from_triangles(positions, triangles).expect("the vertices are those of the positions")
 }
 
 /// Divides sorted directed edges, of which as many end at each vertex as start there, into closed polygons without

@@ -289,8 +289,9 @@ impl Approach {
         let along = dot(v, e) / square;
         let offset = add_scaled(v, -along, e);
         let normal = scaled(add(unit_normal(corners)?, unit_normal(other)?), std::f64::consts::PI);
-        // A triangle that is no sliver has angles with a sine of at least a third of the smallest sine.
-        let reach = along.min(1.0 - along) * square.sqrt() * (MIN_SINE / 4.0);
+        // The third edge of a triangle that is no sliver may be 2 sqrt(3) times as long as the largest component of the
+        // others, so its angles have sines of at least a sixth of the smallest sine.
+        let reach = along.min(1.0 - along) * square.sqrt() * (MIN_SINE / 8.0);
         Some(Self { offset, normal, reach, magnitude: magnitude(&[v, e]) })
     }
 

@@ -77,7 +77,7 @@ impl<I, S: SharedSoup> SignedDistance<I, S> {
         let points: Vec<Point3<T>> = order.iter().map(|i| points[*i as usize]).collect();
         let mut inside = vec![false; points.len()];
         let mut blocks: Vec<Range<usize>> = std::iter::once(0..points.len()).collect();
-        let mut crossed: Vec<(Range<usize>, Ball<T>, usize)> = Vec::new();
+        let mut crossed: Vec<(Range<usize>, Ball<T>, Option<usize>)> = Vec::new();
         for size in BLOCKS {
             let starts =
                 blocks.iter().flat_map(|block| block.clone().step_by(size).map(|i| i..(i + size).min(block.end)));
@@ -93,7 +93,8 @@ impl<I, S: SharedSoup> SignedDistance<I, S> {
                     Some(sign) => inside[part].fill(sign == Sign::Inside),
                     None => {
                         blocks.push(part.clone());
-                        crossed.extend(answer.map(|answer| (part, ball, answer.primitive.index())));
+                        // The centre of points that are not finite has no answer.
+                        crossed.push((part, ball, answer.map(|answer| answer.primitive.index())));
                     }
                 }
             }
@@ -150,13 +151,14 @@ impl<I, S: SharedSoup> SignedDistance<I, S> {
         points: &[Point3<T>],
         part: Range<usize>,
         ball: &Ball<T>,
-        triangle: usize,
+        triangle: Option<usize>,
         rest: &mut Vec<usize>,
         sides: &mut Vec<Vec<usize>>,
     ) {
-        let (soup, Some(certificates)) = (&*self.signs.soup, self.signs.certificates.get()) else {
+        let (Some(triangle), Some(certificates)) = (triangle, self.signs.certificates.get()) else {
             return rest.extend(part);
         };
+        let soup = &*self.signs.soup;
         let (origin, bounds): (V3, _) = (ball.centre.map(Real::to_f64).into(), &ball.bounds);
         let normal = unit_normal(corners(soup, soup.triangles()[triangle]));
         let (mut low, mut high, mut most, mut count) = (f64::INFINITY, f64::NEG_INFINITY, ball.radius, 0);

@@ -6,14 +6,16 @@
 use super::certificate::{ROUNDING, corners};
 use super::types::{RayTree, SharedSoup};
 use nalgebra::Point3;
+use p2m_bvh::PacketTree;
 use p2m_core::engine::arithmetic::cross;
 use p2m_core::engine::vector::{V3, dot, largest, sub};
 use p2m_core::{Aabb, PrimitiveId};
 use std::ops::ControlFlow;
-use std::sync::atomic::{AtomicBool, Ordering};
 
 /// The number of triangles of a group.
 const GROUP_LEN: usize = 16;
+/// The most triangles whose boxes overlap that of a group.
+const MAX_OTHERS: usize = 1024;
 /// What boxes are widened by, in units of the size of the scene: four times the rounding of coordinates to f32.
 const BOX_MARGIN: f64 = 1.0 / (1 << 22) as f64;
 
@@ -32,16 +34,18 @@ pub(super) fn exclude<S: SharedSoup>(
         order.push(id);
         ControlFlow::Continue(())
     });
-    let join = Join { soup, welded, rays, distance, boxes: Boxes::new(soup, distance) };
-    let crowded: Vec<AtomicBool> = marks.iter().map(|_| AtomicBool::new(false)).collect();
+    let join = Join { soup, welded, tree: rays.tree(), distance, boxes: Boxes::new(soup, distance) };
+    let marked: &[bool] = marks;
+    let is_simple = |group: &[PrimitiveId]| join.simple(group, marked);
     #[cfg(feature = "rayon")]
-    {
+    let simple: Vec<Vec<PrimitiveId>> = {
         use rayon::prelude::*;
-        order.par_chunks(GROUP_LEN).for_each(|group| join.test(group, marks, &crowded));
-    }
+        order.par_chunks(GROUP_LEN).map(is_simple).collect()
+    };
     #[cfg(not(feature = "rayon"))]
-    order.chunks(GROUP_LEN).for_each(|group| join.test(group, marks, &crowded));
-    marks.iter_mut().zip(crowded).for_each(|(mark, crowded)| *mark &= !crowded.into_inner());
+    let simple: Vec<Vec<PrimitiveId>> = order.chunks(GROUP_LEN).map(is_simple).collect();
+    marks.fill(false);
+    simple.into_iter().flatten().for_each(|id| marks[id.index()] = true);
 }
 
 /// The boxes of triangles, in a frame of the scene.
@@ -89,37 +93,46 @@ fn overlap(a: &[[f32; 3]; 2], b: &[[f32; 3]; 2]) -> bool {
 struct Join<'a, S> {
     soup: &'a S,
     welded: &'a [[u32; 3]],
-    rays: &'a RayTree<S>,
+    tree: &'a PacketTree<Aabb<f64>>,
     distance: f64,
     boxes: Boxes,
 }
 
 impl<S: SharedSoup> Join<'_, S> {
-    /// Marks both triangles of each pair that may be near, of which the one with the lower id is in a group.
-    fn test(&self, group: &[PrimitiveId], marks: &[bool], crowded: &[AtomicBool]) {
-        let (around, bounds) = self.boxes.around(group);
+    /// Returns the marked triangles of a group that are far from all others without a common vertex. Where too many boxes
+    /// overlap, none is returned, which is safe.
+    fn simple(&self, group: &[PrimitiveId], marks: &[bool]) -> Vec<PrimitiveId> {
+        let marked: Vec<PrimitiveId> = group.iter().copied().filter(|id| marks[id.index()]).collect();
+        if marked.is_empty() {
+            return marked;
+        }
+        let (around, bounds) = self.boxes.around(&marked);
         let boxes = &self.boxes.boxes;
         let mut others: Vec<(usize, [[f32; 3]; 2])> = Vec::with_capacity(8 * GROUP_LEN);
         let is_near = |id: PrimitiveId| overlap(&boxes[id.index()], &around);
-        let _ = self.rays.tree().visit_box(&bounds, is_near, &mut |id| {
+        let ended = self.tree.visit_box(&bounds, is_near, &mut |id| {
             others.push((id.index(), boxes[id.index()]));
-            ControlFlow::Continue(())
+            if others.len() > MAX_OTHERS { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
         });
-        for t in group.iter().map(|id| id.index()) {
-            let own = &boxes[t];
-            for (other, _) in others.iter().filter(|(other, bounds)| t < *other && overlap(own, bounds)) {
-                let is_relevant = (marks[t] && !crowded[t].load(Ordering::Relaxed))
-                    || (marks[*other] && !crowded[*other].load(Ordering::Relaxed));
-                let is_adjacent = || self.welded[*other].iter().any(|vertex| self.welded[t].contains(vertex));
-                if is_relevant && !is_adjacent() {
-                    let [one, two] = [t, *other].map(|t| corners(self.soup, self.soup.triangles()[t]));
-                    if !are_apart(&one, &two, self.distance) {
-                        crowded[t].store(true, Ordering::Relaxed);
-                        crowded[*other].store(true, Ordering::Relaxed);
-                    }
-                }
-            }
+        if ended.is_break() {
+            return Vec::new();
         }
+        let is_far = |id: &PrimitiveId| {
+            let t = id.index();
+            let (own, vertices) = (&boxes[t], &self.welded[t]);
+            let near = others.iter().filter(|(other, bounds)| *other != t && overlap(own, bounds));
+            let mut apart =
+                near.filter(|(other, _)| !self.welded[*other].iter().any(|vertex| vertices.contains(vertex)));
+            let corners = corners(self.soup, self.soup.triangles()[t]);
+            apart.all(|(other, _)| {
+                are_apart(
+                    &corners,
+                    &super::certificate::corners(self.soup, self.soup.triangles()[*other]),
+                    self.distance,
+                )
+            })
+        };
+        marked.into_iter().filter(is_far).collect()
     }
 }
 

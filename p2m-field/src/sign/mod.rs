@@ -47,7 +47,7 @@ use p2m_core::batch::{self, BatchOptions};
 use p2m_core::{Aabb, Closest, ClosestPoint, Position, QueryOptions, Ray, RayQuery, Real, Soup};
 use std::sync::{Arc, OnceLock};
 use surface::Surface;
-use types::{ClosestFeature, Counter, check_kinds, ray};
+use types::{ClosestFeature, Counter, Flag, check_kinds, ray};
 
 /// An index over triangles whose answers have signs.
 ///
@@ -104,8 +104,8 @@ struct Signs<S> {
     is_closed: bool,
     /// What is proved about the normals of a closed surface, once there are so many queries that it pays.
     certificates: OnceLock<Certificates<S>>,
-    /// The number of times that somebody wanted to prepare the certificates.
-    preparations: Counter,
+    /// Whether a thread prepares the certificates or has prepared them.
+    preparations: Flag,
     /// The unit roundoff of the index.
     roundoff: f64,
     bounds: Aabb<f64>,
@@ -340,7 +340,7 @@ impl<S: SharedSoup> Signs<S> {
         }
         let winding = WindingNumbers::of_surface(soup.clone(), &surface, !has_rays)?;
         let is_closed = rule == SignRule::Parity || winding.is_closed();
-        let (certificates, preparations, ray_count) = (OnceLock::new(), Counter::default(), Counter::default());
+        let (certificates, preparations, ray_count) = (OnceLock::new(), Flag::default(), Counter::default());
         let bounds = soup.aabb();
         Ok(Self { soup, rule, winding, is_even, is_closed, certificates, preparations, roundoff, bounds, ray_count })
     }
@@ -351,7 +351,7 @@ impl<S: SharedSoup> Signs<S> {
         let pays = self.is_closed && rays > RAYS_PER_TRIANGLE * self.soup.triangles().len() as f64;
         // Only one thread prepares them. The others go on with rays, because a thread that waits for work that it could
         // do itself may wait forever.
-        if pays && self.certificates.get().is_none() && self.preparations.is_first() {
+        if pays && self.certificates.get().is_none() && self.preparations.set() {
             // An index over the scene was built, so a tree can be built as well.
             if let Ok(certificates) = Certificates::new(self.soup.clone(), self.roundoff) {
                 let _ = self.certificates.set(certificates);
@@ -363,6 +363,9 @@ impl<S: SharedSoup> Signs<S> {
     fn sign<T: Real>(&self, query: &Point3<f64>, closest: &ClosestFeature, rays: Option<&dyn RayQuery<T>>) -> Sign {
         if closest.distance == 0.0 {
             return Sign::Boundary;
+        }
+        if query.iter().any(|x| !x.is_finite()) {
+            return Sign::Outside;
         }
         if self.is_closed && !self.is_in_bounds(query) {
             return Sign::Outside;

@@ -431,6 +431,12 @@ impl HalfAngle {
     /// Returns `None` if the query is on an edge of the triangle, apart from rounding.
     #[inline]
     fn new(triangle: &[V3; 3], q: V3) -> Option<Self> {
+        Self::with_cancellation(triangle, q, MAX_CANCELLATION)
+    }
+
+    /// Returns `None` if the terms of the tangent cancel more than that.
+    #[inline]
+    fn with_cancellation(triangle: &[V3; 3], q: V3, most: f64) -> Option<Self> {
         let [a, b, c] = triangle.map(|corner| sub(corner, q));
         let [la, lb, lc] = [a, b, c].map(|x| dot(x, x).sqrt());
         let volume = dot(a, cross(b, c));
@@ -438,7 +444,7 @@ impl HalfAngle {
         let other = size + dot(a, b) * lc + dot(b, c) * la + dot(c, a) * lb;
         // The terms of both have errors of a few units of roundoff of their size.
         let cancellation = size / (volume * volume + other * other).sqrt();
-        (cancellation < MAX_CANCELLATION).then(|| {
+        (cancellation < most).then(|| {
             // Arguments stay within the range of f64 when four of them are multiplied.
             let unit = cancellation / size;
             Self { tangent: [other * unit, volume * unit], size: cancellation, error: ROUNDING * (1.0 + cancellation) }
@@ -462,21 +468,25 @@ impl HalfAngle {
     }
 }
 
-/// Returns the sum of the solid angles of all triangles of a soup over 4 pi.
-pub(super) fn sum_of_all(soup: &Soup<f64>, query: &Point3<f64>) -> f64 {
+/// Returns the sum of the solid angles of all triangles of a soup over 4 pi. The query is on no triangle.
+pub(super) fn sum_of_all(soup: &Soup<f64>, query: &Point3<f64>) -> Estimate {
     let bounds = soup.aabb();
     let scale = scale_of([bounds.min, bounds.max, *query].iter().map(|p| p.coords.amax()).fold(0.0, f64::max));
-    let q: V3 = (*query).into();
-    let corner = |i: u32| scaled(soup.positions()[i as usize].into(), scale);
-    let q = scaled(q, scale);
-    let one = |t: &[u32; 3]| {
-        let [a, b, c] = t.map(|i| sub(corner(i), q));
-        let [la, lb, lc] = [a, b, c].map(|x| dot(x, x).sqrt());
-        let volume = dot(a, cross(b, c));
-        let other = la * lb * lc + dot(a, b) * lc + dot(b, c) * la + dot(c, a) * lb;
-        if volume == 0.0 { 0.0 } else { volume.atan2(other) / (2.0 * PI) }
-    };
-    soup.triangles().iter().map(one).sum()
+    let q = scaled((*query).into(), scale);
+    let mut sum = Estimate { value: 0.0, error: 0.0 };
+    for triangle in soup.triangles() {
+        let triangle = triangle.map(|i| scaled(soup.positions()[i as usize].into(), scale));
+        // At an edge the angle is unknown, and so it is where products of lengths underflow.
+        let angle = HalfAngle::with_cancellation(&triangle, q, f64::MAX);
+        let known = angle.and_then(|angle| {
+            let [x, y] = angle.tangent;
+            let is_positive = if y.abs() < x { y > 0.0 } else { angle.is_positive(&triangle, q)? };
+            let size = y.abs().atan2(x) / (2.0 * PI);
+            Some(Estimate { value: if is_positive { size } else { -size }, error: angle.error })
+        });
+        sum = sum.plus(known.unwrap_or(Estimate { value: 0.0, error: 0.5 }));
+    }
+    Estimate { error: sum.error + f64::EPSILON * soup.triangles().len() as f64 * sum.value.abs().max(1.0), ..sum }
 }
 
 /// Returns the power of two that makes a number about 1.

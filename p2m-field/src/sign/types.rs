@@ -4,7 +4,7 @@ use nalgebra::{Point3, Vector3};
 use p2m_bvh::TreeIndex;
 use p2m_core::{Aabb, Closest, Feature, PrimitiveId, PrimitiveSet, Ray, Real, Soup};
 use std::ops::Deref;
-use std::sync::atomic::{AtomicU64, Ordering};
+use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 
 /// The rule that decides which points are inside of a surface.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -148,15 +148,28 @@ impl Counter {
     pub(super) fn get(&self) -> u64 {
         self.0.load(Ordering::Relaxed)
     }
-    /// Increments the counter, and returns whether it was zero.
-    pub(super) fn is_first(&self) -> bool {
-        self.0.fetch_add(1, Ordering::Relaxed) == 0
-    }
 }
 
 impl Clone for Counter {
     fn clone(&self) -> Self {
         Self(AtomicU64::new(self.get()))
+    }
+}
+
+/// A flag that one of several threads sets. A clone is not set.
+#[derive(Default)]
+pub(super) struct Flag(AtomicBool);
+
+impl Flag {
+    /// Sets the flag, and returns whether it was not set before.
+    pub(super) fn set(&self) -> bool {
+        !self.0.swap(true, Ordering::Relaxed)
+    }
+}
+
+impl Clone for Flag {
+    fn clone(&self) -> Self {
+        Self::default()
     }
 }
 

@@ -247,3 +247,81 @@ fn signs_of_all_families_are_those_of_rational_crossings() {
     // Every family has points on both sides, and the normal decides most signs of a ball.
     assert!(cases.is_replay() || total.values().all(|(signs, inside, _)| *inside > signs / 50 && *inside < *signs));
 }
+
+/// Returns the sum of the solid angles of all triangles over 4 pi, by the excess of the angles of spherical triangles. The
+/// library has another formula.
+fn winding_number(soup: &Soup<f64>, query: &Point3<f64>) -> f64 {
+    let excess = |triangle: &[u32; 3]| {
+        let [a, b, c] = triangle.map(|i| (soup.positions()[i as usize] - query).normalize());
+        let angle = |at: &Vector3<f64>, one: &Vector3<f64>, other: &Vector3<f64>| {
+            let (n, m) = (at.cross(one), at.cross(other));
+            n.cross(&m).norm().atan2(n.dot(&m))
+        };
+        let sum = angle(&a, &b, &c) + angle(&b, &c, &a) + angle(&c, &a, &b) - std::f64::consts::PI;
+        sum.copysign(a.dot(&b.cross(&c)))
+    };
+    soup.triangles().iter().map(excess).sum::<f64>() / (4.0 * std::f64::consts::PI)
+}
+
+/// Returns a box whose top has other triangles than its sides, so that vertices lie inside of edges.
+fn box_with_t_junctions(rng: &mut dyn Rng) -> Soup<f64> {
+    let whole = any_box(rng);
+    let (mut positions, mut triangles) = (whole.positions().to_vec(), whole.triangles().to_vec());
+    // The longest edge of one triangle gets a vertex in its middle, which its neighbour does not have.
+    let [a, b, c] = triangles.swap_remove(rng.random_range(0..12));
+    let middle = u32::try_from(positions.len()).expect("few");
+    positions.push(nalgebra::center(&positions[b as usize], &positions[c as usize]));
+    triangles.extend([[a, b, middle], [a, middle, c]]);
+    Soup::from_triangles(positions, triangles).expect("valid")
+}
+
+#[test]
+fn signs_of_open_families_are_those_of_another_sum() {
+    let families: [(&str, Family); 4] = [
+        ("ball with holes", |rng| {
+            let ball = ball(rng, 1.0);
+            let kept = ball.triangles().iter().filter(|_| rng.random_range(0..6) > 0).copied().collect();
+            Soup::from_triangles(ball.positions().to_vec(), kept).expect("valid")
+        }),
+        ("half a ball", |rng| {
+            let ball = ball(rng, 1.0);
+            let low = |t: &&[u32; 3]| t.iter().any(|i| ball.positions()[*i as usize].x < 0.1);
+            Soup::from_triangles(ball.positions().to_vec(), ball.triangles().iter().filter(low).copied().collect())
+                .expect("valid")
+        }),
+        ("T-junctions", box_with_t_junctions),
+        ("loose triangles", |rng| {
+            let positions = (0..90).map(|_| Point3::from(offset(rng))).collect();
+            Soup::from_triangles(positions, (0..30).map(|t| [3 * t, 3 * t + 1, 3 * t + 2]).collect()).expect("valid")
+        }),
+    ];
+    let (count, points) = amount((60, 3000), (6, 100));
+    for (name, family) in families {
+        let (mut decided, mut inside) = (0, 0);
+        for case in cases(count, 6) {
+            let mut rng = rng(name, case);
+            let soup = family(&mut rng);
+            let signed = SignedDistance::new(AabbTree::new(&soup).expect("valid"), &soup).expect("triangles");
+            assert_eq!((signed.rule(), signed.is_closed()), (SignRule::Winding, false), "{name}, case {case}");
+            let queries = queries(&mut rng, &soup, points);
+            let contained = signed.contains_each(&queries, &Default::default());
+            for (query, contained) in queries.iter().zip(contained) {
+                let number = winding_number(&soup, query);
+                let answer = signed.closest_point(query).expect("not empty");
+                // Near an edge neither formula has many digits.
+                if answer.closest.distance < 1e-6 || (number.abs() - 0.5).abs() < 1e-7 {
+                    continue;
+                }
+                decided += 1;
+                inside += usize::from(number.abs() > 0.5);
+                let expected = if number.abs() > 0.5 { Sign::Inside } else { Sign::Outside };
+                assert_eq!(answer.sign, expected, "{name}, case {case}: {number} at {query:?}");
+                assert_eq!(contained, expected == Sign::Inside, "{name}, case {case}: {query:?}");
+                let found = signed.winding_number(query, 1e-4);
+                assert!((found - number).abs() < 1e-4 + 1e-8, "{name}, case {case}: {found} for {number} at {query:?}");
+            }
+        }
+        println!("{name:<24} {decided:>9} {inside:>9}");
+        assert!(cases(count, 6).is_replay() || decided > 100 && inside > 5, "{name}: {inside} of {decided}");
+    }
+}

@@ -2,6 +2,7 @@
 
 use nalgebra::{Point3, Vector3};
 use p2m_bvh::AabbTree;
+use p2m_core::batch::BatchOptions;
 use p2m_core::{BruteForce, Closest, Element, PrimitiveSet, Ray, RayQuery, Soup};
 use p2m_field::sign::{Sign, SignError, SignRule, SignedDistance, WindingNumbers};
 use p2m_interception::{OctreeIndex, P2mIndex};
@@ -230,6 +231,28 @@ fn the_rule_follows_from_the_surface() {
 }
 
 #[test]
+fn points_that_are_not_finite_take_no_answers_from_others() {
+    let ball = ico_sphere(&IcoSphere { frequency: 4 }).expect("valid");
+    let signed = SignedDistance::new(tree(&ball), &ball).expect("triangles");
+    for wrong in [f64::INFINITY, f64::NEG_INFINITY, f64::NAN] {
+        let mut points: Vec<Point3<f64>> =
+            (0..2000).map(|i| Point3::new(f64::from(i) / 1000.0 - 0.99, 0.1, 0.05)).collect();
+        for i in (0..points.len()).step_by(20) {
+            points[i].y = wrong;
+        }
+        for reorder in [false, true] {
+            let found = signed.contains_each(&points, &BatchOptions::default().with_reorder(reorder));
+            assert!(points.iter().zip(&found).all(|(point, found)| signed.contains(point) == *found), "{wrong}");
+            assert!(found.iter().filter(|inside| **inside).count() > 1000);
+        }
+    }
+    let open = Soup::from_triangles(ball.positions().to_vec(), ball.triangles()[1..].to_vec()).expect("valid");
+    let open = SignedDistance::new(tree(&open), &open).expect("triangles");
+    let closest = open.closest_point(&[0.0; 3]).expect("not empty").closest;
+    assert_eq!(open.with_sign(&Point3::new(f64::NAN, 0.0, 0.0), closest).sign, Sign::Outside);
+}
+
+#[test]
 fn every_backend_has_the_same_signs() {
     let soup = torus_knot(&TorusKnot { rings: 60, sides: 8, ..Default::default() }).expect("valid");
     let aabb = SignedDistance::new(tree(&soup), &soup).expect("closed");
@@ -359,6 +382,14 @@ fn in_the_middle_of_a_hole_there_is_no_sign() {
     let number = WindingNumbers::new(&half_cube).expect("triangles").sum(&Point3::new(0.0, 0.1, 0.2));
     // Seen from the plane of the cut, half a cube covers half of all directions.
     assert!((number - 0.5).abs() < 1e-12, "{number}");
+    // That is so beside the rim as well, where rounding errors are large.
+    for case in 0..2000 {
+        let mut rng = rng("rim", case);
+        let beside = 1.0 - f64::from(rng.random_range(1..9u8)) * 2f64.powi(-rng.random_range(40..54));
+        let query = Point3::new(0.0, rng.random_range(-0.9..0.9), beside);
+        let sign = winding.closest_point(&query).expect("not empty").sign;
+        assert!(matches!(sign, Sign::Undefined | Sign::Boundary), "{query:?}: {sign}");
+    }
     assert_eq!((at(0.0).sign, at(0.0).distance()), (Sign::Undefined, None));
     assert_eq!((at(-0.1).sign, at(0.1).sign), (Sign::Inside, Sign::Outside));
 }
