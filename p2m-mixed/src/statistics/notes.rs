@@ -220,7 +220,7 @@ impl fmt::Display for Note {
             }
             Self::NonManifold { count } => {
                 let they = counted(count, "edge belongs", "edges belong");
-                write!(f, "{they} to more than two triangles: closest points are not affected, inside and outside are")
+                write!(f, "{they} to more than two triangles: closest points are not affected, inside and outside may be")
             }
             Self::Inconsistent { count } => {
                 let they = counted(count, "edge lies", "edges lie");

@@ -33,7 +33,7 @@ skipped     1 x mtllib
 
 - 1 triangle has no area: it counts as the segment or point that it covers.
 - 1 primitive repeats another one: among equals the lowest number is the answer.
-- 2 edges belong to more than two triangles: closest points are not affected, inside and outside are.
+- 2 edges belong to more than two triangles: closest points are not affected, inside and outside may be.
 - 1 position belongs to no primitive and counts for nothing.
 "
     );
