@@ -5,16 +5,17 @@ use crate::columns::{ClosestArrays, ClosestValues, Near, NearList, Rows};
 use crate::index::Index;
 use crate::parts::{answer_in_parts, batch_options, check_finite, joined};
 use crate::sharded::{ANSWERS_PER_PART, in_shards};
-use crate::signs::SignRule;
+use crate::signs::{SignRule, Signed as SignedIndex};
 use crate::source::{Part, Source};
 use crate::work::{Monitor, Threads};
 use nalgebra::Point3;
 use numpy::{PyReadonlyArray1, PyReadwriteArray1};
-use p2m_core::batch::{Interruptible, closest_columns_into};
-use p2m_core::{AnyIndex, Closest, Feature, Position, PrimitiveId, QueryOptions};
+use p2m_core::batch::{BatchOptions, Interruptible, closest_columns_into};
+use p2m_core::{AnyIndex, Closest, ClosestPoint, Feature, Position, PrimitiveId, QueryOptions};
 use p2m_field::sign::Signed;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
+use std::ops::Range;
 
 /// The number of queries with any number of answers that shards answer at a time.
 const LISTS_PER_PART: usize = 1 << 16;
@@ -228,25 +229,8 @@ impl Index {
         let signed = self.signs(py, SignRule::from_name(sign)?, threads)?;
         let mut array = borrowed::<bool>(out, "contains")?;
         let out = slice(&mut array)?.unwrap_or_default();
-        with_positions!(points, points => {
-            let work = |threads: &Threads, monitor: &Monitor| {
-                check_finite("points", points, 1)?;
-                if signed.is_closed() {
-                    // Points share queries with their neighbours, so all of them are ordered.
-                    let index = Interruptible::new(&*self.built.index, |left, answer| monitor.run_step(left, answer));
-                    let batch = batch_options(points.len(), threads.is_parallel());
-                    let points: Vec<Point3<f64>> = points.iter().map(Position::point).collect();
-                    out.copy_from_slice(&signed.contains_each_by(&index, &points, &batch));
-                    return Ok(());
-                }
-                answer_in_parts(points.len(), out, threads, monitor, &|range, out: &mut [bool]| {
-                    let batch = batch_options(range.len(), false);
-                    let points: Vec<Point3<f64>> = points[range].iter().map(Position::point).collect();
-                    out.copy_from_slice(&signed.contains_each(&points, &batch));
-                });
-                Ok(())
-            };
-            self.run(py, points.len(), threads, progress, work)
+        self.answer_signed(py, points, &signed, out, (threads, progress), |index, points, batch| {
+            signed.contains_each_by(index, points, batch)
         })
     }
 
@@ -272,23 +256,42 @@ impl Index {
         let value_of = |answer: Option<&Signed>| {
             answer.map_or(missing, |answer| answer.distance().map_or(f64::NAN, |distance| factor * distance))
         };
+        self.answer_signed(py, points, &signed, out, (threads, progress), |index, points, batch| {
+            let answers = signed.closest_points_by(index, points, &options, batch);
+            answers.iter().map(|answer| value_of(answer.as_ref())).collect()
+        })
+    }
+}
+
+impl Index {
+    /// Answers points by an index with signs. `answer` gets the index that it asks.
+    fn answer_signed<V: Copy + Send>(
+        &self,
+        py: Python<'_>,
+        points: Coordinates<'_>,
+        signed: &SignedIndex,
+        out: &mut [V],
+        (threads, progress): (usize, Option<Py<PyAny>>),
+        answer: impl Fn(&(dyn ClosestPoint<f64> + Sync), &[Point3<f64>], &BatchOptions) -> Vec<V> + Sync,
+    ) -> PyResult<()> {
         with_positions!(points, points => {
             let work = |threads: &Threads, monitor: &Monitor| {
                 check_finite("points", points, 1)?;
+                let answer = |index: &(dyn ClosestPoint<f64> + Sync), range: Range<usize>, parallel, out: &mut [V]| {
+                    let batch = batch_options(range.len(), parallel);
+                    let points: Vec<Point3<f64>> = points[range].iter().map(Position::point).collect();
+                    out.copy_from_slice(&answer(index, &points, &batch));
+                };
                 if signed.is_closed() {
+                    // All points are ordered at once, so that neighbours share queries and signs.
                     let index = Interruptible::new(&*self.built.index, |left, answer| monitor.run_step(left, answer));
-                    let batch = batch_options(points.len(), threads.is_parallel());
-                    let queries: Vec<Point3<f64>> = points.iter().map(Position::point).collect();
-                    let answers = signed.closest_points_by(&index, &queries, &options, &batch);
-                    out.iter_mut().zip(answers).for_each(|(value, answer)| *value = value_of(answer.as_ref()));
-                    return Ok(());
+                    answer(&index, 0..points.len(), threads.is_parallel(), out);
+                } else {
+                    // Most of the work is not that of the index.
+                    answer_in_parts(points.len(), out, threads, monitor, &|range, out: &mut [V]| {
+                        answer(&self.built.index, range, false, out);
+                    });
                 }
-                answer_in_parts(points.len(), out, threads, monitor, &|range, out: &mut [f64]| {
-                    let batch = batch_options(range.len(), false);
-                    let queries: Vec<Point3<f64>> = points[range].iter().map(Position::point).collect();
-                    let answers = signed.closest_points(&queries, &options, &batch);
-                    out.iter_mut().zip(&answers).for_each(|(value, answer)| *value = value_of(answer.as_ref()));
-                });
                 Ok(())
             };
             self.run(py, points.len(), threads, progress, work)

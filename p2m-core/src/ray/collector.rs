@@ -60,7 +60,8 @@ pub struct Hits<'r> {
     #[doc(hidden)]
     pub count: usize,
     /// The number of crossings from back to front less those from front to back, in the mode of crossings.
-    pub(super) signed_count: i64,
+    #[doc(hidden)]
+    pub signed_count: i64,
 }
 
 /// A collector that passes all primitives which a ray may hit to a function, and tests none of them.

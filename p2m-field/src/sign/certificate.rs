@@ -1,10 +1,10 @@
 //! Signs by the normal at the closest point, where that is proved to decide, and by rays elsewhere.
 //!
 //! The segment from a query to its closest point crosses no other part of the surface, except perhaps nearer to the
-//! closest point than the error of the distance. So the query is on the side of the surface from which the segment arrives, if
-//! the surface is simple there. The side follows from the pseudonormal: the normal of the face, the sum of the unit
-//! normals of the two faces at an edge, or that of the faces around a vertex, each multiplied by its angle there
-//! \[Baerentzen2005\].
+//! closest point than the error of the distance. So the query is on the side of the surface from which the segment
+//! arrives, if the surface is simple there. The side follows from the pseudonormal: the normal of the face, the sum of
+//! the unit normals of the two faces at an edge, or that of the faces around a vertex, each multiplied by its angle
+//! there \[Baerentzen2005\].
 //!
 //! **Where the surface is simple.** A vertex is simple if its triangles form one fan that projects along its
 //! pseudonormal without overlap. A triangle is simple if it is no sliver, its vertices are simple, and no triangle
@@ -16,6 +16,7 @@
 //! decides the numbers of a patch, when the first query arrives there.
 
 use super::crowding;
+use super::normals::angle;
 use super::surface::{NO_TRIANGLE, Surface};
 use super::types::{ClosestFeature, RayTree, SharedSoup};
 use nalgebra::Point3;
@@ -188,12 +189,9 @@ impl<S: SharedSoup> Certificates<S> {
         let soup = &*self.soup;
         let triangles = soup.triangles();
         let welded: Vec<[u32; 3]> = triangles.iter().map(|corners| self.weld(*corners)).collect();
-        let mut simple: Vec<bool> = (welded.iter().zip(triangles))
-            .map(|(vertices, triangle)| {
-                let has_fans = vertices.iter().all(|vertex| self.fans[*vertex as usize].reach > 0.0);
-                has_fans && unit_normal(corners(soup, *triangle)).is_some()
-            })
-            .collect();
+        // All triangles of a simple vertex have normals.
+        let has_fans = |vertices: &[u32; 3]| vertices.iter().all(|vertex| self.fans[*vertex as usize].reach > 0.0);
+        let mut simple: Vec<bool> = welded.iter().map(has_fans).collect();
         crowding::exclude(&mut simple, &self.soup, &welded, &self.tree, self.clearance);
         let mut sets = UnionFind::new(triangles.len());
         for (t, neighbours) in self.neighbours.iter().enumerate().filter(|(t, _)| simple[*t]) {
@@ -335,13 +333,6 @@ pub(super) fn unit_normal(corners: [V3; 3]) -> Option<V3> {
     let length = dot(normal, normal).sqrt();
     // A length of NaN is not above the smallest sine, so it gives `None`.
     (length > MIN_SINE * size * size).then(|| scaled(normal, 1.0 / length))
-}
-
-/// Returns the angle at corner `i` of a triangle that is no sliver.
-fn angle(corners: [V3; 3], i: usize) -> f64 {
-    let [e, f] = [1, 2].map(|k| sub(corners[(i + k) % 3], corners[i]));
-    let normal = cross(e, f);
-    dot(normal, normal).sqrt().atan2(dot(e, f))
 }
 
 /// Returns the height of corner `i` over the opposite edge, less its rounding error.

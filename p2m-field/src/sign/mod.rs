@@ -44,7 +44,7 @@ use certificate::Certificates;
 use nalgebra::Point3;
 use p2m_bvh::TreeIndex;
 use p2m_core::batch::{self, BatchOptions};
-use p2m_core::{Aabb, Closest, ClosestPoint, Position, QueryOptions, Ray, RayQuery, Real, Soup};
+use p2m_core::{Aabb, Closest, ClosestPoint, Hits, Position, QueryOptions, Ray, RayQuery, Real, Soup};
 use std::sync::{Arc, OnceLock};
 use surface::Surface;
 use types::{ClosestFeature, Counter, Flag, check_kinds, ray};
@@ -59,7 +59,7 @@ use types::{ClosestFeature, Counter, Flag, check_kinds, ray};
 /// use p2m_core::Soup;
 /// use p2m_field::sign::{Sign, SharedDistance, SignedDistance};
 /// use p2m_mixed::generate::{IcoSphere, ico_sphere};
-/// use std::sync::{Arc, OnceLock};
+/// use std::sync::Arc;
 ///
 /// struct World {
 ///     walls: SharedDistance,
@@ -403,7 +403,10 @@ impl<S: SharedSoup> Signs<S> {
     fn crossings<T: Real>(&self, query: &Point3<f64>, rays: Option<&dyn RayQuery<T>>) -> i64 {
         match self.rule {
             SignRule::Winding => self.winding.crossings(query, rays),
-            SignRule::Parity => i64::try_from(self.winding.unsigned_crossings(&ray(query), rays)).unwrap_or(0),
+            SignRule::Parity => {
+                let count = self.winding.hits(&ray(query), Hits::crossings(), rays).count;
+                i64::try_from(count).unwrap_or(0)
+            }
         }
     }
 
@@ -418,7 +421,7 @@ impl<S: SharedSoup> Signs<S> {
     /// Returns whether the query is exactly on a triangle.
     fn is_on_surface<T: Real>(&self, query: &Point3<f64>, rays: Option<&dyn RayQuery<T>>) -> bool {
         let here: Ray = ray(query).with_range(0.0, 0.0).expect("0 is a valid parameter");
-        self.winding.is_hit(&here, rays)
+        self.winding.hits(&here, Hits::count(), rays).count > 0
     }
 }
 

@@ -89,7 +89,7 @@ fn face_normal(corners: [V3; 3]) -> V3 {
 }
 
 /// Returns the angle at corner `i` of a triangle.
-fn angle(corners: [V3; 3], i: usize) -> f64 {
+pub(super) fn angle(corners: [V3; 3], i: usize) -> f64 {
     let [e, f] = [1, 2].map(|k| unit(sub(corners[(i + k) % 3], corners[i])));
     length(cross(e, f)).atan2(dot(e, f))
 }

@@ -6,15 +6,14 @@
 //!
 //! **Error (proved, docs/proofs/fields.md).** K is the gradient of -1 / (4 pi |x - q|), whose third derivatives in any
 //! directions are at most 3! / (4 pi rho^4) at a distance of rho. So the remainder is at most 3 I / (4 pi rho^4), with
-//! rho the distance of q from the box of the node and I the integral of |x - p|^2 over the triangles. Where this is not below a half for each
-//! triangle, the node has the value 0 and that error, since no solid angle exceeds 2 pi.
+//! rho the distance of q from the box of the node and I the integral of |x - p|^2 over the triangles. Where this is not
+//! below a half for each triangle, the node has the value 0 and that error, since no solid angle exceeds 2 pi.
 //!
 //! Nodes are divided by the surface-area heuristic in 16 bins, for caps have very different sizes.
 //!
-//! A sum starts at the root. While its error is too large, a node whose error is at least half of the
-//! largest is replaced by its children,
-//! and a leaf by the solid angles of its triangles. Values and errors are rounded to multiples of a unit that is so
-//! large that sums are exact.
+//! A sum starts at the root. While its error is too large, a node whose error is at least half of the largest is replaced
+//! by its children, and a leaf by the solid angles of its triangles. Values and errors are rounded to multiples of a unit
+//! that is so large that sums are exact.
 
 use super::types::ray;
 use nalgebra::Point3;
@@ -80,6 +79,9 @@ const MAX_DIVIDED_DEPTH: usize = 48;
 const SMALL_CHANGE: f64 = 1e-4;
 /// The largest diagonal of a node whose gradient is not taken from its children, in units of its distance.
 const MAX_DIAGONAL: f64 = 0.5;
+/// The largest coordinate, in units of the largest one of the triangles, of a query that is not far away. Beyond it up to
+/// 2^30 triangles have a total solid angle over 4 pi below 2^30 * 32 / (4 pi 2^80) < 1e-9.
+const MAX_RELATIVE_COORDINATE: f64 = (1u64 << 40) as f64;
 /// Nodes allow for the rounding of their moments and of distances by this factor.
 const INFLATION: f64 = 1.0 + 1e-9;
 
@@ -111,7 +113,7 @@ impl SolidAngles {
         let Some(root) = self.nodes.first() else { return Some(zero) };
         let q = scaled((*query).into(), self.scale);
         // Far away the solid angle vanishes: the area is at most 32 for each triangle.
-        if q.iter().any(|x| x.abs() > FAR) {
+        if q.iter().any(|x| x.abs() > MAX_RELATIVE_COORDINATE) {
             return Some(Estimate { value: 0.0, error: 1e-9 });
         }
         let mut sum = self.node(root, q);
@@ -223,10 +225,6 @@ impl SolidAngles {
     }
 }
 
-/// Coordinates beyond this, in units of the largest one of the triangles, are so far away that up to 2^30 triangles
-/// have no solid angle that matters: at most 2^30 * 32 / (4 pi 2^80) < 1e-9.
-const FAR: f64 = (1u64 << 40) as f64;
-
 impl Estimate {
     fn plus(self, other: Self) -> Self {
         Self { value: self.value + other.value, error: self.error + other.error }
@@ -237,6 +235,8 @@ impl Estimate {
     }
 }
 
+/// The corners of a box without points.
+const EMPTY_BOX: [V3; 2] = [[f64::INFINITY; 3], [f64::NEG_INFINITY; 3]];
 /// The end of a list.
 const END: u32 = u32::MAX;
 
@@ -284,10 +284,7 @@ fn build(triangles: &mut [[V3; 3]], first: u32, node: usize, nodes: &mut Vec<Nod
     if triangles.len() <= MAX_LEAF_TRIANGLES {
         return;
     }
-    let (min, max) = triangles.iter().fold(([f64::INFINITY; 3], [f64::NEG_INFINITY; 3]), |(min, max), t| {
-        let c = centroid(t);
-        ([0, 1, 2].map(|k| f64::min(min[k], c[k])), [0, 1, 2].map(|k| f64::max(max[k], c[k])))
-    });
+    let [min, max] = box_of(triangles.iter().map(centroid));
     let half = if depth < MAX_DIVIDED_DEPTH { divide(triangles, min, max) } else { triangles.len() / 2 };
     let (one, other) = triangles.split_at_mut(half);
     let (children, second) = (nodes.len(), first + half as u32);
@@ -302,9 +299,6 @@ fn build(triangles: &mut [[V3; 3]], first: u32, node: usize, nodes: &mut Vec<Nod
 /// first ones. `min` and `max` are the corners of the box of the centroids.
 fn divide(triangles: &mut [[V3; 3]], min: V3, max: V3) -> usize {
     const BINS: usize = 16;
-    const EMPTY: [V3; 2] = [[f64::INFINITY; 3], [f64::NEG_INFINITY; 3]];
-    let united =
-        |a: [V3; 2], b: [V3; 2]| [[0, 1, 2].map(|k| a[0][k].min(b[0][k])), [0, 1, 2].map(|k| a[1][k].max(b[1][k]))];
     let area = |b: [V3; 2]| {
         let [x, y, z] = sub(b[1], b[0]);
         if x >= 0.0 { x * y + y * z + z * x } else { 0.0 }
@@ -316,17 +310,17 @@ fn divide(triangles: &mut [[V3; 3]], min: V3, max: V3) -> usize {
     };
     let mut best = (f64::INFINITY, 0, 0);
     for axis in (0..3).filter(|k| extent[*k] > 0.0) {
-        let (mut boxes, mut counts) = ([EMPTY; BINS], [0usize; BINS]);
+        let (mut boxes, mut counts) = ([EMPTY_BOX; BINS], [0usize; BINS]);
         for t in triangles.iter() {
             let b = bin(t, axis);
             boxes[b] = t.iter().fold(boxes[b], |all, corner| united(all, [*corner, *corner]));
             counts[b] += 1;
         }
-        let mut after = [(EMPTY, 0); BINS + 1];
+        let mut after = [(EMPTY_BOX, 0); BINS + 1];
         for b in (0..BINS).rev() {
             after[b] = (united(after[b + 1].0, boxes[b]), after[b + 1].1 + counts[b]);
         }
-        let (mut before, mut count) = (EMPTY, 0);
+        let (mut before, mut count) = (EMPTY_BOX, 0);
         for b in 1..BINS {
             before = united(before, boxes[b - 1]);
             count += counts[b - 1];
@@ -348,6 +342,16 @@ fn divide(triangles: &mut [[V3; 3]], min: V3, max: V3) -> usize {
         }
     }
     half
+}
+
+/// Returns the corners of the box of some points.
+fn box_of(points: impl IntoIterator<Item = V3>) -> [V3; 2] {
+    points.into_iter().fold(EMPTY_BOX, |all, point| united(all, [point, point]))
+}
+
+/// Returns the corners of the box around two boxes.
+fn united(a: [V3; 2], b: [V3; 2]) -> [V3; 2] {
+    [[0, 1, 2].map(|k| a[0][k].min(b[0][k])), [0, 1, 2].map(|k| a[1][k].max(b[1][k]))]
 }
 
 fn centroid([a, b, c]: &[V3; 3]) -> V3 {
@@ -386,10 +390,7 @@ impl Node {
             normals = add(normals, dipole);
             moments = [0, 1, 2].map(|k| add(moments[k], scaled(offset, dipole[k])));
         }
-        let corners = triangles.as_flattened();
-        let end =
-            |pick: fn(f64, f64) -> f64| corners.iter().fold(corners[0], |a, b| [0, 1, 2].map(|k| pick(a[k], b[k])));
-        let (bounds, spread) = ([end(f64::min), end(f64::max)], spread * (0.75 / PI) * INFLATION);
+        let (bounds, spread) = (box_of(triangles.as_flattened().iter().copied()), spread * (0.75 / PI) * INFLATION);
         let area = area * (0.5 / PI) * INFLATION;
         let triangles = first..first + triangles.len() as u32;
         Self { centre, bounds, area, spread, normal: normals, moments, triangles, children: 0 }
@@ -399,16 +400,11 @@ impl Node {
 /// Returns an upper bound on the gradient that a triangle contributes where no distance is below that of `beyond` from its
 /// box and the boxes of its edges.
 fn triangle_gradient(triangle: &[V3; 3], beyond: impl Fn(&[V3; 2]) -> f64) -> f64 {
-    let box_of = |corners: &[V3]| {
-        let end =
-            |pick: fn(f64, f64) -> f64| corners.iter().fold(corners[0], |a, b| [0, 1, 2].map(|k| pick(a[k], b[k])));
-        [end(f64::min), end(f64::max)]
-    };
-    let distance = beyond(&box_of(triangle));
+    let distance = beyond(&box_of(*triangle));
     let by_area = length(normal(triangle)) * (0.5 / PI) / (distance * distance * distance);
     let edge = |i: usize| {
         let ends = [triangle[i], triangle[(i + 1) % 3]];
-        let distance = beyond(&box_of(&ends));
+        let distance = beyond(&box_of(ends));
         let gradient = length(sub(ends[1], ends[0])) * (0.25 / PI) / (distance * distance);
         if distance > 0.0 { gradient } else { f64::INFINITY }
     };

@@ -11,8 +11,8 @@ use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 pub enum SignRule {
     /// A point is inside where the winding number exceeds a half in magnitude. For an oriented surface that is where the
     /// crossings of a ray, counted with the directions in which they pass the surface, do not cancel. So overlapping
-    /// shells of the same orientation are united, a shell that is turned inward inside of another is a cavity, and a surface that is
-    /// turned inside out as a whole is solid.
+    /// shells of the same orientation are united, a shell that is turned inward inside of another is a cavity, and a
+    /// surface that is turned inside out as a whole is solid.
     Winding,
     /// A point is inside where a ray crosses the surface an odd number of times. The orientation of triangles is
     /// irrelevant, and points inside both of two overlapping shells are outside.

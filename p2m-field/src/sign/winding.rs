@@ -10,7 +10,7 @@ use super::surface::Surface;
 use super::types::{RayTree, SharedSoup, Sign, SignError, check_kinds, ray};
 use nalgebra::Point3;
 use p2m_bvh::TreeIndex;
-use p2m_core::{Aabb, Ray, RayQuery, Real, Soup};
+use p2m_core::{Aabb, Hits, Ray, RayQuery, Real, Soup};
 
 /// The generalised winding numbers of a set of triangles.
 ///
@@ -121,11 +121,7 @@ impl<S: SharedSoup> WindingNumbers<S> {
     /// of `rays`, if there are any.
     pub(super) fn crossings<T: Real>(&self, query: &Point3<f64>, rays: Option<&dyn RayQuery<T>>) -> i64 {
         let ray = ray(query);
-        let crossings = match (rays, &self.rays) {
-            (Some(rays), _) => rays.signed_crossings(&ray),
-            (None, Some(rays)) => rays.signed_crossings(&ray),
-            (None, None) => 0,
-        };
+        let crossings = self.hits(&ray, Hits::crossings(), rays).signed_count;
         crossings + self.caps.as_ref().map_or(0, |caps| caps.rays.signed_crossings(&ray))
     }
 
@@ -167,22 +163,19 @@ impl<S: SharedSoup> WindingNumbers<S> {
         self.caps.is_none()
     }
 
-    /// Returns the number of crossings of a ray with the surface, regardless of their directions.
-    pub(super) fn unsigned_crossings<T: Real>(&self, ray: &Ray, rays: Option<&dyn RayQuery<T>>) -> usize {
+    /// Returns the hits of a ray on the surface, which is that of `rays`, if there are any.
+    pub(super) fn hits<'r, T: Real>(
+        &self,
+        ray: &'r Ray,
+        mut hits: Hits<'r>,
+        rays: Option<&dyn RayQuery<T>>,
+    ) -> Hits<'r> {
         match (rays, &self.rays) {
-            (Some(rays), _) => rays.crossings(ray),
-            (None, Some(rays)) => rays.crossings(ray),
-            (None, None) => 0,
+            (Some(rays), _) => rays.search_ray(ray, &mut hits),
+            (None, Some(tree)) => tree.search_ray(ray, &mut hits),
+            (None, None) => {}
         }
-    }
-
-    /// Returns whether a ray hits the surface.
-    pub(super) fn is_hit<T: Real>(&self, ray: &Ray, rays: Option<&dyn RayQuery<T>>) -> bool {
-        match (rays, &self.rays) {
-            (Some(rays), _) => rays.do_intersect(ray),
-            (None, Some(rays)) => rays.do_intersect(ray),
-            (None, None) => false,
-        }
+        hits
     }
 }
 
