@@ -6,10 +6,10 @@
 //!
 //! **Bands.** A block is not halved any further if all of it is beyond the band.
 //!
-//! **Signs.** The sign of a surface without a boundary changes only at the surface. So a block that the surface does not
-//! cross has the sign of its centre, and two neighbouring points have the same sign if one of them is farther from the
-//! surface than from the other. Points that are connected in this way have one sign. Winding numbers of surfaces with a
-//! boundary vary little far from the boundary, so points there have one sign as well.
+//! **Signs.** The sign of a surface without a boundary changes only at the surface. So a block that the surface does
+//! not cross has the sign of its centre, and two neighbouring points have the same sign if one of them is farther from
+//! the surface than from the other. Points that are connected in this way have one sign. Winding numbers of surfaces
+//! with a boundary vary little far from the boundary, so points there have one sign as well.
 
 use crate::grid::{Grid, GridError};
 use crate::grid_candidates::{CandidateLists, Candidates, Detail, MAX_COORDINATE};

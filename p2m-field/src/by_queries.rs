@@ -6,8 +6,8 @@
 //!
 //! **Bands.** A block of points has no point in the band if the distance of its centre exceeds the band plus half of
 //! the diagonal of the block. Other blocks are divided into eight until they are empty or single points. Signs beyond
-//! the band equal those of single queries as well: no surface crosses an empty block, so the sign of its centre holds for
-//! all of it, or winding numbers are computed for each point where they may differ.
+//! the band equal those of single queries as well: no surface crosses an empty block, so the sign of its centre holds
+//! for all of it, or winding numbers are computed for each point where they may differ.
 
 use crate::grid::{Grid, GridError};
 use crate::layers::Layers;

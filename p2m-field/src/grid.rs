@@ -58,8 +58,8 @@ impl Grid {
 
     /// Returns the grid of `counts` points of this one from the indices `first` on, which may lie beyond this grid.
     ///
-    /// The coordinates of its points are the same bits as in this grid, so the field of a grid can be computed by parts.
-    /// A new grid with the origin `self.point(first)` has coordinates that may differ by their rounding.
+    /// The coordinates of its points are the same bits as in this grid, so the field of a grid can be computed by
+    /// parts. A new grid with the origin `self.point(first)` has coordinates that may differ by their rounding.
     ///
     /// # Errors
     /// The errors of [`new`](Self::new), and [`GridError::Count`] for indices above 2^40.

@@ -154,8 +154,8 @@ impl<S: SharedSoup> Certificates<S> {
                 }
             }
         }
-        // All triangles of a vertex turn once around it, from below an axis to above it, if and only if they are one fan
-        // that projects without overlap.
+        // All triangles of a vertex turn once around it, from below an axis to above it, if and only if they are one
+        // fan that projects without overlap.
         let mut turns = vec![0u8; self.fans.len()];
         for (t, triangle) in soup.triangles().iter().enumerate() {
             let corners = corners(soup, *triangle);

@@ -1,9 +1,10 @@
 //! Which points are inside, without their distances.
 //!
-//! Points are taken in the order of a curve that fills their box, in blocks. If the ball around a block has no surface in
-//! it, all points of the block have the sign of its centre. Elsewhere, if signs change at the surface alone, the surface in
-//! the box of the block lies between two parallel planes. The part of the box beyond either of them is convex and has no
-//! surface in it, so its points have the sign of one of them. Points between the planes are answered one by one.
+//! Points are taken in the order of a curve that fills their box, in blocks. If the ball around a block has no surface
+//! in it, all points of the block have the sign of its centre. Elsewhere, if signs change at the surface alone, the
+//! surface in the box of the block lies between two parallel planes. The part of the box beyond either of them is
+//! convex and has no surface in it, so its points have the sign of one of them. Points between the planes are answered
+//! one by one.
 
 use super::certificate::{corners, unit_normal};
 use super::{SharedSoup, Sign, SignedDistance};
@@ -21,8 +22,8 @@ const MAX_TRIANGLES: usize = 1024;
 const MIN_HEIGHT: f64 = 1.0 / (1u64 << 40) as f64;
 
 impl<I, S: SharedSoup> SignedDistance<I, S> {
-    /// Returns whether a point is inside. Points on the surface are not, nor are points whose sign is not defined or that
-    /// are not finite.
+    /// Returns whether a point is inside. Points on the surface are not, nor are points whose sign is not defined or
+    /// that are not finite.
     pub fn contains<T: Real>(&self, point: &impl Position<T>) -> bool
     where
         I: ClosestPoint<T>,
@@ -144,8 +145,8 @@ impl<I, S: SharedSoup> SignedDistance<I, S> {
         }
     }
 
-    /// Divides the points of a block by planes that are parallel to a triangle. The points beyond each plane are a side,
-    /// and have one sign; the others are added to the rest.
+    /// Divides the points of a block by planes that are parallel to a triangle. The points beyond each plane are a
+    /// side, and have one sign; the others are added to the rest.
     fn divide<T: Real>(
         &self,
         points: &[Point3<T>],

@@ -99,8 +99,8 @@ struct Join<'a, S> {
 }
 
 impl<S: SharedSoup> Join<'_, S> {
-    /// Returns the marked triangles of a group that are far from all others without a common vertex. Where too many boxes
-    /// overlap, none is returned, which is safe.
+    /// Returns the marked triangles of a group that are far from all others without a common vertex. Where too many
+    /// boxes overlap, none is returned, which is safe.
     fn simple(&self, group: &[PrimitiveId], marks: &[bool]) -> Vec<PrimitiveId> {
         let marked: Vec<PrimitiveId> = group.iter().copied().filter(|id| marks[id.index()]).collect();
         if marked.is_empty() {
@@ -136,8 +136,9 @@ impl<S: SharedSoup> Join<'_, S> {
     }
 }
 
-/// Returns whether two triangles are certainly farther than a margin from each other: along the perpendicular of an edge
-/// in the plane of a triangle, along a normal, along a cross product of two edges, or along an axis of the coordinates.
+/// Returns whether two triangles are certainly farther than a margin from each other: along the perpendicular of an
+/// edge in the plane of a triangle, along a normal, along a cross product of two edges, or along an axis of the
+/// coordinates.
 fn are_apart(one: &[V3; 3], other: &[V3; 3], margin: f64) -> bool {
     let origin = one[0];
     let [one, other] = [one, other].map(|corners| corners.map(|corner| sub(corner, origin)));

@@ -7,9 +7,9 @@ use twox_hash::XxHash3_64;
 /// any order and in parts, and take no memory.
 ///
 /// Each edge has a hash of 128 bits of the coordinates of its ends. The hashes cancel if as many triangles run through
-/// each edge in one direction as in the other, and each of their bits is set an even number of times if each edge has an
-/// even number of triangles. Other surfaces have such sums with a probability of about
-/// 2^-128, if hashes behave like random numbers.
+/// each edge in one direction as in the other, and each of their bits is set an even number of times if each edge has
+/// an even number of triangles. Other surfaces have such sums with a probability of about 2^-128, if hashes behave like
+/// random numbers.
 ///
 /// ```
 /// use p2m_field::sign::{EdgeSums, SignRule};

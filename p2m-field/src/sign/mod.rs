@@ -1,14 +1,14 @@
 //! Signed distances: the side of a surface that a point is on.
 //!
 //! [`SignedDistance`] adds a sign to the answers of any index over triangles. A point is inside if its generalised
-//! winding number \[Jacobson2013\] exceeds a half in magnitude ([`SignRule::Winding`]). The triangles may have holes, be
-//! unconnected, overlap or intersect each other.
+//! winding number \[Jacobson2013\] exceeds a half in magnitude ([`SignRule::Winding`]). The triangles may have holes,
+//! be unconnected, overlap or intersect each other.
 //!
-//! A surface is *closed* if each edge has an even number of triangles. It is *oriented* if as many triangles run through
-//! each edge in one direction as in the other; every oriented surface is closed. The winding number of an oriented
-//! surface is an integer: the signed number of crossings of a ray, which is decided without rounding. The normal at the
-//! closest point gives the same sign without a ray, and is used where that is proved. Surfaces that are closed but not
-//! oriented have their signs by parity ([`SignRule::Parity`]), unless another rule is chosen.
+//! A surface is *closed* if each edge has an even number of triangles. It is *oriented* if as many triangles run
+//! through each edge in one direction as in the other; every oriented surface is closed. The winding number of an
+//! oriented surface is an integer: the signed number of crossings of a ray, which is decided without rounding. The
+//! normal at the closest point gives the same sign without a ray, and is used where that is proved. Surfaces that are
+//! closed but not oriented have their signs by parity ([`SignRule::Parity`]), unless another rule is chosen.
 //!
 //! ```
 //! use nalgebra::Point3;
@@ -112,13 +112,13 @@ struct Signs<S> {
     ray_count: Counter,
 }
 
-/// Certificates are prepared when the rays so far and the queries of the next batch exceed this number for each triangle:
-/// casting the rays would then take about as long.
+/// Certificates are prepared when the rays so far and the queries of the next batch exceed this number for each
+/// triangle: casting the rays would then take about as long.
 const RAYS_PER_TRIANGLE: f64 = 0.5;
 
 impl SharedDistance {
-    /// Builds an AABB tree over triangles, with signs as [`SignedDistance::new`] makes them. A scene of its own is shared
-    /// by `Arc::new(soup)`.
+    /// Builds an AABB tree over triangles, with signs as [`SignedDistance::new`] makes them. A scene of its own is
+    /// shared by `Arc::new(soup)`.
     ///
     /// # Errors
     /// It returns the errors of [`SignedDistance::new`].
@@ -181,8 +181,8 @@ impl<I, S: SharedSoup> SignedDistance<I, S> {
         self.signs.rule
     }
 
-    /// Returns whether the sign can change only at the surface. This holds for the rule parity, and for oriented surfaces
-    /// by the rule winding.
+    /// Returns whether the sign can change only at the surface. This holds for the rule parity, and for oriented
+    /// surfaces by the rule winding.
     pub fn is_closed(&self) -> bool {
         self.signs.is_closed
     }

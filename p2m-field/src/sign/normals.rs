@@ -9,10 +9,10 @@ use p2m_core::{Feature, PrimitiveId, Soup};
 
 /// The normals of the triangles of a scene at their faces, edges and vertices.
 ///
-/// The normal of a face is (b - a) x (c - a), with the length 1. At an edge it is the sum of the normals of its triangles,
-/// and at a vertex that of all triangles around it, each multiplied by its angle there, with the length 1 as well: the
-/// pseudonormals of \[Baerentzen2005\]. Vertices are welded where they have the same coordinates. Triangles without area
-/// count as nothing.
+/// The normal of a face is (b - a) x (c - a), with the length 1. At an edge it is the sum of the normals of its
+/// triangles, and at a vertex that of all triangles around it, each multiplied by its angle there, with the length 1 as
+/// well: the pseudonormals of \[Baerentzen2005\]. Vertices are welded where they have the same coordinates. Triangles
+/// without area count as nothing.
 ///
 /// ```
 /// use p2m_core::{Feature, PrimitiveId, Soup};
@@ -67,8 +67,8 @@ impl Normals {
         Self { faces, edges, triangles, vertices }
     }
 
-    /// Returns the normal at a feature of a primitive, or `None` for a segment, a point, and where the triangles have no
-    /// area or cancel each other.
+    /// Returns the normal at a feature of a primitive, or `None` for a segment, a point, and where the triangles have
+    /// no area or cancel each other.
     #[must_use]
     pub fn at(&self, primitive: PrimitiveId, feature: Feature) -> Option<Vector3<f64>> {
         let triangle = primitive.index();

@@ -11,9 +11,9 @@
 //!
 //! Nodes are divided by the surface-area heuristic in 16 bins, for caps have very different sizes.
 //!
-//! A sum starts at the root. While its error is too large, a node whose error is at least half of the largest is replaced
-//! by its children, and a leaf by the solid angles of its triangles. Values and errors are rounded to multiples of a unit
-//! that is so large that sums are exact.
+//! A sum starts at the root. While its error is too large, a node whose error is at least half of the largest is
+//! replaced by its children, and a leaf by the solid angles of its triangles. Values and errors are rounded to
+//! multiples of a unit that is so large that sums are exact.
 
 use super::types::ray;
 use nalgebra::Point3;
@@ -79,8 +79,8 @@ const MAX_DIVIDED_DEPTH: usize = 48;
 const SMALL_CHANGE: f64 = 1e-4;
 /// The largest diagonal of a node whose gradient is not taken from its children, in units of its distance.
 const MAX_DIAGONAL: f64 = 0.5;
-/// The largest coordinate, in units of the largest one of the triangles, of a query that is not far away. Beyond it up to
-/// 2^30 triangles have a total solid angle over 4 pi below 2^30 * 32 / (4 pi 2^80) < 1e-9.
+/// The largest coordinate, in units of the largest one of the triangles, of a query that is not far away. Beyond it up
+/// to 2^30 triangles have a total solid angle over 4 pi below 2^30 * 32 / (4 pi 2^80) < 1e-9.
 const MAX_RELATIVE_COORDINATE: f64 = (1u64 << 40) as f64;
 /// Nodes allow for the rounding of their moments and of distances by this factor.
 const INFLATION: f64 = 1.0 + 1e-9;
@@ -136,13 +136,13 @@ impl SolidAngles {
         Some(sum)
     }
 
-    /// Returns an upper bound on the change of the winding number of a surface with these caps along a path that does not
-    /// cross the surface. The path has at most the length `path`, and is within `radius` of `centre`. It is infinite if it
-    /// is not below `enough`.
+    /// Returns an upper bound on the change of the winding number of a surface with these caps along a path that does
+    /// not cross the surface. The path has at most the length `path`, and is within `radius` of `centre`. It is
+    /// infinite if it is not below `enough`.
     ///
-    /// A triangle at the distance d has a gradient of at most A / (2 pi d^3), with the area A. Where the path may cross the
-    /// triangle, the crossings of rays change as well, and their difference has a gradient of at most the sum of
-    /// l / (4 pi d^2) over the edges, which have the length l and the distance d (the law of Biot and Savart).
+    /// A triangle at the distance d has a gradient of at most A / (2 pi d^3), with the area A. Where the path may cross
+    /// the triangle, the crossings of rays change as well, and their difference has a gradient of at most the sum of l
+    /// / (4 pi d^2) over the edges, which have the length l and the distance d (the law of Biot and Savart).
     pub(super) fn max_change(&self, path: f64, radius: f64, centre: &Point3<f64>, enough: f64) -> f64 {
         let (path, radius) = (path * self.scale, radius * self.scale * INFLATION);
         let centre = scaled((*centre).into(), self.scale);
@@ -176,8 +176,8 @@ impl SolidAngles {
 
     /// Returns the solid angles of the triangles of a leaf over 4 pi.
     fn triangles(&self, range: Range<u32>, q: V3) -> Option<Estimate> {
-        // The solid angle is twice the argument of a complex number. Arguments below pi / 4 are added as the argument of
-        // the product of their numbers.
+        // The solid angle is twice the argument of a complex number. Arguments below pi / 4 are added as the argument
+        // of the product of their numbers.
         let (mut product, mut error, mut sum) = ([1.0, 0.0], 0.0, 0.0);
         for triangle in &self.triangles[range.start as usize..range.end as usize] {
             let angle = HalfAngle::new(triangle, q)?;
@@ -380,8 +380,8 @@ impl Node {
             let normal = normal(t);
             let offsets = t.map(|corner| sub(corner, centre));
             let offset = centroid(&offsets);
-            // The integral of a quadratic form over a triangle is a twelfth of its area times the sum of the form at the
-            // vertices and at their sum.
+            // The integral of a quadratic form over a triangle is a twelfth of its area times the sum of the form at
+            // the vertices and at their sum.
             let sum = scaled(offset, 3.0);
             let squares = offsets.iter().map(|o| dot(*o, *o)).sum::<f64>() + dot(sum, sum);
             area += length(normal);
@@ -397,8 +397,8 @@ impl Node {
     }
 }
 
-/// Returns an upper bound on the gradient that a triangle contributes where no distance is below that of `beyond` from its
-/// box and the boxes of its edges.
+/// Returns an upper bound on the gradient that a triangle contributes where no distance is below that of `beyond` from
+/// its box and the boxes of its edges.
 fn triangle_gradient(triangle: &[V3; 3], beyond: impl Fn(&[V3; 2]) -> f64) -> f64 {
     let distance = beyond(&box_of(*triangle));
     let by_area = length(normal(triangle)) * (0.5 / PI) / (distance * distance * distance);

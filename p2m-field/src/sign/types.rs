@@ -9,10 +9,10 @@ use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 /// The rule that decides which points are inside of a surface.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum SignRule {
-    /// A point is inside where the winding number exceeds a half in magnitude. For an oriented surface that is where the
-    /// crossings of a ray, counted with the directions in which they pass the surface, do not cancel. So overlapping
-    /// shells of the same orientation are united, a shell that is turned inward inside of another is a cavity, and a
-    /// surface that is turned inside out as a whole is solid.
+    /// A point is inside where the winding number exceeds a half in magnitude. For an oriented surface that is where
+    /// the crossings of a ray, counted with the directions in which they pass the surface, do not cancel. So
+    /// overlapping shells of the same orientation are united, a shell that is turned inward inside of another is a
+    /// cavity, and a surface that is turned inside out as a whole is solid.
     Winding,
     /// A point is inside where a ray crosses the surface an odd number of times. The orientation of triangles is
     /// irrelevant, and points inside both of two overlapping shells are outside.
@@ -43,10 +43,11 @@ pub enum Sign {
     Outside,
     /// The surface encloses the point.
     Inside,
-    /// The point is on the surface: its distance is 0, or the error of its distance cannot exclude 0 and it is exactly on
-    /// a triangle.
+    /// The point is on the surface: its distance is 0, or the error of its distance cannot exclude 0 and it is exactly
+    /// on a triangle.
     Boundary,
-    /// The sign is not defined: rounding leaves it open on which side of a half the winding number of an open surface is.
+    /// The sign is not defined: rounding leaves it open on which side of a half the winding number of an open surface
+    /// is.
     Undefined,
 }
 

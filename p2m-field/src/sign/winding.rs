@@ -153,8 +153,8 @@ impl<S: SharedSoup> WindingNumbers<S> {
         is_clear(estimate).then(|| if estimate.value.abs() > 0.5 { Sign::Inside } else { Sign::Outside })
     }
 
-    /// Returns an upper bound on the change of winding numbers along a path that does not cross the surface, has at most
-    /// the length `path`, and is within `radius` of a point. A change that may be a half is infinite.
+    /// Returns an upper bound on the change of winding numbers along a path that does not cross the surface, has at
+    /// most the length `path`, and is within `radius` of a point. A change that may be a half is infinite.
     fn max_change(&self, path: f64, radius: f64, point: &Point3<f64>) -> f64 {
         self.caps.as_ref().map_or(0.0, |caps| caps.angles.max_change(path, radius, point, 0.5))
     }
