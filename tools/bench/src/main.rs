@@ -31,6 +31,7 @@ mod rounds;
 mod scale;
 mod scene;
 mod shards;
+mod tables;
 mod threads;
 mod verify;
 
@@ -53,6 +54,8 @@ struct Cli {
 enum Command {
     /// Build time, memory, time per query and agreement of all backends
     Query(query::Arguments),
+    /// Measures all scenes, indexes and sets of queries of the documents into one file; fails if ours differ
+    Tables(tables::Arguments),
     /// Compares our exact backends with brute force, bit for bit, in f64 and f32; fails on any difference
     Verify(verify::Arguments),
     /// Times the first hits of rays against parry3d; fails if ours differ
@@ -79,6 +82,7 @@ enum Command {
 fn main() -> anyhow::Result<ExitCode> {
     let is_good = match Cli::parse().command {
         Command::Query(arguments) => query::run(&arguments),
+        Command::Tables(arguments) => tables::run(&arguments),
         Command::Verify(arguments) => verify::run(&arguments),
         Command::Ray(arguments) => rays::run(&arguments),
         Command::Extremes(arguments) => extremes::run(&arguments),

@@ -32,7 +32,6 @@ pub(crate) fn run(arguments: &Arguments) -> Result<bool> {
             measure::measure(set.generate(&scene.double, *queries, rounds.seed), &mut entries, rounds.rounds);
         }
         report::print_scene(&scene, &common.sets, &entries);
-        let ours = entries.iter().filter(|entry| entry.backend.is_ours);
-        Ok(ours.flat_map(|entry| entry.sets.iter().flatten()).all(|set| set.agreement.is_clean()))
+        Ok(report::is_clean(&entries))
     })
 }

@@ -24,6 +24,12 @@ pub(crate) fn print_scene(scene: &Scene, sets: &[QuerySet], entries: &[Entry]) {
     }
 }
 
+/// Returns whether our indexes agree.
+pub(crate) fn is_clean(entries: &[Entry]) -> bool {
+    let ours = entries.iter().filter(|entry| entry.backend.is_ours);
+    ours.flat_map(|entry| entry.sets.iter().flatten()).all(|set| set.agreement.is_clean())
+}
+
 fn head<const N: usize>(first: [&str; N], sets: &[QuerySet]) -> Table {
     Table::new(first.into_iter().chain(sets.iter().map(|set| set.name())))
 }

@@ -4,6 +4,7 @@
 #![forbid(unsafe_code)]
 
 mod deep;
+mod figures;
 mod memory;
 mod package;
 mod pages;
@@ -26,7 +27,7 @@ struct Task {
 /// The result of a task, with a message if it failed.
 type Outcome = Result<(), String>;
 
-const TASKS: [Task; 13] = [
+const TASKS: [Task; 14] = [
     Task {
         name: "quick",
         arguments: "[FILTER]",
@@ -51,6 +52,12 @@ const TASKS: [Task; 13] = [
         arguments: "",
         about: "Make the documentation, in which no link may be broken",
         run: |_| docs(),
+    },
+    Task {
+        name: "figures",
+        arguments: "[--check]",
+        about: "Renew the figures of the documents from the data in docs/measurements, or check them",
+        run: figures::run,
     },
     Task {
         name: "promises",
