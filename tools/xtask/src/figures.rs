@@ -242,9 +242,9 @@ fn in_words(value: f64, unit: &str) -> String {
 }
 
 /// Returns a number with so many significant digits, and all digits before the point.
-fn digits(value: f64, count: i32) -> String {
-    let before = value.abs().log10().floor() as i32 + 1;
-    format!("{value:.*}", usize::try_from(count - before).unwrap_or(0))
+fn digits(value: f64, count: usize) -> String {
+    let after = (0..count).rev().find(|after| value.abs() * 10f64.powf(*after as f64) < 10f64.powf(count as f64));
+    format!("{value:.*}", after.unwrap_or(0))
 }
 
 /// Returns the lines of a document that have figures without data.

@@ -152,6 +152,15 @@ fn docs() -> Outcome {
     start(&mut command)
 }
 
+/// Says why a check is skipped. It is an error where `P2M_REQUIRE_TOOLS` is set, as in hosted checks.
+fn skip(why: &str) -> Outcome {
+    if std::env::var_os("P2M_REQUIRE_TOOLS").is_some() {
+        return Err(why.to_owned());
+    }
+    println!("\n== skipped: {why}");
+    Ok(())
+}
+
 /// Returns the folder for what is compiled and for files of tasks.
 fn target_folder() -> PathBuf {
     std::env::var_os("CARGO_TARGET_DIR").unwrap_or_else(|| "target".into()).into()

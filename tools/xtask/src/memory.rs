@@ -12,8 +12,7 @@ const SKIPPED: &str = "walks_end_at_the_nearest_site_wherever_they_begin";
 pub(crate) fn run() -> Outcome {
     let version = Command::new("valgrind").arg("--version").stdout(Stdio::null()).stderr(Stdio::null()).status();
     if !version.is_ok_and(|status| status.success()) {
-        println!("skipped: there is no program 'valgrind'");
-        return Ok(());
+        return crate::skip("there is no program 'valgrind'");
     }
     let mut units = under_valgrind();
     CRATES.iter().for_each(|name| {

@@ -12,18 +12,15 @@ const BROWSERS: [&str; 2] = ["/usr/bin/chromium", "/usr/bin/google-chrome"];
 /// Checks that the script in the assets is what the sources make, and runs the tests, or says why it cannot here.
 pub(crate) fn run() -> Outcome {
     if output("npm", &["--version"]).is_err() {
-        println!("\n== skipped: there is no npm for the script of pages");
-        return Ok(());
+        return crate::skip("there is no npm for the script of pages");
     }
     if let Err(why) = output("npm", &["view", "esbuild", "version"]) {
-        println!("\n== skipped: the registry of the packages that the script of pages needs cannot be reached\n{why}");
-        return Ok(());
+        return crate::skip(&format!("the registry of packages for the script of pages cannot be reached\n{why}"));
     }
     start(&mut npm(&["ci", "--no-audit", "--no-fund", "--loglevel=error"]))?;
     start(&mut npm(&["run", "check"]))?;
     if let Err(why) = find_browser() {
-        println!("\n== skipped: there is no Chromium for the tests of pages: {why}");
-        return Ok(());
+        return crate::skip(&format!("there is no Chromium for the tests of pages: {why}"));
     }
     // With the features of `cargo test --workspace` and of `cargo xtask python`, nothing is compiled anew after them.
     cargo(&["build", "--locked", "--workspace", "--lib", "--examples", "--bin", "p2m"], &[])?;

@@ -77,7 +77,7 @@ fn check_targets() -> Outcome {
         if Path::new(sysroot.trim()).join("lib/rustlib").join(target).join("lib").is_dir() {
             cargo(&["check", "--locked", "--package", "p2m", "--target", target], &[])?;
         } else {
-            println!("\n== skipped: the standard library of {target} is not installed (rustup target add {target})");
+            crate::skip(&format!("the standard library of {target} is not installed (rustup target add {target})"))?;
         }
     }
     Ok(())

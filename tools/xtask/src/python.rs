@@ -35,15 +35,14 @@ pub(crate) fn check(filter: &[String]) -> Outcome {
     let compares = filter.first().is_some_and(|first| first == "--rivals");
     let filter = if compares { &filter[1..] } else { filter };
     let Some(python) = find_python() else {
-        println!("\n== skipped: there is no Python {}.{} or newer with venv", MIN_VERSION.0, MIN_VERSION.1);
-        return Ok(());
+        let (major, minor) = MIN_VERSION;
+        return crate::skip(&format!("there is no Python {major}.{minor} or newer with venv"));
     };
     let target = absolute_target_folder()?;
     let bin = environment(&python, if compares { "python-rivals-env" } else { "python-env" })?;
     let own_python = text(&bin.join("python"))?;
     if let Err(why) = install_needed(&own_python, &NEEDED) {
-        println!("\n== skipped: the packages that the tests need cannot be installed\n{why}");
-        return Ok(());
+        return crate::skip(&format!("the packages that the tests need cannot be installed\n{why}"));
     }
     if compares {
         for rival in RIVALS {

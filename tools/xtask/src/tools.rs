@@ -26,8 +26,7 @@ fn cargo_with(command: &str, arguments: &[&str]) -> Outcome {
     match find(command) {
         Ok(program) => run(&program, &[&[command], arguments].concat(), &[]),
         Err(why) => {
-            println!("\n== skipped: there is no cargo-{command} (cargo install cargo-{command} --locked): {why}");
-            Ok(())
+            crate::skip(&format!("there is no cargo-{command} (cargo install cargo-{command} --locked): {why}"))
         }
     }
 }

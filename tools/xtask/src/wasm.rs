@@ -47,8 +47,7 @@ pub(crate) fn run(arguments: &[String]) -> Outcome {
             if builds {
                 return Err(message);
             }
-            println!("\n== skipped: {message}");
-            Ok(())
+            crate::skip(&message)
         }
     }
 }
