@@ -121,17 +121,64 @@ impl Command {
             Self::Generate(args) => scene::generate::run(streams, args),
             Self::Boxes(args) => page::boxes::run(streams, args),
             Self::View(args) => page::view::run(streams, args),
-            Self::Completions(args) => shell::completions(streams, args, Cli::command()),
-            Self::Man(args) => shell::man(streams, args, Cli::command()),
+            Self::Completions(args) => shell::completions(streams, args, command()),
+            Self::Man(args) => shell::man(streams, args, command()),
         }
     }
+}
+
+/// Options that few users need. They are in `--help`, under a heading of their own, and not in `-h`.
+const ADVANCED: [&str; 16] = [
+    "box_scale",
+    "filter",
+    "format",
+    "k",
+    "locator",
+    "map",
+    "max_memory",
+    "max_visits",
+    "out_format",
+    "points_format",
+    "rays_format",
+    "resolution_limit",
+    "scan_format",
+    "seed",
+    "threads",
+    "up",
+];
+/// The order of a help text: examples come before options.
+const HELP_TEMPLATE: &str = "{about-with-newline}\n{usage-heading} {usage}\n\n{before-help}{all-args}{after-help}";
+/// The number of examples that `-h` shows.
+const SHORT_EXAMPLES: usize = 3;
+
+/// Returns the grammar of the program, with its help in the order in which users need it.
+fn command() -> clap::Command {
+    arranged(Cli::command())
+}
+
+/// Moves examples before the options, and explanations and advanced options into the long help.
+fn arranged(command: clap::Command) -> clap::Command {
+    let help = command.get_after_help().map(ToString::to_string).unwrap_or_default();
+    let (text, examples) = help.split_once("Examples:\n").unwrap_or((&help, ""));
+    let few: Vec<&str> = examples.lines().take(SHORT_EXAMPLES).collect();
+    let (few, all) = (format!("Examples:\n{}", few.join("\n")), format!("Examples:\n{examples}"));
+    let command = if examples.is_empty() { command } else { command.before_help(few).before_long_help(all) };
+    command
+        .help_template(HELP_TEMPLATE)
+        .after_help("")
+        .after_long_help(text.trim_end().to_owned())
+        .mut_args(|argument| {
+            let is_advanced = ADVANCED.contains(&argument.get_id().as_str());
+            if is_advanced { argument.help_heading("Advanced options").hide_short_help(true) } else { argument }
+        })
+        .mut_subcommands(arranged)
 }
 
 /// Runs the program with these arguments, of which the first is its name, and returns its exit code.
 ///
 /// A run does not handle signals: a program that is to remove unfinished files at a signal calls [`listen`] first.
 pub fn run(streams: &Streams, arguments: impl IntoIterator<Item = OsString>) -> u8 {
-    let matches = streams.fit(Cli::command()).try_get_matches_from(arguments);
+    let matches = streams.fit(command()).try_get_matches_from(arguments);
     let command = match matches.and_then(|matches| Cli::from_arg_matches(&matches)) {
         Ok(cli) => {
             streams.set_quiet(cli.quiet);
