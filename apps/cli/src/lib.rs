@@ -27,9 +27,9 @@ use std::io::Write;
 
 /// Closest points and hits of rays in scenes of triangles, segments and points
 #[derive(Parser)]
-#[command(name = "p2m", version, after_help = examples())]
+#[command(name = "p2m", version, after_help = help())]
 struct Cli {
-    /// Print no summary, no note and no progress on the standard error; errors are printed
+    /// Print errors only: no summary, notes or progress
     #[arg(long, short, global = true)]
     quiet: bool,
 
@@ -37,22 +37,29 @@ struct Cli {
     command: Command,
 }
 
-fn examples() -> String {
+fn help() -> String {
     format!(
         "\
-Scenes are {} files, and indexes that `p2m build` saved. A `-` in place of a file is the standard input or output.
+Scenes are {} files, and indexes that `p2m build` saved. A `-` in place of a file name is the standard input or \
+output.
+
+The exit code is 0 for success, 1 if something could not be read, written or computed, 2 for wrong usage, and 130 \
+after Ctrl-C (128 plus the number of any other signal). An interrupted run leaves no half-written file. While a \
+progress bar says so, the first Ctrl-C only ends the refinement of an octree, and the run continues with a coarser \
+index.
+
+Reports of --json are one object. Its key \"p2m\" names the report, and \"version\" (now {}) its version. Within a \
+version, keys may be added, but none is removed, renamed or redefined. Lengths are in the unit of the scene and \
+times in seconds. Values that do not exist or are infinite are null.
 
 Examples:
   p2m query scene.obj --random 1000 --out answers.csv
   p2m ray scene.obj --random 1000 --out hits.csv
   p2m info scene.obj
   p2m convert scene.obj scene.ply
-  p2m generate torus-knot --out knot.obj
-
-The exit code is 0 for success, 1 for what could not be read, written or done, and 2 for wrong usage; 128 plus the number of \
-the signal after an interruption (130 for Ctrl-C), which leaves no half-written file. While a progress bar says that Ctrl-C ends the \
-refinement of an octree, the first one only does that, and the run goes on with a coarser index.",
-        io::input::format_list(|_| true, "and")
+  p2m generate torus-knot --out knot.obj",
+        io::input::format_list(|_| true, "and"),
+        io::json::VERSION
     )
 }
 
@@ -128,26 +135,32 @@ impl Command {
 }
 
 /// Options that few users need. They are in `--help`, under a heading of their own, and not in `-h`.
-const ADVANCED: [&str; 16] = [
+const ADVANCED: [&str; 20] = [
     "box_scale",
+    "displace_seed",
     "filter",
     "format",
+    "from",
     "k",
     "locator",
     "map",
     "max_memory",
+    "max_queries",
     "max_visits",
     "out_format",
     "points_format",
     "rays_format",
-    "resolution_limit",
+    "round_seconds",
     "scan_format",
+    "second_format",
     "seed",
     "threads",
-    "up",
+    "to",
 ];
 /// The order of a help text: examples come before options.
 const HELP_TEMPLATE: &str = "{about-with-newline}\n{usage-heading} {usage}\n\n{before-help}{all-args}{after-help}";
+/// The line above the examples, which end the text of the help of each command.
+const EXAMPLES: &str = "Examples:\n";
 /// The number of examples that `-h` shows.
 const SHORT_EXAMPLES: usize = 3;
 
@@ -159,9 +172,9 @@ fn command() -> clap::Command {
 /// Moves examples before the options, and explanations and advanced options into the long help.
 fn arranged(command: clap::Command) -> clap::Command {
     let help = command.get_after_help().map(ToString::to_string).unwrap_or_default();
-    let (text, examples) = help.split_once("Examples:\n").unwrap_or((&help, ""));
+    let (text, examples) = help.split_once(EXAMPLES).unwrap_or((&help, ""));
     let few: Vec<&str> = examples.lines().take(SHORT_EXAMPLES).collect();
-    let (few, all) = (format!("Examples:\n{}", few.join("\n")), format!("Examples:\n{examples}"));
+    let (few, all) = (format!("{EXAMPLES}{}", few.join("\n")), format!("{EXAMPLES}{examples}"));
     let command = if examples.is_empty() { command } else { command.before_help(few).before_long_help(all) };
     command
         .help_template(HELP_TEMPLATE)
@@ -245,6 +258,25 @@ mod tests {
             count += 1;
         });
         assert!(count > 15, "{count}");
+    }
+
+    #[test]
+    fn short_help_fits_a_screen() {
+        visit_commands(&command().term_width(100), "p2m", &mut |command, path| {
+            let lines = command.clone().term_width(100).render_help().to_string().lines().count();
+            assert!(lines <= 40, "{path}: {lines} lines");
+        });
+    }
+
+    #[test]
+    fn advanced_options_exist() {
+        let mut names: Vec<String> = Vec::new();
+        visit_commands(&Cli::command(), "p2m", &mut |command, _| {
+            names.extend(command.get_arguments().map(|argument| argument.get_id().to_string()));
+        });
+        for name in ADVANCED {
+            assert!(names.iter().any(|other| other == name), "{name}");
+        }
     }
 
     /// Each `p2m` of a pipe in an example has to be parsed without an error.

@@ -6,7 +6,7 @@ use anyhow::Context;
 use clap_complete::Shell;
 use std::path::{Path, PathBuf};
 
-/// Print the completions of a shell
+/// Print completions for a shell
 #[derive(clap::Args)]
 #[command(after_help = COMPLETIONS)]
 pub(crate) struct Completions {
@@ -16,14 +16,14 @@ pub(crate) struct Completions {
 }
 
 const COMPLETIONS: &str = "\
-Example:
+Examples:
   p2m completions bash > ~/.local/share/bash-completion/completions/p2m
   p2m completions zsh > ~/.zfunc/_p2m
   p2m completions fish > ~/.config/fish/completions/p2m.fish";
 
-/// Print the manual page, or write those of all commands
+/// Print the manual page, or write the pages of all commands
 #[derive(clap::Args)]
-#[command(after_help = "Example:\n  p2m man | man -l -\n  p2m man --out ~/.local/share/man/man1")]
+#[command(after_help = "Examples:\n  p2m man | man -l -\n  p2m man --out ~/.local/share/man/man1")]
 pub(crate) struct Man {
     /// Write a page for each command into this folder
     #[arg(long, value_name = "DIR")]

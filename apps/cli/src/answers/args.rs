@@ -12,23 +12,23 @@ use std::path::{Path, PathBuf};
 
 #[derive(clap::Args)]
 pub(crate) struct QueryArgs {
-    /// How many faces the polytopes of --backend kdop have [default: 14, or as a saved index]
+    /// The number of faces of k-DOPs, for --backend kdop [default: the saved index, or 14]
     #[arg(long, value_name = "K", value_enum, ignore_case = true, allow_negative_numbers = true)]
     pub(crate) k: Option<KdopFaces>,
 
-    /// Where to write the answers; `-` is the standard output.
+    /// Write the answers to this file; `-` is the standard output
     ///
-    /// The file appears under this name when it is complete, and does not if the run is interrupted (one that is ended
-    /// by SIGKILL leaves a file `.p2m-*` beside it). A symbolic link is followed; a dangling one is refused,
-    /// and so is a file that is also an input.
+    /// The file appears under this name when it is complete. An interrupted run leaves nothing behind, except after
+    /// SIGKILL, which leaves a file `.p2m-*`. Symbolic links are followed. Dangling links, and files that are also
+    /// inputs, are refused.
     #[arg(long, value_name = "FILE", default_value = "-")]
     pub(crate) out: PathBuf,
 
-    /// The format of the answers, if the extension of their file does not name it; CSV is the default
+    /// The format of the answers [default: by the file extension, or else CSV]
     #[arg(long, value_name = "FORMAT", value_parser = one_of::<AnswerFormat>(AnswerFormat::NAMES), ignore_case = true)]
     out_format: Option<AnswerFormat>,
 
-    /// Report the summary as one JSON object on the standard output; needs --out FILE
+    /// Print the summary as JSON; needs --out FILE
     #[arg(long)]
     pub(crate) json: bool,
 

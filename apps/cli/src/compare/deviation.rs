@@ -32,38 +32,27 @@ use std::io::Write as _;
 use std::path::PathBuf;
 use std::time::{Duration, Instant};
 
-/// The text of the help. Each paragraph is one line, so that it wraps at the width of the terminal.
-fn help() -> String {
-    format!(
-        "\
-The deviation of a point is its distance from the scene, positive outside and negative inside. It is that of the \
-surface and not of its vertices. The points of a scan are those of its file, or all vertices if it is a mesh, each \
-once; vertices that only segments and points use, or nothing, count as well.
+const HELP: &str = "\
+The deviation of a point is its distance from the surface of the scene, positive outside and negative inside. The \
+points are those of the file of the scan, or all vertices of a mesh, each once, also if no triangle uses them.
 
-If the surface is open, or its triangles have different orientations, a warning says what decides which points are \
-inside. For an open surface the sign is a guess near holes, and both sides of a single sheet are outside. A scene of segments or \
-points has no inside: it needs --unsigned, with which deviations are distances.
+If the surface is open or inconsistently oriented, a warning says which rule decides what is inside. For an open \
+surface the sign is a guess near holes, and both sides of a single sheet are outside. Segments and points have no \
+inside: use --unsigned.
 
-Statistics are printed on the standard output: the mean, the mean of absolute values, the root mean square, the \
-standard deviation, the extremes and percentiles, and with --tolerance the numbers of points above and below it. A \
-point without a deviation is one whose coordinates are not finite or whose side is not defined; nothing else \
-includes it.
+Statistics go to the standard output: the mean, the mean magnitude, the root mean square, the standard deviation, \
+extremes and percentiles, and with --tolerance the numbers of points above and below it. Points that are not finite, \
+or whose side is not defined, are counted as points without a deviation and do not enter anything else.
 
-With --out, CSV is the table that `p2m query --signed` writes, where signed_distance is the deviation. PLY is the \
-scan with the property deviation and colours from blue (inside) over grey to red (outside); triangles are kept. HTML \
-is a page that any browser opens without a network: it shows the coloured scan, the scene, a histogram and the \
-statistics, and tolerance and colours can be changed there.
-
-{}
+A CSV file is the table of `p2m query --signed`, where signed_distance is the deviation. A PLY file is the scan with \
+the property deviation and colours from blue (inside) over grey to red (outside). An HTML file is a page that any \
+browser opens without a network, with the coloured scan, the scene, a histogram and the statistics.
 
 Examples:
   p2m deviation scan.ply part.stl --tolerance 0.05
   p2m deviation scan.xyz part.obj --tolerance 0.05 --unit mm --out page.html
   p2m deviation print.stl design.stl --out deviations.csv --json
-  p2m deviation points.npy cables.obj --unsigned --limit 0.2 --out coloured.ply",
-        json::STABILITY
-    )
-}
+  p2m deviation points.npy cables.obj --unsigned --limit 0.2 --out coloured.ply";
 
 fn scan_help() -> String {
     let formats = format_list(|_| true, "or");
@@ -73,9 +62,9 @@ fn scan_help() -> String {
     )
 }
 
-/// Find how far the points of a scan are from a scene: statistics, colours and a histogram
+/// Compare a scan with a scene: statistics, colours and a histogram
 #[derive(clap::Args)]
-#[command(after_help = help())]
+#[command(after_help = HELP)]
 pub(crate) struct Args {
     #[arg(value_name = "SCAN", help = scan_help())]
     scan: PathBuf,
@@ -83,32 +72,31 @@ pub(crate) struct Args {
     #[command(flatten)]
     scene: SceneArgs,
 
-    /// The format of the scan, if its extension does not name it
+    /// The format of the scan [default: by the file extension]
     #[arg(long, value_name = "FORMAT", value_parser = one_of::<ScanFormat>(ScanFormat::names()), ignore_case = true)]
     scan_format: Option<ScanFormat>,
 
-    /// Give distances without signs, as scenes with segments or points need it
+    /// Compute distances without signs; needed for segments and points
     #[arg(long, conflicts_with = "sign")]
     unsigned: bool,
 
-    /// The rule that decides which points are inside
+    /// Which points are inside
     #[arg(long, value_name = "RULE", value_enum, default_value = "auto")]
     sign: SignRule,
 
-    /// Count the points whose deviation is above this length or below its negative, in the unit of the scene
+    /// Count the points outside of this tolerance, in the unit of the scene
     #[arg(long, value_name = "LENGTH", value_parser = finite_not_negative, allow_negative_numbers = true)]
     tolerance: Option<f64>,
 
-    /// The deviation from which on colours do not change [default: the tolerance, or else the 95th percentile of
-    /// absolute deviations]
+    /// The deviation at the ends of the colour scale [default: the tolerance, or the 95th percentile]
     #[arg(long, value_name = "LENGTH", value_parser = positive, allow_negative_numbers = true)]
     limit: Option<f64>,
 
-    /// Write the deviations as well: a table (.csv), a coloured cloud or mesh (.ply) or a page (.html)
+    /// Write a table (.csv), a coloured scan (.ply) or a page (.html)
     #[arg(long, value_name = "FILE")]
     out: Option<PathBuf>,
 
-    /// The index to search [default: that of a saved file, else aabb]
+    /// The index to search [default: the saved index, or aabb]
     #[arg(long, value_parser = backends(|_| true))]
     backend: Option<Backend>,
 

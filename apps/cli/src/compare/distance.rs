@@ -14,38 +14,30 @@ use p2m_core::pair::{ClosestPair, PairOptions, PairQuery};
 use p2m_mixed::{Format, Scene};
 use serde_json::{Value, json};
 
-fn help() -> String {
-    format!(
-        "\
-The distance is 0 if the scenes intersect: whether two primitives do is decided without rounding. Only surfaces count, so a \
-scene inside of a closed one has the distance from its surface. The lower bound is certified: no two points of the scenes \
-are nearer.
-
-{}
+const HELP: &str = "\
+The distance is 0 if the scenes intersect, which is decided without rounding. Only surfaces count: a scene inside a \
+closed one has the distance to its surface. The lower bound is certified.
 
 Examples:
   p2m distance robot.ply cell.ply
   p2m distance arm.obj cell.obj --transform pose.txt
-  p2m distance a.stl b.stl --max-distance 0.01 --json",
-        json::STABILITY
-    )
-}
+  p2m distance a.stl b.stl --max-distance 0.01 --json";
 
-/// Find the nearest points of two scenes, and whether the scenes intersect
+/// Find the distance of two scenes, and whether they intersect
 #[derive(clap::Args)]
-#[command(after_help = help())]
+#[command(after_help = HELP)]
 pub(crate) struct Args {
     #[command(flatten)]
     scenes: ScenePairArgs,
 
-    /// The largest distance of an answer; a search that stays within it takes less time
+    /// Find nothing farther than this, which takes less time
     #[arg(long, value_name = "DISTANCE", allow_negative_numbers = true)]
     max_distance: Option<f64>,
 
     #[command(flatten)]
     threads: ThreadArgs,
 
-    /// Report as one JSON object
+    /// Print the result as JSON
     #[arg(long)]
     json: bool,
 }

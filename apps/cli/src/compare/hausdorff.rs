@@ -18,36 +18,28 @@ use serde_json::{Value, json};
 use std::ops::ControlFlow;
 use std::sync::Arc;
 
-fn help() -> String {
-    format!(
-        "\
-The Hausdorff distance is the largest distance of a point of either scene from the other scene. All points of triangles, segments \
-and points count, not only vertices. Both bounds are certified: they hold in spite of rounding. Primitives are cut until the \
-bounds differ by no more than the tolerance, or until the limit of queries; where whole faces are equally far, a smaller tolerance \
-takes more cuts.
-
-{}
+const HELP: &str = "\
+The Hausdorff distance is the largest distance from a point of either scene to the other scene. All points of \
+triangles, segments and points count, not only vertices. Both bounds are certified in spite of rounding. Primitives \
+are subdivided until the bounds differ by at most the tolerance, or until the limit of queries is reached.
 
 Examples:
   p2m hausdorff scan.ply part.stl
   p2m hausdorff coarse.obj fine.obj --one-sided --tolerance 0.001
-  p2m hausdorff a.obj b.obj --transform pose.txt --json",
-        json::STABILITY
-    )
-}
+  p2m hausdorff a.obj b.obj --transform pose.txt --json";
 
-/// Find the Hausdorff distance of two scenes: how far a point of one is from the other at most
+/// Find the Hausdorff distance of two scenes
 #[derive(clap::Args)]
-#[command(after_help = help())]
+#[command(after_help = HELP)]
 pub(crate) struct Args {
     #[command(flatten)]
     scenes: ScenePairArgs,
 
-    /// The largest difference of the bounds, in the unit of the scenes [default: the diagonal of both scenes / 10000]
+    /// The largest difference of the bounds [default: the diagonal / 10000]
     #[arg(long, value_name = "LENGTH", value_parser = finite_not_negative, allow_negative_numbers = true)]
     tolerance: Option<f64>,
 
-    /// Find how far points of the first scene are from the second one, and not the reverse
+    /// Measure from the first scene to the second one only
     #[arg(long)]
     one_sided: bool,
 
@@ -56,14 +48,14 @@ pub(crate) struct Args {
     #[arg(long, value_name = "N", default_value_t = HausdorffOptions::<f64>::new(0.0).max_queries, allow_negative_numbers = true)]
     max_queries: u64,
 
-    /// Which index of both scenes [default: that of a saved file, else aabb]
+    /// The index of both scenes [default: the saved index, or aabb]
     #[arg(long, value_parser = backends(|_| true))]
     backend: Option<Backend>,
 
     #[command(flatten)]
     threads: ThreadArgs,
 
-    /// Report as one JSON object
+    /// Print the result as JSON
     #[arg(long)]
     json: bool,
 }

@@ -18,20 +18,20 @@ pub(crate) struct ScenePairArgs {
     #[arg(value_name = "A", help = scene_help("First scene") + COMPRESSED)]
     first: PathBuf,
 
-    /// Second scene
+    /// The second scene
     #[arg(value_name = "B")]
     second: PathBuf,
 
-    /// The format of the first scene, if its extension does not name it
+    /// The format of the first scene [default: by the file extension]
     #[arg(long, value_name = "FORMAT", value_parser = one_of::<Format>(Format::NAMES), ignore_case = true)]
     format: Option<Format>,
 
-    /// The format of the second scene, if its extension does not name it
+    /// The format of the second scene [default: by the file extension]
     #[arg(long, value_name = "FORMAT", value_parser = one_of::<Format>(Format::NAMES), ignore_case = true)]
     second_format: Option<Format>,
 
     /// Move the second scene by a rotation and a translation: the 12 or 16 numbers of a matrix, row by row, or a file
-    /// that has them
+    /// with them
     #[arg(long, value_name = "MATRIX|FILE", allow_hyphen_values = true)]
     transform: Option<String>,
 }

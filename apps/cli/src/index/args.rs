@@ -15,11 +15,11 @@ pub(crate) struct IndexArgs {
     #[command(flatten)]
     pub(crate) scene: SceneArgs,
 
-    /// Which index [default: that of a saved file if the command searches it, else aabb]
+    /// The index [default: the saved index, or aabb]
     #[arg(long, value_parser = backend_choices())]
     backend: Option<BackendChoice>,
 
-    /// How many faces the polytopes of --backend kdop have [default: 14]
+    /// The number of faces of k-DOPs, for --backend kdop [default: 14]
     #[arg(long, value_name = "K", value_enum, ignore_case = true, allow_negative_numbers = true)]
     k: Option<KdopFaces>,
 

@@ -7,11 +7,11 @@ use p2m_backends::{ListFilterKind, LocatorKind, P2mSettings};
 
 #[derive(clap::Args)]
 pub(crate) struct P2mArgs {
-    /// How --backend p2m finds the vertex nearest to a query [default: grid]
+    /// How --backend p2m finds the nearest vertex [default: grid]
     #[arg(long, value_enum, ignore_case = true)]
     locator: Option<Locator>,
 
-    /// How --backend p2m searches lists of more than 64 primitives [default: sorted]
+    /// How --backend p2m searches long lists [default: sorted]
     #[arg(long, value_enum, ignore_case = true)]
     filter: Option<ListFilter>,
 }

@@ -22,12 +22,12 @@ const BUFFER_BYTES: usize = 1 << 16;
 pub(crate) const STANDARD: &str = "-";
 
 /// The end of the help of files that may be compressed.
-pub(crate) const COMPRESSED: &str = ". Files that gzip or zstd has compressed are decompressed";
+pub(crate) const COMPRESSED: &str = ", also compressed by gzip or zstd";
 
 /// Returns the help of a scene with this name.
 pub(crate) fn scene_help(name: &str) -> String {
     let formats = format_list(|_| true, "or");
-    format!("{name}: an {formats} file, or an index that `p2m build` saved; `-` is the standard input")
+    format!("{name}: a file ({formats}), a saved index, or `-`")
 }
 
 /// Returns a list of the formats of scenes, such as `OBJ, PLY or OFF`, in which `last` comes before the last one. Saved
@@ -45,13 +45,13 @@ pub(crate) struct SceneArgs {
     #[arg(value_name = "SCENE", help = scene_help("Scene") + COMPRESSED)]
     pub(crate) path: PathBuf,
 
-    /// The format of the scene, if its extension does not name it
+    /// The format of the scene [default: by the file extension]
     #[arg(long, value_name = "FORMAT", value_parser = one_of::<Format>(Format::NAMES), ignore_case = true)]
     format: Option<Format>,
 
-    /// Map a saved index into memory instead of copying it, so that processes share it. It is checked as well.
+    /// Map a saved index into memory, so that processes share it
     ///
-    /// Nobody may change or truncate the file while the command runs: what then happens is undefined.
+    /// The file is still checked. Do not change or truncate it while the command runs: the behaviour is then undefined.
     #[arg(long)]
     pub(crate) map: bool,
 }

@@ -15,12 +15,6 @@ use std::io::{self, Write};
 /// The version of all reports.
 pub(crate) const VERSION: u32 = 3;
 
-/// The paragraph about `--json` in the help of each command.
-pub(crate) const STABILITY: &str = "\
-Reports of --json are one object. Its key \"p2m\" names the kind of the report and \"version\" its version, now 2: within a \
-version keys are added, but not removed, renamed or given another meaning. Lengths are in the unit of the scene, times in \
-seconds; what does not exist is null, and so is what is infinite, like the end of a range without one.";
-
 /// Writes a report to the standard output.
 pub(crate) fn print(streams: &Streams, report: &Value) -> anyhow::Result<()> {
     let write = || -> io::Result<()> {

@@ -5,7 +5,7 @@ use rayon::ThreadPool;
 
 #[derive(Default, clap::Args)]
 pub(crate) struct ThreadArgs {
-    /// How many threads to use for all work, building and advice included, up to 1024; all cores by default
+    /// The number of threads, at most 1024 [default: all cores]
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024), allow_negative_numbers = true)]
     threads: Option<u16>,
 }

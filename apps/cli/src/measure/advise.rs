@@ -15,25 +15,18 @@ use std::fmt::Write as _;
 use std::path::PathBuf;
 use std::time::Duration;
 
-fn help() -> String {
-    format!(
-        "\
-Each backend is built and queried over a sample of the scene, and its times are scaled to the whole scene. A backend that takes longer to \
-build than the tree of boxes takes for everything is not measured. So advice takes some per cent of the job. Times are estimates for one thread; \
-where two backends are about equally good, advice may differ from run to run.
-
-{}
+const HELP: &str = "\
+Each backend is built and queried over a sample of the scene, and its times are scaled to the whole scene. Backends \
+that take longer to build than the AABB tree takes for everything are not measured, so the advice takes a few per \
+cent of the job. Times are estimates for one thread. Where two backends are about equally fast, the advice may vary.
 
 Examples:
   p2m advise bunny.obj --queries 10000000 --near
-  p2m advise scene.ply --queries 100000 --points scan.xyz --memory 500 --json",
-        json::STABILITY
-    )
-}
+  p2m advise scene.ply --queries 100000 --points scan.xyz --memory 500 --json";
 
-/// Say which backend is fastest for a scene and so many queries, and from how many on others are
+/// Recommend a backend for a scene and a number of queries
 #[derive(clap::Args)]
-#[command(after_help = help())]
+#[command(after_help = HELP)]
 #[command(group = ArgGroup::new("regions").required(true).args(["near", "within", "points"]))]
 pub(crate) struct Args {
     #[command(flatten)]
@@ -43,34 +36,34 @@ pub(crate) struct Args {
     #[arg(long, value_name = "N", value_parser = whole_number, allow_negative_numbers = true)]
     queries: u64,
 
-    /// Queries are near the surface, about a hundredth of the diagonal away
+    /// Queries are near the surface, about 1 % of the diagonal away
     #[arg(long)]
     near: bool,
 
-    /// Queries are anywhere in the box of the scene
+    /// Queries are uniform in the box of the scene
     #[arg(long = "box", id = "within")]
     within: bool,
 
-    /// Queries are like the points of this file; `-` is the standard input
+    /// Queries are like the points of this file
     #[arg(long, value_name = "FILE")]
     points: Option<PathBuf>,
 
-    /// The format of the points, if the extension of their file does not name it
+    /// The format of the points [default: by the file extension]
     #[arg(long, value_name = "FORMAT", value_parser = one_of::<PointFormat>(PointFormat::NAMES), ignore_case = true, requires = "points")]
     points_format: Option<PointFormat>,
 
-    /// The most megabytes that the index may take
+    /// The largest memory of the index, in megabytes
     #[arg(long, value_name = "MB", value_parser = positive, allow_negative_numbers = true)]
     memory: Option<f64>,
 
-    /// The most seconds for advice
+    /// The longest time for the advice, in seconds
     #[arg(long, value_name = "S", value_parser = not_negative, allow_negative_numbers = true)]
     time: Option<f64>,
 
     #[command(flatten)]
     threads: ThreadArgs,
 
-    /// Report as one JSON object
+    /// Print the result as JSON
     #[arg(long)]
     json: bool,
 }

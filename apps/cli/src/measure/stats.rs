@@ -25,60 +25,53 @@ use std::fmt::{self, Write as _};
 use std::path::{Path, PathBuf};
 use std::time::Instant;
 
-fn help() -> String {
-    format!(
-        "\
-A list holds the primitives that can be the nearest somewhere in a cell; trees have none. Its length, weighted by the volumes \
-of the cells, is that of the list at a random point. Queries of trees visit nodes; all filter packets of up to sixteen \
+const HELP: &str = "\
+A list has the primitives that can be the nearest somewhere in a cell; trees have none. The mean length is weighted \
+by the volume of the cells, so it is that of a random point. All indexes filter packets of at most sixteen \
 primitives, and evaluate some of these exactly.
 
-The picture of --out has each primitive in a colour of its own, from blue over green to red (in a PLY file with the number \
-as the property 'value'): the length of the list at its centroid, or (for trees) how many packets a query there filters. Colours go by the \
-logarithm, from the least number to the largest.
-
-{}
+--out colours each primitive from blue over green to red, on a logarithmic scale: by the length of the list at its \
+centroid, or for trees by the number of packets that a query there filters. A PLY file also has the number, as the \
+property 'value'.
 
 Examples:
   p2m stats bunny.obj --backend p2m
   p2m stats bunny.p2m --out lists.ply
   p2m stats bunny.obj --backend octree --out lists.png --eye=-1,0.5,1
-  p2m stats scene.stl --backend octree --json",
-        json::STABILITY
-    )
-}
+  p2m stats scene.stl --backend octree --json";
 
-/// Say what an index is made of and what its queries cost, and colour the scene by that
+/// Show what an index consists of and what its queries cost
 #[derive(clap::Args)]
-#[command(after_help = help())]
+#[command(after_help = HELP)]
 pub(crate) struct Args {
     #[command(flatten)]
     index_args: IndexArgs,
 
-    /// The number of random points of the box, and the number of centroids of primitives, to query
+    /// The number of random points, and of centroids, to query
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u64).range(..=100_000_000), default_value_t = 10_000, allow_negative_numbers = true)]
     queries: u64,
 
-    /// Scale the box of the scene about its centre by this factor before filling it
+    /// Scale the box of the scene about its centre by this factor
     #[arg(long, value_name = "S", default_value_t = 1.05, value_parser = positive, allow_negative_numbers = true)]
     box_scale: f64,
 
-    /// Seed of the random points
+    /// The seed of the random points
     #[arg(long, value_name = "SEED", default_value_t = 0, value_parser = whole_number, allow_negative_numbers = true)]
     seed: u64,
 
-    /// Colour the scene: a name that ends in .ply or .png
+    /// Write the scene, coloured by cost (.ply or .png)
     #[arg(long, value_name = "FILE")]
     out: Option<PathBuf>,
 
-    /// How many pixels a PNG picture is wide
+    /// The width of a PNG picture in pixels
     #[arg(long, value_name = "N", default_value_t = 800, value_parser = clap::value_parser!(u32).range(1..=8192), allow_negative_numbers = true)]
     width: u32,
 
-    /// From where a PNG picture is seen: the direction from the centre of the scene, as x,y,z; y is up
+    /// The direction to the viewer of a PNG picture; y is up
     #[arg(long, value_name = "X,Y,Z", default_value = "0.45,0.4,1", value_parser = direction, allow_hyphen_values = true)]
     eye: Vector3<f64>,
 
-    /// Report as one JSON object
+    /// Print the result as JSON
     #[arg(long)]
     json: bool,
 }

@@ -20,55 +20,47 @@ use p2m_mixed::statistics::figure::Count;
 use serde_json::json;
 use std::path::PathBuf;
 
-fn help() -> String {
-    format!(
-        "\
-Each panel (in a PLY file: each value of the vertex property 'panel') shows one level of the tree: its nodes and the \
-leaves above it, which together hold the whole scene. The last one shows the leaves alone. Dots are vertices of the \
-scene, at most 4000 of them.
-
-{}
+const HELP: &str = "\
+Each panel shows one level of the tree: its nodes, and the leaves above it. The last panel shows all leaves. In a \
+PLY file, the vertex property 'panel' has the number of the panel. Dots are vertices of the scene, at most 4000.
 
 Examples:
   p2m boxes bunny.obj --out boxes.svg
   p2m boxes scene.ply --levels 5 --view top --out boxes.svg
   p2m boxes scene.ply --k 14 --levels 2 --out polytopes.svg
-  p2m boxes scene.ply --levels 12 --out boxes.ply",
-        json::STABILITY
-    )
-}
+  p2m boxes scene.ply --levels 12 --out boxes.ply";
 
-/// Draw the boxes of the AABB tree over a scene (or the polytopes of the k-DOP tree), level by level, as SVG or PLY
+/// Draw the levels of an AABB tree or a k-DOP tree as SVG or PLY
 #[derive(clap::Args)]
-#[command(after_help = help())]
+#[command(after_help = HELP)]
 pub(crate) struct Args {
     #[command(flatten)]
     scene: SceneArgs,
 
-    /// Where to write the picture: a name that ends in .svg or .ply
+    /// Write the picture to this file (.svg or .ply)
     #[arg(long, value_name = "FILE")]
     out: PathBuf,
 
-    /// The number of levels to draw, from the root on; levels that the tree does not have are left out
+    /// The number of levels to draw, from the root
     #[arg(long, value_name = "N", default_value_t = 7, value_parser = clap::value_parser!(u8).range(0..=64))]
     levels: u8,
 
-    /// Draw the polytopes of the k-DOP tree with as many faces
+    /// Draw a k-DOP tree whose polytopes have this many faces
     #[arg(long, value_name = "K", value_enum, ignore_case = true, allow_negative_numbers = true)]
     k: Option<KdopFaces>,
 
-    /// From where an SVG picture is seen
+    /// The view of an SVG picture
     #[arg(long, value_enum, default_value_t = View::Isometric)]
     view: View,
 
-    /// Which axis points up in an SVG picture
+    /// The axis that points up in an SVG picture
     #[arg(long, value_enum, default_value_t = Up::Z)]
     up: Up,
 
     #[command(flatten)]
     threads: ThreadArgs,
 
-    /// Report as one JSON object on the standard output, instead of the titles on the standard error
+    /// Print the levels as JSON
     #[arg(long)]
     json: bool,
 }

@@ -9,11 +9,11 @@ use std::path::Path;
 
 #[derive(clap::Args)]
 pub(crate) struct PageArgs {
-    /// Which axis points up on the page
+    /// The axis that points up
     #[arg(long, value_enum, default_value_t = Up::Z)]
     up: Up,
 
-    /// The name of the unit of lengths
+    /// The name of the unit of length
     #[arg(long, value_name = "NAME", default_value = "units")]
     pub(crate) unit: String,
 }

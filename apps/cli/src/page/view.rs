@@ -26,16 +26,16 @@ use rayon::prelude::*;
 use std::path::{Path, PathBuf};
 
 const HELP: &str = "\
-The page is one HTML file, which any browser opens without a network. It shows the triangles, segments and points of the \
-scene, whose objects can be hidden. With queries it shows their closest points, coloured by distance: a click on a query \
-point prints its answer and draws the primitive, the feature and the sphere of the lower bound. With --field it shows a \
-slice of the distance field that can be moved, with --lists a slice through the cells of an octree or a P2M index, and \
-with --levels the boxes of the AABB tree. All of it can be done with the keyboard.
+The page is one HTML file, which any browser opens without a network. It shows the triangles, segments and points of \
+the scene, whose objects you can hide. With queries it shows closest points, coloured by distance: click on a query \
+to see its answer, the primitive, the feature and the sphere of the lower bound. --field adds a movable slice of the \
+distance field, --lists a slice through cells, and --levels boxes of the AABB tree. The keyboard can do everything \
+that the mouse can.
 
-Queries are answered live where the mouse is, by the library in the page, compiled to WebAssembly. --live says when.
+Small pages answer queries at the mouse with the library itself, compiled to WebAssembly.
 
-Numbers on the page are those of `p2m query`, in full. Scenes of more than a million primitives are drawn coarser, which \
-a note on the page says.
+Numbers are those of `p2m query`, with all digits. Scenes of more than a million primitives are drawn in less \
+detail, and a note on the page says so.
 
 Examples:
   p2m view scene.obj --random 1000 --out page.html
@@ -43,48 +43,46 @@ Examples:
   p2m view bunny.obj --backend p2m --lists 128 --out cells.html
   p2m view city.obj --points scan.xyz --unit metres --levels 8 --out city.html";
 
-/// Write a page that shows a scene, its closest points and its distance field in a browser
+/// Show a scene, closest points and a distance field in a browser
 #[derive(clap::Args)]
 #[command(after_help = HELP)]
 pub(crate) struct Args {
     #[command(flatten)]
     scene: SceneArgs,
 
-    /// Show the closest points of the points of this XYZ, TXT, CSV, NPY or PLY file; `-` is the standard input
+    /// Show the closest points of the points of a file: XYZ, TXT, CSV, NPY or PLY
     #[arg(long, value_name = "FILE", conflicts_with = "random")]
     points: Option<PathBuf>,
 
-    /// The format of the points, if the extension of their file does not name it
+    /// The format of the points [default: by the file extension]
     #[arg(long, value_name = "FORMAT", value_parser = one_of::<PointFormat>(PointFormat::NAMES), ignore_case = true, requires = "points")]
     points_format: Option<PointFormat>,
 
-    /// Show the closest points of N uniformly distributed points in the scaled box of the scene
+    /// Show the closest points of N random points in the box of the scene
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u64).range(0..=MAX_QUERIES), allow_negative_numbers = true)]
     random: Option<u64>,
 
-    /// Scale the box of the scene about its centre by this factor, for random points and the field
+    /// Scale the box of the scene about its centre by this factor
     #[arg(long, value_name = "S", default_value_t = 1.2, value_parser = positive, allow_negative_numbers = true)]
     box_scale: f64,
 
-    /// Seed of the random points
+    /// The seed of the random points
     #[arg(long, value_name = "K", default_value_t = 0, value_parser = whole_number, allow_negative_numbers = true, requires = "random")]
     seed: u64,
 
-    /// Give no answers farther than this, in the unit of the scene
+    /// Find nothing farther than R, in the unit of the scene
     #[arg(long, value_name = "R", value_parser = not_negative, allow_negative_numbers = true)]
     max_distance: Option<f64>,
 
-    /// Show slices of the distance field on a grid with N points along its longest side
+    /// Show slices of a distance field with N grid points along the longest side
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(2..=256), allow_negative_numbers = true)]
     field: Option<u32>,
 
-    /// Negative distances inside; needs a scene of triangles [possible values of RULE: auto, winding, parity; default:
-    /// auto]
+    /// Compute signed distances, negative inside; the scene must have triangles only
     #[arg(long, value_name = "RULE", num_args = 0..=1, require_equals = true, default_missing_value = "auto", value_enum)]
     signed: Option<SignRule>,
 
-    /// Show slices through the cells of an index with lists, coloured by the length of the list at each point of a grid
-    /// with N points along its longest side; needs --backend octree or p2m, or a saved index of these
+    /// Show slices through the cells of an octree or a P2M index, coloured by the length of their lists
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(2..=256), allow_negative_numbers = true, conflicts_with = "field")]
     lists: Option<u32>,
 
@@ -92,18 +90,18 @@ pub(crate) struct Args {
     #[arg(long, value_name = "N", default_value_t = 0, value_parser = clap::value_parser!(u8).range(0..=16), allow_negative_numbers = true)]
     levels: u8,
 
-    /// Whether the page answers queries where the mouse is: `auto` stands for scenes of at most 10,000 primitives
+    /// Whether the page answers queries at the mouse; auto: up to 10,000 primitives
     #[arg(long, value_name = "WHEN", value_enum, default_value_t = Live::Auto)]
     live: Live,
 
-    /// The index to search [default: that of a saved file, else aabb]
+    /// The index to search [default: the saved index, or aabb]
     #[arg(long, value_parser = backends(|_| true))]
     backend: Option<Backend>,
 
     #[command(flatten)]
     page: PageArgs,
 
-    /// Where to write the page; `-` is the standard output
+    /// Write the page to this file; `-` is the standard output
     #[arg(long, value_name = "FILE")]
     out: PathBuf,
 

@@ -10,17 +10,17 @@ use serde_json::{Value, json};
 #[derive(clap::Args)]
 #[command(next_help_heading = "Accuracy")]
 pub(crate) struct Accuracy {
-    /// Distances may be too large by this part of themselves: 0.01 allows for one per cent
+    /// Allow a relative error of the distance: 0.01 is one per cent
     #[arg(long, value_name = "E", value_parser = finite_not_negative, allow_negative_numbers = true, conflicts_with = "certified")]
     epsilon: Option<f64>,
 
-    /// Answer with the best that N visits of nodes and packets find; more are made only until anything is found.
+    /// Stop after N visits of nodes and packets, with the best answer so far
     ///
-    /// With 0 the interception indexes (octree, p2m) answer from the cell of the query alone.
+    /// The search continues until it finds any answer. With 0, octrees and P2M indexes search the cell of the query only.
     #[arg(long, alias = "budget", value_name = "N", value_parser = clap::value_parser!(u32), allow_negative_numbers = true, conflicts_with = "certified")]
     max_visits: Option<u32>,
 
-    /// Prove every answer: the primitive that is nearest in exact arithmetic, and its distance, rounded once
+    /// Find the nearest primitive in exact arithmetic, and round its distance once
     #[arg(long)]
     certified: bool,
 }

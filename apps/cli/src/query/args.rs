@@ -20,39 +20,32 @@ use p2m_mixed::{Object, PointFormat};
 use serde_json::{Value, json};
 use std::path::PathBuf;
 
-/// The text of the help. Each paragraph is one line, so that it wraps at the width of the terminal.
-fn help() -> String {
-    format!(
-        "\
-The table has the columns qx,qy,qz,x,y,z,distance,primitive,feature: the query, its closest point in the scene, their \
-distance, the number of the primitive from 0 and the part of it that holds the point. The last six are empty where \
-there is no answer; --columns chooses others, and --signed adds signed_distance. With --k-nearest or --within each answer has \
-a row, with the number of its query from 0 in the column number; as NPY and PLY they are kept in memory until all are known. Of a scene with named objects there is one column more, object: the name of the object of the primitive, \
-empty if it belongs to none. Numbers are the shortest that read back the same. A summary goes to the standard error.
+const HELP: &str = "\
+The table has the columns qx,qy,qz,x,y,z,distance,primitive,feature: the query, the closest point, the distance, the \
+number of the primitive, and the feature that has the point. The last six are empty where there is no answer. \
+--signed adds signed_distance. With --k-nearest or --within each answer has a row, and the column number has the \
+number of its query; NPY and PLY files of such answers are kept in memory until all are known. A scene with named \
+objects has the column object. Numbers are the shortest that read back the same. The summary goes to the standard \
+error.
 
-Primitives are numbered in the order of the file. Polygons are cut into triangles, and it is the triangles that count.
+Primitives are numbered from 0, in the order of the file. Polygons are cut into triangles, which are numbered instead.
 
-The feature is face, edge0, edge1 or edge2 (edge0 from the first vertex of the primitive to the second, and so on), or \
-vertex0, vertex1 or vertex2.
+The feature is face, edge0 to edge2 (edge0 runs from the first vertex of the primitive to the second), or vertex0 to \
+vertex2.
 
-Answers as NPY are an array of NumPy with the fields query, point, distance, lower_bound, barycentric, primitive, \
-feature_kind (0 a vertex, 1 an edge, 2 the face) and feature_number; as PLY a cloud of the queries that viewers can colour \
-by distance. Where there is no answer, numbers are NaN and -1.
+NPY files have an array with the fields query, point, distance, lower_bound, barycentric, primitive, feature_kind (0 \
+vertex, 1 edge, 2 face) and feature_number. PLY files have a cloud of the queries, coloured by distance in viewers. \
+Where there is no answer, numbers are NaN and -1.
 
-No distance is smaller than the true one but for rounding. With --epsilon or --max-visits it may be larger, by at most what the line `accuracy` of the summary says: every answer has a \
-lower bound that is certain (lower_bound in NPY). Of primitives whose distances are equal after rounding, the answer is \
-the one that comes first in the file, although another one may be nearer by less than that rounding; --certified answers \
-with the one that is exactly the nearest, and of equal ones with the first.
+A distance is never smaller than the true one, except for rounding. With --epsilon or --max-visits it may be larger, \
+by at most what the line `accuracy` of the summary says; the column lower_bound has a certified lower bound. Of \
+primitives with the same rounded distance, the first one of the file is the answer, although another one may be \
+nearer by less than the rounding. --certified finds the one that is exactly the nearest, and the first of equal \
+ones.
 
-Points from a CSV file are taken from its columns qx, qy, qz, or else x, y, z (also like 'X [m]'), or else Points:0, \
-Points:1, Points:2, or else from the first three columns; so the table itself is a file of the same queries. XYZ and TXT \
-files have three or more columns separated by blanks. NPY files are arrays of three columns. Of PLY files the vertices are \
-read.
-
-{}
-
-The exit code is 0 for success, with or without answers; 1 for what could not be read, written or done; 2 for wrong usage; \
-and 130 after Ctrl-C.
+CSV files need the columns qx, qy, qz, or x, y, z (also like 'X [m]'), or Points:0 to Points:2; otherwise the first \
+three columns are used. So the table of answers is itself a file of queries. XYZ and TXT files have at least three \
+columns, separated by blanks. NPY files have arrays of three columns. PLY files give their vertices.
 
 Examples:
   p2m query bunny.obj --points scan.xyz --max-distance 0.5 --out answers.csv
@@ -63,77 +56,72 @@ Examples:
   p2m query scene.obj --grid 64 --out field.npy --json
   p2m query city.obj --points scan.xyz --epsilon 0.01 --out rough.npy
   p2m query turned.stl --random 100000 --backend kdop --k scene --out answers.csv
-  p2m generate torus-knot | p2m query - --format obj --random 1000 --out distances.ply",
-        json::STABILITY
-    )
-}
+  p2m generate torus-knot | p2m query - --format obj --random 1000 --out distances.ply";
 
-/// Find the closest points of a scene to given, regularly spaced or random points
+/// Find the points of a scene that are closest to query points
 #[derive(clap::Args)]
-#[command(after_help = help())]
+#[command(after_help = HELP)]
 #[command(group = ArgGroup::new("queries").required(true).args(["points", "grid", "random"]))]
 pub(crate) struct Args {
     #[command(flatten)]
     pub(crate) scene: SceneArgs,
 
-    /// Query the points of this XYZ, TXT, CSV, NPY or PLY file; `-` is the standard input
+    /// Read the query points from a file: XYZ, TXT, CSV, NPY or PLY
     #[arg(long, value_name = "FILE")]
     pub(crate) points: Option<PathBuf>,
 
-    /// The format of the points, if the extension of their file does not name it
+    /// The format of the points [default: by the file extension]
     #[arg(long, value_name = "FORMAT", value_parser = one_of::<PointFormat>(PointFormat::NAMES), ignore_case = true, conflicts_with_all = ["grid", "random"])]
     points_format: Option<PointFormat>,
 
-    /// Query a grid of N x N x N points that fills the scaled box of the scene, ends included; z runs fastest
+    /// Query N x N x N points, evenly spaced in the box of the scene; z runs fastest
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u64).range(1..=1 << 21), allow_negative_numbers = true)]
     grid: Option<u64>,
 
-    /// Query N uniformly distributed points in the scaled box of the scene
+    /// Query N random points in the box of the scene
     #[arg(long, value_name = "N", value_parser = whole_number, allow_negative_numbers = true)]
     random: Option<u64>,
 
-    /// Scale the box of the scene about its centre by this factor before filling it.
+    /// Scale the box of the scene about its centre by this factor
     ///
-    /// Along an axis on which the scene is flat, the box is widened to each side by as much as the factor adds to
-    /// its longest side.
+    /// Where the scene is flat, the box grows on each side by what the factor adds to the longest side.
     #[arg(long, value_name = "S", default_value_t = 1.05, value_parser = positive, allow_negative_numbers = true, conflicts_with = "points")]
     box_scale: f64,
 
-    /// Seed of the random points
+    /// The seed of the random points
     #[arg(long, value_name = "K", default_value_t = 0, value_parser = whole_number, allow_negative_numbers = true, conflicts_with_all = ["points", "grid"])]
     seed: u64,
 
-    /// Give no answers farther than this, in the unit of the scene; at exactly this distance there is one
+    /// Find nothing farther than R, in the unit of the scene
     #[arg(long, value_name = "R", value_parser = not_negative, allow_negative_numbers = true)]
     pub(crate) max_distance: Option<f64>,
 
-    /// The index to search [default: aabb, or as a saved index does]
+    /// The index to search [default: the saved index, or aabb]
     #[arg(long, value_parser = backend_choices())]
     pub(crate) backend: Option<BackendChoice>,
 
     #[command(flatten)]
     pub(crate) p2m: P2mArgs,
 
-    /// Answer with the N nearest primitives of each query, nearest first, one row each
+    /// Find the N nearest primitives, nearest first, in a row each
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..), allow_negative_numbers = true, conflicts_with_all = ["within", "certified", "epsilon", "max_visits"])]
     k_nearest: Option<u32>,
 
-    /// Answer with all primitives within this distance of each query, nearest first, one row each
+    /// Find all primitives within R, nearest first, in a row each
     #[arg(long, value_name = "R", value_parser = not_negative, allow_negative_numbers = true, conflicts_with_all = ["max_distance", "certified", "epsilon", "max_visits"])]
     within: Option<f64>,
 
-    /// Add a column of distances that are negative inside; needs a scene of triangles [possible values of RULE: auto,
-    /// winding, parity].
+    /// Add signed distances, negative inside; the scene must have triangles only
     ///
-    /// For an index in shards, RULE must be auto, and the surface must be closed.
+    /// RULE decides which points are inside. An index in shards needs a closed surface and the rule auto.
     #[arg(long, value_name = "RULE", num_args = 0..=1, require_equals = true, default_missing_value = "auto", value_enum, conflicts_with_all = ["k_nearest", "within"])]
     pub(crate) signed: Option<SignRule>,
 
-    /// The columns of the answers in this order, separated by commas
+    /// The columns of the table, separated by commas
     #[arg(long, value_name = "COLUMNS", value_delimiter = ',', value_parser = columns())]
     columns: Vec<AnswerColumn>,
 
-    /// Keep at most this much of an index in shards in memory, such as 4GB or 500MiB; one shard is kept in any case
+    /// Keep at most this much of an index in shards in memory, such as 4GB
     #[arg(long, value_name = "BYTES", value_parser = bytes)]
     pub(crate) max_memory: Option<u64>,
 

@@ -28,78 +28,69 @@ use serde_json::json;
 use std::path::PathBuf;
 use std::time::Instant;
 
-fn help() -> String {
-    format!(
-        "\
-The grid covers the scaled box of the scene: N points along its longest side, ends included, and as many along the others at \
-the same spacing. Values are rounded to f32. Unless a backend is named, distances come from lists of what can be nearest in blocks of the grid if \
-it has as many points as the scene has primitives, which is faster and has the same values; an AABB tree decides signs.
+const HELP: &str = "\
+The grid covers the scaled box of the scene with the same spacing along all axes; the ends of the longest side are \
+grid points. Values are rounded to f32. Unless you name a backend, fine grids are computed from candidate lists for \
+blocks of the grid, which is faster and gives the same values; an AABB tree decides signs.
 
-NPY files are arrays of NumPy, field[i, j, k] with x, y and z; VTI files are images of VTK, with origin and spacing; RAW files have the \
-values alone, little-endian, x fastest. With --refine the file is NPY: an array of cells with the fields origin, size and values (at \
-the corners: x runs fastest, z slowest).
+NPY files have an array field[i, j, k] with x, y and z. VTI files are images of VTK, with origin and spacing. RAW \
+files have the values only, little-endian, x fastest. With --refine, the file is NPY: an array of cells with the \
+fields origin, size and values (at the corners, x fastest).
 
-With --signed distances are negative inside: where the winding number of the surface exceeds a half in magnitude, also for \
-surfaces with holes or overlapping shells. Surfaces that are closed but have triangles of different orientations take the rule parity: inside is where a ray crosses the surface an odd \
-number of times. The distance is NaN where rounding leaves it open on which side of a half the number of an open \
-surface is.
-
-{}
+With --signed, distances are negative where the winding number of the surface exceeds a half in magnitude. That \
+works for surfaces with holes and overlapping shells. Closed surfaces with inconsistent orientations use the rule \
+parity: a point is inside if a ray crosses the surface an odd number of times. Distances are NaN where rounding \
+leaves the sign of an open surface undecided.
 
 Examples:
   p2m field bunny.obj --resolution 256 --signed --out bunny.vti --slice bunny.png
   p2m field scan.ply --resolution 512 --band 0.02 --out band.npy
-  p2m field part.stl --refine 0.001 --signed --out cells.npy --json",
-        json::STABILITY
-    )
-}
+  p2m field part.stl --refine 0.001 --signed --out cells.npy --json";
 
-/// Compute the distance from a scene at each point of a grid, signed or not
+/// Compute a distance field on a grid or an octree
 #[derive(clap::Args)]
-#[command(after_help = help())]
+#[command(after_help = HELP)]
 pub(crate) struct Args {
     #[command(flatten)]
     index_args: IndexArgs,
 
-    /// Points along the longest side of the grid
+    /// The number of grid points along the longest side
     #[arg(long, value_name = "N", default_value_t = 64, value_parser = clap::value_parser!(u32).range(2..=1 << 12), allow_negative_numbers = true)]
     resolution: u32,
 
-    /// Scale the box of the scene about its centre by this factor before filling it
+    /// Scale the box of the scene about its centre by this factor
     #[arg(long, value_name = "S", default_value_t = 1.2, value_parser = positive, allow_negative_numbers = true)]
     box_scale: f64,
 
-    /// Negative distances inside; needs a scene of triangles [possible values of RULE: auto, winding, parity; default:
-    /// auto]
+    /// Compute signed distances, negative inside; the scene must have triangles only
     #[arg(long, value_name = "RULE", num_args = 0..=1, require_equals = true, default_missing_value = "auto", value_enum)]
     signed: Option<SignRule>,
 
-    /// Compute distances up to this value only, in the unit of the scene; farther points have this value
+    /// Compute distances up to W only; farther points get W
     #[arg(long, value_name = "W", value_parser = not_negative, allow_negative_numbers = true, conflicts_with = "refine")]
     band: Option<f64>,
 
-    /// An octree instead of a grid, cut where the surface is while the interpolated distance is off by more than this,
-    /// in the middle of a cell, of its faces or its edges
+    /// Compute an octree instead, refined near the surface to this error of interpolation
     #[arg(long, value_name = "ERROR", value_parser = positive, allow_negative_numbers = true, conflicts_with_all = ["resolution", "slice", "out_format"])]
     refine: Option<f64>,
 
-    /// The largest number of times that a cell is cut
+    /// The largest depth of the octree
     #[arg(long, value_name = "D", default_value_t = 8, value_parser = clap::value_parser!(u32).range(0..=16), requires = "refine", allow_negative_numbers = true)]
     depth: u32,
 
-    /// Where to write the field
+    /// Write the field to this file
     #[arg(long, value_name = "FILE")]
     out: PathBuf,
 
-    /// The format of the field, if the extension of its file does not name it
+    /// The format of the field [default: by the file extension]
     #[arg(long, value_name = "FORMAT", value_parser = one_of::<FieldFormat>(FieldFormat::NAMES), ignore_case = true)]
     out_format: Option<FieldFormat>,
 
-    /// A picture of the layer in the middle, across z: a PNG file
+    /// Write a PNG picture of the middle layer, across z
     #[arg(long, value_name = "FILE")]
     slice: Option<PathBuf>,
 
-    /// Report as one JSON object on the standard output, instead of a summary on the standard error
+    /// Print the summary as JSON
     #[arg(long)]
     json: bool,
 }

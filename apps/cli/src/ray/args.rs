@@ -15,106 +15,91 @@ use p2m_mixed::PointFormat;
 use serde_json::{Value, json};
 use std::path::PathBuf;
 
-/// The text of the help. Each paragraph is one line, so that it wraps at the width of the terminal.
-fn help() -> String {
-    format!(
-        "\
-A ray has an origin and a direction of any length but zero: its points are origin + t direction with the parameter t from \
---min to --max. Whether it intersects a primitive is decided without rounding, so nothing slips through between two \
-triangles with a common edge, and every backend gives the same table, but for `any`. A hit on a common edge is one of both \
-triangles, and as a crossing it counts once.
+const HELP: &str = "\
+The points of a ray are origin + t direction, for parameters t from --min to --max, both included. Whether a ray \
+intersects a primitive is decided without rounding: no ray slips through between two triangles with a common edge, \
+and all backends give the same table, except with --mode any. A hit on a common edge counts for both triangles, and \
+once as a crossing.
 
-The table has the columns ray,ox,oy,oz,dx,dy,dz: the number of the ray from 0, its origin and its direction. With --mode \
-intersects, count and crossings it has one more, called hit (0 or 1), count or crossings. With the others it has \
-parameter,x,y,z,primitive,side,w0,w1,w2: the parameter t and the point of the hit, the number of the primitive from 0, the \
-side of the triangle that is met (front, back, or along for one in its plane, and for segments and points), and the weights \
-of the primitive's vertices. With --mode first and any each ray has one line, where the last nine are empty if it \
-intersects nothing; with --mode all it has a line for each of its hits, by parameter and then by primitive. Of a scene with named \
-objects hits have one column more, object: the name of that of the primitive, empty where it is in none. Numbers are the \
-shortest that read back the same. A summary goes to the standard error.
+The table has the columns ray,ox,oy,oz,dx,dy,dz: the number of the ray, its origin and its direction. The modes \
+intersects, count and crossings add one column. The others add parameter,x,y,z,primitive,side,w0,w1,w2: the \
+parameter and the point of the hit, the number of the primitive, the side of the triangle (front, back, or along for \
+a ray in its plane and for segments and points), and the weights of its vertices. In the modes first and any, each \
+ray has one row, whose last nine cells are empty without a hit. In the mode all, each hit has a row, sorted by \
+parameter and then by primitive. A scene with named objects has the column object. The summary goes to the standard \
+error.
 
-Answers as NPY are an array of NumPy with the fields origin, direction and ray, and hit, count or crossings, or parameter, \
-point, barycentric, primitive and side (0 front, 1 back, 2 along); as PLY a cloud of the origins with the directions as \
-normals. Where there is no hit, numbers are NaN and -1.
+NPY files have an array with the fields origin, direction, ray, and hit, count or crossings, or parameter, point, \
+barycentric, primitive and side (0 front, 1 back, 2 along). PLY files have a cloud of the origins, with the \
+directions as normals. Where there is no hit, numbers are NaN and -1.
 
-Rays from a CSV file are taken from its columns ox, oy, oz, dx, dy, dz, or else x, y, z, dx, dy, dz, or else x, y, z, nx, ny, \
-nz, or else Points:0 to Points:2 and Normals:0 to Normals:2, or else from the first six columns; so the table itself is a \
-file of the same rays. XYZ and TXT files have six or more columns separated by blanks. NPY files are arrays of six columns. Of \
-PLY files the vertices are the origins, and their normals nx, ny, nz the directions. Numbers that are not finite, and directions that \
-are zero, are errors.
-
-{}
-
-The exit code is 0 for success, with or without hits; 1 for what could not be read, written or done; 2 for wrong usage; and \
-130 after Ctrl-C.
+CSV files need the columns ox, oy, oz, dx, dy, dz, or x, y, z with dx, dy, dz or nx, ny, nz, or Points:0 to Points:2 \
+and Normals:0 to Normals:2; otherwise the first six columns are used. So the table of hits is itself a file of rays. \
+XYZ and TXT files have at least six columns, separated by blanks. NPY files have arrays of six columns. PLY files \
+give their vertices and normals. Numbers that are not finite and directions of length 0 are errors.
 
 Examples:
   p2m ray bunny.obj --rays scan.csv --out hits.csv
   p2m ray scene.ply --random 100000 --seed 7 --mode all --out hits.npy --json
   p2m ray part.stl --random 1000 --line --mode crossings > crossings.csv
   p2m ray wires.obj --rays rays.npy --radius 0.01 --max 10 --backend kdop --k 14
-  p2m generate torus-knot | p2m ray - --format obj --random 1000 --mode intersects --out hit.ply",
-        json::STABILITY
-    )
-}
+  p2m generate torus-knot | p2m ray - --format obj --random 1000 --mode intersects --out hit.ply";
 
-/// Find what given or random rays meet of a scene: the first hit, all of them, or their number
+/// Find the hits of rays with a scene: the first, all, or their number
 #[derive(clap::Args)]
-#[command(after_help = help())]
+#[command(after_help = HELP)]
 #[command(group = ArgGroup::new("questions").required(true).args(["rays", "random"]))]
 pub(crate) struct Args {
     #[command(flatten)]
     pub(crate) scene: SceneArgs,
 
-    /// Cast the rays of this XYZ, TXT, CSV, NPY or PLY file; `-` is the standard input
+    /// Read the rays from a file: XYZ, TXT, CSV, NPY or PLY
     #[arg(long, value_name = "FILE")]
     rays: Option<PathBuf>,
 
-    /// The format of the rays, if the extension of their file does not name it
+    /// The format of the rays [default: by the file extension]
     #[arg(long, value_name = "FORMAT", value_parser = one_of::<PointFormat>(PointFormat::NAMES), ignore_case = true, conflicts_with = "random")]
     rays_format: Option<PointFormat>,
 
-    /// Cast N rays from uniformly distributed points in the scaled box of the scene into uniformly distributed
-    /// directions of length 1
+    /// Cast N rays from random points in the box of the scene in random directions
     #[arg(long, value_name = "N", value_parser = whole_number, allow_negative_numbers = true)]
     random: Option<u64>,
 
-    /// Scale the box of the scene about its centre by this factor before filling it.
+    /// Scale the box of the scene about its centre by this factor
     ///
-    /// Along an axis on which the scene is flat, the box is widened to each side by as much as the factor adds to
-    /// its longest side.
+    /// Where the scene is flat, the box grows on each side by what the factor adds to the longest side.
     #[arg(long, value_name = "S", default_value_t = 1.05, value_parser = positive, allow_negative_numbers = true, conflicts_with = "rays")]
     box_scale: f64,
 
-    /// Seed of the random rays
+    /// The seed of the random rays
     #[arg(long, value_name = "K", default_value_t = 0, value_parser = whole_number, allow_negative_numbers = true, conflicts_with = "rays")]
     seed: u64,
 
-    /// The answer for each ray
+    /// What to find for each ray
     #[arg(long, value_enum, default_value_t = Mode::First)]
     pub(crate) mode: Mode,
 
-    /// Go both ways: parameters from minus infinity on
+    /// Extend each ray backwards to a line
     #[arg(long, conflicts_with = "min")]
     line: bool,
 
-    /// The least parameter, in lengths of the direction, itself included
+    /// The smallest parameter, in lengths of the direction
     #[arg(long, value_name = "T", default_value_t = 0.0, value_parser = number, allow_hyphen_values = true)]
     min: f64,
 
-    /// The largest parameter, itself included [default: none]
+    /// The largest parameter [default: none]
     #[arg(long, value_name = "T", value_parser = number, allow_hyphen_values = true)]
     max: Option<f64>,
 
-    /// Segments and points are hit within this distance, in the unit of the scene; it does not matter to triangles
+    /// The radius of segments and points, in the unit of the scene
     #[arg(long, value_name = "R", default_value_t = 0.0, value_parser = finite_not_negative, allow_negative_numbers = true)]
     radius: f64,
 
-    /// The index to search; interception indexes (octree, p2m) answer no rays [default: aabb, or as a saved index does]
+    /// The index to search [default: the saved index, or aabb]
     #[arg(long, value_parser = backends(|backend| backend.casts_rays))]
     pub(crate) backend: Option<Backend>,
 
-    /// Keep at most this much of an index in shards in memory, such as 4GB or 500MiB; one shard is kept in any case
+    /// Keep at most this much of an index in shards in memory, such as 4GB
     #[arg(long, value_name = "BYTES", value_parser = bytes)]
     pub(crate) max_memory: Option<u64>,
 
@@ -127,9 +112,9 @@ pub(crate) enum Mode {
     /// Whether a ray hits anything
     #[value(alias = "do")]
     Intersects,
-    /// The hit that is found first: some hit, which depends on the backend
+    /// Any hit, which depends on the backend
     Any,
-    /// The hit with the least parameter
+    /// The hit with the smallest parameter
     First,
     /// All hits
     All,

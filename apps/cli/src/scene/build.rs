@@ -15,38 +15,31 @@ use serde_json::json;
 use std::path::PathBuf;
 use std::time::Instant;
 
-fn help() -> String {
-    format!(
-        "\
-The file has the scene, too, so every command takes it in place of one. A command that searches by another backend, or with \
-another --k, builds its own index from that scene.
+const HELP: &str = "\
+The file also has the scene, so every command accepts it as a scene. A command that needs another backend or another \
+--k builds its own index from it.
 
-A file can be read by programs with the same version of the format, on little-endian processors. It is checked before use: \
-what is damaged, cut off or contradictory is refused. Only with --map must nobody change the file while a command uses it. \
-This command writes a new file and renames it, so a command that has mapped the old one is not disturbed.
-
-{}
+Programs with the same version of the format can read the file, on little-endian processors. It is checked before \
+use: damaged, truncated and contradictory files are refused. Replacing a file does not disturb commands that have \
+mapped the old one.
 
 Examples:
   p2m build bunny.obj --backend p2m --out bunny.p2m
   p2m query bunny.p2m --random 100000 --out answers.csv
-  p2m build turned.stl --backend kdop --k 18 --out turned.p2m",
-        json::STABILITY
-    )
-}
+  p2m build turned.stl --backend kdop --k 18 --out turned.p2m";
 
-/// Build an index over a scene and save it, for other commands to load instead of building it
+/// Build an index and save it
 #[derive(clap::Args)]
-#[command(after_help = help())]
+#[command(after_help = HELP)]
 pub(crate) struct Args {
     #[command(flatten)]
     index_args: IndexArgs,
 
-    /// Where to write the file, usually a name that ends in .p2m
+    /// Write the index to this file, such as scene.p2m
     #[arg(long, value_name = "FILE")]
     out: PathBuf,
 
-    /// Report as one JSON object on the standard output, instead of a summary on the standard error
+    /// Print the summary as JSON
     #[arg(long)]
     json: bool,
 }

@@ -16,26 +16,26 @@ use p2m_mixed::{Format, Scene, WriteError, stl_rounding, write_scene};
 use serde_json::{Value, json};
 use std::path::{Path, PathBuf};
 
-/// Write a scene in another format, or changed
+/// Convert or transform a scene
 #[derive(clap::Args)]
 #[command(after_help = help())]
 pub(crate) struct Args {
     #[arg(value_name = "IN", help = scene_help("Scene"))]
     from_file: PathBuf,
 
-    /// Where to write it; `-` is the standard output. The file appears under this name when it is complete
+    /// The file to write; `-` is the standard output
     #[arg(value_name = "OUT")]
     to_file: PathBuf,
 
-    /// The format of IN, if its extension does not name it
+    /// The format of IN [default: by the file extension]
     #[arg(long, value_name = "FORMAT", value_parser = one_of::<Format>(Format::NAMES), ignore_case = true)]
     from: Option<Format>,
 
-    /// The format of OUT, if its extension does not name it
+    /// The format of OUT [default: by the file extension]
     #[arg(long, value_name = "FORMAT", value_parser = one_of::<Format>(Format::NAMES), ignore_case = true)]
     to: Option<Format>,
 
-    /// Report as one JSON object on the standard output; needs a file as OUT
+    /// Print the summary as JSON; OUT must be a file
     #[arg(long)]
     json: bool,
 
@@ -46,12 +46,9 @@ pub(crate) struct Args {
 fn help() -> String {
     format!(
         "\
-{} files hold the whole geometry: the same positions bit by bit, the same primitives in the same order. Polygons are cut into \
-triangles. STL \
-files hold triangles alone, in single precision and without shared vertices. The losses of a conversion are reported on the standard \
-error; what a format cannot hold at all is an error.
-
-{}
+{} files keep the whole geometry: the same positions, bit for bit, and the same primitives in the same order. \
+Polygons are cut into triangles. STL files have triangles only, in single precision and without shared vertices. The \
+standard error reports what is lost; what a format cannot hold at all is an error.
 
 {}
 
@@ -60,8 +57,7 @@ Examples:
   p2m convert part.stl - --to obj --rotate-x 90 --scale 0.001 | p2m info - --format obj
   p2m convert dragon.ply shards.ply --subdivide 1 --displace 0.1 --gap 0.8",
         format_list(Format::is_lossless, "and"),
-        modify::ORDER,
-        json::STABILITY
+        modify::ORDER
     )
 }
 

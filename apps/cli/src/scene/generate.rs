@@ -15,7 +15,7 @@ use p2m_mixed::{Format, Scene};
 use serde_json::{Value, json};
 use std::path::PathBuf;
 
-/// Make a scene from nothing, the same on every machine
+/// Generate a scene, the same on every machine
 #[derive(ClapArgs)]
 #[command(after_help = help())]
 pub(crate) struct Args {
@@ -26,16 +26,13 @@ pub(crate) struct Args {
 fn help() -> String {
     format!(
         "\
-Each kind of scene has options of its own, and all can be changed on the way (see p2m generate KIND --help). {}
-
-{}
+Each kind of scene has its own options (p2m generate KIND --help), and all kinds can be transformed. {}
 
 Examples:
   p2m generate knot-and-cables --out knot_and_cables.obj
   p2m generate skewed-gear --rotate-x 45 --rotate-y 45 --out gear.ply
   p2m generate ico-sphere --subdivide 2 --displace 0.1 | p2m info - --format obj",
-        modify::ORDER,
-        json::STABILITY
+        modify::ORDER
     )
 }
 
@@ -49,15 +46,15 @@ impl Args {
 /// The file that the scene is written to, and the changes before that.
 #[derive(ClapArgs)]
 struct Destination {
-    /// Where to write the scene; `-` is the standard output. The file appears under this name when it is complete
+    /// Write the scene to this file; `-` is the standard output
     #[arg(long, value_name = "FILE", default_value = "-")]
     out: PathBuf,
 
-    /// The format, if the extension does not name it; OBJ on the standard output
+    /// The format [default: by the file extension; OBJ on the standard output]
     #[arg(long, value_name = "FORMAT", value_parser = one_of::<Format>(Format::NAMES), ignore_case = true)]
     to: Option<Format>,
 
-    /// Report as one JSON object on the standard output; needs --out FILE
+    /// Print the summary as JSON; needs --out FILE
     #[arg(long)]
     json: bool,
 
@@ -68,7 +65,7 @@ struct Destination {
 #[derive(Subcommand)]
 enum Command {
     /// A torus knot of triangles with cables of segments around it
-    #[command(after_help = "Example:\n  p2m generate knot-and-cables --rings 600 --sides 24 --out fine.obj")]
+    #[command(after_help = "Examples:\n  p2m generate knot-and-cables --rings 600 --sides 24 --out fine.obj")]
     KnotAndCables {
         /// Rings of vertices along the knot
         #[arg(long, default_value_t = KnotAndCables::default().rings, value_parser = value_parser!(u32).range(3..))]
@@ -87,7 +84,7 @@ enum Command {
     },
 
     /// A closed tube of triangles along a torus knot
-    #[command(after_help = "Example:\n  p2m generate torus-knot --p 3 --q 5 --tube-radius 0.2 --out knot.ply")]
+    #[command(after_help = "Examples:\n  p2m generate torus-knot --p 3 --q 5 --tube-radius 0.2 --out knot.ply")]
     TorusKnot {
         /// Turns around the axis of the torus
         #[arg(long, default_value_t = TorusKnot::default().p)]
@@ -109,7 +106,7 @@ enum Command {
     },
 
     /// A helical gear around the z axis, of thin triangles alone
-    #[command(after_help = "Example:\n  p2m generate skewed-gear --rotate-x 45 --rotate-y 45 --out gear.ply")]
+    #[command(after_help = "Examples:\n  p2m generate skewed-gear --rotate-x 45 --rotate-y 45 --out gear.ply")]
     SkewedGear {
         /// Teeth
         #[arg(long, default_value_t = SkewedGear::default().teeth, value_parser = value_parser!(u32).range(3..))]
@@ -122,7 +119,7 @@ enum Command {
     },
 
     /// The unit sphere by latitude and longitude, its triangles thin at the poles
-    #[command(after_help = "Example:\n  p2m generate sphere --meridians 360 --bands 180 --out sphere.stl")]
+    #[command(after_help = "Examples:\n  p2m generate sphere --meridians 360 --bands 180 --out sphere.stl")]
     Sphere {
         /// Vertices of each parallel
         #[arg(long, default_value_t = Sphere::default().meridians, value_parser = value_parser!(u32).range(3..))]
@@ -135,7 +132,7 @@ enum Command {
     },
 
     /// The unit sphere as a subdivided icosahedron, its triangles alike
-    #[command(after_help = "Example:\n  p2m generate ico-sphere --frequency 100 --out sphere.ply")]
+    #[command(after_help = "Examples:\n  p2m generate ico-sphere --frequency 100 --out sphere.ply")]
     IcoSphere {
         /// Into how many parts each edge of the icosahedron is cut
         #[arg(long, default_value_t = IcoSphere::default().frequency, value_parser = value_parser!(u32).range(1..))]
@@ -145,7 +142,7 @@ enum Command {
     },
 
     /// A closed cone of radius 1 from z = -1 to its apex at z = 1
-    #[command(after_help = "Example:\n  p2m generate cone --sides 6 --bands 1 --cap-bands 1 --out pyramid.off")]
+    #[command(after_help = "Examples:\n  p2m generate cone --sides 6 --bands 1 --cap-bands 1 --out pyramid.off")]
     Cone {
         /// Vertices around
         #[arg(long, default_value_t = Cone::default().sides, value_parser = value_parser!(u32).range(3..))]
@@ -161,7 +158,7 @@ enum Command {
     },
 
     /// A closed cylinder of radius 1 from z = -1 to z = 1
-    #[command(after_help = "Example:\n  p2m generate cylinder --scale 10 --translate 0 0 5 --out can.obj")]
+    #[command(after_help = "Examples:\n  p2m generate cylinder --scale 10 --translate 0 0 5 --out can.obj")]
     Cylinder {
         /// Vertices around
         #[arg(long, default_value_t = Cylinder::default().sides, value_parser = value_parser!(u32).range(3..))]
@@ -177,7 +174,7 @@ enum Command {
     },
 
     /// Twisted strands of segments along a knot
-    #[command(after_help = "Example:\n  p2m generate cable-bundle --strands 19 --twists 12 --out bundle.obj")]
+    #[command(after_help = "Examples:\n  p2m generate cable-bundle --strands 19 --twists 12 --out bundle.obj")]
     CableBundle {
         /// Strands
         #[arg(long, default_value_t = CableBundle::default().strands, value_parser = value_parser!(u32).range(1..))]
@@ -197,7 +194,7 @@ enum Command {
 
     /// Random triangles, segments and points with sizes over orders of magnitude
     #[command(
-        after_help = "Example:\n  p2m generate mixed-sizes --triangles 100000 --decades 9 --seed 7 --out mixed.ply"
+        after_help = "Examples:\n  p2m generate mixed-sizes --triangles 100000 --decades 9 --seed 7 --out mixed.ply"
     )]
     MixedSizes {
         /// Triangles

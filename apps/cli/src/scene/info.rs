@@ -12,34 +12,27 @@ use p2m_mixed::{Format, Scene};
 use serde_json::{Value, json};
 use std::fmt::{self, Write as _};
 
-/// Report the content of a scene, and properties that may cause problems
+/// Describe a scene, and what in it may cause problems
 #[derive(clap::Args)]
-#[command(after_help = help())]
+#[command(after_help = HELP)]
 pub(crate) struct Args {
     #[command(flatten)]
     scene: SceneArgs,
 
-    /// Report as one JSON object
+    /// Print the result as JSON
     #[arg(long)]
     json: bool,
 }
 
-fn help() -> String {
-    format!(
-        "\
-Lengths are in the unit of the scene. A triangle has no area if its corners are exactly on a line; positions and edges are \
-the same if their coordinates are. The aspect of a triangle is its longest edge over its height over that edge: above 10 it \
-is thin, above 1024 a sliver. Edges are the sides of triangles and the segments.
-
-{}
+const HELP: &str = "\
+A triangle has no area if its vertices are exactly collinear. Positions and edges are the same if their coordinates \
+are. The aspect of a triangle is its longest edge over its height over that edge: above 10 it is thin, above 1024 it \
+is a sliver. Edges are the sides of triangles, and segments.
 
 Examples:
   p2m info scene.obj
   p2m info scan.ply --json
-  p2m generate skewed-gear | p2m info - --format obj",
-        json::STABILITY
-    )
-}
+  p2m generate skewed-gear | p2m info - --format obj";
 
 pub(crate) fn run(streams: &Streams, args: &Args) -> anyhow::Result<()> {
     let format = args.scene.format()?;

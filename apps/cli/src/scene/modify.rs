@@ -13,11 +13,11 @@ use std::sync::Arc;
 #[derive(clap::Args)]
 #[command(next_help_heading = "Changes, applied in this order")]
 pub(crate) struct Modifiers {
-    /// Cut each triangle into four and each segment into two, N times
+    /// Split each triangle into four and each segment into two, N times
     #[arg(long, value_name = "N", allow_negative_numbers = true)]
     subdivide: Option<u32>,
 
-    /// While subdividing, displace the middle of each edge by up to this part of its length, at most 0.5
+    /// Displace midpoints while subdividing, by up to A times the edge, at most 0.5
     #[arg(long, value_name = "A", value_parser = finite, allow_negative_numbers = true, requires = "subdivide")]
     displace: Option<f64>,
 
@@ -25,15 +25,15 @@ pub(crate) struct Modifiers {
     #[arg(long, value_name = "K", default_value_t = Subdivide::default().seed, allow_negative_numbers = true, requires = "displace")]
     displace_seed: u64,
 
-    /// Shrink each primitive about its centroid to this part of its size, which opens gaps between them
+    /// Shrink each primitive about its centroid by this factor
     #[arg(long, value_name = "F", value_parser = finite, allow_negative_numbers = true, conflicts_with = "penetrate")]
     gap: Option<f64>,
 
-    /// Enlarge each primitive about its centroid by this factor, so that they run through each other
+    /// Enlarge each primitive about its centroid by this factor
     #[arg(long, value_name = "F", value_parser = finite, allow_negative_numbers = true)]
     penetrate: Option<f64>,
 
-    /// Rotate about the x axis, counter-clockwise seen from its positive end
+    /// Rotate about the x axis
     #[arg(long, value_name = "DEGREES", value_parser = finite, allow_negative_numbers = true)]
     rotate_x: Option<f64>,
 
@@ -56,8 +56,8 @@ pub(crate) struct Modifiers {
 
 /// The paragraph of the help about these options.
 pub(crate) const ORDER: &str = "\
-Changes are applied in the order in which this help lists them, whatever their order on the command line; for another one, \
-chain runs: p2m convert a.obj - --to ply --rotate-z 30 | p2m convert - b.obj --from ply --subdivide 1.";
+Changes are applied in the order of this list. For another order, chain runs: p2m convert a.obj - --to ply \
+--rotate-z 30 | p2m convert - b.obj --from ply --subdivide 1.";
 
 impl Modifiers {
     /// Returns the scene after all changes. The parts of a subdivided primitive keep its name.

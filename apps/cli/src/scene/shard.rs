@@ -17,49 +17,38 @@ use std::ops::ControlFlow;
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
 
-fn help() -> String {
-    format!(
-        "\
-The scenes are joined in the order in which they are named: primitives are numbered on from one to the next. \
-`p2m query` and `p2m ray` take the folder in place of a scene, load a shard when a query needs it, and give the \
-answers of one index over all, apart from the last bits of lower bounds. With --epsilon or --max-visits an answer may \
-differ from that of one index, because these options permit several answers. `p2m query` and `p2m ray` refuse a \
-folder of more than 2^30 primitives, because such ids do not fit into a table of answers.
+const HELP: &str = "\
+The scenes are joined in the order of the command line, and primitives are numbered on from one to the next. `p2m \
+query` and `p2m ray` accept the folder as a scene, load shards on demand, and give the answers of one index over \
+everything, apart from the last bits of lower bounds. With --epsilon or --max-visits, which permit several answers, \
+another one may be found. Folders of more than 2^30 primitives are refused by these commands.
 
-Space is divided so that the file of a shard is at most as long as --max-bytes says. While the folder is written, one \
-shard is in memory at a time. Files are read in pieces. Compressed files, saved indexes, the standard input, and files \
-without the extension of their format are read as a whole, so they have to fit into memory. In measurements, pieces \
-and shards took at most 30 MB plus 2.6 times --max-bytes. Temporary files in the folder take 88 bytes for each \
-primitive, and twice that for a while. While a file is read, they also take at most 24 bytes for each of its vertices.
+Space is divided so that the file of each shard has at most --max-bytes bytes. One shard is in memory at a time, and \
+scenes are read in pieces. Compressed files, saved indexes, the standard input, and files without the extension of \
+their format are read as a whole, so they have to fit into memory. Temporary files in the folder take at most 176 \
+bytes per primitive and 24 bytes per vertex.
 
-The file manifest.json appears last, so a folder without it is unfinished, and an index that is replaced stays until \
-then. Each run writes files of its own, and the next run with --replace removes what killed runs have left. The \
-manifest has the box, the number of primitives and the checksum of each shard. A query fails if it needs a shard that \
-is missing, damaged or another one.
-
-{}
+The file manifest.json is written last: a folder without it is unfinished, and an index that is being replaced stays \
+valid until then. The next run with --replace removes what killed runs have left. A query fails if it needs a shard \
+that is missing, damaged, or from another index.
 
 Examples:
   p2m shard city.obj --max-bytes 500MB --out city/
   p2m shard north.ply south.ply --out country/ --replace
-  p2m query city/ --points scan.xyz --max-memory 2GB --out answers.npy",
-        json::STABILITY
-    )
-}
+  p2m query city/ --points scan.xyz --max-memory 2GB --out answers.npy";
 
-/// Divide scenes that are larger than memory into shards, each with its index, in a folder
+/// Divide a scene that is larger than memory into shards
 #[derive(clap::Args)]
-#[command(after_help = help())]
+#[command(after_help = HELP)]
 pub(crate) struct Args {
     #[arg(value_name = "SCENE", required = true, help = input::scene_help("Each scene"))]
     scenes: Vec<PathBuf>,
 
-    /// The format of the scenes, if their extensions do not name it
+    /// The format of the scenes [default: by their file extensions]
     #[arg(long, value_name = "FORMAT", value_parser = one_of::<Format>(Format::NAMES), ignore_case = true)]
     format: Option<Format>,
 
-    /// The largest length of the file of a shard, such as 500MB or 2GiB. A shard has at least one primitive, which
-    /// takes about 2.5 kB
+    /// The largest size of the file of a shard, such as 500MB
     #[arg(long, value_name = "BYTES", default_value = "1GiB", value_parser = bytes)]
     max_bytes: u64,
 
@@ -67,15 +56,15 @@ pub(crate) struct Args {
     #[arg(long, value_parser = backends(BackendEntry::is_saveable))]
     backend: Option<Backend>,
 
-    /// Where to write the files, a folder that is made if it is not there
+    /// The folder of the shards; it is created if needed
     #[arg(long, value_name = "FOLDER")]
     out: PathBuf,
 
-    /// Replace the index in shards that the folder has, when the new one is complete
+    /// Replace the shards of the folder once the new ones are complete
     #[arg(long)]
     replace: bool,
 
-    /// Report as one JSON object on the standard output, instead of a summary on the standard error
+    /// Print the summary as JSON
     #[arg(long)]
     json: bool,
 

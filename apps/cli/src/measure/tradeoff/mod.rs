@@ -44,19 +44,19 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 const HELP: &str = "\
-Every backend is built over the scene, on one thread, and answers the same queries with every setting, in turns: the default, certified \
-answers and less exact ones. The table has for each the nanoseconds of a query (the median of the rounds), how many times \
-as fast that is as the default of the same backend, the largest error of the distance relative to it and what one query in a thousand \
-exceeds, the largest error in units of u M (u is 2^-53, M the distance to the farthest corner of the nearest primitive), what the certified \
-lower bound leaves open, how long single queries take, the seconds to build, and what is wrong.
+Every backend answers the same queries on one thread, with every setting: exact, certified and approximate. For \
+each, the table has the nanoseconds per query (the median of the rounds), the speed relative to the default of the \
+same backend, the largest relative error of the distance and the error that one query in a thousand exceeds, the \
+largest error in units of u M (u is 2^-53, M the distance to the farthest vertex of the closest primitive), the gap \
+of the certified lower bound, percentiles of single queries, and the time to build.
 
-The page of --html shows the same as plots with explanations, in one file that needs nothing else.
+The page of --html shows the same as charts with explanations. It is one file.
 
 Examples:
   p2m tradeoff scene.obj --random 20000
   p2m tradeoff scene.obj --points scan.xyz --backends aabb,p2m --html tradeoff.html --csv tradeoff.csv";
 
-/// Say what each backend and each setting costs over a scene, and how wrong it is
+/// Measure speed against accuracy for every backend and setting
 #[derive(clap::Args)]
 #[command(after_help = HELP)]
 #[command(group = ArgGroup::new("queries").required(true).args(["points", "grid", "random"]))]
@@ -64,47 +64,47 @@ pub(crate) struct Args {
     #[command(flatten)]
     scene: SceneArgs,
 
-    /// Query the points of this XYZ, TXT, CSV, NPY or PLY file; `-` is the standard input
+    /// Read the query points from a file: XYZ, TXT, CSV, NPY or PLY
     #[arg(long, value_name = "FILE")]
     points: Option<PathBuf>,
 
-    /// The format of the points, if the extension of their file does not name it
+    /// The format of the points [default: by the file extension]
     #[arg(long, value_name = "FORMAT", value_parser = one_of::<PointFormat>(PointFormat::NAMES), ignore_case = true, requires = "points")]
     points_format: Option<PointFormat>,
 
-    /// Query a grid of N x N x N points that fills the scaled box of the scene
+    /// Query N x N x N points, evenly spaced in the box of the scene
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u64).range(1..=512), allow_negative_numbers = true)]
     grid: Option<u64>,
 
-    /// Query N uniformly distributed points in the scaled box of the scene
+    /// Query N random points in the box of the scene
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u64).range(1..=100_000_000), allow_negative_numbers = true)]
     random: Option<u64>,
 
-    /// Scale the box of the scene about its centre by this factor before filling it
+    /// Scale the box of the scene about its centre by this factor
     #[arg(long, value_name = "S", default_value_t = 1.05, value_parser = positive, allow_negative_numbers = true, conflicts_with = "points")]
     box_scale: f64,
 
-    /// Seed of the random points
+    /// The seed of the random points
     #[arg(long, value_name = "K", default_value_t = 0, value_parser = whole_number, allow_negative_numbers = true, conflicts_with_all = ["points", "grid"])]
     seed: u64,
 
-    /// Backends to compare
+    /// The backends to compare
     #[arg(long, value_parser = backends(|_| true), value_delimiter = ',', default_values = default_backends())]
     backends: Vec<Backend>,
 
-    /// Rounds, in which all take turns
+    /// The number of rounds, in which all take turns
     #[arg(long, value_name = "N", default_value_t = 5, value_parser = clap::builder::RangedU64ValueParser::<usize>::new().range(1..=1000), allow_negative_numbers = true)]
     rounds: usize,
 
-    /// The most seconds that a round of one setting takes: slow ones get fewer queries
+    /// The longest time for one setting per round, in seconds
     #[arg(long, value_name = "S", default_value_t = 0.1, value_parser = positive, allow_negative_numbers = true)]
     round_seconds: f64,
 
-    /// Write a page with plots and explanations
+    /// Write a page with charts and explanations
     #[arg(long, value_name = "FILE")]
     html: Option<PathBuf>,
 
-    /// Write a record of comma-separated values
+    /// Write the figures as CSV
     #[arg(long, value_name = "FILE")]
     csv: Option<PathBuf>,
 }
