@@ -129,7 +129,8 @@ impl Command {
             Self::Boxes(args) => page::boxes::run(streams, args),
             Self::View(args) => page::view::run(streams, args),
             Self::Completions(args) => shell::completions(streams, args, command()),
-            Self::Man(args) => shell::man(streams, args, command()),
+            // Manual pages have the text of the help in one piece.
+            Self::Man(args) => shell::man(streams, args, Cli::command()),
         }
     }
 }

@@ -1,6 +1,7 @@
 //! Display of numbers for people.
 
 use std::fmt;
+use std::time::Duration;
 
 /// A count that is displayed with separated thousands: `871,414`.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -27,30 +28,75 @@ pub struct Figure(pub f64);
 
 impl fmt::Display for Figure {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let x = self.0;
-        if x == 0.0 {
-            return f.pad("0");
-        }
-        // The number is rounded before its exponent is examined, so that 99,999.9 becomes 1e5.
-        let scientific = format!("{x:.3e}");
-        let Some((mantissa, exponent)) = scientific.split_once('e') else { return f.pad(&scientific) };
-        let exponent: i32 = exponent.parse().unwrap_or(0);
-        let text = if !(-3..5).contains(&exponent) {
-            format!("{}e{exponent}", trim(mantissa))
-        } else if exponent == 4 {
-            let rounded: f64 = scientific.parse().unwrap_or(x);
-            #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "five digits")]
-            let count = Count(rounded.abs() as u64);
-            format!("{}{count}", if x < 0.0 { "-" } else { "" })
-        } else {
-            let decimals = usize::try_from(3 - exponent).unwrap_or(0);
-            let plain = trim(&format!("{x:.decimals$}")).to_owned();
-            match plain.strip_prefix('-').unwrap_or(&plain).parse::<u64>() {
-                Ok(count) if count >= 1000 => format!("{}{}", if x < 0.0 { "-" } else { "" }, Count(count)),
-                _ => plain,
-            }
-        };
-        f.pad(&text)
+        f.pad(&rounded(self.0, 4))
+    }
+}
+
+/// A number that is displayed with six significant digits, and otherwise as a [`Figure`]: `0.540449`, `12,345.6`.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Length(pub f64);
+
+impl fmt::Display for Length {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.pad(&rounded(self.0, 6))
+    }
+}
+
+/// A time that is displayed with three significant digits: `12.3 ms`, `1.80 s`, `930 ns`.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Time(pub Duration);
+
+impl fmt::Display for Time {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.pad(&three_digits(self.0.as_secs_f64(), [(1.0, "s"), (1e-3, "ms"), (1e-6, "us"), (1e-9, "ns")]))
+    }
+}
+
+/// A number per second that is displayed with three significant digits: `1.23 M`, `450 k`, `12.0`.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Rate(pub f64);
+
+impl fmt::Display for Rate {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.pad(three_digits(self.0, [(1e9, "G"), (1e6, "M"), (1e3, "k"), (1.0, "")]).trim_end())
+    }
+}
+
+/// Returns a number with three significant digits, in the largest unit in which it is at least one.
+fn three_digits(x: f64, units: [(f64, &str); 4]) -> String {
+    // A number that would be rounded to a thousand is in the next unit.
+    let (size, unit) = units.into_iter().find(|(size, _)| x >= 0.9995 * size).unwrap_or(units[3]);
+    let scaled = x / size;
+    let decimals = if scaled >= 99.95 {
+        0
+    } else if scaled >= 9.995 {
+        1
+    } else {
+        2
+    };
+    format!("{scaled:.decimals$} {unit}")
+}
+
+/// Returns a number with so many significant digits.
+fn rounded(x: f64, digits: usize) -> String {
+    if x == 0.0 {
+        return "0".to_owned();
+    }
+    // The number is rounded before its exponent is examined, so that 99,999.9 becomes 1e5.
+    let scientific = format!("{x:.*e}", digits - 1);
+    let Some((mantissa, exponent)) = scientific.split_once('e') else { return scientific };
+    let exponent: i32 = exponent.parse().unwrap_or(0);
+    let most = i32::try_from(digits).unwrap_or(0);
+    if !(-3..=most).contains(&exponent) {
+        return format!("{}e{exponent}", trim(mantissa));
+    }
+    let value: f64 = scientific.parse().unwrap_or(x);
+    let plain = format!("{value:.*}", usize::try_from(most - 1 - exponent).unwrap_or(0));
+    let (whole, decimals) = trim(&plain).split_at(trim(&plain).find('.').unwrap_or(trim(&plain).len()));
+    let sign = if whole.starts_with('-') { "-" } else { "" };
+    match whole.trim_start_matches('-').parse::<u64>() {
+        Ok(count) => format!("{sign}{}{decimals}", Count(count)),
+        Err(_) => plain,
     }
 }
 
@@ -138,6 +184,26 @@ mod tests {
             (-4e-310, "-4e-310"),
         ] {
             assert_eq!(Figure(x).to_string(), expected);
+        }
+    }
+
+    #[test]
+    fn lengths_have_six_digits_and_times_three() {
+        for (x, expected) in [(0.540_449_148, "0.540449"), (12_345.678, "12,345.7"), (-1e6, "-1,000,000"), (3e7, "3e7")]
+        {
+            assert_eq!(Length(x).to_string(), expected);
+        }
+        for (nanoseconds, expected) in [
+            (0, "0.00 ns"),
+            (930, "930 ns"),
+            (12_345_678, "12.3 ms"),
+            (999_600_000, "1.00 s"),
+            (75_400_000_000, "75.4 s"),
+        ] {
+            assert_eq!(Time(Duration::from_nanos(nanoseconds)).to_string(), expected);
+        }
+        for (x, expected) in [(0.5, "0.50"), (12.0, "12.0"), (813_123.0, "813 k"), (1_235_084.0, "1.24 M")] {
+            assert_eq!(Rate(x).to_string(), expected);
         }
     }
 

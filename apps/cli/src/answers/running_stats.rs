@@ -1,5 +1,6 @@
 //! Statistics of numbers that are added one by one.
 
+use p2m_mixed::statistics::figure::Length;
 use std::fmt;
 
 /// The factor 2^-64, which keeps the scaled sum of [`RunningStats`] in the range of f64.
@@ -59,6 +60,6 @@ impl RunningStats {
 
 impl fmt::Display for RunningStats {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        write!(f, "min {:?}, max {:?}, mean {:?}", self.min, self.max, self.mean())
+        write!(f, "min {}, max {}, mean {}", Length(self.min), Length(self.max), Length(self.mean()))
     }
 }

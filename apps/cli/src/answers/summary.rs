@@ -6,6 +6,7 @@ use crate::scene::info::counted;
 use p2m_backends::{BuiltIndex, ChosenDirections};
 use p2m_core::Closest;
 use p2m_mixed::statistics::Counts;
+use p2m_mixed::statistics::figure::{Count, Figure, Rate, Time};
 use p2m_mixed::{Format, Scene, Skipped};
 use serde_json::{Value, json};
 use std::fmt::{self, Write};
@@ -88,7 +89,7 @@ impl IndexSummary<'_> {
         }
         let faces = self.directions().map_or(String::new(), |directions| format!(", {} faces", directions.faces));
         let verb = if self.is_loaded { "loaded" } else { "built" };
-        writeln!(text, "backend  {}{faces}, {verb} in {:.3?}", self.backend, self.build_time)?;
+        writeln!(text, "backend  {}{faces}, {verb} in {}", self.backend, Time(self.build_time))?;
         if let Some(reason) = self.directions().and_then(|directions| directions.reason.as_ref()) {
             writeln!(text, "k-DOPs   {reason}")?;
         }
@@ -135,11 +136,14 @@ impl RunSummary<'_> {
         let note = (count == 0).then(|| format!("there are no {many}: nothing is computed"));
         self.index.write(text, note)?;
         let threads = if self.threads == 1 { "thread" } else { "threads" };
-        write!(text, "{many:9}{count} in {:.3?} on {} {threads}", self.query_time, self.threads)?;
+        let time = Time(self.query_time);
+        write!(text, "{many:9}{} in {time} on {} {threads}", Count(count), self.threads)?;
         let seconds = self.query_time.as_secs_f64();
         if count > 0 && seconds > 0.0 {
             let count = count as f64;
-            write!(text, ": {:.0} ns per {one}, {:.0} {many}/s", seconds * 1e9 / count, count / seconds)?;
+            #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "a time is not negative")]
+            let each = Count((seconds * 1e9 / count).round() as u64);
+            write!(text, ": {each} ns per {one}, {} {many}/s", Rate(count / seconds))?;
         }
         writeln!(text)
     }
@@ -217,18 +221,18 @@ impl fmt::Display for AnswerSummary {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let answers = self.distances.count();
         if let Some(inside) = self.inside {
-            writeln!(f, "inside   {inside} of {}", self.queries)?;
+            writeln!(f, "inside   {} of {}", Count(inside), Count(self.queries))?;
         }
         if answers > 0 || self.inside.is_none() || self.unanswered > 0 {
-            writeln!(f, "answers  {answers}, without answer {}", self.unanswered)?;
+            writeln!(f, "answers  {}, without answer {}", Count(answers), Count(self.unanswered))?;
         }
         if answers > 0 {
             writeln!(f, "distance {}", self.distances)?;
             writeln!(
                 f,
-                "accuracy distances are too large by at most {:?}, on average by at most {:?}",
-                self.errors.max(),
-                self.errors.mean()
+                "accuracy distances are too large by at most {}, on average by at most {}",
+                Figure(self.errors.max()),
+                Figure(self.errors.mean())
             )?;
         }
         Ok(())

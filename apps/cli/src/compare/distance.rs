@@ -11,6 +11,7 @@ use anyhow::Context;
 use p2m_bvh::AabbTree;
 use p2m_core::Soup;
 use p2m_core::pair::{ClosestPair, PairOptions, PairQuery};
+use p2m_mixed::statistics::figure::{Figure, Length};
 use p2m_mixed::{Format, Scene};
 use serde_json::{Value, json};
 
@@ -74,7 +75,8 @@ fn text(names: &[String; 2], scenes: &[Scene; 2], found: Option<&ClosestPair<f64
     let mut lines = if pair.is_intersecting {
         "the scenes intersect\n".to_owned()
     } else {
-        format!("distance {}, certainly at least {}\n", pair.distance, pair.lower_bound)
+        let (distance, error) = (Length(pair.distance), Figure(pair.distance - pair.lower_bound));
+        format!("distance {distance}, at most {error} too large\n")
     };
     for k in 0..2 {
         lines += &line_of_point(&names[k], &scenes[k], pair.points[k], pair.primitives[k], Some(pair.features[k]));

@@ -8,6 +8,7 @@ use nalgebra::{Isometry3, Matrix3, Point3};
 use p2m_core::pair::isometry_of_matrix;
 use p2m_core::storage::Reader;
 use p2m_core::{Feature, PrimitiveId};
+use p2m_mixed::statistics::figure::Length;
 use p2m_mixed::{Format, Scene};
 use rayon::ThreadPool;
 use serde_json::{Value, json};
@@ -117,7 +118,8 @@ pub(crate) fn line_of_point(
     let (kind, number) = (kind(scene, primitive), primitive.index());
     let feature = feature.map_or(String::new(), |feature| format!(" ({feature})"));
     let object = scene.object_of(primitive).map_or(String::new(), |object| format!(" of {}", object.name));
-    format!("{name}: {} {} {}, {kind} {number}{feature}{object}\n", point.x, point.y, point.z)
+    let [x, y, z] = [point.x, point.y, point.z].map(Length);
+    format!("on {name}: ({x}, {y}, {z}), {kind} {number}{feature}{object}\n")
 }
 
 /// Returns the report of a point of a primitive: the keys before and after that of the feature.

@@ -18,7 +18,7 @@ use nalgebra::{Point3, Vector3};
 use p2m_backends::AnyIndex;
 use p2m_bvh::AabbTree;
 use p2m_core::{ListStats, PrimitiveSet, QueryCost, RayQuery, Soup, Stat, StatsCollector};
-use p2m_mixed::statistics::figure::Count;
+use p2m_mixed::statistics::figure::{Count, Time};
 use rayon::prelude::*;
 use serde_json::{Value, json};
 use std::fmt::{self, Write as _};
@@ -284,7 +284,7 @@ impl fmt::Display for IndexStats {
         }
         if !self.stages.is_empty() {
             let stages: Vec<String> =
-                self.stages.iter().map(|(stage, time)| format!("{} {time:.3?}", stage.name())).collect();
+                self.stages.iter().map(|(stage, time)| format!("{} {}", stage.name(), Time(*time))).collect();
             writeln!(f, "stages   {}", stages.join(", "))?;
         }
         if self.is_loaded {

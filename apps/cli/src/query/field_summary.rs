@@ -3,6 +3,7 @@
 use crate::index::sign_rule::SignReport;
 use crate::io::json;
 use p2m_field::Grid;
+use p2m_mixed::statistics::figure::{Count, Length, Time};
 use serde_json::{Value, json};
 use std::fmt::Write;
 use std::time::Duration;
@@ -67,16 +68,22 @@ impl FieldSummary<'_> {
             ComputedField::Grid(values) => {
                 let [x, y, z] = self.grid.counts();
                 let each = self.field_time.as_nanos() as f64 / values.len() as f64;
-                writeln!(text, "field    {x} x {y} x {z} points, {} apart", self.grid.spacing())?;
-                writeln!(text, "filled   in {:.3?} on {threads}: {each:.0} ns per point", self.field_time)?;
+                writeln!(text, "field    {x} x {y} x {z} points, {} apart", Length(self.grid.spacing()))?;
+                writeln!(text, "filled   in {} on {threads}: {each:.0} ns per point", Time(self.field_time))?;
             }
             ComputedField::Cells(cells) => {
-                writeln!(text, "field    {} cells, cut in {:.3?}", cells.len(), self.field_time)?
+                writeln!(text, "field    {} cells, cut in {}", Count(cells.len() as u64), Time(self.field_time))?
             }
         }
-        write!(text, "distance min {min}, max {max}")?;
+        write!(text, "distance min {}, max {}", Length(f64::from(min)), Length(f64::from(max)))?;
         if let Some(signs) = self.signs {
-            write!(text, "; {inside} values inside, {undefined} undefined\n{}", signs.text())?;
+            write!(
+                text,
+                "; {} values inside, {} undefined\n{}",
+                Count(inside as u64),
+                Count(undefined as u64),
+                signs.text()
+            )?;
             return Ok(());
         }
         writeln!(text)

@@ -3,6 +3,7 @@
 use crate::answers::running_stats::RunningStats;
 use crate::io::json::stats;
 use p2m_core::Hit;
+use p2m_mixed::statistics::figure::{Count, Figure};
 use serde_json::{Value, json};
 use std::fmt;
 
@@ -77,10 +78,11 @@ impl RaySummary {
 
 impl fmt::Display for RaySummary {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        writeln!(f, "hitting  {}, missing {}", self.with_hit, self.rays - self.with_hit)?;
+        writeln!(f, "hitting  {}, missing {}", Count(self.with_hit), Count(self.rays - self.with_hit))?;
         if let Some(counts) = self.counts.as_ref().filter(|_| self.rays > 0) {
             let CountStats { label, min, max, total } = counts;
-            writeln!(f, "{label:9}{total}, per ray min {min}, max {max}, mean {:?}", self.mean(counts))?;
+            let mean = Figure(self.mean(counts));
+            writeln!(f, "{label:9}{}, per ray min {min}, max {max}, mean {mean}", Count(*total))?;
         }
         if self.parameters.count() > 0 {
             writeln!(f, "at t     {}", self.parameters)?;

@@ -10,6 +10,7 @@ use crate::io::streams::Streams;
 use crate::io::usage::usage;
 use anyhow::Context;
 use p2m_core::storage::Writer;
+use p2m_mixed::statistics::figure::{Count, Time};
 use p2m_mixed::{Format, save_scene};
 use serde_json::json;
 use std::path::PathBuf;
@@ -101,6 +102,6 @@ pub(crate) fn run(streams: &Streams, args: &Args) -> anyhow::Result<()> {
     let mut text = String::new();
     // Writing to a string does not fail.
     let _ = index.write(&mut text, None);
-    streams.print_summary(format_args!("{text}written  {out}, {bytes} bytes in {write_time:.3?}\n"));
+    streams.print_summary(format_args!("{text}written  {out}, {} bytes in {}\n", Count(bytes), Time(write_time)));
     Ok(())
 }

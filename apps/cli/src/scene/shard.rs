@@ -9,6 +9,7 @@ use crate::io::streams::Streams;
 use crate::io::threads::ThreadArgs;
 use crate::io::usage::{bytes, one_of};
 use p2m_backends::BackendEntry;
+use p2m_mixed::statistics::figure::{Count, Time};
 use p2m_mixed::{Format, PieceOptions, Skipped};
 use p2m_shards::{ShardError, ShardOptions, ShardWriter, ShardedIndex, shard_file};
 use rayon::ThreadPool;
@@ -196,8 +197,11 @@ fn report(
     }
     let (backend, folder) = (&manifest.backend, args.out.display());
     streams.print_summary(format_args!(
-        "backend  {backend}\nread     in {:.3?}\nwritten  {folder}, {count} shards, {total} bytes, the largest {largest}, in {:.3?}\n",
-        times.read, times.write
+        "backend  {backend}\nread     in {}\nwritten  {folder}, {count} shards, {} bytes, the largest {}, in {}\n",
+        Time(times.read),
+        Count(total),
+        Count(largest),
+        Time(times.write)
     ));
     Ok(())
 }

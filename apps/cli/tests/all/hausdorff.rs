@@ -17,8 +17,8 @@ fn the_farthest_point_is_named() {
     assert!(lines[0].starts_with("at least 2.99999999999999"), "{text}");
     assert!(lines[0].contains(" and at most 3.0000000000000"), "{text}");
     assert_eq!(lines[1], format!("farthest from {floor}:"));
-    assert_eq!(lines[2], format!("{pole}: 1 1 3, segment 1 of pole"));
-    assert_eq!(lines[3..], ["closest to it:".to_owned(), format!("{floor}: 1 1 0, triangle 0 of floor")]);
+    assert_eq!(lines[2], format!("on {pole}: (1, 1, 3), segment 1 of pole"));
+    assert_eq!(lines[3..], ["closest to it:".to_owned(), format!("on {floor}: (1, 1, 0), triangle 0 of floor")]);
     let report = json(&["hausdorff", &floor, &pole, "--json"]);
     assert_eq!((report["from"].as_u64(), report["one_sided"].as_bool()), (Some(1), Some(false)));
     assert_eq!(report["scenes"][1]["farthest"]["object"], "pole");

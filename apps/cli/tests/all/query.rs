@@ -2,6 +2,7 @@
 
 use crate::common::*;
 use p2m_backends::BACKENDS;
+use p2m_mixed::statistics::figure::Length;
 use std::fs;
 use tempfile::TempDir;
 
@@ -126,7 +127,10 @@ fn the_summary_agrees_with_the_table() {
     let min = distances.iter().fold(f64::INFINITY, |a, &b| a.min(b));
     let max = distances.iter().fold(0.0f64, |a, &b| a.max(b));
     let mean = distances.iter().sum::<f64>() / answered as f64;
-    assert_eq!(after(&summary, "distance "), format!("min {min:?}, max {max:?}, mean {mean:?}"));
+    assert_eq!(
+        after(&summary, "distance "),
+        format!("min {}, max {}, mean {}", Length(min), Length(max), Length(mean))
+    );
 }
 
 #[test]

@@ -65,13 +65,11 @@ fn help_has_examples() {
         table(&["--help"]).starts_with("Closest points and hits of rays in scenes of triangles, segments and points\n")
     );
     let help = table(&["query", "--help"]);
-    for part in ["edge0", "vertex2", "exit code", "Points:0", "cut into triangles", "unit of the scene"] {
+    for part in ["edge0", "vertex2", "Points:0", "cut into triangles", "unit of the scene"] {
         assert!(help.contains(part), "{part}: {help}");
     }
     let help = table(&["ray", "--help"]);
-    for part in
-        ["origin + t direction", "without rounding", "crossings", "w2", "Normals:2", "exit code", "unit of the scene"]
-    {
+    for part in ["origin + t direction", "without rounding", "crossings", "w2", "Normals:2", "unit of the scene"] {
         assert!(help.contains(part), "{part}: {help}");
     }
     assert!(table(&["--version"]).starts_with("p2m "));
