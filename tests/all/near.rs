@@ -11,7 +11,7 @@ use p2m_testkit::rng;
 use p2m_testkit::scenes::{Kinds, Layout, soup};
 
 #[test]
-fn what_cannot_be_has_a_stated_answer() {
+fn invalid_queries_return_none() {
     let soup = soup(&mut rng("stated", 0), Kinds::Mixed, Layout::Uniform, 300);
     let index = AabbTree::new(&soup).expect("valid scene");
     let at = soup.positions()[0];

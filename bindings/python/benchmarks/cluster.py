@@ -67,7 +67,7 @@ def save_points(folder: Path, bounds: np.ndarray, count: int) -> np.ndarray:
 
 
 def measure_cluster(workers: int, path: str, folder: Path, expected: Any, is_mapped: bool) -> float:
-    """Answer all points by a cluster, compare the answers, print the memory, and return the points a second."""
+    """Answer all points by a cluster, compare the answers, print the memory, and return the points per second."""
     with (
         LocalCluster(n_workers=workers, threads_per_worker=1, dashboard_address=None, memory_limit=0) as cluster,
         Client(cluster) as client,
@@ -99,7 +99,7 @@ def main() -> None:
         points = save_points(Path(folder) / "points", index.scene.bounds, count)
         size = Path(path).stat().st_size / MEGABYTE
         print(f"{Path(options.model).name}, {index.backend}, a file of {size:.1f} MB, {count:,} points")
-        print("| run | processes or threads | points a second | Rss, MB | Pss, MB | Private, MB |")
+        print("| run | processes or threads | points per second | Rss, MB | Pss, MB | Private, MB |")
         print("| --- | --- | --- | --- | --- | --- |")
         expected: Any = None
         for threads in (1, 2):

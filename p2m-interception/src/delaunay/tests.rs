@@ -160,7 +160,7 @@ fn points_with_many_tetrahedra_do() {
 }
 
 #[test]
-fn grids_do() {
+fn grids_are_delaunay() {
     for spacing in [1.0, 0.01, 1.0 / 3.0, 1e-200, 3e250] {
         valid(&grid(14, spacing));
     }
@@ -168,7 +168,7 @@ fn grids_do() {
 }
 
 #[test]
-fn all_scales_do() {
+fn all_scales_are_delaunay() {
     let random = &mut rng("delaunay scales", 0);
     for scale in [1e-323, 1e-300, 1e-160, 1e160, 1e300, 1.7e308] {
         let points: Vec<_> = uniform(random, 300).into_iter().map(|p| p.map(|x| x * scale)).collect();
@@ -190,7 +190,7 @@ fn all_scales_do() {
 }
 
 #[test]
-fn clusters_far_from_the_origin_do() {
+fn clusters_far_from_the_origin_are_delaunay() {
     let random = &mut rng("delaunay clusters", 0);
     for size in [1e-6, 1e-12, 1e-15, 4e-16] {
         let points: Vec<_> = uniform(random, 1000)

@@ -100,7 +100,7 @@ fn print(scene: &Scene, resolution: usize, stride: usize) -> Result<bool> {
         "method",
         "build s",
         "MB",
-        "ns a point (slabs from - to)",
+        "ns per point (slabs from - to)",
         "times parry3d",
         "with build",
         "difference",

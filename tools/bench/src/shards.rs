@@ -139,7 +139,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<bool> {
         None => tempfile::tempdir(),
     };
     let folder = folder.context("there is no folder for the shards")?;
-    let head = ["work", "seconds", "triangles or points a second", "peak of the heap, GB", "note"];
+    let head = ["work", "seconds", "triangles or points per second", "peak of the heap, GB", "note"];
     let mut table = Table::new(head.map(str::to_owned));
 
     let work = Work::start();

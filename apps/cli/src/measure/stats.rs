@@ -295,7 +295,7 @@ impl fmt::Display for IndexStats {
         let parts: Vec<String> = used.map(|(name, bytes)| format!("{name} {:.1} MB", *bytes as f64 / 1e6)).collect();
         if !parts.is_empty() {
             let each = total as f64 / self.primitives.max(1) as f64;
-            writeln!(f, "memory   {}: {each:.0} bytes a primitive", parts.join(", "))?;
+            writeln!(f, "memory   {}: {each:.0} bytes per primitive", parts.join(", "))?;
         }
         Ok(())
     }

@@ -45,7 +45,7 @@ fn what_stl_cannot_hold_is_an_error() {
 }
 
 #[test]
-fn losses_are_told() {
+fn conversions_report_what_is_lost() {
     let folder = TempDir::new().unwrap();
     let scene = write(
         &folder,

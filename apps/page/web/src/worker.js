@@ -26,7 +26,7 @@ const FUNCTIONS = {
     return { bytes, time: performance.now() - start };
   },
 
-  // Returns the number of queries a second at points around the scene.
+  // Returns the number of queries per second at points around the scene.
   measure(number) {
     measureRate(number);
     return measureRate(number);

@@ -122,7 +122,7 @@ function advice(set) {
   const exact = set.curves.filter((curve) => isExact(defaultPoint(curve)));
   const [best, rough] = [NEEDS[0], NEEDS[1]].map((need) => fastest(set.curves, need.isMet));
   if (!best) return "No index answered all queries without an error beyond rounding; the remarks below say why.";
-  const ns = ({ point }) => `${point.nanoseconds.median.toFixed(0)} ns a query`;
+  const ns = ({ point }) => `${point.nanoseconds.median.toFixed(0)} ns per query`;
   const gain =
     rough.point === best.point
       ? "no setting with errors of up to 1 % is faster beyond noise"

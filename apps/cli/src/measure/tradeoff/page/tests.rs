@@ -121,7 +121,7 @@ fn the_script_draws_every_point() {
     assert_eq!(marks, "3");
     assert_eq!(
         advice,
-        "Without an error beyond rounding, <code>p2m</code> is fastest (100 ns a query), and the cheapest with its \
+        "Without an error beyond rounding, <code>p2m</code> is fastest (100 ns per query), and the cheapest with its \
          build is <code>aabb</code>, then <code>p2m</code> from 5.4 million queries on; no setting with errors of up \
          to 1 % is faster beyond noise."
     );
