@@ -230,7 +230,8 @@ fn latency(bytes: usize) -> f64 {
 /// Prints the tables or replaces the blocks of the document.
 fn publish(request: &Arguments, entries: &[&'static BackendEntry], costs: &[Vec<Costs>]) -> Result<()> {
     let mut builds = Table::new(
-        ["triangles", "index", "build s", "us per triangle", "bytes per triangle", "peak of the build"].map(str::to_owned),
+        ["triangles", "index", "build s", "us per triangle", "bytes per triangle", "peak of the build"]
+            .map(str::to_owned),
     );
     let heads = ["triangles", "index", "set", "one by one", "batch", "nodes", "packets", "primitives", "read", "reads"];
     let mut queries = Table::new(heads.map(str::to_owned));

@@ -8,7 +8,7 @@ use crate::scene::Scene;
 use crate::{backends, report};
 use anyhow::{Context, Result};
 use clap::Args;
-use p2m_testkit::models::all_model_files;
+use p2m_testkit::all_model_files;
 use p2m_testkit::queries::QuerySet;
 use std::fmt::Write as _;
 use std::path::PathBuf;
@@ -63,7 +63,7 @@ pub(crate) struct Arguments {
 pub(crate) fn run(arguments: &Arguments) -> Result<bool> {
     let Arguments { scenes, data, rounds, queries, builds } = arguments;
     let is_listed = |path: &PathBuf| SCENES.iter().any(|name| path.ends_with(name));
-    let scenes =
+    let scenes: Vec<PathBuf> =
         if scenes.is_empty() { all_model_files().into_iter().filter(is_listed).collect() } else { scenes.clone() };
     let selected: Vec<_> = INDEXES.map(backends::by_name).to_vec();
     let mut text = String::new();
