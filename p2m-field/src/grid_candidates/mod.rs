@@ -65,7 +65,7 @@ use groups::Groups;
 use nalgebra::Point3;
 use narrow::Narrow;
 use p2m_core::engine::simd::Isa;
-use p2m_core::{Aabb, Best, Collector, Primitive, PrimitiveSet, QueryOptions, check_set};
+use p2m_core::{Aabb, Best, Collector, Primitive, PrimitiveId, PrimitiveSet, QueryOptions, check_set};
 
 /// All primitives of a set, each in a frame of its own, and a hierarchy of groups of them.
 #[derive(Debug)]
@@ -162,11 +162,16 @@ impl<'a, S: PrimitiveSet<f64> + ?Sized> CandidateLists<'a, S> {
         ambiguous.len()
     }
 
+    /// Returns the candidates that are no groups.
+    pub(crate) fn primitives(&self, candidates: &Candidates) -> impl Iterator<Item = PrimitiveId> {
+        candidates.entries.iter().filter_map(|entry| entry.primitive()).map(|i| self.groups.ids[i])
+    }
+
     /// Computes the distance of a point from the candidates by the kernel of the contract.
     #[allow(clippy::cast_possible_truncation, reason = "values are rounded to f32")]
     fn kernel_distance(&self, candidates: &Candidates, point: Point3<f64>) -> f32 {
         let mut best = Best::new(&QueryOptions::<f64>::default());
-        for id in candidates.entries.iter().filter_map(|entry| entry.primitive()).map(|i| self.groups.ids[i]) {
+        for id in self.primitives(candidates) {
             if let Some(projection) = self.set.get(id).project_within(&point, best.prune_above()) {
                 best.offer(id, projection);
             }

@@ -24,17 +24,22 @@
 //! # Ok::<(), p2m_field::sign::SignError>(())
 //! ```
 
+mod block;
 mod caps;
 mod certificate;
 mod contains;
 mod crowding;
 mod edge_sums;
+mod flood;
+mod local;
+mod near;
 mod normals;
 mod solid_angles;
 mod surface;
 mod types;
 mod winding;
 
+pub(crate) use block::PointBlock;
 pub use edge_sums::EdgeSums;
 pub use normals::Normals;
 pub use types::{SharedSoup, Sign, SignError, SignRule, Signed};
@@ -307,17 +312,15 @@ impl<I, S: SharedSoup> SignedDistance<I, S> {
         self.signs.sign_without_closest_point(point, self.index.rays())
     }
 
-    /// Returns the common sign of all points that a path of at most the length `path`, within `radius` of a point and
-    /// without crossing the surface, connects with the point. It is `None` if the signs may differ. The point is not on
-    /// the surface.
-    pub(crate) fn sign_along(&self, path: f64, radius: f64, point: &Point3<f64>) -> Option<Sign>
+    /// Returns the common sign of all points of a ball that the surface does not cross, or `None` if they may differ.
+    pub(crate) fn sign_in_ball(&self, radius: f64, centre: &Point3<f64>) -> Option<Sign>
     where
         I: ClosestPoint<f64>,
     {
         if self.is_closed() {
-            Some(self.sign_without_closest_point(point))
+            Some(self.sign_without_closest_point(centre))
         } else {
-            self.signs.winding.sign_along(path, radius, point, self.index.rays())
+            self.signs.winding.sign_in_ball(radius, centre, self.index.rays())
         }
     }
 
