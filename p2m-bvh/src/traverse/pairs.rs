@@ -72,7 +72,7 @@ impl<V: VolumeNodes> PairSide for TreeSide<'_, V> {
         // A motion makes no coordinate larger than the length of the vertex and the translation.
         let grow = |size: f64, motion: &Motion| 2.0 * size + largest(&[motion.translation()]);
         let size = self.motions.iter().fold(largest(&[self.tree.bounds.min.into(), self.tree.bounds.max.into()]), grow);
-        Placement { centre, unit: frame.unit, size, is_plain: frame.is_plain(), is_tree: true }
+        Placement { centre, unit: frame.unit, size, is_tree: true }
     }
 
     fn directions(&self) -> Vec<V3> {

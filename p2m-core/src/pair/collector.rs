@@ -11,7 +11,8 @@ use std::ops::ControlFlow;
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct PairOptions<T: Real> {
-    /// The largest distance of an answer, inclusive, in units of the scene. It is infinite by default.
+    /// The largest distance of an answer, inclusive, in units of the scene. It is infinite by default. Within 0 are the
+    /// primitives that intersect, and no others whose distance rounds to 0.
     pub max_distance: T,
     /// The motion of the second scene. It is applied to each vertex in f64, and each coordinate is rounded: the answer
     /// is that of the scene of these vertices. `None`, the default, leaves the scene where it is.
@@ -112,7 +113,12 @@ enum Mode<'a> {
 impl<'a> Pairs<'a> {
     fn new<T: Real>(options: &PairOptions<T>, mode: Mode<'a>) -> Self {
         let (largest, radius) = (options.max_distance.to_f64(), options.radius.to_f64());
-        let reach = if radius > 0.0 { largest + radius } else { options.max_distance.to_f64_above() };
+        let reach = match (largest, radius) {
+            (_, radius) if radius > 0.0 => largest + radius,
+            // Within 0 is what intersects, not what rounds to 0.
+            (0.0, _) => 0.0,
+            _ => options.max_distance.to_f64_above(),
+        };
         // Nothing is within NaN or below 0.
         let is_valid = largest >= 0.0 && radius >= 0.0;
         Self {
@@ -240,6 +246,12 @@ impl<'a> Pairs<'a> {
         !self.best().is_some_and(|(others, pair)| pair.is_intersecting && *others < ids)
     }
 
+    /// Returns whether a pair is within reach. Only pairs that intersect are within 0: the distance of others is
+    /// positive, even where it rounds to 0.
+    fn is_within(&self, pair: &NearestPair) -> bool {
+        pair.is_intersecting || self.reach > 0.0 && pair.key.distance() <= self.reach
+    }
+
     /// Takes the result of the kernel for a pair of primitives.
     pub fn offer_result(&mut self, ids: [PrimitiveId; 2], result: Result<NearestPair, f64>) {
         match (result, &mut self.mode) {
@@ -253,18 +265,19 @@ impl<'a> Pairs<'a> {
     pub fn offer(&mut self, ids: [PrimitiveId; 2], pair: &NearestPair) {
         let distance = pair.key.distance();
         let ids = self.scene_ids(ids);
+        let is_within = self.is_within(pair);
         match &mut self.mode {
             Mode::Nearest { best, certified } => {
                 // A distance beyond the range of f64 is at least the largest number.
                 *certified = certified.min(distance.min(f64::MAX) - pair.error);
                 let is_better = best.as_ref().is_none_or(|(others, other)| (pair.key, ids) < (other.key, *others));
-                if is_better && distance <= self.reach {
+                if is_better && is_within {
                     *best = Some((ids, *pair));
                     self.prune = self.prune.min(pair.key.square_above());
                 }
             }
             Mode::Each(visit) => {
-                if distance <= self.reach {
+                if is_within {
                     self.has_ended |= visit(ids, pair).is_break();
                 }
             }

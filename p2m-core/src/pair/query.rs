@@ -173,7 +173,7 @@ pub trait PairQuery<T: Real> {
     }
 
     /// Returns whether a primitive of this scene and one of another are within the largest distance. The search ends at
-    /// the first pair. With a largest distance of 0 it tests whether scenes in f64 intersect, which is exact.
+    /// the first pair. With a largest distance of 0 it tests whether the scenes intersect, which is exact.
     fn is_any_pair_near<Q: PairQuery<T> + ?Sized>(&self, other: &Q, options: &PairOptions<T>) -> bool
     where
         Self: Sized,
