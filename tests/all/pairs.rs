@@ -4,11 +4,13 @@
 #![allow(clippy::float_cmp, reason = "bitwise equality is what is tested")]
 
 use nalgebra::{Isometry3, Point3, Vector3};
+use p2m::batch::Interruptible;
 use p2m::pair::{ClosestPair, Motion, PairOptions, PairQuery};
 use p2m::{AabbTree, BruteForce, Element, KdopTree, PrimitiveId, PrimitiveSet, Real, Shape, Soup};
 use p2m_testkit::scenes::{self, kinds_and_layout};
 use p2m_testkit::{amount, cases, rng, vector};
 use rand::{Rng, RngExt};
+use std::cell::Cell;
 use std::ops::ControlFlow;
 
 /// Returns the answer for two scenes by all pairs.
@@ -280,6 +282,81 @@ fn equal_scenes_are_compared_in_few_steps() {
     let tree = AabbTree::new(&soup).expect("valid");
     let pair = tree.closest_pair(&tree, &PairOptions::default()).expect("not empty");
     assert_eq!((pair.distance, pair.is_intersecting, pair.primitives), (0.0, true, [PrimitiveId::new(0); 2]));
+}
+
+/// Returns the nearest pair and the number of steps of its search.
+fn counted<T: Real>(
+    a: &impl PairQuery<T>,
+    b: &impl PairQuery<T>,
+    options: &PairOptions<T>,
+) -> (Option<ClosestPair<T>>, usize) {
+    let steps = Cell::new(0);
+    let counting = Interruptible::pairs(a, || {
+        steps.set(steps.get() + 1);
+        true
+    });
+    (counting.closest_pair(b, options), steps.get())
+}
+
+/// Rounding moves all vertices to few places, so all pairs are about equally near, and exact ties are common.
+#[test]
+fn scenes_that_a_translation_swallows_are_compared_in_few_steps() {
+    let mut rng = rng("swallowed scenes", 0);
+    let [large, small] = [3_000, 300]
+        .map(|len| scenes::soup(&mut rng, scenes::Kinds::Triangles, scenes::Layout::Strewn, len))
+        .map(|soup| [AabbTree::new(soup.clone()).expect("valid"), AabbTree::new(soup).expect("valid")]);
+    for far in [1e14, 1e15, 1e16, 1e17, 1e20, 1e100] {
+        for turn in [Vector3::zeros(), Vector3::new(0.3, 0.2, 1.0)] {
+            let options = PairOptions::default().with_motion(Isometry3::new(Vector3::new(far, -0.3 * far, 0.0), turn));
+            let brute = BruteForce::new(small[0].set()).expect("valid");
+            let (found, _) = counted(&small[0], &small[1], &options);
+            assert_same(found, brute.closest_pair(&brute, &options), &format!("{far:e}, {turn:?}"));
+            // There are more than 200 packets of each scene.
+            let (_, steps) = counted(&large[0], &large[1], &options);
+            assert!(steps < 2_000, "{steps} steps, {far:e}, {turn:?}");
+        }
+    }
+}
+
+/// All pairs of two clouds of equal points are equally near, or all intersect.
+#[test]
+fn clouds_of_equal_points_are_compared_in_few_steps() {
+    for (place, is_same) in [([0.1, 0.2, 0.3], false), ([0.0; 3], true)] {
+        let [a, b] = [[0.0; 3], place].map(|at| vec![p2m::Point::new(Point3::from(at)); 10_000]);
+        let [aabb_a, aabb_b] = [&a, &b].map(|points| AabbTree::new(points).expect("valid"));
+        let [kdop_a, kdop_b] = [&a, &b].map(|points| KdopTree::<f64, _, 14>::new(points).expect("valid"));
+        let options = PairOptions::default();
+        for (found, steps) in [counted(&aabb_a, &aabb_b, &options), counted(&kdop_a, &kdop_b, &options)] {
+            let pair = found.expect("not empty");
+            assert_eq!((pair.primitives, pair.is_intersecting), ([PrimitiveId::new(0); 2], is_same));
+            assert!(steps < 200, "{steps} steps, {place:?}");
+        }
+    }
+}
+
+#[test]
+fn searches_for_pairs_end_when_they_are_told_to() {
+    let soup = scenes::soup(&mut rng("ended searches", 0), scenes::Kinds::Triangles, scenes::Layout::Strewn, 2_000);
+    let (tree, brute) = (AabbTree::new(&soup).expect("valid"), BruteForce::new(&soup).expect("valid"));
+    let options = PairOptions::default().with_motion(Isometry3::translation(0.01, 0.0, 0.0)).with_max_distance(0.5);
+    let shape = soup.get(PrimitiveId::new(0));
+    for last in [0_i32, 5] {
+        let left = Cell::new(last);
+        let goes_on = || left.replace(left.get() - 1) > 0;
+        let (stopping, slow) = (Interruptible::pairs(&tree, goes_on), Interruptible::pairs(&brute, goes_on));
+        let mut found = 0;
+        let mut count = |_: &_| (found += 1, ControlFlow::Continue(())).1;
+        let check = |search: &mut dyn FnMut() -> ControlFlow<()>| {
+            left.set(last);
+            assert!(search().is_continue());
+            assert!(left.get() == -1, "it asks until it has to end, and not again: {left:?}");
+        };
+        check(&mut || stopping.visit_pairs_within(&tree, &options, &mut count));
+        check(&mut || slow.visit_pairs_within(&brute, &options, &mut |_| ControlFlow::Continue(())));
+        check(&mut || stopping.visit_near(&shape, &options, &mut |_| ControlFlow::Continue(())));
+        check(&mut || slow.visit_near(&shape, &options, &mut |_| ControlFlow::Continue(())));
+        assert!(found < 2_000, "{found}");
+    }
 }
 
 #[test]

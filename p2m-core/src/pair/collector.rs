@@ -231,19 +231,18 @@ impl<'a> Pairs<'a> {
         self.best().map(|(_, pair)| (pair.points[1] - pair.points[0]).into())
     }
 
-    /// Returns whether the nearest pair so far intersects.
+    /// Returns whether no pair of primitives with at least these ids can change the answer, if the square of the gap
+    /// between their boxes is at least `square`. Such a pair could only tie with the nearest one, which has lower ids.
+    ///
+    /// Keys never are below the gap, so this is exact. For certified answers keys decide only that primitives intersect.
     #[inline]
-    pub(crate) fn has_intersection(&self) -> bool {
-        self.best().is_some_and(|(_, pair)| pair.is_intersecting)
-    }
-
-    /// Returns whether a pair of these primitives could still change the answer. It could not if a pair with lower ids
-    /// intersects.
-    #[inline]
-    #[must_use]
-    pub fn can_change(&self, ids: [PrimitiveId; 2]) -> bool {
-        let ids = self.scene_ids(ids);
-        !self.best().is_some_and(|(others, pair)| pair.is_intersecting && *others < ids)
+    pub(crate) fn is_settled(&self, square: f64, ids: impl FnOnce() -> [PrimitiveId; 2]) -> bool {
+        let Some((best, pair)) = self.best() else { return false };
+        let can_only_tie = match &self.mode {
+            Mode::Certification { .. } => pair.is_intersecting,
+            Mode::Nearest { .. } | Mode::Each(_) => pair.key.plain_square().is_some_and(|key| key <= square),
+        };
+        can_only_tie && *best <= self.scene_ids(ids())
     }
 
     /// Returns whether a pair is within reach. Only pairs that intersect are within 0: the distance of others is

@@ -23,6 +23,7 @@ mod batch;
 mod collector;
 mod edges;
 mod hull;
+mod interruptible;
 mod intersection;
 mod motion;
 mod moving_ball;

@@ -92,6 +92,13 @@ pub trait PairQuery<T: Real> {
         None
     }
 
+    /// Returns whether a search should go on. Searches ask the first index before each step. The default is that they
+    /// do; [`Interruptible`](crate::batch::Interruptible) ends them early.
+    #[doc(hidden)]
+    fn goes_on(&self) -> bool {
+        true
+    }
+
     /// Returns the nearest points of the scene and a shape; `None` if nothing is within the largest distance, and for a
     /// shape whose coordinates are not finite, before or after its motion.
     fn closest_to<P: Primitive<T>>(&self, shape: &P, options: &PairOptions<T>) -> Option<ClosestPair<T>>
@@ -261,13 +268,13 @@ pub(super) fn search_hull<T: Real>(
     offer_hints(index, hint, guess, pairs, &mut |id| (id == shape_id).then(|| Hull::new(hull)));
     let is_tree = index.visit_pair_sides(&[], &bounds_of(hull), &mut |side, offset| {
         pairs.set_offsets([offset, 0]);
-        search_pairs(side, &ShapeSide(hull), pairs);
+        search_pairs(side, &ShapeSide(hull), &|| index.goes_on(), pairs);
         pairs.reach()
     });
     pairs.set_offsets([0, 0]);
     if !is_tree {
         for id in (0..index.primitive_count()).map(PrimitiveId::new) {
-            if pairs.is_done() {
+            if pairs.is_done() || !index.goes_on() {
                 return;
             }
             offer_of_index(index, [id, shape_id], hull, pairs);
@@ -304,7 +311,7 @@ fn search_scenes<T: Real>(
     let is_first_tree = first.visit_pair_sides(&[], &bounds, &mut |a, offset_a| {
         is_second_tree = second.visit_pair_sides(motion.as_slice(), &a.bounds(), &mut |b, offset_b| {
             pairs.set_offsets([offset_a, offset_b]);
-            search_pairs(a, b, pairs);
+            search_pairs(a, b, &|| first.goes_on(), pairs);
             pairs.reach()
         });
         if is_second_tree { pairs.reach() } else { f64::NAN }
@@ -316,7 +323,7 @@ fn search_scenes<T: Real>(
     for j in (0..second.primitive_count()).map(PrimitiveId::new) {
         let hull = moved_hull(j);
         for i in (0..first.primitive_count()).map(PrimitiveId::new) {
-            if pairs.is_done() {
+            if pairs.is_done() || !first.goes_on() {
                 return;
             }
             offer_of_index(first, [i, j], hull.vertices(), pairs);

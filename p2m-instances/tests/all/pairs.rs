@@ -11,7 +11,6 @@ use p2m_instances::Instances;
 use p2m_testkit::scenes::{self, kinds_and_layout};
 use p2m_testkit::{cases, rng};
 use rand::{Rng, RngExt};
-use std::ops::ControlFlow;
 use std::sync::Arc;
 
 /// Builds the index of a random backend, mostly of one that answers queries for pairs.

@@ -84,12 +84,17 @@ impl Hulls {
 /// Offers the pairs of the primitives of two packets. Heights are compared along `direction` and along normals, unless
 /// they have no margin.
 pub(super) fn search_packets(a: &Hulls, b: &Hulls, margin: Option<f64>, direction: Option<V3>, pairs: &mut Pairs<'_>) {
+    let least_ids = || [a, b].map(|hulls| *hulls.ids[..hulls.len].iter().min().expect("a packet has primitives"));
+    if pairs.is_settled(a.bounds.gap_squared(&b.bounds), least_ids) {
+        return;
+    }
     let prune = pairs.prune_above();
     let (near_a, near_b) = (a.near(&b.bounds, prune), b.near(&a.bounds, prune));
     let offer = |i: usize, j: usize, pairs: &mut Pairs<'_>| {
         let prune = pairs.prune_above();
         let ids = [a.ids[i], b.ids[j]];
-        if a.boxes[i].gap_squared(&b.boxes[j]) > prune || !pairs.can_change(ids) {
+        let gap = a.boxes[i].gap_squared(&b.boxes[j]);
+        if gap > prune || pairs.is_settled(gap, || ids) {
             return;
         }
         if margin.is_some_and(|margin| is_apart(a, i, b, j, direction, prune.sqrt() + margin)) {

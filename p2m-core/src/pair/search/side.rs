@@ -60,8 +60,8 @@ pub trait PairSide {
     fn cut_by_box(&self, node: u32, bounds: &Aabb<f64>) -> Children;
     /// Returns a box around a node.
     fn box_of(&self, place: &Place) -> Aabb<f64>;
-    /// Returns the least id of a packet.
-    fn first_id(&self, packet: u32) -> PrimitiveId;
+    /// Returns the least id of a node or a packet.
+    fn least_id(&self, node: u32) -> PrimitiveId;
     /// Loads the primitives of a packet.
     fn load(&self, packet: u32, hulls: &mut Hulls);
 }
@@ -138,7 +138,7 @@ impl PairSide for ShapeSide<'_> {
         bounds_of(self.0)
     }
 
-    fn first_id(&self, _: u32) -> PrimitiveId {
+    fn least_id(&self, _: u32) -> PrimitiveId {
         PrimitiveId::new(0)
     }
 
