@@ -1,5 +1,5 @@
 //! `p2m-bench extremes`: checks the accuracy contract on inputs where other libraries fail, for the tables of
-//! docs/extremes.md.
+//! docs/measurements/extremes.md.
 
 mod counts;
 mod examples;
@@ -18,7 +18,7 @@ use p2m_cli::harness::Table;
 use p2m_testkit::extremes::Extreme;
 use std::time::Instant;
 
-/// The blocks of docs/extremes.md.
+/// The blocks of docs/measurements/extremes.md.
 pub(crate) const BLOCKS: Blocks<5> =
     Blocks { command: "extremes", names: ["provenance", "checks", "primitives", "scenes", "examples"] };
 

@@ -13,7 +13,7 @@ use p2m_testkit::families::{Family, Span, pair_in, shape};
 use p2m_testkit::oracle::Distance;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 
-/// The block of docs/extremes.md.
+/// The block of docs/measurements/extremes.md.
 pub(crate) const BLOCKS: Blocks<1> = Blocks { command: "extreme-pairs", names: ["pairs"] };
 
 /// The number of cases that a thread takes at a time.
