@@ -2,7 +2,7 @@
 //!
 //! [`AabbTree`] is a tree of nodes with eight boxes over packets of sixteen primitives ([`PacketTree`]). A search
 //! visits the nearest node first and uses the vector instructions of the processor that it runs on. Boxes and packets
-//! only bound distances, in f32 and with proof (docs/proofs/filter.md). The kernel of the contract evaluates the
+//! only bound distances, in f32 and with proof ([docs/proofs/filter.md]). The kernel of the contract evaluates the
 //! primitives that may be the answer, so answers are bitwise those of [`BruteForce`](p2m_core::BruteForce).
 //!
 //! ```
@@ -23,6 +23,8 @@
 //! `traverse` the searches, and `construct` splits primitives top-down by a [`SplitRule`] into a binary tree and
 //! merges its nodes. The k-DOP tree (crate p2m-kdop) and the interception indexes (crate p2m-interception) consist
 //! of the same parts.
+//!
+//! [docs/proofs/filter.md]: https://github.com/p2m-rs/p2m/blob/main/docs/proofs/filter.md
 #![forbid(unsafe_code)]
 
 mod construct;

@@ -1,6 +1,8 @@
 //! Squared distances to points, segments and triangles, lane by lane.
 //!
-//! The band within which they are right is stated in `distance_filter`; its proof is in docs/proofs/filter.md.
+//! The band within which they are right is stated in `distance_filter`; its proof is in [docs/proofs/filter.md].
+//!
+//! [docs/proofs/filter.md]: https://github.com/p2m-rs/p2m/blob/main/docs/proofs/filter.md
 
 use p2m_core::engine::simd::Lanes;
 use p2m_core::engine::vector::power_of_two;

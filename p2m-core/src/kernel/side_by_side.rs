@@ -9,7 +9,9 @@
 //! - slivers, and feet so close to the border of a face that their weights do not decide;
 //! - ties between vertices, between edges, or between the lengths of edges, which the order of vertices decides.
 //!
-//! docs/proofs/accuracy.md has the proof that the bits are equal.
+//! [docs/proofs/accuracy.md] has the proof that the bits are equal.
+//!
+//! [docs/proofs/accuracy.md]: https://github.com/p2m-rs/p2m/blob/main/docs/proofs/accuracy.md
 
 #![allow(clippy::needless_range_loop, reason = "iterators with closures would be compiled without the instruction set")]
 

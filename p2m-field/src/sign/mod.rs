@@ -141,7 +141,7 @@ impl<I, S: SharedSoup> SignedDistance<I, S> {
     ///
     /// # Accuracy
     /// The signs of oriented surfaces, and those by parity, are those of an exact count of crossings (proved,
-    /// docs/proofs/fields.md). Other winding numbers have an error bound that is proved but for the rounding of solid
+    /// [docs/proofs/fields.md]). Other winding numbers have an error bound that is proved but for the rounding of solid
     /// angles, where it is observed; where the bound does not decide, the sign is [`Sign::Undefined`].
     ///
     /// # Errors
@@ -150,6 +150,8 @@ impl<I, S: SharedSoup> SignedDistance<I, S> {
     /// # Complexity
     /// O(n log n) time, and again when so many signs were asked for that certificates pay. Then memory is 100 bytes for
     /// each triangle and 36 bytes for each vertex. An edge of the boundary takes 300 bytes.
+    ///
+    /// [docs/proofs/fields.md]: https://github.com/p2m-rs/p2m/blob/main/docs/proofs/fields.md
     pub fn new<T: Real>(index: I, soup: S) -> Result<Self, SignError>
     where
         I: ClosestPoint<T>,

@@ -4,16 +4,18 @@
 //! over the triangle, where K(x) = (x - q) / (4 pi |x - q|^3). For the triangles of a node with the centre p, K is
 //! replaced by its Taylor polynomial of degree 1 at p: a dipole and its first moments \[Barill2018\].
 //!
-//! **Error (proved, docs/proofs/fields.md).** K is the gradient of -1 / (4 pi |x - q|), whose third derivatives in any
-//! directions are at most 3! / (4 pi rho^4) at a distance of rho. So the remainder is at most 3 I / (4 pi rho^4), with
-//! rho the distance of q from the box of the node and I the integral of |x - p|^2 over the triangles. Where this is not
-//! below a half for each triangle, the node has the value 0 and that error, since no solid angle exceeds 2 pi.
+//! **Error (proved, [docs/proofs/fields.md]).** K is the gradient of -1 / (4 pi |x - q|), whose third derivatives in
+//! any directions are at most 3! / (4 pi rho^4) at a distance of rho. So the remainder is at most 3 I / (4 pi rho^4),
+//! with rho the distance of q from the box of the node and I the integral of |x - p|^2 over the triangles. Where this
+//! is not below a half for each triangle, the node has the value 0 and that error, since no solid angle exceeds 2 pi.
 //!
 //! Nodes are divided by the surface-area heuristic in 16 bins, for caps have very different sizes.
 //!
 //! A sum starts at the root. While its error is too large, a node whose error is at least half of the largest is
 //! replaced by its children, and a leaf by the solid angles of its triangles. Values and errors are rounded to
 //! multiples of a unit that is so large that sums are exact.
+//!
+//! [docs/proofs/fields.md]: https://github.com/p2m-rs/p2m/blob/main/docs/proofs/fields.md
 
 use super::types::ray;
 use nalgebra::Point3;

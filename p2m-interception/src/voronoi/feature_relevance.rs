@@ -12,7 +12,9 @@
 //!
 //! A feature is *excluded* if the whole region is on the wrong side of one plane. It is also excluded if the heights
 //! above two planes have a negative sum in the whole region, because then each point is on the wrong side of one of
-//! the two. docs/proofs/p2m.md has the margins.
+//! the two. [docs/proofs/p2m.md] has the margins.
+//!
+//! [docs/proofs/p2m.md]: https://github.com/p2m-rs/p2m/blob/main/docs/proofs/p2m.md
 
 use crate::delaunay::Delaunay;
 use crate::voronoi::adjacency::{EdgeAdjacency, NO_PRIMITIVE};

@@ -1,11 +1,13 @@
 //! The packets that intersect the balls of corners, found by floods over the Delaunay tetrahedra.
 //!
 //! The tetrahedra whose balls intersect a primitive are connected through faces, and those at its vertices are among
-//! them (docs/proofs/p2m.md). So a flood that begins there finds them all. It tests little more than what it finds,
+//! them ([docs/proofs/p2m.md]). So a flood that begins there finds them all. It tests little more than what it finds,
 //! where a search of the tree for each ball would descend from the root and test one point at a time.
 //!
 //! Balls whose centres are imprecise, or that are much larger than the scene, are left to searches of the tree. So are
 //! all balls if packets intersect too many of them, as around the centre of a sphere.
+//!
+//! [docs/proofs/p2m.md]: https://github.com/p2m-rs/p2m/blob/main/docs/proofs/p2m.md
 
 use crate::delaunay::Delaunay;
 use crate::parallel_chunks::map_chunks_in_order;

@@ -25,7 +25,9 @@ use p2m_core::Aabb;
 use p2m_core::engine::vector::V3;
 
 /// The distance of the bounding sites from the centre, in halves of the longest side of the box of all sites. So none
-/// of them is the nearest site in the domain, or nearly the nearest (docs/proofs/p2m.md).
+/// of them is the nearest site in the domain, or nearly the nearest ([docs/proofs/p2m.md]).
+///
+/// [docs/proofs/p2m.md]: https://github.com/p2m-rs/p2m/blob/main/docs/proofs/p2m.md
 pub(crate) const BOUNDING_DISTANCE: f64 = 300.0;
 /// The largest number of rounds in which points are added.
 const MAX_ROUNDS: usize = 6;

@@ -18,10 +18,12 @@
 //!
 //! # Correctness
 //!
-//! The gap of two boxes never exceeds the key of primitives in them (docs/proofs/pairs.md). The other bounds are
+//! The gap of two boxes never exceeds the key of primitives in them ([docs/proofs/pairs.md]). The other bounds are
 //! computed with a margin above their rounding and above the error of keys. So the answer is that of all pairs, bit for
 //! bit. The motion of a tree is applied to the vertices of its packets, each coordinate rounded, and to directions and
 //! boxes with a margin above all roundings.
+//!
+//! [docs/proofs/pairs.md]: https://github.com/p2m-rs/p2m/blob/main/docs/proofs/pairs.md
 
 mod directions;
 mod height;
