@@ -4,14 +4,17 @@
 #![forbid(unsafe_code)]
 
 mod deep;
+mod links;
 mod memory;
 mod package;
 mod pages;
 mod promises;
 mod python;
+mod site;
 mod tools;
 mod wasm;
 
+use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::{Command, ExitCode};
 
@@ -26,7 +29,7 @@ struct Task {
 /// The result of a task, with a message if it failed.
 type Outcome = Result<(), String>;
 
-const TASKS: [Task; 13] = [
+const TASKS: [Task; 14] = [
     Task {
         name: "quick",
         arguments: "[FILTER]",
@@ -51,6 +54,12 @@ const TASKS: [Task; 13] = [
         arguments: "",
         about: "Make the documentation, in which no link may be broken",
         run: |_| docs(),
+    },
+    Task {
+        name: "site",
+        arguments: "",
+        about: "Check the links of all documents, and build the site of docs with mdBook below target/book",
+        run: |_| site::build(),
     },
     Task {
         name: "promises",
@@ -195,4 +204,8 @@ fn output(program: &str, arguments: &[&str]) -> Result<String, String> {
         return Err(format!("{line}: {}", String::from_utf8_lossy(&output.stderr).trim()));
     }
     Ok(String::from_utf8_lossy(&output.stdout).into_owned())
+}
+
+fn read(path: &Path) -> Result<String, String> {
+    fs::read_to_string(path).map_err(|error| format!("{}: {error}", path.display()))
 }
