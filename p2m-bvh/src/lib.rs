@@ -61,6 +61,18 @@ use p2m_core::Aabb;
 /// Queries are methods of the traits that it implements: [`ClosestPoint`](p2m_core::ClosestPoint),
 /// [`NearQuery`](p2m_core::NearQuery), [`BoxQuery`](p2m_core::BoxQuery), [`RayQuery`](p2m_core::RayQuery)
 /// and [`CertifiedQuery`](p2m_core::CertifiedQuery).
+/// ```
+/// use p2m_bvh::AabbTree;
+/// use p2m_core::{ClosestPoint, NearQuery, Soup};
+///
+/// let positions = [[0.0, 0.0, 0.0], [4.0, 0.0, 0.0], [0.0, 4.0, 0.0]];
+/// let scene: Soup<f64> = Soup::from_arrays(&positions, &[[0, 1, 2]])?;
+/// let index = AabbTree::<f64, _>::new(scene)?;
+/// let query = [1.0, 1.0, 2.0];
+/// assert_eq!(index.closest_point(&query).map(|answer| answer.distance), Some(2.0));
+/// assert!(!index.is_any_within(&query, 1.5));
+/// # Ok::<(), p2m_core::BuildError>(())
+/// ```
 pub type AabbTree<T, S> = TreeIndex<T, S, Aabb<f64>>;
 
 /// The internals of this crate that its sibling crates use. They may change at any time.

@@ -45,6 +45,19 @@ use std::ops::ControlFlow;
 /// # Complexity
 /// A query takes O(log n) steps to its cell and then searches the list of the cell. The list has a few packets,
 /// independently of n, wherever cells could be made small enough.
+/// # Examples
+/// ```
+/// use nalgebra::Point3;
+/// use p2m_core::{BuildIndex, ClosestPoint, Point};
+/// use p2m_interception::{OctreeIndex, OctreeOptions};
+///
+/// let scene: Vec<_> = (0..100).map(|i| Point::new(Point3::new(f64::from(i), 0.0, 0.0))).collect();
+/// let options = OctreeOptions::default().with_finer_cells(30.0); // for batches of many millions of queries
+/// let index = OctreeIndex::<f64, _>::build(&scene, &options)?;
+/// let answer = index.closest_point(&[41.75, 3.0, 0.0]).expect("the scene is not empty");
+/// assert_eq!(answer.primitive.index(), 42);
+/// # Ok::<(), p2m_core::BuildError>(())
+/// ```
 pub type OctreeIndex<T, S> = InterceptionIndex<T, S, Octree>;
 
 /// An interception index whose cells are the Voronoi cells of the scene's vertices.
@@ -74,6 +87,18 @@ pub type OctreeIndex<T, S> = InterceptionIndex<T, S, Octree>;
 ///
 /// # References
 /// \[Zong2023\]
+/// # Examples
+/// ```
+/// use nalgebra::Point3;
+/// use p2m_core::{ClosestPoint, Point};
+/// use p2m_interception::P2mIndex;
+///
+/// let scene: Vec<_> = (0..100).map(|i| Point::new(Point3::new(f64::from(i), 0.0, 0.0))).collect();
+/// let index = P2mIndex::<f64, _>::new(&scene)?;
+/// let far = index.closest_point(&[42.0, 400.0, 300.0]).expect("the scene is not empty");
+/// assert_eq!((far.primitive.index(), far.distance), (42, 500.0));
+/// # Ok::<(), p2m_core::BuildError>(())
+/// ```
 pub type P2mIndex<T, S> = InterceptionIndex<T, S, Voronoi>;
 
 /// The index of the P2M paper, which is a [`P2mIndex`] with other default options.

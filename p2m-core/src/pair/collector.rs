@@ -8,6 +8,19 @@ use nalgebra::{Isometry3, Point3};
 use std::ops::ControlFlow;
 
 /// The options of a search for pairs.
+///
+/// ```
+/// use nalgebra::{Isometry3, Point3};
+/// use p2m_core::pair::{PairOptions, PairQuery};
+/// use p2m_core::{BruteForce, Segment};
+///
+/// let pipe = |y: f64| [Segment::new(Point3::new(0.0, y, 0.0), Point3::new(9.0, y, 0.0))];
+/// let (first, second) = (BruteForce::new(pipe(0.0))?, BruteForce::new(pipe(4.0))?);
+/// // The second pipe has a radius of 1, and is moved towards the first one.
+/// let options = PairOptions::default().with_radius(1.0).with_motion(Isometry3::translation(0.0, -1.0, 0.0));
+/// assert_eq!(first.closest_pair(&second, &options).map(|pair| pair.distance), Some(2.0));
+/// # Ok::<(), p2m_core::BuildError>(())
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct PairOptions<T: Real> {
