@@ -185,14 +185,13 @@ impl<T: Real, S: PrimitiveSet<T>, V: Volume> TreeIndex<T, S, V> {
     ///
     /// The area is a measure of the quality of the tree for one scene. A refit keeps the shape of the tree, so the area
     /// grows as neighbours move apart. Compare it with its value after the build, and build anew when it has grown by a
-    /// third: the guide of the crate p2m ([docs/guide/motion.md]) has the figures. If the scene grows as a whole,
-    /// divide the area by the square of that growth. It is 0 for a set of up to sixteen primitives, which are one
-    /// packet.
+    /// third ([docs/measurements/motion.md] has the figures). If the scene grows as a whole, divide the area by the
+    /// square of that growth. It is 0 for a set of up to sixteen primitives, which are one packet.
     ///
     /// # Complexity
     /// O(n).
     ///
-    /// [docs/guide/motion.md]: https://github.com/p2m-rs/p2m/blob/main/docs/guide/motion.md
+    /// [docs/measurements/motion.md]: https://github.com/p2m-rs/p2m/blob/main/docs/measurements/motion.md
     pub fn surface_area(&self) -> f64 {
         self.tree.surface_area()
     }

@@ -106,7 +106,7 @@ pub type P2mIndex<T, S> = InterceptionIndex<T, S, Voronoi>;
 /// These are [`P2mOptions::as_in_paper`](crate::P2mOptions::as_in_paper): a KD-tree of the crate kiddo finds a site
 /// near the query ([`KdTreeLocator`](crate::KdTreeLocator)), no site is added to the vertices, lists may be long, and an
 /// R-tree of the crate rstar filters each list of more than 64 primitives ([`RegionTree`](crate::RegionTree)). The index
-/// exists for comparison with the paper. A [`P2mIndex`] gives the same answers faster: [docs/p2m.md] and
+/// exists for comparison with the paper. A [`P2mIndex`] gives the same answers faster: [docs/measurements/p2m.md] and
 /// [docs/measurements/paper.md] have figures of both.
 ///
 /// The methods are those of [`P2mIndex`], but the index cannot be saved. The options are
@@ -134,7 +134,7 @@ pub type P2mIndex<T, S> = InterceptionIndex<T, S, Voronoi>;
 /// # References
 /// \[Zong2023\]
 ///
-/// [docs/p2m.md]: https://github.com/p2m-rs/p2m/blob/main/docs/p2m.md
+/// [docs/measurements/p2m.md]: https://github.com/p2m-rs/p2m/blob/main/docs/measurements/p2m.md
 /// [docs/measurements/paper.md]: https://github.com/p2m-rs/p2m/blob/main/docs/measurements/paper.md
 #[cfg(feature = "paper")]
 pub type PaperIndex<T, S> = InterceptionIndex<T, S, PaperVoronoi>;

@@ -254,9 +254,9 @@ impl P2mOptions {
     }
     /// Sets that lists may be as long as in the paper: no site is added, a list may have 2048 packets, and the budgets
     /// of memory and work are 100,000 bytes and 1,000,000 tests for each primitive. Between slivers a build takes up to
-    /// 40 times as long as by default ([docs/p2m.md] has figures).
+    /// 40 times as long as by default ([docs/measurements/p2m.md] has figures).
     ///
-    /// [docs/p2m.md]: https://github.com/p2m-rs/p2m/blob/main/docs/p2m.md
+    /// [docs/measurements/p2m.md]: https://github.com/p2m-rs/p2m/blob/main/docs/measurements/p2m.md
     #[must_use]
     pub fn with_long_lists(self) -> Self {
         let max_list_packets = MAX_BLOCKS * BLOCK_WIDTH;

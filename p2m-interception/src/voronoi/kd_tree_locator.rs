@@ -12,7 +12,7 @@ use std::sync::Arc;
 ///
 /// # Complexity
 /// A search takes O(log n) steps for n sites. The memory is about 29 bytes a site. Queries take up to three times as
-/// long as with the grid, which is the default ([docs/p2m.md] has figures).
+/// long as with the grid, which is the default ([docs/measurements/p2m.md] has figures).
 ///
 /// ```
 /// use nalgebra::Point3;
@@ -29,7 +29,7 @@ use std::sync::Arc;
 /// # Ok::<(), p2m_core::BuildError>(())
 /// ```
 ///
-/// [docs/p2m.md]: https://github.com/p2m-rs/p2m/blob/main/docs/p2m.md
+/// [docs/measurements/p2m.md]: https://github.com/p2m-rs/p2m/blob/main/docs/measurements/p2m.md
 #[derive(Debug)]
 pub struct KdTreeLocator {
     /// The tree. It is `None` if `kiddo` cannot build one.

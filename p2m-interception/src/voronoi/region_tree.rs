@@ -9,7 +9,7 @@ use std::sync::Arc;
 /// # Complexity
 /// A filter takes about 84 bytes for each primitive of its list. It is slower than the lists in order, which are the
 /// default, on every scene that was measured: between slivers, where lists are long, queries take three to ten times
-/// as long ([docs/p2m.md] has figures).
+/// as long ([docs/measurements/p2m.md] has figures).
 ///
 /// ```
 /// use nalgebra::Point3;
@@ -27,7 +27,7 @@ use std::sync::Arc;
 /// # Ok::<(), p2m_core::BuildError>(())
 /// ```
 ///
-/// [docs/p2m.md]: https://github.com/p2m-rs/p2m/blob/main/docs/p2m.md
+/// [docs/measurements/p2m.md]: https://github.com/p2m-rs/p2m/blob/main/docs/measurements/p2m.md
 #[derive(Clone, Debug)]
 pub struct RegionTree {
     /// The regions with a bounded box.
