@@ -134,8 +134,8 @@ impl<T: Real, S: PrimitiveSet<T>, V: Volume> TreeIndex<T, S, V> {
     /// # Ok::<(), p2m_core::BuildError>(())
     /// ```
     ///
-    /// The tree is fitted to what `change` left, also if it returns an error or panics, so answers are always those of
-    /// the set.
+    /// The tree is fitted to what `change` left, also if it returns an error or panics, so answers are always
+    /// those of the set.
     ///
     /// # Errors
     /// Returns the error of `change`. Returns [`BuildError::OtherLength`] or [`BuildError::NonFinite`] if `change` left

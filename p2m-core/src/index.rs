@@ -78,8 +78,8 @@ pub trait ClosestPoint<T: Real> {
         self.closest_point_with(query, &QueryOptions::default())
     }
 
-    /// Answers queries on the current thread, in any order: calls `answered` once for each with its position and its
-    /// answer.
+    /// Answers queries on the current thread, in any order: calls `answered` once for each with its position
+    /// and its answer.
     ///
     /// Backends that answer several queries at once override it. Distance, primitive, point, feature and weights are
     /// those of [`closest_point_with`](Self::closest_point_with), and so is the answer to approximate options. The

@@ -60,8 +60,8 @@ impl<T: Real, I: AnyIndex<T> + ?Sized> PairQuery<T> for Instances<T, I> {
     }
 }
 
-/// Calls `search` with the trees of an instance, or with each of its primitives if it has none, and returns the last
-/// result.
+/// Calls `search` with the trees of an instance, or with each of its primitives if it has none, and returns
+/// the last result.
 fn visit_instance<T: Real, I: AnyIndex<T> + ?Sized>(
     instance: &Instance<I>,
     motions: &[Motion],

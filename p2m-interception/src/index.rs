@@ -167,8 +167,8 @@ impl<T: Real, S: PrimitiveSet<T>, P: Partition> InterceptionIndex<T, S, P> {
     /// Builds the index with `options`.
     ///
     /// # Errors
-    /// [`BuildError::NonFinite`] for a coordinate that is not finite, and [`BuildError::TooMany`] for more than 2^30
-    /// primitives.
+    /// [`BuildError::NonFinite`] for a coordinate that is not finite, and [`BuildError::TooMany`] for more
+    /// than 2^30 primitives.
     pub fn build_with(set: S, options: &P::Options) -> Result<Self, BuildError>
     where
         S: Sync,

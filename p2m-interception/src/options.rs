@@ -96,8 +96,8 @@ impl OctreeOptions {
 
 /// The size of an octree if its refinement ended now.
 ///
-/// All numbers are upper bounds, because lists that are not made yet may turn out shorter than what is reserved for
-/// them.
+/// All numbers are upper bounds, because lists that are not made yet may turn out shorter than what is
+/// reserved for them.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[non_exhaustive]
 pub struct RefinementProgress {
@@ -274,8 +274,8 @@ impl P2mOptions {
     /// Sets the function that makes the locator. Answers do not depend on it. A saved index has a grid instead.
     ///
     /// A query calls the locator through a pointer, and begins its walk at the site that it returns. The grid, which is
-    /// the default, is the fastest locator that was measured. With a `KdTreeLocator` a query takes up to three times as
-    /// long.
+    /// the default, is the fastest locator that was measured. With a `KdTreeLocator` a query takes up to three
+    /// times as long.
     #[must_use]
     pub fn with_locator(self, build: BuildLocator) -> Self {
         Self { locator: Some(FnPointer(build)), ..self }

@@ -123,8 +123,8 @@ impl<'a> Comparison<'a> {
         is_tree(estimate) || !is_exhaustive && !self.has_slivers && estimate.build_seconds < self.max_build_seconds
     }
 
-    /// Measures the backends that may win on the smallest sample, and those that may still win on one as large as time
-    /// permits.
+    /// Measures the backends that may win on the smallest sample, and those that may still win on one as large
+    /// as time permits.
     ///
     /// Some scenes have a hundred times the usual time to build cells of vertices. The smallest sample shows that
     /// before a larger one would take too long.

@@ -287,8 +287,8 @@ pub struct Locals {
     /// The normals of planes between the query points and the packets. Until the planes are placed, they are a vertex
     /// of each packet in its frame.
     normal: [[f32; PLACES]; 3],
-    /// The offsets of the planes: the product of the normal with the vector from the query point to a point of the
-    /// plane.
+    /// The offsets of the planes: the product of the normal with the vector from the query point to a point
+    /// of the plane.
     offset: [f32; PLACES],
     /// One bit for each place whose query point is not in the frame, as [`Packet::local`] returns `None` for it.
     pub far: u32,

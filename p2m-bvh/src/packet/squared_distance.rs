@@ -142,8 +142,8 @@ impl<L: Lanes> Triangles<L> {
 }
 
 /// Returns one bit for each lane: whether a vertex of its triangle does not lie behind a plane. The plane is orthogonal
-/// to `normal`, and its offset is the product of the normal with the vector from the query point to a point of the
-/// plane.
+/// to `normal`, and its offset is the product of the normal with the vector from the query point to a point
+/// of the plane.
 #[inline(always)]
 pub(super) fn lanes_before_plane<L: Lanes>(vertices: &[V3<L>; 3], query: &V3<L>, normal: [f32; 3], offset: f32) -> u32 {
     let normal = V3::splat(normal);

@@ -84,8 +84,8 @@ pub trait WideNode: Rows + Copy + Debug + Send + Sync {
     }
 }
 
-/// What trees and traversals need of a bounding volume. Searches, which [`Volume`](crate::Volume) adds, need them in
-/// turn.
+/// What trees and traversals need of a bounding volume. Searches, which [`Volume`](crate::Volume) adds, need
+/// them in turn.
 pub trait VolumeNodes: Clone + 'static {
     /// The data that all volumes of a tree share.
     type Shared: Clone + Debug + Send + Sync;

@@ -30,8 +30,8 @@ pub const SIDE_BY_SIDE: usize = 8;
 /// A number for each primitive.
 pub type Row = [f64; SIDE_BY_SIDE];
 
-/// The query points and the vertices of eight primitives. `vertices[v][k]` has coordinate k of vertex v of each of
-/// them.
+/// The query points and the vertices of eight primitives. `vertices[v][k]` has coordinate k of vertex v of
+/// each of them.
 #[derive(Clone, Debug)]
 pub struct TriangleLanes<const N: usize> {
     queries: [Row; 3],

@@ -209,8 +209,8 @@ impl Candidate {
         }
     }
 
-    /// Offers vertex i of one hull and its nearest point on the other. `is_second` tells whether the vertex is of the
-    /// second hull.
+    /// Offers vertex i of one hull and its nearest point on the other. `is_second` tells whether the vertex is
+    /// of the second hull.
     #[allow(clippy::cast_possible_truncation, reason = "a primitive has at most three vertices")]
     fn offer_vertex(&mut self, i: usize, vertex: V3, other: &[V3], square: f64, is_second: bool) {
         let Some(projection) = project(vertex, other, self.limit(square)) else { return };

@@ -123,8 +123,8 @@ pub trait PairQuery<T: Real> {
 
     /// Returns the certainly nearest primitive of the scene and a shape, in real arithmetic, of exactly equal distances
     /// the one with the lowest id. The distance is the true one, rounded once to the nearest f64, and once more for
-    /// scenes in f32. Of the options the radius and the hint are not used, and the largest distance is compared without
-    /// rounding.
+    /// scenes in f32. Of the options the radius and the hint are not used, and the largest distance is
+    /// compared without rounding.
     ///
     /// # Complexity
     /// It takes the search of [`closest_to`](Self::closest_to), and some ten microseconds for each pair that rounding
@@ -164,8 +164,8 @@ pub trait PairQuery<T: Real> {
     }
 
     /// Returns the certainly nearest pair of primitives of this scene and another one, in real arithmetic, as
-    /// [`certified_closest_to`](Self::certified_closest_to) does for a shape. A motion moves and rounds the vertices
-    /// first.
+    /// [`certified_closest_to`](Self::certified_closest_to) does for a shape. A motion moves and rounds
+    /// the vertices first.
     fn certified_closest_pair<Q: PairQuery<T> + ?Sized>(
         &self,
         other: &Q,
@@ -251,8 +251,8 @@ fn search_shape<T: Real>(
     search_hull(index, moved(Hull::of(shape), motion.as_ref()).vertices(), options.hint, pairs);
 }
 
-/// Offers the pairs of a scene and the hull of one to three vertices that may be near. There are none if a coordinate is
-/// not finite.
+/// Offers the pairs of a scene and the hull of one to three vertices that may be near. There are none if a
+/// coordinate is not finite.
 pub(super) fn search_hull<T: Real>(
     index: &(impl PairQuery<T> + ?Sized),
     hull: &[V3],
@@ -336,8 +336,8 @@ fn moved(hull: Hull, motion: Option<&Motion>) -> Hull {
     motion.map_or(hull, |motion| hull.map(|vertex| motion.apply(vertex)))
 }
 
-/// Offers the hint of the user and a guess, if the nearest pair is searched for. Ids that a scene does not have are
-/// ignored.
+/// Offers the hint of the user and a guess, if the nearest pair is searched for. Ids that a scene does not
+/// have are ignored.
 fn offer_hints<T: Real>(
     first: &(impl PairQuery<T> + ?Sized),
     hint: Option<[PrimitiveId; 2]>,

@@ -57,8 +57,8 @@ pub(super) struct Certificates<S> {
     neighbours: Vec<[u32; 3]>,
     /// The vertex id of each position.
     vertex_ids: Vec<u32>,
-    /// The pseudonormal of each simple vertex and the smallest height of its triangles over the opposite edges, or
-    /// zeros.
+    /// The pseudonormal of each simple vertex and the smallest height of its triangles over the opposite
+    /// edges, or zeros.
     fans: Vec<Fan>,
     /// The patch of each triangle, or [`NO_PATCH`].
     patches: Vec<u32>,

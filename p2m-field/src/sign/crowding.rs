@@ -137,8 +137,8 @@ impl<S: SharedSoup> Join<'_, S> {
 }
 
 /// Returns whether two triangles are certainly farther than a margin from each other: along the perpendicular of an
-/// edge in the plane of a triangle, along a normal, along a cross product of two edges, or along an axis of the
-/// coordinates.
+/// edge in the plane of a triangle, along a normal, along a cross product of two edges, or along an axis
+/// of the coordinates.
 fn are_apart(one: &[V3; 3], other: &[V3; 3], margin: f64) -> bool {
     let origin = one[0];
     let [one, other] = [one, other].map(|corners| corners.map(|corner| sub(corner, origin)));

@@ -25,8 +25,8 @@ impl Wall {
         (0..3).all(|k| self.bounds[0][k] <= high[k] && low[k] <= self.bounds[1][k])
     }
 
-    /// Returns the change of the number of crossings from p to q, or `None` if the segment touches the triangle without
-    /// crossing it.
+    /// Returns the change of the number of crossings from p to q, or `None` if the segment touches the
+    /// triangle without crossing it.
     fn change(&self, p: V3, q: V3) -> Option<i64> {
         let [a, b, c] = self.corners;
         let turns = [(a, b), (b, c), (c, a)].map(|(a, b)| orientation_3d(p, q, a, b));

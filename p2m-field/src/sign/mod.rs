@@ -162,8 +162,8 @@ impl<I, S: SharedSoup> SignedDistance<I, S> {
     /// Makes signs by a rule of your choice.
     ///
     /// # Errors
-    /// Those of [`new`](Self::new), and [`SignError::Open`] for [`SignRule::Parity`] if an edge has an odd number of
-    /// triangles.
+    /// Those of [`new`](Self::new), and [`SignError::Open`] for [`SignRule::Parity`] if an edge has an odd
+    /// number of triangles.
     ///
     /// # Complexity
     /// The complexity is that of [`new`](Self::new).
@@ -326,8 +326,8 @@ impl<I, S: SharedSoup> SignedDistance<I, S> {
         }
     }
 
-    /// Returns the number of queries so far whose sign a ray or a winding number has decided, because the closest point
-    /// did not.
+    /// Returns the number of queries so far whose sign a ray or a winding number has decided, because the
+    /// closest point did not.
     pub fn ambiguous_count(&self) -> u64 {
         self.signs.ray_count.get()
     }

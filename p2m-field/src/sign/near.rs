@@ -30,8 +30,8 @@ impl EightSums {
         Self { points: [coordinate(0), coordinate(1), coordinate(2)], product: [one, zero], turns: zero, error: zero }
     }
 
-    /// Returns the sum of a point over 4 pi. The error is infinite if the point is on an edge or on a triangle, apart
-    /// from rounding.
+    /// Returns the sum of a point over 4 pi. The error is infinite if the point is on an edge or on a
+    /// triangle, apart from rounding.
     pub(super) fn estimate(&self, n: usize) -> Estimate {
         let half = f64::atan2(self.product[1][n], self.product[0][n]) + 2.0 * PI * self.turns[n];
         Estimate { value: half / (2.0 * PI), error: self.error[n] }

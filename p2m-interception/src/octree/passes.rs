@@ -86,8 +86,8 @@ impl Counts {
 }
 
 impl Passes {
-    /// Refines the cube of the domain, until `visit` ends it. The result is `None` if even the coarsest cells exceed a
-    /// budget.
+    /// Refines the cube of the domain, until `visit` ends it. The result is `None` if even the coarsest cells
+    /// exceed a budget.
     pub(crate) fn run(
         refinement: &Refinement<'_>,
         low: V3,

@@ -143,8 +143,8 @@ impl Refinement<'_> {
         })
     }
 
-    /// Runs the filters of packets at the corners of a cell, applies the corner test, and continues with the packets
-    /// that pass.
+    /// Runs the filters of packets at the corners of a cell, applies the corner test, and continues with
+    /// the packets that pass.
     fn filter_at_corners(
         &self,
         task: &mut CellTask,

@@ -81,8 +81,8 @@ struct FeaturePlane {
     margin_factor: f64,
 }
 
-/// The features of a primitive of one to three vertices with their planes, which all cells share. Its vectors are
-/// reused.
+/// The features of a primitive of one to three vertices with their planes, which all cells share. Its
+/// vectors are reused.
 #[derive(Default)]
 pub(crate) struct PrimitiveFeatures {
     /// The box of the vertices.
@@ -244,8 +244,8 @@ impl LanesOver {
         }
     }
 
-    /// Returns the lanes over whose feature a point is, as bits. Such a feature is relevant in each region that has the
-    /// point.
+    /// Returns the lanes over whose feature a point is, as bits. Such a feature is relevant in each region that
+    /// has the point.
     #[inline(always)]
     pub(crate) fn lanes_below_point<D: Doubles>(&self, point: &V3) -> u16 {
         let mut lanes = 0;

@@ -30,8 +30,8 @@ const TRIED_PACKETS: usize = 64;
 /// Floods are given up if they test each ball with more packets than this on average, first for the packets that are
 /// tried, then for all. Usually it is eight, and thirty take about as long as a search of the tree (observed).
 const MAX_PACKETS_PER_BALL: [usize; 2] = [24, 32];
-/// Larger balls are left to searches of the tree. The unit is 2^40 times the slack, about the distance of the bounding
-/// sites.
+/// Larger balls are left to searches of the tree. The unit is 2^40 times the slack, about the distance of
+/// the bounding sites.
 const MAX_RADIUS: f64 = 1.0;
 
 /// The corners of all packets.

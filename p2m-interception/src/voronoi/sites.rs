@@ -66,8 +66,8 @@ struct GrowingSites<'a> {
 }
 
 impl<'a> GrowingSites<'a> {
-    /// Triangulates the vertices of a tree and finds the packets of all balls. It returns `None` if there are too many
-    /// tetrahedra.
+    /// Triangulates the vertices of a tree and finds the packets of all balls. It returns `None` if there are
+    /// too many tetrahedra.
     ///
     /// Floods are given up where very many balls are crowded. Then sites are added before all packets are known,
     /// because most of these balls vanish.

@@ -94,8 +94,8 @@ pub(crate) struct Arguments {
     document: Document,
 }
 
-/// Checks pairs of primitives, half of them in each scalar, and publishes the block. Returns whether ours are all within
-/// their bound.
+/// Checks pairs of primitives, half of them in each scalar, and publishes the block. Returns whether ours are
+/// all within their bound.
 pub(crate) fn run(arguments: &Arguments) -> Result<bool> {
     let document = arguments.document.write.as_deref();
     BLOCKS.check(document)?;
