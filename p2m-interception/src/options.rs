@@ -200,7 +200,7 @@ impl PartialEq for FnPointer<BuildListFilter> {
 pub struct P2mOptions {
     /// The splits of the tree, which define the packets, and whether all threads are used.
     pub splits: SplitOptions,
-    /// The largest number of packets in a list. It is 96 by default, and 2048 at most. The tree answers in cells
+    /// The largest number of packets in a list. It is 96 by default, and at most 2048. The tree answers in cells
     /// with more packets.
     pub max_list_packets: usize,
     /// The largest number of added sites for each vertex of a packet, where a vertex of several packets counts several

@@ -152,6 +152,6 @@ pub(super) fn lanes_before_plane<L: Lanes>(vertices: &[V3<L>; 3], query: &V3<L>,
     a.min(b).min(c).at_most(L::splat(offset))
 }
 
-/// A scale of edges, 2^-34, with which products of two edges are about 1 at most.
+/// A scale of edges, 2^-34, with which products of two edges are at most about 1.
 #[allow(clippy::cast_possible_truncation, reason = "a power of two")]
 const EDGE_SCALE: f32 = power_of_two(-34) as f32;

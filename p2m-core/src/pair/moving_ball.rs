@@ -69,7 +69,7 @@ pub struct BallContact<T: Real> {
     /// above `parameter` by about 2^-48, and rounded up.
     pub upper_parameter: T,
     /// A certified upper bound on the distance of the scene from the centre at the upper parameter. It exceeds the
-    /// radius by the tolerance and some roundings at most, unless the ball starts nearer.
+    /// radius by at most the tolerance and some roundings, unless the ball starts nearer.
     pub distance_bound: T,
     /// The point of the scene that is nearest to the centre at the upper parameter.
     pub point: Point3<T>,

@@ -31,7 +31,7 @@
 //!   together.
 //! - A point counts as inside if it is by 2^-46 R = 128 u R for all edges, and then it is inside without rounding too.
 //!   A point that is inside and does not count is within 128 u R + 79 u R of the line of an edge. It is as near to the
-//!   boundary, since the segment to that line leaves the triangle before it ends, and that is its error at most.
+//!   boundary, since the segment to that line leaves the triangle before it ends, and that bounds its error.
 //! - Squares and the root add 6 u R. All together is less than 400 u R. The contract's own 8 u R is added, and 512 u R
 //!   is 2^-44 R.
 //! - Edges below 2^-450 count as points, and squares lose less than 2^-1000 near zero; 2^-400 exceeds both. Coordinates

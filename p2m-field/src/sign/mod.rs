@@ -97,7 +97,7 @@ impl<I, S> std::fmt::Debug for SignedDistance<I, S> {
 /// The number of queries that an index is asked at once.
 const BATCH_LEN: usize = 512;
 
-/// What decides the signs of a scene.
+/// The rule of signs of a scene, with the tables that decide them.
 #[derive(Clone)]
 struct Signs<S> {
     soup: S,
@@ -107,7 +107,7 @@ struct Signs<S> {
     is_even: bool,
     /// Whether signs change at the surface alone.
     is_closed: bool,
-    /// What is proved about the normals of a closed surface, once there are so many queries that it pays.
+    /// The facts that are proved about the normals of a closed surface, once there are so many queries that it pays.
     certificates: OnceLock<Certificates<S>>,
     /// Whether a thread prepares the certificates or has prepared them.
     preparations: Flag,

@@ -72,7 +72,7 @@ impl BoxTest {
     /// Prepares the test, given the corners of a cube. A corner has the higher coordinate on axis k if bit k of its
     /// number is set.
     pub(crate) fn new(dominators: &Dominators, corners: &[Corner; 8]) -> Self {
-        // The lower bound of a box is too large by a few roundings at most.
+        // The lower bound of a box is too large by at most a few roundings.
         let limits = dominators.rows.map(|row| row.map(|distance| distance * distance * DISTANCE_ROUND_UP));
         Self { ends: [corners[0].x, corners[7].x], limits, count: dominators.count }
     }

@@ -11,7 +11,7 @@ use std::sync::Arc;
 /// site to the nearest one. Far from the scene all distances differ by little, so backtracking would visit many leaves.
 ///
 /// # Complexity
-/// A search takes O(log n) steps for n sites. The memory is about 29 bytes a site. Queries take up to three times as
+/// A search takes O(log n) steps for n sites. The memory is about 29 bytes per site. Queries take up to three times as
 /// long as with the grid, which is the default ([docs/measurements/p2m.md] has figures).
 ///
 /// ```

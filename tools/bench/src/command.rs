@@ -1,4 +1,4 @@
-//! What the commands of `p2m-bench` share: arguments, and the loop over scenes.
+//! The parts that the commands of `p2m-bench` share: arguments, and the loop over scenes.
 
 use crate::backend::{Backend, ScalarKind};
 use crate::backends;

@@ -23,7 +23,7 @@ pub struct Children {
 }
 
 impl Children {
-    /// No children.
+    /// The value for a node without children.
     pub const NONE: Self = Self {
         squares: [f64::INFINITY; WIDTH],
         gaps: [f32::INFINITY; WIDTH],
