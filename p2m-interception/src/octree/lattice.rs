@@ -1,9 +1,9 @@
 //! The split of a cell: which of its children the candidates of the cell can reach.
 //!
 //! The children have 27 corners together, the *lattice*. A candidate is tested in two steps. The first one bounds the
-//! distances from the lattice to the box of the candidate, and compares them with the distances to each of the lattice's
-//! dominators. The second one runs the filter of a packet, and only at the corners of those children that the box of the
-//! packet may reach.
+//! distances from the lattice to the box of the candidate, and compares them with the distances to each dominator. The
+//! second one runs the filter of a packet, and only at the corners of those children that the box of the packet may
+//! reach.
 
 use crate::list::corner_test::{Corner, Dominators, exclusion_of, least_of_lanes};
 use crate::octree::candidate::Candidate;

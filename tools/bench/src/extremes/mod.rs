@@ -114,7 +114,8 @@ fn of_scenes(together: &scenes::Findings) -> String {
     }
     let ours: Vec<&str> = subjects.iter().filter(|subject| subject.is_ours).map(|subject| subject.name).collect();
     let absent = together.absent.iter().map(|(why, count)| format!("- Left out of {count} scenes: {why}.\n"));
-    format!("{table}\nOurs: {}.\n\n{}", ours.join(", "), absent.collect::<String>())
+    let ours: Vec<String> = ours.chunks(10).map(|names| names.join(", ")).collect();
+    format!("{table}\nOurs: {}.\n\n{}", ours.join(",\n"), absent.collect::<String>())
 }
 
 #[cfg(test)]
