@@ -2,7 +2,7 @@
 //!
 //! A scene is any mix of triangles, segments and points. An index is built over a scene and answers closest-point
 //! queries. The type of the index is chosen at compile time, or at run time through `dyn ClosestPoint`. All indexes
-//! implement [`ClosestPoint`], which states their accuracy (docs/proofs/accuracy.md has the proof). Exact queries
+//! implement [`ClosestPoint`], which states their accuracy ([docs/proofs/accuracy.md] has the proof). Exact queries
 //! return the same primitive and, bit for bit, the same distance from every index.
 //!
 //! ```
@@ -59,8 +59,10 @@
 //! | `paper::PaperIndex` | the P2M index with the KD-tree, the R-trees and the long lists of the paper, for comparison | `paper` |
 //! | [`KdopTree`] | a tree of polytopes of K faces, which fit primitives askew to the axes more closely than boxes | `kdop` |
 //!
-//! Functions over `I: ClosestPoint<T>` or `&dyn ClosestPoint<T>` leave the choice to the caller. The module `guide`
-//! (docs/guide.md) has an example for every choice of scene, index and query, and lists platforms and limits.
+//! Functions over `I: ClosestPoint<T>` or `&dyn ClosestPoint<T>` leave the choice to the caller. The [guide] has a
+//! tutorial, an example for every choice of scene, index and query, and lists platforms and limits.
+//!
+//! [guide]: https://github.com/p2m-rs/p2m/blob/main/docs/guide/README.md
 //!
 //! # Cargo features
 //!
@@ -80,6 +82,8 @@
 //! | `shards` | `shards`: scenes larger than memory, in shards that are loaded on demand | no |
 //! | `rayon` | building and [`batch`] on all cores | yes |
 //! | `scene` | [`scene`]: reading scenes and points from files | yes |
+//!
+//! [docs/proofs/accuracy.md]: https://github.com/p2m-rs/p2m/blob/main/docs/proofs/accuracy.md
 #![cfg_attr(docsrs, feature(doc_cfg))]
 #![forbid(unsafe_code)]
 
@@ -143,9 +147,40 @@ pub mod paper {
     };
 }
 
-#[doc = include_str!("../docs/guide.md")]
-#[cfg(all(feature = "bvh", feature = "instances", feature = "interception", feature = "kdop", feature = "scene"))]
-pub mod guide {}
+/// The examples of the guide, compiled and run. `cargo test -p xtask` checks that no page is missing here.
+#[cfg(all(
+    doctest,
+    feature = "bvh",
+    feature = "field",
+    feature = "instances",
+    feature = "interception",
+    feature = "kdop",
+    feature = "scene"
+))]
+mod guide {
+    #[doc = include_str!("../docs/guide/README.md")]
+    struct Index;
+    #[doc = include_str!("../docs/guide/tutorial.md")]
+    struct Tutorial;
+    #[doc = include_str!("../docs/guide/scenes.md")]
+    struct Scenes;
+    #[doc = include_str!("../docs/guide/indexes.md")]
+    struct Indexes;
+    #[doc = include_str!("../docs/guide/queries.md")]
+    struct Queries;
+    #[doc = include_str!("../docs/guide/accuracy.md")]
+    struct Accuracy;
+    #[doc = include_str!("../docs/guide/pairs.md")]
+    struct Pairs;
+    #[doc = include_str!("../docs/guide/motion.md")]
+    struct Motion;
+    #[doc = include_str!("../docs/guide/fields.md")]
+    struct Fields;
+    #[doc = include_str!("../docs/guide/files.md")]
+    struct Files;
+    #[doc = include_str!("../docs/guide/platforms.md")]
+    struct Platforms;
+}
 
 /// The README's example, compiled and run.
 #[cfg(all(doctest, feature = "bvh", feature = "scene"))]

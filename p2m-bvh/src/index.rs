@@ -134,8 +134,8 @@ impl<T: Real, S: PrimitiveSet<T>, V: Volume> TreeIndex<T, S, V> {
     /// # Ok::<(), p2m_core::BuildError>(())
     /// ```
     ///
-    /// The tree is fitted to what `change` left, also if it returns an error or panics, so answers are always those of
-    /// the set.
+    /// The tree is fitted to what `change` left, also if it returns an error or panics, so answers are always
+    /// those of the set.
     ///
     /// # Errors
     /// Returns the error of `change`. Returns [`BuildError::OtherLength`] or [`BuildError::NonFinite`] if `change` left
@@ -185,11 +185,13 @@ impl<T: Real, S: PrimitiveSet<T>, V: Volume> TreeIndex<T, S, V> {
     ///
     /// The area is a measure of the quality of the tree for one scene. A refit keeps the shape of the tree, so the area
     /// grows as neighbours move apart. Compare it with its value after the build, and build anew when it has grown by a
-    /// third: the guide of the crate p2m (docs/guide.md) has the figures. If the scene grows as a whole, divide the area
-    /// by the square of that growth. It is 0 for a set of up to sixteen primitives, which are one packet.
+    /// third ([docs/measurements/motion.md] has the figures). If the scene grows as a whole, divide the area by the
+    /// square of that growth. It is 0 for a set of up to sixteen primitives, which are one packet.
     ///
     /// # Complexity
     /// O(n).
+    ///
+    /// [docs/measurements/motion.md]: https://github.com/p2m-rs/p2m/blob/main/docs/measurements/motion.md
     pub fn surface_area(&self) -> f64 {
         self.tree.surface_area()
     }

@@ -2,7 +2,7 @@
 //!
 //! [`AabbTree`] is a tree of nodes with eight boxes over packets of sixteen primitives ([`PacketTree`]). A search
 //! visits the nearest node first and uses the vector instructions of the processor that it runs on. Boxes and packets
-//! only bound distances, in f32 and with proof (docs/proofs/filter.md). The kernel of the contract evaluates the
+//! only bound distances, in f32 and with proof ([docs/proofs/filter.md]). The kernel of the contract evaluates the
 //! primitives that may be the answer, so answers are bitwise those of [`BruteForce`](p2m_core::BruteForce).
 //!
 //! ```
@@ -23,6 +23,8 @@
 //! `traverse` the searches, and `construct` splits primitives top-down by a [`SplitRule`] into a binary tree and
 //! merges its nodes. The k-DOP tree (crate p2m-kdop) and the interception indexes (crate p2m-interception) consist
 //! of the same parts.
+//!
+//! [docs/proofs/filter.md]: https://github.com/p2m-rs/p2m/blob/main/docs/proofs/filter.md
 #![forbid(unsafe_code)]
 
 mod construct;
@@ -59,6 +61,18 @@ use p2m_core::Aabb;
 /// Queries are methods of the traits that it implements: [`ClosestPoint`](p2m_core::ClosestPoint),
 /// [`NearQuery`](p2m_core::NearQuery), [`BoxQuery`](p2m_core::BoxQuery), [`RayQuery`](p2m_core::RayQuery)
 /// and [`CertifiedQuery`](p2m_core::CertifiedQuery).
+/// ```
+/// use p2m_bvh::AabbTree;
+/// use p2m_core::{ClosestPoint, NearQuery, Soup};
+///
+/// let positions = [[0.0, 0.0, 0.0], [4.0, 0.0, 0.0], [0.0, 4.0, 0.0]];
+/// let scene: Soup<f64> = Soup::from_arrays(&positions, &[[0, 1, 2]])?;
+/// let index = AabbTree::<f64, _>::new(scene)?;
+/// let query = [1.0, 1.0, 2.0];
+/// assert_eq!(index.closest_point(&query).map(|answer| answer.distance), Some(2.0));
+/// assert!(!index.is_any_within(&query, 1.5));
+/// # Ok::<(), p2m_core::BuildError>(())
+/// ```
 pub type AabbTree<T, S> = TreeIndex<T, S, Aabb<f64>>;
 
 /// The internals of this crate that its sibling crates use. They may change at any time.

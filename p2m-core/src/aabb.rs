@@ -5,6 +5,14 @@ use crate::real::to_f64_array;
 use nalgebra::Point3;
 
 /// A box with sides along the axes. It is empty if a coordinate of `min` exceeds that of `max`.
+///
+/// ```
+/// use nalgebra::Point3;
+/// use p2m_core::Aabb;
+///
+/// let cube = Aabb { min: Point3::new(0.0, 0.0, 0.0), max: Point3::new(1.0, 1.0, 1.0) };
+/// assert_eq!(cube.clamp(Point3::new(0.5, 2.0, -1.0)), Point3::new(0.5, 1.0, 0.0));
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Aabb<T: Real> {
     /// The corner with the smallest coordinates.

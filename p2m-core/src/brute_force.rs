@@ -11,6 +11,18 @@ use nalgebra::Point3;
 ///
 /// # Complexity
 /// Building takes O(n), since it checks the set. A query takes O(n). It needs no memory besides the set.
+///
+/// # Examples
+/// ```
+/// use nalgebra::Point3;
+/// use p2m_core::{BruteForce, ClosestPoint, Segment};
+///
+/// let wires = [0.0, 3.0].map(|y| Segment::new(Point3::new(0.0, y, 0.0), Point3::new(9.0, y, 0.0)));
+/// let index = BruteForce::new(&wires)?;
+/// let answer = index.closest_point(&[4.0, 2.0, 0.0]).expect("two wires");
+/// assert_eq!((answer.primitive.index(), answer.distance), (1, 1.0));
+/// # Ok::<(), p2m_core::BuildError>(())
+/// ```
 #[derive(Clone, Debug)]
 pub struct BruteForce<S> {
     set: S,

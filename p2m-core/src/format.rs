@@ -39,7 +39,7 @@ macro_rules! formats {
         }
 
         impl $format {
-            /// All formats.
+            /// All formats, in the order of their variants.
             pub const ALL: &'static [Self] = &[$(Self::$variant),*];
 
             /// The names of all formats, which are also the extensions of files.

@@ -16,8 +16,8 @@ use nalgebra::Point3;
 /// candidates are compared.
 ///
 /// - **N1 distance**: for all finite input, |d^ - d| <= [`ERROR_CONSTANT`](crate::kernel::ERROR_CONSTANT) u M + eta.
-///   This is proved in docs/proofs/accuracy.md; the largest error observed is 3.3 u M. For points the bound is 4 u d +
-///   eta. The distance is infinite only if d, or d plus that error, exceeds the range of the scalar.
+///   This is proved in [docs/proofs/accuracy.md]; the largest error observed is 3.3 u M. For points the bound is
+///   4 u d + eta. The distance is infinite only if d, or d plus that error, exceeds the range of the scalar.
 /// - **N2 identity**: the true distance of the returned primitive exceeds d by at most the sum of the error bounds of
 ///   that primitive and the nearest one.
 /// - **N3 agreement**: every exact backend returns the same bits for distance and primitive. Of equal keys the
@@ -49,6 +49,8 @@ use nalgebra::Point3;
 /// let near = QueryOptions::default().with_max_distance(0.5);
 /// assert!(index.closest_point_with(&[0.0; 3], &near).is_none());
 /// ```
+///
+/// [docs/proofs/accuracy.md]: https://github.com/p2m-rs/p2m/blob/main/docs/proofs/accuracy.md
 #[diagnostic::on_unimplemented(
     message = "`{Self}` answers no closest-point queries with coordinates of type `{T}`",
     note = "indexes do, such as `AabbTree` and `BruteForce`, and references, `Box`, `Rc` and `Arc` to them",
@@ -76,8 +78,8 @@ pub trait ClosestPoint<T: Real> {
         self.closest_point_with(query, &QueryOptions::default())
     }
 
-    /// Answers queries on the current thread, in any order: calls `answered` once for each with its position and its
-    /// answer.
+    /// Answers queries on the current thread, in any order: calls `answered` once for each with its position
+    /// and its answer.
     ///
     /// Backends that answer several queries at once override it. Distance, primitive, point, feature and weights are
     /// those of [`closest_point_with`](Self::closest_point_with), and so is the answer to approximate options. The

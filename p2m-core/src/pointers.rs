@@ -78,6 +78,9 @@ macro_rules! point_to {
             fn guess_closest(&self, point: [f64; 3]) -> Option<([f64; 3], PrimitiveId)> {
                 (**self).guess_closest(point)
             }
+            fn goes_on(&self) -> bool {
+                (**self).goes_on()
+            }
         }
 
         impl<T: Real, $target: CertifiedQuery<T> + ?Sized> CertifiedQuery<T> for $pointer {

@@ -5,6 +5,18 @@ use nalgebra::Point3;
 
 /// Three coordinates that are a position in the scalar `T`: a point or an array of that scalar. Those of f32 are
 /// positions in f64 as well, to which they convert exactly. Features add the types of the crates glam and mint.
+///
+/// ```
+/// use nalgebra::Point3;
+/// use p2m_core::{BruteForce, ClosestPoint, Point};
+///
+/// let index = BruteForce::new([Point::new(Point3::new(0.0, 3.0, 4.0))])?; // in f64
+/// let distance = |answer: Option<p2m_core::Closest<f64>>| answer.map(|answer| answer.distance);
+/// assert_eq!(distance(index.closest_point(&[0.0, 0.0, 0.0])), Some(5.0));
+/// assert_eq!(distance(index.closest_point(&[0.0f32; 3])), Some(5.0));
+/// assert_eq!(distance(index.closest_point(&Point3::<f64>::origin())), Some(5.0));
+/// # Ok::<(), p2m_core::BuildError>(())
+/// ```
 #[diagnostic::on_unimplemented(
     message = "`{Self}` is not a position in space with coordinates of type `{T}`",
     note = "positions are `Point3<{T}>`, `[{T}; 3]`, and for `f64` also those of `f32`",

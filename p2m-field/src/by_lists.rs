@@ -8,14 +8,14 @@
 //!
 //! **Signs.** The sign of a surface without a boundary changes only at the surface. So a block that the surface does
 //! not cross has the sign of its centre, and two neighbouring points have the same sign if one of them is farther from
-//! the surface than from the other. Points that are connected in this way have one sign. Winding numbers of surfaces
-//! with a boundary vary little far from the boundary, so points there have one sign as well.
+//! the surface than from the other. Points that are connected in this way have one sign. The points of a block have
+//! their winding numbers by an open surface together.
 
 use crate::grid::{Grid, GridError};
 use crate::grid_candidates::{CandidateLists, Candidates, Detail, MAX_COORDINATE};
 use crate::layers::Layers;
 use crate::options::{FieldOptions, signed_value};
-use crate::sign::{SharedSoup, Sign, SignedDistance};
+use crate::sign::{PointBlock, SharedSoup, Sign, SignedDistance};
 use nalgebra::Point3;
 use p2m_core::{Aabb, ClosestPoint, PrimitiveSet};
 
@@ -63,21 +63,30 @@ pub fn signed_distances_by_lists<S: PrimitiveSet<f64> + Sync + ?Sized, I: Closes
         }
         signed.closest_point(point).map_or(Sign::Outside, |answer| answer.sign)
     };
-    let along = |path: f64, radius: f64, point: &Point3<f64>| signed.sign_along(path, radius, point);
-    let signs = Signs { at: &sign, along: &along };
+    let in_ball = |radius: f64, centre: &Point3<f64>| signed.sign_in_ball(radius, centre);
+    let in_block = |block: &PointBlock<'_>, candidates: &Candidates, signs: &mut [Option<Sign>]| {
+        signed.signs_of_block(block, lists.primitives(candidates), signs);
+    };
+    let signs =
+        Signs { at: &sign, in_ball: &in_ball, in_block: (!signed.is_closed()).then_some(&in_block), on_surface };
     Sampler::new(lists, Some(signs), grid, options, progress)?.field()
 }
 
-/// Returns the common sign of points around a point, by a length and a radius.
-type SignAlong<'a> = dyn Fn(f64, f64, &Point3<f64>) -> Option<Sign> + Sync + 'a;
+/// Returns the common sign of all points of a ball that the surface does not cross, or `None` if they may differ.
+type SignInBall<'a> = dyn Fn(f64, &Point3<f64>) -> Option<Sign> + Sync + 'a;
+
+/// Computes the signs of the points of a block with these candidates, and leaves out some.
+type SignsInBlock<'a> = dyn Fn(&PointBlock<'_>, &Candidates, &mut [Option<Sign>]) + Sync + 'a;
 
 /// The functions that compute signs.
 struct Signs<'a> {
     /// Returns the sign of a point at this distance from the surface.
     at: &'a (dyn Fn(&Point3<f64>, f32) -> Sign + Sync),
-    /// Returns the common sign of all points that a path of at most this length, within a radius of a point and without
-    /// crossing the surface, connects with the point, or `None` if their signs may differ.
-    along: &'a SignAlong<'a>,
+    in_ball: &'a SignInBall<'a>,
+    /// For surfaces that are open.
+    in_block: Option<&'a SignsInBlock<'a>>,
+    /// Points at a smaller distance than this may be on the surface.
+    on_surface: f64,
 }
 
 /// Computes the values of a field by candidate lists.
@@ -186,7 +195,7 @@ impl<'a, S: PrimitiveSet<f64> + Sync + ?Sized> Sampler<'a, S> {
         let detail = if block.len() <= MAX_EVALUATED_POINTS { Detail::Primitives } else { Detail::Groups };
         let candidates = self.lists.narrowed(candidates, &self.bounds(&block), detail);
         if block.counts[2] <= MAX_SLAB_LAYERS {
-            self.block(block, &candidates, &mut Layers { grid: self.grid, first: block.first[2], values });
+            self.block(block, &candidates, None, &mut Layers { grid: self.grid, first: block.first[2], values });
             return (self.progress)(block.len());
         }
         let halves = block.halves(2);
@@ -200,18 +209,19 @@ impl<'a, S: PrimitiveSet<f64> + Sync + ?Sized> Sampler<'a, S> {
         self.layers(halves[1], &candidates, high);
     }
 
-    /// Computes the points of a block with its candidates.
-    fn block(&self, block: Block, candidates: &Candidates, layers: &mut Layers<'_>) {
+    /// Computes the points of a block with its candidates, and their common sign if that is known.
+    fn block(&self, block: Block, candidates: &Candidates, sign: Option<Sign>, layers: &mut Layers<'_>) {
         if candidates.nearest() > self.band {
             return self.fill_beyond_band(block, layers);
         }
+        let sign = sign.or_else(|| if candidates.nearest() > 0.0 { self.sign_of_block(&block) } else { None });
         if block.len() <= MAX_EVALUATED_POINTS {
-            return self.evaluate(block, candidates, layers);
+            return self.evaluate(block, candidates, sign, layers);
         }
         for part in block.divided() {
             let detail = if part.len() <= MAX_EVALUATED_POINTS { Detail::Primitives } else { Detail::Groups };
             let candidates = self.lists.narrowed(candidates, &self.bounds(&part), detail);
-            self.block(part, &candidates, layers);
+            self.block(part, &candidates, sign, layers);
         }
     }
 
@@ -221,7 +231,7 @@ impl<'a, S: PrimitiveSet<f64> + Sync + ?Sized> Sampler<'a, S> {
         let Aabb { min, max } = self.bounds(block);
         let centre = nalgebra::center(&min, &max);
         let radius = (max - centre).norm().max((centre - min).norm()) * (1.0 + 1e-9);
-        (signs.along)(radius, radius, &centre)
+        (signs.in_ball)(radius, &centre)
     }
 
     /// Sets the values of a block that is beyond the band.
@@ -240,61 +250,55 @@ impl<'a, S: PrimitiveSet<f64> + Sync + ?Sized> Sampler<'a, S> {
         self.signs.as_ref().map_or(Sign::Outside, |signs| (signs.at)(point, distance))
     }
 
-    /// Evaluates the candidates of a block at all of its points.
-    fn evaluate(&self, block: Block, candidates: &Candidates, layers: &mut Layers<'_>) {
+    /// Evaluates the candidates of a block at all of its points, which may have a common sign that is known.
+    fn evaluate(&self, block: Block, candidates: &Candidates, shared: Option<Sign>, layers: &mut Layers<'_>) {
         let mut distances = [0.0f32; MAX_EVALUATED_POINTS];
         let distances = &mut distances[..block.len()];
-        let axes = [0, 1, 2].map(|k: usize| &self.axes[k][block.first[k]..block.first[k] + block.counts[k]]);
-        self.lists.distances(candidates, axes, distances);
+        self.lists.distances(candidates, self.axes_of(&block), distances);
         let mut signs = [Sign::Outside; MAX_EVALUATED_POINTS];
-        if self.signs.is_some() {
-            let shared = if candidates.nearest() > 0.0 { self.sign_of_block(&block) } else { None };
-            match shared {
-                Some(sign) => signs.fill(sign),
-                None => self.signs_of(&block, distances, &mut signs),
-            }
+        match shared {
+            Some(sign) => signs.fill(sign),
+            None => self.signs_of(&block, candidates, distances, &mut signs),
         }
         let mut values = distances.iter().zip(&signs).map(|(d, sign)| signed_value(f64::from(*d), self.band, *sign));
         layers.fill(block.first, block.counts, |_| values.next().unwrap_or(f32::NAN));
     }
 
-    /// Computes the signs of the points of a block from their distances. A point is connected with the neighbour before
-    /// it if the surface cannot be between them.
-    fn signs_of(&self, block: &Block, distances: &[f32], out: &mut [Sign]) {
+    /// Computes the signs of the points of a block that the surface may cross.
+    fn signs_of(&self, block: &Block, candidates: &Candidates, distances: &[f32], out: &mut [Sign]) {
         let Some(signs) = &self.signs else { return };
         let [x, y, z] = block.counts;
         let at = |n: usize| {
             let offset = [n % x, n / x % y, n / (x * y)];
             self.grid.point([0, 1, 2].map(|k: usize| block.first[k] + offset[k]))
         };
-        // The first point of those with which each point is connected, the number of steps from there, and the largest
-        // number of steps from each first point.
-        let (mut first, mut steps, mut most) =
-            ([0; MAX_EVALUATED_POINTS], [0; MAX_EVALUATED_POINTS], [0; MAX_EVALUATED_POINTS]);
+        if let Some(in_block) = signs.in_block {
+            let points = PointBlock {
+                axes: self.axes_of(block),
+                distances,
+                max_neighbour_distance: self.max_neighbour_distance,
+                on_surface: signs.on_surface,
+            };
+            let mut known = [None; MAX_EVALUATED_POINTS];
+            in_block(&points, candidates, &mut known[..distances.len()]);
+            for (n, out) in out[..distances.len()].iter_mut().enumerate() {
+                *out = known[n].unwrap_or_else(|| (signs.at)(&at(n), distances[n]));
+            }
+            return;
+        }
+        // A point has the sign of the neighbour before it if the surface cannot be between them.
         for n in 0..distances.len() {
             let before = [(1, x), (x, y), (x * y, z)];
             let neighbour = before.into_iter().find(|(step, count)| {
                 n / step % count > 0
                     && f64::from(distances[n - step].max(distances[n]).min(f32::MAX)) > self.max_neighbour_distance
             });
-            (first[n], steps[n]) = neighbour.map_or((n, 0), |(step, _)| (first[n - step], steps[n - step] + 1));
-            most[first[n]] = most[first[n]].max(steps[n]);
+            out[n] = neighbour.map_or_else(|| (signs.at)(&at(n), distances[n]), |(step, _)| out[n - step]);
         }
-        for n in 0..distances.len() {
-            out[n] = if first[n] == n && most[n] > 0 {
-                let path = f64::from(most[n]) * self.max_neighbour_distance;
-                match (signs.along)(path, path, &at(n)) {
-                    Some(sign) => sign,
-                    None => {
-                        most[n] = 0;
-                        (signs.at)(&at(n), distances[n])
-                    }
-                }
-            } else if first[n] == n || most[first[n]] == 0 {
-                (signs.at)(&at(n), distances[n])
-            } else {
-                out[first[n]]
-            };
-        }
+    }
+
+    /// Returns the coordinates of the points of a block along each axis.
+    fn axes_of(&self, block: &Block) -> [&[f64]; 3] {
+        [0, 1, 2].map(|k: usize| &self.axes[k][block.first[k]..block.first[k] + block.counts[k]])
     }
 }

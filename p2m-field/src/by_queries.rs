@@ -53,7 +53,7 @@ pub fn signed_distances<I: ClosestPoint<f64> + Sync, R: SharedSoup>(
     let near = |query: &Point3<f64>, closest: &Closest<f64>| signed.sign(query, closest);
     let around = |radius: f64, point: &Point3<f64>, closest: &Closest<f64>| {
         let is_closed = signed.is_closed();
-        if is_closed { Some(signed.sign(point, closest)) } else { signed.sign_along(radius, radius, point) }
+        if is_closed { Some(signed.sign(point, closest)) } else { signed.sign_in_ball(radius, point) }
     };
     let far = |point: &Point3<f64>| signed.sign_without_closest_point(point);
     let signs = Some(Signs { near: &near, around: &around, far: &far });

@@ -28,6 +28,15 @@ pub enum GridError {
 ///
 /// The point with the indices (i, j, k) is origin + spacing * (i, j, k), rounded to f64. In a [part](Self::part) of a
 /// grid it is the point of the whole grid, with the same coordinates.
+///
+/// ```
+/// use nalgebra::Point3;
+/// use p2m_field::Grid;
+///
+/// let grid = Grid::new(Point3::new(-1.0, 0.0, 0.0), 0.5, [5, 3, 3])?;
+/// assert_eq!((grid.len(), grid.point([4, 0, 2])), (45, Point3::new(1.0, 0.0, 1.0)));
+/// # Ok::<(), p2m_field::GridError>(())
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Grid {
     /// The origin of the whole grid.

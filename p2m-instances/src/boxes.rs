@@ -39,8 +39,8 @@ fn visit_instance<T: Real, I: AnyIndex<T> + ?Sized>(
     }
 }
 
-/// Returns a box in the frame of an object that contains what the motion moves into a box, rounding included. It may be
-/// infinite.
+/// Returns a box in the frame of an object that contains what the motion moves into a box, rounding included. It
+/// may be infinite.
 fn local_box<T: Real, I: ?Sized>(instance: &Instance<I>, bounds: &Aabb<f64>) -> Aabb<T> {
     let moved_back = instance.motion.apply_inverse_to_box(bounds);
     let corner = std::array::from_fn(|k| bounds.min[k].abs().max(bounds.max[k].abs()));

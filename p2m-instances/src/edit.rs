@@ -30,8 +30,8 @@ pub struct Edit<'a, T: Real, I: AnyIndex<T> + ?Sized> {
 }
 
 impl<T: Real, I: AnyIndex<T> + ?Sized> Instances<T, I> {
-    /// Begins to change the scene. The changes are complete when the edit is dropped, which `scene.edit().add(..)` does
-    /// at once.
+    /// Begins to change the scene. The changes are complete when the edit is dropped, which
+    /// `scene.edit().add(..)` does at once.
     pub fn edit(&mut self) -> Edit<'_, T, I> {
         Edit::new(self)
     }
@@ -71,8 +71,8 @@ impl<'a, T: Real, I: AnyIndex<T> + ?Sized> Edit<'a, T, I> {
     /// Replaces the motion of an instance.
     ///
     /// # Errors
-    /// Returns [`InstanceError::Unknown`], and [`InstanceError::NonFiniteMotion`] and [`InstanceError::OutOfRange`] for
-    /// the motion.
+    /// Returns [`InstanceError::Unknown`], and [`InstanceError::NonFiniteMotion`] and
+    /// [`InstanceError::OutOfRange`] for the motion.
     ///
     /// # Complexity
     /// It takes O(log n) for n instances.

@@ -112,8 +112,8 @@ impl<I: ?Sized> Instance<I> {
         MARGIN * (query_size + self.reach) + f64::MIN_POSITIVE
     }
 
-    /// Returns a primitive of the object after the motion. `vertices` are those in the frame of the object, if they are
-    /// known.
+    /// Returns a primitive of the object after the motion. `vertices` are those in the frame of the object, if
+    /// they are known.
     ///
     /// # Panics
     /// Panics if the index has lost a primitive that it had when the instance was added.

@@ -22,8 +22,8 @@ use std::marker::PhantomData;
 ///
 /// # Accuracy
 /// All answers have the accuracy that their traits promise, with respect to the moved vertices. These differ from the
-/// exact ones as [`Motion`](p2m_core::pair::Motion) states. A limit on the visits of a query has no effect, and an
-/// epsilon has.
+/// exact ones as [`Motion`](p2m_core::pair::Motion) states. A limit on the visits of a query has no effect,
+/// and an epsilon has.
 ///
 /// # Complexity
 /// A query searches the tree of boxes in expected O(log n) for n instances, and the index of each instance whose box it

@@ -35,8 +35,8 @@ impl<I: ?Sized> Object<I> {
     }
 }
 
-/// The objects of a scene by the addresses of their indexes, so that an index which has many instances is measured
-/// once.
+/// The objects of a scene by the addresses of their indexes, so that an index which has many instances
+/// is measured once.
 #[derive(Debug)]
 pub(crate) struct Objects<I: ?Sized>(HashMap<usize, Weak<Object<I>>>);
 

@@ -2,7 +2,7 @@
 
 use crate::id::InstanceId;
 use crate::instance::Instance;
-use crate::instances::Instances;
+use crate::instances::{InstanceTree, Instances};
 use nalgebra::Point3;
 use p2m_core::engine::pairs::{PairSide, ShapeSide};
 use p2m_core::pair::{ClosestPair, Hull, Motion, PairOptions, PairQuery, closest_as_guess};
@@ -30,15 +30,18 @@ impl<T: Real, I: AnyIndex<T> + ?Sized> PairQuery<T> for Instances<T, I> {
     ) -> bool {
         let mut visit = |instance: &Instance<I>| visit_instance(instance, motions, near, search);
         // The box in the frame of the scene. Its centre and half of its diagonal tell how far an instance may be from a
-        // point.
+        // point. A motion rounds vertices of the scene by as much as the scene is large.
         let near = motions.iter().rev().fold(*near, |near, motion| motion.apply_inverse_to_box(&near));
         let centre = nalgebra::center(&near.min, &near.max);
         let half = nalgebra::distance(&near.min, &near.max) * 0.5;
         let size = half + centre.coords.amax() + motions.iter().map(|motion| norm(motion.translation())).sum::<f64>();
-        let margin = half + size * ROUNDING;
-        let ordered = self.tree.as_ref().filter(|_| margin.is_finite());
+        let margin = |tree: &InstanceTree| {
+            let all = tree.tree.pair_bounds();
+            half + (size + norm(all.min.into()) + norm(all.max.into())) * ROUNDING
+        };
+        let ordered = self.tree.as_ref().map(|tree| (tree, margin(tree))).filter(|(_, margin)| margin.is_finite());
         match ordered {
-            Some(tree) => {
+            Some((tree, margin)) => {
                 let boxes = tree.tree.set();
                 let mut visit_box =
                     |id: PrimitiveId, _: &[[f64; 3]]| visit(&self.instances[boxes[id.index()].position]) + margin;
@@ -57,8 +60,8 @@ impl<T: Real, I: AnyIndex<T> + ?Sized> PairQuery<T> for Instances<T, I> {
     }
 }
 
-/// Calls `search` with the trees of an instance, or with each of its primitives if it has none, and returns the last
-/// result.
+/// Calls `search` with the trees of an instance, or with each of its primitives if it has none, and returns
+/// the last result.
 fn visit_instance<T: Real, I: AnyIndex<T> + ?Sized>(
     instance: &Instance<I>,
     motions: &[Motion],

@@ -58,8 +58,8 @@ impl<T: Real, I: AnyIndex<T> + ?Sized> Instances<T, I> {
     }
 }
 
-/// Calls `visit` for the primitives of an instance that a ray may hit up to a parameter. It returns that parameter from
-/// then on.
+/// Calls `visit` for the primitives of an instance that a ray may hit up to a parameter. It returns that
+/// parameter from then on.
 fn visit_instance<T: Real, I: AnyIndex<T> + ?Sized>(
     instance: &Instance<I>,
     ray: &Ray,

@@ -45,6 +45,19 @@ use std::ops::ControlFlow;
 /// # Complexity
 /// A query takes O(log n) steps to its cell and then searches the list of the cell. The list has a few packets,
 /// independently of n, wherever cells could be made small enough.
+/// # Examples
+/// ```
+/// use nalgebra::Point3;
+/// use p2m_core::{BuildIndex, ClosestPoint, Point};
+/// use p2m_interception::{OctreeIndex, OctreeOptions};
+///
+/// let scene: Vec<_> = (0..100).map(|i| Point::new(Point3::new(f64::from(i), 0.0, 0.0))).collect();
+/// let options = OctreeOptions::default().with_finer_cells(30.0); // for batches of many millions of queries
+/// let index = OctreeIndex::<f64, _>::build(&scene, &options)?;
+/// let answer = index.closest_point(&[41.75, 3.0, 0.0]).expect("the scene is not empty");
+/// assert_eq!(answer.primitive.index(), 42);
+/// # Ok::<(), p2m_core::BuildError>(())
+/// ```
 pub type OctreeIndex<T, S> = InterceptionIndex<T, S, Octree>;
 
 /// An interception index whose cells are the Voronoi cells of the scene's vertices.
@@ -74,6 +87,18 @@ pub type OctreeIndex<T, S> = InterceptionIndex<T, S, Octree>;
 ///
 /// # References
 /// \[Zong2023\]
+/// # Examples
+/// ```
+/// use nalgebra::Point3;
+/// use p2m_core::{ClosestPoint, Point};
+/// use p2m_interception::P2mIndex;
+///
+/// let scene: Vec<_> = (0..100).map(|i| Point::new(Point3::new(f64::from(i), 0.0, 0.0))).collect();
+/// let index = P2mIndex::<f64, _>::new(&scene)?;
+/// let far = index.closest_point(&[42.0, 400.0, 300.0]).expect("the scene is not empty");
+/// assert_eq!((far.primitive.index(), far.distance), (42, 500.0));
+/// # Ok::<(), p2m_core::BuildError>(())
+/// ```
 pub type P2mIndex<T, S> = InterceptionIndex<T, S, Voronoi>;
 
 /// The index of the P2M paper, which is a [`P2mIndex`] with other default options.
@@ -81,8 +106,8 @@ pub type P2mIndex<T, S> = InterceptionIndex<T, S, Voronoi>;
 /// These are [`P2mOptions::as_in_paper`](crate::P2mOptions::as_in_paper): a KD-tree of the crate kiddo finds a site
 /// near the query ([`KdTreeLocator`](crate::KdTreeLocator)), no site is added to the vertices, lists may be long, and an
 /// R-tree of the crate rstar filters each list of more than 64 primitives ([`RegionTree`](crate::RegionTree)). The index
-/// exists for comparison with the paper. A [`P2mIndex`] gives the same answers faster: docs/p2m.md and docs/paper.md
-/// have figures of both.
+/// exists for comparison with the paper. A [`P2mIndex`] gives the same answers faster: [docs/measurements/p2m.md] and
+/// [docs/measurements/paper.md] have figures of both.
 ///
 /// The methods are those of [`P2mIndex`], but the index cannot be saved. The options are
 /// [`PaperOptions`](crate::PaperOptions).
@@ -108,6 +133,9 @@ pub type P2mIndex<T, S> = InterceptionIndex<T, S, Voronoi>;
 ///
 /// # References
 /// \[Zong2023\]
+///
+/// [docs/measurements/p2m.md]: https://github.com/p2m-rs/p2m/blob/main/docs/measurements/p2m.md
+/// [docs/measurements/paper.md]: https://github.com/p2m-rs/p2m/blob/main/docs/measurements/paper.md
 #[cfg(feature = "paper")]
 pub type PaperIndex<T, S> = InterceptionIndex<T, S, PaperVoronoi>;
 
@@ -139,8 +167,8 @@ impl<T: Real, S: PrimitiveSet<T>, P: Partition> InterceptionIndex<T, S, P> {
     /// Builds the index with `options`.
     ///
     /// # Errors
-    /// [`BuildError::NonFinite`] for a coordinate that is not finite, and [`BuildError::TooMany`] for more than 2^30
-    /// primitives.
+    /// [`BuildError::NonFinite`] for a coordinate that is not finite, and [`BuildError::TooMany`] for more
+    /// than 2^30 primitives.
     pub fn build_with(set: S, options: &P::Options) -> Result<Self, BuildError>
     where
         S: Sync,

@@ -9,13 +9,14 @@
 //! *locates* its cell and tests the list, without backtracking \[Zong2023\].
 //!
 //! The *corner test* decides which primitives are in a list. It compares distances at the corners of a cell only, and
-//! holds for any convex cell (docs/proofs/octree.md). How cells are made and located is the task of the [`Partition`]:
+//! holds for any convex cell ([docs/proofs/octree.md]). How cells are made and located is the task of the
+//! [`Partition`]:
 //!
 //! - The [`Octree`] has cubes as cells. It is refined where a split saves the most time for its memory.
 //! - The partition [`Voronoi`] has the Voronoi cells of the scene's vertices and of some added points
-//!   (docs/proofs/p2m.md). A [`Locator`] returns a site near the query, and a walk over Delaunay neighbours ends at the
-//!   nearest site. A [`ListFilter`] may shorten the search of long lists. The [`delaunay`] tetrahedra are exact. With
-//!   the feature `paper`, `PaperIndex` has this partition with the locator, the filter and the lists of the paper.
+//!   ([docs/proofs/p2m.md]). A [`Locator`] returns a site near the query, and a walk over Delaunay neighbours ends at
+//!   the nearest site. A [`ListFilter`] may shorten the search of long lists. The [`delaunay`] tetrahedra are exact.
+//!   With the feature `paper`, `PaperIndex` has this partition with the locator, the filter and the lists of the paper.
 //!
 //! Lists are stored in blocks: up to eight packets, the lanes of each packet that can be the answer, and lower bounds
 //! on the distances to the packets.
@@ -39,6 +40,9 @@
 //! let answer = index.closest_point(&Point3::new(1.0, 2.0, 0.0)).unwrap();
 //! assert_eq!((answer.primitive.index(), answer.distance), (1, 1.0));
 //! ```
+//!
+//! [docs/proofs/octree.md]: https://github.com/p2m-rs/p2m/blob/main/docs/proofs/octree.md
+//! [docs/proofs/p2m.md]: https://github.com/p2m-rs/p2m/blob/main/docs/proofs/p2m.md
 #![cfg_attr(docsrs, feature(doc_cfg))]
 #![forbid(unsafe_code)]
 

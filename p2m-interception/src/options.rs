@@ -78,7 +78,9 @@ impl OctreeOptions {
     ///
     /// Finer cells have shorter lists, so less is computed, but more lies in memory. A single query waits for memory, so
     /// it gains little. A batch fetches the memory of one query while it computes others, so it gains more:
-    /// docs/batches.md has the time, the memory and the build of a factor of 30.
+    /// [docs/batches.md] has the time, the memory and the build of a factor of 30.
+    ///
+    /// [docs/batches.md]: https://github.com/p2m-rs/p2m/blob/main/docs/batches.md
     #[must_use]
     pub fn with_finer_cells(self, factor: f64) -> Self {
         let Self { resolution, memory, work, .. } = self;
@@ -94,8 +96,8 @@ impl OctreeOptions {
 
 /// The size of an octree if its refinement ended now.
 ///
-/// All numbers are upper bounds, because lists that are not made yet may turn out shorter than what is reserved for
-/// them.
+/// All numbers are upper bounds, because lists that are not made yet may turn out shorter than what is
+/// reserved for them.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[non_exhaustive]
 pub struct RefinementProgress {
@@ -198,7 +200,7 @@ impl PartialEq for FnPointer<BuildListFilter> {
 pub struct P2mOptions {
     /// The splits of the tree, which define the packets, and whether all threads are used.
     pub splits: SplitOptions,
-    /// The largest number of packets in a list. It is 96 by default, and 2048 at most. The tree answers in cells
+    /// The largest number of packets in a list. It is 96 by default, and at most 2048. The tree answers in cells
     /// with more packets.
     pub max_list_packets: usize,
     /// The largest number of added sites for each vertex of a packet, where a vertex of several packets counts several
@@ -252,7 +254,9 @@ impl P2mOptions {
     }
     /// Sets that lists may be as long as in the paper: no site is added, a list may have 2048 packets, and the budgets
     /// of memory and work are 100,000 bytes and 1,000,000 tests for each primitive. Between slivers a build takes up to
-    /// 40 times as long as by default (docs/p2m.md has figures).
+    /// 40 times as long as by default ([docs/measurements/p2m.md] has figures).
+    ///
+    /// [docs/measurements/p2m.md]: https://github.com/p2m-rs/p2m/blob/main/docs/measurements/p2m.md
     #[must_use]
     pub fn with_long_lists(self) -> Self {
         let max_list_packets = MAX_BLOCKS * BLOCK_WIDTH;
@@ -270,8 +274,8 @@ impl P2mOptions {
     /// Sets the function that makes the locator. Answers do not depend on it. A saved index has a grid instead.
     ///
     /// A query calls the locator through a pointer, and begins its walk at the site that it returns. The grid, which is
-    /// the default, is the fastest locator that was measured. With a `KdTreeLocator` a query takes up to three times as
-    /// long.
+    /// the default, is the fastest locator that was measured. With a `KdTreeLocator` a query takes up to three
+    /// times as long.
     #[must_use]
     pub fn with_locator(self, build: BuildLocator) -> Self {
         Self { locator: Some(FnPointer(build)), ..self }

@@ -3,7 +3,7 @@
 //! The tree is that of p2m-bvh (nodes with eight children over packets of sixteen primitives, with the same splits),
 //! but its bounding volumes are [k-DOPs](Kdop) instead of boxes. They fit primitives that are oblique to the axes more
 //! closely, so a query visits fewer nodes and packets. In return each node takes more arithmetic and memory.
-//! docs/kdop.md compares the two on several scenes.
+//! [docs/measurements/kdop.md] compares the two on several scenes.
 //!
 //! K is fixed at compile time and counts both signs of a direction, so `KdopTree<f64, _, 14>` has seven slabs.
 //! [`Directions`] has default sets for K = 6, 14, 18 and 26, and can be made from your own vectors. With any directions
@@ -31,6 +31,8 @@
 //! # References
 //! \[Klosowski1998\] describes the trees. The features and figures of this crate are compared with the manual of the
 //! k-DOP tree that was made for CGAL.
+//!
+//! [docs/measurements/kdop.md]: https://github.com/p2m-rs/p2m/blob/main/docs/measurements/kdop.md
 #![forbid(unsafe_code)]
 
 mod direction_choice;

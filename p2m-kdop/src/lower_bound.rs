@@ -4,7 +4,9 @@
 //! orthogonal, the first half-space contains their box and is orthogonal to the vector to the nearest point of that
 //! box; otherwise it lies behind the face with the widest gap. The second one lies behind a face of another direction.
 //! The distance to this intersection is computed for every other direction, and the largest one is the bound.
-//! docs/proofs/kdop.md derives it and bounds its rounding.
+//! [docs/proofs/kdop.md] derives it and bounds its rounding.
+//!
+//! [docs/proofs/kdop.md]: https://github.com/p2m-rs/p2m/blob/main/docs/proofs/kdop.md
 
 use crate::direction_table::DirectionTable;
 use p2m_bvh::engine::node::WIDTH;

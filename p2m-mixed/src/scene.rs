@@ -6,6 +6,16 @@ use std::ops::Range;
 use std::sync::Arc;
 
 /// A scene that was read from a file or built of parts that were [added](Scene::add).
+///
+/// ```
+/// use p2m_mixed::Scene;
+///
+/// let mut scene = Scene::default();
+/// scene.add_triangles("roof", &[[0.0, 0.0, 3.0], [4.0, 0.0, 3.0], [0.0, 4.0, 3.0]], &[[0, 1, 2]])?;
+/// scene.add_polyline("cable", &[[0.0, 0.0, 0.0], [4.0, 0.0, 0.0]])?;
+/// assert_eq!((scene.soup.triangles().len(), scene.soup.segments().len()), (1, 1));
+/// # Ok::<(), p2m_core::BuildError>(())
+/// ```
 #[derive(Debug, Clone, Default, PartialEq)]
 #[non_exhaustive]
 pub struct Scene {

@@ -15,7 +15,7 @@ pub(crate) fn go_on(proceed: &Proceed<'_>, answered: usize) -> Result<(), ShardE
 
 /// The state of a query while shards are asked.
 pub(crate) trait Search: Send + Sync + Sized {
-    /// What the query is answered with.
+    /// The type of an answer.
     type Answer: Send;
 
     /// Returns the bound of the box of a shard, by which shards are ordered. NaN rules the shard out.

@@ -13,8 +13,8 @@ impl ShardedIndex {
     /// [`SignedDistance::new`](p2m_field::sign::SignedDistance::new) for the whole scene.
     ///
     /// # Errors
-    /// It returns [`ShardError::NoInside`] for a scene with segments or points, and [`ShardError::Open`] for an open
-    /// surface.
+    /// It returns [`ShardError::NoInside`] for a scene with segments or points, and [`ShardError::Open`] for
+    /// an open surface.
     pub fn sign_rule(&self) -> Result<SignRule, ShardError> {
         let manifest = self.manifest();
         let has_others = manifest.segments > 0 || manifest.points > 0;

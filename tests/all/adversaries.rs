@@ -1,5 +1,5 @@
 //! Runs every backend over the adversarial scenes of p2m-testkit: answers have to equal those of brute force, and
-//! counters have to stay below the bounds of docs/adversaries.md, which has times and memory.
+//! counters have to stay below the bounds of docs/measurements/adversaries.md, which has times and memory.
 #![cfg(all(feature = "bvh", feature = "interception", feature = "kdop"))]
 
 use nalgebra::Point3;

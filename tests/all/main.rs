@@ -23,4 +23,5 @@ mod ray_models;
 mod rays;
 mod registry;
 mod saved;
+mod thin_pairs;
 mod trade;

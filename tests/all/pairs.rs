@@ -4,11 +4,13 @@
 #![allow(clippy::float_cmp, reason = "bitwise equality is what is tested")]
 
 use nalgebra::{Isometry3, Point3, Vector3};
+use p2m::batch::Interruptible;
 use p2m::pair::{ClosestPair, Motion, PairOptions, PairQuery};
 use p2m::{AabbTree, BruteForce, Element, KdopTree, PrimitiveId, PrimitiveSet, Real, Shape, Soup};
 use p2m_testkit::scenes::{self, kinds_and_layout};
 use p2m_testkit::{amount, cases, rng, vector};
 use rand::{Rng, RngExt};
+use std::cell::Cell;
 use std::ops::ControlFlow;
 
 /// Returns the answer for two scenes by all pairs.
@@ -214,6 +216,47 @@ fn a_scene_that_comes_from_far_away_has_the_pairs_of_its_rounded_vertices() {
     }
 }
 
+/// Two parallel sheets that are not along the axes are about equally far apart everywhere, and so are a sheet and a
+/// triangle, so rounding decides which pair is nearest. A bound without its margin leaves the nearest pair out.
+#[test]
+fn parallel_sheets_have_the_pairs_of_brute_force() {
+    for case in cases(10_000, 100) {
+        let mut rng = rng("parallel sheets", case);
+        let noise = [0.0, 1e-15, 1e-12, 1e-9, 1e-7][rng.random_range(0..5)];
+        let (side, gap) = (rng.random_range(5..13), [1e-5, 1e-3, 1.0, 5.0][rng.random_range(0..4)]);
+        let turn = Isometry3::rotation(vector(&mut rng) * 3.0);
+        let place = vector(&mut rng) * [0.0, 1.0, 1e3, 1e9, 1e11][rng.random_range(0..5)];
+        let is_surface = rng.random_range(0..2) == 0;
+        let mut sheet = |level: f64| {
+            let mut at = |i: u32| {
+                let [x, y] = [i % side, i / side].map(|k| f64::from(k) * 0.125);
+                turn * Point3::new(x, y, level + noise * rng.random_range(-1.0..1.0)) + place
+            };
+            let positions = (0..side * side).map(&mut at).collect();
+            let corners = |i: u32| [i, i + 1, i + side].map(|k| k % (side * side));
+            let element = |i| if is_surface { Element::Triangle(corners(i)) } else { Element::Point(i) };
+            Soup::new(positions, (0..side * side).map(element)).expect("valid")
+        };
+        let [a, b] = [sheet(0.0), sheet(gap)];
+        let corner = |x, y| turn * Point3::new(x, y, -gap) + place;
+        let shape = p2m::Triangle::new(corner(-9.0, -7.0), corner(8.0, -6.0), corner(1.0, 9.0));
+        let [brute, tree] = [
+            BruteForce::new(&a).expect("valid").closest_to(&shape, &PairOptions::default()),
+            AabbTree::new(&a).expect("valid").closest_to(&shape, &PairOptions::default()),
+        ];
+        assert_same(tree, brute, &format!("{case}: a shape"));
+        if case % 2 == 0 {
+            check_scenes(case, [&a, &b], None, f64::INFINITY);
+        } else {
+            // The second scene moves to its place from elsewhere.
+            let moved = Isometry3::new(vector(&mut rng) * 3.0, vector(&mut rng) * 3.0);
+            let mut away = b.clone();
+            away.map_positions(|p| moved.inverse() * p).expect("finite");
+            check_scenes(case, [&a, &away], Some(moved), f64::INFINITY);
+        }
+    }
+}
+
 /// Rounding drops the points inside of two long edges, and the pair is left out for one that is hardly nearer.
 #[test]
 fn lower_bounds_hold_where_rounding_leaves_the_nearest_pair_out() {
@@ -239,6 +282,81 @@ fn equal_scenes_are_compared_in_few_steps() {
     let tree = AabbTree::new(&soup).expect("valid");
     let pair = tree.closest_pair(&tree, &PairOptions::default()).expect("not empty");
     assert_eq!((pair.distance, pair.is_intersecting, pair.primitives), (0.0, true, [PrimitiveId::new(0); 2]));
+}
+
+/// Returns the nearest pair and the number of steps of its search.
+fn counted<T: Real>(
+    a: &impl PairQuery<T>,
+    b: &impl PairQuery<T>,
+    options: &PairOptions<T>,
+) -> (Option<ClosestPair<T>>, usize) {
+    let steps = Cell::new(0);
+    let counting = Interruptible::pairs(a, || {
+        steps.set(steps.get() + 1);
+        true
+    });
+    (counting.closest_pair(b, options), steps.get())
+}
+
+/// Rounding moves all vertices to few places, so all pairs are about equally near, and exact ties are common.
+#[test]
+fn scenes_that_a_translation_swallows_are_compared_in_few_steps() {
+    let mut rng = rng("swallowed scenes", 0);
+    let [large, small] = [3_000, 300]
+        .map(|len| scenes::soup(&mut rng, scenes::Kinds::Triangles, scenes::Layout::Strewn, len))
+        .map(|soup| [AabbTree::new(soup.clone()).expect("valid"), AabbTree::new(soup).expect("valid")]);
+    for far in [1e14, 1e15, 1e16, 1e17, 1e20, 1e100] {
+        for turn in [Vector3::zeros(), Vector3::new(0.3, 0.2, 1.0)] {
+            let options = PairOptions::default().with_motion(Isometry3::new(Vector3::new(far, -0.3 * far, 0.0), turn));
+            let brute = BruteForce::new(small[0].set()).expect("valid");
+            let (found, _) = counted(&small[0], &small[1], &options);
+            assert_same(found, brute.closest_pair(&brute, &options), &format!("{far:e}, {turn:?}"));
+            // There are more than 200 packets of each scene.
+            let (_, steps) = counted(&large[0], &large[1], &options);
+            assert!(steps < 2_000, "{steps} steps, {far:e}, {turn:?}");
+        }
+    }
+}
+
+/// All pairs of two clouds of equal points are equally near, or all intersect.
+#[test]
+fn clouds_of_equal_points_are_compared_in_few_steps() {
+    for (place, is_same) in [([0.1, 0.2, 0.3], false), ([0.0; 3], true)] {
+        let [a, b] = [[0.0; 3], place].map(|at| vec![p2m::Point::new(Point3::from(at)); 10_000]);
+        let [aabb_a, aabb_b] = [&a, &b].map(|points| AabbTree::new(points).expect("valid"));
+        let [kdop_a, kdop_b] = [&a, &b].map(|points| KdopTree::<f64, _, 14>::new(points).expect("valid"));
+        let options = PairOptions::default();
+        for (found, steps) in [counted(&aabb_a, &aabb_b, &options), counted(&kdop_a, &kdop_b, &options)] {
+            let pair = found.expect("not empty");
+            assert_eq!((pair.primitives, pair.is_intersecting), ([PrimitiveId::new(0); 2], is_same));
+            assert!(steps < 200, "{steps} steps, {place:?}");
+        }
+    }
+}
+
+#[test]
+fn searches_for_pairs_end_when_they_are_told_to() {
+    let soup = scenes::soup(&mut rng("ended searches", 0), scenes::Kinds::Triangles, scenes::Layout::Strewn, 2_000);
+    let (tree, brute) = (AabbTree::new(&soup).expect("valid"), BruteForce::new(&soup).expect("valid"));
+    let options = PairOptions::default().with_motion(Isometry3::translation(0.01, 0.0, 0.0)).with_max_distance(0.5);
+    let shape = soup.get(PrimitiveId::new(0));
+    for last in [0_i32, 5] {
+        let left = Cell::new(last);
+        let goes_on = || left.replace(left.get() - 1) > 0;
+        let (stopping, slow) = (Interruptible::pairs(&tree, goes_on), Interruptible::pairs(&brute, goes_on));
+        let mut found = 0;
+        let mut count = |_: &_| (found += 1, ControlFlow::Continue(())).1;
+        let check = |search: &mut dyn FnMut() -> ControlFlow<()>| {
+            left.set(last);
+            assert!(search().is_continue());
+            assert!(left.get() == -1, "it asks until it has to end, and not again: {left:?}");
+        };
+        check(&mut || stopping.visit_pairs_within(&tree, &options, &mut count));
+        check(&mut || slow.visit_pairs_within(&brute, &options, &mut |_| ControlFlow::Continue(())));
+        check(&mut || stopping.visit_near(&shape, &options, &mut |_| ControlFlow::Continue(())));
+        check(&mut || slow.visit_near(&shape, &options, &mut |_| ControlFlow::Continue(())));
+        assert!(found < 2_000, "{found}");
+    }
 }
 
 #[test]
@@ -437,4 +555,58 @@ fn certified_pairs_distinguish_what_rounding_does_not() {
         different += usize::from(plain.primitives[0].index() != nearest);
     }
     assert!(all.have_more_than(20, different), "{different}");
+}
+
+/// The kernel is wrong by more about two long segments than it is about two points, whose distance is between the
+/// computed and the true one of the segments.
+#[test]
+fn certified_pairs_are_nearest_beside_long_segments() {
+    use p2m_testkit::oracle::Distance;
+    let mut decided = [0, 0];
+    let all = cases(30_000, 600);
+    for case in all.clone() {
+        let mut rng = rng("certified long segments", case);
+        let long = 10f64.powf(rng.random_range(2.0..9.0));
+        let mut segment = |level: f64| -> [[f64; 3]; 2] {
+            let (middle, along) = (vector(&mut rng) + Vector3::z() * level, vector(&mut rng) * long);
+            [(middle - along * rng.random_range(0.1..1.0)).into(), (middle + along).into()]
+        };
+        let hulls = [segment(0.0), segment(3.0)];
+        let exact = Distance::between(&hulls[0], &hulls[1]);
+        let [a, b] = hulls.map(|[a, b]| Shape::from(p2m::Segment::new(a.into(), b.into())));
+        let [alone_a, alone_b] = [[a], [b]].map(|scene| BruteForce::new(scene).expect("finite"));
+        let computed = alone_a.closest_pair(&alone_b, &PairOptions::default()).expect("not empty");
+        assert!(exact.is_at_least(computed.lower_bound), "{case}: {hulls:?}");
+        let (distance, found) = (exact.length()[0], computed.distance);
+        if distance == 0.0 || (found - distance).abs() < 1e-14 * distance {
+            continue;
+        }
+        let between = distance * 0.5 + found * 0.5;
+        let are_segments_nearest = distance < between;
+        decided[usize::from(are_segments_nearest)] += 1;
+        let far = |z: f64| Shape::from(p2m::Point::new([20.0 * long, 20.0 * long, z].into()));
+        for is_reversed in [false, true] {
+            let mut scenes = [vec![a, far(0.0)], vec![b, far(between)]];
+            if is_reversed {
+                scenes.iter_mut().for_each(|scene| scene.reverse());
+            }
+            let nearest = PrimitiveId::new(usize::from(are_segments_nearest == is_reversed));
+            for hint in [0, 1] {
+                let options = PairOptions::default().with_hint([PrimitiveId::new(hint); 2]);
+                let [tree_a, tree_b] = scenes.each_ref().map(|scene| AabbTree::new(scene).expect("finite"));
+                let [brute_a, brute_b] = scenes.each_ref().map(|scene| BruteForce::new(scene).expect("finite"));
+                for pair in [
+                    tree_a.certified_closest_pair(&tree_b, &options).expect("not empty"),
+                    brute_a.certified_closest_pair(&brute_b, &options).expect("not empty"),
+                ] {
+                    let text = format!("{case}: {scenes:?} {hint}");
+                    assert_eq!(pair.primitives, [nearest; 2], "{text}");
+                    assert_eq!(pair.distance, if are_segments_nearest { distance } else { between }, "{text}");
+                }
+                let plain = tree_a.closest_pair(&tree_b, &options).expect("not empty");
+                assert!(exact.is_at_least(plain.lower_bound) && plain.lower_bound <= between, "{case}: {plain:?}");
+            }
+        }
+    }
+    assert!(decided.into_iter().all(|count| all.have_more_than(3_000, count)), "{decided:?}");
 }

@@ -26,8 +26,8 @@ pub(crate) fn deviation_statistics<'py>(
     Ok(dictionary)
 }
 
-/// Returns a page that shows a scan with its deviations from a scene, as HTML. `texts` has the title, the summary and
-/// the unit.
+/// Returns a page that shows a scan with its deviations from a scene, as HTML. `texts` has the title, the
+/// summary and the unit.
 #[pyfunction]
 pub(crate) fn deviation_page(
     scan: &Scene,

@@ -7,7 +7,7 @@ use crate::parts::{Split, answer_in_parts, batch_options, check_finite};
 use crate::work::{Monitor, Threads, run_owned};
 use nalgebra::{Isometry3, Point3};
 use numpy::{PyReadonlyArray1, ToPyArray};
-use p2m_core::batch;
+use p2m_core::batch::{self, Interruptible};
 use p2m_core::pair::{ClosestPair, PairOptions, PairQuery};
 use p2m_core::{AnyIndex, Primitive, Shape};
 use pyo3::prelude::*;
@@ -38,6 +38,8 @@ impl ScenePair {
         let (Some(first), Some(second)) = (self.first.as_pair_query(), self.second.as_pair_query()) else {
             return Vec::new();
         };
+        let first = Interruptible::pairs(first, || !monitor.is_cancelled());
+        let first: AnyPairQuery<'_> = &first;
         let Some(motions) = &self.motions else { return vec![answer(first, second, &self.options)] };
         let position = |motion: &Isometry3<f64>| Point3::from(motion.translation.vector);
         // One motion may take long.
@@ -50,19 +52,17 @@ impl ScenePair {
         parts.into_iter().flatten().collect()
     }
 
-    /// Runs [`answer`](Self::answer) so that an interrupt abandons it at once.
+    /// Runs [`answer`](Self::answer) so that an interrupt abandons it at once. Its searches then end.
     fn run<R: Send + 'static>(
         self,
         py: Python<'_>,
         threads: usize,
         progress: Option<Py<PyAny>>,
-        answer: impl Fn(AnyPairQuery<'_>, AnyPairQuery<'_>, &PairOptions<f64>, &Monitor) -> R + Send + Sync + 'static,
+        answer: impl Fn(AnyPairQuery<'_>, AnyPairQuery<'_>, &PairOptions<f64>) -> R + Send + Sync + 'static,
     ) -> PyResult<Vec<R>> {
         let total = self.motions.as_ref().map_or(1, Vec::len);
         let pool = Threads::Pool(crate::threads::pool(py, threads)?);
-        run_owned(py, threads, total, progress, move |monitor| {
-            self.answer(&pool, monitor, |first, second, options| answer(first, second, options, monitor))
-        })
+        run_owned(py, threads, total, progress, move |monitor| self.answer(&pool, monitor, answer))
     }
 }
 
@@ -167,7 +167,7 @@ impl Index {
         progress: Option<Py<PyAny>>,
     ) -> PyResult<PairList> {
         let scenes = self.with_other(other, transforms, max_distance)?;
-        let list = scenes.run(py, threads, progress, move |first, second, options, _| {
+        let list = scenes.run(py, threads, progress, move |first, second, options| {
             if certified {
                 PairQuery::certified_closest_pair(&first, second, options)
             } else {
@@ -187,7 +187,7 @@ impl Index {
         progress: Option<Py<PyAny>>,
     ) -> PyResult<Bound<'py, PyAny>> {
         let scenes = self.with_other(other, transforms, 0.0)?;
-        let answers = scenes.run(py, threads, progress, |first, second, options, _| {
+        let answers = scenes.run(py, threads, progress, |first, second, options| {
             PairQuery::is_any_pair_near(&first, second, options)
         })?;
         Ok(answers.to_pyarray(py).into_any())
@@ -204,11 +204,11 @@ impl Index {
         threads: usize,
     ) -> PyResult<PairList> {
         let scenes = self.with_other(other, transforms, max_distance)?;
-        let lists = scenes.run(py, threads, None, |first, second, options, monitor| {
+        let lists = scenes.run(py, threads, None, |first, second, options| {
             let mut list: Vec<ClosestPair<f64>> = Vec::new();
             let _ = PairQuery::visit_pairs_within(&first, second, options, &mut |pair| {
                 list.push(*pair);
-                if monitor.is_cancelled() { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
+                ControlFlow::Continue(())
             });
             list.sort_by(|a, b| a.distance.total_cmp(&b.distance).then(a.primitives.cmp(&b.primitives)));
             list

@@ -1,4 +1,5 @@
-//! What answers batches: an index over the whole scene, or one in shards. Both answer queries of all kinds in parts.
+//! The source of the answers of a batch: an index over the whole scene, or one in shards. Both answer queries of all
+//! kinds in parts.
 
 use crate::errors::shard_error;
 use crate::index::Index;
@@ -17,7 +18,7 @@ pub(crate) enum Source<'py> {
     Shards(Bound<'py, Shards>),
 }
 
-/// What answers the queries of a part of a batch.
+/// The index that answers the queries of a part of a batch.
 pub(crate) enum Part<'a> {
     /// An index, on this thread alone.
     Whole(&'a Index),

@@ -11,10 +11,12 @@
 //!
 //! All indexes that may win are built over a sample of 300 primitives, and those that may still win over a sample that
 //! is as large as a small part of the expected time of the job permits. If there is no time for the smallest sample,
-//! the figures of docs/paper.md decide.
+//! the figures of [docs/measurements/paper.md] decide.
 //!
 //! Estimates are for one thread. They depend on the machine and its load, so the advice may differ from run to run
 //! where two backends are about equally good.
+//!
+//! [docs/measurements/paper.md]: https://github.com/p2m-rs/p2m/blob/main/docs/measurements/paper.md
 
 mod estimate;
 mod recommend;

@@ -28,9 +28,9 @@ const MAX_SAMPLE_QUERIES: usize = 512;
 const MIN_SAMPLE_GROWTH: usize = 2;
 /// The time that taking a sample needs for each primitive of the scene, in seconds.
 const SAMPLING_SECONDS_PER_PRIMITIVE: f64 = 30e-9;
-/// The time to build for each primitive of the larger sample, relative to that of the smallest one, at most.
+/// The largest build time per primitive of the larger sample, relative to that of the smallest sample.
 const MAX_BUILD_GROWTH: f64 = 2.0;
-/// The octree has budgets for this many primitives at least.
+/// The smallest number of primitives for which the octree has budgets.
 const MIN_OCTREE_BUDGET_PRIMITIVES: f64 = 10_000.0;
 
 /// Recommends an index for a scene and a workload.
@@ -123,8 +123,8 @@ impl<'a> Comparison<'a> {
         is_tree(estimate) || !is_exhaustive && !self.has_slivers && estimate.build_seconds < self.max_build_seconds
     }
 
-    /// Measures the backends that may win on the smallest sample, and those that may still win on one as large as time
-    /// permits.
+    /// Measures the backends that may win on the smallest sample, and those that may still win on one as large
+    /// as time permits.
     ///
     /// Some scenes have a hundred times the usual time to build cells of vertices. The smallest sample shows that
     /// before a larger one would take too long.

@@ -24,8 +24,8 @@ pub struct Workload<'a> {
     pub region: QueryRegion<'a>,
     /// The largest number of bytes that the index may occupy besides the scene; unlimited by default.
     pub max_bytes: usize,
-    /// The longest time that the advice may take; unlimited by default. Advice always takes a small part of the
-    /// expected time of the job at most.
+    /// The longest time that the advice may take; unlimited by default. Advice never takes
+    /// more than a small part of the expected time of the job.
     pub max_time: Duration,
 }
 

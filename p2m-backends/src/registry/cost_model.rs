@@ -1,8 +1,10 @@
 //! The cost that each backend is expected to have before anything is measured.
 //!
-//! The times of queries are those of the scene dragon_100k in docs/paper.md, and those of builds are from
-//! `p2m-bench query dragon_100k.obj dragon_871k.ply --backends aabb,kdop-14,octree,p2m`. The factors were fitted to
-//! scenes of 16,000 to 86,000 primitives (decision 046).
+//! The times of queries are those of the scene dragon_100k in [docs/measurements/paper.md], and those of builds are
+//! from `p2m-bench query dragon_100k.obj dragon_871k.ply --backends aabb,kdop-14,octree,p2m`. The factors
+//! were fitted to scenes of 16,000 to 86,000 primitives (decision 046).
+//!
+//! [docs/measurements/paper.md]: https://github.com/p2m-rs/p2m/blob/main/docs/measurements/paper.md
 
 /// The number of primitives of the scene that the times of a [`CostModel`] belong to.
 pub(crate) const REFERENCE_PRIMITIVES: f64 = 100_000.0;

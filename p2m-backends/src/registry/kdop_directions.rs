@@ -47,8 +47,8 @@ impl ChosenDirections {
         }
     }
 
-    /// Returns the directions of a saved tree with this number of faces, with the reason that [`save`](Self::save)
-    /// wrote.
+    /// Returns the directions of a saved tree with this number of faces, with the reason
+    /// that [`save`](Self::save) wrote.
     #[must_use]
     pub fn of_saved(faces: usize, reader: &Reader) -> Self {
         let reason = reader.copy::<u8>(REASON_SECTION).ok().map(|text| String::from_utf8_lossy(&text).into_owned());

@@ -14,6 +14,7 @@ use crate::tree::{Leaves, PacketTree};
 use crate::volume::Volume;
 use p2m_core::engine::simd::Isa;
 use p2m_core::{Aabb, BuildError, Primitive, PrimitiveId, PrimitiveSet, Real, check_set};
+use std::sync::OnceLock;
 
 /// The least unit of a packet, as a part of the unit of the tree: 2^-36. Finer units would bring nothing.
 const MIN_UNIT_RATIO: f64 = 1.0 / (1u64 << 36) as f64;
@@ -92,6 +93,7 @@ impl<V: Volume> PacketTree<V> {
             nodes: children.into_iter().map(V::Node::new).collect(),
             leaves,
             len: order.len(),
+            least_ids: OnceLock::new(),
         };
         tree.bound_nodes(&packet_bounds);
         tree

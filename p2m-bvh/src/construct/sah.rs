@@ -11,8 +11,8 @@ const BINS: usize = 16;
 const LAST_BIN: f32 = 15.0;
 const _: () = assert!(BINS == 16);
 
-/// A division of an interval of each axis into bins. Centres outside of the interval count for the first or the last
-/// bin.
+/// A division of an interval of each axis into bins. Centres outside of the interval count for the first or
+/// the last bin.
 #[derive(Clone, Copy)]
 pub(crate) struct Binning {
     low: [f32; 4],
@@ -216,8 +216,8 @@ fn fill_bins<const N: usize>(
     bins
 }
 
-/// A SIMD kernel that sorts primitives into the bins of some axes. It uses the instruction set only through the
-/// compiler.
+/// A SIMD kernel that sorts primitives into the bins of some axes. It uses the instruction set only
+/// through the compiler.
 struct FillBins<'a, const N: usize> {
     primitives: &'a [BuildPrimitive],
     axes: [usize; N],
@@ -243,8 +243,8 @@ impl<const N: usize> SimdKernel for FillBins<'_, N> {
     }
 }
 
-/// A SIMD kernel that returns the cheapest border of the bins of some axes. It uses the instruction set only through
-/// the compiler.
+/// A SIMD kernel that returns the cheapest border of the bins of some axes. It uses the instruction set
+/// only through the compiler.
 struct FindBorder<'a, const N: usize> {
     bins: &'a [Bins; N],
     axes: [usize; N],

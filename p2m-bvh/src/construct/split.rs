@@ -167,7 +167,7 @@ impl Splitter<'_> {
         let Self { isa, options, .. } = *self;
         let leaf_cost = to_f64(primitives.len().next_multiple_of(options.block.max(1)));
         let may_be_leaf = primitives.len() <= options.max_leaf;
-        // A split costs its node at least.
+        // A split costs at least its node.
         if primitives.len() <= 1 || (may_be_leaf && options.node_cost >= leaf_cost) {
             return None;
         }

@@ -9,12 +9,14 @@
 //! > d - 1 - 32 u X <= sqrt(square) <= d + 1 + 88 u X,
 //!
 //! where d is either its true distance or the distance that the kernel of the contract computes. The proof is in
-//! docs/proofs/filter.md. For other primitives, which are filtered by their boxes, the right inequality holds.
+//! [docs/proofs/filter.md]. For other primitives, which are filtered by their boxes, the right inequality holds.
 //!
 //! Two properties make the band independent of the shape of a triangle. Edges and normals are made of differences of
 //! whole numbers, which are exact, so the normal of a sliver is as good as any. A face counts only where the projection
 //! of the query point is inside by more than the test can err, so the filter always finds the distance of some point
 //! of the triangle.
+//!
+//! [docs/proofs/filter.md]: https://github.com/p2m-rs/p2m/blob/main/docs/proofs/filter.md
 
 use super::layout::{LANES, Packet};
 use super::member::Kind;
@@ -285,8 +287,8 @@ pub struct Locals {
     /// The normals of planes between the query points and the packets. Until the planes are placed, they are a vertex
     /// of each packet in its frame.
     normal: [[f32; PLACES]; 3],
-    /// The offsets of the planes: the product of the normal with the vector from the query point to a point of the
-    /// plane.
+    /// The offsets of the planes: the product of the normal with the vector from the query point to a point
+    /// of the plane.
     offset: [f32; PLACES],
     /// One bit for each place whose query point is not in the frame, as [`Packet::local`] returns `None` for it.
     pub far: u32,

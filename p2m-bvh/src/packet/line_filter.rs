@@ -3,7 +3,9 @@
 //! The origin of the line is moved to the projection of the centre of the packet, so the filter does not depend on how
 //! far away the line begins. All vertices are then projected along the line onto the two axes that it is steepest to.
 //! There a triangle that the line hits has the origin inside, within a margin of one or two units of the frame. The
-//! proof is in docs/proofs/rays.md. Primitives that pass the filter are tested exactly.
+//! proof is in [docs/proofs/rays.md]. Primitives that pass the filter are tested exactly.
+//!
+//! [docs/proofs/rays.md]: https://github.com/p2m-rs/p2m/blob/main/docs/proofs/rays.md
 
 use super::layout::{GRID_MAX, LANES, Packet};
 use super::line::RayLine;

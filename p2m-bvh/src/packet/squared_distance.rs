@@ -1,6 +1,8 @@
 //! Squared distances to points, segments and triangles, lane by lane.
 //!
-//! The band within which they are right is stated in `distance_filter`; its proof is in docs/proofs/filter.md.
+//! The band within which they are right is stated in `distance_filter`; its proof is in [docs/proofs/filter.md].
+//!
+//! [docs/proofs/filter.md]: https://github.com/p2m-rs/p2m/blob/main/docs/proofs/filter.md
 
 use p2m_core::engine::simd::Lanes;
 use p2m_core::engine::vector::power_of_two;
@@ -140,8 +142,8 @@ impl<L: Lanes> Triangles<L> {
 }
 
 /// Returns one bit for each lane: whether a vertex of its triangle does not lie behind a plane. The plane is orthogonal
-/// to `normal`, and its offset is the product of the normal with the vector from the query point to a point of the
-/// plane.
+/// to `normal`, and its offset is the product of the normal with the vector from the query point to a point
+/// of the plane.
 #[inline(always)]
 pub(super) fn lanes_before_plane<L: Lanes>(vertices: &[V3<L>; 3], query: &V3<L>, normal: [f32; 3], offset: f32) -> u32 {
     let normal = V3::splat(normal);
@@ -150,6 +152,6 @@ pub(super) fn lanes_before_plane<L: Lanes>(vertices: &[V3<L>; 3], query: &V3<L>,
     a.min(b).min(c).at_most(L::splat(offset))
 }
 
-/// A scale of edges, 2^-34, with which products of two edges are about 1 at most.
+/// A scale of edges, 2^-34, with which products of two edges are at most about 1.
 #[allow(clippy::cast_possible_truncation, reason = "a power of two")]
 const EDGE_SCALE: f32 = power_of_two(-34) as f32;

@@ -136,8 +136,8 @@ struct Searches<'a, V: VolumeNodes> {
 }
 
 impl<V: VolumeNodes> Searches<'_, V> {
-    /// Offers results to the collectors of their searches. The kernel for single primitives computes those that are
-    /// not certain.
+    /// Offers results to the collectors of their searches. The kernel for single primitives computes those
+    /// that are not certain.
     #[inline(always)]
     fn take(&mut self, candidates: &[Candidate], found: &LaneResults) {
         for (i, candidate) in candidates.iter().enumerate() {

@@ -48,6 +48,11 @@ impl<'a, V: VolumeNodes> TreeSide<'a, V> {
         self.motions.iter().fold(point, |point, motion| motion.apply(point))
     }
 
+    /// Returns a box around a child. It is the smallest one where the box of the whole scene is.
+    fn child_box(&self, node: &V::Node, slot: usize) -> Aabb<f64> {
+        self.moved_box(&self.tree.child_box(node, slot).intersection(&self.tree.bounds))
+    }
+
     fn moved_box(&self, bounds: &Aabb<f64>) -> Aabb<f64> {
         self.motions.iter().fold(*bounds, |bounds, motion| motion.apply_to_box(&bounds))
     }
@@ -72,7 +77,7 @@ impl<V: VolumeNodes> PairSide for TreeSide<'_, V> {
         // A motion makes no coordinate larger than the length of the vertex and the translation.
         let grow = |size: f64, motion: &Motion| 2.0 * size + largest(&[motion.translation()]);
         let size = self.motions.iter().fold(largest(&[self.tree.bounds.min.into(), self.tree.bounds.max.into()]), grow);
-        Placement { centre, unit: frame.unit, size, is_plain: frame.is_plain(), is_tree: true }
+        Placement { centre, unit: frame.unit, size, is_tree: true }
     }
 
     fn directions(&self) -> Vec<V3> {
@@ -106,7 +111,7 @@ impl<V: VolumeNodes> PairSide for TreeSide<'_, V> {
         let wide = &self.tree.nodes[NodeRef(node).number()];
         let mut children = Children { nodes: wide.children().map(|child| child.0), ..Children::NONE };
         for slot in wide.used_slots() {
-            let child = self.moved_box(&self.tree.child_box(wide, slot));
+            let child = self.child_box(wide, slot);
             children.squares[slot] = child.gap_squared(bounds);
             #[allow(clippy::cast_possible_truncation, reason = "gaps and sizes only order pairs")]
             {
@@ -121,11 +126,11 @@ impl<V: VolumeNodes> PairSide for TreeSide<'_, V> {
         if place.parent == NO_NODE {
             return self.bounds();
         }
-        self.moved_box(&self.tree.child_box(self.parent(place), usize::from(place.slot)))
+        self.child_box(self.parent(place), usize::from(place.slot))
     }
 
-    fn first_id(&self, packet: u32) -> PrimitiveId {
-        self.tree.leaves.packets[NodeRef(packet).number()].ids().iter().copied().min().expect("a packet has primitives")
+    fn least_id(&self, node: u32) -> PrimitiveId {
+        self.tree.least_id(NodeRef(node))
     }
 
     fn load(&self, number: u32, hulls: &mut Hulls) {

@@ -1,7 +1,9 @@
 //! Ray casting: the traversal of the nodes that a ray enters, nearest first.
 //!
 //! Packets leave out primitives that the line of the ray certainly misses; the others are tested exactly.
-//! docs/proofs/rays.md has the proofs.
+//! [docs/proofs/rays.md] has the proofs.
+//!
+//! [docs/proofs/rays.md]: https://github.com/p2m-rs/p2m/blob/main/docs/proofs/rays.md
 
 use crate::packet::RayLine;
 use crate::traverse::primitive_fn::{IntersectFn, intersection};

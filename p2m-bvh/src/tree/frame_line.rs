@@ -1,7 +1,9 @@
 //! The line of a ray in the frame of a tree.
 //!
 //! The line is cut to the box of the scene and begins where it enters that box. Nodes can therefore be clipped in f32
-//! wherever the ray comes from. docs/proofs/rays.md has the proofs.
+//! wherever the ray comes from. [docs/proofs/rays.md] has the proofs.
+//!
+//! [docs/proofs/rays.md]: https://github.com/p2m-rs/p2m/blob/main/docs/proofs/rays.md
 
 use crate::packet::RayLine;
 use crate::tree::frame::Frame;

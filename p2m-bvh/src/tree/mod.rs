@@ -19,9 +19,10 @@ pub(crate) mod wide_node;
 use crate::packet::Packet;
 use frame::Frame;
 use node_ref::NodeRef;
-use p2m_core::Aabb;
 use p2m_core::engine::simd::{Isa, prefetch_lines};
 use p2m_core::storage::Array;
+use p2m_core::{Aabb, PrimitiveId};
+use std::sync::OnceLock;
 use wide_node::{VolumeNodes, WideNode};
 
 /// The largest number of nodes on a path from the root, which every build guarantees. Searches keep their stack in an
@@ -53,6 +54,8 @@ pub struct PacketTree<V: VolumeNodes = Aabb<f64>> {
     pub leaves: Leaves,
     /// The number of primitives.
     pub(crate) len: usize,
+    /// The least id of each node, once a search for pairs has needed it.
+    pub(crate) least_ids: OnceLock<Vec<PrimitiveId>>,
 }
 
 /// The packets of a tree with their exact vertices.
@@ -94,6 +97,29 @@ impl<V: VolumeNodes> PacketTree<V> {
         V::Node::scene_box(&node.bounds(slot), &self.shared, &self.frame)
     }
 
+    /// Returns the least id of a node or a packet. The first call for a node takes O(n).
+    pub(crate) fn least_id(&self, node: NodeRef) -> PrimitiveId {
+        let of_packet =
+            |packet: usize| *self.leaves.packets[packet].ids().iter().min().expect("a packet has primitives");
+        if node.is_packet() {
+            return of_packet(node.number());
+        }
+        let least_ids = self.least_ids.get_or_init(|| {
+            let mut least_ids = vec![PrimitiveId::new(0); self.nodes.len()];
+            // Children come after their parents.
+            for (number, node) in self.nodes.iter().enumerate().rev() {
+                let children = node.used_slots().map(|slot| node.children()[slot]);
+                let ids = children.map(|child| match child.is_packet() {
+                    true => of_packet(child.number()),
+                    false => least_ids[child.number()],
+                });
+                least_ids[number] = ids.min().expect("a node has children");
+            }
+            least_ids
+        });
+        least_ids[node.number()]
+    }
+
     /// Prefetches a node or a packet.
     #[inline(always)]
     pub(crate) fn prefetch(&self, child: NodeRef) {
@@ -128,6 +154,7 @@ impl<V: VolumeNodes> PacketTree<V> {
             + self.leaves.packets.memory()
             + self.leaves.vertices.memory()
             + self.leaves.vertex_offsets.memory()
+            + self.least_ids.get().map_or(0, |ids| ids.capacity() * size_of::<PrimitiveId>())
     }
 
     /// A mask of the lanes in use for each packet.

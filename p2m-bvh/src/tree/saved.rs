@@ -11,6 +11,7 @@ use bytemuck::{Pod, Zeroable};
 use nalgebra::Point3;
 use p2m_core::storage::{Array, LoadError, Reader, Saved, Writer, require};
 use p2m_core::{Aabb, Isa};
+use std::sync::OnceLock;
 
 /// The section with the bounds of the nodes.
 const BOUNDS: &str = "tree/bounds";
@@ -89,6 +90,7 @@ impl<V: VolumeNodes> Saved for PacketTree<V> {
             nodes,
             leaves,
             len: primitives,
+            least_ids: OnceLock::new(),
         };
         tree.depth = check_references(&tree)?;
         Ok(tree)

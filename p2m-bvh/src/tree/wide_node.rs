@@ -84,8 +84,7 @@ pub trait WideNode: Rows + Copy + Debug + Send + Sync {
     }
 }
 
-/// What trees and traversals need of a bounding volume. Searches, which [`Volume`](crate::Volume) adds, need them in
-/// turn.
+/// The part of a bounding volume that trees and traversals need. The searches of [`Volume`](crate::Volume) build on it.
 pub trait VolumeNodes: Clone + 'static {
     /// The data that all volumes of a tree share.
     type Shared: Clone + Debug + Send + Sync;

@@ -3,7 +3,8 @@
 use crate::{BatchAnswer, Best, ClosestPoint, QueryOptions, Real};
 use nalgebra::Point3;
 
-/// An index that answers the queries of a batch in steps, and leaves the rest out when it is told to stop.
+/// An index that answers the queries of a batch in steps, and leaves the rest out when it is told to stop, or whose
+/// searches for [pairs](Self::pairs) end early.
 ///
 /// Before each step the function gets the number of queries that are left. It calls the second argument with the
 /// number of queries to answer in this step, which is at most that many, and returns whether to go on. All threads of
@@ -29,8 +30,8 @@ use nalgebra::Point3;
 /// # Ok::<(), p2m_core::BuildError>(())
 /// ```
 pub struct Interruptible<'a, I: ?Sized, F> {
-    index: &'a I,
-    step: F,
+    pub(crate) index: &'a I,
+    pub(crate) step: F,
 }
 
 impl<'a, I: ?Sized, F: Fn(usize, &mut dyn FnMut(usize)) -> bool> Interruptible<'a, I, F> {

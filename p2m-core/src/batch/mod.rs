@@ -149,8 +149,8 @@ pub fn distances<T: Real, I: ClosestPoint<T> + Sync + ?Sized>(index: &I, queries
 ///
 /// The function is called once for each query, along a curve through the positions of the queries, so queries that are
 /// near each other find what they visit in the cache. That serves queries for the k nearest, for all within a distance,
-/// for certified answers, signs, and rays, whose position is the origin. Positions that are not finite come at any
-/// place.
+/// for certified answers, signs, and rays, whose position is the origin. Positions that are not finite come
+/// at any place.
 ///
 /// ```
 /// use p2m_core::{BruteForce, NearQuery, Point, batch};

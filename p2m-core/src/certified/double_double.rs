@@ -155,7 +155,7 @@ impl Square {
     /// y). Replacing R + y by 2 y changes this quotient by (R - y)^2 / 2 y. In relative terms, y is within u of the
     /// exact root of the upper half, that is within u / 2 of the root of the value, and that is within 2^-61 of R. So
     /// |R - y| < 2 u y, and the quotient changes by less than 2 u^2 y. S - y^2 is below 4 u y^2 and is rounded three
-    /// times up to the quotient, which adds less than 3.1 u * 2 u y. Adding a bound to it costs 2.1 u^2 y at most, or u
+    /// times up to the quotient, which adds less than 3.1 u * 2 u y. Adding a bound to it costs at most 2.1 u^2 y, or u
     /// of the bound. The sum of these errors is below 12 u^2 y, apart from the error of the value.
     #[inline]
     pub(super) fn distance(&self) -> Option<RoundedDistance> {

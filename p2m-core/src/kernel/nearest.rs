@@ -7,7 +7,9 @@ use crate::Feature;
 /// The bound on the error of a distance in units of u M, where M is the largest distance from the query to a vertex of
 /// the primitive: |computed - true| <= `ERROR_CONSTANT` u M + eta.
 ///
-/// It is proved in docs/proofs/accuracy.md. The largest error observed is 3.3 u M.
+/// It is proved in [docs/proofs/accuracy.md]. The largest error observed is 3.3 u M.
+///
+/// [docs/proofs/accuracy.md]: https://github.com/p2m-rs/p2m/blob/main/docs/proofs/accuracy.md
 pub const ERROR_CONSTANT: f64 = 8.0;
 
 /// The nearest point of one primitive.

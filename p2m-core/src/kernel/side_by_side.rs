@@ -9,7 +9,9 @@
 //! - slivers, and feet so close to the border of a face that their weights do not decide;
 //! - ties between vertices, between edges, or between the lengths of edges, which the order of vertices decides.
 //!
-//! docs/proofs/accuracy.md has the proof that the bits are equal.
+//! [docs/proofs/accuracy.md] has the proof that the bits are equal.
+//!
+//! [docs/proofs/accuracy.md]: https://github.com/p2m-rs/p2m/blob/main/docs/proofs/accuracy.md
 
 #![allow(clippy::needless_range_loop, reason = "iterators with closures would be compiled without the instruction set")]
 
@@ -28,8 +30,8 @@ pub const SIDE_BY_SIDE: usize = 8;
 /// A number for each primitive.
 pub type Row = [f64; SIDE_BY_SIDE];
 
-/// The query points and the vertices of eight primitives. `vertices[v][k]` has coordinate k of vertex v of each of
-/// them.
+/// The query points and the vertices of eight primitives. `vertices[v][k]` has coordinate k of vertex v of
+/// each of them.
 #[derive(Clone, Debug)]
 pub struct TriangleLanes<const N: usize> {
     queries: [Row; 3],

@@ -11,7 +11,7 @@
 //!
 //! A foot is accepted only if its weights are positive, so features of lower dimension cover all other cases. Values of
 //! vertices and edges depend on their own ends alone, in any order, and so have the same bits in every primitive that
-//! contains them. docs/proofs/accuracy.md derives the error bound.
+//! contains them. [docs/proofs/accuracy.md] derives the error bound.
 //!
 //! # Work
 //!
@@ -25,6 +25,8 @@
 //! ([`has_plain_scale`]). Otherwise every feature is computed on offsets that are scaled by a power of two of its own
 //! ([`rescaled`](super::rescaled)), by the same functions and hence with the same bits. The choice between formulas
 //! depends on ratios of lengths, and so on the shape but never on the scale.
+//!
+//! [docs/proofs/accuracy.md]: https://github.com/p2m-rs/p2m/blob/main/docs/proofs/accuracy.md
 
 use super::edge::{EDGES, EdgeLine, edge_precedes};
 use super::face::{Corners, FacePlane};

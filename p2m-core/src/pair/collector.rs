@@ -8,10 +8,24 @@ use nalgebra::{Isometry3, Point3};
 use std::ops::ControlFlow;
 
 /// The options of a search for pairs.
+///
+/// ```
+/// use nalgebra::{Isometry3, Point3};
+/// use p2m_core::pair::{PairOptions, PairQuery};
+/// use p2m_core::{BruteForce, Segment};
+///
+/// let pipe = |y: f64| [Segment::new(Point3::new(0.0, y, 0.0), Point3::new(9.0, y, 0.0))];
+/// let (first, second) = (BruteForce::new(pipe(0.0))?, BruteForce::new(pipe(4.0))?);
+/// // The second pipe has a radius of 1, and is moved towards the first one.
+/// let options = PairOptions::default().with_radius(1.0).with_motion(Isometry3::translation(0.0, -1.0, 0.0));
+/// assert_eq!(first.closest_pair(&second, &options).map(|pair| pair.distance), Some(2.0));
+/// # Ok::<(), p2m_core::BuildError>(())
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct PairOptions<T: Real> {
-    /// The largest distance of an answer, inclusive, in units of the scene. It is infinite by default.
+    /// The largest distance of an answer, inclusive, in units of the scene. It is infinite by default. Within 0 are the
+    /// primitives that intersect, and no others whose distance rounds to 0.
     pub max_distance: T,
     /// The motion of the second scene. It is applied to each vertex in f64, and each coordinate is rounded: the answer
     /// is that of the scene of these vertices. `None`, the default, leaves the scene where it is.
@@ -112,7 +126,12 @@ enum Mode<'a> {
 impl<'a> Pairs<'a> {
     fn new<T: Real>(options: &PairOptions<T>, mode: Mode<'a>) -> Self {
         let (largest, radius) = (options.max_distance.to_f64(), options.radius.to_f64());
-        let reach = if radius > 0.0 { largest + radius } else { options.max_distance.to_f64_above() };
+        let reach = match (largest, radius) {
+            (_, radius) if radius > 0.0 => largest + radius,
+            // Within 0 is what intersects, not what rounds to 0.
+            (0.0, _) => 0.0,
+            _ => options.max_distance.to_f64_above(),
+        };
         // Nothing is within NaN or below 0.
         let is_valid = largest >= 0.0 && radius >= 0.0;
         Self {
@@ -225,19 +244,24 @@ impl<'a> Pairs<'a> {
         self.best().map(|(_, pair)| (pair.points[1] - pair.points[0]).into())
     }
 
-    /// Returns whether the nearest pair so far intersects.
+    /// Returns whether no pair of primitives with at least these ids can change the answer, if the square of the gap
+    /// between their boxes is at least `square`. Such a pair could only tie with the nearest one, which has lower ids.
+    ///
+    /// Keys never are below the gap, so this is exact. For certified answers keys decide only that primitives intersect.
     #[inline]
-    pub(crate) fn has_intersection(&self) -> bool {
-        self.best().is_some_and(|(_, pair)| pair.is_intersecting)
+    pub(crate) fn is_settled(&self, square: f64, ids: impl FnOnce() -> [PrimitiveId; 2]) -> bool {
+        let Some((best, pair)) = self.best() else { return false };
+        let can_only_tie = match &self.mode {
+            Mode::Certification { .. } => pair.is_intersecting,
+            Mode::Nearest { .. } | Mode::Each(_) => pair.key.plain_square().is_some_and(|key| key <= square),
+        };
+        can_only_tie && *best <= self.scene_ids(ids())
     }
 
-    /// Returns whether a pair of these primitives could still change the answer. It could not if a pair with lower ids
-    /// intersects.
-    #[inline]
-    #[must_use]
-    pub fn can_change(&self, ids: [PrimitiveId; 2]) -> bool {
-        let ids = self.scene_ids(ids);
-        !self.best().is_some_and(|(others, pair)| pair.is_intersecting && *others < ids)
+    /// Returns whether a pair is within reach. Only pairs that intersect are within 0: the distance of others is
+    /// positive, even where it rounds to 0.
+    fn is_within(&self, pair: &NearestPair) -> bool {
+        pair.is_intersecting || self.reach > 0.0 && pair.key.distance() <= self.reach
     }
 
     /// Takes the result of the kernel for a pair of primitives.
@@ -253,18 +277,19 @@ impl<'a> Pairs<'a> {
     pub fn offer(&mut self, ids: [PrimitiveId; 2], pair: &NearestPair) {
         let distance = pair.key.distance();
         let ids = self.scene_ids(ids);
+        let is_within = self.is_within(pair);
         match &mut self.mode {
             Mode::Nearest { best, certified } => {
                 // A distance beyond the range of f64 is at least the largest number.
                 *certified = certified.min(distance.min(f64::MAX) - pair.error);
                 let is_better = best.as_ref().is_none_or(|(others, other)| (pair.key, ids) < (other.key, *others));
-                if is_better && distance <= self.reach {
+                if is_better && is_within {
                     *best = Some((ids, *pair));
                     self.prune = self.prune.min(pair.key.square_above());
                 }
             }
             Mode::Each(visit) => {
-                if distance <= self.reach {
+                if is_within {
                     self.has_ended |= visit(ids, pair).is_break();
                 }
             }

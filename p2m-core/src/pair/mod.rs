@@ -12,17 +12,20 @@
 //!
 //! # Accuracy
 //!
-//! [`ERROR_CONSTANT_OF_PAIRS`] states the bound, and docs/proofs/pairs.md derives it. A key is a pure function of two
+//! [`ERROR_CONSTANT_OF_PAIRS`] states the bound, and [docs/proofs/pairs.md] derives it. A key is a pure function of two
 //! features: it depends neither on the order of the primitives nor on that of their vertices, and it is never below the
 //! square of the gap between their boxes, which is computed in the same arithmetic ([`Aabb::gap_squared`]). So a search
 //! may prune by boxes without any slack, and equal distances are equal bits.
 //!
 //! [`Aabb::gap_squared`]: crate::Aabb::gap_squared
+//!
+//! [docs/proofs/pairs.md]: https://github.com/p2m-rs/p2m/blob/main/docs/proofs/pairs.md
 
 mod batch;
 mod collector;
 mod edges;
 mod hull;
+mod interruptible;
 mod intersection;
 mod motion;
 mod moving_ball;
@@ -50,7 +53,9 @@ pub use query::{PairQuery, closest_as_guess};
 /// The bound on the error of the distance between two primitives in units of u M, where M is the largest distance
 /// between a vertex of one and a vertex of the other: |computed - true| <= `ERROR_CONSTANT_OF_PAIRS` u M + 4 eta.
 ///
-/// It is proved in docs/proofs/pairs.md. For a vertex and its nearest point the constant is that of query points, 8.
+/// It is proved in [docs/proofs/pairs.md]. For a vertex and its nearest point the constant is that of query points, 8.
+///
+/// [docs/proofs/pairs.md]: https://github.com/p2m-rs/p2m/blob/main/docs/proofs/pairs.md
 pub const ERROR_CONSTANT_OF_PAIRS: f64 = 32.0;
 
 /// The nearest points of two primitives.
@@ -204,8 +209,8 @@ impl Candidate {
         }
     }
 
-    /// Offers vertex i of one hull and its nearest point on the other. `is_second` tells whether the vertex is of the
-    /// second hull.
+    /// Offers vertex i of one hull and its nearest point on the other. `is_second` tells whether the vertex is
+    /// of the second hull.
     #[allow(clippy::cast_possible_truncation, reason = "a primitive has at most three vertices")]
     fn offer_vertex(&mut self, i: usize, vertex: V3, other: &[V3], square: f64, is_second: bool) {
         let Some(projection) = project(vertex, other, self.limit(square)) else { return };

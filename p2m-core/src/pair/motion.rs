@@ -81,38 +81,30 @@ impl Motion {
         self.matrix.iter().chain(&self.translation).all(|x| x.is_finite())
     }
 
-    /// Returns a box around the moved vertices of a box, as [`apply`](Self::apply) rounds them.
+    /// Returns the smallest box around the moved vertices of a box, as [`apply`](Self::apply) rounds them.
     #[must_use]
     pub fn apply_to_box(&self, bounds: &Aabb<f64>) -> Aabb<f64> {
-        let (centre, half) = centre_and_half(bounds);
-        let magnitudes = self.matrix.abs();
-        let size = magnitudes * (centre.abs() + half) + self.translation.abs();
-        box_around(self.apply(centre.into()), magnitudes * half, size)
+        image_of_box(bounds, |k, j| self.matrix[(k, j)], |point| self.apply(point))
     }
 
-    /// Returns a box around the vertices of a box after the inverse of the motion, as
+    /// Returns the smallest box around the vertices of a box after the inverse of the motion, as
     /// [`apply_inverse`](Self::apply_inverse) rounds them.
     #[must_use]
     pub fn apply_inverse_to_box(&self, bounds: &Aabb<f64>) -> Aabb<f64> {
-        let (centre, half) = centre_and_half(bounds);
-        let magnitudes = self.matrix.abs().transpose();
-        let size = magnitudes * (centre.abs() + half + self.translation.abs());
-        box_around(self.apply_inverse(centre.into()), magnitudes * half, size)
+        image_of_box(bounds, |k, j| self.matrix[(j, k)], |point| self.apply_inverse(point))
     }
 }
 
-/// Returns the centre of a box and half of its diagonal.
-fn centre_and_half(bounds: &Aabb<f64>) -> (Vector3<f64>, Vector3<f64>) {
-    let (low, high) = (bounds.min.coords * 0.5, bounds.max.coords * 0.5);
-    (low + high, high - low)
-}
-
-/// Returns the box of a centre and half of a diagonal, enlarged for the roundings of sums of magnitudes up to `size`.
-fn box_around(centre: V3, half: Vector3<f64>, size: Vector3<f64>) -> Aabb<f64> {
-    /// A bound on all roundings of a coordinate, relative to the largest magnitudes that are summed.
-    const MARGIN: f64 = 64.0 * f64::EPSILON;
-    // The smallest normal number covers what underflows.
-    let reach = half + size * MARGIN + Vector3::repeat(f64::MIN_POSITIVE);
-    let centre = Point3::from(centre);
-    Aabb { min: centre - reach, max: centre + reach }
+/// Returns the smallest box around the images of the points of a box.
+///
+/// Coordinate k of an image is computed by sums and by products with the factors (k, j), each rounded. Rounding is
+/// monotone, so the coordinate rises with coordinate j of the point if the factor is positive, and falls if it is
+/// negative. Two corners of the box therefore have the least and the largest one, without any margin.
+fn image_of_box(bounds: &Aabb<f64>, factor: impl Fn(usize, usize) -> f64, image: impl Fn(V3) -> V3) -> Aabb<f64> {
+    let extreme = |k: usize, is_largest: bool| {
+        let corner = |j: usize| if (factor(k, j) >= 0.0) == is_largest { bounds.max[j] } else { bounds.min[j] };
+        image([corner(0), corner(1), corner(2)])[k]
+    };
+    let corner = |is_largest: bool| Point3::from([0, 1, 2].map(|k| extreme(k, is_largest)));
+    Aabb { min: corner(false), max: corner(true) }
 }

@@ -69,7 +69,7 @@ pub struct BallContact<T: Real> {
     /// above `parameter` by about 2^-48, and rounded up.
     pub upper_parameter: T,
     /// A certified upper bound on the distance of the scene from the centre at the upper parameter. It exceeds the
-    /// radius by the tolerance and some roundings at most, unless the ball starts nearer.
+    /// radius by at most the tolerance and some roundings, unless the ball starts nearer.
     pub distance_bound: T,
     /// The point of the scene that is nearest to the centre at the upper parameter.
     pub point: Point3<T>,
@@ -203,8 +203,8 @@ impl<I: ?Sized> Path<'_, I> {
             .expect("no key exceeds infinity")
     }
 
-    /// Returns a certified lower bound on the distance of the scene from the path until a parameter; `None` for an
-    /// empty scene.
+    /// Returns a certified lower bound on the distance of the scene from the path until a parameter; `None`
+    /// for an empty scene.
     fn lower_bound_until<T: Real>(&self, t: f64) -> Option<f64>
     where
         I: PairQuery<T>,
@@ -214,8 +214,8 @@ impl<I: ?Sized> Path<'_, I> {
         Some(pairs.finish::<f64>()?.lower_bound)
     }
 
-    /// Returns a bracket of the first parameter at which the scene is within a distance, up to rounding; `None` if it
-    /// never is.
+    /// Returns a bracket of the first parameter at which the scene is within a distance, up to rounding; `None`
+    /// if it never is.
     fn first_within<T: Real>(&self, distance: f64) -> Option<[f64; 2]>
     where
         I: PairQuery<T>,
@@ -247,8 +247,8 @@ impl<I: ?Sized> Path<'_, I> {
         best.map(|[low, high]| [(low - 2.0 * PARAMETER_RESOLUTION).max(0.0), high])
     }
 
-    /// Returns a bracket of the first parameter at which a primitive is within a distance. At `nearest` it is, up to
-    /// rounding.
+    /// Returns a bracket of the first parameter at which a primitive is within a distance. At `nearest` it is,
+    /// up to rounding.
     fn first_within_of<T: Real>(&self, primitive: PrimitiveId, distance: f64, nearest: f64) -> [f64; 2]
     where
         I: PairQuery<T>,

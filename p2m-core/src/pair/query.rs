@@ -92,6 +92,13 @@ pub trait PairQuery<T: Real> {
         None
     }
 
+    /// Returns whether a search should go on. Searches ask the first index before each step. The default is that they
+    /// do; [`Interruptible`](crate::batch::Interruptible) ends them early.
+    #[doc(hidden)]
+    fn goes_on(&self) -> bool {
+        true
+    }
+
     /// Returns the nearest points of the scene and a shape; `None` if nothing is within the largest distance, and for a
     /// shape whose coordinates are not finite, before or after its motion.
     fn closest_to<P: Primitive<T>>(&self, shape: &P, options: &PairOptions<T>) -> Option<ClosestPair<T>>
@@ -116,8 +123,8 @@ pub trait PairQuery<T: Real> {
 
     /// Returns the certainly nearest primitive of the scene and a shape, in real arithmetic, of exactly equal distances
     /// the one with the lowest id. The distance is the true one, rounded once to the nearest f64, and once more for
-    /// scenes in f32. Of the options the radius and the hint are not used, and the largest distance is compared without
-    /// rounding.
+    /// scenes in f32. Of the options the radius and the hint are not used, and the largest distance is
+    /// compared without rounding.
     ///
     /// # Complexity
     /// It takes the search of [`closest_to`](Self::closest_to), and some ten microseconds for each pair that rounding
@@ -157,8 +164,8 @@ pub trait PairQuery<T: Real> {
     }
 
     /// Returns the certainly nearest pair of primitives of this scene and another one, in real arithmetic, as
-    /// [`certified_closest_to`](Self::certified_closest_to) does for a shape. A motion moves and rounds the vertices
-    /// first.
+    /// [`certified_closest_to`](Self::certified_closest_to) does for a shape. A motion moves and rounds
+    /// the vertices first.
     fn certified_closest_pair<Q: PairQuery<T> + ?Sized>(
         &self,
         other: &Q,
@@ -173,7 +180,7 @@ pub trait PairQuery<T: Real> {
     }
 
     /// Returns whether a primitive of this scene and one of another are within the largest distance. The search ends at
-    /// the first pair. With a largest distance of 0 it tests whether scenes in f64 intersect, which is exact.
+    /// the first pair. With a largest distance of 0 it tests whether the scenes intersect, which is exact.
     fn is_any_pair_near<Q: PairQuery<T> + ?Sized>(&self, other: &Q, options: &PairOptions<T>) -> bool
     where
         Self: Sized,
@@ -244,8 +251,8 @@ fn search_shape<T: Real>(
     search_hull(index, moved(Hull::of(shape), motion.as_ref()).vertices(), options.hint, pairs);
 }
 
-/// Offers the pairs of a scene and the hull of one to three vertices that may be near. There are none if a coordinate is
-/// not finite.
+/// Offers the pairs of a scene and the hull of one to three vertices that may be near. There are none if a
+/// coordinate is not finite.
 pub(super) fn search_hull<T: Real>(
     index: &(impl PairQuery<T> + ?Sized),
     hull: &[V3],
@@ -261,13 +268,13 @@ pub(super) fn search_hull<T: Real>(
     offer_hints(index, hint, guess, pairs, &mut |id| (id == shape_id).then(|| Hull::new(hull)));
     let is_tree = index.visit_pair_sides(&[], &bounds_of(hull), &mut |side, offset| {
         pairs.set_offsets([offset, 0]);
-        search_pairs(side, &ShapeSide(hull), pairs);
+        search_pairs(side, &ShapeSide(hull), &|| index.goes_on(), pairs);
         pairs.reach()
     });
     pairs.set_offsets([0, 0]);
     if !is_tree {
         for id in (0..index.primitive_count()).map(PrimitiveId::new) {
-            if pairs.is_done() {
+            if pairs.is_done() || !index.goes_on() {
                 return;
             }
             offer_of_index(index, [id, shape_id], hull, pairs);
@@ -304,7 +311,7 @@ fn search_scenes<T: Real>(
     let is_first_tree = first.visit_pair_sides(&[], &bounds, &mut |a, offset_a| {
         is_second_tree = second.visit_pair_sides(motion.as_slice(), &a.bounds(), &mut |b, offset_b| {
             pairs.set_offsets([offset_a, offset_b]);
-            search_pairs(a, b, pairs);
+            search_pairs(a, b, &|| first.goes_on(), pairs);
             pairs.reach()
         });
         if is_second_tree { pairs.reach() } else { f64::NAN }
@@ -316,7 +323,7 @@ fn search_scenes<T: Real>(
     for j in (0..second.primitive_count()).map(PrimitiveId::new) {
         let hull = moved_hull(j);
         for i in (0..first.primitive_count()).map(PrimitiveId::new) {
-            if pairs.is_done() {
+            if pairs.is_done() || !first.goes_on() {
                 return;
             }
             offer_of_index(first, [i, j], hull.vertices(), pairs);
@@ -329,8 +336,8 @@ fn moved(hull: Hull, motion: Option<&Motion>) -> Hull {
     motion.map_or(hull, |motion| hull.map(|vertex| motion.apply(vertex)))
 }
 
-/// Offers the hint of the user and a guess, if the nearest pair is searched for. Ids that a scene does not have are
-/// ignored.
+/// Offers the hint of the user and a guess, if the nearest pair is searched for. Ids that a scene does not
+/// have are ignored.
 fn offer_hints<T: Real>(
     first: &(impl PairQuery<T> + ?Sized),
     hint: Option<[PrimitiveId; 2]>,

@@ -2,9 +2,11 @@
 
 use super::*;
 use crate::kernel::vector::{power_of_two, scale_by_power};
+use nalgebra::{Isometry3, Vector3};
 use p2m_testkit::families::{case, pair};
 use p2m_testkit::oracle::Distance;
-use p2m_testkit::{cases, rng};
+use p2m_testkit::{cases, rng, vector};
+use rand::RngExt;
 
 /// Four times the smallest subnormal number.
 const FOUR_ETA: f64 = f64::from_bits(4);
@@ -105,6 +107,36 @@ fn gaps_of_boxes_never_exceed_the_keys_inside() {
         boxes[0] = boxes[0].union(&bounds_of(&[case(&mut rng).query]));
         for gap in [bounds_of(&a).gap_squared(&boxes[1]), boxes[0].gap_squared(&boxes[1])] {
             assert!(gap <= pair.key.square_above(), "{number}: {family}: {gap:e} {pair:?} {a:?} {b:?}");
+        }
+    }
+}
+
+#[test]
+fn moved_boxes_are_the_smallest_around_moved_vertices() {
+    for number in cases(100_000, 3_000) {
+        let mut rng = rng("moved boxes", number);
+        let size = [1e-300, 1e-9, 1.0, 1e9, 1e290][rng.random_range(0..5)];
+        let quarters = std::f64::consts::FRAC_PI_2 * f64::from(rng.random_range(0..4));
+        let turn = [Vector3::x() * quarters, vector(&mut rng) * 3.0][rng.random_range(0..2)];
+        // A large translation leaves few digits of the box, or none.
+        let far = size * [0.0, 1.0, 1e8, 1e15, 1e17][rng.random_range(0..5)];
+        let motion = Motion::new(&Isometry3::new(vector(&mut rng) * far, turn));
+        let [p, q] = [(); 2].map(|()| (vector(&mut rng) * size).into());
+        let bounds = bounds_of(&[p, q]);
+        let corner = |i: usize| -> V3 { std::array::from_fn(|k| [bounds.min, bounds.max][i >> k & 1][k]) };
+        let corners = std::array::from_fn::<_, 8, _>(corner);
+        let inside: V3 = std::array::from_fn(|k| rng.random_range(bounds.min[k]..=bounds.max[k]));
+        let images = [
+            (motion.apply_to_box(&bounds), corners.map(|v| motion.apply(v)), motion.apply(inside)),
+            (
+                motion.apply_inverse_to_box(&bounds),
+                corners.map(|v| motion.apply_inverse(v)),
+                motion.apply_inverse(inside),
+            ),
+        ];
+        for (moved, corners, inside) in images {
+            assert_eq!(moved, bounds_of(&corners), "{number}: {motion:?} {bounds:?}");
+            assert_eq!(moved.clamp(inside.into()), inside.into(), "{number}: {motion:?} {bounds:?}");
         }
     }
 }

@@ -17,19 +17,19 @@ pub enum PrimitiveDefect {
     /// Two calls of `project` with one query return different results.
     #[error("project returns different results for the query {query:?}")]
     NotPure {
-        /// The query.
+        /// The query of the failed check.
         query: [f64; 3],
     },
     /// A coordinate of the nearest point or a weight is NaN.
     #[error("the nearest point or a weight is NaN for the query {query:?}")]
     Nan {
-        /// The query.
+        /// The query of the failed check.
         query: [f64; 3],
     },
     /// The nearest point lies outside of the box of the primitive.
     #[error("the nearest point {point:?} to the query {query:?} lies outside of the box of the primitive")]
     OutsideBox {
-        /// The query.
+        /// The query of the failed check.
         query: [f64; 3],
         /// The nearest point that `project` returns.
         point: [f64; 3],
@@ -37,13 +37,13 @@ pub enum PrimitiveDefect {
     /// The key differs from the one that [`Projection::new`] makes of the query and the point by more than rounding.
     #[error("the key for the query {query:?} is not the distance of the point, which Projection::new computes")]
     Key {
-        /// The query.
+        /// The query of the failed check.
         query: [f64; 3],
     },
     /// The bound on the error is negative, NaN or infinite.
     #[error("the bound on the error for the query {query:?} is {error}, which is no finite number from 0 on")]
     ErrorBound {
-        /// The query.
+        /// The query of the failed check.
         query: [f64; 3],
         /// The bound on the error.
         error: f64,
@@ -52,15 +52,15 @@ pub enum PrimitiveDefect {
     /// allow, so one of the points is not the nearest one or one of the bounds is too small.
     #[error("the distances from {query:?} and {other:?} differ by more than the queries are apart and errors allow")]
     NotNearest {
-        /// One query.
+        /// The first query.
         query: [f64; 3],
-        /// The other query.
+        /// The second query.
         other: [f64; 3],
     },
     /// `project_within` returns another result than `project`, or none although the key does not exceed the square.
     #[error("project_within disagrees with project for the query {query:?}")]
     Within {
-        /// The query.
+        /// The query of the failed check.
         query: [f64; 3],
     },
 }

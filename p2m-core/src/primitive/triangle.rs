@@ -8,6 +8,15 @@ use crate::{Aabb, Ray, RayHit, Real};
 use nalgebra::Point3;
 
 /// A triangle with its interior. It is a segment if its vertices are collinear, and a point if they are equal.
+///
+/// ```
+/// use nalgebra::Point3;
+/// use p2m_core::{Feature, Primitive, Triangle};
+///
+/// let triangle = Triangle::new(Point3::origin(), Point3::new(4.0, 0.0, 0.0), Point3::new(0.0, 4.0, 0.0));
+/// let nearest = triangle.project(&Point3::new(1.0, -1.0, 0.0));
+/// assert_eq!((nearest.point, nearest.feature), (Point3::new(1.0, 0.0, 0.0), Feature::Edge(0)));
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Triangle<T: Real> {
     /// The vertices. Their order numbers the features, and does not change the distance or the nearest point.

@@ -5,8 +5,8 @@ use nalgebra::Point3;
 
 /// The answer to a query for the closest point. Lengths are in units of the scene.
 ///
-/// The distance has no sign: a query inside of a closed mesh has its distance from the surface. The crate p2m-field has
-/// signed distances.
+/// The distance has no sign: a query inside of a closed mesh has its distance from the surface. The crate
+/// p2m-field has signed distances.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct Closest<T: Real> {

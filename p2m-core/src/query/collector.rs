@@ -43,8 +43,8 @@ pub trait Collector {
 
     /// Returns the distance by which a primitive may be farther than the nearest one and is still needed, for a
     /// collector that [keeps near ties](Self::keeps_near_ties). A search adds it to the upper bounds that its filters
-    /// find, before it passes them on, and does not rely on lists of the primitives that can be nearest. It is 0 by
-    /// default.
+    /// find, before it passes them on, and does not rely on lists of the primitives that can be nearest. It is
+    /// 0 by default.
     #[inline(always)]
     fn near_tie_slack(&self) -> f64 {
         0.0

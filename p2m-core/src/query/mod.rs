@@ -11,7 +11,9 @@
 //! was. Subtrees whose lower bound exceeds the distance of the incumbent / (1 + epsilon) are skipped, and subtrees
 //! that are not visited at all are reported with the smallest of their bounds ([`Best::record_skipped`]). So the
 //! lower bound of the answer is certified whatever the options were, and a caller knows the error without another
-//! query (docs/proofs/accuracy.md, N7).
+//! query ([docs/proofs/accuracy.md], N7).
+//!
+//! [docs/proofs/accuracy.md]: https://github.com/p2m-rs/p2m/blob/main/docs/proofs/accuracy.md
 
 #[macro_use]
 mod forward;

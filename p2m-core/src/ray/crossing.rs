@@ -3,7 +3,9 @@
 //! All positions are relative to the origin of the ray. A, B and C are the vertices of a triangle, D is the direction.
 //! The sign of the moment D . (A x B) is the side on which the line passes the edge from A to B. The line hits the
 //! triangle if no two of the three moments have opposite signs, and lies in its plane if all are zero. The parameter of
-//! the plane is n . A / n . D with n = (B - A) x (C - A). docs/proofs/rays.md bounds the errors.
+//! the plane is n . A / n . D with n = (B - A) x (C - A). [docs/proofs/rays.md] bounds the errors.
+//!
+//! [docs/proofs/rays.md]: https://github.com/p2m-rs/p2m/blob/main/docs/proofs/rays.md
 
 use super::exact::{Exact, LineHit};
 use super::hit::{Hit, HitSource, RayHit, Side, weighted_sum};

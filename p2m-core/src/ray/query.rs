@@ -125,8 +125,8 @@ pub trait RayQuery<T: Real> {
     /// crossings from front to back. Crossings are those of [`crossings`](Self::crossings).
     ///
     /// For a closed surface whose neighbouring triangles have the same orientation, this is the winding number of the
-    /// origin of the ray, whatever its direction: 1 in a surface whose fronts are outside, and 2 where two of them
-    /// overlap.
+    /// origin of the ray, whatever its direction: 1 in a surface whose fronts are outside, and 2 where two
+    /// of them overlap.
     fn signed_crossings(&self, ray: &Ray) -> i64 {
         let mut hits = Hits::crossings();
         self.search_ray(ray, &mut hits);

@@ -1,4 +1,6 @@
-//! Bounds on the rounding of determinants of three vectors in f64. docs/proofs/rays.md derives them.
+//! Bounds on the rounding of determinants of three vectors in f64. [docs/proofs/rays.md] derives them.
+//!
+//! [docs/proofs/rays.md]: https://github.com/p2m-rs/p2m/blob/main/docs/proofs/rays.md
 
 use crate::kernel::power_of_two;
 use crate::kernel::vector::V3;

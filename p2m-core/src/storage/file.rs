@@ -46,8 +46,8 @@ impl SavedFile {
         Self::read_with_length(file, length)
     }
 
-    /// Maps the file at a path into memory: pages are read on first use, and processes that map the same file share
-    /// them.
+    /// Maps the file at a path into memory: pages are read on first use, and processes that map the same
+    /// file share them.
     ///
     /// # Safety
     /// Nobody may change or truncate the file while the mapping, or an index that was loaded from it, is in use. A

@@ -17,8 +17,8 @@ pub trait Saved: Sized {
     /// Adds the sections of the index to a file.
     fn save<'a>(&'a self, writer: &mut Writer<'a>);
 
-    /// Makes the index of the sections of a file, without copying large arrays. The index is over a set of `primitives`
-    /// primitives.
+    /// Makes the index of the sections of a file, without copying large arrays. The index is over a set
+    /// of `primitives` primitives.
     ///
     /// A file may come from anybody, so an implementation validates everything that a search relies on in order not to
     /// panic and not to go on without end.

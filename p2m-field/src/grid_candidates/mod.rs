@@ -31,7 +31,7 @@
 //!   together.
 //! - A point counts as inside if it is by 2^-46 R = 128 u R for all edges, and then it is inside without rounding too.
 //!   A point that is inside and does not count is within 128 u R + 79 u R of the line of an edge. It is as near to the
-//!   boundary, since the segment to that line leaves the triangle before it ends, and that is its error at most.
+//!   boundary, since the segment to that line leaves the triangle before it ends, and that bounds its error.
 //! - Squares and the root add 6 u R. All together is less than 400 u R. The contract's own 8 u R is added, and 512 u R
 //!   is 2^-44 R.
 //! - Edges below 2^-450 count as points, and squares lose less than 2^-1000 near zero; 2^-400 exceeds both. Coordinates
@@ -65,7 +65,7 @@ use groups::Groups;
 use nalgebra::Point3;
 use narrow::Narrow;
 use p2m_core::engine::simd::Isa;
-use p2m_core::{Aabb, Best, Collector, Primitive, PrimitiveSet, QueryOptions, check_set};
+use p2m_core::{Aabb, Best, Collector, Primitive, PrimitiveId, PrimitiveSet, QueryOptions, check_set};
 
 /// All primitives of a set, each in a frame of its own, and a hierarchy of groups of them.
 #[derive(Debug)]
@@ -162,11 +162,16 @@ impl<'a, S: PrimitiveSet<f64> + ?Sized> CandidateLists<'a, S> {
         ambiguous.len()
     }
 
+    /// Returns the candidates that are no groups.
+    pub(crate) fn primitives(&self, candidates: &Candidates) -> impl Iterator<Item = PrimitiveId> {
+        candidates.entries.iter().filter_map(|entry| entry.primitive()).map(|i| self.groups.ids[i])
+    }
+
     /// Computes the distance of a point from the candidates by the kernel of the contract.
     #[allow(clippy::cast_possible_truncation, reason = "values are rounded to f32")]
     fn kernel_distance(&self, candidates: &Candidates, point: Point3<f64>) -> f32 {
         let mut best = Best::new(&QueryOptions::<f64>::default());
-        for id in candidates.entries.iter().filter_map(|entry| entry.primitive()).map(|i| self.groups.ids[i]) {
+        for id in self.primitives(candidates) {
             if let Some(projection) = self.set.get(id).project_within(&point, best.prune_above()) {
                 best.offer(id, projection);
             }

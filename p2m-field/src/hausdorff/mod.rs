@@ -64,8 +64,8 @@ impl<T: Real, I: ClosestPoint<T> + CertifiedQuery<T> + Sync + ?Sized> HausdorffI
 #[non_exhaustive]
 pub struct HausdorffOptions<T: Real> {
     /// The largest difference of the bounds, in units of the scenes. A negative number and NaN count as 0: the bounds
-    /// are then as near to each other as rounding allows, if `max_queries` suffices. With an infinite one only vertices
-    /// are asked.
+    /// are then as near to each other as rounding allows, if `max_queries` suffices. With an infinite one
+    /// only vertices are asked.
     pub tolerance: T,
     /// The largest number of queries besides those of vertices. When it is exhausted, the result has the bounds that
     /// were reached. The default is 2^24.
@@ -102,8 +102,8 @@ pub enum Direction {
     SecondToFirst,
 }
 
-/// A Hausdorff distance between bounds. Lengths are in units of the scenes, and arrays of two have the first scene
-/// first.
+/// A Hausdorff distance between bounds. Lengths are in units of the scenes, and arrays of two have the
+/// first scene first.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct HausdorffDistance<T: Real> {
@@ -114,8 +114,8 @@ pub struct HausdorffDistance<T: Real> {
     pub upper_bound: T,
     /// A point whose distance from the other scene attains the lower bound, and its closest point there.
     pub points: [Point3<T>; 2],
-    /// The primitives that contain these points. A vertex of the measured scene has the lowest id of the primitives that
-    /// share it.
+    /// The primitives that contain these points. A vertex of the measured scene has the lowest id of the
+    /// primitives that share it.
     pub primitives: [PrimitiveId; 2],
     /// Which of the scenes has the point that is farthest from the other one.
     pub direction: Direction,

@@ -286,8 +286,8 @@ impl<'a, T: Real> Search<'a, T> {
         vec![Piece { corners: [a, m, c], ..piece }, Piece { corners: [m, b, c], ..piece }]
     }
 
-    /// Bounds the distances of pieces, and puts those above the limit into the queue. It returns the largest bound of
-    /// the others.
+    /// Bounds the distances of pieces, and puts those above the limit into the queue. It returns the largest
+    /// bound of the others.
     fn queue(&mut self, mut pieces: Vec<Piece>) -> Result<f64, CertifyError> {
         let limit = self.limit();
         // Scenes mostly have neighbours in order, and sorting the pieces takes longer than it saves.
@@ -375,8 +375,8 @@ impl<'a, T: Real> Search<'a, T> {
         self.corners.extend(answers.map(|((&point, distance), nearest)| Corner { point, distance, nearest }));
     }
 
-    /// Raises the lower bound to the certified distance of a corner, less its drift, if it is larger. `estimate` is the
-    /// computed value.
+    /// Raises the lower bound to the certified distance of a corner, less its drift, if it is larger. `estimate`
+    /// is the computed value.
     fn raise_lower_bound(
         &mut self,
         estimate: f64,

@@ -43,8 +43,8 @@ pub(super) fn caps(soup: &Soup<f64>, surface: &Surface) -> Soup<f64> {
     Soup::from_triangles(positions, triangles).expect("the vertices are those of the positions")
 }
 
-/// Divides sorted directed edges, of which as many end at each vertex as start there, into closed polygons without
-/// repeated vertices.
+/// Divides sorted directed edges, of which as many end at each vertex as start there, into closed
+/// polygons without repeated vertices.
 #[allow(clippy::cast_possible_truncation, reason = "the boundary has at most three edges for each triangle")]
 fn polygons(vertex_count: usize, edges: &[[u32; 2]]) -> Vec<Vec<u32>> {
     // The unused edges of each vertex are `next[vertex]..ends[vertex]`.

@@ -8,12 +8,14 @@
 //!
 //! **Where the surface is simple.** A vertex is simple if its triangles form one fan that projects along its
 //! pseudonormal without overlap. A triangle is simple if it is no sliver, its vertices are simple, and no triangle
-//! without a common vertex is within [`Certificates::clearance`] of it. docs/proofs/fields.md proves that then a ball
+//! without a common vertex is within [`Certificates::clearance`] of it. [docs/proofs/fields.md] proves that then a ball
 //! around the closest point has only the triangles of its feature.
 //!
 //! **What the sides mean.** All points just in front of a simple triangle have one winding number, and those just
 //! behind it one more. Simple triangles with a common edge have the same numbers. They form patches, and one exact ray
 //! decides the numbers of a patch, when the first query arrives there.
+//!
+//! [docs/proofs/fields.md]: https://github.com/p2m-rs/p2m/blob/main/docs/proofs/fields.md
 
 use super::crowding;
 use super::normals::angle;
@@ -55,8 +57,8 @@ pub(super) struct Certificates<S> {
     neighbours: Vec<[u32; 3]>,
     /// The vertex id of each position.
     vertex_ids: Vec<u32>,
-    /// The pseudonormal of each simple vertex and the smallest height of its triangles over the opposite edges, or
-    /// zeros.
+    /// The pseudonormal of each simple vertex and the smallest height of its triangles over the opposite
+    /// edges, or zeros.
     fans: Vec<Fan>,
     /// The patch of each triangle, or [`NO_PATCH`].
     patches: Vec<u32>,

@@ -141,7 +141,7 @@ impl<I, S: SharedSoup> SignedDistance<I, S> {
             Some(self.sign(&ball.centre, closest))
         } else {
             let centre = ball.centre.map(Real::to_f64);
-            self.signs.winding.sign_along(ball.radius, ball.radius, &centre, self.index.rays())
+            self.signs.winding.sign_in_ball(ball.radius, &centre, self.index.rays())
         }
     }
 

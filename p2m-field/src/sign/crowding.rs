@@ -16,7 +16,7 @@ use std::ops::ControlFlow;
 const GROUP_LEN: usize = 16;
 /// The most triangles whose boxes overlap that of a group.
 const MAX_OTHERS: usize = 1024;
-/// What boxes are widened by, in units of the size of the scene: four times the rounding of coordinates to f32.
+/// The margin around boxes, in units of the size of the scene: four times the rounding of coordinates to f32.
 const BOX_MARGIN: f64 = 1.0 / (1 << 22) as f64;
 
 /// Unmarks each triangle that may be within `distance` of a triangle with which it shares no vertex. `welded` has the
@@ -137,8 +137,8 @@ impl<S: SharedSoup> Join<'_, S> {
 }
 
 /// Returns whether two triangles are certainly farther than a margin from each other: along the perpendicular of an
-/// edge in the plane of a triangle, along a normal, along a cross product of two edges, or along an axis of the
-/// coordinates.
+/// edge in the plane of a triangle, along a normal, along a cross product of two edges, or along an axis
+/// of the coordinates.
 fn are_apart(one: &[V3; 3], other: &[V3; 3], margin: f64) -> bool {
     let origin = one[0];
     let [one, other] = [one, other].map(|corners| corners.map(|corner| sub(corner, origin)));

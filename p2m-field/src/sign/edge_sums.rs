@@ -8,8 +8,8 @@ use twox_hash::XxHash3_64;
 ///
 /// Each edge has a hash of 128 bits of the coordinates of its ends. The hashes cancel if as many triangles run through
 /// each edge in one direction as in the other, and each of their bits is set an even number of times if each edge has
-/// an even number of triangles. Other surfaces have such sums with a probability of about 2^-128, if hashes behave like
-/// random numbers.
+/// an even number of triangles. Other surfaces have such sums with a probability of about 2^-128, if hashes
+/// behave like random numbers.
 ///
 /// ```
 /// use p2m_field::sign::{EdgeSums, SignRule};

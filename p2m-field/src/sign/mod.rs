@@ -24,17 +24,22 @@
 //! # Ok::<(), p2m_field::sign::SignError>(())
 //! ```
 
+mod block;
 mod caps;
 mod certificate;
 mod contains;
 mod crowding;
 mod edge_sums;
+mod flood;
+mod local;
+mod near;
 mod normals;
 mod solid_angles;
 mod surface;
 mod types;
 mod winding;
 
+pub(crate) use block::PointBlock;
 pub use edge_sums::EdgeSums;
 pub use normals::Normals;
 pub use types::{SharedSoup, Sign, SignError, SignRule, Signed};
@@ -92,7 +97,7 @@ impl<I, S> std::fmt::Debug for SignedDistance<I, S> {
 /// The number of queries that an index is asked at once.
 const BATCH_LEN: usize = 512;
 
-/// What decides the signs of a scene.
+/// The rule of signs of a scene, with the tables that decide them.
 #[derive(Clone)]
 struct Signs<S> {
     soup: S,
@@ -102,7 +107,7 @@ struct Signs<S> {
     is_even: bool,
     /// Whether signs change at the surface alone.
     is_closed: bool,
-    /// What is proved about the normals of a closed surface, once there are so many queries that it pays.
+    /// The facts that are proved about the normals of a closed surface, once there are so many queries that it pays.
     certificates: OnceLock<Certificates<S>>,
     /// Whether a thread prepares the certificates or has prepared them.
     preparations: Flag,
@@ -136,7 +141,7 @@ impl<I, S: SharedSoup> SignedDistance<I, S> {
     ///
     /// # Accuracy
     /// The signs of oriented surfaces, and those by parity, are those of an exact count of crossings (proved,
-    /// docs/proofs/fields.md). Other winding numbers have an error bound that is proved but for the rounding of solid
+    /// [docs/proofs/fields.md]). Other winding numbers have an error bound that is proved but for the rounding of solid
     /// angles, where it is observed; where the bound does not decide, the sign is [`Sign::Undefined`].
     ///
     /// # Errors
@@ -145,6 +150,8 @@ impl<I, S: SharedSoup> SignedDistance<I, S> {
     /// # Complexity
     /// O(n log n) time, and again when so many signs were asked for that certificates pay. Then memory is 100 bytes for
     /// each triangle and 36 bytes for each vertex. An edge of the boundary takes 300 bytes.
+    ///
+    /// [docs/proofs/fields.md]: https://github.com/p2m-rs/p2m/blob/main/docs/proofs/fields.md
     pub fn new<T: Real>(index: I, soup: S) -> Result<Self, SignError>
     where
         I: ClosestPoint<T>,
@@ -155,8 +162,8 @@ impl<I, S: SharedSoup> SignedDistance<I, S> {
     /// Makes signs by a rule of your choice.
     ///
     /// # Errors
-    /// Those of [`new`](Self::new), and [`SignError::Open`] for [`SignRule::Parity`] if an edge has an odd number of
-    /// triangles.
+    /// Those of [`new`](Self::new), and [`SignError::Open`] for [`SignRule::Parity`] if an edge has an odd
+    /// number of triangles.
     ///
     /// # Complexity
     /// The complexity is that of [`new`](Self::new).
@@ -307,22 +314,20 @@ impl<I, S: SharedSoup> SignedDistance<I, S> {
         self.signs.sign_without_closest_point(point, self.index.rays())
     }
 
-    /// Returns the common sign of all points that a path of at most the length `path`, within `radius` of a point and
-    /// without crossing the surface, connects with the point. It is `None` if the signs may differ. The point is not on
-    /// the surface.
-    pub(crate) fn sign_along(&self, path: f64, radius: f64, point: &Point3<f64>) -> Option<Sign>
+    /// Returns the common sign of all points of a ball that the surface does not cross, or `None` if they may differ.
+    pub(crate) fn sign_in_ball(&self, radius: f64, centre: &Point3<f64>) -> Option<Sign>
     where
         I: ClosestPoint<f64>,
     {
         if self.is_closed() {
-            Some(self.sign_without_closest_point(point))
+            Some(self.sign_without_closest_point(centre))
         } else {
-            self.signs.winding.sign_along(path, radius, point, self.index.rays())
+            self.signs.winding.sign_in_ball(radius, centre, self.index.rays())
         }
     }
 
-    /// Returns the number of queries so far whose sign a ray or a winding number has decided, because the closest point
-    /// did not.
+    /// Returns the number of queries so far whose sign a ray or a winding number has decided, because the
+    /// closest point did not.
     pub fn ambiguous_count(&self) -> u64 {
         self.signs.ray_count.get()
     }

@@ -4,20 +4,23 @@
 //! over the triangle, where K(x) = (x - q) / (4 pi |x - q|^3). For the triangles of a node with the centre p, K is
 //! replaced by its Taylor polynomial of degree 1 at p: a dipole and its first moments \[Barill2018\].
 //!
-//! **Error (proved, docs/proofs/fields.md).** K is the gradient of -1 / (4 pi |x - q|), whose third derivatives in any
-//! directions are at most 3! / (4 pi rho^4) at a distance of rho. So the remainder is at most 3 I / (4 pi rho^4), with
-//! rho the distance of q from the box of the node and I the integral of |x - p|^2 over the triangles. Where this is not
-//! below a half for each triangle, the node has the value 0 and that error, since no solid angle exceeds 2 pi.
+//! **Error (proved, [docs/proofs/fields.md]).** K is the gradient of -1 / (4 pi |x - q|), whose third derivatives in
+//! any directions are at most 3! / (4 pi rho^4) at a distance of rho. So the remainder is at most 3 I / (4 pi rho^4),
+//! with rho the distance of q from the box of the node and I the integral of |x - p|^2 over the triangles. Where this
+//! is not below a half for each triangle, the node has the value 0 and that error, since no solid angle exceeds 2 pi.
 //!
 //! Nodes are divided by the surface-area heuristic in 16 bins, for caps have very different sizes.
 //!
 //! A sum starts at the root. While its error is too large, a node whose error is at least half of the largest is
 //! replaced by its children, and a leaf by the solid angles of its triangles. Values and errors are rounded to
 //! multiples of a unit that is so large that sums are exact.
+//!
+//! [docs/proofs/fields.md]: https://github.com/p2m-rs/p2m/blob/main/docs/proofs/fields.md
 
 use super::types::ray;
 use nalgebra::Point3;
 use p2m_core::engine::arithmetic::cross;
+use p2m_core::engine::simd::Isa;
 use p2m_core::engine::vector::{V3, add, dot, length, scaled, sub};
 use p2m_core::kernel::power_of_two;
 use p2m_core::predicates::orientation_3d;
@@ -30,34 +33,35 @@ use std::ops::Range;
 #[derive(Clone)]
 pub(super) struct SolidAngles {
     /// The vertices of the triangles, with coordinates multiplied by `scale`. Triangles of a node are consecutive.
-    triangles: Vec<[V3; 3]>,
+    pub(super) triangles: Vec<[V3; 3]>,
     /// The power of two that makes the largest coordinate about 1.
-    scale: f64,
+    pub(super) scale: f64,
     /// The nodes, from the root. The two children of a node are side by side.
-    nodes: Vec<Node>,
+    pub(super) nodes: Vec<Node>,
     /// The unit of values and errors.
-    unit: f64,
+    pub(super) unit: f64,
+    pub(super) isa: Isa,
 }
 
 /// A group of triangles that a dipole approximates from far away.
 #[derive(Clone)]
-struct Node {
-    centre: V3,
+pub(super) struct Node {
+    pub(super) centre: V3,
     /// The corners of the box of the triangles.
-    bounds: [V3; 2],
+    pub(super) bounds: [V3; 2],
     /// The area of the triangles over 2 pi: times 1 / d^3 it bounds the gradient of the sum at the distance d.
-    area: f64,
+    pub(super) area: f64,
     /// 3 / (4 pi) times the integral of the squared distance from the centre over the triangles.
-    spread: f64,
+    pub(super) spread: f64,
     /// The sum of the normals times areas, divided by 4 pi.
-    normal: V3,
+    pub(super) normal: V3,
     /// The sum of the outer products of these normals with the offsets of the centroids from the centre. Each row
     /// belongs to one component of the normal.
-    moments: [V3; 3],
+    pub(super) moments: [V3; 3],
     /// The range of the triangles.
-    triangles: Range<u32>,
+    pub(super) triangles: Range<u32>,
     /// The index of the first child, or 0 for a leaf.
-    children: u32,
+    pub(super) children: u32,
 }
 
 /// A number of windings, and a bound on its error.
@@ -70,20 +74,16 @@ pub(super) struct Estimate {
 /// The largest number of triangles in a leaf.
 const MAX_LEAF_TRIANGLES: usize = 4;
 /// The bound on the rounding error of a solid angle over 4 pi, where the terms of its tangent do not cancel: 32 u.
-const ROUNDING: f64 = 16.0 * f64::EPSILON;
+pub(super) const ROUNDING: f64 = 16.0 * f64::EPSILON;
 /// Where the terms cancel more than this, the query is in an edge apart from rounding, and the angle is unknown.
-const MAX_CANCELLATION: f64 = (1u64 << 40) as f64;
+pub(super) const MAX_CANCELLATION: f64 = (1u64 << 40) as f64;
 /// Nodes below this level are halved, so no path is long.
 const MAX_DIVIDED_DEPTH: usize = 48;
-/// A change of winding numbers that is taken from a node rather than from its children.
-const SMALL_CHANGE: f64 = 1e-4;
-/// The largest diagonal of a node whose gradient is not taken from its children, in units of its distance.
-const MAX_DIAGONAL: f64 = 0.5;
 /// The largest coordinate, in units of the largest one of the triangles, of a query that is not far away. Beyond it up
 /// to 2^30 triangles have a total solid angle over 4 pi below 2^30 * 32 / (4 pi 2^80) < 1e-9.
-const MAX_RELATIVE_COORDINATE: f64 = (1u64 << 40) as f64;
+pub(super) const MAX_RELATIVE_COORDINATE: f64 = (1u64 << 40) as f64;
 /// Nodes allow for the rounding of their moments and of distances by this factor.
-const INFLATION: f64 = 1.0 + 1e-9;
+pub(super) const INFLATION: f64 = 1.0 + 1e-9;
 
 impl SolidAngles {
     /// Builds the tree of a soup of triangles.
@@ -103,7 +103,7 @@ impl SolidAngles {
             nodes.push(Node::new(&triangles, 0));
             build(&mut triangles, 0, 0, &mut nodes, 0);
         }
-        Self { triangles, scale, nodes, unit }
+        Self { triangles, scale, nodes, unit, isa: Isa::best() }
     }
 
     /// Returns the sum of the solid angles over 4 pi, refined until `is_enough` says that the estimate is. It is `None`
@@ -111,71 +111,33 @@ impl SolidAngles {
     pub(super) fn estimate(&self, query: &Point3<f64>, is_enough: impl Fn(Estimate) -> bool) -> Option<Estimate> {
         let zero = Estimate { value: 0.0, error: 0.0 };
         let Some(root) = self.nodes.first() else { return Some(zero) };
-        let q = scaled((*query).into(), self.scale);
+        let q = self.point(query);
         // Far away the solid angle vanishes: the area is at most 32 for each triangle.
         if q.iter().any(|x| x.abs() > MAX_RELATIVE_COORDINATE) {
             return Some(Estimate { value: 0.0, error: 1e-9 });
         }
         let mut sum = self.node(root, q);
         let mut queue = Queue::new(self.unit);
-        queue.push(sum, 0);
+        queue.push(sum.error, (sum, 0));
         while !is_enough(sum) {
             let Some((estimate, number)) = queue.pop() else { break };
             sum = sum.minus(estimate);
             let node = &self.nodes[number as usize];
             if node.children == 0 {
-                sum = sum.plus(self.triangles(node.triangles.clone(), q)?);
+                sum = sum.plus(self.leaf(node.triangles.clone(), q)?);
             } else {
                 for child in [node.children, node.children + 1] {
                     let estimate = self.node(&self.nodes[child as usize], q);
                     sum = sum.plus(estimate);
-                    queue.push(estimate, child);
+                    queue.push(estimate.error, (estimate, child));
                 }
             }
         }
         Some(sum)
     }
 
-    /// Returns an upper bound on the change of the winding number of a surface with these caps along a path that does
-    /// not cross the surface. The path has at most the length `path`, and is within `radius` of `centre`. It is
-    /// infinite if it is not below `enough`.
-    ///
-    /// A triangle at the distance d has a gradient of at most A / (2 pi d^3), with the area A. Where the path may cross
-    /// the triangle, the crossings of rays change as well, and their difference has a gradient of at most the sum of l
-    /// / (4 pi d^2) over the edges, which have the length l and the distance d (the law of Biot and Savart).
-    pub(super) fn max_change(&self, path: f64, radius: f64, centre: &Point3<f64>, enough: f64) -> f64 {
-        let (path, radius) = (path * self.scale, radius * self.scale * INFLATION);
-        let centre = scaled((*centre).into(), self.scale);
-        let beyond = |[low, high]: &[V3; 2]| {
-            length([0, 1, 2].map(|k| f64::max(low[k] - centre[k], centre[k] - high[k]).max(0.0))) - radius
-        };
-        let mut gradient = 0.0;
-        let mut stack = vec![0u32; usize::from(!self.nodes.is_empty())];
-        while let Some(number) = stack.pop() {
-            let node = &self.nodes[number as usize];
-            let distance = beyond(&node.bounds);
-            let bound = node.area / (distance * distance * distance);
-            let diagonal = length(sub(node.bounds[1], node.bounds[0]));
-            if distance > 0.0 && (bound * path < SMALL_CHANGE || diagonal < MAX_DIAGONAL * distance) {
-                gradient += bound;
-            } else if node.children > 0 {
-                stack.extend([node.children, node.children + 1]);
-            } else {
-                for triangle in &self.triangles[node.triangles.start as usize..node.triangles.end as usize] {
-                    gradient += triangle_gradient(triangle, beyond);
-                }
-            }
-            // A gradient of NaN is not below it.
-            let is_below = gradient * path < enough;
-            if !is_below {
-                return f64::INFINITY;
-            }
-        }
-        gradient * path * INFLATION
-    }
-
     /// Returns the solid angles of the triangles of a leaf over 4 pi.
-    fn triangles(&self, range: Range<u32>, q: V3) -> Option<Estimate> {
+    fn leaf(&self, range: Range<u32>, q: V3) -> Option<Estimate> {
         // The solid angle is twice the argument of a complex number. Arguments below pi / 4 are added as the argument
         // of the product of their numbers.
         let (mut product, mut error, mut sum) = ([1.0, 0.0], 0.0, 0.0);
@@ -186,10 +148,10 @@ impl SolidAngles {
             if y.abs() < x {
                 product = [product[0] * x - product[1] * y, product[0] * y + product[1] * x];
             } else {
-                sum += if angle.is_positive(triangle, q)? { y.abs().atan2(x) } else { -y.abs().atan2(x) };
+                sum += angle.value(triangle, q)?;
             }
         }
-        sum += product[1].atan2(product[0]);
+        sum += f64::atan2(product[1], product[0]);
         Some(self.rounded(Estimate { value: sum / (2.0 * PI), error }))
     }
 
@@ -217,11 +179,21 @@ impl SolidAngles {
     }
 
     /// Rounds the value to a multiple of the unit, and the error upwards.
-    fn rounded(&self, estimate: Estimate) -> Estimate {
+    pub(super) fn rounded(&self, estimate: Estimate) -> Estimate {
         // Adding a number of 2^52 units and subtracting it again rounds to a unit.
         let shift = self.unit * (3u64 << 51) as f64;
         let round = |x: f64| (x + shift) - shift;
         Estimate { value: round(estimate.value), error: round(estimate.error) + 2.0 * self.unit }
+    }
+
+    /// Returns the triangles with some numbers.
+    pub(super) fn triangles<'a>(&'a self, numbers: &'a [u32]) -> impl Iterator<Item = &'a [V3; 3]> {
+        numbers.iter().map(|i| &self.triangles[*i as usize])
+    }
+
+    /// Returns a point in the coordinates of the tree.
+    pub(super) fn point(&self, point: &Point3<f64>) -> V3 {
+        scaled((*point).into(), self.scale)
     }
 }
 
@@ -240,9 +212,10 @@ const EMPTY_BOX: [V3; 2] = [[f64::INFINITY; 3], [f64::NEG_INFINITY; 3]];
 /// The end of a list.
 const END: u32 = u32::MAX;
 
-/// The nodes of a sum, in lists by the magnitudes of their errors.
-struct Queue {
-    entries: Vec<(Estimate, u32, u32)>,
+/// The terms of a sum, in lists by the magnitudes of their errors.
+pub(super) struct Queue<T> {
+    /// Each entry with the next one of its list.
+    entries: Vec<(T, u32)>,
     /// The first entry of the list of each magnitude.
     heads: [u32; 64],
     /// A bit for each list that is not empty.
@@ -251,30 +224,30 @@ struct Queue {
     least: u64,
 }
 
-impl Queue {
-    fn new(unit: f64) -> Self {
+impl<T: Copy> Queue<T> {
+    pub(super) fn new(unit: f64) -> Self {
         Self { entries: Vec::with_capacity(128), heads: [END; 64], used: 0, least: unit.to_bits() >> 52 }
     }
 
     #[allow(clippy::cast_possible_truncation, reason = "a sum has fewer than 2^32 nodes")]
-    fn push(&mut self, estimate: Estimate, node: u32) {
-        let list = ((estimate.error.to_bits() >> 52) - self.least).min(63);
+    pub(super) fn push(&mut self, error: f64, term: T) {
+        let list = ((error.to_bits() >> 52) - self.least).min(63);
         let entry = self.entries.len() as u32;
-        self.entries.push((estimate, node, self.heads[list as usize]));
+        self.entries.push((term, self.heads[list as usize]));
         self.heads[list as usize] = entry;
         self.used |= 1 << list;
     }
 
-    /// Removes a node whose error is at least half of the largest one.
-    fn pop(&mut self) -> Option<(Estimate, u32)> {
+    /// Removes a term whose error is at least half of the largest one.
+    pub(super) fn pop(&mut self) -> Option<T> {
         let list = 63u32.checked_sub(self.used.leading_zeros())?;
         let head = &mut self.heads[list as usize];
-        let (estimate, node, next) = self.entries[*head as usize];
+        let (term, next) = self.entries[*head as usize];
         *head = next;
         if next == END {
             self.used &= !(1 << list);
         }
-        Some((estimate, node))
+        Some(term)
     }
 }
 
@@ -345,7 +318,7 @@ fn divide(triangles: &mut [[V3; 3]], min: V3, max: V3) -> usize {
 }
 
 /// Returns the corners of the box of some points.
-fn box_of(points: impl IntoIterator<Item = V3>) -> [V3; 2] {
+pub(super) fn box_of(points: impl IntoIterator<Item = V3>) -> [V3; 2] {
     points.into_iter().fold(EMPTY_BOX, |all, point| united(all, [point, point]))
 }
 
@@ -354,18 +327,18 @@ fn united(a: [V3; 2], b: [V3; 2]) -> [V3; 2] {
     [[0, 1, 2].map(|k| a[0][k].min(b[0][k])), [0, 1, 2].map(|k| a[1][k].max(b[1][k]))]
 }
 
-fn centroid([a, b, c]: &[V3; 3]) -> V3 {
+pub(super) fn centroid([a, b, c]: &[V3; 3]) -> V3 {
     scaled(add(add(*a, *b), *c), 1.0 / 3.0)
 }
 
 /// Returns the normal of a triangle whose length is the area.
-fn normal([a, b, c]: &[V3; 3]) -> V3 {
+pub(super) fn normal([a, b, c]: &[V3; 3]) -> V3 {
     scaled(cross(sub(*b, *a), sub(*c, *a)), 0.5)
 }
 
 impl Node {
     #[allow(clippy::cast_possible_truncation, reason = "numbers of triangles are u32")]
-    fn new(triangles: &[[V3; 3]], first: u32) -> Self {
+    pub(super) fn new(triangles: &[[V3; 3]], first: u32) -> Self {
         let weighted = triangles.iter().fold((0.0, [0.0; 3]), |(weight, sum), t| {
             let area = length(normal(t));
             (weight + area, add(sum, scaled(centroid(t), area)))
@@ -397,36 +370,21 @@ impl Node {
     }
 }
 
-/// Returns an upper bound on the gradient that a triangle contributes where no distance is below that of `beyond` from
-/// its box and the boxes of its edges.
-fn triangle_gradient(triangle: &[V3; 3], beyond: impl Fn(&[V3; 2]) -> f64) -> f64 {
-    let distance = beyond(&box_of(*triangle));
-    let by_area = length(normal(triangle)) * (0.5 / PI) / (distance * distance * distance);
-    let edge = |i: usize| {
-        let ends = [triangle[i], triangle[(i + 1) % 3]];
-        let distance = beyond(&box_of(ends));
-        let gradient = length(sub(ends[1], ends[0])) * (0.25 / PI) / (distance * distance);
-        if distance > 0.0 { gradient } else { f64::INFINITY }
-    };
-    let by_edges = edge(0) + edge(1) + edge(2);
-    if distance > 0.0 { by_area.min(by_edges) } else { by_edges }
-}
-
 /// Half of the solid angle of a triangle.
-struct HalfAngle {
+pub(super) struct HalfAngle {
     /// The cosine and the sine of the half-angle, multiplied by a common factor. The sine is positive from the back of
     /// the triangle, apart from rounding.
     tangent: [f64; 2],
     /// The product of the distances from the vertices, multiplied by the same factor.
     size: f64,
     /// The bound on the error of the solid angle over 4 pi, apart from the sign of half-angles near pi.
-    error: f64,
+    pub(super) error: f64,
 }
 
 impl HalfAngle {
     /// Returns `None` if the query is on an edge of the triangle, apart from rounding.
     #[inline]
-    fn new(triangle: &[V3; 3], q: V3) -> Option<Self> {
+    pub(super) fn new(triangle: &[V3; 3], q: V3) -> Option<Self> {
         Self::with_cancellation(triangle, q, MAX_CANCELLATION)
     }
 
@@ -445,6 +403,14 @@ impl HalfAngle {
             let unit = cancellation / size;
             Self { tangent: [other * unit, volume * unit], size: cancellation, error: ROUNDING * (1.0 + cancellation) }
         })
+    }
+
+    /// Returns the half-angle, which is positive from behind the triangle, or `None` as `is_positive` does.
+    pub(super) fn value(&self, triangle: &[V3; 3], q: V3) -> Option<f64> {
+        let [x, y] = self.tangent;
+        let size = y.abs().atan2(x);
+        let is_positive = if y.abs() < x { y > 0.0 } else { self.is_positive(triangle, q)? };
+        Some(if is_positive { size } else { -size })
     }
 
     /// Returns whether the query is behind the triangle. In its plane it is where a ray would begin, which is just
@@ -474,12 +440,8 @@ pub(super) fn sum_of_all(soup: &Soup<f64>, query: &Point3<f64>) -> Estimate {
         let triangle = triangle.map(|i| scaled(soup.positions()[i as usize].into(), scale));
         // At an edge the angle is unknown, and so it is where products of lengths underflow.
         let angle = HalfAngle::with_cancellation(&triangle, q, f64::MAX);
-        let known = angle.and_then(|angle| {
-            let [x, y] = angle.tangent;
-            let is_positive = if y.abs() < x { y > 0.0 } else { angle.is_positive(&triangle, q)? };
-            let size = y.abs().atan2(x) / (2.0 * PI);
-            Some(Estimate { value: if is_positive { size } else { -size }, error: angle.error })
-        });
+        let known = angle
+            .and_then(|angle| Some(Estimate { value: angle.value(&triangle, q)? / (2.0 * PI), error: angle.error }));
         sum = sum.plus(known.unwrap_or(Estimate { value: 0.0, error: 0.5 }));
     }
     Estimate { error: sum.error + f64::EPSILON * soup.triangles().len() as f64 * sum.value.abs().max(1.0), ..sum }

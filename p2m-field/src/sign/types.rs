@@ -46,8 +46,8 @@ pub enum Sign {
     /// The point is on the surface: its distance is 0, or the error of its distance cannot exclude 0 and it is exactly
     /// on a triangle.
     Boundary,
-    /// The sign is not defined: rounding leaves it open on which side of a half the winding number of an open surface
-    /// is.
+    /// The sign is not defined: rounding leaves it open on which side of a half the winding number of an
+    /// open surface is.
     Undefined,
 }
 

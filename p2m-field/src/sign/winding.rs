@@ -5,6 +5,7 @@
 //! boundary is closed by caps, whose solid angles are subtracted again (the module `caps`).
 
 use super::caps::caps;
+use super::local::Local;
 use super::solid_angles::{Estimate, SolidAngles, sum_of_all};
 use super::surface::Surface;
 use super::types::{RayTree, SharedSoup, Sign, SignError, check_kinds, ray};
@@ -106,12 +107,10 @@ impl<S: SharedSoup> WindingNumbers<S> {
         rays: Option<&dyn RayQuery<T>>,
         is_enough: impl Fn(Estimate) -> bool,
     ) -> Estimate {
-        #[allow(clippy::cast_precision_loss, reason = "there are fewer than 2^30 crossings")]
-        let whole = self.crossings(query, rays) as f64;
-        let Some(caps) = &self.caps else { return Estimate { value: whole, error: 0.0 } };
-        let less = |caps: Estimate| Estimate { value: whole - caps.value, error: caps.error };
-        match caps.angles.estimate(query, |caps| is_enough(less(caps))) {
-            Some(estimate) => less(estimate),
+        let crossings = self.crossings(query, rays);
+        let Some(angles) = self.solid_angles() else { return Estimate::ZERO.complement(crossings) };
+        match angles.estimate(query, |caps| is_enough(caps.complement(crossings))) {
+            Some(caps) => caps.complement(crossings),
             // The query is on an edge of a cap.
             None => sum_of_all(&self.soup, query),
         }
@@ -128,35 +127,29 @@ impl<S: SharedSoup> WindingNumbers<S> {
     /// Returns the sign of a point that is not on the surface.
     pub(crate) fn sign<T: Real>(&self, query: &Point3<f64>, rays: Option<&dyn RayQuery<T>>) -> Sign {
         let estimate = self.estimate(query, rays, Estimate::is_decided);
-        match estimate.is_decided() {
-            true if estimate.value.abs() > 0.5 => Sign::Inside,
-            true => Sign::Outside,
-            false => Sign::Undefined,
-        }
+        if estimate.is_decided() { estimate.sign() } else { Sign::Undefined }
     }
 
-    /// Returns the common sign of all points that a path of at most the length `path`, within `radius` of a point and
-    /// without crossing the surface, connects with the point. It is `None` if they may differ.
-    pub(super) fn sign_along<T: Real>(
+    /// Returns the common sign of all points of a ball that the surface does not cross, or `None` if they may differ.
+    pub(super) fn sign_in_ball<T: Real>(
         &self,
-        path: f64,
         radius: f64,
-        point: &Point3<f64>,
+        centre: &Point3<f64>,
         rays: Option<&dyn RayQuery<T>>,
     ) -> Option<Sign> {
-        let change = self.max_change(path, radius, point);
-        if change >= 0.5 {
-            return None;
-        }
-        let is_clear = |estimate: Estimate| (estimate.value.abs() - 0.5).abs() > estimate.error + change;
-        let estimate = self.estimate(point, rays, is_clear);
-        is_clear(estimate).then(|| if estimate.value.abs() > 0.5 { Sign::Inside } else { Sign::Outside })
+        let crossings = self.crossings(centre, rays);
+        let Some(angles) = self.solid_angles() else { return Some(Estimate::ZERO.complement(crossings).sign()) };
+        let estimate = |local: &Local| local.estimate().complement(crossings);
+        // Triangles that are near may have any solid angle in the ball.
+        let is_enough = |local: &Local| !local.is_whole() || estimate(local).is_decided();
+        let mut local = angles.local(angles.point(centre), radius)?;
+        angles.refine(&mut local, is_enough);
+        (local.is_whole() && estimate(&local).is_decided()).then(|| estimate(&local).sign())
     }
 
-    /// Returns an upper bound on the change of winding numbers along a path that does not cross the surface, has at
-    /// most the length `path`, and is within `radius` of a point. A change that may be a half is infinite.
-    fn max_change(&self, path: f64, radius: f64, point: &Point3<f64>) -> f64 {
-        self.caps.as_ref().map_or(0.0, |caps| caps.angles.max_change(path, radius, point, 0.5))
+    /// Returns the solid angles of the caps, if there are any.
+    pub(super) fn solid_angles(&self) -> Option<&SolidAngles> {
+        self.caps.as_ref().map(|caps| &caps.angles)
     }
 
     pub(super) fn is_closed(&self) -> bool {
@@ -180,58 +173,21 @@ impl<S: SharedSoup> WindingNumbers<S> {
 }
 
 impl Estimate {
+    const ZERO: Self = Self { value: 0.0, error: 0.0 };
+
+    /// Returns the winding number of a surface whose caps have this sum, by the number of crossings with both.
+    #[allow(clippy::cast_precision_loss, reason = "there are fewer than 2^30 crossings")]
+    pub(super) fn complement(self, crossings: i64) -> Self {
+        Self { value: crossings as f64 - self.value, ..self }
+    }
+
     /// Returns whether the number is certainly above a half in magnitude, or certainly below it.
-    fn is_decided(self) -> bool {
+    pub(super) fn is_decided(self) -> bool {
         (self.value.abs() - 0.5).abs() > self.error
     }
-}
 
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::sign::surface::Surface;
-    use p2m_core::{BruteForce, ClosestPoint};
-    use p2m_mixed::generate::{IcoSphere, TorusKnot, ico_sphere, torus_knot};
-    use p2m_testkit::vector;
-    use rand::RngExt;
-
-    #[test]
-    fn winding_numbers_change_by_at_most_their_bound() {
-        let knot = torus_knot(&TorusKnot::default()).expect("valid");
-        assert!(Surface::new(&knot).boundary.is_empty());
-        let ball = ico_sphere(&IcoSphere { frequency: 8 }).expect("valid");
-        let low = |t: &[u32; 3]| t.iter().all(|i| ball.positions()[*i as usize].x <= 0.0);
-        let half = ball.triangles().iter().filter(|t| low(t)).copied().collect();
-        let half = Soup::from_triangles(ball.positions().to_vec(), half).expect("valid");
-        // One triangle is missing, and another one is duplicated.
-        let mut rest = knot.triangles()[1..].to_vec();
-        rest.push(rest[500]);
-        let holes = Soup::from_triangles(knot.positions().to_vec(), rest).expect("valid");
-        for (soup, edges, name) in [(half, 24, "half a ball"), (holes, 6, "a hole")] {
-            let surface = Surface::new(&soup);
-            let found = surface.boundary.len();
-            assert!(found == edges || name == "half a ball" && found > 10, "{name}: {found} edges");
-            let winding = WindingNumbers::new(&soup).expect("triangles");
-            let surface = BruteForce::new(&soup).expect("valid");
-            let (mut bounded, mut largest) = (0, 0.0f64);
-            let cases = p2m_testkit::cases(2000, 60);
-            for case in cases.clone() {
-                let mut rng = p2m_testkit::rng(name, case);
-                let centre = Point3::from(vector(&mut rng) * 1.5);
-                let radius = surface.closest_point(&centre).expect("not empty").distance * rng.random_range(0.01..0.99);
-                let bound = winding.max_change(radius, radius, &centre);
-                if bound >= 0.5 {
-                    continue;
-                }
-                bounded += 1;
-                let other = centre + vector(&mut rng).normalize() * radius;
-                let change = (winding.sum(&other) - winding.sum(&centre)).abs();
-                assert!(change <= bound + 1e-9, "{name}, case {case}: {change} for {bound}");
-                largest = largest.max(change / bound);
-            }
-            println!("{name}: {bounded} are bounded, at most {largest:.2} of the bound");
-            let is_decisive = cases.have_more_than(500, bounded) && (cases.is_replay() || largest > 0.005);
-            assert!(is_decisive, "{name}: {bounded} are bounded, {largest}");
-        }
+    /// Returns the sign of a number that is decided.
+    pub(super) fn sign(self) -> Sign {
+        if self.value.abs() > 0.5 { Sign::Inside } else { Sign::Outside }
     }
 }

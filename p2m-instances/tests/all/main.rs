@@ -5,3 +5,4 @@ mod edges;
 mod models;
 mod pairs;
 mod reference;
+mod rounded_pairs;

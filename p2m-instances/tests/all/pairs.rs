@@ -1,26 +1,17 @@
 //! Queries for pairs against those of all moved vertices.
 #![allow(clippy::float_cmp, reason = "bitwise equality is what is tested")]
 
-use crate::reference::{Expected, Object, motion, moved_soup, scene};
+use crate::reference::{Expected, Object, fields, motion, moved_soup, scene, within};
 use nalgebra::Isometry3;
 use p2m_backends::{BACKENDS, BuildSettings};
 use p2m_bvh::AabbTree;
-use p2m_core::pair::{ClosestPair, PairOptions, PairQuery};
+use p2m_core::pair::{PairOptions, PairQuery};
 use p2m_core::{AnyIndex, BruteForce, PrimitiveId, PrimitiveSet, Shape, Soup};
 use p2m_instances::Instances;
 use p2m_testkit::scenes::{self, kinds_and_layout};
 use p2m_testkit::{cases, rng};
 use rand::{Rng, RngExt};
-use std::ops::ControlFlow;
 use std::sync::Arc;
-
-/// Returns all fields but the lower bound, which depends on what a search evaluates.
-fn fields(pair: Option<ClosestPair<f64>>) -> Option<ClosestPair<f64>> {
-    pair.map(|mut pair| {
-        pair.lower_bound = 0.0;
-        pair
-    })
-}
 
 /// Builds the index of a random backend, mostly of one that answers queries for pairs.
 fn object<'a>(rng: &mut impl Rng, soup: &'a Soup<f64>) -> Object<'a, f64> {
@@ -31,21 +22,6 @@ fn object<'a>(rng: &mut impl Rng, soup: &'a Soup<f64>) -> Object<'a, f64> {
         }
     };
     (soup, backend.build(Arc::new(soup.clone()), &BuildSettings::default()).expect("valid").index)
-}
-
-/// Returns the pairs of ids within the distance of the options, with the bits of their distances.
-fn within(
-    a: &impl PairQuery<f64>,
-    b: &impl PairQuery<f64>,
-    options: &PairOptions<f64>,
-) -> Vec<([PrimitiveId; 2], u64)> {
-    let mut found = Vec::new();
-    let _ = a.visit_pairs_within(b, options, &mut |pair| {
-        found.push((pair.primitives, pair.distance.to_bits()));
-        ControlFlow::Continue(())
-    });
-    found.sort_unstable();
-    found
 }
 
 /// Compares pairs of instances, and returns how many there are.

@@ -1,11 +1,12 @@
 //! A scene of instances beside the moved vertices that its answers have to be about.
 
 use nalgebra::{Isometry3, Point3, Vector3};
-use p2m_core::pair::Motion;
+use p2m_core::pair::{ClosestPair, Motion, PairOptions, PairQuery};
 use p2m_core::{AnyIndex, Element, PrimitiveId, PrimitiveSet, Real, Soup};
 use p2m_instances::{InstanceId, Instances};
 use p2m_testkit::vector;
 use rand::{Rng, RngExt};
+use std::ops::ControlFlow;
 use std::sync::Arc;
 
 /// An object: its scene and its index.
@@ -82,4 +83,27 @@ pub(crate) fn scene<'a, T: Real>(
     }
     assert_eq!((PrimitiveSet::len(&scene), scene.instance_of(PrimitiveId::new(first))), (first, None));
     (scene, expected)
+}
+
+/// Returns all fields but the lower bound, which depends on what a search evaluates.
+pub(crate) fn fields(pair: Option<ClosestPair<f64>>) -> Option<ClosestPair<f64>> {
+    pair.map(|mut pair| {
+        pair.lower_bound = 0.0;
+        pair
+    })
+}
+
+/// Returns the pairs of ids within the distance of the options, with the bits of their distances.
+pub(crate) fn within(
+    a: &impl PairQuery<f64>,
+    b: &impl PairQuery<f64>,
+    options: &PairOptions<f64>,
+) -> Vec<([PrimitiveId; 2], u64)> {
+    let mut found = Vec::new();
+    let _ = a.visit_pairs_within(b, options, &mut |pair| {
+        found.push((pair.primitives, pair.distance.to_bits()));
+        ControlFlow::Continue(())
+    });
+    found.sort_unstable();
+    found
 }

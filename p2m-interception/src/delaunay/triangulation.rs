@@ -91,8 +91,8 @@ impl Delaunay {
     /// and eight times as many may be created.
     ///
     /// The tetrahedra satisfy the same definition as those of [`new`](Self::new), but where more than four sites are
-    /// cospherical there are several such triangulations, and they may be others. [`work`](Self::work) is the work of
-    /// adding.
+    /// cospherical there are several such triangulations, and they may be others. [`work`](Self::work) is the
+    /// work of adding.
     ///
     /// # Errors
     ///

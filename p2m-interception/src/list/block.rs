@@ -12,7 +12,9 @@
 //!   itself.
 //!
 //! The numbers are stored as bytes that are rounded outwards. All lengths are in the frame of the scene.
-//! docs/proofs/octree.md has the proofs.
+//! [docs/proofs/octree.md] has the proofs.
+//!
+//! [docs/proofs/octree.md]: https://github.com/p2m-rs/p2m/blob/main/docs/proofs/octree.md
 
 use p2m_bvh::engine::volume::Rounded;
 use p2m_core::engine::simd::Lanes;

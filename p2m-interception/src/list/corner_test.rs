@@ -3,12 +3,14 @@
 //! Let C be a convex cell with corners x_i, y a point of the scene (a *dominator*), t a closed set and s >= 0. If
 //! d(x_i, t) > |x_i - y| + s at all corners, then d(q, t) > |q - y| + s for every q in C. The reason is that the
 //! difference of the squares, `d(q, t)^2 - (|q - y| + s)^2`, is concave, as an infimum of affine functions minus a
-//! convex function, so its minimum over C is at a corner (docs/proofs/octree.md). Therefore t is never the answer in C:
-//! the primitive that y belongs to is nearer, by more than all rounding if s is large enough. The same y has to serve
-//! at all corners, but several dominators may be tried in turn.
+//! convex function, so its minimum over C is at a corner ([docs/proofs/octree.md]). Therefore t is never the answer in
+//! C: the primitive that y belongs to is nearer, by more than all rounding if s is large enough. The same y has to
+//! serve at all corners, but several dominators may be tried in turn.
 //!
 //! The filters of packets and boxes bound the distances from corners to primitives, so the test keeps too many
 //! primitives rather than too few.
+//!
+//! [docs/proofs/octree.md]: https://github.com/p2m-rs/p2m/blob/main/docs/proofs/octree.md
 
 use p2m_bvh::engine::packet::{LANES, Packet, at_most, smallest};
 use p2m_core::Aabb;
@@ -70,7 +72,7 @@ impl BoxTest {
     /// Prepares the test, given the corners of a cube. A corner has the higher coordinate on axis k if bit k of its
     /// number is set.
     pub(crate) fn new(dominators: &Dominators, corners: &[Corner; 8]) -> Self {
-        // The lower bound of a box is too large by a few roundings at most.
+        // The lower bound of a box is too large by at most a few roundings.
         let limits = dominators.rows.map(|row| row.map(|distance| distance * distance * DISTANCE_ROUND_UP));
         Self { ends: [corners[0].x, corners[7].x], limits, count: dominators.count }
     }

@@ -64,7 +64,7 @@ impl SubAssign for Spent {
     }
 }
 
-/// What a task takes of the budgets.
+/// The amounts that a task takes from the budgets.
 #[derive(Default)]
 pub(crate) struct Account {
     /// The amounts that had been spent before the task, or by an earlier time.

@@ -26,7 +26,7 @@ pub(crate) enum RefinedCell {
 /// The cells of an octree that is being built, or of a part of it.
 #[derive(Default)]
 pub(crate) struct RefinedCells {
-    /// The cells.
+    /// All cells of the octree or the part.
     pub(crate) cells: Vec<RefinedCell>,
     /// The blocks of all lists, as each task made them.
     pub(crate) blocks: Vec<Vec<Block>>,

@@ -13,7 +13,7 @@ use p2m_core::engine::vector::{V3, norm_squared, sub};
 pub(crate) struct CellList {
     /// The packets, the nearest ones to the cell first.
     pub(crate) entries: Vec<Entry>,
-    /// What the bounds of the entries are.
+    /// The kind of the bounds of the entries.
     bounds: BoundKind,
 }
 

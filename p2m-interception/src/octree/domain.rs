@@ -18,7 +18,7 @@ pub(crate) struct DomainCube {
     pub(crate) side: f64,
     /// The slack of the corner test: a dominator has to be nearer by this much.
     pub(crate) slack: f64,
-    /// The domain.
+    /// The box of the domain.
     pub(crate) domain: Aabb<f64>,
     /// The centre of the scene.
     pub(crate) scene_centre: Point3<f64>,

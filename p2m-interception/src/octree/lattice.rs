@@ -1,9 +1,9 @@
 //! The split of a cell: which of its children the candidates of the cell can reach.
 //!
 //! The children have 27 corners together, the *lattice*. A candidate is tested in two steps. The first one bounds the
-//! distances from the lattice to the box of the candidate, and compares them with the distances to all dominators of
-//! the lattice. The second one runs the filter of a packet, and only at the corners of those children that the box of
-//! the packet may reach.
+//! distances from the lattice to the box of the candidate, and compares them with the distances to each dominator. The
+//! second one runs the filter of a packet, and only at the corners of those children that the box of the packet may
+//! reach.
 
 use crate::list::corner_test::{Corner, Dominators, exclusion_of, least_of_lanes};
 use crate::octree::candidate::Candidate;
@@ -237,11 +237,11 @@ fn raise_to_interpolated(row: &mut [f32; WIDTH], from_corners: &[f64; 8], per_si
 /// A SIMD kernel that finds the children that the box of each candidate may reach.
 pub(crate) struct ReachChildren<'a> {
     pub(crate) lattice: &'a mut Lattice,
-    /// The dominators of the lattice with their squared distances from it, rounded up, in sides of the cell.
+    /// The squared distances from the lattice to its dominators, rounded up, in units of the side of the cell.
     pub(crate) limits: &'a LatticeLimits,
 }
 
-/// The dominators of a lattice: for each one the squared distances from the lattice, rounded up, in sides of the cell.
+/// For each dominator, the squared distances from the lattice, rounded up, in units of the side of the cell.
 pub(crate) struct LatticeLimits {
     rows: [[f32; WIDTH]; LATTICE_POINTS],
     /// The number of rows in use.
@@ -249,7 +249,7 @@ pub(crate) struct LatticeLimits {
 }
 
 impl LatticeLimits {
-    /// Collects the dominators of the lattice, each once. `slack` is the s of the corner test.
+    /// Collects the lattice's dominators, each once. `slack` is the s of the corner test.
     #[allow(clippy::cast_possible_truncation, reason = "rounded up")]
     pub(crate) fn new(lattice: &[Corner; LATTICE_POINTS], side: f64, slack: f64) -> Self {
         let mut limits = Self { rows: [[0.0; WIDTH]; LATTICE_POINTS], count: 0 };
@@ -310,7 +310,7 @@ pub(crate) struct FilterLanes<'a> {
     pub(crate) points: &'a [V3; LATTICE_POINTS],
     /// The distances from the corners of the cell, if they are known.
     pub(crate) known: Option<KnownDistances<'a>>,
-    /// The dominators of each child.
+    /// The eight children, each with its dominators.
     pub(crate) dominators: &'a [Dominators; 8],
     /// Receives the distances from the lattice to each packet.
     pub(crate) distances: &'a mut [LatticeDistances],

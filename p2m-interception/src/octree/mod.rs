@@ -2,7 +2,9 @@
 //!
 //! A query locates its leaf by the bits of its coordinates ([`query`]). The build starts from the tree over the
 //! packets, refines a cube ([`domain`]) in [`passes`] and encodes the result ([`code`]). [`refinement`] refines one
-//! cell, and [`split_rule`] says whether it is worth it. docs/proofs/octree.md has the proofs.
+//! cell, and [`split_rule`] says whether it is worth it. [docs/proofs/octree.md] has the proofs.
+//!
+//! [docs/proofs/octree.md]: https://github.com/p2m-rs/p2m/blob/main/docs/proofs/octree.md
 
 pub(crate) mod budget;
 pub(crate) mod candidate;

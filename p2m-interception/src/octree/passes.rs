@@ -25,10 +25,10 @@ use std::sync::Mutex;
 
 /// The resolution of the first pass, unless the last one is lower.
 const FIRST_RESOLUTION: f64 = 2e-4;
-/// The ratio of the resolutions of two passes at most. Cells are left open at the end of each pass, and to go on with
+/// The largest ratio of the resolutions of two passes. Cells are left open at the end of each pass, and to go on with
 /// one takes about as many tests as a third of a split.
 const MAX_STEP: f64 = 40.0;
-/// The ratio of the resolutions of two passes at least.
+/// The smallest ratio of the resolutions of two passes.
 const MIN_STEP: f64 = 1.5;
 /// If the resolution is multiplied by a number, cells take about this power of it more, or less.
 const POWER_OF_RESOLUTION: f64 = 0.6;
@@ -86,8 +86,8 @@ impl Counts {
 }
 
 impl Passes {
-    /// Refines the cube of the domain, until `visit` ends it. The result is `None` if even the coarsest cells exceed a
-    /// budget.
+    /// Refines the cube of the domain, until `visit` ends it. The result is `None` if even the coarsest cells
+    /// exceed a budget.
     pub(crate) fn run(
         refinement: &Refinement<'_>,
         low: V3,

@@ -31,7 +31,7 @@ const CODE_BYTES_PER_SPLIT: usize = (8 * size_of::<Row>()).div_ceil(5);
 
 /// A refinement of the cube of a domain: everything that is the same for all cells.
 pub(crate) struct Refinement<'a> {
-    /// The scene.
+    /// The scene with its tree.
     pub(crate) scene: SceneTree<'a>,
     /// Where queries are expected, by which cells are split.
     pub(crate) queries: ExpectedQueries,
@@ -41,7 +41,7 @@ pub(crate) struct Refinement<'a> {
     pub(crate) last_resolution: f64,
     /// Whether cells are refined on all threads.
     pub(crate) parallel: bool,
-    /// The budgets.
+    /// The budgets of memory and work.
     pub(crate) budgets: Spent,
     /// The finished part of the domain.
     pub(crate) finished: FinishedPart<'a>,
@@ -143,8 +143,8 @@ impl Refinement<'_> {
         })
     }
 
-    /// Runs the filters of packets at the corners of a cell, applies the corner test, and continues with the packets
-    /// that pass.
+    /// Runs the filters of packets at the corners of a cell, applies the corner test, and continues with
+    /// the packets that pass.
     fn filter_at_corners(
         &self,
         task: &mut CellTask,

@@ -33,8 +33,8 @@ const NS_PER_PACKET: f64 = 40.0;
 const NS_PER_BLOCK: f64 = 15.0;
 /// The time in which a query visits a node of the tree, in nanoseconds.
 const NS_PER_NODE: f64 = 30.0;
-/// The cost of a cell without a list: the time that a query saves if a list replaces a search of the tree, in
-/// nanoseconds.
+/// The cost of a cell without a list: the time that a query saves if a list replaces a search of the
+/// tree, in nanoseconds.
 pub(crate) const NS_SAVED_BY_LIST: f64 = 300.0;
 
 /// The part of its cost that a cell is assumed to save by a split.
@@ -42,8 +42,8 @@ const COST_SAVED_BY_SPLIT: f64 = 0.5;
 /// A cell that would be split even if its list cost this part of what the boxes of its packets predict is split before
 /// the filters of the packets have run.
 const CERTAIN_PART_OF_BOX_COST: f64 = 0.25;
-/// The time that a split has to save, in nanoseconds times mass, where the mass of a cell is measured in that of one
-/// packet.
+/// The time that a split has to save, in nanoseconds times mass, where the mass of a cell is measured in that
+/// of one packet.
 const MIN_NS_SAVED_BY_SPLIT: f64 = 100.0;
 
 /// A cell with a longer list is left to the tree.
@@ -170,8 +170,8 @@ impl CellCentre {
         if packets <= MAX_LIST_PACKETS { list_cost(self.tests(), packets) } else { NS_SAVED_BY_LIST }
     }
 
-    /// Returns whether a cell that is not split has a list of this number of packets. `probe` searches the tree at the
-    /// centre.
+    /// Returns whether a cell that is not split has a list of this number of packets. `probe` searches the tree
+    /// at the centre.
     pub(crate) fn has_list(&self, packets: usize, probe: impl FnOnce() -> TreeProbe) -> bool {
         if packets == 0 || packets > MAX_LIST_PACKETS {
             return false;

@@ -21,7 +21,7 @@ pub(crate) struct CellTask {
     pub(crate) open: Vec<OpenCell>,
     /// The numbers of the cells that the task began with.
     pub(crate) roots: Vec<usize>,
-    /// What the task takes of the budgets.
+    /// The amounts that the task takes from the budgets.
     pub(crate) account: Account,
     /// The memory that each cell uses again.
     pub(crate) scratch: Scratch,

@@ -451,8 +451,8 @@ fn a_part_of_a_flat_town_is_built_within_its_memory() {
     }
 }
 
-/// Queries that are not finite have no answer, wherever they stand, and the others are answered side by side without
-/// them.
+/// Queries that are not finite have no answer, wherever they stand, and the others are answered side by
+/// side without them.
 #[test]
 fn a_batch_with_queries_that_are_not_finite_answers_the_others() {
     let soup = scenes::skewed_gear(20);

@@ -4,13 +4,15 @@
 //! F(q) = d(q, t)^2 - (|q - v| + s)^2 at the corners, where s is the slack of the corner test, restrict the places
 //! where t can beat v. Take an edge of the cell with F <= 0 at one end and F > 0 at the other. F is concave, so it lies
 //! above its chord, and t cannot beat v beyond the zero of the chord. Therefore t can be the answer only in the convex
-//! hull of the corners where F <= 0 and of these zeros, which is the *region* of t (docs/proofs/p2m.md). The packets of
-//! all cells are found packet by packet ([`packet_cells`](crate::voronoi::packet_cells)).
+//! hull of the corners where F <= 0 and of these zeros, which is the *region* of t ([docs/proofs/p2m.md]). The packets
+//! of all cells are found packet by packet ([`packet_cells`](crate::voronoi::packet_cells)).
 //!
 //! A feature of t is *relevant* only if it can be nearest somewhere in the region
 //! ([`feature_relevance`](crate::voronoi::feature_relevance)). If each relevant feature of t also belongs to
 //! some primitive with a lower id, t is never the answer: the owner of the nearest feature is as near, by the same
 //! bits, and its lower id wins.
+//!
+//! [docs/proofs/p2m.md]: https://github.com/p2m-rs/p2m/blob/main/docs/proofs/p2m.md
 
 use crate::delaunay::BOUNDING;
 use crate::list::block::{BLOCK_WIDTH, Block, BoundKind, Entry};

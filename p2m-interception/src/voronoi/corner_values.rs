@@ -75,8 +75,8 @@ impl CornerValues {
     }
 }
 
-/// A SIMD kernel that computes the values of a packet at some corners. It returns the lanes that are not above zero at
-/// some corner.
+/// A SIMD kernel that computes the values of a packet at some corners. It returns the lanes that are not above
+/// zero at some corner.
 struct EvaluateCorners<'a> {
     corners: &'a CornerPoints,
     packet: &'a Packet,

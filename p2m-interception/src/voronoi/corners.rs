@@ -218,8 +218,8 @@ impl CellCorners {
         &self.packets[self.all[number].first_packet as usize..self.all[number + 1].first_packet as usize]
     }
 
-    /// Takes the packets of all balls, and returns for each of `packet_count` packets the numbers of its corners in
-    /// ascending order.
+    /// Takes the packets of all balls, and returns for each of `packet_count` packets the numbers of its
+    /// corners in ascending order.
     pub(crate) fn take_corners_of_packets(&mut self, packet_count: usize) -> IncidenceLists {
         if let Some(flooded) = self.flooded.take() {
             return flooded.of_packets;

@@ -78,8 +78,8 @@ impl CrowdedClusters<'_> {
         self.choose_sites_of_clusters(&clusters, budget)
     }
 
-    /// Returns the clusters of the corners for which `is_member` is true. Each is its first corner, and the number of
-    /// its corners.
+    /// Returns the clusters of the corners for which `is_member` is true. Each is its first corner, and the
+    /// number of its corners.
     fn clusters(&self, is_member: impl Fn(&CellCorner) -> bool) -> Vec<(usize, usize)> {
         let mut clusters: FxHashMap<GridCell, (usize, usize)> = FxHashMap::default();
         for (number, corner) in self.corners.iter().enumerate() {
@@ -175,8 +175,8 @@ mod tests {
     use p2m_core::{Segment, Shape};
     use p2m_testkit::{rng, vector};
 
-    /// Sites are added in the middle of a sphere before any ball is known to be crowded, and none are added over a
-    /// plane.
+    /// Sites are added in the middle of a sphere before any ball is known to be crowded, and none are added
+    /// over a plane.
     #[test]
     fn probable_sites_are_where_balls_are_crowded() {
         for is_sphere in [true, false] {

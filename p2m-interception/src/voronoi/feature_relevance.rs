@@ -12,7 +12,9 @@
 //!
 //! A feature is *excluded* if the whole region is on the wrong side of one plane. It is also excluded if the heights
 //! above two planes have a negative sum in the whole region, because then each point is on the wrong side of one of
-//! the two. docs/proofs/p2m.md has the margins.
+//! the two. [docs/proofs/p2m.md] has the margins.
+//!
+//! [docs/proofs/p2m.md]: https://github.com/p2m-rs/p2m/blob/main/docs/proofs/p2m.md
 
 use crate::delaunay::Delaunay;
 use crate::voronoi::adjacency::{EdgeAdjacency, NO_PRIMITIVE};
@@ -79,8 +81,8 @@ struct FeaturePlane {
     margin_factor: f64,
 }
 
-/// The features of a primitive of one to three vertices with their planes, which all cells share. Its vectors are
-/// reused.
+/// The features of a primitive of one to three vertices with their planes, which all cells share. Its
+/// vectors are reused.
 #[derive(Default)]
 pub(crate) struct PrimitiveFeatures {
     /// The box of the vertices.
@@ -242,8 +244,8 @@ impl LanesOver {
         }
     }
 
-    /// Returns the lanes over whose feature a point is, as bits. Such a feature is relevant in each region that has the
-    /// point.
+    /// Returns the lanes over whose feature a point is, as bits. Such a feature is relevant in each region that
+    /// has the point.
     #[inline(always)]
     pub(crate) fn lanes_below_point<D: Doubles>(&self, point: &V3) -> u16 {
         let mut lanes = 0;

@@ -1,11 +1,13 @@
 //! The packets that intersect the balls of corners, found by floods over the Delaunay tetrahedra.
 //!
 //! The tetrahedra whose balls intersect a primitive are connected through faces, and those at its vertices are among
-//! them (docs/proofs/p2m.md). So a flood that begins there finds them all. It tests little more than what it finds,
+//! them ([docs/proofs/p2m.md]). So a flood that begins there finds them all. It tests little more than what it finds,
 //! where a search of the tree for each ball would descend from the root and test one point at a time.
 //!
 //! Balls whose centres are imprecise, or that are much larger than the scene, are left to searches of the tree. So are
 //! all balls if packets intersect too many of them, as around the centre of a sphere.
+//!
+//! [docs/proofs/p2m.md]: https://github.com/p2m-rs/p2m/blob/main/docs/proofs/p2m.md
 
 use crate::delaunay::Delaunay;
 use crate::parallel_chunks::map_chunks_in_order;
@@ -28,8 +30,8 @@ const TRIED_PACKETS: usize = 64;
 /// Floods are given up if they test each ball with more packets than this on average, first for the packets that are
 /// tried, then for all. Usually it is eight, and thirty take about as long as a search of the tree (observed).
 const MAX_PACKETS_PER_BALL: [usize; 2] = [24, 32];
-/// Larger balls are left to searches of the tree. The unit is 2^40 times the slack, about the distance of the bounding
-/// sites.
+/// Larger balls are left to searches of the tree. The unit is 2^40 times the slack, about the distance of
+/// the bounding sites.
 const MAX_RADIUS: f64 = 1.0;
 
 /// The corners of all packets.

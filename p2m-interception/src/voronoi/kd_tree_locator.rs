@@ -11,8 +11,8 @@ use std::sync::Arc;
 /// site to the nearest one. Far from the scene all distances differ by little, so backtracking would visit many leaves.
 ///
 /// # Complexity
-/// A search takes O(log n) steps for n sites. The memory is about 29 bytes a site. Queries take up to three times as
-/// long as with the grid, which is the default (docs/p2m.md has figures).
+/// A search takes O(log n) steps for n sites. The memory is about 29 bytes per site. Queries take up to three times as
+/// long as with the grid, which is the default ([docs/measurements/p2m.md] has figures).
 ///
 /// ```
 /// use nalgebra::Point3;
@@ -28,6 +28,8 @@ use std::sync::Arc;
 /// assert!(index.closest_point(&Point3::new(2.0, 0.0, 0.0)).is_some_and(|answer| answer.distance < 1.5));
 /// # Ok::<(), p2m_core::BuildError>(())
 /// ```
+///
+/// [docs/measurements/p2m.md]: https://github.com/p2m-rs/p2m/blob/main/docs/measurements/p2m.md
 #[derive(Debug)]
 pub struct KdTreeLocator {
     /// The tree. It is `None` if `kiddo` cannot build one.

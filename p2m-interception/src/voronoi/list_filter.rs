@@ -6,8 +6,10 @@ use std::sync::Arc;
 
 /// A primitive of a list, with a box around all points of its cell where it may be the answer.
 ///
-/// The box is in the coordinates of the scene. It is a little larger than the region of docs/proofs/p2m.md, and it is
+/// The box is in the coordinates of the scene. It is a little larger than the region of [docs/proofs/p2m.md], and it is
 /// unbounded if nothing is known.
+///
+/// [docs/proofs/p2m.md]: https://github.com/p2m-rs/p2m/blob/main/docs/proofs/p2m.md
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Region {
     /// The least coordinates of the box.

@@ -14,7 +14,9 @@
 //! The modules from sites to lists are [`corner`], [`corners`], [`flood`], [`crowded`], [`packet_cells`], [`cell_packets`] and
 //! [`cells`]. A query is located by a [`locator`], walks over the [`neighbours`] of sites, and searches a list
 //! ([`query`]).
-//! docs/proofs/p2m.md has the proofs.
+//! [docs/proofs/p2m.md] has the proofs.
+//!
+//! [docs/proofs/p2m.md]: https://github.com/p2m-rs/p2m/blob/main/docs/proofs/p2m.md
 
 pub(crate) mod adjacency;
 pub(crate) mod any_locator;

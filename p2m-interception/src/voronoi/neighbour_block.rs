@@ -101,7 +101,7 @@ impl NeighbourBlock {
         let [px, py, pz] = [x.mul(dx), y.mul(dy), z.mul(dz)];
         let sizes = px.max(zero.sub(px)).add(py.max(zero.sub(py))).add(pz.max(zero.sub(pz)));
         let product = px.add(py).add(pz);
-        // Each component of an offset is off by half a unit at most. So the product is off by that much of the query's
+        // Each component of an offset is off by at most half a unit. So the product is off by that much of the query's
         // size, and half of the square by that much of the offset's size. The square of the error is at most 3/8 of a
         // squared unit. A neighbour that is certainly nearer gains at least one unit on some axis.
         let lengths = x.max(zero.sub(x)).add(y.max(zero.sub(y))).add(z.max(zero.sub(z)));

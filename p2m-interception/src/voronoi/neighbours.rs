@@ -1,10 +1,12 @@
 //! The table of Delaunay neighbours, and the walk from any site to the nearest one.
 //!
 //! If a site v is not the nearest site to q, then some Delaunay neighbour w of v is nearer than v, which means (q - v)
-//! . (w - v) > |w - v|^2 / 2 (docs/proofs/p2m.md). The offsets w - v are stored side by side as 16-bit integers, eight
-//! to a cache line. The test in f32 bounds its error. Where it cannot decide, the comparison is made in f64 and
+//! . (w - v) > |w - v|^2 / 2 ([docs/proofs/p2m.md]). The offsets w - v are stored side by side as 16-bit integers,
+//! eight to a cache line. The test in f32 bounds its error. Where it cannot decide, the comparison is made in f64 and
 //! finally in integers. So a walk ends at a site whose closed cell certainly contains q, and never visits a site
 //! twice, since each step leads to a nearer site.
+//!
+//! [docs/proofs/p2m.md]: https://github.com/p2m-rs/p2m/blob/main/docs/proofs/p2m.md
 
 use crate::voronoi::compare_distances;
 use crate::voronoi::neighbour_block::{

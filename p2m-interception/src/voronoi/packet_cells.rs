@@ -82,8 +82,8 @@ pub(crate) struct PacketCells {
 }
 
 impl PacketCells {
-    /// Begins a packet, which intersects the balls of these tetrahedra. Cells without a size get no list and are left
-    /// out.
+    /// Begins a packet, which intersects the balls of these tetrahedra. Cells without a size get no list and
+    /// are left out.
     pub(crate) fn begin(
         &mut self,
         cells: &CellContext<'_>,

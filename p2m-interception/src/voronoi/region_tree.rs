@@ -9,7 +9,7 @@ use std::sync::Arc;
 /// # Complexity
 /// A filter takes about 84 bytes for each primitive of its list. It is slower than the lists in order, which are the
 /// default, on every scene that was measured: between slivers, where lists are long, queries take three to ten times
-/// as long (docs/p2m.md has figures).
+/// as long ([docs/measurements/p2m.md] has figures).
 ///
 /// ```
 /// use nalgebra::Point3;
@@ -26,6 +26,8 @@ use std::sync::Arc;
 /// assert!(index.closest_point(&Point3::new(2.0, 0.0, 0.0)).is_some_and(|answer| answer.distance < 1.5));
 /// # Ok::<(), p2m_core::BuildError>(())
 /// ```
+///
+/// [docs/measurements/p2m.md]: https://github.com/p2m-rs/p2m/blob/main/docs/measurements/p2m.md
 #[derive(Clone, Debug)]
 pub struct RegionTree {
     /// The regions with a bounded box.

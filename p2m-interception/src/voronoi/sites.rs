@@ -25,7 +25,9 @@ use p2m_core::Aabb;
 use p2m_core::engine::vector::V3;
 
 /// The distance of the bounding sites from the centre, in halves of the longest side of the box of all sites. So none
-/// of them is the nearest site in the domain, or nearly the nearest (docs/proofs/p2m.md).
+/// of them is the nearest site in the domain, or nearly the nearest ([docs/proofs/p2m.md]).
+///
+/// [docs/proofs/p2m.md]: https://github.com/p2m-rs/p2m/blob/main/docs/proofs/p2m.md
 pub(crate) const BOUNDING_DISTANCE: f64 = 300.0;
 /// The largest number of rounds in which points are added.
 const MAX_ROUNDS: usize = 6;
@@ -64,8 +66,8 @@ struct GrowingSites<'a> {
 }
 
 impl<'a> GrowingSites<'a> {
-    /// Triangulates the vertices of a tree and finds the packets of all balls. It returns `None` if there are too many
-    /// tetrahedra.
+    /// Triangulates the vertices of a tree and finds the packets of all balls. It returns `None` if there are
+    /// too many tetrahedra.
     ///
     /// Floods are given up where very many balls are crowded. Then sites are added before all packets are known,
     /// because most of these balls vanish.

@@ -39,8 +39,8 @@ use twox_hash::XxHash3_64;
 #[derive(Clone, Copy, Debug)]
 #[non_exhaustive]
 pub struct ShardOptions {
-    /// The largest length of the file of a shard in bytes, by default 1 GiB. Only a shard of one primitive may be
-    /// longer.
+    /// The largest length of the file of a shard in bytes, by default 1 GiB. Only a shard of one primitive
+    /// may be longer.
     pub max_bytes: u64,
     /// The backend of the shards, by default the tree of boxes.
     pub backend: &'static BackendEntry,

@@ -1,4 +1,4 @@
-//! What the commands of `p2m-bench` share: arguments, and the loop over scenes.
+//! The parts that the commands of `p2m-bench` share: arguments, and the loop over scenes.
 
 use crate::backend::{Backend, ScalarKind};
 use crate::backends;
@@ -75,8 +75,8 @@ pub(crate) fn provenance() -> Provenance {
     Provenance::collect(Some(env!("CARGO_MANIFEST_DIR").as_ref()))
 }
 
-/// Prints the origin of figures and a line about the measurement, measures scenes one by one, and returns whether all
-/// are good.
+/// Prints the origin of figures and a line about the measurement, measures scenes one by one, and returns
+/// whether all are good.
 pub(crate) fn all_good(
     scenes: &[PathBuf],
     about: &str,

@@ -60,10 +60,10 @@ enum Command {
     Verify(verify::Arguments),
     /// Times the first hits of rays against parry3d; fails if ours differ
     Ray(rays::Arguments),
-    /// Checks the accuracy contract where other libraries fail, for docs/extremes.md; fails if ours break it
+    /// Checks the accuracy contract where other libraries fail (docs/measurements/extremes.md); fails if ours break it
     Extremes(extremes::Arguments),
-    /// Checks distances between primitives where other libraries fail, for docs/extremes.md; fails if ours break the
-    /// contract
+    /// Checks distances between primitives where other libraries fail (docs/measurements/extremes.md); fails if ours
+    /// break the contract
     ExtremePairs(extremes::pairs::Arguments),
     /// Times distance fields on a grid, against parry3d; fails if ours differ
     Field(field::Arguments),
@@ -71,7 +71,7 @@ enum Command {
     Threads(threads::Arguments),
     /// Compares a scene of moving instances of meshes with one index over all of them; fails if an answer differs
     Instances(instances::Arguments),
-    /// Measures builds, memory and queries of scenes that grow, for docs/scale.md; fails if ours differ
+    /// Measures builds, memory and queries of scenes that grow, for docs/measurements/scale.md; fails if ours differ
     Scale(scale::Arguments),
     /// Times distances between two scenes at many poses, and between a scene and an arm of capsules, against parry3d
     Pairs(pairs::Arguments),
@@ -110,8 +110,8 @@ mod tests {
     #[test]
     fn documents_have_the_blocks_of_their_commands() {
         let document = |name: &str| Path::new(env!("CARGO_MANIFEST_DIR")).join("../../docs").join(name);
-        crate::extremes::BLOCKS.check(Some(&document("extremes.md"))).unwrap();
-        crate::extremes::pairs::BLOCKS.check(Some(&document("extremes.md"))).unwrap();
-        crate::scale::BLOCKS.check(Some(&document("scale.md"))).unwrap();
+        crate::extremes::BLOCKS.check(Some(&document("measurements/extremes.md"))).unwrap();
+        crate::extremes::pairs::BLOCKS.check(Some(&document("measurements/extremes.md"))).unwrap();
+        crate::scale::BLOCKS.check(Some(&document("measurements/scale.md"))).unwrap();
     }
 }

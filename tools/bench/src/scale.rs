@@ -1,4 +1,4 @@
-//! `p2m-bench scale`: the costs of each index as the scene grows, for docs/scale.md.
+//! `p2m-bench scale`: the costs of each index as the scene grows, for docs/measurements/scale.md.
 //!
 //! The scene is a torus knot of more and more triangles. A size is left out for an index whose build would exceed the
 //! limits on memory or on time, as far as its last build tells.
@@ -23,7 +23,7 @@ use rand::seq::SliceRandom;
 use std::hint::black_box;
 use std::sync::Arc;
 
-/// The blocks of docs/scale.md.
+/// The blocks of docs/measurements/scale.md.
 pub(crate) const BLOCKS: Blocks<3> = Blocks { command: "scale", names: ["provenance", "builds", "queries"] };
 /// The number of triangles around the tube of the knot for each along it, so that triangles are about as wide as long.
 const SIDES_PER_RING: f64 = 0.06;

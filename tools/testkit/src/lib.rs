@@ -29,6 +29,7 @@ pub mod rays;
 pub mod saved_file;
 pub mod scenes;
 mod surface;
+mod thin_scenes;
 pub mod truth;
 
 pub use depth::{Cases, amount, cases, depth, is_deep};
@@ -38,6 +39,7 @@ pub use point_file::point_file;
 use rand::{Rng, RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 pub use surface::normal as normal_number;
+pub use thin_scenes::thin_scenes;
 
 /// Returns the random generator of case number `case` of the test `name`. Cases are independent of each other and
 /// of their order.

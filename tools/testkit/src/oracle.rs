@@ -80,8 +80,8 @@ impl Distance {
         Self::between(&[query], vertices)
     }
 
-    /// Computes the distance between two points, segments or triangles, degenerate or not. All coordinates must be
-    /// finite.
+    /// Computes the distance between two points, segments or triangles, degenerate or not. All coordinates
+    /// must be finite.
     ///
     /// The distance is 0 if an edge of one pierces the other. Otherwise the nearest points are a vertex and a point of
     /// the other hull, or they are inside of two edges that are not parallel.

@@ -5,14 +5,17 @@
 
 mod deep;
 mod figures;
+mod links;
 mod memory;
 mod package;
 mod pages;
 mod promises;
 mod python;
+mod site;
 mod tools;
 mod wasm;
 
+use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::{Command, ExitCode};
 
@@ -27,7 +30,7 @@ struct Task {
 /// The result of a task, with a message if it failed.
 type Outcome = Result<(), String>;
 
-const TASKS: [Task; 14] = [
+const TASKS: [Task; 15] = [
     Task {
         name: "quick",
         arguments: "[FILTER]",
@@ -58,6 +61,12 @@ const TASKS: [Task; 14] = [
         arguments: "[--check]",
         about: "Renew the figures of the documents from the data in docs/measurements, or check them",
         run: figures::run,
+    },
+    Task {
+        name: "site",
+        arguments: "",
+        about: "Check the links of all documents, and build the site of docs with mdBook below target/book",
+        run: |_| site::build(),
     },
     Task {
         name: "promises",
@@ -211,4 +220,8 @@ fn output(program: &str, arguments: &[&str]) -> Result<String, String> {
         return Err(format!("{line}: {}", String::from_utf8_lossy(&output.stderr).trim()));
     }
     Ok(String::from_utf8_lossy(&output.stdout).into_owned())
+}
+
+fn read(path: &Path) -> Result<String, String> {
+    fs::read_to_string(path).map_err(|error| format!("{}: {error}", path.display()))
 }

@@ -1,6 +1,6 @@
 //! Packs the crates as for publishing, without a registry, and checks what is in their packages.
 
-use crate::{Outcome, cargo, output, target_folder, tools};
+use crate::{Outcome, cargo, output, read, target_folder, tools};
 use std::fs;
 use std::path::{Path, PathBuf};
 
@@ -110,8 +110,4 @@ fn size(folder: &Path) -> Result<u64, String> {
         bytes += if path.is_dir() { size(&path)? } else { fs::metadata(&path).map_err(failed)?.len() };
     }
     Ok(bytes)
-}
-
-fn read(path: &Path) -> Result<String, String> {
-    fs::read_to_string(path).map_err(|error| format!("{}: {error}", path.display()))
 }

@@ -40,7 +40,7 @@ fn the_boxes_of_a_level_hold_the_scene() {
     assert_eq!(p2m(&["boxes", SCENE, "--levels", "1", "--out", out.to_str().unwrap()]).code, 0);
     let [picture, scene] = [out.as_path(), SCENE.as_ref()].map(|p| p2m_mixed::read_scene(p).unwrap().soup);
     let bounds = p2m_core::PrimitiveSet::aabb(&scene);
-    // The root is followed by its children. Boxes are rounded outwards by 2^-22 of the scene's size at most.
+    // The root is followed by its children. Boxes are rounded outwards by at most 2^-22 of the scene's size.
     let slack = (bounds.max - bounds.min).max() * 2f64.powi(-22);
     for drawn in [&picture.positions()[..24], &picture.positions()[24..]] {
         let all = p2m_core::Aabb::from_points(drawn);

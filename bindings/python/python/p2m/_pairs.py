@@ -224,7 +224,7 @@ class PairQueries:
             If the transform is no rotation and translation, with a tolerance of 1e-6 for each entry, and for the
             backends ``"octree"`` and ``"p2m"``.
         KeyboardInterrupt
-            At once. The search that was running ends by itself in the background.
+            At once. The search that was running ends with its next step in the background.
 
         Examples
         --------

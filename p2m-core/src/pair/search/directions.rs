@@ -1,6 +1,6 @@
 //! The directions in which a search compares two nodes.
 
-use super::height::Height;
+use super::height::{Height, unit};
 use super::place::Place;
 use super::side::PairSide;
 use super::slab::Slab;
@@ -9,8 +9,10 @@ use crate::kernel::vector::{V3, dot, power_of_two};
 /// A frame resolves what is at most this many units away from its centre.
 const MAX_UNITS: f64 = power_of_two(10);
 /// The part of all magnitudes by which heights are wrong that are computed in f64, the vertices of which a motion has
-/// rounded, and keys.
+/// rounded, and keys (docs/proofs/pairs.md).
 const ROUNDING: f64 = power_of_two(-44);
+/// The magnitudes whose squares neither overflow nor lose digits, and those of ROUNDING of them.
+const PLAIN_SIZES: std::ops::RangeInclusive<f64> = power_of_two(-300)..=power_of_two(300);
 
 /// A direction of the scene, as both sides need it.
 struct Direction {
@@ -33,15 +35,20 @@ pub(super) struct Directions {
 }
 
 impl Directions {
-    /// Returns the directions for two sides, unless f32 does not resolve one of them in the frame of the other.
+    /// Returns the directions for two sides, unless f32 does not resolve one of them in the frame of the other, or
+    /// squares of their sizes are out of range.
     pub(super) fn new(sides: [&dyn PairSide; 2]) -> Option<Self> {
         let bounds = sides.map(PairSide::bounds);
         let frames = sides.map(PairSide::placement);
-        let margin = (frames[0].size + frames[1].size) * ROUNDING;
+        let size = frames[0].size + frames[1].size;
+        if !PLAIN_SIZES.contains(&size) {
+            return None;
+        }
+        let margin = size * ROUNDING;
         for (frame, other) in frames.iter().zip([&bounds[1], &bounds[0]]) {
             let reach = |k: usize| (other.min[k] - frame.centre[k]).abs().max((other.max[k] - frame.centre[k]).abs());
             let farthest = reach(0).max(reach(1)).max(reach(2));
-            let is_resolved = frame.is_plain && farthest <= MAX_UNITS * frame.unit && margin <= 0.01 * frame.unit;
+            let is_resolved = farthest <= MAX_UNITS * frame.unit && margin <= 0.01 * frame.unit;
             if frame.is_tree && !is_resolved {
                 return None;
             }
@@ -53,7 +60,7 @@ impl Directions {
             for (side, _) in sides.iter().zip(&frames).filter(|(_, frame)| frame.is_tree == wants_trees) {
                 let own = side.directions();
                 triples += usize::from(wants_trees && !own.is_empty());
-                vectors.extend(own);
+                vectors.extend(own.into_iter().filter_map(unit));
             }
         }
         let direction = |vector: &V3| Direction {

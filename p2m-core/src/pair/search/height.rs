@@ -74,3 +74,51 @@ pub trait Rows {
     /// Returns a row.
     fn row(&self, number: usize) -> &[f32; WIDTH];
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::simd::{InstructionSet, Isa, SimdKernel};
+    use p2m_testkit::{cases, rng, vector};
+    use rand::RngExt;
+
+    struct Node([[f32; WIDTH]; 3]);
+
+    impl Rows for Node {
+        fn row(&self, number: usize) -> &[f32; WIDTH] {
+            &self.0[number]
+        }
+    }
+
+    struct Heights<'a>(&'a Height, &'a Node);
+
+    impl SimdKernel for Heights<'_> {
+        type Output = [f32; WIDTH];
+
+        fn run<I: InstructionSet>(self) -> Self::Output {
+            let mut heights = [0.0; WIDTH];
+            self.0.of_children::<I::F32x8, _>(self.1).store(&mut heights);
+            heights
+        }
+    }
+
+    #[test]
+    fn heights_with_their_slack_are_upper_bounds() {
+        for case in cases(100_000, 2_000) {
+            let mut rng = rng("heights of rows", case);
+            let size = [1.0, 4.0][rng.random_range(0..2)];
+            let node = Node(std::array::from_fn(|_| std::array::from_fn(|_| size * rng.random_range(-1.0..1.0))));
+            let direction = vector(&mut rng).normalize();
+            let height = Height::new(std::array::from_fn(|k| (k, direction[k])));
+            for isa in Isa::available() {
+                let heights = isa.run(Heights(&height, &node));
+                for (slot, computed) in heights.into_iter().enumerate() {
+                    // The error of the product in f64 is far below the roundings of f32.
+                    let exact: f64 = (0..3).map(|k| direction[k] * f64::from(node.0[k][slot])).sum();
+                    let at_most = f64::from(computed) + f64::from(height.slack);
+                    assert!(exact <= at_most && exact <= height.of_child(&node, slot), "{case}: {exact} {at_most}");
+                }
+            }
+        }
+    }
+}

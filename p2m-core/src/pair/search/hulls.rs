@@ -21,6 +21,9 @@ pub struct Hulls {
     bounds: Aabb<f64>,
     /// The normals of triangles, of length 1, or zero for what has none.
     normals: [V3; MAX_HULLS],
+    /// The extents of hulls along their normals, from their first vertices. Rounding turns the normal of a thin triangle
+    /// by any angle, so they are not zero.
+    heights: [[f64; 2]; MAX_HULLS],
     ids: [PrimitiveId; MAX_HULLS],
 }
 
@@ -33,6 +36,7 @@ impl Hulls {
             boxes: [Aabb::empty(); MAX_HULLS],
             bounds: Aabb::empty(),
             normals: [[0.0; 3]; MAX_HULLS],
+            heights: [[0.0; 2]; MAX_HULLS],
             ids: [PrimitiveId::new(0); MAX_HULLS],
         }
     }
@@ -51,11 +55,24 @@ impl Hulls {
             [a, b, c] => unit(cross(sub(*b, *a), sub(*c, *a))).unwrap_or_default(),
             _ => [0.0; 3],
         };
+        self.heights[i] = self.extent(i, self.hulls[i].vertices());
         self.len += 1;
     }
 
     fn hull(&self, i: usize) -> &[V3] {
         self.hulls[i].vertices()
+    }
+
+    /// Returns the extent of some vertices along the normal of a hull, from its first vertex.
+    fn extent(&self, i: usize, vertices: &[V3]) -> [f64; 2] {
+        let first = self.hull(i)[0];
+        extent(vertices.iter().map(|vertex| dot(sub(*vertex, first), self.normals[i])))
+    }
+
+    /// Returns whether some vertices are farther from a hull than `reach` along the normal of the hull.
+    fn is_beyond(&self, i: usize, vertices: &[V3], reach: f64) -> bool {
+        let ([low, high], [start, end]) = (self.heights[i], self.extent(i, vertices));
+        start - high > reach || low - end > reach
     }
 
     /// Returns one bit for each hull, the first one lowest: whether its box is near another box.
@@ -67,12 +84,17 @@ impl Hulls {
 /// Offers the pairs of the primitives of two packets. Heights are compared along `direction` and along normals, unless
 /// they have no margin.
 pub(super) fn search_packets(a: &Hulls, b: &Hulls, margin: Option<f64>, direction: Option<V3>, pairs: &mut Pairs<'_>) {
+    let least_ids = || [a, b].map(|hulls| *hulls.ids[..hulls.len].iter().min().expect("a packet has primitives"));
+    if pairs.is_settled(a.bounds.gap_squared(&b.bounds), least_ids) {
+        return;
+    }
     let prune = pairs.prune_above();
     let (near_a, near_b) = (a.near(&b.bounds, prune), b.near(&a.bounds, prune));
     let offer = |i: usize, j: usize, pairs: &mut Pairs<'_>| {
         let prune = pairs.prune_above();
         let ids = [a.ids[i], b.ids[j]];
-        if a.boxes[i].gap_squared(&b.boxes[j]) > prune || !pairs.can_change(ids) {
+        let gap = a.boxes[i].gap_squared(&b.boxes[j]);
+        if gap > prune || pairs.is_settled(gap, || ids) {
             return;
         }
         if margin.is_some_and(|margin| is_apart(a, i, b, j, direction, prune.sqrt() + margin)) {
@@ -110,11 +132,7 @@ fn is_apart(a: &Hulls, i: usize, b: &Hulls, j: usize, direction: Option<V3>, rea
     if direction.is_some_and(|direction| gap(direction) > reach) {
         return true;
     }
-    let is_outside = |normal: &V3, plane: &V3, hull: &[V3]| {
-        let heights = extent(hull.iter().map(|vertex| dot(sub(*vertex, *plane), *normal)));
-        heights[0] > reach || heights[1] < -reach
-    };
-    if is_outside(&a.normals[i], &p[0], q) || is_outside(&b.normals[j], &q[0], p) {
+    if a.is_beyond(i, q, reach) || b.is_beyond(j, p, reach) {
         return true;
     }
     let line = sub(q[0], p[0]);

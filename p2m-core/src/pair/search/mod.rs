@@ -18,10 +18,12 @@
 //!
 //! # Correctness
 //!
-//! The gap of two boxes never exceeds the key of primitives in them (docs/proofs/pairs.md). The other bounds are
+//! The gap of two boxes never exceeds the key of primitives in them ([docs/proofs/pairs.md]). The other bounds are
 //! computed with a margin above their rounding and above the error of keys. So the answer is that of all pairs, bit for
 //! bit. The motion of a tree is applied to the vertices of its packets, each coordinate rounded, and to directions and
 //! boxes with a margin above all roundings.
+//!
+//! [docs/proofs/pairs.md]: https://github.com/p2m-rs/p2m/blob/main/docs/proofs/pairs.md
 
 mod directions;
 mod height;
@@ -32,6 +34,7 @@ mod slab;
 mod support;
 
 use super::Pairs;
+use crate::PrimitiveId;
 use directions::Directions;
 pub use height::{Height, Rows};
 use hulls::search_packets;
@@ -60,11 +63,12 @@ struct Search<'a, 'p, 'v> {
     /// The side and the node for which `slabs` were computed.
     fixed: Option<(usize, u32)>,
     slabs: Vec<Slab>,
+    goes_on: &'a dyn Fn() -> bool,
     pairs: &'p mut Pairs<'v>,
 }
 
-/// Offers every pair of primitives that may be near.
-pub fn search_pairs(a: &dyn PairSide, b: &dyn PairSide, pairs: &mut Pairs<'_>) {
+/// Offers every pair of primitives that may be near. It asks `goes_on` before each step whether to go on.
+pub fn search_pairs(a: &dyn PairSide, b: &dyn PairSide, goes_on: &dyn Fn() -> bool, pairs: &mut Pairs<'_>) {
     let (Some(root_a), Some(root_b)) = (a.root(), b.root()) else { return };
     let sides = [a, b];
     if a.bounds().gap_squared(&b.bounds()) > pairs.prune_above() {
@@ -72,7 +76,8 @@ pub fn search_pairs(a: &dyn PairSide, b: &dyn PairSide, pairs: &mut Pairs<'_>) {
     }
     let directions = Directions::new(sides);
     let supports = Supports::new(directions.as_ref().map(|all| all.margin));
-    let mut search = Search { sides, directions, supports, pending: Vec::new(), fixed: None, slabs: Vec::new(), pairs };
+    let (pending, slabs) = (Vec::new(), Vec::new());
+    let mut search = Search { sides, directions, supports, pending, fixed: None, slabs, goes_on, pairs };
     search.pending.push(NodePair { square: 0.0, gap: 0.0, places: [root_a, root_b] });
     search.run();
 }
@@ -81,18 +86,14 @@ impl Search<'_, '_, '_> {
     fn run(&mut self) {
         let mut loaded = [Hulls::new(), Hulls::new()];
         while let Some(NodePair { square, places, .. }) = self.pending.pop() {
-            if square > self.pairs.prune_above() {
+            if square > self.pairs.prune_above() || self.pairs.is_settled(square, || least_ids(self.sides, &places)) {
                 continue;
             }
-            if self.pairs.is_done() {
+            if self.pairs.is_done() || !(self.goes_on)() {
                 return;
             }
             match [0, 1].map(|i| self.sides[i].is_packet(places[i].node)) {
                 [true, true] => {
-                    let least_ids = || [0, 1].map(|i| self.sides[i].first_id(places[i].node));
-                    if self.pairs.has_intersection() && !self.pairs.can_change(least_ids()) {
-                        continue;
-                    }
                     for ((side, place), hulls) in self.sides.iter().zip(places).zip(&mut loaded) {
                         if hulls.packet != place.node {
                             side.load(place.node, hulls);
@@ -142,7 +143,14 @@ impl Search<'_, '_, '_> {
                 self.pending.push(pair);
             }
         }
-        // The nearest pair is visited first.
-        self.pending[first..].sort_unstable_by(|p, q| q.gap.total_cmp(&p.gap));
+        // The nearest pair is visited first, and of equally near ones that with the lowest ids, with which all others
+        // can only tie.
+        let ids = |pair: &NodePair| least_ids(self.sides, &pair.places);
+        self.pending[first..].sort_unstable_by(|p, q| q.gap.total_cmp(&p.gap).then_with(|| ids(q).cmp(&ids(p))));
     }
+}
+
+/// Returns the least id of each of two nodes.
+fn least_ids(sides: [&dyn PairSide; 2], places: &[Place; 2]) -> [PrimitiveId; 2] {
+    [0, 1].map(|i| sides[i].least_id(places[i].node))
 }

@@ -1,6 +1,6 @@
 //! The two sides of a search for pairs: trees, which other crates implement, and single shapes.
 
-use super::height::{Height, extent, unit};
+use super::height::{Height, extent};
 use super::hulls::Hulls;
 use super::place::{NO_NODE, Place, WIDTH};
 use super::slab::Slab;
@@ -23,7 +23,7 @@ pub struct Children {
 }
 
 impl Children {
-    /// No children.
+    /// The value for a node without children.
     pub const NONE: Self = Self {
         squares: [f64::INFINITY; WIDTH],
         gaps: [f32::INFINITY; WIDTH],
@@ -43,8 +43,8 @@ pub trait PairSide {
     fn bounds(&self) -> Aabb<f64>;
     /// Returns where the frame of the nodes is in the scene.
     fn placement(&self) -> Placement;
-    /// Returns directions of length 1 along which the contents of this side are often narrower than along the axes.
-    /// Those of a tree are three orthogonal ones.
+    /// Returns vectors along which the contents of this side are often narrower than along the axes. Those of a tree are
+    /// three orthogonal ones.
     fn directions(&self) -> Vec<V3>;
     /// Converts a direction of the scene to the form in which heights of nodes along it are computed.
     fn height(&self, direction: &V3) -> Height;
@@ -60,8 +60,8 @@ pub trait PairSide {
     fn cut_by_box(&self, node: u32, bounds: &Aabb<f64>) -> Children;
     /// Returns a box around a node.
     fn box_of(&self, place: &Place) -> Aabb<f64>;
-    /// Returns the least id of a packet.
-    fn first_id(&self, packet: u32) -> PrimitiveId;
+    /// Returns the least id of a node or a packet.
+    fn least_id(&self, node: u32) -> PrimitiveId;
     /// Loads the primitives of a packet.
     fn load(&self, packet: u32, hulls: &mut Hulls);
 }
@@ -75,8 +75,6 @@ pub struct Placement {
     pub unit: f64,
     /// A bound on the magnitudes of all coordinates of vertices, before, between and after motions.
     pub size: f64,
-    /// Whether squares of lengths are in range.
-    pub is_plain: bool,
     /// Whether there is a frame. A shape has coordinates of the scene.
     pub is_tree: bool,
 }
@@ -98,7 +96,7 @@ impl PairSide for ShapeSide<'_> {
     }
 
     fn placement(&self) -> Placement {
-        Placement { centre: [0.0; 3], unit: 1.0, size: largest(self.0), is_plain: true, is_tree: false }
+        Placement { centre: [0.0; 3], unit: 1.0, size: largest(self.0), is_tree: false }
     }
 
     fn directions(&self) -> Vec<V3> {
@@ -112,7 +110,7 @@ impl PairSide for ShapeSide<'_> {
         if let [d, e, _] = edges[..] {
             vectors.push(cross(d, e));
         }
-        vectors.into_iter().filter_map(unit).collect()
+        vectors
     }
 
     fn height(&self, direction: &V3) -> Height {
@@ -140,7 +138,7 @@ impl PairSide for ShapeSide<'_> {
         bounds_of(self.0)
     }
 
-    fn first_id(&self, _: u32) -> PrimitiveId {
+    fn least_id(&self, _: u32) -> PrimitiveId {
         PrimitiveId::new(0)
     }
 

@@ -47,8 +47,8 @@ pub fn bound_children<L: Lanes, N: Rows>(node: &N, slabs: &[Slab], triples: usiz
 }
 
 impl Slab {
-    /// Returns the gaps between the slab and the children of a node, negative where they overlap, and the widths of the
-    /// children.
+    /// Returns the gaps between the slab and the children of a node, negative where they overlap, and the widths
+    /// of the children.
     #[inline(always)]
     fn gap_and_width<L: Lanes, N: Rows>(&self, node: &N) -> (L, L) {
         let (above, below) = (self.heights[0].of_children::<L, N>(node), self.heights[1].of_children::<L, N>(node));

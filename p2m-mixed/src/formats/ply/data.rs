@@ -27,7 +27,7 @@ pub(super) trait Numbers {
     /// Reads an integer. `scalar` has to be an integer type.
     fn integer(&mut self, scalar: Scalar) -> Result<i64, Self::Error>;
 
-    /// Skips numbers.
+    /// Skips so many numbers of a type.
     fn skip_numbers(&mut self, count: u64, scalar: Scalar) -> Result<(), Self::Error>;
 
     /// Reads the length of a list.

@@ -195,8 +195,8 @@ impl<T> Rows<'_, T> {
 }
 
 impl<R: BufRead> Data<'_, Source<R>> {
-    /// Reads rows of an element in blocks, at most `count`, and returns their number. The others are left to the
-    /// sequential reader.
+    /// Reads rows of an element in blocks, at most `count`, and returns their number. The others are left
+    /// to the sequential reader.
     ///
     /// `read_row` parses a row, and `add` adds the rows of a block.
     pub(super) fn read_rows<T: Default + Send>(

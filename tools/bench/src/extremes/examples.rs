@@ -84,7 +84,8 @@ pub(super) fn list() -> String {
             Err(Unavailable(_)) => ("panics".to_owned(), f64::INFINITY),
         };
         let ours = example.answer(ours).map_or(f64::NAN, |answer| answer.distance);
-        format!("- {library} {theirs}, ours {ours:e}; the error is {error:.0e} u M: query `{query:?}`, vertices `{vertices:?}`.\n")
+        let answers = format!("- {library} {theirs}, ours {ours:e}; the error is {error:.0e} u M:");
+        format!("{answers}\n  query `{query:?}`,\n  vertices `{vertices:?}`.\n")
     });
     lines.collect()
 }

@@ -1,5 +1,5 @@
 //! `p2m-bench extremes`: checks the accuracy contract on inputs where other libraries fail, for the tables of
-//! docs/extremes.md.
+//! docs/measurements/extremes.md.
 
 mod counts;
 mod examples;
@@ -18,7 +18,7 @@ use p2m_cli::harness::Table;
 use p2m_testkit::extremes::Extreme;
 use std::time::Instant;
 
-/// The blocks of docs/extremes.md.
+/// The blocks of docs/measurements/extremes.md.
 pub(crate) const BLOCKS: Blocks<5> =
     Blocks { command: "extremes", names: ["provenance", "checks", "primitives", "scenes", "examples"] };
 
@@ -114,7 +114,8 @@ fn of_scenes(together: &scenes::Findings) -> String {
     }
     let ours: Vec<&str> = subjects.iter().filter(|subject| subject.is_ours).map(|subject| subject.name).collect();
     let absent = together.absent.iter().map(|(why, count)| format!("- Left out of {count} scenes: {why}.\n"));
-    format!("{table}\nOurs: {}.\n\n{}", ours.join(", "), absent.collect::<String>())
+    let ours: Vec<String> = ours.chunks(10).map(|names| names.join(", ")).collect();
+    format!("{table}\nOurs: {}.\n\n{}", ours.join(",\n"), absent.collect::<String>())
 }
 
 #[cfg(test)]

@@ -13,7 +13,7 @@ use p2m_testkit::families::{Family, Span, pair_in, shape};
 use p2m_testkit::oracle::Distance;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 
-/// The block of docs/extremes.md.
+/// The block of docs/measurements/extremes.md.
 pub(crate) const BLOCKS: Blocks<1> = Blocks { command: "extreme-pairs", names: ["pairs"] };
 
 /// The number of cases that a thread takes at a time.
@@ -94,8 +94,8 @@ pub(crate) struct Arguments {
     document: Document,
 }
 
-/// Checks pairs of primitives, half of them in each scalar, and publishes the block. Returns whether ours are all within
-/// their bound.
+/// Checks pairs of primitives, half of them in each scalar, and publishes the block. Returns whether ours are
+/// all within their bound.
 pub(crate) fn run(arguments: &Arguments) -> Result<bool> {
     let document = arguments.document.write.as_deref();
     BLOCKS.check(document)?;

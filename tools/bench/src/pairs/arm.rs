@@ -17,8 +17,8 @@ pub(super) struct Arm {
     pub(super) radius: f64,
 }
 
-/// Returns an arm at consecutive poses. It stands beside the scene, and each joint turns a little from one pose to the
-/// next.
+/// Returns an arm at consecutive poses. It stands beside the scene, and each joint turns a little from one pose
+/// to the next.
 pub(super) fn walk(soup: &Soup<f64>, count: usize, seed: u64) -> Vec<Arm> {
     let mut rng = rng("arm", seed);
     let bounds = soup.aabb();

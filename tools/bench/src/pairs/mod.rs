@@ -51,8 +51,8 @@ fn each<Q>(questions: &[Q], out: &mut [f64], mut answer: impl FnMut(&Q) -> f64) 
     questions.iter().zip(out).for_each(|(question, out)| *out = answer(question));
 }
 
-/// A competitor of another library that would need longer than this for a round answers the first questions of a set
-/// only.
+/// A competitor of another library that would need longer than this for a round answers the first questions of
+/// a set only.
 const ROUND_SECONDS: f64 = 2.0;
 
 /// The competitor whose times the others are compared with.
