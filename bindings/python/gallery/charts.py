@@ -70,12 +70,15 @@ def speed() -> None:
 def trade() -> None:
     """Draw the largest relative error against the time of each setting of two indexes."""
     figure, axis = plt.subplots(figsize=(9, 3.2))
-    for backend, colour in (("octree", OURS), ("aabb", "#d9822b")):
-        points = [row for row in rows("tradeoff_dragon.csv") if row["backend"] == backend]
-        values = sorted((max(float(row["error_relative_max"] or 0), 1e-17), float(row["ns_median"]), row["setting"]) for row in points)
-        axis.plot([error for error, _, _ in values], [time for _, time, _ in values], "o", color=colour, label=f"p2m {backend}")
+    for backend, colour, below in (("octree", OURS, -11), ("aabb", "#d9822b", 5)):
+        settings = [row for row in rows("tradeoff_dragon.csv") if row["backend"] == backend]
+        points = [row for row in settings if not row["setting"].startswith("budget")]
+        errors = [max(float(row["error_relative_max"] or 0), 1e-17) for row in points]
+        values = list(zip(errors, (float(row["ns_median"]) for row in points), (row["setting"] for row in points), strict=True))
+        label = f"p2m {backend}"
+        axis.plot([error for error, _, _ in values], [time for _, time, _ in values], "o", color=colour, label=label)
         for error, time, setting in values:
-            axis.annotate(setting, (error, time), xytext=(4, 4), textcoords="offset points", fontsize=7, color=INK)
+            axis.annotate(setting, (error, time), xytext=(4, below), textcoords="offset points", fontsize=7, color=INK)
     axis.set_xscale("log")
     axis.set_ylim(bottom=0)
     axis.set_xlabel("largest relative error of the distance (1e-17: none)")

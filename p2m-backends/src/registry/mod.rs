@@ -81,7 +81,7 @@ pub static BACKENDS: &[BackendEntry] = &[
     },
     BackendEntry {
         name: "kdop",
-        summary: "A tree of polytopes (k-DOPs), which fit closer what does not lie along the axes",
+        summary: "A tree of k-DOPs (polytopes), which fit slanted geometry more tightly than boxes",
         structure: SearchStructure::Tree,
         casts_rays: true,
         answers_pairs: true,
@@ -104,7 +104,7 @@ pub static BACKENDS: &[BackendEntry] = &[
     },
     BackendEntry {
         name: "octree",
-        summary: "Cells in space with lists of what can be nearest there: no search, for more memory and a longer build",
+        summary: "Cubic cells with lists of candidates: fast queries, more memory, a slower build",
         structure: SearchStructure::SpaceCells,
         casts_rays: false,
         answers_pairs: false,
@@ -127,7 +127,7 @@ pub static BACKENDS: &[BackendEntry] = &[
     },
     BackendEntry {
         name: "p2m",
-        summary: "Cells of the vertices with lists of what can be nearest there: fastest far from the scene",
+        summary: "Cells of the vertices with lists of candidates: fastest far from the scene",
         structure: SearchStructure::VertexCells,
         casts_rays: false,
         answers_pairs: false,

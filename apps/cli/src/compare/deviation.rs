@@ -36,13 +36,13 @@ const HELP: &str = "\
 The deviation of a point is its distance from the surface of the scene, positive outside and negative inside. The \
 points are those of the file of the scan, or all vertices of a mesh, each once, also if no triangle uses them.
 
-If the surface is open or inconsistently oriented, a warning says which rule decides what is inside. For an open \
-surface the sign is a guess near holes, and both sides of a single sheet are outside. Segments and points have no \
-inside: use --unsigned.
+If the surface is open or inconsistently oriented, a warning says which rule decides what is inside. On an open \
+surface, inside and outside are ambiguous near holes, and both sides of a single sheet are outside. Segments and \
+points have no inside: use --unsigned.
 
 Statistics go to the standard output: the mean, the mean magnitude, the root mean square, the standard deviation, \
 extremes and percentiles, and with --tolerance the numbers of points above and below it. Points that are not finite, \
-or whose side is not defined, are counted as points without a deviation and do not enter anything else.
+or whose side is not defined, are reported as points without a deviation and left out of all statistics.
 
 A CSV file is the table of `p2m query --signed`, where signed_distance is the deviation. A PLY file is the scan with \
 the property deviation and colours from blue (inside) over grey to red (outside). An HTML file is a page that any \

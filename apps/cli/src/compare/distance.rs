@@ -20,11 +20,11 @@ The distance is 0 if the scenes intersect, which is decided without rounding. On
 closed one has the distance to its surface. The lower bound is certified.
 
 Examples:
-  p2m distance robot.ply cell.ply
-  p2m distance arm.obj cell.obj --transform pose.txt
+  p2m distance cell.ply robot.ply
+  p2m distance cell.obj arm.obj --transform pose.txt
   p2m distance a.stl b.stl --max-distance 0.01 --json";
 
-/// Find the distance of two scenes, and whether they intersect
+/// Find the distance between two scenes, and whether they intersect
 #[derive(clap::Args)]
 #[command(after_help = HELP)]
 pub(crate) struct Args {

@@ -28,7 +28,7 @@ Examples:
   p2m hausdorff coarse.obj fine.obj --one-sided --tolerance 0.001
   p2m hausdorff a.obj b.obj --transform pose.txt --json";
 
-/// Find the Hausdorff distance of two scenes
+/// Find the Hausdorff distance between two scenes
 #[derive(clap::Args)]
 #[command(after_help = HELP)]
 pub(crate) struct Args {
@@ -43,8 +43,8 @@ pub(crate) struct Args {
     #[arg(long)]
     one_sided: bool,
 
-    /// The largest number of queries besides those of vertices, each of which takes 80 bytes. The bounds are then
-    /// those that were reached
+    /// Stop after N queries, not counting one per vertex. Each takes 80 bytes. The bounds may then differ by more than
+    /// the tolerance
     #[arg(long, value_name = "N", default_value_t = HausdorffOptions::<f64>::new(0.0).max_queries, allow_negative_numbers = true)]
     max_queries: u64,
 

@@ -39,7 +39,7 @@ pub(crate) fn backends(fits: fn(&BackendEntry) -> bool) -> impl TypedValueParser
 /// A parser of the names of all backends and of `auto`.
 pub(crate) fn backend_choices() -> impl TypedValueParser<Value = BackendChoice> {
     let auto = PossibleValue::new(AUTO)
-        .help("The one that `p2m advise` recommends for the queries of the command, or for ten million in the box");
+        .help("The one that `p2m advise` recommends for these queries, or for ten million in the box of the scene");
     let values = BACKENDS.iter().map(possible_value).chain([auto]);
     PossibleValuesParser::new(values)
         .map(|name| if name == AUTO { BackendChoice::Auto } else { BackendChoice::Named(named(&name)) })

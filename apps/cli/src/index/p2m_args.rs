@@ -34,7 +34,7 @@ impl ValueEnum for Locator {
             LocatorKind::Grid => Some(PossibleValue::new("grid").help("A grid with a vertex in each cell")),
             #[cfg(feature = "paper")]
             LocatorKind::KdTree => {
-                Some(PossibleValue::new("kd-tree").help("A KD-tree, as in the paper: up to three times as slow"))
+                Some(PossibleValue::new("kd-tree").help("A KD-tree, as in Zong et al. 2023: up to three times as slow"))
             }
             _ => None,
         }
@@ -60,7 +60,7 @@ impl ValueEnum for ListFilter {
             #[cfg(feature = "paper")]
             ListFilterKind::RTree => Some(
                 PossibleValue::new("r-tree")
-                    .help("By R-trees, as in the paper: up to ten times as slow for long lists"),
+                    .help("By R-trees, as in Zong et al. 2023: up to ten times as slow for long lists"),
             ),
             _ => None,
         }

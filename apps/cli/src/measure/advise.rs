@@ -16,9 +16,10 @@ use std::path::PathBuf;
 use std::time::Duration;
 
 const HELP: &str = "\
-Each backend is built and queried over a sample of the scene, and its times are scaled to the whole scene. Backends \
-that take longer to build than the AABB tree takes for everything are not measured, so the advice takes a few per \
-cent of the job. Times are estimates for one thread. Where two backends are about equally fast, the advice may vary.
+Each backend is built and queried over a sample of the scene, and its times are scaled to the whole scene. A backend \
+is skipped if its build alone would take longer than building and querying the AABB tree, so the advice takes a few \
+per cent of the job. Times are estimates for one thread. Where two backends are about equally fast, the advice may \
+vary.
 
 Examples:
   p2m advise bunny.obj --queries 10000000 --near

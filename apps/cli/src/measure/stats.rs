@@ -26,9 +26,9 @@ use std::path::{Path, PathBuf};
 use std::time::Instant;
 
 const HELP: &str = "\
-A list has the primitives that can be the nearest somewhere in a cell; trees have none. The mean length is weighted \
-by the volume of the cells, so it is that of a random point. All indexes filter packets of at most sixteen \
-primitives, and evaluate some of these exactly.
+Each cell of an octree or a P2M index has a list of the primitives that can be nearest in it; trees have no lists. \
+The mean length is weighted by the volume of the cells, so it is the length to expect at a random point. All indexes \
+filter packets of at most sixteen primitives, and evaluate some of these exactly.
 
 --out colours each primitive from blue over green to red, on a logarithmic scale: by the length of the list at its \
 centroid, or for trees by the number of packets that a query there filters. A PLY file also has the number, as the \
@@ -47,7 +47,7 @@ pub(crate) struct Args {
     #[command(flatten)]
     index_args: IndexArgs,
 
-    /// The number of random points, and of centroids, to query
+    /// Query N random points and N centroids of primitives
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u64).range(..=100_000_000), default_value_t = 10_000, allow_negative_numbers = true)]
     queries: u64,
 

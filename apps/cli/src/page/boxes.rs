@@ -21,8 +21,9 @@ use serde_json::json;
 use std::path::PathBuf;
 
 const HELP: &str = "\
-Each panel shows one level of the tree: its nodes, and the leaves above it. The last panel shows all leaves. In a \
-PLY file, the vertex property 'panel' has the number of the panel. Dots are vertices of the scene, at most 4000.
+Each panel shows one level of the tree: its nodes, and the leaves of all higher levels. The last panel shows all \
+leaves. In a PLY file, the vertex property 'panel' has the number of the panel. Dots are vertices of the scene, at \
+most 4000.
 
 Examples:
   p2m boxes bunny.obj --out boxes.svg

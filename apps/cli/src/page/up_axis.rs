@@ -6,7 +6,7 @@ use p2m_page::UpAxis;
 
 #[derive(Clone, Copy, PartialEq, Eq, ValueEnum)]
 pub(crate) enum Up {
-    /// As in most scans and models for films and games; z then points to the viewer of the front
+    /// As in most scans and models for films and games; in the front view, z points at the viewer
     Y,
     /// As in CAD and maps
     Z,

@@ -32,7 +32,7 @@ to see its answer, the primitive, the feature and the sphere of the lower bound.
 distance field, --lists a slice through cells, and --levels boxes of the AABB tree. The keyboard can do everything \
 that the mouse can.
 
-Small pages answer queries at the mouse with the library itself, compiled to WebAssembly.
+Small pages answer queries under the mouse pointer with the library itself, compiled to WebAssembly.
 
 Numbers are those of `p2m query`, with all digits. Scenes of more than a million primitives are drawn in less \
 detail, and a note on the page says so.
@@ -90,7 +90,7 @@ pub(crate) struct Args {
     #[arg(long, value_name = "N", default_value_t = 0, value_parser = clap::value_parser!(u8).range(0..=16), allow_negative_numbers = true)]
     levels: u8,
 
-    /// Whether the page answers queries at the mouse; auto: up to 10,000 primitives
+    /// Answer queries under the mouse pointer; auto: for up to 10,000 primitives
     #[arg(long, value_name = "WHEN", value_enum, default_value_t = Live::Auto)]
     live: Live,
 

@@ -22,11 +22,11 @@ use std::path::PathBuf;
 
 const HELP: &str = "\
 The table has the columns qx,qy,qz,x,y,z,distance,primitive,feature: the query, the closest point, the distance, the \
-number of the primitive, and the feature that has the point. The last six are empty where there is no answer. \
---signed adds signed_distance. With --k-nearest or --within each answer has a row, and the column number has the \
-number of its query; NPY and PLY files of such answers are kept in memory until all are known. A scene with named \
-objects has the column object. Numbers are the shortest that read back the same. The summary goes to the standard \
-error.
+number of the primitive, and the feature that has the point. Without an answer the columns from x to feature are \
+empty. --signed adds signed_distance. With --k-nearest or --within each answer has a row, and the column number has \
+the number of its query; NPY and PLY files of such answers are kept in memory until all are known. A scene with \
+named objects has the column object. Numbers are the shortest that read back the same. The summary goes to the \
+standard error.
 
 Primitives are numbered from 0, in the order of the file. Polygons are cut into triangles, which are numbered instead.
 
@@ -37,11 +37,10 @@ NPY files have an array with the fields query, point, distance, lower_bound, bar
 vertex, 1 edge, 2 face) and feature_number. PLY files have a cloud of the queries, coloured by distance in viewers. \
 Where there is no answer, numbers are NaN and -1.
 
-A distance is never smaller than the true one, except for rounding. With --epsilon or --max-visits it may be larger, \
-by at most what the line `accuracy` of the summary says; the column lower_bound has a certified lower bound. Of \
-primitives with the same rounded distance, the first one of the file is the answer, although another one may be \
-nearer by less than the rounding. --certified finds the one that is exactly the nearest, and the first of equal \
-ones.
+Apart from rounding, a distance is never too small. With --epsilon or --max-visits it may be too large, by at most \
+what the line `accuracy` of the summary says; the column lower_bound has a certified lower bound. If several \
+primitives have the same rounded distance, the first one of the file is the answer, even if another one is nearer by \
+less than the rounding. --certified finds the true nearest primitive, and the first of equally near ones.
 
 CSV files need the columns qx, qy, qz, or x, y, z (also like 'X [m]'), or Points:0 to Points:2; otherwise the first \
 three columns are used. So the table of answers is itself a file of queries. XYZ and TXT files have at least three \
@@ -84,7 +83,7 @@ pub(crate) struct Args {
 
     /// Scale the box of the scene about its centre by this factor
     ///
-    /// Where the scene is flat, the box grows on each side by what the factor adds to the longest side.
+    /// The box of a flat scene also grows along its thin axis, by as much as along its longest one.
     #[arg(long, value_name = "S", default_value_t = 1.05, value_parser = positive, allow_negative_numbers = true, conflicts_with = "points")]
     box_scale: f64,
 
@@ -103,11 +102,11 @@ pub(crate) struct Args {
     #[command(flatten)]
     pub(crate) p2m: P2mArgs,
 
-    /// Find the N nearest primitives, nearest first, in a row each
+    /// Find the N nearest primitives: a row for each, nearest first
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..), allow_negative_numbers = true, conflicts_with_all = ["within", "certified", "epsilon", "max_visits"])]
     k_nearest: Option<u32>,
 
-    /// Find all primitives within R, nearest first, in a row each
+    /// Find all primitives within R: a row for each, nearest first
     #[arg(long, value_name = "R", value_parser = not_negative, allow_negative_numbers = true, conflicts_with_all = ["max_distance", "certified", "epsilon", "max_visits"])]
     within: Option<f64>,
 

@@ -67,7 +67,7 @@ pub(crate) struct Args {
 
     /// Scale the box of the scene about its centre by this factor
     ///
-    /// Where the scene is flat, the box grows on each side by what the factor adds to the longest side.
+    /// The box of a flat scene also grows along its thin axis, by as much as along its longest one.
     #[arg(long, value_name = "S", default_value_t = 1.05, value_parser = positive, allow_negative_numbers = true, conflicts_with = "rays")]
     box_scale: f64,
 

@@ -21,8 +21,8 @@ The file also has the scene, so every command accepts it as a scene. A command t
 --k builds its own index from it.
 
 Programs with the same version of the format can read the file, on little-endian processors. It is checked before \
-use: damaged, truncated and contradictory files are refused. Replacing a file does not disturb commands that have \
-mapped the old one.
+use: damaged, truncated and contradictory files are refused. p2m replaces a file by a new one, which does not \
+disturb commands that have mapped the old one. Never change a mapped file in place.
 
 Examples:
   p2m build bunny.obj --backend p2m --out bunny.p2m

@@ -26,7 +26,8 @@ pub(crate) struct Args {
 fn help() -> String {
     format!(
         "\
-Each kind of scene has its own options (p2m generate KIND --help), and all kinds can be transformed. {}
+Each kind of scene has its own options, and all kinds can be transformed (see p2m generate KIND --help). Without \
+--out, the scene goes to the standard output as OBJ. {}
 
 Examples:
   p2m generate knot-and-cables --out knot_and_cables.obj

@@ -12,7 +12,7 @@ use p2m_mixed::{Format, Scene};
 use serde_json::{Value, json};
 use std::fmt::{self, Write as _};
 
-/// Describe a scene, and what in it may cause problems
+/// Describe a scene and report likely problems
 #[derive(clap::Args)]
 #[command(after_help = HELP)]
 pub(crate) struct Args {
@@ -25,9 +25,9 @@ pub(crate) struct Args {
 }
 
 const HELP: &str = "\
-A triangle has no area if its vertices are exactly collinear. Positions and edges are the same if their coordinates \
-are. The aspect of a triangle is its longest edge over its height over that edge: above 10 it is thin, above 1024 it \
-is a sliver. Edges are the sides of triangles, and segments.
+A triangle has no area if its vertices are exactly collinear. Two positions or edges are equal if their coordinates \
+are. The aspect ratio of a triangle is its longest edge divided by the height onto that edge: above 10 it is thin, \
+above 1024 it is a sliver. Edges are the sides of triangles, and segments.
 
 Examples:
   p2m info scene.obj

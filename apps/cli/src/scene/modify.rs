@@ -17,7 +17,7 @@ pub(crate) struct Modifiers {
     #[arg(long, value_name = "N", allow_negative_numbers = true)]
     subdivide: Option<u32>,
 
-    /// Displace midpoints while subdividing, by up to A times the edge, at most 0.5
+    /// Move new midpoints by up to A edge lengths while subdividing; A is at most 0.5
     #[arg(long, value_name = "A", value_parser = finite, allow_negative_numbers = true, requires = "subdivide")]
     displace: Option<f64>,
 
@@ -56,8 +56,8 @@ pub(crate) struct Modifiers {
 
 /// The paragraph of the help about these options.
 pub(crate) const ORDER: &str = "\
-Changes are applied in the order of this list. For another order, chain runs: p2m convert a.obj - --to ply \
---rotate-z 30 | p2m convert - b.obj --from ply --subdivide 1.";
+Transformations are applied in the order in which the help lists them. For another order, chain runs: p2m convert \
+a.obj - --to ply --rotate-z 30 | p2m convert - b.obj --from ply --subdivide 1.";
 
 impl Modifiers {
     /// Returns the scene after all changes. The parts of a subdivided primitive keep its name.

@@ -19,10 +19,11 @@ use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
 
 const HELP: &str = "\
-The scenes are joined in the order of the command line, and primitives are numbered on from one to the next. `p2m \
-query` and `p2m ray` accept the folder as a scene, load shards on demand, and give the answers of one index over \
-everything, apart from the last bits of lower bounds. With --epsilon or --max-visits, which permit several answers, \
-another one may be found. Folders of more than 2^30 primitives are refused by these commands.
+The scenes are joined in the order of the command line, and the numbers of primitives continue from one scene to the \
+next. `p2m query` and `p2m ray` accept the folder as a scene, load shards on demand, and give the answers of one \
+index over everything, apart from the last bits of lower bounds. With --epsilon or --max-visits the answers may \
+differ, within the stated error. These commands refuse folders of more than 2^30 \
+primitives, whose numbers do not fit into a table of answers.
 
 Space is divided so that the file of each shard has at most --max-bytes bytes. One shard is in memory at a time, and \
 scenes are read in pieces. Compressed files, saved indexes, the standard input, and files without the extension of \

@@ -92,7 +92,7 @@ pub(crate) struct Args {
     #[arg(long, value_parser = backends(|_| true), value_delimiter = ',', default_values = default_backends())]
     backends: Vec<Backend>,
 
-    /// The number of rounds, in which all take turns
+    /// The number of rounds; every setting runs once per round
     #[arg(long, value_name = "N", default_value_t = 5, value_parser = clap::builder::RangedU64ValueParser::<usize>::new().range(1..=1000), allow_negative_numbers = true)]
     rounds: usize,
 
