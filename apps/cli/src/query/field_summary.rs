@@ -67,7 +67,9 @@ impl FieldSummary<'_> {
             ComputedField::Grid(values) => {
                 let [x, y, z] = self.grid.counts();
                 let each = self.field_time.as_nanos() as f64 / values.len() as f64;
-                writeln!(text, "field    {x} x {y} x {z} points, {} apart", self.grid.spacing())?;
+                let [at_x, at_y, at_z]: [f64; 3] = self.grid.origin().into();
+                let from = format!("{at_x} {at_y} {at_z}");
+                writeln!(text, "field    {x} x {y} x {z} points, {} apart, from {from}", self.grid.spacing())?;
                 writeln!(text, "filled   in {:.3?} on {threads}: {each:.0} ns per point", self.field_time)?;
             }
             ComputedField::Cells(cells) => {

@@ -7,7 +7,7 @@ use crate::index::backend::{Backend, backends};
 use crate::io::input::{self, SceneArgs, point_format, read_rays};
 use crate::io::json;
 use crate::io::streams::Streams;
-use crate::io::usage::{bytes, finite_not_negative, number, one_of, positive, usage, whole_number};
+use crate::io::usage::{bytes, count, finite_not_negative, number, one_of, positive, usage, whole_number};
 use clap::{ArgGroup, ValueEnum};
 use nalgebra::{Point3, Vector3};
 use p2m_core::{Aabb, Ray, RayError};
@@ -66,7 +66,7 @@ pub(crate) struct Args {
     #[command(flatten)]
     pub(crate) scene: SceneArgs,
 
-    /// Cast the rays of this XYZ, TXT, CSV, NPY or PLY file; `-` is the standard input
+    /// Cast the rays of this XYZ, TXT, ASC, PTS, CSV, NPY or PLY file; `-` is the standard input
     #[arg(long, value_name = "FILE")]
     rays: Option<PathBuf>,
 
@@ -76,7 +76,7 @@ pub(crate) struct Args {
 
     /// Cast N rays from uniformly distributed points in the scaled box of the scene into uniformly distributed
     /// directions of length 1
-    #[arg(long, value_name = "N", value_parser = whole_number, allow_negative_numbers = true)]
+    #[arg(long, value_name = "N", value_parser = count, allow_negative_numbers = true)]
     random: Option<u64>,
 
     /// Scale the box of the scene about its centre by this factor before filling it.
