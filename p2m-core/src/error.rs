@@ -36,6 +36,9 @@ pub enum BuildError {
         /// The number of positions of the scene.
         expected: usize,
     },
+    /// The positions or primitives do not fit into memory.
+    #[error("it does not fit into memory")]
+    OutOfMemory,
     /// There are more primitives than the 2^30 that have ids.
     #[error("{len} primitives are more than the {} that an id can name", crate::PrimitiveId::MAX_COUNT)]
     TooMany {

@@ -59,6 +59,8 @@ mod soup;
 mod stats;
 mod stats_collector;
 pub mod storage;
+#[cfg(feature = "rayon")]
+mod threads;
 mod weld;
 
 pub use aabb::Aabb;
@@ -91,6 +93,8 @@ pub use stats_collector::StatsCollector;
 #[doc(hidden)]
 pub mod engine {
     pub use crate::index::answer_one_by_one;
+    #[cfg(feature = "rayon")]
+    pub use crate::threads::{MAX_THREADS, default_threads};
 
     /// Searches for near pairs of two trees.
     pub mod pairs {

@@ -7,7 +7,7 @@
 use crate::query::answer::{answer, square_within};
 use crate::{Closest, Collector, Key, Position, PrimitiveId, Projection, QueryOptions, Real};
 use nalgebra::Point3;
-use std::collections::BinaryHeap;
+use std::collections::{BinaryHeap, TryReserveError};
 use std::ops::ControlFlow;
 
 /// Queries for near primitives beyond the closest one. A backend writes one method, [`search_near`](Self::search_near).
@@ -41,7 +41,19 @@ pub trait NearQuery<T: Real> {
 
     /// Returns the nearest primitives, at most `k` and none beyond the radius, nearest first. The radius is in units of
     /// the scene and may be infinite.
+    ///
+    /// # Panics
+    /// It panics if the answers do not fit into memory, as [`all_within`](Self::all_within) does.
     fn k_nearest(&self, query: &dyn Position<T>, k: usize, radius: T) -> Vec<Closest<T>> {
+        self.try_k_nearest(query, k, radius).expect("memory for the nearest primitives")
+    }
+
+    /// Returns what [`k_nearest`](Self::k_nearest) does, if it fits into memory. With `usize::MAX` primitives it is
+    /// what [`all_within`](Self::all_within) returns.
+    ///
+    /// # Errors
+    /// It returns the error of the allocation.
+    fn try_k_nearest(&self, query: &dyn Position<T>, k: usize, radius: T) -> Result<Vec<Closest<T>>, TryReserveError> {
         let mut near = Near::nearest(k, radius);
         search_near_if_valid(self, query, &mut near);
         near.finish()
@@ -90,7 +102,7 @@ pub trait NearQuery<T: Real> {
     ) -> Option<Closest<T>> {
         let mut near = Near { among: Some(among), ..Near::nearest(1, options.max_distance) };
         search_near_if_valid(self, query, &mut near);
-        near.finish().pop()
+        near.finish().ok()?.pop() // one answer needs no memory that could be missing
     }
 }
 
@@ -118,6 +130,8 @@ pub struct Near<'a> {
     prune: f64,
     mode: NearMode<'a>,
     among: Option<&'a mut dyn FnMut(PrimitiveId) -> bool>,
+    /// The error of an allocation, which ended the search.
+    error: Option<TryReserveError>,
 }
 
 enum NearMode<'a> {
@@ -239,7 +253,7 @@ impl<'a> Near<'a> {
     fn within<T: Real>(radius: T, mode: NearMode<'a>) -> Self {
         // Distances are compared as they are reported, so some beyond the radius round into it. A NaN radius has none.
         let radius = radius.to_f64_above();
-        Self { radius, prune: square_within(radius), mode, among: None }
+        Self { radius, prune: square_within(radius), mode, among: None, error: None }
     }
 
     /// Returns whether no other primitive can be part of the answer.
@@ -249,13 +263,16 @@ impl<'a> Near<'a> {
     }
 
     /// Returns the answers, nearest first.
-    fn finish<T: Real>(self) -> Vec<Closest<T>> {
-        match self.mode {
-            NearMode::Nearest(_, found) => {
-                found.into_sorted_vec().iter().map(|one| answer_alone(one.id, &one.projection)).collect()
-            }
-            NearMode::All(_) | NearMode::Shrinking { .. } | NearMode::Certification { .. } => Vec::new(),
+    fn finish<T: Real>(self) -> Result<Vec<Closest<T>>, TryReserveError> {
+        let mut answers = Vec::new();
+        if let Some(error) = self.error {
+            return Err(error);
         }
+        if let NearMode::Nearest(_, found) = self.mode {
+            answers.try_reserve_exact(found.len())?;
+            answers.extend(found.into_sorted_vec().iter().map(|one| answer_alone(one.id, &one.projection)));
+        }
+        Ok(answers)
     }
 }
 
@@ -338,6 +355,10 @@ impl Collector for Near<'_> {
                 }
                 if is_full {
                     found.pop();
+                } else if let Err(error) = found.try_reserve(1) {
+                    self.error = Some(error);
+                    self.prune = PRUNE_ALL;
+                    return;
                 }
                 found.push(next);
                 if found.len() == *k

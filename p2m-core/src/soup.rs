@@ -237,23 +237,39 @@ impl<T: Real> Soup<T> {
         if self.slots.is_empty() && slot.index() != len {
             // This is the first primitive of a second kind, so the slots of all others are stored from now on.
             let kind = self.only_kind();
-            self.slots = (0..len).map(|i| Slot::new(kind, i)).collect();
+            self.slots.try_reserve_exact(len + 1).map_err(|_| BuildError::OutOfMemory)?;
+            self.slots.extend((0..len).map(|i| Slot::new(kind, i)));
         }
-        if !self.slots.is_empty() {
-            push_growing_by_half(&mut self.slots, slot);
+        let has_slots = !self.slots.is_empty();
+        if has_slots {
+            reserve_half(&mut self.slots)?;
         }
         match element {
             Element::Point(p) => push_growing_by_half(&mut self.points, p),
             Element::Segment(s) => push_growing_by_half(&mut self.segments, s),
             Element::Triangle(t) => push_growing_by_half(&mut self.triangles, t),
+        }?;
+        if has_slots {
+            self.slots.push(slot);
         }
         Ok(id)
     }
 
     /// Adds a position and returns its index, which later [`Element`]s can use. It is checked when one does.
+    ///
+    /// # Panics
+    /// It panics if the position does not fit into memory.
     pub fn push_position(&mut self, position: Point3<T>) -> usize {
-        push_growing_by_half(&mut self.positions, position);
-        self.positions.len() - 1
+        self.try_push_position(position).expect("memory for a position")
+    }
+
+    /// Adds a position as [`push_position`](Self::push_position) does.
+    ///
+    /// # Errors
+    /// It returns [`BuildError::OutOfMemory`] if the position does not fit into memory.
+    pub fn try_push_position(&mut self, position: Point3<T>) -> Result<usize, BuildError> {
+        push_growing_by_half(&mut self.positions, position)?;
+        Ok(self.positions.len() - 1)
     }
 
     /// Frees the memory that is reserved for more positions and primitives.
@@ -342,11 +358,19 @@ fn triples<X>(flat: &[X]) -> Result<&[[X; 3]], BuildError> {
 
 /// Appends to a list whose capacity grows by half instead of doubling, so that a soup that is filled one by one needs
 /// less memory at its peak.
-fn push_growing_by_half<X>(list: &mut Vec<X>, item: X) {
-    if list.len() == list.capacity() {
-        list.reserve_exact(list.len() / 2 + 4);
-    }
+fn push_growing_by_half<X>(list: &mut Vec<X>, item: X) -> Result<(), BuildError> {
+    reserve_half(list)?;
     list.push(item);
+    Ok(())
+}
+
+/// Makes room for an item, and for half as many as there are.
+#[inline]
+fn reserve_half<X>(list: &mut Vec<X>) -> Result<(), BuildError> {
+    if list.len() == list.capacity() {
+        list.try_reserve_exact(list.len() / 2 + 4).map_err(|_| BuildError::OutOfMemory)?;
+    }
+    Ok(())
 }
 
 impl<T: Real> PrimitiveSet<T> for Soup<T> {

@@ -104,7 +104,7 @@ impl Scene {
         self.add_elements(name, positions, segments.iter().map(|s| Element::Segment(*s)))
     }
 
-    /// Adds the segments from each position to the next. A single position has none.
+    /// Adds the segments from each position to the next. A single position is a point.
     ///
     /// # Errors
     /// The errors are those of [`add_triangles`](Self::add_triangles).
@@ -113,7 +113,10 @@ impl Scene {
         name: &str,
         positions: &[P],
     ) -> Result<Range<usize>, BuildError> {
-        self.add_elements(name, positions, (1..index_count(positions)?).map(|i| Element::Segment([i - 1, i])))
+        match index_count(positions)? {
+            1 => self.add_points(name, positions),
+            count => self.add_elements(name, positions, (1..count).map(|i| Element::Segment([i - 1, i]))),
+        }
     }
 
     /// Adds a point for each position.
@@ -204,8 +207,14 @@ mod tests {
         let bad = [[0.0; 3], [f64::NAN; 3]];
         assert_eq!(scene.add_points("b", &bad).unwrap_err(), BuildError::NonFinite { id });
         assert_eq!(scene, before);
-        assert_eq!(scene.add_polyline("one", &CORNERS[..1]).unwrap(), 1..1);
         assert_eq!(scene.add_polyline::<[f64; 3]>("none", &[]).unwrap(), 1..1);
         assert_eq!(scene.objects, before.objects);
+    }
+
+    #[test]
+    fn a_polyline_of_one_position_is_a_point() {
+        let mut scene = Scene::default();
+        assert_eq!(scene.add_polyline("one", &CORNERS[1..2]).unwrap(), 0..1);
+        assert_eq!((scene.soup.points(), scene.objects.len()), (&[0][..], 1));
     }
 }

@@ -126,6 +126,7 @@ impl Output<'_> {
     fn push(&mut self, element: Element, source: u32) -> Result<(), Reason> {
         let element = if self.pieces.is_none() { element } else { self.element_of_piece(element)? };
         self.soup.push(element).map_err(Reason::Build)?;
+        self.sources.try_reserve(1).map_err(Reason::Memory)?;
         self.sources.push(source);
         Ok(())
     }
@@ -236,7 +237,7 @@ impl<'a> SceneBuilder<'a> {
         let vertex = vertex.ok_or(Reason::ElementTooLarge { count: count + 1, limit: u64::from(u32::MAX) })?;
         self.has_non_finite |= !is_finite(&position);
         match &mut self.output.pieces {
-            None => _ = self.output.soup.push_position(position),
+            None => _ = self.output.soup.try_push_position(position).map_err(Reason::Build)?,
             Some(pieces) => pieces.push_position(position)?,
         }
         Ok(vertex)

@@ -102,13 +102,7 @@ pub enum Reason {
         /// The text in the file.
         text: String,
     },
-    /// A text with commas or semicolons is not a number, in a table whose columns are separated by blanks.
-    #[error("'{text}' is not a number that fits here (a table with commas or semicolons should be named .csv)")]
-    SeparatorInNumber {
-        /// The text in the file.
-        text: String,
-    },
-    /// A coordinate of a query or of an STL facet is NaN, infinite, or too large for double precision.
+    /// A coordinate of an STL facet is NaN, infinite, or too large for double precision.
     #[error("coordinate '{text}' is not finite")]
     NonFinite {
         /// The text in the file.
@@ -227,7 +221,7 @@ pub enum Reason {
         /// The variant in the words of the header.
         text: String,
     },
-    /// The names of the columns of a CSV file do not identify the coordinates.
+    /// The names of the columns of a table do not identify the coordinates.
     #[error("no coordinates among the columns {}; they may be named {expected}", names.join(", "))]
     UnknownColumns {
         /// The names of the columns, or of the first ones if there are many.
@@ -235,7 +229,27 @@ pub enum Reason {
         /// The names that are expected.
         expected: &'static str,
     },
-    /// A CSV record has a quote that is not closed.
+    /// The columns of a table have no names, and the first of them may be the number of the point.
+    #[error(
+        "the first of the {found} columns may be the number of the point, and not its x: name the columns on the first \
+         line, such as 'id,x,y,z,code'"
+    )]
+    UnnamedColumns {
+        /// The number of columns.
+        found: usize,
+    },
+    /// The first line of a table has the number of its rows, which is another one.
+    #[error("the first line announces {announced} rows, but there are {found}")]
+    RowCount {
+        /// The number on the first line.
+        announced: u64,
+        /// The number of rows.
+        found: u64,
+    },
+    /// What the file has does not fit into memory.
+    #[error("does not fit into memory: {0}")]
+    Memory(std::collections::TryReserveError),
+    /// A record of a table has a quote that is not closed.
     #[error("a quote is not closed on this line")]
     BadRecord,
 }

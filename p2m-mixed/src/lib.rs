@@ -34,6 +34,7 @@ mod error;
 mod formats;
 pub mod generate;
 mod open;
+mod output_file;
 mod parse;
 mod pieces;
 mod points;
@@ -51,6 +52,7 @@ pub use formats::p2m::{load_scene, read_p2m, save_scene, write_p2m};
 pub use formats::ply::{VertexValues, read_ply, write_ply, write_ply_ascii, write_ply_with_values};
 pub use formats::stl::{StlRounding, read_stl, stl_rounding, write_stl};
 pub use p2m_core::{UnknownExtension, UnknownFormat};
+pub use parse::text::set_max_line_bytes;
 pub use pieces::{PieceOptions, PieceSummary, read_scene_in_pieces};
 pub use points::{PointFormat, read_points, read_points_from, read_rays, read_rays_from};
 pub use polygon::MAX_CORNERS;
@@ -61,6 +63,7 @@ pub use write::{WriteError, write_scene};
 /// The parts of this crate that its sibling crates use. They are not part of the public interface.
 #[doc(hidden)]
 pub mod engine {
+    pub use crate::output_file::OutputFile;
     pub use crate::read::read_scene_in_blocks;
     pub use crate::scene::object_number;
 }

@@ -20,7 +20,7 @@ use std::io::{self, Write};
 /// ```
 ///
 /// # Errors
-/// [`WriteError`] for scenes that STL cannot represent, before anything is written, and for errors of `writer`, after
+/// [`WriteError`] for scenes that STL or a table of points cannot represent, before anything is written, and for errors of `writer`, after
 /// which the file may be incomplete.
 pub fn write_scene(scene: &Scene, format: Format, writer: impl Write) -> Result<(), WriteError> {
     format.write(scene, writer)
@@ -37,6 +37,12 @@ pub enum WriteError {
     #[error("primitive {id} is no triangle, and an STL file holds nothing else")]
     NotATriangle {
         /// The first primitive that is not a triangle.
+        id: PrimitiveId,
+    },
+    /// A primitive is not a point, and a table of points has only points.
+    #[error("primitive {id} is no point, and a table of points holds nothing else")]
+    NotAPoint {
+        /// The first primitive that is not a point.
         id: PrimitiveId,
     },
     /// A coordinate is beyond the range of single precision, which STL files have.

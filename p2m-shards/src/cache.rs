@@ -1,8 +1,10 @@
 //! The shards that are in memory. A shard that is not there is loaded when a query needs it, and those unused for
 //! longest make room for it.
 
+use crate::manifest::Manifest;
 use crate::shard::Shard;
 use crate::{ShardEntry, ShardError};
+use p2m_core::engine::MAX_THREADS;
 use rayon::ThreadPoolBuilder;
 use std::error::Error;
 use std::panic::resume_unwind;
@@ -22,6 +24,8 @@ struct Slot {
 /// The shards of an index that are in memory.
 pub(crate) struct Cache {
     folder: PathBuf,
+    /// The name of the backend in the manifest.
+    backend: String,
     is_mapped: bool,
     /// The largest sum of the estimated bytes of all shards in memory.
     max_bytes: u64,
@@ -35,12 +39,13 @@ pub(crate) struct Cache {
 }
 
 impl Cache {
-    pub(crate) fn new(folder: &Path, len: usize, max_bytes: u64, is_mapped: bool) -> Self {
+    pub(crate) fn new(folder: &Path, manifest: &Manifest, max_bytes: u64, is_mapped: bool) -> Self {
         Self {
             folder: folder.to_owned(),
+            backend: manifest.backend.clone(),
             is_mapped,
             max_bytes,
-            slots: std::iter::repeat_with(Slot::default).take(len).collect(),
+            slots: std::iter::repeat_with(Slot::default).take(manifest.shards.len()).collect(),
             clock: AtomicU64::new(0),
             loads: AtomicU64::new(0),
             used_bytes: Mutex::new(0),
@@ -79,11 +84,11 @@ impl Cache {
     /// Files are checked in parallel. A thread of a pool that waits for these checks begins other queries meanwhile,
     /// which may need the very shard that it is loading, so it would wait for itself.
     fn load(&self, entry: &ShardEntry) -> thread::Result<Result<Shard, ShardError>> {
-        let threads = rayon::current_num_threads();
+        let threads = rayon::current_num_threads().min(MAX_THREADS);
         let no_thread = |error: &dyn Error| ShardError::Threads { reason: error.to_string() };
         let load = || {
             let pool = ThreadPoolBuilder::new().num_threads(threads).build().map_err(|error| no_thread(&error))?;
-            pool.install(|| Shard::load(&self.folder, entry, self.is_mapped))
+            pool.install(|| Shard::load(&self.folder, &self.backend, entry, self.is_mapped))
         };
         thread::scope(|scope| match thread::Builder::new().spawn_scoped(scope, load) {
             Ok(loader) => loader.join(),

@@ -63,6 +63,9 @@ pub enum ShardError {
         /// The message of the operating system.
         reason: String,
     },
+    /// The answers do not fit into memory.
+    #[error("the answers do not fit into memory: {0}")]
+    Memory(#[from] std::collections::TryReserveError),
     /// The file of a scene cannot be read.
     #[error(transparent)]
     Scene(#[from] ReadError),

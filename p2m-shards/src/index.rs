@@ -58,7 +58,7 @@ impl ShardedIndex {
     fn open_with(folder: &Path, max_bytes: u64, is_mapped: bool) -> Result<Self, ShardError> {
         let manifest = Manifest::read(folder)?;
         let boxes = manifest.shards.iter().map(crate::ShardEntry::bounds).collect();
-        let cache = Cache::new(folder, manifest.shards.len(), max_bytes, is_mapped);
+        let cache = Cache::new(folder, &manifest, max_bytes, is_mapped);
         Ok(Self { folder: folder.to_owned(), bounds: manifest.bounds(), manifest, boxes, cache })
     }
 

@@ -6,6 +6,7 @@ use p2m_field::sign::SignRule;
 use p2m_mixed::Object;
 use p2m_mixed::statistics::Counts;
 use serde::{Deserialize, Serialize};
+use std::collections::HashSet;
 use std::path::{Path, PathBuf};
 use std::{fs, io};
 use tempfile::TempPath;
@@ -195,12 +196,23 @@ impl Manifest {
             let path = Path::new(file);
             path.file_name().is_some_and(|name| name == file)
         };
+        let has_file_twice = || {
+            let mut files = HashSet::new();
+            self.shards.iter().any(|shard| !files.insert(&shard.file))
+        };
+        let is_in_scene = |object: &ObjectEntry| {
+            object.first.checked_add(object.primitives).is_some_and(|end| total.is_some_and(|total| end <= total))
+        };
         if total != self.triangles.checked_add(self.segments).and_then(|sum| sum.checked_add(self.points)) {
             Some("the shards have another number of primitives")
         } else if self.shards.iter().any(|shard| shard.bounds().is_empty() || !shard.bounds().is_finite()) {
             Some("the box of a shard is empty or not finite")
         } else if !self.shards.iter().all(|shard| is_name(&shard.file)) {
             Some("the file of a shard is not in its folder")
+        } else if has_file_twice() {
+            Some("the file of a shard is there twice")
+        } else if !self.objects.iter().all(is_in_scene) {
+            Some("an object has primitives that the scene does not have")
         } else {
             None
         }

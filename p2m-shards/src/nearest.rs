@@ -249,8 +249,12 @@ pub(crate) fn near(query: &Point3<f64>, k: usize, radius: f64) -> impl Search<An
         bound,
         move |found| limit(largest(found)),
         move |found, query, number, shard| {
-            let near = shard.index().k_nearest(query, k, largest(found)).into_iter();
-            found.extend(near.map(|closest| (key(shard, &closest, query), ShardClosest::new(number, shard, closest))));
+            let near = shard.index().try_k_nearest(query, k, largest(found))?;
+            found.try_reserve(near.len())?;
+            found.extend(
+                near.into_iter()
+                    .map(|closest| (key(shard, &closest, query), ShardClosest::new(number, shard, closest))),
+            );
             found.sort_unstable_by_key(|(key, answer)| (*key, answer.id));
             found.truncate(k);
             Ok(())

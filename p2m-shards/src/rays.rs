@@ -90,8 +90,9 @@ pub(crate) fn all_hits(ray: &Ray) -> impl Search<Answer = Vec<ShardHit>> + use<>
         entry,
         |_| f64::INFINITY,
         |all, ray, number, shard| {
-            let hits = ray_query(shard)?.all_intersections(ray).into_iter();
-            all.extend(hits.map(|hit| ShardHit::new(number, shard, hit)));
+            let hits = ray_query(shard)?.all_intersections(ray);
+            all.try_reserve(hits.len())?;
+            all.extend(hits.into_iter().map(|hit| ShardHit::new(number, shard, hit)));
             Ok(())
         },
         |mut all| {

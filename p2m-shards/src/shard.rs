@@ -25,7 +25,7 @@ pub struct Shard {
 
 impl Shard {
     /// Loads the shard of an entry of the manifest from the folder, and checks that it is the one.
-    pub(crate) fn load(folder: &Path, entry: &ShardEntry, is_mapped: bool) -> Result<Self, ShardError> {
+    pub(crate) fn load(folder: &Path, backend: &str, entry: &ShardEntry, is_mapped: bool) -> Result<Self, ShardError> {
         let file = folder.join(&entry.file);
         let other = |reason| ShardError::OtherShard { file: file.clone(), reason };
         let load_error = |error| ShardError::Load { file: file.clone(), error };
@@ -49,6 +49,9 @@ impl Shard {
             Ok(Self { bounds: soup.aabb(), soup, backend, index, ids })
         };
         let shard = load().map_err(load_error)?;
+        if shard.backend() != backend {
+            return Err(other("its backend differs"));
+        }
         if shard.soup.len() as u64 != entry.primitives {
             return Err(other("the number of its primitives differs"));
         }

@@ -474,6 +474,45 @@ fn a_wrong_file_is_an_error_that_names_it() {
     assert!(error_of(folder).contains(MANIFEST_FILE), "{}", error_of(folder));
 }
 
+/// Lies with a right checksum are found as well.
+#[test]
+fn a_manifest_that_contradicts_itself_or_its_files_is_refused() {
+    let folder = tempfile::tempdir().unwrap();
+    let folder = folder.path();
+    let sphere = p2m_mixed::generate::ico_sphere(&Default::default()).unwrap();
+    write(&mut rng("forged manifests", 0), folder, &sphere, ShardOptions::default().with_max_bytes(20_000));
+    let path = folder.join(MANIFEST_FILE);
+    let text = fs::read_to_string(&path).unwrap();
+    let true_one = Manifest::read(folder).unwrap();
+    let forged = |forge: &dyn Fn(&mut Manifest)| {
+        let (mut manifest, mut document) =
+            (true_one.clone(), serde_json::from_str::<serde_json::Value>(&text).unwrap());
+        forge(&mut manifest);
+        document["checksum"] = manifest.checksum().into();
+        document["manifest"] = serde_json::to_value(&manifest).unwrap();
+        fs::write(&path, document.to_string()).unwrap();
+        error_of(folder)
+    };
+    let twice = forged(&|manifest| {
+        let (first, second) = (manifest.shards[0].clone(), manifest.shards[1].primitives);
+        manifest.triangles += first.primitives;
+        manifest.triangles -= second;
+        manifest.shards[1] = first;
+    });
+    assert!(twice.ends_with("the manifest contradicts itself: the file of a shard is there twice"), "{twice}");
+    let object = |first: u64, primitives: u64| {
+        let entry = serde_json::json!({ "name": "a", "first": first, "primitives": primitives });
+        forged(&|manifest| manifest.objects = vec![serde_json::from_value(entry.clone()).unwrap()])
+    };
+    let total = true_one.primitive_count();
+    for error in [object(0, total + 1), object(total, 1), object(u64::MAX, 2)] {
+        assert!(error.ends_with("an object has primitives that the scene does not have"), "{error}");
+    }
+    let other = BACKENDS.iter().find(|backend| backend.name != true_one.backend).expect("several backends");
+    let backend = forged(&|manifest| manifest.backend = other.name.to_owned());
+    assert!(backend.ends_with("not the shard that the manifest describes: its backend differs"), "{backend}");
+}
+
 #[test]
 fn an_index_is_only_replaced_on_purpose_and_unfinished_ones_leave_nothing() {
     let rng = &mut rng("replaced shards", 0);

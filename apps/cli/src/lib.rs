@@ -21,9 +21,10 @@ pub use io::streams::Streams;
 #[doc(hidden)]
 pub use measure::harness;
 
+use crate::io::limits::{Change, Limits};
 use clap::{CommandFactory, FromArgMatches, Parser, Subcommand};
 use std::ffi::OsString;
-use std::io::Write;
+use std::io::{ErrorKind, Write};
 
 /// Closest points and hits of rays in scenes of triangles, segments and points
 #[derive(Parser)]
@@ -32,6 +33,9 @@ struct Cli {
     /// Print errors only: no summary, notes or progress
     #[arg(long, short, global = true)]
     quiet: bool,
+
+    #[arg(long, global = true, value_name = "NAME=VALUE", value_parser = Change::parse, hide_short_help = true, help = Limits::HELP)]
+    read_limit: Vec<Change>,
 
     #[command(subcommand)]
     command: Command,
@@ -136,7 +140,7 @@ impl Command {
 }
 
 /// Options that few users need. They are in `--help`, under a heading of their own, and not in `-h`.
-const ADVANCED: [&str; 20] = [
+const ADVANCED: [&str; 21] = [
     "box_scale",
     "displace_seed",
     "filter",
@@ -151,6 +155,7 @@ const ADVANCED: [&str; 20] = [
     "out_format",
     "points_format",
     "rays_format",
+    "read_limit",
     "round_seconds",
     "scan_format",
     "second_format",
@@ -196,12 +201,22 @@ pub fn run(streams: &Streams, arguments: impl IntoIterator<Item = OsString>) -> 
     let command = match matches.and_then(|matches| Cli::from_arg_matches(&matches)) {
         Ok(cli) => {
             streams.set_quiet(cli.quiet);
+            let limits = Limits::with(&cli.read_limit);
+            streams.set_limits(limits);
+            p2m_mixed::set_max_line_bytes(usize::try_from(limits.line).unwrap_or(usize::MAX));
             cli.command
         }
         Err(error) => {
-            // An error of writing the message cannot be reported anywhere.
-            let _ = streams.show(&error);
-            return if error.use_stderr() { 2 } else { 0 };
+            let shown = streams.show(&error);
+            return match shown {
+                _ if error.use_stderr() => 2,
+                // A reader that closes the pipe early, such as `head`, is no error.
+                Err(error) if error.kind() != ErrorKind::BrokenPipe => {
+                    streams.show_error(&format!("the standard output: cannot be written: {error}"));
+                    1
+                }
+                _ => 0,
+            };
         }
     };
     match command.run(streams) {
@@ -209,9 +224,13 @@ pub fn run(streams: &Streams, arguments: impl IntoIterator<Item = OsString>) -> 
         // A reader that closes the pipe early, such as `head`, is no error.
         Err(error) if is_closed_pipe(&error) => 0,
         Err(error) => {
-            // An error of writing the message cannot be reported anywhere.
-            let _ = writeln!(streams.stderr(), "error: {error:#}");
+            let mut message = format!("{error:#}");
+            if message.contains(LINE_TOO_LONG) {
+                message += " (--read-limit line=.. raises the limit)";
+            }
+            streams.show_error(&message);
             if error.is::<crate::io::usage::Usage>() {
+                // An error of writing the message cannot be reported anywhere.
                 let _ = writeln!(streams.stderr(), "\nFor more information, try '{} --help'.", command.path());
                 return 2;
             }
@@ -219,6 +238,9 @@ pub fn run(streams: &Streams, arguments: impl IntoIterator<Item = OsString>) -> 
         }
     }
 }
+
+/// The part of the message for a line that is too long.
+const LINE_TOO_LONG: &str = "a line has more than";
 
 fn is_closed_pipe(error: &anyhow::Error) -> bool {
     error

@@ -62,6 +62,7 @@ pub(crate) fn load_error(error: &LoadError, name: &str) -> PyErr {
 pub(crate) fn shard_error(error: ShardError) -> PyErr {
     match &error {
         ShardError::Io { file, error } => io_error(error, file),
+        ShardError::Memory(_) => PyMemoryError::new_err(error.to_string()),
         ShardError::Load { file, error } => load_error(error, &file.display().to_string()),
         ShardError::Exists { .. } => PyFileExistsError::new_err(format!("{error}: give replace=True to replace it")),
         _ => value_error(error),

@@ -17,6 +17,7 @@ mod errors;
 mod fields;
 mod hausdorff;
 mod index;
+mod memory;
 mod pair_columns;
 mod pairs;
 mod parts;
@@ -45,7 +46,7 @@ mod _p2m {
         pair_columns::PairList,
         queries::{closest, is_any_within, k_nearest, within},
         rays::{HitList, rays},
-        saved::{load, load_bytes},
+        saved::{load, load_bytes, write_bytes},
         scene::Scene,
         sharded::{ShardWriter, Shards},
         threads::default_threads,

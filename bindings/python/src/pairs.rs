@@ -2,6 +2,7 @@
 
 use crate::arrays::{borrowed, motions, slice, triples};
 use crate::index::Index;
+use crate::memory::reserve;
 use crate::pair_columns::{PairArrays, PairColumns, PairList};
 use crate::parts::{Split, answer_in_parts, batch_options, check_finite};
 use crate::work::{Monitor, Threads, run_owned};
@@ -207,12 +208,14 @@ impl Index {
         let lists = scenes.run(py, threads, None, |first, second, options| {
             let mut list: Vec<ClosestPair<f64>> = Vec::new();
             let _ = PairQuery::visit_pairs_within(&first, second, options, &mut |pair| {
+                reserve(&mut list, 1);
                 list.push(*pair);
                 ControlFlow::Continue(())
             });
-            list.sort_by(|a, b| a.distance.total_cmp(&b.distance).then(a.primitives.cmp(&b.primitives)));
+            list.sort_unstable_by(|a, b| a.distance.total_cmp(&b.distance).then(a.primitives.cmp(&b.primitives)));
             list
         })?;
-        Ok(PairList(lists.concat().into_iter().map(Some).collect()))
+        // There is one list, whose memory is reused.
+        Ok(PairList(lists.into_iter().next().unwrap_or_default().into_iter().map(Some).collect()))
     }
 }

@@ -89,13 +89,6 @@ fn halve<O: Split, R: Send>(
     results.append(&mut others);
 }
 
-/// Joins lists that parts returned. Each is freed as soon as it is moved, so there is little memory besides.
-pub(crate) fn joined<T>(parts: Vec<Vec<T>>) -> Vec<T> {
-    let mut all = Vec::with_capacity(parts.iter().map(Vec::len).sum());
-    parts.into_iter().for_each(|mut part| all.append(&mut part));
-    all
-}
-
 /// The number of rows that are checked at a time.
 const ROWS_PER_CHECK: usize = 1 << 10;
 

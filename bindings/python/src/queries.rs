@@ -3,11 +3,12 @@
 use crate::arrays::{Coordinates, borrowed, slice, with_positions};
 use crate::columns::{ClosestArrays, ClosestValues, Near, NearList, Rows};
 use crate::index::Index;
-use crate::parts::{answer_in_parts, batch_options, check_finite, joined};
+use crate::memory::{collected, joined, out_of_memory};
+use crate::parts::{answer_in_parts, batch_options, check_finite};
 use crate::sharded::{ANSWERS_PER_PART, in_shards};
 use crate::signs::{SignRule, Signed as SignedIndex};
 use crate::source::{Part, Source};
-use crate::work::{Monitor, Threads};
+use crate::work::{Monitor, Threads, catch};
 use nalgebra::Point3;
 use numpy::{PyReadonlyArray1, PyReadwriteArray1};
 use p2m_core::batch::{BatchOptions, Interruptible, closest_columns_into};
@@ -119,9 +120,12 @@ fn near<P: Position<f64>>(part: &Part<'_>, points: &[P], k: usize, radius: f64) 
         points,
         Position::point,
         any_index,
-        |index, query| index.k_nearest(query, k, radius).into_iter().map(in_whole).collect(),
+        |index, query| {
+            let near = index.try_k_nearest(query, k, radius).unwrap_or_else(|_| out_of_memory());
+            collected(near.into_iter().map(in_whole))
+        },
         |shards, points| shards.k_nearest(points, k, radius),
-        |near| near.into_iter().map(in_shards).collect(),
+        |near| collected(near.into_iter().map(in_shards)),
     )
 }
 
@@ -145,7 +149,7 @@ pub(crate) fn within(
             Ok(joined(answers))
         })?
     });
-    Ok(NearList(joined(parts)))
+    py.detach(|| catch(|| joined(parts))).map(NearList)
 }
 
 /// Writes numbers to a column.

@@ -4,9 +4,11 @@ use crate::arrays::{borrowed, slice, triples};
 use crate::columns::{NO_PRIMITIVE, answer_list, columns};
 use crate::errors::{not_finite, value_error};
 use crate::index::Index;
-use crate::parts::{Split, joined};
+use crate::memory::{collected, joined};
+use crate::parts::Split;
 use crate::queries::write_counts;
 use crate::source::Source;
+use crate::work::catch;
 use nalgebra::{Point3, Vector3};
 use numpy::PyReadonlyArray1;
 use p2m_core::{Hit, Ray, RayError, RayQuery, Side};
@@ -158,15 +160,15 @@ pub(crate) fn rays(
             let hits = cast.answer(
                 py,
                 slice(&mut numbers)?.unwrap_or_default(),
-                |index, ray| index.all_intersections(ray).into_iter().map(in_whole).collect(),
+                |index, ray| collected(index.all_intersections(ray).into_iter().map(in_whole)),
                 |shards, rays| shards.all_intersections(rays),
-                |hits| hits.into_iter().map(in_shards).collect::<Vec<RayHit>>(),
+                |hits| collected(hits.into_iter().map(in_shards)),
                 |hits, values: &mut [i64]| {
                     write_counts(values, hits.iter().map(Vec::len));
                     joined(hits)
                 },
             )?;
-            return Ok(Some(HitList(joined(hits))));
+            return py.detach(|| catch(|| joined(hits))).map(|hits| Some(HitList(hits)));
         }
         _ => {
             return Err(value_error(format!("mode: '{mode}' is none of 'first', 'all', 'count', 'any', 'crossings'")));

@@ -6,12 +6,12 @@ use crate::scene::SharedScene;
 use crate::work::{Monitor, run_owned};
 use p2m_backends::{BackendEntry, BuildSettings, BuiltIndex};
 use p2m_core::storage::{self, LoadError, SavedFile, Writer};
+use p2m_mixed::engine::OutputFile;
 use p2m_mixed::{load_scene, save_scene};
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 use pyo3::types::PyBytes;
-use std::fs::File;
-use std::io::{self, BufWriter, Write};
+use std::io::{self, Write};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
@@ -81,24 +81,19 @@ fn write(scene: &SharedScene, built: &BuiltIndex, out: impl Write) -> io::Result
     writer.write(out)
 }
 
-/// Writes a file under another name, and renames it when it is complete, unless the work was cancelled.
-fn write_file(scene: &SharedScene, built: &BuiltIndex, path: &Path, monitor: &Monitor) -> io::Result<()> {
-    let mut unfinished = path.as_os_str().to_owned();
-    unfinished.push(format!(".{}.unfinished", std::process::id()));
-    let unfinished = PathBuf::from(unfinished);
-    let written = File::create(&unfinished).and_then(|file| {
-        let mut out = BufWriter::new(file);
-        write(scene, built, &mut out)?;
-        out.flush()
-    });
-    let finished = written.and_then(|()| {
-        if monitor.is_cancelled() { std::fs::remove_file(&unfinished) } else { std::fs::rename(&unfinished, path) }
-    });
-    if finished.is_err() {
-        // The first error is the one to report.
-        let _ = std::fs::remove_file(&unfinished);
-    }
-    finished
+/// Writes a file, which appears when it is complete, unless the work was cancelled.
+fn write_file(path: &Path, monitor: &Monitor, write: impl FnOnce(&mut OutputFile) -> io::Result<()>) -> io::Result<()> {
+    let mut file = OutputFile::create(path)?;
+    write(&mut file)?;
+    if monitor.is_cancelled() { Ok(()) } else { file.finish() }
+}
+
+/// Writes bytes to a file, which appears when it is complete.
+#[pyfunction]
+pub(crate) fn write_bytes(py: Python<'_>, path: PathBuf, bytes: Vec<u8>) -> PyResult<()> {
+    let file = path.clone();
+    let saved = run_owned(py, 1, 1, None, move |monitor| write_file(&file, monitor, |out| out.write_all(&bytes)))?;
+    saved.map_err(|error| io_error(&error, &path))
 }
 
 #[pymethods]
@@ -109,7 +104,8 @@ impl Index {
             return Err(value_error(format!("the backend '{}' has no saved form", self.backend.name)));
         }
         let (scene, built, file) = (self.scene.clone(), self.built.clone(), path.clone());
-        let saved = run_owned(py, 1, 1, None, move |monitor| write_file(&scene, &built, &file, monitor))?;
+        let saved =
+            run_owned(py, 1, 1, None, move |monitor| write_file(&file, monitor, |out| write(&scene, &built, out)))?;
         saved.map_err(|error| io_error(&error, &path))
     }
 

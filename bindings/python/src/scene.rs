@@ -84,6 +84,29 @@ impl Scene {
         scene.map(Self::new).map_err(|error| read_error(&error, &path))
     }
 
+    /// Makes a scene of named parts, which become objects.
+    #[staticmethod]
+    fn joined(parts: Vec<(String, Self)>) -> PyResult<Self> {
+        let mut whole = p2m_mixed::Scene::default();
+        for (name, part) in parts {
+            whole.add(&name, &part.shared.soup).map_err(value_error)?;
+        }
+        Ok(Self::new(whole))
+    }
+
+    /// Returns the scene with the numbers of the polygons that its triangles are from.
+    fn with_sources(&self, triangles: PyReadonlyArray1<'_, u32>) -> PyResult<Self> {
+        let mut scene = (*self.shared).clone();
+        let numbers = triangles.as_slice()?;
+        if numbers.len() != scene.soup.triangles().len() {
+            return Err(value_error("there is not one number for each triangle"));
+        }
+        let elements = scene.soup.elements().zip(&mut scene.sources);
+        let of_triangles = elements.filter(|(element, _)| matches!(element, Element::Triangle(_)));
+        of_triangles.zip(numbers).for_each(|((_, source), number)| *source = *number);
+        Ok(Self::new(scene))
+    }
+
     /// Makes the scene of `to_bytes`.
     #[staticmethod]
     fn from_bytes(py: Python<'_>, bytes: &[u8]) -> PyResult<Self> {

@@ -7,7 +7,6 @@
 use pyo3::prelude::*;
 use rayon::{ThreadPool, ThreadPoolBuilder};
 use std::collections::HashMap;
-use std::num::NonZero;
 use std::sync::{Arc, Mutex, OnceLock, PoisonError};
 
 /// The pools of a process by their number of threads.
@@ -18,18 +17,13 @@ type Pools = HashMap<usize, Arc<ThreadPool>>;
 static POOLS: Mutex<Option<(u32, Pools)>> = Mutex::new(None);
 
 /// Returns the number of threads that is used where none is given: that of the environment variable
-/// `RAYON_NUM_THREADS`, or else the number of processors that this process may use.
+/// `RAYON_NUM_THREADS`, or else the number of processors that this process may use, and at most 1024.
 ///
 /// It is determined once, because the system takes longer to tell it than ten queries take.
 #[pyfunction]
 pub(crate) fn default_threads() -> usize {
     static THREADS: OnceLock<usize> = OnceLock::new();
-    *THREADS.get_or_init(|| {
-        let of_environment = std::env::var("RAYON_NUM_THREADS").ok().and_then(|number| number.trim().parse().ok());
-        of_environment
-            .filter(|&number| number > 0)
-            .unwrap_or_else(|| std::thread::available_parallelism().map_or(1, NonZero::get))
-    })
+    *THREADS.get_or_init(p2m_core::engine::default_threads)
 }
 
 /// Returns the pool of this process with so many threads, which are started by the first call.

@@ -4,7 +4,8 @@
 //! it handle signals, and calls the progress callback. If either raises an exception, the work is cancelled. Work that
 //! is small, or for one thread, runs on the calling thread itself, which then polls between its steps.
 
-use pyo3::exceptions::PyRuntimeError;
+use crate::memory::OutOfMemory;
+use pyo3::exceptions::{PyMemoryError, PyRuntimeError};
 use pyo3::prelude::*;
 use rayon::ThreadPool;
 use std::any::Any;
@@ -167,11 +168,20 @@ impl Monitor {
     }
 }
 
-/// Returns the exception for a panic, which is an error of this package and not of its user.
+/// Returns the exception for work that ran out of memory, or for a panic, which is an error of this package and not of
+/// its user.
 fn panicked(payload: &(dyn Any + Send)) -> PyErr {
+    if payload.is::<OutOfMemory>() {
+        return PyMemoryError::new_err("the answers do not fit into memory");
+    }
     let text = payload.downcast_ref::<&str>().copied();
     let text = text.or_else(|| payload.downcast_ref::<String>().map(String::as_str)).unwrap_or("no message");
     PyRuntimeError::new_err(format!("p2m failed, which is an error in p2m: {text}"))
+}
+
+/// Runs work that may run out of memory on the calling thread.
+pub(crate) fn catch<R>(work: impl FnOnce() -> R) -> PyResult<R> {
+    catch_unwind(AssertUnwindSafe(work)).map_err(|payload| panicked(&*payload))
 }
 
 /// Where a batch runs.

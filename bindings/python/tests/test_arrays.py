@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+import warnings
+from pathlib import Path
+
 import numpy as np
 import pytest
 from conftest import ALL_FIELDS, assert_same, mixed_scene, sphere
@@ -170,7 +173,7 @@ def test_wrong_arguments_are_named() -> None:
         (ValueError, "fields: 'colour'", lambda: INDEX.closest(points, fields=("colour",))),
         (ValueError, "fields: none", lambda: INDEX.closest(points, fields=())),
         (ValueError, "threads: 0", lambda: INDEX.closest(points, threads=0)),
-        (TypeError, "float", lambda: INDEX.closest(points, threads=1.5)),
+        (TypeError, "threads: 1.5 is no whole number", lambda: INDEX.closest(points, threads=1.5)),
         (ValueError, "k: 0", lambda: INDEX.k_nearest(points, 0)),
         (ValueError, "radius: -1.0", lambda: INDEX.within(points, -1)),
         (ValueError, "radius: nan", lambda: INDEX.is_any_within(points, np.nan)),
@@ -217,3 +220,66 @@ def test_records_are_like_named_tuples() -> None:
 def test_any_view_has_the_answers_of_its_copy(shape: list[int], seed: int, order: list[int]) -> None:
     base = np.random.default_rng(seed).normal(size=(*shape, 2, 3))[..., order][..., 1, :]
     assert_same(INDEX.closest(base), INDEX.closest(base.copy()))
+
+
+def test_what_is_no_array_of_points_is_refused_or_understood(tmp_path: Path) -> None:
+    corners = np.eye(3)
+    index = p2m.Index(p2m.Scene(corners, [[0, 1, 2]]))
+    masked = np.ma.masked_array(corners, mask=[[True] * 3, [False] * 3, [False] * 3])
+    for ask in [lambda: index.distance(masked), lambda: p2m.Scene(masked), lambda: p2m.deviation(masked, index)]:
+        with pytest.raises(TypeError, match="a masked array hides numbers"):
+            ask()
+    for wrong in [1.5, "2", None]:
+        with pytest.raises(TypeError, match="k: .* is no whole number"):
+            index.k_nearest(corners, wrong)  # type: ignore[arg-type]
+    with pytest.raises(ValueError, match="k: 1099511627776 is not from 1 to"):
+        index.k_nearest(corners, 2**40)
+    for text in ["1", b"1"]:
+        with pytest.raises(TypeError, match="max_distance: .* is text and no number"):
+            index.distance(corners, max_distance=text)  # type: ignore[arg-type]
+    assert index.distance([]).shape == (0,) and index.k_nearest([], 2).distance.shape == (0, 2)
+    # An array of points and a path are scenes.
+    assert len(p2m.Scene(corners)) == 3 and p2m.Scene(corners).counts.points == 3
+    assert len(p2m.Scene(corners, triangles=[])) == 0
+    assert p2m.Index(corners).distance([1.0, 0.0, 0.5]) == 0.5
+    path = tmp_path / "cloud.xyz"
+    path.write_text("x y z\n0 0 0\nnan 0 0\n4 0 0\n")
+    assert p2m.Index(path).distance([4, 3, 0]) == 3.0 and len(p2m.read(path)) == 2
+    found = p2m.deviation(str(path), str(path), sign=None)
+    assert found.values[[0, 2]].tolist() == [0.0, 0.0] and np.isnan(found.values[1])
+    with pytest.raises(TypeError, match="list is no scene: give a path, an array of points"):
+        p2m.Scene.of([[0, 0, 0]])
+
+
+def test_meshes_of_other_packages_keep_the_numbers_of_their_cells_and_names() -> None:
+    pyvista = pytest.importorskip("pyvista")
+    tetrahedron = pyvista.UnstructuredGrid({10: np.array([[0, 1, 2, 3]])}, np.eye(4, 3))
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        scene = p2m.Scene.of(tetrahedron)
+    assert scene.counts.triangles == 4 and scene.sources.tolist() == [0] * 4
+    faces = pyvista.PolyData(np.array([[0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0], [0, 0, 1.0]]), [4, 0, 1, 2, 3, 3, 0, 1, 4])
+    assert p2m.Scene.of(faces).sources.tolist() == [0, 0, 1]
+
+
+def test_quads_of_meshio_are_counted_as_cells() -> None:
+    meshio = pytest.importorskip("meshio")
+    corners = np.array([[0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0], [2, 0, 0.0]])
+    mesh = meshio.Mesh(corners, [("triangle", [[1, 4, 2]]), ("quad", [[0, 1, 2, 3]])])
+    assert p2m.Scene.of(mesh).sources.tolist() == [0, 1, 1]
+
+
+def test_scenes_of_trimesh_keep_clouds_paths_and_names() -> None:
+    trimesh = pytest.importorskip("trimesh")
+    scene = trimesh.Scene()
+    turned = trimesh.transformations.translation_matrix([5, 0, 0])
+    scene.add_geometry(trimesh.creation.box(), node_name="box", geom_name="box", transform=turned)
+    scene.add_geometry(trimesh.PointCloud([[0, 0, 9.0]]), node_name="cloud", geom_name="cloud")
+    scene.add_geometry(trimesh.load_path([[[0, 0, 0], [1, 0, 0]]]), node_name="path", geom_name="path")
+    made = p2m.Scene.of(scene)
+    assert (made.counts.triangles, made.counts.segments, made.counts.points) == (12, 1, 1)
+    assert sorted(part.name for part in made.objects) == ["box", "cloud", "path"]
+    index = p2m.Index(made)
+    answer = index.closest([[6.5, 0, 0], [0, 0, 8]], fields=("distance", "object"))
+    assert answer.distance.tolist() == [1.0, 1.0]
+    assert [made.objects[number].name for number in answer.object] == ["box", "cloud"]

@@ -131,3 +131,15 @@ def test_the_program_has_the_same_statistics(tmp_path: Path) -> None:
     report = json.loads(subprocess.run(command, check=True, capture_output=True, text=True).stdout)
     statistics = p2m.deviation(np.load(tmp_path / "scan.npy"), p2m.read(tmp_path / "cube.obj")).statistics
     assert report["statistics"] == {key: value for key, value in statistics.items() if key not in ("count", "missing")}
+
+
+def test_a_table_has_the_points_and_their_deviations(tmp_path: Path) -> None:
+    corners = [[0, 0, 0], [1, 0, 0], [0, 1, 0], [0, 0, 1]]
+    solid = p2m.Scene(corners, triangles=[[0, 2, 1], [0, 1, 3], [0, 3, 2], [1, 2, 3]])
+    found = p2m.deviation([[0.125, 0.25, 0.25], [np.nan, 0, 0], [0.25, -0.5, 0.25]], solid)
+    found.save(tmp_path / "a.csv")
+    rows = (tmp_path / "a.csv").read_text().splitlines()
+    assert rows[0] == "qx,qy,qz,x,y,z,distance,signed_distance,primitive,feature"
+    assert rows[1] == "0.125,0.25,0.25,0.0,0.25,0.25,0.125,-0.125,2,face"
+    assert rows[2].startswith("nan,0.0,0.0,,") and rows[2].count(",") == 9
+    assert rows[3] == "0.25,-0.5,0.25,0.25,0.0,0.25,0.5,0.5,1,face"

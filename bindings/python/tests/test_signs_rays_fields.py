@@ -225,7 +225,16 @@ def test_objects_of_other_packages_are_scenes() -> None:
     same(p2m.Scene.of((vertices, triangles)))
     mesh = types.SimpleNamespace(vertices=vertices, faces=triangles)
     same(p2m.Scene.of(mesh))
-    same(p2m.Scene.of(types.SimpleNamespace(geometry={}, to_mesh=lambda: mesh)))
+    moved: list[object] = []
+    part = types.SimpleNamespace(vertices=vertices, faces=triangles, apply_transform=moved.append)
+    part.copy = lambda: part
+
+    class Graph(dict[str, tuple[object, str]]):
+        nodes_geometry = ("ball",)
+
+    placed = p2m.Scene.of(types.SimpleNamespace(geometry={"shape": part}, graph=Graph(ball=("a matrix", "shape"))))
+    same(placed)
+    assert moved == ["a matrix"] and [named.name for named in placed.objects] == ["ball"]
     same(p2m.Index(mesh).scene)
     cloud = p2m.Scene.of(types.SimpleNamespace(vertices=vertices))
     assert cloud.counts.points == len(vertices) and len(cloud) == len(vertices)
@@ -244,8 +253,10 @@ def test_objects_of_other_packages_are_scenes() -> None:
 
     padded = np.column_stack([np.full(len(triangles), 3), triangles]).ravel()
     poly = types.SimpleNamespace(points=vertices.astype(np.float32), faces=padded, lines=[3, 0, 1, 2, 2, 3, 4],
-                                 verts=[1, 5], n_points=0, GetNumberOfCells=None, GetPolys=None)
+                                 verts=[1, 5], n_points=0, GetNumberOfCells=None, GetPolys=None, n_verts=1, n_lines=2,
+                                 n_cells=len(triangles) + 3, cell_data={}, clear_data=lambda: None)
     poly.triangulate = lambda: poly
+    poly.copy = lambda deep: poly
     assert p2m.Scene.of(poly).counts == (len(vertices), len(triangles), 3, 1)
 
     class TriangleMesh:

@@ -146,7 +146,7 @@ impl<T: Real> ClosestColumns<'_, T> {
             column[i] = closest.map_or([nan; 3], |c| c.barycentric);
         }
         if let Some(column) = &mut self.lower_bound {
-            column[i] = closest.map_or(T::INFINITY, |c| c.lower_bound);
+            column[i] = closest.map_or_else(|| found.lower_bound(), |c| c.lower_bound);
         }
     }
 }

@@ -15,14 +15,19 @@ pub(crate) fn square_within(radius: f64) -> f64 {
     Key::from_offset([radius + f64::from_bits(1), 0.0, 0.0]).square_above() * ROUND_UP
 }
 
-/// Returns the answer for a primitive, whose distance is at least `bound` apart from rounding.
-pub(crate) fn answer<T: Real>(primitive: PrimitiveId, p: &Projection, bound: f64) -> Closest<T> {
+/// Returns the lower bound of an answer, given a bound that is certain apart from rounding.
+pub(crate) fn lower_bound<T: Real>(bound: f64) -> T {
     // Each rounding near zero costs one smallest subnormal. An infinite error leaves a bound of zero.
     let bound = bound * ROUND_DOWN - 2.0 * f64::from_bits(1);
+    if bound > 0.0 { T::round_down_from_f64(bound) } else { T::zero() }
+}
+
+/// Returns the answer for a primitive, whose distance is at least `bound` apart from rounding.
+pub(crate) fn answer<T: Real>(primitive: PrimitiveId, p: &Projection, bound: f64) -> Closest<T> {
     Closest {
         point: from_f64_array(p.point.coords.into()),
         distance: T::round_from_f64(p.key.distance()),
-        lower_bound: if bound > 0.0 { T::round_down_from_f64(bound) } else { T::zero() },
+        lower_bound: lower_bound(bound),
         primitive,
         feature: p.feature,
         barycentric: p.barycentric.map(T::round_from_f64),

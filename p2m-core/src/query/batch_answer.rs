@@ -26,6 +26,12 @@ impl<'a, T: Real> BatchAnswer<'a, T> {
         self.minimum.finish()
     }
 
+    /// Returns the lower bound of the answer, or without one a lower bound on the distances of all primitives.
+    #[inline]
+    pub(crate) fn lower_bound(&self) -> T {
+        self.closest().map_or_else(|| self.minimum.lower_bound_without_answer(), |closest| closest.lower_bound)
+    }
+
     /// Returns the distance and the index of the primitive of [`closest`](Self::closest), without computing the rest.
     #[inline]
     #[must_use]

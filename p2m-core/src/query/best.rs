@@ -1,6 +1,6 @@
 //! The collector of the single nearest primitive.
 
-use super::answer::{ROUND_DOWN, ROUND_UP, answer, square_within};
+use super::answer::{ROUND_DOWN, ROUND_UP, answer, lower_bound, square_within};
 use super::closest::Closest;
 use super::collector::Collector;
 use super::options::QueryOptions;
@@ -132,6 +132,14 @@ impl BestF64 {
         let exact = p.key.distance();
         let pruned = exact * shrink.sqrt() * ROUND_DOWN;
         Some(answer(*primitive, p, if *certified < pruned { *certified } else { pruned }))
+    }
+
+    /// Returns a lower bound on the distances of all primitives where there is no answer. It is infinite if there are no
+    /// primitives.
+    pub(crate) fn lower_bound_without_answer<T: Real>(&self) -> T {
+        // Parts beyond the radius were pruned, by a square that is exact to 5 u.
+        let bound = self.certified.min(self.radius * ROUND_DOWN);
+        if bound < f64::INFINITY { lower_bound(bound) } else { T::INFINITY }
     }
 
     /// Takes a candidate whose key is the square in a lane, unless the single kernel has to compute it. Returns whether it

@@ -3,6 +3,7 @@
 //! The module of a format has two functions, which the table calls. `read` reads a file into a builder, and returns the
 //! scene or its last piece. `write` writes a scene.
 
+mod cloud;
 pub(crate) mod obj;
 pub(crate) mod off;
 pub(crate) mod p2m;
@@ -12,12 +13,13 @@ pub(crate) mod stl;
 use crate::builder::SceneBuilder;
 use crate::parse::blocks::Source;
 use crate::{ReadError, Scene, WriteError};
+use cloud::{csv, xyz};
 use std::io::{BufRead, Write};
 
-/// Makes [`Format`] of a table: the name of a format, which is the extension of its files, its module, and whether its
+/// Makes [`Format`] of a table: the names of a format, which are the extensions of its files, its module, and whether its
 /// files hold every scene.
 macro_rules! scene_formats {
-    ($($(#[$doc:meta])* $variant:ident = $name:literal, $module:ident, is_lossless: $is_lossless:literal;)*) => {
+    ($($(#[$doc:meta])* $variant:ident = $name:literal $(| $other:literal)*, $module:ident, is_lossless: $is_lossless:literal;)*) => {
         p2m_core::formats! {
             /// The file formats of scenes, all of which can be read and written.
             ///
@@ -29,7 +31,7 @@ macro_rules! scene_formats {
             /// let error = "step".parse::<Format>().unwrap_err();
             /// assert!(error.to_string().starts_with("unknown format 'step', expected one of obj, ply"));
             /// ```
-            Format { $($(#[$doc])* $variant = $name,)* }
+            Format { $($(#[$doc])* $variant = $name $(| $other)*,)* }
         }
 
         impl Format {
@@ -72,6 +74,10 @@ scene_formats! {
     /// This is the object file format of Geomview, see [`read_off`](crate::read_off) and
     /// [`write_off`](crate::write_off).
     Off = "off", off, is_lossless: true;
+    /// Text tables of points, whose columns are separated by blanks, see [`read_points`](crate::read_points).
+    Xyz = "xyz" | "txt" | "asc" | "pts", xyz, is_lossless: false;
+    /// Text tables of points, whose columns are separated by commas, see [`read_points`](crate::read_points).
+    Csv = "csv", csv, is_lossless: false;
     /// Files of saved indexes can have a scene, see [`read_p2m`](crate::read_p2m) and [`write_p2m`](crate::write_p2m).
     P2m = "p2m", p2m, is_lossless: true;
 }
@@ -93,7 +99,10 @@ mod tests {
         assert_eq!("npy".parse(), Ok(PointFormat::Npy));
         assert!("".parse::<Format>().is_err() && ".stl".parse::<Format>().is_err());
         let error = PointFormat::from_path(Path::new("q.las")).unwrap_err();
-        assert_eq!(error.to_string(), "q.las: unknown extension 'las', expected one of xyz, txt, csv, npy, ply");
+        assert_eq!(
+            error.to_string(),
+            "q.las: unknown extension 'las', expected one of xyz, txt, asc, pts, csv, npy, ply"
+        );
         assert!(PointFormat::from_path(Path::new("csv")).is_err(), "a name is no extension");
     }
 }

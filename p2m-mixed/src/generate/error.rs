@@ -42,6 +42,16 @@ pub enum GenerateError {
         /// The number of turns around the tube of the torus.
         q: u32,
     },
+    /// The scene does not fit into memory.
+    #[error("{primitives} primitives need about {} MB of memory, and {} MB are free", needed >> 20, free >> 20)]
+    Memory {
+        /// The number of primitives.
+        primitives: usize,
+        /// The memory that they need while they are made, in bytes.
+        needed: u64,
+        /// The memory that is free, in bytes.
+        free: u64,
+    },
     /// The scene is not a valid soup, because it has more primitives than ids or a coordinate overflows.
     #[error(transparent)]
     Build(#[from] BuildError),
@@ -51,11 +61,36 @@ pub(super) fn at_least(least: u32, option: &'static str, value: u32) -> Result<(
     if value < least { Err(GenerateError::TooFew { option, value, least }) } else { Ok(()) }
 }
 
-/// Returns the number of primitives, or an error if there are not enough ids. The argument has room for the product of
-/// three numbers of 32 bits.
-pub(super) fn capacity(primitives: u128) -> Result<usize, BuildError> {
+/// The memory that a primitive needs while a scene is made, in bytes: its indices, and its part of the positions and of
+/// the edges that are divided, twice where lists grow.
+const BYTES_PER_PRIMITIVE: u64 = 64;
+/// The number of primitives from which on the memory is checked.
+const CHECK_FROM_PRIMITIVES: usize = 1 << 20;
+
+/// Returns the number of primitives, or an error if there are not enough ids or there is not enough memory. The argument
+/// has room for the product of three numbers of 32 bits.
+pub(super) fn capacity(primitives: u128) -> Result<usize, GenerateError> {
     let len = usize::try_from(primitives).unwrap_or(usize::MAX);
-    if len > PrimitiveId::MAX_COUNT { Err(BuildError::TooMany { len }) } else { Ok(len) }
+    if len > PrimitiveId::MAX_COUNT {
+        return Err(BuildError::TooMany { len }.into());
+    }
+    check_memory(len, if len < CHECK_FROM_PRIMITIVES { u64::MAX } else { free_memory() })?;
+    Ok(len)
+}
+
+fn check_memory(primitives: usize, free: u64) -> Result<(), GenerateError> {
+    let needed = BYTES_PER_PRIMITIVE * primitives as u64;
+    if needed > free { Err(GenerateError::Memory { primitives, needed, free }) } else { Ok(()) }
+}
+
+/// Returns the memory that is free in bytes, or the largest number where that is not known.
+fn free_memory() -> u64 {
+    let text = std::fs::read_to_string("/proc/meminfo").unwrap_or_default();
+    let kilobytes = |name: &str| -> Option<u64> {
+        let line = text.lines().find_map(|line| line.strip_prefix(name))?;
+        line.split_whitespace().next()?.parse().ok()
+    };
+    kilobytes("MemAvailable:").map_or(u64::MAX, |free| (free + kilobytes("SwapFree:").unwrap_or(0)) << 10)
 }
 
 #[cfg(test)]
@@ -64,9 +99,16 @@ mod tests {
 
     #[test]
     fn there_are_as_many_primitives_as_ids_and_no_more() {
-        assert_eq!(capacity(1 << 30), Ok(1 << 30));
-        assert_eq!(capacity((1 << 30) + 1), Err(BuildError::TooMany { len: (1 << 30) + 1 }));
+        assert!(!matches!(capacity(1 << 30), Err(GenerateError::Build(_))));
+        assert_eq!(capacity((1 << 30) + 1), Err(BuildError::TooMany { len: (1 << 30) + 1 }.into()));
         let most = u128::from(u32::MAX);
-        assert_eq!(capacity(3 * most * most * most), Err(BuildError::TooMany { len: usize::MAX }));
+        assert_eq!(capacity(3 * most * most * most), Err(BuildError::TooMany { len: usize::MAX }.into()));
+    }
+
+    #[test]
+    fn a_scene_that_does_not_fit_into_memory_is_refused_before_it_is_made() {
+        assert_eq!(check_memory(1000, 64_000), Ok(()));
+        let error = check_memory(755_040_960, 14 << 30).unwrap_err();
+        assert_eq!(error.to_string(), "755040960 primitives need about 46084 MB of memory, and 14336 MB are free");
     }
 }

@@ -101,7 +101,7 @@ impl Kind {
     /// [`GenerateError`] if an option is not in its range or there are more primitives than ids.
     pub fn generate(&self) -> Result<Soup<f64>, GenerateError> {
         match self {
-            Self::KnotAndCables(options) => Ok(knot_and_cables(options)?),
+            Self::KnotAndCables(options) => knot_and_cables(options),
             Self::TorusKnot(options) => torus_knot(options),
             Self::SkewedGear(options) => skewed_gear(options),
             Self::Sphere(options) => sphere(options),

@@ -1,10 +1,10 @@
 //! A knotted tube of triangles with cables of segments around it.
 
-use super::error::capacity;
+use super::error::{GenerateError, capacity};
 use super::knot::{Frame, tube, tube_elements};
 use super::portable::SinCos;
 use nalgebra::Point3;
-use p2m_core::{BuildError, Element, Soup};
+use p2m_core::{Element, Soup};
 
 /// Options of [`knot_and_cables`]. The default makes the scene of `scenes/knot_and_cables.obj`.
 ///
@@ -42,8 +42,8 @@ const TUBE_RADIUS: f64 = 0.3;
 /// Coordinates are within 4 of the origin and rounded to five decimals. Options below their minimum are raised to it.
 ///
 /// # Errors
-/// [`BuildError`] if there are more primitives than ids.
-pub fn knot_and_cables(options: &KnotAndCables) -> Result<Soup<f64>, BuildError> {
+/// [`GenerateError`] if there are more primitives than ids, or they do not fit into memory.
+pub fn knot_and_cables(options: &KnotAndCables) -> Result<Soup<f64>, GenerateError> {
     let (rings, sides) = (options.rings.max(3), options.sides.max(3));
     let (cables, steps) = (options.cables, options.cable_segments.max(1));
     capacity(2 * u128::from(rings) * u128::from(sides) + u128::from(cables) * u128::from(steps))?;
@@ -67,7 +67,7 @@ pub fn knot_and_cables(options: &KnotAndCables) -> Result<Soup<f64>, BuildError>
             next += 1;
         }
     }
-    Soup::new(positions, elements)
+    Ok(Soup::new(positions, elements)?)
 }
 
 /// Rounds to five decimals, which keeps files short.

@@ -8,6 +8,16 @@ use crate::parse::blocks::Source;
 use crate::parse::bytes::fill_buffer;
 use memchr::{memchr2, memchr2_iter, memrchr2};
 use std::io::{self, BufRead};
+use std::sync::atomic::{AtomicUsize, Ordering};
+
+/// The largest number of bytes of a line, see [`set_max_line_bytes`].
+static MAX_LINE_BYTES: AtomicUsize = AtomicUsize::new(1 << 26);
+
+/// Sets the largest number of bytes of a line, or of a statement of several lines, in text files that this process reads
+/// from now on. It is 64 MiB by default, so that a file without line ends does not fill the memory.
+pub fn set_max_line_bytes(bytes: usize) {
+    MAX_LINE_BYTES.store(bytes, Ordering::Relaxed);
+}
 
 /// Longer texts are shortened in messages.
 const MAX_QUOTED_BYTES: usize = 40;
@@ -246,9 +256,14 @@ impl<R: BufRead> LineReader<R> {
     fn append(&mut self) -> std::io::Result<bool> {
         self.end_line()?;
         let start = self.buffer.len();
-        match read_until(&mut self.reader, |bytes| memchr2(b'\n', b'\r', bytes), usize::MAX, &mut self.buffer)? {
+        let limit = MAX_LINE_BYTES.load(Ordering::Relaxed);
+        let is_end = |bytes: &[u8]| memchr2(b'\n', b'\r', bytes);
+        match read_until(&mut self.reader, is_end, limit.saturating_sub(start).saturating_add(1), &mut self.buffer)? {
             0 => return Ok(false),
             read => self.read += read as u64,
+        }
+        if self.buffer.len() > limit && is_end(&self.buffer[start..]).is_none() {
+            return Err(io::Error::new(io::ErrorKind::FileTooLarge, format!("a line has more than {limit} bytes")));
         }
         if self.next == 1 && self.buffer.starts_with(b"\xef\xbb\xbf") {
             self.buffer.drain(..3); // the byte order mark of UTF-8

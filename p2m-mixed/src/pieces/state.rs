@@ -102,7 +102,7 @@ impl<'a> Pieces<'a> {
         let next = u32::try_from(soup.positions().len()).expect("at most three vertices for each of 2^30 primitives");
         let index = self.indices.get_or_insert(vertex, next);
         if index == next {
-            soup.push_position(self.position(vertex)?);
+            soup.try_push_position(self.position(vertex)?).map_err(Reason::Build)?;
         }
         Ok(index)
     }

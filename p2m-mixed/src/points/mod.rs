@@ -7,6 +7,7 @@ pub(crate) mod row;
 mod table;
 
 pub use rays::{read_rays, read_rays_from};
+pub(crate) use table::for_each_row;
 
 use crate::ReadError;
 use crate::open::open;
@@ -18,9 +19,9 @@ use std::path::Path;
 p2m_core::formats! {
     /// The file formats of query points and rays, see [`read_points`](crate::read_points).
     PointFormat {
-        /// This is text with columns that are separated by white space.
-        Xyz = "xyz" | "txt",
-        /// This is text with columns that are separated by commas or semicolons.
+        /// This is a text table, usually with columns that are separated by blanks.
+        Xyz = "xyz" | "txt" | "asc" | "pts",
+        /// This is a text table, usually with columns that are separated by commas or semicolons.
         Csv = "csv",
         /// This is an array of NumPy.
         Npy = "npy",
@@ -31,18 +32,18 @@ p2m_core::formats! {
 
 /// Reads query points from a file. Its extension, in any case, selects the format.
 ///
-/// # XYZ and TXT
-/// The first three columns, separated by white space, are x, y and z. Further columns, blank lines and lines that start
-/// with `#` or `//` are ignored. A first line with the number of points, as in files of chemistry, is not supported.
-///
-/// # CSV
-/// Columns are separated by semicolons if the first line has one, otherwise by commas. Fields may be quoted, but may
-/// not extend over several lines. Blank lines and lines that start with `#` are ignored.
+/// # Text tables: XYZ, TXT, ASC, PTS and CSV
+/// The first record decides what separates the columns: semicolons, commas, tabs or blanks, or what a line such as
+/// `sep=;` before it names. Fields may be quoted, but may not extend over several lines. Blank lines and lines that
+/// start with `#` or `//` are ignored. A line with a whole number alone before the first record is the number of rows.
 ///
 /// If the first record has columns named `qx`, `qy`, `qz`, or else `x`, `y`, `z`, or else `Points:0`, `Points:1`,
 /// `Points:2`, these are used. The case of names is ignored, and so is text after a blank or a bracket, as in `X [m]`.
-/// Without such names the first three columns are used. A first record with other names is skipped if it has exactly
-/// three fields. A record has names if none of its first three fields starts like a number.
+/// Other names are an error. A record has names if none of its first three fields starts like a number. The names may
+/// also be in a comment before the first record, such as `# id x y z`, if it has as many words as the record.
+///
+/// Without names the first three columns are used. A first record that has a whole number, three other numbers and a
+/// word is an error, because surveyors write the number of a point before its coordinates.
 ///
 /// # NPY
 /// An array of NumPy has the shape `(n, 3)`, C or Fortran order, and integers or floats of 4 or 8 bytes in either byte
@@ -55,8 +56,12 @@ p2m_core::formats! {
 /// # Files of answers
 /// A file of answers that the program `p2m` wrote can be read as its queries, in each of its formats.
 ///
+/// # Coordinates that are not finite
+/// They are allowed, as scanners write `nan` where they saw nothing. Such a point has no closest point.
+///
 /// # Errors
-/// [`ReadError`] with the location for numbers that are invalid or not finite, rows of fewer than three numbers,
+/// [`ReadError`] with the location for invalid numbers, rows of fewer than three numbers, another number of rows than
+/// announced,
 /// columns or fields whose names do not identify the coordinates, arrays of other shapes and types, an early end, and
 /// errors of the file. No memory is allocated for points that the header only announces.
 pub fn read_points(path: &Path) -> Result<Vec<Point3<f64>>, ReadError> {
@@ -89,7 +94,10 @@ mod tests {
     #[test]
     fn extensions_decide() {
         let error = read_points(Path::new("queries.las")).unwrap_err();
-        assert_eq!(error.to_string(), "queries.las: unknown extension 'las', expected one of xyz, txt, csv, npy, ply");
+        assert_eq!(
+            error.to_string(),
+            "queries.las: unknown extension 'las', expected one of xyz, txt, asc, pts, csv, npy, ply"
+        );
         assert!(matches!(read_points(Path::new("/nonexistent/q.XYZ")).unwrap_err().reason, Reason::Io(_)));
     }
 }

@@ -13,8 +13,7 @@ pub(super) fn read<R: Row<N>, const N: usize>(
     name: &str,
 ) -> Result<Vec<R>, ReadError> {
     match format {
-        PointFormat::Xyz => table::read_xyz(reader, name),
-        PointFormat::Csv => table::read_csv(reader, name),
+        PointFormat::Xyz | PointFormat::Csv => table::read_table(reader, name),
         PointFormat::Npy => npy::read_npy(reader, name),
         PointFormat::Ply => read_vertices(reader, name),
     }

@@ -23,7 +23,7 @@ pub(crate) trait Row<const N: usize>: Sized {
     /// Returns the reason why a row of `found` numbers is an error.
     fn too_few(found: usize) -> Reason;
 
-    /// Makes a row from finite numbers.
+    /// Makes a row from numbers, which may not be finite.
     fn new(numbers: [f64; N]) -> Result<Self, Reason>;
 }
 

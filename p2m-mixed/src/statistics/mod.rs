@@ -58,6 +58,8 @@ pub struct Statistics {
     pub sizes: Sizes,
     /// The location of the scene, and how f32 represents it.
     pub location: Location,
+    /// Whether the surface is closed and its triangles face inwards, so that it encloses a negative volume.
+    pub is_inside_out: bool,
 }
 
 /// The number of primitives of each kind.
@@ -222,6 +224,8 @@ impl Statistics {
         let welder = VertexWelder::new(soup);
         let (shapes, sizes) = measure(soup);
         let bounds = (!soup.is_empty()).then(|| soup.aabb());
+        let edges = edges(soup, &welder);
+        let is_inside_out = edges.is_closed() && bounds.is_some_and(|bounds| has_negative_volume(soup, &bounds));
         Self {
             primitives: Counts::of(soup),
             positions: Positions {
@@ -231,11 +235,12 @@ impl Statistics {
             },
             bounds,
             duplicates: duplicates(soup, &welder),
-            edges: edges(soup, &welder),
+            edges,
             components: welder.count_components(soup) as u64,
             shapes,
             sizes,
             location: bounds.map_or_else(Location::default, |b| locate(soup, &welder, &b)),
+            is_inside_out,
         }
     }
 
@@ -289,6 +294,20 @@ fn edges(soup: &Soup<f64>, welder: &VertexWelder) -> Edges {
         }
     });
     edges
+}
+
+/// Returns whether the triangles of a closed surface enclose a negative volume, beyond rounding.
+#[allow(clippy::cast_precision_loss, reason = "an estimate of rounding")]
+fn has_negative_volume(soup: &Soup<f64>, bounds: &Aabb<f64>) -> bool {
+    let half = 0.5 * (bounds.max - bounds.min).amax();
+    let centre = bounds.min + 0.5 * (bounds.max - bounds.min);
+    // In this frame no coordinate exceeds 1 but for rounding, which makes each of them wrong by less than 8 u of the
+    // largest coordinate. A product of three has an error of at most 64 times that, and so has each of six.
+    let at = |i: u32| (soup.positions()[i as usize] - centre) / half;
+    let volume: f64 = soup.triangles().iter().map(|t| at(t[0]).dot(&at(t[1]).cross(&at(t[2])))).sum();
+    let largest = bounds.min.iter().chain(bounds.max.iter()).fold(0.0_f64, |largest, x| largest.max(x.abs()));
+    let error = 512.0 * f64::EPSILON * (1.0 + largest / half) * soup.triangles().len() as f64;
+    volume < -error
 }
 
 fn measure(soup: &Soup<f64>) -> (Shapes, Sizes) {

@@ -63,6 +63,8 @@ pub enum Note {
         /// The number of such edges.
         count: u64,
     },
+    /// The surface is closed, and its triangles face inwards.
+    InsideOut,
     /// The longest edge is at least [`MIN_SPREAD_ORDERS`] orders of magnitude longer than the shortest.
     Spread {
         /// The orders of magnitude.
@@ -131,6 +133,7 @@ pub(super) fn notes(s: &Statistics) -> Vec<Note> {
     note_if(s.duplicates.total() > 0, Note::Duplicates { count: s.duplicates.total() });
     note_if(s.edges.non_manifold > 0, Note::NonManifold { count: s.edges.non_manifold });
     note_if(s.edges.inconsistent > 0, Note::Inconsistent { count: s.edges.inconsistent });
+    note_if(s.is_inside_out, Note::InsideOut);
     if let Some(orders) = sizes.edge.map(|e| e.orders_of_magnitude()) {
         note_if(orders >= MIN_SPREAD_ORDERS, Note::Spread { orders });
     }
@@ -165,6 +168,7 @@ impl Note {
             Self::Duplicates { .. } => "duplicates",
             Self::NonManifold { .. } => "non_manifold",
             Self::Inconsistent { .. } => "inconsistent",
+            Self::InsideOut => "inside_out",
             Self::Spread { .. } => "spread",
             Self::Flat { .. } => "flat",
             Self::Unshared { .. } => "unshared",
@@ -226,6 +230,9 @@ impl fmt::Display for Note {
                 let they = counted(count, "edge lies", "edges lie");
                 write!(f, "{they} between triangles that face opposite sides: closest points are not affected, normals are")
             }
+            Self::InsideOut => f.write_str(
+                "the surface is closed, but its triangles face inwards: inside and outside are right, normals are turned",
+            ),
             Self::Spread { orders } => {
                 write!(f, "edge lengths span {orders:.0} orders of magnitude: very small and very large primitives are mixed")
             }

@@ -1,7 +1,7 @@
 //! Points from arrays of NumPy, and arrays that are errors.
 
 use nalgebra::Point3;
-use p2m_mixed::{FileLocation, HeaderProblem, PointFormat, ReadError, Reason, read_points_from};
+use p2m_mixed::{HeaderProblem, PointFormat, ReadError, Reason, read_points_from};
 
 fn read(file: &[u8]) -> Result<Vec<[f64; 3]>, ReadError> {
     let points = read_points_from(file, PointFormat::Npy, "q.npy")?;
@@ -209,12 +209,11 @@ fn every_byte_is_needed_and_none_more() {
 }
 
 #[test]
-fn numbers_that_are_not_finite_have_a_place() {
+fn numbers_need_not_be_finite() {
     for bad in [f64::NAN, f64::INFINITY] {
         let file = npy(1, &described("'<f8'", "False", "(2, 3)"), &doubles(&[1.0, 2.0, 3.0, 4.0, bad, 6.0]));
-        let error = read(&file).unwrap_err();
-        assert_eq!(error.location, FileLocation::Byte(file.len() as u64 - 16));
-        assert!(matches!(&error.reason, Reason::NonFinite { text } if *text == bad.to_string()), "{error}");
+        let points = read(&file).unwrap();
+        assert_eq!((points[0][0], points[1][1].to_bits()), (1.0, bad.to_bits()));
     }
 }
 

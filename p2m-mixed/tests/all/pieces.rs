@@ -1,6 +1,6 @@
 //! The pieces of a file make up its scene.
 
-use crate::common::{lossless, measured_on_one_thread, rich_files, written};
+use crate::common::{formats_of_triangles, lossless, measured_on_one_thread, rich_files, written};
 use nalgebra::Point3;
 use p2m_core::{Element, PrimitiveId, PrimitiveSet, Soup};
 use p2m_mixed::{Format, Object, PieceOptions, PieceSummary, ReadError, Scene, read_scene, read_scene_in_pieces};
@@ -141,7 +141,7 @@ fn pieces_of_rich_files_make_up_their_scenes() {
 fn pieces_of_random_scenes_make_up_the_scenes() {
     for case in cases(400, 20) {
         let mut rng = rng("pieces of scenes", case);
-        for &format in Format::ALL {
+        for format in formats_of_triangles() {
             let scene = random_scene(&mut rng, format);
             assert!(check(written(&scene, format), format), "{format}");
         }
@@ -299,7 +299,7 @@ fn vertices_beyond_the_memory_are_in_a_temporary_file() {
 fn memory_is_that_of_two_pieces_and_of_the_vertices_that_are_allowed() {
     const MAX_BYTES: u64 = 1 << 20;
     // A file of a saved index is read as a whole.
-    for &format in Format::ALL.iter().filter(|format| **format != Format::P2m) {
+    for format in formats_of_triangles().filter(|format| *format != Format::P2m) {
         let mut scene = scattered_scene(60_000, format);
         if format == Format::Ply {
             // The faces of a file with several kinds have ids, so they stay in memory.

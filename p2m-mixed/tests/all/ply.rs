@@ -459,8 +459,16 @@ fn vertices_of_a_ply_file_are_points() {
     let read = |text: &str| read_points_from(text.as_bytes(), PointFormat::Ply, "q.ply");
     assert_eq!(read(text).unwrap(), [Point3::new(1.0, 2.0, 3.0), Point3::new(4.0, 5.0, 6.0)]);
     let message = |text: &str| read(text).unwrap_err().to_string();
-    assert_eq!(message(&text.replace("5 4 0", "5 inf 0")), "q.ply:15: coordinate 'inf' is not finite");
+    assert_eq!(read(&text.replace("5 4 0", "5 inf 0")).unwrap()[1].x, f64::INFINITY);
     assert_eq!(message(&text.replace("5 4 0 6\nwhat follows is not read", "")), "q.ply:15: unexpected end of file");
     assert_eq!(message(&text.replace("vertex 2", "vertices 2")), "q.ply: bad header: there is no element 'vertex'");
     assert_eq!(message(&text.replace("float x", "float r")), "q.ply: bad header: element 'vertex' has no property 'x'");
+}
+
+#[test]
+fn raw_scans_and_other_spellings_are_clouds() {
+    let header = "ply\nformat ascii 1.0\nelement vertex 2\nproperty float X\nproperty float Y\nproperty float Z\n\
+        property int64 time\nelement range_grid 2\nproperty list uchar int vertex_indices\nend_header\n";
+    let scene = p2m_mixed::read_ply(format!("{header}0 0 0 9\n1 2 3 9\n1 1\n0\n").as_bytes(), "scan.ply").unwrap();
+    assert_eq!((scene.soup.points(), scene.soup.positions()[1]), (&[0, 1][..], nalgebra::Point3::new(1.0, 2.0, 3.0)));
 }

@@ -389,14 +389,13 @@ fn random_vector(rng: &mut ChaCha8Rng) -> nalgebra::Vector3<f64> {
 }
 
 #[test]
-fn large_polygons_over_few_places_are_cut_in_no_time() {
-    // The polygon runs many times around a star of nine corners, for which cutting ears takes cubic time.
+fn large_polygons_over_few_places_are_not_cut_by_ears() {
+    // The polygon runs many times around a star of nine corners, for which cutting ears takes cubic time, and makes
+    // other triangles.
     const TURNS: usize = 3000;
     let star: [P; 9] = [[0, 9], [-2, 2], [-9, 2], [-3, -2], [-5, -9], [0, -4], [5, -9], [3, -2], [9, 2]];
     let polygon = star.repeat(TURNS);
-    let start = std::time::Instant::now();
     let triangles = cut3(&lift(&polygon, 0, 0));
-    assert!(start.elapsed().as_secs() < 5, "{:?}", start.elapsed());
     let last = u32::try_from(9 * TURNS).unwrap() - 1;
     assert_eq!(triangles, (1..last).map(|i| [0, i, i + 1]).collect::<Vec<_>>());
 }

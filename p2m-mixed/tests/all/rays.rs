@@ -26,9 +26,7 @@ fn npy(descr: &str, order: &str, shape: &str, numbers: &[f64]) -> Vec<u8> {
 #[test]
 fn tables_have_six_columns() {
     assert_eq!(read("# so\n1 2 3 4 5 6 more\n-1 .5 0 0 0 -1e300\n", PointFormat::Xyz).unwrap(), two());
-    for header in
-        ["", "a,b,c,d,e,f\n", "x,y,z,dx,dy,dz\n", "OX,oy,oz,dx,dy,dz\n", "x [m],y [m],z [m],nx,ny,nz\n", "# made\n"]
-    {
+    for header in ["", "x,y,z,dx,dy,dz\n", "OX,oy,oz,dx,dy,dz\n", "x [m],y [m],z [m],nx,ny,nz\n", "# made\n"] {
         let table = format!("{header}1,2,3,4,5,6\n\n-1,.5,0,0,0,-1e300\n");
         assert_eq!(read(table, PointFormat::Csv).unwrap(), two(), "{header}");
     }
@@ -85,7 +83,12 @@ fn vertices_go_along_their_normals() {
 fn invalid_rays_have_errors_with_their_location() {
     for (format, file, location, message) in [
         (PointFormat::Csv, "1,2,3,4,5,6\n1,2,3,0,-0,0\n", FileLocation::Line(2), "the direction of the ray is zero"),
-        (PointFormat::Csv, "1,2,3,4,5,6\n1,2,3,0,0,inf\n", FileLocation::Line(2), "coordinate 'inf' is not finite"),
+        (
+            PointFormat::Csv,
+            "1,2,3,4,5,6\n1,2,3,0,0,inf\n",
+            FileLocation::Line(2),
+            "a coordinate of the ray is not finite",
+        ),
         (PointFormat::Csv, "x,y,z,dx,dy,dz\n1,2,3,4,5\n", FileLocation::Line(2), "a ray needs 6 coordinates, found 5"),
         (PointFormat::Csv, "x,y,z\n1,2,3\n", FileLocation::Line(1), "a ray needs 6 coordinates, found 3"),
         (PointFormat::Xyz, "\n1 2 3 0 0 0\n", FileLocation::Line(2), "the direction of the ray is zero"),

@@ -323,3 +323,21 @@ fn objects_are_counted_by_name() {
     assert_eq!(objects(&named).len(), 1);
     assert!(objects(&p2m_mixed::read_obj("v 0 0 0\np 1\n".as_bytes(), "scene.obj").unwrap()).is_empty());
 }
+
+#[test]
+fn a_closed_surface_that_faces_inwards_has_a_note() {
+    use p2m_mixed::generate::{IcoSphere, Transform, ico_sphere};
+    let ball = ico_sphere(&IcoSphere { frequency: 3 }).unwrap();
+    let turned: Vec<[u32; 3]> = ball.triangles().iter().map(|&[a, b, c]| [a, c, b]).collect();
+    let turned = p2m_core::Soup::from_triangles(ball.positions().to_vec(), turned).unwrap();
+    for (soup, is_inside_out) in [(&ball, false), (&turned, true)] {
+        for shift in [0.0, 1e6] {
+            let moved = Transform::default().translated([shift, 0.0, -shift]).apply(soup).unwrap();
+            let notes = Statistics::of(&moved).notes();
+            assert_eq!(notes.contains(&Note::InsideOut), is_inside_out, "{shift} {notes:?}");
+        }
+    }
+    // An open surface has no inside.
+    let open = p2m_core::Soup::from_triangles(turned.positions().to_vec(), turned.triangles()[1..].to_vec()).unwrap();
+    assert!(!Statistics::of(&open).is_inside_out);
+}

@@ -181,3 +181,13 @@ fn a_truncated_binary_file_is_an_error() {
         );
     }
 }
+
+#[test]
+fn ends_may_be_two_words() {
+    let text = "solid a\nfacet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 1 0 0\nvertex 0 1 0\nend loop\nend facet\n\
+        end solid a\nsolid b\nendsolid b\n";
+    let scene = p2m_mixed::read_stl(text.as_bytes(), "t.stl").unwrap();
+    assert_eq!(scene.soup.triangles(), [[0, 1, 2]]);
+    let error = p2m_mixed::read_stl(text.replace("end loop", "end solid").as_bytes(), "t.stl").unwrap_err();
+    assert_eq!(error.to_string(), "t.stl:7: 'solid' is not 'loop', which should be here");
+}

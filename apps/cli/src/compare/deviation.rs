@@ -18,7 +18,7 @@ use anyhow::{Context, anyhow};
 use nalgebra::Point3;
 use p2m_backends::{AnyIndex, P2mSettings};
 use p2m_core::batch::{self, BatchOptions};
-use p2m_core::{Closest, QueryOptions};
+use p2m_core::{Aabb, Closest, PrimitiveSet, QueryOptions, Soup};
 use p2m_field::deviation::{DeviationStatistics, OutsideTolerance, outside};
 use p2m_field::sign::SignError;
 use p2m_mixed::statistics::figure::{Count, Figure};
@@ -57,7 +57,7 @@ Examples:
 fn scan_help() -> String {
     let formats = format_list(|_| true, "or");
     format!(
-        "Scan: an XYZ, TXT, CSV or NPY file of points, or an {formats} file, whose vertices are the points; `-` is the \
+        "Scan: an NPY file of points, or an {formats} file, whose vertices are the points; `-` is the \
          standard input"
     )
 }
@@ -132,6 +132,9 @@ pub(crate) fn run(streams: &Streams, args: &Args) -> anyhow::Result<()> {
     let (scene, saved) = read_scene_and_index(streams, &pool, &args.scene.path, format, args.scene.map)?;
     let scan = scan_format.read(streams, &pool, &args.scan)?;
     let read_time = start.elapsed();
+    if let Some(note) = note_on_sizes(&scan.soup, &scene.soup) {
+        streams.print_summary(format_args!("warning  {note}\n"));
+    }
     // The file is opened before the work, which would be lost if its name were wrong.
     let mut output = args.out.as_ref().map(|out| Output::open(streams, Some(out))).transpose()?;
 
@@ -201,6 +204,33 @@ pub(crate) fn run(streams: &Streams, args: &Args) -> anyhow::Result<()> {
         streams.print_summary(format_args!("written  {}, {bytes} bytes\n", out.display()));
     }
     Output::print(streams, report.table())
+}
+
+/// The factors between units of length that are often mixed up, with what they are.
+const UNIT_FACTORS: [(f64, &str); 4] = [
+    (1000.0, "millimetres and metres"),
+    (100.0, "centimetres and metres"),
+    (25.4, "millimetres and inches"),
+    (39.37, "inches and metres"),
+];
+
+/// Returns a sentence if a scan and a scene seem to be in other units or other places.
+fn note_on_sizes(scan: &Soup<f64>, scene: &Soup<f64>) -> Option<String> {
+    let is_finite = |point: &&Point3<f64>| point.iter().all(|x| x.is_finite());
+    let points: Vec<Point3<f64>> = scan.positions().iter().filter(is_finite).copied().collect();
+    let (scan, scene) = (Aabb::from_points(&points), scene.aabb());
+    if scan.is_empty() || scene.is_empty() {
+        return None;
+    }
+    let [of_scan, of_scene] = [&scan, &scene].map(|bounds| (bounds.max - bounds.min).norm());
+    let ratio = of_scan.max(of_scene) / of_scan.min(of_scene);
+    if let Some((factor, units)) = UNIT_FACTORS.iter().find(|(factor, _)| (ratio / factor - 1.0).abs() < 0.1) {
+        return Some(format!("one of the scan and the scene is about {factor} times as large: {units}?"));
+    }
+    let gap = |axis: usize| (scan.min[axis] - scene.max[axis]).max(scene.min[axis] - scan.max[axis]);
+    (0..3)
+        .any(|axis| gap(axis) > of_scene)
+        .then(|| "the scan and the scene lie apart: is one of them moved, or in another unit?".to_owned())
 }
 
 /// The answers to the points of a scan, and where they come from.
@@ -369,11 +399,15 @@ impl<'a> DeviationReport<'a> {
                 let percent = Figure(100.0 * count as f64 / self.statistics.count.max(1) as f64);
                 format!("{} ({percent} %)", Count(count as u64))
             };
-            rows.push((format!("above {tolerance}"), part(outside.above)));
+            let unit = &self.args.page.unit;
+            rows.push((format!("above {tolerance} {unit}"), part(outside.above)));
             if self.rule.is_some() {
-                rows.push((format!("below -{tolerance}"), part(outside.below)));
+                rows.push((format!("below -{tolerance} {unit}"), part(outside.below)));
             }
-            rows.push((format!("within {tolerance}"), part(self.statistics.count - outside.above - outside.below)));
+            rows.push((
+                format!("within {tolerance} {unit}"),
+                part(self.statistics.count - outside.above - outside.below),
+            ));
         }
         let width = rows.iter().map(|(label, _)| label.len()).max().unwrap_or(0);
         let mut text = String::new();

@@ -48,7 +48,7 @@ pub(crate) fn run(streams: &Streams, args: &Args) -> anyhow::Result<()> {
     if limit.is_nan() || limit < 0.0 {
         return Err(usage(format!("--max-distance {limit}: a distance is not negative")));
     }
-    let motion = args.scenes.motion()?;
+    let motion = args.scenes.motion(streams)?;
     let formats = args.scenes.formats()?;
     let pool = args.threads.pool()?;
     let scenes = args.scenes.read(streams, &pool, formats)?.map(|(scene, _)| scene);
@@ -98,13 +98,15 @@ fn report(
         });
         json!({ "file": names[k], "format": formats[k].name(), "nearest": found })
     };
+    // Scenes with primitives of which none are near do not intersect.
+    let are_apart = found.is_none() && scenes.iter().all(|scene| scene.soup.elements().next().is_some());
     json!({
         "p2m": "distance",
         "version": json::VERSION,
         "scenes": [side(0), side(1)],
         "max_distance": json::number(limit),
         "distance": found.map(|pair| json::number(pair.distance)),
-        "lower_bound": found.map(|pair| json::number(pair.lower_bound)),
-        "intersect": found.map(|pair| pair.is_intersecting),
+        "lower_bound": found.map(|pair| pair.lower_bound).or(are_apart.then_some(limit)).map(json::number),
+        "intersect": found.map(|pair| pair.is_intersecting).or(are_apart.then_some(false)),
     })
 }

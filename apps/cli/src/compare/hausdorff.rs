@@ -61,7 +61,7 @@ pub(crate) struct Args {
 }
 
 pub(crate) fn run(streams: &Streams, args: &Args) -> anyhow::Result<()> {
-    let motion = args.scenes.motion()?;
+    let motion = args.scenes.motion(streams)?;
     let formats = args.scenes.formats()?;
     let names = args.scenes.names();
     let pool = args.threads.pool()?;

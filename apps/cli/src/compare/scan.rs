@@ -3,6 +3,7 @@
 use crate::io::input::{is_standard, or_option, read_points, read_scene_and_index, uncompressed_name, unnamed};
 use crate::io::streams::Streams;
 use anyhow::Context;
+use nalgebra::Point3;
 use p2m_core::{Element, Soup, UnknownExtension, UnknownFormat};
 use p2m_mixed::{Format, PointFormat, Scene};
 use rayon::ThreadPool;
@@ -58,7 +59,9 @@ impl ScanFormat {
             Self::Scene(format) => Ok(read_scene_and_index(streams, pool, path, format, false)?.0),
             Self::Points(format) => {
                 let points = read_points(streams, path, format)?;
-                let elements = (0..u32::try_from(points.len()).unwrap_or(u32::MAX)).map(Element::Point);
+                let is_finite = |point: &Point3<f64>| point.iter().all(|x| x.is_finite());
+                let finite = (0..).zip(&points).filter(|(_, point)| is_finite(point));
+                let elements: Vec<_> = finite.map(|(number, _)| Element::Point(number)).collect();
                 Ok(Soup::new(points, elements).with_context(|| path.display().to_string())?.into())
             }
         }

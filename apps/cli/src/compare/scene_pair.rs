@@ -1,6 +1,6 @@
 //! The arguments of commands that are about two scenes, and what they print about a point of each.
 
-use crate::io::input::{COMPRESSED, name, read_scene_and_index, scene_format, scene_help};
+use crate::io::input::{COMPRESSED, name, read_scene_and_index, read_small_text, scene_format, scene_help};
 use crate::io::streams::Streams;
 use crate::io::usage::{one_of, usage};
 use anyhow::Context;
@@ -52,8 +52,8 @@ impl ScenePairArgs {
     }
 
     /// Returns the motion of the second scene.
-    pub(crate) fn motion(&self) -> anyhow::Result<Option<Isometry3<f64>>> {
-        self.transform.as_deref().map(parse_motion).transpose()
+    pub(crate) fn motion(&self, streams: &Streams) -> anyhow::Result<Option<Isometry3<f64>>> {
+        self.transform.as_deref().map(|text| parse_motion(streams, text)).transpose()
     }
 
     /// Reads the scenes as they are in their files, and the readers of saved indexes.
@@ -69,7 +69,7 @@ impl ScenePairArgs {
 }
 
 /// Parses a matrix, or reads it from the file of that name.
-fn parse_motion(text: &str) -> anyhow::Result<Isometry3<f64>> {
+fn parse_motion(streams: &Streams, text: &str) -> anyhow::Result<Isometry3<f64>> {
     let numbers = |text: &str| -> Option<Vec<f64>> {
         let words = text.split(|c: char| c.is_whitespace() || ",;[]".contains(c)).filter(|word| !word.is_empty());
         words.map(|word| word.parse().ok()).collect()
@@ -77,8 +77,7 @@ fn parse_motion(text: &str) -> anyhow::Result<Isometry3<f64>> {
     let (matrix, place) = match numbers(text) {
         Some(matrix) => (matrix, "--transform".to_owned()),
         None => {
-            let content =
-                std::fs::read_to_string(text).with_context(|| format!("--transform {text}: cannot be read"))?;
+            let content = read_small_text(streams, Path::new(text)).context("--transform")?;
             let matrix = numbers(&content).with_context(|| format!("--transform {text}: has something but numbers"))?;
             (matrix, format!("--transform {text}"))
         }

@@ -2,6 +2,7 @@
 
 use crate::io::progress::{Progress, Unit};
 use crate::io::streams::Streams;
+use anyhow::anyhow;
 use clap::ValueEnum;
 use p2m_backends::AnyIndex;
 use p2m_core::Soup;
@@ -35,6 +36,20 @@ impl SignRule {
             Self::Winding => SignedDistance::with_rule(index, soup, sign::SignRule::Winding),
             Self::Parity => SignedDistance::with_rule(index, soup, sign::SignRule::Parity),
         }
+    }
+
+    /// Prepares the signs that `--signed` asks for. An error says what to do instead.
+    pub(crate) fn prepare_signed<'a>(
+        self,
+        streams: &Streams,
+        index: &'a dyn AnyIndex,
+        soup: &'a Soup<f64>,
+    ) -> anyhow::Result<SignedIndex<'a>> {
+        self.prepare(streams, index, soup).map_err(|error| match error {
+            SignError::OtherKinds { .. } => anyhow!("{error}: leave --signed out for distances without signs"),
+            SignError::Open { .. } => anyhow!("{error}: choose --signed=winding, or leave --signed out"),
+            _ => error.into(),
+        })
     }
 }
 

@@ -1,5 +1,6 @@
 //! Reads input files. The name `-` stands for the standard input.
 
+use crate::io::limits::{Counted, Decompressed, too_large};
 use crate::io::progress::{Progress, Unit};
 use crate::io::read_pipeline::pump;
 use crate::io::streams::Streams;
@@ -12,9 +13,11 @@ use p2m_core::storage::{LoadError, Reader, SavedFile};
 use p2m_core::{Ray, UnknownExtension};
 use p2m_mixed::{Format, PointFormat, Scene, load_scene};
 use rayon::ThreadPool;
+use std::cell::Cell;
 use std::fs::{File, Metadata};
 use std::io::{self, BufRead, BufReader, Read};
 use std::path::{Path, PathBuf};
+use std::rc::Rc;
 
 /// The size of buffers for reading, in bytes.
 const BUFFER_BYTES: usize = 1 << 16;
@@ -80,7 +83,19 @@ pub(crate) fn is_standard(path: &Path) -> bool {
 
 /// Returns the name of an input in messages.
 pub(crate) fn name(path: &Path) -> String {
-    if is_standard(path) { "standard input".to_owned() } else { path.display().to_string() }
+    if is_standard(path) { "standard input".to_owned() } else { shown(path) }
+}
+
+/// Returns a path as text of one line. Characters that control a terminal are escaped, and so are bytes that are no
+/// UTF-8, as in `a\\xff.obj`.
+pub(crate) fn shown(path: &Path) -> String {
+    match path.to_str() {
+        Some(text) if !text.contains(char::is_control) => text.to_owned(),
+        Some(text) => {
+            text.chars().map(|c| if c.is_control() { c.escape_default().to_string() } else { c.into() }).collect()
+        }
+        None => path.as_os_str().as_encoded_bytes().escape_ascii().to_string(),
+    }
 }
 
 /// Returns the format of a scene: the given one, or else that of the extension.
@@ -104,7 +119,11 @@ pub(crate) fn point_format(path: &Path, given: Option<PointFormat>, option: &str
 /// Returns the name of a file without the extension of a compression. A directory has no format, and is refused.
 pub(crate) fn uncompressed_name(path: &Path) -> anyhow::Result<PathBuf> {
     if path.is_dir() {
-        bail!("{}: cannot be read: is a directory", path.display());
+        bail!("{}: cannot be read: is a directory", shown(path));
+    }
+    // The name of a file that is missing is more likely wrong than without its extension.
+    if path.extension().is_none() {
+        path.metadata().with_context(|| format!("{}: cannot be read", name(path)))?;
     }
     Ok(if is_compressed(path) { path.with_extension("") } else { path.to_owned() })
 }
@@ -183,6 +202,22 @@ pub(crate) fn read_points(streams: &Streams, path: &Path, format: PointFormat) -
     Ok(p2m_mixed::read_points_from(open(streams, path)?, format, &name(path))?)
 }
 
+/// Reads the points of a file whose coordinates are finite. A note says how many are left out.
+pub(crate) fn read_finite_points(
+    streams: &Streams,
+    path: &Path,
+    format: PointFormat,
+) -> anyhow::Result<Vec<Point3<f64>>> {
+    let mut points = read_points(streams, path, format)?;
+    let count = points.len();
+    points.retain(|point| point.iter().all(|x| x.is_finite()));
+    if points.len() < count {
+        let left_out = count - points.len();
+        streams.print_summary(format_args!("note     {left_out} of {count} points are not finite and are left out\n"));
+    }
+    Ok(points)
+}
+
 /// Reads the rays of a file.
 pub(crate) fn read_rays(streams: &Streams, path: &Path, format: PointFormat) -> anyhow::Result<Vec<Ray>> {
     Ok(p2m_mixed::read_rays_from(open(streams, path)?, format, &name(path))?)
@@ -192,13 +227,28 @@ pub(crate) fn read_rays(streams: &Streams, path: &Path, format: PointFormat) -> 
 fn open<'a>(streams: &'a Streams, path: &Path) -> anyhow::Result<Box<dyn BufRead + 'a>> {
     let mut raw = open_raw(streams, path)?;
     let start = raw.fill_buf().with_context(|| format!("{}: cannot be read", name(path)))?;
-    if start.starts_with(&GZIP_MAGIC) {
-        return Ok(Box::new(BufReader::with_capacity(BUFFER_BYTES, MultiGzDecoder::new(raw))));
+    let (is_gzip, is_zstd) = (start.starts_with(&GZIP_MAGIC), is_zstd(start));
+    if !is_gzip && !is_zstd {
+        return Ok(Box::new(raw));
     }
-    if is_zstd(start) {
-        return Ok(Box::new(BufReader::with_capacity(BUFFER_BYTES, ZstdReader::new(raw))));
+    let compressed = Rc::new(Cell::new(0));
+    let raw = Counted { reader: raw, count: Rc::clone(&compressed) };
+    let decoder: Box<dyn Read + 'a> =
+        if is_gzip { Box::new(MultiGzDecoder::new(raw)) } else { Box::new(ZstdReader::new(raw)) };
+    let decompressed = Decompressed::new(decoder, streams.limits(), compressed);
+    Ok(Box::new(BufReader::with_capacity(BUFFER_BYTES, decompressed)))
+}
+
+/// Reads a small text file, such as a matrix.
+pub(crate) fn read_small_text(streams: &Streams, path: &Path) -> anyhow::Result<String> {
+    let cannot_read = || format!("{}: cannot be read", name(path));
+    let limit = streams.limits().matrix;
+    let mut text = String::new();
+    let count = File::open(path).and_then(|file| file.take(limit.saturating_add(1)).read_to_string(&mut text));
+    if count.with_context(cannot_read)? as u64 > limit {
+        return Err(too_large(&format!("it has more than {limit} bytes"), "matrix")).with_context(cannot_read);
     }
-    Ok(Box::new(raw))
+    Ok(text)
 }
 
 /// Returns whether a path is a file, and not a pipe, whose content is not compressed.

@@ -3,6 +3,7 @@
 pub(crate) mod input;
 pub(crate) mod interrupt;
 pub(crate) mod json;
+pub(crate) mod limits;
 pub(crate) mod output;
 pub(crate) mod progress;
 pub(crate) mod read_pipeline;

@@ -6,16 +6,15 @@ use crate::io::progress::{Progress, Unit};
 use crate::io::streams::{Stream, Streams};
 use crate::io::usage::usage;
 use anyhow::{Context, bail};
-use std::fs::{self, File};
+use p2m_mixed::engine::OutputFile;
+use std::fs;
 use std::io::{self, BufWriter, Write};
-use std::path::{Path, PathBuf};
-use tempfile::TempPath;
+use std::path::Path;
 
 /// A buffered destination.
 ///
-/// If it is dropped before [`finish`](Self::finish), or the program is interrupted, the file stays as it was before.
-/// A process that ends without a chance to clean up (by SIGKILL, or a limit of the system) leaves a file `.p2m-*` in
-/// the same folder.
+/// If it is dropped before [`finish`](Self::finish), or the program is interrupted, the file stays as it was before
+/// (see [`OutputFile`]).
 pub(crate) struct Output<'a> {
     sink: Sink<'a>,
     name: String,
@@ -25,15 +24,11 @@ pub(crate) struct Output<'a> {
 
 enum Sink<'a> {
     Stdout(BufWriter<Stream<'a, dyn Write>>),
-    /// A file, which is written under another name in the same directory and renamed at the end.
+    /// A file, which is on the list of unfinished files while it has another name.
     File {
-        temporary: BufWriter<File>,
-        path: TempPath,
-        target: PathBuf,
-        listed: Listed,
+        file: OutputFile,
+        listed: Option<Listed>,
     },
-    /// A device or a pipe, which renaming would replace.
-    Device(BufWriter<File>),
 }
 
 /// The size of buffers for writing, in bytes.
@@ -118,8 +113,7 @@ impl Write for Output<'_> {
     fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
         let count = match &mut self.sink {
             Sink::Stdout(writer) => writer.write(bytes),
-            Sink::File { temporary, .. } => temporary.write(bytes),
-            Sink::Device(writer) => writer.write(bytes),
+            Sink::File { file, .. } => file.write(bytes),
         }?;
         self.bytes += count as u64;
         if let Some(progress) = &self.progress {
@@ -131,72 +125,29 @@ impl Write for Output<'_> {
     fn flush(&mut self) -> io::Result<()> {
         match &mut self.sink {
             Sink::Stdout(writer) => writer.flush(),
-            Sink::File { temporary, .. } => temporary.flush(),
-            Sink::Device(writer) => writer.flush(),
+            Sink::File { file, .. } => file.flush(),
         }
     }
 }
 
 impl Sink<'_> {
     fn open(path: &Path) -> io::Result<Self> {
-        // A link is followed, so that it keeps its target.
-        let target = match fs::canonicalize(path) {
-            Ok(target) => target,
-            // Renaming would replace a link to nothing.
-            Err(_) if fs::symlink_metadata(path).is_ok_and(|m| m.is_symlink()) => {
-                return Err(io::Error::new(io::ErrorKind::NotFound, "it is a link to nothing"));
-            }
-            Err(_) => path.to_owned(),
-        };
-        let mut builder = tempfile::Builder::new();
-        builder.prefix(".p2m-");
-        match fs::metadata(&target) {
-            Ok(old) if old.is_dir() => return Err(io::ErrorKind::IsADirectory.into()),
-            Ok(old) if !old.is_file() => {
-                let file = File::options().write(true).open(&target)?;
-                return Ok(Self::Device(BufWriter::with_capacity(BUFFER_BYTES, file)));
-            }
-            Ok(old) if old.permissions().readonly() => return Err(io::ErrorKind::PermissionDenied.into()),
-            Ok(old) => {
-                builder.permissions(old.permissions());
-            }
-            Err(_) => {
-                // Like any new file it is readable for everybody, as far as the user's mask permits.
-                #[cfg(unix)]
-                builder.permissions(std::os::unix::fs::PermissionsExt::from_mode(0o666));
-            }
-        }
-        let directory = match target.parent() {
-            Some(parent) if parent != Path::new("") => parent,
-            _ => Path::new("."),
-        };
         let mut unfinished = unfinished();
-        // The error of a temporary file names that file, which means nothing to the user.
-        let temporary = builder.tempfile_in(directory).map_err(|e| {
-            let folder = directory.display();
-            let reason = match e.kind() {
-                io::ErrorKind::NotFound => "the folder does not exist".to_owned(),
-                kind => kind.to_string(),
-            };
-            io::Error::new(e.kind(), format!("no file can be made in the folder '{folder}': {reason}"))
-        })?;
-        // The parts are used separately, because errors of the whole name the temporary file as well.
-        let (temporary, path) = temporary.into_parts();
-        let listed = Listed::new(&mut unfinished, &path);
-        Ok(Self::File { temporary: BufWriter::with_capacity(BUFFER_BYTES, temporary), path, target, listed })
+        let file = OutputFile::create(path)?;
+        let listed = file.temporary_name().map(|name| Listed::new(&mut unfinished, name));
+        Ok(Self::File { file, listed })
     }
 
     fn finish(self) -> io::Result<()> {
         match self {
             Self::Stdout(mut writer) => writer.flush(),
-            Self::Device(mut writer) => writer.flush(),
-            Self::File { mut temporary, path, target, listed } => {
-                temporary.flush()?;
+            Self::File { mut file, listed } => {
+                file.flush()?;
                 let unfinished = unfinished();
-                let renamed = path.persist(target);
+                let finished = file.finish();
                 drop(unfinished);
                 drop(listed);
-                renamed.map_err(|e| e.error)
+                finished
             }
         }
     }

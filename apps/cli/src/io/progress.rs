@@ -104,7 +104,8 @@ fn template(total: Option<u64>, unit: Unit) -> String {
         (Unit::Bytes, Some(_)) => "{wide_bar} {bytes}/{total_bytes}{left}",
         (Unit::Bytes, None) => "{bytes}",
         (Unit::Items(name), _) => &format!("{{wide_bar}} {{human_pos}}/{{human_len}} {name}{{left}}"),
-        (Unit::Percent, _) => "{wide_bar} {pos} %{left}",
+        // The parts of such work take very different times, so no time that is left is known.
+        (Unit::Percent, _) => "{wide_bar} {pos} %, {elapsed}",
         (Unit::None, _) => "{elapsed}",
     };
     let spinner = if total.is_none() { "{spinner} " } else { "" };

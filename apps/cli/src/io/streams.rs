@@ -1,5 +1,6 @@
 //! The standard streams of a run.
 
+use crate::io::limits::Limits;
 use std::cell::{Cell, RefCell};
 use std::fmt;
 use std::io::{self, IsTerminal, Read, Write};
@@ -13,6 +14,7 @@ pub struct Streams {
     is_process: bool,
     /// Whether summaries and progress are left out.
     is_quiet: Cell<bool>,
+    limits: Cell<Limits>,
 }
 
 impl Streams {
@@ -30,6 +32,7 @@ impl Streams {
             stderr: RefCell::new(Box::new(stderr)),
             is_process: false,
             is_quiet: Cell::new(false),
+            limits: Cell::default(),
         }
     }
 
@@ -48,6 +51,16 @@ impl Streams {
     /// Sets whether summaries and progress are left out.
     pub(crate) fn set_quiet(&self, is_quiet: bool) {
         self.is_quiet.set(is_quiet);
+    }
+
+    /// Sets the limits of what is read.
+    pub(crate) fn set_limits(&self, limits: Limits) {
+        self.limits.set(limits);
+    }
+
+    /// Returns the limits of what is read.
+    pub(crate) fn limits(&self) -> Limits {
+        self.limits.get()
     }
 
     /// Writes a summary to the standard error. Results are complete by then, so an error of writing it is ignored.
@@ -72,6 +85,16 @@ impl Streams {
         if self.is_process { command } else { command.term_width(HELP_COLUMNS) }
     }
 
+    /// Writes an error of a run, with colours on a terminal. Characters that control the terminal are escaped.
+    pub(crate) fn show_error(&self, message: &str) {
+        let is_shown = |c: char| c == '\n' || !c.is_control();
+        let text: String =
+            message.chars().map(|c| if is_shown(c) { c.to_string() } else { c.escape_default().to_string() }).collect();
+        // An error of writing the message cannot be reported anywhere.
+        let error = clap::Error::raw(clap::error::ErrorKind::Io, text + "\n").with_cmd(&clap::Command::new("p2m"));
+        let _ = self.show(&error);
+    }
+
     /// Writes wrong usage to the standard error, and help and the version to the standard output.
     pub(crate) fn show(&self, error: &clap::Error) -> io::Result<()> {
         if self.is_process {
@@ -80,7 +103,7 @@ impl Streams {
         } else if error.use_stderr() {
             write!(self.stderr(), "{error}")
         } else {
-            write!(self.stdout(), "{error}")
+            write!(self.stdout(), "{error}").and_then(|()| self.stdout().flush())
         }
     }
 }

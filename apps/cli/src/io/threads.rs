@@ -1,6 +1,7 @@
 //! The threads of a run.
 
 use anyhow::anyhow;
+use p2m_core::engine::default_threads;
 use rayon::ThreadPool;
 
 #[derive(Default, clap::Args)]
@@ -13,8 +14,7 @@ pub(crate) struct ThreadArgs {
 impl ThreadArgs {
     /// Starts the threads. One more thread only reads, writes and waits.
     pub(crate) fn pool(&self) -> anyhow::Result<ThreadPool> {
-        // For rayon 0 stands for the number of cores.
-        let threads = self.threads.map_or(0, usize::from);
+        let threads = self.threads.map_or_else(default_threads, usize::from);
         let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build();
         // The error is kept as text, because its source repeats it.
         pool.map_err(|e| anyhow!("cannot start threads: {e}"))

@@ -36,6 +36,23 @@ pub(crate) fn whole_number(text: &str) -> Result<u64, String> {
     text.parse().map_err(|_| format!("not a whole number from 0 to {}", u64::MAX))
 }
 
+/// Parses a count, which may have an exponent and marks between its digits, as 1e6 and 1_000_000 have.
+pub(crate) fn count(text: &str) -> Result<u64, String> {
+    let digits = text.replace(['_', ','], "");
+    let with_exponent = || {
+        let (mantissa, exponent) = digits.split_once(['e', 'E'])?;
+        mantissa.parse::<u64>().ok()?.checked_mul(10u64.checked_pow(exponent.parse().ok()?)?)
+    };
+    let number = digits.parse().ok().or_else(with_exponent);
+    number.ok_or_else(|| format!("not a whole number from 0 to {}, such as 1000, 1_000 or 1e3", u64::MAX))
+}
+
+/// Parses a count of at least `least` and at most `most`.
+pub(crate) fn count_in(text: &str, least: u64, most: u64) -> Result<u64, String> {
+    let number = count(text)?;
+    if (least..=most).contains(&number) { Ok(number) } else { Err(format!("{number} is not in {least}..={most}")) }
+}
+
 /// Parses an amount of memory, such as 4GB, 500 MiB or 1000000.
 pub(crate) fn bytes(text: &str) -> Result<u64, String> {
     match text.parse::<ByteSize>() {

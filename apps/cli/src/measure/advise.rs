@@ -1,6 +1,6 @@
 //! `p2m advise`: recommends a backend for a scene and its queries.
 
-use crate::io::input::{SceneArgs, point_format, read_points, read_scene};
+use crate::io::input::{SceneArgs, point_format, read_finite_points, read_scene};
 use crate::io::json;
 use crate::io::output::Output;
 use crate::io::streams::Streams;
@@ -76,7 +76,7 @@ pub(crate) fn run(streams: &Streams, args: &Args) -> anyhow::Result<()> {
     let points = args
         .points
         .as_ref()
-        .map(|path| read_points(streams, path, point_format(path, args.points_format, "--points-format")?));
+        .map(|path| read_finite_points(streams, path, point_format(path, args.points_format, "--points-format")?));
     let points = points.transpose()?;
     let region = match &points {
         Some(points) => QueryRegion::Like(points),

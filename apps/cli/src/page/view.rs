@@ -3,12 +3,12 @@
 use crate::answers::queries::{Queries, Region};
 use crate::index::backend::{Backend, SceneSource, backends, saved_or_default};
 use crate::index::sign_rule::{SignRule, SignedIndex};
-use crate::io::input::{SceneArgs, point_format, read_points, read_scene_and_index};
+use crate::io::input::{SceneArgs, is_standard, point_format, read_finite_points, read_scene_and_index};
 use crate::io::output::Output;
 use crate::io::progress::{Progress, Unit};
 use crate::io::streams::Streams;
 use crate::io::threads::ThreadArgs;
-use crate::io::usage::{not_negative, one_of, positive, usage, whole_number};
+use crate::io::usage::{count_in, not_negative, one_of, positive, usage, whole_number};
 use crate::page::source::{PageArgs, about, file_name};
 use crate::page::tree_levels::TreeLevels;
 use crate::scene::info::counted;
@@ -50,7 +50,7 @@ pub(crate) struct Args {
     #[command(flatten)]
     scene: SceneArgs,
 
-    /// Show the closest points of the points of a file: XYZ, TXT, CSV, NPY or PLY
+    /// Show the closest points of the points of a file: XYZ, TXT, ASC, PTS, CSV, NPY or PLY
     #[arg(long, value_name = "FILE", conflicts_with = "random")]
     points: Option<PathBuf>,
 
@@ -59,7 +59,7 @@ pub(crate) struct Args {
     points_format: Option<PointFormat>,
 
     /// Show the closest points of N random points in the box of the scene
-    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u64).range(0..=MAX_QUERIES), allow_negative_numbers = true)]
+    #[arg(long, value_name = "N", value_parser = |text: &str| count_in(text, 0, MAX_QUERIES), allow_negative_numbers = true)]
     random: Option<u64>,
 
     /// Scale the box of the scene about its centre by this factor
@@ -101,9 +101,9 @@ pub(crate) struct Args {
     #[command(flatten)]
     page: PageArgs,
 
-    /// Write the page to this file; `-` is the standard output
+    /// Write the page to this file; `-` is the standard output [default: SCENE.html in this folder]
     #[arg(long, value_name = "FILE")]
-    out: PathBuf,
+    out: Option<PathBuf>,
 
     #[command(flatten)]
     threads: ThreadArgs,
@@ -131,14 +131,15 @@ const MAX_QUERIES: u64 = 100_000;
 const F32_SIDES: std::ops::Range<f64> = 1e-30..1e30;
 
 pub(crate) fn run(streams: &Streams, args: &Args) -> anyhow::Result<()> {
-    args.check()?;
+    let out = args.out()?;
+    args.check(&out)?;
     let format = args.scene.format()?;
     let pool = args.threads.pool()?;
     let (scene, saved) = read_scene_and_index(streams, &pool, &args.scene.path, format, args.scene.map)?;
     let bounds = scene.soup.aabb();
     let queries = args.queries(streams, &bounds)?;
     let grid = args.grid(&bounds)?;
-    let output = Output::open(streams, Some(&args.out))?;
+    let output = Output::open(streams, Some(&out))?;
 
     let saved = saved.as_ref();
     let backend = args.backend.unwrap_or_else(|| saved_or_default(saved));
@@ -147,7 +148,7 @@ pub(crate) fn run(streams: &Streams, args: &Args) -> anyhow::Result<()> {
     if args.lists.is_some() && index.list_lengths().is_empty() {
         return Err(usage(format!("--lists needs an index with lists: {} has none", backend.name)));
     }
-    let signed = args.signed.map(|rule| rule.prepare(streams, &*index, &scene.soup)).transpose();
+    let signed = args.signed.map(|rule| rule.prepare_signed(streams, &*index, &scene.soup)).transpose();
     let signed = signed.with_context(|| args.scene.name())?;
     let rule = signed.as_ref().map(|signed| signed.rule().name());
     let source = PageSource { streams, args, pool: &pool, backend, index: &*index, signed: signed.as_ref() };
@@ -155,7 +156,7 @@ pub(crate) fn run(streams: &Streams, args: &Args) -> anyhow::Result<()> {
     view.about = about(&format!("scene {}", args.scene.name()), backend.name, rule);
     let page = view.html()?;
     output.finish_with(&page)?;
-    streams.print_summary(format_args!("{}\nwritten  {}, {} bytes\n", view.summary, args.out.display(), page.len()));
+    streams.print_summary(format_args!("{}\nwritten  {}, {} bytes\n", view.summary, out.display(), page.len()));
     Ok(())
 }
 
@@ -269,12 +270,21 @@ fn levels(tree: &PacketTree, count: usize) -> Vec<Level> {
 
 impl Args {
     /// Refuses combinations of arguments that contradict each other.
-    fn check(&self) -> anyhow::Result<()> {
+    fn check(&self, out: &Path) -> anyhow::Result<()> {
         if self.signed.is_some() && self.field.is_none() && self.points.is_none() && self.random.is_none() {
             return Err(usage("--signed needs --field, --random or --points"));
         }
         let inputs: Vec<&Path> = std::iter::once(self.scene.path.as_path()).chain(self.points.as_deref()).collect();
-        Output::refuse_inputs(&self.out, &inputs)
+        Output::refuse_inputs(out, &inputs)
+    }
+
+    /// Returns the file of the page.
+    fn out(&self) -> anyhow::Result<PathBuf> {
+        match &self.out {
+            Some(out) => Ok(out.clone()),
+            None if is_standard(&self.scene.path) => Err(usage("a scene from the standard input needs --out FILE")),
+            None => Ok(Path::new(&file_name(&self.scene.path)).with_extension("html")),
+        }
     }
 
     /// Returns the grid of distances or of lengths of lists, if there is one. `bounds` is the box of the scene.
@@ -291,7 +301,7 @@ impl Args {
     /// Returns the query points, if there are any to show.
     fn queries(&self, streams: &Streams, bounds: &Aabb<f64>) -> anyhow::Result<Option<Vec<Point3<f64>>>> {
         if let Some(path) = &self.points {
-            let points = read_points(streams, path, point_format(path, self.points_format, "--points-format")?)?;
+            let points = read_finite_points(streams, path, point_format(path, self.points_format, "--points-format")?)?;
             if points.len() as u64 > MAX_QUERIES {
                 bail!("{}: {} points are too many to show: at most {MAX_QUERIES}", path.display(), points.len());
             }

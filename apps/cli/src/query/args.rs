@@ -10,7 +10,7 @@ use crate::index::sign_rule::SignRule;
 use crate::io::input::{self, SceneArgs, point_format, read_points};
 use crate::io::json;
 use crate::io::streams::Streams;
-use crate::io::usage::{bytes, not_negative, one_of, positive, usage, whole_number};
+use crate::io::usage::{bytes, count, not_negative, one_of, positive, usage, whole_number};
 use crate::query::accuracy::Accuracy;
 use clap::ArgGroup;
 use clap::builder::{PossibleValuesParser, TypedValueParser};
@@ -65,7 +65,7 @@ pub(crate) struct Args {
     #[command(flatten)]
     pub(crate) scene: SceneArgs,
 
-    /// Read the query points from a file: XYZ, TXT, CSV, NPY or PLY
+    /// Read the query points from a file: XYZ, TXT, ASC, PTS, CSV, NPY or PLY
     #[arg(long, value_name = "FILE")]
     pub(crate) points: Option<PathBuf>,
 
@@ -78,7 +78,7 @@ pub(crate) struct Args {
     grid: Option<u64>,
 
     /// Query N random points in the box of the scene
-    #[arg(long, value_name = "N", value_parser = whole_number, allow_negative_numbers = true)]
+    #[arg(long, value_name = "N", value_parser = count, allow_negative_numbers = true)]
     random: Option<u64>,
 
     /// Scale the box of the scene about its centre by this factor

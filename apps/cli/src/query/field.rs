@@ -131,7 +131,7 @@ pub(crate) fn run(streams: &Streams, args: &Args) -> anyhow::Result<()> {
     let built = prepared.as_ref().map(|prepared| &prepared.built);
     let index = match (built, args.signed) {
         (Some(built), Some(rule)) => {
-            let signed = rule.prepare(streams, &*built.index, soup).with_context(|| scene_args.name())?;
+            let signed = rule.prepare_signed(streams, &*built.index, soup).with_context(|| scene_args.name())?;
             Some(FieldIndex::Signed(signed))
         }
         (Some(built), None) => Some(FieldIndex::Unsigned(&*built.index)),

@@ -68,7 +68,9 @@ impl FieldSummary<'_> {
             ComputedField::Grid(values) => {
                 let [x, y, z] = self.grid.counts();
                 let each = self.field_time.as_nanos() as f64 / values.len() as f64;
-                writeln!(text, "field    {x} x {y} x {z} points, {} apart", Length(self.grid.spacing()))?;
+                let [at_x, at_y, at_z] = <[f64; 3]>::from(self.grid.origin()).map(Length);
+                let spacing = Length(self.grid.spacing());
+                writeln!(text, "field    {x} x {y} x {z} points, {spacing} apart, from {at_x} {at_y} {at_z}")?;
                 writeln!(text, "filled   in {} on {threads}: {each:.0} ns per point", Time(self.field_time))?;
             }
             ComputedField::Cells(cells) => {

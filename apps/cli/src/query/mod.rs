@@ -60,7 +60,7 @@ pub(crate) fn run(streams: &Streams, args: &Args) -> anyhow::Result<()> {
     let index = &*built.index;
     let build_time = start.elapsed();
 
-    let signed = args.signed.map(|rule| rule.prepare(streams, index, &scene.soup)).transpose();
+    let signed = args.signed.map(|rule| rule.prepare_signed(streams, index, &scene.soup)).transpose();
     let signed = signed.with_context(|| scene_args.name())?;
     let signs = signed.as_ref().map(SignReport::new);
     let source = WholeIndex { index, signed: signed.as_ref(), args };

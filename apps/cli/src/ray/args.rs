@@ -7,7 +7,7 @@ use crate::index::backend::{Backend, backends};
 use crate::io::input::{self, SceneArgs, point_format, read_rays};
 use crate::io::json;
 use crate::io::streams::Streams;
-use crate::io::usage::{bytes, finite_not_negative, number, one_of, positive, usage, whole_number};
+use crate::io::usage::{bytes, count, finite_not_negative, number, one_of, positive, usage, whole_number};
 use clap::{ArgGroup, ValueEnum};
 use nalgebra::{Point3, Vector3};
 use p2m_core::{Aabb, Ray, RayError};
@@ -53,7 +53,7 @@ pub(crate) struct Args {
     #[command(flatten)]
     pub(crate) scene: SceneArgs,
 
-    /// Read the rays from a file: XYZ, TXT, CSV, NPY or PLY
+    /// Read the rays from a file: XYZ, TXT, ASC, PTS, CSV, NPY or PLY
     #[arg(long, value_name = "FILE")]
     rays: Option<PathBuf>,
 
@@ -62,7 +62,7 @@ pub(crate) struct Args {
     rays_format: Option<PointFormat>,
 
     /// Cast N rays from random points in the box of the scene in random directions
-    #[arg(long, value_name = "N", value_parser = whole_number, allow_negative_numbers = true)]
+    #[arg(long, value_name = "N", value_parser = count, allow_negative_numbers = true)]
     random: Option<u64>,
 
     /// Scale the box of the scene about its centre by this factor

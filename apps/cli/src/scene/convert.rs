@@ -47,8 +47,8 @@ fn help() -> String {
     format!(
         "\
 {} files keep the whole geometry: the same positions, bit for bit, and the same primitives in the same order. \
-Polygons are cut into triangles. STL files have triangles only, in single precision and without shared vertices. The \
-standard error reports what is lost; what a format cannot hold at all is an error.
+Polygons are cut into triangles. STL files have triangles only, in single precision and without shared vertices. XYZ \
+and CSV files have points only. The standard error reports what is lost; what a format cannot hold at all is an error.
 
 {}
 
@@ -144,7 +144,7 @@ impl<'a> Target<'a> {
         let mut output = Output::open(streams, Some(self.path))?.with_progress(streams);
         match write_scene(scene, self.format, &mut output) {
             Ok(()) => {}
-            Err(e @ WriteError::NotATriangle { .. }) => {
+            Err(e @ (WriteError::NotATriangle { .. } | WriteError::NotAPoint { .. })) => {
                 let others = format_list(Format::is_lossless, "or").to_lowercase();
                 return Err(anyhow!("{}: {e}: choose {others}", output.cannot_write()));
             }
@@ -269,7 +269,8 @@ fn losses(scene: &Scene, format: Format) -> Vec<Loss> {
         losses.push(Loss::Names(scene.objects.len() as u64));
     }
     let unused = count_unused_positions(scene);
-    let is_lost = format == Format::Stl || (format != Format::Ply && scene.soup.is_empty());
+    let is_used_only = matches!(format, Format::Stl | Format::Xyz | Format::Csv);
+    let is_lost = is_used_only || (format != Format::Ply && scene.soup.is_empty());
     if unused > 0 && is_lost {
         losses.push(Loss::Unused(unused));
     }

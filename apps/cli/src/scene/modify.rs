@@ -163,7 +163,9 @@ fn subdivided_objects(scene: &Scene, levels: u32) -> Vec<Object> {
 /// Converts an error of an option into one of usage.
 pub(crate) fn refused(error: GenerateError) -> anyhow::Error {
     match error {
-        GenerateError::Build(_) => anyhow::Error::from(error).context("the scene cannot be made"),
+        GenerateError::Build(_) | GenerateError::Memory { .. } => {
+            anyhow::Error::from(error).context("the scene cannot be made")
+        }
         _ => usage(error.to_string()),
     }
 }

@@ -26,7 +26,7 @@ fn outside_is_positive_and_inside_negative() {
     assert_eq!((&report["above"], &report["below"], &report["limit"]), (&2.into(), &0.into(), &0.5.into()));
     assert_eq!((&report["sign_rule"], &report["missing"]), (&"winding".into(), &0.into()));
     let text = table(&["deviation", &scan, &cube, "--tolerance", "0.25", "--unit", "mm"]);
-    for line in ["mean                                0.375 mm", "below -0.25                         1 (25 %)"] {
+    for line in ["mean                                0.375 mm", "below -0.25 mm                      1 (25 %)"] {
         assert!(text.contains(line), "{text}");
     }
     // Without signs, and with the standard input as the scan.
@@ -110,8 +110,37 @@ fn scans_that_are_empty_equal_or_not_finite_have_statistics() {
     let report = json(&["deviation", &scan, &cube, "--json"]);
     assert_eq!((&report["deviations"], &report["missing"]), (&9.into(), &1.into()));
     // A point of a file of points may not be.
-    let scan = write(&folder, "nan.xyz", "nan 0 0\n");
-    assert!(failure(&["deviation", &scan, &cube], 1).contains("nan.xyz"));
+    // Depth cameras write rows that are not finite, in all formats of points.
+    let binary = |kind: &str| {
+        let mut file = kind.as_bytes().to_vec();
+        for x in [0.0, 0.0, 3.0, f64::NAN, f64::NAN, f64::NAN, 1.0, 1.0, 1.5] {
+            file.extend(f64::to_le_bytes(x));
+        }
+        file
+    };
+    let description = "{'descr': '<f8', 'fortran_order': False, 'shape': (3, 3), }          \n";
+    let npy = [b"\x93NUMPY\x01\0", &(description.len() as u16).to_le_bytes()[..], &binary(description)].concat();
+    let ply = "ply\nformat binary_little_endian 1.0\nelement vertex 3\nproperty double x\nproperty double y\n\
+        property double z\nend_header\n";
+    for (name, content) in [
+        ("nan.xyz", b"0 0 3\nnan nan nan\n1 1 1.5\n".to_vec()),
+        ("nan.csv", b"x,y,z\n0,0,3\nnan,nan,nan\n1,1,1.5\n".to_vec()),
+        ("nan.npy", npy),
+        ("nan.ply", binary(ply)),
+    ] {
+        let scan = write(&folder, name, content);
+        let report = json(&["deviation", &scan, &cube, "--json"]);
+        assert_eq!((&report["deviations"], &report["missing"]), (&2.into(), &1.into()), "{name}");
+        assert_eq!((statistic(&report, "min"), statistic(&report, "max")), (-0.5, 1.0), "{name}");
+        let answers = table(&["query", &cube, "--points", &scan, "--columns", "query,distance"]);
+        let rows: Vec<&str> = answers.lines().skip(1).collect();
+        assert_eq!((rows.len(), rows[0], rows[2]), (3, "0.0,0.0,3.0,1.0", "1.0,1.0,1.5,0.5"), "{name}");
+        assert_eq!(rows[1].to_lowercase(), "nan,nan,nan,", "{name}");
+        let page = path(&folder, "page.html");
+        let output = p2m(&["view", &cube, "--points", &scan, "--out", &page]);
+        assert!(self::text(&output.stderr).contains("1 of 3 points are not finite and are left out"), "{name}");
+        assert_eq!(output.code, 0, "{name}");
+    }
     let nothing = write(&folder, "nothing.off", "OFF\n0 0 0\n");
     let report = json(&["deviation", &cube, &nothing, "--json"]);
     assert_eq!((&report["deviations"], &report["missing"]), (&0.into(), &8.into()));
@@ -172,4 +201,21 @@ fn deviations_of_a_noisy_dragon_are_the_noise() {
     assert_eq!((report["deviations"].as_f64(), &report["sign_rule"]), (Some(count), &"winding".into()));
     assert!((statistic(&report, "mean") - mean).abs() < 0.01 * sigma, "{mean}: {report}");
     assert!((statistic(&report, "rms") - rms).abs() < 0.01 * sigma, "{rms}: {report}");
+}
+
+#[test]
+fn other_units_and_other_places_are_noticed() {
+    let folder = TempDir::new().unwrap();
+    let cube = write(&folder, "cube.obj", CUBE);
+    let warning = |points: &str| {
+        let output = p2m(&["deviation", &write(&folder, "scan.xyz", points), &cube]);
+        assert_eq!(output.code, 0);
+        text(&output.stderr).lines().find(|line| line.starts_with("warning")).map(str::to_owned)
+    };
+    let of_units = "warning  one of the scan and the scene is about 1000 times as large: millimetres and metres?";
+    assert_eq!(warning("0 0 0\n2000 2000 2000\n").as_deref(), Some(of_units));
+    assert!(warning("0 0 0\n50.8 50.8 50.8\n").is_some_and(|warning| warning.contains("25.4 times")));
+    assert!(warning("9 0 0\n10 1 1\n").is_some_and(|warning| warning.contains("lie apart")));
+    assert_eq!(warning("0 0 0\n2 2 2.1\nnan 0 0\n"), None);
+    assert_eq!(warning("5 0 0\n5 1 1\n"), None);
 }

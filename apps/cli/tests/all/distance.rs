@@ -1,6 +1,7 @@
 //! Tests of `p2m distance`.
 
 use crate::common::*;
+use serde_json::Value;
 use tempfile::TempDir;
 
 const LOW: &str = "v 0 0 0\nv 4 0 0\nv 0 4 0\no floor\nf 1 2 3\n";
@@ -42,6 +43,11 @@ fn limits_and_wrong_arguments_are_told() {
     let (low, high) = (write(&folder, "low.obj", LOW), write(&folder, "high.obj", HIGH));
     assert_eq!(table(&["distance", &low, &high, "--max-distance", "1.5"]), "nothing is within 1.5\n");
     assert_eq!(json(&["distance", &low, &high, "--max-distance", "2", "--json"])["distance"], 2.0);
+    let apart = json(&["distance", &low, &high, "--max-distance", "1.5", "--json"]);
+    assert_eq!(
+        (&apart["distance"], &apart["lower_bound"], &apart["intersect"]),
+        (&Value::Null, &1.5.into(), &false.into())
+    );
     let empty = write(&folder, "empty.off", "OFF\n0 0 0\n");
     assert_eq!(table(&["distance", &low, &empty]), "a scene is empty\n");
     let wrong = |transform: &str| failure(&["distance", &low, &high, "--transform", transform], 2);

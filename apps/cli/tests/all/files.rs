@@ -60,7 +60,7 @@ fn what_cannot_be_done_is_code_1_and_leaves_nothing() {
         "ply\nformat ascii 1.0\nelement vertex 2\nproperty float x\nproperty float y\nproperty float z\nend_header\n0 0 0\n",
     );
     let unknown = write(&folder, "scene.step", "");
-    let points = write(&folder, "bad.xyz", "0 0 0\n0 nan 0\n");
+    let points = write(&folder, "bad.xyz", "0 0 0\n0 x 0\n");
     let before = names(folder.path());
     let missing = path(&folder, "missing.obj");
     let out = path(&folder, "out.csv");
@@ -70,7 +70,7 @@ fn what_cannot_be_done_is_code_1_and_leaves_nothing() {
     assert!(query(&ply).contains("short.ply:9: unexpected end of file"));
     assert!(query(&unknown).contains("scene.step: unknown extension 'step', expected one of obj, ply"));
     let message = failure(&["query", SCENE, "--points", &points, "--out", &out], 1);
-    assert!(message.contains("bad.xyz:2: coordinate 'nan' is not finite"), "{message}");
+    assert!(message.contains("bad.xyz:2: 'x' is not a number"), "{message}");
     assert_eq!(names(folder.path()), before);
 
     let nowhere = path(&folder, "no/such/folder/out.csv");

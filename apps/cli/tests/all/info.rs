@@ -124,10 +124,10 @@ fn scenes_come_from_the_standard_input() {
 #[test]
 fn the_given_format_goes_before_the_extension() {
     let folder = TempDir::new().unwrap();
-    let scene = write(&folder, "scene.txt", "v 0 0 0\np 1\n");
+    let scene = write(&folder, "scene.scn", "v 0 0 0\np 1\n");
     let message = failure(&["info", &scene], 1);
     let names = Format::NAMES.join(", ");
-    let expected = format!("unknown extension 'txt', expected one of {names}, or name the format with --format");
+    let expected = format!("unknown extension 'scn', expected one of {names}, or name the format with --format");
     assert!(message.contains(&expected), "{message}");
     assert_eq!(json(&["info", &scene, "--format", "obj", "--json"])["primitives"]["points"], 1);
     let message = failure(&["info", &scene, "--format", "step"], 2);

@@ -15,6 +15,7 @@ mod hausdorff;
 mod info;
 mod interrupt;
 mod json;
+mod limits;
 mod program;
 mod query;
 mod query_options;

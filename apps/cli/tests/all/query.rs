@@ -257,7 +257,7 @@ fn scene_or_points_come_from_the_standard_input() {
     );
     for (arguments, why) in [
         (&["query", "-", "--random", "1"][..], "add --format obj|ply|stl|off"),
-        (&["query", SCENE, "--points", "-"], "add --points-format xyz|txt|csv|npy|ply"),
+        (&["query", SCENE, "--points", "-"], "add --points-format xyz|txt|asc|pts|csv|npy|ply"),
         (&["query", "-", "--format", "obj", "--points", "-", "--points-format", "csv"], "cannot be both"),
         (&["query", SCENE, "--random", "1", "--points-format", "csv"], "--points"),
         (&["query", SCENE, "--random", "1", "--json"], "add --out FILE"),
@@ -420,4 +420,51 @@ fn the_parts_of_a_p2m_index_may_be_chosen() {
         let wrong = failure(arguments, 2);
         assert!(wrong.contains(message), "{arguments:?}: {wrong}");
     }
+}
+
+#[test]
+fn clouds_are_scenes() {
+    let folder = TempDir::new().unwrap();
+    let scan = write(&folder, "scan.xyz", "//X Y Z intensity\n3\n0 0 0 9\nnan nan nan 9\n5 0 0 9\n");
+    let points = write(&folder, "points.csv", "id;x;y;z\n1;1;0;0\n2;5;0;2\n");
+    let answers = table(&["query", &scan, "--points", &points, "--columns", "distance,primitive"]);
+    assert_eq!(answers, "distance,primitive\n1.0,0\n2.0,1\n");
+    let info = table(&["info", &scan]);
+    assert!(
+        info.contains("2 points") && info.contains("1 vertex that is not finite") || info.contains("not finite"),
+        "{info}"
+    );
+    // Clouds are written as well, and nothing else is written as a cloud.
+    let (csv, asc) = (path(&folder, "out.csv"), path(&folder, "out.asc"));
+    assert_eq!(p2m(&["convert", &scan, &csv]).code, 0);
+    assert_eq!(fs::read_to_string(&csv).unwrap(), "x,y,z\n0.0,0.0,0.0\n5.0,0.0,0.0\n");
+    assert_eq!(p2m(&["convert", &csv, &asc]).code, 0);
+    assert_eq!(fs::read_to_string(&asc).unwrap(), "0.0 0.0 0.0\n5.0 0.0 0.0\n");
+    let message = failure(&["convert", SCENE, &csv], 1);
+    assert!(message.contains("primitive 0 is no point, and a table of points holds nothing else"), "{message}");
+    assert_eq!(fs::read_to_string(&csv).unwrap(), "x,y,z\n0.0,0.0,0.0\n5.0,0.0,0.0\n");
+}
+
+#[test]
+fn counts_may_have_exponents_and_marks() {
+    for (text, count) in [("1e3", 1000), ("1_000", 1000), ("1,000", 1000), ("25", 25)] {
+        let output = p2m(&["query", SCENE, "--random", text]);
+        assert_eq!(self::text(&output.stdout).lines().count(), count + 1, "{text}");
+    }
+    for text in ["1e-3", "1.5", "-1", "1e30", "", "e3"] {
+        assert!(failure(&["query", SCENE, "--random", text], 2).contains("not a whole number"), "{text}");
+    }
+    assert!(
+        failure(&["view", SCENE, "--random", "1e6", "--out", "never.html"], 2).contains("1000000 is not in 0..=100000")
+    );
+}
+
+#[test]
+fn names_of_files_control_no_terminal() {
+    let message = failure(&["info", "nofile\u{1b}[31m.obj"], 1);
+    assert!(message.contains("nofile\\u{1b}[31m.obj: cannot be read"), "{message:?}");
+    let message = failure(&["info", "a\nb.obj"], 1);
+    assert!(message.contains("a\\nb.obj: cannot be read") && message.lines().count() == 1, "{message:?}");
+    // A file that is missing has no wrong extension.
+    assert!(failure(&["query", "she", "--random", "1"], 1).contains("she: cannot be read: "));
 }

@@ -264,7 +264,7 @@ fn what_is_no_ray_is_refused_with_its_place() {
     let hits = path(&folder, "hits.csv");
     for (name, content, why) in [
         ("a.csv", "x,y,z,dx,dy,dz\n0,0,0,0,0,1\n1,2,3,0,0,0\n", "a.csv:3: the direction of the ray is zero"),
-        ("b.csv", "0,0,0,0,0,1\n0,0,nan,0,0,1\n", "b.csv:2: coordinate 'nan' is not finite"),
+        ("b.csv", "0,0,0,0,0,1\n0,0,nan,0,0,1\n", "b.csv:2: a coordinate of the ray is not finite"),
         ("c.csv", "x,y,z\n0,0,0\n", "c.csv:1: a ray needs 6 coordinates, found 3"),
         (
             "d.csv",
@@ -275,7 +275,7 @@ fn what_is_no_ray_is_refused_with_its_place() {
         (
             "f.las",
             "",
-            "f.las: unknown extension 'las', expected one of xyz, txt, csv, npy, ply, or name the format with --rays-format",
+            "f.las: unknown extension 'las', expected one of xyz, txt, asc, pts, csv, npy, ply, or name the format with --rays-format",
         ),
     ] {
         let rays = write(&folder, name, content);
@@ -303,7 +303,7 @@ fn wrong_usage_is_told_what_is_wrong() {
         (&["--random", "1", "--rays", "r.csv"], "cannot be used with"),
         (&["--rays", "r.csv", "--seed", "1"], "cannot be used with"),
         (&["--rays", "r.csv", "--box-scale", "2"], "cannot be used with"),
-        (&["--rays", "-"], "add --rays-format xyz|txt|csv|npy|ply"),
+        (&["--rays", "-"], "add --rays-format xyz|txt|asc|pts|csv|npy|ply"),
         (&["--random", "1", "--threads", "0"], "is not in 1..=1024"),
         (&[], "required arguments"),
     ] {

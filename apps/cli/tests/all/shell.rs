@@ -80,3 +80,16 @@ fn every_command_has_a_manual_page() {
     assert_eq!(found.len(), 1 + COMMANDS.len() + 9, "{found:?}");
     assert_eq!(fs::read_to_string(format!("{pages}/p2m.1")).unwrap(), page);
 }
+
+#[cfg(target_os = "linux")]
+#[test]
+fn help_that_cannot_be_written_is_an_error() {
+    let full = fs::OpenOptions::new().write(true).open("/dev/full").unwrap();
+    let output = program(&["--help"]).stdout(full).output().unwrap();
+    assert_eq!(output.status.code(), Some(1));
+    assert!(
+        text(&output.stderr).starts_with("error: the standard output: cannot be written"),
+        "{}",
+        text(&output.stderr)
+    );
+}

@@ -45,7 +45,6 @@ fn what_cannot_be_shown_is_told() {
     let page = path(&folder, "page.html");
     assert!(failure(&["view", SCENE, "--signed", "--out", &page], 2).contains("--signed needs"));
     assert!(failure(&["view", SCENE, "--out", SCENE], 1).contains("it is an input"));
-    failure(&["view", SCENE], 2);
     failure(&["view", SCENE, "--field", "8", "--lists", "8", "--out", &page], 2);
     assert!(failure(&["view", SCENE, "--lists", "8", "--out", &page], 2).contains("aabb has none"));
     failure(&["view", SCENE, "--random", "100001", "--out", &page], 2);
@@ -53,4 +52,22 @@ fn what_cannot_be_shown_is_told() {
     fs::write(&tiny, "v 0 0 0\nv 1e-200 0 0\nl 1 2\n").unwrap();
     assert!(failure(&["view", &tiny, "--field", "8", "--out", &page], 1).contains("numbers of f32"));
     assert!(!fs::exists(&page).unwrap());
+}
+
+#[test]
+fn the_page_is_named_after_its_scene() {
+    let folder = TempDir::new().unwrap();
+    write(&folder, "tiny.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\nl 1 2\n");
+    let run = |arguments: &[&str]| program(arguments).current_dir(&folder).output().unwrap();
+    assert!(run(&["view", "tiny.obj"]).status.success());
+    assert!(fs::read_to_string(folder.path().join("tiny.html")).unwrap().starts_with("<!"));
+    assert!(failure(&["view", "-", "--format", "obj"], 2).contains("needs --out"));
+    // Signs that a scene does not have say what to do.
+    for arguments in
+        [&["view", "tiny.obj", "--random", "3", "--signed"][..], &["field", "tiny.obj", "--signed", "--out", "f.npy"]]
+    {
+        let output = run(arguments);
+        assert_eq!(output.status.code(), Some(1));
+        assert!(text(&output.stderr).contains("leave --signed out"), "{}", text(&output.stderr));
+    }
 }

@@ -46,9 +46,18 @@ HIT_FIELDS: dict[str, tuple[np.dtype[Any], tuple[int, ...]]] = {
 """The type and the last axes of the columns of hits."""
 
 
+def unmasked(values: ArrayLike, name: str) -> NDArray[Any]:
+    """Return values as an array, unless it hides some of them."""
+    if isinstance(values, np.ma.MaskedArray):
+        raise TypeError(f"{name}: a masked array hides numbers: leave its masked rows out, or take its attribute data")
+    return np.asarray(values)
+
+
 def coordinates(values: ArrayLike, name: str, *, only_float64: bool = False) -> NDArray[Any]:
     """Return coordinates as a contiguous array of float64 or float32, which is not copied if it is one."""
-    array = np.asarray(values)
+    array = unmasked(values, name)
+    if array.shape == (0,):
+        array = array.reshape(0, 3)
     if array.dtype is not _FLOAT64 and array.dtype != _FLOAT64 and (only_float64 or array.dtype != _FLOAT32):
         if array.dtype.kind not in "iuf":
             raise TypeError(f"{name}: the type is {array.dtype}, but coordinates are real numbers")
@@ -69,7 +78,7 @@ def rigid_transforms(values: ArrayLike | None, name: str) -> NDArray[np.float64]
     """Return matrices of rotations and translations as a contiguous array of the shape {.., 4, 4}."""
     if values is None:
         return None
-    array = np.asarray(values)
+    array = unmasked(values, name)
     if array.dtype.kind not in "iuf":
         raise TypeError(f"{name}: the type is {array.dtype}, but matrices have real numbers")
     if array.shape[-2:] != (4, 4):
@@ -96,7 +105,7 @@ def indices(values: ArrayLike | None, name: str, width: int, vertices: int) -> N
     """Return indices of vertices as a flat array, `width` for each primitive."""
     if values is None:
         return np.empty(0, np.uint32)
-    array = np.asarray(values)
+    array = unmasked(values, name)
     if array.size == 0:
         return np.empty(0, np.uint32)
     if array.dtype.kind not in "iu":
@@ -116,15 +125,30 @@ def thread_count(threads: int | None, default: int | None = None) -> int:
     """Return the number of threads to use."""
     if threads is None:
         return default if default is not None else _p2m.default_threads()
-    count = operator.index(threads)
-    if not 1 <= count <= 1024:
-        raise ValueError(f"threads: {count} is not from 1 to 1024")
-    return count
+    return whole(threads, "threads", 1, 1024)
+
+
+def real(value: float, name: str) -> float:
+    """Return a number as a float."""
+    if isinstance(value, (str, bytes)):
+        raise TypeError(f"{name}: {value!r} is text and no number")
+    return float(value)
+
+
+def whole(value: int, name: str, least: int, most: int) -> int:
+    """Return a whole number in a range."""
+    try:
+        number = operator.index(value)
+    except TypeError:
+        raise TypeError(f"{name}: {value!r} is no whole number") from None
+    if not least <= number <= most:
+        raise ValueError(f"{name}: {number} is not from {least} to {most}")
+    return number
 
 
 def not_negative(value: float, name: str) -> float:
     """Return a number that is not negative; it may be infinite."""
-    number = float(value)
+    number = real(value, name)
     if not number >= 0.0:
         raise ValueError(f"{name}: {number} is negative or no number")
     return number
@@ -136,8 +160,8 @@ def checked_limits(
     """Return the largest distance and the relative error, after a check of all limits of a search."""
     largest = float("inf") if max_distance is None else not_negative(max_distance, "max_distance")
     error = not_negative(epsilon, "epsilon")
-    if max_visits is not None and not 0 <= max_visits < 2**32:
-        raise ValueError(f"max_visits: {max_visits} is not from 0 to {2**32 - 1}")
+    if max_visits is not None:
+        whole(max_visits, "max_visits", 0, 2**32 - 1)
     if certified and (error > 0.0 or max_visits is not None):
         raise ValueError("certified: certified answers have neither epsilon nor max_visits")
     return largest, error

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import csv
+import io
 import os
 import warnings
 from pathlib import Path
@@ -11,12 +13,15 @@ import numpy as np
 from numpy.typing import NDArray
 
 from . import _p2m
-from ._arrays import Progress, coordinates, not_negative
+from ._arrays import Progress, coordinates, not_negative, unmasked
 from ._index import Index
 from ._scene import Scene
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure as _Figure
+
+# The names of features by their codes.
+_FEATURES = ("vertex0", "vertex1", "vertex2", "edge0", "edge1", "edge2", "face")
 
 # The largest number of points that a figure draws.
 _MAX_DRAWN = 50_000
@@ -128,7 +133,8 @@ class Deviation:
         path : path
             A name that ends in ``.html`` is that of a page, which any browser opens without a network. One that ends in
             ``.ply`` is that of the scan with the property ``deviation`` and colours from blue (inside) to red
-            (outside), with its triangles if it has some.
+            (outside), with its triangles if it has some. One that ends in ``.csv`` is that of the table that ``p2m
+            query --signed`` writes, where ``signed_distance`` is the deviation.
         up : {"y", "z"}, optional
             The axis that points up on the page.
 
@@ -148,10 +154,13 @@ class Deviation:
         else:
             scan = self._scan._raw
         if target.suffix == ".ply":
-            target.write_bytes(_p2m.deviation_ply(scan, self.values, self.limit))
+            _p2m.write_bytes(target, _p2m.deviation_ply(scan, self.values, self.limit))
+            return
+        if target.suffix == ".csv":
+            _p2m.write_bytes(target, self._table().encode())
             return
         if target.suffix != ".html":
-            raise ValueError(f"path: {target.name!r} ends neither in .html nor in .ply")
+            raise ValueError(f"path: {target.name!r} ends neither in .html nor in .ply nor in .csv")
         primitives = np.full(len(self.values), np.iinfo(np.uint32).max, np.uint32)
         finite = np.isfinite(self._points).all(axis=1)
         primitives[finite] = self._index.closest(self._points[finite], fields="primitive").primitive
@@ -163,7 +172,30 @@ class Deviation:
         page = _p2m.deviation_page(
             scan, self.values, primitives, scene, self.is_signed, self.limit, self.tolerance, up == "y", texts
         )
-        target.write_text(page, encoding="utf-8")
+        _p2m.write_bytes(target, page.encode())
+
+
+    def _table(self) -> str:
+        """Return the points, their closest points and the deviations as text."""
+        finite = np.isfinite(self._points).all(axis=1)
+        fields = ["point", "distance", "primitive", "feature", "object"]
+        answers = self._index.closest(self._points[finite], fields=fields)
+        objects = [named.name for named in self._index.scene.objects]
+        names = ["qx", "qy", "qz", "x", "y", "z", "distance"] + ["signed_distance"] * self.is_signed
+        names += ["primitive", "feature"] + ["object"] * bool(objects)
+        out = io.StringIO()
+        table = csv.writer(out, lineterminator="\n")
+        table.writerow(names)
+        columns = [answers[field].tolist() for field in fields]
+        rows = zip(*columns)
+        for query, value, has_answer in zip(self._points.tolist(), self.values.tolist(), finite.tolist()):
+            point, distance, primitive, feature, number = next(rows) if has_answer else (None, 0.0, -1, 0, -1)
+            if primitive < 0:
+                table.writerow(query + [""] * (len(names) - 3))
+                continue
+            row = [*query, *point, distance] + [value] * self.is_signed + [primitive, _FEATURES[feature]]
+            table.writerow(row + ([objects[number] if number >= 0 else ""] if objects else []))
+        return out.getvalue()
 
 
 def deviation(
@@ -182,8 +214,8 @@ def deviation(
     Parameters
     ----------
     scan : array_like of shape (n, 3), Scene or object
-        The points, or an object that `Scene.of` makes a scene of, whose vertices are the points. A list or an array is
-        points, and a pair is a mesh.
+        The points, or an object that `Scene.of` makes a scene of, such as a path, whose vertices are the points. A list
+        or an array is points, and a pair is a mesh.
     mesh : Index, Scene or object
         The scene that the scan is compared with. An index of any backend is used, and for other objects a tree of boxes
         is built.
@@ -230,7 +262,7 @@ def deviation(
     index = mesh if isinstance(mesh, Index) else Index(mesh, threads=threads)
     is_points = isinstance(scan, (np.ndarray, list))
     if is_points:
-        array = np.asarray(scan)
+        array = unmasked(scan, "scan")
         points = array if array.dtype == np.float32 else array.astype(np.float64, copy=False)
         if points.ndim != 2 or points.shape[1] != 3:
             raise ValueError(f"scan: the shape is {points.shape} instead of (n, 3)")

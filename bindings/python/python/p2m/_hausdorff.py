@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from . import _p2m
-from ._arrays import Progress, callback, not_negative, rigid_transforms, thread_count
+from ._arrays import Progress, callback, not_negative, rigid_transforms, thread_count, whole
 from ._index import Index
 from ._scene import Scene
 
@@ -95,8 +95,7 @@ def hausdorff(
         if matrix.ndim != 2:
             raise ValueError(f"transform: the shape is {matrix.shape} instead of (4, 4)")
         b = Scene._from_raw(_scene_of(b)._raw.transformed(matrix.reshape(-1)))
-    if not 0 <= max_queries < 2**64:
-        raise ValueError(f"max_queries: {max_queries} is no number of queries")
+    max_queries = whole(max_queries, "max_queries", 0, 2**64 - 1)
     scenes = [_scene_of(a), _scene_of(b)]
     if tolerance is None:
         if len(scenes[0]) == 0 or len(scenes[1]) == 0:
@@ -109,7 +108,7 @@ def hausdorff(
     first = None if one_sided else _index_of(a, scenes[0], count)._raw
     second = _index_of(b, scenes[1], count)._raw
     with callback(progress, "comparing", "queries") as call:
-        found = _p2m.hausdorff(scenes[0]._raw, first, second, margin, int(max_queries), count, call)
+        found = _p2m.hausdorff(scenes[0]._raw, first, second, margin, max_queries, count, call)
     if found is None:
         raise ValueError("a scene is empty, so there is no Hausdorff distance")
     return HausdorffDistance(

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import operator
 import os
 from collections.abc import Sequence
 from typing import TYPE_CHECKING, Any, Literal, NamedTuple, Union, overload
@@ -23,7 +24,9 @@ from ._arrays import (
     not_negative,
     one_output,
     outputs,
+    real,
     thread_count,
+    whole,
 )
 from ._pairs import PairQueries
 from ._records import AllHits, ClosestPoints, FirstHits, NearPrimitives
@@ -142,6 +145,10 @@ class PointQueries:
         else:
             with callback(progress, "answering", "points") as call:
                 _p2m.closest(self._raw, rows, columns, largest, error, max_visits, certified, count, call)
+        bounds = columns.get("lower_bound")
+        if bounds is not None and largest < float("inf"):
+            # Where nothing is as near, everything is farther, apart from rounding.
+            bounds[bounds == float("inf")] = largest * (1.0 - 2.0**-49)
         if objects is not None:
             self._fill_objects(columns["primitive"], objects)
         if normals is not None and isinstance(self._raw, _p2m.Index):
@@ -225,16 +232,15 @@ class PointQueries:
         array([[2, 0]])
         """
         queries = coordinates(points, "points")
-        if not 1 <= k < 2**31:
-            raise ValueError(f"k: {k} is not at least 1")
-        arrays = outputs(fields, (*queries.shape[:-1], int(k)), out, FIELDS, ("distance", "primitive"))
+        k = whole(k, "k", 1, 2**31 - 1)
+        arrays = outputs(fields, (*queries.shape[:-1], k), out, FIELDS, ("distance", "primitive"))
         largest = float("inf") if max_distance is None else not_negative(max_distance, "max_distance")
         columns = flat(arrays)
         objects = columns.pop("object", None)
         if objects is not None and "primitive" not in columns:
             columns["primitive"] = np.empty(len(objects), np.int64)
         with callback(progress, "answering", "points") as call:
-            _p2m.k_nearest(self._raw, queries.reshape(-1), int(k), columns, largest, self._count(threads), call)
+            _p2m.k_nearest(self._raw, queries.reshape(-1), k, columns, largest, self._count(threads), call)
         if objects is not None:
             self._fill_objects(columns["primitive"], objects)
         return ClosestPoints(arrays)
@@ -795,8 +801,8 @@ class Index(PointQueries, PairQueries):
         corner = coordinates(origin, "origin", only_float64=True)
         if corner.shape != (3,):
             raise ValueError(f"origin: the shape is {corner.shape} instead of (3,)")
-        counts = tuple(int(count) for count in shape)
-        starts = tuple(int(start) for start in first)
+        counts = tuple(whole(count, "shape", 0, 2**40) for count in shape)
+        starts = tuple(operator.index(start) for start in first)
         if len(starts) != 3 or not 0 <= min(starts) <= max(starts) <= 2**40:
             raise ValueError(f"first: {starts} are not three indices from 0 to 2**40")
         if len(counts) != 3 or min(counts) < 1:
@@ -815,7 +821,7 @@ class Index(PointQueries, PairQueries):
         with callback(progress, "filling the grid", "points") as call:
             values = self._raw.field(
                 (x, y, z),
-                float(spacing),
+                real(spacing, "spacing"),
                 (starts[0], starts[1], starts[2]),
                 (counts[0], counts[1], counts[2]),
                 sign if signed else None,
@@ -976,9 +982,8 @@ def advise(
     >>> p2m.advise(scene, 1)[0].backend
     'brute'
     """
-    if not 0 <= queries < 2**63:
-        raise ValueError(f"queries: {queries} is no number of queries")
+    queries = whole(queries, "queries", 0, 2**63 - 1)
     like = None if points is None else coordinates(points, "points").reshape(-1)
     raw = Scene.of(scene)._raw
-    rows = _p2m.advise(raw, int(queries), region, like, max_bytes, max_seconds, thread_count(threads))
+    rows = _p2m.advise(raw, queries, region, like, max_bytes, max_seconds, thread_count(threads))
     return [Estimate(name, *costs, is_measured, even, reason) for name, costs, is_measured, even, reason in rows]

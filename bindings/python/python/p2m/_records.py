@@ -76,7 +76,8 @@ class ClosestPoints(Record):
     barycentric : ndarray of float64, shape {.., 3}
         The weights of the vertices of the primitive; nan where there is no answer.
     lower_bound : ndarray of float64, shape {..}
-        Certified lower bounds on the true distances; infinite where there is no answer.
+        Certified lower bounds on the true distances. Where there is no answer they are about `max_distance`, or less if
+        ``max_visits`` ended the search; infinite for an empty scene.
     object : ndarray of int64, shape {..}
         The numbers of the objects in ``scene.objects``; -1 for a primitive without object and where there is no answer.
     normal : ndarray of float64, shape {.., 3}

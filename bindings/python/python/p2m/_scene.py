@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import inspect
 import os
 from collections.abc import Iterable
 from typing import Any, NamedTuple
@@ -10,7 +11,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from . import _p2m
-from ._arrays import coordinates, indices
+from ._arrays import coordinates, indices, unmasked
 
 
 class Counts(NamedTuple):
@@ -75,13 +76,15 @@ class Scene:
         segments: ArrayLike | None = None,
         points: ArrayLike | None = None,
     ) -> None:
-        positions = np.asarray(vertices)
+        positions = unmasked(vertices, "vertices")
         if positions.size == 0:
             positions = positions.reshape(0, 3)
         if positions.ndim != 2:
             raise ValueError(f"vertices: the shape is {positions.shape} instead of (n, 3)")
         flat = coordinates(positions, "vertices").reshape(-1)
         count = len(positions)
+        if triangles is None and segments is None and points is None:
+            points = np.arange(count)
         corners = indices(triangles, "triangles", 3, count)
         ends = indices(segments, "segments", 2, count)
         self._raw = _p2m.Scene(flat, corners, ends, indices(points, "points", 1, count))
@@ -99,8 +102,8 @@ class Scene:
         Parameters
         ----------
         obj : object
-            A mesh, point cloud or set of lines of trimesh, Open3D, PyVista or meshio, a tuple ``(vertices,
-            triangles)``, or a `Scene`, which is returned as it is.
+            A mesh, point cloud or set of lines of trimesh, Open3D, PyVista or meshio, the path of a file that `read`
+            reads, an array of points, a tuple ``(vertices, triangles)``, or a `Scene`, which is returned as it is.
 
         Raises
         ------
@@ -115,27 +118,49 @@ class Scene:
         """
         if isinstance(obj, Scene):
             return obj
+        if isinstance(obj, (str, os.PathLike)):
+            return read(obj)
         if isinstance(obj, tuple) and len(obj) == 2:
             return Scene(obj[0], triangles=obj[1])
-        if type(obj).__module__.partition(".")[0] == "open3d":
-            return Scene.from_open3d(obj)
+        if isinstance(obj, np.ndarray):
+            return Scene(obj)
+        # Attributes alone do not tell the packages apart.
+        makers = {
+            "trimesh": Scene.from_trimesh,
+            "open3d": Scene.from_open3d,
+            "pyvista": Scene.from_pyvista,
+            "meshio": Scene.from_meshio,
+        }
+        for base in type(obj).__mro__:
+            package = base.__module__.partition(".")[0]
+            if package in makers:
+                return makers[package](obj)
         if hasattr(obj, "cells_dict") and hasattr(obj, "points"):
             return Scene.from_meshio(obj)
         if hasattr(obj, "n_points") and hasattr(obj, "GetNumberOfCells"):
             return Scene.from_pyvista(obj)
         if hasattr(obj, "geometry") or hasattr(obj, "vertices"):
             return Scene.from_trimesh(obj)
-        raise TypeError(f"{type(obj).__name__} is no scene: give arrays, or a mesh of trimesh, Open3D, PyVista, meshio")
+        raise TypeError(
+            f"{type(obj).__name__} is no scene: give a path, an array of points, a pair (vertices, triangles), a "
+            "p2m.Scene, or a mesh of trimesh, Open3D, PyVista or meshio"
+        )
 
     @staticmethod
     def from_trimesh(mesh: Any) -> Scene:
         """Make a scene of a mesh, a point cloud, a path or a scene of trimesh.
 
         The faces of a mesh are triangles, the entities of a path are segments, and the vertices of a point cloud are
-        points. A scene of trimesh becomes one mesh, with all of its transformations.
+        points. The nodes of a scene of trimesh become objects with their names, with all of their transformations.
         """
         if hasattr(mesh, "geometry"):
-            mesh = mesh.to_mesh() if hasattr(mesh, "to_mesh") else mesh.dump(concatenate=True)
+            parts = []
+            for node in mesh.graph.nodes_geometry:
+                transform, name = mesh.graph[node]
+                part = mesh.geometry[name].copy()
+                part.apply_transform(transform)
+                parts.append((str(node), Scene.from_trimesh(part)._raw))
+            return Scene._from_raw(_p2m.Scene.joined(parts))
         vertices = np.asarray(mesh.vertices, np.float64)
         if hasattr(mesh, "faces"):
             return Scene(vertices, triangles=np.asarray(mesh.faces))
@@ -172,21 +197,39 @@ class Scene:
     def from_pyvista(mesh: Any) -> Scene:
         """Make a scene of a mesh of PyVista: of its polygons, lines and vertex cells.
 
-        Polygons are triangulated and polylines divided into segments. Of a grid the surface is taken.
+        Polygons are triangulated and polylines divided into segments. Of a grid the surface is taken. The `sources` of
+        triangles are the numbers of their polygons, or of the cells of the grid.
         """
         if not hasattr(mesh, "GetPolys"):
-            mesh = mesh.extract_surface()
-        triangles = np.asarray(mesh.triangulate().faces).reshape(-1, 4)[:, 1:]
+            # Versions that can choose the algorithm warn if nobody does.
+            can_choose = "algorithm" in inspect.signature(mesh.extract_surface).parameters
+            mesh = mesh.extract_surface(**({"algorithm": None} if can_choose else {}))
+            cells = np.asarray(mesh.cell_data["vtkOriginalCellIds"])
+        else:
+            # Vertices and lines come before polygons.
+            cells = np.arange(mesh.n_cells) - mesh.n_verts - mesh.n_lines
+        polygons = mesh.copy(deep=False)
+        polygons.clear_data()
+        polygons.cell_data["p2m_cell"] = cells
+        polygons = polygons.triangulate()
+        triangles = np.asarray(polygons.faces).reshape(-1, 4)[:, 1:]
+        of_polygons = slice(polygons.n_verts + polygons.n_lines, None)
+        sources = np.asarray(polygons.cell_data["p2m_cell"])[of_polygons]
         vertices = np.asarray(mesh.points)
         lines = _runs(np.asarray(mesh.lines))
         segments = [np.stack([line[:-1], line[1:]], axis=1) for line in lines]
         points = _runs(np.asarray(mesh.verts))
-        return Scene(
+        scene = Scene(
             vertices,
             triangles=triangles,
             segments=np.concatenate(segments) if segments else None,
             points=np.concatenate(points) if points else None,
         )
+        return scene._with_sources(sources)
+
+    def _with_sources(self, triangles: NDArray[Any]) -> Scene:
+        """Return the scene with the numbers of the polygons that its triangles are from."""
+        return Scene._from_raw(self._raw.with_sources(np.ascontiguousarray(triangles, np.uint32)))
 
     @staticmethod
     def from_meshio(mesh: Any) -> Scene:
@@ -196,24 +239,28 @@ class Scene:
         an error, because they have no surface of their own.
         """
         triangles, segments, points = [], [], []
+        sources, polygons = [np.empty(0, np.int64)], 0
         for block in mesh.cells:
             cells = np.asarray(block.data)
-            if block.type == "triangle":
-                triangles.append(cells)
-            elif block.type == "quad":
-                triangles.append(cells[:, [0, 1, 2, 0, 2, 3]].reshape(-1, 3))
+            if block.type in ("triangle", "quad"):
+                parts = 1 if block.type == "triangle" else 2
+                corners = [0, 1, 2] if parts == 1 else [0, 1, 2, 0, 2, 3]
+                triangles.append(cells[:, corners].reshape(-1, 3))
+                sources.append(np.repeat(np.arange(polygons, polygons + len(cells)), parts))
+                polygons += len(cells)
             elif block.type == "line":
                 segments.append(cells)
             elif block.type == "vertex":
                 points.append(cells.reshape(-1))
             else:
                 raise ValueError(f"cells: there are cells of the type {block.type!r}, which are no triangles or lines")
-        return Scene(
+        scene = Scene(
             _in_space(np.asarray(mesh.points)),
             triangles=np.concatenate(triangles) if triangles else None,
             segments=np.concatenate(segments) if segments else None,
             points=np.concatenate(points) if points else None,
         )
+        return scene._with_sources(np.concatenate(sources))
 
     @property
     def counts(self) -> Counts:

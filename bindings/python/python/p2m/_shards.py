@@ -11,7 +11,18 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from . import _p2m
-from ._arrays import FIELDS, Progress, callback, coordinates, flat, not_negative, one_output, outputs, thread_count
+from ._arrays import (
+    FIELDS,
+    Progress,
+    callback,
+    coordinates,
+    flat,
+    not_negative,
+    one_output,
+    outputs,
+    thread_count,
+    whole,
+)
 from ._index import PointQueries
 from ._records import ClosestPoints
 from ._scene import Object, Scene
@@ -430,9 +441,7 @@ def max_bytes_of(max_bytes: int | None) -> int:
     """Return the limit of memory as the library takes it."""
     if max_bytes is None:
         return _UNLIMITED
-    if not 0 <= max_bytes <= _UNLIMITED:
-        raise ValueError(f"max_bytes: {max_bytes} is no number of bytes")
-    return int(max_bytes)
+    return whole(max_bytes, "max_bytes", 0, _UNLIMITED)
 
 
 def is_shard_folder(path: str) -> bool:

@@ -61,7 +61,17 @@ try:
 except ImportError:
     raise ImportError('p2m.dask needs Dask: pip install "dask[array]"')
 
-from ._arrays import FIELDS, HIT_FIELDS, checked_limits, coordinates, not_negative, outputs, thread_count
+from ._arrays import (
+    FIELDS,
+    HIT_FIELDS,
+    checked_limits,
+    coordinates,
+    not_negative,
+    outputs,
+    real,
+    thread_count,
+    whole,
+)
 from ._index import Index
 from ._index_cache import IndexFile, index_source, opened
 from ._records import ClosestPoints, FirstHits, Record
@@ -401,14 +411,14 @@ def field(
     corner = coordinates(origin, "origin", only_float64=True)
     if corner.shape != (3,):
         raise ValueError(f"origin: the shape is {corner.shape} instead of (3,)")
-    counts = tuple(int(count) for count in shape)
+    counts = tuple(whole(count, "shape", 0, 2**40) for count in shape)
     if len(counts) != 3 or min(counts) < 1:
         raise ValueError(f"shape: {tuple(shape)} are not three numbers of points")
     dtype = np.dtype(np.float32)
     normal = da.core.normalize_chunks(chunks, counts, dtype=dtype)
     options = {
         "origin": tuple(corner.tolist()),
-        "spacing": float(spacing),
+        "spacing": real(spacing, "spacing"),
         "signed": bool(signed),
         "sign": sign,
         "band": None if band is None else not_negative(band, "band"),

@@ -304,6 +304,8 @@ impl<'a> Parser<'a> {
             return added;
         }
         let start = self.deferred_vertices.len();
+        self.deferred_vertices.try_reserve(self.vertices.len()).map_err(Reason::Memory)?;
+        self.deferred.try_reserve(1).map_err(Reason::Memory)?;
         self.deferred_vertices.extend_from_slice(&self.vertices);
         self.deferred.push(Deferred::Shape(shape, line.unwrap_or(self.line), start..self.deferred_vertices.len()));
         Ok(())

@@ -27,6 +27,9 @@ fn scalar_named(name: &[u8]) -> Option<Scalar> {
         b"ushort" | b"uint16" => Scalar::U16,
         b"int" | b"int32" => Scalar::I32,
         b"uint" | b"uint32" => Scalar::U32,
+        // These two are not of the format, but written by some programs.
+        b"int64" => Scalar::I64,
+        b"uint64" => Scalar::U64,
         b"float" | b"float32" => Scalar::F32,
         b"double" | b"float64" => Scalar::F64,
         _ => return None,
@@ -59,7 +62,7 @@ pub(super) struct Element {
 impl Element {
     /// Returns the index of the first property with one of these names.
     pub(super) fn find(&self, names: &[&str]) -> Option<usize> {
-        self.properties.iter().position(|p| names.iter().any(|n| n.as_bytes() == p.name))
+        self.properties.iter().position(|p| names.iter().any(|n| p.name.eq_ignore_ascii_case(n.as_bytes())))
     }
 }
 

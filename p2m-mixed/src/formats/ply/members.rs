@@ -13,6 +13,7 @@ use crate::parse::bytes::Scalar;
 use crate::polygon::MAX_CORNERS;
 use crate::{FileLocation, ReadError, Reason, Scene};
 use nalgebra::Point3;
+use std::collections::TryReserveError;
 use std::io::BufRead;
 
 /// The index that stands for -1 in a strip. No vertex has it.
@@ -51,7 +52,10 @@ impl MemberList {
     }
 
     #[allow(clippy::cast_possible_truncation, reason = "readers refuse lists beyond the range of u32")]
-    fn push(&mut self, vertices: &[u32], id: Option<u32>) {
+    fn push(&mut self, vertices: &[u32], id: Option<u32>) -> Result<(), TryReserveError> {
+        self.ids.try_reserve(1)?;
+        self.lengths.try_reserve(1)?;
+        self.vertices.try_reserve(vertices.len())?;
         self.ids.extend(id);
         if self.vertices.is_empty() && self.lengths.is_empty() {
             self.length = vertices.len();
@@ -64,6 +68,7 @@ impl MemberList {
             self.lengths.push(vertices.len() as u32);
         }
         self.vertices.extend_from_slice(vertices);
+        Ok(())
     }
 }
 
@@ -175,8 +180,7 @@ struct MemberRows<'a> {
 impl ReadRow<(Vec<u32>, MemberList)> for MemberRows<'_> {
     fn read<N: Numbers>(&self, numbers: &mut N, (member, list): &mut (Vec<u32>, MemberList)) -> Result<(), N::Error> {
         let id = self.limits.read_member(numbers, self.properties, self.plan, member)?;
-        list.push(member, id);
-        Ok(())
+        list.push(member, id).map_err(|error| numbers.error(|| Reason::Memory(error)))
     }
 }
 
@@ -292,7 +296,7 @@ impl<'a> Members<'a> {
             self.check_finite(vertices, file)?;
             self.add(form, vertices, number).map_err(fail)?;
         } else if let Some(batch) = self.batches.last_mut() {
-            batch.members.push(vertices, id);
+            batch.members.push(vertices, id).map_err(|error| fail(Reason::Memory(error)))?;
         }
         Ok(())
     }

@@ -172,8 +172,7 @@ impl VertexRows<'_> {
     }
 }
 
-/// Reads the vertices of a PLY file as rows, whose coordinates have to be finite. Elements after the vertices
-/// are not read.
+/// Reads the vertices of a PLY file as rows. Elements after the vertices are not read.
 pub(crate) fn read_vertices<R: Row<N>, const N: usize>(
     mut reader: impl BufRead,
     name: &str,
@@ -193,10 +192,7 @@ pub(crate) fn read_vertices<R: Row<N>, const N: usize>(
         skip(&mut data, element)?;
     }
     for _ in 0..vertices.count {
-        let (numbers, bad) = vertex(&mut data, &vertices.properties, &coordinates)?;
-        if let Some((location, coordinate)) = bad {
-            return Err(ReadError::new(name, location, Reason::NonFinite { text: coordinate.to_string() }));
-        }
+        let (numbers, _) = vertex(&mut data, &vertices.properties, &coordinates)?;
         rows.push(R::new(numbers).map_err(|reason| data.error(|| reason))?);
     }
     Ok(rows)

@@ -141,7 +141,12 @@ pub(super) fn coordinates<const N: usize>(
 
 /// Returns whether an element has a list of vertices, by the usual names of such a list.
 pub(super) fn has_vertex_list(element: &header::Element) -> bool {
-    element.properties.iter().any(|p| matches!(p.layout, Layout::List { .. }) && p.name.starts_with(b"vertex_ind"))
+    // The grid of a raw scan says where its vertices were seen.
+    element.name != b"range_grid"
+        && element
+            .properties
+            .iter()
+            .any(|p| matches!(p.layout, Layout::List { .. }) && p.name.starts_with(b"vertex_ind"))
 }
 
 fn scalar(

@@ -162,7 +162,10 @@ impl<R: BufRead> Text<'_, R> {
                 is_open = true;
             } else if is_open && is(token, "facet") {
                 self.facet()?;
-            } else if is_open && is(token, "endsolid") {
+            } else if is_open && (is(token, "endsolid") || is(token, "end")) {
+                if is(token, "end") {
+                    self.expect("solid", "'solid'")?;
+                }
                 self.tokens.rest_of_line();
                 is_open = false;
             } else if !is_open && token == b"\x1a" {
@@ -195,6 +198,11 @@ impl<R: BufRead> Text<'_, R> {
             if is(token, "endloop") {
                 break;
             }
+            // Some writers make two words of it.
+            if is(token, "end") {
+                self.expect("loop", "'loop'")?;
+                break;
+            }
             if !is(token, "vertex") {
                 return Err(Reason::UnexpectedWord { text: quote(token), expected: "'vertex' or 'endloop'" });
             }
@@ -204,7 +212,12 @@ impl<R: BufRead> Text<'_, R> {
             }
             self.facets.corner(corner)?;
         }
-        self.expect("endfacet", "'endfacet'")?;
+        let token = self.tokens.next()?;
+        if is(token, "end") {
+            self.expect("facet", "'facet'")?;
+        } else if !is(token, "endfacet") {
+            return Err(Reason::UnexpectedWord { text: quote(token), expected: "'endfacet'" });
+        }
         self.facets.end_facet()
     }
 

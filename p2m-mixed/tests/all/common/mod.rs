@@ -205,6 +205,10 @@ pub(crate) fn rich_binary_off() -> Vec<u8> {
     file
 }
 
+/// A table of points that uses every part of the format.
+pub(crate) const RICH_TABLE: &str =
+    "sep=;\n# a scan\n//id;x;y;z;code\n\n7;0;0;1e0;\"a;b\"\r\n8;nan;0;0;c\n9; 4 ;\"5\";-6;d\n10;1;2;3;e\n";
+
 /// Returns files of every format that use every part of it. The numbers say at how many lengths a file that is cut off is
 /// still valid.
 pub(crate) fn rich_files() -> Vec<(Vec<u8>, Format, usize)> {
@@ -216,10 +220,18 @@ pub(crate) fn rich_files() -> Vec<(Vec<u8>, Format, usize)> {
         (RICH_OFF.into(), Format::Off, 1),
         (rich_binary_off(), Format::Off, 0),
         (written(&obj(RICH_OBJ).unwrap(), Format::P2m), Format::P2m, 0),
+        // A table without its last rows, or the last digits of a number, is valid as well.
+        (RICH_TABLE.into(), Format::Xyz, usize::MAX),
+        (RICH_TABLE.into(), Format::Csv, usize::MAX),
     ];
     files.extend(ENCODINGS.map(|encoding| (rich_ply(encoding), Format::Ply, 3)));
     assert!(Format::ALL.iter().all(|format| files.iter().any(|(_, of, _)| of == format)), "a file for each format");
     files
+}
+
+/// Returns the formats whose files hold triangles.
+pub(crate) fn formats_of_triangles() -> impl Iterator<Item = Format> {
+    Format::ALL.iter().copied().filter(|format| !matches!(format, Format::Xyz | Format::Csv))
 }
 
 /// Returns the formats whose files hold every scene.

@@ -24,12 +24,12 @@ use settings::SETTINGS;
 
 use crate::answers::queries::{Queries as QueryPoints, Region};
 use crate::index::backend::{Backend, backends};
-use crate::io::input::{SceneArgs, point_format, read_points, read_scene};
+use crate::io::input::{SceneArgs, point_format, read_finite_points, read_scene};
 use crate::io::output::Output;
 use crate::io::progress::{Progress, Unit};
 use crate::io::streams::Streams;
 use crate::io::threads::ThreadArgs;
-use crate::io::usage::{one_of, positive, whole_number};
+use crate::io::usage::{count_in, one_of, positive, whole_number};
 use crate::measure::harness::Provenance;
 use crate::measure::harness::queries::Queries;
 use crate::measure::harness::rounds::thread_seconds;
@@ -64,7 +64,7 @@ pub(crate) struct Args {
     #[command(flatten)]
     scene: SceneArgs,
 
-    /// Read the query points from a file: XYZ, TXT, CSV, NPY or PLY
+    /// Read the query points from a file: XYZ, TXT, ASC, PTS, CSV, NPY or PLY
     #[arg(long, value_name = "FILE")]
     points: Option<PathBuf>,
 
@@ -77,7 +77,7 @@ pub(crate) struct Args {
     grid: Option<u64>,
 
     /// Query N random points in the box of the scene
-    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u64).range(1..=100_000_000), allow_negative_numbers = true)]
+    #[arg(long, value_name = "N", value_parser = |text: &str| count_in(text, 1, 100_000_000), allow_negative_numbers = true)]
     random: Option<u64>,
 
     /// Scale the box of the scene about its centre by this factor
@@ -181,7 +181,8 @@ impl Args {
         let region = Region::around(&scene.soup.aabb(), self.box_scale);
         let (queries, description) = match (&self.points, self.grid) {
             (Some(path), _) => {
-                let points = read_points(streams, path, point_format(path, self.points_format, "--points-format")?)?;
+                let points =
+                    read_finite_points(streams, path, point_format(path, self.points_format, "--points-format")?)?;
                 (points, format!("The points of {}.", crate::io::input::name(path)))
             }
             (None, Some(side)) => (
