@@ -200,8 +200,8 @@ impl<T: Real> Soup<T> {
     /// Replaces each position by its image.
     ///
     /// # Errors
-    /// It returns [`BuildError::NonFinite`] for a primitive with an image that is not finite. The soup is then
-    /// unchanged.
+    /// It returns [`BuildError::NonFinite`] for a primitive with an image that is not finite. The soup
+    /// is then unchanged.
     pub fn map_positions(&mut self, image: impl FnMut(Point3<T>) -> Point3<T>) -> Result<(), BuildError> {
         self.set_positions(self.positions.iter().copied().map(image).collect())
     }

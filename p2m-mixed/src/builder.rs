@@ -166,8 +166,8 @@ impl Output<'_> {
     }
 }
 
-/// Builds a scene, or pieces of it. Callers have to check that indices are in range and that the vertices of primitives
-/// are finite.
+/// Builds a scene, or pieces of it. Callers have to check that indices are in range and that the vertices of
+/// primitives are finite.
 #[derive(Default)]
 pub(crate) struct SceneBuilder<'a> {
     pub(crate) skipped: SkippedRecords,

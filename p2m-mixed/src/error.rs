@@ -162,8 +162,8 @@ pub enum Reason {
     IndexOutOfRange {
         /// The index in the file.
         index: i64,
-        /// The number of vertices of the file; for an index that is negative or above 2^32 that of those before this
-        /// line.
+        /// The number of vertices of the file; for an index that is negative or above 2^32 that of those
+        /// before this line.
         count: u64,
     },
     /// A PLY or OFF file does not have the vertex with this index. Indices count from 0.

@@ -6,8 +6,8 @@ use p2m_mixed::ReadError;
 use std::io;
 use std::path::PathBuf;
 
-/// An error of writing, opening or querying a sharded index. The message begins with the name of the file, if the error
-/// concerns one.
+/// An error of writing, opening or querying a sharded index. The message begins with the name of the file, if the
+/// error concerns one.
 ///
 /// # Loading a shard
 ///

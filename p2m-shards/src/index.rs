@@ -8,8 +8,8 @@ use std::sync::Arc;
 
 /// An index in shards, which are loaded when a query needs them. The crate documentation has the contract.
 ///
-/// Queries from several threads run at the same time. One that needs a shard which another thread is loading waits for
-/// it.
+/// Queries from several threads run at the same time. One that needs a shard which another thread is loading
+/// waits for it.
 pub struct ShardedIndex {
     folder: PathBuf,
     manifest: Manifest,

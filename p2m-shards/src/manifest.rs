@@ -104,8 +104,8 @@ impl Manifest {
         counts
     }
 
-    /// Returns the rule that decides which points are inside, or `None` if the surface is open or the scene has segments
-    /// or points.
+    /// Returns the rule that decides which points are inside, or `None` if the surface is open or the scene has
+    /// segments or points.
     #[must_use]
     pub fn sign_rule(&self) -> Option<SignRule> {
         match (self.segments + self.points, self.is_oriented, self.is_closed) {

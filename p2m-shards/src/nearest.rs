@@ -222,8 +222,8 @@ pub(crate) fn certified(
     )
 }
 
-/// Returns which of two answers is certainly the nearest one, for which rational arithmetic decides between their
-/// primitives.
+/// Returns which of two answers is certainly the nearest one, for which rational arithmetic decides
+/// between their primitives.
 fn certainly_nearest(
     query: &Point3<f64>,
     first: (ShardClosest, Shape<f64>),

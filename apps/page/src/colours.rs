@@ -1,7 +1,7 @@
 //! The colours of signed numbers. The script of the page has the same scale for light pages.
 
-/// Blue for negative numbers and red for positive ones, with grey at zero, which people with any colour vision tell
-/// apart.
+/// Blue for negative numbers and red for positive ones, with grey at zero, which people with any colour
+/// vision tell apart.
 const DIVERGING: [[u8; 3]; 9] = [
     [0x05, 0x30, 0x61],
     [0x1a, 0x55, 0x9a],

@@ -92,8 +92,8 @@ fn halve<O: Split, R: Send>(
 /// The number of rows that are checked at a time.
 const ROWS_PER_CHECK: usize = 1 << 10;
 
-/// Checks that all coordinates are finite, of which `width` rows are an argument. A block of rows is checked without
-/// branches.
+/// Checks that all coordinates are finite, of which `width` rows are an argument. A block of rows is
+/// checked without branches.
 pub(crate) fn check_finite<P: Position<f64>>(name: &str, points: &[P], width: usize) -> PyResult<()> {
     let is_finite = |point: &P| point.point().iter().fold(true, |all, x| all & x.is_finite());
     for (block, rows) in points.chunks(ROWS_PER_CHECK).enumerate() {

@@ -213,8 +213,8 @@ impl Index {
         Ok(())
     }
 
-    /// Returns the name of the rule that decides signs, and a sentence that says why, if the surface is open or not
-    /// consistently oriented.
+    /// Returns the name of the rule that decides signs, and a sentence that says why, if the surface is open or
+    /// not consistently oriented.
     fn sign_rule(&self, py: Python<'_>, sign: &str, threads: usize) -> PyResult<(&'static str, Option<&'static str>)> {
         let signed = self.signs(py, SignRule::from_name(sign)?, threads)?;
         Ok((signed.rule().name(), signed.note()))

@@ -58,8 +58,8 @@ struct Cast<'a, 'py> {
 }
 
 impl Cast<'_, '_> {
-    /// Answers all rays in parts by a function of an index and a ray, or by one of shards and all rays, whose answers
-    /// are converted.
+    /// Answers all rays in parts by a function of an index and a ray, or by one of shards and all rays, whose
+    /// answers are converted.
     fn answer<O: Split, A: Send, B, R: Send>(
         self,
         py: Python<'_>,

@@ -168,8 +168,8 @@ impl Monitor {
     }
 }
 
-/// Returns the exception for work that ran out of memory, or for a panic, which is an error of this package and not of
-/// its user.
+/// Returns the exception for work that ran out of memory, or for a panic, which is an error of this package and not
+/// of its user.
 fn panicked(payload: &(dyn Any + Send)) -> PyErr {
     if payload.is::<OutOfMemory>() {
         return PyMemoryError::new_err("the answers do not fit into memory");

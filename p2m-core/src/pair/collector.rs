@@ -151,8 +151,8 @@ impl<'a> Pairs<'a> {
         Self::new(options, Mode::Nearest { best: None, certified: f64::INFINITY })
     }
 
-    /// Creates the collector that calls a function for each pair within the largest distance of the options until it
-    /// breaks.
+    /// Creates the collector that calls a function for each pair within the largest distance of the options
+    /// until it breaks.
     #[must_use]
     pub fn each<T: Real>(
         options: &PairOptions<T>,

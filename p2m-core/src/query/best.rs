@@ -134,8 +134,8 @@ impl BestF64 {
         Some(answer(*primitive, p, if *certified < pruned { *certified } else { pruned }))
     }
 
-    /// Returns a lower bound on the distances of all primitives where there is no answer. It is infinite if there are no
-    /// primitives.
+    /// Returns a lower bound on the distances of all primitives where there is no answer. It is infinite if there
+    /// are no primitives.
     pub(crate) fn lower_bound_without_answer<T: Real>(&self) -> T {
         // Parts beyond the radius were pruned, by a square that is exact to 5 u.
         let bound = self.certified.min(self.radius * ROUND_DOWN);

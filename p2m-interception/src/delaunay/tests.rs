@@ -340,8 +340,8 @@ fn the_same_points_give_the_same_triangulation() {
     assert!(a.work().spheres > 0 && a.work().created as usize > a.tetrahedra().len());
 }
 
-/// Adds points to a triangulation of the first ones, and checks the result. It returns the part of the tetrahedra that
-/// was kept.
+/// Adds points to a triangulation of the first ones, and checks the result. It returns the part of the tetrahedra
+/// that was kept.
 fn valid_extension(points: &[[f64; 3]], first: usize) -> f64 {
     let old = Delaunay::new(&points[..first], REACH).unwrap();
     let all = Delaunay::new(points, REACH).unwrap();

@@ -270,8 +270,8 @@ fn an_error_of_the_visitor_ends_reading_and_is_returned() {
     }
 }
 
-/// Returns a scene of vertices and primitives in which most primitives use vertices that are far from each other in the
-/// file.
+/// Returns a scene of vertices and primitives in which most primitives use vertices that are far from each other
+/// in the file.
 fn scattered_scene(vertices: u32, format: Format) -> Scene {
     let position = |i: u32| Point3::new(f64::from(i), f64::from(i % 3) * 0.1, -0.0);
     let elements = (0..2 * vertices).map(|i| match i % 5 {

@@ -84,8 +84,8 @@ pub(crate) struct Steps<Answer, Encode, Take, WriteRecords> {
     pub(crate) write: WriteRecords,
 }
 
-/// Answers queries on all threads of a pool and writes the records of their answers in order. Returns the time that the
-/// answers took.
+/// Answers queries on all threads of a pool and writes the records of their answers in order. Returns the time that
+/// the answers took.
 ///
 /// # Errors
 /// It returns the first error of answering or writing, after which nothing more is answered.

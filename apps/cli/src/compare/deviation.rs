@@ -430,8 +430,8 @@ impl<'a> DeviationReport<'a> {
 }
 
 impl Args {
-    /// Refuses combinations of arguments that contradict each other, and returns the format of the file, if there is
-    /// one.
+    /// Refuses combinations of arguments that contradict each other, and returns the format of the file, if
+    /// there is one.
     fn check(&self) -> anyhow::Result<Option<DeviationFormat>> {
         if self.out.as_deref().is_some_and(is_standard) {
             return Err(usage("the statistics go to the standard output, so the deviations need a file: --out FILE"));

@@ -100,8 +100,8 @@ pub(crate) struct SceneSource<'a> {
 }
 
 impl SceneSource<'_> {
-    /// Loads the index of the backend from the file, or builds it with the threads of a pool if the file has none that
-    /// fits.
+    /// Loads the index of the backend from the file, or builds it with the threads of a pool if the file has
+    /// none that fits.
     pub(crate) fn prepare(
         self,
         streams: &Streams,

@@ -17,8 +17,8 @@ const STOPPABLE: u8 = 1;
 /// The work ends as soon as it can.
 const STOPPED: u8 = 2;
 
-/// Work that can end early with a result. While it exists, the first Ctrl-C asks it to end, and does not end the
-/// program.
+/// Work that can end early with a result. While it exists, the first Ctrl-C asks it to end, and does not
+/// end the program.
 pub(crate) struct StoppableWork(());
 
 impl StoppableWork {

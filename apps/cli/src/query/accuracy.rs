@@ -16,8 +16,8 @@ pub(crate) struct Accuracy {
 
     /// Stop after N visits of nodes and packets, with the best answer so far
     ///
-    /// The search always continues until it has an answer. With 0, an octree or a P2M index searches only the cell of
-    /// the query.
+    /// The search always continues until it has an answer. With 0, an octree or a P2M index searches only the cell
+    /// of the query.
     #[arg(long, alias = "budget", value_name = "N", value_parser = clap::value_parser!(u32), allow_negative_numbers = true, conflicts_with = "certified")]
     max_visits: Option<u32>,
 

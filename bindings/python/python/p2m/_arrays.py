@@ -75,7 +75,7 @@ MAX_ROTATION_DEVIATION = 1e-6
 
 
 def rigid_transforms(values: ArrayLike | None, name: str) -> NDArray[np.float64] | None:
-    """Return matrices of rotations and translations as a contiguous array of the shape {.., 4, 4}."""
+    """Return matrices of rotations and translations as a contiguous array of the shape (..., 4, 4)."""
     if values is None:
         return None
     array = unmasked(values, name)

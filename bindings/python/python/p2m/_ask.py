@@ -126,7 +126,7 @@ class Ask:
         Parameters
         ----------
         batch : pyarrow.RecordBatch, pyarrow.Table, dict of ndarray, ndarray, pandas.DataFrame or polars.DataFrame
-            The batch of points. An ndarray has the shape {.., 3}.
+            The batch of points. An ndarray has the shape (..., 3).
 
         Returns
         -------

@@ -72,7 +72,7 @@ class PointQueries:
 
         Parameters
         ----------
-        points : array_like, shape {.., 3}
+        points : array_like, shape (..., 3)
             The query points, with any leading axes: (3,) for one point, (n, 3), or (x, y, z, 3) for a grid. Contiguous
             arrays of float64 and float32 are not copied. Nobody may write to the array during the call.
         max_distance : float, optional
@@ -178,12 +178,12 @@ class PointQueries:
         ----------
         points, max_distance, threads, progress
             As for `closest`.
-        out : ndarray of float64, shape {..}, optional
+        out : ndarray of float64, shape (...), optional
             The array that receives the distances.
 
         Returns
         -------
-        ndarray of float64, shape {..}
+        ndarray of float64, shape (...)
             The distances, infinite beyond `max_distance` and for an empty scene.
 
         Examples
@@ -221,7 +221,7 @@ class PointQueries:
         Returns
         -------
         ClosestPoints
-            A record with arrays of shape {.., k} or {.., k, 3}. Where there are fewer primitives, the rest has the
+            A record with arrays of shape (..., k) or (..., k, 3). Where there are fewer primitives, the rest has the
             primitive -1 and an infinite distance.
 
         Examples
@@ -312,12 +312,12 @@ class PointQueries:
             As for `closest`.
         radius : float
             The distance, inclusive.
-        out : ndarray of bool, shape {..}, optional
+        out : ndarray of bool, shape (...), optional
             The array that receives the answers.
 
         Returns
         -------
-        ndarray of bool, shape {..}
+        ndarray of bool, shape (...)
 
         Examples
         --------
@@ -407,7 +407,7 @@ class PointQueries:
 
         Parameters
         ----------
-        origins, directions : array_like, shape {.., 3}
+        origins, directions : array_like, shape (..., 3)
             The origins and directions of the rays, which are broadcast against each other. Directions have any length
             but zero.
         mode : {"first", "all", "count", "any", "crossings"}, optional
@@ -634,12 +634,12 @@ class Index(PointQueries, PairQueries):
             The sign inside. trimesh has positive numbers there; Open3D, libigl and point-cloud-utils negative ones.
         max_distance : float, optional
             The largest distance that is needed, inclusive, which makes the search shorter.
-        out : ndarray of float64, shape {..}, optional
+        out : ndarray of float64, shape (...), optional
             The array that receives the distances.
 
         Returns
         -------
-        ndarray of float64, shape {..}
+        ndarray of float64, shape (...)
             The signed distances: 0 on the surface, nan where rounding leaves it open on which side of a
             half the winding number of an open surface is, and beyond `max_distance`.
 
@@ -691,12 +691,12 @@ class Index(PointQueries, PairQueries):
             As for `closest`.
         sign : {"auto", "winding", "parity"}, optional
             The rule that decides which points are inside, as for `signed_distance`.
-        out : ndarray of bool, shape {..}, optional
+        out : ndarray of bool, shape (...), optional
             The array that receives the answers.
 
         Returns
         -------
-        ndarray of bool, shape {..}
+        ndarray of bool, shape (...)
             True where `signed_distance` is negative: points on the surface are not inside.
 
         Raises
@@ -966,7 +966,7 @@ def advise(
         The number of queries.
     region : {"box", "near"}, optional
         Where queries are: anywhere in the box of the scene, or about a hundredth of its diagonal from the surface.
-    points : array_like, shape {.., 3}, optional
+    points : array_like, shape (..., 3), optional
         Queries that are like those to come, in place of a region.
     max_bytes : int, optional
         The memory that the index may take besides the scene.

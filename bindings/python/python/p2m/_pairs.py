@@ -259,7 +259,7 @@ class PairQueries:
         ----------
         other, max_distance, certified
             As for `closest_pair`.
-        transforms : array_like, shape {.., 4, 4}
+        transforms : array_like, shape (..., 4, 4)
             The motions, with any leading axes, each as for `closest_pair`.
         fields : str or sequence of str, optional
             The arrays of the answer, by default those of `out` or else ``("distance", "primitives")``: any of
@@ -319,14 +319,14 @@ class PairQueries:
         ----------
         other
             As for `closest_pair`.
-        transform : array_like, shape {.., 4, 4}, optional
+        transform : array_like, shape (..., 4, 4), optional
             One motion of the other scene, or several, as for `closest_pairs`.
         threads, progress
             As for `closest`.
 
         Returns
         -------
-        ndarray of bool, shape {..}
+        ndarray of bool, shape (...)
             The answers, with the leading axes of `transform`. A search ends at the first pair that intersects.
 
         Examples
@@ -406,7 +406,7 @@ class PairQueries:
 
         Parameters
         ----------
-        starts, ends : array_like, shape {.., 3}
+        starts, ends : array_like, shape (..., 3)
             The centres at the parameters 0 and 1, which are broadcast against each other.
         radius : float
             The radius of all balls, which may be 0.

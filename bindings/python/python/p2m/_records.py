@@ -64,23 +64,23 @@ class ClosestPoints(Record):
 
     Attributes
     ----------
-    distance : ndarray of float64, shape {..}
+    distance : ndarray of float64, shape (...)
         The distances, in the unit of the scene; infinite where there is no answer.
-    primitive : ndarray of int64, shape {..}
+    primitive : ndarray of int64, shape (...)
         The ids of the primitives; -1 where there is no answer.
-    point : ndarray of float64, shape {.., 3}
+    point : ndarray of float64, shape (..., 3)
         The closest points; nan where there is no answer.
-    feature : ndarray of uint8, shape {..}
+    feature : ndarray of uint8, shape (...)
         The part of the primitive that contains the closest point: its vertex 0, 1, 2, its edge 3, 4, 5 (from vertex 0
         to 1, from 1 to 2, from 2 to 0), or its inside 6; 255 where there is no answer.
-    barycentric : ndarray of float64, shape {.., 3}
+    barycentric : ndarray of float64, shape (..., 3)
         The weights of the vertices of the primitive; nan where there is no answer.
-    lower_bound : ndarray of float64, shape {..}
+    lower_bound : ndarray of float64, shape (...)
         Certified lower bounds on the true distances. Where there is no answer they are about `max_distance`, or less if
         ``max_visits`` ended the search; infinite for an empty scene.
-    object : ndarray of int64, shape {..}
+    object : ndarray of int64, shape (...)
         The numbers of the objects in ``scene.objects``; -1 for a primitive without object and where there is no answer.
-    normal : ndarray of float64, shape {.., 3}
+    normal : ndarray of float64, shape (..., 3)
         Unit normals at the closest points, only from `Index.closest`: on a face its normal, on an edge the sum of the
         normals of its triangles, at a vertex the sum of the normals of its triangles, weighted by their angles there.
         They are nan where there is no answer, on segments and points, and where triangles have no area or their normals
@@ -117,15 +117,15 @@ class FirstHits(Record):
 
     Attributes
     ----------
-    t : ndarray of float64, shape {..}
+    t : ndarray of float64, shape (...)
         The parameters of the hits, in lengths of the direction; infinite where nothing is hit.
-    primitive : ndarray of int64, shape {..}
+    primitive : ndarray of int64, shape (...)
         The ids of the primitives; -1 where nothing is hit.
-    point : ndarray of float64, shape {.., 3}
+    point : ndarray of float64, shape (..., 3)
         The points that are hit; nan where nothing is hit.
-    barycentric : ndarray of float64, shape {.., 3}
+    barycentric : ndarray of float64, shape (..., 3)
         The weights of the vertices of the primitive; nan where nothing is hit.
-    side : ndarray of int8, shape {..}
+    side : ndarray of int8, shape (...)
         1 if the ray comes from the side to which the normal of the triangle points, -1 if it comes from the other side,
         0 if the ray runs along the primitive, and where nothing is hit.
     """
@@ -168,20 +168,20 @@ class ClosestPairs(_Pairs):
 
     Attributes
     ----------
-    distance : ndarray of float64, shape {..}
+    distance : ndarray of float64, shape (...)
         The distances, 0 if the scenes intersect; infinite where there is no answer.
-    primitives : ndarray of int64, shape {.., 2}
+    primitives : ndarray of int64, shape (..., 2)
         The ids of both primitives; -1 where there is no answer. Of several equally near pairs it is the one with the
         lowest id in the scene of the index, then in the other one.
-    points : ndarray of float64, shape {.., 2, 3}
+    points : ndarray of float64, shape (..., 2, 3)
         The nearest points, that of the other scene after its motion; nan where there is no answer.
-    features : ndarray of uint8, shape {.., 2}
+    features : ndarray of uint8, shape (..., 2)
         The parts of the primitives that contain the points, as in `ClosestPoints`; 255 where there is no answer.
-    barycentric : ndarray of float64, shape {.., 2, 3}
+    barycentric : ndarray of float64, shape (..., 2, 3)
         The weights of the vertices of both primitives; nan where there is no answer.
-    lower_bound : ndarray of float64, shape {..}
+    lower_bound : ndarray of float64, shape (...)
         Certified lower bounds on the true distances; infinite where there is no answer. They depend on the backend.
-    is_intersecting : ndarray of bool, shape {..}
+    is_intersecting : ndarray of bool, shape (...)
         Whether the primitives intersect, which is decided without rounding.
     """
 
@@ -209,19 +209,19 @@ class BallContacts(Record):
 
     Attributes
     ----------
-    parameter : ndarray of float64, shape {..}
+    parameter : ndarray of float64, shape (...)
         The parameters of the contacts, from 0 at the start to 1 at the end, rounded down; infinite without contact. A
         ball certainly touches nothing before its parameter. A ball that touches at the start has the parameter 0.
-    primitive : ndarray of int64, shape {..}
+    primitive : ndarray of int64, shape (...)
         The ids of the primitives that are touched; -1 without contact.
-    point : ndarray of float64, shape {.., 3}
+    point : ndarray of float64, shape (..., 3)
         The points of the scene that are nearest to the centre at the upper parameter; nan without contact.
-    feature : ndarray of uint8, shape {..}
+    feature : ndarray of uint8, shape (...)
         The parts of the primitives that contain the points, as in `ClosestPoints`; 255 without contact.
-    upper_parameter : ndarray of float64, shape {..}
+    upper_parameter : ndarray of float64, shape (...)
         Parameters at which the scene is certainly within ``distance_bound`` of the centre, which exceed ``parameter``
         by about 2**-48; infinite without contact.
-    distance_bound : ndarray of float64, shape {..}
+    distance_bound : ndarray of float64, shape (...)
         Certified upper bounds on the distance of the scene from the centre at the upper parameter; infinite without
         contact. They exceed the radius by the tolerance and some roundings at most, unless the ball starts nearer.
     """

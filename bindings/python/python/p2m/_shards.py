@@ -214,12 +214,12 @@ class Shards(PointQueries):
         ----------
         points, threads, progress
             As for `closest`.
-        out : ndarray of bool, shape {..}, optional
+        out : ndarray of bool, shape (...), optional
             The array that receives the answers.
 
         Returns
         -------
-        ndarray of bool, shape {..}
+        ndarray of bool, shape (...)
 
         Raises
         ------
@@ -256,7 +256,7 @@ class Shards(PointQueries):
 
         Returns
         -------
-        ndarray of float64, shape {..}
+        ndarray of float64, shape (...)
             The signed distances: 0 on the surface, and nan beyond `max_distance`.
 
         Raises
@@ -311,7 +311,7 @@ class Shards(PointQueries):
 
         Returns
         -------
-        ndarray of int64, shape {..}
+        ndarray of int64, shape (...)
             The numbers; -1 where no box is within `max_distance`, and for an empty scene.
 
         Raises
@@ -344,7 +344,7 @@ class Shards(PointQueries):
         ----------
         points, threads
             As for `closest`.
-        distances : array_like, shape {..}
+        distances : array_like, shape (...)
             The distance of each point, which may be infinite.
 
         Returns
@@ -397,7 +397,7 @@ class Shards(PointQueries):
         shard : int
             The number of the shard in `shards`, which is loaded unless there are no points.
         fields : str or sequence of str, optional
-            The arrays of the answer: those of `closest` apart from ``object``, and ``key`` of shape {.., 2}. The
+            The arrays of the answer: those of `closest` apart from ``object``, and ``key`` of shape (..., 2). The
             key of a primitive is its squared distance as the kernel computes it, which is a square with a tier. The
             first number is the tier and the second one is the square. Tiers are compared first, and squares where
             tiers are equal. A smaller key never has a larger distance, so answers in the order of keys and then

@@ -19,7 +19,7 @@ The module needs Dask: ``pip install "dask[array]"``.
 
 Parameters that all functions share
 -----------------------------------
-points : dask.array.Array or array_like, shape {.., 3}
+points : dask.array.Array or array_like, shape (..., 3)
     The points, with any chunks. What is no array of Dask goes through ``dask.array.from_array``: arrays of NumPy and of
     Zarr, and files that ``numpy.load(path, mmap_mode="r")`` maps. The last axis becomes one chunk. Chunks may have
     unknown sizes, as those of data frames have.
@@ -233,7 +233,7 @@ def distance(
 
     Returns
     -------
-    dask.array.Array of float64, shape {..}
+    dask.array.Array of float64, shape (...)
 
     Examples
     --------
@@ -267,7 +267,7 @@ def signed_distance(
 
     Returns
     -------
-    dask.array.Array of float64, shape {..}
+    dask.array.Array of float64, shape (...)
 
     Notes
     -----
@@ -312,7 +312,7 @@ def rays(
 
     Parameters
     ----------
-    origins, directions : dask.array.Array or array_like, shape {.., 3}
+    origins, directions : dask.array.Array or array_like, shape (..., 3)
         The origins and directions of the rays, which are broadcast against each other.
     index, threads, map
         As the module documents them.
@@ -324,7 +324,7 @@ def rays(
 
     Returns
     -------
-    LazyFirstHits or dask.array.Array, shape {..}
+    LazyFirstHits or dask.array.Array, shape (...)
         For ``"first"`` a record of lazy arrays, for ``"any"`` an array of bool, otherwise one of int64.
 
     Examples

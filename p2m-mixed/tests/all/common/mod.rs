@@ -209,8 +209,8 @@ pub(crate) fn rich_binary_off() -> Vec<u8> {
 pub(crate) const RICH_TABLE: &str =
     "sep=;\n# a scan\n//id;x;y;z;code\n\n7;0;0;1e0;\"a;b\"\r\n8;nan;0;0;c\n9; 4 ;\"5\";-6;d\n10;1;2;3;e\n";
 
-/// Returns files of every format that use every part of it. The numbers say at how many lengths a file that is cut off is
-/// still valid.
+/// Returns files of every format that use every part of it. The numbers say at how many lengths a file that is cut
+/// off is still valid.
 pub(crate) fn rich_files() -> Vec<(Vec<u8>, Format, usize)> {
     let mut files: Vec<(Vec<u8>, Format, usize)> = vec![
         (RICH_OBJ.into(), Format::Obj, usize::MAX),

@@ -25,8 +25,8 @@ use p2m_mixed::Object;
 /// | `feature` | `feature` | `feature_kind`, `feature_number`, `<i2` | `int` `feature_kind`, `feature_number` |
 /// | `object` | `object`, the name | `object`, `<i4`, the number from 0 | `int` `object`, the number from 0 |
 ///
-/// Without an answer, fields of CSV are empty, and numbers of NPY and PLY are NaN or -1; the query and its number are
-/// always there.
+/// Without an answer, fields of CSV are empty, and numbers of NPY and PLY are NaN or -1; the query and its number
+/// are always there.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum AnswerColumn {
     /// The number of the query, from 0.
@@ -37,8 +37,8 @@ pub(crate) enum AnswerColumn {
     Point,
     /// The distance of the closest point, in the unit of the scene.
     Distance,
-    /// The distance with the sign of the side, in the unit of the scene: negative inside. It is NaN where the scene has
-    /// no inside.
+    /// The distance with the sign of the side, in the unit of the scene: negative inside. It is NaN where the scene
+    /// has no inside.
     Signed,
     /// Whether the query is inside of the surface.
     Inside,

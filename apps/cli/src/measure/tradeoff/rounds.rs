@@ -39,8 +39,8 @@ impl Competitor<'_> {
         }
     }
 
-    /// Answers queries in their order, and returns the wall time of each in nanoseconds. The time to read the clock is
-    /// included.
+    /// Answers queries in their order, and returns the wall time of each in nanoseconds. The time to read the
+    /// clock is included.
     fn answer_timed(&self, queries: &[Point3<f64>], answers: &mut [Answer]) -> Vec<u64> {
         let timed = |(query, answer): (&Point3<f64>, &mut Answer)| {
             let start = Instant::now();

@@ -193,7 +193,7 @@ class RaycastingScene:
 
         Parameters
         ----------
-        query_points : array_like, shape {.., 3}
+        query_points : array_like, shape (..., 3)
             The query points.
         nthreads : int, optional
             The number of threads; 0 for that of the scene.
@@ -201,9 +201,9 @@ class RaycastingScene:
         Returns
         -------
         dict
-            ``points`` {.., 3}, the closest points; ``geometry_ids`` {..} and ``primitive_ids`` {..} as uint32, the
-            geometries and the numbers of their triangles; ``primitive_uvs`` {.., 2}, the weights of the second and
-            third vertex; ``primitive_normals`` {.., 3}, the normals of length 1 of the triangles, (0, 0, 0) for a
+            ``points`` (..., 3), the closest points; ``geometry_ids`` (...) and ``primitive_ids`` (...) as uint32, the
+            geometries and the numbers of their triangles; ``primitive_uvs`` (..., 2), the weights of the second and
+            third vertex; ``primitive_normals`` (..., 3), the normals of length 1 of the triangles, (0, 0, 0) for a
             triangle without area.
         """
         built = self._index()
@@ -228,7 +228,7 @@ class RaycastingScene:
 
         Returns
         -------
-        Array or Tensor, shape {..}
+        Array or Tensor, shape (...)
             The distances, which are not negative.
         """
         points = _rows(query_points, 3, "query_points")
@@ -247,7 +247,7 @@ class RaycastingScene:
 
         Returns
         -------
-        Array or Tensor, shape {..}
+        Array or Tensor, shape (...)
             The signed distances, 0 on the surface.
 
         Raises
@@ -269,7 +269,7 @@ class RaycastingScene:
 
         Returns
         -------
-        Array or Tensor, shape {..}
+        Array or Tensor, shape (...)
             1 where the signed distance is negative, and 0 elsewhere, also on the surface. It has the type of distances,
             as in Open3D.
         """
@@ -287,7 +287,7 @@ class RaycastingScene:
 
         Parameters
         ----------
-        rays : array_like, shape {.., 6}
+        rays : array_like, shape (..., 6)
             The rays, each with its origin and its direction: ``[ox, oy, oz, dx, dy, dz]``. Directions have any length,
             and a ray whose direction is zero hits nothing.
         nthreads : int, optional
@@ -296,9 +296,9 @@ class RaycastingScene:
         Returns
         -------
         dict
-            ``t_hit`` {..}, the distances in lengths of the direction, infinite where nothing is hit; ``geometry_ids``
-            {..} and ``primitive_ids`` {..} as uint32, `INVALID_ID` where nothing is hit; ``primitive_uvs`` {.., 2}, the
-            weights of the second and third vertex; ``primitive_normals`` {.., 3}, the normals of length 1 of the
+            ``t_hit`` (...), the distances in lengths of the direction, infinite where nothing is hit; ``geometry_ids``
+            (...) and ``primitive_ids`` (...) as uint32, `INVALID_ID` where nothing is hit; ``primitive_uvs`` (..., 2), the
+            weights of the second and third vertex; ``primitive_normals`` (..., 3), the normals of length 1 of the
             triangles. Weights and normals are 0 where nothing is hit.
         """
         built = self._index()
@@ -323,7 +323,7 @@ class RaycastingScene:
 
         Returns
         -------
-        Array or Tensor of int32, shape {..}
+        Array or Tensor of int32, shape (...)
             The numbers. A ray through an edge hits two triangles there.
         """
         origins, directions, shape = _split(rays)
@@ -342,7 +342,7 @@ class RaycastingScene:
 
         Returns
         -------
-        Array or Tensor of bool, shape {..}
+        Array or Tensor of bool, shape (...)
         """
         origins, directions, shape = _split(rays)
         hit = np.zeros(len(origins), np.bool_)

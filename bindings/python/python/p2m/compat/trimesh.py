@@ -197,14 +197,14 @@ class ProximityQuery:
 
         Parameters
         ----------
-        points : array_like, shape {.., 3}
+        points : array_like, shape (..., 3)
             The query points.
 
         Returns
         -------
-        distance : ndarray of float64, shape {..}
+        distance : ndarray of float64, shape (...)
             The distances of the nearest vertices; a number for one point.
-        vertex_id : ndarray of int64, shape {..}
+        vertex_id : ndarray of int64, shape (...)
             Their places in ``mesh.vertices``; a number for one point. Vertices without faces count, too. Of equally
             near vertices the first is the answer, and in trimesh any of them.
         """

@@ -34,8 +34,8 @@ struct PageData<'a> {
     #[serde(flatten)]
     page: &'a Page<'a>,
     settings: &'static [Setting],
-    /// The largest error, in u M, that the contract allows: once for the primitive of the answer and once for the
-    /// nearest one.
+    /// The largest error, in u M, that the contract allows: once for the primitive of the answer and once for
+    /// the nearest one.
     exact_limit: f64,
 }
 
