@@ -44,7 +44,7 @@ class Ask:
         The number of threads for a batch, by default 1 because engines run several processes.
     map : bool, optional
         Whether processes map the file, so that all processes of a machine share its memory. By default each has a copy.
-        Nobody may change the file while it is mapped: what happens then is undefined.
+        Do not change the file while it is mapped: the behaviour is then undefined.
     must_exist : bool, optional
         Whether the file has to exist when the object is made. By default only the processes that call it need the file.
 

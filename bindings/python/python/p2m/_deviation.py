@@ -227,8 +227,8 @@ def deviation(
     sign : {"auto", "winding", "parity"} or None, optional
         The rule that decides which points are inside, as for `Index.signed_distance`; None for distances without signs,
         which scenes with segments or points need. If the surface is open or not consistently oriented, ``"auto"`` warns
-        and names the rule that decides which points are inside. For an open surface the sign is a guess near holes, and both sides of a single sheet
-        are outside.
+        and names the rule. On an open surface, inside and outside are ambiguous near holes, and both sides of a single
+        sheet are outside.
     unit : str, optional
         The name of the unit of lengths, for figures and pages.
     threads, progress

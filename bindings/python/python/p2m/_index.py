@@ -74,7 +74,7 @@ class PointQueries:
         ----------
         points : array_like, shape (..., 3)
             The query points, with any leading axes: (3,) for one point, (n, 3), or (x, y, z, 3) for a grid. Contiguous
-            arrays of float64 and float32 are not copied. Nobody may write to the array during the call.
+            arrays of float64 and float32 are not copied. Do not modify the array during the call.
         max_distance : float, optional
             The largest distance of an answer, inclusive. Where nothing is as near, the primitive is -1 and the distance
             infinite. Without it every query of a scene that is not empty has an answer.
@@ -84,18 +84,18 @@ class PointQueries:
             The largest number of nodes and packets that a query visits, besides those that find any answer at all. The
             best answer until then counts, and its ``lower_bound`` is valid.
         certified : bool, optional
-            Whether the primitive is certainly the nearest one and the distance is the true one, rounded once.
+            Whether to find the nearest primitive in exact arithmetic and round its distance once.
         fields : str or sequence of str, optional
             The arrays of the answer, by default those of `out` or else ``("distance", "primitive")``: any of
             ``distance``, ``primitive``, ``point``, ``feature``, ``barycentric``, ``lower_bound``, ``object`` and
-            ``normal``, which `ClosestPoints` describes. What is not asked for is not computed.
+            ``normal``, which `ClosestPoints` describes. Other arrays are not computed.
         out : dict of ndarray, ndarray or ClosestPoints, optional
             Contiguous arrays of the right type and shape, by field, that receive the answers; one array for one field.
             After an exception their content is undefined.
         threads : int, optional
             The number of threads; by default that of the index. Small batches run on the calling thread.
         progress : callable, True or "tqdm", optional
-            It is called as ``progress(done, total)`` about 25 times a second, or a bar of tqdm is shown.
+            A function, called as ``progress(done, total)`` about 25 times per second, or ``True`` for a bar of tqdm.
 
         Returns
         -------

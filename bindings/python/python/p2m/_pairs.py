@@ -108,7 +108,7 @@ class PairQueries:
             The largest distance of an answer, inclusive. Where nothing is as near, the primitive is -1 and the distance
             infinite.
         certified : bool, optional
-            Whether the primitive is certainly the nearest one and the distance is the true one, rounded once. Shapes
+            Whether to find the nearest primitive in exact arithmetic and round its distance once. Shapes
             with a radius have no certified answers.
         fields : str or sequence of str, optional
             The arrays of the answer, by default those of `out` or else ``("distance", "primitive")``: any of

@@ -34,7 +34,7 @@ threads : int, optional
     process that has one thread of Dask, use the number of processors.
 map : bool, optional
     Whether processes map the file of the index, so that all processes of a machine share its memory. By default each
-    process has a copy. Nobody may change the file while it is mapped: what happens then is undefined.
+    process has a copy. Do not change the file while it is mapped: the behaviour is then undefined.
 """
 
 from __future__ import annotations
