@@ -10,8 +10,8 @@
 //! - `<!-- table bunny dragon_100k: aabb octree -->` begins a table of these scenes and indexes, which `<!-- end -->`
 //!   ends.
 //!
-//! Any other number with a unit of measurement is an error, except in code, in docs/measurements, and on lines with the
-//! comment `<!-- cited -->` or `<!-- not measured -->`.
+//! Any other number with a unit of measurement is an error, except in code, in docs/measurements, and in paragraphs with
+//! the comment `<!--cited-->`, or `<!--exact-->` for sizes and limits that are not measured.
 
 use crate::Outcome;
 use std::collections::BTreeMap;
@@ -54,6 +54,9 @@ const UNITS: [&str; 18] = [
     "M",
     "cent",
 ];
+
+/// Comments in paragraphs whose figures need no data.
+const MARKS: [&str; 2] = ["<!--cited-->", "<!--exact-->"];
 
 /// Renews the figures of all documents, or checks them with `--check`.
 pub(crate) fn run(rest: &[String]) -> Outcome {
@@ -253,34 +256,41 @@ fn digits(value: f64, count: usize) -> String {
     format!("{value:.*}", after.unwrap_or(0))
 }
 
-/// Returns the lines of a document that have figures without data.
+/// Returns the figures of a document without data, each with the number of the line where its paragraph ends.
 fn unknown(document: &str) -> Vec<String> {
-    let (mut found, mut is_code, mut is_table) = (Vec::new(), false, false);
-    for (number, line) in document.lines().enumerate() {
-        if line.trim_start().starts_with("```") {
-            is_code = !is_code;
-        }
+    let (mut found, mut paragraph, mut is_code, mut is_table) = (Vec::new(), String::new(), false, false);
+    for (number, line) in document.lines().chain([""]).enumerate() {
+        is_code ^= line.trim_start().starts_with("```");
         is_table |= line.starts_with("<!-- table ");
-        is_table &= !line.contains("<!-- end -->");
-        let is_marked = line.contains("<!-- cited -->") || line.contains("<!-- not measured -->");
-        if is_code || is_table || is_marked {
-            continue;
+        let is_end = line.contains("<!-- end -->");
+        if !line.trim().is_empty() {
+            if !is_code && !is_table {
+                paragraph = format!("{paragraph} {line}");
+            }
+        } else if let Some(figure) = figure(&paragraph) {
+            found.push(format!("{number}: {figure}"));
+            paragraph.clear();
+        } else {
+            paragraph.clear();
         }
-        let text = without(&without(line, "<!-- = ", "<!-- . -->"), "`", "`");
-        let words: Vec<&str> = text.split([' ', '(', ')', '|', ',', ';']).filter(|word| !word.is_empty()).collect();
-        let is_number = |word: &str| word.starts_with(|c: char| c.is_ascii_digit()) && !word.ends_with(':');
-        let is_unit = |word: &str| UNITS.contains(&word.trim_end_matches(['.', ':', '*']));
-        let is_figure = |pair: &[&str]| is_number(pair[0]) && is_unit(pair[1]);
-        if let Some(pair) = words.windows(2).find(|pair| is_figure(pair)) {
-            found.push(format!("{}: {} {}", number + 1, pair[0], pair[1]));
-        } else if let Some(word) = words
-            .iter()
-            .find(|w| is_number(w) && w.trim_end_matches(['x', '%', '.']).len() < w.trim_end_matches('.').len())
-        {
-            found.push(format!("{}: {word}", number + 1));
-        }
+        is_table &= !is_end;
     }
     found
+}
+
+/// Returns the first figure of a paragraph without data, unless the paragraph says that it is cited or exact.
+fn figure(paragraph: &str) -> Option<String> {
+    if MARKS.iter().any(|mark| paragraph.contains(mark)) {
+        return None;
+    }
+    let text = without(&without(paragraph, "<!-- = ", "<!-- . -->"), "`", "`");
+    let words: Vec<&str> = text.split([' ', '(', ')', '|', ',', ';']).filter(|word| !word.is_empty()).collect();
+    let is_number = |word: &str| word.starts_with(|c: char| c.is_ascii_digit()) && !word.ends_with(':');
+    let is_unit = |word: &str| UNITS.contains(&word.trim_end_matches(['.', ':', '*']));
+    let pair = words.windows(2).find(|pair| is_number(pair[0]) && is_unit(pair[1]));
+    let end = |word: &str| word.trim_end_matches('.').to_owned();
+    let has_unit = |word: &&&str| is_number(word) && end(word).ends_with(['x', '%']);
+    pair.map(|pair| pair.join(" ")).or_else(|| words.iter().find(has_unit).map(|word| (*word).to_owned()))
 }
 
 /// Returns a text without all that is between a beginning and an end.
@@ -318,7 +328,7 @@ mod tests {
 
     #[test]
     fn figures_without_data_are_found() {
-        let text = "It takes 12 ns per query.\n`12 ns` is code.\nAnd 3.5x as fast, in 12%.\nFour of 64 points.\n12 s <!-- cited -->\n";
-        assert_eq!(unknown(text), ["1: 12 ns", "3: 3.5x"]);
+        let text = "It takes 12\nns per query.\n\n`12 ns` is code.\n\nAnd 3.5x as fast, in 12%.\n\nFour of 64 points.\n\n12 s <!--cited-->\n";
+        assert_eq!(unknown(text), ["2: 12 ns", "6: 3.5x"]);
     }
 }

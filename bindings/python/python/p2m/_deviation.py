@@ -91,8 +91,8 @@ class Deviation:
     def figure(self) -> _Figure:
         """Return a figure of matplotlib: the scan, coloured by its deviations, and their histogram.
 
-        Of more than 50,000 points every second one, or every third one and so on, is drawn. The histogram has all.
-        The figure belongs to no window: ``figure.savefig("deviation.png")`` writes it, and notebooks show it.
+        If there are more than 50,000 points, only every n-th point is drawn. The histogram counts all of them. The
+        figure belongs to no window: ``figure.savefig("deviation.png")`` writes it, and notebooks show it.
 
         Raises
         ------
@@ -222,7 +222,7 @@ def deviation(
     tolerance : float, optional
         The tolerance that figures, pages and `Deviation.outside` mark, in the unit of the mesh.
     limit : float, optional
-        The absolute deviation from which on colours do not change. By default it is the tolerance, or else the 95th
+        The absolute deviation at which the colour scale ends. By default it is the tolerance, or else the 95th
         percentile of absolute deviations.
     sign : {"auto", "winding", "parity"} or None, optional
         The rule that decides which points are inside, as for `Index.signed_distance`; None for distances without signs,

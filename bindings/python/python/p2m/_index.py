@@ -81,8 +81,8 @@ class PointQueries:
         epsilon : float, optional
             The largest relative error of distances: with 0.01 they may be too large by one per cent.
         max_visits : int, optional
-            The largest number of nodes and packets that a query visits, besides those that find any answer at all. The
-            best answer until then counts, and its ``lower_bound`` is valid.
+            The number of visits of nodes and packets after which a query stops and returns the best answer so far. A
+            query without any answer yet continues until it has one. ``lower_bound`` remains valid.
         certified : bool, optional
             Whether to find the nearest primitive in exact arithmetic and round its distance once.
         fields : str or sequence of str, optional
@@ -481,10 +481,9 @@ class PointQueries:
 class Index(PointQueries, PairQueries):
     """An index over a scene, which answers queries and never changes.
 
-    Queries from several Python threads run at the same time, because the interpreter is released while an index is
-    built and while a batch is answered. Answers do not depend on the backend, the number of threads, the order of
-    queries or the processor: distances and primitives are the same bits, and of equally near primitives the one with
-    the lowest id is the answer.
+    Queries from several Python threads run in parallel, because builds and batches release the GIL. Answers do not
+    depend on the backend, the number of threads, the order of queries or the processor: distances and primitives are
+    the same bits, and of equally near primitives the one with the lowest id is the answer.
 
     Parameters
     ----------
@@ -514,12 +513,11 @@ class Index(PointQueries, PairQueries):
     ValueError
         For an unknown backend or a wrong option.
     KeyboardInterrupt
-        At once. What was running ends in the background: cells within about a per cent of their build, and a tree when
-        it is finished.
+        At once. The build ends in the background: cells stop within about one per cent of their build, and a tree runs
+        to its end.
 
-    Notes
-    -----
-    An empty scene has an index: its queries have no answer, as those have that find nothing within `max_distance`.
+    Notes ----- An index over an empty scene is valid. Its queries have no answer, like queries that find nothing within
+    `max_distance`.
 
     ``copy.copy`` and ``copy.deepcopy`` return the same object. An index that was loaded from a file is pickled as the
     path and the checksum of the file, any other as its bytes together with the scene. A process that unpickles an index
@@ -626,10 +624,11 @@ class Index(PointQueries, PairQueries):
             As for `closest`.
         sign : {"auto", "winding", "parity"}, optional
             The rule that decides which points are inside; `sign_rule` returns it. ``"winding"``: where the generalised
-            winding number exceeds a half in magnitude. Triangles may have holes, overlap and intersect each other. For
-            a closed surface with consistent orientations the number is an exact count of crossings. ``"parity"``: where
-            a ray crosses the surface an odd number of times, whatever the orientations; an open surface is an error.
-            ``"auto"``: winding, or parity if the surface is closed but not consistently oriented.
+            winding number exceeds a half in magnitude. The surface may have holes, and its triangles may overlap and
+            intersect each other. For a closed surface with consistent orientations the number is an exact count of
+            crossings. ``"parity"``: where a ray crosses the surface an odd number of times, whatever the orientations;
+            an open surface is an error. ``"auto"``: winding, or parity if the surface is closed but not consistently
+            oriented.
         inside : {"negative", "positive"}, optional
             The sign inside. trimesh has positive numbers there; Open3D, libigl and point-cloud-utils negative ones.
         max_distance : float, optional
@@ -640,18 +639,16 @@ class Index(PointQueries, PairQueries):
         Returns
         -------
         ndarray of float64, shape (...)
-            The signed distances: 0 on the surface, nan where rounding leaves it open on which side of a
-            half the winding number of an open surface is, and beyond `max_distance`.
+            The signed distances: 0 on the surface, nan beyond `max_distance`, and where rounding leaves it undecided
+            whether the winding number of an open surface exceeds a half.
 
         Raises
         ------
         ValueError
             If the scene has segments or points, which have no sides; with ``sign="parity"`` also if it is open.
 
-        Notes
-        -----
-        The first call finds the boundary of the surface. A call with about half as many points as the scene has
-        triangles also prepares what makes signs cheap, which takes a few times as long as a build of the tree.
+        Notes ----- The first call finds the boundary of the surface. A call with about half as many points as the scene
+        has triangles also precomputes data that makes signs cheap. This takes a few times as long as building the tree.
 
         Examples
         --------

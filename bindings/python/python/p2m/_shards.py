@@ -397,11 +397,10 @@ class Shards(PointQueries):
         shard : int
             The number of the shard in `shards`, which is loaded unless there are no points.
         fields : str or sequence of str, optional
-            The arrays of the answer: those of `closest` apart from ``object``, and ``key`` of shape (..., 2). The
-            key of a primitive is its squared distance as the kernel computes it, which is a square with a tier. The
-            first number is the tier and the second one is the square. Tiers are compared first, and squares where
-            tiers are equal. A smaller key never has a larger distance, so answers in the order of keys and then
-            primitives are in the order of distances too.
+            The arrays of the answer: those of `closest` apart from ``object``, and ``key`` of shape (..., 2). The key
+            of a primitive is its squared distance with an extended exponent, stored as two numbers: a tier and a
+            square. Compare tiers first, and squares only if the tiers are equal. A smaller key never has a larger
+            distance, so answers in the order of keys and then primitives are in the order of distances too.
 
         Returns
         -------
