@@ -88,9 +88,9 @@ fn check_columns<T: Real>(
             // What is beyond the limits of the options is at least as far as the bound. The true distance exceeds that of
             // an answer at most by as much as its bound is below it.
             let bound = lower_bound[i];
-            let is_bound = index.closest_point(&queries[i]).map_or(bound == T::INFINITY, |c| {
-                bound.to_f64() <= 2.0 * c.distance.to_f64() - c.lower_bound.to_f64()
-            });
+            let is_bound = index
+                .closest_point(&queries[i])
+                .map_or(bound == T::INFINITY, |c| bound.to_f64() <= 2.0 * c.distance.to_f64() - c.lower_bound.to_f64());
             assert!(is_bound, "{bound:?} for {:?}", queries[i]);
             assert!(point[i].iter().chain(&barycentric[i]).all(|x| x.to_f64().is_nan()));
             assert_eq!(feature[i], Feature::Vertex(0));
