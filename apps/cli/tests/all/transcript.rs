@@ -57,6 +57,9 @@ fn replay(transcript: &str, folder: &Path) -> String {
     replayed
 }
 
+/// Units of times and of rates.
+const UNITS: [&str; 7] = ["ns", "us", "ms", "s", "k", "M", "G"];
+
 /// Replaces times by dots, because they differ from run to run.
 fn masked(transcript: &str) -> String {
     let mask = |line: &str| {
@@ -65,7 +68,10 @@ fn masked(transcript: &str) -> String {
                 // The number of threads is kept.
                 let words: Vec<&str> = after.split(' ').collect();
                 let is_time = |i: usize| words[i].starts_with(char::is_numeric) && (i == 0 || words[i - 1] != "on");
-                let masked: Vec<&str> = (0..words.len()).map(|i| if is_time(i) { "..." } else { words[i] }).collect();
+                // Units depend on the time as well.
+                let is_unit = |i: usize| i > 0 && is_time(i - 1) && UNITS.contains(&words[i]);
+                let kept = (0..words.len()).filter(|i| !is_unit(*i));
+                let masked: Vec<&str> = kept.map(|i| if is_time(i) { "..." } else { words[i] }).collect();
                 return format!("{before} in {}", masked.join(" "));
             }
         }
@@ -101,8 +107,8 @@ fn the_transcript_is_what_comes_out() {
 
 #[test]
 fn only_times_are_masked() {
-    let line = "queries  10 in 1.5ms on 1 thread: 150 ns per query, 6 queries/s";
-    assert_eq!(masked(line), "queries  10 in ... on 1 thread: ... ns per query, ... queries/s\n");
+    let line = "queries  10 in 1.5 ms on 1 thread: 150 ns per query, 6.00 k queries/s";
+    assert_eq!(masked(line), "queries  10 in ... on 1 thread: ... per query, ... queries/s\n");
     assert_eq!(masked("    \"read\": 0.25,"), "    \"read\": ...\n");
     for line in ["in       gear.ply (ply): 3 triangles", "  \"query\": {", "scene    in time", "1.0,2.0"] {
         assert_eq!(masked(line), format!("{line}\n"));
