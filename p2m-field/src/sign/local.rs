@@ -191,11 +191,13 @@ impl Local {
         let (spread, distance) = (spread.sqrt(), square.sqrt());
         let reach = (spread + self.radius) * (3.0 * length(normal)).sqrt();
         let error = self.dipole_error(reach, distance - spread);
-        if !(error < SMALL_ERROR)
-            && let Some(exact) = self.exact(triangle, &corners)
-            && !(error < exact.1)
-        {
-            return exact;
+        // An error of NaN is not small.
+        let is_small = error < SMALL_ERROR;
+        if let Some(exact) = (!is_small).then(|| self.exact(triangle, &corners)).flatten() {
+            let is_better = error < exact.1;
+            if !is_better {
+                return exact;
+            }
         }
         let (height, cube) = (dot(offset, normal), 1.0 / (square * distance));
         let slope = scaled(sub(scaled(offset, 3.0 * height / square), normal), cube * self.radius);
@@ -224,8 +226,9 @@ impl Local {
             gradient = add_scaled(gradient, factor * (0.25 / PI) * self.radius, cross(a, b));
         }
         let error = error * self.radius * self.radius * (0.25 / PI) * INFLATION;
-        // A large error would have the triangle replaced anyway.
-        if !(error < MAX_ERROR) {
+        // A large error would have the triangle replaced anyway, and NaN is not small.
+        let is_small = error < MAX_ERROR;
+        if !is_small {
             return None;
         }
         let angle = HalfAngle::new(triangle, self.centre)?;
