@@ -77,7 +77,7 @@ impl FieldSummary<'_> {
                 writeln!(text, "field    {} cells, cut in {}", Count(cells.len() as u64), Time(self.field_time))?
             }
         }
-        write!(text, "distance min {}, max {}", Length(f64::from(min)), Length(f64::from(max)))?;
+        write!(text, "distance min {}, max {}", Length(min), Length(max))?;
         if let Some(signs) = self.signs {
             write!(
                 text,
