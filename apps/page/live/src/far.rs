@@ -5,8 +5,8 @@ use p2m::nalgebra::{Point3, Vector3};
 use p2m::{AabbTree, ClosestPoint, PrimitiveSet, Soup};
 use std::sync::Arc;
 
-/// The offset of the scene in each coordinate, which is a million units from the origin. Numbers of f32 are
-/// 1/16 apart there.
+/// The offset of the scene in each coordinate, which is a million units from the origin. Numbers of f32 are 1/16 apart
+/// there.
 pub const OFFSET: f64 = 577_350.25;
 /// The least longest side of the scene, in units. A smaller scene is enlarged by a power of two, because vertices that
 /// are 1/16 apart would not resemble it.
