@@ -272,13 +272,13 @@ impl<'a, S: PrimitiveSet<f64> + Sync + ?Sized> Sampler<'a, S> {
             let offset = [n % x, n / x % y, n / (x * y)];
             self.grid.point([0, 1, 2].map(|k: usize| block.first[k] + offset[k]))
         };
+        let points = PointBlock {
+            axes: self.axes_of(block),
+            distances,
+            max_neighbour_distance: self.max_neighbour_distance,
+            on_surface: signs.on_surface,
+        };
         if let Some(in_block) = signs.in_block {
-            let points = PointBlock {
-                axes: self.axes_of(block),
-                distances,
-                max_neighbour_distance: self.max_neighbour_distance,
-                on_surface: signs.on_surface,
-            };
             let mut known = [None; MAX_EVALUATED_POINTS];
             in_block(&points, candidates, &mut known[..distances.len()]);
             for (n, out) in out[..distances.len()].iter_mut().enumerate() {
@@ -289,10 +289,9 @@ impl<'a, S: PrimitiveSet<f64> + Sync + ?Sized> Sampler<'a, S> {
         // A point has the sign of the neighbour before it if the surface cannot be between them.
         for n in 0..distances.len() {
             let before = [(1, x), (x, y), (x * y, z)];
-            let neighbour = before.into_iter().find(|(step, count)| {
-                n / step % count > 0
-                    && f64::from(distances[n - step].max(distances[n]).min(f32::MAX)) > self.max_neighbour_distance
-            });
+            let is_beside =
+                |(step, count): &(usize, usize)| n / step % count > 0 && !points.may_be_crossed(n - step, n);
+            let neighbour = before.into_iter().find(is_beside);
             out[n] = neighbour.map_or_else(|| (signs.at)(&at(n), distances[n]), |(step, _)| out[n - step]);
         }
     }

@@ -246,7 +246,7 @@ pub enum Reason {
         /// The number of rows.
         found: u64,
     },
-    /// What the file has does not fit into memory.
+    /// The content of the file does not fit into memory.
     #[error("does not fit into memory: {0}")]
     Memory(std::collections::TryReserveError),
     /// A record of a table has a quote that is not closed.

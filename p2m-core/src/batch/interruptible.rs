@@ -3,7 +3,7 @@
 use crate::{BatchAnswer, Best, ClosestPoint, QueryOptions, Real};
 use nalgebra::Point3;
 
-/// An index that answers the queries of a batch in steps, and leaves the rest out when it is told to stop, or whose
+/// An index that answers the queries of a batch in steps, and skips the rest once a function says so, or whose
 /// searches for [pairs](Self::pairs) end early.
 ///
 /// Before each step the function gets the number of queries that are left. It calls the second argument with the

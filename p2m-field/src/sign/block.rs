@@ -54,7 +54,7 @@ impl PointBlock<'_> {
     }
 
     /// Returns whether the surface may be between two neighbours.
-    fn may_be_crossed(&self, from: usize, to: usize) -> bool {
+    pub(crate) fn may_be_crossed(&self, from: usize, to: usize) -> bool {
         let distance = f64::from(self.distances[from].max(self.distances[to]).min(f32::MAX));
         distance <= self.max_neighbour_distance
     }

@@ -161,17 +161,10 @@ impl Local {
 
     /// Returns the polynomial of the dipole of a node and of its moments, and the bound on its error.
     fn dipole(&self, node: &Node) -> (Polynomial, f64) {
-        let [low, high] = node.bounds;
-        let beyond = length([0, 1, 2].map(|k| f64::max(low[k] - self.centre[k], self.centre[k] - high[k]).max(0.0)));
         let reach = node.spread.sqrt() + self.radius * (1.5 * node.area).sqrt();
-        let offset = sub(node.centre, self.centre);
-        let inverse = 1.0 / dot(offset, offset);
-        let cube = inverse * inverse.sqrt();
-        let (height, trace) = (dot(offset, node.normal), node.moments[0][0] + node.moments[1][1] + node.moments[2][2]);
-        let along = dot(offset, node.moments.map(|row| dot(row, offset)));
-        let slope = scaled(sub(scaled(offset, 3.0 * height * inverse), node.normal), cube * self.radius);
-        let polynomial = Polynomial { value: cube * (height + trace - 3.0 * along * inverse), slope };
-        (polynomial, self.dipole_error(reach, beyond))
+        let (value, gradient) = node.dipole(self.centre);
+        let polynomial = Polynomial { value, slope: scaled(gradient, self.radius) };
+        (polynomial, self.dipole_error(reach, node.square_from_box(self.centre).sqrt()))
     }
 
     /// Returns the bound on the error of a dipole whose triangles are at a distance from the centre.
@@ -193,11 +186,9 @@ impl Local {
         let error = self.dipole_error(reach, distance - spread);
         // An error of NaN is not small.
         let is_small = error < SMALL_ERROR;
-        if let Some(exact) = (!is_small).then(|| self.exact(triangle, &corners)).flatten() {
-            let is_better = error < exact.1;
-            if !is_better {
-                return exact;
-            }
+        let exact = if is_small { None } else { self.exact(triangle, &corners) };
+        if let Some(exact) = exact.filter(|exact| error.is_nan() || exact.1 <= error) {
+            return exact;
         }
         let (height, cube) = (dot(offset, normal), 1.0 / (square * distance));
         let slope = scaled(sub(scaled(offset, 3.0 * height / square), normal), cube * self.radius);

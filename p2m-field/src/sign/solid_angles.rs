@@ -157,19 +157,10 @@ impl SolidAngles {
 
     /// Evaluates the Taylor polynomial of a node.
     fn node(&self, node: &Node, q: V3) -> Estimate {
-        let offset = sub(node.centre, q);
-        let square = dot(offset, offset);
-        let distance = square.sqrt();
-        let beyond = |k: usize| (node.bounds[0][k] - q[k]).max(q[k] - node.bounds[1][k]).max(0.0);
-        let [x, y, z] = [beyond(0), beyond(1), beyond(2)];
-        let rho_square = x * x + y * y + z * z;
+        let rho_square = node.square_from_box(q);
         let most = 0.5 * f64::from(node.triangles.end - node.triangles.start);
         let error = node.spread / (rho_square * rho_square);
-        let inverse = 1.0 / square;
-        let cube = inverse / distance;
-        let trace = node.moments[0][0] + node.moments[1][1] + node.moments[2][2];
-        let along = dot(offset, node.moments.map(|row| dot(row, offset)));
-        let value = cube * (dot(offset, node.normal) + trace - 3.0 * along * inverse);
+        let (value, _) = node.dipole(q);
         // The comparison is false for NaN.
         if error < most && value.abs() <= most {
             self.rounded(Estimate { value, error: error + ROUNDING })
@@ -337,6 +328,28 @@ pub(super) fn normal([a, b, c]: &[V3; 3]) -> V3 {
 }
 
 impl Node {
+    /// Returns the squared distance of a point from the box of the triangles.
+    #[inline]
+    pub(super) fn square_from_box(&self, q: V3) -> f64 {
+        let [low, high] = &self.bounds;
+        let beyond = [0, 1, 2].map(|k: usize| (low[k] - q[k]).max(q[k] - high[k]).max(0.0));
+        dot(beyond, beyond)
+    }
+
+    /// Returns the value of the dipole and its moments at a point, and the gradient of the dipole alone.
+    #[inline]
+    pub(super) fn dipole(&self, q: V3) -> (f64, V3) {
+        let offset = sub(self.centre, q);
+        let square = dot(offset, offset);
+        let inverse = 1.0 / square;
+        let cube = inverse / square.sqrt();
+        let height = dot(offset, self.normal);
+        let trace = self.moments[0][0] + self.moments[1][1] + self.moments[2][2];
+        let along = dot(offset, self.moments.map(|row| dot(row, offset)));
+        let gradient = scaled(sub(scaled(offset, 3.0 * height * inverse), self.normal), cube);
+        (cube * (height + trace - 3.0 * along * inverse), gradient)
+    }
+
     #[allow(clippy::cast_possible_truncation, reason = "numbers of triangles are u32")]
     pub(super) fn new(triangles: &[[V3; 3]], first: u32) -> Self {
         let weighted = triangles.iter().fold((0.0, [0.0; 3]), |(weight, sum), t| {

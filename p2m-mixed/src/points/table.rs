@@ -8,10 +8,10 @@ use std::io::BufRead;
 /// The largest number of columns that a message lists.
 const MAX_LISTED_COLUMNS: usize = 16;
 
-/// What separates the fields of a record.
+/// The separator of the fields of a record.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Separator {
-    /// One byte.
+    /// A single byte, such as a comma.
     Byte(u8),
     /// Any number of blanks and tabs.
     Blanks,
@@ -56,7 +56,7 @@ pub(crate) fn for_each_row<R: Row<N>, const N: usize>(
     }
 }
 
-/// What the lines before the first row say.
+/// The content of the lines before the first row.
 #[derive(Default)]
 struct Head {
     /// The number of rows, if a line has it.
@@ -70,7 +70,7 @@ struct Head {
 /// The largest number of comments before the first row that may have the names of the columns.
 const MAX_COMMENTS: usize = 64;
 
-/// What separates the fields of records, and the columns of the numbers.
+/// The separator of fields, and the columns of the numbers.
 type Layout<const N: usize> = (Separator, [usize; N]);
 
 impl Head {

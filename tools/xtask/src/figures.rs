@@ -13,7 +13,8 @@
 //! Any other number with a unit of measurement is an error, except in code, in docs/measurements, and in paragraphs with
 //! the comment `<!--cited-->`, or `<!--exact-->` for sizes and limits that are not measured.
 
-use crate::Outcome;
+use crate::links::{has_extension, list_files};
+use crate::{Outcome, read};
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
@@ -64,9 +65,9 @@ pub(crate) fn run(rest: &[String]) -> Outcome {
     let data = Data::read(Path::new(FOLDER))?;
     let (mut documents, mut wrong) = (Vec::new(), Vec::new());
     documents.push(PathBuf::from("README.md"));
-    find(Path::new("docs"), &mut documents)?;
-    for path in documents {
-        let old = std::fs::read_to_string(&path).map_err(|e| format!("{}: {e}", path.display()))?;
+    list_files(Path::new("docs"), &mut documents)?;
+    for path in documents.into_iter().filter(|path| has_extension(path, "md")) {
+        let old = read(&path)?;
         let new = data.renew(&old).map_err(|why| format!("{}: {why}", path.display()))?;
         let is_free = ["docs/measurements", "docs/decisions", "docs/proofs", "docs/SUMMARY.md"]
             .iter()
@@ -81,21 +82,6 @@ pub(crate) fn run(rest: &[String]) -> Outcome {
         }
     }
     if wrong.is_empty() { Ok(()) } else { Err(format!("figures without data:\n{}", wrong.join("\n"))) }
-}
-
-/// Finds the documents in a folder.
-fn find(folder: &Path, documents: &mut Vec<PathBuf>) -> Outcome {
-    let entries = std::fs::read_dir(folder).map_err(|e| format!("{}: {e}", folder.display()))?;
-    let mut paths: Vec<PathBuf> = entries.filter_map(|entry| Some(entry.ok()?.path())).collect();
-    paths.sort();
-    for path in paths {
-        if path.is_dir() {
-            find(&path, documents)?;
-        } else if path.extension().is_some_and(|extension| extension == "md") {
-            documents.push(path);
-        }
-    }
-    Ok(())
 }
 
 /// The files of data.
@@ -152,11 +138,10 @@ impl File {
 impl Data {
     fn read(folder: &Path) -> Result<Self, String> {
         let entries = std::fs::read_dir(folder).map_err(|e| format!("{}: {e}", folder.display()))?;
-        let files =
-            entries.filter_map(|entry| Some(entry.ok()?.path())).filter(|p| p.extension().is_some_and(|e| e == "csv"));
+        let files = entries.filter_map(|entry| Some(entry.ok()?.path())).filter(|path| has_extension(path, "csv"));
         let mut data = BTreeMap::new();
         for path in files {
-            let text = std::fs::read_to_string(&path).map_err(|e| format!("{}: {e}", path.display()))?;
+            let text = read(&path)?;
             // Records of other commands have no comments.
             if !text.starts_with('#') {
                 continue;

@@ -59,7 +59,7 @@ fn faults(root: &Path) -> Result<Vec<String>, String> {
 }
 
 /// Appends the files of a folder that can have links.
-fn list_files(folder: &Path, files: &mut Vec<PathBuf>) -> Outcome {
+pub(crate) fn list_files(folder: &Path, files: &mut Vec<PathBuf>) -> Outcome {
     let failed = |error| format!("{}: {error}", folder.display());
     let mut entries: Vec<PathBuf> =
         fs::read_dir(folder).map_err(failed)?.filter_map(|entry| Some(entry.ok()?.path())).collect();
@@ -78,7 +78,7 @@ fn list_files(folder: &Path, files: &mut Vec<PathBuf>) -> Outcome {
     Ok(())
 }
 
-fn has_extension(path: &Path, extension: &str) -> bool {
+pub(crate) fn has_extension(path: &Path, extension: &str) -> bool {
     path.extension().is_some_and(|found| found == extension)
 }
 

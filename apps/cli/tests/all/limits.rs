@@ -1,4 +1,4 @@
-//! What fills the memory is refused.
+//! Input that would fill the memory is refused.
 
 use crate::common::*;
 use flate2::Compression;
