@@ -92,3 +92,36 @@ fn offset<D: Doubles>(corner: &V3, q: &[D; 3]) -> [D; 3] {
 fn dot<D: Doubles>(a: &[D; 3], b: &[D; 3]) -> D {
     a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
 }
+
+#[cfg(test)]
+mod tests {
+    use super::super::solid_angles::{HalfAngle, centroid};
+    use super::*;
+    use p2m_core::engine::simd::Isa;
+    use p2m_testkit::vector;
+
+    #[test]
+    fn sums_are_those_of_single_angles_and_unknown_on_a_triangle() {
+        let mut rng = p2m_testkit::rng("near", 0);
+        for _ in 0..500 {
+            let triangles: [[V3; 3]; 9] = std::array::from_fn(|_| std::array::from_fn(|_| vector(&mut rng).into()));
+            let points: [V3; LANES] = std::array::from_fn(|_| vector(&mut rng).into());
+            let single = |q: V3| {
+                let half = |t: &[V3; 3]| HalfAngle::new(t, q).and_then(|angle| angle.value(t, q)).expect("off edges");
+                triangles.iter().map(half).sum::<f64>() / (2.0 * PI)
+            };
+            for isa in Isa::available() {
+                let mut sums = EightSums::new(&points);
+                isa.run(AddAngles { triangles: triangles.iter(), sums: &mut sums });
+                for (n, q) in points.iter().enumerate() {
+                    let found = sums.estimate(n);
+                    assert!((found.value - single(*q)).abs() <= found.error, "{found:?} for {}", single(*q));
+                }
+                // The side of a triangle is rounding for its centroid, which is on it apart from that.
+                let mut sums = EightSums::new(&[centroid(&triangles[0])]);
+                isa.run(AddAngles { triangles: triangles.iter(), sums: &mut sums });
+                assert_eq!(sums.estimate(0).error, f64::INFINITY);
+            }
+        }
+    }
+}
