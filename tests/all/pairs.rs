@@ -6,7 +6,7 @@
 use nalgebra::{Isometry3, Point3, Vector3};
 use p2m::batch::Interruptible;
 use p2m::pair::{ClosestPair, Motion, PairOptions, PairQuery};
-use p2m::{AabbTree, BruteForce, Element, KdopTree, PrimitiveId, PrimitiveSet, Real, Shape, Soup};
+use p2m::{AabbTree, BruteForce, Element, KdopTree, PrimitiveId, PrimitiveSet, Real, Shape, Soup, SplitOptions};
 use p2m_testkit::scenes::{self, kinds_and_layout};
 use p2m_testkit::{amount, cases, rng, vector};
 use rand::{Rng, RngExt};
@@ -254,6 +254,57 @@ fn parallel_sheets_have_the_pairs_of_brute_force() {
             away.map_positions(|p| moved.inverse() * p).expect("finite");
             check_scenes(case, [&a, &away], Some(moved), f64::INFINITY);
         }
+    }
+}
+
+/// Returns a tree whose packets have one primitive each, so that the boxes of packets of points have no extent and bounds
+/// between them are as tight as rounding allows.
+fn finest_tree(soup: &Soup<f64>) -> AabbTree<f64, &Soup<f64>> {
+    let mut options = SplitOptions::default();
+    options.max_leaf = 1;
+    AabbTree::build_with(soup, &options).expect("valid")
+}
+
+/// The points of one scene are about equally far from those of the other, each from its own or all in one direction. Any
+/// bound that exceeds a distance by as much as f32 or a motion rounds leaves the nearest pair out.
+#[test]
+fn points_at_about_equal_distances_have_the_pairs_of_brute_force() {
+    for case in cases(20_000, 600) {
+        let mut rng = rng("equal distances", case);
+        let count = [40, 150][rng.random_range(0..2)];
+        let gap = 2f64.powi(-rng.random_range(1..12));
+        let noise = [0.0, 1e-12, 1e-9, 1e-8, 3e-8, 1e-7][rng.random_range(0..6)];
+        // A translation of 2^36 rounds vertices by more than f32 rounds bounds.
+        let far = vector(&mut rng) * [0.0, 1.0, 1e6, 2f64.powi(35), 2f64.powi(36)][rng.random_range(0..5)];
+        let noise = if far.norm() > 1e9 { 1e-5 } else { noise };
+        let (is_flat, is_aligned) = (rng.random_range(0..2) == 0, rng.random_range(0..2) == 0);
+        let across = [Vector3::z(), vector(&mut rng).normalize()][rng.random_range(0..2)];
+        let tilted = nalgebra::UnitQuaternion::rotation_between(&Vector3::z(), &across).unwrap_or_default();
+        let moved = Isometry3::new(far, vector(&mut rng) * 3.0);
+        let mut at = [Vec::new(), Vec::new()];
+        for _ in 0..count {
+            let mut place = vector(&mut rng);
+            place.z *= if is_flat { noise } else { 1.0 };
+            let along = if is_aligned { Vector3::z() } else { vector(&mut rng).normalize() };
+            let other = place + along * (gap + noise * rng.random_range(-1.0..1.0));
+            at[0].push(Point3::from(tilted * place));
+            at[1].push(moved.inverse_transform_point(&Point3::from(tilted * other)));
+        }
+        let [a, b] = at.map(|positions| {
+            let elements = (0..positions.len() as u32).map(Element::Point);
+            Soup::new(positions, elements).expect("valid")
+        });
+        let options = PairOptions::default().with_motion(moved);
+        let expected = by_all_pairs(&a, &b, &options);
+        let [finest_a, finest_b] = [finest_tree(&a), finest_tree(&b)];
+        let [tree_a, tree_b] = [&a, &b].map(|soup| AabbTree::new(soup).expect("valid"));
+        let [kdop_a, kdop_b] = [&a, &b].map(|soup| KdopTree::<f64, _, 14>::new(soup).expect("valid"));
+        let text = format!("{case}: {options:?}");
+        assert_same(finest_a.closest_pair(&finest_b, &options), expected, &text);
+        assert_same(tree_a.closest_pair(&finest_b, &options), expected, &text);
+        assert_same(tree_a.closest_pair(&tree_b, &options), expected, &text);
+        assert_same(kdop_a.closest_pair(&finest_b, &options), expected, &text);
+        assert_same(finest_a.closest_pair(&kdop_b, &options), expected, &text);
     }
 }
 

@@ -2,3 +2,4 @@
 
 mod boxes;
 mod packets;
+mod pair_bounds;

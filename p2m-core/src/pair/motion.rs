@@ -2,7 +2,7 @@
 
 use crate::Aabb;
 use crate::kernel::vector::V3;
-use nalgebra::{Isometry3, Matrix3, Point3, Rotation3, Translation3, UnitQuaternion, Vector3};
+use nalgebra::{Isometry3, Matrix3, Rotation3, Translation3, UnitQuaternion, Vector3};
 
 /// Returns the isometry of a matrix of 12 numbers, row by row, of which the first three columns are a rotation.
 ///
@@ -84,27 +84,35 @@ impl Motion {
     /// Returns the smallest box around the moved vertices of a box, as [`apply`](Self::apply) rounds them.
     #[must_use]
     pub fn apply_to_box(&self, bounds: &Aabb<f64>) -> Aabb<f64> {
-        image_of_box(bounds, |k, j| self.matrix[(k, j)], |point| self.apply(point))
+        let [low, high] = turned_box([bounds.min.coords, bounds.max.coords], |k, j| self.matrix[(k, j)]);
+        Aabb { min: (low + self.translation).into(), max: (high + self.translation).into() }
     }
 
     /// Returns the smallest box around the vertices of a box after the inverse of the motion, as
     /// [`apply_inverse`](Self::apply_inverse) rounds them.
     #[must_use]
     pub fn apply_inverse_to_box(&self, bounds: &Aabb<f64>) -> Aabb<f64> {
-        image_of_box(bounds, |k, j| self.matrix[(j, k)], |point| self.apply_inverse(point))
+        let corners = [bounds.min.coords - self.translation, bounds.max.coords - self.translation];
+        let [low, high] = turned_box(corners, |k, j| self.matrix[(j, k)]);
+        Aabb { min: low.into(), max: high.into() }
     }
 }
 
-/// Returns the smallest box around the images of the points of a box.
+/// Returns the least and the largest coordinates of the images of the points of a box.
 ///
-/// Coordinate k of an image is computed by sums and by products with the factors (k, j), each rounded. Rounding is
-/// monotone, so the coordinate rises with coordinate j of the point if the factor is positive, and falls if it is
-/// negative. Two corners of the box therefore have the least and the largest one, without any margin.
-fn image_of_box(bounds: &Aabb<f64>, factor: impl Fn(usize, usize) -> f64, image: impl Fn(V3) -> V3) -> Aabb<f64> {
-    let extreme = |k: usize, is_largest: bool| {
-        let corner = |j: usize| if (factor(k, j) >= 0.0) == is_largest { bounds.max[j] } else { bounds.min[j] };
-        image([corner(0), corner(1), corner(2)])[k]
-    };
-    let corner = |is_largest: bool| Point3::from([0, 1, 2].map(|k| extreme(k, is_largest)));
-    Aabb { min: corner(false), max: corner(true) }
+/// Coordinate k of an image is the sum of products with the factors (k, j), each rounded. Rounding is monotone, so the
+/// least sum is that of the least products, and a product is least at one end of the box or at the other, by the sign of
+/// the factor. There is no margin.
+fn turned_box([low, high]: [Vector3<f64>; 2], factor: impl Fn(usize, usize) -> f64) -> [Vector3<f64>; 2] {
+    let mut sums = [Vector3::zeros(); 2];
+    for k in 0..3 {
+        let products = [0, 1, 2].map(|j| {
+            let factor = factor(k, j);
+            let [a, b] = [factor * low[j], factor * high[j]];
+            if factor >= 0.0 { [a, b] } else { [b, a] }
+        });
+        sums[0][k] = products[0][0] + products[1][0] + products[2][0];
+        sums[1][k] = products[0][1] + products[1][1] + products[2][1];
+    }
+    sums
 }

@@ -11,8 +11,6 @@ const MAX_UNITS: f64 = power_of_two(10);
 /// The part of all magnitudes by which heights are wrong that are computed in f64, the vertices of which a motion has
 /// rounded, and keys (docs/proofs/pairs.md).
 const ROUNDING: f64 = power_of_two(-44);
-/// The magnitudes whose squares neither overflow nor lose digits, and those of ROUNDING of them.
-const PLAIN_SIZES: std::ops::RangeInclusive<f64> = power_of_two(-300)..=power_of_two(300);
 
 /// A direction of the scene, as both sides need it.
 struct Direction {
@@ -24,10 +22,10 @@ struct Direction {
 }
 
 /// The directions of a search.
-pub(super) struct Directions {
+pub struct Directions {
     all: Vec<Direction>,
     /// The number of leading triples of orthogonal directions.
-    pub(super) triples: usize,
+    pub triples: usize,
     /// The inverse of the unit of each frame.
     per_unit: [f64; 2],
     /// A bound on the errors of heights that are computed in f64, and of the keys of pairs.
@@ -35,15 +33,12 @@ pub(super) struct Directions {
 }
 
 impl Directions {
-    /// Returns the directions for two sides, unless f32 does not resolve one of them in the frame of the other, or
-    /// squares of their sizes are out of range.
-    pub(super) fn new(sides: [&dyn PairSide; 2]) -> Option<Self> {
+    /// Returns the directions for two sides, unless f32 does not resolve one of them in the frame of the other.
+    #[must_use]
+    pub fn new(sides: [&dyn PairSide; 2]) -> Option<Self> {
         let bounds = sides.map(PairSide::bounds);
         let frames = sides.map(PairSide::placement);
         let size = frames[0].size + frames[1].size;
-        if !PLAIN_SIZES.contains(&size) {
-            return None;
-        }
         let margin = size * ROUNDING;
         for (frame, other) in frames.iter().zip([&bounds[1], &bounds[0]]) {
             let reach = |k: usize| (other.min[k] - frame.centre[k]).abs().max((other.max[k] - frame.centre[k]).abs());
@@ -74,7 +69,7 @@ impl Directions {
 
     /// Computes the extents of a node of one side in the frame of the other.
     #[allow(clippy::cast_possible_truncation, reason = "rounded outwards")]
-    pub(super) fn slabs(&self, of: usize, side: &dyn PairSide, place: &Place, slabs: &mut Vec<Slab>) {
+    pub fn slabs(&self, of: usize, side: &dyn PairSide, place: &Place, slabs: &mut Vec<Slab>) {
         let other = 1 - of;
         let per_unit = self.per_unit[other];
         slabs.clear();

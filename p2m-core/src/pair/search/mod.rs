@@ -35,7 +35,7 @@ mod support;
 
 use super::Pairs;
 use crate::PrimitiveId;
-use directions::Directions;
+pub use directions::Directions;
 pub use height::{Height, Rows};
 use hulls::search_packets;
 pub use hulls::{Hulls, MAX_HULLS};
