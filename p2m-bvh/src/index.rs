@@ -106,7 +106,7 @@ impl<T: Real, S: PrimitiveSet<T>, V: Volume> TreeIndex<T, S, V> {
     /// for a coordinate that is not finite. The tree then stays as it was.
     ///
     /// # Complexity
-    /// O(n).
+    /// O(n), or that of a build if more than sixteen primitives that had the same vertices have moved apart.
     pub fn refit(&mut self, set: S, options: &V::Options) -> Result<(), BuildError>
     where
         S: Sync,

@@ -296,6 +296,21 @@ impl Collector for Near<'_> {
         if self.is_single_nearest() && square < self.prune { square } else { self.prune }
     }
 
+    fn prune_above_for_id(&self, id: PrimitiveId) -> f64 {
+        match &self.mode {
+            // Of equal keys the lowest ids are kept, so a higher id has to be strictly nearer than the farthest one of a
+            // full list.
+            NearMode::Nearest(k, found) if found.len() >= *k => match found.peek() {
+                Some(last) if last.id < id && last.key == Key::ZERO => PRUNE_ALL,
+                Some(last) if last.id < id && last.key.plain_square() == Some(self.prune) => self.prune.next_down(),
+                _ => self.prune,
+            },
+            // Its primitives are compared by true distances, and not by keys.
+            NearMode::Shrinking { .. } => f64::INFINITY,
+            _ => self.prune,
+        }
+    }
+
     fn is_single_nearest(&self) -> bool {
         match self.mode {
             NearMode::Certification { .. } => true,

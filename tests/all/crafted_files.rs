@@ -138,7 +138,12 @@ fn p2m_indexes_that_lie_are_refused() {
     assert_refused("p2m", "voronoi/sites", put(listed + 32, 1 << 30), "a block does not exist");
     assert_refused("p2m", "voronoi/sites", put(listed + 28, 0), "a block belongs to another site");
     assert_refused("p2m", "voronoi/neighbours", byte(56, 1), "has no use");
-    assert_refused("aabb", "tree/packets", byte(406, 1), "out of range");
+    assert_refused("aabb", "tree/packets", byte(407, 1), "out of range");
+    assert_refused("aabb", "tree/packets", byte(406, 2), "out of range");
+    // The next packet has a node, and the last one has no next.
+    assert_refused("aabb", "tree/packets", byte(406, 1), "used twice");
+    let last = numbers("aabb", "tree/packets").len() * 4 - PACKET;
+    assert_refused("aabb", "tree/packets", byte(last + 406, 1), "does not exist");
     assert_refused("octree", "octree/lists", byte(126, 1), "out of range");
     assert_refused("p2m", "voronoi/sites", put(listed + 4, NAN_HIGH_BITS), "not finite");
     assert_refused("p2m", "voronoi/sites", put(listed + 60, u32::MAX - 1), "anchor");

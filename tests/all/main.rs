@@ -11,6 +11,7 @@ mod consistency;
 mod contract;
 mod crafted_files;
 mod determinism;
+mod equal_primitives;
 mod fuzzed;
 mod models;
 mod moving_balls;

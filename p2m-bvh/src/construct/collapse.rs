@@ -7,12 +7,21 @@
 //! nodes half empty.
 
 use crate::construct::split::{SplitNode, to_u32};
+use crate::packet::LANES;
 use crate::tree::node_ref::{NodeRef, WIDTH};
 use std::ops::Range;
 
 /// A binary tree whose leaves are single packets. Children come after their parents.
 pub(crate) struct PacketBinaryTree {
     nodes: Vec<BinaryNode>,
+}
+
+/// The primitives of a packet.
+pub(crate) struct PacketRange {
+    /// Their indices in the order of the leaves.
+    pub(crate) primitives: Range<u32>,
+    /// Whether the next packet has further primitives with the same vertices.
+    pub(crate) is_continued: bool,
 }
 
 struct BinaryNode {
@@ -29,15 +38,21 @@ enum Content {
 }
 
 impl PacketBinaryTree {
-    /// Takes over a tree of splits. Returns the ranges of the primitives of its packets as well.
-    pub(crate) fn new(splits: &[SplitNode]) -> (Self, Vec<Range<u32>>) {
+    /// Takes over a tree of splits. Returns the primitives of its packets as well.
+    pub(crate) fn new(splits: &[SplitNode]) -> (Self, Vec<PacketRange>) {
         let mut packets = Vec::with_capacity(splits.len().div_ceil(2));
         let node = |split: &SplitNode| {
             let content = if split.count == 0 {
                 Content::Nodes(split.first)
             } else {
-                packets.push(split.first..split.first + split.count);
-                Content::Packet(to_u32(packets.len() - 1))
+                let number = to_u32(packets.len());
+                let end = split.first + split.count;
+                packets.extend((split.first..end).step_by(LANES).map(|first| {
+                    let next = first + to_u32(LANES);
+                    PacketRange { primitives: first..next.min(end), is_continued: next < end }
+                }));
+                // The packets that continue a run have no node.
+                Content::Packet(number)
             };
             BinaryNode { half_area: split.half_area, content }
         };

@@ -1,7 +1,7 @@
 //! Building and refitting a [`PacketTree`].
 
-use crate::construct::collapse::PacketBinaryTree;
-use crate::construct::options::TreeOptions;
+use crate::construct::collapse::{PacketBinaryTree, PacketRange};
+use crate::construct::options::{SplitOptions, TreeOptions};
 use crate::construct::primitive::BuildPrimitive;
 use crate::construct::split::{split, to_u32};
 use crate::construct::{run_both, thread_count};
@@ -58,7 +58,8 @@ impl<V: Volume> PacketTree<V> {
             BuildPrimitive::new(&frame, &primitive.aabb().to_f64(), Kind::of(&primitive), id)
         };
         let primitives = map_numbers(set.len(), options.splits().parallel, place);
-        Self::build_from_primitives(primitives, bounds, &|id| Member::from_primitive(&set.get(id)), options)
+        let members = |id: PrimitiveId| Member::from_primitive(&set.get(id));
+        Self::build_from_primitives(primitives, bounds, &members, options.shared(), options.splits())
     }
 
     /// Builds the tree from all primitives, which stand in the frame around `bounds`. The function does not depend on
@@ -67,17 +68,20 @@ impl<V: Volume> PacketTree<V> {
         mut primitives: Vec<BuildPrimitive>,
         bounds: Aabb<f64>,
         members: Members<'_>,
-        options: &V::Options,
+        shared: V::Shared,
+        options: &SplitOptions,
     ) -> Self {
-        let (shared, options) = (options.shared(), options.splits());
         let frame = Frame::around(&bounds);
         let splits = split(&mut primitives, &frame, members, options);
-        let (binary, packet_ids) = PacketBinaryTree::new(&splits);
+        let (binary, packets) = PacketBinaryTree::new(&splits);
         drop(splits);
         let order = map(&primitives, options.parallel, BuildPrimitive::id);
         drop(primitives);
-        let ids_of = |packet: usize| &order[packet_ids[packet].start as usize..packet_ids[packet].end as usize];
-        let pack = || pack::<V>(packet_ids.len(), &ids_of, members, &frame, &shared, options.parallel);
+        let content = |packet: usize| {
+            let PacketRange { primitives, is_continued } = &packets[packet];
+            (&order[primitives.start as usize..primitives.end as usize], *is_continued)
+        };
+        let pack = || pack::<V>(packets.len(), &content, members, &frame, &shared, options.parallel);
         // The nodes are needed only after the packets, and only packets can be made on several threads.
         let collapse = move || binary.collapse();
         let ((root, children, depth), (leaves, packet_bounds)) = run_both(options.parallel, collapse, pack);
@@ -126,6 +130,9 @@ impl<V: Volume> PacketTree<V> {
     /// The tree keeps its shape, so searches get slower the farther primitives have moved apart. Answers are those of a
     /// tree that is built anew. Of the options only the choice to use all threads has an effect.
     ///
+    /// More than sixteen primitives that had the same vertices, bit for bit, are one leaf. If they have moved apart, the
+    /// tree is built anew with the default splits, in O(n log n).
+    ///
     /// # Panics
     /// Panics if the set has another number of primitives.
     ///
@@ -149,10 +156,30 @@ impl<V: Volume> PacketTree<V> {
         self.bounds = boxes.iter().fold(Aabb::empty(), |all, one| all.union(one));
         self.frame = Frame::around(&self.bounds);
         self.half_extent = half_extent(&self.frame, &self.bounds);
-        let ids_of = |packet: usize| self.leaves.packets[packet].ids();
-        let (leaves, packet_bounds) = pack::<V>(boxes.len(), &ids_of, members, &self.frame, &self.shared, parallel);
+        if self.has_parted_run(members) {
+            let place =
+                |i: usize| BuildPrimitive::from_member(&self.frame, &members(PrimitiveId::new(i)), PrimitiveId::new(i));
+            let primitives = map_numbers(self.len, parallel, place);
+            let splits = SplitOptions::default().with_parallel(parallel);
+            let tree = Self::build_from_primitives(primitives, self.bounds, members, self.shared.clone(), &splits);
+            *self = tree.with_isa(self.isa);
+            return;
+        }
+        let content = |packet: usize| {
+            let packet = &self.leaves.packets[packet];
+            (packet.ids(), packet.is_continued())
+        };
+        let (leaves, packet_bounds) = pack::<V>(boxes.len(), &content, members, &self.frame, &self.shared, parallel);
         self.leaves = leaves;
         self.bound_nodes(&packet_bounds);
+    }
+
+    /// Whether primitives that were the same, and are one leaf, no longer are.
+    fn has_parted_run(&self, members: Members<'_>) -> bool {
+        self.leaves.packets.windows(2).filter(|pair| pair[0].is_continued()).any(|pair| {
+            let first = members(pair[0].ids()[0]);
+            pair.iter().flat_map(Packet::ids).any(|id| !members(*id).is_same(&first))
+        })
     }
 }
 
@@ -177,13 +204,14 @@ fn scene_box<T: Real, S: PrimitiveSet<T> + Sync + ?Sized>(set: &S, parallel: boo
 /// The bounds of a node of a tree.
 type Bounds<V> = <<V as VolumeNodes>::Node as WideNode>::Bounds;
 
-/// Makes packets of the primitives whose ids a function returns, and bounds them in the frame of the tree.
+/// Makes packets and bounds them in the frame of the tree. `content` returns the ids of the primitives of a packet, and
+/// whether the next packet continues it.
 ///
 /// All threads make a group of packets, with lists of vertices that the next groups fill again. The vertices of a group
 /// are joined while the next one is made, so the lists of few groups are in memory beside them.
 fn pack<'a, V: Volume>(
     packets: usize,
-    ids_of: &(dyn Fn(usize) -> &'a [PrimitiveId] + Sync),
+    content: &(dyn Fn(usize) -> (&'a [PrimitiveId], bool) + Sync),
     members: Members<'_>,
     frame: &Frame,
     shared: &V::Shared,
@@ -194,12 +222,13 @@ fn pack<'a, V: Volume>(
         let mut bounded = Vec::with_capacity(chunk.len());
         let mut primitives = Vec::with_capacity(LANES);
         for (i, packet) in chunk.iter_mut().enumerate() {
-            let ids = ids_of(first + i);
+            let (ids, is_continued) = content(first + i);
             primitives.clear();
             primitives.extend(ids.iter().map(|id| members(*id)));
             let bounds = primitives.iter().fold(Aabb::empty(), |all: Aabb<f64>, one: &Member| all.union(&one.bounds));
             bounded.push(V::Node::enclose(shared, frame, &primitives, &bounds));
-            *packet = Packet::new(ids, &primitives, &bounds, frame.unit * MIN_UNIT_RATIO, vertices);
+            *packet = Packet::new(ids, &primitives, &bounds, frame.unit * MIN_UNIT_RATIO, vertices)
+                .with_continuation(is_continued);
         }
         bounded
     };

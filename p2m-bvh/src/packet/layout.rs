@@ -28,7 +28,9 @@ pub struct Packet {
     len: u8,
     /// The [`Kind`] as a number.
     kind: u8,
-    unused: [u8; 2],
+    /// 1 if the next packet has further primitives with the vertices of these, and higher ids.
+    is_continued: u8,
+    unused: u8,
     /// The origin of the frame, in coordinates of the scene.
     pub(super) origin: [f64; 3],
     /// The unit of the frame, a power of two; 0 if no frame of f64 has room for the box of the packet.
@@ -86,7 +88,8 @@ impl Packet {
             vertex_offset: u32::try_from(vertices.len()).expect("a primitive has three vertices at most"),
             len: u8::try_from(ids.len()).expect("at most sixteen"),
             kind: kind as u8,
-            unused: [0; 2],
+            is_continued: 0,
+            unused: 0,
         };
         packet.ids.iter_mut().zip(ids).for_each(|(number, id)| *number = id.number());
         if kind == Kind::Box {
@@ -214,6 +217,31 @@ impl Packet {
         &as_ids(&self.ids)[..usize::from(self.len)]
     }
 
+    /// Whether the next packet has further primitives with the same vertices and higher ids. No node refers to that
+    /// packet, because a search for the nearest primitive needs only the first packet of such a run.
+    #[inline(always)]
+    pub fn is_continued(&self) -> bool {
+        self.is_continued != 0
+    }
+
+    /// Sets whether the next packet [continues](Self::is_continued) the primitives of this one.
+    #[must_use]
+    pub(crate) fn with_continuation(self, is_continued: bool) -> Self {
+        Self { is_continued: u8::from(is_continued), ..self }
+    }
+
+    /// Whether the key of the primitive in a lane is at most `square`, which it may be for a box.
+    pub(crate) fn is_lane_within(&self, lane: usize, vertices: &[V3], query: V3, square: f64) -> bool {
+        let [a, b, c] = self.corners(lane).map(|index| vertices[index]);
+        let projection = match self.kind() {
+            Kind::Triangle => Projection::onto_near_triangle(query, &[a, b, c], square),
+            Kind::Segment => Projection::onto_segment(query, &[a, b], square),
+            Kind::Point => Projection::onto_point(query, &[a], square),
+            Kind::Box => return true,
+        };
+        projection.is_some_and(|projection| projection.key.square_above() <= square)
+    }
+
     /// A mask with one bit for each lane in use.
     #[inline(always)]
     pub fn lanes(&self) -> u32 {
@@ -240,7 +268,8 @@ impl Packet {
             && (has_frame || has_no_frame)
             && self.origin.iter().all(|x| x.is_finite())
             && self.vertex_offset == first
-            && self.unused == [0; 2]
+            && self.is_continued <= 1
+            && self.unused == 0
             && (vertices == 0 || u32::from(largest(&self.corners[..vertices])) < count)
             && largest(&self.corners[vertices..]) == 0
     }

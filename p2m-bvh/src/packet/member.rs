@@ -3,6 +3,7 @@
 use p2m_core::engine::real::to_f64_array;
 use p2m_core::engine::vector::V3;
 use p2m_core::{Aabb, Primitive, PrimitiveId, Real};
+use std::cmp::Ordering;
 
 /// The kind of the primitives of a packet, by the number of vertices that span them.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
@@ -49,6 +50,18 @@ impl Member {
             vertices.iter_mut().zip(primitive.vertices()).for_each(|(to, vertex)| *to = to_f64_array(vertex));
         }
         Self { kind, bounds: primitive.aabb().to_f64(), vertices }
+    }
+
+    /// Compares the kinds of two primitives, and then the bits of their vertices.
+    pub(crate) fn compare(&self, other: &Self) -> Ordering {
+        let bits = |member: &Self| member.vertices.map(|vertex| vertex.map(f64::to_bits));
+        self.kind.cmp(&other.kind).then_with(|| bits(self).cmp(&bits(other)))
+    }
+
+    /// Whether two primitives have the same vertices, bit for bit and in the same order. Nothing is known about
+    /// primitives of which only the box is.
+    pub(crate) fn is_same(&self, other: &Self) -> bool {
+        self.kind != Kind::Box && self.compare(other).is_eq()
     }
 
     /// The vertices that span the primitive; the slice is empty for [`Kind::Box`].

@@ -32,8 +32,10 @@ impl<V: VolumeNodes> PacketTree<V> {
             len -= 1;
             let (child, is_inside) = stack[len];
             if child.is_packet() {
-                let ids = self.leaves.packets[child.number()].ids();
-                ids.iter().filter(|id| is_inside || intersects(**id)).copied().try_for_each(&mut *visit)?;
+                for packet in self.leaves.run(child.number()) {
+                    let ids = packet.ids().iter();
+                    ids.filter(|id| is_inside || intersects(**id)).copied().try_for_each(&mut *visit)?;
+                }
                 continue;
             }
             let node = &self.nodes[child.number()];

@@ -98,11 +98,18 @@ impl<V: VolumeNodes, C: Collector> Search<'_, V, C> {
                 continue;
             }
             if child.is_packet() {
-                collector.visit_packet();
-                let packet = &tree.leaves.packets[child.number()];
-                for lane in 0..packet.ids().len() {
-                    let limit = collector.prune_above();
-                    offer_outlined(&tree.leaves, packet, lane, query, limit, collector, evaluate);
+                let mut packet = child.number();
+                loop {
+                    collector.visit_packet();
+                    let content = &tree.leaves.packets[packet];
+                    for lane in 0..content.ids().len() {
+                        let limit = collector.prune_above();
+                        offer_outlined(&tree.leaves, content, lane, query, limit, collector, evaluate);
+                    }
+                    if collector.is_single_nearest() || !tree.leaves.is_rest_wanted(packet, query, collector) {
+                        break;
+                    }
+                    packet += 1;
                 }
                 continue;
             }
@@ -157,6 +164,9 @@ impl<V: VolumeNodes, C: Collector> Visitor<V> for NearestVisitor<'_, V, C> {
     #[inline(always)]
     fn visit_packet<I: InstructionSet>(&mut self, number: usize) -> ControlFlow<()> {
         self.state.packet::<I>(number, self.state.leaves.packets[number].lanes());
+        if !self.state.collector.is_single_nearest() {
+            self.state.rest_of_run::<I>(number);
+        }
         ControlFlow::Continue(())
     }
     #[inline(always)]

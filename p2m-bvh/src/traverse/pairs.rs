@@ -133,6 +133,11 @@ impl<V: VolumeNodes> PairSide for TreeSide<'_, V> {
         self.tree.least_id(NodeRef(node))
     }
 
+    fn next_packet(&self, packet: u32) -> Option<u32> {
+        let is_continued = self.tree.leaves.packets[NodeRef(packet).number()].is_continued();
+        is_continued.then(|| NodeRef::packet(NodeRef(packet).number() + 1).0)
+    }
+
     fn load(&self, number: u32, hulls: &mut Hulls) {
         let leaves = &self.tree.leaves;
         let packet = &leaves.packets[NodeRef(number).number()];

@@ -176,16 +176,21 @@ impl<'r, V: VolumeNodes, C: RayCollector<'r>> Visitor<V> for RayVisitor<'_, 'r, 
         self.tests.hits.visit_node();
     }
     #[inline(always)]
-    fn visit_packet<I: InstructionSet>(&mut self, number: usize) -> ControlFlow<()> {
-        self.tests.hits.visit_packet();
-        self.tests.leaves.prefetch_vertices(number);
-        let mut passed = self.tests.leaves.packets[number].lanes_hit_by::<I>(&self.line, self.from, self.to);
-        while passed != 0 {
-            let lane = passed.trailing_zeros() as usize;
-            passed &= passed - 1;
-            self.tests.test(number, lane)?;
-            self.update_limits();
+    fn visit_packet<I: InstructionSet>(&mut self, mut number: usize) -> ControlFlow<()> {
+        loop {
+            self.tests.hits.visit_packet();
+            self.tests.leaves.prefetch_vertices(number);
+            let mut passed = self.tests.leaves.packets[number].lanes_hit_by::<I>(&self.line, self.from, self.to);
+            while passed != 0 {
+                let lane = passed.trailing_zeros() as usize;
+                passed &= passed - 1;
+                self.tests.test(number, lane)?;
+                self.update_limits();
+            }
+            if !self.tests.leaves.packets[number].is_continued() {
+                return ControlFlow::Continue(());
+            }
+            number += 1;
         }
-        ControlFlow::Continue(())
     }
 }

@@ -209,6 +209,15 @@ impl<'a, C: Collector> SearchState<'a, C> {
         }
     }
 
+    /// Filters the packets that continue the run of a packet, as far as the collector wants their primitives.
+    #[inline(always)]
+    pub(super) fn rest_of_run<I: InstructionSet>(&mut self, mut number: usize) {
+        while self.leaves.is_rest_wanted(number, self.query, &*self.collector) {
+            number += 1;
+            self.packet::<I>(number, self.leaves.packets[number].lanes());
+        }
+    }
+
     /// The lower bound of a candidate in the frame of the tree, from the square that the filter of its packet found.
     #[inline(always)]
     #[allow(clippy::cast_possible_truncation, reason = "`distance_below` allows for the rounding")]

@@ -20,8 +20,9 @@ use crate::packet::Packet;
 use frame::Frame;
 use node_ref::NodeRef;
 use p2m_core::engine::simd::{Isa, prefetch_lines};
+use p2m_core::engine::vector::V3;
 use p2m_core::storage::Array;
-use p2m_core::{Aabb, PrimitiveId};
+use p2m_core::{Aabb, Collector, PrimitiveId};
 use std::sync::OnceLock;
 use wide_node::{VolumeNodes, WideNode};
 
@@ -173,6 +174,32 @@ impl<V: VolumeNodes> PacketTree<V> {
 }
 
 impl Leaves {
+    /// Whether a packet is continued, and the primitives of the next packet may be part of the answer. They have the
+    /// keys of this packet and higher ids.
+    #[inline(always)]
+    pub(crate) fn is_rest_wanted(&self, number: usize, query: V3, collector: &impl Collector) -> bool {
+        let packet = &self.packets[number];
+        packet.is_continued() && {
+            let limit = collector.prune_above_for_id(self.packets[number + 1].ids()[0]);
+            // A higher limit than the general one is that of a collector that does not go by keys.
+            limit > collector.prune_above() || (limit >= 0.0 && packet.is_lane_within(0, &self.vertices, query, limit))
+        }
+    }
+
+    /// Whether a packet continues the run of the packet before.
+    #[doc(hidden)]
+    #[must_use]
+    pub fn is_continuation(&self, number: usize) -> bool {
+        number > 0 && self.packets[number - 1].is_continued()
+    }
+
+    /// A packet and those that continue it.
+    pub(crate) fn run(&self, number: usize) -> impl Iterator<Item = &Packet> {
+        let rest = &self.packets[number..];
+        let len = 1 + rest.iter().take_while(|packet| packet.is_continued()).count();
+        rest[..len].iter()
+    }
+
     /// Prefetches a packet.
     #[inline(always)]
     #[doc(hidden)]

@@ -58,6 +58,10 @@ pub(super) fn check_references<V: VolumeNodes>(tree: &PacketTree<V>) -> Result<u
         longest = longest.max(depth);
         node.used_slots().try_for_each(|slot| referenced.add(node.children()[slot], depth + 1))?;
     }
+    for (packet, _) in tree.leaves.packets.iter().enumerate().filter(|(_, packet)| packet.is_continued()) {
+        require(referenced.packets[packet], CHILDREN, "a packet is not used")?;
+        referenced.add(NodeRef::packet(packet + 1), 0)?;
+    }
     require(!referenced.packets.contains(&false), CHILDREN, "a packet is not used")?;
     Ok(longest)
 }

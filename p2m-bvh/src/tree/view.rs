@@ -23,17 +23,26 @@ impl<V: VolumeNodes> PacketTree<V> {
         (self.root != NodeRef::NONE).then(|| TreeNode { volume: volume(), depth: 0, reference: self.root })
     }
 
-    /// The children of a node of this tree. A packet has none.
+    /// The children of a node of this tree. A packet has none, unless more primitives have the same vertices than are in
+    /// it: the next packet of them is its child.
     pub fn children(&self, node: &TreeNode<V>) -> impl Iterator<Item = TreeNode<V>> + '_ {
         let wide = (!node.reference.is_packet()).then(|| &self.nodes[node.reference.number()]);
         let depth = node.depth + 1;
-        wide.into_iter().flat_map(move |wide| {
+        let of_node = wide.into_iter().flat_map(move |wide| {
             wide.used_slots().map(move |slot| TreeNode {
                 volume: V::Node::scene_volume(&wide.bounds(slot), &self.shared, &self.frame),
                 depth,
                 reference: wide.children()[slot],
             })
-        })
+        });
+        let number = node.reference.number();
+        let is_continued = node.reference.is_packet() && self.leaves.packets[number].is_continued();
+        let next = is_continued.then(|| TreeNode {
+            volume: node.volume.clone(),
+            depth,
+            reference: NodeRef::packet(number + 1),
+        });
+        of_node.chain(next)
     }
 
     /// The primitives of a packet of this tree; `None` if the node is not a packet.

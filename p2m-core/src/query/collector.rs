@@ -26,8 +26,8 @@ pub trait Collector {
 
     /// Returns the limit of [`prune_above`](Self::prune_above) for the primitive `id`.
     ///
-    /// It is lower than the general limit if the collector would reject that primitive at equality because of its id.
-    /// The default returns the general limit.
+    /// It is lower than the general limit if the collector would reject that primitive at equality because of its id, and
+    /// infinite if the collector does not compare keys. The default returns the general limit.
     #[inline(always)]
     fn prune_above_for_id(&self, id: PrimitiveId) -> f64 {
         let _ = id;

@@ -202,12 +202,16 @@ impl SimdKernel for FloodPacket<'_, '_> {
     #[allow(clippy::cast_possible_truncation, reason = "rounded up; sixteen lanes")]
     fn run<I: InstructionSet>(self) {
         let Self { flood, packet, state: FloodState { reached, found }, max_tested } = self;
+        reached.clear();
+        found.clear();
+        if flood.tree.leaves.is_continuation(packet) {
+            // Its primitives can only tie with those of an earlier packet, which have lower ids.
+            return;
+        }
         let packet = &flood.tree.leaves.packets[packet];
         let (slack, per_unit) = (flood.limits.slack, packet.per_unit());
         let bounds = packet.bounds_of(packet.lanes() as u16);
         let [low, high] = [to_f64_array(&bounds.min), to_f64_array(&bounds.max)];
-        reached.clear();
-        found.clear();
         for lane in 0..packet.ids().len() {
             let start = flood.tetrahedron_of_site[flood.delaunay.site_of(packet.vertices_of(lane).0[0])];
             reached.number(start);

@@ -94,19 +94,46 @@ impl Search<'_, '_, '_> {
             }
             match [0, 1].map(|i| self.sides[i].is_packet(places[i].node)) {
                 [true, true] => {
-                    for ((side, place), hulls) in self.sides.iter().zip(places).zip(&mut loaded) {
-                        if hulls.packet != place.node {
-                            side.load(place.node, hulls);
-                        }
+                    self.search_packets([places[0].node, places[1].node], &mut loaded);
+                    if !self.pairs.is_nearest() {
+                        self.search_rest_of_runs([places[0].node, places[1].node], &mut loaded);
                     }
-                    let [a, b] = &loaded;
-                    search_packets(a, b, self.supports.margin, self.supports.direction, self.pairs);
-                    self.supports.follow(self.pairs);
                 }
                 [_, true] => self.cut(0, places),
                 [true, _] => self.cut(1, places),
                 _ => self.cut(usize::from(places[0].size < places[1].size), places),
             }
+        }
+    }
+
+    /// Offers the pairs of the primitives of two packets.
+    fn search_packets(&mut self, packets: [u32; 2], loaded: &mut [Hulls; 2]) {
+        for ((side, packet), hulls) in self.sides.iter().zip(packets).zip(&mut *loaded) {
+            if hulls.packet != packet {
+                side.load(packet, hulls);
+            }
+        }
+        let [a, b] = &*loaded;
+        search_packets(a, b, self.supports.margin, self.supports.direction, self.pairs);
+        self.supports.follow(self.pairs);
+    }
+
+    /// Offers the pairs of the packets that continue two packets, which can only tie with theirs.
+    fn search_rest_of_runs(&mut self, first: [u32; 2], loaded: &mut [Hulls; 2]) {
+        let [side_a, side_b] = self.sides;
+        let mut packets = first;
+        loop {
+            if let Some(b) = side_b.next_packet(packets[1]) {
+                packets[1] = b;
+            } else if let Some(a) = side_a.next_packet(packets[0]) {
+                packets = [a, first[1]];
+            } else {
+                return;
+            }
+            if self.pairs.is_done() || !(self.goes_on)() {
+                return;
+            }
+            self.search_packets(packets, loaded);
         }
     }
 

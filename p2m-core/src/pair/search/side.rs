@@ -62,6 +62,12 @@ pub trait PairSide {
     fn box_of(&self, place: &Place) -> Aabb<f64>;
     /// Returns the least id of a node or a packet.
     fn least_id(&self, node: u32) -> PrimitiveId;
+    /// Returns the packet with further primitives that have the same vertices as those of a packet, and higher ids. No
+    /// node refers to it.
+    fn next_packet(&self, packet: u32) -> Option<u32> {
+        let _ = packet;
+        None
+    }
     /// Loads the primitives of a packet.
     fn load(&self, packet: u32, hulls: &mut Hulls);
 }
