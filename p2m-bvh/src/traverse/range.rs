@@ -21,7 +21,7 @@ impl<V: VolumeNodes> PacketTree<V> {
     /// left out, unless it is in more than `most` packets.
     ///
     /// Returns `false` if there are more packets than that, or if f32 cannot represent the point with enough accuracy.
-    /// `tests` grows by the number of packets that were tested.
+    /// `tests` grows by the number of nodes and packets that were tested.
     pub fn ball(
         &self,
         centre: [f64; 3],
@@ -60,7 +60,7 @@ struct BallSearch<'a, V: VolumeNodes> {
     /// Whether the search stopped because there are more packets.
     is_incomplete: bool,
     found: &'a mut Vec<Selection>,
-    /// The number of packets that were tested.
+    /// The number of nodes and packets that were tested.
     tests: &'a mut usize,
 }
 
@@ -84,7 +84,9 @@ impl<V: VolumeNodes> Visitor<V> for BallSearch<'_, V> {
         self.limit
     }
     #[inline(always)]
-    fn visit_node(&mut self) {}
+    fn visit_node(&mut self) {
+        *self.tests += 1;
+    }
     #[inline(always)]
     #[allow(clippy::cast_possible_truncation, reason = "rounded up; sixteen lanes")]
     fn visit_packet<I: InstructionSet>(&mut self, number: usize) -> ControlFlow<()> {

@@ -28,7 +28,7 @@ impl BuildBudget {
         Self { bytes, work: (work * count) as u64, charged: AtomicU64::new(0), is_exceeded: AtomicBool::new(false) }
     }
 
-    /// Charges tests of a packet at a point, or evaluations of a primitive.
+    /// Charges tests of a node or a packet at a point, or evaluations of a primitive.
     pub(crate) fn charge(&self, tests: usize) {
         let charged = self.charged.fetch_add(tests as u64, Ordering::Relaxed) + tests as u64;
         if charged > self.work {
@@ -43,6 +43,12 @@ impl BuildBudget {
             self.is_exceeded.store(true, Ordering::Relaxed);
         }
         fits
+    }
+
+    /// Returns the number of tests so far.
+    #[cfg(test)]
+    pub(crate) fn charged(&self) -> u64 {
+        self.charged.load(Ordering::Relaxed)
     }
 
     /// Returns whether the budget is exceeded.

@@ -66,8 +66,8 @@ struct GrowingSites<'a> {
 }
 
 impl<'a> GrowingSites<'a> {
-    /// Triangulates the vertices of a tree and finds the packets of all balls. It returns `None` if there are
-    /// too many tetrahedra.
+    /// Triangulates the vertices of a tree and finds the packets of all balls. It returns `None` if there are too many
+    /// tetrahedra, or if the budget is exceeded.
     ///
     /// Floods are given up where very many balls are crowded. Then sites are added before all packets are known,
     /// because most of these balls vanish.
@@ -91,6 +91,9 @@ impl<'a> GrowingSites<'a> {
             Ok(corners) => sites.corners = corners,
             Err(all) => {
                 let probable = sites.clusters(&all).choose_probable_sites(sites.count_left());
+                if limits.budget.is_exceeded() {
+                    return None;
+                }
                 if probable.is_empty() || !sites.add(probable) {
                     sites.corners = CellCorners::search(tree, limits, &all, None, &sites.progress());
                 }
@@ -232,5 +235,39 @@ impl Sites {
     /// Returns the index of the anchor of a site, if it is an auxiliary one.
     pub(crate) fn anchor_of(&self, site: usize) -> Option<usize> {
         self.anchors.binary_search_by_key(&site, |(site, _)| *site).ok()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::options::P2mOptions;
+    use crate::voronoi::budget::BuildBudget;
+    use crate::voronoi::vertex_bounds;
+    use nalgebra::Point3;
+    use p2m_core::Triangle;
+    use p2m_testkit::{rng, vector};
+
+    /// Each of these needles is as long as the scene, so every ball meets very many.
+    #[test]
+    fn needles_are_given_up_within_the_budget() {
+        let mut rng = rng("needles", 0);
+        let needles: Vec<Triangle<f64>> = (0..10_000)
+            .map(|_| {
+                let (centre, along) = (vector(&mut rng) * 0.5, vector(&mut rng).normalize());
+                let [a, b] = [centre - along, centre + along].map(Point3::from);
+                Triangle::new(a, b, b + vector(&mut rng) * 1e-3)
+            })
+            .collect();
+        let options = P2mOptions::default();
+        let tree = PacketTree::build(&needles[..], &options.splits);
+        let budget = &BuildBudget::new(options.memory, options.work, needles.len());
+        let (slack, max_list_packets, max_added_sites) = (1e-9, options.max_list_packets, 15_000);
+        let limits = Limits { parallel: false, slack, max_list_packets, max_added_sites, budget };
+        let reporter = ProgressReporter::new(&|_| {}, BuildStage::Tree);
+        assert!(Sites::new(&tree, &vertex_bounds(&tree), limits, &reporter).is_none());
+        let charged = budget.charged();
+        println!("{charged} tests");
+        assert!(budget.is_exceeded() && charged < 2_100 * 10_000, "{charged} tests");
     }
 }
