@@ -48,6 +48,7 @@ fn parts<'py>(py: Python<'py>, found: &HausdorffDistance<f64>) -> PyResult<Bound
     let dictionary = PyDict::new(py);
     dictionary.set_item("lower_bound", found.lower_bound)?;
     dictionary.set_item("upper_bound", found.upper_bound)?;
+    dictionary.set_item("reached", found.is_tolerance_reached)?;
     dictionary.set_item("points", found.points.map(|point| <[f64; 3]>::from(point.coords)))?;
     dictionary.set_item("primitives", found.primitives.map(|id| id.number()))?;
     dictionary.set_item("from_scene", u8::from(found.direction == Direction::SecondToFirst))?;

@@ -407,6 +407,7 @@ def test_hausdorff_distances_are_between_their_bounds() -> None:
     assert abs(found.lower_bound - np.sqrt(0.5)) < 1e-6 and found.from_scene == 0
     few = p2m.hausdorff(cube, corners, 0.0, max_queries=3)
     assert few.lower_bound <= np.sqrt(0.5) < few.upper_bound and few.queries < 40
+    assert found.reached and not few.reached
     calls: list[tuple[int, int]] = []
     p2m.hausdorff(cube, corners, 1e-6, progress=lambda done, total: calls.append((done, total)))
     assert calls and calls[-1][0] == calls[-1][1]

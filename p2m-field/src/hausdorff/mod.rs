@@ -22,6 +22,11 @@
 //!   bound is then the distance of a corner. The bound is never above the one that follows from the Lipschitz
 //!   condition, d(ci, B) plus the largest distance of another corner from ci, because d(cj, p) <= |cj - ci| + d(ci, p).
 //!
+//! - **Upper bound by several primitives.** If no single one of these primitives bounds a piece well enough, the piece
+//!   is divided along the edges of one of them, and its parts are bounded by different ones ([`covering`]). Where two
+//!   surfaces are the same set with other triangles, most pieces lie on two or three triangles of a plane. Without these
+//!   bounds they would be cut along all edges until they are as small as the tolerance.
+//!
 //! Pieces of both directions share one queue, so the direction with the larger distance ends the other one early.
 //!
 //! # Rounding
@@ -30,10 +35,12 @@
 //! the scalar, eta its smallest subnormal, and s the largest magnitude of a coordinate of the primitive. The middle
 //! of two corners that are off their exact places by e1 and e2 is off by at most (e1 + e2) / 2 + sqrt(3) (1.01 u s + 2
 //! eta): the two halves err by eta / 2 each, their sum in f64 by u s, and the conversion to f32 by u s. So a corner
-//! after k cuts is off by at most k r with r = 2 (u s + 2 eta).
+//! after k cuts is off by at most k r with r = 2 (u s + 2 eta). Parts of a piece are divided in f64. A point (1 - t) a +
+//! t b between two corners of a part is off by at most 4 r' more than these, where r' is r for f64: the weight, the
+//! products and the sum err by 3 sqrt(3) u s.
 //!
 //! A point x of the exact piece is the sum of its exact corners with some weights, and the sum of the rounded corners
-//! with the same weights is within k r of x. Hence
+//! with the same weights is within k r of x. After l divisions of a part it is within k r + 4 l r' of x. Hence
 //!
 //! - d(x, B) <= max (d^(ci, p) + error of d^) + k r, where the kernel bounds the error of a computed distance d^ by 8 u M
 //!   (contract N1 of [`ClosestPoint`]). The sum is rounded up;
@@ -45,6 +52,7 @@
 //! largest bound is one of these. So it ends for every tolerance, and the difference of the bounds is then as small as
 //! rounding allows.
 
+mod covering;
 mod search;
 #[cfg(test)]
 mod tests;
@@ -112,6 +120,8 @@ pub struct HausdorffDistance<T: Real> {
     /// A certified upper bound. It exceeds the lower one by at most the tolerance, unless rounding does not allow it, a
     /// limit of queries was reached, or the search was ended.
     pub upper_bound: T,
+    /// Whether the upper bound exceeds the lower one by at most the tolerance, before both are rounded to the scalar.
+    pub is_tolerance_reached: bool,
     /// A point whose distance from the other scene attains the lower bound, and its closest point there.
     pub points: [Point3<T>; 2],
     /// The primitives that contain these points. A vertex of the measured scene has the lowest id of the
@@ -172,9 +182,8 @@ pub type ReportProgress<'a, T> = dyn FnMut(&HausdorffProgress<T>) -> ControlFlow
 ///
 /// # Complexity
 /// One query for each vertex, and two for each cut. Few primitives are cut if the distance is large beside the
-/// primitives. Where whole faces are equally far, as two parallel plates are, the number of cuts along the edges of the
-/// second scene is proportional to 1 / sqrt(tolerance), and where whole faces coincide and nothing is farther, to 1 /
-/// tolerance. For n vertices, m primitives and q other queries the memory is 40 (n + q) + 40 (m + q) bytes in f64.
+/// primitives. Where whole faces are equally far or the same, the number of cuts is about that of the primitives of both
+/// scenes there times log(1 / tolerance). For n vertices, m primitives and q other queries the memory is 40 (n + q) + 40 (m + q) bytes in f64.
 pub fn one_sided_hausdorff_distance<T: Real, I: HausdorffIndex<T> + ?Sized>(
     first: &Soup<T>,
     index: &I,

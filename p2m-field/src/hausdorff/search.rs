@@ -1,9 +1,11 @@
 //! The branch and bound.
 
+use super::covering::{MAX_SHAPES, Part};
 use super::{Direction, HausdorffDistance, HausdorffIndex, HausdorffOptions, HausdorffProgress, ReportProgress};
 use nalgebra::Point3;
 use p2m_core::batch::{self, BatchOptions, ClosestColumns};
 use p2m_core::engine::real::{from_f64_array, to_f64_array};
+use p2m_core::engine::vector::V3;
 use p2m_core::{CertifyError, Closest, Primitive, PrimitiveId, PrimitiveSet, QueryOptions, Real, Shape, Soup};
 use std::cmp::Ordering;
 use std::collections::BinaryHeap;
@@ -317,14 +319,16 @@ impl<'a, T: Real> Search<'a, T> {
         let drift = self.drift(piece, piece.depth);
         let reached = corners.map(|corner| corner.distance.to_f64()).into_iter().fold(0.0, f64::max);
         let ids = [piece.candidate, corners[0].nearest, corners[1].nearest, corners[2].nearest];
+        let points = corners.map(|corner| corner.point);
         let mut best = Bound { upper: f64::INFINITY, primitive: piece.candidate, is_final: false };
+        let (mut shapes, mut shape_count) = ([None; MAX_SHAPES], 0);
         for (i, &id) in ids.iter().enumerate() {
             if ids[..i].contains(&id) {
                 continue;
             }
             let id = PrimitiveId::new(id as usize);
             let shape = target.shape(id).ok_or(CertifyError::NoVertices { id })?;
-            let rough = (rough_distance(&corners.map(|corner| corner.point), &shape) + drift) * ROUND_UP + SUBNORMALS;
+            let rough = (rough_distance(&points, &shape) + drift) * ROUND_UP + SUBNORMALS;
             if rough <= self.lower {
                 return Ok(Bound { upper: rough, primitive: id.number(), is_final: false });
             }
@@ -343,20 +347,32 @@ impl<'a, T: Real> Search<'a, T> {
                 best = Bound { upper, primitive: id.number(), is_final: !can_improve };
             }
             if best.upper <= limit {
-                break;
+                return Ok(best);
             }
+            shapes[shape_count] = in_f64(&shape);
+            shape_count += 1;
         }
+        if best.is_final || shape_count < 2 {
+            return Ok(best);
+        }
+        let cover =
+            Part::whole(&points).cover(&shapes[..shape_count], limit - drift, 4.0 * self.drift_of_cut::<f64>(piece));
+        let upper = (cover + drift) * ROUND_UP + SUBNORMALS;
+        best.upper = best.upper.min(upper);
         Ok(best)
     }
 
     /// Returns a bound on the distance of a corner of a piece from its exact place, if it is cut this often.
     fn drift(&self, piece: &Piece, cuts: u16) -> f64 {
-        if cuts == 0 {
-            return 0.0;
-        }
+        if cuts == 0 { 0.0 } else { f64::from(cuts) * self.drift_of_cut::<T>(piece) }
+    }
+
+    /// Returns a bound on the distance of the middle of an edge, rounded to a scalar, from its exact place, if the ends are
+    /// exact.
+    fn drift_of_cut<R: Real>(&self, piece: &Piece) -> f64 {
         let primitive = self.sides[usize::from(piece.side)].surface.get(PrimitiveId::new(piece.primitive as usize));
         let size = primitive.vertices().iter().map(|v| v.map(T::to_f64).coords.amax()).fold(0.0, f64::max);
-        f64::from(cuts) * (2.0 * (T::UNIT_ROUNDOFF * size + 2.0 * T::SMALLEST_SUBNORMAL)) * ROUND_UP
+        2.0 * (R::UNIT_ROUNDOFF * size + 2.0 * R::SMALLEST_SUBNORMAL) * ROUND_UP
     }
 
     /// Returns a bound on the distance of the point of a step from its exact place. A point inside is the middle of a
@@ -430,6 +446,7 @@ impl<'a, T: Real> Search<'a, T> {
     }
 
     fn finish(self) -> Option<HausdorffDistance<T>> {
+        let is_tolerance_reached = self.upper() <= self.limit();
         let HausdorffProgress { lower_bound, upper_bound, queries } = self.progress();
         let farthest = self.farthest?;
         let surface = self.sides[farthest.side].surface;
@@ -445,7 +462,15 @@ impl<'a, T: Real> Search<'a, T> {
             points.swap(0, 1);
             primitives.swap(0, 1);
         }
-        Some(HausdorffDistance { lower_bound, upper_bound, points, primitives, direction, queries })
+        Some(HausdorffDistance {
+            lower_bound,
+            upper_bound,
+            is_tolerance_reached,
+            points,
+            primitives,
+            direction,
+            queries,
+        })
     }
 }
 
@@ -483,6 +508,12 @@ fn rough_distance<T: Real>(points: &[Point3<T>; 3], shape: &Shape<T>) -> f64 {
     let distance = |p: &Point3<T>, v: &Point3<T>| (0..3).map(|k| (p[k].to_f64() - v[k].to_f64()).abs()).sum::<f64>();
     let nearest = |p: &Point3<T>| shape.vertices().iter().map(|v| distance(p, v)).fold(f64::INFINITY, f64::min);
     points.iter().map(nearest).fold(0.0, f64::max)
+}
+
+/// Returns a primitive in f64.
+fn in_f64<T: Real>(shape: &Shape<T>) -> Option<Shape<f64>> {
+    let vertices: [V3; 3] = std::array::from_fn(|i| shape.vertices().get(i).map_or([0.0; 3], to_f64_array));
+    Shape::from_vertices(&vertices[..shape.vertices().len()])
 }
 
 /// Returns the middle of two points, rounded.

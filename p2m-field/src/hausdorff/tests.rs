@@ -327,3 +327,70 @@ fn a_search_that_is_ended_has_the_bounds_so_far() {
     }
     panic!("the search has more reports than expected");
 }
+
+/// The surface of the cube from 0 to 1, whose faces are divided into squares, turned.
+fn divided_cube<T: Real>(count: u32) -> Soup<T> {
+    let turn = nalgebra::Rotation3::new(Vector3::new(0.3, -0.2, 0.5));
+    let (mut positions, mut elements) = (Vec::new(), Vec::new());
+    for (axis, end) in [0, 1, 2].into_iter().flat_map(|axis| [(axis, 0.0), (axis, 1.0)]) {
+        let first = u32::try_from(positions.len()).expect("few");
+        for (i, j) in (0..=count).flat_map(|i| (0..=count).map(move |j| (i, j))) {
+            let mut at = Vector3::zeros();
+            (at[axis], at[(axis + 1) % 3]) = (end, f64::from(i) / f64::from(count));
+            at[(axis + 2) % 3] = f64::from(j) / f64::from(count);
+            positions.push(Point3::from((turn * at).map(T::round_from_f64)));
+            if i < count && j < count {
+                let a = first + i * (count + 1) + j;
+                let (b, c, d) = (a + 1, a + count + 1, a + count + 2);
+                elements.extend([Element::Triangle([a, c, d]), Element::Triangle([a, d, b])]);
+            }
+        }
+    }
+    Soup::new(positions, elements).expect("valid")
+}
+
+/// Pieces lie on several triangles of a plane, or nearly of one, and on none alone.
+#[test]
+fn the_same_surface_with_other_triangles_takes_few_queries() {
+    for (counts, most) in [([1, 7], 60_000), ([16, 7], 150_000), ([5, 5], 20_000)] {
+        let [a, b] = counts.map(divided_cube::<f64>);
+        for tolerance in [1e-4, 1e-6, 1e-9, 1e-12] {
+            let found = both(&a, &b, &HausdorffOptions::new(tolerance)).expect("cubes");
+            println!("{counts:?} {tolerance:e}: {} queries, {:e}", found.queries, found.upper_bound);
+            assert!(found.is_tolerance_reached && found.upper_bound <= 2.0 * tolerance, "{counts:?}: {found:?}");
+            assert!(found.queries < most, "{counts:?}, {tolerance}: {} queries", found.queries);
+        }
+        let [a, b] = counts.map(divided_cube::<f32>);
+        let found = both(&a, &b, &HausdorffOptions::new(1e-4)).expect("cubes");
+        assert!(found.is_tolerance_reached && found.queries < most, "{counts:?}: {found:?}");
+    }
+}
+
+#[test]
+fn a_divided_convex_surface_is_as_far_from_its_copy_as_that_was_moved() {
+    for counts in [[1, 7], [4, 3]] {
+        let [a, mut b] = counts.map(divided_cube::<f64>);
+        let by = Vector3::new(0.25, -0.5, 0.125);
+        b.map_positions(|p| p + by).expect("finite");
+        let found = both(&a, &b, &HausdorffOptions::new(1e-9));
+        assert_contains(found, by.norm(), 1e-9);
+        assert!(found.expect("cubes").queries < 5_000, "{found:?}");
+    }
+}
+
+#[test]
+fn lines_with_other_vertices_are_the_same() {
+    let line = |count: u32| {
+        let at = |i: u32| [1.0, 0.3, 0.7].map(|x| x * f64::from(i) / f64::from(count));
+        soup(&(0..=count).map(at).collect::<Vec<_>>(), (0..count).map(|i| Element::Segment([i, i + 1])))
+    };
+    let found = both(&line(7), &line(16), &HausdorffOptions::new(1e-12)).expect("lines");
+    assert!(found.is_tolerance_reached && found.upper_bound <= 2e-12 && found.queries < 1_000, "{found:?}");
+}
+
+#[test]
+fn a_tolerance_that_is_not_reached_is_said() {
+    let [a, b] = [1, 7].map(divided_cube::<f64>);
+    let found = both(&a, &b, &HausdorffOptions::new(1e-6).with_max_queries(3)).expect("cubes");
+    assert!(!found.is_tolerance_reached && found.upper_bound > found.lower_bound + 1e-6, "{found:?}");
+}

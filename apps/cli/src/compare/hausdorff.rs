@@ -21,7 +21,8 @@ use std::sync::Arc;
 const HELP: &str = "\
 The Hausdorff distance is the largest distance from a point of either scene to the other scene. All points of \
 triangles, segments and points count, not only vertices. Both bounds are certified in spite of rounding. Primitives \
-are subdivided until the bounds differ by at most the tolerance, or until the limit of queries is reached.
+are subdivided until the bounds differ by at most the tolerance, or until the limit of queries is reached; \
+a note then says so.
 
 Examples:
   p2m hausdorff scan.ply part.stl
@@ -97,17 +98,25 @@ pub(crate) fn run(streams: &Streams, args: &Args) -> anyhow::Result<()> {
     if args.json {
         return json::print(streams, &report(&names, formats, &scenes, &found, tolerance, args.one_sided));
     }
-    Output::print(streams, text(&names, &scenes, &found))
+    Output::print(streams, text(&names, &scenes, &found, tolerance))
 }
 
-fn text(names: &[String; 2], scenes: &[Scene; 2], found: &HausdorffDistance<f64>) -> String {
+fn text(names: &[String; 2], scenes: &[Scene; 2], found: &HausdorffDistance<f64>, tolerance: f64) -> String {
     let [from, to] = match found.direction {
         Direction::FirstToSecond => [0, 1],
         Direction::SecondToFirst => [1, 0],
     };
     let line = |k: usize| line_of_point(&names[k], &scenes[k], found.points[k], found.primitives[k], None);
+    let note = if found.is_tolerance_reached {
+        String::new()
+    } else {
+        format!(
+            "note: the tolerance of {tolerance} was not reached: the limit of queries ended the search (--max-queries), or rounding \
+             allows no smaller difference\n"
+        )
+    };
     format!(
-        "at least {} and at most {}\nfarthest from {}:\n{}closest to it:\n{}",
+        "at least {} and at most {}\n{note}farthest from {}:\n{}closest to it:\n{}",
         found.lower_bound,
         found.upper_bound,
         names[to],
@@ -136,6 +145,7 @@ fn report(
         "tolerance": json::number(tolerance),
         "lower_bound": json::number(found.lower_bound),
         "upper_bound": json::number(found.upper_bound),
+        "reached": found.is_tolerance_reached,
         "from": match found.direction {
             Direction::FirstToSecond => 0,
             Direction::SecondToFirst => 1,

@@ -91,3 +91,16 @@ fn limits_and_wrong_arguments_are_told() {
     assert_eq!(queries("0"), 6);
     assert!(queries("10").as_u64().is_some_and(|queries| queries > 6), "{}", queries("10"));
 }
+
+#[test]
+fn a_tolerance_that_was_not_reached_is_said() {
+    let folder = TempDir::new().unwrap();
+    let floor = write(&folder, "floor.obj", FLOOR);
+    let points = write(&folder, "points.obj", "v 0 0 0\nv 4 0 0\nv 0 4 0\np 1\np 2\np 3\n");
+    for (limit, is_reached) in [("0", false), ("1000000", true)] {
+        let args = ["hausdorff", &floor, &points, "--tolerance", "0.001", "--max-queries", limit];
+        let text = table(&args);
+        assert_eq!(text.contains("note: the tolerance of 0.001 was not reached"), !is_reached, "{text}");
+        assert_eq!(json(&[&args[..], &["--json"]].concat())["reached"].as_bool(), Some(is_reached));
+    }
+}

@@ -29,6 +29,9 @@ class HausdorffDistance(NamedTuple):
     """The scene that has the point which is farthest from the other one: 0 or 1."""
     queries: int
     """The number of queries that were asked."""
+    reached: bool
+    """Whether the bounds differ by no more than the tolerance. If not, the limit of queries ended the search, or rounding
+    allows no smaller difference."""
 
 
 def hausdorff(
@@ -118,6 +121,7 @@ def hausdorff(
         primitives=np.array(found["primitives"], np.int64),
         from_scene=found["from_scene"],
         queries=found["queries"],
+        reached=found["reached"],
     )
 
 
