@@ -494,7 +494,11 @@ mod tests {
         assert_eq!(check(&vec![point(1.0, 2.0, 3.0); 10_000]).len(), 1);
         // A frame rounds two kinds of points to the same coordinates, and halves of the others are runs.
         let near = |i: u64| {
-            if i % 997 == 0 { point(1.0, 2.0, f64::from_bits(3f64.to_bits() + i % 3)) } else { point(1.0, 2.0, 3.0) }
+            if i.is_multiple_of(997) {
+                point(1.0, 2.0, f64::from_bits(3f64.to_bits() + i % 3))
+            } else {
+                point(1.0, 2.0, 3.0)
+            }
         };
         let leaves = check(&(0..10_000).map(near).collect::<Vec<_>>()).iter().filter(|node| node.count > 0).count();
         assert!(leaves < 40, "{leaves}");

@@ -104,15 +104,15 @@ impl Motion {
 /// least sum is that of the least products, and a product is least at one end of the box or at the other, by the sign of
 /// the factor. There is no margin.
 fn turned_box([low, high]: [Vector3<f64>; 2], factor: impl Fn(usize, usize) -> f64) -> [Vector3<f64>; 2] {
-    let mut sums = [Vector3::zeros(); 2];
-    for k in 0..3 {
-        let products = [0, 1, 2].map(|j| {
-            let factor = factor(k, j);
-            let [a, b] = [factor * low[j], factor * high[j]];
-            if factor >= 0.0 { [a, b] } else { [b, a] }
-        });
-        sums[0][k] = products[0][0] + products[1][0] + products[2][0];
-        sums[1][k] = products[0][1] + products[1][1] + products[2][1];
-    }
-    sums
+    let product = |k: usize, j: usize| {
+        let factor = factor(k, j);
+        let (a, b) = (factor * low[j], factor * high[j]);
+        if factor >= 0.0 { (a, b) } else { (b, a) }
+    };
+    let sum = |k: usize| {
+        let ((a, b), (c, d), (e, f)) = (product(k, 0), product(k, 1), product(k, 2));
+        (a + c + e, b + d + f)
+    };
+    let ((a, b), (c, d), (e, f)) = (sum(0), sum(1), sum(2));
+    [Vector3::new(a, c, e), Vector3::new(b, d, f)]
 }
