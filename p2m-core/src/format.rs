@@ -1,4 +1,4 @@
-//! Names of file formats, which are also the extensions of files.
+//! Names of file formats, which are also the extensions of files, and the header of NPY files.
 
 /// The error for a name that belongs to no format.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
@@ -90,4 +90,25 @@ macro_rules! formats {
             }
         }
     };
+}
+
+/// Returns a header of an NPY file of version 1.0, padded to a multiple of 64 bytes as NumPy does.
+///
+/// # Panics
+/// If the header is longer than 2^16 - 1 bytes.
+#[doc(hidden)]
+#[must_use]
+pub fn npy_header(descr: &str, shape: &str, is_fortran: bool) -> Vec<u8> {
+    let order = if is_fortran { "True" } else { "False" };
+    let mut description = format!("{{'descr': {descr}, 'fortran_order': {order}, 'shape': {shape}, }}");
+    // Magic, version and length take 10 bytes, and a line end comes last.
+    while !(10 + description.len() + 1).is_multiple_of(64) {
+        description.push(' ');
+    }
+    description.push('\n');
+    let length = u16::try_from(description.len()).expect("a few hundred bytes");
+    let mut header = b"\x93NUMPY\x01\x00".to_vec();
+    header.extend(length.to_le_bytes());
+    header.extend(description.into_bytes());
+    header
 }

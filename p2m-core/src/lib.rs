@@ -69,6 +69,8 @@ pub use box_query::BoxQuery;
 pub use brute_force::BruteForce;
 pub use certified::{CertifiedQuery, CertifyError, shape_of};
 pub use error::BuildError;
+#[doc(hidden)]
+pub use format::npy_header;
 pub use format::{UnknownExtension, UnknownFormat};
 pub use index::{BuildIndex, ClosestPoint};
 pub use kernel::Key;

@@ -61,9 +61,3 @@ pub use options::FieldOptions;
 pub use refined::{Cell, RefineOptions, refined};
 pub use slice::slice;
 pub use write::{write_cells, write_field};
-
-/// The parts of this crate that its sibling crates use. They are not part of the public interface.
-#[doc(hidden)]
-pub mod engine {
-    pub use crate::write::npy_header;
-}

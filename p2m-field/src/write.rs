@@ -5,6 +5,7 @@ use crate::grid::Grid;
 use crate::refined::Cell;
 use base64::engine::general_purpose::STANDARD;
 use base64::write::EncoderWriter;
+use p2m_core::npy_header;
 use std::io::{self, Write};
 
 /// Writes a field in one of the formats.
@@ -77,25 +78,6 @@ fn write_values(values: &[f32], mut writer: impl Write) -> io::Result<()> {
 
 /// The number of values in one call of the writer.
 const CHUNK_VALUES: usize = 1 << 14;
-
-/// Returns a header of an NPY file of version 1.0, padded to a multiple of 64 bytes as NumPy does.
-///
-/// # Panics
-/// If the header is longer than 2^16 - 1 bytes.
-pub fn npy_header(descr: &str, shape: &str, is_fortran: bool) -> Vec<u8> {
-    let order = if is_fortran { "True" } else { "False" };
-    let mut description = format!("{{'descr': {descr}, 'fortran_order': {order}, 'shape': {shape}, }}");
-    // Magic, version and length take 10 bytes, and a line end comes last.
-    while !(10 + description.len() + 1).is_multiple_of(64) {
-        description.push(' ');
-    }
-    description.push('\n');
-    let length = u16::try_from(description.len()).expect("a few hundred bytes");
-    let mut header = b"\x93NUMPY\x01\x00".to_vec();
-    header.extend(length.to_le_bytes());
-    header.extend(description.into_bytes());
-    header
-}
 
 /// Writes the cells of a field on an octree as a structured array of NumPy.
 ///

@@ -306,7 +306,9 @@ impl<'a> SceneBuilder<'a> {
     }
 
     /// Returns the scene, or its last piece, with all records that were skipped.
-    pub(crate) fn finish(self) -> Scene {
+    pub(crate) fn finish(mut self) -> Scene {
+        let uncovered = self.triangulator.uncovered;
+        self.skipped.add_plural(uncovered, "insides of polygons that cross themselves");
         let Output { mut soup, mut sources, mut objects, .. } = self.output;
         // The scene does not grow any more.
         soup.shrink_to_fit();

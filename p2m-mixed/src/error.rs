@@ -174,7 +174,7 @@ pub enum Reason {
         /// The number of vertices in the file.
         count: u64,
     },
-    /// A face has fewer than three vertices (OFF: none), a polyline fewer than two, or a point statement none.
+    /// A face has fewer than three vertices (OFF and PLY: none), a polyline fewer than two, or a point statement none.
     #[error("{needed} or more vertices expected, found {found}")]
     TooFewVertices {
         /// The number of vertices.

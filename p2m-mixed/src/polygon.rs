@@ -43,6 +43,8 @@ pub(crate) struct Triangulator {
     edges: Vec<[u32; 2]>,
     corner_keys: Vec<[u64; 2]>,
     triangles: Vec<[u32; 3]>,
+    /// The number of polygons so far that became fans because they cross themselves or repeat most corners.
+    pub(crate) uncovered: u64,
 }
 
 impl Triangulator {
@@ -54,12 +56,16 @@ impl Triangulator {
             self.make_fan(0, n);
         } else if n == 4 {
             // One of the two diagonals of a simple quadrilateral is inside.
-            self.make_fan(u32::from(self.fan_covers(1)), n);
-        } else if n > CHECK_REPEATS_ABOVE_CORNERS && 2 * self.count_distinct_corners() < n {
-            self.make_fan(0, n);
+            let second_covers = self.fan_covers(1);
+            self.uncovered += u64::from(!second_covers);
+            self.make_fan(u32::from(second_covers), n);
         } else {
-            self.cut_ears();
-            if !self.covers() {
+            let repeats = n > CHECK_REPEATS_ABOVE_CORNERS && 2 * self.count_distinct_corners() < n;
+            if !repeats {
+                self.cut_ears();
+            }
+            if repeats || !self.covers() {
+                self.uncovered += 1;
                 self.make_fan(0, n);
             }
         }

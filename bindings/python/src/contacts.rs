@@ -32,6 +32,7 @@ impl Index {
         out: &Bound<'_, PyDict>,
         radius: f64,
         tolerance: f64,
+        ignore_opening: bool,
         threads: usize,
         progress: Option<Py<PyAny>>,
     ) -> PyResult<()> {
@@ -47,7 +48,8 @@ impl Index {
             check_finite("ends", ends, 1)?;
             answer_in_parts(starts.len(), columns, threads, monitor, &|range, mut columns: ContactColumns<'_>| {
                 let ball = |row: usize| {
-                    MovingBall::new(starts[row].into(), ends[row].into(), radius).with_tolerance(tolerance)
+                    let ball = MovingBall::new(starts[row].into(), ends[row].into(), radius).with_tolerance(tolerance);
+                    if ignore_opening { ball.ignoring_opening() } else { ball }
                 };
                 let balls: Vec<MovingBall<f64>> = range.map(ball).collect();
                 let options = batch_options(balls.len(), false);

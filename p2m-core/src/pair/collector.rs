@@ -104,6 +104,8 @@ pub struct Pairs<'a> {
     mode: Mode<'a>,
     /// The numbers that are added to the ids that a search offers.
     offsets: [usize; 2],
+    /// Primitives of the first scene that are left out, in ascending order.
+    left_out: &'a [PrimitiveId],
     /// Whether nothing can be within reach.
     is_empty: bool,
     /// Whether the visitor ended the search.
@@ -140,6 +142,7 @@ impl<'a> Pairs<'a> {
             prune: square_within(reach),
             mode,
             offsets: [0, 0],
+            left_out: &[],
             is_empty: !is_valid,
             has_ended: false,
         }
@@ -159,6 +162,11 @@ impl<'a> Pairs<'a> {
         visit: &'a mut dyn FnMut([PrimitiveId; 2], &NearestPair) -> ControlFlow<()>,
     ) -> Self {
         Self::new(options, Mode::Each(visit))
+    }
+
+    /// Leaves out primitives of the first scene, whose ids are in ascending order.
+    pub(crate) fn without(self, left_out: &'a [PrimitiveId]) -> Self {
+        Self { left_out, ..self }
     }
 
     /// Creates a collector of all pairs that may be nearest, if the nearest one is within the largest distance of the
@@ -277,6 +285,9 @@ impl<'a> Pairs<'a> {
     pub fn offer(&mut self, ids: [PrimitiveId; 2], pair: &NearestPair) {
         let distance = pair.key.distance();
         let ids = self.scene_ids(ids);
+        if self.left_out.binary_search(&ids[0]).is_ok() {
+            return;
+        }
         let is_within = self.is_within(pair);
         match &mut self.mode {
             Mode::Nearest { best, certified } => {

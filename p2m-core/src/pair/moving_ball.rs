@@ -16,6 +16,12 @@
 //! multiplied by 8 and all is done again. The margin grows until the bound is above the radius or the start is within
 //! R, so this ends.
 //!
+//! # Contacts that open
+//!
+//! A contact at the start opens if the ball comes no nearer to the primitive than it is at the start, to within the
+//! tolerance. The distance is convex, so the ball then never deepens this contact. Such primitives are left out of all
+//! searches if the ball ignores them.
+//!
 //! Let s be the largest magnitude of a coordinate of the path. A component of the centre a (1 - t) + b t is computed
 //! with at most 4 u s + 2 eta of error, so the centre is off by less than 8 u s + 4 eta. The
 //! certified bound is reduced by that.
@@ -57,6 +63,9 @@ pub struct MovingBall<T: Real> {
     /// The distance within which a contact may be reported too early, in units of the scene. The default is 0, which
     /// leaves a few roundings. A negative number and NaN count as 0.
     pub tolerance: T,
+    /// Whether primitives are ignored that the ball touches at the start and comes no nearer to, to within the tolerance.
+    /// The default is `false`.
+    pub ignores_opening: bool,
 }
 
 /// The first contact of a moving ball with a scene.
@@ -89,12 +98,32 @@ impl<T: Real> MovingBall<T> {
     /// Creates a ball that moves from one centre to another.
     #[must_use]
     pub fn new(start: Point3<T>, end: Point3<T>, radius: T) -> Self {
-        Self { start, end, radius, tolerance: T::zero() }
+        Self { start, end, radius, tolerance: T::zero(), ignores_opening: false }
     }
     /// Sets the distance within which a contact may be reported too early.
     #[must_use]
     pub fn with_tolerance(self, tolerance: T) -> Self {
         Self { tolerance, ..self }
+    }
+    /// Ignores primitives that the ball touches at the start and comes no nearer to, so that a ball can leave the surface
+    /// that it rests on. A ball that slides over several primitives still touches the next one.
+    ///
+    /// ```
+    /// use nalgebra::Point3;
+    /// use p2m_core::pair::MovingBall;
+    /// use p2m_core::{BruteForce, Segment};
+    ///
+    /// let bar = |z| Segment::new(Point3::new(-9.0, 0.0, z), Point3::new(9.0, 0.0, z));
+    /// let scene = BruteForce::new([bar(0.0), bar(7.0)])?;
+    /// let ball = MovingBall::new(Point3::new(0.0, 0.0, 1.0), Point3::new(0.0, 0.0, 11.0), 1.0);
+    /// assert_eq!(ball.first_contact(&scene).map(|contact| contact.parameter), Some(0.0));
+    /// let contact = ball.ignoring_opening().first_contact(&scene).expect("the upper bar");
+    /// assert!(contact.parameter <= 0.5 && 0.5 - contact.parameter < 1e-12);
+    /// # Ok::<(), p2m_core::BuildError>(())
+    /// ```
+    #[must_use]
+    pub fn ignoring_opening(self) -> Self {
+        Self { ignores_opening: true, ..self }
     }
 
     /// Returns the first contact with the scene of an index. It is `None` if the ball touches nothing, if the radius is
@@ -118,7 +147,8 @@ impl<T: Real> MovingBall<T> {
     /// # Complexity
     /// It takes a logarithmic number of searches for pairs, and some fifty evaluations of a distance for each.
     pub fn first_contact<I: PairQuery<T> + ?Sized>(&self, index: &I) -> Option<BallContact<T>> {
-        let path = Path { index, start: to_f64_array(&self.start), end: to_f64_array(&self.end) };
+        let (start, end) = (to_f64_array(&self.start), to_f64_array(&self.end));
+        let mut path = Path { index, start, end, left_out: Vec::new() };
         let radius = self.radius.to_f64();
         // The comparison is false for NaN.
         let is_valid = [path.start, path.end].as_flattened().iter().all(|x| x.is_finite()) && radius.is_finite();
@@ -127,9 +157,13 @@ impl<T: Real> MovingBall<T> {
         }
         let size = largest(&[path.start, path.end]);
         // NaN becomes the other number.
-        let mut margin =
+        let tolerance =
             self.tolerance.to_f64().max(64.0 * f64::UNIT_ROUNDOFF * (size + radius) + 64.0 * f64::SMALLEST_SUBNORMAL);
+        let mut margin = tolerance;
         loop {
+            if self.ignores_opening {
+                path.left_out = path.opening_within(radius + margin, tolerance);
+            }
             let contact = path.first_within(radius + margin);
             let parameter = contact.map_or(1.0, |[low, _]| low);
             if parameter == 0.0 || path.lower_bound_until(parameter)? - self.path_error() > radius {
@@ -156,7 +190,7 @@ impl<T: Real> MovingBall<T> {
         let upper_parameter: T = -T::round_down_from_f64(-high);
         // In f32 the centre of the rounded parameter counts.
         let hull = [path.centre_at(upper_parameter.to_f64())];
-        let mut pairs = Pairs::nearest(&PairOptions::<f64>::default());
+        let mut pairs = Pairs::nearest(&PairOptions::<f64>::default()).without(&path.left_out);
         search_hull(path.index, &hull, None, &mut pairs);
         let nearest = pairs.finish::<f64>()?;
         // The certified distance of the nearest primitive is that of its own pair.
@@ -182,6 +216,8 @@ struct Path<'a, I: ?Sized> {
     index: &'a I,
     start: V3,
     end: V3,
+    /// Primitives that do not count, in ascending order.
+    left_out: Vec<PrimitiveId>,
 }
 
 impl<I: ?Sized> Path<'_, I> {
@@ -203,13 +239,35 @@ impl<I: ?Sized> Path<'_, I> {
             .expect("no key exceeds infinity")
     }
 
+    /// Returns the primitives within a distance of the start to which the path comes no nearer than the start is, up to a
+    /// tolerance.
+    fn opening_within<T: Real>(&self, distance: f64, tolerance: f64) -> Vec<PrimitiveId>
+    where
+        I: PairQuery<T>,
+    {
+        let mut opening = Vec::new();
+        let mut visit = |[id, _]: [PrimitiveId; 2], at_start: &NearestPair| {
+            let hull = self.index.hull(id);
+            let on_path = nearest_of_hulls(hull.vertices(), &self.until(1.0), f64::INFINITY);
+            if on_path.expect("no key exceeds infinity").key.distance() >= at_start.key.distance() - tolerance {
+                opening.push(id);
+            }
+            ControlFlow::Continue(())
+        };
+        let within = PairOptions::default().with_max_distance(distance);
+        search_hull(self.index, &[self.start], None, &mut Pairs::each(&within, &mut visit));
+        opening.sort_unstable();
+        opening.dedup();
+        opening
+    }
+
     /// Returns a certified lower bound on the distance of the scene from the path until a parameter; `None`
     /// for an empty scene.
     fn lower_bound_until<T: Real>(&self, t: f64) -> Option<f64>
     where
         I: PairQuery<T>,
     {
-        let mut pairs = Pairs::nearest(&PairOptions::<f64>::default());
+        let mut pairs = Pairs::nearest(&PairOptions::<f64>::default()).without(&self.left_out);
         search_hull(self.index, &self.until(t), None, &mut pairs);
         Some(pairs.finish::<f64>()?.lower_bound)
     }
@@ -237,7 +295,8 @@ impl<I: ?Sized> Path<'_, I> {
                 if search < SHORT_SEARCHES || high == 0.0 { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
             };
             let within = PairOptions::default().with_max_distance(distance);
-            search_hull(self.index, &self.until(end), None, &mut Pairs::each(&within, &mut visit));
+            let mut pairs = Pairs::each(&within, &mut visit).without(&self.left_out);
+            search_hull(self.index, &self.until(end), None, &mut pairs);
             let is_at_start = best.is_some_and(|[_, high]| high == 0.0);
             if !is_improved || is_at_start || search >= SHORT_SEARCHES {
                 break;
@@ -336,6 +395,30 @@ mod tests {
         let found = contact(&post, &along(1.0)).expect("a contact within rounding");
         assert!(found.parameter <= 0.5 && found.parameter > 0.5 - 1e-7, "{found:?}");
         assert_eq!(contact(&post, &along(1.0 + 1e-11)), None);
+    }
+
+    #[test]
+    fn contacts_that_open_are_ignored_and_others_are_not() {
+        let leaves = |z: f64, end: [f64; 3]| {
+            contact(&floor(), &MovingBall::new(point(0.0, 0.0, z), end.into(), 1.0).ignoring_opening())
+        };
+        // It rises, slides, starts deep and rises, and does not move.
+        for (z, end) in [(1.0, [0.0, 3.0, 4.0]), (1.0, [5.0, 0.0, 1.0]), (0.3, [0.0, 0.0, 9.0]), (0.3, [0.0, 0.0, 0.3])]
+        {
+            assert_eq!(leaves(z, end), None, "from {z} to {end:?}");
+        }
+        // It sinks from the start, from within the margin, and from deep inside; it goes through the floor.
+        for (z, end) in [(1.0, [0.0, 3.0, 0.9]), (1.0, [0.0, 0.0, -9.0]), (0.3, [0.0, 0.0, -9.0])] {
+            assert_eq!(leaves(z, end).map(|found| found.parameter), Some(0.0), "from {z} to {end:?}");
+        }
+        // It leaves the floor, and touches the wall that it flies to.
+        let mut scene = vec![crate::Shape::Triangle(floor()[0])];
+        let corners = [point(5.0, -90.0, -90.0), point(5.0, 90.0, -90.0), point(5.0, 0.0, 90.0)];
+        scene.push(crate::Shape::Triangle(Triangle::new(corners[0], corners[1], corners[2])));
+        let ball = MovingBall::new(point(0.0, 0.0, 1.0), point(8.0, 0.0, 2.0), 1.0);
+        assert_eq!(contact(&scene, &ball).map(|found| found.parameter), Some(0.0));
+        let found = contact(&scene, &ball.ignoring_opening()).expect("the wall");
+        assert!((found.parameter - 0.5).abs() < 1e-11 && found.primitive.index() == 1, "{found:?}");
     }
 
     #[test]

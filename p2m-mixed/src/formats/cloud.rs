@@ -1,21 +1,20 @@
-//! Clouds of points as text tables.
+//! Clouds of points as tables and arrays.
 
 use crate::builder::SceneBuilder;
 use crate::parse::blocks::Source;
-use crate::points::for_each_row;
-use crate::{ReadError, Scene, WriteError};
+use crate::points::table;
+use crate::{ReadError, Reason, Scene, WriteError};
 use nalgebra::Point3;
 use p2m_core::{Element, PrimitiveId};
 use std::io::{BufRead, Write};
 
-/// Reads a table of points, each of which is a primitive.
-pub(super) fn read_cloud(
-    source: Source<impl BufRead>,
-    name: &str,
+/// Reads a cloud with a function that calls another one for each row. Each point that is finite is a primitive.
+fn read_cloud(
     mut builder: SceneBuilder<'_>,
+    for_each_row: impl FnOnce(&mut dyn FnMut(Point3<f64>) -> Result<(), Reason>) -> Result<(), ReadError>,
 ) -> Result<Scene, ReadError> {
     let (mut left_out, mut row) = (0, 0);
-    for_each_row(source.into_reader(), name, |point: Point3<f64>| {
+    for_each_row(&mut |point| {
         let vertex = builder.push_vertex(point)?;
         match point.iter().all(|x| x.is_finite()) {
             true => builder.push(Element::Point(vertex), row)?,
@@ -28,15 +27,29 @@ pub(super) fn read_cloud(
     Ok(builder.finish())
 }
 
-/// Writes the points of a scene that has nothing else after the text `head`, with a separator between coordinates.
-fn write_cloud(scene: &Scene, mut writer: impl Write, head: &str, separator: char) -> Result<(), WriteError> {
+/// Reads a table of points.
+pub(super) fn read_table(
+    source: Source<impl BufRead>,
+    name: &str,
+    builder: SceneBuilder<'_>,
+) -> Result<Scene, ReadError> {
+    read_cloud(builder, |take| table::for_each_row(source.into_reader(), name, take))
+}
+
+/// Returns the points of a scene that has nothing else.
+fn points_of(scene: &Scene) -> Result<impl ExactSizeIterator<Item = Point3<f64>>, WriteError> {
     let soup = &scene.soup;
-    if let Some(at) = soup.elements().position(|element| !matches!(element, Element::Point(_))) {
-        return Err(WriteError::NotAPoint { id: PrimitiveId::new(at) });
+    match soup.elements().position(|element| !matches!(element, Element::Point(_))) {
+        Some(at) => Err(WriteError::NotAPoint { id: PrimitiveId::new(at) }),
+        None => Ok(soup.points().iter().map(|&point| soup.positions()[point as usize])),
     }
+}
+
+/// Writes a table of points after the text `head`, with a separator between coordinates.
+fn write_table(scene: &Scene, mut writer: impl Write, head: &str, separator: char) -> Result<(), WriteError> {
+    let points = points_of(scene)?;
     writer.write_all(head.as_bytes())?;
-    for &point in soup.points() {
-        let p = soup.positions()[point as usize];
+    for p in points {
         writeln!(writer, "{:?}{separator}{:?}{separator}{:?}", p.x, p.y, p.z)?;
     }
     writer.flush()?;
@@ -45,22 +58,51 @@ fn write_cloud(scene: &Scene, mut writer: impl Write, head: &str, separator: cha
 
 /// Columns that are separated by blanks.
 pub(super) mod xyz {
-    pub(in crate::formats) use super::read_cloud as read;
+    pub(in crate::formats) use super::read_table as read;
     use crate::{Scene, WriteError};
     use std::io::Write;
 
     pub(in crate::formats) fn write(scene: &Scene, writer: impl Write) -> Result<(), WriteError> {
-        super::write_cloud(scene, writer, "", ' ')
+        super::write_table(scene, writer, "", ' ')
     }
 }
 
 /// Columns with names that are separated by commas.
 pub(super) mod csv {
-    pub(in crate::formats) use super::read_cloud as read;
+    pub(in crate::formats) use super::read_table as read;
     use crate::{Scene, WriteError};
     use std::io::Write;
 
     pub(in crate::formats) fn write(scene: &Scene, writer: impl Write) -> Result<(), WriteError> {
-        super::write_cloud(scene, writer, "x,y,z\n", ',')
+        super::write_table(scene, writer, "x,y,z\n", ',')
+    }
+}
+
+/// Arrays of NumPy.
+pub(super) mod npy {
+    use super::{points_of, read_cloud};
+    use crate::builder::SceneBuilder;
+    use crate::parse::blocks::Source;
+    use crate::points::npy::for_each_row;
+    use crate::{ReadError, Scene, WriteError};
+    use p2m_core::npy_header;
+    use std::io::{BufRead, Write};
+
+    pub(in crate::formats) fn read(
+        source: Source<impl BufRead>,
+        name: &str,
+        builder: SceneBuilder<'_>,
+    ) -> Result<Scene, ReadError> {
+        read_cloud(builder, |take| for_each_row(source.into_reader(), name, take))
+    }
+
+    pub(in crate::formats) fn write(scene: &Scene, mut writer: impl Write) -> Result<(), WriteError> {
+        let points = points_of(scene)?;
+        writer.write_all(&npy_header("'<f8'", &format!("({}, 3)", points.len()), false))?;
+        for x in points.flat_map(|p| [p.x, p.y, p.z]) {
+            writer.write_all(&x.to_le_bytes())?;
+        }
+        writer.flush()?;
+        Ok(())
     }
 }

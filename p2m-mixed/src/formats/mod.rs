@@ -13,7 +13,7 @@ pub(crate) mod stl;
 use crate::builder::SceneBuilder;
 use crate::parse::blocks::Source;
 use crate::{ReadError, Scene, WriteError};
-use cloud::{csv, xyz};
+use cloud::{csv, npy, xyz};
 use std::io::{BufRead, Write};
 
 /// Makes [`Format`] of a table: the names of a format, which are the extensions of its files, its module, and whether its
@@ -78,6 +78,8 @@ scene_formats! {
     Xyz = "xyz" | "txt" | "asc" | "pts", xyz, is_lossless: false;
     /// Text tables of points, whose columns are separated by commas, see [`read_points`](crate::read_points).
     Csv = "csv", csv, is_lossless: false;
+    /// Arrays of NumPy hold points, see [`read_points`](crate::read_points).
+    Npy = "npy", npy, is_lossless: false;
     /// Files of saved indexes can have a scene, see [`read_p2m`](crate::read_p2m) and [`write_p2m`](crate::write_p2m).
     P2m = "p2m", p2m, is_lossless: true;
 }

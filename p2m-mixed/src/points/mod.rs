@@ -1,13 +1,12 @@
 //! Readers of query points and rays.
 
-mod npy;
+pub(crate) mod npy;
 mod rays;
 mod read;
 pub(crate) mod row;
-mod table;
+pub(crate) mod table;
 
 pub use rays::{read_rays, read_rays_from};
-pub(crate) use table::for_each_row;
 
 use crate::ReadError;
 use crate::open::open;

@@ -17,18 +17,7 @@ enum Separator {
     Blanks,
 }
 
-/// Reads a table. What its records look like, the first of them decides.
-pub(super) fn read_table<R: Row<N>, const N: usize>(reader: impl BufRead, name: &str) -> Result<Vec<R>, ReadError> {
-    let mut rows = Vec::new();
-    for_each_row(reader, name, |row| {
-        rows.try_reserve(1).map_err(Reason::Memory)?;
-        rows.push(row);
-        Ok(())
-    })?;
-    Ok(rows)
-}
-
-/// Calls a function for each row of a table.
+/// Calls a function for each row of a table. What its records look like, the first of them decides.
 pub(crate) fn for_each_row<R: Row<N>, const N: usize>(
     reader: impl BufRead,
     name: &str,
@@ -275,7 +264,7 @@ mod tests {
     use nalgebra::Point3;
 
     fn table<R: Row<N>, const N: usize>(text: &str) -> Result<Vec<R>, String> {
-        read_table(text.as_bytes(), "q.csv").map_err(|e| e.to_string())
+        crate::points::read::read(text.as_bytes(), crate::PointFormat::Csv, "q.csv").map_err(|e| e.to_string())
     }
 
     fn points(text: &str) -> Result<Vec<[f64; 3]>, String> {

@@ -440,6 +440,14 @@ fn clouds_are_scenes() {
     assert_eq!(fs::read_to_string(&csv).unwrap(), "x,y,z\n0.0,0.0,0.0\n5.0,0.0,0.0\n");
     assert_eq!(p2m(&["convert", &csv, &asc]).code, 0);
     assert_eq!(fs::read_to_string(&asc).unwrap(), "0.0 0.0 0.0\n5.0 0.0 0.0\n");
+    let npy = path(&folder, "out.npy");
+    assert_eq!(p2m(&["convert", &scan, &npy]).code, 0);
+    assert_eq!(table(&["query", &npy, "--points", &points, "--columns", "distance,primitive"]), answers);
+    let again = path(&folder, "again.csv");
+    assert_eq!(p2m(&["convert", &npy, &again]).code, 0);
+    assert_eq!(fs::read_to_string(&again).unwrap(), "x,y,z\n0.0,0.0,0.0\n5.0,0.0,0.0\n");
+    let message = failure(&["convert", SCENE, &npy], 1);
+    assert!(message.contains("primitive 0 is no point"), "{message}");
     let message = failure(&["convert", SCENE, &csv], 1);
     assert!(message.contains("primitive 0 is no point, and a table of points holds nothing else"), "{message}");
     assert_eq!(fs::read_to_string(&csv).unwrap(), "x,y,z\n0.0,0.0,0.0\n5.0,0.0,0.0\n");

@@ -259,6 +259,7 @@ class Index:
         out: _Arrays,
         radius: float,
         tolerance: float,
+        ignore_opening: bool,
         threads: int,
         progress: _Progress,
     ) -> None: ...

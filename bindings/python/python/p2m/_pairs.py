@@ -397,6 +397,7 @@ class PairQueries:
         radius: float,
         *,
         tolerance: float = 0.0,
+        ignore_opening: bool = False,
         fields: str | Sequence[str] | None = None,
         out: Out = None,
         threads: int | None = None,
@@ -413,6 +414,9 @@ class PairQueries:
         tolerance : float, optional
             The distance from the ball within which a contact may be reported too early. The default 0 leaves some
             roundings.
+        ignore_opening : bool, optional
+            Whether primitives are ignored that the ball touches at the start and comes no nearer to, so that it can
+            leave the surface that it rests on.
         fields : str or sequence of str, optional
             The arrays of the answer, by default those of `out` or else ``("parameter", "primitive")``: any of
             ``parameter``, ``primitive``, ``point``, ``feature``, ``upper_parameter`` and ``distance_bound``, which
@@ -442,6 +446,10 @@ class PairQueries:
         >>> contact = index.first_contact([[0, 0, 5], [0, 0, 5]], [[0, 0, -5], [0, 9, 5]], 1.0)
         >>> contact.parameter.round(9), contact.primitive
         (array([0.4, inf]), array([ 0, -1]))
+        >>> float(index.first_contact([0, 0, 1], [0, 0, 5], 1.0).parameter)
+        0.0
+        >>> float(index.first_contact([0, 0, 1], [0, 0, 5], 1.0, ignore_opening=True).parameter)
+        inf
         """
         first = coordinates(starts, "starts", only_float64=True)
         last = coordinates(ends, "ends", only_float64=True)
@@ -454,7 +462,7 @@ class PairQueries:
         arrays = outputs(fields, shape[:-1], out, CONTACT_FIELDS, ("parameter", "primitive"))
         count = thread_count(threads, self._threads)
         with callback(progress, "moving", "balls") as call:
-            self._raw.first_contact(start, end, flat(arrays), size, margin, count, call)
+            self._raw.first_contact(start, end, flat(arrays), size, margin, bool(ignore_opening), count, call)
         return BallContacts(arrays)
 
 

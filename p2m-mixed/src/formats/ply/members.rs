@@ -125,8 +125,8 @@ impl Limits {
     fn list<N: Numbers>(self, data: &mut N, list: List, form: Form, member: &mut Vec<u32>) -> Result<(), N::Error> {
         let count = data.count(list.count)?;
         let is_face = form == Form::Polygon;
-        // Some programs write segments as faces of two vertices. With ids each face is a triangle.
-        let needed = if self.ids.is_some() { 3 } else { 2 };
+        // Some programs write points and segments as faces of one and two vertices. With ids each face is a triangle.
+        let needed = if self.ids.is_some() { 3 } else { 1 };
         if is_face && count < needed {
             return Err(data.error(|| Reason::TooFewVertices { found: count, needed }));
         }
@@ -305,6 +305,7 @@ impl<'a> Members<'a> {
     fn add(&mut self, form: Form, vertices: &[u32], number: usize) -> Result<(), Reason> {
         match form {
             Form::Polygon => match *vertices {
+                [a] => self.builder.push(p2m_core::Element::Point(a), number),
                 [a, b] => self.builder.push(p2m_core::Element::Segment([a, b]), number),
                 _ => self.builder.push_polygon(vertices, number),
             },

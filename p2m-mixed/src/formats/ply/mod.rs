@@ -27,7 +27,7 @@ use std::io::BufRead;
 /// The elements with geometry are:
 ///
 /// - `vertex` has `x`, `y` and `z` of any type.
-/// - `face` has a list `vertex_indices` or `vertex_index`.
+/// - `face` has a list `vertex_indices` or `vertex_index`. A face of one or two vertices is a point or a segment.
 /// - `tristrips` has such a list, in which -1 starts a new strip. Every other triangle is reversed, so that all have
 ///   the winding of the first.
 /// - `edge` has `vertex1` and `vertex2`.
@@ -53,8 +53,8 @@ use std::io::BufRead;
 /// # Errors
 /// [`ReadError`] with the line (header, text) or the offset of the number in bytes (binary) for an invalid header, an
 /// early end, invalid numbers or too many of them on a line, indices that are out of range, vertices of primitives that
-/// are not finite (with the location of the vertex), ids that are not a permutation of 0, 1, 2, ..., faces of fewer
-/// than three vertices or more than [`MAX_CORNERS`](crate::MAX_CORNERS), and errors of `reader`. No memory is allocated
+/// are not finite (with the location of the vertex), ids that are not a permutation of 0, 1, 2, ..., faces of no
+/// vertex, of more than [`MAX_CORNERS`](crate::MAX_CORNERS), or with ids of fewer than three, and errors of `reader`. No memory is allocated
 /// for data that the header only announces.
 pub fn read_ply(reader: impl BufRead, name: &str) -> Result<Scene, ReadError> {
     read(Source::new(reader), name, SceneBuilder::default())

@@ -15,13 +15,34 @@ const MAX_HEADER_BYTES: u32 = 1 << 16;
 /// The largest number of fields that a message lists.
 const MAX_LISTED_FIELDS: usize = 16;
 
-pub(super) fn read_npy<R: Row<N>, const N: usize>(reader: impl BufRead, name: &str) -> Result<Vec<R>, ReadError> {
+/// Calls a function for each row of an array.
+pub(crate) fn for_each_row<R: Row<N>, const N: usize>(
+    reader: impl BufRead,
+    name: &str,
+    mut take: impl FnMut(R) -> Result<(), Reason>,
+) -> Result<(), ReadError> {
     let mut bytes = ByteReader::new(reader, 0);
-    let rows = read_header::<R, N>(&mut bytes).and_then(|array| read_array(&mut bytes, &array));
-    let rows = rows.map_err(|reason| ReadError::new(name, FileLocation::Byte(bytes.start()), reason))?;
-    // `collect` reuses the memory of the numbers if a row is as large as its numbers.
-    let row = |(i, numbers)| R::new(numbers).map_err(|reason| ReadError::new(name, FileLocation::Row(i), reason));
-    (0..).zip(rows).map(row).collect()
+    let at_byte = |bytes: &ByteReader<_>, reason| ReadError::new(name, FileLocation::Byte(bytes.start()), reason);
+    let array = read_header::<R, N>(&mut bytes).map_err(|reason| at_byte(&bytes, reason))?;
+    let mut take_row = |row, numbers| {
+        R::new(numbers).and_then(&mut take).map_err(|reason| ReadError::new(name, FileLocation::Row(row), reason))
+    };
+    if array.is_fortran {
+        let rows = read_columns(&mut bytes, &array).map_err(|reason| at_byte(&bytes, reason))?;
+        (0..).zip(rows).try_for_each(|(row, numbers)| take_row(row, numbers))?;
+    } else {
+        let mut order: [usize; N] = std::array::from_fn(|axis| axis);
+        order.sort_by_key(|&axis| array.coordinates[axis].offset);
+        for row in 0..array.count {
+            let numbers = read_row(&mut bytes, &array, order).map_err(|reason| at_byte(&bytes, reason))?;
+            take_row(row, numbers)?;
+        }
+    }
+    match bytes.skip_rest() {
+        Ok(0) => Ok(()),
+        Ok(rest) => Err(at_byte(&bytes, Reason::TrailingBytes { bytes: rest })),
+        Err(reason) => Err(at_byte(&bytes, reason)),
+    }
 }
 
 /// The layout of an array.
@@ -210,43 +231,46 @@ fn size(descr: &Value<'_>, shape: Option<&Value<'_>>) -> Option<u64> {
     }
 }
 
-fn read_array<const N: usize>(bytes: &mut ByteReader<impl BufRead>, array: &Array<N>) -> Result<Vec<[f64; N]>, Reason> {
+/// Reads the rows of an array that has all x first.
+fn read_columns<const N: usize>(
+    bytes: &mut ByteReader<impl BufRead>,
+    array: &Array<N>,
+) -> Result<Vec<[f64; N]>, Reason> {
     let mut rows = Vec::new();
-    if array.is_fortran {
-        for (axis, c) in array.coordinates.iter().enumerate() {
-            for i in 0..array.count {
-                let x = coordinate(bytes, c)?;
-                if axis == 0 {
-                    rows.push([x; N]);
-                } else if let Some(row) = usize::try_from(i).ok().and_then(|i| rows.get_mut(i)) {
-                    row[axis] = x;
-                }
+    for (axis, c) in array.coordinates.iter().enumerate() {
+        for i in 0..array.count {
+            let x = coordinate(bytes, c)?;
+            if axis == 0 {
+                rows.try_reserve(1).map_err(Reason::Memory)?;
+                rows.push([x; N]);
+            } else if let Some(row) = usize::try_from(i).ok().and_then(|i| rows.get_mut(i)) {
+                row[axis] = x;
             }
         }
-    } else {
-        let mut order: [usize; N] = std::array::from_fn(|axis| axis);
-        order.sort_by_key(|&axis| array.coordinates[axis].offset);
-        for _ in 0..array.count {
-            let mut row = [0.0; N];
-            let mut offset = 0;
-            for axis in order {
-                let c = &array.coordinates[axis];
-                if c.offset > offset {
-                    bytes.skip(c.offset - offset)?;
-                }
-                row[axis] = coordinate(bytes, c)?;
-                offset = c.offset + c.scalar.size() as u64;
-            }
-            if array.size > offset {
-                bytes.skip(array.size - offset)?;
-            }
-            rows.push(row);
+    }
+    Ok(rows)
+}
+
+/// Reads an item, whose coordinates come in this order.
+fn read_row<const N: usize>(
+    bytes: &mut ByteReader<impl BufRead>,
+    array: &Array<N>,
+    order: [usize; N],
+) -> Result<[f64; N], Reason> {
+    let mut row = [0.0; N];
+    let mut offset = 0;
+    for axis in order {
+        let c = &array.coordinates[axis];
+        if c.offset > offset {
+            bytes.skip(c.offset - offset)?;
         }
+        row[axis] = coordinate(bytes, c)?;
+        offset = c.offset + c.scalar.size() as u64;
     }
-    match bytes.skip_rest()? {
-        0 => Ok(rows),
-        bytes => Err(Reason::TrailingBytes { bytes }),
+    if array.size > offset {
+        bytes.skip(array.size - offset)?;
     }
+    Ok(row)
 }
 
 fn coordinate(bytes: &mut ByteReader<impl BufRead>, c: &Coordinate) -> Result<f64, Reason> {

@@ -1,7 +1,7 @@
 //! Files for the tests of the readers.
 #![allow(dead_code, reason = "each test binary uses a part of this")]
 
-use p2m_core::Element;
+use p2m_core::{Element, npy_header};
 use p2m_mixed::{Format, ReadError, Scene, read_obj, read_off, read_ply, read_scene_from, read_stl, write_scene};
 
 pub(crate) fn obj(text: impl AsRef<[u8]>) -> Result<Scene, ReadError> {
@@ -209,6 +209,22 @@ pub(crate) fn rich_binary_off() -> Vec<u8> {
 pub(crate) const RICH_TABLE: &str =
     "sep=;\n# a scan\n//id;x;y;z;code\n\n7;0;0;1e0;\"a;b\"\r\n8;nan;0;0;c\n9; 4 ;\"5\";-6;d\n10;1;2;3;e\n";
 
+/// Returns an array of NumPy with fields besides the coordinates, one of which is not finite.
+pub(crate) fn rich_npy() -> Vec<u8> {
+    let fields = "[('id', '<i2'), ('z', '>f4'), ('x', '<f8'), ('name', '<U1'), ('y', '<i8')]";
+    let mut file = npy_header(fields, "(5,)", false);
+    let rows = [[1.0, 2.0, 3.0f32], [f32::NAN, 0.0, -1.0], [0.5, -7.0, 1e9], [0.0, 0.0, -0.0], [4.0, 5.0, 6.0]];
+    for (id, [x, y, z]) in (7i16..).zip(rows) {
+        file.extend(id.to_le_bytes());
+        file.extend(z.to_be_bytes());
+        file.extend(f64::from(x).to_le_bytes());
+        file.extend(u32::from('a').to_le_bytes());
+        #[allow(clippy::cast_possible_truncation, reason = "a small integer")]
+        file.extend((y as i64).to_le_bytes());
+    }
+    file
+}
+
 /// Returns files of every format that use every part of it. The numbers say at how many lengths a file that is cut
 /// off is still valid.
 pub(crate) fn rich_files() -> Vec<(Vec<u8>, Format, usize)> {
@@ -223,6 +239,7 @@ pub(crate) fn rich_files() -> Vec<(Vec<u8>, Format, usize)> {
         // A table without its last rows, or the last digits of a number, is valid as well.
         (RICH_TABLE.into(), Format::Xyz, usize::MAX),
         (RICH_TABLE.into(), Format::Csv, usize::MAX),
+        (rich_npy(), Format::Npy, 0),
     ];
     files.extend(ENCODINGS.map(|encoding| (rich_ply(encoding), Format::Ply, 3)));
     assert!(Format::ALL.iter().all(|format| files.iter().any(|(_, of, _)| of == format)), "a file for each format");
@@ -231,7 +248,7 @@ pub(crate) fn rich_files() -> Vec<(Vec<u8>, Format, usize)> {
 
 /// Returns the formats whose files hold triangles.
 pub(crate) fn formats_of_triangles() -> impl Iterator<Item = Format> {
-    Format::ALL.iter().copied().filter(|format| !matches!(format, Format::Xyz | Format::Csv))
+    Format::ALL.iter().copied().filter(|format| !matches!(format, Format::Xyz | Format::Csv | Format::Npy))
 }
 
 /// Returns the formats whose files hold every scene.

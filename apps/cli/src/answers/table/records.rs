@@ -1,7 +1,7 @@
 //! Files of a header and records, whose number may be part of the header.
 
 use super::AnswerFormat;
-use p2m_field::engine::npy_header;
+use p2m_core::npy_header;
 use std::io::{self, ErrorKind, Write};
 
 /// A file of a header and records.
