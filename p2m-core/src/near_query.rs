@@ -306,7 +306,7 @@ impl Collector for Near<'_> {
                 _ => self.prune,
             },
             // Its primitives are compared by true distances, and not by keys.
-            NearMode::Shrinking { .. } => f64::INFINITY,
+            NearMode::Shrinking { .. } if !self.is_done() => f64::INFINITY,
             _ => self.prune,
         }
     }

@@ -12,6 +12,8 @@ use p2m::{
     Aabb, AabbTree, BoxQuery, BruteForce, BuildIndex, CertifiedQuery, Closest, ClosestPoint, Element, Feature,
     KdopTree, NearQuery, OctreeIndex, P2mIndex, PrimitiveId, PrimitiveSet, QueryOptions, Ray, RayQuery, Real, Soup,
 };
+use p2m_testkit::ball::Ball;
+use p2m_testkit::saved_file::{correct_checksums, section_mut};
 use p2m_testkit::{cases, rng, vector};
 use rand::{Rng, RngExt};
 use std::cell::Cell;
@@ -279,4 +281,55 @@ fn saved_trees_of_equal_primitives_answer_as_before() {
     let mut ids: Vec<_> = parts.iter().filter_map(|part| tree.tree().primitives(part)).flatten().collect();
     ids.sort_unstable();
     assert!(ids.into_iter().map(|id| id.index()).eq(0..soup.len()));
+}
+
+/// Loads a tree over a set in whose file some packets continue the packet before and are no child any more.
+fn forged<S: PrimitiveSet<f64> + Copy + Sync>(set: S, is_forged: impl Fn(usize) -> bool) -> Result<(), String> {
+    const PACKET: usize = 448;
+    const IS_CONTINUED: usize = 406;
+    let tree = AabbTree::new(set).expect("valid");
+    let mut writer = Writer::default();
+    tree.save(&mut writer);
+    let mut bytes = Vec::new();
+    writer.write(&mut bytes).expect("memory");
+    let packets = section_mut(&mut bytes, "tree/packets").len() / PACKET;
+    assert!(packets > 1);
+    for packet in (1..packets).filter(|packet| is_forged(*packet)) {
+        let reference = (1 << 31 | u32::try_from(packet).expect("few")).to_le_bytes();
+        let children = section_mut(&mut bytes, "tree/children");
+        let at = children.chunks_exact(4).position(|child| child == reference).expect("a child");
+        children[4 * at..][..4].copy_from_slice(&u32::MAX.to_le_bytes());
+        section_mut(&mut bytes, "tree/packets")[(packet - 1) * PACKET + IS_CONTINUED] = 1;
+    }
+    correct_checksums(&mut bytes);
+    let file = SavedFile::read(&bytes[..]).expect("a file");
+    let tree = AabbTree::<f64, S>::load(set, file.checked().expect("whole")).map_err(|error| error.to_string())?;
+    // Searches end, whatever they find.
+    let origin = Point3::origin();
+    tree.closest_point(&origin);
+    assert!(tree.k_nearest(&origin, 24, f64::INFINITY).len() <= 24);
+    tree.closest_to(&p2m::Point::new(origin), &PairOptions::default());
+    Ok(())
+}
+
+#[test]
+fn forged_runs_are_refused_or_harmless() {
+    // Packets of primitives without vertices are never continued.
+    let balls: Vec<Ball> =
+        (0..24u8).map(|i| Ball { centre: Point3::new(f64::from(i), 0.0, 0.0), radius: 0.25 }).collect();
+    let refused = forged(&balls[..], |packet| packet == 1).expect_err("no ball has vertices");
+    assert!(refused.contains("a number is out of range"), "{refused}");
+    // A node keeps a child.
+    let mut accepted = 0;
+    for case in cases(1000, 60) {
+        let mut rng = rng("forged runs", case);
+        let soup: Soup<f64> = scene(&mut rng, &[], 100);
+        let all = case == 0;
+        let some: Vec<bool> = (0..100).map(|_| all || rng.random()).collect();
+        match forged(&soup, |packet| some[packet]) {
+            Ok(()) => accepted += 1,
+            Err(refused) => assert!(refused.contains("a node has no child"), "{refused}"),
+        }
+    }
+    assert!(accepted > 0, "other runs are accepted");
 }

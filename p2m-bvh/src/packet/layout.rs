@@ -268,7 +268,7 @@ impl Packet {
             && (has_frame || has_no_frame)
             && self.origin.iter().all(|x| x.is_finite())
             && self.vertex_offset == first
-            && self.is_continued <= 1
+            && self.is_continued <= u8::from(self.kind != Kind::Box as u8)
             && self.unused == 0
             && (vertices == 0 || u32::from(largest(&self.corners[..vertices])) < count)
             && largest(&self.corners[vertices..]) == 0

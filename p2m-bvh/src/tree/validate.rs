@@ -56,6 +56,7 @@ pub(super) fn check_references<V: VolumeNodes>(tree: &PacketTree<V>) -> Result<u
         require(depth > 0, CHILDREN, "a node comes before its parent or has none")?;
         require(depth <= MAX_DEPTH, CHILDREN, "the tree is too deep")?;
         longest = longest.max(depth);
+        require(node.used_slots().next().is_some(), CHILDREN, "a node has no child")?;
         node.used_slots().try_for_each(|slot| referenced.add(node.children()[slot], depth + 1))?;
     }
     for (packet, _) in tree.leaves.packets.iter().enumerate().filter(|(_, packet)| packet.is_continued()) {

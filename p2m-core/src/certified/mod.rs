@@ -36,5 +36,5 @@ mod rounded;
 #[cfg(test)]
 mod tests;
 
-pub(crate) use pairs::{PairCandidate, decide_pairs};
+pub(crate) use pairs::{PairCandidate, decide_pairs, true_distance};
 pub use query::{CertifiedQuery, CertifyError, shape_of};

@@ -1,7 +1,8 @@
 //! Which of some pairs of primitives is nearest in real arithmetic.
 
 use super::rational::Square;
-use crate::pair::{Hull, NearestPair};
+use crate::kernel::vector::V3;
+use crate::pair::{Hull, NearestPair, nearest_of_hulls};
 use crate::{PrimitiveId, Real};
 
 /// A pair of primitives that may be nearest.
@@ -41,4 +42,10 @@ pub(crate) fn decide_pairs<T: Real>(candidates: &[PairCandidate], limit: T) -> O
     }
     let distance = least.distance();
     Some(PairDecision { winner, distance: distance.nearest, lower: distance.lower })
+}
+
+/// Returns the true distance of the hulls of some points, rounded to the nearest f64.
+pub(crate) fn true_distance(a: &[V3], b: &[V3]) -> f64 {
+    let pair = nearest_of_hulls(a, b, f64::INFINITY).expect("no key exceeds infinity");
+    if pair.is_intersecting { 0.0 } else { Square::between(a, b).distance().nearest }
 }
