@@ -52,7 +52,13 @@ impl Triangulator {
     /// indices of corners.
     pub(crate) fn triangulate(&mut self, corners: &[Point3<f64>]) -> &[[u32; 3]] {
         let n = corners.len();
-        if n == 3 || !self.project(corners) || self.fan_covers(0) {
+        if n == 3 {
+            self.make_fan(0, n);
+        } else if !self.project(corners) {
+            // A polygon without area has triangles without area, or it crosses itself.
+            self.uncovered += u64::from(!self.is_flat());
+            self.make_fan(0, n);
+        } else if self.fan_covers(0) {
             self.make_fan(0, n);
         } else if n == 4 {
             // One of the two diagonals of a simple quadrilateral is inside.
@@ -101,6 +107,15 @@ impl Triangulator {
         self.projected.clear();
         self.projected.extend(self.offsets.iter().map(|o| [o[i], o[j]]));
         normal[axis] != 0.0
+    }
+
+    /// Returns whether all triangles of the fan around the first corner are without area, apart from rounding.
+    fn is_flat(&self) -> bool {
+        self.offsets.windows(2).all(|pair| {
+            let [a, b] = [pair[0], pair[1]];
+            let cross = [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]];
+            cross.iter().all(|x| x.abs() <= 8.0 * f64::EPSILON)
+        })
     }
 
     /// Returns whether the fan around corner `apex` is a triangulation.

@@ -194,11 +194,12 @@ impl Manifest {
         let total = self.shards.iter().try_fold(0u64, |sum, shard| sum.checked_add(shard.primitives));
         let is_name = |file: &str| {
             let path = Path::new(file);
-            path.file_name().is_some_and(|name| name == file)
+            path.file_name().is_some_and(|name| name == file) && !file.contains(char::is_control)
         };
         let has_file_twice = || {
+            // The ids of primitives are part of a file, so no two have the same content.
             let mut files = HashSet::new();
-            self.shards.iter().any(|shard| !files.insert(&shard.file))
+            self.shards.iter().flat_map(|shard| [&shard.file, &shard.checksum]).any(|part| !files.insert(part))
         };
         let is_in_scene = |object: &ObjectEntry| {
             object.first.checked_add(object.primitives).is_some_and(|end| total.is_some_and(|total| end <= total))

@@ -2,6 +2,7 @@
 //! `MemoryError`.
 
 use std::panic::resume_unwind;
+use std::sync::atomic::{AtomicUsize, Ordering};
 
 /// The memory that has to be left for all other work when a list grows, in bytes.
 const SPARE_BYTES: usize = 1 << 26;
@@ -15,21 +16,34 @@ pub(crate) fn out_of_memory() -> ! {
     resume_unwind(Box::new(OutOfMemory))
 }
 
+/// Returns whether there is memory for other work: small allocations anywhere would abort the process.
+fn is_memory_left() -> bool {
+    Vec::<u8>::new().try_reserve_exact(SPARE_BYTES).is_ok()
+}
+
 /// Makes room for more items, or unwinds.
 pub(crate) fn reserve<T>(list: &mut Vec<T>, more: usize) {
     if list.capacity() - list.len() < more {
         let reserved = list.try_reserve(more);
-        // Small allocations anywhere would abort the process, so something has to be left for them.
-        if reserved.and_then(|()| Vec::<u8>::new().try_reserve_exact(SPARE_BYTES)).is_err() {
+        if reserved.is_err() || !is_memory_left() {
             out_of_memory();
         }
     }
 }
 
+/// The bytes of lists since memory was checked.
+static UNCHECKED: AtomicUsize = AtomicUsize::new(0);
+
 /// Collects items, or unwinds.
 pub(crate) fn collected<T>(items: impl ExactSizeIterator<Item = T>) -> Vec<T> {
     let mut list = Vec::new();
-    if list.try_reserve_exact(items.len()).is_err() {
+    let bytes = items.len() * size_of::<T>();
+    // Checking for each of many short lists would take longer than filling them.
+    let unchecked = UNCHECKED.fetch_add(bytes, Ordering::Relaxed) + bytes;
+    if unchecked > SPARE_BYTES / 8 {
+        UNCHECKED.store(0, Ordering::Relaxed);
+    }
+    if list.try_reserve_exact(items.len()).is_err() || (unchecked > SPARE_BYTES / 8 && !is_memory_left()) {
         out_of_memory();
     }
     list.extend(items);

@@ -25,17 +25,22 @@ pub(crate) struct PairDecision {
     pub(crate) lower: f64,
 }
 
-/// Returns the nearest of some pairs, in any order; `None` if there is none, or if it is farther than the limit.
+/// Returns the nearest of some pairs, in any order; `None` if there is none, or if it is farther than the limit. Once
+/// `goes_on` returns `false`, the rest is left out.
 ///
 /// # Complexity
 /// It takes some ten microseconds for each pair that does not intersect, in big integers.
-pub(crate) fn decide_pairs<T: Real>(candidates: &[PairCandidate], limit: T) -> Option<PairDecision> {
+pub(crate) fn decide_pairs<T: Real>(
+    candidates: &[PairCandidate],
+    limit: T,
+    goes_on: &dyn Fn() -> bool,
+) -> Option<PairDecision> {
     let touching = candidates.iter().enumerate().filter(|(_, one)| one.pair.is_intersecting);
     if let Some((winner, _)) = touching.min_by_key(|(_, one)| one.ids) {
         return Some(PairDecision { winner, distance: 0.0, lower: 0.0 });
     }
     let square = |one: &PairCandidate| Square::between(one.hulls[0].vertices(), one.hulls[1].vertices());
-    let all = candidates.iter().map(square).enumerate();
+    let all = candidates.iter().take_while(|_| goes_on()).map(square).enumerate();
     let (winner, least) = all.min_by(|(i, a), (j, b)| a.cmp(b).then(candidates[*i].ids.cmp(&candidates[*j].ids)))?;
     if limit < T::INFINITY && least.cmp(&Square::from_length(limit.to_f64())).is_gt() {
         return None;

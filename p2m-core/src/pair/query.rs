@@ -49,7 +49,8 @@ use std::ops::ControlFlow;
 ///
 /// # Complexity
 /// Trees take expected O(log n) steps for scenes that are apart, and O(n) where they are about equally near in many
-/// places. Brute force evaluates all pairs.
+/// places. Brute force evaluates all pairs, and so do trees where distances exceed 2^400, and certified queries where a
+/// motion moves a scene so far away that rounding makes all pairs equally near.
 #[diagnostic::on_unimplemented(
     message = "`{Self}` answers no queries for pairs with coordinates of type `{T}`",
     note = "`AabbTree`, `KdopTree` and `BruteForce` do; the octree and the P2M index answer closest-point queries only"
@@ -135,7 +136,8 @@ pub trait PairQuery<T: Real> {
     {
         let motion = options.motion.as_ref().map(Motion::new);
         let of_shape = moved(Hull::of(shape), motion.as_ref());
-        certify(options, |pairs| search_shape(self, shape, options, pairs), |[id, _]| [self.hull(id), of_shape])
+        let hulls = |[id, _]: [PrimitiveId; 2]| [self.hull(id), of_shape];
+        certify(options, |pairs| search_shape(self, shape, options, pairs), hulls, &|| self.goes_on())
     }
 
     /// Calls a function for each primitive within the largest distance of a shape, until it breaks, and returns whether
@@ -176,7 +178,7 @@ pub trait PairQuery<T: Real> {
     {
         let motion = options.motion.as_ref().map(Motion::new);
         let hulls = |[i, j]: [PrimitiveId; 2]| [self.hull(i), moved(other.hull(j), motion.as_ref())];
-        certify(options, |pairs| search_scenes(self, other, options, pairs), hulls)
+        certify(options, |pairs| search_scenes(self, other, options, pairs), hulls, &|| self.goes_on())
     }
 
     /// Returns whether a primitive of this scene and one of another are within the largest distance. The search ends at
@@ -211,12 +213,13 @@ fn certify<T: Real>(
     options: &PairOptions<T>,
     search: impl FnOnce(&mut Pairs<'_>),
     hulls: impl Fn([PrimitiveId; 2]) -> [Hull; 2],
+    goes_on: &dyn Fn() -> bool,
 ) -> Option<ClosestPair<T>> {
     let mut pairs = Pairs::for_certification(options);
     search(&mut pairs);
     let candidate = |(ids, pair)| PairCandidate { ids, hulls: hulls(ids), pair };
     let candidates: Vec<_> = pairs.certification_candidates().into_iter().map(candidate).collect();
-    let decision = decide_pairs(&candidates, options.max_distance)?;
+    let decision = decide_pairs(&candidates, options.max_distance, goes_on)?;
     let winner = &candidates[decision.winner];
     let mut alone = Pairs::nearest(&PairOptions::<T>::default());
     alone.offer(winner.ids, &winner.pair);

@@ -76,7 +76,12 @@ impl Drop for Listed {
 /// Fails if the system refuses a handler or a thread.
 pub fn listen() -> std::io::Result<()> {
     #[cfg(unix)]
-    wait_for_signals()?;
+    {
+        // Where memory ends, the standard library says so and aborts. That is an error like others, with the exit code 1.
+        let always = std::sync::Arc::new(std::sync::atomic::AtomicBool::new(true));
+        signal_hook::flag::register_conditional_shutdown(signal_hook::consts::SIGABRT, 1, always)?;
+        wait_for_signals()?;
+    }
     Ok(())
 }
 

@@ -147,13 +147,21 @@ class PointQueries:
                 _p2m.closest(self._raw, rows, columns, largest, error, max_visits, certified, count, call)
         bounds = columns.get("lower_bound")
         if bounds is not None and largest < float("inf"):
-            # Where nothing is as near, everything is farther, apart from rounding.
-            bounds[bounds == float("inf")] = largest * (1.0 - 2.0**-49)
+            # Where nothing is as near, everything is farther, apart from the error of a distance (8 u M). An empty scene
+            # has a box of nan.
+            size = np.abs(rows.reshape(-1, 3)).max(axis=1, initial=0.0) + np.abs(self._box()).max()
+            below = np.maximum(largest * (1.0 - 2.0**-49) - size * 2.0**-48, 0.0)
+            is_open = (bounds == float("inf")) & ~np.isnan(below)
+            bounds[is_open] = below[is_open]
         if objects is not None:
             self._fill_objects(columns["primitive"], objects)
         if normals is not None and isinstance(self._raw, _p2m.Index):
             self._raw.normals(columns["primitive"], columns["feature"], {"normal": normals})
         return ClosestPoints(arrays)
+
+    def _box(self) -> NDArray[np.float64]:
+        """Return the corners of the box around all primitives; nan for an empty scene."""
+        raise NotImplementedError
 
     def _fill_objects(self, primitive: NDArray[np.int64], objects: NDArray[np.int64]) -> None:
         """Write the numbers of the objects that primitives belong to."""
@@ -516,7 +524,9 @@ class Index(PointQueries, PairQueries):
         At once. The build ends in the background: cells stop within about one per cent of their build, and a tree runs
         to its end.
 
-    Notes ----- An index over an empty scene is valid. Its queries have no answer, like queries that find nothing within
+    Notes
+    -----
+    An index over an empty scene is valid. Its queries have no answer, like queries that find nothing within
     `max_distance`.
 
     ``copy.copy`` and ``copy.deepcopy`` return the same object. An index that was loaded from a file is pickled as the
@@ -567,6 +577,9 @@ class Index(PointQueries, PairQueries):
         index._raw = raw
         index._threads = threads
         return index
+
+    def _box(self) -> NDArray[np.float64]:
+        return self.scene.bounds
 
     @property
     def scene(self) -> Scene:
@@ -647,8 +660,10 @@ class Index(PointQueries, PairQueries):
         ValueError
             If the scene has segments or points, which have no sides; with ``sign="parity"`` also if it is open.
 
-        Notes ----- The first call finds the boundary of the surface. A call with about half as many points as the scene
-        has triangles also precomputes data that makes signs cheap. This takes a few times as long as building the tree.
+        Notes
+        -----
+        The first call finds the boundary of the surface. A call with about half as many points as the scene has
+        triangles also precomputes data that makes signs cheap. This takes a few times as long as building the tree.
 
         Examples
         --------

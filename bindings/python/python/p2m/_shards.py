@@ -164,6 +164,9 @@ class Shards(PointQueries):
         bounds = self._raw.bounds()
         return np.full((2, 3), np.nan) if bounds is None else np.array(bounds)
 
+    def _box(self) -> NDArray[np.float64]:
+        return self.bounds
+
     @property
     def shards(self) -> list[ShardInfo]:
         """The descriptions of all shards."""
