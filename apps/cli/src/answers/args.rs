@@ -2,7 +2,7 @@
 
 use crate::answers::table::AnswerFormat;
 use crate::index::kdop_directions::KdopFaces;
-use crate::io::input::{SceneArgs, is_standard, or_option};
+use crate::io::input::{SceneArgs, is_standard, or_option, shown};
 use crate::io::output::Output;
 use crate::io::streams::Streams;
 use crate::io::threads::ThreadArgs;
@@ -67,6 +67,6 @@ impl QueryArgs {
 
     /// Returns the part of a report about the file of the answers.
     pub(crate) fn output_json(&self, format: AnswerFormat, bytes: u64) -> Value {
-        json!({ "file": self.out.display().to_string(), "format": format.name(), "bytes": bytes })
+        json!({ "file": shown(&self.out), "format": format.name(), "bytes": bytes })
     }
 }

@@ -6,7 +6,7 @@ use crate::answers::table::{AnswerColumn, AnswerEncoder, AnswerFormat, AnswerRec
 use crate::compare::scan::ScanFormat;
 use crate::index::backend::{Backend, PreparedIndex, SceneSource, backends, saved_or_default};
 use crate::index::sign_rule::{SignRule, SignedIndex};
-use crate::io::input::{SceneArgs, format_list, is_standard, name, read_scene_and_index};
+use crate::io::input::{SceneArgs, format_list, is_standard, name, read_scene_and_index, shown};
 use crate::io::json;
 use crate::io::output::Output;
 use crate::io::streams::Streams;
@@ -184,7 +184,7 @@ pub(crate) fn run(streams: &Streams, args: &Args) -> anyhow::Result<()> {
     if args.json {
         let out = args.out.as_ref().zip(out_format).map_or(
             Value::Null,
-            |(out, format)| json!({ "file": out.display().to_string(), "format": format.name(), "bytes": bytes }),
+            |(out, format)| json!({ "file": shown(out), "format": format.name(), "bytes": bytes }),
         );
         let scan = json!({
             "file": name(&args.scan),

@@ -4,7 +4,7 @@ use crate::answers::queries::{Queries, Region};
 use crate::answers::summary::{IndexSummary, SceneSummary};
 use crate::index::args::{DEFAULT_QUERY_COUNT, IndexArgs};
 use crate::index::backend::{PreparedIndex, SceneSource, Stages};
-use crate::io::input::read_scene_and_index;
+use crate::io::input::{read_scene_and_index, shown};
 use crate::io::json;
 use crate::io::output::Output;
 use crate::io::progress::{Progress, Unit};
@@ -130,7 +130,7 @@ pub(crate) fn run(streams: &Streams, args: &Args) -> anyhow::Result<()> {
         let end = json!({
             "cells": index.cells(),
             "seconds": { "read": read_time.as_secs_f64(), "build": build_time.as_secs_f64() },
-            "out": args.out.as_ref().map(|out| json!({ "file": out.display().to_string() })),
+            "out": args.out.as_ref().map(|out| json!({ "file": shown(out) })),
         });
         return json::print(streams, &json::joined([index.json("stats"), stats.json(), end]));
     }

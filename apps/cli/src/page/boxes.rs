@@ -1,7 +1,7 @@
 //! `p2m boxes`: draws the boxes of the AABB tree, or the polytopes of the k-DOP tree, level by level.
 
 use crate::index::kdop_directions::KdopFaces;
-use crate::io::input::{SceneArgs, read_scene};
+use crate::io::input::{SceneArgs, read_scene, shown};
 use crate::io::json;
 use crate::io::output::Output;
 use crate::io::progress::{Progress, Unit};
@@ -109,7 +109,7 @@ pub(crate) fn run(streams: &Streams, args: &Args) -> anyhow::Result<()> {
             "p2m": "boxes",
             "version": json::VERSION,
             "scene": { "file": args.scene.name(), "format": format.name() },
-            "out": { "file": args.out.display().to_string() },
+            "out": { "file": shown(&args.out) },
             "faces": directions.as_ref().map(|directions| directions.faces),
             "directions_reason": reason,
             "panels": panels,

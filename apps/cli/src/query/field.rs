@@ -4,7 +4,7 @@ use crate::answers::summary::{IndexSummary, SceneSummary};
 use crate::index::args::IndexArgs;
 use crate::index::backend::{SceneSource, saved_or_default};
 use crate::index::sign_rule::{SignReport, SignRule, SignedIndex};
-use crate::io::input::{is_standard, or_option, read_scene_and_index};
+use crate::io::input::{is_standard, or_option, read_scene_and_index, shown};
 use crate::io::json;
 use crate::io::output::Output;
 use crate::io::progress::{Progress, Unit};
@@ -175,7 +175,7 @@ pub(crate) fn run(streams: &Streams, args: &Args) -> anyhow::Result<()> {
                 "build": build_time.as_secs_f64(),
                 "field": field_time.as_secs_f64(),
             },
-            "out": { "file": args.out.display().to_string(), "format": out_format.name(), "bytes": bytes },
+            "out": { "file": shown(&args.out), "format": out_format.name(), "bytes": bytes },
         });
         return json::print(streams, &json::joined([index.json("field"), report.json(), end]));
     }

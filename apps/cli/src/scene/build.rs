@@ -3,7 +3,7 @@
 use crate::answers::summary::{IndexSummary, SceneSummary};
 use crate::index::args::{DEFAULT_QUERY_COUNT, IndexArgs};
 use crate::index::backend::{PreparedIndex, SceneSource};
-use crate::io::input::read_scene;
+use crate::io::input::{read_scene, shown};
 use crate::io::json;
 use crate::io::output::Output;
 use crate::io::streams::Streams;
@@ -85,7 +85,7 @@ pub(crate) fn run(streams: &Streams, args: &Args) -> anyhow::Result<()> {
     let summary = SceneSummary::new(scene_args.name(), format, &scene);
     let backend = backend.name;
     let index = IndexSummary { scene: summary, backend, built: Some(&built), is_loaded, read_time, build_time };
-    let out = args.out.display();
+    let out = shown(&args.out);
     if args.json {
         let end = json!({
             "threads": pool.current_num_threads(),
@@ -95,7 +95,7 @@ pub(crate) fn run(streams: &Streams, args: &Args) -> anyhow::Result<()> {
                 "build": build_time.as_secs_f64(),
                 "write": write_time.as_secs_f64(),
             },
-            "out": { "file": out.to_string(), "bytes": bytes },
+            "out": { "file": out, "bytes": bytes },
         });
         return json::print(streams, &json::joined([index.json("build"), end]));
     }

@@ -1,6 +1,8 @@
 //! `p2m convert`: converts scenes from one format to another, with changes on request.
 
-use crate::io::input::{self, format_list, is_standard, or_option, read_scene_and_index, scene_format, scene_help};
+use crate::io::input::{
+    self, format_list, is_standard, or_option, read_scene_and_index, scene_format, scene_help, shown,
+};
 use crate::io::json;
 use crate::io::output::Output;
 use crate::io::streams::Streams;
@@ -154,7 +156,7 @@ impl<'a> Target<'a> {
         }
         let bytes = output.bytes();
         output.finish()?;
-        let file = if is_standard(self.path) { "standard output".to_owned() } else { self.path.display().to_string() };
+        let file = if is_standard(self.path) { "standard output".to_owned() } else { shown(self.path) };
         let positions = scene.soup.positions().len() as u64;
         Ok(WrittenScene {
             file,

@@ -185,7 +185,7 @@ fn report(
                 "backend": manifest.backend,
                 "shards": { "count": count, "bytes": total, "largest_bytes": largest, "max_bytes": args.max_bytes },
                 "seconds": { "read": times.read.as_secs_f64(), "write": times.write.as_secs_f64() },
-                "out": { "folder": args.out.display().to_string() },
+                "out": { "folder": input::shown(&args.out) },
             }),
         );
     }
