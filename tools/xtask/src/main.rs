@@ -3,6 +3,7 @@
 //! A task prints the commands that it starts, so that each can be started alone. The first command that fails ends it.
 #![forbid(unsafe_code)]
 
+mod cuda;
 mod deep;
 mod figures;
 mod links;
@@ -79,6 +80,12 @@ const TASKS: [Task; 15] = [
         arguments: "[--build]",
         about: "Check the library for WebAssembly, where a compiler can be found or downloaded, or build the module",
         run: wasm::run,
+    },
+    Task {
+        name: "cuda",
+        arguments: "[--build]",
+        about: "Check that the kernels for cards are those of their sources, where NVRTC can be had, or compile them",
+        run: cuda::run,
     },
     Task {
         name: "package",

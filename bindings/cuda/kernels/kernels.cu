@@ -1,0 +1,48 @@
+// The kernels. A kernel is a function of the number of a thread and of its parameters. On a card each thread calls it
+// once; on the host, for tests, a loop does.
+#include "answer.cuh"
+
+#ifdef __CUDACC__
+#define KERNEL(name, Parameters, function)                                                       \
+    extern "C" __global__ void __launch_bounds__(128, 6) name(uint32_t threads, const __grid_constant__ Parameters parameters) { \
+        uint32_t thread = blockIdx.x * blockDim.x + threadIdx.x;                                   \
+        if (thread < threads) function(thread, parameters);                                        \
+    }
+#else
+#define KERNEL(name, Parameters, function)                                        \
+    extern "C" void name(uint32_t threads, const Parameters *parameters) {          \
+        for (uint32_t thread = 0; thread < threads; thread++) function(thread, *parameters); \
+    }
+#endif
+
+KERNEL(p2m_make_list, Building, make_list)
+KERNEL(p2m_answer_by_list_f32, Batch, answer_by_list<float>)
+KERNEL(p2m_answer_by_list_f64, Batch, answer_by_list<double>)
+KERNEL(p2m_answer_by_tree_f32, Batch, answer_by_tree<float>)
+KERNEL(p2m_answer_by_tree_f64, Batch, answer_by_tree<double>)
+KERNEL(p2m_count_key_f32, Batch, count_key<float>)
+KERNEL(p2m_count_key_f64, Batch, count_key<double>)
+KERNEL(p2m_sum_keys, Batch, sum_keys)
+KERNEL(p2m_scan_sums, Batch, scan_sums)
+KERNEL(p2m_scan_keys, Batch, scan_keys)
+KERNEL(p2m_scatter, Batch, scatter)
+
+#ifndef __CUDACC__
+// The kernel in f64 alone, for tests: nine numbers of vertices, of which `count` vertices are used.
+extern "C" int p2m_nearest(const double *query, const double *numbers, int count, double prune, double *out) {
+    V3 q = {query[0], query[1], query[2]}, v[3];
+    for (int i = 0; i < count; i++) v[i] = {numbers[3 * i], numbers[3 * i + 1], numbers[3 * i + 2]};
+    Nearest best;
+    Outcome outcome = count == 1   ? nearest_of_point(q, v[0], prune, best)
+                      : count == 2 ? nearest_of_segment(q, v[0], v[1], prune, best)
+                                   : nearest_of_triangle(q, v, prune, best);
+    if (outcome != FOUND) return outcome;
+    V3 point = point_of(best, q, v, count);
+    double all[9] = {best.square, point.x, point.y, point.z, best.weight[0], best.weight[1], best.weight[2],
+                     (double)best.feature, best.size};
+    for (int i = 0; i < 9; i++) out[i] = all[i];
+    return outcome;
+}
+// The square of a plate, for tests of its error.
+extern "C" float p2m_plate_square(const Plate *plate, const float *p) { return square_of(*plate, F3{p[0], p[1], p[2]}); }
+#endif

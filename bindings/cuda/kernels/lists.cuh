@@ -1,0 +1,222 @@
+// Interception lists: for each cell of an octree the primitives that can be nearest somewhere in it.
+//
+// The roots are a dense grid of cubes whose sides are a power of two, so a query finds its cell by exact arithmetic. A
+// primitive is left out of a cell if one point of the scene is nearer at all eight corners, by more than the slack. Then it
+// is so everywhere in the cell (docs/proofs/cuda.md, "Lists").
+#pragma once
+
+#include "tree.cuh"
+
+// The value of `count` in an entry for a cell that is divided, and for one that is left to the tree.
+constexpr uint32_t DIVIDED = 0xffffffffu, NO_LIST = 0xfffffffeu;
+// A cell with more candidates than this is divided by a search of the tree, and not by its list.
+constexpr int MAX_CANDIDATES = 192;
+constexpr uint32_t FROM_TREE = 0xffffffffu;
+
+struct Entry {
+    uint32_t first, count; // of the list, or of the eight children
+};
+
+struct Grid {
+    int low[3], cells[3];    // in roots
+    int levels;              // of children below the roots
+    float per_cell;          // 1 / the side of a cell of the last level
+    uint32_t first_entry;    // that of the roots
+};
+
+// The entry of the cell that contains a point.
+P2M_FUNCTION bool locate(const Grid *grids, int grid_count, const Entry *entries, F3 p, Entry &entry) {
+    for (int g = 0; g < grid_count; g++) {
+        const Grid &grid = grids[g];
+        float x = floorf(p.x * grid.per_cell), y = floorf(p.y * grid.per_cell), z = floorf(p.z * grid.per_cell);
+        if (!(largest(F3{x, y, z}) < 0x1p30f)) continue;
+        int level = grid.levels;
+        int i = (int)x - (grid.low[0] * (1 << level)), j = (int)y - (grid.low[1] * (1 << level)), k = (int)z - (grid.low[2] * (1 << level));
+        if (i < 0 || j < 0 || k < 0) continue;
+        if (i >> level >= grid.cells[0] || j >> level >= grid.cells[1] || k >> level >= grid.cells[2]) continue;
+        entry = entries[grid.first_entry + (i >> level) + grid.cells[0] * ((j >> level) + grid.cells[1] * (k >> level))];
+        while (entry.count == DIVIDED) {
+            level--;
+            entry = entries[entry.first + ((i >> level & 1) | (j >> level & 1) << 1 | (k >> level & 1) << 2)];
+        }
+        return entry.count != NO_LIST;
+    }
+    return false;
+}
+
+// A cell whose list is to be made.
+struct Cell {
+    uint32_t entry;          // where its entry goes
+    int at[3];               // its lower corner, in cells of its level
+    uint32_t first, count;   // the candidates of its parent, or FROM_TREE
+};
+
+// What the threads of a level share.
+struct Counters {
+    uint32_t list_items, entries, cells, candidates; // how many there are
+    uint32_t left_out;                               // cells without a list
+};
+
+P2M_FUNCTION uint32_t take(uint32_t *counter, uint32_t amount) {
+#ifdef __CUDACC__
+    return atomicAdd(counter, amount);
+#else
+    uint32_t before = *counter;
+    *counter += amount;
+    return before;
+#endif
+}
+
+// The corners of a cell, its centre, and the anchors: points of the scene near them, with upper bounds on the distances
+// of all points of the cell's corners from each.
+struct Anchors {
+    F3 corner[9];
+    float fixed;
+    float bound[9][8];
+
+    P2M_FUNCTION void set_cell(const int *at, float side) {
+        F3 low = {at[0] * side, at[1] * side, at[2] * side};
+        float far = 0.0f;
+        for (int k = 0; k < 8; k++) {
+            corner[k] = {low.x + (k & 1 ? side : 0), low.y + (k & 2 ? side : 0), low.z + (k & 4 ? side : 0)};
+            far = larger(far, largest(corner[k]));
+        }
+        corner[8] = {low.x + side / 2, low.y + side / 2, low.z + side / 2};
+        fixed = FIXED_ERROR * (far + 1.0f);
+    }
+
+    P2M_FUNCTION void set_anchor(int j, const Plate &plate) {
+        F3 y = foot_of(plate, corner[j]);
+        // How far the anchor may be off the plate, and the slack.
+        float distance = root(norm_squared(sub(corner[j], y)));
+        float slack = 4 * fixed + RELATIVE_ERROR * (distance + plate.length);
+        for (int k = 0; k < 8; k++) bound[j][k] = (root(norm_squared(sub(corner[k], y))) + slack) * ENLARGED;
+    }
+
+    // Whether something with these lower bounds on its distances can be nearest in the cell.
+    P2M_FUNCTION bool is_needed(const float *lower) const {
+        for (int j = 8; j >= 0; j--) {
+            bool is_farther = true;
+            for (int k = 0; k < 8 && is_farther; k++) is_farther = lower[k] > bound[j][k];
+            if (is_farther) return false;
+        }
+        return true;
+    }
+
+    P2M_FUNCTION bool is_plate_needed(const Plate &plate) const {
+        float lower[8];
+        for (int k = 0; k < 8; k++) {
+            float distance = root(square_of(plate, corner[k]));
+            lower[k] = distance - (fixed + RELATIVE_ERROR * (distance + plate.length));
+        }
+        return is_needed(lower);
+    }
+
+    P2M_FUNCTION bool is_box_needed(const Node &n, int slot) const {
+        float lower[8];
+        for (int k = 0; k < 8; k++) {
+            float distance = root(box_square(n, slot, corner[k]));
+            lower[k] = distance - RELATIVE_ERROR * distance;
+        }
+        return is_needed(lower);
+    }
+};
+
+// Where the lists of a grid are made.
+struct Building {
+    const Node *nodes;
+    const Plate *plates;
+    Entry *entries;
+    uint32_t *items;              // of lists
+    const Cell *cells;
+    Cell *children;
+    const uint32_t *candidates;   // of the level above
+    uint32_t *next_candidates;    // of this level
+    Counters *counters;
+    uint32_t item_capacity, entry_capacity, candidate_capacity, cell_capacity;
+    float side;                   // of a cell of this level
+    uint32_t divide_above;        // the length of a list above which a cell is divided
+    uint32_t list_limit;          // the longest list of a cell of the last level
+    uint32_t is_last_level;
+};
+
+P2M_FUNCTION void make_list(uint32_t i, const Building &b) {
+    const Cell cell = b.cells[i];
+    Anchors anchors;
+    anchors.set_cell(cell.at, b.side);
+    uint32_t found[MAX_CANDIDATES];
+    int count = 0;
+    if (cell.first == FROM_TREE) {
+        uint32_t best = 0;
+        for (int j = 8; j >= 0; j--) {
+            float square;
+            best = nearest_plate(b.nodes, b.plates, anchors.corner[j], best, square);
+            anchors.set_anchor(j, load(b.plates + best));
+        }
+        uint32_t stack[STACK];
+        int size = 0;
+        stack[size++] = 0;
+        while (size > 0 && count <= MAX_CANDIDATES) {
+            const Node n = b.nodes[stack[--size]];
+            for (int slot = 0; slot < 4; slot++) {
+                if (n.low_x[slot] > n.high_x[slot] || !anchors.is_box_needed(n, slot)) continue;
+                if (n.count[slot] == 0) {
+                    stack[size++] = n.first[slot];
+                    continue;
+                }
+                for (uint32_t k = n.first[slot]; k < n.first[slot] + n.count[slot]; k++) {
+                    if (!anchors.is_plate_needed(load(b.plates + k))) continue;
+                    if (count < MAX_CANDIDATES) found[count] = k;
+                    count++;
+                }
+            }
+        }
+    } else {
+        float square[9];
+        uint32_t best[9];
+        for (int j = 0; j < 9; j++) square[j] = 3e38f;
+        for (uint32_t c = cell.first; c < cell.first + cell.count; c++) {
+            uint32_t k = b.candidates[c];
+            const Plate plate = load(b.plates + k);
+            for (int j = 0; j < 9; j++) {
+                float s = square_of(plate, anchors.corner[j]);
+                if (s < square[j]) {
+                    square[j] = s;
+                    best[j] = k;
+                }
+            }
+        }
+        for (int j = 0; j < 9; j++) anchors.set_anchor(j, load(b.plates + best[j]));
+        for (uint32_t c = cell.first; c < cell.first + cell.count; c++)
+            if (anchors.is_plate_needed(load(b.plates + b.candidates[c]))) found[count++] = b.candidates[c];
+    }
+    bool is_complete = count <= MAX_CANDIDATES;
+    Entry entry = {0, NO_LIST};
+    if (!b.is_last_level && (!is_complete || (uint32_t)count > b.divide_above)) {
+        uint32_t from = FROM_TREE;
+        if (is_complete) {
+            from = take(&b.counters->candidates, count);
+            if (from > b.candidate_capacity || b.candidate_capacity - from < (uint32_t)count) from = FROM_TREE;
+            for (int k = 0; from != FROM_TREE && k < count; k++) b.next_candidates[from + k] = found[k];
+        }
+        uint32_t children = take(&b.counters->entries, 8), at = take(&b.counters->cells, 8);
+        if (children <= b.entry_capacity && b.entry_capacity - children >= 8 && at <= b.cell_capacity &&
+            b.cell_capacity - at >= 8) {
+            entry = {children, DIVIDED};
+            for (uint32_t k = 0; k < 8; k++) {
+                b.entries[children + k] = {0, NO_LIST};
+                Cell child = {children + k, {0, 0, 0}, from, (uint32_t)count};
+                for (int axis = 0; axis < 3; axis++) child.at[axis] = 2 * cell.at[axis] + (k >> axis & 1);
+                b.children[at + k] = child;
+            }
+        }
+    } else if (is_complete && (uint32_t)count <= b.list_limit) {
+        uint32_t from = take(&b.counters->list_items, count);
+        if (from <= b.item_capacity && b.item_capacity - from >= (uint32_t)count) {
+            for (int k = 0; k < count; k++) b.items[from + k] = found[k];
+            entry = {from, (uint32_t)count};
+        }
+    }
+    if (entry.count == NO_LIST) take(&b.counters->left_out, 1);
+    b.entries[cell.entry] = entry;
+}

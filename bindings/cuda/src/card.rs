@@ -1,0 +1,131 @@
+//! A card: its memory, and the kernels that run on it.
+//!
+//! [`Card`] is what the rest of the crate needs of it. [`CudaCard`] is the real one. Tests have one that runs the same
+//! kernels on the host.
+
+use crate::CudaError;
+use crate::raw::{Address, Batch, Building};
+use cudarc::driver::{CudaContext, CudaFunction, CudaModule, CudaSlice, CudaStream, DevicePtr, DeviceRepr};
+use cudarc::driver::{LaunchConfig, PushKernelArg};
+use cudarc::nvrtc::Ptx;
+use std::sync::Arc;
+
+/// The parameters of a kernel.
+pub(crate) trait Parameters: Copy + 'static {}
+impl Parameters for Building {}
+impl Parameters for Batch {}
+
+/// A place where kernels run.
+pub(crate) trait Card {
+    /// A block of its memory.
+    type Memory;
+
+    fn allocate(&self, bytes: usize) -> Result<Self::Memory, CudaError>;
+    fn address(&self, memory: &Self::Memory) -> Address;
+    /// Copies bytes to the front of a block.
+    fn write(&self, memory: &mut Self::Memory, bytes: &[u8]) -> Result<(), CudaError>;
+    fn clear(&self, memory: &mut Self::Memory) -> Result<(), CudaError>;
+    /// Copies bytes from the front of a block, once all kernels before have ended.
+    fn read(&self, memory: &Self::Memory, bytes: &mut [u8]) -> Result<(), CudaError>;
+    /// Copies bytes at the front of a block into a block of their size.
+    fn copy(&self, memory: &Self::Memory, bytes: usize) -> Result<Self::Memory, CudaError>;
+    /// Starts a kernel for each number of a thread.
+    fn launch<P: Parameters>(&self, kernel: &str, threads: usize, parameters: &P) -> Result<(), CudaError>;
+
+    /// Allocates a block with these bytes.
+    fn upload(&self, bytes: &[u8]) -> Result<Self::Memory, CudaError> {
+        let mut memory = self.allocate(bytes.len().max(1))?;
+        self.write(&mut memory, bytes)?;
+        Ok(memory)
+    }
+}
+
+/// The kernels, which `cargo xtask cuda` compiles.
+const PTX: &str = include_str!("../kernels/kernels.ptx");
+const THREADS_PER_BLOCK: u32 = 128;
+
+/// A card of NVIDIA.
+pub(crate) struct CudaCard {
+    stream: Arc<CudaStream>,
+    module: Arc<CudaModule>,
+}
+
+impl CudaCard {
+    /// Opens the card of this number.
+    pub(crate) fn open(ordinal: usize) -> Result<Self, CudaError> {
+        // Without a driver the library panics.
+        if !is_driver_present() {
+            return Err(CudaError::NoDriver);
+        }
+        let context = CudaContext::new(ordinal).map_err(CudaError::from)?;
+        let module = context.load_module(Ptx::from_src(PTX))?;
+        let stream = context.new_stream()?;
+        Ok(Self { stream, module })
+    }
+}
+
+/// Returns whether the driver can be loaded.
+fn is_driver_present() -> bool {
+    // SAFETY: this loads the library of the driver, as every later call does.
+    unsafe { cudarc::driver::sys::is_culib_present() }
+}
+
+/// A structure as the argument of a kernel.
+#[repr(transparent)]
+#[derive(Clone, Copy)]
+struct Argument<P>(P);
+
+// SAFETY: parameters are plain numbers in the layout of C, as the kernels declare them.
+unsafe impl<P: Parameters> DeviceRepr for Argument<P> {}
+
+impl Card for CudaCard {
+    type Memory = CudaSlice<u8>;
+
+    fn allocate(&self, bytes: usize) -> Result<CudaSlice<u8>, CudaError> {
+        // SAFETY: kernels write all that is read, or it is cleared before.
+        unsafe { self.stream.alloc(bytes) }.map_err(|error| CudaError::memory(bytes, error))
+    }
+
+    fn address(&self, memory: &CudaSlice<u8>) -> Address {
+        memory.device_ptr(&self.stream).0
+    }
+
+    fn write(&self, memory: &mut CudaSlice<u8>, bytes: &[u8]) -> Result<(), CudaError> {
+        Ok(self.stream.memcpy_htod(bytes, memory)?)
+    }
+
+    fn clear(&self, memory: &mut CudaSlice<u8>) -> Result<(), CudaError> {
+        Ok(self.stream.memset_zeros(memory)?)
+    }
+
+    fn read(&self, memory: &CudaSlice<u8>, bytes: &mut [u8]) -> Result<(), CudaError> {
+        self.stream.memcpy_dtoh(&memory.slice(..bytes.len()), bytes)?;
+        Ok(self.stream.synchronize()?)
+    }
+
+    fn copy(&self, memory: &CudaSlice<u8>, bytes: usize) -> Result<CudaSlice<u8>, CudaError> {
+        let mut copy = self.allocate(bytes.max(1))?;
+        if bytes > 0 {
+            self.stream.memcpy_dtod(&memory.slice(..bytes), &mut copy)?;
+        }
+        Ok(copy)
+    }
+
+    fn launch<P: Parameters>(&self, kernel: &str, threads: usize, parameters: &P) -> Result<(), CudaError> {
+        if threads == 0 {
+            return Ok(());
+        }
+        let function: CudaFunction = self.module.load_function(kernel)?;
+        let threads = u32::try_from(threads).map_err(|_| CudaError::TooMany { count: threads })?;
+        let config = LaunchConfig {
+            grid_dim: (threads.div_ceil(THREADS_PER_BLOCK), 1, 1),
+            block_dim: (THREADS_PER_BLOCK, 1, 1),
+            shared_mem_bytes: 0,
+        };
+        let argument = Argument(*parameters);
+        // SAFETY: a kernel takes the number of threads and one structure, and its addresses are those of blocks that
+        // live until the next read.
+        unsafe { self.stream.launch_builder(&function).arg(&threads).arg(&argument).launch(config) }?;
+        Ok(())
+    }
+}

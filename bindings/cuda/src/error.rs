@@ -1,0 +1,55 @@
+//! Errors of the card.
+
+use cudarc::driver::DriverError;
+use p2m_core::PrimitiveId;
+
+/// The error of an index on a card.
+#[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
+pub enum CudaError {
+    /// There is no driver of NVIDIA.
+    #[error("there is no NVIDIA driver (libcuda) on this machine")]
+    NoDriver,
+    /// The driver has reported an error, such as that there is no card of this number.
+    #[error("the CUDA driver failed: {0}")]
+    Driver(String),
+    /// The memory of the card does not suffice.
+    #[error("the card has no memory for {bytes} bytes: {reason}")]
+    Memory {
+        /// The number of bytes that were asked for.
+        bytes: usize,
+        /// What the driver says.
+        reason: String,
+    },
+    /// The scene has no primitives.
+    #[error("the scene is empty")]
+    Empty,
+    /// The scene is too small or too large to be searched in f32.
+    #[error("the size of the scene is not within 2^-320..2^300")]
+    Scale,
+    /// A primitive has no vertices.
+    #[error("primitive {id} has no vertices")]
+    NoVertices {
+        /// The primitive.
+        id: PrimitiveId,
+    },
+    /// There are more parts than numbers of 32 bits.
+    #[error("{count} are too many for numbers of 32 bits")]
+    TooMany {
+        /// How many there are.
+        count: usize,
+    },
+}
+
+impl CudaError {
+    /// Returns the error of a request for memory.
+    pub(crate) fn memory(bytes: usize, error: DriverError) -> Self {
+        Self::Memory { bytes, reason: error.to_string() }
+    }
+}
+
+impl From<DriverError> for CudaError {
+    fn from(error: DriverError) -> Self {
+        Self::Driver(error.to_string())
+    }
+}

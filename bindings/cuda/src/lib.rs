@@ -1,0 +1,208 @@
+//! Closest points of scenes on an NVIDIA card, with the bits of [`AabbTree`].
+//!
+//! [`CudaIndex`] copies a scene with its tree to the card, and makes *interception lists* there: for each cell of an
+//! octree the primitives that can be nearest somewhere in it. A query reads the list of its cell; outside the lists it
+//! searches the tree. Distances in f32 with a proved error find the candidates, and the kernel of the contract, in f64
+//! and in the same order of operations, decides between them. What that kernel leaves to slower code, such as slivers
+//! and extreme scales, is answered by the processor. So distance, primitive, point, feature and weights are those of
+//! [`AabbTree`], bit for bit. The proofs are in docs/proofs/cuda.md.
+//!
+//! ```no_run
+//! use p2m_bvh::AabbTree;
+//! use p2m_core::Soup;
+//! use p2m_core::batch::ClosestColumns;
+//! use p2m_cuda::{CudaIndex, CudaOptions};
+//!
+//! let scene: Soup = Soup::from_arrays(&[[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]], &[[0, 1, 2]])?;
+//! let index = CudaIndex::new(AabbTree::new(scene)?, &CudaOptions::default())?;
+//! let queries = vec![nalgebra::Point3::new(0.25, 0.25, 2.0); 1_000_000];
+//! let mut distance = vec![0.0; queries.len()];
+//! let columns = ClosestColumns::default().with_distance(&mut distance);
+//! index.closest_columns_into(&queries, f64::INFINITY, columns)?;
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
+//!
+//! The driver is loaded when an index is made, so programs start without one.
+
+mod card;
+mod engine;
+mod error;
+#[cfg(test)]
+mod host;
+mod lists;
+mod raw;
+mod scene;
+#[cfg(test)]
+mod tests;
+
+pub use error::CudaError;
+
+use bytemuck::Pod;
+use card::{Card, CudaCard};
+use engine::{Answers, Engine};
+use nalgebra::Point3;
+use p2m_bvh::AabbTree;
+use p2m_core::batch::{self, BatchOptions, ClosestColumns};
+use p2m_core::{Closest, Feature, PrimitiveSet, QueryOptions, Real};
+use scene::Scene;
+
+/// Options of an index on a card.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
+pub struct CudaOptions {
+    /// The number of the card, from 0. The default is 0.
+    pub ordinal: usize,
+    /// The size of the space with lists, in boxes of the scene around its centre: 10.5 by default. Queries farther away
+    /// search the tree. Below 1 there are lists for the box alone.
+    pub reach: f64,
+    /// The most bytes that lists may take. The default is about 280 for each primitive, and more in scenes of more than
+    /// 100,000.
+    pub memory: Option<usize>,
+    /// Whether queries are sorted on the card. Sorting is wasted on queries whose order is spatially coherent.
+    pub reorder: bool,
+}
+
+impl Default for CudaOptions {
+    fn default() -> Self {
+        Self { ordinal: 0, reach: 10.5, memory: None, reorder: true }
+    }
+}
+
+/// How the queries of a batch were answered.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[non_exhaustive]
+pub struct BatchReport {
+    /// The number of queries that have no list and were answered by the tree on the card.
+    pub by_tree: usize,
+    /// The number of queries that the processor has answered.
+    pub by_processor: usize,
+}
+
+/// An index on a card: a tree with its scene, and interception lists.
+pub struct CudaIndex<T: Real, S> {
+    index: OnCard<T, S, CudaCard>,
+    reorder: bool,
+}
+
+impl<T: Real + Pod, S: PrimitiveSet<T> + Sync> CudaIndex<T, S> {
+    /// Copies a tree with its scene to a card, and makes the lists there.
+    ///
+    /// # Errors
+    /// Returns a [`CudaError`] if there is no driver or no such card, if the memory of the card does not suffice, for an
+    /// empty scene, for primitives without vertices, and for scenes whose size is not within 2^-320..2^300.
+    pub fn new(tree: AabbTree<T, S>, options: &CudaOptions) -> Result<Self, CudaError> {
+        let card = CudaCard::open(options.ordinal)?;
+        Ok(Self { index: OnCard::new(card, tree, options)?, reorder: options.reorder })
+    }
+
+    /// The tree, which answers single queries and those of other kinds.
+    pub fn tree(&self) -> &AabbTree<T, S> {
+        &self.index.tree
+    }
+
+    /// The bytes of the scene and of its lists on the card.
+    pub fn memory(&self) -> [usize; 2] {
+        self.index.engine.memory()
+    }
+
+    /// The number of cells without a list, whose queries search the tree.
+    pub fn cells_without_list(&self) -> u64 {
+        self.index.engine.cells_without_list()
+    }
+
+    /// Answers queries into columns, in their order, as [`batch::closest_columns_into`] does. Only lower bounds may
+    /// differ.
+    ///
+    /// The card holds four million queries at a time, for which it needs up to 500 MB besides the index.
+    ///
+    /// # Errors
+    /// Returns a [`CudaError`] if the card fails, or if its memory does not suffice. Columns then have any content.
+    ///
+    /// # Panics
+    /// Panics if a column has another length than `queries`, and for more than 2^32 - 1 queries.
+    pub fn closest_columns_into(
+        &self,
+        queries: &[Point3<T>],
+        max_distance: T,
+        columns: ClosestColumns<'_, T>,
+    ) -> Result<BatchReport, CudaError> {
+        self.index.closest_columns_into(queries, max_distance, self.reorder, columns)
+    }
+}
+
+/// A tree, and its scene on a card.
+struct OnCard<T: Real, S, C: Card> {
+    tree: AabbTree<T, S>,
+    engine: Engine<C>,
+}
+
+impl<T: Real + Pod, S: PrimitiveSet<T> + Sync, C: Card> OnCard<T, S, C> {
+    fn new(card: C, tree: AabbTree<T, S>, options: &CudaOptions) -> Result<Self, CudaError> {
+        let engine = Engine::new(card, &Scene::new(&tree)?, options.reach, options.memory)?;
+        Ok(Self { tree, engine })
+    }
+
+    fn closest_columns_into(
+        &self,
+        queries: &[Point3<T>],
+        max_distance: T,
+        reorder: bool,
+        mut columns: ClosestColumns<'_, T>,
+    ) -> Result<BatchReport, CudaError> {
+        let Some(len) = columns.len() else { return Ok(BatchReport::default()) };
+        assert!(queries.len() == len && u32::try_from(len).is_ok(), "one value for each of fewer than 2^32 queries");
+        let coordinates: Vec<[T; 3]> = queries.iter().map(|q| q.coords.into()).collect();
+        let mut points = vec![[T::zero(); 3]; columns.point.as_ref().map_or(0, |column| column.len())];
+        let mut features = vec![0; columns.feature.as_ref().map_or(0, |column| column.len())];
+        let mut answers = Answers {
+            distance: columns.distance.as_deref_mut().unwrap_or_default(),
+            lower_bound: columns.lower_bound.as_deref_mut().unwrap_or_default(),
+            point: &mut points,
+            weights: columns.barycentric.as_deref_mut().unwrap_or_default(),
+            primitive: columns.primitive.as_deref_mut().unwrap_or_default(),
+            feature: &mut features,
+        };
+        let radius = max_distance.to_f64_above();
+        let (undecided, counts) = self.engine.answer(&coordinates, radius, reorder, &mut answers)?;
+        if let Some(column) = &mut columns.point {
+            column.iter_mut().zip(&points).for_each(|(to, point)| *to = Point3::from(*point));
+        }
+        if let Some(column) = &mut columns.feature {
+            let feature = |code| Feature::from_code(code).unwrap_or(Feature::Vertex(0));
+            column.iter_mut().zip(&features).for_each(|(to, code)| *to = feature(*code));
+        }
+        self.decide(queries, max_distance, &undecided, &mut columns);
+        Ok(BatchReport { by_tree: counts.by_tree, by_processor: undecided.len() })
+    }
+
+    /// Answers queries that the card has left by the tree of the processor.
+    fn decide(&self, queries: &[Point3<T>], max_distance: T, numbers: &[u32], columns: &mut ClosestColumns<'_, T>) {
+        let left: Vec<Point3<T>> = numbers.iter().map(|&i| queries[i as usize]).collect();
+        let mut answers: Vec<Option<Closest<T>>> = vec![None; left.len()];
+        let options = QueryOptions::default().with_max_distance(max_distance);
+        batch::closest_points_into(&self.tree, &left, &options, &BatchOptions::default(), &mut answers);
+        let nan = T::round_from_f64(f64::NAN);
+        for (&i, answer) in numbers.iter().zip(answers) {
+            let i = i as usize;
+            if let Some(column) = &mut columns.distance {
+                column[i] = answer.map_or(T::INFINITY, |a| a.distance);
+            }
+            if let Some(column) = &mut columns.primitive {
+                column[i] = answer.map_or(ClosestColumns::<T>::NO_PRIMITIVE, |a| a.primitive.number());
+            }
+            if let Some(column) = &mut columns.point {
+                column[i] = answer.map_or(Point3::new(nan, nan, nan), |a| a.point);
+            }
+            if let Some(column) = &mut columns.feature {
+                column[i] = answer.map_or(Feature::Vertex(0), |a| a.feature);
+            }
+            if let Some(column) = &mut columns.barycentric {
+                column[i] = answer.map_or([nan; 3], |a| a.barycentric);
+            }
+            if let Some(column) = &mut columns.lower_bound {
+                // Without an answer nothing is within the largest distance.
+                column[i] = answer.map_or(T::INFINITY, |a| a.lower_bound);
+            }
+        }
+    }
+}

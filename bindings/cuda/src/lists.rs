@@ -1,0 +1,211 @@
+//! Interception lists, which the card makes level by level.
+
+use crate::CudaError;
+use crate::card::Card;
+use crate::raw::{Building, Cell, Counters, FROM_TREE, Grid};
+use bytemuck::{Zeroable, bytes_of, bytes_of_mut, cast_slice};
+
+/// The largest number of roots along a side of a grid.
+const MAX_ROOTS: f64 = 64.0;
+/// The number of levels below the roots, at most.
+const MAX_LEVELS: i32 = 6;
+/// The numbers of candidates above which a cell is divided: the least one with which lists fit into the memory.
+const DIVIDE_ABOVE: [u32; 6] = [16, 24, 32, 48, 64, 96];
+/// The longest list of a cell that is not divided because of memory. Beyond it the tree is faster.
+const LIST_LIMIT: u32 = 128;
+
+/// The size of grids, and the memory that they may take.
+pub(crate) struct Wanted {
+    /// Half of the box of the scene, in the frame.
+    pub(crate) half_extent: [f64; 3],
+    /// The number of primitives.
+    pub(crate) primitives: usize,
+    /// The size of the larger grid in boxes of the scene, or less than 1 for no such grid.
+    pub(crate) reach: f64,
+    /// The memory of all lists, in bytes.
+    pub(crate) memory: usize,
+}
+
+/// The lists of all grids.
+pub(crate) struct Lists<M> {
+    pub(crate) grids: Vec<Grid>,
+    pub(crate) entries: M,
+    pub(crate) items: M,
+    /// The bytes that they take.
+    pub(crate) memory: usize,
+    /// The number of cells without a list.
+    pub(crate) left_out: u64,
+}
+
+/// The parts of the card's scene that lists are made from.
+#[derive(Clone, Copy)]
+pub(crate) struct Source {
+    pub(crate) nodes: u64,
+    pub(crate) plates: u64,
+}
+
+/// A level of a grid that has been made, so that it can be made again as the last one.
+struct Level<M> {
+    cells: M,
+    cell_count: usize,
+    candidates: M,
+    side: f32,
+    /// The counters before the level.
+    before: Counters,
+}
+
+/// Makes the lists of a small grid around the scene and of a larger one.
+pub(crate) fn make<C: Card>(card: &C, source: Source, wanted: &Wanted) -> Result<Lists<C::Memory>, CudaError> {
+    let longest = wanted.half_extent.into_iter().fold(0.0, f64::max);
+    let margin = 0.05 * longest + f64::MIN_POSITIVE;
+    // Memory is counted in words of four bytes: an entry has two, an item one. While lists are made, either may have all.
+    let words = u32::try_from(wanted.memory / 4).unwrap_or(u32::MAX / 4).max(1 << 12);
+    let (entries, items) = (card.allocate(words as usize * 4)?, card.allocate(words as usize * 4)?);
+    let mut counters = Counters::default();
+    let mut grids = Vec::new();
+    let factors = [1.0, wanted.reach];
+    for (number, factor) in factors.into_iter().enumerate().filter(|(_, factor)| *factor >= 1.0) {
+        let half = wanted.half_extent.map(|x| x * factor + margin * factor);
+        // The first grid may take two thirds of the memory.
+        let limit = if number == 0 && factors[1] >= 1.0 { words / 3 * 2 } else { words };
+        let building = Building {
+            nodes: source.nodes,
+            plates: source.plates,
+            entries: card.address(&entries),
+            items: card.address(&items),
+            entry_capacity: words / 2,
+            item_capacity: words,
+            list_limit: LIST_LIMIT,
+            ..Building::default()
+        };
+        let grid = grid(half, wanted.primitives, counters.entries);
+        if let Some(grid) = make_grid(card, grid, building, limit, &mut counters)? {
+            grids.push(grid);
+        }
+    }
+    let (entry_bytes, item_bytes) = (counters.entries as usize * 8, counters.list_items as usize * 4);
+    let (entries, items) = (card.copy(&entries, entry_bytes)?, card.copy(&items, item_bytes)?);
+    Ok(Lists { grids, entries, items, memory: entry_bytes + item_bytes, left_out: u64::from(counters.left_out) })
+}
+
+/// Returns a grid over a box around the origin.
+#[allow(clippy::cast_possible_truncation, clippy::cast_precision_loss, reason = "small numbers")]
+fn grid(half: [f64; 3], primitives: usize, first_entry: u32) -> Grid {
+    let longest = half.into_iter().fold(0.0, f64::max);
+    let roots = (primitives as f64).cbrt().clamp(8.0, MAX_ROOTS);
+    let side = (2.0 * longest / roots).log2().ceil().clamp(-100.0, 30.0).exp2();
+    let low = half.map(|x| (-x / side).floor() as i32);
+    let cells: [i32; 3] = std::array::from_fn(|k| (half[k] / side).floor() as i32 + 1 - low[k]);
+    Grid { low, cells, levels: 0, per_cell: side.recip() as f32, first_entry }
+}
+
+/// Makes the lists of a grid. Returns `None` if there is no memory for those of its roots.
+fn make_grid<C: Card>(
+    card: &C,
+    mut grid: Grid,
+    mut building: Building,
+    limit: u32,
+    counters: &mut Counters,
+) -> Result<Option<Grid>, CudaError> {
+    let roots = roots(&grid);
+    let before = *counters;
+    let entries = u32::try_from(roots.len()).map_or(u32::MAX, |count| before.entries.saturating_add(count));
+    if entries > building.entry_capacity {
+        return Ok(None);
+    }
+    let mut level = Level {
+        cells: card.upload(cast_slice(&roots))?,
+        cell_count: roots.len(),
+        candidates: card.allocate(4)?,
+        side: grid.per_cell.recip(),
+        before: Counters { entries, ..before },
+    };
+    let mut above: Option<Level<C::Memory>> = None;
+    let mut shared = card.allocate(size_of::<Counters>())?;
+    let fits = |after: &Counters| after.list_items.saturating_add(after.entries.saturating_mul(2)) <= limit;
+    // The choice of the number of candidates above which the cells of the level above are divided.
+    let mut choice = 0;
+    loop {
+        let (after, _) = make_level(card, &mut building, &level, &mut shared, None)?;
+        if !fits(&after) {
+            choice += 1;
+            let Some(parents) = &above else { return Ok(None) };
+            if let Some(divide_above) = DIVIDE_ABOVE.get(choice) {
+                let (_, children) = make_level(card, &mut building, parents, &mut shared, Some(*divide_above))?;
+                level = children;
+            } else {
+                // The level above is the last one, which did fit.
+                level = above.take().expect("it is some");
+                grid.levels -= 1;
+            }
+            continue;
+        }
+        // A level after a higher choice is the last one.
+        if choice == 0 && grid.levels < MAX_LEVELS {
+            let (divided, children) = make_level(card, &mut building, &level, &mut shared, Some(DIVIDE_ABOVE[0]))?;
+            if children.cell_count > 0 && fits(&divided) {
+                above = Some(std::mem::replace(&mut level, children));
+                grid.levels += 1;
+                continue;
+            }
+            // The entries of children do not fit, so the lists of this level are made again.
+            let (_, _) = make_level(card, &mut building, &level, &mut shared, None)?;
+        }
+        *counters = after;
+        #[allow(clippy::cast_precision_loss, reason = "a power of two")]
+        let finest = (1u32 << grid.levels) as f32;
+        grid.per_cell *= finest;
+        return Ok(Some(grid));
+    }
+}
+
+/// Makes the lists of a level, and divides its cells of more candidates than a number, if there is one. Returns the
+/// counters after it and the cells of the next level.
+fn make_level<C: Card>(
+    card: &C,
+    building: &mut Building,
+    level: &Level<C::Memory>,
+    shared: &mut C::Memory,
+    divide_above: Option<u32>,
+) -> Result<(Counters, Level<C::Memory>), CudaError> {
+    let mut counters = Counters { cells: 0, candidates: 0, ..level.before };
+    card.write(shared, bytes_of(&counters))?;
+    let (children, candidates) = divide_above.map_or((0, 0), |_| (level.cell_count * 8, level.cell_count * 48));
+    let cells = card.allocate(children.max(1) * size_of::<Cell>())?;
+    let next_candidates = card.allocate(candidates.max(1) * 4)?;
+    *building = Building {
+        cells: card.address(&level.cells),
+        candidates: card.address(&level.candidates),
+        children: card.address(&cells),
+        next_candidates: card.address(&next_candidates),
+        counters: card.address(shared),
+        cell_capacity: u32::try_from(children).unwrap_or(u32::MAX),
+        candidate_capacity: u32::try_from(candidates).unwrap_or(u32::MAX),
+        side: level.side,
+        divide_above: divide_above.unwrap_or(u32::MAX),
+        is_last_level: u32::from(divide_above.is_none()),
+        ..*building
+    };
+    card.launch("p2m_make_list", level.cell_count, building)?;
+    card.read(shared, bytes_of_mut(&mut counters))?;
+    let cell_count = (counters.cells as usize).min(children);
+    let next = Level { cells, cell_count, candidates: next_candidates, side: level.side / 2.0, before: counters };
+    Ok((counters, next))
+}
+
+/// Returns the roots of a grid as cells.
+#[allow(clippy::cast_possible_truncation, reason = "at most a few hundred thousand roots")]
+fn roots(grid: &Grid) -> Vec<Cell> {
+    let [x, y, z] = grid.cells;
+    let mut roots = Vec::with_capacity((x * y * z).unsigned_abs() as usize);
+    for k in 0..z {
+        for j in 0..y {
+            for i in 0..x {
+                let entry = grid.first_entry + roots.len() as u32;
+                let at = [grid.low[0] + i, grid.low[1] + j, grid.low[2] + k];
+                roots.push(Cell { entry, at, first: FROM_TREE, ..Cell::zeroed() });
+            }
+        }
+    }
+    roots
+}

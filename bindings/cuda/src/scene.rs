@@ -1,0 +1,221 @@
+//! A scene in the form of the card: nodes of four children over plates, and the exact vertices.
+
+use crate::CudaError;
+use crate::raw::{NO_VERTEX, Node, Plate, Primitive};
+use bytemuck::Pod;
+use nalgebra::Point3;
+use p2m_bvh::{AabbTree, PacketTree, TreeNode};
+use p2m_core::engine::vector::{V3, add_scaled, dot, length, norm_squared, sub};
+use p2m_core::{Aabb, Primitive as _, PrimitiveId, PrimitiveSet, Real};
+use rustc_hash::FxHashMap;
+
+/// Below this depth a subtree is divided by the order of its packets alone, so that the stacks of kernels suffice
+/// (`MAX_DEPTH` in `tree.cuh`): a node of eight children takes two levels, then 14 levels divide 2^28 packets, and one
+/// more has the parts of a packet.
+const MAX_SPLIT_DEPTH: usize = 12;
+/// The number of plates of a leaf.
+const LEAF_PLATES: usize = 4;
+/// The ratio of height and longest edge below which any axis is as good as that of the height.
+const MIN_SINE: f64 = 1.0 / (1u64 << 40) as f64;
+
+/// A scene as the card needs it.
+pub(crate) struct Scene<T> {
+    pub(crate) nodes: Vec<Node>,
+    pub(crate) plates: Vec<Plate>,
+    pub(crate) primitives: Vec<Primitive>,
+    pub(crate) vertices: Vec<[T; 3]>,
+    pub(crate) centre: V3,
+    pub(crate) per_unit: f64,
+    /// Half of the box of the scene in the frame, whose origin is the middle of the box.
+    pub(crate) half_extent: V3,
+}
+
+/// A child of a node: its box in the frame, and its node or plates.
+#[derive(Clone, Copy)]
+struct Child {
+    bounds: [[f32; 3]; 2],
+    first: u32,
+    count: u32,
+}
+
+impl<T: Real + Pod> Scene<T> {
+    /// Converts a tree with its set.
+    pub(crate) fn new<S: PrimitiveSet<T>>(index: &AabbTree<T, S>) -> Result<Self, CudaError> {
+        let tree = index.tree();
+        let Some(root) = tree.root() else { return Err(CudaError::Empty) };
+        if !tree.frame.is_plain() {
+            return Err(CudaError::Scale);
+        }
+        let place = |corner: &Point3<f64>| tree.frame.place(&[corner.x, corner.y, corner.z]);
+        let [low, high] = [&tree.bounds().min, &tree.bounds().max].map(place);
+        let mut builder = Builder {
+            set: index.set(),
+            tree,
+            numbers: FxHashMap::default(),
+            scene: Self {
+                nodes: Vec::new(),
+                plates: Vec::new(),
+                primitives: Vec::new(),
+                vertices: Vec::new(),
+                centre: tree.frame.centre,
+                per_unit: tree.frame.per_unit,
+                half_extent: std::array::from_fn(|k| high[k].max(-low[k])),
+            },
+        };
+        let child = builder.child(&root, 0)?;
+        // The root is a node.
+        if child.count > 0 {
+            builder.node(&[child]);
+        }
+        Ok(builder.scene)
+    }
+}
+
+struct Builder<'a, T: Real, S> {
+    set: &'a S,
+    tree: &'a PacketTree<Aabb<f64>>,
+    /// The numbers of vertices by the bits of their coordinates.
+    numbers: FxHashMap<[u64; 3], u32>,
+    scene: Scene<T>,
+}
+
+impl<T: Real + Pod, S: PrimitiveSet<T>> Builder<'_, T, S> {
+    /// Converts a node or packet of the tree, below a number of others.
+    fn child(&mut self, node: &TreeNode<Aabb<f64>>, depth: usize) -> Result<Child, CudaError> {
+        // The packets that continue one have equal primitives with higher ids, which never are the answer.
+        if let Some(ids) = self.tree.primitives(node) {
+            let runs: Result<Vec<Child>, CudaError> = ids.chunks(LEAF_PLATES).map(|ids| self.run(ids)).collect();
+            return Ok(self.joined(&runs?));
+        }
+        // A node comes before its children, so the root is node 0.
+        let number = self.reserve();
+        let children = if depth < MAX_SPLIT_DEPTH {
+            let children: Vec<_> = self.tree.children(node).collect();
+            children.iter().map(|child| self.child(child, depth + 1)).collect::<Result<Vec<_>, _>>()?
+        } else {
+            let mut packets = Vec::new();
+            let mut pending = vec![*node];
+            while let Some(node) = pending.pop() {
+                match self.tree.primitives(&node) {
+                    Some(_) => packets.push(node),
+                    None => pending.extend(self.tree.children(&node)),
+                }
+            }
+            packets.iter().map(|packet| self.child(packet, depth)).collect::<Result<Vec<_>, _>>()?
+        };
+        Ok(self.fill(number, &children))
+    }
+
+    fn reserve(&mut self) -> u32 {
+        self.scene.nodes.push(bytemuck::Zeroable::zeroed());
+        u32::try_from(self.scene.nodes.len() - 1).expect("fewer nodes than primitives")
+    }
+
+    /// Returns the only child, or a node of all children.
+    fn joined(&mut self, children: &[Child]) -> Child {
+        match children {
+            &[child] => child,
+            _ => self.node(children),
+        }
+    }
+
+    fn node(&mut self, children: &[Child]) -> Child {
+        let number = self.reserve();
+        self.fill(number, children)
+    }
+
+    /// Gives a node its children, of which a fourth each are a child if there are more than four.
+    fn fill(&mut self, number: u32, children: &[Child]) -> Child {
+        let quarter = children.len().div_ceil(4);
+        let children: Vec<Child> = children.chunks(quarter).map(|children| self.joined(children)).collect();
+        let mut node = Node { bounds: [[[f32::INFINITY; 4], [f32::NEG_INFINITY; 4]]; 3], first: [0; 4], count: [0; 4] };
+        let mut all = children[0].bounds;
+        for (slot, child) in children.iter().enumerate() {
+            for axis in 0..3 {
+                for side in 0..2 {
+                    node.bounds[axis][side][slot] = child.bounds[side][axis];
+                }
+                all[0][axis] = all[0][axis].min(child.bounds[0][axis]);
+                all[1][axis] = all[1][axis].max(child.bounds[1][axis]);
+            }
+            (node.first[slot], node.count[slot]) = (child.first, child.count);
+        }
+        self.scene.nodes[number as usize] = node;
+        Child { bounds: all, first: number, count: 0 }
+    }
+
+    /// Adds primitives.
+    fn run(&mut self, ids: &[PrimitiveId]) -> Result<Child, CudaError> {
+        let first = self.scene.plates.len();
+        let mut bounds = Aabb::empty();
+        for &id in ids {
+            let primitive = self.set.get(id);
+            let corners = primitive.vertices();
+            if corners.is_empty() {
+                return Err(CudaError::NoVertices { id });
+            }
+            let mut vertex = [NO_VERTEX; 3];
+            let mut local = [[0.0; 3]; 3];
+            for (k, corner) in corners.iter().enumerate() {
+                let point = Point3::from(corner.coords.map(Real::to_f64));
+                bounds = bounds.union(&Aabb::from_points(&[point]));
+                local[k] = self.tree.frame.place(&[point.x, point.y, point.z]);
+                vertex[k] = self.vertex(corner)?;
+            }
+            self.scene.plates.push(plate(&local[..corners.len()]));
+            self.scene.primitives.push(Primitive { vertex, id: id.number() });
+        }
+        let first = u32::try_from(first).map_err(|_| CudaError::TooMany { count: first })?;
+        let count = u32::try_from(ids.len()).expect("a packet has sixteen primitives");
+        Ok(Child { bounds: self.tree.frame.enclose(&bounds), first, count })
+    }
+
+    fn vertex(&mut self, corner: &Point3<T>) -> Result<u32, CudaError> {
+        let vertices = &mut self.scene.vertices;
+        let bits = [corner.x, corner.y, corner.z].map(|x| x.to_f64().to_bits());
+        let count = vertices.len();
+        let next = u32::try_from(count).ok().filter(|&n| n != NO_VERTEX).ok_or(CudaError::TooMany { count })?;
+        Ok(*self.numbers.entry(bits).or_insert_with(|| {
+            vertices.push([corner.x, corner.y, corner.z]);
+            next
+        }))
+    }
+}
+
+/// Returns the plate of a point, a segment or a triangle with these vertices in the frame.
+#[allow(clippy::cast_possible_truncation, reason = "rounded, by what the proof allows for")]
+pub(crate) fn plate(vertices: &[V3]) -> Plate {
+    let n = vertices.len();
+    let edge = |i: usize| norm_squared(sub(vertices[(i + 1) % n], vertices[i]));
+    let longest = (1..n).fold(0, |best, i| if edge(i) > edge(best) { i } else { best });
+    let (a, b) = (vertices[longest], vertices[(longest + 1) % n]);
+    let apex = if n == 3 { vertices[(longest + 2) % 3] } else { a };
+    let base = length(sub(b, a));
+    let along = if base > 0.0 { sub(b, a).map(|x| x / base) } else { [1.0, 0.0, 0.0] };
+    let side = sub(apex, a);
+    let height = add_scaled(side, -dot(side, along), along);
+    let start = if length(height) > MIN_SINE * base { height } else { perpendicular(along) };
+    let start = start.map(|x| x / length(start));
+    let up = add_scaled(start, -dot(start, along), along);
+    let up = up.map(|x| x / length(up));
+    let (x, y) = (dot(side, along), dot(side, up));
+    let direction = |x: f64, y: f64| {
+        let end = x.hypot(y);
+        if end > 0.0 { [(x / end) as f32, (y / end) as f32, end as f32] } else { [1.0, 0.0, 0.0] }
+    };
+    Plate {
+        origin: a.map(|x| x as f32),
+        along: along.map(|x| x as f32),
+        up: up.map(|x| x as f32),
+        length: base as f32,
+        left: direction(x, y),
+        right: direction(x - base, y),
+    }
+}
+
+/// Returns a vector that is perpendicular to a vector of length 1.
+fn perpendicular(v: V3) -> V3 {
+    let least = (1..3).fold(0, |best, k| if v[k].abs() < v[best].abs() { k } else { best });
+    let axis: V3 = std::array::from_fn(|k| if k == least { 1.0 } else { 0.0 });
+    add_scaled(axis, -dot(axis, v), v)
+}
