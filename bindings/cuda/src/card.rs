@@ -29,6 +29,8 @@ pub(crate) trait Card {
     fn read(&self, memory: &Self::Memory, bytes: &mut [u8]) -> Result<(), CudaError>;
     /// Copies bytes at the front of a block into a block of their size.
     fn copy(&self, memory: &Self::Memory, bytes: usize) -> Result<Self::Memory, CudaError>;
+    /// Waits until all kernels have ended.
+    fn wait(&self) -> Result<(), CudaError>;
     /// Starts a kernel for each number of a thread.
     fn launch<P: Parameters>(&self, kernel: &str, threads: usize, parameters: &P) -> Result<(), CudaError>;
 
@@ -100,6 +102,10 @@ impl Card for CudaCard {
 
     fn read(&self, memory: &CudaSlice<u8>, bytes: &mut [u8]) -> Result<(), CudaError> {
         self.stream.memcpy_dtoh(&memory.slice(..bytes.len()), bytes)?;
+        Ok(self.stream.synchronize()?)
+    }
+
+    fn wait(&self) -> Result<(), CudaError> {
         Ok(self.stream.synchronize()?)
     }
 

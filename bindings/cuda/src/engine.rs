@@ -2,11 +2,12 @@
 
 use crate::CudaError;
 use crate::card::Card;
-use crate::lists::{self, Lists, Source, Wanted};
+use crate::lists::{self, ListPlan, Lists, Source};
 use crate::raw::{Batch, Columns, Index, KEYS, KEYS_PER_SUM};
 use crate::scene::Scene;
 use bytemuck::{Pod, cast_slice, cast_slice_mut};
 use p2m_core::{Key, Real};
+use std::time::{Duration, Instant};
 
 /// The number of queries that are on the card at a time.
 const CHUNK_QUERIES: usize = 1 << 22;
@@ -33,10 +34,12 @@ pub(crate) struct Answers<'a, T> {
 }
 
 /// How the queries of a batch were answered.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct Counts {
     /// By the tree on the card.
     pub(crate) by_tree: usize,
+    /// The time of the kernels, from sorting to the last answer.
+    pub(crate) kernels: Duration,
 }
 
 impl<C: Card> Engine<C> {
@@ -57,8 +60,8 @@ impl<C: Card> Engine<C> {
         let blocks = [card.upload(parts[0])?, card.upload(parts[1])?, card.upload(parts[2])?, card.upload(parts[3])?];
         let [nodes, plates, primitives, vertices] = [0, 1, 2, 3].map(|i: usize| card.address(&blocks[i]));
         let memory = memory.unwrap_or_else(|| default_memory(count));
-        let wanted = Wanted { half_extent: scene.half_extent, primitives: count, reach, memory };
-        let lists = lists::make(&card, Source { nodes, plates }, &wanted)?;
+        let plan = ListPlan { half_extent: scene.half_extent, primitives: count, reach, memory };
+        let lists = lists::make(&card, Source { nodes, plates }, &plan)?;
         let mut index = Index {
             nodes,
             plates,
@@ -149,9 +152,13 @@ impl<C: Card> Engine<C> {
             prune: square_within(radius),
             ..Batch::default()
         };
+        card.wait()?;
+        let start = Instant::now();
         let _sorting = if reorder { Some(self.sort(count, suffix, &mut batch)?) } else { None };
         card.launch(&format!("p2m_answer_by_list_{suffix}"), count, &batch)?;
         card.launch(&format!("p2m_answer_by_tree_{suffix}"), count, &batch)?;
+        card.wait()?;
+        counts.kernels += start.elapsed();
         let mut found = [0u32; 2];
         card.read(&numbers, cast_slice_mut(&mut found))?;
         counts.by_tree += found[0] as usize;

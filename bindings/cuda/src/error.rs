@@ -18,7 +18,7 @@ pub enum CudaError {
     Memory {
         /// The number of bytes that were asked for.
         bytes: usize,
-        /// What the driver says.
+        /// The message of the driver.
         reason: String,
     },
     /// The scene has no primitives.
@@ -30,7 +30,7 @@ pub enum CudaError {
     /// A primitive has no vertices.
     #[error("primitive {id} has no vertices")]
     NoVertices {
-        /// The primitive.
+        /// The id of the primitive.
         id: PrimitiveId,
     },
     /// There are more parts than numbers of 32 bits.

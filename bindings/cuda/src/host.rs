@@ -66,6 +66,9 @@ impl Card for HostCard {
         bytes.copy_from_slice(&bytemuck::cast_slice::<u128, u8>(memory)[..bytes.len()]);
         Ok(())
     }
+    fn wait(&self) -> Result<(), CudaError> {
+        Ok(())
+    }
     fn copy(&self, memory: &Vec<u128>, bytes: usize) -> Result<Vec<u128>, CudaError> {
         Ok(memory[..bytes.div_ceil(16)].to_vec())
     }

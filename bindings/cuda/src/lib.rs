@@ -45,6 +45,7 @@ use p2m_bvh::AabbTree;
 use p2m_core::batch::{self, BatchOptions, ClosestColumns};
 use p2m_core::{Closest, Feature, PrimitiveSet, QueryOptions, Real};
 use scene::Scene;
+use std::time::Duration;
 
 /// Options of an index on a card.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -69,13 +70,15 @@ impl Default for CudaOptions {
 }
 
 /// How the queries of a batch were answered.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Default)]
 #[non_exhaustive]
 pub struct BatchReport {
     /// The number of queries that have no list and were answered by the tree on the card.
     pub by_tree: usize,
     /// The number of queries that the processor has answered.
     pub by_processor: usize,
+    /// The time of the kernels on the card, sorting included, without transfers.
+    pub kernels: Duration,
 }
 
 /// An index on a card: a tree with its scene, and interception lists.
@@ -110,8 +113,8 @@ impl<T: Real + Pod, S: PrimitiveSet<T> + Sync> CudaIndex<T, S> {
         self.index.engine.cells_without_list()
     }
 
-    /// Answers queries into columns, in their order, as [`batch::closest_columns_into`] does. Only lower bounds may
-    /// differ.
+    /// Answers queries into columns, in their order, with the values of [`batch::closest_columns_into`] apart from lower
+    /// bounds, which are valid but may differ.
     ///
     /// The card holds four million queries at a time, for which it needs up to 500 MB besides the index.
     ///
@@ -172,7 +175,7 @@ impl<T: Real + Pod, S: PrimitiveSet<T> + Sync, C: Card> OnCard<T, S, C> {
             column.iter_mut().zip(&features).for_each(|(to, code)| *to = feature(*code));
         }
         self.decide(queries, max_distance, &undecided, &mut columns);
-        Ok(BatchReport { by_tree: counts.by_tree, by_processor: undecided.len() })
+        Ok(BatchReport { by_tree: counts.by_tree, by_processor: undecided.len(), kernels: counts.kernels })
     }
 
     /// Answers queries that the card has left by the tree of the processor.

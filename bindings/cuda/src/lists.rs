@@ -15,7 +15,7 @@ const DIVIDE_ABOVE: [u32; 6] = [16, 24, 32, 48, 64, 96];
 const LIST_LIMIT: u32 = 128;
 
 /// The size of grids, and the memory that they may take.
-pub(crate) struct Wanted {
+pub(crate) struct ListPlan {
     /// Half of the box of the scene, in the frame.
     pub(crate) half_extent: [f64; 3],
     /// The number of primitives.
@@ -55,17 +55,17 @@ struct Level<M> {
 }
 
 /// Makes the lists of a small grid around the scene and of a larger one.
-pub(crate) fn make<C: Card>(card: &C, source: Source, wanted: &Wanted) -> Result<Lists<C::Memory>, CudaError> {
-    let longest = wanted.half_extent.into_iter().fold(0.0, f64::max);
+pub(crate) fn make<C: Card>(card: &C, source: Source, plan: &ListPlan) -> Result<Lists<C::Memory>, CudaError> {
+    let longest = plan.half_extent.into_iter().fold(0.0, f64::max);
     let margin = 0.05 * longest + f64::MIN_POSITIVE;
     // Memory is counted in words of four bytes: an entry has two, an item one. While lists are made, either may have all.
-    let words = u32::try_from(wanted.memory / 4).unwrap_or(u32::MAX / 4).max(1 << 12);
+    let words = u32::try_from(plan.memory / 4).unwrap_or(u32::MAX / 4).max(1 << 12);
     let (entries, items) = (card.allocate(words as usize * 4)?, card.allocate(words as usize * 4)?);
     let mut counters = Counters::default();
     let mut grids = Vec::new();
-    let factors = [1.0, wanted.reach];
+    let factors = [1.0, plan.reach];
     for (number, factor) in factors.into_iter().enumerate().filter(|(_, factor)| *factor >= 1.0) {
-        let half = wanted.half_extent.map(|x| x * factor + margin * factor);
+        let half = plan.half_extent.map(|x| x * factor + margin * factor);
         // The first grid may take two thirds of the memory.
         let limit = if number == 0 && factors[1] >= 1.0 { words / 3 * 2 } else { words };
         let building = Building {
@@ -78,7 +78,7 @@ pub(crate) fn make<C: Card>(card: &C, source: Source, wanted: &Wanted) -> Result
             list_limit: LIST_LIMIT,
             ..Building::default()
         };
-        let grid = grid(half, wanted.primitives, counters.entries);
+        let grid = grid(half, plan.primitives, counters.entries);
         if let Some(grid) = make_grid(card, grid, building, limit, &mut counters)? {
             grids.push(grid);
         }

@@ -131,20 +131,19 @@ impl<T: Real + Pod, S: PrimitiveSet<T>> Builder<'_, T, S> {
         let mut node = Node { bounds: [[[f32::INFINITY; 4], [f32::NEG_INFINITY; 4]]; 3], first: [0; 4], count: [0; 4] };
         let mut all = children[0].bounds;
         for (slot, child) in children.iter().enumerate() {
-            for axis in 0..3 {
-                for side in 0..2 {
-                    node.bounds[axis][side][slot] = child.bounds[side][axis];
-                }
-                all[0][axis] = all[0][axis].min(child.bounds[0][axis]);
-                all[1][axis] = all[1][axis].max(child.bounds[1][axis]);
+            for (axis, bounds) in node.bounds.iter_mut().enumerate() {
+                bounds[0][slot] = child.bounds[0][axis];
+                bounds[1][slot] = child.bounds[1][axis];
             }
+            all[0] = std::array::from_fn(|axis| all[0][axis].min(child.bounds[0][axis]));
+            all[1] = std::array::from_fn(|axis| all[1][axis].max(child.bounds[1][axis]));
             (node.first[slot], node.count[slot]) = (child.first, child.count);
         }
         self.scene.nodes[number as usize] = node;
         Child { bounds: all, first: number, count: 0 }
     }
 
-    /// Adds primitives.
+    /// Adds the primitives of a leaf.
     fn run(&mut self, ids: &[PrimitiveId]) -> Result<Child, CudaError> {
         let first = self.scene.plates.len();
         let mut bounds = Aabb::empty();

@@ -220,7 +220,7 @@ fn agrees_on_models() {
         let Some(file) = model_file(name) else { continue };
         let soup = p2m_mixed::read_scene(&file).unwrap().soup;
         let mut rng = rng(name, 0);
-        let bounds = AabbTree::new(&*soup).unwrap().tree().bounds().clone();
+        let bounds = *AabbTree::new(&*soup).unwrap().tree().bounds();
         let count = amount(200_000, 2_000);
         let sizes = bounds.max - bounds.min;
         let mut queries: Vec<Point3<f64>> = (0..count)

@@ -1,0 +1,122 @@
+//! Compares a card with the processor, and prints its speed: card [QUERIES] FILE..
+//!
+//! For each scene and four sets of queries, all columns of all answers are compared bit for bit. The sets are uniform in
+//! the box (1x), near the surface within a hundredth of the diagonal (near), on it (surface), and uniform in ten boxes
+//! (10x). Times are those of the kernels, and of the whole call from the memory of the processor.
+
+use nalgebra::{Point3, Vector3};
+use p2m_bvh::AabbTree;
+use p2m_core::batch::{BatchOptions, ClosestColumns, closest_columns_into};
+use p2m_core::{Feature, QueryOptions, Soup};
+use p2m_cuda::{CudaIndex, CudaOptions};
+use rand::{RngExt, SeedableRng};
+use rand_chacha::ChaCha8Rng;
+use std::error::Error;
+use std::process::ExitCode;
+use std::time::Instant;
+
+/// The columns of a batch.
+struct Answers {
+    distance: Vec<f64>,
+    primitive: Vec<u32>,
+    point: Vec<Point3<f64>>,
+    feature: Vec<Feature>,
+    weights: Vec<[f64; 3]>,
+}
+
+impl Answers {
+    fn new(count: usize) -> Self {
+        Self {
+            distance: vec![0.0; count],
+            primitive: vec![0; count],
+            point: vec![Point3::origin(); count],
+            feature: vec![Feature::Face; count],
+            weights: vec![[0.0; 3]; count],
+        }
+    }
+
+    fn columns(&mut self) -> ClosestColumns<'_, f64> {
+        ClosestColumns::default()
+            .with_distance(&mut self.distance)
+            .with_primitive(&mut self.primitive)
+            .with_point(&mut self.point)
+            .with_feature(&mut self.feature)
+            .with_barycentric(&mut self.weights)
+    }
+
+    /// Returns the number of queries with other bits.
+    fn differences(&self, other: &Self) -> usize {
+        let bits = |all: &Self, i: usize| {
+            let point = all.point[i].coords.map(f64::to_bits);
+            (all.distance[i].to_bits(), all.primitive[i], point, all.feature[i], all.weights[i].map(f64::to_bits))
+        };
+        (0..self.distance.len()).filter(|&i| bits(self, i) != bits(other, i)).count()
+    }
+}
+
+/// Returns queries of a set.
+fn queries(set: &str, soup: &Soup<f64>, count: usize) -> Vec<Point3<f64>> {
+    let mut rng = ChaCha8Rng::seed_from_u64(7);
+    let positions = soup.positions();
+    let (low, high) = positions.iter().fold((positions[0], positions[0]), |(low, high), p| (low.inf(p), high.sup(p)));
+    let (size, centre) = (high - low, nalgebra::center(&low, &high));
+    let mut cube = move || Vector3::from_fn(|_, _| rng.random::<f64>() - 0.5);
+    let mut rng = ChaCha8Rng::seed_from_u64(8);
+    let mut on_surface = move || {
+        let triangle = soup.triangles()[rng.random_range(0..soup.triangles().len())];
+        let [a, b, c] = triangle.map(|vertex| positions[vertex as usize].coords);
+        let (s, t) = (rng.random::<f64>().sqrt(), rng.random::<f64>());
+        Point3::from(a * (1.0 - s) + b * (s * (1.0 - t)) + c * (s * t))
+    };
+    let query = |_| match set {
+        "1x" => centre + cube().component_mul(&size),
+        "10x" => centre + cube().component_mul(&size) * 10.0,
+        "near" => on_surface() + cube() * (0.02 * size.norm()),
+        _ => on_surface(),
+    };
+    (0..count).map(query).collect()
+}
+
+fn main() -> Result<ExitCode, Box<dyn Error>> {
+    let mut arguments = std::env::args().skip(1).peekable();
+    let count = arguments.next_if(|first| first.parse::<usize>().is_ok()).map_or(Ok(10_000_000), |n| n.parse())?;
+    let mut differences = 0;
+    for file in arguments {
+        let soup = p2m_mixed::read_scene(file.as_ref())?.soup;
+        let tree = AabbTree::new(&*soup)?;
+        let start = Instant::now();
+        let index = CudaIndex::new(tree, &CudaOptions::default())?;
+        let [scene, lists] = index.memory();
+        println!(
+            "{file}: uploaded with lists in {:.3} s, {} and {} bytes per primitive, {} cells without a list",
+            start.elapsed().as_secs_f64(),
+            scene / soup.triangles().len().max(1),
+            lists / soup.triangles().len().max(1),
+            index.cells_without_list()
+        );
+        for set in ["1x", "near", "surface", "10x"] {
+            let queries = queries(set, &soup, count);
+            let (mut found, mut expected) = (Answers::new(count), Answers::new(count));
+            // The first call is not measured.
+            index.closest_columns_into(&queries, f64::INFINITY, found.columns())?;
+            let start = Instant::now();
+            let report = index.closest_columns_into(&queries, f64::INFINITY, found.columns())?;
+            let whole = start.elapsed();
+            let options = QueryOptions::default();
+            closest_columns_into(index.tree(), &queries, &options, &BatchOptions::default(), expected.columns());
+            let different = found.differences(&expected);
+            differences += different;
+            #[allow(clippy::cast_precision_loss, reason = "a number of queries")]
+            let rate = |seconds: f64| count as f64 / seconds / 1e6;
+            println!(
+                "  {set}: {:.0} million queries per second by kernels, {:.0} with transfers, {} by the tree, {} by the \
+                 processor, {different} differences",
+                rate(report.kernels.as_secs_f64()),
+                rate(whole.as_secs_f64()),
+                report.by_tree,
+                report.by_processor
+            );
+        }
+    }
+    Ok(if differences == 0 { ExitCode::SUCCESS } else { ExitCode::FAILURE })
+}
