@@ -77,7 +77,19 @@ fn queries(set: &str, soup: &Soup<f64>, count: usize) -> Vec<Point3<f64>> {
     (0..count).map(query).collect()
 }
 
-fn main() -> Result<ExitCode, Box<dyn Error>> {
+fn main() -> ExitCode {
+    match compare() {
+        Ok(0) => ExitCode::SUCCESS,
+        Ok(_) => ExitCode::FAILURE,
+        Err(error) => {
+            eprintln!("error: {error}");
+            ExitCode::FAILURE
+        }
+    }
+}
+
+/// Returns the number of answers that differ.
+fn compare() -> Result<usize, Box<dyn Error>> {
     let mut arguments = std::env::args().skip(1).peekable();
     let count = arguments.next_if(|first| first.parse::<usize>().is_ok()).map_or(Ok(10_000_000), |n| n.parse())?;
     let mut differences = 0;
@@ -118,5 +130,5 @@ fn main() -> Result<ExitCode, Box<dyn Error>> {
             );
         }
     }
-    Ok(if differences == 0 { ExitCode::SUCCESS } else { ExitCode::FAILURE })
+    Ok(differences)
 }
