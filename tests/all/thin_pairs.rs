@@ -126,21 +126,42 @@ fn check(scenes: &[Vec<Vec<[f64; 3]>>; 2], is_ordinary: bool, text: &str) -> boo
     !intersecting.is_empty()
 }
 
+/// Returns the scenes of a case, and the exponent of two of their scale.
+fn scenes_of(case: u64) -> ([Vec<Vec<[f64; 3]>>; 2], i32) {
+    let mut rng = rng("pairs of thin triangles", case);
+    let mut scenes = thin_scenes(&mut rng);
+    // Squares lose digits or overflow at these scales, and distances of the smallest scenes round to zero.
+    let exponent =
+        [0, 0, 0, [-1070, -1000, -530, -420, 420, 530, 1000][rng.random_range(0..7)]][rng.random_range(0..4)];
+    let scale = |x: f64| x * 2f64.powi(exponent / 2) * 2f64.powi(exponent - exponent / 2);
+    scenes.iter_mut().flatten().flatten().flatten().for_each(|x| *x = scale(*x));
+    (scenes, exponent)
+}
+
 #[test]
 fn pairs_of_thin_triangles_are_exact() {
     let mut intersecting = 0;
     let all = cases(1_000_000, 1_200);
     for case in all.clone() {
-        let mut rng = rng("pairs of thin triangles", case);
-        let mut scenes = thin_scenes(&mut rng);
-        // Squares lose digits or overflow at these scales, and distances of the smallest scenes round to zero.
-        let exponent =
-            [0, 0, 0, [-1070, -1000, -530, -420, 420, 530, 1000][rng.random_range(0..7)]][rng.random_range(0..4)];
-        let scale = |x: f64| x * 2f64.powi(exponent / 2) * 2f64.powi(exponent - exponent / 2);
-        scenes.iter_mut().flatten().flatten().flatten().for_each(|x| *x = scale(*x));
+        let (scenes, exponent) = scenes_of(case);
         intersecting += usize::from(check(&scenes, exponent == 0, &format!("scaled by 2^{exponent}")));
     }
     assert!(all.have_more_than(300_000, intersecting), "{intersecting}");
+}
+
+/// Squares overflow at these scales, and so did heights along lines in an earlier version.
+#[test]
+fn pairs_of_thin_triangles_are_exact_at_large_scales() {
+    let mut intersecting = 0;
+    let all = cases(100_000, 600);
+    for case in all.clone() {
+        let mut rng = rng("pairs at large scales", case);
+        let mut scenes = thin_scenes(&mut rng);
+        let scale = 2f64.powi(rng.random_range(400..1000));
+        scenes.iter_mut().flatten().flatten().flatten().for_each(|x| *x *= scale);
+        intersecting += usize::from(check(&scenes, false, &format!("scaled by {scale:e}")));
+    }
+    assert!(all.have_more_than(30_000, intersecting), "{intersecting}");
 }
 
 /// Inputs that an earlier version had wrong.
@@ -167,4 +188,8 @@ fn thin_triangles_that_were_left_out_are_found() {
         let [a, b] = scenes;
         assert!(check(&[b, a], true, "it was wrong"));
     }
+    // Products of coordinates of 2^530 overflow, and are no numbers in sum.
+    let (scenes, exponent) = scenes_of(131_090);
+    assert_eq!(exponent, 530);
+    assert!(check(&scenes, false, "it was wrong"));
 }

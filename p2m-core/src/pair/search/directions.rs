@@ -8,6 +8,8 @@ use crate::kernel::vector::{V3, dot, power_of_two};
 
 /// A frame resolves what is at most this many units away from its centre.
 const MAX_UNITS: f64 = power_of_two(10);
+/// The largest sum of all magnitudes with which sums of heights cannot overflow.
+const MAX_SIZE: f64 = power_of_two(1000);
 /// The part of all magnitudes by which heights are wrong that are computed in f64, the vertices of which a motion has
 /// rounded, and keys (docs/proofs/pairs.md).
 const ROUNDING: f64 = power_of_two(-44);
@@ -33,13 +35,17 @@ pub struct Directions {
 }
 
 impl Directions {
-    /// Returns the directions for two sides, unless f32 does not resolve one of them in the frame of the other.
+    /// Returns the directions for two sides, unless f32 does not resolve one of them in the frame of the other, or their
+    /// sizes are near the end of the range.
     #[must_use]
     pub fn new(sides: [&dyn PairSide; 2]) -> Option<Self> {
         let bounds = sides.map(PairSide::bounds);
         let frames = sides.map(PairSide::placement);
         let size = frames[0].size + frames[1].size;
         let margin = size * ROUNDING;
+        if size > MAX_SIZE {
+            return None;
+        }
         for (frame, other) in frames.iter().zip([&bounds[1], &bounds[0]]) {
             let reach = |k: usize| (other.min[k] - frame.centre[k]).abs().max((other.max[k] - frame.centre[k]).abs());
             let farthest = reach(0).max(reach(1)).max(reach(2));

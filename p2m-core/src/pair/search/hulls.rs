@@ -3,10 +3,12 @@
 use super::height::{extent, unit};
 use super::place::NO_NODE;
 use crate::kernel::arithmetic::cross;
-use crate::kernel::vector::{V3, dot, sub};
+use crate::kernel::vector::{V3, dot, power_of_two, sub};
 use crate::pair::{Hull, Pairs, bounds_of, nearest_of_hulls};
 use crate::{Aabb, PrimitiveId};
 
+/// The margin below which products of two lengths of the scenes cannot overflow: it is 2^-44 of their sizes.
+const MAX_MARGIN_OF_PRODUCTS: f64 = power_of_two(450);
 /// The largest number of primitives of a packet.
 pub const MAX_HULLS: usize = 16;
 
@@ -97,7 +99,7 @@ pub(super) fn search_packets(a: &Hulls, b: &Hulls, margin: Option<f64>, directio
         if gap > prune || pairs.is_settled(gap, || ids) {
             return;
         }
-        if margin.is_some_and(|margin| is_apart(a, i, b, j, direction, prune.sqrt() + margin)) {
+        if margin.is_some_and(|margin| is_apart([a, b], [i, j], direction, prune.sqrt(), margin)) {
             return;
         }
         pairs.offer_result(ids, nearest_of_hulls(a.hull(i), b.hull(j), pairs.kernel_limit()));
@@ -120,10 +122,11 @@ pub(super) fn search_packets(a: &Hulls, b: &Hulls, margin: Option<f64>, directio
     }
 }
 
-/// Returns whether two hulls are farther apart than `reach` along a direction from the first to the second, along the
-/// normal of one of them, or along the line through their first vertices.
-fn is_apart(a: &Hulls, i: usize, b: &Hulls, j: usize, direction: Option<V3>, reach: f64) -> bool {
+/// Returns whether two hulls are farther apart than a limit and a margin along a direction from the first to the second,
+/// along the normal of one of them, or along the line through their first vertices.
+fn is_apart([a, b]: [&Hulls; 2], [i, j]: [usize; 2], direction: Option<V3>, limit: f64, margin: f64) -> bool {
     let (p, q) = (a.hull(i), b.hull(j));
+    let reach = limit + margin;
     let gap = |direction: V3| {
         let [_, end] = extent(p.iter().map(|vertex| dot(sub(*vertex, p[0]), direction)));
         let [start, _] = extent(q.iter().map(|vertex| dot(sub(*vertex, p[0]), direction)));
@@ -136,7 +139,7 @@ fn is_apart(a: &Hulls, i: usize, b: &Hulls, j: usize, direction: Option<V3>, rea
         return true;
     }
     let line = sub(q[0], p[0]);
-    gap(line) > reach * dot(line, line).sqrt()
+    margin < MAX_MARGIN_OF_PRODUCTS && gap(line) > reach * dot(line, line).sqrt()
 }
 
 /// Returns the numbers of the bits that are set.
