@@ -124,7 +124,8 @@ template <class S> P2M_CALLED void write(const Batch &b, uint32_t i, V3 q, const
     double distance = best.is_found ? root(best.nearest.square) : P2M_INFINITY;
     bool is_within = best.is_found && distance <= b.radius;
     if (b.columns.lower_bound) {
-        double bound = smaller(best.certified, (is_within ? distance : b.radius) * DOWN);
+        // A radius that is NaN bounds nothing.
+        double bound = smaller((is_within ? distance : b.radius) * DOWN, best.certified);
         double below = bound * DOWN - 2 * 0x1p-1074;
         ((S *)b.columns.lower_bound)[i] = below > 0 ? round_down<S>(below) : (S)0;
         if (!is_within && !(bound < P2M_INFINITY)) ((S *)b.columns.lower_bound)[i] = (S)P2M_INFINITY;
@@ -169,7 +170,7 @@ template <class S> P2M_FUNCTION Best start(const Batch &b) {
 
 template <class S> P2M_FUNCTION void finish(const Batch &b, uint32_t i, V3 q, const Best &best) {
     if (best.is_undecided)
-        b.undecided[take(b.undecided_count, 1)] = i;
+        b.undecided[take(b.undecided_count, 1u)] = i;
     else
         write<S>(b, i, q, best);
 }
@@ -182,11 +183,11 @@ template <class S> P2M_FUNCTION void answer_by_list(uint32_t thread, const Batch
     F3 p;
     Entry list;
     if (!place(index, q, p)) {
-        b.undecided[take(b.undecided_count, 1)] = i;
+        b.undecided[take(b.undecided_count, 1u)] = i;
         return;
     }
     if (!locate(index.grids, index.grid_count, index.entries, p, list)) {
-        b.rest[take(b.rest_count, 1)] = i;
+        b.rest[take(b.rest_count, 1u)] = i;
         return;
     }
     const float fixed = fixed_error(p);
@@ -250,7 +251,7 @@ template <class S> P2M_FUNCTION void count_key(uint32_t i, const Batch &b) {
         key |= is_far ? KEYS / 2 : 0;
     }
     b.keys[i] = key;
-    b.ranks[i] = take(b.starts + key, 1);
+    b.ranks[i] = take(b.starts + key, 1u);
 }
 P2M_FUNCTION void sum_keys(uint32_t i, const Batch &b) {
     uint32_t sum = 0;

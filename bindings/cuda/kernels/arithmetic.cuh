@@ -8,6 +8,7 @@
 #ifdef __CUDACC__
 using uint8_t = unsigned char;
 using uint32_t = unsigned int;
+using uint64_t = unsigned long long;
 #define P2M_FUNCTION __device__ __forceinline__
 #define P2M_CALLED __device__ __noinline__
 #else

@@ -43,6 +43,11 @@ extern "C" int p2m_nearest(const double *query, const double *numbers, int count
     for (int i = 0; i < 9; i++) out[i] = all[i];
     return outcome;
 }
+// Whether some of a capacity can be taken.
+extern "C" bool p2m_take_of(uint64_t *counter, uint32_t amount, uint32_t capacity) {
+    uint32_t first;
+    return take_of(counter, amount, capacity, first);
+}
 // The square of a plate, for tests of its error.
 extern "C" float p2m_plate_square(const Plate *plate, const float *p) { return square_of(*plate, F3{p[0], p[1], p[2]}); }
 #endif

@@ -52,19 +52,28 @@ struct Cell {
 };
 
 // What the threads of a level share.
+// They count what is asked for, also where it is refused, so they have 64 bits.
 struct Counters {
-    uint32_t list_items, entries, cells, candidates; // how many there are
-    uint32_t left_out;                               // cells without a list
+    uint64_t list_items, entries, cells, candidates; // how many there are
+    uint64_t left_out;                               // cells without a list
 };
 
-P2M_FUNCTION uint32_t take(uint32_t *counter, uint32_t amount) {
+// Adds to a counter, and returns what it was.
+template <class T> P2M_FUNCTION T take(T *counter, T amount) {
 #ifdef __CUDACC__
     return atomicAdd(counter, amount);
 #else
-    uint32_t before = *counter;
+    T before = *counter;
     *counter += amount;
     return before;
 #endif
+}
+
+// Takes some of a capacity. Returns whether they fit; `first` is the number of the first one.
+P2M_FUNCTION bool take_of(uint64_t *counter, uint32_t amount, uint32_t capacity, uint32_t &first) {
+    uint64_t before = take(counter, (uint64_t)amount);
+    first = (uint32_t)before;
+    return before + amount <= capacity;
 }
 
 // The corners of a cell, its centre, and the anchors: points of the scene near them, with upper bounds on the distances
@@ -193,15 +202,14 @@ P2M_FUNCTION void make_list(uint32_t i, const Building &b) {
     bool is_complete = count <= MAX_CANDIDATES;
     Entry entry = {0, NO_LIST};
     if (!b.is_last_level && (!is_complete || (uint32_t)count > b.divide_above)) {
-        uint32_t from = FROM_TREE;
-        if (is_complete) {
-            from = take(&b.counters->candidates, count);
-            if (from > b.candidate_capacity || b.candidate_capacity - from < (uint32_t)count) from = FROM_TREE;
-            for (int k = 0; from != FROM_TREE && k < count; k++) b.next_candidates[from + k] = found[k];
-        }
-        uint32_t children = take(&b.counters->entries, 8), at = take(&b.counters->cells, 8);
-        if (children <= b.entry_capacity && b.entry_capacity - children >= 8 && at <= b.cell_capacity &&
-            b.cell_capacity - at >= 8) {
+        uint32_t from = FROM_TREE, children, at;
+        if (is_complete && take_of(&b.counters->candidates, count, b.candidate_capacity, from))
+            for (int k = 0; k < count; k++) b.next_candidates[from + k] = found[k];
+        else
+            from = FROM_TREE;
+        // Cells are written whenever they are counted.
+        if (take_of(&b.counters->entries, 8, b.entry_capacity, children) &&
+            take_of(&b.counters->cells, 8, b.cell_capacity, at)) {
             entry = {children, DIVIDED};
             for (uint32_t k = 0; k < 8; k++) {
                 b.entries[children + k] = {0, NO_LIST};
@@ -211,12 +219,12 @@ P2M_FUNCTION void make_list(uint32_t i, const Building &b) {
             }
         }
     } else if (is_complete && (uint32_t)count <= b.list_limit) {
-        uint32_t from = take(&b.counters->list_items, count);
-        if (from <= b.item_capacity && b.item_capacity - from >= (uint32_t)count) {
+        uint32_t from;
+        if (take_of(&b.counters->list_items, count, b.item_capacity, from)) {
             for (int k = 0; k < count; k++) b.items[from + k] = found[k];
             entry = {from, (uint32_t)count};
         }
     }
-    if (entry.count == NO_LIST) take(&b.counters->left_out, 1);
+    if (entry.count == NO_LIST) take(&b.counters->left_out, (uint64_t)1);
     b.entries[cell.entry] = entry;
 }

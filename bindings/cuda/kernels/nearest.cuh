@@ -2,7 +2,7 @@
 //
 // It has the operations of p2m-core/src/kernel/{triangle,edge,face}.rs in the same order, so its bits are the same.
 // What that kernel leaves to slower code is `UNDECIDED` here, and a processor decides it: scales beyond the plain range,
-// faces of slivers, and weights whose sign may be due to rounding. `tests/kernel.rs` compares both, on the host.
+// faces of slivers, and weights whose sign may be due to rounding. `src/tests.rs` compares both, on the host.
 #pragma once
 
 #include "arithmetic.cuh"

@@ -11,7 +11,7 @@ struct alignas(16) Node {
 };
 static_assert(sizeof(Node) == 128, "a cache line");
 
-// A depth of more than this is refused when a tree is uploaded, so no search exceeds its stack.
+// No tree is deeper (src/scene.rs checks it), so no search exceeds its stack.
 constexpr int MAX_DEPTH = 40, STACK = 3 * MAX_DEPTH + 4;
 
 P2M_FUNCTION float gap(float low, float high, float x) { return larger(larger(low - x, x - high), 0.0f); }

@@ -33,6 +33,12 @@ pub enum CudaError {
         /// The id of the primitive.
         id: PrimitiveId,
     },
+    /// The tree is too deep for the stacks of the kernels.
+    #[error("the tree has {depth} levels, which are too many for a card")]
+    TooDeep {
+        /// The number of levels.
+        depth: usize,
+    },
     /// There are more parts than numbers of 32 bits.
     #[error("{count} are too many for numbers of 32 bits")]
     TooMany {

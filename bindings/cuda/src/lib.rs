@@ -43,7 +43,7 @@ use engine::{Answers, Engine};
 use nalgebra::Point3;
 use p2m_bvh::AabbTree;
 use p2m_core::batch::{self, BatchOptions, ClosestColumns};
-use p2m_core::{Closest, Feature, PrimitiveSet, QueryOptions, Real};
+use p2m_core::{Feature, PrimitiveSet, QueryOptions, Real};
 use scene::Scene;
 use std::time::Duration;
 
@@ -54,10 +54,10 @@ pub struct CudaOptions {
     /// The number of the card, from 0. The default is 0.
     pub ordinal: usize,
     /// The size of the space with lists, in boxes of the scene around its centre: 10.5 by default. Queries farther away
-    /// search the tree. Below 1 there are lists for the box alone.
+    /// search the tree. Below 1 and above 10^6 there are lists for the box alone.
     pub reach: f64,
-    /// The most bytes that lists may take. The default is about 280 for each primitive, and more in scenes of more than
-    /// 100,000.
+    /// The most bytes that lists may take, up to 4 GB. The default is about 280 for each primitive, and more in scenes of
+    /// more than 100,000. While lists are made, the card needs twice as many, and up to 400 for each cell of a level.
     pub memory: Option<usize>,
     /// Whether queries are sorted on the card. Sorting is wasted on queries whose order is spatially coherent.
     pub reorder: bool,
@@ -181,31 +181,26 @@ impl<T: Real + Pod, S: PrimitiveSet<T> + Sync, C: Card> OnCard<T, S, C> {
     /// Answers queries that the card has left by the tree of the processor.
     fn decide(&self, queries: &[Point3<T>], max_distance: T, numbers: &[u32], columns: &mut ClosestColumns<'_, T>) {
         let left: Vec<Point3<T>> = numbers.iter().map(|&i| queries[i as usize]).collect();
-        let mut answers: Vec<Option<Closest<T>>> = vec![None; left.len()];
         let options = QueryOptions::default().with_max_distance(max_distance);
-        batch::closest_points_into(&self.tree, &left, &options, &BatchOptions::default(), &mut answers);
-        let nan = T::round_from_f64(f64::NAN);
-        for (&i, answer) in numbers.iter().zip(answers) {
-            let i = i as usize;
-            if let Some(column) = &mut columns.distance {
-                column[i] = answer.map_or(T::INFINITY, |a| a.distance);
-            }
-            if let Some(column) = &mut columns.primitive {
-                column[i] = answer.map_or(ClosestColumns::<T>::NO_PRIMITIVE, |a| a.primitive.number());
-            }
-            if let Some(column) = &mut columns.point {
-                column[i] = answer.map_or(Point3::new(nan, nan, nan), |a| a.point);
-            }
-            if let Some(column) = &mut columns.feature {
-                column[i] = answer.map_or(Feature::Vertex(0), |a| a.feature);
-            }
-            if let Some(column) = &mut columns.barycentric {
-                column[i] = answer.map_or([nan; 3], |a| a.barycentric);
-            }
-            if let Some(column) = &mut columns.lower_bound {
-                // Without an answer nothing is within the largest distance.
-                column[i] = answer.map_or(T::INFINITY, |a| a.lower_bound);
-            }
+        macro_rules! columns {
+            ($($column:ident: $method:ident, $default:expr;)*) => {
+                // A column that is not wanted is not computed.
+                $(let mut $column = columns.$column.as_ref().map(|_| vec![$default; left.len()]);)*
+                let mut found = ClosestColumns::default();
+                $(if let Some(column) = &mut $column { found = found.$method(column); })*
+                batch::closest_columns_into(&self.tree, &left, &options, &BatchOptions::default(), found);
+                $(if let (Some(to), Some(from)) = (&mut columns.$column, &$column) {
+                    numbers.iter().zip(from).for_each(|(&i, value)| to[i as usize] = *value);
+                })*
+            };
+        }
+        columns! {
+            distance: with_distance, T::zero();
+            primitive: with_primitive, 0;
+            point: with_point, Point3::origin();
+            feature: with_feature, Feature::Face;
+            barycentric: with_barycentric, [T::zero(); 3];
+            lower_bound: with_lower_bound, T::zero();
         }
     }
 }

@@ -5,6 +5,8 @@ use crate::card::Card;
 use crate::raw::{Building, Cell, Counters, FROM_TREE, Grid};
 use bytemuck::{Zeroable, bytes_of, bytes_of_mut, cast_slice};
 
+/// The size of the largest grid, in boxes of the scene. Beyond it there are no cells.
+const MAX_REACH: f64 = 1e6;
 /// The largest number of roots along a side of a grid.
 const MAX_ROOTS: f64 = 64.0;
 /// The number of levels below the roots, at most.
@@ -59,12 +61,12 @@ pub(crate) fn make<C: Card>(card: &C, source: Source, plan: &ListPlan) -> Result
     let longest = plan.half_extent.into_iter().fold(0.0, f64::max);
     let margin = 0.05 * longest + f64::MIN_POSITIVE;
     // Memory is counted in words of four bytes: an entry has two, an item one. While lists are made, either may have all.
-    let words = u32::try_from(plan.memory / 4).unwrap_or(u32::MAX / 4).max(1 << 12);
+    let words = u32::try_from(plan.memory / 4).unwrap_or(u32::MAX).clamp(1 << 12, u32::MAX / 4);
     let (entries, items) = (card.allocate(words as usize * 4)?, card.allocate(words as usize * 4)?);
     let mut counters = Counters::default();
     let mut grids = Vec::new();
     let factors = [1.0, plan.reach];
-    for (number, factor) in factors.into_iter().enumerate().filter(|(_, factor)| *factor >= 1.0) {
+    for (number, factor) in factors.into_iter().enumerate().filter(|(_, factor)| (1.0..=MAX_REACH).contains(factor)) {
         let half = plan.half_extent.map(|x| x * factor + margin * factor);
         // The first grid may take two thirds of the memory.
         let limit = if number == 0 && factors[1] >= 1.0 { words / 3 * 2 } else { words };
@@ -83,20 +85,21 @@ pub(crate) fn make<C: Card>(card: &C, source: Source, plan: &ListPlan) -> Result
             grids.push(grid);
         }
     }
-    let (entry_bytes, item_bytes) = (counters.entries as usize * 8, counters.list_items as usize * 4);
+    let bytes = |count: u64, size: usize| usize::try_from(count).map_or(usize::MAX, |count| count * size);
+    let (entry_bytes, item_bytes) = (bytes(counters.entries, 8), bytes(counters.list_items, 4));
     let (entries, items) = (card.copy(&entries, entry_bytes)?, card.copy(&items, item_bytes)?);
-    Ok(Lists { grids, entries, items, memory: entry_bytes + item_bytes, left_out: u64::from(counters.left_out) })
+    Ok(Lists { grids, entries, items, memory: entry_bytes + item_bytes, left_out: counters.left_out })
 }
 
 /// Returns a grid over a box around the origin.
 #[allow(clippy::cast_possible_truncation, clippy::cast_precision_loss, reason = "small numbers")]
-fn grid(half: [f64; 3], primitives: usize, first_entry: u32) -> Grid {
+fn grid(half: [f64; 3], primitives: usize, first_entry: u64) -> Grid {
     let longest = half.into_iter().fold(0.0, f64::max);
     let roots = (primitives as f64).cbrt().clamp(8.0, MAX_ROOTS);
     let side = (2.0 * longest / roots).log2().ceil().clamp(-100.0, 30.0).exp2();
     let low = half.map(|x| (-x / side).floor() as i32);
     let cells: [i32; 3] = std::array::from_fn(|k| (half[k] / side).floor() as i32 + 1 - low[k]);
-    Grid { low, cells, levels: 0, per_cell: side.recip() as f32, first_entry }
+    Grid { low, cells, levels: 0, per_cell: side.recip() as f32, first_entry: first_entry as u32 }
 }
 
 /// Makes the lists of a grid. Returns `None` if there is no memory for those of its roots.
@@ -107,12 +110,14 @@ fn make_grid<C: Card>(
     limit: u32,
     counters: &mut Counters,
 ) -> Result<Option<Grid>, CudaError> {
-    let roots = roots(&grid);
     let before = *counters;
-    let entries = u32::try_from(roots.len()).map_or(u32::MAX, |count| before.entries.saturating_add(count));
-    if entries > building.entry_capacity {
+    let root_count =
+        grid.cells.iter().fold(1u64, |count, &cells| count.saturating_mul(u64::from(cells.unsigned_abs())));
+    let entries = before.entries.saturating_add(root_count);
+    if entries > u64::from(building.entry_capacity) {
         return Ok(None);
     }
+    let roots = roots(&grid);
     let mut level = Level {
         cells: card.upload(cast_slice(&roots))?,
         cell_count: roots.len(),
@@ -122,7 +127,7 @@ fn make_grid<C: Card>(
     };
     let mut above: Option<Level<C::Memory>> = None;
     let mut shared = card.allocate(size_of::<Counters>())?;
-    let fits = |after: &Counters| after.list_items.saturating_add(after.entries.saturating_mul(2)) <= limit;
+    let fits = |after: &Counters| after.list_items + 2 * after.entries <= u64::from(limit);
     // The choice of the number of candidates above which the cells of the level above are divided.
     let mut choice = 0;
     loop {
@@ -130,9 +135,11 @@ fn make_grid<C: Card>(
         if !fits(&after) {
             choice += 1;
             let Some(parents) = &above else { return Ok(None) };
-            if let Some(divide_above) = DIVIDE_ABOVE.get(choice) {
-                let (_, children) = make_level(card, &mut building, parents, &mut shared, Some(*divide_above))?;
-                level = children;
+            let divided = DIVIDE_ABOVE
+                .get(choice)
+                .map(|divide_above| make_level(card, &mut building, parents, &mut shared, Some(*divide_above)));
+            if let Some(divided) = divided {
+                level = divided?.1;
             } else {
                 // The level above is the last one, which did fit.
                 level = above.take().expect("it is some");
@@ -142,11 +149,15 @@ fn make_grid<C: Card>(
         }
         // A level after a higher choice is the last one.
         if choice == 0 && grid.levels < MAX_LEVELS {
-            let (divided, children) = make_level(card, &mut building, &level, &mut shared, Some(DIVIDE_ABOVE[0]))?;
-            if children.cell_count > 0 && fits(&divided) {
-                above = Some(std::mem::replace(&mut level, children));
-                grid.levels += 1;
-                continue;
+            match make_level(card, &mut building, &level, &mut shared, Some(DIVIDE_ABOVE[0])) {
+                Ok((divided, children)) if children.cell_count > 0 && fits(&divided) => {
+                    above = Some(std::mem::replace(&mut level, children));
+                    grid.levels += 1;
+                    continue;
+                }
+                // Without memory to divide them, these cells are those of the last level.
+                Ok(_) | Err(CudaError::Memory { .. }) => {}
+                Err(error) => return Err(error),
             }
             // The entries of children do not fit, so the lists of this level are made again.
             let (_, _) = make_level(card, &mut building, &level, &mut shared, None)?;
@@ -188,7 +199,7 @@ fn make_level<C: Card>(
     };
     card.launch("p2m_make_list", level.cell_count, building)?;
     card.read(shared, bytes_of_mut(&mut counters))?;
-    let cell_count = (counters.cells as usize).min(children);
+    let cell_count = usize::try_from(counters.cells).map_or(children, |cells| cells.min(children));
     let next = Level { cells, cell_count, candidates: next_candidates, side: level.side / 2.0, before: counters };
     Ok((counters, next))
 }

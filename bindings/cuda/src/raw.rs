@@ -114,11 +114,11 @@ pub(crate) const FROM_TREE: u32 = u32::MAX;
 #[repr(C)]
 #[derive(Clone, Copy, Debug, Default, Pod, Zeroable)]
 pub(crate) struct Counters {
-    pub(crate) list_items: u32,
-    pub(crate) entries: u32,
-    pub(crate) cells: u32,
-    pub(crate) candidates: u32,
-    pub(crate) left_out: u32,
+    pub(crate) list_items: u64,
+    pub(crate) entries: u64,
+    pub(crate) cells: u64,
+    pub(crate) candidates: u64,
+    pub(crate) left_out: u64,
 }
 
 #[repr(C)]

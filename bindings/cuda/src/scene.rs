@@ -13,6 +13,8 @@ use rustc_hash::FxHashMap;
 /// (`MAX_DEPTH` in `tree.cuh`): a node of eight children takes two levels, then 14 levels divide 2^28 packets, and one
 /// more has the parts of a packet.
 const MAX_SPLIT_DEPTH: usize = 12;
+/// The largest depth of a tree (`tree.cuh`).
+const MAX_DEPTH: usize = 40;
 /// The number of plates of a leaf.
 const LEAF_PLATES: usize = 4;
 /// The ratio of height and longest edge below which any axis is as good as that of the height.
@@ -67,7 +69,20 @@ impl<T: Real + Pod> Scene<T> {
         if child.count > 0 {
             builder.node(&[child]);
         }
-        Ok(builder.scene)
+        let depth = builder.scene.depth();
+        if depth > MAX_DEPTH { Err(CudaError::TooDeep { depth }) } else { Ok(builder.scene) }
+    }
+
+    /// Returns the number of nodes on the longest path from the root.
+    fn depth(&self) -> usize {
+        let (mut longest, mut pending) = (0, vec![(0u32, 1)]);
+        while let Some((number, depth)) = pending.pop() {
+            longest = longest.max(depth);
+            let node = &self.nodes[number as usize];
+            let is_node = |slot: &usize| node.count[*slot] == 0 && node.bounds[0][0][*slot] <= node.bounds[0][1][*slot];
+            pending.extend((0..4).filter(is_node).map(|slot| (node.first[slot], depth + 1)));
+        }
+        longest
     }
 }
 

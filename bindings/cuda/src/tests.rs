@@ -147,6 +147,9 @@ fn agrees<T: Real + Pod>(
         // Lower bounds depend on the index, but they are bounds and nearly as good.
         let (bound, other) = (found.lower_bound[i].to_f64(), expected.lower_bound[i].to_f64());
         assert!(bound <= found.distance[i].to_f64(), "{query:?}");
+        if expected.primitive[i] == ClosestColumns::<T>::NO_PRIMITIVE {
+            assert!(bound <= other, "{query:?}: {bound} {other}");
+        }
         let scale = found.distance[i].to_f64() + query.coords.norm().to_f64();
         assert!(other - bound <= 1e-6 * scale || other == bound, "{query:?}: {bound} {other}");
     }
@@ -200,7 +203,9 @@ fn agrees_on_random_scenes() {
         let queries = queries(seed, &soup);
         let options = variants()[usize::try_from(seed % 3).unwrap()];
         let Some(_) = agrees(&soup, &queries, f64::INFINITY, &options) else { continue };
-        agrees(&soup, &queries, 0.5, &options);
+        for radius in [0.5, 0.0, -1.0, f64::NAN] {
+            agrees(&soup, &queries, radius, &options);
+        }
         let narrowed: Vec<_> = queries.into_iter().map(to_f32).collect();
         agrees(&narrow(&soup).expect("fits f32"), &narrowed, f32::INFINITY, &options);
     }
@@ -241,6 +246,18 @@ fn agrees_on_models() {
         println!("{name}: {report:?} of {}, {without_list} cells without a list", queries.len());
         assert!(report.by_processor < queries.len() / 4, "{report:?}");
     }
+}
+
+#[test]
+fn what_is_refused_is_counted_beyond_32_bits() {
+    let Some(card) = HostCard::open() else { return };
+    let take_of = card.function::<extern "C" fn(*mut u64, u32, u32) -> bool>("p2m_take_of");
+    let mut counter = (1 << 32) - 2u64;
+    // Numbers of 32 bits would begin at 0 again, and overwrite what is there.
+    assert!(!take_of(&raw mut counter, 8, 64) && !take_of(&raw mut counter, 8, 64));
+    assert_eq!(counter, (1 << 32) + 14);
+    let mut counter = 56;
+    assert!(take_of(&raw mut counter, 8, 64) && !take_of(&raw mut counter, 1, 64));
 }
 
 #[test]
