@@ -174,6 +174,7 @@ macro_rules! counted {
 }
 counted!(AabbTree<f64, &Soup<f64>>, KdopTree<f64, &Soup<f64>, 14>);
 
+/// Counts the visits of nodes and packets of a search.
 struct Visits<'a, 'b>(&'a mut Near<'b>, &'a Cell<usize>);
 
 impl Collector for Visits<'_, '_> {

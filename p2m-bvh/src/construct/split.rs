@@ -99,7 +99,7 @@ impl Part {
     }
 }
 
-/// What a node of the binary tree becomes.
+/// The part of the tree that a node of the binary tree becomes.
 enum Division {
     /// A leaf, which has a packet for each kind of primitives, or several ones if there are more than its lanes.
     Leaf,

@@ -241,8 +241,8 @@ impl<I: ?Sized> Path<'_, I> {
             .expect("no key exceeds infinity")
     }
 
-    /// Returns the primitives within a distance of the start to which the path comes no nearer than the start is, up to a
-    /// tolerance.
+    /// Returns the primitives within a distance of the start to which the path comes no nearer than that. A tolerance is
+    /// allowed for.
     fn opening_within<T: Real>(&self, distance: f64, tolerance: f64) -> Vec<PrimitiveId>
     where
         I: PairQuery<T>,
