@@ -42,6 +42,7 @@ mod format;
 mod index;
 pub mod kernel;
 mod kind_set;
+mod local_frame;
 mod near_query;
 pub mod pair;
 mod pointers;
@@ -121,6 +122,7 @@ pub mod engine {
     /// The collector that searches are compiled for.
     pub mod query {
         pub use crate::query::BestF64;
+        pub use crate::query::answer::square_within;
         pub use crate::stats_collector::CountedMinimum;
     }
     /// Exact projection onto rays, and the margin of ray filters.
@@ -146,6 +148,10 @@ pub mod engine {
     /// Vectors of three f64.
     pub mod vector {
         pub use crate::kernel::vector::*;
+    }
+    /// Frames of single primitives.
+    pub mod local_frame {
+        pub use crate::local_frame::*;
     }
     /// Welding of vertices.
     pub mod weld {

@@ -2,6 +2,7 @@
 
 use earcut::Earcut;
 use nalgebra::Point3;
+use p2m_core::engine::arithmetic::cross;
 use p2m_core::kernel::power_of_two;
 
 /// The largest number of vertices of a polygon in a file: 2^15. The limit bounds the time of triangulation, which is
@@ -111,11 +112,7 @@ impl Triangulator {
 
     /// Returns whether all triangles of the fan around the first corner are without area, apart from rounding.
     fn is_flat(&self) -> bool {
-        self.offsets.windows(2).all(|pair| {
-            let [a, b] = [pair[0], pair[1]];
-            let cross = [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]];
-            cross.iter().all(|x| x.abs() <= 8.0 * f64::EPSILON)
-        })
+        self.offsets.windows(2).all(|pair| cross(pair[0], pair[1]).iter().all(|x| x.abs() <= 8.0 * f64::EPSILON))
     }
 
     /// Returns whether the fan around corner `apex` is a triangulation.

@@ -1,16 +1,15 @@
 //! Compares a card with the processor, and prints its speed: card [QUERIES] FILE..
 //!
-//! For each scene and four sets of queries, all columns of all answers are compared bit for bit. The sets are uniform in
-//! the box (1x), near the surface within a hundredth of the diagonal (near), on it (surface), and uniform in ten boxes
-//! (10x). Times are those of the kernels, and of the whole call from the memory of the processor.
+//! For each scene and four sets of queries, all columns of all answers are compared bit for bit. The sets are those of
+//! p2m-bench: uniform in the box (1x), near the surface (near), on it (surface), and uniform in ten boxes (10x). Times
+//! are those of the kernels, and of the whole call from the memory of the processor.
 
-use nalgebra::{Point3, Vector3};
+use nalgebra::Point3;
 use p2m_bvh::AabbTree;
 use p2m_core::batch::{BatchOptions, ClosestColumns, closest_columns_into};
-use p2m_core::{Feature, QueryOptions, Soup};
+use p2m_core::{Feature, QueryOptions};
 use p2m_cuda::{CudaIndex, CudaOptions};
-use rand::{RngExt, SeedableRng};
-use rand_chacha::ChaCha8Rng;
+use p2m_testkit::queries::QuerySet;
 use std::error::Error;
 use std::process::ExitCode;
 use std::time::Instant;
@@ -54,29 +53,6 @@ impl Answers {
     }
 }
 
-/// Returns queries of a set.
-fn queries(set: &str, soup: &Soup<f64>, count: usize) -> Vec<Point3<f64>> {
-    let mut rng = ChaCha8Rng::seed_from_u64(7);
-    let positions = soup.positions();
-    let (low, high) = positions.iter().fold((positions[0], positions[0]), |(low, high), p| (low.inf(p), high.sup(p)));
-    let (size, centre) = (high - low, nalgebra::center(&low, &high));
-    let mut cube = move || Vector3::from_fn(|_, _| rng.random::<f64>() - 0.5);
-    let mut rng = ChaCha8Rng::seed_from_u64(8);
-    let mut on_surface = move || {
-        let triangle = soup.triangles()[rng.random_range(0..soup.triangles().len())];
-        let [a, b, c] = triangle.map(|vertex| positions[vertex as usize].coords);
-        let (s, t) = (rng.random::<f64>().sqrt(), rng.random::<f64>());
-        Point3::from(a * (1.0 - s) + b * (s * (1.0 - t)) + c * (s * t))
-    };
-    let query = |_| match set {
-        "1x" => centre + cube().component_mul(&size),
-        "10x" => centre + cube().component_mul(&size) * 10.0,
-        "near" => on_surface() + cube() * (0.02 * size.norm()),
-        _ => on_surface(),
-    };
-    (0..count).map(query).collect()
-}
-
 fn main() -> ExitCode {
     match compare() {
         Ok(0) => ExitCode::SUCCESS,
@@ -106,8 +82,8 @@ fn compare() -> Result<usize, Box<dyn Error>> {
             lists / soup.triangles().len().max(1),
             index.cells_without_list()
         );
-        for set in ["1x", "near", "surface", "10x"] {
-            let queries = queries(set, &soup, count);
+        for set in [QuerySet::Box1, QuerySet::Near, QuerySet::Surface, QuerySet::Box10] {
+            let queries = set.generate(&soup, count, 7);
             let (mut found, mut expected) = (Answers::new(count), Answers::new(count));
             // The first call is not measured.
             index.closest_columns_into(&queries, f64::INFINITY, found.columns())?;
@@ -121,8 +97,9 @@ fn compare() -> Result<usize, Box<dyn Error>> {
             #[allow(clippy::cast_precision_loss, reason = "a number of queries")]
             let rate = |seconds: f64| count as f64 / seconds / 1e6;
             println!(
-                "  {set}: {:.0} million queries per second by kernels, {:.0} with transfers, {} by the tree, {} by the \
+                "  {}: {:.0} million queries per second by kernels, {:.0} with transfers, {} by the tree, {} by the \
                  processor, {different} differences",
+                set.name(),
                 rate(report.kernels.as_secs_f64()),
                 rate(whole.as_secs_f64()),
                 report.by_tree,

@@ -51,14 +51,6 @@ template <class S> P2M_FUNCTION void store(void *triples, size_t i, double x, do
     at[2] = (S)z;
 }
 
-P2M_FUNCTION double root(double x) {
-#ifdef __CUDACC__
-    return __dsqrt_rn(x);
-#else
-    return std::sqrt(x);
-#endif
-}
-
 template <class S> P2M_FUNCTION S round_down(double x);
 template <> P2M_FUNCTION double round_down<double>(double x) { return x; }
 template <> P2M_FUNCTION float round_down<float>(double x) {

@@ -46,6 +46,12 @@ P2M_FUNCTION V3 combine(double s, V3 a, double t, V3 b) {
 // The smaller and the larger number by a comparison, so that the sign of zero is that of p2m-core.
 template <class T> P2M_FUNCTION T smaller(T a, T b) { return a < b ? a : b; }
 template <class T> P2M_FUNCTION T larger(T a, T b) { return a > b ? a : b; }
+#ifdef __CUDACC__
+P2M_FUNCTION float root(float x) { return __fsqrt_rn(x); }
+P2M_FUNCTION double root(double x) { return __dsqrt_rn(x); }
+#else
+template <class T> P2M_FUNCTION T root(T x) { return std::sqrt(x); }
+#endif
 template <class T> P2M_FUNCTION T magnitude(T x) { return x < 0 ? -x : x; }
 
 // The point of the box from `low` to `high` that is nearest to `x`.

@@ -35,14 +35,6 @@ constexpr float FIXED_ERROR = 4 * U32, RELATIVE_ERROR = 40 * U32;
 // Enlarges a number by more than the roundings of a few operations.
 constexpr float ENLARGED = 1 + 16 * U32;
 
-P2M_FUNCTION float root(float x) {
-#ifdef __CUDACC__
-    return __fsqrt_rn(x);
-#else
-    return std::sqrt(x);
-#endif
-}
-
 P2M_FUNCTION float fixed_error(F3 p) { return FIXED_ERROR * (largest(p) + 1.0f); }
 
 P2M_FUNCTION float clamp(float x, float end) { return smaller(larger(x, 0.0f), end); }

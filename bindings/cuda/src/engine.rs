@@ -1,13 +1,15 @@
 //! A scene on a card, and batches of queries that it answers.
 
-use crate::CudaError;
 use crate::card::Card;
 use crate::lists::{self, ListPlan, Lists, Source};
 use crate::raw::{Batch, Columns, Index, KEYS, KEYS_PER_SUM};
 use crate::scene::Scene;
+use crate::{BatchReport, CudaError};
 use bytemuck::{Pod, cast_slice, cast_slice_mut};
-use p2m_core::{Key, Real};
-use std::time::{Duration, Instant};
+use nalgebra::Point3;
+use p2m_core::Real;
+use p2m_core::engine::query::square_within;
+use std::time::Instant;
 
 /// The number of queries that are on the card at a time.
 const CHUNK_QUERIES: usize = 1 << 22;
@@ -23,24 +25,8 @@ pub(crate) struct Engine<C: Card> {
     scene_bytes: usize,
 }
 
-/// The answers to a batch, in the scalar of the scene. A column that nobody wants is empty.
-pub(crate) struct Answers<'a, T> {
-    pub(crate) distance: &'a mut [T],
-    pub(crate) lower_bound: &'a mut [T],
-    pub(crate) point: &'a mut [[T; 3]],
-    pub(crate) weights: &'a mut [[T; 3]],
-    pub(crate) primitive: &'a mut [u32],
-    pub(crate) feature: &'a mut [u8],
-}
-
-/// How the queries of a batch were answered.
-#[derive(Clone, Copy, Debug, Default)]
-pub(crate) struct Counts {
-    /// By the tree on the card.
-    pub(crate) by_tree: usize,
-    /// The time of the kernels, from sorting to the last answer.
-    pub(crate) kernels: Duration,
-}
+/// The bytes of the columns of a batch, in the order of [`Columns`]. A column that nobody wants is empty.
+pub(crate) type Answers<'a> = [&'a mut [u8]; 6];
 
 impl<C: Card> Engine<C> {
     /// Copies a scene to a card, and makes its lists there.
@@ -88,62 +74,56 @@ impl<C: Card> Engine<C> {
         self.lists.left_out
     }
 
-    /// Answers queries. Returns the numbers of those that the card has not decided, in any order.
+    /// Answers queries, and adds to a report. Returns the numbers of those that the card has not decided, in any order.
     pub(crate) fn answer<T: Real + Pod>(
         &self,
-        queries: &[[T; 3]],
+        queries: &[Point3<T>],
         radius: f64,
         reorder: bool,
-        answers: &mut Answers<'_, T>,
-    ) -> Result<(Vec<u32>, Counts), CudaError> {
-        let (mut undecided, mut counts) = (Vec::new(), Counts::default());
+        mut answers: Answers<'_>,
+        report: &mut BatchReport,
+    ) -> Result<Vec<u32>, CudaError> {
+        let bytes = answers.each_ref().map(|column| column.len() / queries.len().max(1));
+        let mut undecided = Vec::new();
         for (chunk, queries) in queries.chunks(CHUNK_QUERIES).enumerate() {
             let first = chunk * CHUNK_QUERIES;
-            let found = self.answer_chunk(queries, first, radius, reorder, answers, &mut counts)?;
+            let range = |bytes: usize| first * bytes..(first + queries.len()) * bytes;
+            let mut columns =
+                answers.each_mut().into_iter().zip(bytes).map(|(column, bytes)| &mut column[range(bytes)]);
+            let part = std::array::from_fn(|_| columns.next().expect("six columns"));
+            let found = self.answer_chunk(queries, radius, reorder, part, report)?;
             #[allow(clippy::cast_possible_truncation, reason = "checked by the caller")]
             undecided.extend(found.into_iter().map(|i| i + first as u32));
         }
-        Ok((undecided, counts))
+        Ok(undecided)
     }
 
     fn answer_chunk<T: Real + Pod>(
         &self,
-        queries: &[[T; 3]],
-        first: usize,
+        queries: &[Point3<T>],
         radius: f64,
         reorder: bool,
-        answers: &mut Answers<'_, T>,
-        counts: &mut Counts,
+        answers: Answers<'_>,
+        report: &mut BatchReport,
     ) -> Result<Vec<u32>, CudaError> {
         let card = &self.card;
         let count = queries.len();
-        let last = first + count;
-        let scalar = size_of::<T>();
-        let suffix = if scalar == 4 { "f32" } else { "f64" };
-        let column = |is_wanted: bool, bytes: usize| is_wanted.then(|| card.allocate(count * bytes)).transpose();
-        let distance = column(!answers.distance.is_empty(), scalar)?;
-        let lower_bound = column(!answers.lower_bound.is_empty(), scalar)?;
-        let point = column(!answers.point.is_empty(), 3 * scalar)?;
-        let weights = column(!answers.weights.is_empty(), 3 * scalar)?;
-        let primitive = column(!answers.primitive.is_empty(), 4)?;
-        let feature = column(!answers.feature.is_empty(), 1)?;
-        let address = |memory: &Option<C::Memory>| memory.as_ref().map_or(0, |memory| card.address(memory));
-        let columns = Columns {
-            distance: address(&distance),
-            lower_bound: address(&lower_bound),
-            point: address(&point),
-            weights: address(&weights),
-            primitive: address(&primitive),
-            feature: address(&feature),
-        };
-        let queries_there = card.upload(cast_slice(queries))?;
+        let suffix = if size_of::<T>() == 4 { "f32" } else { "f64" };
+        let mut columns = Columns::default();
+        let mut blocks = Vec::new();
+        for (address, column) in columns.iter_mut().zip(answers).filter(|(_, column)| !column.is_empty()) {
+            let block = card.allocate(column.len())?;
+            *address = card.address(&block);
+            blocks.push((block, column));
+        }
+        let queries = card.upload(cast_slice(queries))?;
         let [rest, undecided] = [card.allocate(count * 4)?, card.allocate(count * 4)?];
         let mut numbers = card.allocate(8)?;
         card.clear(&mut numbers)?;
         let mut batch = Batch {
             index: self.index,
             columns,
-            queries: card.address(&queries_there),
+            queries: card.address(&queries),
             rest: card.address(&rest),
             rest_count: card.address(&numbers),
             undecided: card.address(&undecided),
@@ -158,33 +138,14 @@ impl<C: Card> Engine<C> {
         card.launch(&format!("p2m_answer_by_list_{suffix}"), count, &batch)?;
         card.launch(&format!("p2m_answer_by_tree_{suffix}"), count, &batch)?;
         card.wait()?;
-        counts.kernels += start.elapsed();
+        report.kernels += start.elapsed();
         let mut found = [0u32; 2];
         card.read(&numbers, cast_slice_mut(&mut found))?;
-        counts.by_tree += found[0] as usize;
+        report.by_tree += found[0] as usize;
+        report.by_processor += found[1] as usize;
         let mut left = vec![0u32; found[1] as usize];
         card.read(&undecided, cast_slice_mut(&mut left))?;
-        let read = |memory: &Option<C::Memory>, bytes: &mut [u8]| {
-            memory.as_ref().map_or(Ok(()), |memory| card.read(memory, bytes))
-        };
-        if distance.is_some() {
-            read(&distance, cast_slice_mut(&mut answers.distance[first..last]))?;
-        }
-        if lower_bound.is_some() {
-            read(&lower_bound, cast_slice_mut(&mut answers.lower_bound[first..last]))?;
-        }
-        if point.is_some() {
-            read(&point, cast_slice_mut(&mut answers.point[first..last]))?;
-        }
-        if weights.is_some() {
-            read(&weights, cast_slice_mut(&mut answers.weights[first..last]))?;
-        }
-        if primitive.is_some() {
-            read(&primitive, cast_slice_mut(&mut answers.primitive[first..last]))?;
-        }
-        if feature.is_some() {
-            read(&feature, &mut answers.feature[first..last])?;
-        }
+        blocks.into_iter().try_for_each(|(block, column)| card.read(&block, column))?;
         Ok(left)
     }
 
@@ -214,9 +175,4 @@ impl<C: Card> Engine<C> {
 fn default_memory(primitives: usize) -> usize {
     let n = primitives as f64;
     (280.0 * n * (n / 1e5).max(1.0).powf(0.75)) as usize
-}
-
-/// Returns a square above those of all keys within a radius.
-fn square_within(radius: f64) -> f64 {
-    Key::from_offset([radius + f64::from_bits(1), 0.0, 0.0]).square_above() * (1.0 + 8.0 * f64::EPSILON)
 }

@@ -37,9 +37,9 @@ mod tests;
 
 pub use error::CudaError;
 
-use bytemuck::Pod;
+use bytemuck::{Pod, cast_slice_mut};
 use card::{Card, CudaCard};
-use engine::{Answers, Engine};
+use engine::Engine;
 use nalgebra::Point3;
 use p2m_bvh::AabbTree;
 use p2m_core::batch::{self, BatchOptions, ClosestColumns};
@@ -154,28 +154,24 @@ impl<T: Real + Pod, S: PrimitiveSet<T> + Sync, C: Card> OnCard<T, S, C> {
     ) -> Result<BatchReport, CudaError> {
         let Some(len) = columns.len() else { return Ok(BatchReport::default()) };
         assert!(queries.len() == len && u32::try_from(len).is_ok(), "one value for each of fewer than 2^32 queries");
-        let coordinates: Vec<[T; 3]> = queries.iter().map(|q| q.coords.into()).collect();
-        let mut points = vec![[T::zero(); 3]; columns.point.as_ref().map_or(0, |column| column.len())];
         let mut features = vec![0; columns.feature.as_ref().map_or(0, |column| column.len())];
-        let mut answers = Answers {
-            distance: columns.distance.as_deref_mut().unwrap_or_default(),
-            lower_bound: columns.lower_bound.as_deref_mut().unwrap_or_default(),
-            point: &mut points,
-            weights: columns.barycentric.as_deref_mut().unwrap_or_default(),
-            primitive: columns.primitive.as_deref_mut().unwrap_or_default(),
-            feature: &mut features,
-        };
+        let answers = [
+            cast_slice_mut(columns.distance.as_deref_mut().unwrap_or_default()),
+            cast_slice_mut(columns.lower_bound.as_deref_mut().unwrap_or_default()),
+            cast_slice_mut(columns.point.as_deref_mut().unwrap_or_default()),
+            cast_slice_mut(columns.barycentric.as_deref_mut().unwrap_or_default()),
+            cast_slice_mut(columns.primitive.as_deref_mut().unwrap_or_default()),
+            features.as_mut_slice(),
+        ];
+        let mut report = BatchReport::default();
         let radius = max_distance.to_f64_above();
-        let (undecided, counts) = self.engine.answer(&coordinates, radius, reorder, &mut answers)?;
-        if let Some(column) = &mut columns.point {
-            column.iter_mut().zip(&points).for_each(|(to, point)| *to = Point3::from(*point));
-        }
+        let undecided = self.engine.answer(queries, radius, reorder, answers, &mut report)?;
         if let Some(column) = &mut columns.feature {
             let feature = |code| Feature::from_code(code).unwrap_or(Feature::Vertex(0));
             column.iter_mut().zip(&features).for_each(|(to, code)| *to = feature(*code));
         }
         self.decide(queries, max_distance, &undecided, &mut columns);
-        Ok(BatchReport { by_tree: counts.by_tree, by_processor: undecided.len(), kernels: counts.kernels })
+        Ok(report)
     }
 
     /// Answers queries that the card has left by the tree of the processor.

@@ -64,16 +64,8 @@ pub(crate) struct Index {
     pub(crate) per_unit: f64,
 }
 
-#[repr(C)]
-#[derive(Clone, Copy, Debug, Default)]
-pub(crate) struct Columns {
-    pub(crate) distance: Address,
-    pub(crate) lower_bound: Address,
-    pub(crate) point: Address,
-    pub(crate) weights: Address,
-    pub(crate) primitive: Address,
-    pub(crate) feature: Address,
-}
+/// The addresses of distances, lower bounds, points, weights, primitives and features; 0 for a column that nobody wants.
+pub(crate) type Columns = [Address; 6];
 
 #[repr(C)]
 #[derive(Clone, Copy, Debug, Default)]

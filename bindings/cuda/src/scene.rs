@@ -5,7 +5,8 @@ use crate::raw::{NO_VERTEX, Node, Plate, Primitive};
 use bytemuck::Pod;
 use nalgebra::Point3;
 use p2m_bvh::{AabbTree, PacketTree, TreeNode};
-use p2m_core::engine::vector::{V3, add_scaled, dot, length, norm_squared, sub};
+use p2m_core::engine::local_frame::LocalFrame;
+use p2m_core::engine::vector::V3;
 use p2m_core::{Aabb, Primitive as _, PrimitiveId, PrimitiveSet, Real};
 use rustc_hash::FxHashMap;
 
@@ -17,8 +18,6 @@ const MAX_SPLIT_DEPTH: usize = 12;
 const MAX_DEPTH: usize = 40;
 /// The number of plates of a leaf.
 const LEAF_PLATES: usize = 4;
-/// The ratio of height and longest edge below which any axis is as good as that of the height.
-const MIN_SINE: f64 = 1.0 / (1u64 << 40) as f64;
 
 /// A scene as the card needs it.
 pub(crate) struct Scene<T> {
@@ -196,40 +195,20 @@ impl<T: Real + Pod, S: PrimitiveSet<T>> Builder<'_, T, S> {
     }
 }
 
-/// Returns the plate of a point, a segment or a triangle with these vertices in the frame.
+/// Returns the plate of a point, a segment or a triangle with these vertices in the frame of the scene.
 #[allow(clippy::cast_possible_truncation, reason = "rounded, by what the proof allows for")]
 pub(crate) fn plate(vertices: &[V3]) -> Plate {
-    let n = vertices.len();
-    let edge = |i: usize| norm_squared(sub(vertices[(i + 1) % n], vertices[i]));
-    let longest = (1..n).fold(0, |best, i| if edge(i) > edge(best) { i } else { best });
-    let (a, b) = (vertices[longest], vertices[(longest + 1) % n]);
-    let apex = if n == 3 { vertices[(longest + 2) % 3] } else { a };
-    let base = length(sub(b, a));
-    let along = if base > 0.0 { sub(b, a).map(|x| x / base) } else { [1.0, 0.0, 0.0] };
-    let side = sub(apex, a);
-    let height = add_scaled(side, -dot(side, along), along);
-    let start = if length(height) > MIN_SINE * base { height } else { perpendicular(along) };
-    let start = start.map(|x| x / length(start));
-    let up = add_scaled(start, -dot(start, along), along);
-    let up = up.map(|x| x / length(up));
-    let (x, y) = (dot(side, along), dot(side, up));
+    let LocalFrame { origin, axes: [along, up, _], length, apex: [x, y] } = LocalFrame::new(vertices);
     let direction = |x: f64, y: f64| {
         let end = x.hypot(y);
         if end > 0.0 { [(x / end) as f32, (y / end) as f32, end as f32] } else { [1.0, 0.0, 0.0] }
     };
     Plate {
-        origin: a.map(|x| x as f32),
+        origin: origin.map(|x| x as f32),
         along: along.map(|x| x as f32),
         up: up.map(|x| x as f32),
-        length: base as f32,
+        length: length as f32,
         left: direction(x, y),
-        right: direction(x - base, y),
+        right: direction(x - length, y),
     }
-}
-
-/// Returns a vector that is perpendicular to a vector of length 1.
-fn perpendicular(v: V3) -> V3 {
-    let least = (1..3).fold(0, |best, k| if v[k].abs() < v[best].abs() { k } else { best });
-    let axis: V3 = std::array::from_fn(|k| if k == least { 1.0 } else { 0.0 });
-    add_scaled(axis, -dot(axis, v), v)
 }

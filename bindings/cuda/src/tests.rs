@@ -11,6 +11,7 @@ use p2m_core::batch::{self, BatchOptions, ClosestColumns};
 use p2m_core::{Feature, Primitive, QueryOptions, Real, Soup};
 use p2m_testkit::families::{case, shape, wild};
 use p2m_testkit::model_file;
+use p2m_testkit::queries::QuerySet;
 use p2m_testkit::scenes::{extreme_soups, narrow, queries, random_soups, to_f32};
 use p2m_testkit::{amount, cases, rng};
 use rand::RngExt;
@@ -224,17 +225,9 @@ fn agrees_on_models() {
     {
         let Some(file) = model_file(name) else { continue };
         let soup = p2m_mixed::read_scene(&file).unwrap().soup;
-        let mut rng = rng(name, 0);
-        let bounds = *AabbTree::new(&*soup).unwrap().tree().bounds();
-        let count = amount(200_000, 2_000);
-        let sizes = bounds.max - bounds.min;
-        let mut queries: Vec<Point3<f64>> = (0..count)
-            .map(|i| {
-                let scale = if i % 4 == 0 { 10.0 } else { 1.0 };
-                let centre = nalgebra::center(&bounds.min, &bounds.max);
-                centre + sizes.map(|size| scale * size * (rng.random::<f64>() - 0.5))
-            })
-            .collect();
+        let count = amount(50_000, 500);
+        let sets = [QuerySet::Box10, QuerySet::Box1, QuerySet::Near, QuerySet::Surface];
+        let mut queries: Vec<_> = sets.iter().flat_map(|set| set.generate(&soup, count, 7)).collect();
         queries.extend(soup.positions().iter().step_by(soup.positions().len() / 1000 + 1));
         queries.extend([
             Point3::new(f64::NAN, 0.0, 0.0),

@@ -40,10 +40,11 @@ pub(crate) fn collected<T>(items: impl ExactSizeIterator<Item = T>) -> Vec<T> {
     let bytes = items.len() * size_of::<T>();
     // Checking for each of many short lists would take longer than filling them.
     let unchecked = UNCHECKED.fetch_add(bytes, Ordering::Relaxed) + bytes;
-    if unchecked > SPARE_BYTES / 8 {
+    let is_due = unchecked > SPARE_BYTES / 8;
+    if is_due {
         UNCHECKED.store(0, Ordering::Relaxed);
     }
-    if list.try_reserve_exact(items.len()).is_err() || (unchecked > SPARE_BYTES / 8 && !is_memory_left()) {
+    if list.try_reserve_exact(items.len()).is_err() || (is_due && !is_memory_left()) {
         out_of_memory();
     }
     list.extend(items);

@@ -5,6 +5,7 @@ use nalgebra::Point3;
 use p2m_core::engine::real::to_f64_array;
 use p2m_core::engine::simd::{InstructionSet, Isa, SimdKernel, prefetch};
 use p2m_core::engine::vector::{V3, power_of_two};
+use p2m_core::pair::project;
 use p2m_core::storage::as_ids;
 use p2m_core::{Aabb, Collector, PrimitiveId, Projection};
 
@@ -232,14 +233,10 @@ impl Packet {
 
     /// Whether the key of the primitive in a lane is at most `square`, which it may be for a box.
     pub(crate) fn is_lane_within(&self, lane: usize, vertices: &[V3], query: V3, square: f64) -> bool {
-        let [a, b, c] = self.corners(lane).map(|index| vertices[index]);
-        let projection = match self.kind() {
-            Kind::Triangle => Projection::onto_near_triangle(query, &[a, b, c], square),
-            Kind::Segment => Projection::onto_segment(query, &[a, b], square),
-            Kind::Point => Projection::onto_point(query, &[a], square),
-            Kind::Box => return true,
-        };
-        projection.is_some_and(|projection| projection.key.square_above() <= square)
+        let (corners, count) = self.vertices_of(lane);
+        let corners = &corners[..count];
+        let hull: [V3; 3] = std::array::from_fn(|i| corners.get(i).map_or([0.0; 3], |&index| vertices[index]));
+        count == 0 || project(query, &hull[..count], square).is_some_and(|found| found.key.square_above() <= square)
     }
 
     /// A mask with one bit for each lane in use.

@@ -16,16 +16,16 @@
 //! multiplied by 8 and all is done again. The margin grows until the bound is above the radius or the start is within
 //! R, so this ends.
 //!
+//! Let s be the largest magnitude of a coordinate of the path. A component of the centre a (1 - t) + b t is computed
+//! with at most 4 u s + 2 eta of error, so the centre is off by less than 8 u s + 4 eta. The
+//! certified bound is reduced by that.
+//!
 //! # Contacts that open
 //!
 //! A contact at the start opens if the ball comes no nearer to the primitive than it is at the start, to within 64 u
 //! (s + radius). The distance is convex, so the ball then never deepens this contact by more. Both distances are true
 //! ones, rounded once, because errors of the kernel grow with the primitive. Such primitives are left out of all searches
 //! if the ball ignores them.
-//!
-//! Let s be the largest magnitude of a coordinate of the path. A component of the centre a (1 - t) + b t is computed
-//! with at most 4 u s + 2 eta of error, so the centre is off by less than 8 u s + 4 eta. The
-//! certified bound is reduced by that.
 
 use super::query::search_hull;
 use super::{NearestPair, PairOptions, PairQuery, Pairs, nearest_of_hulls};
@@ -241,8 +241,8 @@ impl<I: ?Sized> Path<'_, I> {
             .expect("no key exceeds infinity")
     }
 
-    /// Returns the primitives within a distance of the start to which the path comes no nearer than that. A tolerance is
-    /// allowed for.
+    /// Returns the primitives within a distance of the start to which the path comes no nearer than its start, up to a
+    /// tolerance.
     fn opening_within<T: Real>(&self, distance: f64, tolerance: f64) -> Vec<PrimitiveId>
     where
         I: PairQuery<T>,

@@ -10,7 +10,8 @@ pub(crate) const ROUND_UP: f64 = 1.0 + 8.0 * f64::EPSILON;
 pub(crate) const ROUND_DOWN: f64 = 1.0 - 8.0 * f64::EPSILON;
 
 /// Returns the square above which a lower bound exceeds a radius.
-pub(crate) fn square_within(radius: f64) -> f64 {
+#[must_use]
+pub fn square_within(radius: f64) -> f64 {
     // A distance loses up to a smallest subnormal by rounding near zero, which is added here.
     Key::from_offset([radius + f64::from_bits(1), 0.0, 0.0]).square_above() * ROUND_UP
 }

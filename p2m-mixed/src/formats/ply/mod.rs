@@ -53,9 +53,9 @@ use std::io::BufRead;
 /// # Errors
 /// [`ReadError`] with the line (header, text) or the offset of the number in bytes (binary) for an invalid header, an
 /// early end, invalid numbers or too many of them on a line, indices that are out of range, vertices of primitives that
-/// are not finite (with the location of the vertex), ids that are not a permutation of 0, 1, 2, ..., faces of no
-/// vertex, of more than [`MAX_CORNERS`](crate::MAX_CORNERS), or with ids of fewer than three, and errors of `reader`. No memory is allocated
-/// for data that the header only announces.
+/// are not finite (with the location of the vertex), ids that are not a permutation of 0, 1, 2, ..., faces of no vertex
+/// (with ids, of fewer than three) or of more than [`MAX_CORNERS`](crate::MAX_CORNERS), and errors of `reader`. No
+/// memory is allocated for data that the header only announces.
 pub fn read_ply(reader: impl BufRead, name: &str) -> Result<Scene, ReadError> {
     read(Source::new(reader), name, SceneBuilder::default())
 }
