@@ -86,9 +86,9 @@ fn compare() -> Result<usize, Box<dyn Error>> {
             let queries = set.generate(&soup, count, 7);
             let (mut found, mut expected) = (Answers::new(count), Answers::new(count));
             // The first call is not measured.
-            index.closest_columns_into(&queries, f64::INFINITY, found.columns())?;
+            index.closest_columns_into(&queries, f64::INFINITY, &mut found.columns())?;
             let start = Instant::now();
-            let report = index.closest_columns_into(&queries, f64::INFINITY, found.columns())?;
+            let report = index.closest_columns_into(&queries, f64::INFINITY, &mut found.columns())?;
             let whole = start.elapsed();
             let options = QueryOptions::default();
             closest_columns_into(index.tree(), &queries, &options, &BatchOptions::default(), expected.columns());

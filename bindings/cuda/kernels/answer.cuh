@@ -32,12 +32,15 @@ struct Columns {
 struct Batch {
     Index index;
     Columns columns;
-    const void *queries;      // triples of the scalar of the scene
-    uint32_t *order, *keys, *ranks, *starts, *sums;
+    const void *queries;      // triples of the scalar of the scene, or of f32
+    uint32_t *order, *keys, *ranks, *starts, *placed;
     uint32_t *rest, *rest_count;           // queries in cells without a list
     uint32_t *undecided, *undecided_count; // queries that a processor has to answer
     double radius;            // the largest f64 distance of an answer
     double prune;             // a square above that of the radius
+    void *gathered;           // the queries that a processor has to answer
+    Columns answers;          // the answers of a processor to them
+    uint32_t has_f32_queries;
 };
 
 template <class S> P2M_FUNCTION V3 load(const void *triples, size_t i) {
@@ -49,6 +52,10 @@ template <class S> P2M_FUNCTION void store(void *triples, size_t i, double x, do
     at[0] = (S)x;
     at[1] = (S)y;
     at[2] = (S)z;
+}
+
+template <class S> P2M_FUNCTION V3 query(const Batch &b, uint32_t i) {
+    return b.has_f32_queries ? load<float>(b.queries, i) : load<S>(b.queries, i);
 }
 
 template <class S> P2M_FUNCTION S round_down(double x);
@@ -124,7 +131,7 @@ template <class S> P2M_CALLED void write(const Batch &b, uint32_t i, V3 q, const
     }
     if (b.columns.distance) ((S *)b.columns.distance)[i] = (S)(is_within ? distance : P2M_INFINITY);
     if (b.columns.primitive) b.columns.primitive[i] = is_within ? best.id : NO_VERTEX;
-    if (b.columns.feature) b.columns.feature[i] = is_within ? (uint8_t)best.nearest.feature : 0;
+    if (b.columns.feature) b.columns.feature[i] = is_within ? (uint8_t)best.nearest.feature : 255;
     if (!is_within) {
         const double nan = P2M_NAN;
         if (b.columns.weights) store<S>(b.columns.weights, i, nan, nan, nan);
@@ -171,7 +178,7 @@ template <class S> P2M_FUNCTION void finish(const Batch &b, uint32_t i, V3 q, co
 template <class S> P2M_FUNCTION void answer_by_list(uint32_t thread, const Batch &b) {
     const Index &index = b.index;
     const uint32_t i = b.order ? b.order[thread] : thread;
-    const V3 q = load<S>(b.queries, i);
+    const V3 q = query<S>(b, i);
     F3 p;
     Entry list;
     if (!place(index, q, p)) {
@@ -204,7 +211,7 @@ template <class S> P2M_FUNCTION void answer_by_tree(uint32_t thread, const Batch
     if (thread >= *b.rest_count) return;
     const Index &index = b.index;
     const uint32_t i = b.rest[thread];
-    const V3 q = load<S>(b.queries, i);
+    const V3 q = query<S>(b, i);
     F3 p;
     place(index, q, p);
     const float fixed = fixed_error(p);
@@ -221,9 +228,27 @@ template <class S> P2M_FUNCTION void answer_by_tree(uint32_t thread, const Batch
     finish<S>(b, i, q, best);
 }
 
-// Queries are sorted by cells of a lattice of 128 to a side, those near the scene apart from those far from it. A
-// counting sort needs no order among the queries of a cell.
-constexpr uint32_t KEYS = 1u << 22, KEYS_PER_SUM = 1024;
+// Gathers a query that a processor has to answer, and writes the answer of the processor.
+template <class S> P2M_FUNCTION void gather(uint32_t i, const Batch &b) {
+    V3 q = query<S>(b, b.undecided[i]);
+    store<S>(b.gathered, i, q.x, q.y, q.z);
+}
+template <class S> P2M_FUNCTION void put(uint32_t i, const Batch &b) {
+    const Columns &from = b.answers, &to = b.columns;
+    const uint32_t at = b.undecided[i];
+    if (to.distance) ((S *)to.distance)[at] = ((const S *)from.distance)[i];
+    if (to.lower_bound) ((S *)to.lower_bound)[at] = ((const S *)from.lower_bound)[i];
+    for (int k = 0; k < 3; k++) {
+        if (to.point) ((S *)to.point)[3 * (size_t)at + k] = ((const S *)from.point)[3 * (size_t)i + k];
+        if (to.weights) ((S *)to.weights)[3 * (size_t)at + k] = ((const S *)from.weights)[3 * (size_t)i + k];
+    }
+    if (to.primitive) to.primitive[at] = from.primitive[i];
+    if (to.feature) to.feature[at] = from.feature[i];
+}
+
+// Queries are sorted by cells of a lattice of 128 to a side, those near the scene apart from those far from it. It is a
+// counting sort without an order among the queries of a cell, or among groups of cells.
+constexpr uint32_t KEYS = 1u << 22, KEYS_PER_GROUP = 64;
 
 P2M_FUNCTION uint32_t spread(uint32_t x) {
     x = (x | x << 8) & 0x0300f00f;
@@ -236,7 +261,7 @@ P2M_FUNCTION uint32_t lattice(float x) { return (uint32_t)smaller(larger((x + 1.
 template <class S> P2M_FUNCTION void count_key(uint32_t i, const Batch &b) {
     F3 p;
     uint32_t key = 0;
-    if (place(b.index, load<S>(b.queries, i), p)) {
+    if (place(b.index, query<S>(b, i), p)) {
         bool is_far = largest(p) > 1.0f;
         float s = is_far ? 1 / 16.0f : 1.0f;
         key = spread(lattice(p.x * s)) | spread(lattice(p.y * s)) << 1 | spread(lattice(p.z * s)) << 2;
@@ -245,25 +270,15 @@ template <class S> P2M_FUNCTION void count_key(uint32_t i, const Batch &b) {
     b.keys[i] = key;
     b.ranks[i] = take(b.starts + key, 1u);
 }
-P2M_FUNCTION void sum_keys(uint32_t i, const Batch &b) {
-    uint32_t sum = 0;
-    for (uint32_t k = 0; k < KEYS_PER_SUM; k++) sum += b.starts[i * KEYS_PER_SUM + k];
-    b.sums[i] = sum;
-}
-P2M_FUNCTION void scan_sums(uint32_t, const Batch &b) {
-    uint32_t sum = 0;
-    for (uint32_t k = 0; k < KEYS / KEYS_PER_SUM; k++) {
-        uint32_t next = sum + b.sums[k];
-        b.sums[k] = sum;
-        sum = next;
-    }
-}
-P2M_FUNCTION void scan_keys(uint32_t i, const Batch &b) {
-    uint32_t sum = b.sums[i];
-    for (uint32_t k = 0; k < KEYS_PER_SUM; k++) {
-        uint32_t &start = b.starts[i * KEYS_PER_SUM + k], next = sum + start;
-        start = sum;
-        sum = next;
+// Gives the keys of a group their places, one after another. Groups take theirs as they come.
+P2M_FUNCTION void place_keys(uint32_t i, const Batch &b) {
+    uint32_t *starts = b.starts + i * KEYS_PER_GROUP, sum = 0;
+    for (uint32_t k = 0; k < KEYS_PER_GROUP; k++) sum += starts[k];
+    uint32_t place = sum ? take(b.placed, sum) : 0;
+    for (uint32_t k = 0; k < KEYS_PER_GROUP; k++) {
+        uint32_t next = place + starts[k];
+        starts[k] = place;
+        place = next;
     }
 }
 P2M_FUNCTION void scatter(uint32_t i, const Batch &b) { b.order[b.starts[b.keys[i]] + b.ranks[i]] = i; }

@@ -22,10 +22,12 @@ KERNEL(p2m_answer_by_tree_f32, Batch, answer_by_tree<float>)
 KERNEL(p2m_answer_by_tree_f64, Batch, answer_by_tree<double>)
 KERNEL(p2m_count_key_f32, Batch, count_key<float>)
 KERNEL(p2m_count_key_f64, Batch, count_key<double>)
-KERNEL(p2m_sum_keys, Batch, sum_keys)
-KERNEL(p2m_scan_sums, Batch, scan_sums)
-KERNEL(p2m_scan_keys, Batch, scan_keys)
+KERNEL(p2m_place_keys, Batch, place_keys)
 KERNEL(p2m_scatter, Batch, scatter)
+KERNEL(p2m_gather_f32, Batch, gather<float>)
+KERNEL(p2m_gather_f64, Batch, gather<double>)
+KERNEL(p2m_put_f32, Batch, put<float>)
+KERNEL(p2m_put_f64, Batch, put<double>)
 
 #ifndef __CUDACC__
 // The kernel in f64 alone, for tests: nine numbers of vertices, of which `count` vertices are used.

@@ -6,9 +6,9 @@
 use crate::CudaError;
 use crate::raw::{Address, Batch, Building};
 use cudarc::driver::{CudaContext, CudaFunction, CudaModule, CudaSlice, CudaStream, DevicePtr, DeviceRepr};
-use cudarc::driver::{LaunchConfig, PushKernelArg};
+use cudarc::driver::{LaunchConfig, PinnedHostSlice, PushKernelArg};
 use cudarc::nvrtc::Ptx;
-use std::sync::Arc;
+use std::sync::{Arc, Mutex, PoisonError};
 
 /// The parameters of a kernel.
 pub(crate) trait Parameters: Copy + 'static {}
@@ -16,9 +16,12 @@ impl Parameters for Building {}
 impl Parameters for Batch {}
 
 /// A place where kernels run.
-pub(crate) trait Card {
+pub(crate) trait Card: Sized + Sync {
     /// A block of its memory.
-    type Memory;
+    type Memory: Sync;
+
+    /// Returns another queue of copies and kernels on the same card, which runs beside this one.
+    fn lane(&self) -> Result<Self, CudaError>;
 
     fn allocate(&self, bytes: usize) -> Result<Self::Memory, CudaError>;
     fn address(&self, memory: &Self::Memory) -> Address;
@@ -46,10 +49,15 @@ pub(crate) trait Card {
 const PTX: &str = include_str!("../kernels/kernels.ptx");
 const THREADS_PER_BLOCK: u32 = 128;
 
-/// A card of NVIDIA.
+/// The size of the pinned buffer of a lane, and the size of the smallest copy that goes through it. Copies from and to
+/// pageable memory are several times slower.
+const STAGING_BYTES: usize = 1 << 22;
+
+/// A queue of a card of NVIDIA.
 pub(crate) struct CudaCard {
     stream: Arc<CudaStream>,
     module: Arc<CudaModule>,
+    staging: Mutex<Option<PinnedHostSlice<u8>>>,
 }
 
 impl CudaCard {
@@ -62,7 +70,38 @@ impl CudaCard {
         let context = CudaContext::new(ordinal).map_err(CudaError::from)?;
         let module = context.load_module(Ptx::from_src(PTX))?;
         let stream = context.new_stream()?;
-        Ok(Self { stream, module })
+        Ok(Self { stream, module, staging: Mutex::default() })
+    }
+
+    /// Waits until all work on a stream of the caller has ended.
+    ///
+    /// # Safety
+    /// It has to be a stream of the context of this card.
+    pub(crate) unsafe fn wait_for(&self, stream: Address) -> Result<(), CudaError> {
+        self.stream.context().bind_to_thread()?;
+        // SAFETY: the caller says so. Machines with cards have addresses of 64 bits.
+        Ok(unsafe { cudarc::driver::result::stream::synchronize(usize::try_from(stream).unwrap_or_default() as _) }?)
+    }
+
+    /// Calls a function with the pinned buffer for each piece of a copy of so many bytes. The function has to wait until
+    /// its piece is copied.
+    fn in_pieces(
+        &self,
+        len: usize,
+        mut copy: impl FnMut(&mut [u8], std::ops::Range<usize>) -> Result<(), CudaError>,
+    ) -> Result<(), CudaError> {
+        let mut staging = self.staging.lock().unwrap_or_else(PoisonError::into_inner);
+        if staging.is_none() {
+            // SAFETY: what is read was written before.
+            let buffer = unsafe { self.stream.context().alloc_pinned_with_flags(STAGING_BYTES, 0) };
+            *staging = Some(buffer.map_err(|error| CudaError::memory(STAGING_BYTES, error))?);
+        }
+        let buffer = staging.as_mut().expect("it was made").as_mut_slice()?;
+        for start in (0..len).step_by(STAGING_BYTES) {
+            let range = start..len.min(start + STAGING_BYTES);
+            copy(&mut buffer[..range.len()], range)?;
+        }
+        Ok(())
     }
 }
 
@@ -83,6 +122,11 @@ unsafe impl<P: Parameters> DeviceRepr for Argument<P> {}
 impl Card for CudaCard {
     type Memory = CudaSlice<u8>;
 
+    fn lane(&self) -> Result<Self, CudaError> {
+        let stream = self.stream.context().new_stream()?;
+        Ok(Self { stream, module: Arc::clone(&self.module), staging: Mutex::default() })
+    }
+
     fn allocate(&self, bytes: usize) -> Result<CudaSlice<u8>, CudaError> {
         // SAFETY: kernels write all that is read, or it is cleared before.
         unsafe { self.stream.alloc(bytes) }.map_err(|error| CudaError::memory(bytes, error))
@@ -93,7 +137,14 @@ impl Card for CudaCard {
     }
 
     fn write(&self, memory: &mut CudaSlice<u8>, bytes: &[u8]) -> Result<(), CudaError> {
-        Ok(self.stream.memcpy_htod(bytes, memory)?)
+        if bytes.len() < STAGING_BYTES {
+            return Ok(self.stream.memcpy_htod(bytes, memory)?);
+        }
+        self.in_pieces(bytes.len(), |buffer, range| {
+            buffer.copy_from_slice(&bytes[range.clone()]);
+            self.stream.memcpy_htod(&*buffer, &mut memory.slice_mut(range))?;
+            Ok(self.stream.synchronize()?)
+        })
     }
 
     fn clear(&self, memory: &mut CudaSlice<u8>) -> Result<(), CudaError> {
@@ -101,8 +152,16 @@ impl Card for CudaCard {
     }
 
     fn read(&self, memory: &CudaSlice<u8>, bytes: &mut [u8]) -> Result<(), CudaError> {
-        self.stream.memcpy_dtoh(&memory.slice(..bytes.len()), bytes)?;
-        Ok(self.stream.synchronize()?)
+        if bytes.len() < STAGING_BYTES {
+            self.stream.memcpy_dtoh(&memory.slice(..bytes.len()), bytes)?;
+            return Ok(self.stream.synchronize()?);
+        }
+        self.in_pieces(bytes.len(), |buffer, range| {
+            self.stream.memcpy_dtoh(&memory.slice(range.clone()), buffer)?;
+            self.stream.synchronize()?;
+            bytes[range].copy_from_slice(buffer);
+            Ok(())
+        })
     }
 
     fn wait(&self) -> Result<(), CudaError> {

@@ -2,21 +2,26 @@
 
 use crate::card::Card;
 use crate::lists::{self, ListPlan, Lists, Source};
-use crate::raw::{Batch, Columns, Index, KEYS, KEYS_PER_SUM};
+use crate::raw::{Address, Batch, Columns, Index, KEYS, KEYS_PER_GROUP};
 use crate::scene::Scene;
-use crate::{BatchReport, CudaError};
+use crate::{BatchReport, CardQueries, CudaError};
 use bytemuck::{Pod, cast_slice, cast_slice_mut};
 use nalgebra::Point3;
 use p2m_core::Real;
 use p2m_core::engine::query::square_within;
+use std::sync::{Mutex, MutexGuard, PoisonError};
 use std::time::Instant;
 
-/// The number of queries that are on the card at a time.
-const CHUNK_QUERIES: usize = 1 << 22;
+/// The number of lanes. While one copies queries, others search or copy answers.
+const LANES: usize = 3;
+/// The number of queries of a lane at a time.
+const LANE_QUERIES: usize = 1 << 20;
+/// The number of queries at a time that are on the card already.
+const CARD_QUERIES: usize = 1 << 23;
 
 /// A scene on a card.
 pub(crate) struct Engine<C: Card> {
-    card: C,
+    lanes: Vec<C>,
     /// The blocks that `index` has the addresses of.
     _scene: [C::Memory; 4],
     lists: Lists<C::Memory>,
@@ -61,7 +66,13 @@ impl<C: Card> Engine<C> {
             ..Index::default()
         };
         index.grids[..lists.grids.len()].copy_from_slice(&lists.grids);
-        Ok(Self { card, _scene: blocks, lists, index, scene_bytes: parts.iter().map(|part| part.len()).sum() })
+        // Other lanes do not wait for this one.
+        card.wait()?;
+        let mut lanes = vec![card];
+        for _ in 1..LANES {
+            lanes.push(lanes[0].lane()?);
+        }
+        Ok(Self { lanes, _scene: blocks, lists, index, scene_bytes: parts.iter().map(|part| part.len()).sum() })
     }
 
     /// The bytes of the scene and of its lists on the card.
@@ -74,6 +85,11 @@ impl<C: Card> Engine<C> {
         self.lists.left_out
     }
 
+    /// The first lane.
+    pub(crate) fn card(&self) -> &C {
+        &self.lanes[0]
+    }
+
     /// Answers queries, and adds to a report. Returns the numbers of those that the card has not decided, in any order.
     pub(crate) fn answer<T: Real + Pod>(
         &self,
@@ -83,32 +99,53 @@ impl<C: Card> Engine<C> {
         mut answers: Answers<'_>,
         report: &mut BatchReport,
     ) -> Result<Vec<u32>, CudaError> {
-        let bytes = answers.each_ref().map(|column| column.len() / queries.len().max(1));
-        let mut undecided = Vec::new();
-        for (chunk, queries) in queries.chunks(CHUNK_QUERIES).enumerate() {
-            let first = chunk * CHUNK_QUERIES;
-            let range = |bytes: usize| first * bytes..(first + queries.len()) * bytes;
-            let mut columns =
-                answers.each_mut().into_iter().zip(bytes).map(|(column, bytes)| &mut column[range(bytes)]);
-            let part = std::array::from_fn(|_| columns.next().expect("six columns"));
-            let found = self.answer_chunk(queries, radius, reorder, part, report)?;
-            #[allow(clippy::cast_possible_truncation, reason = "checked by the caller")]
-            undecided.extend(found.into_iter().map(|i| i + first as u32));
-        }
+        let widths = answers.each_ref().map(|column| column.len() / queries.len().max(1));
+        let mut chunks = queries.chunks(LANE_QUERIES).enumerate();
+        let next = Mutex::new(move || {
+            let (chunk, queries) = chunks.next()?;
+            let part: Answers<'_> = std::array::from_fn(|column| {
+                let (part, rest) = std::mem::take(&mut answers[column]).split_at_mut(queries.len() * widths[column]);
+                answers[column] = rest;
+                part
+            });
+            Some((chunk * LANE_QUERIES, queries, part))
+        });
+        let result = Mutex::new(Ok((Vec::new(), BatchReport::default())));
+        let work = |lane: &C| {
+            let chunk = || (*unpoisoned(&next))();
+            while let Some((first, queries, part)) = chunk() {
+                let found = self.answer_chunk(lane, queries, radius, reorder, part);
+                let mut result = unpoisoned(&result);
+                match (&mut *result, found) {
+                    (Ok((undecided, so_far)), Ok((numbers, report))) => {
+                        #[allow(clippy::cast_possible_truncation, reason = "checked by the caller")]
+                        undecided.extend(numbers.into_iter().map(|i: u32| i + first as u32));
+                        so_far.add(&report);
+                    }
+                    (Ok(_), Err(error)) => *result = Err(error),
+                    (Err(_), _) => return,
+                }
+            }
+        };
+        std::thread::scope(|scope| {
+            let lanes = self.lanes.iter().take(queries.len().div_ceil(LANE_QUERIES));
+            lanes.skip(1).for_each(|lane| drop(scope.spawn(|| work(lane))));
+            work(self.card());
+        });
+        let (undecided, found) = result.into_inner().unwrap_or_else(PoisonError::into_inner)?;
+        report.add(&found);
         Ok(undecided)
     }
 
     fn answer_chunk<T: Real + Pod>(
         &self,
+        card: &C,
         queries: &[Point3<T>],
         radius: f64,
         reorder: bool,
         answers: Answers<'_>,
-        report: &mut BatchReport,
-    ) -> Result<Vec<u32>, CudaError> {
-        let card = &self.card;
-        let count = queries.len();
-        let suffix = if size_of::<T>() == 4 { "f32" } else { "f64" };
+    ) -> Result<(Vec<u32>, BatchReport), CudaError> {
+        let mut report = BatchReport::default();
         let mut columns = Columns::default();
         let mut blocks = Vec::new();
         for (address, column) in columns.iter_mut().zip(answers).filter(|(_, column)| !column.is_empty()) {
@@ -116,57 +153,122 @@ impl<C: Card> Engine<C> {
             *address = card.address(&block);
             blocks.push((block, column));
         }
-        let queries = card.upload(cast_slice(queries))?;
+        let memory = card.upload(cast_slice(queries))?;
+        let mut batch = self.batch(card.address(&memory), columns, radius);
+        let found = Self::search::<T>(card, queries.len(), reorder, &mut batch, &mut report)?;
+        let mut left = vec![0u32; found.count];
+        card.read(&found.numbers, cast_slice_mut(&mut left))?;
+        blocks.into_iter().try_for_each(|(block, column)| card.read(&block, column))?;
+        Ok((left, report))
+    }
+
+    /// Answers queries that are on the card into columns there. A function answers those that the card does not decide.
+    pub(crate) fn answer_on_card<T: Real + Pod>(
+        &self,
+        queries: &CardQueries,
+        radius: f64,
+        reorder: bool,
+        columns: &Columns,
+        mut by_processor: impl FnMut(&[Point3<T>]) -> [Vec<u8>; 6],
+    ) -> Result<BatchReport, CudaError> {
+        let card = self.card();
+        let (mut report, scalar) = (BatchReport::default(), size_of::<T>());
+        let query_bytes = 3 * if queries.is_f32 { 4 } else { scalar };
+        let widths = [scalar, scalar, 3 * scalar, 3 * scalar, 4, 1];
+        let moved = |address: Address, first: usize, width: usize| match address {
+            0 => 0,
+            _ => address + (first * width) as Address,
+        };
+        for first in (0..queries.count).step_by(CARD_QUERIES) {
+            let count = CARD_QUERIES.min(queries.count - first);
+            let columns = std::array::from_fn(|column| moved(columns[column], first, widths[column]));
+            let mut batch = self.batch(moved(queries.address, first, query_bytes), columns, radius);
+            batch.has_f32_queries = u32::from(queries.is_f32);
+            let found = Self::search::<T>(card, count, reorder, &mut batch, &mut report)?;
+            if found.count > 0 {
+                let gathered = card.allocate(found.count * 3 * scalar)?;
+                batch.gathered = card.address(&gathered);
+                card.launch(&format!("p2m_gather_{}", suffix::<T>()), found.count, &batch)?;
+                let mut left = vec![Point3::<T>::origin(); found.count];
+                card.read(&gathered, cast_slice_mut(&mut left))?;
+                let mut blocks = Vec::new();
+                for (address, bytes) in batch.answers.iter_mut().zip(by_processor(&left)) {
+                    let block = card.upload(&bytes)?;
+                    *address = card.address(&block);
+                    blocks.push(block);
+                }
+                card.launch(&format!("p2m_put_{}", suffix::<T>()), found.count, &batch)?;
+                card.wait()?;
+            }
+        }
+        Ok(report)
+    }
+
+    /// Returns a batch without the memory that a search needs.
+    fn batch(&self, queries: Address, columns: Columns, radius: f64) -> Batch {
+        Batch { index: self.index, columns, queries, radius, prune: square_within(radius), ..Batch::default() }
+    }
+
+    /// Runs the kernels of a batch, and waits for them.
+    fn search<T: Real>(
+        card: &C,
+        count: usize,
+        reorder: bool,
+        batch: &mut Batch,
+        report: &mut BatchReport,
+    ) -> Result<Undecided<C::Memory>, CudaError> {
         let [rest, undecided] = [card.allocate(count * 4)?, card.allocate(count * 4)?];
         let mut numbers = card.allocate(8)?;
         card.clear(&mut numbers)?;
-        let mut batch = Batch {
-            index: self.index,
-            columns,
-            queries: card.address(&queries),
-            rest: card.address(&rest),
-            rest_count: card.address(&numbers),
-            undecided: card.address(&undecided),
-            undecided_count: card.address(&numbers) + 4,
-            radius,
-            prune: square_within(radius),
-            ..Batch::default()
-        };
+        batch.rest = card.address(&rest);
+        batch.rest_count = card.address(&numbers);
+        batch.undecided = card.address(&undecided);
+        batch.undecided_count = card.address(&numbers) + 4;
         card.wait()?;
         let start = Instant::now();
-        let _sorting = if reorder { Some(self.sort(count, suffix, &mut batch)?) } else { None };
-        card.launch(&format!("p2m_answer_by_list_{suffix}"), count, &batch)?;
-        card.launch(&format!("p2m_answer_by_tree_{suffix}"), count, &batch)?;
+        let _sorting = if reorder { Some(Self::sort::<T>(card, count, batch)?) } else { None };
+        card.launch(&format!("p2m_answer_by_list_{}", suffix::<T>()), count, batch)?;
+        card.launch(&format!("p2m_answer_by_tree_{}", suffix::<T>()), count, batch)?;
         card.wait()?;
         report.kernels += start.elapsed();
         let mut found = [0u32; 2];
         card.read(&numbers, cast_slice_mut(&mut found))?;
         report.by_tree += found[0] as usize;
         report.by_processor += found[1] as usize;
-        let mut left = vec![0u32; found[1] as usize];
-        card.read(&undecided, cast_slice_mut(&mut left))?;
-        blocks.into_iter().try_for_each(|(block, column)| card.read(&block, column))?;
-        Ok(left)
+        Ok(Undecided { numbers: undecided, count: found[1] as usize })
     }
 
     /// Sorts the queries of a batch, and returns the memory of their order.
-    fn sort(&self, count: usize, suffix: &str, batch: &mut Batch) -> Result<[C::Memory; 5], CudaError> {
-        let card = &self.card;
+    fn sort<T: Real>(card: &C, count: usize, batch: &mut Batch) -> Result<[C::Memory; 4], CudaError> {
         let [order, keys, ranks] = [card.allocate(count * 4)?, card.allocate(count * 4)?, card.allocate(count * 4)?];
-        let (mut starts, sums) = (card.allocate(KEYS * 4)?, card.allocate(KEYS / KEYS_PER_SUM * 4)?);
+        let mut starts = card.allocate((KEYS + 1) * 4)?;
         card.clear(&mut starts)?;
         batch.keys = card.address(&keys);
         batch.ranks = card.address(&ranks);
         batch.starts = card.address(&starts);
-        batch.sums = card.address(&sums);
-        card.launch(&format!("p2m_count_key_{suffix}"), count, batch)?;
-        card.launch("p2m_sum_keys", KEYS / KEYS_PER_SUM, batch)?;
-        card.launch("p2m_scan_sums", 1, batch)?;
-        card.launch("p2m_scan_keys", KEYS / KEYS_PER_SUM, batch)?;
+        batch.placed = batch.starts + (KEYS * 4) as Address;
+        card.launch(&format!("p2m_count_key_{}", suffix::<T>()), count, batch)?;
+        card.launch("p2m_place_keys", KEYS / KEYS_PER_GROUP, batch)?;
         batch.order = card.address(&order);
         card.launch("p2m_scatter", count, batch)?;
-        Ok([order, keys, ranks, starts, sums])
+        Ok([order, keys, ranks, starts])
     }
+}
+
+/// The queries of a batch that the card has left to the processor.
+struct Undecided<M> {
+    /// Their numbers, in any order.
+    numbers: M,
+    count: usize,
+}
+
+/// The end of the names of kernels for scenes in a scalar.
+fn suffix<T>() -> &'static str {
+    if size_of::<T>() == 4 { "f32" } else { "f64" }
+}
+
+fn unpoisoned<V>(mutex: &Mutex<V>) -> MutexGuard<'_, V> {
+    mutex.lock().unwrap_or_else(PoisonError::into_inner)
 }
 
 /// The bytes that lists may take: 280 for each primitive of a scene of 100,000, and more for those of a larger one,

@@ -39,6 +39,12 @@ pub enum CudaError {
         /// The number of levels.
         depth: usize,
     },
+    /// An answer that was checked has other bits than that of the processor.
+    #[error("the card has answered query {query} with other bits than the processor")]
+    Unequal {
+        /// The number of the query.
+        query: usize,
+    },
     /// There are more parts than numbers of 32 bits.
     #[error("{count} are too many for numbers of 32 bits")]
     TooMany {

@@ -47,6 +47,9 @@ impl Card for HostCard {
     /// Memory with the alignment of the widest loads.
     type Memory = Vec<u128>;
 
+    fn lane(&self) -> Result<Self, CudaError> {
+        Ok(Self(self.0))
+    }
     fn allocate(&self, bytes: usize) -> Result<Vec<u128>, CudaError> {
         // What is not written is conspicuous.
         Ok(vec![u128::MAX; bytes.div_ceil(16)])

@@ -17,8 +17,8 @@
 //! let index = CudaIndex::new(AabbTree::new(scene)?, &CudaOptions::default())?;
 //! let queries = vec![nalgebra::Point3::new(0.25, 0.25, 2.0); 1_000_000];
 //! let mut distance = vec![0.0; queries.len()];
-//! let columns = ClosestColumns::default().with_distance(&mut distance);
-//! index.closest_columns_into(&queries, f64::INFINITY, columns)?;
+//! let mut columns = ClosestColumns::default().with_distance(&mut distance);
+//! index.closest_columns_into(&queries, f64::INFINITY, &mut columns)?;
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 //!
@@ -37,7 +37,7 @@ mod tests;
 
 pub use error::CudaError;
 
-use bytemuck::{Pod, cast_slice_mut};
+use bytemuck::{Pod, bytes_of, cast_slice, cast_slice_mut};
 use card::{Card, CudaCard};
 use engine::Engine;
 use nalgebra::Point3;
@@ -61,11 +61,13 @@ pub struct CudaOptions {
     pub memory: Option<usize>,
     /// Whether queries are sorted on the card. Sorting is wasted on queries whose order is spatially coherent.
     pub reorder: bool,
+    /// The number of answers of each batch from the memory of the processor that the processor checks: 0 by default.
+    pub checked: usize,
 }
 
 impl Default for CudaOptions {
     fn default() -> Self {
-        Self { ordinal: 0, reach: 10.5, memory: None, reorder: true }
+        Self { ordinal: 0, reach: 10.5, memory: None, reorder: true, checked: 0 }
     }
 }
 
@@ -77,14 +79,52 @@ pub struct BatchReport {
     pub by_tree: usize,
     /// The number of queries that the processor has answered.
     pub by_processor: usize,
-    /// The time of the kernels on the card, sorting included, without transfers.
+    /// The time of the kernels on the card, sorting included, without transfers. Parts of a batch from the memory of the
+    /// processor run at once, so their times overlap.
     pub kernels: Duration,
+}
+
+impl BatchReport {
+    fn add(&mut self, other: &Self) {
+        self.by_tree += other.by_tree;
+        self.by_processor += other.by_processor;
+        self.kernels += other.kernels;
+    }
+}
+
+/// Queries on the card, for [`CudaIndex::closest_on_card`].
+#[derive(Clone, Copy, Debug)]
+pub struct CardQueries {
+    /// The address of the first coordinate. Three coordinates of a query follow each other, and the queries do.
+    pub address: u64,
+    /// The number of queries.
+    pub count: usize,
+    /// Whether coordinates are f32. Otherwise they have the scalar of the scene.
+    pub is_f32: bool,
+}
+
+/// The addresses of columns on the card, for [`CudaIndex::closest_on_card`]; 0 for a column that nobody wants.
+///
+/// The values are those of [`ClosestColumns`], in the scalar of the scene.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct CardColumns {
+    /// The address of the distances.
+    pub distance: u64,
+    /// The address of the certified lower bounds.
+    pub lower_bound: u64,
+    /// The address of the closest points, each with three coordinates.
+    pub point: u64,
+    /// The address of the weights of the vertices, three for each query.
+    pub barycentric: u64,
+    /// The address of the indices of the primitives, numbers of 32 bits; all bits are 1 where there is no answer.
+    pub primitive: u64,
+    /// The address of the features, of 8 bits ([`Feature::code`]); 255 where there is no answer.
+    pub feature: u64,
 }
 
 /// An index on a card: a tree with its scene, and interception lists.
 pub struct CudaIndex<T: Real, S> {
     index: OnCard<T, S, CudaCard>,
-    reorder: bool,
 }
 
 impl<T: Real + Pod, S: PrimitiveSet<T> + Sync> CudaIndex<T, S> {
@@ -95,7 +135,7 @@ impl<T: Real + Pod, S: PrimitiveSet<T> + Sync> CudaIndex<T, S> {
     /// empty scene, for primitives without vertices, and for scenes whose size is not within 2^-320..2^300.
     pub fn new(tree: AabbTree<T, S>, options: &CudaOptions) -> Result<Self, CudaError> {
         let card = CudaCard::open(options.ordinal)?;
-        Ok(Self { index: OnCard::new(card, tree, options)?, reorder: options.reorder })
+        Ok(Self { index: OnCard::new(card, tree, options)? })
     }
 
     /// The tree, which answers single queries and those of other kinds.
@@ -116,10 +156,12 @@ impl<T: Real + Pod, S: PrimitiveSet<T> + Sync> CudaIndex<T, S> {
     /// Answers queries into columns, in their order, with the values of [`batch::closest_columns_into`] apart from lower
     /// bounds, which are valid but may differ.
     ///
-    /// The card holds four million queries at a time, for which it needs up to 500 MB besides the index.
+    /// Queries are divided into parts of about a million. The card holds three parts at a time: while one is copied,
+    /// another is searched. For them it needs up to 450 MB besides the index.
     ///
     /// # Errors
-    /// Returns a [`CudaError`] if the card fails, or if its memory does not suffice. Columns then have any content.
+    /// Returns a [`CudaError`] if the card fails, if its memory does not suffice, or if an answer that was checked has
+    /// other bits ([`CudaOptions::checked`]). Columns then have any content.
     ///
     /// # Panics
     /// Panics if a column has another length than `queries`, and for more than 2^32 - 1 queries.
@@ -127,9 +169,36 @@ impl<T: Real + Pod, S: PrimitiveSet<T> + Sync> CudaIndex<T, S> {
         &self,
         queries: &[Point3<T>],
         max_distance: T,
-        columns: ClosestColumns<'_, T>,
+        columns: &mut ClosestColumns<'_, T>,
     ) -> Result<BatchReport, CudaError> {
-        self.index.closest_columns_into(queries, max_distance, self.reorder, columns)
+        self.index.closest_columns_into(queries, max_distance, columns)
+    }
+
+    /// Answers queries that are on the card into columns on the card. It waits for a stream of the caller first, and
+    /// returns when all answers are there.
+    ///
+    /// The card needs 36 bytes for each of up to eight million queries at a time, and 16 MB.
+    ///
+    /// # Errors
+    /// Returns a [`CudaError`] if the card fails, or if its memory does not suffice. Columns then have any content.
+    ///
+    /// # Panics
+    /// Panics for more than 2^32 - 1 queries.
+    ///
+    /// # Safety
+    /// Addresses belong to the primary context of the card of this index. Queries and columns have the sizes that
+    /// [`CardQueries`] and [`CardColumns`] say, are aligned to their scalars, and do not overlap. Nothing else writes to
+    /// either during the call. The stream is one of that context; 0 is the default stream.
+    pub unsafe fn closest_on_card(
+        &self,
+        queries: &CardQueries,
+        max_distance: T,
+        stream: u64,
+        columns: &CardColumns,
+    ) -> Result<BatchReport, CudaError> {
+        // SAFETY: the caller says so.
+        unsafe { self.index.engine.card().wait_for(stream) }?;
+        self.index.closest_on_card(queries, max_distance, columns)
     }
 }
 
@@ -137,20 +206,30 @@ impl<T: Real + Pod, S: PrimitiveSet<T> + Sync> CudaIndex<T, S> {
 struct OnCard<T: Real, S, C: Card> {
     tree: AabbTree<T, S>,
     engine: Engine<C>,
+    options: CudaOptions,
+}
+
+/// The answers of the processor to some queries. Columns that nobody wants are empty.
+struct Answered<T: Real> {
+    distance: Vec<T>,
+    lower_bound: Vec<T>,
+    point: Vec<Point3<T>>,
+    barycentric: Vec<[T; 3]>,
+    primitive: Vec<u32>,
+    feature: Vec<Feature>,
 }
 
 impl<T: Real + Pod, S: PrimitiveSet<T> + Sync, C: Card> OnCard<T, S, C> {
     fn new(card: C, tree: AabbTree<T, S>, options: &CudaOptions) -> Result<Self, CudaError> {
         let engine = Engine::new(card, &Scene::new(&tree)?, options.reach, options.memory)?;
-        Ok(Self { tree, engine })
+        Ok(Self { tree, engine, options: *options })
     }
 
     fn closest_columns_into(
         &self,
         queries: &[Point3<T>],
         max_distance: T,
-        reorder: bool,
-        mut columns: ClosestColumns<'_, T>,
+        columns: &mut ClosestColumns<'_, T>,
     ) -> Result<BatchReport, CudaError> {
         let Some(len) = columns.len() else { return Ok(BatchReport::default()) };
         assert!(queries.len() == len && u32::try_from(len).is_ok(), "one value for each of fewer than 2^32 queries");
@@ -165,38 +244,132 @@ impl<T: Real + Pod, S: PrimitiveSet<T> + Sync, C: Card> OnCard<T, S, C> {
         ];
         let mut report = BatchReport::default();
         let radius = max_distance.to_f64_above();
-        let undecided = self.engine.answer(queries, radius, reorder, answers, &mut report)?;
+        let undecided = self.engine.answer(queries, radius, self.options.reorder, answers, &mut report)?;
         if let Some(column) = &mut columns.feature {
+            // Code 255 stands for no feature.
             let feature = |code| Feature::from_code(code).unwrap_or(Feature::Vertex(0));
             column.iter_mut().zip(&features).for_each(|(to, code)| *to = feature(*code));
         }
-        self.decide(queries, max_distance, &undecided, &mut columns);
-        Ok(report)
+        self.by_processor_at(queries, &undecided, max_distance, columns).write(&undecided, columns);
+        let sample = sample(len, self.options.checked);
+        match self.by_processor_at(queries, &sample, max_distance, columns).other_bits(&sample, columns) {
+            Some(query) => Err(CudaError::Unequal { query }),
+            None => Ok(report),
+        }
     }
 
-    /// Answers queries that the card has left by the tree of the processor.
-    fn decide(&self, queries: &[Point3<T>], max_distance: T, numbers: &[u32], columns: &mut ClosestColumns<'_, T>) {
-        let left: Vec<Point3<T>> = numbers.iter().map(|&i| queries[i as usize]).collect();
-        let options = QueryOptions::default().with_max_distance(max_distance);
-        macro_rules! columns {
-            ($($column:ident: $method:ident, $default:expr;)*) => {
-                // A column that is not wanted is not computed.
-                $(let mut $column = columns.$column.as_ref().map(|_| vec![$default; left.len()]);)*
-                let mut found = ClosestColumns::default();
-                $(if let Some(column) = &mut $column { found = found.$method(column); })*
-                batch::closest_columns_into(&self.tree, &left, &options, &BatchOptions::default(), found);
-                $(if let (Some(to), Some(from)) = (&mut columns.$column, &$column) {
-                    numbers.iter().zip(from).for_each(|(&i, value)| to[i as usize] = *value);
-                })*
-            };
-        }
-        columns! {
-            distance: with_distance, T::zero();
-            primitive: with_primitive, 0;
-            point: with_point, Point3::origin();
-            feature: with_feature, Feature::Face;
-            barycentric: with_barycentric, [T::zero(); 3];
-            lower_bound: with_lower_bound, T::zero();
-        }
+    fn closest_on_card(
+        &self,
+        queries: &CardQueries,
+        max_distance: T,
+        columns: &CardColumns,
+    ) -> Result<BatchReport, CudaError> {
+        assert!(u32::try_from(queries.count).is_ok(), "fewer than 2^32 queries");
+        let CardColumns { distance, lower_bound, point, barycentric, primitive, feature } = *columns;
+        let columns = [distance, lower_bound, point, barycentric, primitive, feature];
+        let radius = max_distance.to_f64_above();
+        self.engine.answer_on_card(queries, radius, self.options.reorder, &columns, |queries: &[Point3<T>]| {
+            let mut is_wanted = columns.map(|address| address != 0);
+            // A primitive says whether there is a feature.
+            is_wanted[4] |= is_wanted[5];
+            self.by_processor(queries, max_distance, is_wanted).into_bytes()
+        })
     }
+
+    /// Answers some of the queries on the processor, with the wanted columns of others.
+    fn by_processor_at(
+        &self,
+        queries: &[Point3<T>],
+        numbers: &[u32],
+        max_distance: T,
+        columns: &ClosestColumns<'_, T>,
+    ) -> Answered<T> {
+        let chosen: Vec<Point3<T>> = numbers.iter().map(|&i| queries[i as usize]).collect();
+        let is_wanted = [
+            columns.distance.is_some(),
+            columns.lower_bound.is_some(),
+            columns.point.is_some(),
+            columns.barycentric.is_some(),
+            columns.primitive.is_some(),
+            columns.feature.is_some(),
+        ];
+        self.by_processor(&chosen, max_distance, is_wanted)
+    }
+
+    /// Answers queries on the processor, with the columns that are wanted.
+    fn by_processor(&self, queries: &[Point3<T>], max_distance: T, is_wanted: [bool; 6]) -> Answered<T> {
+        let len = is_wanted.map(|is_wanted| if is_wanted { queries.len() } else { 0 });
+        let mut answered = Answered {
+            distance: vec![T::zero(); len[0]],
+            lower_bound: vec![T::zero(); len[1]],
+            point: vec![Point3::origin(); len[2]],
+            barycentric: vec![[T::zero(); 3]; len[3]],
+            primitive: vec![0; len[4]],
+            feature: vec![Feature::Face; len[5]],
+        };
+        let mut columns = ClosestColumns::default();
+        // A column that is not wanted is not computed.
+        columns.distance = is_wanted[0].then_some(&mut answered.distance);
+        columns.lower_bound = is_wanted[1].then_some(&mut answered.lower_bound);
+        columns.point = is_wanted[2].then_some(&mut answered.point);
+        columns.barycentric = is_wanted[3].then_some(&mut answered.barycentric);
+        columns.primitive = is_wanted[4].then_some(&mut answered.primitive);
+        columns.feature = is_wanted[5].then_some(&mut answered.feature);
+        let options = QueryOptions::default().with_max_distance(max_distance);
+        batch::closest_columns_into(&self.tree, queries, &options, &BatchOptions::default(), columns);
+        answered
+    }
+}
+
+impl<T: Real + Pod> Answered<T> {
+    /// Writes the answers to the places of their queries.
+    fn write(&self, numbers: &[u32], columns: &mut ClosestColumns<'_, T>) {
+        fn put<V: Copy>(numbers: &[u32], to: &mut Option<&mut [V]>, from: &[V]) {
+            if let Some(to) = to {
+                numbers.iter().zip(from).for_each(|(&i, value)| to[i as usize] = *value);
+            }
+        }
+        put(numbers, &mut columns.distance, &self.distance);
+        put(numbers, &mut columns.lower_bound, &self.lower_bound);
+        put(numbers, &mut columns.point, &self.point);
+        put(numbers, &mut columns.barycentric, &self.barycentric);
+        put(numbers, &mut columns.primitive, &self.primitive);
+        put(numbers, &mut columns.feature, &self.feature);
+    }
+
+    /// Returns the number of a query that has another answer in columns. Lower bounds may differ.
+    fn other_bits(&self, numbers: &[u32], columns: &ClosestColumns<'_, T>) -> Option<usize> {
+        fn other<V: Pod>(numbers: &[u32], found: Option<&[V]>, expected: &[V]) -> Option<usize> {
+            let found = found?;
+            let is_other = |(i, value): &(usize, &V)| bytes_of(&found[*i]) != bytes_of(*value);
+            numbers.iter().map(|&i| i as usize).zip(expected).find(is_other).map(|(i, _)| i)
+        }
+        let is_other = |&(i, feature): &(usize, &Feature)| columns.feature.as_ref().is_some_and(|c| c[i] != *feature);
+        other(numbers, columns.distance.as_deref(), &self.distance)
+            .or_else(|| other(numbers, columns.point.as_deref(), &self.point))
+            .or_else(|| other(numbers, columns.barycentric.as_deref(), &self.barycentric))
+            .or_else(|| other(numbers, columns.primitive.as_deref(), &self.primitive))
+            .or_else(|| numbers.iter().map(|&i| i as usize).zip(&self.feature).find(is_other).map(|(i, _)| i))
+    }
+
+    /// Returns the bytes of the columns, in the order of those on the card.
+    fn into_bytes(self) -> [Vec<u8>; 6] {
+        let is_missing = |i: usize| self.primitive.get(i) == Some(&ClosestColumns::<T>::NO_PRIMITIVE);
+        let code = |(i, feature): (usize, &Feature)| if is_missing(i) { 255 } else { feature.code() };
+        [
+            cast_slice(&self.distance).to_vec(),
+            cast_slice(&self.lower_bound).to_vec(),
+            cast_slice(&self.point).to_vec(),
+            cast_slice(&self.barycentric).to_vec(),
+            cast_slice(&self.primitive).to_vec(),
+            self.feature.iter().enumerate().map(code).collect(),
+        ]
+    }
+}
+
+/// Returns the numbers of so many queries, evenly spaced.
+#[allow(clippy::cast_possible_truncation, reason = "numbers of queries")]
+fn sample(count: usize, wanted: usize) -> Vec<u32> {
+    let wanted = wanted.min(count);
+    (0..wanted).map(|i| (i as u128 * count as u128 / wanted as u128) as u32).collect()
 }

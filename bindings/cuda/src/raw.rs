@@ -77,18 +77,21 @@ pub(crate) struct Batch {
     pub(crate) keys: Address,
     pub(crate) ranks: Address,
     pub(crate) starts: Address,
-    pub(crate) sums: Address,
+    pub(crate) placed: Address,
     pub(crate) rest: Address,
     pub(crate) rest_count: Address,
     pub(crate) undecided: Address,
     pub(crate) undecided_count: Address,
     pub(crate) radius: f64,
     pub(crate) prune: f64,
+    pub(crate) gathered: Address,
+    pub(crate) answers: Columns,
+    pub(crate) has_f32_queries: u32,
 }
 
-/// The number of keys by which queries are sorted, and of those that a thread adds up.
+/// The number of keys by which queries are sorted, and of those that a thread gives their places.
 pub(crate) const KEYS: usize = 1 << 22;
-pub(crate) const KEYS_PER_SUM: usize = 1024;
+pub(crate) const KEYS_PER_GROUP: usize = 64;
 
 /// A cell whose list is to be made (`lists.cuh`).
 #[repr(C)]

@@ -3,7 +3,7 @@
 
 use crate::host::HostCard;
 use crate::scene::plate;
-use crate::{BatchReport, CudaOptions, OnCard};
+use crate::{BatchReport, CardColumns, CardQueries, CudaOptions, OnCard};
 use bytemuck::{Pod, bytes_of};
 use nalgebra::Point3;
 use p2m_bvh::AabbTree;
@@ -135,8 +135,8 @@ fn agrees<T: Real + Pod>(
         }
     };
     let mut report = BatchReport::default();
-    let found = answers(queries.len(), |columns| {
-        report = index.closest_columns_into(queries, max_distance, options.reorder, columns).unwrap();
+    let found = answers(queries.len(), |mut columns| {
+        report = index.closest_columns_into(queries, max_distance, &mut columns).unwrap();
     });
     for (i, query) in queries.iter().enumerate() {
         let bits = |all: &All<T>| {
@@ -154,11 +154,45 @@ fn agrees<T: Real + Pod>(
         let scale = found.distance[i].to_f64() + query.coords.norm().to_f64();
         assert!(other - bound <= 1e-6 * scale || other == bound, "{query:?}: {bound} {other}");
     }
-    // Distances alone are the same.
+    // Distances alone are the same, and so are answers to queries that are on the card.
+    let options = CudaOptions { reorder: !options.reorder, checked: 5, ..*options };
+    let index = OnCard { options, ..index };
     let mut distance = vec![T::zero(); queries.len()];
-    let columns = ClosestColumns::default().with_distance(&mut distance);
-    index.closest_columns_into(queries, max_distance, !options.reorder, columns).unwrap();
-    assert!(distance.iter().zip(&expected.distance).all(|(a, b)| a.to_f64().to_bits() == b.to_f64().to_bits()));
+    let mut columns = ClosestColumns::default().with_distance(&mut distance);
+    index.closest_columns_into(queries, max_distance, &mut columns).unwrap();
+    let bits = |column: &[T]| column.iter().map(|x| x.to_f64().to_bits()).collect::<Vec<_>>();
+    assert_eq!(bits(&distance), bits(&expected.distance));
+    let mut all = found;
+    let mut features = vec![0u8; queries.len()];
+    all.distance.fill(T::zero());
+    all.primitive.fill(0);
+    all.point.fill(Point3::origin());
+    all.weights.fill([T::zero(); 3]);
+    let columns = CardColumns {
+        distance: all.distance.as_mut_ptr() as u64,
+        lower_bound: 0,
+        point: all.point.as_mut_ptr() as u64,
+        barycentric: all.weights.as_mut_ptr() as u64,
+        primitive: all.primitive.as_mut_ptr() as u64,
+        feature: features.as_mut_ptr() as u64,
+    };
+    let on_card = |address, is_f32| CardQueries { address, count: queries.len(), is_f32 };
+    index.closest_on_card(&on_card(queries.as_ptr() as u64, false), max_distance, &columns).unwrap();
+    let is_missing = |i: usize| expected.primitive[i] == ClosestColumns::<T>::NO_PRIMITIVE;
+    assert!((0..queries.len()).all(|i| features[i] == if is_missing(i) { 255 } else { expected.feature[i].code() }));
+    assert_eq!((bits(&all.distance), &all.primitive), (bits(&expected.distance), &expected.primitive));
+    let points = |all: &All<T>| bits(bytemuck::cast_slice(&all.point));
+    assert_eq!(points(&all), points(&expected));
+    assert_eq!(bits(all.weights.as_flattened()), bits(expected.weights.as_flattened()));
+    // Queries in f32 for a scene of any scalar.
+    let narrowed: Vec<_> = queries.iter().map(|query| query.coords.map(|x| x.to_f64() as f32)).collect();
+    let widened: Vec<Point3<T>> =
+        narrowed.iter().map(|query| query.map(|x| T::round_from_f64(f64::from(x))).into()).collect();
+    index.closest_on_card(&on_card(narrowed.as_ptr() as u64, true), max_distance, &columns).unwrap();
+    let again = answers(queries.len(), |mut columns| {
+        index.closest_columns_into(&widened, max_distance, &mut columns).unwrap();
+    });
+    assert_eq!((bits(&all.distance), &all.primitive), (bits(&again.distance), &again.primitive));
     Some((report, index.engine.cells_without_list()))
 }
 

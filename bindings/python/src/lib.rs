@@ -4,7 +4,8 @@
 //! the documentation for users are in Python (`python/p2m`). Every build and every batch runs detached from the
 //! interpreter, on threads that never call it (the module `work`).
 //!
-//! `unsafe` stands in two places, which map saved files and shards where the user asked for it.
+//! `unsafe` stands in two places that map saved files and shards where the user asked for it, and in one that passes
+//! memory of other libraries to a card.
 #![deny(unsafe_code)]
 #![allow(clippy::too_many_arguments, reason = "the Python layer passes all arguments of a call")]
 
@@ -12,6 +13,8 @@ mod advise;
 mod arrays;
 mod columns;
 mod contacts;
+#[cfg(feature = "cuda")]
+mod cuda;
 mod deviations;
 mod errors;
 mod fields;
@@ -36,6 +39,9 @@ use pyo3::prelude::*;
 /// The functions and classes that the Python files of the package use.
 #[pymodule]
 mod _p2m {
+    #[cfg(feature = "cuda")]
+    #[pymodule_export]
+    use super::cuda::CudaIndex;
     #[pymodule_export]
     use super::{
         advise::advise,

@@ -41,6 +41,11 @@ def test_recipes_have_the_same_bits(script: str, needed: list[str]) -> None:
     assert "200,000 answers are the same bits" in run(f"recipes/{script}.py")
 
 
+def test_the_gradient_of_a_distance_is_a_direction() -> None:
+    pytest.importorskip("torch")
+    assert "mean square" in run("recipes/torch_distance.py")
+
+
 @pytest.mark.skipif(not os.path.exists("/proc/self/smaps_rollup"), reason="the shared memory is not known here")
 def test_the_benchmark_compares_all_answers() -> None:
     pytest.importorskip("distributed")

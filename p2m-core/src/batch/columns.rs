@@ -1,7 +1,7 @@
 //! The columns of the answers of a batch.
 
 use super::parts::Split;
-use crate::{BatchAnswer, Feature, Real};
+use crate::{BatchAnswer, Closest, Feature, PrimitiveId, Real};
 use nalgebra::Point3;
 
 /// The columns of the answers that a caller asks for, each with one value for each query.
@@ -87,6 +87,22 @@ impl<T: Real> ClosestColumns<'_, T> {
         let len = self.lengths().next()?;
         assert!(self.lengths().all(|other| other == len), "columns of one length");
         Some(len)
+    }
+
+    /// Returns the answer to the query at a position, after the columns were filled; `None` if there is none, or if a
+    /// column is missing.
+    #[must_use]
+    pub fn closest(&self, position: usize) -> Option<Closest<T>> {
+        let number = self.primitive.as_ref()?[position];
+        (number != Self::NO_PRIMITIVE).then_some(())?;
+        Some(Closest {
+            point: self.point.as_ref()?[position],
+            distance: self.distance.as_ref()?[position],
+            lower_bound: self.lower_bound.as_ref()?[position],
+            primitive: PrimitiveId::new(number as usize),
+            feature: self.feature.as_ref()?[position],
+            barycentric: self.barycentric.as_ref()?[position],
+        })
     }
 
     /// Returns whether no column is asked for.

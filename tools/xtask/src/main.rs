@@ -154,7 +154,7 @@ fn main() -> ExitCode {
 /// Runs clippy: all lints for libraries and programs, while tests may compare floats exactly, cast, and panic.
 fn lint() -> Outcome {
     cargo(&["fmt", "--all", "--check"], &[])?;
-    let clippy = ["clippy", "--locked", "--workspace"];
+    let clippy = ["clippy", "--locked", "--workspace", "--features", "p2m-cli/cuda,p2m-python/cuda"];
     let denied = ["--", "-D", "warnings"];
     let allowed = ["-A", "clippy::float_cmp", "-A", "clippy::cast_possible_truncation"];
     cargo(&[&clippy[..], &["--lib", "--bins"], &denied].concat(), &[])?;

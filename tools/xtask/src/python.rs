@@ -53,7 +53,8 @@ pub(crate) fn check(filter: &[String]) -> Outcome {
     }
     // With the features of `cargo test --workspace`, which examples need as well, only this package is compiled after
     // the other tests. The crates that search are optimised in this profile.
-    cargo(&["build", "--locked", "--workspace", "--lib", "--examples", "--bin", "p2m"], &[])?;
+    let build = ["build", "--locked", "--workspace", "--lib", "--examples", "--bin", "p2m"];
+    cargo(&[&build[..], &["--features", "p2m-python/cuda"]].concat(), &[])?;
     install_package(&own_python, &target.join("debug"))?;
     let in_folder = |folder: &str, arguments: &[&str], variable: (&str, &Path)| {
         let mut command = Command::new(&own_python);

@@ -99,6 +99,11 @@ pub(crate) struct Args {
     #[arg(long, value_parser = backend_choices())]
     pub(crate) backend: Option<BackendChoice>,
 
+    /// Search on this device instead of the processor, with the tree aabb
+    #[cfg(feature = "cuda")]
+    #[arg(long, value_enum, conflicts_with_all = ["backend", "k_nearest", "within", "signed", "certified", "epsilon", "max_visits", "P2mArgs"])]
+    pub(crate) device: Option<super::card::Device>,
+
     #[command(flatten)]
     pub(crate) p2m: P2mArgs,
 

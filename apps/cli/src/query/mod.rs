@@ -3,6 +3,8 @@
 pub(crate) mod accuracy;
 pub(crate) mod answers;
 mod args;
+#[cfg(feature = "cuda")]
+mod card;
 pub(crate) mod field;
 mod field_summary;
 
@@ -47,6 +49,17 @@ pub(crate) fn run(streams: &Streams, args: &Args) -> anyhow::Result<()> {
     let output = Output::open(streams, Some(&query_args.out))?;
 
     let start = Instant::now();
+    let (summary, objects) = (SceneSummary::new(scene_args.name(), format, &scene), &*scene.objects);
+    #[cfg(feature = "cuda")]
+    if args.device.is_some() {
+        let source = pool.install(|| card::CardScene::new(&scene.soup, args)).with_context(|| scene_args.name())?;
+        let (built, build_time) = (None, start.elapsed());
+        let index = IndexSummary { scene: summary, backend: "cuda", built, is_loaded: false, read_time, build_time };
+        let (soup, format, pool) = (Some(&*scene.soup), out_format, &pool);
+        let (signs, shards) = (None, None);
+        return Run { streams, args, pool, queries, output, format, objects, index, signs, shards, soup }
+            .finish(&source);
+    }
     let saved = saved.as_ref();
     let region = sample.as_deref().map_or(QueryRegion::SceneBox, QueryRegion::Like);
     let workload = Workload::new(queries.len(), region);
@@ -64,23 +77,11 @@ pub(crate) fn run(streams: &Streams, args: &Args) -> anyhow::Result<()> {
     let signed = signed.with_context(|| scene_args.name())?;
     let signs = signed.as_ref().map(SignReport::new);
     let source = WholeIndex { index, signed: signed.as_ref(), args };
-    let (summary, backend) = (SceneSummary::new(scene_args.name(), format, &scene), backend.name);
-    let index = IndexSummary { scene: summary, backend, built: Some(&built), is_loaded, read_time, build_time };
-    let (objects, shards) = (&*scene.objects, None);
-    Run {
-        streams,
-        args,
-        pool: &pool,
-        queries,
-        output,
-        format: out_format,
-        objects,
-        index,
-        signs,
-        shards,
-        soup: Some(&scene.soup),
-    }
-    .finish(&source)
+    let (backend, built) = (backend.name, Some(&built));
+    let index = IndexSummary { scene: summary, backend, built, is_loaded, read_time, build_time };
+    let (soup, format) = (Some(&*scene.soup), out_format);
+    Run { streams, args, pool: &pool, queries, output, format, objects, index, signs, shards: None, soup }
+        .finish(&source)
 }
 
 /// Answers queries by an index in shards, which are loaded as queries need them.
@@ -88,6 +89,10 @@ fn run_in_shards(streams: &Streams, args: &Args, folder: &Path) -> anyhow::Resul
     let query_args = &args.query_args;
     query_args.check(&args.scene, args.points.as_deref(), "points")?;
     args.check()?;
+    #[cfg(feature = "cuda")]
+    if args.device.is_some() {
+        return Err(usage("--device is not for an index in shards"));
+    }
     let has_options_of_builds = args.backend.is_some() || query_args.k.is_some() || !args.p2m.is_unspecified();
     refuse_options_of_builds(&args.scene, has_options_of_builds)?;
     refuse_other_signs(args)?;

@@ -20,6 +20,7 @@ index from any number of processes. `write_shards` and `Shards` are for scenes t
 from __future__ import annotations
 
 from ._ask import Ask
+from ._cuda import CudaIndex
 from ._deviation import Deviation, deviation
 from ._hausdorff import HausdorffDistance, hausdorff
 from ._index import Estimate, Index, advise, load
@@ -46,6 +47,7 @@ __all__ = [
     "ClosestPoints",
     "ClosestToShapes",
     "Counts",
+    "CudaIndex",
     "Deviation",
     "Estimate",
     "FirstHits",

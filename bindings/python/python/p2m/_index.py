@@ -28,6 +28,7 @@ from ._arrays import (
     thread_count,
     whole,
 )
+from ._cuda import CudaIndex
 from ._pairs import PairQueries
 from ._records import AllHits, ClosestPoints, FirstHits, NearPrimitives
 from ._scene import Scene
@@ -876,6 +877,48 @@ class Index(PointQueries, PairQueries):
         """
         moved = self.scene.moved(vertices)
         return Index._from_raw(self._raw.refitted(moved._raw, self._count(threads)), self._threads)
+
+    def to(
+        self,
+        device: Literal["cuda"],
+        *,
+        ordinal: int = 0,
+        reach: float = 10.5,
+        memory: int | None = None,
+        reorder: bool = True,
+        checked: int = 0,
+    ) -> CudaIndex:
+        """Copy the scene to an NVIDIA card, and make interception lists there.
+
+        Parameters
+        ----------
+        device : "cuda"
+            The kind of device.
+        ordinal : int, optional
+            The number of the card.
+        reach : float, optional
+            The size of the space with lists, in boxes of the scene around its centre. Queries farther away are slower.
+        memory : int, optional
+            The largest number of bytes of the lists; by default about 280 for each primitive, and more in scenes of more
+            than 100,000.
+        reorder : bool, optional
+            Whether the card sorts the queries. It need not if their order is spatially coherent.
+        checked : int, optional
+            The number of answers to each batch of NumPy that the processor checks.
+
+        Raises
+        ------
+        RuntimeError
+            If there is no driver or no such card, or if p2m was built without the feature ``cuda``.
+        MemoryError
+            If the memory of the card does not suffice.
+        ValueError
+            For an empty scene, and for scenes whose size is not within 2**-320 and 2**300.
+        """
+        if device != "cuda":
+            raise ValueError(f"device: {device!r} is not 'cuda'")
+        options = {"ordinal": ordinal, "reach": reach, "memory": memory, "reorder": reorder, "checked": checked}
+        return CudaIndex(self, threads=self._threads, **options)
 
     def save(self, path: str | os.PathLike[str]) -> None:
         """Save the index and its scene to a file, which appears under its name only when it is complete.

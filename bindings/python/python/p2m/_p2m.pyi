@@ -6,6 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 __all__ = [
+    "CudaIndex",
     "HitList",
     "Index",
     "NearList",
@@ -303,3 +304,21 @@ class ShardWriter:
     def add(self, scene: Scene) -> None: ...
     def close(self) -> None: ...
     def finish(self, threads: int, progress: _Progress) -> None: ...
+
+@final
+class CudaIndex:
+    @staticmethod
+    def build(
+        index: Index,
+        threads: int,
+        ordinal: int,
+        reach: float,
+        memory: int | None,
+        reorder: bool,
+        checked: int,
+    ) -> CudaIndex: ...
+    def closest(self, points: NDArray[np.float64], out: _Arrays, max_distance: float) -> tuple[int, int, float]: ...
+    def closest_on_card(
+        self, queries: tuple[int, int, bool], columns: list[int], max_distance: float, stream: int
+    ) -> tuple[int, int, float]: ...
+    def size(self) -> tuple[int, int, int]: ...

@@ -1,0 +1,210 @@
+"""Indexes on an NVIDIA card."""
+
+from __future__ import annotations
+
+import math
+import sys
+from collections.abc import Sequence
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from . import _p2m
+from ._arrays import FIELDS, checked_limits, coordinates, flat, outputs, real, thread_count, whole
+from ._records import ClosestPoints
+
+if TYPE_CHECKING:
+    from ._index import Index
+
+# The fields in the order of the columns of the native part, with their types on the card.
+_CARD_TYPES = {
+    "distance": "float64",
+    "lower_bound": "float64",
+    "point": "float64",
+    "barycentric": "float64",
+    "primitive": "int32",
+    "feature": "uint8",
+}
+
+
+class CudaIndex:
+    """A scene on an NVIDIA card, which answers queries for the closest point with the bits of `Index`.
+
+    `Index.to` makes it. Points of NumPy are copied to the card, and their answers back. Points that are on the card are
+    not copied: arrays of torch and CuPy, and those of other libraries with ``__dlpack__`` or
+    ``__cuda_array_interface__`` (JAX, Numba), for which CuPy is needed.
+
+    Attributes
+    ----------
+    by_tree : int
+        The number of queries of the last call that have no interception list and were answered by the tree.
+    by_processor : int
+        The number of queries of the last call that the card could not decide, which the processor has answered.
+    kernel_seconds : float
+        The time of the kernels of the last call, without copies.
+    """
+
+    def __init__(self, index: Index, *, threads: int | None, **options: Any) -> None:
+        if not hasattr(_p2m, "CudaIndex"):
+            raise RuntimeError(
+                "p2m was built without CUDA: build it with the feature cuda, "
+                "MATURIN_PEP517_ARGS='--features cuda' pip install ./bindings/python"
+            )
+        whole(options["ordinal"], "ordinal", 0, 2**31 - 1)
+        whole(options["checked"], "checked", 0, 2**32 - 1)
+        if options["memory"] is not None:
+            whole(options["memory"], "memory", 0, 2**32 - 1)
+        real(options["reach"], "reach")
+        self._ordinal = options["ordinal"]
+        self._raw = _p2m.CudaIndex.build(index._raw, thread_count(threads), **options)
+        self.by_tree = 0
+        self.by_processor = 0
+        self.kernel_seconds = 0.0
+
+    def __repr__(self) -> str:
+        scene, lists, _ = self._raw.size()
+        return f"<p2m.CudaIndex on card {self._ordinal}, {(scene + lists) / 1e6:.0f} MB>"
+
+    @property
+    def info(self) -> dict[str, int]:
+        """The bytes of the scene and of the lists on the card, and the number of cells without a list."""
+        scene, lists, without = self._raw.size()
+        return {"scene_bytes": scene, "list_bytes": lists, "cells_without_list": without}
+
+    def closest(
+        self,
+        points: Any,
+        *,
+        max_distance: float | None = None,
+        fields: str | Sequence[str] = ("distance", "primitive"),
+    ) -> ClosestPoints:
+        """Return the closest points of the scene to query points.
+
+        The call waits for the current stream of torch or CuPy, and returns when all answers are there. Do not modify
+        the points during the call.
+
+        Parameters
+        ----------
+        points : array_like or array on the card, shape (..., 3)
+            The query points. Arrays on the card are contiguous, of float64 or float32. A point on the card that is not
+            finite has no answer.
+        max_distance : float, optional
+            The largest distance of an answer, inclusive.
+        fields : str or sequence of str, optional
+            The arrays of the answer: any of ``distance``, ``primitive``, ``point``, ``feature``, ``barycentric`` and
+            ``lower_bound``.
+
+        Returns
+        -------
+        ClosestPoints
+            A record with the arrays of `fields`: arrays of NumPy for points of NumPy, otherwise arrays on the card of
+            torch or of CuPy. There primitives are of int32.
+
+        Raises
+        ------
+        ValueError
+            For a wrong shape or option, and for points of NumPy that are not finite.
+        TypeError
+            For points of a wrong type.
+        RuntimeError
+            If the card fails, or if a checked answer has other bits than that of the processor.
+        MemoryError
+            If the memory of the card does not suffice.
+        """
+        largest, _ = checked_limits(max_distance, 0.0, None, False)
+        fields = (fields,) if isinstance(fields, str) else tuple(fields)
+        library = _library(points)
+        if library is None:
+            queries = coordinates(points, "points").astype(np.float64, copy=False)
+            arrays = outputs(fields, queries.shape[:-1], None, {name: FIELDS[name] for name in _CARD_TYPES}, ())
+            self._report(self._raw.closest(queries.reshape(-1), flat(arrays), largest))
+            return ClosestPoints(arrays)
+        queries = library.array(points, self._ordinal)
+        shape, scalar = tuple(queries.shape), str(queries.dtype).removeprefix("torch.")
+        if scalar not in ("float64", "float32"):
+            raise TypeError(f"points: the type is {scalar} instead of float64 or float32")
+        if not shape or shape[-1] != 3:
+            raise ValueError(f"points: the shape is {shape}, but the last axis has x, y and z")
+        if not library.is_contiguous(queries):
+            raise ValueError("points: the array is not contiguous")
+        unknown = [name for name in fields if name not in _CARD_TYPES]
+        if unknown or not fields:
+            raise ValueError(f"fields: {unknown} are none of {', '.join(_CARD_TYPES)}")
+        found = {}
+        for name in fields:
+            found[name] = library.empty(shape[:-1] + FIELDS[name][1], _CARD_TYPES[name], queries)
+        columns = [library.address(found[name]) if name in found else 0 for name in _CARD_TYPES]
+        count = math.prod(shape[:-1])
+        if count > 0:
+            query = (library.address(queries), count, scalar == "float32")
+            self._report(self._raw.closest_on_card(query, columns, largest, library.stream(queries)))
+        return ClosestPoints(found)
+
+    def _report(self, report: tuple[int, int, float]) -> None:
+        self.by_tree, self.by_processor, self.kernel_seconds = report
+
+
+class _Torch:
+    """What is needed of torch."""
+
+    def __init__(self) -> None:
+        self._torch = sys.modules["torch"]
+
+    def array(self, points: Any, ordinal: int) -> Any:
+        if points.device.index != ordinal:
+            raise ValueError(f"points: they are on {points.device}, but the index is on card {ordinal}")
+        return points.detach()
+
+    def is_contiguous(self, array: Any) -> bool:
+        return bool(array.is_contiguous())
+
+    def empty(self, shape: tuple[int, ...], scalar: str, like: Any) -> Any:
+        return self._torch.empty(shape, dtype=getattr(self._torch, scalar), device=like.device)
+
+    def address(self, array: Any) -> int:
+        return int(array.data_ptr())
+
+    def stream(self, array: Any) -> int:
+        return int(self._torch.cuda.current_stream(array.device).cuda_stream)
+
+
+class _CuPy:
+    """What is needed of CuPy."""
+
+    def __init__(self) -> None:
+        try:
+            import cupy
+        except ImportError as error:
+            raise TypeError("points: arrays on the card that are not of torch need CuPy") from error
+        self._cupy = cupy
+
+    def array(self, points: Any, ordinal: int) -> Any:
+        # Both wait for the stream of the library that made the array.
+        is_dlpack = not isinstance(points, self._cupy.ndarray) and hasattr(points, "__dlpack__")
+        array = self._cupy.from_dlpack(points) if is_dlpack else self._cupy.asarray(points)
+        if array.device.id != ordinal:
+            raise ValueError(f"points: they are on card {array.device.id}, but the index is on card {ordinal}")
+        return array
+
+    def is_contiguous(self, array: Any) -> bool:
+        return bool(array.flags.c_contiguous)
+
+    def empty(self, shape: tuple[int, ...], scalar: str, like: Any) -> Any:
+        with like.device:
+            return self._cupy.empty(shape, scalar)
+
+    def address(self, array: Any) -> int:
+        return int(array.data.ptr)
+
+    def stream(self, array: Any) -> int:
+        return int(self._cupy.cuda.get_current_stream().ptr)
+
+
+def _library(points: Any) -> _Torch | _CuPy | None:
+    """Return the library of points on a card, and None for points of the processor."""
+    if type(points).__module__.partition(".")[0] == "torch":
+        return _Torch() if points.is_cuda else None
+    # The types of DLPack: 2 is memory of a card.
+    if hasattr(points, "__dlpack_device__") and points.__dlpack_device__()[0] == 2:
+        return _CuPy()
+    return _CuPy() if hasattr(points, "__cuda_array_interface__") else None

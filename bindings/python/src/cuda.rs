@@ -1,0 +1,113 @@
+//! Indexes on an NVIDIA card.
+
+use crate::arrays::{Coordinates, with_positions};
+use crate::columns::ClosestArrays;
+use crate::errors::value_error;
+use crate::index::Index;
+use crate::parts::check_finite;
+use crate::work::run_owned;
+use p2m_bvh::AabbTree;
+use p2m_core::Soup;
+use p2m_cuda::{BatchReport, CardColumns, CardQueries, CudaError, CudaOptions};
+use pyo3::exceptions::{PyMemoryError, PyRuntimeError, PyTypeError};
+use pyo3::prelude::*;
+use pyo3::types::PyDict;
+use std::sync::Arc;
+
+/// The numbers of queries that the tree and the processor have answered, and the seconds of the kernels.
+type Report = (usize, usize, f64);
+
+/// An index on a card. `p2m.CudaIndex` has its documentation. It never changes, so all threads may query it.
+#[pyclass(frozen, module = "p2m._p2m")]
+pub(crate) struct CudaIndex(p2m_cuda::CudaIndex<f64, Arc<Soup<f64>>>);
+
+fn cuda_error(error: CudaError) -> PyErr {
+    match error {
+        CudaError::Memory { .. } => PyMemoryError::new_err(error.to_string()),
+        CudaError::NoDriver | CudaError::Driver(_) | CudaError::Unequal { .. } => {
+            PyRuntimeError::new_err(error.to_string())
+        }
+        _ => value_error(error),
+    }
+}
+
+fn reported(result: Result<BatchReport, CudaError>) -> PyResult<Report> {
+    let report = result.map_err(cuda_error)?;
+    Ok((report.by_tree, report.by_processor, report.kernels.as_secs_f64()))
+}
+
+#[pymethods]
+impl CudaIndex {
+    /// Builds a tree over the scene of an index, and copies both to a card.
+    #[staticmethod]
+    fn build(
+        py: Python<'_>,
+        index: &Index,
+        threads: usize,
+        ordinal: usize,
+        reach: f64,
+        memory: Option<usize>,
+        reorder: bool,
+        checked: usize,
+    ) -> PyResult<Self> {
+        let soup = Arc::clone(&index.scene.soup);
+        let mut options = CudaOptions::default();
+        (options.ordinal, options.reach, options.memory) = (ordinal, reach, memory);
+        (options.reorder, options.checked) = (reorder, checked);
+        let build = move |_: &_| AabbTree::new(soup).map(|tree| p2m_cuda::CudaIndex::new(tree, &options));
+        let index = run_owned(py, threads, 1, None, build)?.map_err(value_error)?.map_err(cuda_error)?;
+        Ok(Self(index))
+    }
+
+    /// Answers queries of the processor into the arrays of `out`.
+    fn closest(
+        &self,
+        py: Python<'_>,
+        points: Coordinates<'_>,
+        out: &Bound<'_, PyDict>,
+        max_distance: f64,
+    ) -> PyResult<Report> {
+        let Coordinates::F64(_) = points else { return Err(PyTypeError::new_err("points: not of float64")) };
+        let mut arrays = ClosestArrays::borrow(out)?;
+        with_positions!(points, points => {
+            let columns = arrays.columns(points.len())?;
+            py.detach(|| {
+                check_finite("points", points, 1)?;
+                let mut result = Ok(BatchReport::default());
+                columns.fill(|mut columns| {
+                    let points = bytemuck::cast_slice(points);
+                    result = self.0.closest_columns_into(points, max_distance, &mut columns);
+                });
+                reported(result)
+            })
+        })
+    }
+
+    /// Answers queries of the card, with the addresses and sizes that the Python layer has checked, on a stream of the
+    /// caller. Addresses of columns are in the order of `CardColumns`, 0 for those that nobody wants.
+    #[allow(unsafe_code, reason = "other libraries own the memory")]
+    fn closest_on_card(
+        &self,
+        py: Python<'_>,
+        queries: (u64, usize, bool),
+        columns: [u64; 6],
+        max_distance: f64,
+        stream: u64,
+    ) -> PyResult<Report> {
+        let (address, count, is_f32) = queries;
+        let queries = CardQueries { address, count, is_f32 };
+        let [distance, lower_bound, point, barycentric, primitive, feature] = columns;
+        let columns = CardColumns { distance, lower_bound, point, barycentric, primitive, feature };
+        // SAFETY: the Python layer passes the addresses of contiguous arrays of torch or CuPy of the right type and size
+        // on this card, which it holds, and their current stream. `p2m.CudaIndex` says that nobody may write to the
+        // points during the call; nobody else knows the new arrays of answers.
+        let answered = py.detach(|| unsafe { self.0.closest_on_card(&queries, max_distance, stream, &columns) });
+        reported(answered)
+    }
+
+    /// Returns the bytes of the scene and of its lists on the card, and the number of cells without a list.
+    fn size(&self) -> (usize, usize, u64) {
+        let [scene, lists] = self.0.memory();
+        (scene, lists, self.0.cells_without_list())
+    }
+}
