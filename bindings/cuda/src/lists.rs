@@ -2,7 +2,7 @@
 
 use crate::CudaError;
 use crate::card::Card;
-use crate::raw::{Building, Cell, Counters, FROM_TREE, Grid};
+use crate::raw::{Address, Building, Cell, Counters, FROM_TREE, Grid};
 use bytemuck::{Zeroable, bytes_of, bytes_of_mut, cast_slice};
 
 /// The size of the largest grid, in boxes of the scene. Beyond it there are no cells.
@@ -13,6 +13,8 @@ const MAX_ROOTS: f64 = 64.0;
 const MAX_LEVELS: i32 = 6;
 /// The numbers of candidates above which a cell is divided: the least one with which lists fit into the memory.
 const DIVIDE_ABOVE: [u32; 6] = [16, 24, 32, 48, 64, 96];
+/// The number of cells whose lists are made at a time, because drivers end kernels of seconds on cards with a display.
+const CELLS_PER_LAUNCH: usize = 1 << 17;
 /// The longest list of a cell that is not divided because of memory. Beyond it the tree is faster.
 const LIST_LIMIT: u32 = 128;
 
@@ -197,7 +199,10 @@ fn make_level<C: Card>(
         is_last_level: u32::from(divide_above.is_none()),
         ..*building
     };
-    card.launch("p2m_make_list", level.cell_count, building)?;
+    for first in (0..level.cell_count).step_by(CELLS_PER_LAUNCH) {
+        let part = Building { cells: building.cells + (first * size_of::<Cell>()) as Address, ..*building };
+        card.launch("p2m_make_list", CELLS_PER_LAUNCH.min(level.cell_count - first), &part)?;
+    }
     card.read(shared, bytes_of_mut(&mut counters))?;
     let cell_count = usize::try_from(counters.cells).map_or(children, |cells| cells.min(children));
     let next = Level { cells, cell_count, candidates: next_candidates, side: level.side / 2.0, before: counters };

@@ -185,6 +185,7 @@ fn agrees<T: Real + Pod>(
     assert_eq!(points(&all), points(&expected));
     assert_eq!(bits(all.weights.as_flattened()), bits(expected.weights.as_flattened()));
     // Queries in f32 for a scene of any scalar.
+    #[allow(clippy::cast_possible_truncation, reason = "queries of the test")]
     let narrowed: Vec<_> = queries.iter().map(|query| query.coords.map(|x| x.to_f64() as f32)).collect();
     let widened: Vec<Point3<T>> =
         narrowed.iter().map(|query| query.map(|x| T::round_from_f64(f64::from(x))).into()).collect();
