@@ -5,8 +5,9 @@
 
 use crate::CudaError;
 use crate::raw::{Address, Batch, Building};
+use cudarc::driver::sys::{CUcontext, CUmemPool_attribute};
 use cudarc::driver::{CudaContext, CudaFunction, CudaModule, CudaSlice, CudaStream, DevicePtr, DeviceRepr};
-use cudarc::driver::{LaunchConfig, PinnedHostSlice, PushKernelArg};
+use cudarc::driver::{LaunchConfig, PinnedHostSlice, PushKernelArg, result};
 use cudarc::nvrtc::Ptx;
 use std::sync::{Arc, Mutex, PoisonError};
 
@@ -34,6 +35,8 @@ pub(crate) trait Card: Sized + Sync {
     fn copy(&self, memory: &Self::Memory, bytes: usize) -> Result<Self::Memory, CudaError>;
     /// Waits until all kernels have ended.
     fn wait(&self) -> Result<(), CudaError>;
+    /// Returns the bytes that are free.
+    fn free_memory(&self) -> Result<usize, CudaError>;
     /// Starts a kernel for each number of a thread.
     fn launch<P: Parameters>(&self, kernel: &str, threads: usize, parameters: &P) -> Result<(), CudaError>;
 
@@ -53,6 +56,27 @@ const THREADS_PER_BLOCK: u32 = 128;
 /// pageable memory are several times slower.
 const STAGING_BYTES: usize = 1 << 22;
 
+/// The memory that the driver keeps for the next batch.
+const KEPT_BYTES: u64 = 1 << 28;
+
+/// The context that is current on this thread. It is current again when this value is dropped.
+pub(crate) struct CallersContext(Option<CUcontext>);
+
+impl CallersContext {
+    /// Remembers the current context. The driver has to be there.
+    pub(crate) fn new() -> Self {
+        // Before the driver is initialized there is none.
+        Self(result::ctx::get_current().ok().flatten())
+    }
+}
+
+impl Drop for CallersContext {
+    fn drop(&mut self) {
+        // SAFETY: it was current before, or it is null, which stands for none.
+        let _ = unsafe { result::ctx::set_current(self.0.unwrap_or(std::ptr::null_mut())) };
+    }
+}
+
 /// A queue of a card of NVIDIA.
 pub(crate) struct CudaCard {
     stream: Arc<CudaStream>,
@@ -61,13 +85,19 @@ pub(crate) struct CudaCard {
 }
 
 impl CudaCard {
-    /// Opens the card of this number.
+    /// Opens the card of this number. The driver has to be there.
     pub(crate) fn open(ordinal: usize) -> Result<Self, CudaError> {
-        // Without a driver the library panics.
-        if !is_driver_present() {
-            return Err(CudaError::NoDriver);
+        let context = CudaContext::new(ordinal)?;
+        if context.has_async_alloc() {
+            // Otherwise each wait would give the memory of a batch back, and the next batch would map it anew.
+            let attribute = CUmemPool_attribute::CU_MEMPOOL_ATTR_RELEASE_THRESHOLD;
+            let mut kept = KEPT_BYTES;
+            // SAFETY: the attribute is a number of 64 bits.
+            unsafe {
+                let pool = result::device::get_default_mem_pool(context.cu_device())?;
+                result::mem_pool::set_attribute(pool, attribute, (&raw mut kept).cast())?;
+            }
         }
-        let context = CudaContext::new(ordinal).map_err(CudaError::from)?;
         let module = context.load_module(Ptx::from_src(PTX))?;
         let stream = context.new_stream()?;
         Ok(Self { stream, module, staging: Mutex::default() })
@@ -80,7 +110,7 @@ impl CudaCard {
     pub(crate) unsafe fn wait_for(&self, stream: Address) -> Result<(), CudaError> {
         self.stream.context().bind_to_thread()?;
         // SAFETY: the caller says so. Machines with cards have addresses of 64 bits.
-        Ok(unsafe { cudarc::driver::result::stream::synchronize(usize::try_from(stream).unwrap_or_default() as _) }?)
+        Ok(unsafe { result::stream::synchronize(usize::try_from(stream).unwrap_or_default() as _) }?)
     }
 
     /// Calls a function with the pinned buffer for each piece of a copy of so many bytes. The function has to wait until
@@ -94,7 +124,7 @@ impl CudaCard {
         if staging.is_none() {
             // SAFETY: what is read was written before.
             let buffer = unsafe { self.stream.context().alloc_pinned_with_flags(STAGING_BYTES, 0) };
-            *staging = Some(buffer.map_err(|error| CudaError::memory(STAGING_BYTES, error))?);
+            *staging = Some(buffer?);
         }
         let buffer = staging.as_mut().expect("it was made").as_mut_slice()?;
         for start in (0..len).step_by(STAGING_BYTES) {
@@ -106,7 +136,7 @@ impl CudaCard {
 }
 
 /// Returns whether the driver can be loaded.
-fn is_driver_present() -> bool {
+pub(crate) fn is_driver_present() -> bool {
     // SAFETY: this loads the library of the driver, as every later call does.
     unsafe { cudarc::driver::sys::is_culib_present() }
 }
@@ -129,7 +159,7 @@ impl Card for CudaCard {
 
     fn allocate(&self, bytes: usize) -> Result<CudaSlice<u8>, CudaError> {
         // SAFETY: kernels write all that is read, or it is cleared before.
-        unsafe { self.stream.alloc(bytes) }.map_err(|error| CudaError::memory(bytes, error))
+        Ok(unsafe { self.stream.alloc(bytes) }?)
     }
 
     fn address(&self, memory: &CudaSlice<u8>) -> Address {
@@ -138,7 +168,8 @@ impl Card for CudaCard {
 
     fn write(&self, memory: &mut CudaSlice<u8>, bytes: &[u8]) -> Result<(), CudaError> {
         if bytes.len() < STAGING_BYTES {
-            return Ok(self.stream.memcpy_htod(bytes, memory)?);
+            self.stream.memcpy_htod(bytes, memory)?;
+            return Ok(self.stream.synchronize()?);
         }
         self.in_pieces(bytes.len(), |buffer, range| {
             buffer.copy_from_slice(&bytes[range.clone()]);
@@ -176,6 +207,10 @@ impl Card for CudaCard {
         Ok(copy)
     }
 
+    fn free_memory(&self) -> Result<usize, CudaError> {
+        Ok(self.stream.context().mem_get_info()?.0)
+    }
+
     fn launch<P: Parameters>(&self, kernel: &str, threads: usize, parameters: &P) -> Result<(), CudaError> {
         if threads == 0 {
             return Ok(());
@@ -188,8 +223,8 @@ impl Card for CudaCard {
             shared_mem_bytes: 0,
         };
         let argument = Argument(*parameters);
-        // SAFETY: a kernel takes the number of threads and one structure, and its addresses are those of blocks that
-        // live until the next read.
+        // SAFETY: a kernel takes the number of threads and one structure. Its addresses are those of blocks and of
+        // columns of the caller that live until the next wait, which follows an error, too.
         unsafe { self.stream.launch_builder(&function).arg(&threads).arg(&argument).launch(config) }?;
         Ok(())
     }

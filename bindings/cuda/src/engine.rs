@@ -50,7 +50,8 @@ impl<C: Card> Engine<C> {
         ];
         let blocks = [card.upload(parts[0])?, card.upload(parts[1])?, card.upload(parts[2])?, card.upload(parts[3])?];
         let [nodes, plates, primitives, vertices] = [0, 1, 2, 3].map(|i: usize| card.address(&blocks[i]));
-        let memory = memory.unwrap_or_else(|| default_memory(count));
+        // Lists take twice their memory while they are made, and their scene and batches need some as well.
+        let memory = memory.unwrap_or(default_memory(count).min(card.free_memory()? / 4));
         let plan = ListPlan { half_extent: scene.half_extent, primitives: count, reach, memory };
         let lists = lists::make(&card, Source { nodes, plates }, &plan)?;
         let mut index = Index {
@@ -114,7 +115,7 @@ impl<C: Card> Engine<C> {
         let work = |lane: &C| {
             let chunk = || (*unpoisoned(&next))();
             while let Some((first, queries, part)) = chunk() {
-                let found = self.answer_chunk(lane, queries, radius, reorder, part);
+                let found = after_error(lane, self.answer_chunk(lane, queries, radius, reorder, part));
                 let mut result = unpoisoned(&result);
                 match (&mut *result, found) {
                     (Ok((undecided, so_far)), Ok((numbers, report))) => {
@@ -122,7 +123,7 @@ impl<C: Card> Engine<C> {
                         undecided.extend(numbers.into_iter().map(|i: u32| i + first as u32));
                         so_far.add(&report);
                     }
-                    (Ok(_), Err(error)) => *result = Err(error),
+                    (Ok(_), Err(error)) => return *result = Err(error),
                     (Err(_), _) => return,
                 }
             }
@@ -157,12 +158,15 @@ impl<C: Card> Engine<C> {
         let mut batch = self.batch(card.address(&memory), columns, radius);
         let found = Self::search::<T>(card, queries.len(), reorder, &mut batch, &mut report)?;
         let mut left = vec![0u32; found.count];
-        card.read(&found.numbers, cast_slice_mut(&mut left))?;
+        if found.count > 0 {
+            card.read(&found.numbers, cast_slice_mut(&mut left))?;
+        }
         blocks.into_iter().try_for_each(|(block, column)| card.read(&block, column))?;
         Ok((left, report))
     }
 
     /// Answers queries that are on the card into columns there. A function answers those that the card does not decide.
+    /// After an error kernels may still run.
     pub(crate) fn answer_on_card<T: Real + Pod>(
         &self,
         queries: &CardQueries,
@@ -265,6 +269,11 @@ struct Undecided<M> {
 /// The end of the names of kernels for scenes in a scalar.
 fn suffix<T>() -> &'static str {
     if size_of::<T>() == 4 { "f32" } else { "f64" }
+}
+
+/// Waits for kernels of work that has failed, which still use the memory of the caller.
+pub(crate) fn after_error<V>(card: &impl Card, result: Result<V, CudaError>) -> Result<V, CudaError> {
+    result.inspect_err(|_| drop(card.wait()))
 }
 
 fn unpoisoned<V>(mutex: &Mutex<V>) -> MutexGuard<'_, V> {

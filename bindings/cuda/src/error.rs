@@ -1,6 +1,7 @@
 //! Errors of the card.
 
 use cudarc::driver::DriverError;
+use cudarc::driver::sys::CUresult;
 use p2m_core::PrimitiveId;
 
 /// The error of an index on a card.
@@ -13,14 +14,9 @@ pub enum CudaError {
     /// The driver has reported an error, such as that there is no card of this number.
     #[error("the CUDA driver failed: {0}")]
     Driver(String),
-    /// The memory of the card does not suffice.
-    #[error("the card has no memory for {bytes} bytes: {reason}")]
-    Memory {
-        /// The number of bytes that were asked for.
-        bytes: usize,
-        /// The message of the driver.
-        reason: String,
-    },
+    /// The memory of the card, or the pinned memory of the processor, does not suffice.
+    #[error("the memory of the card does not suffice: {0}")]
+    Memory(String),
     /// The scene has no primitives.
     #[error("the scene is empty")]
     Empty,
@@ -53,15 +49,11 @@ pub enum CudaError {
     },
 }
 
-impl CudaError {
-    /// Returns the error of a request for memory.
-    pub(crate) fn memory(bytes: usize, error: DriverError) -> Self {
-        Self::Memory { bytes, reason: error.to_string() }
-    }
-}
-
 impl From<DriverError> for CudaError {
     fn from(error: DriverError) -> Self {
-        Self::Driver(error.to_string())
+        match error.0 {
+            CUresult::CUDA_ERROR_OUT_OF_MEMORY => Self::Memory(error.to_string()),
+            _ => Self::Driver(error.to_string()),
+        }
     }
 }

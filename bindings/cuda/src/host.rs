@@ -75,6 +75,9 @@ impl Card for HostCard {
     fn copy(&self, memory: &Vec<u128>, bytes: usize) -> Result<Vec<u128>, CudaError> {
         Ok(memory[..bytes.div_ceil(16)].to_vec())
     }
+    fn free_memory(&self) -> Result<usize, CudaError> {
+        Ok(usize::MAX)
+    }
     fn launch<P: Parameters>(&self, kernel: &str, threads: usize, parameters: &P) -> Result<(), CudaError> {
         let function = self.function::<extern "C" fn(u32, *const P)>(kernel);
         function(u32::try_from(threads).expect("fewer than 2^32 threads"), parameters);

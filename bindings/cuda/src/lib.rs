@@ -37,14 +37,15 @@ mod tests;
 
 pub use error::CudaError;
 
-use bytemuck::{Pod, bytes_of, cast_slice, cast_slice_mut};
-use card::{Card, CudaCard};
-use engine::Engine;
+use bytemuck::{Pod, cast_slice, cast_slice_mut};
+use card::{CallersContext, Card, CudaCard};
+use engine::{Engine, after_error};
 use nalgebra::Point3;
 use p2m_bvh::AabbTree;
 use p2m_core::batch::{self, BatchOptions, ClosestColumns};
 use p2m_core::{Feature, PrimitiveSet, QueryOptions, Real};
 use scene::Scene;
+use std::mem::ManuallyDrop;
 use std::time::Duration;
 
 /// Options of an index on a card.
@@ -57,7 +58,8 @@ pub struct CudaOptions {
     /// search the tree. Below 1 and above 10^6 there are lists for the box alone.
     pub reach: f64,
     /// The most bytes that lists may take, up to 4 GB. The default is about 280 for each primitive, and more in scenes of
-    /// more than 100,000. While lists are made, the card needs twice as many, and up to 400 for each cell of a level.
+    /// more than 100,000, but at most a quarter of the free memory. While lists are made, the card needs twice as many,
+    /// and up to 400 for each cell of a level.
     pub memory: Option<usize>,
     /// Whether queries are sorted on the card. Sorting is wasted on queries whose order is spatially coherent.
     pub reorder: bool,
@@ -124,7 +126,15 @@ pub struct CardColumns {
 
 /// An index on a card: a tree with its scene, and interception lists.
 pub struct CudaIndex<T: Real, S> {
-    index: OnCard<T, S, CudaCard>,
+    index: ManuallyDrop<OnCard<T, S, CudaCard>>,
+}
+
+impl<T: Real, S> Drop for CudaIndex<T, S> {
+    fn drop(&mut self) {
+        let _caller = CallersContext::new();
+        // SAFETY: it is not used again.
+        unsafe { ManuallyDrop::drop(&mut self.index) }
+    }
 }
 
 impl<T: Real + Pod, S: PrimitiveSet<T> + Sync> CudaIndex<T, S> {
@@ -134,8 +144,13 @@ impl<T: Real + Pod, S: PrimitiveSet<T> + Sync> CudaIndex<T, S> {
     /// Returns a [`CudaError`] if there is no driver or no such card, if the memory of the card does not suffice, for an
     /// empty scene, for primitives without vertices, and for scenes whose size is not within 2^-320..2^300.
     pub fn new(tree: AabbTree<T, S>, options: &CudaOptions) -> Result<Self, CudaError> {
+        // Without a driver the library panics.
+        if !card::is_driver_present() {
+            return Err(CudaError::NoDriver);
+        }
+        let _caller = CallersContext::new();
         let card = CudaCard::open(options.ordinal)?;
-        Ok(Self { index: OnCard::new(card, tree, options)? })
+        Ok(Self { index: ManuallyDrop::new(OnCard::new(card, tree, options)?) })
     }
 
     /// The tree, which answers single queries and those of other kinds.
@@ -157,7 +172,7 @@ impl<T: Real + Pod, S: PrimitiveSet<T> + Sync> CudaIndex<T, S> {
     /// bounds, which are valid but may differ.
     ///
     /// Queries are divided into parts of about a million. The card holds three parts at a time: while one is copied,
-    /// another is searched. For them it needs up to 450 MB besides the index.
+    /// another is searched. For each query of a part it needs 20 bytes, its coordinates and its columns.
     ///
     /// # Errors
     /// Returns a [`CudaError`] if the card fails, if its memory does not suffice, or if an answer that was checked has
@@ -171,13 +186,14 @@ impl<T: Real + Pod, S: PrimitiveSet<T> + Sync> CudaIndex<T, S> {
         max_distance: T,
         columns: &mut ClosestColumns<'_, T>,
     ) -> Result<BatchReport, CudaError> {
+        let _caller = CallersContext::new();
         self.index.closest_columns_into(queries, max_distance, columns)
     }
 
     /// Answers queries that are on the card into columns on the card. It waits for a stream of the caller first, and
     /// returns when all answers are there.
     ///
-    /// The card needs 36 bytes for each of up to eight million queries at a time, and 16 MB.
+    /// The card needs 20 bytes for each of up to eight million queries at a time.
     ///
     /// # Errors
     /// Returns a [`CudaError`] if the card fails, or if its memory does not suffice. Columns then have any content.
@@ -196,27 +212,21 @@ impl<T: Real + Pod, S: PrimitiveSet<T> + Sync> CudaIndex<T, S> {
         stream: u64,
         columns: &CardColumns,
     ) -> Result<BatchReport, CudaError> {
+        let _caller = CallersContext::new();
         // SAFETY: the caller says so.
         unsafe { self.index.engine.card().wait_for(stream) }?;
         self.index.closest_on_card(queries, max_distance, columns)
     }
 }
 
+/// The number of the column of lower bounds, which may differ from those of the processor.
+const LOWER_BOUND: usize = 1;
+
 /// A tree, and its scene on a card.
 struct OnCard<T: Real, S, C: Card> {
     tree: AabbTree<T, S>,
     engine: Engine<C>,
     options: CudaOptions,
-}
-
-/// The answers of the processor to some queries. Columns that nobody wants are empty.
-struct Answered<T: Real> {
-    distance: Vec<T>,
-    lower_bound: Vec<T>,
-    point: Vec<Point3<T>>,
-    barycentric: Vec<[T; 3]>,
-    primitive: Vec<u32>,
-    feature: Vec<Feature>,
 }
 
 impl<T: Real + Pod, S: PrimitiveSet<T> + Sync, C: Card> OnCard<T, S, C> {
@@ -234,7 +244,7 @@ impl<T: Real + Pod, S: PrimitiveSet<T> + Sync, C: Card> OnCard<T, S, C> {
         let Some(len) = columns.len() else { return Ok(BatchReport::default()) };
         assert!(queries.len() == len && u32::try_from(len).is_ok(), "one value for each of fewer than 2^32 queries");
         let mut features = vec![0; columns.feature.as_ref().map_or(0, |column| column.len())];
-        let answers = [
+        let mut answers = [
             cast_slice_mut(columns.distance.as_deref_mut().unwrap_or_default()),
             cast_slice_mut(columns.lower_bound.as_deref_mut().unwrap_or_default()),
             cast_slice_mut(columns.point.as_deref_mut().unwrap_or_default()),
@@ -242,20 +252,34 @@ impl<T: Real + Pod, S: PrimitiveSet<T> + Sync, C: Card> OnCard<T, S, C> {
             cast_slice_mut(columns.primitive.as_deref_mut().unwrap_or_default()),
             features.as_mut_slice(),
         ];
+        let widths = answers.each_ref().map(|column| column.len() / len.max(1));
         let mut report = BatchReport::default();
-        let radius = max_distance.to_f64_above();
-        let undecided = self.engine.answer(queries, radius, self.options.reorder, answers, &mut report)?;
+        let parts = answers.each_mut().map(|column| &mut **column);
+        let left =
+            self.engine.answer(queries, max_distance.to_f64_above(), self.options.reorder, parts, &mut report)?;
+        let by_processor = |numbers: &[u32]| {
+            let chosen: Vec<Point3<T>> = numbers.iter().map(|&i| queries[i as usize]).collect();
+            self.by_processor(&chosen, max_distance, widths.map(|width| width > 0))
+        };
+        for ((column, from), width) in answers.iter_mut().zip(by_processor(&left)).zip(widths) {
+            for (&i, value) in left.iter().zip(from.chunks_exact(width.max(1))) {
+                column[i as usize * width..][..width].copy_from_slice(value);
+            }
+        }
+        let sample = sample(len, self.options.checked);
+        for (number, from) in by_processor(&sample).iter().enumerate().filter(|(number, _)| *number != LOWER_BOUND) {
+            let (column, width) = (&answers[number], widths[number]);
+            let is_other = |(i, value): &(&u32, &[u8])| column[**i as usize * width..][..width] != **value;
+            if let Some((&i, _)) = sample.iter().zip(from.chunks_exact(width.max(1))).find(is_other) {
+                return Err(CudaError::Unequal { query: i as usize });
+            }
+        }
         if let Some(column) = &mut columns.feature {
             // Code 255 stands for no feature.
             let feature = |code| Feature::from_code(code).unwrap_or(Feature::Vertex(0));
             column.iter_mut().zip(&features).for_each(|(to, code)| *to = feature(*code));
         }
-        self.by_processor_at(queries, &undecided, max_distance, columns).write(&undecided, columns);
-        let sample = sample(len, self.options.checked);
-        match self.by_processor_at(queries, &sample, max_distance, columns).other_bits(&sample, columns) {
-            Some(query) => Err(CudaError::Unequal { query }),
-            None => Ok(report),
-        }
+        Ok(report)
     }
 
     fn closest_on_card(
@@ -268,102 +292,37 @@ impl<T: Real + Pod, S: PrimitiveSet<T> + Sync, C: Card> OnCard<T, S, C> {
         let CardColumns { distance, lower_bound, point, barycentric, primitive, feature } = *columns;
         let columns = [distance, lower_bound, point, barycentric, primitive, feature];
         let radius = max_distance.to_f64_above();
-        self.engine.answer_on_card(queries, radius, self.options.reorder, &columns, |queries: &[Point3<T>]| {
-            let mut is_wanted = columns.map(|address| address != 0);
-            // A primitive says whether there is a feature.
-            is_wanted[4] |= is_wanted[5];
-            self.by_processor(queries, max_distance, is_wanted).into_bytes()
-        })
+        let is_wanted = columns.map(|address| address != 0);
+        let by_processor = |queries: &[Point3<T>]| self.by_processor(queries, max_distance, is_wanted);
+        let answered = self.engine.answer_on_card(queries, radius, self.options.reorder, &columns, by_processor);
+        after_error(self.engine.card(), answered)
     }
 
-    /// Answers some of the queries on the processor, with the wanted columns of others.
-    fn by_processor_at(
-        &self,
-        queries: &[Point3<T>],
-        numbers: &[u32],
-        max_distance: T,
-        columns: &ClosestColumns<'_, T>,
-    ) -> Answered<T> {
-        let chosen: Vec<Point3<T>> = numbers.iter().map(|&i| queries[i as usize]).collect();
-        let is_wanted = [
-            columns.distance.is_some(),
-            columns.lower_bound.is_some(),
-            columns.point.is_some(),
-            columns.barycentric.is_some(),
-            columns.primitive.is_some(),
-            columns.feature.is_some(),
-        ];
-        self.by_processor(&chosen, max_distance, is_wanted)
-    }
-
-    /// Answers queries on the processor, with the columns that are wanted.
-    fn by_processor(&self, queries: &[Point3<T>], max_distance: T, is_wanted: [bool; 6]) -> Answered<T> {
+    /// Answers queries on the processor. Returns the bytes of the columns that are wanted, in the order of those of the
+    /// card; the others are empty.
+    fn by_processor(&self, queries: &[Point3<T>], max_distance: T, is_wanted: [bool; 6]) -> [Vec<u8>; 6] {
         let len = is_wanted.map(|is_wanted| if is_wanted { queries.len() } else { 0 });
-        let mut answered = Answered {
-            distance: vec![T::zero(); len[0]],
-            lower_bound: vec![T::zero(); len[1]],
-            point: vec![Point3::origin(); len[2]],
-            barycentric: vec![[T::zero(); 3]; len[3]],
-            primitive: vec![0; len[4]],
-            feature: vec![Feature::Face; len[5]],
-        };
+        let (mut distance, mut lower_bound) = (vec![T::zero(); len[0]], vec![T::zero(); len[1]]);
+        let (mut point, mut barycentric) = (vec![Point3::origin(); len[2]], vec![[T::zero(); 3]; len[3]]);
+        // A primitive says whether there is a feature.
+        let (mut primitive, mut feature) = (vec![0; len[4].max(len[5])], vec![Feature::Face; len[5]]);
         let mut columns = ClosestColumns::default();
         // A column that is not wanted is not computed.
-        columns.distance = is_wanted[0].then_some(&mut answered.distance);
-        columns.lower_bound = is_wanted[1].then_some(&mut answered.lower_bound);
-        columns.point = is_wanted[2].then_some(&mut answered.point);
-        columns.barycentric = is_wanted[3].then_some(&mut answered.barycentric);
-        columns.primitive = is_wanted[4].then_some(&mut answered.primitive);
-        columns.feature = is_wanted[5].then_some(&mut answered.feature);
+        columns.distance = is_wanted[0].then_some(&mut distance);
+        columns.lower_bound = is_wanted[1].then_some(&mut lower_bound);
+        columns.point = is_wanted[2].then_some(&mut point);
+        columns.barycentric = is_wanted[3].then_some(&mut barycentric);
+        columns.primitive = (is_wanted[4] || is_wanted[5]).then_some(&mut primitive);
+        columns.feature = is_wanted[5].then_some(&mut feature);
         let options = QueryOptions::default().with_max_distance(max_distance);
         batch::closest_columns_into(&self.tree, queries, &options, &BatchOptions::default(), columns);
-        answered
-    }
-}
-
-impl<T: Real + Pod> Answered<T> {
-    /// Writes the answers to the places of their queries.
-    fn write(&self, numbers: &[u32], columns: &mut ClosestColumns<'_, T>) {
-        fn put<V: Copy>(numbers: &[u32], to: &mut Option<&mut [V]>, from: &[V]) {
-            if let Some(to) = to {
-                numbers.iter().zip(from).for_each(|(&i, value)| to[i as usize] = *value);
-            }
-        }
-        put(numbers, &mut columns.distance, &self.distance);
-        put(numbers, &mut columns.lower_bound, &self.lower_bound);
-        put(numbers, &mut columns.point, &self.point);
-        put(numbers, &mut columns.barycentric, &self.barycentric);
-        put(numbers, &mut columns.primitive, &self.primitive);
-        put(numbers, &mut columns.feature, &self.feature);
-    }
-
-    /// Returns the number of a query that has another answer in columns. Lower bounds may differ.
-    fn other_bits(&self, numbers: &[u32], columns: &ClosestColumns<'_, T>) -> Option<usize> {
-        fn other<V: Pod>(numbers: &[u32], found: Option<&[V]>, expected: &[V]) -> Option<usize> {
-            let found = found?;
-            let is_other = |(i, value): &(usize, &V)| bytes_of(&found[*i]) != bytes_of(*value);
-            numbers.iter().map(|&i| i as usize).zip(expected).find(is_other).map(|(i, _)| i)
-        }
-        let is_other = |&(i, feature): &(usize, &Feature)| columns.feature.as_ref().is_some_and(|c| c[i] != *feature);
-        other(numbers, columns.distance.as_deref(), &self.distance)
-            .or_else(|| other(numbers, columns.point.as_deref(), &self.point))
-            .or_else(|| other(numbers, columns.barycentric.as_deref(), &self.barycentric))
-            .or_else(|| other(numbers, columns.primitive.as_deref(), &self.primitive))
-            .or_else(|| numbers.iter().map(|&i| i as usize).zip(&self.feature).find(is_other).map(|(i, _)| i))
-    }
-
-    /// Returns the bytes of the columns, in the order of those on the card.
-    fn into_bytes(self) -> [Vec<u8>; 6] {
-        let is_missing = |i: usize| self.primitive.get(i) == Some(&ClosestColumns::<T>::NO_PRIMITIVE);
-        let code = |(i, feature): (usize, &Feature)| if is_missing(i) { 255 } else { feature.code() };
-        [
-            cast_slice(&self.distance).to_vec(),
-            cast_slice(&self.lower_bound).to_vec(),
-            cast_slice(&self.point).to_vec(),
-            cast_slice(&self.barycentric).to_vec(),
-            cast_slice(&self.primitive).to_vec(),
-            self.feature.iter().enumerate().map(code).collect(),
-        ]
+        let is_missing = |id: u32| id == ClosestColumns::<T>::NO_PRIMITIVE;
+        let code = |(feature, id): (&Feature, &u32)| if is_missing(*id) { 255 } else { feature.code() };
+        let codes = feature.iter().zip(&primitive).map(code).collect();
+        primitive.truncate(len[4]);
+        let [distance, lower_bound] = [cast_slice(&distance).to_vec(), cast_slice(&lower_bound).to_vec()];
+        let [point, barycentric] = [cast_slice(&point).to_vec(), cast_slice(&barycentric).to_vec()];
+        [distance, lower_bound, point, barycentric, cast_slice(&primitive).to_vec(), codes]
     }
 }
 

@@ -158,7 +158,7 @@ fn make_grid<C: Card>(
                     continue;
                 }
                 // Without memory to divide them, these cells are those of the last level.
-                Ok(_) | Err(CudaError::Memory { .. }) => {}
+                Ok(_) | Err(CudaError::Memory(_)) => {}
                 Err(error) => return Err(error),
             }
             // The entries of children do not fit, so the lists of this level are made again.

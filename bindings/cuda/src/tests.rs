@@ -298,10 +298,29 @@ fn equal_keys_go_to_the_lowest_id() {
 }
 
 #[test]
+fn a_check_finds_other_bits() {
+    let Some(card) = HostCard::open() else { return };
+    let tree = |z: f64| {
+        let corners = [[0.0, 0.0, z], [1.0, 0.0, z], [0.0, 1.0, z]];
+        AabbTree::new(Soup::<f64>::from_arrays(&corners, &[[0u32, 1, 2]]).unwrap()).unwrap()
+    };
+    let index = OnCard::new(card, tree(0.0), &CudaOptions { checked: 3, ..CudaOptions::default() }).unwrap();
+    let queries = vec![Point3::new(0.2, 0.2, 1.0); 10];
+    let mut distance = vec![0.0; 10];
+    let mut columns = ClosestColumns::default().with_distance(&mut distance);
+    index.closest_columns_into(&queries, f64::INFINITY, &mut columns).unwrap();
+    // The scene on the card is not that of this tree.
+    let index = OnCard { tree: tree(0.5), ..index };
+    let error = index.closest_columns_into(&queries, f64::INFINITY, &mut columns).unwrap_err();
+    assert_eq!(error.to_string(), "the card has answered query 0 with other bits than the processor");
+}
+
+#[test]
 fn without_a_card_there_is_an_error() {
     let soup: Soup<f64> = Soup::from_arrays(&[[0.0; 3]], &[[0u32, 0, 0]]).unwrap();
     match crate::CudaIndex::new(AabbTree::new(soup).unwrap(), &CudaOptions::default()) {
         Ok(index) => assert_eq!(index.memory()[0] % 4, 0),
+        Err(crate::CudaError::Driver(_)) => {}
         Err(error) => assert_eq!(error.to_string(), "there is no NVIDIA driver (libcuda) on this machine"),
     }
 }

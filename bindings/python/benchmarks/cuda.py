@@ -4,7 +4,7 @@
     python bindings/python/benchmarks/cuda.py dragon_100k.obj dragon_871k.ply
 
 For each file and four sets of queries it prints million queries per second: of the kernels of Warp in f32, of those of
-p2m in f64, both on queries that are sorted along a curve, and of whole calls of p2m on queries in random order, from
+p2m in f64, both on queries that are sorted along a curve (of p2m with torch alone), and of whole calls of p2m on queries in random order, from
 arrays of NumPy and from tensors of torch on the card. It also counts the answers of Warp that are wrong, by their true
 distances: that of the triangle that Warp names is more than a millionth of the diagonal above that of the answer. Warp
 gets triangles alone.
@@ -149,17 +149,15 @@ def main() -> None:
                 return time.perf_counter() - begin
 
             def kernels() -> float:
-                seconds = ask(in_order, ordered if ordered_tensor is None else ordered_tensor)
+                seconds = ask(in_order, ordered_tensor)
                 return getattr(in_order, "kernel_seconds", seconds)
 
-            ways: dict[str, Callable[[], float]] = {
-                "kernel": kernels,
-                "numpy": lambda: ask(unsorted, points),
-            }
+            ways: dict[str, Callable[[], float]] = {"numpy": lambda: ask(unsorted, points)}
             if warp is not None:
                 ways["warp"] = lambda: warp()[0]
             if tensor is not None:
                 ways["torch"] = lambda: ask(unsorted, tensor)
+                ways["kernel"] = kernels
             times: dict[str, list[float]] = {way: [] for way in ways}
             # The first round is not measured.
             for turn in range(arguments.rounds + 1):
@@ -169,11 +167,13 @@ def main() -> None:
                         times[way].append(seconds_of_run)
             rate = {way: f"{count / statistics.median(of) / 1e6:.3g}" if (of := times[way]) else "" for way in times}
             some = slice(0, count, max(count // max(arguments.checked, 1), 1))
-            wrong = "" if warp is None else str(wrong_answers(scene, index, ordered[some], warp()[1].numpy()[some]))
-            of = len(range(count)[some])
-            print(f"| {file} | {name} | {rate.get('warp', '')} | {rate['kernel']} | {rate['numpy']} | "
+            wrong = ""
+            if warp is not None:
+                faces = warp()[1].numpy()[some]
+                wrong = f"{wrong_answers(scene, index, ordered[some], faces)} of {len(faces)}"
+            print(f"| {file} | {name} | {rate.get('warp', '')} | {rate.get('kernel', '')} | {rate['numpy']} | "
                   f"{rate.get('torch', '')} | {getattr(unsorted, 'by_tree', '')} | "
-                  f"{getattr(unsorted, 'by_processor', '')} | {wrong} of {of} |", flush=True)
+                  f"{getattr(unsorted, 'by_processor', '')} | {wrong} |", flush=True)
         info = {} if arguments.cpu else unsorted.info
         print(f"{file}: tree, upload and lists in {seconds:.2f} s; {info}")
 

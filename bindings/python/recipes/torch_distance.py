@@ -13,6 +13,7 @@ from typing import Any
 
 import torch
 from scene import CARRIED
+from torch.autograd.function import once_differentiable
 
 import p2m
 
@@ -29,11 +30,12 @@ class Distance(torch.autograd.Function):
         return distance.to(points.dtype)
 
     @staticmethod
+    @once_differentiable
     def backward(ctx: Any, gradient: torch.Tensor) -> tuple[torch.Tensor, None]:
         points, distance, closest = ctx.saved_tensors
         # On the surface a distance has no gradient; zero is one of its subgradients.
-        direction = (points - closest) / torch.where(distance > 0.0, distance, 1.0)[:, None]
-        return gradient[:, None] * direction.to(gradient.dtype), None
+        direction = (points - closest) / torch.where(distance > 0.0, distance, 1.0)[..., None]
+        return gradient[..., None] * direction.to(gradient.dtype), None
 
 
 def main() -> None:

@@ -5,7 +5,8 @@ use crate::columns::ClosestArrays;
 use crate::errors::value_error;
 use crate::index::Index;
 use crate::parts::check_finite;
-use crate::work::run_owned;
+use crate::threads::pool;
+use crate::work::{catch, run_owned};
 use p2m_bvh::AabbTree;
 use p2m_core::Soup;
 use p2m_cuda::{BatchReport, CardColumns, CardQueries, CudaError, CudaOptions};
@@ -19,11 +20,14 @@ type Report = (usize, usize, f64);
 
 /// An index on a card. `p2m.CudaIndex` has its documentation. It never changes, so all threads may query it.
 #[pyclass(frozen, module = "p2m._p2m")]
-pub(crate) struct CudaIndex(p2m_cuda::CudaIndex<f64, Arc<Soup<f64>>>);
+pub(crate) struct CudaIndex {
+    index: p2m_cuda::CudaIndex<f64, Arc<Soup<f64>>>,
+    threads: usize,
+}
 
 fn cuda_error(error: CudaError) -> PyErr {
     match error {
-        CudaError::Memory { .. } => PyMemoryError::new_err(error.to_string()),
+        CudaError::Memory(_) => PyMemoryError::new_err(error.to_string()),
         CudaError::NoDriver | CudaError::Driver(_) | CudaError::Unequal { .. } => {
             PyRuntimeError::new_err(error.to_string())
         }
@@ -56,7 +60,7 @@ impl CudaIndex {
         (options.reorder, options.checked) = (reorder, checked);
         let build = move |_: &_| AabbTree::new(soup).map(|tree| p2m_cuda::CudaIndex::new(tree, &options));
         let index = run_owned(py, threads, 1, None, build)?.map_err(value_error)?.map_err(cuda_error)?;
-        Ok(Self(index))
+        Ok(Self { index, threads })
     }
 
     /// Answers queries of the processor into the arrays of `out`.
@@ -71,12 +75,12 @@ impl CudaIndex {
         let mut arrays = ClosestArrays::borrow(out)?;
         with_positions!(points, points => {
             let columns = arrays.columns(points.len())?;
-            py.detach(|| {
+            self.run(py, || {
                 check_finite("points", points, 1)?;
                 let mut result = Ok(BatchReport::default());
                 columns.fill(|mut columns| {
                     let points = bytemuck::cast_slice(points);
-                    result = self.0.closest_columns_into(points, max_distance, &mut columns);
+                    result = self.index.closest_columns_into(points, max_distance, &mut columns);
                 });
                 reported(result)
             })
@@ -101,13 +105,21 @@ impl CudaIndex {
         // SAFETY: the Python layer passes the addresses of contiguous arrays of torch or CuPy of the right type and size
         // on this card, which it holds, and their current stream. `p2m.CudaIndex` says that nobody may write to the
         // points during the call; nobody else knows the new arrays of answers.
-        let answered = py.detach(|| unsafe { self.0.closest_on_card(&queries, max_distance, stream, &columns) });
-        reported(answered)
+        self.run(py, || reported(unsafe { self.index.closest_on_card(&queries, max_distance, stream, &columns) }))
     }
 
     /// Returns the bytes of the scene and of its lists on the card, and the number of cells without a list.
     fn size(&self) -> (usize, usize, u64) {
-        let [scene, lists] = self.0.memory();
-        (scene, lists, self.0.cells_without_list())
+        let [scene, lists] = self.index.memory();
+        (scene, lists, self.index.cells_without_list())
+    }
+}
+
+impl CudaIndex {
+    /// Runs a batch detached from the interpreter. What the card leaves to the processor is answered by the threads of
+    /// the index.
+    fn run(&self, py: Python<'_>, work: impl FnOnce() -> PyResult<Report> + Send) -> PyResult<Report> {
+        let pool = pool(py, self.threads)?;
+        py.detach(|| catch(|| pool.install(work)))?
     }
 }

@@ -101,7 +101,7 @@ pub(crate) struct Args {
 
     /// Search on this device instead of the processor, with the tree aabb
     #[cfg(feature = "cuda")]
-    #[arg(long, value_enum, conflicts_with_all = ["backend", "k_nearest", "within", "signed", "certified", "epsilon", "max_visits", "P2mArgs"])]
+    #[arg(long, value_enum, conflicts_with_all = ["backend", "k_nearest", "within", "signed", "certified", "epsilon", "max_visits", "k", "P2mArgs"])]
     pub(crate) device: Option<super::card::Device>,
 
     #[command(flatten)]

@@ -33,7 +33,8 @@ impl CardScene {
 }
 
 impl Source for CardScene {
-    const BLOCK_SIZE: BlockSize = BlockSize::Fixed(1 << 18);
+    // One part of a batch. Writing the table takes longer than answering.
+    const BLOCK_SIZE: BlockSize = BlockSize::Fixed(1 << 20);
 
     fn closest(&self, queries: &[Point3<f64>]) -> anyhow::Result<Vec<ClosestAnswer>> {
         let count = queries.len();

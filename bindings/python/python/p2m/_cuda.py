@@ -41,7 +41,13 @@ class CudaIndex:
     by_processor : int
         The number of queries of the last call that the card could not decide, which the processor has answered.
     kernel_seconds : float
-        The time of the kernels of the last call, without copies.
+        The time of the kernels of the last call, without copies. Parts of a million points of NumPy are searched at the
+        same time, so their times overlap.
+
+    Notes
+    -----
+    Any number of threads may query an index, but the attributes are then those of any of their calls. A child that was
+    forked after the first index cannot use cards.
     """
 
     def __init__(self, index: Index, *, threads: int | None, **options: Any) -> None:
@@ -135,6 +141,7 @@ class CudaIndex:
             found[name] = library.empty(shape[:-1] + FIELDS[name][1], _CARD_TYPES[name], queries)
         columns = [library.address(found[name]) if name in found else 0 for name in _CARD_TYPES]
         count = math.prod(shape[:-1])
+        self._report((0, 0, 0.0))
         if count > 0:
             query = (library.address(queries), count, scalar == "float32")
             self._report(self._raw.closest_on_card(query, columns, largest, library.stream(queries)))
@@ -197,12 +204,15 @@ class _CuPy:
         return int(array.data.ptr)
 
     def stream(self, array: Any) -> int:
-        return int(self._cupy.cuda.get_current_stream().ptr)
+        # The current stream is that of the current device.
+        with array.device:
+            return int(self._cupy.cuda.get_current_stream().ptr)
 
 
 def _library(points: Any) -> _Torch | _CuPy | None:
     """Return the library of points on a card, and None for points of the processor."""
-    if type(points).__module__.partition(".")[0] == "torch":
+    torch = sys.modules.get("torch")
+    if torch is not None and isinstance(points, torch.Tensor):
         return _Torch() if points.is_cuda else None
     # The types of DLPack: 2 is memory of a card.
     if hasattr(points, "__dlpack_device__") and points.__dlpack_device__()[0] == 2:
