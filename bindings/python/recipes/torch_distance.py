@@ -62,7 +62,7 @@ def main() -> None:
         optimizer.step()
         losses.append(loss.item())
     assert losses[-1] < 0.5 * losses[0]
-    print(f"on {device}: mean square {losses[0]:.3f} at radius 5, {losses[-1]:.3f} at radius {float(radius):.3f}")
+    print(f"on {device}: mean square {losses[0]:.3f} at radius 5, {losses[-1]:.3f} at radius {radius.item():.3f}")
 
 
 if __name__ == "__main__":
