@@ -16,13 +16,16 @@
 //! # Ok::<(), p2m_core::BuildError>(())
 //! ```
 //!
-//! [`recommend`] builds and times the backends over a sample of a scene, and recommends one of them.
+//! [`Choice`] chooses between a tree and an octree by the work of some queries. [`recommend`] builds and times the
+//! backends over a sample of a scene, and recommends one of them.
 #![forbid(unsafe_code)]
 
 mod advice;
+mod choice;
 mod registry;
 
 pub use advice::{Advice, Estimate, QueryRegion, Workload, recommend};
+pub use choice::Choice;
 pub use p2m_core::AnyIndex;
 pub use registry::{
     BACKENDS, BackendEntry, BuildSettings, BuiltIndex, ChosenDirections, CostModel, IndexVisitor, KdopDirections,

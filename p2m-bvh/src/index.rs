@@ -85,6 +85,11 @@ impl<T: Real, S: PrimitiveSet<T>, V: Volume> TreeIndex<T, S, V> {
         self.set
     }
 
+    /// Returns the set and the tree over it.
+    pub fn into_parts(self) -> (S, PacketTree<V>) {
+        (self.set, self.tree)
+    }
+
     /// The tree without its set.
     pub fn tree(&self) -> &PacketTree<V> {
         &self.tree

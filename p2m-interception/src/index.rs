@@ -9,6 +9,7 @@ use crate::voronoi::Voronoi;
 #[cfg(feature = "paper")]
 use crate::voronoi::paper::PaperVoronoi;
 use nalgebra::Point3;
+use p2m_bvh::AabbTree;
 use p2m_bvh::engine::interleaved::answer_in_groups;
 use p2m_core::engine::answer_one_by_one;
 use p2m_core::storage::{self, LoadError, Reader, Saved, Writer};
@@ -382,6 +383,19 @@ impl<T: Real, S: PrimitiveSet<T> + Sync> OctreeIndex<T, S> {
         check_set(&set)?;
         let partition = Octree::build_until(&set, options, progress, visit);
         Ok(Self { set, scalar: PhantomData, partition })
+    }
+
+    /// Builds the index that [`build_until`](Self::build_until) builds over the set of a tree. The tree becomes a part
+    /// of the index.
+    pub fn build_on(
+        tree: AabbTree<T, S>,
+        options: &OctreeOptions,
+        progress: &(dyn Fn(Progress) + Sync),
+        visit: &mut dyn FnMut(&RefinementProgress) -> ControlFlow<()>,
+    ) -> Self {
+        let (set, tree) = tree.into_parts();
+        let partition = Octree::build_on(tree, &set, options, progress, visit);
+        Self { set, scalar: PhantomData, partition }
     }
 }
 

@@ -3,14 +3,15 @@
 #![cfg(all(feature = "bvh", feature = "interception", feature = "kdop"))]
 
 use crate::agreement::agrees_with;
-use nalgebra::{Isometry3, Point3, Vector3};
+use nalgebra::{Isometry3, Point3, Rotation3, Vector3};
 use p2m::pair::{BallContact, ClosestPair, MovingBall, PairOptions, PairQuery};
 use p2m::storage::{SavedFile, Writer};
 use p2m::{
     Aabb, BoxQuery, BruteForce, BuildError, CertifiedQuery, Element, PrimitiveId, PrimitiveSet, QueryOptions, Ray,
     RayQuery, Real, Soup,
 };
-use p2m_backends::{AnyIndex, BACKENDS, BuildSettings};
+use p2m_backends::{AnyIndex, BACKENDS, BuildSettings, BuiltIndex, Choice, QueryRegion, Workload};
+use p2m_mixed::generate::{IcoSphere, SkewedGear, ico_sphere, skewed_gear};
 use p2m_testkit::near_check;
 use p2m_testkit::scenes::{extreme_soups, narrow, queries, random_soups, to_f32};
 use std::ops::ControlFlow;
@@ -225,4 +226,44 @@ fn loaded_indexes_answer_as_brute_force() {
             nearest(seed, &soup, &queries, &*loaded.index);
         }
     }
+}
+
+/// The bytes of a saved index.
+fn saved_bytes(built: &BuiltIndex) -> Vec<u8> {
+    let (mut writer, mut bytes) = (Writer::default(), Vec::new());
+    built.save(&mut writer);
+    writer.write(&mut bytes).expect("memory");
+    bytes
+}
+
+#[test]
+fn the_choice_of_auto_follows_from_scene_and_queries() {
+    let ball = Arc::new(ico_sphere(&IcoSphere { frequency: 12 }).expect("valid options"));
+    let mut gear = skewed_gear(&SkewedGear::default()).expect("valid options");
+    let turn = Rotation3::from_euler_angles(0.7, 0.3, 0.0);
+    let turned: Vec<_> = gear.positions().iter().map(|position| turn * position).collect();
+    gear = Soup::new(turned, gear.elements()).expect("valid");
+    let gear = Arc::new(gear);
+    let cases =
+        [(&ball, 1_000, "aabb"), (&ball, 10_000_000, "octree"), (&gear, 1_000, "aabb"), (&gear, 1_000_000, "kdop")];
+    for (soup, queries, expected) in cases {
+        for region in [QueryRegion::SceneBox, QueryRegion::NearSurface] {
+            let workload = Workload::new(queries, region);
+            let choice = Choice::new(Arc::clone(soup), &workload).expect("valid scene");
+            assert_eq!(choice.backend().name, expected, "{queries} {region:?}");
+            let backend = choice.backend();
+            // The index is the one that the backend builds alone.
+            let built = choice.build(&BuildSettings::default()).expect("valid scene");
+            let alone = backend.build(Arc::clone(soup), &BuildSettings::default()).expect("valid scene");
+            assert!(saved_bytes(&built) == saved_bytes(&alone), "{expected}");
+        }
+    }
+    // Points like those of the scene are near the surface.
+    let workload = Workload::new(10_000_000, QueryRegion::Like(ball.positions()));
+    assert_eq!(Choice::new(Arc::clone(&ball), &workload).expect("valid scene").backend().name, "octree");
+    // A limit of memory excludes the octree, and scenes without primitives have no queries to count.
+    let workload = Workload::new(10_000_000, QueryRegion::SceneBox).with_max_bytes(1000);
+    assert_eq!(Choice::new(ball, &workload).expect("valid scene").backend().name, "aabb");
+    let empty = Choice::new(Arc::default(), &Workload::new(10_000_000, QueryRegion::SceneBox)).expect("valid scene");
+    assert_eq!((empty.backend().name, empty.reason()), ("aabb", None));
 }

@@ -116,8 +116,7 @@ impl CudaIndex {
 }
 
 impl CudaIndex {
-    /// Runs a batch detached from the interpreter. What the card leaves to the processor is answered by the threads of
-    /// the index.
+    /// Runs a batch detached from the interpreter. The threads of the index answer what the card leaves to the processor.
     fn run(&self, py: Python<'_>, work: impl FnOnce() -> PyResult<Report> + Send) -> PyResult<Report> {
         let pool = pool(py, self.threads)?;
         py.detach(|| catch(|| pool.install(work)))?

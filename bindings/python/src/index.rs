@@ -5,9 +5,11 @@ use crate::scene::{Scene, SharedScene};
 use crate::signs::{SignRule, Signed};
 use crate::threads::pool;
 use crate::work::{FIRST_STEP_QUERIES, Monitor, Threads, run_batch, run_owned};
-use p2m_backends::{BACKENDS, BackendEntry, BuildSettings, BuiltIndex, KdopDirections, SearchStructure};
+use p2m_backends::{
+    BACKENDS, BackendEntry, BuildSettings, BuiltIndex, Choice, KdopDirections, QueryRegion, SearchStructure, Workload,
+};
 use p2m_core::pair::PairQuery;
-use p2m_core::{AnyIndex, BuildError, PrimitiveSet, RayQuery, Soup};
+use p2m_core::{AnyIndex, BuildError, PrimitiveSet, RayQuery};
 use p2m_field::sign::Normals;
 use p2m_interception::Progress;
 use pyo3::exceptions::PyValueError;
@@ -156,17 +158,16 @@ fn alternatives(fits: impl Fn(&BackendEntry) -> bool) -> String {
 
 /// Builds an index. Cancelled work ends by unwinding.
 pub(crate) fn build(
-    backend: &BackendEntry,
-    soup: Arc<Soup<f64>>,
     settings: BuildSettings<'_>,
     monitor: &Monitor,
+    build: impl FnOnce(&BuildSettings<'_>) -> Result<BuiltIndex, BuildError>,
 ) -> Result<BuiltIndex, BuildError> {
     let progress = |progress: Progress| {
         #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "a part is from 0 to 1")]
         monitor.set_done((progress.part * BUILD_UNITS as f64) as usize);
         monitor.unwind_if_cancelled();
     };
-    backend.build(soup, &settings.with_progress(&progress))
+    build(&settings.with_progress(&progress))
 }
 
 /// Returns the directions of k-DOPs by their number of faces or the name `scene`.
@@ -185,7 +186,7 @@ fn kdop_directions(name: &str) -> PyResult<KdopDirections> {
 impl Index {
     /// Builds an index of a backend of the registry.
     #[staticmethod]
-    #[pyo3(signature = (scene, backend, threads, progress, directions=None, resolution=None))]
+    #[pyo3(signature = (scene, backend, threads, progress, directions=None, resolution=None, queries=None))]
     fn build(
         py: Python<'_>,
         scene: &Scene,
@@ -194,7 +195,9 @@ impl Index {
         progress: Option<Py<PyAny>>,
         directions: Option<&str>,
         resolution: Option<f64>,
+        queries: Option<u64>,
     ) -> PyResult<Self> {
+        let is_chosen = backend == "auto" && queries.is_some();
         let entry = self::backend(backend)?;
         for (option, is_given, is_used) in [
             ("directions", directions.is_some(), entry.has_kdop_directions),
@@ -207,9 +210,18 @@ impl Index {
         let directions = directions.map(kdop_directions).transpose()?;
         let settings = BuildSettings::default().with_kdop_directions(directions).with_resolution(resolution);
         let soup = Arc::clone(&scene.shared.soup);
-        let built =
-            run_owned(py, threads, BUILD_UNITS, progress, move |monitor| build(entry, soup, settings, monitor))?;
-        Ok(Self::new(scene.shared.clone(), built.map_err(value_error)?, entry, None))
+        let workload = Workload::new(queries.unwrap_or_default(), QueryRegion::SceneBox);
+        let built = run_owned(py, threads, BUILD_UNITS, progress, move |monitor| {
+            let choice = if is_chosen { Some(Choice::new(Arc::clone(&soup), &workload)?) } else { None };
+            let chosen = choice.as_ref().map_or(entry, Choice::backend);
+            let built = build(settings, monitor, |settings| match choice {
+                Some(choice) => choice.build(settings),
+                None => entry.build(soup, settings),
+            })?;
+            Ok::<_, BuildError>((built, chosen))
+        })?;
+        let (built, chosen) = built.map_err(value_error)?;
+        Ok(Self::new(scene.shared.clone(), built, chosen, None))
     }
 
     /// Returns an index over the same primitives at other positions.

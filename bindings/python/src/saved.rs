@@ -68,7 +68,8 @@ pub(crate) fn load_bytes(py: Python<'_>, bytes: &[u8], backend: &str, threads: u
     }
     let entry = self::backend(backend)?;
     let soup = Arc::clone(&scene.soup);
-    let work = move |monitor: &Monitor| build(entry, soup, BuildSettings::default(), monitor);
+    let work =
+        move |monitor: &Monitor| build(BuildSettings::default(), monitor, |settings| entry.build(soup, settings));
     let built = run_owned(py, threads, 1, None, work)?;
     Ok(Index::new(scene, built.map_err(value_error)?, entry, None))
 }

@@ -202,7 +202,10 @@ def test_advice_and_information(ball: p2m.Scene) -> None:
     with pytest.raises(ValueError, match="region"):
         p2m.advise(ball, region="far")
     assert p2m.Index(ball).backend == "aabb"
-    assert p2m.Index(ball, queries=1).backend == "brute"
+    fine = p2m.Scene(*sphere(40, 60))
+    assert [p2m.Index(fine, queries=count).backend for count in (1, 10_000, 10_000_000)] == ["aabb", "aabb", "octree"]
+    with pytest.raises(ValueError, match="queries: -1 is not from 0"):
+        p2m.Index(fine, queries=-1)
     for backend in BACKENDS:
         info = p2m.Index(ball, backend).info
         assert info["backend"] == backend and info["primitives"] == len(ball)

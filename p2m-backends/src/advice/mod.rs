@@ -25,4 +25,5 @@ mod workload;
 
 pub use estimate::{Advice, Estimate};
 pub use recommend::recommend;
+pub(crate) use sample::{is_mostly_slivers, sample_queries};
 pub use workload::{QueryRegion, Workload};

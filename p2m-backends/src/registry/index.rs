@@ -5,7 +5,7 @@ use super::p2m_settings::P2mSettings;
 use p2m_bvh::SplitOptions;
 use p2m_core::storage::Writer;
 use p2m_core::{AnyIndex, Real};
-use p2m_interception::{Progress, RefinementProgress};
+use p2m_interception::{OctreeOptions, Progress, RefinementProgress};
 use std::ops::ControlFlow;
 use std::sync::Arc;
 
@@ -107,6 +107,16 @@ impl<'p> BuildSettings<'p> {
     #[must_use]
     pub fn with_visit_octree(self, visit_octree: &'p (dyn Fn(&RefinementProgress) -> ControlFlow<()> + Sync)) -> Self {
         Self { visit_octree, ..self }
+    }
+
+    /// The options of an octree.
+    pub(crate) fn octree_options(&self) -> OctreeOptions {
+        let options = OctreeOptions::default().with_splits(self.splits());
+        let factor = self.resolution.map_or(1.0, |resolution| resolution / options.resolution);
+        let options = options.with_finer_cells(factor);
+        let scale = self.octree_budget_scale;
+        let (memory, work) = (options.memory * scale, options.work * scale);
+        options.with_memory(memory).with_work(work)
     }
 
     /// The splits of trees, with the choice of threads.

@@ -27,7 +27,7 @@ pub use p2m_settings::{ListFilterKind, LocatorKind, P2mSettings};
 use p2m_bvh::{AabbTree, PacketTree};
 use p2m_core::storage::{self, LoadError, Reader, Saved};
 use p2m_core::{AnyIndex, BruteForce, BuildError, BuildIndex, PrimitiveSet, Real, Soup};
-use p2m_interception::{Octree, OctreeIndex, OctreeOptions, P2mIndex, Voronoi};
+use p2m_interception::{Octree, OctreeIndex, P2mIndex, Voronoi};
 use p2m_kdop::KdopTree;
 use std::sync::Arc;
 
@@ -210,19 +210,33 @@ impl BackendEntry {
                 return Ok(BuiltIndex { index, directions: Some(directions) });
             }
             IndexKind::Octree => {
-                let options = OctreeOptions::default().with_splits(settings.splits());
-                let factor = settings.resolution.map_or(1.0, |resolution| resolution / options.resolution);
-                let options = options.with_finer_cells(factor);
-                let scale = settings.octree_budget_scale;
-                let (memory, work) = (options.memory * scale, options.work * scale);
-                let options = options.with_memory(memory).with_work(work);
                 let visit = &mut |so_far: &_| (settings.visit_octree)(so_far);
-                Arc::new(OctreeIndex::build_until(soup, &options, settings.progress, visit)?)
+                Arc::new(OctreeIndex::build_until(soup, &settings.octree_options(), settings.progress, visit)?)
             }
             IndexKind::P2m => {
                 let options = settings.p2m.options().with_splits(settings.splits());
                 Arc::new(P2mIndex::build_with_progress(soup, &options, settings.progress)?)
             }
+        };
+        Ok(BuiltIndex { index, directions: None })
+    }
+
+    /// Builds an index over the scene of a tree. If it has such a tree, the tree becomes a part of it.
+    ///
+    /// # Errors
+    /// Those of [`build`](Self::build).
+    pub fn build_on(
+        &self,
+        tree: AabbTree<f64, Arc<Soup<f64>>>,
+        settings: &BuildSettings<'_>,
+    ) -> Result<BuiltIndex, BuildError> {
+        let index: Arc<dyn AnyIndex> = match self.kind {
+            IndexKind::Aabb => Arc::new(tree),
+            IndexKind::Octree => {
+                let visit = &mut |so_far: &_| (settings.visit_octree)(so_far);
+                Arc::new(OctreeIndex::build_on(tree, &settings.octree_options(), settings.progress, visit))
+            }
+            IndexKind::Brute | IndexKind::Kdop | IndexKind::P2m => return self.build(tree.into_set(), settings),
         };
         Ok(BuiltIndex { index, directions: None })
     }

@@ -143,6 +143,17 @@ impl Octree {
     ) -> Self {
         progress(Progress { stage: BuildStage::Tree, part: 0.0 });
         let tree = PacketTree::build(set, &options.splits);
+        Self::build_on(tree, set, options, progress, visit)
+    }
+
+    /// Builds the octree on the tree of its set.
+    pub(crate) fn build_on<T: Real, S: PrimitiveSet<T> + Sync + ?Sized>(
+        tree: PacketTree,
+        set: &S,
+        options: &OctreeOptions,
+        progress: &(dyn Fn(Progress) + Sync),
+        visit: &mut dyn FnMut(&RefinementProgress) -> ControlFlow<()>,
+    ) -> Self {
         progress(Progress { stage: BuildStage::Octree, part: 0.0 });
         let tree_bytes = tree.memory();
         let mut octree = Self {

@@ -10,6 +10,7 @@
 #![forbid(unsafe_code)]
 
 mod agree;
+mod auto;
 mod backend;
 mod backends;
 mod blocks;
@@ -69,6 +70,8 @@ enum Command {
     Field(field::Arguments),
     /// Compares builds on several numbers of threads, in wall time
     Threads(threads::Arguments),
+    /// Compares the choice of `auto` with the best index for each job; fails if too many choices are bad
+    Auto(auto::Arguments),
     /// Compares a scene of moving instances of meshes with one index over all of them; fails if an answer differs
     Instances(instances::Arguments),
     /// Measures builds, memory and queries of scenes that grow, for docs/measurements/scale.md; fails if ours differ
@@ -89,6 +92,7 @@ fn main() -> anyhow::Result<ExitCode> {
         Command::ExtremePairs(arguments) => extremes::pairs::run(&arguments),
         Command::Field(arguments) => field::run(&arguments),
         Command::Threads(arguments) => threads::run(&arguments),
+        Command::Auto(arguments) => auto::run(&arguments),
         Command::Instances(arguments) => instances::run(&arguments),
         Command::Scale(arguments) => scale::run(&arguments),
         Command::Pairs(arguments) => pairs::run(&arguments),

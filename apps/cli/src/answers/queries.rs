@@ -70,6 +70,11 @@ impl Queries {
         Self::Random { region, left: count, rng: Box::new(ChaCha8Rng::seed_from_u64(seed)) }
     }
 
+    /// Returns points of a region, by which an index is chosen.
+    pub(crate) fn sample(region: Region) -> Vec<Point3<f64>> {
+        Self::random(region, 512, 0).collect()
+    }
+
     /// Returns the number of points that remain.
     pub(crate) fn len(&self) -> u64 {
         match self {

@@ -35,6 +35,8 @@ pub(crate) struct IndexSummary<'a> {
     pub(crate) built: Option<&'a BuiltIndex>,
     /// Whether the index was loaded from a file.
     pub(crate) is_loaded: bool,
+    /// The reason of the choice of the backend, if the program chose it.
+    pub(crate) reason: Option<String>,
     /// The time to read the scene.
     pub(crate) read_time: Duration,
     /// The time to build or load the index.
@@ -55,6 +57,7 @@ impl IndexSummary<'_> {
                 "skipped": json::skipped(self.scene.skipped),
             },
             "backend": self.backend,
+            "backend_reason": self.reason,
             "loaded": self.is_loaded,
             "faces": directions.map(|directions| directions.faces),
             "directions_reason": directions.and_then(|directions| directions.reason.as_ref()),
@@ -90,6 +93,9 @@ impl IndexSummary<'_> {
         let faces = self.directions().map_or(String::new(), |directions| format!(", {} faces", directions.faces));
         let verb = if self.is_loaded { "loaded" } else { "built" };
         writeln!(text, "backend  {}{faces}, {verb} in {}", self.backend, Time(self.build_time))?;
+        if let Some(reason) = &self.reason {
+            writeln!(text, "choice   {reason}")?;
+        }
         if let Some(reason) = self.directions().and_then(|directions| directions.reason.as_ref()) {
             writeln!(text, "k-DOPs   {reason}")?;
         }

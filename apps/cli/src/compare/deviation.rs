@@ -4,7 +4,7 @@ use crate::answers::blocks::{BlockSize, QueryStream, Steps, answer_all};
 use crate::answers::summary::{IndexSummary, RunSummary, SceneSummary};
 use crate::answers::table::{AnswerColumn, AnswerEncoder, AnswerFormat, AnswerRecord, Table};
 use crate::compare::scan::ScanFormat;
-use crate::index::backend::{Backend, PreparedIndex, SceneSource, backends, saved_or_default};
+use crate::index::backend::{BackendChoice, PreparedIndex, SceneSource, backend_choices};
 use crate::index::sign_rule::{SignRule, SignedIndex};
 use crate::io::input::{SceneArgs, format_list, is_standard, name, read_scene_and_index, shown};
 use crate::io::json;
@@ -16,7 +16,7 @@ use crate::page::source::{PageArgs, about, file_name};
 use crate::query::answers::ClosestAnswer;
 use anyhow::{Context, anyhow};
 use nalgebra::Point3;
-use p2m_backends::{AnyIndex, P2mSettings};
+use p2m_backends::{AnyIndex, P2mSettings, QueryRegion, Workload};
 use p2m_core::batch::{self, BatchOptions};
 use p2m_core::{Aabb, Closest, PrimitiveSet, QueryOptions, Soup};
 use p2m_field::deviation::{DeviationStatistics, OutsideTolerance, outside};
@@ -96,9 +96,9 @@ pub(crate) struct Args {
     #[arg(long, value_name = "FILE")]
     out: Option<PathBuf>,
 
-    /// The index to search [default: the saved index, or aabb]
-    #[arg(long, value_parser = backends(|_| true))]
-    backend: Option<Backend>,
+    /// The index to search [default: the saved index, or auto]
+    #[arg(long, value_parser = backend_choices())]
+    backend: Option<BackendChoice>,
 
     #[command(flatten)]
     page: PageArgs,
@@ -140,10 +140,14 @@ pub(crate) fn run(streams: &Streams, args: &Args) -> anyhow::Result<()> {
 
     let start = Instant::now();
     let saved = saved.as_ref();
-    let backend = args.backend.unwrap_or_else(|| saved_or_default(saved));
+    let points = scan.soup.positions();
+    let workload = Workload::new(points.len() as u64, QueryRegion::Like(points));
+    let chosen = BackendChoice::resolve(args.backend, saved, &scene.soup, &workload, streams, &pool);
+    let chosen = chosen.with_context(|| args.scene.name())?;
+    let backend = chosen.backend();
     let source = SceneSource { soup: &scene.soup, kdop_directions: None, p2m: P2mSettings::default(), saved };
-    let PreparedIndex { built, is_loaded, .. } =
-        source.prepare(streams, backend, &pool).with_context(|| args.scene.name())?;
+    let PreparedIndex { built, is_loaded, reason, .. } =
+        source.prepare(streams, chosen, &pool).with_context(|| args.scene.name())?;
     let index = &*built.index;
     let prepare = |rule: SignRule| rule.prepare(streams, index, &scene.soup).map_err(|error| args.without_sign(error));
     let signed = if args.unsigned { None } else { Some(prepare(args.sign)?) };
@@ -155,7 +159,6 @@ pub(crate) fn run(streams: &Streams, args: &Args) -> anyhow::Result<()> {
         streams.print_summary(format_args!("warning  {}: {note}\n", args.scene.name()));
     }
 
-    let points = scan.soup.positions();
     let mut answers = Answers::new(index, signed.as_ref());
     let query_time = match (&mut output, out_format) {
         (Some(output), Some(DeviationFormat::Csv)) => {
@@ -178,8 +181,15 @@ pub(crate) fn run(streams: &Streams, args: &Args) -> anyhow::Result<()> {
     })?;
 
     let summary = SceneSummary::new(args.scene.name(), format, &scene);
-    let index =
-        IndexSummary { scene: summary, backend: backend.name, built: Some(&built), is_loaded, read_time, build_time };
+    let index = IndexSummary {
+        scene: summary,
+        backend: backend.name,
+        built: Some(&built),
+        is_loaded,
+        reason,
+        read_time,
+        build_time,
+    };
     let run = RunSummary { index, threads: pool.current_num_threads(), query_time };
     if args.json {
         let out = args.out.as_ref().zip(out_format).map_or(

@@ -1,14 +1,16 @@
 //! The arguments of commands that are about an index: its scene, its backend and its directions.
 
-use crate::index::backend::{Backend, BackendChoice, backend_choices};
+use crate::index::backend::{Backend, BackendChoice, Chosen, backend_choices, saved_or_default};
 use crate::index::kdop_directions::{KdopFaces, requested};
 use crate::index::p2m_args::P2mArgs;
 use crate::io::input::SceneArgs;
+use crate::io::streams::Streams;
 use crate::io::threads::ThreadArgs;
 use p2m_backends::{KdopDirections, P2mSettings, QueryRegion, Workload};
 use p2m_core::Soup;
 use p2m_core::storage::Reader;
 use rayon::ThreadPool;
+use std::sync::Arc;
 
 #[derive(clap::Args)]
 pub(crate) struct IndexArgs {
@@ -31,7 +33,7 @@ pub(crate) struct IndexArgs {
 }
 
 /// The number of queries that `--backend auto` chooses an index for if the command does not say how many there are.
-pub(crate) const DEFAULT_QUERY_COUNT: u64 = 10_000_000;
+const DEFAULT_QUERY_COUNT: u64 = 10_000_000;
 
 impl IndexArgs {
     /// Refuses `--k` for a backend without k-DOPs, and `--locator` and `--filter` for another one than p2m, as far as the
@@ -59,21 +61,42 @@ impl IndexArgs {
         self.named().is_none() && self.k.is_none() && self.p2m.is_unspecified()
     }
 
-    /// Returns the backend, the directions of its k-DOPs and its settings as a P2M index. Without a named backend it is that of the file, or with
-    /// `auto` the best one for this number of queries in the box of the scene.
+    /// Returns the backend, the directions of its k-DOPs and its settings as a P2M index. Without a named backend it is
+    /// that of the file or the default one, and with `auto` the best one for ten million queries in the box of the scene.
     ///
     /// # Errors
     /// For directions with a backend that has no k-DOPs, and for settings of a P2M index with another one.
     pub(crate) fn choice(
         &self,
         saved: Option<&Reader>,
-        soup: &Soup<f64>,
-        queries: u64,
+        soup: &Arc<Soup<f64>>,
+        streams: &Streams,
         pool: &ThreadPool,
-    ) -> anyhow::Result<(Backend, Option<KdopDirections>, P2mSettings)> {
+    ) -> anyhow::Result<(Chosen, Option<KdopDirections>, P2mSettings)> {
+        match self.backend {
+            None => self.with_options(saved_or_default(saved).into()),
+            Some(_) => self.choice_for(DEFAULT_QUERY_COUNT, saved, soup, streams, pool),
+        }
+    }
+
+    /// Returns the same for a number of queries in the box of the scene, which decide unless a backend is named or the
+    /// file has an index.
+    pub(crate) fn choice_for(
+        &self,
+        queries: u64,
+        saved: Option<&Reader>,
+        soup: &Arc<Soup<f64>>,
+        streams: &Streams,
+        pool: &ThreadPool,
+    ) -> anyhow::Result<(Chosen, Option<KdopDirections>, P2mSettings)> {
         let workload = Workload::new(queries, QueryRegion::SceneBox);
-        let backend = BackendChoice::resolve(self.backend, saved, soup, &workload, pool)?;
+        self.with_options(BackendChoice::resolve(self.backend, saved, soup, &workload, streams, pool)?)
+    }
+
+    fn with_options(&self, chosen: Chosen) -> anyhow::Result<(Chosen, Option<KdopDirections>, P2mSettings)> {
+        let backend = chosen.backend();
         let p2m = self.p2m.settings(backend.has_p2m_settings)?;
-        Ok((backend, requested(backend.has_kdop_directions, self.k)?, p2m))
+        let directions = requested(backend.has_kdop_directions, self.k)?;
+        Ok((chosen, directions, p2m))
     }
 }

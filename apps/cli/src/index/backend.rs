@@ -4,9 +4,7 @@ use crate::io::interrupt::StoppableWork;
 use crate::io::progress::{Progress, Unit};
 use crate::io::streams::Streams;
 use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
-use p2m_backends::{
-    BACKENDS, BackendEntry, BuildSettings, BuiltIndex, KdopDirections, P2mSettings, Workload, recommend,
-};
+use p2m_backends::{BACKENDS, BackendEntry, BuildSettings, BuiltIndex, Choice, KdopDirections, P2mSettings, Workload};
 use p2m_core::Soup;
 use p2m_core::storage::Reader;
 use p2m_interception::{BuildStage, RefinementProgress, StageTimes};
@@ -18,7 +16,7 @@ use std::time::{Duration, Instant};
 /// A backend of the registry.
 pub(crate) type Backend = &'static BackendEntry;
 
-/// The name that leaves the choice of the backend to the advisor.
+/// The name that leaves the choice of the backend to the program.
 const AUTO: &str = "auto";
 
 /// A value of `--backend` where the program may choose.
@@ -26,7 +24,7 @@ const AUTO: &str = "auto";
 pub(crate) enum BackendChoice {
     /// The user names a backend.
     Named(Backend),
-    /// The advisor chooses.
+    /// The work of the queries decides.
     Auto,
 }
 
@@ -39,7 +37,7 @@ pub(crate) fn backends(fits: fn(&BackendEntry) -> bool) -> impl TypedValueParser
 /// A parser of the names of all backends and of `auto`.
 pub(crate) fn backend_choices() -> impl TypedValueParser<Value = BackendChoice> {
     let auto = PossibleValue::new(AUTO)
-        .help("The one that `p2m advise` recommends for these queries, or for ten million in the box of the scene");
+        .help("aabb, octree or kdop, by the work of these queries, or of ten million in the box of the scene");
     let values = BACKENDS.iter().map(possible_value).chain([auto]);
     PossibleValuesParser::new(values)
         .map(|name| if name == AUTO { BackendChoice::Auto } else { BackendChoice::Named(named(&name)) })
@@ -58,20 +56,56 @@ pub(crate) fn saved_or_default(saved: Option<&Reader>) -> Backend {
     saved.and_then(BackendEntry::from_saved).unwrap_or_else(BackendEntry::default_backend)
 }
 
+/// The index that a command searches.
+pub(crate) enum Chosen {
+    /// A backend that was named, or that of a saved index.
+    Named(Backend),
+    /// The choice by the work of queries.
+    Counted(Choice),
+}
+
+impl From<Backend> for Chosen {
+    fn from(backend: Backend) -> Self {
+        Self::Named(backend)
+    }
+}
+
+impl Chosen {
+    pub(crate) fn backend(&self) -> Backend {
+        match self {
+            Self::Named(backend) => backend,
+            Self::Counted(choice) => choice.backend(),
+        }
+    }
+
+    /// The reason of a choice, if queries were counted for it.
+    fn reason(&self) -> Option<String> {
+        match self {
+            Self::Named(_) => None,
+            Self::Counted(choice) => choice.reason(),
+        }
+    }
+}
+
 impl BackendChoice {
-    /// Returns the named backend, the one that the advisor recommends, or without a choice that of the file.
+    /// Returns the named backend or, without a name, that of the file. With `auto`, and without both, the work of queries
+    /// decides, and the summary says how.
     pub(crate) fn resolve(
         choice: Option<Self>,
         saved: Option<&Reader>,
-        soup: &Soup<f64>,
+        soup: &Arc<Soup<f64>>,
         workload: &Workload<'_>,
+        streams: &Streams,
         pool: &ThreadPool,
-    ) -> anyhow::Result<Backend> {
-        match choice {
-            Some(Self::Named(backend)) => Ok(backend),
-            None => Ok(saved_or_default(saved)),
-            Some(Self::Auto) => Ok(pool.install(|| recommend(soup, workload))?.backend()),
+    ) -> anyhow::Result<Chosen> {
+        match (choice, saved.and_then(BackendEntry::from_saved)) {
+            (Some(Self::Named(backend)), _) | (None, Some(backend)) => return Ok(backend.into()),
+            _ => {}
         }
+        let progress = Progress::start(streams, "building a tree", None, Unit::None);
+        let chosen = pool.install(|| Choice::new(Arc::clone(soup), workload))?;
+        drop(progress);
+        Ok(Chosen::Counted(chosen))
     }
 }
 
@@ -85,6 +119,8 @@ pub(crate) struct PreparedIndex {
     pub(crate) is_loaded: bool,
     /// The stages of the build; empty for backends without stages and for loaded indexes.
     pub(crate) stages: Stages,
+    /// The reason of the choice of the backend, if the program chose it.
+    pub(crate) reason: Option<String>,
 }
 
 /// The scene of an index, and the file that may have the index.
@@ -105,9 +141,11 @@ impl SceneSource<'_> {
     pub(crate) fn prepare(
         self,
         streams: &Streams,
-        backend: Backend,
+        chosen: impl Into<Chosen>,
         pool: &ThreadPool,
     ) -> anyhow::Result<PreparedIndex> {
+        let chosen = chosen.into();
+        let (backend, reason) = (chosen.backend(), chosen.reason());
         let soup = Arc::clone(self.soup);
         let may_be_saved = self.p2m == P2mSettings::default();
         if let Some(reader) = self.saved.filter(|reader| may_be_saved && backend.is_in(reader, self.kdop_directions)) {
@@ -116,9 +154,14 @@ impl SceneSource<'_> {
                 built: pool.install(|| backend.load(soup, reader))?,
                 is_loaded: true,
                 stages: Stages::new(),
+                reason: None,
             });
         }
         let settings = BuildSettings::default().with_kdop_directions(self.kdop_directions).with_p2m(self.p2m);
+        let build = |chosen, settings: &BuildSettings<'_>| match chosen {
+            Chosen::Named(backend) => backend.build(soup, settings),
+            Chosen::Counted(choice) => choice.build(settings),
+        };
         let start = Instant::now();
         let times = StageTimes::new(move || start.elapsed());
         let built = if backend.reports_progress {
@@ -139,12 +182,12 @@ impl SceneSource<'_> {
                 if StoppableWork::is_stopped() { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
             };
             let settings = settings.with_progress(&report).with_visit_octree(&visit);
-            pool.install(|| backend.build(soup, &settings))?
+            pool.install(|| build(chosen, &settings))?
         } else {
             let _progress = Progress::start(streams, "building the index", None, Unit::None);
-            pool.install(|| backend.build(soup, &settings))?
+            pool.install(|| build(chosen, &settings))?
         };
-        Ok(PreparedIndex { built, is_loaded: false, stages: times.finish() })
+        Ok(PreparedIndex { built, is_loaded: false, stages: times.finish(), reason })
     }
 }
 

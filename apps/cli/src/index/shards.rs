@@ -51,7 +51,15 @@ pub(crate) fn summarize(
 ) -> IndexSummary<'_> {
     let manifest = index.manifest();
     let scene = SceneSummary { name, format: "p2m-shards", counts: manifest.counts(), skipped: &[] };
-    IndexSummary { scene, backend: &manifest.backend, built: None, is_loaded: true, read_time, build_time }
+    IndexSummary {
+        scene,
+        backend: &manifest.backend,
+        built: None,
+        is_loaded: true,
+        reason: None,
+        read_time,
+        build_time,
+    }
 }
 
 /// Returns the line of a summary about the shards and how often they were loaded.

@@ -2,7 +2,7 @@
 
 use crate::answers::queries::{Queries, Region};
 use crate::answers::summary::{IndexSummary, SceneSummary};
-use crate::index::args::{DEFAULT_QUERY_COUNT, IndexArgs};
+use crate::index::args::IndexArgs;
 use crate::index::backend::{PreparedIndex, SceneSource, Stages};
 use crate::io::input::{read_scene_and_index, shown};
 use crate::io::json;
@@ -93,10 +93,11 @@ pub(crate) fn run(streams: &Streams, args: &Args) -> anyhow::Result<()> {
 
     let start = Instant::now();
     let saved = saved.as_ref();
-    let (backend, kdop_directions, p2m) = args.index_args.choice(saved, &scene.soup, DEFAULT_QUERY_COUNT, &pool)?;
+    let (chosen, kdop_directions, p2m) = args.index_args.choice(saved, &scene.soup, streams, &pool)?;
+    let backend = chosen.backend();
     let source = SceneSource { soup: &scene.soup, kdop_directions, p2m, saved };
-    let PreparedIndex { built, is_loaded, stages } =
-        source.prepare(streams, backend, &pool).with_context(|| scene_args.name())?;
+    let PreparedIndex { built, is_loaded, stages, reason } =
+        source.prepare(streams, chosen, &pool).with_context(|| scene_args.name())?;
     let index = &*built.index;
     let build_time = start.elapsed();
 
@@ -125,7 +126,7 @@ pub(crate) fn run(streams: &Streams, args: &Args) -> anyhow::Result<()> {
     drop(progress);
 
     let (summary, backend) = (SceneSummary::new(scene_args.name(), format, &scene), backend.name);
-    let index = IndexSummary { scene: summary, backend, built: Some(&built), is_loaded, read_time, build_time };
+    let index = IndexSummary { scene: summary, backend, built: Some(&built), is_loaded, reason, read_time, build_time };
     if args.json {
         let end = json!({
             "cells": index.cells(),

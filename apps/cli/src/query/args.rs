@@ -95,7 +95,7 @@ pub(crate) struct Args {
     #[arg(long, value_name = "R", value_parser = not_negative, allow_negative_numbers = true)]
     pub(crate) max_distance: Option<f64>,
 
-    /// The index to search [default: the saved index, or aabb]
+    /// The index to search [default: the saved index, or auto]
     #[arg(long, value_parser = backend_choices())]
     pub(crate) backend: Option<BackendChoice>,
 
@@ -211,27 +211,27 @@ impl Args {
     }
 }
 
-/// Returns the queries and, if they come from a file, a sample of them.
+/// Returns the queries and a sample of them, or of points in their region.
 pub(crate) fn queries(
     streams: &Streams,
     args: &Args,
     bounds: &Aabb<f64>,
-) -> anyhow::Result<(Queries, Option<Vec<Point3<f64>>>)> {
+) -> anyhow::Result<(Queries, Vec<Point3<f64>>)> {
     if let Some(path) = &args.points {
         let points = read_points(streams, path, point_format(path, args.points_format, "--points-format")?)?;
         let sample = points.iter().step_by(points.len().div_ceil(MAX_SAMPLE_POINTS).max(1)).copied().collect();
-        return Ok((Queries::list(points), Some(sample)));
+        return Ok((Queries::list(points), sample));
     }
     let region = Region::around(bounds, args.box_scale);
     let queries = match args.grid {
         Some(side) => Queries::grid(region, side),
         None => Queries::random(region, args.random.unwrap_or(0), args.seed),
     };
-    Ok((queries, None))
+    Ok((queries, Queries::sample(region)))
 }
 
-/// The largest number of points by which the advisor chooses a backend.
-const MAX_SAMPLE_POINTS: usize = 16_384;
+/// The largest number of points by which an index is chosen.
+const MAX_SAMPLE_POINTS: usize = 1024;
 
 /// Returns the part of a report about the origin of the queries.
 fn source_json(args: &Args) -> Value {

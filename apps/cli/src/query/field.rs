@@ -116,18 +116,19 @@ pub(crate) fn run(streams: &Streams, args: &Args) -> anyhow::Result<()> {
     let mut backend_name = LISTS_NAME;
     let mut prepared = None;
     if lists.is_none() || args.signed.is_some() {
-        let (backend, kdop_directions, p2m) = match lists {
+        let (chosen, kdop_directions, p2m) = match lists {
             // With lists the index decides signs alone.
-            Some(_) => (saved_or_default(saved.as_ref()), None, P2mSettings::default()),
-            None => args.index_args.choice(saved.as_ref(), soup, grid.len() as u64, &pool)?,
+            Some(_) => (saved_or_default(saved.as_ref()).into(), None, P2mSettings::default()),
+            None => args.index_args.choice_for(grid.len() as u64, saved.as_ref(), soup, streams, &pool)?,
         };
         let source = SceneSource { soup, kdop_directions, p2m, saved: saved.as_ref() };
-        prepared = Some(source.prepare(streams, backend, &pool).with_context(|| scene_args.name())?);
         if lists.is_none() {
-            backend_name = backend.name;
+            backend_name = chosen.backend().name;
         }
+        prepared = Some(source.prepare(streams, chosen, &pool).with_context(|| scene_args.name())?);
     }
     let is_loaded = prepared.as_ref().is_some_and(|prepared| prepared.is_loaded);
+    let reason = prepared.as_ref().and_then(|prepared| prepared.reason.clone());
     let built = prepared.as_ref().map(|prepared| &prepared.built);
     let index = match (built, args.signed) {
         (Some(built), Some(rule)) => {
@@ -160,7 +161,7 @@ pub(crate) fn run(streams: &Streams, args: &Args) -> anyhow::Result<()> {
     }
 
     let (summary, backend) = (SceneSummary::new(scene_args.name(), format, &scene), backend_name);
-    let index = IndexSummary { scene: summary, backend, built, is_loaded, read_time, build_time };
+    let index = IndexSummary { scene: summary, backend, built, is_loaded, reason, read_time, build_time };
     let report = FieldSummary {
         grid: &grid,
         field: &field,

@@ -12,7 +12,7 @@ pub(crate) use args::Args;
 
 use crate::answers::blocks::{BlockSize, answer_each};
 use crate::answers::summary::{IndexSummary, SceneSummary};
-use crate::index::backend::{BackendChoice, PreparedIndex, SceneSource};
+use crate::index::backend::{BackendChoice, PreparedIndex, SceneSource, saved_or_default};
 use crate::index::kdop_directions::requested;
 use crate::index::shards::{open, refuse_options_of_builds, shard_folder, summarize};
 use crate::index::sign_rule::{SignReport, SignRule, SignedIndex};
@@ -54,22 +54,37 @@ pub(crate) fn run(streams: &Streams, args: &Args) -> anyhow::Result<()> {
     if args.device.is_some() {
         let source = pool.install(|| card::CardScene::new(&scene.soup, args)).with_context(|| scene_args.name())?;
         let (built, build_time) = (None, start.elapsed());
-        let index = IndexSummary { scene: summary, backend: "cuda", built, is_loaded: false, read_time, build_time };
+        let index = IndexSummary {
+            scene: summary,
+            backend: "cuda",
+            built,
+            is_loaded: false,
+            reason: None,
+            read_time,
+            build_time,
+        };
         let (soup, format, pool) = (Some(&*scene.soup), out_format, &pool);
         let (signs, shards) = (None, None);
         return Run { streams, args, pool, queries, output, format, objects, index, signs, shards, soup }
             .finish(&source);
     }
     let saved = saved.as_ref();
-    let region = sample.as_deref().map_or(QueryRegion::SceneBox, QueryRegion::Like);
-    let workload = Workload::new(queries.len(), region);
-    let backend = BackendChoice::resolve(args.backend, saved, &scene.soup, &workload, &pool);
-    let backend = backend.with_context(|| scene_args.name())?;
+    let is_counted = !args.has_many_answers() && !args.accuracy.is_certified();
+    let chosen = match args.backend {
+        // The choice is about queries for the closest point in f64.
+        None if !is_counted => saved_or_default(saved).into(),
+        backend => {
+            let workload = Workload::new(queries.len(), QueryRegion::Like(&sample));
+            let chosen = BackendChoice::resolve(backend, saved, &scene.soup, &workload, streams, &pool);
+            chosen.with_context(|| scene_args.name())?
+        }
+    };
+    let backend = chosen.backend();
     let kdop_directions = requested(backend.has_kdop_directions, query_args.k)?;
     let p2m = args.p2m.settings(backend.has_p2m_settings)?;
     let source = SceneSource { soup: &scene.soup, kdop_directions, p2m, saved };
-    let PreparedIndex { built, is_loaded, .. } =
-        source.prepare(streams, backend, &pool).with_context(|| scene_args.name())?;
+    let PreparedIndex { built, is_loaded, reason, .. } =
+        source.prepare(streams, chosen, &pool).with_context(|| scene_args.name())?;
     let index = &*built.index;
     let build_time = start.elapsed();
 
@@ -78,7 +93,7 @@ pub(crate) fn run(streams: &Streams, args: &Args) -> anyhow::Result<()> {
     let signs = signed.as_ref().map(SignReport::new);
     let source = WholeIndex { index, signed: signed.as_ref(), args };
     let (backend, built) = (backend.name, Some(&built));
-    let index = IndexSummary { scene: summary, backend, built, is_loaded, read_time, build_time };
+    let index = IndexSummary { scene: summary, backend, built, is_loaded, reason, read_time, build_time };
     let (soup, format) = (Some(&*scene.soup), out_format);
     Run { streams, args, pool: &pool, queries, output, format, objects, index, signs, shards: None, soup }
         .finish(&source)

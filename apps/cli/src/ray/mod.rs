@@ -46,13 +46,14 @@ pub(crate) fn run(streams: &Streams, args: &Args) -> anyhow::Result<()> {
     }
     let kdop_directions = requested(backend.has_kdop_directions, query_args.k)?;
     let source = SceneSource { soup: &scene.soup, kdop_directions, p2m: P2mSettings::default(), saved };
-    let PreparedIndex { built, is_loaded, .. } =
+    let PreparedIndex { built, is_loaded, reason, .. } =
         source.prepare(streams, backend, &pool).with_context(|| scene_args.name())?;
     let build_time = start.elapsed();
 
     let index = built.index.as_ray_query().context("the backend casts no rays")?;
     let (summary, backend) = (SceneSummary::new(scene_args.name(), format, &scene), backend.name);
-    let summary = IndexSummary { scene: summary, backend, built: Some(&built), is_loaded, read_time, build_time };
+    let summary =
+        IndexSummary { scene: summary, backend, built: Some(&built), is_loaded, reason, read_time, build_time };
     let (objects, index, source) = (scene.objects.as_slice(), summary, RaySource::Whole(index));
     Run { streams, args, pool: &pool, rays, output, format: out_format, objects, index }.finish(source)
 }

@@ -1,7 +1,7 @@
 //! `p2m build`: saves an index in a file that other commands use.
 
 use crate::answers::summary::{IndexSummary, SceneSummary};
-use crate::index::args::{DEFAULT_QUERY_COUNT, IndexArgs};
+use crate::index::args::IndexArgs;
 use crate::index::backend::{PreparedIndex, SceneSource};
 use crate::io::input::{read_scene, shown};
 use crate::io::json;
@@ -66,10 +66,11 @@ pub(crate) fn run(streams: &Streams, args: &Args) -> anyhow::Result<()> {
     let mut output = Output::open(streams, Some(&args.out))?;
 
     let start = Instant::now();
-    let (backend, kdop_directions, p2m) = args.index_args.choice(None, &scene.soup, DEFAULT_QUERY_COUNT, &pool)?;
+    let (chosen, kdop_directions, p2m) = args.index_args.choice(None, &scene.soup, streams, &pool)?;
+    let backend = chosen.backend();
     let source = SceneSource { soup: &scene.soup, kdop_directions, p2m, saved: None };
-    let PreparedIndex { built, is_loaded, .. } =
-        source.prepare(streams, backend, &pool).with_context(|| scene_args.name())?;
+    let PreparedIndex { built, is_loaded, reason, .. } =
+        source.prepare(streams, chosen, &pool).with_context(|| scene_args.name())?;
     let build_time = start.elapsed();
 
     let start = Instant::now();
@@ -84,7 +85,7 @@ pub(crate) fn run(streams: &Streams, args: &Args) -> anyhow::Result<()> {
 
     let summary = SceneSummary::new(scene_args.name(), format, &scene);
     let backend = backend.name;
-    let index = IndexSummary { scene: summary, backend, built: Some(&built), is_loaded, read_time, build_time };
+    let index = IndexSummary { scene: summary, backend, built: Some(&built), is_loaded, reason, read_time, build_time };
     let out = shown(&args.out);
     if args.json {
         let end = json!({

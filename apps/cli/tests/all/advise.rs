@@ -57,6 +57,21 @@ fn an_automatic_backend_gives_the_same_answers() {
         let run = |backend: &str| table(&[&["query", SCENE, "--backend", backend], more].concat());
         assert_eq!(run("auto"), run("brute"));
     }
+    // Without a name the number of queries decides, and the summary says so.
+    let out = path(&folder, "a.csv");
+    let chosen = |arguments: &[&str]| {
+        let report = json(&[&["query", SCENE, "--out", &out, "--json"], arguments].concat());
+        (report["backend"].as_str().unwrap().to_owned(), report["backend_reason"].as_str().map(str::to_owned))
+    };
+    for (count, backend) in [("2000", "aabb"), ("300000", "octree")] {
+        let (found, reason) = chosen(&["--random", count]);
+        assert_eq!(found, backend);
+        assert!(reason.is_some_and(|reason| reason.starts_with("an octree pays from about ")));
+        // It depends on nothing else.
+        assert_eq!(chosen(&["--random", count, "--threads", "1"]), chosen(&["--random", count]));
+    }
+    assert_eq!(chosen(&["--random", "200"]), ("aabb".to_owned(), None));
+    assert_eq!(chosen(&["--random", "200000", "--k-nearest", "2"]), ("aabb".to_owned(), None));
     let out = path(&folder, "f.raw");
     let report = json(&["field", SCENE, "--resolution", "8", "--backend", "auto", "--out", &out, "--json"]);
     assert!(p2m_backends::BackendEntry::find(report["backend"].as_str().unwrap()).is_some(), "{report}");

@@ -297,6 +297,7 @@ fn the_json_summary_agrees_with_the_table() {
             "skipped": [],
         },
         "backend": "aabb",
+        "backend_reason": null,
         "loaded": false,
         "faces": null,
         "directions_reason": null,

@@ -501,7 +501,7 @@ class Index(PointQueries, PairQueries):
     backend : str
         ``"aabb"``, a tree of boxes; ``"kdop"``, a tree of polytopes, for scenes askew to the axes; ``"octree"`` and
         ``"p2m"``, cells with lists, which take longer to build and answer many queries faster; ``"brute"``, no
-        structure. ``"auto"`` is the tree of boxes, or with `queries` the backend that `p2m.advise` recommends.
+        structure. ``"auto"`` is the tree of boxes, or with `queries` the octree or the tree of polytopes where that pays.
         `p2m.backends` returns all names.
     threads : int, optional
         The number of threads for the build and, unless they have their own, for queries. By default it is the
@@ -510,7 +510,8 @@ class Index(PointQueries, PairQueries):
         It is called as ``progress(done, total)`` about 25 times a second during a build that takes longer, or a bar of
         tqdm is shown. Trees report only their end.
     queries : int, optional
-        The number of queries that are expected, for the choice of ``"auto"``.
+        The number of queries that are expected, for the choice of ``"auto"``. It counts the work of a few queries in
+        the box of the scene, so it depends on the scene and this number alone.
     directions : {6, 14, 18, 26, "scene"}, optional
         The number of faces of the polytopes of ``"kdop"``, by default 14; ``"scene"`` for 14 along axes of the scene.
     resolution : float, optional
@@ -564,13 +565,13 @@ class Index(PointQueries, PairQueries):
         made = Scene.of(scene)
         self._threads = None if threads is None else thread_count(threads)
         count = thread_count(threads)
-        if backend == "auto" and queries is not None:
-            backend = advise(made, queries, threads=count)[0].backend
+        if queries is not None:
+            queries = whole(queries, "queries", 0, 2**63 - 1)
         if resolution is not None and not 0.0 < resolution < float("inf"):
             raise ValueError(f"resolution: {resolution} is not positive and finite")
         named = None if directions is None else str(directions)
         with callback(progress, "building", "%") as call:
-            self._raw = _p2m.Index.build(made._raw, backend, count, call, named, resolution)
+            self._raw = _p2m.Index.build(made._raw, backend, count, call, named, resolution, queries)
 
     @classmethod
     def _from_raw(cls, raw: _p2m.Index, threads: int | None) -> Index:

@@ -1,0 +1,197 @@
+//! The choice of `auto`: a tree of boxes, or an octree where its build pays, or a tree of k-DOPs for slivers.
+//!
+//! The tree is built first, since the octree contains it. A few of the queries are searched in the tree, and their
+//! nodes and packets are counted. The octree saves most of that work, so these counts tell what it saves for each
+//! query; its build costs a time for each primitive. If the scene consists of slivers, cells would fall back to the
+//! tree. Where queries filter many packets then, the boxes fit badly: k-DOPs are built as well, and the tree with less
+//! work wins. No time is measured, so the choice depends on the scene, the queries and their number alone, and not on
+//! the machine or its load.
+//!
+//! The constants were fitted to 16 scenes of 20,000 to 870,000 primitives ([decision 068]). Other indexes win rarely
+//! enough in batches that `auto` does not consider them; [`recommend`](crate::recommend) measures all.
+//!
+//! [decision 068]: https://github.com/p2m-rs/p2m/blob/main/docs/decisions/068-auto-counts.md
+
+use crate::advice::{is_mostly_slivers, sample_queries};
+use crate::{BackendEntry, BuildSettings, BuiltIndex, QueryRegion, Workload};
+use nalgebra::Point3;
+use p2m_bvh::{AabbTree, SplitOptions};
+use p2m_core::{BuildError, BuildIndex, IndexStats, PrimitiveSet, Soup, StatsCollector};
+use std::borrow::Cow;
+use std::sync::Arc;
+
+/// Nanoseconds for each node that a query visits, and for each packet that it filters.
+struct Cost {
+    node: f64,
+    packet: f64,
+}
+
+/// The cost of a query in a tree of boxes, and in one of k-DOPs.
+const BOXES: Cost = Cost { node: 34.0, packet: 45.0 };
+const KDOPS: Cost = Cost { node: 55.0, packet: 45.0 };
+/// The part of the cost in a tree of boxes that an octree saves.
+const SAVED_BY_OCTREE: Cost = Cost { node: 10.0, packet: 30.0 };
+/// The nanoseconds for each primitive that an octree takes to build, besides its tree, and a tree of k-DOPs.
+const OCTREE_BUILD: f64 = 4500.0;
+const KDOP_BUILD: f64 = 400.0;
+/// The number of packets per query from which on boxes may fit slivers badly.
+const MANY_PACKETS: f64 = 20.0;
+/// The part of the queries' time that k-DOPs are expected to save then.
+const SAVED_BY_KDOPS: f64 = 0.4;
+/// The number of primitives of the smallest scene for which an octree may pay.
+const MIN_PRIMITIVES: f64 = 512.0;
+/// The numbers of queries that are counted, at most, and at least if any are.
+const MAX_COUNTED: usize = 512;
+const MIN_COUNTED: usize = 8;
+/// The number of queries for each one that is counted.
+const QUERIES_PER_COUNTED: u64 = 200;
+
+/// The index that suits a scene and a workload.
+pub struct Choice {
+    index: Chosen,
+    backend: &'static BackendEntry,
+    reason: Option<Reason>,
+}
+
+/// What was built for the choice.
+enum Chosen {
+    /// The tree, which is the index or becomes a part of it.
+    Tree(Box<AabbTree<f64, Arc<Soup<f64>>>>),
+    /// An index, with its scene.
+    Index(BuiltIndex, Arc<Soup<f64>>),
+}
+
+/// The reason of a choice, if queries were counted.
+enum Reason {
+    /// An octree pays from this number of queries on.
+    OctreeFrom(f64),
+    /// The numbers of packets per query in trees of boxes and of k-DOPs, for slivers.
+    Packets([f64; 2]),
+}
+
+/// The mean work of a query.
+struct Work {
+    nodes: f64,
+    packets: f64,
+}
+
+impl Work {
+    /// Counts the work of some queries.
+    fn of(index: &(impl IndexStats<f64> + ?Sized), queries: &[&Point3<f64>]) -> Self {
+        let visit = |query: &Point3<f64>, stats: &mut StatsCollector<f64>| index.inspect(query, stats);
+        let [nodes, packets, _] = StatsCollector::count_queries(queries.iter().copied(), visit);
+        let count = queries.len().max(1) as f64;
+        Self { nodes: nodes as f64 / count, packets: packets as f64 / count }
+    }
+
+    fn nanoseconds(&self, cost: &Cost) -> f64 {
+        self.nodes * cost.node + self.packets * cost.packet
+    }
+}
+
+impl Choice {
+    /// Builds a tree over a scene, and chooses the index for a workload. Its limit of time has no effect.
+    ///
+    /// ```
+    /// use p2m_backends::{Choice, QueryRegion, Workload};
+    /// use p2m_mixed::generate::{IcoSphere, ico_sphere};
+    /// use std::sync::Arc;
+    ///
+    /// let ball = Arc::new(ico_sphere(&IcoSphere::default()).unwrap());
+    /// let few = Choice::new(Arc::clone(&ball), &Workload::new(1_000, QueryRegion::SceneBox))?;
+    /// let many = Choice::new(ball, &Workload::new(10_000_000, QueryRegion::SceneBox))?;
+    /// assert_eq!((few.backend().name, many.backend().name), ("aabb", "octree"));
+    /// # Ok::<(), p2m_core::BuildError>(())
+    /// ```
+    ///
+    /// # Errors
+    /// [`BuildError`] for a scene with coordinates that are not finite, or with too many primitives.
+    ///
+    /// # Panics
+    /// It does not panic: the registry has all three indexes.
+    ///
+    /// # Complexity
+    /// The build of one tree or two, and searches for one of 200 queries, and for 512 at most.
+    pub fn new(soup: Arc<Soup<f64>>, workload: &Workload<'_>) -> Result<Self, BuildError> {
+        let entry = |name| BackendEntry::find(name).expect("a name of the registry");
+        let (octree, kdop) = (entry("octree"), entry("kdop"));
+        let (primitives, queries) = (soup.len() as f64, workload.queries as f64);
+        let fits = octree.cost.bytes_per_primitive * primitives <= workload.max_bytes as f64;
+        let sample = match workload.region {
+            QueryRegion::Like(points) => Cow::Borrowed(points),
+            region if !soup.is_empty() => Cow::Owned(sample_queries(&soup, &soup, region, MAX_COUNTED)),
+            _ => Cow::Borrowed(&[][..]),
+        };
+        let wanted = usize::try_from(workload.queries / QUERIES_PER_COUNTED).unwrap_or(MAX_COUNTED).min(MAX_COUNTED);
+        let counted: Vec<_> = sample.iter().step_by(sample.len().div_ceil(wanted.max(1)).max(1)).take(wanted).collect();
+        let has_slivers = is_mostly_slivers(&soup);
+        let tree = Box::new(AabbTree::build(Arc::clone(&soup), &SplitOptions::default())?);
+        let boxes = |tree, reason| Self { index: Chosen::Tree(tree), backend: BackendEntry::default_backend(), reason };
+        // A tree of one or two levels leaves nothing to save.
+        if counted.len() < MIN_COUNTED || primitives < MIN_PRIMITIVES {
+            return Ok(boxes(tree, None));
+        }
+        let work = Work::of(&*tree, &counted);
+        if !has_slivers {
+            if !fits {
+                return Ok(boxes(tree, None));
+            }
+            let least = OCTREE_BUILD * primitives / work.nanoseconds(&SAVED_BY_OCTREE);
+            let backend = if queries > least { octree } else { BackendEntry::default_backend() };
+            return Ok(Self { index: Chosen::Tree(tree), backend, reason: Some(Reason::OctreeFrom(least)) });
+        }
+        let saved = queries * work.nanoseconds(&BOXES) * SAVED_BY_KDOPS;
+        if work.packets < MANY_PACKETS || saved < KDOP_BUILD * primitives {
+            return Ok(boxes(tree, None));
+        }
+        let built = kdop.build(Arc::clone(&soup), &BuildSettings::default())?;
+        let kdops = Work::of(&*built.index, &counted);
+        let reason = Some(Reason::Packets([work.packets, kdops.packets]));
+        if kdops.nanoseconds(&KDOPS) < work.nanoseconds(&BOXES) {
+            return Ok(Self { index: Chosen::Index(built, soup), backend: kdop, reason });
+        }
+        Ok(boxes(tree, reason))
+    }
+
+    /// The backend that was chosen.
+    #[must_use]
+    pub fn backend(&self) -> &'static BackendEntry {
+        self.backend
+    }
+
+    /// The reason of the choice as a phrase for people, if there is one.
+    #[must_use]
+    pub fn reason(&self) -> Option<String> {
+        Some(match self.reason.as_ref()? {
+            Reason::OctreeFrom(least) => format!("an octree pays from about {} queries on", rounded(*least)),
+            Reason::Packets([boxes, kdops]) => {
+                format!("slivers: a query filters about {boxes:.0} packets with boxes, and {kdops:.0} with k-DOPs")
+            }
+        })
+    }
+
+    /// Builds the index that was chosen.
+    ///
+    /// # Errors
+    /// Those of [`BackendEntry::build`].
+    pub fn build(self, settings: &BuildSettings<'_>) -> Result<BuiltIndex, BuildError> {
+        match self.index {
+            Chosen::Tree(tree) => self.backend.build_on(*tree, settings),
+            // Other directions were asked for.
+            Chosen::Index(_, soup) if settings.kdop_directions.is_some() => self.backend.build(soup, settings),
+            Chosen::Index(built, _) => Ok(built),
+        }
+    }
+}
+
+/// Returns a number with two digits, as people read it.
+#[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "at least 0 and rounded")]
+fn rounded(number: f64) -> String {
+    let unit = 10f64.powf(number.max(10.0).log10().floor() - 1.0);
+    let number = (number / unit).round() * unit;
+    match number.round() as u64 {
+        small @ ..1000 => small.to_string(),
+        n @ 1000..1_000_000 => format!("{},{:03}", n / 1000, n % 1000),
+        _ => format!("{:.1} million", number / 1e6),
+    }
+}

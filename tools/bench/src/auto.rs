@@ -1,0 +1,100 @@
+//! `p2m-bench auto`: what the choice of `auto` costs, relative to the best index for each job.
+//!
+//! A job is a number of queries near the surface or in the box of a scene. Its time is that of a build and of all
+//! queries in batches, on one thread.
+
+use crate::command::{Rounds, all_good};
+use crate::rounds::thread_seconds;
+use crate::scene::Scene;
+use anyhow::Result;
+use clap::Args;
+use p2m_backends::{BACKENDS, BackendEntry, BuildSettings, Choice, QueryRegion, SearchStructure, Workload};
+use p2m_cli::harness::{MedianRange, Table};
+use p2m_core::QueryOptions;
+use p2m_core::batch::{BatchOptions, ClosestColumns, closest_columns_into};
+use p2m_testkit::queries::QuerySet;
+use std::path::PathBuf;
+use std::sync::Arc;
+
+#[derive(Args)]
+pub(crate) struct Arguments {
+    /// Files of scenes
+    #[arg(required = true)]
+    scenes: Vec<PathBuf>,
+    /// Queries of a batch
+    #[arg(long, default_value_t = 200_000)]
+    queries: usize,
+    #[command(flatten)]
+    rounds: Rounds,
+}
+
+/// The numbers of queries of jobs.
+const JOBS: [u64; 5] = [1_000, 10_000, 100_000, 1_000_000, 10_000_000];
+/// The sets of queries of jobs.
+const SETS: [QuerySet; 2] = [QuerySet::Near, QuerySet::Box1];
+/// A choice is bad if its job takes longer than this factor of the best one.
+const BAD: f64 = 1.15;
+/// The number of times that each choice is made.
+const REPEATS: usize = 20;
+
+/// Measures all jobs. It fails if more than one choice in a hundred is bad, or if one differs when it is made again.
+pub(crate) fn run(arguments: &Arguments) -> Result<bool> {
+    let about = arguments.rounds.describe("Thread CPU time", arguments.queries, "queries");
+    let (mut bad, mut jobs) = (0, 0);
+    all_good(&arguments.scenes, &about, |scene| {
+        bad += print(&scene, arguments)?;
+        jobs += SETS.len() * JOBS.len();
+        Ok(true)
+    })?;
+    println!("\n{bad} of {jobs} choices cost more than {BAD} times the best.");
+    Ok(100 * bad <= jobs)
+}
+
+/// Prints the table of a scene, and returns the number of bad choices.
+fn print(scene: &Scene, arguments: &Arguments) -> Result<usize> {
+    let soup = &scene.double;
+    let backends: Vec<&BackendEntry> =
+        BACKENDS.iter().filter(|backend| backend.structure != SearchStructure::Exhaustive).collect();
+    let (mut builds, mut times) = (vec![vec![]; backends.len()], vec![vec![vec![]; SETS.len()]; backends.len()]);
+    let settings = BuildSettings::default().with_parallel(false);
+    let count = arguments.queries;
+    let queries = SETS.map(|set| set.generate(soup, count, arguments.rounds.seed));
+    for _ in 0..arguments.rounds.rounds {
+        for (i, backend) in backends.iter().enumerate() {
+            let (built, seconds) = thread_seconds(|| backend.build(Arc::clone(soup), &settings));
+            let index = built?.index;
+            builds[i].push(seconds);
+            for (queries, times) in queries.iter().zip(&mut times[i]) {
+                let (mut distance, mut primitive) = (vec![0.0; count], vec![0; count]);
+                let columns = ClosestColumns::default().with_distance(&mut distance).with_primitive(&mut primitive);
+                let batch = BatchOptions::default().with_parallel(false);
+                let options = QueryOptions::default();
+                let answer = || closest_columns_into(&*index, queries, &options, &batch, columns);
+                times.push(thread_seconds(answer).1 / count as f64);
+            }
+        }
+    }
+    let median = |seconds: &[f64]| MedianRange::of(seconds).map_or(f64::NAN, |range| range.median);
+    let total = |i: usize, set: usize, queries: u64| median(&builds[i]) + queries as f64 * median(&times[i][set]);
+    let mut table = Table::new(["set", "queries", "auto", "best", "cost"]);
+    let mut bad = 0;
+    for (set, (kind, queries)) in SETS.iter().zip(&queries).enumerate() {
+        for job in JOBS {
+            let workload = Workload::new(job, QueryRegion::Like(&queries[..count.min(1024)]));
+            let name = Choice::new(Arc::clone(soup), &workload)?.backend().name;
+            for _ in 1..REPEATS {
+                let again = Choice::new(Arc::clone(soup), &workload)?.backend().name;
+                anyhow::ensure!(again == name, "{job} queries: first {name}, then {again}");
+            }
+            let totals: Vec<f64> = (0..backends.len()).map(|i| total(i, set, job)).collect();
+            let best = (0..totals.len()).min_by(|&a, &b| totals[a].total_cmp(&totals[b])).unwrap_or_default();
+            let chosen = backends.iter().position(|backend| backend.name == name).unwrap_or_default();
+            let cost = totals[chosen] / totals[best];
+            bad += usize::from(cost > BAD);
+            let row = [kind.name(), &job.to_string(), name, backends[best].name, &format!("{cost:.2}")];
+            table.push(row.map(str::to_owned).to_vec());
+        }
+    }
+    println!("\n## {}\n\n{table}", scene.describe());
+    Ok(bad)
+}
