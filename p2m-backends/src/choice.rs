@@ -4,10 +4,10 @@
 //! nodes and packets are counted. The octree saves most of that work, so these counts tell what it saves for each
 //! query; its build costs a time for each primitive. If the scene consists of slivers, cells would fall back to the
 //! tree. Where queries filter many packets then, the boxes fit badly: k-DOPs are built as well, and the tree with less
-//! work wins. No time is measured, so the choice depends on the scene, the queries and their number alone, and not on
-//! the machine or its load.
+//! work wins. No time is measured, so the choice depends on the scene, the queries and their number, and not on the load
+//! of the machine; only near a break-even the roundings of instruction sets may differ.
 //!
-//! The constants were fitted to 16 scenes of 20,000 to 870,000 primitives ([decision 068]). Other indexes win rarely
+//! The constants were fitted to 15 scenes of 20,000 to 870,000 primitives ([decision 068]). Other indexes win rarely
 //! enough in batches that `auto` does not consider them; [`recommend`](crate::recommend) measures all.
 //!
 //! [decision 068]: https://github.com/p2m-rs/p2m/blob/main/docs/decisions/068-auto-counts.md
@@ -16,7 +16,7 @@ use crate::advice::{is_mostly_slivers, sample_queries};
 use crate::{BackendEntry, BuildSettings, BuiltIndex, QueryRegion, Workload};
 use nalgebra::Point3;
 use p2m_bvh::{AabbTree, SplitOptions};
-use p2m_core::{BuildError, BuildIndex, IndexStats, PrimitiveSet, Soup, StatsCollector};
+use p2m_core::{Best, BuildError, BuildIndex, IndexStats, PrimitiveSet, QueryOptions, Soup, StatsCollector};
 use std::borrow::Cow;
 use std::sync::Arc;
 
@@ -40,11 +40,13 @@ const MANY_PACKETS: f64 = 20.0;
 const SAVED_BY_KDOPS: f64 = 0.4;
 /// The number of primitives of the smallest scene for which an octree may pay.
 const MIN_PRIMITIVES: f64 = 512.0;
-/// The numbers of queries that are counted, at most, and at least if any are.
+/// At most, and at least, this many queries are counted; with fewer, none are.
 const MAX_COUNTED: usize = 512;
 const MIN_COUNTED: usize = 8;
-/// The number of queries for each one that is counted.
+/// One of so many queries is counted.
 const QUERIES_PER_COUNTED: u64 = 200;
+/// The size of the space in which an octree has cells, in boxes of the scene around its centre.
+const OCTREE_BOXES: f64 = 10.0;
 
 /// The index that suits a scene and a workload.
 pub struct Choice {
@@ -77,9 +79,14 @@ struct Work {
 
 impl Work {
     /// Counts the work of some queries.
-    fn of(index: &(impl IndexStats<f64> + ?Sized), queries: &[&Point3<f64>]) -> Self {
-        let visit = |query: &Point3<f64>, stats: &mut StatsCollector<f64>| index.inspect(query, stats);
-        let [nodes, packets, _] = StatsCollector::count_queries(queries.iter().copied(), visit);
+    fn of(index: &(impl IndexStats<f64> + ?Sized), queries: &[&Point3<f64>], max_distance: f64) -> Self {
+        let options = QueryOptions::default().with_max_distance(max_distance);
+        let (mut nodes, mut packets) = (0, 0);
+        for query in queries {
+            let mut stats = StatsCollector::new(Best::new(&options));
+            index.inspect(query, &mut stats);
+            (nodes, packets) = (nodes + stats.nodes, packets + stats.packets);
+        }
         let count = queries.len().max(1) as f64;
         Self { nodes: nodes as f64 / count, packets: packets as f64 / count }
     }
@@ -123,7 +130,11 @@ impl Choice {
             _ => Cow::Borrowed(&[][..]),
         };
         let wanted = usize::try_from(workload.queries / QUERIES_PER_COUNTED).unwrap_or(MAX_COUNTED).min(MAX_COUNTED);
-        let counted: Vec<_> = sample.iter().step_by(sample.len().div_ceil(wanted.max(1)).max(1)).take(wanted).collect();
+        let step = sample.len().div_ceil(wanted.max(1)).max(1);
+        let chosen = sample.iter().step_by(step).take(wanted);
+        // A query that is not finite has no answer and takes no time.
+        let counted: Vec<_> = chosen.clone().filter(|query| query.iter().all(|x| x.is_finite())).collect();
+        let queries = queries * counted.len() as f64 / chosen.count().max(1) as f64;
         let has_slivers = is_mostly_slivers(&soup);
         let tree = Box::new(AabbTree::build(Arc::clone(&soup), &SplitOptions::default())?);
         let boxes = |tree, reason| Self { index: Chosen::Tree(tree), backend: BackendEntry::default_backend(), reason };
@@ -131,12 +142,19 @@ impl Choice {
         if counted.len() < MIN_COUNTED || primitives < MIN_PRIMITIVES {
             return Ok(boxes(tree, None));
         }
-        let work = Work::of(&*tree, &counted);
+        let work = Work::of(&*tree, &counted, workload.max_distance);
         if !has_slivers {
             if !fits {
                 return Ok(boxes(tree, None));
             }
-            let least = OCTREE_BUILD * primitives / work.nanoseconds(&SAVED_BY_OCTREE);
+            // Farther away the tree in the octree answers.
+            let bounds = soup.aabb();
+            let (centre, half) =
+                (nalgebra::center(&bounds.min, &bounds.max), (bounds.max - bounds.min) * (OCTREE_BOXES / 2.0));
+            let reach = half.x.max(half.y).max(half.z);
+            let near = counted.iter().filter(|query| (**query - centre).amax() <= reach).count();
+            let saved = work.nanoseconds(&SAVED_BY_OCTREE) * near as f64 / counted.len() as f64;
+            let least = OCTREE_BUILD * primitives / saved;
             let backend = if queries > least { octree } else { BackendEntry::default_backend() };
             return Ok(Self { index: Chosen::Tree(tree), backend, reason: Some(Reason::OctreeFrom(least)) });
         }
@@ -145,7 +163,7 @@ impl Choice {
             return Ok(boxes(tree, None));
         }
         let built = kdop.build(Arc::clone(&soup), &BuildSettings::default())?;
-        let kdops = Work::of(&*built.index, &counted);
+        let kdops = Work::of(&*built.index, &counted, workload.max_distance);
         let reason = Some(Reason::Packets([work.packets, kdops.packets]));
         if kdops.nanoseconds(&KDOPS) < work.nanoseconds(&BOXES) {
             return Ok(Self { index: Chosen::Index(built, soup), backend: kdop, reason });
@@ -187,6 +205,9 @@ impl Choice {
 /// Returns a number with two digits, as people read it.
 #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "at least 0 and rounded")]
 fn rounded(number: f64) -> String {
+    if number.is_infinite() {
+        return "infinitely many".to_owned();
+    }
     let unit = 10f64.powf(number.max(10.0).log10().floor() - 1.0);
     let number = (number / unit).round() * unit;
     match number.round() as u64 {

@@ -16,7 +16,7 @@
 //! # Ok::<(), p2m_core::BuildError>(())
 //! ```
 //!
-//! [`Choice`] chooses between a tree and an octree by the work of some queries. [`recommend`] builds and times the
+//! [`Choice`] chooses between trees and an octree by the work of some queries. [`recommend`] builds and times the
 //! backends over a sample of a scene, and recommends one of them.
 #![forbid(unsafe_code)]
 

@@ -261,6 +261,20 @@ fn the_choice_of_auto_follows_from_scene_and_queries() {
     // Points like those of the scene are near the surface.
     let workload = Workload::new(10_000_000, QueryRegion::Like(ball.positions()));
     assert_eq!(Choice::new(Arc::clone(&ball), &workload).expect("valid scene").backend().name, "octree");
+    // Points that are not finite, and those beyond the cells of an octree, are no reason for one.
+    let far = |scale: f64| -> Vec<Point3<f64>> { ball.positions().iter().map(|p| p * scale).collect() };
+    for points in
+        [vec![Point3::new(f64::NAN, 0.0, 0.0); 600], far(1e3), vec![Point3::new(f64::INFINITY, 0.0, 0.0); 600]]
+    {
+        let workload = Workload::new(10_000_000, QueryRegion::Like(&points));
+        assert_eq!(Choice::new(Arc::clone(&ball), &workload).expect("valid scene").backend().name, "aabb");
+    }
+    // Within a small distance the tree has little work.
+    let box_of = |radius| {
+        let workload = Workload::new(60_000, QueryRegion::SceneBox).with_max_distance(radius);
+        Choice::new(Arc::clone(&ball), &workload).expect("valid scene").backend().name
+    };
+    assert_eq!((box_of(f64::INFINITY), box_of(1e-9)), ("octree", "aabb"));
     // A limit of memory excludes the octree, and scenes without primitives have no queries to count.
     let workload = Workload::new(10_000_000, QueryRegion::SceneBox).with_max_bytes(1000);
     assert_eq!(Choice::new(ball, &workload).expect("valid scene").backend().name, "aabb");

@@ -203,6 +203,9 @@ impl Index {
             ("directions", directions.is_some(), entry.has_kdop_directions),
             ("resolution", resolution.is_some(), entry.has_resolution),
         ] {
+            if is_given && is_chosen {
+                return Err(PyValueError::new_err(format!("{option}: name the backend that has it, not 'auto'")));
+            }
             if is_given && !is_used {
                 return Err(PyValueError::new_err(format!("{option}: the backend '{entry}' has none")));
             }

@@ -206,6 +206,8 @@ def test_advice_and_information(ball: p2m.Scene) -> None:
     assert [p2m.Index(fine, queries=count).backend for count in (1, 10_000, 10_000_000)] == ["aabb", "aabb", "octree"]
     with pytest.raises(ValueError, match="queries: -1 is not from 0"):
         p2m.Index(fine, queries=-1)
+    with pytest.raises(ValueError, match="resolution: name the backend that has it, not 'auto'"):
+        p2m.Index(fine, queries=10_000_000, resolution=1.0)
     for backend in BACKENDS:
         info = p2m.Index(ball, backend).info
         assert info["backend"] == backend and info["primitives"] == len(ball)

@@ -6,6 +6,7 @@ use crate::index::p2m_args::P2mArgs;
 use crate::io::input::SceneArgs;
 use crate::io::streams::Streams;
 use crate::io::threads::ThreadArgs;
+use anyhow::Context;
 use p2m_backends::{KdopDirections, P2mSettings, QueryRegion, Workload};
 use p2m_core::Soup;
 use p2m_core::storage::Reader;
@@ -40,7 +41,7 @@ impl IndexArgs {
     /// backend is known before any work.
     pub(crate) fn check(&self) -> anyhow::Result<()> {
         let (may_have_kdops, may_have_p2m_settings) = match self.backend {
-            Some(BackendChoice::Auto) => (true, true),
+            Some(BackendChoice::Auto) => (true, false),
             Some(BackendChoice::Named(backend)) => (backend.has_kdop_directions, backend.has_p2m_settings),
             None => (false, false),
         };
@@ -90,7 +91,8 @@ impl IndexArgs {
         pool: &ThreadPool,
     ) -> anyhow::Result<(Chosen, Option<KdopDirections>, P2mSettings)> {
         let workload = Workload::new(queries, QueryRegion::SceneBox);
-        self.with_options(BackendChoice::resolve(self.backend, saved, soup, &workload, streams, pool)?)
+        let chosen = BackendChoice::resolve(self.backend, saved, soup, &workload, streams, pool);
+        self.with_options(chosen.with_context(|| self.scene.name())?)
     }
 
     fn with_options(&self, chosen: Chosen) -> anyhow::Result<(Chosen, Option<KdopDirections>, P2mSettings)> {

@@ -37,7 +37,7 @@ pub(crate) fn backends(fits: fn(&BackendEntry) -> bool) -> impl TypedValueParser
 /// A parser of the names of all backends and of `auto`.
 pub(crate) fn backend_choices() -> impl TypedValueParser<Value = BackendChoice> {
     let auto = PossibleValue::new(AUTO)
-        .help("aabb, octree or kdop, by the work of these queries, or of ten million in the box of the scene");
+        .help("aabb, octree or kdop, by the work of the queries; else of ten million in the box of the scene");
     let values = BACKENDS.iter().map(possible_value).chain([auto]);
     PossibleValuesParser::new(values)
         .map(|name| if name == AUTO { BackendChoice::Auto } else { BackendChoice::Named(named(&name)) })
@@ -88,8 +88,8 @@ impl Chosen {
 }
 
 impl BackendChoice {
-    /// Returns the named backend or, without a name, that of the file. With `auto`, and without both, the work of queries
-    /// decides, and the summary says how.
+    /// Returns the named backend, or else that of the saved index, or else the one that the work of the queries calls
+    /// for.
     pub(crate) fn resolve(
         choice: Option<Self>,
         saved: Option<&Reader>,
@@ -99,8 +99,8 @@ impl BackendChoice {
         pool: &ThreadPool,
     ) -> anyhow::Result<Chosen> {
         match (choice, saved.and_then(BackendEntry::from_saved)) {
-            (Some(Self::Named(backend)), _) | (None, Some(backend)) => return Ok(backend.into()),
-            _ => {}
+            (Some(Self::Named(backend)), _) | (None | Some(Self::Auto), Some(backend)) => return Ok(backend.into()),
+            (None | Some(Self::Auto), None) => {}
         }
         let progress = Progress::start(streams, "building a tree", None, Unit::None);
         let chosen = pool.install(|| Choice::new(Arc::clone(soup), workload))?;

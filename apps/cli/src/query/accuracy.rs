@@ -41,6 +41,11 @@ impl Accuracy {
         self.certified
     }
 
+    /// Returns whether answers are exact and not certified, as those of batches are.
+    pub(crate) fn is_default(&self) -> bool {
+        !self.certified && self.epsilon.is_none() && self.max_visits.is_none()
+    }
+
     /// Answers queries, certified or not, on all threads of the current pool.
     pub(crate) fn answer<I: ClosestPoint<f64> + CertifiedQuery<f64> + Sync + ?Sized>(
         &self,

@@ -119,6 +119,8 @@ pub(crate) fn run(streams: &Streams, args: &Args) -> anyhow::Result<()> {
         let (chosen, kdop_directions, p2m) = match lists {
             // With lists the index decides signs alone.
             Some(_) => (saved_or_default(saved.as_ref()).into(), None, P2mSettings::default()),
+            // Cells are cut by single queries.
+            None if args.refine.is_some() => args.index_args.choice(saved.as_ref(), soup, streams, &pool)?,
             None => args.index_args.choice_for(grid.len() as u64, saved.as_ref(), soup, streams, &pool)?,
         };
         let source = SceneSource { soup, kdop_directions, p2m, saved: saved.as_ref() };

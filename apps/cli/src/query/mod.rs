@@ -69,12 +69,13 @@ pub(crate) fn run(streams: &Streams, args: &Args) -> anyhow::Result<()> {
             .finish(&source);
     }
     let saved = saved.as_ref();
-    let is_counted = !args.has_many_answers() && !args.accuracy.is_certified();
+    let is_counted = !args.has_many_answers() && !args.has_only_inside() && args.accuracy.is_default();
     let chosen = match args.backend {
-        // The choice is about queries for the closest point in f64.
+        // Only exact queries for one closest point are counted; others keep the tree.
         None if !is_counted => saved_or_default(saved).into(),
         backend => {
-            let workload = Workload::new(queries.len(), QueryRegion::Like(&sample));
+            let workload = Workload::new(queries.len(), QueryRegion::Like(&sample))
+                .with_max_distance(args.max_distance.unwrap_or(f64::INFINITY));
             let chosen = BackendChoice::resolve(backend, saved, &scene.soup, &workload, streams, &pool);
             chosen.with_context(|| scene_args.name())?
         }

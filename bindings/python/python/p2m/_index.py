@@ -501,8 +501,8 @@ class Index(PointQueries, PairQueries):
     backend : str
         ``"aabb"``, a tree of boxes; ``"kdop"``, a tree of polytopes, for scenes askew to the axes; ``"octree"`` and
         ``"p2m"``, cells with lists, which take longer to build and answer many queries faster; ``"brute"``, no
-        structure. ``"auto"`` is the tree of boxes, or with `queries` the octree or the tree of polytopes where that pays.
-        `p2m.backends` returns all names.
+        structure. ``"auto"`` is the tree of boxes, or with `queries` the octree or the tree of polytopes where that
+        pays. `p2m.backends` returns all names.
     threads : int, optional
         The number of threads for the build and, unless they have their own, for queries. By default it is the
         environment variable ``RAYON_NUM_THREADS``, or else the number of processors that this process may use.
@@ -510,8 +510,9 @@ class Index(PointQueries, PairQueries):
         It is called as ``progress(done, total)`` about 25 times a second during a build that takes longer, or a bar of
         tqdm is shown. Trees report only their end.
     queries : int, optional
-        The number of queries that are expected, for the choice of ``"auto"``. It counts the work of a few queries in
-        the box of the scene, so it depends on the scene and this number alone.
+        The number of queries that are expected, for the choice of ``"auto"``. The choice counts the work of a few
+        queries in the box of the scene, so it depends on the scene and this number. An octree casts no rays, and has
+        neither pairs nor `refit`.
     directions : {6, 14, 18, 26, "scene"}, optional
         The number of faces of the polytopes of ``"kdop"``, by default 14; ``"scene"`` for 14 along axes of the scene.
     resolution : float, optional
