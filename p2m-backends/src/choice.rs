@@ -40,8 +40,9 @@ const MANY_PACKETS: f64 = 20.0;
 const SAVED_BY_KDOPS: f64 = 0.4;
 /// The number of primitives of the smallest scene for which an octree may pay.
 const MIN_PRIMITIVES: f64 = 512.0;
-/// At most, and at least, this many queries are counted; with fewer, none are.
+/// The largest number of queries that are counted.
 const MAX_COUNTED: usize = 512;
+/// The smallest number of queries that are counted. If there would be fewer, none are.
 const MIN_COUNTED: usize = 8;
 /// One of so many queries is counted.
 const QUERIES_PER_COUNTED: u64 = 200;
@@ -55,7 +56,7 @@ pub struct Choice {
     reason: Option<Reason>,
 }
 
-/// What was built for the choice.
+/// What a choice has built.
 enum Chosen {
     /// The tree, which is the index or becomes a part of it.
     Tree(Box<AabbTree<f64, Arc<Soup<f64>>>>),
@@ -81,12 +82,11 @@ impl Work {
     /// Counts the work of some queries.
     fn of(index: &(impl IndexStats<f64> + ?Sized), queries: &[&Point3<f64>], max_distance: f64) -> Self {
         let options = QueryOptions::default().with_max_distance(max_distance);
-        let (mut nodes, mut packets) = (0, 0);
-        for query in queries {
-            let mut stats = StatsCollector::new(Best::new(&options));
-            index.inspect(query, &mut stats);
-            (nodes, packets) = (nodes + stats.nodes, packets + stats.packets);
-        }
+        let visit = |query: &Point3<f64>, stats: &mut StatsCollector<f64>| {
+            stats.best = Best::new(&options);
+            index.inspect(query, stats);
+        };
+        let [nodes, packets, _] = StatsCollector::count_queries(queries.iter().copied(), visit);
         let count = queries.len().max(1) as f64;
         Self { nodes: nodes as f64 / count, packets: packets as f64 / count }
     }
@@ -118,33 +118,32 @@ impl Choice {
     /// It does not panic: the registry has all three indexes.
     ///
     /// # Complexity
-    /// The build of one tree or two, and searches for one of 200 queries, and for 512 at most.
+    /// It builds one tree or two, and searches for one of 200 queries, up to 512 of them.
     pub fn new(soup: Arc<Soup<f64>>, workload: &Workload<'_>) -> Result<Self, BuildError> {
         let entry = |name| BackendEntry::find(name).expect("a name of the registry");
         let (octree, kdop) = (entry("octree"), entry("kdop"));
-        let (primitives, queries) = (soup.len() as f64, workload.queries as f64);
-        let fits = octree.cost.bytes_per_primitive * primitives <= workload.max_bytes as f64;
-        let sample = match workload.region {
-            QueryRegion::Like(points) => Cow::Borrowed(points),
-            region if !soup.is_empty() => Cow::Owned(sample_queries(&soup, &soup, region, MAX_COUNTED)),
-            _ => Cow::Borrowed(&[][..]),
-        };
-        let wanted = usize::try_from(workload.queries / QUERIES_PER_COUNTED).unwrap_or(MAX_COUNTED).min(MAX_COUNTED);
-        let step = sample.len().div_ceil(wanted.max(1)).max(1);
-        let chosen = sample.iter().step_by(step).take(wanted);
-        // A query that is not finite has no answer and takes no time.
-        let counted: Vec<_> = chosen.clone().filter(|query| query.iter().all(|x| x.is_finite())).collect();
-        let queries = queries * counted.len() as f64 / chosen.count().max(1) as f64;
-        let has_slivers = is_mostly_slivers(&soup);
+        let primitives = soup.len() as f64;
         let tree = Box::new(AabbTree::build(Arc::clone(&soup), &SplitOptions::default())?);
         let boxes = |tree, reason| Self { index: Chosen::Tree(tree), backend: BackendEntry::default_backend(), reason };
+        let wanted = usize::try_from(workload.queries / QUERIES_PER_COUNTED).unwrap_or(MAX_COUNTED).min(MAX_COUNTED);
         // A tree of one or two levels leaves nothing to save.
-        if counted.len() < MIN_COUNTED || primitives < MIN_PRIMITIVES {
+        if wanted < MIN_COUNTED || primitives < MIN_PRIMITIVES {
             return Ok(boxes(tree, None));
         }
+        let sample = match workload.region {
+            QueryRegion::Like(points) => Cow::Borrowed(points),
+            region => Cow::Owned(sample_queries(&soup, &soup, region, MAX_COUNTED)),
+        };
+        let chosen = sample.iter().step_by(sample.len().div_ceil(wanted).max(1)).take(wanted);
+        // A query that is not finite has no answer and takes no time.
+        let counted: Vec<_> = chosen.clone().filter(|query| query.iter().all(|x| x.is_finite())).collect();
+        if counted.len() < MIN_COUNTED {
+            return Ok(boxes(tree, None));
+        }
+        let queries = workload.queries as f64 * counted.len() as f64 / chosen.count() as f64;
         let work = Work::of(&*tree, &counted, workload.max_distance);
-        if !has_slivers {
-            if !fits {
+        if !is_mostly_slivers(&soup) {
+            if octree.cost.bytes_per_primitive * primitives > workload.max_bytes as f64 {
                 return Ok(boxes(tree, None));
             }
             // Farther away the tree in the octree answers.

@@ -51,7 +51,10 @@ impl<C: Card> Engine<C> {
         let blocks = [card.upload(parts[0])?, card.upload(parts[1])?, card.upload(parts[2])?, card.upload(parts[3])?];
         let [nodes, plates, primitives, vertices] = [0, 1, 2, 3].map(|i: usize| card.address(&blocks[i]));
         // Lists take twice their memory while they are made, and their scene and batches need some as well.
-        let memory = memory.unwrap_or(default_memory(count).min(card.free_memory()? / 4));
+        let memory = match memory {
+            Some(memory) => memory,
+            None => default_memory(count).min(card.free_memory()? / 4),
+        };
         let plan = ListPlan { half_extent: scene.half_extent, primitives: count, reach, memory };
         let lists = lists::make(&card, Source { nodes, plates }, &plan)?;
         let mut index = Index {

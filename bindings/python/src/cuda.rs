@@ -1,16 +1,17 @@
 //! Indexes on an NVIDIA card.
 
-use crate::arrays::{Coordinates, with_positions};
+use crate::arrays::triples;
 use crate::columns::ClosestArrays;
 use crate::errors::value_error;
 use crate::index::Index;
 use crate::parts::check_finite;
 use crate::threads::pool;
 use crate::work::{catch, run_owned};
+use numpy::PyReadonlyArray1;
 use p2m_bvh::AabbTree;
 use p2m_core::Soup;
 use p2m_cuda::{BatchReport, CardColumns, CardQueries, CudaError, CudaOptions};
-use pyo3::exceptions::{PyMemoryError, PyRuntimeError, PyTypeError};
+use pyo3::exceptions::{PyMemoryError, PyRuntimeError};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 use std::sync::Arc;
@@ -67,23 +68,20 @@ impl CudaIndex {
     fn closest(
         &self,
         py: Python<'_>,
-        points: Coordinates<'_>,
+        points: PyReadonlyArray1<'_, f64>,
         out: &Bound<'_, PyDict>,
         max_distance: f64,
     ) -> PyResult<Report> {
-        let Coordinates::F64(_) = points else { return Err(PyTypeError::new_err("points: not of float64")) };
+        let points = triples(points.as_slice())?;
         let mut arrays = ClosestArrays::borrow(out)?;
-        with_positions!(points, points => {
-            let columns = arrays.columns(points.len())?;
-            self.run(py, || {
-                check_finite("points", points, 1)?;
-                let mut result = Ok(BatchReport::default());
-                columns.fill(|mut columns| {
-                    let points = bytemuck::cast_slice(points);
-                    result = self.index.closest_columns_into(points, max_distance, &mut columns);
-                });
-                reported(result)
-            })
+        let columns = arrays.columns(points.len())?;
+        self.run(py, || {
+            check_finite("points", points, 1)?;
+            let mut result = Ok(BatchReport::default());
+            columns.fill(|mut columns| {
+                result = self.index.closest_columns_into(bytemuck::cast_slice(points), max_distance, &mut columns);
+            });
+            reported(result)
         })
     }
 

@@ -88,8 +88,8 @@ impl Chosen {
 }
 
 impl BackendChoice {
-    /// Returns the named backend, or else that of the saved index, or else the one that the work of the queries calls
-    /// for.
+    /// Returns the named backend. Without a name it is that of the saved index, and without both the work of the queries
+    /// decides.
     pub(crate) fn resolve(
         choice: Option<Self>,
         saved: Option<&Reader>,

@@ -16,15 +16,8 @@ from ._records import ClosestPoints
 if TYPE_CHECKING:
     from ._index import Index
 
-# The fields in the order of the columns of the native part, with their types on the card.
-_CARD_TYPES = {
-    "distance": "float64",
-    "lower_bound": "float64",
-    "point": "float64",
-    "barycentric": "float64",
-    "primitive": "int32",
-    "feature": "uint8",
-}
+# The fields in the order of the columns of the native part.
+_CARD_FIELDS = ("distance", "lower_bound", "point", "barycentric", "primitive", "feature")
 
 
 class CudaIndex:
@@ -122,7 +115,7 @@ class CudaIndex:
         library = _library(points)
         if library is None:
             queries = coordinates(points, "points").astype(np.float64, copy=False)
-            arrays = outputs(fields, queries.shape[:-1], None, {name: FIELDS[name] for name in _CARD_TYPES}, ())
+            arrays = outputs(fields, queries.shape[:-1], None, {name: FIELDS[name] for name in _CARD_FIELDS}, ())
             self._report(self._raw.closest(queries.reshape(-1), flat(arrays), largest))
             return ClosestPoints(arrays)
         queries = library.array(points, self._ordinal)
@@ -133,13 +126,14 @@ class CudaIndex:
             raise ValueError(f"points: the shape is {shape}, but the last axis has x, y and z")
         if not library.is_contiguous(queries):
             raise ValueError("points: the array is not contiguous")
-        unknown = [name for name in fields if name not in _CARD_TYPES]
+        unknown = [name for name in fields if name not in _CARD_FIELDS]
         if unknown or not fields:
-            raise ValueError(f"fields: {unknown} are none of {', '.join(_CARD_TYPES)}")
+            raise ValueError(f"fields: {unknown} are none of {', '.join(_CARD_FIELDS)}")
         found = {}
         for name in fields:
-            found[name] = library.empty(shape[:-1] + FIELDS[name][1], _CARD_TYPES[name], queries)
-        columns = [library.address(found[name]) if name in found else 0 for name in _CARD_TYPES]
+            dtype, tail = FIELDS[name]
+            found[name] = library.empty(shape[:-1] + tail, "int32" if name == "primitive" else dtype.name, queries)
+        columns = [library.address(found[name]) if name in found else 0 for name in _CARD_FIELDS]
         count = math.prod(shape[:-1])
         self._report((0, 0, 0.0))
         if count > 0:
