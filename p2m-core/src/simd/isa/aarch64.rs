@@ -26,7 +26,7 @@ pub(super) struct EightDoubles([float64x2_t; 4]);
 #[derive(Clone, Copy)]
 pub(super) struct EightMasks([uint64x2_t; 4]);
 
-/// NEON.
+/// The instruction set NEON.
 pub(super) struct Neon;
 
 impl InstructionSet for Neon {
