@@ -152,7 +152,8 @@ fn of_scene<T: Real>(
                 index.save(&mut writer);
                 let mut bytes = Vec::new();
                 writer.write(&mut bytes).expect("memory");
-                let bytes = exchange(&format!("{}-{scalar}.p2m", $name), bytes);
+                // The coordinates of the smallest scene are whole numbers, so its files are the same in both scalars.
+                let bytes = exchange(concat!($name, ".p2m"), bytes);
                 let file = SavedFile::read(&bytes[..]).expect("a saved index");
                 let loaded = <$index>::load(soup, file.checked().expect("undamaged")).expect("of this scene");
                 for (index, origin) in [(index, "built"), (loaded, "loaded")] {

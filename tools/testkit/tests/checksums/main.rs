@@ -16,9 +16,17 @@ use p2m::core::Isa;
 use p2m_testkit::compiled;
 use std::fmt::Write;
 
-/// The file with the checksums, which is compiled in for machines without files.
+/// The file with the checksums, which is compiled in for machines without files, as the saved indexes are.
 const FILE: &str = include_str!("checksums.txt");
-/// The folder of that file, and of the saved indexes.
+/// The names and the bytes of saved indexes of the smallest scene.
+const SAVED: [(&str, &[u8]); 5] = [
+    ("aabb.p2m", include_bytes!("aabb.p2m")),
+    ("kdop-6.p2m", include_bytes!("kdop-6.p2m")),
+    ("kdop-14.p2m", include_bytes!("kdop-14.p2m")),
+    ("octree.p2m", include_bytes!("octree.p2m")),
+    ("p2m.p2m", include_bytes!("p2m.p2m")),
+];
+/// The folder of these files.
 #[cfg(not(target_family = "wasm"))]
 const FOLDER: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/tests/checksums");
 
@@ -86,21 +94,30 @@ fn table(exchange: impl FnMut(&str, Vec<u8>) -> Vec<u8>) -> Table {
     table
 }
 
+/// Computes all checksums, with the saved indexes that lie beside the file, and compares them with the file.
+fn compared_table() -> Table {
+    let mut table = table(|name, _| {
+        let saved = SAVED.iter().find(|(saved, _)| *saved == name);
+        saved.expect("each type of index has a file").1.to_vec()
+    });
+    table.compare();
+    table
+}
+
 #[cfg(not(target_family = "wasm"))]
 fn main() -> std::process::ExitCode {
-    let path = |name: &str| format!("{FOLDER}/{name}");
-    let is_renewed = std::env::var_os("P2M_BLESS").is_some();
-    let mut table = table(|name, bytes| {
-        if is_renewed {
-            std::fs::write(path(name), bytes).expect("a folder to write to");
-        }
-        std::fs::read(path(name)).expect("a file that P2M_BLESS=1 makes")
-    });
-    if is_renewed {
-        std::fs::write(path("checksums.txt"), table.text()).expect("a folder to write to");
+    if std::env::var_os("P2M_BLESS").is_some() {
+        let write = |name: &str, bytes: &[u8]| {
+            std::fs::write(format!("{FOLDER}/{name}"), bytes).expect("a folder to write to");
+        };
+        let table = table(|name, bytes| {
+            write(name, &bytes);
+            bytes
+        });
+        write("checksums.txt", table.text().as_bytes());
         return std::process::ExitCode::SUCCESS;
     }
-    table.compare();
+    let table = compared_table();
     println!("{}", table.report());
     u8::from(!table.faults.is_empty()).into()
 }
@@ -114,9 +131,7 @@ mod module {
 
     fn report() -> &'static (usize, String) {
         REPORT.get_or_init(|| {
-            // A module has no files, so it loads what it has saved.
-            let mut table = super::table(|_, bytes| bytes);
-            table.compare();
+            let table = super::compared_table();
             (table.faults.len(), table.report())
         })
     }
