@@ -95,6 +95,14 @@ impl Isa {
         }
     }
 
+    /// Returns whether the kernel is faster in lanes of eight f64 than for one primitive at a time. It is not where a
+    /// register has two f64: instructions for lanes that are not needed then outweigh those that are saved.
+    #[doc(hidden)]
+    #[must_use]
+    pub fn has_fast_doubles(self) -> bool {
+        matches!(self.name(), "avx2" | "avx512")
+    }
+
     /// Runs a kernel with this instruction set.
     #[inline(always)]
     pub fn run<K: SimdKernel>(self, kernel: K) -> K::Output {
