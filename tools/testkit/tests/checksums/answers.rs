@@ -122,7 +122,7 @@ pub(crate) fn of_scenes(table: &mut Table, mut exchange: impl FnMut(&str, Vec<u8
     }
 }
 
-/// A question for an index of one type.
+/// A table, and the scene and the queries of the questions that add to it.
 struct Asked<'a, T: Real> {
     table: &'a mut Table,
     case: &'a Case,
@@ -156,8 +156,10 @@ fn of_scene<T: Real>(
                 let bytes = exchange(concat!($name, ".p2m"), bytes);
                 let file = SavedFile::read(&bytes[..]).expect("a saved index");
                 let loaded = <$index>::load(soup, file.checked().expect("undamaged")).expect("of this scene");
-                for (index, origin) in [(index, "built"), (loaded, "loaded")] {
-                    for isa in Isa::available() {
+                for (index, origin, sets) in
+                    [(index, "built", Isa::available()), (loaded, "loaded", vec![Isa::best()])]
+                {
+                    for isa in sets {
                         let by = format!("{} ({origin}, {isa})", $name);
                         let index = index.clone().with_isa(isa);
                         asked.points(&index, &by);
