@@ -36,8 +36,8 @@ const COMMANDS: [&[&str]; 4] = [
     &["ray", "scenes/knot_and_cables.obj", "--random", "1000", "--quiet"],
 ];
 
-/// Runs the tests of lanes and the checksums of answers; with `--all` the unit tests of the search, the agreement of
-/// all backends, and the program too. With `--instructions` it counts instructions instead.
+/// Runs the tests of lanes; with `--all` the unit tests of the search, the agreement of all backends, the program, and
+/// the checksums of answers. With `--instructions` it counts instructions instead.
 pub(crate) fn run(arguments: &[String]) -> Outcome {
     let arguments: Vec<&str> = arguments.iter().map(String::as_str).collect();
     if !matches!(arguments[..], [] | ["--all" | "--instructions"]) {
@@ -58,10 +58,9 @@ pub(crate) fn run(arguments: &[String]) -> Outcome {
         start(tools.cargo(&["test", "--locked"]).args(crates).arg("--lib"))?;
         start(tools.cargo(&["test", "--locked", "--package", "p2m", "--test", "all", "--"]).args(AGREEMENT))?;
         compare_programs(&tools)?;
-    } else {
-        start(&mut tools.cargo(&["test", "--locked", "--package", "p2m-core", "--lib", "simd::"]))?;
+        return start(&mut tools.cargo(&["test", "--locked", "--package", "p2m-testkit", "--test", "checksums"]));
     }
-    start(&mut tools.cargo(&["test", "--locked", "--package", "p2m-testkit", "--test", "checksums"]))
+    start(&mut tools.cargo(&["test", "--locked", "--package", "p2m-core", "--lib", "simd::"]))
 }
 
 /// Runs commands of the program for ARM, and compares their output with that of the program for this machine.

@@ -89,7 +89,7 @@ const TASKS: [Task; 20] = [
     Task {
         name: "arm",
         arguments: "[--all | --instructions]",
-        about: "Run tests for ARM under qemu, where both can be found or downloaded: a few, or all that concern answers",
+        about: "Run tests for ARM under qemu, where both can be found or downloaded: of lanes, or all that concern answers",
         run: arm::run,
     },
     Task {
