@@ -14,10 +14,12 @@
 //! profile `test`, which optimises the libraries in which the counted code is compiled, and not this program.
 
 mod callgrind;
+mod marks;
 mod table;
 mod tasks;
 
 use callgrind::{MEASURE, count_instructions, find_obstacle, run_everything};
+use marks::{MARK, run_between_marks};
 use p2m::core::Isa;
 use p2m_testkit::compiled;
 use std::env;
@@ -30,6 +32,10 @@ fn main() -> ExitCode {
     let arguments: Vec<String> = env::args().skip(1).collect();
     if let Some(folder) = arguments.iter().find_map(|argument| argument.strip_prefix(MEASURE)) {
         run_everything(Path::new(folder));
+        return ExitCode::SUCCESS;
+    }
+    if arguments.iter().any(|argument| argument == MARK) {
+        run_between_marks();
         return ExitCode::SUCCESS;
     }
     if is_selected(&arguments) { check_table() } else { ExitCode::SUCCESS }

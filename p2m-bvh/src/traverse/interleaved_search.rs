@@ -11,7 +11,7 @@ use crate::tree::frame::Frame;
 use crate::tree::wide_node::VolumeNodes;
 use p2m_core::engine::query::BestF64;
 use p2m_core::engine::side_by_side::{LaneResults, SIDE_BY_SIDE, TriangleLanes, segments, triangles};
-use p2m_core::engine::simd::{Doubles, Float, InstructionSet, Isa, Lanes, SimdKernel};
+use p2m_core::engine::simd::{Doubles, Float, InstructionSet, Lanes, SimdKernel};
 use p2m_core::engine::vector::V3;
 use p2m_core::{Collector, PrimitiveId};
 
@@ -401,8 +401,7 @@ impl<'a, V: VolumeNodes> InterleavedSearch<'a, V> {
     #[inline(always)]
     fn evaluate(&mut self, searches: u32) {
         let leaves = &self.searches.tree.leaves;
-        // Portable instructions have no lanes that are faster than one primitive at a time.
-        let computes_in_lanes = self.searches.tree.isa != Isa::PORTABLE;
+        let computes_in_lanes = self.searches.tree.isa.has_fast_doubles();
         for i in 0..std::mem::take(&mut self.candidate_count) {
             if searches >> self.candidates[i].search & 1 == 0 {
                 self.candidates[self.candidate_count] = self.candidates[i];

@@ -70,9 +70,10 @@ impl<V: VolumeNodes> Saved for PacketTree<V> {
         let leaves = load_leaves(reader)?;
         check_leaves(&leaves, primitives)?;
         let mut nodes = load_nodes::<V>(reader)?;
-        // The bounds of the whole scene are those of an additional node.
+        // The bounds of the whole scene are those of an additional node, which has no children.
         let last = nodes.pop();
         let root_bounds = last.ok_or_else(|| LoadError::inconsistent(CHILDREN, "there is no node"))?.bounds(0);
+        nodes.iter_mut().for_each(clear_unused_slots::<V>);
         let [min, max] = header.bounds.map(Point3::from);
         let bounds = Aabb { min, max };
         let frame = Frame::around(&bounds);
@@ -106,14 +107,16 @@ fn load_nodes<V: VolumeNodes>(reader: &Reader) -> Result<Vec<V::Node>, LoadError
     require(rows.as_flattened().iter().all(|x| !x.is_nan()), BOUNDS, "a number is NaN")?;
     let load = |(rows, references): (&[[f32; WIDTH]], &[u32])| {
         let children: [NodeRef; WIDTH] = std::array::from_fn(|slot| NodeRef(references[slot]));
-        let mut node = V::Node::from_rows(rows, children);
-        // A search visits a slot for its bounds alone.
-        (0..WIDTH)
-            .filter(|slot| children[*slot] == NodeRef::NONE)
-            .for_each(|slot| node.set_bounds(slot, &V::Node::EMPTY));
-        node
+        V::Node::from_rows(rows, children)
     };
     Ok(rows.chunks_exact(V::Node::ROWS).zip(children.chunks_exact(WIDTH)).map(load).collect())
+}
+
+/// Makes the bounds of slots without a child empty, because a search visits a slot for its bounds alone.
+fn clear_unused_slots<V: VolumeNodes>(node: &mut V::Node) {
+    let children = *node.children();
+    let unused = (0..WIDTH).filter(|slot| children[*slot] == NodeRef::NONE);
+    unused.for_each(|slot| node.set_bounds(slot, &V::Node::EMPTY));
 }
 
 /// Loads the packets and their exact vertices.

@@ -24,7 +24,7 @@ impl BuildBudget {
     pub(crate) fn new(bytes: f64, work: f64, primitives: usize) -> Self {
         let count = primitives.max(MIN_PRIMITIVES_FOR_BUDGET) as f64;
         // The numbers of blocks and packets have 32 bits.
-        let bytes = ((bytes * count) as usize).min(size_of::<u32>() * u32::MAX as usize);
+        let bytes = ((bytes * count) as usize).min(size_of::<u32>().saturating_mul(u32::MAX as usize));
         Self { bytes, work: (work * count) as u64, charged: AtomicU64::new(0), is_exceeded: AtomicBool::new(false) }
     }
 

@@ -149,7 +149,8 @@ pub(crate) fn triangle(rng: &mut impl Rng, sine: f64) -> [V; 3] {
         }
     };
     let start = unit(rng);
-    let length = 2f64.powf(rng.random_range(-1.0..1.0));
+    // This exponential has the same bits on every machine, as the checksums of answers need.
+    let length = libm::exp2(rng.random_range(-1.0..1.0));
     // The apex is anywhere over the base, or close to one of its ends.
     let along = if rng.random_bool(0.7) { rng.random_range(0.0..1.0) } else { 2f64.powi(-rng.random_range(1..50)) };
     let along = if rng.random_bool(0.5) { along } else { 1.0 - along };

