@@ -1,0 +1,300 @@
+//! Arrays of the caller.
+
+use crate::status::{Call, invalid};
+use std::ffi::{CStr, c_char, c_void};
+use std::path::PathBuf;
+
+/// The type of the numbers of an array.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Scalar {
+    /// `float`, for coordinates.
+    F32 = 0,
+    /// `double`, for coordinates.
+    F64 = 1,
+    /// `uint32_t`, for indices.
+    U32 = 2,
+    /// `uint64_t`, for indices.
+    U64 = 3,
+}
+
+/// An array that the library reads during a call: `count` rows of one to three numbers, as the function says.
+#[repr(C)]
+#[derive(Clone, Copy, Debug)]
+pub struct Array {
+    /// The first number of the first row. It may be null if `count` is 0.
+    pub data: *const c_void,
+    /// The number of rows.
+    pub count: usize,
+    /// The number of bytes from one row to the next; 0 if rows follow each other without a gap.
+    pub stride: usize,
+    /// The type of the numbers, one of the values of `p2m_scalar`.
+    pub scalar: u32,
+}
+
+/// A place for answers, one row for each query, which the library writes during a call.
+#[repr(C)]
+#[derive(Clone, Copy, Debug)]
+pub struct Column {
+    /// The first row, or null if these answers are not wanted.
+    pub data: *mut c_void,
+    /// The number of bytes from one row to the next; 0 if rows follow each other without a gap.
+    pub stride: usize,
+}
+
+/// A type of numbers in arrays.
+pub(crate) trait Number: Copy {
+    const SCALAR: Scalar;
+}
+
+macro_rules! numbers {
+    ($($type:ty: $scalar:ident)*) => {
+        $(impl Number for $type { const SCALAR: Scalar = Scalar::$scalar; })*
+    };
+}
+numbers! { f32: F32 f64: F64 u32: U32 u64: U64 }
+
+/// Returns the distance of rows in bytes, and checks that all of them are in the range of pointers.
+fn stride_of<R>(name: &str, data: *const c_void, count: usize, stride: usize, alignment: usize) -> Call<usize> {
+    let stride = if stride == 0 { size_of::<R>() } else { stride };
+    if data.is_null() {
+        return Err(invalid(format!("{name}: the array is null")));
+    }
+    if !data.addr().is_multiple_of(alignment) || !stride.is_multiple_of(alignment) || stride < size_of::<R>() {
+        return Err(invalid(format!("{name}: the address or the stride does not fit the type of the numbers")));
+    }
+    let bytes = count.checked_mul(stride).filter(|bytes| isize::try_from(*bytes).is_ok());
+    match bytes.and_then(|bytes| data.addr().checked_add(bytes)) {
+        Some(_) => Ok(stride),
+        None => Err(invalid(format!("{name}: {count} rows do not fit into memory"))),
+    }
+}
+
+/// Rows of numbers, borrowed where they are contiguous.
+pub(crate) enum Rows<'a, T, const N: usize> {
+    Borrowed(&'a [[T; N]]),
+    Copied(Vec<[T; N]>),
+}
+
+impl<T, const N: usize> std::ops::Deref for Rows<'_, T, N> {
+    type Target = [[T; N]];
+    fn deref(&self) -> &[[T; N]] {
+        match self {
+            Self::Borrowed(rows) => rows,
+            Self::Copied(rows) => rows,
+        }
+    }
+}
+
+impl Array {
+    /// Whether the numbers have a type.
+    pub(crate) fn has<T: Number>(&self) -> bool {
+        self.scalar == T::SCALAR as u32
+    }
+
+    /// Returns the rows of an array of numbers of this type.
+    ///
+    /// # Safety
+    /// The array has to point to as much memory as it says, which nobody changes while the rows live.
+    pub(crate) unsafe fn rows<'a, T: Number, const N: usize>(&self, name: &str) -> Call<Rows<'a, T, N>> {
+        if self.count == 0 {
+            return Ok(Rows::Borrowed(&[]));
+        }
+        let stride = stride_of::<[T; N]>(name, self.data, self.count, self.stride, align_of::<T>())?;
+        if stride == size_of::<[T; N]>() {
+            // SAFETY: the address is aligned, and the caller vouches for the memory.
+            return Ok(Rows::Borrowed(unsafe { std::slice::from_raw_parts(self.data.cast(), self.count) }));
+        }
+        // SAFETY: each row is aligned and within the memory that the caller vouches for.
+        let row = |i: usize| unsafe { self.data.byte_add(i * stride).cast::<[T; N]>().read() };
+        Ok(Rows::Copied((0..self.count).map(row).collect()))
+    }
+
+    /// Returns rows of indices.
+    ///
+    /// # Safety
+    /// As for [`rows`](Self::rows).
+    pub(crate) unsafe fn indices<const N: usize>(&self, name: &str) -> Call<Vec<[u32; N]>> {
+        if self.count == 0 {
+            return Ok(Vec::new());
+        }
+        if self.has::<u32>() {
+            // SAFETY: the caller vouches for the memory.
+            return Ok(unsafe { self.rows::<u32, N>(name) }?.to_vec());
+        }
+        if self.has::<u64>() {
+            // SAFETY: the caller vouches for the memory.
+            let rows = unsafe { self.rows::<u64, N>(name) }?;
+            // No scene has as many vertices as the largest number, so it stays out of range.
+            return Ok(rows.iter().map(|row| row.map(|i| u32::try_from(i).unwrap_or(u32::MAX))).collect());
+        }
+        Err(invalid(format!("{name}: indices are of type P2M_SCALAR_U32 or P2M_SCALAR_U64")))
+    }
+}
+
+/// Evaluates an expression with the rows of three coordinates of an array, in either type.
+macro_rules! with_coordinates {
+    ($array:expr, $name:expr, $rows:ident => $body:expr) => {{
+        let array: &$crate::arrays::Array = $array;
+        if array.count == 0 || array.has::<f64>() {
+            #[allow(unused_unsafe, reason = "some callers are unsafe already")]
+            // SAFETY: the caller of the function vouches for the memory.
+            let rows = unsafe { array.rows::<f64, 3>($name) }?;
+            let $rows: &[[f64; 3]] = &rows;
+            $body
+        } else if array.has::<f32>() {
+            #[allow(unused_unsafe, reason = "some callers are unsafe already")]
+            // SAFETY: the caller of the function vouches for the memory.
+            let rows = unsafe { array.rows::<f32, 3>($name) }?;
+            let $rows: &[[f32; 3]] = &rows;
+            $body
+        } else {
+            return Err($crate::status::invalid(format!(
+                "{}: coordinates are of type P2M_SCALAR_F32 or P2M_SCALAR_F64",
+                $name
+            )));
+        }
+    }};
+}
+pub(crate) use with_coordinates;
+
+/// The rows of a column, written in place where they are contiguous.
+pub(crate) struct Out<'a, R> {
+    column: Column,
+    stride: usize,
+    in_place: Option<&'a mut [R]>,
+    copied: Vec<R>,
+}
+
+impl<R: Copy> Out<'_, R> {
+    /// The values to be written.
+    pub(crate) fn values(&mut self) -> &mut [R] {
+        match &mut self.in_place {
+            Some(rows) => rows,
+            None => &mut self.copied,
+        }
+    }
+
+    /// Writes values that are not in place yet.
+    pub(crate) fn finish(self) {
+        for (i, value) in self.copied.into_iter().enumerate() {
+            // SAFETY: each row is aligned and within the memory that the caller vouches for.
+            unsafe { self.column.data.byte_add(i * self.stride).cast::<R>().write(value) };
+        }
+    }
+}
+
+impl Column {
+    /// Returns the place of `count` rows, or `None` if the column is not wanted. `unset` is what rows are before.
+    ///
+    /// # Safety
+    /// The column has to point to as much memory as it says, which nobody else uses while the place lives.
+    pub(crate) unsafe fn out<'a, R: Copy>(self, name: &str, count: usize, unset: R) -> Call<Option<Out<'a, R>>> {
+        if self.data.is_null() {
+            return Ok(None);
+        }
+        let stride = stride_of::<R>(name, self.data, count, self.stride, align_of::<R>())?;
+        let mut out = Out { column: self, stride, in_place: None, copied: Vec::new() };
+        if stride == size_of::<R>() {
+            // SAFETY: the address is aligned, and the caller vouches for the memory. Numbers of C may be uninitialised,
+            // so they are written before they become a slice.
+            out.in_place = Some(unsafe {
+                let data = self.data.cast::<R>();
+                (0..count).for_each(|i| data.add(i).write(unset));
+                std::slice::from_raw_parts_mut(data, count)
+            });
+        } else {
+            out.copied = vec![unset; count];
+        }
+        Ok(Some(out))
+    }
+}
+
+/// Returns what a pointer points to.
+///
+/// # Safety
+/// A pointer that is not null has to point to a valid value that lives long enough.
+pub(crate) unsafe fn reference<'a, T>(pointer: *const T, name: &str) -> Call<&'a T> {
+    if pointer.is_null() || !pointer.is_aligned() {
+        return Err(invalid(format!("{name}: the pointer is null or misaligned")));
+    }
+    // SAFETY: the pointer is aligned and not null, and the caller vouches for the rest.
+    Ok(unsafe { &*pointer })
+}
+
+/// Writes a result.
+///
+/// # Safety
+/// A pointer that is not null has to point to memory for the value.
+pub(crate) unsafe fn write<T>(pointer: *mut T, name: &str, value: T) -> Call {
+    if pointer.is_null() || !pointer.is_aligned() {
+        return Err(invalid(format!("{name}: the pointer is null or misaligned")));
+    }
+    // SAFETY: the pointer is aligned and not null, and the caller vouches for the rest.
+    unsafe { pointer.write(value) };
+    Ok(())
+}
+
+/// Gives the caller an object behind a pointer. Nothing is made if there is no place for the pointer.
+///
+/// # Safety
+/// A pointer that is not null has to point to memory for a pointer.
+pub(crate) unsafe fn give<T>(place: *mut *mut T, name: &str, make: impl FnOnce() -> Call<T>) -> Call {
+    // SAFETY: the caller vouches for the memory.
+    unsafe { write(place, name, std::ptr::null_mut()) }?;
+    let object = Box::into_raw(Box::new(make()?));
+    // SAFETY: the caller vouches for the memory.
+    unsafe { write(place, name, object) }
+}
+
+/// Ends the life of an object that [`give`] gave.
+///
+/// # Safety
+/// The pointer has to be null, or one that was given and not taken back.
+pub(crate) unsafe fn take_back<T>(pointer: *mut T) {
+    if !pointer.is_null() {
+        // SAFETY: the caller vouches for the pointer.
+        drop(unsafe { Box::from_raw(pointer) });
+    }
+}
+
+/// Returns a string of C.
+///
+/// # Safety
+/// A pointer that is not null has to point to a string that ends with a zero.
+pub(crate) unsafe fn text<'a>(pointer: *const c_char, name: &str) -> Call<&'a str> {
+    if pointer.is_null() {
+        return Err(invalid(format!("{name}: the string is null")));
+    }
+    // SAFETY: the pointer is not null, and the caller vouches for the rest.
+    let text = unsafe { CStr::from_ptr(pointer) };
+    text.to_str().map_err(|_| invalid(format!("{name}: the string is not UTF-8")))
+}
+
+/// Returns a path. On systems other than Windows it may be any bytes.
+///
+/// # Safety
+/// As for [`text`].
+pub(crate) unsafe fn path(pointer: *const c_char) -> Call<PathBuf> {
+    #[cfg(unix)]
+    {
+        use std::os::unix::ffi::OsStrExt;
+        if !pointer.is_null() {
+            // SAFETY: the pointer is not null, and the caller vouches for the rest.
+            let bytes = unsafe { CStr::from_ptr(pointer) }.to_bytes();
+            return Ok(PathBuf::from(std::ffi::OsStr::from_bytes(bytes)));
+        }
+    }
+    // SAFETY: the caller vouches for the string.
+    Ok(PathBuf::from(unsafe { text(pointer, "path") }?))
+}
+
+/// Returns finite coordinates.
+///
+/// # Safety
+/// A pointer that is not null has to point to three numbers.
+pub(crate) unsafe fn point(pointer: *const f64, name: &str) -> Call<[f64; 3]> {
+    // SAFETY: the caller vouches for the memory.
+    let point = *unsafe { reference(pointer.cast::<[f64; 3]>(), name) }?;
+    if point.iter().all(|x| x.is_finite()) { Ok(point) } else { Err(invalid(format!("{name}: not finite"))) }
+}

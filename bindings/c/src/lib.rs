@@ -1,0 +1,28 @@
+//! The C interface of p2m. `include/p2m.h` documents it; cbindgen makes that file of the comments here
+//! (`cargo xtask c --build`).
+//!
+//! Every function checks its arguments, catches panics, and returns a status. The message of a failure is kept for the
+//! thread that called. Pointers are checked for null and alignment; that they point to as much memory as their counts and
+//! strides say is up to the caller.
+#![allow(unsafe_code, reason = "pointers of C")]
+#![allow(unreachable_pub, reason = "functions of C are exported by their names")]
+#![allow(clippy::missing_safety_doc, reason = "the header says what pointers have to point to")]
+
+mod arrays;
+mod index;
+mod pairs;
+mod queries;
+mod rays;
+mod scene;
+mod signs;
+mod status;
+mod threads;
+
+pub use arrays::{Array, Column, Scalar};
+pub use index::{Index, IndexOptions};
+pub use pairs::Pair;
+pub use queries::{BatchOptions, Closest, Columns};
+pub use rays::{Hit, Ray};
+pub use scene::Scene;
+pub use status::Status;
+pub use threads::Cancel;

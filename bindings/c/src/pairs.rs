@@ -1,0 +1,99 @@
+//! The nearest points of two scenes.
+
+use crate::arrays::{reference, write};
+use crate::index::Index;
+use crate::queries::P2M_NO_PRIMITIVE;
+use crate::status::{Call, Status, invalid, run};
+use p2m_core::pair::{ClosestPair, PairOptions, PairQuery, isometry_of_matrix};
+
+/// The nearest points of two scenes.
+#[repr(C)]
+#[derive(Clone, Copy, Debug)]
+pub struct Pair {
+    /// The distance, which is 0 if the scenes intersect; infinity if there is no answer.
+    pub distance: f64,
+    /// A number that the true distance is not below.
+    pub lower_bound: f64,
+    /// The point of each scene, that of the second one after its motion.
+    pub points: [[f64; 3]; 2],
+    /// The weights of the vertices of each primitive.
+    pub weights: [[f64; 3]; 2],
+    /// The id of the primitive of each scene, or `P2M_NO_PRIMITIVE`.
+    pub primitives: [u32; 2],
+    /// What each point lies on, as in `p2m_closest`.
+    pub features: [u8; 2],
+    /// Whether the scenes intersect, which is exact.
+    pub is_intersecting: bool,
+}
+
+impl Pair {
+    const NONE: Self = Self {
+        distance: f64::INFINITY,
+        lower_bound: f64::INFINITY,
+        points: [[f64::NAN; 3]; 2],
+        weights: [[f64::NAN; 3]; 2],
+        primitives: [P2M_NO_PRIMITIVE; 2],
+        features: [u8::MAX; 2],
+        is_intersecting: false,
+    };
+}
+
+impl From<&ClosestPair<f64>> for Pair {
+    fn from(pair: &ClosestPair<f64>) -> Self {
+        Self {
+            distance: pair.distance,
+            lower_bound: pair.lower_bound,
+            points: pair.points.map(Into::into),
+            weights: pair.barycentric,
+            primitives: pair.primitives.map(|id| id.number()),
+            features: pair.features.map(|feature| feature.code()),
+            is_intersecting: pair.is_intersecting,
+        }
+    }
+}
+
+impl Index {
+    fn pairs(&self) -> Call<&(dyn PairQuery<f64> + Sync)> {
+        let unsupported = || self.unsupported("answers no queries for pairs", |backend| backend.answers_pairs);
+        self.built.index.as_pair_query().ok_or_else(unsupported)
+    }
+}
+
+/// Finds the nearest points of two scenes within a distance, which may be infinite. `motion` moves the second scene: the 16
+/// numbers of a matrix of 4 x 4, row by row, which is a rotation and a translation; null for none. If there is no answer,
+/// `pair` has `P2M_NO_PRIMITIVE`.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn p2m_closest_pair(
+    first: *const Index,
+    second: *const Index,
+    motion: *const f64,
+    max_distance: f64,
+    pair: *mut Pair,
+) -> Status {
+    // SAFETY: the caller vouches for the pointers.
+    run(|| unsafe {
+        let (first, second) = (reference(first, "first")?.pairs()?, reference(second, "second")?.pairs()?);
+        let mut options = PairOptions::default().with_max_distance(max_distance);
+        if !motion.is_null() {
+            let matrix = reference(motion.cast::<[f64; 16]>(), "motion")?;
+            options = options.with_motion(isometry_of(matrix)?);
+        }
+        let found = (&first).closest_pair(second, &options);
+        write(pair, "pair", found.as_ref().map_or(Pair::NONE, Pair::from))
+    })
+}
+
+/// Returns the motion of a matrix, which has to be a rotation and a translation.
+fn isometry_of(matrix: &[f64; 16]) -> Call<nalgebra::Isometry3<f64>> {
+    const TOLERANCE: f64 = 1e-6;
+    let rows = matrix.as_chunks::<4>().0;
+    let dot = |i: usize, j: usize| -> f64 { (0..3).map(|k| rows[i][k] * rows[j][k]).sum() };
+    let is_orthogonal = (0..3).all(|i| (0..3).all(|j| (dot(i, j) - f64::from(u8::from(i == j))).abs() <= TOLERANCE));
+    let minor = |j: usize, k: usize| rows[1][j] * rows[2][k] - rows[1][k] * rows[2][j];
+    let determinant = rows[0][0] * minor(1, 2) - rows[0][1] * minor(0, 2) + rows[0][2] * minor(0, 1);
+    let is_finite = matrix.iter().all(|x| x.is_finite());
+    if !is_finite || !is_orthogonal || determinant < 0.0 || rows[3] != [0.0, 0.0, 0.0, 1.0] {
+        return Err(invalid("motion: the matrix is not a rotation and a translation"));
+    }
+    Ok(isometry_of_matrix(matrix))
+}

@@ -1,0 +1,109 @@
+//! Scenes.
+
+use crate::arrays::{Array, give, path, reference, take_back, with_coordinates, write};
+use crate::status::{Call, Failure, Status, invalid, run};
+use nalgebra::Point3;
+use p2m_core::{Element, Position, PrimitiveSet, Soup};
+use std::ffi::c_char;
+use std::sync::Arc;
+
+/// A scene: triangles, segments and points that share vertices. It never changes, and any number of threads may use it.
+pub struct Scene {
+    pub(crate) shared: Arc<p2m_mixed::Scene>,
+}
+
+/// Returns the array behind a pointer, or an empty one for null.
+///
+/// # Safety
+/// A pointer that is not null has to point to a valid array.
+unsafe fn optional(array: *const Array, name: &str) -> Call<Array> {
+    if array.is_null() {
+        return Ok(Array { data: std::ptr::null(), count: 0, stride: 0, scalar: 0 });
+    }
+    // SAFETY: the caller vouches for the pointer.
+    unsafe { reference(array, name) }.copied()
+}
+
+/// Makes a scene of arrays, which are copied. `positions` are the vertices, of type float or double. `triangles` have three
+/// indices of vertices each, `segments` two, and `points` one. Each of the last three may be null.
+///
+/// The ids of primitives are their numbers: first all triangles, then all segments, then all points. Free the scene with
+/// `p2m_scene_free`. Fails with `P2M_STATUS_INVALID_SCENE` if an index has no vertex, or if there are more than 2^30
+/// primitives. Coordinates that are not finite are refused when an index is built.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn p2m_scene_new(
+    positions: *const Array,
+    triangles: *const Array,
+    segments: *const Array,
+    points: *const Array,
+    scene: *mut *mut Scene,
+) -> Status {
+    // SAFETY: the caller vouches for the pointers.
+    run(|| unsafe {
+        give(scene, "scene", || {
+            let positions = optional(positions, "positions")?;
+            let positions: Vec<Point3<f64>> = with_coordinates!(&positions, "positions", rows => {
+                rows.iter().map(Position::<f64>::point).collect()
+            });
+            let triangles = optional(triangles, "triangles")?.indices::<3>("triangles")?;
+            let segments = optional(segments, "segments")?.indices::<2>("segments")?;
+            let points = optional(points, "points")?.indices::<1>("points")?;
+            let invalid_scene = |error| Failure(Status::InvalidScene, format!("{error}"));
+            let soup = if segments.is_empty() && points.is_empty() {
+                Soup::from_triangles(positions, triangles).map_err(invalid_scene)?
+            } else {
+                let triangles = triangles.into_iter().map(Element::Triangle);
+                let segments = segments.into_iter().map(Element::Segment);
+                let points = points.into_iter().map(|[point]| Element::Point(point));
+                Soup::new(positions, triangles.chain(segments).chain(points)).map_err(invalid_scene)?
+            };
+            Ok(Scene { shared: Arc::new(p2m_mixed::Scene::from(soup)) })
+        })
+    })
+}
+
+/// Reads a scene from a file: OBJ, PLY, STL, OFF, a point cloud, or a saved index. Free it with `p2m_scene_free`.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn p2m_scene_read(path: *const c_char, scene: *mut *mut Scene) -> Status {
+    // SAFETY: the caller vouches for the pointers.
+    run(|| unsafe {
+        give(scene, "scene", || {
+            let path = self::path(path)?;
+            let read = p2m_mixed::read_scene(&path);
+            let read = read.map_err(|error| Failure(Status::File, format!("{}: {error}", path.display())))?;
+            Ok(Scene { shared: Arc::new(read) })
+        })
+    })
+}
+
+/// Frees a scene. Indexes that were built over it keep what they need. Null is ignored.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn p2m_scene_free(scene: *mut Scene) {
+    // SAFETY: the caller vouches for the pointer.
+    unsafe { take_back(scene) };
+}
+
+/// Writes the number of triangles, segments and points.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn p2m_scene_counts(scene: *const Scene, counts: *mut [usize; 3]) -> Status {
+    // SAFETY: the caller vouches for the pointers.
+    run(|| unsafe {
+        let soup = &reference(scene, "scene")?.shared.soup;
+        write(counts, "counts", [soup.triangles().len(), soup.segments().len(), soup.points().len()])
+    })
+}
+
+/// Writes the lowest and the highest coordinates of all primitives. Fails for a scene without primitives.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn p2m_scene_bounds(scene: *const Scene, low: *mut [f64; 3], high: *mut [f64; 3]) -> Status {
+    // SAFETY: the caller vouches for the pointers.
+    run(|| unsafe {
+        let soup = &reference(scene, "scene")?.shared.soup;
+        if soup.len() == 0 {
+            return Err(invalid("scene: it has no primitives"));
+        }
+        let bounds = soup.aabb();
+        write(low, "low", bounds.min.into())?;
+        write(high, "high", bounds.max.into())
+    })
+}

@@ -1,0 +1,102 @@
+//! Signed distances.
+
+use crate::arrays::{Array, Column, Out, reference, with_coordinates};
+use crate::index::Index;
+use crate::queries::{Batch, BatchOptions, check_finite};
+use crate::status::{Call, Failure, Status, invalid, run};
+use crate::threads::{Cancel, with_threads};
+use nalgebra::Point3;
+use p2m_core::batch::{self, Interruptible};
+use p2m_core::{AnyIndex, ClosestPoint, Position, QueryOptions, Soup};
+use p2m_field::sign::SignedDistance;
+use std::sync::Arc;
+
+/// An index with signs.
+pub(crate) type Signs = SignedDistance<Arc<dyn AnyIndex>, Arc<Soup<f64>>>;
+
+impl Index {
+    /// Returns the signs of the scene, which the first call prepares.
+    fn signs(&self) -> Call<&Signs> {
+        let prepare = || {
+            let (index, soup) = (Arc::clone(&self.built.index), Arc::clone(&self.scene.soup));
+            SignedDistance::new(index, soup).map_err(|error| error.to_string())
+        };
+        let signs = self.signs.get_or_init(prepare);
+        signs.as_ref().map_err(|error| Failure(Status::Unsupported, error.clone()))
+    }
+}
+
+/// Answers queries in a column.
+///
+/// # Safety
+/// The pointers have to be valid, and the column has to point to as much memory as it says.
+unsafe fn answer<V: Copy + Send>(
+    index: *const Index,
+    queries: *const Array,
+    options: *const BatchOptions,
+    column: Column,
+    unset: V,
+    values: impl Fn(&Signs, &(dyn ClosestPoint<f64> + Sync), &[Point3<f64>], f64, &batch::BatchOptions) -> Vec<V> + Sync,
+) -> Call {
+    // SAFETY: the caller vouches for the pointers.
+    let (index, queries, batch) =
+        unsafe { (reference(index, "index")?, reference(queries, "queries")?, Batch::new(options)?) };
+    let signs = index.signs()?;
+    let points: Vec<Point3<f64>> = with_coordinates!(queries, "queries", rows => {
+        check_finite("queries", rows)?;
+        rows.iter().map(Position::<f64>::point).collect()
+    });
+    if points.is_empty() {
+        return Ok(());
+    }
+    // SAFETY: the caller vouches for the column.
+    let out = unsafe { column.out("answers", points.len(), unset) }?;
+    let mut out: Out<'_, V> = out.ok_or_else(|| invalid("answers: the column is null"))?;
+    let interruptible = Interruptible::new(&*index.built.index, batch.step());
+    let found = with_threads(batch.threads, |is_parallel| {
+        values(signs, &interruptible, &points, batch.max_distance, &batch.options(is_parallel))
+    })?;
+    Cancel::check(batch.cancel)?;
+    out.values().copy_from_slice(&found);
+    out.finish();
+    Ok(())
+}
+
+/// Writes the signed distance of each query, of type `double`: negative inside of the surface that the triangles form, and
+/// positive outside. It is NaN where nothing is within the largest distance, and where the sign is not determined. The first
+/// call for an index prepares the signs.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn p2m_signed_distances(
+    index: *const Index,
+    queries: *const Array,
+    options: *const BatchOptions,
+    distances: Column,
+) -> Status {
+    // SAFETY: the caller vouches for the pointers.
+    run(|| unsafe {
+        answer(index, queries, options, distances, f64::NAN, |signs, index, points, max_distance, batch| {
+            let options = QueryOptions::default().with_max_distance(max_distance);
+            let missing = if max_distance < f64::INFINITY { f64::NAN } else { f64::INFINITY };
+            let answers = signs.closest_points_by(index, points, &options, batch);
+            let distance = |signed: &p2m_field::sign::Signed<f64>| signed.distance().unwrap_or(f64::NAN);
+            answers.iter().map(|signed| signed.as_ref().map_or(missing, distance)).collect()
+        })
+    })
+}
+
+/// Writes whether each query is inside of the surface that the triangles form, as 1 or 0 of type `uint8_t`. Of the options
+/// the largest distance is not used.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn p2m_contains(
+    index: *const Index,
+    queries: *const Array,
+    options: *const BatchOptions,
+    is_inside: Column,
+) -> Status {
+    // SAFETY: the caller vouches for the pointers.
+    run(|| unsafe {
+        answer(index, queries, options, is_inside, 0u8, |signs, index, points, _, batch| {
+            signs.contains_each_by(index, points, batch).into_iter().map(u8::from).collect()
+        })
+    })
+}
