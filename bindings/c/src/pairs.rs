@@ -4,7 +4,7 @@ use crate::arrays::{reference, write};
 use crate::index::Index;
 use crate::queries::P2M_NO_PRIMITIVE;
 use crate::status::{Call, Status, invalid, run};
-use p2m_core::pair::{ClosestPair, PairOptions, PairQuery, isometry_of_matrix};
+use p2m_core::pair::{ClosestPair, PairOptions, PairQuery, is_rotation_and_translation, isometry_of_matrix};
 
 /// The nearest points of two scenes.
 #[repr(C)]
@@ -85,14 +85,8 @@ pub unsafe extern "C" fn p2m_closest_pair(
 
 /// Returns the motion of a matrix, which has to be a rotation and a translation.
 fn isometry_of(matrix: &[f64; 16]) -> Call<nalgebra::Isometry3<f64>> {
-    const TOLERANCE: f64 = 1e-6;
-    let rows = matrix.as_chunks::<4>().0;
-    let dot = |i: usize, j: usize| -> f64 { (0..3).map(|k| rows[i][k] * rows[j][k]).sum() };
-    let is_orthogonal = (0..3).all(|i| (0..3).all(|j| (dot(i, j) - f64::from(u8::from(i == j))).abs() <= TOLERANCE));
-    let minor = |j: usize, k: usize| rows[1][j] * rows[2][k] - rows[1][k] * rows[2][j];
-    let determinant = rows[0][0] * minor(1, 2) - rows[0][1] * minor(0, 2) + rows[0][2] * minor(0, 1);
-    let is_finite = matrix.iter().all(|x| x.is_finite());
-    if !is_finite || !is_orthogonal || determinant < 0.0 || rows[3] != [0.0, 0.0, 0.0, 1.0] {
+    let last_row = matrix[12..].iter().map(|x| x.to_bits());
+    if !is_rotation_and_translation(matrix) || !last_row.eq([0.0f64, 0.0, 0.0, 1.0].map(f64::to_bits)) {
         return Err(invalid("motion: the matrix is not a rotation and a translation"));
     }
     Ok(isometry_of_matrix(matrix))

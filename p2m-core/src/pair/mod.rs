@@ -45,7 +45,7 @@ pub use collector::{ClosestPair, PairOptions, Pairs};
 use edges::nearest_on_edges;
 pub use hull::Hull;
 pub use intersection::do_intersect;
-pub use motion::{Motion, isometry_of_matrix};
+pub use motion::{Motion, is_rotation_and_translation, isometry_of_matrix};
 pub use moving_ball::{BallContact, MovingBall};
 use nalgebra::Point3;
 pub use query::{PairQuery, closest_as_guess};

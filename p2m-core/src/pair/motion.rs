@@ -9,6 +9,22 @@ const MAX_ITERATIONS: usize = 100;
 /// The difference from a whole number, 8 u, that roundings of a rotation leave.
 const ROUNDING: f64 = 4.0 * f64::EPSILON;
 
+/// The largest deviation from the identity of a rotation times its transpose.
+const ROTATION_TOLERANCE: f64 = 1e-6;
+
+/// Returns whether the first twelve numbers of a matrix, row by row, are finite, and the first three columns are a rotation
+/// within 1e-6.
+///
+/// # Panics
+/// Panics if there are fewer numbers.
+#[must_use]
+pub fn is_rotation_and_translation(matrix: &[f64]) -> bool {
+    let rotation = Matrix3::from_fn(|row, column| matrix[4 * row + column]);
+    let deviation = (rotation * rotation.transpose() - Matrix3::identity()).amax();
+    // The comparison is false for NaN.
+    deviation <= ROTATION_TOLERANCE && rotation.determinant() > 0.0 && matrix[..12].iter().all(|x| x.is_finite())
+}
+
 /// Returns the isometry of a matrix of 12 numbers, row by row, of which the first three columns are a rotation. Its
 /// rotation is the one nearest to the matrix.
 ///

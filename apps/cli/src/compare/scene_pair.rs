@@ -4,8 +4,8 @@ use crate::io::input::{COMPRESSED, name, read_scene_and_index, read_small_text, 
 use crate::io::streams::Streams;
 use crate::io::usage::{one_of, usage};
 use anyhow::Context;
-use nalgebra::{Isometry3, Matrix3, Point3};
-use p2m_core::pair::isometry_of_matrix;
+use nalgebra::{Isometry3, Point3};
+use p2m_core::pair::{is_rotation_and_translation, isometry_of_matrix};
 use p2m_core::storage::Reader;
 use p2m_core::{Feature, PrimitiveId};
 use p2m_mixed::statistics::figure::Length;
@@ -87,11 +87,7 @@ fn parse_motion(streams: &Streams, text: &str) -> anyhow::Result<Isometry3<f64>>
         let count = matrix.len();
         return Err(usage(format!("{place}: {count} numbers are no matrix of 12, or of 16 with the last row 0 0 0 1")));
     }
-    let rotation = Matrix3::from_fn(|row, column| matrix[4 * row + column]);
-    let deviation = (rotation * rotation.transpose() - Matrix3::identity()).amax();
-    // The comparison is false for NaN.
-    let is_rotation = deviation <= 1e-6 && rotation.determinant() > 0.0;
-    if !is_rotation || !matrix.iter().all(|x| x.is_finite()) {
+    if !is_rotation_and_translation(&matrix) {
         return Err(usage(format!("{place}: the first three columns are no rotation, or a number is not finite")));
     }
     Ok(isometry_of_matrix(&matrix))
