@@ -17,12 +17,3 @@ mod scene;
 mod signs;
 mod status;
 mod threads;
-
-pub use arrays::{Array, Column, Scalar};
-pub use index::{Index, IndexOptions};
-pub use pairs::Pair;
-pub use queries::{BatchOptions, Closest, Columns};
-pub use rays::{Hit, Ray};
-pub use scene::Scene;
-pub use status::Status;
-pub use threads::Cancel;

@@ -62,7 +62,8 @@ impl From<&p2m_core::Closest<f64>> for Closest {
 pub struct BatchOptions {
     /// The largest distance of an answer, in units of the scene. It may be infinite.
     pub max_distance: f64,
-    /// The number of threads; 0 stands for all processors, and 1 for the calling thread.
+    /// The number of threads; 0 stands for all processors, and 1 for the calling thread. A process that was forked after
+    /// its parent has used several threads has to use 1.
     pub threads: u32,
     /// Whether queries are answered in their order, because it is coherent in space already.
     pub keeps_order: bool,
@@ -115,7 +116,8 @@ impl<'a> Batch<'a> {
         // SAFETY: the caller vouches for the pointers.
         let (options, cancel) = unsafe {
             let options = if options.is_null() { p2m_batch_options_default() } else { *reference(options, "options")? };
-            (options, options.cancel.as_ref())
+            let has_cancel = !options.cancel.is_null();
+            (options, has_cancel.then(|| reference(options.cancel, "cancel")).transpose()?)
         };
         let BatchOptions { max_distance, threads, keeps_order, .. } = options;
         if max_distance.is_nan() {
