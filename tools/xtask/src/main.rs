@@ -82,8 +82,8 @@ const TASKS: [Task; 20] = [
     },
     Task {
         name: "wasm",
-        arguments: "[--build]",
-        about: "Check the library for WebAssembly, where a compiler can be found or downloaded, or build the module",
+        arguments: "[--all | --build]",
+        about: "Check the library for WebAssembly, where a compiler can be found or downloaded, compare its answers, or build the module",
         run: wasm::run,
     },
     Task {
