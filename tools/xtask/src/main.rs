@@ -3,6 +3,7 @@
 //! A task prints the commands that it starts, so that each can be started alone. The first command that fails ends it.
 #![forbid(unsafe_code)]
 
+mod c;
 mod cuda;
 mod deep;
 mod figures;
@@ -31,7 +32,7 @@ struct Task {
 /// The result of a task, with a message if it failed.
 type Outcome = Result<(), String>;
 
-const TASKS: [Task; 16] = [
+const TASKS: [Task; 17] = [
     Task {
         name: "quick",
         arguments: "[FILTER]",
@@ -98,6 +99,12 @@ const TASKS: [Task; 16] = [
         arguments: "[--rivals] [TESTS]",
         about: "Build the Python package and run its tests in a virtual environment, or compare it with others",
         run: python::check,
+    },
+    Task {
+        name: "c",
+        arguments: "[--build]",
+        about: "Check the header of the C interface and test it from C and C++, or write the header",
+        run: c::check,
     },
     Task {
         name: "pages",
