@@ -4,6 +4,7 @@
 #![forbid(unsafe_code)]
 
 mod arm;
+mod c;
 mod cuda;
 mod debian;
 mod deep;
@@ -36,7 +37,7 @@ struct Task {
 /// The result of a task, with a message if it failed.
 type Outcome = Result<(), String>;
 
-const TASKS: [Task; 20] = [
+const TASKS: [Task; 21] = [
     Task {
         name: "quick",
         arguments: "[FILTER]",
@@ -127,6 +128,12 @@ const TASKS: [Task; 20] = [
         arguments: "[--rivals] [TESTS]",
         about: "Build the Python package and run its tests in a virtual environment, or compare it with others",
         run: python::check,
+    },
+    Task {
+        name: "c",
+        arguments: "[--build]",
+        about: "Check the header of the C interface and test it from C and C++, or write the header",
+        run: c::check,
     },
     Task {
         name: "pages",
