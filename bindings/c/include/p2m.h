@@ -97,7 +97,8 @@ typedef struct p2m_pair {
 typedef struct p2m_batch_options {
   // The largest distance of an answer, in units of the scene. It may be infinite.
   double max_distance;
-  // The number of threads; 0 stands for all processors, and 1 for the calling thread.
+  // The number of threads; 0 stands for all processors, and 1 for the calling thread. A process that was forked after
+  // its parent has used several threads has to use 1.
   uint32_t threads;
   // Whether queries are answered in their order, because it is coherent in space already.
   bool keeps_order;
