@@ -139,6 +139,14 @@ template <class T, void (*free)(T*)> struct Free {
 };
 template <class T, void (*free)(T*)> using Handle = std::unique_ptr<T, Free<T, free>>;
 
+// Returns the answer that a call of p2m.h writes.
+template <class Answer, class Call> Result<Answer> asked(Call call) {
+    Answer answer{};
+    const p2m_status status = call(&answer);
+    if (status != P2M_STATUS_OK) return fail<Answer>(Error(status, p2m_last_error()));
+    return answer;
+}
+
 // Returns the object that a call of p2m.h makes.
 template <class Object, class T, class Call> Result<Object> made(Call call) {
     T* object = nullptr;
@@ -461,9 +469,9 @@ public:
 
     // The closest point within a distance. `has_answer` says whether there is one.
     Result<Closest> closest_point(const Point& query, double max_distance = infinity) const {
-        Closest answer;
-        const auto status = p2m_closest_point(get(), query.data(), max_distance, &answer);
-        return detail::done(status, answer);
+        return detail::asked<Closest>([&](auto answer) {
+            return p2m_closest_point(get(), query.data(), max_distance, answer);
+        });
     }
 
     // The closest points of many queries.
@@ -543,22 +551,16 @@ public:
     }
 
     Result<bool> is_any_within(const Point& query, double radius) const {
-        bool is_within = false;
-        const auto status = p2m_is_any_within(get(), query.data(), radius, &is_within);
-        return detail::done(status, is_within);
+        return detail::asked<bool>([&](auto answer) { return p2m_is_any_within(get(), query.data(), radius, answer); });
     }
 
     // The first hit of a ray. `has_answer` says whether there is one.
     Result<Hit> first_hit(const p2m_ray& ray) const {
-        Hit hit;
-        const auto status = p2m_first_hit(get(), &ray, &hit);
-        return detail::done(status, hit);
+        return detail::asked<Hit>([&](auto answer) { return p2m_first_hit(get(), &ray, answer); });
     }
 
     Result<bool> any_hit(const p2m_ray& ray) const {
-        bool is_hit = false;
-        const auto status = p2m_any_hit(get(), &ray, &is_hit);
-        return detail::done(status, is_hit);
+        return detail::asked<bool>([&](auto answer) { return p2m_any_hit(get(), &ray, answer); });
     }
 
     // Calls `visit` with all hits of a ray, the nearest first, as `visit_within` does.
@@ -576,9 +578,9 @@ public:
 
     // The nearest points of two scenes, of which `motion` moves the second one.
     Result<Pair> closest_pair(const Index& second, const Motion& motion = {}, double max_distance = infinity) const {
-        Pair pair;
-        const auto status = p2m_closest_pair(get(), second.get(), motion.data(), max_distance, &pair);
-        return detail::done(status, pair);
+        return detail::asked<Pair>([&](auto answer) {
+            return p2m_closest_pair(get(), second.get(), motion.data(), max_distance, answer);
+        });
     }
 
 private:

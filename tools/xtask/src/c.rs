@@ -49,6 +49,7 @@ pub(crate) fn check(arguments: &[String]) -> Outcome {
         let standards = if is_first { ["-std=c++17", "-std=c++20"] } else { ["-std=c++20", "-std=c++17"] };
         test(cpp, "tests/cpp_api.cpp", &[&[standards[0]], &SANITIZERS[..]].concat())?;
         test(cpp, "tests/cpp_api.cpp", &[&[standards[1]], &results[..], &SANITIZERS].concat())?;
+        test(cpp, "examples/replacements.cpp", &[standards[0]])?;
     }
     for compiler in ["gcc", "clang"] {
         if output(compiler, &["--version"]).is_ok() {
