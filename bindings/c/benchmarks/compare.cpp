@@ -1,6 +1,6 @@
 // Times closest points of p2m beside those of CGAL's AABB_tree (double) and Embree's point query (float), in one program,
-// one thread, in turns, by the time of the thread. Usage: compare SCENE.obj [QUERIES] [ROUNDS]. `cargo xtask c --compare`
-// compiles and runs it with Debian's packages libcgal-dev and libembree-dev.
+// one thread, in turns, by the time of the thread. Usage: compare SCENE.obj [QUERIES] [ROUNDS]. docs/c.md has the command
+// that compiles it with Debian's packages libcgal-dev and libembree-dev.
 #include <CGAL/AABB_face_graph_triangle_primitive.h>
 #include <CGAL/AABB_traits.h>
 #include <CGAL/AABB_tree.h>
