@@ -204,8 +204,6 @@ extern "C" {
 #endif // __cplusplus
 
 // Builds an index over a scene. `options` may be null. Free the index with `p2m_index_free`.
-//
-// Fails with `P2M_STATUS_INVALID_SCENE` for coordinates that are not finite.
 enum p2m_status p2m_index_build(const struct p2m_scene *scene,
                                 const struct p2m_index_options *options,
                                 struct p2m_index **index);
@@ -255,7 +253,7 @@ enum p2m_status p2m_closest_point(const struct p2m_index *index,
 
 // Finds the closest point to each of many queries, and writes the columns. Queries are rows of three finite coordinates,
 // `float` or `double`. `options` may be null. The answers are those of single queries, bit for bit, whatever the number
-// of threads.
+// of threads; only a lower bound may differ in its last digits.
 enum p2m_status p2m_closest_points(const struct p2m_index *index,
                                    const struct p2m_array *queries,
                                    const struct p2m_batch_options *options,
@@ -309,8 +307,8 @@ enum p2m_status p2m_first_hits(const struct p2m_index *index,
 // indices of vertices each, `segments` two, and `points` one. Each of the last three may be null.
 //
 // The ids of primitives are their numbers: first all triangles, then all segments, then all points. Free the scene with
-// `p2m_scene_free`. Fails with `P2M_STATUS_INVALID_SCENE` if an index has no vertex, or if there are more than 2^30
-// primitives. Coordinates that are not finite are refused when an index is built.
+// `p2m_scene_free`. Fails with `P2M_STATUS_INVALID_SCENE` if an index has no vertex, if a coordinate of a primitive is not
+// finite, or if there are more than 2^30 primitives.
 enum p2m_status p2m_scene_new(const struct p2m_array *positions,
                               const struct p2m_array *triangles,
                               const struct p2m_array *segments,

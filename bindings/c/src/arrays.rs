@@ -61,7 +61,8 @@ fn stride_of<R>(name: &str, data: *const c_void, count: usize, stride: usize, al
         return Err(invalid(format!("{name}: the array is null")));
     }
     if !data.addr().is_multiple_of(alignment) || !stride.is_multiple_of(alignment) || stride < size_of::<R>() {
-        return Err(invalid(format!("{name}: the address or the stride does not fit the type of the numbers")));
+        let size = size_of::<R>();
+        return Err(invalid(format!("{name}: the address or the stride does not fit rows of {size} bytes")));
     }
     let bytes = count.checked_mul(stride).filter(|bytes| isize::try_from(*bytes).is_ok());
     match bytes.and_then(|bytes| data.addr().checked_add(bytes)) {
@@ -287,6 +288,11 @@ pub(crate) unsafe fn path(pointer: *const c_char) -> Call<PathBuf> {
     }
     // SAFETY: the caller vouches for the string.
     Ok(PathBuf::from(unsafe { text(pointer, "path") }?))
+}
+
+/// Returns a largest distance, which is a number.
+pub(crate) fn length(length: f64, name: &str) -> Call<f64> {
+    if length.is_nan() { Err(invalid(format!("{name}: not a number"))) } else { Ok(length) }
 }
 
 /// Returns finite coordinates.

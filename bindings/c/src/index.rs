@@ -63,13 +63,7 @@ fn invalid_scene(error: impl std::fmt::Display) -> Failure {
     Failure(Status::InvalidScene, error.to_string())
 }
 
-fn load_failure(error: &LoadError) -> Failure {
-    Failure(Status::File, error.to_string())
-}
-
 /// Builds an index over a scene. `options` may be null. Free the index with `p2m_index_free`.
-///
-/// Fails with `P2M_STATUS_INVALID_SCENE` for coordinates that are not finite.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn p2m_index_build(
     scene: *const Scene,
@@ -209,11 +203,12 @@ pub unsafe extern "C" fn p2m_index_load(path: *const c_char, index: *mut *mut In
 }
 
 fn load(path: &std::path::Path) -> Call<Index> {
-    let file = SavedFile::open(path).map_err(|error| load_failure(&error))?;
-    let reader = file.checked().map_err(|error| load_failure(&error))?;
-    let scene = Arc::new(load_scene(reader).map_err(|error| load_failure(&error))?);
+    let failed = |error: LoadError| Failure(Status::File, error.to_string());
+    let file = SavedFile::open(path).map_err(failed)?;
+    let reader = file.checked().map_err(failed)?;
+    let scene = Arc::new(load_scene(reader).map_err(failed)?);
     let missing = || Failure(Status::File, "the file has no index".to_owned());
     let backend = BackendEntry::from_saved(reader).ok_or_else(missing)?;
-    let built = backend.load(Arc::clone(&scene.soup), reader).map_err(|error| load_failure(&error))?;
+    let built = backend.load(Arc::clone(&scene.soup), reader).map_err(failed)?;
     Ok(Index::new(scene, built, backend))
 }

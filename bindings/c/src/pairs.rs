@@ -1,6 +1,6 @@
 //! The nearest points of two scenes.
 
-use crate::arrays::{reference, write};
+use crate::arrays::{length, reference, write};
 use crate::index::Index;
 use crate::queries::P2M_NO_PRIMITIVE;
 use crate::status::{Call, Status, invalid, run};
@@ -73,11 +73,12 @@ pub unsafe extern "C" fn p2m_closest_pair(
     // SAFETY: the caller vouches for the pointers.
     run(|| unsafe {
         let (first, second) = (reference(first, "first")?.pairs()?, reference(second, "second")?.pairs()?);
-        let mut options = PairOptions::default().with_max_distance(max_distance);
+        let mut options = PairOptions::default().with_max_distance(length(max_distance, "max_distance")?);
         if !motion.is_null() {
             let matrix = reference(motion.cast::<[f64; 16]>(), "motion")?;
             options = options.with_motion(isometry_of(matrix)?);
         }
+        write(pair, "pair", Pair::NONE)?;
         let found = (&first).closest_pair(second, &options);
         write(pair, "pair", found.as_ref().map_or(Pair::NONE, Pair::from))
     })

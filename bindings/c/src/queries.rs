@@ -1,6 +1,6 @@
 //! Queries by points.
 
-use crate::arrays::{Array, Column, Out, point, reference, with_coordinates, write};
+use crate::arrays::{Array, Column, Out, length, point, reference, with_coordinates, write};
 use crate::index::Index;
 use crate::status::{Call, Failure, Status, invalid, run};
 use crate::threads::{Cancel, with_threads};
@@ -120,10 +120,7 @@ impl<'a> Batch<'a> {
             (options, has_cancel.then(|| reference(options.cancel, "cancel")).transpose()?)
         };
         let BatchOptions { max_distance, threads, keeps_order, .. } = options;
-        if max_distance.is_nan() {
-            return Err(invalid("max_distance: not a number"));
-        }
-        Ok(Self { max_distance, threads, keeps_order, cancel })
+        Ok(Self { max_distance: length(max_distance, "max_distance")?, threads, keeps_order, cancel })
     }
 
     /// The options of the library.
@@ -167,7 +164,8 @@ pub unsafe extern "C" fn p2m_closest_point(
     // SAFETY: the caller vouches for the pointers.
     run(|| unsafe {
         let (index, query) = (reference(index, "index")?, point(query, "query")?);
-        let options = QueryOptions::default().with_max_distance(max_distance);
+        let options = QueryOptions::default().with_max_distance(length(max_distance, "max_distance")?);
+        write(answer, "answer", Closest::NONE)?;
         let found = index.built.index.closest_point_with(&query, &options);
         write(answer, "answer", found.as_ref().map_or(Closest::NONE, Closest::from))
     })
@@ -175,7 +173,7 @@ pub unsafe extern "C" fn p2m_closest_point(
 
 /// Finds the closest point to each of many queries, and writes the columns. Queries are rows of three finite coordinates,
 /// `float` or `double`. `options` may be null. The answers are those of single queries, bit for bit, whatever the number
-/// of threads.
+/// of threads; only a lower bound may differ in its last digits.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn p2m_closest_points(
     index: *const Index,
@@ -290,7 +288,10 @@ pub unsafe extern "C" fn p2m_k_nearest(
     run(|| unsafe {
         let (index, query) = (reference(index, "index")?, point(query, "query")?);
         write(count, "count", 0)?;
-        let found = index.built.index.try_k_nearest(&query, k, max_distance);
+        if k > 0 {
+            write(answers, "answers", Closest::NONE)?;
+        }
+        let found = index.built.index.try_k_nearest(&query, k, length(max_distance, "max_distance")?);
         let found = found.map_err(|error| Failure(Status::OutOfMemory, error.to_string()))?;
         for (i, closest) in found.iter().enumerate() {
             write(answers.wrapping_add(i), "answers", Closest::from(closest))?;
@@ -317,7 +318,7 @@ pub unsafe extern "C" fn p2m_visit_within(
     run(|| unsafe {
         let (index, query) = (reference(index, "index")?, point(query, "query")?);
         let visit = visit.ok_or_else(|| invalid("visit: the function is null"))?;
-        let _ = index.built.index.visit_within(&query, radius, &mut |closest| {
+        let _ = index.built.index.visit_within(&query, length(radius, "radius")?, &mut |closest| {
             let answer = Closest::from(closest);
             let is_last = visit(&raw const answer, user) != 0;
             if is_last { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
@@ -337,6 +338,6 @@ pub unsafe extern "C" fn p2m_is_any_within(
     // SAFETY: the caller vouches for the pointers.
     run(|| unsafe {
         let (index, query) = (reference(index, "index")?, point(query, "query")?);
-        write(is_within, "is_within", index.built.index.is_any_within(&query, radius))
+        write(is_within, "is_within", index.built.index.is_any_within(&query, length(radius, "radius")?))
     })
 }

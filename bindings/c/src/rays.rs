@@ -141,12 +141,12 @@ pub unsafe extern "C" fn p2m_first_hits(
             return Ok(());
         }
         reference(rays, "rays")?;
+        write(hits, "hits", Hit::NONE)?;
         if count.checked_mul(size_of::<Ray>()).is_none_or(|bytes| isize::try_from(bytes).is_err()) {
             return Err(invalid(format!("rays: {count} of them do not fit into memory")));
         }
         let rays: Call<Vec<_>> = std::slice::from_raw_parts(rays, count).iter().map(Ray::checked).collect();
         let rays = rays?;
-        write(hits, "hits", Hit::NONE)?;
         let found = with_threads(batch.threads, |is_parallel| {
             let origin = |ray: &p2m_core::Ray| Point3::from(ray.origin);
             batch::map(&rays, &batch.options(is_parallel), origin, |ray| {

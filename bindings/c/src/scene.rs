@@ -28,8 +28,8 @@ unsafe fn optional(array: *const Array, name: &str) -> Call<Array> {
 /// indices of vertices each, `segments` two, and `points` one. Each of the last three may be null.
 ///
 /// The ids of primitives are their numbers: first all triangles, then all segments, then all points. Free the scene with
-/// `p2m_scene_free`. Fails with `P2M_STATUS_INVALID_SCENE` if an index has no vertex, or if there are more than 2^30
-/// primitives. Coordinates that are not finite are refused when an index is built.
+/// `p2m_scene_free`. Fails with `P2M_STATUS_INVALID_SCENE` if an index has no vertex, if a coordinate of a primitive is not
+/// finite, or if there are more than 2^30 primitives.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn p2m_scene_new(
     positions: *const Array,

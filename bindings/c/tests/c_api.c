@@ -184,9 +184,7 @@ static void single(const p2m_index *index) {
     FAILS(INVALID_ARGUMENT, "finite", p2m_closest_point(index, nan, 1, &answer));
     FAILS(INVALID_ARGUMENT, "answer", p2m_closest_point(index, QUERIES[0], 1, NULL));
     FAILS(INVALID_ARGUMENT, "misaligned", p2m_closest_point(index, QUERIES[0], 1, (void *)((char *)near + 1)));
-    // Nothing else follows from a NaN than from a distance below 0: there is no answer.
-    OK(p2m_closest_point(index, QUERIES[0], NAN, &answer));
-    CHECK(answer.primitive == P2M_NO_PRIMITIVE);
+    FAILS(INVALID_ARGUMENT, "not a number", p2m_closest_point(index, QUERIES[0], NAN, &answer));
 
     size_t count = 99;
     OK(p2m_k_nearest(index, QUERIES[0], 3, INFINITY, near, &count));
@@ -195,7 +193,8 @@ static void single(const p2m_index *index) {
     CHECK(count == 1);
     OK(p2m_k_nearest(index, QUERIES[0], 0, 2, NULL, &count));
     CHECK(count == 0);
-    FAILS(INVALID_ARGUMENT, "answers", p2m_k_nearest(index, QUERIES[0], 3, INFINITY, NULL, &count));
+    FAILS(INVALID_ARGUMENT, "answers", p2m_k_nearest(index, QUERIES[0], 3, 0, NULL, &count));
+    FAILS(INVALID_ARGUMENT, "not a number", p2m_k_nearest(index, QUERIES[0], 3, NAN, near, &count));
     FAILS(INVALID_ARGUMENT, "count", p2m_k_nearest(index, QUERIES[0], 3, INFINITY, near, NULL));
 
     int calls = 0;
@@ -210,6 +209,8 @@ static void single(const p2m_index *index) {
     OK(p2m_is_any_within(index, QUERIES[0], 1.9, &is_within));
     CHECK(!is_within);
     FAILS(INVALID_ARGUMENT, "is_within", p2m_is_any_within(index, QUERIES[0], 2, NULL));
+    FAILS(INVALID_ARGUMENT, "not a number", p2m_is_any_within(index, QUERIES[0], NAN, &is_within));
+    FAILS(INVALID_ARGUMENT, "not a number", p2m_visit_within(index, QUERIES[0], NAN, count_three, &calls));
 }
 
 static void batches(const p2m_index *index) {
