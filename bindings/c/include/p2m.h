@@ -2,9 +2,9 @@
 //
 // Every function that can fail returns a p2m_status. After a failure p2m_last_error() has its message, for each thread.
 // Objects are made by functions that write a pointer to them, and freed by the function that ends in _free. Scenes and
-// indexes never change, so any number of threads may use one at a time. Pointers are checked for null and alignment; that
+// indexes never change, so any number of threads may use one at the same time. Pointers are checked for null and alignment; that
 // they point to as much memory as counts and strides say is up to the caller. Lengths are in units of the scene. Nothing is
-// kept of the memory of the caller after a call, and outputs must not overlap. No function throws.
+// kept of the memory of the caller after a call. Outputs must overlap neither each other nor inputs. No function throws.
 
 
 #ifndef P2M_H
@@ -32,7 +32,7 @@ typedef enum p2m_status {
   P2M_STATUS_UNSUPPORTED = 3,
   // A file could not be read or written.
   P2M_STATUS_FILE = 4,
-  // The memory for the answers could not be had.
+  // Not enough memory for threads, or for the k nearest.
   P2M_STATUS_OUT_OF_MEMORY = 5,
   // The call was cancelled.
   P2M_STATUS_CANCELLED = 6,
@@ -58,7 +58,8 @@ typedef struct p2m_cancel p2m_cancel;
 // An index over a scene, which it keeps alive. It never changes, and any number of threads may query it.
 typedef struct p2m_index p2m_index;
 
-// A scene: triangles, segments and points that share vertices. It never changes, and any number of threads may use it.
+// A scene: triangles, segments and points that share vertices. It never changes, and any number of threads may use
+// it.
 typedef struct p2m_scene p2m_scene;
 
 // The options of a build. All zeros are the defaults.
@@ -79,7 +80,7 @@ typedef struct p2m_index_options {
 typedef struct p2m_pair {
   // The distance, which is 0 if the scenes intersect; infinity if there is no answer.
   double distance;
-  // A number that the true distance is not below.
+  // A lower bound of the true distance; infinity if there is no answer.
   double lower_bound;
   // The point of each scene, that of the second one after its motion.
   double points[2][3];
@@ -97,11 +98,10 @@ typedef struct p2m_pair {
 typedef struct p2m_batch_options {
   // The largest distance of an answer, in units of the scene. It may be infinite.
   double max_distance;
-  // The number of threads; 0 stands for all processors, and 1 for the calling thread. A process that was forked after
-  // its parent has used several threads has to use 1.
+  // The number of threads; 0 stands for all processors, and 1 for the calling thread.
   uint32_t threads;
-  // Whether queries are answered in their order, because it is coherent in space already.
-  bool keeps_order;
+  // 1 if queries are answered in their order, because it is coherent in space already, and 0 otherwise.
+  uint8_t keeps_order;
   // A switch that ends the call before its time, or null.
   const struct p2m_cancel *cancel;
 } p2m_batch_options;
@@ -112,14 +112,14 @@ typedef struct p2m_closest {
   double distance;
   // The closest point.
   double point[3];
-  // The weights of the vertices of the primitive, of which the point is the sum.
+  // The weights of the vertices of the primitive: the point is the sum of the vertices times these.
   double weights[3];
-  // A number that the true distance is not below.
+  // A lower bound of the true distance; without an answer infinity, or in batches about the largest distance.
   double lower_bound;
   // The id of the primitive, of equally near ones the lowest; `P2M_NO_PRIMITIVE` if there is no answer.
   uint32_t primitive;
-  // What the point lies on: 0 to 2 for a vertex, 3 to 5 for the edge from vertex 0, 1 or 2 to the next one, 6 for the
-  // face, and 255 if there is no answer.
+  // What the point lies on: 0 to 2 for a vertex, 3 to 5 for the edge from vertex 0, 1 or 2 to the next one, 6 for
+  // the face, and 255 if there is no answer.
   uint8_t feature;
 } p2m_closest;
 
@@ -129,7 +129,7 @@ typedef struct p2m_array {
   const void *data;
   // The number of rows.
   size_t count;
-  // The number of bytes from one row to the next; 0 if rows follow each other without a gap.
+  // The bytes from one row to the next, a multiple of the size of a number; 0 if there are no gaps between rows.
   size_t stride;
   // The type of the numbers, one of the values of `p2m_scalar`.
   uint32_t scalar;
@@ -143,8 +143,8 @@ typedef struct p2m_column {
   size_t stride;
 } p2m_column;
 
-// The columns of the answers of a batch. Each has a row for each query, or `data` null if it is not wanted. All fields are
-// as in `p2m_closest`. A column that is not wanted costs nothing.
+// The columns of the answers of a batch. Each has a row for each query, or `data` null if it is not wanted. All
+// fields are as in `p2m_closest`. A column that is not wanted costs nothing.
 typedef struct p2m_columns {
   // `double`.
   struct p2m_column distance;
@@ -158,8 +158,8 @@ typedef struct p2m_columns {
   struct p2m_column weights;
   // `double`.
   struct p2m_column lower_bound;
-  // `double[3]`: the normal of the surface at the closest point, of length 1. On edges and at vertices it is the mean of
-  // the faces there by their angles. It is NaN where there is none.
+  // `double[3]`: the normal of the surface at the closest point, of length 1. On edges and at vertices it is the
+  // mean of the faces there by their angles. It is NaN where there is none.
   struct p2m_column normal;
 } p2m_columns;
 
@@ -195,8 +195,8 @@ typedef struct p2m_hit {
   int8_t side;
 } p2m_hit;
 
-// A function that receives a hit, and the pointer that its caller was given. If it returns anything but 0, no more hits
-// follow.
+// A function that receives a hit, and the pointer that its caller was given. If it returns anything but 0, no more
+// hits follow.
 typedef int (*p2m_visit_hit)(const struct p2m_hit *hit, void *user);
 
 #ifdef __cplusplus
@@ -208,8 +208,9 @@ enum p2m_status p2m_index_build(const struct p2m_scene *scene,
                                 const struct p2m_index_options *options,
                                 struct p2m_index **index);
 
-// Makes an index over another scene with as many primitives, in the same order, from one whose backend has a refit: a tree
-// keeps its shape, and its boxes are computed anew. The old index stays as it is. Free the new one with `p2m_index_free`.
+// Makes an index over another scene with as many primitives, in the same order, from one whose backend has a refit: a
+// tree keeps its shape, and its boxes are computed anew. The old index stays as it is. Free the new one with
+// `p2m_index_free`.
 enum p2m_status p2m_index_refit(const struct p2m_index *index,
                                 const struct p2m_scene *scene,
                                 struct p2m_index **refitted);
@@ -232,9 +233,9 @@ enum p2m_status p2m_index_save(const struct p2m_index *index, const char *path);
 // Loads an index with its scene from a file that any binding of p2m has saved. Free it with `p2m_index_free`.
 enum p2m_status p2m_index_load(const char *path, struct p2m_index **index);
 
-// Finds the nearest points of two scenes within a distance, which may be infinite. `motion` moves the second scene: the 16
-// numbers of a matrix of 4 x 4, row by row, which is a rotation and a translation; null for none. If there is no answer,
-// `pair` has `P2M_NO_PRIMITIVE`.
+// Finds the nearest points of two scenes within a distance, which may be infinite. `motion` moves the second scene:
+// the 16 numbers of a matrix of 4 x 4, row by row, which is a rotation and a translation; null for none. If there is
+// no answer, `pair` has `P2M_NO_PRIMITIVE`.
 enum p2m_status p2m_closest_pair(const struct p2m_index *first,
                                  const struct p2m_index *second,
                                  const double *motion,
@@ -244,22 +245,22 @@ enum p2m_status p2m_closest_pair(const struct p2m_index *first,
 // Returns the default options of a batch: any distance, all processors, any order, no switch.
 struct p2m_batch_options p2m_batch_options_default(void);
 
-// Finds the closest point of the scene to `query`, which are three finite coordinates, within a distance, which may be
-// infinite. If there is none, `answer` has `P2M_NO_PRIMITIVE`.
+// Finds the closest point of the scene to `query`, three finite coordinates, among those within a distance, which may
+// be infinite. If there is none, `answer` has `P2M_NO_PRIMITIVE`.
 enum p2m_status p2m_closest_point(const struct p2m_index *index,
                                   const double *query,
                                   double max_distance,
                                   struct p2m_closest *answer);
 
-// Finds the closest point to each of many queries, and writes the columns. Queries are rows of three finite coordinates,
-// `float` or `double`. `options` may be null. The answers are those of single queries, bit for bit, whatever the number
-// of threads; only a lower bound may differ in its last digits.
+// Finds the closest point to each of many queries, and writes the columns. Queries are rows of three finite
+// coordinates, `float` or `double`. `options` may be null. The answers are those of single queries, bit for bit,
+// whatever the number of threads; only a lower bound may differ in its last digits.
 enum p2m_status p2m_closest_points(const struct p2m_index *index,
                                    const struct p2m_array *queries,
                                    const struct p2m_batch_options *options,
                                    const struct p2m_columns *columns);
 
-// Finds the `k` nearest primitives within a distance of three finite coordinates, the nearest first. Writes them to
+// Finds the `k` primitives that are nearest to a point within a distance, the nearest first. Writes them to
 // `answers`, which has room for `k`, and their number to `count`.
 enum p2m_status p2m_k_nearest(const struct p2m_index *index,
                               const double *query,
@@ -268,15 +269,15 @@ enum p2m_status p2m_k_nearest(const struct p2m_index *index,
                               struct p2m_closest *answers,
                               size_t *count);
 
-// Calls a function for each primitive within a radius of three finite coordinates, in any order, until it returns
-// anything but 0. The function must not throw or jump out.
+// Calls a function for each primitive within a radius of a point, in any order, until it returns anything but 0. The
+// function must not throw or jump out.
 enum p2m_status p2m_visit_within(const struct p2m_index *index,
                                  const double *query,
                                  double radius,
                                  p2m_visit_closest visit,
                                  void *user);
 
-// Writes whether any primitive is within a radius of three finite coordinates.
+// Writes whether any primitive is within a radius of a point.
 enum p2m_status p2m_is_any_within(const struct p2m_index *index,
                                   const double *query,
                                   double radius,
@@ -288,34 +289,35 @@ enum p2m_status p2m_first_hit(const struct p2m_index *index, const struct p2m_ra
 // Writes whether a ray hits anything.
 enum p2m_status p2m_any_hit(const struct p2m_index *index, const struct p2m_ray *ray, bool *is_hit);
 
-// Calls a function for all hits of a ray, one for each primitive that is hit, the nearest first. The function must not
-// throw or jump out.
+// Calls a function for all hits of a ray, one for each primitive that is hit, the nearest first. The function must
+// not throw or jump out.
 enum p2m_status p2m_visit_hits(const struct p2m_index *index,
                                const struct p2m_ray *ray,
                                p2m_visit_hit visit,
                                void *user);
 
-// Finds the first hits of many rays. `hits` has room for `count`. Of the options, which may be null, the largest distance
-// is not used.
+// Finds the first hits of many rays. `hits` has room for `count`. Of the options, which may be null, the largest
+// distance is not used.
 enum p2m_status p2m_first_hits(const struct p2m_index *index,
                                const struct p2m_ray *rays,
                                size_t count,
                                const struct p2m_batch_options *options,
                                struct p2m_hit *hits);
 
-// Makes a scene of arrays, which are copied. `positions` are the vertices, of type float or double. `triangles` have three
-// indices of vertices each, `segments` two, and `points` one. Each of the last three may be null.
+// Makes a scene of arrays, which are copied. `positions` are the vertices, of type float or double. `triangles` have
+// three indices of vertices each, `segments` two, and `points` one. Each of the last three may be null.
 //
-// The ids of primitives are their numbers: first all triangles, then all segments, then all points. Free the scene with
-// `p2m_scene_free`. Fails with `P2M_STATUS_INVALID_SCENE` if an index has no vertex, if a coordinate of a primitive is not
-// finite, or if there are more than 2^30 primitives.
+// The ids of primitives are their numbers: first all triangles, then all segments, then all points. Free the scene
+// with `p2m_scene_free`. Fails with `P2M_STATUS_INVALID_SCENE` if an index has no vertex, if a coordinate of a
+// primitive is not finite, or if there are more than 2^30 primitives.
 enum p2m_status p2m_scene_new(const struct p2m_array *positions,
                               const struct p2m_array *triangles,
                               const struct p2m_array *segments,
                               const struct p2m_array *points,
                               struct p2m_scene **scene);
 
-// Reads a scene from a file: OBJ, PLY, STL, OFF, a point cloud, or a saved index. Free it with `p2m_scene_free`.
+// Reads a scene from a file: OBJ, PLY, STL, OFF, a point cloud, or a saved index. The path is UTF-8. Free it with
+// `p2m_scene_free`.
 enum p2m_status p2m_scene_read(const char *path,
                                struct p2m_scene **scene);
 
@@ -328,16 +330,17 @@ enum p2m_status p2m_scene_counts(const struct p2m_scene *scene, size_t (*counts)
 // Writes the lowest and the highest coordinates of all primitives. Fails for a scene without primitives.
 enum p2m_status p2m_scene_bounds(const struct p2m_scene *scene, double (*low)[3], double (*high)[3]);
 
-// Writes the signed distance of each query, of type `double`: negative inside of the surface that the triangles form, and
-// positive outside. It is NaN where nothing is within the largest distance, and where the sign is not determined. The first
-// call for an index prepares the signs.
+// Writes the signed distance of each query, of type `double`: negative inside of the surface that the triangles form,
+// and positive outside. It is NaN where nothing is within the largest distance, and where the sign is not determined.
+// The first call for an index prepares the signs. Fails with `P2M_STATUS_UNSUPPORTED` for a scene with segments or
+// points. Without any triangle and without a largest distance it is infinity.
 enum p2m_status p2m_signed_distances(const struct p2m_index *index,
                                      const struct p2m_array *queries,
                                      const struct p2m_batch_options *options,
                                      struct p2m_column distances);
 
-// Writes whether each query is inside of the surface that the triangles form, as 1 or 0 of type `uint8_t`. Of the options
-// the largest distance is not used.
+// Writes whether each query is inside of the surface that the triangles form, as 1 or 0 of type `uint8_t`. Of the
+// options the largest distance is not used.
 enum p2m_status p2m_contains(const struct p2m_index *index,
                              const struct p2m_array *queries,
                              const struct p2m_batch_options *options,
@@ -353,8 +356,8 @@ const char *p2m_version(void);
 // Makes a switch that is not set. Returns a pointer for `p2m_cancel_free`.
 struct p2m_cancel *p2m_cancel_new(void);
 
-// Sets a switch: calls that have it end with `P2M_STATUS_CANCELLED`, those that run within milliseconds. Any thread and
-// any signal handler may call this. Null is ignored.
+// Sets a switch: calls that have it end with `P2M_STATUS_CANCELLED`, within milliseconds once they search. Any thread
+// and any signal handler may call this. Null is ignored.
 void p2m_cancel_set(const struct p2m_cancel *cancel);
 
 // Frees a switch that no call has. Null is ignored.

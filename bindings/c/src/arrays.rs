@@ -26,7 +26,7 @@ pub struct Array {
     pub data: *const c_void,
     /// The number of rows.
     pub count: usize,
-    /// The number of bytes from one row to the next; 0 if rows follow each other without a gap.
+    /// The bytes from one row to the next, a multiple of the size of a number; 0 if there are no gaps between rows.
     pub stride: usize,
     /// The type of the numbers, one of the values of `p2m_scalar`.
     pub scalar: u32,
@@ -42,7 +42,6 @@ pub struct Column {
     pub stride: usize,
 }
 
-/// A type of numbers in arrays.
 pub(crate) trait Number: Copy {
     const SCALAR: Scalar;
 }
@@ -114,7 +113,7 @@ impl Array {
     /// Returns rows of indices.
     ///
     /// # Safety
-    /// As for [`rows`](Self::rows).
+    /// The conditions of [`rows`](Self::rows) have to hold.
     pub(crate) unsafe fn indices<const N: usize>(&self, name: &str) -> Call<Vec<[u32; N]>> {
         if self.count == 0 {
             return Ok(Vec::new());
@@ -126,27 +125,25 @@ impl Array {
         if self.has::<u64>() {
             // SAFETY: the caller vouches for the memory.
             let rows = unsafe { self.rows::<u64, N>(name) }?;
-            // No scene has as many vertices as the largest number, so it stays out of range.
+            if rows.iter().flatten().any(|i| u32::try_from(*i).is_err()) {
+                return Err(invalid(format!("{name}: an index has more than 32 bits")));
+            }
             return Ok(rows.iter().map(|row| row.map(|i| u32::try_from(i).unwrap_or(u32::MAX))).collect());
         }
         Err(invalid(format!("{name}: indices are of type P2M_SCALAR_U32 or P2M_SCALAR_U64")))
     }
 }
 
-/// Evaluates an expression with the rows of three coordinates of an array, in either type.
+/// Evaluates an expression with the rows of three coordinates of an array, in either type. It is unsafe as `rows` is.
 macro_rules! with_coordinates {
     ($array:expr, $name:expr, $rows:ident => $body:expr) => {{
         let array: &$crate::arrays::Array = $array;
         if array.count == 0 || array.has::<f64>() {
-            #[allow(unused_unsafe, reason = "some callers are unsafe already")]
-            // SAFETY: the caller of the function vouches for the memory.
-            let rows = unsafe { array.rows::<f64, 3>($name) }?;
+            let rows = array.rows::<f64, 3>($name)?;
             let $rows: &[[f64; 3]] = &rows;
             $body
         } else if array.has::<f32>() {
-            #[allow(unused_unsafe, reason = "some callers are unsafe already")]
-            // SAFETY: the caller of the function vouches for the memory.
-            let rows = unsafe { array.rows::<f32, 3>($name) }?;
+            let rows = array.rows::<f32, 3>($name)?;
             let $rows: &[[f32; 3]] = &rows;
             $body
         } else {
@@ -272,22 +269,13 @@ pub(crate) unsafe fn text<'a>(pointer: *const c_char, name: &str) -> Call<&'a st
     text.to_str().map_err(|_| invalid(format!("{name}: the string is not UTF-8")))
 }
 
-/// Returns a path. On systems other than Windows it may be any bytes.
+/// Returns a path, which is a string of UTF-8.
 ///
 /// # Safety
-/// As for [`text`].
+/// As for [`text`], a pointer that is not null has to point to a string that ends with a zero.
 pub(crate) unsafe fn path(pointer: *const c_char) -> Call<PathBuf> {
-    #[cfg(unix)]
-    {
-        use std::os::unix::ffi::OsStrExt;
-        if !pointer.is_null() {
-            // SAFETY: the pointer is not null, and the caller vouches for the rest.
-            let bytes = unsafe { CStr::from_ptr(pointer) }.to_bytes();
-            return Ok(PathBuf::from(std::ffi::OsStr::from_bytes(bytes)));
-        }
-    }
     // SAFETY: the caller vouches for the string.
-    Ok(PathBuf::from(unsafe { text(pointer, "path") }?))
+    unsafe { text(pointer, "path") }.map(PathBuf::from)
 }
 
 /// Returns a largest distance, which is a number.

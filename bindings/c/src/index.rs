@@ -4,7 +4,7 @@ use crate::arrays::{give, path, reference, take_back, text};
 use crate::scene::Scene;
 use crate::signs::Signs;
 use crate::status::{Call, Failure, Status, invalid, run};
-use crate::threads::with_threads;
+use crate::threads::in_pool;
 use p2m_backends::{BACKENDS, BackendEntry, BuildSettings, BuiltIndex, Choice, KdopDirections, QueryRegion, Workload};
 use p2m_core::PrimitiveSet;
 use p2m_core::storage::{LoadError, SavedFile, Writer};
@@ -108,8 +108,8 @@ fn build(scene: Arc<p2m_mixed::Scene>, name: &str, options: &IndexOptions) -> Ca
     let soup = Arc::clone(&scene.soup);
     let resolution = (options.resolution > 0.0).then_some(options.resolution);
     let queries = options.queries;
-    let built = with_threads(options.threads, move |is_parallel| {
-        let settings = BuildSettings::default().with_parallel(is_parallel);
+    let built = in_pool(options.threads, move || {
+        let settings = BuildSettings::default();
         let settings = settings.with_kdop_directions(directions).with_resolution(resolution);
         if is_auto && queries > 0 {
             let choice = Choice::new(soup, &Workload::new(queries, QueryRegion::SceneBox))?;
@@ -122,8 +122,9 @@ fn build(scene: Arc<p2m_mixed::Scene>, name: &str, options: &IndexOptions) -> Ca
     Ok(Index::new(scene, built, entry))
 }
 
-/// Makes an index over another scene with as many primitives, in the same order, from one whose backend has a refit: a tree
-/// keeps its shape, and its boxes are computed anew. The old index stays as it is. Free the new one with `p2m_index_free`.
+/// Makes an index over another scene with as many primitives, in the same order, from one whose backend has a refit: a
+/// tree keeps its shape, and its boxes are computed anew. The old index stays as it is. Free the new one with
+/// `p2m_index_free`.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn p2m_index_refit(
     index: *const Index,
@@ -134,7 +135,7 @@ pub unsafe extern "C" fn p2m_index_refit(
     run(|| unsafe {
         give(refitted, "refitted", || {
             let (index, scene) = (reference(index, "index")?, Arc::clone(&reference(scene, "scene")?.shared));
-            let refit = index.built.index.refitted(Arc::clone(&scene.soup));
+            let refit = in_pool(0, || index.built.index.refitted(Arc::clone(&scene.soup)))?;
             let refit = refit.ok_or_else(|| index.unsupported("has no refit", |backend| backend.has_refit))?;
             let built = BuiltIndex { index: refit.map_err(invalid_scene)?, ..index.built.clone() };
             Ok(Index::new(scene, built, index.backend))
@@ -197,7 +198,7 @@ pub unsafe extern "C" fn p2m_index_load(path: *const c_char, index: *mut *mut In
         give(index, "index", || {
             let path = self::path(path)?;
             let of_path = |Failure(status, text)| Failure(status, format!("{}: {text}", path.display()));
-            load(&path).map_err(of_path)
+            in_pool(0, || load(&path))?.map_err(of_path)
         })
     })
 }

@@ -12,7 +12,7 @@ use p2m_core::pair::{ClosestPair, PairOptions, PairQuery, is_rotation_and_transl
 pub struct Pair {
     /// The distance, which is 0 if the scenes intersect; infinity if there is no answer.
     pub distance: f64,
-    /// A number that the true distance is not below.
+    /// A lower bound of the true distance; infinity if there is no answer.
     pub lower_bound: f64,
     /// The point of each scene, that of the second one after its motion.
     pub points: [[f64; 3]; 2],
@@ -59,9 +59,9 @@ impl Index {
     }
 }
 
-/// Finds the nearest points of two scenes within a distance, which may be infinite. `motion` moves the second scene: the 16
-/// numbers of a matrix of 4 x 4, row by row, which is a rotation and a translation; null for none. If there is no answer,
-/// `pair` has `P2M_NO_PRIMITIVE`.
+/// Finds the nearest points of two scenes within a distance, which may be infinite. `motion` moves the second scene:
+/// the 16 numbers of a matrix of 4 x 4, row by row, which is a rotation and a translation; null for none. If there is
+/// no answer, `pair` has `P2M_NO_PRIMITIVE`.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn p2m_closest_pair(
     first: *const Index,
@@ -86,8 +86,8 @@ pub unsafe extern "C" fn p2m_closest_pair(
 
 /// Returns the motion of a matrix, which has to be a rotation and a translation.
 fn isometry_of(matrix: &[f64; 16]) -> Call<nalgebra::Isometry3<f64>> {
-    let last_row = matrix[12..].iter().map(|x| x.to_bits());
-    if !is_rotation_and_translation(matrix) || !last_row.eq([0.0f64, 0.0, 0.0, 1.0].map(f64::to_bits)) {
+    let is_affine = matrix[12..].iter().zip([0.0, 0.0, 0.0, 1.0]).all(|(x, expected)| x - expected == 0.0);
+    if !is_affine || !is_rotation_and_translation(matrix) {
         return Err(invalid("motion: the matrix is not a rotation and a translation"));
     }
     Ok(isometry_of_matrix(matrix))

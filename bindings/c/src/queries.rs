@@ -3,7 +3,7 @@
 use crate::arrays::{Array, Column, Out, length, point, reference, with_coordinates, write};
 use crate::index::Index;
 use crate::status::{Call, Failure, Status, invalid, run};
-use crate::threads::{Cancel, with_threads};
+use crate::threads::{Cancel, in_pool, with_threads};
 use nalgebra::Point3;
 use p2m_core::batch::{self, ClosestColumns, Interruptible, closest_columns_into};
 use p2m_core::{Feature, Position, PrimitiveId, QueryOptions};
@@ -18,14 +18,14 @@ pub struct Closest {
     pub distance: f64,
     /// The closest point.
     pub point: [f64; 3],
-    /// The weights of the vertices of the primitive, of which the point is the sum.
+    /// The weights of the vertices of the primitive: the point is the sum of the vertices times these.
     pub weights: [f64; 3],
-    /// A number that the true distance is not below.
+    /// A lower bound of the true distance; without an answer infinity, or in batches about the largest distance.
     pub lower_bound: f64,
     /// The id of the primitive, of equally near ones the lowest; `P2M_NO_PRIMITIVE` if there is no answer.
     pub primitive: u32,
-    /// What the point lies on: 0 to 2 for a vertex, 3 to 5 for the edge from vertex 0, 1 or 2 to the next one, 6 for the
-    /// face, and 255 if there is no answer.
+    /// What the point lies on: 0 to 2 for a vertex, 3 to 5 for the edge from vertex 0, 1 or 2 to the next one, 6 for
+    /// the face, and 255 if there is no answer.
     pub feature: u8,
 }
 
@@ -62,11 +62,10 @@ impl From<&p2m_core::Closest<f64>> for Closest {
 pub struct BatchOptions {
     /// The largest distance of an answer, in units of the scene. It may be infinite.
     pub max_distance: f64,
-    /// The number of threads; 0 stands for all processors, and 1 for the calling thread. A process that was forked after
-    /// its parent has used several threads has to use 1.
+    /// The number of threads; 0 stands for all processors, and 1 for the calling thread.
     pub threads: u32,
-    /// Whether queries are answered in their order, because it is coherent in space already.
-    pub keeps_order: bool,
+    /// 1 if queries are answered in their order, because it is coherent in space already, and 0 otherwise.
+    pub keeps_order: u8,
     /// A switch that ends the call before its time, or null.
     pub cancel: *const Cancel,
 }
@@ -74,11 +73,11 @@ pub struct BatchOptions {
 /// Returns the default options of a batch: any distance, all processors, any order, no switch.
 #[unsafe(no_mangle)]
 pub extern "C" fn p2m_batch_options_default() -> BatchOptions {
-    BatchOptions { max_distance: f64::INFINITY, threads: 0, keeps_order: false, cancel: std::ptr::null() }
+    BatchOptions { max_distance: f64::INFINITY, threads: 0, keeps_order: 0, cancel: std::ptr::null() }
 }
 
-/// The columns of the answers of a batch. Each has a row for each query, or `data` null if it is not wanted. All fields are
-/// as in `p2m_closest`. A column that is not wanted costs nothing.
+/// The columns of the answers of a batch. Each has a row for each query, or `data` null if it is not wanted. All
+/// fields are as in `p2m_closest`. A column that is not wanted costs nothing.
 #[repr(C)]
 #[derive(Clone, Copy, Debug)]
 pub struct Columns {
@@ -94,12 +93,11 @@ pub struct Columns {
     pub weights: Column,
     /// `double`.
     pub lower_bound: Column,
-    /// `double[3]`: the normal of the surface at the closest point, of length 1. On edges and at vertices it is the mean of
-    /// the faces there by their angles. It is NaN where there is none.
+    /// `double[3]`: the normal of the surface at the closest point, of length 1. On edges and at vertices it is the
+    /// mean of the faces there by their angles. It is NaN where there is none.
     pub normal: Column,
 }
 
-/// A batch with its options.
 pub(crate) struct Batch<'a> {
     pub(crate) max_distance: f64,
     pub(crate) threads: u32,
@@ -119,11 +117,11 @@ impl<'a> Batch<'a> {
             let has_cancel = !options.cancel.is_null();
             (options, has_cancel.then(|| reference(options.cancel, "cancel")).transpose()?)
         };
-        let BatchOptions { max_distance, threads, keeps_order, .. } = options;
+        let BatchOptions { max_distance, threads, .. } = options;
+        let keeps_order = options.keeps_order != 0;
         Ok(Self { max_distance: length(max_distance, "max_distance")?, threads, keeps_order, cancel })
     }
 
-    /// The options of the library.
     pub(crate) fn options(&self, is_parallel: bool) -> batch::BatchOptions {
         batch::BatchOptions::default().with_parallel(is_parallel).with_reorder(!self.keeps_order)
     }
@@ -152,8 +150,8 @@ pub(crate) fn check_finite<P: Position<f64>>(name: &str, rows: &[P]) -> Call {
     }
 }
 
-/// Finds the closest point of the scene to `query`, which are three finite coordinates, within a distance, which may be
-/// infinite. If there is none, `answer` has `P2M_NO_PRIMITIVE`.
+/// Finds the closest point of the scene to `query`, three finite coordinates, among those within a distance, which may
+/// be infinite. If there is none, `answer` has `P2M_NO_PRIMITIVE`.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn p2m_closest_point(
     index: *const Index,
@@ -171,9 +169,9 @@ pub unsafe extern "C" fn p2m_closest_point(
     })
 }
 
-/// Finds the closest point to each of many queries, and writes the columns. Queries are rows of three finite coordinates,
-/// `float` or `double`. `options` may be null. The answers are those of single queries, bit for bit, whatever the number
-/// of threads; only a lower bound may differ in its last digits.
+/// Finds the closest point to each of many queries, and writes the columns. Queries are rows of three finite
+/// coordinates, `float` or `double`. `options` may be null. The answers are those of single queries, bit for bit,
+/// whatever the number of threads; only a lower bound may differ in its last digits.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn p2m_closest_points(
     index: *const Index,
@@ -256,24 +254,19 @@ unsafe fn closest_points<P: Position<f64> + Sync>(
         }
     }
     if let Some(out) = &mut normal {
-        let normals = index.normals();
+        let normals = in_pool(batch.threads, || index.normals())?;
         for (normal, (id, feature)) in out.values().iter_mut().zip(found) {
             *normal = id.and_then(|id| normals.at(id, *feature)).map_or([f64::NAN; 3], Into::into);
         }
     }
-    finish([distance, lower_bound]);
-    finish([point, weights, normal]);
-    finish([primitive]);
-    finish([feature]);
+    [distance, lower_bound].into_iter().flatten().for_each(Out::finish);
+    [point, weights, normal].into_iter().flatten().for_each(Out::finish);
+    primitive.into_iter().for_each(Out::finish);
+    feature.into_iter().for_each(Out::finish);
     Ok(())
 }
 
-/// Writes what is not in place yet.
-fn finish<R: Copy, const N: usize>(columns: [Option<Out<'_, R>>; N]) {
-    columns.into_iter().flatten().for_each(Out::finish);
-}
-
-/// Finds the `k` nearest primitives within a distance of three finite coordinates, the nearest first. Writes them to
+/// Finds the `k` primitives that are nearest to a point within a distance, the nearest first. Writes them to
 /// `answers`, which has room for `k`, and their number to `count`.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn p2m_k_nearest(
@@ -304,8 +297,8 @@ pub unsafe extern "C" fn p2m_k_nearest(
 /// search ends.
 pub type VisitClosest = Option<unsafe extern "C" fn(answer: *const Closest, user: *mut c_void) -> c_int>;
 
-/// Calls a function for each primitive within a radius of three finite coordinates, in any order, until it returns
-/// anything but 0. The function must not throw or jump out.
+/// Calls a function for each primitive within a radius of a point, in any order, until it returns anything but 0. The
+/// function must not throw or jump out.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn p2m_visit_within(
     index: *const Index,
@@ -327,7 +320,7 @@ pub unsafe extern "C" fn p2m_visit_within(
     })
 }
 
-/// Writes whether any primitive is within a radius of three finite coordinates.
+/// Writes whether any primitive is within a radius of a point.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn p2m_is_any_within(
     index: *const Index,

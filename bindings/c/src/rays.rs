@@ -98,12 +98,12 @@ pub unsafe extern "C" fn p2m_any_hit(index: *const Index, ray: *const Ray, is_hi
     })
 }
 
-/// A function that receives a hit, and the pointer that its caller was given. If it returns anything but 0, no more hits
-/// follow.
+/// A function that receives a hit, and the pointer that its caller was given. If it returns anything but 0, no more
+/// hits follow.
 pub type VisitHit = Option<unsafe extern "C" fn(hit: *const Hit, user: *mut c_void) -> c_int>;
 
-/// Calls a function for all hits of a ray, one for each primitive that is hit, the nearest first. The function must not
-/// throw or jump out.
+/// Calls a function for all hits of a ray, one for each primitive that is hit, the nearest first. The function must
+/// not throw or jump out.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn p2m_visit_hits(
     index: *const Index,
@@ -124,8 +124,8 @@ pub unsafe extern "C" fn p2m_visit_hits(
     })
 }
 
-/// Finds the first hits of many rays. `hits` has room for `count`. Of the options, which may be null, the largest distance
-/// is not used.
+/// Finds the first hits of many rays. `hits` has room for `count`. Of the options, which may be null, the largest
+/// distance is not used.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn p2m_first_hits(
     index: *const Index,

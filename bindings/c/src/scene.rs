@@ -2,12 +2,14 @@
 
 use crate::arrays::{Array, give, path, reference, take_back, with_coordinates, write};
 use crate::status::{Call, Failure, Status, invalid, run};
+use crate::threads::in_pool;
 use nalgebra::Point3;
 use p2m_core::{Element, Position, PrimitiveSet, Soup};
 use std::ffi::c_char;
 use std::sync::Arc;
 
-/// A scene: triangles, segments and points that share vertices. It never changes, and any number of threads may use it.
+/// A scene: triangles, segments and points that share vertices. It never changes, and any number of threads may use
+/// it.
 pub struct Scene {
     pub(crate) shared: Arc<p2m_mixed::Scene>,
 }
@@ -24,12 +26,12 @@ unsafe fn optional(array: *const Array, name: &str) -> Call<Array> {
     unsafe { reference(array, name) }.copied()
 }
 
-/// Makes a scene of arrays, which are copied. `positions` are the vertices, of type float or double. `triangles` have three
-/// indices of vertices each, `segments` two, and `points` one. Each of the last three may be null.
+/// Makes a scene of arrays, which are copied. `positions` are the vertices, of type float or double. `triangles` have
+/// three indices of vertices each, `segments` two, and `points` one. Each of the last three may be null.
 ///
-/// The ids of primitives are their numbers: first all triangles, then all segments, then all points. Free the scene with
-/// `p2m_scene_free`. Fails with `P2M_STATUS_INVALID_SCENE` if an index has no vertex, if a coordinate of a primitive is not
-/// finite, or if there are more than 2^30 primitives.
+/// The ids of primitives are their numbers: first all triangles, then all segments, then all points. Free the scene
+/// with `p2m_scene_free`. Fails with `P2M_STATUS_INVALID_SCENE` if an index has no vertex, if a coordinate of a
+/// primitive is not finite, or if there are more than 2^30 primitives.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn p2m_scene_new(
     positions: *const Array,
@@ -62,14 +64,15 @@ pub unsafe extern "C" fn p2m_scene_new(
     })
 }
 
-/// Reads a scene from a file: OBJ, PLY, STL, OFF, a point cloud, or a saved index. Free it with `p2m_scene_free`.
+/// Reads a scene from a file: OBJ, PLY, STL, OFF, a point cloud, or a saved index. The path is UTF-8. Free it with
+/// `p2m_scene_free`.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn p2m_scene_read(path: *const c_char, scene: *mut *mut Scene) -> Status {
     // SAFETY: the caller vouches for the pointers.
     run(|| unsafe {
         give(scene, "scene", || {
             let path = self::path(path)?;
-            let read = p2m_mixed::read_scene(&path);
+            let read = in_pool(0, || p2m_mixed::read_scene(&path))?;
             let read = read.map_err(|error| Failure(Status::File, format!("{}: {error}", path.display())))?;
             Ok(Scene { shared: Arc::new(read) })
         })

@@ -4,7 +4,7 @@ use crate::arrays::{Array, Column, Out, reference, with_coordinates};
 use crate::index::Index;
 use crate::queries::{Batch, BatchOptions, check_finite};
 use crate::status::{Call, Failure, Status, invalid, run};
-use crate::threads::{Cancel, with_threads};
+use crate::threads::{Cancel, in_pool, with_threads};
 use nalgebra::Point3;
 use p2m_core::batch::{self, Interruptible};
 use p2m_core::{AnyIndex, ClosestPoint, Position, QueryOptions, Soup};
@@ -16,12 +16,12 @@ pub(crate) type Signs = SignedDistance<Arc<dyn AnyIndex>, Arc<Soup<f64>>>;
 
 impl Index {
     /// Returns the signs of the scene, which the first call prepares.
-    fn signs(&self) -> Call<&Signs> {
+    fn signs(&self, threads: u32) -> Call<&Signs> {
         let prepare = || {
             let (index, soup) = (Arc::clone(&self.built.index), Arc::clone(&self.scene.soup));
             SignedDistance::new(index, soup).map_err(|error| error.to_string())
         };
-        let signs = self.signs.get_or_init(prepare);
+        let signs = in_pool(threads, || self.signs.get_or_init(prepare))?;
         signs.as_ref().map_err(|error| Failure(Status::Unsupported, error.clone()))
     }
 }
@@ -41,11 +41,14 @@ unsafe fn answer<V: Copy + Send>(
     // SAFETY: the caller vouches for the pointers.
     let (index, queries, batch) =
         unsafe { (reference(index, "index")?, reference(queries, "queries")?, Batch::new(options)?) };
-    let signs = index.signs()?;
-    let points: Vec<Point3<f64>> = with_coordinates!(queries, "queries", rows => {
-        check_finite("queries", rows)?;
-        rows.iter().map(Position::<f64>::point).collect()
-    });
+    let signs = index.signs(batch.threads)?;
+    // SAFETY: the caller vouches for the memory.
+    let points: Vec<Point3<f64>> = unsafe {
+        with_coordinates!(queries, "queries", rows => {
+            check_finite("queries", rows)?;
+            rows.iter().map(Position::<f64>::point).collect()
+        })
+    };
     if points.is_empty() {
         return Ok(());
     }
@@ -62,9 +65,10 @@ unsafe fn answer<V: Copy + Send>(
     Ok(())
 }
 
-/// Writes the signed distance of each query, of type `double`: negative inside of the surface that the triangles form, and
-/// positive outside. It is NaN where nothing is within the largest distance, and where the sign is not determined. The first
-/// call for an index prepares the signs.
+/// Writes the signed distance of each query, of type `double`: negative inside of the surface that the triangles form,
+/// and positive outside. It is NaN where nothing is within the largest distance, and where the sign is not determined.
+/// The first call for an index prepares the signs. Fails with `P2M_STATUS_UNSUPPORTED` for a scene with segments or
+/// points. Without any triangle and without a largest distance it is infinity.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn p2m_signed_distances(
     index: *const Index,
@@ -84,8 +88,8 @@ pub unsafe extern "C" fn p2m_signed_distances(
     })
 }
 
-/// Writes whether each query is inside of the surface that the triangles form, as 1 or 0 of type `uint8_t`. Of the options
-/// the largest distance is not used.
+/// Writes whether each query is inside of the surface that the triangles form, as 1 or 0 of type `uint8_t`. Of the
+/// options the largest distance is not used.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn p2m_contains(
     index: *const Index,

@@ -21,7 +21,7 @@ pub enum Status {
     Unsupported = 3,
     /// A file could not be read or written.
     File = 4,
-    /// The memory for the answers could not be had.
+    /// Not enough memory for threads, or for the k nearest.
     OutOfMemory = 5,
     /// The call was cancelled.
     Cancelled = 6,
@@ -39,7 +39,6 @@ thread_local! {
     static MESSAGE: RefCell<CString> = RefCell::default();
 }
 
-/// Returns a failure for an argument.
 pub(crate) fn invalid(message: impl Display) -> Failure {
     Failure(Status::InvalidArgument, message.to_string())
 }
@@ -57,7 +56,6 @@ pub(crate) fn run(call: impl FnOnce() -> Call) -> Status {
     }
 }
 
-/// Returns the text of a panic.
 fn text_of(panic: &(dyn Any + Send)) -> String {
     let text = panic.downcast_ref::<String>().map(String::as_str).or_else(|| panic.downcast_ref::<&str>().copied());
     text.unwrap_or("a panic without a message").to_owned()

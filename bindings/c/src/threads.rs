@@ -4,7 +4,7 @@ use crate::status::{Call, Failure, Status, invalid};
 use rayon::{ThreadPool, ThreadPoolBuilder};
 use std::collections::HashMap;
 use std::sync::atomic::{AtomicBool, Ordering};
-use std::sync::{Arc, Mutex, OnceLock, PoisonError};
+use std::sync::{Arc, Mutex, PoisonError};
 
 /// The largest number of threads of a call.
 const MAX_THREADS: u32 = 1024;
@@ -20,8 +20,8 @@ pub extern "C" fn p2m_cancel_new() -> *mut Cancel {
     Box::into_raw(Box::new(Cancel { is_set: AtomicBool::new(false) }))
 }
 
-/// Sets a switch: calls that have it end with `P2M_STATUS_CANCELLED`, those that run within milliseconds. Any thread and
-/// any signal handler may call this. Null is ignored.
+/// Sets a switch: calls that have it end with `P2M_STATUS_CANCELLED`, within milliseconds once they search. Any thread
+/// and any signal handler may call this. Null is ignored.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn p2m_cancel_set(cancel: *const Cancel) {
     // SAFETY: the pointer is null, or one of `p2m_cancel_new`.
@@ -49,18 +49,28 @@ impl Cancel {
     }
 }
 
-/// Runs work with a number of threads, and tells it whether it may use several. 0 stands for all processors, and with 1
-/// the work runs on the calling thread.
+/// Runs a batch with a number of threads, and tells it whether it may use several. 0 stands for all processors, and
+/// with 1 the batch runs on the calling thread.
 pub(crate) fn with_threads<R: Send>(threads: u32, work: impl FnOnce(bool) -> R + Send) -> Call<R> {
-    static POOLS: OnceLock<Mutex<HashMap<usize, Arc<ThreadPool>>>> = OnceLock::new();
-    if threads == 1 {
-        return Ok(work(false));
-    }
+    if threads == 1 { Ok(work(false)) } else { in_pool(threads, || work(true)) }
+}
+
+/// Runs work on a pool of so many threads; 0 stands for all processors. The global pool is never used, because a
+/// process that was forked has none of the threads of its parent: pools belong to one process, and a child makes its
+/// own.
+pub(crate) fn in_pool<R: Send>(threads: u32, work: impl FnOnce() -> R + Send) -> Call<R> {
+    static POOLS: Mutex<Option<(u32, Pools)>> = Mutex::new(None);
     if threads > MAX_THREADS {
         return Err(invalid(format!("threads: {threads} is more than {MAX_THREADS}")));
     }
     let threads = if threads == 0 { p2m_core::engine::default_threads() } else { threads as usize };
-    let mut pools = POOLS.get_or_init(Mutex::default).lock().unwrap_or_else(PoisonError::into_inner);
+    let mut guard = POOLS.lock().unwrap_or_else(PoisonError::into_inner);
+    let process = std::process::id();
+    if guard.as_ref().is_some_and(|(owner, _)| *owner != process) {
+        // To end the pools of the parent would wait for threads that do not exist here.
+        std::mem::forget(guard.take());
+    }
+    let (_, pools) = guard.get_or_insert_with(|| (process, Pools::new()));
     let pool = match pools.get(&threads) {
         Some(pool) => Arc::clone(pool),
         None => {
@@ -69,6 +79,9 @@ pub(crate) fn with_threads<R: Send>(threads: u32, work: impl FnOnce(bool) -> R +
             Arc::clone(pools.entry(threads).or_insert(Arc::new(pool)))
         }
     };
-    drop(pools);
-    Ok(pool.install(|| work(true)))
+    drop(guard);
+    Ok(pool.install(work))
 }
+
+/// The pools of a process by their number of threads. They live as long as the process.
+type Pools = HashMap<usize, Arc<ThreadPool>>;

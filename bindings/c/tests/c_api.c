@@ -60,7 +60,7 @@ static void scenes(const p2m_scene *scene) {
     p2m_scene *none = NULL;
     p2m_array bad = positions;
     segment[1] = (uint64_t)1 << 40;
-    FAILS(INVALID_SCENE, "", p2m_scene_new(&positions, NULL, &segments, NULL, &none));
+    FAILS(INVALID_ARGUMENT, "32 bits", p2m_scene_new(&positions, NULL, &segments, NULL, &none));
     bad.stride = 6;
     FAILS(INVALID_ARGUMENT, "stride", p2m_scene_new(&bad, NULL, NULL, NULL, &none));
     bad = ARRAY((const char *)rows + 1, 3, F32);

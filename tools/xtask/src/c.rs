@@ -15,12 +15,14 @@ const SANITIZERS: [&str; 3] = ["-g", "-fsanitize=address,undefined", "-fno-sanit
 const COMPARED: (&str, &str) = ("scenes/knot_and_cables.obj", "1000000");
 
 /// Compares the header with what cbindgen makes, compiles and runs the tests with the compilers that are here, and
-/// compares the answers. With `--build` it writes the header, with a cbindgen that it installs.
+/// compares the answers. With `--build` it writes the header, with a cbindgen that it installs. With `--fuzz` it calls all
+/// functions with random arguments for so many seconds.
 pub(crate) fn check(arguments: &[String]) -> Outcome {
     match arguments {
         [] => header(false)?,
         [argument] if argument == "--build" => return header(true),
-        _ => return Err("the only argument of this task is --build".to_owned()),
+        [argument, seconds] if argument == "--fuzz" => return fuzz(seconds),
+        _ => return Err("the arguments of this task are --build, or --fuzz and a number of seconds".to_owned()),
     }
     if cfg!(windows) {
         return skip("the C interface is tested with gcc and clang");
@@ -108,4 +110,18 @@ fn header(builds: bool) -> Outcome {
     } else {
         Err(format!("{HEADER} is not that of its sources: run `cargo xtask c --build`"))
     }
+}
+
+/// Runs the fuzz target of the interface, with a library in which overflows are errors.
+fn fuzz(seconds: &str) -> Outcome {
+    cargo(&["build", "--locked", "--package", "p2m-c"], &[])?;
+    let target = absolute_target_folder()?;
+    let (libraries, corpus) = (text(&target.join("debug"))?, target.join("c-corpus"));
+    fs::create_dir_all(&corpus).map_err(|error| format!("{}: {error}", corpus.display()))?;
+    let program = text(&target.join("c-tests-fuzz"))?;
+    let options = ["-g", "-O1", "-fsanitize=fuzzer,address,undefined", "-fno-sanitize-recover=undefined"];
+    let library = ["-L", &libraries, "-lp2m", "-lm", &format!("-Wl,-rpath,{libraries}")];
+    let source = [&format!("{CRATE}/tests/fuzz.c"), "-o", &program];
+    run("clang", &[&options[..], &WARNINGS, &source, &library].concat(), &[])?;
+    run(&program, &[&format!("-max_total_time={seconds}"), "-max_len=4096", &text(&corpus)?], &[])
 }

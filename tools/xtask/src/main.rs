@@ -84,7 +84,7 @@ const TASKS: [Task; 21] = [
     Task {
         name: "wasm",
         arguments: "[--all | --build]",
-        about: "Check the library for WebAssembly, where a compiler can be found or downloaded, compare its answers, or build the module",
+        about: "Check the library for WebAssembly with a compiler that is here or downloaded, compare answers, or build the module",
         run: wasm::run,
     },
     Task {
@@ -131,8 +131,8 @@ const TASKS: [Task; 21] = [
     },
     Task {
         name: "c",
-        arguments: "[--build]",
-        about: "Check the header of the C interface and test it from C and C++, or write the header",
+        arguments: "[--build | --fuzz SECONDS]",
+        about: "Check the header of the C interface and test it from C and C++, write the header, or fuzz it",
         run: c::check,
     },
     Task {
