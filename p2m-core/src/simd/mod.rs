@@ -48,8 +48,9 @@ mod tests {
 
     #[inline(always)]
     fn chunks<L: Lanes>(x: &[[f32; 16]; 4], integers16: &[u16; 16]) -> (Vec<[f32; 16]>, Vec<u32>) {
-        let mut numbers = vec![[0.0; 16]; 13];
-        let mut masks = vec![0; 1];
+        let mut numbers = vec![[0.0; 16]; 16];
+        let mut masks = vec![0; 2];
+        let nan = L::splat(f32::NAN);
         let mut least = f32::INFINITY;
         let mut at = 0;
         while at < 16 {
@@ -67,13 +68,17 @@ mod tests {
                 a.mul_add(b, c),
                 a.reciprocal(),
                 L::difference_of_products(integers, integers.add(L::splat(1.0)), integers.sub(L::splat(2.0)), integers),
-                L::splat(f32::NAN).min(a),
-                L::splat(f32::NAN).max(a),
+                nan.min(a),
+                nan.max(a),
+                a.min(nan),
+                a.max(nan),
+                a.if_below(nan, c, d),
             ];
             for (to, from) in numbers.iter_mut().zip(results) {
                 from.store(&mut to[at..]);
             }
             masks[0] |= a.at_most(b) << at;
+            masks[1] |= a.at_most(nan) << at;
             least = least.min(a.smallest());
             at += L::LEN;
         }
@@ -92,22 +97,30 @@ mod tests {
     }
 
     #[test]
+    fn processors_have_the_lanes_of_their_architecture() {
+        let has = |name: &str| Isa::available().iter().any(|isa| isa.name() == name);
+        assert!(has("portable") && has("neon") == cfg!(target_arch = "aarch64"));
+    }
+
+    #[test]
     fn every_instruction_set_computes_what_the_portable_one_does() {
         for case in p2m_testkit::cases(2000, 1000) {
             let (x, integers16) = numbers(case);
             let (expected, expected_masks) = Isa::PORTABLE.run(All(&x, &integers16));
+            assert_eq!(expected_masks[1], 0, "comparisons with NaN are false");
             for isa in Isa::available() {
                 let (found, masks) = isa.run(All(&x, &integers16));
                 assert_eq!(masks, expected_masks, "{isa}");
                 for (method, (found, expected)) in found.iter().zip(&expected).enumerate() {
                     for lane in 0..16 {
                         let (f, e) = (f64::from(found[lane]), f64::from(expected[lane]));
-                        let exact = match method % 14 {
+                        let exact = match method % 17 {
                             // The operation may be fused or not; the products are at most 1e30 in size.
                             8 => (f - e).abs() <= 2f64.powi(-23) * (f64::from(x[0][lane] * x[1][lane]).abs() + f.abs()),
                             9 => x[0][lane] == 0.0 || (f - e).abs() <= 2f64.powi(-21) * e.abs(),
                             10 => (f - e).abs() <= 2f64.powi(-22) * e.abs(),
-                            _ => f == e,
+                            // Zeros have signs.
+                            _ => found[lane].to_bits() == expected[lane].to_bits(),
                         };
                         assert!(exact, "{isa}: method {method} lane {lane}: {f} for {e}");
                     }
