@@ -47,8 +47,9 @@ impl Index {
     }
 
     /// Returns the normals of the scene, which are computed at the first call.
-    pub(crate) fn normals(&self) -> &Normals {
-        self.normals.get_or_init(|| Normals::new(&self.scene.soup))
+    pub(crate) fn normals(&self, threads: u32) -> &Normals {
+        let compute = || Normals::new(&self.scene.soup);
+        self.normals.get_or_init(|| in_pool(threads, compute).unwrap_or_else(|_| compute()))
     }
 
     /// Returns the failure for a kind of query that the backend does not answer.
@@ -83,7 +84,6 @@ pub unsafe extern "C" fn p2m_index_build(
     })
 }
 
-/// Builds an index of a backend.
 fn build(scene: Arc<p2m_mixed::Scene>, name: &str, options: &IndexOptions) -> Call<Index> {
     let is_auto = name == "auto";
     let entry = if is_auto { Some(BackendEntry::default_backend()) } else { BackendEntry::find(name) };

@@ -3,7 +3,7 @@
 use crate::arrays::{Array, Column, Out, length, point, reference, with_coordinates, write};
 use crate::index::Index;
 use crate::status::{Call, Failure, Status, invalid, run};
-use crate::threads::{Cancel, in_pool, with_threads};
+use crate::threads::{Cancel, checked, with_threads};
 use nalgebra::Point3;
 use p2m_core::batch::{self, ClosestColumns, Interruptible, closest_columns_into};
 use p2m_core::{Feature, Position, PrimitiveId, QueryOptions};
@@ -119,7 +119,12 @@ impl<'a> Batch<'a> {
         };
         let BatchOptions { max_distance, threads, .. } = options;
         let keeps_order = options.keeps_order != 0;
-        Ok(Self { max_distance: length(max_distance, "max_distance")?, threads, keeps_order, cancel })
+        Ok(Self {
+            max_distance: length(max_distance, "max_distance")?,
+            threads: checked(threads)?,
+            keeps_order,
+            cancel,
+        })
     }
 
     pub(crate) fn options(&self, is_parallel: bool) -> batch::BatchOptions {
@@ -254,7 +259,7 @@ unsafe fn closest_points<P: Position<f64> + Sync>(
         }
     }
     if let Some(out) = &mut normal {
-        let normals = in_pool(batch.threads, || index.normals())?;
+        let normals = index.normals(batch.threads);
         for (normal, (id, feature)) in out.values().iter_mut().zip(found) {
             *normal = id.and_then(|id| normals.at(id, *feature)).map_or([f64::NAN; 3], Into::into);
         }

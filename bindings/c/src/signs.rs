@@ -11,7 +11,6 @@ use p2m_core::{AnyIndex, ClosestPoint, Position, QueryOptions, Soup};
 use p2m_field::sign::SignedDistance;
 use std::sync::Arc;
 
-/// An index with signs.
 pub(crate) type Signs = SignedDistance<Arc<dyn AnyIndex>, Arc<Soup<f64>>>;
 
 impl Index {
@@ -21,7 +20,8 @@ impl Index {
             let (index, soup) = (Arc::clone(&self.built.index), Arc::clone(&self.scene.soup));
             SignedDistance::new(index, soup).map_err(|error| error.to_string())
         };
-        let signs = in_pool(threads, || self.signs.get_or_init(prepare))?;
+        // The lock is taken outside of the pool, whose threads may take over work of others that wait for it.
+        let signs = self.signs.get_or_init(|| in_pool(threads, prepare).unwrap_or_else(|failure| Err(failure.1)));
         signs.as_ref().map_err(|error| Failure(Status::Unsupported, error.clone()))
     }
 }

@@ -1,6 +1,5 @@
 //! The status of a call and the message of a failure.
 
-use std::any::Any;
 use std::cell::RefCell;
 use std::ffi::{CString, c_char};
 use std::fmt::Display;
@@ -29,10 +28,8 @@ pub enum Status {
     Internal = 7,
 }
 
-/// A failure with its message.
 pub(crate) struct Failure(pub(crate) Status, pub(crate) String);
 
-/// The result of a call.
 pub(crate) type Call<T = ()> = Result<T, Failure>;
 
 thread_local! {
@@ -52,13 +49,11 @@ pub(crate) fn run(call: impl FnOnce() -> Call) -> Status {
     match catch_unwind(AssertUnwindSafe(call)) {
         Ok(Ok(())) => Status::Ok,
         Ok(Err(failure)) => failed(failure),
-        Err(panic) => failed(Failure(Status::Internal, text_of(&*panic))),
+        Err(panic) => {
+            let text = panic.downcast_ref::<String>().map(String::as_str).or(panic.downcast_ref::<&str>().copied());
+            failed(Failure(Status::Internal, text.unwrap_or("a panic without a message").to_owned()))
+        }
     }
-}
-
-fn text_of(panic: &(dyn Any + Send)) -> String {
-    let text = panic.downcast_ref::<String>().map(String::as_str).or_else(|| panic.downcast_ref::<&str>().copied());
-    text.unwrap_or("a panic without a message").to_owned()
 }
 
 /// Returns the message of the last call of this thread that failed; the empty string if none has. The string is valid

@@ -40,13 +40,14 @@ pub unsafe extern "C" fn p2m_cancel_free(cancel: *mut Cancel) {
 impl Cancel {
     /// Fails if the switch is set.
     pub(crate) fn check(cancel: Option<&Self>) -> Call {
-        match cancel {
-            Some(cancel) if cancel.is_set.load(Ordering::Relaxed) => {
-                Err(Failure(Status::Cancelled, "the call was cancelled".to_owned()))
-            }
-            _ => Ok(()),
-        }
+        let is_set = cancel.is_some_and(|cancel| cancel.is_set.load(Ordering::Relaxed));
+        if is_set { Err(Failure(Status::Cancelled, "the call was cancelled".to_owned())) } else { Ok(()) }
     }
+}
+
+/// Returns a number of threads that is not absurd.
+pub(crate) fn checked(threads: u32) -> Call<u32> {
+    if threads > MAX_THREADS { Err(invalid(format!("threads: more than {MAX_THREADS}"))) } else { Ok(threads) }
 }
 
 /// Runs a batch with a number of threads, and tells it whether it may use several. 0 stands for all processors, and
@@ -60,9 +61,7 @@ pub(crate) fn with_threads<R: Send>(threads: u32, work: impl FnOnce(bool) -> R +
 /// own.
 pub(crate) fn in_pool<R: Send>(threads: u32, work: impl FnOnce() -> R + Send) -> Call<R> {
     static POOLS: Mutex<Option<(u32, Pools)>> = Mutex::new(None);
-    if threads > MAX_THREADS {
-        return Err(invalid(format!("threads: {threads} is more than {MAX_THREADS}")));
-    }
+    let threads = checked(threads)?;
     let threads = if threads == 0 { p2m_core::engine::default_threads() } else { threads as usize };
     let mut guard = POOLS.lock().unwrap_or_else(PoisonError::into_inner);
     let process = std::process::id();
