@@ -1,4 +1,4 @@
-// How programs with other libraries become programs with p2m. The lines before are in comments.
+// How programs with other libraries become programs with p2m. The calls that they replace are named in comments.
 #include "p2m.hpp"
 
 #include <iostream>
@@ -7,15 +7,12 @@ using Vector = std::array<double, 3>;
 using Positions = std::vector<Vector>;
 using Faces = std::vector<std::array<int, 3>>;
 
-// CGAL, AABB_tree/AABB_triangle_3_example.cpp
+// CGAL's AABB_tree: its constructor, closest_point, squared_distance, and number_of_intersected_primitives
 static void cgal(const Positions& v, const Faces& f) {
-    const auto tree = p2m::Index::build(p2m::Scene::make(v, f)); // Tree tree(triangles.begin(), triangles.end());
-    const Vector query{2, 2, 2};                                 // Point point_query(2.0, 2.0, 2.0);
-    const auto nearest = tree.closest_point(query);              // Point p = tree.closest_point(point_query);
-    std::cout << nearest.point[0] << '\n';
-    // std::cout << tree.squared_distance(point_query);
-    std::cout << nearest.distance * nearest.distance << '\n';
-    // tree.number_of_intersected_primitives(ray_query)
+    const auto tree = p2m::Index::build(p2m::Scene::make(v, f));
+    const Vector query{2, 2, 2};
+    const auto nearest = tree.closest_point(query);
+    std::cout << nearest.point[0] << ' ' << nearest.distance * nearest.distance << '\n';
     int hits = 0;
     tree.visit_hits(p2m::ray(query, {-1, -1, -1}), [&](const p2m::Hit&) { ++hits; });
     std::cout << hits << '\n';
