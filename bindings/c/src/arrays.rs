@@ -208,14 +208,18 @@ impl Column {
     }
 }
 
+/// Fails if a pointer cannot point to a value. What it points to is not looked at.
+pub(crate) fn check_pointer<T>(pointer: *const T, name: &str) -> Call {
+    let is_usable = !pointer.is_null() && pointer.is_aligned();
+    is_usable.then_some(()).ok_or_else(|| invalid(format!("{name}: the pointer is null or misaligned")))
+}
+
 /// Returns what a pointer points to.
 ///
 /// # Safety
 /// A pointer that is not null has to point to a valid value that lives long enough.
 pub(crate) unsafe fn reference<'a, T>(pointer: *const T, name: &str) -> Call<&'a T> {
-    if pointer.is_null() || !pointer.is_aligned() {
-        return Err(invalid(format!("{name}: the pointer is null or misaligned")));
-    }
+    check_pointer(pointer, name)?;
     // SAFETY: the pointer is aligned and not null, and the caller vouches for the rest.
     Ok(unsafe { &*pointer })
 }
@@ -225,9 +229,7 @@ pub(crate) unsafe fn reference<'a, T>(pointer: *const T, name: &str) -> Call<&'a
 /// # Safety
 /// A pointer that is not null has to point to memory for the value.
 pub(crate) unsafe fn write<T>(pointer: *mut T, name: &str, value: T) -> Call {
-    if pointer.is_null() || !pointer.is_aligned() {
-        return Err(invalid(format!("{name}: the pointer is null or misaligned")));
-    }
+    check_pointer(pointer, name)?;
     // SAFETY: the pointer is aligned and not null, and the caller vouches for the rest.
     unsafe { pointer.write(value) };
     Ok(())
@@ -272,7 +274,7 @@ pub(crate) unsafe fn text<'a>(pointer: *const c_char, name: &str) -> Call<&'a st
 /// Returns a path, which is a string of UTF-8.
 ///
 /// # Safety
-/// As for [`text`], a pointer that is not null has to point to a string that ends with a zero.
+/// A pointer that is not null has to point to a string that ends with a zero.
 pub(crate) unsafe fn path(pointer: *const c_char) -> Call<PathBuf> {
     // SAFETY: the caller vouches for the string.
     unsafe { text(pointer, "path") }.map(PathBuf::from)

@@ -1,6 +1,6 @@
 //! The nearest points of two scenes.
 
-use crate::arrays::{length, reference, write};
+use crate::arrays::{check_pointer, length, reference, write};
 use crate::index::Index;
 use crate::queries::P2M_NO_PRIMITIVE;
 use crate::status::{Call, Status, invalid, run};
@@ -78,7 +78,7 @@ pub unsafe extern "C" fn p2m_closest_pair(
             let matrix = reference(motion.cast::<[f64; 16]>(), "motion")?;
             options = options.with_motion(isometry_of(matrix)?);
         }
-        write(pair, "pair", Pair::NONE)?;
+        check_pointer(pair, "pair")?;
         let found = (&first).closest_pair(second, &options);
         write(pair, "pair", found.as_ref().map_or(Pair::NONE, Pair::from))
     })

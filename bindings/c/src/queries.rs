@@ -1,6 +1,6 @@
 //! Queries by points.
 
-use crate::arrays::{Array, Column, Out, length, point, reference, with_coordinates, write};
+use crate::arrays::{Array, Column, Out, check_pointer, length, point, reference, with_coordinates, write};
 use crate::index::Index;
 use crate::status::{Call, Failure, Status, invalid, run};
 use crate::threads::{Cancel, checked, with_threads};
@@ -117,12 +117,10 @@ impl<'a> Batch<'a> {
             let has_cancel = !options.cancel.is_null();
             (options, has_cancel.then(|| reference(options.cancel, "cancel")).transpose()?)
         };
-        let BatchOptions { max_distance, threads, .. } = options;
-        let keeps_order = options.keeps_order != 0;
         Ok(Self {
-            max_distance: length(max_distance, "max_distance")?,
-            threads: checked(threads)?,
-            keeps_order,
+            max_distance: length(options.max_distance, "max_distance")?,
+            threads: checked(options.threads)?,
+            keeps_order: options.keeps_order != 0,
             cancel,
         })
     }
@@ -168,7 +166,7 @@ pub unsafe extern "C" fn p2m_closest_point(
     run(|| unsafe {
         let (index, query) = (reference(index, "index")?, point(query, "query")?);
         let options = QueryOptions::default().with_max_distance(length(max_distance, "max_distance")?);
-        write(answer, "answer", Closest::NONE)?;
+        check_pointer(answer, "answer")?;
         let found = index.built.index.closest_point_with(&query, &options);
         write(answer, "answer", found.as_ref().map_or(Closest::NONE, Closest::from))
     })
@@ -287,7 +285,7 @@ pub unsafe extern "C" fn p2m_k_nearest(
         let (index, query) = (reference(index, "index")?, point(query, "query")?);
         write(count, "count", 0)?;
         if k > 0 {
-            write(answers, "answers", Closest::NONE)?;
+            check_pointer(answers, "answers")?;
         }
         let found = index.built.index.try_k_nearest(&query, k, length(max_distance, "max_distance")?);
         let found = found.map_err(|error| Failure(Status::OutOfMemory, error.to_string()))?;

@@ -1,6 +1,6 @@
 //! Rays.
 
-use crate::arrays::{reference, write};
+use crate::arrays::{check_pointer, reference, write};
 use crate::index::Index;
 use crate::queries::{Batch, BatchOptions, P2M_NO_PRIMITIVE};
 use crate::status::{Call, Status, invalid, run};
@@ -141,7 +141,7 @@ pub unsafe extern "C" fn p2m_first_hits(
             return Ok(());
         }
         reference(rays, "rays")?;
-        write(hits, "hits", Hit::NONE)?;
+        check_pointer(hits, "hits")?;
         if count.checked_mul(size_of::<Ray>()).is_none_or(|bytes| isize::try_from(bytes).is_err()) {
             return Err(invalid(format!("rays: {count} of them do not fit into memory")));
         }

@@ -119,7 +119,7 @@ fn count_instructions(tools: &Tools) -> Outcome {
     Ok(())
 }
 
-/// What compiles, links and runs programs for ARM.
+/// The programs that compile, link and run programs for ARM.
 struct Tools {
     /// The packages with the compiler and the linker, unless those of the machine do it.
     packages: Option<Packages>,

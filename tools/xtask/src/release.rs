@@ -3,7 +3,7 @@
 use crate::python::{environment, find_python, install_needed, text};
 use crate::{Outcome, run};
 
-/// What makes wheels. Zig links wheels for Linux to a C library that is as old as the tag of the wheel says.
+/// The Python package that makes wheels. Zig links wheels for Linux to a C library that is as old as the tag of the wheel says.
 const NEEDED: [&str; 1] = ["maturin[zig]>=1.10,<2"];
 
 /// Builds for a target, by default that of the machine.
