@@ -15,6 +15,9 @@ const INSTRUCTION_SETS: [&str; 2] = ["portable", "avx2"];
 /// The argument that makes this program run all queries on the indexes of a folder.
 pub(crate) const MEASURE: &str = "--measure-in=";
 
+/// The argument that makes this program save the indexes in a folder, for `cargo xtask account`.
+pub(crate) const SAVE: &str = "--save-in=";
+
 /// The function in which callgrind counts instructions.
 #[inline(never)]
 fn counted_by_callgrind(task: &Task<'_>) {

@@ -18,7 +18,7 @@ mod marks;
 mod table;
 mod tasks;
 
-use callgrind::{MEASURE, count_instructions, find_obstacle, run_everything};
+use callgrind::{MEASURE, SAVE, count_instructions, find_obstacle, run_everything};
 use marks::{MARK, run_between_marks};
 use p2m::core::Isa;
 use p2m_testkit::compiled;
@@ -30,8 +30,13 @@ use tasks::{Indexes, QUERIES, SCENES, Task, scene};
 
 fn main() -> ExitCode {
     let arguments: Vec<String> = env::args().skip(1).collect();
-    if let Some(folder) = arguments.iter().find_map(|argument| argument.strip_prefix(MEASURE)) {
-        run_everything(Path::new(folder));
+    let folder_after = |name: &str| arguments.iter().find_map(|argument| argument.strip_prefix(name)).map(Path::new);
+    if let Some(folder) = folder_after(SAVE) {
+        SCENES.iter().for_each(|name| Indexes::build(&scene(name)).save(folder, name));
+        return ExitCode::SUCCESS;
+    }
+    if let Some(folder) = folder_after(MEASURE) {
+        run_everything(folder);
         return ExitCode::SUCCESS;
     }
     if arguments.iter().any(|argument| argument == MARK) {

@@ -308,14 +308,20 @@ impl<'a, V: VolumeNodes> InterleavedSearch<'a, V> {
         self.rows.convert::<I>(&self.locals);
         let mut near = [u32::MAX; SEARCHES];
         if PLANES || I::Wide::LEN < LANES {
-            for (i, visit) in visits.iter().enumerate() {
-                self.locals.set_plane(i % SEARCHES, &leaves.packets[visit.packet as usize]);
+            // Before the first packet no distance is known, so no plane excludes anything.
+            let is_limited = self.rows.candidate[..visits.len()].iter().any(|limit| *limit < f64::INFINITY);
+            if is_limited {
+                for (i, visit) in visits.iter().enumerate() {
+                    self.locals.set_plane(i % SEARCHES, &leaves.packets[visit.packet as usize]);
+                }
+                self.locals.place_planes::<I>(&self.rows.old_limit);
             }
-            self.locals.place_planes::<I>(&self.rows.old_limit);
             for (i, (near, visit)) in near.iter_mut().zip(visits).enumerate() {
-                let packet = &leaves.packets[visit.packet as usize];
                 let is_far = self.locals.far >> i & 1 == 1;
-                let lanes = packet.lanes_before_plane::<I::Wide>(&self.locals, i) & visit.lanes;
+                let mut lanes = visit.lanes;
+                if is_limited {
+                    lanes &= leaves.packets[visit.packet as usize].lanes_before_plane::<I::Wide>(&self.locals, i);
+                }
                 *near = if is_far { u32::MAX } else { lanes };
             }
         }

@@ -4,10 +4,6 @@ use crate::curve;
 
 /// The largest number of bits of a coordinate on the curve: a cell for each query of the largest part of a batch.
 const MAX_BITS_PER_AXIS: u32 = 8;
-/// The number of bits of a digit of the radix sort, which sorts by two digits.
-const DIGIT_BITS: u32 = 3 * MAX_BITS_PER_AXIS / 2;
-/// The number of values of a digit.
-const DIGITS: usize = 1 << DIGIT_BITS;
 
 /// Returns the positions of queries, sorted along the curve. Queries that are not finite come at any place.
 ///
@@ -16,7 +12,10 @@ const DIGITS: usize = 1 << DIGIT_BITS;
 pub(super) fn sorted_along_curve<Q>(queries: &[Q], position: impl Fn(&Q) -> [f64; 3]) -> Vec<u32> {
     let bits = (queries.len().max(1).ilog2() / 3 + 2).min(MAX_BITS_PER_AXIS);
     let cells = CurveCells::around(queries.iter().map(&position), bits);
-    let mut starts = [[0u32; DIGITS]; 2];
+    // The radix sort sorts by two digits, which together have the bits of a key.
+    let digit_bits = (3 * bits).div_ceil(2);
+    let digits = |key: u32| [(key & ((1 << digit_bits) - 1)) as usize, (key >> digit_bits) as usize];
+    let mut starts = [vec![0u32; 1 << digit_bits], vec![0u32; 1 << digit_bits]];
     let mut keys = Vec::with_capacity(queries.len());
     for query in queries {
         let key = cells.position(&position(query));
@@ -41,17 +40,11 @@ pub(super) fn sorted_along_curve<Q>(queries: &[Q], position: impl Fn(&Q) -> [f64
     }
     let mut sorted = vec![0; by_low_digit.len()];
     for (high, position) in by_low_digit {
-        let to = &mut starts[1][high as usize % DIGITS];
+        let to = &mut starts[1][high as usize];
         sorted[*to as usize] = position;
         *to += 1;
     }
     sorted
-}
-
-/// Returns the low and the high digit of a key.
-#[inline(always)]
-fn digits(key: u32) -> [usize; 2] {
-    [key as usize % DIGITS, (key >> DIGIT_BITS) as usize % DIGITS]
 }
 
 /// The cells of a curve through the box around some queries.

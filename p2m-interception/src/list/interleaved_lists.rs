@@ -113,7 +113,7 @@ impl InterleavedLists {
                 opened[opening % SEARCHES] = i;
                 opening += usize::from(opens_next);
                 active[still_active % SEARCHES] = i;
-                still_active += usize::from(is_within | opens_next);
+                still_active += usize::from((is_within & ((left > 0) | (cursor.following > 0))) | opens_next);
             }
             several.filter::<I, false>(&visits[..visit_count]);
             count = still_active;

@@ -3,6 +3,7 @@
 //! A task prints the commands that it starts, so that each can be started alone. The first command that fails ends it.
 #![forbid(unsafe_code)]
 
+mod account;
 mod arm;
 mod c;
 mod cuda;
@@ -37,7 +38,7 @@ struct Task {
 /// The result of a task, with a message if it failed.
 type Outcome = Result<(), String>;
 
-const TASKS: [Task; 21] = [
+const TASKS: [Task; 22] = [
     Task {
         name: "quick",
         arguments: "[FILTER]",
@@ -148,9 +149,15 @@ const TASKS: [Task; 21] = [
         run: |rest| run("tools/fuzz/run", if rest.is_empty() { &["60"] } else { &[] }, rest),
     },
     Task {
+        name: "account",
+        arguments: "",
+        about: "Count which stages of a search take the instructions of a query, and write the table into docs/batches.md",
+        run: |_| account::run(),
+    },
+    Task {
         name: "memory",
         arguments: "",
-        about: "Run the tests of vector kernels and of saved files under valgrind, where it is installed",
+        about: "Run tests of the crates with unsafe code and of saved files under AddressSanitizer and valgrind",
         run: |_| memory::run(),
     },
     Task {

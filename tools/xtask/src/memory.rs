@@ -1,6 +1,6 @@
-//! Runs tests under the memory checker of valgrind, which knows no instruction set above AVX2.
+//! Runs tests under AddressSanitizer, and under the memory checker of valgrind, which knows no instruction set above AVX2.
 
-use crate::{Outcome, start};
+use crate::{Outcome, absolute_target_folder, output, start};
 use std::process::{Command, Stdio};
 
 /// The crates that have vector kernels, arrays in files, or trees of both.
@@ -10,14 +10,13 @@ const SKIPPED: &str = "walks_end_at_the_nearest_site_wherever_they_begin";
 
 /// Runs the unit tests of the crates and the tests of saved files.
 pub(crate) fn run() -> Outcome {
+    under_address_sanitizer()?;
     let version = Command::new("valgrind").arg("--version").stdout(Stdio::null()).stderr(Stdio::null()).status();
     if !version.is_ok_and(|status| status.success()) {
         return crate::skip("there is no program 'valgrind'");
     }
     let mut units = under_valgrind();
-    CRATES.iter().for_each(|name| {
-        units.args(["--package", name]);
-    });
+    units.args(CRATES.map(|name| format!("--package={name}")));
     start(units.args(["--lib", "--", "--skip", SKIPPED]))?;
     start(under_valgrind().args(["--package", "p2m", "--test", "all", "--", "saved::", "crafted_files::"]))
 }
@@ -28,4 +27,21 @@ fn under_valgrind() -> Command {
     tests.args(["test", "--locked"]);
     tests.env("CARGO_TARGET_X86_64_UNKNOWN_LINUX_GNU_RUNNER", "valgrind --quiet --error-exitcode=99");
     tests
+}
+
+/// Runs the unit tests of the crates under AddressSanitizer, which only nightly compilers have.
+fn under_address_sanitizer() -> Outcome {
+    let Ok(version) = output("rustc", &["+nightly", "-vV"]) else {
+        return crate::skip("there is no nightly compiler for AddressSanitizer");
+    };
+    let host = version.lines().find_map(|line| line.strip_prefix("host: ")).ok_or("rustc does not say its host")?;
+    let mut tests = Command::new("cargo");
+    tests.args(["+nightly", "test", "--locked", "--lib", "--features", "p2m-core/rayon", "--target", host]);
+    tests.args(CRATES.map(|name| format!("--package={name}")));
+    tests.arg("--target-dir").arg(absolute_target_folder()?.join("asan")).env("RUSTFLAGS", "-Zsanitizer=address");
+    // An allocation that is refused is null, as it is without the sanitizer: a test asks for absurd sizes.
+    tests.env("ASAN_OPTIONS", "allocator_may_return_null=1");
+    // The assertions of the standard library on its preconditions are on, and reports have lines.
+    tests.env("CARGO_PROFILE_TEST_DEBUG_ASSERTIONS", "true").env("CARGO_PROFILE_TEST_DEBUG", "line-tables-only");
+    start(&mut tests)
 }
