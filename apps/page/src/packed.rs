@@ -41,19 +41,15 @@ impl Number for u8 {
 impl Packed {
     /// Packs an array.
     pub(crate) fn new<N: Number>(numbers: &[N]) -> Self {
-        Self::with_compression(numbers, Compression::fast())
-    }
-
-    /// Packs an array more slowly, in less space.
-    pub(crate) fn smaller<N: Number>(numbers: &[N]) -> Self {
-        Self::with_compression(numbers, Compression::best())
-    }
-
-    fn with_compression<N: Number>(numbers: &[N], compression: Compression) -> Self {
-        let mut encoder = ZlibEncoder::new(Vec::new(), compression);
+        let mut encoder = ZlibEncoder::new(Vec::new(), Compression::fast());
         let written = encoder.write_all(bytemuck::cast_slice(numbers)).and_then(|()| encoder.finish());
         let bytes = written.expect("writing to a vector does not fail");
         Self { kind: N::NAME, deflate: STANDARD.encode(bytes) }
+    }
+
+    /// Packs bytes that are compressed already.
+    pub(crate) fn compressed(bytes: &[u8]) -> Self {
+        Self { kind: u8::NAME, deflate: STANDARD.encode(bytes) }
     }
 }
 

@@ -14,8 +14,8 @@ use serde::Serialize;
 
 const TEMPLATE: &str = include_str!("view.html");
 const SCRIPT: &str = include_str!("../assets/viewer.js");
-/// The library as a module of WebAssembly, which `cargo xtask wasm --build` makes of the crate p2m-live.
-const MODULE: &[u8] = include_bytes!("../assets/live.wasm");
+/// The module of WebAssembly of the npm package, compressed, which `cargo xtask wasm --build` makes.
+const MODULE: &[u8] = include_bytes!("../assets/p2m.wasm.deflate");
 
 /// The axis that points up in a picture.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
@@ -299,7 +299,7 @@ impl<'a> View<'a> {
             indices.extend_from_slice(element.indices());
         }
         self.data.live = Some(LiveData {
-            module: Packed::smaller(MODULE),
+            module: Packed::compressed(MODULE),
             coordinates: Packed::new(&coordinates),
             sizes: Packed::new(&sizes),
             indices: Packed::new(&indices),

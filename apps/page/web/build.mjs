@@ -18,7 +18,8 @@ async function bundle(name, define = {}) {
     target: "es2022",
     legalComments: "none",
     write: false,
-    define,
+    // The package loads no file: the page has its module.
+    define: { "import.meta.url": "undefined", ...define },
   });
   return outputFiles[0].text;
 }

@@ -203,6 +203,17 @@ typedef int (*p2m_visit_hit)(const struct p2m_hit *hit, void *user);
 extern "C" {
 #endif // __cplusplus
 
+// Reads a scene from a file: OBJ, PLY, STL, OFF, a point cloud, or a saved index. The path is UTF-8. Free it with
+// `p2m_scene_free`.
+enum p2m_status p2m_scene_read(const char *path,
+                               struct p2m_scene **scene);
+
+// Saves an index with its scene to a file, which appears when it is complete.
+enum p2m_status p2m_index_save(const struct p2m_index *index, const char *path);
+
+// Loads an index with its scene from a file that any binding of p2m has saved. Free it with `p2m_index_free`.
+enum p2m_status p2m_index_load(const char *path, struct p2m_index **index);
+
 // Builds an index over a scene. `options` may be null. Free the index with `p2m_index_free`.
 enum p2m_status p2m_index_build(const struct p2m_scene *scene,
                                 const struct p2m_index_options *options,
@@ -226,12 +237,6 @@ size_t p2m_index_primitive_count(const struct p2m_index *index);
 
 // Returns the memory of the index in bytes, without its scene; 0 for a null pointer.
 size_t p2m_index_memory_bytes(const struct p2m_index *index);
-
-// Saves an index with its scene to a file, which appears when it is complete.
-enum p2m_status p2m_index_save(const struct p2m_index *index, const char *path);
-
-// Loads an index with its scene from a file that any binding of p2m has saved. Free it with `p2m_index_free`.
-enum p2m_status p2m_index_load(const char *path, struct p2m_index **index);
 
 // Finds the nearest points of two scenes within a distance, which may be infinite. `motion` moves the second scene:
 // the 16 numbers of a matrix of 4 x 4, row by row, which is a rotation and a translation; null for none. If there is
@@ -315,11 +320,6 @@ enum p2m_status p2m_scene_new(const struct p2m_array *positions,
                               const struct p2m_array *segments,
                               const struct p2m_array *points,
                               struct p2m_scene **scene);
-
-// Reads a scene from a file: OBJ, PLY, STL, OFF, a point cloud, or a saved index. The path is UTF-8. Free it with
-// `p2m_scene_free`.
-enum p2m_status p2m_scene_read(const char *path,
-                               struct p2m_scene **scene);
 
 // Frees a scene. Indexes that were built over it keep what they need. Null is ignored.
 void p2m_scene_free(struct p2m_scene *scene);

@@ -2,7 +2,6 @@
 
 use crate::status::{Call, invalid};
 use std::ffi::{CStr, c_char, c_void};
-use std::path::PathBuf;
 
 /// The type of the numbers of an array.
 #[repr(C)]
@@ -269,15 +268,6 @@ pub(crate) unsafe fn text<'a>(pointer: *const c_char, name: &str) -> Call<&'a st
     // SAFETY: the pointer is not null, and the caller vouches for the rest.
     let text = unsafe { CStr::from_ptr(pointer) };
     text.to_str().map_err(|_| invalid(format!("{name}: the string is not UTF-8")))
-}
-
-/// Returns a path, which is a string of UTF-8.
-///
-/// # Safety
-/// A pointer that is not null has to point to a string that ends with a zero.
-pub(crate) unsafe fn path(pointer: *const c_char) -> Call<PathBuf> {
-    // SAFETY: the caller vouches for the string.
-    unsafe { text(pointer, "path") }.map(PathBuf::from)
 }
 
 /// Returns a largest distance, which is a number.

@@ -1,6 +1,6 @@
 //! Indexes.
 
-use crate::arrays::{give, path, reference, take_back, text};
+use crate::arrays::{give, reference, take_back, text};
 use crate::scene::Scene;
 use crate::signs::Signs;
 use crate::status::{Call, Failure, Status, invalid, run};
@@ -9,7 +9,6 @@ use p2m_backends::{BACKENDS, BackendEntry, BuildSettings, BuiltIndex, Choice, Kd
 use p2m_core::PrimitiveSet;
 use p2m_core::storage::{LoadError, SavedFile, Writer};
 use p2m_field::sign::Normals;
-use p2m_mixed::engine::OutputFile;
 use p2m_mixed::{load_scene, save_scene};
 use std::ffi::{CString, c_char};
 use std::sync::{Arc, OnceLock};
@@ -50,6 +49,29 @@ impl Index {
     pub(crate) fn normals(&self, threads: u32) -> &Normals {
         let compute = || Normals::new(&self.scene.soup);
         self.normals.get_or_init(|| in_pool(threads, compute).unwrap_or_else(|_| compute()))
+    }
+
+    /// Returns the arrays of the index and its scene, to be saved.
+    pub(crate) fn saved(&self) -> Call<Writer<'_>> {
+        if !self.backend.is_saveable() {
+            return Err(self.unsupported("has no saved form", BackendEntry::is_saveable));
+        }
+        let mut writer = Writer::default();
+        save_scene(&self.scene, &mut writer);
+        self.built.save(&mut writer);
+        Ok(writer)
+    }
+
+    /// Loads an index with its scene.
+    pub(crate) fn load(file: Result<SavedFile, LoadError>) -> Call<Self> {
+        let failed = |error: LoadError| Failure(Status::File, error.to_string());
+        let file = file.map_err(failed)?;
+        let reader = file.checked().map_err(failed)?;
+        let scene = Arc::new(load_scene(reader).map_err(failed)?);
+        let missing = || Failure(Status::File, "the file has no index".to_owned());
+        let backend = BackendEntry::from_saved(reader).ok_or_else(missing)?;
+        let built = backend.load(Arc::clone(&scene.soup), reader).map_err(failed)?;
+        Ok(Self::new(scene, built, backend))
     }
 
     /// Returns the failure for a kind of query that the backend does not answer.
@@ -169,47 +191,4 @@ pub unsafe extern "C" fn p2m_index_primitive_count(index: *const Index) -> usize
 pub unsafe extern "C" fn p2m_index_memory_bytes(index: *const Index) -> usize {
     // SAFETY: the caller vouches for the pointer.
     unsafe { index.as_ref() }.map_or(0, |index| index.built.index.memory_bytes())
-}
-
-/// Saves an index with its scene to a file, which appears when it is complete.
-#[unsafe(no_mangle)]
-pub unsafe extern "C" fn p2m_index_save(index: *const Index, path: *const c_char) -> Status {
-    // SAFETY: the caller vouches for the pointers.
-    run(|| unsafe {
-        let (index, path) = (reference(index, "index")?, self::path(path)?);
-        if !index.backend.is_saveable() {
-            return Err(index.unsupported("has no saved form", BackendEntry::is_saveable));
-        }
-        let failed = |error: std::io::Error| Failure(Status::File, format!("{}: {error}", path.display()));
-        let mut writer = Writer::default();
-        save_scene(&index.scene, &mut writer);
-        index.built.save(&mut writer);
-        let mut file = OutputFile::create(&path).map_err(failed)?;
-        writer.write(&mut file).map_err(failed)?;
-        file.finish().map_err(failed)
-    })
-}
-
-/// Loads an index with its scene from a file that any binding of p2m has saved. Free it with `p2m_index_free`.
-#[unsafe(no_mangle)]
-pub unsafe extern "C" fn p2m_index_load(path: *const c_char, index: *mut *mut Index) -> Status {
-    // SAFETY: the caller vouches for the pointers.
-    run(|| unsafe {
-        give(index, "index", || {
-            let path = self::path(path)?;
-            let of_path = |Failure(status, text)| Failure(status, format!("{}: {text}", path.display()));
-            in_pool(0, || load(&path))?.map_err(of_path)
-        })
-    })
-}
-
-fn load(path: &std::path::Path) -> Call<Index> {
-    let failed = |error: LoadError| Failure(Status::File, error.to_string());
-    let file = SavedFile::open(path).map_err(failed)?;
-    let reader = file.checked().map_err(failed)?;
-    let scene = Arc::new(load_scene(reader).map_err(failed)?);
-    let missing = || Failure(Status::File, "the file has no index".to_owned());
-    let backend = BackendEntry::from_saved(reader).ok_or_else(missing)?;
-    let built = backend.load(Arc::clone(&scene.soup), reader).map_err(failed)?;
-    Ok(Index::new(scene, built, backend))
 }

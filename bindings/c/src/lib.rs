@@ -9,11 +9,18 @@
 #![allow(clippy::missing_safety_doc, reason = "the header says what pointers have to point to")]
 
 mod arrays;
+#[cfg(not(target_family = "wasm"))]
+mod files;
 mod index;
 mod pairs;
+#[cfg(feature = "rayon")]
+mod pools;
 mod queries;
 mod rays;
 mod scene;
 mod signs;
 mod status;
 mod threads;
+#[cfg(target_family = "wasm")]
+#[path = "../../js/src/exports.rs"]
+mod web;

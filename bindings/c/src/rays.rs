@@ -64,7 +64,7 @@ impl From<&p2m_core::Hit> for Hit {
 }
 
 impl Ray {
-    fn checked(&self) -> Call<p2m_core::Ray> {
+    pub(crate) fn checked(&self) -> Call<p2m_core::Ray> {
         let ray = p2m_core::Ray::new(&Point3::from(self.origin), &Vector3::from(self.direction));
         let ray = ray.and_then(|ray| ray.with_range(self.t_min, self.t_max));
         ray.and_then(|ray| ray.with_radius(self.radius)).map_err(|error| invalid(format!("ray: {error}")))
@@ -72,7 +72,7 @@ impl Ray {
 }
 
 impl Index {
-    fn rays(&self) -> Call<&(dyn RayQuery<f64> + Sync)> {
+    pub(crate) fn rays(&self) -> Call<&(dyn RayQuery<f64> + Sync)> {
         let unsupported = || self.unsupported("casts no rays", |backend| backend.casts_rays);
         self.built.index.as_ray_query().ok_or_else(unsupported)
     }

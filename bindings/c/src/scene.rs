@@ -1,11 +1,9 @@
 //! Scenes.
 
-use crate::arrays::{Array, give, path, reference, take_back, with_coordinates, write};
+use crate::arrays::{Array, give, reference, take_back, with_coordinates, write};
 use crate::status::{Call, Failure, Status, invalid, run};
-use crate::threads::in_pool;
 use nalgebra::Point3;
 use p2m_core::{Element, Position, PrimitiveSet, Soup};
-use std::ffi::c_char;
 use std::sync::Arc;
 
 /// A scene: triangles, segments and points that share vertices. It never changes, and any number of threads may use
@@ -60,21 +58,6 @@ pub unsafe extern "C" fn p2m_scene_new(
                 Soup::new(positions, triangles.chain(segments).chain(points)).map_err(invalid_scene)?
             };
             Ok(Scene { shared: Arc::new(p2m_mixed::Scene::from(soup)) })
-        })
-    })
-}
-
-/// Reads a scene from a file: OBJ, PLY, STL, OFF, a point cloud, or a saved index. The path is UTF-8. Free it with
-/// `p2m_scene_free`.
-#[unsafe(no_mangle)]
-pub unsafe extern "C" fn p2m_scene_read(path: *const c_char, scene: *mut *mut Scene) -> Status {
-    // SAFETY: the caller vouches for the pointers.
-    run(|| unsafe {
-        give(scene, "scene", || {
-            let path = self::path(path)?;
-            let read = in_pool(0, || p2m_mixed::read_scene(&path))?;
-            let read = read.map_err(|error| Failure(Status::File, format!("{}: {error}", path.display())))?;
-            Ok(Scene { shared: Arc::new(read) })
         })
     })
 }

@@ -38,7 +38,7 @@ struct Task {
 /// The result of a task, with a message if it failed.
 type Outcome = Result<(), String>;
 
-const TASKS: [Task; 22] = [
+const TASKS: [Task; 23] = [
     Task {
         name: "quick",
         arguments: "[FILTER]",
@@ -141,6 +141,12 @@ const TASKS: [Task; 22] = [
         arguments: "",
         about: "Check the script of pages and test them in Chromium, where it is installed or can be",
         run: |_| pages::run(),
+    },
+    Task {
+        name: "js",
+        arguments: "",
+        about: "Build the npm package and test it in Node and in Chromium, where it is installed or can be",
+        run: |_| pages::package(),
     },
     Task {
         name: "fuzz",

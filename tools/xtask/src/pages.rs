@@ -1,35 +1,62 @@
-//! Checks the script of pages, and tests pages in a browser.
+//! Checks the script of pages and the npm package, and tests both in a browser.
 
 use crate::{Outcome, cargo, debug_program, output, start};
 use std::path::Path;
 use std::process::Command;
 
 /// The folder of the script and its tests.
-const FOLDER: &str = "apps/page/web";
+const PAGES: &str = "apps/page/web";
+/// The folder of the npm package and its tests.
+const PACKAGE: &str = "bindings/js";
 /// Where the tests look for a browser.
 const BROWSERS: [&str; 2] = ["/usr/bin/chromium", "/usr/bin/google-chrome"];
 
 /// Checks that the script in the assets is what the sources make, and runs the tests, or says why it cannot here.
 pub(crate) fn run() -> Outcome {
+    if !install(PAGES, "the script of pages")? {
+        return Ok(());
+    }
+    start(&mut npm(PAGES, &["run", "check"]))?;
+    test(PAGES, "pages")
+}
+
+/// Builds the npm package and runs its tests in Node and in a browser, or says why it cannot here.
+pub(crate) fn package() -> Outcome {
+    if !install(PACKAGE, "the npm package")? {
+        return Ok(());
+    }
+    start(Command::new("node").args(["licences.mjs", "--check"]).current_dir(PACKAGE))?;
+    start(&mut npm(PACKAGE, &["run", "build"]))?;
+    test(PACKAGE, "the npm package")
+}
+
+/// Installs what the scripts in a folder need, and returns whether it could.
+fn install(folder: &str, what: &str) -> Result<bool, String> {
     if output("npm", &["--version"]).is_err() {
-        return crate::skip("there is no npm for the script of pages");
+        crate::skip(&format!("there is no npm for {what}"))?;
+        return Ok(false);
     }
     if let Err(why) = output("npm", &["view", "esbuild", "version"]) {
-        return crate::skip(&format!("the registry of packages for the script of pages cannot be reached\n{why}"));
+        crate::skip(&format!("the registry of packages for {what} cannot be reached\n{why}"))?;
+        return Ok(false);
     }
-    start(&mut npm(&["ci", "--no-audit", "--no-fund", "--loglevel=error"]))?;
-    start(&mut npm(&["run", "check"]))?;
+    start(&mut npm(folder, &["ci", "--no-audit", "--no-fund", "--loglevel=error"]))?;
+    Ok(true)
+}
+
+/// Runs the tests in a folder with the program.
+fn test(folder: &str, what: &str) -> Outcome {
     if let Err(why) = find_browser() {
-        return crate::skip(&format!("there is no Chromium for the tests of pages: {why}"));
+        return crate::skip(&format!("there is no Chromium for the tests of {what}: {why}"));
     }
     // With the features of `cargo test --workspace` and of `cargo xtask python`, nothing is compiled anew after them.
     cargo(&["build", "--locked", "--workspace", "--lib", "--examples", "--bin", "p2m"], &[])?;
-    start(npm(&["test"]).env("P2M", debug_program()?))
+    start(npm(folder, &["test"]).env("P2M", debug_program()?))
 }
 
-fn npm(arguments: &[&str]) -> Command {
+fn npm(folder: &str, arguments: &[&str]) -> Command {
     let mut npm = Command::new("npm");
-    npm.args(arguments).current_dir(FOLDER);
+    npm.args(arguments).current_dir(folder);
     npm
 }
 

@@ -21,17 +21,19 @@ const VECTORS: &str = "-Ctarget-feature=+simd128";
 /// Runs the checksums of answers. The path is relative to the crate of the test.
 const RUNNER: &str = "node tests/checksums/node.mjs";
 
-/// The crate of the module, and the sources that give its functions to the script of pages.
-const MODULE: &str = "p2m-live";
-/// The folder of its sources.
-const MODULE_SOURCES: &str = "apps/page/live/src";
-/// The module, which is part of each page that answers queries.
-const MODULE_FILE: &str = "apps/page/assets/live.wasm";
+/// The crate of the module, the C interface.
+const MODULE: &str = "p2m-c";
+/// The name of its library.
+const LIBRARY: &str = "p2m";
+/// The folders of its sources.
+const MODULE_SOURCES: [&str; 2] = ["bindings/c/src", "bindings/js/src"];
+/// The module, which is part of the npm package, and of each page that answers queries.
+const MODULE_FILE: &str = "apps/page/assets/p2m.wasm.deflate";
 /// A checksum of the sources of the module. Those of the library are not part of it, because its answers do not change:
 /// the tests of pages in a browser compare the answers of the module with those of the program.
-const STAMP_FILE: &str = "apps/page/assets/live.stamp";
-/// The module is in each page, and in the package of p2m-page.
-const MAX_MODULE_BYTES: u64 = 1 << 20;
+const STAMP_FILE: &str = "apps/page/assets/p2m.stamp";
+/// Compresses the module, and fails if it is too large.
+const PACK: &str = "bindings/js/pack.mjs";
 
 /// Checks the library, or says why it cannot be checked here. With `--all` it also computes the checksums of answers, for
 /// which everything is compiled. With `--build` it builds the module.
@@ -74,7 +76,9 @@ fn compare_checksums(compiler: &Compiler) -> Outcome {
 
 /// Builds the module, and writes it and the checksum of its sources.
 fn build(compiler: &Compiler) -> Outcome {
-    let mut cargo = compiler.cargo(&["build", "--locked", "--package", MODULE, "--profile", "module"], "std")?;
+    let package = ["rustc", "--locked", "--package", MODULE, "--no-default-features", "--profile", "module"];
+    let mut cargo = compiler.cargo(&package, "std")?;
+    cargo.args(["--lib", "--crate-type", "cdylib"]);
     // Paths of this machine are not part of the module.
     let mut flags = VECTORS.to_owned();
     let workspace = std::env::current_dir().map_err(|error| format!("the current folder: {error}"))?;
@@ -90,13 +94,8 @@ fn build(compiler: &Compiler) -> Outcome {
         cargo.args(["-Zpanic-immediate-abort", "--config", "profile.module.panic='immediate-abort'"]);
     }
     start(cargo.env("RUSTFLAGS", flags))?;
-    let built = compiler.target.join(TARGET).join("module").join(MODULE.replace('-', "_")).with_extension("wasm");
-    let bytes = fs::metadata(&built).map_err(|error| format!("{}: {error}", built.display()))?.len();
-    println!("{MODULE_FILE}: {bytes} bytes");
-    if bytes > MAX_MODULE_BYTES {
-        return Err(format!("the module has more than the {MAX_MODULE_BYTES} bytes that are allowed"));
-    }
-    fs::copy(&built, MODULE_FILE).map_err(|error| format!("{MODULE_FILE}: {error}"))?;
+    let built = compiler.target.join(TARGET).join("module").join(LIBRARY).with_extension("wasm");
+    start(Command::new("node").arg(PACK).args([built.as_path(), Path::new(MODULE_FILE)]))?;
     fs::write(STAMP_FILE, stamp()?).map_err(|error| format!("{STAMP_FILE}: {error}"))
 }
 
@@ -111,9 +110,12 @@ fn check_stamp() -> Outcome {
 
 /// Returns a checksum of the sources of the module, as text.
 fn stamp() -> Result<String, String> {
-    let folder = Path::new(MODULE_SOURCES);
-    let entries = fs::read_dir(folder).map_err(|error| format!("{}: {error}", folder.display()))?;
-    let mut files: Vec<PathBuf> = entries.filter_map(|entry| Some(entry.ok()?.path())).collect();
+    let mut files = Vec::new();
+    for folder in MODULE_SOURCES {
+        let entries = fs::read_dir(folder).map_err(|error| format!("{folder}: {error}"))?;
+        files.extend(entries.filter_map(|entry| Some(entry.ok()?.path())));
+    }
+    files.retain(|file| file.extension().is_some_and(|extension| extension == "rs"));
     files.sort();
     // FNV-1a, which is enough to notice a change.
     let mut hash = 0xcbf2_9ce4_8422_2325_u64;

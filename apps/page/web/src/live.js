@@ -1,11 +1,11 @@
-// Live queries: the library itself, compiled to WebAssembly, answers them in the page. Each index is in a worker of its
+// Live queries: the npm package of p2m, in `bindings/js`, answers them in the page. Each index is in a worker of its
 // own, so the page can be used while it is built, and the indexes that are ready answer meanwhile.
 
 import * as three from "three";
 import { answerRows, drawAnswer, empty, featureOf, line, marker } from "./answers.js";
 import { checkbox, count, element, fillList, fillTable, short } from "./text.js";
 
-// The indexes in the order of their numbers in the module.
+// The indexes in the order of their numbers in the worker.
 const BACKENDS = ["AABB tree", "k-DOP tree", "octree", "P2M index"];
 
 export class LiveQueries {
@@ -64,7 +64,7 @@ export class LiveQueries {
   async build(number, name) {
     const worker = new RemoteModule();
     try {
-      if (!(await worker.call("load", this.scene))) throw new Error("the scene of the page is damaged");
+      await worker.call("load", this.scene);
       const { bytes, time } = await worker.call("build", number);
       if (bytes > 0) return { number, name, worker, bytes, time };
     } catch (error) {

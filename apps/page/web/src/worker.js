@@ -1,69 +1,78 @@
-// A worker of live queries: it has the module of WebAssembly with the scene and an index. Each message calls one of the
+// A worker of live queries: it has the npm package of p2m with the scene and an index. Each message calls one of the
 // functions below, in order, and is answered by its result.
 
+import { Index, Scene, init } from "../../../../bindings/js/src/index.ts";
+import { FarScene } from "./far.js";
+
+// The kinds of indexes by their numbers.
+const BACKENDS = ["aabb", "kdop", "octree", "p2m"];
+// The number of primitives above which no cells of vertices are built, because their build would take many seconds.
+const MAX_VERTEX_CELL_PRIMITIVES = 50_000;
 // The milliseconds for which the queries of an index are measured, after a warm-up of the same length, in which the
 // browser compiles them.
 const MEASURED_TIME = 100;
 
-let module;
+let arrays, scene, index, far;
 
 const FUNCTIONS = {
-  // Loads the module and the scene, before any other call, and returns whether the arrays of the scene fit each other.
-  async load({ module: bytes, coordinates, sizes, indices }) {
-    const { instance } = await WebAssembly.instantiate(bytes, {});
-    module = instance.exports;
-    [coordinates, sizes, indices].forEach((array, number) => {
-      const address = module.p2m_reserve(number, array.length);
-      new array.constructor(module.memory.buffer, address, array.length).set(array);
-    });
-    return module.p2m_load() !== 0;
+  // Loads the module and the scene, before any other call.
+  async load({ module, coordinates: positions, sizes, indices: vertices }) {
+    await init(module);
+    arrays = { positions, sizes, vertices };
+    scene = new Scene(arrays);
   },
 
   // Builds an index. Its size is 0 if this index is not built for such a scene.
   build(number) {
+    const backend = BACKENDS[number];
+    if (backend === "p2m" && arrays.sizes.length > MAX_VERTEX_CELL_PRIMITIVES) return { bytes: 0, time: 0 };
     const start = performance.now();
-    const bytes = module.p2m_build(number);
-    return { bytes, time: performance.now() - start };
+    index = new Index(scene, { backend });
+    return { bytes: index.memoryBytes, time: performance.now() - start };
   },
 
   // Returns the number of queries per second at points around the scene.
-  measure(number) {
-    measureRate(number);
-    return measureRate(number);
+  measure() {
+    measureRate();
+    return measureRate();
   },
 
   // Builds the scene far from the origin, and returns its scale, or 0 if there is none.
-  buildFar: () => module.p2m_build_far(),
+  buildFar() {
+    far = FarScene.of(arrays);
+    return far?.scale ?? 0;
+  },
 
-  // Returns the answer of an index to a query, or `null` if there is none.
-  query: readAnswer,
+  // Returns the answer to a query with the work that it took, or `null` if there is none.
+  query(_, query) {
+    const answer = index.closestPoint(query);
+    if (!answer) return null;
+    const { nodes, packets, primitives } = index.work(query);
+    return { ...answer, work: [nodes, packets, primitives] };
+  },
 
-  // Returns the answer to a query far from the origin.
-  queryFar: readFarAnswer,
+  // Returns the answer to a query far from the origin, or `null` if there is none.
+  queryFar: (query) => far.query(query),
 };
 
-function readAnswer(number, query) {
-  if (module.p2m_query(number, ...query) === 0) return null;
-  const [x, y, z, distance, lowerBound, primitive, feature, ...work] = lastValues(10);
-  return { point: [x, y, z], distance, lowerBound, primitive, feature, work };
-}
-
-function readFarAnswer(query) {
-  if (module.p2m_query_far(...query) === 0) return null;
-  const values = lastValues(12);
-  const part = (at) => ({ point: values.slice(at, at + 3), distance: values[at + 3] });
-  const [exact, p2m, ordinary] = [0, 4, 8].map(part);
-  return { query: exact.point, distance: exact.distance, p2m, ordinary };
-}
-
-function lastValues(length) {
-  return [...new Float64Array(module.memory.buffer, module.p2m_answer(), length)];
-}
-
-function measureRate(number) {
-  let [answered, size, start, time] = [0, 64, performance.now(), 0];
+// Answers queries that are spread evenly in the box of the scene scaled by 1.2: multiples of these numbers modulo one,
+// which are powers of the reciprocal of the root of x^4 = x + 1, leave no large gaps.
+function measureRate() {
+  const steps = [0.8191725133961644, 0.6710436067037892, 0.5497004779019701];
+  const { low, high } = scene.bounds;
+  const into = index.closestPoint(low);
+  const query = [0, 0, 0];
+  let [answered, size, time] = [0, 64, 0];
+  const start = performance.now();
   while (time < MEASURED_TIME) {
-    answered += module.p2m_answer_many(number, size);
+    for (let i = 0; i < size; i++) {
+      for (let k = 0; k < 3; k++) {
+        const part = 1.2 * (((i * steps[k]) % 1) - 0.5) + 0.5;
+        query[k] = low[k] * (1 - part) + high[k] * part;
+      }
+      index.closestPoint(query, { into });
+    }
+    answered += size;
     time = performance.now() - start;
     size *= 2;
   }

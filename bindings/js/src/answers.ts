@@ -1,0 +1,126 @@
+import { f64, u32, u8 } from "./module.js";
+
+/** Three coordinates, or the weights of three vertices. */
+export type Triple = [number, number, number];
+
+/** The closest point of a scene. */
+export interface Closest {
+  /** The distance, in units of the scene. */
+  distance: number;
+  /** The closest point. */
+  point: Triple;
+  /** The weights of the vertices of the primitive: the point is the sum of the vertices times these. */
+  weights: Triple;
+  /** A lower bound of the true distance. */
+  lowerBound: number;
+  /** The number of the primitive; of equally near ones it is the lowest. */
+  primitive: number;
+  /**
+   * What the point lies on: 0 to 2 for a vertex of the primitive, 3 to 5 for the edge from vertex 0, 1 or 2 to the next
+   * one, and 6 for the face.
+   */
+  feature: number;
+}
+
+/** A hit of a ray. */
+export interface Hit {
+  /** The parameter of the ray, in lengths of its direction. */
+  t: number;
+  /** The point of the primitive. */
+  point: Triple;
+  /** The weights of the vertices of the primitive. */
+  weights: Triple;
+  /** The number of the primitive. */
+  primitive: number;
+  /** The side from which a triangle is hit: 1 from the front, -1 from the back, and 0 along it. */
+  side: number;
+}
+
+/** The nearest points of two scenes. */
+export interface Pair {
+  /** The distance, which is 0 if the scenes intersect. */
+  distance: number;
+  /** A lower bound of the true distance. */
+  lowerBound: number;
+  /** The point of each scene, that of the second one after its motion. */
+  points: [Triple, Triple];
+  /** The weights of the vertices of each primitive. */
+  weights: [Triple, Triple];
+  /** The number of the primitive of each scene. */
+  primitives: [number, number];
+  /** What each point lies on, as in {@link Closest}. */
+  features: [number, number];
+  /** Whether the scenes intersect, which is exact. */
+  isIntersecting: boolean;
+}
+
+// The sizes of structures of C, in bytes.
+export const CLOSEST_BYTES = 72;
+export const HIT_BYTES = 64;
+export const PAIR_BYTES = 128;
+
+const NO_PRIMITIVE = 0xffffffff;
+
+/** Returns three numbers at the place of a number in memory. */
+export function triple(at: number): Triple {
+  return [f64[at]!, f64[at + 1]!, f64[at + 2]!];
+}
+
+function setTriple(into: Triple, at: number): void {
+  into[0] = f64[at]!;
+  into[1] = f64[at + 1]!;
+  into[2] = f64[at + 2]!;
+}
+
+/** Reads a closest point, into an object if there is one. */
+export function readClosest(address: number, into?: Closest): Closest | null {
+  const primitive = u32[(address + 64) / 4]!;
+  if (primitive === NO_PRIMITIVE) return null;
+  const at = address / 8;
+  const feature = u8[address + 68]!;
+  if (into) {
+    into.distance = f64[at]!;
+    setTriple(into.point, at + 1);
+    setTriple(into.weights, at + 4);
+    into.lowerBound = f64[at + 7]!;
+    into.primitive = primitive;
+    into.feature = feature;
+    return into;
+  }
+  return {
+    distance: f64[at]!, point: triple(at + 1), weights: triple(at + 4), lowerBound: f64[at + 7]!, primitive, feature,
+  };
+}
+
+/** Reads a hit, into an object if there is one. */
+export function readHit(address: number, into?: Hit): Hit | null {
+  const primitive = u32[(address + 56) / 4]!;
+  if (primitive === NO_PRIMITIVE) return null;
+  const at = address / 8;
+  const side = (u8[address + 60]! << 24) >> 24;
+  if (into) {
+    into.t = f64[at]!;
+    setTriple(into.point, at + 1);
+    setTriple(into.weights, at + 4);
+    into.primitive = primitive;
+    into.side = side;
+    return into;
+  }
+  return { t: f64[at]!, point: triple(at + 1), weights: triple(at + 4), primitive, side };
+}
+
+/** Reads a pair. */
+export function readPair(address: number): Pair | null {
+  const at = address / 8;
+  const primitives: [number, number] = [u32[address / 4 + 28]!, u32[address / 4 + 29]!];
+  if (primitives[0] === NO_PRIMITIVE) return null;
+  return {
+    distance: f64[at]!,
+    lowerBound: f64[at + 1]!,
+    points: [triple(at + 2), triple(at + 5)],
+    weights: [triple(at + 8), triple(at + 11)],
+    primitives,
+    features: [u8[address + 120]!, u8[address + 121]!],
+    isIntersecting: u8[address + 122] !== 0,
+  };
+}

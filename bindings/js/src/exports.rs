@@ -1,0 +1,178 @@
+//! What the module of the npm package has beside the C interface: memory of the caller, indexes as bytes, answers of any
+//! number as arrays, and scenes whose primitives are in any order.
+
+use crate::arrays::{Array, give, length, point, reference, with_coordinates, write};
+use crate::index::Index;
+use crate::queries::Closest;
+use crate::rays::{Hit, Ray};
+use crate::scene::Scene;
+use crate::status::{Failure, Status, invalid, run};
+use nalgebra::Point3;
+use p2m_core::storage::SavedFile;
+use p2m_core::{Best, Element, Position, QueryOptions, Soup, StatsCollector};
+use std::alloc::{Layout, alloc, dealloc};
+use std::ops::ControlFlow;
+use std::sync::Arc;
+
+/// The alignment of all memory that crosses the border of the module.
+const ALIGNMENT: usize = 8;
+
+/// Memory for the caller, which frees it with `p2m_js_free`.
+#[repr(C)]
+pub struct Memory {
+    data: *mut u8,
+    bytes: usize,
+}
+
+impl Memory {
+    fn of<T>(values: Vec<T>) -> Self {
+        const { assert!(align_of::<T>() == ALIGNMENT) };
+        let values = Box::leak(values.into_boxed_slice());
+        Self { data: values.as_mut_ptr().cast(), bytes: size_of_val(values) }
+    }
+}
+
+/// Returns memory of so many bytes, or null if there is not enough.
+#[unsafe(no_mangle)]
+pub extern "C" fn p2m_js_alloc(bytes: usize) -> *mut u8 {
+    match Layout::from_size_align(bytes, ALIGNMENT) {
+        // SAFETY: the size is not 0.
+        Ok(layout) if bytes > 0 => unsafe { alloc(layout) },
+        _ => std::ptr::null_mut(),
+    }
+}
+
+/// Frees memory of so many bytes.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn p2m_js_free(data: *mut u8, bytes: usize) {
+    if let (Ok(layout), true) = (Layout::from_size_align(bytes, ALIGNMENT), bytes > 0 && !data.is_null()) {
+        // SAFETY: the caller vouches that the memory was given with this size.
+        unsafe { dealloc(data, layout) };
+    }
+}
+
+/// Makes a scene of primitives in any order: `sizes` has the number of vertices of each, of type u8, and `vertices` the
+/// indices of their vertices, one after the other.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn p2m_js_scene_of_mixed(
+    positions: *const Array,
+    sizes: *const u8,
+    count: usize,
+    vertices: *const Array,
+    scene: *mut *mut Scene,
+) -> Status {
+    // SAFETY: the caller vouches for the pointers.
+    run(|| unsafe {
+        give(scene, "scene", || {
+            let positions: Vec<Point3<f64>> = with_coordinates!(reference(positions, "positions")?, "positions", rows => {
+                rows.iter().map(Position::<f64>::point).collect()
+            });
+            let vertices = reference(vertices, "vertices")?.indices::<1>("vertices")?;
+            let mut rest: &[[u32; 1]] = &vertices;
+            let mut elements = Vec::with_capacity(count);
+            for i in 0..count {
+                let size = usize::from(sizes.add(i).read());
+                let (own, others) = rest.split_at_checked(size).unwrap_or_default();
+                rest = others;
+                elements.push(match *own {
+                    [[a]] => Element::Point(a),
+                    [[a], [b]] => Element::Segment([a, b]),
+                    [[a], [b], [c]] => Element::Triangle([a, b, c]),
+                    _ => return Err(invalid("sizes: a primitive has 1 to 3 vertices, and vertices has all of them")),
+                });
+            }
+            if !rest.is_empty() {
+                return Err(invalid("sizes: their sum is less than the number of vertices"));
+            }
+            let soup = Soup::new(positions, elements);
+            let soup = soup.map_err(|error| Failure(Status::InvalidScene, error.to_string()))?;
+            Ok(Scene { shared: Arc::new(p2m_mixed::Scene::from(soup)) })
+        })
+    })
+}
+
+/// Saves an index with its scene.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn p2m_js_save(index: *const Index, saved: *mut Memory) -> Status {
+    // SAFETY: the caller vouches for the pointers.
+    run(|| unsafe {
+        let writer = reference(index, "index")?.saved()?;
+        let failed = |error: std::io::Error| Failure(Status::OutOfMemory, error.to_string());
+        let mut count = Count(0);
+        writer.write(&mut count).map_err(failed)?;
+        let data = p2m_js_alloc(count.0);
+        if data.is_null() {
+            return Err(Failure(Status::OutOfMemory, format!("there is no memory for {} bytes", count.0)));
+        }
+        writer.write(std::slice::from_raw_parts_mut(data, count.0)).map_err(failed)?;
+        write(saved, "saved", Memory { data, bytes: count.0 })
+    })
+}
+
+/// Counts what is written.
+struct Count(usize);
+
+impl std::io::Write for Count {
+    fn write(&mut self, bytes: &[u8]) -> std::io::Result<usize> {
+        self.0 += bytes.len();
+        Ok(bytes.len())
+    }
+    fn flush(&mut self) -> std::io::Result<()> {
+        Ok(())
+    }
+}
+
+/// Loads an index with its scene.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn p2m_js_load(data: *const u8, bytes: usize, index: *mut *mut Index) -> Status {
+    // SAFETY: the caller vouches for the pointers.
+    run(|| unsafe {
+        give(index, "index", || {
+            let saved = std::slice::from_raw_parts(reference(data, "data")?, bytes);
+            Index::load(SavedFile::read_with_length(saved, bytes as u64))
+        })
+    })
+}
+
+/// Finds all primitives within a radius, the nearest first, and of equally near ones that with the lowest id.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn p2m_js_within(
+    index: *const Index,
+    query: *const f64,
+    radius: f64,
+    answers: *mut Memory,
+) -> Status {
+    // SAFETY: the caller vouches for the pointers.
+    run(|| unsafe {
+        let (index, query) = (reference(index, "index")?, point(query, "query")?);
+        let mut found = Vec::new();
+        let _ = index.built.index.visit_within(&query, length(radius, "radius")?, &mut |closest| {
+            found.push(Closest::from(closest));
+            ControlFlow::Continue(())
+        });
+        found.sort_unstable_by(|a, b| a.distance.total_cmp(&b.distance).then(a.primitive.cmp(&b.primitive)));
+        write(answers, "answers", Memory::of(found))
+    })
+}
+
+/// Finds all hits of a ray, the nearest first.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn p2m_js_hits(index: *const Index, ray: *const Ray, hits: *mut Memory) -> Status {
+    // SAFETY: the caller vouches for the pointers.
+    run(|| unsafe {
+        let (index, ray) = (reference(index, "index")?.rays()?, reference(ray, "ray")?.checked()?);
+        write(hits, "hits", Memory::of(index.all_intersections(&ray).iter().map(Hit::from).collect()))
+    })
+}
+
+/// Writes how many nodes, packets and primitives a query for the closest point visits.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn p2m_js_work(index: *const Index, query: *const f64, work: *mut [f64; 3]) -> Status {
+    // SAFETY: the caller vouches for the pointers.
+    run(|| unsafe {
+        let (index, query) = (reference(index, "index")?, point(query, "query")?);
+        let mut stats = StatsCollector::new(Best::new(&QueryOptions::default()));
+        index.built.index.inspect(&query.into(), &mut stats);
+        write(work, "work", [stats.nodes, stats.packets, stats.primitives].map(|count| count as f64))
+    })
+}

@@ -1,0 +1,194 @@
+import { compiledModule, nodeModule } from "./module.js";
+import { COLUMNS, checkLength, defaultColumns, queryCount } from "./spatial.js";
+import type { BatchOptions, Columns, DefaultColumns, Index, NumberArray } from "./spatial.js";
+import { coordinates } from "./scene.js";
+import type { Coordinates } from "./module.js";
+
+/** The first message to a worker. */
+export interface Start {
+  module: WebAssembly.Module;
+  saved: Uint8Array;
+}
+
+/** The arrays of a part of a batch: columns, or the only array under the name `answer`. */
+type Outputs = Columns & { answer?: NumberArray };
+
+/** A message to a worker with a part of a batch. */
+export interface Call {
+  method: "closestPoints" | "signedDistances" | "containsEach";
+  queries: Coordinates;
+  out: Outputs;
+  options: BatchOptions;
+}
+
+interface Reply {
+  out?: Outputs;
+  error?: string;
+}
+
+/** The least and the largest number of queries in a part. Queries near each other are answered faster together. */
+const PART_QUERIES = [1 << 10, 1 << 16] as const;
+/** The parts of a batch for each worker, so that none waits long for the others. */
+const PARTS_PER_WORKER = 4;
+
+/**
+ * Workers that answer batches together. Each has a copy of the index. Where memory can be shared, which in a browser a
+ * page has to be cross-origin isolated for, queries and answers are in memory that all workers share. Elsewhere they are
+ * copied.
+ */
+export class Pool {
+  #workers: Remote[];
+
+  private constructor(workers: Remote[]) {
+    this.#workers = workers;
+  }
+
+  /**
+   * Starts workers, and sends them an index, which may be disposed of afterwards.
+   *
+   * @param options.workers The number of workers, which is that of the processors by default.
+   * @throws Error if the backend of the index is "brute", or if a worker cannot be started.
+   */
+  static async create(index: Index, options: { workers?: number } = {}): Promise<Pool> {
+    const count = options.workers ?? globalThis.navigator?.hardwareConcurrency ?? nodeModule("node:os").availableParallelism();
+    let saved: Uint8Array = index.save();
+    if (canShare()) saved = share(saved);
+    const pool = new Pool(Array.from({ length: count }, () => new Remote()));
+    try {
+      await Promise.all(pool.#workers.map((worker) => worker.ask({ module: compiledModule(), saved })));
+    } catch (error) {
+      pool.dispose();
+      throw error;
+    }
+    return pool;
+  }
+
+  /** The number of workers. */
+  get size(): number {
+    return this.#workers.length;
+  }
+
+  /** Finds the closest point to each of many queries: see `Index.closestPoints`. */
+  closestPoints(queries: ArrayLike<number>, columns?: undefined, options?: BatchOptions): Promise<DefaultColumns>;
+  closestPoints<Wanted extends Columns>(queries: ArrayLike<number>, columns: Wanted, options?: BatchOptions): Promise<Wanted>;
+  async closestPoints(
+    queries: ArrayLike<number>, columns: Columns = defaultColumns(queryCount(queries)), options: BatchOptions = {},
+  ): Promise<Columns> {
+    await this.#answer("closestPoints", queries, columns, options);
+    return columns;
+  }
+
+  /** Returns the signed distance of each of many queries: see `Index.signedDistances`. */
+  async signedDistances<Numbers extends NumberArray = Float64Array>(
+    queries: ArrayLike<number>, out = new Float64Array(queryCount(queries)) as NumberArray as Numbers,
+    options: BatchOptions = {},
+  ): Promise<Numbers> {
+    await this.#answer("signedDistances", queries, { answer: out }, options);
+    return out;
+  }
+
+  /** Returns for each of many queries 1 if it is inside, and 0 otherwise: see `Index.containsEach`. */
+  async containsEach<Numbers extends NumberArray = Uint8Array>(
+    queries: ArrayLike<number>, out = new Uint8Array(queryCount(queries)) as NumberArray as Numbers,
+    options: BatchOptions = {},
+  ): Promise<Numbers> {
+    await this.#answer("containsEach", queries, { answer: out }, options);
+    return out;
+  }
+
+  /** Ends the workers. */
+  dispose(): void {
+    for (const worker of this.#workers) worker.end();
+    this.#workers = [];
+  }
+
+  /** Ends the workers at the end of a block that has the pool by `using`. */
+  [Symbol.dispose](): void {
+    this.dispose();
+  }
+
+  async #answer(method: Call["method"], queries: ArrayLike<number>, out: Outputs, options: BatchOptions): Promise<void> {
+    if (this.#workers.length === 0) throw new Error("p2m: the pool was disposed of");
+    const names = (Object.keys(out) as (keyof Outputs)[]).filter((name) => out[name]);
+    const width = (name: keyof Outputs) => (name === "answer" ? 1 : COLUMNS[name].width);
+    const count = queryCount(queries);
+    for (const name of names) checkLength(out[name]!, count * width(name), name);
+    const isShared = canShare();
+    const all = isShared ? share(coordinates(queries)) : coordinates(queries);
+    const shared: Outputs = {};
+    for (const name of names) shared[name] = isShared ? share(out[name]!) : out[name]!;
+    const wanted = Math.ceil(count / (PARTS_PER_WORKER * this.#workers.length));
+    const part = Math.max(PART_QUERIES[0], Math.min(PART_QUERIES[1], wanted));
+    let next = 0;
+    await Promise.all(this.#workers.map(async (worker) => {
+      while (next < count) {
+        const [start, end] = [next, Math.min(next + part, count)];
+        next = end;
+        // Without shared memory, parts are copied, so they are arrays of their own: a message has whole buffers.
+        const cut = <Numbers extends NumberArray | Coordinates>(array: Numbers, width: number) =>
+          (isShared ? array.subarray(start * width, end * width) : array.slice(start * width, end * width)) as Numbers;
+        const parts: Outputs = {};
+        for (const name of names) parts[name] = cut(shared[name]!, width(name));
+        const answered = await worker.ask({ method, queries: cut(all, 3), out: parts, options });
+        if (!isShared) for (const name of names) out[name]!.set(answered.out![name]!, start * width(name));
+      }
+    }));
+    if (isShared) for (const name of names) if (out[name] !== shared[name]) out[name]!.set(shared[name]!);
+  }
+}
+
+/** Returns whether memory can be shared with workers. */
+function canShare(): boolean {
+  return typeof SharedArrayBuffer !== "undefined" && globalThis.crossOriginIsolated !== false;
+}
+
+/** Returns an array in shared memory with the same content, which is the array itself if it is shared. */
+function share<Numbers extends NumberArray | Coordinates>(array: Numbers): Numbers {
+  if (array.buffer instanceof SharedArrayBuffer) return array;
+  const kind = array.constructor as new (buffer: SharedArrayBuffer) => Numbers;
+  const copy = new kind(new SharedArrayBuffer(array.byteLength));
+  copy.set(array);
+  return copy;
+}
+
+/** A worker, and the calls that it has not answered yet. It answers them in their order. */
+class Remote {
+  #worker: { postMessage(message: unknown): void; terminate(): void };
+  #calls: { resolve: (reply: Reply) => void; reject: (error: Error) => void }[] = [];
+
+  constructor() {
+    const threads = nodeModule("node:worker_threads");
+    const receive = (reply: Reply) => {
+      const call = this.#calls.shift();
+      if (reply.error === undefined) call?.resolve(reply);
+      else call?.reject(new Error(reply.error));
+    };
+    const fail = (error: { message?: string }) => {
+      for (const { reject } of this.#calls.splice(0)) reject(new Error(`p2m: a worker failed: ${error.message ?? ""}`));
+    };
+    if (threads && typeof Worker === "undefined") {
+      // Bundlers look for this address in calls of `new Worker` alone.
+      const here = import.meta.url;
+      const worker = new threads.Worker(new URL("./worker.js", here));
+      worker.on("message", receive).on("error", fail);
+      this.#worker = worker;
+    } else {
+      const worker = new Worker(new URL("./worker.js", import.meta.url), { type: "module" });
+      worker.onmessage = ({ data }) => receive(data);
+      worker.onerror = fail;
+      this.#worker = worker;
+    }
+  }
+
+  ask(message: Start | Call): Promise<Reply> {
+    return new Promise((resolve, reject) => {
+      this.#calls.push({ resolve, reject });
+      this.#worker.postMessage(message);
+    });
+  }
+
+  end(): void {
+    for (const { reject } of this.#calls.splice(0)) reject(new Error("p2m: the pool was disposed of"));
+    this.#worker.terminate();
+  }
+}

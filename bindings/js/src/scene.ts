@@ -1,0 +1,94 @@
+import { attempt, check, compiledModule, passArray, passBytes, Owned, scratch, u32, f64, wasm, withMemory } from "./module.js";
+import type { Allocate, Coordinates } from "./module.js";
+
+/** Indices of vertices. Other arrays than `Uint32Array` are converted. */
+export type Indices = ArrayLike<number>;
+
+/** A scene as arrays. Without triangles, segments and points, each position is a point. */
+export interface SceneArrays {
+  /** The coordinates of the vertices, three each. */
+  positions: ArrayLike<number>;
+  /** The vertices of the triangles, three each. */
+  triangles?: Indices | null;
+  /** The vertices of the segments, two each. */
+  segments?: Indices | null;
+  /** The vertices of the points, one each. */
+  points?: Indices | null;
+}
+
+/** A scene whose primitives are in any order. */
+export interface MixedArrays {
+  /** The coordinates of the vertices, three each. */
+  positions: ArrayLike<number>;
+  /** The number of vertices of each primitive: 3 for a triangle, 2 for a segment, 1 for a point. */
+  sizes: ArrayLike<number>;
+  /** The vertices of all primitives, one after the other. */
+  vertices: Indices;
+}
+
+/** A position: three coordinates, or an object that has them by their names. */
+export type Position = ArrayLike<number> | { readonly x: number; readonly y: number; readonly z: number };
+
+/** Returns coordinates as the library takes them. */
+export function coordinates(array: ArrayLike<number>): Coordinates {
+  return array instanceof Float32Array || array instanceof Float64Array ? array : Float64Array.from(array);
+}
+
+function indices(array: Indices): Uint32Array {
+  return array instanceof Uint32Array ? array : Uint32Array.from(array);
+}
+
+/**
+ * A set of triangles, segments and points over shared vertices. It never changes, and an index over it keeps what it
+ * needs, so a scene can be disposed of once its index is built.
+ *
+ * The primitives are numbered: first all triangles, then all segments, then all points. In a scene of {@link MixedArrays}
+ * they have the order of these.
+ */
+export class Scene extends Owned {
+  /**
+   * Makes a scene of arrays, which are copied. Coordinates in single precision are widened, which changes none of them.
+   *
+   * @throws Error if an index has no vertex, or if a coordinate of a primitive is not finite.
+   */
+  constructor(arrays: SceneArrays | MixedArrays) {
+    compiledModule();
+    super(withMemory((allocate) => make(arrays, allocate)), wasm.p2m_scene_free);
+  }
+
+  /** The numbers of primitives of each kind. */
+  get counts(): { triangles: number; segments: number; points: number } {
+    check(wasm.p2m_scene_counts(this.address, scratch));
+    const [triangles, segments, points] = u32.subarray(scratch / 4, scratch / 4 + 3) as unknown as [number, number, number];
+    return { triangles, segments, points };
+  }
+
+  /**
+   * The lowest and the highest coordinates of all primitives.
+   *
+   * @throws Error if there are no primitives.
+   */
+  get bounds(): { low: [number, number, number]; high: [number, number, number] } {
+    check(wasm.p2m_scene_bounds(this.address, scratch, scratch + 24));
+    const at = (i: number) => [...f64.subarray(scratch / 8 + i, scratch / 8 + i + 3)] as [number, number, number];
+    return { low: at(0), high: at(3) };
+  }
+}
+
+function make(arrays: SceneArrays | MixedArrays, allocate: Allocate): number {
+  const place = allocate(4);
+  const positions = passArray(coordinates(arrays.positions), 3, "positions", allocate);
+  if ("sizes" in arrays) {
+    const sizes = passBytes(Uint8Array.from(arrays.sizes), allocate);
+    const vertices = passArray(indices(arrays.vertices), 1, "vertices", allocate);
+    attempt(() => wasm.p2m_js_scene_of_mixed(positions, sizes, arrays.sizes.length, vertices, place));
+    return u32[place / 4]!;
+  }
+  let { triangles, segments, points } = arrays;
+  if (!triangles && !segments && !points) points = Uint32Array.from({ length: arrays.positions.length / 3 }, (_, i) => i);
+  const pass = (array: Indices | null | undefined, width: number, name: string) =>
+    array ? passArray(indices(array), width, name, allocate) : 0;
+  const passed = [pass(triangles, 3, "triangles"), pass(segments, 2, "segments"), pass(points, 1, "points")] as const;
+  attempt(() => wasm.p2m_scene_new(positions, ...passed, place));
+  return u32[place / 4]!;
+}

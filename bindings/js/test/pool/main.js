@@ -1,0 +1,16 @@
+// A page whose pool has to give the answers of the index.
+
+import { Index, Pool, Scene, init } from "p2m";
+import bytes from "p2m/inline";
+
+await init(bytes);
+const positions = Float64Array.from({ length: 3000 }, (_, i) => Math.sin(i * i));
+const index = new Index(new Scene({ positions }));
+const inline = Math.round(new Index(new Scene({ positions: [0, 0, 0] })).closestPoint([0, 0, 3]).distance);
+const queries = Float64Array.from({ length: 30_000 }, (_, i) => 2 * Math.cos(i * i));
+const pool = await Pool.create(index, { workers: 2 });
+const [expected, found] = [index.closestPoints(queries), await pool.closestPoints(queries)];
+const isSame = Object.keys(expected).every((name) => expected[name].every((x, i) => x === found[name][i]));
+globalThis.result = { isShared: crossOriginIsolated, isSame, size: pool.size, inline };
+pool.dispose();
+document.documentElement.dataset.ready = "true";
