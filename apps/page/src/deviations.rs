@@ -20,13 +20,21 @@ pub struct Deviations<'a> {
     pub statistics: &'a DeviationStatistics,
     /// Whether the values have signs.
     pub is_signed: bool,
-    /// The absolute value from which on colours do not change.
+    /// The absolute value from which on colours do not change: [`usual_limit`](Self::usual_limit) by default.
     pub limit: f64,
     /// The largest absolute value that counts as within the tolerance at first, if there is a tolerance.
     pub tolerance: Option<f64>,
 }
 
 impl Deviations<'_> {
+    /// Returns the limit of colours that shows a tolerance, if there is one, and all deviations but the largest: three
+    /// tolerances, or else the 95th percentile. It is 1 where all deviations are 0.
+    #[must_use]
+    pub fn usual_limit(statistics: &DeviationStatistics, tolerance: Option<f64>) -> f64 {
+        let limit = tolerance.filter(|tolerance| *tolerance > 0.0).map_or(statistics.usual_limit(), |t| 3.0 * t);
+        if limit > 0.0 { limit } else { 1.0 }
+    }
+
     /// Returns the box of the points of a scan that are finite, which the picture of a page has to contain.
     #[must_use]
     pub fn bounds(scan: &Soup<f64>) -> Aabb<f64> {
@@ -125,6 +133,16 @@ mod tests {
         let bounds = Deviations::bounds(&Soup::new(points.map(Point3::from).to_vec(), []).unwrap());
         assert_eq!((bounds.min, bounds.max), ([0.0, 2.0, 1.0].into(), [1.0, 4.0, 3.0].into()));
         assert!(Deviations::bounds(&Soup::default()).is_empty());
+    }
+
+    #[test]
+    fn colours_reach_to_three_tolerances_or_to_most_deviations() {
+        let limit = |values: &[f64], tolerance| Deviations::usual_limit(&DeviationStatistics::of(values), tolerance);
+        assert_eq!(
+            [limit(&[1.0, -9.0], Some(0.5)), limit(&[2.0, -2.0], None), limit(&[2.0], Some(0.0))],
+            [1.5, 2.0, 2.0]
+        );
+        assert_eq!([limit(&[0.0], None), limit(&[0.0], Some(0.0))], [1.0, 1.0]);
     }
 
     #[test]

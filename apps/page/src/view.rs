@@ -74,7 +74,31 @@ struct Data {
     #[serde(skip_serializing_if = "Option::is_none")]
     live: Option<LiveData>,
     #[serde(skip_serializing_if = "Option::is_none")]
+    measures: Option<MeasureData>,
+    #[serde(skip_serializing_if = "Option::is_none")]
     deviations: Option<DeviationData>,
+}
+
+/// A line between two points, with its length.
+#[derive(Clone, Debug)]
+pub struct Measure {
+    /// The name that the page shows, or nothing for one of many lines.
+    pub name: String,
+    /// The two ends of the line.
+    pub ends: [Point3<f64>; 2],
+    /// The length that the page shows, such as a certified distance.
+    pub length: f64,
+}
+
+/// Lines with lengths.
+#[derive(Debug, Serialize)]
+struct MeasureData {
+    title: String,
+    verdict: String,
+    names: Vec<String>,
+    lengths: Packed,
+    /// Six coordinates for each line.
+    ends: Packed,
 }
 
 /// The data of live queries: the module, and the exact scene with its primitives in the order of their ids.
@@ -88,14 +112,22 @@ struct LiveData {
     indices: Packed,
 }
 
-/// The primitives of a scene: positions in the frame, and the numbers of vertices of each kind of primitives.
+/// The primitives of a scene.
 #[derive(Debug, Serialize)]
 struct SceneData {
+    /// The primitives that are drawn, or nothing if the exact scene of live queries has the same ones.
+    #[serde(flatten)]
+    drawn: Option<DrawnData>,
+    objects: Vec<ObjectData>,
+}
+
+/// Positions in the frame, and the numbers of vertices of each kind of primitives.
+#[derive(Debug, Serialize)]
+struct DrawnData {
     positions: Packed,
     triangles: Packed,
     segments: Packed,
     points: Packed,
-    objects: Vec<ObjectData>,
 }
 
 /// The first and the last number of an object's primitives of each kind, or those between objects, without a name.
@@ -169,6 +201,7 @@ impl<'a> View<'a> {
             field: None,
             lists: None,
             live: None,
+            measures: None,
             deviations: None,
         };
         Self { scene, frame, data, title: "A scene".to_owned(), summary: String::new(), about: String::new() }
@@ -298,11 +331,29 @@ impl<'a> View<'a> {
             sizes.push(vertex_count(&element));
             indices.extend_from_slice(element.indices());
         }
+        if soup.len() <= MAX_PRIMITIVES {
+            self.data.scene.drawn = None;
+        }
         self.data.live = Some(LiveData {
             module: Packed::compressed(MODULE),
             coordinates: Packed::new(&coordinates),
             sizes: Packed::new(&sizes),
             indices: Packed::new(&indices),
+        });
+        self
+    }
+
+    /// Shows lines with their lengths under a title, and above them a sentence about all of them. The box that the page
+    /// was started with has to contain their ends.
+    #[must_use]
+    pub fn with_measures(mut self, title: &str, verdict: &str, measures: &[Measure]) -> Self {
+        let ends = measures.iter().flat_map(|measure| measure.ends).flat_map(|p| [p.x, p.y, p.z]);
+        self.data.measures = Some(MeasureData {
+            title: title.to_owned(),
+            verdict: verdict.to_owned(),
+            names: measures.iter().map(|measure| measure.name.clone()).filter(|name| !name.is_empty()).collect(),
+            lengths: Packed::new(&measures.iter().map(|measure| measure.length).collect::<Vec<f64>>()),
+            ends: Packed::new(&ends.collect::<Vec<f64>>()),
         });
         self
     }
@@ -362,13 +413,13 @@ fn scene_data(scene: &Scene, frame: &Frame, notes: &mut Vec<String>) -> SceneDat
             Count(count as u64)
         ));
     }
-    SceneData {
+    let drawn = DrawnData {
         positions: Packed::new(positions.as_flattened()),
         triangles: Packed::new(&drawn.triangles),
         segments: Packed::new(&drawn.segments),
         points: Packed::new(&drawn.points),
-        objects,
-    }
+    };
+    SceneData { drawn: Some(drawn), objects }
 }
 
 /// Returns the number of vertices of a primitive.
@@ -466,6 +517,17 @@ mod tests {
         let object = drawn.object(&scene.soup, Some(&"small".to_owned()), 1..3, Some(&[0, 0, 0])).unwrap();
         assert_eq!((object.count, object.triangles, object.segments, object.points), (2, [0, 0], [0, 0], [0, 1]));
         assert_eq!(drawn.points, [0]);
+    }
+
+    #[test]
+    fn a_page_with_the_exact_scene_has_no_copy_of_it() {
+        let scene = scene();
+        let view = View::new(&scene, &Aabb::empty());
+        let drawn = |html: &str| ["positions", "triangles"].map(|key| data(html)["scene"][key].is_null());
+        assert_eq!(drawn(&view.html().unwrap()), [false, false]);
+        let page = view.with_live_queries().html().unwrap();
+        assert_eq!(drawn(&page), [true, true]);
+        assert_eq!(data(&page)["scene"]["objects"].as_array().unwrap().len(), 3);
     }
 
     #[test]

@@ -72,7 +72,7 @@ def trade() -> None:
     figure, axis = plt.subplots(figsize=(9, 3.2))
     for backend, colour, below in (("octree", OURS, -11), ("aabb", "#d9822b", 5)):
         settings = [row for row in rows("tradeoff_dragon.csv") if row["backend"] == backend]
-        points = [row for row in settings if not row["setting"].startswith("budget")]
+        points = [row for row in settings if not row["setting"].startswith("max visits")]
         errors = [max(float(row["error_relative_max"] or 0), 1e-17) for row in points]
         values = list(zip(errors, (float(row["ns_median"]) for row in points), (row["setting"] for row in points), strict=True))
         label = f"p2m {backend}"

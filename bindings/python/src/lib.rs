@@ -21,6 +21,7 @@ mod fields;
 mod hausdorff;
 mod index;
 mod memory;
+mod pages;
 mod pair_columns;
 mod pairs;
 mod parts;
@@ -49,6 +50,7 @@ mod _p2m {
         deviations::{deviation_page, deviation_ply, deviation_statistics},
         hausdorff::hausdorff,
         index::Index,
+        pages::{grid_around, scene_page},
         pair_columns::PairList,
         queries::{closest, is_any_within, k_nearest, within},
         rays::{HitList, rays},

@@ -12,6 +12,7 @@ use crate::io::output::Output;
 use crate::io::streams::Streams;
 use crate::io::threads::ThreadArgs;
 use crate::io::usage::{finite_not_negative, one_of, positive, usage};
+use crate::page::open::OpenArgs;
 use crate::page::source::{PageArgs, about, file_name};
 use crate::query::answers::ClosestAnswer;
 use anyhow::{Context, anyhow};
@@ -46,7 +47,7 @@ or whose side is not defined, are reported as points without a deviation and lef
 
 A CSV file is the table of `p2m query --signed`, where signed_distance is the deviation. A PLY file is the scan with \
 the property deviation and colours from blue (inside) over grey to red (outside). An HTML file is a page that any \
-browser opens without a network, with the coloured scan, the scene, a histogram and the statistics.
+browser opens without a network, with the coloured scan, the scene, a histogram and the statistics; --open opens it.
 
 Examples:
   p2m deviation scan.ply part.stl --tolerance 0.05
@@ -88,7 +89,7 @@ pub(crate) struct Args {
     #[arg(long, value_name = "LENGTH", value_parser = finite_not_negative, allow_negative_numbers = true)]
     tolerance: Option<f64>,
 
-    /// The deviation at the ends of the colour scale [default: the tolerance, or the 95th percentile]
+    /// The deviation at the ends of the colour scale [default: three tolerances, or the 95th percentile]
     #[arg(long, value_name = "LENGTH", value_parser = positive, allow_negative_numbers = true)]
     limit: Option<f64>,
 
@@ -102,6 +103,9 @@ pub(crate) struct Args {
 
     #[command(flatten)]
     page: PageArgs,
+
+    #[command(flatten)]
+    open: OpenArgs,
 
     /// Report as one JSON object on the standard output, instead of the table
     #[arg(long)]
@@ -203,6 +207,7 @@ pub(crate) fn run(streams: &Streams, args: &Args) -> anyhow::Result<()> {
             "skipped": json::skipped(&scan.skipped),
         });
         let answers = json::joined([json!({ "scan": scan }), report.json()]);
+        args.open.show(args.out.as_deref())?;
         return json::print(streams, &run.json("deviation", answers, &out));
     }
     streams.print_summary(format_args!("{}", run.text("points", "point", points.len() as u64)));
@@ -213,6 +218,7 @@ pub(crate) fn run(streams: &Streams, args: &Args) -> anyhow::Result<()> {
     if let Some(out) = &args.out {
         streams.print_summary(format_args!("written  {}, {bytes} bytes\n", out.display()));
     }
+    args.open.show(args.out.as_deref())?;
     Output::print(streams, report.table())
 }
 
@@ -333,9 +339,7 @@ impl<'a> DeviationReport<'a> {
     /// Makes the statistics of deviations, to which a rule of signs belongs if there is one.
     fn new(args: &'a Args, values: &[f64], rule: Option<&'static str>) -> Self {
         let statistics = DeviationStatistics::of(values);
-        // Where all deviations are 0, any limit gives the same colours.
-        let usual_limit = || Some(statistics.usual_limit()).filter(|limit| *limit > 0.0).unwrap_or(1.0);
-        let limit = args.limit.or(args.tolerance.filter(|tolerance| *tolerance > 0.0)).unwrap_or_else(usual_limit);
+        let limit = args.limit.unwrap_or_else(|| Deviations::usual_limit(&statistics, args.tolerance));
         let outside = args.tolerance.map(|tolerance| outside(values, tolerance));
         Self { args, statistics, outside, limit, rule }
     }
@@ -447,6 +451,9 @@ impl Args {
             return Err(usage("the statistics go to the standard output, so the deviations need a file: --out FILE"));
         }
         let format = self.out.as_deref().map(DeviationFormat::from_path).transpose()?;
+        if self.open.open && format != Some(DeviationFormat::Html) {
+            return Err(usage("--open needs a page: --out FILE.html"));
+        }
         if is_standard(&self.scan) && is_standard(&self.scene.path) {
             return Err(usage("the standard input cannot be both the scan and the scene"));
         }

@@ -7,12 +7,14 @@ use crate::io::progress::{Progress, Unit};
 use crate::io::streams::Streams;
 use crate::io::threads::ThreadArgs;
 use crate::io::usage::usage;
+use crate::page::pair::{PairPage, PairPageArgs};
 use anyhow::Context;
 use p2m_bvh::AabbTree;
 use p2m_core::Soup;
 use p2m_core::pair::{ClosestPair, PairOptions, PairQuery};
 use p2m_mixed::statistics::figure::{Figure, Length};
 use p2m_mixed::{Format, Scene};
+use p2m_page::Measure;
 use serde_json::{Value, json};
 
 const HELP: &str = "\
@@ -21,7 +23,7 @@ closed one has the distance to its surface. The lower bound is certified.
 
 Examples:
   p2m distance cell.ply robot.ply
-  p2m distance cell.obj arm.obj --transform pose.txt
+  p2m distance cell.obj arm.obj --transform pose.txt --html page.html --open
   p2m distance a.stl b.stl --max-distance 0.01 --json";
 
 /// Find the distance between two scenes, and whether they intersect
@@ -36,6 +38,9 @@ pub(crate) struct Args {
     max_distance: Option<f64>,
 
     #[command(flatten)]
+    page: PairPageArgs,
+
+    #[command(flatten)]
     threads: ThreadArgs,
 
     /// Print the result as JSON
@@ -48,19 +53,34 @@ pub(crate) fn run(streams: &Streams, args: &Args) -> anyhow::Result<()> {
     if limit.is_nan() || limit < 0.0 {
         return Err(usage(format!("--max-distance {limit}: a distance is not negative")));
     }
+    args.page.check(&args.scenes.paths())?;
     let motion = args.scenes.motion(streams)?;
     let formats = args.scenes.formats()?;
     let pool = args.threads.pool()?;
     let scenes = args.scenes.read(streams, &pool, formats)?.map(|(scene, _)| scene);
     let names = args.scenes.names();
     let mut options = PairOptions::default().with_max_distance(limit);
-    options.motion = motion;
+    options.motion.clone_from(&motion);
     let progress = Progress::start(streams, "comparing", None, Unit::None);
     let found = pool.install(|| {
         let build = |k: usize| AabbTree::<f64, &Soup<f64>>::new(&scenes[k].soup).with_context(|| names[k].clone());
         Ok::<_, anyhow::Error>(build(0)?.closest_pair(&build(1)?, &options))
     })?;
     drop(progress);
+    args.page.write(streams, || {
+        let unit = args.page.unit();
+        let measure = |pair: &ClosestPair<f64>| {
+            let name = if pair.is_intersecting { "a common point" } else { "distance" };
+            Measure { name: name.to_owned(), ends: pair.points, length: pair.distance }
+        };
+        let verdict = match &found {
+            Some(pair) if pair.is_intersecting => "The scenes intersect.".to_owned(),
+            Some(pair) => format!("The scenes are {} {unit} apart.", Figure(pair.distance)),
+            None => "Nothing is near.".to_owned(),
+        };
+        let (paths, motion, measures) = (args.scenes.paths(), motion.as_ref(), found.iter().map(measure).collect());
+        PairPage { paths, scenes: &scenes, motion, title: "Distance", verdict, measures }
+    })?;
     if args.json {
         return json::print(streams, &report(&names, formats, &scenes, found.as_ref(), limit));
     }

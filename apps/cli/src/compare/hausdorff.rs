@@ -8,12 +8,15 @@ use crate::io::progress::{Progress, Unit};
 use crate::io::streams::Streams;
 use crate::io::threads::ThreadArgs;
 use crate::io::usage::finite_not_negative;
+use crate::page::pair::{PairPage, PairPageArgs};
 use anyhow::{Context, anyhow};
 use p2m_backends::P2mSettings;
 use p2m_core::PrimitiveSet;
 use p2m_core::pair::Motion;
 use p2m_field::{Direction, HausdorffDistance, HausdorffOptions, hausdorff_distance, one_sided_hausdorff_distance};
+use p2m_mixed::statistics::figure::Figure;
 use p2m_mixed::{Format, Scene};
+use p2m_page::Measure;
 use serde_json::{Value, json};
 use std::ops::ControlFlow;
 use std::sync::Arc;
@@ -27,6 +30,7 @@ a note then says so.
 Examples:
   p2m hausdorff scan.ply part.stl
   p2m hausdorff coarse.obj fine.obj --one-sided --tolerance 0.001
+  p2m hausdorff a.obj b.obj --html page.html --open
   p2m hausdorff a.obj b.obj --transform pose.txt --json";
 
 /// Find the Hausdorff distance between two scenes
@@ -54,6 +58,9 @@ pub(crate) struct Args {
     backend: Option<Backend>,
 
     #[command(flatten)]
+    page: PairPageArgs,
+
+    #[command(flatten)]
     threads: ThreadArgs,
 
     /// Print the result as JSON
@@ -62,6 +69,7 @@ pub(crate) struct Args {
 }
 
 pub(crate) fn run(streams: &Streams, args: &Args) -> anyhow::Result<()> {
+    args.page.check(&args.scenes.paths())?;
     let motion = args.scenes.motion(streams)?;
     let formats = args.scenes.formats()?;
     let names = args.scenes.names();
@@ -95,6 +103,14 @@ pub(crate) fn run(streams: &Streams, args: &Args) -> anyhow::Result<()> {
     })?;
     drop(progress);
     let found = found.ok_or_else(|| anyhow!("a scene is empty, so there is no Hausdorff distance"))?;
+    args.page.write(streams, || {
+        let of = if args.one_sided { "No point of the first scene is" } else { "No point of one scene is" };
+        let verdict = format!("{of} farther than {} {} from the other.", Figure(found.upper_bound), args.page.unit());
+        let measure = Measure { name: "farthest".to_owned(), ends: found.points, length: found.upper_bound };
+        // The second scene is in its place already.
+        let (paths, measures) = (args.scenes.paths(), vec![measure]);
+        PairPage { paths, scenes: &scenes, motion: None, title: "Hausdorff distance", verdict, measures }
+    })?;
     if args.json {
         return json::print(streams, &report(&names, formats, &scenes, &found, tolerance, args.one_sided));
     }

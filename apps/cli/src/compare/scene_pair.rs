@@ -43,6 +43,11 @@ impl ScenePairArgs {
         [&self.first, &self.second].map(|path| name(path))
     }
 
+    /// Returns the files of the scenes.
+    pub(crate) fn paths(&self) -> [&Path; 2] {
+        [&self.first, &self.second]
+    }
+
     /// Returns the formats of the scenes.
     pub(crate) fn formats(&self) -> anyhow::Result<[Format; 2]> {
         Ok([

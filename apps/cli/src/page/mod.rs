@@ -3,6 +3,8 @@
 pub(crate) mod boxes;
 pub(crate) mod camera;
 pub(crate) mod drawing;
+pub(crate) mod open;
+pub(crate) mod pair;
 pub(crate) mod picture;
 pub(crate) mod source;
 pub(crate) mod tree_levels;

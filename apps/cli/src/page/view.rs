@@ -3,12 +3,13 @@
 use crate::answers::queries::{Queries, Region};
 use crate::index::backend::{Backend, SceneSource, backends, saved_or_default};
 use crate::index::sign_rule::{SignRule, SignedIndex};
-use crate::io::input::{SceneArgs, is_standard, point_format, read_finite_points, read_scene_and_index};
+use crate::io::input::{SceneArgs, is_standard, point_format, read_finite_points, read_rays, read_scene_and_index};
 use crate::io::output::Output;
 use crate::io::progress::{Progress, Unit};
 use crate::io::streams::Streams;
 use crate::io::threads::ThreadArgs;
 use crate::io::usage::{count_in, not_negative, one_of, positive, usage, whole_number};
+use crate::page::open::OpenArgs;
 use crate::page::source::{PageArgs, about, file_name};
 use crate::page::tree_levels::TreeLevels;
 use crate::scene::info::counted;
@@ -16,11 +17,11 @@ use anyhow::{Context, bail};
 use nalgebra::Point3;
 use p2m_backends::{AnyIndex, P2mSettings};
 use p2m_bvh::{AabbTree, PacketTree};
-use p2m_core::{Aabb, Closest, PrimitiveSet, QueryOptions};
+use p2m_core::{Aabb, Closest, PrimitiveSet, QueryOptions, Ray};
 use p2m_field::{FieldOptions, Grid, distances, signed_distances};
 use p2m_mixed::statistics::Counts;
 use p2m_mixed::{PointFormat, Scene};
-use p2m_page::{Level, View};
+use p2m_page::{Level, Measure, View};
 use rayon::ThreadPool;
 use rayon::prelude::*;
 use std::path::{Path, PathBuf};
@@ -32,7 +33,8 @@ to see its answer, the primitive, the feature and the sphere of the lower bound.
 distance field, --lists a slice through cells, and --levels boxes of the AABB tree. The keyboard can do everything \
 that the mouse can.
 
-Small pages answer queries under the mouse pointer with the library itself, compiled to WebAssembly.
+Pages answer queries under the mouse pointer with the library itself, compiled to WebAssembly: at once for scenes of \
+up to 10,000 primitives, and when a button is pressed for up to 100,000. --open opens the page in the browser.
 
 Numbers are those of `p2m query`, with all digits. Scenes of more than a million primitives are drawn in less \
 detail, and a note on the page says so.
@@ -40,6 +42,7 @@ detail, and a note on the page says so.
 Examples:
   p2m view scene.obj --random 1000 --out page.html
   p2m view bunny.obj --field 64 --signed --up y --out field.html
+  p2m view scene.obj --rays hits.csv --open
   p2m view bunny.obj --backend p2m --lists 128 --out cells.html
   p2m view city.obj --points scan.xyz --unit metres --levels 8 --out city.html";
 
@@ -74,6 +77,10 @@ pub(crate) struct Args {
     #[arg(long, value_name = "R", value_parser = not_negative, allow_negative_numbers = true)]
     max_distance: Option<f64>,
 
+    /// Show the first hits of the rays of a file, such as the table of `p2m ray`
+    #[arg(long, value_name = "FILE")]
+    rays: Option<PathBuf>,
+
     /// Show slices of a distance field with N grid points along the longest side
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(2..=256), allow_negative_numbers = true)]
     field: Option<u32>,
@@ -90,7 +97,7 @@ pub(crate) struct Args {
     #[arg(long, value_name = "N", default_value_t = 0, value_parser = clap::value_parser!(u8).range(0..=16), allow_negative_numbers = true)]
     levels: u8,
 
-    /// Answer queries under the mouse pointer; auto: for up to 10,000 primitives
+    /// Answer queries under the mouse pointer; auto: for up to 100,000 primitives
     #[arg(long, value_name = "WHEN", value_enum, default_value_t = Live::Auto)]
     live: Live,
 
@@ -100,6 +107,9 @@ pub(crate) struct Args {
 
     #[command(flatten)]
     page: PageArgs,
+
+    #[command(flatten)]
+    open: OpenArgs,
 
     /// Write the page to this file; `-` is the standard output [default: SCENE.html in this folder]
     #[arg(long, value_name = "FILE")]
@@ -120,9 +130,9 @@ enum Live {
     Never,
 }
 
-/// The number of primitives above which a page has no live queries unless they are asked for. For a scene of this size
-/// the page builds indexes for a few seconds.
-const MAX_LIVE_PRIMITIVES: usize = 10_000;
+/// The number of primitives above which a page has no live queries unless they are asked for. Above 10,000 they begin
+/// when a button of the page is pressed, because indexes are built for some seconds then.
+const MAX_LIVE_PRIMITIVES: usize = 100_000;
 
 /// The largest number of query points of a page.
 const MAX_QUERIES: u64 = 100_000;
@@ -139,6 +149,11 @@ pub(crate) fn run(streams: &Streams, args: &Args) -> anyhow::Result<()> {
     let bounds = scene.soup.aabb();
     let queries = args.queries(streams, &bounds)?;
     let grid = args.grid(&bounds)?;
+    let rays =
+        args.rays.as_ref().map(|path| read_rays(streams, path, point_format(path, None, "--rays")?)).transpose()?;
+    if rays.as_ref().is_some_and(|rays| rays.len() as u64 > MAX_QUERIES) {
+        bail!("--rays: a page shows at most {MAX_QUERIES} rays");
+    }
     let output = Output::open(streams, Some(&out))?;
 
     let saved = saved.as_ref();
@@ -152,12 +167,13 @@ pub(crate) fn run(streams: &Streams, args: &Args) -> anyhow::Result<()> {
     let signed = signed.with_context(|| args.scene.name())?;
     let rule = signed.as_ref().map(|signed| signed.rule().name());
     let source = PageSource { streams, args, pool: &pool, backend, index: &*index, signed: signed.as_ref() };
-    let mut view = source.view(&scene, queries.as_deref(), grid.as_ref())?;
+    let hits = rays.map(|rays| source.hits(&rays)).transpose()?;
+    let mut view = source.view(&scene, queries.as_deref(), grid.as_ref(), hits.as_deref())?;
     view.about = about(&format!("scene {}", args.scene.name()), backend.name, rule);
     let page = view.html()?;
     output.finish_with(&page)?;
     streams.print_summary(format_args!("{}\nwritten  {}, {} bytes\n", view.summary, out.display(), page.len()));
-    Ok(())
+    args.open.show(Some(&out))
 }
 
 /// The index and the signs of a scene, by which its page is computed.
@@ -177,8 +193,10 @@ impl PageSource<'_> {
         scene: &'v Scene,
         queries: Option<&[Point3<f64>]>,
         grid: Option<&Grid>,
+        hits: Option<&[Option<Measure>]>,
     ) -> anyhow::Result<View<'v>> {
-        let around = Aabb::from_points(queries.unwrap_or_default());
+        let ends = hits.unwrap_or_default().iter().flatten().flat_map(|hit| hit.ends);
+        let around = Aabb::from_points(&queries.unwrap_or_default().iter().copied().chain(ends).collect::<Vec<_>>());
         let around = grid.map_or(around, |grid| {
             around.union(&Aabb { min: grid.origin(), max: grid.point(grid.counts().map(|n| n - 1)) })
         });
@@ -189,6 +207,12 @@ impl PageSource<'_> {
         view.summary = if is_empty { "an empty scene".to_owned() } else { counted(&Counts::of(&scene.soup)) };
         if let Some(queries) = queries {
             view = self.with_answers(view, queries);
+        }
+        if let Some(hits) = hits {
+            let found: Vec<Measure> = hits.iter().flatten().cloned().collect();
+            let verdict = format!("{} of {} rays hit the scene.", found.len(), hits.len());
+            view.summary += &format!("; {} rays", hits.len());
+            view = view.with_measures("Rays", &verdict, &found);
         }
         if let (Some(grid), Some(_)) = (grid, args.lists) {
             view = self.with_list_lengths(view, grid);
@@ -226,6 +250,18 @@ impl PageSource<'_> {
         view.summary +=
             &format!("; {} query points and their closest points, found by {}", queries.len(), self.backend.name);
         view.with_answers(queries, &answers, signs.as_deref())
+    }
+
+    /// Returns the lines from the origins of rays to their first hits.
+    fn hits(&self, rays: &[Ray]) -> anyhow::Result<Vec<Option<Measure>>> {
+        let index = self.index.as_ray_query();
+        let index = index.ok_or_else(|| usage(format!("--rays: {} casts no rays", self.backend.name)))?;
+        let hit = |ray: &Ray| {
+            let hit = index.first_intersection(ray)?;
+            let ends = [ray.origin(), hit.point()];
+            Some(Measure { name: String::new(), ends, length: (ends[1] - ends[0]).norm() })
+        };
+        Ok(self.pool.install(|| rays.par_iter().map(hit).collect()))
     }
 
     /// Adds the lengths of the lists at the points of a grid.

@@ -23,7 +23,7 @@ fn outside_is_positive_and_inside_negative() {
     let report = json(&["deviation", &scan, &cube, "--tolerance", "0.5", "--json"]);
     assert_eq!((statistic(&report, "mean"), statistic(&report, "min"), statistic(&report, "max")), (0.375, -0.5, 1.0));
     assert_eq!((statistic(&report, "mean_absolute"), statistic(&report, "rms")), (0.625, 0.75));
-    assert_eq!((&report["above"], &report["below"], &report["limit"]), (&2.into(), &0.into(), &0.5.into()));
+    assert_eq!((&report["above"], &report["below"], &report["limit"]), (&2.into(), &0.into(), &1.5.into()));
     assert_eq!((&report["sign_rule"], &report["missing"]), (&"winding".into(), &0.into()));
     let text = table(&["deviation", &scan, &cube, "--tolerance", "0.25", "--unit", "mm"]);
     for line in ["mean                                0.375 mm", "below -0.25 mm                      1 (25 %)"] {

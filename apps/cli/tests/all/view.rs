@@ -26,7 +26,7 @@ fn a_page_has_what_was_asked_for() {
 fn small_scenes_have_live_queries_unless_they_are_refused() {
     let folder = TempDir::new().unwrap();
     let (page, sphere) = (path(&folder, "page.html"), path(&folder, "sphere.ply"));
-    table(&["generate", "ico-sphere", "--frequency", "32", "--out", &sphere]);
+    table(&["generate", "ico-sphere", "--frequency", "71", "--out", &sphere]);
     for (scene, options, expected) in [
         (SCENE, &[][..], true),
         (SCENE, &["--live", "never"], false),

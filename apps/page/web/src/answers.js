@@ -2,6 +2,10 @@
 
 import * as three from "three";
 import { ColourScale } from "./colours.js";
+import { pointMaterial } from "./shading.js";
+
+// The opacity of segments to closest points.
+const QUIET = 0.4;
 
 export class AnswersLayer {
   constructor(answers, frame) {
@@ -19,8 +23,8 @@ export class AnswersLayer {
       // Without an answer, the closest point and the segment are drawn where the query is.
       else this.to.set(this.from.subarray(3 * i, 3 * i + 3), 3 * i);
     }
-    this.dots = points(this.from, new Uint16Array(3 * this.length), 6);
-    this.feet = points(this.to, new Uint16Array(3 * this.length), 3);
+    this.dots = points(this.from, new Uint16Array(3 * this.length), 8);
+    this.feet = points(this.to, new Uint16Array(3 * this.length), 4);
     const ends = new Float32Array(6 * this.length);
     for (let i = 0; i < this.length; i++) {
       for (const [end, from] of [[0, this.from], [3, this.to]]) ends.set(from.subarray(3 * i, 3 * i + 3), 6 * i + end);
@@ -28,10 +32,17 @@ export class AnswersLayer {
     const geometry = new three.BufferGeometry();
     geometry.setAttribute("position", new three.BufferAttribute(ends, 3));
     geometry.setAttribute("color", new three.BufferAttribute(new Uint16Array(ends.length), 3, true));
-    this.segments = new three.LineSegments(geometry, new three.LineBasicMaterial({ vertexColors: true }));
+    // Segments are quiet, so that they do not hide the scene. The selected one is drawn once more.
+    this.segments = new three.LineSegments(geometry, new three.LineBasicMaterial({
+      vertexColors: true, transparent: true, opacity: QUIET, depthWrite: false,
+    }));
     this.group = new three.Group();
     this.group.add(this.dots, this.feet, this.segments);
     this.selection = new three.Group();
+    // The answer under the pointer, whose segment is drawn once more.
+    this.pointed = -1;
+    this.highlight = new three.Group();
+    this.group.add(this.highlight);
     this.selected = -1;
     this.hasSphere = true;
   }
@@ -53,6 +64,7 @@ export class AnswersLayer {
   // Selects an answer, and draws its primitive, its feature, its segment and the sphere of its lower bound.
   select(i, colours) {
     this.selected = i;
+    empty(this.highlight);
     empty(this.selection);
     if (i < 0) return;
     const at = (array, k) => new three.Vector3(...array.subarray(3 * k, 3 * k + 3));
@@ -64,6 +76,15 @@ export class AnswersLayer {
     const vertices = [0, 1, 2].slice(0, this.sizes[i]).map((k) => at(this.vertices, 3 * i + k));
     const radius = this.hasSphere ? this.lower_bounds[i] / this.frame.scale : 0;
     drawAnswer(this.selection, query, at(this.to, i), vertices, featureOf(this.features[i]), radius, colours);
+  }
+
+  // Draws the segment of the answer under the pointer once more, or of none.
+  point(i, colours) {
+    this.pointed = i;
+    empty(this.highlight);
+    if (i < 0 || !this.isAnswered(i) || i === this.selected) return;
+    const [query, foot] = [this.from, this.to].map((ends) => new three.Vector3(...ends.subarray(3 * i, 3 * i + 3)));
+    this.highlight.add(line([query, foot], colours.selected), marker(query, colours.selected, 11));
   }
 
   // Returns the terms and texts of an answer.
@@ -106,9 +127,9 @@ export function featureOf(code) {
 // the signed distance if there is one.
 export function answerRows({ point, distance, signed, lowerBound, size, primitive, feature }) {
   return [
-    ["closest point", [...point].join(", ")],
     ["distance", distance],
     ...(signed === undefined ? [] : [["signed distance", signed]]),
+    ["closest point", point],
     ["lower bound", lowerBound],
     ["primitive", `${KINDS[size]} ${primitive}`],
     ["feature", featureName(feature)],
@@ -163,10 +184,14 @@ export function drawAnswer(group, query, foot, vertices, feature, radius, colour
 // The kinds of primitives, by their numbers of vertices.
 export const KINDS = ["", "point", "segment", "triangle"];
 
-// Returns the scale of distances, which have a sign if some of them are negative.
+// Returns the scale of distances. If some of them are negative, it is symmetric about zero. It reaches to the largest
+// distance, unless those of the other sign are much smaller and would have hardly a colour.
 export function distanceScale(values) {
   const [low, high] = limits(values);
-  return new ColourScale(low < 0 ? "diverging" : "sequential", low < 0 ? low : 0, high);
+  if (!(low < 0)) return new ColourScale("sequential", 0, high);
+  const [shorter, longer] = [Math.min(-low, high), Math.max(-low, high)];
+  const limit = high > 0 ? Math.min(longer, Math.max(4 * shorter, 0.6 * longer)) : longer;
+  return new ColourScale("diverging", -limit, limit);
 }
 
 // Returns the smallest and the largest number among values, of which some may be no numbers.
@@ -179,17 +204,17 @@ export function limits(values) {
   return low <= high ? [low, high] : [0, 1];
 }
 
-// Makes dots of a size in pixels.
+// Makes round dots of a size in pixels.
 export function points(positions, colours, size) {
   const geometry = new three.BufferGeometry();
   geometry.setAttribute("position", new three.BufferAttribute(positions, 3));
   geometry.setAttribute("color", new three.BufferAttribute(colours, 3, true));
-  return new three.Points(geometry, new three.PointsMaterial({ size, sizeAttenuation: false, vertexColors: true }));
+  return new three.Points(geometry, pointMaterial({ size, vertexColors: true }));
 }
 
 export function marker(position, color, size) {
   const geometry = new three.BufferGeometry().setFromPoints([position]);
-  const material = new three.PointsMaterial({ color, size, sizeAttenuation: false, depthTest: false });
+  const material = pointMaterial({ color, size, depthTest: false, transparent: true });
   const drawn = new three.Points(geometry, material);
   drawn.renderOrder = 3;
   return drawn;
@@ -197,7 +222,7 @@ export function marker(position, color, size) {
 
 export function line(vertices, color) {
   const geometry = new three.BufferGeometry().setFromPoints(vertices);
-  const drawn = new three.Line(geometry, new three.LineBasicMaterial({ color, depthTest: false }));
+  const drawn = new three.Line(geometry, new three.LineBasicMaterial({ color, depthTest: false, transparent: true }));
   drawn.renderOrder = 3;
   return drawn;
 }

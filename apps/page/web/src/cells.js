@@ -1,6 +1,7 @@
 // The boxes of an index: the nodes of a tree, level by level.
 
 import * as three from "three";
+import { element } from "./text.js";
 
 // The pairs of corners that an edge of a box joins. Bit k of a corner is set if it is at the upper end of axis k.
 const EDGES = [0, 1, 2, 3, 4, 5, 6, 7].flatMap((corner) =>
@@ -40,5 +41,34 @@ export class CellsLayer {
 
   title() {
     return this.levels[this.level].title;
+  }
+}
+
+// The panel of the levels of boxes.
+export class CellsPanel {
+  constructor(viewer, add) {
+    this.viewer = viewer;
+    const { cells } = viewer;
+    this.text = element("output", { id: "level" });
+    this.range = element("input", {
+      type: "range", min: 0, max: cells.levels.length - 1, step: 1, value: cells.level, "aria-label": "level",
+      oninput: () => this.show(Number(this.range.value)),
+    });
+    add(viewer.data.cells.title, "index", this.range, element("p", {}, this.text));
+    this.text.textContent = cells.title();
+  }
+
+  step(by) {
+    this.show(this.viewer.cells.level + by);
+  }
+
+  show(level) {
+    const { cells } = this.viewer;
+    cells.show(Math.max(0, Math.min(cells.levels.length - 1, level)));
+    cells.group.visible = true;
+    document.getElementById("show-cells").checked = true;
+    this.range.value = cells.level;
+    this.text.textContent = cells.title();
+    this.viewer.draw();
   }
 }

@@ -5,18 +5,32 @@ import { short } from "./text.js";
 // The background, and the colours of what is drawn in one colour.
 export const THEMES = {
   light: {
-    background: "#f7f8fa", surface: "#858e9a", line: "#4b5563",
-    selected: "#c24e00", live: "#0b62a8", feature: "#c000c0",
+    background: "#f7f8fa", surface: "#828c9c", line: "#445061", edge: "#39424e", grid: "#848e9b",
+    selected: "#c24e00", live: "#0b62a8", feature: "#c000c0", undefined: "#9a5fc0",
   },
   dark: {
-    background: "#111417", surface: "#7d8792", line: "#aab4c0",
-    selected: "#ff9040", live: "#6ab8ee", feature: "#ff60ff",
+    background: "#111417", surface: "#8f99a8", line: "#aab4c0", edge: "#dfe6ee", grid: "#66707c",
+    selected: "#ff9040", live: "#6ab8ee", feature: "#ff60ff", undefined: "#9a5fc0",
   },
 };
 
-// The scales for light and for dark pages. All their colours have a contrast of at least 3 with the background.
-// The sequential ones are parts of "viridis", which has evenly rising lightness and is readable with any colour vision.
-// The diverging ones are blue for negative values and red for positive ones, with grey at zero.
+// From light, near the surface, to dark, far from it.
+const YELLOW_BLUE = [
+  "#faf7e4", "#e6f2d2", "#c3e5c4", "#8dd3bf", "#55bcc6", "#319dc4", "#2777b4", "#25509c", "#1c2c74",
+];
+// Blue for negative values and red for positive ones, as light as paper at zero.
+const BLUE_RED = [
+  "#08306b", "#1c5aa8", "#4a8fd0", "#8fc0ea", "#cfe4f4", "#f4f1ea", "#f9d3b8", "#f0a37c", "#dd6a4e", "#b93237",
+  "#7a0a22",
+];
+
+// The scales for light and for dark pages.
+//
+// Points and thin segments have the scales "sequential" and "diverging", whose colours have a contrast of at least 3
+// with the background. The former are parts of "viridis", which has evenly rising lightness and is readable with any
+// colour vision; the latter are blue for negative values and red for positive ones, with grey at zero.
+//
+// Areas, which have lines of equal distance or shade, have the scales "field" and "signedField".
 export const SCALES = {
   sequential: {
     light: ["#440154", "#472d7b", "#3b528b", "#2c728e", "#21918c", "#1f9f88"],
@@ -26,10 +40,15 @@ export const SCALES = {
     light: ["#053061", "#1a559a", "#3379b8", "#6089b4", "#888888", "#bd7862", "#c2513c", "#a11f2b", "#67001f"],
     dark: ["#b3dcff", "#7cc0f5", "#4f9fdc", "#5a86ab", "#707070", "#b0735f", "#e0805f", "#ff9a70", "#ffc09f"],
   },
+  field: { light: YELLOW_BLUE, dark: YELLOW_BLUE },
+  signedField: { light: BLUE_RED, dark: BLUE_RED },
+};
+// The colours of bands: far below a tolerance, below, within, above, and far above.
+export const BANDS = {
+  light: ["#1d4fc0", "#0c92b0", "#3c9650", "#b38300", "#c4241f"],
+  dark: ["#6f93ff", "#3cc3dd", "#4fb268", "#f0c030", "#ff6a58"],
 };
 
-// The least limit of a half of a diverging scale, as a part of the limit of the other half.
-const LEAST_HALF = 0.05;
 // The colour of a value that is no number.
 export const UNDEFINED = "#9a5fc0";
 
@@ -48,7 +67,7 @@ export class ColourScale {
     this.text = text;
     this.kind = kind;
     this.setTheme("light");
-    this.isDiverging = kind === "diverging";
+    this.isDiverging = kind === "diverging" || kind === "signedField";
     this.low = low;
     this.high = high > low ? high : low + (Math.abs(low) || 1);
   }
@@ -57,17 +76,9 @@ export class ColourScale {
     this.stops = SCALES[this.kind][theme].map(rgb);
   }
 
-  // Returns the part of a diverging scale at which a value is. The middle is zero, and each half reaches to its limit,
-  // or to a part of the other limit if that is farther, so that rounding has no strong colours.
-  part(value) {
-    const [below, above] = [-this.low, this.high];
-    const limit = value < 0 ? Math.max(below, LEAST_HALF * above) : Math.max(above, LEAST_HALF * below);
-    return 0.5 + 0.5 * Math.max(-1, Math.min(1, value / limit));
-  }
-
   // Writes the three bytes of the colour of a value.
   write(value, out, at) {
-    const t = this.isDiverging ? this.part(value) : (value - this.low) / (this.high - this.low);
+    const t = (value - this.low) / (this.high - this.low);
     if (Number.isNaN(t)) {
       for (let k = 0; k < 3; k++) out[at + k] = UNDEFINED_BYTES[k];
       return;
@@ -100,5 +111,24 @@ export class ColourScale {
   gradient() {
     const steps = Array.from({ length: 65 }, (_, i) => this.css(this.low + ((this.high - this.low) * i) / 64));
     return `linear-gradient(to right, ${steps.join(", ")})`;
+  }
+}
+
+// A map from deviations to bands of one colour each: within a tolerance, up to a limit, and beyond it.
+export class BandScale extends ColourScale {
+  constructor(tolerance, limit, isSigned) {
+    super("sequential", isSigned ? -limit : 0, limit);
+    Object.assign(this, { tolerance, limit, isSigned, isDiverging: isSigned });
+  }
+
+  setTheme(theme) {
+    this.bands = BANDS[theme].map(rgb);
+  }
+
+  write(value, out, at) {
+    const size = Math.abs(value);
+    const band = 2 + Math.sign(value) * (size > this.tolerance ? (size > this.limit ? 2 : 1) : 0);
+    const colour = Number.isNaN(value) ? UNDEFINED_BYTES : this.bands[band];
+    for (let k = 0; k < 3; k++) out[at + k] = colour[k];
   }
 }

@@ -26,7 +26,23 @@ export async function readData() {
   const element = document.getElementById("data");
   const data = await unpackAll(JSON.parse(element.textContent));
   element.remove();
+  if (!data.scene.positions) Object.assign(data.scene, drawnScene(data.live, new Frame(data.frame)));
   return data;
+}
+
+// Returns what is drawn of the exact scene of live queries: positions in the frame, and the numbers of vertices of each
+// kind of primitives.
+function drawnScene({ coordinates, sizes, indices }, frame) {
+  const lists = [1, 2, 3].map((size) => new Uint32Array(size * sizes.reduce((n, other) => n + (other === size), 0)));
+  const ends = [0, 0, 0];
+  let next = 0;
+  for (const size of sizes) {
+    lists[size - 1].set(indices.subarray(next, next + size), ends[size - 1]);
+    ends[size - 1] += size;
+    next += size;
+  }
+  const [points, segments, triangles] = lists;
+  return { positions: frame.positions(coordinates), triangles, segments, points };
 }
 
 // The frame of the page: the GPU computes in f32, so positions are divided by a scale and are relative to the centre of

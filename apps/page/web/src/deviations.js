@@ -1,57 +1,64 @@
-// A scan, whose points have the colours of their deviations, with the panel beside it.
+// A scan, whose points or triangles have the colours of their deviations, or the part with those of the points near it.
 
 import * as three from "three";
-import { empty, marker, points } from "./answers.js";
-import { ColourScale } from "./colours.js";
-import { count, element, fillList, namedRow, reveal, short, stepped, tableHead } from "./text.js";
+import { empty, marker } from "./answers.js";
+import { BandScale, ColourScale } from "./colours.js";
+import { pointMaterial, spacing, surface } from "./shading.js";
 
 // The distance in pixels within which a point is read.
 const PICK_RADIUS = 6;
-// The number of points above which they are drawn smaller.
-const MANY_POINTS = 200_000;
-// The number of the largest deviations that are listed.
-const LISTED = 10;
+// The number of worst places that are listed, and their least distance from each other in radii of the scene.
+const [LISTED, APART] = [8, 0.12];
+// The size of a point relative to the distance to the next one, which makes a closed surface of them.
+const SPLAT = 1.9;
 
 export class DeviationsLayer {
-  constructor(data, frame) {
+  constructor(data, frame, scene) {
     Object.assign(this, data);
+    this.scene = scene;
     this.length = data.values.length;
     this.drawn = frame.positions(data.positions);
     this.colours = new Uint16Array(3 * this.length);
-    this.dots = points(this.drawn, this.colours, this.length > MANY_POINTS ? 2 : 4);
+    this.triangleOf = triangleNumbers(scene);
+    const geometry = new three.BufferGeometry();
+    geometry.setAttribute("position", new three.BufferAttribute(this.drawn, 3));
+    geometry.setAttribute("color", new three.BufferAttribute(this.colours, 3, true));
+    const normals = data.triangles.length === 0 && this.triangleOf ? this.pointNormals() : null;
+    if (normals) geometry.setAttribute("normal", new three.BufferAttribute(normals, 3, true));
+    const size = SPLAT * spacing(this.drawn);
+    this.dots = new three.Points(geometry, pointMaterial({ size, vertexColors: true, sizeAttenuation: true }, !!normals));
     // Points that are not finite are not drawn.
     const sphere = new three.Sphere(new three.Vector3(), 4);
-    this.dots.geometry.boundingSphere = sphere;
+    geometry.boundingSphere = sphere;
     this.group = new three.Group();
     this.selection = new three.Group();
     this.group.add(this.selection);
     this.selected = -1;
     if (data.triangles.length > 0) {
-      const geometry = new three.BufferGeometry();
-      for (const name of ["position", "color"]) geometry.setAttribute(name, this.dots.geometry.getAttribute(name));
-      geometry.boundingSphere = sphere;
-      geometry.setIndex(new three.BufferAttribute(data.triangles, 1));
-      const material = new three.MeshLambertMaterial({
-        vertexColors: true, side: three.DoubleSide, flatShading: true,
-        polygonOffset: true, polygonOffsetFactor: 1, polygonOffsetUnits: 1,
-      });
-      this.surface = new three.Mesh(geometry, material);
+      const triangles = new three.BufferGeometry();
+      for (const name of ["position", "color"]) triangles.setAttribute(name, geometry.getAttribute(name));
+      triangles.boundingSphere = sphere;
+      triangles.setIndex(new three.BufferAttribute(data.triangles, 1));
+      this.surface = surface(triangles, { vertexColors: true });
       this.group.add(this.surface);
       this.dots.visible = false;
     }
     this.group.add(this.dots);
-    this.setLimit(data.limit);
+    this.setScale(data.limit, null);
   }
 
-  // Sets the absolute deviation from which on colours do not change.
-  setLimit(limit) {
+  // Sets the absolute deviation from which on colours do not change, and the tolerance of bands if there are some.
+  setScale(limit, bandTolerance) {
     this.limit = limit;
-    this.scale = new ColourScale(this.is_signed ? "diverging" : "sequential", this.is_signed ? -limit : 0, limit);
+    this.scale = bandTolerance === null
+      ? new ColourScale(this.is_signed ? "signedField" : "field", this.is_signed ? -limit : 0, limit)
+      : new BandScale(bandTolerance, limit, this.is_signed);
     if (this.theme) this.colourPoints();
   }
 
   setTheme(theme, colours) {
     this.theme = theme;
+    this.themeColours = colours;
     this.colourPoints();
     this.select(this.selected, colours);
   }
@@ -60,6 +67,60 @@ export class DeviationsLayer {
     this.scale.setTheme(this.theme);
     this.scale.writeAll(this.values, this.colours);
     this.dots.geometry.getAttribute("color").needsUpdate = true;
+    if (this.part?.visible) this.colourPart();
+  }
+
+  // Returns the normal of the closest triangle of each point, or zero where there is none.
+  pointNormals() {
+    const { positions, triangles } = this.scene;
+    const normals = new Int8Array(3 * this.length);
+    const [a, b, c] = [new three.Vector3(), new three.Vector3(), new three.Vector3()];
+    for (let i = 0; i < this.length; i++) {
+      const triangle = this.triangleOf(this.primitives[i]);
+      if (triangle < 0) continue;
+      [a, b, c].forEach((corner, k) => corner.fromArray(positions, 3 * triangles[3 * triangle + k]));
+      const normal = b.sub(a).cross(c.sub(a)).normalize();
+      for (let k = 0; k < 3; k++) normals[3 * i + k] = Math.round(127 * normal.getComponent(k)) || 0;
+    }
+    return normals;
+  }
+
+  // Shows the part with the colours of the points that are closest to it, instead of the scan, or the scan.
+  showPart(isOn) {
+    if (isOn && !this.part) {
+      const geometry = new three.BufferGeometry();
+      const { positions, triangles } = this.scene;
+      geometry.setAttribute("position", new three.BufferAttribute(positions, 3));
+      geometry.setAttribute("color", new three.BufferAttribute(new Uint16Array(positions.length), 3, true));
+      geometry.setIndex(new three.BufferAttribute(triangles, 1));
+      geometry.boundingSphere = new three.Sphere(new three.Vector3(), 4);
+      this.part = surface(geometry, { vertexColors: true });
+      this.group.add(this.part);
+    }
+    if (this.part) this.part.visible = isOn;
+    (this.surface ?? this.dots).visible = !isOn;
+    if (isOn) this.colourPart();
+  }
+
+  // Gives each vertex of the part the mean of the points whose closest triangle touches it.
+  colourPart() {
+    const { triangles } = this.scene;
+    const attribute = this.part.geometry.getAttribute("color");
+    const [sums, counts] = [new Float64Array(attribute.count), new Uint32Array(attribute.count)];
+    for (let i = 0; i < this.length; i++) {
+      const triangle = this.triangleOf(this.primitives[i]);
+      if (triangle < 0 || Number.isNaN(this.values[i])) continue;
+      for (let k = 0; k < 3; k++) {
+        const vertex = triangles[3 * triangle + k];
+        sums[vertex] += this.values[i];
+        counts[vertex]++;
+      }
+    }
+    this.scale.writeAll(sums.map((sum, i) => sum / counts[i]), attribute.array);
+    // Where no point is near, the part has its usual colour.
+    const colour = new three.Color(this.themeColours.surface).toArray().map((x) => Math.round(65535 * x));
+    for (let i = 0; i < counts.length; i++) if (counts[i] === 0) attribute.array.set(colour, 3 * i);
+    attribute.needsUpdate = true;
   }
 
   // Returns the values that stand for those of all points, and how many points each stands for.
@@ -103,171 +164,61 @@ export class DeviationsLayer {
     return found;
   }
 
+  position(i) {
+    return new three.Vector3().fromArray(this.drawn, 3 * i);
+  }
+
   // Marks a point, by its number among those that are drawn.
   select(i, colours) {
     this.selected = i;
     empty(this.selection);
     // A point that is not finite is nowhere.
-    if (i < 0 || !this.drawn.subarray(3 * i, 3 * i + 3).every(Number.isFinite)) return;
-    this.selection.add(marker(new three.Vector3(...this.drawn.subarray(3 * i, 3 * i + 3)), colours.feature, 12));
+    if (i < 0 || !this.position(i).toArray().every(Number.isFinite)) return;
+    this.selection.add(marker(this.position(i), colours.feature, 12));
   }
 
-  // Returns the numbers of the points with the largest deviations, by absolute value.
-  largest() {
-    const kept = [];
-    for (let i = 0; i < this.length; i++) {
-      const size = Math.abs(this.values[i]);
-      if (Number.isNaN(size) || (kept.length === LISTED && size <= Math.abs(this.values[kept[LISTED - 1]]))) continue;
-      const before = kept.findIndex((k) => Math.abs(this.values[k]) < size);
-      kept.splice(before < 0 ? kept.length : before, 0, i);
-      kept.length = Math.min(kept.length, LISTED);
+  // Returns the numbers of the points with the largest deviations, by absolute value, of which no two are near each
+  // other.
+  worst(radius) {
+    const found = [];
+    while (found.length < LISTED) {
+      let [best, size] = [-1, -1];
+      for (let i = 0; i < this.length; i++) {
+        const value = Math.abs(this.values[i]);
+        if (!(value > size) || found.some((j) => this.apart(i, j) < APART * radius)) continue;
+        [best, size] = [i, value];
+      }
+      if (best < 0) break;
+      found.push(best);
     }
-    return kept;
+    return found;
+  }
+
+  apart(i, j) {
+    const { drawn } = this;
+    return Math.hypot(...[0, 1, 2].map((k) => drawn[3 * i + k] - drawn[3 * j + k]));
   }
 }
 
-// The sections of the panel that are about deviations.
-export class DeviationsPanel {
-  constructor(viewer, add) {
-    this.viewer = viewer;
-    this.layer = viewer.deviations;
-    const { layer } = this;
-    this.what = layer.is_signed ? "deviation" : "distance";
-    this.tolerance = layer.tolerance;
-    this.figure = viewer.figure(() => this.readFigure(), { id: "deviation-figures" });
-    this.parts = element("p", { id: "deviation-parts", "aria-live": "polite" });
-    this.inputs = {
-      limit: this.numberInput("limit", "Limit of colours", layer.limit, (x) => x > 0 && this.setLimit(x)),
-      tolerance: this.numberInput("tolerance", "Tolerance", layer.tolerance ?? "", (x) => this.setTolerance(x)),
-    };
-    add(layer.is_signed ? "Deviations, positive outside" : "Distances", "deviations", this.figure.element,
-      ...Object.values(this.inputs), this.parts);
-    this.pointText = element("dl", { id: "deviation", "aria-live": "polite" });
-    this.pointerText = element("output", { id: "deviation-pointer", "aria-live": "off" });
-    const step = (by, text) => element("button", { type: "button", onclick: () => this.step(by) }, text);
-    const steps = element("p", {}, step(-1, "Previous"), " ", step(1, "Next"), " ", this.pointerText);
-    add("Point", "point", steps, this.pointText);
-    this.makeTables(add);
-    this.redraw();
-    this.select(-1);
+// Returns a function from the number of a primitive to that of its triangle among those of the page, or -1. There is no
+// such function if some primitives are not on the page.
+function triangleNumbers({ triangles, objects }) {
+  const places = [];
+  let next = 0;
+  for (const { count, triangles: [first, end] } of objects) {
+    // Ids of objects of several kinds are mixed.
+    places.push({ first: next, end: next + count, shift: end - first === count ? first - next : null });
+    next += count;
   }
-
-  // Makes a number and a slider with one meaning. The slider covers four orders of magnitude.
-  numberInput(id, label, value, change) {
-    const most = this.layer.statistics.reduce((a, { value }) => Math.max(a, Math.abs(value ?? 0)), 0) || 1;
-    const part = (x) => Math.max(0, Math.min(1, 1 + Math.log10(x / most) / 4));
-    const box = element("input", { type: "number", id, min: 0, step: "any", value, class: "number" });
-    const slider = element("input", {
-      type: "range", id: `${id}-slider`, min: 0, max: 1, step: 0.001, value: value === "" ? 1 : part(value),
-      "aria-label": `${label}, slider`,
-    });
-    box.addEventListener("input", () => {
-      // A number below zero is no limit and no tolerance, as the browser says.
-      if (!box.checkValidity()) return;
-      if (Number(box.value) > 0) slider.value = part(Number(box.value));
-      change(box.value === "" ? null : Number(box.value));
-    });
-    slider.addEventListener("input", () => {
-      box.value = short(most * 10 ** (4 * (Number(slider.value) - 1)));
-      change(Number(box.value));
-    });
-    return element("div", { class: "setting" }, element("label", {}, `${label} (${this.viewer.unit}) `, box), slider);
-  }
-
-  setLimit(limit) {
-    this.layer.setLimit(limit);
-    this.redraw();
-  }
-
-  setTolerance(tolerance) {
-    this.tolerance = tolerance !== null && tolerance >= 0 ? tolerance : null;
-    this.redraw();
-  }
-
-  readFigure() {
-    const { layer, tolerance, what, viewer: { unit } } = this;
-    if (layer.total === layer.missing) return {};
-    const [values, weight] = layer.population();
-    const hasTwoSides = layer.is_signed && tolerance > 0;
-    const marks = tolerance === null ? [] : hasTwoSides ? [-tolerance, tolerance] : [tolerance];
-    return { scale: layer.scale, what, unit, values, options: { name: `${what}s`, weight, marks } };
-  }
-
-  // Draws the legend and the histogram, and writes how many points are within the tolerance.
-  redraw() {
-    const { layer, tolerance } = this;
-    this.figure.update();
-    if (tolerance === null) {
-      this.parts.textContent = "With a tolerance, this counts the points outside of it.";
-    } else {
-      const [above, below, within] = layer.outside(tolerance);
-      const share = (n) => `${count(n)} (${short((100 * n) / Math.max(1, above + below + within))} %)`;
-      const under = layer.is_signed ? `${share(below)} below ${tolerance > 0 ? -tolerance : 0}, ` : "";
-      const isRounded = layer.quantiles && tolerance !== layer.tolerance;
-      const rounded = isRounded ? " Counts are to 0.01 %, because not all points are on the page." : "";
-      this.parts.textContent =
-        `${share(above)} above ${tolerance}, ${under}${share(within)} within the tolerance.${rounded}`;
+  if (triangles.length === 0 || places.every(({ shift }) => shift === null)) return null;
+  return (primitive) => {
+    let [low, high] = [0, places.length - 1];
+    while (low < high) {
+      const middle = (low + high) >> 1;
+      if (primitive < places[middle].end) high = middle;
+      else low = middle + 1;
     }
-    this.viewer.draw();
-  }
-
-  makeTables(add) {
-    const { layer, viewer: { unit } } = this;
-    const rows = layer.statistics.map(({ label, value }) => namedRow(label, value ?? "none"));
-    const counts = [["with", layer.total - layer.missing], ["without", layer.missing]]
-      .map(([word, n]) => namedRow(`points ${word} a ${this.what}`, count(n)));
-    add("Statistics", "statistics", element("table", { id: "statistics-table" },
-      element("caption", {}, `${layer.is_signed ? "Deviations" : "Distances"} in ${unit}`),
-      element("tbody", {}, ...counts, ...rows)));
-    const largest = layer.largest().map((i) => {
-      const select = element("button", { type: "button", onclick: () => this.select(i) }, String(i * layer.stride));
-      return element("tr", {}, element("td", {}, select), element("td", {}, String(layer.values[i])));
-    });
-    const where = layer.stride > 1 ? " of the points on the page" : "";
-    add(`Largest deviations${where}`, "largest-deviations",
-      element("table", { id: "largest" }, tableHead(["point", this.what]), element("tbody", {}, ...largest)));
-  }
-
-  // Adds the check boxes of what is shown. `box` makes one.
-  makeBoxes(box) {
-    const { layer } = this;
-    box("scan", true, (on) => (layer.group.visible = on), "show-scan");
-    if (layer.surface) box("points of the scan", false, (on) => (layer.dots.visible = on), "show-scan-points");
-  }
-
-  pick(event) {
-    if (!this.layer.group.visible) return -1;
-    const { size, x, y } = this.viewer.pointer(event);
-    return this.layer.pick(this.viewer.camera, size, x, y);
-  }
-
-  // Shows the deviation of the point under the pointer, once a frame.
-  hover(event) {
-    if (this.isHovering || event.buttons !== 0) return;
-    this.isHovering = true;
-    requestAnimationFrame(() => {
-      this.isHovering = false;
-      const i = this.pick(event);
-      this.pointerText.textContent = i < 0 ? "" : `${short(this.layer.values[i])} ${this.viewer.unit} at the pointer`;
-    });
-  }
-
-  step(by) {
-    const { length, selected } = this.layer;
-    if (length > 0) this.select(stepped(selected, by, length));
-  }
-
-  select(i) {
-    const { layer, viewer } = this;
-    layer.select(i, viewer.colours);
-    const rows = i < 0 ? [["none", "Click a point of the scan, or press n."]] : [
-      ["number", `${count(i * layer.stride)} of ${count(layer.total)}`],
-      ["point", [...layer.positions.subarray(3 * i, 3 * i + 3)].join(", ")],
-      [this.what, Number.isNaN(layer.values[i]) ? "none" : layer.values[i]],
-      ...(Number.isNaN(layer.values[i]) ? [] : [["primitive", layer.primitives[i]]]),
-    ];
-    fillList(this.pointText, rows);
-    if (i >= 0) reveal(this.pointText);
-    viewer.draw();
-  }
+    const { end, shift } = places[low];
+    return primitive < end && shift !== null ? primitive + shift : -1;
+  };
 }

@@ -1,9 +1,12 @@
 // The scene: its triangles, segments and points, of which each object can be hidden.
 
 import * as three from "three";
+import { pointMaterial, spacing, surface } from "./shading.js";
 
 // The kinds of primitives, with the number of vertices of each.
 const KINDS = [["triangles", 3], ["segments", 2], ["points", 1]];
+// The size of a point relative to the distance to the next one.
+const POINT_SIZE = 1.8;
 
 export class SceneLayer {
   // `scene` has positions in the frame (f32) and for each kind the numbers of vertices. `objects` are names with the
@@ -14,12 +17,10 @@ export class SceneLayer {
     const positions = new three.BufferAttribute(scene.positions, 3);
     this.parts = [];
     this.materials = {
-      triangles: new three.MeshLambertMaterial({
-        side: three.DoubleSide, flatShading: true,
-        polygonOffset: true, polygonOffsetFactor: 1, polygonOffsetUnits: 1,
-      }),
       segments: new three.LineBasicMaterial(),
-      points: new three.PointsMaterial({ size: 3, sizeAttenuation: false }),
+      points: pointMaterial({
+        size: scene.points.length > 0 ? POINT_SIZE * spacing(scene.positions) : 1, sizeAttenuation: true,
+      }),
     };
     for (const [kind, size] of KINDS) {
       const indices = scene[kind];
@@ -28,25 +29,46 @@ export class SceneLayer {
       geometry.setAttribute("position", positions);
       geometry.setIndex(new three.BufferAttribute(indices, 1));
       geometry.boundingSphere = new three.Sphere(new three.Vector3(), 4);
-      const Class = { triangles: three.Mesh, segments: three.LineSegments, points: three.Points }[kind];
-      const drawn = new Class(geometry, this.materials[kind]);
+      const drawn = kind === "triangles" ? surface(geometry)
+        : new { segments: three.LineSegments, points: three.Points }[kind](geometry, this.materials[kind]);
+      this.materials[kind] = drawn.material;
       this.group.add(drawn);
       this.parts.push({ kind, size, indices, geometry, drawn });
     }
   }
 
   setTheme(theme, colours) {
-    this.materials.triangles.color.set(colours.surface);
+    this.materials.triangles?.color.set(colours.surface);
     this.materials.segments.color.set(colours.line);
-    this.materials.points.color.set(colours.line);
+    this.materials.points.color.set(colours.surface);
+    this.edges?.material.color.set(colours.edge);
   }
 
-  setWireframe(isOn) {
-    this.materials.triangles.wireframe = isOn;
+  // Draws the edges of triangles over them. They are made when they are first asked for, because they take long.
+  setEdges(isOn, colours) {
+    const surface = this.parts.find(({ kind }) => kind === "triangles");
+    if (!surface) return;
+    if (!this.edges) {
+      const material = new three.MeshBasicMaterial({ wireframe: true, transparent: true, opacity: 0.5 });
+      material.clippingPlanes = this.materials.triangles.clippingPlanes;
+      this.edges = new three.Mesh(surface.geometry, material);
+      this.edges.material.color.set(colours.edge);
+      surface.drawn.add(this.edges);
+    }
+    this.edges.visible = isOn;
+  }
+
+  // Cuts away what lies on the positive side of a plane, or nothing.
+  cut(plane) {
+    const planes = plane ? [plane.clone().negate()] : null;
+    for (const material of [...Object.values(this.materials), this.edges?.material]) {
+      if (material) material.clippingPlanes = planes;
+    }
   }
 
   setOpacity(opacity) {
     const { triangles } = this.materials;
+    if (!triangles) return;
     triangles.transparent = opacity < 1;
     triangles.opacity = opacity;
     triangles.depthWrite = opacity === 1;

@@ -3,13 +3,65 @@
 
 import * as three from "three";
 import { ColourScale } from "./colours.js";
-import { distanceScale, limits } from "./answers.js";
-import { short } from "./text.js";
+import { limits } from "./answers.js";
+import { roundUp, short } from "./text.js";
 
-// The number of pixels along the longer side of a slice.
-const PIXELS = 512;
-// The number of lines of equal distance between zero and the largest distance.
+// The number of lines of equal distance between zero and the largest distance, at most.
 const LINES = 8;
+// The opacity of a slice where it is not inside of the scene, so that the scene behind it is seen.
+const OUTSIDE = { light: 0.45, dark: 0.7 };
+
+const VERTEX = `
+  varying vec2 place;
+  void main() {
+    place = uv;
+    gl_Position = projectionMatrix * modelViewMatrix * vec4(position, 1.0);
+  }
+`;
+const FRAGMENT = `
+  precision highp sampler2D;
+  uniform sampler2D values, colours;
+  uniform vec2 counts;
+  uniform float low, high, spacing, outside;
+  uniform bool hasCells, isDiverging;
+  uniform vec3 undefinedColour;
+  varying vec2 place;
+
+  float at(vec2 cell) { return texelFetch(values, ivec2(clamp(cell, vec2(0.0), counts - 1.0)), 0).r; }
+
+  void main() {
+    vec2 grid = place * (counts - 1.0);
+    float value;
+    if (hasCells) {
+      value = at(floor(grid + 0.5));
+    } else {
+      vec2 cell = min(floor(grid), counts - 2.0);
+      vec2 part = grid - cell;
+      value = mix(mix(at(cell), at(cell + vec2(1.0, 0.0)), part.x),
+                  mix(at(cell + vec2(0.0, 1.0)), at(cell + vec2(1.0, 1.0)), part.x), part.y);
+    }
+    if (!(abs(value) < 3e38)) {
+      gl_FragColor = vec4(undefinedColour, outside);
+    } else {
+      vec3 colour = texture2D(colours, vec2(clamp((value - low) / (high - low), 0.0, 1.0) * (255.0 / 256.0) + 0.5 / 256.0, 0.5)).rgb;
+      float alpha = isDiverging && value < 0.0 ? 1.0 : outside;
+      if (!hasCells) {
+        float step = value / spacing;
+        float width = max(fwidth(step), 1e-6);
+        float line = 1.0 - smoothstep(0.6, 1.3, abs(fract(step - 0.5) - 0.5) / width);
+        float zero = isDiverging ? 1.0 - smoothstep(0.8, 1.5, abs(step) / width) : 0.0;
+        // Lines are darker than light colours and lighter than dark ones.
+        float light = dot(colour, vec3(0.2126, 0.7152, 0.0722));
+        vec3 ink = light > 0.12 ? colour * 0.35 : colour + 0.25;
+        colour = mix(colour, ink, 0.75 * line * min(1.0, 0.4 / width));
+        colour = mix(colour, vec3(0.004), zero);
+        alpha = max(alpha, max(zero, 0.9 * line));
+      }
+      gl_FragColor = vec4(colour, alpha);
+    }
+    #include <colorspace_fragment>
+  }
+`;
 
 export class SliceLayer {
   // `field` has counts of grid points, their values with x running fastest, and the first point and the spacing in the
@@ -17,20 +69,36 @@ export class SliceLayer {
   constructor(field, hasCells) {
     Object.assign(this, field);
     this.hasCells = hasCells;
+    const [least, most] = limits(this.values);
     if (hasCells) {
-      const longest = limits(this.values)[1];
       this.values = this.values.map(Math.log2);
-      this.scale = new ColourScale("sequential", 0, Math.max(1, Math.log2(longest)), (value) => short(2 ** value));
+      this.scale = new ColourScale("field", 0, Math.max(1, Math.log2(most)), (value) => short(2 ** value));
+    } else if (least < 0) {
+      // Both signs have the same scale. What is far from the surface has the colour of an end of it, because the
+      // inside of a slender scene is not deep.
+      const [shorter, longer] = [Math.min(-least, most), Math.max(-least, most)];
+      const limit = Math.min(longer, Math.max(1.6 * shorter, 0.3 * longer));
+      this.scale = new ColourScale("signedField", -limit, limit);
     } else {
-      this.scale = distanceScale(this.values);
+      this.scale = new ColourScale("field", 0, most);
     }
-    this.canvas = document.createElement("canvas");
-    this.texture = new three.CanvasTexture(this.canvas);
-    this.texture.colorSpace = three.SRGBColorSpace;
-    this.texture.generateMipmaps = false;
-    this.texture.minFilter = three.LinearFilter;
-    const material = new three.MeshBasicMaterial({ map: this.texture, side: three.DoubleSide });
+    this.spacingOfLines = roundUp(this.scale.high / LINES);
+    this.texture = new three.DataTexture(null, 1, 1, three.RedFormat, three.FloatType);
+    this.colours = new three.DataTexture(new Uint8Array(4 * 256), 256, 1);
+    this.colours.colorSpace = three.SRGBColorSpace;
+    this.colours.minFilter = this.colours.magFilter = three.LinearFilter;
+    const { low, high, isDiverging } = this.scale;
+    this.uniforms = {
+      values: { value: this.texture }, colours: { value: this.colours }, counts: { value: new three.Vector2() },
+      low: { value: low }, high: { value: high }, spacing: { value: this.spacingOfLines }, hasCells: { value: hasCells },
+      isDiverging: { value: isDiverging }, outside: { value: 1 },
+      undefinedColour: { value: new three.Color() },
+    };
+    const material = new three.ShaderMaterial({
+      uniforms: this.uniforms, vertexShader: VERTEX, fragmentShader: FRAGMENT, side: three.DoubleSide, transparent: true,
+    });
     this.mesh = new three.Mesh(new three.BufferGeometry(), material);
+    this.mesh.renderOrder = 1;
     // The panel sets the plane.
     this.axis = 2;
   }
@@ -53,9 +121,16 @@ export class SliceLayer {
     return sum;
   }
 
-  setTheme(theme) {
+  setTheme(theme, colours) {
     this.scale.setTheme(theme);
-    this.draw();
+    const { low, high } = this.scale;
+    for (let i = 0; i < 256; i++) {
+      this.scale.write(low + ((high - low) * i) / 255, this.colours.image.data, 4 * i);
+      this.colours.image.data[4 * i + 3] = 255;
+    }
+    this.colours.needsUpdate = true;
+    this.uniforms.undefinedColour.value.set(colours.undefined);
+    this.uniforms.outside.value = this.hasCells ? 1 : OUTSIDE[theme];
   }
 
   // Draws the plane across an axis at a real index.
@@ -63,61 +138,62 @@ export class SliceLayer {
     this.axis = axis;
     this.index = Math.max(0, Math.min(this.counts[axis] - 1, index));
     const [u, v] = [0, 1, 2].filter((k) => k !== axis);
-    const sides = [u, v].map((k) => this.counts[k] - 1);
-    const [width, height] = sides.map((side) => Math.max(2, Math.round((PIXELS * side) / Math.max(...sides))));
+    const [width, height] = [u, v].map((k) => this.counts[k]);
     const values = new Float32Array(width * height);
     const across = this.parts(axis, this.index);
-    const columns = Array.from({ length: width }, (_, x) => this.parts(u, (sides[0] * x) / (width - 1)));
+    const columns = Array.from({ length: width }, (_, x) => this.parts(u, x));
     for (let y = 0; y < height; y++) {
-      const row = this.parts(v, (sides[1] * y) / (height - 1));
+      const row = this.parts(v, y);
       for (let x = 0; x < width; x++) values[x + width * y] = this.value(columns[x], row, across);
     }
-    this.drawn = { values, width, height };
-    this.draw();
-    const corner = (x, y) => {
-      const position = [...this.origin];
-      position[axis] += this.index * this.spacing;
-      position[u] += sides[0] * x * this.spacing;
-      position[v] += sides[1] * y * this.spacing;
-      return new three.Vector3(...position);
-    };
+    this.texture.dispose();
+    this.texture.image = { data: values, width, height };
+    this.texture.needsUpdate = true;
+    this.uniforms.counts.value.set(width, height);
+    const corner = (x, y) => this.position(axis, x * (width - 1), y * (height - 1));
     const geometry = new three.BufferGeometry().setFromPoints([corner(0, 0), corner(1, 0), corner(1, 1), corner(0, 1)]);
-    // The first row of the canvas is at v = 0, and a texture begins at its last row.
-    geometry.setAttribute("uv", new three.Float32BufferAttribute([0, 1, 1, 1, 1, 0, 0, 0], 2));
+    geometry.setAttribute("uv", new three.Float32BufferAttribute([0, 0, 1, 0, 1, 1, 0, 1], 2));
     geometry.setIndex([0, 1, 2, 0, 2, 3]);
     this.mesh.geometry.dispose();
     this.mesh.geometry = geometry;
+    this.labels = this.hasCells ? [] : this.makeLabels(values, width, height);
   }
 
-  // Draws the values of the plane in their colours.
-  draw() {
-    const { values, width, height } = this.drawn;
-    Object.assign(this.canvas, { width, height });
-    const context = this.canvas.getContext("2d");
-    const image = context.createImageData(width, height);
-    const step = Math.max(-this.scale.low, this.scale.high) / LINES;
-    const colour = [0, 0, 0];
-    for (let y = 0; y < height; y++) {
-      for (let x = 0; x < width; x++) {
-        const i = x + width * y;
-        const value = values[i];
-        this.scale.write(value, colour, 0);
-        // Lines are not drawn between cells.
-        if (!this.hasCells) {
-          for (const other of [x + 1 < width ? values[i + 1] : value, y + 1 < height ? values[i + width] : value]) {
-            if (Number.isNaN(other - value)) continue;
-            if (value < 0 !== other < 0) colour.fill(0);
-            else if (Math.floor(value / step) !== Math.floor(other / step)) darken(colour);
-          }
-        }
-        for (let k = 0; k < 3; k++) image.data[4 * i + k] = colour[k];
-        image.data[4 * i + 3] = 255;
+  // Returns the position in the frame of real indices in the plane.
+  position(axis, x, y) {
+    const position = [...this.origin];
+    const [u, v] = [0, 1, 2].filter((k) => k !== axis);
+    position[axis] += this.index * this.spacing;
+    position[u] += x * this.spacing;
+    position[v] += y * this.spacing;
+    return new three.Vector3(...position);
+  }
+
+  // Returns the plane in the frame, whose normal points along an axis or against it.
+  plane(sign) {
+    const normal = new three.Vector3().setComponent(this.axis, sign);
+    return new three.Plane(normal, -sign * (this.origin[this.axis] + this.index * this.spacing));
+  }
+
+  // Returns labels of lines of equal distance: texts with positions, where the lines cross two lines through the plane.
+  makeLabels(values, width, height) {
+    const labels = [];
+    const lowest = values.indexOf(values.reduce((a, b) => (b < a ? b : a), Infinity));
+    if (lowest < 0) return labels;
+    const [x0, y0] = [lowest % width, Math.floor(lowest / width)];
+    const paths = [[width, (i) => [i, y0]], [height, (i) => [x0, i]]];
+    for (const [length, at] of paths) {
+      for (let i = 0; i + 1 < length; i++) {
+        const [[ax, ay], [bx, by]] = [at(i), at(i + 1)];
+        const [a, b] = [values[ax + width * ay], values[bx + width * by]].map((value) => value / this.spacingOfLines);
+        const level = Math.ceil(Math.min(a, b));
+        if (!(level <= Math.max(a, b)) || a === b) continue;
+        const part = (level - a) / (b - a);
+        const position = this.position(this.axis, ax + part * (bx - ax), ay + part * (by - ay));
+        labels.push({ text: short(level * this.spacingOfLines), position });
       }
     }
-    context.putImageData(image, 0, 0);
-    if (this.texture.image !== this.canvas || this.size !== `${width}x${height}`) this.texture.dispose();
-    this.size = `${width}x${height}`;
-    this.texture.needsUpdate = true;
+    return labels;
   }
 
   // Returns the value at a position in the frame, which is in the plane.
@@ -130,10 +206,7 @@ export class SliceLayer {
   textAt(position, unit) {
     const value = this.valueAt(position);
     if (this.hasCells && Number.isNaN(value)) return "no list: the tree answers";
-    return `${this.scale.text(value)} ${unit}`;
+    const side = this.scale.isDiverging ? (value < 0 ? " inside" : " outside") : "";
+    return `${this.scale.text(this.scale.isDiverging ? Math.abs(value) : value)} ${unit}${side}`;
   }
-}
-
-function darken(colour) {
-  for (let k = 0; k < 3; k++) colour[k] *= 0.8;
 }

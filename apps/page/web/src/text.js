@@ -1,10 +1,58 @@
 // Numbers and elements for people to read.
 
-// Returns a number with at most four digits, for legends and summaries.
-export function short(value) {
+// The digits of numbers in lists and tables. What is copied has all of them.
+const DIGITS = 6;
+
+// Returns a number with at most `digits` digits and with separators of thousands.
+function figure(value, digits) {
   if (value === null || value === undefined || Number.isNaN(value)) return "undefined";
-  const rounded = Number(value.toPrecision(4));
-  return rounded !== 0 && Math.abs(rounded) < 1e-3 ? rounded.toExponential() : String(rounded);
+  const rounded = Number(value.toPrecision(digits));
+  const size = Math.abs(rounded);
+  if (size === Infinity) return rounded < 0 ? "-infinity" : "infinity";
+  if (size !== 0 && (size < 1e-3 || size >= 1e12)) return rounded.toExponential().replace("+", "");
+  return rounded.toLocaleString("en-US", { maximumFractionDigits: 12, maximumSignificantDigits: digits });
+}
+
+// Returns a number with at most four digits, for legends and summaries.
+export const short = (value) => figure(value, 4);
+
+// Makes an element that shows a number with six digits, and has all of them to be copied.
+export function number(value) {
+  if (typeof value !== "number" || Number.isNaN(value)) return "none";
+  return element("data", { value: String(value) }, figure(value, DIGITS));
+}
+
+// Makes elements of several numbers with commas between them.
+export const numbers = (values) => [...values].flatMap((value, i) => [i > 0 ? ", " : "", number(value)]);
+
+// Lets copied numbers have all their digits.
+export function copyAllDigits() {
+  document.addEventListener("copy", (event) => {
+    const selection = getSelection();
+    if (selection.rangeCount === 0 || selection.isCollapsed || event.target.matches?.("input")) return;
+    const box = element("div", {}, selection.getRangeAt(0).cloneContents());
+    if (!box.querySelector("data")) return;
+    event.clipboardData.setData("text/plain", fullText(box));
+    event.preventDefault();
+  });
+}
+
+// Returns the text of an element with all digits of its numbers, and with a line for each row.
+function fullText(box) {
+  for (const data of box.querySelectorAll("data")) data.textContent = data.getAttribute("value");
+  for (const end of box.querySelectorAll("dd, tr, p, caption, h2")) end.append("\n");
+  for (const gap of box.querySelectorAll("dt, td, th")) gap.append("\t");
+  return box.textContent;
+}
+
+// Makes a button that copies an element with all digits.
+export function copyButton(copied) {
+  const button = element("button", { type: "button", onclick: async () => {
+    await navigator.clipboard?.writeText(fullText(copied.cloneNode(true))).catch(() => {});
+    button.textContent = "Copied";
+    setTimeout(() => (button.textContent = "Copy"), 1500);
+  } }, "Copy");
+  return button;
 }
 
 // Returns a whole number with separators of thousands.
@@ -18,9 +66,17 @@ export function counted(value, noun) {
   return `${count(value)} ${value === 1 ? noun : plural}`;
 }
 
+// Returns a distance between `least` and ten times that which is 1, 2 or 5 times a power of ten.
+export function roundUp(least) {
+  const power = 10 ** Math.floor(Math.log10(least));
+  return power * [1, 2, 5, 10].find((digit) => digit * power >= least * (1 - 1e-12));
+}
+
+const SVG = ["svg", "rect", "text", "line", "g", "title", "path", "circle", "polyline"];
+
 // Makes an element with attributes and children. A child that is no element is text.
 export function element(name, attributes = {}, ...children) {
-  const isSvg = ["svg", "rect", "text", "line", "g", "title"].includes(name);
+  const isSvg = SVG.includes(name);
   const made = isSvg ? document.createElementNS("http://www.w3.org/2000/svg", name) : document.createElement(name);
   for (const [key, value] of Object.entries(attributes)) {
     if (key.startsWith("on")) made.addEventListener(key.slice(2), value);
@@ -31,10 +87,23 @@ export function element(name, attributes = {}, ...children) {
   return made;
 }
 
-// Replaces the content of a list by terms, each with its text.
+// Makes the content of a cell or of an entry of a list: of a number, of several, of a text, in which numbers that are
+// separated by commas and blanks are shortened, or of an element.
+function content(value) {
+  if (typeof value === "number") return [number(value)];
+  if (Array.isArray(value) || ArrayBuffer.isView(value)) return numbers(value);
+  if (typeof value === "string" && /^-?\d[-+.\de]*(,\s+-?\d[-+.\de]*)+$/.test(value)) {
+    return numbers(value.split(",").map(Number));
+  }
+  return [value];
+}
+
+// Replaces the content of a list by terms, each with its text, its number, its numbers or its element.
 export function fillList(list, rows) {
   list.replaceChildren(
-    ...rows.flatMap(([term, text]) => [element("dt", {}, term), element("dd", {}, String(text))]));
+    ...rows.flatMap(([term, value]) => [
+      element("dt", {}, term), element("dd", { class: term === "distance" && "main" }, ...content(value)),
+    ]));
 }
 
 // Makes the row of the names of columns.
@@ -57,7 +126,7 @@ export function reveal(shown) {
 // Makes the row of a table whose first cell names it.
 export function namedRow(name, ...cells) {
   return element("tr", {}, element("th", { scope: "row" }, name),
-    ...cells.map((cell) => element("td", {}, String(cell))));
+    ...cells.map((cell) => element("td", {}, ...content(cell))));
 }
 
 // Returns the number of the entry of a list of `length` that is `by` places from the selected one, or from the
@@ -71,4 +140,14 @@ export function checkbox(label, isOn, change, id) {
   const box = element("input", { type: "checkbox", id, onchange: () => change(box.checked) });
   box.checked = isOn;
   return element("label", {}, box, ` ${label}`);
+}
+
+// Makes a choice between a few words, of which one is chosen. `change` is called with its number.
+export function choice(name, words, chosen, change) {
+  const labels = words.map((word, i) => {
+    const radio = element("input", { type: "radio", name, value: i, onchange: () => change(i) });
+    radio.checked = i === chosen;
+    return element("label", {}, radio, element("span", {}, word));
+  });
+  return element("div", { class: "choice", role: "radiogroup", "aria-label": name }, ...labels);
 }

@@ -24,13 +24,13 @@ export function launch(draws = true) {
 
 // Opens a page in a window of a browser and waits until it is drawn. What must not happen is passed to `report` as
 // text: errors, and requests of the page.
-export async function openTab(browser, html, report) {
-  const tab = await browser.newPage({ viewport: { width: 1200, height: 800 } });
+export async function openTab(browser, html, report, options = {}) {
+  const tab = await browser.newPage({ viewport: { width: 1200, height: 800 }, ...options });
   tab.on("console", (message) => message.type() === "error" && report(message.text()));
   tab.on("pageerror", (error) => report(error.message));
   tab.on("request", (request) => request.url().startsWith("http") && report(request.url()));
   await tab.goto(pathToFileURL(html).href);
-  await tab.waitForFunction(() => document.documentElement.dataset.ready);
+  await tab.waitForFunction(() => document.documentElement.dataset.ready || !document.getElementById("panel"));
   return tab;
 }
 
@@ -67,11 +67,13 @@ export class Page {
     return readFileSync(csv, "utf8").trim().split("\n").slice(1).map((line) => line.split(","));
   }
 
-  // Returns what stands beside a term of a list.
+  // Returns what stands beside a term of a list, with all digits of numbers.
   read(list, name, tab = this.tab) {
     return tab.evaluate(([list, name]) => {
       const term = [...document.querySelectorAll(`#${list} dt`)].find((dt) => dt.textContent === name);
-      return term?.nextElementSibling.textContent;
+      const shown = term?.nextElementSibling.cloneNode(true);
+      shown?.querySelectorAll("data").forEach((data) => data.replaceWith(data.getAttribute("value")));
+      return shown?.textContent;
     }, [list, name]);
   }
 

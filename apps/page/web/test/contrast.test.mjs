@@ -4,7 +4,7 @@
 import assert from "node:assert/strict";
 import { readFileSync } from "node:fs";
 import { test } from "node:test";
-import { SCALES, THEMES, UNDEFINED } from "../src/colours.js";
+import { BANDS, SCALES, THEMES, UNDEFINED } from "../src/colours.js";
 
 const read = (path) => readFileSync(new URL(`../../../../${path}`, import.meta.url), "utf8");
 
@@ -28,13 +28,17 @@ const colours = (style) =>
     .map(([, name, ...both]) => [name, both]));
 
 test("text and marks have enough contrast", () => {
-  const { ink, accent, paper, soft } = colours(read("apps/page/src/style.css"));
+  const { ink, quiet, accent, good, bad, edge, paper, soft, raised } = colours(read("apps/page/src/style.css"));
   const marks = Object.values(colours(read("apps/cli/src/measure/tradeoff/page/report.html")));
   assert.equal(marks.length, 8);
   for (const theme of [0, 1]) {
-    for (const text of [ink, accent]) {
-      for (const ground of [paper, soft]) assert.ok(contrast(text[theme], ground[theme]) >= 4.5);
+    for (const text of [ink, quiet, accent, good, bad]) {
+      for (const ground of [paper, soft, raised]) {
+        assert.ok(contrast(text[theme], ground[theme]) >= 4.5, `${text[theme]} on ${ground[theme]}`);
+      }
     }
+    // The borders of controls.
+    for (const ground of [paper, raised]) assert.ok(contrast(edge[theme], ground[theme]) >= 3);
     for (const mark of marks) assert.ok(contrast(mark[theme], paper[theme]) >= 3, mark[theme]);
   }
 });
@@ -42,9 +46,9 @@ test("text and marks have enough contrast", () => {
 test("pictures have enough contrast", () => {
   for (const theme of ["light", "dark"]) {
     const { background, ...others } = THEMES[theme];
-    const scales = [SCALES.sequential[theme], SCALES.diverging[theme]];
+    const scales = [SCALES.sequential[theme], SCALES.diverging[theme], BANDS[theme]];
     const drawn = [...Object.values(others), ...scales.flat(), UNDEFINED];
-    assert.equal(drawn.length, 21);
+    assert.equal(drawn.length, 29);
     for (const colour of drawn) assert.ok(contrast(colour, background) >= 3, `${colour} on ${background}`);
   }
 });
@@ -54,8 +58,12 @@ test("the lightness of scales rises, or changes in one direction from the middle
     const sign = theme === "light" ? -1 : 1;
     const [sequential, diverging] = [SCALES.sequential[theme], SCALES.diverging[theme]]
       .map((colours) => colours.map(luminance));
+    const [field, signed] = [SCALES.field[theme], SCALES.signedField[theme]].map((colours) => colours.map(luminance));
     const rises = (values) => values.every((value, i) => i === 0 || value > values[i - 1]);
     assert.ok(rises(sequential));
+    // Areas are light near the surface in both themes.
+    assert.ok(rises([...field].reverse()));
+    for (const half of [signed.slice(5), signed.slice(0, 6).reverse()]) assert.ok(rises(half.map((x) => -x)), String(half));
     for (const half of [diverging.slice(4), diverging.slice(0, 5).reverse()]) {
       // Grey and the colour beside it may be equally light.
       assert.ok(rises(half.slice(1).map((x) => sign * x)), `${theme}: ${half}`);

@@ -80,6 +80,7 @@ test("the keyboard moves the query", { skip }, async () => {
 });
 
 test("far from the origin ordinary arithmetic jumps", { skip }, async () => {
+  await tab.click("#live-more summary");
   await tab.check("#live-far");
   for (let i = 0; i < 20; i++) await move(300 + 7 * i, 400 - 5 * i);
   const [worst, far] = await tab.evaluate(() => {

@@ -1,5 +1,7 @@
 // Measures pages of scenes of 10^4 to 10^6 triangles: their sizes, the seconds until they are ready, and the frames a
-// second while they turn. The variable P2M names the program.
+// second while they turn: P2M=PROGRAM node test/measure.mjs [EARLIER PROGRAM]
+//
+// Programs take turns, and the figures are medians of several rounds.
 
 import { execFileSync } from "node:child_process";
 import { mkdtempSync, statSync } from "node:fs";
@@ -9,18 +11,15 @@ import { PROGRAM, launch, openTab, skip } from "./browser.mjs";
 
 if (skip) throw new Error(skip);
 
-// The number of frames that are timed.
-const FRAMES = 20;
-
+// The number of frames that are timed, and that of rounds.
+const [FRAMES, ROUNDS] = [20, 5];
+const programs = [...process.argv.slice(2), PROGRAM];
 const folder = mkdtempSync(join(tmpdir(), "p2m-page-"));
 const browser = await launch();
-console.log("| triangles | page, MB | seconds until it is ready | frames a second |\n|---:|---:|---:|---:|");
-// Each edge of the icosahedron is cut into so many parts, which makes 20 times the square of this number of triangles.
-for (const frequency of [22, 71, 223]) {
-  const [scene, html] = ["scene.ply", "page.html"].map((name) => join(folder, name));
-  const sphere = ["generate", "ico-sphere", "--frequency", String(frequency)];
-  execFileSync(PROGRAM, [...sphere, "--out", scene], { stdio: "pipe" });
-  execFileSync(PROGRAM, ["view", scene, "--random", "1000", "--live", "never", "--out", html], { stdio: "pipe" });
+const median = (values) => values.sort((a, b) => a - b)[values.length >> 1];
+
+// Opens a page and returns the seconds until it is ready, and the frames a second.
+async function measure(html) {
   const start = performance.now();
   const page = await openTab(browser, html, (problem) => { throw new Error(problem); });
   const ready = (performance.now() - start) / 1000;
@@ -36,8 +35,28 @@ for (const frequency of [22, 71, 223]) {
     }
     return (1000 * frames) / (performance.now() - begin);
   }, FRAMES);
-  const megabytes = statSync(html).size / 1e6;
-  console.log(`| ${20 * frequency ** 2} | ${megabytes.toFixed(1)} | ${ready.toFixed(1)} | ${rate.toPrecision(2)} |`);
   await page.close();
+  return { ready, rate };
+}
+
+console.log("| program | triangles | page, MB | seconds until it is ready | frames a second |\n|---|---:|---:|---:|---:|");
+// Each edge of the icosahedron is cut into so many parts, which makes 20 times the square of this number of triangles.
+for (const frequency of [22, 71, 223]) {
+  const scene = join(folder, "scene.ply");
+  execFileSync(PROGRAM, ["generate", "ico-sphere", "--frequency", String(frequency), "--out", scene], { stdio: "pipe" });
+  const pages = programs.map((program, i) => {
+    const html = join(folder, `page${i}.html`);
+    execFileSync(program, ["view", scene, "--random", "1000", "--live", "never", "--out", html], { stdio: "pipe" });
+    return { program, html, figures: [] };
+  });
+  for (let round = 0; round < ROUNDS; round++) {
+    for (const page of pages) page.figures.push(await measure(page.html));
+  }
+  for (const { program, html, figures } of pages) {
+    const [ready, rate] = ["ready", "rate"].map((key) => median(figures.map((figure) => figure[key])));
+    const megabytes = (statSync(html).size / 1e6).toFixed(2);
+    const name = program === PROGRAM ? "now" : "earlier";
+    console.log(`| ${name} | ${20 * frequency ** 2} | ${megabytes} | ${ready.toFixed(1)} | ${rate.toPrecision(2)} |`);
+  }
 }
 await browser.close();

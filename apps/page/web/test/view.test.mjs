@@ -77,6 +77,7 @@ test("a slice through cells tells the length of the list where the pointer is", 
     const longest = await lists.evaluate(() => window.viewer.slice.values.reduce((a, b) => Math.max(a, b || 0), 0));
     assert.ok(2 ** longest > 1 && Math.round(2 ** longest) <= stats.lists.max, `${backend}: ${2 ** longest}`);
     await lists.mouse.move(430, 430);
+    await lists.waitForFunction(() => document.querySelector("#slice-value").textContent !== "");
     assert.match(await lists.textContent("#slice-value"), /^(\d+ primitives|no list: the tree answers) at /);
     await lists.close();
   }
@@ -117,6 +118,7 @@ test("the keyboard alone moves the view and reads the slice", { skip }, async ()
   const [same, moved] = await state();
   same.forEach((x, k) => assert.ok(Math.abs(x - offset[k]) < 1e-6));
   assert.ok(Math.hypot(...moved.map((x, k) => x - target[k])) > 0.01);
+  await page.keyboard.press("z");
   await page.keyboard.press("v");
   const [value, at] = (await page.textContent("#slice-value")).split(" at ");
   const position = at.split(", ").map(Number);
@@ -124,6 +126,7 @@ test("the keyboard alone moves the view and reads the slice", { skip }, async ()
   // The field has 24 points along its longest side, and is linear between them.
   assert.ok(Math.abs(Number.parseFloat(value) - Number(distance)) < 0.1, `${value}, not ${distance}`);
   assert.equal(await page.getAttribute("#slice-value", "aria-live"), "polite");
+  await page.keyboard.press("y");
   await page.keyboard.press("f");
 });
 
@@ -138,7 +141,8 @@ test("the view contains the scene, and cannot be moved away from it", { skip }, 
       camera.position.clone().fromArray(positions, 3 * i).project(camera));
     return all.map(({ x, y }) => Math.max(Math.abs(x), Math.abs(y)));
   });
-  assert.ok(Math.max(...corners) < 1 && Math.max(...corners) > 0.4, String(Math.max(...corners)));
+  // The scene fills four fifths of the picture.
+  assert.ok(Math.max(...corners) < 0.85 && Math.max(...corners) > 0.75, String(Math.max(...corners)));
   for (let i = 0; i < 200; i++) await page.keyboard.press("Shift+ArrowRight");
   const distance = await page.evaluate(() => window.viewer.controls.target.length() / window.viewer.data.frame.radius);
   assert.ok(distance > 1 && distance < 2.001, String(distance));
@@ -188,6 +192,166 @@ test("the theme follows the system until one is chosen", { skip }, async () => {
   }
   // Keys that do nothing in this page are not listed.
   assert.doesNotMatch(await other.textContent("#keys"), /slice|level/);
+  await other.close();
+});
+
+test("the scene is cut open at the slice, on the side of the viewer", { skip }, async () => {
+  await page.keyboard.press("f");
+  const planes = () => page.evaluate(() => {
+    const { scene, slice, camera } = window.viewer;
+    const [plane] = scene.materials.triangles.clippingPlanes ?? [];
+    // What is on the negative side of the plane is cut away.
+    return plane && [Math.sign(plane.distanceToPoint(camera.position)), slice.plane(1).normal.dot(plane.normal)];
+  });
+  const drawn = () => page.evaluate(() => new Promise((done) => requestAnimationFrame(() => requestAnimationFrame(done))));
+  await drawn();
+  const [side, direction] = await planes();
+  assert.equal(side, -1);
+  assert.equal(Math.abs(direction), 1);
+  await page.evaluate(() => window.viewer.turn(Math.PI, 0, 1));
+  await drawn();
+  assert.deepEqual(await planes(), [-1, -direction]);
+  await page.uncheck("#show-cut");
+  await drawn();
+  assert.equal((await planes()) ?? null, null);
+  await page.check("#show-cut");
+  await page.keyboard.press("f");
+});
+
+test("lines of equal distance have the values of the field as labels", { skip }, async () => {
+  const labels = await page.evaluate(() => {
+    const { slice } = window.viewer;
+    return slice.labels.map(({ text, position }) => [Number(text), slice.valueAt(position), slice.spacingOfLines]);
+  });
+  assert.ok(labels.length > 3);
+  for (const [text, value, spacing] of labels) {
+    assert.ok(Math.abs(text - value) < 1e-3 * spacing + 1e-3, `${text}, not ${value}`);
+    assert.ok(Math.abs(text / spacing - Math.round(text / spacing)) < 1e-6, `${text} is no multiple of ${spacing}`);
+  }
+});
+
+test("the toolbar and its keys change the view", { skip }, async () => {
+  const other = await opened.view(opened.scene, "--live", "never");
+  const state = () => other.evaluate(() => {
+    const { camera, controls, view, scene, overlay } = window.viewer;
+    const towards = camera.position.clone().sub(controls.target).normalize().toArray().map((x) => Math.round(x * 100) / 100);
+    return { towards, isOrthographic: view.isOrthographic, edges: !!scene.edges?.visible, grid: !!overlay.grid?.visible };
+  });
+  for (const [key, towards] of [["1", [0, -1, 0]], ["3", [-1, 0, 0]], ["5", [0, 0, 1]]]) {
+    await other.keyboard.press(key);
+    assert.deepEqual((await state()).towards.map((x) => x + 0), towards);
+  }
+  await other.selectOption("#views", "right");
+  assert.deepEqual((await state()).towards.map((x) => x + 0), [1, 0, 0]);
+  // A list uses letters itself.
+  await other.focus("#views");
+  for (const key of ["o", "e", "g"]) await other.keyboard.press(key);
+  assert.equal((await state()).isOrthographic, false);
+  await other.focus("#picture");
+  for (const key of ["o", "e", "g"]) await other.keyboard.press(key);
+  const { isOrthographic, edges, grid } = await state();
+  assert.deepEqual([isOrthographic, edges, grid], [true, true, true]);
+  assert.equal(await other.getAttribute("#orthographic", "aria-pressed"), "true");
+  // Depth does not change sizes in a parallel view.
+  const ratio = await other.evaluate(() => {
+    const { camera, data: { frame: { radius } } } = window.viewer;
+    const width = (depth) => {
+      const at = (x) => camera.position.clone().set(depth, x, 0).project(camera).x;
+      return at(0.1 * radius) - at(0);
+    };
+    camera.updateMatrixWorld();
+    return width(radius) / width(-radius);
+  });
+  assert.ok(Math.abs(ratio - 1) < 3e-3, String(ratio));
+  const [download] = await Promise.all([other.waitForEvent("download"), other.keyboard.press("s")]);
+  assert.match(download.suggestedFilename(), /\.png$/);
+  await other.close();
+});
+
+test("keys act without a click, and copies have all digits", { skip }, async () => {
+  const other = await opened.view(opened.scene, "--random", "20", "--seed", "3");
+  await other.keyboard.press("n");
+  assert.equal(await other.evaluate(() => window.viewer.answers.selected), 0);
+  const [shown, copied] = await other.evaluate(() => {
+    const data = [...document.querySelectorAll("#answer dt")].find((dt) => dt.textContent === "distance")
+      .nextElementSibling;
+    getSelection().selectAllChildren(document.querySelector("#answer"));
+    const clipboardData = new DataTransfer();
+    document.querySelector("#answer").dispatchEvent(new ClipboardEvent("copy", { clipboardData, bubbles: true }));
+    return [data.textContent, clipboardData.getData("text/plain")];
+  });
+  const [[, , , , , , distance]] = opened.query("--random", "20", "--seed", "3", "--box-scale", "1.2");
+  assert.ok(shown.replace(/[-.,]|^0\.0*/g, "").length <= 6, shown);
+  assert.match(copied, new RegExp(`distance\\s+${distance.replace(".", "\\.")}\\s`));
+  await other.close();
+});
+
+test("the pointer reads answers, and highlights their segments", { skip }, async () => {
+  await page.keyboard.press("f");
+  const place = await page.evaluate(() => {
+    const { viewer } = window;
+    viewer.camera.updateMatrixWorld();
+    const at = viewer.camera.position.clone().fromArray(viewer.answers.from, 3 * 7).project(viewer.camera);
+    const { left, top, width, height } = viewer.canvas.getBoundingClientRect();
+    return [left + ((at.x + 1) / 2) * width, top + ((1 - at.y) / 2) * height];
+  });
+  await page.mouse.move(...place);
+  await page.waitForFunction(() => window.viewer.answers.pointed === 7);
+  assert.match(await page.textContent("#tip"), /^query 7: [\d.,]+ units$/);
+  assert.ok(await page.evaluate(() => window.viewer.answers.highlight.children.length) > 0);
+  await page.mouse.move(1190, 790);
+});
+
+test("the picture is refined once the view rests", { skip }, async () => {
+  // A floor and two walls, which hide the sky from the corners between them. Smooth edges change pixels both ways.
+  const corner = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nv 0 0 1\nv 1 1 1\nv 0 1 1\nf 1 2 3 4\nf 1 4 7 5\nf 4 3 6 7\n";
+  const other = await opened.view(opened.write("corner.obj", corner), "--live", "never");
+  const [darker, lighter, background, isSame] = await other.evaluate(async () => {
+    const { painter } = window.viewer;
+    const gl = painter.renderer.getContext();
+    const pixels = () => {
+      const read = new Uint8Array(4 * gl.drawingBufferWidth * gl.drawingBufferHeight);
+      gl.readPixels(0, 0, gl.drawingBufferWidth, gl.drawingBufferHeight, gl.RGBA, gl.UNSIGNED_BYTE, read);
+      return read;
+    };
+    painter.renderer.render(painter.world, painter.camera);
+    const plain = pixels();
+    // Nothing but the time makes the refined picture.
+    window.viewer.draw();
+    await new Promise((done) => setTimeout(done, 1500));
+    const refined = pixels();
+    let [darker, lighter, background] = [0, 0, 0];
+    for (let i = 0; i < plain.length; i += 4) {
+      const change = refined[i] - plain[i];
+      if (change < -8) darker++;
+      if (change > 8) lighter++;
+      // The lowest rows have the background alone.
+      if (i < 80 * gl.drawingBufferWidth) background = Math.max(background, Math.abs(change));
+    }
+    painter.refine();
+    return [darker, lighter, background, pixels().every((x, i) => x === refined[i])];
+  });
+  assert.ok(darker > 10_000 && lighter < darker / 10, `${darker} darker, ${lighter} lighter`);
+  assert.ok(background === 0 && isSame, String(background));
+  await other.close();
+});
+
+test("a page says what can be done in it", { skip }, async () => {
+  const other = await opened.view(opened.scene, "--live", "never");
+  assert.match(await other.textContent("#facts"), /For distances in this page, make it with --live always/);
+  assert.match(await other.textContent("#facts dd"), /^5\.843 × 6\.024 × 3\.242 units$/);
+  await other.close();
+});
+
+test("on a phone nothing is wider than the page, and controls are large", { skip }, async () => {
+  const other = await opened.view(opened.scene, "--random", "20", "--field", "16");
+  await other.setViewportSize({ width: 390, height: 844 });
+  assert.ok(await other.evaluate(() => document.documentElement.scrollWidth) <= 390);
+  const sides = await other.$$eval("#toolbar button, #toolbar select", (all) => all.map((control) => {
+    const { right, height } = control.getBoundingClientRect();
+    return [right, height];
+  }));
+  for (const [right, height] of sides) assert.ok(right <= 390 && (height === 0 || height >= 36), `${right}, ${height}`);
   await other.close();
 });
 

@@ -26,6 +26,7 @@ from ._hausdorff import HausdorffDistance, hausdorff
 from ._index import Estimate, Index, advise, load
 from ._index_cache import clear_opened
 from ._p2m import __version__, backends
+from ._page import Page
 from ._records import (
     AllHits,
     BallContacts,
@@ -55,6 +56,7 @@ __all__ = [
     "Index",
     "NearPrimitives",
     "Object",
+    "Page",
     "Record",
     "Scene",
     "ShardInfo",

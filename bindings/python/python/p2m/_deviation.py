@@ -15,6 +15,7 @@ from numpy.typing import NDArray
 from . import _p2m
 from ._arrays import Progress, coordinates, not_negative, unmasked
 from ._index import Index
+from ._page import Page, checked_up
 from ._scene import Scene
 
 if TYPE_CHECKING:
@@ -65,7 +66,7 @@ class Deviation:
         self.is_signed = is_signed
         self.tolerance = tolerance
         self.unit = unit
-        usual = tolerance or self.statistics["absolute_percentile_95"]
+        usual = 3 * tolerance if tolerance else self.statistics["absolute_percentile_95"]
         self.limit = limit or (usual if usual > 0 else 1.0)
         self._points = points
         self._scan = scan
@@ -146,21 +147,25 @@ class Deviation:
             If the file cannot be written.
         """
         target = Path(path)
-        if up not in ("y", "z"):
-            raise ValueError(f"up: {up!r} is none of 'y', 'z'")
-        if self._scan is None:
-            none = np.empty(0, np.uint32)
-            scan = _p2m.Scene(self._points.reshape(-1), none, none, none)
-        else:
-            scan = self._scan._raw
+        checked_up(up)
         if target.suffix == ".ply":
-            _p2m.write_bytes(target, _p2m.deviation_ply(scan, self.values, self.limit))
+            _p2m.write_bytes(target, _p2m.deviation_ply(self._raw_scan(), self.values, self.limit))
             return
         if target.suffix == ".csv":
             _p2m.write_bytes(target, self._table().encode())
             return
         if target.suffix != ".html":
             raise ValueError(f"path: {target.name!r} ends neither in .html nor in .ply nor in .csv")
+        self.show(up=up).save(target)
+
+    def show(self, *, up: Literal["y", "z"] = "z") -> Page:
+        """Return the page that `save` writes, which notebooks show.
+
+        Parameters
+        ----------
+        up : {"y", "z"}, optional
+            The axis that points up.
+        """
         primitives = np.full(len(self.values), np.iinfo(np.uint32).max, np.uint32)
         finite = np.isfinite(self._points).all(axis=1)
         primitives[finite] = self._index.closest(self._points[finite], fields="primitive").primitive
@@ -169,11 +174,25 @@ class Deviation:
         summary = f"{count:,} {what}: mean {mean:.4g} {self.unit}, root mean square {rms:.4g} {self.unit}"
         texts = ("Deviations in p2m", summary, self.unit)
         scene = self._index.scene._raw
-        page = _p2m.deviation_page(
-            scan, self.values, primitives, scene, self.is_signed, self.limit, self.tolerance, up == "y", texts
+        return Page(
+            _p2m.deviation_page(
+                self._raw_scan(),
+                self.values,
+                primitives,
+                scene,
+                self.is_signed,
+                self.limit,
+                self.tolerance,
+                checked_up(up),
+                texts,
+            )
         )
-        _p2m.write_bytes(target, page.encode())
 
+    def _raw_scan(self) -> _p2m.Scene:
+        if self._scan is not None:
+            return self._scan._raw
+        none = np.empty(0, np.uint32)
+        return _p2m.Scene(self._points.reshape(-1), none, none, none)
 
     def _table(self) -> str:
         """Return the points, their closest points and the deviations as text."""
@@ -222,7 +241,7 @@ def deviation(
     tolerance : float, optional
         The tolerance that figures, pages and `Deviation.outside` mark, in the unit of the mesh.
     limit : float, optional
-        The absolute deviation at which the colour scale ends. By default it is the tolerance, or else the 95th
+        The absolute deviation at which the colour scale ends. By default it is three tolerances, or else the 95th
         percentile of absolute deviations.
     sign : {"auto", "winding", "parity"} or None, optional
         The rule that decides which points are inside, as for `Index.signed_distance`; None for distances without signs,

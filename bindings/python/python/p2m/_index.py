@@ -29,6 +29,7 @@ from ._arrays import (
     whole,
 )
 from ._cuda import CudaIndex
+from ._page import Page, scene_page
 from ._pairs import PairQueries
 from ._records import AllHits, ClosestPoints, FirstHits, NearPrimitives
 from ._scene import Scene
@@ -849,6 +850,40 @@ class Index(PointQueries, PairQueries):
             return grid
         out[...] = grid
         return out
+
+    def show(
+        self,
+        *,
+        field: int | None = None,
+        sign: _Sign | None = None,
+        unit: str = "units",
+        up: Literal["y", "z"] = "z",
+    ) -> Page:
+        """Return a page that shows the scene, with a slice through its distance field if one is asked for.
+
+        Parameters
+        ----------
+        field : int, optional
+            The number of grid points along the longest side of the field, which reaches a tenth of the scene beyond it
+            on each side.
+        sign : {"auto", "winding", "parity"}, optional
+            The rule of signs, as for `signed_distance`, if the field should be negative inside.
+        unit, up
+            As for `Scene.show`.
+
+        Raises
+        ------
+        ValueError
+            As `field` does.
+
+        Examples
+        --------
+        >>> import p2m
+        >>> index = p2m.Index(p2m.Scene([[0, 0, 0], [1, 0, 0]], segments=[[0, 1]]))
+        >>> index.show(field=32)._repr_html_()[:7]
+        '<iframe'
+        """
+        return scene_page(self.scene, self, field=field, sign=sign, unit=unit, up=up)
 
     def refit(self, vertices: ArrayLike, *, threads: int | None = None) -> Index:
         """Return an index over the same primitives at other positions, in a fraction of the time of a build.

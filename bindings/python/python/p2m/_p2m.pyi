@@ -22,12 +22,14 @@ __all__ = [
     "deviation_page",
     "deviation_ply",
     "deviation_statistics",
+    "grid_around",
     "hausdorff",
     "is_any_within",
     "k_nearest",
     "load",
     "load_bytes",
     "rays",
+    "scene_page",
     "within",
     "write_bytes",
 ]
@@ -64,6 +66,16 @@ def deviation_page(
     tolerance: float | None,
     is_y_up: bool,
     texts: tuple[str, str, str],
+) -> str: ...
+def grid_around(
+    scene: Scene, resolution: int, scale: float
+) -> tuple[tuple[float, float, float], float, tuple[int, int, int]]: ...
+def scene_page(
+    scene: Scene,
+    texts: tuple[str, str, str],
+    is_y_up: bool,
+    is_live: bool,
+    field: tuple[tuple[tuple[float, float, float], float, tuple[int, int, int]], NDArray[np.float32]] | None,
 ) -> str: ...
 def deviation_ply(scan: Scene, values: NDArray[np.float64], limit: float) -> bytes: ...
 def hausdorff(

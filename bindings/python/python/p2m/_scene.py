@@ -5,13 +5,14 @@ from __future__ import annotations
 import inspect
 import os
 from collections.abc import Iterable
-from typing import Any, NamedTuple
+from typing import Any, Literal, NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from . import _p2m
 from ._arrays import coordinates, indices, unmasked
+from ._page import Page, scene_page
 
 
 class Counts(NamedTuple):
@@ -344,6 +345,25 @@ class Scene:
             If there is another number of vertices, or one that a primitive uses is not finite.
         """
         return Scene._from_raw(self._raw.moved(coordinates(vertices, "vertices").reshape(-1)))
+
+    def show(self, *, unit: str = "units", up: Literal["y", "z"] = "z") -> Page:
+        """Return a page that shows the scene, which notebooks show.
+
+        Scenes of at most 100,000 primitives answer queries where the pointer is.
+
+        Parameters
+        ----------
+        unit : str, optional
+            The name of the unit of lengths.
+        up : {"y", "z"}, optional
+            The axis that points up.
+
+        Examples
+        --------
+        >>> import p2m
+        >>> p2m.Scene([[0, 0, 0], [1, 0, 0]], segments=[[0, 1]]).show(unit="m").save("scene.html") # doctest: +SKIP
+        """
+        return scene_page(self, None, field=None, sign=None, unit=unit, up=up)
 
     def __repr__(self) -> str:
         counts = self.counts

@@ -29,16 +29,19 @@ use crate::io::output::Output;
 use crate::io::progress::{Progress, Unit};
 use crate::io::streams::Streams;
 use crate::io::threads::ThreadArgs;
-use crate::io::usage::{count_in, one_of, positive, whole_number};
+use crate::io::usage::{count_in, one_of, positive, usage, whole_number};
 use crate::measure::harness::Provenance;
 use crate::measure::harness::queries::Queries;
 use crate::measure::harness::rounds::thread_seconds;
+use crate::page::open::OpenArgs;
+use crate::scene::info::counted;
 use anyhow::{Context, bail};
 use clap::ArgGroup;
 use nalgebra::Point3;
 use p2m_backends::{AnyIndex, BACKENDS, BuildSettings, SearchStructure};
 use p2m_bvh::AabbTree;
 use p2m_core::{CertifiedQuery, PrimitiveSet, Soup};
+use p2m_mixed::statistics::Counts;
 use p2m_mixed::{PointFormat, Scene};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
@@ -104,6 +107,9 @@ pub(crate) struct Args {
     #[arg(long, value_name = "FILE")]
     html: Option<PathBuf>,
 
+    #[command(flatten)]
+    open: OpenArgs,
+
     /// Write the figures as CSV
     #[arg(long, value_name = "FILE")]
     csv: Option<PathBuf>,
@@ -144,6 +150,9 @@ pub(crate) fn run(streams: &Streams, args: &Args) -> anyhow::Result<()> {
     for path in outputs.into_iter().flatten() {
         Output::refuse_inputs(path, &inputs)?;
     }
+    if args.open.open && args.html.is_none() {
+        return Err(usage("--open needs a page: --html FILE"));
+    }
     if args.html.is_some() && args.html == args.csv {
         bail!("--html and --csv name the same file");
     }
@@ -171,7 +180,8 @@ pub(crate) fn run(streams: &Streams, args: &Args) -> anyhow::Result<()> {
         output.finish_with(record(&provenance, scenes, args.seed, clock))?;
     }
     let tables: Vec<String> = figures.sets.iter().map(|set| text::table(set).to_string()).collect();
-    Output::print(streams, tables.concat())
+    Output::print(streams, tables.concat())?;
+    args.open.show(args.html.as_deref())
 }
 
 impl Args {
@@ -238,12 +248,7 @@ impl Args {
         let show_progress = |part: f64| progress.advance_to((part * 100.0) as u64);
         let curves = measure(&competitors, &Queries::new(queries), &truths, &effort, &show_progress);
         drop(progress);
-        let contents = format!(
-            "{} triangles, {} segments, {} points.",
-            soup.triangles().len(),
-            soup.segments().len(),
-            soup.points().len()
-        );
+        let contents = format!("{}.", counted(&Counts::of(soup)));
         let name = match (&self.points, self.grid) {
             (Some(_), _) => "points",
             (None, Some(_)) => "grid",

@@ -52,12 +52,12 @@ pub(crate) const SETTINGS: &[Setting] = &[
     within("epsilon 0.1", 0.1, "`QueryOptions::with_epsilon(0.1)`: at most 10 % farther"),
     within("epsilon 1", 1.0, "`QueryOptions::with_epsilon(1.0)`: at most twice as far"),
     Setting {
-        name: "budget 0",
+        name: "max visits 0",
         about: "`QueryOptions::with_max_visits(0)`: the first primitive that is found; for `octree` and `p2m` the one that the cell itself has",
         accuracy: Accuracy::MaxVisits(0),
     },
     Setting {
-        name: "budget 16",
+        name: "max visits 16",
         about: "`QueryOptions::with_max_visits(16)`: the best of sixteen visits of nodes and packets",
         accuracy: Accuracy::MaxVisits(16),
     },

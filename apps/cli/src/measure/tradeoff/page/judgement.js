@@ -15,15 +15,15 @@ const error = (x) => (isNone(x) ? "-" : x <= 0 ? "0" : x >= 0.1 && x < 1000 ? x.
 const seconds = (x) => (x < 1e-3 ? exponential(x, 1) : x < 10 ? x.toFixed(3) : x.toFixed(1));
 const figure = (x) => (x >= 100 ? x.toFixed(0) : x >= 10 ? x.toFixed(1) : x >= 0.01 ? x.toFixed(3) : error(x));
 const percentage = (part, total) => (part === 0 ? "0" : `${error((100 * part) / total)} %`);
-/** Formats a count in words. */
+/** Formats a count, of at least a million in words. */
 const count = (x) =>
   x < 1e3
     ? x.toFixed(0)
-    : x < 1e5
-      ? `${(x / 1e3).toFixed(1)} thousand`
-      : x < 1e6
-        ? `${(x / 1e3).toFixed(0)} thousand`
-        : `${(x / 1e6).toFixed(x < 1e9 ? 1 : 0)} million`;
+    : x < 1e6
+      ? Number(x.toPrecision(3)).toLocaleString("en-US")
+      : `${(x / 1e6).toFixed(x < 1e9 ? 1 : 0)} million`;
+/** Formats nanoseconds. */
+const nanoseconds = (x) => `${Number(x.toPrecision(x < 1e4 ? 4 : 3)).toLocaleString("en-US", { maximumFractionDigits: x < 100 ? 1 : 0 })} ns`;
 /** Formats the label of a tick. */
 const tickLabel = (x) => {
   const short = (value, unit) => Number(value.toPrecision(2)) + unit;
@@ -83,7 +83,7 @@ function describe(best) {
   const { curve, point } = best;
   const setting = point === defaultPoint(curve) ? "" : ` ${point.setting}`;
   const worst = isExact(point) ? "" : `, error ${error(point.errors.relative.max)}`;
-  return `${curve.name}${setting}, ${point.nanoseconds.median.toFixed(0)} ns${worst}`;
+  return `${curve.name}${setting}, ${nanoseconds(point.nanoseconds.median)}${worst}`;
 }
 
 /** Returns the seconds to build each index, and those of a query with its default setting. */
@@ -117,20 +117,21 @@ const turnsInWords = (all) =>
     .map(({ cost, from }) => (from > 0 ? `\`${cost.name}\` from ${count(from)} queries on` : `\`${cost.name}\``))
     .join(", then ");
 
-/** Returns a sentence on which index and setting to take. */
+/** Returns what to take: in short, and in sentences. */
 function advice(set) {
   const exact = set.curves.filter((curve) => isExact(defaultPoint(curve)));
   const [best, rough] = [NEEDS[0], NEEDS[1]].map((need) => fastest(set.curves, need.isMet));
-  if (!best) return "No index answered all queries without an error beyond rounding; the remarks below say why.";
-  const ns = ({ point }) => `${point.nanoseconds.median.toFixed(0)} ns per query`;
+  if (!best) return ["No index answered all queries exactly", "The remarks in the table of all settings say why."];
+  const turns = cheapest(costs(exact));
+  const turn = turns.findIndex(({ cost }) => cost.name === best.curve.name);
+  const before = turns[turn - 1];
+  const from = turns[turn]?.from > 0 ? `; pays from ${count(turns[turn].from)} queries on` : "";
+  const few = before ? `For fewer queries \`${before.cost.name}\` takes less time, because it is built sooner. ` : "";
   const gain =
     rough.point === best.point
-      ? "no setting with errors of up to 1 % is faster beyond noise"
-      : `with errors of up to 1 %, \`${rough.curve.name} ${rough.point.setting}\` needs ${ns(rough)}`;
-  return (
-    `Without an error beyond rounding, \`${best.curve.name}\` is fastest (${ns(best)}), and the cheapest with its ` +
-    `build is ${turnsInWords(costs(exact))}; ${gain}.`
-  );
+      ? "No setting with errors of up to 1 % is faster beyond noise."
+      : `If errors of up to 1 % do no harm, \`${rough.curve.name}\` with \`${rough.point.setting}\` takes ${nanoseconds(rough.point.nanoseconds.median)}.`;
+  return [`${best.curve.name}, ${nanoseconds(best.point.nanoseconds.median)} per query, exact${from}`, few + gain];
 }
 
 /** Returns remarks about a setting in words. */

@@ -16,61 +16,125 @@ function ticks(low, high) {
 }
 
 const path = (kind, d) => `<path class="${kind}" d="${d}"/>`;
-const label = (x, y, anchor, text) => `<text x="${x}" y="${y}" text-anchor="${anchor}">${escaped(text)}</text>`;
+const label = (x, y, anchor, text, kind = "") =>
+  `<text class="${kind}" x="${x}" y="${y}" text-anchor="${anchor}">${escaped(text)}</text>`;
+
+/** The families of settings: what their marks look like, and whether the line between them is broken. */
+const FAMILIES = {
+  default: { name: "default", shape: "square" },
+  certified: { name: "certified", shape: "diamond" },
+  epsilon: { name: "epsilon", shape: "circle" },
+  visits: { name: "max visits", shape: "triangle", isBroken: true },
+};
+const familyOf = (setting) =>
+  setting === DEFAULT ? "default"
+    : setting.startsWith("epsilon") ? "epsilon" : setting.startsWith("max visits") ? "visits" : "certified";
+/** Returns the mark of a shape around a position. */
+function mark(shape, x, y, r, attributes) {
+  const polygon = (points) =>
+    `<path ${attributes} d="M${points.map(([dx, dy]) => `${(x + dx * r).toFixed(1)} ${(y + dy * r).toFixed(1)}`).join("L")}Z"/>`;
+  if (shape === "square") return polygon([[-0.9, -0.9], [0.9, -0.9], [0.9, 0.9], [-0.9, 0.9]]);
+  if (shape === "diamond") return polygon([[0, -1.25], [1.25, 0], [0, 1.25], [-1.25, 0]]);
+  if (shape === "triangle") return polygon([[0, -1.15], [1.1, 0.85], [-1.1, 0.85]]);
+  return `<circle ${attributes} cx="${x.toFixed(1)}" cy="${y.toFixed(1)}" r="${r}"/>`;
+}
+
+/** Returns the size of a plot, which is that of the page. */
+function plotSize() {
+  const width = Math.max(320, Math.min(960, byId("plot").clientWidth || 860));
+  return [width, width < 600 ? 400 : 440];
+}
 
 /**
- * Returns a plot with two logarithmic axes. A series has a name and points {x, y, note, isDefault, isFront}, in the
- * order of its line. Points with x = 0 lie on a line of their own.
+ * Returns a plot with two logarithmic axes. A series has the name of an index, points {x, y, note, shape, isFront}, and
+ * `isBroken` for a broken line. Points with x = 0 lie in a column of their own. `key` explains shapes.
  */
-function plot(xName, yName, series) {
-  const [width, height, left, right, top, bottom] = [860, 460, 70, 846, 14, 410];
+function plot(xName, yName, series, key = []) {
+  const [width, height] = plotSize();
+  const isNarrow = width < 600;
   const shown = series.map((line) => ({ ...line, points: line.points.filter((p) => !isNone(p.x) && p.y > 0) }));
   const all = shown.flatMap((line) => line.points);
   if (all.length === 0) return "<p>There is nothing to draw. Choose another kind of error, or show more indexes.</p>";
-  const range = (values) => (values.length ? [Math.min(...values) / 1.3, Math.max(...values) * 1.3] : [0.1, 1]);
+  const [left, right, bottom] = [isNarrow ? 46 : 62, width - (isNarrow ? 10 : 70), height - 46];
+  const top = key.length ? (isNarrow ? 62 : 40) : 14;
+  const range = (values, margin) =>
+    values.length ? [Math.min(...values) / margin, Math.max(...values) * margin] : [0.1, 1];
   const hasZero = all.some((p) => p.x <= 0);
-  const xs = range(all.map((p) => p.x).filter((x) => x > 0));
-  const ys = range(all.map((p) => p.y));
+  const xs = range(all.map((p) => p.x).filter((x) => x > 0), 1.6);
+  const ys = range(all.map((p) => p.y), 1.25);
   const position = ([low, high], from, to, value) =>
     from + ((to - from) * Math.log(value / low)) / Math.log(high / low);
-  const start = hasZero ? left + 60 : left;
-  const px = (x) => (x > 0 ? position(xs, start, right, x) : left + 30).toFixed(1);
-  const py = (y) => position(ys, bottom, top, y).toFixed(1);
+  const column = hasZero ? (isNarrow ? 52 : 80) : 0;
   const hasPositive = all.some((p) => p.x > 0);
+  const px = (x) => (x > 0 ? position(xs, left + column, right, x) : left + column / 2);
+  const py = (y) => position(ys, bottom, top, y);
+  const place = (x, y) => `${px(x).toFixed(1)} ${py(y).toFixed(1)}`;
+  const least = isNarrow ? 44 : 60;
+  let before = -Infinity;
   const xTicks = (hasPositive ? ticks(...xs) : [])
     .map((x) => [px(x), tickLabel(x)])
-    .concat(hasZero ? [[px(0), "exact"]] : []);
+    .filter(([x]) => x - before >= least && (before = x) === x)
+    .concat(hasZero ? [[px(0), "no error"]] : []);
   const grid = [
-    ...xTicks.map(([x, text]) => path("grid", `M${x} ${top}V${bottom}`) + label(x, bottom + 18, "middle", text)),
+    hasZero ? `<rect class="column" x="${left}" y="${top}" width="${column}" height="${bottom - top}"/>` : "",
+    ...xTicks.map(([x, text]) => path("grid", `M${x.toFixed(1)} ${top}V${bottom}`) + label(x.toFixed(1), bottom + 17, "middle", text)),
     ...ticks(...ys).map(
-      (y) => path("grid", `M${left} ${py(y)}H${right}`) + label(left - 6, Number(py(y)) + 4, "end", tickLabel(y)),
+      (y) => path("grid", `M${left} ${py(y).toFixed(1)}H${right}`) + label(left - 6, (py(y) + 4).toFixed(1), "end", tickLabel(y)),
     ),
-    hasZero ? path("border dashed", `M${start} ${top}V${bottom}`) : "",
   ];
-  const lines = shown.map(({ name, points }) => {
-    const steps = points.map((p) => `${px(p.x)} ${py(p.y)}`);
-    return steps.length > 0 ? `<path class="curve" stroke="${colour(name)}" d="M${steps.join("L")}"/>` : "";
+  const lines = shown.map(({ name, points, isBroken }) => {
+    const steps = points.map((p) => place(p.x, p.y));
+    const kind = isBroken ? "curve dashed" : "curve";
+    return steps.length > 1 ? `<path class="${kind}" stroke="${colour(name)}" d="M${steps.join("L")}"/>` : "";
   });
+  const drawn = new Set();
   const marks = shown.flatMap(({ name, points }) =>
     points.map((p) => {
+      // The default setting begins both lines of an index, and is drawn once.
+      if (drawn.has(p.note)) return "";
+      drawn.add(p.note);
       const [x, y] = [px(p.x), py(p.y)];
-      const ring = p.isFront ? `<circle class="border" cx="${x}" cy="${y}" r="9"/>` : "";
+      const ring = p.isFront ? `<circle class="border" cx="${x.toFixed(1)}" cy="${y.toFixed(1)}" r="9.5"/>` : "";
       const common = `class="dot" tabindex="0" role="img" aria-label="${escaped(p.note)}" fill="${colour(name)}"`;
-      return (
-        ring +
-        (p.isDefault
-          ? `<rect ${common} x="${x - 5}" y="${y - 5}" width="10" height="10"/>`
-          : `<circle ${common} cx="${x}" cy="${y}" r="5"/>`)
-      );
+      return ring + mark(p.shape ?? "circle", x, y, 5.5, common);
     }),
   );
-  return `<svg viewBox="0 0 ${width} ${height}" role="group" aria-label="${escaped(`${yName} over ${xName}`)}">
+  // The name of an index stands beside the right end of its lines, where there is room.
+  const names = [];
+  for (const { name, points } of isNarrow ? [] : shown) {
+    const end = points.reduce((a, p) => (a && px(a.x) >= px(p.x) ? a : p), undefined);
+    const near = names.find((other) => other.name === name);
+    if (!end || (near && near.x >= px(end.x))) continue;
+    if (near) Object.assign(near, { x: px(end.x), y: py(end.y) });
+    else names.push({ name, x: px(end.x), y: py(end.y) });
+  }
+  names.sort((a, b) => a.y - b.y).forEach((entry, i) => {
+    const above = names[i - 1];
+    if (above && Math.abs(above.x - entry.x) < 80 && entry.y - above.y < 15) entry.y = above.y + 15;
+  });
+  const labels = names.map(({ name, x, y }) =>
+    `<text class="name-label" x="${(x + 13).toFixed(1)}" y="${(y + 4).toFixed(1)}" style="fill:${colour(name)}">${escaped(name)}</text>`);
+  let [keyX, keyY] = [left, 14];
+  const keys = key.map(([shape, text, isBroken]) => {
+    const long = 38 + text.length * 7;
+    // The key has two rows where it is too long for one.
+    if (keyX + long > width) [keyX, keyY] = [left, keyY + 22];
+    const [x, y] = [keyX + 12, keyY];
+    keyX += long;
+    const line = isBroken === undefined ? "" : path(isBroken ? "key dashed" : "key", `M${x - 12} ${y}H${x + 12}`);
+    const shown =
+      shape === "ring" ? `<circle class="border" cx="${x}" cy="${y}" r="7"/>` : mark(shape, x, y, 4.5, 'class="key-mark"');
+    return line + shown + label(x + 16, y + 4, "start", text, "key-text");
+  });
+  return `<svg viewBox="0 0 ${width} ${height}" width="${width}" role="group" aria-label="${escaped(`${yName} over ${xName}`)}">
 ${grid.join("\n")}
 ${path("border", `M${left} ${top}V${bottom}H${right}`)}
 ${label((left + right) / 2, height - 8, "middle", xName)}
-<g transform="translate(16 ${(top + bottom) / 2}) rotate(-90)">${label(0, 0, "middle", yName)}</g>
+<g transform="translate(${isNarrow ? 10 : 14} ${(top + bottom) / 2}) rotate(-90)">${label(0, 0, "middle", yName)}</g>
 ${lines.join("\n")}
+${labels.join("\n")}
 ${marks.join("\n")}
+${keys.join("\n")}
 </svg>`;
 }
 
@@ -93,17 +157,19 @@ const MEASURES = [
   },
 ];
 
-/** Plots the time over the error of each setting. */
+/** Plots the time over the error of each setting, with a line for each family of settings of an index. */
 function errorPlot(curves, measure) {
   const all = candidates(curves)
     .map(({ curve, point }) => ({
       curve,
-      x: measure.of(point.errors),
+      family: familyOf(point.setting),
+      // Errors of rounding are none.
+      x: isExact(point) ? 0 : measure.of(point.errors),
       y: point.nanoseconds.median,
-      isDefault: point.setting === DEFAULT,
+      shape: FAMILIES[familyOf(point.setting)].shape,
       note:
-        `${curve.name}, ${point.setting}: ${point.nanoseconds.median.toFixed(0)} ns, ` +
-        `${measure.name} ${error(measure.of(point.errors))}`,
+        `${curve.name}, ${point.setting}: ${nanoseconds(point.nanoseconds.median)}, ` +
+        (isExact(point) ? (point.setting === DEFAULT ? "exact" : "no error seen") : `${measure.name} ${error(measure.of(point.errors))}`),
     }))
     .filter((p) => !isNone(p.x))
     .sort((a, b) => a.x - b.x || a.y - b.y);
@@ -112,11 +178,16 @@ function errorPlot(curves, measure) {
     p.isFront = p.y < least;
     least = Math.min(least, p.y);
   }
-  return plot(
-    measure.axis,
-    "ns per query",
-    curves.map((curve) => ({ name: curve.name, points: all.filter((p) => p.curve === curve) })),
-  );
+  const line = (curve, families) => all.filter((p) => p.curve === curve && families.includes(p.family));
+  const series = curves.flatMap((curve) => [
+    { name: curve.name, points: line(curve, ["default", "epsilon"]) },
+    { name: curve.name, points: line(curve, ["default", "visits"]), isBroken: true },
+    { name: curve.name, points: line(curve, ["certified"]) },
+  ]);
+  const used = new Set(all.map((p) => p.family));
+  const key = Object.entries(FAMILIES).filter(([family]) => used.has(family))
+    .map(([family, { name, shape, isBroken }]) => [shape, name, ["epsilon", "visits"].includes(family) ? !!isBroken : undefined]);
+  return plot(measure.axis, "ns per query", series, [...key, ["ring", "fastest for its error"]]);
 }
 
 /** Plots the times of single queries over their rarity. */

@@ -4,11 +4,11 @@ const SETTING_HEAD = [
   "index",
   "setting",
   "ns per query",
-  "as fast",
-  "error, relative",
-  "99.9 %",
-  "error, u M",
-  "99.9 %",
+  "speed-up",
+  "largest relative error",
+  "1 in 1,000 exceeds",
+  "largest error, u M",
+  "1 in 1,000 exceeds",
   "bound gap",
   "other primitive",
   "remarks",
@@ -114,22 +114,27 @@ function showSet() {
   const set = scene.sets[chosen("set")];
   const median = (curve) => defaultPoint(curve).nanoseconds.median;
   const limit = MAX_SHOWN_TIME_FACTOR * Math.min(...set.curves.map(median));
-  byId("headline").textContent = `${scene.name}: speed against error of queries "${set.name}"`;
+  byId("headline").textContent = `Which index for ${scene.name.split("/").pop()}?`;
   byId("about").innerHTML = words(
-    `${scene.about} ${scene.primitives} primitives. Queries: ${set.about} ${maxQueries(set)} queries in a round.`,
+    `${scene.about} Queries: ${set.about} ` +
+      `${maxQueries(set).toLocaleString("en-US")} queries in a round.`,
   );
   const box = (curve, i) =>
     `<input type="checkbox" id="index${i}"${median(curve) <= limit ? " checked" : ""}>${swatch(curve.name)}`;
   byId("legend").innerHTML = set.curves.map((curve, i) => `<label>${box(curve, i)}</label>`).join("");
-  byId("advice").innerHTML = words(advice(set));
-  byId("detail").innerHTML = `<h2>The speed and the errors of each setting</h2>
-<p>Rows have ${maxQueries(set)} queries unless the remarks state another number.</p>${settingTable(set)}
-<h2>The time of single queries, in ns</h2><div id="latencies"></div>${latencyTable(set)}
-<h2>Building</h2>
-<p>The table has the seconds on one thread, and the heap bytes per primitive besides the scene.</p>${buildTable(set)}
-<h2>Break-even: the number of queries from which on a longer build pays</h2>
-<p>The cheapest index, with its build: ${words(turnsInWords(costs(set.curves)))}.</p>
-<div id="totals"></div>${breakEvenTable(set)}`;
+  const [short, long] = advice(set);
+  byId("advice").textContent = short;
+  byId("why").innerHTML = words(long);
+  byId("detail").innerHTML = `<details open><summary>When does a longer build pay?</summary>
+<p>The cheapest index, with its build: ${words(turnsInWords(costs(set.curves)))}. The table has the number of queries
+from which on the index of the column takes less time than that of the row.</p>
+<div id="totals"></div>${breakEvenTable(set)}</details>
+<details><summary>Build time and memory</summary>
+<p>The seconds on one thread, and the heap bytes per primitive besides the scene.</p>${buildTable(set)}</details>
+<details><summary>Speed and errors of each setting</summary>
+<p>Rows have ${maxQueries(set)} queries unless the remarks state another number.</p>${settingTable(set)}</details>
+<details><summary>Times of single queries, in ns</summary><div id="latencies"></div>${latencyTable(set)}</details>`;
+  pinned = null;
   showPlots();
 }
 /** Draws the plots of the indexes whose boxes are ticked. */
@@ -139,18 +144,35 @@ function showPlots() {
   byId("plot").innerHTML = errorPlot(curves, MEASURES[chosen("measure")]);
   byId("latencies").innerHTML = latencyPlot(curves);
   byId("totals").innerHTML = totalPlot(curves);
+  byId("tip").hidden = true;
 }
-/** Shows the name of a mark beside it. */
+
+/** The distance in pixels from a mark within which the pointer reads it. */
+const NEAR = 26;
+/** The mark whose tip stays, after a click. */
+let pinned = null;
+
+/** Returns the mark that is nearest to a position on the screen, if one is near. */
+function nearestMark(x, y, svg) {
+  let [found, best] = [null, NEAR];
+  for (const dot of svg.querySelectorAll(".dot")) {
+    const { left, top, width, height } = dot.getBoundingClientRect();
+    const distance = Math.hypot(left + width / 2 - x, top + height / 2 - y);
+    if (distance < best) [found, best] = [dot, distance];
+  }
+  return found;
+}
+/** Shows the name of a mark beside it, or nothing. */
 function showTip(target) {
-  const note = target.classList?.contains("dot") ? target.getAttribute("aria-label") : "";
-  const [tip, box] = [byId("tip"), note ? target.getBoundingClientRect() : null];
-  tip.hidden = !note;
-  tip.textContent = note;
-  if (box)
-    Object.assign(tip.style, {
-      left: `${Math.min(box.right + scrollX, scrollX + innerWidth - 200)}px`,
-      top: `${box.bottom + scrollY + 4}px`,
-    });
+  const tip = byId("tip");
+  for (const old of document.querySelectorAll(".dot.read")) old.classList.remove("read");
+  tip.hidden = !target;
+  if (!target) return;
+  target.classList.add("read");
+  tip.textContent = target.getAttribute("aria-label");
+  const box = target.getBoundingClientRect();
+  const x = Math.max(4, Math.min(box.right + scrollX + 6, scrollX + document.documentElement.clientWidth - tip.offsetWidth - 4));
+  tip.style.transform = `translate(${x}px, ${box.bottom + scrollY + 6}px)`;
 }
 
 // All scenes have the same sets of queries.
@@ -182,6 +204,25 @@ byId("provenance").innerHTML = words(
 document.addEventListener("change", ({ target }) =>
   ["scene", "set"].includes(target.id) ? showSet() : showPlots(),
 );
-for (const kind of ["pointerover", "focusin", "click"])
-  document.addEventListener(kind, ({ target }) => showTip(target));
+document.addEventListener("pointermove", ({ target, clientX, clientY }) => {
+  const svg = target.closest?.("svg");
+  if (!pinned) showTip(svg ? nearestMark(clientX, clientY, svg) : null);
+});
+document.addEventListener("click", ({ target, clientX, clientY }) => {
+  const svg = target.closest?.("svg");
+  pinned = svg ? nearestMark(clientX, clientY, svg) : null;
+  showTip(pinned);
+});
+document.addEventListener("focusin", ({ target }) => {
+  if (target.classList.contains("dot")) showTip((pinned = target));
+});
+document.addEventListener("keydown", ({ key }) => {
+  if (key === "Escape") showTip((pinned = null));
+});
+let drawnWidth = 0;
+globalThis.addEventListener?.("resize", () => {
+  if (drawnWidth === document.documentElement.clientWidth) return;
+  drawnWidth = document.documentElement.clientWidth;
+  showPlots();
+});
 showSet();

@@ -1,0 +1,88 @@
+// The panel of query points and their answers: a histogram, the selected answer, and all of them as a table.
+
+import { copyButton, count, counted, element, fillList, number, reveal, stepped, tableHead } from "./text.js";
+
+// The number of rows of a page of the table.
+const ROWS = 50;
+
+export class AnswersPanel {
+  constructor(viewer, add) {
+    this.viewer = viewer;
+    this.answers = viewer.answers;
+    const { answers } = this;
+    const what = answers.signed ? "signed distance" : "distance";
+    const missing = answers.length - answers.answeredCount;
+    const parts = [];
+    const all = counted(answers.length, "query");
+    if (missing > 0) parts.push(element("p", {}, `${count(missing)} of ${all} have no answer.`));
+    if (answers.answeredCount > 0) {
+      const { scale, values } = answers;
+      parts.push(viewer.figure(() => ({ scale, what, unit: viewer.unit, values })).element);
+    }
+    this.text = element("dl", { id: "answer", "aria-live": "polite" });
+    const step = (by) =>
+      element("button", { type: "button", onclick: () => this.step(by) }, by > 0 ? "Next" : "Previous");
+    add(`Distances of ${all}`, "distances", ...parts);
+    const section = add("Answer", "selected",
+      element("p", { class: "buttons" }, step(-1), step(1), copyButton(this.text)), this.text);
+    this.table = element("table", { id: "table" });
+    this.page = 0;
+    const turn = (by) => element("button", { type: "button", onclick: () => this.turn(by) },
+      by > 0 ? "Next rows" : "Previous rows");
+    section.append(element("details", { id: "answers" }, element("summary", {}, "All answers as a table"),
+      element("p", { class: "buttons" }, turn(-1), turn(1)),
+      element("div", { class: "scrolled", tabindex: "0", role: "region", "aria-label": "answers" }, this.table)));
+    this.turn(0);
+    this.select(-1);
+  }
+
+  // Turns the pages of the table.
+  turn(by) {
+    const { answers } = this;
+    const last = Math.max(0, Math.ceil(answers.length / ROWS) - 1);
+    this.page = Math.max(0, Math.min(last, this.page + by));
+    const first = this.page * ROWS;
+    const head = ["query", "x", "y", "z", answers.signed ? "signed distance" : "distance", "primitive", "feature"];
+    const rows = [];
+    for (let i = first; i < Math.min(answers.length, first + ROWS); i++) {
+      const select = element("button", { type: "button", onclick: () => this.select(i) }, String(i));
+      const cells = answers.isAnswered(i)
+        ? [...[...answers.points.subarray(3 * i, 3 * i + 3), answers.values[i]].map(number), answers.primitives[i],
+            answers.featureName(i)]
+        : ["no answer", "", "", "", "", ""];
+      rows.push(element("tr", {}, element("td", {}, select), ...cells.map((cell) => element("td", {}, cell))));
+    }
+    this.table.replaceChildren(
+      element("caption", {}, `Closest points, rows ${count(first)} to ${count(first + rows.length - 1)} of ` +
+        `${count(answers.length)}`),
+      tableHead(head), element("tbody", {}, ...rows));
+  }
+
+  step(by) {
+    const { length, selected } = this.answers;
+    if (length > 0) this.select(stepped(selected, by, length));
+  }
+
+  select(i) {
+    const { answers, viewer } = this;
+    answers.select(i, viewer.colours);
+    const rows = [];
+    if (i < 0) {
+      rows.push(["none", "Click a query point, or press n."]);
+    } else {
+      rows.push(["number", `${count(i)} of ${count(answers.length)}`]);
+      rows.push(["query", answers.queries.subarray(3 * i, 3 * i + 3)]);
+      if (answers.isAnswered(i)) {
+        if (answers.signed) rows.push(["side", answers.signed[i] < 0 ? "inside" : "outside"]);
+        rows.push(...answers.rows(i));
+        const object = answers.objects?.[i];
+        if (object) rows.push(["object", viewer.data.object_names[object - 1]]);
+      } else {
+        rows.push(["answer", "none"]);
+      }
+    }
+    fillList(this.text, rows);
+    if (i >= 0) reveal(this.text);
+    viewer.draw();
+  }
+}

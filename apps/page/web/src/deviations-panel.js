@@ -1,0 +1,220 @@
+// The panel of deviations: the verdict, the histogram with the tolerance, the worst places, one point, and statistics.
+
+import { choice, copyButton, count, element, fillList, namedRow, number, reveal, short, stepped, tableHead } from "./text.js";
+
+// The share of a fitted view that is seen around a place after a flight to it.
+const NEAR = 0.35;
+
+export class DeviationsPanel {
+  constructor(viewer, add) {
+    this.viewer = viewer;
+    this.layer = viewer.deviations;
+    const { layer } = this;
+    this.what = layer.is_signed ? "deviation" : "distance";
+    this.tolerance = layer.tolerance;
+    this.hasBands = layer.tolerance > 0;
+    this.verdict = element("p", { id: "verdict", class: "verdict", role: "status" });
+    this.figure = viewer.figure(() => this.readFigure(), { id: "deviation-figures" });
+    this.parts = element("p", { id: "deviation-parts", "aria-live": "polite" });
+    this.bands = choice("colours", ["bands", "gradient"], this.hasBands ? 0 : 1, (i) => this.setBands(i === 0));
+    this.inputs = {
+      tolerance: this.numberInput("tolerance", "Tolerance", layer.tolerance ?? "", (x) => this.setTolerance(x)),
+      limit: this.numberInput("limit", "Colours up to", layer.limit, (x) => x > 0 && this.setLimit(x)),
+    };
+    const rows = [element("div", { class: "row" }, element("span", {}, "Colours"), this.bands)];
+    if (layer.triangleOf) {
+      const shown = choice("coloured", ["scan", "model"], 0, (i) => {
+        layer.showPart(i === 1);
+        viewer.draw();
+      });
+      rows.push(element("div", { class: "row" }, element("span", {}, "Coloured"), shown));
+    }
+    add(layer.is_signed ? "Deviations, positive outside" : "Distances", "deviations", this.verdict, this.figure.element,
+      ...Object.values(this.inputs), ...rows, this.parts);
+    this.addWorst(add);
+    this.text = element("dl", { id: "deviation", "aria-live": "polite" });
+    const step = (by, text) => element("button", { type: "button", onclick: () => this.step(by) }, text);
+    add("Point", "point",
+      element("p", { class: "buttons" }, step(-1, "Previous"), step(1, "Next"), copyButton(this.text)), this.text);
+    this.addStatistics(add);
+    this.setColours();
+    this.select(-1);
+  }
+
+  // Makes a number and a slider with one meaning. The slider covers four orders of magnitude.
+  numberInput(id, label, value, change) {
+    const most = this.layer.statistics.reduce((a, { value }) => Math.max(a, Math.abs(value ?? 0)), 0) || 1;
+    const part = (x) => Math.max(0, Math.min(1, 1 + Math.log10(x / most) / 4));
+    const box = element("input", { type: "number", id, min: 0, step: "any", value, class: "number" });
+    const slider = element("input", {
+      type: "range", id: `${id}-slider`, min: 0, max: 1, step: 0.001, value: value === "" ? 1 : part(value),
+      "aria-label": `${label}, slider`,
+    });
+    box.addEventListener("input", () => {
+      // A number below zero is no limit and no tolerance, as the browser says.
+      if (!box.checkValidity()) return;
+      if (Number(box.value) > 0) slider.value = part(Number(box.value));
+      change(box.value === "" ? null : Number(box.value));
+    });
+    slider.addEventListener("input", () => {
+      box.value = Number((most * 10 ** (4 * (Number(slider.value) - 1))).toPrecision(3));
+      change(Number(box.value));
+    });
+    return element("div", { class: "setting" },
+      element("label", { for: id }, `${label} (${this.viewer.unit})`), box, slider);
+  }
+
+  setLimit(limit) {
+    this.layer.limit = limit;
+    this.setColours();
+  }
+
+  setTolerance(tolerance) {
+    const before = this.tolerance;
+    this.tolerance = tolerance !== null && tolerance >= 0 ? tolerance : null;
+    // The first tolerance brings its bands.
+    if (before === null && this.tolerance > 0) this.hasBands = true;
+    this.setColours();
+  }
+
+  setBands(isOn) {
+    this.hasBands = isOn;
+    this.setColours();
+  }
+
+  setColours() {
+    const hasBands = this.hasBands && this.tolerance > 0;
+    const [bands, gradient] = this.bands.querySelectorAll("input");
+    bands.disabled = !(this.tolerance > 0);
+    bands.checked = hasBands;
+    gradient.checked = !hasBands;
+    this.layer.setScale(this.layer.limit, hasBands ? this.tolerance : null);
+    this.redraw();
+  }
+
+  readFigure() {
+    const { layer, tolerance, what, viewer: { unit } } = this;
+    if (layer.total === layer.missing) return {};
+    const [values, weight] = layer.population();
+    const hasTwoSides = layer.is_signed && tolerance > 0;
+    const marks = tolerance === null ? [] : hasTwoSides ? [-tolerance, tolerance] : [tolerance];
+    const onMark = (value) => {
+      const rounded = Number(value.toPrecision(3));
+      document.getElementById("tolerance").value = rounded;
+      document.getElementById("tolerance").dispatchEvent(new Event("input"));
+    };
+    return { scale: layer.scale, what, unit, values, options: { name: `${what}s`, weight, marks, onMark } };
+  }
+
+  // Draws the legend and the histogram, and writes how many points are within the tolerance.
+  redraw() {
+    const { layer, tolerance, viewer: { unit } } = this;
+    this.figure.update();
+    this.verdict.classList.remove("good", "bad");
+    if (tolerance === null) {
+      const rms = layer.statistics.find(({ label }) => /root mean square/.test(label));
+      this.verdict.textContent = rms?.value == null
+        ? "No point has a deviation." : `The root mean square is ${short(rms.value)} ${unit}.`;
+      this.parts.textContent = "Type a tolerance to count the points outside of it.";
+    } else {
+      const [above, below, within] = layer.outside(tolerance);
+      const all = Math.max(1, above + below + within);
+      const share = (n) => `${count(n)} (${short((100 * n) / all)} %)`;
+      const under = layer.is_signed ? `${share(below)} below ${tolerance > 0 ? -tolerance : 0}, ` : "";
+      const isRounded = layer.quantiles && tolerance !== layer.tolerance;
+      const rounded = isRounded ? " Counts are to 0.01 %, because not all points are on the page." : "";
+      this.parts.textContent =
+        `${share(above)} above ${tolerance}, ${under}${share(within)} within the tolerance.${rounded}`;
+      const range = `${layer.is_signed ? "±" : ""}${short(tolerance)} ${unit}`;
+      const isGood = above + below === 0;
+      this.verdict.classList.add(isGood ? "good" : "bad");
+      this.verdict.textContent = isGood ? `All ${count(within)} points are within ${range}.`
+        : `${short((100 * (above + below)) / all)} % of the points are out of tolerance (${range}).`;
+    }
+    this.viewer.draw();
+  }
+
+  // Adds the worst places, with buttons that fly there.
+  addWorst(add) {
+    const { layer, viewer } = this;
+    const worst = layer.worst(viewer.data.frame.radius).map((i, place) => {
+      const fly = element("button", { type: "button", title: "Fly there", onclick: () => {
+        this.select(i);
+        this.flyTo(i);
+      } }, `${place + 1}`);
+      const point = count(i * layer.stride);
+      return element("tr", {}, element("td", {}, fly), element("td", {}, number(layer.values[i])), element("td", {}, point));
+    });
+    const where = layer.stride > 1 ? " of the points on the page" : "";
+    add(`Worst places${where}`, "worst", element("table", { id: "largest" },
+      tableHead(["fly to", `${this.what} (${viewer.unit})`, "point"]), element("tbody", {}, ...worst)));
+  }
+
+  // Flies to a point, and around the scene if the scene is in front of it.
+  flyTo(i) {
+    const { layer, viewer } = this;
+    const point = layer.position(i);
+    if (!point.toArray().every(Number.isFinite)) return;
+    const normals = layer.dots.geometry.getAttribute("normal") ?? layer.surface?.geometry.getAttribute("normal");
+    const towards = viewer.camera.position.clone().sub(viewer.controls.target).normalize();
+    if (normals) {
+      const normal = point.clone().fromBufferAttribute(normals, i);
+      // Surfaces are seen from outside, a little from where the viewer is.
+      if (normal.length() > 0) towards.multiplyScalar(0.4).add(normal);
+    } else {
+      towards.multiplyScalar(0.4).add(point.clone().normalize());
+    }
+    viewer.view.flyTo(point, NEAR, towards);
+  }
+
+  addStatistics(add) {
+    const { layer, viewer: { unit } } = this;
+    const rows = layer.statistics.map(({ label, value }) => namedRow(label, value ?? "none"));
+    const counts = [["with", layer.total - layer.missing], ["without", layer.missing]]
+      .map(([word, n]) => namedRow(`points ${word} a ${this.what}`, count(n)));
+    add("Statistics", "statistics", element("table", { id: "statistics-table" },
+      element("caption", {}, `${layer.is_signed ? "Deviations" : "Distances"} in ${unit}`),
+      element("tbody", {}, ...counts, ...rows)));
+  }
+
+  // Adds the check boxes of what is shown. `box` makes one.
+  makeBoxes(box) {
+    const { layer } = this;
+    box("scan", true, (on) => (layer.group.visible = on), "show-scan");
+    if (layer.surface) box("points of the scan", false, (on) => (layer.dots.visible = on), "show-scan-points");
+  }
+
+  pick(event) {
+    if (!this.layer.group.visible) return -1;
+    const { size, x, y } = this.viewer.pointer(event);
+    return this.layer.pick(this.viewer.camera, size, x, y);
+  }
+
+  // Returns the deviation of the point under the pointer as a text, if there is one.
+  tip(event) {
+    const i = this.pick(event);
+    if (i < 0) return undefined;
+    const value = this.layer.values[i];
+    if (!this.layer.is_signed || Number.isNaN(value)) return `${short(value)} ${this.viewer.unit}`;
+    return `${value > 0 ? "+" : ""}${short(value)} ${this.viewer.unit}, ${value < 0 ? "inside" : "outside"}`;
+  }
+
+  step(by) {
+    const { length, selected } = this.layer;
+    if (length > 0) this.select(stepped(selected, by, length));
+  }
+
+  select(i) {
+    const { layer, viewer } = this;
+    layer.select(i, viewer.colours ?? { feature: "#c000c0" });
+    const rows = i < 0 ? [["none", "Click a point of the scan, or press n."]] : [
+      ["number", `${count(i * layer.stride)} of ${count(layer.total)}`],
+      ["point", layer.positions.subarray(3 * i, 3 * i + 3)],
+      [this.what, layer.values[i]],
+      ...(Number.isNaN(layer.values[i]) ? [] : [["primitive", String(layer.primitives[i])]]),
+    ];
+    fillList(this.text, rows);
+    if (i >= 0) reveal(this.text);
+    viewer.draw();
+  }
+}

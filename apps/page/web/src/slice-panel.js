@@ -1,0 +1,79 @@
+// The panel of a slice: its axis, its place, its colours, and its value at the pointer.
+
+import { choice, element, short } from "./text.js";
+
+export class SlicePanel {
+  constructor(viewer, add) {
+    this.viewer = viewer;
+    this.slice = viewer.slice;
+    const { slice } = this;
+    const { isDiverging } = slice.scale;
+    const what = slice.hasCells ? "length of the list" : isDiverging ? "signed distance" : "distance";
+    this.unit = slice.hasCells ? "primitives" : viewer.unit;
+    this.axes = choice("axis", ["x", "y", "z"], slice.axis, (axis) => this.move(axis, 0.5));
+    this.radios = [...this.axes.querySelectorAll("input")];
+    this.range = element("input", {
+      type: "range", min: 0, max: 1, step: 0.001, value: 0.5, "aria-label": "position of the slice",
+      oninput: () => this.move(slice.axis, Number(this.range.value)),
+    });
+    this.text = element("output", { id: "slice-text" });
+    this.value = element("output", { id: "slice-value" });
+    const about = slice.hasCells
+      ? "A query evaluates only primitives of the list of its cell. Where a cell has no list the slice is violet, " +
+        "and the AABB tree below the cells answers."
+      : (isDiverging ? "Blue is inside, red is outside, and the black line is the surface. " : "") +
+        `The distance changes by ${short(slice.spacingOfLines)} ${viewer.unit} from line to line.`;
+    const title = slice.hasCells ? "Slice through the cells" : isDiverging ? "Signed distance" : "Distance";
+    add(title, "field",
+      viewer.figure(() => ({ scale: slice.scale, what, unit: this.unit })).element,
+      element("div", { class: "row" }, element("span", {}, "Across"), this.axes, this.text), this.range,
+      element("p", { class: "reading" }, this.value), element("p", { class: "small" }, about));
+  }
+
+  // Lays the slice across the axis that points most to the viewer: a horizontal one, unless the scene is flat.
+  lay() {
+    const { camera, controls, view } = this.viewer;
+    const towards = camera.position.clone().sub(controls.target).toArray().map(Math.abs);
+    const up = view.isYUp ? 1 : 2;
+    const isHigh = towards.every((x, k) => k === up || x < towards[up]);
+    if (!isHigh) towards[up] = 0;
+    this.move(towards.indexOf(Math.max(...towards)), 0.5);
+  }
+
+  // Moves the slice to a part of the field along an axis.
+  move(axis, part) {
+    const { slice, viewer } = this;
+    this.part = Math.max(0, Math.min(1, part));
+    slice.setPlane(axis, this.part * (slice.counts[axis] - 1));
+    this.radios.forEach((radio, k) => (radio.checked = k === axis));
+    this.range.value = this.part;
+    const position = [...slice.origin];
+    position[axis] += slice.index * slice.spacing;
+    this.text.textContent = `at ${short(viewer.coordinates(position)[axis])} ${viewer.unit}`;
+    viewer.draw();
+  }
+
+  turn(axis) {
+    this.move(axis, axis === this.slice.axis ? this.part : 0.5);
+  }
+
+  shift(by) {
+    this.move(this.slice.axis, this.part + by);
+  }
+
+  // Shows the value of the slice where the pointer is, or in the middle of the picture if there is no event. Returns the
+  // value as a text, if there is one.
+  read(event) {
+    const { slice, viewer, value } = this;
+    const say = (text) => (value.textContent = event ? "" : text);
+    if (!slice.mesh.visible) return void say("The slice is not shown.");
+    const caster = event ? viewer.pointer(event).caster() : viewer.caster(0, 0);
+    const [hit] = caster.intersectObject(slice.mesh);
+    // The pointer moves all the time, and screen readers would read each value.
+    value.setAttribute("aria-live", event ? "off" : "polite");
+    if (!hit) return void say("The slice is not in the middle of the picture.");
+    const text = slice.textAt(hit.point, this.unit);
+    value.textContent = `${text} at ${viewer.coordinates(hit.point.toArray()).join(", ")}`;
+    return text;
+  }
+}

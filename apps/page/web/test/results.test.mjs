@@ -1,0 +1,149 @@
+// Opens pages of results: of other commands than `p2m view`, of `p2m tradeoff`, and of scenes whose live queries wait.
+
+import assert from "node:assert/strict";
+import { execFileSync } from "node:child_process";
+import { chmodSync, existsSync, readFileSync } from "node:fs";
+import { join } from "node:path";
+import { after, before, test } from "node:test";
+import { PROGRAM, Page, openTab, skip } from "./browser.mjs";
+
+let opened;
+const run = (args, env = {}) =>
+  execFileSync(PROGRAM, args, { stdio: "pipe", encoding: "utf8", env: { ...process.env, ...env } });
+const path = (name) => join(opened.folder, name);
+const open = (html, options) => openTab(opened.browser, html, (problem) => opened.problems.push(problem), options);
+
+before(async () => {
+  if (skip) return;
+  opened = await Page.open("--live", "never");
+  run(["generate", "ico-sphere", "--translate", "5", "0", "0", "--out", path("sphere.ply")]);
+});
+
+after(async () => opened?.close());
+
+test("a page shows the distance of two scenes, and the farthest points", { skip }, async () => {
+  for (const [command, verdict] of [["distance", /^The scenes are [\d.]+ mm apart\.$/], ["hausdorff", /^No point of /]]) {
+    const html = path(`${command}.html`);
+    const report = JSON.parse(run([command, opened.scene, path("sphere.ply"), "--html", html, "--unit", "mm", "--json"]));
+    const page = await open(html);
+    assert.match(await page.textContent("#measures .verdict"), verdict);
+    const [found, point] = command === "distance"
+      ? [report.distance, report.scenes[1].nearest.point] : [report.upper_bound, report.scenes[1].farthest.point];
+    const shown = await opened.read("measure", command === "distance" ? "distance" : "farthest", page);
+    assert.equal(Number.parseFloat(shown), found);
+    assert.deepEqual((await opened.read("measure", "to", page)).split(", ").map(Number), point);
+    // The label stands in the picture, between the points.
+    await page.waitForSelector("#overlay .important");
+    assert.match(await page.textContent("#overlay .important"), / mm$/);
+    assert.equal(await page.locator("#objects label").count(), 2);
+    await page.close();
+  }
+});
+
+test("a moved scene is drawn where it was measured", { skip }, async () => {
+  const html = path("moved.html");
+  const matrix = "1 0 0 0  0 1 0 7  0 0 1 0";
+  const report = JSON.parse(run(["distance", opened.scene, path("sphere.ply"), "--transform", matrix, "--html", html, "--json"]));
+  const page = await open(html);
+  const gap = await page.evaluate(() => {
+    const { measures, data: { scene }, scene: { objects } } = window.viewer;
+    const [, end] = measures.ends(0);
+    const [first, last] = objects[1].triangles;
+    const used = new Set(scene.triangles.subarray(3 * first, 3 * last));
+    return Math.min(...[...used].map((i) => end.distanceTo(end.clone().fromArray(scene.positions, 3 * i))));
+  });
+  assert.ok(gap < 0.2, `${gap}: ${report.distance}`);
+  await page.close();
+});
+
+test("a page shows the first hits of the rays of a table", { skip }, async () => {
+  const [hits, html] = [path("hits.csv"), path("rays.html")];
+  const report = JSON.parse(run(["ray", opened.scene, "--random", "50", "--out", hits, "--json"]));
+  run(["view", opened.scene, "--rays", hits, "--live", "never", "--out", html]);
+  const page = await open(html);
+  const rows = readFileSync(hits, "utf8").trim().split("\n").slice(1).map((line) => line.split(","));
+  const hit = rows.filter((row) => row[7] !== "");
+  assert.ok(hit.length > 5, JSON.stringify(report));
+  assert.equal(await page.textContent("#measures .verdict"), `${hit.length} of 50 rays hit the scene.`);
+  await page.click("#measures button >> nth=1");
+  assert.deepEqual((await opened.read("measure", "to", page)).split(", ").map(Number), hit[0].slice(8, 11).map(Number));
+  await page.close();
+});
+
+test("live queries of a larger scene wait for a click", { skip }, async () => {
+  const html = path("larger.html");
+  run(["generate", "ico-sphere", "--frequency", "24", "--out", path("larger.ply")]);
+  run(["view", path("larger.ply"), "--out", html]);
+  const page = await open(html);
+  assert.equal(await page.evaluate(() => window.viewer.live.indexes.length), 0);
+  await page.click("#live-start");
+  await page.waitForFunction(() => window.viewer.live.shown?.answers?.[0], undefined, { timeout: 60000 });
+  assert.equal(await page.locator("#live-start").count(), 0);
+  // What is drawn comes from the exact scene: vertices on the unit sphere, each in six triangles, or in five.
+  const [lengths, uses] = await page.evaluate(() => {
+    const { data: { scene }, frame } = window.viewer;
+    const [lengths, uses] = [new Set(), {}];
+    for (const i of scene.triangles) {
+      lengths.add(Math.hypot(...frame.coordinates(scene.positions.subarray(3 * i, 3 * i + 3))).toFixed(5));
+      uses[i] = (uses[i] ?? 0) + 1;
+    }
+    return [[...lengths], Object.values(uses)];
+  });
+  assert.deepEqual(lengths, ["1.00000"]);
+  assert.deepEqual([uses.length, uses.filter((n) => n === 5).length], [5762, 12]);
+  const { query, distance } = await page.evaluate(() => {
+    const { live } = window.viewer;
+    return { query: live.shown.query, distance: live.shown.answers[0].distance };
+  });
+  assert.ok(Math.hypot(...query) < 1e-9 && distance > 0.99 && distance < 1, `${query}: ${distance}`);
+  await page.close();
+});
+
+test("the answer of a trade-off stands first, and marks are read by pointer and keyboard", { skip }, async () => {
+  const html = path("tradeoff.html");
+  run(["tradeoff", opened.scene, "--random", "200", "--rounds", "2", "--html", html]);
+  for (const viewport of [{ width: 1280, height: 800 }, { width: 390, height: 844 }]) {
+    const page = await open(html, { viewport });
+    assert.match(await page.textContent("#advice"), /^(aabb|kdop|octree|p2m), [\d,.]+ ns per query, exact/);
+    const [answer, chart, width] = await page.evaluate(() => [
+      document.querySelector("#advice").getBoundingClientRect().bottom,
+      document.querySelector("#plot svg").getBoundingClientRect().bottom, document.documentElement.scrollWidth,
+    ]);
+    assert.ok(answer < 400 && chart <= viewport.height + 40 && width <= viewport.width, `${answer} ${chart} ${width}`);
+    const small = await page.$$eval("#plot svg text", (texts) =>
+      texts.filter((text) => text.getBoundingClientRect().height < 10 && text.textContent).length);
+    assert.equal(small, 0);
+    // Each setting of each index has a mark, and no decade of the axis is empty of all marks but one.
+    const marks = await page.$$eval("#plot .dot", (dots) => dots.map((dot) => dot.getAttribute("aria-label")));
+    assert.equal(new Set(marks).size, 4 * 8);
+    assert.ok(marks.some((text) => /, max visits 16: /.test(text)) && !marks.some((text) => /budget/.test(text)));
+    const [x, y] = await page.$$eval("#plot .dot", ([, dot]) => {
+      const { left, top, width, height } = dot.getBoundingClientRect();
+      return [left + width / 2, top + height / 2];
+    });
+    await page.mouse.move(x + 3, y);
+    assert.ok(marks.includes(await page.textContent("#tip")));
+    await page.mouse.move(2, 2);
+    assert.ok(await page.isHidden("#tip"));
+    await page.mouse.click(x, y);
+    await page.mouse.move(2, 2);
+    assert.ok(await page.isVisible("#tip"), "it stays after a click");
+    await page.keyboard.press("Escape");
+    assert.ok(await page.isHidden("#tip"));
+    await page.focus("#plot .dot >> nth=3");
+    assert.equal(await page.textContent("#tip"), await page.getAttribute("#plot .dot >> nth=3", "aria-label"));
+    await page.close();
+  }
+});
+
+test("--open starts the browser with the page", { skip }, async () => {
+  const [script, log] = [opened.write("browser.sh", `#!/bin/sh\necho "$1" > "$0.log"\n`), path("browser.sh.log")];
+  chmodSync(script, 0o755);
+  const html = path("opened.html");
+  run(["view", opened.scene, "--live", "never", "--out", html, "--open"], { BROWSER: script });
+  assert.equal(readFileSync(log, "utf8").trim(), html);
+  assert.ok(existsSync(html));
+  assert.throws(() => run(["view", opened.scene, "--out", html, "--open"], { BROWSER: path("none") }), /cannot be run/);
+});
+
+test("nothing failed and nothing was fetched", { skip }, () => assert.deepEqual(opened.problems, []));

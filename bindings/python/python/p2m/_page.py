@@ -1,0 +1,94 @@
+"""Pages in notebooks, in files and in the browser."""
+
+from __future__ import annotations
+
+import html
+import os
+import tempfile
+import webbrowser
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, Literal
+
+from . import _p2m
+
+if TYPE_CHECKING:
+    from ._index import Index
+    from ._scene import Scene
+
+# The number of primitives up to which pages answer queries where the pointer is.
+_MAX_LIVE = 100_000
+# The part by which a field reaches beyond the box of its scene.
+_FIELD_SCALE = 1.2
+
+
+class Page:
+    """A page that shows a scene, a field or deviations. Notebooks show it, and any browser opens it without a network.
+
+    `Scene.show`, `Index.show` and `Deviation.show` return it.
+    """
+
+    __slots__ = ("html",)
+
+    html: str
+    """The page as HTML, in one piece."""
+
+    def __init__(self, text: str) -> None:
+        self.html = text
+
+    def __repr__(self) -> str:
+        return f"Page(bytes={len(self.html.encode())})"
+
+    def _repr_html_(self) -> str:
+        # The page has a document of its own, so that its style and its script do not mix with those of the notebook.
+        return (
+            f'<iframe srcdoc="{html.escape(self.html)}" style="width: 100%; height: 600px; border: 0" '
+            'sandbox="allow-scripts allow-downloads" title="p2m"></iframe>'
+        )
+
+    def save(self, path: str | os.PathLike[str]) -> None:
+        """Write the page to a file.
+
+        Raises
+        ------
+        OSError
+            If the file cannot be written.
+        """
+        _p2m.write_bytes(Path(path), self.html.encode())
+
+    def open(self) -> None:
+        """Open the page in the browser. It is written to a folder for temporary files, where it stays."""
+        with tempfile.NamedTemporaryFile("w", suffix=".html", prefix="p2m-", encoding="utf-8", delete=False) as file:
+            file.write(self.html)
+        webbrowser.open(Path(file.name).as_uri())
+
+
+def checked_up(up: str) -> bool:
+    """Return whether y points up, and refuse what is no axis."""
+    if up not in ("y", "z"):
+        raise ValueError(f"up: {up!r} is none of 'y', 'z'")
+    return up == "y"
+
+
+def scene_page(
+    scene: Scene,
+    index: Index | None,
+    *,
+    field: int | None,
+    sign: Literal["auto", "winding", "parity"] | None,
+    unit: str,
+    up: str,
+) -> Page:
+    """Return the page of a scene, with a field that its index computes if there is a resolution."""
+    is_y_up = checked_up(up)
+    kinds = scene.counts._asdict().items()
+    words = [f"{number:,} {kind}" for kind, number in kinds if number > 0 and kind != "vertices"]
+    values = None
+    if field is not None and index is not None:
+        if field < 2:
+            raise ValueError(f"field: {field} is less than 2 points")
+        origin, spacing, shape = grid = _p2m.grid_around(scene._raw, field, _FIELD_SCALE)
+        signs: dict[str, Any] = {} if sign is None else {"signed": True, "sign": sign}
+        distances = index.field(origin, spacing, shape, **signs)
+        values = (grid, distances.ravel(order="F"))
+    texts = ("A scene in p2m", ", ".join(words) or "an empty scene", unit)
+    return Page(_p2m.scene_page(scene._raw, texts, is_y_up, len(scene) <= _MAX_LIVE, values))

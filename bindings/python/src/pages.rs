@@ -1,0 +1,51 @@
+//! Pages that show a scene.
+
+use crate::errors::value_error;
+use crate::scene::Scene;
+use numpy::PyReadonlyArray1;
+use p2m_core::{Aabb, PrimitiveSet};
+use p2m_field::Grid;
+use p2m_page::{UpAxis, View};
+use pyo3::prelude::*;
+
+/// The origin, the spacing and the counts of a grid.
+type GridParts = ([f64; 3], f64, [usize; 3]);
+
+/// Returns the grid that covers the box of a scene, scaled about its centre, with so many points along its longest side.
+#[pyfunction]
+pub(crate) fn grid_around(scene: &Scene, resolution: usize, scale: f64) -> PyResult<GridParts> {
+    let grid = Grid::around(&scene.shared.soup.aabb(), resolution, scale).map_err(value_error)?;
+    Ok((grid.origin().coords.into(), grid.spacing(), grid.counts()))
+}
+
+/// Returns a page that shows a scene as HTML. `texts` has the title, the summary and the unit. A field has the values of
+/// a grid, x running fastest.
+#[pyfunction]
+pub(crate) fn scene_page(
+    scene: &Scene,
+    texts: [String; 3],
+    is_y_up: bool,
+    is_live: bool,
+    field: Option<(GridParts, PyReadonlyArray1<'_, f32>)>,
+) -> PyResult<String> {
+    let [title, summary, unit] = texts;
+    let field = field.map(|((origin, spacing, counts), values)| {
+        Ok::<_, PyErr>((Grid::new(origin.into(), spacing, counts).map_err(value_error)?, values))
+    });
+    let field = field.transpose()?;
+    let mut around = Aabb::empty();
+    if let Some((grid, _)) = &field {
+        around = around.union(&Aabb { min: grid.origin(), max: grid.point(grid.counts().map(|n| n - 1)) });
+    }
+    let mut view =
+        View::new(&scene.shared, &around).with_unit(&unit).with_up(if is_y_up { UpAxis::Y } else { UpAxis::Z });
+    if is_live {
+        view = view.with_live_queries();
+    }
+    if let Some((grid, values)) = &field {
+        view = view.with_field(grid, values.as_slice()?);
+    }
+    (view.title, view.summary) = (title, summary);
+    view.about = format!("p2m {} for Python", env!("CARGO_PKG_VERSION"));
+    view.html().map_err(value_error)
+}
