@@ -9,6 +9,8 @@
 //!   surfaces and certified for open ones \[Barill2018\], or by parity.
 //! - **Hausdorff distances** are the largest values of the distance field of one scene on another scene, between
 //!   certified bounds ([`hausdorff_distance`]).
+//! - **Alignment** finds the rotation and translation that bring the points of a scan onto a scene ([`align`]).
+//! - **Samples** are random points on and around scenes, the same on every platform ([`sample`]).
 //! - **Deviations** are the signed distances of the points of a scan, and [`deviation`] has their statistics.
 //! - **Output**: [`write_field`] writes NPY, VTI or raw values, [`write_cells`] writes the cells of an octree, and
 //!   [`slice()`] draws a layer of a grid.
@@ -34,6 +36,7 @@
 
 #![forbid(unsafe_code)]
 
+pub mod align;
 mod by_lists;
 mod by_queries;
 pub mod deviation;
@@ -44,6 +47,7 @@ mod hausdorff;
 mod layers;
 mod options;
 mod refined;
+pub mod sample;
 pub mod sign;
 mod slice;
 mod write;

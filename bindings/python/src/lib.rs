@@ -10,6 +10,7 @@
 #![allow(clippy::too_many_arguments, reason = "the Python layer passes all arguments of a call")]
 
 mod advise;
+mod alignment;
 mod arrays;
 mod columns;
 mod contacts;
@@ -25,8 +26,10 @@ mod pages;
 mod pair_columns;
 mod pairs;
 mod parts;
+mod program;
 mod queries;
 mod rays;
+mod samples;
 mod saved;
 mod scene;
 mod sharded;
@@ -46,14 +49,17 @@ mod _p2m {
     #[pymodule_export]
     use super::{
         advise::advise,
+        alignment::align,
         columns::NearList,
         deviations::{deviation_page, deviation_ply, deviation_statistics},
         hausdorff::hausdorff,
         index::Index,
         pages::{grid_around, scene_page},
         pair_columns::PairList,
+        program::main,
         queries::{closest, is_any_within, k_nearest, within},
         rays::{HitList, rays},
+        samples::{sample_box, sample_surface},
         saved::{load, load_bytes, write_bytes},
         scene::Scene,
         sharded::{ShardWriter, Shards},

@@ -1,12 +1,14 @@
 //! Scenes as objects of Python.
 
 use crate::arrays::{Coordinates, motions, triples, with_positions};
-use crate::errors::{read_error, value_error};
+use crate::errors::{io_error, read_error, value_error};
 use crate::work::run_owned;
 use nalgebra::Point3;
 use numpy::{PyArray1, PyArray2, PyArrayMethods, PyReadonlyArray1, PyUntypedArrayMethods};
 use p2m_core::pair::Motion;
 use p2m_core::{Aabb, Element, Position, PrimitiveSet, Soup};
+use p2m_mixed::engine::OutputFile;
+use p2m_mixed::{Format, WriteError, write_scene};
 use pyo3::exceptions::PyTypeError;
 use pyo3::prelude::*;
 use pyo3::types::PyBytes;
@@ -82,6 +84,21 @@ impl Scene {
         let file = path.clone();
         let scene = run_owned(py, crate::threads::default_threads(), 1, None, move |_| p2m_mixed::read_scene(&file))?;
         scene.map(Self::new).map_err(|error| read_error(&error, &path))
+    }
+
+    /// Writes the scene to a file in the format of its extension.
+    fn write(&self, py: Python<'_>, path: PathBuf) -> PyResult<()> {
+        let format = Format::from_path(&path).map_err(value_error)?;
+        let (scene, file) = (Arc::clone(&self.shared), path.clone());
+        let written = run_owned(py, 1, 1, None, move |_| -> Result<(), WriteError> {
+            let mut out = OutputFile::create(&file)?;
+            write_scene(&scene, format, &mut out)?;
+            Ok(out.finish()?)
+        })?;
+        written.map_err(|error| match error {
+            WriteError::Io(error) => io_error(&error, &path),
+            _ => value_error(format!("{}: {error}", path.display())),
+        })
     }
 
     /// Makes a scene of named parts, which become objects.

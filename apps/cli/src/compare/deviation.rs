@@ -3,10 +3,11 @@
 use crate::answers::blocks::{BlockSize, QueryStream, Steps, answer_all};
 use crate::answers::summary::{IndexSummary, RunSummary, SceneSummary};
 use crate::answers::table::{AnswerColumn, AnswerEncoder, AnswerFormat, AnswerRecord, Table};
+use crate::compare::align::{self, move_scan};
 use crate::compare::scan::ScanFormat;
 use crate::index::backend::{BackendChoice, PreparedIndex, SceneSource, backend_choices};
 use crate::index::sign_rule::{SignRule, SignedIndex};
-use crate::io::input::{SceneArgs, format_list, is_standard, name, read_scene_and_index, shown};
+use crate::io::input::{SceneArgs, is_standard, name, read_scene_and_index, shown};
 use crate::io::json;
 use crate::io::output::Output;
 use crate::io::streams::Streams;
@@ -20,6 +21,7 @@ use nalgebra::Point3;
 use p2m_backends::{AnyIndex, P2mSettings, QueryRegion, Workload};
 use p2m_core::batch::{self, BatchOptions};
 use p2m_core::{Aabb, Closest, PrimitiveSet, QueryOptions, Soup};
+use p2m_field::align::AlignOptions;
 use p2m_field::deviation::{DeviationStatistics, OutsideTolerance, outside};
 use p2m_field::sign::SignError;
 use p2m_mixed::statistics::figure::{Count, Figure};
@@ -55,19 +57,11 @@ Examples:
   p2m deviation print.stl design.stl --out deviations.csv --json
   p2m deviation points.npy cables.obj --unsigned --limit 0.2 --out coloured.ply";
 
-fn scan_help() -> String {
-    let formats = format_list(|_| true, "or");
-    format!(
-        "Scan: an NPY file of points, or an {formats} file, whose vertices are the points; `-` is the \
-         standard input"
-    )
-}
-
 /// Compare a scan with a scene: statistics, colours and a histogram
 #[derive(clap::Args)]
 #[command(after_help = HELP)]
 pub(crate) struct Args {
-    #[arg(value_name = "SCAN", help = scan_help())]
+    #[arg(value_name = "SCAN", help = super::scan::help())]
     scan: PathBuf,
 
     #[command(flatten)]
@@ -76,6 +70,10 @@ pub(crate) struct Args {
     /// The format of the scan [default: by the file extension]
     #[arg(long, value_name = "FORMAT", value_parser = one_of::<ScanFormat>(ScanFormat::names()), ignore_case = true)]
     scan_format: Option<ScanFormat>,
+
+    /// Move the scan onto the scene first, as `p2m align` does
+    #[arg(long)]
+    align: bool,
 
     /// Compute distances without signs; needed for segments and points
     #[arg(long, conflicts_with = "sign")]
@@ -134,9 +132,9 @@ pub(crate) fn run(streams: &Streams, args: &Args) -> anyhow::Result<()> {
     let pool = args.threads.pool()?;
     let start = Instant::now();
     let (scene, saved) = read_scene_and_index(streams, &pool, &args.scene.path, format, args.scene.map)?;
-    let scan = scan_format.read(streams, &pool, &args.scan)?;
+    let mut scan = scan_format.read(streams, &pool, &args.scan)?;
     let read_time = start.elapsed();
-    if let Some(note) = note_on_sizes(&scan.soup, &scene.soup) {
+    if let Some(note) = note_on_sizes(&scan.soup, &scene.soup).filter(|_| !args.align) {
         streams.print_summary(format_args!("warning  {note}\n"));
     }
     // The file is opened before the work, which would be lost if its name were wrong.
@@ -145,7 +143,9 @@ pub(crate) fn run(streams: &Streams, args: &Args) -> anyhow::Result<()> {
     let start = Instant::now();
     let saved = saved.as_ref();
     let points = scan.soup.positions();
-    let workload = Workload::new(points.len() as u64, QueryRegion::Like(points));
+    // A scan that is moved first will be like the scene.
+    let region = if args.align { QueryRegion::SceneBox } else { QueryRegion::Like(points) };
+    let workload = Workload::new(points.len() as u64, region);
     let chosen = BackendChoice::resolve(args.backend, saved, &scene.soup, &workload, streams, &pool);
     let chosen = chosen.with_context(|| args.scene.name())?;
     let backend = chosen.backend();
@@ -153,6 +153,13 @@ pub(crate) fn run(streams: &Streams, args: &Args) -> anyhow::Result<()> {
     let PreparedIndex { built, is_loaded, reason, .. } =
         source.prepare(streams, chosen, &pool).with_context(|| args.scene.name())?;
     let index = &*built.index;
+    let alignment = if args.align {
+        let target = (args.scene.name(), &scene, index);
+        Some(move_scan(streams, &pool, &args.scan, &mut scan, target, &AlignOptions::default())?)
+    } else {
+        None
+    };
+    let points = scan.soup.positions();
     let prepare = |rule: SignRule| rule.prepare(streams, index, &scene.soup).map_err(|error| args.without_sign(error));
     let signed = if args.unsigned { None } else { Some(prepare(args.sign)?) };
     let build_time = start.elapsed();
@@ -206,7 +213,8 @@ pub(crate) fn run(streams: &Streams, args: &Args) -> anyhow::Result<()> {
             "points": points.len(),
             "skipped": json::skipped(&scan.skipped),
         });
-        let answers = json::joined([json!({ "scan": scan }), report.json()]);
+        let alignment = json!({ "alignment": alignment.as_ref().map(align::report) });
+        let answers = json::joined([json!({ "scan": scan }), alignment, report.json()]);
         args.open.show(args.out.as_deref())?;
         return json::print(streams, &run.json("deviation", answers, &out));
     }
@@ -214,6 +222,10 @@ pub(crate) fn run(streams: &Streams, args: &Args) -> anyhow::Result<()> {
     if !scan.skipped.is_empty() {
         let list: Vec<String> = scan.skipped.iter().map(ToString::to_string).collect();
         streams.print_summary(format_args!("note     of the scan is skipped: {}\n", list.join(", ")));
+    }
+    if let Some(found) = &alignment {
+        let (rms, coverage) = (Figure(found.rms), Figure(100.0 * found.coverage));
+        streams.print_summary(format_args!("aligned  rms {rms}, coverage {coverage} %\n"));
     }
     if let Some(out) = &args.out {
         streams.print_summary(format_args!("written  {}, {bytes} bytes\n", out.display()));

@@ -1,6 +1,8 @@
 //! Scans: files of points, or of scenes whose vertices are the points.
 
-use crate::io::input::{is_standard, or_option, read_points, read_scene_and_index, uncompressed_name, unnamed};
+use crate::io::input::{
+    format_list, is_standard, or_option, read_points, read_scene_and_index, uncompressed_name, unnamed,
+};
 use crate::io::streams::Streams;
 use anyhow::Context;
 use nalgebra::Point3;
@@ -10,6 +12,15 @@ use rayon::ThreadPool;
 use std::path::Path;
 use std::str::FromStr;
 use std::sync::LazyLock;
+
+/// Returns the help of a scan.
+pub(crate) fn help() -> String {
+    let formats = format_list(|_| true, "or");
+    format!(
+        "Scan: an NPY file of points, or an {formats} file, whose vertices are the points; `-` is the \
+         standard input"
+    )
+}
 
 /// The format of a scan.
 #[derive(Clone, Copy, Debug)]

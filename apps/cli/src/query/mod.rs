@@ -7,6 +7,7 @@ mod args;
 mod card;
 pub(crate) mod field;
 mod field_summary;
+pub(crate) mod sample;
 
 pub(crate) use args::Args;
 

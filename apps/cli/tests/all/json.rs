@@ -28,6 +28,7 @@ fn every_key_is_documented() {
     let (scene, out) = (write(&folder, "s.obj", text), path(&folder, "s.stl"));
     let (answers, saved, field) = (path(&folder, "a.csv"), path(&folder, "s.p2m"), path(&folder, "f.npy"));
     let (points, site) = (write(&folder, "q.xyz", "1 2 3\n"), path(&folder, "site"));
+    let npz = path(&folder, "samples.npz");
     let mut found = BTreeSet::new();
     for arguments in [
         &["info", &scene, "--json"][..],
@@ -45,7 +46,9 @@ fn every_key_is_documented() {
         &["query", &site, "--random", "2", "--out", &answers, "--json"],
         &["distance", &scene, &scene, "--json"],
         &["hausdorff", &scene, &scene, "--json"],
-        &["deviation", &scene, &scene, "--unsigned", "--tolerance", "1", "--json"],
+        &["sample", &out, "--near", "9", "--out", &npz, "--json"],
+        &["align", &out, &out, "--json"],
+        &["deviation", &out, &out, "--align", "--unsigned", "--tolerance", "1", "--json"],
     ] {
         keys(&json(arguments), &mut found);
     }

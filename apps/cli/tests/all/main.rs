@@ -2,6 +2,7 @@
 //! tests of one command.
 
 mod advise;
+mod align;
 mod boxes;
 mod build;
 mod common;
@@ -20,6 +21,7 @@ mod program;
 mod query;
 mod query_options;
 mod ray;
+mod sample;
 mod shard;
 mod shell;
 mod stats;

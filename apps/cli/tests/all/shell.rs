@@ -4,15 +4,17 @@ use crate::common::*;
 use std::fs;
 use tempfile::TempDir;
 
-const COMMANDS: [&str; 18] = [
+const COMMANDS: [&str; 20] = [
     "query",
     "build",
     "shard",
     "distance",
     "hausdorff",
     "deviation",
+    "align",
     "stats",
     "field",
+    "sample",
     "advise",
     "tradeoff",
     "ray",

@@ -12,13 +12,14 @@ array([2., 5.])
 [[1.0, 1.0, 0.0], [4.0, 0.0, 0.0]]
 
 `read` reads scenes from files, and `Scene.of` takes meshes of trimesh, Open3D, PyVista and meshio. `Index` has the
-queries. `hausdorff` returns the Hausdorff distance of two scenes, and `deviation` compares a scan with a mesh. `load`
-loads saved indexes, and `advise` tells which backend a scene calls for. `Ask` and the module `p2m.dask` ask a saved
+queries. `hausdorff` returns the Hausdorff distance of two scenes, and `deviation` compares a scan with a mesh,
+onto which `align` moves it. `load` loads saved indexes, and `advise` tells which backend a scene calls for. `Ask` and the module `p2m.dask` ask a saved
 index from any number of processes. `write_shards` and `Shards` are for scenes that are larger than memory.
 """
 
 from __future__ import annotations
 
+from ._align import Alignment, align
 from ._ask import Ask
 from ._cuda import CudaIndex
 from ._deviation import Deviation, deviation
@@ -37,10 +38,12 @@ from ._records import (
     NearPrimitives,
     Record,
 )
+from ._sample import SdfSamples, SurfaceSamples, map, sample_sdf, sample_surface
 from ._scene import Counts, Object, Scene, read
 from ._shards import ShardInfo, Shards, write_shards
 
 __all__ = [
+    "Alignment",
     "AllHits",
     "Ask",
     "BallContacts",
@@ -59,15 +62,21 @@ __all__ = [
     "Page",
     "Record",
     "Scene",
+    "SdfSamples",
     "ShardInfo",
     "Shards",
+    "SurfaceSamples",
     "__version__",
     "advise",
+    "align",
     "backends",
     "clear_opened",
     "deviation",
     "hausdorff",
     "load",
+    "map",
     "read",
+    "sample_sdf",
+    "sample_surface",
     "write_shards",
 ]

@@ -13,7 +13,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from . import _p2m
-from ._arrays import Progress, coordinates, not_negative, unmasked
+from ._align import align as align_points
+from ._align import scan_points
+from ._arrays import Progress, coordinates, not_negative
 from ._index import Index
 from ._page import Page, checked_up
 from ._scene import Scene
@@ -221,6 +223,7 @@ def deviation(
     scan: Any,
     mesh: Any,
     *,
+    align: bool = False,
     tolerance: float | None = None,
     limit: float | None = None,
     sign: Literal["auto", "winding", "parity"] | None = "auto",
@@ -238,6 +241,8 @@ def deviation(
     mesh : Index, Scene or object
         The scene that the scan is compared with. An index of any backend is used, and for other objects a tree of boxes
         is built.
+    align : bool, optional
+        Whether the scan is moved onto the mesh first, as `p2m.align` does by default.
     tolerance : float, optional
         The tolerance that figures, pages and `Deviation.outside` mark, in the unit of the mesh.
     limit : float, optional
@@ -279,15 +284,10 @@ def deviation(
     tolerance = None if tolerance is None else not_negative(tolerance, "tolerance")
     limit = None if limit is None else not_negative(limit, "limit")
     index = mesh if isinstance(mesh, Index) else Index(mesh, threads=threads)
-    is_points = isinstance(scan, (np.ndarray, list))
-    if is_points:
-        array = unmasked(scan, "scan")
-        points = array if array.dtype == np.float32 else array.astype(np.float64, copy=False)
-        if points.ndim != 2 or points.shape[1] != 3:
-            raise ValueError(f"scan: the shape is {points.shape} instead of (n, 3)")
-    else:
-        scene = scan.scene if isinstance(scan, Index) else Scene.of(scan)
-        points = scene.vertices
+    points, scene = scan_points(scan)
+    if align:
+        points = align_points(points, index, threads=threads).points
+        scene = None if scene is None else scene.moved(points)
     finite = np.isfinite(points).all(axis=1)
     queries = coordinates(points if finite.all() else points[finite], "scan")
 
@@ -304,7 +304,7 @@ def deviation(
     return Deviation(
         values,
         points,
-        None if is_points else scene,
+        scene,
         index,
         sign is not None,
         tolerance,

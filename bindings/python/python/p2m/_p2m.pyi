@@ -16,6 +16,7 @@ __all__ = [
     "Shards",
     "__version__",
     "advise",
+    "align",
     "backends",
     "closest",
     "default_threads",
@@ -28,7 +29,10 @@ __all__ = [
     "k_nearest",
     "load",
     "load_bytes",
+    "main",
     "rays",
+    "sample_box",
+    "sample_surface",
     "scene_page",
     "within",
     "write_bytes",
@@ -78,6 +82,22 @@ def scene_page(
     field: tuple[tuple[tuple[float, float, float], float, tuple[int, int, int]], NDArray[np.float32]] | None,
 ) -> str: ...
 def deviation_ply(scan: Scene, values: NDArray[np.float64], limit: float) -> bytes: ...
+def align(
+    scan: _Coordinates,
+    index: Index,
+    point_to_point: bool,
+    scale: bool,
+    overlap: float,
+    search: bool,
+    threads: int,
+) -> dict[str, Any]: ...
+def sample_surface(
+    scene: Scene, count: int, sigmas: list[float], seed: int, threads: int
+) -> tuple[NDArray[np.float64], NDArray[np.int64]]: ...
+def sample_box(
+    low: list[float], high: list[float], count: int, seed: int, threads: int
+) -> NDArray[np.float64]: ...
+def main(arguments: list[str]) -> int: ...
 def hausdorff(
     first: Scene,
     first_index: Index | None,
@@ -146,6 +166,7 @@ class Scene:
     ) -> Scene: ...
     @staticmethod
     def read(path: _Path) -> Scene: ...
+    def write(self, path: _Path) -> None: ...
     @staticmethod
     def joined(parts: list[tuple[str, Scene]]) -> Scene: ...
     def with_sources(self, triangles: NDArray[np.uint32]) -> Scene: ...

@@ -346,6 +346,24 @@ class Scene:
         """
         return Scene._from_raw(self._raw.moved(coordinates(vertices, "vertices").reshape(-1)))
 
+    def save(self, path: str | os.PathLike[str]) -> None:
+        """Write the scene to a file, which appears when it is complete.
+
+        Parameters
+        ----------
+        path : path-like
+            Its extension selects the format: obj, ply, stl or off, xyz, csv or npy for points, or p2m, which keeps
+            everything. STL rounds to float32, and only obj and p2m keep names.
+
+        Raises
+        ------
+        ValueError
+            For another extension, or a scene that the format cannot hold.
+        OSError
+            If the file cannot be written.
+        """
+        self._raw.write(os.fspath(path))
+
     def show(self, *, unit: str = "units", up: Literal["y", "z"] = "z") -> Page:
         """Return a page that shows the scene, which notebooks show.
 

@@ -1,0 +1,228 @@
+//! `p2m align`: moves a scan onto a scene.
+
+use crate::compare::scan::ScanFormat;
+use crate::index::backend::{Backend, SceneSource, backends, saved_or_default};
+use crate::io::input::{SceneArgs, is_standard, name, read_scene_and_index, shown};
+use crate::io::json;
+use crate::io::output::Output;
+use crate::io::progress::{Progress, Unit};
+use crate::io::streams::Streams;
+use crate::io::threads::ThreadArgs;
+use crate::io::usage::{one_of, usage};
+use crate::scene::convert::Target;
+use anyhow::{Context, anyhow};
+use nalgebra::Point3;
+use p2m_backends::P2mSettings;
+use p2m_core::ClosestPoint;
+use p2m_field::align::{AlignError, AlignOptions, Alignment, Ambiguity, align};
+use p2m_mixed::Scene;
+use p2m_mixed::statistics::figure::{Count, Figure};
+use rayon::ThreadPool;
+use serde_json::{Value, json};
+use std::fmt::Write as _;
+use std::ops::ControlFlow;
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+
+const HELP: &str = "\
+The scan is rotated and moved so that its points are as near to the surface of the scene as possible: by iterative \
+closest points with distances to planes, from several starts. Outliers of up to a third of the points have no weight. \
+For a scan that has more than the part, --overlap is the part of its points that lie on it.
+
+The table has the root mean square of the distances (rms), the part of the points that are no outliers (coverage), and \
+the matrix. A warning says if another pose would fit about as well.
+
+Examples:
+  p2m align scan.ply part.stl --out aligned.ply
+  p2m align scan.xyz part.obj --overlap 0.6 --matrix pose.txt
+  p2m align scan.npy part.ply --scale --json";
+
+/// Move a scan onto a scene
+#[derive(clap::Args)]
+#[command(after_help = HELP)]
+pub(crate) struct Args {
+    #[arg(value_name = "SCAN", help = super::scan::help())]
+    scan: PathBuf,
+
+    #[command(flatten)]
+    scene: SceneArgs,
+
+    /// The format of the scan [default: by the file extension]
+    #[arg(long, value_name = "FORMAT", value_parser = one_of::<ScanFormat>(ScanFormat::names()), ignore_case = true)]
+    scan_format: Option<ScanFormat>,
+
+    /// The part of the scan's points that lie on the scene, above 0 and at most 1
+    #[arg(long, value_name = "PART", value_parser = part, default_value_t = 1.0, allow_negative_numbers = true)]
+    overlap: f64,
+
+    /// Scale the scan as well
+    #[arg(long)]
+    scale: bool,
+
+    /// The scan is nearly in place: try no other start
+    #[arg(long)]
+    near: bool,
+
+    /// Minimise distances between points, which suits scenes of points
+    #[arg(long)]
+    point_to_point: bool,
+
+    /// Write the moved scan, in the format of the extension
+    #[arg(long, value_name = "FILE")]
+    out: Option<PathBuf>,
+
+    /// Write the matrix, row by row, as --transform of other commands reads it
+    #[arg(long, value_name = "FILE")]
+    matrix: Option<PathBuf>,
+
+    /// The index to search [default: the saved index, or aabb]
+    #[arg(long, value_parser = backends(|_| true))]
+    backend: Option<Backend>,
+
+    #[command(flatten)]
+    threads: ThreadArgs,
+
+    /// Print the result as JSON
+    #[arg(long)]
+    json: bool,
+}
+
+impl Args {
+    fn options(&self) -> AlignOptions {
+        AlignOptions::default()
+            .with_overlap(self.overlap)
+            .with_scale(self.scale)
+            .with_search(!self.near)
+            .with_point_to_point(self.point_to_point)
+    }
+}
+
+/// Parses a part of a whole.
+fn part(text: &str) -> Result<f64, String> {
+    match text.parse::<f64>() {
+        Ok(x) if x > 0.0 && x <= 1.0 => Ok(x),
+        _ => Err("not a number above 0 and at most 1".to_owned()),
+    }
+}
+
+pub(crate) fn run(streams: &Streams, args: &Args) -> anyhow::Result<()> {
+    for out in [&args.out, &args.matrix].into_iter().flatten() {
+        if is_standard(out) {
+            return Err(usage("the result goes to the standard output, so other output needs a file"));
+        }
+        Output::refuse_inputs(out, &[&args.scan, &args.scene.path])?;
+    }
+    if is_standard(&args.scan) && is_standard(&args.scene.path) {
+        return Err(usage("the standard input cannot be both the scan and the scene"));
+    }
+    let target = args.out.as_deref().map(|out| Target::new(streams, out, None, None)).transpose()?;
+    let scan_format = ScanFormat::of(&args.scan, args.scan_format, "--scan-format")?;
+    let format = args.scene.format()?;
+    let pool = args.threads.pool()?;
+    let (scene, saved) = read_scene_and_index(streams, &pool, &args.scene.path, format, args.scene.map)?;
+    let mut scan = scan_format.read(streams, &pool, &args.scan)?;
+    let backend = args.backend.unwrap_or_else(|| saved_or_default(saved.as_ref()));
+    let p2m = P2mSettings::default();
+    let source = SceneSource { soup: &scene.soup, kdop_directions: None, p2m, saved: saved.as_ref() };
+    let index = source.prepare(streams, backend, &pool).with_context(|| args.scene.name())?.built.index;
+    let found =
+        move_scan(streams, &pool, &args.scan, &mut scan, (args.scene.name(), &scene, &*index), &args.options())?;
+    let written = target.map(|target| target.write(streams, &scan)).transpose()?;
+    if let Some(path) = &args.matrix {
+        Output::open(streams, Some(path))?.finish_with(rows(&found, ""))?;
+    }
+    if args.json {
+        let head = json!({
+            "p2m": "align",
+            "version": json::VERSION,
+            "scan": { "file": name(&args.scan), "format": scan_format.name(), "points": scan.soup.positions().len() },
+            "scene": { "file": args.scene.name(), "format": format.name() },
+        });
+        let end = json!({
+            "out": written.map(|written| written.json()),
+            "matrix_file": args.matrix.as_deref().map(shown),
+        });
+        return json::print(streams, &json::joined([head, report(&found), end]));
+    }
+    if let Some(written) = written {
+        streams.print_summary(format_args!("{}", written.text()));
+    }
+    Output::print(streams, text(&found, args.scale))
+}
+
+/// Moves the points of a scan onto a scene, which is given with its name and its index. A warning says if the result
+/// is doubtful.
+pub(crate) fn move_scan(
+    streams: &Streams,
+    pool: &ThreadPool,
+    scan_path: &Path,
+    scan: &mut Scene,
+    (scene_name, scene, index): (String, &Scene, &(impl ClosestPoint<f64> + Sync + ?Sized)),
+    options: &AlignOptions,
+) -> anyhow::Result<Alignment> {
+    let progress = Progress::start(streams, "aligning", None, Unit::None);
+    let points: &[Point3<f64>] = scan.soup.positions();
+    let found = pool
+        .install(|| align(&*scene.soup, index, points, options, &mut |_| ControlFlow::Continue(())))
+        .map_err(|error| match error {
+            AlignError::EmptyScene => anyhow!("{scene_name}: {error}"),
+            _ => anyhow!("{}: {error}", name(scan_path)),
+        })?;
+    drop(progress);
+    let warnings = [
+        found.ambiguity.map(|ambiguity| ambiguity.to_string()),
+        (!found.is_converged).then(|| "the alignment did not converge".to_owned()),
+    ];
+    for warning in warnings.into_iter().flatten() {
+        streams.print_summary(format_args!("warning  {}: {warning}\n", name(scan_path)));
+    }
+    let moved = Arc::make_mut(&mut scan.soup).map_positions(|point| found.apply(&point));
+    moved.with_context(|| format!("{}: moved", name(scan_path)))?;
+    Ok(found)
+}
+
+/// Returns the matrix as lines of four numbers.
+fn rows(found: &Alignment, indent: &str) -> String {
+    let mut text = String::new();
+    for row in found.matrix.row_iter() {
+        let numbers: Vec<String> = row.iter().map(ToString::to_string).collect();
+        // Writing to a string does not fail.
+        let _ = writeln!(text, "{indent}{}", numbers.join(" "));
+    }
+    text
+}
+
+fn text(found: &Alignment, is_scaled: bool) -> String {
+    let scale = if is_scaled { format!("scale     {}\n", found.scale) } else { String::new() };
+    format!(
+        "rms       {}\ncoverage  {} %\n{scale}rounds    {}\nmatrix\n{}",
+        Figure(found.rms),
+        Figure(100.0 * found.coverage),
+        Count(found.rounds.len() as u64),
+        rows(found, "  ")
+    )
+}
+
+/// Returns the part of a report about an alignment.
+pub(crate) fn report(found: &Alignment) -> Value {
+    let rows = |matrix: &nalgebra::Matrix4<f64>| -> Value {
+        matrix.row_iter().map(|row| row.iter().copied().map(json::number).collect::<Value>()).collect()
+    };
+    let rounds = found.rounds.iter().map(
+        |round| json!({ "points": round.points, "rms": json::number(round.rms), "step": json::number(round.step) }),
+    );
+    let ambiguity = found.ambiguity.as_ref().map(|ambiguity| match ambiguity {
+        Ambiguity::Sliding { eigenvalue } => json!({ "kind": "sliding", "eigenvalue": json::number(*eigenvalue) }),
+        Ambiguity::OtherPose { matrix } => json!({ "kind": "other_pose", "matrix": rows(matrix) }),
+        _ => Value::Null,
+    });
+    json!({
+        "matrix": rows(&found.matrix),
+        "scale": json::number(found.scale),
+        "rms": json::number(found.rms),
+        "coverage": json::number(found.coverage),
+        "converged": found.is_converged,
+        "rounds": rounds.collect::<Value>(),
+        "ambiguity": ambiguity,
+    })
+}

@@ -1,0 +1,55 @@
+//! Random points on and around scenes.
+
+use crate::errors::value_error;
+use crate::scene::Scene;
+use crate::work::run_owned;
+use nalgebra::Point3;
+use numpy::{PyArray1, PyArray2, PyArrayMethods};
+use p2m_core::Aabb;
+use p2m_field::sample::{self, Samples, SurfaceSampler};
+use pyo3::prelude::*;
+use std::sync::Arc;
+
+/// Points, and the ids of their primitives.
+type Columns<'py> = (Bound<'py, PyArray2<f64>>, Bound<'py, PyArray1<i64>>);
+
+/// Returns points of a scene and the ids of their primitives. If there are sigmas, noise moves the points.
+#[pyfunction]
+pub(crate) fn sample_surface<'py>(
+    py: Python<'py>,
+    scene: &Scene,
+    count: usize,
+    sigmas: Vec<f64>,
+    seed: u64,
+    threads: usize,
+) -> PyResult<Columns<'py>> {
+    let soup = Arc::clone(&scene.shared.soup);
+    let samples = run_owned(py, threads, 1, None, move |_| -> Option<Samples> {
+        let sampler = SurfaceSampler::new(soup)?;
+        Some(if sigmas.is_empty() { sampler.surface(seed, count) } else { sampler.near(seed, count, &sigmas) })
+    })?;
+    let samples = samples.ok_or_else(|| value_error("the scene is empty, so it has no samples"))?;
+    let primitives = samples.primitives.iter().map(|id| i64::from(id.number()));
+    Ok((rows(py, samples.points)?, PyArray1::from_iter(py, primitives)))
+}
+
+/// Returns points that are evenly distributed in a box.
+#[pyfunction]
+pub(crate) fn sample_box<'py>(
+    py: Python<'py>,
+    low: [f64; 3],
+    high: [f64; 3],
+    count: usize,
+    seed: u64,
+    threads: usize,
+) -> PyResult<Bound<'py, PyArray2<f64>>> {
+    let bounds = Aabb { min: low.into(), max: high.into() };
+    rows(py, run_owned(py, threads, 1, None, move |_| sample::in_box(&bounds, seed, count))?)
+}
+
+/// Returns points as rows, in the memory that they have.
+fn rows(py: Python<'_>, points: Vec<Point3<f64>>) -> PyResult<Bound<'_, PyArray2<f64>>> {
+    let count = points.len();
+    let rows: Vec<[f64; 3]> = points.into_iter().map(|point| point.coords.into()).collect();
+    PyArray1::from_vec(py, rows.into_flattened()).reshape([count, 3])
+}
