@@ -88,6 +88,15 @@ pub struct Samples {
     pub primitives: Vec<PrimitiveId>,
 }
 
+impl Samples {
+    /// Computes so many samples, each from its number.
+    fn compute(count: usize, sample: impl Fn(usize) -> (Point3<f64>, PrimitiveId) + Sync) -> Self {
+        let mut samples = Self { points: vec![Point3::origin(); count], primitives: vec![PrimitiveId::new(0); count] };
+        fill(&mut samples.points, &mut samples.primitives, sample);
+        samples
+    }
+}
+
 /// Chooses points of a scene, evenly distributed by area; by length if it has no triangles with an area, and among its
 /// points if it has no segments either.
 ///
@@ -156,10 +165,7 @@ impl<S: PrimitiveSet<f64> + Sync> SurfaceSampler<S> {
     /// O(1) for each point, on all threads of the current pool.
     #[must_use]
     pub fn surface(&self, seed: u64, count: usize) -> Samples {
-        let mut samples =
-            Samples { points: vec![Point3::origin(); count], primitives: vec![PrimitiveId::new(0); count] };
-        fill(&mut samples.points, &mut samples.primitives, |i| self.point(seed, i));
-        samples
+        Samples::compute(count, |i| self.point(seed, i))
     }
 
     /// Returns points of the scene, moved by noise: sample i by a normal distribution in each coordinate, whose standard
@@ -169,15 +175,12 @@ impl<S: PrimitiveSet<f64> + Sync> SurfaceSampler<S> {
     /// It panics if `sigmas` is empty and `count` is not 0.
     #[must_use]
     pub fn near(&self, seed: u64, count: usize, sigmas: &[f64]) -> Samples {
-        let mut samples =
-            Samples { points: vec![Point3::origin(); count], primitives: vec![PrimitiveId::new(0); count] };
-        fill(&mut samples.points, &mut samples.primitives, |i| {
+        Samples::compute(count, |i| {
             let (point, id) = self.point(seed, i);
             let mut numbers = Numbers::new(seed, Stream::Noise, i);
             let ([x, y], [z, _]) = (numbers.normal_pair(), numbers.normal_pair());
             (point + Vector3::new(x, y, z) * sigmas[i % sigmas.len()], id)
-        });
-        samples
+        })
     }
 
     /// Returns sample `i` of the surface.

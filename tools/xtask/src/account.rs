@@ -4,7 +4,7 @@
 //! instruction is executed, and addr2line names the functions that were inlined at its address. The first stage in
 //! [`STAGES`] that names one of them has the instruction.
 
-use crate::{Outcome, absolute_target_folder, output, read};
+use crate::{Outcome, absolute_target_folder, output, output_of, read};
 use std::collections::BTreeMap;
 use std::ffi::OsStr;
 use std::fs;
@@ -132,12 +132,7 @@ fn empty_folder(parent: &Path) -> Result<std::path::PathBuf, String> {
 
 /// Returns the standard output of a command that succeeds.
 fn succeed(command: &mut Command) -> Result<String, String> {
-    let name = command.get_program().to_string_lossy().into_owned();
-    let output = command.output().map_err(|error| format!("{name}: {error}"))?;
-    if !output.status.success() {
-        return Err(format!("{name}: {}", String::from_utf8_lossy(&output.stderr)));
-    }
-    Ok(String::from_utf8_lossy(&output.stdout).into_owned())
+    output_of(command).map_err(|error| format!("{}: {error}", command.get_program().display()))
 }
 
 /// Returns how often each instruction of the program was executed, by its address, from a file of callgrind. Those of

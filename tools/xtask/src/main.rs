@@ -271,9 +271,14 @@ fn start(command: &mut Command) -> Outcome {
 /// Returns the standard output of a command that succeeds.
 fn output(program: &str, arguments: &[&str]) -> Result<String, String> {
     let line = format!("{program} {}", arguments.join(" "));
-    let output = Command::new(program).args(arguments).output().map_err(|e| format!("{line}: {e}"))?;
+    output_of(Command::new(program).args(arguments)).map_err(|error| format!("{line}: {error}"))
+}
+
+/// Returns the standard output of a command that succeeds. The error does not name the command.
+fn output_of(command: &mut Command) -> Result<String, String> {
+    let output = command.output().map_err(|error| error.to_string())?;
     if !output.status.success() {
-        return Err(format!("{line}: {}", String::from_utf8_lossy(&output.stderr).trim()));
+        return Err(String::from_utf8_lossy(&output.stderr).trim().to_owned());
     }
     Ok(String::from_utf8_lossy(&output.stdout).into_owned())
 }

@@ -1,6 +1,6 @@
 //! `p2m align`: moves a scan onto a scene.
 
-use crate::compare::scan::ScanFormat;
+use crate::compare::scan::ScanArgs;
 use crate::index::backend::{Backend, SceneSource, backends, saved_or_default};
 use crate::io::input::{SceneArgs, is_standard, name, read_scene_and_index, shown};
 use crate::io::json;
@@ -8,7 +8,7 @@ use crate::io::output::Output;
 use crate::io::progress::{Progress, Unit};
 use crate::io::streams::Streams;
 use crate::io::threads::ThreadArgs;
-use crate::io::usage::{one_of, usage};
+use crate::io::usage::usage;
 use crate::scene::convert::Target;
 use anyhow::{Context, anyhow};
 use nalgebra::Point3;
@@ -41,15 +41,11 @@ Examples:
 #[derive(clap::Args)]
 #[command(after_help = HELP)]
 pub(crate) struct Args {
-    #[arg(value_name = "SCAN", help = super::scan::help())]
-    scan: PathBuf,
+    #[command(flatten)]
+    scan: ScanArgs,
 
     #[command(flatten)]
     scene: SceneArgs,
-
-    /// The format of the scan [default: by the file extension]
-    #[arg(long, value_name = "FORMAT", value_parser = one_of::<ScanFormat>(ScanFormat::names()), ignore_case = true)]
-    scan_format: Option<ScanFormat>,
 
     /// The part of the scan's points that lie on the scene, above 0 and at most 1
     #[arg(long, value_name = "PART", value_parser = part, default_value_t = 1.0, allow_negative_numbers = true)]
@@ -110,23 +106,21 @@ pub(crate) fn run(streams: &Streams, args: &Args) -> anyhow::Result<()> {
         if is_standard(out) {
             return Err(usage("the result goes to the standard output, so other output needs a file"));
         }
-        Output::refuse_inputs(out, &[&args.scan, &args.scene.path])?;
+        Output::refuse_inputs(out, &[&args.scan.path, &args.scene.path])?;
     }
-    if is_standard(&args.scan) && is_standard(&args.scene.path) {
-        return Err(usage("the standard input cannot be both the scan and the scene"));
-    }
+    args.scan.refuse_same_input(&args.scene)?;
     let target = args.out.as_deref().map(|out| Target::new(streams, out, None, None)).transpose()?;
-    let scan_format = ScanFormat::of(&args.scan, args.scan_format, "--scan-format")?;
+    let scan_format = args.scan.format()?;
     let format = args.scene.format()?;
     let pool = args.threads.pool()?;
     let (scene, saved) = read_scene_and_index(streams, &pool, &args.scene.path, format, args.scene.map)?;
-    let mut scan = scan_format.read(streams, &pool, &args.scan)?;
+    let mut scan = scan_format.read(streams, &pool, &args.scan.path)?;
     let backend = args.backend.unwrap_or_else(|| saved_or_default(saved.as_ref()));
     let p2m = P2mSettings::default();
     let source = SceneSource { soup: &scene.soup, kdop_directions: None, p2m, saved: saved.as_ref() };
     let index = source.prepare(streams, backend, &pool).with_context(|| args.scene.name())?.built.index;
     let found =
-        move_scan(streams, &pool, &args.scan, &mut scan, (args.scene.name(), &scene, &*index), &args.options())?;
+        move_scan(streams, &pool, &args.scan.path, &mut scan, (args.scene.name(), &scene, &*index), &args.options())?;
     let written = target.map(|target| target.write(streams, &scan)).transpose()?;
     if let Some(path) = &args.matrix {
         Output::open(streams, Some(path))?.finish_with(rows(&found, ""))?;
@@ -135,7 +129,7 @@ pub(crate) fn run(streams: &Streams, args: &Args) -> anyhow::Result<()> {
         let head = json!({
             "p2m": "align",
             "version": json::VERSION,
-            "scan": { "file": name(&args.scan), "format": scan_format.name(), "points": scan.soup.positions().len() },
+            "scan": { "file": name(&args.scan.path), "format": scan_format.name(), "points": scan.soup.positions().len() },
             "scene": { "file": args.scene.name(), "format": format.name() },
         });
         let end = json!({

@@ -4,7 +4,7 @@ use crate::answers::blocks::{BlockSize, QueryStream, Steps, answer_all};
 use crate::answers::summary::{IndexSummary, RunSummary, SceneSummary};
 use crate::answers::table::{AnswerColumn, AnswerEncoder, AnswerFormat, AnswerRecord, Table};
 use crate::compare::align::{self, move_scan};
-use crate::compare::scan::ScanFormat;
+use crate::compare::scan::ScanArgs;
 use crate::index::backend::{BackendChoice, PreparedIndex, SceneSource, backend_choices};
 use crate::index::sign_rule::{SignRule, SignedIndex};
 use crate::io::input::{SceneArgs, is_standard, name, read_scene_and_index, shown};
@@ -12,7 +12,7 @@ use crate::io::json;
 use crate::io::output::Output;
 use crate::io::streams::Streams;
 use crate::io::threads::ThreadArgs;
-use crate::io::usage::{finite_not_negative, one_of, positive, usage};
+use crate::io::usage::{finite_not_negative, positive, usage};
 use crate::page::open::OpenArgs;
 use crate::page::source::{PageArgs, about, file_name};
 use crate::query::answers::ClosestAnswer;
@@ -61,15 +61,11 @@ Examples:
 #[derive(clap::Args)]
 #[command(after_help = HELP)]
 pub(crate) struct Args {
-    #[arg(value_name = "SCAN", help = super::scan::help())]
-    scan: PathBuf,
+    #[command(flatten)]
+    scan: ScanArgs,
 
     #[command(flatten)]
     scene: SceneArgs,
-
-    /// The format of the scan [default: by the file extension]
-    #[arg(long, value_name = "FORMAT", value_parser = one_of::<ScanFormat>(ScanFormat::names()), ignore_case = true)]
-    scan_format: Option<ScanFormat>,
 
     /// Move the scan onto the scene first, as `p2m align` does
     #[arg(long)]
@@ -127,12 +123,12 @@ p2m_core::formats! {
 
 pub(crate) fn run(streams: &Streams, args: &Args) -> anyhow::Result<()> {
     let out_format = args.check()?;
-    let scan_format = ScanFormat::of(&args.scan, args.scan_format, "--scan-format")?;
+    let scan_format = args.scan.format()?;
     let format = args.scene.format()?;
     let pool = args.threads.pool()?;
     let start = Instant::now();
     let (scene, saved) = read_scene_and_index(streams, &pool, &args.scene.path, format, args.scene.map)?;
-    let mut scan = scan_format.read(streams, &pool, &args.scan)?;
+    let mut scan = scan_format.read(streams, &pool, &args.scan.path)?;
     let read_time = start.elapsed();
     if let Some(note) = note_on_sizes(&scan.soup, &scene.soup).filter(|_| !args.align) {
         streams.print_summary(format_args!("warning  {note}\n"));
@@ -155,7 +151,7 @@ pub(crate) fn run(streams: &Streams, args: &Args) -> anyhow::Result<()> {
     let index = &*built.index;
     let alignment = if args.align {
         let target = (args.scene.name(), &scene, index);
-        Some(move_scan(streams, &pool, &args.scan, &mut scan, target, &AlignOptions::default())?)
+        Some(move_scan(streams, &pool, &args.scan.path, &mut scan, target, &AlignOptions::default())?)
     } else {
         None
     };
@@ -208,7 +204,7 @@ pub(crate) fn run(streams: &Streams, args: &Args) -> anyhow::Result<()> {
             |(out, format)| json!({ "file": shown(out), "format": format.name(), "bytes": bytes }),
         );
         let scan = json!({
-            "file": name(&args.scan),
+            "file": name(&args.scan.path),
             "format": scan_format.name(),
             "points": points.len(),
             "skipped": json::skipped(&scan.skipped),
@@ -383,10 +379,10 @@ impl<'a> DeviationReport<'a> {
             limit: self.limit,
             tolerance: args.tolerance,
         });
-        let [scan_name, scene_name] = [&args.scan, &args.scene.path].map(|path| file_name(path));
+        let [scan_name, scene_name] = [&args.scan.path, &args.scene.path].map(|path| file_name(path));
         view.title = format!("{scan_name} and {scene_name} in p2m");
         view.summary = self.summary();
-        let files = format!("scan {}, scene {}", name(&args.scan), args.scene.name());
+        let files = format!("scan {}, scene {}", name(&args.scan.path), args.scene.name());
         view.about = about(&files, backend, self.rule);
         output.write_all(view.html()?.as_bytes()).with_context(|| output.cannot_write())
     }
@@ -466,11 +462,9 @@ impl Args {
         if self.open.open && format != Some(DeviationFormat::Html) {
             return Err(usage("--open needs a page: --out FILE.html"));
         }
-        if is_standard(&self.scan) && is_standard(&self.scene.path) {
-            return Err(usage("the standard input cannot be both the scan and the scene"));
-        }
+        self.scan.refuse_same_input(&self.scene)?;
         if let Some(out) = &self.out {
-            Output::refuse_inputs(out, &[&self.scan, &self.scene.path])?;
+            Output::refuse_inputs(out, &[&self.scan.path, &self.scene.path])?;
         }
         Ok(format)
     }

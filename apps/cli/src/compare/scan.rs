@@ -1,20 +1,47 @@
 //! Scans: files of points, or of scenes whose vertices are the points.
 
 use crate::io::input::{
-    format_list, is_standard, or_option, read_points, read_scene_and_index, uncompressed_name, unnamed,
+    SceneArgs, format_list, is_standard, or_option, read_points, read_scene_and_index, uncompressed_name, unnamed,
 };
 use crate::io::streams::Streams;
+use crate::io::usage::{one_of, usage};
 use anyhow::Context;
 use nalgebra::Point3;
 use p2m_core::{Element, Soup, UnknownExtension, UnknownFormat};
 use p2m_mixed::{Format, PointFormat, Scene};
 use rayon::ThreadPool;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use std::str::FromStr;
 use std::sync::LazyLock;
 
+/// The scan of a command.
+#[derive(clap::Args)]
+pub(crate) struct ScanArgs {
+    #[arg(id = "scan", value_name = "SCAN", help = help())]
+    pub(crate) path: PathBuf,
+
+    /// The format of the scan [default: by the file extension]
+    #[arg(id = "scan_format", long = "scan-format", value_name = "FORMAT", value_parser = one_of::<ScanFormat>(ScanFormat::names()), ignore_case = true)]
+    format: Option<ScanFormat>,
+}
+
+impl ScanArgs {
+    /// Returns the format: the given one, or else that of the extension.
+    pub(crate) fn format(&self) -> anyhow::Result<ScanFormat> {
+        ScanFormat::of(&self.path, self.format, "--scan-format")
+    }
+
+    /// Refuses the standard input for both the scan and its scene.
+    pub(crate) fn refuse_same_input(&self, scene: &SceneArgs) -> anyhow::Result<()> {
+        if is_standard(&self.path) && is_standard(&scene.path) {
+            return Err(usage("the standard input cannot be both the scan and the scene"));
+        }
+        Ok(())
+    }
+}
+
 /// Returns the help of a scan.
-pub(crate) fn help() -> String {
+fn help() -> String {
     let formats = format_list(|_| true, "or");
     format!(
         "Scan: an NPY file of points, or an {formats} file, whose vertices are the points; `-` is the \
@@ -42,7 +69,7 @@ impl ScanFormat {
     }
 
     /// Returns the format of a scan: the given one, or else that of the extension.
-    pub(crate) fn of(path: &Path, given: Option<Self>, option: &str) -> anyhow::Result<Self> {
+    fn of(path: &Path, given: Option<Self>, option: &str) -> anyhow::Result<Self> {
         match given {
             Some(format) => Ok(format),
             None if is_standard(path) => Err(unnamed(option, Self::names())),
