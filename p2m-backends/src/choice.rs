@@ -4,7 +4,7 @@
 //! nodes and packets are counted. The octree saves most of that work, so these counts tell what it saves for each
 //! query; its build costs a time for each primitive. If the scene consists of slivers, cells would fall back to the
 //! tree. Where queries filter many packets then, the boxes fit badly: k-DOPs are built as well, and the tree with less
-//! work wins. No time is measured, so the choice depends on the scene, the queries and their number, and not on the load
+//! work wins. Where there are many more queries still, cells of an octree are finer. No time is measured, so the choice depends on the scene, the queries and their number, and not on the load
 //! of the machine; only near a break-even the roundings of instruction sets may differ.
 //!
 //! The constants were fitted to 15 scenes of 20,000 to 870,000 primitives ([decision 068]). Other indexes win rarely
@@ -16,6 +16,7 @@ use crate::advice::{is_mostly_slivers, sample_queries};
 use crate::{BackendEntry, BuildSettings, BuiltIndex, QueryRegion, Workload};
 use nalgebra::Point3;
 use p2m_bvh::{AabbTree, SplitOptions};
+use p2m_interception::OctreeOptions;
 use p2m_core::{Best, BuildError, BuildIndex, IndexStats, PrimitiveSet, QueryOptions, Soup, StatsCollector};
 use std::borrow::Cow;
 use std::sync::Arc;
@@ -33,6 +34,14 @@ const KDOPS: Cost = Cost { node: 55.0, packet: 45.0 };
 const SAVED_BY_OCTREE: Cost = Cost { node: 10.0, packet: 30.0 };
 /// The nanoseconds for each primitive that an octree takes to build, besides its tree, and a tree of k-DOPs.
 const OCTREE_BUILD: f64 = 4500.0;
+/// The factor of the resolution of finer cells.
+const FINER: f64 = 10.0;
+/// The nanoseconds for each primitive that finer cells take to build, besides the default ones.
+const FINER_BUILD: f64 = 9000.0;
+/// The part of what an octree saves that its finer cells save once more.
+const SAVED_BY_FINER: f64 = 0.2;
+/// The bytes of an octree of finer cells for each primitive.
+const FINER_BYTES: f64 = 400.0;
 const KDOP_BUILD: f64 = 400.0;
 /// The number of packets per query from which on boxes may fit slivers badly.
 const MANY_PACKETS: f64 = 20.0;
@@ -53,6 +62,10 @@ const OCTREE_BOXES: f64 = 10.0;
 pub struct Choice {
     index: Chosen,
     backend: &'static BackendEntry,
+    /// The resolution of an octree, unless it is the default one.
+    resolution: Option<f64>,
+    /// The largest number of bytes of the cells and lists of an octree.
+    max_cell_bytes: usize,
     reason: Option<Reason>,
 }
 
@@ -66,8 +79,8 @@ enum Chosen {
 
 /// The reason of a choice, if queries were counted.
 enum Reason {
-    /// An octree pays from this number of queries on.
-    OctreeFrom(f64),
+    /// An octree pays from the first number of queries on, and finer cells from the second one on.
+    OctreeFrom([f64; 2]),
     /// The numbers of packets per query in trees of boxes and of k-DOPs, for slivers.
     Packets([f64; 2]),
 }
@@ -124,7 +137,9 @@ impl Choice {
         let (octree, kdop) = (entry("octree"), entry("kdop"));
         let primitives = soup.len() as f64;
         let tree = Box::new(AabbTree::build(Arc::clone(&soup), &SplitOptions::default())?);
-        let boxes = |tree, reason| Self { index: Chosen::Tree(tree), backend: BackendEntry::default_backend(), reason };
+        let max_cell_bytes = workload.max_bytes.saturating_sub(IndexStats::<f64>::memory(&*tree));
+        let choice = |index, backend, reason| Self { index, backend, resolution: None, max_cell_bytes, reason };
+        let boxes = |tree, reason| choice(Chosen::Tree(tree), BackendEntry::default_backend(), reason);
         let wanted = usize::try_from(workload.queries / QUERIES_PER_COUNTED).unwrap_or(MAX_COUNTED).min(MAX_COUNTED);
         // A tree of one or two levels leaves nothing to save.
         if wanted < MIN_COUNTED || primitives < MIN_PRIMITIVES {
@@ -153,9 +168,12 @@ impl Choice {
             let reach = half.x.max(half.y).max(half.z);
             let near = counted.iter().filter(|query| (**query - centre).amax() <= reach).count();
             let saved = work.nanoseconds(&SAVED_BY_OCTREE) * near as f64 / counted.len() as f64;
-            let least = OCTREE_BUILD * primitives / saved;
-            let backend = if queries > least { octree } else { BackendEntry::default_backend() };
-            return Ok(Self { index: Chosen::Tree(tree), backend, reason: Some(Reason::OctreeFrom(least)) });
+            let least = [OCTREE_BUILD / saved, FINER_BUILD / (saved * SAVED_BY_FINER)].map(|each| each * primitives);
+            let backend = if queries > least[0] { octree } else { BackendEntry::default_backend() };
+            let is_finer = queries > least[1] && FINER_BYTES * primitives <= workload.max_bytes as f64;
+            let resolution = is_finer.then(|| OctreeOptions::default().resolution * FINER);
+            let reason = Some(Reason::OctreeFrom(least));
+            return Ok(Self { resolution, ..choice(Chosen::Tree(tree), backend, reason) });
         }
         let saved = queries * work.nanoseconds(&BOXES) * SAVED_BY_KDOPS;
         if work.packets < MANY_PACKETS || saved < KDOP_BUILD * primitives {
@@ -165,7 +183,7 @@ impl Choice {
         let kdops = Work::of(&*built.index, &counted, workload.max_distance);
         let reason = Some(Reason::Packets([work.packets, kdops.packets]));
         if kdops.nanoseconds(&KDOPS) < work.nanoseconds(&BOXES) {
-            return Ok(Self { index: Chosen::Index(built, soup), backend: kdop, reason });
+            return Ok(choice(Chosen::Index(built, soup), kdop, reason));
         }
         Ok(boxes(tree, reason))
     }
@@ -176,22 +194,33 @@ impl Choice {
         self.backend
     }
 
+    /// The resolution of the cells of an octree, unless it is the default one.
+    #[must_use]
+    pub fn resolution(&self) -> Option<f64> {
+        self.resolution
+    }
+
     /// The reason of the choice as a phrase for people, if there is one.
     #[must_use]
     pub fn reason(&self) -> Option<String> {
         Some(match self.reason.as_ref()? {
-            Reason::OctreeFrom(least) => format!("an octree pays from about {} queries on", rounded(*least)),
+            Reason::OctreeFrom(least) => {
+                let [coarse, fine] = least.map(rounded);
+                format!("an octree pays from about {coarse} queries on, and finer cells from {fine}")
+            }
             Reason::Packets([boxes, kdops]) => {
                 format!("slivers: a query filters about {boxes:.0} packets with boxes, and {kdops:.0} with k-DOPs")
             }
         })
     }
 
-    /// Builds the index that was chosen.
+    /// Builds the index that was chosen. A resolution in the settings is used in place of the chosen one.
     ///
     /// # Errors
     /// Those of [`BackendEntry::build`].
     pub fn build(self, settings: &BuildSettings<'_>) -> Result<BuiltIndex, BuildError> {
+        let settings = &settings.with_resolution(settings.resolution.or(self.resolution));
+        let settings = &settings.with_max_cell_bytes(settings.max_cell_bytes.min(self.max_cell_bytes));
         match self.index {
             Chosen::Tree(tree) => self.backend.build_on(*tree, settings),
             // Other directions were asked for.

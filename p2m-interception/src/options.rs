@@ -1,6 +1,7 @@
 //! The options of the indexes, and the statistics of what was built.
 
 use crate::list::block::{BLOCK_WIDTH, MAX_BLOCKS};
+use crate::octree::MIN_PRIMITIVES_FOR_BUDGETS;
 use crate::voronoi::list_filter::BuildListFilter;
 use crate::voronoi::locator::BuildLocator;
 use p2m_bvh::SplitOptions;
@@ -86,6 +87,12 @@ impl OctreeOptions {
         let Self { resolution, memory, work, .. } = self;
         let budget = factor.max(1.0);
         Self { resolution: resolution * factor, memory: memory * budget, work: work * budget, ..self }
+    }
+    /// Lowers the memory budget to a number of bytes, for a scene with so many primitives.
+    #[must_use]
+    pub fn with_max_bytes(self, bytes: usize, primitives: usize) -> Self {
+        let most = bytes as f64 / primitives.max(MIN_PRIMITIVES_FOR_BUDGETS) as f64;
+        Self { memory: self.memory.min(most), ..self }
     }
     /// Sets the splits of the tree.
     #[must_use]

@@ -251,10 +251,11 @@ fn the_choice_of_auto_follows_from_scene_and_queries() {
             let workload = Workload::new(queries, region);
             let choice = Choice::new(Arc::clone(soup), &workload).expect("valid scene");
             assert_eq!(choice.backend().name, expected, "{queries} {region:?}");
-            let backend = choice.backend();
+            let (backend, resolution) = (choice.backend(), choice.resolution());
             // The index is the one that the backend builds alone.
             let built = choice.build(&BuildSettings::default()).expect("valid scene");
-            let alone = backend.build(Arc::clone(soup), &BuildSettings::default()).expect("valid scene");
+            let alone = BuildSettings::default().with_resolution(resolution);
+            let alone = backend.build(Arc::clone(soup), &alone).expect("valid scene");
             assert!(saved_bytes(&built) == saved_bytes(&alone), "{expected}");
         }
     }
@@ -275,6 +276,22 @@ fn the_choice_of_auto_follows_from_scene_and_queries() {
         Choice::new(Arc::clone(&ball), &workload).expect("valid scene").backend().name
     };
     assert_eq!((box_of(f64::INFINITY), box_of(1e-9)), ("octree", "aabb"));
+    // Cells are finer where even more queries pay for them, unless they would take too much memory.
+    let octree_within = |queries, bytes| {
+        let workload = Workload::new(queries, QueryRegion::SceneBox).with_max_bytes(bytes);
+        let choice = Choice::new(Arc::clone(&ball), &workload).expect("valid scene");
+        assert_eq!(choice.backend().name, "octree", "{queries} {bytes}");
+        let resolution = choice.resolution();
+        (resolution, choice.build(&BuildSettings::default()).expect("valid scene").index.memory_bytes())
+    };
+    let (coarse, coarse_bytes) = octree_within(60_000, usize::MAX);
+    let (fine, fine_bytes) = octree_within(10_000_000, usize::MAX);
+    assert!(coarse.is_none() && fine.is_some() && fine_bytes > coarse_bytes, "{coarse_bytes} {fine_bytes}");
+    assert_eq!(octree_within(10_000_000, 300 * ball.len()).0, None);
+    for bytes in [coarse_bytes - 20_000, coarse_bytes - 1] {
+        let (_, taken) = octree_within(10_000_000, bytes);
+        assert!(taken <= bytes, "{taken} of {bytes}");
+    }
     // A limit of memory excludes the octree, and scenes without primitives have no queries to count.
     let workload = Workload::new(10_000_000, QueryRegion::SceneBox).with_max_bytes(1000);
     assert_eq!(Choice::new(ball, &workload).expect("valid scene").backend().name, "aabb");

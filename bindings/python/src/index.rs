@@ -186,7 +186,7 @@ fn kdop_directions(name: &str) -> PyResult<KdopDirections> {
 impl Index {
     /// Builds an index of a backend of the registry.
     #[staticmethod]
-    #[pyo3(signature = (scene, backend, threads, progress, directions=None, resolution=None, queries=None))]
+    #[pyo3(signature = (scene, backend, threads, progress, directions=None, resolution=None, queries=None, max_bytes=None))]
     fn build(
         py: Python<'_>,
         scene: &Scene,
@@ -196,8 +196,12 @@ impl Index {
         directions: Option<&str>,
         resolution: Option<f64>,
         queries: Option<u64>,
+        max_bytes: Option<usize>,
     ) -> PyResult<Self> {
         let is_chosen = backend == "auto" && queries.is_some();
+        if max_bytes.is_some() && !is_chosen {
+            return Err(PyValueError::new_err("max_bytes: needs the backend 'auto' and the number of queries"));
+        }
         let entry = self::backend(backend)?;
         for (option, is_given, is_used) in [
             ("directions", directions.is_some(), entry.has_kdop_directions),
@@ -214,6 +218,7 @@ impl Index {
         let settings = BuildSettings::default().with_kdop_directions(directions).with_resolution(resolution);
         let soup = Arc::clone(&scene.shared.soup);
         let workload = Workload::new(queries.unwrap_or_default(), QueryRegion::SceneBox);
+        let workload = workload.with_max_bytes(max_bytes.unwrap_or(usize::MAX));
         let built = run_owned(py, threads, BUILD_UNITS, progress, move |monitor| {
             let choice = if is_chosen { Some(Choice::new(Arc::clone(&soup), &workload)?) } else { None };
             let chosen = choice.as_ref().map_or(entry, Choice::backend);

@@ -206,6 +206,11 @@ def test_advice_and_information(ball: p2m.Scene) -> None:
     assert [p2m.Index(fine, queries=count).backend for count in (1, 10_000, 10_000_000)] == ["aabb", "aabb", "octree"]
     with pytest.raises(ValueError, match="queries: -1 is not from 0"):
         p2m.Index(fine, queries=-1)
+    octree = p2m.Index(fine, queries=10_000_000)
+    smaller = p2m.Index(fine, queries=10_000_000, max_bytes=octree.info["memory_bytes"] - 1)
+    assert smaller.info["memory_bytes"] < octree.info["memory_bytes"]
+    with pytest.raises(ValueError, match="max_bytes: needs"):
+        p2m.Index(fine, max_bytes=1000)
     with pytest.raises(ValueError, match="resolution: name the backend that has it, not 'auto'"):
         p2m.Index(fine, queries=10_000_000, resolution=1.0)
     for backend in BACKENDS:

@@ -44,6 +44,9 @@ pub struct BuildSettings<'p> {
     /// The factor of the memory and work budgets of an octree, 1 by default. These budgets have a minimum, which is
     /// too large for a small sample of a scene.
     pub octree_budget_scale: f64,
+    /// The largest number of bytes of the cells and lists of an octree, besides its tree; unlimited by default. Cells
+    /// stay coarser if they would take more.
+    pub max_cell_bytes: usize,
     /// A function that is called with the progress of the build, by backends that
     /// [report it](crate::BackendEntry::reports_progress).
     pub progress: &'p (dyn Fn(Progress) + Sync),
@@ -60,6 +63,7 @@ impl Default for BuildSettings<'_> {
             p2m: P2mSettings::default(),
             resolution: None,
             octree_budget_scale: 1.0,
+            max_cell_bytes: usize::MAX,
             progress: &|_| (),
             visit_octree: &|_| ControlFlow::Continue(()),
         }
@@ -97,6 +101,12 @@ impl<'p> BuildSettings<'p> {
         Self { octree_budget_scale, ..self }
     }
 
+    /// Sets the largest number of bytes of the cells and lists of an octree.
+    #[must_use]
+    pub fn with_max_cell_bytes(self, max_cell_bytes: usize) -> Self {
+        Self { max_cell_bytes, ..self }
+    }
+
     /// Sets the function that receives the progress of the build.
     #[must_use]
     pub fn with_progress(self, progress: &'p (dyn Fn(Progress) + Sync)) -> Self {
@@ -109,14 +119,14 @@ impl<'p> BuildSettings<'p> {
         Self { visit_octree, ..self }
     }
 
-    /// The options of an octree.
-    pub(crate) fn octree_options(&self) -> OctreeOptions {
+    /// The options of an octree over so many primitives.
+    pub(crate) fn octree_options(&self, primitives: usize) -> OctreeOptions {
         let options = OctreeOptions::default().with_splits(self.splits());
         let factor = self.resolution.map_or(1.0, |resolution| resolution / options.resolution);
         let options = options.with_finer_cells(factor);
         let scale = self.octree_budget_scale;
         let (memory, work) = (options.memory * scale, options.work * scale);
-        options.with_memory(memory).with_work(work)
+        options.with_memory(memory).with_work(work).with_max_bytes(self.max_cell_bytes, primitives)
     }
 
     /// The splits of trees, with the choice of threads.

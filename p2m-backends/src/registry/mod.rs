@@ -210,8 +210,9 @@ impl BackendEntry {
                 return Ok(BuiltIndex { index, directions: Some(directions) });
             }
             IndexKind::Octree => {
+                let options = settings.octree_options(soup.len());
                 let visit = &mut |so_far: &_| (settings.visit_octree)(so_far);
-                Arc::new(OctreeIndex::build_until(soup, &settings.octree_options(), settings.progress, visit)?)
+                Arc::new(OctreeIndex::build_until(soup, &options, settings.progress, visit)?)
             }
             IndexKind::P2m => {
                 let options = settings.p2m.options().with_splits(settings.splits());
@@ -233,8 +234,9 @@ impl BackendEntry {
         let index: Arc<dyn AnyIndex> = match self.kind {
             IndexKind::Aabb => Arc::new(tree),
             IndexKind::Octree => {
+                let options = settings.octree_options(tree.set().len());
                 let visit = &mut |so_far: &_| (settings.visit_octree)(so_far);
-                Arc::new(OctreeIndex::build_on(tree, &settings.octree_options(), settings.progress, visit))
+                Arc::new(OctreeIndex::build_on(tree, &options, settings.progress, visit))
             }
             IndexKind::Brute | IndexKind::Kdop | IndexKind::P2m => return self.build(tree.into_set(), settings),
         };

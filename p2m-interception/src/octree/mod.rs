@@ -49,7 +49,7 @@ const MAX_RESOLUTION: f64 = 1e9;
 /// The resolution below which there are no cells.
 const MIN_RESOLUTION: f64 = 1e-9;
 /// The budgets of a scene with fewer primitives are those of a scene with this many.
-const MIN_PRIMITIVES_FOR_BUDGETS: usize = 10_000;
+pub(crate) const MIN_PRIMITIVES_FOR_BUDGETS: usize = 10_000;
 
 /// An interception index whose cells are cubes, over a set of primitives that it does not store.
 ///

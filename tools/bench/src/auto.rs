@@ -29,11 +29,13 @@ pub(crate) struct Arguments {
 }
 
 /// The numbers of queries of jobs.
-const JOBS: [u64; 5] = [1_000, 10_000, 100_000, 1_000_000, 10_000_000];
+const JOBS: [u64; 6] = [1_000, 10_000, 100_000, 1_000_000, 10_000_000, 100_000_000];
 /// The sets of queries of jobs.
 const SETS: [QuerySet; 2] = [QuerySet::Near, QuerySet::Box1];
 /// A choice is bad if its job takes longer than this factor of the best one.
 const BAD: f64 = 1.15;
+/// The resolution of an octree with finer cells.
+const FINER: f64 = 3.0;
 /// The number of times that each choice is made.
 const REPEATS: usize = 20;
 
@@ -53,14 +55,23 @@ pub(crate) fn run(arguments: &Arguments) -> Result<bool> {
 /// Prints the table of a scene, and returns the number of bad choices.
 fn print(scene: &Scene, arguments: &Arguments) -> Result<usize> {
     let soup = &scene.double;
-    let backends: Vec<&BackendEntry> =
-        BACKENDS.iter().filter(|backend| backend.structure != SearchStructure::Exhaustive).collect();
+    // The octree is there twice, with the finer cells of a choice as well.
+    let finer = |backend: &BackendEntry| if backend.has_resolution { vec![None, Some(FINER)] } else { vec![None] };
+    let backends: Vec<(&BackendEntry, Option<f64>)> = BACKENDS
+        .iter()
+        .filter(|backend| backend.structure != SearchStructure::Exhaustive)
+        .flat_map(|backend| finer(backend).into_iter().map(move |resolution| (backend, resolution)))
+        .collect();
+    let name = |(backend, resolution): (&BackendEntry, Option<f64>)| {
+        format!("{}{}", backend.name, if resolution.is_some() { ", finer" } else { "" })
+    };
     let (mut builds, mut times) = (vec![vec![]; backends.len()], vec![vec![vec![]; SETS.len()]; backends.len()]);
     let settings = BuildSettings::default().with_parallel(false);
     let count = arguments.queries;
     let queries = SETS.map(|set| set.generate(soup, count, arguments.rounds.seed));
     for _ in 0..arguments.rounds.rounds {
-        for (i, backend) in backends.iter().enumerate() {
+        for (i, (backend, resolution)) in backends.iter().enumerate() {
+            let settings = settings.with_resolution(*resolution);
             let (built, seconds) = thread_seconds(|| backend.build(Arc::clone(soup), &settings));
             let index = built?.index;
             builds[i].push(seconds);
@@ -81,18 +92,21 @@ fn print(scene: &Scene, arguments: &Arguments) -> Result<usize> {
     for (set, (kind, queries)) in SETS.iter().zip(&queries).enumerate() {
         for job in JOBS {
             let workload = Workload::new(job, QueryRegion::Like(&queries[..count.min(1024)]));
-            let name = Choice::new(Arc::clone(soup), &workload)?.backend().name;
+            let choose = || -> Result<(&BackendEntry, Option<f64>)> {
+                let choice = Choice::new(Arc::clone(soup), &workload)?;
+                Ok((choice.backend(), choice.resolution()))
+            };
+            let choice = choose()?;
             for _ in 1..REPEATS {
-                let again = Choice::new(Arc::clone(soup), &workload)?.backend().name;
-                anyhow::ensure!(again == name, "{job} queries: first {name}, then {again}");
+                anyhow::ensure!(choose()? == choice, "{job} queries: another choice than {}", name(choice));
             }
             let totals: Vec<f64> = (0..backends.len()).map(|i| total(i, set, job)).collect();
             let best = (0..totals.len()).min_by(|&a, &b| totals[a].total_cmp(&totals[b])).unwrap_or_default();
-            let chosen = backends.iter().position(|backend| backend.name == name).unwrap_or_default();
+            let chosen = backends.iter().position(|backend| *backend == choice).unwrap_or_default();
             let cost = totals[chosen] / totals[best];
             bad += usize::from(cost > BAD);
-            let row = [kind.name(), &job.to_string(), name, backends[best].name, &format!("{cost:.2}")];
-            table.push(row.map(str::to_owned).to_vec());
+            let row = [kind.name().to_owned(), job.to_string(), name(choice), name(backends[best]), format!("{cost:.2}")];
+            table.push(row.to_vec());
         }
     }
     println!("\n## {}\n\n{table}", scene.describe());

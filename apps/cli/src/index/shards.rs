@@ -2,7 +2,6 @@
 
 use crate::answers::summary::{IndexSummary, SceneSummary};
 use crate::io::input::SceneArgs;
-use crate::io::usage::usage;
 use p2m_core::PrimitiveId;
 use p2m_shards::{ShardedIndex, folder_of};
 use serde_json::{Value, json};
@@ -10,16 +9,13 @@ use std::path::{Path, PathBuf};
 use std::time::Duration;
 
 /// Returns the folder of shards at a path, if it is one.
-pub(crate) fn shard_folder(path: &Path, max_memory: Option<u64>) -> anyhow::Result<Option<PathBuf>> {
+pub(crate) fn shard_folder(path: &Path) -> anyhow::Result<Option<PathBuf>> {
     let folder = folder_of(path);
     if folder.is_none() && path.is_dir() {
         anyhow::bail!(
             "{}: cannot be read: is a directory without the file manifest.json, so it is no finished index in shards",
             path.display()
         );
-    }
-    if folder.is_none() && max_memory.is_some() {
-        return Err(usage("--max-memory needs the folder of an index in shards, which `p2m shard` writes"));
     }
     Ok(folder)
 }

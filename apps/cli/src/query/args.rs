@@ -125,7 +125,7 @@ pub(crate) struct Args {
     #[arg(long, value_name = "COLUMNS", value_delimiter = ',', value_parser = columns())]
     columns: Vec<AnswerColumn>,
 
-    /// Keep at most this much of an index in shards in memory, such as 4GB
+    /// Keep at most this much of an index in memory, such as 4GB: in shards, or as auto chooses it
     #[arg(long, value_name = "BYTES", value_parser = bytes)]
     pub(crate) max_memory: Option<u64>,
 

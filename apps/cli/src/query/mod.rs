@@ -34,7 +34,7 @@ use std::path::Path;
 use std::time::Instant;
 
 pub(crate) fn run(streams: &Streams, args: &Args) -> anyhow::Result<()> {
-    if let Some(folder) = shard_folder(&args.scene.path, args.max_memory)? {
+    if let Some(folder) = shard_folder(&args.scene.path)? {
         return run_in_shards(streams, args, &folder);
     }
     let (scene_args, query_args) = (&args.scene, &args.query_args);
@@ -76,11 +76,15 @@ pub(crate) fn run(streams: &Streams, args: &Args) -> anyhow::Result<()> {
         None if !is_counted => saved_or_default(saved).into(),
         backend => {
             let workload = Workload::new(queries.len(), QueryRegion::Like(&sample))
-                .with_max_distance(args.max_distance.unwrap_or(f64::INFINITY));
+                .with_max_distance(args.max_distance.unwrap_or(f64::INFINITY))
+                .with_max_bytes(args.max_memory.map_or(usize::MAX, |bytes| usize::try_from(bytes).unwrap_or(usize::MAX)));
             let chosen = BackendChoice::resolve(backend, saved, &scene.soup, &workload, streams, &pool);
             chosen.with_context(|| scene_args.name())?
         }
     };
+    if args.max_memory.is_some() && matches!(chosen, Chosen::Named(_)) {
+        return Err(usage("--max-memory limits indexes in shards, which `p2m shard` writes, and those that auto chooses"));
+    }
     let backend = chosen.backend();
     let kdop_directions = requested(backend.has_kdop_directions, query_args.k)?;
     let p2m = args.p2m.settings(backend.has_p2m_settings)?;

@@ -24,7 +24,11 @@ use std::path::Path;
 use std::time::Instant;
 
 pub(crate) fn run(streams: &Streams, args: &Args) -> anyhow::Result<()> {
-    if let Some(folder) = shard_folder(&args.scene.path, args.max_memory)? {
+    let folder = shard_folder(&args.scene.path)?;
+    if folder.is_none() && args.max_memory.is_some() {
+        return Err(usage("--max-memory needs the folder of an index in shards, which `p2m shard` writes"));
+    }
+    if let Some(folder) = folder {
         return run_in_shards(streams, args, &folder);
     }
     let (scene_args, query_args) = (&args.scene, &args.query_args);

@@ -183,7 +183,8 @@ fn options_that_have_no_effect_are_refused() {
         let message = failure(&[&["query", &site, "--random", "1"], options].concat(), 2);
         assert!(message.contains(options[0]), "{message}");
     }
-    assert!(failure(&["query", SCENE, "--random", "1", "--max-memory", "1GB"], 2).contains("p2m shard"));
+    let named = ["query", SCENE, "--random", "1", "--max-memory", "1GB", "--backend", "octree"];
+    assert!(failure(&named, 2).contains("p2m shard"));
     assert!(failure(&["shard", SCENE, "--out", &site, "--max-bytes", "0"], 2).contains("not an amount of memory"));
     failure(&["shard", SCENE, "--out", &site, "--backend", "brute"], 2);
 }

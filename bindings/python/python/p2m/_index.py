@@ -513,7 +513,10 @@ class Index(PointQueries, PairQueries):
     queries : int, optional
         The number of queries that are expected, for the choice of ``"auto"``. The choice counts the work of a few
         queries in the box of the scene, so it depends on the scene and this number. An octree casts no rays, and has
-        neither pairs nor `refit`.
+        neither pairs nor `refit`. Where very many queries pay for it, its cells are finer than the default ones.
+    max_bytes : int, optional
+        The memory that the index may take besides the scene, for the choice of ``"auto"`` with `queries`. A tree of
+        boxes, of about 65 bytes per primitive, is the smallest index, and is built even if it takes more.
     directions : {6, 14, 18, 26, "scene"}, optional
         The number of faces of the polytopes of ``"kdop"``, by default 14; ``"scene"`` for 14 along axes of the scene.
     resolution : float, optional
@@ -561,6 +564,7 @@ class Index(PointQueries, PairQueries):
         threads: int | None = None,
         progress: Progress = None,
         queries: int | None = None,
+        max_bytes: int | None = None,
         directions: int | Literal["scene"] | None = None,
         resolution: float | None = None,
     ) -> None:
@@ -569,11 +573,13 @@ class Index(PointQueries, PairQueries):
         count = thread_count(threads)
         if queries is not None:
             queries = whole(queries, "queries", 0, 2**63 - 1)
+        if max_bytes is not None:
+            max_bytes = whole(max_bytes, "max_bytes", 0, 2**63 - 1)
         if resolution is not None and not 0.0 < resolution < float("inf"):
             raise ValueError(f"resolution: {resolution} is not positive and finite")
         named = None if directions is None else str(directions)
         with callback(progress, "building", "%") as call:
-            self._raw = _p2m.Index.build(made._raw, backend, count, call, named, resolution, queries)
+            self._raw = _p2m.Index.build(made._raw, backend, count, call, named, resolution, queries, max_bytes)
 
     @classmethod
     def _from_raw(cls, raw: _p2m.Index, threads: int | None) -> Index:

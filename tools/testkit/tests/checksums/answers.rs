@@ -6,6 +6,7 @@ use nalgebra::{Isometry3, Point3};
 use p2m::batch::{BatchOptions, closest_points_into};
 use p2m::core::Isa;
 use p2m::field::sign::SignedDistance;
+use p2m::paper::PaperIndex;
 use p2m::pair::{ClosestPair, PairOptions, PairQuery};
 use p2m::storage::{SavedFile, Writer};
 use p2m::{
@@ -175,6 +176,7 @@ fn of_scene<T: Real>(
         "kdop-14": KdopTree<T, &Soup<T>, 14>, rays shapes scenes;
         "octree": OctreeIndex<T, &Soup<T>>,;
         "p2m": P2mIndex<T, &Soup<T>>,;
+        "paper": PaperIndex<T, &Soup<T>>,;
     }
 }
 
