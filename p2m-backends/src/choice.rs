@@ -16,8 +16,8 @@ use crate::advice::{is_mostly_slivers, sample_queries};
 use crate::{BackendEntry, BuildSettings, BuiltIndex, QueryRegion, Workload};
 use nalgebra::Point3;
 use p2m_bvh::{AabbTree, SplitOptions};
-use p2m_interception::OctreeOptions;
 use p2m_core::{Best, BuildError, BuildIndex, IndexStats, PrimitiveSet, QueryOptions, Soup, StatsCollector};
+use p2m_interception::OctreeOptions;
 use std::borrow::Cow;
 use std::sync::Arc;
 
@@ -40,8 +40,9 @@ const FINER: f64 = 10.0;
 const FINER_BUILD: f64 = 9000.0;
 /// The part of what an octree saves that its finer cells save once more.
 const SAVED_BY_FINER: f64 = 0.2;
-/// The bytes of an octree of finer cells for each primitive.
-const FINER_BYTES: f64 = 400.0;
+/// The bytes of cells and their lists for each primitive, in clean meshes, and of finer cells.
+const CELL_BYTES: f64 = 100.0;
+const FINER_CELL_BYTES: f64 = 320.0;
 const KDOP_BUILD: f64 = 400.0;
 /// The number of packets per query from which on boxes may fit slivers badly.
 const MANY_PACKETS: f64 = 20.0;
@@ -137,7 +138,7 @@ impl Choice {
         let (octree, kdop) = (entry("octree"), entry("kdop"));
         let primitives = soup.len() as f64;
         let tree = Box::new(AabbTree::build(Arc::clone(&soup), &SplitOptions::default())?);
-        let max_cell_bytes = workload.max_bytes.saturating_sub(IndexStats::<f64>::memory(&*tree));
+        let max_cell_bytes = workload.max_bytes.saturating_sub(tree.memory());
         let choice = |index, backend, reason| Self { index, backend, resolution: None, max_cell_bytes, reason };
         let boxes = |tree, reason| choice(Chosen::Tree(tree), BackendEntry::default_backend(), reason);
         let wanted = usize::try_from(workload.queries / QUERIES_PER_COUNTED).unwrap_or(MAX_COUNTED).min(MAX_COUNTED);
@@ -158,7 +159,7 @@ impl Choice {
         let queries = workload.queries as f64 * counted.len() as f64 / chosen.count() as f64;
         let work = Work::of(&*tree, &counted, workload.max_distance);
         if !is_mostly_slivers(&soup) {
-            if octree.cost.bytes_per_primitive * primitives > workload.max_bytes as f64 {
+            if CELL_BYTES * primitives > max_cell_bytes as f64 {
                 return Ok(boxes(tree, None));
             }
             // Farther away the tree in the octree answers.
@@ -170,7 +171,7 @@ impl Choice {
             let saved = work.nanoseconds(&SAVED_BY_OCTREE) * near as f64 / counted.len() as f64;
             let least = [OCTREE_BUILD / saved, FINER_BUILD / (saved * SAVED_BY_FINER)].map(|each| each * primitives);
             let backend = if queries > least[0] { octree } else { BackendEntry::default_backend() };
-            let is_finer = queries > least[1] && FINER_BYTES * primitives <= workload.max_bytes as f64;
+            let is_finer = queries > least[1] && FINER_CELL_BYTES * primitives <= max_cell_bytes as f64;
             let resolution = is_finer.then(|| OctreeOptions::default().resolution * FINER);
             let reason = Some(Reason::OctreeFrom(least));
             return Ok(Self { resolution, ..choice(Chosen::Tree(tree), backend, reason) });

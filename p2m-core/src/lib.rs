@@ -52,6 +52,8 @@ mod primitive;
 mod primitive_id;
 #[macro_use]
 mod query;
+#[cfg(feature = "rayon")]
+mod pools;
 mod ray;
 mod real;
 mod set;
@@ -99,6 +101,11 @@ pub mod engine {
     #[cfg(feature = "rayon")]
     pub use crate::threads::{MAX_THREADS, default_threads};
 
+    /// Pools of threads that belong to one process.
+    #[cfg(feature = "rayon")]
+    pub mod pools {
+        pub use crate::pools::*;
+    }
     /// Searches for near pairs of two trees.
     pub mod pairs {
         pub use crate::pair::search::*;

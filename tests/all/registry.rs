@@ -287,8 +287,8 @@ fn the_choice_of_auto_follows_from_scene_and_queries() {
     let (coarse, coarse_bytes) = octree_within(60_000, usize::MAX);
     let (fine, fine_bytes) = octree_within(10_000_000, usize::MAX);
     assert!(coarse.is_none() && fine.is_some() && fine_bytes > coarse_bytes, "{coarse_bytes} {fine_bytes}");
-    assert_eq!(octree_within(10_000_000, 300 * ball.len()).0, None);
-    for bytes in [coarse_bytes - 20_000, coarse_bytes - 1] {
+    assert_eq!(octree_within(10_000_000, 250 * ball.len()).0, None);
+    for bytes in [coarse_bytes - 20_000, coarse_bytes - 1, fine_bytes - 1] {
         let (_, taken) = octree_within(10_000_000, bytes);
         assert!(taken <= bytes, "{taken} of {bytes}");
     }

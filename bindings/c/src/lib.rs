@@ -1,9 +1,8 @@
 //! The C interface of p2m. `include/p2m.h` documents it; cbindgen makes that file of the comments here
 //! (`cargo xtask c --build`).
 //!
-//! Every function checks its arguments, catches panics, and returns a status. The message of a failure is kept for the
-//! thread that called. Pointers are checked for null and alignment; that they point to as much memory as their counts and
-//! strides say is up to the caller.
+//! Every function checks its arguments, catches panics, and returns a status; each thread keeps the message of its last
+//! failure. Pointers are checked for null and alignment, but not for the memory that counts and strides claim.
 #![allow(unsafe_code, reason = "pointers of C")]
 #![allow(unreachable_pub, reason = "functions of C are exported by their names")]
 #![allow(clippy::missing_safety_doc, reason = "the header says what pointers have to point to")]
@@ -13,8 +12,6 @@ mod arrays;
 mod files;
 mod index;
 mod pairs;
-#[cfg(feature = "rayon")]
-mod pools;
 mod queries;
 mod rays;
 mod scene;

@@ -3,9 +3,6 @@
 use crate::status::{Call, Failure, Status, invalid};
 use std::sync::atomic::{AtomicBool, Ordering};
 
-/// The largest number of threads of a call.
-const MAX_THREADS: u32 = 1024;
-
 /// A switch by which another thread, or a signal handler, ends a call before its time.
 pub struct Cancel {
     pub(crate) is_set: AtomicBool,
@@ -42,6 +39,9 @@ impl Cancel {
     }
 }
 
+/// The largest number of threads of a call.
+const MAX_THREADS: u32 = 1024;
+
 /// Returns a number of threads that is not absurd.
 pub(crate) fn checked(threads: u32) -> Call<u32> {
     if threads > MAX_THREADS { Err(invalid(format!("threads: more than {MAX_THREADS}"))) } else { Ok(threads) }
@@ -55,7 +55,11 @@ pub(crate) fn with_threads<R: Send>(threads: u32, work: impl FnOnce(bool) -> R +
 
 /// Runs work on a pool of so many threads; 0 stands for all processors.
 #[cfg(feature = "rayon")]
-pub(crate) use crate::pools::in_pool;
+pub(crate) fn in_pool<R: Send>(threads: u32, work: impl FnOnce() -> R + Send) -> Call<R> {
+    let threads = if threads == 0 { p2m_core::engine::default_threads() } else { checked(threads)? as usize };
+    let pool = p2m_core::engine::pools::shared_pool(threads);
+    Ok(pool.map_err(|error| Failure(Status::OutOfMemory, error.to_string()))?.install(work))
+}
 
 /// Runs work on the calling thread, because there are no others.
 #[cfg(not(feature = "rayon"))]

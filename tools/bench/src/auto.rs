@@ -105,7 +105,8 @@ fn print(scene: &Scene, arguments: &Arguments) -> Result<usize> {
             let chosen = backends.iter().position(|backend| *backend == choice).unwrap_or_default();
             let cost = totals[chosen] / totals[best];
             bad += usize::from(cost > BAD);
-            let row = [kind.name().to_owned(), job.to_string(), name(choice), name(backends[best]), format!("{cost:.2}")];
+            let row =
+                [kind.name().to_owned(), job.to_string(), name(choice), name(backends[best]), format!("{cost:.2}")];
             table.push(row.to_vec());
         }
     }

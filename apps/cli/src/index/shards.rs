@@ -2,6 +2,7 @@
 
 use crate::answers::summary::{IndexSummary, SceneSummary};
 use crate::io::input::SceneArgs;
+use crate::io::usage::usage;
 use p2m_core::PrimitiveId;
 use p2m_shards::{ShardedIndex, folder_of};
 use serde_json::{Value, json};

@@ -13,7 +13,7 @@ pub(crate) use args::Args;
 
 use crate::answers::blocks::{BlockSize, answer_each};
 use crate::answers::summary::{IndexSummary, SceneSummary};
-use crate::index::backend::{BackendChoice, PreparedIndex, SceneSource, saved_or_default};
+use crate::index::backend::{BackendChoice, Chosen, PreparedIndex, SceneSource, saved_or_default};
 use crate::index::kdop_directions::requested;
 use crate::index::shards::{open, refuse_options_of_builds, shard_folder, summarize};
 use crate::index::sign_rule::{SignReport, SignRule, SignedIndex};
@@ -77,13 +77,17 @@ pub(crate) fn run(streams: &Streams, args: &Args) -> anyhow::Result<()> {
         backend => {
             let workload = Workload::new(queries.len(), QueryRegion::Like(&sample))
                 .with_max_distance(args.max_distance.unwrap_or(f64::INFINITY))
-                .with_max_bytes(args.max_memory.map_or(usize::MAX, |bytes| usize::try_from(bytes).unwrap_or(usize::MAX)));
+                .with_max_bytes(
+                    args.max_memory.map_or(usize::MAX, |bytes| usize::try_from(bytes).unwrap_or(usize::MAX)),
+                );
             let chosen = BackendChoice::resolve(backend, saved, &scene.soup, &workload, streams, &pool);
             chosen.with_context(|| scene_args.name())?
         }
     };
     if args.max_memory.is_some() && matches!(chosen, Chosen::Named(_)) {
-        return Err(usage("--max-memory limits indexes in shards, which `p2m shard` writes, and those that auto chooses"));
+        return Err(usage(
+            "--max-memory limits indexes in shards, which `p2m shard` writes, and those that auto chooses",
+        ));
     }
     let backend = chosen.backend();
     let kdop_directions = requested(backend.has_kdop_directions, query_args.k)?;

@@ -14,6 +14,7 @@ use crate::index::shards::{open, refuse_options_of_builds, shard_folder, summari
 use crate::io::input::read_scene_and_index;
 use crate::io::output::Output;
 use crate::io::streams::Streams;
+use crate::io::usage::usage;
 use crate::ray::answers::{RaySource, Run};
 use crate::ray::args::rays;
 use anyhow::Context;

@@ -6,8 +6,8 @@ use nalgebra::{Isometry3, Point3};
 use p2m::batch::{BatchOptions, closest_points_into};
 use p2m::core::Isa;
 use p2m::field::sign::SignedDistance;
-use p2m::paper::PaperIndex;
 use p2m::pair::{ClosestPair, PairOptions, PairQuery};
+use p2m::paper::PaperIndex;
 use p2m::storage::{SavedFile, Writer};
 use p2m::{
     AabbTree, BruteForce, BuildIndex, CertifiedQuery, Closest, Feature, Hit, KdopTree, NearQuery, OctreeIndex,

@@ -1,0 +1,70 @@
+//! Pools of threads for other languages, which belong to one process.
+//!
+//! A process that was forked has none of the threads of its parent, so a pool of the parent would never answer. Pools
+//! are therefore kept with the id of their process, and a child makes its own. The global pool of rayon cannot be made
+//! anew, so it is never used.
+
+use rayon::{ThreadPool, ThreadPoolBuildError, ThreadPoolBuilder};
+use std::collections::HashMap;
+use std::sync::{Arc, Mutex, PoisonError};
+
+/// The pools of a process by their number of threads.
+type Pools = HashMap<usize, Arc<ThreadPool>>;
+
+/// The pools, with the id of the process that they belong to.
+static POOLS: Mutex<Option<(u32, Pools)>> = Mutex::new(None);
+
+/// Returns the pool of this process with so many threads, which are started by the first call. It lives as long as the
+/// process, unless it is [abandoned](abandon_pool).
+///
+/// A fork in another thread while this function runs leaves a child whose calls never return.
+///
+/// # Errors
+/// [`ThreadPoolBuildError`] if the system starts no more threads.
+pub fn shared_pool(threads: usize) -> Result<Arc<ThreadPool>, ThreadPoolBuildError> {
+    let mut guard = POOLS.lock().unwrap_or_else(PoisonError::into_inner);
+    let process = std::process::id();
+    if guard.as_ref().is_some_and(|(owner, _)| *owner != process) {
+        // To end the pools of the parent would wait for threads that do not exist here.
+        std::mem::forget(guard.take());
+    }
+    let (_, pools) = guard.get_or_insert_with(|| (process, Pools::new()));
+    if let Some(pool) = pools.get(&threads) {
+        return Ok(Arc::clone(pool));
+    }
+    let pool = start_pool(threads)?;
+    pools.insert(threads, Arc::clone(&pool));
+    Ok(pool)
+}
+
+/// Returns a pool with so many threads that nobody else uses.
+///
+/// # Errors
+/// [`ThreadPoolBuildError`] if the system starts no more threads.
+pub fn start_pool(threads: usize) -> Result<Arc<ThreadPool>, ThreadPoolBuildError> {
+    let builder = ThreadPoolBuilder::new().num_threads(threads).thread_name(|number| format!("p2m-{number}"));
+    builder.build().map(Arc::new)
+}
+
+/// Leaves a pool to the cancelled work that runs on it: later calls get another one. Its threads end with that work.
+pub fn abandon_pool(abandoned: &Arc<ThreadPool>) {
+    let mut guard = POOLS.lock().unwrap_or_else(PoisonError::into_inner);
+    if let Some((_, pools)) = guard.as_mut() {
+        pools.retain(|_, pool| !Arc::ptr_eq(pool, abandoned));
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_number_of_threads_has_one_pool_until_it_is_abandoned() {
+        let pool = shared_pool(3).expect("threads");
+        assert_eq!(pool.current_num_threads(), 3);
+        assert!(Arc::ptr_eq(&pool, &shared_pool(3).expect("threads")));
+        assert!(!Arc::ptr_eq(&pool, &start_pool(3).expect("threads")));
+        abandon_pool(&pool);
+        assert!(!Arc::ptr_eq(&pool, &shared_pool(3).expect("threads")));
+    }
+}
