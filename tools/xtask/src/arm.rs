@@ -27,7 +27,8 @@ const COUNTER: &str = "tools/xtask/src/instructions.c";
 /// The crates whose unit tests compare lanes with numbers, and searches with brute force.
 const CRATES: [&str; 4] = ["p2m-core", "p2m-bvh", "p2m-kdop", "p2m-interception"];
 /// The tests of the facade that compare all backends with each other, in bits.
-const AGREEMENT: [&str; 6] = ["agreement::", "batches::", "determinism::", "pairs::", "registry::", "saved::"];
+pub(crate) const AGREEMENT: [&str; 6] =
+    ["agreement::", "batches::", "determinism::", "pairs::", "registry::", "saved::"];
 /// Commands of the program whose output has to be that of the program for this machine.
 const COMMANDS: [&[&str]; 4] = [
     &["query", "scenes/knot_and_cables.obj", "--random", "1000", "--quiet"],
@@ -65,18 +66,27 @@ pub(crate) fn run(arguments: &[String]) -> Outcome {
 
 /// Runs commands of the program for ARM, and compares their output with that of the program for this machine.
 fn compare_programs(tools: &Tools) -> Outcome {
-    start(Command::new("cargo").args(["build", "--locked", "--package", "p2m-cli"]))?;
     start(&mut tools.cargo(&["build", "--locked", "--package", "p2m-cli"]))?;
-    let [native, program] = [debug_program()?, tools.target.join(TARGET).join("debug/p2m")].map(|path| {
-        // These paths are passed to commands as text.
-        path.to_string_lossy().into_owned()
-    });
+    let program = tools.target.join(TARGET).join("debug/p2m");
+    compare_outputs(|| {
+        let mut emulator = Command::new(&tools.qemu);
+        emulator.envs(tools.libraries()).arg(&program);
+        emulator
+    })
+}
+
+/// Runs commands of the program for another machine, by `program`, and compares their output with that of the program
+/// for this one.
+pub(crate) fn compare_outputs(program: impl Fn() -> Command) -> Outcome {
+    start(Command::new("cargo").args(["build", "--locked", "--package", "p2m-cli"]))?;
+    // The path is passed as text.
+    let native = debug_program()?.to_string_lossy().into_owned();
     for command in COMMANDS {
         let expected = output(&native, command)?;
-        let under_qemu = Command::new(&tools.qemu).envs(tools.libraries()).arg(&program).args(command).output();
-        let found = under_qemu.map_err(|error| format!("{}: {error}", tools.qemu.display()))?.stdout;
+        let mut program = program();
+        let found = program.args(command).output().map_err(|error| format!("{program:?}: {error}"))?.stdout;
         if expected.is_empty() || found != expected.as_bytes() {
-            return Err(format!("p2m {}: other output for ARM than for this machine", command.join(" ")));
+            return Err(format!("p2m {}: other output than on this machine", command.join(" ")));
         }
         println!("p2m {}: the same {} bytes", command.join(" "), found.len());
     }

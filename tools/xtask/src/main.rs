@@ -96,8 +96,8 @@ const TASKS: [Task; 23] = [
     },
     Task {
         name: "platforms",
-        arguments: "[TARGET]..",
-        about: "Check that the library and the program compile for other platforms, or for those that are named",
+        arguments: "[--wine | TARGET..]",
+        about: "Check that the library and the program compile for other platforms, or run tests for Windows under wine",
         run: platforms::check,
     },
     Task {

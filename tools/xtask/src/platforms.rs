@@ -1,10 +1,12 @@
-//! Checks that the library and the program compile for platforms whose programs this machine does not run.
+//! Checks that the library and the program compile for platforms whose programs this machine does not run, and runs
+//! tests for Windows under wine.
 //!
 //! A target is checked by the current compiler if it has the standard library, else by that of Debian, which compiles the
 //! standard library as well.
 
+use crate::arm::{AGREEMENT, compare_outputs};
 use crate::debian::{Packages, has_standard_library};
-use crate::{Outcome, absolute_target_folder, start};
+use crate::{Outcome, absolute_target_folder, output, start};
 use std::process::Command;
 
 /// Windows, macOS, 32 bits, and numbers with the highest byte first.
@@ -21,30 +23,69 @@ const TARGETS: [&str; 7] = [
 /// The package with what makes import libraries for Windows.
 const WINDOWS_PACKAGES: [&str; 1] = ["binutils-mingw-w64-x86-64"];
 
-/// Checks some targets, or all.
+/// The target whose programs wine runs.
+const WINDOWS: &str = TARGETS[0];
+/// The linker for it, and the program that runs what it links: packages of Debian have both.
+const LINKER: &str = "x86_64-w64-mingw32-gcc";
+const WINE: &str = "wine";
+
+/// Checks some targets, or all. With `--wine` it runs tests for Windows instead.
 pub(crate) fn check(arguments: &[String]) -> Outcome {
+    if arguments == ["--wine"] {
+        return run_under_wine();
+    }
     let all = TARGETS.map(str::to_owned);
     for target in if arguments.is_empty() { &all[..] } else { arguments } {
-        let mut cargo = Command::new("cargo");
-        cargo.args(["check", "--locked", "--package", "p2m", "--package", "p2m-cli", "--target", target]);
-        if !has_standard_library(target) {
-            let packages = match Packages::rust_and("windows", &WINDOWS_PACKAGES) {
-                Ok(packages) => packages,
-                Err(why) => {
-                    crate::skip(&format!(
-                        "there is no standard library of {target} (rustup target add {target}): {why}"
-                    ))?;
-                    continue;
-                }
-            };
-            packages.set_compiler(&mut cargo);
-            Packages::compile_standard_library(&mut cargo, "std");
-            let path = std::env::var_os("PATH").unwrap_or_default();
-            let folders = std::env::split_paths(&path).chain([packages.file("usr/bin")]);
-            cargo.env("PATH", std::env::join_paths(folders).map_err(|error| format!("PATH: {error}"))?);
-            cargo.env("CARGO_TARGET_DIR", absolute_target_folder()?.join("platforms"));
+        let packages = ["check", "--locked", "--package", "p2m", "--package", "p2m-cli"];
+        match cargo(target, &packages) {
+            Ok(mut cargo) => start(&mut cargo)?,
+            Err(why) => {
+                crate::skip(&format!("there is no standard library of {target} (rustup target add {target}): {why}"))?
+            }
         }
-        start(&mut cargo)?;
     }
     Ok(())
+}
+
+/// Returns a command of cargo for a target, or why there is no compiler for it.
+fn cargo(target: &str, arguments: &[&str]) -> Result<Command, String> {
+    let mut cargo = Command::new("cargo");
+    cargo.args([arguments[0], "--target", target]);
+    if !has_standard_library(target) {
+        let packages = Packages::rust_and("windows", &WINDOWS_PACKAGES)?;
+        packages.set_compiler(&mut cargo);
+        Packages::compile_standard_library(&mut cargo, "std,panic_unwind");
+        let path = std::env::var_os("PATH").unwrap_or_default();
+        let folders = std::env::split_paths(&path).chain([packages.file("usr/bin")]);
+        cargo.env("PATH", std::env::join_paths(folders).map_err(|error| format!("PATH: {error}"))?);
+        cargo.env("CARGO_TARGET_DIR", absolute_target_folder()?.join("platforms"));
+    }
+    cargo.args(&arguments[1..]);
+    Ok(cargo)
+}
+
+/// Runs the agreement of all backends, the checksums of answers and the program for Windows.
+fn run_under_wine() -> Outcome {
+    if [LINKER, WINE].iter().any(|tool| output(tool, &["--version"]).is_err()) {
+        return crate::skip(&format!(
+            "there is no {LINKER} or no {WINE} (apt-get install gcc-mingw-w64-x86-64 wine64)"
+        ));
+    }
+    let cargo = |arguments: &[&str]| {
+        let mut cargo = cargo(WINDOWS, arguments)?;
+        // Wine says much about itself unless it is told not to.
+        cargo.env("CARGO_TARGET_X86_64_PC_WINDOWS_GNU_RUNNER", WINE).env("WINEDEBUG", "-all");
+        Ok::<_, String>(cargo)
+    };
+    start(&mut cargo(&["test", "--locked", "--package", "p2m-testkit", "--test", "checksums"])?)?;
+    let agreement = ["test", "--locked", "--package", "p2m", "--test", "all", "--"];
+    start(cargo(&agreement)?.args(AGREEMENT))?;
+    start(&mut cargo(&["build", "--locked", "--package", "p2m-cli"])?)?;
+    let folder = if has_standard_library(WINDOWS) { "" } else { "platforms" };
+    let program = absolute_target_folder()?.join(folder).join(WINDOWS).join("debug/p2m.exe");
+    compare_outputs(|| {
+        let mut wine = Command::new(WINE);
+        wine.env("WINEDEBUG", "-all").arg(&program);
+        wine
+    })
 }
