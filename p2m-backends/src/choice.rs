@@ -4,7 +4,7 @@
 //! nodes and packets are counted. The octree saves most of that work, so these counts tell what it saves for each
 //! query; its build costs a time for each primitive. If the scene consists of slivers, cells would fall back to the
 //! tree. Where queries filter many packets then, the boxes fit badly: k-DOPs are built as well, and the tree with less
-//! work wins. Where there are many more queries still, cells of an octree are finer. No time is measured, so the choice depends on the scene, the queries and their number, and not on the load
+//! work wins. Where there are many more queries still, an octree has finer cells, even of slivers. No time is measured, so the choice depends on the scene, the queries and their number, and not on the load
 //! of the machine; only near a break-even the roundings of instruction sets may differ.
 //!
 //! The constants were fitted to 15 scenes of 20,000 to 870,000 primitives ([decision 068]). Other indexes win rarely
@@ -48,6 +48,11 @@ const KDOP_BUILD: f64 = 400.0;
 const MANY_PACKETS: f64 = 20.0;
 /// The part of the queries' time that k-DOPs are expected to save then.
 const SAVED_BY_KDOPS: f64 = 0.4;
+/// The part of the remaining time that finer cells save then, the nanoseconds for each primitive that their build takes,
+/// and their bytes for each primitive.
+const SAVED_BY_FINER_OF_SLIVERS: f64 = 0.6;
+const FINER_BUILD_OF_SLIVERS: f64 = 100_000.0;
+const FINER_CELL_BYTES_OF_SLIVERS: f64 = 2000.0;
 /// The number of primitives of the smallest scene for which an octree may pay.
 const MIN_PRIMITIVES: f64 = 512.0;
 /// The largest number of queries that are counted.
@@ -139,6 +144,7 @@ impl Choice {
         let primitives = soup.len() as f64;
         let tree = Box::new(AabbTree::build(Arc::clone(&soup), &SplitOptions::default())?);
         let max_cell_bytes = workload.max_bytes.saturating_sub(tree.memory());
+        let finer = Some(OctreeOptions::default().resolution * FINER);
         let choice = |index, backend, reason| Self { index, backend, resolution: None, max_cell_bytes, reason };
         let boxes = |tree, reason| choice(Chosen::Tree(tree), BackendEntry::default_backend(), reason);
         let wanted = usize::try_from(workload.queries / QUERIES_PER_COUNTED).unwrap_or(MAX_COUNTED).min(MAX_COUNTED);
@@ -172,7 +178,7 @@ impl Choice {
             let least = [OCTREE_BUILD / saved, FINER_BUILD / (saved * SAVED_BY_FINER)].map(|each| each * primitives);
             let backend = if queries > least[0] { octree } else { BackendEntry::default_backend() };
             let is_finer = queries > least[1] && FINER_CELL_BYTES * primitives <= max_cell_bytes as f64;
-            let resolution = is_finer.then(|| OctreeOptions::default().resolution * FINER);
+            let resolution = finer.filter(|_| is_finer);
             let reason = Some(Reason::OctreeFrom(least));
             return Ok(Self { resolution, ..choice(Chosen::Tree(tree), backend, reason) });
         }
@@ -183,7 +189,14 @@ impl Choice {
         let built = kdop.build(Arc::clone(&soup), &BuildSettings::default())?;
         let kdops = Work::of(&*built.index, &counted, workload.max_distance);
         let reason = Some(Reason::Packets([work.packets, kdops.packets]));
-        if kdops.nanoseconds(&KDOPS) < work.nanoseconds(&BOXES) {
+        let [kdop_time, box_time] = [kdops.nanoseconds(&KDOPS), work.nanoseconds(&BOXES)];
+        let saved = queries * kdop_time.min(box_time) * SAVED_BY_FINER_OF_SLIVERS;
+        if saved > FINER_BUILD_OF_SLIVERS * primitives
+            && FINER_CELL_BYTES_OF_SLIVERS * primitives <= max_cell_bytes as f64
+        {
+            return Ok(Self { resolution: finer, ..choice(Chosen::Tree(tree), octree, reason) });
+        }
+        if kdop_time < box_time {
             return Ok(choice(Chosen::Index(built, soup), kdop, reason));
         }
         Ok(boxes(tree, reason))

@@ -259,6 +259,9 @@ fn the_choice_of_auto_follows_from_scene_and_queries() {
             assert!(saved_bytes(&built) == saved_bytes(&alone), "{expected}");
         }
     }
+    // The cells of slivers have to be finer.
+    let choice = Choice::new(gear, &Workload::new(100_000_000, QueryRegion::SceneBox)).expect("valid scene");
+    assert!(choice.backend().name == "octree" && choice.resolution().is_some());
     // Points like those of the scene are near the surface.
     let workload = Workload::new(10_000_000, QueryRegion::Like(ball.positions()));
     assert_eq!(Choice::new(Arc::clone(&ball), &workload).expect("valid scene").backend().name, "octree");
