@@ -73,7 +73,7 @@ fn run_under_wine() -> Outcome {
     }
     let cargo = |arguments: &[&str]| {
         let mut cargo = cargo(WINDOWS, arguments)?;
-        // Wine says much about itself unless it is told not to.
+        // Wine prints messages of its own unless this is set.
         cargo.env("CARGO_TARGET_X86_64_PC_WINDOWS_GNU_RUNNER", WINE).env("WINEDEBUG", "-all");
         Ok::<_, String>(cargo)
     };
