@@ -344,7 +344,7 @@ fn damaged_shapefiles_are_errors() {
     );
     assert_eq!(
         error("shp/lines.shp", &[(104, &[1])]),
-        "lines.shp: record 0, counted from 0: it has 33554672 bytes, but the file has 244 more"
+        "lines.shp: record 0, counted from 0: it has 33554676 bytes, but the file has 244 more"
     );
     // The numbers of parts and of positions.
     assert!(
