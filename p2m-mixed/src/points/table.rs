@@ -59,6 +59,9 @@ pub(crate) fn for_each_row<R: Row<N>, const N: usize>(
     }
 }
 
+/// A row, and its id if there are ids.
+type RowAndId<'a, R> = (R, Option<&'a [u8]>);
+
 /// The content of the lines before the first row, and the columns that the caller chose.
 struct Head<'a> {
     chosen: &'a PointColumns,
@@ -92,7 +95,7 @@ impl<const N: usize> Layout<N> {
     }
 
     /// Returns the row of a record, and the id in it.
-    fn row<'a, R: Row<N>>(&self, line: &'a [u8]) -> Result<(R, Option<&'a [u8]>), Reason> {
+    fn row<'a, R: Row<N>>(&self, line: &'a [u8]) -> Result<RowAndId<'a, R>, Reason> {
         let (mut fields, mut id) = ([None; N], None);
         let mut place = |at: usize, field: &'a [u8]| {
             fields.iter_mut().zip(self.columns).filter(|(_, c)| *c == Some(at)).for_each(|(f, _)| *f = Some(field));
@@ -136,7 +139,7 @@ impl Head<'_> {
         layout: &mut Option<Layout<N>>,
         count: u64,
         line: &'a [u8],
-    ) -> Result<Option<(R, Option<&'a [u8]>)>, Reason> {
+    ) -> Result<Option<RowAndId<'a, R>>, Reason> {
         let text = trim(line);
         let comment = text.strip_prefix(b"#").or_else(|| text.strip_prefix(b"//"));
         if text.is_empty() || comment.is_some() {
@@ -189,7 +192,7 @@ impl Head<'_> {
             let is_id = |name: &&[u8]| first_word(name).eq_ignore_ascii_case(b"id");
             let id = match &self.chosen.id {
                 Some(id) => Some(column(id, names)?),
-                None => names.iter().position(|name| is_id(name)).filter(|_| !is_unnamed),
+                None => names.iter().position(is_id).filter(|_| !is_unnamed),
             };
             let unit = columns[0].filter(|_| !is_unnamed).and_then(|at| unit(names[at]));
             Ok(Layout { separator, columns, id, is_unnamed, unit })
@@ -239,7 +242,7 @@ fn column(name: &str, names: &[&[u8]]) -> Result<usize, Reason> {
     let is_named = |field: &&[u8]| {
         field.eq_ignore_ascii_case(name.as_bytes()) || first_word(field).eq_ignore_ascii_case(name.as_bytes())
     };
-    let found = column_number(name).filter(|at| *at < names.len()).or_else(|| names.iter().position(|f| is_named(f)));
+    let found = column_number(name).filter(|at| *at < names.len()).or_else(|| names.iter().position(is_named));
     found.ok_or_else(|| Reason::NoSuchColumn { name: name.to_owned(), names: listed(names) })
 }
 

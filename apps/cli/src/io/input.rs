@@ -235,22 +235,30 @@ pub(crate) struct PointArgs {
     pub(crate) points: Option<PathBuf>,
 
     /// The format of the points [default: by the file extension]
-    #[arg(long, value_name = "FORMAT", value_parser = one_of::<FileFormat>(FileFormat::names()), ignore_case = true, requires = "points")]
+    #[arg(long, value_name = "FORMAT", value_parser = one_of::<FileFormat>(FileFormat::names()), ignore_case = true)]
     points_format: Option<FileFormat>,
 
     /// The columns of x, y and perhaps z in a text table: names, or numbers from 1
-    #[arg(long, value_name = "COLUMNS", value_delimiter = ',', num_args = 1, requires = "points")]
+    #[arg(long, value_name = "COLUMNS", value_delimiter = ',', num_args = 1)]
     points_columns: Vec<String>,
 
     /// The column of a text table that has the ids of points [default: id]
-    #[arg(long, value_name = "COLUMN", requires = "points")]
+    #[arg(long, value_name = "COLUMN")]
     points_id: Option<String>,
 }
 
 impl PointArgs {
     /// Reads the points, if there is a file of them.
     pub(crate) fn read(&self, streams: &Streams) -> anyhow::Result<Option<PointTable>> {
-        let Some(path) = &self.points else { return Ok(None) };
+        let Some(path) = &self.points else {
+            // clap forgets what an option requires where that conflicts with another one.
+            let has_options =
+                self.points_format.is_some() || self.points_id.is_some() || !self.points_columns.is_empty();
+            return match has_options {
+                true => Err(usage("--points-format, --points-columns and --points-id need --points")),
+                false => Ok(None),
+            };
+        };
         let format = scene_format(path, self.points_format, "--points-format")?;
         let columns = PointColumns { coordinates: self.points_columns.clone(), id: self.points_id.clone() };
         read_points(streams, path, format, &columns, "--points-columns and --points-id are").map(Some)
