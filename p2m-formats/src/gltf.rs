@@ -1,7 +1,7 @@
 //! glTF 2.0 and GLB: meshes, lines and points of the nodes of a scene, with their transforms.
 //!
-//! The crate gltf parses and validates the description. The numbers in buffers are read here, because the iterators of
-//! that crate trust the lengths of buffers.
+//! The crate gltf parses and validates the description. Containers and the numbers in buffers are read here, because
+//! that crate trusts lengths.
 
 use crate::sink::{Sink, moved};
 use crate::{File, sink};
@@ -10,7 +10,7 @@ use base64::engine::general_purpose::STANDARD;
 use gltf::accessor::{DataType, Dimensions};
 use gltf::buffer::Source;
 use gltf::mesh::Mode;
-use gltf::{Accessor, Document, Glb, Mesh, Node, Semantic};
+use gltf::{Accessor, Document, Mesh, Node, Semantic};
 use nalgebra::{Matrix4, Quaternion, UnitQuaternion, Vector3};
 use p2m_core::Element;
 use p2m_mixed::{FileLocation, ReadError, Reason, Scene, Unit};
@@ -18,17 +18,11 @@ use std::borrow::Cow;
 use std::path::{Component, Path};
 
 pub(crate) fn read(file: &File<'_>) -> Result<Scene, ReadError> {
-    let glb = match file.bytes.starts_with(b"glTF") {
-        true => Some(Glb::from_slice(file.bytes).map_err(|error| file.error(format!("container: {error}")))?),
-        false => None,
-    };
-    let json = glb.as_ref().map_or(file.bytes, |glb| &glb.json);
+    let is_binary = file.bytes.starts_with(b"glTF");
+    let (json, bin) = if is_binary { chunks(file)? } else { (file.bytes, None) };
     let mut root = gltf::json::Root::from_slice(json).map_err(|error| {
-        let line = error.line() as u64;
-        file.error_at(
-            if glb.is_some() { FileLocation::File } else { FileLocation::Line(line) },
-            format!("description: {error}"),
-        )
+        let location = if is_binary { FileLocation::File } else { FileLocation::Line(error.line() as u64) };
+        file.error_at(location, format!("description: {error}"))
     })?;
     // The numbers of this extension are those of accessors, which are read here.
     root.extensions_required.retain(|extension| extension != "KHR_mesh_quantization");
@@ -47,8 +41,7 @@ pub(crate) fn read(file: &File<'_>) -> Result<Scene, ReadError> {
         }
     }
     let document = Document::from_json(root).map_err(|error| file.error(format!("description: {error}")))?;
-    let bin = glb.and_then(|glb| glb.bin);
-    let buffers = document.buffers().map(|buffer| load(file, &buffer, bin.as_deref()));
+    let buffers = document.buffers().map(|buffer| load(file, &buffer, bin));
     let buffers = buffers.collect::<Result<Vec<_>, _>>()?;
     let mut reader =
         Reader { file, buffers, sink: Sink::new(file.bytes.len()), visited: vec![false; document.nodes().len()] };
@@ -59,6 +52,27 @@ pub(crate) fn read(file: &File<'_>) -> Result<Scene, ReadError> {
     }
     reader.sink.builder.unit = Some(Unit::Metre);
     Ok(reader.sink.finish())
+}
+
+/// Returns the description in a binary file, and its buffer if it has one.
+fn chunks<'a>(file: &'a File<'_>) -> Result<(&'a [u8], Option<&'a [u8]>), ReadError> {
+    let version = u32::from_le_bytes(file.array(4)?);
+    if version != 2 {
+        return Err(file.error_at(FileLocation::Byte(4), format!("version {version} is not 2")));
+    }
+    let chunk = |at: usize, kind: &[u8; 4]| -> Result<&'a [u8], ReadError> {
+        if file.array(at + 4)? != *kind {
+            let name = kind.escape_ascii();
+            return Err(
+                file.error_at(FileLocation::Byte(at as u64 + 4), format!("the chunk is not of the kind {name}"))
+            );
+        }
+        file.slice(at + 8, u32::from_le_bytes(file.array(at)?) as usize)
+    };
+    let json = chunk(12, b"JSON")?;
+    let end = 20 + json.len();
+    let bin = if end < file.bytes.len() { Some(chunk(end, b"BIN\0")?) } else { None };
+    Ok((json, bin))
 }
 
 /// Returns the bytes of a buffer, which are in the file, in the text of its address, or in another file.

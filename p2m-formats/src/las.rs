@@ -7,6 +7,7 @@ use crate::{File, wkt};
 use laz::{DecompressionSelection, LasZipDecompressor, LazItemRecordBuilder, LazItemType, LazVlr};
 use p2m_mixed::{FileLocation, ReadError, Scene, Unit};
 use std::io::{Cursor, Seek, SeekFrom};
+use std::panic::{AssertUnwindSafe, catch_unwind};
 
 /// The bytes of a record of each format without further bytes.
 const RECORD_BYTES: [u16; 11] = [20, 28, 26, 34, 57, 63, 30, 36, 38, 59, 67];
@@ -181,7 +182,12 @@ fn decompress(
     while done < header.count {
         let count = BATCH.min(header.count - done);
         batch.resize(usize::try_from(count).expect("at most a batch") * usize::from(header.record_len), 0);
-        decompressor.decompress_many(&mut batch).map_err(|error| at_row(done, &error))?;
+        // The decoder indexes beyond its tables at damaged data. It is dropped then.
+        let result = catch_unwind(AssertUnwindSafe(|| decompressor.decompress_many(&mut batch)));
+        match result {
+            Ok(result) => result.map_err(|error| at_row(done, &error))?,
+            Err(_) => return Err(at_row(done, &"the data is damaged at or after it")),
+        }
         take(&batch)?;
         done += count;
     }

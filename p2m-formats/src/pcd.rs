@@ -120,7 +120,7 @@ pub(crate) fn read(file: &File<'_>) -> Result<Scene, ReadError> {
     match header.data {
         "ascii" => read_text(file, &header, &mut sink)?,
         "binary" => {
-            let len = header.count.checked_mul(header.record_len).unwrap_or(usize::MAX);
+            let len = header.count.saturating_mul(header.record_len);
             let records = file.slice(header.end, len)?;
             let fields = header.fields;
             let field = |axis: usize, row: usize| {
