@@ -104,7 +104,7 @@ struct Reader<'a> {
     file: &'a File<'a>,
     buffers: Vec<Cow<'a, [u8]>>,
     sink: Sink,
-    /// The nodes that were visited. A node has one parent at most.
+    /// The nodes that were visited. A node has at most one parent.
     visited: Vec<bool>,
 }
 

@@ -14,13 +14,13 @@ use std::fmt;
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 #[non_exhaustive]
 pub enum Unit {
-    /// Micrometres.
+    /// The unit is a micrometre.
     Micrometre,
-    /// Millimetres.
+    /// The unit is a millimetre.
     Millimetre,
-    /// Centimetres.
+    /// The unit is a centimetre.
     Centimetre,
-    /// Metres.
+    /// The unit is a metre.
     Metre,
     /// Inches of 25.4 mm.
     Inch,
