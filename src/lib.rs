@@ -109,6 +109,9 @@ pub use p2m_core::{
 /// Distance fields, on which side of a surface a point is, and Hausdorff distances.
 #[cfg(feature = "field")]
 pub use p2m_field as field;
+/// Scenes and scans in the formats of other programs: LAS, E57, PCD, glTF, 3MF, GeoJSON, shapefiles.
+#[cfg(feature = "formats")]
+pub use p2m_formats as formats;
 /// Scenes of moving objects: instances of indexes, each with a rotation and a translation.
 #[cfg(feature = "instances")]
 pub use p2m_instances as instances;

@@ -1,10 +1,10 @@
 //! The scene that a reader builds, statement by statement.
 
-use crate::Reason;
 use crate::parse::text::{quote, trim};
 use crate::pieces::state::Pieces;
 use crate::polygon::{CHECK_REPEATS_ABOVE_CORNERS, MAX_CORNER_SQUARES, Triangulator};
 use crate::scene::{Object, Scene, Skipped};
+use crate::{Reason, Unit};
 use nalgebra::Point3;
 use p2m_core::{Element, PrimitiveSet, Soup};
 use std::fs::File;
@@ -18,7 +18,7 @@ const MAX_SKIPPED_KINDS: usize = 64;
 
 /// Counts the records of a file that a reader skips, by kind.
 #[derive(Default)]
-pub(crate) struct SkippedRecords {
+pub struct SkippedRecords {
     /// The index of the kind that was counted last. It is tried first, because records of a kind often come in a row.
     last: usize,
     keys: Vec<Vec<u8>>,
@@ -28,7 +28,7 @@ pub(crate) struct SkippedRecords {
 
 impl SkippedRecords {
     /// Adds to the count of the kind with this name. A count of 0 adds no kind.
-    pub(crate) fn add(&mut self, key: &[u8], count: u64) {
+    pub fn add(&mut self, key: &[u8], count: u64) {
         if count == 0 {
             return;
         }
@@ -50,7 +50,7 @@ impl SkippedRecords {
     }
 
     /// Adds a kind that is described by a plural. A count of 0 adds no kind.
-    pub(crate) fn add_plural(&mut self, count: u64, what: &str) {
+    pub fn add_plural(&mut self, count: u64, what: &str) {
         if count > 0 {
             self.keys.push(what.as_bytes().to_vec());
             self.list.push(Skipped { what: what.to_owned(), count, is_plural: true });
@@ -150,7 +150,7 @@ impl Output<'_> {
             Some(pieces) if self.soup.len() >= pieces.max_primitives() => {
                 let objects = self.objects.end_piece(self.soup.len());
                 let (soup, sources) = (take(&mut self.soup), take(&mut self.sources));
-                pieces.visit(Scene { soup: Arc::new(soup), sources, objects, skipped: Vec::new() })
+                pieces.visit(Scene { soup: Arc::new(soup), sources, objects, ..Scene::default() })
             }
             _ => Ok(()),
         }
@@ -169,8 +169,13 @@ impl Output<'_> {
 /// Builds a scene, or pieces of it. Callers have to check that indices are in range and that the vertices of
 /// primitives are finite.
 #[derive(Default)]
-pub(crate) struct SceneBuilder<'a> {
-    pub(crate) skipped: SkippedRecords,
+pub struct SceneBuilder<'a> {
+    /// The records that are left out.
+    pub skipped: SkippedRecords,
+    /// The unit of the file.
+    pub unit: Option<Unit>,
+    /// Whether the points of the file have two coordinates.
+    pub is_flat: bool,
     output: Output<'a>,
     /// Whether a vertex is not finite.
     has_non_finite: bool,
@@ -204,7 +209,7 @@ impl<'a> SceneBuilder<'a> {
 
     /// Returns the number of vertices.
     #[inline]
-    pub(crate) fn vertex_count(&self) -> usize {
+    pub fn vertex_count(&self) -> usize {
         match &self.output.pieces {
             None => self.output.soup.positions().len(),
             Some(pieces) => pieces.vertex_count(),
@@ -231,7 +236,7 @@ impl<'a> SceneBuilder<'a> {
     ///
     /// # Errors
     /// [`Reason::ElementTooLarge`] if u32 cannot number it.
-    pub(crate) fn push_vertex(&mut self, position: Point3<f64>) -> Result<u32, Reason> {
+    pub fn push_vertex(&mut self, position: Point3<f64>) -> Result<u32, Reason> {
         let count = self.vertex_count() as u64;
         let vertex = u32::try_from(count).ok().filter(|&vertex| vertex < u32::MAX);
         let vertex = vertex.ok_or(Reason::ElementTooLarge { count: count + 1, limit: u64::from(u32::MAX) })?;
@@ -243,12 +248,19 @@ impl<'a> SceneBuilder<'a> {
         Ok(vertex)
     }
 
-    pub(crate) fn push(&mut self, element: Element, source: usize) -> Result<(), Reason> {
+    /// Adds a primitive, which comes from the statement with this number.
+    ///
+    /// # Errors
+    /// [`Reason::Build`] or [`Reason::Memory`] if there are too many.
+    pub fn push(&mut self, element: Element, source: usize) -> Result<(), Reason> {
         self.output.push(element, source_number(source))
     }
 
     /// Adds the triangles that a polygon is divided into.
-    pub(crate) fn push_polygon(&mut self, vertices: &[u32], source: usize) -> Result<(), Reason> {
+    ///
+    /// # Errors
+    /// Those of [`push`](Self::push), and [`Reason::PolygonsTooLarge`].
+    pub fn push_polygon(&mut self, vertices: &[u32], source: usize) -> Result<(), Reason> {
         if let &[a, b, c] = vertices {
             return self.push(Element::Triangle([a, b, c]), source);
         }
@@ -270,13 +282,16 @@ impl<'a> SceneBuilder<'a> {
     }
 
     /// Returns whether the coordinates of a vertex are finite, so that it may be part of a primitive.
+    ///
+    /// # Errors
+    /// Those of reading a temporary file, if the scene is read in pieces.
     #[inline]
-    pub(crate) fn is_finite(&mut self, vertex: u32) -> Result<bool, Reason> {
+    pub fn is_finite(&mut self, vertex: u32) -> Result<bool, Reason> {
         Ok(!self.has_non_finite || is_finite(&self.output.position(vertex)?))
     }
 
     /// Starts an object with this name. Primitives under an empty name belong to no object.
-    pub(crate) fn start_object(&mut self, name: &[u8]) {
+    pub fn start_object(&mut self, name: &[u8]) {
         self.start_run(trim(name));
     }
 
@@ -291,8 +306,11 @@ impl<'a> SceneBuilder<'a> {
     }
 
     /// Adds a point for every vertex with finite coordinates.
+    ///
+    /// # Errors
+    /// Those of [`push`](Self::push).
     #[allow(clippy::cast_possible_truncation, reason = "there are no more vertices than u32 can count")]
-    pub(crate) fn push_point_cloud(&mut self) -> Result<(), Reason> {
+    pub fn push_point_cloud(&mut self) -> Result<(), Reason> {
         let mut left_out = 0;
         for i in 0..self.vertex_count() {
             if self.is_finite(i as u32)? {
@@ -306,7 +324,8 @@ impl<'a> SceneBuilder<'a> {
     }
 
     /// Returns the scene, or its last piece, with all records that were skipped.
-    pub(crate) fn finish(mut self) -> Scene {
+    #[must_use]
+    pub fn finish(mut self) -> Scene {
         let uncovered = self.triangulator.uncovered;
         self.skipped.add_plural(uncovered, "insides of polygons that cross themselves");
         let Output { mut soup, mut sources, mut objects, .. } = self.output;
@@ -314,7 +333,8 @@ impl<'a> SceneBuilder<'a> {
         soup.shrink_to_fit();
         sources.shrink_to_fit();
         objects.end(soup.len());
-        Scene { soup: Arc::new(soup), sources, objects: objects.list, skipped: self.skipped.finish() }
+        let (unit, is_flat) = (self.unit, self.is_flat);
+        Scene { soup: Arc::new(soup), sources, objects: objects.list, skipped: self.skipped.finish(), unit, is_flat }
     }
 }
 

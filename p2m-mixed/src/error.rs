@@ -24,7 +24,9 @@ pub struct ReadError {
 }
 
 impl ReadError {
-    pub(crate) fn new(file: &str, location: FileLocation, reason: Reason) -> Self {
+    /// Makes the error of a reader, such as one of another format.
+    #[must_use]
+    pub fn new(file: &str, location: FileLocation, reason: Reason) -> Self {
         Self { file: file.to_owned(), location, reason }
     }
 }
@@ -246,6 +248,23 @@ pub enum Reason {
         /// The number of rows.
         found: u64,
     },
+    /// A row of a table without names has another number of columns than the first one, which has two.
+    #[error("the first row has 2 columns, but this one has {found}")]
+    ColumnCount {
+        /// The number of columns.
+        found: usize,
+    },
+    /// The table has no column with this name or number, which the caller chose.
+    #[error("there is no column '{name}' among {}", names.join(", "))]
+    NoSuchColumn {
+        /// The name, or the number from 1.
+        name: String,
+        /// The names of the columns, or the fields of the first row, or the first ones of them if there are many.
+        names: Vec<String>,
+    },
+    /// The reader of a format in another crate found an error.
+    #[error("{0}")]
+    Format(Box<dyn std::error::Error + Send + Sync>),
     /// The content of the file does not fit into memory.
     #[error("does not fit into memory: {0}")]
     Memory(std::collections::TryReserveError),

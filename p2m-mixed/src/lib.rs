@@ -42,6 +42,7 @@ mod polygon;
 mod read;
 mod scene;
 pub mod statistics;
+mod unit;
 mod write;
 
 pub use error::{FileLocation, HeaderProblem, ReadError, Reason};
@@ -54,15 +55,21 @@ pub use formats::stl::{StlRounding, read_stl, stl_rounding, write_stl};
 pub use p2m_core::{UnknownExtension, UnknownFormat};
 pub use parse::text::set_max_line_bytes;
 pub use pieces::{PieceOptions, PieceSummary, read_scene_in_pieces};
-pub use points::{PointFormat, read_points, read_points_from, read_rays, read_rays_from};
+pub use points::{
+    PointColumns, PointFormat, PointIds, PointTable, read_point_table, read_point_table_from, read_points,
+    read_points_from, read_rays, read_rays_from,
+};
 pub use polygon::MAX_CORNERS;
 pub use read::{read_scene, read_scene_from};
 pub use scene::{Object, Scene, Skipped};
+pub use unit::Unit;
 pub use write::{WriteError, write_scene};
 
 /// The parts of this crate that its sibling crates use. They are not part of the public interface.
 #[doc(hidden)]
 pub mod engine {
+    pub use crate::builder::SceneBuilder;
+    pub use crate::open::open;
     pub use crate::output_file::OutputFile;
     pub use crate::read::read_scene_in_blocks;
     pub use crate::scene::object_number;

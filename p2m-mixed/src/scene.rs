@@ -1,5 +1,6 @@
 //! Scenes: primitives with their sources in a file, named objects, and records that the reader skipped.
 
+use crate::Unit;
 use p2m_core::{Element, PrimitiveId, Soup};
 use std::fmt;
 use std::ops::Range;
@@ -42,6 +43,10 @@ pub struct Scene {
     pub objects: Vec<Object>,
     /// The records that the reader left out because they are not geometry, in the order of first appearance.
     pub skipped: Vec<Skipped>,
+    /// The unit of the coordinates, if the file has it. Coordinates are those of the file: nothing is converted.
+    pub unit: Option<Unit>,
+    /// Whether the points of the file have two coordinates. Their z is then 0.
+    pub is_flat: bool,
 }
 
 /// Makes a scene without objects, in which each primitive is a statement of its own.
@@ -54,7 +59,7 @@ impl From<Soup<f64>> for Scene {
             *count - 1
         };
         let sources = soup.elements().map(next).collect();
-        Self { soup: Arc::new(soup), sources, objects: Vec::new(), skipped: Vec::new() }
+        Self { soup: Arc::new(soup), sources, objects: Vec::new(), ..Self::default() }
     }
 }
 

@@ -62,7 +62,7 @@ Examples:
   p2m info scene.obj
   p2m convert scene.obj scene.ply
   p2m generate torus-knot --out knot.obj",
-        io::input::format_list(|_| true, "and"),
+        io::input::format_list(p2m_formats::FileFormat::all(), "and"),
         io::json::VERSION
     )
 }
@@ -146,7 +146,7 @@ impl Command {
 }
 
 /// Options that few users need. They are in `--help`, under a heading of their own, and not in `-h`.
-const ADVANCED: [&str; 21] = [
+const ADVANCED: [&str; 24] = [
     "box_scale",
     "displace_seed",
     "filter",
@@ -159,10 +159,13 @@ const ADVANCED: [&str; 21] = [
     "max_queries",
     "max_visits",
     "out_format",
+    "points_columns",
     "points_format",
+    "points_id",
     "rays_format",
     "read_limit",
     "round_seconds",
+    "scan_columns",
     "scan_format",
     "second_format",
     "seed",

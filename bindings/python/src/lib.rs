@@ -61,7 +61,7 @@ mod _p2m {
         rays::{HitList, rays},
         samples::{sample_box, sample_surface},
         saved::{load, load_bytes, write_bytes},
-        scene::Scene,
+        scene::{Scene, read_points},
         sharded::{ShardWriter, Shards},
         threads::default_threads,
     };

@@ -8,7 +8,7 @@ use numpy::{PyArray1, PyArray2, PyArrayMethods, PyReadonlyArray1, PyUntypedArray
 use p2m_core::pair::Motion;
 use p2m_core::{Aabb, Element, Position, PrimitiveSet, Soup};
 use p2m_mixed::engine::OutputFile;
-use p2m_mixed::{Format, WriteError, write_scene};
+use p2m_mixed::{Format, PointColumns, WriteError, write_scene};
 use pyo3::exceptions::PyTypeError;
 use pyo3::prelude::*;
 use pyo3::types::PyBytes;
@@ -82,7 +82,7 @@ impl Scene {
     #[staticmethod]
     fn read(py: Python<'_>, path: PathBuf) -> PyResult<Self> {
         let file = path.clone();
-        let scene = run_owned(py, crate::threads::default_threads(), 1, None, move |_| p2m_mixed::read_scene(&file))?;
+        let scene = run_owned(py, crate::threads::default_threads(), 1, None, move |_| p2m_formats::read_scene(&file))?;
         scene.map(Self::new).map_err(|error| read_error(&error, &path))
     }
 
@@ -210,10 +210,34 @@ impl Scene {
         self.shared.objects.iter().map(|object| (object.name.clone(), object.ids.start, object.ids.end)).collect()
     }
 
+    /// Returns the unit of the coordinates, if the file has it.
+    fn unit(&self) -> Option<String> {
+        self.shared.unit.map(|unit| unit.to_string())
+    }
+
     /// Returns what the reader left out.
     fn skipped(&self) -> Vec<String> {
         self.shared.skipped.iter().map(ToString::to_string).collect()
     }
+}
+
+/// The points of a file, their ids, and the unit.
+type ReadPoints<'py> = (Bound<'py, PyArray2<f64>>, Option<Vec<String>>, Option<String>);
+
+/// Reads the points of a file, with their ids.
+#[pyfunction]
+pub(crate) fn read_points(
+    py: Python<'_>,
+    path: PathBuf,
+    coordinates: Vec<String>,
+    id: Option<String>,
+) -> PyResult<ReadPoints<'_>> {
+    let (file, columns) = (path.clone(), PointColumns { coordinates, id });
+    let table = run_owned(py, 1, 1, None, move |_| p2m_formats::read_points(&file, &columns))?;
+    let table = table.map_err(|error| read_error(&error, &path))?;
+    let ids = table.ids.map(|ids| (0..ids.len()).filter_map(|point| ids.get(point).map(str::to_owned)).collect());
+    let points = PyArray1::from_slice(py, bytemuck::cast_slice(&table.points)).reshape([table.points.len(), 3])?;
+    Ok((points, ids, table.unit.map(|unit| unit.to_string())))
 }
 
 /// Returns indices as rows of an array.

@@ -2,8 +2,8 @@
 
 use crate::builder::SceneBuilder;
 use crate::parse::blocks::Source;
-use crate::points::table;
-use crate::{ReadError, Reason, Scene, WriteError};
+use crate::points::table::{self, TableNotes};
+use crate::{PointColumns, ReadError, Reason, Scene, WriteError};
 use nalgebra::Point3;
 use p2m_core::{Element, PrimitiveId};
 use std::io::{BufRead, Write};
@@ -11,10 +11,10 @@ use std::io::{BufRead, Write};
 /// Reads a cloud with a function that calls another one for each row. Each point that is finite is a primitive.
 fn read_cloud(
     mut builder: SceneBuilder<'_>,
-    for_each_row: impl FnOnce(&mut dyn FnMut(Point3<f64>) -> Result<(), Reason>) -> Result<(), ReadError>,
+    for_each_row: impl FnOnce(&mut dyn FnMut(Point3<f64>) -> Result<(), Reason>) -> Result<TableNotes, ReadError>,
 ) -> Result<Scene, ReadError> {
     let (mut left_out, mut row) = (0, 0);
-    for_each_row(&mut |point| {
+    let TableNotes { unit, is_flat } = for_each_row(&mut |point| {
         let vertex = builder.push_vertex(point)?;
         match point.iter().all(|x| x.is_finite()) {
             true => builder.push(Element::Point(vertex), row)?,
@@ -23,6 +23,7 @@ fn read_cloud(
         row += 1;
         Ok(())
     })?;
+    (builder.unit, builder.is_flat) = (unit, is_flat);
     builder.skipped.add_plural(left_out, "vertices that are not finite");
     Ok(builder.finish())
 }
@@ -33,7 +34,9 @@ pub(super) fn read_table(
     name: &str,
     builder: SceneBuilder<'_>,
 ) -> Result<Scene, ReadError> {
-    read_cloud(builder, |take| table::for_each_row(source.into_reader(), name, take))
+    read_cloud(builder, |take| {
+        table::for_each_row(source.into_reader(), name, &PointColumns::default(), |point, _| take(point))
+    })
 }
 
 /// Returns the points of a scene that has nothing else.
@@ -84,6 +87,7 @@ pub(super) mod npy {
     use crate::builder::SceneBuilder;
     use crate::parse::blocks::Source;
     use crate::points::npy::for_each_row;
+    use crate::points::table::TableNotes;
     use crate::{ReadError, Scene, WriteError};
     use p2m_core::npy_header;
     use std::io::{BufRead, Write};
@@ -93,7 +97,10 @@ pub(super) mod npy {
         name: &str,
         builder: SceneBuilder<'_>,
     ) -> Result<Scene, ReadError> {
-        read_cloud(builder, |take| for_each_row(source.into_reader(), name, take))
+        read_cloud(builder, |take| {
+            let is_flat = for_each_row(source.into_reader(), name, take)?;
+            Ok(TableNotes { unit: None, is_flat })
+        })
     }
 
     pub(in crate::formats) fn write(scene: &Scene, mut writer: impl Write) -> Result<(), WriteError> {

@@ -103,7 +103,7 @@ pub fn load_scene(reader: &Reader) -> Result<Scene, LoadError> {
         let what = text(own[0]).ok_or_else(|| LoadError::inconsistent(SKIPPED, "a name is missing"))?;
         skipped.push(Skipped { what, count: own[1], is_plural: own[2] != 0 });
     }
-    Ok(Scene { soup: Arc::new(soup), sources, objects, skipped })
+    Ok(Scene { soup: Arc::new(soup), sources, objects, skipped, ..Scene::default() })
 }
 
 /// Reads the scene from a file of a saved index. `name` is the name of the file in messages.

@@ -8,10 +8,11 @@ pub(crate) mod table;
 
 pub use rays::{read_rays, read_rays_from};
 
-use crate::ReadError;
 use crate::open::open;
+use crate::{ReadError, Reason, Unit};
 use nalgebra::Point3;
 use read::read;
+use std::collections::TryReserveError;
 use std::io::BufRead;
 use std::path::Path;
 
@@ -35,17 +36,21 @@ p2m_core::formats! {
 /// The first record decides what separates the columns: semicolons, commas, tabs or blanks, or what a line such as
 /// `sep=;` before it names. Fields may be quoted, but may not extend over several lines. Blank lines and lines that
 /// start with `#` or `//` are ignored. A line with a whole number alone before the first record is the number of rows.
+/// A file of several scans, as PTS files are, has such a line before each.
 ///
 /// If the first record has columns named `qx`, `qy`, `qz`, or else `x`, `y`, `z`, or else `Points:0`, `Points:1`,
 /// `Points:2`, these are used. The case of names is ignored, and so is text after a blank or a bracket, as in `X [m]`.
-/// Other names are an error. A record has names if none of its first three fields starts like a number. The names may
+/// So are `easting`, `northing`, `height` or `elevation`. Other names are an error. A record has names if none of its first three fields starts like a number. The names may
 /// also be in a comment before the first record, such as `# id x y z`, if it has as many words as the record.
+///
+/// Without a third column z is 0: the names are `x` and `y` alone, or each record has two numbers. A column named `id`
+/// has the ids of [`read_point_table`], by which columns can also be chosen.
 ///
 /// Without names the first three columns are used. A first record that has a whole number, three other numbers and a
 /// word is an error, because surveyors write the number of a point before its coordinates.
 ///
 /// # NPY
-/// An array of NumPy has the shape `(n, 3)`, C or Fortran order, and integers or floats of 4 or 8 bytes in either byte
+/// An array of NumPy has the shape `(n, 3)`, or `(n, 2)` for z = 0, C or Fortran order, and integers or floats of 4 or 8 bytes in either byte
 /// order. A structured array has the shape `(n,)`, and a field `query` of shape `(3,)` or else the fields `x`, `y`,
 /// `z`. Integers of 64 bits are rounded to double precision. Nothing may follow the array.
 ///
@@ -82,7 +87,100 @@ pub fn read_points(path: &Path) -> Result<Vec<Point3<f64>>, ReadError> {
 /// # Errors
 /// The errors are those of [`read_points`].
 pub fn read_points_from(reader: impl BufRead, format: PointFormat, name: &str) -> Result<Vec<Point3<f64>>, ReadError> {
-    read(reader, format, name)
+    Ok(read_point_table_from(reader, format, name, &PointColumns::default())?.points)
+}
+
+/// The columns of a text table that have the points, by their names in any case, or by their numbers from 1.
+#[derive(Debug, Clone, Default, PartialEq, Eq)]
+pub struct PointColumns {
+    /// The columns of x, y and z, or of x and y. If there are none, the names in the file decide.
+    pub coordinates: Vec<String>,
+    /// The column of the ids. If it is `None`, that is a column named `id`, where the file has one.
+    pub id: Option<String>,
+}
+
+/// The points of a file, and what else the file says about them.
+#[derive(Debug, Clone, Default, PartialEq)]
+#[non_exhaustive]
+pub struct PointTable {
+    /// The points, in the order of the file.
+    pub points: Vec<Point3<f64>>,
+    /// The id of each point, if the file has them.
+    pub ids: Option<PointIds>,
+    /// The unit of the coordinates, if the file has it. Coordinates are those of the file.
+    pub unit: Option<Unit>,
+    /// Whether points have two coordinates in the file. Their z is then 0.
+    pub is_flat: bool,
+}
+
+/// Texts that identify the points of a file, one for each point.
+#[derive(Debug, Clone, Default, PartialEq, Eq)]
+pub struct PointIds {
+    text: String,
+    /// The end of each id in the text.
+    ends: Vec<usize>,
+}
+
+impl PointIds {
+    /// Returns the number of ids.
+    #[must_use]
+    #[allow(clippy::len_without_is_empty, reason = "a file without points has no ids")]
+    pub fn len(&self) -> usize {
+        self.ends.len()
+    }
+
+    /// Returns the id of a point, which is empty where the file has none.
+    #[must_use]
+    pub fn get(&self, point: usize) -> Option<&str> {
+        let start = point.checked_sub(1).map_or(Some(0), |before| self.ends.get(before).copied())?;
+        self.text.get(start..*self.ends.get(point)?)
+    }
+
+    /// Adds an id. Bytes that are not UTF-8 are replaced by U+FFFD.
+    fn push(&mut self, id: &[u8]) -> Result<(), Reason> {
+        let id = String::from_utf8_lossy(id);
+        let reserved: Result<(), TryReserveError> =
+            self.text.try_reserve(id.len()).and_then(|()| self.ends.try_reserve(1));
+        reserved.map_err(Reason::Memory)?;
+        self.text.push_str(&id);
+        self.ends.push(self.text.len());
+        Ok(())
+    }
+}
+
+/// Reads query points with their ids from a file. Its extension, in any case, selects the format.
+///
+/// # Errors
+/// The errors are those of [`read_points`], and [`Reason::NoSuchColumn`] for a chosen column that a table lacks.
+pub fn read_point_table(path: &Path, columns: &PointColumns) -> Result<PointTable, ReadError> {
+    let format = PointFormat::from_path(path)?;
+    let name = path.display().to_string();
+    read_point_table_from(open(path, &name)?, format, &name, columns)
+}
+
+/// Reads query points with their ids from any reader. `name` is the name of the file in messages.
+///
+/// ```
+/// use p2m_mixed::{PointColumns, PointFormat, read_point_table_from};
+///
+/// let text = "id,lon,lat\nP7,4.5,52.0\n";
+/// let columns = PointColumns { coordinates: vec!["lon".to_owned(), "lat".to_owned()], ..PointColumns::default() };
+/// let table = read_point_table_from(text.as_bytes(), PointFormat::Csv, "stations", &columns)?;
+/// assert_eq!(table.points, [nalgebra::Point3::new(4.5, 52.0, 0.0)]);
+/// assert_eq!((table.ids.unwrap().get(0), table.is_flat), (Some("P7"), true));
+/// # Ok::<(), p2m_mixed::ReadError>(())
+/// ```
+///
+/// # Errors
+/// The errors are those of [`read_point_table`].
+pub fn read_point_table_from(
+    reader: impl BufRead,
+    format: PointFormat,
+    name: &str,
+    columns: &PointColumns,
+) -> Result<PointTable, ReadError> {
+    let read::Rows { rows: points, ids, unit, is_flat } = read(reader, format, name, columns)?;
+    Ok(PointTable { points, ids, unit, is_flat })
 }
 
 #[cfg(test)]

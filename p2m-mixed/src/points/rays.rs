@@ -3,7 +3,7 @@
 use super::read::read;
 use super::row::Row;
 use crate::open::open;
-use crate::{PointFormat, ReadError, Reason};
+use crate::{PointColumns, PointFormat, ReadError, Reason};
 use nalgebra::{Point3, Vector3};
 use p2m_core::Ray;
 use std::io::BufRead;
@@ -67,5 +67,5 @@ pub fn read_rays(path: &Path) -> Result<Vec<Ray>, ReadError> {
 /// # Errors
 /// The errors are those of [`read_rays`].
 pub fn read_rays_from(reader: impl BufRead, format: PointFormat, name: &str) -> Result<Vec<Ray>, ReadError> {
-    read(reader, format, name)
+    Ok(read(reader, format, name, &PointColumns::default())?.rows)
 }

@@ -1,27 +1,45 @@
 //! Reading rows in any format.
 
 use super::row::Row;
-use super::{npy, table};
+use super::{PointColumns, PointIds, npy, table};
 use crate::formats::ply::read_vertices;
-use crate::{PointFormat, ReadError, Reason};
+use crate::{PointFormat, ReadError, Reason, Unit};
 use std::io::BufRead;
 
-/// Reads points or rays.
-pub(super) fn read<R: Row<N>, const N: usize>(
+/// Points or rays, and what the file says about them.
+pub(crate) struct Rows<R> {
+    pub(crate) rows: Vec<R>,
+    pub(crate) ids: Option<PointIds>,
+    pub(crate) unit: Option<Unit>,
+    pub(crate) is_flat: bool,
+}
+
+/// Reads points or rays. Columns can be chosen in text tables alone.
+pub(crate) fn read<R: Row<N>, const N: usize>(
     reader: impl BufRead,
     format: PointFormat,
     name: &str,
-) -> Result<Vec<R>, ReadError> {
+    columns: &PointColumns,
+) -> Result<Rows<R>, ReadError> {
     let mut rows = Vec::new();
-    let take = |row| {
+    let mut ids = PointIds::default();
+    let mut take = |row| {
         rows.try_reserve(1).map_err(Reason::Memory)?;
         rows.push(row);
         Ok(())
     };
+    let (mut unit, mut is_flat) = (None, false);
     match format {
-        PointFormat::Xyz | PointFormat::Csv => table::for_each_row(reader, name, take)?,
-        PointFormat::Npy => npy::for_each_row(reader, name, take)?,
-        PointFormat::Ply => return read_vertices(reader, name),
+        PointFormat::Xyz | PointFormat::Csv => {
+            let notes = table::for_each_row(reader, name, columns, |row, id| {
+                take(row)?;
+                id.map_or(Ok(()), |id| ids.push(id))
+            })?;
+            (unit, is_flat) = (notes.unit, notes.is_flat);
+        }
+        PointFormat::Npy => is_flat = npy::for_each_row(reader, name, take)?,
+        PointFormat::Ply => rows = read_vertices(reader, name)?,
     }
-    Ok(rows)
+    let ids = Some(ids).filter(|ids| ids.len() > 0);
+    Ok(Rows { rows, ids, unit, is_flat })
 }

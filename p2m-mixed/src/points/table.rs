@@ -1,8 +1,9 @@
 //! The reader of text tables, in files of points and rays and in clouds.
 
+use super::PointColumns;
 use super::row::Row;
 use crate::parse::text::{LineReader, Tokens, is_space, parse_number, quote, trim};
-use crate::{FileLocation, ReadError, Reason};
+use crate::{FileLocation, ReadError, Reason, Unit};
 use std::io::BufRead;
 
 /// The largest number of columns that a message lists.
@@ -17,27 +18,40 @@ enum Separator {
     Blanks,
 }
 
-/// Calls a function for each row of a table. What its records look like, the first of them decides.
+/// The unit of a table, and whether its points have two coordinates.
+#[derive(Default)]
+pub(crate) struct TableNotes {
+    /// The unit in the name of the first coordinate, as in `X [mm]`.
+    pub(crate) unit: Option<Unit>,
+    /// Whether points have two coordinates.
+    pub(crate) is_flat: bool,
+}
+
+/// Calls a function for each row of a table, with the id in the row. The first record decides what the others look like.
 pub(crate) fn for_each_row<R: Row<N>, const N: usize>(
     reader: impl BufRead,
     name: &str,
-    mut take: impl FnMut(R) -> Result<(), Reason>,
-) -> Result<(), ReadError> {
+    chosen: &PointColumns,
+    mut take: impl FnMut(R, Option<&[u8]>) -> Result<(), Reason>,
+) -> Result<TableNotes, ReadError> {
     let mut lines = LineReader::new(reader, 0);
-    let mut head = Head::default();
+    let mut head = Head { chosen, announced: None, separator: None, comments: Vec::new() };
     let mut layout = None;
     let mut count = 0;
     loop {
         let result = match lines.read() {
-            Ok(true) => head.record(&mut layout, lines.bytes()).and_then(|row| {
-                row.map_or(Ok(()), |row| {
+            Ok(true) => head.record(&mut layout, count, lines.bytes()).and_then(|row| {
+                row.map_or(Ok(()), |(row, id)| {
                     count += 1;
-                    take(row)
+                    take(row, id)
                 })
             }),
             Ok(false) => match head.announced.filter(|&announced| announced != count) {
                 Some(announced) => Err(Reason::RowCount { announced, found: count }),
-                None => return Ok(()),
+                None => {
+                    let notes = |layout: Layout<N>| TableNotes { unit: layout.unit, is_flat: layout.is_flat() };
+                    return Ok(layout.map(notes).unwrap_or_default());
+                }
             },
             Err(error) => Err(Reason::Io(error)),
         };
@@ -45,10 +59,13 @@ pub(crate) fn for_each_row<R: Row<N>, const N: usize>(
     }
 }
 
-/// The content of the lines before the first row.
-#[derive(Default)]
-struct Head {
-    /// The number of rows, if a line has it.
+/// A row, and its id if there are ids.
+type RowAndId<'a, R> = (R, Option<&'a [u8]>);
+
+/// The content of the lines before the first row, and the columns that the caller chose.
+struct Head<'a> {
+    chosen: &'a PointColumns,
+    /// The number of rows, if a line has it. Files of several scans have such a line before each of them.
     announced: Option<u64>,
     /// The separator that a line `sep=` names.
     separator: Option<u8>,
@@ -59,16 +76,70 @@ struct Head {
 /// The largest number of comments before the first row that may have the names of the columns.
 const MAX_COMMENTS: usize = 64;
 
-/// The separator of fields, and the columns of the numbers.
-type Layout<const N: usize> = (Separator, [usize; N]);
+/// The places of the numbers in a record.
+#[derive(Clone, Copy)]
+struct Layout<const N: usize> {
+    separator: Separator,
+    /// The column of each number. One without a column is 0.
+    columns: [Option<usize>; N],
+    /// The column of the id.
+    id: Option<usize>,
+    /// Whether nothing names the columns.
+    is_unnamed: bool,
+    unit: Option<Unit>,
+}
 
-impl Head {
-    /// Returns the row of a line, if it has one. The first row decides the layout.
-    fn record<R: Row<N>, const N: usize>(
+impl<const N: usize> Layout<N> {
+    fn is_flat(&self) -> bool {
+        self.columns.contains(&None)
+    }
+
+    /// Returns the row of a record, and the id in it.
+    fn row<'a, R: Row<N>>(&self, line: &'a [u8]) -> Result<RowAndId<'a, R>, Reason> {
+        let (mut fields, mut id) = ([None; N], None);
+        let mut place = |at: usize, field: &'a [u8]| {
+            fields.iter_mut().zip(self.columns).filter(|(_, c)| *c == Some(at)).for_each(|(f, _)| *f = Some(field));
+            id = if self.id == Some(at) { Some(field) } else { id };
+        };
+        // Further numbers in a table of two columns would be heights that are ignored.
+        let is_exact = self.is_unnamed && self.is_flat();
+        let count = match self.separator {
+            Separator::Byte(separator) => {
+                // A first field may be empty where tabs separate.
+                let all = split(line, separator).ok_or(Reason::BadRecord)?;
+                all.iter().enumerate().for_each(|(at, field)| place(at, field));
+                all.len()
+            }
+            Separator::Blanks => {
+                let mut tokens = Tokens::new(line);
+                let last = self.columns.iter().chain([&self.id]).flatten().max().map_or(0, |last| last + 1);
+                let wanted = last + usize::from(is_exact);
+                (0..wanted).map_while(|at| tokens.next().map(|token| place(at, token))).count()
+            }
+        };
+        if is_exact && count > 2 {
+            return Err(Reason::ColumnCount { found: count });
+        }
+        let mut numbers = [0.0; N];
+        for (k, (number, field)) in numbers.iter_mut().zip(fields).enumerate() {
+            match field {
+                Some(field) => *number = parse_number(field)?,
+                None if self.columns[k].is_some() => return Err(R::too_few(k)),
+                None => {}
+            }
+        }
+        Ok((R::new(numbers)?, self.id.map(|_| id.unwrap_or_default())))
+    }
+}
+
+impl Head<'_> {
+    /// Returns the row of a line, if it has one, and the id in it. The first row decides the layout.
+    fn record<'a, R: Row<N>, const N: usize>(
         &mut self,
         layout: &mut Option<Layout<N>>,
-        line: &[u8],
-    ) -> Result<Option<R>, Reason> {
+        count: u64,
+        line: &'a [u8],
+    ) -> Result<Option<RowAndId<'a, R>>, Reason> {
         let text = trim(line);
         let comment = text.strip_prefix(b"#").or_else(|| text.strip_prefix(b"//"));
         if text.is_empty() || comment.is_some() {
@@ -79,38 +150,21 @@ impl Head {
             }
             return Ok(None);
         }
-        let (separator, columns) = match *layout {
-            Some(layout) => layout,
-            None => {
-                let Some((found, is_header)) = self.layout::<R, N>(line)? else { return Ok(None) };
-                *layout = Some(found);
-                if is_header {
-                    return Ok(None);
-                }
-                found
-            }
-        };
-        match separator {
-            Separator::Byte(separator) => {
-                // A first field may be empty where tabs separate.
-                let fields = split(line, separator).ok_or(Reason::BadRecord)?;
-                row(columns.map(|column| fields.get(column).copied())).map(Some)
-            }
-            Separator::Blanks => {
-                let mut fields = [None; N];
-                let mut tokens = Tokens::new(line);
-                let last = columns.iter().max().map_or(0, |last| last + 1);
-                for at in 0..last {
-                    let Some(token) = tokens.next() else { break };
-                    fields
-                        .iter_mut()
-                        .zip(columns)
-                        .filter(|(_, column)| *column == at)
-                        .for_each(|(f, _)| *f = Some(token));
-                }
-                row(fields).map(Some)
+        if (layout.is_none() && self.announced.is_none() || self.announced.is_some_and(|n| n == count && n > 0))
+            && text.iter().all(u8::is_ascii_digit)
+            && let Ok(more) = parse_count(text)
+        {
+            self.announced = Some(count.saturating_add(more));
+            return Ok(None);
+        }
+        if layout.is_none() {
+            let Some((found, is_header)) = self.layout::<R, N>(line)? else { return Ok(None) };
+            *layout = Some(found);
+            if is_header {
+                return Ok(None);
             }
         }
+        layout.map(|layout| layout.row(line)).transpose()
     }
 
     /// Returns the layout of the records, and whether the first one is a header; `None` for a line before it.
@@ -120,27 +174,48 @@ impl Head {
             self.separator = Some(separator);
             return Ok(None);
         }
-        if self.announced.is_none()
-            && text.iter().all(u8::is_ascii_digit)
-            && let Ok(count) = parse_count(text)
-        {
-            self.announced = Some(count);
-            return Ok(None);
-        }
         let separator = self.separator.map_or_else(|| separator(line.trim_ascii_end(), N), Separator::Byte);
         let fields = fields(line, separator)?;
-        let is_header = !fields.iter().take(N).any(|field| is_like_number(field));
-        if is_header {
-            return named_columns::<R, N>(&fields).map(|columns| Some(((separator, columns), true)));
-        }
-        // A comment names the columns if it names as many as there are.
-        for names in &self.comments {
-            if let Ok(names) = self::fields(trim(names), separator)
-                && names.len() == fields.len()
-                && let Some(columns) = coordinates::<R, N>(&names)
-            {
-                return Ok(Some(((separator, columns), false)));
+        let chosen = &self.chosen.coordinates;
+        let numbered = chosen.iter().map(|name| column_number(name)).collect::<Option<Vec<_>>>();
+        let is_header = match &numbered {
+            Some(columns) if !columns.is_empty() => {
+                !columns.iter().filter_map(|at| fields.get(*at)).any(|field| is_like_number(field))
             }
+            _ => !fields.iter().take(N).any(|field| is_like_number(field)),
+        };
+        // A comment names the columns if it names as many as there are.
+        let comments = self.comments.iter().filter_map(|names| self::fields(trim(names), separator).ok());
+        let names = if is_header { Some(fields.clone()) } else { None };
+        let mut candidates = names.into_iter().chain(comments.filter(|names| names.len() == fields.len()));
+        let layout = |columns: [Option<usize>; N], names: &[&[u8]], is_unnamed: bool| -> Result<_, Reason> {
+            let is_id = |name: &&[u8]| first_word(name).eq_ignore_ascii_case(b"id");
+            let id = match &self.chosen.id {
+                Some(id) => Some(column(id, names)?),
+                None => names.iter().position(is_id).filter(|_| !is_unnamed),
+            };
+            let unit = columns[0].filter(|_| !is_unnamed).and_then(|at| unit(names[at]));
+            Ok(Layout { separator, columns, id, is_unnamed, unit })
+        };
+        if !chosen.is_empty() {
+            if chosen.len() != N && (R::FLAT.is_empty() || chosen.len() + 1 != N) {
+                return Err(R::too_few(chosen.len()));
+            }
+            let (names, is_unnamed) = candidates.next().map_or((fields.clone(), true), |names| (names, false));
+            let mut columns = [None; N];
+            for (at, name) in columns.iter_mut().zip(chosen) {
+                *at = Some(column(name, &names)?);
+            }
+            let mut layout = layout(columns, &names, is_unnamed)?;
+            layout.is_unnamed = false; // The caller names them.
+            return Ok(Some((layout, is_header)));
+        }
+        if is_header {
+            let columns = named_columns::<R, N>(&fields)?;
+            return Ok(Some((layout(columns, &fields, false)?, true)));
+        }
+        if let Some((columns, names)) = candidates.find_map(|names| Some((coordinates::<R, N>(&names, &[])?, names))) {
+            return Ok(Some((layout(columns, &names, false)?, false)));
         }
         // Surveyors write a number before the coordinates, and a code after them.
         let is_number = |field: &&[u8]| parse_number(field).is_ok();
@@ -151,8 +226,35 @@ impl Head {
         {
             return Err(Reason::UnnamedColumns { found: fields.len() });
         }
-        Ok(Some(((separator, std::array::from_fn(|column| column)), false)))
+        let is_flat = !R::FLAT.is_empty() && fields.len() == 2;
+        let columns = std::array::from_fn(|column| (!is_flat || column < 2).then_some(column));
+        Ok(Some((layout(columns, &fields, true)?, false)))
     }
+}
+
+/// Returns the column, from 0, that a number from 1 stands for.
+fn column_number(name: &str) -> Option<usize> {
+    name.parse::<usize>().ok()?.checked_sub(1)
+}
+
+/// Returns the column with a name or a number from 1.
+fn column(name: &str, names: &[&[u8]]) -> Result<usize, Reason> {
+    let is_named = |field: &&[u8]| {
+        field.eq_ignore_ascii_case(name.as_bytes()) || first_word(field).eq_ignore_ascii_case(name.as_bytes())
+    };
+    let found = column_number(name).filter(|at| *at < names.len()).or_else(|| names.iter().position(is_named));
+    found.ok_or_else(|| Reason::NoSuchColumn { name: name.to_owned(), names: listed(names) })
+}
+
+/// Returns the unit in brackets in the name of a column, as in `X [mm]`.
+fn unit(name: &[u8]) -> Option<Unit> {
+    let (_, rest) = std::str::from_utf8(name).ok()?.split_once(['[', '('])?;
+    Unit::named(rest.split([']', ')']).next()?.trim())
+}
+
+/// Returns the names of columns as a message lists them.
+fn listed(names: &[&[u8]]) -> Vec<String> {
+    names.iter().take(MAX_LISTED_COLUMNS).map(|name| quote(name)).collect()
 }
 
 fn parse_count(digits: &[u8]) -> Result<u64, Reason> {
@@ -192,17 +294,6 @@ fn is_like_number(field: &[u8]) -> bool {
     matches!(field.first(), Some(b'0'..=b'9' | b'+' | b'-' | b'.')) || parse_number(field).is_ok() // `nan`
 }
 
-fn row<R: Row<N>, const N: usize>(fields: [Option<&[u8]>; N]) -> Result<R, Reason> {
-    let mut numbers = [0.0; N];
-    for (k, field) in fields.into_iter().enumerate() {
-        match field {
-            None => return Err(R::too_few(k)),
-            Some(field) => numbers[k] = parse_number(field)?,
-        }
-    }
-    R::new(numbers)
-}
-
 /// Splits a record into fields, without blanks and quotes around them. Returns `None` if a quote is not closed.
 ///
 /// A quote opens only at the start of a field; elsewhere it is a character like any other, as in `5'11"`. A quote that
@@ -232,23 +323,27 @@ fn split(line: &[u8], delimiter: u8) -> Option<Vec<&[u8]>> {
     (!quoted).then_some(fields)
 }
 
-/// Returns the columns with the names of coordinates.
-fn coordinates<R: Row<N>, const N: usize>(names: &[&[u8]]) -> Option<[usize; N]> {
-    R::COLUMNS.iter().find_map(|expected| {
-        let columns = expected.map(|n| names.iter().position(|f| first_word(f).eq_ignore_ascii_case(n.as_bytes())));
-        columns.iter().all(Option::is_some).then(|| columns.map(Option::unwrap_or_default))
-    })
+/// Returns the columns with the names of coordinates: of all of them, or else of two in `flat`.
+fn coordinates<R: Row<N>, const N: usize>(names: &[&[u8]], flat: &[[&'static str; 2]]) -> Option<[Option<usize>; N]> {
+    let find = |n: &str| names.iter().position(|f| first_word(f).eq_ignore_ascii_case(n.as_bytes()));
+    let all = |expected: &[&'static str; N]| {
+        let columns = expected.map(find);
+        columns.iter().all(Option::is_some).then_some(columns)
+    };
+    let two = |expected: &[&'static str; 2]| {
+        let columns = expected.map(find);
+        let all = columns.iter().all(Option::is_some);
+        all.then(|| std::array::from_fn(|k| columns.get(k).copied().flatten()))
+    };
+    R::COLUMNS.iter().find_map(all).or_else(|| flat.iter().find_map(two))
 }
 
 /// Returns the columns of the coordinates among the names of a header.
-fn named_columns<R: Row<N>, const N: usize>(names: &[&[u8]]) -> Result<[usize; N], Reason> {
-    match coordinates::<R, N>(names) {
+fn named_columns<R: Row<N>, const N: usize>(names: &[&[u8]]) -> Result<[Option<usize>; N], Reason> {
+    match coordinates::<R, N>(names, R::FLAT) {
         Some(columns) => Ok(columns),
         None if names.len() < N => Err(R::too_few(names.len())),
-        None => {
-            let names = names.iter().take(MAX_LISTED_COLUMNS).map(|f| quote(f)).collect();
-            Err(Reason::UnknownColumns { names, expected: R::EXPECTED_COLUMNS })
-        }
+        None => Err(Reason::UnknownColumns { names: listed(names), expected: R::EXPECTED_COLUMNS }),
     }
 }
 
@@ -261,10 +356,25 @@ fn first_word(field: &[u8]) -> &[u8] {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::PointTable;
     use nalgebra::Point3;
 
     fn table<R: Row<N>, const N: usize>(text: &str) -> Result<Vec<R>, String> {
-        crate::points::read::read(text.as_bytes(), crate::PointFormat::Csv, "q.csv").map_err(|e| e.to_string())
+        let columns = PointColumns::default();
+        let read = crate::points::read::read(text.as_bytes(), crate::PointFormat::Csv, "q.csv", &columns);
+        Ok(read.map_err(|e| e.to_string())?.rows)
+    }
+
+    /// Reads the points in chosen columns, with their ids.
+    fn chosen(text: &str, coordinates: &[&str], id: Option<&str>) -> Result<(PointTable, Vec<String>), String> {
+        let columns = PointColumns {
+            coordinates: coordinates.iter().map(|&name| name.to_owned()).collect(),
+            id: id.map(str::to_owned),
+        };
+        let read = crate::read_point_table_from(text.as_bytes(), crate::PointFormat::Csv, "q.csv", &columns);
+        let table = read.map_err(|e| e.to_string())?;
+        let ids = table.ids.iter().flat_map(|ids| (0..ids.len()).map(|i| ids.get(i).unwrap().to_owned())).collect();
+        Ok((table, ids))
     }
 
     fn points(text: &str) -> Result<Vec<[f64; 3]>, String> {
@@ -355,13 +465,66 @@ mod tests {
             let row = if header.contains(';') { "9;1;2;3" } else { "9,1,2,3" };
             assert_eq!(points(&format!("{header}\n{row}\n")).unwrap(), [[1.0, 2.0, 3.0]], "{header}");
         }
-        assert_eq!(points("x,y\n").unwrap_err(), "q.csv:1: a point needs 3 coordinates, found 2");
+        assert_eq!(points("x\n").unwrap_err(), "q.csv:1: a point needs 3 coordinates, found 1");
+        assert_eq!(points("id,Easting,Northing,Height\n9,1,2,3\n").unwrap(), [[1.0, 2.0, 3.0]]);
+    }
+
+    #[test]
+    fn two_coordinates_mean_that_z_is_zero() {
+        for text in ["1 2\n4 5\n", "1;2\n4;5\n", "y,x\n2,1\n5,4\n", "id\tx\ty\na\t1\t2\nb\t4\t5\n"] {
+            let (table, _) = chosen(text, &[], None).unwrap();
+            assert!(table.is_flat, "{text}");
+            assert_eq!(table.points, [Point3::new(1.0, 2.0, 0.0), Point3::new(4.0, 5.0, 0.0)], "{text}");
+        }
+        assert!(!chosen("1 2 3\n", &[], None).unwrap().0.is_flat);
+        // A height that only later rows have is not ignored, and one that is missing is not 0.
+        assert_eq!(points("1 2\n1 2 3\n").unwrap_err(), "q.csv:2: the first row has 2 columns, but this one has 3");
+        assert_eq!(points("x,y,z\n1,2\n").unwrap_err(), "q.csv:2: a point needs 3 coordinates, found 2");
+        assert_eq!(table::<p2m_core::Ray, 6>("0 0\n").unwrap_err(), "q.csv:1: a ray needs 6 coordinates, found 2");
+    }
+
+    #[test]
+    fn ids_come_with_the_points() {
+        let text = "id,x,y,z\nA 1,1,2,3\n\"b,c\",4,5,6\n,7,8,9\n";
+        assert_eq!(chosen(text, &[], None).unwrap().1, ["A 1", "b,c", ""]);
+        assert_eq!(chosen("1 2 3 n7\n4 5 6\n", &[], Some("4")).unwrap().1, ["n7", ""]);
+        assert_eq!(chosen("# id x y z\n7 1 2 3\n", &[], None).unwrap().1, ["7"]);
+        assert!(chosen("1 2 3 4\n", &[], None).unwrap().0.ids.is_none());
+    }
+
+    #[test]
+    fn columns_can_be_chosen() {
+        let text = "nr,lon,lat,alt (ft),code\nP7,10,20,30,X\n";
+        let (table, ids) = chosen(text, &["LON", "lat", "4"], Some("nr")).unwrap();
+        assert_eq!((table.points.as_slice(), ids), (&[Point3::new(10.0, 20.0, 30.0)][..], vec!["P7".to_owned()]));
+        assert!(chosen(text, &["lon", "lat"], None).unwrap().0.is_flat);
+        let (table, ids) = chosen("P7 1 2 3\nP8 4 5 6\n", &["2", "3", "4"], Some("1")).unwrap();
+        assert_eq!((table.points.len(), ids), (2, vec!["P7".to_owned(), "P8".to_owned()]));
+        let error = chosen(text, &["lon", "lat", "height"], None).unwrap_err();
+        assert_eq!(error, "q.csv:1: there is no column 'height' among nr, lon, lat, alt (ft), code");
+        assert_eq!(chosen("1 2\n", &["1", "2", "3"], None).unwrap_err(), "q.csv:1: there is no column '3' among 1, 2");
+        assert_eq!(chosen(text, &["lon"], None).unwrap_err(), "q.csv:1: a point needs 3 coordinates, found 1");
+    }
+
+    #[test]
+    fn names_of_columns_have_the_unit() {
+        let unit = |text: &str| chosen(text, &[], None).unwrap().0.unit;
+        assert_eq!(unit("X [mm],Y [mm],Z [mm]\n1,2,3\n"), Some(Unit::Millimetre));
+        assert_eq!((unit("x(ft) y z\n1 2 3\n"), unit("x,y,z\n")), (Some(Unit::Foot), None));
+    }
+
+    #[test]
+    fn files_of_several_scans_count_each() {
+        assert_eq!(points("1\n1 2 3\n1\n4 5 6\n").unwrap(), TWO);
+        let error = points("1\n1 2 3\n2\n4 5 6\n").unwrap_err();
+        assert_eq!(error, "q.csv:5: the first line announces 3 rows, but there are 2");
     }
 
     #[test]
     fn columns_with_other_names_are_no_coordinates() {
-        let names = "they may be named qx, qy, qz or x, y, z (or like 'X [m]') or Points:0, Points:1, Points:2";
-        for header in ["id,easting,northing,height", "time,x,y", "longitude,latitude,height"] {
+        let names = "they may be named qx, qy, qz or x, y[, z] (or like 'X [m]') or Points:0 to Points:2 or easting, \
+                     northing[, height]";
+        for header in ["id,east,north,height", "time,x,r,phi", "longitude,latitude,height"] {
             let listed = header.replace(',', ", ");
             let expected = format!("q.csv:1: no coordinates among the columns {listed}; {names}");
             assert_eq!(points(&format!("{header}\n10,0.5,0.25,1\n")).unwrap_err(), expected);

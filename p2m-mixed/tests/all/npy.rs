@@ -99,6 +99,10 @@ fn structured_arrays() {
         data.extend(b"abc");
     }
     assert_eq!(read(&npy(1, &described(fields, "False", "(2,)"), &data)).unwrap(), POINTS);
+    // Without a third column z is 0, in both orders.
+    let flat = [[1.0, 2.0, 0.0], [4.0, 5.0, 0.0]];
+    assert_eq!(read(&npy(1, &described("'<f8'", "False", "(2, 2)"), &doubles(&[1.0, 2.0, 4.0, 5.0]))).unwrap(), flat);
+    assert_eq!(read(&npy(1, &described("'<f8'", "True", "(2, 2)"), &doubles(&[1.0, 4.0, 2.0, 5.0]))).unwrap(), flat);
     // The field `query` takes precedence over x, y, z.
     let fields = "[('x', '<f8'), ('y', '<f8'), ('z', '<f8'), ('query', '<f8', 3)]";
     let data = doubles(&[9.0, 9.0, 9.0, 1.0, 2.0, 3.0, 9.0, 9.0, 9.0, 4.0, 5.0, 100.0]);
@@ -116,8 +120,8 @@ fn other_arrays_are_errors() {
             .1
             .to_owned()
     };
-    for shape in ["(3,)", "(2, 4)", "(2, 3, 1)", "()", "(3, 2)"] {
-        assert_eq!(message("'<f8'", shape), format!("the array has the shape {shape}, expected (n, 3)"));
+    for shape in ["(3,)", "(2, 4)", "(2, 3, 1)", "()", "(3, 1)"] {
+        assert_eq!(message("'<f8'", shape), format!("the array has the shape {shape}, expected (n, 3) or (n, 2)"));
     }
     assert_eq!(message("[('query', '<f8', (3,))]", "(2, 3)"), "the array has the shape (2, 3), expected (n,)");
     for descr in

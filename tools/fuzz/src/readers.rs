@@ -1,8 +1,10 @@
 //! Checks the promises of readers for any file: reading does not panic, is the same in blocks of any size, and takes
 //! memory in proportion to the size of the file, and the scene can be written in every format and reads back as the same.
+//! Formats of other programs are read from memory, and may take more of it.
 
 use super::memory;
 use p2m_core::{Element, PrimitiveSet, Soup};
+use p2m_formats::{FileFormat, ForeignFormat};
 use p2m_mixed::engine::read_scene_in_blocks;
 use p2m_mixed::{
     Format, Object, PointFormat, Scene, read_points_from, read_scene_from, stl_rounding, write_ply_ascii, write_scene,
@@ -38,6 +40,8 @@ pub enum Reader {
     Scene(Format),
     /// Files of points.
     Points(PointFormat),
+    /// Files of other programs.
+    Foreign(ForeignFormat),
 }
 
 impl Reader {
@@ -47,6 +51,7 @@ impl Reader {
         scenes
             .map(|format| Self::Scene(*format))
             .chain(PointFormat::ALL.iter().map(|format| Self::Points(*format)))
+            .chain(ForeignFormat::ALL.iter().map(|format| Self::Foreign(*format)))
             .collect()
     }
 
@@ -55,6 +60,7 @@ impl Reader {
         match self {
             Self::Scene(format) => format.to_string(),
             Self::Points(format) => format!("{format}_points"),
+            Self::Foreign(format) => format.to_string(),
         }
     }
 
@@ -63,6 +69,7 @@ impl Reader {
         match self {
             Self::Scene(format) => scene(file, format),
             Self::Points(format) => points(file, format),
+            Self::Foreign(format) => foreign(file, format),
         }
     }
 }
@@ -74,13 +81,47 @@ fn scene(file: &[u8], format: Format) {
         Ok(scene) => scene,
         Err(error) => return assert!(!error.to_string().is_empty()),
     };
+    check_written(&scene);
+}
+
+/// The memory that a file of another program may take in addition, beside what its length allows.
+const FOREIGN_BYTES: usize = 1 << 28;
+
+/// Reads a scene of another program, with the right checksums where the format has them, and writes it.
+fn foreign(file: &[u8], format: ForeignFormat) {
+    let mut file = file.to_vec();
+    if format == ForeignFormat::E57 {
+        p2m_testkit::restore_e57_checksums(&mut file);
+    }
+    let read = || {
+        // The decoder of LAZ panics at damaged data, which its reader makes an error of. The hook of the fuzzer would
+        // end the program.
+        let hook = (cfg!(fuzzing) && format == ForeignFormat::Las).then(std::panic::take_hook);
+        if hook.is_some() {
+            std::panic::set_hook(Box::new(|_| ()));
+        }
+        let scene = p2m_formats::read_scene_from(&file[..], FileFormat::Foreign(format), "fuzz", None);
+        hook.into_iter().for_each(std::panic::set_hook);
+        scene
+    };
+    match memory::at_most(FOREIGN_BYTES, read) {
+        Ok(scene) => check_written(&scene),
+        Err(error) => {
+            let text = error.to_string();
+            assert!(!text.is_empty() && !text.contains("failed at damaged data"), "{text}");
+        }
+    }
+}
+
+/// Writes a scene in every format, and reads it again.
+fn check_written(scene: &Scene) {
     assert_eq!(scene.sources.len(), scene.soup.len());
     check_objects(&scene.objects, scene.soup.len());
     assert!(scene.skipped.iter().all(|s| s.count > 0 && !s.to_string().is_empty()));
 
     for &format in Format::ALL.iter().filter(|format| format.is_lossless()) {
         let mut written = Vec::new();
-        write_scene(&scene, format, &mut written).unwrap();
+        write_scene(scene, format, &mut written).unwrap();
         let again = read_scene_from(&written[..], format, "again").unwrap();
         assert!(again.skipped.is_empty() || format == Format::P2m, "{format}: {:?}", again.skipped);
         let expected = match format {
@@ -97,7 +138,7 @@ fn scene(file: &[u8], format: Format) {
     }
 
     let mut written = Vec::new();
-    write_ply_ascii(&scene, &mut written).unwrap();
+    write_ply_ascii(scene, &mut written).unwrap();
     let again = read_scene_from(&written[..], Format::Ply, "again").unwrap();
     assert!(again.soup.elements().eq(scene.soup.elements()));
     let same = |a: f64, b: f64| a.to_bits() == b.to_bits() || a.is_nan() && b.is_nan();
@@ -105,7 +146,7 @@ fn scene(file: &[u8], format: Format) {
     assert!(pairs.clone().all(|(a, b)| (0..3).all(|k| same(a[k], b[k]))));
     assert_eq!(pairs.len(), scene.soup.positions().len());
 
-    stl(&scene);
+    stl(scene);
 }
 
 fn check_objects(objects: &[Object], len: usize) {

@@ -7,6 +7,7 @@
 pub mod adapters;
 pub mod adversaries;
 pub mod ball;
+mod checksum;
 pub mod compiled;
 pub mod contract;
 #[cfg(feature = "counted")]
@@ -32,6 +33,7 @@ mod surface;
 mod thin_scenes;
 pub mod truth;
 
+pub use checksum::restore_e57_checksums;
 pub use depth::{Cases, amount, cases, depth, is_deep};
 pub use models::{all_model_files, model_file, model_files, models};
 use nalgebra::Vector3;

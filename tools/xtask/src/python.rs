@@ -10,17 +10,26 @@ const MIN_VERSION: (u32, u32) = (3, 11);
 /// The folder of the package.
 const PACKAGE: &str = "bindings/python";
 /// The packages that the tests need. They are those of the extra `test` in pyproject.toml.
-const NEEDED: [&str; 12] = [
+const NEEDED: [&str; 21] = [
     "numpy>=1.26",
     "dask[array]>=2025.1",
     "distributed>=2025.1",
+    "geopandas>=1",
     "hypothesis>=6.100",
+    "laspy[lazrs]>=2.5",
+    "lxml>=5",
     "mypy>=1.15",
+    "networkx>=3",
     "pandas>=2.2",
     "polars>=1.20",
     "pyarrow>=18",
+    "pye57>=0.4",
+    "pypcd4>=1",
+    "pyshp>=2.3",
     "pytest>=8",
+    "scipy>=1.11",
     "tqdm>=4.66",
+    "trimesh>=4",
     "types-tqdm>=4.66",
     "zarr>=3",
 ];

@@ -5,9 +5,10 @@ use crate::io::json::{self, stats};
 use crate::scene::info::counted;
 use p2m_backends::{BuiltIndex, ChosenDirections};
 use p2m_core::Closest;
+use p2m_formats::FileFormat;
 use p2m_mixed::statistics::Counts;
 use p2m_mixed::statistics::figure::{Count, Figure, Rate, Time};
-use p2m_mixed::{Format, Scene, Skipped};
+use p2m_mixed::{Scene, Skipped};
 use serde_json::{Value, json};
 use std::fmt::{self, Write};
 use std::time::Duration;
@@ -22,7 +23,7 @@ pub(crate) struct SceneSummary<'a> {
 }
 
 impl<'a> SceneSummary<'a> {
-    pub(crate) fn new(name: String, format: Format, scene: &'a Scene) -> Self {
+    pub(crate) fn new(name: String, format: FileFormat, scene: &'a Scene) -> Self {
         Self { name, format: format.name(), counts: Counts::of(&scene.soup), skipped: &scene.skipped }
     }
 }

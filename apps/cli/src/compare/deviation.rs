@@ -128,7 +128,7 @@ pub(crate) fn run(streams: &Streams, args: &Args) -> anyhow::Result<()> {
     let pool = args.threads.pool()?;
     let start = Instant::now();
     let (scene, saved) = read_scene_and_index(streams, &pool, &args.scene.path, format, args.scene.map)?;
-    let mut scan = scan_format.read(streams, &pool, &args.scan.path)?;
+    let mut scan = args.scan.read(streams, &pool, scan_format)?;
     let read_time = start.elapsed();
     if let Some(note) = note_on_sizes(&scan.soup, &scene.soup).filter(|_| !args.align) {
         streams.print_summary(format_args!("warning  {note}\n"));

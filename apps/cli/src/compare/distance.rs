@@ -12,8 +12,9 @@ use anyhow::Context;
 use p2m_bvh::AabbTree;
 use p2m_core::Soup;
 use p2m_core::pair::{ClosestPair, PairOptions, PairQuery};
+use p2m_formats::FileFormat;
+use p2m_mixed::Scene;
 use p2m_mixed::statistics::figure::{Figure, Length};
-use p2m_mixed::{Format, Scene};
 use p2m_page::Measure;
 use serde_json::{Value, json};
 
@@ -106,7 +107,7 @@ fn text(names: &[String; 2], scenes: &[Scene; 2], found: Option<&ClosestPair<f64
 
 fn report(
     names: &[String; 2],
-    formats: [Format; 2],
+    formats: [FileFormat; 2],
     scenes: &[Scene; 2],
     found: Option<&ClosestPair<f64>>,
     limit: f64,

@@ -14,8 +14,9 @@ use p2m_backends::P2mSettings;
 use p2m_core::PrimitiveSet;
 use p2m_core::pair::Motion;
 use p2m_field::{Direction, HausdorffDistance, HausdorffOptions, hausdorff_distance, one_sided_hausdorff_distance};
+use p2m_formats::FileFormat;
+use p2m_mixed::Scene;
 use p2m_mixed::statistics::figure::Figure;
-use p2m_mixed::{Format, Scene};
 use p2m_page::Measure;
 use serde_json::{Value, json};
 use std::ops::ControlFlow;
@@ -143,7 +144,7 @@ fn text(names: &[String; 2], scenes: &[Scene; 2], found: &HausdorffDistance<f64>
 
 fn report(
     names: &[String; 2],
-    formats: [Format; 2],
+    formats: [FileFormat; 2],
     scenes: &[Scene; 2],
     found: &HausdorffDistance<f64>,
     tolerance: f64,

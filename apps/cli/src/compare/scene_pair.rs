@@ -8,8 +8,9 @@ use nalgebra::{Isometry3, Point3};
 use p2m_core::pair::{is_rotation_and_translation, isometry_of_matrix};
 use p2m_core::storage::Reader;
 use p2m_core::{Feature, PrimitiveId};
+use p2m_formats::FileFormat;
+use p2m_mixed::Scene;
 use p2m_mixed::statistics::figure::Length;
-use p2m_mixed::{Format, Scene};
 use rayon::ThreadPool;
 use serde_json::{Value, json};
 use std::path::{Path, PathBuf};
@@ -24,12 +25,12 @@ pub(crate) struct ScenePairArgs {
     second: PathBuf,
 
     /// The format of the first scene [default: by the file extension]
-    #[arg(long, value_name = "FORMAT", value_parser = one_of::<Format>(Format::NAMES), ignore_case = true)]
-    format: Option<Format>,
+    #[arg(long, value_name = "FORMAT", value_parser = one_of::<FileFormat>(FileFormat::names()), ignore_case = true)]
+    format: Option<FileFormat>,
 
     /// The format of the second scene [default: by the file extension]
-    #[arg(long, value_name = "FORMAT", value_parser = one_of::<Format>(Format::NAMES), ignore_case = true)]
-    second_format: Option<Format>,
+    #[arg(long, value_name = "FORMAT", value_parser = one_of::<FileFormat>(FileFormat::names()), ignore_case = true)]
+    second_format: Option<FileFormat>,
 
     /// Move the second scene by a rotation and a translation: the 12 or 16 numbers of a matrix, row by row, or a file
     /// with them
@@ -49,7 +50,7 @@ impl ScenePairArgs {
     }
 
     /// Returns the formats of the scenes.
-    pub(crate) fn formats(&self) -> anyhow::Result<[Format; 2]> {
+    pub(crate) fn formats(&self) -> anyhow::Result<[FileFormat; 2]> {
         Ok([
             scene_format(&self.first, self.format, "--format")?,
             scene_format(&self.second, self.second_format, "--second-format")?,
@@ -66,7 +67,7 @@ impl ScenePairArgs {
         &self,
         streams: &Streams,
         pool: &ThreadPool,
-        formats: [Format; 2],
+        formats: [FileFormat; 2],
     ) -> anyhow::Result<[(Scene, Option<Reader>); 2]> {
         let read = |path: &Path, format| read_scene_and_index(streams, pool, path, format, false);
         Ok([read(&self.first, formats[0])?, read(&self.second, formats[1])?])

@@ -9,9 +9,10 @@ use crate::io::zstd::{ZstdReader, is_zstd};
 use anyhow::{Context, anyhow, bail};
 use flate2::bufread::MultiGzDecoder;
 use nalgebra::Point3;
+use p2m_core::Ray;
 use p2m_core::storage::{LoadError, Reader, SavedFile};
-use p2m_core::{Ray, UnknownExtension};
-use p2m_mixed::{Format, PointFormat, Scene, load_scene};
+use p2m_formats::FileFormat;
+use p2m_mixed::{Format, PointColumns, PointFormat, PointTable, Reason, Scene, Unit as LengthUnit, load_scene};
 use rayon::ThreadPool;
 use std::cell::Cell;
 use std::fs::{File, Metadata};
@@ -29,17 +30,21 @@ pub(crate) const COMPRESSED: &str = ", also compressed by gzip or zstd";
 
 /// Returns the help of a scene with this name.
 pub(crate) fn scene_help(name: &str) -> String {
-    let formats = format_list(|_| true, "or");
-    format!("{name}: a file ({formats}), a saved index, or `-`")
+    format!("{name}: a file ({}), a saved index, or `-`", format_list(FileFormat::all(), "or"))
 }
 
-/// Returns a list of the formats of scenes, such as `OBJ, PLY or OFF`, in which `last` comes before the last one. Saved
+/// Returns a list of formats of scenes, such as `OBJ, PLY or OFF`, in which `last` comes before the last one. Saved
 /// indexes are not in it.
-pub(crate) fn format_list(is_listed: impl Fn(Format) -> bool, last: &str) -> String {
-    let listed = Format::ALL.iter().filter(|format| **format != Format::P2m && is_listed(**format));
+pub(crate) fn format_list(formats: impl Iterator<Item = FileFormat>, last: &str) -> String {
+    let listed = formats.filter(|format| *format != Format::P2m.into());
     let mut names: Vec<_> = listed.map(|format| format.name().to_uppercase()).collect();
     let end = names.pop().expect("a format of scenes");
     format!("{} {last} {end}", names.join(", "))
+}
+
+/// Returns a list of the formats that hold every scene.
+pub(crate) fn lossless_list(last: &str) -> String {
+    format_list(Format::ALL.iter().filter(|format| format.is_lossless()).map(|format| (*format).into()), last)
 }
 
 /// A scene to read.
@@ -49,8 +54,8 @@ pub(crate) struct SceneArgs {
     pub(crate) path: PathBuf,
 
     /// The format of the scene [default: by the file extension]
-    #[arg(long, value_name = "FORMAT", value_parser = one_of::<Format>(Format::NAMES), ignore_case = true)]
-    format: Option<Format>,
+    #[arg(long, value_name = "FORMAT", value_parser = one_of::<FileFormat>(FileFormat::names()), ignore_case = true)]
+    format: Option<FileFormat>,
 
     /// Map a saved index into memory, so that processes share it
     ///
@@ -71,7 +76,7 @@ impl SceneArgs {
     }
 
     /// Returns the format of the scene.
-    pub(crate) fn format(&self) -> anyhow::Result<Format> {
+    pub(crate) fn format(&self) -> anyhow::Result<FileFormat> {
         scene_format(&self.path, self.format, "--format")
     }
 }
@@ -99,16 +104,20 @@ pub(crate) fn shown(path: &Path) -> String {
 }
 
 /// Returns the format of a scene: the given one, or else that of the extension.
-pub(crate) fn scene_format(path: &Path, given: Option<Format>, option: &str) -> anyhow::Result<Format> {
+pub(crate) fn scene_format(path: &Path, given: Option<FileFormat>, option: &str) -> anyhow::Result<FileFormat> {
     match given {
         Some(format) => Ok(format),
-        None if is_standard(path) => Err(unnamed(option, Format::NAMES)),
-        None => Format::from_path(&uncompressed_name(path)?).map_err(|e| or_option(&e, option)),
+        None if is_standard(path) => Err(unnamed(option, FileFormat::names())),
+        None => FileFormat::from_path(&uncompressed_name(path)?).map_err(|error| match error.reason {
+            Reason::UnknownExtension { .. } => or_option(&error, option),
+            // The error names a converter.
+            _ => error.into(),
+        }),
     }
 }
 
-/// Returns the format of points or rays: the given one, or else that of the extension.
-pub(crate) fn point_format(path: &Path, given: Option<PointFormat>, option: &str) -> anyhow::Result<PointFormat> {
+/// Returns the format of rays: the given one, or else that of the extension.
+pub(crate) fn ray_format(path: &Path, given: Option<PointFormat>, option: &str) -> anyhow::Result<PointFormat> {
     match given {
         Some(format) => Ok(format),
         None if is_standard(path) => Err(unnamed(option, PointFormat::NAMES)),
@@ -139,7 +148,7 @@ pub(crate) fn unnamed(option: &str, names: &[&str]) -> anyhow::Error {
 }
 
 /// The error of an unknown extension, with the option that names the format.
-pub(crate) fn or_option(error: &UnknownExtension, option: &str) -> anyhow::Error {
+pub(crate) fn or_option(error: &impl std::fmt::Display, option: &str) -> anyhow::Error {
     anyhow!("{error}, or name the format with {option}")
 }
 
@@ -148,15 +157,15 @@ pub(crate) fn read_scene_and_index(
     streams: &Streams,
     pool: &ThreadPool,
     path: &Path,
-    format: Format,
+    format: FileFormat,
     is_mapped: bool,
 ) -> anyhow::Result<(Scene, Option<Reader>)> {
     // A file that is missing is an error of mapping it.
     let is_no_file = is_standard(path) || (path.exists() && !path.is_file());
-    if is_mapped && (format != Format::P2m || is_no_file || is_compressed(path)) {
+    if is_mapped && (format != Format::P2m.into() || is_no_file || is_compressed(path)) {
         return Err(usage("--map needs the file of a saved index, which is not compressed"));
     }
-    if format != Format::P2m {
+    if format != Format::P2m.into() {
         return Ok((read_plain_scene(streams, pool, path, format)?, None));
     }
     let load = |file: SavedFile| -> Result<_, LoadError> {
@@ -186,36 +195,104 @@ pub(crate) fn read_scene(
     streams: &Streams,
     pool: &ThreadPool,
     args: &SceneArgs,
-    format: Format,
+    format: FileFormat,
 ) -> anyhow::Result<Scene> {
     Ok(read_scene_and_index(streams, pool, &args.path, format, args.map)?.0)
 }
 
 /// Reads a scene from a file without an index.
-fn read_plain_scene(streams: &Streams, pool: &ThreadPool, path: &Path, format: Format) -> anyhow::Result<Scene> {
+fn read_plain_scene(streams: &Streams, pool: &ThreadPool, path: &Path, format: FileFormat) -> anyhow::Result<Scene> {
     let reader = open(streams, path)?;
-    Ok(pump(pool, reader, |reader| p2m_mixed::read_scene_from(reader, format, &name(path)))?)
+    let read = |reader| p2m_formats::read_scene_from(reader, format, &name(path), companions_of(path));
+    let scene = pump(pool, reader, read)?;
+    print_notes(streams, path, scene.unit, scene.is_flat);
+    Ok(scene)
 }
 
-/// Reads the points of a file.
-pub(crate) fn read_points(streams: &Streams, path: &Path, format: PointFormat) -> anyhow::Result<Vec<Point3<f64>>> {
-    Ok(p2m_mixed::read_points_from(open(streams, path)?, format, &name(path))?)
+/// Returns the place where a file may have companions.
+fn companions_of(path: &Path) -> Option<&Path> {
+    Some(path).filter(|path| !is_standard(path))
 }
 
-/// Reads the points of a file whose coordinates are finite. A note says how many are left out.
-pub(crate) fn read_finite_points(
+/// Says what a reader assumes of coordinates.
+fn print_notes(streams: &Streams, path: &Path, unit: Option<LengthUnit>, is_flat: bool) {
+    let name = name(path);
+    if is_flat {
+        streams.print_summary(format_args!("note     {name} has two coordinates for each point: z is 0\n"));
+    }
+    if unit == Some(LengthUnit::Degree) {
+        streams.print_summary(format_args!(
+            "note     {name} is in degrees, so distances are no lengths: ogr2ogr -t_srs converts it to metres\n"
+        ));
+    }
+}
+
+/// Points to read.
+#[derive(clap::Args)]
+pub(crate) struct PointArgs {
+    /// Read the query points from a file: a table (XYZ, TXT, ASC, PTS, CSV), an array (NPY), or the vertices of a scene
+    #[arg(long, value_name = "FILE")]
+    pub(crate) points: Option<PathBuf>,
+
+    /// The format of the points [default: by the file extension]
+    #[arg(long, value_name = "FORMAT", value_parser = one_of::<FileFormat>(FileFormat::names()), ignore_case = true)]
+    points_format: Option<FileFormat>,
+
+    /// The columns of x, y and perhaps z in a text table: names, or numbers from 1
+    #[arg(long, value_name = "COLUMNS", value_delimiter = ',', num_args = 1)]
+    points_columns: Vec<String>,
+
+    /// The column of a text table that has the ids of points [default: id]
+    #[arg(long, value_name = "COLUMN")]
+    points_id: Option<String>,
+}
+
+impl PointArgs {
+    /// Reads the points, if there is a file of them.
+    pub(crate) fn read(&self, streams: &Streams) -> anyhow::Result<Option<PointTable>> {
+        let Some(path) = &self.points else {
+            // clap forgets what an option requires where that conflicts with another one.
+            let has_options =
+                self.points_format.is_some() || self.points_id.is_some() || !self.points_columns.is_empty();
+            return match has_options {
+                true => Err(usage("--points-format, --points-columns and --points-id need --points")),
+                false => Ok(None),
+            };
+        };
+        let format = scene_format(path, self.points_format, "--points-format")?;
+        let columns = PointColumns { coordinates: self.points_columns.clone(), id: self.points_id.clone() };
+        read_points(streams, path, format, &columns, "--points-columns and --points-id are").map(Some)
+    }
+}
+
+/// Reads the points of a file. Only the columns of a text table can be chosen, which `options` do.
+pub(crate) fn read_points(
     streams: &Streams,
     path: &Path,
-    format: PointFormat,
-) -> anyhow::Result<Vec<Point3<f64>>> {
-    let mut points = read_points(streams, path, format)?;
+    format: FileFormat,
+    columns: &PointColumns,
+    options: &str,
+) -> anyhow::Result<PointTable> {
+    let is_table = matches!(format, FileFormat::Own(Format::Xyz | Format::Csv));
+    if *columns != PointColumns::default() && !is_table {
+        return Err(usage(format!("{options} for text tables, and {} is none", name(path))));
+    }
+    let reader = open(streams, path)?;
+    let table = p2m_formats::read_points_from(reader, format, &name(path), companions_of(path), columns)?;
+    print_notes(streams, path, table.unit, table.is_flat);
+    Ok(table)
+}
+
+/// Reads points whose coordinates are finite, if there is a file of them. A note says how many are left out.
+pub(crate) fn read_finite_points(streams: &Streams, args: &PointArgs) -> anyhow::Result<Option<Vec<Point3<f64>>>> {
+    let Some(PointTable { mut points, .. }) = args.read(streams)? else { return Ok(None) };
     let count = points.len();
     points.retain(|point| point.iter().all(|x| x.is_finite()));
     if points.len() < count {
         let left_out = count - points.len();
         streams.print_summary(format_args!("note     {left_out} of {count} points are not finite and are left out\n"));
     }
-    Ok(points)
+    Ok(Some(points))
 }
 
 /// Reads the rays of a file.

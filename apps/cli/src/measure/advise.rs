@@ -1,18 +1,16 @@
 //! `p2m advise`: recommends a backend for a scene and its queries.
 
-use crate::io::input::{SceneArgs, point_format, read_finite_points, read_scene};
+use crate::io::input::{PointArgs, SceneArgs, read_finite_points, read_scene};
 use crate::io::json;
 use crate::io::output::Output;
 use crate::io::streams::Streams;
 use crate::io::threads::ThreadArgs;
-use crate::io::usage::{not_negative, one_of, positive, whole_number};
+use crate::io::usage::{not_negative, positive, whole_number};
 use anyhow::Context;
 use clap::ArgGroup;
 use p2m_backends::{Advice, Estimate, QueryRegion, Workload, recommend};
-use p2m_mixed::PointFormat;
 use serde_json::{Value, json};
 use std::fmt::Write as _;
-use std::path::PathBuf;
 use std::time::Duration;
 
 const HELP: &str = "\
@@ -45,13 +43,8 @@ pub(crate) struct Args {
     #[arg(long = "box", id = "within")]
     within: bool,
 
-    /// Queries are like the points of this file
-    #[arg(long, value_name = "FILE")]
-    points: Option<PathBuf>,
-
-    /// The format of the points [default: by the file extension]
-    #[arg(long, value_name = "FORMAT", value_parser = one_of::<PointFormat>(PointFormat::NAMES), ignore_case = true, requires = "points")]
-    points_format: Option<PointFormat>,
+    #[command(flatten)]
+    points: PointArgs,
 
     /// The largest memory of the index, in megabytes
     #[arg(long, value_name = "MB", value_parser = positive, allow_negative_numbers = true)]
@@ -73,11 +66,7 @@ pub(crate) fn run(streams: &Streams, args: &Args) -> anyhow::Result<()> {
     let format = args.scene.format()?;
     let pool = args.threads.pool()?;
     let scene = read_scene(streams, &pool, &args.scene, format)?;
-    let points = args
-        .points
-        .as_ref()
-        .map(|path| read_finite_points(streams, path, point_format(path, args.points_format, "--points-format")?));
-    let points = points.transpose()?;
+    let points = read_finite_points(streams, &args.points)?;
     let region = match &points {
         Some(points) => QueryRegion::Like(points),
         None if args.near => QueryRegion::NearSurface,

@@ -3,12 +3,14 @@
 use crate::answers::queries::{Queries, Region};
 use crate::index::backend::{Backend, SceneSource, backends, saved_or_default};
 use crate::index::sign_rule::{SignRule, SignedIndex};
-use crate::io::input::{SceneArgs, is_standard, point_format, read_finite_points, read_rays, read_scene_and_index};
+use crate::io::input::{
+    PointArgs, SceneArgs, is_standard, ray_format, read_finite_points, read_rays, read_scene_and_index,
+};
 use crate::io::output::Output;
 use crate::io::progress::{Progress, Unit};
 use crate::io::streams::Streams;
 use crate::io::threads::ThreadArgs;
-use crate::io::usage::{count_in, not_negative, one_of, positive, usage, whole_number};
+use crate::io::usage::{count_in, not_negative, positive, usage, whole_number};
 use crate::page::open::OpenArgs;
 use crate::page::source::{PageArgs, about, file_name};
 use crate::page::tree_levels::TreeLevels;
@@ -19,8 +21,8 @@ use p2m_backends::{AnyIndex, P2mSettings};
 use p2m_bvh::{AabbTree, PacketTree};
 use p2m_core::{Aabb, Closest, PrimitiveSet, QueryOptions, Ray};
 use p2m_field::{FieldOptions, Grid, distances, signed_distances};
+use p2m_mixed::Scene;
 use p2m_mixed::statistics::Counts;
-use p2m_mixed::{PointFormat, Scene};
 use p2m_page::{Level, Measure, View};
 use rayon::ThreadPool;
 use rayon::prelude::*;
@@ -53,16 +55,11 @@ pub(crate) struct Args {
     #[command(flatten)]
     scene: SceneArgs,
 
-    /// Show the closest points of the points of a file: XYZ, TXT, ASC, PTS, CSV, NPY or PLY
-    #[arg(long, value_name = "FILE", conflicts_with = "random")]
-    points: Option<PathBuf>,
-
-    /// The format of the points [default: by the file extension]
-    #[arg(long, value_name = "FORMAT", value_parser = one_of::<PointFormat>(PointFormat::NAMES), ignore_case = true, requires = "points")]
-    points_format: Option<PointFormat>,
+    #[command(flatten)]
+    points: PointArgs,
 
     /// Show the closest points of N random points in the box of the scene
-    #[arg(long, value_name = "N", value_parser = |text: &str| count_in(text, 0, MAX_QUERIES), allow_negative_numbers = true)]
+    #[arg(long, value_name = "N", value_parser = |text: &str| count_in(text, 0, MAX_QUERIES), allow_negative_numbers = true, conflicts_with = "points")]
     random: Option<u64>,
 
     /// Scale the box of the scene about its centre by this factor
@@ -150,7 +147,7 @@ pub(crate) fn run(streams: &Streams, args: &Args) -> anyhow::Result<()> {
     let queries = args.queries(streams, &bounds)?;
     let grid = args.grid(&bounds)?;
     let rays =
-        args.rays.as_ref().map(|path| read_rays(streams, path, point_format(path, None, "--rays")?)).transpose()?;
+        args.rays.as_ref().map(|path| read_rays(streams, path, ray_format(path, None, "--rays")?)).transpose()?;
     if rays.as_ref().is_some_and(|rays| rays.len() as u64 > MAX_QUERIES) {
         bail!("--rays: a page shows at most {MAX_QUERIES} rays");
     }
@@ -307,10 +304,11 @@ fn levels(tree: &PacketTree, count: usize) -> Vec<Level> {
 impl Args {
     /// Refuses combinations of arguments that contradict each other.
     fn check(&self, out: &Path) -> anyhow::Result<()> {
-        if self.signed.is_some() && self.field.is_none() && self.points.is_none() && self.random.is_none() {
+        if self.signed.is_some() && self.field.is_none() && self.points.points.is_none() && self.random.is_none() {
             return Err(usage("--signed needs --field, --random or --points"));
         }
-        let inputs: Vec<&Path> = std::iter::once(self.scene.path.as_path()).chain(self.points.as_deref()).collect();
+        let inputs: Vec<&Path> =
+            std::iter::once(self.scene.path.as_path()).chain(self.points.points.as_deref()).collect();
         Output::refuse_inputs(out, &inputs)
     }
 
@@ -336,10 +334,9 @@ impl Args {
 
     /// Returns the query points, if there are any to show.
     fn queries(&self, streams: &Streams, bounds: &Aabb<f64>) -> anyhow::Result<Option<Vec<Point3<f64>>>> {
-        if let Some(path) = &self.points {
-            let points = read_finite_points(streams, path, point_format(path, self.points_format, "--points-format")?)?;
+        if let Some(points) = read_finite_points(streams, &self.points)? {
             if points.len() as u64 > MAX_QUERIES {
-                bail!("{}: {} points are too many to show: at most {MAX_QUERIES}", path.display(), points.len());
+                bail!("--points: {} points are too many to show: at most {MAX_QUERIES}", points.len());
             }
             return Ok(Some(points));
         }

@@ -12,7 +12,7 @@ use crate::io::streams::Streams;
 use crate::query::args::Args;
 use nalgebra::Point3;
 use p2m_core::{Closest, Soup};
-use p2m_mixed::Object;
+use p2m_mixed::{Object, PointIds};
 use p2m_shards::ShardedIndex;
 use rayon::ThreadPool;
 use serde_json::json;
@@ -39,6 +39,8 @@ pub(crate) struct Run<'a> {
     pub(crate) args: &'a Args,
     pub(crate) pool: &'a ThreadPool,
     pub(crate) queries: Queries,
+    /// The ids of the queries, if they have them.
+    pub(crate) ids: Option<PointIds>,
     pub(crate) output: Output<'a>,
     pub(crate) format: AnswerFormat,
     pub(crate) objects: &'a [Object],
@@ -78,7 +80,9 @@ impl Run<'_> {
         let failed = |error| anyhow::Error::new(error).context(cannot_write.clone());
         let has_many = self.args.has_many_answers();
         let (has_signs, only_inside) = (self.signs.is_some(), self.args.has_only_inside());
-        let encoder = AnswerEncoder::new(self.format, self.objects, self.args.columns(self.format, self.objects));
+        let ids = self.ids.take();
+        let columns = self.args.columns(self.format, self.objects, ids.is_some());
+        let encoder = AnswerEncoder::new(self.format, self.objects, columns).with_ids(ids);
         let encoder = match self.soup {
             Some(soup) => encoder.with_normals(soup),
             None => encoder,

@@ -7,18 +7,17 @@ use crate::answers::table::{AnswerColumn, AnswerFormat};
 use crate::index::backend::{BackendChoice, backend_choices};
 use crate::index::p2m_args::P2mArgs;
 use crate::index::sign_rule::SignRule;
-use crate::io::input::{self, SceneArgs, point_format, read_points};
+use crate::io::input::{self, PointArgs, SceneArgs};
 use crate::io::json;
 use crate::io::streams::Streams;
-use crate::io::usage::{bytes, count, not_negative, one_of, positive, usage, whole_number};
+use crate::io::usage::{bytes, count, not_negative, positive, usage, whole_number};
 use crate::query::accuracy::Accuracy;
 use clap::ArgGroup;
 use clap::builder::{PossibleValuesParser, TypedValueParser};
 use nalgebra::Point3;
 use p2m_core::{Aabb, QueryOptions};
-use p2m_mixed::{Object, PointFormat};
+use p2m_mixed::{Object, PointIds, PointTable};
 use serde_json::{Value, json};
-use std::path::PathBuf;
 
 const HELP: &str = "\
 The table has the columns qx,qy,qz,x,y,z,distance,primitive,feature: the query, the closest point, the distance, the \
@@ -42,14 +41,16 @@ what the line `accuracy` of the summary says; the column lower_bound has a certi
 primitives have the same rounded distance, the first one of the file is the answer, even if another one is nearer by \
 less than the rounding. --certified finds the true nearest primitive, and the first of equally near ones.
 
-CSV files need the columns qx, qy, qz, or x, y, z (also like 'X [m]'), or Points:0 to Points:2; otherwise the first \
-three columns are used. So the table of answers is itself a file of queries. XYZ and TXT files have at least three \
-columns, separated by blanks. NPY files have arrays of three columns. PLY files give their vertices.
+Text tables of points need the columns qx, qy, qz, or x, y, z (also like 'X [m]'), or easting, northing, height, or \
+Points:0 to Points:2; otherwise the first three columns are used. So the table of answers is itself a file of \
+queries. --points-columns chooses other columns. Without a third one z is 0. A column id, or that of --points-id, is \
+the first column of the answers. NPY files have arrays of three or two columns. Other files give their vertices.
 
 Examples:
   p2m query bunny.obj --points scan.xyz --max-distance 0.5 --out answers.csv
   p2m query scene.ply --random 100000 --seed 7 --box-scale 1.5 --backend aabb > answers.csv
   p2m query bunny.obj --points scan.csv.gz --signed --columns query,signed,primitive --out sides.csv
+  p2m query map.geojson --points stations.csv --points-columns E,N --points-id nr --out nearest.csv
   p2m query bunny.obj --random 1000000 --signed --columns query,inside --out occupancy.npy
   p2m query scene.obj --points scan.xyz --k-nearest 3 --out three.csv
   p2m query scene.obj --grid 64 --out field.npy --json
@@ -65,13 +66,8 @@ pub(crate) struct Args {
     #[command(flatten)]
     pub(crate) scene: SceneArgs,
 
-    /// Read the query points from a file: XYZ, TXT, ASC, PTS, CSV, NPY or PLY
-    #[arg(long, value_name = "FILE")]
-    pub(crate) points: Option<PathBuf>,
-
-    /// The format of the points [default: by the file extension]
-    #[arg(long, value_name = "FORMAT", value_parser = one_of::<PointFormat>(PointFormat::NAMES), ignore_case = true, conflicts_with_all = ["grid", "random"])]
-    points_format: Option<PointFormat>,
+    #[command(flatten)]
+    pub(crate) points: PointArgs,
 
     /// Query N x N x N points, evenly spaced in the box of the scene; z runs fastest
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u64).range(1..=1 << 21), allow_negative_numbers = true)]
@@ -170,14 +166,17 @@ impl Args {
     }
 
     /// Returns the columns that the arguments name, or else those of the format, with the numbers of queries if these
-    /// may have many answers.
-    pub(crate) fn columns(&self, format: AnswerFormat, objects: &[Object]) -> Vec<AnswerColumn> {
+    /// may have many answers, and with their ids in a text table if they have them.
+    pub(crate) fn columns(&self, format: AnswerFormat, objects: &[Object], has_ids: bool) -> Vec<AnswerColumn> {
         if !self.columns.is_empty() {
             return self.columns.clone();
         }
         let mut columns = AnswerColumn::defaults(format, !objects.is_empty(), self.signed.is_some());
         if self.has_many_answers() {
             columns.insert(0, AnswerColumn::Number);
+        }
+        if has_ids && format == AnswerFormat::Csv {
+            columns.insert(0, AnswerColumn::Id);
         }
         columns
     }
@@ -195,7 +194,10 @@ impl Args {
     }
 
     /// Refuses combinations of arguments that contradict each other.
-    pub(crate) fn check(&self) -> anyhow::Result<()> {
+    pub(crate) fn check(&self, format: AnswerFormat) -> anyhow::Result<()> {
+        if self.columns.contains(&AnswerColumn::Id) && (format != AnswerFormat::Csv || self.points.points.is_none()) {
+            return Err(usage("the column id is text: it needs a CSV file of answers, and --points with ids"));
+        }
         for column in [AnswerColumn::Signed, AnswerColumn::Inside] {
             if self.columns.contains(&column) && self.signed.is_none() {
                 return Err(usage(format!("the column {} needs --signed", column.name())));
@@ -211,23 +213,28 @@ impl Args {
     }
 }
 
-/// Returns the queries and a sample of them, or of points in their region.
-pub(crate) fn queries(
-    streams: &Streams,
-    args: &Args,
-    bounds: &Aabb<f64>,
-) -> anyhow::Result<(Queries, Vec<Point3<f64>>)> {
-    if let Some(path) = &args.points {
-        let points = read_points(streams, path, point_format(path, args.points_format, "--points-format")?)?;
+/// The queries, their ids if their file has them, and a sample of them or of points in their region.
+pub(crate) struct PreparedQueries {
+    pub(crate) queries: Queries,
+    pub(crate) ids: Option<PointIds>,
+    pub(crate) sample: Vec<Point3<f64>>,
+}
+
+/// Returns the queries.
+pub(crate) fn queries(streams: &Streams, args: &Args, bounds: &Aabb<f64>) -> anyhow::Result<PreparedQueries> {
+    if let Some(PointTable { points, ids, .. }) = args.points.read(streams)? {
+        if ids.is_none() && args.columns.contains(&AnswerColumn::Id) {
+            return Err(usage("the column id needs points with ids: a column id in a text table, or --points-id"));
+        }
         let sample = points.iter().step_by(points.len().div_ceil(MAX_SAMPLE_POINTS).max(1)).copied().collect();
-        return Ok((Queries::list(points), sample));
+        return Ok(PreparedQueries { queries: Queries::list(points), ids, sample });
     }
     let region = Region::around(bounds, args.box_scale);
     let queries = match args.grid {
         Some(side) => Queries::grid(region, side),
         None => Queries::random(region, args.random.unwrap_or(0), args.seed),
     };
-    Ok((queries, Queries::sample(region)))
+    Ok(PreparedQueries { queries, ids: None, sample: Queries::sample(region) })
 }
 
 /// The largest number of points by which an index is chosen.
@@ -235,7 +242,7 @@ const MAX_SAMPLE_POINTS: usize = 1024;
 
 /// Returns the part of a report about the origin of the queries.
 fn source_json(args: &Args) -> Value {
-    match (&args.points, args.grid) {
+    match (&args.points.points, args.grid) {
         (Some(path), _) => json!({ "points": input::name(path) }),
         (_, Some(side)) => json!({ "grid": side, "box_scale": args.box_scale }),
         _ => json!({ "random": args.random, "seed": args.seed, "box_scale": args.box_scale }),

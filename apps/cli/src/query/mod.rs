@@ -22,7 +22,7 @@ use crate::io::output::Output;
 use crate::io::streams::Streams;
 use crate::io::usage::usage;
 use crate::query::answers::{ClosestAnswer, Run, Source};
-use crate::query::args::queries;
+use crate::query::args::{PreparedQueries, queries};
 use anyhow::Context;
 use nalgebra::Point3;
 use p2m_backends::{AnyIndex, QueryRegion, Workload};
@@ -38,13 +38,13 @@ pub(crate) fn run(streams: &Streams, args: &Args) -> anyhow::Result<()> {
         return run_in_shards(streams, args, &folder);
     }
     let (scene_args, query_args) = (&args.scene, &args.query_args);
-    query_args.check(scene_args, args.points.as_deref(), "points")?;
-    args.check()?;
+    query_args.check(scene_args, args.points.points.as_deref(), "points")?;
     let (format, out_format) = (scene_args.format()?, query_args.format(streams)?);
+    args.check(out_format)?;
     let pool = query_args.threads.pool()?;
     let start = Instant::now();
     let (scene, saved) = read_scene_and_index(streams, &pool, &scene_args.path, format, scene_args.map)?;
-    let (queries, sample) = queries(streams, args, &scene.soup.aabb())?;
+    let PreparedQueries { queries, ids, sample } = queries(streams, args, &scene.soup.aabb())?;
     let read_time = start.elapsed();
     // The file is opened before the work, which would be lost if its name were wrong.
     let output = Output::open(streams, Some(&query_args.out))?;
@@ -66,7 +66,7 @@ pub(crate) fn run(streams: &Streams, args: &Args) -> anyhow::Result<()> {
         };
         let (soup, format, pool) = (Some(&*scene.soup), out_format, &pool);
         let (signs, shards) = (None, None);
-        return Run { streams, args, pool, queries, output, format, objects, index, signs, shards, soup }
+        return Run { streams, args, pool, queries, ids, output, format, objects, index, signs, shards, soup }
             .finish(&source);
     }
     let saved = saved.as_ref();
@@ -105,15 +105,16 @@ pub(crate) fn run(streams: &Streams, args: &Args) -> anyhow::Result<()> {
     let (backend, built) = (backend.name, Some(&built));
     let index = IndexSummary { scene: summary, backend, built, is_loaded, reason, read_time, build_time };
     let (soup, format) = (Some(&*scene.soup), out_format);
-    Run { streams, args, pool: &pool, queries, output, format, objects, index, signs, shards: None, soup }
+    Run { streams, args, pool: &pool, queries, ids, output, format, objects, index, signs, shards: None, soup }
         .finish(&source)
 }
 
 /// Answers queries by an index in shards, which are loaded as queries need them.
 fn run_in_shards(streams: &Streams, args: &Args, folder: &Path) -> anyhow::Result<()> {
     let query_args = &args.query_args;
-    query_args.check(&args.scene, args.points.as_deref(), "points")?;
-    args.check()?;
+    query_args.check(&args.scene, args.points.points.as_deref(), "points")?;
+    let format = query_args.format(streams)?;
+    args.check(format)?;
     #[cfg(feature = "cuda")]
     if args.device.is_some() {
         return Err(usage("--device is not for an index in shards"));
@@ -124,20 +125,19 @@ fn run_in_shards(streams: &Streams, args: &Args, folder: &Path) -> anyhow::Resul
     if args.has_normals() {
         return Err(usage("the column normal is not for an index in shards"));
     }
-    let format = query_args.format(streams)?;
     let start = Instant::now();
     let index = open(folder, args.max_memory, args.scene.map)?;
     let signs = args.signed.map(|_| index.sign_rule().map(SignReport::of_rule)).transpose()?;
     let build_time = start.elapsed();
     let start = Instant::now();
-    let (queries, _) = queries(streams, args, &index.bounds())?;
+    let PreparedQueries { queries, ids, .. } = queries(streams, args, &index.bounds())?;
     let read_time = start.elapsed();
     let output = Output::open(streams, Some(&query_args.out))?;
 
     let (pool, objects) = (query_args.threads.pool()?, index.manifest().objects());
     let (source, shards) = (Shards { index: &index, args }, Some(&index));
     let (objects, index) = (&*objects, summarize(args.scene.name(), &index, read_time, build_time));
-    Run { streams, args, pool: &pool, queries, output, format, objects, index, signs, shards, soup: None }
+    Run { streams, args, pool: &pool, queries, ids, output, format, objects, index, signs, shards, soup: None }
         .finish(&source)
 }
 

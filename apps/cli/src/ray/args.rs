@@ -4,7 +4,7 @@ use crate::answers::args::QueryArgs;
 use crate::answers::blocks::{BlockSize, QueryStream};
 use crate::answers::queries::{Region, random_rays};
 use crate::index::backend::{Backend, backends};
-use crate::io::input::{self, SceneArgs, point_format, read_rays};
+use crate::io::input::{self, SceneArgs, ray_format, read_rays};
 use crate::io::json;
 use crate::io::streams::Streams;
 use crate::io::usage::{bytes, count, finite_not_negative, number, one_of, positive, usage, whole_number};
@@ -185,7 +185,7 @@ pub(crate) type Rays<'a> = QueryStream<Box<dyn Iterator<Item = Ray> + 'a>>;
 pub(crate) fn rays<'a>(streams: &Streams, args: &'a Args, bounds: &Aabb<f64>) -> anyhow::Result<Rays<'a>> {
     let (count, rays): (u64, Box<dyn Iterator<Item = Ray>>) = match &args.rays {
         Some(path) => {
-            let rays = read_rays(streams, path, point_format(path, args.rays_format, "--rays-format")?)?;
+            let rays = read_rays(streams, path, ray_format(path, args.rays_format, "--rays-format")?)?;
             (rays.len() as u64, Box::new(rays.into_iter()))
         }
         None => {

@@ -1,7 +1,7 @@
 //! `p2m convert`: converts scenes from one format to another, with changes on request.
 
 use crate::io::input::{
-    self, format_list, is_standard, or_option, read_scene_and_index, scene_format, scene_help, shown,
+    self, is_standard, lossless_list, or_option, read_scene_and_index, scene_format, scene_help, shown,
 };
 use crate::io::json;
 use crate::io::output::Output;
@@ -12,6 +12,7 @@ use crate::scene::info::counted;
 use crate::scene::modify::{self, Modifiers};
 use anyhow::{Context, anyhow};
 use p2m_core::{Element, PrimitiveSet};
+use p2m_formats::FileFormat;
 use p2m_mixed::statistics::Counts;
 use p2m_mixed::statistics::figure::{Count, Figure};
 use p2m_mixed::{Format, Scene, WriteError, stl_rounding, write_scene};
@@ -30,8 +31,8 @@ pub(crate) struct Args {
     to_file: PathBuf,
 
     /// The format of IN [default: by the file extension]
-    #[arg(long, value_name = "FORMAT", value_parser = one_of::<Format>(Format::NAMES), ignore_case = true)]
-    from: Option<Format>,
+    #[arg(long, value_name = "FORMAT", value_parser = one_of::<FileFormat>(FileFormat::names()), ignore_case = true)]
+    from: Option<FileFormat>,
 
     /// The format of OUT [default: by the file extension]
     #[arg(long, value_name = "FORMAT", value_parser = one_of::<Format>(Format::NAMES), ignore_case = true)]
@@ -58,7 +59,7 @@ Examples:
   p2m convert scene.obj scene.ply
   p2m convert part.stl - --to obj --rotate-x 90 --scale 0.001 | p2m info - --format obj
   p2m convert dragon.ply shards.ply --subdivide 1 --displace 0.1 --gap 0.8",
-        format_list(Format::is_lossless, "and"),
+        lossless_list("and"),
         modify::ORDER
     )
 }
@@ -147,7 +148,7 @@ impl<'a> Target<'a> {
         match write_scene(scene, self.format, &mut output) {
             Ok(()) => {}
             Err(e @ (WriteError::NotATriangle { .. } | WriteError::NotAPoint { .. })) => {
-                let others = format_list(Format::is_lossless, "or").to_lowercase();
+                let others = lossless_list("or").to_lowercase();
                 return Err(anyhow!("{}: {e}: choose {others}", output.cannot_write()));
             }
             // The caller needs the error of the system itself: a closed pipe is no error.

@@ -6,9 +6,10 @@ use crate::io::output::Output;
 use crate::io::progress::{Progress, Unit};
 use crate::io::streams::Streams;
 use crate::io::threads::ThreadArgs;
+use p2m_formats::FileFormat;
+use p2m_mixed::Scene;
 use p2m_mixed::statistics::figure::{Count, Exact, Figure, Share};
 use p2m_mixed::statistics::{Counts, Extremes, ObjectCounts, Statistics, objects};
-use p2m_mixed::{Format, Scene};
 use serde_json::{Value, json};
 use std::fmt::{self, Write as _};
 
@@ -53,7 +54,7 @@ pub(crate) fn run(streams: &Streams, args: &Args) -> anyhow::Result<()> {
 
 fn report(
     name: &str,
-    format: Format,
+    format: FileFormat,
     index: Option<String>,
     scene: &Scene,
     objects: &[ObjectCounts],
@@ -104,6 +105,7 @@ fn report(
             "f64_step": json::number(s.location.f64_step()),
         },
         "skipped": json::skipped(&scene.skipped),
+        "unit": scene.unit.map(|unit| unit.to_string()),
         "notes": s.notes().iter().map(|n| json!({ "name": n.name(), "text": n.to_string() })).collect::<Value>(),
     })
 }
@@ -111,7 +113,7 @@ fn report(
 /// The report as text for people.
 struct TextReport<'a> {
     name: String,
-    format: Format,
+    format: FileFormat,
     /// The kind of the index in a saved file.
     index: Option<String>,
     scene: &'a Scene,
@@ -139,6 +141,9 @@ impl fmt::Display for TextReport<'_> {
         }
         if self.objects.len() > MAX_LISTED_OBJECTS {
             line("", &format!("and {} more", Count((self.objects.len() - MAX_LISTED_OBJECTS) as u64)))?;
+        }
+        if let Some(unit) = self.scene.unit {
+            line("unit", &unit.to_string())?;
         }
         line("positions", &positions(s))?;
         if let Some(b) = &s.bounds {

@@ -134,6 +134,7 @@ fn with_soup(scene: &Scene, soup: Soup<f64>, objects: Vec<Object>) -> Scene {
     let mut changed = Scene::from(soup);
     changed.objects = objects;
     changed.skipped.clone_from(&scene.skipped);
+    (changed.unit, changed.is_flat) = (scene.unit, scene.is_flat);
     changed
 }
 

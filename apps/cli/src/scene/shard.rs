@@ -9,6 +9,7 @@ use crate::io::streams::Streams;
 use crate::io::threads::ThreadArgs;
 use crate::io::usage::{bytes, one_of};
 use p2m_backends::BackendEntry;
+use p2m_formats::FileFormat;
 use p2m_mixed::statistics::figure::{Count, Time};
 use p2m_mixed::{Format, PieceOptions, Skipped};
 use p2m_shards::{ShardError, ShardOptions, ShardWriter, ShardedIndex, shard_file};
@@ -47,8 +48,8 @@ pub(crate) struct Args {
     scenes: Vec<PathBuf>,
 
     /// The format of the scenes [default: by their file extensions]
-    #[arg(long, value_name = "FORMAT", value_parser = one_of::<Format>(Format::NAMES), ignore_case = true)]
-    format: Option<Format>,
+    #[arg(long, value_name = "FORMAT", value_parser = one_of::<FileFormat>(FileFormat::names()), ignore_case = true)]
+    format: Option<FileFormat>,
 
     /// The largest size of the file of a shard, such as 500MB
     #[arg(long, value_name = "BYTES", default_value = "1GiB", value_parser = bytes)]
@@ -83,7 +84,7 @@ struct Times {
 
 pub(crate) fn run(streams: &Streams, args: &Args) -> anyhow::Result<()> {
     let format_of = |path: &PathBuf| input::scene_format(path, args.format, "--format");
-    let formats: Vec<Format> = args.scenes.iter().map(format_of).collect::<Result<_, _>>()?;
+    let formats: Vec<FileFormat> = args.scenes.iter().map(format_of).collect::<Result<_, _>>()?;
     let backend = args.backend.unwrap_or_else(BackendEntry::default_backend);
     let options =
         ShardOptions::default().with_max_bytes(args.max_bytes).with_backend(backend).with_replace(args.replace);
@@ -117,9 +118,9 @@ fn add(
     pool: &ThreadPool,
     writer: &mut ShardWriter,
     path: &Path,
-    format: Format,
+    format: FileFormat,
 ) -> anyhow::Result<Vec<Skipped>> {
-    if Format::from_path(path).ok() == Some(format) && input::is_plain_file(path) {
+    if Format::from_path(path).ok().map(FileFormat::Own) == Some(format) && input::is_plain_file(path) {
         let _progress = Progress::start(streams, &format!("reading {}", input::name(path)), None, Unit::None);
         return Ok(pool.install(|| writer.add_file(path, &PieceOptions::default()))?.skipped);
     }

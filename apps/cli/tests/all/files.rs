@@ -68,7 +68,10 @@ fn what_cannot_be_done_is_code_1_and_leaves_nothing() {
     assert!(query(&missing).contains("missing.obj: cannot be read: "));
     assert!(query(&corrupt).contains("corrupt.obj:2: vertex index 2 is out of range, 1 vertices were found"));
     assert!(query(&ply).contains("short.ply:9: unexpected end of file"));
-    assert!(query(&unknown).contains("scene.step: unknown extension 'step', expected one of obj, ply"));
+    assert!(
+        query(&unknown)
+            .contains("scene.step: files with the extension 'step' are not read: FreeCAD or gmsh convert it")
+    );
     let message = failure(&["query", SCENE, "--points", &points, "--out", &out], 1);
     assert!(message.contains("bad.xyz:2: 'x' is not a number"), "{message}");
     assert_eq!(names(folder.path()), before);

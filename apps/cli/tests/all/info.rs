@@ -1,7 +1,7 @@
 //! Tests of `p2m info`: the report for people and the one for programs.
 
 use crate::common::*;
-use p2m_mixed::Format;
+use p2m_formats::FileFormat;
 use serde_json::{Value, json};
 use tempfile::TempDir;
 
@@ -76,6 +76,7 @@ fn the_json_report_has_the_same_figures() {
             "f64_step": f64::EPSILON * 8.0,
         },
         "skipped": [{ "kind": "mtllib", "count": 1 }],
+        "unit": null,
     });
     let mut found = report.clone();
     let notes = found.as_object_mut().unwrap().shift_remove("notes").unwrap();
@@ -126,7 +127,7 @@ fn the_given_format_goes_before_the_extension() {
     let folder = TempDir::new().unwrap();
     let scene = write(&folder, "scene.scn", "v 0 0 0\np 1\n");
     let message = failure(&["info", &scene], 1);
-    let names = Format::NAMES.join(", ");
+    let names = FileFormat::names().join(", ");
     let expected = format!("unknown extension 'scn', expected one of {names}, or name the format with --format");
     assert!(message.contains(&expected), "{message}");
     assert_eq!(json(&["info", &scene, "--format", "obj", "--json"])["primitives"]["points"], 1);

@@ -257,7 +257,7 @@ fn scene_or_points_come_from_the_standard_input() {
     );
     for (arguments, why) in [
         (&["query", "-", "--random", "1"][..], "add --format obj|ply|stl|off"),
-        (&["query", SCENE, "--points", "-"], "add --points-format xyz|txt|asc|pts|csv|npy|ply"),
+        (&["query", SCENE, "--points", "-"], "add --points-format obj|ply|stl|off|xyz|txt"),
         (&["query", "-", "--format", "obj", "--points", "-", "--points-format", "csv"], "cannot be both"),
         (&["query", SCENE, "--random", "1", "--points-format", "csv"], "--points"),
         (&["query", SCENE, "--random", "1", "--json"], "add --out FILE"),

@@ -39,7 +39,7 @@ from ._records import (
     Record,
 )
 from ._sample import SdfSamples, SurfaceSamples, map, sample_sdf, sample_surface
-from ._scene import Counts, Object, Scene, read
+from ._scene import Counts, Object, PointTable, Scene, read, read_points
 from ._shards import ShardInfo, Shards, write_shards
 
 __all__ = [
@@ -60,6 +60,7 @@ __all__ = [
     "NearPrimitives",
     "Object",
     "Page",
+    "PointTable",
     "Record",
     "Scene",
     "SdfSamples",
@@ -76,6 +77,7 @@ __all__ = [
     "load",
     "map",
     "read",
+    "read_points",
     "sample_sdf",
     "sample_surface",
     "write_shards",

@@ -327,6 +327,14 @@ class Scene:
         return [Object(*parts) for parts in self._raw.objects()]
 
     @property
+    def unit(self) -> str | None:
+        """The unit of the coordinates, such as ``'mm'``, ``'ft'`` or ``'degrees'``, if the file has it.
+
+        Coordinates are those of the file: nothing is converted. Saved and pickled scenes do not keep the unit.
+        """
+        return self._raw.unit()
+
+    @property
     def skipped(self) -> list[str]:
         """What the reader of the file left out, such as ``'2 x usemtl'``."""
         return self._raw.skipped()
@@ -429,7 +437,10 @@ def _runs(padded: NDArray[Any]) -> list[NDArray[Any]]:
 
 
 def read(path: str | os.PathLike[str]) -> Scene:
-    """Read a scene from a file. Its extension selects the format, such as ply, or p2m for a saved index.
+    """Read a scene from a file. Its extension selects the format.
+
+    The formats are obj, ply, stl, off; xyz, txt, asc, pts, csv and npy of points; las, laz, e57 and pcd of scans; gltf,
+    glb and 3mf; geojson, json and shp; and p2m for a saved index. A file with two coordinates for each point has z = 0.
 
     Parameters
     ----------
@@ -454,3 +465,51 @@ def read(path: str | os.PathLike[str]) -> Scene:
     (<p2m.Scene of 2 triangles, 0 segments, 0 points>, 'court')
     """
     return Scene._from_raw(_p2m.Scene.read(os.fspath(path)))
+
+
+class PointTable(NamedTuple):
+    """The points of a file: an array of shape (n, 3), their ids and the unit, where the file has them."""
+
+    points: NDArray[np.float64]
+    ids: list[str] | None
+    unit: str | None
+
+
+def read_points(
+    path: str | os.PathLike[str], columns: Iterable[str | int] = (), *, id: str | int | None = None
+) -> PointTable:
+    """Read the points of a file: the rows of a table or an array, or the vertices of a scene.
+
+    Parameters
+    ----------
+    path : path-like
+        The file, in any format of `read`.
+    columns : iterable of str or int, optional
+        The columns of x, y and z, or of x and y, in a text table: names, or numbers from 1. By default names such as x,
+        y, z decide, and otherwise the first three columns.
+    id : str or int, optional
+        The column of a text table that has the ids of the points. By default it is a column named id.
+
+    Returns
+    -------
+    PointTable
+        The points, their ids and their unit. Points that are not finite are kept.
+
+    Raises
+    ------
+    OSError
+        If the file cannot be read.
+    ValueError
+        If its content is not a list of points; the message has the line.
+
+    Examples
+    --------
+    >>> import os, p2m, tempfile
+    >>> path = os.path.join(tempfile.mkdtemp(), "stations.csv")
+    >>> _ = open(path, "w").write("nr,easting,northing,height\\nP7,85000.5,446000.25,1.5\\n")
+    >>> points, ids, unit = p2m.read_points(path, id="nr")
+    >>> points.tolist(), ids
+    ([[85000.5, 446000.25, 1.5]], ['P7'])
+    """
+    chosen = [str(column) for column in columns]
+    return PointTable(*_p2m.read_points(os.fspath(path), chosen, None if id is None else str(id)))

@@ -15,12 +15,12 @@ const MAX_HEADER_BYTES: u32 = 1 << 16;
 /// The largest number of fields that a message lists.
 const MAX_LISTED_FIELDS: usize = 16;
 
-/// Calls a function for each row of an array.
+/// Calls a function for each row of an array. Returns whether rows have no third number, which is then 0.
 pub(crate) fn for_each_row<R: Row<N>, const N: usize>(
     reader: impl BufRead,
     name: &str,
     mut take: impl FnMut(R) -> Result<(), Reason>,
-) -> Result<(), ReadError> {
+) -> Result<bool, ReadError> {
     let mut bytes = ByteReader::new(reader, 0);
     let at_byte = |bytes: &ByteReader<_>, reason| ReadError::new(name, FileLocation::Byte(bytes.start()), reason);
     let array = read_header::<R, N>(&mut bytes).map_err(|reason| at_byte(&bytes, reason))?;
@@ -33,13 +33,14 @@ pub(crate) fn for_each_row<R: Row<N>, const N: usize>(
     } else {
         let mut order: [usize; N] = std::array::from_fn(|axis| axis);
         order.sort_by_key(|&axis| array.coordinates[axis].offset);
+        let order = if array.is_flat { &order[..2] } else { &order };
         for row in 0..array.count {
             let numbers = read_row(&mut bytes, &array, order).map_err(|reason| at_byte(&bytes, reason))?;
             take_row(row, numbers)?;
         }
     }
     match bytes.skip_rest() {
-        Ok(0) => Ok(()),
+        Ok(0) => Ok(array.is_flat),
         Ok(rest) => Err(at_byte(&bytes, Reason::TrailingBytes { bytes: rest })),
         Err(reason) => Err(at_byte(&bytes, reason)),
     }
@@ -55,6 +56,8 @@ struct Array<const N: usize> {
     coordinates: [Coordinate; N],
     /// Whether the array has all x first, then all y, and so on.
     is_fortran: bool,
+    /// Whether items have two numbers. The third coordinate, which comes last, is then 0.
+    is_flat: bool,
 }
 
 #[derive(Debug, Clone, Copy)]
@@ -109,20 +112,25 @@ fn array<R: Row<N>, const N: usize>(text: &[u8]) -> Result<Array<N>, Reason> {
     match descr {
         Value::Text(_) => {
             let (scalar, big_endian) = scalar(descr)?;
-            let count = match lengths.as_slice() {
-                &[Value::Integer(count), Value::Integer(columns)] if columns == N as u64 => count,
+            let (count, columns) = match lengths.as_slice() {
+                &[Value::Integer(count), Value::Integer(columns)]
+                    if columns == N as u64 || columns == 2 && !R::FLAT.is_empty() =>
+                {
+                    (count, columns)
+                }
                 _ => return Err(bad(HeaderProblem::BadShape { text: shape.to_string(), expected: R::SHAPE })),
             };
             let size = scalar.size() as u64;
             let coordinates = std::array::from_fn(|k| Coordinate { offset: k as u64 * size, scalar, big_endian });
-            Ok(Array { count, size: N as u64 * size, coordinates, is_fortran })
+            let is_flat = columns < N as u64;
+            Ok(Array { count, size: columns * size, coordinates, is_fortran, is_flat })
         }
         Value::List(fields) => {
             let &[Value::Integer(count)] = lengths.as_slice() else {
                 return Err(bad(HeaderProblem::BadShape { text: shape.to_string(), expected: "(n,)" }));
             };
             let (coordinates, size) = structure::<R, N>(fields)?;
-            Ok(Array { count, size, coordinates, is_fortran: false })
+            Ok(Array { count, size, coordinates, is_fortran: false, is_flat: false })
         }
         other => Err(bad(HeaderProblem::UnsupportedType { text: other.to_string() })),
     }
@@ -237,12 +245,15 @@ fn read_columns<const N: usize>(
     array: &Array<N>,
 ) -> Result<Vec<[f64; N]>, Reason> {
     let mut rows = Vec::new();
-    for (axis, c) in array.coordinates.iter().enumerate() {
+    let columns = if array.is_flat { 2 } else { N };
+    for (axis, c) in array.coordinates.iter().take(columns).enumerate() {
         for i in 0..array.count {
             let x = coordinate(bytes, c)?;
             if axis == 0 {
                 rows.try_reserve(1).map_err(Reason::Memory)?;
-                rows.push([x; N]);
+                let mut row = [0.0; N];
+                row[0] = x;
+                rows.push(row);
             } else if let Some(row) = usize::try_from(i).ok().and_then(|i| rows.get_mut(i)) {
                 row[axis] = x;
             }
@@ -255,11 +266,11 @@ fn read_columns<const N: usize>(
 fn read_row<const N: usize>(
     bytes: &mut ByteReader<impl BufRead>,
     array: &Array<N>,
-    order: [usize; N],
+    order: &[usize],
 ) -> Result<[f64; N], Reason> {
     let mut row = [0.0; N];
     let mut offset = 0;
-    for axis in order {
+    for &axis in order {
         let c = &array.coordinates[axis];
         if c.offset > offset {
             bytes.skip(c.offset - offset)?;

@@ -1,18 +1,19 @@
 //! The columns of answers, and their encoding as records of any format.
 
 use super::AnswerFormat;
-use super::names::Names;
+use super::names::{Names, field};
 use super::records::{Header, integer_bytes, put_columns, put_integer, put_numbers, put_text};
 use nalgebra::Point3;
 use p2m_core::{Closest, Feature, Soup};
 use p2m_field::sign::Normals;
-use p2m_mixed::Object;
+use p2m_mixed::{Object, PointIds};
 
 /// A column of a file of answers. A column may consist of several numbers.
 ///
 /// | column | CSV | NPY | PLY |
 /// |---|---|---|---|
 /// | `number` | `number` | `number`, `<i8` | `double` `number` |
+/// | `id` | `id`, the text of the file of queries | | |
 /// | `query` | `qx,qy,qz` | `query`, `<f8`, shape `(3,)` | `double` `x`, `y`, `z` |
 /// | `point` | `x,y,z` | `point`, `<f8`, shape `(3,)` | `double` `cx`, `cy`, `cz` |
 /// | `distance` | `distance` | `distance`, `<f8` | `double` `distance` |
@@ -31,6 +32,8 @@ use p2m_mixed::Object;
 pub(crate) enum AnswerColumn {
     /// The number of the query, from 0.
     Number,
+    /// The id of the query in its file.
+    Id,
     /// The query point.
     Query,
     /// The closest point.
@@ -58,8 +61,9 @@ pub(crate) enum AnswerColumn {
 
 impl AnswerColumn {
     /// All columns, in the order in which files have them by default.
-    pub(crate) const ALL: [Self; 12] = [
+    pub(crate) const ALL: [Self; 13] = [
         Self::Number,
+        Self::Id,
         Self::Query,
         Self::Point,
         Self::Distance,
@@ -77,6 +81,7 @@ impl AnswerColumn {
     pub(crate) const fn name(self) -> &'static str {
         match self {
             Self::Number => "number",
+            Self::Id => "id",
             Self::Query => "query",
             Self::Point => "point",
             Self::Distance => "distance",
@@ -98,7 +103,7 @@ impl AnswerColumn {
             Self::LowerBound | Self::Barycentric => format == AnswerFormat::Npy,
             Self::Object => format == AnswerFormat::Csv && has_objects,
             Self::Signed => has_signs,
-            Self::Number | Self::Inside | Self::Normal => false,
+            Self::Number | Self::Id | Self::Inside | Self::Normal => false,
         };
         Self::ALL.into_iter().filter(is_default).collect()
     }
@@ -107,6 +112,7 @@ impl AnswerColumn {
     const fn text_names(self) -> &'static [&'static str] {
         match self {
             Self::Number => &["number"],
+            Self::Id => &["id"],
             Self::Query => &["qx", "qy", "qz"],
             Self::Point => &["x", "y", "z"],
             Self::Distance => &["distance"],
@@ -125,6 +131,7 @@ impl AnswerColumn {
     const fn array_fields(self) -> &'static str {
         match self {
             Self::Number => "('number', '<i8')",
+            Self::Id => "", // only text has it
             Self::Query => "('query', '<f8', (3,))",
             Self::Point => "('point', '<f8', (3,))",
             Self::Distance => "('distance', '<f8')",
@@ -146,6 +153,7 @@ impl AnswerColumn {
             Self::Point => ("double", &["cx", "cy", "cz"]),
             Self::Primitive | Self::Object | Self::Inside => ("int", self.text_names()),
             Self::Feature => ("int", &["feature_kind", "feature_number"]),
+            Self::Id => ("double", &[]), // only text has it
             Self::Number | Self::Distance | Self::Signed | Self::Normal | Self::LowerBound | Self::Barycentric => {
                 ("double", self.text_names())
             }
@@ -173,17 +181,25 @@ pub(crate) struct AnswerEncoder<'a> {
     names: Names<'a>,
     /// The normals of the scene, for the column [`AnswerColumn::Normal`].
     normals: Option<Normals>,
+    /// The ids of queries, for the column [`AnswerColumn::Id`].
+    ids: Option<PointIds>,
 }
 
 impl<'a> AnswerEncoder<'a> {
     /// Makes an encoder of some columns, in this order. The objects are those of the scene.
     pub(crate) fn new(format: AnswerFormat, objects: &'a [Object], columns: Vec<AnswerColumn>) -> Self {
-        Self { format, columns, names: Names(objects), normals: None }
+        Self { format, columns, names: Names(objects), normals: None, ids: None }
     }
 
     /// Adds the normals of a scene, if a column needs them.
     pub(crate) fn with_normals(mut self, soup: &Soup<f64>) -> Self {
         self.normals = self.columns.contains(&AnswerColumn::Normal).then(|| Normals::new(soup));
+        self
+    }
+
+    /// Adds the ids of the queries.
+    pub(crate) fn with_ids(mut self, ids: Option<PointIds>) -> Self {
+        self.ids = ids;
         self
     }
 
@@ -233,6 +249,11 @@ impl<'a> AnswerEncoder<'a> {
         };
         match (column, record.answer) {
             (AnswerColumn::Number, _) => put_integer(out, record.number),
+            (AnswerColumn::Id, _) => {
+                let number = usize::try_from(record.number).unwrap_or(usize::MAX);
+                let id = self.ids.as_ref().and_then(|ids| ids.get(number)).unwrap_or_default();
+                out.extend_from_slice(field(id).as_bytes());
+            }
             (AnswerColumn::Query, _) => three(out, record.query.coords.into()),
             (AnswerColumn::Inside, _) => put_integer(out, u64::from(record.signed_distance < 0.0)),
             (_, None) => (1..column.text_names().len()).for_each(|_| out.push(b',')),
@@ -256,6 +277,7 @@ impl<'a> AnswerEncoder<'a> {
         let (answer, nan) = (record.answer, [f64::NAN; 3]);
         match column {
             AnswerColumn::Number => out.extend(integer_bytes(self.format, record.number)),
+            AnswerColumn::Id => {} // only text has it
             AnswerColumn::Query => put_numbers(out, record.query.coords.as_ref()),
             AnswerColumn::Point => put_numbers(out, answer.map_or(&nan, |a| a.point.coords.as_ref())),
             AnswerColumn::Distance => put_numbers(out, &[answer.map_or(f64::NAN, |a| a.distance)]),

@@ -36,7 +36,7 @@ impl Names<'_> {
 }
 
 /// Returns a name as a field of a table, on one line and in quotes if that is necessary.
-fn field(name: &str) -> String {
+pub(super) fn field(name: &str) -> String {
     let name: String = name.chars().map(|c| if c.is_control() { ' ' } else { c }).collect();
     let is_plain = !name.contains(['"', ',', ';']) && name.trim() == name;
     if is_plain { name } else { format!("\"{}\"", name.replace('"', "\"\"")) }

@@ -24,12 +24,12 @@ use settings::SETTINGS;
 
 use crate::answers::queries::{Queries as QueryPoints, Region};
 use crate::index::backend::{Backend, backends};
-use crate::io::input::{SceneArgs, point_format, read_finite_points, read_scene};
+use crate::io::input::{PointArgs, SceneArgs, read_finite_points, read_scene};
 use crate::io::output::Output;
 use crate::io::progress::{Progress, Unit};
 use crate::io::streams::Streams;
 use crate::io::threads::ThreadArgs;
-use crate::io::usage::{count_in, one_of, positive, usage, whole_number};
+use crate::io::usage::{count_in, positive, usage, whole_number};
 use crate::measure::harness::Provenance;
 use crate::measure::harness::queries::Queries;
 use crate::measure::harness::rounds::thread_seconds;
@@ -41,8 +41,8 @@ use nalgebra::Point3;
 use p2m_backends::{AnyIndex, BACKENDS, BuildSettings, SearchStructure};
 use p2m_bvh::AabbTree;
 use p2m_core::{CertifiedQuery, PrimitiveSet, Soup};
+use p2m_mixed::Scene;
 use p2m_mixed::statistics::Counts;
-use p2m_mixed::{PointFormat, Scene};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
@@ -67,13 +67,8 @@ pub(crate) struct Args {
     #[command(flatten)]
     scene: SceneArgs,
 
-    /// Read the query points from a file: XYZ, TXT, ASC, PTS, CSV, NPY or PLY
-    #[arg(long, value_name = "FILE")]
-    points: Option<PathBuf>,
-
-    /// The format of the points [default: by the file extension]
-    #[arg(long, value_name = "FORMAT", value_parser = one_of::<PointFormat>(PointFormat::NAMES), ignore_case = true, requires = "points")]
-    points_format: Option<PointFormat>,
+    #[command(flatten)]
+    points: PointArgs,
 
     /// Query N x N x N points, evenly spaced in the box of the scene
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u64).range(1..=512), allow_negative_numbers = true)]
@@ -146,7 +141,7 @@ const TRUTH: &str = "The truth is what certified answers say: the nearest primit
 pub(crate) fn run(streams: &Streams, args: &Args) -> anyhow::Result<()> {
     let outputs = [&args.html, &args.csv];
     let inputs: Vec<&Path> =
-        [Some(&args.scene.path), args.points.as_ref()].into_iter().flatten().map(PathBuf::as_path).collect();
+        [Some(&args.scene.path), args.points.points.as_ref()].into_iter().flatten().map(PathBuf::as_path).collect();
     for path in outputs.into_iter().flatten() {
         Output::refuse_inputs(path, &inputs)?;
     }
@@ -189,12 +184,9 @@ impl Args {
     /// have no answers that could be compared.
     fn queries(&self, streams: &Streams, scene: &Scene) -> anyhow::Result<(Vec<Point3<f64>>, String)> {
         let region = Region::around(&scene.soup.aabb(), self.box_scale);
-        let (queries, description) = match (&self.points, self.grid) {
-            (Some(path), _) => {
-                let points =
-                    read_finite_points(streams, path, point_format(path, self.points_format, "--points-format")?)?;
-                (points, format!("The points of {}.", crate::io::input::name(path)))
-            }
+        let points = read_finite_points(streams, &self.points)?;
+        let (queries, description) = match (points.zip(self.points.points.as_ref()), self.grid) {
+            (Some((points, path)), _) => (points, format!("The points of {}.", crate::io::input::name(path))),
             (None, Some(side)) => (
                 QueryPoints::grid(region, side).collect(),
                 format!(
@@ -249,7 +241,7 @@ impl Args {
         let curves = measure(&competitors, &Queries::new(queries), &truths, &effort, &show_progress);
         drop(progress);
         let contents = format!("{}.", counted(&Counts::of(soup)));
-        let name = match (&self.points, self.grid) {
+        let name = match (&self.points.points, self.grid) {
             (Some(_), _) => "points",
             (None, Some(_)) => "grid",
             (None, None) => "random",

@@ -1,0 +1,250 @@
+//! LAS files, whose layout is fixed and simple, and LAZ files, which the crate laz decompresses.
+//!
+//! The header, the records and their units are read here: coordinates are the first twelve bytes of each record.
+
+use crate::sink::{MAX_RATIO, Sink};
+use crate::{File, wkt};
+use laz::{DecompressionSelection, LasZipDecompressor, LazItemRecordBuilder, LazItemType, LazVlr};
+use p2m_mixed::{FileLocation, ReadError, Scene, Unit};
+use std::io::{Cursor, Seek, SeekFrom};
+use std::panic::{AssertUnwindSafe, catch_unwind};
+
+/// The bytes of a record of each format without further bytes.
+const RECORD_BYTES: [u16; 11] = [20, 28, 26, 34, 57, 63, 30, 36, 38, 59, 67];
+
+/// The number of points that are decompressed at a time.
+const BATCH: u64 = 1 << 12;
+
+struct Header {
+    data_start: usize,
+    format: u8,
+    is_compressed: bool,
+    record_len: u16,
+    count: u64,
+    scale: [f64; 3],
+    offset: [f64; 3],
+}
+
+impl Header {
+    fn read(file: &File<'_>) -> Result<Self, ReadError> {
+        if file.slice(0, 4)? != b"LASF" {
+            return Err(file.error_at(FileLocation::Byte(0), "the file does not start with 'LASF'"));
+        }
+        let [minor] = file.array(25)?;
+        let header_len = u16::from_le_bytes(file.array(94)?);
+        let [format] = file.array(104)?;
+        let triple = |at: usize| -> Result<[f64; 3], ReadError> {
+            let number = |k: usize| file.array(at + 8 * k).map(f64::from_le_bytes);
+            Ok([number(0)?, number(1)?, number(2)?])
+        };
+        let mut count = u64::from(u32::from_le_bytes(file.array(107)?));
+        if minor >= 4 && header_len >= 375 {
+            count = u64::from_le_bytes(file.array(247)?);
+        }
+        let header = Self {
+            data_start: u32::from_le_bytes(file.array(96)?) as usize,
+            format: format & 0x3f,
+            is_compressed: format & 0x80 != 0,
+            record_len: u16::from_le_bytes(file.array(105)?),
+            count,
+            scale: triple(131)?,
+            offset: triple(155)?,
+        };
+        let at = |byte, text: String| Err(file.error_at(FileLocation::Byte(byte), text));
+        let Some(&least) = RECORD_BYTES.get(usize::from(header.format)) else {
+            return at(104, format!("point format {} is unknown", header.format));
+        };
+        if header.record_len < least {
+            let text =
+                format!("records of {} bytes are too short for point format {}", header.record_len, header.format);
+            return at(105, text);
+        }
+        if let Some(k) = (0..3).find(|k| !header.scale[*k].is_finite() || !header.offset[*k].is_finite()) {
+            return at(131, format!("the scale or the offset of {} is not finite", ["x", "y", "z"][k]));
+        }
+        Ok(header)
+    }
+
+    /// Returns the coordinates of a record.
+    fn position(&self, record: &[u8]) -> [f64; 3] {
+        std::array::from_fn(|k| {
+            let bytes = record[4 * k..][..4].try_into().expect("four bytes");
+            f64::from(i32::from_le_bytes(bytes)) * self.scale[k] + self.offset[k]
+        })
+    }
+}
+
+pub(crate) fn read(file: &File<'_>) -> Result<Scene, ReadError> {
+    let header = Header::read(file)?;
+    let mut sink = Sink::new(file.bytes.len());
+    let record_len = usize::from(header.record_len);
+    let mut next = 0u64;
+    let mut take = |records: &[u8]| {
+        records.chunks_exact(record_len).try_for_each(|record| {
+            next += 1;
+            sink.point(header.position(record))
+                .map_err(|reason| ReadError::new(file.name, FileLocation::Row(next - 1), reason))
+        })
+    };
+    let records = record_variables(file)?;
+    if header.is_compressed {
+        decompress(file, &header, &records, &mut take)?;
+    } else {
+        let held = file.bytes.len().saturating_sub(header.data_start) / record_len;
+        if header.count > held as u64 {
+            let text = format!("the header announces {} points, but the file has {held}", header.count);
+            return Err(file.error_at(FileLocation::Byte(107), text));
+        }
+        let len = usize::try_from(header.count).map_or(0, |count| count * record_len);
+        take(file.slice(header.data_start, len)?)?;
+    }
+    sink.builder.unit = unit(&records);
+    Ok(sink.finish())
+}
+
+/// A record of variable length: the user, the number and the data.
+type Variable<'a> = (&'a [u8], u16, &'a [u8]);
+
+/// Returns the records of variable length after the header.
+fn record_variables<'a>(file: &'a File<'_>) -> Result<Vec<Variable<'a>>, ReadError> {
+    let mut at = usize::from(u16::from_le_bytes(file.array(94)?));
+    let mut records = Vec::new();
+    for _ in 0..u32::from_le_bytes(file.array(100)?) {
+        let len = usize::from(u16::from_le_bytes(file.array(at + 20)?));
+        let user = file.slice(at + 2, 16)?;
+        let user = &user[..user.iter().position(|b| *b == 0).unwrap_or(16)];
+        records.push((user, u16::from_le_bytes(file.array(at + 18)?), file.slice(at + 54, len)?));
+        at += 54 + len;
+    }
+    Ok(records)
+}
+
+/// Returns the unit of the coordinate system, which is in well-known text or in the keys of GeoTIFF.
+fn unit(records: &[Variable<'_>]) -> Option<Unit> {
+    let find = |number| records.iter().find(|(user, n, _)| *user == b"LASF_Projection" && *n == number).map(|r| r.2);
+    if let Some(text) = find(2112) {
+        return wkt::unit(&String::from_utf8_lossy(text));
+    }
+    let (numbers, _) = find(34735)?.as_chunks::<2>();
+    let numbers: Vec<_> = numbers.iter().map(|bytes| u16::from_le_bytes(*bytes)).collect();
+    let key =
+        |key| numbers.chunks_exact(4).skip(1).find(|entry| entry[0] == key && entry[1] == 0).map(|entry| entry[3]);
+    match (key(1024), key(3076)) {
+        (Some(2), _) => Some(Unit::Degree),
+        (_, Some(9001)) => Some(Unit::Metre),
+        (_, Some(9002)) => Some(Unit::Foot),
+        (_, Some(9003)) => Some(Unit::SurveyFoot),
+        _ => None,
+    }
+}
+
+/// Decompresses all records. What the crate laz would trust is checked before.
+fn decompress(
+    file: &File<'_>,
+    header: &Header,
+    records: &[Variable<'_>],
+    take: &mut impl FnMut(&[u8]) -> Result<(), ReadError>,
+) -> Result<(), ReadError> {
+    let laszip = records.iter().find(|(user, number, _)| *user == b"laszip encoded" && *number == LazVlr::RECORD_ID);
+    let (.., data) = laszip.ok_or_else(|| file.error("the header has no record of the compression"))?;
+    let in_record = |error: String| file.error(format!("record of the compression in the header: {error}"));
+    let vlr = LazVlr::read_from(*data).map_err(|error| in_record(error.to_string()))?;
+    // The decompressor relies on the items to be those of the format.
+    let extra = header.record_len - RECORD_BYTES[usize::from(header.format)];
+    let expected = LazItemRecordBuilder::default_for_point_format_id(header.format, extra);
+    let expected = expected.map_err(|error| in_record(error.to_string()))?;
+    let items = |items: &[laz::LazItem]| items.iter().map(|i| (i.item_type(), i.size())).collect::<Vec<_>>();
+    let versions: Vec<_> = vlr.items().iter().map(|item| item.version()).collect();
+    let is_layered = header.format >= 6;
+    let known = if is_layered { 3..=4 } else { 1..=2 };
+    if items(vlr.items()) != items(&expected) || !versions.iter().all(|version| known.contains(version)) {
+        return Err(in_record("it does not describe the records of the point format".to_owned()));
+    }
+    let most = (file.bytes.len() as u64).saturating_mul(MAX_RATIO as u64) / u64::from(header.record_len);
+    if header.count > most {
+        let text = format!("the header announces {} points, more than the {most} that the file can have", header.count);
+        return Err(file.error_at(FileLocation::Byte(107), text));
+    }
+    check_chunk_table(file, header)?;
+    if is_layered {
+        check_layers(file, header, vlr.items())?;
+    }
+    let mut source = Cursor::new(file.bytes);
+    source.seek(SeekFrom::Start(header.data_start as u64)).expect("any position is fine");
+    let at_row = |row: u64, error: &dyn std::fmt::Display| {
+        file.error_at(FileLocation::Row(row), format!("cannot be decompressed: {error}"))
+    };
+    let selection = DecompressionSelection::xy_returns_channel().decompress_z();
+    let decompressor = LasZipDecompressor::selective(source, vlr, selection);
+    let mut decompressor = decompressor.map_err(|error| at_row(0, &error))?;
+    let mut done = 0;
+    let mut batch = Vec::new();
+    while done < header.count {
+        let count = BATCH.min(header.count - done);
+        batch.resize(usize::try_from(count).expect("at most a batch") * usize::from(header.record_len), 0);
+        // The decoder indexes beyond its tables at damaged data. It is dropped then.
+        let result = catch_unwind(AssertUnwindSafe(|| decompressor.decompress_many(&mut batch)));
+        match result {
+            Ok(result) => result.map_err(|error| at_row(done, &error))?,
+            Err(_) => return Err(at_row(done, &"the data is damaged at or after it")),
+        }
+        take(&batch)?;
+        done += count;
+    }
+    Ok(())
+}
+
+/// Refuses a table of more chunks than the file can have, for which the decompressor would allocate memory.
+fn check_chunk_table(file: &File<'_>, header: &Header) -> Result<(), ReadError> {
+    let end = file.bytes.len() - 8.min(file.bytes.len());
+    for at in [header.data_start, end] {
+        let table = u64::from_le_bytes(file.array(at)?);
+        let count = usize::try_from(table).ok().and_then(|table| file.array(table.checked_add(4)?).ok());
+        if let Some(count) = count.map(u32::from_le_bytes)
+            && table > header.data_start as u64
+            && count as usize > file.bytes.len() / usize::from(header.record_len)
+        {
+            let text = format!("the table of chunks announces {count} chunks, more than the file can have");
+            return Err(file.error_at(FileLocation::Byte(table), text));
+        }
+    }
+    Ok(())
+}
+
+/// Refuses layers of a chunk that are longer than the file, for which the decompressor would allocate memory.
+fn check_layers(file: &File<'_>, header: &Header, items: &[laz::LazItem]) -> Result<(), ReadError> {
+    let layers: usize = items
+        .iter()
+        .map(|item| match item.item_type() {
+            LazItemType::Point14 => 9,
+            LazItemType::RGBNIR14 => 2,
+            LazItemType::Byte14(count) => usize::from(count),
+            _ => 1,
+        })
+        .sum();
+    let mut at = header.data_start.saturating_add(8);
+    let mut points = 0u64;
+    while points < header.count {
+        // A chunk is its first record, the number of its points, the lengths of the layers, and the layers.
+        let sizes = at.saturating_add(usize::from(header.record_len));
+        let count = u32::from_le_bytes(file.array(sizes)?);
+        if count == 0 {
+            return Err(file.error_at(FileLocation::Byte(sizes as u64), "a chunk has no points"));
+        }
+        points += u64::from(count);
+        let lens = file.slice(sizes + 4, 4 * layers)?.as_chunks::<4>().0;
+        let len: u64 = lens.iter().map(|len| u64::from(u32::from_le_bytes(*len))).sum();
+        let start = sizes + 4 + 4 * layers;
+        at = usize::try_from(len)
+            .ok()
+            .and_then(|len| start.checked_add(len))
+            .filter(|end| *end <= file.bytes.len())
+            .ok_or_else(|| {
+                file.error_at(
+                    FileLocation::Byte(sizes as u64 + 4),
+                    format!("the layers of a chunk take {len} bytes, which is more than the file has"),
+                )
+            })?;
+    }
+    Ok(())
+}

@@ -1,0 +1,163 @@
+//! Shapefiles: points, lines, polygons and patches. The number of a record is the source of its primitives, by which
+//! they are joined with the table of attributes.
+
+use crate::features::{Map, surrounds};
+use crate::{File, wkt};
+use p2m_core::Element;
+use p2m_mixed::{FileLocation, ReadError, Reason, Scene};
+use shapefile::record::traits::HasXY;
+use shapefile::{Patch, PointZ, PolygonRing, ReadableShape, Shape};
+use std::io::Cursor;
+
+/// The length of the header, whose only use here is its first four bytes.
+const HEADER_BYTES: usize = 100;
+/// The first four bytes of a file, as a number.
+const FILE_CODE: u32 = 9994;
+
+pub(crate) fn read(file: &File<'_>) -> Result<Scene, ReadError> {
+    if u32::from_be_bytes(file.array(0)?) != FILE_CODE {
+        return Err(file.error_at(FileLocation::Byte(0), "the file does not start with the code of shapefiles"));
+    }
+    file.slice(0, HEADER_BYTES)?;
+    let mut map = Map::new(file.bytes.len());
+    let (mut has_two, mut has_three) = (false, false);
+    let mut at = HEADER_BYTES;
+    while at < file.bytes.len() {
+        let len = 2 * u64::from(u32::from_be_bytes(file.array(at + 4)?));
+        let number = map.source;
+        let fail = |reason: &dyn std::fmt::Display| file.error(format!("record {number}, counted from 0: {reason}"));
+        let left = (file.bytes.len() - at - 8) as u64;
+        let content = usize::try_from(len).ok().filter(|len| *len as u64 <= left);
+        let content = content.ok_or_else(|| fail(&format_args!("it has {len} bytes, but the file has {left} more")))?;
+        let record = file.slice(at + 8, content)?;
+        check_counts(record).map_err(|reason| fail(&reason))?;
+        // Record by record, because the crate loses its place after records that are longer than their shape.
+        let size = i32::try_from(content).map_err(|_| fail(&"it has more than 2 GiB"))?;
+        let shape = Shape::read_from(&mut Cursor::new(record), size).map_err(|error| fail(&text(&error)))?;
+        match shape {
+            Shape::NullShape => {}
+            Shape::PointZ(_)
+            | Shape::PolylineZ(_)
+            | Shape::PolygonZ(_)
+            | Shape::MultipointZ(_)
+            | Shape::Multipatch(_) => has_three = true,
+            _ => has_two = true,
+        }
+        add(&mut map, shape).map_err(|reason| fail(&reason))?;
+        map.source += 1;
+        at += 8 + content;
+    }
+    let projection = file.path.and_then(|path| std::fs::read_to_string(path.with_extension("prj")).ok());
+    let builder = &mut map.sink.builder;
+    builder.unit = projection.and_then(|text| wkt::unit(&text));
+    builder.is_flat = has_two && !has_three;
+    Ok(map.finish())
+}
+
+/// Refuses a record with more parts and positions than its bytes can have, or with parts out of order, for which the
+/// crate would reserve memory.
+fn check_counts(record: &[u8]) -> Result<(), String> {
+    let number = |at: usize| {
+        record.get(at..at + 4).map_or(0, |bytes| u64::from(u32::from_le_bytes(bytes.try_into().expect("four"))))
+    };
+    let (parts, points) = match number(0) {
+        3 | 5 | 13 | 15 | 23 | 25 | 31 => (number(36), number(40)),
+        8 | 18 | 28 => (0, number(36)),
+        _ => (0, 0),
+    };
+    if 4 * parts + 16 * points > record.len() as u64 {
+        return Err(format!("{parts} parts and {points} positions are more than its {} bytes have", record.len()));
+    }
+    let mut before = 0;
+    for part in 0..usize::try_from(parts).expect("fewer than bytes") {
+        let start = number(44 + 4 * part);
+        if start < before || start > points {
+            return Err(format!("part {part} starts at position {start} of {points}, after one at {before}"));
+        }
+        before = start;
+    }
+    Ok(())
+}
+
+/// Returns the text of an error.
+fn text(error: &shapefile::Error) -> String {
+    match error {
+        shapefile::Error::IoError(error) if error.kind() == std::io::ErrorKind::UnexpectedEof => {
+            "unexpected end of file".to_owned()
+        }
+        _ => error.to_string(),
+    }
+}
+
+fn add(map: &mut Map, shape: Shape) -> Result<(), Reason> {
+    match shape {
+        Shape::NullShape => {
+            map.sink.builder.skipped.add(b"record without shape", 1);
+            Ok(())
+        }
+        Shape::Point(point) => map.point(flat(&point)),
+        Shape::PointM(point) => map.point(flat(&point)),
+        Shape::PointZ(point) => map.point(raised(&point)),
+        Shape::Multipoint(points) => points.points().iter().try_for_each(|point| map.point(flat(point))),
+        Shape::MultipointM(points) => points.points().iter().try_for_each(|point| map.point(flat(point))),
+        Shape::MultipointZ(points) => points.points().iter().try_for_each(|point| map.point(raised(point))),
+        Shape::Polyline(line) => lines(map, line.parts(), flat),
+        Shape::PolylineM(line) => lines(map, line.parts(), flat),
+        Shape::PolylineZ(line) => lines(map, line.parts(), raised),
+        Shape::Polygon(polygon) => polygons(map, polygon.rings(), flat),
+        Shape::PolygonM(polygon) => polygons(map, polygon.rings(), flat),
+        Shape::PolygonZ(polygon) => polygons(map, polygon.rings(), raised),
+        Shape::Multipatch(patches) => patches.patches().iter().try_for_each(|patch| add_patch(map, patch)),
+    }
+}
+
+fn flat(point: &impl HasXY) -> [f64; 3] {
+    [point.x(), point.y(), 0.0]
+}
+
+fn raised(point: &PointZ) -> [f64; 3] {
+    [point.x, point.y, point.z]
+}
+
+fn lines<P>(map: &mut Map, parts: &[Vec<P>], position: impl Fn(&P) -> [f64; 3]) -> Result<(), Reason> {
+    parts.iter().try_for_each(|part| map.line(&part.iter().map(&position).collect::<Vec<_>>()))
+}
+
+/// Adds polygons. The rings of holes may be anywhere among the others.
+fn polygons<P>(map: &mut Map, rings: &[PolygonRing<P>], position: impl Fn(&P) -> [f64; 3]) -> Result<(), Reason> {
+    let ring = |ring: &PolygonRing<P>| ring.points().iter().map(&position).collect::<Vec<_>>();
+    let is_outer = |ring: &&PolygonRing<P>| matches!(ring, PolygonRing::Outer(_));
+    let mut polygons: Vec<_> = rings.iter().filter(is_outer).map(|outer| vec![ring(outer)]).collect();
+    for hole in rings.iter().filter(|ring| !is_outer(ring)).map(ring) {
+        let holds = |polygon: &&mut Vec<Vec<_>>| hole.first().is_some_and(|corner| surrounds(&polygon[0], *corner));
+        match polygons.iter_mut().find(holds) {
+            Some(polygon) => polygon.push(hole),
+            // A ring in the wrong direction is no hole.
+            None => polygons.push(vec![hole]),
+        }
+    }
+    polygons.iter().try_for_each(|polygon| map.polygon(polygon))
+}
+
+fn add_patch(map: &mut Map, patch: &Patch) -> Result<(), Reason> {
+    let positions: Vec<_> = patch.points().iter().map(raised).collect();
+    let vertices = map.vertices(&positions)?;
+    let source = map.source;
+    match patch {
+        Patch::TriangleStrip(_) => {
+            vertices.windows(3).try_for_each(|t| map.sink.push_from(Element::Triangle([t[0], t[1], t[2]]), source))
+        }
+        Patch::TriangleFan(_) => vertices
+            .get(1..)
+            .unwrap_or_default()
+            .windows(2)
+            .try_for_each(|t| map.sink.push_from(Element::Triangle([vertices[0], t[0], t[1]]), source)),
+        Patch::InnerRing(_) => {
+            map.sink.builder.skipped.add(b"hole of a patch", 1);
+            Ok(())
+        }
+        Patch::OuterRing(_) | Patch::FirstRing(_) | Patch::Ring(_) => {
+            map.sink.polygon(&vertices[..vertices.len().saturating_sub(1)], source)
+        }
+    }
+}

@@ -1,0 +1,40 @@
+//! Units of coordinate systems in well-known text.
+
+use p2m_mixed::Unit;
+
+/// Returns the unit of the horizontal coordinates of a coordinate system, as `.prj` files and LAS files have it.
+pub(crate) fn unit(text: &str) -> Option<Unit> {
+    let text = text.to_ascii_uppercase();
+    let is_projected = ["PROJCS", "PROJCRS", "PROJECTEDCRS"].iter().any(|keyword| text.contains(keyword));
+    if !is_projected {
+        let is_geographic = ["GEOGCS", "GEOGCRS", "GEODCRS"].iter().any(|keyword| text.contains(keyword));
+        return is_geographic.then_some(Unit::Degree);
+    }
+    // In the second version, ellipsoids and parameters have units of their own before the axes. In the first one, the
+    // unit of angles comes first, and has a factor to radians. The unit of heights is the last one.
+    let axes = text.split_once("CS[CARTESIAN").map_or(text.as_str(), |(_, axes)| axes);
+    axes.split("UNIT[").skip(1).find_map(|rest| {
+        let factor = rest.split(']').next()?.split(',').nth(1)?.trim().parse().ok()?;
+        Unit::of_metres(factor)
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_unit_of_lengths_is_not_that_of_angles() {
+        let geographic = r#"GEOGCS["WGS 84",DATUM["D"],PRIMEM["G",0],UNIT["degree",0.0174532925199433]]"#;
+        let projected =
+            |name: &str, factor| format!(r#"PROJCS["P",{geographic},PROJECTION["T"],UNIT["{name}",{factor}]]"#);
+        assert_eq!(unit(geographic), Some(Unit::Degree));
+        assert_eq!(unit(&projected("metre", 1.0)), Some(Unit::Metre));
+        assert_eq!(unit(&projected("US survey foot", 0.304_800_609_601_219_2)), Some(Unit::SurveyFoot));
+        assert_eq!(
+            unit(r#"PROJCRS["P",BASEGEOGCRS["B",LENGTHUNIT["metre",1]],CS[Cartesian,2],LENGTHUNIT["foot",0.3048]]"#),
+            Some(Unit::Foot)
+        );
+        assert_eq!((unit(""), unit(&projected("furlong", 201.168))), (None, None));
+    }
+}
