@@ -5,7 +5,7 @@ use crate::deviations::{DeviationData, Deviations};
 use crate::frame::Frame;
 use crate::packed::Packed;
 use crate::template::{STYLE, escape, fill, script_data};
-use nalgebra::Point3;
+use nalgebra::{Matrix4, Point3};
 use p2m_core::{Aabb, Closest, Element, Feature, PrimitiveId, PrimitiveSet, Soup};
 use p2m_field::Grid;
 use p2m_mixed::Scene;
@@ -63,6 +63,7 @@ struct Data {
     frame: Frame,
     scene: SceneData,
     object_names: Vec<String>,
+    has_object_colours: bool,
     #[serde(skip_serializing_if = "Option::is_none")]
     answers: Option<AnswerData>,
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -76,6 +77,8 @@ struct Data {
     #[serde(skip_serializing_if = "Option::is_none")]
     measures: Option<MeasureData>,
     #[serde(skip_serializing_if = "Option::is_none")]
+    moved: Option<MovedData>,
+    #[serde(skip_serializing_if = "Option::is_none")]
     deviations: Option<DeviationData>,
 }
 
@@ -88,6 +91,24 @@ pub struct Measure {
     pub ends: [Point3<f64>; 2],
     /// The length that the page shows, such as a certified distance.
     pub length: f64,
+}
+
+/// How the second object of a scene was moved to where it is.
+#[derive(Clone, Debug)]
+pub struct Moved {
+    /// The matrix of the motion, for column vectors (x, y, z, 1).
+    pub matrix: Matrix4<f64>,
+    /// Names and numbers that describe the motion.
+    pub facts: Vec<(&'static str, f64)>,
+}
+
+#[derive(Debug, Serialize)]
+struct MovedData {
+    title: String,
+    verdict: String,
+    /// The 16 numbers, row by row.
+    matrix: Vec<f64>,
+    facts: Vec<(&'static str, f64)>,
 }
 
 /// Lines with lengths.
@@ -196,12 +217,14 @@ impl<'a> View<'a> {
             frame,
             scene: data,
             object_names,
+            has_object_colours: false,
             answers: None,
             cells: None,
             field: None,
             lists: None,
             live: None,
             measures: None,
+            moved: None,
             deviations: None,
         };
         Self { scene, frame, data, title: "A scene".to_owned(), summary: String::new(), about: String::new() }
@@ -354,6 +377,30 @@ impl<'a> View<'a> {
             names: measures.iter().map(|measure| measure.name.clone()).filter(|name| !name.is_empty()).collect(),
             lengths: Packed::new(&measures.iter().map(|measure| measure.length).collect::<Vec<f64>>()),
             ends: Packed::new(&ends.collect::<Vec<f64>>()),
+        });
+        self
+    }
+
+    /// Gives each of the first two objects a colour of its own.
+    #[must_use]
+    pub fn with_object_colours(mut self) -> Self {
+        self.data.has_object_colours = true;
+        self
+    }
+
+    /// Shows the second of two objects where it is and where it was before it was moved, under a title, with a sentence
+    /// about the motion. The box that the page was started with has to contain the object before the motion.
+    ///
+    /// # Panics
+    /// If the scene has not two objects.
+    #[must_use]
+    pub fn with_moved(mut self, title: &str, verdict: &str, moved: &Moved) -> Self {
+        assert_eq!(self.scene.objects.len(), 2, "the second of two objects was moved");
+        self.data.moved = Some(MovedData {
+            title: title.to_owned(),
+            verdict: verdict.to_owned(),
+            matrix: moved.matrix.transpose().iter().copied().collect(),
+            facts: moved.facts.clone(),
         });
         self
     }
