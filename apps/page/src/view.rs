@@ -3,7 +3,7 @@
 use crate::decimate::{MAX_PRIMITIVES, is_distinct, representatives};
 use crate::deviations::{DeviationData, Deviations};
 use crate::frame::Frame;
-use crate::packed::Packed;
+use crate::packed::{Packed, compressed_text};
 use crate::template::{STYLE, escape, fill, script_data};
 use nalgebra::{Matrix4, Point3};
 use p2m_core::{Aabb, Closest, Element, Feature, PrimitiveId, PrimitiveSet, Soup};
@@ -13,7 +13,10 @@ use p2m_mixed::statistics::figure::Count;
 use serde::Serialize;
 
 const TEMPLATE: &str = include_str!("view.html");
+/// The script, which begins with the licence of what it contains.
 const SCRIPT: &str = include_str!("../assets/viewer.js");
+/// Where the licence ends.
+const LICENCE_END: &str = "*/\n";
 /// The module of WebAssembly of the npm package, compressed, which `cargo xtask wasm --build` makes.
 const MODULE: &[u8] = include_bytes!("../assets/p2m.wasm.deflate");
 
@@ -312,13 +315,15 @@ impl<'a> View<'a> {
         self
     }
 
-    /// Shows slices of a field, whose values are those of [`p2m_field::distances`]: x runs fastest.
+    /// Shows slices of a field, whose values are those of [`p2m_field::distances`]: x runs fastest. The page has them
+    /// rounded to a 256th of the spacing of the grid, or to a 65534th of their range if that is more. Linear
+    /// interpolation between the points of the grid has larger errors.
     ///
     /// # Panics
     /// If the number of values is not that of the points of the grid.
     #[must_use]
     pub fn with_field(mut self, grid: &Grid, values: &[f32]) -> Self {
-        self.data.field = Some(self.field_data(grid, values));
+        self.data.field = Some(self.field_data(grid, values, Packed::rounded(values, grid.spacing())));
         self
     }
 
@@ -329,17 +334,17 @@ impl<'a> View<'a> {
     /// If the number of lengths is not that of the points of the grid.
     #[must_use]
     pub fn with_list_lengths(mut self, grid: &Grid, lengths: &[f32]) -> Self {
-        self.data.lists = Some(self.field_data(grid, lengths));
+        self.data.lists = Some(self.field_data(grid, lengths, Packed::new(lengths)));
         self
     }
 
-    fn field_data(&self, grid: &Grid, values: &[f32]) -> FieldData {
+    fn field_data(&self, grid: &Grid, values: &[f32], packed: Packed) -> FieldData {
         assert_eq!(grid.len(), values.len(), "a value for each point of the grid");
         FieldData {
             counts: grid.counts(),
             origin: self.frame.position(&grid.origin()),
             spacing: self.frame.length(grid.spacing()),
-            values: Packed::new(values),
+            values: packed,
         }
     }
 
@@ -427,8 +432,11 @@ impl<'a> View<'a> {
     pub fn html(&self) -> serde_json::Result<String> {
         let [about, summary, title] = [&self.about, &self.summary, &self.title].map(|text| escape(text));
         let data = script_data(&self.data)?;
+        let (licence, _) = SCRIPT.split_once(LICENCE_END).expect("the script begins with a licence");
+        let (licence, script) = SCRIPT.split_at(licence.len() + LICENCE_END.len());
+        let script = compressed_text(script.as_bytes());
         let texts = [("about", &*about), ("summary", &summary), ("title", &title), ("data", &data)];
-        Ok(fill(TEMPLATE, &[&texts[..], &[("style", STYLE), ("script", SCRIPT)]].concat()))
+        Ok(fill(TEMPLATE, &[&texts[..], &[("style", STYLE), ("licence", licence), ("script", &script)]].concat()))
     }
 }
 
@@ -552,8 +560,9 @@ mod tests {
         let page = view.html().unwrap();
         assert!(page.contains("<title>a &lt; b &amp; {{data}}</title>"));
         assert_eq!(page.matches("</script>").count(), 2);
+        assert!(page.contains("The MIT License") && page.len() < 500_000, "{}", page.len());
         for foreign in [" src=", "<link", "@import", "url("] {
-            assert!(!page.replace(SCRIPT, "").contains(foreign), "{foreign}");
+            assert!(!page.contains(foreign), "{foreign}");
         }
     }
 

@@ -26,8 +26,7 @@ async function bundle(name, define = {}) {
 
 const viewer = await bundle("viewer.js", { WORKER_SCRIPT: JSON.stringify(await bundle("worker.js")) });
 const banner = `/*! This script has parts of three.js ${version}.\n\n${licence.trim()}\n*/\n`;
-// The page has the script between tags.
-const script = banner + viewer.replaceAll("</script", "<\\/script").replaceAll("<!--", "<\\!--");
+const script = banner + viewer;
 if (process.argv.includes("--check")) {
   if ((await readFile(out, "utf8")) !== script) {
     console.error("assets/viewer.js is not what web/src makes: run `npm run build` in apps/page/web");

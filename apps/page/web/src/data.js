@@ -2,14 +2,35 @@
 
 const ARRAYS = { f32: Float32Array, f64: Float64Array, u32: Uint32Array, u8: Uint8Array };
 
-// Returns the typed array that an object `{type, deflate}` describes. Machines with other than little-endian numbers
-// run no browser, so bytes are not swapped.
-async function unpack(packed) {
-  const text = atob(packed.deflate);
-  const bytes = new Uint8Array(text.length);
-  for (let i = 0; i < text.length; i++) bytes[i] = text.charCodeAt(i);
+// Returns the typed array that an object `{type, deflate}` describes, which `apps/page/src/packed.rs` has made. Machines
+// with other than little-endian numbers run no browser, so bytes are not swapped.
+export async function unpack({ type, deflate, planes, steps, decimals, rounded }) {
+  const Wanted = ARRAYS[type];
+  const Stored = decimals ? Int32Array : rounded ? Uint16Array : Wanted;
+  const bytes = await inflate(deflate);
+  const stored = new Stored((planes ? interleaved(bytes, Stored.BYTES_PER_ELEMENT) : bytes).buffer);
+  if (steps) for (let i = 1; i < stored.length; i++) stored[i] += stored[i - 1];
+  if (decimals) return Wanted.from(stored, (x) => x / decimals);
+  if (rounded) return Wanted.from(stored, (x) => (x === 0xffff ? NaN : rounded[1] + rounded[0] * x));
+  return stored;
+}
+
+// Returns the bytes that a text has.
+async function inflate(text) {
+  const letters = atob(text);
+  const bytes = new Uint8Array(letters.length);
+  for (let i = 0; i < letters.length; i++) bytes[i] = letters.charCodeAt(i);
   const stream = new Blob([bytes]).stream().pipeThrough(new DecompressionStream("deflate"));
-  return new ARRAYS[packed.type](await new Response(stream).arrayBuffer());
+  return new Uint8Array(await new Response(stream).arrayBuffer());
+}
+
+// Returns the bytes of numbers of some width, of which the first bytes come first, then the second ones, and so on.
+function interleaved(bytes, width) {
+  const [out, count] = [new Uint8Array(bytes.length), bytes.length / width];
+  for (let plane = 0; plane < width; plane++) {
+    for (let i = 0; i < count; i++) out[i * width + plane] = bytes[plane * count + i];
+  }
+  return out;
 }
 
 // Replaces each packed array within a value by its typed array.

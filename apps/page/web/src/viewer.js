@@ -280,19 +280,13 @@ function makeRenderer(canvas) {
   }
 }
 
-// Says what is missing where the page cannot be shown.
-function fail(error) {
-  const reason = typeof DecompressionStream === "undefined" ? "this browser is too old for it" : error.message;
-  document.getElementById("failure").textContent = `The page cannot be shown: ${reason}.`;
-}
-
 readData().then((data) => {
   // Tests read what is shown from here.
   window.viewer = new Viewer(data);
   document.documentElement.dataset.ready = "true";
   if (window.viewer.isLiveSoon) window.viewer.startLive();
 }).catch((error) => {
-  fail(error);
+  document.getElementById("failure").textContent = `The page cannot be shown: ${error.message}.`;
   document.documentElement.dataset.ready = "failed";
   console.error(error);
 });
