@@ -18,12 +18,15 @@ pub(crate) struct Packed {
     #[serde(flatten)]
     form: Form,
     /// The compressed bytes.
-    deflate: String,
+    bytes: String,
 }
 
 /// What is compressed instead of the numbers.
 #[derive(Clone, Debug, Default, PartialEq, Serialize)]
 struct Form {
+    /// Whether the bytes are compressed by Zstandard rather than by deflate.
+    #[serde(skip_serializing_if = "std::ops::Not::not")]
+    zstandard: bool,
     /// Whether the first bytes of all numbers come first, then the second ones, and so on.
     #[serde(skip_serializing_if = "std::ops::Not::not")]
     planes: bool,
@@ -114,7 +117,7 @@ impl Packed {
                 best = (form, compressed);
             }
         }
-        Self { kind: N::NAME, form: best.0, deflate: STANDARD.encode(best.1) }
+        Self { kind: N::NAME, form: best.0, bytes: STANDARD.encode(best.1) }
     }
 
     /// Packs values rounded to a 256th of a length, or to a 65534th of their range if that is more. NaN stays. Values of
@@ -139,12 +142,13 @@ impl Packed {
         let steps: Vec<u16> = values.iter().map(step).collect();
         let form = Form { planes: true, steps: true, rounded: Some([unit, low]), ..Form::default() };
         let bytes = compress(&planes(bytemuck::cast_slice(&steps), 2));
-        Self { kind: f32::NAME, form, deflate: STANDARD.encode(bytes) }
+        Self { kind: f32::NAME, form, bytes: STANDARD.encode(bytes) }
     }
 
-    /// Packs bytes that are compressed already.
-    pub(crate) fn compressed(bytes: &[u8]) -> Self {
-        Self { kind: u8::NAME, form: Form::default(), deflate: STANDARD.encode(bytes) }
+    /// Packs bytes that are compressed by Zstandard already.
+    pub(crate) fn zstandard(bytes: &[u8]) -> Self {
+        let form = Form { zstandard: true, ..Form::default() };
+        Self { kind: u8::NAME, form, bytes: STANDARD.encode(bytes) }
     }
 }
 
@@ -174,7 +178,7 @@ mod tests {
     use std::io::Read as _;
 
     fn unpacked(packed: &Packed) -> Vec<u8> {
-        let bytes = STANDARD.decode(&packed.deflate).unwrap();
+        let bytes = STANDARD.decode(&packed.bytes).unwrap();
         let mut unpacked = Vec::new();
         flate2::read::ZlibDecoder::new(&bytes[..]).read_to_end(&mut unpacked).unwrap();
         unpacked

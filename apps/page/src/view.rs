@@ -17,8 +17,8 @@ const TEMPLATE: &str = include_str!("view.html");
 const SCRIPT: &str = include_str!("../assets/viewer.js");
 /// Where the licence ends.
 const LICENCE_END: &str = "*/\n";
-/// The module of WebAssembly of the npm package, compressed, which `cargo xtask wasm --build` makes.
-const MODULE: &[u8] = include_bytes!("../assets/p2m.wasm.deflate");
+/// The module of WebAssembly of the npm package, compressed by Zstandard, which `cargo xtask wasm --build` makes.
+const MODULE: &[u8] = include_bytes!("../assets/p2m.wasm.zst");
 
 /// The axis that points up in a picture.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
@@ -363,7 +363,7 @@ impl<'a> View<'a> {
             self.data.scene.drawn = None;
         }
         self.data.live = Some(LiveData {
-            module: Packed::compressed(MODULE),
+            module: Packed::zstandard(MODULE),
             coordinates: Packed::new(&coordinates),
             sizes: Packed::new(&sizes),
             indices: Packed::new(&indices),

@@ -1,13 +1,17 @@
 // The data of the page: one JSON value, in which each large array is text (base64 of compressed numbers).
 
+import { decompress } from "fzstd";
+
 const ARRAYS = { f32: Float32Array, f64: Float64Array, u32: Uint32Array, u8: Uint8Array };
 
-// Returns the typed array that an object `{type, deflate}` describes, which `apps/page/src/packed.rs` has made. Machines
+// Returns the typed array that an object `{type, bytes}` describes, which `apps/page/src/packed.rs` has made. Machines
 // with other than little-endian numbers run no browser, so bytes are not swapped.
-export async function unpack({ type, deflate, planes, steps, decimals, rounded }) {
+async function unpack({ type, bytes: text, zstandard, planes, steps, decimals, rounded }) {
   const Wanted = ARRAYS[type];
   const Stored = decimals ? Int32Array : rounded ? Uint16Array : Wanted;
-  const bytes = await inflate(deflate);
+  const compressed = bytesOf(text);
+  // A decompressed array may be a part of a larger one.
+  const bytes = zstandard ? decompress(compressed).slice() : await inflate(compressed);
   const stored = new Stored((planes ? interleaved(bytes, Stored.BYTES_PER_ELEMENT) : bytes).buffer);
   if (steps) for (let i = 1; i < stored.length; i++) stored[i] += stored[i - 1];
   if (decimals) return Wanted.from(stored, (x) => x / decimals);
@@ -15,11 +19,15 @@ export async function unpack({ type, deflate, planes, steps, decimals, rounded }
   return stored;
 }
 
-// Returns the bytes that a text has.
-async function inflate(text) {
+// Returns the bytes of a text in base64.
+function bytesOf(text) {
   const letters = atob(text);
   const bytes = new Uint8Array(letters.length);
   for (let i = 0; i < letters.length; i++) bytes[i] = letters.charCodeAt(i);
+  return bytes;
+}
+
+async function inflate(bytes) {
   const stream = new Blob([bytes]).stream().pipeThrough(new DecompressionStream("deflate"));
   return new Uint8Array(await new Response(stream).arrayBuffer());
 }
@@ -37,7 +45,7 @@ function interleaved(bytes, width) {
 async function unpackAll(value) {
   if (Array.isArray(value)) return Promise.all(value.map(unpackAll));
   if (value === null || typeof value !== "object") return value;
-  if (typeof value.deflate === "string") return unpack(value);
+  if (typeof value.bytes === "string") return unpack(value);
   const entries = Object.entries(value).map(async ([key, part]) => [key, await unpackAll(part)]);
   return Object.fromEntries(await Promise.all(entries));
 }
