@@ -9,7 +9,7 @@ import { roundUp, short, sideOf } from "./text.js";
 // The number of lines of equal distance between zero and the largest distance, at most.
 const LINES = 8;
 // The opacity of a slice where it is not inside of the scene, so that the scene behind it is seen.
-const OUTSIDE = { light: 0.45, dark: 0.7 };
+const OUTSIDE = { light: 0.32, dark: 0.55 };
 
 const VERTEX = `
   varying vec2 place;
