@@ -14,9 +14,14 @@ async function unpack({ type, bytes: text, zstandard, planes, steps, decimals, r
   const bytes = zstandard ? decompress(compressed).slice() : await inflate(compressed);
   const stored = new Stored((planes ? interleaved(bytes, Stored.BYTES_PER_ELEMENT) : bytes).buffer);
   if (steps) for (let i = 1; i < stored.length; i++) stored[i] += stored[i - 1];
-  if (decimals) return Wanted.from(stored, (x) => x / decimals);
-  if (rounded) return Wanted.from(stored, (x) => (x === 0xffff ? NaN : rounded[1] + rounded[0] * x));
-  return stored;
+  if (!decimals && !rounded) return stored;
+  // `Wanted.from` with a function takes many times as long.
+  const numbers = new Wanted(stored.length);
+  const [unit, origin] = rounded ?? [];
+  for (let i = 0; i < numbers.length; i++) {
+    numbers[i] = decimals ? stored[i] / decimals : stored[i] === 0xffff ? NaN : origin + unit * stored[i];
+  }
+  return numbers;
 }
 
 // Returns the bytes of a text in base64.

@@ -5,6 +5,8 @@ import { choice, copyButton, element, fillList, number } from "./text.js";
 
 // The digits that are shown of the numbers of the matrix.
 const MATRIX_DIGITS = 4;
+// The size below which a number of the matrix is shown as zero.
+const ROUNDED_ZERO = 1e-12;
 
 export class MovedPanel {
   constructor(viewer, add) {
@@ -14,7 +16,12 @@ export class MovedPanel {
     this.back = new three.Matrix4().set(...matrix).invert();
     const list = element("dl", { id: "moved-facts" });
     fillList(list, facts);
-    const cell = (x) => element("td", {}, number(x, MATRIX_DIGITS));
+    // What rounding has left of zeros is shown as such. Copies have it.
+    const cell = (x) => {
+      const shown = number(x, MATRIX_DIGITS);
+      if (Math.abs(x) < ROUNDED_ZERO) shown.textContent = "0";
+      return element("td", {}, shown);
+    };
     const rows = [0, 4, 8, 12].map((i) => element("tr", {}, ...matrix.slice(i, i + 4).map(cell)));
     const table = element("table", { id: "matrix" }, element("caption", {}, "Matrix of the motion"), element("tbody", {}, ...rows));
     const shown = choice("shown", ["after", "before"], 0, (i) => this.show(i === 1));

@@ -394,13 +394,19 @@ test("inside and outside are words, and a long title loses its middle", { skip }
   const box = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nv 0 0 1\nv 1 0 1\nv 1 1 1\nv 0 1 1\n" +
     "f 4 3 2 1\nf 5 6 7 8\nf 1 2 6 5\nf 2 3 7 6\nf 3 4 8 7\nf 4 1 5 8\n";
   const points = opened.write("two.xyz", "0.5 0.5 0.25\n0.5 0.5 1.5\n");
-  const other = await opened.view(opened.write(name, box), "--points", points, "--signed", "--live", "always");
+  const other = await opened.view(opened.write(name, box), "--points", points, "--signed", "--live", "always", "--field", "16");
   const words = [];
   for (let i = 0; i < 2; i++) {
     await other.keyboard.press("n");
     words.push(await opened.read("answer", "distance", other));
   }
   assert.deepEqual(words, ["0.25 units inside", "0.5 units outside"]);
+  // The field has the distances of the centre and of a corner, but for the interpolation between grid points.
+  const [centre, corner] = await other.evaluate(() => {
+    const { slice, frame, camera } = window.viewer;
+    return [[0.5, 0.5, 0.5], [1.1, 1.1, 1.1]].map((point) => slice.valueAt(camera.position.clone().fromArray(frame.positions(point))));
+  });
+  assert.ok(Math.abs(centre + 0.5) < 0.1 && Math.abs(corner - Math.sqrt(3) / 10) < 0.1, `${centre}, ${corner}`);
   await other.waitForFunction(() => document.documentElement.dataset.live === "ready");
   for (const [z, side] of [["0.25", "inside"], ["1.5", "outside"], ["1", "on the surface"]]) {
     await other.fill("#live-x", "0.5");
