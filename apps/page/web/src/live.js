@@ -253,7 +253,7 @@ export class LiveQueries {
   showAnswer() {
     const { query, isValid, indexes, answers } = this.shown;
     const [answer] = answers;
-    const rows = [["query", isValid ? query.join(",\n") : "Each coordinate has to be a number."]];
+    const rows = [];
     if (answer) {
       rows.push(...answerRows(this.viewer.unit, { ...answer, size: this.scene.sizes[answer.primitive] }));
       const key = (a) => a && [...a.point, a.distance, a.lowerBound, a.primitive, a.feature].join();
@@ -263,6 +263,7 @@ export class LiveQueries {
     } else if (isValid) {
       rows.push(["answer", "none"]);
     }
+    rows.push(["query", isValid ? query.join(",\n") : "Each coordinate has to be a number."]);
     fillList(this.answerText, rows);
   }
 
