@@ -74,7 +74,9 @@ function scan(scene, path, side) {
 function pairs(name, scene, side, shared) {
   const copy = at(`${name}-copy.ply`);
   const beside = (command, page) => ({ [page]: () => {
-    run("convert", scene, copy, "--rotate-z", "20", "--translate", String(1.1 * side), "0", "0");
+    // A turn about the origin would move a city far away.
+    const turn = command === "align" ? ["--rotate-z", "20"] : [];
+    run("convert", scene, copy, ...turn, "--translate", String(1.1 * side), "0", "0");
     run(command, ...(command === "align" ? [copy, scene] : [scene, copy]), ...shared, "--html", at(`${name}-${page}.html`));
   } });
   const others = name === "mesh" ? { ...beside("hausdorff", "hausdorff"), ...beside("align", "align") } : {};
