@@ -23,7 +23,7 @@ pub(crate) struct Packed {
 
 /// What is compressed instead of the numbers.
 #[derive(Clone, Debug, Default, PartialEq, Serialize)]
-struct Form {
+pub(crate) struct Form {
     /// Whether the bytes are compressed by Zstandard rather than by deflate.
     #[serde(skip_serializing_if = "std::ops::Not::not")]
     zstandard: bool,

@@ -432,8 +432,7 @@ impl<'a> View<'a> {
     pub fn html(&self) -> serde_json::Result<String> {
         let [about, summary, title] = [&self.about, &self.summary, &self.title].map(|text| escape(text));
         let data = script_data(&self.data)?;
-        let (licence, _) = SCRIPT.split_once(LICENCE_END).expect("the script begins with a licence");
-        let (licence, script) = SCRIPT.split_at(licence.len() + LICENCE_END.len());
+        let (licence, script) = SCRIPT.split_once(LICENCE_END).unwrap_or_default();
         let script = compressed_text(script.as_bytes());
         let texts = [("about", &*about), ("summary", &summary), ("title", &title), ("data", &data)];
         Ok(fill(TEMPLATE, &[&texts[..], &[("style", STYLE), ("licence", licence), ("script", &script)]].concat()))
