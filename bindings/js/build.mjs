@@ -3,15 +3,15 @@
 import { execFileSync } from "node:child_process";
 import { copyFileSync, readFileSync, rmSync, writeFileSync } from "node:fs";
 import { fileURLToPath } from "node:url";
-import { inflateSync } from "node:zlib";
+import { decompress } from "fzstd";
 
 const folder = new URL("./", import.meta.url);
-const module = new URL("../../apps/page/assets/p2m.wasm.deflate", folder);
+const module = new URL("../../apps/page/assets/p2m.wasm.zst", folder);
 rmSync(new URL("dist", folder), { recursive: true, force: true });
 execFileSync(process.execPath, [fileURLToPath(import.meta.resolve("typescript/lib/tsc.js"))], { cwd: folder, stdio: "inherit" });
 // Packages have no links to files.
 for (const licence of ["LICENSE-APACHE", "LICENSE-MIT"]) copyFileSync(new URL(`../../${licence}`, folder), new URL(licence, folder));
-const bytes = inflateSync(readFileSync(module));
+const bytes = Buffer.from(decompress(readFileSync(module)));
 writeFileSync(new URL("dist/p2m.wasm", folder), bytes);
 const text = bytes.toString("base64");
 writeFileSync(new URL("dist/inline.js", folder),

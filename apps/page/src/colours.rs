@@ -1,23 +1,25 @@
-//! The colours of signed numbers. The script of the page has the same scale for light pages.
+//! The colours of signed numbers. The script of the page has the same scale.
 
-/// Blue for negative numbers and red for positive ones, with grey at zero, which people with any colour
-/// vision tell apart.
-const DIVERGING: [[u8; 3]; 9] = [
-    [0x05, 0x30, 0x61],
-    [0x1a, 0x55, 0x9a],
-    [0x33, 0x79, 0xb8],
-    [0x60, 0x89, 0xb4],
-    [0x88, 0x88, 0x88],
-    [0xbd, 0x78, 0x62],
-    [0xc2, 0x51, 0x3c],
-    [0xa1, 0x1f, 0x2b],
-    [0x67, 0x00, 0x1f],
+/// Blue for negative numbers and red for positive ones, almost white at zero, which people with any colour vision tell
+/// apart.
+const DIVERGING: [[u8; 3]; 11] = [
+    [0x08, 0x30, 0x6b],
+    [0x1c, 0x5a, 0xa8],
+    [0x4a, 0x8f, 0xd0],
+    [0x8f, 0xc0, 0xea],
+    [0xcf, 0xe4, 0xf4],
+    [0xf4, 0xf1, 0xea],
+    [0xf9, 0xd3, 0xb8],
+    [0xf0, 0xa3, 0x7c],
+    [0xdd, 0x6a, 0x4e],
+    [0xb9, 0x32, 0x37],
+    [0x7a, 0x0a, 0x22],
 ];
 /// The colour of NaN.
 const UNDEFINED: [u8; 3] = [0x9a, 0x5f, 0xc0];
 
-/// Returns red, green and blue of a number on a scale from blue at `-limit` over grey at zero to red at `limit`, as
-/// light pages show it. Numbers beyond the limit have the colours of its ends, and NaN is violet.
+/// Returns red, green and blue of a number on a scale from blue at `-limit` over almost white at zero to red at `limit`,
+/// as pages show it. Numbers beyond the limit have the colours of its ends, and NaN is violet.
 #[must_use]
 #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "places and colours are in range")]
 pub fn diverging_colour(value: f64, limit: f64) -> [u8; 3] {
@@ -49,9 +51,9 @@ mod tests {
     #[test]
     fn the_ends_and_the_middle_have_their_colours() {
         let of = |value| diverging_colour(value, 2.0);
-        assert_eq!([of(-2.0), of(-3.0), of(0.0)], [DIVERGING[0], DIVERGING[0], DIVERGING[4]]);
-        assert_eq!([of(2.0), of(f64::INFINITY), of(f64::NAN)], [DIVERGING[8], DIVERGING[8], UNDEFINED]);
-        assert_eq!(of(1.0), DIVERGING[6]);
-        assert_eq!([diverging_colour(0.0, 0.0), diverging_colour(1.0, 0.0)], [DIVERGING[4], DIVERGING[8]]);
+        assert_eq!([of(-2.0), of(-3.0), of(0.0)], [DIVERGING[0], DIVERGING[0], DIVERGING[5]]);
+        assert_eq!([of(2.0), of(f64::INFINITY), of(f64::NAN)], [DIVERGING[10], DIVERGING[10], UNDEFINED]);
+        assert_eq!(of(0.8), DIVERGING[7]);
+        assert_eq!([diverging_colour(0.0, 0.0), diverging_colour(1.0, 0.0)], [DIVERGING[5], DIVERGING[10]]);
     }
 }

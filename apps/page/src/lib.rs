@@ -14,4 +14,4 @@ mod view;
 
 pub use colours::diverging_colour;
 pub use deviations::Deviations;
-pub use view::{Level, Measure, UpAxis, View};
+pub use view::{Level, Measure, Moved, UpAxis, View};

@@ -3,9 +3,9 @@
 use crate::decimate::{MAX_PRIMITIVES, is_distinct, representatives};
 use crate::deviations::{DeviationData, Deviations};
 use crate::frame::Frame;
-use crate::packed::Packed;
+use crate::packed::{Packed, compressed_text};
 use crate::template::{STYLE, escape, fill, script_data};
-use nalgebra::Point3;
+use nalgebra::{Matrix4, Point3};
 use p2m_core::{Aabb, Closest, Element, Feature, PrimitiveId, PrimitiveSet, Soup};
 use p2m_field::Grid;
 use p2m_mixed::Scene;
@@ -13,9 +13,12 @@ use p2m_mixed::statistics::figure::Count;
 use serde::Serialize;
 
 const TEMPLATE: &str = include_str!("view.html");
+/// The script, which begins with the licence of what it contains.
 const SCRIPT: &str = include_str!("../assets/viewer.js");
-/// The module of WebAssembly of the npm package, compressed, which `cargo xtask wasm --build` makes.
-const MODULE: &[u8] = include_bytes!("../assets/p2m.wasm.deflate");
+/// Where the licence ends.
+const LICENCE_END: &str = "*/\n";
+/// The module of WebAssembly of the npm package, compressed by Zstandard, which `cargo xtask wasm --build` makes.
+const MODULE: &[u8] = include_bytes!("../assets/p2m.wasm.zst");
 
 /// The axis that points up in a picture.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
@@ -63,6 +66,7 @@ struct Data {
     frame: Frame,
     scene: SceneData,
     object_names: Vec<String>,
+    has_object_colours: bool,
     #[serde(skip_serializing_if = "Option::is_none")]
     answers: Option<AnswerData>,
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -76,6 +80,8 @@ struct Data {
     #[serde(skip_serializing_if = "Option::is_none")]
     measures: Option<MeasureData>,
     #[serde(skip_serializing_if = "Option::is_none")]
+    moved: Option<MovedData>,
+    #[serde(skip_serializing_if = "Option::is_none")]
     deviations: Option<DeviationData>,
 }
 
@@ -88,6 +94,24 @@ pub struct Measure {
     pub ends: [Point3<f64>; 2],
     /// The length that the page shows, such as a certified distance.
     pub length: f64,
+}
+
+/// How the second object of a scene was moved to where it is.
+#[derive(Clone, Debug)]
+pub struct Moved {
+    /// The matrix of the motion, for column vectors (x, y, z, 1).
+    pub matrix: Matrix4<f64>,
+    /// Names and numbers that describe the motion.
+    pub facts: Vec<(&'static str, f64)>,
+}
+
+#[derive(Debug, Serialize)]
+struct MovedData {
+    title: String,
+    verdict: String,
+    /// The 16 numbers, row by row.
+    matrix: Vec<f64>,
+    facts: Vec<(&'static str, f64)>,
 }
 
 /// Lines with lengths.
@@ -196,12 +220,14 @@ impl<'a> View<'a> {
             frame,
             scene: data,
             object_names,
+            has_object_colours: false,
             answers: None,
             cells: None,
             field: None,
             lists: None,
             live: None,
             measures: None,
+            moved: None,
             deviations: None,
         };
         Self { scene, frame, data, title: "A scene".to_owned(), summary: String::new(), about: String::new() }
@@ -289,13 +315,15 @@ impl<'a> View<'a> {
         self
     }
 
-    /// Shows slices of a field, whose values are those of [`p2m_field::distances`]: x runs fastest.
+    /// Shows slices of a field, whose values are those of [`p2m_field::distances`]: x runs fastest. The page has them
+    /// rounded to a 256th of the spacing of the grid, or to a 65534th of their range if that is more. Linear
+    /// interpolation between the points of the grid has larger errors.
     ///
     /// # Panics
     /// If the number of values is not that of the points of the grid.
     #[must_use]
     pub fn with_field(mut self, grid: &Grid, values: &[f32]) -> Self {
-        self.data.field = Some(self.field_data(grid, values));
+        self.data.field = Some(self.field_data(grid, values, Packed::rounded(values, grid.spacing())));
         self
     }
 
@@ -306,17 +334,17 @@ impl<'a> View<'a> {
     /// If the number of lengths is not that of the points of the grid.
     #[must_use]
     pub fn with_list_lengths(mut self, grid: &Grid, lengths: &[f32]) -> Self {
-        self.data.lists = Some(self.field_data(grid, lengths));
+        self.data.lists = Some(self.field_data(grid, lengths, Packed::new(lengths)));
         self
     }
 
-    fn field_data(&self, grid: &Grid, values: &[f32]) -> FieldData {
+    fn field_data(&self, grid: &Grid, values: &[f32], packed: Packed) -> FieldData {
         assert_eq!(grid.len(), values.len(), "a value for each point of the grid");
         FieldData {
             counts: grid.counts(),
             origin: self.frame.position(&grid.origin()),
             spacing: self.frame.length(grid.spacing()),
-            values: Packed::new(values),
+            values: packed,
         }
     }
 
@@ -335,7 +363,7 @@ impl<'a> View<'a> {
             self.data.scene.drawn = None;
         }
         self.data.live = Some(LiveData {
-            module: Packed::compressed(MODULE),
+            module: Packed::zstandard(MODULE),
             coordinates: Packed::new(&coordinates),
             sizes: Packed::new(&sizes),
             indices: Packed::new(&indices),
@@ -354,6 +382,30 @@ impl<'a> View<'a> {
             names: measures.iter().map(|measure| measure.name.clone()).filter(|name| !name.is_empty()).collect(),
             lengths: Packed::new(&measures.iter().map(|measure| measure.length).collect::<Vec<f64>>()),
             ends: Packed::new(&ends.collect::<Vec<f64>>()),
+        });
+        self
+    }
+
+    /// Gives each of the first two objects a colour of its own.
+    #[must_use]
+    pub fn with_object_colours(mut self) -> Self {
+        self.data.has_object_colours = true;
+        self
+    }
+
+    /// Shows the second of two objects where it is and where it was before it was moved, under a title, with a sentence
+    /// about the motion. The box that the page was started with has to contain the object before the motion.
+    ///
+    /// # Panics
+    /// If the scene has not two objects.
+    #[must_use]
+    pub fn with_moved(mut self, title: &str, verdict: &str, moved: &Moved) -> Self {
+        assert_eq!(self.scene.objects.len(), 2, "the second of two objects was moved");
+        self.data.moved = Some(MovedData {
+            title: title.to_owned(),
+            verdict: verdict.to_owned(),
+            matrix: moved.matrix.transpose().iter().copied().collect(),
+            facts: moved.facts.clone(),
         });
         self
     }
@@ -380,8 +432,10 @@ impl<'a> View<'a> {
     pub fn html(&self) -> serde_json::Result<String> {
         let [about, summary, title] = [&self.about, &self.summary, &self.title].map(|text| escape(text));
         let data = script_data(&self.data)?;
+        let (licence, script) = SCRIPT.split_once(LICENCE_END).unwrap_or_default();
+        let script = compressed_text(script.as_bytes());
         let texts = [("about", &*about), ("summary", &summary), ("title", &title), ("data", &data)];
-        Ok(fill(TEMPLATE, &[&texts[..], &[("style", STYLE), ("script", SCRIPT)]].concat()))
+        Ok(fill(TEMPLATE, &[&texts[..], &[("style", STYLE), ("licence", licence), ("script", &script)]].concat()))
     }
 }
 
@@ -505,8 +559,9 @@ mod tests {
         let page = view.html().unwrap();
         assert!(page.contains("<title>a &lt; b &amp; {{data}}</title>"));
         assert_eq!(page.matches("</script>").count(), 2);
+        assert!(page.contains("The MIT License") && page.len() < 500_000, "{}", page.len());
         for foreign in [" src=", "<link", "@import", "url("] {
-            assert!(!page.replace(SCRIPT, "").contains(foreign), "{foreign}");
+            assert!(!page.contains(foreign), "{foreign}");
         }
     }
 

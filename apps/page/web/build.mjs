@@ -1,12 +1,17 @@
-// Puts the script of the pages and the parts of three.js that it uses into one file, `assets/viewer.js`. With `--check`
+// Puts the script of the pages and the parts of other packages that it uses into one file, `assets/viewer.js`. With `--check`
 // it fails if that file is not what the sources make.
 
 import { build } from "esbuild";
 import { readFile, writeFile } from "node:fs/promises";
 
 const out = new URL("../assets/viewer.js", import.meta.url);
-const licence = await readFile(new URL("node_modules/three/LICENSE", import.meta.url), "utf8");
-const { version } = JSON.parse(await readFile(new URL("node_modules/three/package.json", import.meta.url), "utf8"));
+
+// Returns the name, the version and the licence of a package of which the script has parts.
+async function credit(name) {
+  const file = (path) => readFile(new URL(`node_modules/${name}/${path}`, import.meta.url), "utf8");
+  const { version } = JSON.parse(await file("package.json"));
+  return `This script has parts of ${name} ${version}.\n\n${(await file("LICENSE")).trim()}\n`;
+}
 
 // Returns the text of a script with all that it imports.
 async function bundle(name, define = {}) {
@@ -25,9 +30,8 @@ async function bundle(name, define = {}) {
 }
 
 const viewer = await bundle("viewer.js", { WORKER_SCRIPT: JSON.stringify(await bundle("worker.js")) });
-const banner = `/*! This script has parts of three.js ${version}.\n\n${licence.trim()}\n*/\n`;
-// The page has the script between tags.
-const script = banner + viewer.replaceAll("</script", "<\\/script").replaceAll("<!--", "<\\!--");
+const banner = `/*! ${await credit("three")}\n${await credit("fzstd")}*/\n`;
+const script = banner + viewer;
 if (process.argv.includes("--check")) {
   if ((await readFile(out, "utf8")) !== script) {
     console.error("assets/viewer.js is not what web/src makes: run `npm run build` in apps/page/web");

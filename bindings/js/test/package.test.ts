@@ -1,5 +1,5 @@
-// The archive of `npm pack` in empty projects: strict TypeScript, Node.js, and the example page by Vite, which Chromium
-// opens.
+// The archive of `npm pack` in empty projects: strict TypeScript, Node.js, and pages that Vite and webpack make, which
+// Chromium opens.
 
 import { execFileSync } from "node:child_process";
 import { cpSync, existsSync, mkdtempSync, readFileSync, readdirSync, rmSync, writeFileSync } from "node:fs";
@@ -12,9 +12,13 @@ import { fileURLToPath } from "node:url";
 import { chromium } from "playwright-core";
 import type { Browser, Page } from "playwright-core";
 import { afterAll, beforeAll, describe, expect, test } from "vitest";
+import { Index, Scene, init } from "../dist/index.js";
+import { blob, mixture, pointsAround } from "./scenes.js";
+import type { Arrays } from "./scenes.js";
 
 const ROOT = fileURLToPath(new URL("..", import.meta.url));
 const CHROMIUM = ["/usr/bin/chromium", "/usr/bin/google-chrome"].find(existsSync);
+const WEBPACK = "webpack@~5.113.0";
 const TYPES: Record<string, string> = { ".html": "text/html", ".js": "text/javascript", ".wasm": "application/wasm" };
 
 let project: string;
@@ -32,7 +36,7 @@ beforeAll(() => {
   const archive = readdirSync(project).find((name) => name.endsWith(".tgz"))!;
   const { devDependencies } = JSON.parse(readFileSync(join(ROOT, "package.json"), "utf8"));
   const tools = ["three", "@types/three", "typescript", "vite"].map((name) => `${name}@${devDependencies[name]}`);
-  run("npm", "install", "--prefer-offline", "--no-audit", "--no-fund", "--loglevel=error", `./${archive}`, ...tools);
+  run("npm", "install", "--prefer-offline", "--no-audit", "--no-fund", "--loglevel=error", `./${archive}`, ...tools, WEBPACK);
 });
 afterAll(() => rmSync(project, { recursive: true, force: true }));
 
@@ -149,6 +153,47 @@ describe.skipIf(!CHROMIUM)("in Chromium", () => {
     const result = await tab.evaluate(() => (globalThis as any).result);
     expect(result).toEqual({ isShared: isolated, isSame: true, size: 2, inline: 3 });
     expect(problems).toEqual([]);
+    await tab.close();
+  });
+
+  test("webpack makes a page with the module, the pool and its workers", async () => {
+    cpSync(join(ROOT, "test/pool/main.js"), join(project, "packed.js"));
+    // The module is a file of its own, which the script loads from beside itself.
+    const source = readFileSync(join(project, "packed.js"), "utf8").replace("init(bytes)", "init()");
+    file("packed.js", source.replace(/import bytes .*\n/, ""));
+    file("webpack.mjs", `
+      import webpack from "webpack";
+      const output = { path: process.cwd() + "/dist" };
+      // The module is larger than webpack recommends for scripts.
+      const options = { mode: "production", entry: "./packed.js", output, performance: false };
+      webpack(options, (error, stats) => {
+        if (error || stats.hasErrors() || stats.hasWarnings()) throw error ?? new Error(stats.toString());
+      });`);
+    run(process.execPath, "webpack.mjs");
+    expect(readdirSync(join(project, "dist")).filter((name) => name.endsWith(".wasm")).length).toBeGreaterThan(0);
+    file("dist/packed.html", '<!doctype html><link rel="icon" href="data:,"><script src="main.js" defer></script>');
+    isIsolated = true;
+    const tab = await open("packed.html");
+    expect(await tab.evaluate(() => (globalThis as any).result)).toEqual({ isShared: true, isSame: true, size: 2, inline: 3 });
+    expect(problems).toEqual([]);
+    await tab.close();
+  });
+
+  const scenes: [string, Arrays][] = [
+    ["octree", mixture(1500, 800, 300, 29)], ["kdop", blob(60, [4e6, 5e5, -3e5], 100)], ["aabb", blob(80)],
+  ];
+  test.each(scenes)("20,000 answers are those of Node.js, bit for bit: %s", async (backend, scene) => {
+    await init();
+    const queries = pointsAround(scene, 20_000, 41);
+    const expected = new Index(new Scene(scene), { backend: backend as "octree" }).closestPoints(queries);
+    const tab = await open();
+    const plain = Object.fromEntries(Object.entries(scene).map(([name, values]) => [name, [...values]]));
+    const found = await tab.evaluate(([scene, queries, backend]) => (globalThis as any).answer(scene, queries, backend),
+      [plain, [...queries], backend] as const);
+    for (const [name, values] of Object.entries(expected)) {
+      expect(found[name].length).toBe(values.length);
+      expect(found[name].findIndex((x: number, i: number) => !Object.is(x, values[i]))).toBe(-1);
+    }
     await tab.close();
   });
 });

@@ -28,7 +28,7 @@ const LIBRARY: &str = "p2m";
 /// The folders of its sources.
 const MODULE_SOURCES: [&str; 2] = ["bindings/c/src", "bindings/js/src"];
 /// The module, which is part of the npm package, and of each page that answers queries.
-const MODULE_FILE: &str = "apps/page/assets/p2m.wasm.deflate";
+const MODULE_FILE: &str = "apps/page/assets/p2m.wasm.zst";
 /// A checksum of the sources of the module. Those of the library are not part of it, because its answers do not change:
 /// the tests of pages in a browser compare the answers of the module with those of the program.
 const STAMP_FILE: &str = "apps/page/assets/p2m.stamp";

@@ -9,14 +9,16 @@ use crate::io::progress::{Progress, Unit};
 use crate::io::streams::Streams;
 use crate::io::threads::ThreadArgs;
 use crate::io::usage::usage;
+use crate::page::pair::{PairPage, PairPageArgs, PairResult};
 use crate::scene::convert::Target;
 use anyhow::{Context, anyhow};
 use nalgebra::Point3;
 use p2m_backends::P2mSettings;
-use p2m_core::ClosestPoint;
+use p2m_core::{ClosestPoint, PrimitiveSet};
 use p2m_field::align::{AlignError, AlignOptions, Alignment, Ambiguity, align};
 use p2m_mixed::Scene;
 use p2m_mixed::statistics::figure::{Count, Figure};
+use p2m_page::Moved;
 use rayon::ThreadPool;
 use serde_json::{Value, json};
 use std::fmt::Write as _;
@@ -35,6 +37,7 @@ the matrix. A warning says if another pose would fit about as well.
 Examples:
   p2m align scan.ply part.stl --out aligned.ply
   p2m align scan.xyz part.obj --overlap 0.6 --matrix pose.txt
+  p2m align scan.ply part.stl --html page.html --open
   p2m align scan.npy part.ply --scale --json";
 
 /// Move a scan onto a scene
@@ -76,6 +79,9 @@ pub(crate) struct Args {
     backend: Option<Backend>,
 
     #[command(flatten)]
+    page: PairPageArgs,
+
+    #[command(flatten)]
     threads: ThreadArgs,
 
     /// Print the result as JSON
@@ -108,6 +114,7 @@ pub(crate) fn run(streams: &Streams, args: &Args) -> anyhow::Result<()> {
         }
         Output::refuse_inputs(out, &[&args.scan.path, &args.scene.path])?;
     }
+    args.page.check(&[&args.scan.path, &args.scene.path])?;
     args.scan.refuse_same_input(&args.scene)?;
     let target = args.out.as_deref().map(|out| Target::new(streams, out, None, None)).transpose()?;
     let scan_format = args.scan.format()?;
@@ -119,17 +126,29 @@ pub(crate) fn run(streams: &Streams, args: &Args) -> anyhow::Result<()> {
     let p2m = P2mSettings::default();
     let source = SceneSource { soup: &scene.soup, kdop_directions: None, p2m, saved: saved.as_ref() };
     let index = source.prepare(streams, backend, &pool).with_context(|| args.scene.name())?.built.index;
+    let before = scan.soup.aabb();
     let found =
         move_scan(streams, &pool, &args.scan.path, &mut scan, (args.scene.name(), &scene, &*index), &args.options())?;
     let written = target.map(|target| target.write(streams, &scan)).transpose()?;
     if let Some(path) = &args.matrix {
         Output::open(streams, Some(path))?.finish_with(rows(&found, ""))?;
     }
+    drop(index);
+    let (points, scenes) = (scan.soup.positions().len(), [scene, scan]);
+    args.page.write(streams, || {
+        let verdict = format!("The root mean square of the distances is {} {}.", Figure(found.rms), args.page.unit());
+        let mut facts = vec![("root mean square", found.rms), ("coverage in %", 100.0 * found.coverage)];
+        facts.extend(args.scale.then_some(("scale", found.scale)));
+        let moved = Moved { matrix: found.matrix, facts };
+        let found = PairResult::Moved { moved, before, warnings: warnings(&found).collect() };
+        let paths = [&*args.scene.path, &*args.scan.path];
+        PairPage { paths, scenes: &scenes, motion: None, title: "Alignment", verdict, found }
+    })?;
     if args.json {
         let head = json!({
             "p2m": "align",
             "version": json::VERSION,
-            "scan": { "file": name(&args.scan.path), "format": scan_format.name(), "points": scan.soup.positions().len() },
+            "scan": { "file": name(&args.scan.path), "format": scan_format.name(), "points": points },
             "scene": { "file": args.scene.name(), "format": format.name() },
         });
         let end = json!({
@@ -163,16 +182,18 @@ pub(crate) fn move_scan(
             _ => anyhow!("{}: {error}", name(scan_path)),
         })?;
     drop(progress);
-    let warnings = [
-        found.ambiguity.map(|ambiguity| ambiguity.to_string()),
-        (!found.is_converged).then(|| "the alignment did not converge".to_owned()),
-    ];
-    for warning in warnings.into_iter().flatten() {
+    for warning in warnings(&found) {
         streams.print_summary(format_args!("warning  {}: {warning}\n", name(scan_path)));
     }
     let moved = Arc::make_mut(&mut scan.soup).map_positions(|point| found.apply(&point));
     moved.with_context(|| format!("{}: moved", name(scan_path)))?;
     Ok(found)
+}
+
+/// Returns the reasons to doubt an alignment.
+fn warnings(found: &Alignment) -> impl Iterator<Item = String> {
+    let ambiguity = found.ambiguity.map(|ambiguity| ambiguity.to_string());
+    ambiguity.into_iter().chain((!found.is_converged).then(|| "the alignment did not converge".to_owned()))
 }
 
 /// Returns the matrix as lines of four numbers.

@@ -7,7 +7,7 @@ use crate::io::progress::{Progress, Unit};
 use crate::io::streams::Streams;
 use crate::io::threads::ThreadArgs;
 use crate::io::usage::usage;
-use crate::page::pair::{PairPage, PairPageArgs};
+use crate::page::pair::{PairPage, PairPageArgs, PairResult};
 use anyhow::Context;
 use p2m_bvh::AabbTree;
 use p2m_core::Soup;
@@ -79,8 +79,9 @@ pub(crate) fn run(streams: &Streams, args: &Args) -> anyhow::Result<()> {
             Some(pair) => format!("The scenes are {} {unit} apart.", Figure(pair.distance)),
             None => "Nothing is near.".to_owned(),
         };
-        let (paths, motion, measures) = (args.scenes.paths(), motion.as_ref(), found.iter().map(measure).collect());
-        PairPage { paths, scenes: &scenes, motion, title: "Distance", verdict, measures }
+        let (paths, motion) = (args.scenes.paths(), motion.as_ref());
+        let found = PairResult::Measures(found.iter().map(measure).collect());
+        PairPage { paths, scenes: &scenes, motion, title: "Distance", verdict, found }
     })?;
     if args.json {
         return json::print(streams, &report(&names, formats, &scenes, found.as_ref(), limit));

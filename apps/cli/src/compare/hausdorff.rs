@@ -8,7 +8,7 @@ use crate::io::progress::{Progress, Unit};
 use crate::io::streams::Streams;
 use crate::io::threads::ThreadArgs;
 use crate::io::usage::finite_not_negative;
-use crate::page::pair::{PairPage, PairPageArgs};
+use crate::page::pair::{PairPage, PairPageArgs, PairResult};
 use anyhow::{Context, anyhow};
 use p2m_backends::P2mSettings;
 use p2m_core::PrimitiveSet;
@@ -109,8 +109,8 @@ pub(crate) fn run(streams: &Streams, args: &Args) -> anyhow::Result<()> {
         let verdict = format!("{of} farther than {} {} from the other.", Figure(found.upper_bound), args.page.unit());
         let measure = Measure { name: "farthest".to_owned(), ends: found.points, length: found.upper_bound };
         // The second scene is in its place already.
-        let (paths, measures) = (args.scenes.paths(), vec![measure]);
-        PairPage { paths, scenes: &scenes, motion: None, title: "Hausdorff distance", verdict, measures }
+        let (paths, found) = (args.scenes.paths(), PairResult::Measures(vec![measure]));
+        PairPage { paths, scenes: &scenes, motion: None, title: "Hausdorff distance", verdict, found }
     })?;
     if args.json {
         return json::print(streams, &report(&names, formats, &scenes, &found, tolerance, args.one_sided));

@@ -1,4 +1,4 @@
-//! Pages that show two scenes and lines between them.
+//! Pages that show two scenes, and lines between them or how one was moved.
 
 use crate::io::output::Output;
 use crate::io::streams::Streams;
@@ -10,7 +10,7 @@ use nalgebra::{Isometry3, Point3};
 use p2m_core::pair::Motion;
 use p2m_core::{Aabb, Element, PrimitiveSet, Soup};
 use p2m_mixed::{Object, Scene};
-use p2m_page::Measure;
+use p2m_page::{Measure, Moved};
 use std::path::{Path, PathBuf};
 
 /// The arguments of commands that can write a page about two scenes.
@@ -35,7 +35,15 @@ pub(crate) struct PairPage<'a> {
     pub(crate) motion: Option<&'a Isometry3<f64>>,
     pub(crate) title: &'static str,
     pub(crate) verdict: String,
-    pub(crate) measures: Vec<Measure>,
+    pub(crate) found: PairResult,
+}
+
+/// The result of a comparison of two scenes.
+pub(crate) enum PairResult {
+    /// Lines between them.
+    Measures(Vec<Measure>),
+    /// How the second scene was moved onto the first one, the box in which it was before, and warnings.
+    Moved { moved: Moved, before: Aabb<f64>, warnings: Vec<String> },
 }
 
 impl PairPageArgs {
@@ -56,12 +64,20 @@ impl PairPageArgs {
     /// Writes the page, if one was asked for.
     pub(crate) fn write<'a>(&self, streams: &Streams, page: impl FnOnce() -> PairPage<'a>) -> anyhow::Result<()> {
         let Some(html) = &self.html else { return Ok(()) };
-        let PairPage { paths, scenes, motion, title, verdict, measures } = page();
+        let PairPage { paths, scenes, motion, title, verdict, found } = page();
         let names = paths.map(file_name);
         let both = joined(&names, scenes, motion).context("the page")?;
-        let ends: Vec<Point3<f64>> = measures.iter().flat_map(|measure| measure.ends).collect();
-        let view = self.page.view(&both, &Aabb::from_points(&ends));
-        let mut view = view.with_measures(title, &verdict, &measures);
+        let view = |around: &Aabb<f64>| self.page.view(&both, around).with_object_colours();
+        let mut view = match found {
+            PairResult::Measures(measures) => {
+                let ends: Vec<Point3<f64>> = measures.iter().flat_map(|measure| measure.ends).collect();
+                view(&Aabb::from_points(&ends)).with_measures(title, &verdict, &measures)
+            }
+            PairResult::Moved { moved, before, warnings } => {
+                let view = view(&before).with_moved(title, &verdict, &moved);
+                warnings.iter().fold(view, |view, warning| view.with_note(format!("Warning: {warning}.")))
+            }
+        };
         view.title = format!("{} and {} in p2m", names[0], names[1]);
         view.summary = verdict;
         view.about = about(&format!("scenes {} and {}", names[0], names[1]), "aabb", None);

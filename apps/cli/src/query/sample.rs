@@ -27,8 +27,8 @@ With --surface the file has points of the surface, evenly distributed by area, a
 and --uniform it has points with their signed distances, negative inside: first points of the surface that are moved by \
 noise, then points that are evenly distributed in the box of the scene, enlarged by a tenth.
 
-The points depend on the scene and the seed alone: they are the same bits on every machine. The file is an NPZ file \
-with the arrays points, and primitives or distances, as p2m.sample_surface and p2m.sample_sdf in Python return them.
+The points depend on the scene and these options alone: they are the same bits on every machine. The file is an NPZ \
+file with the arrays points, and primitives or distances, as p2m.sample_surface and p2m.sample_sdf in Python return them.
 
 Examples:
   p2m sample part.ply --near 1e6 --uniform 1e6 --out samples.npz

@@ -71,7 +71,7 @@ fn coloured_files_have_the_deviations_and_the_faces() {
     let record = |i: usize| &bytes[header_end + 35 * i..][..35];
     let deviation = |i: usize| f64::from_le_bytes(record(i)[24..32].try_into().unwrap());
     assert_eq!([0, 6, 7].map(deviation), [0.0, 1.0, 0.0]);
-    assert_eq!([&record(0)[32..], &record(6)[32..]], [[0x88, 0x88, 0x88], [0x67, 0x00, 0x1f]]);
+    assert_eq!([&record(0)[32..], &record(6)[32..]], [[0xf4, 0xf1, 0xea], [0x7a, 0x0a, 0x22]]);
     // The file reads back as the scan, and so does the file of a cloud.
     let report = json(&["deviation", &cloud, &cube, "--json"]);
     assert_eq!((&report["deviations"], statistic(&report, "max")), (&8.into(), 1.0));

@@ -1,5 +1,6 @@
 // The panel of query points and their answers: a histogram, the selected answer, and all of them as a table.
 
+import { UNDEFINED } from "./colours.js";
 import { copyButton, count, counted, element, fillList, number, reveal, stepped, tableHead } from "./text.js";
 
 // The number of rows of a page of the table.
@@ -17,7 +18,8 @@ export class AnswersPanel {
     if (missing > 0) parts.push(element("p", {}, `${count(missing)} of ${all} have no answer.`));
     if (answers.answeredCount > 0) {
       const { scale, values } = answers;
-      parts.push(viewer.figure(() => ({ scale, what, unit: viewer.unit, values })).element);
+      const keys = missing > 0 ? [[UNDEFINED, "no answer"]] : [];
+      parts.push(viewer.figure(() => ({ scale, what, unit: viewer.unit, values, keys })).element);
     }
     this.text = element("dl", { id: "answer", "aria-live": "polite" });
     const step = (by) =>
@@ -47,7 +49,7 @@ export class AnswersPanel {
     for (let i = first; i < Math.min(answers.length, first + ROWS); i++) {
       const select = element("button", { type: "button", onclick: () => this.select(i) }, String(i));
       const cells = answers.isAnswered(i)
-        ? [...[...answers.points.subarray(3 * i, 3 * i + 3), answers.values[i]].map(number), answers.primitives[i],
+        ? [...[...answers.points.subarray(3 * i, 3 * i + 3), answers.values[i]].map((x) => number(x)), answers.primitives[i],
             answers.featureName(i)]
         : ["no answer", "", "", "", "", ""];
       rows.push(element("tr", {}, element("td", {}, select), ...cells.map((cell) => element("td", {}, cell))));
@@ -70,16 +72,14 @@ export class AnswersPanel {
     if (i < 0) {
       rows.push(["none", "Click a query point, or press n."]);
     } else {
-      rows.push(["number", `${count(i)} of ${count(answers.length)}`]);
-      rows.push(["query", answers.queries.subarray(3 * i, 3 * i + 3)]);
       if (answers.isAnswered(i)) {
-        if (answers.signed) rows.push(["side", answers.signed[i] < 0 ? "inside" : "outside"]);
-        rows.push(...answers.rows(i));
+        rows.push(...answers.rows(i, viewer.unit));
         const object = answers.objects?.[i];
         if (object) rows.push(["object", viewer.data.object_names[object - 1]]);
       } else {
         rows.push(["answer", "none"]);
       }
+      rows.push(["query", answers.queries.subarray(3 * i, 3 * i + 3)], ["number", `${count(i)} of ${count(answers.length)}`]);
     }
     fillList(this.text, rows);
     if (i >= 0) reveal(this.text);

@@ -2,10 +2,13 @@
 
 import * as three from "three";
 import { ColourScale } from "./colours.js";
-import { pointMaterial } from "./shading.js";
+import { fade, pointMaterial } from "./shading.js";
+import { element, number, sideOf } from "./text.js";
 
 // The opacity of segments to closest points.
 const QUIET = 0.4;
+// The sizes in pixels of query points and of closest points, up to so many answers.
+const SIZES = [[500, 7, 4], [20_000, 5, 3], [Infinity, 4, 2.5]];
 
 export class AnswersLayer {
   constructor(answers, frame) {
@@ -23,19 +26,22 @@ export class AnswersLayer {
       // Without an answer, the closest point and the segment are drawn where the query is.
       else this.to.set(this.from.subarray(3 * i, 3 * i + 3), 3 * i);
     }
-    this.dots = points(this.from, new Uint16Array(3 * this.length), 8);
-    this.feet = points(this.to, new Uint16Array(3 * this.length), 4);
+    // The plane near which answers are seen best, and the rims of points.
+    this.focus = { value: new three.Vector4() };
+    this.rim = { value: new three.Color() };
+    const [, size, footSize] = SIZES.find(([most]) => this.length <= most);
+    this.dots = this.makeDots(this.from, size);
+    this.feet = this.makeDots(this.to, footSize);
     const ends = new Float32Array(6 * this.length);
     for (let i = 0; i < this.length; i++) {
       for (const [end, from] of [[0, this.from], [3, this.to]]) ends.set(from.subarray(3 * i, 3 * i + 3), 6 * i + end);
     }
     const geometry = new three.BufferGeometry();
     geometry.setAttribute("position", new three.BufferAttribute(ends, 3));
-    geometry.setAttribute("color", new three.BufferAttribute(new Uint16Array(ends.length), 3, true));
     // Segments are quiet, so that they do not hide the scene. The selected one is drawn once more.
-    this.segments = new three.LineSegments(geometry, new three.LineBasicMaterial({
-      vertexColors: true, transparent: true, opacity: QUIET, depthWrite: false,
-    }));
+    const quiet = new three.LineBasicMaterial({ transparent: true, opacity: QUIET, depthWrite: false });
+    quiet.onBeforeCompile = (shader) => fade(shader, this.focus);
+    this.segments = new three.LineSegments(geometry, quiet);
     this.group = new three.Group();
     this.group.add(this.dots, this.feet, this.segments);
     this.selection = new three.Group();
@@ -50,11 +56,27 @@ export class AnswersLayer {
   setTheme(theme, colours) {
     this.scale.setTheme(theme);
     this.select(this.selected, colours);
-    for (const [{ geometry }, times] of [[this.dots, 1], [this.feet, 1], [this.segments, 2]]) {
+    this.rim.value.set(colours.edge);
+    this.segments.material.color.set(colours.line);
+    for (const { geometry } of [this.dots, this.feet]) {
       const attribute = geometry.getAttribute("color");
-      this.scale.writeAll(this.values, attribute.array, times);
+      this.scale.writeAll(this.values, attribute.array);
       attribute.needsUpdate = true;
     }
+  }
+
+  // Lets answers fade that are away from a plane, or none.
+  fadeAwayFrom(plane, radius) {
+    this.focus.value.set(0, 0, 0, 0);
+    if (plane) this.focus.value.set(...plane.normal.toArray(), -plane.constant).divideScalar(radius);
+  }
+
+  // Makes round dots of a size in pixels, which have rims.
+  makeDots(positions, size) {
+    const geometry = new three.BufferGeometry();
+    geometry.setAttribute("position", new three.BufferAttribute(positions, 3));
+    geometry.setAttribute("color", new three.BufferAttribute(new Uint16Array(positions.length), 3, true));
+    return new three.Points(geometry, pointMaterial({ size, vertexColors: true, transparent: true }, false, this));
   }
 
   isAnswered(i) {
@@ -70,7 +92,7 @@ export class AnswersLayer {
     const at = (array, k) => new three.Vector3(...array.subarray(3 * k, 3 * k + 3));
     const query = at(this.from, i);
     if (!this.isAnswered(i)) {
-      this.selection.add(marker(query, colours.selected, 11));
+      this.selection.add(marker(query, colours.selected, 9));
       return;
     }
     const vertices = [0, 1, 2].slice(0, this.sizes[i]).map((k) => at(this.vertices, 3 * i + k));
@@ -84,12 +106,12 @@ export class AnswersLayer {
     empty(this.highlight);
     if (i < 0 || !this.isAnswered(i) || i === this.selected) return;
     const [query, foot] = [this.from, this.to].map((ends) => new three.Vector3(...ends.subarray(3 * i, 3 * i + 3)));
-    this.highlight.add(line([query, foot], colours.selected), marker(query, colours.selected, 11));
+    this.highlight.add(line([query, foot], colours.selected), marker(query, colours.selected, 9));
   }
 
   // Returns the terms and texts of an answer.
-  rows(i) {
-    return answerRows({
+  rows(i, unit) {
+    return answerRows(unit, {
       point: this.points.subarray(3 * i, 3 * i + 3), distance: this.distances[i], signed: this.signed?.[i],
       lowerBound: this.lower_bounds[i], size: this.sizes[i], primitive: this.primitives[i], feature: this.features[i],
     });
@@ -125,9 +147,9 @@ export function featureOf(code) {
 
 // Returns the terms and texts of an answer for a list. `size` is the number of vertices of the primitive, and `signed`
 // the signed distance if there is one.
-export function answerRows({ point, distance, signed, lowerBound, size, primitive, feature }) {
+export function answerRows(unit, { point, distance, signed, lowerBound, size, primitive, feature }) {
   return [
-    ["distance", distance],
+    ["distance", element("span", {}, number(distance), ` ${[unit, sideOf(signed)].filter(Boolean).join(" ")}`)],
     ...(signed === undefined ? [] : [["signed distance", signed]]),
     ["closest point", point],
     ["lower bound", lowerBound],
@@ -154,7 +176,7 @@ export function empty(group) {
 // feature and the sphere of the lower bound.
 export function drawAnswer(group, query, foot, vertices, feature, radius, colours) {
   const { selected } = colours;
-  group.add(marker(query, selected, 11), marker(foot, selected, 9), line([query, foot], selected));
+  group.add(marker(query, selected, 9), marker(foot, selected, 7), line([query, foot], selected));
   const size = vertices.length;
   if (size === 3) {
     const face = new three.BufferGeometry().setFromPoints(vertices);
@@ -168,7 +190,7 @@ export function drawAnswer(group, query, foot, vertices, feature, radius, colour
   if (size > 1) group.add(line([...vertices, vertices[0]].slice(0, size === 3 ? 4 : 2), colours.selected));
   // The feature that holds the closest point is drawn once more, over everything else.
   const [kind, number] = size > 0 ? feature : ["none", 0];
-  if (kind === "vertex") group.add(marker(vertices[number], colours.feature, 13));
+  if (kind === "vertex") group.add(marker(vertices[number], colours.feature, 10));
   if (kind === "edge") group.add(line([vertices[number], vertices[(number + 1) % size]], colours.feature));
   if (radius > 0) {
     const sphere = new three.Mesh(
@@ -188,10 +210,10 @@ export const KINDS = ["", "point", "segment", "triangle"];
 // distance, unless those of the other sign are much smaller and would have hardly a colour.
 export function distanceScale(values) {
   const [low, high] = limits(values);
-  if (!(low < 0)) return new ColourScale("sequential", 0, high);
+  if (!(low < 0)) return new ColourScale("field", 0, high);
   const [shorter, longer] = [Math.min(-low, high), Math.max(-low, high)];
   const limit = high > 0 ? Math.min(longer, Math.max(4 * shorter, 0.6 * longer)) : longer;
-  return new ColourScale("diverging", -limit, limit);
+  return new ColourScale("signedField", -limit, limit);
 }
 
 // Returns the smallest and the largest number among values, of which some may be no numbers.
@@ -202,14 +224,6 @@ export function limits(values) {
     if (value > high) high = value;
   }
   return low <= high ? [low, high] : [0, 1];
-}
-
-// Makes round dots of a size in pixels.
-export function points(positions, colours, size) {
-  const geometry = new three.BufferGeometry();
-  geometry.setAttribute("position", new three.BufferAttribute(positions, 3));
-  geometry.setAttribute("color", new three.BufferAttribute(colours, 3, true));
-  return new three.Points(geometry, pointMaterial({ size, vertexColors: true }));
 }
 
 export function marker(position, color, size) {

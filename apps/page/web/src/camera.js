@@ -7,8 +7,10 @@ import { OrbitControls } from "three/examples/jsm/controls/OrbitControls.js";
 // the depth of the scene, sizes differ by less than 0.3 %. Rounding of depths would be seen with an even lesser one.
 const PERSPECTIVE = 35;
 const ORTHOGRAPHIC = 0.1;
-// The part of the picture that the scene fills.
-const FILLED = 0.8;
+// The parts of the free picture that the scene fills, and that a slice around it fills at most.
+const [FILLED, FILLED_BY_SLICE] = [0.8, 0.97];
+// The heights in pixels at the top and at the bottom of the picture which the toolbar and the scale bar cover.
+const [COVERED_TOP, COVERED_BOTTOM] = [56, 40];
 // The number of positions by which the extent of a scene in the picture is found.
 const SAMPLES = 20_000;
 // The distance from the middle of the scene to which the view can be moved, in radii of the scene.
@@ -34,9 +36,11 @@ export class Camera {
       this.setPlanes();
       change();
     });
-    this.samples = sample(clouds);
+    this.setClouds(clouds);
     // Whether a fitted view is from a corner rather than from a side.
     this.isOblique = false;
+    // The corners of a slice, which a fitted view contains as well.
+    this.corners = [];
     this.setLimits();
   }
 
@@ -47,6 +51,19 @@ export class Camera {
 
   get isOrthographic() {
     return this.camera.fov === ORTHOGRAPHIC;
+  }
+
+  // Sets the arrays of positions which a fitted view contains.
+  setClouds(clouds) {
+    this.samples = sample(clouds);
+  }
+
+  // Fits the view into what is free of a picture of this size. The picture shows more than the view at the top and at the
+  // bottom.
+  setSize(width, height) {
+    this.height = Math.max(height / 2, height - COVERED_TOP - COVERED_BOTTOM, 1);
+    const top = Math.min(COVERED_TOP, height - this.height);
+    this.camera.setViewOffset(Math.max(1, width), this.height, 0, -top, Math.max(1, width), Math.max(1, height));
   }
 
   // Changes between the two kinds of perspective. What is in the middle keeps its size.
@@ -86,10 +103,11 @@ export class Camera {
       camera.position.copy(direction).setLength(distance).add(target);
       camera.lookAt(target);
       camera.updateMatrixWorld();
-      const [middle, size] = this.extent(distance);
+      const [middle, size] = this.extent([this.samples, this.corners], distance);
+      const [, sceneSize] = this.extent([this.samples], distance);
       target.add(middle.applyQuaternion(camera.quaternion));
       if (!(size > 0)) break;
-      distance = Math.max(distance * 1e-3, distance * (size / FILLED));
+      distance *= Math.max(1e-3, sceneSize / FILLED, size / FILLED_BY_SLICE);
     }
     this.controls.target.copy(target.clampLength(0, MAX_PAN * this.radius));
     camera.position.copy(direction).setLength(distance).add(target);
@@ -97,14 +115,14 @@ export class Camera {
     this.setPlanes();
   }
 
-  // Returns the middle of what is in the picture, in the axes of the camera, and the size relative to the picture.
-  extent(distance) {
-    const { camera, samples } = this;
+  // Returns the middle of positions in the view, in the axes of the camera, and their size relative to the view.
+  extent(clouds, distance) {
+    const { camera } = this;
     const matrix = camera.matrixWorldInverse.elements;
     const [low, high] = [[Infinity, Infinity], [-Infinity, -Infinity]];
     const slope = [Math.tan(half(camera)) * camera.aspect, Math.tan(half(camera))];
-    for (let i = 0; i < samples.length; i += 3) {
-      const [x, y, z] = [samples[i], samples[i + 1], samples[i + 2]];
+    for (const cloud of clouds) for (let i = 0; i < cloud.length; i += 3) {
+      const [x, y, z] = [cloud[i], cloud[i + 1], cloud[i + 2]];
       const depth = -(matrix[2] * x + matrix[6] * y + matrix[10] * z + matrix[14]);
       if (!(depth > 0)) continue;
       for (let k = 0; k < 2; k++) {
@@ -186,8 +204,8 @@ export class Camera {
   }
 
   // Returns the length of a pixel at the point that the view turns around, in the frame.
-  pixel(height) {
-    return (2 * this.camera.position.distanceTo(this.controls.target) * Math.tan(half(this.camera))) / height;
+  get pixel() {
+    return (2 * this.camera.position.distanceTo(this.controls.target) * Math.tan(half(this.camera))) / this.height;
   }
 }
 

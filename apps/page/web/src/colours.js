@@ -6,11 +6,11 @@ import { short } from "./text.js";
 export const THEMES = {
   light: {
     background: "#f7f8fa", surface: "#828c9c", line: "#445061", edge: "#39424e", grid: "#848e9b",
-    selected: "#c24e00", live: "#0b62a8", feature: "#c000c0", undefined: "#9a5fc0",
+    selected: "#c24e00", live: "#0b62a8", feature: "#c000c0", undefined: "#9a5fc0", second: "#2f8f83",
   },
   dark: {
     background: "#111417", surface: "#8f99a8", line: "#aab4c0", edge: "#dfe6ee", grid: "#66707c",
-    selected: "#ff9040", live: "#6ab8ee", feature: "#ff60ff", undefined: "#9a5fc0",
+    selected: "#ff9040", live: "#6ab8ee", feature: "#ff60ff", undefined: "#9a5fc0", second: "#45b5a6",
   },
 };
 
@@ -26,19 +26,15 @@ const BLUE_RED = [
 
 // The scales for light and for dark pages.
 //
-// Points and thin segments have the scales "sequential" and "diverging", whose colours have a contrast of at least 3
-// with the background. The former are parts of "viridis", which has evenly rising lightness and is readable with any
-// colour vision; the latter are blue for negative values and red for positive ones, with grey at zero.
+// Thin lines have the scale "sequential", whose colours have a contrast of at least 3 with the background. They are parts
+// of "viridis", which has evenly rising lightness and is readable with any colour vision.
 //
-// Areas, which have lines of equal distance or shade, have the scales "field" and "signedField".
+// Areas, which have lines of equal distance or shade, and points, which have rims, have the scales "field" and
+// "signedField".
 export const SCALES = {
   sequential: {
     light: ["#440154", "#472d7b", "#3b528b", "#2c728e", "#21918c", "#1f9f88"],
     dark: ["#2c728e", "#21918c", "#28ae80", "#5ec962", "#addc30", "#fde725"],
-  },
-  diverging: {
-    light: ["#053061", "#1a559a", "#3379b8", "#6089b4", "#888888", "#bd7862", "#c2513c", "#a11f2b", "#67001f"],
-    dark: ["#b3dcff", "#7cc0f5", "#4f9fdc", "#5a86ab", "#707070", "#b0735f", "#e0805f", "#ff9a70", "#ffc09f"],
   },
   field: { light: YELLOW_BLUE, dark: YELLOW_BLUE },
   signedField: { light: BLUE_RED, dark: BLUE_RED },
@@ -61,13 +57,16 @@ const LIGHT = Array.from({ length: 256 }, (_, byte) => {
   return 65535 * (x <= 0.04045 ? x / 12.92 : ((x + 0.055) / 1.055) ** 2.4);
 });
 
+// Returns a colour as the GPU needs it: three numbers that are proportional to light and at most 65535.
+export const lightOf = (hex) => rgb(hex).map((byte) => LIGHT[byte]);
+
 // A map from values to colours between two limits. `text` returns a value as text for legends.
 export class ColourScale {
   constructor(kind, low, high, text = short) {
     this.text = text;
     this.kind = kind;
     this.setTheme("light");
-    this.isDiverging = kind === "diverging" || kind === "signedField";
+    this.isDiverging = kind === "signedField";
     this.low = low;
     this.high = high > low ? high : low + (Math.abs(low) || 1);
   }

@@ -1,6 +1,7 @@
 // The panel of deviations: the verdict, the histogram with the tolerance, the worst places, one point, and statistics.
 
-import { choice, copyButton, count, element, fillList, namedRow, number, reveal, short, stepped, tableHead } from "./text.js";
+import { UNDEFINED } from "./colours.js";
+import { choice, copyButton, count, element, fillList, namedRow, reveal, short, sideOf, stepped } from "./text.js";
 
 // The share of a fitted view that is seen around a place after a flight to it.
 const NEAR = 0.35;
@@ -25,13 +26,14 @@ export class DeviationsPanel {
     if (layer.triangleOf) {
       const shown = choice("coloured", ["scan", "model"], 0, (i) => {
         layer.showPart(i === 1);
-        viewer.draw();
+        this.redraw();
       });
       rows.push(element("div", { class: "row" }, element("span", {}, "Coloured"), shown));
     }
     add(layer.is_signed ? "Deviations, positive outside" : "Distances", "deviations", this.verdict, this.figure.element,
-      ...Object.values(this.inputs), ...rows, this.parts);
+      this.parts);
     this.addWorst(add);
+    add("Tolerance and colours", "colours", ...Object.values(this.inputs), ...rows);
     this.text = element("dl", { id: "deviation", "aria-live": "polite" });
     const step = (by, text) => element("button", { type: "button", onclick: () => this.step(by) }, text);
     add("Point", "point",
@@ -103,7 +105,10 @@ export class DeviationsPanel {
       document.getElementById("tolerance").value = rounded;
       document.getElementById("tolerance").dispatchEvent(new Event("input"));
     };
-    return { scale: layer.scale, what, unit, values, options: { name: `${what}s`, weight, marks, onMark } };
+    const keys = [];
+    if (layer.part?.visible) keys.push([this.viewer.colours.surface, "no point of the scan is near"]);
+    else if (layer.missing > 0) keys.push([UNDEFINED, `no ${what}`]);
+    return { scale: layer.scale, what, unit, values, keys, options: { name: `${what}s`, weight, marks, onMark } };
   }
 
   // Draws the legend and the histogram, and writes how many points are within the tolerance.
@@ -123,8 +128,7 @@ export class DeviationsPanel {
       const under = layer.is_signed ? `${share(below)} below ${tolerance > 0 ? -tolerance : 0}, ` : "";
       const isRounded = layer.quantiles && tolerance !== layer.tolerance;
       const rounded = isRounded ? " Counts are to 0.01 %, because not all points are on the page." : "";
-      this.parts.textContent =
-        `${share(above)} above ${tolerance}, ${under}${share(within)} within the tolerance.${rounded}`;
+      this.parts.textContent = `${share(above)} above ${tolerance}, ${under}${share(within)} within.${rounded}`;
       const range = `${layer.is_signed ? "±" : ""}${short(tolerance)} ${unit}`;
       const isGood = above + below === 0;
       this.verdict.classList.add(isGood ? "good" : "bad");
@@ -137,17 +141,15 @@ export class DeviationsPanel {
   // Adds the worst places, with buttons that fly there.
   addWorst(add) {
     const { layer, viewer } = this;
-    const worst = layer.worst(viewer.data.frame.radius).map((i, place) => {
-      const fly = element("button", { type: "button", title: "Fly there", onclick: () => {
+    const worst = layer.worst(viewer.data.frame.radius).map((i) => {
+      const where = `Fly to point ${count(i * layer.stride)}`;
+      return element("button", { type: "button", title: where, "data-point": i, onclick: () => {
         this.select(i);
         this.flyTo(i);
-      } }, `${place + 1}`);
-      const point = count(i * layer.stride);
-      return element("tr", {}, element("td", {}, fly), element("td", {}, number(layer.values[i])), element("td", {}, point));
+      } }, `${layer.is_signed && layer.values[i] > 0 ? "+" : ""}${short(layer.values[i])}`);
     });
-    const where = layer.stride > 1 ? " of the points on the page" : "";
-    add(`Worst places${where}`, "worst", element("table", { id: "largest" },
-      tableHead(["fly to", `${this.what} (${viewer.unit})`, "point"]), element("tbody", {}, ...worst)));
+    const which = layer.stride > 1 ? " of the points on the page" : "";
+    add(`Worst places${which} (${viewer.unit})`, "worst", element("p", { class: "buttons", id: "largest" }, ...worst));
   }
 
   // Flies to a point, and around the scene if the scene is in front of it.
@@ -194,9 +196,13 @@ export class DeviationsPanel {
   tip(event) {
     const i = this.pick(event);
     if (i < 0) return undefined;
+    return this.inWords(i);
+  }
+
+  // Returns the deviation of a point as a text.
+  inWords(i) {
     const value = this.layer.values[i];
-    if (!this.layer.is_signed || Number.isNaN(value)) return `${short(value)} ${this.viewer.unit}`;
-    return `${value > 0 ? "+" : ""}${short(value)} ${this.viewer.unit}, ${value < 0 ? "inside" : "outside"}`;
+    return Number.isNaN(value) ? `no ${this.what}` : this.viewer.inWords(value, this.layer.is_signed);
   }
 
   step(by) {
@@ -211,6 +217,7 @@ export class DeviationsPanel {
       ["number", `${count(i * layer.stride)} of ${count(layer.total)}`],
       ["point", layer.positions.subarray(3 * i, 3 * i + 3)],
       [this.what, layer.values[i]],
+      ...(layer.is_signed && !Number.isNaN(layer.values[i]) ? [["side", sideOf(layer.values[i])]] : []),
       ...(Number.isNaN(layer.values[i]) ? [] : [["primitive", String(layer.primitives[i])]]),
     ];
     fillList(this.text, rows);

@@ -8,7 +8,7 @@ import { pointMaterial, spacing, surface } from "./shading.js";
 // The distance in pixels within which a point is read.
 const PICK_RADIUS = 6;
 // The number of worst places that are listed, and their least distance from each other in radii of the scene.
-const [LISTED, APART] = [8, 0.12];
+const [LISTED, APART] = [6, 0.12];
 // The size of a point relative to the distance to the next one, which makes a closed surface of them.
 const SPLAT = 1.9;
 

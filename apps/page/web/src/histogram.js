@@ -1,6 +1,6 @@
 // The legend of a scale and a histogram of values as SVG, whose bars have the colours of the scale.
 
-import { count, element, namedRow, short, tableHead } from "./text.js";
+import { count, element, namedRow, patch, short, tableHead } from "./text.js";
 
 const BINS = 48;
 // The size of the picture, and the width of what stands apart at its ends for values beyond the limits.
@@ -25,9 +25,10 @@ export function bins(values, low, high) {
 
 // The legend of a scale and a histogram of values, which are made again when the values or the colours change.
 export class Figure {
-  // `read` returns what is shown: the scale, a name and the unit of the values, and those of which there is a histogram
-  // with its options. Without a scale nothing is shown, and without values there is only the legend. The option
-  // `onMark` makes marks that can be dragged; it is called with the value.
+  // `read` returns what is shown: the scale, a name and the unit of the values, those of which there is a histogram with
+  // its options, and keys, which are colours without a value and what they mean. Without a scale nothing is shown, and
+  // without values there is only the legend. The option `onMark` makes marks that can be dragged; it is called with the
+  // value.
   constructor(read, attributes = {}) {
     this.read = read;
     this.pictures = element("div", { class: "figure" });
@@ -37,11 +38,11 @@ export class Figure {
   }
 
   update() {
-    const { scale, what, unit, values, options } = this.read();
+    const { scale, what, unit, values, options, keys = [] } = this.read();
     this.options = options;
     const { picture, table, place } = values ? histogram(values, scale, what, unit, options) : {};
     this.place = place;
-    const pictures = scale ? [picture, legend(scale, what, unit, place)] : [];
+    const pictures = scale ? [picture, legend(scale, what, unit, place), ...keys.map(key)] : [];
     this.pictures.replaceChildren(...pictures.filter(Boolean));
     // The summary stays, which may have the focus of the keyboard.
     this.details.hidden = !table;
@@ -127,6 +128,11 @@ function histogram(values, scale, what, unit, { name = what, weight = 1, marks =
   const rows = entries.filter(({ n }) => n > 0).map(({ n, text }) => namedRow(text, count(n)));
   const table = element("table", {}, tableHead([`${name} (${unit})`, "number"]), element("tbody", {}, ...rows));
   return { picture: element("svg", { viewBox, role: "img", "aria-label": label }, ...bars, ...lines, base), table, place };
+}
+
+// Returns what a colour without a value means.
+function key([colour, text]) {
+  return element("div", { class: "small" }, patch(colour), text);
 }
 
 // Returns the legend of a scale: its gradient, its limits and a value between them, with the unit. It lies below a

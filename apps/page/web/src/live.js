@@ -26,6 +26,8 @@ export class LiveQueries {
       this.firstIndices.push(next);
       next += size;
     }
+    // Triangles have sides.
+    this.hasSides = scene.sizes.every((size) => size === 3);
     // The indexes that are ready.
     this.indexes = [];
     this.failures = [];
@@ -204,6 +206,9 @@ export class LiveQueries {
       const isValid = query.every(Number.isFinite);
       const answers = isValid
         ? await Promise.all(indexes.map((index) => this.ask(index, "query", index.number, query))) : [];
+      if (answers[0] && this.hasSides) {
+        answers[0].signed = (await this.ask(indexes[0], "signed", indexes[0].number, query)) ?? undefined;
+      }
       const far = isValid && isFar && this.farIndex ? await this.ask(this.farIndex, "queryFar", query) : null;
       this.shown = { query, isValid, indexes, answers, far };
       this.redraw();
@@ -248,9 +253,9 @@ export class LiveQueries {
   showAnswer() {
     const { query, isValid, indexes, answers } = this.shown;
     const [answer] = answers;
-    const rows = [["query", isValid ? query.join(",\n") : "Each coordinate has to be a number."]];
+    const rows = [];
     if (answer) {
-      rows.push(...answerRows({ ...answer, size: this.scene.sizes[answer.primitive] }));
+      rows.push(...answerRows(this.viewer.unit, { ...answer, size: this.scene.sizes[answer.primitive] }));
       const key = (a) => a && [...a.point, a.distance, a.lowerBound, a.primitive, a.feature].join();
       const isSame = answers.every((other) => key(other) === key(answer));
       const all = `the ${indexes.length} indexes`;
@@ -258,6 +263,7 @@ export class LiveQueries {
     } else if (isValid) {
       rows.push(["answer", "none"]);
     }
+    rows.push(["query", isValid ? query.join(",\n") : "Each coordinate has to be a number."]);
     fillList(this.answerText, rows);
   }
 

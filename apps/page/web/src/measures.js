@@ -4,8 +4,12 @@
 import * as three from "three";
 import { ColourScale } from "./colours.js";
 import { line, limits, marker } from "./answers.js";
-import { count, element, fillList, number, short, stepped } from "./text.js";
+import { copyButton, count, element, fillList, number, patch, short, shortened, stepped } from "./text.js";
 
+// The number of characters of the name of an object above which its middle is left out.
+const LONGEST_NAME = 18;
+// The share of a fitted view that is seen after a flight to a line: at least so much, and so many times its length.
+const [CLOSEST_FLIGHT, ROOM] = [0.04, 1.2];
 // The number of lines up to which each is drawn with its length.
 const MAX_LABELLED = 8;
 
@@ -63,7 +67,7 @@ export class MeasuresLayer {
     if (!this.group.visible) return [];
     return this.drawn().map((i) => {
       const [a, b] = this.ends(i);
-      return { position: a.lerp(b, 0.5), text: `${short(this.lengths[i])} ${this.unit}`, isImportant: true };
+      return { position: a.lerp(b, 0.5), text: this.lengths[i] === 0 ? this.names[i] : `${short(this.lengths[i])} ${this.unit}`, isImportant: true };
     });
   }
 
@@ -76,8 +80,16 @@ export class MeasuresLayer {
       this.select(viewer);
     } }, text);
     const parts = [element("p", { class: "verdict" }, this.verdict)];
+    // The ends of lines between two objects are on these.
+    const names = viewer.scene.colours ? viewer.scene.objects.map((object) => object.name) : [];
+    this.term = (k) => names[k]
+      ? [patch(k === 1 ? "second" : "surface"), shortened(names[k], LONGEST_NAME)] : ["from", "to"][k];
     if (this.isLabelled) {
       parts.push(this.text);
+      if (this.length > 0) {
+        const fly = element("button", { type: "button", class: "primary", id: "fly", onclick: () => this.fly(viewer) }, "Fly there");
+        parts.push(element("p", { class: "buttons" }, fly, copyButton(this.text)));
+      }
     } else {
       const what = "length";
       parts.push(viewer.figure(() => ({ scale: this.scale, what, unit: viewer.unit, values: this.lengths })).element,
@@ -87,10 +99,17 @@ export class MeasuresLayer {
     this.select(viewer);
   }
 
+  // Flies to the first line, from which the view is as far as it is long.
+  fly(viewer) {
+    const [a, b] = this.ends(0);
+    const part = Math.max(CLOSEST_FLIGHT, (ROOM * a.distanceTo(b)) / viewer.data.frame.radius);
+    viewer.view.flyTo(a.lerp(b, 0.5), Math.min(1, part));
+  }
+
   select(viewer) {
     const rows = this.drawn().flatMap((i) => [
       [this.names[i] ?? `number ${count(i)}`, element("span", {}, number(this.lengths[i]), ` ${viewer.unit}`)],
-      ["from", this.coordinates.subarray(6 * i, 6 * i + 3)], ["to", this.coordinates.subarray(6 * i + 3, 6 * i + 6)],
+      ...[0, 1].map((k) => [this.term(k), this.coordinates.subarray(6 * i + 3 * k, 6 * i + 3 * k + 3)]),
     ]);
     fillList(this.text, rows);
     if (this.colours) {

@@ -5,6 +5,8 @@ import { element, roundUp, short } from "./text.js";
 
 // The least length of the scale bar in pixels.
 const LEAST_BAR = 60;
+// Where an important label stands relative to its position, so that it does not hide a short line.
+const ABOVE = "-150%";
 // The least distance between labels in pixels.
 const LABEL_GAP = 34;
 
@@ -39,7 +41,7 @@ export class Overlay {
       for (const [name, value] of [["x", 31 * x], ["y", 4 - 31 * y]]) text.setAttribute(name, value.toFixed(1));
     });
     const { clientWidth: width, clientHeight: height } = viewer.stage;
-    const pixel = viewer.view.pixel(Math.max(1, height)) * viewer.frame.scale;
+    const pixel = viewer.view.pixel * viewer.frame.scale;
     const length = roundUp(LEAST_BAR * pixel);
     this.bar.hidden = !Number.isFinite(length) || length === 0;
     this.bar.firstChild.style.width = `${Math.min(length / pixel, width / 2)}px`;
@@ -58,7 +60,7 @@ export class Overlay {
       if (!isInside || placed.some(([a, b]) => Math.hypot(a - x, b - y) < LABEL_GAP)) continue;
       placed.push([x, y]);
       const label = element("span", isImportant ? { class: "important" } : {}, text);
-      label.style.transform = `translate(${x.toFixed(1)}px, ${y.toFixed(1)}px) translate(-50%, -50%)`;
+      label.style.transform = `translate(${x.toFixed(1)}px, ${y.toFixed(1)}px) translate(-50%, ${isImportant ? ABOVE : "-50%"})`;
       shown.push(label);
     }
     this.labels.replaceChildren(...shown);

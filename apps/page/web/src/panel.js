@@ -1,14 +1,21 @@
 // The panel beside the picture: what the page is about first, then what is shown, then help.
 
 import { KEYS } from "./input.js";
-import { checkbox, count, counted, element, fillList, short } from "./text.js";
+import { checkbox, count, counted, element, fillList, patch, short, shortened } from "./text.js";
 
+// The number of characters of a word of the title above which its middle is left out.
+const LONGEST_WORD = 26;
 // The number of answers above which a page begins without segments to closest points, which would fill the picture.
 const MANY_ANSWERS = 20_000;
 
 // Makes all sections of the panel. `panels` has the classes of those with a file of their own.
-export function makePanel(viewer, { AnswersPanel, CellsPanel, DeviationsPanel, SlicePanel }) {
+export function makePanel(viewer, { AnswersPanel, CellsPanel, DeviationsPanel, MovedPanel, SlicePanel }) {
   const panel = document.getElementById("panel");
+  const title = panel.querySelector("h1");
+  title.title = title.textContent;
+  title.textContent = shortened(title.textContent, LONGEST_WORD);
+  // The verdict says it in large type.
+  if (viewer.data.has_object_colours) panel.querySelector("header p").hidden = true;
   const add = (title, id, ...children) => {
     const section = element("section", { id, "aria-label": title }, element("h2", {}, title), ...children);
     panel.append(section);
@@ -16,6 +23,7 @@ export function makePanel(viewer, { AnswersPanel, CellsPanel, DeviationsPanel, S
   };
   if (viewer.deviations) viewer.deviationsPanel = new DeviationsPanel(viewer, add);
   if (viewer.measures) viewer.measures.makePanel(viewer, add);
+  if (viewer.data.moved) new MovedPanel(viewer, add);
   if (viewer.data.notes.length > 0) {
     add("Notes", "notes", element("ul", {}, ...viewer.data.notes.map((note) => element("li", {}, note))));
   }
@@ -78,7 +86,7 @@ function addFacts(viewer, add) {
   if (viewer.slice) hints.push("Point at the slice to read its value. Move it with the slider, or drag it with Shift.");
   if (viewer.deviations) hints.push("Point at the scan to read deviations.");
   if (viewer.isLiveSoon) hints.push("Point anywhere to see the closest point of the scene.");
-  if (!viewer.answers && !viewer.slice && !viewer.deviations && !viewer.live && !viewer.measures) {
+  if (!viewer.answers && !viewer.slice && !viewer.deviations && !viewer.live && !viewer.measures && !data.moved) {
     hints.push("For distances in this page, make it with `--live always`, `--field 64` or `--random 1000` of `p2m view`.");
   }
   hints.push("Drag to turn, and use the wheel or two fingers to come nearer.");
@@ -133,10 +141,12 @@ function addObjects(viewer, add) {
   const { scene } = viewer;
   const boxes = scene.objects.map((object, i) => {
     const name = object.name ?? "primitives of no object";
-    return checkbox(`${name} (${counted(object.count, "primitive")})`, true, (on) => {
+    const made = checkbox(`${name} (${counted(object.count, "primitive")})`, true, (on) => {
       scene.show(i, on);
       viewer.draw();
     });
+    if (scene.colours) made.firstChild.after(patch(i === 1 ? "second" : "surface"));
+    return made;
   });
   const set = (isOn) => {
     boxes.forEach((label, i) => {

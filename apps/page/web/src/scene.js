@@ -1,7 +1,8 @@
 // The scene: its triangles, segments and points, of which each object can be hidden.
 
 import * as three from "three";
-import { pointMaterial, spacing, surface } from "./shading.js";
+import { lightOf } from "./colours.js";
+import { pointMaterial, setNormals, spacing, surface } from "./shading.js";
 
 // The kinds of primitives, with the number of vertices of each.
 const KINDS = [["triangles", 3], ["segments", 2], ["points", 1]];
@@ -11,14 +12,19 @@ const POINT_SIZE = 1.8;
 export class SceneLayer {
   // `scene` has positions in the frame (f32) and for each kind the numbers of vertices. `objects` are names with the
   // first and the last number of their primitives of each kind; primitives of no object have an entry without a name.
-  constructor(scene) {
+  // With `hasColours`, the second object has a colour of its own.
+  constructor(scene, hasColours) {
     this.group = new three.Group();
+    this.positions = scene.positions;
+    this.colours = hasColours ? new three.BufferAttribute(new Uint16Array(scene.positions.length), 3, true) : null;
+    const parameters = hasColours ? { vertexColors: true } : {};
     this.objects = scene.objects.map((object) => ({ ...object, isVisible: true }));
     const positions = new three.BufferAttribute(scene.positions, 3);
     this.parts = [];
     this.materials = {
-      segments: new three.LineBasicMaterial(),
+      segments: new three.LineBasicMaterial(parameters),
       points: pointMaterial({
+        ...parameters,
         size: scene.points.length > 0 ? POINT_SIZE * spacing(scene.positions) : 1, sizeAttenuation: true,
       }),
     };
@@ -28,8 +34,9 @@ export class SceneLayer {
       const geometry = new three.BufferGeometry();
       geometry.setAttribute("position", positions);
       geometry.setIndex(new three.BufferAttribute(indices, 1));
+      if (this.colours) geometry.setAttribute("color", this.colours);
       geometry.boundingSphere = new three.Sphere(new three.Vector3(), 4);
-      const drawn = kind === "triangles" ? surface(geometry)
+      const drawn = kind === "triangles" ? surface(geometry, parameters)
         : new { segments: three.LineSegments, points: three.Points }[kind](geometry, this.materials[kind]);
       this.materials[kind] = drawn.material;
       this.group.add(drawn);
@@ -38,10 +45,36 @@ export class SceneLayer {
   }
 
   setTheme(theme, colours) {
+    this.edges?.material.color.set(colours.edge);
+    if (this.colours) {
+      const [first, second] = [colours.surface, colours.second].map(lightOf);
+      const { array } = this.colours;
+      for (let i = 0; i < array.length; i += 3) array.set(first, i);
+      for (const i of this.verticesOf(1)) array.set(second, 3 * i);
+      this.colours.needsUpdate = true;
+      return;
+    }
     this.materials.triangles?.color.set(colours.surface);
     this.materials.segments.color.set(colours.line);
     this.materials.points.color.set(colours.surface);
-    this.edges?.material.color.set(colours.edge);
+  }
+
+  // Returns the numbers of the vertices of an object.
+  verticesOf(number) {
+    const all = this.parts.flatMap(({ kind, size, indices }) => {
+      const [first, end] = this.objects[number][kind];
+      return [...new Set(indices.subarray(size * first, size * end))];
+    });
+    return new Set(all);
+  }
+
+  // Moves all vertices to other positions in the frame.
+  setPositions(positions) {
+    for (const { kind, indices, geometry } of this.parts) {
+      geometry.getAttribute("position").array.set(positions);
+      geometry.getAttribute("position").needsUpdate = true;
+      if (kind === "triangles") setNormals(geometry, indices);
+    }
   }
 
   // Draws the edges of triangles over them. They are made when they are first asked for, because they take long.

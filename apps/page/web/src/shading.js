@@ -22,11 +22,15 @@ const MAX_SMOOTH = 300_000;
 // surface, and sharp edges stay sharp.
 export function surface(geometry, parameters = {}) {
   const isSmooth = geometry.index.count <= 3 * MAX_SMOOTH;
-  if (isSmooth) {
-    const normals = vertexNormals(geometry.getAttribute("position").array, geometry.index.array);
-    geometry.setAttribute("normal", new three.BufferAttribute(normals, 3, true));
-  }
+  setNormals(geometry, geometry.index.array);
   return new three.Mesh(geometry, surfaceMaterial(isSmooth, parameters));
+}
+
+// Sets the normals of a geometry, unless its facets are flat.
+export function setNormals(geometry, triangles) {
+  if (triangles.length > 3 * MAX_SMOOTH) return;
+  const normals = vertexNormals(geometry.getAttribute("position").array, triangles);
+  geometry.setAttribute("normal", new three.BufferAttribute(normals, 3, true));
 }
 
 function surfaceMaterial(isSmooth, parameters) {
@@ -70,16 +74,37 @@ function vertexNormals(positions, triangles) {
   return normals;
 }
 
-// The least and the largest size in pixels of points that have a size in the scene.
-const POINT_SIZES = "2.0, 16.0";
+// The least and the largest size in pixels of points that have a size in the scene: of those that are lit, which form a
+// surface, and of others, which would hide lines and each other.
+const [LIT_SIZES, POINT_SIZES] = ["2.0, 16.0", "2.0, 6.0"];
+
+// The opacity of what has faded, and the distances from a plane, in radii of the scene, between which things fade.
+const [FADED, FADES] = ["0.12", "0.05, 0.3"];
+
+// Lets the shader of a material fade what is away from a plane: `focus.value` has its normal, divided by the radius of
+// the scene, and its distance, divided by the same. Nothing fades if all of them are 0.
+export function fade(shader, focus) {
+  shader.uniforms.focus = focus;
+  shader.vertexShader = shader.vertexShader
+    .replace("#include <common>", "#include <common>\nuniform vec4 focus;\nvarying float vFaded;")
+    .replace("#include <project_vertex>", `#include <project_vertex>
+      vFaded = smoothstep(${FADES}, abs(dot(focus.xyz, position) - focus.w));`);
+  shader.fragmentShader = shader.fragmentShader
+    .replace("#include <common>", "#include <common>\nvarying float vFaded;")
+    .replace("#include <opaque_fragment>", `diffuseColor.a *= mix(1.0, ${FADED}, vFaded);\n#include <opaque_fragment>`);
+}
+
+// The part of the radius of a point that is not its rim.
+const RIM = "0.7";
 
 // Returns a material of round points. With normals of vertices they are lit as surfaces are. With `sizeAttenuation`,
-// their size is that in the frame, and else it is in pixels.
-export function pointMaterial(parameters, isLit = false) {
+// their size is that in the frame, and else it is in pixels. `marks` has the rim of points, whose value is a colour, and
+// the plane away from which they fade.
+export function pointMaterial(parameters, isLit = false, marks = null) {
   const material = new three.PointsMaterial({ sizeAttenuation: false, ...parameters });
   material.onBeforeCompile = (shader) => {
     shader.vertexShader = shader.vertexShader.replace("gl_PointSize *= ( scale / - mvPosition.z );",
-      `gl_PointSize = clamp(size * projectionMatrix[1][1] * scale / -mvPosition.z, ${POINT_SIZES});`);
+      `gl_PointSize = clamp(size * projectionMatrix[1][1] * scale / -mvPosition.z, ${isLit ? LIT_SIZES : POINT_SIZES});`);
     if (isLit) {
       shader.vertexShader = shader.vertexShader
         .replace("#include <common>", "#include <common>\nvarying float vLight;")
@@ -95,8 +120,16 @@ export function pointMaterial(parameters, isLit = false) {
     }
     shader.fragmentShader = shader.fragmentShader.replace("#include <clipping_planes_fragment>",
       "#include <clipping_planes_fragment>\nif (length(gl_PointCoord - 0.5) > 0.5) discard;");
+    if (!marks) return;
+    fade(shader, marks.focus);
+    shader.uniforms.rim = marks.rim;
+    shader.fragmentShader = shader.fragmentShader
+      .replace("#include <common>", "#include <common>\nuniform vec3 rim;")
+      .replace("#include <opaque_fragment>", `
+        outgoingLight = mix(outgoingLight, rim, step(${RIM}, 2.0 * length(gl_PointCoord - 0.5)));
+        #include <opaque_fragment>`);
   };
-  material.customProgramCacheKey = () => `round ${isLit}`;
+  material.customProgramCacheKey = () => `round ${isLit} ${!!marks}`;
   return material;
 }
 

@@ -4,12 +4,12 @@
 import * as three from "three";
 import { ColourScale } from "./colours.js";
 import { limits } from "./answers.js";
-import { roundUp, short } from "./text.js";
+import { roundUp, short, sideOf } from "./text.js";
 
 // The number of lines of equal distance between zero and the largest distance, at most.
 const LINES = 8;
 // The opacity of a slice where it is not inside of the scene, so that the scene behind it is seen.
-const OUTSIDE = { light: 0.45, dark: 0.7 };
+const OUTSIDE = { light: 0.32, dark: 0.55 };
 
 const VERTEX = `
   varying vec2 place;
@@ -99,7 +99,8 @@ export class SliceLayer {
     });
     this.mesh = new three.Mesh(new three.BufferGeometry(), material);
     this.mesh.renderOrder = 1;
-    // The panel sets the plane.
+    // The panel sets the plane, which makes its corners.
+    this.corners = [];
     this.axis = 2;
   }
 
@@ -151,7 +152,9 @@ export class SliceLayer {
     this.texture.needsUpdate = true;
     this.uniforms.counts.value.set(width, height);
     const corner = (x, y) => this.position(axis, x * (width - 1), y * (height - 1));
-    const geometry = new three.BufferGeometry().setFromPoints([corner(0, 0), corner(1, 0), corner(1, 1), corner(0, 1)]);
+    const corners = [corner(0, 0), corner(1, 0), corner(1, 1), corner(0, 1)];
+    this.corners = corners.flatMap((point) => point.toArray());
+    const geometry = new three.BufferGeometry().setFromPoints(corners);
     geometry.setAttribute("uv", new three.Float32BufferAttribute([0, 0, 1, 0, 1, 1, 0, 1], 2));
     geometry.setIndex([0, 1, 2, 0, 2, 3]);
     this.mesh.geometry.dispose();
@@ -206,7 +209,7 @@ export class SliceLayer {
   textAt(position, unit) {
     const value = this.valueAt(position);
     if (this.hasCells && Number.isNaN(value)) return "no list: the tree answers";
-    const side = this.scale.isDiverging ? (value < 0 ? " inside" : " outside") : "";
+    const side = this.scale.isDiverging ? ` ${sideOf(value)}` : "";
     return `${this.scale.text(this.scale.isDiverging ? Math.abs(value) : value)} ${unit}${side}`;
   }
 }

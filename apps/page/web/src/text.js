@@ -16,10 +16,21 @@ function figure(value, digits) {
 // Returns a number with at most four digits, for legends and summaries.
 export const short = (value) => figure(value, 4);
 
-// Makes an element that shows a number with six digits, and has all of them to be copied.
-export function number(value) {
+// Returns on which side of the surface a point with a signed distance is, if there is one.
+export const sideOf = (signed) =>
+  signed === undefined || Number.isNaN(signed) ? undefined : signed < 0 ? "inside" : signed > 0 ? "outside" : "on the surface";
+
+// Returns a text whose words have at most `most` characters. Longer ones lose their middle.
+export const shortened = (text, most) => text.split(" ").map((word) => {
+  const letters = [...word];
+  const kept = Math.floor((most - 1) / 2);
+  return letters.length > most ? `${letters.slice(0, kept).join("")}…${letters.slice(-kept).join("")}` : word;
+}).join(" ");
+
+// Makes an element that shows a number with six digits, or fewer, and has all of them to be copied.
+export function number(value, digits = DIGITS) {
   if (typeof value !== "number" || Number.isNaN(value)) return "none";
-  return element("data", { value: String(value) }, figure(value, DIGITS));
+  return element("data", { value: String(value) }, figure(value, digits));
 }
 
 // Makes elements of several numbers with commas between them.
@@ -98,13 +109,17 @@ function content(value) {
   return [value];
 }
 
-// Replaces the content of a list by terms, each with its text, its number, its numbers or its element.
+// Replaces the content of a list by terms, which are texts or lists of elements and texts, each with its text, its number, its numbers or its element.
 export function fillList(list, rows) {
   list.replaceChildren(
     ...rows.flatMap(([term, value]) => [
-      element("dt", {}, term), element("dd", { class: term === "distance" && "main" }, ...content(value)),
+      element("dt", {}, ...[term].flat()), element("dd", { class: term === "distance" && "main" }, ...content(value)),
     ]));
 }
+
+// Makes a patch of a colour of the picture, by its name, or of a colour in CSS.
+export const patch = (colour) =>
+  element("span", { class: "patch", style: `background: ${colour.startsWith("#") ? colour : `var(--${colour})`}` });
 
 // Makes the row of the names of columns.
 export function tableHead(names) {

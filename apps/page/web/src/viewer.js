@@ -13,13 +13,14 @@ import { Figure } from "./histogram.js";
 import { listen } from "./input.js";
 import { LiveQueries } from "./live.js";
 import { MeasuresLayer } from "./measures.js";
+import { MovedPanel } from "./moved.js";
 import { Overlay } from "./overlay.js";
 import { makePanel } from "./panel.js";
 import { SceneLayer } from "./scene.js";
 import { Painter, addLights } from "./shading.js";
 import { SliceLayer } from "./slice.js";
 import { SlicePanel } from "./slice-panel.js";
-import { copyAllDigits, reveal, short } from "./text.js";
+import { copyAllDigits, reveal, short, sideOf } from "./text.js";
 import { addToolbar } from "./toolbar.js";
 
 // The distance in pixels within which an answer is selected or read.
@@ -42,13 +43,15 @@ class Viewer {
     this.renderer.localClippingEnabled = true;
     this.world = new three.Scene();
 
-    this.scene = new SceneLayer(data.scene);
+    this.scene = new SceneLayer(data.scene, data.has_object_colours);
     this.world.add(this.scene.group);
     if (data.answers) this.addLayer("answers", new AnswersLayer(data.answers, this.frame), "group");
     if (this.answers) this.world.add(this.answers.selection);
     if (data.cells) this.addLayer("cells", new CellsLayer(data.cells), "group");
     const field = data.field ?? data.lists;
     if (field) this.addLayer("slice", new SliceLayer(field, !!data.lists), "mesh");
+    // One scale has the colours of both.
+    if (data.field && this.answers) this.answers.scale = this.slice.scale;
     if (data.live) this.addLayer("live", new LiveQueries(this, data.live), "group");
     if (data.measures) this.addLayer("measures", new MeasuresLayer(data.measures, this.frame), "group");
     if (data.deviations) {
@@ -74,13 +77,16 @@ class Viewer {
     if (this.measures) this.overlay.sources.push(() => this.measures.labels());
     addToolbar(this, this.stage);
 
-    makePanel(this, { AnswersPanel, CellsPanel, DeviationsPanel, SlicePanel });
+    makePanel(this, { AnswersPanel, CellsPanel, DeviationsPanel, MovedPanel, SlicePanel });
     copyAllDigits();
     listen(this);
     this.followSystem();
     this.resize();
     this.fit();
-    this.slicePanel?.lay();
+    if (this.slice) {
+      this.slicePanel.lay();
+      this.fit();
+    }
     new ResizeObserver(() => this.resize()).observe(this.stage);
   }
 
@@ -108,6 +114,7 @@ class Viewer {
     this.theme = theme;
     document.documentElement.dataset.theme = theme;
     this.renderer.setClearColor(this.colours.background);
+    for (const name of ["surface", "second"]) document.documentElement.style.setProperty(`--${name}`, this.colours[name]);
     for (const layer of [this.scene, this.cells, this.answers, this.slice, this.measures, this.deviations]) {
       layer?.setTheme(theme, this.colours);
     }
@@ -153,17 +160,18 @@ class Viewer {
     const plane = this.slice?.plane(this.slice && towards.getComponent(this.slice.axis) < 0 ? -1 : 1);
     this.scene.cut(isCut ? plane : null);
     this.painter.plane = this.slice?.mesh.visible ? plane : null;
+    this.answers?.fadeAwayFrom(this.painter.plane, this.data.frame.radius);
   }
 
   resize() {
     const { clientWidth, clientHeight } = this.stage;
     this.renderer.setSize(clientWidth, clientHeight, false);
-    this.camera.aspect = clientWidth / Math.max(1, clientHeight);
-    this.camera.updateProjectionMatrix();
+    this.view.setSize(clientWidth, clientHeight);
     this.draw();
   }
 
   fit(preset) {
+    if (this.slice) this.view.corners = this.slice.mesh.visible ? this.slice.corners : [];
     this.view.fit(preset);
     this.draw();
   }
@@ -220,13 +228,18 @@ class Viewer {
       this.draw();
     }
     if (i < 0) return undefined;
-    const value = this.answers.values[i];
-    return `query ${i}: ${Number.isNaN(value) ? "no answer" : `${short(value)} ${this.unit}`}`;
+    return `query ${i}: ${this.answers.isAnswered(i) ? this.inWords(this.answers.values[i], !!this.answers.signed) : "no answer"}`;
   }
 
   liveTip() {
     const answer = this.live?.isFollowing && this.live.group.visible && this.live.shown?.answers?.[0];
-    return answer ? `${short(answer.distance)} ${this.unit} from the scene` : undefined;
+    if (!answer) return undefined;
+    return `${short(answer.distance)} ${this.unit} ${sideOf(answer.signed) ?? "from the scene"}`;
+  }
+
+  // Returns a value as a text: a distance, or a signed distance as a distance and a side.
+  inWords(value, isSigned) {
+    return `${short(isSigned ? Math.abs(value) : value)} ${this.unit}${isSigned ? ` ${sideOf(value)}` : ""}`;
   }
 
   // Returns the coordinates of a position in the frame, to a hundred thousandth of the radius of the scene.
@@ -267,19 +280,13 @@ function makeRenderer(canvas) {
   }
 }
 
-// Says what is missing where the page cannot be shown.
-function fail(error) {
-  const reason = typeof DecompressionStream === "undefined" ? "this browser is too old for it" : error.message;
-  document.getElementById("failure").textContent = `The page cannot be shown: ${reason}.`;
-}
-
 readData().then((data) => {
   // Tests read what is shown from here.
   window.viewer = new Viewer(data);
   document.documentElement.dataset.ready = "true";
   if (window.viewer.isLiveSoon) window.viewer.startLive();
 }).catch((error) => {
-  fail(error);
+  document.getElementById("failure").textContent = `The page cannot be shown: ${error.message}.`;
   document.documentElement.dataset.ready = "failed";
   console.error(error);
 });

@@ -51,6 +51,9 @@ const FUNCTIONS = {
     return { ...answer, work: [nodes, packets, primitives] };
   },
 
+  // Returns the signed distance of a query in a scene of triangles.
+  signed: (_, query) => index.signedDistance(query),
+
   // Returns the answer to a query far from the origin, or `null` if there is none.
   queryFar: (query) => far.query(query),
 };

@@ -79,7 +79,7 @@ export class Page {
 
   // Returns the answer that a list shows, in the columns of `p2m query`.
   async answer(list) {
-    const numbers = async (name) => (await this.read(list, name)).split(/,\s+/).map(Number);
+    const numbers = async (name) => (await this.read(list, name)).split(/,\s+/).map(Number.parseFloat);
     return [...(await numbers("query")), ...(await numbers("closest point")), ...(await numbers("distance")),
       Number((await this.read(list, "primitive")).split(" ")[1]), await this.read(list, "feature")];
   }

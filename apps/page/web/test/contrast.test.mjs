@@ -46,27 +46,21 @@ test("text and marks have enough contrast", () => {
 test("pictures have enough contrast", () => {
   for (const theme of ["light", "dark"]) {
     const { background, ...others } = THEMES[theme];
-    const scales = [SCALES.sequential[theme], SCALES.diverging[theme], BANDS[theme]];
+    const scales = [SCALES.sequential[theme], BANDS[theme]];
     const drawn = [...Object.values(others), ...scales.flat(), UNDEFINED];
-    assert.equal(drawn.length, 29);
+    assert.equal(drawn.length, 21);
     for (const colour of drawn) assert.ok(contrast(colour, background) >= 3, `${colour} on ${background}`);
   }
 });
 
 test("the lightness of scales rises, or changes in one direction from the middle to both ends", () => {
   for (const theme of ["light", "dark"]) {
-    const sign = theme === "light" ? -1 : 1;
-    const [sequential, diverging] = [SCALES.sequential[theme], SCALES.diverging[theme]]
-      .map((colours) => colours.map(luminance));
-    const [field, signed] = [SCALES.field[theme], SCALES.signedField[theme]].map((colours) => colours.map(luminance));
+    const [sequential, field, signed] = ["sequential", "field", "signedField"]
+      .map((kind) => SCALES[kind][theme].map(luminance));
     const rises = (values) => values.every((value, i) => i === 0 || value > values[i - 1]);
     assert.ok(rises(sequential));
     // Areas are light near the surface in both themes.
     assert.ok(rises([...field].reverse()));
     for (const half of [signed.slice(5), signed.slice(0, 6).reverse()]) assert.ok(rises(half.map((x) => -x)), String(half));
-    for (const half of [diverging.slice(4), diverging.slice(0, 5).reverse()]) {
-      // Grey and the colour beside it may be equally light.
-      assert.ok(rises(half.slice(1).map((x) => sign * x)), `${theme}: ${half}`);
-    }
   }
 });

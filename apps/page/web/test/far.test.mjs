@@ -6,7 +6,7 @@ import { tmpdir } from "node:os";
 import { join } from "node:path";
 import { after, before, test } from "node:test";
 import { pathToFileURL } from "node:url";
-import { inflateSync } from "node:zlib";
+import { decompress } from "fzstd";
 import { build } from "esbuild";
 
 let folder, FarScene;
@@ -18,7 +18,7 @@ before(async () => {
   await build({ stdin: { contents, resolveDir }, bundle: true, format: "esm", target: "es2022", outfile });
   const module = await import(pathToFileURL(outfile));
   ({ FarScene } = module);
-  await module.init(inflateSync(readFileSync(new URL("../../assets/p2m.wasm.deflate", import.meta.url))));
+  await module.init(decompress(readFileSync(new URL("../../assets/p2m.wasm.zst", import.meta.url))));
 });
 
 after(() => rmSync(folder, { recursive: true, force: true }));

@@ -1,7 +1,7 @@
-// Measures pages of scenes of 10^4 to 10^6 triangles: their sizes, the seconds until they are ready, and the frames a
-// second while they turn: P2M=PROGRAM node test/measure.mjs [EARLIER PROGRAM]
+// Measures pages of scenes of 10^4 to 10^6 triangles: their sizes without and with live queries, the seconds until they
+// are ready, and the frames a second while they turn: P2M=PROGRAM node test/measure.mjs [EARLIER PROGRAM]
 //
-// Programs take turns, and the figures are medians of several rounds.
+// Times are those of pages without live queries, whose indexes would be built meanwhile. Programs take turns, and the figures are medians of several rounds.
 
 import { execFileSync } from "node:child_process";
 import { mkdtempSync, statSync } from "node:fs";
@@ -39,24 +39,28 @@ async function measure(html) {
   return { ready, rate };
 }
 
-console.log("| program | triangles | page, MB | seconds until it is ready | frames a second |\n|---|---:|---:|---:|---:|");
+console.log("| program | triangles | page, MB | with live queries, MB | seconds until it is ready | frames a second |\n|---|---:|---:|---:|---:|---:|");
 // Each edge of the icosahedron is cut into so many parts, which makes 20 times the square of this number of triangles.
 for (const frequency of [22, 71, 223]) {
   const scene = join(folder, "scene.ply");
   execFileSync(PROGRAM, ["generate", "ico-sphere", "--frequency", String(frequency), "--out", scene], { stdio: "pipe" });
   const pages = programs.map((program, i) => {
     const html = join(folder, `page${i}.html`);
-    execFileSync(program, ["view", scene, "--random", "1000", "--live", "never", "--out", html], { stdio: "pipe" });
-    return { program, html, figures: [] };
+    const write = (live) =>
+      execFileSync(program, ["view", scene, "--random", "1000", "--live", live, "--out", html], { stdio: "pipe" });
+    const size = () => (statSync(html).size / 1e6).toFixed(2);
+    write("always");
+    const liveSize = size();
+    write("never");
+    return { program, html, sizes: [size(), liveSize], figures: [] };
   });
   for (let round = 0; round < ROUNDS; round++) {
     for (const page of pages) page.figures.push(await measure(page.html));
   }
-  for (const { program, html, figures } of pages) {
+  for (const { program, sizes, figures } of pages) {
     const [ready, rate] = ["ready", "rate"].map((key) => median(figures.map((figure) => figure[key])));
-    const megabytes = (statSync(html).size / 1e6).toFixed(2);
     const name = program === PROGRAM ? "now" : "earlier";
-    console.log(`| ${name} | ${20 * frequency ** 2} | ${megabytes} | ${ready.toFixed(1)} | ${rate.toPrecision(2)} |`);
+    console.log(`| ${name} | ${20 * frequency ** 2} | ${sizes.join(" | ")} | ${ready.toFixed(1)} | ${rate.toPrecision(2)} |`);
   }
 }
 await browser.close();

@@ -31,13 +31,56 @@ test("a page shows the distance of two scenes, and the farthest points", { skip 
       ? [report.distance, report.scenes[1].nearest.point] : [report.upper_bound, report.scenes[1].farthest.point];
     const shown = await opened.read("measure", command === "distance" ? "distance" : "farthest", page);
     assert.equal(Number.parseFloat(shown), found);
-    assert.deepEqual((await opened.read("measure", "to", page)).split(", ").map(Number), point);
+    assert.deepEqual((await opened.read("measure", "sphere.ply", page)).split(", ").map(Number), point);
     // The label stands in the picture, between the points.
     await page.waitForSelector("#overlay .important");
     assert.match(await page.textContent("#overlay .important"), / mm$/);
     assert.equal(await page.locator("#objects label").count(), 2);
+    // The scenes have different colours, and the view flies to the line between them.
+    const [first, second] = await page.evaluate(() => [0, 1].map((k) => {
+      const { scene } = window.viewer;
+      return [...new Set([...scene.verticesOf(k)].map((i) => scene.colours.array.subarray(3 * i, 3 * i + 3).join()))];
+    }));
+    assert.ok(first.length === 1 && second.length === 1 && first[0] !== second[0], `${first}; ${second}`);
+    await page.click("#fly");
+    await page.waitForFunction(() => {
+      const { controls, camera, measures } = window.viewer;
+      const [a, b] = measures.ends(0);
+      const size = camera.position.distanceTo(controls.target) * Math.tan((camera.fov / 360) * Math.PI);
+      return controls.target.distanceTo(a.clone().lerp(b, 0.5)) < 1e-3 && size < 1.5 * a.distanceTo(b);
+    });
     await page.close();
   }
+});
+
+test("a page shows a scan before and after it was aligned, and the matrix", { skip }, async () => {
+  const [part, scan, html] = ["part.ply", "turned.ply", "align.html"].map(path);
+  run(["generate", "torus-knot", "--out", part]);
+  run(["convert", part, scan, "--rotate-z", "25", "--translate", "1", "2", "3"]);
+  const report = JSON.parse(run(["align", scan, part, "--html", html, "--unit", "mm", "--json"]));
+  const page = await open(html);
+  assert.match(await page.textContent("#moved .verdict"), /^The root mean square of the distances is [\d.e-]+ mm\.$/);
+  assert.equal(Number(await opened.read("moved-facts", "root mean square", page)), report.rms);
+  assert.equal(Number(await opened.read("moved-facts", "coverage in %", page)), 100 * report.coverage);
+  const matrix = await page.$$eval("#matrix data", (all) => all.map((data) => Number(data.value)));
+  assert.deepEqual(matrix, report.matrix.flat());
+  // Copies of the vertices are where they were in the files.
+  const [first, second] = [part, scan].map((file) => run(["convert", file, "-", "--to", "obj"]).split("\n")
+    .filter((line) => line.startsWith("v ")).map((line) => line.slice(2).split(" ").map(Number)));
+  const shown = (number) => page.evaluate((number) => {
+    const { scene, frame } = window.viewer;
+    return [...scene.verticesOf(number)].sort((a, b) => a - b)
+      .map((i) => frame.coordinates(scene.positions.subarray(3 * i, 3 * i + 3)));
+  }, number);
+  const gap = (a, b) => Math.max(...a.map((point, i) => Math.max(...point.map((x, k) => Math.abs(x - b[i][k])))));
+  assert.ok(gap(await shown(0), first) < 1e-5 && gap(await shown(1), first) < 1e-5);
+  await page.click("#moved label:has-text('before')");
+  assert.ok(gap(await shown(0), first) < 1e-5 && gap(await shown(1), second) < 1e-5);
+  const position = await page.evaluate(() => window.viewer.scene.parts[0].geometry.getAttribute("position").version);
+  assert.ok(position > 0);
+  await page.click("#moved label:has-text('after')");
+  assert.ok(gap(await shown(1), first) < 1e-5);
+  await page.close();
 });
 
 test("a moved scene is drawn where it was measured", { skip }, async () => {

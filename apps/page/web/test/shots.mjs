@@ -70,6 +70,19 @@ function scan(scene, path, side) {
     x + (side / 400) * (Math.sin((9 * point[(k + 1) % 3]) / side + k) ** 3 + 0.3 * noise()))));
 }
 
+// Returns what makes the pages of a scene and a copy of it that stands beside it.
+function pairs(name, scene, side, shared) {
+  const copy = at(`${name}-copy.ply`);
+  const beside = (command, page) => ({ [page]: () => {
+    // A turn about the origin would move a city far away.
+    const turn = command === "align" ? ["--rotate-z", "20"] : [];
+    run("convert", scene, copy, ...turn, "--translate", String(1.1 * side), "0", "0");
+    run(command, ...(command === "align" ? [copy, scene] : [scene, copy]), ...shared, "--html", at(`${name}-${page}.html`));
+  } });
+  const others = name === "mesh" ? { ...beside("hausdorff", "hausdorff"), ...beside("align", "align") } : {};
+  return { ...beside("distance", "distance"), ...others };
+}
+
 // Returns what makes the pages of a scene.
 function pages(name, scene, field, shared) {
   const { min, max } = JSON.parse(run("info", scene, "--json")).bounds;
@@ -84,6 +97,7 @@ function pages(name, scene, field, shared) {
       scan(scene, points, side);
       run("deviation", points, scene, ...unsigned, "--tolerance", (side / 500).toPrecision(1), ...shared, ...html("deviation"));
     },
+    ...pairs(name, scene, side, shared),
     tradeoff: () =>
       run("tradeoff", scene, "--random", "300", "--rounds", "3", "--html", at(`${name}-tradeoff.html`)),
   };

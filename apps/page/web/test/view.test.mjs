@@ -87,6 +87,7 @@ test("queries without an answer are counted, and their closest points are not dr
   for (const [limit, text] of [["0", /^5 of 5 queries have no answer\.$/], ["0.4", /^\d of 5 queries have no /]]) {
     const other = await opened.view(opened.scene, "--random", "5", "--seed", "3", "--max-distance", limit);
     assert.match(await other.textContent("#distances p"), text);
+    if (limit !== "0") assert.equal(await other.textContent("#distances .figure > .small"), "no answer");
     assert.equal(await other.locator("#distances svg").count(), limit === "0" ? 0 : 1);
     await other.close();
   }
@@ -99,7 +100,7 @@ test("without WebGL the panel has all answers", { skip }, async () => {
     assert.match(await other.textContent("#failure"), /has no WebGL/);
     assert.match(await other.textContent("#distances p"), /have no answer/);
     await other.locator("#selected button >> nth=1").click();
-    assert.equal(await other.locator("#answer dt").first().textContent(), "number");
+    assert.equal(await other.locator("#answer dt").last().textContent(), "number");
   } finally {
     await browser.close();
   }
@@ -133,16 +134,33 @@ test("the keyboard alone moves the view and reads the slice", { skip }, async ()
 test("the view contains the scene, and cannot be moved away from it", { skip }, async () => {
   await page.focus("#picture");
   await page.keyboard.press("f");
-  const corners = await page.evaluate(() => {
-    const { camera, scene } = window.viewer;
+  // Returns the greatest part of the free picture, from its middle to its side, at which there are positions.
+  const reach = (tab, isSlice) => tab.evaluate((isSlice) => {
+    const { camera, scene, slice, stage: { clientHeight: height } } = window.viewer;
+    const [top, bottom] = [document.getElementById("toolbar").getBoundingClientRect().bottom, 30];
     camera.updateMatrixWorld();
-    const positions = scene.parts[0].geometry.getAttribute("position").array;
+    const positions = isSlice ? slice.corners : scene.parts[0].geometry.getAttribute("position").array;
     const all = Array.from({ length: positions.length / 3 }, (_, i) =>
       camera.position.clone().fromArray(positions, 3 * i).project(camera));
-    return all.map(({ x, y }) => Math.max(Math.abs(x), Math.abs(y)));
-  });
-  // The scene fills four fifths of the picture.
-  assert.ok(Math.max(...corners) < 0.85 && Math.max(...corners) > 0.75, String(Math.max(...corners)));
+    return Math.max(...all.map(({ x, y }) =>
+      Math.max(Math.abs(x), Math.abs(2 * (((1 - y) / 2) * height - top) / (height - top - bottom) - 1))));
+  }, isSlice);
+  // In a flat picture, the height limits the size.
+  const { width, height } = page.viewportSize();
+  await page.setViewportSize({ width, height: 400 });
+  await page.waitForFunction(() => window.viewer.canvas.height === window.viewer.stage.clientHeight);
+  await page.keyboard.press("f");
+  // The slice is not cut off, and not below the toolbar.
+  const slice = await reach(page, true);
+  assert.ok(slice < 1 && slice > 0.9, String(slice));
+  // Without one, the scene fills four fifths of the free picture.
+  await page.uncheck("#show-slice");
+  await page.keyboard.press("f");
+  const size = await reach(page, false);
+  assert.ok(size < 0.85 && size > 0.75, String(size));
+  await page.check("#show-slice");
+  await page.setViewportSize({ width, height });
+  await page.focus("#picture");
   for (let i = 0; i < 200; i++) await page.keyboard.press("Shift+ArrowRight");
   const distance = await page.evaluate(() => window.viewer.controls.target.length() / window.viewer.data.frame.radius);
   assert.ok(distance > 1 && distance < 2.001, String(distance));
@@ -159,22 +177,19 @@ test("in a narrow window an answer does not scroll the picture away", { skip }, 
   await other.close();
 });
 
-test("the histogram is a table too, and has the colours of the theme", { skip }, async () => {
+test("the histogram is a table too, and the rims of points have the colour of the theme", { skip }, async () => {
   const state = () => page.evaluate(() => {
     const rows = [...document.querySelectorAll("#distances table tbody td")].map((cell) => Number(cell.textContent));
-    const fill = document.querySelector("#distances rect").getAttribute("fill");
-    const colours = window.viewer.answers.dots.geometry.getAttribute("color").array;
-    return [rows.reduce((a, b) => a + b, 0), fill, [...colours]];
+    return [rows.reduce((a, b) => a + b, 0), window.viewer.answers.rim.value.getHexString()];
   });
-  const [sum, fill, colours] = await state();
+  const [sum, rim] = await state();
   assert.equal(sum, 40);
   await page.click("#theme");
-  const [same, other, others] = await state();
+  const [same, other] = await state();
   assert.equal(same, 40);
-  assert.notEqual(other, fill);
-  assert.notDeepEqual(others, colours);
+  assert.notEqual(other, rim);
   await page.click("#theme");
-  assert.deepEqual(await state(), [sum, fill, colours]);
+  assert.deepEqual(await state(), [sum, rim]);
 });
 
 test("the theme follows the system until one is chosen", { skip }, async () => {
@@ -216,6 +231,43 @@ test("the scene is cut open at the slice, on the side of the viewer", { skip }, 
   assert.equal((await planes()) ?? null, null);
   await page.check("#show-cut");
   await page.keyboard.press("f");
+});
+
+test("answers have the colours of the slice, and fade away from it", { skip }, async () => {
+  await page.keyboard.press("f");
+  const strengths = () => page.evaluate(async () => {
+    window.viewer.draw();
+    await new Promise((done) => requestAnimationFrame(() => requestAnimationFrame(done)));
+    const { viewer } = window;
+    const { answers, camera, renderer, stage, slice } = viewer;
+    // Nothing but the dots is drawn, with all pixels.
+    viewer.painter.setScale(1);
+    const shown = [viewer.scene.group, slice.mesh, answers.segments, answers.feet].filter((part) => part.visible);
+    shown.forEach((part) => (part.visible = false));
+    renderer.render(viewer.world, camera);
+    const gl = renderer.getContext();
+    const pixel = new Uint8Array(4);
+    const read = Array.from(answers.values, (_, i) => {
+      const at = camera.position.clone().fromArray(answers.from, 3 * i).project(camera);
+      gl.readPixels(((at.x + 1) / 2) * stage.clientWidth - 3, ((at.y + 1) / 2) * stage.clientHeight, 1, 1, gl.RGBA,
+        gl.UNSIGNED_BYTE, pixel);
+      const plane = slice.plane(1);
+      const away = Math.abs(plane.distanceToPoint(at.fromArray(answers.from, 3 * i))) / viewer.data.frame.radius;
+      return { away, darkness: 247 - pixel[0] };
+    });
+    shown.forEach((part) => (part.visible = true));
+    return { read, isOneScale: answers.scale === slice.scale };
+  });
+  const mean = (list) => list.reduce((sum, { darkness }) => sum + darkness, 0) / list.length;
+  const { read, isOneScale } = await strengths();
+  assert.ok(isOneScale);
+  const [near, far] = [read.filter(({ away }) => away < 0.1), read.filter(({ away }) => away > 0.3)];
+  assert.ok(near.length > 2 && far.length > 2 && mean(near) > 2 * mean(far), `${mean(near)} ${mean(far)}`);
+  // Without the slice nothing fades.
+  await page.uncheck("#show-slice");
+  const plain = (await strengths()).read.filter(({ away }) => away > 0.3);
+  assert.ok(mean(plain) > 2 * mean(far), `${mean(plain)} ${mean(far)}`);
+  await page.check("#show-slice");
 });
 
 test("lines of equal distance have the values of the field as labels", { skip }, async () => {
@@ -281,7 +333,8 @@ test("keys act without a click, and copies have all digits", { skip }, async () 
     return [data.textContent, clipboardData.getData("text/plain")];
   });
   const [[, , , , , , distance]] = opened.query("--random", "20", "--seed", "3", "--box-scale", "1.2");
-  assert.ok(shown.replace(/[-.,]|^0\.0*/g, "").length <= 6, shown);
+  assert.match(shown, / units$/);
+  assert.ok(shown.slice(0, -6).replace(/[-.,]|^0\.0*/g, "").length <= 6, shown);
   assert.match(copied, new RegExp(`distance\\s+${distance.replace(".", "\\.")}\\s`));
   await other.close();
 });
@@ -333,6 +386,37 @@ test("the picture is refined once the view rests", { skip }, async () => {
   });
   assert.ok(darker > 10_000 && lighter < darker / 10, `${darker} darker, ${lighter} lighter`);
   assert.ok(background === 0 && isSame, String(background));
+  await other.close();
+});
+
+test("inside and outside are words, and a long title loses its middle", { skip }, async () => {
+  const name = "a_name_that_is_far_too_long_for_the_panel.obj";
+  const box = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nv 0 0 1\nv 1 0 1\nv 1 1 1\nv 0 1 1\n" +
+    "f 4 3 2 1\nf 5 6 7 8\nf 1 2 6 5\nf 2 3 7 6\nf 3 4 8 7\nf 4 1 5 8\n";
+  const points = opened.write("two.xyz", "0.5 0.5 0.25\n0.5 0.5 1.5\n");
+  const other = await opened.view(opened.write(name, box), "--points", points, "--signed", "--live", "always", "--field", "16");
+  const words = [];
+  for (let i = 0; i < 2; i++) {
+    await other.keyboard.press("n");
+    words.push(await opened.read("answer", "distance", other));
+  }
+  assert.deepEqual(words, ["0.25 units inside", "0.5 units outside"]);
+  // The field has the distances of the centre and of a corner, but for the interpolation between grid points.
+  const [centre, corner] = await other.evaluate(() => {
+    const { slice, frame, camera } = window.viewer;
+    return [[0.5, 0.5, 0.5], [1.1, 1.1, 1.1]].map((point) => slice.valueAt(camera.position.clone().fromArray(frame.positions(point))));
+  });
+  assert.ok(Math.abs(centre + 0.5) < 0.1 && Math.abs(corner - Math.sqrt(3) / 10) < 0.1, `${centre}, ${corner}`);
+  await other.waitForFunction(() => document.documentElement.dataset.live === "ready");
+  for (const [z, side] of [["0.25", "inside"], ["1.5", "outside"], ["1", "on the surface"]]) {
+    await other.fill("#live-x", "0.5");
+    await other.fill("#live-y", "0.5");
+    await other.fill("#live-z", z);
+    await other.waitForFunction((side) =>
+      document.querySelector("#live-answer dd.main")?.textContent.endsWith(side), side);
+  }
+  assert.equal(await other.textContent("h1"), "a_name_that_…he_panel.obj in p2m");
+  assert.equal(await other.getAttribute("h1", "title"), `${name} in p2m`);
   await other.close();
 });
 
