@@ -165,6 +165,16 @@ mod guide {
     struct Index;
     #[doc = include_str!("../docs/guide/tutorial.md")]
     struct Tutorial;
+    #[doc = include_str!("../docs/guide/clearance.md")]
+    struct Clearance;
+    #[doc = include_str!("../docs/guide/inspection.md")]
+    struct Inspection;
+    #[doc = include_str!("../docs/guide/training.md")]
+    struct Training;
+    #[doc = include_str!("../docs/guide/maps.md")]
+    struct Maps;
+    #[doc = include_str!("../docs/guide/shell.md")]
+    struct Shell;
     #[doc = include_str!("../docs/guide/scenes.md")]
     struct Scenes;
     #[doc = include_str!("../docs/guide/indexes.md")]

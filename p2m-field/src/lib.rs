@@ -5,8 +5,10 @@
 //!   [`distances_by_lists`] and [`signed_distances_by_lists`] need no index: they divide the grid into blocks and
 //!   evaluate the few primitives that can be nearest in a block for all of its points at once ([`grid_candidates`]).
 //!   Both ways return the same bits.
+//! - **Offset surfaces** are the points at one distance from a scene, as closed triangle meshes ([`offset_surface`]).
 //! - **Signs** tell inside from outside ([`sign`]): by winding numbers \[Jacobson2013\], which are exact for closed
 //!   surfaces and certified for open ones \[Barill2018\], or by parity.
+//! - **Solids** are closed scenes that count as filled in queries for pairs ([`solid`]).
 //! - **Hausdorff distances** are the largest values of the distance field of one scene on another scene, between
 //!   certified bounds ([`hausdorff_distance`]).
 //! - **Alignment** finds the rotation and translation that bring the points of a scan onto a scene ([`align`]).
@@ -45,11 +47,13 @@ mod grid;
 pub mod grid_candidates;
 mod hausdorff;
 mod layers;
+mod offset;
 mod options;
 mod refined;
 pub mod sample;
 pub mod sign;
 mod slice;
+pub mod solid;
 mod write;
 
 pub use by_lists::{distances_by_lists, signed_distances_by_lists};
@@ -61,6 +65,7 @@ pub use hausdorff::{
     Direction, HausdorffDistance, HausdorffIndex, HausdorffOptions, HausdorffProgress, ReportProgress,
     hausdorff_distance, one_sided_hausdorff_distance,
 };
+pub use offset::{MeasureDistance, OffsetError, OffsetSurface, offset_grid, offset_surface};
 pub use options::FieldOptions;
 pub use refined::{Cell, RefineOptions, refined};
 pub use slice::slice;

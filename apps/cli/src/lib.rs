@@ -21,6 +21,7 @@ pub use io::streams::Streams;
 #[doc(hidden)]
 pub use measure::harness;
 
+use crate::compare::deviation::NotPassed;
 use crate::io::limits::{Change, Limits};
 use clap::{CommandFactory, FromArgMatches, Parser, Subcommand};
 use std::ffi::OsString;
@@ -47,7 +48,8 @@ fn help() -> String {
 Scenes are {} files, and indexes that `p2m build` saved. A `-` in place of a file name is the standard input or \
 output.
 
-The exit code is 0 for success, 1 if something could not be read, written or computed, 2 for wrong usage, and 130 \
+The exit code is 0 for success, 1 if something could not be read, written or computed, 2 for wrong usage, 3 if \
+`p2m deviation --require` fails, and 130 \
 after Ctrl-C (128 plus the number of any other signal). An interrupted run leaves no half-written file. While a \
 progress bar says so, the first Ctrl-C only ends the refinement of an octree, and the run continues with a coarser \
 index.
@@ -146,18 +148,23 @@ impl Command {
 }
 
 /// Options that few users need. They are in `--help`, under a heading of their own, and not in `-h`.
-const ADVANCED: [&str; 24] = [
+const ADVANCED: [&str; 29] = [
     "box_scale",
     "displace_seed",
+    "drop_isolated",
+    "farthest",
     "filter",
     "format",
     "from",
+    "histogram",
     "k",
+    "limit",
     "locator",
     "map",
     "max_memory",
     "max_queries",
     "max_visits",
+    "only_outside",
     "out_format",
     "points_columns",
     "points_format",
@@ -232,6 +239,7 @@ pub fn run(streams: &Streams, arguments: impl IntoIterator<Item = OsString>) -> 
         Ok(()) => 0,
         // A reader that closes the pipe early, such as `head`, is no error.
         Err(error) if is_closed_pipe(&error) => 0,
+        Err(error) if error.is::<NotPassed>() => 3,
         Err(error) => {
             let mut message = format!("{error:#}");
             if message.contains(LINE_TOO_LONG) {

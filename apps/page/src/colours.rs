@@ -15,6 +15,9 @@ const DIVERGING: [[u8; 3]; 11] = [
     [0xb9, 0x32, 0x37],
     [0x7a, 0x0a, 0x22],
 ];
+/// The colours of bands: far below a tolerance, below, within, above, and far above.
+const BANDS: [[u8; 3]; 5] =
+    [[0x1d, 0x4f, 0xc0], [0x0c, 0x92, 0xb0], [0x3c, 0x96, 0x50], [0xb3, 0x83, 0x00], [0xc4, 0x24, 0x1f]];
 /// The colour of NaN.
 const UNDEFINED: [u8; 3] = [0x9a, 0x5f, 0xc0];
 
@@ -35,15 +38,28 @@ pub fn diverging_colour(value: f64, limit: f64) -> [u8; 3] {
     std::array::from_fn(|k| (f64::from(DIVERGING[i][k]) * (1.0 - f) + f64::from(DIVERGING[i + 1][k]) * f) as u8)
 }
 
+/// Returns red, green and blue of the band of a number: within a tolerance, up to a limit, or beyond it, on either side, as
+/// light pages show it. NaN is violet.
+#[must_use]
+pub fn band_colour(value: f64, tolerance: f64, limit: f64) -> [u8; 3] {
+    if value.is_nan() {
+        return UNDEFINED;
+    }
+    let size = usize::from(value.abs() > tolerance) + usize::from(value.abs() > limit.max(tolerance));
+    BANDS[if value > 0.0 { 2 + size } else { 2 - size }]
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
 
     #[test]
     fn colours_are_those_of_the_script() {
-        let hex = DIVERGING.map(|[r, g, b]| format!("\"#{r:02x}{g:02x}{b:02x}\"")).join(",");
-        let undefined = UNDEFINED.map(|x| format!("{x:02x}")).concat();
-        for hex in [hex, format!("\"#{undefined}\"")] {
+        let hex = |colours: &[[u8; 3]]| {
+            let hex = colours.iter().map(|[r, g, b]| format!("\"#{r:02x}{g:02x}{b:02x}\""));
+            hex.collect::<Vec<_>>().join(",")
+        };
+        for hex in [hex(&DIVERGING), hex(&BANDS), hex(&[UNDEFINED])] {
             assert!(include_str!("../assets/viewer.js").contains(&hex), "{hex}");
         }
     }
@@ -55,5 +71,8 @@ mod tests {
         assert_eq!([of(2.0), of(f64::INFINITY), of(f64::NAN)], [DIVERGING[10], DIVERGING[10], UNDEFINED]);
         assert_eq!(of(0.8), DIVERGING[7]);
         assert_eq!([diverging_colour(0.0, 0.0), diverging_colour(1.0, 0.0)], [DIVERGING[5], DIVERGING[10]]);
+        let bands = [-9.0, -2.0, -1.0, 0.0, 1.0, 2.0, 9.0].map(|x| band_colour(x, 1.0, 3.0));
+        assert_eq!(bands, [0, 1, 2, 2, 2, 3, 4].map(|i| BANDS[i]));
+        assert_eq!(band_colour(f64::NAN, 1.0, 3.0), UNDEFINED);
     }
 }

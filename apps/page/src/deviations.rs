@@ -3,8 +3,10 @@
 use crate::decimate::MAX_PRIMITIVES;
 use crate::packed::Packed;
 use nalgebra::Point3;
-use p2m_core::{Aabb, Soup};
-use p2m_field::deviation::{DeviationStatistics, outside};
+use p2m_core::{Aabb, PrimitiveId, Soup};
+use p2m_field::deviation::{DeviationStatistics, OutsideTolerance, outside};
+use p2m_mixed::Scene;
+use p2m_mixed::statistics::figure::{Count, Figure};
 use serde::Serialize;
 
 /// The deviations of a scan from the scene of a page.
@@ -35,12 +37,101 @@ impl Deviations<'_> {
         if limit > 0.0 { limit } else { 1.0 }
     }
 
+    /// Returns the part of the points that is within the tolerance, and whether that is the required percentage, if there is
+    /// a tolerance.
+    #[must_use]
+    pub fn verdict(&self, required: Option<f64>, unit: &str) -> Option<Verdict> {
+        Verdict::new(self, required, unit)
+    }
+
+    /// Returns a sentence with the main numbers.
+    #[must_use]
+    pub fn summary(&self, unit: &str) -> String {
+        let DeviationStatistics { count, mean, rms, min, max, .. } = *self.statistics;
+        let what = if self.is_signed { "deviations, positive outside" } else { "distances" };
+        let [mean, rms, min, max] = [mean, rms, min, max].map(Figure);
+        let count = Count(count as u64);
+        format!("{count} {what}: mean {mean} {unit}, root mean square {rms} {unit}, from {min} to {max} {unit}")
+    }
+
     /// Returns the box of the points of a scan that are finite, which the picture of a page has to contain.
     #[must_use]
     pub fn bounds(scan: &Soup<f64>) -> Aabb<f64> {
         let is_finite = |point: &&Point3<f64>| point.iter().all(|x| x.is_finite());
         let add = |bounds: Aabb<f64>, point: &Point3<f64>| bounds.union(&Aabb { min: *point, max: *point });
         scan.positions().iter().filter(is_finite).fold(Aabb::empty(), add)
+    }
+}
+
+/// Whether deviations are within a tolerance as often as required.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Verdict {
+    /// The answer, if a percentage is required. Without any deviation it is `false`.
+    pub passes: Option<bool>,
+    /// The sentence that says which part of the points is within the tolerance.
+    pub sentence: String,
+}
+
+impl Verdict {
+    fn new(deviations: &Deviations<'_>, required: Option<f64>, unit: &str) -> Option<Self> {
+        let tolerance = deviations.tolerance?;
+        let count = deviations.statistics.count;
+        let within = outside(deviations.values, tolerance).percent_within(count);
+        let passes = required.map(|required| within >= required);
+        // Rounding must not reach what the share itself does not.
+        let rounded = (within * 100.0).round() / 100.0;
+        let is_reached = |limit: f64| within < limit && rounded >= limit;
+        let is_misleading = is_reached(100.0) || required.is_some_and(is_reached);
+        let shown = if is_misleading { (within * 1e4).floor() / 1e4 } else { rounded };
+        let required = required.map(|required| format!(", {required} % required")).unwrap_or_default();
+        let sign = if deviations.is_signed { "+-" } else { "" };
+        let sentence = match count {
+            0 => format!("no point has a deviation{required}"),
+            _ => format!("{shown} % within {sign}{tolerance} {unit}{required}"),
+        };
+        Some(Self { passes, sentence })
+    }
+
+    /// Returns the verdict as a word: `PASS` or `FAIL`.
+    #[must_use]
+    pub fn word(&self) -> Option<&'static str> {
+        self.passes.map(|passes| if passes { "PASS" } else { "FAIL" })
+    }
+}
+
+/// The deviations from one named object.
+#[derive(Clone, Debug, PartialEq)]
+pub struct ObjectDeviations {
+    /// The name of the object; empty for the primitives in none.
+    pub name: String,
+    /// The statistics of the deviations whose closest primitive is one of the object.
+    pub statistics: DeviationStatistics,
+    /// The numbers of them outside of the tolerance, if there is one.
+    pub outside: Option<OutsideTolerance>,
+}
+
+impl ObjectDeviations {
+    /// Returns the deviations from each object of a scene that has a name, and from the rest if there are some. A scene
+    /// without objects has none.
+    #[must_use]
+    pub fn of_scene(scene: &Scene, deviations: &Deviations<'_>) -> Vec<Self> {
+        if scene.objects.is_empty() {
+            return Vec::new();
+        }
+        let mut values = vec![Vec::new(); scene.objects.len() + 1];
+        for (primitive, value) in deviations.primitives.iter().zip(deviations.values) {
+            if value.is_finite() {
+                let number = scene.object_number(PrimitiveId::new(*primitive as usize));
+                values[number.unwrap_or(scene.objects.len())].push(*value);
+            }
+        }
+        let names = scene.objects.iter().map(|object| object.name.clone()).chain([String::new()]);
+        let found = names.zip(values).map(|(name, values)| Self {
+            name,
+            statistics: DeviationStatistics::of(&values),
+            outside: deviations.tolerance.map(|tolerance| outside(&values, tolerance)),
+        });
+        found.filter(|object| !object.name.is_empty() || object.statistics.count > 0).collect()
     }
 }
 
@@ -133,6 +224,28 @@ mod tests {
         let bounds = Deviations::bounds(&Soup::new(points.map(Point3::from).to_vec(), []).unwrap());
         assert_eq!((bounds.min, bounds.max), ([0.0, 2.0, 1.0].into(), [1.0, 4.0, 3.0].into()));
         assert!(Deviations::bounds(&Soup::default()).is_empty());
+    }
+
+    #[test]
+    fn verdicts_are_not_rounded_up() {
+        let scan = Soup::default();
+        let verdict = |outside: usize, required| {
+            let mut values = vec![0.0; 300_000 - outside];
+            values.resize(300_000, -2.0);
+            let statistics = &DeviationStatistics::of(&values);
+            let (values, tolerance) = (&values[..], Some(1.0));
+            let deviations =
+                Deviations { scan: &scan, values, primitives: &[], statistics, is_signed: true, limit: 1.0, tolerance };
+            let Verdict { passes, sentence } = deviations.verdict(required, "mm").unwrap();
+            (passes, sentence)
+        };
+        assert_eq!(verdict(1, None), (None, "99.9996 % within +-1 mm".to_owned()));
+        assert_eq!(verdict(0, Some(100.0)), (Some(true), "100 % within +-1 mm, 100 % required".to_owned()));
+        assert_eq!(verdict(100_000, Some(60.0)), (Some(true), "66.67 % within +-1 mm, 60 % required".to_owned()));
+        assert_eq!(
+            verdict(100_000, Some(66.67)),
+            (Some(false), "66.6666 % within +-1 mm, 66.67 % required".to_owned())
+        );
     }
 
     #[test]

@@ -1,15 +1,17 @@
-//! Distance fields on grids.
+//! Distance fields on grids, and surfaces made of them.
 
-use crate::errors::grid_error;
+use crate::errors::{grid_error, value_error};
 use crate::index::Index;
+use crate::scene::Scene;
 use crate::signs::SignRule;
 use crate::work::run_owned;
 use nalgebra::Point3;
-use numpy::{IntoPyArray, PyArray1};
+use numpy::{IntoPyArray, PyArray1, PyReadonlyArray1};
 use p2m_core::PrimitiveSet;
 use p2m_field::grid_candidates::MAX_COORDINATE;
 use p2m_field::{
-    CandidateLists, FieldOptions, Grid, distances, distances_by_lists, signed_distances, signed_distances_by_lists,
+    CandidateLists, FieldOptions, Grid, distances, distances_by_lists, offset_surface, signed_distances,
+    signed_distances_by_lists,
 };
 use pyo3::prelude::*;
 use std::sync::Arc;
@@ -57,5 +59,35 @@ impl Index {
             }
         })?;
         Ok(values.map_err(grid_error)?.into_pyarray(py))
+    }
+
+    /// Returns the surface of a field at a distance, with the errors of its vertices and of its triangles.
+    fn offset_surface(
+        &self,
+        py: Python<'_>,
+        origin: [f64; 3],
+        spacing: f64,
+        counts: [usize; 3],
+        values: PyReadonlyArray1<'_, f32>,
+        distance: f64,
+        sign: Option<&str>,
+        threads: usize,
+    ) -> PyResult<(Scene, f64, f64)> {
+        let grid = Grid::new(Point3::from(origin), spacing, counts).map_err(grid_error)?;
+        let signed = match sign {
+            Some(name) => Some(self.signs(py, SignRule::from_name(name)?, threads)?),
+            None => None,
+        };
+        let (index, values) = (self.any(), values.as_slice()?.to_vec());
+        let surface = run_owned(py, threads, 1, None, move |_| {
+            offset_surface(&grid, &values, distance, &|point| match &signed {
+                Some(signed) => {
+                    signed.closest_point(point).and_then(|found| Some((found.distance()?, found.closest.point)))
+                }
+                None => index.closest_point(point).map(|found| (found.distance, found.point)),
+            })
+        })?;
+        let surface = surface.map_err(value_error)?;
+        Ok((Scene::new(surface.soup.into()), surface.vertex_error, surface.triangle_error))
     }
 }

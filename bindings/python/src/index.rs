@@ -11,6 +11,7 @@ use p2m_backends::{
 use p2m_core::pair::PairQuery;
 use p2m_core::{AnyIndex, BuildError, PrimitiveSet, RayQuery};
 use p2m_field::sign::Normals;
+use p2m_field::solid::Parts;
 use p2m_interception::Progress;
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
@@ -29,6 +30,9 @@ const EXHAUSTIVE_NANOSECONDS_PER_PRIMITIVE: f64 = 50.0;
 /// The part of a build that is finished is counted in these units.
 const BUILD_UNITS: usize = 100;
 
+/// The connected parts of a scene, and the signs that tell what is inside, if there is an inside.
+pub(crate) type SolidParts = (Arc<Parts>, Option<Arc<Signed>>);
+
 /// An index. `p2m.Index` has its documentation. It never changes, so all threads may query it.
 #[pyclass(frozen, module = "p2m._p2m")]
 pub(crate) struct Index {
@@ -41,6 +45,8 @@ pub(crate) struct Index {
     signs: Mutex<HashMap<SignRule, Arc<Signed>>>,
     /// The normals of the scene, once they are asked for.
     normals: OnceLock<Normals>,
+    /// The connected parts of the scene, which solids need.
+    parts: OnceLock<Arc<Parts>>,
 }
 
 /// The file that an index came from.
@@ -58,12 +64,29 @@ impl Index {
         backend: &'static BackendEntry,
         origin: Option<Origin>,
     ) -> Self {
-        Self { scene, built, backend, origin, signs: Mutex::default(), normals: OnceLock::new() }
+        Self {
+            scene,
+            built,
+            backend,
+            origin,
+            signs: Mutex::default(),
+            normals: OnceLock::new(),
+            parts: OnceLock::new(),
+        }
     }
 
     /// Returns the normals of the scene, which are computed at the first call.
     pub(crate) fn surface_normals(&self, py: Python<'_>) -> &Normals {
         py.detach(|| self.normals.get_or_init(|| Normals::new(&self.scene.soup)))
+    }
+
+    /// Returns the connected parts of the scene, and the signs that make it solid if it consists of triangles alone.
+    pub(crate) fn solid(&self, py: Python<'_>, threads: usize) -> PyResult<SolidParts> {
+        let soup = &self.scene.soup;
+        let parts = py.detach(|| Arc::clone(self.parts.get_or_init(|| Arc::new(Parts::of(soup)))));
+        let has_inside = soup.segments().is_empty() && soup.points().is_empty();
+        let signed = if has_inside { Some(self.signs(py, SignRule::from_name("auto")?, threads)?) } else { None };
+        Ok((parts, signed))
     }
 
     /// Returns the index without the type of its backend.

@@ -18,6 +18,13 @@ pub(crate) fn grid_around(scene: &Scene, resolution: usize, scale: f64) -> PyRes
     Ok((grid.origin().coords.into(), grid.spacing(), grid.counts()))
 }
 
+/// Returns the grid that contains all points at a distance from what is in the box of a scene.
+#[pyfunction]
+pub(crate) fn grid_of_offset(scene: &Scene, distance: f64, resolution: usize) -> PyResult<GridParts> {
+    let grid = p2m_field::offset_grid(&scene.shared.soup.aabb(), distance, resolution).map_err(value_error)?;
+    Ok((grid.origin().coords.into(), grid.spacing(), grid.counts()))
+}
+
 /// Returns a page that shows a scene as HTML. `texts` has the title, the summary and the unit. A field has the values of
 /// a grid, x running fastest.
 #[pyfunction]

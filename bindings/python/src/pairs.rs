@@ -1,7 +1,7 @@
 //! Queries for pairs: shapes near a scene, and two scenes, one of which may move.
 
 use crate::arrays::{borrowed, motions, slice, triples};
-use crate::index::Index;
+use crate::index::{Index, SolidParts};
 use crate::memory::reserve;
 use crate::pair_columns::{PairArrays, PairColumns, PairList};
 use crate::parts::{Split, answer_in_parts, batch_options, check_finite};
@@ -11,6 +11,7 @@ use numpy::{PyReadonlyArray1, ToPyArray};
 use p2m_core::batch::{self, Interruptible};
 use p2m_core::pair::{ClosestPair, PairOptions, PairQuery};
 use p2m_core::{AnyIndex, Primitive, Shape};
+use p2m_field::solid::Solid;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 use std::ops::ControlFlow;
@@ -99,6 +100,16 @@ impl Shapes<'_> {
     }
 }
 
+/// Calls a function with the solid of an index.
+fn with_solid<R>(
+    index: &AnyPairQuery<'_>,
+    (parts, signed): &SolidParts,
+    answer: impl FnOnce(&Solid<'_, AnyPairQuery<'_>>) -> R,
+) -> R {
+    let inside = |point: &Point3<f64>| signed.as_ref().is_some_and(|signed| signed.contains(point));
+    answer(&Solid::new(index, parts, Some(&inside)))
+}
+
 impl Index {
     /// Returns this index with another one and its motions. Both answer queries for pairs.
     fn with_other(
@@ -131,10 +142,12 @@ impl Index {
         radius: f64,
         max_distance: f64,
         certified: bool,
+        solid: bool,
         threads: usize,
         progress: Option<Py<PyAny>>,
     ) -> PyResult<()> {
         let index = self.pair_query()?;
+        let parts = if solid { Some(self.solid(py, threads)?) } else { None };
         let shapes = Shapes { vertices: triples(shapes.as_slice())?, width };
         let options = PairOptions::default().with_radius(radius).with_max_distance(max_distance);
         let (mut arrays, mut decisions) = (PairArrays::borrow(out)?, borrowed::<bool>(out, "is_near")?);
@@ -145,15 +158,21 @@ impl Index {
                 shapes.answer(out, threads, monitor, answer, |answers, out: &mut [bool]| out.copy_from_slice(answers))
             }
             None => {
-                let answer = |shape: &Shape<f64>| match certified {
-                    true => PairQuery::certified_closest_to(&index, shape, &options),
-                    false => PairQuery::closest_to(&index, shape, &options),
+                let answer = |shape: &Shape<f64>| match (&parts, certified) {
+                    (Some(parts), _) => with_solid(&index, parts, |solid| solid.closest_to(shape, &options)),
+                    (None, true) => PairQuery::certified_closest_to(&index, shape, &options),
+                    (None, false) => PairQuery::closest_to(&index, shape, &options),
                 };
                 shapes.answer(columns, threads, monitor, answer, |pairs, mut columns: PairColumns<'_>| {
                     columns.set_all(pairs.iter().map(Option::as_ref));
                 })
             }
         })
+    }
+
+    /// Returns a sentence if the inside of the scene as a solid is a guess.
+    fn solid_note(&self, py: Python<'_>, threads: usize) -> PyResult<Option<&'static str>> {
+        Ok(self.solid(py, threads)?.1.and_then(|signed| signed.note()))
     }
 
     /// Returns the nearest pair of this scene and another one for each motion of the other one, or for none.
@@ -164,12 +183,18 @@ impl Index {
         transforms: Option<PyReadonlyArray1<'_, f64>>,
         max_distance: f64,
         certified: bool,
+        solid: bool,
         threads: usize,
         progress: Option<Py<PyAny>>,
     ) -> PyResult<PairList> {
         let scenes = self.with_other(other, transforms, max_distance)?;
+        let parts = if solid { Some([self.solid(py, threads)?, other.solid(py, threads)?]) } else { None };
         let list = scenes.run(py, threads, progress, move |first, second, options| {
-            if certified {
+            if let Some([of_first, of_second]) = &parts {
+                with_solid(&first, of_first, |first| {
+                    with_solid(&second, of_second, |second| first.closest_pair(second, options))
+                })
+            } else if certified {
                 PairQuery::certified_closest_pair(&first, second, options)
             } else {
                 PairQuery::closest_pair(&first, second, options)

@@ -6,6 +6,7 @@ import builtins
 import json
 import os
 import subprocess
+import zlib
 from pathlib import Path
 from typing import Any
 
@@ -93,8 +94,8 @@ def test_pages_and_files_have_the_deviations(tmp_path: Path) -> None:
     assert len(scan.triangles) == 12
     points = p2m.deviation(np.array([[1.0, 1.0, 3.0], [np.nan, 0.0, 0.0]]), cube())
     points.save(tmp_path / "page.html")
-    with pytest.raises(ValueError, match="ends neither"):
-        found.save(tmp_path / "scan.png")
+    with pytest.raises(ValueError, match="does not end in"):
+        found.save(tmp_path / "scan.txt")
 
 
 def test_figures_need_matplotlib(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
@@ -143,3 +144,46 @@ def test_a_table_has_the_points_and_their_deviations(tmp_path: Path) -> None:
     assert rows[1] == "0.125,0.25,0.25,0.0,0.25,0.25,0.125,-0.125,2,face"
     assert rows[2].startswith("nan,0.0,0.0,,") and rows[2].count(",") == 9
     assert rows[3] == "0.25,-0.5,0.25,0.25,0.0,0.25,0.5,0.5,1,face"
+
+
+def test_reports_have_a_verdict(tmp_path: Path) -> None:
+    found = p2m.deviation([[1.0, 1.0, 3.0], [1.0, 1.0, 2.1]], cube(), tolerance=0.5, unit="mm")
+    assert (found.passes(50), found.passes(50.1)) == (True, False)
+    assert not p2m.deviation(np.empty((0, 3)), cube(), tolerance=0.5).passes(0)
+    found.save(tmp_path / "report.pdf", head={"Part": "bracket"}, required=50)
+    pdf = (tmp_path / "report.pdf").read_bytes()
+    parts = [zlib.decompressobj().decompress(part) for part in pdf.split(b"\nstream\n")[1:]]
+    drawn = next(part for part in parts if b"Tj" in part)
+    assert b"(Part  bracket)" in drawn and b"PASS  50 % within ".hex().upper().encode() in drawn
+    found.save(tmp_path / "report.png", up="y")
+    assert (tmp_path / "report.png").read_bytes().startswith(b"\x89PNG")
+    named = cube()
+    assert found.objects == [] and p2m.deviation(named, named).objects == []
+
+
+def test_filters_and_vertices(tmp_path: Path) -> None:
+    grid = np.stack(np.meshgrid(np.linspace(0, 2, 20), np.linspace(0, 2, 20), [2.0]), axis=-1).reshape(-1, 3)
+    scan = np.concatenate([grid, [[1.0, 1.0, 2.5], [1.0, 1.0, 5.0], [np.nan, 0.0, 0.0]]])
+    count = lambda **options: p2m.deviation(scan, cube(), **options).statistics["count"]  # noqa: E731
+    assert (count(), count(max_distance=0.5), count(drop_isolated=True)) == (402, 401, 400)
+    found = p2m.deviation([[0, 0, 2.25], [2, 0, 2], [2, 2, 2], [0, 2, 2]], cube(), on_part=True)
+    top = cube().vertices[:, 2] == 2.0
+    assert np.array_equal(np.isfinite(found.values), top)
+    assert np.array_equal(found.values[top], [0.25, 0.0, 0.0, 0.0])
+    found.save(tmp_path / "part.ply")
+    assert len(p2m.read(tmp_path / "part.ply").triangles) == 12
+
+
+def test_objects_and_clouds(tmp_path: Path) -> None:
+    (tmp_path / "two.obj").write_text("v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 9\no low\nf 1 2 3\no high\nl 3 4\n")
+    scan = [[0.25, 0.25, 0.5], [0.25, 0.5, 0.25], [0.0, 1.0, 5.0]]
+    found = p2m.deviation(scan, tmp_path / "two.obj", sign=None)
+    assert [(name, statistics["count"], statistics["mean"]) for name, statistics in found.objects] == [
+        ("low", 2, 0.375),
+        ("high", 1, pytest.approx(5 / 82**0.5)),
+    ]
+    x, y = np.meshgrid(np.arange(30.0), np.arange(30.0))
+    ground = p2m.Scene(np.stack([x, y, 0 * x], axis=-1).reshape(-1, 3))
+    queries = [[15.5, 15.5, 0.75], [15.4, 10.3, -0.25], [15.5, 15.5, 4.0]]
+    assert np.allclose(p2m.deviation(queries, ground).values, [0.75, -0.25, 4.0], atol=1e-12)
+    assert p2m.deviation(queries, ground, max_distance=2.0).statistics["missing"] == 1

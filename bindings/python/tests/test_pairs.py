@@ -512,3 +512,29 @@ def write_obj(scene: p2m.Scene, path: Path) -> None:
     rows = [*scene.triangles.tolist(), *scene.segments.tolist(), *([i] for i in scene.points.tolist())]
     lines += [f"{'pLf'[len(row) - 1].lower()} " + " ".join(str(i + 1) for i in row) for row in rows]
     path.write_text("\n".join(lines) + "\n")
+
+
+def test_solids_have_no_distance_inside() -> None:
+    vertices, triangles = sphere(8, 12)
+    tank = p2m.Index(p2m.Scene(vertices, triangles))
+    inner, outer = (p2m.Index(p2m.Scene(vertices * 0.3 + x, triangles)) for x in ([0.1, 0, 0], [3.0, 0, 0]))
+    for first, second in ((tank, inner), (inner, tank)):
+        assert first.closest_pair(second).distance > 0.4
+        found = first.closest_pair(second, solid=True)
+        assert (float(found.distance), bool(found.is_intersecting)) == (0.0, True)
+        assert np.array_equal(found.points[0], found.points[1])
+    assert tank.closest_pair(outer, solid=True).distance == tank.closest_pair(outer).distance > 1.0
+    motions = np.tile(np.eye(4), (2, 1, 1))
+    motions[1, 0, 3] = -3.0
+    distances = tank.closest_pairs(outer, motions, solid=True).distance.tolist()
+    assert distances == [float(tank.closest_pair(outer).distance), 0.0]
+    points = np.array([[0.0, 0.0, 0.2], [0.0, 0.0, 3.0]])
+    distances = tank.closest_to(points, solid=True).distance.tolist()
+    assert distances == [0.0, float(tank.closest_to(points[1:]).distance[0])]
+    cable = p2m.Index(p2m.Scene([[0, 0, 0], [0.1, 0, 0]], segments=[[0, 1]]))
+    assert cable.closest_pair(tank, solid=True).distance == 0.0
+    hole = p2m.Index(p2m.Scene(tank.scene.vertices, tank.scene.triangles[1:]))
+    with pytest.warns(UserWarning, match="open"):
+        assert hole.closest_to(points[:1], solid=True).distance.tolist() == [0.0]
+    with pytest.raises(ValueError, match="certified"):
+        tank.closest_pair(inner, solid=True, certified=True)

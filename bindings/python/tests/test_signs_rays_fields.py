@@ -13,6 +13,7 @@ from conftest import ALL_FIELDS, BACKENDS, EXACT_FIELDS, assert_same, mixed_scen
 
 import p2m
 
+SCENES = Path(__file__).resolve().parents[3] / "scenes"
 HIT_FIELDS = ("t", "primitive", "point", "barycentric", "side")
 
 
@@ -294,3 +295,17 @@ def test_real_objects_of_other_packages_are_scenes(package: str) -> None:
     scene = p2m.Scene.of(mesh)
     np.testing.assert_array_equal(scene.vertices, vertices)
     np.testing.assert_array_equal(scene.triangles, triangles)
+
+
+def test_offset_surfaces_have_their_distance() -> None:
+    scene = p2m.read(SCENES / "knot_and_cables.obj")
+    found = p2m.Index(scene).offset_surface(0.3, resolution=40)
+    distances = p2m.Index(scene).distance(found.scene.vertices)
+    assert np.abs(distances - 0.3).max() == found.vertex_error < 1e-7
+    edges = np.sort(found.scene.triangles[:, [[0, 1], [1, 2], [2, 0]]].reshape(-1, 2), axis=1)
+    assert (np.unique(edges, axis=0, return_counts=True)[1] == 2).all()
+    tube = p2m.Index(p2m.Scene(scene.vertices, triangles=scene.triangles))
+    inside = tube.offset_surface(-0.05, resolution=64, signed=True).scene.vertices
+    assert np.abs(tube.signed_distance(inside) + 0.05).max() < 1e-7
+    with pytest.raises(ValueError):
+        tube.offset_surface(0.1, resolution=7)

@@ -116,6 +116,16 @@ impl<T: Real> Signed<T> {
             Sign::Undefined => None,
         }
     }
+
+    /// Returns the distance from the scene as a solid: 0 inside, or `None` where the sign is not defined.
+    #[must_use]
+    pub fn distance_to_solid(&self) -> Option<T> {
+        match self.sign {
+            Sign::Outside => Some(self.closest.distance),
+            Sign::Inside | Sign::Boundary => Some(T::zero()),
+            Sign::Undefined => None,
+        }
+    }
 }
 
 /// A pointer to a scene: `&Soup<f64>` to borrow it, or `Arc<Soup<f64>>` to share it.

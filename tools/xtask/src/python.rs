@@ -83,7 +83,7 @@ pub(crate) fn check(filter: &[String]) -> Outcome {
     }
     let examples = ["pytest", "--doctest-modules", "--doctest-glob=README.md", "--pyargs", "p2m", "README.md"];
     in_folder(PACKAGE, &examples, program)?;
-    for page in ["docs/python.md", "docs/cluster.md"] {
+    for page in ["docs/python.md", "docs/cluster.md", "docs/guide/training.md"] {
         in_folder(".", &["pytest", "-q", "--doctest-glob=*.md", page], program)?;
     }
     in_folder(PACKAGE, &["mypy"], program)?;

@@ -9,9 +9,12 @@ use crate::io::threads::ThreadArgs;
 use crate::io::usage::usage;
 use crate::page::pair::{PairPage, PairPageArgs, PairResult};
 use anyhow::Context;
+use nalgebra::Point3;
 use p2m_bvh::AabbTree;
 use p2m_core::Soup;
 use p2m_core::pair::{ClosestPair, PairOptions, PairQuery};
+use p2m_field::sign::SignedDistance;
+use p2m_field::solid::{Parts, Solid};
 use p2m_formats::FileFormat;
 use p2m_mixed::Scene;
 use p2m_mixed::statistics::figure::{Figure, Length};
@@ -20,10 +23,11 @@ use serde_json::{Value, json};
 
 const HELP: &str = "\
 The distance is 0 if the scenes intersect, which is decided without rounding. Only surfaces count: a scene inside a \
-closed one has the distance to its surface. The lower bound is certified.
+closed one has the distance to its surface. With --solid, scenes of triangles are filled, and what is inside has the \
+distance 0. The lower bound is certified.
 
 Examples:
-  p2m distance cell.ply robot.ply
+  p2m distance cell.ply robot.ply --solid
   p2m distance cell.obj arm.obj --transform pose.txt --html page.html --open
   p2m distance a.stl b.stl --max-distance 0.01 --json";
 
@@ -37,6 +41,10 @@ pub(crate) struct Args {
     /// Find nothing farther than this, which takes less time
     #[arg(long, value_name = "DISTANCE", allow_negative_numbers = true)]
     max_distance: Option<f64>,
+
+    /// Count the inside of closed scenes, so that what is inside has the distance 0
+    #[arg(long)]
+    solid: bool,
 
     #[command(flatten)]
     page: PairPageArgs,
@@ -65,8 +73,19 @@ pub(crate) fn run(streams: &Streams, args: &Args) -> anyhow::Result<()> {
     let progress = Progress::start(streams, "comparing", None, Unit::None);
     let found = pool.install(|| {
         let build = |k: usize| AabbTree::<f64, &Soup<f64>>::new(&scenes[k].soup).with_context(|| names[k].clone());
-        Ok::<_, anyhow::Error>(build(0)?.closest_pair(&build(1)?, &options))
+        let indexes = [build(0)?, build(1)?];
+        let soups = [&*scenes[0].soup, &*scenes[1].soup];
+        Ok::<_, anyhow::Error>(match args.solid {
+            true => closest_pair_of_solids(&indexes, soups, &options),
+            false => (indexes[0].closest_pair(&indexes[1], &options), [None; 2]),
+        })
     })?;
+    let (found, notes) = found;
+    for (name, note) in names.iter().zip(notes) {
+        if let Some(note) = note {
+            streams.print_summary(format_args!("warning  {name}: {note}\n"));
+        }
+    }
     drop(progress);
     args.page.write(streams, || {
         let unit = args.page.unit();
@@ -84,9 +103,26 @@ pub(crate) fn run(streams: &Streams, args: &Args) -> anyhow::Result<()> {
         PairPage { paths, scenes: &scenes, motion, title: "Distance", verdict, found }
     })?;
     if args.json {
-        return json::print(streams, &report(&names, formats, &scenes, found.as_ref(), limit));
+        return json::print(streams, &report(&names, formats, &scenes, found.as_ref(), limit, args.solid));
     }
     Output::print(streams, text(&names, &scenes, found.as_ref(), limit))
+}
+
+/// Returns the nearest pair of two scenes whose inside counts, with a note on each scene whose inside is a guess.
+fn closest_pair_of_solids<'a>(
+    indexes: &[AabbTree<f64, &'a Soup<f64>>; 2],
+    soups: [&'a Soup<f64>; 2],
+    options: &PairOptions<f64>,
+) -> (Option<ClosestPair<f64>>, [Option<&'static str>; 2]) {
+    // Segments and points have no inside.
+    let signed = [0, 1].map(|k| SignedDistance::new(&indexes[k], soups[k]).ok());
+    let inside = signed
+        .each_ref()
+        .map(|signed| move |point: &Point3<f64>| signed.as_ref().is_some_and(|signed| signed.contains(point)));
+    let parts = soups.map(Parts::of);
+    let solid = |k: usize| Solid::new(&indexes[k], &parts[k], Some(&inside[k]));
+    let notes = signed.each_ref().map(|signed| signed.as_ref().and_then(SignedDistance::note));
+    (solid(0).closest_pair(&solid(1), options), notes)
 }
 
 fn text(names: &[String; 2], scenes: &[Scene; 2], found: Option<&ClosestPair<f64>>, limit: f64) -> String {
@@ -112,6 +148,7 @@ fn report(
     scenes: &[Scene; 2],
     found: Option<&ClosestPair<f64>>,
     limit: f64,
+    is_solid: bool,
 ) -> Value {
     let side = |k: usize| {
         let found = found.map(|pair| {
@@ -127,6 +164,7 @@ fn report(
         "version": json::VERSION,
         "scenes": [side(0), side(1)],
         "max_distance": json::number(limit),
+        "solid": is_solid,
         "distance": found.map(|pair| json::number(pair.distance)),
         "lower_bound": found.map(|pair| pair.lower_bound).or(are_apart.then_some(limit)).map(json::number),
         "intersect": found.map(|pair| pair.is_intersecting).or(are_apart.then_some(false)),

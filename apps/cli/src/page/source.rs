@@ -4,7 +4,7 @@ use crate::io::input::{is_standard, name};
 use crate::page::up_axis::Up;
 use p2m_core::Aabb;
 use p2m_mixed::Scene;
-use p2m_page::View;
+use p2m_page::{UpAxis, View};
 use std::path::Path;
 
 #[derive(clap::Args)]
@@ -21,7 +21,12 @@ pub(crate) struct PageArgs {
 impl PageArgs {
     /// Starts a page of a scene, whose picture contains the box `around` as well.
     pub(crate) fn view<'a>(&self, scene: &'a Scene, around: &Aabb<f64>) -> View<'a> {
-        View::new(scene, around).with_unit(&self.unit).with_up(self.up.into())
+        View::new(scene, around).with_unit(&self.unit).with_up(self.up())
+    }
+
+    /// Returns the axis that points up.
+    pub(crate) fn up(&self) -> UpAxis {
+        self.up.into()
     }
 }
 

@@ -9,22 +9,24 @@ use crate::io::json;
 use crate::io::output::Output;
 use crate::io::progress::{Progress, Unit};
 use crate::io::streams::Streams;
-use crate::io::usage::{not_negative, one_of, positive, usage};
+use crate::io::usage::{finite, not_negative, one_of, positive, usage};
 use crate::page::picture::write_png;
 use crate::query::field_summary::{ComputedField, FieldSummary};
+use crate::scene::convert::{Target, WrittenScene};
 use anyhow::{Context, anyhow};
 use nalgebra::Point3;
 use p2m_backends::{AnyIndex, P2mSettings};
 use p2m_core::{Aabb, PrimitiveSet, Soup};
 use p2m_field::FieldFormat;
 use p2m_field::grid_candidates::{CandidateLists, MAX_COORDINATE};
-
 use p2m_field::{
-    FieldOptions, Grid, RefineOptions, distances, distances_by_lists, refined, signed_distances,
-    signed_distances_by_lists, slice, write_cells, write_field,
+    FieldOptions, Grid, OffsetSurface, RefineOptions, distances, distances_by_lists, offset_grid, offset_surface,
+    refined, signed_distances, signed_distances_by_lists, slice, write_cells, write_field,
 };
+use p2m_mixed::statistics::Statistics;
+use p2m_mixed::statistics::figure::Figure;
 use rayon::ThreadPool;
-use serde_json::json;
+use serde_json::{Value, json};
 use std::path::PathBuf;
 use std::time::Instant;
 
@@ -42,9 +44,14 @@ works for surfaces with holes and overlapping shells. Closed surfaces with incon
 parity: a point is inside if a ray crosses the surface an odd number of times. Distances are NaN where rounding \
 leaves the sign of an open surface undecided.
 
+--iso writes a surface instead of the field: the points at this distance from the scene, inside for negative distances \
+with --signed, as a closed triangle mesh. The grid covers it by itself. Vertices have the distance exactly, and the \
+report says how far flat triangles miss it.
+
 Examples:
   p2m field bunny.obj --resolution 256 --signed --out bunny.vti --slice bunny.png
   p2m field scan.ply --resolution 512 --band 0.02 --out band.npy
+  p2m field part.stl --iso 2 --signed --resolution 128 --out offset.ply
   p2m field part.stl --refine 0.001 --signed --out cells.npy --json";
 
 /// Compute a distance field on a grid or an octree
@@ -78,6 +85,10 @@ pub(crate) struct Args {
     #[arg(long, value_name = "D", default_value_t = 8, value_parser = clap::value_parser!(u32).range(0..=16), requires = "refine", allow_negative_numbers = true)]
     depth: u32,
 
+    /// Write the closed surface at this distance from the scene
+    #[arg(long, value_name = "DISTANCE", value_parser = finite, allow_negative_numbers = true, conflicts_with_all = ["box_scale", "band", "refine", "out_format", "slice"])]
+    iso: Option<f64>,
+
     /// Write the field to this file
     #[arg(long, value_name = "FILE")]
     out: PathBuf,
@@ -98,16 +109,21 @@ pub(crate) struct Args {
 pub(crate) fn run(streams: &Streams, args: &Args) -> anyhow::Result<()> {
     let scene_args = &args.index_args.scene;
     let out_format = args.check(streams)?;
+    let target = args.iso.map(|_| Target::new(streams, &args.out, None, None)).transpose()?;
     let format = scene_args.format()?;
     let pool = args.index_args.threads.pool()?;
     let start = Instant::now();
     let (scene, saved) = read_scene_and_index(streams, &pool, &scene_args.path, format, scene_args.map)?;
     let read_time = start.elapsed();
     let soup = &scene.soup;
-    let grid =
-        Grid::around(&soup.aabb(), args.resolution as usize, args.box_scale).with_context(|| scene_args.name())?;
+    let resolution = args.resolution as usize;
+    let grid = match args.iso {
+        Some(distance) => offset_grid(&soup.aabb(), distance, resolution),
+        None => Grid::around(&soup.aabb(), resolution, args.box_scale),
+    };
+    let grid = grid.with_context(|| scene_args.name())?;
     // The files are opened before the work, which would be lost if a name were wrong.
-    let mut output = Output::open(streams, Some(&args.out))?;
+    let mut output = target.is_none().then(|| Output::open(streams, Some(&args.out))).transpose()?;
     let picture = args.slice.as_ref().map(|path| Output::open(streams, Some(path))).transpose()?;
 
     let start = Instant::now();
@@ -115,9 +131,9 @@ pub(crate) fn run(streams: &Streams, args: &Args) -> anyhow::Result<()> {
     let lists = if has_lists { candidate_lists(streams, soup, &grid, &pool) } else { None };
     let mut backend_name = LISTS_NAME;
     let mut prepared = None;
-    if lists.is_none() || args.signed.is_some() {
+    if lists.is_none() || args.signed.is_some() || args.iso.is_some() {
         let (chosen, kdop_directions, p2m) = match lists {
-            // With lists the index decides signs alone.
+            // With lists the index decides signs and moves vertices.
             Some(_) => (saved_or_default(saved.as_ref()).into(), None, P2mSettings::default()),
             // Cells are cut by single queries.
             None if args.refine.is_some() => args.index_args.choice(saved.as_ref(), soup, streams, &pool)?,
@@ -151,13 +167,26 @@ pub(crate) fn run(streams: &Streams, args: &Args) -> anyhow::Result<()> {
     let field = pool.install(|| args.compute(&source, &grid, &progress))?;
     drop(progress);
     let field_time = start.elapsed();
-    match &field {
-        ComputedField::Cells(cells) => write_cells(cells, &mut output),
-        ComputedField::Grid(values) => write_field(&grid, values, out_format, &mut output),
+    let mut bytes = 0;
+    if let Some(mut output) = output.take() {
+        match &field {
+            ComputedField::Cells(cells) => write_cells(cells, &mut output),
+            ComputedField::Grid(values) => write_field(&grid, values, out_format, &mut output),
+        }
+        .with_context(|| output.cannot_write())?;
+        bytes = output.bytes();
+        output.finish()?;
     }
-    .with_context(|| output.cannot_write())?;
-    let bytes = output.bytes();
-    output.finish()?;
+    let surface = match (&target, &field, &source.index, args.iso) {
+        (Some(target), ComputedField::Grid(values), Some(index), Some(distance)) => {
+            let _progress = Progress::start(streams, "making the surface", None, Unit::None);
+            let closest = |point: &Point3<f64>| index.closest(point);
+            let surface = pool.install(|| offset_surface(&grid, values, distance, &closest));
+            let surface = surface.with_context(|| scene_args.name())?;
+            Some(WrittenSurface::new(streams, target, distance, surface)?)
+        }
+        _ => None,
+    };
     if let (Some(picture), ComputedField::Grid(values)) = (picture, &field) {
         draw_slice(&grid, values, picture)?;
     }
@@ -178,7 +207,11 @@ pub(crate) fn run(streams: &Streams, args: &Args) -> anyhow::Result<()> {
                 "build": build_time.as_secs_f64(),
                 "field": field_time.as_secs_f64(),
             },
-            "out": { "file": shown(&args.out), "format": out_format.name(), "bytes": bytes },
+            "surface": surface.as_ref().map(WrittenSurface::json),
+            "out": match &surface {
+                Some(surface) => surface.written.json(),
+                None => json!({ "file": shown(&args.out), "format": out_format.name(), "bytes": bytes }),
+            },
         });
         return json::print(streams, &json::joined([index.json("field"), report.json(), end]));
     }
@@ -186,8 +219,52 @@ pub(crate) fn run(streams: &Streams, args: &Args) -> anyhow::Result<()> {
     // Writing to a string does not fail.
     let _ = index.write(&mut text, None);
     let _ = report.write(&mut text);
-    streams.print_summary(format_args!("{text}written  {}, {bytes} bytes\n", args.out.display()));
+    let end = match &surface {
+        Some(surface) => surface.text(),
+        None => format!("written  {}, {bytes} bytes\n", args.out.display()),
+    };
+    streams.print_summary(format_args!("{text}{end}"));
     Ok(())
+}
+
+/// The surface that was written to a file, as it was measured.
+struct WrittenSurface {
+    distance: f64,
+    surface: OffsetSurface,
+    is_closed: bool,
+    written: WrittenScene,
+}
+
+impl WrittenSurface {
+    /// Writes and measures a surface.
+    fn new(streams: &Streams, target: &Target<'_>, distance: f64, surface: OffsetSurface) -> anyhow::Result<Self> {
+        let is_closed = Statistics::of(&surface.soup).edges.is_closed();
+        let written = target.write(streams, &surface.soup.clone().into())?;
+        Ok(Self { distance, surface, is_closed, written })
+    }
+
+    fn json(&self) -> Value {
+        json!({
+            "distance": self.distance,
+            "closed": self.is_closed,
+            "vertex_error": json::number(self.surface.vertex_error),
+            "triangle_error": json::number(self.surface.triangle_error),
+        })
+    }
+
+    fn text(&self) -> String {
+        let OffsetSurface { soup, vertex_error, triangle_error, .. } = &self.surface;
+        let closed = match (soup.is_empty(), self.is_closed) {
+            (true, _) => "empty: no point has this distance",
+            (_, true) => "closed",
+            (_, false) => "not closed",
+        };
+        let [distance, vertices, triangles] = [self.distance, *vertex_error, *triangle_error].map(Figure);
+        format!(
+            "surface  {closed}; vertices are within {vertices}, centroids within {triangles} of {distance}\n{}",
+            self.written.text()
+        )
+    }
 }
 
 impl Args {
@@ -219,6 +296,8 @@ impl Args {
     fn format(&self) -> anyhow::Result<FieldFormat> {
         match self.out_format {
             Some(format) => Ok(format),
+            // A surface has the format of a scene.
+            None if self.iso.is_some() => Ok(FieldFormat::Raw),
             None if self.refine.is_some() => match FieldFormat::from_path(&self.out) {
                 Ok(FieldFormat::Vti | FieldFormat::Raw) => {
                     Err(usage("--refine writes cells as NPY: choose another name"))
@@ -234,7 +313,8 @@ impl Args {
         if let Some(error) = self.refine {
             let counts = grid.counts();
             let bounds = Aabb { min: grid.origin(), max: grid.point(counts.map(|n| n - 1)) };
-            let distance = |point: &Point3<f64>| source.index.as_ref().map_or(f64::NAN, |index| index.distance(point));
+            let closest = |point: &Point3<f64>| source.index.as_ref().and_then(|index| index.closest(point));
+            let distance = |point: &Point3<f64>| closest(point).map_or(f64::NAN, |found| found.0);
             let cells = refined(&bounds, &distance, &RefineOptions::new(error).with_depth(self.depth));
             return Ok(ComputedField::Cells(cells));
         }
@@ -307,12 +387,14 @@ impl FieldIndex<'_> {
         }
     }
 
-    /// The distance of a point, signed if there are signs; NaN if it is undefined.
-    fn distance(&self, point: &Point3<f64>) -> f64 {
-        let distance = match self {
-            Self::Unsigned(index) => index.closest_point(point).map(|answer| answer.distance),
-            Self::Signed(signed) => signed.closest_point(point).and_then(|answer| answer.distance()),
-        };
-        distance.unwrap_or(f64::NAN)
+    /// The distance of a point, signed if there are signs, and its closest point; none if the distance is undefined.
+    fn closest(&self, point: &Point3<f64>) -> Option<(f64, Point3<f64>)> {
+        match self {
+            Self::Unsigned(index) => index.closest_point(point).map(|answer| (answer.distance, answer.point)),
+            Self::Signed(signed) => {
+                let answer = signed.closest_point(point)?;
+                Some((answer.distance()?, answer.closest.point))
+            }
+        }
     }
 }

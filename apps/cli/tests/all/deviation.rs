@@ -219,3 +219,212 @@ fn other_units_and_other_places_are_noticed() {
     assert_eq!(warning("0 0 0\n2 2 2.1\nnan 0 0\n"), None);
     assert_eq!(warning("5 0 0\n5 1 1\n"), None);
 }
+
+#[test]
+fn a_requirement_decides_the_verdict_and_the_exit_code() {
+    let folder = TempDir::new().unwrap();
+    let cube = write(&folder, "cube.obj", CUBE);
+    let scan = write(&folder, "scan.xyz", "1 1 3\n1 1 1.5\n1 1 2\n1 1 2.1\nnan 0 0\n");
+    let run = |required: &str, more: &[&str]| {
+        let base = ["deviation", &scan, &cube, "--tolerance", "0.25", "--require", required];
+        p2m(&[&base[..], more].concat())
+    };
+    let output = run("50", &["--unit", "mm"]);
+    assert_eq!(output.code, 0);
+    let table = text(&output.stdout);
+    assert!(table.ends_with("PASS: 50 % within +-0.25 mm, 50 % required\n"), "{table}");
+    assert!(table.contains("beyond 0.75 mm                      1 (25 %)\n"), "{table}");
+    let output = run("50.1", &[]);
+    assert_eq!((output.code, text(&output.stdout).contains("FAIL: 50 % within")), (3, true));
+    assert!(!text(&output.stderr).contains("error"));
+    let output = run("99%", &["--json"]);
+    let report: Value = serde_json::from_slice(&output.stdout).unwrap();
+    assert_eq!((output.code, &report["passes"], &report["required"]), (3, &false.into(), &99.0.into()));
+    assert_eq!(report["bands"], serde_json::json!([0, 1, 2, 0, 1]));
+    // Nothing is not enough.
+    let nothing = write(&folder, "nothing.xyz", "");
+    let arguments = ["deviation", &nothing, &cube, "--tolerance", "1", "--require", "0"];
+    assert_eq!(p2m(&arguments).code, 3);
+    for wrong in [&["--require", "50"][..], &["--tolerance", "1", "--require", "101"], &["--only-outside"]] {
+        failure(&[&["deviation", &scan, &cube], wrong].concat(), 2);
+    }
+}
+
+#[test]
+fn objects_have_statistics_of_their_own() {
+    let folder = TempDir::new().unwrap();
+    let faces = CUBE.find("f ").unwrap();
+    let (vertices, faces) = CUBE.split_at(faces);
+    let top = "f 5 6 7 8\n";
+    let scene = format!("{vertices}{}o top\n{top}", faces.replace(top, ""));
+    let scene = write(&folder, "named.obj", scene.replacen("f ", "o rest\nf ", 1));
+    let scan = write(&folder, "scan.xyz", "1 1 3\n1 1 1.5\n3 1 1\n1 1 2.25\n");
+    let arguments = ["deviation", &scan, &scene, "--tolerance", "0.75"];
+    let report = json(&[&arguments[..], &["--json"]].concat());
+    let objects = report["objects"].as_array().unwrap();
+    let of = |i: usize, key: &str| objects[i]["statistics"][key].as_f64().unwrap();
+    assert_eq!((objects.len(), &objects[0]["name"], &objects[1]["name"]), (2, &"rest".into(), &"top".into()));
+    assert_eq!((&objects[0]["deviations"], of(0, "mean"), &objects[0]["above"]), (&1.into(), 1.0, &1.into()));
+    assert_eq!((&objects[1]["deviations"], of(1, "mean"), of(1, "min")), (&3.into(), 0.25, -0.5));
+    let table = table(&arguments);
+    let line = table.lines().find(|line| line.starts_with("top")).unwrap();
+    let words: Vec<&str> = line.split_whitespace().collect();
+    assert_eq!(words, ["top", "3", "0.25", "0.6614", "-0.5", "1", "1"], "{table}");
+}
+
+#[test]
+fn deviations_on_the_part_are_those_of_the_points_around_its_vertices() {
+    let folder = TempDir::new().unwrap();
+    let cube = write(&folder, "cube.obj", CUBE);
+    // Only the top is scanned, 0.25 too high at one corner.
+    let scan = write(&folder, "scan.xyz", "0 0 2.25\n2 0 2\n2 2 2\n0 2 2\n");
+    let out = path(&folder, "part.csv");
+    let report = json(&["deviation", &scan, &cube, "--on-part", "--out", &out, "--json"]);
+    assert_eq!((&report["deviations"], &report["missing"], statistic(&report, "max")), (&4.into(), &4.into(), 0.25));
+    let rows: Vec<String> = fs::read_to_string(&out).unwrap().lines().map(str::to_owned).collect();
+    assert_eq!([&rows[0], &rows[1], &rows[5]], ["number,x,y,z,deviation", "0,0.0,0.0,0.0,", "4,0.0,0.0,2.0,0.25"]);
+    assert_eq!((rows.len(), rows[7].as_str()), (9, "6,2.0,2.0,2.0,0.0"));
+    let arguments = ["--on-part", "--tolerance", "0.1", "--only-outside", "--out", &out];
+    let text = table(&[&["deviation", &scan, &cube], &arguments[..]].concat());
+    assert!(text.starts_with("vertices with a deviation"), "{text}");
+    assert_eq!(fs::read_to_string(&out).unwrap(), "number,x,y,z,deviation\n4,0.0,0.0,2.0,0.25\n");
+    // The coloured file is the part.
+    let part = path(&folder, "part.ply");
+    table(&["deviation", &scan, &cube, "--on-part", "--out", &part]);
+    assert_eq!(json(&["info", &part, "--json"])["primitives"]["triangles"], 12);
+}
+
+#[test]
+fn points_that_are_left_out_are_in_no_statistics() {
+    let folder = TempDir::new().unwrap();
+    let cube = write(&folder, "cube.obj", CUBE);
+    let mut scan = String::new();
+    for i in 0..400 {
+        writeln!(scan, "{} {} 2", f64::from(i % 20) * 0.1, f64::from(i / 20) * 0.1).unwrap();
+    }
+    let scan = write(&folder, "scan.xyz", scan + "1 1 2.5\n1 1 5\n");
+    let count = |more: &[&str]| {
+        let report = json(&[&["deviation", &scan, &cube, "--json"], more].concat());
+        (report["deviations"].clone(), statistic(&report, "max"))
+    };
+    assert_eq!(count(&[]), (402.into(), 3.0));
+    assert_eq!(count(&["--max-distance", "0.5"]), (401.into(), 0.5));
+    assert_eq!(count(&["--drop-isolated"]), (400.into(), 0.0));
+    let out = path(&folder, "outside.csv");
+    let base = ["deviation", &scan, &cube, "--tolerance", "0.1", "--only-outside", "--out", &out];
+    table(&base);
+    let rows: Vec<String> = fs::read_to_string(&out).unwrap().lines().map(str::to_owned).collect();
+    assert_eq!((rows.len(), rows[0].starts_with("number,qx,qy,qz,")), (3, true), "{rows:?}");
+    assert!(rows[1].starts_with("400,1.0,1.0,2.5,") && rows[2].starts_with("401,"), "{rows:?}");
+    table(&[&base[..], &["--max-distance", "0.6"]].concat());
+    assert_eq!(fs::read_to_string(&out).unwrap().lines().count(), 2);
+    assert!(failure(&[&base[..6], &["--out", "a.ply"]].concat(), 2).contains("--only-outside needs a table"));
+}
+
+#[test]
+fn the_histogram_counts_all_deviations() {
+    let folder = TempDir::new().unwrap();
+    let cube = write(&folder, "cube.obj", CUBE);
+    let scan = write(&folder, "scan.xyz", "1 1 3\n1 1 2.01\n1 1 1.99\n1 1 1.5\n");
+    let out = path(&folder, "histogram.csv");
+    table(&["deviation", &scan, &cube, "--tolerance", "0.1", "--histogram", &out]);
+    let content = fs::read_to_string(&out).unwrap();
+    let rows: Vec<Vec<f64>> =
+        content.lines().skip(1).map(|line| line.split(',').map(|x| x.parse().unwrap()).collect()).collect();
+    assert_eq!((rows.len(), content.lines().next()), (62, Some("low,high,count")));
+    assert_eq!((&rows[0][1..], &rows[61][..]), (&[-3.0 * 0.1, 1.0][..], &[3.0 * 0.1, f64::INFINITY, 1.0][..]));
+    assert_eq!(rows.iter().map(|row| row[2]).sum::<f64>(), 4.0);
+    let middle: Vec<f64> = rows[29..33].iter().map(|row| row[2]).collect();
+    assert_eq!(middle, [0.0, 1.0, 1.0, 0.0]);
+    failure(&["deviation", &scan, &cube, "--histogram", "-"], 2);
+}
+
+#[test]
+fn a_cloud_has_sides() {
+    let folder = TempDir::new().unwrap();
+    let mut ground = String::new();
+    for i in 0..900 {
+        writeln!(ground, "{} {} 0", i % 30, i / 30).unwrap();
+    }
+    let ground = write(&folder, "ground.xyz", ground);
+    let scan = write(&folder, "scan.xyz", "15.5 15.5 0.75\n15.4 10.3 -0.25\n");
+    let report = json(&["deviation", &scan, &ground, "--json"]);
+    assert_eq!((&report["sign_rule"], &report["signed"]), (&"planes".into(), &true.into()));
+    assert!((statistic(&report, "min") + 0.25).abs() < 1e-12 && (statistic(&report, "max") - 0.75).abs() < 1e-12);
+    let report = json(&["deviation", &scan, &ground, "--unsigned", "--json"]);
+    assert_eq!(statistic(&report, "max"), f64::hypot(0.75, 0.5f64.sqrt()));
+}
+
+#[test]
+fn a_scan_that_is_not_aligned_is_noticed() {
+    let folder = TempDir::new().unwrap();
+    let (knot, moved, near) = (path(&folder, "knot.ply"), path(&folder, "moved.ply"), path(&folder, "near.ply"));
+    table(&["generate", "torus-knot", "--out", &knot]);
+    table(&["convert", &knot, &moved, "--rotate-z", "2", "--translate", "0.05", "0", "0"]);
+    table(&["convert", &knot, &near, "--subdivide", "1", "--displace", "0.02"]);
+    let warned = |scan: &str, more: &[&str]| {
+        let output = p2m(&[&["deviation", scan, &knot], more].concat());
+        assert_eq!(output.code, 0, "{}", text(&output.stderr));
+        text(&output.stderr).lines().find(|line| line.contains("not to be aligned")).map(str::to_owned)
+    };
+    let warning = warned(&moved, &["--unit", "mm"]).expect("a warning");
+    assert!(warning.contains("and 2 degrees") && warning.contains("--align"), "{warning}");
+    assert_eq!([warned(&near, &[]), warned(&knot, &[]), warned(&moved, &["--align"])], [None, None, None]);
+}
+
+#[test]
+fn reports_have_their_head_and_their_verdict() {
+    let folder = TempDir::new().unwrap();
+    let cube = write(&folder, "cube.obj", CUBE);
+    let scan = write(&folder, "scan.xyz", "1 1 3\n1 1 1.5\n1 1 2\n3 1 1\n");
+    let head = ["--head", "Part=Bracket (7)", "--head", "Date = 2026-05-04", "--unit", "mm"];
+    let write_to = |out: &str, more: &[&str]| {
+        let base = ["deviation", &scan, &cube, "--tolerance", "0.6", "--require", "50", "--out", out];
+        let output = p2m(&[&base[..], &head, more].concat());
+        assert_eq!(output.code, 0, "{}", text(&output.stderr));
+        fs::read(out).unwrap()
+    };
+    let page = text(&write_to(&path(&folder, "page.html"), &[]));
+    for part in ["Part: Bracket (7); Date: 2026-05-04; ", "PASS: 50 % within +-0.6 mm, 50 % required. 4 deviations"] {
+        assert!(page.contains(part), "{part}");
+    }
+    let sheet = path(&folder, "sheet.pdf");
+    let pdf = write_to(&sheet, &[]);
+    let streams = pdf_streams(&pdf);
+    let drawn = streams.iter().find(|stream| stream.windows(2).any(|two| two == b"Tj")).expect("a page");
+    let drawn = String::from_utf8_lossy(drawn);
+    // Text with other characters than those of ASCII is written in hexadecimal digits.
+    let verdict: String = "PASS  50 % within ".bytes().map(|byte| format!("{byte:02X}")).collect();
+    for part in ["(Part  Bracket (7))", "(Date  2026-05-04)", &verdict, "2 (50 %)"] {
+        assert!(drawn.contains(part), "{part}: {drawn}");
+    }
+    // Both pictures have points of several colours.
+    assert_eq!(streams.len(), 3);
+    let picture = path(&folder, "sheet.png");
+    let decoder = png::Decoder::new(std::io::Cursor::new(write_to(&picture, &["--up", "y"])));
+    let mut reader = decoder.read_info().unwrap();
+    let mut bytes = vec![0; reader.output_buffer_size().unwrap()];
+    let info = reader.next_frame(&mut bytes).unwrap();
+    assert_eq!((info.width, info.height), (1190, 1684));
+    let count = |colour: [u8; 3]| bytes.as_chunks().0.iter().filter(|pixel| **pixel == colour).count();
+    // The verdict, points far above, and the part.
+    assert!(count([0x1d, 0x7a, 0x36]) > 40_000 && count([0xb3, 0x83, 0x00]) > 20, "{}", count([0xb3, 0x83, 0x00]));
+    for out in ["empty.pdf", "empty.png"] {
+        let empty = write(&folder, "empty.xyz", "");
+        table(&["deviation", &empty, &cube, "--out", &path(&folder, out)]);
+    }
+    failure(&["deviation", &scan, &cube, "--head", "nothing"], 2);
+}
+
+/// Returns the content of the compressed streams of a PDF file.
+fn pdf_streams(file: &[u8]) -> Vec<Vec<u8>> {
+    let mut found = Vec::new();
+    let mut rest = file;
+    while let Some(at) = rest.windows(8).position(|window| window == b"\nstream\n") {
+        rest = &rest[at + 8..];
+        let mut content = Vec::new();
+        std::io::Read::read_to_end(&mut flate2::read::ZlibDecoder::new(rest), &mut content).unwrap();
+        found.push(content);
+    }
+    found
+}

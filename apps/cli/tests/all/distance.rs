@@ -38,6 +38,27 @@ fn the_second_scene_moves() {
 }
 
 #[test]
+fn solids_contain_what_is_inside() {
+    let folder = TempDir::new().unwrap();
+    let (tank, arm) = (path(&folder, "tank.ply"), path(&folder, "arm.obj"));
+    table(&["generate", "ico-sphere", "--out", &tank]);
+    std::fs::write(&arm, "v 0 0 0\nv 0.1 0 0\nl 1 2\n").unwrap();
+    assert!(json(&["distance", &tank, &arm, "--json"])["distance"].as_f64() > Some(0.8));
+    for scenes in [[&tank, &arm], [&arm, &tank]] {
+        let report = json(&["distance", scenes[0], scenes[1], "--solid", "--json"]);
+        assert_eq!(
+            (report["distance"].as_f64(), &report["intersect"], &report["solid"]),
+            (Some(0.0), &true.into(), &true.into())
+        );
+        assert!(table(&["distance", scenes[0], scenes[1], "--solid"]).starts_with("the scenes intersect\n"));
+    }
+    let away = ["distance", &tank, &arm, "--transform", "1 0 0 5  0 1 0 0  0 0 1 0", "--solid", "--json"];
+    assert!(json(&away)["distance"].as_f64() > Some(3.9));
+    let open = write(&folder, "open.obj", LOW);
+    assert!(text(&p2m(&["distance", &open, &arm, "--solid"]).stderr).contains("the surface is open"));
+}
+
+#[test]
 fn limits_and_wrong_arguments_are_told() {
     let folder = TempDir::new().unwrap();
     let (low, high) = (write(&folder, "low.obj", LOW), write(&folder, "high.obj", HIGH));

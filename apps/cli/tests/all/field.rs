@@ -132,3 +132,36 @@ fn wrong_usage_is_told_what_is_wrong() {
     }
     assert!(!std::path::Path::new(&out).exists());
 }
+
+#[test]
+fn surfaces_of_fields_are_closed_and_at_their_distance() {
+    let folder = TempDir::new().unwrap();
+    let (knot, out) = (path(&folder, "knot.ply"), path(&folder, "offset.ply"));
+    table(&["generate", "torus-knot", "--out", &knot]);
+    let base = ["field", &knot, "--resolution", "40", "--out", &out];
+    for (distance, more) in [("0.1", &["--signed"][..]), ("-0.05", &["--signed"]), ("0.1", &["--backend", "kdop"])] {
+        let report = json(&[&base[..], &["--json", "--iso", distance], more].concat());
+        let surface = &report["surface"];
+        let spacing = report["grid"]["spacing"].as_f64().unwrap();
+        assert_eq!((&surface["closed"], &report["out"]["format"]), (&true.into(), &"ply".into()));
+        assert!(surface["vertex_error"].as_f64().unwrap() <= 1e-7 * spacing, "{distance}: {surface}");
+        assert!(surface["triangle_error"].as_f64().unwrap() < spacing, "{distance}: {surface}");
+        // The vertices of the file have the distance, as another command measures it.
+        let table = table(&["query", &knot, "--points", &out, "--columns", "distance"]);
+        let exact = distance.parse::<f64>().unwrap().abs();
+        let mut count = 0;
+        for line in table.lines().skip(1) {
+            let found: f64 = line.parse().unwrap();
+            // The file has single precision.
+            assert!((found - exact).abs() < 1e-6, "{found}");
+            count += 1;
+        }
+        assert!(count > 1000 && json(&["info", &out, "--json"])["closed"] == true);
+    }
+    let output = p2m(&[&base[..], &["--iso", "0.1", "--signed"]].concat());
+    assert!(text(&output.stderr).contains("surface  closed; vertices are within "), "{}", text(&output.stderr));
+    let output = p2m(&[&base[..], &["--iso", "-9", "--signed"]].concat());
+    assert!(text(&output.stderr).contains("surface  empty"), "{}", text(&output.stderr));
+    failure(&[&base[..], &["--iso", "0.1", "--band", "1"]].concat(), 2);
+    failure(&["field", &knot, "--iso", "0.1", "--out", &path(&folder, "offset.npy")], 1);
+}

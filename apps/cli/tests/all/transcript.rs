@@ -1,4 +1,4 @@
-//! A test that docs/transcript.md has the real output of its commands.
+//! Tests that docs/transcript.md and the pages of jobs have the real output of their commands.
 //!
 //! In blocks marked `console`, lines that start with `$ ` are commands. The lines after them are their output, with the
 //! standard error. `P2M_BLESS=1` writes the file anew.
@@ -12,7 +12,7 @@ use std::path::Path;
 use std::process::{Command, Stdio};
 use tempfile::TempDir;
 
-const TRANSCRIPT: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../../docs/transcript.md");
+const DOCS: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../../docs");
 
 /// Returns the output of a command of the transcript, with its exit code if it is not 0.
 fn run(command: &str, folder: &Path) -> String {
@@ -85,24 +85,37 @@ fn masked(transcript: &str) -> String {
     transcript.lines().map(|line| mask(line) + "\n").collect()
 }
 
-#[test]
-fn the_transcript_is_what_comes_out() {
+/// Checks that a page has the output of at least so many commands.
+fn check(page: &str, commands: usize) {
     let folder = TempDir::new().unwrap();
     fs::create_dir(folder.path().join("scenes")).unwrap();
     fs::copy(SCENE, folder.path().join("scenes/knot_and_cables.obj")).unwrap();
-    let transcript = fs::read_to_string(TRANSCRIPT).unwrap();
-    let replayed = replay(&transcript, folder.path());
-    assert!(replayed.matches("\n$ p2m ").count() > 20);
-    let (new, old) = (masked(&replayed), transcript);
+    let path = Path::new(DOCS).join(page);
+    let old = fs::read_to_string(&path).unwrap();
+    let replayed = replay(&old, folder.path());
+    assert!(replayed.matches("\n$ ").count() >= commands, "{page}");
+    let new = masked(&replayed);
     if new == old {
         return;
     }
     if std::env::var_os("P2M_BLESS").is_some() {
-        fs::write(TRANSCRIPT, new).unwrap();
+        fs::write(path, new).unwrap();
         return;
     }
     let differing = new.lines().zip(old.lines()).enumerate().find(|(_, (new, old))| new != old);
-    panic!("docs/transcript.md is out of date (P2M_BLESS=1 writes it anew): {differing:#?}");
+    panic!("docs/{page} is out of date (P2M_BLESS=1 writes it anew): {differing:#?}");
+}
+
+#[test]
+fn the_transcript_is_what_comes_out() {
+    check("transcript.md", 20);
+}
+
+#[test]
+fn pages_of_jobs_are_what_comes_out() {
+    for (page, commands) in [("guide/inspection.md", 3), ("guide/maps.md", 6), ("guide/shell.md", 6)] {
+        check(page, commands);
+    }
 }
 
 #[test]

@@ -24,7 +24,7 @@ from ._ask import Ask
 from ._cuda import CudaIndex
 from ._deviation import Deviation, deviation
 from ._hausdorff import HausdorffDistance, hausdorff
-from ._index import Estimate, Index, advise, load
+from ._index import Estimate, Index, OffsetSurface, advise, load
 from ._index_cache import clear_opened
 from ._p2m import __version__, backends
 from ._page import Page
@@ -59,6 +59,7 @@ __all__ = [
     "Index",
     "NearPrimitives",
     "Object",
+    "OffsetSurface",
     "Page",
     "PointTable",
     "Record",

@@ -6,6 +6,7 @@ import csv
 import io
 import os
 import warnings
+from collections.abc import Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Literal
 
@@ -91,6 +92,27 @@ class Deviation:
             raise ValueError("tolerance: none is given")
         return int(np.sum(self.values > limit)), int(np.sum(self.values < -limit))
 
+    def passes(self, required: float) -> bool:
+        """Return whether at least this percentage of the deviations is within the tolerance of `deviation`.
+
+        Without any deviation it is False.
+
+        Parameters
+        ----------
+        required : float
+            The percentage, from 0 to 100.
+        """
+        count = self.statistics["count"]
+        return bool(count > 0 and 100.0 * (count - sum(self.outside())) / count >= required)
+
+    @property
+    def objects(self) -> list[tuple[str, dict[str, Any]]]:
+        """The name of each object of the mesh, with the statistics of the deviations whose closest primitive it has.
+
+        The primitives in no object are last, with an empty name. A mesh without objects has an empty list.
+        """
+        return _p2m.deviation_objects(self._index.scene._raw, self.values, self._primitives())
+
     def figure(self) -> _Figure:
         """Return a figure of matplotlib: the scan, coloured by its deviations, and their histogram.
 
@@ -128,8 +150,15 @@ class Deviation:
         bars.set_title(f"mean {mean:.4g}, root mean square {rms:.4g} {self.unit}")
         return figure
 
-    def save(self, path: str | os.PathLike[str], *, up: Literal["y", "z"] = "z") -> None:
-        """Write a page or a file of points.
+    def save(
+        self,
+        path: str | os.PathLike[str],
+        *,
+        up: Literal["y", "z"] = "z",
+        head: Mapping[str, str] | None = None,
+        required: float | None = None,
+    ) -> None:
+        """Write a page, a report or a file of points.
 
         Parameters
         ----------
@@ -137,9 +166,14 @@ class Deviation:
             A name that ends in ``.html`` is that of a page, which any browser opens without a network. One that ends in
             ``.ply`` is that of the scan with the property ``deviation`` and colours from blue (inside) to red
             (outside), with its triangles if it has some. One that ends in ``.csv`` is that of the table that ``p2m
-            query --signed`` writes, where ``signed_distance`` is the deviation.
+            query --signed`` writes, where ``signed_distance`` is the deviation. ``.pdf`` and ``.png`` are a report on
+            one sheet.
         up : {"y", "z"}, optional
             The axis that points up on the page.
+        head : mapping of str to str, optional
+            Lines below the heading of a report, such as ``{"Part": "bracket", "Date": "2026-05-04"}``.
+        required : float, optional
+            The percentage of points within the tolerance that decides whether a report says PASS or FAIL.
 
         Raises
         ------
@@ -156,8 +190,25 @@ class Deviation:
         if target.suffix == ".csv":
             _p2m.write_bytes(target, self._table().encode())
             return
+        if target.suffix in (".pdf", ".png"):
+            sheet = _p2m.deviation_sheet(
+                self._raw_scan(),
+                self.values,
+                self._primitives(),
+                self._index.scene._raw,
+                self.is_signed,
+                self.limit,
+                self.tolerance,
+                required,
+                checked_up(up),
+                [] if head is None else [(str(name), str(value)) for name, value in head.items()],
+                ("Deviations", self.unit, f"p2m {_p2m.__version__} for Python"),
+                target.suffix == ".pdf",
+            )
+            _p2m.write_bytes(target, sheet)
+            return
         if target.suffix != ".html":
-            raise ValueError(f"path: {target.name!r} ends neither in .html nor in .ply nor in .csv")
+            raise ValueError(f"path: {target.name!r} does not end in .html, .ply, .csv, .pdf or .png")
         self.show(up=up).save(target)
 
     def show(self, *, up: Literal["y", "z"] = "z") -> Page:
@@ -168,9 +219,6 @@ class Deviation:
         up : {"y", "z"}, optional
             The axis that points up.
         """
-        primitives = np.full(len(self.values), np.iinfo(np.uint32).max, np.uint32)
-        finite = np.isfinite(self._points).all(axis=1)
-        primitives[finite] = self._index.closest(self._points[finite], fields="primitive").primitive
         what = "deviations, positive outside" if self.is_signed else "distances"
         count, mean, rms = (self.statistics[key] for key in ("count", "mean", "rms"))
         summary = f"{count:,} {what}: mean {mean:.4g} {self.unit}, root mean square {rms:.4g} {self.unit}"
@@ -180,7 +228,7 @@ class Deviation:
             _p2m.deviation_page(
                 self._raw_scan(),
                 self.values,
-                primitives,
+                self._primitives(),
                 scene,
                 self.is_signed,
                 self.limit,
@@ -189,6 +237,13 @@ class Deviation:
                 texts,
             )
         )
+
+    def _primitives(self) -> NDArray[np.uint32]:
+        """Return the closest primitive of each point."""
+        primitives = np.full(len(self.values), np.iinfo(np.uint32).max, np.uint32)
+        finite = np.isfinite(self._points).all(axis=1)
+        primitives[finite] = self._index.closest(self._points[finite], fields="primitive").primitive
+        return primitives
 
     def _raw_scan(self) -> _p2m.Scene:
         if self._scan is not None:
@@ -224,6 +279,9 @@ def deviation(
     mesh: Any,
     *,
     align: bool = False,
+    on_part: bool = False,
+    drop_isolated: bool = False,
+    max_distance: float | None = None,
     tolerance: float | None = None,
     limit: float | None = None,
     sign: Literal["auto", "winding", "parity"] | None = "auto",
@@ -243,6 +301,14 @@ def deviation(
         is built.
     align : bool, optional
         Whether the scan is moved onto the mesh first, as `p2m.align` does by default.
+    on_part : bool, optional
+        Whether the result is about the vertices of the mesh: each has the mean deviation of the points around it, and
+        nan where there are none.
+    drop_isolated : bool, optional
+        Whether isolated points of the scan, such as dust, have no deviation: those that are more than four times as far
+        from their neighbours as these from theirs.
+    max_distance : float, optional
+        Points that are farther from the mesh have no deviation.
     tolerance : float, optional
         The tolerance that figures, pages and `Deviation.outside` mark, in the unit of the mesh.
     limit : float, optional
@@ -252,7 +318,8 @@ def deviation(
         The rule that decides which points are inside, as for `Index.signed_distance`; None for distances without signs,
         which scenes with segments or points need. If the surface is open or not consistently oriented, ``"auto"`` warns
         and names the rule. On an open surface, inside and outside are ambiguous near holes, and both sides of a single
-        sheet are outside.
+        sheet are outside. For a cloud of points, ``"auto"`` means deviations from the planes through each point and its
+        eleven nearest others, positive above or outside.
     unit : str, optional
         The name of the unit of lengths, for figures and pages.
     threads, progress
@@ -290,17 +357,31 @@ def deviation(
         scene = None if scene is None else scene.moved(points)
     finite = np.isfinite(points).all(axis=1)
     queries = coordinates(points if finite.all() else points[finite], "scan")
+    farthest = np.inf if max_distance is None else not_negative(max_distance, "max_distance")
 
+    numbers: NDArray[np.float64] | None = None
     if sign is None:
-        rule, numbers = None, index.distance(queries, threads=threads, progress=progress)
-    else:
-        rule, note = index._raw.sign_rule(sign, index._count(threads))
-        if note is not None and sign == "auto":
+        numbers = index.distance(queries, threads=threads, progress=progress)
+    elif sign == "auto":
+        numbers = index._raw.deviations_from_planes(queries.reshape(-1), farthest, index._count(threads))
+    if numbers is None:
+        rule: Literal["auto", "winding", "parity"] = sign or "auto"
+        _, note = index._raw.sign_rule(rule, index._count(threads))
+        if note is not None and rule == "auto":
             warnings.warn(note, stacklevel=2)
-        numbers = index.signed_distance(queries, sign=sign, threads=threads, progress=progress)
+        numbers = index.signed_distance(queries, sign=rule, threads=threads, progress=progress)
     # A scene without primitives has infinite distances.
     values = np.full(len(points), np.nan)
-    values[finite] = np.where(np.isfinite(numbers), numbers, np.nan)
+    values[finite] = np.where(np.isfinite(numbers) & (np.abs(numbers) <= farthest), numbers, np.nan)
+    if drop_isolated:
+        isolated = _p2m.isolated_points(coordinates(points, "scan").reshape(-1), index._count(threads))
+        values[isolated] = np.nan
+    if on_part:
+        known = np.isfinite(values)
+        answers = index.closest(points[known], fields=("primitive", "barycentric"), threads=threads)
+        primitives, weights = answers.primitive.astype(np.uint32), answers.barycentric.reshape(-1)
+        values = _p2m.deviation_on_vertices(index.scene._raw, primitives, weights, values[known])
+        scene, points = index.scene, index.scene.vertices
     return Deviation(
         values,
         points,

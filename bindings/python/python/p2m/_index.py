@@ -857,6 +857,58 @@ class Index(PointQueries, PairQueries):
         out[...] = grid
         return out
 
+    def offset_surface(
+        self,
+        distance: float,
+        *,
+        resolution: int = 64,
+        signed: bool = False,
+        sign: _Sign = "auto",
+        threads: int | None = None,
+        progress: Progress = None,
+    ) -> OffsetSurface:
+        """Return the closed surface of all points at a distance from the scene.
+
+        Parameters
+        ----------
+        distance : float
+            The distance. With `signed`, a negative one is that of a surface inside.
+        resolution : int, optional
+            The number of points along the longest side of the grid that the surface is made of, at least 8. Details below
+            the spacing of the grid may be lost.
+        signed : bool, optional
+            Whether distances are negative inside. Without signs, the surface around a closed scene has an inner shell.
+        sign : {"auto", "winding", "parity"}, optional
+            The rule of signs, as for `signed_distance`.
+        threads, progress
+            As for `closest`.
+
+        Returns
+        -------
+        OffsetSurface
+            The surface, whose edges have two triangles each, and its errors.
+
+        Raises
+        ------
+        ValueError
+            For a scene without extent or a resolution below 8, and as `signed_distance` does.
+
+        Examples
+        --------
+        >>> import p2m
+        >>> rod = p2m.Index(p2m.Scene([[0, 0, 0], [2, 0, 0]], segments=[[0, 1]]))
+        >>> capsule = rod.offset_surface(0.5)
+        >>> capsule.vertex_error < 1e-6, capsule.scene.bounds[1].round(3).tolist()
+        (True, [2.5, 0.5, 0.5])
+        """
+        distance = real(distance, "distance")
+        grid = _p2m.grid_of_offset(self.scene._raw, distance, whole(resolution, "resolution", 8, 2**20))
+        options: Any = {"signed": signed, "sign": sign, "threads": threads, "progress": progress}
+        values = self.field(*grid, **options).ravel(order="F")
+        rule = sign if signed else None
+        raw, of_vertices, of_triangles = self._raw.offset_surface(*grid, values, distance, rule, self._count(threads))
+        return OffsetSurface(Scene._from_raw(raw), of_vertices, of_triangles)
+
     def show(
         self,
         *,
@@ -1018,6 +1070,17 @@ def load(path: str | os.PathLike[str], map: bool = False, *, threads: int | None
     absolute = os.path.abspath(os.fspath(path))
     own = None if threads is None else thread_count(threads)
     return Index._from_raw(_p2m.load(absolute, map, thread_count(threads)), own)
+
+
+class OffsetSurface(NamedTuple):
+    """A surface at a distance from a scene."""
+
+    scene: Scene
+    """The triangles, which face away from the scene."""
+    vertex_error: float
+    """The largest difference of a vertex's distance from the one that was asked for."""
+    triangle_error: float
+    """The largest difference at the centroids of triangles."""
 
 
 class Estimate(NamedTuple):

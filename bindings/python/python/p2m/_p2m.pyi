@@ -20,12 +20,17 @@ __all__ = [
     "backends",
     "closest",
     "default_threads",
+    "deviation_objects",
+    "deviation_on_vertices",
     "deviation_page",
     "deviation_ply",
+    "deviation_sheet",
     "deviation_statistics",
     "grid_around",
+    "grid_of_offset",
     "hausdorff",
     "is_any_within",
+    "isolated_points",
     "k_nearest",
     "load",
     "load_bytes",
@@ -74,6 +79,9 @@ def deviation_page(
 def grid_around(
     scene: Scene, resolution: int, scale: float
 ) -> tuple[tuple[float, float, float], float, tuple[int, int, int]]: ...
+def grid_of_offset(
+    scene: Scene, distance: float, resolution: int
+) -> tuple[tuple[float, float, float], float, tuple[int, int, int]]: ...
 def scene_page(
     scene: Scene,
     texts: tuple[str, str, str],
@@ -81,6 +89,30 @@ def scene_page(
     is_live: bool,
     field: tuple[tuple[tuple[float, float, float], float, tuple[int, int, int]], NDArray[np.float32]] | None,
 ) -> str: ...
+def deviation_objects(
+    scene: Scene, values: NDArray[np.float64], primitives: NDArray[np.uint32]
+) -> list[tuple[str, dict[str, Any]]]: ...
+def deviation_sheet(
+    scan: Scene,
+    values: NDArray[np.float64],
+    primitives: NDArray[np.uint32],
+    scene: Scene,
+    is_signed: bool,
+    limit: float,
+    tolerance: float | None,
+    required: float | None,
+    is_y_up: bool,
+    head: list[tuple[str, str]],
+    texts: tuple[str, str, str],
+    is_pdf: bool,
+) -> bytes: ...
+def deviation_on_vertices(
+    scene: Scene,
+    primitives: NDArray[np.uint32],
+    barycentric: NDArray[np.float64],
+    values: NDArray[np.float64],
+) -> NDArray[np.float64]: ...
+def isolated_points(points: _Coordinates, threads: int) -> NDArray[np.bool_]: ...
 def deviation_ply(scan: Scene, values: NDArray[np.float64], limit: float) -> bytes: ...
 def align(
     scan: _Coordinates,
@@ -228,6 +260,9 @@ class Index:
     def normals(
         self, primitive: NDArray[np.int64], feature: NDArray[np.uint8], out: _Arrays
     ) -> None: ...
+    def deviations_from_planes(
+        self, points: _Coordinates, max_distance: float, threads: int
+    ) -> NDArray[np.float64] | None: ...
     def sign_rule(self, sign: str, threads: int) -> tuple[str, str | None]: ...
     def contains(
         self,
@@ -258,6 +293,16 @@ class Index:
         threads: int,
         progress: _Progress,
     ) -> NDArray[np.float32]: ...
+    def offset_surface(
+        self,
+        origin: tuple[float, float, float],
+        spacing: float,
+        counts: tuple[int, int, int],
+        values: NDArray[np.float32],
+        distance: float,
+        sign: str | None,
+        threads: int,
+    ) -> tuple[Scene, float, float]: ...
     def closest_to(
         self,
         shapes: NDArray[np.float64],
@@ -266,15 +311,18 @@ class Index:
         radius: float,
         max_distance: float,
         certified: bool,
+        solid: bool,
         threads: int,
         progress: _Progress,
     ) -> None: ...
+    def solid_note(self, threads: int) -> str | None: ...
     def closest_pairs(
         self,
         other: Index,
         transforms: NDArray[np.float64] | None,
         max_distance: float,
         certified: bool,
+        solid: bool,
         threads: int,
         progress: _Progress,
     ) -> PairList: ...

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import warnings
 from collections.abc import Sequence
 from typing import Any
 
@@ -84,6 +85,12 @@ class PairQueries:
     _raw: _p2m.Index
     _threads: int | None
 
+    def _warn_of_open_surface(self, threads: int | None) -> None:
+        """Warn if the inside of the scene is a guess."""
+        note = self._raw.solid_note(thread_count(threads, self._threads))
+        if note is not None:
+            warnings.warn(note, stacklevel=4)
+
     def closest_to(
         self,
         shapes: ArrayLike,
@@ -91,6 +98,7 @@ class PairQueries:
         radius: float = 0.0,
         max_distance: float | None = None,
         certified: bool = False,
+        solid: bool = False,
         fields: str | Sequence[str] | None = None,
         out: Out = None,
         threads: int | None = None,
@@ -110,6 +118,9 @@ class PairQueries:
         certified : bool, optional
             Whether to find the nearest primitive in exact arithmetic and round its distance once. Shapes
             with a radius have no certified answers.
+        solid : bool, optional
+            Whether the inside of the scene counts, so that a shape inside has the distance 0. Then both points are its
+            first vertex. An open surface has the inside of `signed_distance`, with a warning.
         fields : str or sequence of str, optional
             The arrays of the answer, by default those of `out` or else ``("distance", "primitive")``: any of
             ``distance``, ``primitive``, ``points``, ``features``, ``barycentric``, ``lower_bound`` and
@@ -145,10 +156,14 @@ class PairQueries:
         size, largest = not_negative(radius, "radius"), _largest(max_distance)
         if certified and size > 0.0:
             raise ValueError("certified: shapes with a radius have no certified answers")
+        if certified and solid:
+            raise ValueError("certified: solids have no certified answers")
+        if solid:
+            self._warn_of_open_surface(threads)
         count = thread_count(threads, self._threads)
         with callback(progress, "answering", "shapes") as call:
             raw = self._raw
-            raw.closest_to(array.reshape(-1), width, flat(arrays), size, largest, certified, count, call)
+            raw.closest_to(array.reshape(-1), width, flat(arrays), size, largest, certified, solid, count, call)
         return ClosestToShapes(arrays)
 
     def is_any_near(
@@ -188,7 +203,7 @@ class PairQueries:
         answers: NDArray[np.bool_] = one_output(out, "is_near", _BOOL, (len(array),))
         count = thread_count(threads, self._threads)
         with callback(progress, "answering", "shapes") as call:
-            self._raw.closest_to(array.reshape(-1), width, {"is_near": answers}, size, largest, False, count, call)
+            self._raw.closest_to(array.reshape(-1), width, {"is_near": answers}, size, largest, False, False, count, call)
         return answers
 
     def closest_pair(
@@ -198,6 +213,7 @@ class PairQueries:
         *,
         max_distance: float | None = None,
         certified: bool = False,
+        solid: bool = False,
         threads: int | None = None,
     ) -> ClosestPairs:
         """Return the nearest points of this scene and another one.
@@ -205,13 +221,16 @@ class PairQueries:
         Parameters
         ----------
         other : Index
-            The index of the other scene, which may be this one. Only surfaces count: a scene inside of a closed one has
-            the distance from its surface.
+            The index of the other scene, which may be this one. Only surfaces count unless `solid` is set: a scene
+            inside of a closed one has the distance from its surface.
         transform : array_like, shape (4, 4), optional
             The rotation and the translation that move the other scene, as a matrix for column vectors. Its last row is
             (0, 0, 0, 1). Each moved coordinate is rounded, and the answer is that of the rounded vertices.
         max_distance, certified, threads
             As for `closest_to`.
+        solid : bool, optional
+            Whether the insides of both scenes count, as for `closest_to`. If one scene is inside of the other one, the
+            distance is 0, and both points are a vertex of the inner one.
 
         Returns
         -------
@@ -239,7 +258,9 @@ class PairQueries:
         matrices = rigid_transforms(transform, "transform")
         if matrices is not None and matrices.ndim != 2:
             raise ValueError(f"transform: the shape is {matrices.shape} instead of (4, 4)")
-        return self._closest_pairs(other, matrices, max_distance, certified, tuple(PAIR_FIELDS), None, threads, None)
+        return self._closest_pairs(
+            other, matrices, max_distance, certified, solid, tuple(PAIR_FIELDS), None, threads, None
+        )
 
     def closest_pairs(
         self,
@@ -248,6 +269,7 @@ class PairQueries:
         *,
         max_distance: float | None = None,
         certified: bool = False,
+        solid: bool = False,
         fields: str | Sequence[str] | None = None,
         out: Out = None,
         threads: int | None = None,
@@ -257,7 +279,7 @@ class PairQueries:
 
         Parameters
         ----------
-        other, max_distance, certified
+        other, max_distance, certified, solid
             As for `closest_pair`.
         transforms : array_like, shape (..., 4, 4)
             The motions, with any leading axes, each as for `closest_pair`.
@@ -283,7 +305,7 @@ class PairQueries:
         array([1., 2., 3.])
         """
         matrices = rigid_transforms(transforms, "transforms")
-        return self._closest_pairs(other, matrices, max_distance, certified, fields, out, threads, progress)
+        return self._closest_pairs(other, matrices, max_distance, certified, solid, fields, out, threads, progress)
 
     def _closest_pairs(
         self,
@@ -291,6 +313,7 @@ class PairQueries:
         matrices: NDArray[np.float64] | None,
         max_distance: float | None,
         certified: bool,
+        solid: bool,
         fields: str | Sequence[str] | None,
         out: Out,
         threads: int | None,
@@ -300,8 +323,13 @@ class PairQueries:
         arrays = outputs(fields, shape, out, PAIR_FIELDS, ("distance", "primitives"))
         raw, largest = _raw_of(other), _largest(max_distance)
         count = thread_count(threads, self._threads)
+        if solid:
+            if certified:
+                raise ValueError("certified: solids have no certified answers")
+            self._warn_of_open_surface(threads)
+            other._warn_of_open_surface(threads)
         with callback(progress, "answering", "motions") as call:
-            pairs = self._raw.closest_pairs(raw, _flat(matrices), largest, certified, count, call)
+            pairs = self._raw.closest_pairs(raw, _flat(matrices), largest, certified, solid, count, call)
         pairs.fill(flat(arrays))
         return ClosestPairs(arrays)
 

@@ -176,7 +176,11 @@ fn of_scene<T: Real>(
         "kdop-14": KdopTree<T, &Soup<T>, 14>, rays shapes scenes;
         "octree": OctreeIndex<T, &Soup<T>>,;
         "p2m": P2mIndex<T, &Soup<T>>,;
-        "paper": PaperIndex<T, &Soup<T>>,;
+    }
+    // This index is not saved.
+    let paper = PaperIndex::new(soup).expect("valid");
+    for isa in Isa::available() {
+        asked.points(&paper.clone().with_isa(isa), &format!("paper ({isa})"));
     }
 }
 

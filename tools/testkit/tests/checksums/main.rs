@@ -19,13 +19,12 @@ use std::fmt::Write;
 /// The file with the checksums, which is compiled in for machines without files, as the saved indexes are.
 const FILE: &str = include_str!("checksums.txt");
 /// The names and the bytes of saved indexes of the smallest scene.
-const SAVED: [(&str, &[u8]); 6] = [
+const SAVED: [(&str, &[u8]); 5] = [
     ("aabb.p2m", include_bytes!("aabb.p2m")),
     ("kdop-6.p2m", include_bytes!("kdop-6.p2m")),
     ("kdop-14.p2m", include_bytes!("kdop-14.p2m")),
     ("octree.p2m", include_bytes!("octree.p2m")),
     ("p2m.p2m", include_bytes!("p2m.p2m")),
-    ("paper.p2m", include_bytes!("paper.p2m")),
 ];
 /// The folder of these files.
 #[cfg(not(target_family = "wasm"))]

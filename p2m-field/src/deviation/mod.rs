@@ -1,9 +1,9 @@
-//! Statistics of deviations: how far the points of a scan are from a scene.
+//! Deviations: how far the points of a scan are from a scene, with statistics, counts and filters.
 //!
 //! A deviation is a distance, which is positive outside and negative inside where the scene has signs. So the module is
 //! beside [`sign`](crate::sign), which decides them: [`SignedDistance::closest_points`] answers the points of a scan as
 //! a batch, and [`Signed::distance`] is the deviation of each. Without signs, deviations are the distances of
-//! [`p2m_core::batch::distances`].
+//! [`p2m_core::batch::distances`]. Scenes of points have signs by [`LocalPlanes`].
 //!
 //! ```
 //! use nalgebra::Point3;
@@ -27,6 +27,16 @@
 //!
 //! [`SignedDistance::closest_points`]: crate::sign::SignedDistance::closest_points
 //! [`Signed::distance`]: crate::sign::Signed::distance
+
+mod counts;
+mod isolated;
+mod planes;
+mod vertices;
+
+pub use counts::{HistogramBin, OutsideTolerance, bands, histogram, outside};
+pub use isolated::isolated_points;
+pub use planes::LocalPlanes;
+pub use vertices::{on_vertices, primitives_of_positions};
 
 use p2m_core::Real;
 use p2m_core::engine::double_double::Double;
@@ -74,16 +84,6 @@ pub struct NamedStatistic {
     pub label: String,
     /// The number, in the unit of the deviations.
     pub value: f64,
-}
-
-/// The numbers of deviations outside of a tolerance.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-#[non_exhaustive]
-pub struct OutsideTolerance {
-    /// The number of deviations above the tolerance.
-    pub above: usize,
-    /// The number of deviations below the negative tolerance.
-    pub below: usize,
 }
 
 impl DeviationStatistics {
@@ -176,15 +176,6 @@ impl DeviationStatistics {
     pub fn usual_limit(&self) -> f64 {
         self.absolute_percentiles[5]
     }
-}
-
-/// Counts the deviations outside of a tolerance, which itself is inside. NaN is on no side.
-#[must_use]
-pub fn outside<T: Real>(deviations: &[T], tolerance: f64) -> OutsideTolerance {
-    let count = |is_outside: fn(f64, f64) -> bool| {
-        deviations.iter().map(|x| x.to_f64()).filter(|x| x.is_finite() && is_outside(*x, tolerance)).count()
-    };
-    OutsideTolerance { above: count(|x, limit| x > limit), below: count(|x, limit| x < -limit) }
 }
 
 /// Returns the largest power of two that is at most a finite number, or the smallest normal one.
@@ -297,8 +288,6 @@ mod tests {
         let values = [f64::NAN, 1.0, f64::INFINITY, -3.0, f64::NEG_INFINITY];
         let found = DeviationStatistics::of(&values);
         assert_eq!((found.count, found.missing, found.mean, found.min, found.max), (2, 3, -1.0, -3.0, 1.0));
-        assert_eq!(outside(&values, 1.0), OutsideTolerance { above: 0, below: 1 });
-        assert_eq!(outside(&values, 0.5), OutsideTolerance { above: 1, below: 1 });
         let nothing = DeviationStatistics::of::<f64>(&[]);
         assert!(nothing.count == 0 && nothing.mean.is_nan() && nothing.percentiles[3].is_nan());
         assert_eq!(DeviationStatistics::of(&[0.5f32, 0.25]).mean, 0.375);

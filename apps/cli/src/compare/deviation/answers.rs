@@ -1,0 +1,148 @@
+//! The answers to the points of a scan: the closest point and the deviation of each.
+
+use crate::answers::blocks::{BlockSize, QueryStream, Steps, answer_all};
+use crate::answers::table::{AnswerEncoder, AnswerRecord, Table};
+use crate::index::sign_rule::SignedIndex;
+use crate::io::output::Output;
+use crate::io::streams::Streams;
+use crate::query::answers::ClosestAnswer;
+use nalgebra::Point3;
+use p2m_backends::AnyIndex;
+use p2m_core::batch::{self, BatchOptions};
+use p2m_core::{Closest, QueryOptions};
+use p2m_field::deviation::LocalPlanes;
+use rayon::ThreadPool;
+use rayon::prelude::*;
+use std::time::Duration;
+
+/// A rule of signs of deviations.
+pub(super) enum Signs<'a> {
+    /// There are none: deviations are distances.
+    None,
+    /// The inside of a surface.
+    Surface(SignedIndex<'a>),
+    /// The planes of a cloud of points, from which deviations are measured.
+    Planes(LocalPlanes),
+}
+
+impl Signs<'_> {
+    /// Returns the name of the rule, if there is one.
+    pub(super) fn rule(&self) -> Option<&'static str> {
+        match self {
+            Self::None => None,
+            Self::Surface(signed) => Some(signed.rule().name()),
+            Self::Planes(_) => Some("planes"),
+        }
+    }
+
+    fn deviation(&self, point: &Point3<f64>, answer: Closest<f64>) -> Option<f64> {
+        match self {
+            Self::None => Some(answer.distance),
+            Self::Surface(signed) => signed.with_sign(point, answer).distance(),
+            Self::Planes(planes) => Some(planes.deviation(point, &answer)),
+        }
+    }
+}
+
+/// Which points of a scan have a deviation, and which of these a table has.
+pub(super) struct Filter {
+    /// Points that are left out, by their numbers; none if there are no numbers.
+    pub(super) left_out: Vec<bool>,
+    /// The largest distance of a point that counts.
+    pub(super) max_distance: f64,
+    /// If it is not negative, the table has the points with larger deviations alone.
+    pub(super) beyond: f64,
+}
+
+impl Filter {
+    pub(super) fn is_left_out(&self, number: usize) -> bool {
+        self.left_out.get(number).is_some_and(|is| *is)
+    }
+
+    /// Tells whether a table has a deviation.
+    pub(super) fn is_in_table(&self, deviation: f64) -> bool {
+        self.beyond < 0.0 || deviation.abs() > self.beyond
+    }
+}
+
+/// The answers to the points of a scan, and where they come from.
+pub(super) struct Answers<'a> {
+    pub(super) index: &'a dyn AnyIndex,
+    pub(super) signs: &'a Signs<'a>,
+    pub(super) filter: &'a Filter,
+    /// The deviation of each point, or NaN.
+    pub(super) values: Vec<f64>,
+    /// The closest primitive of each point, or `u32::MAX`.
+    pub(super) primitives: Vec<u32>,
+    /// The weights of the vertices of each primitive, if there is a list.
+    pub(super) barycentric: Option<Vec<[f64; 3]>>,
+}
+
+impl Answers<'_> {
+    /// Answers points as [`add`](Self::add) does, and writes their table.
+    pub(super) fn add_to_table(
+        &mut self,
+        streams: &Streams,
+        pool: &ThreadPool,
+        points: &[Point3<f64>],
+        encoder: &AnswerEncoder<'_>,
+        output: &mut Output<'_>,
+    ) -> anyhow::Result<Duration> {
+        let cannot_write = output.cannot_write();
+        let failed = |error| anyhow::Error::new(error).context(cannot_write.clone());
+        let count = (self.filter.beyond < 0.0).then_some(points.len() as u64);
+        let mut table = Table::new(output, encoder.header(), count).map_err(failed)?;
+        let encode = |record: &AnswerRecord<'_>, out: &mut Vec<u8>| encoder.encode(record, out);
+        let write = |count, records: &[u8]| table.write(count, records).map_err(failed);
+        let time = self.add(streams, pool, points, encode, write)?;
+        table.finish().map_err(failed)?;
+        Ok(time)
+    }
+
+    /// Answers points on all threads of a pool, and writes a record of each. Returns the time that the answers took.
+    pub(super) fn add(
+        &mut self,
+        streams: &Streams,
+        pool: &ThreadPool,
+        points: &[Point3<f64>],
+        encode: impl Fn(&AnswerRecord<'_>, &mut Vec<u8>) + Sync,
+        write: impl FnMut(u64, &[u8]) -> anyhow::Result<()>,
+    ) -> anyhow::Result<Duration> {
+        let Self { index, signs, filter, values, primitives, barycentric } = self;
+        let with_deviation = |(point, answer): (&Point3<f64>, Option<Closest<f64>>)| {
+            let deviation = answer.and_then(|answer| signs.deviation(point, answer));
+            (answer, deviation.unwrap_or(f64::NAN))
+        };
+        let options = QueryOptions::default().with_max_distance(filter.max_distance);
+        let counted = |number: usize, (answer, deviation): &ClosestAnswer| {
+            if filter.is_left_out(number) { (None, f64::NAN) } else { (*answer, *deviation) }
+        };
+        let steps = Steps {
+            answer: |points: &[Point3<f64>]| {
+                let mut answers = vec![None; points.len()];
+                batch::closest_points_into(*index, points, &options, &BatchOptions::default(), &mut answers);
+                Ok(points.par_iter().zip(answers).map(with_deviation).collect())
+            },
+            encode: |number, query: &_, answer: &ClosestAnswer, out: &mut _| {
+                let (answer, deviation) = counted(usize::try_from(number).unwrap_or(usize::MAX), answer);
+                if !filter.is_in_table(deviation) {
+                    return 0;
+                }
+                encode(&AnswerRecord { number, query, answer: answer.as_ref(), signed_distance: deviation }, out);
+                1
+            },
+            take: |_: &_, answer: &ClosestAnswer| {
+                let (answer, deviation) = counted(values.len(), answer);
+                values.push(deviation);
+                primitives.push(answer.map_or(u32::MAX, |answer| answer.primitive.number()));
+                if let Some(all) = barycentric {
+                    all.push(answer.map_or([0.0; 3], |answer| answer.barycentric));
+                }
+            },
+            write,
+        };
+        let iter = points.iter().copied();
+        let queries = QueryStream { name: "points", count: points.len() as u64, iter, block_size: BlockSize::Adaptive };
+        answer_all(streams, pool, queries, steps)
+    }
+}
