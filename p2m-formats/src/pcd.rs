@@ -244,7 +244,7 @@ mod tests {
     fn runs_repeat_what_came_before() {
         // Three bytes as they are, then seven that begin two bytes back, then twelve.
         let data = [2, b'a', b'b', b'c', 5 << 5, 1, 7 << 5, 3, 9];
-        assert_eq!(expand(&data, 22).unwrap(), b"abcbcbcbcbabcbcbcbcbab"[..].iter().copied().collect::<Vec<_>>());
+        assert_eq!(expand(&data, 22).unwrap(), b"abcbcbcbcbabcbcbcbcbab".to_vec());
         assert_eq!(expand(&data, 21), Err(6));
         assert_eq!(expand(&data, 23), Err(9));
         assert_eq!(expand(&data[..8], 22), Err(6));
