@@ -383,6 +383,8 @@ mod tests {
                 }
             }
         }
-        assert!(cases.have_more_than(2_000, ties) && cases.have_more_than(20_000, close), "{ties} {close}");
+        // Each instruction set answers all queries.
+        let sets = Isa::available().len();
+        assert!(cases.have_more_than(670 * sets, ties) && cases.have_more_than(6_700 * sets, close), "{ties} {close}");
     }
 }

@@ -36,6 +36,7 @@ __all__ = [
     "load_bytes",
     "main",
     "rays",
+    "read_points",
     "sample_box",
     "sample_surface",
     "scene_page",
