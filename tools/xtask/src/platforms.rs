@@ -28,6 +28,9 @@ const WINDOWS: &str = TARGETS[0];
 /// The linker for it, and the program that runs what it links: packages of Debian have both.
 const LINKER: &str = "x86_64-w64-mingw32-gcc";
 const WINE: &str = "wine";
+/// A library that old versions of wine lack, and its source.
+const RANDOM_LIBRARY: &str = "bcryptprimitives.dll";
+const RANDOM_SOURCE: &str = "tools/xtask/src/bcryptprimitives.c";
 
 /// Checks some targets, or all. With `--wine` it runs tests for Windows instead.
 pub(crate) fn check(arguments: &[String]) -> Outcome {
@@ -71,21 +74,28 @@ fn run_under_wine() -> Outcome {
             "there is no {LINKER} or no {WINE} (apt-get install gcc-mingw-w64-x86-64 wine64)"
         ));
     }
+    let folder = absolute_target_folder()?.join("wine");
+    std::fs::create_dir_all(&folder).map_err(|error| format!("{}: {error}", folder.display()))?;
+    let library = folder.join(RANDOM_LIBRARY);
+    start(Command::new(LINKER).args(["-shared", RANDOM_SOURCE, "-ladvapi32", "-o"]).arg(library))?;
+    let wine = |command: &mut Command| {
+        // Wine finds libraries there, in its own form of paths, and prints messages of its own unless this is set.
+        command.env("WINEPATH", format!("Z:{}", folder.display())).env("WINEDEBUG", "-all");
+    };
     let cargo = |arguments: &[&str]| {
         let mut cargo = cargo(WINDOWS, arguments)?;
-        // Wine prints messages of its own unless this is set.
-        cargo.env("CARGO_TARGET_X86_64_PC_WINDOWS_GNU_RUNNER", WINE).env("WINEDEBUG", "-all");
+        wine(cargo.env("CARGO_TARGET_X86_64_PC_WINDOWS_GNU_RUNNER", WINE));
         Ok::<_, String>(cargo)
     };
     start(&mut cargo(&["test", "--locked", "--package", "p2m-testkit", "--test", "checksums"])?)?;
     let agreement = ["test", "--locked", "--package", "p2m", "--test", "all", "--"];
     start(cargo(&agreement)?.args(AGREEMENT))?;
     start(&mut cargo(&["build", "--locked", "--package", "p2m-cli"])?)?;
-    let folder = if has_standard_library(WINDOWS) { "" } else { "platforms" };
-    let program = absolute_target_folder()?.join(folder).join(WINDOWS).join("debug/p2m.exe");
+    let subfolder = if has_standard_library(WINDOWS) { "" } else { "platforms" };
+    let program = absolute_target_folder()?.join(subfolder).join(WINDOWS).join("debug/p2m.exe");
     compare_outputs(|| {
-        let mut wine = Command::new(WINE);
-        wine.env("WINEDEBUG", "-all").arg(&program);
-        wine
+        let mut program_under_wine = Command::new(WINE);
+        wine(program_under_wine.arg(&program));
+        program_under_wine
     })
 }
