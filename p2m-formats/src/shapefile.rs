@@ -128,10 +128,16 @@ fn polygons<P>(map: &mut Map, rings: &[PolygonRing<P>], position: impl Fn(&P) ->
     let ring = |ring: &PolygonRing<P>| ring.points().iter().map(&position).collect::<Vec<_>>();
     let is_outer = |ring: &&PolygonRing<P>| matches!(ring, PolygonRing::Outer(_));
     let mut polygons: Vec<_> = rings.iter().filter(is_outer).map(|outer| vec![ring(outer)]).collect();
+    let outer_count = polygons.len();
     for hole in rings.iter().filter(|ring| !is_outer(ring)).map(ring) {
-        let holds = |polygon: &&mut Vec<Vec<_>>| hole.first().is_some_and(|corner| surrounds(&polygon[0], *corner));
-        match polygons.iter_mut().find(holds) {
-            Some(polygon) => polygon.push(hole),
+        // Corners of a hole may touch the outer ring, and there may be an island in a lake.
+        let corners_within = |outer: &[[f64; 3]]| hole.iter().filter(|corner| surrounds(outer, **corner)).count();
+        let candidates = polygons[..outer_count].iter_mut().map(|polygon| (corners_within(&polygon[0]), polygon));
+        let nearest = candidates
+            .filter(|(count, _)| *count > 0)
+            .max_by(|(a, p), (b, q)| a.cmp(b).then(doubled_area(&q[0]).total_cmp(&doubled_area(&p[0]))));
+        match nearest {
+            Some((_, polygon)) => polygon.push(hole),
             // A ring in the wrong direction is no hole.
             None => polygons.push(vec![hole]),
         }
@@ -139,14 +145,22 @@ fn polygons<P>(map: &mut Map, rings: &[PolygonRing<P>], position: impl Fn(&P) ->
     polygons.iter().try_for_each(|polygon| map.polygon(polygon))
 }
 
+/// Returns twice the area of a ring.
+fn doubled_area(ring: &[[f64; 3]]) -> f64 {
+    let [x, y, _] = ring.first().copied().unwrap_or_default();
+    ring.windows(2).map(|w| (w[0][0] - x) * (w[1][1] - y) - (w[1][0] - x) * (w[0][1] - y)).sum::<f64>().abs()
+}
+
 fn add_patch(map: &mut Map, patch: &Patch) -> Result<(), Reason> {
     let positions: Vec<_> = patch.points().iter().map(raised).collect();
     let vertices = map.vertices(&positions)?;
     let source = map.source;
     match patch {
-        Patch::TriangleStrip(_) => {
-            vertices.windows(3).try_for_each(|t| map.sink.push_from(Element::Triangle([t[0], t[1], t[2]]), source))
-        }
+        // Every other triangle of a strip has the other direction.
+        Patch::TriangleStrip(_) => vertices.windows(3).enumerate().try_for_each(|(i, t)| {
+            let [b, c] = if i % 2 == 0 { [t[1], t[2]] } else { [t[2], t[1]] };
+            map.sink.push_from(Element::Triangle([t[0], b, c]), source)
+        }),
         Patch::TriangleFan(_) => vertices
             .get(1..)
             .unwrap_or_default()
@@ -159,5 +173,18 @@ fn add_patch(map: &mut Map, patch: &Patch) -> Result<(), Reason> {
         Patch::OuterRing(_) | Patch::FirstRing(_) | Patch::Ring(_) => {
             map.sink.polygon(&vertices[..vertices.len().saturating_sub(1)], source)
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_area_of_a_ring_does_not_depend_on_its_direction() {
+        let mut ring = vec![[5.0, 5.0, 0.0], [7.0, 5.0, 0.0], [7.0, 8.0, 0.0], [5.0, 8.0, 0.0], [5.0, 5.0, 0.0]];
+        assert_eq!(doubled_area(&ring), 12.0);
+        ring.reverse();
+        assert_eq!(doubled_area(&ring), 12.0);
     }
 }

@@ -43,7 +43,7 @@ pub struct LocalPlanes {
 struct Plane {
     /// The mean of the neighbourhood, relative to the point.
     centre: Vector3<f64>,
-    /// The unit normal; zero where all neighbours are at one place.
+    /// The unit normal; zero where all neighbours are at one place or along a line.
     normal: Vector3<f64>,
     /// The distance from the point to the farthest of its neighbours.
     radius: f64,
@@ -77,7 +77,7 @@ impl LocalPlanes {
     }
 
     /// Returns the deviation of a query with the closest point `closest` of the cloud: positive on the side of the
-    /// normal. It is NaN where all neighbours are at one place.
+    /// normal. It is NaN where all neighbours are at one place, or along a line, which has no sides.
     ///
     /// # Panics
     /// If the primitive is not one of the cloud.
@@ -93,6 +93,9 @@ impl LocalPlanes {
     }
 }
 
+/// The least variance across a line of neighbours, relative to that along it, with which they have a plane.
+const LEAST_WIDTH: f64 = 1e-3;
+
 /// Returns the plane through a point and its neighbours, of which it is one, with either normal.
 fn plane(point: &Point3<f64>, neighbours: &[Closest<f64>]) -> Plane {
     let count = neighbours.len() as f64;
@@ -107,7 +110,13 @@ fn plane(point: &Point3<f64>, neighbours: &[Closest<f64>]) -> Plane {
         sum + offset * offset.transpose()
     });
     let eigen = SymmetricEigen::new(covariance);
-    Plane { centre, normal: eigen.eigenvectors.column(eigen.eigenvalues.imin()).into_owned(), radius }
+    let least = eigen.eigenvalues.imin();
+    let (most, middle) =
+        (eigen.eigenvalues.max(), eigen.eigenvalues.sum() - eigen.eigenvalues.max() - eigen.eigenvalues[least]);
+    if middle <= LEAST_WIDTH * most {
+        return Plane { centre, normal: Vector3::zeros(), radius };
+    }
+    Plane { centre, normal: eigen.eigenvectors.column(least).into_owned(), radius }
 }
 
 /// A plane that waits to agree with one that has its final normal.
@@ -187,6 +196,12 @@ mod tests {
         let index = AabbTree::new(&cloud).unwrap();
         let planes = LocalPlanes::new(&cloud, &index).unwrap();
         queries.iter().map(|query| planes.deviation(query, &index.closest_point(query).unwrap())).collect()
+    }
+
+    #[test]
+    fn points_along_a_line_have_no_sides() {
+        let pole = (0..200).map(|i| Point3::new(0.0, 0.0, f64::from(i) * 0.1)).collect();
+        assert!(deviations(pole, &[Point3::new(0.03, 0.0, 5.02)])[0].is_nan());
     }
 
     #[test]

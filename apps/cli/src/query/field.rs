@@ -255,7 +255,7 @@ impl WrittenSurface {
     fn text(&self) -> String {
         let OffsetSurface { soup, vertex_error, triangle_error, .. } = &self.surface;
         let closed = match (soup.is_empty(), self.is_closed) {
-            (true, _) => "empty: no point has this distance",
+            (true, _) => "empty: no point of the grid is nearer, or all are; try a higher --resolution, or --signed",
             (_, true) => "closed",
             (_, false) => "not closed",
         };
