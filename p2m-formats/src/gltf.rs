@@ -3,7 +3,7 @@
 //! The crate gltf parses and validates the description. Containers and the numbers in buffers are read here, because
 //! that crate trusts lengths.
 
-use crate::sink::{Sink, moved};
+use crate::sink::{Sink, fan, moved, strip};
 use crate::{File, sink};
 use base64::Engine;
 use base64::engine::general_purpose::STANDARD;
@@ -239,15 +239,7 @@ fn push(sink: &mut Sink, mode: Mode, corners: &[u32]) -> Result<(), Reason> {
             }
         }
         Mode::Triangles => corners.chunks_exact(3).try_for_each(|t| sink.push(Element::Triangle([t[0], t[1], t[2]]))),
-        // Every other triangle of a strip has the other direction.
-        Mode::TriangleStrip => (0..).zip(corners.windows(3)).try_for_each(|(i, t)| {
-            let [b, c] = if i % 2 == 0 { [t[1], t[2]] } else { [t[2], t[1]] };
-            sink.push(Element::Triangle([t[0], b, c]))
-        }),
-        Mode::TriangleFan => corners
-            .get(1..)
-            .unwrap_or_default()
-            .windows(2)
-            .try_for_each(|t| sink.push(Element::Triangle([corners[0], t[0], t[1]]))),
+        Mode::TriangleStrip => strip(corners).try_for_each(|triangle| sink.push(triangle)),
+        Mode::TriangleFan => fan(corners).try_for_each(|triangle| sink.push(triangle)),
     }
 }

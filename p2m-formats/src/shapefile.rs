@@ -2,8 +2,8 @@
 //! they are joined with the table of attributes.
 
 use crate::features::{Map, surrounds};
+use crate::sink::{fan, strip};
 use crate::{File, wkt};
-use p2m_core::Element;
 use p2m_mixed::{FileLocation, ReadError, Reason, Scene};
 use shapefile::record::traits::HasXY;
 use shapefile::{Patch, PointZ, PolygonRing, ReadableShape, Shape};
@@ -13,6 +13,8 @@ use std::io::Cursor;
 const HEADER_BYTES: usize = 100;
 /// The first four bytes of a file, as a number.
 const FILE_CODE: u32 = 9994;
+/// The largest number of corners of a hole that decide which ring it is in.
+const MAX_TESTED_CORNERS: usize = 8;
 
 pub(crate) fn read(file: &File<'_>) -> Result<Scene, ReadError> {
     if u32::from_be_bytes(file.array(0)?) != FILE_CODE {
@@ -130,12 +132,14 @@ fn polygons<P>(map: &mut Map, rings: &[PolygonRing<P>], position: impl Fn(&P) ->
     let mut polygons: Vec<_> = rings.iter().filter(is_outer).map(|outer| vec![ring(outer)]).collect();
     let outer_count = polygons.len();
     for hole in rings.iter().filter(|ring| !is_outer(ring)).map(ring) {
-        // Corners of a hole may touch the outer ring, and there may be an island in a lake.
-        let corners_within = |outer: &[[f64; 3]]| hole.iter().filter(|corner| surrounds(outer, **corner)).count();
+        // Corners of a hole may touch the outer ring, and there may be an island in a lake. A few corners tell, and more
+        // would take long in large files.
+        let corners = || hole.iter().step_by(hole.len().div_ceil(MAX_TESTED_CORNERS).max(1));
+        let corners_within = |outer: &[[f64; 3]]| corners().filter(|corner| surrounds(outer, **corner)).count();
         let candidates = polygons[..outer_count].iter_mut().map(|polygon| (corners_within(&polygon[0]), polygon));
         let nearest = candidates
             .filter(|(count, _)| *count > 0)
-            .max_by(|(a, p), (b, q)| a.cmp(b).then(doubled_area(&q[0]).total_cmp(&doubled_area(&p[0]))));
+            .max_by(|(a, p), (b, q)| a.cmp(b).then_with(|| doubled_area(&q[0]).total_cmp(&doubled_area(&p[0]))));
         match nearest {
             Some((_, polygon)) => polygon.push(hole),
             // A ring in the wrong direction is no hole.
@@ -156,16 +160,8 @@ fn add_patch(map: &mut Map, patch: &Patch) -> Result<(), Reason> {
     let vertices = map.vertices(&positions)?;
     let source = map.source;
     match patch {
-        // Every other triangle of a strip has the other direction.
-        Patch::TriangleStrip(_) => vertices.windows(3).enumerate().try_for_each(|(i, t)| {
-            let [b, c] = if i % 2 == 0 { [t[1], t[2]] } else { [t[2], t[1]] };
-            map.sink.push_from(Element::Triangle([t[0], b, c]), source)
-        }),
-        Patch::TriangleFan(_) => vertices
-            .get(1..)
-            .unwrap_or_default()
-            .windows(2)
-            .try_for_each(|t| map.sink.push_from(Element::Triangle([vertices[0], t[0], t[1]]), source)),
+        Patch::TriangleStrip(_) => strip(&vertices).try_for_each(|triangle| map.sink.push_from(triangle, source)),
+        Patch::TriangleFan(_) => fan(&vertices).try_for_each(|triangle| map.sink.push_from(triangle, source)),
         Patch::InnerRing(_) => {
             map.sink.builder.skipped.add(b"hole of a patch", 1);
             Ok(())
@@ -179,6 +175,42 @@ fn add_patch(map: &mut Map, patch: &Patch) -> Result<(), Reason> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use shapefile::Point;
+
+    /// Returns a square around a point, with its first corner on the right.
+    fn square([x, y]: [f64; 2], half: f64) -> Vec<Point> {
+        [[half, 0.0], [0.0, half], [-half, 0.0], [0.0, -half], [half, 0.0]]
+            .map(|[a, b]| Point::new(x + a, y + b))
+            .into()
+    }
+
+    /// Returns the area of the triangles of polygons, and the number of triangles.
+    fn area(rings: &[PolygonRing<Point>]) -> (f64, usize) {
+        let mut map = Map::new(0);
+        polygons(&mut map, rings, flat).unwrap();
+        let soup = map.sink.finish().soup;
+        let of = |t: &[u32; 3]| {
+            let [a, b, c] = t.map(|i| soup.positions()[i as usize]);
+            (b - a).cross(&(c - a)).norm() / 2.0
+        };
+        (soup.triangles().iter().map(of).sum(), soup.triangles().len())
+    }
+
+    #[test]
+    fn holes_are_in_the_smallest_ring_around_them() {
+        let (outer, inner) = (PolygonRing::Outer, PolygonRing::Inner);
+        // The areas of the squares are twice the square of half their diagonal.
+        let island = [outer(square([0.0; 2], 10.0)), inner(square([0.0; 2], 8.0)), outer(square([0.0; 2], 6.0))];
+        assert_eq!(area(&island).0, 200.0 - 128.0 + 72.0);
+        let pond = [&island[..], &[inner(square([0.0; 2], 4.0))]].concat();
+        let reversed: Vec<_> = pond.iter().rev().cloned().collect();
+        assert_eq!([area(&pond).0, area(&reversed).0], [200.0 - 128.0 + 72.0 - 32.0; 2]);
+        // The first corner of the hole is one of the ring.
+        let touching = [outer(square([0.0; 2], 4.0)), inner(square([3.0, 0.0], 1.0))];
+        assert_eq!(area(&touching).0, 32.0 - 2.0);
+        // A ring in the wrong direction is a polygon.
+        assert_eq!(area(&[inner(square([0.0; 2], 1.0))]), (2.0, 2));
+    }
 
     #[test]
     fn the_area_of_a_ring_does_not_depend_on_its_direction() {

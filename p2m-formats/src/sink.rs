@@ -100,3 +100,29 @@ impl Sink {
 pub(crate) fn moved(matrix: &Matrix4<f64>, position: [f64; 3]) -> [f64; 3] {
     matrix.transform_point(&Point3::from(position)).coords.into()
 }
+
+/// Returns the triangles of a strip. Every other one has the other direction, so all face the same side.
+pub(crate) fn strip(corners: &[u32]) -> impl Iterator<Item = Element> {
+    (0..).zip(corners.windows(3)).map(|(i, t)| {
+        let [b, c] = if i % 2 == 0 { [t[1], t[2]] } else { [t[2], t[1]] };
+        Element::Triangle([t[0], b, c])
+    })
+}
+
+/// Returns the triangles of a fan, which share its first corner.
+pub(crate) fn fan(corners: &[u32]) -> impl Iterator<Item = Element> {
+    corners.get(1..).unwrap_or_default().windows(2).map(|t| Element::Triangle([corners[0], t[0], t[1]]))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn strips_and_fans_face_one_side() {
+        let triangles = |all: &[[u32; 3]]| all.iter().copied().map(Element::Triangle).collect::<Vec<_>>();
+        assert_eq!(strip(&[0, 1, 2, 3, 4]).collect::<Vec<_>>(), triangles(&[[0, 1, 2], [1, 3, 2], [2, 3, 4]]));
+        assert_eq!(fan(&[0, 1, 2, 3]).collect::<Vec<_>>(), triangles(&[[0, 1, 2], [0, 2, 3]]));
+        assert_eq!((strip(&[0, 1]).count(), fan(&[]).count(), fan(&[0]).count()), (0, 0, 0));
+    }
+}

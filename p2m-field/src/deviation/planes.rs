@@ -110,13 +110,12 @@ fn plane(point: &Point3<f64>, neighbours: &[Closest<f64>]) -> Plane {
         sum + offset * offset.transpose()
     });
     let eigen = SymmetricEigen::new(covariance);
-    let least = eigen.eigenvalues.imin();
-    let (most, middle) =
-        (eigen.eigenvalues.max(), eigen.eigenvalues.sum() - eigen.eigenvalues.max() - eigen.eigenvalues[least]);
-    if middle <= LEAST_WIDTH * most {
-        return Plane { centre, normal: Vector3::zeros(), radius };
-    }
-    Plane { centre, normal: eigen.eigenvectors.column(least).into_owned(), radius }
+    let mut ascending = [0, 1, 2];
+    ascending.sort_unstable_by(|a, b| eigen.eigenvalues[*a].total_cmp(&eigen.eigenvalues[*b]));
+    let [least, middle, most] = ascending;
+    let is_line = eigen.eigenvalues[middle] <= LEAST_WIDTH * eigen.eigenvalues[most];
+    let normal = if is_line { Vector3::zeros() } else { eigen.eigenvectors.column(least).into_owned() };
+    Plane { centre, normal, radius }
 }
 
 /// A plane that waits to agree with one that has its final normal.

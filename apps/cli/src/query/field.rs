@@ -45,8 +45,8 @@ parity: a point is inside if a ray crosses the surface an odd number of times. D
 leaves the sign of an open surface undecided.
 
 --iso writes a surface instead of the field: the points at this distance from the scene, inside for negative distances \
-with --signed, as a closed triangle mesh. The grid covers it by itself. Vertices have the distance exactly, and the \
-report says how far flat triangles miss it.
+with --signed, as a closed triangle mesh. The grid covers it by itself. The report has the largest \
+errors at vertices and at the middles of triangles.
 
 Examples:
   p2m field bunny.obj --resolution 256 --signed --out bunny.vti --slice bunny.png
