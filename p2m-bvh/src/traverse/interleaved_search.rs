@@ -187,7 +187,7 @@ pub struct InterleavedSearch<'a, V: VolumeNodes> {
 pub(crate) type EvaluateSearchFn<'a> = &'a dyn Fn(usize, &mut BestF64, PrimitiveId, f64);
 
 /// A factor for bounds that are computed in f64 with a few roundings of their own.
-const ROUND_UP_F64: f64 = 1.0 + 4.0 * f64::EPSILON;
+pub(super) const ROUND_UP_F64: f64 = 1.0 + 4.0 * f64::EPSILON;
 
 impl<'a, V: VolumeNodes> InterleavedSearch<'a, V> {
     /// Creates the state of searches that have not begun. `template` is a collector without a candidate.

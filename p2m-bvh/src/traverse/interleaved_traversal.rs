@@ -3,13 +3,17 @@
 //! In each round every search takes the nearest of its pending children and requests its memory. Then all nodes are
 //! bounded, and then all packets are filtered, so the memory has arrived and the loops have no branch that depends on
 //! the kind of a child.
+//!
+//! Groups follow each other along a curve, so the last answer of a group limits the searches of the next one. The limits
+//! show which part of the tree the group needs at all, and its searches begin at the node that contains this part.
 
-use crate::traverse::interleaved_search::{InterleavedSearch, PacketVisit, SEARCHES};
+use crate::traverse::interleaved_search::{InterleavedSearch, PacketVisit, ROUND_UP_F64, SEARCHES};
 use crate::traverse::{SHORT_STACK_DEPTH, SHORT_STACK_LEN};
 use crate::tree::PacketTree;
 use crate::tree::node_ref::{NodeRef, WIDTH};
 use crate::tree::wide_node::{VolumeNodes, WideNode};
 use p2m_core::engine::simd::{EightLanes, InstructionSet, SimdKernel, lane_of_key, value_of_key};
+use p2m_core::engine::vector::{V3, norm_squared, power_of_two, sub};
 
 /// The pending children of a search.
 #[derive(Clone, Copy)]
@@ -23,9 +27,32 @@ struct Stack {
     next: NodeRef,
 }
 
+/// A query that was answered.
+#[derive(Clone, Copy)]
+struct Answered {
+    query: V3,
+    distance: f64,
+}
+
+impl Answered {
+    /// Returns an upper bound on the distance at another query: that of the triangle inequality, plus more than the
+    /// errors of both distances.
+    ///
+    /// A computed distance d errs by at most 8 u M, where M is the largest distance of a vertex of its primitive
+    /// (docs/proofs/accuracy.md, N1). The scene is in a cube with sides of at most 8 units, so M <= d + 14 units, and
+    /// both errors and the roundings here are below 2^-48 (d + 14 units).
+    #[inline(always)]
+    fn upper_bound_at(&self, query: &V3, unit: f64) -> f64 {
+        let distance = self.distance + norm_squared(sub(*query, self.query)).sqrt();
+        distance + (distance + 16.0 * unit) * power_of_two(-47)
+    }
+}
+
 /// The traversals of several searches. They are large, so a batch makes them once for all of its queries.
 pub struct InterleavedTraversal<V: VolumeNodes> {
     stacks: [Stack; SEARCHES],
+    /// A query of the last group, if it has an answer.
+    last: Option<Answered>,
     /// The query point of each search in the frame of the tree.
     queries: Vec<Option<<V::Node as WideNode>::Query>>,
 }
@@ -34,7 +61,7 @@ impl<V: VolumeNodes> InterleavedTraversal<V> {
     /// Creates traversals that have not begun, or returns `None` for a tree that is too deep for them.
     pub fn new(tree: &PacketTree<V>) -> Option<Self> {
         let stack = Stack { keys: [0; SHORT_STACK_LEN], parents: [0; SHORT_STACK_LEN], len: 0, next: NodeRef::NONE };
-        let walkers = || Self { stacks: [stack; SEARCHES], queries: Vec::with_capacity(SEARCHES) };
+        let walkers = || Self { stacks: [stack; SEARCHES], last: None, queries: Vec::with_capacity(SEARCHES) };
         (tree.depth <= SHORT_STACK_DEPTH && tree.root != NodeRef::NONE).then(walkers)
     }
 
@@ -42,6 +69,42 @@ impl<V: VolumeNodes> InterleavedTraversal<V> {
     #[inline(always)]
     pub fn search(&mut self, tree: &PacketTree<V>, several: &mut InterleavedSearch<'_, V>, count: usize) {
         tree.isa.run(SearchInTurns { walkers: self, tree, several, count });
+    }
+}
+
+impl<V: VolumeNodes> InterleavedTraversal<V> {
+    /// Limits the first `count` searches by the last answer, and returns the node at which they may begin: everything
+    /// within their limits is below it.
+    #[inline(always)]
+    fn limit<I: InstructionSet>(
+        &self,
+        tree: &PacketTree<V>,
+        several: &mut InterleavedSearch<'_, V>,
+        count: usize,
+    ) -> NodeRef {
+        let mut node = tree.root;
+        let Some(last) = self.last else { return node };
+        let centre = *several.query(count / 2);
+        let mut reach = 0.0;
+        for search in 0..count {
+            let query = *several.query(search);
+            let upper_bound = last.upper_bound_at(&query, tree.frame.unit);
+            several.limit_to(search, upper_bound);
+            // The bound at the centre is as far as the reach of this search from there.
+            let from_centre = Answered { query, distance: upper_bound }.upper_bound_at(&centre, tree.frame.unit);
+            reach = if from_centre > reach { from_centre } else { reach };
+        }
+        let Some(query) = V::Node::query(&tree.shared, &tree.frame, &centre) else { return node };
+        let limit = tree.frame.square_above(reach * reach * ROUND_UP_F64);
+        let mut keys = [0; WIDTH];
+        while !node.is_packet() {
+            let bounds: I::F32x8 = tree.nodes[node.number()].lower_bounds(&tree.shared, &query);
+            if bounds.sorted_keys(limit, &mut keys) != 1 {
+                break;
+            }
+            node = tree.nodes[node.number()].children()[lane_of_key(keys[0])];
+        }
+        node
     }
 }
 
@@ -60,7 +123,8 @@ impl<V: VolumeNodes> SimdKernel for SearchInTurns<'_, '_, V> {
     #[allow(clippy::cast_possible_truncation, reason = "at most sixteen searches")]
     fn run<I: InstructionSet>(self) {
         let Self { walkers, tree, several, count } = self;
-        let InterleavedTraversal { stacks, queries } = walkers;
+        let start = walkers.limit::<I>(tree, several, count);
+        let InterleavedTraversal { stacks, last, queries } = walkers;
         queries.clear();
         // The first `active_count` of these are the searches that go on.
         let mut active = [0u8; SEARCHES];
@@ -69,7 +133,7 @@ impl<V: VolumeNodes> SimdKernel for SearchInTurns<'_, '_, V> {
             let query = V::Node::query(&tree.shared, &tree.frame, several.query(i));
             active[active_count] = i as u8;
             active_count += usize::from(query.is_some());
-            (stack.len, stack.next) = (0, tree.root);
+            (stack.len, stack.next) = (0, start);
             if query.is_none() {
                 several.search_tree(i);
             }
@@ -119,5 +183,9 @@ impl<V: VolumeNodes> SimdKernel for SearchInTurns<'_, '_, V> {
             active_count = still_active;
         }
         several.evaluate_candidates();
+        *last = count.checked_sub(1).and_then(|search| {
+            let (distance, _) = several.minimums()[search].distance_and_primitive()?;
+            Some(Answered { query: *several.query(search), distance })
+        });
     }
 }
