@@ -10,8 +10,7 @@ use p2m_interception::{KdTreeLocator, OctreeIndex, OctreeOptions, P2mIndex, P2mO
 use p2m_kdop::{Directions, KdopOptions, KdopTree};
 use p2m_testkit::adapters::{ParryIndex, RstarIndex};
 use std::fmt::Display;
-use std::marker::PhantomData;
-use std::sync::Arc;
+use std::sync::{Arc, Mutex};
 
 type Scene = Arc<Soup<f64>>;
 
@@ -27,7 +26,8 @@ pub(crate) enum Way {
 struct Ours<T, I> {
     index: I,
     way: Way,
-    scalar: PhantomData<fn() -> T>,
+    /// The columns of batches, which a user has as well.
+    columns: Mutex<(Vec<T>, Vec<u32>)>,
 }
 
 impl<T: Scalar, I: ClosestPoint<T> + Sync> BenchIndex for Ours<T, I> {
@@ -53,15 +53,18 @@ impl<T: Scalar, I: ClosestPoint<T> + Sync> Ours<T, I> {
     where
         I: 'static,
     {
-        Box::new(Self { index, way, scalar: PhantomData })
+        Box::new(Self { index, way, columns: Mutex::default() })
     }
 
     fn batch(&self, queries: &[Point3<T>], answers: &mut [Answer]) {
-        let (mut distance, mut primitive) = (vec![T::round_from_f64(0.0); queries.len()], vec![0; queries.len()]);
-        let columns = ClosestColumns::default().with_distance(&mut distance).with_primitive(&mut primitive);
+        let mut columns = self.columns.lock().expect("no panic while it is locked");
+        let (distance, primitive) = &mut *columns;
+        distance.resize(queries.len(), T::round_from_f64(0.0));
+        primitive.resize(queries.len(), 0);
+        let columns = ClosestColumns::default().with_distance(distance).with_primitive(primitive);
         let one_thread = BatchOptions::default().with_parallel(false);
         batch::closest_columns_into(&self.index, queries, &QueryOptions::default(), &one_thread, columns);
-        for ((answer, distance), id) in answers.iter_mut().zip(distance).zip(primitive) {
+        for ((answer, distance), &mut id) in answers.iter_mut().zip(distance).zip(primitive) {
             let is_none = id == ClosestColumns::<T>::NO_PRIMITIVE;
             *answer = if is_none { Answer::NONE } else { Answer { distance: distance.to_f64(), id } };
         }
@@ -127,6 +130,11 @@ pub(crate) fn settings() -> Vec<Backend> {
         setting("octree-fine", None, OneByOne, octree(10.0)),
         setting("octree-batch-fine", None, Batch, octree(10.0)),
         setting("octree-batch-finest", None, Batch, octree(30.0)),
+        // The curve of time against memory, from 100 to 2,000 bytes per triangle.
+        setting("octree-batch-x0.1", None, Batch, octree(0.1)),
+        setting("octree-batch-x3", None, Batch, octree(3.0)),
+        setting("octree-batch-x100", None, Batch, octree(100.0)),
+        setting("octree-batch-x200", None, Batch, octree(200.0)),
         setting("octree-batch-avx2", avx2, Batch, octree(1.0)),
         setting("octree-batch-portable", portable, Batch, octree(1.0)),
         setting("p2m-avx2", avx2, OneByOne, p2m(p2m_options())),
