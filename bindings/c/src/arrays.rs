@@ -1,6 +1,6 @@
 //! Arrays of the caller.
 
-use crate::status::{Call, invalid};
+use crate::status::{Call, Failure, invalid};
 use std::ffi::{CStr, c_char, c_void};
 
 /// The type of the numbers of an array.
@@ -55,9 +55,7 @@ numbers! { f32: F32 f64: F64 u32: U32 u64: U64 }
 /// Returns the distance of rows in bytes, and checks that all of them are in the range of pointers.
 fn stride_of<R>(name: &str, data: *const c_void, count: usize, stride: usize, alignment: usize) -> Call<usize> {
     let stride = if stride == 0 { size_of::<R>() } else { stride };
-    if data.is_null() {
-        return Err(invalid(format!("{name}: the array is null")));
-    }
+    check_pointer(data, name)?;
     if !data.addr().is_multiple_of(alignment) || !stride.is_multiple_of(alignment) || stride < size_of::<R>() {
         let size = size_of::<R>();
         return Err(invalid(format!("{name}: the address or the stride does not fit rows of {size} bytes")));
@@ -210,7 +208,13 @@ impl Column {
 /// Fails if a pointer cannot point to a value. What it points to is not looked at.
 pub(crate) fn check_pointer<T>(pointer: *const T, name: &str) -> Call {
     let is_usable = !pointer.is_null() && pointer.is_aligned();
-    is_usable.then_some(()).ok_or_else(|| invalid(format!("{name}: the pointer is null or misaligned")))
+    is_usable.then_some(()).ok_or_else(|| fault(name, "the pointer is null or misaligned"))
+}
+
+/// Returns the failure for an argument. It is apart, so that checks which pass take few instructions.
+#[cold]
+fn fault(name: &str, what: &str) -> Failure {
+    invalid(format!("{name}: {what}"))
 }
 
 /// Returns what a pointer points to.
@@ -262,9 +266,7 @@ pub(crate) unsafe fn take_back<T>(pointer: *mut T) {
 /// # Safety
 /// A pointer that is not null has to point to a string that ends with a zero.
 pub(crate) unsafe fn text<'a>(pointer: *const c_char, name: &str) -> Call<&'a str> {
-    if pointer.is_null() {
-        return Err(invalid(format!("{name}: the string is null")));
-    }
+    check_pointer(pointer, name)?;
     // SAFETY: the pointer is not null, and the caller vouches for the rest.
     let text = unsafe { CStr::from_ptr(pointer) };
     text.to_str().map_err(|_| invalid(format!("{name}: the string is not UTF-8")))
@@ -272,7 +274,7 @@ pub(crate) unsafe fn text<'a>(pointer: *const c_char, name: &str) -> Call<&'a st
 
 /// Returns a largest distance, which is a number.
 pub(crate) fn length(length: f64, name: &str) -> Call<f64> {
-    if length.is_nan() { Err(invalid(format!("{name}: not a number"))) } else { Ok(length) }
+    if length.is_nan() { Err(fault(name, "not a number")) } else { Ok(length) }
 }
 
 /// Returns finite coordinates.
@@ -282,5 +284,5 @@ pub(crate) fn length(length: f64, name: &str) -> Call<f64> {
 pub(crate) unsafe fn point(pointer: *const f64, name: &str) -> Call<[f64; 3]> {
     // SAFETY: the caller vouches for the memory.
     let point = *unsafe { reference(pointer.cast::<[f64; 3]>(), name) }?;
-    if point.iter().all(|x| x.is_finite()) { Ok(point) } else { Err(invalid(format!("{name}: not finite"))) }
+    if point.iter().all(|x| x.is_finite()) { Ok(point) } else { Err(fault(name, "not finite")) }
 }

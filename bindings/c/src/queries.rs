@@ -147,10 +147,8 @@ const QUERIES_PER_STEP: usize = 256;
 
 /// Fails if a row is not finite.
 pub(crate) fn check_finite<P: Position<f64>>(name: &str, rows: &[P]) -> Call {
-    match rows.iter().position(|row| !row.point().iter().all(|x| x.is_finite())) {
-        Some(row) => Err(invalid(format!("{name}: row {row} is not finite"))),
-        None => Ok(()),
-    }
+    let bad = rows.iter().position(|row| !row.point().iter().all(|x| x.is_finite()));
+    bad.map_or(Ok(()), |row| Err(invalid(format!("{name}: row {row} is not finite"))))
 }
 
 /// Finds the closest point of the scene to `query`, three finite coordinates, among those within a distance, which may
