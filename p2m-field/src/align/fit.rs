@@ -11,6 +11,8 @@ use p2m_core::{ClosestPoint, Primitive, PrimitiveId, PrimitiveSet, QueryOptions,
 const CHUNK: usize = 1 << 10;
 /// The factor of the median of the distances at which Tukey's weight becomes 0.
 const TUKEY: f64 = 4.685 * 1.4826;
+/// The largest factor by which a step is lengthened for weights that change with it.
+const MAX_LENGTHENING: f64 = 1.5;
 /// The factor by which that distance may shrink in a round.
 const SHRINKING_TO_PLANES: f64 = 0.5;
 /// The factor for distances of points, with which scans slide slowly.
@@ -160,7 +162,11 @@ where
         let last = rank(0.8 * overlap);
         let nearest = sorted.select_nth_unstable_by(last, f64::total_cmp).0;
         let score = (nearest.iter().map(|d| d * d).sum::<f64>() / last.max(1) as f64).sqrt() / pose.scale;
-        let weight = |d: f64| if d <= limit.min(kept) { (1.0 - (d / limit).powi(2)).powi(2) } else { 0.0 };
+        // Tukey's weight, and the derivative of the weighted distance.
+        let weight = |d: f64| {
+            let rest = if d <= limit.min(kept) { 1.0 - (d / limit).powi(2) } else { 0.0 };
+            (rest * rest, rest * (5.0 * rest - 4.0))
+        };
 
         let pivot = pose.to;
         let start = range.start;
@@ -168,15 +174,18 @@ where
             let mut sum = Moments::default();
             for i in part {
                 let (d, i) = (distance[i], start + i);
-                let w = weight(d);
+                let (w, slope) = weight(d);
                 if w > 0.0 {
                     let normal = self.normal(answers, i);
+                    sum.slope += slope;
                     sum.add(w, d, (answers.moved[i] - pivot) / radius, (answers.closest[i] - pivot) / radius, normal);
                 }
             }
             sum
         });
         let mut sum = moments.into_iter().fold(Moments::default(), Moments::plus);
+        let is_settled = limit <= settled.max(1e-4 * radius);
+        let lengthening = if self.to_planes && is_settled { sum.lengthening() } else { 1.0 };
         sum.finish();
         let rms = (sum.squares / sum.used.max(1) as f64).sqrt();
         let (eigenvalue, solution) = sum.solve(self.options.scale, radius);
@@ -184,6 +193,7 @@ where
         let (eigenvalue, solution) =
             if self.to_planes { (eigenvalue, solution) } else { (1.0, sum.rigid(self.options.scale, radius)) };
         let Solution { rotation, translation, growth } = solution;
+        let (rotation, translation, growth) = (rotation * lengthening, translation * lengthening, growth * lengthening);
         let turned = rotation.norm();
         // A step of more than a radian is no linear one.
         let rotation = if turned > 1.0 { rotation / turned } else { rotation };
@@ -191,7 +201,6 @@ where
         next.scale = next.scale.clamp(self.scales[0], self.scales[1]);
         next.limit = limit;
         let step = radius * (turned + growth.abs()) + translation.norm();
-        let is_settled = limit <= settled.max(1e-4 * radius);
         Round { rms, score, used: sum.used, asked: range.len(), eigenvalue, step, is_settled, next }
     }
 
@@ -226,6 +235,8 @@ struct Moments {
     /// The right-hand side.
     right: [f64; 7],
     weight: f64,
+    /// The sum of the derivatives of weighted distances.
+    slope: f64,
     /// The sum of squared distances, without weights and in the unit of the scene.
     squares: f64,
     used: usize,
@@ -242,6 +253,7 @@ impl Default for Moments {
             normal: [0.0; 28],
             right: [0.0; 7],
             weight: 0.0,
+            slope: 0.0,
             squares: 0.0,
             used: 0,
             moved: Vector3::zeros(),
@@ -281,6 +293,7 @@ impl Moments {
         self.normal.iter_mut().zip(other.normal).for_each(|(a, b)| *a += b);
         self.right.iter_mut().zip(other.right).for_each(|(a, b)| *a += b);
         self.weight += other.weight;
+        self.slope += other.slope;
         self.squares += other.squares;
         self.used += other.used;
         self.moved += other.moved;
@@ -288,6 +301,16 @@ impl Moments {
         self.products += other.products;
         self.moved_squares += other.moved_squares;
         self
+    }
+
+    /// Returns the factor that makes a step with fixed weights one of Newton's method.
+    ///
+    /// The weights of a step are those before it. The sum of weighted distances changes by the derivative, which is
+    /// smaller than the weight: 0.758 instead of 0.915 for noise of the normal distribution. So each step would leave a
+    /// sixth of the way.
+    fn lengthening(&self) -> f64 {
+        let factor = self.weight / self.slope;
+        if factor > 1.0 { factor.min(MAX_LENGTHENING) } else { 1.0 }
     }
 
     /// Divides the weighted sums by the weight.

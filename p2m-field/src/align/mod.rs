@@ -21,9 +21,13 @@
 //! in trimmed ICP \[Chetverikov2005\]. k begins at the largest distance within the radius of the scan and at most halves in a round: otherwise the
 //! faces of a plate would soon fit, its narrow sides would count as outliers, and the plate could slide.
 //!
+//! Weights that are fixed during a round make its step too short, because the weighted distance grows more slowly than
+//! with a fixed weight. So steps are lengthened by the sum of weights over the sum of the derivatives of weighted
+//! distances, which is 1.21 for Gaussian noise.
+//!
 //! **Levels.** A sample of the points converges first, then a larger one, and all points last. A level ends with a step
-//! below the standard error of the result, rms / sqrt(points e) with the relative eigenvalue e of below, so that all
-//! points take about two rounds.
+//! below the standard error of the result, rms / sqrt(points e) with the relative eigenvalue e of below, or if the next
+//! step will be below half of it, by the ratio of the last steps. So all points take one round, as a rule.
 //!
 //! **Far starts.** ICP finds the nearest minimum. If neither the scan as it is nor the scan with its centre moved onto
 //! that of the scene comes to lie within a hundredth of its radius, 122 starts are tried with 256 points each, all in
@@ -254,14 +258,21 @@ where
     let mut pose = start;
     let mut rounds = Vec::new();
     let mut level = 0;
+    // The ratio of a step to the one before it, once the limit of distances is settled.
+    let mut ratio = 1.0;
     let (last, is_converged) = 'levels: loop {
         let sample = fit.sample(LEVELS[level]);
+        let mut before = None;
         let is_last = LEVELS[level] >= points.len();
         for number in 1.. {
             let round = fit.round(&sample, std::slice::from_ref(&pose)).remove(0);
             let record = AlignRound { points: sample.len(), rms: round.rms, step: round.step };
             rounds.push(record);
-            let is_small = round.is_settled && round.step <= fit.small_step(&round);
+            if let Some(before) = before.replace(round.step).filter(|_| round.is_settled) {
+                ratio = round.step / before;
+            }
+            let small = fit.small_step(&round);
+            let is_small = round.is_settled && (round.step <= small || ratio * round.step <= 0.5 * small);
             let ended = report(&record).is_break();
             pose = round.next;
             let is_over = is_small || number == MAX_ROUNDS;

@@ -62,6 +62,7 @@ where
         let squares: f64 = few.iter().map(|point| (a.pose.apply(point) - b.pose.apply(point)).norm_squared()).sum();
         (squares / few.len() as f64).sqrt() > (0.05 * fit.radius * a.pose.scale).max(3.0 * a.rms.min(b.rms))
     };
+    let is_near = found.is_some();
     let poses = found.unwrap_or_else(|| starts(fit, as_it_is, options, true)).into_iter().enumerate();
     let mut candidates: Vec<Candidate> =
         poses.map(|(k, pose)| Candidate { pose, score: 0.0, rms: 0.0, is_first: k == 0 }).collect();
@@ -98,7 +99,7 @@ where
             }
         }
         candidates = kept_ones;
-        if candidates.len() == 1 && points > STAGES[0].0 {
+        if candidates.len() == 1 && (is_near || points > STAGES[0].0) {
             break;
         }
     }
@@ -170,31 +171,34 @@ impl Inertia {
         S: PrimitiveSet<f64> + Sync + ?Sized,
         I: ClosestPoint<f64> + Sync + ?Sized,
     {
-        Self::of(fit.sample(1 << 14).iter().map(|point| (1.0, vec![*point])), fit.centre)
+        Self::of(fit.sample(1 << 14).into_iter().map(|point| (1.0, point)), fit.centre, std::slice::from_ref)
     }
 
     /// Returns the inertia of the triangles of a scene, or of its segments or points if there are none.
     pub(super) fn of_scene<S: PrimitiveSet<f64> + ?Sized>(scene: &S) -> Self {
-        let shapes: Vec<Vec<Point3<f64>>> = (0..scene.len())
-            .filter_map(|id| shape_of(scene, PrimitiveId::new(id)))
-            .map(|shape| shape.vertices().to_vec())
-            .collect();
-        let most = shapes.iter().map(Vec::len).max().unwrap_or(0);
+        let shapes = || (0..scene.len()).filter_map(|id| shape_of(scene, PrimitiveId::new(id)));
+        let most = shapes().map(|shape| shape.vertices().len()).max().unwrap_or(0);
         let measure = |vertices: &[Point3<f64>]| match *vertices {
             [a, b, c] => (b - a).cross(&(c - a)).norm() / 2.0,
             [a, b] => (b - a).norm(),
             _ => 1.0,
         };
-        let origin = shapes.first().map_or(Point3::origin(), |vertices| vertices[0]);
-        Self::of(shapes.into_iter().filter(|v| v.len() == most).map(|v| (measure(&v), v)), origin)
+        let origin = shapes().next().map_or(Point3::origin(), |shape| shape.vertices()[0]);
+        let largest = shapes().filter(|shape| shape.vertices().len() == most);
+        Self::of(largest.map(|shape| (measure(shape.vertices()), shape)), origin, |shape| shape.vertices())
     }
 
     /// Returns the inertia of simplices with weights, about an origin that is near.
     ///
     /// The second moment of a simplex with k vertices v and the sum s is (sum of v v' + s s') / (k (k + 1)).
-    fn of(simplices: impl Iterator<Item = (f64, Vec<Point3<f64>>)>, origin: Point3<f64>) -> Self {
+    fn of<S>(
+        simplices: impl Iterator<Item = (f64, S)>,
+        origin: Point3<f64>,
+        vertices: impl Fn(&S) -> &[Point3<f64>],
+    ) -> Self {
         let (mut weight, mut first, mut second) = (0.0, Vector3::zeros(), Matrix3::zeros());
-        for (w, vertices) in simplices {
+        for (w, simplex) in simplices {
+            let vertices = vertices(&simplex);
             let k = vertices.len() as f64;
             let vertices = vertices.iter().map(|v| v - origin);
             let sum: Vector3<f64> = vertices.clone().sum();
