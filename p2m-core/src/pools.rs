@@ -5,6 +5,7 @@
 //! anew, so it is never used.
 
 use rayon::{ThreadPool, ThreadPoolBuildError, ThreadPoolBuilder};
+use std::cell::RefCell;
 use std::collections::HashMap;
 use std::sync::{Arc, Mutex, PoisonError};
 
@@ -14,16 +15,35 @@ type Pools = HashMap<usize, Arc<ThreadPool>>;
 /// The pools, with the id of the process that they belong to.
 static POOLS: Mutex<Option<(u32, Pools)>> = Mutex::new(None);
 
+thread_local! {
+    /// The pool of one thread that works for this thread, with the id of the process that it belongs to.
+    static OWN_POOL: RefCell<Option<(u32, Arc<ThreadPool>)>> = const { RefCell::new(None) };
+}
+
 /// Returns the pool of this process with so many threads, which are started by the first call. It lives as long as the
-/// process, unless it is [abandoned](abandon_pool).
+/// process, unless it is [abandoned](abandon_pool). Pools of one thread belong to the calling thread and live as long as
+/// it, so that callers on several threads do not wait for each other.
 ///
 /// A fork in another thread while this function runs leaves a child whose calls never return.
 ///
 /// # Errors
 /// [`ThreadPoolBuildError`] if the system starts no more threads.
 pub fn shared_pool(threads: usize) -> Result<Arc<ThreadPool>, ThreadPoolBuildError> {
-    let mut guard = POOLS.lock().unwrap_or_else(PoisonError::into_inner);
     let process = std::process::id();
+    if threads == 1 {
+        return OWN_POOL.with_borrow_mut(|own| {
+            if own.as_ref().is_some_and(|(owner, _)| *owner != process) {
+                std::mem::forget(own.take());
+            }
+            if let Some((_, pool)) = own {
+                return Ok(Arc::clone(pool));
+            }
+            let pool = start_pool(1)?;
+            *own = Some((process, Arc::clone(&pool)));
+            Ok(pool)
+        });
+    }
+    let mut guard = POOLS.lock().unwrap_or_else(PoisonError::into_inner);
     if guard.as_ref().is_some_and(|(owner, _)| *owner != process) {
         // To end the pools of the parent would wait for threads that do not exist here.
         std::mem::forget(guard.take());
@@ -48,6 +68,7 @@ pub fn start_pool(threads: usize) -> Result<Arc<ThreadPool>, ThreadPoolBuildErro
 
 /// Leaves a pool to the cancelled work that runs on it: later calls get another one. Its threads end with that work.
 pub fn abandon_pool(abandoned: &Arc<ThreadPool>) {
+    OWN_POOL.with_borrow_mut(|own| drop(own.take_if(|(_, pool)| Arc::ptr_eq(pool, abandoned))));
     let mut guard = POOLS.lock().unwrap_or_else(PoisonError::into_inner);
     if let Some((_, pools)) = guard.as_mut() {
         pools.retain(|_, pool| !Arc::ptr_eq(pool, abandoned));
@@ -66,5 +87,15 @@ mod tests {
         assert!(!Arc::ptr_eq(&pool, &start_pool(3).expect("threads")));
         abandon_pool(&pool);
         assert!(!Arc::ptr_eq(&pool, &shared_pool(3).expect("threads")));
+    }
+
+    #[test]
+    fn each_thread_has_a_pool_of_one_thread() {
+        let pool = shared_pool(1).expect("threads");
+        assert!(Arc::ptr_eq(&pool, &shared_pool(1).expect("threads")));
+        let other = std::thread::spawn(|| shared_pool(1).expect("threads")).join().expect("no panic");
+        assert!(!Arc::ptr_eq(&pool, &other) && other.current_num_threads() == 1);
+        abandon_pool(&pool);
+        assert!(!Arc::ptr_eq(&pool, &shared_pool(1).expect("threads")));
     }
 }

@@ -27,6 +27,8 @@ const CHUNK: usize = 1 << 12;
 const GOLDEN: u64 = 0x9e37_79b9_7f4a_7c15;
 /// The numbers that one sample may use. Rejections beyond them are so rare that they reuse numbers of others.
 const NUMBERS_PER_SAMPLE: u64 = 64;
+/// The numbers of a sample of the surface that choose its primitive.
+const NUMBERS_OF_CHOICE: u64 = 2;
 
 /// Streams of random numbers, which are independent of each other.
 #[derive(Clone, Copy)]
@@ -46,6 +48,11 @@ impl Numbers {
     fn new(seed: u64, stream: Stream, i: usize) -> Self {
         let key = mix(mix(seed.wrapping_add(GOLDEN)) ^ (stream as u64).wrapping_mul(GOLDEN));
         Self { state: key.wrapping_add((i as u64).wrapping_mul(NUMBERS_PER_SAMPLE).wrapping_mul(GOLDEN)) }
+    }
+
+    /// Leaves out some numbers.
+    fn skip(&mut self, count: u64) {
+        self.state = self.state.wrapping_add(count.wrapping_mul(GOLDEN));
     }
 
     fn bits(&mut self) -> u64 {
@@ -89,10 +96,10 @@ pub struct Samples {
 }
 
 impl Samples {
-    /// Computes so many samples, each from its number.
-    fn compute(count: usize, sample: impl Fn(usize) -> (Point3<f64>, PrimitiveId) + Sync) -> Self {
+    /// Computes so many samples in chunks, each from the number of its first sample.
+    fn compute(count: usize, chunk: impl Fn(usize, &mut [Point3<f64>], &mut [PrimitiveId]) + Sync) -> Self {
         let mut samples = Self { points: vec![Point3::origin(); count], primitives: vec![PrimitiveId::new(0); count] };
-        fill(&mut samples.points, &mut samples.primitives, sample);
+        fill(&mut samples.points, &mut samples.primitives, chunk);
         samples
     }
 }
@@ -165,7 +172,7 @@ impl<S: PrimitiveSet<f64> + Sync> SurfaceSampler<S> {
     /// O(1) for each point, on all threads of the current pool.
     #[must_use]
     pub fn surface(&self, seed: u64, count: usize) -> Samples {
-        Samples::compute(count, |i| self.point(seed, i))
+        Samples::compute(count, |first, points, ids| self.chunk(seed, first, points, ids))
     }
 
     /// Returns points of the scene, moved by noise: sample i by a normal distribution in each coordinate, whose standard
@@ -175,34 +182,42 @@ impl<S: PrimitiveSet<f64> + Sync> SurfaceSampler<S> {
     /// It panics if `sigmas` is empty and `count` is not 0.
     #[must_use]
     pub fn near(&self, seed: u64, count: usize, sigmas: &[f64]) -> Samples {
-        Samples::compute(count, |i| {
-            let (point, id) = self.point(seed, i);
-            let mut numbers = Numbers::new(seed, Stream::Noise, i);
-            let ([x, y], [z, _]) = (numbers.normal_pair(), numbers.normal_pair());
-            (point + Vector3::new(x, y, z) * sigmas[i % sigmas.len()], id)
+        Samples::compute(count, |first, points, ids| {
+            self.chunk(seed, first, points, ids);
+            for (i, point) in (first..).zip(points) {
+                let mut numbers = Numbers::new(seed, Stream::Noise, i);
+                let ([x, y], [z, _]) = (numbers.normal_pair(), numbers.normal_pair());
+                *point += Vector3::new(x, y, z) * sigmas[i % sigmas.len()];
+            }
         })
     }
 
-    /// Returns sample `i` of the surface.
-    fn point(&self, seed: u64, i: usize) -> (Point3<f64>, PrimitiveId) {
-        let mut numbers = Numbers::new(seed, Stream::Surface, i);
-        #[allow(clippy::cast_possible_truncation, reason = "the number of a primitive")]
-        let slot = ((u128::from(numbers.bits()) * self.shares.len() as u128) >> 64) as usize;
-        let (share, other) = self.shares[slot];
-        let slot = if numbers.unit() < share { slot } else { other as usize };
-        let id = PrimitiveId::new(self.ids[slot] as usize);
-        let point = shape_of(&self.scene, id).map_or(Point3::origin(), |shape| match *shape.vertices() {
-            [a, b, c] => {
-                let (u, v) = (numbers.unit(), numbers.unit());
-                // The second half of the parallelogram is folded onto the triangle.
-                let (u, v) = if u + v > 1.0 { (1.0 - u, 1.0 - v) } else { (u, v) };
-                a + (b - a) * u + (c - a) * v
-            }
-            [a, b] => a + (b - a) * numbers.unit(),
-            [a] => a,
-            _ => Point3::origin(),
-        });
-        (point, id)
+    /// Computes samples of the surface from number `first` on. All primitives are chosen before the first point is
+    /// computed, so that the processor waits for many of their random accesses at a time.
+    fn chunk(&self, seed: u64, first: usize, points: &mut [Point3<f64>], ids: &mut [PrimitiveId]) {
+        for (i, id) in (first..).zip(&mut *ids) {
+            let mut numbers = Numbers::new(seed, Stream::Surface, i);
+            #[allow(clippy::cast_possible_truncation, reason = "the number of a primitive")]
+            let slot = ((u128::from(numbers.bits()) * self.shares.len() as u128) >> 64) as usize;
+            let (share, other) = self.shares[slot];
+            let slot = if numbers.unit() < share { slot } else { other as usize };
+            *id = PrimitiveId::new(self.ids[slot] as usize);
+        }
+        for ((i, id), point) in (first..).zip(ids).zip(points) {
+            let mut numbers = Numbers::new(seed, Stream::Surface, i);
+            numbers.skip(NUMBERS_OF_CHOICE);
+            *point = shape_of(&self.scene, *id).map_or(Point3::origin(), |shape| match *shape.vertices() {
+                [a, b, c] => {
+                    let (u, v) = (numbers.unit(), numbers.unit());
+                    // The second half of the parallelogram is folded onto the triangle.
+                    let (u, v) = if u + v > 1.0 { (1.0 - u, 1.0 - v) } else { (u, v) };
+                    a + (b - a) * u + (c - a) * v
+                }
+                [a, b] => a + (b - a) * numbers.unit(),
+                [a] => a,
+                _ => Point3::origin(),
+            });
+        }
     }
 }
 
@@ -212,21 +227,19 @@ pub fn in_box(bounds: &Aabb<f64>, seed: u64, count: usize) -> Vec<Point3<f64>> {
     let mut points = vec![Point3::origin(); count];
     let mut nothing = vec![(); count];
     let size = bounds.max - bounds.min;
-    fill(&mut points, &mut nothing, |i| {
-        let mut numbers = Numbers::new(seed, Stream::Box, i);
-        let unit = Vector3::new(numbers.unit(), numbers.unit(), numbers.unit());
-        (bounds.min + size.component_mul(&unit), ())
+    fill(&mut points, &mut nothing, |first, points, _| {
+        for (i, point) in (first..).zip(points) {
+            let mut numbers = Numbers::new(seed, Stream::Box, i);
+            let unit = Vector3::new(numbers.unit(), numbers.unit(), numbers.unit());
+            *point = bounds.min + size.component_mul(&unit);
+        }
     });
     points
 }
 
-/// Computes sample i for each place, on all threads of the current pool if there are some.
-fn fill<A: Send, B: Send>(first: &mut [A], second: &mut [B], sample: impl Fn(usize) -> (A, B) + Sync) {
-    let part = |(k, (first, second)): (usize, (&mut [A], &mut [B]))| {
-        for (i, (a, b)) in first.iter_mut().zip(second).enumerate() {
-            (*a, *b) = sample(k * CHUNK + i);
-        }
-    };
+/// Computes chunks of samples, on all threads of the current pool if there are some.
+fn fill<A: Send, B: Send>(first: &mut [A], second: &mut [B], chunk: impl Fn(usize, &mut [A], &mut [B]) + Sync) {
+    let part = |(k, (first, second)): (usize, (&mut [A], &mut [B]))| chunk(k * CHUNK, first, second);
     #[cfg(feature = "rayon")]
     {
         use rayon::prelude::*;

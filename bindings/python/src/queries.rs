@@ -13,7 +13,6 @@ use nalgebra::Point3;
 use numpy::{PyReadonlyArray1, PyReadwriteArray1};
 use p2m_core::batch::{BatchOptions, Interruptible, closest_columns_into};
 use p2m_core::{AnyIndex, Closest, ClosestPoint, Feature, Position, PrimitiveId, QueryOptions};
-use p2m_field::sign::Signed;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 use std::ops::Range;
@@ -233,8 +232,8 @@ impl Index {
         let signed = self.signs(py, SignRule::from_name(sign)?, threads)?;
         let mut array = borrowed::<bool>(out, "contains")?;
         let out = slice(&mut array)?.unwrap_or_default();
-        self.answer_signed(py, points, &signed, out, (threads, progress), |index, points, batch| {
-            signed.contains_each_by(index, points, batch)
+        self.answer_signed(py, points, &signed, out, (threads, progress), |index, points, batch, out| {
+            out.copy_from_slice(&signed.contains_each_by(index, points, batch));
         })
     }
 
@@ -257,12 +256,10 @@ impl Index {
         let options = QueryOptions::default().with_max_distance(max_distance);
         // Without primitives there is nothing inside. The side of a point beyond the largest distance is not known.
         let missing = if max_distance < f64::INFINITY { f64::NAN } else { factor * f64::INFINITY };
-        let value_of = |answer: Option<&Signed>| {
-            answer.map_or(missing, |answer| answer.distance().map_or(f64::NAN, |distance| factor * distance))
-        };
-        self.answer_signed(py, points, &signed, out, (threads, progress), |index, points, batch| {
-            let answers = signed.closest_points_by(index, points, &options, batch);
-            answers.iter().map(|answer| value_of(answer.as_ref())).collect()
+        let value_of = |distance: f64| if distance == f64::INFINITY { missing } else { factor * distance };
+        self.answer_signed(py, points, &signed, out, (threads, progress), |index, points, batch, out| {
+            signed.distances_into(index, points, &options, batch, out);
+            out.iter_mut().for_each(|distance| *distance = value_of(*distance));
         })
     }
 }
@@ -276,7 +273,7 @@ impl Index {
         signed: &SignedIndex,
         out: &mut [V],
         (threads, progress): (usize, Option<Py<PyAny>>),
-        answer: impl Fn(&(dyn ClosestPoint<f64> + Sync), &[Point3<f64>], &BatchOptions) -> Vec<V> + Sync,
+        answer: impl Fn(&(dyn ClosestPoint<f64> + Sync), &[Point3<f64>], &BatchOptions, &mut [V]) + Sync,
     ) -> PyResult<()> {
         with_positions!(points, points => {
             let work = |threads: &Threads, monitor: &Monitor| {
@@ -284,7 +281,7 @@ impl Index {
                 let answer = |index: &(dyn ClosestPoint<f64> + Sync), range: Range<usize>, parallel, out: &mut [V]| {
                     let batch = batch_options(range.len(), parallel);
                     let points: Vec<Point3<f64>> = points[range].iter().map(Position::point).collect();
-                    out.copy_from_slice(&answer(index, &points, &batch));
+                    answer(index, &points, &batch, out);
                 };
                 if signed.is_closed() {
                     // All points are ordered at once, so that neighbours share queries and signs.

@@ -49,7 +49,7 @@ use certificate::Certificates;
 use nalgebra::Point3;
 use p2m_bvh::TreeIndex;
 use p2m_core::batch::{self, BatchOptions};
-use p2m_core::{Aabb, Closest, ClosestPoint, Hits, Position, QueryOptions, Ray, RayQuery, Real, Soup};
+use p2m_core::{Aabb, BatchAnswer, Closest, ClosestPoint, Hits, Position, QueryOptions, Ray, RayQuery, Real, Soup};
 use std::sync::{Arc, OnceLock};
 use surface::Surface;
 use types::{ClosestFeature, Counter, Flag, check_kinds, ray};
@@ -94,6 +94,9 @@ impl<I, S> std::fmt::Debug for SignedDistance<I, S> {
     }
 }
 
+/// The number of queries of a batch for each sign that has to be decided, where neighbours share signs. It is small
+/// for points near a surface; if there are more signs, certificates are prepared later.
+const QUERIES_PER_SIGN: usize = 16;
 /// The number of queries that an index is asked at once.
 const BATCH_LEN: usize = 512;
 
@@ -290,6 +293,55 @@ impl<I, S: SharedSoup> SignedDistance<I, S> {
         out
     }
 
+    /// Writes the signed distances of queries, in their order, computed as a [`batch`]: NaN where the sign is not defined,
+    /// and infinity where there is no answer. `index` may stand for that of these signs.
+    ///
+    /// The values are those of [`closest_points`](Self::closest_points), but neighbours share signs: if the surface is
+    /// closed, all points have one sign that are nearer to a point than the surface is.
+    pub fn distances_into<T: Real>(
+        &self,
+        index: &(impl ClosestPoint<T> + Sync + ?Sized),
+        queries: &[Point3<T>],
+        options: &QueryOptions<T>,
+        batch: &BatchOptions,
+        out: &mut [T],
+    ) where
+        I: ClosestPoint<T> + Sync,
+    {
+        self.signs.prepare_for(queries.len() / QUERIES_PER_SIGN);
+        let position = |query: &Point3<T>| query.map(Real::to_f64);
+        batch::map_parts_into(queries, batch, position, out, |queries, order, out| {
+            let mut asked = [Point3::origin(); BATCH_LEN];
+            let mut balls = [KnownBall::default(); 2];
+            for order in order.chunks(BATCH_LEN) {
+                let asked = &mut asked[..order.len()];
+                asked.iter_mut().zip(order).for_each(|(query, i)| *query = queries[*i as usize]);
+                index.answer_queries(asked, options, &mut |i, found| {
+                    out[order[i] as usize] = self.distance_of(&asked[i], &found, &mut balls);
+                });
+            }
+        });
+    }
+
+    /// Returns the signed distance of a query with this answer. `balls` are those of queries before it.
+    fn distance_of<T: Real>(&self, query: &Point3<T>, found: &BatchAnswer<'_, T>, balls: &mut [KnownBall; 2]) -> T
+    where
+        I: ClosestPoint<T>,
+    {
+        let Some((distance, _)) = found.distance_and_index() else { return T::INFINITY };
+        let point = query.map(Real::to_f64);
+        if let Some(ball) = balls.iter().find(|ball| distance > T::zero() && ball.has(&point)) {
+            return if ball.is_inside { -distance } else { distance };
+        }
+        let Some(closest) = found.closest() else { return T::INFINITY };
+        let signed = self.with_sign(query, closest);
+        let is_inside = signed.sign == Sign::Inside;
+        if self.is_closed() && (is_inside || signed.sign == Sign::Outside) {
+            balls[usize::from(is_inside)] = KnownBall::new(point, closest.lower_bound.to_f64(), is_inside);
+        }
+        signed.distance().unwrap_or(T::round_from_f64(f64::NAN))
+    }
+
     /// Returns the answer to a query whose closest point is known, with its sign.
     pub fn with_sign<T: Real>(&self, query: &Point3<T>, closest: Closest<T>) -> Signed<T>
     where
@@ -330,6 +382,30 @@ impl<I, S: SharedSoup> SignedDistance<I, S> {
     /// closest point did not.
     pub fn ambiguous_count(&self) -> u64 {
         self.signs.ray_count.get()
+    }
+}
+
+/// A ball without surface, whose points have one sign.
+#[derive(Clone, Copy, Default)]
+struct KnownBall {
+    centre: Point3<f64>,
+    /// The square of the radius, or 0 if there is no ball.
+    square: f64,
+    is_inside: bool,
+}
+
+impl KnownBall {
+    /// Makes the ball around a point that is at least so far from the surface.
+    fn new(centre: Point3<f64>, radius: f64, is_inside: bool) -> Self {
+        // Smaller squares would lose digits to underflow. The factor covers the rounding of both squares.
+        let is_safe = radius > 1e-140;
+        Self { centre, square: if is_safe { radius * radius * (1.0 - 1e-12) } else { 0.0 }, is_inside }
+    }
+
+    /// Returns whether a point is in the ball.
+    fn has(&self, point: &Point3<f64>) -> bool {
+        // An infinite square is below no other one.
+        (point - self.centre).norm_squared() < self.square
     }
 }
 

@@ -393,3 +393,36 @@ fn in_the_middle_of_a_hole_there_is_no_sign() {
     assert_eq!((at(0.0).sign, at(0.0).distance()), (Sign::Undefined, None));
     assert_eq!((at(-0.1).sign, at(0.1).sign), (Sign::Inside, Sign::Outside));
 }
+
+#[test]
+fn distances_of_neighbours_are_those_of_single_answers() {
+    let knot = torus_knot(&TorusKnot::default()).unwrap();
+    // Two balls, one in the other, and one that lacks triangles.
+    let ball = ico_sphere(&IcoSphere { frequency: 8 }).unwrap();
+    let mut small = ball.clone();
+    small.map_positions(|point| point * 0.9).unwrap();
+    let shells = joined(&[ball.clone(), flipped(&small)]);
+    let open = Soup::from_triangles(ball.positions().to_vec(), ball.triangles()[9..].to_vec()).unwrap();
+    let count = amount(200_000, 20_000);
+    for (name, soup) in [("knot", &knot), ("shells", &shells), ("open", &open)] {
+        let signed = SignedDistance::new(tree(soup), soup).unwrap();
+        let sampler = p2m_field::sample::SurfaceSampler::new(soup).unwrap();
+        let mut queries = sampler.near(1, count, &[0.0, 0.003, 0.03, 0.3]).points;
+        queries.extend(p2m_field::sample::in_box(&PrimitiveSet::aabb(soup), 1, count));
+        queries.extend(soup.positions());
+        queries.push(Point3::new(f64::NAN, 0.0, 0.0));
+        let (options, batch) = (Default::default(), BatchOptions::default());
+        let answers = signed.closest_points(&queries, &options, &batch);
+        let rays = signed.ambiguous_count();
+        let mut found = vec![0.0; queries.len()];
+        let fresh = SignedDistance::new(tree(soup), soup).unwrap();
+        fresh.distances_into(fresh.index(), &queries, &options, &batch, &mut found);
+        for ((query, answer), found) in queries.iter().zip(&answers).zip(&found) {
+            let expected = answer.as_ref().map_or(f64::INFINITY, |answer| answer.distance().unwrap_or(f64::NAN));
+            assert!(expected.to_bits() == found.to_bits() || expected.is_nan() && found.is_nan(), "{name}: {query}");
+        }
+        // Both signs occur.
+        assert!(found.iter().any(|x| *x < 0.0) && found.iter().any(|x| *x > 0.0 && x.is_finite()), "{name}");
+        println!("{name}: {rays} signs by rays, {} with neighbours", fresh.ambiguous_count());
+    }
+}

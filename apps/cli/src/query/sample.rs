@@ -92,7 +92,7 @@ pub(crate) struct Args {
 }
 
 /// The number of points that are answered at a time.
-const BLOCK: usize = 1 << 18;
+const BLOCK: usize = 1 << 22;
 
 pub(crate) fn run(streams: &Streams, args: &Args) -> anyhow::Result<()> {
     if !is_standard(&args.out) && args.out.extension().is_none_or(|extension| !extension.eq_ignore_ascii_case("npz")) {
@@ -140,12 +140,10 @@ pub(crate) fn run(streams: &Streams, args: &Args) -> anyhow::Result<()> {
             streams.print_summary(format_args!("warning  {}: {note}\n", args.scene.name()));
         }
         let progress = Progress::start(streams, "computing distances", Some(points.len() as u64), Unit::None);
-        let mut distances = Vec::with_capacity(points.len());
-        for block in points.chunks(BLOCK) {
+        let mut distances = vec![f64::NAN; points.len()];
+        for (block, out) in points.chunks(BLOCK).zip(distances.chunks_mut(BLOCK)) {
             let (options, batch) = (QueryOptions::default(), BatchOptions::default());
-            let answers = pool.install(|| signed.closest_points(block, &options, &batch));
-            let distance = |answer: Option<p2m_field::sign::Signed>| answer.and_then(|answer| answer.distance());
-            distances.extend(answers.into_iter().map(|answer| distance(answer).unwrap_or(f64::NAN)));
+            pool.install(|| signed.distances_into(&*index, block, &options, &batch, out));
             progress.add(block.len() as u64);
         }
         drop(progress);

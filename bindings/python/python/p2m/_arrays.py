@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import contextlib
 import operator
+import threading
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from typing import Any, Literal, Union
 
@@ -121,10 +122,19 @@ def indices(values: ArrayLike | None, name: str, width: int, vertices: int) -> N
     return np.ascontiguousarray(array, np.uint32).reshape(-1)
 
 
+class _Usual(threading.local):
+    """The usual number of threads of calls on this thread."""
+
+    threads: int | None = None
+
+
+usual = _Usual()
+
+
 def thread_count(threads: int | None, default: int | None = None) -> int:
     """Return the number of threads to use."""
     if threads is None:
-        return default if default is not None else _p2m.default_threads()
+        return default or usual.threads or _p2m.default_threads()
     return whole(threads, "threads", 1, 1024)
 
 

@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import DTypeLike, NDArray
 
 from . import _p2m
-from ._arrays import Progress, not_negative, thread_count, whole
+from ._arrays import Progress, not_negative, thread_count, usual, whole
 from ._index import Index
 from ._scene import Scene
 
@@ -104,8 +104,8 @@ def sample_sdf(
     Parameters
     ----------
     mesh : Index, Scene or object
-        The mesh, or an object that `Scene.of` makes a scene of, such as a path. An index of any backend is used; for
-        other objects a tree of boxes is built, or an octree for more than three million points.
+        The mesh, or an object that `Scene.of` makes a scene of, such as a path. For other objects than an index,
+        ``"auto"`` chooses one for the number of points.
     near : int, optional
         The number of points near the surface: points as of `sample_surface`, moved by noise.
     uniform : int, optional
@@ -157,10 +157,7 @@ def sample_sdf(
     points = np.empty((sum(counts), 3), kind)
     points[: counts[0]], points[counts[0] :] = around, inside
     del around, inside
-    if isinstance(mesh, Index):
-        index = mesh
-    else:
-        index = Index(scene, "octree" if len(points) > _OCTREE_ABOVE else "aabb", threads=threads)
+    index = mesh if isinstance(mesh, Index) else Index(scene, threads=threads, queries=len(points))
     distances = index.signed_distance(points, sign=sign, threads=threads, progress=progress)
     return SdfSamples(points, distances.astype(kind, copy=False))
 
@@ -170,8 +167,9 @@ def map(
 ) -> Iterator[_Result]:
     """Call a function for many items, such as small meshes, on all cores, and yield the results in their order.
 
-    The function is called by threads of Python, which the functions of p2m leave free to run at the same time. Only
-    some items are worked on ahead of the result that is taken, so results need not fit into memory together.
+    The function is called by threads of Python, which the functions of p2m leave free to run at the same time. Within
+    it, the functions of p2m use one thread each unless they are given another number. Only some items are worked on ahead
+    of the result that is taken, so results need not fit into memory together.
 
     Parameters
     ----------
@@ -198,7 +196,7 @@ def map(
     count = thread_count(threads)
     waiting: deque[Future[_Result]] = deque()
     rest = iter(items)
-    with ThreadPoolExecutor(count) as pool:
+    with ThreadPoolExecutor(count, initializer=_use_one_thread) as pool:
         try:
             waiting.extend(pool.submit(function, item) for item in islice(rest, 2 * count))
             while waiting:
@@ -210,8 +208,8 @@ def map(
                 future.cancel()
 
 
-# An octree pays for more points than this.
-_OCTREE_ABOVE = 3_000_000
+def _use_one_thread() -> None:
+    usual.threads = 1
 
 
 def _seed(seed: int) -> int:
