@@ -7,7 +7,7 @@ use crate::scene::Scene;
 use crate::work::run_owned;
 use nalgebra::Point3;
 use numpy::{IntoPyArray, PyArray1, PyReadonlyArray1};
-use p2m_core::batch::{self, BatchOptions};
+use p2m_core::batch::BatchOptions;
 use p2m_core::{Position, QueryOptions};
 use p2m_field::deviation::{self, DeviationStatistics, LocalPlanes};
 use p2m_mixed::{VertexValues, write_ply_with_values};
@@ -181,12 +181,7 @@ impl Index {
         let found = run_owned(py, threads, 1, None, move |_| {
             let planes = LocalPlanes::new(&soup, &*index)?;
             let options = QueryOptions::default().with_max_distance(max_distance);
-            let mut answers = vec![None; points.len()];
-            batch::closest_points_into(&*index, &points, &options, &BatchOptions::default(), &mut answers);
-            let deviation = |(point, answer): (&Point3<f64>, &Option<_>)| {
-                answer.as_ref().map_or(f64::NAN, |answer| planes.deviation(point, answer))
-            };
-            Some(points.iter().zip(&answers).map(deviation).collect::<Vec<f64>>())
+            Some(planes.deviations(&*index, &points, &options, &BatchOptions::default()))
         })?;
         Ok(found.map(|found| found.into_pyarray(py)))
     }

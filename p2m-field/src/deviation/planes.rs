@@ -2,7 +2,7 @@
 
 use nalgebra::{Matrix3, Point3, SymmetricEigen, Vector3};
 use p2m_core::batch::{self, BatchOptions};
-use p2m_core::{Closest, NearQuery, Soup};
+use p2m_core::{Closest, ClosestPoint, NearQuery, QueryOptions, Soup};
 use std::cmp::Ordering;
 use std::collections::BinaryHeap;
 
@@ -74,6 +74,22 @@ impl LocalPlanes {
         downwards.sort_by(|a, b| place(*b).z.total_cmp(&place(*a).z));
         orient(&mut planes, &neighbours, &downwards);
         Some(Self { planes })
+    }
+
+    /// Returns the deviations of queries, in their order and computed as a [`batch`], with NaN where there is no answer.
+    pub fn deviations<I: ClosestPoint<f64> + Sync + ?Sized>(
+        &self,
+        index: &I,
+        queries: &[Point3<f64>],
+        options: &QueryOptions<f64>,
+        batch: &BatchOptions,
+    ) -> Vec<f64> {
+        let mut answers = vec![None; queries.len()];
+        batch::closest_points_into(index, queries, options, batch, &mut answers);
+        let answered = queries.iter().zip(&answers);
+        answered
+            .map(|(query, answer)| answer.as_ref().map_or(f64::NAN, |answer| self.deviation(query, answer)))
+            .collect()
     }
 
     /// Returns the deviation of a query with the closest point `closest` of the cloud: positive on the side of the
@@ -194,7 +210,12 @@ mod tests {
         let cloud = cloud(points);
         let index = AabbTree::new(&cloud).unwrap();
         let planes = LocalPlanes::new(&cloud, &index).unwrap();
-        queries.iter().map(|query| planes.deviation(query, &index.closest_point(query).unwrap())).collect()
+        let found = planes.deviations(&index, queries, &QueryOptions::default(), &BatchOptions::default());
+        for (query, found) in queries.iter().zip(&found) {
+            let single = planes.deviation(query, &index.closest_point(query).unwrap());
+            assert!(single.to_bits() == found.to_bits() || single.is_nan() && found.is_nan());
+        }
+        found
     }
 
     #[test]

@@ -10,7 +10,7 @@ use nalgebra::Point3;
 use p2m_field::deviation::{DeviationStatistics, OutsideTolerance, bands, histogram, outside};
 use p2m_mixed::statistics::figure::{Count, Figure};
 use p2m_mixed::{Scene, VertexValues, WriteError, write_ply_with_values};
-use p2m_page::{Deviations, ObjectDeviations, Sheet, diverging_colour};
+use p2m_page::{Deviations, ObjectDeviations, Sheet, Verdict, diverging_colour};
 use serde_json::{Value, json};
 use std::fmt::Write as _;
 use std::io::Write as _;
@@ -39,6 +39,8 @@ pub(super) struct DeviationReport<'a> {
     statistics: DeviationStatistics,
     outside: Option<OutsideTolerance>,
     limit: f64,
+    /// The part of the points within the tolerance, if there is one.
+    verdict: Option<Verdict>,
 }
 
 impl<'a> DeviationReport<'a> {
@@ -47,17 +49,19 @@ impl<'a> DeviationReport<'a> {
         let statistics = DeviationStatistics::of(compared.values);
         let limit = args.limit.unwrap_or_else(|| Deviations::usual_limit(&statistics, args.tolerance));
         let outside = args.tolerance.map(|tolerance| outside(compared.values, tolerance));
-        Self { args, compared, statistics, outside, limit }
+        let mut report = Self { args, compared, statistics, outside, limit, verdict: None };
+        report.verdict = report.deviations().verdict(args.require, &args.page.unit);
+        report
     }
 
     /// Tells whether enough of the points are within the tolerance, if that is asked.
     pub(super) fn passes(&self) -> Option<bool> {
-        self.deviations().verdict(self.args.require, &self.args.page.unit)?.passes
+        self.verdict.as_ref()?.passes
     }
 
     /// Returns the verdict as a line, if it was asked for.
     fn verdict(&self) -> Option<String> {
-        let verdict = self.deviations().verdict(self.args.require, &self.args.page.unit)?;
+        let verdict = self.verdict.as_ref()?;
         verdict.word().map(|word| format!("{word}: {}", verdict.sentence))
     }
 
@@ -214,7 +218,8 @@ impl<'a> DeviationReport<'a> {
             };
             rows.push((format!("above {tolerance} {unit}"), part(outside.above)));
             if self.compared.rule.is_some() {
-                rows.push((format!("below -{tolerance} {unit}"), part(outside.below)));
+                // The negative of 0 is 0.
+                rows.push((format!("below {} {unit}", 0.0 - tolerance), part(outside.below)));
             }
             rows.push((format!("within {tolerance} {unit}"), part(statistics.count - outside.above - outside.below)));
             if self.limit > tolerance {
