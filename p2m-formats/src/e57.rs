@@ -25,10 +25,12 @@ pub(crate) fn read(file: &File<'_>) -> Result<Scene, ReadError> {
         points.intensity_to_color(false);
         for (row, point) in points.enumerate() {
             let at = |what: &dyn std::fmt::Display| fail(&format_args!("point {row}, counted from 0: {what}"));
-            match point.map_err(|error| at(&text(&error)))?.cartesian {
-                CartesianCoordinate::Valid { x, y, z } => sink.point([x, y, z]).map_err(|reason| at(&reason))?,
-                _ => sink.invalid += 1,
-            }
+            let position = match point.map_err(|error| at(&text(&error)))?.cartesian {
+                CartesianCoordinate::Valid { x, y, z } => [x, y, z],
+                // Points keep their numbers, so an invalid one has a place among them.
+                _ => [f64::NAN; 3],
+            };
+            sink.point(position).map_err(|reason| at(&reason))?;
         }
     }
     sink.builder.unit = Some(Unit::Metre);

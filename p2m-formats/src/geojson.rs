@@ -11,14 +11,18 @@ pub(crate) fn read(file: &File<'_>) -> Result<Scene, ReadError> {
         .map_err(|error| file.error_at(FileLocation::Byte(error.valid_up_to() as u64), "the text is not UTF-8"))?;
     let content: GeoJson = text.trim_start_matches('\u{feff}').parse().map_err(|error| located(file, &error))?;
     let mut reader = Reader { map: Map::new(file.bytes.len()), has_two: false, has_three: false };
-    let mut has_system = false;
+    // Older files name their coordinate system, which RFC 7946 does not have.
+    let members = match &content {
+        GeoJson::Geometry(geometry) => &geometry.foreign_members,
+        GeoJson::Feature(feature) => &feature.foreign_members,
+        GeoJson::FeatureCollection(collection) => &collection.foreign_members,
+    };
+    let system = members.as_ref().and_then(|members| members.get("crs"));
+    let has_system = system.is_some_and(|system| !system.to_string().contains("CRS84"));
     let result = match content {
         GeoJson::Geometry(geometry) => reader.geometry(&geometry),
         GeoJson::Feature(feature) => reader.feature(&feature),
         GeoJson::FeatureCollection(collection) => {
-            // Older files name their coordinate system, which RFC 7946 does not have.
-            let members = collection.foreign_members.as_ref();
-            has_system = members.and_then(|m| m.get("crs")).is_some_and(|crs| !crs.to_string().contains("CRS84"));
             collection.features.iter().enumerate().try_for_each(|(number, feature)| {
                 reader.map.source = number;
                 reader.feature(feature)

@@ -70,9 +70,15 @@ fn chunks<'a>(file: &'a File<'_>) -> Result<(&'a [u8], Option<&'a [u8]>), ReadEr
         file.slice(at + 8, u32::from_le_bytes(file.array(at)?) as usize)
     };
     let json = chunk(12, b"JSON")?;
-    let end = 20 + json.len();
-    let bin = if end < file.bytes.len() { Some(chunk(end, b"BIN\0")?) } else { None };
-    Ok((json, bin))
+    let mut at = 20 + json.len();
+    while at < file.bytes.len() {
+        if file.array(at + 4)? == *b"BIN\0" {
+            return Ok((json, Some(chunk(at, b"BIN\0")?)));
+        }
+        // Chunks of other kinds are extensions, which readers ignore.
+        at += 8 + file.slice(at + 8, u32::from_le_bytes(file.array(at)?) as usize)?.len();
+    }
+    Ok((json, None))
 }
 
 /// Returns the bytes of a buffer, which are in the file, in the text of its address, or in another file.
@@ -157,7 +163,9 @@ impl Reader<'_> {
                     corners
                 }
             };
-            push(&mut self.sink, primitive.mode(), &corners).map_err(|reason| fail(&reason))?;
+            // A node that mirrors its mesh leaves the outside of triangles where it was.
+            let is_mirrored = matrix.fixed_view::<3, 3>(0, 0).determinant() < 0.0;
+            push(&mut self.sink, primitive.mode(), &corners, is_mirrored).map_err(|reason| fail(&reason))?;
         }
         Ok(())
     }
@@ -224,8 +232,12 @@ fn matrix(node: &Node<'_>) -> Matrix4<f64> {
     }
 }
 
-/// Adds the primitives that corners make in a mode.
-fn push(sink: &mut Sink, mode: Mode, corners: &[u32]) -> Result<(), Reason> {
+/// Adds the primitives that corners make in a mode, the triangles in the other direction if they are mirrored.
+fn push(sink: &mut Sink, mode: Mode, corners: &[u32], is_mirrored: bool) -> Result<(), Reason> {
+    let turned = |element: Element| match element {
+        Element::Triangle([a, b, c]) if is_mirrored => Element::Triangle([a, c, b]),
+        _ => element,
+    };
     let mut segment = |ends: &[u32]| sink.push(Element::Segment([ends[0], ends[1]]));
     match mode {
         Mode::Points => corners.iter().try_for_each(|vertex| sink.push(Element::Point(*vertex))),
@@ -238,8 +250,10 @@ fn push(sink: &mut Sink, mode: Mode, corners: &[u32]) -> Result<(), Reason> {
                 _ => Ok(()),
             }
         }
-        Mode::Triangles => corners.chunks_exact(3).try_for_each(|t| sink.push(Element::Triangle([t[0], t[1], t[2]]))),
-        Mode::TriangleStrip => strip(corners).try_for_each(|triangle| sink.push(triangle)),
-        Mode::TriangleFan => fan(corners).try_for_each(|triangle| sink.push(triangle)),
+        Mode::Triangles => {
+            corners.chunks_exact(3).try_for_each(|t| sink.push(turned(Element::Triangle([t[0], t[1], t[2]]))))
+        }
+        Mode::TriangleStrip => strip(corners).try_for_each(|triangle| sink.push(turned(triangle))),
+        Mode::TriangleFan => fan(corners).try_for_each(|triangle| sink.push(turned(triangle))),
     }
 }

@@ -175,14 +175,15 @@ fn decompress(
         file.error_at(FileLocation::Row(row), format!("cannot be decompressed: {error}"))
     };
     let selection = DecompressionSelection::xy_returns_channel().decompress_z();
-    let decompressor = LasZipDecompressor::selective(source, vlr, selection);
+    // The decoder indexes beyond its tables at damaged data, of the table of chunks as well. It is dropped then.
+    let decompressor = catch_unwind(AssertUnwindSafe(|| LasZipDecompressor::selective(source, vlr, selection)));
+    let decompressor = decompressor.map_err(|_| at_row(0, &"the table of chunks is damaged"))?;
     let mut decompressor = decompressor.map_err(|error| at_row(0, &error))?;
     let mut done = 0;
     let mut batch = Vec::new();
     while done < header.count {
         let count = BATCH.min(header.count - done);
         batch.resize(usize::try_from(count).expect("at most a batch") * usize::from(header.record_len), 0);
-        // The decoder indexes beyond its tables at damaged data. It is dropped then.
         let result = catch_unwind(AssertUnwindSafe(|| decompressor.decompress_many(&mut batch)));
         match result {
             Ok(result) => result.map_err(|error| at_row(done, &error))?,

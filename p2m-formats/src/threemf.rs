@@ -127,15 +127,25 @@ impl Model {
     fn parse(text: &str) -> Result<Self, String> {
         let mut model = Self::default();
         let mut id = None;
+        // Slices have vertices of their own, in layers beside the mesh.
+        let mut is_in_slices = false;
         each_element(text, &mut |element| {
             match element.local_name().as_ref() {
                 "model" => {
+                    if requires_slices(element)? {
+                        return Err("the model requires the extension for slices, which are not read: save it with \
+                                    meshes of full resolution"
+                            .to_owned());
+                    }
                     let unit = attribute(element, "unit")?;
                     model.unit = unit
                         .map(|name| Unit::named(&name).ok_or(format!("unit '{}' is unknown", name.escape_debug())))
                         .transpose()?;
                 }
+                "slicestack" => is_in_slices = true,
+                "vertex" if is_in_slices => {}
                 "object" => {
+                    is_in_slices = false;
                     let name = attribute(element, "name")?.unwrap_or_default();
                     let new = number(element, "id")?;
                     id = Some(new);
@@ -199,6 +209,17 @@ fn each_element(text: &str, take: &mut dyn FnMut(&BytesStart<'_>) -> Result<(), 
             Err(error) => return Err(format!("at byte {}: {error}", reader.buffer_position())),
         }
     }
+}
+
+/// Returns whether a model requires its reader to know slices.
+fn requires_slices(model: &BytesStart<'_>) -> Result<bool, String> {
+    let required = attribute(model, "requiredextensions")?.unwrap_or_default();
+    for prefix in required.split_ascii_whitespace() {
+        if attribute(model, prefix)?.is_some_and(|space| space.contains("/slice/")) {
+            return Ok(true);
+        }
+    }
+    Ok(false)
 }
 
 /// Returns the value of an attribute, whose name may have a prefix.

@@ -5,14 +5,18 @@ use p2m_mixed::Unit;
 /// Returns the unit of the horizontal coordinates of a coordinate system, as `.prj` files and LAS files have it.
 pub(crate) fn unit(text: &str) -> Option<Unit> {
     let text = text.to_ascii_uppercase();
-    let is_projected = ["PROJCS", "PROJCRS", "PROJECTEDCRS"].iter().any(|keyword| text.contains(keyword));
-    if !is_projected {
+    let begins = |keywords: &[&str]| keywords.iter().filter_map(|keyword| text.find(keyword)).min();
+    let Some(start) = begins(&["PROJCS", "PROJCRS", "PROJECTEDCRS"]) else {
         let is_geographic = ["GEOGCS", "GEOGCRS", "GEODCRS"].iter().any(|keyword| text.contains(keyword));
         return is_geographic.then_some(Unit::Degree);
-    }
+    };
+    // A compound system has one of heights as well, whose unit may be another one.
+    let heights = ["VERT_CS[", "VERTCS[", "VERTCRS[", "VERTICALCRS["];
+    let text = &text[start..];
+    let text = &text[..heights.iter().filter_map(|keyword| text.find(keyword)).min().unwrap_or(text.len())];
     // In the second version, ellipsoids and parameters have units of their own before the axes. In the first one, the
-    // unit of angles comes first, and has a factor to radians. The unit of heights is the last one.
-    let axes = text.split_once("CS[CARTESIAN").map_or(text.as_str(), |(_, axes)| axes);
+    // unit of angles comes first, and has a factor to radians.
+    let axes = text.split_once("CS[CARTESIAN").map_or(text, |(_, axes)| axes);
     axes.split("UNIT[").skip(1).find_map(|rest| {
         let factor = rest.split(']').next()?.split(',').nth(1)?.trim().parse().ok()?;
         Unit::of_metres(factor)
@@ -36,5 +40,21 @@ mod tests {
             Some(Unit::Foot)
         );
         assert_eq!((unit(""), unit(&projected("furlong", 201.168))), (None, None));
+    }
+
+    #[test]
+    fn the_unit_of_heights_is_not_that_of_a_compound_system() {
+        for (name, factor, expected) in
+            [("furlong", 201.168, None), ("foot", 0.3048, Some(Unit::Foot)), ("metre", 1.0, Some(Unit::Metre))]
+        {
+            let plane = format!(r#"PROJCS["P",GEOGCS["G",UNIT["degree",0.0174532925199433]],UNIT["{name}",{factor}]]"#);
+            let heights = |keyword: &str| format!(r#"{keyword}["H",VDATUM["D"],UNIT["metre",1.0]]"#);
+            assert_eq!(unit(&format!(r#"COMPD_CS["C",{plane},{}]"#, heights("VERT_CS"))), expected);
+            assert_eq!(unit(&format!("{plane},{}", heights("VERTCS"))), expected);
+            assert_eq!(unit(&format!("{},{plane}", heights("VERTCS"))), expected);
+            let axes = format!(r#"PROJCRS["P",CS[Cartesian,2],LENGTHUNIT["{name}",{factor}]]"#);
+            let vertical = r#"VERTCRS["H",CS[vertical,1],LENGTHUNIT["metre",1]]"#;
+            assert_eq!(unit(&format!(r#"COMPOUNDCRS["C",{axes},{vertical}]"#)), expected);
+        }
     }
 }

@@ -104,6 +104,105 @@ fn vertices_are_points_and_a_prj_file_has_the_unit() {
     fs::remove_dir_all(target).unwrap();
 }
 
+#[test]
+fn invalid_points_of_scans_keep_their_numbers() {
+    use e57::{E57Writer, Record, RecordDataType, RecordName, RecordValue};
+    let mut bytes = std::io::Cursor::new(Vec::new());
+    let mut writer = E57Writer::new(&mut bytes, "file").unwrap();
+    let state =
+        Record { name: RecordName::CartesianInvalidState, data_type: RecordDataType::Integer { min: 0, max: 2 } };
+    let records = vec![Record::CARTESIAN_X_F64, Record::CARTESIAN_Y_F64, Record::CARTESIAN_Z_F64, state];
+    let mut scan = writer.add_pointcloud("scan", records).unwrap();
+    // Four states fill a byte.
+    for (x, state) in [(1.0, 0), (2.0, 2), (3.0, 0), (4.0, 0)] {
+        let mut values = vec![RecordValue::Double(x); 3];
+        values.push(RecordValue::Integer(state));
+        scan.add_point(values).unwrap();
+    }
+    scan.finalize().unwrap();
+    writer.finalize().unwrap();
+    drop(writer);
+    let scene = read("a.e57", bytes.get_ref()).unwrap();
+    assert_eq!((scene.soup.len(), &scene.sources[..]), (3, &[0, 2, 3][..]));
+    assert_eq!(scene.skipped[0].to_string(), "1 x vertex that is not finite");
+    let table = read_points_from(&bytes.get_ref()[..], "e57".parse().unwrap(), "a", None, &PointColumns::default());
+    let x: Vec<f64> = table.unwrap().points.iter().map(|point| point.x).collect();
+    assert!(x[0] == 1.0 && x[1].is_nan() && x[2..] == [3.0, 4.0], "{x:?}");
+}
+
+#[test]
+fn unknown_chunks_of_glb_files_are_ignored() {
+    let bytes = seed("gltf/scene.glb");
+    let json_end = 20 + u32::from_le_bytes(bytes[12..16].try_into().unwrap()) as usize;
+    let chunk = [&4u32.to_le_bytes()[..], b"ABCD", b"data"].concat();
+    let expected = read("a.glb", &bytes).unwrap();
+    for at in [json_end, bytes.len()] {
+        assert_eq!(read("a.glb", &[&bytes[..at], &chunk, &bytes[at..]].concat()).unwrap(), expected);
+    }
+    let cut = [&bytes[..json_end], &chunk[..11]].concat();
+    assert!(read("a.glb", &cut).unwrap_err().to_string().ends_with(": unexpected end of file"));
+}
+
+/// Returns six times the volume inside of the triangles of a scene, which is negative if they face inside.
+fn volume(scene: &Scene) -> f64 {
+    let corners = |t: &[u32; 3]| t.map(|i| scene.soup.positions()[i as usize].coords);
+    scene.soup.triangles().iter().map(corners).map(|[a, b, c]| a.dot(&b.cross(&c))).sum()
+}
+
+#[test]
+fn mirrored_nodes_face_outside() {
+    let text = String::from_utf8(seed("gltf/scene.gltf")).unwrap();
+    let plain = read("a.gltf", text.as_bytes()).unwrap();
+    let mut description: serde_json::Value = serde_json::from_str(&text).unwrap();
+    for node in description["nodes"].as_array_mut().unwrap() {
+        let children = node.get("children").cloned();
+        let mesh = node.get("mesh").cloned();
+        *node = serde_json::json!({ "scale": [if mesh.is_some() { -1.0 } else { 1.0 }, 1.0, 1.0] });
+        mesh.into_iter().for_each(|mesh| node["mesh"] = mesh);
+        children.into_iter().for_each(|children| node["children"] = children);
+    }
+    let mirrored = read("a.gltf", description.to_string().as_bytes()).unwrap();
+    assert_eq!(mirrored.soup.triangles().len(), plain.soup.triangles().len());
+    assert!(volume(&plain) > 1.0 && volume(&mirrored) > 1.0, "{}", volume(&mirrored));
+}
+
+#[test]
+fn single_features_have_coordinate_systems() {
+    let system = r#""crs": {"type": "name", "properties": {"name": "EPSG:28992"}}"#;
+    let geometry = r#""type": "Point", "coordinates": [155000.0, 463000.0]"#;
+    for (system, unit) in [(system, None), (r#""crs": {"properties": {"name": "OGC:CRS84"}}"#, Some(Unit::Degree))] {
+        for file in [
+            format!("{{{geometry}, {system}}}"),
+            format!(r#"{{"type": "Feature", "properties": null, "geometry": {{{geometry}}}, {system}}}"#),
+        ] {
+            assert_eq!(read("a.geojson", file.as_bytes()).unwrap().unit, unit, "{file}");
+        }
+    }
+}
+
+#[test]
+fn slices_of_3mf_files_are_left_out_unless_they_are_required() {
+    let model = |required: &str| {
+        let text = format!(
+            r#"<model unit="millimeter" xmlns:s="http://schemas.microsoft.com/3dmanufacturing/slice/2015/07" {required}>
+            <resources><s:slicestack id="1" zbottom="0"><s:slice ztop="1"><s:vertices><s:vertex x="1" y="2"/>
+            </s:vertices><s:polygon startv="0"><s:segment v2="1"/></s:polygon></s:slice></s:slicestack>
+            <object id="2" s:slicestackid="1"><mesh><vertices><vertex x="0" y="0" z="0"/><vertex x="1" y="0" z="0"/>
+            <vertex x="1" y="1" z="0"/></vertices><triangles><triangle v1="0" v2="1" v3="2"/></triangles></mesh></object>
+            </resources><build><item objectid="2"/></build></model>"#
+        );
+        let mut archive = zip::ZipWriter::new(std::io::Cursor::new(Vec::new()));
+        archive.start_file("3D/3dmodel.model", zip::write::SimpleFileOptions::default()).unwrap();
+        std::io::Write::write_all(&mut archive, text.as_bytes()).unwrap();
+        read("a.3mf", &archive.finish().unwrap().into_inner())
+    };
+    for required in ["", r#"recommendedextensions="s""#, r#"requiredextensions="p""#] {
+        assert_eq!(model(required).unwrap().soup.triangles().len(), 1, "{required}");
+    }
+    let error = model(r#"requiredextensions="p s""#).unwrap_err().to_string();
+    assert!(error.contains("requires the extension for slices"), "{error}");
+}
+
 /// Damages each seed of a format: it ends early, and each of its bytes is replaced.
 fn damage(format: &str) {
     let [mut cases, mut errors] = [0; 2];

@@ -5,6 +5,7 @@ use crate::pieces::state::Pieces;
 use crate::polygon::{CHECK_REPEATS_ABOVE_CORNERS, MAX_CORNER_SQUARES, Triangulator};
 use crate::scene::{Object, Scene, Skipped};
 use crate::{Reason, Unit};
+use memchr::memchr2;
 use nalgebra::Point3;
 use p2m_core::{Element, PrimitiveSet, Soup};
 use std::fs::File;
@@ -290,9 +291,14 @@ impl<'a> SceneBuilder<'a> {
         Ok(!self.has_non_finite || is_finite(&self.output.position(vertex)?))
     }
 
-    /// Starts an object with this name. Primitives under an empty name belong to no object.
+    /// Starts an object with this name, whose line ends become blanks. Primitives under an empty name belong to no object.
     pub fn start_object(&mut self, name: &[u8]) {
-        self.start_run(trim(name));
+        let name = trim(name);
+        if memchr2(b'\n', b'\r', name).is_none() {
+            return self.start_run(name);
+        }
+        let blank = |&byte: &u8| if matches!(byte, b'\n' | b'\r') { b' ' } else { byte };
+        self.start_run(&name.iter().map(blank).collect::<Vec<_>>());
     }
 
     /// Starts an object with exactly this name.

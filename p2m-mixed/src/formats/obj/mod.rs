@@ -285,12 +285,10 @@ impl<'a> Parser<'a> {
     }
 
     fn object(&mut self, name: &[u8]) {
-        // A statement that extends over several lines contains their ends.
-        let name: Vec<u8> = name.iter().map(|&b| if b == b'\n' { b' ' } else { b }).collect();
         if self.deferred.is_empty() {
-            self.builder.start_object(&name);
+            self.builder.start_object(name);
         } else {
-            self.deferred.push(Deferred::Object(name));
+            self.deferred.push(Deferred::Object(name.to_vec()));
         }
     }
 
