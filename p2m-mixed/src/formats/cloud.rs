@@ -98,7 +98,7 @@ pub(super) mod npy {
         builder: SceneBuilder<'_>,
     ) -> Result<Scene, ReadError> {
         read_cloud(builder, |take| {
-            let is_flat = for_each_row(source.into_reader(), name, take)?;
+            let is_flat = for_each_row(source.into_reader(), name, |point, _| take(point))?;
             Ok(TableNotes { unit: None, is_flat })
         })
     }

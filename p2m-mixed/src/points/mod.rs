@@ -52,7 +52,8 @@ p2m_core::formats! {
 /// # NPY
 /// An array of NumPy has the shape `(n, 3)`, or `(n, 2)` for z = 0, C or Fortran order, and integers or floats of 4 or 8 bytes in either byte
 /// order. A structured array has the shape `(n,)`, and a field `query` of shape `(3,)` or else the fields `x`, `y`,
-/// `z`. Integers of 64 bits are rounded to double precision. Nothing may follow the array.
+/// `z`. Integers of 64 bits are rounded to double precision. Nothing may follow the array. A field
+/// `id` of integers or text has ids.
 ///
 /// # PLY
 /// The vertices are the points, whatever the primitives are.
@@ -187,6 +188,38 @@ pub fn read_point_table_from(
 mod tests {
     use super::*;
     use crate::Reason;
+
+    /// Returns an array of two rows with these fields, whose id has these bytes.
+    fn array(fields: &str, ids: [&[u8]; 2], is_first: bool) -> Vec<u8> {
+        let mut bytes = p2m_core::npy_header(fields, "(2,)", false);
+        for (row, id) in (0u8..).zip(ids) {
+            let point: Vec<u8> = (0u8..3).flat_map(|k| (f32::from(row) + f32::from(k)).to_le_bytes()).collect();
+            bytes.extend(if is_first { [id, &point].concat() } else { [&point, id].concat() });
+        }
+        bytes
+    }
+
+    #[test]
+    fn arrays_have_ids_of_integers_and_text() {
+        let point = "('x', '<f4'), ('y', '<f4'), ('z', '<f4')";
+        let ids = |descr: &str, ids: [&[u8]; 2]| {
+            [true, false].map(|is_first| {
+                let id = format!("('id', '{descr}')");
+                let fields = if is_first { format!("[{id}, {point}]") } else { format!("[{point}, {id}]") };
+                let file = array(&fields, ids, is_first);
+                let table = read_point_table_from(&file[..], PointFormat::Npy, "a", &PointColumns::default()).unwrap();
+                assert_eq!(table.points[1], Point3::new(1.0, 2.0, 3.0));
+                table.ids.map(|ids| [0, 1].map(|i| ids.get(i).unwrap().to_owned()))
+            })
+        };
+        let both = |a: &str, b: &str| [Some([a.to_owned(), b.to_owned()]), Some([a.to_owned(), b.to_owned()])];
+        assert_eq!(ids("<i8", [&i64::MAX.to_le_bytes(), &(-7i64).to_le_bytes()]), both("9223372036854775807", "-7"));
+        assert_eq!(ids(">u4", [&7u32.to_be_bytes(), &u32::MAX.to_be_bytes()]), both("7", "4294967295"));
+        assert_eq!(ids("|S4", [b"P7\0\0", b"long"]), both("P7", "long"));
+        let text = |text: &str| -> Vec<u8> { text.chars().flat_map(|c| u32::from(c).to_le_bytes()).collect() };
+        assert_eq!(ids("<U2", [&text("\u{e9}\0"), &text("ab")]), both("\u{e9}", "ab"));
+        assert_eq!(ids("<f4", [&[0; 4], &[0; 4]]), [None, None]);
+    }
 
     #[test]
     fn extensions_decide() {

@@ -23,18 +23,15 @@ pub(crate) fn read<R: Row<N>, const N: usize>(
 ) -> Result<Rows<R>, ReadError> {
     let mut rows = Vec::new();
     let mut ids = PointIds::default();
-    let mut take = |row| {
+    let take = |row, id: Option<&[u8]>| {
         rows.try_reserve(1).map_err(Reason::Memory)?;
         rows.push(row);
-        Ok(())
+        id.map_or(Ok(()), |id| ids.push(id))
     };
     let (mut unit, mut is_flat) = (None, false);
     match format {
         PointFormat::Xyz | PointFormat::Csv => {
-            let notes = table::for_each_row(reader, name, columns, |row, id| {
-                take(row)?;
-                id.map_or(Ok(()), |id| ids.push(id))
-            })?;
+            let notes = table::for_each_row(reader, name, columns, take)?;
             (unit, is_flat) = (notes.unit, notes.is_flat);
         }
         PointFormat::Npy => is_flat = npy::for_each_row(reader, name, take)?,

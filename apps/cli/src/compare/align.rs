@@ -121,7 +121,7 @@ pub(crate) fn run(streams: &Streams, args: &Args) -> anyhow::Result<()> {
     let format = args.scene.format()?;
     let pool = args.threads.pool()?;
     let (scene, saved) = read_scene_and_index(streams, &pool, &args.scene.path, format, args.scene.map)?;
-    let mut scan = args.scan.read(streams, &pool, scan_format)?;
+    let (mut scan, _) = args.scan.read(streams, &pool, scan_format, false)?;
     let backend = args.backend.unwrap_or_else(|| saved_or_default(saved.as_ref()));
     let p2m = P2mSettings::default();
     let source = SceneSource { soup: &scene.soup, kdop_directions: None, p2m, saved: saved.as_ref() };

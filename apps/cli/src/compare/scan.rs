@@ -6,7 +6,7 @@ use crate::io::usage::{one_of, usage};
 use anyhow::Context;
 use p2m_core::{Element, Soup};
 use p2m_formats::FileFormat;
-use p2m_mixed::{PointColumns, Scene};
+use p2m_mixed::{Format, PointColumns, PointIds, Scene};
 use rayon::ThreadPool;
 use std::path::PathBuf;
 
@@ -39,16 +39,25 @@ impl ScanArgs {
         Ok(())
     }
 
-    /// Reads the scan as a scene. Points of a file of points are primitives.
-    pub(crate) fn read(&self, streams: &Streams, pool: &ThreadPool, format: FileFormat) -> anyhow::Result<Scene> {
-        if self.columns.is_empty() {
-            return Ok(read_scene_and_index(streams, pool, &self.path, format, false)?.0);
+    /// Reads the scan as a scene. Points of a file of points are primitives. If ids are wanted, those of its points are
+    /// returned as well, where a table or an array has them.
+    pub(crate) fn read(
+        &self,
+        streams: &Streams,
+        pool: &ThreadPool,
+        format: FileFormat,
+        wants_ids: bool,
+    ) -> anyhow::Result<(Scene, Option<PointIds>)> {
+        let may_have_ids = matches!(format, FileFormat::Own(Format::Xyz | Format::Csv | Format::Npy));
+        if self.columns.is_empty() && !(wants_ids && may_have_ids) {
+            return Ok((read_scene_and_index(streams, pool, &self.path, format, false)?.0, None));
         }
         let columns = PointColumns { coordinates: self.columns.clone(), id: None };
         let table = read_points(streams, &self.path, format, &columns, "--scan-columns is")?;
         let finite = (0..).zip(&table.points).filter(|(_, point)| point.iter().all(|x| x.is_finite()));
         let elements: Vec<_> = finite.map(|(number, _)| Element::Point(number)).collect();
-        Ok(Soup::new(table.points, elements).with_context(|| self.path.display().to_string())?.into())
+        let scene = Soup::new(table.points, elements).with_context(|| self.path.display().to_string())?.into();
+        Ok((scene, table.ids))
     }
 }
 

@@ -15,28 +15,33 @@ const MAX_HEADER_BYTES: u32 = 1 << 16;
 /// The largest number of fields that a message lists.
 const MAX_LISTED_FIELDS: usize = 16;
 
-/// Calls a function for each row of an array. Returns whether rows have no third number, which is then 0.
+/// Calls a function for each row of an array, with its id if the array has a field of ids. Returns whether rows have no
+/// third number, which is then 0.
 pub(crate) fn for_each_row<R: Row<N>, const N: usize>(
     reader: impl BufRead,
     name: &str,
-    mut take: impl FnMut(R) -> Result<(), Reason>,
+    mut take: impl FnMut(R, Option<&[u8]>) -> Result<(), Reason>,
 ) -> Result<bool, ReadError> {
     let mut bytes = ByteReader::new(reader, 0);
     let at_byte = |bytes: &ByteReader<_>, reason| ReadError::new(name, FileLocation::Byte(bytes.start()), reason);
     let array = read_header::<R, N>(&mut bytes).map_err(|reason| at_byte(&bytes, reason))?;
-    let mut take_row = |row, numbers| {
-        R::new(numbers).and_then(&mut take).map_err(|reason| ReadError::new(name, FileLocation::Row(row), reason))
+    let mut take_row = |row, numbers, id: Option<&[u8]>| {
+        let taken = R::new(numbers).and_then(|numbers| take(numbers, id));
+        taken.map_err(|reason| ReadError::new(name, FileLocation::Row(row), reason))
     };
     if array.is_fortran {
         let rows = read_columns(&mut bytes, &array).map_err(|reason| at_byte(&bytes, reason))?;
-        (0..).zip(rows).try_for_each(|(row, numbers)| take_row(row, numbers))?;
+        (0..).zip(rows).try_for_each(|(row, numbers)| take_row(row, numbers, None))?;
     } else {
-        let mut order: [usize; N] = std::array::from_fn(|axis| axis);
-        order.sort_by_key(|&axis| array.coordinates[axis].offset);
-        let order = if array.is_flat { &order[..2] } else { &order };
+        let columns = if array.is_flat { 2 } else { N };
+        let coordinates = array.coordinates[..columns].iter().enumerate();
+        let mut parts: Vec<(u64, Part)> = coordinates.map(|(axis, c)| (c.offset, Part::Coordinate(axis))).collect();
+        parts.extend(array.id.map(|id| (id.offset, Part::Id(id.kind))));
+        parts.sort_by_key(|(offset, _)| *offset);
+        let mut id = Vec::new();
         for row in 0..array.count {
-            let numbers = read_row(&mut bytes, &array, order).map_err(|reason| at_byte(&bytes, reason))?;
-            take_row(row, numbers)?;
+            let numbers = read_row(&mut bytes, &array, &parts, &mut id).map_err(|reason| at_byte(&bytes, reason))?;
+            take_row(row, numbers, array.id.map(|_| &id[..]))?;
         }
     }
     match bytes.skip_rest() {
@@ -54,6 +59,8 @@ struct Array<const N: usize> {
     size: u64,
     /// The coordinates of an item.
     coordinates: [Coordinate; N],
+    /// The id of an item.
+    id: Option<IdField>,
     /// Whether the array has all x first, then all y, and so on.
     is_fortran: bool,
     /// Whether items have two numbers. The third coordinate, which comes last, is then 0.
@@ -65,6 +72,33 @@ struct Coordinate {
     offset: u64,
     scalar: Scalar,
     big_endian: bool,
+}
+
+/// The field of ids.
+#[derive(Debug, Clone, Copy)]
+struct IdField {
+    offset: u64,
+    kind: IdKind,
+}
+
+/// The type of ids.
+#[derive(Debug, Clone, Copy)]
+enum IdKind {
+    /// An id is a whole number, which may be big-endian.
+    Integer(Scalar, bool),
+    /// An id is text of so many bytes.
+    Bytes(u64),
+    /// An id is text of so many characters of four bytes, which may be big-endian.
+    Characters(u64, bool),
+}
+
+/// A part of an item that is read.
+#[derive(Debug, Clone, Copy)]
+enum Part {
+    /// This is the coordinate of an axis.
+    Coordinate(usize),
+    /// This is the id.
+    Id(IdKind),
 }
 
 fn bad(problem: HeaderProblem) -> Reason {
@@ -123,22 +157,25 @@ fn array<R: Row<N>, const N: usize>(text: &[u8]) -> Result<Array<N>, Reason> {
             let size = scalar.size() as u64;
             let coordinates = std::array::from_fn(|k| Coordinate { offset: k as u64 * size, scalar, big_endian });
             let is_flat = columns < N as u64;
-            Ok(Array { count, size: columns * size, coordinates, is_fortran, is_flat })
+            Ok(Array { count, size: columns * size, coordinates, id: None, is_fortran, is_flat })
         }
         Value::List(fields) => {
             let &[Value::Integer(count)] = lengths.as_slice() else {
                 return Err(bad(HeaderProblem::BadShape { text: shape.to_string(), expected: "(n,)" }));
             };
-            let (coordinates, size) = structure::<R, N>(fields)?;
-            Ok(Array { count, size, coordinates, is_fortran: false, is_flat: false })
+            let (coordinates, id, size) = structure::<R, N>(fields)?;
+            Ok(Array { count, size, coordinates, id, is_fortran: false, is_flat: false })
         }
         other => Err(bad(HeaderProblem::UnsupportedType { text: other.to_string() })),
     }
 }
 
-/// Returns the coordinates among the fields of a structured array, and the size of an item.
-fn structure<R: Row<N>, const N: usize>(fields: &[Value<'_>]) -> Result<([Coordinate; N], u64), Reason> {
+/// Returns the coordinates and the id among the fields of a structured array, and the size of an item.
+fn structure<R: Row<N>, const N: usize>(
+    fields: &[Value<'_>],
+) -> Result<([Coordinate; N], Option<IdField>, u64), Reason> {
     let mut offset = 0u64;
+    let mut id = None;
     let (mut of_triples, mut singles) = ([None; N], [None; N]);
     let mut names = Vec::new();
     for field in fields {
@@ -171,6 +208,8 @@ fn structure<R: Row<N>, const N: usize>(fields: &[Value<'_>]) -> Result<([Coordi
             }
         } else if let (Some(axis), None) = (R::FIELDS.iter().position(is_name), shape) {
             singles[axis] = coordinate.ok();
+        } else if shape.is_none() && name.eq_ignore_ascii_case(b"id") {
+            id = id_kind(descr).map(|kind| IdField { offset, kind });
         }
         if names.len() < MAX_LISTED_FIELDS {
             names.push(quote(name));
@@ -180,7 +219,7 @@ fn structure<R: Row<N>, const N: usize>(fields: &[Value<'_>]) -> Result<([Coordi
     }
     let all = |found: [Option<Coordinate>; N]| found.into_iter().collect::<Option<Vec<_>>>()?.try_into().ok();
     match [of_triples, singles].into_iter().find_map(all) {
-        Some(coordinates) => Ok((coordinates, offset)),
+        Some(coordinates) => Ok((coordinates, id, offset)),
         None => Err(bad(HeaderProblem::UnknownFields { names, expected: R::EXPECTED_FIELDS })),
     }
 }
@@ -207,6 +246,20 @@ fn scalar(descr: &Value<'_>) -> Result<(Scalar, bool), Reason> {
         b'>' => Ok((scalar, true)),
         b'|' if scalar.size() == 1 => Ok((scalar, false)),
         _ => Err(unsupported()),
+    }
+}
+
+/// Returns the type of ids that a description stands for, or `None` for other types.
+fn id_kind(descr: &Value<'_>) -> Option<IdKind> {
+    if let Ok((scalar, is_big_endian)) = scalar(descr) {
+        return scalar.is_integer().then_some(IdKind::Integer(scalar, is_big_endian));
+    }
+    let Value::Text([order, kind, digits @ ..]) = descr else { return None };
+    let count = std::str::from_utf8(digits).ok()?.parse().ok()?;
+    match kind {
+        b'S' => Some(IdKind::Bytes(count)),
+        b'U' => Some(IdKind::Characters(count, *order == b'>')),
+        _ => None,
     }
 }
 
@@ -262,26 +315,69 @@ fn read_columns<const N: usize>(
     Ok(rows)
 }
 
-/// Reads an item, whose coordinates come in this order.
+/// Reads an item, whose parts come in this order at their offsets. The id replaces the one before.
 fn read_row<const N: usize>(
     bytes: &mut ByteReader<impl BufRead>,
     array: &Array<N>,
-    order: &[usize],
+    parts: &[(u64, Part)],
+    id: &mut Vec<u8>,
 ) -> Result<[f64; N], Reason> {
     let mut row = [0.0; N];
     let mut offset = 0;
-    for &axis in order {
-        let c = &array.coordinates[axis];
-        if c.offset > offset {
-            bytes.skip(c.offset - offset)?;
+    for &(start, part) in parts {
+        if start > offset {
+            bytes.skip(start - offset)?;
         }
-        row[axis] = coordinate(bytes, c)?;
-        offset = c.offset + c.scalar.size() as u64;
+        offset = start
+            + match part {
+                Part::Coordinate(axis) => {
+                    let c = &array.coordinates[axis];
+                    row[axis] = coordinate(bytes, c)?;
+                    c.scalar.size() as u64
+                }
+                Part::Id(kind) => read_id(bytes, kind, id)?,
+            };
     }
     if array.size > offset {
         bytes.skip(array.size - offset)?;
     }
     Ok(row)
+}
+
+/// Reads an id as text, and returns its length in the file. Text ends before the zeros that fill it up.
+fn read_id(bytes: &mut ByteReader<impl BufRead>, kind: IdKind, id: &mut Vec<u8>) -> Result<u64, Reason> {
+    id.clear();
+    Ok(match kind {
+        IdKind::Integer(scalar, is_big_endian) => {
+            // All integers fit into 128 bits.
+            let number = match scalar {
+                Scalar::I64 => i128::from(i64::from_le_bytes(bytes.ordered(is_big_endian)?)),
+                Scalar::U64 => i128::from(u64::from_le_bytes(bytes.ordered(is_big_endian)?)),
+                #[allow(clippy::cast_possible_truncation, reason = "an integer of at most 32 bits")]
+                _ => bytes.number(scalar, is_big_endian)? as i128,
+            };
+            id.extend_from_slice(number.to_string().as_bytes());
+            scalar.size() as u64
+        }
+        IdKind::Bytes(count) => {
+            for _ in 0..count {
+                id.try_reserve(1).map_err(Reason::Memory)?;
+                id.push(u8::from_le_bytes(bytes.array()?));
+            }
+            id.truncate(id.iter().rposition(|byte| *byte != 0).map_or(0, |last| last + 1));
+            count
+        }
+        IdKind::Characters(count, is_big_endian) => {
+            for _ in 0..count {
+                let code = u32::from_le_bytes(bytes.ordered(is_big_endian)?);
+                let character = char::from_u32(code).unwrap_or(char::REPLACEMENT_CHARACTER);
+                id.try_reserve(4).map_err(Reason::Memory)?;
+                id.extend_from_slice(character.encode_utf8(&mut [0; 4]).as_bytes());
+            }
+            id.truncate(id.iter().rposition(|byte| *byte != 0).map_or(0, |last| last + 1));
+            4 * count
+        }
+    })
 }
 
 fn coordinate(bytes: &mut ByteReader<impl BufRead>, c: &Coordinate) -> Result<f64, Reason> {

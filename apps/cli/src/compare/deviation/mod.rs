@@ -49,7 +49,8 @@ verdict, and the exit code is 3 if it is FAIL. Points that are not finite, whose
 leaves out, have no deviation and are in no statistics. With --on-part, all results are about the vertices of the scene, \
 each with the mean deviation of the points around it.
 
-A CSV file is the table of `p2m query --signed`, where signed_distance is the deviation. A PLY file is the scan with \
+A CSV file is the table of `p2m query --signed`, where signed_distance is the deviation, with the ids of the scan if \
+it has a column id. A PLY file is the scan with \
 the property deviation and colours from blue (inside) over grey to red (outside). An HTML file is a page that any \
 browser opens without a network, with the coloured scan, the scene, a histogram and the statistics; --open opens it. \
 PNG and PDF files are a report on one sheet.
@@ -164,7 +165,8 @@ pub(crate) fn run(streams: &Streams, args: &Args) -> anyhow::Result<()> {
     let pool = args.threads.pool()?;
     let start = Instant::now();
     let (scene, saved) = read_scene_and_index(streams, &pool, &args.scene.path, format, args.scene.map)?;
-    let mut scan = args.scan.read(streams, &pool, scan_format)?;
+    let has_table = out_format == Some(DeviationFormat::Csv) && !args.on_part;
+    let (mut scan, ids) = args.scan.read(streams, &pool, scan_format, has_table)?;
     let read_time = start.elapsed();
     if let Some(note) = hints::note_on_sizes(&scan.soup, &scene.soup).filter(|_| !args.align) {
         streams.print_summary(format_args!("warning  {note}\n"));
@@ -215,9 +217,10 @@ pub(crate) fn run(streams: &Streams, args: &Args) -> anyhow::Result<()> {
     let barycentric = args.on_part.then(Vec::new);
     let mut answers =
         Answers { index, signs: &signs, filter: &filter, values: Vec::new(), primitives: Vec::new(), barycentric };
-    let query_time = match (&mut output, out_format) {
-        (Some(output), Some(DeviationFormat::Csv)) if !args.on_part => {
-            let encoder = AnswerEncoder::new(AnswerFormat::Csv, &scene.objects, args.columns(&scene));
+    let query_time = match &mut output {
+        Some(output) if has_table => {
+            let columns = args.columns(&scene, ids.is_some());
+            let encoder = AnswerEncoder::new(AnswerFormat::Csv, &scene.objects, columns).with_ids(ids);
             answers.add_to_table(streams, &pool, points, &encoder, output)?
         }
         _ => answers.add(streams, &pool, points, |_, _| (), |_, _| Ok(()))?,
@@ -371,11 +374,12 @@ impl Args {
         signed.map(Signs::Surface).map_err(|error| self.without_sign(error))
     }
 
-    /// Returns the columns of the table, which are those of `p2m query --signed`, after numbers if points are missing.
-    fn columns(&self, scene: &Scene) -> Vec<AnswerColumn> {
+    /// Returns the columns of the table, which are those of `p2m query --signed`, after numbers if points are missing,
+    /// and after ids if the scan has them.
+    fn columns(&self, scene: &Scene, has_ids: bool) -> Vec<AnswerColumn> {
         let columns = AnswerColumn::defaults(AnswerFormat::Csv, !scene.objects.is_empty(), !self.unsigned);
         let number = self.only_outside.then_some(AnswerColumn::Number);
-        number.into_iter().chain(columns).collect()
+        number.into_iter().chain(has_ids.then_some(AnswerColumn::Id)).chain(columns).collect()
     }
 
     /// Returns the error of a scene that has no sign by the rule.
