@@ -170,9 +170,13 @@ impl Index {
         })
     }
 
-    /// Returns a sentence if the inside of the scene as a solid is a guess.
+    /// Returns a sentence if the inside of the scene as a solid is a guess, or is none because of what is beside triangles.
     fn solid_note(&self, py: Python<'_>, threads: usize) -> PyResult<Option<&'static str>> {
-        Ok(self.solid(py, threads)?.1.and_then(|signed| signed.note()))
+        Ok(match self.solid(py, threads)?.1 {
+            Some(signed) => signed.note(),
+            None if self.scene.soup.triangles().is_empty() => None,
+            None => Some("the scene has segments or points beside triangles: nothing of it counts as filled"),
+        })
     }
 
     /// Returns the nearest pair of this scene and another one for each motion of the other one, or for none.

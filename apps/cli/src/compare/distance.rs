@@ -77,11 +77,11 @@ pub(crate) fn run(streams: &Streams, args: &Args) -> anyhow::Result<()> {
         let soups = [&*scenes[0].soup, &*scenes[1].soup];
         Ok::<_, anyhow::Error>(match args.solid {
             true => closest_pair_of_solids(&indexes, soups, &options),
-            false => (indexes[0].closest_pair(&indexes[1], &options), [None; 2]),
+            false => (indexes[0].closest_pair(&indexes[1], &options), [None, None]),
         })
     })?;
     let (found, notes) = found;
-    for (name, note) in names.iter().zip(notes) {
+    for (name, note) in names.iter().zip(&notes) {
         if let Some(note) = note {
             streams.print_summary(format_args!("warning  {name}: {note}\n"));
         }
@@ -108,20 +108,26 @@ pub(crate) fn run(streams: &Streams, args: &Args) -> anyhow::Result<()> {
     Output::print(streams, text(&names, &scenes, found.as_ref(), limit))
 }
 
-/// Returns the nearest pair of two scenes whose inside counts, with a note on each scene whose inside is a guess.
+/// Returns the nearest pair of two scenes whose inside counts, with a note on each scene whose inside is a guess, or that
+/// has none because of what is beside its triangles.
 fn closest_pair_of_solids<'a>(
     indexes: &[AabbTree<f64, &'a Soup<f64>>; 2],
     soups: [&'a Soup<f64>; 2],
     options: &PairOptions<f64>,
-) -> (Option<ClosestPair<f64>>, [Option<&'static str>; 2]) {
+) -> (Option<ClosestPair<f64>>, [Option<String>; 2]) {
     // Segments and points have no inside.
-    let signed = [0, 1].map(|k| SignedDistance::new(&indexes[k], soups[k]).ok());
+    let signed = [0, 1].map(|k| SignedDistance::new(&indexes[k], soups[k]));
+    let notes = [0, 1].map(|k: usize| match &signed[k] {
+        Ok(signed) => signed.note().map(str::to_owned),
+        Err(error) if !soups[k].triangles().is_empty() => Some(format!("{error}: nothing of it counts as filled")),
+        Err(_) => None,
+    });
+    let signed = signed.map(Result::ok);
     let inside = signed
         .each_ref()
         .map(|signed| move |point: &Point3<f64>| signed.as_ref().is_some_and(|signed| signed.contains(point)));
     let parts = soups.map(Parts::of);
     let solid = |k: usize| Solid::new(&indexes[k], &parts[k], Some(&inside[k]));
-    let notes = signed.each_ref().map(|signed| signed.as_ref().and_then(SignedDistance::note));
     (solid(0).closest_pair(&solid(1), options), notes)
 }
 

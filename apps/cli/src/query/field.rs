@@ -183,7 +183,8 @@ pub(crate) fn run(streams: &Streams, args: &Args) -> anyhow::Result<()> {
             let closest = |point: &Point3<f64>| index.closest(point);
             let surface = pool.install(|| offset_surface(&grid, values, distance, &closest));
             let surface = surface.with_context(|| scene_args.name())?;
-            Some(WrittenSurface::new(streams, target, distance, surface)?)
+            args.check_surface(streams, &grid, distance, &surface)?;
+            Some(WrittenSurface::new(streams, target, &grid, distance, surface)?)
         }
         _ => None,
     };
@@ -231,16 +232,25 @@ pub(crate) fn run(streams: &Streams, args: &Args) -> anyhow::Result<()> {
 struct WrittenSurface {
     distance: f64,
     surface: OffsetSurface,
+    /// The largest error of vertices, for people.
+    vertex_error: String,
     is_closed: bool,
     written: WrittenScene,
 }
 
 impl WrittenSurface {
     /// Writes and measures a surface.
-    fn new(streams: &Streams, target: &Target<'_>, distance: f64, surface: OffsetSurface) -> anyhow::Result<Self> {
+    fn new(
+        streams: &Streams,
+        target: &Target<'_>,
+        grid: &Grid,
+        distance: f64,
+        surface: OffsetSurface,
+    ) -> anyhow::Result<Self> {
+        let vertex_error = error_of_vertices(&surface, grid);
         let is_closed = Statistics::of(&surface.soup).edges.is_closed();
         let written = target.write(streams, &surface.soup.clone().into())?;
-        Ok(Self { distance, surface, is_closed, written })
+        Ok(Self { distance, surface, vertex_error, is_closed, written })
     }
 
     fn json(&self) -> Value {
@@ -253,13 +263,13 @@ impl WrittenSurface {
     }
 
     fn text(&self) -> String {
-        let OffsetSurface { soup, vertex_error, triangle_error, .. } = &self.surface;
-        let closed = match (soup.is_empty(), self.is_closed) {
-            (true, _) => "empty: no point of the grid is nearer, or all are; try a higher --resolution, or --signed",
-            (_, true) => "closed",
-            (_, false) => "not closed",
+        let OffsetSurface { triangle_error, .. } = &self.surface;
+        let closed = match self.is_closed {
+            true => "closed",
+            false => "not closed",
         };
-        let [distance, vertices, triangles] = [self.distance, *vertex_error, *triangle_error].map(Figure);
+        let [distance, triangles] = [self.distance, *triangle_error].map(Figure);
+        let vertices = &self.vertex_error;
         format!(
             "surface  {closed}; vertices are within {vertices}, centroids within {triangles} of {distance}\n{}",
             self.written.text()
@@ -273,6 +283,17 @@ impl Args {
         let scene = &self.index_args.scene;
         if self.json && is_standard(&self.out) {
             return Err(usage("--json reports on the standard output, so the field has to go to a file"));
+        }
+        if let Some(distance) = self.iso {
+            if self.resolution < MIN_ISO_RESOLUTION {
+                return Err(usage(format!("--iso needs a --resolution of at least {MIN_ISO_RESOLUTION}")));
+            }
+            if distance <= 0.0 && self.signed.is_none() {
+                return Err(usage(format!(
+                    "--iso {distance}: distances without signs are never below 0: add --signed, or choose a distance \
+                     above 0"
+                )));
+            }
         }
         let out_format = self.format()?;
         Output::refuse_inputs(&self.out, &[&scene.path])?;
@@ -290,6 +311,39 @@ impl Args {
             }
         }
         Ok(out_format)
+    }
+
+    /// Refuses a surface that is empty, and warns of one that may lack parts or has vertices elsewhere.
+    fn check_surface(
+        &self,
+        streams: &Streams,
+        grid: &Grid,
+        distance: f64,
+        surface: &OffsetSurface,
+    ) -> anyhow::Result<()> {
+        let (scene, spacing) = (self.index_args.scene.name(), grid.spacing());
+        if surface.soup.is_empty() {
+            return Err(anyhow!(
+                "{scene}: there is no surface at {distance}: no point of the grid, or all of it, is nearer to the scene: \
+                 try a higher --resolution"
+            ));
+        }
+        // Without signs, what is nearer is a layer on both sides of the surface. A cell fits into a thinner one.
+        if self.signed.is_none() && 2.0 * distance < spacing * 3f64.sqrt() {
+            streams.print_summary(format_args!(
+                "warning  {scene}: cells of {} are too large for a distance of {distance}, so parts of the surface may be \
+                 missing: try a higher --resolution\n",
+                Figure(spacing)
+            ));
+        }
+        if surface.vertex_error > spacing {
+            streams.print_summary(format_args!(
+                "warning  {scene}: vertices are up to {} from where they should be: the side of points changes away from \
+                 the surface, as it does at holes\n",
+                error_of_vertices(surface, grid)
+            ));
+        }
+        Ok(())
     }
 
     /// Returns the format of the field: the given one, or else that of the extension.
@@ -343,6 +397,19 @@ fn draw_slice(grid: &Grid, values: &[f32], mut picture: Output<'_>) -> anyhow::R
     let [Ok(width), Ok(height)] = size else { return Err(anyhow!("the slice is too large for a picture")) };
     write_png(&mut picture, [width, height], &pixels)?;
     picture.finish()
+}
+
+/// The least resolution of a grid around a surface, which has two layers of points on either side.
+const MIN_ISO_RESOLUTION: u32 = 8;
+
+/// Returns the largest error of vertices. One beyond the grid has no meaning as a length.
+fn error_of_vertices(surface: &OffsetSurface, grid: &Grid) -> String {
+    let size = (grid.point(grid.counts().map(|n| n - 1)) - grid.origin()).norm();
+    if surface.vertex_error > size {
+        "an unbounded length".to_owned()
+    } else {
+        Figure(surface.vertex_error).to_string()
+    }
 }
 
 /// The source of distances: lists or an index. An index beside lists decides signs.

@@ -56,6 +56,16 @@ fn solids_contain_what_is_inside() {
     assert!(json(&away)["distance"].as_f64() > Some(3.9));
     let open = write(&folder, "open.obj", LOW);
     assert!(text(&p2m(&["distance", &open, &arm, "--solid"]).stderr).contains("the surface is open"));
+    // A stray segment in the tank, which is no part of its surface.
+    let stray = path(&folder, "stray.obj");
+    table(&["convert", &tank, &stray]);
+    let shell = std::fs::read_to_string(&stray).unwrap();
+    std::fs::write(&stray, shell + "v 5 0 0\nv 6 0 0\nl -1 -2\n").unwrap();
+    let output = p2m(&["distance", &stray, &arm, "--solid"]);
+    assert!(text(&output.stderr).contains("nothing of it counts as filled"), "{}", text(&output.stderr));
+    assert!(text(&output.stdout).starts_with("distance 0."), "{}", text(&output.stdout));
+    // The arm has no triangles, so nobody expects an inside.
+    assert_eq!(text(&p2m(&["distance", &tank, &arm, "--solid"]).stderr), "");
 }
 
 #[test]

@@ -160,8 +160,34 @@ fn surfaces_of_fields_are_closed_and_at_their_distance() {
     }
     let output = p2m(&[&base[..], &["--iso", "0.1", "--signed"]].concat());
     assert!(text(&output.stderr).contains("surface  closed; vertices are within "), "{}", text(&output.stderr));
-    let output = p2m(&[&base[..], &["--iso", "-9", "--signed"]].concat());
-    assert!(text(&output.stderr).contains("surface  empty"), "{}", text(&output.stderr));
+    assert!(failure(&[&base[..], &["--iso", "-9", "--signed"]].concat(), 1).contains("there is no surface at -9"));
     failure(&[&base[..], &["--iso", "0.1", "--band", "1"]].concat(), 2);
     failure(&["field", &knot, "--iso", "0.1", "--out", &path(&folder, "offset.npy")], 1);
+}
+
+#[test]
+fn surfaces_that_are_missing_or_elsewhere_are_told() {
+    let folder = TempDir::new().unwrap();
+    let (ball, out) = (path(&folder, "ball.obj"), path(&folder, "offset.ply"));
+    table(&["generate", "ico-sphere", "--frequency", "8", "--out", &ball]);
+    let base = ["field", &ball, "--out", &out];
+    let error = |more: &[&str], code| failure(&[&base[..], more].concat(), code);
+    for distance in ["0", "-0", "-1"] {
+        assert!(error(&["--iso", distance], 2).contains("add --signed"), "{distance}");
+    }
+    assert!(error(&["--iso", "0.1", "--resolution", "7"], 2).contains("a --resolution of at least 8"));
+    // No point of the grid is so near to the surface.
+    assert!(error(&["--iso", "1e-9", "--resolution", "9"], 1).contains("there is no surface at 0.000000001"));
+    assert!(!std::path::Path::new(&out).exists());
+    let warned = |more: &[&str]| text(&p2m(&[&base[..], more].concat()).stderr);
+    let coarse = warned(&["--iso", "0.02", "--resolution", "32"]);
+    assert!(coarse.contains("are too large for a distance of 0.02"), "{coarse}");
+    let fine = warned(&["--iso", "0.1", "--resolution", "32"]);
+    assert!(!fine.contains("warning") && fine.contains("surface  closed"), "{fine}");
+    // Half of a ball, whose sides change across its opening.
+    let text_of_ball = std::fs::read_to_string(&ball).unwrap();
+    let (vertices, faces): (Vec<&str>, Vec<&str>) = text_of_ball.lines().partition(|line| !line.starts_with('f'));
+    std::fs::write(&ball, [&vertices[..], &faces[..faces.len() / 2]].concat().join("\n") + "\n").unwrap();
+    let open = warned(&["--iso", "-0.1", "--signed", "--resolution", "32"]);
+    assert!(open.contains("from where they should be"), "{open}");
 }

@@ -86,7 +86,7 @@ class PairQueries:
     _threads: int | None
 
     def _warn_of_open_surface(self, threads: int | None) -> None:
-        """Warn if the inside of the scene is a guess."""
+        """Warn if the inside of the scene is a guess, or does not count."""
         note = self._raw.solid_note(thread_count(threads, self._threads))
         if note is not None:
             warnings.warn(note, stacklevel=4)
