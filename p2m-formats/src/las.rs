@@ -167,7 +167,7 @@ fn decompress(
     }
     check_chunk_table(file, header)?;
     if is_layered {
-        check_layers(file, header, vlr.items())?;
+        check_layers(file, header, &vlr)?;
     }
     let mut source = Cursor::new(file.bytes);
     source.seek(SeekFrom::Start(header.data_start as u64)).expect("any position is fine");
@@ -213,8 +213,9 @@ fn check_chunk_table(file: &File<'_>, header: &Header) -> Result<(), ReadError> 
 }
 
 /// Refuses layers of a chunk that are longer than the file, for which the decompressor would allocate memory.
-fn check_layers(file: &File<'_>, header: &Header, items: &[laz::LazItem]) -> Result<(), ReadError> {
-    let layers: usize = items
+fn check_layers(file: &File<'_>, header: &Header, vlr: &LazVlr) -> Result<(), ReadError> {
+    let layers: usize = vlr
+        .items()
         .iter()
         .map(|item| match item.item_type() {
             LazItemType::Point14 => 9,
@@ -232,7 +233,8 @@ fn check_layers(file: &File<'_>, header: &Header, items: &[laz::LazItem]) -> Res
         if count == 0 {
             return Err(file.error_at(FileLocation::Byte(sizes as u64), "a chunk has no points"));
         }
-        points += u64::from(count);
+        // The decompressor begins another chunk after the usual number, which is the largest one if it varies.
+        points += u64::from(count.min(vlr.chunk_size()));
         let lens = file.slice(sizes + 4, 4 * layers)?.as_chunks::<4>().0;
         let len: u64 = lens.iter().map(|len| u64::from(u32::from_le_bytes(*len))).sum();
         let start = sizes + 4 + 4 * layers;
