@@ -102,6 +102,15 @@ pub(crate) enum Promise {
 }
 
 impl Promise {
+    /// Returns the promised bound of the error relative to the distance, besides rounding, if there is one.
+    pub(crate) fn relative(self) -> Option<f64> {
+        match self {
+            Self::Nothing => None,
+            Self::OneUlp => Some(0.0),
+            Self::Within(relative) => Some(relative),
+        }
+    }
+
     /// Returns whether an answer with this error keeps the promise. `unit` is u M.
     pub(crate) fn is_kept(self, error: f64, distance: f64, unit: f64) -> bool {
         match self {

@@ -47,14 +47,24 @@ function table(head, names, rows, kind = "") {
 
 const defaultPoint = (curve) => curve.points.find((point) => point.setting === DEFAULT) ?? curve.points[0];
 /** An error of 16 u M is what the contract allows: 8 for the primitive of the answer, and 8 for the nearest one. */
-const isExact = ({ errors }) =>
+const hasNoError = ({ errors }) =>
   errors.unanswered === 0 && !isNone(errors.scaled.max) && errors.scaled.max <= data.exact_limit;
-const isWithin = ({ errors }, limit) =>
-  errors.unanswered === 0 && !isNone(errors.relative.max) && errors.relative.max <= limit;
+const GUARANTEES = new Map(data.settings.map(({ name, guarantee }) => [name, guarantee]));
+/**
+ * Returns the relative error that a setting guarantees, which is 0 for exact ones. It is null if the setting has no
+ * guarantee, or if its answers did not keep it.
+ */
+function guaranteeOf(point) {
+  const { setting, errors } = point;
+  const limit = GUARANTEES.get(setting) ?? null;
+  const isKept = errors.unanswered === 0 && errors.broken === 0 && (limit !== 0 || hasNoError(point));
+  return isKept ? limit : null;
+}
+/** The largest errors that a reader may accept. */
 const NEEDS = [
-  { name: "no error but rounding", isMet: (point) => isExact(point) && point.setting === DEFAULT },
-  { name: "up to 1 %", isMet: (point) => isExact(point) || isWithin(point, 0.01) },
-  { name: "up to 10 %", isMet: (point) => isExact(point) || isWithin(point, 0.1) },
+  { name: "exact", limit: 0 },
+  { name: "1 % guaranteed", limit: 0.01 },
+  { name: "10 % guaranteed", limit: 0.1 },
 ];
 const JOBS = [
   [1e4, "10,000 queries, built"],
@@ -67,29 +77,31 @@ const candidates = (curves) =>
   curves.flatMap((curve) => curve.points.map((point, rank) => ({ curve, rank, point })));
 
 /**
- * Returns the fastest setting that meets a need. Of settings that are slower by no more than noise, it is the most
- * accurate one.
+ * Returns the settings that are faster than all others with the same guarantee or a better one, the exact one first.
+ * They are the rings of the chart, and the advice is made of them.
  */
-function fastest(curves, isMet) {
-  const byTime = (a, b) => a.point.nanoseconds.median - b.point.nanoseconds.median;
-  const met = candidates(curves)
-    .filter(({ point }) => isMet(point))
-    .sort(byTime);
-  const equallyFast = met.filter(({ point }) => point.nanoseconds.min <= met[0].point.nanoseconds.max);
-  return equallyFast.sort((a, b) => a.rank - b.rank || byTime(a, b))[0];
+function best(curves) {
+  const time = ({ point }) => point.nanoseconds.median;
+  const guaranteed = candidates(curves)
+    .map((candidate) => ({ ...candidate, limit: guaranteeOf(candidate.point) }))
+    .filter(({ limit }) => limit !== null)
+    .sort((a, b) => a.limit - b.limit || time(a) - time(b) || a.rank - b.rank);
+  let least = Infinity;
+  return guaranteed.filter((candidate) => time(candidate) < least && (least = time(candidate)) > 0);
 }
-function describe(best) {
-  if (!best) return "-";
-  const { curve, point } = best;
+/** Returns the fastest setting that guarantees an error of at most `limit`. */
+const fastest = (curves, limit) => best(curves).filter((candidate) => candidate.limit <= limit).at(-1);
+function describe(candidate) {
+  if (!candidate) return "-";
+  const { curve, point } = candidate;
   const setting = point === defaultPoint(curve) ? "" : ` ${point.setting}`;
-  const worst = isExact(point) ? "" : `, error ${error(point.errors.relative.max)}`;
-  return `${curve.name}${setting}, ${nanoseconds(point.nanoseconds.median)}${worst}`;
+  return `${curve.name}${setting}, ${nanoseconds(point.nanoseconds.median)}`;
 }
 
-/** Returns the seconds to build each index, and those of a query with its default setting. */
+/** Returns the seconds to build each index, and those of a query with its fastest exact setting. */
 const costs = (curves) =>
   curves.map((curve) => {
-    const point = defaultPoint(curve);
+    const point = fastest([curve], 0)?.point ?? defaultPoint(curve);
     return { name: curve.name, build: point.build.seconds, query: point.nanoseconds.median * 1e-9 };
   });
 const total = (cost, queries) => cost.build + queries * cost.query;
@@ -119,20 +131,26 @@ const turnsInWords = (all) =>
 
 /** Returns what to take: in short, and in sentences. */
 function advice(set) {
-  const exact = set.curves.filter((curve) => isExact(defaultPoint(curve)));
-  const [best, rough] = [NEEDS[0], NEEDS[1]].map((need) => fastest(set.curves, need.isMet));
-  if (!best) return ["No index answered all queries exactly", "The remarks in the table of all settings say why."];
-  const turns = cheapest(costs(exact));
-  const turn = turns.findIndex(({ cost }) => cost.name === best.curve.name);
+  const [exact, rough] = NEEDS.map((need) => fastest(set.curves, need.limit));
+  if (exact?.limit !== 0) return ["No index answered all queries exactly", "The remarks in the table of all settings say why."];
+  const turns = cheapest(costs(exactCurves(set)));
+  const turn = turns.findIndex(({ cost }) => cost.name === exact.curve.name);
   const before = turns[turn - 1];
   const from = turns[turn]?.from > 0 ? `; pays from ${count(turns[turn].from)} queries on` : "";
   const few = before ? `For fewer queries \`${before.cost.name}\` takes less time, because it is built sooner. ` : "";
+  const [slow, fast] = [exact, rough].map(({ point }) => point.nanoseconds);
+  const isNoise = slow.min <= fast.max;
   const gain =
-    rough.point === best.point
-      ? "No setting with errors of up to 1 % is faster beyond noise."
-      : `If errors of up to 1 % do no harm, \`${rough.curve.name}\` with \`${rough.point.setting}\` takes ${nanoseconds(rough.point.nanoseconds.median)}.`;
-  return [`${best.curve.name}, ${nanoseconds(best.point.nanoseconds.median)} per query, exact${from}`, few + gain];
+    rough.point === exact.point
+      ? "No setting that guarantees errors of up to 1 % is faster."
+      : `If errors of up to 1 % do no harm, \`${rough.curve.name}\` with \`${rough.point.setting}\` takes ` +
+        `${nanoseconds(fast.median)}, ${(slow.median / fast.median).toPrecision(2)} times as fast` +
+        `${isNoise ? ", within the noise of this measurement" : ""}.`;
+  const setting = exact.point.setting === DEFAULT ? "" : ` with ${exact.point.setting}`;
+  return [`${exact.curve.name}${setting}, ${nanoseconds(slow.median)} per query, exact${from}`, few + gain];
 }
+/** Returns the indexes that have an exact setting. */
+const exactCurves = (set) => set.curves.filter((curve) => fastest([curve], 0)?.limit === 0);
 
 /** Returns remarks about a setting in words. */
 function remarks(set, { curve, point }) {

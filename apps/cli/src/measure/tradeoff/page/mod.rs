@@ -33,10 +33,18 @@ pub(crate) struct Page<'a> {
 struct PageData<'a> {
     #[serde(flatten)]
     page: &'a Page<'a>,
-    settings: &'static [Setting],
+    settings: Vec<SettingData>,
     /// The largest error, in u M, that the contract allows: once for the primitive of the answer and once for
     /// the nearest one.
     exact_limit: f64,
+}
+
+/// A setting, and the relative error that it guarantees, if it guarantees any.
+#[derive(Serialize)]
+struct SettingData {
+    #[serde(flatten)]
+    setting: &'static Setting,
+    guarantee: Option<f64>,
 }
 
 const TEMPLATE: &str = include_str!("report.html");
@@ -49,7 +57,9 @@ impl Page<'_> {
     /// # Errors
     /// An error of the conversion to JSON, which all pages that this type can hold are free of.
     pub(crate) fn html(&self) -> serde_json::Result<String> {
-        let data = PageData { page: self, settings: SETTINGS, exact_limit: 2.0 * ERROR_CONSTANT };
+        let settings =
+            SETTINGS.iter().map(|setting| SettingData { setting, guarantee: setting.promise().relative() }).collect();
+        let data = PageData { page: self, settings, exact_limit: 2.0 * ERROR_CONSTANT };
         let sets = self.scenes.iter().flat_map(|scene| scene.sets.iter().map(move |set| (scene, set)));
         let tables: String =
             sets.map(|(scene, set)| format!("{}, {}\n\n{}\n", scene.name, set.name, text::table(set))).collect();

@@ -19,12 +19,15 @@ const path = (kind, d) => `<path class="${kind}" d="${d}"/>`;
 const label = (x, y, anchor, text, kind = "") =>
   `<text class="${kind}" x="${x}" y="${y}" text-anchor="${anchor}">${escaped(text)}</text>`;
 
-/** The families of settings: what their marks look like, and whether the line between them is broken. */
+/**
+ * The families of settings: what their marks look like, whether the line between them is broken, and whether they
+ * guarantee nothing, so that their marks are hollow.
+ */
 const FAMILIES = {
   default: { name: "default", shape: "square" },
   certified: { name: "certified", shape: "diamond" },
   epsilon: { name: "epsilon", shape: "circle" },
-  visits: { name: "max visits", shape: "triangle", isBroken: true },
+  visits: { name: "max visits: observed, no guarantee", shape: "triangle", isBroken: true, isHollow: true },
 };
 const familyOf = (setting) =>
   setting === DEFAULT ? "default"
@@ -46,27 +49,40 @@ function plotSize() {
 }
 
 /**
- * Returns a plot with two logarithmic axes. A series has the name of an index, points {x, y, note, shape, isFront}, and
- * `isBroken` for a broken line. Points with x = 0 lie in a column of their own. `key` explains shapes.
+ * Returns a plot with two logarithmic axes. A series has the name of an index, points {x, y, note, shape, isBest,
+ * isHollow}, and `isBroken` for a broken line. A point whose x is the name of one of `columns` lies in that column.
+ * `key` explains shapes.
  */
-function plot(xName, yName, series, key = []) {
+function plot(xName, yName, series, key = [], columns = []) {
   const [width, height] = plotSize();
   const isNarrow = width < 600;
   const shown = series.map((line) => ({ ...line, points: line.points.filter((p) => !isNone(p.x) && p.y > 0) }));
   const all = shown.flatMap((line) => line.points);
   if (all.length === 0) return "<p>There is nothing to draw. Choose another kind of error, or show more indexes.</p>";
   const [left, right, bottom] = [isNarrow ? 46 : 62, width - (isNarrow ? 10 : 70), height - 46];
-  const top = key.length ? (isNarrow ? 62 : 40) : 14;
+  let [keyX, keyY] = [left, 14];
+  const keys = key.map(({ shape, text, isBroken, isHollow }) => {
+    const long = 38 + text.length * 7;
+    // The key has further rows where it is too long for one.
+    if (keyX + long > width) [keyX, keyY] = [left, keyY + 22];
+    const [x, y] = [keyX + 12, keyY];
+    keyX += long;
+    const line = isBroken === undefined ? "" : path(isBroken ? "key dashed" : "key", `M${x - 12} ${y}H${x + 12}`);
+    const shown = shape === "ring" ? `<circle class="border" cx="${x}" cy="${y}" r="7"/>`
+      : mark(shape, x, y, 4.5, `class="key-mark${isHollow ? " hollow" : ""}"`);
+    return line + shown + label(x + 16, y + 4, "start", text, "key-text");
+  });
+  const top = key.length ? keyY + 24 : 14;
   const range = (values, margin) =>
     values.length ? [Math.min(...values) / margin, Math.max(...values) * margin] : [0.1, 1];
-  const hasZero = all.some((p) => p.x <= 0);
+  const used = columns.filter((name) => all.some((p) => p.x === name));
   const xs = range(all.map((p) => p.x).filter((x) => x > 0), 1.6);
   const ys = range(all.map((p) => p.y), 1.25);
   const position = ([low, high], from, to, value) =>
     from + ((to - from) * Math.log(value / low)) / Math.log(high / low);
-  const column = hasZero ? (isNarrow ? 52 : 80) : 0;
+  const column = isNarrow ? 58 : 86;
   const hasPositive = all.some((p) => p.x > 0);
-  const px = (x) => (x > 0 ? position(xs, left + column, right, x) : left + column / 2);
+  const px = (x) => (x > 0 ? position(xs, left + column * used.length, right, x) : left + column * (used.indexOf(x) + 0.5));
   const py = (y) => position(ys, bottom, top, y);
   const place = (x, y) => `${px(x).toFixed(1)} ${py(y).toFixed(1)}`;
   const least = isNarrow ? 44 : 60;
@@ -74,9 +90,10 @@ function plot(xName, yName, series, key = []) {
   const xTicks = (hasPositive ? ticks(...xs) : [])
     .map((x) => [px(x), tickLabel(x)])
     .filter(([x]) => x - before >= least && (before = x) === x)
-    .concat(hasZero ? [[px(0), "no error"]] : []);
+    .concat(used.map((name) => [px(name), name]));
   const grid = [
-    hasZero ? `<rect class="column" x="${left}" y="${top}" width="${column}" height="${bottom - top}"/>` : "",
+    ...used.map((_, i) =>
+      `<rect class="column" x="${left + column * i}" y="${top}" width="${column - 2}" height="${bottom - top}"/>`),
     ...xTicks.map(([x, text]) => path("grid", `M${x.toFixed(1)} ${top}V${bottom}`) + label(x.toFixed(1), bottom + 17, "middle", text)),
     ...ticks(...ys).map(
       (y) => path("grid", `M${left} ${py(y).toFixed(1)}H${right}`) + label(left - 6, (py(y) + 4).toFixed(1), "end", tickLabel(y)),
@@ -88,17 +105,18 @@ function plot(xName, yName, series, key = []) {
     return steps.length > 1 ? `<path class="${kind}" stroke="${colour(name)}" d="M${steps.join("L")}"/>` : "";
   });
   const drawn = new Set();
-  const marks = shown.flatMap(({ name, points }) =>
-    points.map((p) => {
-      // The default setting begins both lines of an index, and is drawn once.
-      if (drawn.has(p.note)) return "";
-      drawn.add(p.note);
-      const [x, y] = [px(p.x), py(p.y)];
-      const ring = p.isFront ? `<circle class="border" cx="${x.toFixed(1)}" cy="${y.toFixed(1)}" r="9.5"/>` : "";
-      const common = `class="dot" tabindex="0" role="img" aria-label="${escaped(p.note)}" fill="${colour(name)}"`;
-      return ring + mark(p.shape ?? "circle", x, y, 5.5, common);
-    }),
-  );
+  // Marks with a ring lie over the others.
+  const ordered = shown.flatMap(({ name, points }) => points.map((p) => ({ name, p }))).sort((a, b) => !!a.p.isBest - !!b.p.isBest);
+  const marks = ordered.map(({ name, p }) => {
+    // The default setting begins both lines of an index, and is drawn once.
+    if (drawn.has(p.note)) return "";
+    drawn.add(p.note);
+    const [x, y] = [px(p.x), py(p.y)];
+    const ring = p.isBest ? `<circle class="border" cx="${x.toFixed(1)}" cy="${y.toFixed(1)}" r="9.5"/>` : "";
+    const kind = p.isHollow ? "dot hollow" : "dot";
+    const common = `class="${kind}" tabindex="0" role="img" aria-label="${escaped(p.note)}" color="${colour(name)}"`;
+    return ring + mark(p.shape ?? "circle", x, y, 5.5, common);
+  });
   // The name of an index stands beside the right end of its lines, where there is room.
   const names = [];
   for (const { name, points } of isNarrow ? [] : shown) {
@@ -114,18 +132,6 @@ function plot(xName, yName, series, key = []) {
   });
   const labels = names.map(({ name, x, y }) =>
     `<text class="name-label" x="${(x + 13).toFixed(1)}" y="${(y + 4).toFixed(1)}" style="fill:${colour(name)}">${escaped(name)}</text>`);
-  let [keyX, keyY] = [left, 14];
-  const keys = key.map(([shape, text, isBroken]) => {
-    const long = 38 + text.length * 7;
-    // The key has two rows where it is too long for one.
-    if (keyX + long > width) [keyX, keyY] = [left, keyY + 22];
-    const [x, y] = [keyX + 12, keyY];
-    keyX += long;
-    const line = isBroken === undefined ? "" : path(isBroken ? "key dashed" : "key", `M${x - 12} ${y}H${x + 12}`);
-    const shown =
-      shape === "ring" ? `<circle class="border" cx="${x}" cy="${y}" r="7"/>` : mark(shape, x, y, 4.5, 'class="key-mark"');
-    return line + shown + label(x + 16, y + 4, "start", text, "key-text");
-  });
   return `<svg viewBox="0 0 ${width} ${height}" width="${width}" role="group" aria-label="${escaped(`${yName} over ${xName}`)}">
 ${grid.join("\n")}
 ${path("border", `M${left} ${top}V${bottom}H${right}`)}
@@ -157,37 +163,50 @@ const MEASURES = [
   },
 ];
 
-/** Plots the time over the error of each setting, with a line for each family of settings of an index. */
-function errorPlot(curves, measure) {
-  const all = candidates(curves)
-    .map(({ curve, point }) => ({
-      curve,
-      family: familyOf(point.setting),
-      // Errors of rounding are none.
-      x: isExact(point) ? 0 : measure.of(point.errors),
-      y: point.nanoseconds.median,
-      shape: FAMILIES[familyOf(point.setting)].shape,
-      note:
-        `${curve.name}, ${point.setting}: ${nanoseconds(point.nanoseconds.median)}, ` +
-        (isExact(point) ? (point.setting === DEFAULT ? "exact" : "no error seen") : `${measure.name} ${error(measure.of(point.errors))}`),
-    }))
+/** The columns of settings that are exact, and of those of which no error was seen. */
+const [EXACT, NONE_SEEN] = ["exact", "none seen"];
+/** Returns what a setting guarantees, in words. */
+const guaranteeInWords = (limit) =>
+  limit === null ? "no guarantee" : limit === 0 ? "exact" : `at most ${Number((100 * limit).toPrecision(2))} % guaranteed`;
+
+/**
+ * Plots the time over the error of each setting of the shown indexes, with a line for each family of settings of an
+ * index. Rings are around the best settings of all indexes.
+ */
+function errorPlot(all, isShown, measure) {
+  const rings = new Set(best(all).map(({ point }) => point));
+  const curves = all.filter(isShown);
+  const place = (x) => (x === EXACT ? -1 : x === NONE_SEEN ? 0 : x);
+  const points = candidates(curves)
+    .map(({ curve, point }) => {
+      const [family, limit, isZero] = [familyOf(point.setting), guaranteeOf(point), hasNoError(point)];
+      const { shape, isHollow } = FAMILIES[family];
+      const seen = isZero ? "no error seen" : `${measure.name} ${error(measure.of(point.errors))}`;
+      return {
+        curve, family, shape,
+        x: limit === 0 ? EXACT : isZero ? NONE_SEEN : measure.of(point.errors),
+        y: point.nanoseconds.median,
+        isBest: rings.has(point),
+        // A setting that broke its guarantee has none.
+        isHollow: isHollow || limit === null,
+        note: `${curve.name}, ${point.setting}: ${nanoseconds(point.nanoseconds.median)}, ${guaranteeInWords(limit)}` +
+          (limit === 0 ? "" : `, ${seen}`),
+      };
+    })
     .filter((p) => !isNone(p.x))
-    .sort((a, b) => a.x - b.x || a.y - b.y);
-  let least = Infinity;
-  for (const p of all) {
-    p.isFront = p.y < least;
-    least = Math.min(least, p.y);
-  }
-  const line = (curve, families) => all.filter((p) => p.curve === curve && families.includes(p.family));
+    .sort((a, b) => place(a.x) - place(b.x) || a.y - b.y);
+  const line = (curve, families) => points.filter((p) => p.curve === curve && families.includes(p.family));
   const series = curves.flatMap((curve) => [
     { name: curve.name, points: line(curve, ["default", "epsilon"]) },
     { name: curve.name, points: line(curve, ["default", "visits"]), isBroken: true },
     { name: curve.name, points: line(curve, ["certified"]) },
   ]);
-  const used = new Set(all.map((p) => p.family));
+  const used = new Set(points.map((p) => p.family));
   const key = Object.entries(FAMILIES).filter(([family]) => used.has(family))
-    .map(([family, { name, shape, isBroken }]) => [shape, name, ["epsilon", "visits"].includes(family) ? !!isBroken : undefined]);
-  return plot(measure.axis, "ns per query", series, [...key, ["ring", "fastest for its error"]]);
+    .map(([family, { name, isBroken, ...look }]) =>
+      ({ ...look, text: name, isBroken: ["epsilon", "visits"].includes(family) ? !!isBroken : undefined }));
+  const ring = { shape: "ring", text: "fastest for its guarantee" };
+  return plot(measure.axis, "ns per query", series, [...key, ring], [EXACT, NONE_SEEN]);
 }
 
 /** Plots the times of single queries over their rarity. */

@@ -80,12 +80,12 @@ const buildTable = (set) =>
 function summaryTable() {
   const rows = data.scenes.flatMap((scene) =>
     scene.sets.map((set) => {
-      const exact = costs(set.curves.filter((curve) => isExact(defaultPoint(curve))));
+      const exact = costs(exactCurves(set));
       const jobs = JOBS.map(([queries]) => {
         const [best] = [...exact].sort((a, b) => total(a, queries) - total(b, queries));
         return best ? `${best.name}, ${seconds(total(best, queries))} s` : "-";
       });
-      return [scene.name, set.name, ...NEEDS.map((need) => describe(fastest(set.curves, need.isMet))), ...jobs];
+      return [scene.name, set.name, ...NEEDS.map((need) => describe(fastest(set.curves, need.limit))), ...jobs];
     }),
   );
   const head = ["scene", "queries", ...NEEDS.map((need) => need.name), ...JOBS.map(([, name]) => name)];
@@ -140,8 +140,9 @@ from which on the index of the column takes less time than that of the row.</p>
 /** Draws the plots of the indexes whose boxes are ticked. */
 function showPlots() {
   const set = data.scenes[chosen("scene")].sets[chosen("set")];
-  const curves = set.curves.filter((_, i) => byId(`index${i}`).checked);
-  byId("plot").innerHTML = errorPlot(curves, MEASURES[chosen("measure")]);
+  const isShown = (_, i) => byId(`index${i}`).checked;
+  const curves = set.curves.filter(isShown);
+  byId("plot").innerHTML = errorPlot(set.curves, isShown, MEASURES[chosen("measure")]);
   byId("latencies").innerHTML = latencyPlot(curves);
   byId("totals").innerHTML = totalPlot(curves);
   byId("tip").hidden = true;

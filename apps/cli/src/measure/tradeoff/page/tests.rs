@@ -106,7 +106,7 @@ fn the_script_draws_every_point() {
     let [all, marks, advice, why] = lines.try_into().unwrap();
     for word in [
         "Which index for a \"scene\", of two?",
-        "aabb, epsilon 0.1: 500 ns, largest relative error 5.0e-2",
+        "aabb, epsilon 0.1: 500 ns, at most 10 % guaranteed, largest relative error 5.0e-2",
         // An error of rounding is none.
         "p2m, default: 100 ns, exact",
         "<td>66</td>",
@@ -114,7 +114,7 @@ fn the_script_draws_every_point() {
         "a &lt;processor&gt;, fast",
         "Five rounds &amp; &lt;/script&gt;",
         "<dt>aabb</dt><dd>a <code>tree</code></dd>",
-        "no error</text>",
+        "exact</text>",
         "5.4 million",
         "0 of 300 answers",
     ] {
@@ -124,8 +124,8 @@ fn the_script_draws_every_point() {
     assert_eq!(advice, "p2m, 100 ns per query, exact; pays from 5.4 million queries on");
     assert_eq!(
         why,
-        "For fewer queries <code>aabb</code> takes less time, because it is built sooner. No setting with errors of up \
-         to 1 % is faster beyond noise."
+        "For fewer queries <code>aabb</code> takes less time, because it is built sooner. No setting that guarantees \
+         errors of up to 1 % is faster."
     );
 }
 
@@ -134,7 +134,7 @@ fn the_best_are_by_what_was_measured() {
     let best = |change: &str| {
         format!(
             "(() => {{ const set = structuredClone(data.scenes[0].sets[0]); {change};
-               return NEEDS.map((need) => describe(fastest(set.curves, need.isMet))).join('; '); }})()"
+               return NEEDS.map((need) => describe(fastest(set.curves, need.limit))).join('; '); }})()"
         )
     };
     let job = "JOBS.map(([n]) => costs(data.scenes[0].sets[0].curves)
@@ -145,8 +145,8 @@ fn the_best_are_by_what_was_measured() {
         &[
             &best(""),
             &best(without_cells),
-            &best(&format!("{without_cells}; rough.nanoseconds.max = 960")),
-            &best(&format!("{without_cells}; rough.errors.unanswered = 1")),
+            &best(&format!("{without_cells}; rough.setting = 'max visits 16'")),
+            &best(&format!("{without_cells}; rough.errors.broken = 1")),
             job,
         ],
     ) else {
@@ -154,12 +154,46 @@ fn the_best_are_by_what_was_measured() {
     };
     assert_eq!(lines[0], "p2m, 100 ns; p2m, 100 ns; p2m, 100 ns");
     // Without cells, a tenth is worth an epsilon, and a hundredth is not.
-    assert_eq!(lines[1], "aabb, 1,001 ns; aabb, 1,001 ns; aabb epsilon 0.1, 500 ns, error 5.0e-2");
-    // An epsilon that is hardly faster is not.
+    assert_eq!(lines[1], "aabb, 1,001 ns; aabb, 1,001 ns; aabb epsilon 0.1, 500 ns");
+    // A limit of visits has no guarantee, and neither has a setting whose answers broke it.
     assert_eq!(lines[2], "aabb, 1,001 ns; aabb, 1,001 ns; aabb, 1,001 ns");
     assert_eq!(lines[3], lines[2]);
     // Ten thousand queries do not pay for cells, a hundred millions do.
     assert_eq!(lines[4], "aabb,aabb,p2m");
+}
+
+#[test]
+fn the_advice_names_the_rings_of_the_chart() {
+    // A limit of visits that has no error here, and a certified setting that is the fastest exact one.
+    let set = "const set = structuredClone(data.scenes[0].sets[0]); const points = set.curves[0].points;
+        const add = (setting, median, error) => points.push({ ...points[0], setting,
+          nanoseconds: { median, min: median, max: median },
+          errors: { ...points[0].errors, relative: { max: error, p999: error }, scaled: { max: 1e14 * error, p999: 0 } } });
+        add('certified', 90, 0); add('epsilon 0.01', 45, 0); add('epsilon 0.001', 60, 1e-4); add('max visits 16', 9, 0);
+        const drawn = errorPlot(set.curves, () => true, MEASURES[0]);";
+    let run = |expression: &str| format!("(() => {{ {set} return {expression}; }})()");
+    // A ring is followed by its mark.
+    let rings = "[...drawn.matchAll(/class=\"border\" cx=\"[^\"]*\" cy=\"[^\"]*\" r=\"9.5\"\\/><[^>]*label=\"([^\"]*)\"/g)]
+        .map(([, note]) => note).join('; ')";
+    let hollow = "[...drawn.matchAll(/class=\"dot hollow\"[^>]*label=\"([^\"]*)\"/g)].map(([, note]) => note).join('; ')";
+    let columns = "[...drawn.matchAll(/middle\">([a-z ]+)</g)].map(([, name]) => name).join('; ')";
+    let Some(lines) =
+        run_script(&page(), &[&run("advice(set).join('; ')"), &run(rings), &run(hollow), &run(columns)])
+    else {
+        return;
+    };
+    assert_eq!(
+        lines[0],
+        "aabb with certified, 90 ns per query, exact; If errors of up to 1 % do no harm, `aabb` with `epsilon 0.01` \
+         takes 45 ns, 2.0 times as fast."
+    );
+    assert_eq!(
+        lines[1],
+        "aabb, epsilon 0.01: 45 ns, at most 1 % guaranteed, no error seen; aabb, epsilon 0.001: 60 ns, at most 0.1 % \
+         guaranteed, largest relative error 1.0e-4; aabb, certified: 90 ns, exact"
+    );
+    assert_eq!(lines[2], "aabb, max visits 16: 9 ns, no guarantee, no error seen");
+    assert_eq!(lines[3], "exact; none seen; ns per query");
 }
 
 #[test]
