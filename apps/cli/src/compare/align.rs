@@ -14,7 +14,7 @@ use crate::scene::convert::Target;
 use anyhow::{Context, anyhow};
 use nalgebra::Point3;
 use p2m_backends::P2mSettings;
-use p2m_core::{ClosestPoint, PrimitiveSet};
+use p2m_core::{Aabb, ClosestPoint, PrimitiveSet};
 use p2m_field::align::{AlignError, AlignOptions, Alignment, Ambiguity, align};
 use p2m_mixed::Scene;
 use p2m_mixed::statistics::figure::{Count, Figure};
@@ -136,7 +136,8 @@ pub(crate) fn run(streams: &Streams, args: &Args) -> anyhow::Result<()> {
     drop(index);
     let (points, scenes) = (scan.soup.positions().len(), [scene, scan]);
     args.page.write(streams, || {
-        let verdict = format!("The root mean square of the distances is {} {}.", Figure(found.rms), args.page.unit());
+        let rms = besides_rounding(found.rms, args.page.unit(), &before);
+        let verdict = format!("The root mean square of the distances is {rms}.");
         let mut facts = vec![("root mean square", found.rms), ("coverage in %", 100.0 * found.coverage)];
         facts.extend(args.scale.then_some(("scale", found.scale)));
         let moved = Moved { matrix: found.matrix, facts };
@@ -188,6 +189,18 @@ pub(crate) fn move_scan(
     let moved = Arc::make_mut(&mut scan.soup).map_positions(|point| found.apply(&point));
     moved.with_context(|| format!("{}: moved", name(scan_path)))?;
     Ok(found)
+}
+
+/// The size relative to that of a scan below which a length is an error of rounding.
+const ROUNDING: f64 = 1e-12;
+
+/// Returns a length with its unit for a sentence about a scan with this box. An error of rounding is called so.
+fn besides_rounding(length: f64, unit: &str, aabb: &Aabb<f64>) -> String {
+    if length < ROUNDING * (aabb.max - aabb.min).norm() {
+        format!("0 {unit} (rounding: {length:.0e})")
+    } else {
+        format!("{} {unit}", Figure(length))
+    }
 }
 
 /// Returns the reasons to doubt an alignment.

@@ -127,8 +127,7 @@ enum Live {
     Never,
 }
 
-/// The number of primitives above which a page has no live queries unless they are asked for. Above 10,000 they begin
-/// when a button of the page is pressed, because indexes are built for some seconds then.
+/// The number of primitives above which a page has no live queries unless they are asked for.
 const MAX_LIVE_PRIMITIVES: usize = 100_000;
 
 /// The largest number of query points of a page.

@@ -1,7 +1,7 @@
 // The panel of query points and their answers: a histogram, the selected answer, and all of them as a table.
 
 import { UNDEFINED } from "./colours.js";
-import { copyButton, count, counted, element, fillList, number, reveal, stepped, tableHead } from "./text.js";
+import { copyButton, count, counted, element, fillList, key, number, reveal, stepped, tableHead } from "./text.js";
 
 // The number of rows of a page of the table.
 const ROWS = 50;
@@ -24,9 +24,12 @@ export class AnswersPanel {
     this.text = element("dl", { id: "answer", "aria-live": "polite" });
     const step = (by) =>
       element("button", { type: "button", onclick: () => this.step(by) }, by > 0 ? "Next" : "Previous");
-    add(`Distances of ${all}`, "distances", ...parts);
+    const symbol = (kind, text) => key(element("span", { class: `patch ${kind}` }), text);
+    parts.push(element("div", { id: "symbols" }, symbol("ringed", "query point, in the colour of its distance"),
+      symbol("foot", "its closest point"), ...(viewer.slice ? [symbol("faded", "away from the slice")] : [])));
     const section = add("Answer", "selected",
       element("p", { class: "buttons" }, step(-1), step(1), copyButton(this.text)), this.text);
+    add(`Distances of ${all}`, "distances", ...parts);
     this.table = element("table", { id: "table" });
     this.page = 0;
     const turn = (by) => element("button", { type: "button", onclick: () => this.turn(by) },
@@ -62,10 +65,33 @@ export class AnswersPanel {
 
   step(by) {
     const { length, selected } = this.answers;
-    if (length > 0) this.select(stepped(selected, by, length));
+    if (length > 0) this.select(stepped(this.isExample ? -1 : selected, by, length));
   }
 
-  select(i) {
+  // Selects the answered query that is nearest to the middle of the picture, as an example.
+  selectExample() {
+    const { answers, viewer } = this;
+    viewer.camera.updateMatrixWorld();
+    const at = viewer.camera.position.clone();
+    let [found, least] = [-1, Infinity];
+    for (let i = 0; i < answers.length; i++) {
+      const { x, y } = at.fromArray(answers.from, 3 * i).project(viewer.camera);
+      if (answers.isAnswered(i) && Math.hypot(x, y) < least) [found, least] = [i, Math.hypot(x, y)];
+    }
+    this.select(found, true);
+  }
+
+  // Returns the label of the selected answer in the picture.
+  labels() {
+    const { answers, viewer } = this;
+    const i = answers.selected;
+    if (i < 0 || !answers.isAnswered(i) || !answers.dots.visible) return [];
+    const position = viewer.camera.position.clone().fromArray(answers.from, 3 * i);
+    return [{ position, text: viewer.inWords(answers.values[i], !!answers.signed), kind: "important" }];
+  }
+
+  select(i, isExample = false) {
+    this.isExample = isExample;
     const { answers, viewer } = this;
     answers.select(i, viewer.colours);
     const rows = [];
@@ -81,8 +107,9 @@ export class AnswersPanel {
       }
       rows.push(["query", answers.queries.subarray(3 * i, 3 * i + 3)], ["number", `${count(i)} of ${count(answers.length)}`]);
     }
+    if (isExample) rows.push(["", "An example: click any query point to read it."]);
     fillList(this.text, rows);
-    if (i >= 0) reveal(this.text);
+    if (i >= 0 && !isExample) reveal(this.text);
     viewer.draw();
   }
 }

@@ -8,7 +8,7 @@ import { element, number, sideOf } from "./text.js";
 // The opacity of segments to closest points.
 const QUIET = 0.4;
 // The sizes in pixels of query points and of closest points, up to so many answers.
-const SIZES = [[500, 7, 4], [20_000, 5, 3], [Infinity, 4, 2.5]];
+const SIZES = [[500, 5, 3], [20_000, 4, 2.5], [Infinity, 3, 2]];
 
 export class AnswersLayer {
   constructor(answers, frame) {
@@ -149,13 +149,21 @@ export function featureOf(code) {
 // the signed distance if there is one.
 export function answerRows(unit, { point, distance, signed, lowerBound, size, primitive, feature }) {
   return [
-    ["distance", element("span", {}, number(distance), ` ${[unit, sideOf(signed)].filter(Boolean).join(" ")}`)],
+    ["distance", distanceOf(distance, signed, unit)],
     ...(signed === undefined ? [] : [["signed distance", signed]]),
     ["closest point", point],
     ["lower bound", lowerBound],
     ["primitive", `${KINDS[size]} ${primitive}`],
     ["feature", featureName(feature)],
   ];
+}
+
+// Makes an element that says a distance in words, with the side of the surface if there is a signed distance.
+function distanceOf(distance, signed, unit) {
+  const side = sideOf(signed);
+  if (side === undefined) return element("span", {}, number(distance), ` ${unit} from the scene`);
+  if (signed === 0) return element("span", {}, side);
+  return element("span", {}, `${side}, `, number(distance), ` ${unit} from the surface`);
 }
 
 export function featureName(code) {

@@ -11,6 +11,8 @@ const ORTHOGRAPHIC = 0.1;
 const [FILLED, FILLED_BY_SLICE] = [0.8, 0.97];
 // The heights in pixels at the top and at the bottom of the picture which the toolbar and the scale bar cover.
 const [COVERED_TOP, COVERED_BOTTOM] = [56, 40];
+// The height that a legend covers below the toolbar, in a picture of less than this width.
+const [COVERED_BY_LEGEND, NARROW] = [64, 600];
 // The number of positions by which the extent of a scene in the picture is found.
 const SAMPLES = 20_000;
 // The distance from the middle of the scene to which the view can be moved, in radii of the scene.
@@ -37,6 +39,8 @@ export class Camera {
       change();
     });
     this.setClouds(clouds);
+    // Whether the picture has a legend.
+    this.hasLegend = false;
     // Whether a fitted view is from a corner rather than from a side.
     this.isOblique = false;
     // The corners of a slice, which a fitted view contains as well.
@@ -61,8 +65,9 @@ export class Camera {
   // Fits the view into what is free of a picture of this size. The picture shows more than the view at the top and at the
   // bottom.
   setSize(width, height) {
-    this.height = Math.max(height / 2, height - COVERED_TOP - COVERED_BOTTOM, 1);
-    const top = Math.min(COVERED_TOP, height - this.height);
+    const covered = COVERED_TOP + (width < NARROW && this.hasLegend ? COVERED_BY_LEGEND : 0);
+    this.height = Math.max(height / 2, height - covered - COVERED_BOTTOM, 1);
+    const top = Math.min(covered, height - this.height);
     this.camera.setViewOffset(Math.max(1, width), this.height, 0, -top, Math.max(1, width), Math.max(1, height));
   }
 
@@ -104,8 +109,9 @@ export class Camera {
       camera.lookAt(target);
       camera.updateMatrixWorld();
       const [middle, size] = this.extent([this.samples, this.corners], distance);
-      const [, sceneSize] = this.extent([this.samples], distance);
-      target.add(middle.applyQuaternion(camera.quaternion));
+      const [own, sceneSize] = this.extent([this.samples], distance);
+      // The view turns around the middle of the scene, whose depth the scale bar has, whatever else is on the page.
+      target.add(middle.setZ(own.z).applyQuaternion(camera.quaternion));
       if (!(size > 0)) break;
       distance *= Math.max(1e-3, sceneSize / FILLED, size / FILLED_BY_SLICE);
     }
@@ -115,15 +121,19 @@ export class Camera {
     this.setPlanes();
   }
 
-  // Returns the middle of positions in the view, in the axes of the camera, and their size relative to the view.
+  // Returns the middle of positions in the view relative to the target, in the axes of the camera, and their size relative
+  // to the view.
   extent(clouds, distance) {
     const { camera } = this;
     const matrix = camera.matrixWorldInverse.elements;
     const [low, high] = [[Infinity, Infinity], [-Infinity, -Infinity]];
     const slope = [Math.tan(half(camera)) * camera.aspect, Math.tan(half(camera))];
+    let [near, far] = [Infinity, -Infinity];
     for (const cloud of clouds) for (let i = 0; i < cloud.length; i += 3) {
       const [x, y, z] = [cloud[i], cloud[i + 1], cloud[i + 2]];
       const depth = -(matrix[2] * x + matrix[6] * y + matrix[10] * z + matrix[14]);
+      near = Math.min(near, depth);
+      far = Math.max(far, depth);
       if (!(depth > 0)) continue;
       for (let k = 0; k < 2; k++) {
         const at = (matrix[k] * x + matrix[4 + k] * y + matrix[8 + k] * z + matrix[12 + k]) / depth / slope[k];
@@ -133,7 +143,7 @@ export class Camera {
     }
     if (!(high[0] >= low[0])) return [new three.Vector3(), 0];
     const [x, y] = [0, 1].map((k) => ((low[k] + high[k]) / 2) * slope[k] * distance);
-    return [new three.Vector3(x, y, 0), Math.max(high[0] - low[0], high[1] - low[1]) / 2];
+    return [new three.Vector3(x, y, distance - (near + far) / 2), Math.max(high[0] - low[0], high[1] - low[1]) / 2];
   }
 
   // Returns the direction from which a scene is seen at first: from a side, so that its longer side lies across the

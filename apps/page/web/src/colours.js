@@ -6,11 +6,11 @@ import { short } from "./text.js";
 export const THEMES = {
   light: {
     background: "#f7f8fa", surface: "#828c9c", line: "#445061", edge: "#39424e", grid: "#848e9b",
-    selected: "#c24e00", live: "#0b62a8", feature: "#c000c0", undefined: "#9a5fc0", second: "#2f8f83",
+    selected: "#c24e00", live: "#0b62a8", feature: "#c000c0", undefined: "#9a5fc0", second: "#2f8f83", outline: "#39424e",
   },
   dark: {
     background: "#111417", surface: "#8f99a8", line: "#aab4c0", edge: "#dfe6ee", grid: "#66707c",
-    selected: "#ff9040", live: "#6ab8ee", feature: "#ff60ff", undefined: "#9a5fc0", second: "#45b5a6",
+    selected: "#ff9040", live: "#6ab8ee", feature: "#ff60ff", undefined: "#9a5fc0", second: "#45b5a6", outline: "#6f7884",
   },
 };
 
@@ -124,10 +124,23 @@ export class BandScale extends ColourScale {
     this.bands = BANDS[theme].map(rgb);
   }
 
-  write(value, out, at) {
+  // Returns the colours and the ranges of the bands that values are in, the largest values first.
+  ranges(values) {
+    const { limit, tolerance, isSigned } = this;
+    const [t, l] = [tolerance, limit].map(short);
+    const texts = [`below -${l}`, `-${l} to -${t}`, isSigned ? `within ±${t}` : `up to ${t}`, `${t} to ${l}`, `above ${l}`];
+    const used = new Set();
+    for (const value of values) if (!Number.isNaN(value)) used.add(this.band(value));
+    return [4, 3, 2, 1, 0].filter((band) => used.has(band)).map((band) => [`rgb(${this.bands[band].join(",")})`, texts[band]]);
+  }
+
+  band(value) {
     const size = Math.abs(value);
-    const band = 2 + Math.sign(value) * (size > this.tolerance ? (size > this.limit ? 2 : 1) : 0);
-    const colour = Number.isNaN(value) ? UNDEFINED_BYTES : this.bands[band];
+    return 2 + Math.sign(value) * (size > this.tolerance ? (size > this.limit ? 2 : 1) : 0);
+  }
+
+  write(value, out, at) {
+    const colour = Number.isNaN(value) ? UNDEFINED_BYTES : this.bands[this.band(value)];
     for (let k = 0; k < 3; k++) out[at + k] = colour[k];
   }
 }

@@ -1,10 +1,13 @@
 // The panel of deviations: the verdict, the histogram with the tolerance, the worst places, one point, and statistics.
 
 import { UNDEFINED } from "./colours.js";
-import { choice, copyButton, count, element, fillList, namedRow, reveal, short, sideOf, stepped } from "./text.js";
+import { pictureLegend } from "./histogram.js";
+import { choice, copyButton, count, element, fillList, namedRow, number, reveal, short, sideOf, stepped, tableHead } from "./text.js";
 
 // The share of a fitted view that is seen around a place after a flight to it.
 const NEAR = 0.35;
+// The length in radii of the scene below which a length is an error of rounding.
+const ROUNDING = 1e-12;
 
 export class DeviationsPanel {
   constructor(viewer, add) {
@@ -30,10 +33,9 @@ export class DeviationsPanel {
       });
       rows.push(element("div", { class: "row" }, element("span", {}, "Coloured"), shown));
     }
-    add(layer.is_signed ? "Deviations, positive outside" : "Distances", "deviations", this.verdict, this.figure.element,
-      this.parts);
+    add(layer.is_signed ? "Deviations, positive outside" : "Distances", "deviations", this.verdict, this.parts);
     this.addWorst(add);
-    add("Tolerance and colours", "colours", ...Object.values(this.inputs), ...rows);
+    add("Tolerance and colours", "colours", this.figure.element, ...Object.values(this.inputs), ...rows);
     this.text = element("dl", { id: "deviation", "aria-live": "polite" });
     const step = (by, text) => element("button", { type: "button", onclick: () => this.step(by) }, text);
     add("Point", "point",
@@ -119,37 +121,63 @@ export class DeviationsPanel {
     if (tolerance === null) {
       const rms = layer.statistics.find(({ label }) => /root mean square/.test(label));
       this.verdict.textContent = rms?.value == null
-        ? "No point has a deviation." : `The root mean square is ${short(rms.value)} ${unit}.`;
+        ? "No point has a deviation." : `The root mean square is ${this.besidesRounding(rms.value)}.`;
       this.parts.textContent = "Type a tolerance to count the points outside of it.";
     } else {
       const [above, below, within] = layer.outside(tolerance);
       const all = Math.max(1, above + below + within);
       const share = (n) => `${count(n)} (${short((100 * n) / all)} %)`;
-      const under = layer.is_signed ? `${share(below)} below ${tolerance > 0 ? -tolerance : 0}, ` : "";
+      const under = layer.is_signed ? `${share(below)} below ${tolerance > 0 ? -tolerance : 0}; ` : "";
       const isRounded = layer.quantiles && tolerance !== layer.tolerance;
       const rounded = isRounded ? " Counts are to 0.01 %, because not all points are on the page." : "";
-      this.parts.textContent = `${share(above)} above ${tolerance}, ${under}${share(within)} within.${rounded}`;
+      this.parts.textContent = `${share(above)} above ${tolerance}; ${under}${share(within)} within.${rounded}`;
       const range = `${layer.is_signed ? "±" : ""}${short(tolerance)} ${unit}`;
       const isGood = above + below === 0;
       this.verdict.classList.add(isGood ? "good" : "bad");
       this.verdict.textContent = isGood ? `All ${count(within)} points are within ${range}.`
         : `${short((100 * (above + below)) / all)} % of the points are out of tolerance (${range}).`;
     }
+    this.showLegend();
     this.viewer.draw();
   }
 
-  // Adds the worst places, with buttons that fly there.
+  // Shows the legend of the colours in the picture.
+  showLegend() {
+    const { layer, viewer } = this;
+    if (layer.total > layer.missing) viewer.overlay?.setLegend(pictureLegend(layer.scale, this.what, viewer.unit, layer.values));
+  }
+
+  // Returns a length with its unit for a sentence. An error of rounding is called so.
+  besidesRounding(length) {
+    const { data, frame, unit } = this.viewer;
+    const isRounding = length < ROUNDING * data.frame.radius * frame.scale;
+    return isRounding ? `0 ${unit} (rounding: ${length.toExponential(0)})` : `${short(length)} ${unit}`;
+  }
+
+  // Adds the worst places with their numbers in the picture and their coordinates, and buttons that fly there.
   addWorst(add) {
     const { layer, viewer } = this;
-    const worst = layer.worst(viewer.data.frame.radius).map((i) => {
-      const where = `Fly to point ${count(i * layer.stride)}`;
-      return element("button", { type: "button", title: where, "data-point": i, onclick: () => {
-        this.select(i);
-        this.flyTo(i);
-      } }, `${layer.is_signed && layer.values[i] > 0 ? "+" : ""}${short(layer.values[i])}`);
+    this.worst = layer.worst(viewer.data.frame.radius);
+    const rows = this.worst.map((i, k) => {
+      const value = `${layer.is_signed && layer.values[i] > 0 ? "+" : ""}${short(layer.values[i])}`;
+      const fly = element("button", { type: "button", title: `Fly to point ${count(i * layer.stride)}`, "data-point": i,
+        onclick: () => {
+          this.select(i);
+          this.flyTo(i);
+        } }, element("span", { class: "mark" }, String(k + 1)), value);
+      const cells = [...layer.positions.subarray(3 * i, 3 * i + 3)].map((x) => element("td", {}, number(x)));
+      return element("tr", {}, element("th", { scope: "row" }, fly), ...cells);
     });
     const which = layer.stride > 1 ? " of the points on the page" : "";
-    add(`Worst places${which} (${viewer.unit})`, "worst", element("p", { class: "buttons", id: "largest" }, ...worst));
+    const table = element("table", { id: "largest" }, tableHead([this.what, "x", "y", "z"]), element("tbody", {}, ...rows));
+    add(`Worst places${which} (${viewer.unit})`, "worst", table);
+  }
+
+  // Returns the numbers of the worst places, which stand in the picture.
+  labels() {
+    if (!this.layer.group.visible) return [];
+    return this.worst.map((i, k) => ({ position: this.layer.position(i), text: String(k + 1), kind: "mark" }))
+      .filter(({ position }) => position.toArray().every(Number.isFinite));
   }
 
   // Flies to a point, and around the scene if the scene is in front of it.

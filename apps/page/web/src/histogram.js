@@ -1,6 +1,6 @@
 // The legend of a scale and a histogram of values as SVG, whose bars have the colours of the scale.
 
-import { count, element, namedRow, patch, short, tableHead } from "./text.js";
+import { count, element, key, namedRow, patch, short, tableHead } from "./text.js";
 
 const BINS = 48;
 // The size of the picture, and the width of what stands apart at its ends for values beyond the limits.
@@ -42,7 +42,7 @@ export class Figure {
     this.options = options;
     const { picture, table, place } = values ? histogram(values, scale, what, unit, options) : {};
     this.place = place;
-    const pictures = scale ? [picture, legend(scale, what, unit, place), ...keys.map(key)] : [];
+    const pictures = scale ? [picture, legend(scale, what, unit, place), ...keys.map(([colour, text]) => key(patch(colour), text))] : [];
     this.pictures.replaceChildren(...pictures.filter(Boolean));
     // The summary stays, which may have the focus of the keyboard.
     this.details.hidden = !table;
@@ -130,9 +130,11 @@ function histogram(values, scale, what, unit, { name = what, weight = 1, marks =
   return { picture: element("svg", { viewBox, role: "img", "aria-label": label }, ...bars, ...lines, base), table, place };
 }
 
-// Returns what a colour without a value means.
-function key([colour, text]) {
-  return element("div", { class: "small" }, patch(colour), text);
+// Returns the legend of a scale that lies over the picture: the bands that values are in, or the gradient.
+export function pictureLegend(scale, what, unit, values) {
+  if (!scale.ranges) return legend(scale, what, unit);
+  return element("div", { class: "legend" }, ...scale.ranges(values).map(([colour, text]) => key(patch(colour), text)),
+    element("div", { class: "small" }, `${what} (${unit})`));
 }
 
 // Returns the legend of a scale: its gradient, its limits and a value between them, with the unit. It lies below a

@@ -55,7 +55,12 @@ export function listen(viewer) {
       viewer.live?.follow(event);
       viewer.point(event);
     }
-    if (isClick && viewer.answers) viewer.answersPanel.select(viewer.pick(event));
+    const picked = isClick && viewer.answers ? viewer.pick(event) : -1;
+    if (isClick && viewer.answers) viewer.answersPanel.select(picked);
+    if (isClick && picked < 0) {
+      viewer.slicePanel?.keep(event);
+      viewer.live?.keep(event);
+    }
     if (isClick && viewer.deviationsPanel) viewer.deviationsPanel.select(viewer.deviationsPanel.pick(event));
   });
   canvas.addEventListener("pointercancel", release);

@@ -3,10 +3,13 @@
 
 import * as three from "three";
 import { answerRows, drawAnswer, empty, featureOf, line, marker } from "./answers.js";
-import { checkbox, count, element, fillList, fillTable, short } from "./text.js";
+import { checkbox, count, element, fillList, fillTable, inWords, short } from "./text.js";
 
 // The indexes in the order of their numbers in the worker.
 const BACKENDS = ["AABB tree", "k-DOP tree", "octree", "P2M index"];
+// The number of primitives up to which all indexes are built when the page is opened. Above it the first one is, and the
+// others once their table is opened.
+const MAX_COMPARED = 10_000;
 
 export class LiveQueries {
   // `viewer` has the scene, the camera and the picture; `scene` has the bytes of the module and the exact scene.
@@ -33,23 +36,26 @@ export class LiveQueries {
     this.failures = [];
   }
 
-  // Builds all indexes at the same time, then measures them one after the other.
-  async start() {
+  // Builds the indexes that are not built yet, or the first one if the scene is large, at the same time. Then measures them
+  // one after the other.
+  async start(isComplete = this.scene.sizes.length <= MAX_COMPARED) {
     if (this.scene.sizes.length === 0) {
       this.say("The scene is empty.");
       return;
     }
-    const building = new Set(BACKENDS);
+    this.isComplete = isComplete;
+    const wanted = BACKENDS.slice(0, isComplete ? undefined : 1).filter((name) => !this.indexes.some((index) => index.name === name));
+    const building = new Set(wanted);
     const showStage = () => this.say(building.size > 0 ? `Building: ${[...building].join(", ")} ...` : "");
     showStage();
-    await Promise.all(BACKENDS.map(async (name, number) => {
-      const index = await this.build(number, name);
+    await Promise.all(wanted.map(async (name) => {
+      const index = await this.build(BACKENDS.indexOf(name), name);
       building.delete(name);
       if (index) this.add(index);
       showStage();
     }));
     if (this.indexes.length === 0) throw new Error(this.failures.join(" ") || "no index could be built");
-    for (const index of this.indexes) {
+    for (const index of this.indexes.filter(({ name }) => wanted.includes(name))) {
       this.say(`Measuring the ${index.name} ...`);
       index.rate = await this.ask(index, "measure", index.number);
       this.showSpeed();
@@ -85,7 +91,7 @@ export class LiveQueries {
       return;
     }
     this.inputs.forEach((input) => (input.disabled = false));
-    this.setQuery(this.frame.coordinates([0, 0, 0]));
+    this.setQuery(this.viewer.coordinates(this.viewer.example().toArray()));
   }
 
   // Calls a function of the worker of an index. The result is `null` if it fails, which is said.
@@ -115,17 +121,33 @@ export class LiveQueries {
       type: "range", min: -1, max: 1, step: 0.01, value: 0, "aria-label": "depth of the query",
       oninput: () => this.setDepth(Number(depth.value)),
     });
+    const keep = "Point anywhere in the picture to ask there. Click to keep the answer, and elsewhere to ask again.";
     this.answerText = element("dl", { id: "live-answer" });
     this.workTable = element("table", { id: "live-work" });
     this.speedTable = element("table", { id: "live-speed" });
     this.farText = element("div", { id: "live-far-text" });
-    add("Live query", "live", this.message,
-      element("div", { class: "boxes" }, follow, far),
-      element("p", { class: "small" }, "The mouse moves the query in a plane that faces you. Its depth: ", depth),
+    const what = this.hasSides ? "Distance and side at a point" : "Distance at a point";
+    const plane = this.viewer.slice ? "The query lies on the slice, and beside it in a plane that faces you"
+      : "The query moves in a plane that faces you";
+    const more = element("details", { id: "live-more" }, element("summary", {}, "Indexes: their work and their speed"), far,
+      this.farText, this.workTable, this.speedTable);
+    more.addEventListener("toggle", () => more.open && this.isComplete === false && this.start(true));
+    add(what, "live", this.message, this.answerText, element("p", { class: "small" }, keep),
       element("fieldset", { class: "coordinates" }, element("legend", {}, "Query"),
         ...this.inputs.map((input, axis) => element("label", {}, "xyz"[axis], input))),
-      this.farText, this.answerText, this.workTable, this.speedTable);
+      element("div", { class: "boxes" }, follow), element("p", { class: "small" }, `${plane}. Its depth: `, depth), more);
     this.setFollowing(true);
+  }
+
+  // Returns the label of the answer in the picture.
+  labels() {
+    const answer = !this.isFar && this.group.visible && this.shown?.answers?.[0];
+    if (!answer) return [];
+    return [{ position: this.at(this.shown.query), text: this.inWords(answer), kind: "important" }];
+  }
+
+  inWords({ distance, signed }) {
+    return inWords(signed ?? distance, signed !== undefined, this.viewer.unit);
   }
 
   say(text) {
@@ -161,11 +183,27 @@ export class LiveQueries {
     if (this.query) this.setQuery(this.query.map((x, k) => x + step * towards[k]));
   }
 
-  // Moves the query to where the pointer is in the plane.
+  // Moves the query with the pointer.
   follow(event) {
-    if (!this.isFollowing || !this.group.visible || !this.query || event.buttons !== 0) return;
-    const { controls, data } = this.viewer;
+    if (this.isFollowing && event.buttons === 0) this.askAt(event);
+  }
+
+  // Asks where the pointer is, and keeps the answer when it moves on.
+  keep(event) {
+    this.setFollowing(false);
+    this.askAt(event);
+  }
+
+  // Moves the query to where the pointer is on the slice, or else in the plane.
+  askAt(event) {
+    if (!this.group.visible || !this.query) return;
+    const { controls, data, slice } = this.viewer;
     const caster = this.viewer.pointer(event).caster();
+    const [onSlice] = slice?.mesh.visible ? caster.intersectObject(slice.mesh) : [];
+    if (onSlice) {
+      this.setQuery(this.frame.coordinates(onSlice.point.toArray()));
+      return;
+    }
     const towards = this.towardsViewer();
     const through = controls.target.clone().addScaledVector(towards, this.depth * data.frame.radius);
     const plane = new three.Plane().setFromNormalAndCoplanarPoint(towards, through);
@@ -228,6 +266,8 @@ export class LiveQueries {
     // The first answer is drawn. The panel says whether the others are equal.
     else if (!this.isFar && answers[0]) this.draw(answers[0]);
     this.showAnswer();
+    const { viewer } = this;
+    if (viewer.slicePanel && viewer.asked === this) viewer.slicePanel.value.hidden = true;
     fillTable(this.workTable, "Work of this query", ["index", "nodes", "packets", "evaluated"],
       indexes.map(({ name }, i) => [name, ...(answers[i] ? answers[i].work : ["", "", ""])]));
     this.showSpeed();
@@ -263,7 +303,7 @@ export class LiveQueries {
     } else if (isValid) {
       rows.push(["answer", "none"]);
     }
-    rows.push(["query", isValid ? query.join(",\n") : "Each coordinate has to be a number."]);
+    rows.push(["query", isValid ? query : "Each coordinate has to be a number."]);
     fillList(this.answerText, rows);
   }
 

@@ -67,7 +67,7 @@ export class MeasuresLayer {
     if (!this.group.visible) return [];
     return this.drawn().map((i) => {
       const [a, b] = this.ends(i);
-      return { position: a.lerp(b, 0.5), text: this.lengths[i] === 0 ? this.names[i] : `${short(this.lengths[i])} ${this.unit}`, isImportant: true };
+      return { position: a.lerp(b, 0.5), text: this.lengths[i] === 0 ? this.names[i] : `${short(this.lengths[i])} ${this.unit}`, kind: "important" };
     });
   }
 

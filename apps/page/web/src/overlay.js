@@ -5,10 +5,12 @@ import { element, roundUp, short } from "./text.js";
 
 // The least length of the scale bar in pixels.
 const LEAST_BAR = 60;
-// Where an important label stands relative to its position, so that it does not hide a short line.
-const ABOVE = "-150%";
+// Where a label with a leader stands relative to its position in pixels, so that it does not hide what it names.
+const [ASIDE, ABOVE] = [22, 38];
+// The width in pixels of a character of a label, at most.
+const WIDE = 8.5;
 // The least distance between labels in pixels.
-const LABEL_GAP = 34;
+const LABEL_GAP = 44;
 
 export class Overlay {
   constructor(viewer, stage) {
@@ -21,9 +23,11 @@ export class Overlay {
     this.bar = element("div", { class: "scale-bar" }, element("div", {}), this.barText);
     this.labels = element("div", { class: "labels" });
     this.tip = element("div", { id: "tip", hidden: true });
-    this.box = element("div", { id: "overlay", "aria-hidden": "true" }, this.labels, triad, this.bar);
+    this.leaders = element("svg", { class: "leaders" });
+    this.legend = element("div", { class: "picture-legend", hidden: true });
+    this.box = element("div", { id: "overlay", "aria-hidden": "true" }, this.leaders, this.labels, triad, this.bar, this.legend);
     stage.append(this.box, this.tip);
-    // Lists of labels, each with a position in the frame and a text.
+    // Lists of labels, each with a position in the frame and a text. Labels with a class have a leader to their position.
     this.sources = [];
     this.grid = null;
   }
@@ -53,17 +57,37 @@ export class Overlay {
   placeLabels(width, height) {
     const placed = [];
     const shown = [];
-    for (const { position, text, isImportant } of this.sources.flatMap((source) => source())) {
-      const at = position.clone().project(this.viewer.camera);
-      const [x, y] = [((at.x + 1) / 2) * width, ((1 - at.y) / 2) * height];
-      const isInside = Math.abs(at.z) < 1 && x > 20 && y > 10 && x < width - 20 && y < height - 10;
-      if (!isInside || placed.some(([a, b]) => Math.hypot(a - x, b - y) < LABEL_GAP)) continue;
-      placed.push([x, y]);
-      const label = element("span", isImportant ? { class: "important" } : {}, text);
-      label.style.transform = `translate(${x.toFixed(1)}px, ${y.toFixed(1)}px) translate(-50%, ${isImportant ? ABOVE : "-50%"})`;
+    const leaders = [];
+    // Labels with leaders come first, and hide others.
+    const all = this.sources.flatMap((source) => source()).sort((a, b) => !a.kind - !b.kind);
+    for (const { position, text, kind } of all) {
+      const seen = position.clone().project(this.viewer.camera);
+      const [x, y] = [((seen.x + 1) / 2) * width, ((1 - seen.y) / 2) * height];
+      const isInside = Math.abs(seen.z) < 1 && x > 20 && y > 10 && x < width - 20 && y < height - 10;
+      if (!isInside || (!kind && placed.some(([a, b]) => Math.hypot(a - x, b - y) < LABEL_GAP))) continue;
+      const label = element("span", kind ? { class: kind } : {}, text);
+      let [at, up, anchor] = [x, y, "-50%"];
+      if (kind) {
+        // A label stays in the picture, below the toolbar.
+        const long = Math.min(width - 12, 14 + WIDE * text.length);
+        const isLeft = x + ASIDE + long > width && x > width / 2;
+        const free = Math.max(6, Math.min(width - 6 - long, isLeft ? x - ASIDE - long : x + ASIDE));
+        [at, up, anchor] = [isLeft ? free + long : free, y + (y < 110 ? ABOVE : -ABOVE), isLeft ? "-100%" : "0%"];
+        leaders.push(element("line", { x1: x, y1: y, x2: at, y2: up }), element("circle", { cx: x, cy: y, r: 4 }));
+        placed.push([x, y], [at + (isLeft ? -60 : 60), up]);
+      }
+      placed.push([at, up]);
+      label.style.transform = `translate(${at.toFixed(1)}px, ${up.toFixed(1)}px) translate(${anchor}, -50%)`;
       shown.push(label);
     }
     this.labels.replaceChildren(...shown);
+    this.leaders.replaceChildren(...leaders);
+  }
+
+  // Shows the legend of the colours in the picture.
+  setLegend(legend) {
+    this.legend.replaceChildren(legend);
+    this.legend.hidden = false;
   }
 
   // Shows a text beside the pointer, or nothing.

@@ -28,39 +28,13 @@ export function makePanel(viewer, { AnswersPanel, CellsPanel, DeviationsPanel, M
     add("Notes", "notes", element("ul", {}, ...viewer.data.notes.map((note) => element("li", {}, note))));
   }
   if (viewer.slice) viewer.slicePanel = new SlicePanel(viewer, add);
+  viewer.live?.makePanel(add);
   if (viewer.answers) viewer.answersPanel = new AnswersPanel(viewer, add);
-  if (viewer.live) addLive(viewer, add);
   addFacts(viewer, add);
   addShown(viewer, add);
   if (viewer.cells) viewer.cellsPanel = new CellsPanel(viewer, add);
   if (viewer.scene.objects.some((object) => object.name !== null)) addObjects(viewer, add);
   addHelp(viewer, panel);
-}
-
-// Adds the panel of live queries, whose tables about indexes are folded away. In a page of a large scene a button
-// starts them.
-function addLive(viewer, add) {
-  const { live } = viewer;
-  live.makePanel(add);
-  const section = document.getElementById("live");
-  section.querySelector("h2").textContent = "Distance at the pointer";
-  const details = element("details", { id: "live-more" }, element("summary", {}, "Indexes: their work and their speed"));
-  for (const id of ["live-far", "live-far-text", "live-work", "live-speed"]) {
-    const part = section.querySelector(`#${id}`);
-    if (part) details.append(part.closest("label") ?? part);
-  }
-  section.append(details);
-  if (viewer.isLiveSoon) return;
-  const size = counted(viewer.data.live.sizes.length, "primitive");
-  const start = element("button", { type: "button", id: "live-start", class: "primary", onclick: () => {
-    begin.remove();
-    section.classList.remove("waiting");
-    viewer.startLive();
-  } }, "Ask for distances here");
-  const begin = element("div", {}, element("p", {}, "The page can answer queries wherever the pointer is. It builds its " +
-    `indexes of ${size} first, which takes a few seconds.`), start);
-  section.classList.add("waiting");
-  section.querySelector("h2").after(begin);
 }
 
 // Adds what the scene is, and what can be done in this page.
@@ -83,9 +57,9 @@ function addFacts(viewer, add) {
   fillList(list, rows);
   const hints = [];
   if (viewer.answers) hints.push("Point at a query point to read its distance, and click it for the whole answer.");
-  if (viewer.slice) hints.push("Point at the slice to read its value. Move it with the slider, or drag it with Shift.");
+  if (viewer.slice) hints.push("Move the slice with its slider, or drag it with Shift.");
   if (viewer.deviations) hints.push("Point at the scan to read deviations.");
-  if (viewer.isLiveSoon) hints.push("Point anywhere to see the closest point of the scene.");
+  if (data.scene.segments.length + data.scene.points.length > 0) hints.push("A scene with lines or points has no inside.");
   if (!viewer.answers && !viewer.slice && !viewer.deviations && !viewer.live && !viewer.measures && !data.moved) {
     hints.push("For distances in this page, make it with `--live always`, `--field 64` or `--random 1000` of `p2m view`.");
   }
@@ -112,6 +86,7 @@ function addShown(viewer, add) {
   if (slice) {
     box("slice", true, (on) => (slice.mesh.visible = on), "show-slice");
     box("scene cut open at the slice", true, (on) => (viewer.isCut = on), "show-cut");
+    box("outline of the scene over the slice", true, (on) => (viewer.isOutlined = on), "show-outline");
   }
   viewer.deviationsPanel?.makeBoxes(box);
   if (answers) {
@@ -120,14 +95,17 @@ function addShown(viewer, add) {
     box("query points", true, (on) => (answers.dots.visible = on), "show-queries");
     box("closest points", true, (on) => (answers.feet.visible = on), "show-closest");
     box("segments to closest points", !isCrowded, (on) => (answers.segments.visible = on), "show-segments");
-    box("empty sphere around the selected query", true, (on) => {
+    // A sphere would change the colours of a slice.
+    answers.hasSphere = !slice;
+    box("empty sphere around the selected query", !slice, (on) => {
       answers.hasSphere = on;
       answers.select(answers.selected, viewer.colours);
     }, "show-sphere");
   }
   if (live) {
     box("query at the pointer", true, (on) => (live.group.visible = on), "show-live");
-    box("empty sphere around it", true, (on) => {
+    live.hasSphere = !slice;
+    box("empty sphere around it", !slice, (on) => {
       live.hasSphere = on;
       live.redraw();
     }, "show-live-sphere");

@@ -2,12 +2,14 @@
 
 import * as three from "three";
 import { lightOf } from "./colours.js";
-import { pointMaterial, setNormals, spacing, surface } from "./shading.js";
+import { outline, pointMaterial, setNormals, spacing, surface } from "./shading.js";
 
 // The kinds of primitives, with the number of vertices of each.
 const KINDS = [["triangles", 3], ["segments", 2], ["points", 1]];
 // The size of a point relative to the distance to the next one.
 const POINT_SIZE = 1.8;
+// The number of triangles up to which the lines are drawn in which a slice cuts them, because that takes time.
+const MAX_CUT = 300_000;
 
 export class SceneLayer {
   // `scene` has positions in the frame (f32) and for each kind the numbers of vertices. `objects` are names with the
@@ -21,6 +23,8 @@ export class SceneLayer {
     this.objects = scene.objects.map((object) => ({ ...object, isVisible: true }));
     const positions = new three.BufferAttribute(scene.positions, 3);
     this.parts = [];
+    // The number of changes of what is visible.
+    this.version = 0;
     this.materials = {
       segments: new three.LineBasicMaterial(parameters),
       points: pointMaterial({
@@ -46,6 +50,7 @@ export class SceneLayer {
 
   setTheme(theme, colours) {
     this.edges?.material.color.set(colours.edge);
+    this.outlined(colours);
     if (this.colours) {
       const [first, second] = [colours.surface, colours.second].map(lightOf);
       const { array } = this.colours;
@@ -91,6 +96,36 @@ export class SceneLayer {
     this.edges.visible = isOn;
   }
 
+  // Draws the outline of the whole scene over a slice, or not.
+  setOutline(isOn, colours) {
+    if (isOn && !this.outline) {
+      this.outline = new three.Group();
+      this.outline.add(...this.parts.map(({ kind, geometry, drawn }) => outline(kind, geometry, drawn.material)));
+      this.group.add(this.outline);
+      this.outlined(colours);
+    }
+    if (this.outline) this.outline.visible = isOn;
+  }
+
+  // Sets the colour of the outline.
+  outlined(colours) {
+    this.outline?.traverse(({ material }) => material?.color?.set(colours.outline));
+  }
+
+  // Draws the lines in which a plane across an axis cuts visible triangles, or none if there is no plane. They are of the
+  // colour of text on a slice, whose colours are light near them.
+  setSection(axis, at) {
+    this.section?.geometry.dispose();
+    const surface = this.parts.find(({ kind }) => kind === "triangles");
+    if (!surface || surface.geometry.index.count > 3 * MAX_CUT) return;
+    this.section ??= new three.LineSegments(new three.BufferGeometry(), new three.LineBasicMaterial({ color: "#101418", depthTest: false }));
+    this.section.renderOrder = 1;
+    if (!this.section.parent) this.group.add(this.section);
+    this.section.geometry = new three.BufferGeometry();
+    const ends = at === null ? [] : cutTriangles(this.positions, surface.geometry.index.array, axis, at);
+    this.section.geometry.setAttribute("position", new three.Float32BufferAttribute(ends, 3));
+  }
+
   // Cuts away what lies on the positive side of a plane, or nothing.
   cut(plane) {
     const planes = plane ? [plane.clone().negate()] : null;
@@ -129,10 +164,32 @@ export class SceneLayer {
       }
       geometry.setIndex(new three.BufferAttribute(kept, 1));
     }
+    this.version++;
+    // Sharp edges of hidden objects are not drawn.
+    if (this.outline) {
+      this.outline.removeFromParent();
+      this.outline = null;
+    }
   }
 
   // Returns the numbers of drawn primitives of each kind.
   drawnCounts() {
     return Object.fromEntries(this.parts.map(({ kind, size, geometry }) => [kind, geometry.index.count / size]));
   }
+}
+
+// Returns the ends of the lines in which a plane across an axis cuts triangles.
+function cutTriangles(positions, triangles, axis, at) {
+  const ends = [];
+  for (let i = 0; i < triangles.length; i += 3) {
+    const heights = [0, 1, 2].map((k) => positions[3 * triangles[i + k] + axis] - at);
+    if (heights.every((x) => x > 0) || heights.every((x) => x <= 0)) continue;
+    for (let k = 0; k < 3; k++) {
+      const [a, b] = [heights[k], heights[(k + 1) % 3]];
+      if (a > 0 === b > 0) continue;
+      const [from, to] = [3 * triangles[i + k], 3 * triangles[i + ((k + 1) % 3)]];
+      for (let c = 0; c < 3; c++) ends.push(positions[from + c] + (a / (a - b)) * (positions[to + c] - positions[from + c]));
+    }
+  }
+  return ends;
 }

@@ -74,12 +74,46 @@ function vertexNormals(positions, triangles) {
   return normals;
 }
 
+// What the outline of a scene is: the opacity of its lines, the angle in degrees between facets from which on an edge is
+// sharp, and the number of triangles up to which sharp edges are searched, because that takes time.
+const [OUTLINE, SHARP_ANGLE, MAX_EDGED] = [0.5, 35, 100_000];
+
+// Returns the outline of primitives of a kind, which lies over everything: points and segments as they are, and of
+// triangles the sharp edges and where a surface turns away from the viewer. The rest is not covered.
+export function outline(kind, geometry, { size, sizeAttenuation }) {
+  const look = { transparent: true, opacity: OUTLINE, depthTest: false, depthWrite: false };
+  if (kind === "segments") return new three.LineSegments(geometry, new three.LineBasicMaterial(look));
+  if (kind === "points") return new three.Points(geometry, pointMaterial({ ...look, size: 0.5 * size, sizeAttenuation }));
+  const group = new three.Group();
+  if (geometry.index.count <= 3 * MAX_EDGED) {
+    group.add(new three.LineSegments(new three.EdgesGeometry(geometry, SHARP_ANGLE), new three.LineBasicMaterial(look)));
+  }
+  if (geometry.getAttribute("normal")) {
+    const material = new three.MeshBasicMaterial({ ...look, side: three.DoubleSide });
+    material.onBeforeCompile = (shader) => {
+      shader.vertexShader = shader.vertexShader.replace("#include <common>", "#include <common>\nvarying float vFacing;")
+        .replace("#include <project_vertex>", `#include <project_vertex>
+          vec3 turned = normalize(normalMatrix * normal);
+          vFacing = dot(turned, normalize(mvPosition.xyz));`);
+      shader.fragmentShader = shader.fragmentShader.replace("#include <common>", "#include <common>\nvarying float vFacing;")
+        .replace("#include <opaque_fragment>", `
+          float turn = abs(vFacing) / max(1e-6, fwidth(vFacing));
+          diffuseColor.a *= 1.0 - smoothstep(1.0, 2.2, turn);
+          if (diffuseColor.a < 0.004) discard;
+          #include <opaque_fragment>`);
+    };
+    material.customProgramCacheKey = () => "outline";
+    group.add(new three.Mesh(geometry, material));
+  }
+  return group;
+}
+
 // The least and the largest size in pixels of points that have a size in the scene: of those that are lit, which form a
 // surface, and of others, which would hide lines and each other.
-const [LIT_SIZES, POINT_SIZES] = ["2.0, 16.0", "2.0, 6.0"];
+const [LIT_SIZES, POINT_SIZES] = ["3.0, 16.0", "3.0, 6.0"];
 
 // The opacity of what has faded, and the distances from a plane, in radii of the scene, between which things fade.
-const [FADED, FADES] = ["0.12", "0.05, 0.3"];
+const [FADED, FADES] = ["0.12", "0.03, 0.15"];
 
 // Lets the shader of a material fade what is away from a plane: `focus.value` has its normal, divided by the radius of
 // the scene, and its distance, divided by the same. Nothing fades if all of them are 0.

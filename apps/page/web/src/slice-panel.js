@@ -1,5 +1,6 @@
 // The panel of a slice: its axis, its place, its colours, and its value at the pointer.
 
+import { pictureLegend } from "./histogram.js";
 import { choice, element, short } from "./text.js";
 
 export class SlicePanel {
@@ -8,7 +9,7 @@ export class SlicePanel {
     this.slice = viewer.slice;
     const { slice } = this;
     const { isDiverging } = slice.scale;
-    const what = slice.hasCells ? "length of the list" : isDiverging ? "signed distance" : "distance";
+    this.what = slice.hasCells ? "length of the list" : isDiverging ? "signed distance" : "distance";
     this.unit = slice.hasCells ? "primitives" : viewer.unit;
     this.axes = choice("axis", ["x", "y", "z"], slice.axis, (axis) => this.move(axis, 0.5));
     this.radios = [...this.axes.querySelectorAll("input")];
@@ -25,9 +26,22 @@ export class SlicePanel {
         `The distance changes by ${short(slice.spacingOfLines)} ${viewer.unit} from line to line.`;
     const title = slice.hasCells ? "Slice through the cells" : isDiverging ? "Signed distance" : "Distance";
     add(title, "field",
-      viewer.figure(() => ({ scale: slice.scale, what, unit: this.unit })).element,
       element("div", { class: "row" }, element("span", {}, "Across"), this.axes, this.text), this.range,
-      element("p", { class: "reading" }, this.value), element("p", { class: "small" }, about));
+      element("p", { class: "reading" }, this.value),
+      element("p", { class: "small" }, `Point at the slice to read it, and click to keep the answer. ${about}`));
+    // What was read last, and whether it stays when the pointer moves.
+    this.shown = null;
+    this.isKept = false;
+  }
+
+  // Shows the legend in the picture, in the colours of the theme.
+  showLegend() {
+    this.viewer.overlay.setLegend(pictureLegend(this.slice.scale, this.what, this.unit));
+  }
+
+  // Returns the label of what was read last.
+  labels() {
+    return this.shown && this.slice.mesh.visible ? [{ ...this.shown, kind: "important" }] : [];
   }
 
   // Lays the slice across the axis that points most to the viewer: a horizontal one, unless the scene is flat.
@@ -50,6 +64,8 @@ export class SlicePanel {
     const position = [...slice.origin];
     position[axis] += slice.index * slice.spacing;
     this.text.textContent = `at ${short(viewer.coordinates(position)[axis])} ${viewer.unit}`;
+    this.isKept = false;
+    this.show(this.example());
     viewer.draw();
   }
 
@@ -61,19 +77,49 @@ export class SlicePanel {
     this.move(this.slice.axis, this.part + by);
   }
 
-  // Shows the value of the slice where the pointer is, or in the middle of the picture if there is no event. Returns the
-  // value as a text, if there is one.
+  // Returns the point of the slice that is in the middle of the picture, or else its middle.
+  example() {
+    const { slice, viewer } = this;
+    const [hit] = viewer.caster(0, 0).intersectObject(slice.mesh);
+    return hit?.point ?? slice.middle();
+  }
+
+  // Reads the slice where the pointer is, or in the middle of the picture if there is no event. Returns the value as a
+  // text, if there is one.
   read(event) {
     const { slice, viewer, value } = this;
-    const say = (text) => (value.textContent = event ? "" : text);
-    if (!slice.mesh.visible) return void say("The slice is not shown.");
-    const caster = event ? viewer.pointer(event).caster() : viewer.caster(0, 0);
-    const [hit] = caster.intersectObject(slice.mesh);
     // The pointer moves all the time, and screen readers would read each value.
     value.setAttribute("aria-live", event ? "off" : "polite");
-    if (!hit) return void say("The slice is not in the middle of the picture.");
-    const text = slice.textAt(hit.point, this.unit);
-    value.textContent = `${text} at ${viewer.coordinates(hit.point.toArray()).join(", ")}`;
+    if (!slice.mesh.visible) {
+      if (!event) value.textContent = "The slice is not shown.";
+      return undefined;
+    }
+    if (!event) {
+      this.show(this.example());
+      this.value.hidden = false;
+      return undefined;
+    }
+    const [hit] = viewer.pointer(event).caster().intersectObject(slice.mesh);
+    if (!hit) return undefined;
+    return this.isKept ? slice.textAt(hit.point, this.unit) : this.show(hit.point);
+  }
+
+  // Keeps what is read at the pointer until the next click or move of the slice.
+  keep(event) {
+    this.isKept = false;
+    this.isKept = this.read(event) !== undefined;
+    this.viewer.draw();
+  }
+
+  // Shows the value at a position in the frame, in the panel and in the picture, and returns it as a text.
+  show(position) {
+    const { slice, viewer, value } = this;
+    const text = slice.textAt(position, this.unit);
+    value.replaceChildren(text, element("span", { class: "small" }, ` at ${viewer.coordinates(position.toArray()).join("; ")}`));
+    this.shown = { position, text };
+    // Live queries say it without interpolation.
+    value.hidden = viewer.asked === viewer.live;
+    viewer.draw();
     return text;
   }
 }

@@ -1,15 +1,13 @@
-// A slice through a field: values in colours. Distances have lines of equal distance, and the line of distance zero.
+// A slice through a field: values in colours, which are those of the scale, without light or blending. Distances have lines of equal distance, and the line of distance zero.
 // Lengths of lists are constant within each cell of an index, and have colours by their logarithms.
 
 import * as three from "three";
 import { ColourScale } from "./colours.js";
 import { limits } from "./answers.js";
-import { roundUp, short, sideOf } from "./text.js";
+import { inWords, roundUp, short } from "./text.js";
 
 // The number of lines of equal distance between zero and the largest distance, at most.
 const LINES = 8;
-// The opacity of a slice where it is not inside of the scene, so that the scene behind it is seen.
-const OUTSIDE = { light: 0.32, dark: 0.55 };
 
 const VERTEX = `
   varying vec2 place;
@@ -22,7 +20,7 @@ const FRAGMENT = `
   precision highp sampler2D;
   uniform sampler2D values, colours;
   uniform vec2 counts;
-  uniform float low, high, spacing, outside;
+  uniform float low, high, spacing;
   uniform bool hasCells, isDiverging;
   uniform vec3 undefinedColour;
   varying vec2 place;
@@ -41,10 +39,9 @@ const FRAGMENT = `
                   mix(at(cell + vec2(0.0, 1.0)), at(cell + vec2(1.0, 1.0)), part.x), part.y);
     }
     if (!(abs(value) < 3e38)) {
-      gl_FragColor = vec4(undefinedColour, outside);
+      gl_FragColor = vec4(undefinedColour, 1.0);
     } else {
       vec3 colour = texture2D(colours, vec2(clamp((value - low) / (high - low), 0.0, 1.0) * (255.0 / 256.0) + 0.5 / 256.0, 0.5)).rgb;
-      float alpha = isDiverging && value < 0.0 ? 1.0 : outside;
       if (!hasCells) {
         float step = value / spacing;
         float width = max(fwidth(step), 1e-6);
@@ -55,9 +52,8 @@ const FRAGMENT = `
         vec3 ink = light > 0.12 ? colour * 0.35 : colour + 0.25;
         colour = mix(colour, ink, 0.75 * line * min(1.0, 0.4 / width));
         colour = mix(colour, vec3(0.004), zero);
-        alpha = max(alpha, max(zero, 0.9 * line));
       }
-      gl_FragColor = vec4(colour, alpha);
+      gl_FragColor = vec4(colour, 1.0);
     }
     #include <colorspace_fragment>
   }
@@ -91,14 +87,13 @@ export class SliceLayer {
     this.uniforms = {
       values: { value: this.texture }, colours: { value: this.colours }, counts: { value: new three.Vector2() },
       low: { value: low }, high: { value: high }, spacing: { value: this.spacingOfLines }, hasCells: { value: hasCells },
-      isDiverging: { value: isDiverging }, outside: { value: 1 },
+      isDiverging: { value: isDiverging },
       undefinedColour: { value: new three.Color() },
     };
     const material = new three.ShaderMaterial({
-      uniforms: this.uniforms, vertexShader: VERTEX, fragmentShader: FRAGMENT, side: three.DoubleSide, transparent: true,
+      uniforms: this.uniforms, vertexShader: VERTEX, fragmentShader: FRAGMENT, side: three.DoubleSide,
     });
     this.mesh = new three.Mesh(new three.BufferGeometry(), material);
-    this.mesh.renderOrder = 1;
     // The panel sets the plane, which makes its corners.
     this.corners = [];
     this.axis = 2;
@@ -131,7 +126,6 @@ export class SliceLayer {
     }
     this.colours.needsUpdate = true;
     this.uniforms.undefinedColour.value.set(colours.undefined);
-    this.uniforms.outside.value = this.hasCells ? 1 : OUTSIDE[theme];
   }
 
   // Draws the plane across an axis at a real index.
@@ -172,10 +166,20 @@ export class SliceLayer {
     return new three.Vector3(...position);
   }
 
+  // Returns the position in the frame of the middle of the plane.
+  middle() {
+    const [u, v] = [0, 1, 2].filter((k) => k !== this.axis);
+    return this.position(this.axis, (this.counts[u] - 1) / 2, (this.counts[v] - 1) / 2);
+  }
+
+  // The coordinate of the plane along its axis in the frame.
+  get at() {
+    return this.origin[this.axis] + this.index * this.spacing;
+  }
+
   // Returns the plane in the frame, whose normal points along an axis or against it.
   plane(sign) {
-    const normal = new three.Vector3().setComponent(this.axis, sign);
-    return new three.Plane(normal, -sign * (this.origin[this.axis] + this.index * this.spacing));
+    return new three.Plane(new three.Vector3().setComponent(this.axis, sign), -sign * this.at);
   }
 
   // Returns labels of lines of equal distance: texts with positions, where the lines cross two lines through the plane.
@@ -209,7 +213,6 @@ export class SliceLayer {
   textAt(position, unit) {
     const value = this.valueAt(position);
     if (this.hasCells && Number.isNaN(value)) return "no list: the tree answers";
-    const side = this.scale.isDiverging ? ` ${sideOf(value)}` : "";
-    return `${this.scale.text(this.scale.isDiverging ? Math.abs(value) : value)} ${unit}${side}`;
+    return this.hasCells ? `${this.scale.text(value)} ${unit}` : inWords(value, this.scale.isDiverging, unit);
   }
 }

@@ -20,6 +20,12 @@ export const short = (value) => figure(value, 4);
 export const sideOf = (signed) =>
   signed === undefined || Number.isNaN(signed) ? undefined : signed < 0 ? "inside" : signed > 0 ? "outside" : "on the surface";
 
+// Returns in words where a point is that has a distance, in a scene with sides a signed one.
+export function inWords(value, isSigned, unit) {
+  if (!isSigned) return `${short(value)} ${unit} from the scene`;
+  return value === 0 ? sideOf(value) : `${sideOf(value)}, ${short(Math.abs(value))} ${unit} from the surface`;
+}
+
 // Returns a text whose words have at most `most` characters. Longer ones lose their middle.
 export const shortened = (text, most) => text.split(" ").map((word) => {
   const letters = [...word];
@@ -33,8 +39,10 @@ export function number(value, digits = DIGITS) {
   return element("data", { value: String(value) }, figure(value, digits));
 }
 
-// Makes elements of several numbers with commas between them.
-export const numbers = (values) => [...values].flatMap((value, i) => [i > 0 ? ", " : "", number(value)]);
+// Makes elements of several numbers with semicolons between them, because numbers have commas. Copies have commas
+// between them.
+export const numbers = (values) =>
+  [...values].flatMap((value, i) => [...(i > 0 ? [element("data", { value: ", " }, "; ")] : []), number(value)]);
 
 // Lets copied numbers have all their digits.
 export function copyAllDigits() {
@@ -117,9 +125,12 @@ export function fillList(list, rows) {
     ]));
 }
 
+// Makes a symbol of the picture and what it means.
+export const key = (symbol, text) => element("div", { class: "small" }, symbol, text);
+
 // Makes a patch of a colour of the picture, by its name, or of a colour in CSS.
 export const patch = (colour) =>
-  element("span", { class: "patch", style: `background: ${colour.startsWith("#") ? colour : `var(--${colour})`}` });
+  element("span", { class: "patch", style: `background: ${/^(#|rgb)/.test(colour) ? colour : `var(--${colour})`}` });
 
 // Makes the row of the names of columns.
 export function tableHead(names) {

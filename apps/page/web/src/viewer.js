@@ -20,15 +20,13 @@ import { SceneLayer } from "./scene.js";
 import { Painter, addLights } from "./shading.js";
 import { SliceLayer } from "./slice.js";
 import { SlicePanel } from "./slice-panel.js";
-import { copyAllDigits, reveal, short, sideOf } from "./text.js";
+import { copyAllDigits, inWords, reveal } from "./text.js";
 import { addToolbar } from "./toolbar.js";
 
 // The distance in pixels within which an answer is selected or read.
 const PICK_RADIUS = 12;
 // The number of answers up to which the pointer reads them.
 const MAX_POINTED = 20_000;
-// The number of primitives up to which live queries begin without a click on their button.
-const MAX_STARTED = 10_000;
 
 class Viewer {
   constructor(data) {
@@ -65,6 +63,7 @@ class Viewer {
     this.controls = this.view.controls;
     // What lies behind a slice is seen from the side.
     this.view.isOblique = !!this.slice;
+    this.view.hasLegend = !!this.slice || !!this.deviations;
     addLights(this.world, this.camera);
     this.painter = new Painter(this.renderer, this.world, this.camera, data.frame.radius);
     for (const [event, isMoving] of [["start", true], ["end", false]]) {
@@ -74,7 +73,10 @@ class Viewer {
     if (this.deviations) this.painter.strength = 1;
     this.overlay = new Overlay(this, this.stage);
     if (this.slice) this.overlay.sources.push(() => (this.slice.mesh.visible ? this.slice.labels : []));
+    // The latest answer has a label in the picture.
+    this.overlay.sources.push(() => this.asked?.labels() ?? []);
     if (this.measures) this.overlay.sources.push(() => this.measures.labels());
+    if (this.deviations) this.overlay.sources.push(() => this.deviationsPanel.labels());
     addToolbar(this, this.stage);
 
     makePanel(this, { AnswersPanel, CellsPanel, DeviationsPanel, MovedPanel, SlicePanel });
@@ -86,21 +88,33 @@ class Viewer {
     if (this.slice) {
       this.slicePanel.lay();
       this.fit();
+      this.slicePanel.show(this.slicePanel.example());
+    } else if (this.answers && !this.live) {
+      this.answersPanel.selectExample();
     }
     new ResizeObserver(() => this.resize()).observe(this.stage);
   }
 
   get colours() {
-    return THEMES[this.theme];
+    // A slice is light near the surface in both themes, and so is what lies under answers.
+    const { live, selected } = THEMES.light;
+    return this.slice ? { ...THEMES[this.theme], live, selected } : THEMES[this.theme];
   }
 
   get slicePart() {
     return this.slicePanel.part;
   }
 
-  // Whether live queries begin when the page is opened.
-  get isLiveSoon() {
-    return !!this.live && this.data.live.sizes.length <= MAX_STARTED;
+  // What has the latest answer: live queries once they answer, unless the slice has something else than distances.
+  get asked() {
+    if (this.live?.shown && !this.data.lists) return this.live;
+    return this.slicePanel ?? this.answersPanel;
+  }
+
+  // Returns the position of the example that a page shows before anything was asked: on the slice in the middle of the
+  // picture, or the middle of the scene.
+  example() {
+    return this.slicePanel?.example() ?? new three.Vector3();
   }
 
   addLayer(name, layer, drawn) {
@@ -121,6 +135,8 @@ class Viewer {
     this.overlay.setTheme(this.colours);
     this.live?.redraw();
     this.figures.forEach((figure) => figure.update());
+    this.slicePanel?.showLegend();
+    this.deviationsPanel?.showLegend();
     this.draw();
   }
 
@@ -159,6 +175,13 @@ class Viewer {
     const towards = this.camera.position.clone().sub(this.controls.target);
     const plane = this.slice?.plane(this.slice && towards.getComponent(this.slice.axis) < 0 ? -1 : 1);
     this.scene.cut(isCut ? plane : null);
+    const isOutlined = !!this.slice?.mesh.visible && this.isOutlined !== false;
+    this.scene.setOutline(isOutlined, this.colours);
+    // A signed field has a line at zero.
+    const at = isOutlined && !this.slice.scale.isDiverging ? this.slice.at : null;
+    const cut = `${at} ${this.slice?.axis} ${this.scene.version}`;
+    if (this.slice && this.sectioned !== cut) this.scene.setSection(this.slice.axis, at);
+    this.sectioned = cut;
     this.painter.plane = this.slice?.mesh.visible ? plane : null;
     this.answers?.fadeAwayFrom(this.painter.plane, this.data.frame.radius);
   }
@@ -215,7 +238,7 @@ class Viewer {
     requestAnimationFrame(() => {
       this.isPointing = false;
       const text = this.answerTip(this.pointed) ?? this.deviationsPanel?.tip(this.pointed) ??
-        this.slicePanel?.read(this.pointed) ?? this.liveTip();
+        (this.asked === this.live ? this.liveTip() : this.slicePanel?.read(this.pointed));
       this.overlay.showTip(this.pointed, text ?? "");
     });
   }
@@ -234,12 +257,12 @@ class Viewer {
   liveTip() {
     const answer = this.live?.isFollowing && this.live.group.visible && this.live.shown?.answers?.[0];
     if (!answer) return undefined;
-    return `${short(answer.distance)} ${this.unit} ${sideOf(answer.signed) ?? "from the scene"}`;
+    return this.live.inWords(answer);
   }
 
   // Returns a value as a text: a distance, or a signed distance as a distance and a side.
   inWords(value, isSigned) {
-    return `${short(isSigned ? Math.abs(value) : value)} ${this.unit}${isSigned ? ` ${sideOf(value)}` : ""}`;
+    return inWords(value, isSigned, this.unit);
   }
 
   // Returns the coordinates of a position in the frame, to a hundred thousandth of the radius of the scene.
@@ -284,7 +307,7 @@ readData().then((data) => {
   // Tests read what is shown from here.
   window.viewer = new Viewer(data);
   document.documentElement.dataset.ready = "true";
-  if (window.viewer.isLiveSoon) window.viewer.startLive();
+  if (window.viewer.live) window.viewer.startLive();
 }).catch((error) => {
   document.getElementById("failure").textContent = `The page cannot be shown: ${error.message}.`;
   document.documentElement.dataset.ready = "failed";

@@ -86,7 +86,7 @@ test("a page of deviations reads as the program, and its tolerance and colours c
   await page.mouse.click(...place);
   assert.equal(await opened.read("deviation", "number", page), numbered(number));
   await page.mouse.move(place[0] + 1, place[1]);
-  await page.waitForFunction(() => /^[\d.e-]+ units (inside|outside)$/.test(document.querySelector("#tip").textContent));
+  await page.waitForFunction(() => /^(inside|outside), [\d.e-]+ units from the surface$/.test(document.querySelector("#tip").textContent));
 
   // What the check boxes and the buttons say happens.
   await page.uncheck("#show-scan");
@@ -123,6 +123,19 @@ test("a verdict comes first, bands show the tolerance, and worst places are flow
   assert.ok(bands.length >= 3, String(bands));
   assert.deepEqual(bands.map(([, colours]) => colours.length), bands.map(() => 1));
   assert.equal(new Set(bands.flatMap(([, colours]) => colours)).size, bands.length);
+  const legend = await page.$$eval(".picture-legend .patch", (all) => all.map((patch) =>
+    [patch.nextSibling.textContent, getComputedStyle(patch).backgroundColor]));
+  const texts = { "above far": "above 0.9", above: "0.3 to 0.9", within: "within ±0.3", below: "-0.9 to -0.3", "below far": "below -0.9" };
+  const { order, css } = await page.evaluate(() => {
+    const { scale } = window.viewer.deviations;
+    return { order: scale.ranges([2, 0.5, 0, -0.5, -2]).map(([, text]) => text), css: [2, 0.5, 0, -0.5, -2].map((x) => scale.css(x)) };
+  });
+  assert.deepEqual(legend.map(([text]) => text), order.filter((text) => bands.some(([band]) => texts[band] === text)));
+  for (const [text, colour] of legend) assert.equal(colour.replaceAll(" ", ""), css[order.indexOf(text)]);
+  await page.setViewportSize({ width: 390, height: 844 });
+  const { bottom: low, right } = await page.$eval(".picture-legend", (box) => box.getBoundingClientRect().toJSON());
+  assert.ok(low < 400 && right <= 390, `${low} ${right}`);
+  await page.setViewportSize({ width: 1200, height: 800 });
   await page.click("#colours label:has-text('gradient')");
   assert.ok(await page.evaluate(() => new Set(window.viewer.deviations.colours).size) > 20);
 
@@ -148,6 +161,13 @@ test("a verdict comes first, bands show the tolerance, and worst places are flow
     const gaps = worst.flatMap((i, k) => worst.slice(0, k).map((j) => deviations.apart(i, j)));
     return [Math.min(...gaps), data.frame.radius];
   }, worst);
+  // Their numbers stand in the picture, and their coordinates in the list. The legend of the bands is in the picture.
+  const marks = await page.$$eval("#overlay .labels .mark", (marks) => marks.map((mark) => mark.textContent));
+  assert.deepEqual(marks, worst.map((_, i) => String(i + 1)));
+  const rows = await page.$$eval("#largest td data", (all) => all.map((data) => Number(data.value)));
+  const points = await page.evaluate((worst) =>
+    worst.flatMap((i) => [...window.viewer.deviations.positions.subarray(3 * i, 3 * i + 3)]), worst);
+  assert.deepEqual(rows, points);
   assert.ok(worst.length >= 3 && least >= 0.12 * radius, `${worst}: ${least}`);
   await page.click("#largest button >> nth=1");
   await page.waitForFunction((i) => {
@@ -163,6 +183,6 @@ test("a verdict comes first, bands show the tolerance, and worst places are flow
     return [part.visible, surface.visible, new Set(part.geometry.getAttribute("color").array).size > 3];
   });
   assert.deepEqual(part, [true, false, true]);
-  assert.equal(await page.textContent("#deviations .figure > .small"), "no point of the scan is near");
+  assert.equal(await page.textContent("#colours .figure > .small"), "no point of the scan is near");
   assert.deepEqual(opened.problems, []);
 });

@@ -122,7 +122,7 @@ test("the keyboard alone moves the view and reads the slice", { skip }, async ()
   await page.keyboard.press("z");
   await page.keyboard.press("v");
   const [value, at] = (await page.textContent("#slice-value")).split(" at ");
-  const position = at.split(", ").map(Number);
+  const position = at.split("; ").map(Number);
   const [[, , , , , , distance]] = opened.query("--points", opened.write("middle.xyz", position.join(" ")));
   // The field has 24 points along its longest side, and is linear between them.
   assert.ok(Math.abs(Number.parseFloat(value) - Number(distance)) < 0.1, `${value}, not ${distance}`);
@@ -249,7 +249,7 @@ test("answers have the colours of the slice, and fade away from it", { skip }, a
     const pixel = new Uint8Array(4);
     const read = Array.from(answers.values, (_, i) => {
       const at = camera.position.clone().fromArray(answers.from, 3 * i).project(camera);
-      gl.readPixels(((at.x + 1) / 2) * stage.clientWidth - 3, ((at.y + 1) / 2) * stage.clientHeight, 1, 1, gl.RGBA,
+      gl.readPixels(((at.x + 1) / 2) * stage.clientWidth - 2, ((at.y + 1) / 2) * stage.clientHeight, 1, 1, gl.RGBA,
         gl.UNSIGNED_BYTE, pixel);
       const plane = slice.plane(1);
       const away = Math.abs(plane.distanceToPoint(at.fromArray(answers.from, 3 * i))) / viewer.data.frame.radius;
@@ -268,6 +268,88 @@ test("answers have the colours of the slice, and fade away from it", { skip }, a
   const plain = (await strengths()).read.filter(({ away }) => away > 0.3);
   assert.ok(mean(plain) > 2 * mean(far), `${mean(plain)} ${mean(far)}`);
   await page.check("#show-slice");
+});
+
+test("a slice has the colours of its scale", { skip }, async () => {
+  const other = await opened.view(opened.scene, "--field", "32", "--live", "never");
+  for (const theme of ["light", "dark"]) {
+    // Reads 200 positions of the slice where nothing else is drawn, in the moving picture and in the one at rest.
+    const gaps = await other.evaluate(async (theme) => {
+      const { viewer } = window;
+      const { slice, camera, painter, stage } = viewer;
+      viewer.setTheme(theme);
+      await new Promise((done) => setTimeout(done, 600));
+      const gl = viewer.renderer.getContext();
+      const [{ low, high }, [width, height]] = [slice.scale, [stage.clientWidth, stage.clientHeight]];
+      const [u, v] = [0, 1, 2].filter((k) => k !== slice.axis);
+      const found = [];
+      for (const draw of [() => { painter.setScale(1); viewer.renderer.render(viewer.world, camera); }, () => painter.refine()]) {
+        draw();
+        for (let i = 0; i < 200; i++) {
+          const [x, y] = [0.05 + 0.9 * ((i * 0.618) % 1), 0.05 + 0.9 * ((i * 0.755) % 1)];
+          const at = slice.position(slice.axis, x * (slice.counts[u] - 1), y * (slice.counts[v] - 1));
+          const value = slice.valueAt(at);
+          // Lines have another colour.
+          const part = Math.abs(value / slice.spacingOfLines - Math.round(value / slice.spacingOfLines));
+          const { x: px, y: py } = at.project(camera);
+          const pixel = new Uint8Array(4);
+          gl.readPixels(Math.floor(((px + 1) / 2) * width), Math.floor(((py + 1) / 2) * height), 1, 1, gl.RGBA, gl.UNSIGNED_BYTE, pixel);
+          const wanted = [0, 0, 0];
+          slice.scale.write(value, wanted, 0);
+          if (part > 0.25 && value > low && value < high) found.push(Math.max(...wanted.map((c, k) => Math.abs(c - pixel[k]))));
+        }
+      }
+      return found.sort((a, b) => a - b);
+    }, theme);
+    // The outline of the scene covers few of them. A pixel is not where the position is, so its value differs a little.
+    assert.ok(gaps.length > 150 && gaps[Math.floor(0.9 * gaps.length)] <= 4, `${theme}: ${gaps.length}, ${gaps}`);
+  }
+  await other.close();
+});
+
+test("a page answers an example before anything was asked", { skip }, async () => {
+  for (const [words, list] of [[["--random", "30"], "answer"], [["--field", "16"], null], [["--live", "always"], "live-answer"]]) {
+    const other = await opened.view(opened.scene, ...words, ...(list === "live-answer" ? [] : ["--live", "never"]));
+    await other.waitForSelector("#overlay .important");
+    const label = await other.textContent("#overlay .important");
+    assert.match(label, /^[\d.]+ units from the scene$/, String(words));
+    const shown = list ? Number.parseFloat(await opened.read(list, "distance", other))
+      : Number.parseFloat(await other.textContent("#slice-value"));
+    assert.ok(Math.abs(shown - Number.parseFloat(label)) < 1e-3 * shown, `${shown}, ${label}`);
+    // A click asks elsewhere, and the answer stays when the pointer moves on.
+    if (!list) {
+      await other.mouse.click(400, 430);
+      const kept = await other.textContent("#slice-value");
+      await other.mouse.move(520, 330);
+      await other.evaluate(() => new Promise((done) => requestAnimationFrame(() => requestAnimationFrame(done))));
+      assert.equal(await other.textContent("#slice-value"), kept);
+      assert.notEqual(await other.textContent("#overlay .important"), label);
+    }
+    await other.close();
+  }
+});
+
+test("the scale bar has the length of the middle of the scene, whatever else is on the page", { skip }, async () => {
+  const bars = [];
+  for (const words of [[], ["--points", opened.write("far.xyz", "9 -6 8\n"), "--max-distance", "0"]]) {
+    const other = await opened.view(opened.scene, "--live", "never", ...words);
+    bars.push(await other.evaluate(() => {
+      const { view, frame, camera, controls: { target }, stage, scene } = window.viewer;
+      // A line of this length, across the view, in the depth of the middle of the scene.
+      const towards = camera.position.clone().sub(target).normalize();
+      const positions = scene.parts.flatMap(({ indices, geometry }) =>
+        [...new Set(indices)].map((i) => target.clone().fromArray(geometry.getAttribute("position").array, 3 * i)));
+      const depths = positions.map((position) => position.dot(towards));
+      const middle = target.clone().addScaledVector(towards,
+        (Math.min(...depths) + Math.max(...depths)) / 2 - target.dot(towards));
+      const right = target.clone().setFromMatrixColumn(camera.matrixWorld, 0);
+      const ends = [middle.clone(), middle.clone().addScaledVector(right, 0.1)].map((end) => end.project(camera));
+      const pixels = ((ends[1].x - ends[0].x) / 2) * stage.clientWidth;
+      return [view.pixel * frame.scale, (0.1 * frame.scale) / pixels];
+    }));
+    await other.close();
+  }
+  for (const [said, true_] of bars) assert.ok(Math.abs(said / true_ - 1) < 0.01, String(bars));
 });
 
 test("lines of equal distance have the values of the field as labels", { skip }, async () => {
@@ -333,8 +415,8 @@ test("keys act without a click, and copies have all digits", { skip }, async () 
     return [data.textContent, clipboardData.getData("text/plain")];
   });
   const [[, , , , , , distance]] = opened.query("--random", "20", "--seed", "3", "--box-scale", "1.2");
-  assert.match(shown, / units$/);
-  assert.ok(shown.slice(0, -6).replace(/[-.,]|^0\.0*/g, "").length <= 6, shown);
+  assert.match(shown, / units from the scene$/);
+  assert.ok(shown.split(" ")[0].replace(/[-.,]|^0\.0*/g, "").length <= 6, shown);
   assert.match(copied, new RegExp(`distance\\s+${distance.replace(".", "\\.")}\\s`));
   await other.close();
 });
@@ -350,7 +432,7 @@ test("the pointer reads answers, and highlights their segments", { skip }, async
   });
   await page.mouse.move(...place);
   await page.waitForFunction(() => window.viewer.answers.pointed === 7);
-  assert.match(await page.textContent("#tip"), /^query 7: [\d.,]+ units$/);
+  assert.match(await page.textContent("#tip"), /^query 7: [\d.,]+ units from the scene$/);
   assert.ok(await page.evaluate(() => window.viewer.answers.highlight.children.length) > 0);
   await page.mouse.move(1190, 790);
 });
@@ -400,7 +482,7 @@ test("inside and outside are words, and a long title loses its middle", { skip }
     await other.keyboard.press("n");
     words.push(await opened.read("answer", "distance", other));
   }
-  assert.deepEqual(words, ["0.25 units inside", "0.5 units outside"]);
+  assert.deepEqual(words, ["inside, 0.25 units from the surface", "outside, 0.5 units from the surface"]);
   // The field has the distances of the centre and of a corner, but for the interpolation between grid points.
   const [centre, corner] = await other.evaluate(() => {
     const { slice, frame, camera } = window.viewer;
@@ -408,13 +490,19 @@ test("inside and outside are words, and a long title loses its middle", { skip }
   });
   assert.ok(Math.abs(centre + 0.5) < 0.1 && Math.abs(corner - Math.sqrt(3) / 10) < 0.1, `${centre}, ${corner}`);
   await other.waitForFunction(() => document.documentElement.dataset.live === "ready");
-  for (const [z, side] of [["0.25", "inside"], ["1.5", "outside"], ["1", "on the surface"]]) {
+  for (const [z, side] of [["0.25", "inside"], ["1.05", "outside"], ["1", "on the surface"]]) {
     await other.fill("#live-x", "0.5");
     await other.fill("#live-y", "0.5");
     await other.fill("#live-z", z);
-    await other.waitForFunction((side) =>
-      document.querySelector("#live-answer dd.main")?.textContent.endsWith(side), side);
+    // The label in the picture says it too.
+    for (const words of ["#live-answer dd.main", "#overlay .important"]) {
+      await other.waitForFunction(([words, side]) => document.querySelector(words)?.textContent.startsWith(side), [words, side]);
+    }
   }
+  // Numbers are not cut off.
+  await other.fill("#live-x", "-0.1234567890123456");
+  const [long, width] = await other.$eval("#live-x", (input) => [input.scrollWidth, input.clientWidth]);
+  assert.ok(long <= width, `${long} > ${width}`);
   assert.equal(await other.textContent("h1"), "a_name_that_…he_panel.obj in p2m");
   assert.equal(await other.getAttribute("h1", "title"), `${name} in p2m`);
   await other.close();
