@@ -170,14 +170,28 @@ export class DeviationsPanel {
     });
     const which = layer.stride > 1 ? " of the points on the page" : "";
     const table = element("table", { id: "largest" }, tableHead([this.what, "x", "y", "z"]), element("tbody", {}, ...rows));
-    add(`Worst places${which} (${viewer.unit})`, "worst", table);
+    add(`Worst places${which} (${viewer.unit})`, "worst", table,
+      element("p", { class: "small" }, "Click a number to fly there. Numbers in the picture that are pale are on the far side."));
   }
 
   // Returns the numbers of the worst places, which stand in the picture.
   labels() {
-    if (!this.layer.group.visible) return [];
-    return this.worst.map((i, k) => ({ position: this.layer.position(i), text: String(k + 1), kind: "mark" }))
-      .filter(({ position }) => position.toArray().every(Number.isFinite));
+    const { layer, viewer: { camera } } = this;
+    if (!layer.group.visible) return [];
+    return this.worst.filter((i) => layer.position(i).toArray().every(Number.isFinite)).map((i) => {
+      const position = layer.position(i);
+      const normal = this.normal(i);
+      const isBehind = normal && normal.dot(position.clone().sub(camera.position)) > 0;
+      return { position, text: String(this.worst.indexOf(i) + 1), kind: isBehind ? "mark behind" : "mark" };
+    });
+  }
+
+  // Returns the normal of the surface at a point, if there is one.
+  normal(i) {
+    const { dots, surface } = this.layer;
+    const normals = dots.geometry.getAttribute("normal") ?? surface?.geometry.getAttribute("normal");
+    const normal = normals && this.layer.position(i).fromBufferAttribute(normals, i);
+    return normal?.length() > 0 ? normal : null;
   }
 
   // Flies to a point, and around the scene if the scene is in front of it.
@@ -185,13 +199,12 @@ export class DeviationsPanel {
     const { layer, viewer } = this;
     const point = layer.position(i);
     if (!point.toArray().every(Number.isFinite)) return;
-    const normals = layer.dots.geometry.getAttribute("normal") ?? layer.surface?.geometry.getAttribute("normal");
+    const normal = this.normal(i);
     const towards = viewer.camera.position.clone().sub(viewer.controls.target).normalize();
-    if (normals) {
-      const normal = point.clone().fromBufferAttribute(normals, i);
+    if (normal) {
       // Surfaces are seen from outside, a little from where the viewer is.
-      if (normal.length() > 0) towards.multiplyScalar(0.4).add(normal);
-    } else {
+      towards.multiplyScalar(0.4).add(normal);
+    } else if (!layer.triangleOf) {
       towards.multiplyScalar(0.4).add(point.clone().normalize());
     }
     viewer.view.flyTo(point, NEAR, towards);

@@ -69,12 +69,13 @@ export class Overlay {
       let [at, up, anchor] = [x, y, "-50%"];
       if (kind) {
         // A label stays in the picture, below the toolbar.
-        const long = Math.min(width - 12, 14 + WIDE * text.length);
+        const long = Math.min(width - 12, LABEL_GAP / 3 + WIDE * text.length);
         const isLeft = x + ASIDE + long > width && x > width / 2;
         const free = Math.max(6, Math.min(width - 6 - long, isLeft ? x - ASIDE - long : x + ASIDE));
         [at, up, anchor] = [isLeft ? free + long : free, y + (y < 110 ? ABOVE : -ABOVE), isLeft ? "-100%" : "0%"];
         leaders.push(element("line", { x1: x, y1: y, x2: at, y2: up }), element("circle", { cx: x, cy: y, r: 4 }));
-        placed.push([x, y], [at + (isLeft ? -60 : 60), up]);
+        placed.push([x, y]);
+        for (let along = 0; along < long; along += LABEL_GAP) placed.push([at + (isLeft ? -along : along), up]);
       }
       placed.push([at, up]);
       label.style.transform = `translate(${at.toFixed(1)}px, ${up.toFixed(1)}px) translate(${anchor}, -50%)`;

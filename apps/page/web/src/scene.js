@@ -100,7 +100,7 @@ export class SceneLayer {
   setOutline(isOn, colours) {
     if (isOn && !this.outline) {
       this.outline = new three.Group();
-      this.outline.add(...this.parts.map(({ kind, geometry, drawn }) => outline(kind, geometry, drawn.material)));
+      this.outline.add(...this.parts.map(({ kind, geometry }) => outline(kind, geometry)));
       this.group.add(this.outline);
       this.outlined(colours);
     }

@@ -77,13 +77,17 @@ function vertexNormals(positions, triangles) {
 // What the outline of a scene is: the opacity of its lines, the angle in degrees between facets from which on an edge is
 // sharp, and the number of triangles up to which sharp edges are searched, because that takes time.
 const [OUTLINE, SHARP_ANGLE, MAX_EDGED] = [0.5, 35, 100_000];
+// The number of ends of lines, or of points, above which an outline is fainter.
+const OUTLINED = 2000;
 
 // Returns the outline of primitives of a kind, which lies over everything: points and segments as they are, and of
 // triangles the sharp edges and where a surface turns away from the viewer. The rest is not covered.
-export function outline(kind, geometry, { size, sizeAttenuation }) {
-  const look = { transparent: true, opacity: OUTLINE, depthTest: false, depthWrite: false };
+export function outline(kind, geometry) {
+  // Many lines and points together must not hide the slice.
+  const crowd = kind === "triangles" ? 1 : Math.min(1, OUTLINED / geometry.index.count);
+  const look = { transparent: true, opacity: OUTLINE * Math.max(0.3, crowd), depthTest: false, depthWrite: false };
   if (kind === "segments") return new three.LineSegments(geometry, new three.LineBasicMaterial(look));
-  if (kind === "points") return new three.Points(geometry, pointMaterial({ ...look, size: 0.5 * size, sizeAttenuation }));
+  if (kind === "points") return new three.Points(geometry, pointMaterial({ ...look, size: 2 }));
   const group = new three.Group();
   if (geometry.index.count <= 3 * MAX_EDGED) {
     group.add(new three.LineSegments(new three.EdgesGeometry(geometry, SHARP_ANGLE), new three.LineBasicMaterial(look)));
