@@ -68,20 +68,26 @@ def speed() -> None:
 
 
 def trade() -> None:
-    """Draw the largest relative error against the time of each setting of two indexes."""
+    """Draw the time per query of each setting that guarantees an error, for two indexes."""
+    guarantees = {
+        "certified": "exact,\nrounded once",
+        "default": "exact,\nup to rounding",
+        "epsilon 0.001": "error of\nat most 0.1 %",
+        "epsilon 0.01": "at most 1 %",
+        "epsilon 0.1": "at most 10 %",
+        "epsilon 1": "at most 100 %",
+    }
     figure, axis = plt.subplots(figsize=(9, 3.2))
-    for backend, colour, below in (("octree", OURS, -11), ("aabb", "#d9822b", 5)):
-        settings = [row for row in rows("tradeoff_dragon.csv") if row["backend"] == backend]
-        points = [row for row in settings if not row["setting"].startswith("max visits")]
-        errors = [max(float(row["error_relative_max"] or 0), 1e-17) for row in points]
-        values = list(zip(errors, (float(row["ns_median"]) for row in points), (row["setting"] for row in points), strict=True))
-        label = f"p2m {backend}"
-        axis.plot([error for error, _, _ in values], [time for _, time, _ in values], "o", color=colour, label=label)
-        for error, time, setting in values:
-            axis.annotate(setting, (error, time), xytext=(4, below), textcoords="offset points", fontsize=7, color=INK)
-    axis.set_xscale("log")
+    table = {(row["backend"], row["setting"]): float(row["ns_median"]) for row in rows("tradeoff_dragon.csv")}
+    octree, aabb = ([table[backend, setting] for setting in guarantees] for backend in ("octree", "aabb"))
+    for name, colour, times, others in (("octree", OURS, octree, aabb), ("aabb", "#d9822b", aabb, octree)):
+        axis.plot(times, "o-", color=colour, label=f"p2m {name}", linewidth=1.3)
+        for at, (time, other) in enumerate(zip(times, others, strict=True)):
+            beside = (0, 7 if time > other else -15)
+            axis.annotate(f"{time:,.0f}", (at, time), xytext=beside, textcoords="offset points", ha="center", color=colour)
+    axis.set_xticks(range(len(guarantees)), [f"{setting}\n{text}" for setting, text in guarantees.items()], fontsize=8.5)
     axis.set_ylim(bottom=0)
-    axis.set_xlabel("largest relative error of the distance (1e-17: none)")
+    axis.set_xlim(-0.5, len(guarantees) - 0.5)
     axis.set_ylabel("ns per query")
     axis.spines[["top", "right"]].set_visible(False)
     axis.legend(frameon=False)

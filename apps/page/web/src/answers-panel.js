@@ -93,7 +93,8 @@ export class AnswersPanel {
   select(i, isExample = false) {
     this.isExample = isExample;
     const { answers, viewer } = this;
-    answers.select(i, viewer.colours);
+    // The sphere of an example would cover much before anybody asked for it.
+    answers.select(i, viewer.colours, !isExample);
     const rows = [];
     if (i < 0) {
       rows.push(["none", "Click a query point, or press n."]);

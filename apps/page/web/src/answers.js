@@ -50,7 +50,7 @@ export class AnswersLayer {
     this.highlight = new three.Group();
     this.group.add(this.highlight);
     this.selected = -1;
-    this.hasSphere = true;
+    this.hasSphere = this.hasSelectedSphere = true;
   }
 
   setTheme(theme, colours) {
@@ -83,9 +83,11 @@ export class AnswersLayer {
     return !Number.isNaN(this.distances[i]);
   }
 
-  // Selects an answer, and draws its primitive, its feature, its segment and the sphere of its lower bound.
-  select(i, colours) {
+  // Selects an answer, and draws its primitive, its feature, its segment and, if there should be one, the sphere of its
+  // lower bound.
+  select(i, colours, withSphere = this.hasSelectedSphere) {
     this.selected = i;
+    this.hasSelectedSphere = withSphere;
     empty(this.highlight);
     empty(this.selection);
     if (i < 0) return;
@@ -96,7 +98,7 @@ export class AnswersLayer {
       return;
     }
     const vertices = [0, 1, 2].slice(0, this.sizes[i]).map((k) => at(this.vertices, 3 * i + k));
-    const radius = this.hasSphere ? this.lower_bounds[i] / this.frame.scale : 0;
+    const radius = this.hasSphere && withSphere ? this.lower_bounds[i] / this.frame.scale : 0;
     drawAnswer(this.selection, query, at(this.to, i), vertices, featureOf(this.features[i]), radius, colours);
   }
 

@@ -2,7 +2,7 @@
 
 import { UNDEFINED } from "./colours.js";
 import { pictureLegend } from "./histogram.js";
-import { choice, copyButton, count, element, fillList, namedRow, number, reveal, short, sideOf, stepped, tableHead } from "./text.js";
+import { choice, copyButton, count, element, fillList, namedRow, reveal, short, sideOf, stepped, tableHead } from "./text.js";
 
 // The share of a fitted view that is seen around a place after a flight to it.
 const NEAR = 0.35;
@@ -165,7 +165,7 @@ export class DeviationsPanel {
           this.select(i);
           this.flyTo(i);
         } }, element("span", { class: "mark" }, String(k + 1)), value);
-      const cells = [...layer.positions.subarray(3 * i, 3 * i + 3)].map((x) => element("td", {}, number(x)));
+      const cells = [...layer.positions.subarray(3 * i, 3 * i + 3)].map((x) => element("td", {}, viewer.coordinate(x)));
       return element("tr", {}, element("th", { scope: "row" }, fly), ...cells);
     });
     const which = layer.stride > 1 ? " of the points on the page" : "";

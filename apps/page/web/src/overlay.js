@@ -73,7 +73,10 @@ export class Overlay {
         const isLeft = x + ASIDE + long > width && x > width / 2;
         const free = Math.max(6, Math.min(width - 6 - long, isLeft ? x - ASIDE - long : x + ASIDE));
         [at, up, anchor] = [isLeft ? free + long : free, y + (y < 110 ? ABOVE : -ABOVE), isLeft ? "-100%" : "0%"];
-        leaders.push(element("line", { x1: x, y1: y, x2: at, y2: up }), element("circle", { cx: x, cy: y, r: 4 }));
+        // Leaders are seen on any colour.
+        for (const look of ["halo", "ink"]) {
+          leaders.push(element("line", { x1: x, y1: y, x2: at, y2: up, class: look }), element("circle", { cx: x, cy: y, r: 4, class: look }));
+        }
         placed.push([x, y]);
         for (let along = 0; along < long; along += LABEL_GAP) placed.push([at + (isLeft ? -along : along), up]);
       }

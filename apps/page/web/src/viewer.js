@@ -20,7 +20,7 @@ import { SceneLayer } from "./scene.js";
 import { Painter, addLights } from "./shading.js";
 import { SliceLayer } from "./slice.js";
 import { SlicePanel } from "./slice-panel.js";
-import { copyAllDigits, inWords, reveal } from "./text.js";
+import { copyAllDigits, inWords, number, reveal } from "./text.js";
 import { addToolbar } from "./toolbar.js";
 
 // The distance in pixels within which an answer is selected or read.
@@ -269,6 +269,14 @@ class Viewer {
   coordinates(position) {
     const digits = Math.max(0, Math.min(100, 5 - Math.floor(Math.log10(this.data.frame.radius * this.frame.scale))));
     return this.frame.coordinates(position).map((x) => Number(x.toFixed(digits)));
+  }
+
+  // Makes an element that shows a coordinate to a thousandth of the radius of the scene, or less, with all digits in copies.
+  coordinate(x) {
+    const digits = Math.max(0, Math.min(12, 4 - Math.floor(Math.log10(this.data.frame.radius * this.frame.scale))));
+    const shown = number(x);
+    shown.textContent = x.toLocaleString("en-US", { maximumFractionDigits: digits });
+    return shown;
   }
 
   // Opens or closes the list of keys.
