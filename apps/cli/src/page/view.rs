@@ -35,8 +35,8 @@ to see its answer, the primitive, the feature and the sphere of the lower bound.
 distance field, --lists a slice through cells, and --levels boxes of the AABB tree. The keyboard can do everything \
 that the mouse can.
 
-Pages answer queries under the mouse pointer with the library itself, compiled to WebAssembly: at once for scenes of \
-up to 10,000 primitives, and when a button is pressed for up to 100,000. --open opens the page in the browser.
+Pages of scenes of up to 100,000 primitives answer queries under the mouse pointer with the library itself, compiled \
+to WebAssembly. --open opens the page in the browser.
 
 Numbers are those of `p2m query`, with all digits. Scenes of more than a million primitives are drawn in less \
 detail, and a note on the page says so.

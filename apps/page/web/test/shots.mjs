@@ -119,7 +119,7 @@ for (const [name, [model, make, field, shared]] of Object.entries(SCENES)) {
     for (const [look, options] of Object.entries(LOOKS)) {
       const tab = await openTab(browser, at(`${name}-${page}.html`), (problem) => console.error(problem), options);
       // Live queries end their builds and measurements, and the picture is refined once the view rests.
-      await tab.waitForFunction(() => !window.viewer?.isLiveSoon || document.documentElement.dataset.live, undefined,
+      await tab.waitForFunction(() => !window.viewer?.live || document.documentElement.dataset.live, undefined,
         { timeout: 120_000 }).catch(() => {});
       await tab.waitForFunction(() => !window.viewer || window.viewer.painter.isRefined);
       const file = `${name}-${page}-${look}.png`;

@@ -173,12 +173,13 @@ fn the_advice_names_the_rings_of_the_chart() {
         const drawn = errorPlot(set.curves, () => true, MEASURES[0]);";
     let run = |expression: &str| format!("(() => {{ {set} return {expression}; }})()");
     // A ring is followed by its mark.
-    let rings = "[...drawn.matchAll(/class=\"border\" cx=\"[^\"]*\" cy=\"[^\"]*\" r=\"9.5\"\\/><[^>]*label=\"([^\"]*)\"/g)]
+    let rings =
+        "[...drawn.matchAll(/class=\"border\" cx=\"[^\"]*\" cy=\"[^\"]*\" r=\"9.5\"\\/><[^>]*label=\"([^\"]*)\"/g)]
         .map(([, note]) => note).join('; ')";
-    let hollow = "[...drawn.matchAll(/class=\"dot hollow\"[^>]*label=\"([^\"]*)\"/g)].map(([, note]) => note).join('; ')";
+    let hollow =
+        "[...drawn.matchAll(/class=\"dot hollow\"[^>]*label=\"([^\"]*)\"/g)].map(([, note]) => note).join('; ')";
     let columns = "[...drawn.matchAll(/middle\">([a-z ]+)</g)].map(([, name]) => name).join('; ')";
-    let Some(lines) =
-        run_script(&page(), &[&run("advice(set).join('; ')"), &run(rings), &run(hollow), &run(columns)])
+    let Some(lines) = run_script(&page(), &[&run("advice(set).join('; ')"), &run(rings), &run(hollow), &run(columns)])
     else {
         return;
     };
