@@ -186,3 +186,25 @@ test("a verdict comes first, bands show the tolerance, and worst places are flow
   assert.equal(await page.textContent("#colours .figure > .small"), "no point of the scan is near");
   assert.deepEqual(opened.problems, []);
 });
+
+test("points of a scan have at least three pixels", { skip }, async () => {
+  const html = join(opened.folder, "three.html");
+  const scan = opened.write("three.xyz", "0 0 0\n3 0 0\n0 3 0\n");
+  execFileSync(PROGRAM, ["deviation", scan, opened.scene, "--unsigned", "--out", html], { stdio: "pipe" });
+  const page = await openTab(opened.browser, html, (problem) => opened.problems.push(problem));
+  const covered = await page.evaluate(() => {
+    const { viewer } = window;
+    // The points are as small as if the view were far away, and alone.
+    viewer.deviations.dots.material.size = 1e-9;
+    viewer.scene.group.visible = false;
+    viewer.painter.setScale(1);
+    viewer.renderer.render(viewer.world, viewer.camera);
+    const gl = viewer.renderer.getContext();
+    const pixels = new Uint8Array(4 * gl.drawingBufferWidth * gl.drawingBufferHeight);
+    gl.readPixels(0, 0, gl.drawingBufferWidth, gl.drawingBufferHeight, gl.RGBA, gl.UNSIGNED_BYTE, pixels);
+    return new Uint32Array(pixels.buffer).filter((pixel, _, all) => pixel !== all[0]).length;
+  });
+  // A disc of three pixels covers seven of them, nearly.
+  assert.ok(covered >= 3 * 5 && covered < 3 * 13, String(covered));
+  assert.deepEqual(opened.problems, []);
+});
