@@ -9,6 +9,8 @@ const LEAST_BAR = 60;
 const [ASIDE, ABOVE] = [22, 38];
 // The width in pixels of a character of a label, at most.
 const WIDE = 8.5;
+// The width of a picture in pixels below which labels are shorter.
+const NARROW = 600;
 // The least distance between labels in pixels.
 const LABEL_GAP = 44;
 
@@ -60,7 +62,9 @@ export class Overlay {
     const leaders = [];
     // Labels with leaders come first, and hide others.
     const all = this.sources.flatMap((source) => source()).sort((a, b) => !a.kind - !b.kind);
-    for (const { position, text, kind } of all) {
+    for (const { position, text: words, kind } of all) {
+      // The panel has the whole sentence.
+      const text = width < NARROW ? words.replace(/ from the \w+$/, "") : words;
       const seen = position.clone().project(this.viewer.camera);
       const [x, y] = [((seen.x + 1) / 2) * width, ((1 - seen.y) / 2) * height];
       const isInside = Math.abs(seen.z) < 1 && x > 20 && y > 10 && x < width - 20 && y < height - 10;
