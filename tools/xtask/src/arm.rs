@@ -33,7 +33,7 @@ pub(crate) const AGREEMENT: [&str; 6] =
 const COMMANDS: [&[&str]; 4] = [
     &["query", "scenes/knot_and_cables.obj", "--random", "1000", "--quiet"],
     &["query", "scenes/knot_and_cables.obj", "--random", "1000", "--quiet", "--backend", "p2m"],
-    &["query", "scenes/knot_and_cables.obj", "--random", "1000", "--quiet", "--backend", "octree", "--signed"],
+    &["query", "scenes/knot_and_cables.obj", "--random", "1000", "--quiet", "--backend", "octree", "--k-nearest", "3"],
     &["ray", "scenes/knot_and_cables.obj", "--random", "1000", "--quiet"],
 ];
 
