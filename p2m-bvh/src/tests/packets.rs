@@ -232,6 +232,30 @@ fn batches_are_single_queries() {
     }
 }
 
+/// The last answer of sixteen queries limits the next sixteen, and shows at which node they begin.
+#[test]
+fn limits_from_neighbours_lose_no_answer() {
+    // Eight triangles from 0 to 10 are a child of the root, and all others are far to the left.
+    let near = (0..8).map(|k| [f64::from(k) * 10.0 / 7.0, 0.0]);
+    let far = (0..500).map(|k| [-1002.0 - f64::from(k % 25) * 0.08, f64::from(k / 25) * 0.1]);
+    let corners: Vec<_> =
+        near.chain(far).flat_map(|[x, y]| [[x, y, 0.0], [x + 0.3, y - 0.5, 0.0], [x - 0.3, y - 0.5, 0.0]]).collect();
+    let faces: Vec<[u32; 3]> = (0..508).map(|k| [3 * k, 3 * k + 1, 3 * k + 2]).collect();
+    let tree = AabbTree::new(Soup::<f64>::from_arrays(&corners, &faces).expect("valid")).expect("valid");
+    let [left, middle, right] = [-1003.0, 0.0, 10.0].map(|x| Point3::new(x, 0.1, 0.0));
+    // The limits of the second sixteen reach from the middle to the left, but not from the right to the left.
+    let mut queries = [[middle; 16], [left; 16]].concat();
+    queries[24..].fill(right);
+    // From here on queries move away from a vertex, so that no limit is larger than the distance.
+    queries.extend((0..64).map(|k| Point3::new(0.0, f64::from(k), 0.0)));
+    let mut out = vec![None; queries.len()];
+    let in_order = batch::BatchOptions::default().with_reorder(false).with_parallel(false);
+    batch::closest_points_into(&tree, &queries, &QueryOptions::default(), &in_order, &mut out);
+    for (i, (query, found)) in queries.iter().zip(out).enumerate() {
+        same(found, tree.closest_point(query), &format!("query {i}"));
+    }
+}
+
 #[test]
 fn trees_do_not_depend_on_the_number_of_threads() {
     let mut rng = rng("threads", 0);
