@@ -12,12 +12,15 @@ use std::sync::{Arc, Mutex, PoisonError};
 /// The pools of a process by their number of threads.
 type Pools = HashMap<usize, Arc<ThreadPool>>;
 
-/// The pools, with the id of the process that they belong to.
-static POOLS: Mutex<Option<(u32, Pools)>> = Mutex::new(None);
+/// Pools, with the id of the process that they belong to.
+type OwnedPools = Option<(u32, Pools)>;
+
+/// The pools that all threads share.
+static POOLS: Mutex<OwnedPools> = Mutex::new(None);
 
 thread_local! {
-    /// The pool of one thread that works for this thread, with the id of the process that it belongs to.
-    static OWN_POOL: RefCell<Option<(u32, Arc<ThreadPool>)>> = const { RefCell::new(None) };
+    /// The pool of one thread that works for this thread.
+    static OWN_POOL: RefCell<OwnedPools> = const { RefCell::new(None) };
 }
 
 /// Returns the pool of this process with so many threads, which are started by the first call. It lives as long as the
@@ -29,26 +32,20 @@ thread_local! {
 /// # Errors
 /// [`ThreadPoolBuildError`] if the system starts no more threads.
 pub fn shared_pool(threads: usize) -> Result<Arc<ThreadPool>, ThreadPoolBuildError> {
-    let process = std::process::id();
     if threads == 1 {
-        return OWN_POOL.with_borrow_mut(|own| {
-            if own.as_ref().is_some_and(|(owner, _)| *owner != process) {
-                std::mem::forget(own.take());
-            }
-            if let Some((_, pool)) = own {
-                return Ok(Arc::clone(pool));
-            }
-            let pool = start_pool(1)?;
-            *own = Some((process, Arc::clone(&pool)));
-            Ok(pool)
-        });
+        return OWN_POOL.with_borrow_mut(|owned| pool_of(owned, threads));
     }
-    let mut guard = POOLS.lock().unwrap_or_else(PoisonError::into_inner);
-    if guard.as_ref().is_some_and(|(owner, _)| *owner != process) {
+    pool_of(&mut POOLS.lock().unwrap_or_else(PoisonError::into_inner), threads)
+}
+
+/// Returns the pool with so many threads among these, which is started if there is none.
+fn pool_of(owned: &mut OwnedPools, threads: usize) -> Result<Arc<ThreadPool>, ThreadPoolBuildError> {
+    let process = std::process::id();
+    if owned.as_ref().is_some_and(|(owner, _)| *owner != process) {
         // To end the pools of the parent would wait for threads that do not exist here.
-        std::mem::forget(guard.take());
+        std::mem::forget(owned.take());
     }
-    let (_, pools) = guard.get_or_insert_with(|| (process, Pools::new()));
+    let (_, pools) = owned.get_or_insert_with(|| (process, Pools::new()));
     if let Some(pool) = pools.get(&threads) {
         return Ok(Arc::clone(pool));
     }
@@ -68,11 +65,13 @@ pub fn start_pool(threads: usize) -> Result<Arc<ThreadPool>, ThreadPoolBuildErro
 
 /// Leaves a pool to the cancelled work that runs on it: later calls get another one. Its threads end with that work.
 pub fn abandon_pool(abandoned: &Arc<ThreadPool>) {
-    OWN_POOL.with_borrow_mut(|own| drop(own.take_if(|(_, pool)| Arc::ptr_eq(pool, abandoned))));
-    let mut guard = POOLS.lock().unwrap_or_else(PoisonError::into_inner);
-    if let Some((_, pools)) = guard.as_mut() {
-        pools.retain(|_, pool| !Arc::ptr_eq(pool, abandoned));
-    }
+    let leave = |owned: &mut OwnedPools| {
+        if let Some((_, pools)) = owned {
+            pools.retain(|_, pool| !Arc::ptr_eq(pool, abandoned));
+        }
+    };
+    OWN_POOL.with_borrow_mut(leave);
+    leave(&mut POOLS.lock().unwrap_or_else(PoisonError::into_inner));
 }
 
 #[cfg(test)]

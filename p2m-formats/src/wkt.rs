@@ -5,15 +5,14 @@ use p2m_mixed::Unit;
 /// Returns the unit of the horizontal coordinates of a coordinate system, as `.prj` files and LAS files have it.
 pub(crate) fn unit(text: &str) -> Option<Unit> {
     let text = text.to_ascii_uppercase();
-    let begins = |keywords: &[&str]| keywords.iter().filter_map(|keyword| text.find(keyword)).min();
-    let Some(start) = begins(&["PROJCS", "PROJCRS", "PROJECTEDCRS"]) else {
-        let is_geographic = ["GEOGCS", "GEOGCRS", "GEODCRS"].iter().any(|keyword| text.contains(keyword));
-        return is_geographic.then_some(Unit::Degree);
+    let first = |text: &str, keywords: &[&str]| keywords.iter().filter_map(|keyword| text.find(keyword)).min();
+    let Some(start) = first(&text, &["PROJCS", "PROJCRS", "PROJECTEDCRS"]) else {
+        return first(&text, &["GEOGCS", "GEOGCRS", "GEODCRS"]).map(|_| Unit::Degree);
     };
     // A compound system has one of heights as well, whose unit may be another one.
-    let heights = ["VERT_CS[", "VERTCS[", "VERTCRS[", "VERTICALCRS["];
     let text = &text[start..];
-    let text = &text[..heights.iter().filter_map(|keyword| text.find(keyword)).min().unwrap_or(text.len())];
+    let heights = first(text, &["VERT_CS[", "VERTCS[", "VERTCRS[", "VERTICALCRS["]);
+    let text = &text[..heights.unwrap_or(text.len())];
     // In the second version, ellipsoids and parameters have units of their own before the axes. In the first one, the
     // unit of angles comes first, and has a factor to radians.
     let axes = text.split_once("CS[CARTESIAN").map_or(text, |(_, axes)| axes);

@@ -70,9 +70,7 @@ impl<V: VolumeNodes> InterleavedTraversal<V> {
     pub fn search(&mut self, tree: &PacketTree<V>, several: &mut InterleavedSearch<'_, V>, count: usize) {
         tree.isa.run(SearchInTurns { walkers: self, tree, several, count });
     }
-}
 
-impl<V: VolumeNodes> InterleavedTraversal<V> {
     /// Limits the first `count` searches by the last answer, and returns the node at which they may begin: everything
     /// within their limits is below it.
     #[inline(always)]

@@ -276,19 +276,8 @@ impl<I, S: SharedSoup> SignedDistance<I, S> {
     {
         self.signs.prepare_for(queries.len());
         let mut out = vec![None; queries.len()];
-        let position = |query: &Point3<T>| query.map(Real::to_f64);
-        batch::map_parts_into(queries, batch, position, &mut out, |queries, order, out| {
-            // Queries go to the index in their order, so that signs are looked up in it as well.
-            let (mut asked, mut closest) = ([Point3::origin(); BATCH_LEN], [None; BATCH_LEN]);
-            for order in order.chunks(BATCH_LEN) {
-                let (asked, closest) = (&mut asked[..order.len()], &mut closest[..order.len()]);
-                asked.iter_mut().zip(order).for_each(|(query, i)| *query = queries[*i as usize]);
-                closest.fill(None);
-                index.closest_points_into(asked, options, closest);
-                for ((query, closest), i) in asked.iter().zip(closest.iter()).zip(order) {
-                    out[*i as usize] = closest.map(|closest| self.with_sign(query, closest));
-                }
-            }
+        answer_parts(index, queries, options, batch, &mut out, || {
+            |query: &Point3<T>, found: BatchAnswer<'_, T>| found.closest().map(|closest| self.with_sign(query, closest))
         });
         out
     }
@@ -309,35 +298,30 @@ impl<I, S: SharedSoup> SignedDistance<I, S> {
         I: ClosestPoint<T> + Sync,
     {
         self.signs.prepare_for(queries.len() / QUERIES_PER_SIGN);
-        let position = |query: &Point3<T>| query.map(Real::to_f64);
-        batch::map_parts_into(queries, batch, position, out, |queries, order, out| {
-            let mut asked = [Point3::origin(); BATCH_LEN];
+        answer_parts(index, queries, options, batch, out, || {
             let mut balls = [KnownBall::default(); 2];
-            for order in order.chunks(BATCH_LEN) {
-                let asked = &mut asked[..order.len()];
-                asked.iter_mut().zip(order).for_each(|(query, i)| *query = queries[*i as usize]);
-                index.answer_queries(asked, options, &mut |i, found| {
-                    out[order[i] as usize] = self.distance_of(&asked[i], &found, &mut balls);
-                });
-            }
+            move |query: &Point3<T>, found: BatchAnswer<'_, T>| self.distance_of(query, &found, &mut balls)
         });
     }
 
-    /// Returns the signed distance of a query with this answer. `balls` are those of queries before it.
+    /// Returns the signed distance of a query with this answer. `balls` have outside and inside points, and are those of
+    /// queries before it.
     fn distance_of<T: Real>(&self, query: &Point3<T>, found: &BatchAnswer<'_, T>, balls: &mut [KnownBall; 2]) -> T
     where
         I: ClosestPoint<T>,
     {
         let Some((distance, _)) = found.distance_and_index() else { return T::INFINITY };
         let point = query.map(Real::to_f64);
-        if let Some(ball) = balls.iter().find(|ball| distance > T::zero() && ball.has(&point)) {
-            return if ball.is_inside { -distance } else { distance };
+        if distance > T::zero()
+            && let Some(side) = balls.iter().position(|ball| ball.has(&point))
+        {
+            return if side == 1 { -distance } else { distance };
         }
         let Some(closest) = found.closest() else { return T::INFINITY };
         let signed = self.with_sign(query, closest);
         let is_inside = signed.sign == Sign::Inside;
         if self.is_closed() && (is_inside || signed.sign == Sign::Outside) {
-            balls[usize::from(is_inside)] = KnownBall::new(point, closest.lower_bound.to_f64(), is_inside);
+            balls[usize::from(is_inside)] = KnownBall::new(point, closest.lower_bound.to_f64());
         }
         signed.distance().unwrap_or(T::round_from_f64(f64::NAN))
     }
@@ -385,21 +369,41 @@ impl<I, S: SharedSoup> SignedDistance<I, S> {
     }
 }
 
+/// Answers queries in the parts of a [`batch`], each part by a function of its own that `begin` returns. Queries go to the
+/// index in their order, so that signs are looked up in it as well.
+fn answer_parts<T: Real, R: Send, F: FnMut(&Point3<T>, BatchAnswer<'_, T>) -> R>(
+    index: &(impl ClosestPoint<T> + Sync + ?Sized),
+    queries: &[Point3<T>],
+    options: &QueryOptions<T>,
+    batch: &BatchOptions,
+    out: &mut [R],
+    begin: impl Fn() -> F + Sync,
+) {
+    let position = |query: &Point3<T>| query.map(Real::to_f64);
+    batch::map_parts_into(queries, batch, position, out, |queries, order, out| {
+        let (mut answer, mut asked) = (begin(), [Point3::origin(); BATCH_LEN]);
+        for order in order.chunks(BATCH_LEN) {
+            let asked = &mut asked[..order.len()];
+            asked.iter_mut().zip(order).for_each(|(query, i)| *query = queries[*i as usize]);
+            index.answer_queries(asked, options, &mut |i, found| out[order[i] as usize] = answer(&asked[i], found));
+        }
+    });
+}
+
 /// A ball without surface, whose points have one sign.
 #[derive(Clone, Copy, Default)]
 struct KnownBall {
     centre: Point3<f64>,
     /// The square of the radius, or 0 if there is no ball.
     square: f64,
-    is_inside: bool,
 }
 
 impl KnownBall {
     /// Makes the ball around a point that is at least so far from the surface.
-    fn new(centre: Point3<f64>, radius: f64, is_inside: bool) -> Self {
+    fn new(centre: Point3<f64>, radius: f64) -> Self {
         // Smaller squares would lose digits to underflow. The factor covers the rounding of both squares.
         let is_safe = radius > 1e-140;
-        Self { centre, square: if is_safe { radius * radius * (1.0 - 1e-12) } else { 0.0 }, is_inside }
+        Self { centre, square: if is_safe { radius * radius * (1.0 - 1e-12) } else { 0.0 } }
     }
 
     /// Returns whether a point is in the ball.

@@ -3,7 +3,7 @@
 import * as three from "three";
 import { ColourScale } from "./colours.js";
 import { fade, pointMaterial } from "./shading.js";
-import { element, number, sideOf } from "./text.js";
+import { distanceParts, element, number, sideOf } from "./text.js";
 
 // The opacity of segments to closest points.
 const QUIET = 0.4;
@@ -162,10 +162,8 @@ export function answerRows(unit, { point, distance, signed, lowerBound, size, pr
 
 // Makes an element that says a distance in words, with the side of the surface if there is a signed distance.
 function distanceOf(distance, signed, unit) {
-  const side = sideOf(signed);
-  if (side === undefined) return element("span", {}, number(distance), ` ${unit} from the scene`);
-  if (signed === 0) return element("span", {}, side);
-  return element("span", {}, `${side}, `, number(distance), ` ${unit} from the surface`);
+  const isSigned = sideOf(signed) !== undefined;
+  return element("span", {}, ...distanceParts(isSigned ? signed : distance, isSigned, unit, number));
 }
 
 export function featureName(code) {

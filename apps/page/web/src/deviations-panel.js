@@ -2,12 +2,10 @@
 
 import { UNDEFINED } from "./colours.js";
 import { pictureLegend } from "./histogram.js";
-import { choice, copyButton, count, element, fillList, namedRow, reveal, short, sideOf, stepped, tableHead } from "./text.js";
+import { choice, copyButton, count, element, fillList, namedRow, reveal, roundingInWords, short, sideOf, stepped, tableHead } from "./text.js";
 
 // The share of a fitted view that is seen around a place after a flight to it.
 const NEAR = 0.35;
-// The length in radii of the scene below which a length is an error of rounding.
-const ROUNDING = 1e-12;
 
 export class DeviationsPanel {
   constructor(viewer, add) {
@@ -149,9 +147,8 @@ export class DeviationsPanel {
 
   // Returns a length with its unit for a sentence. An error of rounding is called so.
   besidesRounding(length) {
-    const { data, frame, unit } = this.viewer;
-    const isRounding = length < ROUNDING * data.frame.radius * frame.scale;
-    return isRounding ? `0 ${unit} (rounding: ${length.toExponential(0)})` : `${short(length)} ${unit}`;
+    const { unit } = this.viewer;
+    return this.viewer.isRounding(length) ? `0 ${unit} ${roundingInWords(length)}` : `${short(length)} ${unit}`;
   }
 
   // Adds the worst places with their numbers in the picture and their coordinates, and buttons that fly there.

@@ -3,7 +3,7 @@
 
 import * as three from "three";
 import { answerRows, drawAnswer, empty, featureOf, line, marker } from "./answers.js";
-import { checkbox, count, element, fillList, fillTable, inWords, short } from "./text.js";
+import { checkbox, count, element, fillList, fillTable, short } from "./text.js";
 
 // The indexes in the order of their numbers in the worker.
 const BACKENDS = ["AABB tree", "k-DOP tree", "octree", "P2M index"];
@@ -148,7 +148,7 @@ export class LiveQueries {
   }
 
   inWords({ distance, signed }) {
-    return inWords(signed ?? distance, signed !== undefined, this.viewer.unit);
+    return this.viewer.inWords(signed ?? distance, signed !== undefined);
   }
 
   say(text) {

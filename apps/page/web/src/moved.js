@@ -1,11 +1,11 @@
 // The panel of an object that was moved, which shows it before and after, and the matrix.
 
 import * as three from "three";
-import { choice, copyButton, element, fillList, number } from "./text.js";
+import { choice, copyButton, element, fillList, number, roundingInWords } from "./text.js";
 
 // The digits that are shown of the numbers of the matrix.
 const MATRIX_DIGITS = 4;
-// The size below which a number of the matrix is shown as zero, and a length in radii of the scene.
+// The size below which a number of the matrix is shown as zero.
 const ROUNDED_ZERO = 1e-12;
 
 export class MovedPanel {
@@ -16,10 +16,9 @@ export class MovedPanel {
     this.back = new three.Matrix4().set(...matrix).invert();
     const list = element("dl", { id: "moved-facts" });
     // What rounding has left of zeros is shown as such. Copies have it.
-    const { radius } = viewer.data.frame;
-    const isRounding = ([term, x]) => term === "root mean square" && x < ROUNDED_ZERO * radius * viewer.frame.scale;
+    const isRounding = ([term, x]) => term === "root mean square" && viewer.isRounding(x);
     fillList(list, facts.map((fact) => isRounding(fact)
-      ? [fact[0], element("data", { value: String(fact[1]) }, `0 (rounding: ${fact[1].toExponential(0)})`)] : fact));
+      ? [fact[0], element("data", { value: String(fact[1]) }, `0 ${roundingInWords(fact[1])}`)] : fact));
     const cell = (x) => {
       const shown = number(x, MATRIX_DIGITS);
       if (Math.abs(x) < ROUNDED_ZERO) shown.textContent = "0";

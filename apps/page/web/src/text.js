@@ -20,11 +20,17 @@ export const short = (value) => figure(value, 4);
 export const sideOf = (signed) =>
   signed === undefined || Number.isNaN(signed) ? undefined : signed < 0 ? "inside" : signed > 0 ? "outside" : "on the surface";
 
-// Returns in words where a point is that has a distance, in a scene with sides a signed one.
-export function inWords(value, isSigned, unit) {
-  if (!isSigned) return `${short(value)} ${unit} from the scene`;
-  return value === 0 ? sideOf(value) : `${sideOf(value)}, ${short(Math.abs(value))} ${unit} from the surface`;
+// Returns a remark beside a zero that stands for an error of rounding.
+export const roundingInWords = (length) => `(rounding: ${length.toExponential(0)})`;
+
+// Returns the parts of a text that says where a point is that has a distance, in a scene with sides a signed one. `show`
+// makes the part with the length.
+export function distanceParts(value, isSigned, unit, show) {
+  if (!isSigned) return [show(value), ` ${unit} from the scene`];
+  return value === 0 ? [sideOf(value)] : [`${sideOf(value)}, `, show(Math.abs(value)), ` ${unit} from the surface`];
 }
+
+export const inWords = (value, isSigned, unit) => distanceParts(value, isSigned, unit, short).join("");
 
 // Returns a text whose words have at most `most` characters. Longer ones lose their middle.
 export const shortened = (text, most) => text.split(" ").map((word) => {

@@ -27,6 +27,8 @@ import { addToolbar } from "./toolbar.js";
 const PICK_RADIUS = 12;
 // The number of answers up to which the pointer reads them.
 const MAX_POINTED = 20_000;
+// The length in radii of the scene below which a length is an error of rounding.
+const ROUNDING = 1e-12;
 
 class Viewer {
   constructor(data) {
@@ -263,6 +265,10 @@ class Viewer {
   // Returns a value as a text: a distance, or a signed distance as a distance and a side.
   inWords(value, isSigned) {
     return inWords(value, isSigned, this.unit);
+  }
+
+  isRounding(length) {
+    return length < ROUNDING * this.data.frame.radius * this.frame.scale;
   }
 
   // Returns the coordinates of a position in the frame, to a hundred thousandth of the radius of the scene.

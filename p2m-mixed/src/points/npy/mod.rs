@@ -347,7 +347,7 @@ fn read_row<const N: usize>(
 /// Reads an id as text, and returns its length in the file. Text ends before the zeros that fill it up.
 fn read_id(bytes: &mut ByteReader<impl BufRead>, kind: IdKind, id: &mut Vec<u8>) -> Result<u64, Reason> {
     id.clear();
-    Ok(match kind {
+    let len = match kind {
         IdKind::Integer(scalar, is_big_endian) => {
             // All integers fit into 128 bits.
             let number = match scalar {
@@ -364,7 +364,6 @@ fn read_id(bytes: &mut ByteReader<impl BufRead>, kind: IdKind, id: &mut Vec<u8>)
                 id.try_reserve(1).map_err(Reason::Memory)?;
                 id.push(u8::from_le_bytes(bytes.array()?));
             }
-            id.truncate(id.iter().rposition(|byte| *byte != 0).map_or(0, |last| last + 1));
             count
         }
         IdKind::Characters(count, is_big_endian) => {
@@ -374,10 +373,11 @@ fn read_id(bytes: &mut ByteReader<impl BufRead>, kind: IdKind, id: &mut Vec<u8>)
                 id.try_reserve(4).map_err(Reason::Memory)?;
                 id.extend_from_slice(character.encode_utf8(&mut [0; 4]).as_bytes());
             }
-            id.truncate(id.iter().rposition(|byte| *byte != 0).map_or(0, |last| last + 1));
             4 * count
         }
-    })
+    };
+    id.truncate(id.iter().rposition(|byte| *byte != 0).map_or(0, |last| last + 1));
+    Ok(len)
 }
 
 fn coordinate(bytes: &mut ByteReader<impl BufRead>, c: &Coordinate) -> Result<f64, Reason> {

@@ -86,8 +86,11 @@ function best(curves) {
     .map((candidate) => ({ ...candidate, limit: guaranteeOf(candidate.point) }))
     .filter(({ limit }) => limit !== null)
     .sort((a, b) => a.limit - b.limit || time(a) - time(b) || a.rank - b.rank);
-  let least = Infinity;
-  return guaranteed.filter((candidate) => time(candidate) < least && (least = time(candidate)) > 0);
+  const found = [];
+  for (const candidate of guaranteed) {
+    if (found.length === 0 || time(candidate) < time(found.at(-1))) found.push(candidate);
+  }
+  return found;
 }
 /** Returns the fastest setting that guarantees an error of at most `limit`. */
 const fastest = (curves, limit) => best(curves).filter((candidate) => candidate.limit <= limit).at(-1);
