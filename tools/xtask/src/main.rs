@@ -78,9 +78,9 @@ const TASKS: [Task; 23] = [
     },
     Task {
         name: "promises",
-        arguments: "",
-        about: "Check what the manifests promise: lock files, Rust versions, features",
-        run: |_| promises::check(),
+        arguments: "[--all]",
+        about: "Check what the manifests promise: lock files and Rust versions, and on request each feature alone",
+        run: promises::check,
     },
     Task {
         name: "wasm",

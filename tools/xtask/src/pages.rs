@@ -50,7 +50,8 @@ fn test(folder: &str, what: &str) -> Outcome {
         return crate::skip(&format!("there is no Chromium for the tests of {what}: {why}"));
     }
     // With the features of `cargo test --workspace` and of `cargo xtask python`, nothing is compiled anew after them.
-    cargo(&["build", "--locked", "--workspace", "--lib", "--examples", "--bin", "p2m"], &[])?;
+    let build = ["build", "--locked", "--workspace", "--lib", "--examples", "--bin", "p2m"];
+    cargo(&[&build[..], &["--features", "p2m-python/cuda"]].concat(), &[])?;
     start(npm(folder, &["test"]).env("P2M", debug_program()?))
 }
 

@@ -10,7 +10,7 @@ const MIN_VERSION: (u32, u32) = (3, 11);
 /// The folder of the package.
 const PACKAGE: &str = "bindings/python";
 /// The packages that the tests need. They are those of the extra `test` in pyproject.toml.
-const NEEDED: [&str; 21] = [
+const NEEDED: [&str; 22] = [
     "numpy>=1.26",
     "dask[array]>=2025.1",
     "distributed>=2025.1",
@@ -27,6 +27,7 @@ const NEEDED: [&str; 21] = [
     "pypcd4>=1",
     "pyshp>=2.3",
     "pytest>=8",
+    "pytest-xdist>=3.6",
     "scipy>=1.11",
     "tqdm>=4.66",
     "trimesh>=4",
@@ -77,7 +78,8 @@ pub(crate) fn check(filter: &[String]) -> Outcome {
     if compares {
         return in_folder(PACKAGE, &tests("tests/test_rivals.py"), ("P2M_RIVALS", Path::new("1")));
     }
-    in_folder(PACKAGE, &tests("tests"), program)?;
+    let on_all_cores = ["--numprocesses=auto", "--dist=loadfile"];
+    in_folder(PACKAGE, &[&tests("tests")[..], &on_all_cores].concat(), program)?;
     if !filter.is_empty() {
         return Ok(());
     }
