@@ -520,7 +520,7 @@ class Index(PointQueries, PairQueries):
     directions : {6, 14, 18, 26, "scene"}, optional
         The number of faces of the polytopes of ``"kdop"``, by default 14; ``"scene"`` for 14 along axes of the scene.
     resolution : float, optional
-        The fineness of the cells of ``"octree"``, by default 0.3. With 9 a large batch takes up to a quarter less
+        The fineness of the cells of ``"octree"``, by default 0.3. With 9 a large batch takes up to a third less
         time; the index takes four times the memory and the build four to five times as long
         (docs/measurements/octree.md).
 
