@@ -79,9 +79,9 @@ impl OctreeOptions {
     ///
     /// Finer cells have shorter lists, so less is computed, but more lies in memory. A single query waits for memory, so
     /// it gains little. A batch fetches the memory of one query while it computes others, so it gains more:
-    /// [docs/batches.md] has the time, the memory and the build of a factor of 30.
+    /// [docs/measurements/octree.md] has the time, the memory and the build of a factor of 30.
     ///
-    /// [docs/batches.md]: https://github.com/p2m-rs/p2m/blob/main/docs/batches.md
+    /// [docs/measurements/octree.md]: https://github.com/p2m-rs/p2m/blob/main/docs/measurements/octree.md
     #[must_use]
     pub fn with_finer_cells(self, factor: f64) -> Self {
         let Self { resolution, memory, work, .. } = self;

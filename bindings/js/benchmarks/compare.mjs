@@ -66,7 +66,7 @@ function print(title, times, memory) {
   const factor = (base, own) => (times[base] / times[own]).toFixed(1);
   const micro = (name) => times[name].toFixed(2);
   console.log(`\n${title}\n`);
-  console.log("| queries | three-mesh-bvh, us | `aabb` | faster | `aabb`, batch | faster | `auto` | faster | `auto`, batch | faster |");
+  console.log("| queries | three-mesh-bvh, us | `aabb` | times as fast | `aabb`, batch | times as fast | `auto` | times as fast | `auto`, batch | times as fast |");
   console.log("|---|---|---|---|---|---|---|---|---|---|");
   for (const set of ["10x", "1x", "near", "surface"]) {
     const cells = ["aabb", "aabb batch", "auto", "auto batch"].flatMap((own) =>

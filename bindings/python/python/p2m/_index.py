@@ -520,8 +520,9 @@ class Index(PointQueries, PairQueries):
     directions : {6, 14, 18, 26, "scene"}, optional
         The number of faces of the polytopes of ``"kdop"``, by default 14; ``"scene"`` for 14 along axes of the scene.
     resolution : float, optional
-        The fineness of the cells of ``"octree"``, by default 0.3. With 9 a large batch takes a quarter less time; the
-        index takes three to four times the memory and the build three times as long (docs/batches.md).
+        The fineness of the cells of ``"octree"``, by default 0.3. With 9 a large batch takes up to a third less
+        time; the index takes four times the memory and the build four to five times as long
+        (docs/measurements/octree.md).
 
     Raises
     ------
