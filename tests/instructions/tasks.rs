@@ -5,7 +5,7 @@ use p2m::core::{Best, Hits, RayStatsCollector, StatsCollector};
 use p2m::core::{IndexStats, Isa};
 use p2m::scene::generate::{IcoSphere, Subdivide, ico_sphere, subdivide};
 use p2m::storage::{SavedFile, Writer};
-use p2m::{AabbTree, ClosestPoint, KdopTree, OctreeIndex, P2mIndex, Ray, Soup};
+use p2m::{AabbTree, ClosestPoint, KdopTree, OctreeIndex, OctreeOptions, P2mIndex, Ray, Soup};
 use p2m_testkit::counted_queries::{self, QueryMode};
 use p2m_testkit::queries::QuerySet;
 use std::fs;
@@ -21,6 +21,8 @@ pub(crate) const SEED: u64 = 1;
 pub(crate) const SCENES: [&str; 2] = ["knot_and_cables", "scan"];
 /// The query sets of closest points.
 pub(crate) const SETS: [QuerySet; 4] = [QuerySet::Box10, QuerySet::Box1, QuerySet::Near, QuerySet::Surface];
+/// How much finer the cells of the second octree are, which `p2m-bench` calls finest.
+const FINER: f64 = 30.0;
 /// The number of counters of a query: nodes, packets and primitives.
 pub(crate) const COUNTERS: usize = 3;
 
@@ -128,6 +130,7 @@ pub(crate) struct Indexes<'a> {
     aabb: AabbTree<f64, &'a Soup<f64>>,
     kdop: KdopTree<f64, &'a Soup<f64>, 14>,
     octree: OctreeIndex<f64, &'a Soup<f64>>,
+    finer_octree: OctreeIndex<f64, &'a Soup<f64>>,
     p2m: P2mIndex<f64, &'a Soup<f64>>,
 }
 
@@ -144,6 +147,8 @@ impl<'a> Indexes<'a> {
             aabb: AabbTree::new(soup).expect("valid"),
             kdop: KdopTree::new(soup).expect("valid"),
             octree: OctreeIndex::new(soup).expect("valid"),
+            finer_octree: OctreeIndex::build_with(soup, &OctreeOptions::default().with_finer_cells(FINER))
+                .expect("valid"),
             p2m: P2mIndex::new(soup).expect("valid"),
         }
     }
@@ -153,12 +158,16 @@ impl<'a> Indexes<'a> {
             let file = fs::File::create(file(folder, scene, backend)).expect("a folder to write to");
             writer.write(std::io::BufWriter::new(file)).expect("room on the disk");
         };
-        let mut writers: [Writer<'_>; 4] = Default::default();
+        let mut writers: [Writer<'_>; 5] = Default::default();
         self.aabb.save(&mut writers[0]);
         self.kdop.save(&mut writers[1]);
         self.octree.save(&mut writers[2]);
         self.p2m.save(&mut writers[3]);
-        ["aabb", "kdop", "octree", "p2m"].iter().zip(&writers).for_each(|(backend, writer)| write(backend, writer));
+        self.finer_octree.save(&mut writers[4]);
+        ["aabb", "kdop", "octree", "p2m", "finer"]
+            .iter()
+            .zip(&writers)
+            .for_each(|(backend, writer)| write(backend, writer));
     }
 
     pub(crate) fn load(soup: &'a Soup<f64>, folder: &Path, scene: &str) -> Self {
@@ -170,21 +179,23 @@ impl<'a> Indexes<'a> {
             aabb: AabbTree::load(soup, open("aabb").unchecked()).expect("written by this program"),
             kdop: KdopTree::load(soup, open("kdop").unchecked()).expect("written by this program"),
             octree: OctreeIndex::load(soup, open("octree").unchecked()).expect("written by this program"),
+            finer_octree: OctreeIndex::load(soup, open("finer").unchecked()).expect("written by this program"),
             p2m: P2mIndex::load(soup, open("p2m").unchecked()).expect("written by this program"),
         }
     }
 
     pub(crate) fn with_isa(self, isa: Isa) -> Self {
-        let Self { aabb, kdop, octree, p2m, .. } = self;
-        let (aabb, kdop) = (aabb.with_isa(isa), kdop.with_isa(isa));
-        Self { aabb, kdop, octree: octree.with_isa(isa), p2m: p2m.with_isa(isa), ..self }
+        let Self { aabb, kdop, octree, finer_octree, p2m, .. } = self;
+        let (aabb, kdop, finer_octree) = (aabb.with_isa(isa), kdop.with_isa(isa), finer_octree.with_isa(isa));
+        Self { aabb, kdop, octree: octree.with_isa(isa), finer_octree, p2m: p2m.with_isa(isa), ..self }
     }
 
     /// Returns all queries, in the order of the table.
     pub(crate) fn tasks(&self) -> Vec<Task<'_>> {
-        let Self { soup, rays, aabb, kdop, octree, p2m } = self;
+        let Self { soup, rays, aabb, kdop, octree, finer_octree, p2m } = self;
         let (aabb_object, kdop_object) = (counted_queries::aabb_tree(aabb), counted_queries::kdop_tree(kdop));
         let (octree_object, p2m_object) = (counted_queries::octree(octree), counted_queries::p2m(p2m));
+        let finer_object = counted_queries::octree(finer_octree);
         // Hints help trees, and interleaving helps cells.
         point_tasks("aabb", aabb, aabb_object, soup, QueryMode::Single)
             .chain([ray_task("aabb", aabb_object, rays, |ray, counting| aabb.visit_ray(ray, counting))])
@@ -193,6 +204,7 @@ impl<'a> Indexes<'a> {
             .chain([ray_task("kdop-14", kdop_object, rays, |ray, counting| kdop.visit_ray(ray, counting))])
             .chain(point_tasks("octree", octree, octree_object, soup, QueryMode::Single))
             .chain(point_tasks("octree batch", octree, octree_object, soup, QueryMode::Several))
+            .chain(point_tasks("finer octree batch", finer_octree, finer_object, soup, QueryMode::Several))
             .chain(point_tasks("p2m", p2m, p2m_object, soup, QueryMode::Single))
             .chain(point_tasks("p2m batch", p2m, p2m_object, soup, QueryMode::Several))
             .collect()

@@ -164,9 +164,10 @@ pub unsafe extern "C" fn p2m_closest_point(
     run(|| unsafe {
         let (index, query) = (reference(index, "index")?, point(query, "query")?);
         let options = QueryOptions::default().with_max_distance(length(max_distance, "max_distance")?);
-        check_pointer(answer, "answer")?;
-        let found = index.built.index.closest_point_with(&query, &options);
-        write(answer, "answer", found.as_ref().map_or(Closest::NONE, Closest::from))
+        match index.built.index.closest_point_with(&query, &options) {
+            Some(found) => write(answer, "answer", Closest::from(&found)),
+            None => write(answer, "answer", Closest::NONE),
+        }
     })
 }
 
@@ -314,8 +315,7 @@ pub unsafe extern "C" fn p2m_visit_within(
         let visit = visit.ok_or_else(|| invalid("visit: the function is null"))?;
         let _ = index.built.index.visit_within(&query, length(radius, "radius")?, &mut |closest| {
             let answer = Closest::from(closest);
-            let is_last = visit(&raw const answer, user) != 0;
-            if is_last { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
+            if visit(&raw const answer, user) == 0 { ControlFlow::Continue(()) } else { ControlFlow::Break(()) }
         });
         Ok(())
     })

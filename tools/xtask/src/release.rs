@@ -1,7 +1,8 @@
 //! Builds what a release has for one target: the program, and the wheel of the Python package.
 
 use crate::python::{environment, find_python, install_needed, text};
-use crate::{Outcome, run};
+use crate::{Outcome, run, start};
+use std::process::Command;
 
 /// The Python package that makes wheels. Zig links wheels for Linux to a C library that is as old as the tag of the wheel says.
 const NEEDED: [&str; 1] = ["maturin[zig]>=1.10,<2"];
@@ -27,6 +28,10 @@ pub(crate) fn build(arguments: &[String]) -> Outcome {
     if is_linux {
         wheel.extend(["--zig", "--compatibility", if is_musl { "musllinux_1_2" } else { "manylinux_2_17" }]);
     }
-    run(&python, &[&wheel[..], &target].concat(), &[])?;
+    // Maturin looks for the Zig of its environment on the path.
+    let path = std::env::var_os("PATH").unwrap_or_default();
+    let folders = std::iter::once(bin).chain(std::env::split_paths(&path));
+    let path = std::env::join_paths(folders).map_err(|error| format!("PATH: {error}"))?;
+    start(Command::new(&python).args(wheel).args(&target).env("PATH", path))?;
     run("cargo", &[&["build", "--release", "--locked", "--package", "p2m-cli"][..], &target].concat(), &[])
 }
