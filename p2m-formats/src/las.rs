@@ -6,14 +6,21 @@ use crate::sink::{MAX_RATIO, Sink};
 use crate::{File, wkt};
 use laz::{DecompressionSelection, LasZipDecompressor, LazItemRecordBuilder, LazItemType, LazVlr};
 use p2m_mixed::{FileLocation, ReadError, Scene, Unit};
-use std::io::{Cursor, Seek, SeekFrom};
-use std::panic::{AssertUnwindSafe, catch_unwind};
+use std::io::{self, Cursor, Read, Seek, SeekFrom};
+use std::panic::{AssertUnwindSafe, catch_unwind, resume_unwind};
+use std::thread;
 
 /// The bytes of a record of each format without further bytes.
 const RECORD_BYTES: [u16; 11] = [20, 28, 26, 34, 57, 63, 30, 36, 38, 59, 67];
 
 /// The number of points that are decompressed at a time.
 const BATCH: u64 = 1 << 12;
+
+/// The bytes of stack of the thread that decompresses, and those beyond which data is refused. The crate laz calls
+/// itself for some times of a record, so damaged data can exhaust any stack. From one byte of the file to the next it
+/// makes at most 40,000 such calls, of some hundred bytes each, because a symbol takes at least 1/5000 of a bit.
+const STACK: usize = 1 << 26;
+const MAX_STACK: usize = STACK / 4;
 
 struct Header {
     data_start: usize,
@@ -76,6 +83,17 @@ impl Header {
 
 pub(crate) fn read(file: &File<'_>) -> Result<Scene, ReadError> {
     let header = Header::read(file)?;
+    if !header.is_compressed {
+        return read_records(file, &header);
+    }
+    thread::scope(|scope| {
+        let thread = thread::Builder::new().stack_size(STACK).spawn_scoped(scope, || read_records(file, &header));
+        let thread = thread.map_err(|error| file.error(format!("no thread to decompress it: {error}")))?;
+        thread.join().unwrap_or_else(|panic| resume_unwind(panic))
+    })
+}
+
+fn read_records(file: &File<'_>, header: &Header) -> Result<Scene, ReadError> {
     let mut sink = Sink::new(file.bytes.len());
     let record_len = usize::from(header.record_len);
     let mut next = 0u64;
@@ -88,7 +106,7 @@ pub(crate) fn read(file: &File<'_>) -> Result<Scene, ReadError> {
     };
     let records = record_variables(file)?;
     if header.is_compressed {
-        decompress(file, &header, &records, &mut take)?;
+        decompress(file, header, &records, &mut take)?;
     } else {
         let held = file.bytes.len().saturating_sub(header.data_start) / record_len;
         if header.count > held as u64 {
@@ -138,6 +156,35 @@ fn unit(records: &[Variable<'_>]) -> Option<Unit> {
     }
 }
 
+/// A file that cannot be read once the stack is too deep.
+struct Shallow<'a> {
+    file: Cursor<&'a [u8]>,
+    /// The address of something on the stack when reading begins.
+    start: usize,
+}
+
+/// Returns an address on the stack.
+#[inline(never)]
+fn stack_address() -> usize {
+    let here = 0u8;
+    std::hint::black_box(&raw const here).addr()
+}
+
+impl Read for Shallow<'_> {
+    fn read(&mut self, out: &mut [u8]) -> io::Result<usize> {
+        if self.start.abs_diff(stack_address()) > MAX_STACK {
+            return Err(io::Error::other("it switches between too many sequences of times"));
+        }
+        self.file.read(out)
+    }
+}
+
+impl Seek for Shallow<'_> {
+    fn seek(&mut self, position: SeekFrom) -> io::Result<u64> {
+        self.file.seek(position)
+    }
+}
+
 /// Decompresses all records. What the crate laz would trust is checked before.
 fn decompress(
     file: &File<'_>,
@@ -169,7 +216,7 @@ fn decompress(
     if is_layered {
         check_layers(file, header, &vlr)?;
     }
-    let mut source = Cursor::new(file.bytes);
+    let mut source = Shallow { file: Cursor::new(file.bytes), start: stack_address() };
     source.seek(SeekFrom::Start(header.data_start as u64)).expect("any position is fine");
     let at_row = |row: u64, error: &dyn std::fmt::Display| {
         file.error_at(FileLocation::Row(row), format!("cannot be decompressed: {error}"))
