@@ -2,6 +2,7 @@
 
 import { UNDEFINED } from "./colours.js";
 import { pictureLegend } from "./histogram.js";
+import { spacing } from "./shading.js";
 import { choice, copyButton, count, element, fillList, namedRow, reveal, roundingInWords, short, sideOf, stepped, tableHead } from "./text.js";
 
 // The share of a fitted view that is seen around a place after a flight to it.
@@ -31,7 +32,7 @@ export class DeviationsPanel {
       });
       rows.push(element("div", { class: "row" }, element("span", {}, "Coloured"), shown));
     }
-    add(layer.is_signed ? "Deviations, positive outside" : "Distances", "deviations", this.verdict, this.parts);
+    add(layer.is_signed ? "Deviations, positive outside" : "Distances", "deviations", this.verdict, this.parts, ...this.remarks());
     this.addWorst(add);
     add("Tolerance and colours", "colours", this.figure.element, ...Object.values(this.inputs), ...rows);
     this.text = element("dl", { id: "deviation", "aria-live": "polite" });
@@ -41,6 +42,20 @@ export class DeviationsPanel {
     this.addStatistics(add);
     this.setColours();
     this.select(-1);
+  }
+
+  // Makes remarks on what the numbers mean.
+  remarks() {
+    const { layer, viewer: { data: { scene }, frame, unit } } = this;
+    const remarks = [];
+    if (scene.triangles.length + scene.segments.length === 0 && scene.points.length > 0) {
+      const apart = short(spacing(scene.positions) * frame.scale);
+      remarks.push(`The part has only points, about ${apart} ${unit} apart, so these are distances between points, and ` +
+        "much of them may be that spacing.");
+    } else if (!layer.is_signed && scene.segments.length + scene.points.length === 0) {
+      remarks.push("Without signs, as was asked: points inside and outside of the surface count alike.");
+    }
+    return remarks.map((remark) => element("p", { class: "small" }, remark));
   }
 
   // Makes a number and a slider with one meaning. The slider covers four orders of magnitude.
@@ -253,7 +268,7 @@ export class DeviationsPanel {
     layer.select(i, viewer.colours ?? { feature: "#c000c0" });
     const rows = i < 0 ? [["none", "Click a point of the scan, or press n."]] : [
       ["number", `${count(i * layer.stride)} of ${count(layer.total)}`],
-      ["point", layer.positions.subarray(3 * i, 3 * i + 3)],
+      ["point", viewer.place(layer.positions.subarray(3 * i, 3 * i + 3))],
       [this.what, layer.values[i]],
       ...(layer.is_signed && !Number.isNaN(layer.values[i]) ? [["side", sideOf(layer.values[i])]] : []),
       ...(Number.isNaN(layer.values[i]) ? [] : [["primitive", String(layer.primitives[i])]]),

@@ -163,6 +163,13 @@ test("a verdict comes first, bands show the tolerance, and worst places are flow
   }, worst);
   // Their numbers stand in the picture, and their coordinates in the list. The legend of the bands is in the picture.
   const marks = await page.$$eval("#overlay .labels .mark", (marks) => marks.map((mark) => mark.textContent));
+  // No number hides another one.
+  const boxes = await page.$$eval("#overlay .labels .mark", (marks) => marks.map((mark) => {
+    const { left, top, width } = mark.getBoundingClientRect();
+    return [left, top, width];
+  }));
+  boxes.forEach(([a, b, width], i) => boxes.slice(0, i).forEach(([c, d]) =>
+    assert.ok(Math.hypot(a - c, b - d) >= width, String(boxes))));
   assert.deepEqual(marks, worst.map((_, i) => String(i + 1)));
   const rows = await page.$$eval("#largest td data", (all) => all.map((data) => Number(data.value)));
   const points = await page.evaluate((worst) =>

@@ -22,16 +22,25 @@ before(async () => {
 after(async () => opened?.close());
 
 test("a page shows the distance of two scenes, and the farthest points", { skip }, async () => {
-  for (const [command, verdict] of [["distance", /^The scenes are [\d.]+ mm apart\.$/], ["hausdorff", /^No point of /]]) {
+  for (const [command, verdict] of [["distance", /^The scenes are [\d.]+ mm apart\.$/], ["hausdorff", /^The farthest point of either scene is /]]) {
     const html = path(`${command}.html`);
     const report = JSON.parse(run([command, opened.scene, path("sphere.ply"), "--html", html, "--unit", "mm", "--json"]));
     const page = await open(html);
     assert.match(await page.textContent("#measures .verdict"), verdict);
     const [found, point] = command === "distance"
-      ? [report.distance, report.scenes[1].nearest.point] : [report.upper_bound, report.scenes[1].farthest.point];
+      ? [report.distance, report.scenes[1].nearest.point] : [report.lower_bound, report.scenes[1].farthest.point];
     const shown = await opened.read("measure", command === "distance" ? "distance" : "farthest", page);
     assert.equal(Number.parseFloat(shown), found);
     assert.deepEqual((await opened.read("measure", "sphere.ply", page)).split(", ").map(Number), point);
+    // The coordinates that a reader sees have equal decimals, and are as far apart as the length beside them.
+    const ends = await page.$$eval("#measure dd", ([, ...ends]) => ends.map((end) => end.textContent.split("; ")));
+    assert.equal(new Set(ends.flat().map((x) => x.split(".")[1].length)).size, 1, String(ends));
+    const apart = Math.hypot(...[0, 1, 2].map((k) => Number(ends[0][k]) - Number(ends[1][k])));
+    assert.ok(Math.abs(apart - found) < 1e-4 * found, `${apart}: ${found}`);
+    if (command === "hausdorff") {
+      const [low, high] = (await page.textContent("#measures .verdict")).match(/between ([\d.]+) and ([\d.]+) mm/).slice(1).map(Number);
+      assert.ok(low < high && Math.abs(low - report.lower_bound) < 1e-5 && Math.abs(high - report.upper_bound) < 1e-5);
+    }
     // The label stands in the picture, between the points.
     await page.waitForSelector("#overlay .important");
     assert.match(await page.textContent("#overlay .important"), / mm$/);
@@ -126,6 +135,7 @@ test("one index answers in a larger scene, and the others are built for their ta
   const words = await page.textContent("#live-answer dd.main");
   assert.match(words, /^inside, 0\.99\d* units from the surface$/);
   assert.match(await page.textContent("#overlay .important"), /^inside, 0\.99\d* units from the surface$/);
+  assert.match(await opened.read("live-answer", "agreement", page), /^one index has answered/);
   await page.click("#live-more summary");
   await page.waitForFunction(() => window.viewer.live.indexes.every((index) => index.rate) &&
     window.viewer.live.indexes.length === 4, undefined, { timeout: 60000 });
