@@ -165,7 +165,7 @@ test("the answer of a trade-off stands first, and marks are read by pointer and 
   run(["tradeoff", opened.scene, "--random", "200", "--rounds", "2", "--html", html]);
   for (const viewport of [{ width: 1280, height: 800 }, { width: 390, height: 844 }]) {
     const page = await open(html, { viewport });
-    assert.match(await page.textContent("#advice"), /^(aabb|kdop|octree|p2m)( with certified)?, [\d,.]+ ns per query, exact/);
+    assert.match(await page.textContent("#advice"), /^(aabb|kdop|octree|p2m)( with certified)?, [\d,.]+ ns per query, exact(; (aabb|kdop|octree|p2m) only from [\d.,]+( million)? queries on)?$/);
     const [answer, chart, width] = await page.evaluate(() => [
       document.querySelector("#advice").getBoundingClientRect().bottom,
       document.querySelector("#plot svg").getBoundingClientRect().bottom, document.documentElement.scrollWidth,
@@ -178,6 +178,23 @@ test("the answer of a trade-off stands first, and marks are read by pointer and 
     const marks = await page.$$eval("#plot .dot", (dots) => dots.map((dot) => dot.getAttribute("aria-label")));
     assert.equal(new Set(marks).size, 4 * 8);
     assert.ok(marks.some((text) => /, max visits 16: /.test(text)) && !marks.some((text) => /budget/.test(text)));
+    // No label of the axis touches another one, names of lines are in the picture, and marks of a column lie apart.
+    const { ticks, names, svg, gaps } = await page.evaluate(() => {
+      const box = (element) => element.getBoundingClientRect().toJSON();
+      const texts = [...document.querySelectorAll("#plot svg > text")];
+      const baseline = Math.max(...texts.filter((text) => text.textContent === "exact").map((text) => text.getAttribute("y")));
+      const dots = [...document.querySelectorAll("#plot .dot")].filter((dot) => / (default|certified): /.test(dot.ariaLabel)).map(box);
+      return {
+        ticks: texts.filter((text) => Number(text.getAttribute("y")) === baseline).map((text) => [text.textContent, box(text)]),
+        names: [...document.querySelectorAll("#plot .name-label")].map(box), svg: box(document.querySelector("#plot svg")),
+        gaps: dots.flatMap((a, i) => dots.slice(0, i).map((b) => Math.hypot(a.x - b.x, a.y - b.y))),
+      };
+    });
+    ticks.sort(([, a], [, b]) => a.left - b.left).forEach(([text, { left }], i) =>
+      assert.ok(i === 0 || left - ticks[i - 1][1].right >= 2, `${ticks[i - 1]?.[0]} ${text}`));
+    assert.ok(ticks.some(([text]) => text === "0.01"), String(ticks.map(([text]) => text)));
+    assert.ok(names.length === 4 && names.every(({ right }) => right <= svg.right), JSON.stringify(names));
+    assert.ok(Math.min(...gaps) > 1, String(gaps));
     const [x, y] = await page.$$eval("#plot .dot", ([, dot]) => {
       const { left, top, width, height } = dot.getBoundingClientRect();
       return [left + width / 2, top + height / 2];
