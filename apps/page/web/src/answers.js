@@ -221,7 +221,7 @@ export function distanceScale(values) {
   if (!(low < 0)) return new ColourScale("field", 0, high);
   const [shorter, longer] = [Math.min(-low, high), Math.max(-low, high)];
   const limit = high > 0 ? Math.min(longer, Math.max(4 * shorter, 0.6 * longer)) : longer;
-  return new ColourScale("signedField", -limit, limit);
+  return new ColourScale("signedField", -limit, limit).contain(low, high);
 }
 
 // Returns the smallest and the largest number among values, of which some may be no numbers.

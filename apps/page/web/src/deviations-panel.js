@@ -7,6 +7,8 @@ import { choice, copyButton, count, element, fillList, namedRow, reveal, roundin
 
 // The share of a fitted view that is seen around a place after a flight to it.
 const NEAR = 0.35;
+// The number of views around the scene of which the first shows most of the worst places.
+const TURNS = 8;
 
 export class DeviationsPanel {
   constructor(viewer, add) {
@@ -204,6 +206,21 @@ export class DeviationsPanel {
     const normals = dots.geometry.getAttribute("normal") ?? surface?.geometry.getAttribute("normal");
     const normal = normals && this.layer.position(i).fromBufferAttribute(normals, i);
     return normal?.length() > 0 ? normal : null;
+  }
+
+  // Turns fitted views so that most of the worst places are seen, the worst one if possible.
+  face() {
+    const { view } = this.viewer;
+    const normals = this.worst.map((i) => this.normal(i));
+    const seen = (angle) => {
+      view.turned = angle;
+      const [x, y, z] = view.usualDirection();
+      return normals.reduce((n, normal, i) =>
+        n + (normal && x * normal.x + y * normal.y + z * normal.z > 0 ? (i === 0 ? 1.5 : 1) : 0), 0);
+    };
+    const angles = Array.from({ length: TURNS }, (_, i) => (2 * Math.PI * i) / TURNS);
+    const counts = angles.map(seen);
+    view.turned = angles[counts.indexOf(Math.max(...counts))];
   }
 
   // Flies to a point, and around the scene if the scene is in front of it.

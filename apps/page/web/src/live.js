@@ -286,7 +286,8 @@ export class LiveQueries {
     const first = this.firstIndices[primitive];
     const vertices = [...indices.subarray(first, first + sizes[primitive])]
       .map((i) => this.at(coordinates.subarray(3 * i, 3 * i + 3)));
-    const radius = this.hasSphere ? lowerBound / this.frame.scale : 0;
+    // The sphere of an example would cover much before anybody asked for it.
+    const radius = this.hasSphere && !this.isExample ? lowerBound / this.frame.scale : 0;
     const { colours } = this.viewer;
     drawAnswer(this.group, this.at(this.shown.query), this.at(point), vertices, featureOf(feature), radius,
       { selected: colours.live, feature: colours.feature });

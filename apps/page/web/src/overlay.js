@@ -17,6 +17,8 @@ const [LABEL_GAP, MARK_GAP] = [44, 25];
 const AROUND = [[22, -38], [-22, -38], [44, 0], [-44, 0], [22, 38], [-22, 38], [0, -64], [64, -38], [-64, -38], [0, 64]];
 // The widths in pixels at the ends of the lower border of a picture, which the axes and the scale bar cover.
 const [COVERED_LEFT, COVERED_RIGHT] = [78, 110];
+// The height in pixels of the middle of a label below the toolbar, and the width at its right that a legend covers.
+const [BELOW_TOOLBAR, COVERED_BY_LEGEND] = [74, 166];
 
 export class Overlay {
   constructor(viewer, stage) {
@@ -187,11 +189,15 @@ export class Overlay {
 const inShort = (text) => text.replace(/^((?:in|out)side), (\S+) .*$/, "$2 $1").replace(/ from the \w+$/, "");
 
 // Returns where the label of an answer stands, and which part of it is at the left of there: beside its position, in the
-// picture and below the toolbar. In a narrow picture, where it would hide much, it stands at the lower border.
+// picture and below the toolbar. In a narrow picture, where it would hide much, it stands at the lower or upper border.
 function placeSentence(x, y, long, width, height, isNarrow) {
-  if (isNarrow) {
+  if (isNarrow && y > height / 2) {
     const most = Math.max(COVERED_LEFT + long / 2, width - COVERED_RIGHT - long / 2);
     return [Math.max(COVERED_LEFT + long / 2, Math.min(most, x)), height - 22, 0.5];
+  }
+  if (isNarrow) {
+    const right = Math.min(x - ASIDE, width - COVERED_BY_LEGEND);
+    return right - long > 6 ? [right, BELOW_TOOLBAR, 1] : [Math.min(x + ASIDE, width - 6 - long), BELOW_TOOLBAR, 0];
   }
   const isLeft = x + ASIDE + long > width && x > width / 2;
   const left = Math.max(6, Math.min(width - 6 - long, isLeft ? x - ASIDE - long : x + ASIDE));

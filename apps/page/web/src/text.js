@@ -45,10 +45,10 @@ export function number(value, digits = DIGITS) {
   return element("data", { value: String(value) }, figure(value, digits));
 }
 
-// Makes elements of several numbers with semicolons between them, because numbers have commas. Copies have commas
-// between them. `show` makes the element of a number.
+// Makes elements and texts of several numbers with semicolons between them, because numbers have commas. Copies have
+// commas between them. `show` makes the element of a number.
 export const numbers = (values, show = (value) => number(value)) =>
-  [...values].flatMap((value, i) => [...(i > 0 ? [element("data", { value: ", " }, "; ")] : []), show(value)]);
+  [...values].flatMap((value, i) => [...(i > 0 ? [element("data", { value: "," }, ";"), " "] : []), show(value)]);
 
 // Lets copied numbers have all their digits.
 export function copyAllDigits() {

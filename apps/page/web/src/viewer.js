@@ -27,6 +27,8 @@ import { addToolbar } from "./toolbar.js";
 const PICK_RADIUS = 12;
 // The number of answers up to which the pointer reads them.
 const MAX_POINTED = 20_000;
+// The distance in pixels of an example from the corner of the scene in the picture, which makes its answer visible.
+const EXAMPLE_GAP = 30;
 // The length in radii of the scene below which a length is an error of rounding.
 const ROUNDING = 1e-12;
 
@@ -87,6 +89,10 @@ class Viewer {
     this.followSystem();
     this.resize();
     this.fit();
+    if (this.deviations) {
+      this.deviationsPanel.face();
+      this.fit();
+    }
     if (this.slice) {
       this.slicePanel.lay();
       this.fit();
@@ -114,9 +120,9 @@ class Viewer {
   }
 
   // Returns the position of the example that a page shows before anything was asked: on the slice in the middle of the
-  // picture, or the middle of the scene.
+  // picture, or where nothing hides it: in front of the middle of the scene, at a corner of what it covers in the picture.
   example() {
-    return this.slicePanel?.example() ?? new three.Vector3();
+    return this.slicePanel?.example() ?? this.view.corner(EXAMPLE_GAP);
   }
 
   addLayer(name, layer, drawn) {

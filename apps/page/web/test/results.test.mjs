@@ -68,7 +68,7 @@ test("a page shows a scan before and after it was aligned, and the matrix", { sk
   run(["convert", part, scan, "--rotate-z", "25", "--translate", "1", "2", "3"]);
   const report = JSON.parse(run(["align", scan, part, "--html", html, "--unit", "mm", "--json"]));
   const page = await open(html);
-  assert.match(await page.textContent("#moved .verdict"), /^The root mean square of the distances is 0 mm \(rounding: \de-1\d\)\.$/);
+  assert.match(await page.textContent("#moved .verdict"), /^The root mean square of the distances is 0 mm \(rounding: \de-1\d\), but another pose fits about as well, .*\.$/);
   assert.match(await page.textContent("#moved-facts"), /root mean square0 \(rounding: \de-1\d\)/);
   assert.equal(Number(await opened.read("moved-facts", "root mean square", page)), report.rms);
   assert.equal(Number(await opened.read("moved-facts", "coverage in %", page)), 100 * report.coverage);
@@ -133,8 +133,8 @@ test("one index answers in a larger scene, and the others are built for their ta
   assert.deepEqual(await names(), ["AABB tree"]);
   // There is an answer before anything was asked, in the picture as well.
   const words = await page.textContent("#live-answer dd.main");
-  assert.match(words, /^inside, 0\.99\d* units from the surface$/);
-  assert.match(await page.textContent("#overlay .important"), /^inside, 0\.99\d* units from the surface$/);
+  assert.match(words, /^outside, [\d.]+ units from the surface$/);
+  assert.match(await page.textContent("#overlay .important"), /^outside, [\d.]+ units from the surface$/);
   assert.match(await opened.read("live-answer", "agreement", page), /^one index has answered/);
   await page.click("#live-more summary");
   await page.waitForFunction(() => window.viewer.live.indexes.every((index) => index.rate) &&
@@ -156,7 +156,16 @@ test("one index answers in a larger scene, and the others are built for their ta
     const { live } = window.viewer;
     return { query: live.shown.query, distance: live.shown.answers[0].distance };
   });
-  assert.ok(Math.hypot(...query) < 1e-9 && distance > 0.99 && distance < 1, `${query}: ${distance}`);
+  const gap = distance - (Math.hypot(...query) - 1);
+  assert.ok(gap > -1e-6 && gap < 0.01, `${query}: ${distance}`);
+  // Nothing hides the example, and its segment is long enough to be seen.
+  const [pixels, hits] = await page.evaluate(() => {
+    const { live: { shown }, live, camera, canvas, scene } = window.viewer;
+    const [from, to] = [shown.query, shown.answers[0].point].map((point) => live.at(point).project(camera));
+    const hits = window.viewer.caster(from.x, from.y).intersectObjects(scene.group.children).length;
+    return [Math.hypot((to.x - from.x) * canvas.clientWidth, (to.y - from.y) * canvas.clientHeight) / 2, hits];
+  });
+  assert.ok(pixels >= 60 && hits === 0, `${pixels} ${hits}`);
   await page.close();
 });
 
@@ -183,18 +192,19 @@ test("the answer of a trade-off stands first, and marks are read by pointer and 
       const box = (element) => element.getBoundingClientRect().toJSON();
       const texts = [...document.querySelectorAll("#plot svg > text")];
       const baseline = Math.max(...texts.filter((text) => text.textContent === "exact").map((text) => text.getAttribute("y")));
-      const dots = [...document.querySelectorAll("#plot .dot")].filter((dot) => / (default|certified): /.test(dot.ariaLabel)).map(box);
+      const dots = [...document.querySelectorAll("#plot .dot")].filter((dot) => / (default|certified): /.test(dot.ariaLabel))
+        .map((dot) => ({ ...box(dot), index: dot.ariaLabel.split(",")[0] }));
       return {
         ticks: texts.filter((text) => Number(text.getAttribute("y")) === baseline).map((text) => [text.textContent, box(text)]),
         names: [...document.querySelectorAll("#plot .name-label")].map(box), svg: box(document.querySelector("#plot svg")),
-        gaps: dots.flatMap((a, i) => dots.slice(0, i).map((b) => Math.hypot(a.x - b.x, a.y - b.y))),
+        gaps: dots.flatMap((a, i) => dots.slice(0, i).filter((b) => b.index !== a.index).map((b) => Math.hypot(a.x - b.x, a.y - b.y))),
       };
     });
     ticks.sort(([, a], [, b]) => a.left - b.left).forEach(([text, { left }], i) =>
       assert.ok(i === 0 || left - ticks[i - 1][1].right >= 2, `${ticks[i - 1]?.[0]} ${text}`));
     assert.ok(ticks.some(([text]) => text === "0.01"), String(ticks.map(([text]) => text)));
     assert.ok(names.length === 4 && names.every(({ right }) => right <= svg.right), JSON.stringify(names));
-    assert.ok(Math.min(...gaps) > 1, String(gaps));
+    assert.ok(Math.min(...gaps) > 10, String(gaps));
     const [x, y] = await page.$$eval("#plot .dot", ([, dot]) => {
       const { left, top, width, height } = dot.getBoundingClientRect();
       return [left + width / 2, top + height / 2];

@@ -173,6 +173,14 @@ test("in a narrow window an answer does not scroll the picture away", { skip }, 
   await other.focus("#picture");
   await other.keyboard.press("n");
   assert.equal(await other.evaluate(() => scrollY), 0);
+  // The label of the answer is short there, and stands at a border of the picture.
+  await other.waitForSelector("#overlay .important");
+  assert.match(await other.textContent("#overlay .important"), /^[\d.]+ units$/);
+  const [above, below] = await other.evaluate(() => {
+    const { top, bottom } = document.querySelector("#overlay .important").getBoundingClientRect();
+    return [top - document.querySelector("#toolbar").getBoundingClientRect().bottom, window.viewer.stage.clientHeight - bottom];
+  });
+  assert.ok((above >= 0 && above < 30) || (below >= 0 && below < 30), `${above} ${below}`);
   assert.ok(await other.evaluate(() => document.documentElement.scrollWidth) <= 320);
   await other.close();
 });
@@ -365,6 +373,15 @@ test("lines of equal distance have the values of the field as labels", { skip },
     assert.ok(Math.abs(text - value) < 1e-3 * spacing + 1e-3, `${text}, not ${value}`);
     assert.ok(Math.abs(text / spacing - Math.round(text / spacing)) < 1e-6, `${text} is no multiple of ${spacing}`);
   }
+  // The legend says that there are larger values than that of its end, and how few they are.
+  const { high, part } = await page.evaluate(() => {
+    const { slice: { values, scale: { high } } } = window.viewer;
+    return { high, part: values.filter((value) => value > high).length / values.length };
+  });
+  assert.ok(part > 0.01 && part < 0.15, String(part));
+  const ticks = await page.$$eval(".picture-legend .ticks span", (all) => all.map((span) => span.textContent));
+  assert.deepEqual(ticks.map((text) => text.startsWith("≥ ")), [false, false, true]);
+  assert.equal(Number(ticks[2].slice(2)), Number(high.toPrecision(4)));
 });
 
 test("the toolbar and its keys change the view", { skip }, async () => {
