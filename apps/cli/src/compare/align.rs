@@ -137,7 +137,8 @@ pub(crate) fn run(streams: &Streams, args: &Args) -> anyhow::Result<()> {
     let (points, scenes) = (scan.soup.positions().len(), [scene, scan]);
     args.page.write(streams, || {
         let rms = besides_rounding(found.rms, args.page.unit(), &before);
-        let verdict = format!("The root mean square of the distances is {rms}.");
+        let doubt: String = warnings(&found).map(|warning| format!(", but {warning}")).collect();
+        let verdict = format!("The root mean square of the distances is {rms}{doubt}.");
         let mut facts = vec![("root mean square", found.rms), ("coverage in %", 100.0 * found.coverage)];
         facts.extend(args.scale.then_some(("scale", found.scale)));
         let moved = Moved { matrix: found.matrix, facts };

@@ -16,7 +16,7 @@ use p2m_core::pair::Motion;
 use p2m_field::{Direction, HausdorffDistance, HausdorffOptions, hausdorff_distance, one_sided_hausdorff_distance};
 use p2m_formats::FileFormat;
 use p2m_mixed::Scene;
-use p2m_mixed::statistics::figure::Figure;
+use p2m_mixed::statistics::figure::Length;
 use p2m_page::Measure;
 use serde_json::{Value, json};
 use std::ops::ControlFlow;
@@ -105,9 +105,17 @@ pub(crate) fn run(streams: &Streams, args: &Args) -> anyhow::Result<()> {
     drop(progress);
     let found = found.ok_or_else(|| anyhow!("a scene is empty, so there is no Hausdorff distance"))?;
     args.page.write(streams, || {
-        let of = if args.one_sided { "No point of the first scene is" } else { "No point of one scene is" };
-        let verdict = format!("{of} farther than {} {} from the other.", Figure(found.upper_bound), args.page.unit());
-        let measure = Measure { name: "farthest".to_owned(), ends: found.points, length: found.upper_bound };
+        let of = if args.one_sided { "the first" } else { "either" };
+        let bounds = [found.lower_bound, found.upper_bound].map(|bound| Length(bound).to_string());
+        let range =
+            if bounds[0] == bounds[1] { bounds[0].clone() } else { format!("between {}", bounds.join(" and ")) };
+        let verdict = format!(
+            "The farthest point of {of} scene is {range} {} from the other one. The gap between the scenes is another \
+             length, which p2m distance finds.",
+            args.page.unit()
+        );
+        // The points are as far apart as the lower bound says.
+        let measure = Measure { name: "farthest".to_owned(), ends: found.points, length: found.lower_bound };
         // The second scene is in its place already.
         let (paths, found) = (args.scenes.paths(), PairResult::Measures(vec![measure]));
         PairPage { paths, scenes: &scenes, motion: None, title: "Hausdorff distance", verdict, found }

@@ -78,7 +78,7 @@ impl PairPageArgs {
                 warnings.iter().fold(view, |view, warning| view.with_note(format!("Warning: {warning}.")))
             }
         };
-        view.title = format!("{} and {} in p2m", names[0], names[1]);
+        view.title = format!("{} and {}", names[0], names[1]);
         view.summary = verdict;
         view.about = about(&format!("scenes {} and {}", names[0], names[1]), "aabb", None);
         Output::open(streams, Some(html))?.finish_with(&view.html()?)?;

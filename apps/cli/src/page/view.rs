@@ -198,7 +198,7 @@ impl PageSource<'_> {
         });
         let args = self.args;
         let mut view = args.page.view(scene, &around);
-        view.title = format!("{} in p2m", file_name(&args.scene.path));
+        view.title = file_name(&args.scene.path);
         let is_empty = scene.soup.is_empty();
         view.summary = if is_empty { "an empty scene".to_owned() } else { counted(&Counts::of(&scene.soup)) };
         if let Some(queries) = queries {

@@ -52,8 +52,8 @@ export class AnswersPanel {
     for (let i = first; i < Math.min(answers.length, first + ROWS); i++) {
       const select = element("button", { type: "button", onclick: () => this.select(i) }, String(i));
       const cells = answers.isAnswered(i)
-        ? [...[...answers.points.subarray(3 * i, 3 * i + 3), answers.values[i]].map((x) => number(x)), answers.primitives[i],
-            answers.featureName(i)]
+        ? [...[...answers.points.subarray(3 * i, 3 * i + 3)].map((x) => this.viewer.coordinate(x)), number(answers.values[i]),
+            answers.primitives[i], answers.featureName(i)]
         : ["no answer", "", "", "", "", ""];
       rows.push(element("tr", {}, element("td", {}, select), ...cells.map((cell) => element("td", {}, cell))));
     }
@@ -95,20 +95,19 @@ export class AnswersPanel {
     const { answers, viewer } = this;
     // The sphere of an example would cover much before anybody asked for it.
     answers.select(i, viewer.colours, !isExample);
-    const rows = [];
+    const rows = isExample && i >= 0 ? [["an example", "click any query point to read it"]] : [];
     if (i < 0) {
       rows.push(["none", "Click a query point, or press n."]);
     } else {
       if (answers.isAnswered(i)) {
-        rows.push(...answers.rows(i, viewer.unit));
+        rows.push(...answers.rows(i, viewer));
         const object = answers.objects?.[i];
         if (object) rows.push(["object", viewer.data.object_names[object - 1]]);
       } else {
         rows.push(["answer", "none"]);
       }
-      rows.push(["query", answers.queries.subarray(3 * i, 3 * i + 3)], ["number", `${count(i)} of ${count(answers.length)}`]);
+      rows.push(["query", viewer.place(answers.queries.subarray(3 * i, 3 * i + 3))], ["number", `${count(i)} of ${count(answers.length)}`]);
     }
-    if (isExample) rows.push(["", "An example: click any query point to read it."]);
     fillList(this.text, rows);
     if (i >= 0 && !isExample) reveal(this.text);
     viewer.draw();

@@ -112,8 +112,8 @@ export class AnswersLayer {
   }
 
   // Returns the terms and texts of an answer.
-  rows(i, unit) {
-    return answerRows(unit, {
+  rows(i, viewer) {
+    return answerRows(viewer, {
       point: this.points.subarray(3 * i, 3 * i + 3), distance: this.distances[i], signed: this.signed?.[i],
       lowerBound: this.lower_bounds[i], size: this.sizes[i], primitive: this.primitives[i], feature: this.features[i],
     });
@@ -149,11 +149,11 @@ export function featureOf(code) {
 
 // Returns the terms and texts of an answer for a list. `size` is the number of vertices of the primitive, and `signed`
 // the signed distance if there is one.
-export function answerRows(unit, { point, distance, signed, lowerBound, size, primitive, feature }) {
+export function answerRows(viewer, { point, distance, signed, lowerBound, size, primitive, feature }) {
   return [
-    ["distance", distanceOf(distance, signed, unit)],
+    ["distance", distanceOf(distance, signed, viewer.unit)],
     ...(signed === undefined ? [] : [["signed distance", signed]]),
-    ["closest point", point],
+    ["closest point", viewer.place(point)],
     ["lower bound", lowerBound],
     ["primitive", `${KINDS[size]} ${primitive}`],
     ["feature", featureName(feature)],
@@ -221,7 +221,7 @@ export function distanceScale(values) {
   if (!(low < 0)) return new ColourScale("field", 0, high);
   const [shorter, longer] = [Math.min(-low, high), Math.max(-low, high)];
   const limit = high > 0 ? Math.min(longer, Math.max(4 * shorter, 0.6 * longer)) : longer;
-  return new ColourScale("signedField", -limit, limit);
+  return new ColourScale("signedField", -limit, limit).contain(low, high);
 }
 
 // Returns the smallest and the largest number among values, of which some may be no numbers.

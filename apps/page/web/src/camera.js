@@ -43,6 +43,8 @@ export class Camera {
     this.hasLegend = false;
     // Whether a fitted view is from a corner rather than from a side.
     this.isOblique = false;
+    // The angle about the vertical axis by which a fitted view is turned.
+    this.turned = 0;
     // The corners of a slice, which a fitted view contains as well.
     this.corners = [];
     this.setLimits();
@@ -160,7 +162,29 @@ export class Camera {
     const [width, depth, height] = this.isYUp ? [side[0], side[2], side[1]] : side;
     const flatness = Math.max(0, 1 - (4 * height) / Math.max(width, depth, 1e-30));
     const across = width >= 0.8 * depth ? [this.isOblique ? 0.8 : 0.5, -1] : [1, this.isOblique ? -0.8 : -0.5];
-    return this.fromZUp([...across, (this.isOblique ? 0.55 : 0.4) + 1.6 * flatness]);
+    const [sine, cosine] = [Math.sin(this.turned), Math.cos(this.turned)];
+    const turned = [across[0] * cosine - across[1] * sine, across[0] * sine + across[1] * cosine];
+    return this.fromZUp([...turned, (this.isOblique ? 0.55 : 0.4) + 1.6 * flatness]);
+  }
+
+  // Returns a position at the upper right corner of what the scene covers in the picture, so many pixels away from it, and
+  // half a radius nearer to the viewer than the middle of the scene.
+  corner(gap) {
+    const { camera, controls, radius } = this;
+    camera.updateMatrixWorld();
+    const at = new three.Vector3();
+    let [x, y] = [-Infinity, -Infinity];
+    for (let i = 0; i < this.samples.length; i += 3) {
+      at.fromArray(this.samples, i).project(camera);
+      [x, y] = [Math.max(x, at.x), Math.max(y, at.y)];
+    }
+    if (x === -Infinity) return at.copy(controls.target);
+    const { fullWidth, fullHeight } = camera.view;
+    // The picture is higher than what it shows of the view.
+    [x, y] = [Math.min(0.85, x + (2 * gap) / fullWidth), Math.min(0.85, y + (2 * gap) / fullHeight)];
+    const nearer = Math.min(radius / 2, camera.position.distanceTo(controls.target) / 2);
+    const { z } = at.copy(camera.position).sub(controls.target).setLength(nearer).add(controls.target).project(camera);
+    return at.set(x, y, z).unproject(camera);
   }
 
   // Turns the view by angles, and multiplies the distance by a factor.

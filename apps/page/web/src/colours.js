@@ -69,6 +69,14 @@ export class ColourScale {
     this.isDiverging = kind === "signedField";
     this.low = low;
     this.high = high > low ? high : low + (Math.abs(low) || 1);
+    // Whether there are values beyond the limits, which have the colours of the ends.
+    this.isOpen = [false, false];
+  }
+
+  // Says that there are values from `least` to `most`.
+  contain(least, most) {
+    this.isOpen = [least < this.low, most > this.high];
+    return this;
   }
 
   setTheme(theme) {

@@ -2,10 +2,13 @@
 
 import { UNDEFINED } from "./colours.js";
 import { pictureLegend } from "./histogram.js";
+import { spacing } from "./shading.js";
 import { choice, copyButton, count, element, fillList, namedRow, reveal, roundingInWords, short, sideOf, stepped, tableHead } from "./text.js";
 
 // The share of a fitted view that is seen around a place after a flight to it.
 const NEAR = 0.35;
+// The number of views around the scene of which the first shows most of the worst places.
+const TURNS = 8;
 
 export class DeviationsPanel {
   constructor(viewer, add) {
@@ -31,7 +34,7 @@ export class DeviationsPanel {
       });
       rows.push(element("div", { class: "row" }, element("span", {}, "Coloured"), shown));
     }
-    add(layer.is_signed ? "Deviations, positive outside" : "Distances", "deviations", this.verdict, this.parts);
+    add(layer.is_signed ? "Deviations, positive outside" : "Distances", "deviations", this.verdict, this.parts, ...this.remarks());
     this.addWorst(add);
     add("Tolerance and colours", "colours", this.figure.element, ...Object.values(this.inputs), ...rows);
     this.text = element("dl", { id: "deviation", "aria-live": "polite" });
@@ -41,6 +44,20 @@ export class DeviationsPanel {
     this.addStatistics(add);
     this.setColours();
     this.select(-1);
+  }
+
+  // Makes remarks on what the numbers mean.
+  remarks() {
+    const { layer, viewer: { data: { scene }, frame, unit } } = this;
+    const remarks = [];
+    if (scene.triangles.length + scene.segments.length === 0 && scene.points.length > 0) {
+      const apart = short(spacing(scene.positions) * frame.scale);
+      remarks.push(`The part has only points, about ${apart} ${unit} apart, so these are distances between points, and ` +
+        "much of them may be that spacing.");
+    } else if (!layer.is_signed && scene.segments.length + scene.points.length === 0) {
+      remarks.push("Without signs, as was asked: points inside and outside of the surface count alike.");
+    }
+    return remarks.map((remark) => element("p", { class: "small" }, remark));
   }
 
   // Makes a number and a slider with one meaning. The slider covers four orders of magnitude.
@@ -191,6 +208,21 @@ export class DeviationsPanel {
     return normal?.length() > 0 ? normal : null;
   }
 
+  // Turns fitted views so that most of the worst places are seen, the worst one if possible.
+  face() {
+    const { view } = this.viewer;
+    const normals = this.worst.map((i) => this.normal(i));
+    const seen = (angle) => {
+      view.turned = angle;
+      const [x, y, z] = view.usualDirection();
+      return normals.reduce((n, normal, i) =>
+        n + (normal && x * normal.x + y * normal.y + z * normal.z > 0 ? (i === 0 ? 1.5 : 1) : 0), 0);
+    };
+    const angles = Array.from({ length: TURNS }, (_, i) => (2 * Math.PI * i) / TURNS);
+    const counts = angles.map(seen);
+    view.turned = angles[counts.indexOf(Math.max(...counts))];
+  }
+
   // Flies to a point, and around the scene if the scene is in front of it.
   flyTo(i) {
     const { layer, viewer } = this;
@@ -253,7 +285,7 @@ export class DeviationsPanel {
     layer.select(i, viewer.colours ?? { feature: "#c000c0" });
     const rows = i < 0 ? [["none", "Click a point of the scan, or press n."]] : [
       ["number", `${count(i * layer.stride)} of ${count(layer.total)}`],
-      ["point", layer.positions.subarray(3 * i, 3 * i + 3)],
+      ["point", viewer.place(layer.positions.subarray(3 * i, 3 * i + 3))],
       [this.what, layer.values[i]],
       ...(layer.is_signed && !Number.isNaN(layer.values[i]) ? [["side", sideOf(layer.values[i])]] : []),
       ...(Number.isNaN(layer.values[i]) ? [] : [["primitive", String(layer.primitives[i])]]),

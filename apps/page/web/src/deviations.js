@@ -1,7 +1,7 @@
 // A scan, whose points or triangles have the colours of their deviations, or the part with those of the points near it.
 
 import * as three from "three";
-import { empty, marker } from "./answers.js";
+import { empty, limits, marker } from "./answers.js";
 import { BandScale, ColourScale } from "./colours.js";
 import { pointMaterial, spacing, surface } from "./shading.js";
 
@@ -9,6 +9,9 @@ import { pointMaterial, spacing, surface } from "./shading.js";
 const PICK_RADIUS = 6;
 // The number of worst places that are listed, and their least distance from each other in radii of the scene.
 const [LISTED, APART] = [6, 0.12];
+// The number of points by which a surface is found smooth, and the cosine of the angle between normals of near points
+// and the part of them that make it smooth. Only points of smooth surfaces are as large as their spacing.
+const [COMPARED, ALIKE, MOST] = [60, 0.5, 0.75];
 // The size of a point relative to the distance to the next one, which makes a closed surface of them.
 const SPLAT = 1.9;
 
@@ -17,6 +20,7 @@ export class DeviationsLayer {
     Object.assign(this, data);
     this.scene = scene;
     this.length = data.values.length;
+    this.range = limits(data.values);
     this.drawn = frame.positions(data.positions);
     this.colours = new Uint16Array(3 * this.length);
     this.triangleOf = triangleNumbers(scene);
@@ -25,8 +29,9 @@ export class DeviationsLayer {
     geometry.setAttribute("color", new three.BufferAttribute(this.colours, 3, true));
     const normals = data.triangles.length === 0 && this.triangleOf ? this.pointNormals() : null;
     if (normals) geometry.setAttribute("normal", new three.BufferAttribute(normals, 3, true));
+    const isSmooth = normals !== null && isAlike(this.drawn, normals);
     const size = SPLAT * spacing(this.drawn);
-    this.dots = new three.Points(geometry, pointMaterial({ size, vertexColors: true, sizeAttenuation: true }, !!normals));
+    this.dots = new three.Points(geometry, pointMaterial({ size, vertexColors: true, sizeAttenuation: true }, isSmooth));
     // Points that are not finite are not drawn.
     const sphere = new three.Sphere(new three.Vector3(), 4);
     geometry.boundingSphere = sphere;
@@ -53,6 +58,7 @@ export class DeviationsLayer {
     this.scale = bandTolerance === null
       ? new ColourScale(this.is_signed ? "signedField" : "field", this.is_signed ? -limit : 0, limit)
       : new BandScale(bandTolerance, limit, this.is_signed);
+    if (bandTolerance === null) this.scale.contain(...this.range);
     if (this.theme) this.colourPoints();
   }
 
@@ -221,4 +227,23 @@ function triangleNumbers({ triangles, objects }) {
     const { end, shift } = places[low];
     return primitive < end && shift !== null ? primitive + shift : -1;
   };
+}
+
+// Returns whether most points have about the normal of the nearest other one.
+function isAlike(positions, normals) {
+  const count = positions.length / 3;
+  const samples = Math.max(1, Math.min(COMPARED, count));
+  let alike = 0;
+  for (let s = 0; s < samples; s++) {
+    const i = 3 * Math.floor((s * count) / samples);
+    let [nearest, least] = [i, Infinity];
+    for (let j = 0; j < positions.length; j += 3) {
+      const square = (positions[j] - positions[i]) ** 2 + (positions[j + 1] - positions[i + 1]) ** 2 +
+        (positions[j + 2] - positions[i + 2]) ** 2;
+      if (j !== i && square < least) [nearest, least] = [j, square];
+    }
+    const [a, b] = [i, nearest].map((k) => [...normals.subarray(k, k + 3)]);
+    if (a.reduce((sum, x, k) => sum + x * b[k], 0) > ALIKE * 127 * 127) alike++;
+  }
+  return alike > MOST * samples;
 }

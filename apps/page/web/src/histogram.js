@@ -144,7 +144,9 @@ function legend(scale, what, unit, place) {
   const middle = scale.isDiverging ? 0 : (low + high) / 2;
   const bar = element("div", { class: "gradient" });
   bar.style.background = scale.gradient();
-  const words = [low, middle, high].map((value) => element("span", {}, scale.text(value)));
+  const [below, above] = scale.isOpen;
+  const words = [[below ? "≤ " : "", low], ["", middle], [above ? "≥ " : "", high]]
+    .map(([sign, value]) => element("span", {}, sign + scale.text(value)));
   const made = element("div", { class: "legend" }, bar, element("div", { class: "ticks" }, ...words),
     element("div", { class: "small" }, `${what} (${unit})`));
   if (place) {

@@ -91,7 +91,7 @@ export class LiveQueries {
       return;
     }
     this.inputs.forEach((input) => (input.disabled = false));
-    this.setQuery(this.viewer.coordinates(this.viewer.example().toArray()));
+    this.setQuery(this.viewer.coordinates(this.viewer.example().toArray()), true);
   }
 
   // Calls a function of the worker of an index. The result is `null` if it fails, which is said.
@@ -212,14 +212,15 @@ export class LiveQueries {
     if (hit) this.setQuery(this.frame.coordinates(hit.toArray()));
   }
 
-  setQuery(query) {
-    this.query = query;
+  setQuery(query, isExample = false) {
+    Object.assign(this, { query, isExample });
     query.forEach((x, k) => (this.inputs[k].value = x));
     this.answerQuery();
   }
 
   readInputs() {
     this.setFollowing(false);
+    this.isExample = false;
     this.query = this.inputs.map((input) => (input.value === "" ? NaN : Number(input.value)));
     this.answerQuery();
   }
@@ -285,7 +286,8 @@ export class LiveQueries {
     const first = this.firstIndices[primitive];
     const vertices = [...indices.subarray(first, first + sizes[primitive])]
       .map((i) => this.at(coordinates.subarray(3 * i, 3 * i + 3)));
-    const radius = this.hasSphere ? lowerBound / this.frame.scale : 0;
+    // The sphere of an example would cover much before anybody asked for it.
+    const radius = this.hasSphere && !this.isExample ? lowerBound / this.frame.scale : 0;
     const { colours } = this.viewer;
     drawAnswer(this.group, this.at(this.shown.query), this.at(point), vertices, featureOf(feature), radius,
       { selected: colours.live, feature: colours.feature });
@@ -295,16 +297,21 @@ export class LiveQueries {
     const { query, isValid, indexes, answers } = this.shown;
     const [answer] = answers;
     const rows = [];
+    if (this.isExample) rows.push(["an example", "point anywhere in the picture to ask there"]);
     if (answer) {
-      rows.push(...answerRows(this.viewer.unit, { ...answer, size: this.scene.sizes[answer.primitive] }));
+      // Where the colours of a slice have no sign, the words tell the side.
+      const signed = ([term]) => term === "signed distance" && this.viewer.slice?.scale.isDiverging === false;
+      rows.push(...answerRows(this.viewer, { ...answer, size: this.scene.sizes[answer.primitive] })
+        .filter((row) => !signed(row)));
       const key = (a) => a && [...a.point, a.distance, a.lowerBound, a.primitive, a.feature].join();
       const isSame = answers.every((other) => key(other) === key(answer));
       const all = `the ${indexes.length} indexes`;
       if (indexes.length > 1) rows.push(["agreement", isSame ? `${all} give equal answers` : `${all} differ`]);
+      else if (!this.isComplete) rows.push(["agreement", "one index has answered; open “Indexes” below to compare all"]);
     } else if (isValid) {
       rows.push(["answer", "none"]);
     }
-    rows.push(["query", isValid ? query : "Each coordinate has to be a number."]);
+    rows.push(["query", isValid ? this.viewer.place(query) : "Each coordinate has to be a number."]);
     fillList(this.answerText, rows);
   }
 

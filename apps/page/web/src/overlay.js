@@ -11,8 +11,14 @@ const [ASIDE, ABOVE] = [22, 38];
 const WIDE = 8.5;
 // The width of a picture in pixels below which labels are shorter.
 const NARROW = 600;
-// The least distance between labels in pixels.
-const LABEL_GAP = 44;
+// The least distances between labels in pixels, and between the numbers of worst places and what they must not hide.
+const [LABEL_GAP, MARK_GAP] = [44, 25];
+// The places of a number relative to its position in pixels, the first that is free.
+const AROUND = [[22, -38], [-22, -38], [44, 0], [-44, 0], [22, 38], [-22, 38], [0, -64], [64, -38], [-64, -38], [0, 64]];
+// The widths in pixels at the ends of the lower border of a picture, which the axes and the scale bar cover.
+const [COVERED_LEFT, COVERED_RIGHT] = [78, 110];
+// The height in pixels of the middle of a label below the toolbar, and the width at its right that a legend covers.
+const [BELOW_TOOLBAR, COVERED_BY_LEGEND] = [74, 166];
 
 export class Overlay {
   constructor(viewer, stage) {
@@ -57,39 +63,61 @@ export class Overlay {
   }
 
   placeLabels(width, height) {
-    const placed = [];
-    const shown = [];
-    const leaders = [];
+    const isNarrow = width < NARROW;
     // Labels with leaders come first, and hide others.
     const all = this.sources.flatMap((source) => source()).sort((a, b) => !a.kind - !b.kind);
-    for (const { position, text: words, kind } of all) {
-      // The panel has the whole sentence.
-      const text = width < NARROW ? words.replace(/ from the \w+$/, "") : words;
-      const seen = position.clone().project(this.viewer.camera);
-      const [x, y] = [((seen.x + 1) / 2) * width, ((1 - seen.y) / 2) * height];
-      const isInside = Math.abs(seen.z) < 1 && x > 20 && y > 10 && x < width - 20 && y < height - 10;
-      if (!isInside || (!kind && placed.some(([a, b]) => Math.hypot(a - x, b - y) < LABEL_GAP))) continue;
-      const label = element("span", kind ? { class: kind } : {}, text);
-      let [at, up, anchor] = [x, y, "-50%"];
+    const seen = all.map(({ position, text, kind = "" }) => {
+      const { x, y, z } = position.clone().project(this.viewer.camera);
+      // On a phone the panel has the whole sentence.
+      return { text: isNarrow ? inShort(text) : text, kind, x: ((x + 1) / 2) * width, y: ((1 - y) / 2) * height, z };
+    }).filter(({ x, y, z }) => Math.abs(z) < 1 && x > 20 && y > 10 && x < width - 20 && y < height - 10);
+    // What further labels must not hide: positions that have labels, and these labels.
+    const taken = seen.filter(({ kind }) => kind).map(({ x, y }) => [x, y]);
+    const isFree = (x, y, gap) => taken.every(([a, b]) => Math.hypot(a - x, b - y) >= gap);
+    let [labels, leaders] = [0, 0];
+    for (const { text, kind, x, y } of seen) {
+      if (!kind && !isFree(x, y, LABEL_GAP)) continue;
+      // The part of the label that is at the left of its place.
+      let [at, up, part] = [x, y, 0.5];
       if (kind) {
-        // A label stays in the picture, below the toolbar.
         const long = Math.min(width - 12, LABEL_GAP / 3 + WIDE * text.length);
-        const isLeft = x + ASIDE + long > width && x > width / 2;
-        const free = Math.max(6, Math.min(width - 6 - long, isLeft ? x - ASIDE - long : x + ASIDE));
-        [at, up, anchor] = [isLeft ? free + long : free, y + (y < 110 ? ABOVE : -ABOVE), isLeft ? "-100%" : "0%"];
-        // Leaders are seen on any colour.
-        for (const look of ["halo", "ink"]) {
-          leaders.push(element("line", { x1: x, y1: y, x2: at, y2: up, class: look }), element("circle", { cx: x, cy: y, r: 4, class: look }));
+        if (kind === "important") {
+          [at, up, part] = placeSentence(x, y, long, width, height, isNarrow);
+          for (let from = 0; from < long; from += LABEL_GAP) taken.push([at - part * long + from, up]);
+        } else {
+          const places = AROUND.map(([dx, dy]) => [x + dx, y + dy]);
+          [at, up] = places.find(([a, b]) =>
+            a > 12 && a < width - 12 && b > 60 && b < height - 12 && isFree(a, b, MARK_GAP)) ?? places[0];
         }
-        placed.push([x, y]);
-        for (let along = 0; along < long; along += LABEL_GAP) placed.push([at + (isLeft ? -along : along), up]);
+        // A leader ends where the label is nearest, whose letters are a little narrower than assumed.
+        const wide = kind === "important" ? 0.7 * long : 0;
+        this.setLeader(leaders++, x, y, Math.max(at - part * wide, Math.min(at + (1 - part) * wide, x)), up);
       }
-      placed.push([at, up]);
-      label.style.transform = `translate(${at.toFixed(1)}px, ${up.toFixed(1)}px) translate(${anchor}, -50%)`;
-      shown.push(label);
+      taken.push([at, up]);
+      this.setLabel(labels++, text, kind,
+        `translate(${at.toFixed(1)}px, ${up.toFixed(1)}px) translate(${-100 * part}%, -50%)`);
     }
-    this.labels.replaceChildren(...shown);
-    this.leaders.replaceChildren(...leaders);
+    while (this.labels.children.length > labels) this.labels.lastChild.remove();
+    while (this.leaders.children.length > leaders) this.leaders.lastChild.remove();
+  }
+
+  // Sets the label with a number. Elements of the frame before are used again.
+  setLabel(i, text, kind, transform) {
+    const label = this.labels.children[i] ?? this.labels.appendChild(element("span"));
+    if (label.textContent !== text) label.textContent = text;
+    if (label.className !== kind) label.className = kind;
+    label.style.transform = transform;
+  }
+
+  // Sets the leader with a number, from a circle around a position to a label. It is seen on any colour.
+  setLeader(i, x, y, at, up) {
+    const leader = this.leaders.children[i] ?? this.leaders.appendChild(element("g", {}, ...["halo", "ink"].flatMap((look) =>
+      [element("line", { class: look, x1: 0, y1: 0 }), element("circle", { class: look, r: 4 })])));
+    leader.setAttribute("transform", `translate(${x.toFixed(1)} ${y.toFixed(1)})`);
+    for (const line of leader.querySelectorAll("line")) {
+      line.setAttribute("x2", (at - x).toFixed(1));
+      line.setAttribute("y2", (up - y).toFixed(1));
+    }
   }
 
   // Shows the legend of the colours in the picture.
@@ -155,4 +183,23 @@ export class Overlay {
   setTheme(colours) {
     this.grid?.material.color.set(colours.grid);
   }
+}
+
+// Returns the text of a label for a narrow picture.
+const inShort = (text) => text.replace(/^((?:in|out)side), (\S+) .*$/, "$2 $1").replace(/ from the \w+$/, "");
+
+// Returns where the label of an answer stands, and which part of it is at the left of there: beside its position, in the
+// picture and below the toolbar. In a narrow picture, where it would hide much, it stands at the lower or upper border.
+function placeSentence(x, y, long, width, height, isNarrow) {
+  if (isNarrow && y > height / 2) {
+    const most = Math.max(COVERED_LEFT + long / 2, width - COVERED_RIGHT - long / 2);
+    return [Math.max(COVERED_LEFT + long / 2, Math.min(most, x)), height - 22, 0.5];
+  }
+  if (isNarrow) {
+    const right = Math.min(x - ASIDE, width - COVERED_BY_LEGEND);
+    return right - long > 6 ? [right, BELOW_TOOLBAR, 1] : [Math.min(x + ASIDE, width - 6 - long), BELOW_TOOLBAR, 0];
+  }
+  const isLeft = x + ASIDE + long > width && x > width / 2;
+  const left = Math.max(6, Math.min(width - 6 - long, isLeft ? x - ASIDE - long : x + ASIDE));
+  return [isLeft ? left + long : left, y + (y < 110 ? ABOVE : -ABOVE), isLeft ? 1 : 0];
 }

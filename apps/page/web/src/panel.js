@@ -1,7 +1,7 @@
 // The panel beside the picture: what the page is about first, then what is shown, then help.
 
 import { KEYS } from "./input.js";
-import { checkbox, count, counted, element, fillList, patch, short, shortened } from "./text.js";
+import { checkbox, count, counted, element, fillList, patch, short, shortened, withCode } from "./text.js";
 
 // The number of characters of a word of the title above which its middle is left out.
 const LONGEST_WORD = 26;
@@ -51,7 +51,7 @@ function addFacts(viewer, add) {
   const rows = [["size", `${sides.map(short).join(" × ")} ${unit}`]];
   const middle = frame.coordinates([0, 0, 0]);
   if (Math.hypot(...middle) > 20 * view.radius * frame.scale) {
-    rows.push(["around", middle.map((x) => Number(x.toPrecision(7)))]);
+    rows.push(["around", viewer.place(viewer.coordinates([0, 0, 0]))]);
   }
   const list = element("dl", {});
   fillList(list, rows);
@@ -64,7 +64,6 @@ function addFacts(viewer, add) {
     hints.push("For distances in this page, make it with `--live always`, `--field 64` or `--random 1000` of `p2m view`.");
   }
   hints.push("Drag to turn, and use the wheel or two fingers to come nearer.");
-  const withCode = (hint) => hint.split("`").map((part, i) => (i % 2 ? element("code", {}, part) : part));
   add("The scene", "facts", list,
     element("ul", { class: "hints" }, ...hints.map((hint) => element("li", {}, ...withCode(hint)))));
 }

@@ -1,7 +1,7 @@
 // The panel of a slice: its axis, its place, its colours, and its value at the pointer.
 
 import { pictureLegend } from "./histogram.js";
-import { choice, element, short } from "./text.js";
+import { choice, element, short, withCode } from "./text.js";
 
 export class SlicePanel {
   constructor(viewer, add) {
@@ -19,16 +19,21 @@ export class SlicePanel {
     });
     this.text = element("output", { id: "slice-text" });
     this.value = element("output", { id: "slice-value" });
+    const { triangles, segments, points } = viewer.data.scene;
+    const hasSides = triangles.length > 0 && segments.length + points.length === 0;
     const about = slice.hasCells
       ? "A query evaluates only primitives of the list of its cell. Where a cell has no list the slice is violet, " +
         "and the AABB tree below the cells answers."
       : (isDiverging ? "Blue is inside, red is outside, and the black line is the surface. " : "") +
-        `The distance changes by ${short(slice.spacingOfLines)} ${viewer.unit} from line to line.`;
+        `The distance changes by ${short(slice.spacingOfLines)} ${viewer.unit} from line to line. ` +
+        (isDiverging || triangles.length === 0 ? ""
+          : "Dark lines are edges of the scene, and its surface where the slice cuts it. ") +
+        (hasSides && !isDiverging ? "The colours do not tell inside from outside: `--signed` adds that." : "");
     const title = slice.hasCells ? "Slice through the cells" : isDiverging ? "Signed distance" : "Distance";
     add(title, "field",
       element("div", { class: "row" }, element("span", {}, "Across"), this.axes, this.text), this.range,
       element("p", { class: "reading" }, this.value),
-      element("p", { class: "small" }, `Point at the slice to read it, and click to keep the answer. ${about}`));
+      element("p", { class: "small" }, ...withCode(`Point at the slice to read it, and click to keep the answer. ${about}`)));
     // What was read last, and whether it stays when the pointer moves.
     this.shown = null;
     this.isKept = false;
@@ -65,7 +70,7 @@ export class SlicePanel {
     position[axis] += slice.index * slice.spacing;
     this.text.textContent = `at ${short(viewer.coordinates(position)[axis])} ${viewer.unit}`;
     this.isKept = false;
-    this.show(this.example());
+    this.show(this.example(), true);
     viewer.draw();
   }
 
@@ -112,10 +117,10 @@ export class SlicePanel {
   }
 
   // Shows the value at a position in the frame, in the panel and in the picture, and returns it as a text.
-  show(position) {
+  show(position, isExample = false) {
     const { slice, viewer, value } = this;
     const text = slice.textAt(position, this.unit);
-    value.replaceChildren(text, element("span", { class: "small" }, ` at ${viewer.coordinates(position.toArray()).join("; ")}`));
+    value.replaceChildren(text, element("span", { class: "small" }, " at ", viewer.place(viewer.coordinates(position.toArray())), isExample ? " (an example)" : ""));
     this.shown = { position, text };
     // Live queries say it without interpolation.
     value.hidden = viewer.asked === viewer.live;

@@ -8,6 +8,8 @@ import { inWords, roundUp, short } from "./text.js";
 
 // The number of lines of equal distance between zero and the largest distance, at most.
 const LINES = 8;
+// The part of the values whose largest one is the end of a scale of distances, and how many of them are examined.
+const [USUAL, EXAMINED] = [0.9, 20_000];
 
 const VERTEX = `
   varying vec2 place;
@@ -74,9 +76,10 @@ export class SliceLayer {
       // inside of a slender scene is not deep.
       const [shorter, longer] = [Math.min(-least, most), Math.max(-least, most)];
       const limit = Math.min(longer, Math.max(1.6 * shorter, 0.3 * longer));
-      this.scale = new ColourScale("signedField", -limit, limit);
+      this.scale = new ColourScale("signedField", -limit, limit).contain(least, most);
     } else {
-      this.scale = new ColourScale("field", 0, most);
+      // Corners of the field are far from the scene, and would leave it pale.
+      this.scale = new ColourScale("field", 0, most > 0 ? quantile(this.values, USUAL) : most).contain(least, most);
     }
     this.spacingOfLines = roundUp(this.scale.high / LINES);
     this.texture = new three.DataTexture(null, 1, 1, three.RedFormat, three.FloatType);
@@ -215,4 +218,11 @@ export class SliceLayer {
     if (this.hasCells && Number.isNaN(value)) return "no list: the tree answers";
     return this.hasCells ? `${this.scale.text(value)} ${unit}` : inWords(value, this.scale.isDiverging, unit);
   }
+}
+
+// Returns the value below which a part of the values is that are numbers.
+function quantile(values, part) {
+  const step = Math.max(1, Math.floor(values.length / EXAMINED));
+  const some = Array.from({ length: Math.ceil(values.length / step) }, (_, i) => values[step * i]).filter(Number.isFinite);
+  return some.sort((a, b) => a - b)[Math.floor(part * (some.length - 1))] ?? 0;
 }

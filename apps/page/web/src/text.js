@@ -9,7 +9,7 @@ function figure(value, digits) {
   const rounded = Number(value.toPrecision(digits));
   const size = Math.abs(rounded);
   if (size === Infinity) return rounded < 0 ? "-infinity" : "infinity";
-  if (size !== 0 && (size < 1e-3 || size >= 1e12)) return rounded.toExponential().replace("+", "");
+  if (size !== 0 && (size < 1e-5 || size >= 1e12)) return rounded.toExponential().replace("+", "");
   return rounded.toLocaleString("en-US", { maximumFractionDigits: 12, maximumSignificantDigits: digits });
 }
 
@@ -45,10 +45,10 @@ export function number(value, digits = DIGITS) {
   return element("data", { value: String(value) }, figure(value, digits));
 }
 
-// Makes elements of several numbers with semicolons between them, because numbers have commas. Copies have commas
-// between them.
-export const numbers = (values) =>
-  [...values].flatMap((value, i) => [...(i > 0 ? [element("data", { value: ", " }, "; ")] : []), number(value)]);
+// Makes elements and texts of several numbers with semicolons between them, because numbers have commas. Copies have
+// commas between them. `show` makes the element of a number.
+export const numbers = (values, show = (value) => number(value)) =>
+  [...values].flatMap((value, i) => [...(i > 0 ? [element("data", { value: "," }, ";"), " "] : []), show(value)]);
 
 // Lets copied numbers have all their digits.
 export function copyAllDigits() {
@@ -133,6 +133,9 @@ export function fillList(list, rows) {
 
 // Makes a symbol of the picture and what it means.
 export const key = (symbol, text) => element("div", { class: "small" }, symbol, text);
+
+// Makes the parts of a text, in which parts in backticks are code.
+export const withCode = (text) => text.split("`").map((part, i) => (i % 2 ? element("code", {}, part) : part));
 
 // Makes a patch of a colour of the picture, by its name, or of a colour in CSS.
 export const patch = (colour) =>

@@ -20,13 +20,15 @@ import { SceneLayer } from "./scene.js";
 import { Painter, addLights } from "./shading.js";
 import { SliceLayer } from "./slice.js";
 import { SlicePanel } from "./slice-panel.js";
-import { copyAllDigits, inWords, number, reveal } from "./text.js";
+import { copyAllDigits, element, inWords, number, numbers, reveal } from "./text.js";
 import { addToolbar } from "./toolbar.js";
 
 // The distance in pixels within which an answer is selected or read.
 const PICK_RADIUS = 12;
 // The number of answers up to which the pointer reads them.
 const MAX_POINTED = 20_000;
+// The distance in pixels of an example from the corner of the scene in the picture, which makes its answer visible.
+const EXAMPLE_GAP = 30;
 // The length in radii of the scene below which a length is an error of rounding.
 const ROUNDING = 1e-12;
 
@@ -87,10 +89,14 @@ class Viewer {
     this.followSystem();
     this.resize();
     this.fit();
+    if (this.deviations) {
+      this.deviationsPanel.face();
+      this.fit();
+    }
     if (this.slice) {
       this.slicePanel.lay();
       this.fit();
-      this.slicePanel.show(this.slicePanel.example());
+      this.slicePanel.show(this.slicePanel.example(), true);
     } else if (this.answers && !this.live) {
       this.answersPanel.selectExample();
     }
@@ -114,9 +120,9 @@ class Viewer {
   }
 
   // Returns the position of the example that a page shows before anything was asked: on the slice in the middle of the
-  // picture, or the middle of the scene.
+  // picture, or where nothing hides it: in front of the middle of the scene, at a corner of what it covers in the picture.
   example() {
-    return this.slicePanel?.example() ?? new three.Vector3();
+    return this.slicePanel?.example() ?? this.view.corner(EXAMPLE_GAP);
   }
 
   addLayer(name, layer, drawn) {
@@ -271,18 +277,30 @@ class Viewer {
     return length < ROUNDING * this.data.frame.radius * this.frame.scale;
   }
 
-  // Returns the coordinates of a position in the frame, to a hundred thousandth of the radius of the scene.
-  coordinates(position) {
-    const digits = Math.max(0, Math.min(100, 5 - Math.floor(Math.log10(this.data.frame.radius * this.frame.scale))));
-    return this.frame.coordinates(position).map((x) => Number(x.toFixed(digits)));
+  // The number of decimals of all coordinates: they are shown to a hundred thousandth of the radius of the scene.
+  get decimals() {
+    return Math.max(0, Math.min(100, 5 - Math.floor(Math.log10(this.data.frame.radius * this.frame.scale))));
   }
 
-  // Makes an element that shows a coordinate to a thousandth of the radius of the scene, or less, with all digits in copies.
+  // Returns the coordinates of a position in the frame, with as many decimals as are shown.
+  coordinates(position) {
+    return this.frame.coordinates(position).map((x) => Number(x.toFixed(this.decimals)));
+  }
+
+  // Makes an element that shows a coordinate, with all digits in copies.
   coordinate(x) {
-    const digits = Math.max(0, Math.min(12, 4 - Math.floor(Math.log10(this.data.frame.radius * this.frame.scale))));
+    const { decimals } = this;
     const shown = number(x);
-    shown.textContent = x.toLocaleString("en-US", { maximumFractionDigits: digits });
+    // Numbers of other sizes have exponents.
+    if (decimals > 12 || !(Math.abs(x) < 1e12)) return shown;
+    const digits = { minimumFractionDigits: decimals, maximumFractionDigits: decimals };
+    shown.textContent = (Number(x.toFixed(decimals)) + 0).toLocaleString("en-US", digits);
     return shown;
+  }
+
+  // Makes an element that shows the coordinates of a point.
+  place(coordinates) {
+    return element("span", {}, ...numbers(coordinates, (x) => this.coordinate(x)));
   }
 
   // Opens or closes the list of keys.

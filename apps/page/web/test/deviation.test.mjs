@@ -163,6 +163,22 @@ test("a verdict comes first, bands show the tolerance, and worst places are flow
   }, worst);
   // Their numbers stand in the picture, and their coordinates in the list. The legend of the bands is in the picture.
   const marks = await page.$$eval("#overlay .labels .mark", (marks) => marks.map((mark) => mark.textContent));
+  // The view shows most of the worst places at first, the worst one among them.
+  const behind = await page.$$eval("#overlay .labels .mark", (marks) => marks.map((mark) => mark.classList.contains("behind")));
+  assert.ok(!behind[0] && behind.filter(Boolean).length <= behind.length / 2, String(behind));
+  // No number hides another one, even from far away.
+  const zoom = (factor) => page.evaluate(async (factor) => {
+    window.viewer.turn(0, 0, factor);
+    for (let i = 0; i < 2; i++) await new Promise(requestAnimationFrame);
+  }, factor);
+  await zoom(2.5);
+  const boxes = await page.$$eval("#overlay .labels .mark", (marks) => marks.map((mark) => {
+    const { left, top, width } = mark.getBoundingClientRect();
+    return [left, top, width];
+  }));
+  boxes.forEach(([a, b, width], i) => boxes.slice(0, i).forEach(([c, d]) =>
+    assert.ok(Math.hypot(a - c, b - d) >= width, String(boxes))));
+  await zoom(0.4);
   assert.deepEqual(marks, worst.map((_, i) => String(i + 1)));
   const rows = await page.$$eval("#largest td data", (all) => all.map((data) => Number(data.value)));
   const points = await page.evaluate((worst) =>
@@ -206,5 +222,22 @@ test("points of a scan have at least three pixels", { skip }, async () => {
   });
   // A disc of three pixels covers seven of them, nearly.
   assert.ok(covered >= 3 * 5 && covered < 3 * 13, String(covered));
+  assert.deepEqual(opened.problems, []);
+});
+
+test("a page says what distances without signs and distances between points mean", { skip }, async () => {
+  const scan = opened.write("few.xyz", "0 0 1\n3 0 1\n0 3 1\n");
+  for (const [scene, remark] of [
+    [opened.write("part.xyz", "0 0 0\n3 0 0\n0 3 0\n"), /only points, about 3 units apart/],
+    [join(opened.folder, "mesh.ply"), /^Without signs, /], [opened.scene, null],
+  ]) {
+    const html = join(opened.folder, "remark.html");
+    execFileSync(PROGRAM, ["deviation", scan, scene, "--unsigned", "--out", html], { stdio: "pipe" });
+    const page = await openTab(opened.browser, html, (problem) => opened.problems.push(problem));
+    const remarks = await page.$$eval("#deviations p.small", (all) => all.map((p) => p.textContent));
+    assert.equal(remarks.length, remark ? 1 : 0);
+    if (remark) assert.match(remarks[0], remark);
+    await page.close();
+  }
   assert.deepEqual(opened.problems, []);
 });

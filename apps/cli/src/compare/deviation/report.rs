@@ -143,7 +143,7 @@ impl<'a> DeviationReport<'a> {
     fn page(&self) -> serde_json::Result<String> {
         let view = self.args.page.view(self.compared.scene, &Deviations::bounds(&self.compared.scan.soup));
         let mut view = view.with_deviations(&self.deviations());
-        view.title = format!("{} in p2m", self.title());
+        view.title = self.title();
         let verdict = self.verdict().map(|verdict| verdict + ". ").unwrap_or_default();
         view.summary = verdict + &self.deviations().summary(&self.args.page.unit);
         let head: String = self.args.head.iter().map(|(name, value)| format!("{name}: {value}; ")).collect();

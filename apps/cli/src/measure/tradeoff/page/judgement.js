@@ -27,7 +27,7 @@ const nanoseconds = (x) => `${Number(x.toPrecision(x < 1e4 ? 4 : 3)).toLocaleStr
 /** Formats the label of a tick. */
 const tickLabel = (x) => {
   const short = (value, unit) => Number(value.toPrecision(2)) + unit;
-  return x >= 1e9 || x < 0.01
+  return x >= 1e9 || x < 0.001
     ? exponential(x, 0)
     : x >= 1e6
       ? short(x / 1e6, "M")
@@ -132,16 +132,28 @@ const turnsInWords = (all) =>
     .map(({ cost, from }) => (from > 0 ? `\`${cost.name}\` from ${count(from)} queries on` : `\`${cost.name}\``))
     .join(", then ");
 
-/** Returns what to take: in short, and in sentences. */
+/** The number of queries for which the headline names the index. */
+const COMMON = 1e6;
+/** Returns what to take: in short for a common number of queries, and in sentences for others. */
 function advice(set) {
   const [exact, rough] = NEEDS.map((need) => fastest(set.curves, need.limit));
   if (exact?.limit !== 0) return ["No index answered all queries exactly", "The remarks in the table of all settings say why."];
   const turns = cheapest(costs(exactCurves(set)));
-  const turn = turns.findIndex(({ cost }) => cost.name === exact.curve.name);
-  const before = turns[turn - 1];
-  const from = turns[turn]?.from > 0 ? `; pays from ${count(turns[turn].from)} queries on` : "";
-  const few = before ? `For fewer queries \`${before.cost.name}\` takes less time, because it is built sooner. ` : "";
-  const [slow, fast] = [exact, rough].map(({ point }) => point.nanoseconds);
+  const here = turns.findLastIndex(({ from }) => from <= COMMON);
+  const [before, after] = [turns[here - 1], turns[here + 1]];
+  const point = ({ cost }) => fastest(set.curves.filter((curve) => curve.name === cost.name), 0).point;
+  const named = (turn, quoted) => {
+    const [name, { setting }] = [turn.cost.name, point(turn)];
+    const words = quoted ? [`\`${name}\``, `\`${setting}\``] : [name, setting];
+    return words[0] + (setting === DEFAULT ? "" : ` with ${words[1]}`);
+  };
+  const time = (turn) => nanoseconds(point(turn).nanoseconds.median);
+  const few = before
+    ? `For fewer than ${count(turns[here].from)} queries ${named(before, true)} takes less time in all, because it is built sooner. ` : "";
+  const many = after
+    ? `From ${count(after.from)} queries on ${named(after, true)} takes less time in all, building included: ${time(after)} ` +
+      `per query. ` : "";
+  const [slow, fast] = [point(turns[here]).nanoseconds, rough.point.nanoseconds];
   const isNoise = slow.min <= fast.max;
   const gain =
     rough.point === exact.point
@@ -149,8 +161,8 @@ function advice(set) {
       : `If errors of up to 1 % do no harm, \`${rough.curve.name}\` with \`${rough.point.setting}\` takes ` +
         `${nanoseconds(fast.median)}, ${(slow.median / fast.median).toPrecision(2)} times as fast` +
         `${isNoise ? ", within the noise of this measurement" : ""}.`;
-  const setting = exact.point.setting === DEFAULT ? "" : ` with ${exact.point.setting}`;
-  return [`${exact.curve.name}${setting}, ${nanoseconds(slow.median)} per query, exact${from}`, few + gain];
+  const only = after ? `; ${after.cost.name} only from ${count(after.from)} queries on` : "";
+  return [`${named(turns[here])}, ${time(turns[here])} per query, exact${only}`, few + many + gain];
 }
 /** Returns the indexes that have an exact setting. */
 const exactCurves = (set) => set.curves.filter((curve) => fastest([curve], 0)?.limit === 0);

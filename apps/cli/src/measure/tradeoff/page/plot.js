@@ -59,7 +59,9 @@ function plot(xName, yName, series, key = [], columns = []) {
   const shown = series.map((line) => ({ ...line, points: line.points.filter((p) => !isNone(p.x) && p.y > 0) }));
   const all = shown.flatMap((line) => line.points);
   if (all.length === 0) return "<p>There is nothing to draw. Choose another kind of error, or show more indexes.</p>";
-  const [left, right, bottom] = [isNarrow ? 46 : 62, width - (isNarrow ? 10 : 70), height - 46];
+  // Between the last values and the border is room for the names of lines.
+  const border = width - 8;
+  const [left, right, bottom] = [isNarrow ? 46 : 62, border - (isNarrow ? 52 : 76), height - 46];
   let [keyX, keyY] = [left, 14];
   const keys = key.map(({ shape, text, isBroken, isHollow }) => {
     const long = 38 + text.length * 7;
@@ -80,27 +82,33 @@ function plot(xName, yName, series, key = [], columns = []) {
   const ys = range(all.map((p) => p.y), 1.25);
   const position = ([low, high], from, to, value) =>
     from + ((to - from) * Math.log(value / low)) / Math.log(high / low);
-  const column = isNarrow ? 58 : 86;
+  const column = isNarrow ? 64 : 92;
   const hasPositive = all.some((p) => p.x > 0);
-  const px = (x) => (x > 0 ? position(xs, left + column * used.length, right, x) : left + column * (used.indexOf(x) + 0.5));
+  // In a column each index has a place of its own, because marks would hide each other.
+  const order = [...new Set(series.map((line) => line.name))];
+  const aside = (name) => ((order.indexOf(name) - (order.length - 1) / 2) * 0.8 * column) / Math.max(4, order.length);
+  const px = (x, name) => (x > 0 ? position(xs, left + column * used.length + 12, right, x)
+    : left + column * (used.indexOf(x) + 0.5) + (name === undefined ? 0 : aside(name)));
   const py = (y) => position(ys, bottom, top, y);
-  const place = (x, y) => `${px(x).toFixed(1)} ${py(y).toFixed(1)}`;
-  const least = isNarrow ? 44 : 60;
-  let before = -Infinity;
-  const xTicks = (hasPositive ? ticks(...xs) : [])
-    .map((x) => [px(x), tickLabel(x)])
-    .filter(([x]) => x - before >= least && (before = x) === x)
-    .concat(used.map((name) => [px(name), name]));
+  const place = (x, y, name) => `${px(x, name).toFixed(1)} ${py(y).toFixed(1)}`;
+  // Names of columns stay, and then the labels that a text is likely to name.
+  const xTicks = used.map((name) => [px(name), name]);
+  const half = (text) => text.length * (isNarrow ? 3 : 3.4) + 3;
+  const known = (x) => [0.01, 0.1, 1].indexOf(x) + 1 || 4;
+  for (const x of (hasPositive ? ticks(...xs) : []).sort((a, b) => known(a) - known(b) || a - b)) {
+    const [at, text] = [px(x), tickLabel(x)];
+    if (xTicks.every(([other, name]) => Math.abs(other - at) >= half(text) + half(name))) xTicks.push([at, text]);
+  }
   const grid = [
     ...used.map((_, i) =>
       `<rect class="column" x="${left + column * i}" y="${top}" width="${column - 2}" height="${bottom - top}"/>`),
     ...xTicks.map(([x, text]) => path("grid", `M${x.toFixed(1)} ${top}V${bottom}`) + label(x.toFixed(1), bottom + 17, "middle", text)),
     ...ticks(...ys).map(
-      (y) => path("grid", `M${left} ${py(y).toFixed(1)}H${right}`) + label(left - 6, (py(y) + 4).toFixed(1), "end", tickLabel(y)),
+      (y) => path("grid", `M${left} ${py(y).toFixed(1)}H${border}`) + label(left - 6, (py(y) + 4).toFixed(1), "end", tickLabel(y)),
     ),
   ];
   const lines = shown.map(({ name, points, isBroken }) => {
-    const steps = points.map((p) => place(p.x, p.y));
+    const steps = points.map((p) => place(p.x, p.y, name));
     const kind = isBroken ? "curve dashed" : "curve";
     return steps.length > 1 ? `<path class="${kind}" stroke="${colour(name)}" d="M${steps.join("L")}"/>` : "";
   });
@@ -111,20 +119,20 @@ function plot(xName, yName, series, key = [], columns = []) {
     // The default setting begins both lines of an index, and is drawn once.
     if (drawn.has(p.note)) return "";
     drawn.add(p.note);
-    const [x, y] = [px(p.x), py(p.y)];
+    const [x, y] = [px(p.x, name), py(p.y)];
     const ring = p.isBest ? `<circle class="border" cx="${x.toFixed(1)}" cy="${y.toFixed(1)}" r="9.5"/>` : "";
     const kind = p.isHollow ? "dot hollow" : "dot";
     const common = `class="${kind}" tabindex="0" role="img" aria-label="${escaped(p.note)}" color="${colour(name)}"`;
     return ring + mark(p.shape ?? "circle", x, y, 5.5, common);
   });
-  // The name of an index stands beside the right end of its lines, where there is room.
+  // The name of an index stands beside the right end of its lines.
   const names = [];
-  for (const { name, points } of isNarrow ? [] : shown) {
-    const end = points.reduce((a, p) => (a && px(a.x) >= px(p.x) ? a : p), undefined);
+  for (const { name, points } of shown) {
+    const end = points.reduce((a, p) => (a && px(a.x, name) >= px(p.x, name) ? a : p), undefined);
     const near = names.find((other) => other.name === name);
-    if (!end || (near && near.x >= px(end.x))) continue;
-    if (near) Object.assign(near, { x: px(end.x), y: py(end.y) });
-    else names.push({ name, x: px(end.x), y: py(end.y) });
+    if (!end || (near && near.x >= px(end.x, name))) continue;
+    if (near) Object.assign(near, { x: px(end.x, name), y: py(end.y) });
+    else names.push({ name, x: px(end.x, name), y: py(end.y) });
   }
   names.sort((a, b) => a.y - b.y).forEach((entry, i) => {
     const above = names[i - 1];
@@ -134,8 +142,8 @@ function plot(xName, yName, series, key = [], columns = []) {
     `<text class="name-label" x="${(x + 13).toFixed(1)}" y="${(y + 4).toFixed(1)}" style="fill:${colour(name)}">${escaped(name)}</text>`);
   return `<svg viewBox="0 0 ${width} ${height}" width="${width}" role="group" aria-label="${escaped(`${yName} over ${xName}`)}">
 ${grid.join("\n")}
-${path("border", `M${left} ${top}V${bottom}H${right}`)}
-${label((left + right) / 2, height - 8, "middle", xName)}
+${path("border", `M${left} ${top}V${bottom}H${border}`)}
+${label((left + border) / 2, height - 8, "middle", xName)}
 <g transform="translate(${isNarrow ? 10 : 14} ${(top + bottom) / 2}) rotate(-90)">${label(0, 0, "middle", yName)}</g>
 ${lines.join("\n")}
 ${labels.join("\n")}
