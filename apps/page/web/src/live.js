@@ -297,7 +297,7 @@ export class LiveQueries {
     const { query, isValid, indexes, answers } = this.shown;
     const [answer] = answers;
     const rows = [];
-    if (this.isExample) rows.push(["an example", "point anywhere in the picture to ask there"]);
+    if (this.isExample) rows.push(["an example", "point elsewhere to ask"]);
     if (answer) {
       // Where the colours of a slice have no sign, the words tell the side.
       const signed = ([term]) => term === "signed distance" && this.viewer.slice?.scale.isDiverging === false;
@@ -307,7 +307,7 @@ export class LiveQueries {
       const isSame = answers.every((other) => key(other) === key(answer));
       const all = `the ${indexes.length} indexes`;
       if (indexes.length > 1) rows.push(["agreement", isSame ? `${all} give equal answers` : `${all} differ`]);
-      else if (!this.isComplete) rows.push(["agreement", "one index has answered; open “Indexes” below to compare all"]);
+      else if (!this.isComplete) rows.push(["agreement", "one index has answered; see “Indexes”"]);
     } else if (isValid) {
       rows.push(["answer", "none"]);
     }
