@@ -1,7 +1,7 @@
 //! Checks the C interface: its header, C and C++ programs that use it, and that its answers are those of Rust.
 
 use crate::python::text;
-use crate::{Outcome, absolute_target_folder, cargo, output, read, run, skip};
+use crate::{Outcome, absolute_target_folder, build_for_tests, cargo, output, read, run, skip};
 use std::fs;
 use std::path::Path;
 
@@ -27,9 +27,7 @@ pub(crate) fn check(arguments: &[String]) -> Outcome {
     if cfg!(windows) {
         return skip("the C interface is tested with gcc and clang");
     }
-    // With the features of `cargo test --workspace` little is compiled after it.
-    let build = ["build", "--locked", "--workspace", "--lib", "--examples", "--features", "p2m-python/cuda"];
-    cargo(&build, &[])?;
+    build_for_tests()?;
     let target = absolute_target_folder()?;
     let (libraries, programs) = (target.join("debug"), target.join("c-tests"));
     fs::create_dir_all(&programs).map_err(|error| format!("{}: {error}", programs.display()))?;

@@ -242,6 +242,13 @@ fn debug_program() -> Result<PathBuf, String> {
     Ok(absolute_target_folder()?.join("debug").join(format!("p2m{}", std::env::consts::EXE_SUFFIX)))
 }
 
+/// Compiles what the tests of other languages need: libraries, examples and the program. The features are about those of
+/// `cargo test --workspace`, so little is compiled after it, and nothing after another of these tasks.
+fn build_for_tests() -> Outcome {
+    let build = ["build", "--locked", "--workspace", "--lib", "--examples", "--bin", "p2m"];
+    cargo(&[&build[..], &["--features", "p2m-python/cuda"]].concat(), &[])
+}
+
 /// Runs cargo with arguments, followed by the remaining arguments of the task.
 fn cargo(arguments: &[&str], rest: &[String]) -> Outcome {
     run("cargo", arguments, rest)

@@ -1,6 +1,6 @@
 //! Checks the script of pages and the npm package, and tests both in a browser.
 
-use crate::{Outcome, cargo, debug_program, output, start};
+use crate::{Outcome, build_for_tests, debug_program, output, start};
 use std::path::Path;
 use std::process::Command;
 
@@ -49,9 +49,7 @@ fn test(folder: &str, what: &str) -> Outcome {
     if let Err(why) = find_browser() {
         return crate::skip(&format!("there is no Chromium for the tests of {what}: {why}"));
     }
-    // With the features of `cargo test --workspace` and of `cargo xtask python`, nothing is compiled anew after them.
-    let build = ["build", "--locked", "--workspace", "--lib", "--examples", "--bin", "p2m"];
-    cargo(&[&build[..], &["--features", "p2m-python/cuda"]].concat(), &[])?;
+    build_for_tests()?;
     start(npm(folder, &["test"]).env("P2M", debug_program()?))
 }
 

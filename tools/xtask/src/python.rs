@@ -1,6 +1,6 @@
 //! Builds the Python package, installs it into a virtual environment, and runs its tests there.
 
-use crate::{Outcome, absolute_target_folder, cargo, debug_program, output, run};
+use crate::{Outcome, absolute_target_folder, build_for_tests, debug_program, output, run};
 use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::Command;
@@ -61,10 +61,8 @@ pub(crate) fn check(filter: &[String]) -> Outcome {
             }
         }
     }
-    // With the features of `cargo test --workspace`, which examples need as well, only this package is compiled after
-    // the other tests. The crates that search are optimised in this profile.
-    let build = ["build", "--locked", "--workspace", "--lib", "--examples", "--bin", "p2m"];
-    cargo(&[&build[..], &["--features", "p2m-python/cuda"]].concat(), &[])?;
+    // The crates that search are optimised in this profile.
+    build_for_tests()?;
     install_package(&own_python, &target.join("debug"))?;
     let in_folder = |folder: &str, arguments: &[&str], variable: (&str, &Path)| {
         let mut command = Command::new(&own_python);
