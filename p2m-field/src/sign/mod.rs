@@ -122,7 +122,7 @@ struct Signs<S> {
 
 /// Certificates are prepared when the rays so far and the queries of the next batch exceed this number for each
 /// triangle: casting the rays would then take about as long.
-const RAYS_PER_TRIANGLE: f64 = 0.5;
+const RAYS_PER_TRIANGLE: f64 = 2.0;
 
 impl SharedDistance {
     /// Builds an AABB tree over triangles, with signs as [`SignedDistance::new`] makes them. A scene of its own is
@@ -286,7 +286,8 @@ impl<I, S: SharedSoup> SignedDistance<I, S> {
     /// and infinity where there is no answer. `index` may stand for that of these signs.
     ///
     /// The values are those of [`closest_points`](Self::closest_points), but neighbours share signs: if the surface is
-    /// closed, all points have one sign that are nearer to a point than the surface is.
+    /// closed, all points have one sign that are nearer to a point than the surface is, and so have two such balls that
+    /// intersect.
     pub fn distances_into<T: Real>(
         &self,
         index: &(impl ClosestPoint<T> + Sync + ?Sized),
@@ -312,16 +313,25 @@ impl<I, S: SharedSoup> SignedDistance<I, S> {
     {
         let Some((distance, _)) = found.distance_and_index() else { return T::INFINITY };
         let point = query.map(Real::to_f64);
+        let side_of = |radius: f64| balls.iter().position(|ball| ball.meets(&point, radius));
+        let with_side = |side: usize| if side == 1 { -distance } else { distance };
         if distance > T::zero()
-            && let Some(side) = balls.iter().position(|ball| ball.has(&point))
+            && let Some(side) = side_of(0.0)
         {
-            return if side == 1 { -distance } else { distance };
+            return with_side(side);
         }
         let Some(closest) = found.closest() else { return T::INFINITY };
+        let radius = closest.lower_bound.to_f64();
+        if radius > 0.0
+            && let Some(side) = side_of(radius)
+        {
+            balls[side] = KnownBall { centre: point, radius };
+            return with_side(side);
+        }
         let signed = self.with_sign(query, closest);
         let is_inside = signed.sign == Sign::Inside;
         if self.is_closed() && (is_inside || signed.sign == Sign::Outside) {
-            balls[usize::from(is_inside)] = KnownBall::new(point, closest.lower_bound.to_f64());
+            balls[usize::from(is_inside)] = KnownBall { centre: point, radius };
         }
         signed.distance().unwrap_or(T::round_from_f64(f64::NAN))
     }
@@ -390,26 +400,22 @@ fn answer_parts<T: Real, R: Send, F: FnMut(&Point3<T>, BatchAnswer<'_, T>) -> R>
     });
 }
 
-/// A ball without surface, whose points have one sign.
+/// An open ball without surface, whose points have one sign.
 #[derive(Clone, Copy, Default)]
 struct KnownBall {
     centre: Point3<f64>,
-    /// The square of the radius, or 0 if there is no ball.
-    square: f64,
+    /// The radius, or at most 0 if there is no ball.
+    radius: f64,
 }
 
 impl KnownBall {
-    /// Makes the ball around a point that is at least so far from the surface.
-    fn new(centre: Point3<f64>, radius: f64) -> Self {
-        // Smaller squares would lose digits to underflow. The factor covers the rounding of both squares.
-        let is_safe = radius > 1e-140;
-        Self { centre, square: if is_safe { radius * radius * (1.0 - 1e-12) } else { 0.0 } }
-    }
-
-    /// Returns whether a point is in the ball.
-    fn has(&self, point: &Point3<f64>) -> bool {
-        // An infinite square is below no other one.
-        (point - self.centre).norm_squared() < self.square
+    /// Returns whether a point, with an open ball around it of this radius or without one, is certainly connected with the
+    /// ball: then nothing separates their points from each other.
+    fn meets(&self, point: &Point3<f64>, radius: f64) -> bool {
+        let reach = self.radius + radius;
+        // Smaller squares would lose digits to underflow, and an infinite one is below no other one. The factor covers
+        // the rounding of both squares.
+        self.radius > 1e-140 && (point - self.centre).norm_squared() < reach * reach * (1.0 - 1e-12)
     }
 }
 
