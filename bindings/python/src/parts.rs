@@ -69,7 +69,7 @@ fn halve<O: Split, R: Send>(
     }
     if queries.len() <= monitor.step() {
         let (count, start) = (queries.len(), Instant::now());
-        results.push(answer(queries, out));
+        results.push(monitor.run_part(|| answer(queries, out)));
         monitor.end_step(count, start);
         return;
     }

@@ -67,6 +67,15 @@ impl Monitor {
         self.is_cancelled.load(Ordering::Relaxed)
     }
 
+    /// Returns the result of a part of the work. If the part unwinds, such as for lack of memory, the other threads stop
+    /// as well.
+    pub(crate) fn run_part<R>(&self, part: impl FnOnce() -> R) -> R {
+        catch_unwind(AssertUnwindSafe(part)).unwrap_or_else(|payload| {
+            self.is_cancelled.store(true, Ordering::Relaxed);
+            resume_unwind(payload)
+        })
+    }
+
     /// Sets how much of the work is done.
     pub(crate) fn set_done(&self, done: usize) {
         self.done.fetch_max(done, Ordering::Relaxed);
