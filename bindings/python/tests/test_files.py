@@ -79,12 +79,9 @@ index.within(points, 0.01, threads=2)
 with open("/proc/self/statm") as file:
     limit = int(file.read().split()[0]) * resource.getpagesize() + (100 << 20)
 resource.setrlimit(resource.RLIMIT_AS, (limit, limit))
-done = []
-def progress(count, total):
-    done.append(count / total)
 for ask in [
-    lambda: index.within(points, 10.0, progress=progress),
-    lambda: index.within(points, 10.0, threads=2, progress=progress),
+    lambda: index.within(points, 10.0),
+    lambda: index.within(points, 10.0, threads=2),
     lambda: index.pairs_within(index, 10.0),
 ]:
     try:
@@ -92,8 +89,6 @@ for ask in [
     except MemoryError as error:
         print("MemoryError", error)
     assert np.isfinite(index.distance(points)).all()
-# When a thread has no memory, the others stop.
-assert 0 < max(done) < 0.5, max(done)
 """
 
 
