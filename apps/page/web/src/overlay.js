@@ -56,9 +56,9 @@ export class Overlay {
     const pixel = viewer.view.pixel * viewer.frame.scale;
     const length = roundUp(LEAST_BAR * pixel);
     this.bar.hidden = !Number.isFinite(length) || length === 0;
-    this.bar.firstChild.style.width = `${Math.min(length / pixel, width / 2)}px`;
+    this.bar.firstChild.style.width = `${Math.min(length / pixel, width / 2).toFixed(1)}px`;
     const isOne = length === 1 && viewer.unit === "units";
-    this.barText.textContent = `${short(length)} ${isOne ? "unit" : viewer.unit}`;
+    setText(this.barText, `${short(length)} ${isOne ? "unit" : viewer.unit}`);
     this.placeLabels(width, height);
   }
 
@@ -104,7 +104,7 @@ export class Overlay {
   // Sets the label with a number. Elements of the frame before are used again.
   setLabel(i, text, kind, transform) {
     const label = this.labels.children[i] ?? this.labels.appendChild(element("span"));
-    if (label.textContent !== text) label.textContent = text;
+    setText(label, text);
     if (label.className !== kind) label.className = kind;
     label.style.transform = transform;
   }
@@ -183,6 +183,11 @@ export class Overlay {
   setTheme(colours) {
     this.grid?.material.color.set(colours.grid);
   }
+}
+
+// Sets the text of an element. A text that is set again would be laid out again.
+function setText(element, text) {
+  if (element.textContent !== text) element.textContent = text;
 }
 
 // Returns the text of a label for a narrow picture.
