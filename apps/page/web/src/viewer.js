@@ -93,6 +93,11 @@ class Viewer {
       this.deviationsPanel.face();
       this.fit();
     }
+    if (this.measures?.main) {
+      const [a, b] = this.measures.main;
+      this.view.layAcross(b.sub(a));
+      this.fit();
+    }
     if (this.slice) {
       this.slicePanel.lay();
       this.fit();
