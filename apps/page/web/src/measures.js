@@ -113,7 +113,7 @@ export class MeasuresLayer {
 
   select(viewer) {
     const rows = this.drawn().flatMap((i) => [
-      [this.names[i] ?? `number ${count(i)}`, element("span", {}, number(this.lengths[i]), ` ${viewer.unit}`)],
+      [[this.names[i] ?? `number ${count(i)}`], element("span", {}, number(this.lengths[i]), ` ${viewer.unit}`)],
       ...[0, 1].map((k) => [this.term(k), viewer.place(this.coordinates.subarray(6 * i + 3 * k, 6 * i + 3 * k + 3))]),
     ]);
     fillList(this.text, rows);

@@ -123,7 +123,7 @@ function content(value) {
   return [value];
 }
 
-// The classes of entries that have a row without their term.
+// The classes of entries that have a row without their term, which is a text and not a list.
 const WHOLE_ROWS = { distance: "main", inside: "whole" };
 
 // Makes paragraphs of remarks on a verdict, which stand below it.
@@ -133,7 +133,7 @@ export const remarksOn = (remarks) => remarks.map((remark) => element("p", { cla
 export function fillList(list, rows) {
   list.replaceChildren(
     ...rows.flatMap(([term, value]) => [
-      element("dt", {}, ...[term].flat()), element("dd", { class: WHOLE_ROWS[term] }, ...content(value)),
+      element("dt", {}, ...[term].flat()), element("dd", { class: typeof term === "string" && (WHOLE_ROWS[term] ?? false) }, ...content(value)),
     ]));
 }
 

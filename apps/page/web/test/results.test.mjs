@@ -32,6 +32,8 @@ test("a page shows the distance of two scenes, and the farthest points", { skip 
     const shown = await opened.read("measure", command === "distance" ? "distance" : "farthest", page);
     assert.equal(Number.parseFloat(shown), found);
     assert.deepEqual((await opened.read("measure", "sphere.ply", page)).split(", ").map(Number), point);
+    // The sentence above is the only one in large print.
+    assert.equal(await page.locator("#measure .main").count(), 0);
     // The coordinates that a reader sees have equal decimals, and are as far apart as the length beside them.
     const ends = await page.$$eval("#measure dd", ([, ...ends]) => ends.map((end) => end.textContent.split("; ")));
     assert.equal(new Set(ends.flat().map((x) => x.split(".")[1].length)).size, 1, String(ends));
@@ -97,10 +99,15 @@ test("a page shows a scan before and after it was aligned, and the matrix", { sk
 });
 
 test("a measured line is as long as the scale bar says", { skip }, async () => {
-  const [first, second, html] = ["near.ply", "beside.ply", "bar.html"].map(path);
-  run(["generate", "ico-sphere", "--out", first]);
-  for (const [shift, up] of [[["4", "3", "0"], "z"], [["4", "0", "3"], "y"]]) {
-    run(["convert", first, second, "--translate", ...shift]);
+  const [sphere, beside, html] = ["near.ply", "beside.ply", "bar.html"].map(path);
+  run(["generate", "ico-sphere", "--out", sphere]);
+  // The last line is in front of the middle of the scene.
+  const [long, short] = [["long.obj", "v 0 0 0\nv 0 20 0\nl 1 2\n"], ["short.obj", "v 4 0 0\nv 4 0 1\nl 1 2\n"]]
+    .map(([name, text]) => opened.write(name, text));
+  for (const [first, second, shift, up] of [
+    [sphere, beside, ["4", "3", "0"], "z"], [sphere, beside, ["4", "0", "3"], "y"], [long, short, null, "z"],
+  ]) {
+    if (shift) run(["convert", first, second, "--translate", ...shift]);
     run(["distance", first, second, "--html", html, "--up", up]);
     const page = await open(html);
     const [line, bar] = await page.evaluate(() => {
@@ -111,7 +118,7 @@ test("a measured line is as long as the scale bar says", { skip }, async () => {
       const box = document.querySelector(".scale-bar");
       return [measures.lengths[0] / pixels, Number.parseFloat(box.textContent) / Number.parseFloat(box.firstChild.style.width)];
     });
-    assert.ok(Math.abs(line / bar - 1) < 0.02, `${up}: ${line} ${bar}`);
+    assert.ok(Math.abs(line / bar - 1) < 0.02, `${second}, ${up}: ${line} ${bar}`);
     await page.close();
   }
 });
