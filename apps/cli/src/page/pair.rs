@@ -35,7 +35,7 @@ pub(crate) struct PairPage<'a> {
     pub(crate) motion: Option<&'a Isometry3<f64>>,
     pub(crate) title: &'static str,
     pub(crate) verdict: String,
-    /// What the verdict means, and reasons to doubt it.
+    /// Sentences on what the verdict means, and on reasons to doubt it.
     pub(crate) remarks: Vec<String>,
     pub(crate) found: PairResult,
 }
