@@ -406,8 +406,7 @@ impl<'a> View<'a> {
     }
 
     /// Shows the second of two objects where it is and where it was before it was moved, under a title, with a sentence
-    /// about the motion and remarks on it. The box that the page was started with has to contain the object at both
-    /// places.
+    /// about the motion and remarks on it. The box that the page was started with has to contain the object at both.
     ///
     /// # Panics
     /// If the scene has not two objects.
