@@ -49,12 +49,7 @@ impl Deviations<'_> {
     pub fn summary(&self, unit: &str) -> String {
         let DeviationStatistics { count, mean, rms, min, max, .. } = *self.statistics;
         let what = if self.is_signed { "deviations, positive outside" } else { "distances" };
-        // A sentence has no exponents as long as the digits can be counted.
-        let in_words = |x: f64| match x.abs() {
-            size if (1e-5..1e-3).contains(&size) => format!("{x:.8}").trim_end_matches('0').to_owned(),
-            _ => Figure(x).to_string(),
-        };
-        let [mean, rms, min, max] = [mean, rms, min, max].map(in_words);
+        let [mean, rms, min, max] = [mean, rms, min, max].map(Figure);
         let count = Count(count as u64);
         format!("{count} {what}: mean {mean} {unit}, root mean square {rms} {unit}, from {min} to {max} {unit}")
     }

@@ -67,6 +67,9 @@ struct Data {
     scene: SceneData,
     object_names: Vec<String>,
     has_object_colours: bool,
+    /// The kinds of primitives because of which the scene has no inside.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    no_inside: Option<&'static str>,
     #[serde(skip_serializing_if = "Option::is_none")]
     answers: Option<AnswerData>,
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -109,6 +112,7 @@ pub struct Moved {
 struct MovedData {
     title: String,
     verdict: String,
+    remarks: Vec<String>,
     /// The 16 numbers, row by row.
     matrix: Vec<f64>,
     facts: Vec<(&'static str, f64)>,
@@ -119,6 +123,7 @@ struct MovedData {
 struct MeasureData {
     title: String,
     verdict: String,
+    remarks: Vec<String>,
     names: Vec<String>,
     lengths: Packed,
     /// Six coordinates for each line.
@@ -221,6 +226,12 @@ impl<'a> View<'a> {
             scene: data,
             object_names,
             has_object_colours: false,
+            no_inside: match [scene.soup.segments().is_empty(), scene.soup.points().is_empty()] {
+                [false, false] => Some("lines and points"),
+                [false, true] => Some("lines"),
+                [true, false] => Some("points"),
+                [true, true] => None,
+            },
             answers: None,
             cells: None,
             field: None,
@@ -371,14 +382,15 @@ impl<'a> View<'a> {
         self
     }
 
-    /// Shows lines with their lengths under a title, and above them a sentence about all of them. The box that the page
-    /// was started with has to contain their ends.
+    /// Shows lines with their lengths under a title, and above them a sentence about all of them with remarks on it. The
+    /// box that the page was started with has to contain their ends.
     #[must_use]
-    pub fn with_measures(mut self, title: &str, verdict: &str, measures: &[Measure]) -> Self {
+    pub fn with_measures(mut self, title: &str, verdict: &str, remarks: &[String], measures: &[Measure]) -> Self {
         let ends = measures.iter().flat_map(|measure| measure.ends).flat_map(|p| [p.x, p.y, p.z]);
         self.data.measures = Some(MeasureData {
             title: title.to_owned(),
             verdict: verdict.to_owned(),
+            remarks: remarks.to_vec(),
             names: measures.iter().map(|measure| measure.name.clone()).filter(|name| !name.is_empty()).collect(),
             lengths: Packed::new(&measures.iter().map(|measure| measure.length).collect::<Vec<f64>>()),
             ends: Packed::new(&ends.collect::<Vec<f64>>()),
@@ -394,16 +406,17 @@ impl<'a> View<'a> {
     }
 
     /// Shows the second of two objects where it is and where it was before it was moved, under a title, with a sentence
-    /// about the motion. The box that the page was started with has to contain the object before the motion.
+    /// about the motion and remarks on it. The box that the page was started with has to contain the object at both.
     ///
     /// # Panics
     /// If the scene has not two objects.
     #[must_use]
-    pub fn with_moved(mut self, title: &str, verdict: &str, moved: &Moved) -> Self {
+    pub fn with_moved(mut self, title: &str, verdict: &str, remarks: &[String], moved: &Moved) -> Self {
         assert_eq!(self.scene.objects.len(), 2, "the second of two objects was moved");
         self.data.moved = Some(MovedData {
             title: title.to_owned(),
             verdict: verdict.to_owned(),
+            remarks: remarks.to_vec(),
             matrix: moved.matrix.transpose().iter().copied().collect(),
             facts: moved.facts.clone(),
         });

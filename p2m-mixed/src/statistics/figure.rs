@@ -21,8 +21,8 @@ impl fmt::Display for Count {
     }
 }
 
-/// A number that is displayed with four significant digits: `0.03125`, `1,234`. Numbers from a hundred thousand up and
-/// below a thousandth have an exponent: `4.45e5`.
+/// A number that is displayed with four significant digits: `0.03125`, `1,234`, `444,800`. Numbers from 10^12 up and
+/// below 10^-5 have an exponent: `4.45e-6`. Pages display numbers in the same way.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Figure(pub f64);
 
@@ -82,12 +82,12 @@ fn rounded(x: f64, digits: usize) -> String {
     if x == 0.0 {
         return "0".to_owned();
     }
-    // The number is rounded before its exponent is examined, so that 99,999.9 becomes 1e5.
+    // The number is rounded before its exponent is examined, so that 999,999,999,999 becomes 1e12.
     let scientific = format!("{x:.*e}", digits - 1);
     let Some((mantissa, exponent)) = scientific.split_once('e') else { return scientific };
     let exponent: i32 = exponent.parse().unwrap_or(0);
     let most = i32::try_from(digits).unwrap_or(0);
-    if !(-3..=most).contains(&exponent) {
+    if !(-5..12).contains(&exponent) {
         return format!("{}e{exponent}", trim(mantissa));
     }
     let value: f64 = scientific.parse().unwrap_or(x);
@@ -172,14 +172,19 @@ mod tests {
             (0.031_25, "0.03125"),
             (0.001, "0.001"),
             (0.000_999_96, "0.001"),
-            (0.000_5, "5e-4"),
+            (0.000_5, "0.0005"),
+            (0.000_012_346, "0.00001235"),
+            (0.000_009_999_6, "0.00001"),
+            (-0.000_009_9, "-9.9e-6"),
             (12.345_67, "12.35"),
             (999.96, "1,000"),
             (1234.5, "1,234"),
             (-1234.5, "-1,234"),
             (43_554.0, "43,550"),
-            (99_999.9, "1e5"),
-            (444_812.0, "4.448e5"),
+            (99_999.9, "100,000"),
+            (444_812.0, "444,800"),
+            (-999_940_000_000.0, "-999,900,000,000"),
+            (999_990_000_000.0, "1e12"),
             (1e300, "1e300"),
             (-4e-310, "-4e-310"),
         ] {
@@ -189,7 +194,8 @@ mod tests {
 
     #[test]
     fn lengths_have_six_digits_and_times_three() {
-        for (x, expected) in [(0.540_449_148, "0.540449"), (12_345.678, "12,345.7"), (-1e6, "-1,000,000"), (3e7, "3e7")]
+        for (x, expected) in
+            [(0.540_449_148, "0.540449"), (12_345.678, "12,345.7"), (-1e6, "-1,000,000"), (3e7, "30,000,000")]
         {
             assert_eq!(Length(x).to_string(), expected);
         }

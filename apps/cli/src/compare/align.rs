@@ -137,14 +137,14 @@ pub(crate) fn run(streams: &Streams, args: &Args) -> anyhow::Result<()> {
     let (points, scenes) = (scan.soup.positions().len(), [scene, scan]);
     args.page.write(streams, || {
         let rms = besides_rounding(found.rms, args.page.unit(), &before);
-        let doubt: String = warnings(&found).map(|warning| format!(", but {warning}")).collect();
-        let verdict = format!("The root mean square of the distances is {rms}{doubt}.");
+        let verdict = format!("{rms} root mean square distance.");
+        let remarks = warnings(&found).map(|warning| format!("Warning: {warning}.")).collect();
         let mut facts = vec![("root mean square", found.rms), ("coverage in %", 100.0 * found.coverage)];
         facts.extend(args.scale.then_some(("scale", found.scale)));
         let moved = Moved { matrix: found.matrix, facts };
-        let found = PairResult::Moved { moved, before, warnings: warnings(&found).collect() };
+        let found = PairResult::Moved { moved, before };
         let paths = [&*args.scene.path, &*args.scan.path];
-        PairPage { paths, scenes: &scenes, motion: None, title: "Alignment", verdict, found }
+        PairPage { paths, scenes: &scenes, motion: None, title: "Alignment", verdict, remarks, found }
     })?;
     if args.json {
         let head = json!({

@@ -100,7 +100,7 @@ pub(crate) fn run(streams: &Streams, args: &Args) -> anyhow::Result<()> {
         };
         let (paths, motion) = (args.scenes.paths(), motion.as_ref());
         let found = PairResult::Measures(found.iter().map(measure).collect());
-        PairPage { paths, scenes: &scenes, motion, title: "Distance", verdict, found }
+        PairPage { paths, scenes: &scenes, motion, title: "Distance", verdict, remarks: Vec::new(), found }
     })?;
     if args.json {
         return json::print(streams, &report(&names, formats, &scenes, found.as_ref(), limit, args.solid));

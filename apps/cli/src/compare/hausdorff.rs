@@ -107,18 +107,17 @@ pub(crate) fn run(streams: &Streams, args: &Args) -> anyhow::Result<()> {
     args.page.write(streams, || {
         let of = if args.one_sided { "the first" } else { "either" };
         let bounds = [found.lower_bound, found.upper_bound].map(|bound| Length(bound).to_string());
-        let range =
-            if bounds[0] == bounds[1] { bounds[0].clone() } else { format!("between {}", bounds.join(" and ")) };
-        let verdict = format!(
-            "The farthest point of {of} scene is {range} {} from the other one. The gap between the scenes is another \
-             length, which p2m distance finds.",
-            args.page.unit()
-        );
+        let range = if bounds[0] == bounds[1] { bounds[0].clone() } else { bounds.join(" to ") };
+        let verdict = format!("{range} {} at the farthest point.", args.page.unit());
+        let remarks = vec![
+            format!("No point of {of} scene is farther than this from the other scene."),
+            "The gap between the scenes is another length, which p2m distance finds.".to_owned(),
+        ];
         // The points are as far apart as the lower bound says.
         let measure = Measure { name: "farthest".to_owned(), ends: found.points, length: found.lower_bound };
         // The second scene is in its place already.
         let (paths, found) = (args.scenes.paths(), PairResult::Measures(vec![measure]));
-        PairPage { paths, scenes: &scenes, motion: None, title: "Hausdorff distance", verdict, found }
+        PairPage { paths, scenes: &scenes, motion: None, title: "Hausdorff distance", verdict, remarks, found }
     })?;
     if args.json {
         return json::print(streams, &report(&names, formats, &scenes, &found, tolerance, args.one_sided));

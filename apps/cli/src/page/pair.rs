@@ -35,6 +35,8 @@ pub(crate) struct PairPage<'a> {
     pub(crate) motion: Option<&'a Isometry3<f64>>,
     pub(crate) title: &'static str,
     pub(crate) verdict: String,
+    /// Sentences on what the verdict means, and on reasons to doubt it.
+    pub(crate) remarks: Vec<String>,
     pub(crate) found: PairResult,
 }
 
@@ -42,8 +44,8 @@ pub(crate) struct PairPage<'a> {
 pub(crate) enum PairResult {
     /// Lines between them.
     Measures(Vec<Measure>),
-    /// How the second scene was moved onto the first one, the box in which it was before, and warnings.
-    Moved { moved: Moved, before: Aabb<f64>, warnings: Vec<String> },
+    /// How the second scene was moved onto the first one, and the box in which it was before.
+    Moved { moved: Moved, before: Aabb<f64> },
 }
 
 impl PairPageArgs {
@@ -64,19 +66,16 @@ impl PairPageArgs {
     /// Writes the page, if one was asked for.
     pub(crate) fn write<'a>(&self, streams: &Streams, page: impl FnOnce() -> PairPage<'a>) -> anyhow::Result<()> {
         let Some(html) = &self.html else { return Ok(()) };
-        let PairPage { paths, scenes, motion, title, verdict, found } = page();
+        let PairPage { paths, scenes, motion, title, verdict, remarks, found } = page();
         let names = paths.map(file_name);
         let both = joined(&names, scenes, motion).context("the page")?;
         let view = |around: &Aabb<f64>| self.page.view(&both, around).with_object_colours();
         let mut view = match found {
             PairResult::Measures(measures) => {
                 let ends: Vec<Point3<f64>> = measures.iter().flat_map(|measure| measure.ends).collect();
-                view(&Aabb::from_points(&ends)).with_measures(title, &verdict, &measures)
+                view(&Aabb::from_points(&ends)).with_measures(title, &verdict, &remarks, &measures)
             }
-            PairResult::Moved { moved, before, warnings } => {
-                let view = view(&before).with_moved(title, &verdict, &moved);
-                warnings.iter().fold(view, |view, warning| view.with_note(format!("Warning: {warning}.")))
-            }
+            PairResult::Moved { moved, before } => view(&before).with_moved(title, &verdict, &remarks, &moved),
         };
         view.title = format!("{} and {}", names[0], names[1]);
         view.summary = verdict;

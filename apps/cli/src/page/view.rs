@@ -208,7 +208,7 @@ impl PageSource<'_> {
             let found: Vec<Measure> = hits.iter().flatten().cloned().collect();
             let verdict = format!("{} of {} rays hit the scene.", found.len(), hits.len());
             view.summary += &format!("; {} rays", hits.len());
-            view = view.with_measures("Rays", &verdict, &found);
+            view = view.with_measures("Rays", &verdict, &[], &found);
         }
         if let (Some(grid), Some(_)) = (grid, args.lists) {
             view = self.with_list_lengths(view, grid);

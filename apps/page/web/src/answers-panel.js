@@ -1,6 +1,7 @@
 // The panel of query points and their answers: a histogram, the selected answer, and all of them as a table.
 
 import { UNDEFINED } from "./colours.js";
+import { explainedWords } from "./answers.js";
 import { copyButton, count, counted, element, fillList, key, number, reveal, stepped, tableHead } from "./text.js";
 
 // The number of rows of a page of the table.
@@ -34,7 +35,7 @@ export class AnswersPanel {
     this.page = 0;
     const turn = (by) => element("button", { type: "button", onclick: () => this.turn(by) },
       by > 0 ? "Next rows" : "Previous rows");
-    section.append(element("details", { id: "answers" }, element("summary", {}, "All answers as a table"),
+    section.append(explainedWords(), element("details", { id: "answers" }, element("summary", {}, "All answers as a table"),
       element("p", { class: "buttons" }, turn(-1), turn(1)),
       element("div", { class: "scrolled", tabindex: "0", role: "region", "aria-label": "answers" }, this.table)));
     this.turn(0);

@@ -152,6 +152,7 @@ export function featureOf(code) {
 export function answerRows(viewer, { point, distance, signed, lowerBound, size, primitive, feature }) {
   return [
     ["distance", distanceOf(distance, signed, viewer.unit)],
+    ...(viewer.data.no_inside ? [["inside", noInside(viewer)]] : []),
     ...(signed === undefined ? [] : [["signed distance", signed]]),
     ["closest point", viewer.place(point)],
     ["lower bound", lowerBound],
@@ -159,6 +160,17 @@ export function answerRows(viewer, { point, distance, signed, lowerBound, size, 
     ["feature", featureName(feature)],
   ];
 }
+
+// Returns a sentence on why there is no inside.
+export const noInside = ({ data: { no_inside: others } }) => `No inside here, because the scene holds ${others}.`;
+
+// Makes an entry that explains the words of an answer.
+export const explainedWords = () => element("details", {}, element("summary", {}, "What the words mean"), element("dl", {},
+  ...[
+    ["lower bound", "A length that the true distance is certain not to fall below, in spite of rounding."],
+    ["primitive", "The triangle, segment or point of the scene that holds the closest point, and its number."],
+    ["feature", "The part of that primitive which holds it: its face, an edge or a vertex."],
+  ].flatMap(([word, meaning]) => [element("dt", {}, word), element("dd", {}, meaning)])));
 
 // Makes an element that says a distance in words, with the side of the surface if there is a signed distance.
 function distanceOf(distance, signed, unit) {

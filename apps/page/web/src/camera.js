@@ -167,6 +167,18 @@ export class Camera {
     return this.fromZUp([...turned, (this.isOblique ? 0.55 : 0.4) + 1.6 * flatness]);
   }
 
+  // Turns fitted views about the vertical axis so that a direction lies across the picture.
+  layAcross({ x, y, z }) {
+    const [u, v] = this.isYUp ? [x, -z] : [x, y];
+    if (Math.hypot(u, v) < Math.abs(this.isYUp ? y : z) / 4) return;
+    this.turned = 0;
+    const usual = this.usualDirection();
+    const [a, b] = this.isYUp ? [usual[0], -usual[2]] : usual;
+    // One of the two sides is nearer to the usual one.
+    const side = a * v - b * u > 0 ? 1 : -1;
+    this.turned = Math.atan2(side * -u, side * v) - Math.atan2(b, a);
+  }
+
   // Returns a position at the upper right corner of what the scene covers in the picture, so many pixels away from it, and
   // half a radius nearer to the viewer than the middle of the scene.
   corner(gap) {
@@ -237,9 +249,10 @@ export class Camera {
     flight(start);
   }
 
-  // Returns the length of a pixel at the point that the view turns around, in the frame.
-  get pixel() {
-    return (2 * this.camera.position.distanceTo(this.controls.target) * Math.tan(half(this.camera))) / this.height;
+  // Returns the length of a pixel in the depth of a position, or of the point that the view turns around, in the frame.
+  pixelAt(position = this.controls.target) {
+    const depth = -position.clone().applyMatrix4(this.camera.matrixWorldInverse).z;
+    return (2 * Math.max(0, depth) * Math.tan(half(this.camera))) / this.height;
   }
 }
 

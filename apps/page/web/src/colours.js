@@ -39,7 +39,8 @@ export const SCALES = {
   field: { light: YELLOW_BLUE, dark: YELLOW_BLUE },
   signedField: { light: BLUE_RED, dark: BLUE_RED },
 };
-// The colours of bands: far below a tolerance, below, within, above, and far above.
+// The colours of bands: at the limit below a tolerance and beyond it, just below the tolerance, within, just above, and
+// at the limit above and beyond it. Between the tolerance and the limit they change evenly.
 export const BANDS = {
   light: ["#1d4fc0", "#0c92b0", "#3c9650", "#b38300", "#c4241f"],
   dark: ["#6f93ff", "#3cc3dd", "#4fb268", "#f0c030", "#ff6a58"],
@@ -121,11 +122,12 @@ export class ColourScale {
   }
 }
 
-// A map from deviations to bands of one colour each: within a tolerance, up to a limit, and beyond it.
+// A map from deviations to colours: one within a tolerance, others from there to a limit or to the largest deviation if
+// that is less, and one beyond.
 export class BandScale extends ColourScale {
-  constructor(tolerance, limit, isSigned) {
+  constructor(tolerance, limit, isSigned, largest) {
     super("sequential", isSigned ? -limit : 0, limit);
-    Object.assign(this, { tolerance, limit, isSigned, isDiverging: isSigned });
+    Object.assign(this, { tolerance, limit, isSigned, isDiverging: isSigned, end: Math.min(limit, largest) });
   }
 
   setTheme(theme) {
@@ -134,21 +136,30 @@ export class BandScale extends ColourScale {
 
   // Returns the colours and the ranges of the bands that values are in, the largest values first.
   ranges(values) {
-    const { limit, tolerance, isSigned } = this;
-    const [t, l] = [tolerance, limit].map(short);
+    const { end, tolerance, isSigned } = this;
+    const [t, l] = [tolerance, end].map(short);
     const texts = [`below -${l}`, `-${l} to -${t}`, isSigned ? `within ±${t}` : `up to ${t}`, `${t} to ${l}`, `above ${l}`];
     const used = new Set();
     for (const value of values) if (!Number.isNaN(value)) used.add(this.band(value));
-    return [4, 3, 2, 1, 0].filter((band) => used.has(band)).map((band) => [`rgb(${this.bands[band].join(",")})`, texts[band]]);
+    const colours = this.bands.map((band) => `rgb(${band.join(",")})`);
+    const graded = { 1: [0, 1], 3: [3, 4] };
+    return [4, 3, 2, 1, 0].filter((band) => used.has(band)).map((band) => [
+      graded[band] ? `linear-gradient(to right, ${graded[band].map((k) => colours[k]).join(", ")})` : colours[band],
+      texts[band],
+    ]);
   }
 
   band(value) {
     const size = Math.abs(value);
-    return 2 + Math.sign(value) * (size > this.tolerance ? (size > this.limit ? 2 : 1) : 0);
+    return 2 + Math.sign(value) * (size > this.tolerance ? (size > this.end ? 2 : 1) : 0);
   }
 
   write(value, out, at) {
-    const colour = Number.isNaN(value) ? UNDEFINED_BYTES : this.bands[this.band(value)];
-    for (let k = 0; k < 3; k++) out[at + k] = colour[k];
+    const band = Number.isNaN(value) ? null : this.band(value);
+    const near = band === null ? UNDEFINED_BYTES : this.bands[band];
+    const isGraded = band === 1 || band === 3;
+    const part = isGraded ? (Math.abs(value) - this.tolerance) / (this.end - this.tolerance) : 0;
+    const far = isGraded ? this.bands[2 * band - 2] : near;
+    for (let k = 0; k < 3; k++) out[at + k] = near[k] * (1 - part) + far[k] * part;
   }
 }

@@ -3,7 +3,7 @@
 import { UNDEFINED } from "./colours.js";
 import { pictureLegend } from "./histogram.js";
 import { spacing } from "./shading.js";
-import { choice, copyButton, count, element, fillList, namedRow, reveal, roundingInWords, short, sideOf, stepped, tableHead } from "./text.js";
+import { choice, copyButton, count, element, fillList, namedRow, remarksOn, reveal, roundingInWords, short, sideOf, stepped, tableHead } from "./text.js";
 
 // The share of a fitted view that is seen around a place after a flight to it.
 const NEAR = 0.35;
@@ -34,7 +34,7 @@ export class DeviationsPanel {
       });
       rows.push(element("div", { class: "row" }, element("span", {}, "Coloured"), shown));
     }
-    add(layer.is_signed ? "Deviations, positive outside" : "Distances", "deviations", this.verdict, this.parts, ...this.remarks());
+    add(layer.is_signed ? "Deviations, positive outside" : "Distances", "deviations", this.verdict, ...remarksOn(this.remarks()), this.parts);
     this.addWorst(add);
     add("Tolerance and colours", "colours", this.figure.element, ...Object.values(this.inputs), ...rows);
     this.text = element("dl", { id: "deviation", "aria-live": "polite" });
@@ -46,18 +46,17 @@ export class DeviationsPanel {
     this.select(-1);
   }
 
-  // Makes remarks on what the numbers mean.
+  // Returns remarks on what the numbers mean.
   remarks() {
     const { layer, viewer: { data: { scene }, frame, unit } } = this;
     const remarks = [];
     if (scene.triangles.length + scene.segments.length === 0 && scene.points.length > 0) {
       const apart = short(spacing(scene.positions) * frame.scale);
-      remarks.push(`The part has only points, about ${apart} ${unit} apart, so these are distances between points, and ` +
-        "much of them may be that spacing.");
+      remarks.push(`Distances include the spacing of the part, which has only points, about ${apart} ${unit} apart.`);
     } else if (!layer.is_signed && scene.segments.length + scene.points.length === 0) {
       remarks.push("Without signs, as was asked: points inside and outside of the surface count alike.");
     }
-    return remarks.map((remark) => element("p", { class: "small" }, remark));
+    return remarks;
   }
 
   // Makes a number and a slider with one meaning. The slider covers four orders of magnitude.
@@ -173,7 +172,7 @@ export class DeviationsPanel {
     const { layer, viewer } = this;
     this.worst = layer.worst(viewer.data.frame.radius);
     const rows = this.worst.map((i, k) => {
-      const value = `${layer.is_signed && layer.values[i] > 0 ? "+" : ""}${short(layer.values[i])}`;
+      const value = this.signedText(i);
       const fly = element("button", { type: "button", title: `Fly to point ${count(i * layer.stride)}`, "data-point": i,
         onclick: () => {
           this.select(i);
@@ -185,7 +184,7 @@ export class DeviationsPanel {
     const which = layer.stride > 1 ? " of the points on the page" : "";
     const table = element("table", { id: "largest" }, tableHead([this.what, "x", "y", "z"]), element("tbody", {}, ...rows));
     add(`Worst places${which} (${viewer.unit})`, "worst", table,
-      element("p", { class: "small" }, "Click a number to fly there. Numbers in the picture that are pale are on the far side."));
+      element("p", { class: "small" }, "Click a number to fly there. Numbers with an outline are on the far side."));
   }
 
   // Returns the numbers of the worst places, which stand in the picture.
@@ -196,8 +195,16 @@ export class DeviationsPanel {
       const position = layer.position(i);
       const normal = this.normal(i);
       const isBehind = normal && normal.dot(position.clone().sub(camera.position)) > 0;
-      return { position, text: String(this.worst.indexOf(i) + 1), kind: isBehind ? "mark behind" : "mark" };
+      const k = this.worst.indexOf(i);
+      const text = k === 0 ? `1: ${this.signedText(i)} ${this.viewer.unit}` : String(k + 1);
+      return { position, text, kind: isBehind ? "mark behind" : "mark" };
     });
+  }
+
+  // Returns the value of a point with its sign.
+  signedText(i) {
+    const { is_signed, values } = this.layer;
+    return `${is_signed && values[i] > 0 ? "+" : ""}${short(values[i])}`;
   }
 
   // Returns the normal of the surface at a point, if there is one.

@@ -3,7 +3,7 @@
 import * as three from "three";
 import { empty, limits, marker } from "./answers.js";
 import { BandScale, ColourScale } from "./colours.js";
-import { pointMaterial, spacing, surface } from "./shading.js";
+import { neighbours, pointMaterial, spacing, surface } from "./shading.js";
 
 // The distance in pixels within which a point is read.
 const PICK_RADIUS = 6;
@@ -57,7 +57,7 @@ export class DeviationsLayer {
     this.limit = limit;
     this.scale = bandTolerance === null
       ? new ColourScale(this.is_signed ? "signedField" : "field", this.is_signed ? -limit : 0, limit)
-      : new BandScale(bandTolerance, limit, this.is_signed);
+      : new BandScale(bandTolerance, limit, this.is_signed, Math.max(...this.range.map(Math.abs)));
     if (bandTolerance === null) this.scale.contain(...this.range);
     if (this.theme) this.colourPoints();
   }
@@ -229,21 +229,12 @@ function triangleNumbers({ triangles, objects }) {
   };
 }
 
-// Returns whether most points have about the normal of the nearest other one.
+// Returns whether most points have about the normal of the next one.
 function isAlike(positions, normals) {
-  const count = positions.length / 3;
-  const samples = Math.max(1, Math.min(COMPARED, count));
-  let alike = 0;
-  for (let s = 0; s < samples; s++) {
-    const i = 3 * Math.floor((s * count) / samples);
-    let [nearest, least] = [i, Infinity];
-    for (let j = 0; j < positions.length; j += 3) {
-      const square = (positions[j] - positions[i]) ** 2 + (positions[j + 1] - positions[i + 1]) ** 2 +
-        (positions[j + 2] - positions[i + 2]) ** 2;
-      if (j !== i && square < least) [nearest, least] = [j, square];
-    }
-    const [a, b] = [i, nearest].map((k) => [...normals.subarray(k, k + 3)]);
-    if (a.reduce((sum, x, k) => sum + x * b[k], 0) > ALIKE * 127 * 127) alike++;
-  }
-  return alike > MOST * samples;
+  const compared = neighbours(positions, COMPARED).filter(([, next]) => next >= 0);
+  const alike = compared.filter((pair) => {
+    const [a, b] = pair.map((i) => [...normals.subarray(3 * i, 3 * i + 3)]);
+    return a.reduce((sum, x, k) => sum + x * b[k], 0) > ALIKE * 127 * 127;
+  });
+  return alike.length > MOST * compared.length;
 }

@@ -2,7 +2,7 @@
 // own, so the page can be used while it is built, and the indexes that are ready answer meanwhile.
 
 import * as three from "three";
-import { answerRows, drawAnswer, empty, featureOf, line, marker } from "./answers.js";
+import { answerRows, drawAnswer, empty, explainedWords, featureOf, line, marker } from "./answers.js";
 import { checkbox, count, element, fillList, fillTable, short } from "./text.js";
 
 // The indexes in the order of their numbers in the worker.
@@ -126,14 +126,13 @@ export class LiveQueries {
     this.workTable = element("table", { id: "live-work" });
     this.speedTable = element("table", { id: "live-speed" });
     this.farText = element("div", { id: "live-far-text" });
-    const side = this.hasSides ? "" : " A scene with lines or points has no inside.";
     const what = this.hasSides ? "Distance and side at a point" : "Distance at a point";
     const plane = this.viewer.slice ? "The query lies on the slice, and beside it in a plane that faces you"
       : "The query moves in a plane that faces you";
     const more = element("details", { id: "live-more" }, element("summary", {}, "Indexes: their work and their speed"), far,
       this.farText, this.workTable, this.speedTable);
     more.addEventListener("toggle", () => more.open && this.isComplete === false && this.start(true));
-    add(what, "live", this.message, this.answerText, element("p", { class: "small" }, keep + side),
+    add(what, "live", this.message, this.answerText, explainedWords(), element("p", { class: "small" }, keep),
       element("fieldset", { class: "coordinates" }, element("legend", {}, "Query"),
         ...this.inputs.map((input, axis) => element("label", {}, "xyz"[axis], input))),
       element("div", { class: "boxes" }, follow), element("p", { class: "small" }, `${plane}. Its depth: `, depth), more);

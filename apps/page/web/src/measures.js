@@ -4,7 +4,7 @@
 import * as three from "three";
 import { ColourScale } from "./colours.js";
 import { line, limits, marker } from "./answers.js";
-import { copyButton, count, element, fillList, number, patch, short, shortened, stepped } from "./text.js";
+import { copyButton, count, element, fillList, number, patch, remarksOn, short, shortened, stepped } from "./text.js";
 
 // The number of characters of the name of an object above which its middle is left out.
 const LONGEST_NAME = 18;
@@ -14,10 +14,10 @@ const [CLOSEST_FLIGHT, ROOM] = [0.04, 1.2];
 const MAX_LABELLED = 8;
 
 export class MeasuresLayer {
-  // `data` has a title, a sentence, names of lines or none, their lengths, and their ends, six coordinates each.
+  // `data` has a title, a sentence with remarks, names of lines or none, their lengths, and their ends, six coordinates each.
   constructor(data, frame) {
-    const { title, verdict, names, lengths, ends: coordinates } = data;
-    Object.assign(this, { title, verdict, names, lengths, coordinates });
+    const { title, verdict, remarks, names, lengths, ends: coordinates } = data;
+    Object.assign(this, { title, verdict, remarks, names, lengths, coordinates });
     this.positions = frame.positions(coordinates);
     this.length = coordinates.length / 6;
     this.isLabelled = this.length <= MAX_LABELLED;
@@ -58,6 +58,11 @@ export class MeasuresLayer {
     }
   }
 
+  // Returns the ends of the only line, or of the first one of a few, with which the scale bar is compared.
+  get main() {
+    return this.isLabelled && this.length > 0 ? this.ends(0) : null;
+  }
+
   drawn() {
     if (this.isLabelled) return Array.from({ length: this.length }, (_, i) => i);
     return this.selected >= 0 ? [this.selected] : [];
@@ -79,7 +84,7 @@ export class MeasuresLayer {
       this.selected = stepped(this.selected, by, this.length);
       this.select(viewer);
     } }, text);
-    const parts = [element("p", { class: "verdict" }, this.verdict)];
+    const parts = [element("p", { class: "verdict" }, this.verdict), ...remarksOn(this.remarks)];
     // The ends of lines between two objects are on these.
     const names = viewer.scene.colours ? viewer.scene.objects.map((object) => object.name) : [];
     this.term = (k) => names[k]
@@ -108,7 +113,7 @@ export class MeasuresLayer {
 
   select(viewer) {
     const rows = this.drawn().flatMap((i) => [
-      [this.names[i] ?? `number ${count(i)}`, element("span", {}, number(this.lengths[i]), ` ${viewer.unit}`)],
+      [[this.names[i] ?? `number ${count(i)}`], element("span", {}, number(this.lengths[i]), ` ${viewer.unit}`)],
       ...[0, 1].map((k) => [this.term(k), viewer.place(this.coordinates.subarray(6 * i + 3 * k, 6 * i + 3 * k + 3))]),
     ]);
     fillList(this.text, rows);

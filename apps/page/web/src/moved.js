@@ -1,7 +1,7 @@
 // The panel of an object that was moved, which shows it before and after, and the matrix.
 
 import * as three from "three";
-import { choice, copyButton, element, fillList, number, roundingInWords } from "./text.js";
+import { choice, copyButton, element, fillList, number, remarksOn, roundingInWords } from "./text.js";
 
 // The digits that are shown of the numbers of the matrix.
 const MATRIX_DIGITS = 4;
@@ -10,7 +10,7 @@ const ROUNDED_ZERO = 1e-12;
 
 export class MovedPanel {
   constructor(viewer, add) {
-    const { title, verdict, matrix, facts } = viewer.data.moved;
+    const { title, verdict, remarks, matrix, facts } = viewer.data.moved;
     this.viewer = viewer;
     this.after = viewer.scene.positions.slice();
     this.back = new three.Matrix4().set(...matrix).invert();
@@ -27,9 +27,9 @@ export class MovedPanel {
     const rows = [0, 4, 8, 12].map((i) => element("tr", {}, ...matrix.slice(i, i + 4).map(cell)));
     const table = element("table", { id: "matrix" }, element("caption", {}, "Matrix of the motion"), element("tbody", {}, ...rows));
     const shown = choice("shown", ["after", "before"], 0, (i) => this.show(i === 1));
-    add(title, "moved", element("p", { class: "verdict" }, verdict),
-      element("div", { class: "row" }, element("span", {}, viewer.scene.objects[1].name), shown), list,
-      table,
+    add(title, "moved", element("p", { class: "verdict" }, verdict), ...remarksOn(remarks),
+      element("div", { class: "row" }, element("span", {}, viewer.scene.objects[1].name), shown),
+      element("p", { class: "small" }, "Where both coincide, squares show one or the other."), list, table,
       element("p", { class: "buttons" }, copyButton(table), element("span", { class: "small" }, "for --transform of other commands")));
   }
 

@@ -53,12 +53,14 @@ export class Overlay {
       for (const [name, value] of [["x", 31 * x], ["y", 4 - 31 * y]]) text.setAttribute(name, value.toFixed(1));
     });
     const { clientWidth: width, clientHeight: height } = viewer.stage;
-    const pixel = viewer.view.pixel * viewer.frame.scale;
+    // A measured line is as long as the scale bar says.
+    const [from, to] = viewer.measures?.main ?? [];
+    const pixel = viewer.view.pixelAt(from?.lerp(to, 0.5)) * viewer.frame.scale;
     const length = roundUp(LEAST_BAR * pixel);
     this.bar.hidden = !Number.isFinite(length) || length === 0;
-    this.bar.firstChild.style.width = `${Math.min(length / pixel, width / 2)}px`;
+    this.bar.firstChild.style.width = `${Math.min(length / pixel, width / 2).toFixed(1)}px`;
     const isOne = length === 1 && viewer.unit === "units";
-    this.barText.textContent = `${short(length)} ${isOne ? "unit" : viewer.unit}`;
+    setText(this.barText, `${short(length)} ${isOne ? "unit" : viewer.unit}`);
     this.placeLabels(width, height);
   }
 
@@ -86,8 +88,12 @@ export class Overlay {
           for (let from = 0; from < long; from += LABEL_GAP) taken.push([at - part * long + from, up]);
         } else {
           const places = AROUND.map(([dx, dy]) => [x + dx, y + dy]);
+          // The first number has its value beside it.
+          const side = Math.max(12, text.length > 2 ? long / 2 : 0);
+          const isAllFree = (a, b) => [-side + 12, 0, side - 12].every((shift) => isFree(a + shift, b, MARK_GAP));
           [at, up] = places.find(([a, b]) =>
-            a > 12 && a < width - 12 && b > 60 && b < height - 12 && isFree(a, b, MARK_GAP)) ?? places[0];
+            a > side && a < width - side && b > 60 && b < height - 12 && isAllFree(a, b)) ?? places[0];
+          if (side > 12) for (let shift = 12 - side; shift < side; shift += MARK_GAP) taken.push([at + shift, up]);
         }
         // A leader ends where the label is nearest, whose letters are a little narrower than assumed.
         const wide = kind === "important" ? 0.7 * long : 0;
@@ -104,7 +110,7 @@ export class Overlay {
   // Sets the label with a number. Elements of the frame before are used again.
   setLabel(i, text, kind, transform) {
     const label = this.labels.children[i] ?? this.labels.appendChild(element("span"));
-    if (label.textContent !== text) label.textContent = text;
+    setText(label, text);
     if (label.className !== kind) label.className = kind;
     label.style.transform = transform;
   }
@@ -183,6 +189,11 @@ export class Overlay {
   setTheme(colours) {
     this.grid?.material.color.set(colours.grid);
   }
+}
+
+// Sets the text of an element. A text that is set again would be laid out again.
+function setText(element, text) {
+  if (element.textContent !== text) element.textContent = text;
 }
 
 // Returns the text of a label for a narrow picture.

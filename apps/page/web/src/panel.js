@@ -59,7 +59,6 @@ function addFacts(viewer, add) {
   if (viewer.answers) hints.push("Point at a query point to read its distance, and click it for the whole answer.");
   if (viewer.slice) hints.push("Move the slice with its slider, or drag it with Shift.");
   if (viewer.deviations) hints.push("Point at the scan to read deviations.");
-  if (!viewer.live && data.scene.segments.length + data.scene.points.length > 0) hints.push("A scene with lines or points has no inside.");
   if (!viewer.answers && !viewer.slice && !viewer.deviations && !viewer.live && !viewer.measures && !data.moved) {
     hints.push("For distances in this page, make it with `--live always`, `--field 64` or `--random 1000` of `p2m view`.");
   }

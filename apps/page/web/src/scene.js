@@ -39,6 +39,7 @@ export class SceneLayer {
       geometry.setAttribute("position", positions);
       geometry.setIndex(new three.BufferAttribute(indices, 1));
       if (this.colours) geometry.setAttribute("color", this.colours);
+      if (this.colours && kind === "triangles") geometry.setAttribute("part", this.secondParts(indices));
       geometry.boundingSphere = new three.Sphere(new three.Vector3(), 4);
       const drawn = kind === "triangles" ? surface(geometry, parameters)
         : new { segments: three.LineSegments, points: three.Points }[kind](geometry, this.materials[kind]);
@@ -62,6 +63,14 @@ export class SceneLayer {
     this.materials.triangles?.color.set(colours.surface);
     this.materials.segments.color.set(colours.line);
     this.materials.points.color.set(colours.surface);
+  }
+
+  // Returns for each vertex whether it is one of the triangles of the second object.
+  secondParts(triangles) {
+    const second = new Uint8Array(this.positions.length / 3);
+    const [first, end] = this.objects[1].triangles;
+    for (const i of triangles.subarray(3 * first, 3 * end)) second[i] = 1;
+    return new three.BufferAttribute(second, 1);
   }
 
   // Returns the numbers of the vertices of an object.

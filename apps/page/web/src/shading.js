@@ -19,11 +19,11 @@ const SHARP = 0.75;
 const MAX_SMOOTH = 300_000;
 
 // Returns a surface of a geometry, whose index is triangles. Facets that are almost in one plane are drawn as one smooth
-// surface, and sharp edges stay sharp.
+// surface, and sharp edges stay sharp. With an attribute `part`, which is 0 or 1, both parts are seen where they coincide.
 export function surface(geometry, parameters = {}) {
   const isSmooth = geometry.index.count <= 3 * MAX_SMOOTH;
   setNormals(geometry, geometry.index.array);
-  return new three.Mesh(geometry, surfaceMaterial(isSmooth, parameters));
+  return new three.Mesh(geometry, surfaceMaterial(isSmooth, geometry.hasAttribute("part"), parameters));
 }
 
 // Sets the normals of a geometry, unless its facets are flat.
@@ -33,23 +33,48 @@ export function setNormals(geometry, triangles) {
   geometry.setAttribute("normal", new three.BufferAttribute(normals, 3, true));
 }
 
-function surfaceMaterial(isSmooth, parameters) {
+function surfaceMaterial(isSmooth, hasParts, parameters) {
   const material = new three.MeshLambertMaterial({
     side: three.DoubleSide, polygonOffset: true, polygonOffsetFactor: 1, polygonOffsetUnits: 1,
     flatShading: !isSmooth, ...parameters,
   });
-  if (!isSmooth) return material;
   material.onBeforeCompile = (shader) => {
-    shader.fragmentShader = shader.fragmentShader.replace("#include <normal_fragment_begin>", `
-      float faceDirection = 1.0;
-      vec3 facet = normalize(cross(dFdx(vViewPosition), dFdy(vViewPosition)));
-      float agreement = dot(normalize(vNormal), facet);
-      vec3 normal = normalize(mix(facet, sign(agreement) * normalize(vNormal),
-        smoothstep(${SHARP}, ${SHARP + 0.15}, abs(agreement))));
-      vec3 nonPerturbedNormal = normal;
-    `);
+    if (isSmooth) smooth(shader);
+    if (hasParts) check(shader);
   };
+  material.customProgramCacheKey = () => `surface ${isSmooth} ${hasParts}`;
   return material;
+}
+
+function smooth(shader) {
+  shader.fragmentShader = shader.fragmentShader.replace("#include <normal_fragment_begin>", `
+    float faceDirection = 1.0;
+    vec3 facet = normalize(cross(dFdx(vViewPosition), dFdy(vViewPosition)));
+    float agreement = dot(normalize(vNormal), facet);
+    vec3 normal = normalize(mix(facet, sign(agreement) * normalize(vNormal),
+      smoothstep(${SHARP}, ${SHARP + 0.15}, abs(agreement))));
+    vec3 nonPerturbedNormal = normal;
+  `);
+}
+
+// The side of a cell of the pattern of two parts that coincide, and the distance in the frame up to which they do.
+const [CELL, COINCIDENT] = ["0.06", "0.0004"];
+
+// Lets cells in space show one of two parts in turn where both are at about one place: the other one is drawn as if it
+// were farther away.
+function check(shader) {
+  shader.vertexShader = shader.vertexShader
+    .replace("#include <common>", "#include <common>\nattribute float part;\nvarying float vPart, vFarther;\nvarying vec3 vPlace;")
+    .replace("#include <project_vertex>", `#include <project_vertex>
+      vec4 farther = projectionMatrix * (mvPosition - vec4(0.0, 0.0, ${COINCIDENT}, 0.0));
+      vFarther = 0.5 * (farther.z / farther.w - gl_Position.z / gl_Position.w);
+      vPart = part;
+      vPlace = position / ${CELL} + vec3(0.237, 0.391, 0.513);`);
+  shader.fragmentShader = shader.fragmentShader
+    .replace("#include <common>", "#include <common>\nvarying float vPart, vFarther;\nvarying vec3 vPlace;")
+    .replace("#include <opaque_fragment>", `#include <opaque_fragment>
+      vec3 cell = floor(vPlace);
+      gl_FragDepth = gl_FragCoord.z + (abs(mod(cell.x + cell.y + cell.z, 2.0) - vPart) < 0.5 ? vFarther : 0.0);`);
 }
 
 // Returns the normals of vertices, weighted by the areas of their triangles.
@@ -174,21 +199,27 @@ export function pointMaterial(parameters, isLit = false, marks = null) {
 // The numbers of points by which the spacing of points is found, and of distances that are computed for it.
 const [SPACING_SAMPLES, SPACING_DISTANCES] = [200, 4e6];
 
-// Returns the median distance from points to the next one.
-export function spacing(positions) {
+// Returns at most `most` points, evenly by their numbers, each with the next one at another place and the distance to it:
+// `[point, next, distance]`. The distance of a point without a next one is infinite.
+export function neighbours(positions, most = SPACING_SAMPLES) {
   const count = positions.length / 3;
-  const samples = Math.max(1, Math.min(SPACING_SAMPLES, count, Math.floor(SPACING_DISTANCES / Math.max(1, count))));
-  const found = [];
-  for (let s = 0; s < samples; s++) {
-    const i = 3 * Math.floor((s * count) / samples);
-    let least = Infinity;
+  const samples = Math.min(most, count, Math.max(1, Math.floor(SPACING_DISTANCES / Math.max(1, count))));
+  return Array.from({ length: samples }, (_, s) => {
+    const point = Math.floor((s * count) / samples);
+    const i = 3 * point;
+    let [next, least] = [-1, Infinity];
     for (let j = 0; j < positions.length; j += 3) {
       const [x, y, z] = [positions[j] - positions[i], positions[j + 1] - positions[i + 1], positions[j + 2] - positions[i + 2]];
       const square = x * x + y * y + z * z;
-      if (square > 0 && square < least) least = square;
+      if (square > 0 && square < least) [next, least] = [j / 3, square];
     }
-    if (least < Infinity) found.push(Math.sqrt(least));
-  }
+    return [point, next, Math.sqrt(least)];
+  });
+}
+
+// Returns the median distance from points to the next one.
+export function spacing(positions) {
+  const found = neighbours(positions).map(([, , distance]) => distance).filter(Number.isFinite);
   return found.sort((a, b) => a - b)[found.length >> 1] ?? 0.01;
 }
 

@@ -1,5 +1,6 @@
 // The panel of a slice: its axis, its place, its colours, and its value at the pointer.
 
+import { noInside } from "./answers.js";
 import { pictureLegend } from "./histogram.js";
 import { choice, element, short, withCode } from "./text.js";
 
@@ -19,16 +20,14 @@ export class SlicePanel {
     });
     this.text = element("output", { id: "slice-text" });
     this.value = element("output", { id: "slice-value" });
-    const { triangles, segments, points } = viewer.data.scene;
-    const hasSides = triangles.length > 0 && segments.length + points.length === 0;
+    const { triangles } = viewer.data.scene;
     const about = slice.hasCells
       ? "A query evaluates only primitives of the list of its cell. Where a cell has no list the slice is violet, " +
         "and the AABB tree below the cells answers."
       : (isDiverging ? "Blue is inside, red is outside, and the black line is the surface. " : "") +
         `The distance changes by ${short(slice.spacingOfLines)} ${viewer.unit} from line to line. ` +
         (isDiverging || triangles.length === 0 ? ""
-          : "Dark lines are edges of the scene, and its surface where the slice cuts it. ") +
-        (hasSides && !isDiverging ? "The colours do not tell inside from outside: `--signed` adds that." : "");
+          : "Dark lines are edges of the scene, and its surface where the slice cuts it. ");
     const title = slice.hasCells ? "Slice through the cells" : isDiverging ? "Signed distance" : "Distance";
     add(title, "field",
       element("div", { class: "row" }, element("span", {}, "Across"), this.axes, this.text), this.range,
@@ -41,7 +40,11 @@ export class SlicePanel {
 
   // Shows the legend in the picture, in the colours of the theme.
   showLegend() {
-    this.viewer.overlay.setLegend(pictureLegend(this.slice.scale, this.what, this.unit));
+    const { slice, viewer } = this;
+    const why = viewer.data.no_inside ? noInside(viewer) : "Without a sign: `--signed` tells inside from outside.";
+    const hasNoSign = !slice.hasCells && !slice.scale.isDiverging;
+    viewer.overlay.setLegend(element("div", {}, pictureLegend(slice.scale, this.what, this.unit),
+      ...(hasNoSign ? [element("div", { class: "why" }, ...withCode(why))] : [])));
   }
 
   // Returns the label of what was read last.

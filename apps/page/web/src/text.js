@@ -123,11 +123,17 @@ function content(value) {
   return [value];
 }
 
+// The classes of entries that have a row without their term, which is a text and not a list.
+const WHOLE_ROWS = { distance: "main", inside: "whole" };
+
+// Makes paragraphs of remarks on a verdict, which stand below it.
+export const remarksOn = (remarks) => remarks.map((remark) => element("p", { class: "remark" }, ...withCode(remark)));
+
 // Replaces the content of a list by terms, which are texts or lists of elements and texts, each with its text, its number, its numbers or its element.
 export function fillList(list, rows) {
   list.replaceChildren(
     ...rows.flatMap(([term, value]) => [
-      element("dt", {}, ...[term].flat()), element("dd", { class: term === "distance" && "main" }, ...content(value)),
+      element("dt", {}, ...[term].flat()), element("dd", { class: typeof term === "string" && (WHOLE_ROWS[term] ?? false) }, ...content(value)),
     ]));
 }
 
@@ -139,7 +145,7 @@ export const withCode = (text) => text.split("`").map((part, i) => (i % 2 ? elem
 
 // Makes a patch of a colour of the picture, by its name, or of a colour in CSS.
 export const patch = (colour) =>
-  element("span", { class: "patch", style: `background: ${/^(#|rgb)/.test(colour) ? colour : `var(--${colour})`}` });
+  element("span", { class: "patch", style: `background: ${/^(#|rgb|linear)/.test(colour) ? colour : `var(--${colour})`}` });
 
 // Makes the row of the names of columns.
 export function tableHead(names) {

@@ -93,6 +93,11 @@ class Viewer {
       this.deviationsPanel.face();
       this.fit();
     }
+    if (this.measures?.main) {
+      const [a, b] = this.measures.main;
+      this.view.layAcross(b.sub(a));
+      this.fit();
+    }
     if (this.slice) {
       this.slicePanel.lay();
       this.fit();
@@ -325,8 +330,10 @@ class Viewer {
 // Returns the renderer. Without WebGL it draws nothing, and the panel has all numbers all the same.
 function makeRenderer(canvas) {
   try {
-    // Edges are smooth once the view rests, which makes moving pictures faster.
-    return new three.WebGLRenderer({ canvas, antialias: false, preserveDrawingBuffer: true });
+    // Edges are smooth once the view rests, which makes moving pictures faster. The browser need not blend an opaque
+    // picture with what is behind it.
+    const context = canvas.getContext("webgl2", { alpha: false, antialias: false, preserveDrawingBuffer: true });
+    return new three.WebGLRenderer({ canvas, context });
   } catch {
     document.getElementById("failure").textContent =
       "The picture cannot be drawn, because this browser has no WebGL. The panel has all numbers.";

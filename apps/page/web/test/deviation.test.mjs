@@ -109,7 +109,8 @@ test("a verdict comes first, bands show the tolerance, and worst places are flow
   const bottom = (id) => page.evaluate((id) => document.getElementById(id).getBoundingClientRect().bottom, id);
   assert.ok((await bottom("verdict")) < 300 && (await bottom("largest")) < 720, String(await bottom("largest")));
 
-  // Points within the tolerance have one colour, and the limit is three tolerances.
+  // Points within the tolerance have one colour, and the others have colours by how far outside they are. The limit is
+  // three tolerances.
   const bands = await page.evaluate(() => {
     const { deviations: { values, colours } } = window.viewer;
     const found = {};
@@ -121,17 +122,29 @@ test("a verdict comes first, bands show the tolerance, and worst places are flow
     return Object.entries(found).map(([band, colours]) => [band, [...colours]]);
   });
   assert.ok(bands.length >= 3, String(bands));
-  assert.deepEqual(bands.map(([, colours]) => colours.length), bands.map(() => 1));
-  assert.equal(new Set(bands.flatMap(([, colours]) => colours)).size, bands.length);
+  for (const [band, colours] of bands) assert.equal(colours.length > 5, band === "above" || band === "below", `${band}: ${colours.length}`);
   const legend = await page.$$eval(".picture-legend .patch", (all) => all.map((patch) =>
-    [patch.nextSibling.textContent, getComputedStyle(patch).backgroundColor]));
+    [patch.nextSibling.textContent, getComputedStyle(patch).backgroundColor, getComputedStyle(patch).backgroundImage]));
   const texts = { "above far": "above 0.9", above: "0.3 to 0.9", within: "within ±0.3", below: "-0.9 to -0.3", "below far": "below -0.9" };
   const { order, css } = await page.evaluate(() => {
     const { scale } = window.viewer.deviations;
     return { order: scale.ranges([2, 0.5, 0, -0.5, -2]).map(([, text]) => text), css: [2, 0.5, 0, -0.5, -2].map((x) => scale.css(x)) };
   });
   assert.deepEqual(legend.map(([text]) => text), order.filter((text) => bands.some(([band]) => texts[band] === text)));
-  for (const [text, colour] of legend) assert.equal(colour.replaceAll(" ", ""), css[order.indexOf(text)]);
+  for (const [text, colour, image] of legend) {
+    const graded = { "0.3 to 0.9": [0.3001, 0.8999], "-0.9 to -0.3": [-0.8999, -0.3001] }[text];
+    if (!graded) assert.equal(colour.replaceAll(" ", ""), css[order.indexOf(text)]);
+    else assert.match(image, /^linear-gradient/);
+  }
+  // The colour of a point depends on how far outside it is, up to the limit or the largest deviation.
+  const ends = await page.evaluate(() => {
+    const { scale } = window.viewer.deviations;
+    const short = new scale.constructor(0.3, 0.9, true, 0.5);
+    return [scale, short].map((s) => [0.3001, 0.4, s === short ? 0.5 : 0.9].map((x) => s.css(x)));
+  });
+  assert.deepEqual(ends.map(([near]) => near), ["rgb(179,131,0)", "rgb(179,131,0)"]);
+  assert.deepEqual(ends.map(([, , far]) => far), ["rgb(196,36,31)", "rgb(196,36,31)"]);
+  assert.ok(new Set(ends.flatMap(([near, middle, far]) => [near, middle, far])).size === 4, String(ends));
   await page.setViewportSize({ width: 390, height: 844 });
   const { bottom: low, right } = await page.$eval(".picture-legend", (box) => box.getBoundingClientRect().toJSON());
   assert.ok(low < 400 && right <= 390, `${low} ${right}`);
@@ -179,7 +192,11 @@ test("a verdict comes first, bands show the tolerance, and worst places are flow
   boxes.forEach(([a, b, width], i) => boxes.slice(0, i).forEach(([c, d]) =>
     assert.ok(Math.hypot(a - c, b - d) >= width, String(boxes))));
   await zoom(0.4);
-  assert.deepEqual(marks, worst.map((_, i) => String(i + 1)));
+  // The first number has its value, and no number is pale.
+  const first = await page.textContent("#largest button");
+  assert.deepEqual(marks, worst.map((_, i) => (i > 0 ? String(i + 1) : `1: ${first.slice(1)} units`)));
+  const faint = await page.$$eval("#overlay .labels .mark", (marks) => marks.filter((mark) => getComputedStyle(mark).opacity !== "1"));
+  assert.equal(faint.length, 0);
   const rows = await page.$$eval("#largest td data", (all) => all.map((data) => Number(data.value)));
   const points = await page.evaluate((worst) =>
     worst.flatMap((i) => [...window.viewer.deviations.positions.subarray(3 * i, 3 * i + 3)]), worst);
@@ -234,7 +251,8 @@ test("a page says what distances without signs and distances between points mean
     const html = join(opened.folder, "remark.html");
     execFileSync(PROGRAM, ["deviation", scan, scene, "--unsigned", "--out", html], { stdio: "pipe" });
     const page = await openTab(opened.browser, html, (problem) => opened.problems.push(problem));
-    const remarks = await page.$$eval("#deviations p.small", (all) => all.map((p) => p.textContent));
+    const remarks = await page.$$eval("#verdict ~ .remark", (all) => all.map((p) => p.textContent));
+    if (remark) assert.ok(await page.$eval("#verdict + .remark", (p) => getComputedStyle(p).fontSize === getComputedStyle(document.body).fontSize));
     assert.equal(remarks.length, remark ? 1 : 0);
     if (remark) assert.match(remarks[0], remark);
     await page.close();

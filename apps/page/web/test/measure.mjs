@@ -1,7 +1,8 @@
 // Measures pages of scenes of 10^4 to 10^6 triangles: their sizes without and with live queries, the seconds until they
-// are ready, and the frames a second while they turn: P2M=PROGRAM node test/measure.mjs [EARLIER PROGRAM]
+// are ready, and the frames a second and the CPU time of all processes of the browser for a frame while they turn: P2M=PROGRAM node test/measure.mjs [EARLIER PROGRAM]
 //
-// Times are those of pages without live queries, whose indexes would be built meanwhile. Programs take turns, and the figures are medians of several rounds.
+// Times are those of pages without live queries, whose indexes would be built meanwhile. Programs take turns, and the
+// figures are medians of several rounds.
 
 import { execFileSync } from "node:child_process";
 import { mkdtempSync, statSync } from "node:fs";
@@ -16,13 +17,22 @@ const [FRAMES, ROUNDS] = [20, 5];
 const programs = [...process.argv.slice(2), PROGRAM];
 const folder = mkdtempSync(join(tmpdir(), "p2m-page-"));
 const browser = await launch();
+const session = await browser.newBrowserCDPSession();
 const median = (values) => values.sort((a, b) => a - b)[values.length >> 1];
 
-// Opens a page and returns the seconds until it is ready, and the frames a second.
+// Returns the seconds of CPU time of all processes of the browser.
+async function cpuTime() {
+  const { processInfo } = await session.send("SystemInfo.getProcessInfo");
+  return processInfo.reduce((sum, process) => sum + process.cpuTime, 0);
+}
+
+// Opens a page and returns the seconds until it is ready, the frames a second, and the milliseconds of CPU time for a
+// frame.
 async function measure(html) {
   const start = performance.now();
   const page = await openTab(browser, html, (problem) => { throw new Error(problem); });
   const ready = (performance.now() - start) / 1000;
+  const before = await cpuTime();
   const rate = await page.evaluate(async (frames) => {
     const { viewer } = window;
     const gl = viewer.renderer.getContext();
@@ -35,11 +45,12 @@ async function measure(html) {
     }
     return (1000 * frames) / (performance.now() - begin);
   }, FRAMES);
+  const cpu = (1000 * (await cpuTime() - before)) / FRAMES;
   await page.close();
-  return { ready, rate };
+  return { ready, rate, cpu };
 }
 
-console.log("| program | triangles | page, MB | with live queries, MB | seconds until it is ready | frames a second |\n|---|---:|---:|---:|---:|---:|");
+console.log("| program | triangles | page, MB | with live queries, MB | seconds until it is ready | frames a second | CPU time of a frame, ms |\n|---|---:|---:|---:|---:|---:|---:|");
 // Each edge of the icosahedron is cut into so many parts, which makes 20 times the square of this number of triangles.
 for (const frequency of [22, 71, 223]) {
   const scene = join(folder, "scene.ply");
@@ -58,9 +69,9 @@ for (const frequency of [22, 71, 223]) {
     for (const page of pages) page.figures.push(await measure(page.html));
   }
   for (const { program, sizes, figures } of pages) {
-    const [ready, rate] = ["ready", "rate"].map((key) => median(figures.map((figure) => figure[key])));
+    const [ready, rate, cpu] = ["ready", "rate", "cpu"].map((key) => median(figures.map((figure) => figure[key])));
     const name = program === PROGRAM ? "now" : "earlier";
-    console.log(`| ${name} | ${20 * frequency ** 2} | ${sizes.join(" | ")} | ${ready.toFixed(1)} | ${rate.toPrecision(2)} |`);
+    console.log(`| ${name} | ${20 * frequency ** 2} | ${sizes.join(" | ")} | ${ready.toFixed(1)} | ${rate.toPrecision(2)} | ${cpu.toFixed(0)} |`);
   }
 }
 await browser.close();

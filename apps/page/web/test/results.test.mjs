@@ -22,7 +22,7 @@ before(async () => {
 after(async () => opened?.close());
 
 test("a page shows the distance of two scenes, and the farthest points", { skip }, async () => {
-  for (const [command, verdict] of [["distance", /^The scenes are [\d.]+ mm apart\.$/], ["hausdorff", /^The farthest point of either scene is /]]) {
+  for (const [command, verdict] of [["distance", /^The scenes are [\d.]+ mm apart\.$/], ["hausdorff", /^[\d.]+ to [\d.]+ mm at the farthest point\.$/]]) {
     const html = path(`${command}.html`);
     const report = JSON.parse(run([command, opened.scene, path("sphere.ply"), "--html", html, "--unit", "mm", "--json"]));
     const page = await open(html);
@@ -32,13 +32,16 @@ test("a page shows the distance of two scenes, and the farthest points", { skip 
     const shown = await opened.read("measure", command === "distance" ? "distance" : "farthest", page);
     assert.equal(Number.parseFloat(shown), found);
     assert.deepEqual((await opened.read("measure", "sphere.ply", page)).split(", ").map(Number), point);
+    // The sentence above is the only one in large print.
+    assert.equal(await page.locator("#measure .main").count(), 0);
     // The coordinates that a reader sees have equal decimals, and are as far apart as the length beside them.
     const ends = await page.$$eval("#measure dd", ([, ...ends]) => ends.map((end) => end.textContent.split("; ")));
     assert.equal(new Set(ends.flat().map((x) => x.split(".")[1].length)).size, 1, String(ends));
     const apart = Math.hypot(...[0, 1, 2].map((k) => Number(ends[0][k]) - Number(ends[1][k])));
     assert.ok(Math.abs(apart - found) < 1e-4 * found, `${apart}: ${found}`);
     if (command === "hausdorff") {
-      const [low, high] = (await page.textContent("#measures .verdict")).match(/between ([\d.]+) and ([\d.]+) mm/).slice(1).map(Number);
+      const [low, high] = (await page.textContent("#measures .verdict")).match(/^([\d.]+) to ([\d.]+) mm/).slice(1).map(Number);
+      assert.equal(await page.textContent("#measures .verdict + p"), "No point of either scene is farther than this from the other scene.");
       assert.ok(low < high && Math.abs(low - report.lower_bound) < 1e-5 && Math.abs(high - report.upper_bound) < 1e-5);
     }
     // The label stands in the picture, between the points.
@@ -68,7 +71,9 @@ test("a page shows a scan before and after it was aligned, and the matrix", { sk
   run(["convert", part, scan, "--rotate-z", "25", "--translate", "1", "2", "3"]);
   const report = JSON.parse(run(["align", scan, part, "--html", html, "--unit", "mm", "--json"]));
   const page = await open(html);
-  assert.match(await page.textContent("#moved .verdict"), /^The root mean square of the distances is 0 mm \(rounding: \de-1\d\), but another pose fits about as well, .*\.$/);
+  assert.match(await page.textContent("#moved .verdict"), /^0 mm \(rounding: \de-1\d\) root mean square distance\.$/);
+  assert.match(await page.textContent("#moved .verdict + p"), /^Warning: another pose fits about as well, .*\.$/);
+  assert.equal(await page.locator("#notes").count(), 0);
   assert.match(await page.textContent("#moved-facts"), /root mean square0 \(rounding: \de-1\d\)/);
   assert.equal(Number(await opened.read("moved-facts", "root mean square", page)), report.rms);
   assert.equal(Number(await opened.read("moved-facts", "coverage in %", page)), 100 * report.coverage);
@@ -90,6 +95,61 @@ test("a page shows a scan before and after it was aligned, and the matrix", { sk
   assert.ok(position > 0);
   await page.click("#moved label:has-text('after')");
   assert.ok(gap(await shown(1), first) < 1e-5);
+  await page.close();
+});
+
+test("a measured line is as long as the scale bar says", { skip }, async () => {
+  const [sphere, beside, html] = ["near.ply", "beside.ply", "bar.html"].map(path);
+  run(["generate", "ico-sphere", "--out", sphere]);
+  // The last line is in front of the middle of the scene.
+  const [long, short] = [["long.obj", "v 0 0 0\nv 0 20 0\nl 1 2\n"], ["short.obj", "v 4 0 0\nv 4 0 1\nl 1 2\n"]]
+    .map(([name, text]) => opened.write(name, text));
+  for (const [first, second, shift, up] of [
+    [sphere, beside, ["4", "3", "0"], "z"], [sphere, beside, ["4", "0", "3"], "y"], [long, short, null, "z"],
+  ]) {
+    if (shift) run(["convert", first, second, "--translate", ...shift]);
+    run(["distance", first, second, "--html", html, "--up", up]);
+    const page = await open(html);
+    const [line, bar] = await page.evaluate(() => {
+      const { measures, camera, stage } = window.viewer;
+      camera.updateMatrixWorld();
+      const [a, b] = measures.ends(0).map((end) => end.project(camera));
+      const pixels = Math.hypot((a.x - b.x) * stage.clientWidth, (a.y - b.y) * stage.clientHeight) / 2;
+      const box = document.querySelector(".scale-bar");
+      return [measures.lengths[0] / pixels, Number.parseFloat(box.textContent) / Number.parseFloat(box.firstChild.style.width)];
+    });
+    assert.ok(Math.abs(line / bar - 1) < 0.02, `${second}, ${up}: ${line} ${bar}`);
+    await page.close();
+  }
+});
+
+test("both of two parts are seen where they coincide", { skip }, async () => {
+  const [sphere, copy, html] = ["sphere.ply", "same.ply", "same.html"].map(path);
+  run(["convert", sphere, copy]);
+  run(["hausdorff", sphere, copy, "--html", html]);
+  const page = await open(html);
+  // Reads how many pixels are grey and how many are green.
+  const read = () => page.evaluate(() => {
+    const { viewer } = window;
+    viewer.measures.group.visible = false;
+    viewer.painter.setScale(1);
+    viewer.renderer.render(viewer.world, viewer.camera);
+    const gl = viewer.renderer.getContext();
+    const pixels = new Uint8Array(4 * gl.drawingBufferWidth * gl.drawingBufferHeight);
+    gl.readPixels(0, 0, gl.drawingBufferWidth, gl.drawingBufferHeight, gl.RGBA, gl.UNSIGNED_BYTE, pixels);
+    const counts = [0, 0];
+    for (let i = 0; i < pixels.length; i += 4) {
+      const [r, g, b] = pixels.subarray(i, i + 3);
+      if (Math.abs(r - pixels[0]) + Math.abs(g - pixels[1]) + Math.abs(b - pixels[2]) > 12) counts[g > b + 4 ? 1 : 0]++;
+    }
+    return counts;
+  });
+  const [grey, green] = await read();
+  assert.ok(Math.min(grey, green) > 0.3 * (grey + green), `${grey} ${green}`);
+  // One part alone has no holes.
+  await page.click("#objects label >> nth=1");
+  const [alone, none] = await read();
+  assert.ok(none < 0.02 * alone && Math.abs(alone / (grey + green) - 1) < 0.02, `${alone} ${none}`);
   await page.close();
 });
 

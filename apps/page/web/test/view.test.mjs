@@ -148,7 +148,8 @@ test("the view contains the scene, and cannot be moved away from it", { skip }, 
   // In a flat picture, the height limits the size.
   const { width, height } = page.viewportSize();
   await page.setViewportSize({ width, height: 400 });
-  await page.waitForFunction(() => window.viewer.canvas.height === window.viewer.stage.clientHeight);
+  // Before the browser has laid the page out again, the picture has the height of the stage as well.
+  await page.waitForFunction(() => window.viewer.stage.clientHeight === 400 && window.viewer.canvas.height === 400);
   await page.keyboard.press("f");
   // The slice is not cut off, and not below the toolbar.
   const slice = await reach(page, true);
@@ -326,6 +327,13 @@ test("a page answers an example before anything was asked", { skip }, async () =
     assert.ok(Math.abs(shown - Number.parseFloat(label)) < 1e-3 * shown, `${shown}, ${label}`);
     const panel = () => other.textContent(list ? `#${list}` : "#field .reading");
     assert.match(await panel(), /an example/);
+    // Right below the answer, or beside the scale, stands why there is no side.
+    const why = list ? `#${list} dd.main + dt + dd` : ".picture-legend .legend + div";
+    assert.equal(await other.textContent(why), "No inside here, because the scene holds lines.");
+    if (list) {
+      await other.click(`section:has(#${list}) summary:has-text('What the words mean')`);
+      assert.match(await other.innerText(`section:has(#${list}) details[open]`), /lower bound\s+A length that the true distance/);
+    }
     // A click asks elsewhere, and the answer stays when the pointer moves on.
     if (!list) {
       await other.mouse.click(400, 430);
@@ -356,11 +364,31 @@ test("the scale bar has the length of the middle of the scene, whatever else is 
       const right = target.clone().setFromMatrixColumn(camera.matrixWorld, 0);
       const ends = [middle.clone(), middle.clone().addScaledVector(right, 0.1)].map((end) => end.project(camera));
       const pixels = ((ends[1].x - ends[0].x) / 2) * stage.clientWidth;
-      return [view.pixel * frame.scale, (0.1 * frame.scale) / pixels];
+      return [view.pixelAt() * frame.scale, (0.1 * frame.scale) / pixels];
     }));
     await other.close();
   }
   for (const [said, true_] of bars) assert.ok(Math.abs(said / true_ - 1) < 0.01, String(bars));
+});
+
+test("a frame of a moving view draws nothing again that stands still", { skip }, async () => {
+  const other = await opened.view(opened.scene, "--random", "30", "--live", "never");
+  const [isOpaque, changes, layers] = await other.evaluate(async () => {
+    const { viewer } = window;
+    const changed = [];
+    const observer = new MutationObserver((records) => changed.push(...records));
+    observer.observe(document.querySelector(".scale-bar"), { childList: true, characterData: true, subtree: true });
+    for (let i = 0; i < 5; i++) {
+      viewer.turn(0.1, 0, 1);
+      await new Promise(requestAnimationFrame);
+    }
+    const moved = document.querySelectorAll(".triad, .leaders, .labels span");
+    return [!viewer.renderer.getContext().getContextAttributes().alpha, changed.length,
+      [...moved].map((element) => getComputedStyle(element).willChange)];
+  });
+  assert.deepEqual([isOpaque, changes], [true, 0]);
+  assert.deepEqual(layers, ["transform", "transform", "transform"]);
+  await other.close();
 });
 
 test("lines of equal distance have the values of the field as labels", { skip }, async () => {

@@ -222,7 +222,7 @@ class Deviation:
         what = "deviations, positive outside" if self.is_signed else "distances"
         count, mean, rms = (self.statistics[key] for key in ("count", "mean", "rms"))
         summary = f"{count:,} {what}: mean {mean:.4g} {self.unit}, root mean square {rms:.4g} {self.unit}"
-        texts = ("Deviations in p2m", summary, self.unit)
+        texts = ("Deviations", summary, self.unit)
         scene = self._index.scene._raw
         return Page(
             _p2m.deviation_page(

@@ -90,5 +90,5 @@ def scene_page(
         signs: dict[str, Any] = {} if sign is None else {"signed": True, "sign": sign}
         distances = index.field(origin, spacing, shape, **signs)
         values = (grid, distances.ravel(order="F"))
-    texts = ("A scene in p2m", ", ".join(words) or "an empty scene", unit)
+    texts = ("Scene", ", ".join(words) or "an empty scene", unit)
     return Page(_p2m.scene_page(scene._raw, texts, is_y_up, len(scene) <= _MAX_LIVE, values))
