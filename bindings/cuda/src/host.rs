@@ -74,6 +74,9 @@ impl Card for HostCard {
     fn copy(&self, memory: &Vec<u128>, bytes: usize) -> Result<Vec<u128>, CudaError> {
         Ok(memory[..bytes.div_ceil(16)].to_vec())
     }
+    fn keep(&self, _: i64) -> Result<(), CudaError> {
+        Ok(())
+    }
     fn free_memory(&self) -> Result<usize, CudaError> {
         Ok(usize::MAX)
     }
