@@ -1,5 +1,5 @@
 // The kernels. A kernel is a function of the number of a thread and of its parameters. On a card each thread calls it
-// once; on the host, for tests, a loop does.
+// once; on the host, for tests, several threads share the numbers.
 #include "answer.cuh"
 
 #ifdef __CUDACC__
@@ -9,9 +9,20 @@
         if (thread < threads) function(thread, parameters);                                        \
     }
 #else
-#define KERNEL(name, Parameters, function)                                        \
-    extern "C" void name(uint32_t threads, const Parameters *parameters) {          \
-        for (uint32_t thread = 0; thread < threads; thread++) function(thread, *parameters); \
+#include <thread>
+#include <vector>
+// Each of three threads takes every third number, the last one first, so kernels cannot rely on the order of numbers.
+template <class Function> void run(uint32_t threads, Function function) {
+    std::vector<std::thread> workers;
+    for (uint32_t worker = 0; worker < 3; worker++)
+        workers.emplace_back([=] {
+            for (uint64_t k = worker; k < threads; k += 3) function(threads - 1 - (uint32_t)k);
+        });
+    for (std::thread &worker : workers) worker.join();
+}
+#define KERNEL(name, Parameters, function)                                              \
+    extern "C" void name(uint32_t threads, const Parameters *parameters) {                \
+        run(threads, [=](uint32_t thread) { function(thread, *parameters); });            \
     }
 #endif
 

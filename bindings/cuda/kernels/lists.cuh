@@ -63,9 +63,7 @@ template <class T> P2M_FUNCTION T take(T *counter, T amount) {
 #ifdef __CUDACC__
     return atomicAdd(counter, amount);
 #else
-    T before = *counter;
-    *counter += amount;
-    return before;
+    return __atomic_fetch_add(counter, amount, __ATOMIC_RELAXED);
 #endif
 }
 

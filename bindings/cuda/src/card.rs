@@ -35,6 +35,8 @@ pub(crate) trait Card: Sized + Sync {
     fn copy(&self, memory: &Self::Memory, bytes: usize) -> Result<Self::Memory, CudaError>;
     /// Waits until all kernels have ended.
     fn wait(&self) -> Result<(), CudaError>;
+    /// Changes the number of bytes above which the driver takes back free memory. It counts memory in use, too.
+    fn keep(&self, bytes: i64) -> Result<(), CudaError>;
     /// Returns the bytes that are free.
     fn free_memory(&self) -> Result<usize, CudaError>;
     /// Starts a kernel for each number of a thread.
@@ -56,8 +58,8 @@ const THREADS_PER_BLOCK: u32 = 128;
 /// pageable memory are several times slower.
 const STAGING_BYTES: usize = 1 << 22;
 
-/// The memory that the driver keeps for the next batch.
-const KEPT_BYTES: u64 = 1 << 28;
+/// The free memory that the driver keeps for batches: three lanes with all columns in f64 take 380 MB.
+const KEPT_BYTES: u64 = 1 << 29;
 
 /// The context that is current on this thread. It is current again when this value is dropped.
 pub(crate) struct CallersContext(Option<CUcontext>);
@@ -88,16 +90,6 @@ impl CudaCard {
     /// Opens the card of this number. The driver has to be there.
     pub(crate) fn open(ordinal: usize) -> Result<Self, CudaError> {
         let context = CudaContext::new(ordinal)?;
-        if context.has_async_alloc() {
-            // Otherwise each wait would give the memory of a batch back, and the next batch would map it anew.
-            let attribute = CUmemPool_attribute::CU_MEMPOOL_ATTR_RELEASE_THRESHOLD;
-            let mut kept = KEPT_BYTES;
-            // SAFETY: the attribute is a number of 64 bits.
-            unsafe {
-                let pool = result::device::get_default_mem_pool(context.cu_device())?;
-                result::mem_pool::set_attribute(pool, attribute, (&raw mut kept).cast())?;
-            }
-        }
         let module = context.load_module(Ptx::from_src(PTX))?;
         let stream = context.new_stream()?;
         Ok(Self { stream, module, staging: Mutex::default() })
@@ -205,6 +197,23 @@ impl Card for CudaCard {
             self.stream.memcpy_dtod(&memory.slice(..bytes), &mut copy)?;
         }
         Ok(copy)
+    }
+
+    fn keep(&self, bytes: i64) -> Result<(), CudaError> {
+        let context = self.stream.context();
+        if context.has_async_alloc() {
+            let attribute = CUmemPool_attribute::CU_MEMPOOL_ATTR_RELEASE_THRESHOLD;
+            let mut kept = 0u64;
+            // SAFETY: the attribute is a number of 64 bits.
+            unsafe {
+                let pool = result::device::get_default_mem_pool(context.cu_device())?;
+                result::mem_pool::get_attribute(pool, attribute, (&raw mut kept).cast())?;
+                // Other libraries of the process may keep more in the same pool.
+                kept = kept.max(KEPT_BYTES).saturating_add_signed(bytes);
+                result::mem_pool::set_attribute(pool, attribute, (&raw mut kept).cast())?;
+            }
+        }
+        Ok(())
     }
 
     fn free_memory(&self) -> Result<usize, CudaError> {

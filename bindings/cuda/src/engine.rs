@@ -76,7 +76,16 @@ impl<C: Card> Engine<C> {
         for _ in 1..LANES {
             lanes.push(lanes[0].lane()?);
         }
-        Ok(Self { lanes, _scene: blocks, lists, index, scene_bytes: parts.iter().map(|part| part.len()).sum() })
+        let scene_bytes = parts.iter().map(|part| part.len()).sum();
+        let engine = Self { lanes, _scene: blocks, lists, index, scene_bytes };
+        engine.card().keep(engine.kept_bytes())?;
+        Ok(engine)
+    }
+
+    /// The bytes of the scene and of its lists, which the limit of the driver has to include. Otherwise each wait would
+    /// give the memory of a batch back, and the next batch would map it anew.
+    fn kept_bytes(&self) -> i64 {
+        i64::try_from(self.scene_bytes + self.lists.memory).unwrap_or(i64::MAX)
     }
 
     /// The bytes of the scene and of its lists on the card.
@@ -199,7 +208,8 @@ impl<C: Card> Engine<C> {
                 let mut left = vec![Point3::<T>::origin(); found.count];
                 card.read(&gathered, cast_slice_mut(&mut left))?;
                 let mut blocks = Vec::new();
-                for (address, bytes) in batch.answers.iter_mut().zip(by_processor(&left)) {
+                let wanted = batch.answers.iter_mut().zip(by_processor(&left)).filter(|(_, bytes)| !bytes.is_empty());
+                for (address, bytes) in wanted {
                     let block = card.upload(&bytes)?;
                     *address = card.address(&block);
                     blocks.push(block);
@@ -259,6 +269,12 @@ impl<C: Card> Engine<C> {
         batch.order = card.address(&order);
         card.launch("p2m_scatter", count, batch)?;
         Ok([order, keys, ranks, starts])
+    }
+}
+
+impl<C: Card> Drop for Engine<C> {
+    fn drop(&mut self) {
+        let _ = self.card().keep(-self.kept_bytes());
     }
 }
 

@@ -30,9 +30,8 @@ fn compiled() -> Option<Library> {
     let library = folder.path().join("kernels.so");
     let compiler = std::env::var("CXX").unwrap_or_else(|_| "c++".to_owned());
     // Nothing may be contracted, as on the card.
-    let options =
-        ["-x", "c++", "-std=c++17", "-O2", "-ffp-contract=off", "-shared", "-fPIC", "-Wall", "-Wextra", "-Werror"];
-    match Command::new(&compiler).args(options).arg("-o").arg(&library).arg(source).status() {
+    let options = "-x c++ -std=c++17 -O2 -ffp-contract=off -pthread -shared -fPIC -Wall -Wextra -Werror";
+    match Command::new(&compiler).args(options.split(' ')).arg("-o").arg(&library).arg(source).status() {
         // SAFETY: the library has functions alone, which nothing calls when it is loaded.
         Ok(status) if status.success() => Some(unsafe { Library::new(&library) }.expect("the library")),
         Ok(_) => panic!("{compiler} does not compile the kernels"),
@@ -74,6 +73,9 @@ impl Card for HostCard {
     }
     fn copy(&self, memory: &Vec<u128>, bytes: usize) -> Result<Vec<u128>, CudaError> {
         Ok(memory[..bytes.div_ceil(16)].to_vec())
+    }
+    fn keep(&self, _: i64) -> Result<(), CudaError> {
+        Ok(())
     }
     fn free_memory(&self) -> Result<usize, CudaError> {
         Ok(usize::MAX)

@@ -289,6 +289,17 @@ fn what_is_refused_is_counted_beyond_32_bits() {
 }
 
 #[test]
+fn no_thread_loses_a_query() {
+    let corners = [[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]];
+    let soup = Soup::<f64>::from_arrays(&corners, &[[0u32, 1, 2]]).unwrap();
+    // One has a list, one goes to the tree, and one to the processor.
+    let kinds = [[0.2, 0.2, 0.5], [0.2, 0.2, 500.0], [f64::NAN, 0.0, 0.0]].map(Point3::from);
+    let queries: Vec<_> = kinds.into_iter().cycle().take(300_000).collect();
+    let Some((report, _)) = agrees(&soup, &queries, f64::INFINITY, &CudaOptions::default()) else { return };
+    assert_eq!([report.by_tree, report.by_processor], [100_000; 2]);
+}
+
+#[test]
 fn equal_keys_go_to_the_lowest_id() {
     let corners = [[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]].map(Point3::from);
     let elements = (0..40_000).map(|_| p2m_core::Element::Triangle([0, 1, 2]));
