@@ -152,6 +152,17 @@ fn a_plate_does_not_slide() {
 }
 
 #[test]
+fn steps_in_noise_go_all_the_way() {
+    let part = bracket();
+    let sigma = 0.01;
+    let points = noisy_points(&part, 1000, sigma);
+    let scan = moved(&points, &Isometry3::new(Vector3::new(0.02, -0.02, 0.02), Vector3::new(0.002, 0.003, -0.002)));
+    let found = aligned(&part, &scan, &AlignOptions::default().with_search(false));
+    println!("{:#?}", found.rounds);
+    assert!(found.is_converged);
+}
+
+#[test]
 fn a_scale_is_found_if_it_is_asked_for() {
     let part = bracket();
     let points = noisy_points(&part, 5000, 0.001);
@@ -221,6 +232,16 @@ fn an_alignment_can_be_ended_and_be_refused() {
     assert_eq!(refused(&points[..5], 1.0), AlignError::TooFewPoints { count: 5 });
     assert_eq!(refused(&[points[0]; 9], 1.0), AlignError::OnePoint);
     assert_eq!(refused(&points, 0.0), AlignError::Overlap { overlap: 0.0 });
+    let far = points.iter().map(|point| point * 1e200).collect::<Vec<_>>();
+    assert_eq!(refused(&far, 1.0), AlignError::OnePoint);
+    let dot = Soup::new(vec![points[0]], [Element::Point(0)]).unwrap();
+    let scaled = |scene: &Soup<f64>| {
+        let index = BruteForce::new(scene).unwrap();
+        align(scene, &index, &points, &AlignOptions::default().with_scale(true), &mut { GO_ON }).unwrap_err()
+    };
+    let mut huge = bracket();
+    huge.map_positions(|point| point * 1e160).unwrap();
+    assert_eq!([scaled(&dot), scaled(&huge)], [AlignError::NoSize; 2]);
     let empty = Soup::<f64>::default();
     let found = align(&empty, &BruteForce::new(&empty).unwrap(), &points, &options, &mut { GO_ON });
     assert_eq!(found.unwrap_err(), AlignError::EmptyScene);

@@ -180,7 +180,7 @@ pub(crate) fn move_scan(
     let found = pool
         .install(|| align(&*scene.soup, index, points, options, &mut |_| ControlFlow::Continue(())))
         .map_err(|error| match error {
-            AlignError::EmptyScene => anyhow!("{scene_name}: {error}"),
+            AlignError::EmptyScene | AlignError::NoSize => anyhow!("{scene_name}: {error}"),
             _ => anyhow!("{}: {error}", name(scan_path)),
         })?;
     drop(progress);
