@@ -179,7 +179,7 @@ pub enum AlignError {
     #[error("the scene is empty")]
     EmptyScene,
     /// The scan has fewer than six points that are finite.
-    #[error("the scan has {count} finite points, but an alignment needs at least 6")]
+    #[error("an alignment needs at least 6 finite points, but the scan has {count}")]
     TooFewPoints {
         /// The number of finite points.
         count: usize,
