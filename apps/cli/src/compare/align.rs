@@ -116,7 +116,7 @@ pub(crate) fn run(streams: &Streams, args: &Args) -> anyhow::Result<()> {
     }
     args.page.check(&[&args.scan.path, &args.scene.path])?;
     args.scan.refuse_same_input(&args.scene)?;
-    let target = args.out.as_deref().map(|out| Target::new(streams, out, None, None)).transpose()?;
+    let target = args.out.as_deref().map(|out| Target::by_extension(streams, out)).transpose()?;
     let scan_format = args.scan.format()?;
     let format = args.scene.format()?;
     let pool = args.threads.pool()?;
