@@ -2,6 +2,8 @@
 
 #![allow(clippy::float_cmp, reason = "numbers of files are read as they are")]
 
+use laz::LazVlrBuilder;
+use laz::laszip::{ChunkTable, ChunkTableEntry};
 use p2m_core::PrimitiveSet;
 use p2m_formats::{FileFormat, read_points_from, read_scene, read_scene_from};
 use p2m_mixed::{FileLocation, PointColumns, ReadError, Scene, Unit};
@@ -322,6 +324,14 @@ fn damaged_las_files_are_errors() {
     assert!(
         error("las/varying3.laz", &[(107, &[11])]).ends_with("the chunks have 12 points, but the header announces 11")
     );
+    let mut empty_chunk = seed("las/varying3.laz");
+    let start = u32::from_le_bytes(empty_chunk[96..100].try_into().unwrap()) as usize;
+    empty_chunk.truncate(u64::from_le_bytes(empty_chunk[start..start + 8].try_into().unwrap()) as usize);
+    let mut table = ChunkTable::default();
+    [12, 0].into_iter().for_each(|point_count| table.push(ChunkTableEntry { point_count, byte_count: 1 }));
+    let vlr = LazVlrBuilder::default().with_point_format(3, 0).unwrap().with_variable_chunk_size().build();
+    table.write_to(&mut empty_chunk, &vlr).unwrap();
+    assert!(read("a.laz", &empty_chunk).unwrap_err().to_string().ends_with("decompressed: a chunk has no points"));
 }
 
 #[test]
