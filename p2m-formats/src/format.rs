@@ -66,7 +66,7 @@ const CONVERTERS: [(&[&str], &str); 9] = [
         "the Python package meshio converts it to PLY",
     ),
     (&["gpkg", "kml", "kmz", "gml", "fgb", "gdb", "gpx", "tab"], "ogr2ogr of GDAL converts it to GeoJSON"),
-    (&["tif", "tiff", "asc.gz", "dem", "hgt"], "gdal_translate of GDAL converts it to XYZ"),
+    (&["tif", "tiff", "dem", "hgt"], "gdal_translate of GDAL converts it to XYZ"),
     (&["ptx", "rcp", "rcs", "fls", "zfs", "bin", "copc"], "CloudCompare converts it to E57 or LAS"),
     (&["xlsx", "xls", "ods"], "a spreadsheet program saves it as CSV"),
 ];

@@ -3,7 +3,7 @@
 //! The crate gltf parses and validates the description. Containers and the numbers in buffers are read here, because
 //! that crate trusts lengths.
 
-use crate::sink::{Sink, fan, moved, strip};
+use crate::sink::{Sink, fan, is_mirrored, moved, strip};
 use crate::{File, sink};
 use base64::Engine;
 use base64::engine::general_purpose::STANDARD;
@@ -163,9 +163,7 @@ impl Reader<'_> {
                     corners
                 }
             };
-            // A node that mirrors its mesh leaves the outside of triangles where it was.
-            let is_mirrored = matrix.fixed_view::<3, 3>(0, 0).determinant() < 0.0;
-            push(&mut self.sink, primitive.mode(), &corners, is_mirrored).map_err(|reason| fail(&reason))?;
+            push(&mut self.sink, primitive.mode(), &corners, is_mirrored(matrix)).map_err(|reason| fail(&reason))?;
         }
         Ok(())
     }

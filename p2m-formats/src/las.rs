@@ -4,6 +4,7 @@
 
 use crate::sink::{MAX_RATIO, Sink};
 use crate::{File, wkt};
+use laz::laszip::ChunkTable;
 use laz::{DecompressionSelection, LasZipDecompressor, LazItemRecordBuilder, LazItemType, LazVlr};
 use p2m_mixed::{FileLocation, ReadError, Scene, Unit};
 use std::io::{self, Cursor, Read, Seek, SeekFrom};
@@ -214,18 +215,23 @@ fn decompress(
         return Err(file.error_at(FileLocation::Byte(107), text));
     }
     check_chunk_table(file, header)?;
-    if is_layered {
-        check_layers(file, header, &vlr)?;
-    }
-    let mut source = Shallow { file: Cursor::new(file.bytes), start: stack_address() };
-    source.seek(SeekFrom::Start(header.data_start as u64)).expect("any position is fine");
     let at_row = |row: u64, error: &dyn std::fmt::Display| {
         file.error_at(FileLocation::Row(row), format!("cannot be decompressed: {error}"))
     };
+    let counts = if vlr.uses_variable_size_chunks() {
+        varying_counts(file, header, &vlr).map_err(|error| at_row(0, &error))?
+    } else {
+        Vec::new()
+    };
+    if is_layered {
+        check_layers(file, header, &vlr, &counts)?;
+    }
+    let mut source = Shallow { file: Cursor::new(file.bytes), start: stack_address() };
+    source.seek(SeekFrom::Start(header.data_start as u64)).expect("any position is fine");
     let selection = DecompressionSelection::xy_returns_channel().decompress_z();
     // The decoder indexes beyond its tables at damaged data, of the table of chunks as well. It is dropped then.
     let decompressor = catch_unwind(AssertUnwindSafe(|| LasZipDecompressor::selective(source, vlr, selection)));
-    let decompressor = decompressor.map_err(|_| at_row(0, &"the table of chunks is damaged"))?;
+    let decompressor = decompressor.map_err(|_| at_row(0, &DAMAGED_TABLE))?;
     let mut decompressor = decompressor.map_err(|error| at_row(0, &error))?;
     let mut done = 0;
     let mut batch = Vec::new();
@@ -241,6 +247,25 @@ fn decompress(
         done += count;
     }
     Ok(())
+}
+
+const DAMAGED_TABLE: &str = "the table of chunks is damaged";
+
+/// Returns the numbers of points of chunks whose size varies. The decompressor trusts them to end each chunk.
+fn varying_counts(file: &File<'_>, header: &Header, vlr: &LazVlr) -> Result<Vec<u64>, String> {
+    let mut source = Cursor::new(file.bytes);
+    source.set_position(header.data_start as u64);
+    let table = catch_unwind(AssertUnwindSafe(|| ChunkTable::read_from(source, vlr)));
+    let table = table.map_err(|_| DAMAGED_TABLE)?.map_err(|error| error.to_string())?;
+    let counts: Vec<u64> = table.as_ref().iter().map(|chunk| chunk.point_count).collect();
+    let total = counts.iter().copied().fold(0, u64::saturating_add);
+    if total != header.count {
+        return Err(format!("the chunks have {total} points, but the header announces {}", header.count));
+    }
+    if counts.contains(&0) {
+        return Err("a chunk has no points".to_owned());
+    }
+    Ok(counts)
 }
 
 /// Refuses a table of more chunks than the file can have, for which the decompressor would allocate memory.
@@ -260,8 +285,9 @@ fn check_chunk_table(file: &File<'_>, header: &Header) -> Result<(), ReadError> 
     Ok(())
 }
 
-/// Refuses layers of a chunk that are longer than the file, for which the decompressor would allocate memory.
-fn check_layers(file: &File<'_>, header: &Header, vlr: &LazVlr) -> Result<(), ReadError> {
+/// Refuses layers of a chunk that are longer than the file, for which the decompressor would allocate memory. `counts`
+/// are the numbers of points of chunks, if they vary.
+fn check_layers(file: &File<'_>, header: &Header, vlr: &LazVlr, counts: &[u64]) -> Result<(), ReadError> {
     let layers: usize = vlr
         .items()
         .iter()
@@ -274,6 +300,7 @@ fn check_layers(file: &File<'_>, header: &Header, vlr: &LazVlr) -> Result<(), Re
         .sum();
     let mut at = header.data_start.saturating_add(8);
     let mut points = 0u64;
+    let mut counts = counts.iter();
     while points < header.count {
         // A chunk is its first record, the number of its points, the lengths of the layers, and the layers.
         let sizes = at.saturating_add(usize::from(header.record_len));
@@ -281,7 +308,11 @@ fn check_layers(file: &File<'_>, header: &Header, vlr: &LazVlr) -> Result<(), Re
         if count == 0 {
             return Err(file.error_at(FileLocation::Byte(sizes as u64), "a chunk has no points"));
         }
-        // The decompressor begins another chunk after the usual number, which is the largest one if it varies.
+        if let Some(expected) = counts.next().filter(|expected| **expected != u64::from(count)) {
+            let text = format!("a chunk has {count} points, but the table of chunks says {expected}");
+            return Err(file.error_at(FileLocation::Byte(sizes as u64), text));
+        }
+        // The decompressor begins another chunk after the usual number.
         points += u64::from(count.min(vlr.chunk_size()));
         let lens = file.slice(sizes + 4, 4 * layers)?.as_chunks::<4>().0;
         let len: u64 = lens.iter().map(|len| u64::from(u32::from_le_bytes(*len))).sum();

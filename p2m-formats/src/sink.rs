@@ -101,6 +101,11 @@ pub(crate) fn moved(matrix: &Matrix4<f64>, position: [f64; 3]) -> [f64; 3] {
     matrix.transform_point(&Point3::from(position)).coords.into()
 }
 
+/// Tells whether a matrix mirrors a mesh, so that its triangles take the other direction to face outside as before.
+pub(crate) fn is_mirrored(matrix: &Matrix4<f64>) -> bool {
+    matrix.fixed_view::<3, 3>(0, 0).determinant() < 0.0
+}
+
 /// Returns the triangles of a strip. Every other one has the other direction, so all face the same side.
 pub(crate) fn strip(corners: &[u32]) -> impl Iterator<Item = Element> {
     (0..).zip(corners.windows(3)).map(|(i, t)| {

@@ -1,7 +1,7 @@
 //! 3MF: a ZIP archive of models in XML. Items of the build plate are placed, with the components of their objects.
 
 use crate::File;
-use crate::sink::{Sink, expanded_limit, moved};
+use crate::sink::{Sink, expanded_limit, is_mirrored, moved};
 use nalgebra::Matrix4;
 use p2m_core::Element;
 use p2m_mixed::{ReadError, Scene, Unit};
@@ -103,6 +103,7 @@ fn place(
         return Err(format!("object {} is part of itself, or nested too deeply", placed.object));
     }
     let matrix = above * placed.matrix;
+    let is_mirrored = is_mirrored(&matrix);
     let name = if name.is_empty() { object.name.as_str() } else { name };
     let at = |reason: &dyn Display| format!("object {}: {reason}", placed.object);
     sink.builder.start_object(name.as_bytes());
@@ -117,6 +118,9 @@ fn place(
         for (corner, &index) in triangle.iter_mut().zip(corners) {
             let missing = || at(&format_args!("vertex {index} is out of range, there are {}", vertices.len()));
             *corner = *vertices.get(index as usize).ok_or_else(missing)?;
+        }
+        if is_mirrored {
+            triangle.swap(1, 2);
         }
         sink.push(Element::Triangle(triangle)).map_err(|reason| at(&reason))?;
     }

@@ -2,6 +2,8 @@
 
 #![allow(clippy::float_cmp, reason = "numbers of files are read as they are")]
 
+use laz::LazVlrBuilder;
+use laz::laszip::{ChunkTable, ChunkTableEntry};
 use p2m_core::PrimitiveSet;
 use p2m_formats::{FileFormat, read_points_from, read_scene, read_scene_from};
 use p2m_mixed::{FileLocation, PointColumns, ReadError, Scene, Unit};
@@ -29,6 +31,14 @@ fn seed(name: &str) -> Vec<u8> {
 
 fn read(name: &str, bytes: &[u8]) -> Result<Scene, ReadError> {
     read_scene_from(bytes, FileFormat::from_path(name.as_ref()).unwrap(), name, None)
+}
+
+/// Reads a 3MF file with this model.
+fn read_model(text: &str) -> Result<Scene, ReadError> {
+    let mut archive = zip::ZipWriter::new(std::io::Cursor::new(Vec::new()));
+    archive.start_file("3D/3dmodel.model", zip::write::SimpleFileOptions::default()).unwrap();
+    std::io::Write::write_all(&mut archive, text.as_bytes()).unwrap();
+    read("a.3mf", &archive.finish().unwrap().into_inner())
 }
 
 /// Returns the error of a seed, parts of which are replaced.
@@ -63,6 +73,12 @@ fn names(scene: &Scene) -> Vec<&str> {
 fn scenes_have_their_primitives_names_and_units() {
     for name in ["format0.las", "format3.laz", "format7.las", "format7.laz", "format8.laz"] {
         assert_eq!(counts(&format!("las/{name}")), [0, 0, 12], "{name}");
+    }
+    // Their chunks have 1, 6, 2 and 3 points.
+    for format in [3, 7] {
+        let [plain, varying] = [format!("format{format}.las"), format!("varying{format}.laz")]
+            .map(|name| read_scene(&folder().join("las").join(name)).unwrap());
+        assert_eq!(varying.soup, plain.soup, "{format}");
     }
     let feet = read_scene(&folder().join("las/format7.laz")).unwrap();
     assert_eq!(feet.unit, Some(Unit::Foot));
@@ -167,6 +183,29 @@ fn mirrored_nodes_face_outside() {
 }
 
 #[test]
+fn mirrored_parts_of_3mf_files_face_outside() {
+    let mirror = "-1 0 0 0 1 0 0 0 1 5 6 7";
+    let model = |item: &str, component: &str| {
+        read_model(&format!(
+            r#"<model><resources><object id="1"><mesh><vertices><vertex x="0" y="0" z="0"/><vertex x="1" y="0" z="0"/>
+            <vertex x="0" y="1" z="0"/><vertex x="0" y="0" z="1"/></vertices><triangles><triangle v1="0" v2="2" v3="1"/>
+            <triangle v1="0" v2="1" v3="3"/><triangle v1="1" v2="2" v3="3"/><triangle v1="0" v2="3" v3="2"/></triangles>
+            </mesh></object><object id="2"><components><component objectid="1" transform="{component}"/></components>
+            </object></resources><build><item objectid="2" transform="{item}"/></build></model>"#
+        ))
+        .unwrap()
+    };
+    let plain = "1 0 0 0 1 0 0 0 1 0 0 0";
+    for (item, component) in [(plain, plain), (mirror, plain), (plain, mirror), (mirror, mirror)] {
+        let scene = model(item, component);
+        assert!((volume(&scene) - 1.0).abs() < 1e-12, "{item}, {component}: {}", volume(&scene));
+    }
+    // Only the mirrored object has another direction.
+    let triangles = |item| model(item, plain).soup.triangles().to_vec();
+    assert_eq!((triangles(plain)[0], triangles(mirror)[0]), ([0, 2, 1], [0, 1, 2]));
+}
+
+#[test]
 fn single_features_have_coordinate_systems() {
     let system = r#""crs": {"type": "name", "properties": {"name": "EPSG:28992"}}"#;
     let geometry = r#""type": "Point", "coordinates": [155000.0, 463000.0]"#;
@@ -191,10 +230,7 @@ fn slices_of_3mf_files_are_left_out_unless_they_are_required() {
             <vertex x="1" y="1" z="0"/></vertices><triangles><triangle v1="0" v2="1" v3="2"/></triangles></mesh></object>
             </resources><build><item objectid="2"/></build></model>"#
         );
-        let mut archive = zip::ZipWriter::new(std::io::Cursor::new(Vec::new()));
-        archive.start_file("3D/3dmodel.model", zip::write::SimpleFileOptions::default()).unwrap();
-        std::io::Write::write_all(&mut archive, text.as_bytes()).unwrap();
-        read("a.3mf", &archive.finish().unwrap().into_inner())
+        read_model(&text)
     };
     for required in ["", r#"recommendedextensions="s""#, r#"requiredextensions="p""#] {
         assert_eq!(model(required).unwrap().soup.triangles().len(), 1, "{required}");
@@ -279,6 +315,23 @@ fn damaged_las_files_are_errors() {
     let table = u64::from_le_bytes(chunks[start..start + 8].try_into().unwrap()) as usize;
     let expected = format!("format7.laz at byte {table}: the table of chunks announces 4294967295 chunks, more than");
     assert!(error("las/format7.laz", &[(table + 4, &[0xff; 4])]).starts_with(&expected));
+    let start = u32::from_le_bytes(seed("las/varying7.laz")[96..100].try_into().unwrap()) as usize;
+    let sizes = start + 8 + 36;
+    assert_eq!(
+        error("las/varying7.laz", &[(sizes, &[2])]),
+        format!("varying7.laz at byte {sizes}: a chunk has 2 points, but the table of chunks says 1")
+    );
+    assert!(
+        error("las/varying3.laz", &[(107, &[11])]).ends_with("the chunks have 12 points, but the header announces 11")
+    );
+    let mut empty_chunk = seed("las/varying3.laz");
+    let start = u32::from_le_bytes(empty_chunk[96..100].try_into().unwrap()) as usize;
+    empty_chunk.truncate(u64::from_le_bytes(empty_chunk[start..start + 8].try_into().unwrap()) as usize);
+    let mut table = ChunkTable::default();
+    [12, 0].into_iter().for_each(|point_count| table.push(ChunkTableEntry { point_count, byte_count: 1 }));
+    let vlr = LazVlrBuilder::default().with_point_format(3, 0).unwrap().with_variable_chunk_size().build();
+    table.write_to(&mut empty_chunk, &vlr).unwrap();
+    assert!(read("a.laz", &empty_chunk).unwrap_err().to_string().ends_with("decompressed: a chunk has no points"));
 }
 
 #[test]
@@ -351,22 +404,16 @@ fn damaged_gltf_files_are_errors() {
 #[test]
 fn damaged_3mf_files_are_errors() {
     damage("3mf");
-    let model = |text: &str| {
-        let mut archive = zip::ZipWriter::new(std::io::Cursor::new(Vec::new()));
-        archive.start_file("3D/3dmodel.model", zip::write::SimpleFileOptions::default()).unwrap();
-        std::io::Write::write_all(&mut archive, text.as_bytes()).unwrap();
-        read("a.3mf", &archive.finish().unwrap().into_inner())
-    };
     let object = |inside: &str| {
         format!(
             "<model unit=\"inch\"><resources><object id=\"1\" name=\"a\">{inside}</object></resources><build><item objectid=\"1\" transform=\"1 0 0 0 2 0 0 0 1 5 6 7\"/></build></model>"
         )
     };
     let corners = "<vertex x=\"0\" y=\"0\" z=\"0\"/><vertex x=\"1\" y=\"0\" z=\"0\"/><vertex x=\"1\" y=\"1\" z=\"0\"/>";
-    let scene = model(&object(&format!("{corners}<triangle v1=\"0\" v2=\"1\" v3=\"2\"/>"))).unwrap();
+    let scene = read_model(&object(&format!("{corners}<triangle v1=\"0\" v2=\"1\" v3=\"2\"/>"))).unwrap();
     assert_eq!((scene.unit, names(&scene)), (Some(Unit::Inch), vec!["a"]));
     assert_eq!(scene.soup.positions()[2], nalgebra::Point3::new(6.0, 8.0, 7.0));
-    let error = |inside: &str| model(&object(inside)).unwrap_err().to_string();
+    let error = |inside: &str| read_model(&object(inside)).unwrap_err().to_string();
     assert_eq!(
         error(&format!("{corners}<triangle v1=\"0\" v2=\"1\" v3=\"4294967295\"/>")),
         "a.3mf: item 0 of the build, counted from 0: object 1: vertex 4294967295 is out of range, there are 3"
@@ -388,14 +435,14 @@ fn damaged_3mf_files_are_errors() {
         error(&format!("{}<triangle v1=\"0\" v2=\"1\" v3=\"2\"/>", corners.replace("\"1\"", "\"nan\"")))
             .ends_with("coordinate that is not finite")
     );
-    assert!(model("<model unit=\"ell\"/>").unwrap_err().to_string().ends_with("unit 'ell' is unknown"));
+    assert!(read_model("<model unit=\"ell\"/>").unwrap_err().to_string().ends_with("unit 'ell' is unknown"));
     assert!(
-        model("<vertex x=\"0\" y=\"0\" z=\"0\"/>")
+        read_model("<vertex x=\"0\" y=\"0\" z=\"0\"/>")
             .unwrap_err()
             .to_string()
             .ends_with("<vertex> is outside of an object")
     );
-    assert!(model(&" ".repeat(1 << 27)).unwrap_err().to_string().contains("expands to more than"));
+    assert!(read_model(&" ".repeat(1 << 27)).unwrap_err().to_string().contains("expands to more than"));
     // Nested components multiply, and take no more memory than the file allows.
     let many: String = (1..30)
         .map(|i| {
@@ -405,7 +452,7 @@ fn damaged_3mf_files_are_errors() {
             )
         })
         .collect();
-    let bomb = model(&format!(
+    let bomb = read_model(&format!(
         "<model><resources>{many}<object id=\"30\">{corners}</object></resources><build><item objectid=\"1\"/></build></model>"
     ));
     assert!(bomb.unwrap_err().to_string().contains("more than 1,000 times the size of its file"));

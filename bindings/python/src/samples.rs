@@ -1,11 +1,12 @@
 //! Random points on and around scenes.
 
 use crate::errors::value_error;
+use crate::memory::reserve;
 use crate::scene::Scene;
 use crate::work::run_owned;
 use nalgebra::Point3;
 use numpy::{PyArray1, PyArray2, PyArrayMethods};
-use p2m_core::Aabb;
+use p2m_core::{Aabb, PrimitiveId};
 use p2m_field::sample::{self, Samples, SurfaceSampler};
 use pyo3::prelude::*;
 use std::sync::Arc;
@@ -25,10 +26,12 @@ pub(crate) fn sample_surface<'py>(
 ) -> PyResult<Columns<'py>> {
     let soup = Arc::clone(&scene.shared.soup);
     let samples = run_owned(py, threads, 1, None, move |_| -> Option<Samples> {
+        check_memory(count);
         let sampler = SurfaceSampler::new(soup)?;
         Some(if sigmas.is_empty() { sampler.surface(seed, count) } else { sampler.near(seed, count, &sigmas) })
     })?;
-    let samples = samples.ok_or_else(|| value_error("the scene is empty, so it has no samples"))?;
+    let samples =
+        samples.ok_or_else(|| value_error("the scene is empty, or no area or length of it is finite and above 0"))?;
     let primitives = samples.primitives.iter().map(|id| i64::from(id.number()));
     Ok((rows(py, samples.points)?, PyArray1::from_iter(py, primitives)))
 }
@@ -44,7 +47,16 @@ pub(crate) fn sample_box<'py>(
     threads: usize,
 ) -> PyResult<Bound<'py, PyArray2<f64>>> {
     let bounds = Aabb { min: low.into(), max: high.into() };
-    rows(py, run_owned(py, threads, 1, None, move |_| sample::in_box(&bounds, seed, count))?)
+    let points = run_owned(py, threads, 1, None, move |_| {
+        check_memory(count);
+        sample::in_box(&bounds, seed, count)
+    })?;
+    rows(py, points)
+}
+
+/// Ends the work of this thread if there is no memory for so many samples.
+fn check_memory(count: usize) {
+    reserve(&mut Vec::<(Point3<f64>, PrimitiveId)>::new(), count);
 }
 
 /// Returns points as rows, in the memory that they have.

@@ -43,8 +43,7 @@ pub(crate) struct Shards {
 impl Shards {
     /// Runs a batch of so many queries on threads of a pool, detached from the interpreter.
     ///
-    /// The library divides batches among the threads of the current pool, so there has to be one. A single thread is
-    /// not shared with other batches, because several threads of Python may each want one.
+    /// The library divides batches among the threads of the current pool, so there has to be one.
     fn run<R: Send>(
         py: Python<'_>,
         queries: usize,
@@ -52,8 +51,7 @@ impl Shards {
         progress: Option<Py<PyAny>>,
         work: impl FnOnce(&Threads, &Monitor) -> PyResult<R> + Send,
     ) -> PyResult<R> {
-        let pool = if threads == 1 { crate::threads::start(1) } else { crate::threads::pool(py, threads) };
-        let threads = Threads::Pool(pool?);
+        let threads = Threads::Pool(crate::threads::pool(py, threads)?);
         let monitor = threads.monitor(queries, FIRST_STEP_QUERIES, progress);
         run_batch(py, &threads, &monitor, || work(&threads, &monitor))?
     }

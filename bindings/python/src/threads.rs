@@ -6,7 +6,7 @@
 use p2m_core::engine::pools;
 use pyo3::exceptions::PyRuntimeError;
 use pyo3::prelude::*;
-use rayon::{ThreadPool, ThreadPoolBuildError};
+use rayon::ThreadPool;
 use std::sync::{Arc, OnceLock};
 
 /// Returns the number of threads that is used where none is given: that of the environment variable
@@ -21,19 +21,10 @@ pub(crate) fn default_threads() -> usize {
 
 /// Returns the pool of this process with so many threads, which are started by the first call.
 pub(crate) fn pool(_: Python<'_>, threads: usize) -> PyResult<Arc<ThreadPool>> {
-    pools::shared_pool(threads).map_err(failed)
-}
-
-/// Returns a pool with so many threads that nobody else uses.
-pub(crate) fn start(threads: usize) -> PyResult<Arc<ThreadPool>> {
-    pools::start_pool(threads).map_err(failed)
+    pools::shared_pool(threads).map_err(|error| PyRuntimeError::new_err(error.to_string()))
 }
 
 /// Leaves a pool to the cancelled work that runs on it: later calls get another one. Its threads end with that work.
 pub(crate) fn abandon(_: Python<'_>, abandoned: &Arc<ThreadPool>) {
     pools::abandon_pool(abandoned);
-}
-
-fn failed(error: ThreadPoolBuildError) -> PyErr {
-    PyRuntimeError::new_err(error.to_string())
 }

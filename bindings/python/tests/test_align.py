@@ -62,7 +62,7 @@ def test_options_reach_the_search() -> None:
     assert np.abs(near.matrix @ there - np.eye(4)).max() > 0.1
     with pytest.raises(ValueError, match="overlap of 0"):
         p2m.align(scan, part(), overlap=0.0)
-    with pytest.raises(ValueError, match="0 finite points"):
+    with pytest.raises(ValueError, match="6 finite points, but the scan has 0"):
         p2m.align(np.full((9, 3), np.nan), part())
 
 

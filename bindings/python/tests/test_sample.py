@@ -50,6 +50,14 @@ def test_samples_have_the_distances_of_their_points(tmp_path: Path) -> None:
         p2m.sample_sdf(p2m.Scene(np.empty((0, 3))), near=1)
     with pytest.raises(ValueError, match="neither float64 nor float32"):
         p2m.sample_sdf(solid(), near=1, dtype=np.float16)
+    with pytest.raises(ValueError, match="no area or length of it is finite"):
+        p2m.sample_surface(p2m.Scene(0 * CORNERS, triangles=FACES), 5)
+    for sample in (lambda: p2m.sample_surface(solid(), 2**40), lambda: p2m.sample_sdf(solid(), uniform=2**40)):
+        with pytest.raises(MemoryError):
+            sample()
+    for wrong in ({"sigma": np.inf}, {"sigma": [0.1, np.inf]}, {"box_scale": np.inf}):
+        with pytest.raises(ValueError, match="inf is not finite"):
+            p2m.sample_sdf(solid(), near=1, **wrong)
 
 
 def test_samples_are_those_of_the_program(tmp_path: Path) -> None:

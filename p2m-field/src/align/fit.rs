@@ -71,7 +71,7 @@ where
     S: PrimitiveSet<f64> + Sync + ?Sized,
     I: ClosestPoint<f64> + Sync + ?Sized,
 {
-    /// Takes a scan and a scene; `None` if all points are the same.
+    /// Takes a scan and a scene; `None` if all points are the same, or squares of their distances overflow.
     pub(super) fn new(scene: &'a S, index: &'a I, points: &'a [Point3<f64>], options: &AlignOptions) -> Option<Self> {
         // Halves do not overflow, and differences from a point of the scan are accurate far from the origin.
         let first = points[0];

@@ -179,14 +179,17 @@ pub enum AlignError {
     #[error("the scene is empty")]
     EmptyScene,
     /// The scan has fewer than six points that are finite.
-    #[error("the scan has {count} finite points, but an alignment needs at least 6")]
+    #[error("an alignment needs at least 6 finite points, but the scan has {count}")]
     TooFewPoints {
         /// The number of finite points.
         count: usize,
     },
-    /// All points of the scan are the same.
-    #[error("all points of the scan are the same")]
+    /// All points of the scan are the same, or squares of their distances are beyond the range of f64.
+    #[error("all points of the scan are the same, or their distances are out of range")]
     OnePoint,
+    /// The scan would be scaled, but all of the scene is at one point, or its size is beyond the range of f64.
+    #[error("the scene has no size that a scan can be scaled to")]
+    NoSize,
     /// The overlap is not above 0 and at most 1.
     #[error("an overlap of {overlap} is not above 0 and at most 1")]
     Overlap {
@@ -222,7 +225,7 @@ pub type ReportRound<'a> = dyn FnMut(&AlignRound) -> ControlFlow<()> + 'a;
 /// ```
 ///
 /// # Errors
-/// An [`AlignError`] for an empty scene, a scan of too few points, or a wrong overlap.
+/// An [`AlignError`] for an empty scene, a scan of too few points, a wrong overlap, or a scene without a size for the scale.
 ///
 /// # Complexity
 /// About 500,000 queries for a search, and two for each point after it. 60 bytes for each point.
@@ -252,6 +255,9 @@ where
     let mut fit = Fit::new(scene, index, &points, options).ok_or(AlignError::OnePoint)?;
     if options.scale && options.search {
         let ratio = search::Inertia::of_scene(scene).radius / fit.radius;
+        if !(ratio > 0.0 && ratio.is_finite()) {
+            return Err(AlignError::NoSize);
+        }
         fit.scales = fit.scales.map(|scale| scale * ratio);
     }
     let (start, other) = search::start(&fit, options, report);

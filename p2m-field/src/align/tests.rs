@@ -1,3 +1,5 @@
+use super::fit::Fit;
+use super::pose::Pose;
 use super::search::rotations;
 use super::*;
 use nalgebra::{Isometry3, Translation3, UnitQuaternion, Vector3};
@@ -152,6 +154,34 @@ fn a_plate_does_not_slide() {
 }
 
 #[test]
+fn steps_in_noise_go_all_the_way() {
+    // Weights change with a step. If they were fixed, each step would leave a sixth of the way.
+    let side = 100.0;
+    let corners = [[0.0, 0.0], [side, 0.0], [0.0, side], [side, side]].map(|[x, y]| Point3::new(x, y, 0.0));
+    let plane = Soup::from_triangles(corners.to_vec(), vec![[0, 1, 2], [1, 3, 2]]).unwrap();
+    let index = BruteForce::new(&plane).unwrap();
+    let sigma = 0.01;
+    let points = noisy_points(&plane, 20_000, sigma);
+    let shift = Isometry3::translation(0.0, 0.0, 0.3 * sigma);
+    let centre = Translation3::new(side / 2.0, side / 2.0, 0.0);
+    let tilt = centre * UnitQuaternion::from_scaled_axis(Vector3::x() * (0.3 * sigma / 30.0)) * centre.inverse();
+    for motion in [shift, tilt] {
+        let scan = moved(&points, &motion);
+        let fit = Fit::new(&plane, &index, &scan, &AlignOptions::default()).unwrap();
+        // The limit of distances is that of the noise from the start.
+        let start = Pose { limit: 0.0, ..Pose::identity(fit.centre) };
+        let first = fit.round(&scan, &[start]).remove(0);
+        let end = (0..12).fold(first.next, |pose, _| fit.round(&scan, &[pose]).remove(0).next);
+        // The plane determines no other motion than that of heights.
+        let heights = |pose: &Pose| corners.map(|corner| pose.apply(&(motion * corner)).z);
+        let to_end =
+            |pose: &Pose| heights(pose).into_iter().zip(heights(&end)).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
+        let left = to_end(&first.next) / to_end(&start);
+        assert!(first.is_settled && left < 0.08, "{left}");
+    }
+}
+
+#[test]
 fn a_scale_is_found_if_it_is_asked_for() {
     let part = bracket();
     let points = noisy_points(&part, 5000, 0.001);
@@ -221,6 +251,16 @@ fn an_alignment_can_be_ended_and_be_refused() {
     assert_eq!(refused(&points[..5], 1.0), AlignError::TooFewPoints { count: 5 });
     assert_eq!(refused(&[points[0]; 9], 1.0), AlignError::OnePoint);
     assert_eq!(refused(&points, 0.0), AlignError::Overlap { overlap: 0.0 });
+    let far = points.iter().map(|point| point * 1e200).collect::<Vec<_>>();
+    assert_eq!(refused(&far, 1.0), AlignError::OnePoint);
+    let dot = Soup::new(vec![points[0]], [Element::Point(0)]).unwrap();
+    let scaled = |scene: &Soup<f64>| {
+        let index = BruteForce::new(scene).unwrap();
+        align(scene, &index, &points, &AlignOptions::default().with_scale(true), &mut { GO_ON }).unwrap_err()
+    };
+    let mut huge = bracket();
+    huge.map_positions(|point| point * 1e160).unwrap();
+    assert_eq!([scaled(&dot), scaled(&huge)], [AlignError::NoSize; 2]);
     let empty = Soup::<f64>::default();
     let found = align(&empty, &BruteForce::new(&empty).unwrap(), &points, &options, &mut { GO_ON });
     assert_eq!(found.unwrap_err(), AlignError::EmptyScene);

@@ -116,7 +116,7 @@ pub(crate) fn run(streams: &Streams, args: &Args) -> anyhow::Result<()> {
     }
     args.page.check(&[&args.scan.path, &args.scene.path])?;
     args.scan.refuse_same_input(&args.scene)?;
-    let target = args.out.as_deref().map(|out| Target::new(streams, out, None, None)).transpose()?;
+    let target = args.out.as_deref().map(|out| Target::by_extension(streams, out)).transpose()?;
     let scan_format = args.scan.format()?;
     let format = args.scene.format()?;
     let pool = args.threads.pool()?;
@@ -180,7 +180,7 @@ pub(crate) fn move_scan(
     let found = pool
         .install(|| align(&*scene.soup, index, points, options, &mut |_| ControlFlow::Continue(())))
         .map_err(|error| match error {
-            AlignError::EmptyScene => anyhow!("{scene_name}: {error}"),
+            AlignError::EmptyScene | AlignError::NoSize => anyhow!("{scene_name}: {error}"),
             _ => anyhow!("{}: {error}", name(scan_path)),
         })?;
     drop(progress);

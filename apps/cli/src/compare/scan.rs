@@ -1,11 +1,12 @@
 //! Scans: files of points, or of scenes whose vertices are the points.
 
-use crate::io::input::{SceneArgs, format_list, is_standard, read_points, read_scene_and_index, scene_format};
+use crate::io::input::{SceneArgs, format_list, is_standard, name, read_points, read_scene_and_index, scene_format};
 use crate::io::streams::Streams;
 use crate::io::usage::{one_of, usage};
 use anyhow::Context;
-use p2m_core::{Element, Soup};
+use p2m_core::Element;
 use p2m_formats::FileFormat;
+use p2m_mixed::engine::SceneBuilder;
 use p2m_mixed::{Format, PointColumns, PointIds, Scene};
 use rayon::ThreadPool;
 use std::path::PathBuf;
@@ -54,10 +55,17 @@ impl ScanArgs {
         }
         let columns = PointColumns { coordinates: self.columns.clone(), id: None };
         let table = read_points(streams, &self.path, format, &columns, "--scan-columns is")?;
-        let finite = (0..).zip(&table.points).filter(|(_, point)| point.iter().all(|x| x.is_finite()));
-        let elements: Vec<_> = finite.map(|(number, _)| Element::Point(number)).collect();
-        let scene = Soup::new(table.points, elements).with_context(|| self.path.display().to_string())?.into();
-        Ok((scene, table.ids))
+        let too_large = || name(&self.path);
+        let (mut builder, mut left_out) = (SceneBuilder::default(), 0);
+        for (number, point) in table.points.iter().enumerate() {
+            let vertex = builder.push_vertex(*point).with_context(too_large)?;
+            match point.iter().all(|x| x.is_finite()) {
+                true => builder.push(Element::Point(vertex), number).with_context(too_large)?,
+                false => left_out += 1,
+            }
+        }
+        builder.skipped.add_plural(left_out, "vertices that are not finite");
+        Ok((builder.finish(), table.ids))
     }
 }
 

@@ -109,7 +109,7 @@ pub(crate) struct Args {
 pub(crate) fn run(streams: &Streams, args: &Args) -> anyhow::Result<()> {
     let scene_args = &args.index_args.scene;
     let out_format = args.check(streams)?;
-    let target = args.iso.map(|_| Target::new(streams, &args.out, None, None)).transpose()?;
+    let target = args.iso.map(|_| Target::by_extension(streams, &args.out)).transpose()?;
     let format = scene_args.format()?;
     let pool = args.index_args.threads.pool()?;
     let start = Instant::now();

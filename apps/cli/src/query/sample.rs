@@ -91,6 +91,9 @@ pub(crate) struct Args {
     json: bool,
 }
 
+/// The memory that a sample takes: three coordinates and a number, as they are computed and as they are written.
+const SAMPLE_BYTES: usize = 64;
+
 /// The number of points that are answered at a time.
 const BLOCK: usize = 1 << 22;
 
@@ -108,12 +111,17 @@ pub(crate) fn run(streams: &Streams, args: &Args) -> anyhow::Result<()> {
     Output::refuse_inputs(&args.out, &[&args.scene.path])?;
     let [surface, near, uniform] = [args.surface, args.near, args.uniform].map(|n| usize::try_from(n.unwrap_or(0)));
     let (surface, near, uniform) = (surface?, near?, uniform?);
+    let total = surface.saturating_add(near).saturating_add(uniform);
+    if Vec::<[u8; SAMPLE_BYTES]>::new().try_reserve_exact(total).is_err() {
+        return Err(anyhow!("there is no memory for {total} samples"));
+    }
     let format = args.scene.format()?;
     let pool = args.threads.pool()?;
     let (scene, saved) = read_scene_and_index(streams, &pool, &args.scene.path, format, args.scene.map)?;
     let output = Output::open(streams, Some(&args.out))?;
-    let sampler =
-        SurfaceSampler::new(&*scene.soup).ok_or_else(|| anyhow!("{}: the scene is empty", args.scene.name()))?;
+    let sampler = SurfaceSampler::new(&*scene.soup).ok_or_else(|| {
+        anyhow!("{}: the scene is empty, or no area or length of it is finite and above 0", args.scene.name())
+    })?;
 
     let mut arrays: Vec<(&str, Array)> = Vec::new();
     if args.surface.is_some() {
@@ -167,7 +175,7 @@ pub(crate) fn run(streams: &Streams, args: &Args) -> anyhow::Result<()> {
         });
         return json::print(streams, &report);
     }
-    let (total, bytes) = (Count((surface + near + uniform) as u64), Count(bytes));
+    let (total, bytes) = (Count(total as u64), Count(bytes));
     streams.print_summary(format_args!("written  {}: {total} samples, {bytes} bytes\n", shown(&args.out)));
     Ok(())
 }

@@ -128,6 +128,19 @@ impl<'a> Target<'a> {
             }
             None => Format::from_path(path).map_err(|e| or_option(&e, "--to"))?,
         };
+        Self::with_format(streams, path, format)
+    }
+
+    /// Takes the format of the extension, for commands without an option for it.
+    pub(crate) fn by_extension(streams: &Streams, path: &'a Path) -> anyhow::Result<Self> {
+        if is_standard(path) {
+            return Err(usage("the standard output has no extension that names its format: choose a file"));
+        }
+        Self::with_format(streams, path, Format::from_path(path)?)
+    }
+
+    /// Refuses a binary format on a terminal.
+    fn with_format(streams: &Streams, path: &'a Path, format: Format) -> anyhow::Result<Self> {
         if matches!(format, Format::Ply | Format::Stl | Format::P2m) {
             Output::refuse_terminal(streams, path, format.name())?;
         }

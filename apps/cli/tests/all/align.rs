@@ -77,9 +77,14 @@ fn doubtful_alignments_are_warnings_and_wrong_ones_are_refused() {
     assert!(text(&output.stderr).contains("ball.ply: the scan can slide or turn"), "{}", text(&output.stderr));
     let scan = write(&folder, "scan.xyz", scan());
     let few = write(&folder, "few.xyz", "1 2 3\n4 5 6\n");
-    assert!(failure(&["align", &few, &ball], 1).contains("few.xyz: the scan has 2 finite points"));
+    assert!(
+        failure(&["align", &few, &ball], 1)
+            .contains("few.xyz: an alignment needs at least 6 finite points, but the scan has 2")
+    );
     assert!(failure(&["align", &scan, &write(&folder, "empty.xyz", "")], 1).contains("empty.xyz: the scene is empty"));
     assert!(failure(&["align", &scan, &ball, "--overlap", "0"], 2).contains("above 0 and at most 1"));
     assert!(failure(&["align", &scan, &ball, "--out", "-"], 2).contains("needs a file"));
+    let unknown = failure(&["align", &scan, &ball, "--out", "moved.doc"], 1);
+    assert!(unknown.contains("unknown extension 'doc'") && !unknown.contains("--to"), "{unknown}");
     assert!(failure(&["align", &scan, &ball, "--out", &ball], 1).contains("is an input"));
 }

@@ -325,26 +325,29 @@ fn points_that_are_left_out_are_in_no_statistics() {
 fn tables_have_the_ids_of_the_scan() {
     let folder = TempDir::new().unwrap();
     let cube = write(&folder, "cube.obj", CUBE);
-    let text = write(&folder, "scan.csv", "id,x,y,z\nP7,1,1,3\nP8,1,1,2.01\n");
-    let mut bytes = p2m_core::npy_header("[('id', '<i4'), ('query', '<f8', (3,))]", "(2,)", false);
-    for (id, z) in [(41i32, 3.0f64), (42, 2.01)] {
+    let text = write(&folder, "scan.csv", "id,x,y,z\nP7,1,1,3\nnone,nan,1,1\n\"P,8\",1,1,2.01\n");
+    let mut bytes = p2m_core::npy_header("[('id', '<i4'), ('query', '<f8', (3,))]", "(3,)", false);
+    for (id, z) in [(41i32, 3.0f64), (0, f64::NAN), (42, 2.01)] {
         bytes.extend(id.to_le_bytes());
         bytes.extend([1.0, 1.0, z].iter().flat_map(|x: &f64| x.to_le_bytes()));
     }
     let array = path(&folder, "scan.npy");
     fs::write(&array, bytes).unwrap();
     let out = path(&folder, "out.csv");
-    for (scan, ids) in [(&text, ["P7", "P8"]), (&array, ["41", "42"])] {
-        table(&["deviation", scan, &cube, "--out", &out]);
+    for (scan, ids) in [(&text, ["P7", "\"P,8\""]), (&array, ["41", "42"])] {
+        let output = p2m(&["deviation", scan, &cube, "--out", &out]);
+        assert!(self::text(&output.stderr).contains("of the scan is skipped: 1 vertices that are not finite"));
         let rows: Vec<String> = fs::read_to_string(&out).unwrap().lines().map(str::to_owned).collect();
         assert!(rows[0].starts_with("id,qx,qy,qz,"), "{rows:?}");
         assert!(rows[1].starts_with(&format!("{},1.0,1.0,3.0,", ids[0])), "{rows:?}");
+        // A point without a deviation keeps its row, so the ids after it are those of their points.
+        assert!(rows[3].starts_with(&format!("{},1.0,1.0,2.01,", ids[1])), "{rows:?}");
         table(&["deviation", scan, &cube, "--tolerance", "0.5", "--only-outside", "--out", &out]);
         let rows: Vec<String> = fs::read_to_string(&out).unwrap().lines().map(str::to_owned).collect();
         assert!(rows.len() == 2 && rows[1].starts_with(&format!("0,{},1.0,", ids[0])), "{rows:?}");
         // Answers to queries have them as well.
         table(&["query", &cube, "--points", scan, "--out", &out]);
-        assert!(fs::read_to_string(&out).unwrap().lines().nth(2).unwrap().starts_with(ids[1]));
+        assert!(fs::read_to_string(&out).unwrap().lines().nth(3).unwrap().starts_with(ids[1]));
     }
 }
 

@@ -55,7 +55,12 @@ fn solids_contain_what_is_inside() {
     let away = ["distance", &tank, &arm, "--transform", "1 0 0 5  0 1 0 0  0 0 1 0", "--solid", "--json"];
     assert!(json(&away)["distance"].as_f64() > Some(3.9));
     let open = write(&folder, "open.obj", LOW);
-    assert!(text(&p2m(&["distance", &open, &arm, "--solid"]).stderr).contains("the surface is open"));
+    // The warning names the scene, whichever it is.
+    for scenes in [[&open, &arm], [&arm, &open]] {
+        let warning = text(&p2m(&["distance", scenes[0], scenes[1], "--solid"]).stderr);
+        assert!(warning.starts_with(&format!("warning  {open}: the surface is open")), "{warning}");
+        assert_eq!(warning.lines().count(), 1, "{warning}");
+    }
     // A stray segment in the tank, which is no part of its surface.
     let stray = path(&folder, "stray.obj");
     table(&["convert", &tank, &stray]);

@@ -163,6 +163,7 @@ fn surfaces_of_fields_are_closed_and_at_their_distance() {
     assert!(failure(&[&base[..], &["--iso", "-9", "--signed"]].concat(), 1).contains("there is no surface at -9"));
     failure(&[&base[..], &["--iso", "0.1", "--band", "1"]].concat(), 2);
     failure(&["field", &knot, "--iso", "0.1", "--out", &path(&folder, "offset.npy")], 1);
+    assert!(failure(&["field", &knot, "--iso", "0.1", "--out", "-"], 2).contains("choose a file"));
 }
 
 #[test]
@@ -182,6 +183,11 @@ fn surfaces_that_are_missing_or_elsewhere_are_told() {
     let warned = |more: &[&str]| text(&p2m(&[&base[..], more].concat()).stderr);
     let coarse = warned(&["--iso", "0.02", "--resolution", "32"]);
     assert!(coarse.contains("are too large for a distance of 0.02"), "{coarse}");
+    // The side of a cell is shorter than the layer is thick, and its diagonal is longer.
+    assert!(warned(&["--iso", "0.05", "--resolution", "32"]).contains("are too large for a distance of 0.05"));
+    // With signs there is one layer, and the surface is on one side of it.
+    let signed = warned(&["--iso", "0.02", "--signed", "--resolution", "32"]);
+    assert!(!signed.contains("warning"), "{signed}");
     let fine = warned(&["--iso", "0.1", "--resolution", "32"]);
     assert!(!fine.contains("warning") && fine.contains("surface  closed"), "{fine}");
     // Half of a ball, whose sides change across its opening.
@@ -190,4 +196,10 @@ fn surfaces_that_are_missing_or_elsewhere_are_told() {
     std::fs::write(&ball, [&vertices[..], &faces[..faces.len() / 2]].concat().join("\n") + "\n").unwrap();
     let open = warned(&["--iso", "-0.1", "--signed", "--resolution", "32"]);
     assert!(open.contains("from where they should be"), "{open}");
+    // A vertex on the triangle, whose sides are both outside, has no signed distance.
+    let triangle = write(&folder, "triangle.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
+    let arguments = ["field", &triangle, "--iso", "0.2", "--signed", "--resolution", "26", "--out", &out];
+    let undefined = text(&p2m(&arguments).stderr);
+    assert!(undefined.contains("vertices are within an unbounded length"), "{undefined}");
+    assert_eq!(json(&[&arguments[..], &["--json"]].concat())["surface"]["vertex_error"], serde_json::Value::Null);
 }

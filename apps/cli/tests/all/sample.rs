@@ -72,5 +72,12 @@ fn wrong_uses_are_refused() {
     assert!(failure(&["sample", &scene, "--surface", "5", "--out", &path(&folder, "s.csv")], 2).contains(".npz"));
     let empty = write(&folder, "empty.xyz", "");
     assert!(failure(&["sample", &empty, "--surface", "5", "--out", &out], 1).contains("the scene is empty"));
+    let flat = write(&folder, "flat.obj", "v 0 0 0\nv 0 0 0\nv 0 0 0\nf 1 2 3\n");
+    assert!(failure(&["sample", &flat, "--surface", "5", "--out", &out], 1).contains("no area or length of it is"));
+    for count in ["1e15", "18446744073709551615"] {
+        assert!(failure(&["sample", &scene, "--surface", count, "--out", &out], 1).contains("no memory for "));
+        let both = ["sample", &scene, "--near", count, "--uniform", count, "--out", &out];
+        assert!(failure(&both, 1).contains("no memory for "));
+    }
     assert!(!std::path::Path::new(&out).exists());
 }

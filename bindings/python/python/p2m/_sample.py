@@ -140,7 +140,7 @@ def sample_sdf(
     >>> np.savez("samples.npz", **found._asdict()) # doctest: +SKIP
     """
     counts = [whole(near, "near", 0, 2**40), whole(uniform, "uniform", 0, 2**40)]
-    scale, kind, number = not_negative(box_scale, "box_scale"), _real(dtype), _seed(seed)
+    scale, kind, number = _finite(box_scale, "box_scale"), _real(dtype), _seed(seed)
     scene = mesh.scene if isinstance(mesh, Index) else Scene.of(mesh)
     if len(scene) == 0:
         raise ValueError("the scene is empty, so it has no samples")
@@ -148,7 +148,7 @@ def sample_sdf(
     low, high = scene.bounds
     if sigma is None:
         sigma = float(np.linalg.norm(high - low)) / 100.0
-    sigmas = [not_negative(one, "sigma") for one in np.atleast_1d(np.asarray(sigma, float))]
+    sigmas = [_finite(one, "sigma") for one in np.atleast_1d(np.asarray(sigma, float))]
     if not sigmas:
         raise ValueError("sigma: there is none")
     around, _ = _p2m.sample_surface(scene._raw, counts[0], sigmas, number, count)
@@ -210,6 +210,14 @@ def map(
 
 def _use_one_thread() -> None:
     usual.threads = 1
+
+
+def _finite(value: float, name: str) -> float:
+    """Return a finite number that is not negative."""
+    number = not_negative(value, name)
+    if number == float("inf"):
+        raise ValueError(f"{name}: {number} is not finite")
+    return number
 
 
 def _seed(seed: int) -> int:
