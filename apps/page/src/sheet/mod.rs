@@ -110,15 +110,9 @@ impl Sheet<'_> {
         let Deviations { tolerance, limit, .. } = self.deviations;
         match tolerance.filter(|tolerance| *tolerance > 0.0) {
             _ if value.is_nan() => UNCOLOURED,
-            Some(tolerance) => band_colour(value, tolerance, self.end()),
+            Some(tolerance) => band_colour(value, tolerance, limit),
             None => diverging_colour(value, limit),
         }
-    }
-
-    /// Returns the deviation from which on colours outside of the tolerance do not change: the limit, or the largest one.
-    fn end(&self) -> f64 {
-        let DeviationStatistics { min, max, .. } = *self.deviations.statistics;
-        self.deviations.limit.min(max.abs().max(min.abs()))
     }
 
     /// Draws the scan and the part from above a corner: the front one for 1, and the opposite one for -1.
@@ -220,9 +214,9 @@ impl Sheet<'_> {
             ];
             let middles = [
                 -2.0 * limit - tolerance,
-                -0.5 * (self.end() + tolerance),
+                -0.5 * (limit + tolerance),
                 0.0,
-                0.5 * (self.end() + tolerance),
+                0.5 * (limit + tolerance),
                 2.0 * limit + tolerance,
             ];
             for band in (if is_signed { 0 } else { 2 }..5).rev() {
