@@ -194,7 +194,7 @@ fn distance_from_the_origin_is_noted_from_a_hundred_sizes_on() {
     let s = rod(524_288.0, 4.0);
     assert_eq!(
         sentence(&s, "far_from_origin"),
-        "the scene lies 5.243e5 units from the origin, 76,000 times its size: f32 has steps of 0.062 units there, f64 of \
+        "the scene lies 524,300 units from the origin, 76,000 times its size: f32 has steps of 0.062 units there, f64 of \
         1.2e-10; move it to the origin, or keep it in f64"
     );
     assert!(names(&rod(256.0, 1.0)).contains(&"far_from_origin"));

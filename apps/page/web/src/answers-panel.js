@@ -96,7 +96,7 @@ export class AnswersPanel {
     const { answers, viewer } = this;
     // The sphere of an example would cover much before anybody asked for it.
     answers.select(i, viewer.colours, !isExample);
-    const rows = isExample && i >= 0 ? [["an example", "click any query point to read it"]] : [];
+    const rows = isExample && i >= 0 ? [["this point", "an example: click any query point to read it"]] : [];
     if (i < 0) {
       rows.push(["none", "Click a query point, or press n."]);
     } else {

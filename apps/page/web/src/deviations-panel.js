@@ -142,9 +142,10 @@ export class DeviationsPanel {
       const all = Math.max(1, above + below + within);
       const share = (n) => `${count(n)} (${short((100 * n) / all)} %)`;
       const under = layer.is_signed ? `${share(below)} below ${tolerance > 0 ? -tolerance : 0}; ` : "";
+      const out = layer.is_signed ? `${count(above + below)} of ${count(all)} points: ` : "";
       const isRounded = layer.quantiles && tolerance !== layer.tolerance;
       const rounded = isRounded ? " Counts are to 0.01 %, because not all points are on the page." : "";
-      this.parts.textContent = `${share(above)} above ${tolerance}; ${under}${share(within)} within.${rounded}`;
+      this.parts.textContent = `${out}${share(above)} above ${tolerance}; ${under}${share(within)} within.${rounded}`;
       const range = `${layer.is_signed ? "±" : ""}${short(tolerance)} ${unit}`;
       const isGood = above + below === 0;
       this.verdict.classList.add(isGood ? "good" : "bad");
@@ -184,7 +185,7 @@ export class DeviationsPanel {
     const which = layer.stride > 1 ? " of the points on the page" : "";
     const table = element("table", { id: "largest" }, tableHead([this.what, "x", "y", "z"]), element("tbody", {}, ...rows));
     add(`Worst places${which} (${viewer.unit})`, "worst", table,
-      element("p", { class: "small" }, "Click a number to fly there. Numbers with an outline are on the far side."));
+      element("p", { class: "small" }, "Click a number to fly there. White numbers in the picture are on the far side."));
   }
 
   // Returns the numbers of the worst places, which stand in the picture.

@@ -296,7 +296,7 @@ export class LiveQueries {
     const { query, isValid, indexes, answers } = this.shown;
     const [answer] = answers;
     const rows = [];
-    if (this.isExample) rows.push(["an example", "point elsewhere to ask"]);
+    if (this.isExample) rows.push(["this point", "an example: point elsewhere to ask"]);
     if (answer) {
       // Where the colours of a slice have no sign, the words tell the side.
       const signed = ([term]) => term === "signed distance" && this.viewer.slice?.scale.isDiverging === false;

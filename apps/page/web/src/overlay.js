@@ -197,7 +197,7 @@ function setText(element, text) {
 }
 
 // Returns the text of a label for a narrow picture.
-const inShort = (text) => text.replace(/^((?:in|out)side), (\S+) .*$/, "$2 $1").replace(/ from the \w+$/, "");
+const inShort = (text) => text.replace(/^((?:in|out)side), (.*)/, "$2 $1").replace(/ from the \w+/, "");
 
 // Returns where the label of an answer stands, and which part of it is at the left of there: beside its position, in the
 // picture and below the toolbar. In a narrow picture, where it would hide much, it stands at the lower or upper border.

@@ -26,6 +26,7 @@ export class SlicePanel {
         "and the AABB tree below the cells answers."
       : (isDiverging ? "Blue is inside, red is outside, and the black line is the surface. " : "") +
         `The distance changes by ${short(slice.spacingOfLines)} ${viewer.unit} from line to line. ` +
+        (isDiverging || viewer.data.no_inside ? "" : "With `--signed`, colours tell inside from outside. ") +
         (isDiverging || triangles.length === 0 ? ""
           : "Dark lines are edges of the scene, and its surface where the slice cuts it. ");
     const title = slice.hasCells ? "Slice through the cells" : isDiverging ? "Signed distance" : "Distance";
@@ -41,7 +42,7 @@ export class SlicePanel {
   // Shows the legend in the picture, in the colours of the theme.
   showLegend() {
     const { slice, viewer } = this;
-    const why = viewer.data.no_inside ? noInside(viewer) : "Without a sign: `--signed` tells inside from outside.";
+    const why = viewer.data.no_inside ? noInside(viewer) : "Inside and outside have the same colours.";
     const hasNoSign = !slice.hasCells && !slice.scale.isDiverging;
     viewer.overlay.setLegend(element("div", {}, pictureLegend(slice.scale, this.what, this.unit),
       ...(hasNoSign ? [element("div", { class: "why" }, ...withCode(why))] : [])));

@@ -127,7 +127,8 @@ function content(value) {
 const WHOLE_ROWS = { distance: "main", inside: "whole" };
 
 // Makes paragraphs of remarks on a verdict, which stand below it.
-export const remarksOn = (remarks) => remarks.map((remark) => element("p", { class: "remark" }, ...withCode(remark)));
+export const remarksOn = (remarks) => remarks.map((remark) =>
+  element("p", { class: `remark${remark.startsWith("Warning: ") ? " warning" : ""}` }, ...withCode(remark)));
 
 // Replaces the content of a list by terms, which are texts or lists of elements and texts, each with its text, its number, its numbers or its element.
 export function fillList(list, rows) {

@@ -132,9 +132,9 @@ const turnsInWords = (all) =>
     .map(({ cost, from }) => (from > 0 ? `\`${cost.name}\` from ${count(from)} queries on` : `\`${cost.name}\``))
     .join(", then ");
 
-/** The number of queries for which the headline names the index. */
+/** The number of queries for which the headline names the index, in words below. */
 const COMMON = 1e6;
-/** Returns what to take: in short for a common number of queries, and in sentences for others. */
+/** Returns what to take: in short for a million queries, and in sentences for other numbers. */
 function advice(set) {
   const [exact, rough] = NEEDS.map((need) => fastest(set.curves, need.limit));
   if (exact?.limit !== 0) return ["No index answered all queries exactly", "The remarks in the table of all settings say why."];
@@ -161,8 +161,8 @@ function advice(set) {
       : `If errors of up to 1 % do no harm, \`${rough.curve.name}\` with \`${rough.point.setting}\` takes ` +
         `${nanoseconds(fast.median)}, ${(slow.median / fast.median).toPrecision(2)} times as fast` +
         `${isNoise ? ", within the noise of this measurement" : ""}.`;
-  const only = after ? `; ${after.cost.name} only from ${count(after.from)} queries on` : "";
-  return [`${named(turns[here])}, ${time(turns[here])} per query, exact${only}`, few + many + gain];
+  const job = turns.length > 1 ? "For a million queries: " : "";
+  return [`${job}${named(turns[here])}, ${time(turns[here])} per query, exact`, few + many + gain];
 }
 /** Returns the indexes that have an exact setting. */
 const exactCurves = (set) => set.curves.filter((curve) => fastest([curve], 0)?.limit === 0);

@@ -121,7 +121,7 @@ fn the_script_draws_every_point() {
         assert!(all.contains(word), "{word}: {all}");
     }
     assert_eq!(marks, "3");
-    assert_eq!(advice, "aabb, 1,001 ns per query, exact; p2m only from 5.4 million queries on");
+    assert_eq!(advice, "For a million queries: aabb, 1,001 ns per query, exact");
     assert_eq!(
         why,
         "From 5.4 million queries on <code>p2m</code> takes less time in all, building included: 100 ns per query. No \
