@@ -1,5 +1,6 @@
 // Measures pages of scenes of 10^4 to 10^6 triangles: their sizes without and with live queries, the seconds until they
-// are ready, and the frames a second and the CPU time of all processes of the browser for a frame while they turn: P2M=PROGRAM node test/measure.mjs [EARLIER PROGRAM]
+// are ready, and while they turn the frames per second and the CPU time of all processes of the browser for a frame:
+// P2M=PROGRAM node test/measure.mjs [EARLIER PROGRAM]
 //
 // Times are those of pages without live queries, whose indexes would be built meanwhile. Programs take turns, and the
 // figures are medians of several rounds.
