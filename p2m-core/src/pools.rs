@@ -55,10 +55,7 @@ fn pool_of(owned: &mut OwnedPools, threads: usize) -> Result<Arc<ThreadPool>, Th
 }
 
 /// Returns a pool with so many threads that nobody else uses.
-///
-/// # Errors
-/// [`ThreadPoolBuildError`] if the system starts no more threads.
-pub fn start_pool(threads: usize) -> Result<Arc<ThreadPool>, ThreadPoolBuildError> {
+fn start_pool(threads: usize) -> Result<Arc<ThreadPool>, ThreadPoolBuildError> {
     let builder = ThreadPoolBuilder::new().num_threads(threads).thread_name(|number| format!("p2m-{number}"));
     builder.build().map(Arc::new)
 }

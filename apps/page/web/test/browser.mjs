@@ -29,6 +29,15 @@ export async function openTab(browser, html, report, options = {}) {
   tab.on("console", (message) => message.type() === "error" && report(message.text()));
   tab.on("pageerror", (error) => report(error.message));
   tab.on("request", (request) => request.url().startsWith("http") && report(request.url()));
+  // Tests read the pixels of the picture as it was drawn last: four bytes for each.
+  await tab.addInitScript(() => {
+    window.readPicture = () => {
+      const gl = window.viewer.renderer.getContext();
+      const pixels = new Uint8Array(4 * gl.drawingBufferWidth * gl.drawingBufferHeight);
+      gl.readPixels(0, 0, gl.drawingBufferWidth, gl.drawingBufferHeight, gl.RGBA, gl.UNSIGNED_BYTE, pixels);
+      return pixels;
+    };
+  });
   await tab.goto(pathToFileURL(html).href);
   await tab.waitForFunction(() => document.documentElement.dataset.ready || !document.getElementById("panel"));
   return tab;

@@ -232,9 +232,7 @@ test("points of a scan have at least three pixels", { skip }, async () => {
     viewer.scene.group.visible = false;
     viewer.painter.setScale(1);
     viewer.renderer.render(viewer.world, viewer.camera);
-    const gl = viewer.renderer.getContext();
-    const pixels = new Uint8Array(4 * gl.drawingBufferWidth * gl.drawingBufferHeight);
-    gl.readPixels(0, 0, gl.drawingBufferWidth, gl.drawingBufferHeight, gl.RGBA, gl.UNSIGNED_BYTE, pixels);
+    const pixels = window.readPicture();
     return new Uint32Array(pixels.buffer).filter((pixel, _, all) => pixel !== all[0]).length;
   });
   // A disc of three pixels covers seven of them, nearly.

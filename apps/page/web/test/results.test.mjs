@@ -134,9 +134,7 @@ test("both of two parts are seen where they coincide", { skip }, async () => {
     viewer.measures.group.visible = false;
     viewer.painter.setScale(1);
     viewer.renderer.render(viewer.world, viewer.camera);
-    const gl = viewer.renderer.getContext();
-    const pixels = new Uint8Array(4 * gl.drawingBufferWidth * gl.drawingBufferHeight);
-    gl.readPixels(0, 0, gl.drawingBufferWidth, gl.drawingBufferHeight, gl.RGBA, gl.UNSIGNED_BYTE, pixels);
+    const pixels = window.readPicture();
     const counts = [0, 0];
     for (let i = 0; i < pixels.length; i += 4) {
       const [r, g, b] = pixels.subarray(i, i + 3);

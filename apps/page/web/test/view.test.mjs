@@ -492,17 +492,12 @@ test("the picture is refined once the view rests", { skip }, async () => {
   const [darker, lighter, background, isSame] = await other.evaluate(async () => {
     const { painter } = window.viewer;
     const gl = painter.renderer.getContext();
-    const pixels = () => {
-      const read = new Uint8Array(4 * gl.drawingBufferWidth * gl.drawingBufferHeight);
-      gl.readPixels(0, 0, gl.drawingBufferWidth, gl.drawingBufferHeight, gl.RGBA, gl.UNSIGNED_BYTE, read);
-      return read;
-    };
     painter.renderer.render(painter.world, painter.camera);
-    const plain = pixels();
+    const plain = window.readPicture();
     // Nothing but the time makes the refined picture.
     window.viewer.draw();
     await new Promise((done) => setTimeout(done, 1500));
-    const refined = pixels();
+    const refined = window.readPicture();
     let [darker, lighter, background] = [0, 0, 0];
     for (let i = 0; i < plain.length; i += 4) {
       const change = refined[i] - plain[i];
@@ -512,7 +507,7 @@ test("the picture is refined once the view rests", { skip }, async () => {
       if (i < 80 * gl.drawingBufferWidth) background = Math.max(background, Math.abs(change));
     }
     painter.refine();
-    return [darker, lighter, background, pixels().every((x, i) => x === refined[i])];
+    return [darker, lighter, background, window.readPicture().every((x, i) => x === refined[i])];
   });
   assert.ok(darker > 10_000 && lighter < darker / 10, `${darker} darker, ${lighter} lighter`);
   assert.ok(background === 0 && isSame, String(background));
@@ -599,9 +594,7 @@ for (const [kind, text] of Object.entries(SCENES)) {
     const isDrawn = await other.evaluate(() => {
       const { viewer } = window;
       viewer.renderer.render(viewer.world, viewer.camera);
-      const gl = viewer.renderer.getContext();
-      const pixels = new Uint8Array(4 * gl.drawingBufferWidth * gl.drawingBufferHeight);
-      gl.readPixels(0, 0, gl.drawingBufferWidth, gl.drawingBufferHeight, gl.RGBA, gl.UNSIGNED_BYTE, pixels);
+      const pixels = window.readPicture();
       return new Set(new Uint32Array(pixels.buffer)).size > 1;
     });
     assert.equal(isDrawn, kind !== "empty");
