@@ -28,6 +28,6 @@ pub use advice::{Advice, Estimate, QueryRegion, Workload, recommend};
 pub use choice::Choice;
 pub use p2m_core::AnyIndex;
 pub use registry::{
-    BACKENDS, BackendEntry, BuildSettings, BuiltIndex, ChosenDirections, CostModel, IndexVisitor, KdopDirections,
-    KdopVisitor, ListFilterKind, LocatorKind, P2mSettings, SearchStructure,
+    BACKENDS, BackendEntry, BuildSettings, BuiltIndex, ChosenDirections, CostModel, KdopDirections, KdopVisitor,
+    ListFilterKind, LocatorKind, P2mSettings, SearchStructure,
 };

@@ -2,12 +2,10 @@
 
 use crate::traverse::groups::answer_in_groups;
 use crate::traverse::interleaved_traversal::InterleavedTraversal;
-use crate::traverse::primitive_fn::evaluation;
 use crate::{PacketTree, Volume};
 
 use nalgebra::Point3;
 use p2m_core::engine::answer_one_by_one;
-use p2m_core::engine::real::to_f64_array;
 use p2m_core::pair::PairQuery;
 use p2m_core::storage::{self, LoadError, Reader, Writer};
 use p2m_core::{
@@ -264,7 +262,7 @@ impl<T: Real, S: PrimitiveSet<T> + Sync, V: Volume> Drop for RefitOnDrop<'_, T, 
 
 impl<T: Real, S: PrimitiveSet<T>, V: Volume> IndexStats<T> for TreeIndex<T, S, V> {
     fn inspect(&self, query: &Point3<T>, counting: &mut StatsCollector<T>) {
-        V::counted(&self.tree, to_f64_array(query), &mut counting.minimum(), &evaluation(&self.set, query));
+        counting.count(|best| self.tree.search_nearest(&self.set, query, best));
     }
 
     fn parts(&self) -> Vec<(&'static str, usize)> {

@@ -1,6 +1,8 @@
 //! The bounding volumes that a tree may have.
 
+use crate::construct::primitive::BuildPrimitive;
 use crate::construct::{SplitOptions, TreeOptions};
+use crate::packet::Members;
 use crate::traverse::evaluate::{finish, finish_nearest};
 use crate::traverse::interleaved_search::InterleavedSearch;
 use crate::traverse::interleaved_traversal::InterleavedTraversal;
@@ -10,11 +12,12 @@ use crate::tree::PacketTree;
 use crate::tree::wide_node::VolumeNodes;
 use nalgebra::Point3;
 use p2m_core::engine::pairs::PairSide;
-use p2m_core::engine::query::{BestF64, CountedMinimum};
+use p2m_core::engine::query::BestF64;
 use p2m_core::engine::ray::RayCandidates;
 use p2m_core::engine::real::to_f64_array;
 use p2m_core::engine::vector::V3;
 use p2m_core::pair::Motion;
+use p2m_core::storage::{LoadError, Reader, Saved, Writer};
 use p2m_core::{Aabb, Best, Hits, Near, PrimitiveId, PrimitiveSet, Ray, RayCollector, Real};
 
 /// The bounding volume of the nodes of a [`PacketTree`]: [`Aabb<f64>`] or a k-DOP of the crate p2m-kdop.
@@ -51,22 +54,10 @@ pub trait Volume: VolumeNodes {
     fn nearest_of_several(
         tree: &PacketTree<Self>,
         walkers: &mut InterleavedTraversal<Self>,
-        several: &mut InterleavedSearch<'_, Self>,
+        several: &mut InterleavedSearch<'_>,
         count: usize,
     ) {
         walkers.search(tree, several, count);
-    }
-
-    /// Searches for the nearest primitive, and counts the work.
-    #[doc(hidden)]
-    #[inline(never)]
-    fn counted<'c>(
-        tree: &PacketTree<Self>,
-        query: V3,
-        counted: &mut CountedMinimum<'c>,
-        evaluate: EvaluateFn<'_, CountedMinimum<'c>>,
-    ) {
-        tree.run(query, counted, evaluate, finish);
     }
 
     /// Searches for the primitives near a point.
@@ -116,17 +107,31 @@ impl Volume for Aabb<f64> {
 /// The searches of a tree, which are compiled in the crate that names them for its volume.
 pub type Searches<V> = (
     fn(&PacketTree<V>, V3, &mut BestF64, EvaluateFn<'_, BestF64>),
-    fn(&PacketTree<V>, &mut InterleavedTraversal<V>, &mut InterleavedSearch<'_, V>, usize),
-    for<'c> fn(&PacketTree<V>, V3, &mut CountedMinimum<'c>, EvaluateFn<'_, CountedMinimum<'c>>),
+    fn(&PacketTree<V>, &mut InterleavedTraversal<V>, &mut InterleavedSearch<'_>, usize),
     for<'n> fn(&PacketTree<V>, V3, &mut Near<'n>, EvaluateFn<'_, Near<'n>>),
     for<'r> fn(&PacketTree<V>, &'r Ray, f64, &mut Hits<'r>, IntersectFn<'_, 'r>),
     fn(&PacketTree<V>, &Ray, f64, &mut RayCandidates<'_>),
     fn(&PacketTree<V>, &[Motion], &mut dyn FnMut(&dyn PairSide)),
+    fn(Vec<BuildPrimitive>, Aabb<f64>, Members<'_>, <V as VolumeNodes>::Shared, &SplitOptions) -> PacketTree<V>,
+    fn(&mut PacketTree<V>, Members<'_>, bool),
+    for<'a> fn(&'a PacketTree<V>, &mut Writer<'a>),
+    fn(&Reader, usize) -> Result<PacketTree<V>, LoadError>,
 );
 
 /// Returns the searches of a tree with volumes `V`.
 pub const fn searches<V: Volume>() -> Searches<V> {
-    (V::nearest, V::nearest_of_several, V::counted, V::near, V::rays, V::ray_candidates, V::as_pair_side)
+    (
+        V::nearest,
+        V::nearest_of_several,
+        V::near,
+        V::rays,
+        V::ray_candidates,
+        V::as_pair_side,
+        PacketTree::build_from_primitives,
+        PacketTree::refit_to,
+        <PacketTree<V> as Saved>::save,
+        <PacketTree<V> as Saved>::load,
+    )
 }
 
 /// The searches that this crate compiles.

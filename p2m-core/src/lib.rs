@@ -130,7 +130,6 @@ pub mod engine {
     pub mod query {
         pub use crate::query::BestF64;
         pub use crate::query::answer::square_within;
-        pub use crate::stats_collector::CountedMinimum;
     }
     /// Exact projection onto rays, and the margin of ray filters.
     pub mod ray {

@@ -1,6 +1,5 @@
 //! A collector that counts the work of a search.
 
-use crate::query::BestF64;
 use crate::{Best, Collector, PrimitiveId, Projection, QueryOptions, Real};
 use nalgebra::Point3;
 
@@ -22,6 +21,18 @@ impl<T: Real> StatsCollector<T> {
     #[must_use]
     pub fn new(best: Best<T>) -> Self {
         Self { best, nodes: 0, packets: 0, primitives: 0 }
+    }
+
+    /// Runs a search with [`best`](Self::best), and adds its work to the counters.
+    #[allow(clippy::cast_possible_truncation, reason = "a search has fewer visits than addresses")]
+    pub fn count(&mut self, search: impl FnOnce(&mut Best<T>)) {
+        let before = self.best.minimum_ref().counts();
+        search(&mut self.best);
+        let after = self.best.minimum_ref().counts();
+        let [nodes, packets, primitives] = [0, 1, 2].map(|i| (after[i] - before[i]) as usize);
+        self.nodes += nodes;
+        self.packets += packets;
+        self.primitives += primitives;
     }
 
     /// Returns the numbers of nodes, packets and primitives of a query with default options, searched by `visit`.
@@ -48,45 +59,15 @@ impl<T: Real> StatsCollector<T> {
 impl<T: Real> Collector for StatsCollector<T> {
     forward_collector_decisions!(best, []);
     fn offer(&mut self, id: PrimitiveId, projection: Projection) {
-        self.minimum().offer(id, projection);
+        self.primitives += 1;
+        self.best.offer(id, projection);
     }
     fn visit_node(&mut self) {
-        self.minimum().visit_node();
+        self.nodes += 1;
+        self.best.visit_node();
     }
     fn visit_packet(&mut self) {
-        self.minimum().visit_packet();
-    }
-}
-
-/// A [`StatsCollector`] of any scalar, for searches that are compiled once for all scalars.
-pub struct CountedMinimum<'a> {
-    minimum: &'a mut BestF64,
-    nodes: &'a mut usize,
-    packets: &'a mut usize,
-    primitives: &'a mut usize,
-}
-
-impl<T: Real> StatsCollector<T> {
-    /// Returns the collector that a search which is not generic over the scalar reports to.
-    #[doc(hidden)]
-    pub fn minimum(&mut self) -> CountedMinimum<'_> {
-        let Self { best, nodes, packets, primitives } = self;
-        CountedMinimum { minimum: best.minimum(), nodes, packets, primitives }
-    }
-}
-
-impl Collector for CountedMinimum<'_> {
-    forward_collector_decisions!(minimum, []);
-    fn offer(&mut self, id: PrimitiveId, projection: Projection) {
-        *self.primitives += 1;
-        self.minimum.offer(id, projection);
-    }
-    fn visit_node(&mut self) {
-        *self.nodes += 1;
-        self.minimum.visit_node();
-    }
-    fn visit_packet(&mut self) {
-        *self.packets += 1;
-        self.minimum.visit_packet();
+        self.packets += 1;
+        self.best.visit_packet();
     }
 }

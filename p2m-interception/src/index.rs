@@ -264,7 +264,7 @@ impl<T: Real, S: PrimitiveSet<T>, P: Saved> InterceptionIndex<T, S, P> {
 
 impl<T: Real, S: PrimitiveSet<T>, P: Partition> IndexStats<T> for InterceptionIndex<T, S, P> {
     fn inspect(&self, query: &Point3<T>, counting: &mut StatsCollector<T>) {
-        self.visit(query, &mut counting.minimum());
+        counting.count(|best| self.partition.search_nearest(&self.set, query, best));
     }
 
     fn parts(&self) -> Vec<(&'static str, usize)> {

@@ -10,7 +10,7 @@ use p2m_bvh::engine::nearest::{EvaluateFn, SearchState, finish};
 use p2m_core::engine::query::BestF64;
 use p2m_core::engine::real::to_f64_array;
 use p2m_core::engine::vector::V3;
-use p2m_core::{Aabb, Best, CellSummary, Collector, Isa, Near, PrimitiveId, PrimitiveSet, Real};
+use p2m_core::{Best, CellSummary, Collector, Isa, Near, PrimitiveId, PrimitiveSet, Real};
 
 /// A partition with its lists, over a set of primitives that it does not store. Every method that takes a set has to
 /// be given the set that the partition was built over.
@@ -101,10 +101,5 @@ pub(crate) trait CellQuery {
 
     /// Searches for the primitives that may be the nearest to each of several queries: those of the first `count`
     /// searches of `several`, which take turns.
-    fn search_several(
-        &self,
-        count: usize,
-        several: &mut InterleavedSearch<'_, Aabb<f64>>,
-        lists: &mut InterleavedLists,
-    );
+    fn search_several(&self, count: usize, several: &mut InterleavedSearch<'_>, lists: &mut InterleavedLists);
 }

@@ -37,7 +37,7 @@ fn in_f32(cases: impl Iterator<Item = Case>, check: impl Fn(u64, &Soup<f32>, &[P
         let soup = Arc::new(narrow(&soup).expect("fits f32"));
         let queries: Vec<_> = queries.into_iter().map(to_f32).collect();
         for backend in BACKENDS {
-            let built = backend.build_f32(Arc::clone(&soup), &BuildSettings::default()).expect("valid scene");
+            let built = backend.build_in(Arc::clone(&soup), &BuildSettings::default()).expect("valid scene");
             check(seed, &soup, &queries, &*built.index);
         }
     }

@@ -8,8 +8,7 @@
 //! Indexes are behind one pointer, [`Arc<dyn AnyIndex>`](AnyIndex), and share their scene. The pointer costs one
 //! indirect call for each query, or for each batch of queries. In rounds of `p2m tradeoff` it makes no measurable
 //! difference to queries of 700 to 1000 ns, so no command needs the types behind it. The searches below that call are
-//! compiled for each index. [`BackendEntry::build_default`] passes the index to a function of its type instead, for
-//! programs that have to be small.
+//! compiled for each index.
 
 mod backend_entry;
 mod cost_model;
@@ -160,14 +159,6 @@ pub(crate) enum IndexKind {
     P2m,
 }
 
-/// A function of an index, which is compiled for each type of index.
-pub trait IndexVisitor<T: Real = f64> {
-    /// The result of the visit.
-    type Output;
-    /// Receives the index.
-    fn visit<I: AnyIndex<T> + 'static>(self, index: I) -> Self::Output;
-}
-
 /// Erases the number of faces of a k-DOP tree.
 struct OfAnyK;
 
@@ -191,16 +182,15 @@ impl BackendEntry {
         self.build_in(soup, settings)
     }
 
-    /// Builds an index over a scene in f32.
+    /// Builds an index over a scene in the scalar `T`. It is compiled for that scalar in the crate that calls it.
     ///
     /// # Errors
     /// [`BuildError`] for a scene with coordinates that are not finite, or with too many primitives.
-    pub fn build_f32(&self, soup: Arc<Soup<f32>>, settings: &BuildSettings<'_>) -> Result<BuiltIndex<f32>, BuildError> {
-        self.build_in(soup, settings)
-    }
-
-    /// Builds an index in the scalar `T`.
-    fn build_in<T: Real>(&self, soup: Arc<Soup<T>>, settings: &BuildSettings<'_>) -> Result<BuiltIndex<T>, BuildError> {
+    pub fn build_in<T: Real>(
+        &self,
+        soup: Arc<Soup<T>>,
+        settings: &BuildSettings<'_>,
+    ) -> Result<BuiltIndex<T>, BuildError> {
         let index: Arc<dyn AnyIndex<T>> = match self.kind {
             IndexKind::Brute => Arc::new(BruteForce::build(soup, &())?),
             IndexKind::Aabb => Arc::new(AabbTree::build(soup, &settings.splits())?),
@@ -241,25 +231,6 @@ impl BackendEntry {
             IndexKind::Brute | IndexKind::Kdop | IndexKind::P2m => return self.build(tree.into_set(), settings),
         };
         Ok(BuiltIndex { index, directions: None })
-    }
-
-    /// Builds an index with default options, and passes it to a function of its type. A program that needs neither
-    /// settings nor all of [`AnyIndex`] contains less code with it.
-    ///
-    /// # Errors
-    /// [`BuildError`] for a scene with coordinates that are not finite, or with too many primitives.
-    pub fn build_default<T: Real, V: IndexVisitor<T>>(
-        &self,
-        soup: Arc<Soup<T>>,
-        visitor: V,
-    ) -> Result<V::Output, BuildError> {
-        Ok(match self.kind {
-            IndexKind::Brute => visitor.visit(BruteForce::build(soup, &())?),
-            IndexKind::Aabb => visitor.visit(AabbTree::new(soup)?),
-            IndexKind::Kdop => visitor.visit(KdopTree::<T, _, 14>::new(soup)?),
-            IndexKind::Octree => visitor.visit(OctreeIndex::new(soup)?),
-            IndexKind::P2m => visitor.visit(P2mIndex::new(soup)?),
-        })
     }
 
     /// Whether indexes of this backend can be saved and loaded.

@@ -7,7 +7,7 @@
 mod collapse;
 mod options;
 mod packet_tree;
-mod primitive;
+pub(crate) mod primitive;
 mod sah;
 mod split;
 

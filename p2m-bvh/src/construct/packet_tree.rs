@@ -64,7 +64,8 @@ impl<V: Volume> PacketTree<V> {
 
     /// Builds the tree from all primitives, which stand in the frame around `bounds`. The function does not depend on
     /// the type of the set, so it is compiled once.
-    fn build_from_primitives(
+    #[inline(never)]
+    pub(crate) fn build_from_primitives(
         mut primitives: Vec<BuildPrimitive>,
         bounds: Aabb<f64>,
         members: Members<'_>,
@@ -149,7 +150,8 @@ impl<V: Volume> PacketTree<V> {
     }
 
     /// Fits the tree to moved primitives. The function does not depend on the type of the set, so it is compiled once.
-    fn refit_to(&mut self, members: Members<'_>, parallel: bool) {
+    #[inline(never)]
+    pub(crate) fn refit_to(&mut self, members: Members<'_>, parallel: bool) {
         let boxes = map(&self.leaves.packets, parallel, |packet| {
             packet.ids().iter().fold(Aabb::empty(), |all, id| all.union(&members(*id).bounds))
         });

@@ -22,7 +22,7 @@ const FIRST_KIND: f32 = 16.0;
 /// what it answers. The lanes that are not part of the box have the bits of the id, and the kind.
 #[derive(Clone, Copy)]
 #[repr(align(32))]
-pub(crate) struct BuildPrimitive(BoxLanes);
+pub struct BuildPrimitive(BoxLanes);
 
 impl BuildPrimitive {
     /// A primitive with a box of the scene in a frame around it.

@@ -48,7 +48,8 @@ impl Packet {
         match self.position_of(line, from, to) {
             LinePosition::Beside => 0,
             LinePosition::Unknown => self.lanes(),
-            LinePosition::Near(local) => self.lanes_near::<I>(&local) & self.lanes(),
+            LinePosition::Near(local) if I::F32x8::INLINES => self.lanes_near::<I>(&local) & self.lanes(),
+            LinePosition::Near(local) => self.lanes_near_out_of_line::<I>(&local) & self.lanes(),
         }
     }
 
@@ -95,6 +96,12 @@ impl Packet {
             low: ((low - low_error).max(f64::NEG_INFINITY) as f32).next_down(),
             high: ((high + high_error).min(f64::INFINITY) as f32).next_up(),
         })
+    }
+
+    /// A mask of the lanes whose projections reach the origin.
+    #[inline(never)]
+    fn lanes_near_out_of_line<I: InstructionSet>(&self, line: &PacketLine) -> u32 {
+        self.lanes_near::<I>(line)
     }
 
     /// A mask of the lanes whose projections reach the origin.

@@ -1,11 +1,13 @@
 //! The division of queries into groups of searches that take turns.
 
 use crate::traverse::interleaved_search::{InterleavedSearch, SEARCHES};
+use crate::traverse::primitive_fn::EvaluateFn;
 use crate::tree::PacketTree;
-use crate::tree::wide_node::VolumeNodes;
+use crate::volume::Volume;
 use nalgebra::Point3;
 use p2m_core::engine::query::BestF64;
 use p2m_core::engine::real::to_f64_array;
+use p2m_core::engine::vector::V3;
 use p2m_core::{BatchAnswer, Best, Collector, Primitive, PrimitiveId, PrimitiveSet, QueryOptions, Real};
 use std::cell::Cell;
 
@@ -13,13 +15,13 @@ use std::cell::Cell;
 /// for the first searches of the state, whose number it is given. The options have to be exact.
 ///
 /// Queries that are not finite have no answer, and the others are gathered into full groups without them.
-pub fn answer_in_groups<T: Real, S: PrimitiveSet<T>, V: VolumeNodes>(
+pub fn answer_in_groups<T: Real, S: PrimitiveSet<T>, V: Volume>(
     tree: &PacketTree<V>,
     set: &S,
     queries: &[Point3<T>],
     options: &QueryOptions<T>,
     answered: &mut dyn FnMut(usize, BatchAnswer<'_, T>),
-    mut search: impl FnMut(usize, &mut InterleavedSearch<'_, V>),
+    mut search: impl FnMut(usize, &mut InterleavedSearch<'_>),
 ) {
     let template = Best::new(options);
     let mut group = [0; SEARCHES];
@@ -29,7 +31,10 @@ pub fn answer_in_groups<T: Real, S: PrimitiveSet<T>, V: VolumeNodes>(
             best.offer(id, projection);
         }
     };
-    let mut several = InterleavedSearch::new(tree, template.minimum_ref(), &evaluate);
+    let search_tree = |query: V3, best: &mut BestF64, evaluate: EvaluateFn<'_, BestF64>| {
+        V::nearest(tree, query, best, evaluate);
+    };
+    let mut several = InterleavedSearch::new(tree, &search_tree, template.minimum_ref(), &evaluate);
     let mut numbers = 0..queries.len();
     loop {
         let mut count = 0;

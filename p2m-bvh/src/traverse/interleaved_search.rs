@@ -5,15 +5,16 @@
 //! have long bodies without such branches, and the processor works on several of them at a time.
 
 use crate::packet::{LANES, Locals, PLACES, ROUND_UP, at_most, smallest};
-use crate::traverse::evaluate::{finish_nearest, offer};
-use crate::tree::PacketTree;
+use crate::traverse::evaluate::offer;
+use crate::traverse::primitive_fn::EvaluateFn;
 use crate::tree::frame::Frame;
 use crate::tree::wide_node::VolumeNodes;
+use crate::tree::{Leaves, PacketTree};
 use p2m_core::engine::query::BestF64;
 use p2m_core::engine::side_by_side::{LaneResults, SIDE_BY_SIDE, TriangleLanes, segments, triangles};
 use p2m_core::engine::simd::{Doubles, Float, InstructionSet, Lanes, SimdKernel};
 use p2m_core::engine::vector::V3;
-use p2m_core::{Collector, PrimitiveId};
+use p2m_core::{Collector, Isa, PrimitiveId};
 
 /// The number of searches that take turns. With more of them, packets and nodes of some are displaced from the cache
 /// before the others are done; with fewer, few share a packet.
@@ -127,15 +128,20 @@ struct Limits {
 }
 
 /// The part of the state of several searches that the evaluation of their candidates needs.
-struct Searches<'a, V: VolumeNodes> {
-    tree: &'a PacketTree<V>,
+struct Searches<'a> {
+    leaves: &'a Leaves,
+    /// The frame of the tree.
+    frame: &'a Frame,
+    isa: Isa,
+    /// The function that searches the whole tree for one query.
+    search_tree: SearchTreeFn<'a>,
     /// The function that evaluates primitives of which the tree has only a box.
     evaluate: EvaluateSearchFn<'a>,
     limits: [Limits; SEARCHES],
     minimums: [BestF64; SEARCHES],
 }
 
-impl<V: VolumeNodes> Searches<'_, V> {
+impl Searches<'_> {
     /// Offers results to the collectors of their searches. The kernel for single primitives computes those
     /// that are not certain.
     #[inline(always)]
@@ -144,7 +150,7 @@ impl<V: VolumeNodes> Searches<'_, V> {
             if found.was_skipped(i) {
                 continue;
             }
-            let id = self.tree.leaves.packets[candidate.packet as usize].ids()[candidate.lane as usize];
+            let id = self.leaves.packets[candidate.packet as usize].ids()[candidate.lane as usize];
             if !self.minimums[candidate.search as usize].offer_lane(id, found, i) {
                 self.offer_single(*candidate);
             }
@@ -155,17 +161,17 @@ impl<V: VolumeNodes> Searches<'_, V> {
     #[inline(never)]
     fn offer_single(&mut self, candidate: Candidate) {
         let (search, lane) = (candidate.search as usize, candidate.lane as usize);
-        let packet = &self.tree.leaves.packets[candidate.packet as usize];
+        let packet = &self.leaves.packets[candidate.packet as usize];
         let (minimum, evaluate) = (&mut self.minimums[search], self.evaluate);
         let square = minimum.prune_above();
         let evaluate = |collector: &mut BestF64, id, square| evaluate(search, collector, id, square);
-        offer(&self.tree.leaves, packet, lane, self.limits[search].query, square, minimum, &evaluate);
+        offer(self.leaves, packet, lane, self.limits[search].query, square, minimum, &evaluate);
     }
 }
 
 /// The state of several searches. It is large, so a batch makes one and uses it for all of its queries.
-pub struct InterleavedSearch<'a, V: VolumeNodes> {
-    searches: Searches<'a, V>,
+pub struct InterleavedSearch<'a> {
+    searches: Searches<'a>,
     candidates: [Candidate; CANDIDATE_ROOM],
     candidate_count: usize,
     /// The number of candidates of each search.
@@ -186,15 +192,37 @@ pub struct InterleavedSearch<'a, V: VolumeNodes> {
 /// It is called for primitives of which the tree has only a box.
 pub(crate) type EvaluateSearchFn<'a> = &'a dyn Fn(usize, &mut BestF64, PrimitiveId, f64);
 
+/// A function that searches the whole tree for one query.
+pub(crate) type SearchTreeFn<'a> = &'a dyn Fn(V3, &mut BestF64, EvaluateFn<'_, BestF64>);
+
 /// A factor for bounds that are computed in f64 with a few roundings of their own.
 pub(super) const ROUND_UP_F64: f64 = 1.0 + 4.0 * f64::EPSILON;
 
-impl<'a, V: VolumeNodes> InterleavedSearch<'a, V> {
+impl<'a> InterleavedSearch<'a> {
     /// Creates the state of searches that have not begun. `template` is a collector without a candidate.
-    pub fn new(tree: &'a PacketTree<V>, template: &BestF64, evaluate: EvaluateSearchFn<'a>) -> Self {
+    pub fn new<V: VolumeNodes>(
+        tree: &'a PacketTree<V>,
+        search_tree: SearchTreeFn<'a>,
+        template: &BestF64,
+        evaluate: EvaluateSearchFn<'a>,
+    ) -> Self {
+        Self::new_in(&tree.leaves, &tree.frame, tree.isa, search_tree, template, evaluate)
+    }
+
+    fn new_in(
+        leaves: &'a Leaves,
+        frame: &'a Frame,
+        isa: Isa,
+        search_tree: SearchTreeFn<'a>,
+        template: &BestF64,
+        evaluate: EvaluateSearchFn<'a>,
+    ) -> Self {
         Self {
             searches: Searches {
-                tree,
+                leaves,
+                frame,
+                isa,
+                search_tree,
                 evaluate,
                 limits: [Limits { query: [0.0; 3], candidate: 0.0, node: 0.0 }; SEARCHES],
                 minimums: std::array::from_fn(|_| template.clone()),
@@ -223,7 +251,7 @@ impl<'a, V: VolumeNodes> InterleavedSearch<'a, V> {
     pub fn limit_to(&mut self, search: usize, upper_bound: f64) {
         let limits = &mut self.searches.limits[search];
         limits.candidate = if upper_bound < limits.candidate { upper_bound } else { limits.candidate };
-        let node = self.searches.tree.frame.square_above(upper_bound * upper_bound * ROUND_UP_F64);
+        let node = self.searches.frame.square_above(upper_bound * upper_bound * ROUND_UP_F64);
         limits.node = if node < limits.node { node } else { limits.node };
     }
 
@@ -247,7 +275,7 @@ impl<'a, V: VolumeNodes> InterleavedSearch<'a, V> {
         let bound = prune.sqrt() * ROUND_UP_F64;
         limits.candidate = if limits.candidate < bound { limits.candidate } else { bound };
         let square = limits.candidate * limits.candidate * ROUND_UP_F64;
-        let node = self.searches.tree.frame.square_above(if square < prune { square } else { prune });
+        let node = self.searches.frame.square_above(if square < prune { square } else { prune });
         limits.node = if node < limits.node { node } else { limits.node };
     }
 
@@ -270,9 +298,9 @@ impl<'a, V: VolumeNodes> InterleavedSearch<'a, V> {
     #[cold]
     #[inline(never)]
     pub fn search_tree(&mut self, search: usize) {
-        let (tree, query, evaluate) = (self.searches.tree, self.searches.limits[search].query, self.searches.evaluate);
+        let (query, evaluate) = (self.searches.limits[search].query, self.searches.evaluate);
         let evaluate = |collector: &mut BestF64, id, square| evaluate(search, collector, id, square);
-        tree.run(query, &mut self.searches.minimums[search], &evaluate, finish_nearest);
+        (self.searches.search_tree)(query, &mut self.searches.minimums[search], &evaluate);
     }
 
     /// Filters packets of one search, which are given by their numbers and lanes.
@@ -282,7 +310,7 @@ impl<'a, V: VolumeNodes> InterleavedSearch<'a, V> {
     pub fn filter_all(&mut self, search: usize, packets: &[(u32, u16)]) {
         for &(packet, lanes) in packets {
             let visit = PacketVisit { search: search as u32, packet, lanes: u32::from(lanes) };
-            self.searches.tree.isa.run(Filter { several: self, visits: &[visit] });
+            self.searches.isa.run(Filter::<true> { several: self, visits: &[visit] });
         }
     }
 
@@ -294,9 +322,14 @@ impl<'a, V: VolumeNodes> InterleavedSearch<'a, V> {
     /// No branch depends on what the filters find until all of them have run. Searches that are near each other often
     /// visit the same packet one after the other, and what depends on the packet alone is then computed once.
     #[inline(always)]
-    #[allow(clippy::cast_possible_truncation, reason = "rounded up")]
     pub fn filter<I: InstructionSet, const PLANES: bool>(&mut self, visits: &[PacketVisit]) {
-        let leaves = &self.searches.tree.leaves;
+        I::call(Filter::<PLANES> { several: self, visits });
+    }
+
+    #[inline(always)]
+    #[allow(clippy::cast_possible_truncation, reason = "rounded up")]
+    fn filter_inline<I: InstructionSet, const PLANES: bool>(&mut self, visits: &[PacketVisit]) {
+        let leaves = self.searches.leaves;
         for (i, visit) in visits.iter().enumerate() {
             let packet = &leaves.packets[visit.packet as usize];
             let limits = &self.searches.limits[visit.search as usize % SEARCHES];
@@ -343,7 +376,7 @@ impl<'a, V: VolumeNodes> InterleavedSearch<'a, V> {
             let nearest = smallest::<I::Wide>(&self.squares[place]);
             self.rows.nearest_square[place] = if has_vertices { nearest } else { f32::INFINITY };
         }
-        self.rows.update::<I>(&self.locals, &self.searches.tree.frame);
+        self.rows.update::<I>(&self.locals, self.searches.frame);
         for &place in places {
             let place = usize::from(place) % SEARCHES;
             // Lanes behind the plane are left out whether their squares were computed for another search or not.
@@ -359,7 +392,7 @@ impl<'a, V: VolumeNodes> InterleavedSearch<'a, V> {
     #[inline(always)]
     #[allow(clippy::cast_possible_truncation, reason = "`distance_below` allows for the rounding")]
     fn push_candidates<I: InstructionSet>(&mut self, visit: &PacketVisit, place: usize) {
-        let packet = &self.searches.tree.leaves.packets[visit.packet as usize];
+        let packet = &self.searches.leaves.packets[visit.packet as usize];
         let squares = &self.squares[place];
         let mut passed = visit.lanes & packet.lanes();
         if self.locals.far >> place & 1 == 0 {
@@ -370,14 +403,14 @@ impl<'a, V: VolumeNodes> InterleavedSearch<'a, V> {
             let limit = self.rows.limit[place];
             passed &= at_most::<I::Wide>(squares, limit * limit);
         }
-        let scale = packet.unit() * self.searches.tree.frame.per_unit;
+        let scale = packet.unit() * self.searches.frame.per_unit;
         let count = &mut self.counts[visit.search as usize % SEARCHES];
         *count += passed.count_ones();
         self.early |= u32::from(*count >= MAX_CANDIDATES) << visit.search;
         while passed != 0 {
             let lane = passed.trailing_zeros();
             passed &= passed - 1;
-            packet.prefetch_vertices(lane as usize, &self.searches.tree.leaves.vertices);
+            packet.prefetch_vertices(lane as usize, &self.searches.leaves.vertices);
             let is_far = self.locals.far >> place & 1 == 1;
             let distance = squares[lane as usize].sqrt() * (1.0 - f32::EPSILON) - self.locals.excess[place];
             let lower_bound = if is_far { 0.0 } else { (f64::from(distance) * scale) as f32 };
@@ -397,7 +430,7 @@ impl<'a, V: VolumeNodes> InterleavedSearch<'a, V> {
     }
 
     /// Evaluates all candidates.
-    #[inline(always)]
+    #[inline(never)]
     pub fn evaluate_candidates(&mut self) {
         self.evaluate(u32::MAX);
     }
@@ -406,8 +439,8 @@ impl<'a, V: VolumeNodes> InterleavedSearch<'a, V> {
     /// and offers them to the collectors.
     #[inline(always)]
     fn evaluate(&mut self, searches: u32) {
-        let leaves = &self.searches.tree.leaves;
-        let computes_in_lanes = self.searches.tree.isa.has_fast_doubles();
+        let leaves = self.searches.leaves;
+        let computes_in_lanes = self.searches.isa.has_fast_doubles();
         for i in 0..std::mem::take(&mut self.candidate_count) {
             if searches >> self.candidates[i].search & 1 == 0 {
                 self.candidates[self.candidate_count] = self.candidates[i];
@@ -417,7 +450,7 @@ impl<'a, V: VolumeNodes> InterleavedSearch<'a, V> {
             let candidate = self.candidates[i];
             let limits = &self.searches.limits[candidate.search as usize];
             let distance =
-                f64::from(candidate.lower_bound) * (1.0 - f64::from(f32::EPSILON)) * self.searches.tree.frame.unit;
+                f64::from(candidate.lower_bound) * (1.0 - f64::from(f32::EPSILON)) * self.searches.frame.unit;
             if distance > limits.candidate {
                 continue;
             }
@@ -454,7 +487,7 @@ impl<'a, V: VolumeNodes> InterleavedSearch<'a, V> {
     #[inline(never)]
     fn evaluate_triangles(&mut self, may_skip: bool) {
         let waiting = &mut self.triangles;
-        let found = self.searches.tree.isa.run(EvaluateTriangles(&waiting.eight, may_skip));
+        let found = self.searches.isa.run(EvaluateTriangles(&waiting.eight, may_skip));
         let len = std::mem::take(&mut waiting.len);
         self.searches.take(&waiting.candidates[..len], &found);
         for lane in 0..len {
@@ -468,24 +501,24 @@ impl<'a, V: VolumeNodes> InterleavedSearch<'a, V> {
 
     #[inline(never)]
     fn evaluate_segments(&mut self) {
-        let found = self.searches.tree.isa.run(EvaluateSegments(&self.segments.eight));
+        let found = self.searches.isa.run(EvaluateSegments(&self.segments.eight));
         let len = std::mem::take(&mut self.segments.len);
         self.searches.take(&self.segments.candidates[..len], &found);
     }
 }
 
 /// A SIMD kernel that filters packets.
-struct Filter<'a, 'b, V: VolumeNodes> {
-    several: &'a mut InterleavedSearch<'b, V>,
+struct Filter<'a, 'b, const PLANES: bool> {
+    several: &'a mut InterleavedSearch<'b>,
     visits: &'a [PacketVisit],
 }
 
-impl<V: VolumeNodes> SimdKernel for Filter<'_, '_, V> {
+impl<const PLANES: bool> SimdKernel for Filter<'_, '_, PLANES> {
     type Output = ();
 
     #[inline(always)]
     fn run<I: InstructionSet>(self) {
-        self.several.filter::<I, true>(self.visits);
+        self.several.filter_inline::<I, PLANES>(self.visits);
     }
 }
 

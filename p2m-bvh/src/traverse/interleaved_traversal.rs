@@ -11,7 +11,7 @@ use crate::traverse::interleaved_search::{InterleavedSearch, PacketVisit, ROUND_
 use crate::traverse::{SHORT_STACK_DEPTH, SHORT_STACK_LEN};
 use crate::tree::PacketTree;
 use crate::tree::node_ref::{NodeRef, WIDTH};
-use crate::tree::wide_node::{VolumeNodes, WideNode};
+use crate::tree::wide_node::{VolumeNodes, WideNode, lower_bounds};
 use p2m_core::engine::simd::{EightLanes, InstructionSet, SimdKernel, lane_of_key, value_of_key};
 use p2m_core::engine::vector::{V3, norm_squared, power_of_two, sub};
 
@@ -67,7 +67,7 @@ impl<V: VolumeNodes> InterleavedTraversal<V> {
 
     /// Searches the tree for the queries of the first `count` searches of `several`.
     #[inline(always)]
-    pub fn search(&mut self, tree: &PacketTree<V>, several: &mut InterleavedSearch<'_, V>, count: usize) {
+    pub fn search(&mut self, tree: &PacketTree<V>, several: &mut InterleavedSearch<'_>, count: usize) {
         tree.isa.run(SearchInTurns { walkers: self, tree, several, count });
     }
 
@@ -77,7 +77,7 @@ impl<V: VolumeNodes> InterleavedTraversal<V> {
     fn limit<I: InstructionSet>(
         &self,
         tree: &PacketTree<V>,
-        several: &mut InterleavedSearch<'_, V>,
+        several: &mut InterleavedSearch<'_>,
         count: usize,
     ) -> NodeRef {
         let mut node = tree.root;
@@ -96,7 +96,7 @@ impl<V: VolumeNodes> InterleavedTraversal<V> {
         let limit = tree.frame.square_above(reach * reach * ROUND_UP_F64);
         let mut keys = [0; WIDTH];
         while !node.is_packet() {
-            let bounds: I::F32x8 = tree.nodes[node.number()].lower_bounds(&tree.shared, &query);
+            let bounds: I::F32x8 = lower_bounds(&tree.nodes[node.number()], &tree.shared, &query);
             if bounds.sorted_keys(limit, &mut keys) != 1 {
                 break;
             }
@@ -110,7 +110,7 @@ impl<V: VolumeNodes> InterleavedTraversal<V> {
 struct SearchInTurns<'a, 'b, V: VolumeNodes> {
     walkers: &'a mut InterleavedTraversal<V>,
     tree: &'a PacketTree<V>,
-    several: &'a mut InterleavedSearch<'b, V>,
+    several: &'a mut InterleavedSearch<'b>,
     count: usize,
 }
 
@@ -152,7 +152,7 @@ impl<V: VolumeNodes> SimdKernel for SearchInTurns<'_, '_, V> {
                 let stack = &mut stacks[usize::from(search) % SEARCHES];
                 let Some(query) = &queries[usize::from(search)] else { continue };
                 let node = &tree.nodes[stack.next.number()];
-                let bounds: I::F32x8 = node.lower_bounds(&tree.shared, query);
+                let bounds: I::F32x8 = lower_bounds(node, &tree.shared, query);
                 let top = stack.len;
                 let keys: &mut [u32; WIDTH] = (&mut stack.keys[top..top + WIDTH]).try_into().expect("eight keys");
                 stack.len += bounds.sorted_keys(several.limit(usize::from(search)), keys);

@@ -48,25 +48,49 @@ pub(crate) trait Visitor<V: VolumeNodes> {
     }
 }
 
+/// The number of entries that stay on a stack when the others are moved away.
+const KEPT_LEN: usize = SHORT_STACK_LEN / 2;
+
+/// Moves all but the uppermost [`KEPT_LEN`] entries of a stack away.
+#[cold]
+#[inline(never)]
+fn spill(
+    keys: &mut [u32; SHORT_STACK_LEN],
+    parents: &mut [u32; SHORT_STACK_LEN],
+    below: &mut Vec<(u32, u32)>,
+    top: usize,
+) {
+    let moved = top - KEPT_LEN;
+    below.extend(keys[..moved].iter().copied().zip(parents[..moved].iter().copied()));
+    keys.copy_within(moved..top, 0);
+    parents.copy_within(moved..top, 0);
+}
+
+/// Brings back entries that were moved away, and returns their number.
+#[cold]
+#[inline(never)]
+fn refill(
+    keys: &mut [u32; SHORT_STACK_LEN],
+    parents: &mut [u32; SHORT_STACK_LEN],
+    below: &mut Vec<(u32, u32)>,
+) -> usize {
+    let from = below.len().saturating_sub(KEPT_LEN);
+    let count = below.len() - from;
+    for (i, (key, parent)) in below.drain(from..).enumerate() {
+        (keys[i], parents[i]) = (key, parent);
+    }
+    count
+}
+
 /// Traverses a tree.
 #[inline(always)]
 pub(crate) fn traverse<I: InstructionSet, V: VolumeNodes, W: Visitor<V>>(tree: &PacketTree<V>, visitor: &mut W) {
-    if tree.depth <= SHORT_STACK_DEPTH {
-        traverse_with_stack::<I, V, W, SHORT_STACK_LEN>(tree, visitor);
-    } else {
-        traverse_with_stack::<I, V, W, STACK_LEN>(tree, visitor);
-    }
-}
-
-#[inline(always)]
-fn traverse_with_stack<I: InstructionSet, V: VolumeNodes, W: Visitor<V>, const LEN: usize>(
-    tree: &PacketTree<V>,
-    visitor: &mut W,
-) {
     // The pending children of a node are in descending order of their keys. Each entry has the key of a child, which
     // combines its bound and its slot, and the node of which it is a child.
-    let mut keys = [0u32; LEN];
-    let mut parents = [0u32; LEN];
+    let mut keys = [0u32; SHORT_STACK_LEN];
+    let mut parents = [0u32; SHORT_STACK_LEN];
+    // Entries below those of the two arrays. Only deep trees have some.
+    let mut below = Vec::new();
     let mut top = 0;
     let mut at = tree.root;
     if at == NodeRef::NONE {
@@ -76,8 +100,9 @@ fn traverse_with_stack<I: InstructionSet, V: VolumeNodes, W: Visitor<V>, const L
     let mut bound = 0.0;
     loop {
         if visitor.may_stop() {
-            let pending = keys[..top].iter().map(|key| value_of_key(*key));
-            return visitor.record_skipped(pending.fold(bound, f32::min));
+            let pending = keys[..top].iter().map(|key| value_of_key(*key)).fold(bound, f32::min);
+            let below = below.iter().map(|(key, _): &(u32, u32)| value_of_key(*key));
+            return visitor.record_skipped(below.fold(pending, f32::min));
         }
         if at.is_packet() {
             if visitor.visit_packet::<I>(at.number()).is_break() {
@@ -87,13 +112,18 @@ fn traverse_with_stack<I: InstructionSet, V: VolumeNodes, W: Visitor<V>, const L
             visitor.visit_node();
             let node = &tree.nodes[at.number()];
             let bounds: I::F32x8 = visitor.bounds(node);
+            if top > SHORT_STACK_LEN - WIDTH {
+                spill(&mut keys, &mut parents, &mut below, top);
+                top = KEPT_LEN;
+            }
             let entries: &mut [u32; WIDTH] = (&mut keys[top..top + WIDTH]).try_into().expect("eight keys");
             let count = bounds.sorted_keys(visitor.limit(), entries);
             parents[top..top + WIDTH].fill(at.0);
             // The two nearest children are prefetched without a test of their number, because that branch would be
             // mispredicted. The keys behind the last one are 0, which stands for the first child.
-            tree.prefetch(node.children()[lane_of_key(keys[(top + count).wrapping_sub(1).min(LEN - 1)])]);
-            tree.prefetch(node.children()[lane_of_key(keys[(top + count).wrapping_sub(2).min(LEN - 1)])]);
+            let last = SHORT_STACK_LEN - 1;
+            tree.prefetch(node.children()[lane_of_key(keys[(top + count).wrapping_sub(1).min(last)])]);
+            tree.prefetch(node.children()[lane_of_key(keys[(top + count).wrapping_sub(2).min(last)])]);
             if count > 0 {
                 top += count - 1;
                 bound = value_of_key(keys[top]);
@@ -103,7 +133,10 @@ fn traverse_with_stack<I: InstructionSet, V: VolumeNodes, W: Visitor<V>, const L
         }
         loop {
             if top == 0 {
-                return;
+                if below.is_empty() {
+                    return;
+                }
+                top = refill(&mut keys, &mut parents, &mut below);
             }
             top -= 1;
             let key = keys[top];

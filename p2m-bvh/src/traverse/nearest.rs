@@ -12,7 +12,7 @@ use crate::traverse::primitive_fn::{EvaluateFn, evaluation};
 use crate::traverse::search_state::SearchState;
 use crate::traverse::{Visitor, evaluate, traverse};
 use crate::tree::node_ref::NodeRef;
-use crate::tree::wide_node::{VolumeNodes, WideNode};
+use crate::tree::wide_node::{VolumeNodes, WideNode, lower_bounds};
 use crate::tree::{Leaves, PacketTree};
 use nalgebra::Point3;
 use p2m_core::engine::real::to_f64_array;
@@ -151,7 +151,7 @@ struct NearestVisitor<'a, V: VolumeNodes, C> {
 impl<V: VolumeNodes, C: Collector> Visitor<V> for NearestVisitor<'_, V, C> {
     #[inline(always)]
     fn bounds<L: Lanes>(&self, node: &V::Node) -> L {
-        node.lower_bounds(self.shared, &self.local)
+        lower_bounds(node, self.shared, &self.local)
     }
     #[inline(always)]
     fn limit(&self) -> f32 {
@@ -163,9 +163,10 @@ impl<V: VolumeNodes, C: Collector> Visitor<V> for NearestVisitor<'_, V, C> {
     }
     #[inline(always)]
     fn visit_packet<I: InstructionSet>(&mut self, number: usize) -> ControlFlow<()> {
-        self.state.packet::<I>(number, self.state.leaves.packets[number].lanes());
-        if !self.state.collector.is_single_nearest() {
-            self.state.rest_of_run::<I>(number);
+        if self.state.collector.has_inlined_filters() {
+            self.state.packet::<I>(number, self.state.leaves.packets[number].lanes());
+        } else {
+            self.state.run_of_packets::<I>(number);
         }
         ControlFlow::Continue(())
     }

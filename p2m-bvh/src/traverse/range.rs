@@ -3,7 +3,7 @@
 use crate::packet::{LANES, ROUND_UP, at_most};
 use crate::traverse::{Visitor, traverse};
 use crate::tree::PacketTree;
-use crate::tree::wide_node::{VolumeNodes, WideNode};
+use crate::tree::wide_node::{VolumeNodes, WideNode, lower_bounds};
 use p2m_core::engine::simd::{InstructionSet, Lanes, SimdKernel};
 use std::ops::ControlFlow;
 
@@ -77,7 +77,7 @@ impl<V: VolumeNodes> SimdKernel for BallSearch<'_, V> {
 impl<V: VolumeNodes> Visitor<V> for BallSearch<'_, V> {
     #[inline(always)]
     fn bounds<L: Lanes>(&self, node: &V::Node) -> L {
-        node.lower_bounds(&self.tree.shared, &self.local)
+        lower_bounds(node, &self.tree.shared, &self.local)
     }
     #[inline(always)]
     fn limit(&self) -> f32 {

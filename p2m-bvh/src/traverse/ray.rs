@@ -10,7 +10,7 @@ use crate::traverse::primitive_fn::{IntersectFn, intersection};
 use crate::traverse::{Visitor, traverse};
 use crate::tree::frame_line::{FrameLine, misses_scene};
 use crate::tree::node_ref::NodeRef;
-use crate::tree::wide_node::{VolumeNodes, WideNode};
+use crate::tree::wide_node::{VolumeNodes, WideNode, entries};
 use crate::tree::{Leaves, PacketTree};
 use p2m_core::engine::simd::{InstructionSet, Lanes, SimdKernel};
 use p2m_core::{Crossing, PrimitiveSet, Ray, RayCollector, Real};
@@ -115,7 +115,7 @@ impl<'r, C: RayCollector<'r>> ExactTests<'_, 'r, C> {
             if let Some(flow) = self.hits.take_candidate(id, &vertices[..count]) {
                 return flow;
             }
-            Crossing::from_vertices(self.ray, &vertices[..count], limit, self.only_crossings)
+            crossing(self.ray, &vertices[..count], limit, self.only_crossings)
         };
         match crossing {
             Some(crossing) => self.hits.offer(id, &crossing),
@@ -136,6 +136,12 @@ impl<'r, C: RayCollector<'r>> ExactTests<'_, 'r, C> {
             }
         }
     }
+}
+
+/// Calls [`Crossing::from_vertices`] out of line, so that it is compiled once for all volumes and instruction sets.
+#[inline(never)]
+fn crossing<'r>(ray: &'r Ray, vertices: &[[f64; 3]], limit: f64, only_crossings: bool) -> Option<Crossing<'r>> {
+    Crossing::from_vertices(ray, vertices, limit, only_crossings)
 }
 
 /// The visitor of a search with a ray.
@@ -165,7 +171,7 @@ impl<'r, V: VolumeNodes, C: RayCollector<'r>> RayVisitor<'_, 'r, V, C> {
 impl<'r, V: VolumeNodes, C: RayCollector<'r>> Visitor<V> for RayVisitor<'_, 'r, V, C> {
     #[inline(always)]
     fn bounds<L: Lanes>(&self, node: &V::Node) -> L {
-        node.entries(&self.local)
+        entries(node, &self.local)
     }
     #[inline(always)]
     fn limit(&self) -> f32 {

@@ -8,7 +8,7 @@ use crate::traverse::primitive_fn::EvaluateFn;
 use crate::tree::frame::Frame;
 use crate::tree::wide_node::VolumeNodes;
 use crate::tree::{Leaves, PacketTree};
-use p2m_core::engine::simd::InstructionSet;
+use p2m_core::engine::simd::{InstructionSet, Lanes, SimdKernel};
 use p2m_core::{Collector, Isa};
 
 /// The largest number of pending candidates.
@@ -159,8 +159,17 @@ impl<'a, C: Collector> SearchState<'a, C> {
 
     /// Filters some lanes of a packet. Primitives that may be the answer become pending.
     #[inline(always)]
-    #[allow(clippy::cast_possible_truncation, reason = "rounded up, and packets and lanes fit")]
     pub fn packet<I: InstructionSet>(&mut self, number: usize, lanes: u32) {
+        if I::F32x8::INLINES {
+            self.packet_inline::<I>(number, lanes);
+        } else {
+            I::call(OnePacket { state: self, number, lanes });
+        }
+    }
+
+    #[inline(always)]
+    #[allow(clippy::cast_possible_truncation, reason = "rounded up, and packets and lanes fit")]
+    fn packet_inline<I: InstructionSet>(&mut self, number: usize, lanes: u32) {
         self.collector.visit_packet();
         let packet = &self.leaves.packets[number];
         let candidate =
@@ -209,13 +218,11 @@ impl<'a, C: Collector> SearchState<'a, C> {
         }
     }
 
-    /// Filters the packets that continue the run of a packet, as far as the collector wants their primitives.
+    /// Filters a packet, and those that continue its run as far as the collector wants their primitives. This is out of
+    /// line, so it is compiled once for all volumes.
     #[inline(always)]
-    pub(super) fn rest_of_run<I: InstructionSet>(&mut self, mut number: usize) {
-        while self.leaves.is_rest_wanted(number, self.query, &*self.collector) {
-            number += 1;
-            self.packet::<I>(number, self.leaves.packets[number].lanes());
-        }
+    pub(super) fn run_of_packets<I: InstructionSet>(&mut self, number: usize) {
+        I::call(RunOfPackets { state: self, number });
     }
 
     /// The lower bound of a candidate in the frame of the tree, from the square that the filter of its packet found.
@@ -262,5 +269,45 @@ impl<'a, C: Collector> SearchState<'a, C> {
     #[inline(always)]
     pub fn evaluate_pending(&mut self) {
         (self.finish)(self);
+    }
+}
+
+/// The filters of a run of packets as a kernel.
+struct RunOfPackets<'a, 'b, C> {
+    state: &'a mut SearchState<'b, C>,
+    number: usize,
+}
+
+impl<C: Collector> SimdKernel for RunOfPackets<'_, '_, C> {
+    type Output = ();
+
+    #[inline(always)]
+    fn run<I: InstructionSet>(self) {
+        let Self { state, mut number } = self;
+        loop {
+            state.packet::<I>(number, state.leaves.packets[number].lanes());
+            if state.collector.is_single_nearest()
+                || !state.leaves.is_rest_wanted(number, state.query, &*state.collector)
+            {
+                return;
+            }
+            number += 1;
+        }
+    }
+}
+
+/// The filter of a packet as a kernel.
+struct OnePacket<'a, 'b, C> {
+    state: &'a mut SearchState<'b, C>,
+    number: usize,
+    lanes: u32,
+}
+
+impl<C: Collector> SimdKernel for OnePacket<'_, '_, C> {
+    type Output = ();
+
+    #[inline(always)]
+    fn run<I: InstructionSet>(self) {
+        self.state.packet_inline::<I>(self.number, self.lanes);
     }
 }

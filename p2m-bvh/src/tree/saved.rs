@@ -40,6 +40,7 @@ impl<V: VolumeNodes> Saved for PacketTree<V> {
         V::name()
     }
 
+    #[inline(never)]
     fn save<'a>(&'a self, writer: &mut Writer<'a>) {
         let header = Header {
             bounds: [self.bounds.min.coords.into(), self.bounds.max.coords.into()],
@@ -64,6 +65,7 @@ impl<V: VolumeNodes> Saved for PacketTree<V> {
         writer.put(VERTEX_OFFSETS, &self.leaves.vertex_offsets);
     }
 
+    #[inline(never)]
     fn load(reader: &Reader, primitives: usize) -> Result<Self, LoadError> {
         let header: Header = reader.one("tree")?;
         require(usize::try_from(header.len) == Ok(primitives), "tree", "the number of primitives is wrong")?;

@@ -101,3 +101,25 @@ pub trait VolumeNodes: Clone + 'static {
     /// Returns a [`LoadError`] if a section is missing or inconsistent.
     fn load_shared(reader: &Reader) -> Result<Self::Shared, LoadError>;
 }
+
+/// Bounds on the children of a node as [`WideNode::lower_bounds`], inlined or not as the lanes prefer it.
+#[inline(always)]
+pub(crate) fn lower_bounds<N: WideNode, L: Lanes>(node: &N, shared: &N::Shared, query: &N::Query) -> L {
+    if L::INLINES { node.lower_bounds(shared, query) } else { lower_bounds_out_of_line(node, shared, query) }
+}
+
+#[inline(never)]
+fn lower_bounds_out_of_line<N: WideNode, L: Lanes>(node: &N, shared: &N::Shared, query: &N::Query) -> L {
+    node.lower_bounds(shared, query)
+}
+
+/// Bounds on the children of a node as [`WideNode::entries`], inlined or not as the lanes prefer it.
+#[inline(always)]
+pub(crate) fn entries<N: WideNode, L: Lanes>(node: &N, ray: &N::Ray) -> L {
+    if L::INLINES { node.entries(ray) } else { entries_out_of_line(node, ray) }
+}
+
+#[inline(never)]
+fn entries_out_of_line<N: WideNode, L: Lanes>(node: &N, ray: &N::Ray) -> L {
+    node.entries(ray)
+}

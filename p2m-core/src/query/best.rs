@@ -35,8 +35,10 @@ pub struct BestF64 {
     certified: f64,
     /// Whether the options allow an answer other than the exact one.
     approximate: bool,
-    /// The number of visits that are left.
-    visits_left: u32,
+    /// The number of nodes and packets after whose visit an approximate search may stop.
+    max_visits: u64,
+    /// The numbers of nodes that were visited, of packets that were filtered, and of primitives that were offered.
+    counts: [u64; 3],
 }
 
 /// The factor of epsilon, 2^100, beyond which any answer suffices; squares of it stay in range.
@@ -61,7 +63,8 @@ impl<T: Real> Best<T> {
             key: Key::INFINITY,
             certified: f64::INFINITY,
             approximate: options.is_approximate(),
-            visits_left: options.max_visits,
+            max_visits: u64::from(options.max_visits),
+            counts: [0; 3],
         };
         Self { hint: options.hint, minimum, scalar: PhantomData }
     }
@@ -134,6 +137,12 @@ impl BestF64 {
         Some(answer(*primitive, p, if *certified < pruned { *certified } else { pruned }))
     }
 
+    /// Returns the numbers of nodes, packets and primitives of the search so far.
+    #[must_use]
+    pub fn counts(&self) -> [u64; 3] {
+        self.counts
+    }
+
     /// Returns a lower bound on the distances of all primitives where there is no answer. It is infinite if there
     /// are no primitives.
     pub(crate) fn lower_bound_without_answer<T: Real>(&self) -> T {
@@ -204,18 +213,17 @@ impl Collector for BestF64 {
     #[inline(always)]
     fn may_stop(&self, has_incumbent: bool) -> bool {
         // A search without a candidate at a finite distance goes on, however many visits it took.
-        self.visits_left == 0 && (has_incumbent || self.key.distance() < f64::INFINITY)
+        self.counts[0] + self.counts[1] >= self.max_visits && (has_incumbent || self.key.distance() < f64::INFINITY)
     }
 
     #[inline(always)]
     fn visit_node(&mut self) {
-        // An exact search never reads the counter.
-        self.visits_left = self.visits_left.saturating_sub(1);
+        self.counts[0] = self.counts[0].wrapping_add(1);
     }
 
     #[inline(always)]
     fn visit_packet(&mut self) {
-        self.visits_left = self.visits_left.saturating_sub(1);
+        self.counts[1] = self.counts[1].wrapping_add(1);
     }
 
     #[inline(always)]
@@ -244,7 +252,13 @@ impl Collector for BestF64 {
     }
 
     #[inline(always)]
+    fn has_inlined_filters(&self) -> bool {
+        true
+    }
+
+    #[inline(always)]
     fn offer(&mut self, id: PrimitiveId, projection: Projection) {
+        self.counts[2] = self.counts[2].wrapping_add(1);
         let p = projection;
         // Only a candidate within its error of the certified bound can lower that bound. Its square decides this
         // without a square root in most cases.

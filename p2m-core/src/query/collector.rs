@@ -101,6 +101,14 @@ pub trait Collector {
     /// Takes a candidate.
     fn offer(&mut self, id: PrimitiveId, projection: Projection);
 
+    /// Whether searches with this collector contain a copy of the filter of packets. That is faster and much code, so it
+    /// is for the collector of the nearest primitive.
+    #[doc(hidden)]
+    #[inline(always)]
+    fn has_inlined_filters(&self) -> bool {
+        false
+    }
+
     /// Reports a visit to a node of a tree, or to a site on the way to a Voronoi cell. Collectors that count visits or
     /// limit them override it.
     #[inline(always)]

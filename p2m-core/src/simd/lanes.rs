@@ -9,6 +9,9 @@ use std::ops::{BitAnd, BitOr, Div, Neg, Not};
 pub trait Lanes: Copy {
     /// The number of lanes.
     const LEN: usize;
+    /// Whether long computations are inlined into each search. Where the portable lanes are not the fastest ones of the
+    /// processor, they are compiled once instead, because their code is several times as long as that of the others.
+    const INLINES: bool = true;
     /// Returns `x` in every lane.
     fn splat(x: f32) -> Self;
     /// Loads the first [`LEN`](Self::LEN) values of a slice, which must have that many.
@@ -168,6 +171,8 @@ pub trait InstructionSet {
     type Wide: Lanes;
     /// The type of eight f64.
     type Doubles: Doubles;
+    /// Runs a kernel from another one, out of line. Only a kernel that is run with this instruction set may call it.
+    fn call<K: SimdKernel>(kernel: K) -> K::Output;
 }
 
 /// A computation that is compiled for each instruction set.

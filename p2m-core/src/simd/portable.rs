@@ -1,7 +1,8 @@
 //! Lanes of the crate `wide`, for processors of any kind: the vector instructions that every processor of an
 //! architecture has (SSE2, NEON), or arrays.
 
-use super::lanes::{Doubles, EightLanes, Float, InstructionSet, Lanes};
+use super::isa::run_portable;
+use super::lanes::{Doubles, EightLanes, Float, InstructionSet, Lanes, SimdKernel};
 use super::operators::{float_operators, mask_operators};
 use wide::{f32x8, f64x4};
 
@@ -17,6 +18,11 @@ pub struct EightDoubles(f64x4, f64x4);
 pub struct Portable;
 
 impl InstructionSet for Portable {
+    #[inline(always)]
+    fn call<K: SimdKernel>(kernel: K) -> K::Output {
+        run_portable(kernel)
+    }
+
     type F32x8 = F32x8;
     type Wide = F32x8;
     type Doubles = EightDoubles;
@@ -39,6 +45,7 @@ impl F32x8 {
 
 impl Lanes for F32x8 {
     const LEN: usize = 8;
+    const INLINES: bool = !cfg!(any(target_arch = "x86_64", all(target_arch = "aarch64", target_feature = "neon")));
 
     #[inline(always)]
     fn splat(x: f32) -> Self {

@@ -31,8 +31,7 @@ fn all_backends_give_the_same_bounds() {
             let settings = BuildSettings::default();
             let [built_a, built_b] = [0, 1].map(|k| backend.build(Arc::clone(&soups[k]), &settings).expect("valid"));
             check(case, [&soups[0], &soups[1]], [&*built_a.index, &*built_b.index]);
-            let [built_a, built_b] =
-                [&a, &b].map(|soup| backend.build_f32(Arc::clone(soup), &settings).expect("valid"));
+            let [built_a, built_b] = [&a, &b].map(|soup| backend.build_in(Arc::clone(soup), &settings).expect("valid"));
             check(case, [&a, &b], [&*built_a.index, &*built_b.index]);
         }
     }

@@ -198,7 +198,7 @@ fn answers_in_f32_are_those_of_the_moved_scene_in_f64() {
             .iter()
             .map(|soup| {
                 let backend = &BACKENDS[rng.random_range(0..BACKENDS.len())];
-                let built = backend.build_f32(Arc::new(soup.clone()), &BuildSettings::default()).expect("valid");
+                let built = backend.build_in(Arc::new(soup.clone()), &BuildSettings::default()).expect("valid");
                 (soup, built.index)
             })
             .collect();

@@ -3,7 +3,6 @@
 use crate::list::block::{BLOCK_WIDTH, Block, BlockQuery};
 use p2m_bvh::PacketTree;
 use p2m_bvh::engine::interleaved::{InterleavedSearch, PacketVisit, SEARCHES};
-use p2m_core::Aabb;
 use p2m_core::engine::simd::{EightLanes, InstructionSet, lane_of_key, value_of_key};
 
 /// The place of a search in its list.
@@ -26,7 +25,7 @@ pub(crate) struct SearchInterleaved<'a, 'b, P> {
     pub(crate) partition: &'a P,
     /// The number of searches of `several` that have begun.
     pub(crate) count: usize,
-    pub(crate) several: &'a mut InterleavedSearch<'b, Aabb<f64>>,
+    pub(crate) several: &'a mut InterleavedSearch<'b>,
     pub(crate) lists: &'a mut InterleavedLists,
 }
 
@@ -73,7 +72,7 @@ impl InterleavedLists {
         &mut self,
         tree: &PacketTree,
         blocks: &[Block],
-        several: &mut InterleavedSearch<'_, Aabb<f64>>,
+        several: &mut InterleavedSearch<'_>,
     ) {
         // The first `count` entries of `active` are the cursors of lists that were not searched to their ends, and the
         // first `opening` entries of `opened` are those whose next block has to be bounded.
@@ -127,7 +126,7 @@ impl InterleavedLists {
         tree: &PacketTree,
         block: &Block,
         cursor: &mut Cursor,
-        several: &InterleavedSearch<'_, Aabb<f64>>,
+        several: &InterleavedSearch<'_>,
     ) {
         let bounds: I::F32x8 = block.lower_bounds_of_used(&cursor.query);
         cursor.left = bounds.sorted_keys(several.limit(cursor.search as usize), &mut cursor.keys) as u32;

@@ -90,7 +90,7 @@ impl Octree {
             // The query is rounded to the scalar of the set, which is harmless: any point of the scene can be a
             // dominator.
             let mut counting = StatsCollector::<T>::new(Best::new(&QueryOptions::default()));
-            tree.search(set, &from_f64_array(x), &mut counting);
+            counting.count(|best| tree.search_nearest(set, &from_f64_array(x), best));
             let StatsCollector { best, nodes, packets, primitives } = counting;
             TreeProbe { nearest: best.nearest_point().unwrap_or([f64::INFINITY; 3]), nodes, packets, primitives }
         };

@@ -15,7 +15,7 @@ use p2m_core::engine::query::BestF64;
 use p2m_core::engine::real::to_f64_array;
 use p2m_core::engine::simd::{InstructionSet, SimdKernel, prefetch_lines};
 use p2m_core::engine::vector::V3;
-use p2m_core::{Aabb, Collector, Near};
+use p2m_core::{Collector, Near};
 
 impl Octree {
     /// Returns the code of the leaf at a position, which is given in units of the cells of [`MAX_LEVEL`].
@@ -99,12 +99,7 @@ impl CellQuery for Octree {
         self.query_with(query, near, evaluate, finish);
     }
 
-    fn search_several(
-        &self,
-        count: usize,
-        several: &mut InterleavedSearch<'_, Aabb<f64>>,
-        lists: &mut InterleavedLists,
-    ) {
+    fn search_several(&self, count: usize, several: &mut InterleavedSearch<'_>, lists: &mut InterleavedLists) {
         self.tree.isa().run(SearchInterleaved { partition: self, count, several, lists });
     }
 }

@@ -11,7 +11,7 @@ use p2m_bvh::engine::interleaved::InterleavedSearch;
 use p2m_bvh::engine::nearest::{EvaluateFn, SearchState};
 use p2m_core::engine::query::BestF64;
 use p2m_core::engine::vector::V3;
-use p2m_core::{Aabb, Collector, Isa, Near, PrimitiveId, PrimitiveSet, Real};
+use p2m_core::{Collector, Isa, Near, PrimitiveId, PrimitiveSet, Real};
 
 /// The options of a [`PaperIndex`](crate::PaperIndex): those of a P2M index, which are
 /// [`P2mOptions::as_in_paper`] by default.
@@ -85,12 +85,7 @@ impl CellQuery for PaperVoronoi {
         self.0.query_near(query, near, evaluate);
     }
 
-    fn search_several(
-        &self,
-        count: usize,
-        several: &mut InterleavedSearch<'_, Aabb<f64>>,
-        lists: &mut InterleavedLists,
-    ) {
+    fn search_several(&self, count: usize, several: &mut InterleavedSearch<'_>, lists: &mut InterleavedLists) {
         self.0.search_several(count, several, lists);
     }
 }

@@ -61,12 +61,7 @@ impl CellQuery for Voronoi {
         self.query_with(query, near, evaluate, finish);
     }
 
-    fn search_several(
-        &self,
-        count: usize,
-        several: &mut InterleavedSearch<'_, Aabb<f64>>,
-        lists: &mut InterleavedLists,
-    ) {
+    fn search_several(&self, count: usize, several: &mut InterleavedSearch<'_>, lists: &mut InterleavedLists) {
         self.tree.isa().run(SearchInterleaved { partition: self, count, several, lists });
     }
 }
@@ -308,7 +303,7 @@ impl Voronoi {
         search: usize,
         located: &LocatedSite,
         position: &V3,
-        several: &mut InterleavedSearch<'_, Aabb<f64>>,
+        several: &mut InterleavedSearch<'_>,
         lists: &mut InterleavedLists,
     ) {
         let site = &self.neighbours.sites[located.site];

@@ -92,7 +92,7 @@ pub(crate) fn registered(entry: &'static BackendEntry, scalar: ScalarKind, way: 
         }
         let (soup, borrowed) = f32::soup(scene)?;
         let soup = Arc::clone(soup);
-        Ok(Prepared { build: Box::new(move || ready(entry.build_f32(soup, &settings), way)), borrowed })
+        Ok(Prepared { build: Box::new(move || ready(entry.build_in(soup, &settings), way)), borrowed })
     };
     let name = format!("{}{of_way}{of_scalar}", entry.name).leak();
     let is_exhaustive = entry.structure == SearchStructure::Exhaustive;

@@ -30,6 +30,11 @@ pub(super) struct EightMasks([uint64x2_t; 4]);
 pub(super) struct Neon;
 
 impl InstructionSet for Neon {
+    #[inline(always)]
+    fn call<K: SimdKernel>(kernel: K) -> K::Output {
+        run_neon(kernel)
+    }
+
     type F32x8 = F32x8;
     type Wide = F32x8;
     type Doubles = EightDoubles;

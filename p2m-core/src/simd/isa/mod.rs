@@ -123,7 +123,7 @@ impl Isa {
 /// Runs a kernel with portable instructions. It is not inlined, so each kernel is compiled once and not wherever
 /// it is run.
 #[inline(never)]
-fn run_portable<K: SimdKernel>(kernel: K) -> K::Output {
+pub(super) fn run_portable<K: SimdKernel>(kernel: K) -> K::Output {
     kernel.run::<Portable>()
 }
 

@@ -72,12 +72,24 @@ pub(super) struct Avx2;
 pub(super) struct Avx512;
 
 impl InstructionSet for Avx2 {
+    #[inline(always)]
+    fn call<K: SimdKernel>(kernel: K) -> K::Output {
+        // SAFETY: the processor has the instructions, see the head of the file.
+        unsafe { run_avx2(kernel) }
+    }
+
     type F32x8 = F32x8;
     type Wide = F32x8;
     type Doubles = Pair;
 }
 
 impl InstructionSet for Avx512 {
+    #[inline(always)]
+    fn call<K: SimdKernel>(kernel: K) -> K::Output {
+        // SAFETY: the processor has the instructions, see the head of the file.
+        unsafe { run_avx512(kernel) }
+    }
+
     type F32x8 = F32x8;
     type Wide = F32x16;
     type Doubles = EightDoubles;
