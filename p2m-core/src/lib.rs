@@ -45,6 +45,7 @@ mod kind_set;
 mod local_frame;
 mod near_query;
 pub mod pair;
+mod parallel;
 mod pointers;
 mod position;
 pub mod predicates;
@@ -101,6 +102,10 @@ pub mod engine {
     #[cfg(feature = "rayon")]
     pub use crate::threads::{MAX_THREADS, default_threads};
 
+    /// Loops on all threads, whose scheduler is compiled once.
+    pub mod parallel {
+        pub use crate::parallel::*;
+    }
     /// Pools of threads that belong to one process.
     #[cfg(feature = "rayon")]
     pub mod pools {

@@ -17,6 +17,7 @@ use crate::layers::Layers;
 use crate::options::{FieldOptions, signed_value};
 use crate::sign::{PointBlock, SharedSoup, Sign, SignedDistance};
 use nalgebra::Point3;
+use p2m_core::engine::parallel;
 use p2m_core::{Aabb, ClosestPoint, PrimitiveSet};
 
 /// Returns the distances at the points of a grid, computed from candidate lists instead of an index.
@@ -200,13 +201,8 @@ impl<'a, S: PrimitiveSet<f64> + Sync + ?Sized> Sampler<'a, S> {
         }
         let halves = block.halves(2);
         let (low, high) = values.split_at_mut(halves[0].len());
-        #[cfg(feature = "rayon")]
-        if self.parallel {
-            rayon::join(|| self.layers(halves[0], &candidates, low), || self.layers(halves[1], &candidates, high));
-            return;
-        }
-        self.layers(halves[0], &candidates, low);
-        self.layers(halves[1], &candidates, high);
+        let (low, high) = (|| self.layers(halves[0], &candidates, low), || self.layers(halves[1], &candidates, high));
+        parallel::join(self.parallel, low, high);
     }
 
     /// Computes the points of a block with its candidates, and their common sign if that is known.

@@ -14,6 +14,7 @@ use crate::layers::Layers;
 use crate::options::{FieldOptions, signed_value};
 use crate::sign::{SharedSoup, Sign, SignedDistance};
 use nalgebra::Point3;
+use p2m_core::engine::parallel;
 use p2m_core::{Closest, ClosestPoint, QueryOptions};
 
 /// Returns the distances at the points of a grid, in the order of [`Grid::number`].
@@ -97,7 +98,7 @@ impl<I: ClosestPoint<f64> + Sync + ?Sized> Sampler<'_, I> {
         values.try_reserve_exact(len).map_err(|_| GridError::Memory(len))?;
         // The zeros do not stay, because every slab is filled.
         values.resize(len, 0.0);
-        let fill = |(slab, values): (usize, &mut [f32])| {
+        let fill = |slab: usize, values: &mut [f32]| {
             if self.band < f64::INFINITY {
                 let counts = [x, y, values.len() / layer];
                 self.blocks(
@@ -110,14 +111,7 @@ impl<I: ClosestPoint<f64> + Sync + ?Sized> Sampler<'_, I> {
             }
             progress(values.len());
         };
-        #[cfg(feature = "rayon")]
-        if self.options.parallel {
-            use rayon::prelude::*;
-            values.par_chunks_mut(layer * SLAB_LAYERS).enumerate().for_each(fill);
-            return Ok(values);
-        }
-        let _ = self.options.parallel;
-        values.chunks_mut(layer * SLAB_LAYERS).enumerate().for_each(fill);
+        parallel::for_each_chunk(&mut values, layer * SLAB_LAYERS, self.options.parallel, fill);
         Ok(values)
     }
 

@@ -19,6 +19,7 @@
 //! ```
 
 use nalgebra::{Point3, Vector3};
+use p2m_core::engine::parallel;
 use p2m_core::{Aabb, PrimitiveId, PrimitiveSet, shape_of};
 
 /// The number of samples that one thread computes at a time.
@@ -239,14 +240,8 @@ pub fn in_box(bounds: &Aabb<f64>, seed: u64, count: usize) -> Vec<Point3<f64>> {
 
 /// Computes chunks of samples, on all threads of the current pool if there are some.
 fn fill<A: Send, B: Send>(first: &mut [A], second: &mut [B], chunk: impl Fn(usize, &mut [A], &mut [B]) + Sync) {
-    let part = |(k, (first, second)): (usize, (&mut [A], &mut [B]))| chunk(k * CHUNK, first, second);
-    #[cfg(feature = "rayon")]
-    {
-        use rayon::prelude::*;
-        first.par_chunks_mut(CHUNK).zip(second.par_chunks_mut(CHUNK)).enumerate().for_each(part);
-    }
-    #[cfg(not(feature = "rayon"))]
-    first.chunks_mut(CHUNK).zip(second.chunks_mut(CHUNK)).enumerate().for_each(part);
+    let chunks = first.chunks_mut(CHUNK).zip(second.chunks_mut(CHUNK)).enumerate().collect();
+    parallel::map_owned(chunks, true, |(k, (first, second))| chunk(k * CHUNK, first, second));
 }
 
 #[cfg(test)]

@@ -1,9 +1,9 @@
 //! Parallel work in chunks, whose results are consumed in order.
 
+use p2m_core::engine::parallel::{thread_count, with_helpers};
 use std::ops::Range;
 
 /// The largest number of chunks that are begun and not consumed yet, for up to sixteen threads.
-#[cfg(feature = "rayon")]
 const MAX_OPEN_CHUNKS: usize = 32;
 
 /// Splits 0..count into chunks of `chunk_len`, and passes the result of `work` on each chunk to `take`, in the order of
@@ -17,12 +17,11 @@ pub(crate) fn map_chunks_in_order<R: Send>(
 ) {
     let work = |chunk: usize| work(chunk * chunk_len..count.min((chunk + 1) * chunk_len));
     let chunks = count.div_ceil(chunk_len);
-    #[cfg(feature = "rayon")]
-    if parallel && chunks > 1 && rayon::current_num_threads() > 1 {
-        OpenChunks::new(chunks).run(work, take);
+    let threads = thread_count(parallel);
+    if chunks > 1 && threads > 1 {
+        OpenChunks::new(chunks, threads).run(work, take);
         return;
     }
-    let _ = parallel;
     (0..chunks).for_each(|chunk| take(work(chunk)));
 }
 
@@ -30,10 +29,8 @@ pub(crate) fn map_chunks_in_order<R: Send>(
 ///
 /// No thread waits for a certain other one, so work may use threads itself. A thread that finds nothing to begin leaves
 /// the scope, in which all threads work, and a new scope begins where chunks are left.
-#[cfg(feature = "rayon")]
 struct OpenChunks<R>(std::sync::Mutex<OpenChunksState<R>>);
 
-#[cfg(feature = "rayon")]
 struct OpenChunksState<R> {
     /// The number of chunks that are not begun.
     left: usize,
@@ -49,10 +46,8 @@ struct OpenChunksState<R> {
     max_open: usize,
 }
 
-#[cfg(feature = "rayon")]
 impl<R: Send> OpenChunks<R> {
-    fn new(chunks: usize) -> Self {
-        let threads = rayon::current_num_threads();
+    fn new(chunks: usize, threads: usize) -> Self {
         Self(std::sync::Mutex::new(OpenChunksState {
             left: chunks,
             next: 0,
@@ -65,10 +60,10 @@ impl<R: Send> OpenChunks<R> {
 
     fn run(&self, work: impl Fn(usize) -> R + Sync, mut take: impl FnMut(R)) {
         while self.lock().has_more() {
-            rayon::in_place_scope(|scope| {
+            with_helpers(&|| self.help(&work), &mut |call_helper| {
                 loop {
                     while self.lock().add_helper() {
-                        scope.spawn(|_| self.help(&work));
+                        call_helper();
                     }
                     if let Some(result) = self.take_first() {
                         take(result);
@@ -123,7 +118,6 @@ impl<R: Send> OpenChunks<R> {
     }
 }
 
-#[cfg(feature = "rayon")]
 impl<R> OpenChunksState<R> {
     /// Returns whether chunks are left to be worked on or to be consumed.
     fn has_more(&self) -> bool {
@@ -160,25 +154,6 @@ impl<R> OpenChunksState<R> {
         self.results.pop_front();
         Some(result)
     }
-}
-
-/// Returns the results of two functions. If `parallel`, another thread may run the first one at the same time.
-pub(crate) fn run_both<A: Send, B>(
-    parallel: bool,
-    aside: impl FnOnce() -> A + Send,
-    here: impl FnOnce() -> B,
-) -> (A, B) {
-    #[cfg(feature = "rayon")]
-    if parallel {
-        let mut result = None;
-        let other = rayon::in_place_scope(|scope| {
-            scope.spawn(|_| result = Some(aside()));
-            here()
-        });
-        return (result.expect("the scope waits for it"), other);
-    }
-    let _ = parallel;
-    (aside(), here())
 }
 
 #[cfg(all(test, feature = "rayon"))]

@@ -4,8 +4,8 @@ use crate::nearest::{ClosestSearch, any_within, certified, near};
 use crate::rays::{all_hits, any_hit, count, crossings, first_hit};
 use crate::search::{Proceed, Search};
 use crate::{ShardClosest, ShardError, ShardHit, ShardedIndex};
+use p2m_core::engine::parallel;
 use p2m_core::{Key, Position, QueryOptions, Ray};
-use rayon::prelude::*;
 
 /// A batch of queries. Its methods answer each query as the methods of [`ShardedIndex`] do, on all threads of the
 /// current pool, and return the answers in the order of the queries.
@@ -180,8 +180,8 @@ impl<'a> ShardBatch<'a> {
         }
         let shard = self.index.shard(number)?;
         let begin = |query: &_| ClosestSearch::new(self.index, &Position::point(query), options);
-        let mut searches: Vec<ClosestSearch> = queries.par_iter().map(begin).collect();
+        let mut searches: Vec<ClosestSearch> = parallel::map_slice(queries, true, begin);
         ClosestSearch::ask_first(&mut searches.iter_mut().collect::<Vec<_>>(), number, &shard, self.proceed)?;
-        Ok(searches.into_par_iter().map(|search| search.finish_with_key(&shard)).collect())
+        Ok(parallel::map_owned(searches, true, |search| search.finish_with_key(&shard)))
     }
 }

@@ -1,15 +1,15 @@
 //! Queries for near primitives: what each shard finds is compared until no other shard can be near enough.
 
-use crate::search::{Proceed, Search, collect, go_on, least};
+use crate::search::{CHUNK_LEN, Proceed, Search, collect, go_on, least};
 use crate::{Shard, ShardError, ShardedIndex};
 use nalgebra::Point3;
 use p2m_core::batch::{BatchOptions, Interruptible, closest_points_into};
+use p2m_core::engine::parallel;
 use p2m_core::kernel::ERROR_CONSTANT;
 use p2m_core::{
     Aabb, Best, BruteForce, CertifiedQuery, Closest, Collector, Key, Position, Primitive, PrimitiveSet, QueryOptions,
     Real, Shape,
 };
-use rayon::prelude::*;
 
 /// The answer to a query for a near primitive of a sharded index.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -153,7 +153,7 @@ impl Search for ClosestSearch {
         // All queries of a batch have the same options, except that a query which is not finite has no distance.
         let options = group.iter().map(|search| search.options).find(|options| !options.max_distance.is_nan());
         let Some(options) = options else { return Ok(()) };
-        let queries: Vec<Point3<f64>> = group.par_iter().map(|search| search.query).collect();
+        let queries: Vec<Point3<f64>> = group.iter().map(|search| search.query).collect();
         let mut answers = vec![None; queries.len()];
         let interruptible = Interruptible::new(shard.index(), |left, answer| {
             if !proceed(0) {
@@ -164,9 +164,12 @@ impl Search for ClosestSearch {
         });
         closest_points_into(&interruptible, &queries, &options, &BatchOptions::default(), &mut answers);
         go_on(proceed, 0)?;
-        group.par_iter_mut().zip(answers).for_each(|(search, answer)| {
-            if let Some(closest) = answer {
-                search.offer(number, shard, closest);
+        let mut answered: Vec<_> = group.iter_mut().zip(answers).collect();
+        parallel::for_each_chunk(&mut answered, CHUNK_LEN, true, |_, answered| {
+            for (search, answer) in answered {
+                if let Some(closest) = *answer {
+                    search.offer(number, shard, closest);
+                }
             }
         });
         Ok(())

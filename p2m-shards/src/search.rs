@@ -3,7 +3,7 @@
 
 use crate::{Shard, ShardError, ShardedIndex};
 use p2m_core::Aabb;
-use rayon::prelude::*;
+use p2m_core::engine::parallel;
 
 /// A function that is called with a number of answered queries, and returns whether to go on.
 pub type Proceed<'a> = dyn Fn(usize) -> bool + Sync + 'a;
@@ -35,7 +35,7 @@ pub(crate) trait Search: Send + Sync + Sized {
         proceed: &Proceed<'_>,
     ) -> Result<(), ShardError> {
         // Threads share the progress, so they report several queries at a time.
-        group.par_chunks_mut(16).try_for_each(|searches| {
+        parallel::try_for_each_chunk(group, 16, true, |_, searches| {
             searches.iter_mut().try_for_each(|search| search.ask(number, shard))?;
             go_on(proceed, searches.len())
         })
@@ -113,6 +113,8 @@ struct Pending<S> {
     limit: f64,
 }
 
+/// The number of queries that a thread handles at a time.
+pub(crate) const CHUNK_LEN: usize = 1024;
 /// The number that stands for no shard.
 const NONE: usize = usize::MAX;
 
@@ -149,23 +151,24 @@ impl ShardedIndex {
             let first = least(self.boxes.iter().map(|bounds| search.bound(bounds)), limit).unwrap_or(NONE);
             Pending { search, first, limit }
         };
-        let pending = |queries: &[Q]| {
+        let chunks: Vec<&[Q]> = queries.chunks(CHUNK_LEN).collect();
+        let mut all: Vec<Vec<Pending<S>>> = parallel::try_map(chunks.len(), true, |chunk| {
             go_on(proceed, 0)?;
-            Ok(queries.iter().map(pending).collect())
-        };
-        let chunks: Vec<Vec<Pending<S>>> = queries.par_chunks(1024).map(pending).collect::<Result<_, ShardError>>()?;
-        let mut all: Vec<Pending<S>> = chunks.into_iter().flatten().collect();
-        self.ask_first(&mut all, proceed)?;
+            Ok::<_, ShardError>(chunks[chunk].iter().map(pending).collect())
+        })?;
+        self.ask_first(all.iter_mut().flatten(), proceed)?;
         // Most queries need no other shard, so those that do are found once.
-        let mut open: Vec<&mut Pending<S>> = all.iter_mut().filter(|one| !one.limit.is_nan()).collect();
+        let mut open: Vec<&mut Pending<S>> = all.iter_mut().flatten().filter(|one| !one.limit.is_nan()).collect();
         for (number, bounds) in self.boxes.iter().enumerate() {
-            let is_needed = |one: &&mut &mut Pending<S>| one.first != number && one.search.bound(bounds) <= one.limit;
-            let group: Vec<_> = open.par_iter_mut().filter(is_needed).collect();
+            let is_needed = |one: &&mut Pending<S>| one.first != number && one.search.bound(bounds) <= one.limit;
+            let is_needed = parallel::map_slice(&open, true, is_needed);
+            let mut group: Vec<_> = open.iter_mut().zip(is_needed).filter_map(|(one, is)| is.then_some(one)).collect();
             if group.is_empty() {
                 continue;
             }
             let shard = self.shard(number)?;
-            group.into_par_iter().try_for_each(|one| {
+            parallel::try_for_each_chunk(&mut group, 1, true, |_, one| {
+                let one = &mut *one[0];
                 go_on(proceed, 0)?;
                 one.search.ask(number, &shard)?;
                 one.search.prepare_for_others(&shard);
@@ -179,11 +182,16 @@ impl ShardedIndex {
             }
             Ok(search.finish())
         };
-        all.into_par_iter().map(finish).collect()
+        let finish_chunk = |chunk: Vec<Pending<S>>| chunk.into_iter().map(finish).collect::<Result<Vec<_>, _>>();
+        Ok(parallel::try_map_owned(all, true, finish_chunk)?.into_iter().flatten().collect())
     }
 
     /// Asks for each query the shard with the least bound. The limits of queries that need no other shard become NaN.
-    fn ask_first<S: Search>(&self, all: &mut [Pending<S>], proceed: &Proceed<'_>) -> Result<(), ShardError> {
+    fn ask_first<'p, S: Search + 'p>(
+        &self,
+        all: impl Iterator<Item = &'p mut Pending<S>>,
+        proceed: &Proceed<'_>,
+    ) -> Result<(), ShardError> {
         let mut groups: Vec<Vec<&mut Pending<S>>> = self.boxes.iter().map(|_| Vec::new()).collect();
         for one in all {
             if let Some(group) = groups.get_mut(one.first) {
@@ -196,13 +204,17 @@ impl ShardedIndex {
             let shard = self.shard(number)?;
             let mut searches: Vec<&mut S> = group.iter_mut().map(|one| &mut one.search).collect();
             S::ask_first(&mut searches, number, &shard, proceed)?;
-            group.into_par_iter().for_each(|one| {
-                let limit = one.search.limit();
+            let needs_others = |one: &Pending<S>| {
                 let mut boxes = self.boxes.iter().enumerate();
-                let needs_others = boxes.any(|(other, bounds)| other != number && one.search.bound(bounds) <= limit);
-                one.limit = if needs_others { limit } else { f64::NAN };
-                if needs_others {
-                    one.search.prepare_for_others(&shard);
+                boxes.any(|(other, bounds)| other != number && one.search.bound(bounds) <= one.search.limit())
+            };
+            parallel::for_each_chunk(&mut group, CHUNK_LEN, true, |_, group| {
+                for one in group {
+                    one.limit = f64::NAN;
+                    if needs_others(one) {
+                        one.limit = one.search.limit();
+                        one.search.prepare_for_others(&shard);
+                    }
                 }
             });
         }

@@ -4,7 +4,6 @@ use crate::construct::collapse::{PacketBinaryTree, PacketRange};
 use crate::construct::options::{SplitOptions, TreeOptions};
 use crate::construct::primitive::BuildPrimitive;
 use crate::construct::split::{split, to_u32};
-use crate::construct::{run_both, thread_count};
 use crate::packet::{Kind, LANES, Member, Members, Packet};
 use crate::tree::frame::Frame;
 use crate::tree::frame_line::half_extent;
@@ -12,6 +11,7 @@ use crate::tree::node_ref::{NodeRef, WIDTH};
 use crate::tree::wide_node::{VolumeNodes, WideNode};
 use crate::tree::{Leaves, PacketTree};
 use crate::volume::Volume;
+use p2m_core::engine::parallel::{join, map, map_owned, map_slice, thread_count};
 use p2m_core::engine::simd::Isa;
 use p2m_core::{Aabb, BuildError, Primitive, PrimitiveId, PrimitiveSet, Real, check_set};
 use std::sync::OnceLock;
@@ -57,7 +57,7 @@ impl<V: Volume> PacketTree<V> {
             let primitive = set.get(id);
             BuildPrimitive::new(&frame, &primitive.aabb().to_f64(), Kind::of(&primitive), id)
         };
-        let primitives = map_numbers(set.len(), options.splits().parallel, place);
+        let primitives = map(set.len(), options.splits().parallel, place);
         let members = |id: PrimitiveId| Member::from_primitive(&set.get(id));
         Self::build_from_primitives(primitives, bounds, &members, options.shared(), options.splits())
     }
@@ -76,7 +76,7 @@ impl<V: Volume> PacketTree<V> {
         let splits = split(&mut primitives, &frame, members, options);
         let (binary, packets) = PacketBinaryTree::new(&splits);
         drop(splits);
-        let order = map(&primitives, options.parallel, BuildPrimitive::id);
+        let order = map_slice(&primitives, options.parallel, BuildPrimitive::id);
         drop(primitives);
         let content = |packet: usize| {
             let PacketRange { primitives, is_continued } = &packets[packet];
@@ -85,7 +85,7 @@ impl<V: Volume> PacketTree<V> {
         let pack = || pack::<V>(packets.len(), &content, members, &frame, &shared, options.parallel);
         // The nodes are needed only after the packets, and only packets can be made on several threads.
         let collapse = move || binary.collapse();
-        let ((root, children, depth), (leaves, packet_bounds)) = run_both(options.parallel, collapse, pack);
+        let ((root, children, depth), (leaves, packet_bounds)) = join(options.parallel, collapse, pack);
         let mut tree = Self {
             isa: Isa::best(),
             shared,
@@ -152,7 +152,7 @@ impl<V: Volume> PacketTree<V> {
     /// Fits the tree to moved primitives. The function does not depend on the type of the set, so it is compiled once.
     #[inline(never)]
     pub(crate) fn refit_to(&mut self, members: Members<'_>, parallel: bool) {
-        let boxes = map(&self.leaves.packets, parallel, |packet| {
+        let boxes = map_slice(&self.leaves.packets, parallel, |packet| {
             packet.ids().iter().fold(Aabb::empty(), |all, id| all.union(&members(*id).bounds))
         });
         self.bounds = boxes.iter().fold(Aabb::empty(), |all, one| all.union(one));
@@ -161,7 +161,7 @@ impl<V: Volume> PacketTree<V> {
         if self.has_parted_run(members) {
             let place =
                 |i: usize| BuildPrimitive::from_member(&self.frame, &members(PrimitiveId::new(i)), PrimitiveId::new(i));
-            let primitives = map_numbers(self.len, parallel, place);
+            let primitives = map(self.len, parallel, place);
             let splits = SplitOptions::default().with_parallel(parallel);
             let tree = Self::build_from_primitives(primitives, self.bounds, members, self.shared.clone(), &splits);
             *self = tree.with_isa(self.isa);
@@ -197,7 +197,7 @@ fn scene_box<T: Real, S: PrimitiveSet<T> + Sync + ?Sized>(set: &S, parallel: boo
         }
         (all, is_finite)
     };
-    let chunks = map_numbers(len.div_ceil(CHUNK), parallel, of_chunk);
+    let chunks = map(len.div_ceil(CHUNK), parallel, of_chunk);
     let (all, is_finite) =
         chunks.iter().fold((Aabb::empty(), true), |(all, is_finite), chunk| (all.union(&chunk.0), is_finite & chunk.1));
     (all.to_f64(), is_finite)
@@ -208,35 +208,54 @@ type Bounds<V> = <<V as VolumeNodes>::Node as WideNode>::Bounds;
 
 /// Makes packets and bounds them in the frame of the tree. `content` returns the ids of the primitives of a packet, and
 /// whether the next packet continues it.
-///
-/// All threads make a group of packets, with lists of vertices that the next groups fill again. The vertices of a group
-/// are joined while the next one is made, so the lists of few groups are in memory beside them.
 fn pack<'a, V: Volume>(
     packets: usize,
-    content: &(dyn Fn(usize) -> (&'a [PrimitiveId], bool) + Sync),
+    content: Content<'_, 'a>,
     members: Members<'_>,
     frame: &Frame,
     shared: &V::Shared,
     parallel: bool,
 ) -> (Leaves, Vec<Bounds<V>>) {
+    let bounds: Vec<OnceLock<Bounds<V>>> = (0..packets).map(|_| OnceLock::new()).collect();
+    let bound = |packet: usize, primitives: &[Member], around: &Aabb<f64>| {
+        bounds[packet].get_or_init(|| V::Node::enclose(shared, frame, primitives, around));
+    };
+    let leaves = pack_leaves(packets, content, members, frame, parallel, &bound);
+    let bounds = bounds.into_iter().map(|bounds| bounds.into_inner().expect("every packet was bounded"));
+    (leaves, bounds.collect())
+}
+
+/// The function that returns what a packet contains.
+type Content<'c, 'a> = &'c (dyn Fn(usize) -> (&'a [PrimitiveId], bool) + Sync);
+
+/// Makes packets, and calls `bound` with the number of each, its primitives and the box around them. The function does
+/// not depend on the volume, so it is compiled once.
+///
+/// All threads make a group of packets, with lists of vertices that the next groups fill again. The vertices of a group
+/// are joined while the next one is made, so the lists of few groups are in memory beside them.
+fn pack_leaves<'a>(
+    packets: usize,
+    content: Content<'_, 'a>,
+    members: Members<'_>,
+    frame: &Frame,
+    parallel: bool,
+    bound: &(dyn Fn(usize, &[Member], &Aabb<f64>) + Sync),
+) -> Leaves {
     let pack_chunk = |(first, chunk, vertices): (usize, &mut [Packet], &mut Vec<[f64; 3]>)| {
         vertices.clear();
-        let mut bounded = Vec::with_capacity(chunk.len());
         let mut primitives = Vec::with_capacity(LANES);
-        for (i, packet) in chunk.iter_mut().enumerate() {
-            let (ids, is_continued) = content(first + i);
+        for (number, packet) in (first..).zip(chunk) {
+            let (ids, is_continued) = content(number);
             primitives.clear();
             primitives.extend(ids.iter().map(|id| members(*id)));
             let bounds = primitives.iter().fold(Aabb::empty(), |all: Aabb<f64>, one: &Member| all.union(&one.bounds));
-            bounded.push(V::Node::enclose(shared, frame, &primitives, &bounds));
+            bound(number, &primitives, &bounds);
             *packet = Packet::new(ids, &primitives, &bounds, frame.unit * MIN_UNIT_RATIO, vertices)
                 .with_continuation(is_continued);
         }
-        bounded
     };
     // The system clears the pages of the array when they are first written.
     let mut packed: Vec<Packet> = bytemuck::zeroed_vec(packets);
-    let mut bounds = Vec::with_capacity(packets);
     let mut joined = JoinedVertices::new(packets);
     let chunks_per_group = MIN_CHUNKS_PER_GROUP.max(4 * thread_count(parallel));
     let no_lists = || vec![Vec::new(); chunks_per_group];
@@ -248,12 +267,11 @@ fn pack<'a, V: Volume>(
         let chunks = chunks.map(|(i, (chunk, list))| (first(i), chunk, list)).collect();
         let (waiting_packets, waiting_lists) = waiting;
         let join_waiting = || joined.append(waiting_packets, &waiting_lists);
-        let ((), bounded) = run_both(parallel, join_waiting, || map_owned(chunks, parallel, pack_chunk));
-        bounds.extend(bounded.into_iter().flatten());
+        join(parallel, join_waiting, || map_owned(chunks, parallel, pack_chunk));
         (waiting, spare) = ((group_packets, lists), waiting_lists);
     }
     joined.append(waiting.0, &waiting.1);
-    (joined.finish(packed), bounds)
+    joined.finish(packed)
 }
 
 /// The vertices of all packets in one array, in the order of the packets, and the offsets of the packets in it.
@@ -301,36 +319,9 @@ impl JoinedVertices {
     }
 }
 
-/// Maps a slice in order, on all threads if `parallel` is set and the feature `rayon` is on.
-fn map<A: Sync, B: Send>(all: &[A], parallel: bool, f: impl Fn(&A) -> B + Sync) -> Vec<B> {
-    map_numbers(all.len(), parallel, |i| f(&all[i]))
-}
-
-/// Maps the items of a list in order, on all threads if `parallel` is set and the feature `rayon` is on.
-fn map_owned<A: Send, B: Send>(all: Vec<A>, parallel: bool, f: impl Fn(A) -> B + Sync) -> Vec<B> {
-    #[cfg(feature = "rayon")]
-    if parallel {
-        use rayon::prelude::*;
-        return all.into_par_iter().map(&f).collect();
-    }
-    let _ = parallel;
-    all.into_iter().map(f).collect()
-}
-
 /// The number of primitives that a thread handles at a time.
 const CHUNK: usize = 1 << 14;
 /// The number of packets that a thread makes at a time.
 const PACKET_CHUNK: usize = 1 << 7;
 /// The number of chunks of packets that are made before their vertices are joined, for up to four threads.
 const MIN_CHUNKS_PER_GROUP: usize = 1 << 4;
-
-/// Maps the numbers below `len` in order, on all threads if `parallel` is set and the feature `rayon` is on.
-fn map_numbers<B: Send>(len: usize, parallel: bool, f: impl Fn(usize) -> B + Sync) -> Vec<B> {
-    #[cfg(feature = "rayon")]
-    if parallel {
-        use rayon::prelude::*;
-        return (0..len).into_par_iter().map(&f).collect();
-    }
-    let _ = parallel;
-    (0..len).map(f).collect()
-}

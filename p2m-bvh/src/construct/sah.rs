@@ -2,7 +2,7 @@
 
 use crate::construct::options::{SplitOptions, SplitRule};
 use crate::construct::primitive::{BuildPrimitive, GrowingBox};
-use crate::construct::run_both;
+use p2m_core::engine::parallel::join;
 use p2m_core::engine::simd::{InstructionSet, Isa, SimdKernel};
 
 /// The number of bins along an axis.
@@ -207,7 +207,7 @@ fn fill_bins<const N: usize>(
         return isa.run(FillBins { primitives, axes, binning });
     }
     let (before, after) = primitives.split_at(primitives.len() / 2);
-    let (mut bins, others) = run_both(
+    let (mut bins, others) = join(
         true,
         || fill_bins(isa, before, axes, binning, tasks.div_ceil(2)),
         || fill_bins(isa, after, axes, binning, tasks.div_ceil(2)),

@@ -14,11 +14,11 @@
 use crate::construct::options::SplitOptions;
 use crate::construct::primitive::{BuildPrimitive, GrowingBox};
 use crate::construct::sah::{SplitPlane, best_split};
-use crate::construct::{run_both, thread_count};
 use crate::packet::{LANES, Members};
 use crate::tree::MAX_DEPTH;
 use crate::tree::frame::Frame;
 use p2m_core::Aabb;
+use p2m_core::engine::parallel::{join, thread_count};
 use p2m_core::engine::simd::{InstructionSet, Isa, SimdKernel};
 
 /// The largest depth of a node below the root, whatever the input. Half of it is for splits by cost and half for
@@ -161,7 +161,7 @@ impl Splitter<'_> {
                 }
             };
             let (before, after) = primitives.split_at_mut(left);
-            let (a, b) = run_both(true, || self.subtree(before, first, a), || self.subtree(after, first + left, b));
+            let (a, b) = join(true, || self.subtree(before, first, a), || self.subtree(after, first + left, b));
             return joined(part.half_area(), &a, &b);
         }
         let mut nodes = vec![SplitNode::UNKNOWN];
@@ -346,7 +346,7 @@ fn bounds_of(isa: Isa, primitives: &[BuildPrimitive], tasks: usize) -> [GrowingB
     }
     let (before, after) = primitives.split_at(primitives.len() / 2);
     let ([a, c], [b, d]) =
-        run_both(true, || bounds_of(isa, before, tasks.div_ceil(2)), || bounds_of(isa, after, tasks.div_ceil(2)));
+        join(true, || bounds_of(isa, before, tasks.div_ceil(2)), || bounds_of(isa, after, tasks.div_ceil(2)));
     [a.union(&b), c.union(&d)]
 }
 
@@ -362,7 +362,7 @@ fn partition(
         return isa.run(Partition { primitives, plane });
     }
     let (before, after) = primitives.split_at_mut(primitives.len() / 2);
-    let ((a, [a_left, a_right]), (b, [b_left, b_right])) = run_both(
+    let ((a, [a_left, a_right]), (b, [b_left, b_right])) = join(
         true,
         || partition(isa, before, plane, tasks.div_ceil(2)),
         || partition(isa, after, plane, tasks.div_ceil(2)),
@@ -382,7 +382,7 @@ fn swap(a: &mut [BuildPrimitive], b: &mut [BuildPrimitive], tasks: usize) {
     }
     let middle = a.len() / 2;
     let ((a, a_after), (b, b_after)) = (a.split_at_mut(middle), b.split_at_mut(middle));
-    run_both(true, || swap(a, b, tasks.div_ceil(2)), || swap(a_after, b_after, tasks.div_ceil(2)));
+    join(true, || swap(a, b, tasks.div_ceil(2)), || swap(a_after, b_after, tasks.div_ceil(2)));
 }
 
 /// A SIMD kernel that returns the box around some primitives and the box around their centres. It uses the instruction

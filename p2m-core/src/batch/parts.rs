@@ -1,12 +1,12 @@
 //! The division of a batch into parts, each of which one thread orders and answers.
 
+use crate::parallel::{join, thread_count};
+
 /// The largest number of queries that are ordered and answered at a time by one thread.
 const MAX_QUERIES_PER_PART: usize = 1 << 20;
 /// The number of queries below which a batch is not divided among threads any further.
-#[cfg(feature = "rayon")]
 const MIN_QUERIES_PER_PART: usize = 1 << 10;
 /// The number of parts for each thread, so that none waits long for the others.
-#[cfg(feature = "rayon")]
 const PARTS_PER_THREAD: usize = 4;
 
 /// A place for answers that can be divided.
@@ -28,12 +28,10 @@ pub(super) fn answer_parts<Q: Sync, O: Split>(
     parallel: bool,
     answer_part: &(impl Fn(&[Q], &mut O) + Sync),
 ) {
-    #[cfg(feature = "rayon")]
-    if parallel {
-        let part = queries.len().div_ceil(rayon::current_num_threads() * PARTS_PER_THREAD);
+    if parallel && cfg!(feature = "rayon") {
+        let part = queries.len().div_ceil(thread_count(true) * PARTS_PER_THREAD);
         return halve(queries, out, part.clamp(MIN_QUERIES_PER_PART, MAX_QUERIES_PER_PART), answer_part);
     }
-    let _ = parallel;
     while queries.len() > MAX_QUERIES_PER_PART {
         let (part, rest) = queries.split_at(MAX_QUERIES_PER_PART);
         let (mut part_out, rest_out) = out.split(MAX_QUERIES_PER_PART);
@@ -44,7 +42,6 @@ pub(super) fn answer_parts<Q: Sync, O: Split>(
 }
 
 /// Halves the queries until a part is small enough for one thread.
-#[cfg(feature = "rayon")]
 fn halve<Q: Sync, O: Split>(queries: &[Q], mut out: O, part: usize, answer_part: &(impl Fn(&[Q], &mut O) + Sync)) {
     if queries.len() <= part {
         return answer_part(queries, &mut out);
@@ -52,5 +49,5 @@ fn halve<Q: Sync, O: Split>(queries: &[Q], mut out: O, part: usize, answer_part:
     let middle = queries.len() / 2;
     let (first_out, second_out) = out.split(middle);
     let (first, second) = queries.split_at(middle);
-    rayon::join(|| halve(first, first_out, part, answer_part), || halve(second, second_out, part, answer_part));
+    join(true, || halve(first, first_out, part, answer_part), || halve(second, second_out, part, answer_part));
 }

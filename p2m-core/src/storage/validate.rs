@@ -1,6 +1,7 @@
 //! Helpers for the validation of what was loaded.
 
 use super::error::LoadError;
+use crate::parallel;
 
 /// Checks a condition that every valid section of this name satisfies.
 ///
@@ -22,12 +23,8 @@ pub fn check_chunks<T: Sync>(
     elements: &[T],
     check: impl Fn(usize, &[T]) -> Result<(), LoadError> + Sync,
 ) -> Result<(), LoadError> {
-    let check = |(number, chunk): (usize, &[T])| check(number * ELEMENTS_PER_CHUNK, chunk);
-    #[cfg(feature = "rayon")]
-    {
-        use rayon::prelude::*;
-        elements.par_chunks(ELEMENTS_PER_CHUNK).enumerate().try_for_each(check)
-    }
-    #[cfg(not(feature = "rayon"))]
-    elements.chunks(ELEMENTS_PER_CHUNK).enumerate().try_for_each(check)
+    parallel::try_for_each(elements.len().div_ceil(ELEMENTS_PER_CHUNK), true, |chunk| {
+        let first = chunk * ELEMENTS_PER_CHUNK;
+        check(first, &elements[first..elements.len().min(first + ELEMENTS_PER_CHUNK)])
+    })
 }

@@ -4,6 +4,7 @@ use super::AlignOptions;
 use super::pose::Pose;
 use nalgebra::{DMatrix, DVector, Matrix3, Point3, Rotation3, SymmetricEigen, UnitQuaternion, Vector3};
 use p2m_core::batch::{BatchOptions, ClosestColumns, closest_columns_into};
+use p2m_core::engine::parallel;
 use p2m_core::{ClosestPoint, Primitive, PrimitiveId, PrimitiveSet, QueryOptions, shape_of};
 
 /// The number of points whose sums one thread computes. It decides the rounding of sums, so it is the same for every
@@ -379,10 +380,5 @@ impl Moments {
 pub(super) fn sums<R: Send>(len: usize, sum: impl Fn(std::ops::Range<usize>) -> R + Sync) -> Vec<R> {
     let part = |k: usize| sum(k * CHUNK..((k + 1) * CHUNK).min(len));
     let parts = len.div_ceil(CHUNK);
-    #[cfg(feature = "rayon")]
-    if parts > 1 {
-        use rayon::prelude::*;
-        return (0..parts).into_par_iter().map(part).collect();
-    }
-    (0..parts).map(part).collect()
+    parallel::map(parts, parts > 1, part)
 }

@@ -8,6 +8,7 @@ use super::types::{RayTree, SharedSoup};
 use nalgebra::Point3;
 use p2m_bvh::PacketTree;
 use p2m_core::engine::arithmetic::cross;
+use p2m_core::engine::parallel;
 use p2m_core::engine::vector::{V3, dot, largest, sub};
 use p2m_core::{Aabb, PrimitiveId};
 use std::ops::ControlFlow;
@@ -36,14 +37,8 @@ pub(super) fn exclude<S: SharedSoup>(
     });
     let join = Join { soup, welded, tree: rays.tree(), distance, boxes: Boxes::new(soup, distance) };
     let marked: &[bool] = marks;
-    let is_simple = |group: &[PrimitiveId]| join.simple(group, marked);
-    #[cfg(feature = "rayon")]
-    let simple: Vec<Vec<PrimitiveId>> = {
-        use rayon::prelude::*;
-        order.par_chunks(GROUP_LEN).map(is_simple).collect()
-    };
-    #[cfg(not(feature = "rayon"))]
-    let simple: Vec<Vec<PrimitiveId>> = order.chunks(GROUP_LEN).map(is_simple).collect();
+    let groups: Vec<&[PrimitiveId]> = order.chunks(GROUP_LEN).collect();
+    let simple = parallel::map_slice(&groups, true, |group| join.simple(group, marked));
     marks.fill(false);
     simple.into_iter().flatten().for_each(|id| marks[id.index()] = true);
 }

@@ -5,7 +5,7 @@ use crate::delaunay::insert::Insertion;
 use crate::delaunay::order;
 use crate::delaunay::scale::ScaledSites;
 use crate::delaunay::tetrahedron::{BOUNDING, NO_NEIGHBOUR, Work};
-use crate::parallel_chunks::run_both;
+use p2m_core::engine::parallel::run_beside;
 
 /// The reason why a set of points has no triangulation.
 #[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]
@@ -150,7 +150,7 @@ impl Delaunay {
             |old: &ScaledSites| old.unit == scaled.unit && old.positions[..BOUNDING] == scaled.positions[..BOUNDING];
         let earlier = earlier.filter(|old| has_same_frame(&old.scaled));
         let (built, other) =
-            run_both(parallel, || Self::insert_sites(&scaled, max_tetrahedra, earlier), || other(&scaled));
+            run_beside(parallel, || Self::insert_sites(&scaled, max_tetrahedra, earlier), || other(&scaled));
         let ((tetrahedra, neighbours, old_numbers), work) = built.ok_or(too_many)?;
         Ok((Self { scaled, tetrahedra, neighbours, work }, old_numbers, other))
     }

@@ -17,7 +17,7 @@
 use crate::delaunay::BOUNDING;
 use crate::list::block::{BLOCK_WIDTH, Block, BoundKind, Entry};
 use crate::options::P2mReport;
-use crate::parallel_chunks::{map_chunks_in_order, run_both};
+use crate::parallel_chunks::map_chunks_in_order;
 use crate::progress::{BuildStage, ProgressReporter};
 use crate::voronoi::adjacency::{EdgeAdjacency, IncidenceLists, SiteTopology};
 use crate::voronoi::any_locator::AnyLocator;
@@ -27,6 +27,7 @@ use crate::voronoi::corner_values::SiteDistances;
 use crate::voronoi::list_filter::{ListFilter, ListFilters, Region};
 use crate::voronoi::neighbours::NeighbourTable;
 use crate::voronoi::site::{AUXILIARY_SITE, FALLBACK, FarHalfSpace};
+use p2m_core::engine::parallel::run_beside;
 use std::ops::Range;
 use std::sync::Arc;
 
@@ -80,7 +81,7 @@ impl CellContext<'_> {
             edges.extend_from_slice(adjacency.edges.get(site));
         };
         let parallel = self.limits.parallel;
-        let ((mut neighbours, locator), packets) = run_both(
+        let ((mut neighbours, locator), packets) = run_beside(
             parallel,
             || {
                 let neighbours = NeighbourTable::new(sites, BOUNDING, slack, list_neighbours);

@@ -13,7 +13,6 @@
 //! round extends the triangulation of the one before.
 
 use crate::delaunay::{BOUNDING, Delaunay, DelaunayError};
-use crate::parallel_chunks::run_both;
 use crate::progress::{BuildStage, ProgressReporter};
 use crate::voronoi::adjacency::{EdgeAdjacency, SiteTopology};
 use crate::voronoi::budget::{Limits, max_tetrahedra};
@@ -22,6 +21,7 @@ use crate::voronoi::corners::{CellCorners, ReusedCorners};
 use crate::voronoi::crowded::{AddedSite, CrowdedClusters};
 use p2m_bvh::PacketTree;
 use p2m_core::Aabb;
+use p2m_core::engine::parallel::run_beside;
 use p2m_core::engine::vector::V3;
 
 /// The distance of the bounding sites from the centre, in halves of the longest side of the box of all sites. So none
@@ -170,7 +170,7 @@ fn collect_topology_beside<R>(
     limits: Limits<'_>,
     other: impl FnOnce() -> R,
 ) -> (Option<SiteTopology>, R) {
-    run_both(limits.parallel, || adjacency.map(|adjacency| SiteTopology::new(adjacency, delaunay)), other)
+    run_beside(limits.parallel, || adjacency.map(|adjacency| SiteTopology::new(adjacency, delaunay)), other)
 }
 
 impl Sites {

@@ -6,14 +6,14 @@
 //! errors as the sequential reader alone.
 
 use crate::parse::bytes::fill_buffer;
-#[cfg(feature = "rayon")]
+use p2m_core::engine::parallel::{thread_count, with_helpers};
 use std::collections::VecDeque;
 use std::io::{self, BufRead, Read};
+use std::sync::{Mutex, PoisonError};
 
 /// The size of a block in bytes. A block is parsed in about a tenth of a millisecond.
 pub(crate) const BLOCK_BYTES: usize = 1 << 15;
 /// The number of blocks that are read for each thread while the blocks before them are parsed.
-#[cfg(feature = "rayon")]
 const BLOCKS_PER_THREAD: usize = 4;
 /// The number of bytes of a typical row.
 const BYTES_PER_ROW: usize = 32;
@@ -147,8 +147,7 @@ pub(crate) fn for_each_block<R: BufRead, P: Send, E>(
     parse: impl Fn(&[u8]) -> P + Sync,
     mut join: impl FnMut(&[u8], P) -> Result<Option<usize>, E>,
 ) -> Result<(), E> {
-    #[cfg(feature = "rayon")]
-    if rayon::current_num_threads() > 1 {
+    if thread_count(true) > 1 {
         return for_each_block_on_threads(source, &mut cut, &parse, &mut join);
     }
     while let Some(block) = source.next_block(&mut cut) {
@@ -162,7 +161,6 @@ pub(crate) fn for_each_block<R: BufRead, P: Send, E>(
 }
 
 /// A block, and what it was parsed into.
-#[cfg(feature = "rayon")]
 struct Slot<P> {
     bytes: Vec<u8>,
     parsed: Option<P>,
@@ -170,14 +168,13 @@ struct Slot<P> {
 
 /// Joins the blocks of one round and reads those of the round after the next, while other threads parse the blocks of
 /// the next round.
-#[cfg(feature = "rayon")]
 fn for_each_block_on_threads<R: BufRead, P: Send, E>(
     source: &mut Source<R>,
     cut: &mut impl FnMut(&[u8]) -> Option<usize>,
     parse: &(impl Fn(&[u8]) -> P + Sync),
     join: &mut impl FnMut(&[u8], P) -> Result<Option<usize>, E>,
 ) -> Result<(), E> {
-    let blocks_per_round = rayon::current_num_threads() * BLOCKS_PER_THREAD;
+    let blocks_per_round = thread_count(true) * BLOCKS_PER_THREAD;
     let mut parsed = VecDeque::<Slot<P>>::new();
     // A small file is one block, which needs no other thread.
     let mut next = read_round(source, cut, 1);
@@ -187,26 +184,33 @@ fn for_each_block_on_threads<R: BufRead, P: Send, E>(
     loop {
         let mut after = VecDeque::new();
         let mut stopped = Ok(None);
-        let all_joined = rayon::in_place_scope(|scope| {
-            for slot in next.iter_mut().filter(|slot| slot.parsed.is_none()) {
-                scope.spawn(|_| slot.parsed = Some(parse(&slot.bytes)));
+        let mut all_joined = true;
+        let open: Vec<_> = next.iter_mut().filter(|slot| slot.parsed.is_none()).collect();
+        let (count, open) = (open.len(), Mutex::new(open.into_iter()));
+        let parse_next = || {
+            let slot = open.lock().unwrap_or_else(PoisonError::into_inner).next();
+            if let Some(slot) = slot {
+                slot.parsed = Some(parse(&slot.bytes));
             }
+        };
+        with_helpers(&parse_next, &mut |call_helper| {
+            (0..count).for_each(|_| call_helper());
             while let Some(Slot { bytes, parsed: Some(block) }) = parsed.pop_front() {
                 match join(&bytes, block) {
                     Ok(None) => {}
                     Ok(Some(used)) => {
                         stopped = Ok(Some(bytes[used..].to_vec()));
-                        return false;
                     }
-                    Err(error) => {
-                        stopped = Err(error);
-                        return false;
-                    }
+                    Err(error) => stopped = Err(error),
+                }
+                if !matches!(stopped, Ok(None)) {
+                    all_joined = false;
+                    return;
                 }
             }
             after = read_round(source, cut, blocks_per_round);
-            true
         });
+        drop(open);
         if !all_joined {
             let mut bytes = stopped?.unwrap_or_default();
             for slot in parsed.iter().chain(&next) {
@@ -222,7 +226,6 @@ fn for_each_block_on_threads<R: BufRead, P: Send, E>(
     }
 }
 
-#[cfg(feature = "rayon")]
 fn read_round<R: BufRead, P>(
     source: &mut Source<R>,
     cut: &mut impl FnMut(&[u8]) -> Option<usize>,

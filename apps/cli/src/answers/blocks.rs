@@ -7,8 +7,8 @@
 use crate::io::progress::{Progress, Unit};
 use crate::io::streams::Streams;
 use indicatif::{DecimalBytes, HumanCount, HumanDuration};
+use p2m_core::engine::parallel;
 use rayon::ThreadPool;
-use rayon::prelude::*;
 use std::time::{Duration, Instant};
 
 /// The largest number of queries of a block. The records of two blocks are in memory at a time.
@@ -176,8 +176,9 @@ fn encode_all<Q: Sync, A: Sync>(
     answers: &[A],
     encode: &(impl Fn(u64, &Q, &A, &mut Vec<u8>) -> u64 + Sync),
 ) -> Vec<Encoded> {
-    let parts = queries.par_chunks(ANSWERS_PER_TASK).zip(answers.par_chunks(ANSWERS_PER_TASK)).enumerate();
-    let encode_part = |(part, (queries, answers)): (usize, (&[Q], &[A]))| {
+    let parts: Vec<(&[Q], &[A])> = queries.chunks(ANSWERS_PER_TASK).zip(answers.chunks(ANSWERS_PER_TASK)).collect();
+    let encode_part = |part: usize| {
+        let (queries, answers) = parts[part];
         let first = first + (part * ANSWERS_PER_TASK) as u64;
         let (mut records, mut bytes) = (0, Vec::new());
         for (number, (query, answer)) in (first..).zip(queries.iter().zip(answers)) {
@@ -189,10 +190,10 @@ fn encode_all<Q: Sync, A: Sync>(
         }
         Encoded { records, bytes }
     };
-    parts.map(encode_part).collect()
+    parallel::map(parts.len(), true, encode_part)
 }
 
 /// Answers queries one by one on all threads of the current pool.
 pub(crate) fn answer_each<Q: Sync, A: Send>(queries: &[Q], answer: impl Fn(&Q) -> A + Sync) -> Vec<A> {
-    queries.par_iter().map(&answer).collect()
+    parallel::map_slice(queries, true, answer)
 }

@@ -17,9 +17,9 @@ use anyhow::{Context, bail};
 use nalgebra::{Point3, Vector3};
 use p2m_backends::AnyIndex;
 use p2m_bvh::AabbTree;
+use p2m_core::engine::parallel;
 use p2m_core::{ListStats, PrimitiveSet, QueryCost, RayQuery, Soup, Stat, StatsCollector};
 use p2m_mixed::statistics::figure::{Count, Time};
-use rayon::prelude::*;
 use serde_json::{Value, json};
 use std::fmt::{self, Write as _};
 use std::path::{Path, PathBuf};
@@ -176,8 +176,9 @@ impl Args {
             };
             colours[hit.primitive.index()].map(|x| (f64::from(x) * light).round() as u8)
         };
-        let rows = (0..height).into_par_iter();
-        let bytes: Vec<u8> = rows.flat_map_iter(|row| (0..width).flat_map(move |column| pixel(row, column))).collect();
+        let rows: Vec<u32> = (0..height).collect();
+        let row = |row: &u32| (0..width).flat_map(|column| pixel(*row, column)).collect::<Vec<u8>>();
+        let bytes = parallel::map_slice(&rows, true, row).concat();
         write_png(output, [width, height], &bytes)
     }
 }

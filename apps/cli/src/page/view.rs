@@ -19,13 +19,13 @@ use anyhow::{Context, bail};
 use nalgebra::Point3;
 use p2m_backends::{AnyIndex, P2mSettings};
 use p2m_bvh::{AabbTree, PacketTree};
+use p2m_core::engine::parallel;
 use p2m_core::{Aabb, Closest, PrimitiveSet, QueryOptions, Ray};
 use p2m_field::{FieldOptions, Grid, distances, signed_distances};
 use p2m_mixed::Scene;
 use p2m_mixed::statistics::Counts;
 use p2m_page::{Level, Measure, View};
 use rayon::ThreadPool;
-use rayon::prelude::*;
 use std::path::{Path, PathBuf};
 
 const HELP: &str = "\
@@ -235,13 +235,13 @@ impl PageSource<'_> {
         let options = self.args.max_distance.map_or(options, |limit| options.with_max_distance(limit));
         let _progress = Progress::start(self.streams, "answering", None, Unit::None);
         let answers: Vec<Option<Closest<f64>>> =
-            pool.install(|| queries.par_iter().map(|query| index.closest_point_with(query, &options)).collect());
+            pool.install(|| parallel::map_slice(queries, true, |query| index.closest_point_with(query, &options)));
         let signs: Option<Vec<f64>> = self.signed.map(|signed| {
-            let sign = |(query, answer): (&Point3<f64>, &Option<Closest<f64>>)| {
-                let distance = answer.and_then(|answer| signed.with_sign(query, answer).distance());
+            let sign = |i: usize| {
+                let distance = answers[i].and_then(|answer| signed.with_sign(&queries[i], answer).distance());
                 distance.unwrap_or(f64::NAN)
             };
-            pool.install(|| queries.par_iter().zip(&answers).map(sign).collect())
+            pool.install(|| parallel::map(answers.len(), true, sign))
         });
         view.summary +=
             &format!("; {} query points and their closest points, found by {}", queries.len(), self.backend.name);
@@ -257,7 +257,7 @@ impl PageSource<'_> {
             let ends = [ray.origin(), hit.point()];
             Some(Measure { name: String::new(), ends, length: (ends[1] - ends[0]).norm() })
         };
-        Ok(self.pool.install(|| rays.par_iter().map(hit).collect()))
+        Ok(self.pool.install(|| parallel::map_slice(rays, true, hit)))
     }
 
     /// Adds the lengths of the lists at the points of a grid.
@@ -267,7 +267,7 @@ impl PageSource<'_> {
             let point = grid.point([number % x, number / x % y, number / (x * y)]);
             index.list_length(&point).map_or(f32::NAN, |length| length as f32)
         };
-        let lengths: Vec<f32> = self.pool.install(|| (0..grid.len()).into_par_iter().map(length).collect());
+        let lengths: Vec<f32> = self.pool.install(|| parallel::map(grid.len(), true, length));
         view.summary += &format!("; lengths of the lists of {} at {x} x {y} x {z} points", self.backend.name);
         view.with_list_lengths(grid, &lengths)
     }

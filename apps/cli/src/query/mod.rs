@@ -27,9 +27,9 @@ use anyhow::Context;
 use nalgebra::Point3;
 use p2m_backends::{AnyIndex, QueryRegion, Workload};
 use p2m_core::batch::BatchOptions;
+use p2m_core::engine::parallel;
 use p2m_core::{Closest, PrimitiveId, PrimitiveSet};
 use p2m_shards::{ShardClosest, ShardedIndex};
-use rayon::prelude::*;
 use std::path::Path;
 use std::time::Instant;
 
@@ -164,12 +164,13 @@ impl Source for WholeIndex<'_> {
             return Ok(only_inside(signed.contains_each(queries, &BatchOptions::default())));
         }
         let answers = self.args.accuracy.answer(self.index, queries, &self.args.options());
-        let with_sign = |(query, answer): (&Point3<f64>, Option<Closest<f64>>)| {
-            let signed =
-                self.signed.zip(answer).and_then(|(signed, answer)| signed.with_sign(query, answer).distance());
+        let with_sign = |i: usize| {
+            let answer = answers[i];
+            let signed = self.signed.zip(answer);
+            let signed = signed.and_then(|(signed, answer)| signed.with_sign(&queries[i], answer).distance());
             (answer, signed.unwrap_or(f64::NAN))
         };
-        Ok(queries.par_iter().zip(answers).map(with_sign).collect())
+        Ok(parallel::map(queries.len(), true, with_sign))
     }
 
     fn near(&self, queries: &[Point3<f64>]) -> anyhow::Result<Vec<Vec<Closest<f64>>>> {
@@ -201,7 +202,7 @@ impl Source for Shards<'_> {
             false => batch.closest_points(queries, &options)?,
         };
         if self.args.signed.is_none() {
-            return Ok(answers.into_par_iter().map(|answer| (answer.map(in_scene), f64::NAN)).collect());
+            return Ok(answers.into_iter().map(|answer| (answer.map(in_scene), f64::NAN)).collect());
         }
         let are_inside = batch.contains(queries)?;
         let with_sign = |(answer, is_inside): (Option<ShardClosest>, bool)| {
@@ -209,13 +210,13 @@ impl Source for Shards<'_> {
             // A point on the surface has the distance 0, which has no sign.
             (answer.map(in_scene), if is_inside && distance > 0.0 { -distance } else { distance })
         };
-        Ok(answers.into_par_iter().zip(are_inside).map(with_sign).collect())
+        Ok(answers.into_iter().zip(are_inside).map(with_sign).collect())
     }
 
     fn near(&self, queries: &[Point3<f64>]) -> anyhow::Result<Vec<Vec<Closest<f64>>>> {
         let (k, radius) = self.args.near();
         let near = self.index.batch().k_nearest(queries, k.unwrap_or(usize::MAX), radius)?;
-        Ok(near.into_par_iter().map(|near| near.into_iter().map(in_scene).collect()).collect())
+        Ok(near.into_iter().map(|near| near.into_iter().map(in_scene).collect()).collect())
     }
 }
 

@@ -9,11 +9,11 @@ use crate::io::output::Output;
 use crate::io::streams::Streams;
 use crate::ray::args::{Args, Mode, Rays};
 use crate::ray::summary::RaySummary;
+use p2m_core::engine::parallel;
 use p2m_core::{Hit, PrimitiveId, Ray, RayQuery};
 use p2m_mixed::Object;
 use p2m_shards::{ShardBatch, ShardError, ShardHit, ShardedIndex};
 use rayon::ThreadPool;
-use rayon::prelude::*;
 use serde_json::json;
 use std::time::Duration;
 
@@ -35,7 +35,7 @@ impl<'a> RaySource<'a> {
         convert: impl Fn(B) -> A,
     ) -> anyhow::Result<Vec<A>> {
         match self {
-            Self::Whole(index) => Ok(rays.par_iter().map(|ray| whole(index, ray)).collect()),
+            Self::Whole(index) => Ok(parallel::map_slice(rays, true, |ray| whole(index, ray))),
             Self::Shards(index) => Ok(shards(index.batch(), rays)?.into_iter().map(convert).collect()),
         }
     }

@@ -9,10 +9,10 @@ use crate::query::answers::ClosestAnswer;
 use nalgebra::Point3;
 use p2m_backends::AnyIndex;
 use p2m_core::batch::{self, BatchOptions};
+use p2m_core::engine::parallel;
 use p2m_core::{Closest, QueryOptions};
 use p2m_field::deviation::LocalPlanes;
 use rayon::ThreadPool;
-use rayon::prelude::*;
 use std::time::Duration;
 
 /// A rule of signs of deviations.
@@ -121,7 +121,7 @@ impl Answers<'_> {
             answer: |points: &[Point3<f64>]| {
                 let mut answers = vec![None; points.len()];
                 batch::closest_points_into(*index, points, &options, &BatchOptions::default(), &mut answers);
-                Ok(points.par_iter().zip(answers).map(with_deviation).collect())
+                Ok(parallel::map(points.len(), true, |i| with_deviation((&points[i], answers[i]))))
             },
             encode: |number, query: &_, answer: &ClosestAnswer, out: &mut _| {
                 let (answer, deviation) = counted(usize::try_from(number).unwrap_or(usize::MAX), answer);
