@@ -368,7 +368,7 @@ impl<T: Real, S: PrimitiveSet<T>, V: Volume> BoxQuery<T> for TreeIndex<T, S, V> 
 
 impl<T: Real, S: PrimitiveSet<T>, V: Volume> RayQuery<T> for TreeIndex<T, S, V> {
     fn search_ray<'r>(&self, ray: &'r Ray, hits: &mut Hits<'r>) {
-        self.tree.search_hits(&self.set, ray, hits);
+        self.tree.search_ray(&self.set, ray, hits);
     }
 
     fn visit_ray_candidates(&self, ray: &Ray, visit: &mut dyn FnMut(PrimitiveId, &[[f64; 3]]) -> f64) {

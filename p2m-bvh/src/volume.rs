@@ -7,18 +7,18 @@ use crate::traverse::evaluate::{finish, finish_nearest};
 use crate::traverse::interleaved_search::InterleavedSearch;
 use crate::traverse::interleaved_traversal::InterleavedTraversal;
 use crate::traverse::pairs::TreeSide;
-use crate::traverse::primitive_fn::{EvaluateFn, IntersectFn, evaluation, intersection};
+use crate::traverse::primitive_fn::{EvaluateFn, evaluation, intersection};
+use crate::traverse::ray::{ExactTests, RaySearch, TestFn};
 use crate::tree::PacketTree;
 use crate::tree::wide_node::VolumeNodes;
 use nalgebra::Point3;
 use p2m_core::engine::pairs::PairSide;
 use p2m_core::engine::query::BestF64;
-use p2m_core::engine::ray::RayCandidates;
 use p2m_core::engine::real::to_f64_array;
 use p2m_core::engine::vector::V3;
 use p2m_core::pair::Motion;
 use p2m_core::storage::{LoadError, Reader, Saved, Writer};
-use p2m_core::{Aabb, Best, Hits, Near, PrimitiveId, PrimitiveSet, Ray, RayCollector, Real};
+use p2m_core::{Aabb, Best, Near, PrimitiveId, PrimitiveSet, Ray, RayCollector, Real};
 
 /// The bounding volume of the nodes of a [`PacketTree`]: [`Aabb<f64>`] or a k-DOP of the crate p2m-kdop.
 ///
@@ -67,24 +67,12 @@ pub trait Volume: VolumeNodes {
         tree.run(query, near, evaluate, finish);
     }
 
-    /// Searches for the hits of a ray.
+    /// Searches for the primitives that a ray may hit, and tests them exactly. `limit` is the parameter above which hits
+    /// are not needed. Returns the numbers of nodes and packets that were visited.
     #[doc(hidden)]
     #[inline(never)]
-    fn rays<'r>(
-        tree: &PacketTree<Self>,
-        ray: &'r Ray,
-        radius: f64,
-        hits: &mut Hits<'r>,
-        intersect: IntersectFn<'_, 'r>,
-    ) {
-        tree.run_ray(ray, radius, hits, intersect);
-    }
-
-    /// Searches for the primitives that a ray may hit.
-    #[doc(hidden)]
-    #[inline(never)]
-    fn ray_candidates(tree: &PacketTree<Self>, ray: &Ray, radius: f64, candidates: &mut RayCandidates<'_>) {
-        tree.run_ray(ray, radius, candidates, &|_, _| None);
+    fn cast(tree: &PacketTree<Self>, ray: &Ray, radius: f64, limit: f64, test: TestFn<'_>) -> [usize; 2] {
+        tree.isa.run(RaySearch { tree, ray, radius, limit, test })
     }
 
     /// Passes a tree, after some motions in their order, to a search for pairs.
@@ -109,8 +97,7 @@ pub type Searches<V> = (
     fn(&PacketTree<V>, V3, &mut BestF64, EvaluateFn<'_, BestF64>),
     fn(&PacketTree<V>, &mut InterleavedTraversal<V>, &mut InterleavedSearch<'_>, usize),
     for<'n> fn(&PacketTree<V>, V3, &mut Near<'n>, EvaluateFn<'_, Near<'n>>),
-    for<'r> fn(&PacketTree<V>, &'r Ray, f64, &mut Hits<'r>, IntersectFn<'_, 'r>),
-    fn(&PacketTree<V>, &Ray, f64, &mut RayCandidates<'_>),
+    fn(&PacketTree<V>, &Ray, f64, f64, TestFn<'_>) -> [usize; 2],
     fn(&PacketTree<V>, &[Motion], &mut dyn FnMut(&dyn PairSide)),
     fn(Vec<BuildPrimitive>, Aabb<f64>, Members<'_>, <V as VolumeNodes>::Shared, &SplitOptions) -> PacketTree<V>,
     fn(&mut PacketTree<V>, Members<'_>, bool),
@@ -124,8 +111,7 @@ pub const fn searches<V: Volume>() -> Searches<V> {
         V::nearest,
         V::nearest_of_several,
         V::near,
-        V::rays,
-        V::ray_candidates,
+        V::cast,
         V::as_pair_side,
         PacketTree::build_from_primitives,
         PacketTree::refit_to,
@@ -138,6 +124,12 @@ pub const fn searches<V: Volume>() -> Searches<V> {
 #[doc(hidden)]
 #[cfg(not(test))]
 pub static COMPILED_SEARCHES: Searches<Aabb<f64>> = searches();
+
+/// The exact tests of the collector of the library, which this crate compiles.
+#[cfg(not(test))]
+#[used]
+static COMPILED_TESTS: fn(&mut ExactTests<'static, 'static, p2m_core::Hits<'static>>, usize, usize) -> Option<f64> =
+    ExactTests::test;
 
 impl<V: Volume> PacketTree<V> {
     /// The directions of the faces of the volumes, as [`Volume::Directions`] describes them.
@@ -160,20 +152,35 @@ impl<V: Volume> PacketTree<V> {
         V::near(self, to_f64_array(query), near, &evaluation(set, query));
     }
 
-    /// Offers to `hits` the hits of a ray with `set` that it could want.
+    /// Offers to `collector` every hit of a ray with `set` that it could want. The tree has to be built over that set.
     #[inline]
-    #[doc(hidden)]
-    pub fn search_hits<'r, T: Real, S: PrimitiveSet<T> + ?Sized>(&self, set: &S, ray: &'r Ray, hits: &mut Hits<'r>) {
-        let only_crossings = hits.only_crossings();
+    pub fn search_ray<'r, T: Real, S: PrimitiveSet<T> + ?Sized, C: RayCollector<'r>>(
+        &self,
+        set: &S,
+        ray: &'r Ray,
+        collector: &mut C,
+    ) {
+        let only_crossings = collector.only_crossings();
         let Some(radius) = self.search_radius(ray, only_crossings) else { return };
-        V::rays(self, ray, radius, hits, &intersection(set, ray, only_crossings));
+        let (limit, intersect) = (collector.limit(), intersection(set, ray, only_crossings));
+        let mut tests =
+            ExactTests { leaves: &self.leaves, ray, only_crossings, hits: collector, intersect: &intersect };
+        let [nodes, packets] = V::cast(self, ray, radius, limit, &mut |packet, lane| tests.test(packet, lane));
+        tests.hits.record_visits(nodes, packets);
     }
 
-    /// Calls `visit` for the primitives that a ray may hit.
-    #[inline]
+    /// Calls `visit` for the primitives that a ray may hit, as
+    /// [`RayQuery::visit_ray_candidates`](p2m_core::RayQuery::visit_ray_candidates).
     #[doc(hidden)]
     pub fn search_ray_candidates(&self, ray: &Ray, visit: &mut dyn FnMut(PrimitiveId, &[V3]) -> f64) {
         let Some(radius) = self.search_radius(ray, false) else { return };
-        V::ray_candidates(self, ray, radius, &mut RayCandidates::new(visit));
+        let mut limit = f64::INFINITY;
+        V::cast(self, ray, radius, limit, &mut |packet, lane| {
+            let packet = &self.leaves.packets[packet];
+            let (indices, count) = packet.vertices_of(lane);
+            let vertices = if count == 0 { Default::default() } else { indices.map(|i| self.leaves.vertices[i]) };
+            limit = limit.min(visit(packet.ids()[lane], &vertices[..count]));
+            (limit > f64::NEG_INFINITY).then_some(limit)
+        });
     }
 }

@@ -138,7 +138,7 @@ pub mod engine {
     }
     /// Exact projection onto rays, and the margin of ray filters.
     pub mod ray {
-        pub use crate::ray::{RayCandidates, UNDERFLOW_MARGIN, project_onto_ray};
+        pub use crate::ray::{UNDERFLOW_MARGIN, project_onto_ray};
     }
     /// Conversion of points to and from f64.
     pub mod real {

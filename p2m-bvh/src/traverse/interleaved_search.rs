@@ -11,7 +11,7 @@ use crate::tree::frame::Frame;
 use crate::tree::wide_node::VolumeNodes;
 use crate::tree::{Leaves, PacketTree};
 use p2m_core::engine::query::BestF64;
-use p2m_core::engine::side_by_side::{LaneResults, SIDE_BY_SIDE, TriangleLanes, segments, triangles};
+use p2m_core::engine::side_by_side::{LaneResults, SIDE_BY_SIDE, TriangleLanes, evaluate_segments, evaluate_triangles};
 use p2m_core::engine::simd::{Doubles, Float, InstructionSet, Lanes, SimdKernel};
 use p2m_core::engine::vector::V3;
 use p2m_core::{Collector, Isa, PrimitiveId};
@@ -487,7 +487,7 @@ impl<'a> InterleavedSearch<'a> {
     #[inline(never)]
     fn evaluate_triangles(&mut self, may_skip: bool) {
         let waiting = &mut self.triangles;
-        let found = self.searches.isa.run(EvaluateTriangles(&waiting.eight, may_skip));
+        let found = evaluate_triangles(self.searches.isa, &waiting.eight, may_skip);
         let len = std::mem::take(&mut waiting.len);
         self.searches.take(&waiting.candidates[..len], &found);
         for lane in 0..len {
@@ -501,7 +501,7 @@ impl<'a> InterleavedSearch<'a> {
 
     #[inline(never)]
     fn evaluate_segments(&mut self) {
-        let found = self.searches.isa.run(EvaluateSegments(&self.segments.eight));
+        let found = evaluate_segments(self.searches.isa, &self.segments.eight);
         let len = std::mem::take(&mut self.segments.len);
         self.searches.take(&self.segments.candidates[..len], &found);
     }
@@ -543,29 +543,5 @@ impl<const N: usize> LaneQueue<N> {
         self.candidates[self.len] = candidate;
         self.len += 1;
         self.len == SIDE_BY_SIDE
-    }
-}
-
-/// Evaluates eight triangles with an instruction set.
-struct EvaluateTriangles<'a>(&'a TriangleLanes<3>, bool);
-
-impl SimdKernel for EvaluateTriangles<'_> {
-    type Output = LaneResults;
-
-    #[inline(always)]
-    fn run<I: InstructionSet>(self) -> LaneResults {
-        triangles::<I::Doubles>(self.0, self.1)
-    }
-}
-
-/// Evaluates eight segments with an instruction set.
-struct EvaluateSegments<'a>(&'a TriangleLanes<2>);
-
-impl SimdKernel for EvaluateSegments<'_> {
-    type Output = LaneResults;
-
-    #[inline(always)]
-    fn run<I: InstructionSet>(self) -> LaneResults {
-        segments::<I::Doubles>(self.0)
     }
 }

@@ -6,45 +6,22 @@
 //! [docs/proofs/rays.md]: https://github.com/p2m-rs/p2m/blob/main/docs/proofs/rays.md
 
 use crate::packet::RayLine;
-use crate::traverse::primitive_fn::{IntersectFn, intersection};
+use crate::traverse::primitive_fn::IntersectFn;
 use crate::traverse::{Visitor, traverse};
 use crate::tree::frame_line::{FrameLine, misses_scene};
 use crate::tree::node_ref::NodeRef;
 use crate::tree::wide_node::{VolumeNodes, WideNode, entries};
 use crate::tree::{Leaves, PacketTree};
 use p2m_core::engine::simd::{InstructionSet, Lanes, SimdKernel};
-use p2m_core::{Crossing, PrimitiveSet, Ray, RayCollector, Real};
+use p2m_core::{Crossing, Ray, RayCollector};
 use std::ops::ControlFlow;
 
+/// The exact test of a primitive, which is given by its packet and its lane. It returns the parameter of the ray above
+/// which hits are not needed from then on, or `None` if no further one is.
+pub(crate) type TestFn<'a> = &'a mut dyn FnMut(usize, usize) -> Option<f64>;
+
 impl<V: VolumeNodes> PacketTree<V> {
-    /// Offers to `collector` every hit of a ray with `set` that it could want. The tree has to be built over that set.
-    #[inline]
-    pub fn search_ray<'r, T: Real, S: PrimitiveSet<T> + ?Sized, C: RayCollector<'r>>(
-        &self,
-        set: &S,
-        ray: &'r Ray,
-        collector: &mut C,
-    ) {
-        let only_crossings = collector.only_crossings();
-        let Some(radius) = self.search_radius(ray, only_crossings) else { return };
-        self.run_ray(ray, radius, collector, &intersection(set, ray, only_crossings));
-    }
-
-    /// Runs the search of [`search_ray`](Self::search_ray) for any set. Callers that are not generic compile it once.
-    #[inline(always)]
-    #[doc(hidden)]
-    pub fn run_ray<'r, C: RayCollector<'r>>(
-        &self,
-        ray: &'r Ray,
-        radius: f64,
-        hits: &mut C,
-        intersect: IntersectFn<'_, 'r>,
-    ) {
-        self.isa.run(RaySearch { tree: self, ray, radius, hits, intersect });
-    }
-
     /// The distance within which a ray hits primitives that are not triangles; `None` if it certainly misses the scene.
-    #[inline(always)]
     pub(crate) fn search_radius(&self, ray: &Ray, only_crossings: bool) -> Option<f64> {
         let radius = if self.leaves.has_non_triangles && !only_crossings { ray.radius } else { 0.0 };
         (self.root != NodeRef::NONE && !misses_scene(ray, radius + ray.origin_error, &self.frame, &self.half_extent))
@@ -52,101 +29,96 @@ impl<V: VolumeNodes> PacketTree<V> {
     }
 }
 
-/// A search with a ray as a kernel that is compiled for each instruction set.
-struct RaySearch<'a, 'r, V: VolumeNodes, C> {
-    tree: &'a PacketTree<V>,
-    ray: &'r Ray,
+/// A search with a ray as a kernel that is compiled for each instruction set. It returns the numbers of nodes and packets
+/// that it visited.
+pub(crate) struct RaySearch<'a, V: VolumeNodes> {
+    pub(crate) tree: &'a PacketTree<V>,
+    pub(crate) ray: &'a Ray,
     /// The distance within which the ray hits segments and points; 0 if there are none, or if they do not count.
-    radius: f64,
-    hits: &'a mut C,
-    intersect: IntersectFn<'a, 'r>,
+    pub(crate) radius: f64,
+    /// The parameter above which hits are not needed.
+    pub(crate) limit: f64,
+    pub(crate) test: TestFn<'a>,
 }
 
-impl<'r, V: VolumeNodes, C: RayCollector<'r>> SimdKernel for RaySearch<'_, 'r, V, C> {
-    type Output = ();
+impl<V: VolumeNodes> SimdKernel for RaySearch<'_, V> {
+    type Output = [usize; 2];
 
     #[inline(always)]
-    fn run<I: InstructionSet>(self) {
-        let Self { tree, ray, radius, hits, intersect } = self;
-        let mut tests =
-            ExactTests { leaves: &tree.leaves, ray, only_crossings: hits.only_crossings(), hits, intersect };
+    fn run<I: InstructionSet>(self) -> [usize; 2] {
+        let Self { tree, ray, radius, limit, test } = self;
         let line = FrameLine::line_of(&tree.frame, ray, radius);
         let from = line.length_below(ray.min);
         let Some(piece) = FrameLine::new(&tree.frame, &tree.half_extent, &line, from) else {
-            return tests.test_all();
+            return [0, test_all(&tree.leaves, test)];
         };
-        if let Some(piece) = piece {
-            let local = V::Node::ray(&tree.shared, &piece);
-            let mut visitor = RayVisitor { tests, line, piece, local, from, to: 0.0, limit: 0.0 };
-            visitor.update_limits();
-            traverse::<I, V, _>(tree, &mut visitor);
+        let Some(piece) = piece else { return [0, 0] };
+        let local = V::Node::ray(&tree.shared, &piece);
+        let (leaves, max) = (&tree.leaves, ray.max);
+        let mut visitor =
+            RayVisitor { leaves, test, max, line, piece, local, from, to: 0.0, limit: 0.0, visits: [0, 0] };
+        visitor.update_limits(limit);
+        traverse::<I, V, _>(tree, &mut visitor);
+        visitor.visits
+    }
+}
+
+/// Tests all primitives, for rays and scenes whose positions neither f32 nor f64 resolves. Returns the number of packets.
+#[cold]
+#[inline(never)]
+fn test_all(leaves: &Leaves, test: TestFn<'_>) -> usize {
+    for (number, packet) in leaves.packets.iter().enumerate() {
+        for lane in 0..packet.ids().len() {
+            if test(number, lane).is_none() {
+                return number + 1;
+            }
         }
     }
+    leaves.packets.len()
 }
 
 /// The exact tests of a ray with primitives.
-struct ExactTests<'a, 'r, C> {
-    leaves: &'a Leaves,
-    ray: &'r Ray,
-    only_crossings: bool,
-    hits: &'a mut C,
-    intersect: IntersectFn<'a, 'r>,
+pub(crate) struct ExactTests<'a, 'r, C> {
+    pub(crate) leaves: &'a Leaves,
+    pub(crate) ray: &'r Ray,
+    pub(crate) only_crossings: bool,
+    pub(crate) hits: &'a mut C,
+    pub(crate) intersect: IntersectFn<'a, 'r>,
 }
 
 impl<'r, C: RayCollector<'r>> ExactTests<'_, 'r, C> {
-    /// Tests the primitive in a lane of a packet; breaks if the collector wants no further hit.
-    #[inline(always)]
-    fn test(&mut self, packet: usize, lane: usize) -> ControlFlow<()> {
+    /// Tests the primitive in a lane of a packet, as a [`TestFn`]. It is never inlined, so that it is compiled once for all
+    /// volumes and sets.
+    #[inline(never)]
+    pub(crate) fn test(&mut self, packet: usize, lane: usize) -> Option<f64> {
         let packet = &self.leaves.packets[packet];
         let id = packet.ids()[lane];
-        if !self.hits.wants(id) {
-            return ControlFlow::Continue(());
-        }
-        self.hits.visit_primitive();
-        let limit = self.hits.limit();
-        let (indices, count) = packet.vertices_of(lane);
-        let crossing = if count == 0 {
-            if let Some(flow) = self.hits.take_candidate(id, &[]) {
-                return flow;
+        if self.hits.wants(id) {
+            self.hits.visit_primitive();
+            let limit = self.hits.limit();
+            let (indices, count) = packet.vertices_of(lane);
+            let crossing = if count == 0 {
+                (self.intersect)(id, limit)
+            } else {
+                let vertices = indices.map(|index| self.leaves.vertices[index]);
+                Crossing::from_vertices(self.ray, &vertices[..count], limit, self.only_crossings)
+            };
+            if let Some(crossing) = crossing
+                && self.hits.offer(id, &crossing).is_break()
+            {
+                return None;
             }
-            (self.intersect)(id, limit)
-        } else {
-            let vertices = indices.map(|index| self.leaves.vertices[index]);
-            if let Some(flow) = self.hits.take_candidate(id, &vertices[..count]) {
-                return flow;
-            }
-            crossing(self.ray, &vertices[..count], limit, self.only_crossings)
-        };
-        match crossing {
-            Some(crossing) => self.hits.offer(id, &crossing),
-            None => ControlFlow::Continue(()),
         }
+        Some(self.hits.limit())
     }
-
-    /// Tests all primitives, for rays and scenes whose positions neither f32 nor f64 resolves.
-    #[cold]
-    #[inline(never)]
-    fn test_all(&mut self) {
-        for number in 0..self.leaves.packets.len() {
-            self.hits.visit_packet();
-            for lane in 0..self.leaves.packets[number].ids().len() {
-                if self.test(number, lane).is_break() {
-                    return;
-                }
-            }
-        }
-    }
-}
-
-/// Calls [`Crossing::from_vertices`] out of line, so that it is compiled once for all volumes and instruction sets.
-#[inline(never)]
-fn crossing<'r>(ray: &'r Ray, vertices: &[[f64; 3]], limit: f64, only_crossings: bool) -> Option<Crossing<'r>> {
-    Crossing::from_vertices(ray, vertices, limit, only_crossings)
 }
 
 /// The visitor of a search with a ray.
-struct RayVisitor<'a, 'r, V: VolumeNodes, C> {
-    tests: ExactTests<'a, 'r, C>,
+struct RayVisitor<'a, V: VolumeNodes> {
+    leaves: &'a Leaves,
+    test: TestFn<'a>,
+    /// The largest parameter of the ray.
+    max: f64,
     line: RayLine,
     piece: FrameLine,
     local: <V::Node as WideNode>::Ray,
@@ -156,19 +128,20 @@ struct RayVisitor<'a, 'r, V: VolumeNodes, C> {
     to: f64,
     /// The length from the base of the piece at which the search ends, in the frame of the tree.
     limit: f32,
+    /// The numbers of nodes and packets that were visited.
+    visits: [usize; 2],
 }
 
-impl<'r, V: VolumeNodes, C: RayCollector<'r>> RayVisitor<'_, 'r, V, C> {
-    /// Computes the limits from the collector.
+impl<V: VolumeNodes> RayVisitor<'_, V> {
+    /// Computes the limits from the parameter above which hits are not needed.
     #[inline(always)]
-    fn update_limits(&mut self) {
-        let limit = self.tests.hits.limit();
-        self.to = self.line.length_above(if limit < self.tests.ray.max { limit } else { self.tests.ray.max });
+    fn update_limits(&mut self, limit: f64) {
+        self.to = self.line.length_above(if limit < self.max { limit } else { self.max });
         self.limit = self.piece.limit(self.to);
     }
 }
 
-impl<'r, V: VolumeNodes, C: RayCollector<'r>> Visitor<V> for RayVisitor<'_, 'r, V, C> {
+impl<V: VolumeNodes> Visitor<V> for RayVisitor<'_, V> {
     #[inline(always)]
     fn bounds<L: Lanes>(&self, node: &V::Node) -> L {
         entries(node, &self.local)
@@ -179,21 +152,21 @@ impl<'r, V: VolumeNodes, C: RayCollector<'r>> Visitor<V> for RayVisitor<'_, 'r, 
     }
     #[inline(always)]
     fn visit_node(&mut self) {
-        self.tests.hits.visit_node();
+        self.visits[0] = self.visits[0].wrapping_add(1);
     }
     #[inline(always)]
     fn visit_packet<I: InstructionSet>(&mut self, mut number: usize) -> ControlFlow<()> {
         loop {
-            self.tests.hits.visit_packet();
-            self.tests.leaves.prefetch_vertices(number);
-            let mut passed = self.tests.leaves.packets[number].lanes_hit_by::<I>(&self.line, self.from, self.to);
+            self.visits[1] = self.visits[1].wrapping_add(1);
+            self.leaves.prefetch_vertices(number);
+            let mut passed = self.leaves.packets[number].lanes_hit_by::<I>(&self.line, self.from, self.to);
             while passed != 0 {
                 let lane = passed.trailing_zeros() as usize;
                 passed &= passed - 1;
-                self.tests.test(number, lane)?;
-                self.update_limits();
+                let Some(limit) = (self.test)(number, lane) else { return ControlFlow::Break(()) };
+                self.update_limits(limit);
             }
-            if !self.tests.leaves.packets[number].is_continued() {
+            if !self.leaves.packets[number].is_continued() {
                 return ControlFlow::Continue(());
             }
             number += 1;

@@ -22,7 +22,7 @@ use super::nearest::{ERROR_PER_SIZE, FACE_CODE, edge_feature_code, feature_of_co
 use super::triangle::{MAX_PLAIN_SIZE, MAX_SIZE_PER_EDGE_SQUARED, MIN_PLAIN_SIZE, OUTWARD_MARGIN, ROUGH_SQUARE_MARGIN};
 use super::vector::{add, bounds, clamp, dot, larger, largest, norm_squared, select, smaller, sub};
 use crate::Projection;
-use crate::simd::Doubles;
+use crate::simd::{Doubles, InstructionSet, Isa, SimdKernel};
 use nalgebra::Point3;
 
 /// The number of primitives that are computed at once.
@@ -76,8 +76,8 @@ impl<const N: usize> TriangleLanes<N> {
     }
 }
 
-/// The nearest points of eight primitives.
-#[derive(Clone, Debug)]
+/// The nearest points of eight primitives. By default no lane is certain.
+#[derive(Clone, Debug, Default)]
 pub struct LaneResults {
     square: Row,
     point: [Row; 3],
@@ -324,7 +324,7 @@ pub fn certain_vertex_squares<D: Doubles>(eight: &TriangleLanes<3>) -> Row {
 /// If `may_skip`, and a vertex is the nearest point of most of them, the others are left out.
 #[inline(always)]
 #[must_use]
-pub fn triangles<D: Doubles>(eight: &TriangleLanes<3>, may_skip: bool) -> LaneResults {
+fn triangles<D: Doubles>(eight: &TriangleLanes<3>, may_skip: bool) -> LaneResults {
     let around = NearestVertices::<D>::new(eight);
     if may_skip && around.uncertain_lanes().count_ones() <= MAX_SKIPPED {
         return around.certain();
@@ -433,7 +433,7 @@ fn face_weights<D: Doubles>([wn, wf, wa]: [D; 3], longest: Choice<D>, lines: &[E
 /// Computes the nearest points of eight segments.
 #[inline(always)]
 #[must_use]
-pub fn segments<D: Doubles>(eight: &TriangleLanes<2>) -> LaneResults {
+fn segments<D: Doubles>(eight: &TriangleLanes<2>) -> LaneResults {
     let (query, vertices) = eight.load::<D>();
     let (zero, one) = (D::splat(0.0), D::splat(1.0));
     let offsets = [sub(vertices[0], query), sub(vertices[1], query)];
@@ -457,24 +457,45 @@ pub fn segments<D: Doubles>(eight: &TriangleLanes<2>) -> LaneResults {
     best.store(query, bounds(&vertices), select(is_second, vertices[1], vertices[0]), size, is_uncertain)
 }
 
+/// Runs [`triangles`] with an instruction set. No lane is certain where lanes of f64 are slower than the single kernel.
+#[inline(never)]
+#[must_use]
+pub fn evaluate_triangles(isa: Isa, eight: &TriangleLanes<3>, may_skip: bool) -> LaneResults {
+    isa.run_in_doubles(Triangles(eight, may_skip), LaneResults::default)
+}
+
+/// Runs [`segments`] with an instruction set. No lane is certain where lanes of f64 are slower than the single kernel.
+#[inline(never)]
+#[must_use]
+pub fn evaluate_segments(isa: Isa, eight: &TriangleLanes<2>) -> LaneResults {
+    isa.run_in_doubles(Segments(eight), LaneResults::default)
+}
+
+struct Triangles<'a>(&'a TriangleLanes<3>, bool);
+struct Segments<'a>(&'a TriangleLanes<2>);
+
+impl SimdKernel for Triangles<'_> {
+    type Output = LaneResults;
+    #[inline(always)]
+    fn run<I: InstructionSet>(self) -> LaneResults {
+        triangles::<I::Doubles>(self.0, self.1)
+    }
+}
+
+impl SimdKernel for Segments<'_> {
+    type Output = LaneResults;
+    #[inline(always)]
+    fn run<I: InstructionSet>(self) -> LaneResults {
+        segments::<I::Doubles>(self.0)
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
     use crate::Feature;
-    use crate::simd::{InstructionSet, Isa, SimdKernel};
     use p2m_testkit::families;
     use rand::{Rng, RngExt};
-
-    struct Triangles<'a>(&'a TriangleLanes<3>, bool);
-    struct Segments<'a>(&'a TriangleLanes<2>);
-
-    impl SimdKernel for Triangles<'_> {
-        type Output = LaneResults;
-        #[inline(always)]
-        fn run<I: InstructionSet>(self) -> LaneResults {
-            triangles::<I::Doubles>(self.0, self.1)
-        }
-    }
 
     struct CertainVertices<'a>(&'a TriangleLanes<3>);
 
@@ -483,14 +504,6 @@ mod tests {
         #[inline(always)]
         fn run<I: InstructionSet>(self) -> Row {
             certain_vertex_squares::<I::Doubles>(self.0)
-        }
-    }
-
-    impl SimdKernel for Segments<'_> {
-        type Output = LaneResults;
-        #[inline(always)]
-        fn run<I: InstructionSet>(self) -> LaneResults {
-            segments::<I::Doubles>(self.0)
         }
     }
 

@@ -3,7 +3,6 @@
 use super::crossing::Crossing;
 use super::hit::{Hit, Side};
 use crate::PrimitiveId;
-use crate::kernel::vector::V3;
 use std::ops::ControlFlow;
 
 /// A collector of hits: it decides which hits a search has to find, and takes them.
@@ -25,21 +24,12 @@ pub trait RayCollector<'r> {
         true
     }
 
-    /// Takes a primitive that the filters of a search let pass, in place of its exact test, and breaks if no other one
-    /// is needed. It returns `None`, as by default, if the primitive is to be tested. `vertices` are those of the
-    /// primitive, or none if the search does not have them.
-    fn take_candidate(&mut self, _primitive: PrimitiveId, _vertices: &[V3]) -> Option<ControlFlow<()>> {
-        None
-    }
-
     /// Takes a hit, in any order, and breaks if no other hit is needed.
     fn offer(&mut self, primitive: PrimitiveId, crossing: &Crossing<'r>) -> ControlFlow<()>;
 
-    /// Reports a visit to a node: the bounds of its children are tested.
-    fn visit_node(&mut self) {}
-
-    /// Reports a visit to a packet: its primitives are filtered.
-    fn visit_packet(&mut self) {}
+    /// Reports at the end of a search how many nodes had the bounds of their children tested, and how many packets had
+    /// their primitives filtered.
+    fn record_visits(&mut self, _nodes: usize, _packets: usize) {}
 
     /// Reports that a primitive passed the filter and is tested exactly.
     fn visit_primitive(&mut self) {}
@@ -62,36 +52,6 @@ pub struct Hits<'r> {
     /// The number of crossings from back to front less those from front to back, in the mode of crossings.
     #[doc(hidden)]
     pub signed_count: i64,
-}
-
-/// A collector that passes all primitives which a ray may hit to a function, and tests none of them.
-#[doc(hidden)]
-pub struct RayCandidates<'a> {
-    limit: f64,
-    visit: &'a mut dyn FnMut(PrimitiveId, &[V3]) -> f64,
-}
-
-impl<'a> RayCandidates<'a> {
-    /// Creates the collector of [`RayQuery::visit_ray_candidates`](super::RayQuery::visit_ray_candidates).
-    pub fn new(visit: &'a mut dyn FnMut(PrimitiveId, &[V3]) -> f64) -> Self {
-        Self { limit: f64::INFINITY, visit }
-    }
-}
-
-impl<'r> RayCollector<'r> for RayCandidates<'_> {
-    fn limit(&self) -> f64 {
-        self.limit
-    }
-
-    fn take_candidate(&mut self, primitive: PrimitiveId, vertices: &[V3]) -> Option<ControlFlow<()>> {
-        self.limit = self.limit.min((self.visit)(primitive, vertices));
-        let is_done = self.limit == f64::NEG_INFINITY;
-        Some(if is_done { ControlFlow::Break(()) } else { ControlFlow::Continue(()) })
-    }
-
-    fn offer(&mut self, _: PrimitiveId, _: &Crossing<'r>) -> ControlFlow<()> {
-        ControlFlow::Continue(())
-    }
 }
 
 /// The hits that a query needs.

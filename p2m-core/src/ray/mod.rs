@@ -16,7 +16,7 @@ mod query;
 mod rounding;
 mod stats_collector;
 
-pub use collector::{Hits, RayCandidates, RayCollector};
+pub use collector::{Hits, RayCollector};
 pub use crossing::Crossing;
 pub use exact::project_onto_ray;
 pub use hit::{Hit, RayHit, Side};

@@ -67,13 +67,10 @@ impl<'r, C: RayCollector<'r>> RayCollector<'r> for RayStatsCollector<C> {
         fn wants(self: &Self, primitive: PrimitiveId) -> bool;
         fn offer(self: &mut Self, primitive: PrimitiveId, crossing: &Crossing<'r>) -> ControlFlow<()>;
     });
-    fn visit_node(&mut self) {
-        self.nodes += 1;
-        self.collector.visit_node();
-    }
-    fn visit_packet(&mut self) {
-        self.packets += 1;
-        self.collector.visit_packet();
+    fn record_visits(&mut self, nodes: usize, packets: usize) {
+        self.nodes += nodes;
+        self.packets += packets;
+        self.collector.record_visits(nodes, packets);
     }
     fn visit_primitive(&mut self) {
         self.primitives += 1;

@@ -4,8 +4,8 @@ use crate::list::corner_test::{DistancesAtPoint, LaneDistances, LeastOfLanes};
 use crate::voronoi::cell_polytope::CornerPoints;
 use p2m_bvh::PacketTree;
 use p2m_bvh::engine::packet::{LANES, Locals, PLACES, Packet};
-use p2m_core::engine::side_by_side::{SIDE_BY_SIDE, TriangleLanes, triangles};
-use p2m_core::engine::simd::{Doubles, InstructionSet, SimdKernel};
+use p2m_core::engine::side_by_side::{SIDE_BY_SIDE, TriangleLanes, evaluate_triangles};
+use p2m_core::engine::simd::{InstructionSet, SimdKernel};
 use p2m_core::engine::vector::V3;
 use p2m_core::{Best, QueryOptions};
 
@@ -55,7 +55,7 @@ impl CornerValues {
         self.near_lanes = lanes & tree.isa().run(EvaluateCorners { corners, packet, values: &mut self.values });
         if packet.has_vertices() && corners.max_upper_bound * packet.per_unit() >= FILTER_RANGE_UNITS {
             let (values, lanes) = (&mut self.values[..], self.near_lanes);
-            self.tests += tree.isa().run(EvaluateAtFarCorners { corners, packet, tree, lanes, values });
+            self.tests += EvaluateAtFarCorners { corners, packet, tree, lanes, values }.run();
         }
         self.lanes_below.clear();
         for values in &self.values {
@@ -119,8 +119,8 @@ impl SimdKernel for EvaluateCorners<'_> {
     }
 }
 
-/// A SIMD kernel that evaluates primitives at the corners that are so far from the packet that its filter is too
-/// imprecise, where it has not excluded them. It returns the number of evaluations.
+/// The evaluation of primitives at the corners that are so far from the packet that its filter is too
+/// imprecise, where it has not excluded them.
 struct EvaluateAtFarCorners<'a> {
     corners: &'a CornerPoints,
     packet: &'a Packet,
@@ -132,9 +132,8 @@ struct EvaluateAtFarCorners<'a> {
 
 impl EvaluateAtFarCorners<'_> {
     /// Evaluates the primitives of some corners and lanes, which have places in `eight`.
-    #[inline(always)]
-    fn evaluate<D: Doubles>(&mut self, eight: &TriangleLanes<3>, places: &[(usize, usize)]) {
-        let nearest = triangles::<D>(eight, false);
+    fn evaluate(&mut self, eight: &TriangleLanes<3>, places: &[(usize, usize)]) {
+        let nearest = evaluate_triangles(self.tree.isa(), eight, false);
         for (place, &(corner, lane)) in places.iter().enumerate() {
             match nearest.square_and_lower_bound(place) {
                 Some((square, _)) => self.raise(corner, lane, square.sqrt()),
@@ -155,7 +154,6 @@ impl EvaluateAtFarCorners<'_> {
     }
 
     /// Raises a value to that of a distance.
-    #[inline(always)]
     #[allow(clippy::cast_possible_truncation, reason = "rounded down")]
     fn raise(&mut self, corner: usize, lane: usize, distance: f64) {
         let (upper_bound, per_unit) = (self.corners.upper_bounds[corner], self.packet.per_unit());
@@ -165,13 +163,9 @@ impl EvaluateAtFarCorners<'_> {
         let to = &mut self.values[corner][lane];
         *to = to.max((value as f32).next_down());
     }
-}
 
-impl SimdKernel for EvaluateAtFarCorners<'_> {
-    type Output = usize;
-
-    #[inline(always)]
-    fn run<I: InstructionSet>(mut self) -> usize {
+    /// Returns the number of evaluations.
+    fn run(mut self) -> usize {
         let (mut eight, mut places, mut pending, mut tests) = (TriangleLanes::default(), [(0, 0); SIDE_BY_SIDE], 0, 0);
         for corner in 0..self.values.len() {
             if self.corners.upper_bounds[corner] * self.packet.per_unit() < FILTER_RANGE_UNITS {
@@ -190,14 +184,14 @@ impl SimdKernel for EvaluateAtFarCorners<'_> {
                 places[pending] = (corner, lane);
                 pending += 1;
                 if pending == SIDE_BY_SIDE {
-                    self.evaluate::<I::Doubles>(&eight, &places);
+                    self.evaluate(&eight, &places);
                     pending = 0;
                 }
             }
         }
         if pending > 0 {
             // The other places have a triangle already, or none.
-            self.evaluate::<I::Doubles>(&eight, &places[..pending]);
+            self.evaluate(&eight, &places[..pending]);
         }
         tests
     }

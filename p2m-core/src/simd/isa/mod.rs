@@ -103,6 +103,24 @@ impl Isa {
         matches!(self.name(), "avx2" | "avx512")
     }
 
+    /// Runs a kernel in lanes of eight f64 if they [are fast](Self::has_fast_doubles), and `otherwise` if they are not. So
+    /// the kernel is not compiled for the other instruction sets.
+    #[inline(always)]
+    pub fn run_in_doubles<K: SimdKernel>(self, kernel: K, otherwise: impl FnOnce() -> K::Output) -> K::Output {
+        match self.0 {
+            // SAFETY: such a value is made by `available` alone, which has checked the processor.
+            #[cfg(target_arch = "x86_64")]
+            Kind::Avx2 => unsafe { x86_64::run_avx2(kernel) },
+            // SAFETY: such a value is made by `available` alone, which has checked the processor.
+            #[cfg(target_arch = "x86_64")]
+            Kind::Avx512 => unsafe { x86_64::run_avx512(kernel) },
+            _ => {
+                let _ = kernel;
+                otherwise()
+            }
+        }
+    }
+
     /// Runs a kernel with this instruction set.
     #[inline(always)]
     pub fn run<K: SimdKernel>(self, kernel: K) -> K::Output {
