@@ -56,7 +56,7 @@
 //! | [`AabbTree`] | a tree of boxes, split by the surface-area heuristic and searched nearest first | `bvh` |
 //! | [`OctreeIndex`] | cubic cells with short lists of the primitives that can be nearest in them; faster for many queries, and takes more memory | `interception` |
 //! | [`P2mIndex`] | Voronoi cells of the vertices with such lists; fastest far away, and takes the most memory | `interception` |
-//! | `paper::PaperIndex` | the P2M index with the KD-tree, the R-trees and the long lists of the paper, for comparison | `paper` |
+//! | [`P2mIndex`] with `P2mOptions::as_in_paper()` | the KD-tree, the R-trees and the long lists of the paper, for comparison | `paper` |
 //! | [`KdopTree`] | a tree of polytopes of K faces, which fit primitives askew to the axes more closely than boxes | `kdop` |
 //!
 //! Functions over `I: ClosestPoint<T>` or `&dyn ClosestPoint<T>` leave the choice to the caller. The [guide] has a
@@ -145,8 +145,7 @@ pub mod prelude {
 #[cfg(feature = "paper")]
 pub mod paper {
     pub use p2m_interception::{
-        BuildListFilter, BuildLocator, KdTreeLocator, ListFilter, Locator, LocatorSites, PaperIndex, PaperOptions,
-        Region, RegionTree,
+        BuildListFilter, BuildLocator, KdTreeLocator, ListFilter, Locator, LocatorSites, Region, RegionTree,
     };
 }
 

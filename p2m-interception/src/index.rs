@@ -6,8 +6,6 @@ use crate::options::{OctreeOptions, RefinementProgress};
 use crate::partition::Partition;
 use crate::progress::Progress;
 use crate::voronoi::Voronoi;
-#[cfg(feature = "paper")]
-use crate::voronoi::paper::PaperVoronoi;
 use nalgebra::Point3;
 use p2m_bvh::AabbTree;
 use p2m_bvh::engine::interleaved::answer_in_groups;
@@ -101,44 +99,6 @@ pub type OctreeIndex<T, S> = InterceptionIndex<T, S, Octree>;
 /// # Ok::<(), p2m_core::BuildError>(())
 /// ```
 pub type P2mIndex<T, S> = InterceptionIndex<T, S, Voronoi>;
-
-/// The index of the P2M paper, which is a [`P2mIndex`] with other default options.
-///
-/// These are [`P2mOptions::as_in_paper`](crate::P2mOptions::as_in_paper): a KD-tree of the crate kiddo finds a site
-/// near the query ([`KdTreeLocator`](crate::KdTreeLocator)), no site is added to the vertices, lists may be long, and an
-/// R-tree of the crate rstar filters each list of more than 64 primitives ([`RegionTree`](crate::RegionTree)). The index
-/// exists for comparison with the paper. A [`P2mIndex`] gives the same answers faster: [docs/measurements/p2m.md] and
-/// [docs/measurements/paper.md] have figures of both.
-///
-/// The methods are those of [`P2mIndex`], but the index cannot be saved. The options are
-/// [`PaperOptions`](crate::PaperOptions).
-///
-/// ```
-/// use nalgebra::Point3;
-/// use p2m_core::{ClosestPoint, Segment};
-/// use p2m_interception::PaperIndex;
-///
-/// let wires: Vec<Segment<f64>> = (0..20)
-///     .map(|i| f64::from(i).sin_cos())
-///     .map(|(x, y)| Segment::new(Point3::new(x, y, 0.0), Point3::new(-y, x, 1.0)))
-///     .collect();
-/// let index = PaperIndex::new(&wires)?;
-/// assert_eq!(index.report().added, 0);
-/// assert!(index.closest_point(&Point3::new(2.0, 0.0, 0.0)).is_some_and(|answer| answer.distance < 1.5));
-/// # Ok::<(), p2m_core::BuildError>(())
-/// ```
-///
-/// # Complexity
-/// Where lists are short, a build takes as long as that of a [`P2mIndex`]. Between slivers, where lists are long, it
-/// takes up to 70 times as long and 2000 times the memory.
-///
-/// # References
-/// \[Zong2023\]
-///
-/// [docs/measurements/p2m.md]: https://github.com/p2m-rs/p2m/blob/main/docs/measurements/p2m.md
-/// [docs/measurements/paper.md]: https://github.com/p2m-rs/p2m/blob/main/docs/measurements/paper.md
-#[cfg(feature = "paper")]
-pub type PaperIndex<T, S> = InterceptionIndex<T, S, PaperVoronoi>;
 
 /// An interception index over a set of primitives, which it stores.
 ///

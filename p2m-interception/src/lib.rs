@@ -16,7 +16,7 @@
 //! - The partition [`Voronoi`] has the Voronoi cells of the scene's vertices and of some added points
 //!   ([docs/proofs/p2m.md]). A [`Locator`] returns a site near the query, and a walk over Delaunay neighbours ends at
 //!   the nearest site. A [`ListFilter`] may shorten the search of long lists. The [`delaunay`] tetrahedra are exact.
-//!   With the feature `paper`, `PaperIndex` has this partition with the locator, the filter and the lists of the paper.
+//!   With the feature `paper`, `P2mOptions::as_in_paper` has the locator, the filter and the lists of the paper.
 //!
 //! Lists are stored in blocks: up to eight packets, the lanes of each packet that can be the answer, and lower bounds
 //! on the distances to the packets.
@@ -58,8 +58,6 @@ mod progress;
 mod tests;
 mod voronoi;
 
-#[cfg(feature = "paper")]
-pub use index::PaperIndex;
 pub use index::{InterceptionIndex, OctreeIndex, P2mIndex};
 pub use octree::Octree;
 pub use options::{Domain, OctreeOptions, OctreeReport, P2mOptions, P2mReport, RefinementProgress};
@@ -67,8 +65,6 @@ pub use partition::Partition;
 pub use progress::{BuildStage, Progress, StageTimes};
 #[cfg(feature = "paper")]
 pub use voronoi::kd_tree_locator::KdTreeLocator;
-#[cfg(feature = "paper")]
-pub use voronoi::paper::{PaperOptions, PaperVoronoi};
 #[cfg(feature = "paper")]
 pub use voronoi::region_tree::RegionTree;
 pub use voronoi::{BuildListFilter, BuildLocator, ListFilter, Locator, LocatorSites, Region, Voronoi};

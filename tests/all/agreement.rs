@@ -6,13 +6,12 @@
 #![allow(clippy::float_cmp, reason = "bitwise equality is what is tested")]
 
 use nalgebra::{Point3, Vector3};
-use p2m::core::{Best, Key};
+use p2m::core::{BatchAnswer, Best, Key};
 use p2m::kdop::Directions;
-#[cfg(feature = "paper")]
-use p2m::paper::PaperIndex;
 use p2m::{
     AabbTree, BruteForce, BuildError, BuildIndex, Closest, ClosestPoint, Feature, KdopOptions, KdopTree, OctreeIndex,
-    P2mIndex, Point, Primitive, PrimitiveId, PrimitiveSet, QueryOptions, Real, Segment, Shape, Soup, Triangle,
+    P2mIndex, P2mOptions, Point, Primitive, PrimitiveId, PrimitiveSet, QueryOptions, Real, Segment, Shape, Soup,
+    Triangle,
 };
 use p2m_testkit::ball::Ball;
 use p2m_testkit::families::shape;
@@ -154,15 +153,8 @@ backends! {
 }
 
 #[cfg(feature = "paper")]
-backends! {
-    paper_index: PaperIndex,
-}
-
-/// Generates the tests of scenes, too, because the registry has no entry for the index of the paper.
-#[cfg(feature = "paper")]
-mod paper_index_on_scenes {
-    use super::*;
-    on_soups!(PaperIndex);
+variants! {
+    p2m_index_as_in_paper: AsInPaper,
 }
 
 // Few sets are used, because these variants take long to compile.
@@ -172,6 +164,34 @@ variants! {
     kdop_26: Kdop26,
     kdop_of_turned_directions: KdopTurned,
     kdop_of_skew_directions: KdopSkew,
+}
+
+/// A P2M index with the options of the paper.
+#[cfg(feature = "paper")]
+struct AsInPaper<T: Real, S>(P2mIndex<T, S>);
+
+#[cfg(feature = "paper")]
+impl<T: Real, S: PrimitiveSet<T>> ClosestPoint<T> for AsInPaper<T, S> {
+    fn search(&self, query: &Point3<T>, best: &mut Best<T>) {
+        self.0.search(query, best);
+    }
+    fn answer_queries(
+        &self,
+        queries: &[Point3<T>],
+        options: &QueryOptions<T>,
+        answered: &mut dyn FnMut(usize, BatchAnswer<'_, T>),
+    ) {
+        self.0.answer_queries(queries, options, answered);
+    }
+}
+
+#[cfg(feature = "paper")]
+impl<T: Real, S: PrimitiveSet<T> + Sync> BuildIndex<T, S> for AsInPaper<T, S> {
+    type Options = ();
+    type Error = BuildError;
+    fn build(set: S, (): &()) -> Result<Self, BuildError> {
+        P2mIndex::build_with(set, &P2mOptions::as_in_paper()).map(Self)
+    }
 }
 
 /// A k-DOP tree with user-defined directions, of which three are orthogonal or none.

@@ -1,8 +1,8 @@
 //! Answers depend neither on the locator nor on the filter of lists.
 
 use crate::{
-    BuildListFilter, BuildLocator, KdTreeLocator, ListFilter, Locator, LocatorSites, P2mIndex, P2mOptions, PaperIndex,
-    Region, RegionTree,
+    BuildListFilter, BuildLocator, KdTreeLocator, ListFilter, Locator, LocatorSites, P2mIndex, P2mOptions, Region,
+    RegionTree,
 };
 use nalgebra::Point3;
 use p2m_core::storage::{SavedFile, Writer};
@@ -193,7 +193,7 @@ fn the_kd_tree_leads_to_the_answer_in_degenerate_scenes() {
         let expected = answers(&BruteForce::new(soup).expect("valid"), &queries);
         let options = P2mOptions::default().with_locator(KdTreeLocator::build);
         assert_eq!(answers(&Index::build(soup, &options).expect("valid"), &queries), expected, "{name}");
-        let paper = PaperIndex::new(soup).expect("valid");
+        let paper = Index::build(soup, &P2mOptions::as_in_paper()).expect("valid");
         assert_eq!(answers(&paper, &queries), expected, "{name}, as in the paper");
     }
 }

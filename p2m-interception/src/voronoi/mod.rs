@@ -43,8 +43,6 @@ pub(crate) mod locator;
 pub(crate) mod neighbour_block;
 pub(crate) mod neighbours;
 pub(crate) mod packet_cells;
-#[cfg(feature = "paper")]
-pub(crate) mod paper;
 pub(crate) mod primitive_frame;
 pub(crate) mod query;
 #[cfg(feature = "paper")]

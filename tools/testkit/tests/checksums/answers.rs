@@ -7,11 +7,10 @@ use p2m::batch::{BatchOptions, closest_points_into};
 use p2m::core::Isa;
 use p2m::field::sign::SignedDistance;
 use p2m::pair::{ClosestPair, PairOptions, PairQuery};
-use p2m::paper::PaperIndex;
 use p2m::storage::{SavedFile, Writer};
 use p2m::{
     AabbTree, BruteForce, BuildIndex, CertifiedQuery, Closest, Feature, Hit, KdopTree, NearQuery, OctreeIndex,
-    P2mIndex, Primitive, PrimitiveSet, QueryOptions, RayQuery, Real, Soup,
+    P2mIndex, P2mOptions, Primitive, PrimitiveSet, QueryOptions, RayQuery, Real, Soup,
 };
 use p2m_testkit::families::{self, Span};
 use p2m_testkit::rays::{AIMS, ray};
@@ -177,8 +176,8 @@ fn of_scene<T: Real>(
         "octree": OctreeIndex<T, &Soup<T>>,;
         "p2m": P2mIndex<T, &Soup<T>>,;
     }
-    // This index is not saved.
-    let paper = PaperIndex::new(soup).expect("valid");
+    // A saved index has neither the locator nor the filters of the paper.
+    let paper = P2mIndex::build_with(soup, &P2mOptions::as_in_paper()).expect("valid");
     for isa in Isa::available() {
         asked.points(&paper.clone().with_isa(isa), &format!("paper ({isa})"));
     }
