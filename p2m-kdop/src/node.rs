@@ -133,11 +133,12 @@ impl<const K: usize> WideNode for KdopNode<K> {
 
     fn ray(table: &DirectionTable<K>, line: &FrameLine) -> [SlabRay; K] {
         let [base, direction] = [line.base, line.direction].map(Vector3::from);
-        let normals = table.directions.normals();
-        std::array::from_fn(|j| {
-            let n = &normals[2 * (j % (K / 2))];
-            SlabRay::new(n.dot(&base), n.dot(&direction), line.margin * 2.0)
-        })
+        // An array cannot have K / 2 entries, so the second half is unused.
+        let mut ray = [SlabRay::default(); K];
+        for (slab, faces) in ray.iter_mut().zip(table.directions.normals().chunks_exact(2)) {
+            *slab = SlabRay::new(faces[0].dot(&base), faces[0].dot(&direction), line.margin * 2.0);
+        }
+        ray
     }
 
     #[inline(always)]

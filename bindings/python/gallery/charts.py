@@ -6,7 +6,7 @@
 The data are made by these commands:
 
     cargo run --release -p p2m-bench -- tables
-    cargo run --release --bin p2m -- tradeoff ../shared/models/dragon_100k.obj --random 20000 \\
+    cargo run --release -p p2m-cli -- tradeoff ../shared/models/dragon_100k.obj --random 20000 \\
         --csv docs/measurements/tradeoff_dragon.csv
 """
 

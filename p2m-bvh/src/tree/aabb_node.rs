@@ -92,6 +92,7 @@ impl WideNode for BoxNode {
         Height::new(std::array::from_fn(|k| (if direction[k] < 0.0 { k } else { k + 3 }, direction[k])))
     }
 
+    #[inline(always)]
     fn ray((): &(), line: &FrameLine) -> [SlabRay; 3] {
         std::array::from_fn(|k| SlabRay::new(line.base[k], line.direction[k], line.margin))
     }

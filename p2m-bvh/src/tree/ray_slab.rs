@@ -9,7 +9,7 @@ use p2m_core::engine::vector::power_of_two;
 pub(crate) const MIN_SLAB_GROWTH: f64 = power_of_two(-40);
 
 /// The product of a ray with the normal of a slab, with the sign with which it grows along the ray.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, Default)]
 pub struct SlabRay {
     /// The product at the base of the ray, rounded up.
     high: f32,

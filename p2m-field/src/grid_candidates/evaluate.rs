@@ -4,7 +4,7 @@ use super::candidates::Candidates;
 use super::error_bounds::{ERROR_PER_REACH, INSIDE_MARGIN_PER_REACH, UNDERFLOW_ERROR};
 use super::groups::Groups;
 use super::squared_distances::squared_distances;
-use p2m_core::engine::simd::{Doubles, Float, InstructionSet, SimdKernel};
+use p2m_core::engine::simd::{Doubles, Float, InstructionSet, Isa, SimdKernel};
 
 /// Evaluates candidates at the points of a grid with these coordinates along its axes.
 pub(crate) struct Evaluate<'a> {
@@ -18,6 +18,13 @@ pub(crate) struct Evaluate<'a> {
 const CHUNK_POINTS: usize = 64;
 /// Points in the lanes of one vector.
 const LANES: usize = 8;
+
+impl Evaluate<'_> {
+    /// Runs the kernel. This function is not generic, so the kernel is compiled in this crate.
+    pub(crate) fn run_on(self, isa: Isa) -> Vec<usize> {
+        isa.run(self)
+    }
+}
 
 impl SimdKernel for Evaluate<'_> {
     /// The numbers of the values whose rounding the error bound does not determine.

@@ -130,7 +130,7 @@ impl<'a, S: PrimitiveSet<f64> + ?Sized> CandidateLists<'a, S> {
     #[must_use]
     pub fn narrowed(&self, candidates: &Candidates, part: &Aabb<f64>, detail: Detail) -> Candidates {
         assert!(candidates.covers(part), "{part:?} is not in the box of these candidates");
-        self.isa.run(Narrow { groups: &self.groups, candidates, part, detail })
+        Narrow { groups: &self.groups, candidates, part, detail }.run_on(self.isa)
     }
 
     /// Computes the distances at all points (x, y, z) of a grid in the box of `candidates`.
@@ -153,7 +153,7 @@ impl<'a, S: PrimitiveSet<f64> + ?Sized> CandidateLists<'a, S> {
         let end = |pick: fn(f64, f64) -> f64| Point3::from(axes.map(|axis| axis.iter().copied().fold(axis[0], pick)));
         assert!(candidates.covers(&Aabb { min: end(f64::min), max: end(f64::max) }), "points outside of the box");
         let evaluate = Evaluate { groups: &self.groups, candidates, axes, values: &mut *values };
-        let ambiguous = self.isa.run(evaluate);
+        let ambiguous = evaluate.run_on(self.isa);
         let [xs, ys, _] = axes;
         for &n in &ambiguous {
             let [i, j, k] = [n % xs.len(), n / xs.len() % ys.len(), n / (xs.len() * ys.len())];

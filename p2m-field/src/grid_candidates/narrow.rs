@@ -8,7 +8,7 @@ use super::error_bounds::{ERROR_PER_REACH, INSIDE_MARGIN_PER_REACH, UNDERFLOW_ER
 use super::groups::{Entry, Group, Groups};
 use super::squared_distances::{squared_distances, squared_distances_from_box};
 use p2m_core::Aabb;
-use p2m_core::engine::simd::{Doubles, Float, InstructionSet, SimdKernel};
+use p2m_core::engine::simd::{Doubles, Float, InstructionSet, Isa, SimdKernel};
 use p2m_core::engine::vector::{V3, larger, norm_squared, sub};
 
 /// The bounding ball of a box, which bounds the distances of its points.
@@ -71,6 +71,13 @@ fn is_kept<D: Doubles>(squares: D, dominators: &[D; 8]) -> bool {
         is_kept &= squares.at_most(*dominator) != 0;
     }
     is_kept
+}
+
+impl Narrow<'_> {
+    /// Runs the kernel. This function is not generic, so the kernel is compiled in this crate.
+    pub(crate) fn run_on(self, isa: Isa) -> Candidates {
+        isa.run(self)
+    }
 }
 
 impl SimdKernel for Narrow<'_> {
