@@ -163,8 +163,14 @@ impl<V: Volume> PacketTree<V> {
         let only_crossings = collector.only_crossings();
         let Some(radius) = self.search_radius(ray, only_crossings) else { return };
         let (limit, intersect) = (collector.limit(), intersection(set, ray, only_crossings));
-        let mut tests =
-            ExactTests { leaves: &self.leaves, ray, only_crossings, hits: collector, intersect: &intersect };
+        let mut tests = ExactTests {
+            leaves: &self.leaves,
+            isa: self.isa,
+            ray,
+            only_crossings,
+            hits: collector,
+            intersect: &intersect,
+        };
         let [nodes, packets] = V::cast(self, ray, radius, limit, &mut |packet, lane| tests.test(packet, lane));
         tests.hits.record_visits(nodes, packets);
     }

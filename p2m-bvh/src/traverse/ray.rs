@@ -13,7 +13,7 @@ use crate::tree::node_ref::NodeRef;
 use crate::tree::wide_node::{VolumeNodes, WideNode, entries};
 use crate::tree::{Leaves, PacketTree};
 use p2m_core::engine::simd::{InstructionSet, Lanes, SimdKernel};
-use p2m_core::{Crossing, Ray, RayCollector};
+use p2m_core::{Crossing, Isa, Ray, RayCollector};
 use std::ops::ControlFlow;
 
 /// The exact test of a primitive, which is given by its packet and its lane. It returns the parameter of the ray above
@@ -80,6 +80,7 @@ fn test_all(leaves: &Leaves, test: TestFn<'_>) -> usize {
 /// The exact tests of a ray with primitives.
 pub(crate) struct ExactTests<'a, 'r, C> {
     pub(crate) leaves: &'a Leaves,
+    pub(crate) isa: Isa,
     pub(crate) ray: &'r Ray,
     pub(crate) only_crossings: bool,
     pub(crate) hits: &'a mut C,
@@ -87,29 +88,47 @@ pub(crate) struct ExactTests<'a, 'r, C> {
 }
 
 impl<'r, C: RayCollector<'r>> ExactTests<'_, 'r, C> {
-    /// Tests the primitive in a lane of a packet, as a [`TestFn`]. It is never inlined, so that it is compiled once for all
-    /// volumes and sets.
+    /// Tests the primitive in a lane of a packet, as a [`TestFn`].
     #[inline(never)]
     pub(crate) fn test(&mut self, packet: usize, lane: usize) -> Option<f64> {
-        let packet = &self.leaves.packets[packet];
+        self.isa.run(ExactTest { tests: self, packet, lane })
+    }
+}
+
+/// An exact test as a kernel. It has no lanes, but processors with more instructions copy its structures faster. It does
+/// not depend on the volume and on the set.
+struct ExactTest<'t, 'a, 'r, C> {
+    tests: &'t mut ExactTests<'a, 'r, C>,
+    packet: usize,
+    lane: usize,
+}
+
+impl<'r, C: RayCollector<'r>> SimdKernel for ExactTest<'_, '_, 'r, C> {
+    type Output = Option<f64>;
+
+    #[inline(always)]
+    fn run<I: InstructionSet>(self) -> Option<f64> {
+        let Self { tests: ExactTests { leaves, ray, only_crossings, hits, intersect, .. }, packet, lane } = self;
+        let packet = &leaves.packets[packet];
         let id = packet.ids()[lane];
-        if self.hits.wants(id) {
-            self.hits.visit_primitive();
-            let limit = self.hits.limit();
+        if hits.wants(id) {
+            hits.visit_primitive();
+            let limit = hits.limit();
             let (indices, count) = packet.vertices_of(lane);
             let crossing = if count == 0 {
-                (self.intersect)(id, limit)
+                intersect(id, limit)
             } else {
-                let vertices = indices.map(|index| self.leaves.vertices[index]);
-                Crossing::from_vertices(self.ray, &vertices[..count], limit, self.only_crossings)
+                let [a, b, c] = indices;
+                let vertices = [leaves.vertices[a], leaves.vertices[b], leaves.vertices[c]];
+                Crossing::from_vertices(ray, &vertices[..count], limit, *only_crossings)
             };
             if let Some(crossing) = crossing
-                && self.hits.offer(id, &crossing).is_break()
+                && hits.offer(id, &crossing).is_break()
             {
                 return None;
             }
         }
-        Some(self.hits.limit())
+        Some(hits.limit())
     }
 }
 
