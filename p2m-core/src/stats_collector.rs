@@ -24,12 +24,11 @@ impl<T: Real> StatsCollector<T> {
     }
 
     /// Runs a search with [`best`](Self::best), and adds its work to the counters.
-    #[allow(clippy::cast_possible_truncation, reason = "a search has fewer visits than addresses")]
     pub fn count(&mut self, search: impl FnOnce(&mut Best<T>)) {
         let before = self.best.minimum_ref().counts();
         search(&mut self.best);
         let after = self.best.minimum_ref().counts();
-        let [nodes, packets, primitives] = [0, 1, 2].map(|i| (after[i] - before[i]) as usize);
+        let [nodes, packets, primitives] = [0, 1, 2].map(|i| (after[i].wrapping_sub(before[i])) as usize);
         self.nodes += nodes;
         self.packets += packets;
         self.primitives += primitives;

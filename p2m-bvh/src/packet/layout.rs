@@ -157,7 +157,8 @@ impl Packet {
     #[inline(always)]
     fn corners(&self, lane: usize) -> [usize; 3] {
         let [a, b, c] = &self.corners;
-        [a[lane], b[lane], c[lane]].map(|index| self.vertex_offset as usize + usize::from(index))
+        let offset = self.vertex_offset as usize;
+        [offset + usize::from(a[lane]), offset + usize::from(b[lane]), offset + usize::from(c[lane])]
     }
 
     /// The corners of the triangle in a lane; `None` if the packet has no triangles.

@@ -88,7 +88,9 @@ pub(crate) fn traverse<I: InstructionSet, V: VolumeNodes, W: Visitor<V>>(tree: &
     // The pending children of a node are in descending order of their keys. Each entry has the key of a child, which
     // combines its bound and its slot, and the node of which it is a child.
     let mut keys = [0u32; SHORT_STACK_LEN];
-    let mut parents = [0u32; SHORT_STACK_LEN];
+    // The arrays begin with different values, because both would otherwise be filled by one call of a function, which
+    // takes longer than a few instructions for each.
+    let mut parents = [u32::MAX; SHORT_STACK_LEN];
     // Entries below those of the two arrays. Only deep trees have some.
     let mut below = Vec::new();
     let mut top = 0;

@@ -94,7 +94,8 @@ impl WideNode for BoxNode {
 
     #[inline(always)]
     fn ray((): &(), line: &FrameLine) -> [SlabRay; 3] {
-        std::array::from_fn(|k| SlabRay::new(line.base[k], line.direction[k], line.margin))
+        let slab = |k: usize| SlabRay::new(line.base[k], line.direction[k], line.margin);
+        [slab(0), slab(1), slab(2)]
     }
 
     #[inline(always)]

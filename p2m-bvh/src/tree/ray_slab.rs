@@ -25,7 +25,7 @@ impl SlabRay {
     /// Makes the ray from its product with the normal at its base, the growth of that product per unit of length, and
     /// a bound on the error of the product.
     #[allow(clippy::cast_possible_truncation, reason = "rounded outwards, and the margins allow for it")]
-    #[inline]
+    #[inline(always)]
     pub fn new(product: f64, growth: f64, margin: f64) -> Self {
         let is_negated = growth < 0.0;
         let product = if is_negated { -product } else { product };

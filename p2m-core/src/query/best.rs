@@ -36,9 +36,9 @@ pub struct BestF64 {
     /// Whether the options allow an answer other than the exact one.
     approximate: bool,
     /// The number of nodes and packets after whose visit an approximate search may stop.
-    max_visits: u64,
+    max_visits: u32,
     /// The numbers of nodes that were visited, of packets that were filtered, and of primitives that were offered.
-    counts: [u64; 3],
+    counts: [u32; 3],
 }
 
 /// The factor of epsilon, 2^100, beyond which any answer suffices; squares of it stay in range.
@@ -63,7 +63,7 @@ impl<T: Real> Best<T> {
             key: Key::INFINITY,
             certified: f64::INFINITY,
             approximate: options.is_approximate(),
-            max_visits: u64::from(options.max_visits),
+            max_visits: options.max_visits,
             counts: [0; 3],
         };
         Self { hint: options.hint, minimum, scalar: PhantomData }
@@ -139,7 +139,7 @@ impl BestF64 {
 
     /// Returns the numbers of nodes, packets and primitives of the search so far.
     #[must_use]
-    pub fn counts(&self) -> [u64; 3] {
+    pub fn counts(&self) -> [u32; 3] {
         self.counts
     }
 
@@ -213,7 +213,8 @@ impl Collector for BestF64 {
     #[inline(always)]
     fn may_stop(&self, has_incumbent: bool) -> bool {
         // A search without a candidate at a finite distance goes on, however many visits it took.
-        self.counts[0] + self.counts[1] >= self.max_visits && (has_incumbent || self.key.distance() < f64::INFINITY)
+        self.counts[0].saturating_add(self.counts[1]) >= self.max_visits
+            && (has_incumbent || self.key.distance() < f64::INFINITY)
     }
 
     #[inline(always)]
