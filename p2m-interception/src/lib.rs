@@ -54,8 +54,6 @@ mod options;
 mod parallel_chunks;
 mod partition;
 mod progress;
-#[cfg(test)]
-mod tests;
 mod voronoi;
 
 pub use index::{InterceptionIndex, OctreeIndex, P2mIndex};

@@ -44,6 +44,7 @@ impl<const K: usize> Rows for KdopNode<K> {
 }
 
 impl<const K: usize> WideNode for KdopNode<K> {
+    const INLINES_PORTABLE: bool = false;
     type Volume = Kdop<K>;
     type Shared = DirectionTable<K>;
     type Bounds = [f32; K];

@@ -42,13 +42,13 @@ impl Packet {
     /// A mask with one bit for each lane that a line may hit.
     ///
     /// Only hits between the lengths `from` and `to` count, which are measured from the origin of the line in units
-    /// of the scene.
+    /// of the scene. `is_inlined` tells whether the caller contains the code of the filter.
     #[inline(always)]
-    pub fn lanes_hit_by<I: InstructionSet>(&self, line: &RayLine, from: f64, to: f64) -> u32 {
+    pub fn lanes_hit_by<I: InstructionSet>(&self, is_inlined: bool, line: &RayLine, from: f64, to: f64) -> u32 {
         match self.position_of(line, from, to) {
             LinePosition::Beside => 0,
             LinePosition::Unknown => self.lanes(),
-            LinePosition::Near(local) if I::F32x8::INLINES => self.lanes_near::<I>(&local) & self.lanes(),
+            LinePosition::Near(local) if is_inlined => self.lanes_near::<I>(&local) & self.lanes(),
             LinePosition::Near(local) => self.lanes_near_out_of_line::<I>(&local) & self.lanes(),
         }
     }
@@ -263,7 +263,7 @@ mod tests {
         #[inline(always)]
         fn run<I: InstructionSet>(self) -> u32 {
             let Self(packet, line, [from, to]) = self;
-            packet.lanes_hit_by::<I>(line, from, to)
+            packet.lanes_hit_by::<I>(true, line, from, to)
         }
     }
 

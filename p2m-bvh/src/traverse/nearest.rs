@@ -12,7 +12,7 @@ use crate::traverse::primitive_fn::{EvaluateFn, evaluation};
 use crate::traverse::search_state::SearchState;
 use crate::traverse::{Visitor, evaluate, traverse};
 use crate::tree::node_ref::NodeRef;
-use crate::tree::wide_node::{VolumeNodes, WideNode, lower_bounds};
+use crate::tree::wide_node::{VolumeNodes, WideNode, is_inlined, lower_bounds};
 use crate::tree::{Leaves, PacketTree};
 use nalgebra::Point3;
 use p2m_core::engine::real::to_f64_array;
@@ -74,9 +74,10 @@ impl<V: VolumeNodes, C: Collector> SimdKernel for Search<'_, V, C> {
     fn run<I: InstructionSet>(self) {
         let tree = self.tree;
         let Some(local) = V::Node::query(&tree.shared, &tree.frame, &self.query) else { return self.run_far() };
-        let mut state = SearchState::new(tree, self.query, self.reach, self.collector, self.evaluate, self.finish);
-        state.hold(self.held, self.reach);
+        // The state is made where it stays, because it is large and would otherwise be copied.
+        let state = SearchState::new(tree, self.query, self.reach, self.collector, self.evaluate, self.finish);
         let mut visitor = NearestVisitor { state, shared: &tree.shared, local };
+        visitor.state.hold(self.held, self.reach);
         traverse::<I, V, _>(tree, &mut visitor);
         visitor.state.evaluate_pending();
     }
@@ -164,7 +165,7 @@ impl<V: VolumeNodes, C: Collector> Visitor<V> for NearestVisitor<'_, V, C> {
     #[inline(always)]
     fn visit_packet<I: InstructionSet>(&mut self, number: usize) -> ControlFlow<()> {
         if self.state.collector.has_inlined_filters() {
-            self.state.packet::<I>(number, self.state.leaves.packets[number].lanes());
+            self.state.packet_inlined_if::<I>(is_inlined::<V, I>(), number, self.state.leaves.packets[number].lanes());
         } else {
             self.state.run_of_packets::<I>(number);
         }

@@ -10,7 +10,7 @@ use crate::traverse::primitive_fn::IntersectFn;
 use crate::traverse::{Visitor, traverse};
 use crate::tree::frame_line::{FrameLine, misses_scene};
 use crate::tree::node_ref::NodeRef;
-use crate::tree::wide_node::{VolumeNodes, WideNode, entries};
+use crate::tree::wide_node::{VolumeNodes, WideNode, entries, is_inlined};
 use crate::tree::{Leaves, PacketTree};
 use p2m_core::engine::simd::{InstructionSet, Lanes, SimdKernel};
 use p2m_core::{Crossing, Isa, Ray, RayCollector};
@@ -178,7 +178,8 @@ impl<V: VolumeNodes> Visitor<V> for RayVisitor<'_, V> {
         loop {
             self.visits[1] = self.visits[1].wrapping_add(1);
             self.leaves.prefetch_vertices(number);
-            let mut passed = self.leaves.packets[number].lanes_hit_by::<I>(&self.line, self.from, self.to);
+            let (packet, is_inlined) = (&self.leaves.packets[number], is_inlined::<V, I>());
+            let mut passed = packet.lanes_hit_by::<I>(is_inlined, &self.line, self.from, self.to);
             while passed != 0 {
                 let lane = passed.trailing_zeros() as usize;
                 passed &= passed - 1;

@@ -160,7 +160,13 @@ impl<'a, C: Collector> SearchState<'a, C> {
     /// Filters some lanes of a packet. Primitives that may be the answer become pending.
     #[inline(always)]
     pub fn packet<I: InstructionSet>(&mut self, number: usize, lanes: u32) {
-        if I::F32x8::INLINES {
+        self.packet_inlined_if::<I>(I::F32x8::INLINES, number, lanes);
+    }
+
+    /// Filters some lanes of a packet, inlined or not.
+    #[inline(always)]
+    pub fn packet_inlined_if<I: InstructionSet>(&mut self, is_inlined: bool, number: usize, lanes: u32) {
+        if is_inlined {
             self.packet_inline::<I>(number, lanes);
         } else {
             I::call(OnePacket { state: self, number, lanes });

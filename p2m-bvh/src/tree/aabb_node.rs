@@ -32,6 +32,7 @@ impl Rows for BoxNode {
 }
 
 impl WideNode for BoxNode {
+    const INLINES_PORTABLE: bool = true;
     type Volume = Aabb<f64>;
     type Shared = ();
     type Bounds = FrameBox;

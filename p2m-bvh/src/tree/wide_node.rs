@@ -6,7 +6,7 @@ use crate::tree::frame_line::FrameLine;
 use crate::tree::node_ref::{NodeRef, WIDTH};
 use p2m_core::Aabb;
 use p2m_core::engine::pairs::{Height, Rows};
-use p2m_core::engine::simd::Lanes;
+use p2m_core::engine::simd::{InstructionSet, Lanes};
 use p2m_core::storage::{LoadError, Reader, Writer};
 use std::fmt::Debug;
 
@@ -14,6 +14,9 @@ use std::fmt::Debug;
 ///
 /// A child stands in one of eight slots, which are the lanes of its bounds.
 pub trait WideNode: Rows + Copy + Debug + Send + Sync {
+    /// Whether searches contain the bounds of nodes and the filter of packets in portable code as well, where
+    /// [processors have faster lanes](Lanes::INLINES). Each type of nodes costs a copy of that code.
+    const INLINES_PORTABLE: bool;
     /// The bounding volume of a child, in coordinates of the scene.
     type Volume;
     /// The data that all nodes of a tree share, such as the directions of k-DOPs.
@@ -102,10 +105,20 @@ pub trait VolumeNodes: Clone + 'static {
     fn load_shared(reader: &Reader) -> Result<Self::Shared, LoadError>;
 }
 
+/// Whether searches of trees with volumes `V` contain the filter of packets.
+#[inline(always)]
+pub(crate) fn is_inlined<V: VolumeNodes, I: InstructionSet>() -> bool {
+    I::F32x8::INLINES || V::Node::INLINES_PORTABLE
+}
+
 /// Bounds on the children of a node as [`WideNode::lower_bounds`], inlined or not as the lanes prefer it.
 #[inline(always)]
 pub(crate) fn lower_bounds<N: WideNode, L: Lanes>(node: &N, shared: &N::Shared, query: &N::Query) -> L {
-    if L::INLINES { node.lower_bounds(shared, query) } else { lower_bounds_out_of_line(node, shared, query) }
+    if L::INLINES || N::INLINES_PORTABLE {
+        node.lower_bounds(shared, query)
+    } else {
+        lower_bounds_out_of_line(node, shared, query)
+    }
 }
 
 #[inline(never)]
@@ -116,7 +129,7 @@ fn lower_bounds_out_of_line<N: WideNode, L: Lanes>(node: &N, shared: &N::Shared,
 /// Bounds on the children of a node as [`WideNode::entries`], inlined or not as the lanes prefer it.
 #[inline(always)]
 pub(crate) fn entries<N: WideNode, L: Lanes>(node: &N, ray: &N::Ray) -> L {
-    if L::INLINES { node.entries(ray) } else { entries_out_of_line(node, ray) }
+    if L::INLINES || N::INLINES_PORTABLE { node.entries(ray) } else { entries_out_of_line(node, ray) }
 }
 
 #[inline(never)]

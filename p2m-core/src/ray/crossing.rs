@@ -85,9 +85,10 @@ impl<'a> Crossing<'a> {
     /// Returns the hit on a triangle. It is also `None` if its parameter certainly exceeds `limit`.
     #[inline(always)]
     fn from_triangle(ray: &'a Ray, vertices: [V3; 3], limit: f64, only_crossings: bool) -> Option<Self> {
-        let offsets = vertices.map(|v| sub(v, ray.origin));
-        let [bc, ca, ab] =
-            [(1, 2), (2, 0), (0, 1)].map(|(i, j)| certain_sign(&ray.direction, &offsets[i], &offsets[j]));
+        let [a, b, c] = vertices;
+        let offsets = [sub(a, ray.origin), sub(b, ray.origin), sub(c, ray.origin)];
+        let sign = |i: usize, j: usize| certain_sign(&ray.direction, &offsets[i], &offsets[j]);
+        let (bc, ca, ab) = (sign(1, 2), sign(2, 0), sign(0, 1));
         let (above, below) = (bc > 0 || ca > 0 || ab > 0, bc < 0 || ca < 0 || ab < 0);
         if above && below {
             return None;

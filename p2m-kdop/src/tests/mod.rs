@@ -2,4 +2,3 @@
 
 mod lower_bound;
 mod ray_entries;
-mod tree;

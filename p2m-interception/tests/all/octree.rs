@@ -2,12 +2,12 @@
 //! `tests/all/agreement.rs` compares its answers with brute force.
 #![allow(clippy::float_cmp, reason = "bitwise equality is what is tested")]
 
-use crate::{Domain, OctreeReport, RefinementProgress};
-use crate::{OctreeIndex, OctreeOptions};
 use nalgebra::{Point3, Vector3};
 use p2m_core::{Aabb, BruteForce, BuildIndex, ClosestPoint, Point, PrimitiveId, PrimitiveSet, Segment, Shape, Soup};
 use p2m_core::{Collector, StatsCollector};
 use p2m_core::{Isa, Projection};
+use p2m_interception::{Domain, OctreeReport, RefinementProgress};
+use p2m_interception::{OctreeIndex, OctreeOptions};
 use p2m_mixed::generate::{IcoSphere, ico_sphere};
 use p2m_testkit::scenes::{self, KINDS, Kinds, LAYOUTS, Layout, kinds_and_layout};
 use p2m_testkit::{amount, cases, rng};

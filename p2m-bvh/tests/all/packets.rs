@@ -1,8 +1,8 @@
 //! Tests packets and wide nodes: every instruction set, other collectors, moved sets, batches, and the work of queries.
 #![allow(clippy::float_cmp, reason = "bitwise equality is what is tested")]
 
-use crate::{AabbTree, SplitOptions};
 use nalgebra::{Point3, Vector3};
+use p2m_bvh::{AabbTree, SplitOptions};
 use p2m_core::{Best, Collector, StatsCollector};
 use p2m_core::{
     BruteForce, BuildError, BuildIndex, Closest, ClosestPoint, Point, Primitive, PrimitiveId, PrimitiveSet,
@@ -169,7 +169,8 @@ fn trees_of_every_shape_are_built() {
     for max_leaf in [0, 1, 2, 3, 4, 8, 16, 17, 100, 1000, usize::MAX] {
         for (layout, len) in [(Layout::Strewn, 300), (Layout::Sheet, 70), (Layout::Strewn, 5)] {
             let soup = scenes::soup(&mut rng, Kinds::Mixed, layout, len);
-            let options = SplitOptions { max_leaf, ..SplitOptions::default() };
+            let mut options = SplitOptions::default();
+            options.max_leaf = max_leaf;
             let tree = AabbTree::build(&soup, &options).expect("valid");
             let brute = BruteForce::new(&soup).expect("valid");
             for _ in 0..50 {

@@ -1,11 +1,11 @@
 //! Checks that primitives left out of lists are never the answer, and that added sites change no answer. In the scenes
 //! many primitives share a vertex or an edge, coincide, have vertices that nearly coincide, or are equally far from the
 //! middle of a round shape.
-use super::agreement;
-use crate::P2mReport;
-use crate::{P2mIndex, P2mOptions};
+use crate::agreement;
 use nalgebra::{Point3, Vector3};
 use p2m_core::{BuildIndex, Element, PrimitiveSet, Real, Soup};
+use p2m_interception::P2mReport;
+use p2m_interception::{P2mIndex, P2mOptions};
 use p2m_testkit::scenes::narrow;
 use p2m_testkit::{amount, cases, rng, vector};
 

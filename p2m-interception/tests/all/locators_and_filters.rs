@@ -1,12 +1,12 @@
 //! Answers depend neither on the locator nor on the filter of lists.
 
-use crate::{
-    BuildListFilter, BuildLocator, KdTreeLocator, ListFilter, Locator, LocatorSites, P2mIndex, P2mOptions, Region,
-    RegionTree,
-};
 use nalgebra::Point3;
 use p2m_core::storage::{SavedFile, Writer};
 use p2m_core::{BruteForce, BuildIndex, ClosestPoint, Element, Soup, StatsCollector};
+use p2m_interception::{
+    BuildListFilter, BuildLocator, KdTreeLocator, ListFilter, Locator, LocatorSites, P2mIndex, P2mOptions, Region,
+    RegionTree,
+};
 use p2m_testkit::scenes::{self, Kinds, Layout, kinds_and_layout};
 use p2m_testkit::{amount, cases, rng, vector};
 use std::sync::Arc;

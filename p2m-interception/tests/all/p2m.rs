@@ -2,15 +2,15 @@
 //! the work of queries. `tests/all/agreement.rs` compares its answers with brute force on random scenes.
 #![allow(clippy::float_cmp, reason = "bitwise equality is what is tested")]
 
-use super::agreement;
-use crate::{BuildStage, Partition, Progress};
-use crate::{P2mIndex, P2mOptions};
+use crate::agreement;
 use nalgebra::{Point3, Vector3};
 use p2m_core::Projection;
 use p2m_core::StatsCollector;
 use p2m_core::{
     Aabb, BruteForce, BuildIndex, Closest, ClosestPoint, Point, Primitive, PrimitiveSet, Segment, Shape, Soup, Triangle,
 };
+use p2m_interception::{BuildStage, Partition, Progress};
+use p2m_interception::{P2mIndex, P2mOptions};
 use p2m_testkit::ball::Ball;
 use p2m_testkit::near_check::compared_fields;
 use p2m_testkit::scenes::{self, Kinds, Layout, kinds_and_layout};

@@ -1,8 +1,8 @@
 //! Checks an interception index against brute force with every instruction set.
 
-use crate::{InterceptionIndex, Partition};
 use nalgebra::Point3;
 use p2m_core::{BruteForce, Closest, ClosestPoint, Isa, PrimitiveSet, Real};
+use p2m_interception::{InterceptionIndex, Partition};
 
 /// Checks that an index returns the same distance bits and primitive as brute force, with each instruction set, one
 /// query at a time and interleaved. `name` stands in the message of a failure.

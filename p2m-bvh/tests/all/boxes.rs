@@ -1,9 +1,9 @@
 //! Compares box queries with exact rational arithmetic and brute force, and tests the leaf nearest to a point.
 #![allow(clippy::float_cmp, reason = "exact results are what is tested")]
 
-use crate::AabbTree;
-use crate::SplitRule;
 use nalgebra::Point3;
+use p2m_bvh::AabbTree;
+use p2m_bvh::SplitRule;
 use p2m_core::{
     Aabb, BoxQuery, BruteForce, BuildIndex, ClosestPoint, Primitive, PrimitiveId, PrimitiveSet, Real, Shape, Soup,
 };
@@ -173,7 +173,7 @@ fn trees_find_the_same_primitives_as_brute_force_in_random_scenes() {
         let mut rng = rng("boxes in scenes", case);
         let ((kinds, layout), rule) = (kinds_and_layout(case), rules[(case / 24) as usize % rules.len()]);
         let soup = scenes::soup(&mut rng, kinds, layout, amount(300, 120));
-        let tree = AabbTree::build(&soup, &crate::SplitOptions::default().with_rule(rule)).unwrap();
+        let tree = AabbTree::build(&soup, &p2m_bvh::SplitOptions::default().with_rule(rule)).unwrap();
         let brute = BruteForce::new(&soup).unwrap();
         let (mut found, mut expected) = (Vec::new(), Vec::new());
         for _ in 0..amount(100, 10) {
@@ -195,7 +195,7 @@ fn split_rules_change_no_answer() {
         let soup = scenes::soup(&mut rng, Kinds::Mixed, layout, amount(500, 150));
         let brute = BruteForce::new(&soup).unwrap();
         for rule in SplitRule::ALL {
-            let tree = AabbTree::build(&soup, &crate::SplitOptions::default().with_rule(rule)).unwrap();
+            let tree = AabbTree::build(&soup, &p2m_bvh::SplitOptions::default().with_rule(rule)).unwrap();
             for _ in 0..amount(50, 8) {
                 let query = random_box(&mut rng, &soup, &soup.aabb()).min;
                 let [a, b] = [tree.closest_point(&query).unwrap(), brute.closest_point(&query).unwrap()];

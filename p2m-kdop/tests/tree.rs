@@ -1,14 +1,14 @@
 //! Tests k-DOP trees: every instruction set, moved sets, box queries, and the work of queries.
 #![allow(clippy::float_cmp, reason = "bitwise equality is what is tested")]
 
-use crate::Directions;
-use crate::{KdopOptions, KdopTree};
 use nalgebra::{Point3, Rotation3, Vector3};
 use p2m_bvh::AabbTree;
 use p2m_bvh::{TreeIndex, Volume};
 use p2m_core::Isa;
 use p2m_core::StatsCollector;
 use p2m_core::{Aabb, BoxQuery, BruteForce, BuildError, ClosestPoint, Point, Primitive, PrimitiveSet, Soup};
+use p2m_kdop::Directions;
+use p2m_kdop::{KdopOptions, KdopTree};
 use p2m_testkit::queries::QuerySet;
 use p2m_testkit::scenes::{self, KINDS, LAYOUTS, kinds_and_layout};
 use p2m_testkit::{amount, cases, rng};

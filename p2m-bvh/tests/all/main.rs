@@ -1,0 +1,5 @@
+//! Tests with the scenes and the oracle of p2m-testkit. They use the crate as others do, so its searches are not compiled
+//! again for them.
+
+mod boxes;
+mod packets;
