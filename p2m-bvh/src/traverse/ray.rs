@@ -22,6 +22,7 @@ pub(crate) type TestFn<'a> = &'a mut dyn FnMut(usize, usize) -> Option<f64>;
 
 impl<V: VolumeNodes> PacketTree<V> {
     /// The distance within which a ray hits primitives that are not triangles; `None` if it certainly misses the scene.
+    #[inline(always)]
     pub(crate) fn search_radius(&self, ray: &Ray, only_crossings: bool) -> Option<f64> {
         let radius = if self.leaves.has_non_triangles && !only_crossings { ray.radius } else { 0.0 };
         (self.root != NodeRef::NONE && !misses_scene(ray, radius + ray.origin_error, &self.frame, &self.half_extent))

@@ -61,7 +61,7 @@ impl<'a> Crossing<'a> {
     #[inline(always)]
     pub fn from_vertices(ray: &'a Ray, vertices: &[V3], limit: f64, only_crossings: bool) -> Option<Self> {
         match vertices {
-            [a, b, c] => Self::from_triangle(ray, [*a, *b, *c], limit, only_crossings),
+            [_, _, _] => Self::from_triangle(ray, vertices.first_chunk()?, limit, only_crossings),
             _ if only_crossings => None,
             _ => Self::from_segment(ray, vertices),
         }
@@ -84,9 +84,9 @@ impl<'a> Crossing<'a> {
 
     /// Returns the hit on a triangle. It is also `None` if its parameter certainly exceeds `limit`.
     #[inline(always)]
-    fn from_triangle(ray: &'a Ray, vertices: [V3; 3], limit: f64, only_crossings: bool) -> Option<Self> {
+    fn from_triangle(ray: &'a Ray, vertices: &[V3; 3], limit: f64, only_crossings: bool) -> Option<Self> {
         let [a, b, c] = vertices;
-        let offsets = [sub(a, ray.origin), sub(b, ray.origin), sub(c, ray.origin)];
+        let offsets = [sub(*a, ray.origin), sub(*b, ray.origin), sub(*c, ray.origin)];
         let sign = |i: usize, j: usize| certain_sign(&ray.direction, &offsets[i], &offsets[j]);
         let (bc, ca, ab) = (sign(1, 2), sign(2, 0), sign(0, 1));
         let (above, below) = (bc > 0 || ca > 0 || ab > 0, bc < 0 || ca < 0 || ab < 0);
@@ -96,20 +96,20 @@ impl<'a> Crossing<'a> {
         let front = if bc != 0 && ca != 0 && ab != 0 {
             below
         } else {
-            match exact_side(ray, &vertices, [bc, ca, ab], only_crossings)? {
+            match exact_side(ray, vertices, [bc, ca, ab], only_crossings)? {
                 Ordering::Less => true,
                 Ordering::Greater => false,
                 Ordering::Equal => {
-                    return Self::from_line_hit(ray, &vertices, &exact(ray, &vertices).coplanar(ray)?);
+                    return Self::from_line_hit(ray, vertices, &exact(ray, vertices).coplanar(ray)?);
                 }
             }
         };
         let side = if front { Side::Front } else { Side::Back };
-        let [low, high] = parameter_bounds(ray, &vertices, &offsets[0]);
+        let [low, high] = parameter_bounds(ray, vertices, &offsets[0]);
         if low > limit || low > ray.max || high < ray.min {
             return None;
         }
-        let crossing = Self { ray, low, high, source: HitSource::Face(vertices, side) };
+        let crossing = Self { ray, low, high, source: HitSource::Face(*vertices, side) };
         if ray.min <= low && high <= ray.max {
             return Some(crossing);
         }
