@@ -112,7 +112,7 @@ fn header(builds: bool) -> Outcome {
 
 /// Runs the fuzz target of the interface, with a library in which overflows are errors.
 fn fuzz(seconds: &str) -> Outcome {
-    cargo(&["build", "--locked", "--package", "p2m-c"], &[])?;
+    cargo(&["build", "--profile", "test", "--locked", "--package", "p2m-c"], &[])?;
     let target = absolute_target_folder()?;
     let (libraries, corpus) = (text(&target.join("debug"))?, target.join("c-corpus"));
     fs::create_dir_all(&corpus).map_err(|error| format!("{}: {error}", corpus.display()))?;

@@ -242,10 +242,10 @@ fn debug_program() -> Result<PathBuf, String> {
     Ok(absolute_target_folder()?.join("debug").join(format!("p2m{}", std::env::consts::EXE_SUFFIX)))
 }
 
-/// Compiles what the tests of other languages need: libraries, examples and the program. The features are about those of
-/// `cargo test --workspace`, so little is compiled after it, and nothing after another of these tasks.
+/// Compiles what the tests of other languages need: libraries, examples and the program. The profile and the features are
+/// about those of `cargo test --workspace`, so little is compiled after it, and nothing after another of these tasks.
 fn build_for_tests() -> Outcome {
-    let build = ["build", "--locked", "--workspace", "--lib", "--examples", "--bin", "p2m"];
+    let build = ["build", "--profile", "test", "--locked", "--workspace", "--lib", "--examples", "--bin", "p2m"];
     cargo(&[&build[..], &["--features", "p2m-python/cuda"]].concat(), &[])
 }
 
