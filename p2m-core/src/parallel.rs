@@ -82,6 +82,9 @@ pub fn map_slice<A: Sync, B: Send>(all: &[A], parallel: bool, f: impl Fn(&A) -> 
 }
 
 /// Maps a list in order, on all threads if `parallel` is set.
+///
+/// # Panics
+/// Panics if `f` does.
 pub fn map_owned<A: Send, B: Send>(all: Vec<A>, parallel: bool, f: impl Fn(A) -> B + Sync) -> Vec<B> {
     let all: Vec<Mutex<Option<A>>> = all.into_iter().map(|item| Mutex::new(Some(item))).collect();
     map(all.len(), parallel, |i| f(lock(&all[i]).take().expect("each item is taken once")))
@@ -91,6 +94,9 @@ pub fn map_owned<A: Send, B: Send>(all: Vec<A>, parallel: bool, f: impl Fn(A) ->
 ///
 /// # Errors
 /// One of the errors of `f`.
+///
+/// # Panics
+/// Panics if `f` does.
 pub fn try_map_owned<A: Send, B: Send, E: Send>(
     all: Vec<A>,
     parallel: bool,
@@ -150,6 +156,9 @@ pub fn try_for_each_chunk<A: Send, E: Send>(
 }
 
 /// Runs two functions, on two threads if `parallel` is set.
+///
+/// # Panics
+/// Panics if one of them does.
 pub fn join<A: Send, B: Send>(parallel: bool, a: impl FnOnce() -> A + Send, b: impl FnOnce() -> B + Send) -> (A, B) {
     if !parallel {
         return (a(), b());
@@ -182,6 +191,9 @@ pub fn with_helpers(help: &(dyn Fn() + Sync), body: &mut dyn FnMut(&dyn Fn())) {
 }
 
 /// Runs `here` on this thread. If `parallel` is set, another thread may run `aside` at the same time.
+///
+/// # Panics
+/// Panics if one of them does.
 pub fn run_beside<A: Send, B>(parallel: bool, aside: impl FnOnce() -> A + Send, here: impl FnOnce() -> B) -> (A, B) {
     if !parallel {
         return (aside(), here());
