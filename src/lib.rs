@@ -77,6 +77,7 @@
 //! | `serde` | [`Soup`] and indexes as values of serde, in the form of saved files | no |
 //! | `kdop` | [`KdopTree`] | yes |
 //! | `backends` | `backends`: every index by its name, and which one a scene and its queries call for | no |
+//! | `formats` | `formats`: scenes and scans in the formats of other programs | no |
 //! | `field` | [`field`]: distances on grids, signs, winding numbers, Hausdorff distances | yes |
 //! | `instances` | [`instances`]: scenes of moving objects | yes |
 //! | `shards` | `shards`: scenes larger than memory, in shards that are loaded on demand | no |

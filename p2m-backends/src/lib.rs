@@ -16,18 +16,16 @@
 //! # Ok::<(), p2m_core::BuildError>(())
 //! ```
 //!
-//! [`Choice`] chooses between trees and an octree by the work of some queries. [`recommend`] builds and times the
-//! backends over a sample of a scene, and recommends one of them.
+//! [`Choice`] chooses the backend that takes the least time for a number of queries, and estimates the time and the
+//! memory of all of them. It counts the work of some queries and measures no time.
 #![forbid(unsafe_code)]
 
-mod advice;
 mod choice;
 mod registry;
 
-pub use advice::{Advice, Estimate, QueryRegion, Workload, recommend};
-pub use choice::Choice;
+pub use choice::{Choice, Estimate, QueryRegion, Workload};
 pub use p2m_core::AnyIndex;
 pub use registry::{
-    BACKENDS, BackendEntry, BuildSettings, BuiltIndex, ChosenDirections, CostModel, KdopDirections, KdopVisitor,
+    BACKENDS, BackendEntry, BuildSettings, BuiltIndex, ChosenDirections, Cost, KdopDirections, KdopVisitor,
     ListFilterKind, LocatorKind, P2mSettings, SearchStructure,
 };

@@ -273,6 +273,23 @@ fn the_choice_of_auto_follows_from_scene_and_queries() {
         let workload = Workload::new(10_000_000, QueryRegion::Like(&points));
         assert_eq!(Choice::new(Arc::clone(&ball), &workload).expect("valid scene").backend().name, "aabb");
     }
+    // Around a closed mesh the cells of vertices often know the answer.
+    let around = far(8.0);
+    let workload = Workload::new(100_000_000, QueryRegion::Like(&around));
+    assert_eq!(Choice::new(Arc::clone(&ball), &workload).expect("valid scene").backend().name, "p2m");
+    // A handful of queries are answered before an index is built.
+    let few = Workload::new(3, QueryRegion::SceneBox);
+    for (workload, expected) in [(few, "brute"), (few.with_needs_index(true), "aabb")] {
+        for choice in [Choice::new(Arc::clone(&ball), &workload), Choice::compare(Arc::clone(&ball), &workload)] {
+            let choice = choice.expect("valid scene");
+            assert_eq!(choice.backend().name, expected);
+            let estimates = choice.estimates();
+            assert_eq!(estimates.len(), BACKENDS.len());
+            assert!(BACKENDS.iter().all(|backend| estimates.iter().any(|e| e.backend == backend)));
+            let built = choice.build(&BuildSettings::default()).expect("valid scene");
+            assert_eq!(built.index.memory_bytes() == 0, expected == "brute");
+        }
+    }
     // Within a small distance the tree has little work.
     let box_of = |radius| {
         let workload = Workload::new(60_000, QueryRegion::SceneBox).with_max_distance(radius);

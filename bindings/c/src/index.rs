@@ -134,7 +134,7 @@ fn build(scene: Arc<p2m_mixed::Scene>, name: &str, options: &IndexOptions) -> Ca
         let settings = BuildSettings::default();
         let settings = settings.with_kdop_directions(directions).with_resolution(resolution);
         if is_auto && queries > 0 {
-            let choice = Choice::new(soup, &Workload::new(queries, QueryRegion::SceneBox))?;
+            let choice = Choice::new(soup, &Workload::new(queries, QueryRegion::SceneBox).with_needs_index(true))?;
             let entry = choice.backend();
             return Ok((choice.build(&settings)?, entry));
         }

@@ -5,14 +5,14 @@ use crate::errors::value_error;
 use crate::scene::Scene;
 use crate::work::run_owned;
 use nalgebra::Point3;
-use p2m_backends::{Estimate, QueryRegion, Workload, recommend};
+use p2m_backends::{Choice, Estimate, QueryRegion, Workload};
 use p2m_core::Position;
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
-use std::time::Duration;
+use std::sync::Arc;
 
-/// The name of a backend, the times of its build and of a query, its memory and the total time; whether they are
-/// measured, the number of queries at which it breaks even, and the reason for its rank.
+/// The name of a backend, the times of its build and of a query, its memory and the total time; whether it is about as
+/// good as the recommended one, the number of queries at which it breaks even, and the reason for its rank.
 type Row = (&'static str, (f64, f64, f64, f64), bool, Option<f64>, String);
 
 /// Returns the estimates of all backends, the recommended one first.
@@ -24,7 +24,6 @@ pub(crate) fn advise(
     region: &str,
     points: Option<Coordinates<'_>>,
     max_bytes: Option<usize>,
-    max_seconds: Option<f64>,
     threads: usize,
 ) -> PyResult<Vec<Row>> {
     let points: Option<Vec<Point3<f64>>> = match points {
@@ -36,8 +35,6 @@ pub(crate) fn advise(
         "box" => false,
         _ => return Err(PyValueError::new_err(format!("region: '{region}' is none of 'near', 'box'"))),
     };
-    let max_time = max_seconds.map_or(Ok(Duration::MAX), Duration::try_from_secs_f64);
-    let max_time = max_time.map_err(|error| PyValueError::new_err(format!("max_seconds: {error}")))?;
     let shared = scene.shared.clone();
     let advice = run_owned(py, threads, 1, None, move |_| {
         let region = match &points {
@@ -45,13 +42,12 @@ pub(crate) fn advise(
             None if is_near => QueryRegion::NearSurface,
             None => QueryRegion::SceneBox,
         };
-        let workload = Workload::new(queries, region).with_max_time(max_time);
-        recommend(&shared.soup, &workload.with_max_bytes(max_bytes.unwrap_or(usize::MAX)))
+        let workload = Workload::new(queries, region).with_max_bytes(max_bytes.unwrap_or(usize::MAX));
+        Choice::compare(Arc::clone(&shared.soup), &workload)
     })?;
     let row = |estimate: &Estimate| {
-        let Estimate { backend, build_seconds, query_seconds, bytes, total_seconds, .. } = *estimate;
-        let costs = (build_seconds, query_seconds, bytes, total_seconds);
-        (backend.name, costs, estimate.is_measured, estimate.break_even, estimate.reason())
+        let costs = (estimate.build_seconds, estimate.query_seconds, estimate.bytes, estimate.total_seconds);
+        (estimate.backend.name, costs, estimate.is_about_best, estimate.break_even, estimate.reason.clone())
     };
-    Ok(advice.map_err(value_error)?.estimates.iter().map(row).collect())
+    Ok(advice.map_err(value_error)?.estimates().into_iter().map(row).collect())
 }

@@ -241,7 +241,7 @@ impl Index {
         let settings = BuildSettings::default().with_kdop_directions(directions).with_resolution(resolution);
         let soup = Arc::clone(&scene.shared.soup);
         let workload = Workload::new(queries.unwrap_or_default(), QueryRegion::SceneBox);
-        let workload = workload.with_max_bytes(max_bytes.unwrap_or(usize::MAX));
+        let workload = workload.with_needs_index(true).with_max_bytes(max_bytes.unwrap_or(usize::MAX));
         let built = run_owned(py, threads, BUILD_UNITS, progress, move |monitor| {
             let choice = if is_chosen { Some(Choice::new(Arc::clone(&soup), &workload)?) } else { None };
             let chosen = choice.as_ref().map_or(entry, Choice::backend);

@@ -196,10 +196,15 @@ def test_objects_of_files_are_in_answers(tmp_path: Path) -> None:
 
 
 def test_advice_and_information(ball: p2m.Scene) -> None:
-    advice = p2m.advise(ball, 10_000_000, max_seconds=0.05)
+    advice = p2m.advise(ball, 10_000_000)
+    assert advice == p2m.advise(ball, 10_000_000, threads=1)
+    assert advice[0].backend == p2m.Index(ball, queries=10_000_000).backend == "octree"
     assert {estimate.backend for estimate in advice} == set(BACKENDS)
     assert advice[0].total_seconds <= advice[1].total_seconds and advice[0].reason
-    assert p2m.advise(ball, 10, points=np.zeros((3, 3)), region="near", max_bytes=0)[0].backend == "brute"
+    assert p2m.advise(ball, 3, points=np.zeros((3, 3)), region="near")[0].backend == "brute"
+    # A limit of memory excludes what is larger than the tree.
+    limited = p2m.advise(ball, 10_000_000, max_bytes=0)
+    assert limited[0].backend == "aabb" and "memory" in limited[-1].reason
     with pytest.raises(ValueError, match="region"):
         p2m.advise(ball, region="far")
     assert p2m.Index(ball).backend == "aabb"

@@ -1,7 +1,7 @@
 //! An entry of the registry of backends.
 
 use super::IndexKind;
-use super::cost_model::CostModel;
+use super::cost::Cost;
 use std::fmt;
 
 /// The structure that a backend searches, as far as it determines how costs grow with the scene.
@@ -34,6 +34,8 @@ pub struct BackendEntry {
     pub summary: &'static str,
     /// The structure that is searched.
     pub structure: SearchStructure,
+    /// The feature of the crate `p2m` that has the type of the index, unless every build has it.
+    pub feature: Option<&'static str>,
     /// Whether [`AnyIndex::as_ray_query`](crate::AnyIndex::as_ray_query) returns something.
     pub casts_rays: bool,
     /// Whether [`AnyIndex::as_pair_query`](crate::AnyIndex::as_pair_query) returns something.
@@ -48,8 +50,10 @@ pub struct BackendEntry {
     pub has_resolution: bool,
     /// Whether it uses [`BuildSettings::p2m`](crate::BuildSettings::p2m).
     pub has_p2m_settings: bool,
-    /// The expected cost.
-    pub cost: CostModel,
+    /// The expected costs: those with the default settings first, then those with finer cells.
+    pub costs: &'static [Cost],
+    /// The same for scenes of slivers that boxes fit badly; empty if they are the same.
+    pub sliver_costs: &'static [Cost],
     pub(crate) kind: IndexKind,
 }
 

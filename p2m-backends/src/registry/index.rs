@@ -41,9 +41,6 @@ pub struct BuildSettings<'p> {
     pub p2m: P2mSettings,
     /// The fineness of the cells of an octree; `None` for that of its default options. Finer cells have larger budgets.
     pub resolution: Option<f64>,
-    /// The factor of the memory and work budgets of an octree, 1 by default. These budgets have a minimum, which is
-    /// too large for a small sample of a scene.
-    pub octree_budget_scale: f64,
     /// The largest number of bytes of the cells and lists of an octree, besides its tree; unlimited by default. Cells
     /// stay coarser if they would take more.
     pub max_cell_bytes: usize,
@@ -62,7 +59,6 @@ impl Default for BuildSettings<'_> {
             kdop_directions: None,
             p2m: P2mSettings::default(),
             resolution: None,
-            octree_budget_scale: 1.0,
             max_cell_bytes: usize::MAX,
             progress: &|_| (),
             visit_octree: &|_| ControlFlow::Continue(()),
@@ -95,12 +91,6 @@ impl<'p> BuildSettings<'p> {
         Self { resolution, ..self }
     }
 
-    /// Sets the factor of the budgets of an octree.
-    #[must_use]
-    pub fn with_octree_budget_scale(self, octree_budget_scale: f64) -> Self {
-        Self { octree_budget_scale, ..self }
-    }
-
     /// Sets the largest number of bytes of the cells and lists of an octree.
     #[must_use]
     pub fn with_max_cell_bytes(self, max_cell_bytes: usize) -> Self {
@@ -123,10 +113,7 @@ impl<'p> BuildSettings<'p> {
     pub(crate) fn octree_options(&self, primitives: usize) -> OctreeOptions {
         let options = OctreeOptions::default().with_splits(self.splits());
         let factor = self.resolution.map_or(1.0, |resolution| resolution / options.resolution);
-        let options = options.with_finer_cells(factor);
-        let scale = self.octree_budget_scale;
-        let (memory, work) = (options.memory * scale, options.work * scale);
-        options.with_memory(memory).with_work(work).with_max_bytes(self.max_cell_bytes, primitives)
+        options.with_finer_cells(factor).with_max_bytes(self.max_cell_bytes, primitives)
     }
 
     /// The splits of trees, with the choice of threads.

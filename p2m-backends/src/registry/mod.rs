@@ -1,5 +1,5 @@
-//! The registry of backends: one table that the program `p2m`, the Python package, pages, shards, the advice,
-//! measurements and tests read.
+//! The registry of backends: one table that the program `p2m`, the Python package, pages, shards, the choice of an
+//! index, measurements and tests read.
 //!
 //! A new backend joins them with one entry of [`BACKENDS`], its [`IndexKind`], and the branches below that build and load
 //! its index. The values of `--backend` and of `backend=` in Python, the files of `p2m build`, the estimates of `p2m
@@ -11,14 +11,13 @@
 //! compiled for each index.
 
 mod backend_entry;
-mod cost_model;
+mod cost;
 mod index;
 mod kdop_directions;
 mod p2m_settings;
 
 pub use backend_entry::{BackendEntry, SearchStructure};
-pub use cost_model::CostModel;
-pub(crate) use cost_model::{EXHAUSTIVE_SECONDS_PER_PRIMITIVE, REFERENCE_PRIMITIVES};
+pub use cost::Cost;
 pub use index::{BuildSettings, BuiltIndex};
 pub use kdop_directions::{ChosenDirections, KdopDirections, KdopVisitor};
 pub use p2m_settings::{ListFilterKind, LocatorKind, P2mSettings};
@@ -30,122 +29,82 @@ use p2m_interception::{Octree, OctreeIndex, P2mIndex, Voronoi};
 use p2m_kdop::KdopTree;
 use std::sync::Arc;
 
+/// The tree of boxes, and what other entries have in common with it.
+const BOXES: BackendEntry = BackendEntry {
+    name: "aabb",
+    summary: "A tree of boxes",
+    structure: SearchStructure::Tree,
+    feature: Some("bvh"),
+    casts_rays: true,
+    answers_pairs: true,
+    has_refit: true,
+    reports_progress: false,
+    has_kdop_directions: false,
+    has_resolution: false,
+    has_p2m_settings: false,
+    costs: &[Cost::BOXES],
+    sliver_costs: &[],
+    kind: IndexKind::Aabb,
+};
+
+/// What the entries of cells have in common. Cells of slivers fall back to a tree.
+const CELLS: BackendEntry = BackendEntry {
+    feature: Some("interception"),
+    casts_rays: false,
+    answers_pairs: false,
+    has_refit: false,
+    reports_progress: true,
+    ..BOXES
+};
+
 /// All backends, the simplest one first. Tables and estimates keep this order.
 pub static BACKENDS: &[BackendEntry] = &[
     BackendEntry {
         name: "brute",
         summary: "Every primitive, every time",
         structure: SearchStructure::Exhaustive,
-        casts_rays: true,
-        answers_pairs: true,
-        has_refit: true,
-        reports_progress: false,
-        has_kdop_directions: false,
-        has_resolution: false,
-        has_p2m_settings: false,
-        cost: CostModel {
-            build_seconds_per_primitive: 0.04e-6,
-            near_query_seconds: 0.0,
-            box_query_seconds: 0.0,
-            bytes_per_primitive: 0.0,
-            near_growth: 2.0,
-            box_growth: 2.0,
-            sliver_query_factor: 1.0,
-            sample_correction: 1.0,
-        },
+        feature: None,
+        costs: &[Cost { primitive: 48.0, ..Cost::new(40.0, 0.0, [0.0, 0.0]) }],
         kind: IndexKind::Brute,
+        ..BOXES
     },
-    BackendEntry {
-        name: "aabb",
-        summary: "A tree of boxes",
-        structure: SearchStructure::Tree,
-        casts_rays: true,
-        answers_pairs: true,
-        has_refit: true,
-        reports_progress: false,
-        has_kdop_directions: false,
-        has_resolution: false,
-        has_p2m_settings: false,
-        cost: CostModel {
-            build_seconds_per_primitive: 0.37e-6,
-            near_query_seconds: 700e-9,
-            box_query_seconds: 1200e-9,
-            bytes_per_primitive: 65.0,
-            near_growth: 1.11,
-            box_growth: 1.27,
-            sliver_query_factor: 1.0,
-            sample_correction: 1.0,
-        },
-        kind: IndexKind::Aabb,
-    },
+    BOXES,
     BackendEntry {
         name: "kdop",
         summary: "A tree of k-DOPs (polytopes), which fit slanted geometry more tightly than boxes",
-        structure: SearchStructure::Tree,
-        casts_rays: true,
-        answers_pairs: true,
-        has_refit: true,
-        reports_progress: false,
+        feature: Some("kdop"),
         has_kdop_directions: true,
-        has_resolution: false,
-        has_p2m_settings: false,
-        cost: CostModel {
-            build_seconds_per_primitive: 0.4e-6,
-            near_query_seconds: 750e-9,
-            box_query_seconds: 1250e-9,
-            bytes_per_primitive: 66.0,
-            near_growth: 1.11,
-            box_growth: 1.27,
-            sliver_query_factor: 0.75,
-            sample_correction: 1.08,
-        },
+        costs: &[Cost::new(400.0, 66.0, [36.0, 47.0])],
+        // The tree of boxes is built first, to count in it.
+        sliver_costs: &[Cost { counted: Some([55.0, 45.0]), ..Cost::new(770.0, 66.0, [20.4, 27.0]) }],
         kind: IndexKind::Kdop,
+        ..BOXES
     },
     BackendEntry {
         name: "octree",
         summary: "Cubic cells with lists of candidates: fast queries, more memory, a slower build",
         structure: SearchStructure::SpaceCells,
-        casts_rays: false,
-        answers_pairs: false,
-        has_refit: false,
-        reports_progress: true,
-        has_kdop_directions: false,
         has_resolution: true,
-        has_p2m_settings: false,
-        cost: CostModel {
-            build_seconds_per_primitive: 6.5e-6,
-            near_query_seconds: 640e-9,
-            box_query_seconds: 690e-9,
-            bytes_per_primitive: 235.0,
-            near_growth: 1.15,
-            box_growth: 1.23,
-            sliver_query_factor: 1.0,
-            sample_correction: 1.0,
-        },
+        costs: &[
+            Cost { outside: Some([0.35, 0.0]), least_bytes: 0.7, ..Cost::new(4870.0, 235.0, [24.0, 15.0]) },
+            Cost { outside: Some([0.25, 0.0]), finer: Some(10.0), ..Cost::new(13_870.0, 385.0, [22.0, 9.0]) },
+        ],
+        sliver_costs: &[
+            Cost { least_bytes: 0.7, ..Cost::new(4870.0, 235.0, [34.0, 45.0]) },
+            Cost { finer: Some(10.0), ..Cost::new(100_370.0, 2065.0, [13.6, 18.0]) },
+        ],
         kind: IndexKind::Octree,
+        ..CELLS
     },
     BackendEntry {
         name: "p2m",
         summary: "Cells of the vertices with lists of candidates: fastest far from the scene",
         structure: SearchStructure::VertexCells,
-        casts_rays: false,
-        answers_pairs: false,
-        has_refit: false,
-        reports_progress: true,
-        has_kdop_directions: false,
-        has_resolution: false,
         has_p2m_settings: true,
-        cost: CostModel {
-            build_seconds_per_primitive: 21e-6,
-            near_query_seconds: 430e-9,
-            box_query_seconds: 500e-9,
-            bytes_per_primitive: 330.0,
-            near_growth: 1.12,
-            box_growth: 1.24,
-            sliver_query_factor: 1.0,
-            sample_correction: 1.0,
-        },
+        costs: &[Cost { outside: Some([0.0, 17.0]), ..Cost::new(20_000.0, 330.0, [27.0, 20.0]) }],
+        sliver_costs: &[Cost::new(20_000.0, 330.0, [34.0, 45.0])],
         kind: IndexKind::P2m,
+        ..CELLS
     },
 ];
 

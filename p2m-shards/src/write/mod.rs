@@ -225,7 +225,7 @@ impl ShardWriter {
 
     /// Returns the number of bytes that a primitive is expected to take in the file of a shard.
     fn file_bytes(&self) -> f64 {
-        self.options.backend.cost.bytes_per_primitive + FILE_BYTES_PER_PRIMITIVE
+        self.options.backend.costs[0].bytes + FILE_BYTES_PER_PRIMITIVE
     }
 
     fn add(&mut self, id: u64, source: u32, shape: Shape<f64>) -> Result<(), ShardError> {

@@ -5,6 +5,7 @@
 
 mod account;
 mod arm;
+mod builds;
 mod c;
 mod cuda;
 mod debian;
@@ -79,7 +80,7 @@ const TASKS: [Task; 23] = [
     Task {
         name: "promises",
         arguments: "[--all]",
-        about: "Check what the manifests promise: lock files and Rust versions, and on request each feature alone",
+        about: "Check what manifests promise: lock files, Rust versions, crates of builds, and on request each feature alone",
         run: promises::check,
     },
     Task {

@@ -1,9 +1,10 @@
 //! Checks the promises that the manifests make to users of p2m.
 
-use crate::{Outcome, cargo, output, tools};
+use crate::{Outcome, builds, cargo, output, tools};
 use std::fs;
 
-/// Checks lock files and versions of Rust; with `--all` also that the crates compile with each of their features alone.
+/// Checks lock files, versions of Rust and the numbers of crates of builds; with `--all` also that the crates compile with
+/// each of their features alone, and that the builds that `p2m info` names work.
 pub(crate) fn check(arguments: &[String]) -> Outcome {
     let is_complete = match arguments {
         [] => false,
@@ -12,6 +13,10 @@ pub(crate) fn check(arguments: &[String]) -> Outcome {
     };
     check_lock_files()?;
     check_rust_version()?;
+    builds::check_crates()?;
+    if is_complete {
+        builds::run_programs()?;
+    }
     // Without its features the program has no parts of the paper.
     if is_complete { tools::each_feature(&["p2m", "p2m-mixed", "p2m-cli"]) } else { Ok(()) }
 }

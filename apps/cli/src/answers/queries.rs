@@ -5,6 +5,11 @@ use p2m_core::{Aabb, Ray};
 use rand::{Rng, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 
+/// The size of the box of queries, in boxes of the scene, unless an option says another one.
+pub(crate) const BOX_SCALE: f64 = 1.05;
+/// The largest number of points by which an index is chosen.
+const MAX_SAMPLE_POINTS: usize = 1024;
+
 /// The box that queries are in.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Region {
@@ -68,6 +73,11 @@ impl Queries {
     /// Returns `count` uniformly distributed points. A seed gives the same points on every machine.
     pub(crate) fn random(region: Region, count: u64, seed: u64) -> Self {
         Self::Random { region, left: count, rng: Box::new(ChaCha8Rng::seed_from_u64(seed)) }
+    }
+
+    /// Returns some of the points, by which an index is chosen.
+    pub(crate) fn sample_of(points: &[Point3<f64>]) -> Vec<Point3<f64>> {
+        points.iter().step_by(points.len().div_ceil(MAX_SAMPLE_POINTS).max(1)).copied().collect()
     }
 
     /// Returns points of a region, by which an index is chosen.

@@ -90,7 +90,7 @@ impl IndexArgs {
         streams: &Streams,
         pool: &ThreadPool,
     ) -> anyhow::Result<(Chosen, Option<KdopDirections>, P2mSettings)> {
-        let workload = Workload::new(queries, QueryRegion::SceneBox);
+        let workload = Workload::new(queries, QueryRegion::SceneBox).with_needs_index(true);
         let chosen = BackendChoice::resolve(self.backend, saved, soup, &workload, streams, pool);
         self.with_options(chosen.with_context(|| self.scene.name())?)
     }

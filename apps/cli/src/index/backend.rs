@@ -37,7 +37,7 @@ pub(crate) fn backends(fits: fn(&BackendEntry) -> bool) -> impl TypedValueParser
 /// A parser of the names of all backends and of `auto`.
 pub(crate) fn backend_choices() -> impl TypedValueParser<Value = BackendChoice> {
     let auto = PossibleValue::new(AUTO)
-        .help("aabb, octree or kdop, by the work of the queries; else of ten million in the box of the scene");
+        .help("the one with the least time by the work of the queries, else of ten million in the box of the scene");
     let values = BACKENDS.iter().map(possible_value).chain([auto]);
     PossibleValuesParser::new(values)
         .map(|name| if name == AUTO { BackendChoice::Auto } else { BackendChoice::Named(named(&name)) })
@@ -82,7 +82,7 @@ impl Chosen {
     fn reason(&self) -> Option<String> {
         match self {
             Self::Named(_) => None,
-            Self::Counted(choice) => choice.reason(),
+            Self::Counted(choice) => choice.reason().map(str::to_owned),
         }
     }
 }

@@ -13,7 +13,7 @@ use serde_json::{Value, json};
 use std::io::{self, Write};
 
 /// The version of all reports.
-pub(crate) const VERSION: u32 = 3;
+pub(crate) const VERSION: u32 = 4;
 
 /// Writes a report to the standard output.
 pub(crate) fn print(streams: &Streams, report: &Value) -> anyhow::Result<()> {

@@ -1,7 +1,7 @@
 //! The arguments of `p2m query`, and the queries that they ask for.
 
 use crate::answers::args::QueryArgs;
-use crate::answers::queries::{Queries, Region};
+use crate::answers::queries::{BOX_SCALE, Queries, Region};
 use crate::answers::summary::AnswerSummary;
 use crate::answers::table::{AnswerColumn, AnswerFormat};
 use crate::index::backend::{BackendChoice, backend_choices};
@@ -80,7 +80,7 @@ pub(crate) struct Args {
     /// Scale the box of the scene about its centre by this factor
     ///
     /// The box of a flat scene also grows along its thin axis, by as much as along its longest one.
-    #[arg(long, value_name = "S", default_value_t = 1.05, value_parser = positive, allow_negative_numbers = true, conflicts_with = "points")]
+    #[arg(long, value_name = "S", default_value_t = BOX_SCALE, value_parser = positive, allow_negative_numbers = true, conflicts_with = "points")]
     box_scale: f64,
 
     /// The seed of the random points
@@ -226,7 +226,7 @@ pub(crate) fn queries(streams: &Streams, args: &Args, bounds: &Aabb<f64>) -> any
         if ids.is_none() && args.columns.contains(&AnswerColumn::Id) {
             return Err(usage("the column id needs points with ids: a column id in a text table, or --points-id"));
         }
-        let sample = points.iter().step_by(points.len().div_ceil(MAX_SAMPLE_POINTS).max(1)).copied().collect();
+        let sample = Queries::sample_of(&points);
         return Ok(PreparedQueries { queries: Queries::list(points), ids, sample });
     }
     let region = Region::around(bounds, args.box_scale);
@@ -236,9 +236,6 @@ pub(crate) fn queries(streams: &Streams, args: &Args, bounds: &Aabb<f64>) -> any
     };
     Ok(PreparedQueries { queries, ids: None, sample: Queries::sample(region) })
 }
-
-/// The largest number of points by which an index is chosen.
-const MAX_SAMPLE_POINTS: usize = 1024;
 
 /// Returns the part of a report about the origin of the queries.
 fn source_json(args: &Args) -> Value {

@@ -76,6 +76,7 @@ pub(crate) fn run(streams: &Streams, args: &Args) -> anyhow::Result<()> {
         None if !is_counted => saved_or_default(saved).into(),
         backend => {
             let workload = Workload::new(queries.len(), QueryRegion::Like(&sample))
+                .with_needs_index(args.signed.is_some())
                 .with_max_distance(args.max_distance.unwrap_or(f64::INFINITY))
                 .with_max_bytes(
                     args.max_memory.map_or(usize::MAX, |bytes| usize::try_from(bytes).unwrap_or(usize::MAX)),

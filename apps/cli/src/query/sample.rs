@@ -136,7 +136,7 @@ pub(crate) fn run(streams: &Streams, args: &Args) -> anyhow::Result<()> {
             #[allow(clippy::cast_possible_truncation, reason = "the user asked for it")]
             points.iter_mut().for_each(|point| *point = point.map(|x| f64::from(x as f32)));
         }
-        let workload = Workload::new(points.len() as u64, QueryRegion::Like(&points));
+        let workload = Workload::new(points.len() as u64, QueryRegion::Like(&points)).with_needs_index(true);
         let chosen = BackendChoice::resolve(args.backend, saved.as_ref(), &scene.soup, &workload, streams, &pool);
         let chosen = chosen.with_context(|| args.scene.name())?;
         let p2m = P2mSettings::default();

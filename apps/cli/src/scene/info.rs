@@ -6,6 +6,8 @@ use crate::io::output::Output;
 use crate::io::progress::{Progress, Unit};
 use crate::io::streams::Streams;
 use crate::io::threads::ThreadArgs;
+use crate::scene::smallest_build::SmallestBuild;
+use p2m_backends::BackendEntry;
 use p2m_formats::FileFormat;
 use p2m_mixed::Scene;
 use p2m_mixed::statistics::figure::{Count, Exact, Figure, Share};
@@ -28,7 +30,8 @@ pub(crate) struct Args {
 const HELP: &str = "\
 A triangle has no area if its vertices are exactly collinear. Two positions or edges are equal if their coordinates \
 are. The aspect ratio of a triangle is its longest edge divided by the height onto that edge: above 10 it is thin, \
-above 1024 it is a sliver. Edges are the sides of triangles, and segments.
+above 1024 it is a sliver. Edges are the sides of triangles, and segments. The build has the features that a Rust \
+program needs of the crate p2m to read the file and search it, and the number of crates that they compile.
 
 Examples:
   p2m info scene.obj
@@ -39,6 +42,8 @@ pub(crate) fn run(streams: &Streams, args: &Args) -> anyhow::Result<()> {
     let format = args.scene.format()?;
     let pool = ThreadArgs::default().pool()?;
     let (scene, saved) = read_scene_and_index(streams, &pool, &args.scene.path, format, args.scene.map)?;
+    let backend = saved.as_ref().and_then(BackendEntry::from_saved).unwrap_or_else(BackendEntry::default_backend);
+    let build = SmallestBuild::new(backend, format);
     let index = saved.and_then(|reader| p2m_core::storage::kind(&reader).ok());
     let progress = Progress::start(streams, "counting", None, Unit::None);
     let statistics = Statistics::of(&scene.soup);
@@ -46,9 +51,9 @@ pub(crate) fn run(streams: &Streams, args: &Args) -> anyhow::Result<()> {
     drop(progress);
     let name = args.scene.name();
     if args.json {
-        return json::print(streams, &report(&name, format, index, &scene, &objects, &statistics));
+        return json::print(streams, &report(&name, format, index, &scene, &objects, &statistics, &build));
     }
-    let report = TextReport { name, format, index, scene: &scene, objects: &objects, statistics: &statistics };
+    let report = TextReport { name, format, index, scene: &scene, objects: &objects, statistics: &statistics, build };
     Output::print(streams, report.to_string())
 }
 
@@ -59,7 +64,9 @@ fn report(
     scene: &Scene,
     objects: &[ObjectCounts],
     s: &Statistics,
+    build: &SmallestBuild,
 ) -> Value {
+    let [crates, default_crates] = build.crates();
     let extremes = |e: Option<Extremes>| e.map(|e| json!({ "min": e.min, "max": e.max }));
     let corner = |p: nalgebra::Point3<f64>| [p.x, p.y, p.z];
     json!({
@@ -105,6 +112,7 @@ fn report(
             "f64_step": json::number(s.location.f64_step()),
         },
         "skipped": json::skipped(&scene.skipped),
+        "build": { "features": build.features, "crates": crates, "default_crates": default_crates },
         "unit": scene.unit.map(|unit| unit.to_string()),
         "notes": s.notes().iter().map(|n| json!({ "name": n.name(), "text": n.to_string() })).collect::<Value>(),
     })
@@ -119,6 +127,7 @@ struct TextReport<'a> {
     scene: &'a Scene,
     objects: &'a [ObjectCounts],
     statistics: &'a Statistics,
+    build: SmallestBuild,
 }
 
 /// The largest number of objects that are listed one by one.
@@ -171,6 +180,7 @@ impl fmt::Display for TextReport<'_> {
             let list: Vec<String> = self.scene.skipped.iter().map(ToString::to_string).collect();
             line("skipped", &list.join(", "))?;
         }
+        line("build", &format!("{}{}", kinds(&s.primitives), self.build))?;
         let notes = s.notes();
         if !notes.is_empty() {
             writeln!(f)?;
@@ -209,6 +219,13 @@ pub(crate) fn counted(counts: &Counts) -> String {
     );
     let kinds: Vec<String> = kinds.into_iter().flatten().collect();
     if kinds.is_empty() { "none".to_owned() } else { kinds.join(", ") }
+}
+
+/// Returns the kinds of primitives that there are, followed by a colon.
+fn kinds(counts: &Counts) -> String {
+    let kinds = [(counts.triangles, "triangles"), (counts.segments, "segments"), (counts.points, "points")];
+    let kinds: Vec<&str> = kinds.into_iter().filter(|(count, _)| *count > 0).map(|(_, kind)| kind).collect();
+    if kinds.is_empty() { String::new() } else { format!("{}: ", kinds.join(", ")) }
 }
 
 fn positions(s: &Statistics) -> String {

@@ -6,3 +6,4 @@ pub(crate) mod generate;
 pub(crate) mod info;
 pub(crate) mod modify;
 pub(crate) mod shard;
+pub(crate) mod smallest_build;

@@ -61,7 +61,7 @@ fn the_report_says_what_was_written() {
     let out = path(&folder, "scene.p2m");
     let report: Value =
         serde_json::from_str(&table(&["build", SCENE, "--backend", "octree", "--out", &out, "--json"])).unwrap();
-    assert_eq!((&report["p2m"], &report["version"]), (&"build".into(), &3.into()));
+    assert_eq!((&report["p2m"], &report["version"]), (&"build".into(), &4.into()));
     assert_eq!(report["out"]["bytes"].as_u64(), Some(fs::metadata(&out).unwrap().len()));
     assert!(report["cells"]["list_cells"].as_u64() > Some(100), "{report}");
     for stage in ["read", "build", "write"] {

@@ -130,7 +130,7 @@ fn the_report_says_what_was_done() {
     let report = json(&["convert", &scene, &out, "--subdivide", "1", "--translate", "1", "-2", "0.5", "--json"]);
     let expected = json!({
         "p2m": "convert",
-        "version": 3,
+        "version": 4,
         "in": { "file": scene, "format": "obj", "primitives": { "triangles": 1, "segments": 1, "points": 1 } },
         "changes": [{ "change": "subdivide", "by": 1 }, { "change": "translate", "by": [1.0, -2.0, 0.5] }],
         "out": {

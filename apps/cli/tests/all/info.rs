@@ -14,6 +14,8 @@ const COURT: &str = "mtllib x.mtl\nv 0 0 0\nv 3 0 0\nv 0 4 0\nv 0 0 12\nv nan 0 
 fn the_report_is_what_the_scene_is() {
     let folder = TempDir::new().unwrap();
     let scene = write(&folder, "court.obj", COURT);
+    let build = &json(&["info", &scene, "--json"])["build"];
+    let (crates, default) = (&build["crates"], &build["default_crates"]);
     let expected = format!(
         "\
 scene       {scene} (obj)
@@ -30,6 +32,8 @@ surface     6 edges, 2 on the boundary, 2 of more than two triangles
 parts       1
 in f32      exact
 skipped     1 x mtllib
+build       triangles, segments, points: default-features = false, features = [\"bvh\", \"scene\"]: {crates} crates \
+         instead of {default}
 
 - 1 triangle has no area: it counts as the segment or point that it covers.
 - 1 primitive repeats another one: among equals the lowest number is the answer.
@@ -48,7 +52,7 @@ fn the_json_report_has_the_same_figures() {
     let counts = |triangles: u32, segments: u32, points: u32| json!({ "triangles": triangles, "segments": segments, "points": points });
     let expected = json!({
         "p2m": "info",
-        "version": 3,
+        "version": 4,
         "file": scene,
         "format": "obj",
         "index": null,
@@ -80,6 +84,8 @@ fn the_json_report_has_the_same_figures() {
     });
     let mut found = report.clone();
     let notes = found.as_object_mut().unwrap().shift_remove("notes").unwrap();
+    let build = found.as_object_mut().unwrap().shift_remove("build").unwrap();
+    assert_eq!(build["features"], json!(["bvh", "scene"]));
     assert_eq!(found, expected);
     let names: Vec<_> = notes.as_array().unwrap().iter().map(|n| n["name"].as_str().unwrap()).collect();
     assert_eq!(names, ["zero_area", "duplicates", "non_manifold", "unused"]);
@@ -100,7 +106,7 @@ fn the_carried_scene_has_its_figures() {
     assert_eq!(figure("/bounds/max/0"), json!(3.145));
     let text = table(&["info", SCENE]);
     assert!(
-        text.contains("\nprimitives  3,600 triangles, 480 segments\n") && text.ends_with("by up to 1.192e-7\n"),
+        text.contains("\nprimitives  3,600 triangles, 480 segments\n") && text.contains("by up to 1.192e-7\nbuild  "),
         "{text}"
     );
 }

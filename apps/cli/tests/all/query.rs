@@ -41,7 +41,7 @@ fn the_summary_tells_what_was_done() {
         scene.as_str(),
         "1 triangle, 1 segment, 1 point\n",
         "1 x vn, 2 x usemtl",
-        "backend  aabb, built in ",
+        "backend  brute, built in ",
         "queries  8 in ",
         "on 1 thread: ",
         "ns per query",
@@ -289,7 +289,7 @@ fn the_json_summary_agrees_with_the_table() {
     assert!(error["min"].as_f64().unwrap() >= 0.0 && error["max"].as_f64().unwrap() < 1e-14, "{error}");
     let expected = serde_json::json!({
         "p2m": "query",
-        "version": 3,
+        "version": 4,
         "scene": {
             "file": SCENE,
             "format": "obj",

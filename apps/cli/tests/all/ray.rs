@@ -218,7 +218,7 @@ fn the_json_summary_agrees_with_the_table() {
     assert!(report.as_object_mut().unwrap().shift_remove("seconds").unwrap()["query"].as_f64().unwrap() > 0.0);
     let expected = serde_json::json!({
         "p2m": "ray",
-        "version": 3,
+        "version": 4,
         "scene": {
             "file": SCENE,
             "format": "obj",

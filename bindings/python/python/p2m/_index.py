@@ -502,7 +502,7 @@ class Index(PointQueries, PairQueries):
     backend : str
         ``"aabb"``, a tree of boxes; ``"kdop"``, a tree of polytopes, for scenes askew to the axes; ``"octree"`` and
         ``"p2m"``, cells with lists, which take longer to build and answer many queries faster; ``"brute"``, no
-        structure. ``"auto"`` is the tree of boxes, or with `queries` the octree or the tree of polytopes where that
+        structure. ``"auto"`` is the tree of boxes, or with `queries` another one of these indexes where that
         pays. `p2m.backends` returns all names.
     threads : int, optional
         The number of threads for the build and, unless they have their own, for queries. By default it is the
@@ -1097,8 +1097,8 @@ class Estimate(NamedTuple):
     """The memory of the index besides the scene."""
     total_seconds: float
     """The time of the build and of all queries."""
-    is_measured: bool
-    """Whether the backend was measured on a sample of the scene."""
+    is_about_equal: bool
+    """Whether it takes about as long as the recommended backend, within the error of the estimates."""
     break_even_queries: float | None
     """The number of queries at which this backend and the recommended one take the same time, if there is one."""
     reason: str
@@ -1112,13 +1112,13 @@ def advise(
     region: Literal["near", "box"] = "box",
     points: ArrayLike | None = None,
     max_bytes: int | None = None,
-    max_seconds: float | None = None,
     threads: int | None = None,
 ) -> list[Estimate]:
     """Return the expected costs of all backends for a scene and a number of queries, the recommended one first.
 
-    The backends that may be best are measured on a sample of the scene, which takes some per cent of the time of the
-    job.
+    A tree of boxes is built, the work of some queries in it is counted, and the costs follow from these counts. No time
+    is measured, so the answer is the same in every run. `Index` with the same number of queries has the same backend,
+    unless an exhaustive search is the best.
 
     Parameters
     ----------
@@ -1131,11 +1131,9 @@ def advise(
     points : array_like, shape (..., 3), optional
         Queries that are like those to come, in place of a region.
     max_bytes : int, optional
-        The memory that the index may take besides the scene.
-    max_seconds : float, optional
-        The time that the advice may take.
+        The memory that the index may take besides the scene. The tree of boxes may exceed it.
     threads : int, optional
-        The number of threads for the measurements.
+        The number of threads for the build of the tree.
 
     Examples
     --------
@@ -1147,5 +1145,5 @@ def advise(
     queries = whole(queries, "queries", 0, 2**63 - 1)
     like = None if points is None else coordinates(points, "points").reshape(-1)
     raw = Scene.of(scene)._raw
-    rows = _p2m.advise(raw, queries, region, like, max_bytes, max_seconds, thread_count(threads))
-    return [Estimate(name, *costs, is_measured, even, reason) for name, costs, is_measured, even, reason in rows]
+    rows = _p2m.advise(raw, queries, region, like, max_bytes, thread_count(threads))
+    return [Estimate(name, *costs, is_about_equal, even, reason) for name, costs, is_about_equal, even, reason in rows]

@@ -62,7 +62,6 @@ def advise(
     region: str,
     points: _Coordinates | None,
     max_bytes: int | None,
-    max_seconds: float | None,
     threads: int,
 ) -> list[tuple[str, tuple[float, float, float, float], bool, float | None, str]]: ...
 def deviation_statistics(values: NDArray[np.float64]) -> dict[str, Any]: ...

@@ -179,7 +179,7 @@ pub(crate) fn run(streams: &Streams, args: &Args) -> anyhow::Result<()> {
     let points = scan.soup.positions();
     // A scan that is moved first will be like the scene.
     let region = if args.align { QueryRegion::SceneBox } else { QueryRegion::Like(points) };
-    let workload = Workload::new(points.len() as u64, region);
+    let workload = Workload::new(points.len() as u64, region).with_needs_index(true);
     let chosen = BackendChoice::resolve(args.backend, saved, &scene.soup, &workload, streams, &pool);
     let chosen = chosen.with_context(|| args.scene.name())?;
     let backend = chosen.backend();

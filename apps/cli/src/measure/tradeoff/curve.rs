@@ -84,6 +84,17 @@ pub(crate) struct SetFigures {
     pub(crate) about: String,
     /// The results of the backends.
     pub(crate) curves: Vec<Curve>,
+    /// The backends of the curves that take the least time for some number of queries, with their builds.
+    pub(crate) turns: Vec<Turn>,
+}
+
+/// A backend that takes the least time for its build and all queries, by the counts of a choice.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub(crate) struct Turn {
+    /// The name of the backend.
+    pub(crate) name: &'static str,
+    /// The number of queries from which on it does.
+    pub(crate) from: f64,
 }
 
 /// The results for one scene.

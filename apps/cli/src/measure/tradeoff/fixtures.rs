@@ -2,7 +2,7 @@
 
 use crate::measure::harness::MedianRange;
 use crate::measure::harness::Provenance;
-use crate::measure::tradeoff::curve::{Build, Curve, Latency, Point, SceneFigures, SetFigures};
+use crate::measure::tradeoff::curve::{Build, Curve, Latency, Point, SceneFigures, SetFigures, Turn};
 use crate::measure::tradeoff::errors::{ErrorQuantiles, Errors};
 
 /// Returns a provenance with characters that files have to escape.
@@ -42,10 +42,12 @@ pub(crate) fn scene() -> SceneFigures {
     let curve = |name: &str, points| Curve { name: name.to_owned(), points };
     let tree = curve("aabb", vec![point("default", 1000.5, 0.0, 0.1), point("epsilon 0.1", 500.0, 0.05, 0.1)]);
     let cells = curve("p2m", vec![point("default", 100.25, 1e-16, 5.0)]);
+    let turns = vec![Turn { name: "aabb", from: 0.0 }, Turn { name: "p2m", from: 5.4e6 }];
+    let set = SetFigures { name: "1x".to_owned(), about: "uniform".to_owned(), curves: vec![tree, cells], turns };
     SceneFigures {
         name: "a \"scene\", of two".to_owned(),
         about: "2 triangles & 1 segment".to_owned(),
         primitives: 3,
-        sets: vec![SetFigures { name: "1x".to_owned(), about: "uniform".to_owned(), curves: vec![tree, cells] }],
+        sets: vec![set],
     }
 }

@@ -15,7 +15,7 @@ mod rounds;
 mod settings;
 mod text;
 
-use curve::{Build, SceneFigures, SetFigures};
+use curve::{Build, SceneFigures, SetFigures, Turn};
 use errors::Truth;
 use page::Page;
 use record::record;
@@ -38,7 +38,7 @@ use crate::scene::info::counted;
 use anyhow::{Context, bail};
 use clap::ArgGroup;
 use nalgebra::Point3;
-use p2m_backends::{AnyIndex, BACKENDS, BuildSettings, SearchStructure};
+use p2m_backends::{AnyIndex, BACKENDS, BuildSettings, Choice, QueryRegion, SearchStructure, Workload};
 use p2m_bvh::AabbTree;
 use p2m_core::{CertifiedQuery, PrimitiveSet, Soup};
 use p2m_mixed::Scene;
@@ -206,6 +206,13 @@ impl Args {
         Ok((queries, description))
     }
 
+    /// Returns which of the measured backends takes the least time for some number of queries, by the choice of `auto`.
+    fn turns(&self, soup: &Arc<Soup<f64>>, queries: &[Point3<f64>]) -> anyhow::Result<Vec<Turn>> {
+        let choice = Choice::compare(Arc::clone(soup), &Workload::new(COMMON_QUERIES, QueryRegion::Like(queries)))?;
+        let turns = choice.turns(|e| e.resolution.is_none() && self.backends.contains(&e.backend));
+        Ok(turns.into_iter().map(|(estimate, from)| Turn { name: estimate.backend.name, from }).collect())
+    }
+
     /// Builds the indexes and measures all settings of all backends.
     fn measure(
         &self,
@@ -227,6 +234,7 @@ impl Args {
         }
         drop(progress);
         let truths = truths(soup, &queries)?;
+        let turns = self.turns(soup, &queries)?;
         let competitors: Vec<Competitor<'_>> = indexes
             .iter()
             .flat_map(|index| {
@@ -246,10 +254,13 @@ impl Args {
             (None, Some(_)) => "grid",
             (None, None) => "random",
         };
-        let set = SetFigures { name: name.to_owned(), about: description, curves };
+        let set = SetFigures { name: name.to_owned(), about: description, curves, turns };
         Ok(SceneFigures { name: self.scene.name(), about: contents, primitives: soup.len(), sets: vec![set] })
     }
 }
+
+/// The number of queries of the first sentence of the page.
+const COMMON_QUERIES: u64 = 1_000_000;
 
 /// Returns the certified answers to all queries.
 fn truths(soup: &Soup<f64>, queries: &[Point3<f64>]) -> anyhow::Result<Vec<Truth>> {

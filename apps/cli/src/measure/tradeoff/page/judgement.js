@@ -113,37 +113,30 @@ function breakEven(first, other) {
   if (other.build <= first.build && other.query <= first.query) return 0;
   return first.query > other.query ? Math.max(0, (other.build - first.build) / (first.query - other.query)) : null;
 }
-/** Returns which costs are least, and the numbers of queries from which on they are, in increasing order. */
-function cheapest(all) {
-  const turns = [];
-  let next = [...all].sort((a, b) => a.build - b.build || a.query - b.query).map((cost) => ({ cost, from: 0 }))[0];
-  while (next) {
-    turns.push(next);
-    const { cost: current } = next;
-    const faster = all.filter((cost) => cost.query < current.query);
-    next = faster
-      .map((cost) => ({ cost, from: breakEven(current, cost) }))
-      .sort((a, b) => a.from - b.from || a.cost.query - b.cost.query)[0];
-  }
-  return turns;
-}
-const turnsInWords = (all) =>
-  cheapest(all)
-    .map(({ cost, from }) => (from > 0 ? `\`${cost.name}\` from ${count(from)} queries on` : `\`${cost.name}\``))
+const turnsInWords = (turns) =>
+  turns
+    .map(({ name, from }) => (from > 0 ? `\`${name}\` from ${count(from)} queries on` : `\`${name}\``))
     .join(", then ");
 
 /** The number of queries for which the headline names the index, in words below. */
 const COMMON = 1e6;
-/** Returns what to take: in short for a million queries, and in sentences for other numbers. */
+/**
+ * Returns what to take: in short for a million queries, and in sentences for other numbers. The index is that of
+ * `p2m advise` for these queries, and its times are measured.
+ */
 function advice(set) {
   const [exact, rough] = NEEDS.map((need) => fastest(set.curves, need.limit));
-  if (exact?.limit !== 0) return ["No index answered all queries exactly", "The remarks in the table of all settings say why."];
-  const turns = cheapest(costs(exactCurves(set)));
-  const here = turns.findLastIndex(({ from }) => from <= COMMON);
+  const point = ({ name }) => fastest(set.curves.filter((curve) => curve.name === name), 0)?.point;
+  // An index that is built longer, but was no faster here, is left out.
+  const turns = set.turns.filter(point).reduce((kept, turn) => {
+    const isFaster = kept.length === 0 || point(turn).nanoseconds.median < point(kept.at(-1)).nanoseconds.median;
+    return isFaster ? [...kept, turn] : kept;
+  }, []);
+  if (exact?.limit !== 0 || turns.length === 0) return ["No index answered all queries exactly", "The remarks in the table of all settings say why."];
+  const here = Math.max(0, turns.findLastIndex(({ from }) => from <= COMMON));
   const [before, after] = [turns[here - 1], turns[here + 1]];
-  const point = ({ cost }) => fastest(set.curves.filter((curve) => curve.name === cost.name), 0).point;
   const named = (turn, quoted) => {
-    const [name, { setting }] = [turn.cost.name, point(turn)];
+    const [name, { setting }] = [turn.name, point(turn)];
     const words = quoted ? [`\`${name}\``, `\`${setting}\``] : [name, setting];
     return words[0] + (setting === DEFAULT ? "" : ` with ${words[1]}`);
   };

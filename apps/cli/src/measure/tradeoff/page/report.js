@@ -126,8 +126,9 @@ function showSet() {
   byId("advice").textContent = short;
   byId("why").innerHTML = words(long);
   byId("detail").innerHTML = `<details open><summary>When does a longer build pay?</summary>
-<p>The cheapest index, with its build: ${words(turnsInWords(costs(set.curves)))}. The table has the number of queries
-from which on the index of the column takes less time than that of the row.</p>
+<p>The index to take by counted work, as <code>p2m advise</code> does: ${words(turnsInWords(set.turns))}. The table has
+the number of queries from which on the index of the column takes less time than that of the row, by the times that were
+measured.</p>
 <div id="totals"></div>${breakEvenTable(set)}</details>
 <details><summary>Build time and memory</summary>
 <p>The seconds on one thread, and the heap bytes per primitive besides the scene.</p>${buildTable(set)}</details>

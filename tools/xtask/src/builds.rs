@@ -1,0 +1,82 @@
+//! Checks the builds that `p2m info` and `p2m advise` name: their numbers of crates, and that they work.
+
+use crate::{Outcome, output, read, start, target_folder};
+use std::collections::BTreeSet;
+use std::fs;
+use std::path::Path;
+use std::process::Command;
+
+/// The table of the numbers of crates, in which the program looks builds up.
+const TABLE: &str = "apps/cli/src/scene/crates.csv";
+
+/// Compares the table with what `cargo tree` says; with `P2M_BLESS` set, it writes the table.
+pub(crate) fn check_crates() -> Outcome {
+    let table = read(Path::new(TABLE))?;
+    let mut counted = String::new();
+    for (i, line) in table.lines().enumerate() {
+        // The first lines are a comment and the names of the columns.
+        counted += &if i < 2 { line.to_owned() } else { row(line)? };
+        counted.push('\n');
+    }
+    if std::env::var_os("P2M_BLESS").is_some() {
+        return fs::write(TABLE, counted).map_err(|error| format!("{TABLE}: {error}"));
+    }
+    if counted == table { Ok(()) } else { Err(format!("{TABLE} is out of date: P2M_BLESS=1 cargo xtask promises")) }
+}
+
+/// Returns the row of the features of a row, with the number of crates for one platform.
+fn row(line: &str) -> Result<String, String> {
+    let (features, _) = line.split_once(',').ok_or_else(|| format!("{TABLE}: {line}"))?;
+    let mut arguments = vec!["tree", "--locked", "--package", "p2m", "--edges", "normal,build", "--prefix", "none"];
+    arguments.extend(["--no-dedupe", "--target", "x86_64-unknown-linux-gnu", "--features", features]);
+    if !features.starts_with("default") {
+        arguments.push("--no-default-features");
+    }
+    let tree = output("cargo", &arguments)?;
+    Ok(format!("{features},{}", tree.lines().collect::<BTreeSet<_>>().len()))
+}
+
+/// A scene with one triangle, in files of `p2m-mixed` and of `p2m-formats`.
+const SCENES: [(&str, &str); 2] = [
+    ("scene.obj", "v 0 0 0\nv 4 0 0\nv 0 4 0\nf 1 2 3\n"),
+    ("scene.geojson", r#"{"type":"Polygon","coordinates":[[[0,0],[4,0],[0,4],[0,0]]]}"#),
+];
+
+/// Runs programs that have the named features alone: they read a file and find a closest point.
+pub(crate) fn run_programs() -> Outcome {
+    let repository = std::env::current_dir().map_err(|error| error.to_string())?;
+    let folder = target_folder().join("smallest-builds");
+    for (features, reader, index, scene) in [
+        ("\"bvh\", \"scene\"", "scene", "AabbTree", SCENES[0]),
+        ("\"interception\", \"scene\"", "scene", "OctreeIndex", SCENES[0]),
+        ("\"bvh\", \"formats\"", "formats", "AabbTree", SCENES[1]),
+    ] {
+        let manifest = format!(
+            "[package]\nname = \"smallest\"\nversion = \"0.0.0\"\nedition = \"2024\"\n\n[workspace]\n\n[dependencies]\n\
+             p2m = {{ path = {:?}, default-features = false, features = [{features}] }}\n",
+            repository.display().to_string()
+        );
+        let program = format!(
+            "use p2m::ClosestPoint;\n\nfn main() {{\n    \
+             let scene = p2m::{reader}::read_scene({:?}.as_ref()).expect(\"a scene\");\n    \
+             let index = p2m::{index}::new(scene.soup).expect(\"an index\");\n    \
+             let answer = index.closest_point(&[1.0, 1.0, 3.0]).expect(\"an answer\");\n    \
+             assert_eq!(answer.distance, 3.0);\n}}\n",
+            scene.0
+        );
+        let write = |name: &str, text: &str| {
+            let path = folder.join(name);
+            fs::create_dir_all(path.parent().unwrap_or(&folder))
+                .and_then(|()| fs::write(&path, text))
+                .map_err(|error| format!("{}: {error}", path.display()))
+        };
+        write("Cargo.toml", &manifest)?;
+        write("src/main.rs", &program)?;
+        write(scene.0, scene.1)?;
+        // With the versions of the repository, nothing has to be downloaded.
+        write("Cargo.lock", &read(Path::new("Cargo.lock"))?)?;
+        let arguments = ["run", "--offline", "--quiet", "--target-dir", "target"];
+        start(Command::new("cargo").args(arguments).current_dir(&folder))?;
+    }
+    Ok(())
+}
