@@ -5,10 +5,10 @@
 //! as it was.
 
 use super::workload::QueryRegion;
+use chacha20::ChaCha8Rng;
+use chacha20::rand_core::{Rng, SeedableRng};
 use nalgebra::{Point3, Vector3};
 use p2m_core::{BuildError, Element, Primitive, PrimitiveId, PrimitiveSet, Soup};
-use rand_chacha::ChaCha8Rng;
-use rand_chacha::rand_core::{Rng, SeedableRng};
 use std::collections::HashMap;
 
 /// The number of neighbourhoods of a neighbourhood sample.
