@@ -111,7 +111,7 @@ struct Signs<S> {
     /// Whether signs change at the surface alone.
     is_closed: bool,
     /// The facts that are proved about the normals of a closed surface, once there are so many queries that it pays.
-    certificates: OnceLock<Certificates<S>>,
+    certificates: OnceLock<Arc<Certificates<S>>>,
     /// Whether a thread prepares the certificates or has prepared them.
     preparations: Flag,
     /// The unit roundoff of the index.
@@ -445,7 +445,7 @@ impl<S: SharedSoup> Signs<S> {
         if pays && self.certificates.get().is_none() && self.preparations.set() {
             // An index over the scene was built, so a tree can be built as well.
             if let Ok(certificates) = Certificates::new(self.soup.clone(), self.roundoff) {
-                let _ = self.certificates.set(certificates);
+                let _ = self.certificates.set(Arc::new(certificates));
             }
         }
     }
