@@ -9,6 +9,7 @@ use base64::Engine;
 use base64::engine::general_purpose::STANDARD;
 use nalgebra::{Matrix4, Quaternion, UnitQuaternion, Vector3};
 use p2m_core::Element;
+use p2m_mixed::engine::Scalar;
 use p2m_mixed::{FileLocation, ReadError, Reason, Scene, Unit};
 use serde::Deserialize;
 use serde::de::IgnoredAny;
@@ -277,7 +278,9 @@ impl Reader<'_> {
         let view = self.item(&self.description.buffer_views, "view", view)?;
         let kind = accessor.component_type;
         let component = component(kind).ok_or_else(|| fail(format!("the type {kind} of its numbers is unknown")))?;
-        let (size, number, largest) = component;
+        let (scalar, largest) = component;
+        let size = scalar.size();
+        let number = |bytes: &[u8]| scalar.number(bytes).expect("the bytes of one number");
         let stride = view.byte_stride.unwrap_or(size * width);
         let buffer = self.item(&self.buffers, "buffer", view.buffer)?;
         let range = |start: usize, len: usize| buffer.get(start..start.checked_add(len)?);
@@ -300,18 +303,15 @@ impl Reader<'_> {
     }
 }
 
-/// Returns the size of a type of numbers, a function that reads one, and what stands for 1 if they are normalized.
-fn component(kind: u32) -> Option<(usize, fn(&[u8]) -> f64, f64)> {
-    fn array<const N: usize>(bytes: &[u8]) -> [u8; N] {
-        bytes.try_into().expect("the bytes of one number")
-    }
-    Some(match kind {
-        5120 => (1, |bytes| i8::from_le_bytes(array(bytes)).into(), i8::MAX.into()),
-        5121 => (1, |bytes| u8::from_le_bytes(array(bytes)).into(), u8::MAX.into()),
-        5122 => (2, |bytes| i16::from_le_bytes(array(bytes)).into(), i16::MAX.into()),
-        5123 => (2, |bytes| u16::from_le_bytes(array(bytes)).into(), u16::MAX.into()),
-        5125 => (4, |bytes| u32::from_le_bytes(array(bytes)).into(), u32::MAX.into()),
-        5126 => (4, |bytes| f32::from_le_bytes(array(bytes)).into(), 1.0),
+/// Returns a type of numbers, which has a code of OpenGL, and what stands for 1 if they are normalized.
+fn component(code: u32) -> Option<(Scalar, f64)> {
+    Some(match code {
+        5120 => (Scalar::I8, i8::MAX.into()),
+        5121 => (Scalar::U8, u8::MAX.into()),
+        5122 => (Scalar::I16, i16::MAX.into()),
+        5123 => (Scalar::U16, u16::MAX.into()),
+        5125 => (Scalar::U32, u32::MAX.into()),
+        5126 => (Scalar::F32, 1.0),
         _ => return None,
     })
 }
