@@ -15,11 +15,27 @@ pub(crate) struct Map {
     cutter: Earcut<f64>,
     /// The number of polygons that are left as outlines.
     outlines: u64,
+    /// Whether there are positions of two coordinates, and of three.
+    has_flat: bool,
+    has_raised: bool,
 }
 
 impl Map {
     pub(crate) fn new(file_len: usize) -> Self {
-        Self { sink: Sink::new(file_len), source: 0, cutter: Earcut::new(), outlines: 0 }
+        Self {
+            sink: Sink::new(file_len),
+            source: 0,
+            cutter: Earcut::new(),
+            outlines: 0,
+            has_flat: false,
+            has_raised: false,
+        }
+    }
+
+    /// Notes whether a position has two coordinates, or three.
+    pub(crate) fn note_dimension(&mut self, is_flat: bool) {
+        self.has_flat |= is_flat;
+        self.has_raised |= !is_flat;
     }
 
     pub(crate) fn point(&mut self, position: [f64; 3]) -> Result<(), Reason> {
@@ -90,10 +106,9 @@ impl Map {
     }
 
     pub(crate) fn finish(mut self) -> p2m_mixed::Scene {
-        self.sink
-            .builder
-            .skipped
-            .add_plural(self.outlines, "insides of polygons that cross themselves or have no area");
+        let builder = &mut self.sink.builder;
+        builder.is_flat = self.has_flat && !self.has_raised;
+        builder.skipped.add_plural(self.outlines, "insides of polygons that cross themselves or have no area");
         self.sink.finish()
     }
 }

@@ -2,6 +2,7 @@
 
 use crate::File;
 use crate::sink::{Sink, expanded_limit};
+use p2m_mixed::engine::Scalar;
 use p2m_mixed::{FileLocation, ReadError, Scene};
 use std::borrow::Cow;
 use std::ops::Range;
@@ -13,31 +14,18 @@ struct Field {
     word: usize,
     /// The offset in a record of bytes.
     offset: usize,
-    kind: u8,
-    size: usize,
+    scalar: Scalar,
 }
 
-impl Field {
-    fn number(&self, bytes: &[u8]) -> f64 {
-        macro_rules! read {
-            ($type:ty) => {
-                <$type>::from_le_bytes(bytes.try_into().expect("the size was checked")) as f64
-            };
-        }
-        #[allow(clippy::cast_precision_loss, clippy::cast_lossless, reason = "integers of 64 bits are rounded")]
-        match (self.kind, self.size) {
-            (b'F', 4) => read!(f32),
-            (b'F', _) => read!(f64),
-            (b'I', 1) => read!(i8),
-            (b'I', 2) => read!(i16),
-            (b'I', 4) => read!(i32),
-            (b'I', _) => read!(i64),
-            (_, 1) => read!(u8),
-            (_, 2) => read!(u16),
-            (_, 4) => read!(u32),
-            _ => read!(u64),
-        }
-    }
+/// Returns the type of numbers with this letter and this size.
+fn scalar(kind: u8, size: usize) -> Option<Scalar> {
+    let letter = match kind {
+        b'F' => 'f',
+        b'I' => 'i',
+        b'U' => 'u',
+        _ => return None,
+    };
+    Scalar::of_npy(format!("{letter}{size}").as_bytes())
 }
 
 struct Header<'a> {
@@ -89,11 +77,9 @@ impl<'a> Header<'a> {
                     let mut fields = [None; 3];
                     for i in 0..names.len() {
                         if let Some(axis) = ["x", "y", "z"].iter().position(|name| *name == names[i]) {
-                            let is_known = matches!((kinds[i], sizes[i]), (b'F', 4 | 8) | (b'I' | b'U', 1 | 2 | 4 | 8));
-                            if !is_known || counts[i] != 1 {
-                                return Err(fail(format!("the type or the size of {} is unknown", names[i])));
-                            }
-                            fields[axis] = Some(Field { word, offset, kind: kinds[i], size: sizes[i] });
+                            let scalar = scalar(kinds[i], sizes[i]).filter(|_| counts[i] == 1);
+                            let unknown = || fail(format!("the type or the size of {} is unknown", names[i]));
+                            fields[axis] = Some(Field { word, offset, scalar: scalar.ok_or_else(unknown)? });
                         }
                         word = word.saturating_add(counts[i]);
                         offset = offset.saturating_add(sizes[i].saturating_mul(counts[i]));
@@ -125,7 +111,7 @@ pub(crate) fn read(file: &File<'_>) -> Result<Scene, ReadError> {
             let fields = header.fields;
             let field = |axis: usize, row: usize| {
                 let at = row * header.record_len + fields[axis].offset;
-                at..at + fields[axis].size
+                at..at + fields[axis].scalar.size()
             };
             read_bytes(file, &header, records, field, &mut sink)?;
         }
@@ -144,9 +130,9 @@ pub(crate) fn read(file: &File<'_>) -> Result<Scene, ReadError> {
             })?;
             // Compressed data has all values of a field together.
             let field = |axis: usize, row: usize| {
-                let Field { offset, size, .. } = header.fields[axis];
-                let at = header.count * offset + row * size;
-                at..at + size
+                let Field { offset, scalar, .. } = header.fields[axis];
+                let at = header.count * offset + row * scalar.size();
+                at..at + scalar.size()
             };
             read_bytes(file, &header, &data, field, &mut sink)?;
         }
@@ -166,7 +152,8 @@ fn read_bytes(
     sink: &mut Sink,
 ) -> Result<(), ReadError> {
     for row in 0..header.count {
-        let position = std::array::from_fn(|axis| header.fields[axis].number(&data[field(axis, row)]));
+        let number = |axis: usize| header.fields[axis].scalar.number(&data[field(axis, row)]);
+        let position = std::array::from_fn(|axis| number(axis).expect("the range has the size of the number"));
         sink.point(position).map_err(|reason| ReadError::new(file.name, FileLocation::Row(row as u64), reason))?;
     }
     Ok(())
@@ -187,8 +174,8 @@ fn read_text(file: &File<'_>, header: &Header<'_>, sink: &mut Sink) -> Result<()
         for (x, field) in position.iter_mut().zip(header.fields) {
             let word = *words.get(field.word).ok_or_else(|| at_line("a point has too few values".to_owned()))?;
             // Text is rounded to the type of the field, as the bytes would be.
-            let number = match (field.kind, field.size) {
-                (b'F', 4) => word.parse::<f32>().map(f64::from),
+            let number = match field.scalar {
+                Scalar::F32 => word.parse::<f32>().map(f64::from),
                 _ => word.parse(),
             };
             *x = number.map_err(|_| at_line(format!("'{}' is not a number", word.escape_debug())))?;

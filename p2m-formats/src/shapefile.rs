@@ -22,7 +22,6 @@ pub(crate) fn read(file: &File<'_>) -> Result<Scene, ReadError> {
     }
     file.slice(0, HEADER_BYTES)?;
     let mut map = Map::new(file.bytes.len());
-    let (mut has_two, mut has_three) = (false, false);
     let mut at = HEADER_BYTES;
     while at < file.bytes.len() {
         let len = 2 * u64::from(u32::from_be_bytes(file.array(at + 4)?));
@@ -42,17 +41,15 @@ pub(crate) fn read(file: &File<'_>) -> Result<Scene, ReadError> {
             | Shape::PolylineZ(_)
             | Shape::PolygonZ(_)
             | Shape::MultipointZ(_)
-            | Shape::Multipatch(_) => has_three = true,
-            _ => has_two = true,
+            | Shape::Multipatch(_) => map.note_dimension(false),
+            _ => map.note_dimension(true),
         }
         add(&mut map, shape).map_err(|reason| fail(&reason))?;
         map.source += 1;
         at += 8 + content;
     }
     let projection = file.path.and_then(|path| std::fs::read_to_string(path.with_extension("prj")).ok());
-    let builder = &mut map.sink.builder;
-    builder.unit = projection.and_then(|text| wkt::unit(&text));
-    builder.is_flat = has_two && !has_three;
+    map.sink.builder.unit = projection.and_then(|text| wkt::unit(&text));
     Ok(map.finish())
 }
 

@@ -392,6 +392,14 @@ fn damaged_gltf_files_are_errors() {
     assert!(text("\"uri\":\"data:", "\"uri\":\"../data:").contains("buffer 0: '../data"));
     assert!(text("\"mesh\":0", "\"mesh\":99").contains("description: "));
     assert!(text("\"nodes\":[", "\"nodes\":[1,1,").contains("node 1 has two parents"));
+    assert!(text("\"nodes\":[", "\"nodes\":[99,").ends_with("description: there is no node 99"));
+    assert!(text("\"componentType\":", "\"componentType\":9").contains("the type 95125 of its numbers is unknown"));
+    assert!(text("\"VEC3\"", "\"VEC4\"").contains("accessor 1: its type is VEC4 instead of VEC3"));
+    assert!(text("\"mode\":4", "\"mode\":7").contains("mesh 0, primitive 0: mode 7 is unknown"));
+    assert!(
+        text("\"asset\":{", "\"extensionsRequired\":[\"KHR_mesh_quantization\",\"A\"],\"asset\":{")
+            .ends_with("extension A: files that need it are not read")
+    );
     assert!(
         text("\"asset\":{", "\"extensionsRequired\":[\"KHR_draco_mesh_compression\"],\"asset\":{")
             .contains("gltf-transform")

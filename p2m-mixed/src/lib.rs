@@ -71,6 +71,7 @@ pub mod engine {
     pub use crate::builder::SceneBuilder;
     pub use crate::open::open;
     pub use crate::output_file::OutputFile;
+    pub use crate::parse::bytes::Scalar;
     pub use crate::read::read_scene_in_blocks;
     pub use crate::scene::object_number;
 }

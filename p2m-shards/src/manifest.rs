@@ -20,7 +20,7 @@ const FORMAT: &str = "p2m-shards";
 const VERSION: u32 = 2;
 
 /// The description of a sharded index.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[non_exhaustive]
 pub struct Manifest {
     /// The name of the backend of all shards.

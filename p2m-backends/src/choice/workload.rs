@@ -1,9 +1,9 @@
 //! The work that an index is needed for, and the queries of it that are counted.
 
+use chacha20::ChaCha8Rng;
+use chacha20::rand_core::{Rng, SeedableRng};
 use nalgebra::{Point3, Vector3};
 use p2m_core::{Primitive, PrimitiveId, PrimitiveSet, Soup};
-use rand_chacha::ChaCha8Rng;
-use rand_chacha::rand_core::{Rng, SeedableRng};
 use std::borrow::Cow;
 
 /// A triangle is a sliver if its height is below this part of its longest edge.

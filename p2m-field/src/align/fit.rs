@@ -6,6 +6,7 @@ use nalgebra::{DMatrix, DVector, Matrix3, Point3, Rotation3, SymmetricEigen, Uni
 use p2m_core::batch::{BatchOptions, ClosestColumns, closest_columns_into};
 use p2m_core::engine::parallel;
 use p2m_core::{ClosestPoint, Primitive, PrimitiveId, PrimitiveSet, QueryOptions, shape_of};
+use std::ops::Range;
 
 /// The number of points whose sums one thread computes. It decides the rounding of sums, so it is the same for every
 /// number of threads.
@@ -21,10 +22,10 @@ const SHRINKING_TO_POINTS: f64 = 0.8;
 
 /// A scan, and the scene that it is fitted to.
 pub(super) struct Fit<'a, S: ?Sized, I: ?Sized> {
-    scene: &'a S,
+    pub(super) scene: &'a S,
     index: &'a I,
     points: &'a [Point3<f64>],
-    options: AlignOptions,
+    pub(super) options: AlignOptions,
     /// Whether residuals are distances of planes.
     to_planes: bool,
     /// The centre of the scan.
@@ -100,11 +101,6 @@ where
         })
     }
 
-    /// Returns the scene.
-    pub(super) fn scene(&self) -> &'a S {
-        self.scene
-    }
-
     /// Returns about `count` points of the scan that are spread over it, or all of them.
     ///
     /// They are the multiples of the golden ratio, so they do not fall into step with the lines of a scanner.
@@ -146,7 +142,7 @@ where
     }
 
     /// Returns the step of one pose, whose answers are in a range.
-    fn step(&self, answers: &Answers, range: std::ops::Range<usize>, pose: &Pose) -> Round {
+    fn step(&self, answers: &Answers, range: Range<usize>, pose: &Pose) -> Round {
         let distance = &answers.distance[range.clone()];
         let overlap = self.options.overlap;
         let radius = self.radius * pose.scale;
@@ -229,7 +225,7 @@ struct Solution {
 }
 
 /// Weighted sums over points. Lengths are relative to the radius and to the pivot.
-#[derive(Clone)]
+#[derive(Clone, Default)]
 struct Moments {
     /// The upper triangle of the normal matrix, row by row.
     normal: [f64; 28],
@@ -246,23 +242,6 @@ struct Moments {
     /// The sum of closest points times moved points transposed.
     products: Matrix3<f64>,
     moved_squares: f64,
-}
-
-impl Default for Moments {
-    fn default() -> Self {
-        Self {
-            normal: [0.0; 28],
-            right: [0.0; 7],
-            weight: 0.0,
-            slope: 0.0,
-            squares: 0.0,
-            used: 0,
-            moved: Vector3::zeros(),
-            closest: Vector3::zeros(),
-            products: Matrix3::zeros(),
-            moved_squares: 0.0,
-        }
-    }
 }
 
 impl Moments {
@@ -377,7 +356,7 @@ impl Moments {
 }
 
 /// Computes sums over ranges of `len` items, on all threads of the current pool if there are some.
-pub(super) fn sums<R: Send>(len: usize, sum: impl Fn(std::ops::Range<usize>) -> R + Sync) -> Vec<R> {
+pub(super) fn sums<R: Send>(len: usize, sum: impl Fn(Range<usize>) -> R + Sync) -> Vec<R> {
     let part = |k: usize| sum(k * CHUNK..((k + 1) * CHUNK).min(len));
     let parts = len.div_ceil(CHUNK);
     parallel::map(parts, parts > 1, part)

@@ -260,7 +260,7 @@ where
         }
         fit.scales = fit.scales.map(|scale| scale * ratio);
     }
-    let (start, other) = search::start(&fit, options, report);
+    let (start, other) = fit.start(report);
     let mut pose = start;
     let mut rounds = Vec::new();
     let mut level = 0;

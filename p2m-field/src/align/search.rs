@@ -2,7 +2,7 @@
 
 use super::fit::Fit;
 use super::pose::Pose;
-use super::{AlignOptions, AlignRound, ReportRound};
+use super::{AlignRound, ReportRound};
 use nalgebra::{Matrix3, Point3, Quaternion, Rotation3, SymmetricEigen, UnitQuaternion, Vector3};
 use p2m_core::{ClosestPoint, PrimitiveId, PrimitiveSet, shape_of};
 use std::f64::consts::FRAC_1_SQRT_2;
@@ -28,132 +28,131 @@ struct Candidate {
     is_first: bool,
 }
 
-/// Returns the pose to start from, and another one that fits about as well.
-pub(super) fn start<S, I>(
-    fit: &Fit<'_, S, I>,
-    options: &AlignOptions,
-    report: &mut ReportRound<'_>,
-) -> (Pose, Option<Pose>)
+impl<S, I> Fit<'_, S, I>
 where
     S: PrimitiveSet<f64> + Sync + ?Sized,
     I: ClosestPoint<f64> + Sync + ?Sized,
 {
-    let as_it_is = Pose::identity(fit.centre);
-    if !options.search {
-        return (as_it_is, None);
-    }
-    let mut near = starts(fit, as_it_is, options, false);
-    let mut found = None;
-    let sample = fit.sample(STAGES[1].0);
-    for _ in 0..ROUNDS_FROM_NEAR {
-        let rounds = fit.round(&sample, &near);
-        near = rounds.iter().map(|round| round.next).collect();
-        let best = rounds.iter().min_by(|a, b| a.score.total_cmp(&b.score)).expect("there are two");
-        if report(&AlignRound { points: sample.len(), rms: best.rms, step: best.step }).is_break() {
-            return (best.next, None);
+    /// Returns the pose to start from, and another one that fits about as well.
+    pub(super) fn start(&self, report: &mut ReportRound<'_>) -> (Pose, Option<Pose>) {
+        let as_it_is = Pose::identity(self.centre);
+        if !self.options.search {
+            return (as_it_is, None);
         }
-        if best.is_settled && best.score <= NEAR * fit.radius && best.step <= fit.small_step(best) {
-            found = Some(turned(fit, best.next));
-            break;
-        }
-    }
-    let few = fit.sample(STAGES[0].0);
-    let is_apart = |a: &Candidate, b: &Candidate| {
-        let squares: f64 = few.iter().map(|point| (a.pose.apply(point) - b.pose.apply(point)).norm_squared()).sum();
-        (squares / few.len() as f64).sqrt() > (0.05 * fit.radius * a.pose.scale).max(3.0 * a.rms.min(b.rms))
-    };
-    let is_near = found.is_some();
-    let poses = found.unwrap_or_else(|| starts(fit, as_it_is, options, true)).into_iter().enumerate();
-    let mut candidates: Vec<Candidate> =
-        poses.map(|(k, pose)| Candidate { pose, score: 0.0, rms: 0.0, is_first: k == 0 }).collect();
-    // Scores below this length are rounding.
-    let floor = 1e-6 * fit.radius;
-    for (points, rounds, kept) in STAGES {
-        let sample = fit.sample(points);
-        for _ in 0..rounds {
-            let poses: Vec<Pose> = candidates.iter().map(|candidate| candidate.pose).collect();
-            let rounds = fit.round(&sample, &poses);
-            for (candidate, round) in candidates.iter_mut().zip(&rounds) {
-                (candidate.pose, candidate.score, candidate.rms) = (round.next, round.score, round.rms);
-            }
-            let best = rounds.iter().min_by(|a, b| a.score.total_cmp(&b.score)).expect("there are starts");
+        let mut near = self.starts(as_it_is, false);
+        let mut found = None;
+        let sample = self.sample(STAGES[1].0);
+        for _ in 0..ROUNDS_FROM_NEAR {
+            let rounds = self.round(&sample, &near);
+            near = rounds.iter().map(|round| round.next).collect();
+            let best = rounds.iter().min_by(|a, b| a.score.total_cmp(&b.score)).expect("there are two");
             if report(&AlignRound { points: sample.len(), rms: best.rms, step: best.step }).is_break() {
                 return (best.next, None);
             }
-        }
-        // The scan as it is comes before others that are about as good.
-        let place = |c: &Candidate| if c.is_first { c.score / EQUAL - floor } else { c.score };
-        candidates.sort_by(|a, b| place(a).total_cmp(&place(b)));
-        let limit = CONTENDERS * candidates[0].score + floor;
-        let mut kept_ones: Vec<Candidate> = Vec::new();
-        for candidate in candidates {
-            let len = kept_ones.len();
-            let same = kept_ones.iter_mut().find(|other| !is_apart(&candidate, other));
-            // The scan as it is may need more rounds than others that began nearer.
-            let is_spared = candidate.is_first && points == few.len();
-            let is_kept = candidate.score <= limit && len < kept;
-            match same {
-                Some(same) => same.is_first |= candidate.is_first,
-                None if len == 0 || is_kept || is_spared => kept_ones.push(candidate),
-                None => {}
+            if best.is_settled && best.score <= NEAR * self.radius && best.step <= self.small_step(best) {
+                found = Some(self.turned(best.next));
+                break;
             }
         }
-        candidates = kept_ones;
-        if candidates.len() == 1 && (is_near || points > STAGES[0].0) {
-            break;
-        }
-    }
-    let best = candidates[0];
-    let other = candidates[1..].iter().find(|other| other.score <= 1.1 * best.score + floor);
-    (best.pose, other.map(|other| other.pose))
-}
-
-/// Returns the poses to start from: the scan as it is, the scan at the centre of the scene, and all others if there is a
-/// search.
-fn starts<S, I>(fit: &Fit<'_, S, I>, as_it_is: Pose, options: &AlignOptions, is_search: bool) -> Vec<Pose>
-where
-    S: PrimitiveSet<f64> + Sync + ?Sized,
-    I: ClosestPoint<f64> + Sync + ?Sized,
-{
-    let of_scan = Inertia::of_scan(fit);
-    let of_scene = Inertia::of_scene(fit.scene());
-    let scale = if options.scale { of_scene.radius / fit.radius } else { 1.0 };
-    let axes = of_scan.axes.inverse();
-    let rotations = rotations();
-    let mut poses = vec![as_it_is, Pose { to: of_scene.centre, scale, ..as_it_is }];
-    if !is_search {
-        return poses;
-    }
-    for frame in [[UnitQuaternion::identity(); 2], [of_scene.axes, axes]] {
-        let pose = |rotation: &UnitQuaternion<f64>| Pose {
-            rotation: UnitQuaternion::new_normalize((frame[0] * rotation * frame[1]).into_inner()),
-            scale,
-            to: of_scene.centre,
-            ..as_it_is
+        let few = self.sample(STAGES[0].0);
+        let is_apart = |a: &Candidate, b: &Candidate| {
+            let squares: f64 = few.iter().map(|point| (a.pose.apply(point) - b.pose.apply(point)).norm_squared()).sum();
+            (squares / few.len() as f64).sqrt() > (0.05 * self.radius * a.pose.scale).max(3.0 * a.rms.min(b.rms))
         };
-        poses.extend(rotations.iter().map(pose));
-    }
-    poses
-}
-
-/// Returns a pose, and the poses in which the scan is turned about its axes of inertia by halves, thirds and quarters,
-/// which fit as well if the scan is symmetric.
-fn turned<S, I>(fit: &Fit<'_, S, I>, pose: Pose) -> Vec<Pose>
-where
-    S: PrimitiveSet<f64> + Sync + ?Sized,
-    I: ClosestPoint<f64> + Sync + ?Sized,
-{
-    let axes = Inertia::of_scan(fit).axes;
-    let mut poses = vec![pose];
-    // The cosines of half of the angles.
-    for cosine in [0.0, 0.5, -0.5, FRAC_1_SQRT_2, -FRAC_1_SQRT_2] {
-        for axis in [Vector3::x(), Vector3::y(), Vector3::z()] {
-            let turn = Quaternion::from_parts(cosine, axis * (1.0 - cosine * cosine).sqrt());
-            let turn = axes * UnitQuaternion::new_normalize(turn) * axes.inverse();
-            poses.push(Pose { rotation: UnitQuaternion::new_normalize((pose.rotation * turn).into_inner()), ..pose });
+        let is_near = found.is_some();
+        let poses = found.unwrap_or_else(|| self.starts(as_it_is, true)).into_iter().enumerate();
+        let mut candidates: Vec<Candidate> =
+            poses.map(|(k, pose)| Candidate { pose, score: 0.0, rms: 0.0, is_first: k == 0 }).collect();
+        // Scores below this length are rounding.
+        let floor = 1e-6 * self.radius;
+        for (points, rounds, kept) in STAGES {
+            let sample = self.sample(points);
+            for _ in 0..rounds {
+                let poses: Vec<Pose> = candidates.iter().map(|candidate| candidate.pose).collect();
+                let rounds = self.round(&sample, &poses);
+                for (candidate, round) in candidates.iter_mut().zip(&rounds) {
+                    (candidate.pose, candidate.score, candidate.rms) = (round.next, round.score, round.rms);
+                }
+                let best = rounds.iter().min_by(|a, b| a.score.total_cmp(&b.score)).expect("there are starts");
+                if report(&AlignRound { points: sample.len(), rms: best.rms, step: best.step }).is_break() {
+                    return (best.next, None);
+                }
+            }
+            // The scan as it is comes before others that are about as good.
+            let place = |c: &Candidate| if c.is_first { c.score / EQUAL - floor } else { c.score };
+            candidates.sort_by(|a, b| place(a).total_cmp(&place(b)));
+            let limit = CONTENDERS * candidates[0].score + floor;
+            let mut kept_ones: Vec<Candidate> = Vec::new();
+            for candidate in candidates {
+                let len = kept_ones.len();
+                let same = kept_ones.iter_mut().find(|other| !is_apart(&candidate, other));
+                // The scan as it is may need more rounds than others that began nearer.
+                let is_spared = candidate.is_first && points == few.len();
+                let is_kept = candidate.score <= limit && len < kept;
+                match same {
+                    Some(same) => same.is_first |= candidate.is_first,
+                    None if len == 0 || is_kept || is_spared => kept_ones.push(candidate),
+                    None => {}
+                }
+            }
+            candidates = kept_ones;
+            if candidates.len() == 1 && (is_near || points > STAGES[0].0) {
+                break;
+            }
         }
+        let best = candidates[0];
+        let other = candidates[1..].iter().find(|other| other.score <= 1.1 * best.score + floor);
+        (best.pose, other.map(|other| other.pose))
     }
-    poses
+
+    /// Returns the poses to start from: the scan as it is, the scan at the centre of the scene, and all others if there is a
+    /// search.
+    fn starts(&self, as_it_is: Pose, is_search: bool) -> Vec<Pose> {
+        let of_scan = self.inertia();
+        let of_scene = Inertia::of_scene(self.scene);
+        let scale = if self.options.scale { of_scene.radius / self.radius } else { 1.0 };
+        let axes = of_scan.axes.inverse();
+        let rotations = rotations();
+        let mut poses = vec![as_it_is, Pose { to: of_scene.centre, scale, ..as_it_is }];
+        if !is_search {
+            return poses;
+        }
+        for frame in [[UnitQuaternion::identity(); 2], [of_scene.axes, axes]] {
+            let pose = |rotation: &UnitQuaternion<f64>| Pose {
+                rotation: UnitQuaternion::new_normalize((frame[0] * rotation * frame[1]).into_inner()),
+                scale,
+                to: of_scene.centre,
+                ..as_it_is
+            };
+            poses.extend(rotations.iter().map(pose));
+        }
+        poses
+    }
+
+    /// Returns a pose, and the poses in which the scan is turned about its axes of inertia by halves, thirds and quarters,
+    /// which fit as well if the scan is symmetric.
+    fn turned(&self, pose: Pose) -> Vec<Pose> {
+        let axes = self.inertia().axes;
+        let mut poses = vec![pose];
+        // The cosines of half of the angles.
+        for cosine in [0.0, 0.5, -0.5, FRAC_1_SQRT_2, -FRAC_1_SQRT_2] {
+            for axis in [Vector3::x(), Vector3::y(), Vector3::z()] {
+                let turn = Quaternion::from_parts(cosine, axis * (1.0 - cosine * cosine).sqrt());
+                let turn = axes * UnitQuaternion::new_normalize(turn) * axes.inverse();
+                poses.push(Pose {
+                    rotation: UnitQuaternion::new_normalize((pose.rotation * turn).into_inner()),
+                    ..pose
+                });
+            }
+        }
+        poses
+    }
+
+    /// Returns the inertia of a sample of the scan.
+    fn inertia(&self) -> Inertia {
+        let points = self.sample(1 << 14).into_iter().map(|point| (1.0, point));
+        Inertia::of(points, self.centre, std::slice::from_ref)
+    }
 }
 
 /// The centre, the radius and the principal axes of points with weights.
@@ -165,15 +164,6 @@ pub(super) struct Inertia {
 }
 
 impl Inertia {
-    /// Returns the inertia of a sample of the scan.
-    fn of_scan<S, I>(fit: &Fit<'_, S, I>) -> Self
-    where
-        S: PrimitiveSet<f64> + Sync + ?Sized,
-        I: ClosestPoint<f64> + Sync + ?Sized,
-    {
-        Self::of(fit.sample(1 << 14).into_iter().map(|point| (1.0, point)), fit.centre, std::slice::from_ref)
-    }
-
     /// Returns the inertia of the triangles of a scene, or of its segments or points if there are none.
     pub(super) fn of_scene<S: PrimitiveSet<f64> + ?Sized>(scene: &S) -> Self {
         let shapes = || (0..scene.len()).filter_map(|id| shape_of(scene, PrimitiveId::new(id)));

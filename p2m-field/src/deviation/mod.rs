@@ -101,13 +101,11 @@ impl DeviationStatistics {
         let mut sorted: Vec<f64> = deviations.iter().map(|x| x.to_f64()).filter(|x| x.is_finite()).collect();
         sorted.sort_unstable_by(f64::total_cmp);
         let missing = deviations.len() - sorted.len();
-        let (Some(&min), Some(&max)) = (sorted.first(), sorted.last()) else {
-            return Self { missing, ..Self::NONE };
-        };
+        let [min, max] = [sorted.first(), sorted.last()].map(|end| end.copied().unwrap_or(f64::NAN));
         // Absolute values of ascending numbers are a descending run and an ascending one, which this sort merges.
         let mut absolute: Vec<f64> = sorted.iter().map(|x| x.abs()).collect();
         absolute.sort_by(f64::total_cmp);
-        let scale = power_of_two_below(absolute[absolute.len() - 1]);
+        let scale = power_of_two_below(absolute.last().copied().unwrap_or(0.0));
         let zero = Double::difference(0.0, 0.0);
         let (mut sum, mut sum_of_absolutes, mut sum_of_squares) = (zero, zero, zero);
         for value in &sorted {
@@ -116,36 +114,23 @@ impl DeviationStatistics {
             sum_of_absolutes = sum_of_absolutes + Double::difference(value.abs(), 0.0);
             sum_of_squares = sum_of_squares + Double::product(value, value);
         }
+        // Quotients of nothing are NaN.
         let count = Double::difference(sorted.len() as f64, 0.0);
         let (mean, mean_square) = (sum / count, sum_of_squares / count);
-        let variance = (mean_square - mean * mean).round().max(0.0);
+        let variance = (mean_square - mean * mean).round();
         Self {
             count: sorted.len(),
             missing,
             mean: mean.round() * scale,
             mean_absolute: (sum_of_absolutes / count).round() * scale,
             rms: mean_square.round().sqrt() * scale,
-            standard_deviation: variance.sqrt() * scale,
+            standard_deviation: if variance <= 0.0 { 0.0 } else { variance.sqrt() * scale },
             min,
             max,
             percentiles: PERCENTILES.map(|percent| percentile(&sorted, percent)),
             absolute_percentiles: PERCENTILES.map(|percent| percentile(&absolute, percent)),
         }
     }
-
-    /// The statistics of nothing.
-    const NONE: Self = Self {
-        count: 0,
-        missing: 0,
-        mean: f64::NAN,
-        mean_absolute: f64::NAN,
-        rms: f64::NAN,
-        standard_deviation: f64::NAN,
-        min: f64::NAN,
-        max: f64::NAN,
-        percentiles: [f64::NAN; 7],
-        absolute_percentiles: [f64::NAN; 7],
-    };
 
     /// Returns all numbers but the counts with their names, in the order in which tables have them.
     #[must_use]
@@ -184,12 +169,13 @@ fn power_of_two_below(x: f64) -> f64 {
     f64::from_bits(x.to_bits() & EXPONENT).max(f64::MIN_POSITIVE)
 }
 
-/// Returns a percentile of values in ascending order, of which there is at least one.
+/// Returns a percentile of values in ascending order, which is NaN if there are none.
 fn percentile(sorted: &[f64], percent: u8) -> f64 {
-    let hundredths = (sorted.len() - 1) * usize::from(percent);
+    let Some(last) = sorted.len().checked_sub(1) else { return f64::NAN };
+    let hundredths = last * usize::from(percent);
     let (rank, part) = (hundredths / 100, (hundredths % 100) as f64 / 100.0);
     let low = sorted[rank];
-    let high = sorted[(rank + 1).min(sorted.len() - 1)];
+    let high = sorted[(rank + 1).min(last)];
     let step = high - low;
     // The difference of two finite numbers may overflow.
     if step.is_finite() { low + step * part } else { low * (1.0 - part) + high * part }

@@ -3,7 +3,7 @@
 use nalgebra::{Matrix3, Point3, SymmetricEigen, Vector3};
 use p2m_core::batch::{self, BatchOptions};
 use p2m_core::{Closest, ClosestPoint, NearQuery, QueryOptions, Soup};
-use std::cmp::Ordering;
+use std::cmp::Reverse;
 use std::collections::BinaryHeap;
 
 /// The number of points that define a plane.
@@ -134,51 +134,28 @@ fn plane(point: &Point3<f64>, neighbours: &[Closest<f64>]) -> Plane {
     Plane { centre, normal, radius }
 }
 
-/// A plane that waits to agree with one that has its final normal.
-struct Waiting {
-    /// The absolute cosine of the angle between the normals.
-    cosine: f64,
-    plane: u32,
-    from: u32,
-}
-
-impl Ord for Waiting {
-    fn cmp(&self, other: &Self) -> Ordering {
-        self.cosine.total_cmp(&other.cosine).then(other.plane.cmp(&self.plane)).then(other.from.cmp(&self.from))
-    }
-}
-impl PartialOrd for Waiting {
-    fn partial_cmp(&self, other: &Self) -> Option<Ordering> {
-        Some(self.cmp(other))
-    }
-}
-impl PartialEq for Waiting {
-    fn eq(&self, other: &Self) -> bool {
-        self.cmp(other).is_eq()
-    }
-}
-impl Eq for Waiting {}
-
 /// Turns normals so that they agree along the tree of minimal turns. `downwards` has all planes, the highest first.
 fn orient(planes: &mut [Plane], neighbours: &[Vec<u32>], downwards: &[u32]) {
     let mut is_done = vec![false; planes.len()];
-    let mut waiting = BinaryHeap::new();
-    let wait = |waiting: &mut BinaryHeap<Waiting>, planes: &[Plane], from: u32, plane: u32| {
+    // Planes whose normals are not oriented yet: the absolute cosine of the angle to a neighbour that is, whose bits are
+    // ordered as it is, the plane, and that neighbour.
+    let mut waiting: BinaryHeap<(u64, Reverse<u32>, Reverse<u32>)> = BinaryHeap::new();
+    let entry = |planes: &[Plane], from: u32, plane: u32| {
         let cosine = planes[from as usize].normal.dot(&planes[plane as usize].normal).abs();
-        waiting.push(Waiting { cosine, plane, from });
+        (cosine.to_bits(), Reverse(plane), Reverse(from))
     };
     for start in downwards {
         if !is_done[*start as usize] {
             // A point outside of all neighbourhoods that are done may have one of their points in its own.
             let done = neighbours[*start as usize].iter().filter(|other| is_done[**other as usize]);
-            done.for_each(|other| wait(&mut waiting, planes, *other, *start));
+            waiting.extend(done.map(|other| entry(planes, *other, *start)));
             if waiting.is_empty() {
                 let normal = &mut planes[*start as usize].normal;
                 *normal *= if normal.z < 0.0 { -1.0 } else { 1.0 };
-                waiting.push(Waiting { cosine: 1.0, plane: *start, from: *start });
+                waiting.push((1.0f64.to_bits(), Reverse(*start), Reverse(*start)));
             }
         }
-        while let Some(Waiting { plane, from, .. }) = waiting.pop() {
+        while let Some((_, Reverse(plane), Reverse(from))) = waiting.pop() {
             if std::mem::replace(&mut is_done[plane as usize], true) {
                 continue;
             }
@@ -186,7 +163,7 @@ fn orient(planes: &mut [Plane], neighbours: &[Vec<u32>], downwards: &[u32]) {
                 planes[plane as usize].normal.neg_mut();
             }
             let others = neighbours[plane as usize].iter().filter(|other| !is_done[**other as usize]);
-            others.for_each(|other| wait(&mut waiting, planes, plane, *other));
+            waiting.extend(others.map(|other| entry(planes, plane, *other)));
         }
     }
 }

@@ -80,22 +80,6 @@ pub(super) struct PatchSide {
     is_front: bool,
 }
 
-impl<S: Clone> Clone for Certificates<S> {
-    fn clone(&self) -> Self {
-        let fronts = self.fronts.iter().map(|front| AtomicI64::new(front.load(Ordering::Relaxed))).collect();
-        Self {
-            soup: self.soup.clone(),
-            tree: self.tree.clone(),
-            clearance: self.clearance,
-            neighbours: self.neighbours.clone(),
-            vertex_ids: self.vertex_ids.clone(),
-            fans: self.fans.clone(),
-            patches: self.patches.clone(),
-            fronts,
-        }
-    }
-}
-
 impl<S: SharedSoup> Certificates<S> {
     /// Finds the simple triangles of a closed surface. `roundoff` is the unit roundoff of the index.
     ///

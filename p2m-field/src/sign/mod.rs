@@ -111,7 +111,7 @@ struct Signs<S> {
     /// Whether signs change at the surface alone.
     is_closed: bool,
     /// The facts that are proved about the normals of a closed surface, once there are so many queries that it pays.
-    certificates: OnceLock<Certificates<S>>,
+    certificates: OnceLock<Arc<Certificates<S>>>,
     /// Whether a thread prepares the certificates or has prepared them.
     preparations: Flag,
     /// The unit roundoff of the index.
@@ -352,30 +352,26 @@ impl<I, S: SharedSoup> SignedDistance<I, S> {
         self.signs.sign(&query.map(Real::to_f64), &closest.into(), self.index.rays())
     }
 
+    /// Returns the number of queries so far whose sign a ray or a winding number has decided, because the
+    /// closest point did not.
+    pub fn ambiguous_count(&self) -> u64 {
+        self.signs.ray_count.get()
+    }
+}
+
+impl<I: ClosestPoint<f64>, S: SharedSoup> SignedDistance<I, S> {
     /// Returns the sign of a point that is not on the surface, without its closest point.
-    pub(crate) fn sign_without_closest_point(&self, point: &Point3<f64>) -> Sign
-    where
-        I: ClosestPoint<f64>,
-    {
+    pub(crate) fn sign_without_closest_point(&self, point: &Point3<f64>) -> Sign {
         self.signs.sign_without_closest_point(point, self.index.rays())
     }
 
     /// Returns the common sign of all points of a ball that the surface does not cross, or `None` if they may differ.
-    pub(crate) fn sign_in_ball(&self, radius: f64, centre: &Point3<f64>) -> Option<Sign>
-    where
-        I: ClosestPoint<f64>,
-    {
+    pub(crate) fn sign_in_ball(&self, radius: f64, centre: &Point3<f64>) -> Option<Sign> {
         if self.is_closed() {
             Some(self.sign_without_closest_point(centre))
         } else {
             self.signs.winding.sign_in_ball(radius, centre, self.index.rays())
         }
-    }
-
-    /// Returns the number of queries so far whose sign a ray or a winding number has decided, because the
-    /// closest point did not.
-    pub fn ambiguous_count(&self) -> u64 {
-        self.signs.ray_count.get()
     }
 }
 
@@ -445,7 +441,7 @@ impl<S: SharedSoup> Signs<S> {
         if pays && self.certificates.get().is_none() && self.preparations.set() {
             // An index over the scene was built, so a tree can be built as well.
             if let Ok(certificates) = Certificates::new(self.soup.clone(), self.roundoff) {
-                let _ = self.certificates.set(certificates);
+                let _ = self.certificates.set(Arc::new(certificates));
             }
         }
     }

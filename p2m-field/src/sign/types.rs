@@ -120,11 +120,7 @@ impl<T: Real> Signed<T> {
     /// Returns the distance from the scene as a solid: 0 inside, or `None` where the sign is not defined.
     #[must_use]
     pub fn distance_to_solid(&self) -> Option<T> {
-        match self.sign {
-            Sign::Outside => Some(self.closest.distance),
-            Sign::Inside | Sign::Boundary => Some(T::zero()),
-            Sign::Undefined => None,
-        }
+        self.distance().map(|distance| if distance > T::zero() { distance } else { T::zero() })
     }
 }
 

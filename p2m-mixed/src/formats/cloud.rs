@@ -2,10 +2,11 @@
 
 use crate::builder::SceneBuilder;
 use crate::parse::blocks::Source;
+use crate::points::npy;
 use crate::points::table::{self, TableNotes};
 use crate::{PointColumns, ReadError, Reason, Scene, WriteError};
 use nalgebra::Point3;
-use p2m_core::{Element, PrimitiveId};
+use p2m_core::{Element, PrimitiveId, npy_header};
 use std::io::{BufRead, Write};
 
 /// Reads a cloud with a function that calls another one for each row. Each point that is finite is a primitive.
@@ -59,57 +60,35 @@ fn write_table(scene: &Scene, mut writer: impl Write, head: &str, separator: cha
     Ok(())
 }
 
-/// Columns that are separated by blanks.
-pub(super) mod xyz {
-    pub(in crate::formats) use super::read_table as read;
-    use crate::{Scene, WriteError};
-    use std::io::Write;
-
-    pub(in crate::formats) fn write(scene: &Scene, writer: impl Write) -> Result<(), WriteError> {
-        super::write_table(scene, writer, "", ' ')
-    }
+/// Writes columns that are separated by blanks.
+pub(super) fn write_xyz(scene: &Scene, writer: impl Write) -> Result<(), WriteError> {
+    write_table(scene, writer, "", ' ')
 }
 
-/// Columns with names that are separated by commas.
-pub(super) mod csv {
-    pub(in crate::formats) use super::read_table as read;
-    use crate::{Scene, WriteError};
-    use std::io::Write;
-
-    pub(in crate::formats) fn write(scene: &Scene, writer: impl Write) -> Result<(), WriteError> {
-        super::write_table(scene, writer, "x,y,z\n", ',')
-    }
+/// Writes columns with names that are separated by commas.
+pub(super) fn write_csv(scene: &Scene, writer: impl Write) -> Result<(), WriteError> {
+    write_table(scene, writer, "x,y,z\n", ',')
 }
 
-/// Arrays of NumPy.
-pub(super) mod npy {
-    use super::{points_of, read_cloud};
-    use crate::builder::SceneBuilder;
-    use crate::parse::blocks::Source;
-    use crate::points::npy::for_each_row;
-    use crate::points::table::TableNotes;
-    use crate::{ReadError, Scene, WriteError};
-    use p2m_core::npy_header;
-    use std::io::{BufRead, Write};
+/// Reads an array of NumPy.
+pub(super) fn read_npy(
+    source: Source<impl BufRead>,
+    name: &str,
+    builder: SceneBuilder<'_>,
+) -> Result<Scene, ReadError> {
+    read_cloud(builder, |take| {
+        let is_flat = npy::for_each_row(source.into_reader(), name, |point, _| take(point))?;
+        Ok(TableNotes { unit: None, is_flat })
+    })
+}
 
-    pub(in crate::formats) fn read(
-        source: Source<impl BufRead>,
-        name: &str,
-        builder: SceneBuilder<'_>,
-    ) -> Result<Scene, ReadError> {
-        read_cloud(builder, |take| {
-            let is_flat = for_each_row(source.into_reader(), name, |point, _| take(point))?;
-            Ok(TableNotes { unit: None, is_flat })
-        })
+/// Writes an array of NumPy.
+pub(super) fn write_npy(scene: &Scene, mut writer: impl Write) -> Result<(), WriteError> {
+    let points = points_of(scene)?;
+    writer.write_all(&npy_header("'<f8'", &format!("({}, 3)", points.len()), false))?;
+    for x in points.flat_map(|p| [p.x, p.y, p.z]) {
+        writer.write_all(&x.to_le_bytes())?;
     }
-
-    pub(in crate::formats) fn write(scene: &Scene, mut writer: impl Write) -> Result<(), WriteError> {
-        let points = points_of(scene)?;
-        writer.write_all(&npy_header("'<f8'", &format!("({}, 3)", points.len()), false))?;
-        for x in points.flat_map(|p| [p.x, p.y, p.z]) {
-            writer.write_all(&x.to_le_bytes())?;
-        }
-        writer.flush()?;
-        Ok(())
-    }
+    writer.flush()?;
+    Ok(())
 }

@@ -13,13 +13,12 @@ pub(crate) mod stl;
 use crate::builder::SceneBuilder;
 use crate::parse::blocks::Source;
 use crate::{ReadError, Scene, WriteError};
-use cloud::{csv, npy, xyz};
 use std::io::{BufRead, Write};
 
-/// Makes [`Format`] of a table: the names of a format, which are the extensions of its files, its module, and whether its
-/// files hold every scene.
+/// Makes [`Format`] of a table: the names of a format, which are the extensions of its files, its reader and writer, and
+/// whether its files hold every scene.
 macro_rules! scene_formats {
-    ($($(#[$doc:meta])* $variant:ident = $name:literal $(| $other:literal)*, $module:ident, is_lossless: $is_lossless:literal;)*) => {
+    ($($(#[$doc:meta])* $variant:ident = $name:literal $(| $other:literal)*, $read:path, $write:path, is_lossless: $is_lossless:literal;)*) => {
         p2m_core::formats! {
             /// The file formats of scenes, all of which can be read and written.
             ///
@@ -50,13 +49,13 @@ macro_rules! scene_formats {
                 builder: SceneBuilder<'_>,
             ) -> Result<Scene, ReadError> {
                 match self {
-                    $(Self::$variant => $module::read(source, name, builder),)*
+                    $(Self::$variant => $read(source, name, builder),)*
                 }
             }
 
             pub(crate) fn write(self, scene: &Scene, writer: impl Write) -> Result<(), WriteError> {
                 match self {
-                    $(Self::$variant => $module::write(scene, writer),)*
+                    $(Self::$variant => $write(scene, writer),)*
                 }
             }
         }
@@ -65,23 +64,23 @@ macro_rules! scene_formats {
 
 scene_formats! {
     /// Wavefront OBJ is a text format, see [`read_obj`](crate::read_obj) and [`write_obj`](crate::write_obj).
-    Obj = "obj", obj, is_lossless: true;
+    Obj = "obj", obj::read, obj::write, is_lossless: true;
     /// This is the Stanford polygon format, see [`read_ply`](crate::read_ply) and [`write_ply`](crate::write_ply).
-    Ply = "ply", ply, is_lossless: true;
+    Ply = "ply", ply::read, ply::write, is_lossless: true;
     /// Stereolithography files have triangles in single precision, see [`read_stl`](crate::read_stl) and
     /// [`write_stl`](crate::write_stl).
-    Stl = "stl", stl, is_lossless: false;
+    Stl = "stl", stl::read, stl::write, is_lossless: false;
     /// This is the object file format of Geomview, see [`read_off`](crate::read_off) and
     /// [`write_off`](crate::write_off).
-    Off = "off", off, is_lossless: true;
+    Off = "off", off::read, off::write, is_lossless: true;
     /// Text tables of points, whose columns are separated by blanks, see [`read_points`](crate::read_points).
-    Xyz = "xyz" | "txt" | "asc" | "pts", xyz, is_lossless: false;
+    Xyz = "xyz" | "txt" | "asc" | "pts", cloud::read_table, cloud::write_xyz, is_lossless: false;
     /// Text tables of points, whose columns are separated by commas, see [`read_points`](crate::read_points).
-    Csv = "csv", csv, is_lossless: false;
+    Csv = "csv", cloud::read_table, cloud::write_csv, is_lossless: false;
     /// Arrays of NumPy hold points, see [`read_points`](crate::read_points).
-    Npy = "npy", npy, is_lossless: false;
+    Npy = "npy", cloud::read_npy, cloud::write_npy, is_lossless: false;
     /// Files of saved indexes can have a scene, see [`read_p2m`](crate::read_p2m) and [`write_p2m`](crate::write_p2m).
-    P2m = "p2m", p2m, is_lossless: true;
+    P2m = "p2m", p2m::read, p2m::write, is_lossless: true;
 }
 
 #[cfg(test)]

@@ -1,6 +1,6 @@
 //! A bundle of twisted strands along a knot, which consists of segments.
 
-use super::error::{GenerateError, at_least, capacity};
+use super::error::{GenerateError, at_least, capacity, in_range};
 use super::knot::Frame;
 use super::portable::SinCos;
 use p2m_core::{Element, Soup};
@@ -45,13 +45,8 @@ pub fn cable_bundle(options: &CableBundle) -> Result<Soup<f64>, GenerateError> {
     let &CableBundle { strands, segments, twists, radius } = options;
     at_least(1, "strands", strands)?;
     at_least(1, "segments", segments)?;
-    if !(-1e3..=1e3).contains(&twists) {
-        return Err(GenerateError::OutOfRange { option: "twists", value: twists, range: "from -1000 to 1000" });
-    }
-    if !(radius > 0.0 && radius <= 1e3) {
-        let range = "above 0 and at most 1000";
-        return Err(GenerateError::OutOfRange { option: "radius", value: radius, range });
-    }
+    in_range((-1e3..=1e3).contains(&twists), "twists", twists, "from -1000 to 1000")?;
+    in_range(radius > 0.0 && radius <= 1e3, "radius", radius, "above 0 and at most 1000")?;
     let len = capacity(u128::from(strands) * u128::from(segments))?;
 
     let mut positions = Vec::with_capacity(len + strands as usize);

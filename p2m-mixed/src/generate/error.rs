@@ -57,6 +57,16 @@ pub enum GenerateError {
     Build(#[from] BuildError),
 }
 
+/// Returns an error unless an option is valid. `range` has the values that are.
+pub(super) fn in_range(
+    is_valid: bool,
+    option: &'static str,
+    value: f64,
+    range: &'static str,
+) -> Result<(), GenerateError> {
+    if is_valid { Ok(()) } else { Err(GenerateError::OutOfRange { option, value, range }) }
+}
+
 pub(super) fn at_least(least: u32, option: &'static str, value: u32) -> Result<(), GenerateError> {
     if value < least { Err(GenerateError::TooFew { option, value, least }) } else { Ok(()) }
 }

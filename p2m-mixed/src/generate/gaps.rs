@@ -2,7 +2,7 @@
 //!
 //! These are the two hard cases of \[Zong2023, section 5.5, Figure 19\].
 
-use super::error::GenerateError;
+use super::error::{GenerateError, in_range};
 use nalgebra::{Point3, Vector3};
 use p2m_core::{Element, Soup};
 
@@ -23,10 +23,7 @@ use p2m_core::{Element, Soup};
 /// [`GenerateError::OutOfRange`] if the factor is not above 0 and below 1, [`GenerateError::Build`] if
 /// a coordinate overflows.
 pub fn gapped(scene: &Soup<f64>, factor: f64) -> Result<Soup<f64>, GenerateError> {
-    if !(factor > 0.0 && factor < 1.0) {
-        let range = "above 0 and below 1";
-        return Err(GenerateError::OutOfRange { option: "factor", value: factor, range });
-    }
+    in_range(factor > 0.0 && factor < 1.0, "factor", factor, "above 0 and below 1")?;
     about_centroids(scene, factor)
 }
 
@@ -48,10 +45,7 @@ pub fn gapped(scene: &Soup<f64>, factor: f64) -> Result<Soup<f64>, GenerateError
 /// [`GenerateError::OutOfRange`] if the factor is not above 1 and at most 1000, [`GenerateError::Build`] if
 /// a coordinate overflows.
 pub fn penetrating(scene: &Soup<f64>, factor: f64) -> Result<Soup<f64>, GenerateError> {
-    if !(factor > 1.0 && factor <= 1e3) {
-        let range = "above 1 and at most 1000";
-        return Err(GenerateError::OutOfRange { option: "factor", value: factor, range });
-    }
+    in_range(factor > 1.0 && factor <= 1e3, "factor", factor, "above 1 and at most 1000")?;
     about_centroids(scene, factor)
 }
 

@@ -1,6 +1,6 @@
 //! Torus knots: the curve, the frame along it, and a closed tube of triangles around it.
 
-use super::error::{GenerateError, at_least, capacity};
+use super::error::{GenerateError, at_least, capacity, in_range};
 use super::portable::SinCos;
 use nalgebra::{Point3, Vector3};
 use p2m_core::{Element, Soup};
@@ -51,13 +51,7 @@ pub fn torus_knot(options: &TorusKnot) -> Result<Soup<f64>, GenerateError> {
     if greatest_common_divisor(p, q) != 1 {
         return Err(GenerateError::CommonDivisor { p, q });
     }
-    if !(tube_radius > 0.0 && tube_radius <= 1e3) {
-        return Err(GenerateError::OutOfRange {
-            option: "tube radius",
-            value: tube_radius,
-            range: "above 0 and at most 1000",
-        });
-    }
+    in_range(tube_radius > 0.0 && tube_radius <= 1e3, "tube radius", tube_radius, "above 0 and at most 1000")?;
     capacity(2 * u128::from(rings) * u128::from(sides))?;
     let positions = tube(p, q, rings, sides, tube_radius).collect();
     Ok(Soup::new(positions, tube_elements(rings, sides))?)

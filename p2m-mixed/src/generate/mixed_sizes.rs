@@ -1,6 +1,6 @@
 //! Triangles, segments and points of sizes over several orders of magnitude, distributed in a cube.
 
-use super::error::{GenerateError, capacity};
+use super::error::{GenerateError, capacity, in_range};
 use super::portable::Random;
 use nalgebra::{Point3, Vector3};
 use p2m_core::{Element, Soup};
@@ -47,9 +47,7 @@ const LARGEST_SIZE: f64 = 0.5;
 pub fn mixed_sizes(options: &MixedSizes) -> Result<Soup<f64>, GenerateError> {
     let &MixedSizes { triangles, segments, points, decades, seed } = options;
     // Beyond 12, the smallest sizes would be a few units in the last place of the coordinates.
-    if !(0.0..=12.0).contains(&decades) {
-        return Err(GenerateError::OutOfRange { option: "decades", value: decades, range: "from 0 to 12" });
-    }
+    in_range((0.0..=12.0).contains(&decades), "decades", decades, "from 0 to 12")?;
     let kinds = [triangles, segments, points].map(u64::from);
     capacity(kinds.iter().copied().map(u128::from).sum())?;
 

@@ -4,9 +4,9 @@
 //! libm, which consist of additions, multiplications and divisions of f64 in a fixed order. `powi` and `mul_add` are
 //! not used.
 
+use chacha20::ChaCha8Rng;
+use chacha20::rand_core::{Rng, SeedableRng};
 use nalgebra::{Matrix3, Vector3};
-use rand_chacha::ChaCha8Rng;
-use rand_chacha::rand_core::{Rng, SeedableRng};
 use std::f64::consts::{FRAC_1_SQRT_2, FRAC_PI_4};
 
 /// Sine and cosine of an angle.

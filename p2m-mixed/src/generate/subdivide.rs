@@ -3,7 +3,7 @@
 //! The displacement of an edge depends only on the coordinates of its ends. So a shared edge stays shared, two edges
 //! with the same ends get the same midpoint, and the order of primitives changes no position.
 
-use super::error::{GenerateError, capacity};
+use super::error::{GenerateError, capacity, in_range};
 use super::portable::in_ball;
 use nalgebra::{Point3, Vector3};
 use p2m_core::{BuildError, Element, Soup};
@@ -49,9 +49,7 @@ impl Default for Subdivide {
 /// Time O(m log m) and memory O(m) for m primitives of the result.
 pub fn subdivide(scene: &Soup<f64>, options: &Subdivide) -> Result<Soup<f64>, GenerateError> {
     let &Subdivide { levels, amplitude, seed } = options;
-    if !(0.0..=0.5).contains(&amplitude) {
-        return Err(GenerateError::OutOfRange { option: "amplitude", value: amplitude, range: "from 0 to 0.5" });
-    }
+    in_range((0.0..=0.5).contains(&amplitude), "amplitude", amplitude, "from 0 to 0.5")?;
     // More levels make no difference, because a segment has too many parts after 31 levels.
     let parts = |count: usize, each: u128| count as u128 * each.pow(levels.min(31));
     capacity(parts(scene.triangles().len(), 4) + parts(scene.segments().len(), 2) + scene.points().len() as u128)?;

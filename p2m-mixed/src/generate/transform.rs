@@ -1,6 +1,6 @@
 //! Rotation, scaling and translation of scenes.
 
-use super::error::GenerateError;
+use super::error::{GenerateError, in_range};
 use super::portable::rotation;
 use nalgebra::{Matrix3, Point3, Vector3};
 use p2m_core::Soup;
@@ -52,34 +52,25 @@ impl Transform {
     }
 
     fn rotated(self, axis: usize, degrees: f64) -> Self {
-        if !degrees.is_finite() {
-            return self.refuse(GenerateError::OutOfRange { option: "angle", value: degrees, range: "finite" });
-        }
         let matrix = rotation(axis, degrees);
-        Self { linear: matrix * self.linear, translation: matrix * self.translation, ..self }
+        let error = self.error.or(in_range(degrees.is_finite(), "angle", degrees, "finite").err());
+        Self { linear: matrix * self.linear, translation: matrix * self.translation, error }
     }
 
     /// Adds a scaling about the origin by a positive factor.
     #[must_use]
     pub fn scaled(self, factor: f64) -> Self {
-        if !(factor > 0.0 && factor.is_finite()) {
-            let range = "above 0 and finite";
-            return self.refuse(GenerateError::OutOfRange { option: "scale", value: factor, range });
-        }
-        Self { linear: self.linear * factor, translation: self.translation * factor, ..self }
+        let is_valid = factor > 0.0 && factor.is_finite();
+        let error = self.error.or(in_range(is_valid, "scale", factor, "above 0 and finite").err());
+        Self { linear: self.linear * factor, translation: self.translation * factor, error }
     }
 
     /// Adds a translation by a vector.
     #[must_use]
     pub fn translated(self, by: [f64; 3]) -> Self {
-        if let Some(&value) = by.iter().find(|x| !x.is_finite()) {
-            return self.refuse(GenerateError::OutOfRange { option: "translation", value, range: "finite" });
-        }
-        Self { translation: self.translation + Vector3::from(by), ..self }
-    }
-
-    fn refuse(self, error: GenerateError) -> Self {
-        Self { error: self.error.or(Some(error)), ..self }
+        let mut checks = by.iter().map(|x| in_range(x.is_finite(), "translation", *x, "finite"));
+        let error = self.error.or(checks.find_map(Result::err));
+        Self { translation: self.translation + Vector3::from(by), error, ..self }
     }
 
     /// Returns the scene with transformed positions.

@@ -16,8 +16,9 @@ pub(crate) fn fill_buffer(reader: &mut impl BufRead) -> io::Result<&[u8]> {
 }
 
 /// The types of numbers in binary files.
+#[allow(missing_docs, reason = "the names of variants are those of Rust")]
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(crate) enum Scalar {
+pub enum Scalar {
     I8,
     U8,
     I16,
@@ -30,19 +31,47 @@ pub(crate) enum Scalar {
     F64,
 }
 
+/// The size of each type in bytes, and its names: in arrays of NumPy, and in PLY files. Integers of 64 bits are not of
+/// that format, but written by some programs.
+const SCALARS: [(Scalar, usize, [&str; 3]); 10] = [
+    (Scalar::I8, 1, ["i1", "char", "int8"]),
+    (Scalar::U8, 1, ["u1", "uchar", "uint8"]),
+    (Scalar::I16, 2, ["i2", "short", "int16"]),
+    (Scalar::U16, 2, ["u2", "ushort", "uint16"]),
+    (Scalar::I32, 4, ["i4", "int", "int32"]),
+    (Scalar::U32, 4, ["u4", "uint", "uint32"]),
+    (Scalar::I64, 8, ["i8", "int64", "int64"]),
+    (Scalar::U64, 8, ["u8", "uint64", "uint64"]),
+    (Scalar::F32, 4, ["f4", "float", "float32"]),
+    (Scalar::F64, 8, ["f8", "double", "float64"]),
+];
+
 impl Scalar {
+    /// Returns the type with this name in arrays of NumPy, without the order of bytes.
+    #[must_use]
+    pub fn of_npy(name: &[u8]) -> Option<Self> {
+        SCALARS.iter().find(|(.., names)| names[0].as_bytes() == name).map(|(scalar, ..)| *scalar)
+    }
+
+    /// Returns the type with this name in PLY files.
+    pub(crate) fn of_ply(name: &[u8]) -> Option<Self> {
+        SCALARS.iter().find(|(.., names)| names[1..].iter().any(|n| n.as_bytes() == name)).map(|(scalar, ..)| *scalar)
+    }
+
     /// Returns the size in bytes.
-    pub(crate) fn size(self) -> usize {
-        match self {
-            Self::I8 | Self::U8 => 1,
-            Self::I16 | Self::U16 => 2,
-            Self::I32 | Self::U32 | Self::F32 => 4,
-            Self::I64 | Self::U64 | Self::F64 => 8,
-        }
+    #[must_use]
+    pub fn size(self) -> usize {
+        SCALARS[self as usize].1
     }
 
     pub(crate) fn is_integer(self) -> bool {
         !matches!(self, Self::F32 | Self::F64)
+    }
+
+    /// Returns the number at the start of some bytes, the lowest of which comes first, or `None` if they are too few.
+    #[must_use]
+    pub fn number(self, mut bytes: &[u8]) -> Option<f64> {
+        Bytes::number(&mut bytes, self, false).ok()
     }
 }
 
@@ -76,6 +105,17 @@ pub(crate) trait Bytes {
             Scalar::F32 => f64::from(f32::from_le_bytes(self.ordered(big_endian)?)),
             Scalar::F64 => f64::from_le_bytes(self.ordered(big_endian)?),
         })
+    }
+}
+
+impl Bytes for &[u8] {
+    type Error = Reason;
+
+    #[inline]
+    fn array<const N: usize>(&mut self) -> Result<[u8; N], Reason> {
+        let (array, rest) = self.split_first_chunk().ok_or(Reason::UnexpectedEnd)?;
+        *self = rest;
+        Ok(*array)
     }
 }
 

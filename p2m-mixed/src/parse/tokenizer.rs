@@ -57,6 +57,18 @@ impl<R: BufRead> Tokenizer<R> {
         (start < end).then_some(start..end)
     }
 
+    /// Skips the rest of the text and returns its number of tokens.
+    pub(crate) fn skip_rest(&mut self) -> Result<u64, Reason> {
+        let mut rest = 0;
+        loop {
+            match self.next() {
+                Ok(_) => rest += 1,
+                Err(Reason::UnexpectedEnd) => return Ok(rest),
+                Err(reason) => return Err(reason),
+            }
+        }
+    }
+
     /// Returns the rest of this line.
     pub(crate) fn rest_of_line(&mut self) -> &[u8] {
         let start = std::mem::replace(&mut self.at, self.lines.bytes().len());

@@ -4,9 +4,10 @@
 //! range, and exact integers where a triangle is so flat that its area would be mostly rounding error. Results beyond
 //! the range of f64 are rounded to the nearest number.
 
-use dashu_int::{IBig, ops::BitTest};
+use dashu_int::ops::BitTest;
 use nalgebra::Point3;
 use p2m_core::engine::arithmetic::cross;
+use p2m_core::engine::exact;
 use p2m_core::engine::vector::{V3, largest, norm_squared, sub};
 use p2m_core::kernel::power_of_two;
 
@@ -47,21 +48,21 @@ impl TriangleMeasures {
                 exponent = 2;
                 size = largest(&offsets);
             }
-            let scale = exponent_of(size);
-            offsets = offsets.map(|v| v.map(|x| times_power_of_two(x, -scale)));
+            let scale = libm::ilogb(size);
+            offsets = offsets.map(|v| v.map(|x| libm::scalbn(x, -scale)));
             exponent += scale;
         }
         let longest = offsets.iter().fold(0.0f64, |a, v| a.max(norm_squared(*v)));
         let cross = norm_squared(cross(offsets[0], offsets[1])).sqrt();
         if cross > EXACT_BELOW_SINE * longest {
-            let area = representable(times_power_of_two(cross / 2.0, 2 * exponent));
+            let area = representable(libm::scalbn(cross / 2.0, 2 * exponent));
             return Self { edges: lengths, area, sine: cross / longest };
         }
         match exact_cross(corners) {
             None => Self { edges: lengths, area: 0.0, sine: 0.0 },
             Some((cross, power)) => {
-                let area = representable(times_power_of_two(cross / 2.0, power));
-                let sine = representable(times_power_of_two(cross / longest, power - 2 * exponent));
+                let area = representable(libm::scalbn(cross / 2.0, power));
+                let sine = representable(libm::scalbn(cross / longest, power - 2 * exponent));
                 Self { edges: lengths, area, sine }
             }
         }
@@ -76,28 +77,18 @@ pub(super) fn length(a: V3, b: V3) -> f64 {
         return norm_squared(offset).sqrt();
     }
     let (offset, exponent) = if size > 1.0 { (sub(b.map(|x| x / 4.0), a.map(|x| x / 4.0)), 2) } else { (offset, 0) };
-    let scale = exponent_of(largest(&[offset]));
-    let scaled = offset.map(|x| times_power_of_two(x, -scale));
-    representable(times_power_of_two(norm_squared(scaled).sqrt(), scale + exponent))
+    let scale = libm::ilogb(largest(&[offset]));
+    let scaled = offset.map(|x| libm::scalbn(x, -scale));
+    representable(libm::scalbn(norm_squared(scaled).sqrt(), scale + exponent))
 }
 
 /// Returns the length of the cross product of two edges, as a number and the exponent of a power of two to multiply it
 /// by, or `None` if it is zero.
 #[cold]
 fn exact_cross(corners: [V3; 3]) -> Option<(f64, i32)> {
-    let parts = corners.map(|v| v.map(decompose));
-    let unit = parts.iter().flatten().filter(|p| p.0 != 0).map(|p| p.1).min()?;
-    let corners = parts.map(|v| {
-        v.map(|(mantissa, exponent)| {
-            // The exponent of zero may be below `unit`, and its shift is irrelevant.
-            let shift = usize::try_from(exponent - unit).unwrap_or(0);
-            IBig::from(mantissa) << shift
-        })
-    });
-    let edge = |i: usize, k: usize| &corners[i][k] - &corners[0][k];
-    let (e, f): ([IBig; 3], [IBig; 3]) = ([0, 1, 2].map(|k| edge(1, k)), [0, 1, 2].map(|k| edge(2, k)));
-    let product = |a: usize, b: usize| &e[a] * &f[b] - &e[b] * &f[a];
-    let cross = [product(1, 2), product(2, 0), product(0, 1)];
+    let unit = exact::common_exponent(corners.as_flattened());
+    let [e, f] = [1, 2].map(|i| exact::difference(corners[i], corners[0], unit));
+    let cross = exact::cross(&e, &f);
     let bits = cross.iter().map(BitTest::bit_len).max().unwrap_or(0);
     if bits == 0 {
         return None;
@@ -110,44 +101,9 @@ fn exact_cross(corners: [V3; 3]) -> Option<(f64, i32)> {
     Some((norm_squared(rounded).sqrt(), power))
 }
 
-/// Returns an integer and an exponent with integer * 2^exponent = `x`. `x` has to be finite.
-fn decompose(x: f64) -> (i64, i32) {
-    let bits = x.to_bits();
-    let fraction = (bits & ((1 << 52) - 1)).cast_signed();
-    #[allow(clippy::cast_possible_truncation, reason = "eleven bits")]
-    let exponent = (bits >> 52 & 0x7ff) as i32;
-    let (magnitude, exponent) = if exponent == 0 { (fraction, 1) } else { (fraction | 1 << 52, exponent) };
-    (if x < 0.0 { -magnitude } else { magnitude }, exponent - 1075)
-}
-
 /// Returns the positive finite number nearest to a positive number.
 fn representable(x: f64) -> f64 {
     x.clamp(f64::from_bits(1), f64::MAX)
-}
-
-/// Returns the exponent of the largest power of two that does not exceed a positive number.
-fn exponent_of(x: f64) -> i32 {
-    let (mantissa, exponent) = decompose(x);
-    exponent + 63 - i32::try_from(mantissa.leading_zeros()).unwrap_or(0)
-}
-
-/// Returns x * 2^e, which is exact unless the result is subnormal or infinite.
-fn times_power_of_two(mut x: f64, mut e: i32) -> f64 {
-    while e > 1000 {
-        x *= power_of_two(1000);
-        e -= 1000;
-        if x.is_infinite() {
-            return x;
-        }
-    }
-    while e < -1000 {
-        x *= power_of_two(-1000);
-        e += 1000;
-        if x == 0.0 {
-            return x;
-        }
-    }
-    x * power_of_two(e)
 }
 
 #[cfg(test)]
@@ -162,12 +118,12 @@ mod tests {
     #[test]
     fn measures_are_exact_at_every_scale() {
         for e in [-1060, -1022, -600, -540, -201, -200, -30, 0, 30, 200, 201, 500, 540, 1019] {
-            let [s, t] = [3.0, 4.0].map(|x| times_power_of_two(x, e));
+            let [s, t] = [3.0, 4.0].map(|x| libm::scalbn(x, e));
             let found = measure([[s, 0.0, 0.0], [0.0, t, 0.0], [0.0, 0.0, 0.0]]);
-            assert_eq!(found.edges, [times_power_of_two(5.0, e), t, s], "{e}");
+            assert_eq!(found.edges, [libm::scalbn(5.0, e), t, s], "{e}");
             assert_eq!(found.sine, 12.0 / 25.0, "{e}");
-            let area = times_power_of_two(6.0, e);
-            assert_eq!(found.area, representable(times_power_of_two(area, e)), "{e}");
+            let area = libm::scalbn(6.0, e);
+            assert_eq!(found.area, representable(libm::scalbn(area, e)), "{e}");
         }
         let huge = measure([[f64::MAX, 0.0, 0.0], [-f64::MAX, 0.0, 0.0], [0.0, f64::MAX, 0.0]]);
         assert_eq!((huge.edges[0], huge.area, huge.sine), (f64::MAX, f64::MAX, 0.5));
@@ -222,18 +178,6 @@ mod tests {
             let height = power_of_two(-e);
             let found = measure([[1e3, 7.0, 1.0], [1e3 + 1.0, 7.0, 1.0], [1e3 + 0.5, 7.0 + height, 1.0]]);
             assert_eq!((found.area, found.sine), (height / 2.0, height), "{e}");
-        }
-    }
-
-    #[test]
-    fn decomposition_is_the_number() {
-        for x in [0.0, 1.0, -1.5, 1e-320, f64::from_bits(1), f64::MIN_POSITIVE, f64::MAX, -0.1] {
-            let (mantissa, exponent) = decompose(x);
-            assert_eq!(times_power_of_two(mantissa as f64, exponent), x);
-            if x > 0.0 {
-                let scaled = times_power_of_two(x, -exponent_of(x));
-                assert!((1.0..2.0).contains(&scaled), "{x} {scaled}");
-            }
         }
     }
 }

@@ -1,12 +1,12 @@
 //! The triangles of polygons, through the OBJ reader. Areas and overlaps are checked in exact arithmetic.
 
 use crate::common::obj;
+use chacha20::ChaCha8Rng;
 use nalgebra::Point3;
 use p2m_core::Element;
 use p2m_testkit::scenes::square_spiral;
 use p2m_testkit::{cases, rng};
 use rand::RngExt;
-use rand_chacha::ChaCha8Rng;
 use std::collections::HashSet;
 use std::fmt::Write;
 

@@ -147,16 +147,7 @@ impl ShardWriter {
         }
         let is_new_folder = !folder.exists();
         fs::create_dir_all(folder).map_err(ShardError::io(folder))?;
-        let manifest = Manifest {
-            backend: options.backend.name.to_owned(),
-            triangles: 0,
-            segments: 0,
-            points: 0,
-            is_closed: true,
-            is_oriented: true,
-            shards: Vec::new(),
-            objects: Vec::new(),
-        };
+        let manifest = Manifest { backend: options.backend.name.to_owned(), ..Manifest::default() };
         let (folder, written) = (folder.to_owned(), Vec::new());
         let edges = EdgeSums::default();
         let mut writer = Self { folder, options, spill: None, manifest, edges, run: 0, written, is_new_folder };
@@ -298,10 +289,8 @@ impl ShardWriter {
 
     /// Builds the index of a part and writes its file, whose name is the next one.
     fn write_shard(&mut self, part: &mut Spill) -> Result<ShardEntry, ShardError> {
-        let (scene, ids) = scene_of(part).map_err(|error| match error {
-            PartError::Io(error) => ShardError::Io { file: self.folder.clone(), error },
-            PartError::Build(error) => ShardError::Build(error),
-        })?;
+        let (scene, ids) = scene_of(part).map_err(ShardError::io(&self.folder))?;
+        let scene = scene?;
         let built = self.options.backend.build(Arc::clone(&scene.soup), &BuildSettings::default())?;
         let file = shard_file(self.run, self.manifest.shards.len());
         let path = self.folder.join(&file);
@@ -378,23 +367,11 @@ fn capacity(max_bytes: u64, fill: f64, bytes_per_primitive: f64) -> u64 {
     ((fill * max_bytes as f64 / bytes_per_primitive) as u64).max(1)
 }
 
-/// An error of making the scene of a part.
-enum PartError {
-    Io(io::Error),
-    Build(BuildError),
-}
-
-impl From<io::Error> for PartError {
-    fn from(error: io::Error) -> Self {
-        Self::Io(error)
-    }
-}
-
 /// Returns the scene of a part and the ids of its primitives. Equal vertices become one, with the same bits.
-fn scene_of(part: &mut Spill) -> Result<(Scene, Vec<u64>), PartError> {
+fn scene_of(part: &mut Spill) -> io::Result<(Result<Scene, BuildError>, Vec<u64>)> {
     let mut soup = Soup::<f64>::default();
     let (mut sources, mut ids) = (Vec::new(), Vec::new());
-    let mut vertices = HashTable::<u32>::new();
+    let (mut vertices, mut pushed) = (HashTable::<u32>::new(), Ok(()));
     part.for_each(|record| {
         let mut corners = [0; 3];
         for (corner, vertex) in corners.iter_mut().zip(record.vertices()) {
@@ -405,16 +382,18 @@ fn scene_of(part: &mut Spill) -> Result<(Scene, Vec<u64>), PartError> {
             2 => Element::Segment([corners[0], corners[1]]),
             _ => Element::Triangle(corners),
         };
-        soup.push(element).map_err(PartError::Build)?;
+        if pushed.is_ok() {
+            pushed = soup.push(element).map(|_| ());
+        }
         sources.push(record.source);
         ids.push(record.id);
-        Ok::<(), PartError>(())
+        Ok(())
     })?;
     drop(vertices);
     soup.shrink_to_fit();
     let mut scene = Scene::from(soup);
     scene.sources = sources;
-    Ok((scene, ids))
+    Ok((pushed.map(|()| scene), ids))
 }
 
 /// Returns the index of a position with these bits, which is added if there is none.

@@ -66,10 +66,7 @@ impl Spill {
     }
 
     /// Calls a function with all records in their order.
-    pub(super) fn for_each<E: From<io::Error>>(
-        &mut self,
-        mut visit: impl FnMut(Record) -> Result<(), E>,
-    ) -> Result<(), E> {
+    pub(super) fn for_each(&mut self, mut visit: impl FnMut(Record) -> io::Result<()>) -> io::Result<()> {
         self.out.flush()?;
         let file = self.out.get_mut();
         file.seek(SeekFrom::Start(0))?;

@@ -5,6 +5,7 @@ use crate::measure::MedianRange;
 use crate::our_indexes::aabb_options;
 use crate::rounds::{checksum, checksum_of_closest, rotated, thread_seconds};
 use anyhow::{Context, Result, bail};
+use chacha20::ChaCha8Rng;
 use clap::Args;
 use nalgebra::{Isometry3, Point3, Vector3};
 use p2m_bvh::AabbTree;
@@ -15,7 +16,6 @@ use p2m_core::{BuildError, BuildIndex, Closest, ClosestPoint, Element, Primitive
 use p2m_instances::{InstanceId, Instances};
 use p2m_testkit::{rng, vector};
 use rand::RngExt;
-use rand_chacha::ChaCha8Rng;
 use std::collections::HashMap;
 use std::path::PathBuf;
 use std::sync::Arc;

@@ -3,6 +3,7 @@
 
 use crate::memory;
 use anyhow::{Context, Result};
+use chacha20::ChaCha8Rng;
 use clap::Args;
 use nalgebra::Point3;
 use p2m_bvh::AabbTree;
@@ -11,7 +12,6 @@ use p2m_core::batch::{BatchOptions, closest_points_into};
 use p2m_core::{BruteForce, Closest, ClosestPoint, Key, Primitive, PrimitiveSet, QueryOptions, Soup};
 use p2m_shards::{ShardClosest, ShardOptions, ShardWriter, ShardedIndex};
 use rand::{RngExt, SeedableRng};
-use rand_chacha::ChaCha8Rng;
 use rayon::prelude::*;
 use std::path::PathBuf;
 use std::time::Instant;

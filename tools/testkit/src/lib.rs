@@ -33,13 +33,13 @@ mod surface;
 mod thin_scenes;
 pub mod truth;
 
+use chacha20::ChaCha8Rng;
 pub use checksum::restore_e57_checksums;
 pub use depth::{Cases, amount, cases, depth, is_deep};
 pub use models::{all_model_files, model_file, model_files, models};
 use nalgebra::Vector3;
 pub use point_file::point_file;
 use rand::{Rng, RngExt, SeedableRng};
-use rand_chacha::ChaCha8Rng;
 pub use surface::normal as normal_number;
 pub use thin_scenes::thin_scenes;
 

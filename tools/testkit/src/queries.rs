@@ -3,10 +3,10 @@
 
 use crate::depth::Cases;
 use crate::surface::{SurfaceSampler, direction, normal};
+use chacha20::ChaCha8Rng;
 use nalgebra::{Point3, Vector3};
 use p2m_core::{PrimitiveSet, Ray, Soup};
 use rand::{RngExt, SeedableRng};
-use rand_chacha::ChaCha8Rng;
 
 /// A distribution of queries. Percentages of lengths refer to the diagonal of the scene's bounding box.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -1,9 +1,9 @@
 //! Random points of a scene, weighted by area and length.
 
+use chacha20::ChaCha8Rng;
 use nalgebra::{Point3, Vector3};
 use p2m_core::{Element, PrimitiveId, PrimitiveSet, Shape, Soup};
 use rand::RngExt;
-use rand_chacha::ChaCha8Rng;
 use std::f64::consts::TAU;
 
 /// Draws points of a scene, each with a direction that is normal to the scene there.

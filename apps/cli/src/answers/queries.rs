@@ -1,9 +1,9 @@
 //! Query points and rays: given points, a grid, or random points and rays around the scene.
 
+use chacha20::ChaCha8Rng;
 use nalgebra::{Point3, Vector3};
 use p2m_core::{Aabb, Ray};
 use rand::{Rng, SeedableRng};
-use rand_chacha::ChaCha8Rng;
 
 /// The size of the box of queries, in boxes of the scene, unless an option says another one.
 pub(crate) const BOX_SCALE: f64 = 1.05;

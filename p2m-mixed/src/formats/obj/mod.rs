@@ -63,7 +63,7 @@ pub(super) fn read(
     builder: SceneBuilder<'_>,
 ) -> Result<Scene, ReadError> {
     let fail = |(line, reason)| ReadError::new(name, FileLocation::Line(line), reason);
-    let mut parser = Parser::new(builder);
+    let mut parser = Parser { builder, ..Parser::default() };
     for_each_block(
         &mut source,
         |bytes| Some(block::cut(bytes)),
@@ -110,6 +110,7 @@ enum Deferred {
     ClearObjects,
 }
 
+#[derive(Default)]
 struct Parser<'a> {
     builder: SceneBuilder<'a>,
     /// The number of statements `f` so far.
@@ -138,26 +139,7 @@ struct Parser<'a> {
     deferred_vertices: Vec<u32>,
 }
 
-impl<'a> Parser<'a> {
-    fn new(builder: SceneBuilder<'a>) -> Self {
-        Self {
-            builder,
-            faces: 0,
-            lines: 0,
-            points: 0,
-            has_unknown: false,
-            has_free_form: false,
-            has_objects: false,
-            has_groups: false,
-            ignores_groups: false,
-            vertices: Vec::new(),
-            line: 0,
-            forward_line: None,
-            deferred: Vec::new(),
-            deferred_vertices: Vec::new(),
-        }
-    }
-
+impl Parser<'_> {
     /// Adds the statements of a block. The error has its line.
     fn add_block(&mut self, bytes: &[u8], block: &Block) -> Result<(), (u64, Reason)> {
         let lines_before = self.line;
@@ -276,8 +258,11 @@ impl<'a> Parser<'a> {
             }
             [b'#', ..] => Ok(()),
             other => {
-                self.has_free_form |= is_free_form(other);
-                self.has_unknown |= !is_known(other) && !is_free_form(other);
+                if !is_known(other) {
+                    let is_free_form = is_free_form(other);
+                    self.has_free_form |= is_free_form;
+                    self.has_unknown |= !is_free_form;
+                }
                 self.builder.skipped.add(other, 1);
                 Ok(())
             }

@@ -177,14 +177,7 @@ fn read_text(
         }
         off.end_face(face, extras)?;
     }
-    let mut rest = 0;
-    loop {
-        match tokens.next() {
-            Ok(_) => rest += 1,
-            Err(Reason::UnexpectedEnd) => break,
-            Err(reason) => return Err(reason),
-        }
-    }
+    let rest = tokens.skip_rest()?;
     off.finish(rest, "words after the last face")
 }
 

@@ -14,8 +14,10 @@ pub(super) trait Numbers {
     /// Returns an error for this reason, located at the number that was read last.
     fn error(&self, reason: impl FnOnce() -> Reason) -> Self::Error;
 
-    /// Returns the location of the number that was read last.
-    fn location(&self) -> FileLocation;
+    /// Returns the location of the number that was read last, if it is known.
+    fn location(&self) -> FileLocation {
+        FileLocation::File
+    }
 
     /// Checks that nothing follows an element on its line of a text. Otherwise the header declares too few numbers, and
     /// the rest of the line would be read as the next element.
@@ -120,16 +122,7 @@ impl<'n, R: BufRead> Data<'n, R> {
     pub(super) fn rest(mut self) -> Result<(u64, &'static str), ReadError> {
         let rest = match &mut self.source {
             Encoded::Binary { bytes, .. } => bytes.skip_rest().map(|rest| (rest, "bytes after the last element")),
-            Encoded::Text(tokens) => {
-                let mut rest = 0;
-                loop {
-                    match tokens.next() {
-                        Ok(_) => rest += 1,
-                        Err(Reason::UnexpectedEnd) => break Ok((rest, "words after the last element")),
-                        Err(reason) => break Err(reason),
-                    }
-                }
-            }
+            Encoded::Text(tokens) => tokens.skip_rest().map(|rest| (rest, "words after the last element")),
         };
         rest.map_err(|reason| self.error(|| reason))
     }

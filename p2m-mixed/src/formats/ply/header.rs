@@ -18,24 +18,6 @@ pub(super) enum Encoding {
     Big,
 }
 
-/// Returns the type of numbers with this name. Each type has two names.
-fn scalar_named(name: &[u8]) -> Option<Scalar> {
-    Some(match name {
-        b"char" | b"int8" => Scalar::I8,
-        b"uchar" | b"uint8" => Scalar::U8,
-        b"short" | b"int16" => Scalar::I16,
-        b"ushort" | b"uint16" => Scalar::U16,
-        b"int" | b"int32" => Scalar::I32,
-        b"uint" | b"uint32" => Scalar::U32,
-        // These two are not of the format, but written by some programs.
-        b"int64" => Scalar::I64,
-        b"uint64" => Scalar::U64,
-        b"float" | b"float32" => Scalar::F32,
-        b"double" | b"float64" => Scalar::F64,
-        _ => return None,
-    })
-}
-
 /// The layout of a property: one number, or a list of numbers after its count.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Layout {
@@ -207,10 +189,10 @@ fn property(tokens: &mut Tokens<'_>) -> Option<Result<Property, Reason>> {
     let (layout, name, declared) = if first == b"list" {
         let (count, item, name) = (tokens.next()?, tokens.next()?, tokens.next()?);
         let declared = format!("list {} {}", quote(count), quote(item));
-        let count = scalar_named(count).filter(|s| s.is_integer());
-        (count.zip(scalar_named(item)).map(|(count, item)| Layout::List { count, item }), name, declared)
+        let count = Scalar::of_ply(count).filter(|s| s.is_integer());
+        (count.zip(Scalar::of_ply(item)).map(|(count, item)| Layout::List { count, item }), name, declared)
     } else {
-        (scalar_named(first).map(Layout::Scalar), tokens.next()?, quote(first))
+        (Scalar::of_ply(first).map(Layout::Scalar), tokens.next()?, quote(first))
     };
     Some(match layout {
         Some(layout) => Ok(Property { name: name.to_vec(), layout, declared }),

@@ -5,7 +5,7 @@
 
 use super::data::{Data, Numbers};
 use super::header::{Element, Property};
-use super::plan::{Form, Kind, List, MemberPlan};
+use super::plan::{Form, List, MemberPlan, Vertices};
 use super::rows::ReadRow;
 use crate::builder::SceneBuilder;
 use crate::parse::blocks::Source;
@@ -96,8 +96,8 @@ impl Limits {
         member: &mut Vec<u32>,
     ) -> Result<Option<u32>, N::Error> {
         member.clear();
-        if let Kind::Edge(_) = plan.kind {
-            member.resize(2, 0);
+        if let Vertices::Single(all) = &plan.vertices {
+            member.resize(all.len(), 0);
         }
         let mut id = None;
         for (k, property) in properties.iter().enumerate() {
@@ -107,15 +107,13 @@ impl Limits {
                 id = self.id(data, scalar)?;
                 continue;
             }
-            match plan.kind {
-                Kind::Face(at, list) if at == k => self.list(data, list, Form::Polygon, member)?,
-                Kind::Strip(at, list) if at == k => self.list(data, list, Form::Strip, member)?,
-                Kind::Point((at, scalar)) if at == k => member.push(self.index(data, scalar)?),
-                Kind::Edge(ends) if ends.iter().any(|&(at, _)| at == k) => {
-                    let end = usize::from(ends[1].0 == k);
-                    member[end] = self.index(data, ends[end].1)?;
-                }
-                _ => data.skip(property.layout)?,
+            match &plan.vertices {
+                Vertices::List(at, list) if *at == k => self.list(data, *list, plan.form, member)?,
+                Vertices::Single(all) => match all.iter().position(|(at, _)| *at == k) {
+                    Some(i) => member[i] = self.index(data, all[i].1)?,
+                    None => data.skip(property.layout)?,
+                },
+                Vertices::List(..) => data.skip(property.layout)?,
             }
         }
         data.end_element()?; // this check comes before those of the member
@@ -227,7 +225,7 @@ impl<'a> Members<'a> {
     /// Starts an element that makes primitives.
     pub(super) fn start_element(&mut self, plan: &MemberPlan) {
         if !self.is_immediate() {
-            self.batches.push(PendingMembers { form: plan.form(), members: MemberList::default() });
+            self.batches.push(PendingMembers { form: plan.form, members: MemberList::default() });
         }
     }
 
@@ -255,7 +253,7 @@ impl<'a> Members<'a> {
     ) -> Result<(), ReadError> {
         let mut member = std::mem::take(&mut self.member);
         let id = self.limits.read_member(data, properties, plan, &mut member)?;
-        let added = self.add_or_keep(plan.form(), &member, id, number, data.file(), |reason| data.error(|| reason));
+        let added = self.add_or_keep(plan.form, &member, id, number, data.file(), |reason| data.error(|| reason));
         self.member = member;
         added
     }
@@ -274,7 +272,7 @@ impl<'a> Members<'a> {
             let (_, list) = &rows.parsed;
             for (row, vertices) in list.iter().take(rows.count).enumerate() {
                 let fail = |reason| rows.error(file, row, reason, &member_rows);
-                self.add_or_keep(plan.form(), vertices, list.ids.get(row).copied(), number, file, fail)?;
+                self.add_or_keep(plan.form, vertices, list.ids.get(row).copied(), number, file, fail)?;
                 number += 1;
             }
             Ok(())

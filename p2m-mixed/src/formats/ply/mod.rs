@@ -18,7 +18,7 @@ use data::{Data, Numbers};
 use header::read_header;
 use members::Members;
 use nalgebra::Point3;
-use plan::{Coordinates, ElementPlan, has_vertex_list};
+use plan::{Coordinates, ElementPlan, Form, has_vertex_list};
 use rows::ReadRow;
 use std::io::BufRead;
 
@@ -82,7 +82,7 @@ pub(super) fn read(
         match &plan {
             ElementPlan::Vertices(_) => vertex_count = element.count,
             // Our writer adds this element to a scene that is no point cloud, even if it has no members.
-            ElementPlan::Members(members) if members.is_point() => is_cloud = false,
+            ElementPlan::Members(members) if members.form == Form::Point => is_cloud = false,
             ElementPlan::Members(_) => is_cloud &= element.count == 0,
             ElementPlan::Skip => is_cloud &= element.count == 0 || !has_vertex_list(element),
         }

@@ -21,17 +21,16 @@ pub(super) enum ElementPlan {
 
 /// The plan of an element that makes primitives.
 pub(super) struct MemberPlan {
-    pub(super) kind: Kind,
+    pub(super) form: Form,
+    pub(super) vertices: Vertices,
     /// The index and type of the property with the id.
     pub(super) id: Option<(usize, Scalar)>,
 }
 
-/// The kind of an element that makes primitives, with the indices and types of its properties.
-pub(super) enum Kind {
-    Face(usize, List),
-    Strip(usize, List),
-    Edge([(usize, Scalar); 2]),
-    Point((usize, Scalar)),
+/// The properties with the vertices of a member, with their indices and types.
+pub(super) enum Vertices {
+    List(usize, List),
+    Single(Vec<(usize, Scalar)>),
 }
 
 /// The form in which the vertices of a member make primitives.
@@ -52,53 +51,35 @@ pub(super) struct List {
 
 impl ElementPlan {
     pub(super) fn of(element: &header::Element) -> Result<Self, HeaderProblem> {
-        let kind = match element.name.as_slice() {
+        let (form, vertices) = match element.name.as_slice() {
             b"vertex" => return Ok(Self::Vertices(coordinates(element, ["x", "y", "z"])?)),
             b"edge" => {
-                Kind::Edge([scalar(element, "edge", "vertex1", true)?, scalar(element, "edge", "vertex2", true)?])
+                let ends = [scalar(element, "edge", "vertex1", true)?, scalar(element, "edge", "vertex2", true)?];
+                (Form::Segment, Vertices::Single(ends.to_vec()))
             }
-            b"face" => {
-                let (at, list) = list(element, "face")?;
-                Kind::Face(at, list)
-            }
-            b"tristrips" => {
-                let (at, list) = list(element, "tristrips")?;
-                Kind::Strip(at, list)
-            }
+            b"face" => (Form::Polygon, list(element, "face")?),
+            b"tristrips" => (Form::Strip, list(element, "tristrips")?),
             // An element of this name from another program may have another meaning.
             b"point" => match scalar(element, "point", "vertex_index", true) {
-                Ok(vertex) => Kind::Point(vertex),
+                Ok(vertex) => (Form::Point, Vertices::Single(vec![vertex])),
                 Err(_) => return Ok(Self::Skip),
             },
             _ => return Ok(Self::Skip),
         };
         let id = match element.find(&[ID_PROPERTY]) {
-            Some(_) if !matches!(kind, Kind::Strip(..)) => Some(scalar(element, "face", ID_PROPERTY, true)?),
+            Some(_) if form != Form::Strip => Some(scalar(element, "face", ID_PROPERTY, true)?),
             _ => None,
         };
-        Ok(Self::Members(MemberPlan { kind, id }))
+        Ok(Self::Members(MemberPlan { form, vertices, id }))
     }
 }
 
 impl MemberPlan {
-    pub(super) fn form(&self) -> Form {
-        match self.kind {
-            Kind::Face(..) => Form::Polygon,
-            Kind::Strip(..) => Form::Strip,
-            Kind::Edge(_) => Form::Segment,
-            Kind::Point(_) => Form::Point,
-        }
-    }
-
-    pub(super) fn is_point(&self) -> bool {
-        matches!(self.kind, Kind::Point(_))
-    }
-
     /// Returns the indices of the properties that are read.
     pub(super) fn used(&self) -> Vec<usize> {
-        let mut used = match self.kind {
-            Kind::Face(at, _) | Kind::Strip(at, _) | Kind::Point((at, _)) => vec![at],
-            Kind::Edge(ends) => ends.map(|(at, _)| at).to_vec(),
+        let mut used = match &self.vertices {
+            Vertices::List(at, _) => vec![*at],
+            Vertices::Single(all) => all.iter().map(|(at, _)| *at).collect(),
         };
         used.extend(self.id.map(|(at, _)| at));
         used
@@ -112,12 +93,12 @@ pub(super) fn ids(elements: &[header::Element], plans: &[ElementPlan]) -> Result
         if let ElementPlan::Members(members) = plan
             && element.count > 0
         {
-            match (&members.id, &members.kind) {
+            match (&members.id, members.form) {
                 (Some(_), _) => with = with.saturating_add(element.count),
-                (None, Kind::Face(..)) => without = Some("face"),
-                (None, Kind::Strip(..)) => without = Some("tristrips"),
-                (None, Kind::Edge(_)) => without = Some("edge"),
-                (None, Kind::Point(_)) => without = Some("point"),
+                (None, Form::Polygon) => without = Some("face"),
+                (None, Form::Strip) => without = Some("tristrips"),
+                (None, Form::Segment) => without = Some("edge"),
+                (None, Form::Point) => without = Some("point"),
             }
         }
     }
@@ -164,12 +145,12 @@ fn scalar(
     }
 }
 
-fn list(element: &header::Element, name: &'static str) -> Result<(usize, List), HeaderProblem> {
+fn list(element: &header::Element, name: &'static str) -> Result<Vertices, HeaderProblem> {
     let property = "vertex_indices";
     let at =
         element.find(&[property, "vertex_index"]).ok_or(HeaderProblem::MissingProperty { element: name, property })?;
     match element.properties[at].layout {
-        Layout::List { count, item } if item.is_integer() => Ok((at, List { count, item })),
+        Layout::List { count, item } if item.is_integer() => Ok(Vertices::List(at, List { count, item })),
         _ => {
             let header::Property { name, declared, .. } = &element.properties[at];
             Err(HeaderProblem::BadType { name: quote(name), declared: declared.clone() })

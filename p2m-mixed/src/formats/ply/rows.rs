@@ -5,7 +5,7 @@ use super::header::{Layout, Property};
 use crate::parse::blocks::{Source, for_each_block};
 use crate::parse::bytes::{Bytes, Scalar};
 use crate::parse::text::{Tokens, last_line_end, line_end, parse_integer};
-use crate::{FileLocation, ReadError, Reason};
+use crate::{ReadError, Reason};
 use std::io::BufRead;
 
 /// A function that reads a row, which is a member of an element, in any encoding.
@@ -81,10 +81,6 @@ impl Numbers for LineRows<'_> {
         Unusual
     }
 
-    fn location(&self) -> FileLocation {
-        FileLocation::File
-    }
-
     fn end_element(&mut self) -> Result<(), Unusual> {
         self.is_start = true;
         if self.line.next().is_none() { Ok(()) } else { Err(Unusual) }
@@ -112,12 +108,6 @@ struct ByteRows<'a> {
     big_endian: bool,
 }
 
-impl<'a> ByteRows<'a> {
-    fn new(bytes: &'a [u8], big_endian: bool) -> Self {
-        Self { rest: bytes, length: bytes.len(), big_endian }
-    }
-}
-
 impl RowsOfBlock for ByteRows<'_> {
     fn position(&self) -> usize {
         self.length - self.rest.len()
@@ -128,16 +118,6 @@ impl RowsOfBlock for ByteRows<'_> {
     }
 }
 
-impl Bytes for ByteRows<'_> {
-    type Error = Unusual;
-
-    fn array<const N: usize>(&mut self) -> Result<[u8; N], Unusual> {
-        let (array, rest) = self.rest.split_first_chunk().ok_or(Unusual)?;
-        self.rest = rest;
-        Ok(*array)
-    }
-}
-
 impl Numbers for ByteRows<'_> {
     type Error = Unusual;
 
@@ -145,16 +125,12 @@ impl Numbers for ByteRows<'_> {
         Unusual
     }
 
-    fn location(&self) -> FileLocation {
-        FileLocation::File
-    }
-
     fn end_element(&mut self) -> Result<(), Unusual> {
         Ok(())
     }
 
     fn coordinate(&mut self, scalar: Scalar) -> Result<f64, Unusual> {
-        self.number(scalar, self.big_endian)
+        self.rest.number(scalar, self.big_endian).map_err(|_| Unusual)
     }
 
     #[allow(clippy::cast_possible_truncation, reason = "integers of up to 32 bits are exact in f64")]
@@ -230,7 +206,12 @@ impl<R: BufRead> Data<'_, Source<R>> {
             match start {
                 Start::Line(_) => read_all(&mut LineRows::new(bytes), read_row, &mut parsed, &mut ends),
                 Start::Byte { big_endian, .. } => {
-                    read_all(&mut ByteRows::new(bytes, big_endian), read_row, &mut parsed, &mut ends);
+                    read_all(
+                        &mut ByteRows { rest: bytes, length: bytes.len(), big_endian },
+                        read_row,
+                        &mut parsed,
+                        &mut ends,
+                    );
                 }
             }
             (parsed, ends)
@@ -268,7 +249,7 @@ fn cut_rows(bytes: &[u8], properties: &[Property], big_endian: bool, count: &mut
         return usize::try_from(rows * size).unwrap_or(0);
     }
     let mut end = 0;
-    let mut data = ByteRows::new(bytes, big_endian);
+    let mut data = ByteRows { rest: bytes, length: bytes.len(), big_endian };
     while *count > 0 && properties.iter().all(|property| data.skip(property.layout).is_ok()) {
         end = data.position();
         *count -= 1;

@@ -76,15 +76,20 @@ impl<'a> Parser<'a> {
         if depth > MAX_DEPTH {
             return None;
         }
+        let value = |parser: &mut Self| parser.value(depth + 1);
+        let entry = |parser: &mut Self| {
+            let key = value(parser)?;
+            parser.accept(b':').then(|| value(parser)).flatten().map(|value| (key, value))
+        };
         match self.peek()? {
             quote @ (b'\'' | b'"') => self.text(quote),
             b'0'..=b'9' => self.integer(),
-            b'(' => self.tuple(depth),
-            b'[' => {
-                self.accept(b'[');
-                Some(Value::List(self.items(b']', depth)?.0))
+            b'(' => {
+                let (mut items, has_comma) = self.items(*b"()", value)?;
+                if items.len() == 1 && !has_comma { items.pop() } else { Some(Value::Tuple(items)) }
             }
-            b'{' => self.dictionary(depth),
+            b'[' => Some(Value::List(self.items(*b"[]", value)?.0)),
+            b'{' => Some(Value::Dictionary(self.items(*b"{}", entry)?.0)),
             _ => [("True", true), ("False", false)].into_iter().find_map(|(word, value)| {
                 self.rest = self.rest.strip_prefix(word.as_bytes())?;
                 Some(Value::Boolean(value))
@@ -113,41 +118,18 @@ impl<'a> Parser<'a> {
     }
 
     /// Parses a tuple, or a value in parentheses.
-    fn tuple(&mut self, depth: usize) -> Option<Value<'a>> {
-        self.accept(b'(');
-        let (mut items, has_comma) = self.items(b')', depth)?;
-        if items.len() == 1 && !has_comma { items.pop() } else { Some(Value::Tuple(items)) }
-    }
-
-    /// Parses values up to a closing bracket, and returns them and whether a comma follows the last one.
-    fn items(&mut self, close: u8, depth: usize) -> Option<(Vec<Value<'a>>, bool)> {
+    /// Parses items between brackets, and returns them and whether a comma follows the last one.
+    fn items<T>(&mut self, [open, close]: [u8; 2], item: impl Fn(&mut Self) -> Option<T>) -> Option<(Vec<T>, bool)> {
+        self.accept(open);
         let mut items = Vec::new();
         let mut has_comma = false;
         while !self.accept(close) {
             if !items.is_empty() && !has_comma {
                 return None;
             }
-            items.push(self.value(depth + 1)?);
+            items.push(item(self)?);
             has_comma = self.accept(b',');
         }
         Some((items, has_comma))
-    }
-
-    fn dictionary(&mut self, depth: usize) -> Option<Value<'a>> {
-        self.accept(b'{');
-        let mut entries = Vec::new();
-        let mut has_comma = true;
-        while !self.accept(b'}') {
-            if !has_comma {
-                return None;
-            }
-            let key = self.value(depth + 1)?;
-            if !self.accept(b':') {
-                return None;
-            }
-            entries.push((key, self.value(depth + 1)?));
-            has_comma = self.accept(b',');
-        }
-        Some(Value::Dictionary(entries))
     }
 }

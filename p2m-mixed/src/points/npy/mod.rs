@@ -228,19 +228,7 @@ fn structure<R: Row<N>, const N: usize>(
 fn scalar(descr: &Value<'_>) -> Result<(Scalar, bool), Reason> {
     let unsupported = || bad(HeaderProblem::UnsupportedType { text: descr.to_string() });
     let Value::Text([order, kind @ ..]) = descr else { return Err(unsupported()) };
-    let scalar = match kind {
-        b"i1" => Scalar::I8,
-        b"u1" => Scalar::U8,
-        b"i2" => Scalar::I16,
-        b"u2" => Scalar::U16,
-        b"i4" => Scalar::I32,
-        b"u4" => Scalar::U32,
-        b"i8" => Scalar::I64,
-        b"u8" => Scalar::U64,
-        b"f4" => Scalar::F32,
-        b"f8" => Scalar::F64,
-        _ => return Err(unsupported()),
-    };
+    let scalar = Scalar::of_npy(kind).ok_or_else(unsupported)?;
     match order {
         b'<' => Ok((scalar, false)),
         b'>' => Ok((scalar, true)),
