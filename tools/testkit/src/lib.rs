@@ -4,7 +4,6 @@
 #![forbid(unsafe_code)]
 #![allow(clippy::missing_panics_doc, reason = "a test kit panics where a test should fail")]
 
-pub mod adapters;
 pub mod adversaries;
 pub mod ball;
 mod checksum;
