@@ -15,6 +15,7 @@ pub mod depth;
 pub mod enclosure;
 pub mod extremes;
 pub mod families;
+mod integers;
 mod line_and_primitive;
 pub mod line_filter;
 mod models;
