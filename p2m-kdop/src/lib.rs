@@ -3,7 +3,7 @@
 //! The tree is that of p2m-bvh (nodes with eight children over packets of sixteen primitives, with the same splits),
 //! but its bounding volumes are [k-DOPs](Kdop) instead of boxes. They fit primitives that are oblique to the axes more
 //! closely, so a query visits fewer nodes and packets. In return each node takes more arithmetic and memory.
-//! [docs/measurements/kdop.md] compares the two on several scenes.
+//! [docs/measurements/kdop.md] compares the two.
 //!
 //! K is fixed at compile time and counts both signs of a direction, so `KdopTree<f64, _, 14>` has seven slabs.
 //! [`Directions`] has default sets for K = 6, 14, 18 and 26, and can be made from your own vectors. With any directions

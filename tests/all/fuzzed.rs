@@ -97,7 +97,9 @@ fn seeds_reach_every_backend_and_question() {
     };
     use queries::Reached::Answers;
     all(&scene::MODES, |r| if let Answers(mode, ..) = r { Some(mode) } else { None });
-    all(&[backends::TREES, backends::OTHERS].concat(), |r| if let Answers(_, name, _) = r { Some(name) } else { None });
+    all(&[&backends::TREES[..], &backends::OTHERS].concat(), |r| {
+        if let Answers(_, name, _) = r { Some(name) } else { None }
+    });
     all(&QUESTIONS, |r| if let Answers(.., question) = r { Some(question) } else { None });
     let trees: BTreeSet<_> = inputs("rays").iter().filter_map(|input| rays::check(input)).collect();
     assert!(backends::TREES.iter().all(|name| trees.iter().any(|(tree, rays)| tree == name && *rays > 0)));

@@ -1,8 +1,8 @@
 //! The tests that compare backends with each other and with the oracle, in one program so that shared code is compiled
 //! once. `cargo test --test all pairs::` runs those of one module.
 //!
-//! Four test programs are separate: `soak` needs its own allocator, `instructions` runs itself under valgrind, `examples`
-//! runs other programs, and `serde` needs a feature.
+//! Three test programs are separate: `soak` needs its own allocator, `instructions` runs itself under valgrind, and
+//! `examples` runs other programs.
 
 mod adversaries;
 mod agreement;
@@ -24,5 +24,6 @@ mod ray_models;
 mod rays;
 mod registry;
 mod saved;
+mod serde_values;
 mod thin_pairs;
 mod trade;

@@ -12,8 +12,10 @@ use p2m::{
 };
 use p2m_backends::{AnyIndex, BACKENDS, BuildSettings, BuiltIndex, Choice, QueryRegion, Workload};
 use p2m_mixed::generate::{IcoSphere, SkewedGear, ico_sphere, skewed_gear};
+use p2m_testkit::extremes::Extreme;
 use p2m_testkit::near_check;
 use p2m_testkit::scenes::{extreme_soups, narrow, queries, random_soups, to_f32};
+use p2m_testkit::{amount, cases, rng};
 use std::ops::ControlFlow;
 use std::sync::Arc;
 
@@ -50,6 +52,16 @@ fn random_cases(name: &'static str) -> impl Iterator<Item = Case> {
     })
 }
 
+/// Generates scenes of every family that breaks indexes and kernels, with queries that are finite in f32 as well.
+fn hard_cases() -> impl Iterator<Item = Case> {
+    cases(2800, 42).map(|seed| {
+        let family = Extreme::ALL[usize::try_from(seed).expect("small") % Extreme::ALL.len()];
+        let (soup, queries) = family.generate(&mut rng(family.name(), seed), amount(64, 24));
+        let is_finite = |query: &Point3<f64>| to_f32(*query).iter().all(|x| x.is_finite());
+        (seed, soup, queries.into_iter().filter(is_finite).collect())
+    })
+}
+
 fn nearest<T: Real>(seed: u64, soup: &Soup<T>, queries: &[Point3<T>], index: &dyn AnyIndex<T>) {
     let brute = BruteForce::new(soup).expect("valid scene");
     agrees_with(&brute, seed, soup.len(), queries, &index);
@@ -72,6 +84,16 @@ fn the_nearest_agrees_on_random_scenes_in_f32() {
 #[test]
 fn the_nearest_agrees_at_extreme_scales() {
     in_f64(extreme_soups("scales"), nearest);
+}
+
+#[test]
+fn the_nearest_agrees_on_hard_scenes_in_f64() {
+    in_f64(hard_cases(), nearest);
+}
+
+#[test]
+fn the_nearest_agrees_on_hard_scenes_in_f32() {
+    in_f32(hard_cases().filter(|(_, soup, _)| narrow(soup).is_some()), nearest);
 }
 
 #[test]

@@ -26,6 +26,8 @@ pub(crate) struct Agreement {
     pub(crate) other_distance: usize,
     /// The number of compared answers that have the same distance and another id.
     pub(crate) other_id: usize,
+    /// A query whose answer differs: its position in the set, the answer, and the one that was expected.
+    pub(crate) example: Option<(usize, Answer, Answer)>,
     /// The number of queries without a finite answer.
     pub(crate) failed: usize,
     /// The largest difference of a distance from the reference, in units of the scene; NaN without a reference.
@@ -43,27 +45,41 @@ impl Agreement {
         self.compared += other.compared;
         self.other_distance += other.other_distance;
         self.other_id += other.other_id;
+        self.example = self.example.or(other.example);
         self.failed += other.failed;
         self.difference = if self.difference > other.difference { self.difference } else { other.difference };
     }
 }
 
-/// Compares all backends of a round and returns one result for each, in their order.
+/// Compares all backends of a round and returns one result for each, in their order. The reference of a scalar is the
+/// first of ours that answered all queries, or that visits few primitives.
 pub(crate) fn compare_round(round: &[Option<Answers<'_>>], total: usize) -> Vec<Agreement> {
-    let first = |scalar: ScalarKind| {
-        let of_scalar = || round.iter().flatten().filter(move |a| a.backend.is_ours && a.backend.scalar == scalar);
-        of_scalar().find(|a| !a.backend.is_exhaustive).or_else(|| of_scalar().next())
+    let reference = |scalar: ScalarKind| -> Option<Vec<Option<Answer>>> {
+        let of_scalar = || round.iter().flatten().filter(|a| a.backend.is_ours && a.backend.scalar == scalar);
+        let best = of_scalar().find(|a| !a.backend.is_exhaustive || a.chosen.len() == total);
+        best.or_else(|| of_scalar().next()).map(|answers| by_query(answers, total))
     };
-    let [double, single] = [ScalarKind::Double, ScalarKind::Single].map(|s| first(s).map(|a| (a, by_query(a, total))));
+    let [double, single] = [ScalarKind::Double, ScalarKind::Single].map(reference);
     let compare = |a: &Answers<'_>| {
-        let mut agreement = Agreement { difference: f64::NAN, ..Agreement::default() };
-        agreement.failed = a.answers.iter().filter(|answer| !answer.distance.is_finite()).count();
+        let failed = a.answers.iter().filter(|answer| !answer.distance.is_finite()).count();
+        let mut agreement = Agreement { failed, difference: f64::NAN, ..Agreement::default() };
         let peer = if a.backend.scalar == ScalarKind::Double { &double } else { &single };
-        if let Some((_, expected)) = peer.as_ref().filter(|_| a.backend.is_ours) {
-            bitwise(a, expected, &mut agreement);
-        }
-        if let Some((_, expected)) = &double {
-            agreement.difference = largest_difference(a, expected);
+        for (&at, answer) in a.chosen.iter().zip(a.answers) {
+            let expected_at = |all: &Option<Vec<Option<Answer>>>| all.as_ref().and_then(|all| all[at]);
+            // Queries that failed have no difference, because they are counted above.
+            let difference = expected_at(&double).map(|expected| (answer.distance - expected.distance).abs());
+            agreement.difference = difference
+                .filter(|difference| difference.is_finite())
+                .map_or(agreement.difference, |difference| agreement.difference.max(difference));
+            if let Some(expected) = expected_at(peer).filter(|_| a.backend.is_ours) {
+                agreement.compared += 1;
+                let (is_distance, is_id) = (answer.same_distance(&expected), answer.id == expected.id);
+                agreement.other_distance += usize::from(!is_distance);
+                agreement.other_id += usize::from(is_distance && !is_id);
+                if !(is_distance && is_id) {
+                    agreement.example.get_or_insert((at, *answer, expected));
+                }
+            }
         }
         agreement
     };
@@ -75,30 +91,6 @@ fn by_query(answers: &Answers<'_>, total: usize) -> Vec<Option<Answer>> {
     let mut all = vec![None; total];
     answers.chosen.iter().zip(answers.answers).for_each(|(&position, answer)| all[position] = Some(*answer));
     all
-}
-
-/// Pairs each answer with that of the same query in `expected`.
-fn pairs<'a>(a: &Answers<'a>, expected: &'a [Option<Answer>]) -> impl Iterator<Item = (&'a Answer, Answer)> {
-    a.answers.iter().zip(a.chosen).filter_map(|(answer, &position)| expected[position].map(|e| (answer, e)))
-}
-
-fn bitwise(a: &Answers<'_>, expected: &[Option<Answer>], agreement: &mut Agreement) {
-    for (answer, expected) in pairs(a, expected) {
-        agreement.compared += 1;
-        if !answer.same_distance(&expected) {
-            agreement.other_distance += 1;
-        } else if answer.id != expected.id {
-            agreement.other_id += 1;
-        }
-    }
-}
-
-/// Returns the largest difference of distances. Queries that failed are left out, because they are counted elsewhere.
-fn largest_difference(a: &Answers<'_>, expected: &[Option<Answer>]) -> f64 {
-    pairs(a, expected)
-        .map(|(answer, expected)| (answer.distance - expected.distance).abs())
-        .filter(|difference| difference.is_finite())
-        .fold(f64::NAN, f64::max)
 }
 
 #[cfg(test)]
@@ -125,7 +117,8 @@ mod tests {
         let [brute, aabb, parry, none] = compare_round(&round, 3).try_into().unwrap();
         let clean = Agreement::default();
         assert_eq!(aabb, Agreement { compared: 3, ..clean });
-        assert_eq!(brute, Agreement { compared: 2, other_distance: 1, other_id: 1, difference: 0.5, ..clean });
+        let example = Some((1, ours[0], expected[1]));
+        assert_eq!(brute, Agreement { compared: 2, other_distance: 1, other_id: 1, example, difference: 0.5, ..clean });
         assert_eq!(parry, Agreement { failed: 1, difference: 0.25, ..clean });
         assert_eq!(none, clean);
         assert!(aabb.is_clean() && !brute.is_clean() && !parry.is_clean());
@@ -136,6 +129,6 @@ mod tests {
         let mut sum = Agreement { difference: f64::NAN, ..Agreement::default() };
         sum.add(&Agreement { compared: 2, other_id: 1, difference: 0.5, ..Agreement::default() });
         sum.add(&Agreement { compared: 3, failed: 1, difference: 0.25, ..Agreement::default() });
-        assert_eq!(sum, Agreement { compared: 5, other_distance: 0, other_id: 1, failed: 1, difference: 0.5 });
+        assert_eq!(sum, Agreement { compared: 5, other_id: 1, failed: 1, difference: 0.5, ..Agreement::default() });
     }
 }

@@ -9,7 +9,7 @@ use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::sync::Arc;
 
 /// The answer to a query.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Answer {
     /// The distance; NaN if there was no answer.
     pub(crate) distance: f64,
@@ -21,11 +21,6 @@ pub(crate) struct Answer {
 impl Answer {
     /// The value that stands for a query without an answer.
     pub(crate) const NONE: Self = Self { distance: f64::NAN, id: u32::MAX };
-
-    /// Returns whether there was no answer, which differs from an answer whose distance is NaN.
-    pub(crate) fn is_none(&self) -> bool {
-        self.distance.is_nan() && self.id == u32::MAX
-    }
 
     /// Returns whether the distances of both answers have the same bits.
     pub(crate) fn same_distance(&self, other: &Self) -> bool {
@@ -113,6 +108,14 @@ impl Unavailable {
         Self(error.to_string())
     }
 }
+
+impl std::fmt::Display for Unavailable {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.write_str(&self.0)
+    }
+}
+
+impl std::error::Error for Unavailable {}
 
 /// An index of any backend that is ready for queries.
 pub(crate) type BoxedIndex = Box<dyn ErasedIndex>;

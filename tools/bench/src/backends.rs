@@ -2,8 +2,9 @@
 
 use crate::backend::{Backend, ScalarKind};
 use crate::bvh_crate::prepare as bvh;
-use crate::external::{parry_double, parry_single};
+
 use crate::our_indexes::{Way, registered, settings};
+use crate::parry::{double, single};
 use crate::point_trees::{kiddo_double, kiddo_single};
 use p2m_backends::BACKENDS;
 use std::sync::LazyLock;
@@ -23,8 +24,8 @@ pub(crate) static ALL: LazyLock<Vec<Backend>> = LazyLock::new(|| {
 /// Returns external libraries.
 fn external() -> [Backend; 5] {
     [
-        Backend { is_ours: false, scalar: ScalarKind::Single, ..Backend::new(YARDSTICK, parry_single) },
-        Backend { is_ours: false, ..Backend::new(YARDSTICK_DOUBLE, parry_double) },
+        Backend { is_ours: false, scalar: ScalarKind::Single, ..Backend::new(YARDSTICK, single::prepare) },
+        Backend { is_ours: false, ..Backend::new(YARDSTICK_DOUBLE, double::prepare) },
         Backend { is_ours: false, ..Backend::new("bvh", bvh) },
         Backend { is_ours: false, ..Backend::new("kiddo", kiddo_double) },
         Backend { is_ours: false, scalar: ScalarKind::Single, ..Backend::new("kiddo-f32", kiddo_single) },

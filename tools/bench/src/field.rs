@@ -1,11 +1,11 @@
 //! `p2m-bench field`: compares distance fields on a grid with those of parry3d.
 
-use crate::backend::{Answer, Prepared, Unavailable};
+use crate::backend::{Answer, BoxedIndex};
 use crate::command::{all_good, at_least_one};
-use crate::external::{parry_double, parry_single};
 use crate::measure::MedianRange;
 use crate::memory::measured;
 use crate::our_indexes::{aabb_options, octree_options, p2m_options};
+use crate::parry::{double, single};
 use crate::queries::Queries;
 use crate::rounds::{rotated, thread_seconds};
 use crate::scene::Scene;
@@ -14,10 +14,10 @@ use clap::Args;
 use clap::builder::RangedU64ValueParser;
 use p2m_bvh::AabbTree;
 use p2m_cli::harness::Table;
-use p2m_core::{BuildIndex, ClosestPoint, PrimitiveSet, Soup};
+use p2m_core::{BuildIndex, ClosestPoint, PrimitiveSet};
 use p2m_field::grid_candidates::CandidateLists;
-use p2m_field::sign::{SignError, SignRule, SignedDistance};
-use p2m_field::{FieldOptions, Grid, distances, distances_by_lists, signed_distances, signed_distances_by_lists};
+use p2m_field::sign::SignedDistance;
+use p2m_field::{FieldOptions, Grid, distances, distances_by_lists, signed_distances_by_lists};
 use p2m_interception::{Domain, OctreeIndex, P2mIndex};
 use std::path::PathBuf;
 
@@ -58,8 +58,16 @@ pub(crate) fn run(arguments: &Arguments) -> Result<bool> {
 }
 
 impl<'a> Method<'a> {
-    fn new(name: &'static str, seconds: f64, bytes: usize, fill: impl Fn(&Grid) -> Vec<f32> + 'a) -> Self {
-        Self { name, seconds, bytes, fill: Box::new(fill), times: Vec::new(), difference: 0.0 }
+    /// Builds an index, and makes a method of it.
+    fn build<I: 'a>(
+        name: &'static str,
+        build: impl FnOnce() -> Result<I>,
+        fill: impl Fn(&I, &Grid) -> Vec<f32> + 'a,
+    ) -> Result<Self> {
+        let ((index, bytes), seconds) = thread_seconds(|| measured(build));
+        let index = index?;
+        let fill = Box::new(move |grid: &Grid| fill(&index, grid));
+        Ok(Self { name, seconds, bytes, fill, times: Vec::new(), difference: 0.0 })
     }
 }
 
@@ -139,91 +147,53 @@ fn mean(times: &[f64]) -> f64 {
     times.iter().sum::<f64>() / times.len().max(1) as f64
 }
 
-/// Adds a sign to the distances of a tree.
-type Sided<'a> = fn(Tree<'a>, &'a Soup<f64>) -> Result<SignedDistance<Tree<'a>, &'a Soup<f64>>, SignError>;
-type Tree<'a> = AabbTree<f64, &'a Soup<f64>>;
-
-/// Returns a value with the seconds and the bytes that it took.
-fn built<B>(build: impl FnOnce() -> Result<B>) -> Result<(B, f64, usize)> {
-    let ((built, bytes), seconds) = thread_seconds(|| measured(build));
-    Ok((built?, seconds, bytes))
-}
-
-/// Builds an index of ours as a method.
-fn ours<'a, I: ClosestPoint<f64> + Sync + 'a>(
-    name: &'static str,
-    build: impl FnOnce() -> Result<I>,
-    options: FieldOptions,
-) -> Result<Method<'a>> {
-    let (index, seconds, bytes) = built(build)?;
-    let fill = move |grid: &Grid| distances(&index, grid, &options, &|_| ()).expect("memory");
-    Ok(Method::new(name, seconds, bytes, fill))
-}
-
 fn methods<'a>(scene: &'a Scene, grid: &Grid) -> Result<Vec<Method<'a>>> {
     let soup = &*scene.double;
     let [x, y, z] = grid.counts();
     let domain = p2m_core::Aabb { min: grid.origin(), max: grid.point([x - 1, y - 1, z - 1]) };
-    let options = one_thread();
     let octree = octree_options(1.0).with_domain(Domain::Box(domain));
     let fine = octree_options(10.0).with_domain(Domain::Box(domain));
+    let lists = || CandidateLists::new(soup).context("a scene out of range");
     let mut all = vec![
-        ours("aabb", || Ok(AabbTree::build(soup, &aabb_options())?), options)?,
-        ours("octree", || Ok(OctreeIndex::build(soup, &octree)?), options)?,
-        ours("octree-fine", || Ok(OctreeIndex::build(soup, &fine)?), options)?,
-        ours("p2m", || Ok(P2mIndex::build(soup, &p2m_options())?), options)?,
+        Method::build("aabb", || Ok(AabbTree::build(soup, &aabb_options())?), by_queries)?,
+        Method::build("octree", || Ok(OctreeIndex::build(soup, &octree)?), by_queries)?,
+        Method::build("octree-fine", || Ok(OctreeIndex::build(soup, &fine)?), by_queries)?,
+        Method::build("p2m", || Ok(P2mIndex::build(soup, &p2m_options())?), by_queries)?,
+        Method::build("lists", lists, |lists, grid| {
+            distances_by_lists(lists, grid, &one_thread(), &|_| ()).expect("memory")
+        })?,
     ];
-    let (lists, seconds, bytes) = built(|| CandidateLists::new(soup).context("a scene out of range"))?;
-    let fill = move |grid: &Grid| distances_by_lists(&lists, grid, &options, &|_| ()).expect("memory");
-    all.push(Method::new("lists", seconds, bytes, fill));
     if soup.triangles().len() == soup.len() {
-        if let Ok((signed, seconds, bytes)) =
-            built(|| Ok(SignedDistance::new(AabbTree::build(soup, &aabb_options())?, soup)?))
-        {
-            let fill = move |grid: &Grid| signed_distances(&signed, grid, &options, &|_| ()).expect("memory");
-            all.push(Method::new("aabb, signed", seconds, bytes, fill));
-        }
-        let variants: [(&'static str, Sided<'a>); 2] = [
-            ("lists, signed", |tree, soup| SignedDistance::new(tree, soup)),
-            ("lists, winding", |tree, soup| SignedDistance::with_rule(tree, soup, SignRule::Winding)),
-        ];
-        for (name, sided) in variants {
-            let both = built(|| {
-                let lists = CandidateLists::new(soup).context("a scene out of range")?;
-                Ok((lists, sided(AabbTree::build(soup, &aabb_options())?, soup)?))
-            });
-            if let Ok(((lists, signed), seconds, bytes)) = both {
-                let fill = move |grid: &Grid| {
-                    signed_distances_by_lists(&lists, &signed, grid, &options, &|_| ()).expect("memory")
-                };
-                all.push(Method::new(name, seconds, bytes, fill));
-            }
-        }
+        let signed = || Ok((lists()?, SignedDistance::new(AabbTree::build(soup, &aabb_options())?, soup)?));
+        let method = Method::build("lists, signed", signed, |(lists, signed), grid| {
+            signed_distances_by_lists(lists, signed, grid, &one_thread(), &|_| ()).expect("memory")
+        });
+        all.extend(method.ok());
     }
-    all.extend(external_method("parry3d", parry_single(scene)));
-    all.extend(external_method("parry3d-f64", parry_double(scene)));
+    for (name, prepared) in [("parry3d", single::prepare(scene)), ("parry3d-f64", double::prepare(scene))] {
+        let build = || Ok((prepared?.build)()?);
+        all.extend(Method::build(name, build, by_external_queries).ok());
+    }
     Ok(all)
 }
 
-fn external_method<'a>(name: &'static str, prepared: Result<Prepared, Unavailable>) -> Option<Method<'a>> {
-    let build = prepared.ok()?.build;
-    let ((index, bytes), seconds) = thread_seconds(|| measured(build));
-    let index = index.ok()?;
-    #[allow(clippy::cast_possible_truncation, reason = "fields are f32")]
-    let fill = move |grid: &Grid| {
-        let [x, y, z] = grid.counts();
-        let mut values = Vec::with_capacity(grid.len());
-        let mut answers = vec![Answer::NONE; x];
-        for (j, k) in (0..y * z).map(|row| (row % y, row / y)) {
-            let row = Queries::new((0..x).map(|i| grid.point([i, j, k])).collect());
-            if index.answer(row.all(), &mut answers).is_err() {
-                answers.fill(Answer::NONE);
-            }
-            values.extend(answers.iter().map(|answer| answer.distance as f32));
+fn by_queries(index: &(impl ClosestPoint<f64> + Sync), grid: &Grid) -> Vec<f32> {
+    distances(index, grid, &one_thread(), &|_| ()).expect("memory")
+}
+
+#[allow(clippy::cast_possible_truncation, reason = "fields are f32")]
+fn by_external_queries(index: &BoxedIndex, grid: &Grid) -> Vec<f32> {
+    let [x, y, z] = grid.counts();
+    let mut values = Vec::with_capacity(grid.len());
+    let mut answers = vec![Answer::NONE; x];
+    for (j, k) in (0..y * z).map(|row| (row % y, row / y)) {
+        let row = Queries::new((0..x).map(|i| grid.point([i, j, k])).collect());
+        if index.answer(row.all(), &mut answers).is_err() {
+            answers.fill(Answer::NONE);
         }
-        values
-    };
-    Some(Method::new(name, seconds, bytes, fill))
+        values.extend(answers.iter().map(|answer| answer.distance as f32));
+    }
+    values
 }
 
 fn one_thread() -> FieldOptions {

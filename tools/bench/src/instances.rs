@@ -1,18 +1,18 @@
 //! `p2m-bench instances`: compares a scene of moving instances with one index over all of its moved triangles.
 
 use crate::command::{Rounds, at_least_one, provenance};
+use crate::contest::{self, Competitor, Kind};
 use crate::measure::MedianRange;
 use crate::our_indexes::aabb_options;
-use crate::rounds::{checksum, checksum_of_closest, rotated, thread_seconds};
+use crate::rounds::{checksum_of_closest, thread_seconds};
 use anyhow::{Context, Result, bail};
 use chacha20::ChaCha8Rng;
 use clap::Args;
 use nalgebra::{Isometry3, Point3, Vector3};
 use p2m_bvh::AabbTree;
 use p2m_cli::harness::Table;
-use p2m_core::batch::{BatchOptions, closest_points_into};
 use p2m_core::pair::Motion;
-use p2m_core::{BuildError, BuildIndex, Closest, ClosestPoint, Element, PrimitiveSet, Ray, RayQuery, Soup};
+use p2m_core::{BuildError, BuildIndex, Element, PrimitiveSet, Ray, RayQuery, Soup};
 use p2m_instances::{InstanceId, Instances};
 use p2m_testkit::{rng, vector};
 use rand::RngExt;
@@ -87,10 +87,8 @@ fn print(arguments: &Arguments) -> Result<bool> {
     let rays = origins.iter().map(|origin| Ray::new(origin, &vector(&mut bench.rng)));
     let rays = rays.collect::<Result<Vec<_>, _>>().context("directions are not zero")?;
     // Each row has the times of the scene of instances, then those of the one index.
-    let rows = ["build", "move", "points, one by one", "points, batch", "first hits of rays"];
-    let mut seconds: Vec<[Vec<f64>; 2]> = vec![Default::default(); rows.len()];
-    let mut equal = true;
-    for round in 0..arguments.rounds.rounds {
+    let mut seconds: [[Vec<f64>; 2]; 2] = Default::default();
+    for _ in 0..arguments.rounds.rounds {
         bench.step();
         seconds[0][0].push(thread_seconds(|| bench.build()).1);
         seconds[1][0].push(thread_seconds(|| bench.update()).1);
@@ -105,49 +103,43 @@ fn print(arguments: &Arguments) -> Result<bool> {
             seconds[0][1].push(time);
             *whole = built?;
         }
-        let mut sums = [[None; 2]; 3];
-        for at in rotated(2, round) {
-            let (index, rays_of): (&(dyn ClosestPoint<f64> + Sync), &dyn RayQuery<f64>) = match (at, &whole) {
-                (0, _) => (&bench.scene, &bench.scene),
-                (_, Some(whole)) => (whole, whole),
-                (_, None) => continue,
-            };
-            let mut answers: Vec<Option<Closest<f64>>> = vec![None; queries.len()];
-            let single = thread_seconds(|| {
-                queries.iter().zip(&mut answers).for_each(|(query, answer)| *answer = index.closest_point(query));
-            });
-            sums[0][at] = Some(checksum_of_closest(&answers));
-            let batch = BatchOptions::default().with_parallel(false);
-            let batch =
-                thread_seconds(|| closest_points_into(index, &queries, &Default::default(), &batch, &mut answers)).1;
-            sums[1][at] = Some(checksum_of_closest(&answers));
-            let mut sum = 0;
-            let hits = thread_seconds(|| {
-                for ray in &rays {
-                    let hit = rays_of.first_intersection(ray).map(|hit| (hit.parameter, hit.primitive.index() as u64));
-                    sum = checksum(sum, hit.map(|(t, id)| (t.to_bits(), id)).into_iter());
-                }
-            });
-            sums[2][at] = Some(sum);
-            for (row, time) in [single.1, batch, hits.1].into_iter().enumerate() {
-                seconds[2 + row][at].push(time);
-            }
-        }
-        equal &= sums[0] == sums[1] && sums.iter().all(|[ours, other]| other.is_none() || ours == other);
     }
-    let mut table = Table::new(["", "instances", "one index"].map(str::to_owned));
-    for (row, (name, times)) in rows.iter().zip(&seconds).enumerate() {
-        let (scale, unit) = match row {
-            0 | 1 => (1e3, "ms"),
-            4 => (1e9 / rays.len() as f64, "ns"),
-            _ => (1e9 / queries.len() as f64, "ns"),
-        };
-        let cell = |times: &Vec<f64>| MedianRange::of(times).map(|range| format!("{:.3} {unit}", range.median * scale));
-        let [ours, other] = [&times[0], &times[1]].map(|times| cell(times).unwrap_or_else(|| "-".to_owned()));
-        table.push(vec![(*name).to_owned(), ours, other]);
+    let mut points = Vec::from(contest::single_and_batch(&bench.scene));
+    let mut casters = vec![caster("instances", &bench.scene)];
+    if let Some(whole) = &whole {
+        points.extend(contest::single_and_batch(whole));
+        casters.push(caster("one index", whole));
     }
+    let points = contest::measure(&queries, &mut points, arguments.rounds.rounds, &None);
+    let hits = contest::measure(&rays, &mut casters, arguments.rounds.rounds, &None);
+    let sum = checksum_of_closest(&points[0].answers);
+    let is_equal = points.iter().all(|score| checksum_of_closest(&score.answers) == sum)
+        && hits.iter().all(|score| score.answers == hits[0].answers);
+    let mut table = Table::new(["", "instances", "one index"]);
+    for (name, times) in ["build", "move"].iter().zip(&seconds) {
+        let cell = |times: &Vec<f64>| MedianRange::of(times).map(|range| format!("{:.3} ms", range.median * 1e3));
+        let cells = times.iter().map(|times| cell(times).unwrap_or_else(|| "-".to_owned()));
+        table.push(std::iter::once((*name).to_owned()).chain(cells).collect());
+    }
+    let ns = |seconds: Option<MedianRange>| seconds.map_or("-".to_owned(), |s| format!("{:.3} ns", s.median * 1e9));
+    for (name, at) in [("points, one by one", 0), ("points, batch", 1)] {
+        let [ours, other] = [at, at + 2].map(|at| ns(points.get(at).map(|score| score.seconds)));
+        table.push(vec![name.to_owned(), ours, other]);
+    }
+    let [ours, other] = [0, 1].map(|at| ns(hits.get(at).map(|score| score.seconds)));
+    table.push(vec!["first hits of rays".to_owned(), ours, other]);
     println!("{table}");
-    Ok(equal)
+    Ok(is_equal)
+}
+
+/// The bits of the parameter of the first hit, and the id of the primitive.
+type Hit = Option<(u64, usize)>;
+
+/// Returns an index that casts rays.
+fn caster<'a>(name: &'static str, index: &'a impl RayQuery<f64>) -> Competitor<'a, Ray, Hit> {
+    Competitor::new(name, Kind::Exact, |ray| {
+        index.first_intersection(ray).map(|hit| (hit.parameter.to_bits(), hit.primitive.index()))
+    })
 }
 
 /// A scene of instances in motion.

@@ -16,7 +16,7 @@ mod backends;
 mod blocks;
 mod bvh_crate;
 mod command;
-mod external;
+mod contest;
 mod extremes;
 mod field;
 mod instances;
@@ -24,6 +24,7 @@ mod measure;
 mod memory;
 mod our_indexes;
 mod pairs;
+mod parry;
 mod point_trees;
 mod query;
 mod rays;
@@ -33,7 +34,6 @@ mod scale;
 mod scene;
 mod shards;
 mod tables;
-mod threads;
 mod verify;
 
 use clap::{Parser, Subcommand};
@@ -63,13 +63,8 @@ enum Command {
     Ray(rays::Arguments),
     /// Checks the accuracy contract where other libraries fail (docs/measurements/extremes.md); fails if ours break it
     Extremes(extremes::Arguments),
-    /// Checks distances between primitives where other libraries fail (docs/measurements/extremes.md); fails if ours
-    /// break the contract
-    ExtremePairs(extremes::pairs::Arguments),
     /// Times distance fields on a grid, against parry3d; fails if ours differ
     Field(field::Arguments),
-    /// Compares builds on several numbers of threads, in wall time
-    Threads(threads::Arguments),
     /// Compares the choice of `auto` with the best index for each job; fails if too many choices are bad
     Auto(auto::Arguments),
     /// Compares a scene of moving instances of meshes with one index over all of them; fails if an answer differs
@@ -89,9 +84,7 @@ fn main() -> anyhow::Result<ExitCode> {
         Command::Verify(arguments) => verify::run(&arguments),
         Command::Ray(arguments) => rays::run(&arguments),
         Command::Extremes(arguments) => extremes::run(&arguments),
-        Command::ExtremePairs(arguments) => extremes::pairs::run(&arguments),
         Command::Field(arguments) => field::run(&arguments),
-        Command::Threads(arguments) => threads::run(&arguments),
         Command::Auto(arguments) => auto::run(&arguments),
         Command::Instances(arguments) => instances::run(&arguments),
         Command::Scale(arguments) => scale::run(&arguments),
@@ -115,7 +108,6 @@ mod tests {
     fn documents_have_the_blocks_of_their_commands() {
         let document = |name: &str| Path::new(env!("CARGO_MANIFEST_DIR")).join("../../docs").join(name);
         crate::extremes::BLOCKS.check(Some(&document("measurements/extremes.md"))).unwrap();
-        crate::extremes::pairs::BLOCKS.check(Some(&document("measurements/extremes.md"))).unwrap();
         crate::scale::BLOCKS.check(Some(&document("measurements/scale.md"))).unwrap();
     }
 }

@@ -107,10 +107,16 @@ pub(crate) fn measure_build<V>(
     Ok(index)
 }
 
-/// Measures the given queries and appends the figures to every entry.
-pub(crate) fn measure(queries: Vec<Point3<f64>>, entries: &mut [Entry], rounds: usize) {
+/// Measures the given queries and appends the figures to every entry. `affordable` returns the number of queries in a
+/// round for a backend of the given speed in nanoseconds.
+pub(crate) fn measure(
+    queries: Vec<Point3<f64>>,
+    entries: &mut [Entry],
+    rounds: usize,
+    affordable: impl Fn(f64) -> usize,
+) {
     let queries = Queries::new(queries);
-    let rounds_of = |entry: &Entry| Rounds::new(&queries, Answer::NONE, |q, a| entry.answer(q, a), affordable);
+    let rounds_of = |entry: &Entry| Rounds::new(&queries, Answer::NONE, |q, a| entry.answer(q, a), &affordable);
     let mut all: Vec<Rounds<Answer, Unavailable>> = entries.iter().map(rounds_of).collect();
     let mut figures = vec![SetFigures::default(); all.len()];
     for round in 0..rounds {
@@ -140,9 +146,9 @@ impl Entry {
     }
 }
 
-/// Returns the number of queries in a round for a backend of the given speed.
+/// Returns the number of queries in a round that takes about a second at most, or all for a backend that is not slow.
 #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "saturates, and is not negative")]
-fn affordable(nanoseconds: f64) -> usize {
+pub(crate) fn affordable(nanoseconds: f64) -> usize {
     if nanoseconds <= SLOW_NANOSECONDS {
         usize::MAX
     } else {
@@ -153,6 +159,7 @@ fn affordable(nanoseconds: f64) -> usize {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::backend::{BenchIndex, Prepared};
     use crate::backends;
     use p2m_core::{Element, Soup};
     use p2m_testkit::queries::QuerySet;
@@ -168,7 +175,7 @@ mod tests {
         let scene = Scene::new("test".into(), Soup::new(p, elements.iter().copied()).unwrap()).unwrap();
         let mut entries = build_all(&scene, &backends::ALL.iter().collect::<Vec<_>>(), 2);
         for set in QuerySet::ALL {
-            measure(set.generate(&scene.double, p2m_testkit::amount(300, 60), 1), &mut entries, 2);
+            measure(set.generate(&scene.double, p2m_testkit::amount(300, 60), 1), &mut entries, 2, affordable);
         }
         check(&entries);
     }
@@ -193,6 +200,31 @@ mod tests {
                 }
             }
         });
+    }
+
+    /// An index whose answers are right apart from the id.
+    struct Wrong;
+
+    impl BenchIndex for Wrong {
+        type Scalar = f64;
+        fn query(&self, query: &Point3<f64>) -> Answer {
+            Answer { distance: query.coords.norm(), id: 1 }
+        }
+    }
+
+    #[test]
+    fn a_backend_with_wrong_answers_is_found() {
+        let soup = Soup::new(vec![Point3::origin(), Point3::new(1.0, 0.0, 0.0)], [Element::Point(0)]).unwrap();
+        let scene = Scene::new("test".into(), soup).unwrap();
+        let wrong = Backend::new("wrong", |_| Ok(Prepared { build: Box::new(|| Ok(Box::new(Wrong))), borrowed: 0 }));
+        let wrong: &'static Backend = Box::leak(Box::new(wrong));
+        for (backends, is_clean) in [(vec![], true), (vec![wrong], false)] {
+            let all: Vec<_> = backends::ALL.iter().filter(|b| b.is_ours).chain(backends).collect();
+            let mut entries = build_all(&scene, &all, 1);
+            measure(QuerySet::Box1.generate(&scene.double, 100, 1), &mut entries, 1, |_| usize::MAX);
+            assert_eq!(crate::report::is_clean(&entries), is_clean);
+            crate::report::print_agreement(&scene, &[QuerySet::Box1], &entries);
+        }
     }
 
     #[test]

@@ -8,7 +8,6 @@ use p2m_core::batch::{self, BatchOptions, ClosestColumns};
 use p2m_core::{BuildError, BuildIndex, ClosestPoint, Isa, PrimitiveId, QueryOptions, Soup};
 use p2m_interception::{KdTreeLocator, OctreeIndex, OctreeOptions, P2mIndex, P2mOptions, RegionTree};
 use p2m_kdop::{Directions, KdopOptions, KdopTree};
-use p2m_testkit::adapters::{ParryIndex, RstarIndex};
 use std::fmt::Display;
 use std::sync::{Arc, Mutex};
 
@@ -115,7 +114,7 @@ fn setting<I: ClosestPoint<f64> + Sync + 'static, E: Display>(
     })
 }
 
-/// Returns our indexes with other settings than those of the registry, and our indexes of other crates' trees.
+/// Returns our indexes with other settings than those of the registry.
 pub(crate) fn settings() -> Vec<Backend> {
     use Way::{Batch, OneByOne};
     let (avx2, portable) = (Some("avx2"), Some("portable"));
@@ -126,7 +125,6 @@ pub(crate) fn settings() -> Vec<Backend> {
         setting("aabb-portable", portable, OneByOne, aabb),
         setting("octree-avx2", avx2, OneByOne, octree(1.0)),
         setting("octree-portable", portable, OneByOne, octree(1.0)),
-        setting("octree-coarse", None, OneByOne, octree(0.1)),
         setting("octree-fine", None, OneByOne, octree(10.0)),
         setting("octree-batch-fine", None, Batch, octree(10.0)),
         setting("octree-batch-finest", None, Batch, octree(30.0)),
@@ -136,7 +134,6 @@ pub(crate) fn settings() -> Vec<Backend> {
         setting("octree-batch-x100", None, Batch, octree(100.0)),
         setting("octree-batch-x200", None, Batch, octree(200.0)),
         setting("octree-batch-avx2", avx2, Batch, octree(1.0)),
-        setting("octree-batch-portable", portable, Batch, octree(1.0)),
         setting("p2m-avx2", avx2, OneByOne, p2m(p2m_options())),
         setting("p2m-kiddo", None, OneByOne, p2m(p2m_options().with_locator(KdTreeLocator::build))),
         setting("p2m-rstar", None, OneByOne, p2m(p2m_options().with_list_filter(RegionTree::build))),
@@ -147,8 +144,6 @@ pub(crate) fn settings() -> Vec<Backend> {
         setting("kdop-14", None, OneByOne, kdop::<14>),
         setting("kdop-18", None, OneByOne, kdop::<18>),
         setting("kdop-26", None, OneByOne, kdop::<26>),
-        setting("rstar", None, OneByOne, |soup, _| RstarIndex::build(soup, &())),
-        setting("parry-tree", None, OneByOne, |soup, _| ParryIndex::build(soup, &())),
     ]
 }
 

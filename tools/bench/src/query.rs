@@ -29,7 +29,12 @@ pub(crate) fn run(arguments: &Arguments) -> Result<bool> {
     all_good(&common.scenes, &rounds.describe("One thread, thread CPU time", *queries, "queries"), |scene| {
         let mut entries = measure::build_all(&scene, &selected, *builds);
         for set in &common.sets {
-            measure::measure(set.generate(&scene.double, *queries, rounds.seed), &mut entries, rounds.rounds);
+            measure::measure(
+                set.generate(&scene.double, *queries, rounds.seed),
+                &mut entries,
+                rounds.rounds,
+                measure::affordable,
+            );
         }
         report::print_scene(&scene, &common.sets, &entries);
         Ok(report::is_clean(&entries))

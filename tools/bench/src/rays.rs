@@ -3,16 +3,14 @@
 //! Rays begin at the points of a query set and have directions that are evenly distributed on the sphere. parry3d
 //! promises nothing about rays through edges, and a parameter of f32 is as accurate as its rounding.
 
-use crate::backend::Scalar;
 use crate::command::{Rounds, all_good, at_least_one};
-use crate::measure::MedianRange;
+use crate::contest::{self, Competitor, Kind};
 use crate::our_indexes::{aabb_options, kdop_options};
+use crate::parry::{double, single};
 use crate::report::significant;
-use crate::rounds::{rotated, thread_seconds};
-use crate::scene::{Scene, single_point};
+use crate::scene::Scene;
 use anyhow::Result;
 use clap::Args;
-use nalgebra::{Point3, Vector3};
 use p2m_bvh::AabbTree;
 use p2m_cli::harness::Table;
 use p2m_core::{BuildIndex, Ray, RayQuery};
@@ -44,91 +42,54 @@ pub(crate) struct Arguments {
     rounds: Rounds,
 }
 
-/// Rays in the representation of each competitor.
-struct Rays {
-    ours: Vec<Ray>,
-    double: Vec<(Point3<f64>, Vector3<f64>)>,
-    single: Vec<(Point3<f32>, Vector3<f32>)>,
+/// A ray in the representation of each competitor.
+struct Question {
+    ours: Ray,
+    single: single::Ray,
+    double: double::Ray,
 }
 
-impl Rays {
-    fn new(ours: Vec<Ray>) -> Self {
-        let double: Vec<_> = ours.iter().map(|ray| (ray.origin(), ray.direction())).collect();
-        let single = double.iter().map(|(o, d)| (single_point(o), single_point(&Point3::from(*d)).coords)).collect();
-        Self { ours, double, single }
+impl Question {
+    fn new(ours: Ray) -> Self {
+        Self { single: single::ray(&ours), double: double::ray(&ours), ours }
     }
 }
 
 /// The parameter of the first hit, and the id of the primitive, if the competitor returns it.
 type Outcome = Option<(f64, usize)>;
-/// A function that answers all rays, one by one. Its loop is compiled for each competitor.
-type Cast<'a> = dyn Fn(&Rays, &mut [Outcome]) + 'a;
+type Caster<'a> = Competitor<'a, Question, Outcome>;
 
-/// A competitor that casts rays.
-struct Caster<'a> {
-    name: &'static str,
-    is_ours: bool,
-    cast: Box<Cast<'a>>,
+/// Returns a caster of ours.
+fn ours<'a>(name: &'static str, index: impl RayQuery<f64> + 'a) -> Caster<'a> {
+    Competitor::new(name, Kind::Exact, move |question: &Question| {
+        // `black_box` keeps the compiler from leaving out a part of the hit.
+        black_box(index.first_intersection(&question.ours)).map(|hit| (hit.parameter, hit.primitive.index()))
+    })
 }
 
-impl<'a> Caster<'a> {
-    fn ours(name: &'static str, index: impl RayQuery<f64> + 'a) -> Self {
-        let cast = move |rays: &Rays, outcomes: &mut [Outcome]| {
-            for (ray, outcome) in rays.ours.iter().zip(outcomes) {
-                // `black_box` keeps the compiler from leaving out a part of the hit.
-                let hit = black_box(index.first_intersection(ray));
-                *outcome = hit.map(|hit| (hit.parameter, hit.primitive.index()));
-            }
-        };
-        Self { name, is_ours: true, cast: Box::new(cast) }
-    }
-}
-
-/// Generates a function that makes casters of one of the two crates of parry, which have the same names for different
-/// types. Scenes with other primitives than triangles have none.
-macro_rules! parry {
-    ($name:ident, $parry:ident, $scalar:ty, $rays:ident) => {
-        fn $name(scene: &Scene, name: &'static str, with_normal: bool) -> Option<Caster<'static>> {
-            use $parry::math::Vector;
-            use $parry::query::RayCast;
-            let (soup, _) = <$scalar as Scalar>::soup(scene).ok()?;
-            if soup.triangles().is_empty() || !soup.points().is_empty() || !soup.segments().is_empty() {
-                return None;
-            }
-            let positions = soup.positions().iter().map(|p| Vector::new(p.x, p.y, p.z)).collect();
-            let mesh = $parry::shape::TriMesh::new(positions, soup.triangles().to_vec()).ok()?;
-            let cast = move |rays: &Rays, outcomes: &mut [Outcome]| {
-                for ((o, d), outcome) in rays.$rays.iter().zip(outcomes) {
-                    let ray = $parry::query::Ray::new(Vector::new(o.x, o.y, o.z), Vector::new(d.x, d.y, d.z));
-                    *outcome = if with_normal {
-                        let hit = black_box(mesh.cast_local_ray_and_get_normal(&ray, <$scalar>::MAX, false));
-                        hit.map(|hit| (hit.time_of_impact.into(), hit.subshape as usize))
-                    } else {
-                        let parameter = mesh.cast_local_ray(&ray, <$scalar>::MAX, false);
-                        parameter.map(|parameter| (parameter.into(), usize::MAX))
-                    };
-                }
-            };
-            Some(Caster { name, is_ours: false, cast: Box::new(cast) })
-        }
-    };
-}
-
-parry!(parry_single, parry3d, f32, single);
-parry!(parry_double, parry3d_f64, f64, double);
-
+/// Returns all casters. Scenes with other primitives than triangles have none of parry.
 fn casters(scene: &Scene) -> Result<Vec<Caster<'_>>> {
     let soup = &*scene.double;
     let mut all = vec![
-        Caster::ours("aabb", AabbTree::build(soup, &aabb_options())?),
-        Caster::ours("kdop-6", KdopTree::<f64, _, 6>::build(soup, &kdop_options())?),
-        Caster::ours("kdop-14", KdopTree::<f64, _, 14>::build(soup, &kdop_options())?),
-        Caster::ours("kdop-18", KdopTree::<f64, _, 18>::build(soup, &kdop_options())?),
-        Caster::ours("kdop-26", KdopTree::<f64, _, 26>::build(soup, &kdop_options())?),
+        ours("aabb", AabbTree::build(soup, &aabb_options())?),
+        ours("kdop-6", KdopTree::<f64, _, 6>::build(soup, &kdop_options())?),
+        ours("kdop-14", KdopTree::<f64, _, 14>::build(soup, &kdop_options())?),
+        ours("kdop-18", KdopTree::<f64, _, 18>::build(soup, &kdop_options())?),
+        ours("kdop-26", KdopTree::<f64, _, 26>::build(soup, &kdop_options())?),
     ];
-    all.extend(parry_single(scene, YARDSTICK, true));
-    all.extend(parry_single(scene, YARDSTICK_PARAMETER, false));
-    all.extend(parry_double(scene, "parry3d-f64", true));
+    if soup.triangles().len() < scene.len() {
+        return Ok(all);
+    }
+    for (name, with_normal) in [(YARDSTICK, true), (YARDSTICK_PARAMETER, false)] {
+        if let Ok(mesh) = single::Mesh::build(scene) {
+            let hit = move |question: &Question| mesh.first_hit(&question.single, with_normal);
+            all.push(Competitor::new(name, Kind::External, hit));
+        }
+    }
+    if let Ok(mesh) = double::Mesh::build(scene) {
+        let hit = move |question: &Question| mesh.first_hit(&question.double, true);
+        all.push(Competitor::new("parry3d-f64", Kind::External, hit));
+    }
     Ok(all)
 }
 
@@ -140,34 +101,24 @@ pub(crate) fn run(arguments: &Arguments) -> Result<bool> {
 
 fn measure(scene: &Scene, arguments: &Arguments) -> Result<bool> {
     let Rounds { rounds, seed } = arguments.rounds;
-    let casters = casters(scene)?;
+    let mut casters = casters(scene)?;
     let mut rows: Vec<Vec<String>> = casters.iter().map(|caster| vec![caster.name.to_owned()]).collect();
     let (mut notes, mut is_good) = (Vec::new(), true);
     for set in &arguments.sets {
-        let rays = Rays::new(set.rays(&scene.double, arguments.rays, seed));
-        let count = rays.ours.len();
-        let mut outcomes = vec![vec![None; count]; casters.len()];
-        let mut seconds = vec![Vec::new(); casters.len()];
-        for round in 0..rounds {
-            for at in rotated(casters.len(), round) {
-                let spent = thread_seconds(|| (casters[at].cast)(black_box(&rays), &mut outcomes[at])).1;
-                seconds[at].push(spent);
-            }
-        }
-        let spreads: Vec<MedianRange> = seconds.iter().filter_map(|seconds| MedianRange::of(seconds)).collect();
-        let references = [YARDSTICK, YARDSTICK_PARAMETER]
-            .map(|name| Some(spreads[casters.iter().position(|caster| caster.name == name)?].median));
-        for (row, spread) in rows.iter_mut().zip(&spreads) {
-            let [median, minimum] = [spread.median, spread.min].map(|s| s * 1e9 / count as f64);
-            let [mesh, parameter] = references
-                .map(|reference| reference.map_or("-".to_owned(), |reference| significant(reference / spread.median)));
-            row.push(format!("{median:.0} ({minimum:.0}), {mesh} / {parameter}"));
-        }
-        notes.push(format!("{set}: {} of {count} rays hit.", outcomes[0].iter().flatten().count()));
-        for (caster, found) in casters.iter().zip(&outcomes) {
-            let differences = Differences::new(found, &outcomes[0], caster.is_ours, scene.diagonal());
-            is_good &= !caster.is_ours || differences.is_clean();
-            if !caster.is_ours || !differences.is_clean() {
+        let rays: Vec<_> = set.rays(&scene.double, arguments.rays, seed).into_iter().map(Question::new).collect();
+        let scores = contest::measure(&rays, &mut casters, rounds, &None);
+        let median = |name: &str| Some(scores[casters.iter().position(|caster| caster.name == name)?].seconds.median);
+        let expected = &scores[0].answers;
+        notes.push(format!("{set}: {} of {} rays hit.", expected.iter().flatten().count(), rays.len()));
+        for ((caster, score), row) in casters.iter().zip(&scores).zip(&mut rows) {
+            let [time, minimum] = [score.seconds.median, score.seconds.min];
+            let [mesh, parameter] = [YARDSTICK, YARDSTICK_PARAMETER]
+                .map(|name| median(name).map_or("-".to_owned(), |reference| significant(reference / time)));
+            row.push(format!("{:.0} ({:.0}), {mesh} / {parameter}", time * 1e9, minimum * 1e9));
+            let is_ours = caster.kind == Kind::Exact;
+            let differences = Differences::new(&score.answers, expected, is_ours, scene.diagonal());
+            is_good &= !is_ours || differences.is_clean();
+            if !is_ours || !differences.is_clean() {
                 notes.push(format!("{} on {set}: {differences}", caster.name));
             }
         }
@@ -238,6 +189,7 @@ impl std::fmt::Display for Differences {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use nalgebra::Point3;
     use p2m_core::{Element, Soup};
 
     #[test]
@@ -260,18 +212,16 @@ mod tests {
         let triangles = [Element::Triangle([0, 1, 2]), Element::Triangle([1, 2, 3])];
         for (elements, competitors, hits) in [(triangles, 8, 50), ([triangles[0], Element::Point(3)], 5, 10)] {
             let scene = Scene::new("test".into(), Soup::new(p.clone(), elements).unwrap()).unwrap();
-            let casters = casters(&scene).unwrap();
+            let mut casters = casters(&scene).unwrap();
             assert_eq!(casters.len(), competitors);
-            let rays = Rays::new(QuerySet::Box1.rays(&scene.double, 1000, 1));
-            let mut outcomes = vec![vec![None; 1000]; competitors];
-            for (caster, outcomes) in casters.iter().zip(&mut outcomes) {
-                (caster.cast)(&rays, outcomes);
-            }
-            assert!(outcomes[0].iter().flatten().count() > hits);
-            for (caster, found) in casters.iter().zip(&outcomes) {
-                let differences = Differences::new(found, &outcomes[0], caster.is_ours, scene.diagonal());
+            let rays = QuerySet::Box1.rays(&scene.double, 1000, 1).into_iter().map(Question::new).collect::<Vec<_>>();
+            let scores = contest::measure(&rays, &mut casters, 1, &None);
+            assert!(scores[0].answers.iter().flatten().count() > hits);
+            for (caster, score) in casters.iter().zip(&scores) {
+                let is_ours = caster.kind == Kind::Exact;
+                let differences = Differences::new(&score.answers, &scores[0].answers, is_ours, scene.diagonal());
                 assert!(differences.is_clean(), "{} {differences}", caster.name);
-                assert_eq!(differences.largest > 0.0, !caster.is_ours, "{}", caster.name);
+                assert_eq!((score.answers.len(), differences.largest > 0.0), (1000, !is_ours), "{}", caster.name);
             }
             let sets = vec![QuerySet::Box1, QuerySet::Grid];
             let rounds = Rounds { rounds: 2, seed: 1 };

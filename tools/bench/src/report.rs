@@ -1,5 +1,6 @@
 //! Prints the results of `p2m-bench query`.
 
+use crate::agree::Agreement;
 use crate::backend::Unavailable;
 use crate::backends::{YARDSTICK, YARDSTICK_DOUBLE};
 use crate::measure::{Entry, MedianRange, SetFigures};
@@ -14,6 +15,11 @@ pub(crate) fn print_scene(scene: &Scene, sets: &[QuerySet], entries: &[Entry]) {
     println!("{}", cost(scene, sets, entries));
     println!("Speed relative to {YARDSTICK} / {YARDSTICK_DOUBLE}: its median over the backend's, above 1 is faster.\n");
     println!("{}", ratios(sets, entries));
+    print_agreement(scene, sets, entries);
+}
+
+/// Prints how answers agree.
+pub(crate) fn print_agreement(scene: &Scene, sets: &[QuerySet], entries: &[Entry]) {
     println!(
         "Agreement: `=` all answers bitwise equal among ours of the same scalar; then the largest difference of a \
          distance from our first index in f64, in diagonals of the box.\n"
@@ -24,89 +30,87 @@ pub(crate) fn print_scene(scene: &Scene, sets: &[QuerySet], entries: &[Entry]) {
     }
 }
 
-/// Returns whether our indexes agree.
+/// Returns whether our indexes agree, and whether all that could be built answered.
 pub(crate) fn is_clean(entries: &[Entry]) -> bool {
-    let ours = entries.iter().filter(|entry| entry.backend.is_ours);
-    ours.flat_map(|entry| entry.sets.iter().flatten()).all(|set| set.agreement.is_clean())
+    let ours = entries.iter().filter(|entry| entry.backend.is_ours && entry.index.is_ok());
+    ours.flat_map(|entry| &entry.sets).all(|set| set.as_ref().is_ok_and(|set| set.agreement.is_clean()))
 }
 
-fn head<const N: usize>(first: [&str; N], sets: &[QuerySet]) -> Table {
-    Table::new(first.into_iter().chain(sets.iter().map(|set| set.name())))
-}
-
-/// Returns the first cells of a row: name and scalar.
-fn names(entry: &Entry) -> Vec<String> {
-    vec![entry.backend.name.to_owned(), entry.backend.scalar.name().to_owned()]
+/// Makes a table with a row for each backend: its name and scalar, the cells of `first`, and a cell for each set that
+/// was measured.
+fn table<const N: usize>(
+    first: [(&str, &dyn Fn(&Entry) -> String); N],
+    sets: &[QuerySet],
+    entries: &[Entry],
+    cell: impl Fn(usize, &SetFigures) -> String,
+) -> Table {
+    let columns = first.iter().map(|(name, _)| *name).chain(sets.iter().map(|set| set.name()));
+    let mut table = Table::new(["", "scalar"].into_iter().chain(columns));
+    for entry in entries {
+        let mut row = vec![entry.backend.name.to_owned(), entry.backend.scalar.name().to_owned()];
+        row.extend(first.iter().map(|(_, cell)| cell(entry)));
+        let cells = entry.sets.iter().enumerate();
+        row.extend(cells.map(|(i, set)| set.as_ref().map_or("-".to_owned(), |figures| cell(i, figures))));
+        table.push(row);
+    }
+    table
 }
 
 fn cost(scene: &Scene, sets: &[QuerySet], entries: &[Entry]) -> Table {
     let max_queries = |i: usize| entries.iter().filter_map(|e| e.sets[i].as_ref().ok()).map(|s| s.queries).max();
-    let mut table = head(["", "scalar", "build s", "B/primitive", "with scene", "peak"], sets);
-    for entry in entries {
-        let mut row = names(entry);
-        let bytes = |bytes: usize| match entry.index {
-            Ok(_) => format!("{:.1}", bytes as f64 / scene.len() as f64),
-            Err(_) => "-".to_owned(),
-        };
-        row.push(MedianRange::of(&entry.build.seconds).map_or("-".to_owned(), |s| spread(&s, seconds)));
-        let build = &entry.build;
-        row.extend([build.owned, build.owned + build.borrowed, build.peak].map(bytes));
-        for (i, set) in entry.sets.iter().enumerate() {
-            row.push(figure(set).map_or("-".to_owned(), |(s, n)| {
-                let count = if Some(n) == max_queries(i) { String::new() } else { format!(" n={n}") };
-                format!("{}{count}", spread(&s, |ns| format!("{ns:.0}")))
-            }));
-        }
-        table.push(row);
-    }
-    table
+    let bytes = |entry: &Entry, bytes: usize| match entry.index {
+        Ok(_) => format!("{:.1}", bytes as f64 / scene.len() as f64),
+        Err(_) => "-".to_owned(),
+    };
+    let build_seconds =
+        |e: &Entry| MedianRange::of(&e.build.seconds).map_or("-".to_owned(), |range| spread(&range, seconds));
+    table(
+        [
+            ("build s", &build_seconds),
+            ("B/primitive", &|e| bytes(e, e.build.owned)),
+            ("with scene", &|e| bytes(e, e.build.owned + e.build.borrowed)),
+            ("peak", &|e| bytes(e, e.build.peak)),
+        ],
+        sets,
+        entries,
+        |i, figures| {
+            let is_all = Some(figures.queries) == max_queries(i);
+            let count = if is_all { String::new() } else { format!(" n={}", figures.queries) };
+            let cell = |range| format!("{}{count}", spread(&range, |ns| format!("{ns:.0}")));
+            MedianRange::of(&figures.nanoseconds).map_or("-".to_owned(), cell)
+        },
+    )
 }
 
 fn ratios(sets: &[QuerySet], entries: &[Entry]) -> Table {
-    let median = |entry: &Entry, i: usize| figure(&entry.sets[i]).map(|(s, _)| s.median);
-    let median_of = |name: &str, i: usize| entries.iter().find(|e| e.backend.name == name).and_then(|e| median(e, i));
-    let mut table = head(["", "scalar"], sets);
-    for entry in entries {
-        let mut row = names(entry);
-        for i in 0..sets.len() {
-            let ratio = |name: &str| match (median_of(name, i), median(entry, i)) {
-                (Some(reference), Some(median)) => significant(reference / median),
-                _ => "-".to_owned(),
-            };
-            row.push(match median(entry, i) {
-                Some(_) => format!("{} / {}", ratio(YARDSTICK), ratio(YARDSTICK_DOUBLE)),
-                None => "-".to_owned(),
-            });
-        }
-        table.push(row);
-    }
-    table
+    let median = |figures: &SetFigures| Some(MedianRange::of(&figures.nanoseconds)?.median);
+    let reference = |name: &str, i: usize| {
+        let entry = entries.iter().find(|entry| entry.backend.name == name)?;
+        median(entry.sets[i].as_ref().ok()?)
+    };
+    table([], sets, entries, |i, figures| {
+        let ratio = |name| Some(significant(reference(name, i)? / median(figures)?));
+        [YARDSTICK, YARDSTICK_DOUBLE].map(|name| ratio(name).unwrap_or_else(|| "-".to_owned())).join(" / ")
+    })
 }
 
 fn agreement(scene: &Scene, sets: &[QuerySet], entries: &[Entry]) -> Table {
-    let mut table = head(["", "scalar"], sets);
-    for entry in entries {
-        let mut row = names(entry);
-        row.extend(entry.sets.iter().map(|set| {
-            let Ok(SetFigures { agreement: a, .. }) = set else { return "-".to_owned() };
-            let mut words = Vec::new();
-            if a.compared > 0 {
-                let wrong = a.other_distance + a.other_id;
-                words.push(if wrong == 0 { "=".to_owned() } else { format!("{wrong} of {} DIFFER", a.compared) });
-            }
-            if a.difference > 0.0 {
-                words.push(format!("{:.1e}", a.difference / scene.diagonal()));
-            } else if a.difference.is_finite() && a.compared == 0 {
-                words.push("0".to_owned());
-            }
-            if a.failed > 0 {
-                words.push(format!("{} FAILED", a.failed));
-            }
-            words.join(" ")
-        }));
-        table.push(row);
-    }
-    table
+    table([], sets, entries, |_, SetFigures { agreement: a, .. }| {
+        let mut words = Vec::new();
+        if a.compared > 0 {
+            let wrong = a.other_distance + a.other_id;
+            words.push(if wrong == 0 { "=".to_owned() } else { format!("{wrong} of {} DIFFER", a.compared) });
+        }
+        if a.difference > 0.0 {
+            words.push(format!("{:.1e}", a.difference / scene.diagonal()));
+        } else if a.difference.is_finite() && a.compared == 0 {
+            words.push("0".to_owned());
+        }
+        if a.failed > 0 {
+            words.push(format!("{} FAILED", a.failed));
+        }
+        words.join(" ")
+    })
 }
 
 /// Returns footnotes: why backends are missing, and which answers are wrong.
@@ -119,34 +123,30 @@ fn notes(sets: &[QuerySet], entries: &[Entry]) -> Vec<String> {
             continue;
         }
         for (set, figures) in sets.iter().zip(&entry.sets) {
-            match figures {
-                Err(Unavailable(why)) => notes.push(format!("{name} on {}: {why}", set.name())),
-                Ok(f) => {
-                    let a = &f.agreement;
-                    if !a.is_clean() {
-                        notes.push(format!(
-                            "{name} on {}: {} other distances, {} other ids of {}; {} queries without a finite answer",
-                            set.name(),
-                            a.other_distance,
-                            a.other_id,
-                            a.compared,
-                            a.failed
-                        ));
-                    }
-                    if f.checksums.windows(2).any(|w| w[0] != w[1]) {
-                        notes.push(format!("{name} on {}: answers change from round to round", set.name()));
-                    }
+            let mut note = |text: String| notes.push(format!("{name} on {}: {text}", set.name()));
+            let figures = match figures {
+                Ok(figures) => figures,
+                Err(Unavailable(why)) => {
+                    note(why.clone());
+                    continue;
                 }
+            };
+            let Agreement { compared, other_distance, other_id, example, failed, .. } = figures.agreement;
+            if !figures.agreement.is_clean() {
+                note(format!(
+                    "{other_distance} other distances, {other_id} other ids of {compared}; {failed} queries without a \
+                     finite answer"
+                ));
+            }
+            if let Some((query, found, expected)) = example {
+                note(format!("query {query} should be {expected:?}, is {found:?}"));
+            }
+            if figures.checksums.windows(2).any(|pair| pair[0] != pair[1]) {
+                note("answers change from round to round".to_owned());
             }
         }
     }
     notes
-}
-
-/// Returns the nanoseconds and the number of queries.
-fn figure(set: &Result<SetFigures, Unavailable>) -> Option<(MedianRange, usize)> {
-    let figures = set.as_ref().ok()?;
-    Some((MedianRange::of(&figures.nanoseconds)?, figures.queries))
 }
 
 fn spread(s: &MedianRange, format: impl Fn(f64) -> String) -> String {

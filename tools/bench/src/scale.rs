@@ -6,16 +6,16 @@
 use crate::backend::Unavailable;
 use crate::blocks::Blocks;
 use crate::command::{Document, at_least_one, index_names, provenance};
+use crate::contest;
 use crate::measure::{BuildFigures, MedianRange, measure_build};
 use crate::memory;
 use crate::rounds::{checksum, checksum_of_closest, thread_seconds};
-use anyhow::{Context as _, Result, bail};
+use anyhow::{Context as _, Result};
 use clap::Args;
 use nalgebra::Point3;
 use p2m_backends::{AnyIndex, BackendEntry, BuildSettings};
 use p2m_cli::harness::Table;
-use p2m_core::batch::{BatchOptions, closest_points_into};
-use p2m_core::{Closest, PrimitiveSet, QueryOptions, Soup, StatsCollector};
+use p2m_core::{PrimitiveSet, Soup, StatsCollector};
 use p2m_mixed::generate::{TorusKnot, torus_knot};
 use p2m_testkit::queries::QuerySet;
 use p2m_testkit::rng;
@@ -160,10 +160,8 @@ fn measure(
         let built = measure_build(&mut figures, before, || {
             entry.build(Arc::clone(soup), &settings).map_err(Unavailable::because)
         });
-        match built {
-            Ok(built) => index = Some(built.index),
-            Err(Unavailable(why)) => bail!("{} over {} triangles: {why}", entry.name, soup.len()),
-        }
+        let built = built.with_context(|| format!("{} over {} triangles", entry.name, soup.len()))?;
+        index = Some(built.index);
     }
     let index = index.context("there has to be at least one round")?;
     let sets = queries.iter().map(|queries| measure_set(&*index, queries, rounds)).collect();
@@ -180,31 +178,16 @@ fn measure(
 
 /// Measures the queries of a set, one by one and as a batch in turns.
 fn measure_set(index: &dyn AnyIndex<f64>, queries: &[Point3<f64>], rounds: usize) -> SetCosts {
-    let mut answers: Vec<Option<Closest<f64>>> = vec![None; queries.len()];
-    let (mut single, mut batch) = (Vec::new(), Vec::new());
-    let mut sum = 0;
-    for _ in 0..rounds {
-        let seconds = thread_seconds(|| {
-            for (query, answer) in queries.iter().zip(&mut answers) {
-                *answer = index.closest_point(query);
-            }
-        });
-        single.push(seconds.1);
-        sum = checksum_of_closest(&answers);
-        let one_thread = BatchOptions::default().with_parallel(false);
-        let seconds = thread_seconds(|| {
-            closest_points_into(index, queries, &QueryOptions::default(), &one_thread, &mut answers);
-        });
-        batch.push(seconds.1);
-    }
+    let scores = contest::measure(queries, &mut contest::single_and_batch(index), rounds, &None);
+    let [single, batch] = [&scores[0], &scores[1]];
     let counted = &queries[..COUNTED.min(queries.len())];
     let visits = StatsCollector::count_queries(counted, |query, stats| index.inspect(query, stats));
-    let each = |seconds: &[f64]| MedianRange::of(seconds).map_or(f64::NAN, |s| s.median * 1e9 / queries.len() as f64);
+    let sums = [checksum_of_closest(&single.answers), checksum_of_closest(&batch.answers)];
     SetCosts {
-        single: each(&single),
-        batch: each(&batch),
+        single: single.seconds.median * 1e9,
+        batch: batch.seconds.median * 1e9,
         visits: visits.map(|count| count as f64 / counted.len() as f64),
-        checksum: checksum(sum, [(checksum_of_closest(&answers), 0)].into_iter()),
+        checksum: checksum(sums[0], [(sums[1], 0)].into_iter()),
     }
 }
 

@@ -2,7 +2,6 @@
 
 use crate::memory;
 use anyhow::{Result, bail};
-use nalgebra::Point3;
 use p2m_core::{PrimitiveSet, Real, Soup};
 use p2m_testkit::queries::diagonal;
 use p2m_testkit::scenes::narrow;
@@ -64,11 +63,6 @@ impl Scene {
             soup.points().len()
         )
     }
-}
-
-/// Rounds a point to f32.
-pub(crate) fn single_point(p: &Point3<f64>) -> Point3<f32> {
-    Point3::new(f32::round_from_f64(p.x), f32::round_from_f64(p.y), f32::round_from_f64(p.z))
 }
 
 /// Returns the soup without spare capacity, and its heap bytes.

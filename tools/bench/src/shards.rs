@@ -6,10 +6,8 @@ use anyhow::{Context, Result};
 use chacha20::ChaCha8Rng;
 use clap::Args;
 use nalgebra::Point3;
-use p2m_bvh::AabbTree;
 use p2m_cli::harness::Table;
-use p2m_core::batch::{BatchOptions, closest_points_into};
-use p2m_core::{BruteForce, Closest, ClosestPoint, Key, Primitive, PrimitiveSet, QueryOptions, Soup};
+use p2m_core::{BruteForce, ClosestPoint, Key, Primitive, PrimitiveSet, QueryOptions, Soup};
 use p2m_shards::{ShardClosest, ShardOptions, ShardWriter, ShardedIndex};
 use rand::{RngExt, SeedableRng};
 use rayon::prelude::*;
@@ -38,9 +36,6 @@ pub(crate) struct Arguments {
     /// The number of queries of each set that are compared with brute force
     #[arg(long, default_value_t = 16)]
     checked: usize,
-    /// Build one tree over all triangles as well, and compare all answers
-    #[arg(long)]
-    whole: bool,
     /// The folder for the shards, if it is not that for temporary files
     #[arg(long)]
     folder: Option<PathBuf>,
@@ -129,8 +124,7 @@ impl Work {
     }
 }
 
-/// Writes and asks shards, and returns whether their answers are those of brute force and, if it is asked for, of one
-/// index over everything.
+/// Writes and asks shards, and returns whether their answers are those of brute force.
 pub(crate) fn run(arguments: &Arguments) -> Result<bool> {
     let terrain = Terrain::with_triangles(arguments.triangles);
     let triangles = u64::from(terrain.tiles()) * TILE_TRIANGLES;
@@ -171,52 +165,11 @@ pub(crate) fn run(arguments: &Arguments) -> Result<bool> {
         let work = Work::start();
         let is_equal = agrees_with_brute_force(terrain, &queries[..checked], &answers[..checked])?;
         are_equal &= is_equal;
-        table.push(work.row(&format!("brute force, {checked} points {name}"), checked as u64, verdict(is_equal)));
-    }
-    if arguments.whole {
-        let work = Work::start();
-        let mut whole = Soup::<f64>::default();
-        for number in 0..terrain.tiles() {
-            let tile = terrain.tile(number)?;
-            let first = u32::try_from(whole.positions().len())?;
-            tile.positions().iter().for_each(|position| {
-                whole.push_position(*position);
-            });
-            for triangle in tile.triangles() {
-                whole.push(p2m_core::Element::Triangle(triangle.map(|corner| first + corner)))?;
-            }
-        }
-        let tree = AabbTree::new(whole)?;
-        table.push(work.row("build one tree", triangles, String::new()));
-        for ((name, queries), answers) in sets.iter().zip(&answers) {
-            let mut out: Vec<Option<Closest<f64>>> = vec![None; queries.len()];
-            let work = Work::start();
-            closest_points_into(&tree, queries, &QueryOptions::default(), &BatchOptions::default(), &mut out);
-            let is_equal = out.iter().zip(answers).all(|(one, sharded)| is_same(one.as_ref(), sharded.as_ref()));
-            are_equal &= is_equal;
-            table.push(work.row(&format!("ask one tree {name}"), queries.len() as u64, verdict(is_equal)));
-        }
+        let verdict = if is_equal { "equal bits" } else { "DIFFERENT" };
+        table.push(work.row(&format!("brute force, {checked} points {name}"), checked as u64, verdict.to_owned()));
     }
     println!("{triangles} triangles, at most {} MB of shards in memory\n\n{table}", arguments.max_memory / 1_000_000);
     Ok(are_equal)
-}
-
-/// Returns the note of a row that compares answers.
-fn verdict(is_equal: bool) -> String {
-    if is_equal { "equal bits" } else { "DIFFERENT" }.to_owned()
-}
-
-/// Returns whether an answer of one index and that of shards are the same bits.
-fn is_same(one: Option<&Closest<f64>>, sharded: Option<&ShardClosest>) -> bool {
-    match (one, sharded) {
-        (Some(one), Some(sharded)) => {
-            let point = |closest: &Closest<f64>| closest.point.coords.map(f64::to_bits);
-            one.primitive.index() as u64 == sharded.id
-                && one.distance.to_bits() == sharded.closest.distance.to_bits()
-                && point(one) == point(&sharded.closest)
-        }
-        (one, sharded) => one.is_none() && sharded.is_none(),
-    }
 }
 
 /// Compares answers with those of brute force over all tiles, which are generated again one after the other.
@@ -237,9 +190,7 @@ fn agrees_with_brute_force(
             }
         });
     }
-    let is_same = |(best, answer): (&Option<(Key, u64, u64)>, &Option<ShardClosest>)| match (best, answer) {
-        (Some((_, id, distance)), Some(answer)) => (*id, *distance) == (answer.id, answer.closest.distance.to_bits()),
-        (best, answer) => best.is_none() && answer.is_none(),
-    };
-    Ok(best.iter().zip(answers).all(is_same))
+    let expected = best.iter().map(|best| best.map(|(_, id, distance)| (id, distance)));
+    let found = answers.iter().map(|answer| answer.as_ref().map(|a| (a.id, a.closest.distance.to_bits())));
+    Ok(expected.eq(found))
 }

@@ -79,7 +79,12 @@ pub(crate) fn run(arguments: &Arguments) -> Result<bool> {
         eprintln!("{}", scene.describe());
         let mut entries = measure::build_all(&scene, &selected, *builds);
         for set in SETS {
-            measure::measure(set.generate(&scene.double, *queries, rounds.seed), &mut entries, rounds.rounds);
+            measure::measure(
+                set.generate(&scene.double, *queries, rounds.seed),
+                &mut entries,
+                rounds.rounds,
+                measure::affordable,
+            );
         }
         report::print_scene(&scene, &SETS, &entries);
         agree &= report::is_clean(&entries);

@@ -1,11 +1,9 @@
 //! Checks approximate answers: the requested error, and a valid lower bound.
 
-use super::scene::vertices;
+use super::exactness;
 use super::subject::{Subject, compared_fields};
 use nalgebra::Point3;
-use p2m::{Closest, Primitive, PrimitiveId, PrimitiveSet, QueryOptions, Real, Soup};
-use p2m_testkit::oracle::Distance;
-use std::cmp::Ordering;
+use p2m::{Closest, Primitive, PrimitiveId, PrimitiveSet, QueryOptions, Real};
 
 /// Queries an index and checks the promises of every answer; `exact` is the answer of brute force.
 fn checked_answer<T: Real>(
@@ -26,15 +24,10 @@ fn checked_answer<T: Real>(
         context()
     );
     if found.lower_bound > exact.lower_bound {
-        assert!(nearest(subject.soup, query).is_at_least(found.lower_bound.to_f64()), "{}: bound", context());
+        let (nearest, all) = exactness::nearest(subject.soup, query);
+        assert!(all[nearest].is_at_least(found.lower_bound.to_f64()), "{}: bound", context());
     }
     found
-}
-
-fn nearest<T: Real>(soup: &Soup<T>, query: &Point3<T>) -> Distance {
-    let point: [f64; 3] = query.map(T::to_f64).coords.into();
-    let all = (0..soup.len()).map(|id| Distance::new(point, &vertices(soup, id)));
-    all.reduce(|a, b| if b.compare(&a) == Ordering::Less { b } else { a }).expect("not empty")
 }
 
 /// Checks every option, with values that the seed chooses.

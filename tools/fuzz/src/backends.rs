@@ -20,7 +20,7 @@ impl<T: Real, I: Index<T> + RayQuery<T> + BoxQuery<T>> Tree<T> for I {}
 /// The names of the trees.
 pub const TREES: [&str; 4] = ["aabb", "kdop-6", "kdop-14", "kdop-26"];
 /// The names of the other backends, which answer closest-point queries only.
-pub const OTHERS: [&str; 4] = ["octree", "p2m", "rstar", "parry"];
+pub const OTHERS: [&str; 2] = ["octree", "p2m"];
 
 type Built<'a, I> = Result<(&'static str, Box<I>), BuildError>;
 
@@ -53,14 +53,13 @@ pub fn tree<'a, T: Real>(bytes: &mut Bytes<'_>, soup: &'a Soup<T>) -> Built<'a, 
     Ok((name, built))
 }
 
-/// Builds an index of any backend, with any instruction set and some options. The tree of parry is built if its feature
-/// is on, and the tree of boxes otherwise.
+/// Builds an index of any backend, with any instruction set and some options. Half of the numbers select a tree.
 ///
 /// # Errors
 /// Returns the errors of the build.
 pub fn index<'a, T: Real>(bytes: &mut Bytes<'_>, soup: &'a Soup<T>) -> Built<'a, dyn Index<T> + 'a> {
-    let number = bytes.below(TREES.len() + OTHERS.len());
-    let Some(name) = number.checked_sub(TREES.len()).map(|number| OTHERS[number]) else {
+    let number = bytes.below(2 * TREES.len());
+    let Some(name) = number.checked_sub(TREES.len()).map(|number| OTHERS[number % OTHERS.len()]) else {
         let (name, built) = tree(&mut Bytes::new(&[number as u8, bytes.byte()]), soup)?;
         return Ok((name, built));
     };
@@ -75,7 +74,7 @@ pub fn index<'a, T: Real>(bytes: &mut Bytes<'_>, soup: &'a Soup<T>) -> Built<'a,
             };
             Box::new(OctreeIndex::build(soup, &options)?.with_isa(isa))
         }
-        "p2m" => {
+        _ => {
             let usual = P2mOptions::default();
             let options = match bytes.below(3) {
                 0 => usual,
@@ -84,10 +83,6 @@ pub fn index<'a, T: Real>(bytes: &mut Bytes<'_>, soup: &'a Soup<T>) -> Built<'a,
             };
             Box::new(P2mIndex::build(soup, &options)?.with_isa(isa))
         }
-        "rstar" => Box::new(p2m_testkit::adapters::RstarIndex::build(soup, &())?),
-        #[cfg(feature = "parry")]
-        "parry" => Box::new(p2m_testkit::adapters::ParryIndex::build(soup, &())?),
-        _ => Box::new(AabbTree::new(soup)?),
     };
     Ok((name, built))
 }

@@ -19,7 +19,8 @@ fn to_f64<T: Real>(p: &Point3<T>) -> [f64; 3] {
 }
 
 /// Returns the nearest primitive (the lowest id of several) and the distances of all.
-fn nearest<T: Real>(soup: &Soup<T>, query: [f64; 3]) -> (usize, Vec<Distance>) {
+pub fn nearest<T: Real>(soup: &Soup<T>, query: &Point3<T>) -> (usize, Vec<Distance>) {
+    let query = to_f64(query);
     let all: Vec<_> = (0..soup.len()).map(|id| Distance::new(query, &vertices(soup, id))).collect();
     let less = |a: usize, b: usize| if all[b].compare(&all[a]) == Ordering::Less { b } else { a };
     ((0..all.len()).reduce(less).expect("not empty"), all)
@@ -30,7 +31,7 @@ pub fn check<T: Real>(subject: &Subject<'_, T>, query: &Point3<T>, found: &Close
     let context = || format!("{}: {found:?}", subject.describe(query));
     let (bits, largest) = precision::<T>();
     let (point, id) = (to_f64(query), found.primitive.index());
-    let (best, all) = nearest(subject.soup, point);
+    let (best, all) = nearest(subject.soup, query);
     let vertices_of_answer = vertices(subject.soup, id);
     let distance = found.distance.to_f64();
     if distance.is_finite() {
@@ -54,7 +55,7 @@ pub fn check<T: Real>(subject: &Subject<'_, T>, query: &Point3<T>, found: &Close
 /// the rounded distance.
 pub fn check_certified<T: Real>(subject: &Subject<'_, T>, query: &Point3<T>) {
     let (bits, largest) = precision::<T>();
-    let (id, all) = nearest(subject.soup, to_f64(query));
+    let (id, all) = nearest(subject.soup, query);
     let truth = &all[id];
     let certify = |options: &QueryOptions<T>| subject.index.certified_closest_point(query, options).expect("vertices");
     let found = certify(&QueryOptions::default()).expect("something");

@@ -4,7 +4,6 @@
 #![forbid(unsafe_code)]
 #![allow(clippy::missing_panics_doc, reason = "a test kit panics where a test should fail")]
 
-pub mod adapters;
 pub mod adversaries;
 pub mod ball;
 mod checksum;
@@ -16,6 +15,7 @@ pub mod depth;
 pub mod enclosure;
 pub mod extremes;
 pub mod families;
+mod integers;
 mod line_and_primitive;
 pub mod line_filter;
 mod models;

@@ -4,7 +4,7 @@
 //! the three components of (P - O) x D are zero. Two components suffice where the third component of D is not zero,
 //! because D . ((P - O) x D) = 0. So the primitive is clipped by four half-spaces, and a point or a segment remains.
 
-use crate::oracle::{V, cross, dot, integer, lowest_bit, sub};
+use crate::integers::{V, clip, cross, dot, integer, lowest_bit, sub};
 use crate::ratio::Ratio;
 use dashu_int::IBig;
 use p2m_core::Ray;
@@ -88,26 +88,6 @@ impl LineAndPrimitive {
         let parameter = Ratio::new(along, dot(&self.direction, &self.direction) * &all).times_power_of_two(self.unit);
         LinePoint { parameter, weights: weights.each_ref().map(|w| Ratio::new(w.clone(), all.clone())) }
     }
-}
-
-/// Returns the part of a convex polygon on which the linear function `height` is not negative.
-fn clip(polygon: &[V], height: impl Fn(&V) -> IBig) -> Vec<V> {
-    let heights: Vec<IBig> = polygon.iter().map(height).collect();
-    let mut rest = Vec::new();
-    for (i, p) in polygon.iter().enumerate() {
-        let j = (i + 1) % polygon.len();
-        let (here, there) = (&heights[i], &heights[j]);
-        if *here >= IBig::ZERO {
-            rest.push(p.clone());
-        }
-        if *here > IBig::ZERO && *there < IBig::ZERO {
-            rest.push(std::array::from_fn(|k| &polygon[j][k] * here - &p[k] * there));
-        }
-        if *here < IBig::ZERO && *there > IBig::ZERO {
-            rest.push(std::array::from_fn(|k| &p[k] * there - &polygon[j][k] * here));
-        }
-    }
-    rest
 }
 
 #[cfg(test)]

@@ -4,68 +4,16 @@
 //! fraction of two integers. Only a bound on the distance itself requires a square root, which is taken in fixed point
 //! with at least 60 bits below u M and rounded so that a check can only become stricter.
 
+use crate::integers::{V, clip, cross, dot, integer, lowest_bit, sub};
+use crate::ratio::Ratio;
 use dashu_int::ops::{BitTest, SquareRoot};
 use dashu_int::{IBig, UBig};
 use std::cmp::Ordering;
 
-/// A vector of three integer coordinates.
-pub(crate) type V = [IBig; 3];
-
-/// Splits a finite f64 into mantissa and exponent.
-fn decompose(x: f64) -> (i64, i64) {
-    let bits = x.to_bits();
-    let exponent = i64::try_from((bits >> 52) & 0x7ff).expect("eleven bits");
-    let fraction = i64::try_from(bits & ((1 << 52) - 1)).expect("52 bits");
-    let (mantissa, exponent) = if exponent == 0 { (fraction, -1074) } else { (fraction | 1 << 52, exponent - 1075) };
-    (if x.is_sign_negative() { -mantissa } else { mantissa }, exponent)
-}
-
-/// Returns the exponent of the lowest set bit, and a large number for zero.
-pub(crate) fn lowest_bit(x: f64) -> i64 {
-    let (mantissa, exponent) = decompose(x);
-    if mantissa == 0 { 2000 } else { exponent + i64::from(mantissa.trailing_zeros()) }
-}
-
-/// Returns x as a multiple of 2^unit, which must divide it.
-pub(crate) fn integer(x: f64, unit: i64) -> IBig {
-    let (mantissa, exponent) = decompose(x);
-    let shift = exponent - unit;
-    let up = |n: i64| usize::try_from(n).expect("not negative");
-    if shift >= 0 { IBig::from(mantissa) << up(shift) } else { IBig::from(mantissa) >> up(-shift) }
-}
-
-pub(crate) fn sub(a: &V, b: &V) -> V {
-    std::array::from_fn(|k| &a[k] - &b[k])
-}
-
-pub(crate) fn dot(a: &V, b: &V) -> IBig {
-    &a[0] * &b[0] + &a[1] * &b[1] + &a[2] * &b[2]
-}
-
-pub(crate) fn cross(a: &V, b: &V) -> V {
-    std::array::from_fn(|k| {
-        let (i, j) = ((k + 1) % 3, (k + 2) % 3);
-        &a[i] * &b[j] - &a[j] * &b[i]
-    })
-}
-
-/// A fraction that is not negative.
-#[derive(Clone, Debug)]
-struct Fraction {
-    numerator: IBig,
-    denominator: IBig,
-}
-
-impl Fraction {
-    fn cmp(&self, other: &Self) -> Ordering {
-        (&self.numerator * &other.denominator).cmp(&(&other.numerator * &self.denominator))
-    }
-}
-
 /// The exact squared distance from a query to the convex hull of one to three vertices, or between two such hulls.
 #[derive(Clone, Debug)]
 pub struct Distance {
-    square: Fraction,
+    square: Ratio,
     /// The largest squared distance from the query to a vertex, or between vertices of the two hulls.
     max_vertex_distance_squared: IBig,
     /// The exponent of the unit: lengths are multiples of 2^unit.
@@ -90,19 +38,18 @@ impl Distance {
         let unit = a.iter().chain(b).flatten().map(|x| lowest_bit(*x)).min().expect("coordinates");
         let exact = |hull: &[[f64; 3]]| -> Vec<V> { hull.iter().map(|v| v.map(|x| integer(x, unit))).collect() };
         let (a, b) = (exact(a), exact(b));
-        let from_vertices =
-            |from: &[V], to: &[V]| -> Vec<Fraction> { from.iter().map(|v| from_vertex(v, to)).collect() };
+        let from_vertices = |from: &[V], to: &[V]| -> Vec<Ratio> { from.iter().map(|v| from_vertex(v, to)).collect() };
         let mut candidates = from_vertices(&a, &b);
         candidates.extend(from_vertices(&b, &a));
         for p in edges(&a) {
             candidates.extend(edges(&b).into_iter().filter_map(|q| inside_of_edges(p, q)));
         }
         if edges(&a).into_iter().any(|edge| pierces(edge, &b)) || edges(&b).into_iter().any(|edge| pierces(edge, &a)) {
-            candidates.push(Fraction { numerator: IBig::ZERO, denominator: IBig::ONE });
+            candidates.push(Ratio::new(IBig::ZERO, IBig::ONE));
         }
         let squares = a.iter().flat_map(|v| b.iter().map(|w| sub(w, v))).map(|d| dot(&d, &d));
         let max_vertex_distance_squared = squares.max().expect("at least one vertex");
-        let square = candidates.into_iter().min_by(Fraction::cmp).expect("at least one vertex");
+        let square = candidates.into_iter().min_by(Ratio::compare).expect("at least one vertex");
         Self { square, max_vertex_distance_squared, unit }
     }
 
@@ -116,11 +63,8 @@ impl Distance {
     #[must_use]
     pub fn compare(&self, other: &Self) -> Ordering {
         let unit = self.unit.min(other.unit);
-        let at = |d: &Self| Fraction {
-            numerator: &d.square.numerator << usize::try_from(2 * (d.unit - unit)).expect("not negative"),
-            denominator: d.square.denominator.clone(),
-        };
-        at(self).cmp(&at(other))
+        let at = |d: &Self| d.square.clone().times_power_of_two(2 * (d.unit - unit));
+        at(self).compare(&at(other))
     }
 
     /// Returns the distance and the largest vertex distance as multiples of 2^fine, each rounded down.
@@ -227,17 +171,16 @@ fn edges(hull: &[V]) -> Vec<[&V; 2]> {
 }
 
 /// Returns the squared distance from a query to the hull of one to three vertices.
-fn from_vertex(query: &V, vertices: &[V]) -> Fraction {
+fn from_vertex(query: &V, vertices: &[V]) -> Ratio {
     let offsets: Vec<V> = vertices.iter().map(|v| sub(v, query)).collect();
-    let mut candidates: Vec<Fraction> =
-        offsets.iter().map(|v| Fraction { numerator: dot(v, v), denominator: IBig::ONE }).collect();
+    let mut candidates: Vec<Ratio> = offsets.iter().map(|v| Ratio::new(dot(v, v), IBig::ONE)).collect();
     for [a, b] in edges(&offsets) {
         let d = sub(b, a);
         let length = dot(&d, &d);
         let along = -dot(a, &d);
         if along > IBig::ZERO && along < length {
             let numerator = dot(a, a) * &length - &along * &along;
-            candidates.push(Fraction { numerator, denominator: length });
+            candidates.push(Ratio::new(numerator, length));
         }
     }
     if let [a, b, c] = &offsets[..] {
@@ -247,14 +190,14 @@ fn from_vertex(query: &V, vertices: &[V]) -> Fraction {
         let denominator = dot(&normal, &normal);
         if inside && denominator > IBig::ZERO {
             let height = dot(&normal, a);
-            candidates.push(Fraction { numerator: &height * &height, denominator });
+            candidates.push(Ratio::new(&height * &height, denominator));
         }
     }
-    candidates.into_iter().min_by(Fraction::cmp).expect("at least one vertex")
+    candidates.into_iter().min_by(Ratio::compare).expect("at least one vertex")
 }
 
 /// Returns the squared distance between the lines of two edges if the nearest points are on the edges and unique.
-fn inside_of_edges(p: [&V; 2], q: [&V; 2]) -> Option<Fraction> {
+fn inside_of_edges(p: [&V; 2], q: [&V; 2]) -> Option<Ratio> {
     let (d, e, r) = (sub(p[1], p[0]), sub(q[1], q[0]), sub(q[0], p[0]));
     let normal = cross(&d, &e);
     let denominator = dot(&normal, &normal);
@@ -265,7 +208,7 @@ fn inside_of_edges(p: [&V; 2], q: [&V; 2]) -> Option<Fraction> {
         return None;
     }
     let height = dot(&r, &normal);
-    Some(Fraction { numerator: &height * &height, denominator })
+    Some(Ratio::new(&height * &height, denominator))
 }
 
 /// Returns whether the ends of an edge are on different sides of a triangle, and a point of it is in the triangle.
@@ -315,25 +258,6 @@ pub fn is_product_at_most(a: [f64; 3], b: [f64; 3], bound: f64) -> bool {
     let fine = lowest_bit(bound).min(unit_a + unit_b);
     let up = usize::try_from(unit_a + unit_b - fine).expect("not negative");
     dot(&exact(a, unit_a), &exact(b, unit_b)) << up <= integer(bound, fine)
-}
-
-/// Returns the part of a convex polygon (or segment, or point) on which the linear function `height` is not negative.
-fn clip(hull: &[[IBig; 4]], height: impl Fn(&[IBig; 4]) -> IBig) -> Vec<[IBig; 4]> {
-    let heights: Vec<IBig> = hull.iter().map(height).collect();
-    let mut rest = Vec::new();
-    for (i, p) in hull.iter().enumerate() {
-        let j = (i + 1) % hull.len();
-        let (at_p, at_q) = (&heights[i], &heights[j]);
-        if *at_p >= IBig::ZERO {
-            rest.push(p.clone());
-        }
-        if (*at_p > IBig::ZERO && *at_q < IBig::ZERO) || (*at_p < IBig::ZERO && *at_q > IBig::ZERO) {
-            // Both weights have the sign of at_p, and the last coordinate has to stay positive.
-            let sign = if *at_p > IBig::ZERO { IBig::ONE } else { -IBig::ONE };
-            rest.push(std::array::from_fn(|k| (&hull[j][k] * at_p - &p[k] * at_q) * &sign));
-        }
-    }
-    rest
 }
 
 #[cfg(test)]

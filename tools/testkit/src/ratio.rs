@@ -2,7 +2,7 @@
 //!
 //! Rounding divides the leading bits in f64 and then moves to the neighbouring f64 until both neighbours are farther.
 
-use crate::oracle::{integer, lowest_bit};
+use crate::integers::{integer, lowest_bit};
 use dashu_int::IBig;
 use dashu_int::ops::{BitTest, UnsignedAbs};
 use std::cmp::Ordering;
@@ -11,8 +11,8 @@ use std::ops::{Add, Div, Mul, Sub};
 /// A fraction with a positive denominator.
 #[derive(Clone, Debug)]
 pub(crate) struct Ratio {
-    numerator: IBig,
-    denominator: IBig,
+    pub(crate) numerator: IBig,
+    pub(crate) denominator: IBig,
 }
 
 fn shifted(x: &IBig, by: i64) -> IBig {

@@ -6,8 +6,8 @@
 
 #![allow(clippy::float_cmp, reason = "nothing here has a tolerance")]
 
+use crate::integers::{V, cross, dot, sub};
 use crate::line_and_primitive::{LineAndPrimitive, LinePoint};
-use crate::oracle::{V, cross, dot, sub};
 use crate::ratio::Ratio;
 use dashu_int::IBig;
 use dashu_int::ops::{BitTest, UnsignedAbs};

@@ -1,7 +1,38 @@
-//! Counts of wrong answers of a subject in a family of cases.
+//! What checks count: errors of distances, and broken promises.
 
-/// Errors above this multiple of u M are no roundings: it is twice the bound that is proved for our kernel.
-pub(super) const ROUNDING: f64 = 16.0;
+use p2m_testkit::truth::Truth;
+
+/// The largest number of broken promises that are shown.
+const SHOWN: usize = 20;
+
+/// The range and the precision of a scalar.
+#[derive(Clone, Copy)]
+pub(super) struct Precision {
+    pub(super) bits: u32,
+    pub(super) smallest: f64,
+    pub(super) largest: f64,
+}
+
+impl Precision {
+    /// The precision of f64, and that of f32.
+    pub(super) const ALL: [Self; 2] = [
+        Self { bits: 53, smallest: f64::from_bits(1), largest: f64::MAX },
+        Self { bits: 24, smallest: f32::from_bits(1) as f64, largest: f32::MAX as f64 },
+    ];
+
+    /// Returns the unit roundoff.
+    pub(super) fn unit(self) -> f64 {
+        2f64.powi(-self.bits.cast_signed())
+    }
+
+    /// Returns the error of a distance in u M. An infinite distance has none if the true one is out of range.
+    pub(super) fn error(self, truth: &Truth<'_>, distance: f64) -> f64 {
+        if distance == f64::INFINITY && truth.is_at_least(self.largest) {
+            return 0.0;
+        }
+        truth.error(distance, self.bits, self.smallest)
+    }
+}
 
 /// The counts of one subject in one family.
 #[derive(Clone, Copy, Debug, Default)]
@@ -10,37 +41,35 @@ pub(super) struct Counts {
     pub(super) cases: u64,
     /// The largest finite error, in u M.
     pub(super) worst: f64,
-    /// The number of errors above [`ROUNDING`].
-    pub(super) beyond: u64,
     /// The number of answers that are NaN, infinite for a distance in range, or missing.
     pub(super) failed: u64,
     /// The number of panics.
     pub(super) panicked: u64,
-    /// The number of primitives that are not the nearest, beyond rounding.
-    pub(super) wrong_ids: u64,
+    /// The number of wrong answers to the question whether two primitives intersect.
+    pub(super) wrong: u64,
 }
 
 impl Counts {
-    /// Adds an answer with its error, which is infinite if the answer is not a number.
-    pub(super) fn add(&mut self, error: f64) {
-        self.cases += 1;
-        if error.is_finite() {
-            self.worst = self.worst.max(error);
-            self.beyond += u64::from(error > ROUNDING);
-        } else {
-            self.failed += 1;
+    /// Adds an answer with its error, which is infinite if the answer is not a number, or a panic.
+    pub(super) fn add(&mut self, error: Option<f64>) {
+        match error {
+            Some(error) => {
+                self.cases += 1;
+                self.failed += u64::from(!error.is_finite());
+                self.worst = if error.is_finite() { self.worst.max(error) } else { self.worst };
+            }
+            None => self.panicked += 1,
         }
     }
 
     /// Adds the counts of `other`.
     pub(super) fn merge(&mut self, other: &Self) {
-        let Self { cases, worst, beyond, failed, panicked, wrong_ids } = other;
+        let Self { cases, worst, failed, panicked, wrong } = other;
         self.cases += cases;
         self.worst = self.worst.max(*worst);
-        self.beyond += beyond;
         self.failed += failed;
         self.panicked += panicked;
-        self.wrong_ids += wrong_ids;
+        self.wrong += wrong;
     }
 
     /// Formats the cell of a table: the largest error, and the fraction of answers that are wrong in other ways.
@@ -55,8 +84,35 @@ impl Counts {
         };
         let all = (self.cases + self.panicked) as f64;
         let part = |count: u64, what: &str| (count > 0).then(|| format!(", {what} {}", percent(count as f64 / all)));
-        let parts = [part(self.failed, "fails"), part(self.panicked, "panics"), part(self.wrong_ids, "wrong id")];
+        let parts = [part(self.failed, "fails"), part(self.panicked, "panics"), part(self.wrong, "wrong intersection")];
         parts.into_iter().flatten().fold(worst, |text, part| text + &part)
+    }
+}
+
+/// Adds the counts of a table of the same size.
+pub(super) fn merge_all(all: &mut [Counts], others: &[Counts]) {
+    all.iter_mut().zip(others).for_each(|(counts, other)| counts.merge(other));
+}
+
+/// Broken promises, of which some are shown.
+#[derive(Default)]
+pub(super) struct Broken {
+    pub(super) count: u64,
+    pub(super) shown: Vec<String>,
+}
+
+impl Broken {
+    pub(super) fn add(&mut self, what: impl FnOnce() -> String) {
+        self.count += 1;
+        if self.shown.len() < SHOWN {
+            self.shown.push(what());
+        }
+    }
+
+    pub(super) fn merge(&mut self, other: Self) {
+        self.count += other.count;
+        self.shown.extend(other.shown);
+        self.shown.truncate(SHOWN);
     }
 }
 

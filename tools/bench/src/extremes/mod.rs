@@ -4,10 +4,8 @@
 mod counts;
 mod examples;
 mod external;
-pub(crate) mod pairs;
+mod pairs;
 mod primitives;
-mod scenes;
-mod threads;
 
 use crate::blocks::Blocks;
 use crate::command::{Document, provenance};
@@ -15,21 +13,22 @@ use anyhow::Result;
 use clap::Args;
 use external::LIBRARIES;
 use p2m_cli::harness::Table;
-use p2m_testkit::extremes::Extreme;
+use rayon::prelude::*;
+use std::sync::atomic::{AtomicU64, Ordering};
 use std::time::Instant;
 
 /// The blocks of docs/measurements/extremes.md.
 pub(crate) const BLOCKS: Blocks<5> =
-    Blocks { command: "extremes", names: ["provenance", "checks", "primitives", "scenes", "examples"] };
+    Blocks { command: "extremes", names: ["provenance", "checks", "primitives", "pairs", "examples"] };
 
 #[derive(Args)]
 pub(crate) struct Arguments {
     /// Answers about isolated primitives that are checked
     #[arg(long, default_value_t = 1_000_000)]
     cases: u64,
-    /// Scenes of each family, which every backend queries
-    #[arg(long, default_value_t = 4)]
-    scenes: u64,
+    /// Pairs of primitives that are checked
+    #[arg(long, default_value_t = 100_000)]
+    pairs: u64,
     /// Seed of all random numbers
     #[arg(long, default_value_t = 1)]
     seed: u64,
@@ -42,20 +41,19 @@ pub(crate) fn run(arguments: &Arguments) -> Result<bool> {
     let (document, seed) = (arguments.document.write.as_deref(), arguments.seed);
     BLOCKS.check(document)?;
     let start = Instant::now();
-    let (alone, together, examples) = without_messages(|| {
-        (primitives::run(arguments.cases, seed), scenes::run(arguments.scenes, seed), examples::list())
+    let (found, pairs, examples) = without_messages(|| {
+        (primitives::run(arguments.cases, seed), pairs::run(arguments.pairs, seed), examples::list())
     });
-    let [checks, primitives] = [checks(&alone, &together), of_primitives(&alone)];
-    BLOCKS.publish(document, &[provenance().to_string(), checks, primitives, of_scenes(&together), examples])?;
-    alone.shown.iter().chain(&together.shown).for_each(|what| eprintln!("BROKEN {what}"));
-    let broken = alone.broken + together.broken;
+    BLOCKS.publish(document, &[provenance().to_string(), checks(&found), table(&found), pairs.text(), examples])?;
+    found.broken.shown.iter().for_each(|what| eprintln!("BROKEN {what}"));
     println!(
-        "{} answers of ours compared with the true distance, {} more with each other in {:.0?}, {broken} promises broken.",
-        alone.checked.iter().sum::<u64>() + together.queries,
-        alone.invariant + together.checked,
-        start.elapsed()
+        "{} answers of ours compared with the true distance, {} more with each other in {:.0?}, {} promises broken.",
+        found.checked.iter().sum::<u64>(),
+        found.invariant,
+        start.elapsed(),
+        found.broken.count
     );
-    Ok(broken == 0)
+    Ok(found.broken.count == 0 && pairs.ours_are_within_their_bound())
 }
 
 /// Runs checks without messages of panics. Those of external libraries are caught and counted, and a message for each
@@ -68,54 +66,53 @@ fn without_messages<V>(check: impl FnOnce() -> V) -> V {
     found
 }
 
+/// Runs jobs on all threads, adds their results, and prints a line after every twentieth of them.
+fn on_all_threads<F: Default + Send>(
+    what: &str,
+    jobs: u64,
+    check: impl Fn(u64, &mut F) + Sync,
+    merge: impl Fn(&mut F, F) + Sync,
+) -> F {
+    let done = AtomicU64::new(0);
+    let checked = |mut found: F, job: u64| {
+        check(job, &mut found);
+        let count = done.fetch_add(1, Ordering::Relaxed);
+        let part = |count: u64| count * 20 / jobs;
+        if part(count + 1) > part(count) {
+            eprintln!("{} % of all {what}", part(count + 1) * 5);
+        }
+        found
+    };
+    let merged = |mut all: F, other: F| {
+        merge(&mut all, other);
+        all
+    };
+    (0..jobs).into_par_iter().fold(F::default, checked).reduce(F::default, merged)
+}
+
 /// Formats the numbers of checks.
-fn checks(alone: &primitives::Findings, together: &scenes::Findings) -> String {
+fn checks(found: &primitives::Findings) -> String {
     let mut table = Table::new(["", "answers", "promises broken"]);
-    let [double, single] = alone.checked;
-    for (what, count, broken) in [
-        ("isolated primitives in f64 against the truth: N1, N5, N6, N7", double, Some(alone.broken)),
-        ("isolated primitives in f32 against the truth: N1, N5, N6, N7", single, Some(alone.broken)),
-        ("the same against those of another order or scale: N4", alone.invariant, None),
-        ("of these, by rational arithmetic", alone.rational, None),
-        (
-            "scenes, brute force against the truth of every primitive: N1, N2, N6, N7",
-            together.queries,
-            Some(together.broken),
-        ),
-        ("scenes, every backend against brute force: N3, N6", together.checked, None),
-        ("primitives of scenes, by rational arithmetic", together.rational, None),
+    let [double, single] = found.checked;
+    for (what, count, is_first) in [
+        ("isolated primitives in f64 against the truth: N1, N5, N6, N7", double, true),
+        ("isolated primitives in f32 against the truth: N1, N5, N6, N7", single, true),
+        ("the same against those of another order or scale: N4", found.invariant, false),
+        ("of these, by rational arithmetic", found.rational, false),
     ] {
-        let broken = broken.map_or_else(|| "counted above".to_owned(), |broken| broken.to_string());
+        let broken = if is_first { found.broken.count.to_string() } else { "counted above".to_owned() };
         table.push(vec![what.to_owned(), count.to_string(), broken]);
     }
     table.to_string()
 }
 
 /// Formats the errors of isolated primitives.
-fn of_primitives(alone: &primitives::Findings) -> String {
+fn table(found: &primitives::Findings) -> String {
     let mut table = Table::new(["", "p2m f64", "p2m f32"].into_iter().chain(LIBRARIES.iter().map(|r| r.name)));
-    for (label, counts) in &alone.rows {
-        table.push(std::iter::once(label.clone()).chain(counts.iter().map(counts::Counts::cell)).collect());
+    for (row, counts) in primitives::ROWS.iter().zip(&found.rows) {
+        table.push(std::iter::once(row.label.clone()).chain(counts.iter().map(counts::Counts::cell)).collect());
     }
     table.to_string()
-}
-
-/// Formats the errors in scenes, the names of our backends, and the reasons why others were left out.
-fn of_scenes(together: &scenes::Findings) -> String {
-    let subjects = scenes::subjects();
-    let shown = ["aabb", "aabb-f32", "parry3d-f64", "parry3d", "bvh"];
-    let columns: Vec<usize> =
-        shown.iter().filter_map(|name| subjects.iter().position(|subject| subject.name == *name)).collect();
-    let mut table = Table::new(["", "ours f64", "ours f32", "parry3d-f64", "parry3d", "bvh", "cells: octree, p2m"]);
-    for ((family, counts), [scenes, octree, p2m]) in Extreme::ALL.iter().zip(&together.rows).zip(&together.cells) {
-        let part = |count: &u64| format!("{} %", count * 100 / scenes.max(&1));
-        let cells = columns.iter().map(|column| counts[*column].cell()).chain([part(octree) + ", " + &part(p2m)]);
-        table.push(std::iter::once(family.name().to_owned()).chain(cells).collect());
-    }
-    let ours: Vec<&str> = subjects.iter().filter(|subject| subject.is_ours).map(|subject| subject.name).collect();
-    let absent = together.absent.iter().map(|(why, count)| format!("- Left out of {count} scenes: {why}.\n"));
-    let ours: Vec<String> = ours.chunks(10).map(|names| names.join(", ")).collect();
-    format!("{table}\nOurs: {}.\n\n{}", ours.join(",\n"), absent.collect::<String>())
 }
 
 #[cfg(test)]
@@ -125,17 +122,9 @@ mod tests {
     #[test]
     fn ours_break_nothing_over_single_primitives() {
         let cases = p2m_testkit::amount(30_000, 3_000);
-        let alone = primitives::run(cases, 7);
-        assert!(alone.checked.iter().all(|count| *count >= cases / 2), "{:?}", alone.checked);
-        assert!(alone.invariant > cases * 2 / 3, "{}", alone.invariant);
-        assert_eq!(alone.broken, 0, "{:?}", alone.shown);
-    }
-
-    #[test]
-    #[ignore = "deep: every index is built over scenes of every extreme"]
-    fn ours_break_nothing_over_scenes() {
-        let together = scenes::run(1, 7);
-        assert!(together.checked > 1000, "{}", together.checked);
-        assert_eq!(together.broken, 0, "{:?}", together.shown);
+        let found = primitives::run(cases, 7);
+        assert!(found.checked.iter().all(|count| *count >= cases / 2), "{:?}", found.checked);
+        assert!(found.invariant > cases * 2 / 3, "{}", found.invariant);
+        assert_eq!(found.broken.count, 0, "{:?}", found.broken.shown);
     }
 }

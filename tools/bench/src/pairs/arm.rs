@@ -1,9 +1,10 @@
 //! An arm of six capsules that moves beside a scene.
 
 use super::poses::direction;
-use super::{Competitor, Kind, each, ours};
+use super::{Indexes, distance};
+use crate::contest::{Competitor, Kind};
 use nalgebra::{Point3, Vector3};
-use p2m_core::pair::{ClosestPair, PairOptions, PairQuery};
+use p2m_core::pair::{PairOptions, PairQuery};
 use p2m_core::{PrimitiveSet, Segment, Soup};
 use p2m_testkit::{rng, vector};
 
@@ -13,8 +14,8 @@ const LINKS: usize = 6;
 /// The axes of the capsules of an arm, and their radius.
 #[derive(Clone, Copy)]
 pub(super) struct Arm {
-    pub(super) axes: [[Point3<f64>; 2]; LINKS],
-    pub(super) radius: f64,
+    axes: [[Point3<f64>; 2]; LINKS],
+    radius: f64,
 }
 
 /// Returns an arm at consecutive poses. It stands beside the scene, and each joint turns a little from one pose
@@ -43,43 +44,37 @@ pub(super) fn walk(soup: &Soup<f64>, count: usize, seed: u64) -> Vec<Arm> {
         .collect()
 }
 
-/// Returns our competitors. Each computes the least distance of the capsules of an arm.
-pub(super) fn competitors<'a>(ours: &'a ours::Scenes<'_>) -> Vec<Competitor<'a, Arm>> {
-    let tree = &ours.trees[0];
+/// Returns the competitors. Each computes the least distance of the capsules of an arm.
+pub(super) fn competitors<'a>(indexes: &'a Indexes<'_>) -> Vec<Competitor<'a, Arm, f64>> {
+    let (tree, single, double) = (&indexes.trees[0], &indexes.single[0], &indexes.double[0]);
     let nearest = |[a, b]: &[Point3<f64>; 2], options: PairOptions<f64>, arm: &Arm| {
         tree.closest_to(&Segment::new(*a, *b), &options.with_radius(arm.radius))
     };
-    let distance = |pair: Option<ClosestPair<f64>>| pair.map_or(f64::INFINITY, |pair| pair.distance);
+    let least = |distances: [f64; LINKS]| distances.into_iter().fold(f64::INFINITY, f64::min);
+    let mut last = [None; LINKS];
     vec![
-        Competitor::new("AABB tree", Kind::Exact, move |arms: &[Arm], out: &mut [f64]| {
-            each(arms, out, |arm| {
-                let distances = arm.axes.iter().map(|axis| distance(nearest(axis, PairOptions::default(), arm)));
-                distances.fold(f64::INFINITY, f64::min)
-            });
+        Competitor::new("AABB tree", Kind::Exact, move |arm: &Arm| {
+            least(arm.axes.map(|axis| distance(nearest(&axis, PairOptions::default(), arm))))
         }),
-        Competitor::new("AABB tree, begun with the last pairs", Kind::Exact, move |arms: &[Arm], out: &mut [f64]| {
-            let mut last = [None; LINKS];
-            each(arms, out, |arm| {
-                let distances = arm.axes.iter().zip(&mut last).map(|(axis, last)| {
-                    let mut options = PairOptions::default();
-                    options.hint = *last;
-                    let pair = nearest(axis, options, arm);
-                    *last = pair.map(|pair| pair.primitives);
-                    distance(pair)
-                });
-                distances.fold(f64::INFINITY, f64::min)
-            });
+        Competitor::new("AABB tree, begun with the last pairs", Kind::Exact, move |arm: &Arm| {
+            least(std::array::from_fn(|i| {
+                let mut options = PairOptions::default();
+                options.hint = last[i];
+                let pair = nearest(&arm.axes[i], options, arm);
+                last[i] = pair.map(|pair| pair.primitives);
+                distance(pair)
+            }))
         }),
-        Competitor::new(
-            "AABB tree, each capsule within the last",
-            Kind::Exact,
-            move |arms: &[Arm], out: &mut [f64]| {
-                each(arms, out, |arm| {
-                    arm.axes.iter().fold(f64::INFINITY, |least, axis| {
-                        distance(nearest(axis, PairOptions::default().with_max_distance(least), arm)).min(least)
-                    })
-                });
-            },
-        ),
+        Competitor::new("AABB tree, each capsule within the last", Kind::Exact, move |arm: &Arm| {
+            arm.axes.iter().fold(f64::INFINITY, |least, axis| {
+                distance(nearest(axis, PairOptions::default().with_max_distance(least), arm)).min(least)
+            })
+        }),
+        Competitor::new("parry3d-f64", Kind::External, move |arm: &Arm| {
+            least(arm.axes.map(|axis| double.distance_to_capsule(&axis, arm.radius)))
+        }),
+        Competitor::new("parry3d", Kind::External, move |arm: &Arm| {
+            least(arm.axes.map(|axis| single.distance_to_capsule(&axis, arm.radius)))
+        }),
     ]
 }

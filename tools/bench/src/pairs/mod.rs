@@ -1,59 +1,25 @@
 //! `p2m-bench pairs`: distances of two scenes at many poses, and of a robot's arm from a scene, by p2m and by parry3d.
 //!
-//! Each competitor answers all poses of a set in a round, and competitors take turns. The distances of a set are
-//! compared with those of our AABB tree.
+//! parry3d answers by `query::distance` of two `TriMesh`es, and of a `TriMesh` and a `Capsule`. The distances of a set
+//! are compared with those of our AABB tree.
 
 mod arm;
-mod external;
-mod ours;
 mod poses;
 
 use crate::command::{Rounds, at_least_one, provenance};
-use crate::measure::MedianRange;
+use crate::contest::{self, Competitor, Kind};
+use crate::parry::{double, single};
 use crate::report::significant;
-use crate::rounds::{rotated, thread_seconds};
 use crate::scene::Scene;
 use anyhow::Result;
 use clap::Args;
+use nalgebra::Isometry3;
+use p2m_bvh::AabbTree;
 use p2m_cli::harness::Table;
-use std::hint::black_box;
+use p2m_core::pair::{ClosestPair, PairOptions, PairQuery};
+use p2m_core::{Real, Soup};
+use p2m_kdop::KdopTree;
 use std::path::PathBuf;
-
-/// The kind of a competitor tells with what its answers are compared.
-#[derive(Clone, Copy, PartialEq, Eq)]
-enum Kind {
-    /// It is ours, and its answers have to be those of the first competitor, bit for bit.
-    Exact,
-    /// It is ours and answers another question, or in another scalar.
-    Other,
-    /// It is of another library, and may answer fewer questions.
-    External,
-}
-
-/// A function that writes the distances of some questions.
-type Answer<'a, Q> = dyn Fn(&[Q], &mut [f64]) + 'a;
-
-/// A competitor that computes distances for questions of one kind.
-struct Competitor<'a, Q> {
-    name: &'static str,
-    kind: Kind,
-    answer: Box<Answer<'a, Q>>,
-}
-
-impl<'a, Q> Competitor<'a, Q> {
-    fn new(name: &'static str, kind: Kind, answer: impl Fn(&[Q], &mut [f64]) + 'a) -> Self {
-        Self { name, kind, answer: Box::new(answer) }
-    }
-}
-
-/// Answers questions one after the other.
-fn each<Q>(questions: &[Q], out: &mut [f64], mut answer: impl FnMut(&Q) -> f64) {
-    questions.iter().zip(out).for_each(|(question, out)| *out = answer(question));
-}
-
-/// A competitor of another library that would need longer than this for a round answers the first questions of
-/// a set only.
-const ROUND_SECONDS: f64 = 2.0;
 
 /// The competitor whose times the others are compared with.
 const YARDSTICK: &str = "parry3d-f64";
@@ -74,6 +40,77 @@ pub(crate) struct Arguments {
     rounds: Rounds,
 }
 
+/// The indexes of two scenes, ours and those of parry3d.
+struct Indexes<'a> {
+    trees: poses::Trees<'a>,
+    kdops: [KdopTree<f64, &'a Soup<f64>>; 2],
+    trees_in_f32: Option<[AabbTree<f32, &'a Soup<f32>>; 2]>,
+    single: [single::Mesh; 2],
+    double: [double::Mesh; 2],
+}
+
+impl<'a> Indexes<'a> {
+    fn build(scene: &'a Scene, other: &'a Scene) -> Result<Self> {
+        let soups = [&*scene.double, &*other.double];
+        let trees_in_f32 = match [scene.single.as_deref(), other.single.as_deref()] {
+            [Some(a), Some(b)] => Some([AabbTree::new(a)?, AabbTree::new(b)?]),
+            _ => None,
+        };
+        let [a, b] = soups.map(AabbTree::new);
+        let [c, d] = soups.map(KdopTree::new);
+        let single = [single::Mesh::build(scene)?, single::Mesh::build(other)?];
+        let double = [double::Mesh::build(scene)?, double::Mesh::build(other)?];
+        Ok(Self { trees: [a?, b?], kdops: [c?, d?], trees_in_f32, single, double })
+    }
+
+    /// Returns the competitors for a set of poses of the second scene.
+    fn competitors(&self, set: poses::Set, diagonal: f64) -> Vec<Competitor<'_, Isometry3<f64>, f64>> {
+        let Self { trees: [a, b], kdops: [c, d], trees_in_f32, single: [e, f], double: [g, h] } = self;
+        let mut all = vec![
+            Competitor::new("AABB tree", Kind::Exact, |motion| distance(a.closest_pair(b, &moved(motion)))),
+            Competitor::new("14-DOP tree", Kind::Exact, |motion| distance(c.closest_pair(d, &moved(motion)))),
+        ];
+        if set != poses::Set::Deep {
+            let mut last = None;
+            all.push(Competitor::new("AABB tree, begun with the last pair", Kind::Exact, move |motion| {
+                let mut options = moved(motion);
+                options.hint = last;
+                let pair = a.closest_pair(b, &options);
+                last = pair.map(|pair| pair.primitives);
+                distance(pair)
+            }));
+        }
+        let within = move |motion: &_, limit| moved(motion).with_max_distance(limit);
+        all.push(Competitor::new("AABB tree, within 0.1 diagonals", Kind::Other, move |motion| {
+            a.closest_pair(b, &within(motion, 0.1 * diagonal)).map_or(f64::NAN, |pair| pair.distance)
+        }));
+        all.push(Competitor::new("AABB tree, whether they intersect", Kind::Other, move |motion| {
+            if a.is_any_pair_near(b, &within(motion, 0.0)) { 0.0 } else { f64::NAN }
+        }));
+        if let Some([a, b]) = trees_in_f32 {
+            let answer = |motion: &_| distance(a.closest_pair(b, &moved(motion)));
+            all.push(Competitor::new("AABB tree in f32", Kind::Other, answer));
+        }
+        all.push(Competitor::new("parry3d-f64", Kind::External, |motion| g.distance(h, motion)));
+        all.push(Competitor::new("parry3d", Kind::External, |motion| e.distance(f, motion)));
+        if set == poses::Set::Deep {
+            let answer = |motion: &_| g.intersection(h, motion);
+            all.push(Competitor::new("parry3d-f64, whether they intersect", Kind::External, answer));
+            let answer = |motion: &_| e.intersection(f, motion);
+            all.push(Competitor::new("parry3d, whether they intersect", Kind::External, answer));
+        }
+        all
+    }
+}
+
+fn moved<T: Real>(motion: &Isometry3<f64>) -> PairOptions<T> {
+    PairOptions::default().with_motion(*motion)
+}
+
+fn distance<T: Real>(pair: Option<ClosestPair<T>>) -> f64 {
+    pair.map_or(f64::INFINITY, |pair| pair.distance.to_f64())
+}
+
 /// Prints times of the distances of two scenes, of which the second is scaled to the size of the first and moved, and
 /// of the distances of an arm from the first. Returns whether our exact answers agree.
 pub(crate) fn run(arguments: &Arguments) -> Result<bool> {
@@ -82,25 +119,23 @@ pub(crate) fn run(arguments: &Arguments) -> Result<bool> {
     println!("{}\n{about}", provenance());
     let (scene, other) = (&Scene::read(&arguments.scene)?, Scene::read(&arguments.other)?);
     let other = Scene::new(other.name, poses::scaled_to(&other.double, scene.diagonal())?)?;
-    let (ours, theirs) = (ours::Scenes::build(scene, &other)?, external::Scenes::build(scene, &other)?);
+    let indexes = Indexes::build(scene, &other)?;
     println!("\n## {} and {}, scaled to the same diagonal\n", scene.describe(), other.describe());
     println!("Microseconds per pose as median (minimum), and the speed relative to {YARDSTICK}.\n");
-    let mut table = Table::new(["set", "poses", "median distance", "competitor", "time", "speed", "answers"]);
+    let head = ["set", "poses", "median distance", "competitor", "time", "speed", "answers"];
+    let mut table = Table::new(head);
     let mut is_good = true;
     for set in poses::Set::ALL {
-        let questions = set.poses(&ours.trees, scene.diagonal(), arguments.poses, seed);
-        let mut competitors = ours.competitors(set, scene.diagonal());
-        competitors.extend(theirs.competitors(set));
-        is_good &= measure(&mut table, set.name(), &questions, &competitors, scene, rounds);
+        let questions = set.poses(&indexes.trees, scene.diagonal(), arguments.poses, seed);
+        let competitors = indexes.competitors(set, scene.diagonal());
+        is_good &= measure(&mut table, set.name(), &questions, competitors, scene, rounds);
     }
     println!("{table}");
     println!("\n## An arm of six capsules beside {}\n", scene.describe());
     println!("Microseconds per pose of the arm, which is six capsules.\n");
-    let mut table = Table::new(["set", "poses", "median distance", "competitor", "time", "speed", "answers"]);
+    let mut table = Table::new(head);
     let questions = arm::walk(&scene.double, arguments.arms, seed);
-    let mut competitors = arm::competitors(&ours);
-    competitors.extend(theirs.arm_competitors());
-    is_good &= measure(&mut table, "arm", &questions, &competitors, scene, rounds);
+    is_good &= measure(&mut table, "arm", &questions, arm::competitors(&indexes), scene, rounds);
     println!("{table}");
     Ok(is_good)
 }
@@ -110,48 +145,27 @@ fn measure<Q>(
     table: &mut Table,
     set: &str,
     questions: &[Q],
-    competitors: &[Competitor<'_, Q>],
+    mut competitors: Vec<Competitor<'_, Q, f64>>,
     scene: &Scene,
     rounds: usize,
 ) -> bool {
-    let time = |at: usize, count: usize, out: &mut [f64]| {
-        thread_seconds(|| (competitors[at].answer)(black_box(&questions[..count]), out)).1
-    };
-    #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "saturates, and is not negative")]
-    let counts: Vec<usize> = (0..competitors.len())
-        .map(|at| {
-            if competitors[at].kind != Kind::External {
-                return questions.len();
-            }
-            let seconds = time(at, 1, &mut [f64::NAN]);
-            ((ROUND_SECONDS / seconds.max(1e-9)) as usize).clamp(1, questions.len())
-        })
-        .collect();
-    let mut answers: Vec<_> = counts.iter().map(|count| vec![f64::NAN; *count]).collect();
-    let mut seconds = vec![Vec::new(); competitors.len()];
-    for round in 0..rounds {
-        for at in rotated(competitors.len(), round) {
-            let spent = time(at, counts[at], &mut answers[at]);
-            seconds[at].push(spent / counts[at] as f64);
-        }
-    }
-    black_box(&answers);
-    let spreads: Vec<_> = seconds.iter().filter_map(|seconds| MedianRange::of(seconds)).collect();
-    let yardstick = competitors.iter().zip(&spreads).find(|(c, _)| c.name == YARDSTICK).map(|(_, s)| s.median);
-    let mut sorted = answers[0].clone();
+    let scores = contest::measure(questions, &mut competitors, rounds, &f64::NAN);
+    let yardstick = competitors.iter().zip(&scores).find(|(c, _)| c.name == YARDSTICK).map(|(_, s)| s.seconds.median);
+    let expected = &scores[0].answers;
+    let mut sorted = expected.clone();
     sorted.sort_unstable_by(f64::total_cmp);
     let median = sorted.get(sorted.len() / 2).map_or(f64::NAN, |distance| distance / scene.diagonal());
     let mut is_good = true;
-    for ((competitor, spread), found) in competitors.iter().zip(&spreads).zip(&answers) {
-        let count = found.len();
+    for (competitor, score) in competitors.iter().zip(&scores) {
+        let (spread, found, count) = (score.seconds, &score.answers, score.answers.len());
         let microseconds = |seconds: f64| significant(seconds * 1e6);
         let agreement = if competitor.kind == Kind::Exact {
-            let equal = found.iter().zip(&answers[0]).filter(|(x, y)| x.to_bits() == y.to_bits()).count();
+            let equal = found.iter().zip(expected).filter(|(x, y)| x.to_bits() == y.to_bits()).count();
             is_good &= equal == count;
             format!("{equal} of {count} equal bits")
         } else {
             // A competitor that has no distance answers NaN, which is left out.
-            let differences = found.iter().zip(&answers[0]).map(|(x, y)| (x - y).abs());
+            let differences = found.iter().zip(expected).map(|(x, y)| (x - y).abs());
             let largest = differences.fold(0.0, f64::max) / scene.diagonal();
             format!("differ by at most {largest:.1e} diagonals")
         };

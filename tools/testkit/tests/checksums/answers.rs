@@ -9,8 +9,8 @@ use p2m::field::sign::SignedDistance;
 use p2m::pair::{ClosestPair, PairOptions, PairQuery};
 use p2m::storage::{SavedFile, Writer};
 use p2m::{
-    AabbTree, BruteForce, BuildIndex, CertifiedQuery, Closest, Feature, Hit, KdopTree, NearQuery, OctreeIndex,
-    P2mIndex, P2mOptions, Primitive, PrimitiveSet, QueryOptions, RayQuery, Real, Soup,
+    AabbTree, BruteForce, BuildIndex, CertifiedQuery, Closest, ClosestPoint, Feature, Hit, KdopTree, NearQuery,
+    OctreeIndex, P2mIndex, P2mOptions, Primitive, PrimitiveSet, QueryOptions, RayQuery, Real, Soup,
 };
 use p2m_testkit::families::{self, Span};
 use p2m_testkit::rays::{AIMS, ray};
@@ -122,6 +122,10 @@ pub(crate) fn of_scenes(table: &mut Table, mut exchange: impl FnMut(&str, Vec<u8
     }
 }
 
+/// An index of any type. Questions take trait objects, because they would otherwise be compiled for each type.
+trait Index<T: Real>: ClosestPoint<T> + NearQuery<T> + CertifiedQuery<T> + Sync {}
+impl<T: Real, I: ClosestPoint<T> + NearQuery<T> + CertifiedQuery<T> + Sync> Index<T> for I {}
+
 /// A table, and the scene and the queries of the questions that add to it.
 struct Asked<'a, T: Real> {
     table: &'a mut Table,
@@ -196,11 +200,7 @@ impl<T: Real> Asked<'_, T> {
     }
 
     /// Asks for closest points, one by one and as a batch, for near primitives, certified answers and signs.
-    fn points<I: NearQuery<T> + CertifiedQuery<T> + p2m::ClosestPoint<T> + Clone + Sync>(
-        &mut self,
-        index: &I,
-        by: &str,
-    ) {
+    fn points(&mut self, index: &dyn Index<T>, by: &str) {
         let queries = self.queries;
         let nearest = hash(|hash| queries.iter().for_each(|query| hash.closest(index.closest_point(query).as_ref())));
         self.add("nearest", by, nearest);
@@ -227,7 +227,7 @@ impl<T: Real> Asked<'_, T> {
             let soup: Soup<f64> =
                 Soup::new(self.soup.positions().iter().map(|p| p.map(|x| x.to_f64())).collect(), self.soup.elements())
                     .expect("finite");
-            let signed = SignedDistance::new::<T>(index.clone(), &soup).expect("a closed surface");
+            let signed = SignedDistance::new::<T>(index, &soup).expect("a closed surface");
             let signs = hash(|hash| {
                 for query in queries {
                     hash.add(signed.closest_point(query).map_or(u64::MAX, |answer| answer.sign as u64));
@@ -238,7 +238,7 @@ impl<T: Real> Asked<'_, T> {
     }
 
     /// Asks for all hits of rays that are aimed at the scene.
-    fn rays<I: RayQuery<T>>(&mut self, index: &I, by: &str) {
+    fn rays(&mut self, index: &dyn RayQuery<T>, by: &str) {
         let (soup, bounds) = (&self.case.soup, self.case.soup.aabb());
         let hits = hash(|hash| {
             for (number, aim) in AIMS.into_iter().cycle().take(2 * AIMS.len()).enumerate() {
@@ -252,7 +252,8 @@ impl<T: Real> Asked<'_, T> {
     }
 
     /// Asks for the primitive that is nearest to a triangle of queries.
-    fn shapes<I: PairQuery<T>>(&mut self, index: &I, by: &str) {
+    fn shapes(&mut self, index: &dyn PairQuery<T>, by: &str) {
+        let index = &index;
         let pairs = hash(|hash| {
             for corners in self.queries.chunks_exact(3).take(12) {
                 let triangle = p2m::Triangle::new(corners[0], corners[1], corners[2]);
@@ -263,7 +264,8 @@ impl<T: Real> Asked<'_, T> {
     }
 
     /// Asks for the pair of primitives that are nearest in the scene and in its copy, which is moved.
-    fn scenes<I: PairQuery<T>>(&mut self, index: &I, by: &str) {
+    fn scenes(&mut self, index: &dyn PairQuery<T>, by: &str) {
+        let index = &index;
         let pairs = hash(|hash| {
             for shift in [1.25, 3.5] {
                 let shift = self.size().to_f64() * shift;

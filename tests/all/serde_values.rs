@@ -1,4 +1,5 @@
 //! Soups and indexes are values of serde, in the form of saved files.
+#![cfg(all(feature = "bvh", feature = "interception", feature = "serde"))]
 
 use p2m::nalgebra::Point3;
 use p2m::{AabbTree, BuildIndex, ClosestPoint, Element, OctreeIndex, PrimitiveSet, Soup};
