@@ -9,14 +9,13 @@ It needs Linux, whose kernel tells the peak memory. Each library works on the sm
 from __future__ import annotations
 
 import argparse
-import resource
 import subprocess
 import sys
-import time
 from pathlib import Path
 from typing import Any
 
 import numpy as np
+from common import open3d_scene, surface, with_peak
 
 import p2m
 
@@ -44,10 +43,7 @@ def with_p2m(meshes: list[Any], count: int) -> Any:
 def points_around(mesh: Any, count: int, rng: np.random.Generator) -> np.ndarray:
     """Return points near the surface and in the box, as users of the other libraries choose them."""
     vertices, triangles = mesh
-    corners = vertices[triangles]
-    areas = np.linalg.norm(np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]), axis=1)
-    chosen = corners[rng.choice(len(areas), count // 2, p=areas / areas.sum())]
-    near = np.einsum("ij,ijk->ik", rng.dirichlet([1, 1, 1], count // 2), chosen)
+    near, _ = surface(vertices, triangles, count // 2, rng)
     near += rng.normal(scale=0.03, size=near.shape)
     low, high = vertices.min(axis=0), vertices.max(axis=0)
     return np.concatenate([near, rng.uniform(low - 0.1, high + 0.1, (count // 2, 3))])
@@ -73,16 +69,11 @@ def with_pcu(meshes: list[Any], count: int) -> Any:
 
 
 def with_open3d(meshes: list[Any], count: int) -> Any:
-    import open3d
-
     rng = np.random.default_rng(0)
-    results = []
-    for vertices, triangles in meshes:
-        scene = open3d.t.geometry.RaycastingScene()
-        scene.add_triangles(vertices.astype(np.float32), triangles.astype(np.uint32))
-        points = points_around((vertices, triangles), count, rng).astype(np.float32)
-        results.append(scene.compute_signed_distance(points).numpy())
-    return results
+    return [
+        open3d_scene(*mesh).compute_signed_distance(points_around(mesh, count, rng).astype(np.float32)).numpy()
+        for mesh in meshes
+    ]
 
 
 # The libraries, with the number of meshes of each: slow ones get fewer.
@@ -90,32 +81,14 @@ LIBRARIES = [("p2m", with_p2m, 1000), ("Open3D", with_open3d, 200), ("point-clou
              ("trimesh", with_trimesh, 2)]
 
 
-def status(key: str) -> int:
-    """Return a number of bytes from the status of this process."""
-    line = next(line for line in Path("/proc/self/status").read_text().splitlines() if line.startswith(key))
-    return int(line.split()[1]) * 1024
-
-
-def measured(call: Any) -> tuple[float, float, float]:
-    """Return the time by the clock, that of all threads, and the peak memory in MB besides what was there."""
-    Path("/proc/self/clear_refs").write_text("5")
-    before, begin = status("VmRSS:"), time.perf_counter()
-    used = resource.getrusage(resource.RUSAGE_SELF)
-    result = call()
-    now = resource.getrusage(resource.RUSAGE_SELF)
-    wall, cpu = time.perf_counter() - begin, now.ru_utime + now.ru_stime - used.ru_utime - used.ru_stime
-    del result
-    return wall, cpu, (status("VmHWM:") - before) / 1e6
-
-
 def run(name: str, count: int) -> None:
     _, method, meshes = next(entry for entry in LIBRARIES if entry[0] == name)
     balls = [ball(i) for i in range(meshes)]
     # The first call imports the library.
     method(balls[:1], 10)
-    wall, cpu, memory = measured(lambda: method(balls, count))
-    print(f"{name}: {meshes} meshes, {wall / meshes * 1e3:.1f} ms and {cpu / meshes * 1e3:.1f} ms of processors for each,"
-          f" {memory:,.0f} MB")
+    cpu, wall, memory = with_peak(lambda: method(balls, count))
+    each = f"{wall / meshes * 1e3:.1f} ms and {cpu / meshes * 1e3:.1f} ms of processors for each"
+    print(f"{name}: {meshes} meshes, {each}, {memory / 1e6:,.0f} MB")
 
 
 def main() -> None:
@@ -130,8 +103,9 @@ def main() -> None:
     scene, half = p2m.read(arguments.mesh), arguments.samples // 2
     for kind, options in [("near", {"near": 2 * half}), ("uniform", {"uniform": 2 * half}),
                           ("both", {"near": half, "uniform": half})]:
-        wall, cpu, memory = measured(lambda: p2m.sample_sdf(scene, dtype=np.float32, **options))
-        print(f"{kind}: {2 * half:,} samples in {wall:.2f} s, {cpu:.2f} s of processors, {memory:,.0f} MB", flush=True)
+        cpu, wall, memory = with_peak(lambda: p2m.sample_sdf(scene, dtype=np.float32, **options))
+        times = f"{wall:.2f} s, {cpu:.2f} s of processors"
+        print(f"{kind}: {2 * half:,} samples in {times}, {memory / 1e6:,.0f} MB", flush=True)
     for name, _, _ in LIBRARIES:
         command = [sys.executable, __file__, str(arguments.mesh), "--library", name, "--each", str(arguments.each)]
         subprocess.run(command, check=False)

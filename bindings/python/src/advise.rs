@@ -1,12 +1,10 @@
 //! Advice on backends.
 
-use crate::arrays::{Coordinates, with_positions};
+use crate::arrays::Coordinates;
 use crate::errors::value_error;
 use crate::scene::Scene;
 use crate::work::run_owned;
-use nalgebra::Point3;
 use p2m_backends::{Estimate, QueryRegion, Workload, recommend};
-use p2m_core::Position;
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 use std::time::Duration;
@@ -27,10 +25,7 @@ pub(crate) fn advise(
     max_seconds: Option<f64>,
     threads: usize,
 ) -> PyResult<Vec<Row>> {
-    let points: Option<Vec<Point3<f64>>> = match points {
-        Some(points) => Some(with_positions!(points, slice => slice.iter().map(Position::<f64>::point).collect())),
-        None => None,
-    };
+    let points = points.map(|points| points.points()).transpose()?;
     let is_near = match region {
         "near" => true,
         "box" => false,
@@ -39,7 +34,7 @@ pub(crate) fn advise(
     let max_time = max_seconds.map_or(Ok(Duration::MAX), Duration::try_from_secs_f64);
     let max_time = max_time.map_err(|error| PyValueError::new_err(format!("max_seconds: {error}")))?;
     let shared = scene.shared.clone();
-    let advice = run_owned(py, threads, 1, None, move |_| {
+    let advice = run_owned(py, (threads, None), 1, move |_| {
         let region = match &points {
             Some(points) => QueryRegion::Like(points),
             None if is_near => QueryRegion::NearSurface,

@@ -111,7 +111,9 @@ def align(
     count = thread_count(threads)
     index = part if isinstance(part, Index) else Index(part, threads=threads)
     flat = coordinates(points, "scan").reshape(-1)
-    found = _p2m.align(flat, index._raw, point_to_point, scale, real(overlap, "overlap"), search, count)
-    if found["ambiguity"] is not None:
-        warnings.warn(found["ambiguity"], stacklevel=2)
-    return Alignment(**found)
+    found = Alignment(
+        *_p2m.align(flat, index._raw, point_to_point, scale, real(overlap, "overlap"), search, count)
+    )
+    if found.ambiguity is not None:
+        warnings.warn(found.ambiguity, stacklevel=2)
+    return found
