@@ -17,7 +17,7 @@ from . import _p2m
 from ._align import align as align_points
 from ._align import scan_points
 from ._arrays import SIGNS, Progress, check_choice, coordinates, largest_distance, not_negative
-from ._index import Index
+from ._index import Index, index_of
 from ._page import Page, checked_up
 from ._scene import Scene
 
@@ -317,7 +317,7 @@ def deviation(
     check_choice(sign, "sign", (*SIGNS, None))
     tolerance = None if tolerance is None else not_negative(tolerance, "tolerance")
     limit = None if limit is None else not_negative(limit, "limit")
-    index = mesh if isinstance(mesh, Index) else Index(mesh, threads=threads)
+    index = index_of(mesh, threads)
     points, scene = scan_points(scan)
     if align:
         points = align_points(points, index, threads=threads).points

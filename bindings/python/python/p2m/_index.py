@@ -883,12 +883,7 @@ class Index(PointQueries, PairQueries):
         return OffsetSurface(Scene._from_raw(raw), of_vertices, of_triangles)
 
     def show(
-        self,
-        *,
-        field: int | None = None,
-        sign: _Sign | None = None,
-        unit: str = "units",
-        up: Literal["y", "z"] = "z",
+        self, *, field: int | None = None, sign: _Sign | None = None, unit: str = "units", up: Literal["y", "z"] = "z"
     ) -> Page:
         """Return a page that shows the scene, with a slice through its distance field if one is asked for.
 
@@ -1042,6 +1037,16 @@ def load(path: str | os.PathLike[str], map: bool = False, *, threads: int | None
     """
     absolute = os.path.abspath(os.fspath(path))
     return Index._from_raw(_p2m.load(absolute, map, thread_count(threads)), own_threads(threads))
+
+
+def scene_of(obj: Any) -> Scene:
+    """Return the scene of an index, or what `Scene.of` makes of another object."""
+    return obj.scene if isinstance(obj, Index) else Scene.of(obj)
+
+
+def index_of(obj: Any, threads: int | None, scene: Scene | None = None) -> Index:
+    """Return an index as it is, or build a tree of boxes over another object or the scene of it."""
+    return obj if isinstance(obj, Index) else Index(obj if scene is None else scene, threads=threads)
 
 
 class OffsetSurface(NamedTuple):

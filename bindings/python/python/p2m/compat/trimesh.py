@@ -332,11 +332,7 @@ class RayMeshIntersector:
         return faces, ray
 
     def intersects_location(
-        self,
-        ray_origins: ArrayLike,
-        ray_directions: ArrayLike,
-        multiple_hits: bool = True,
-        max_hits: int | None = None,
+        self, ray_origins: ArrayLike, ray_directions: ArrayLike, multiple_hits: bool = True, max_hits: int | None = None
     ) -> tuple[NDArray[np.float64], NDArray[np.int64], NDArray[np.int64]]:
         """Return the points at which rays hit the mesh, each once.
 
