@@ -143,8 +143,7 @@ template <class T, void (*free)(T*)> using Handle = std::unique_ptr<T, Free<T, f
 template <class Answer, class Call> Result<Answer> asked(Call call) {
     Answer answer{};
     const p2m_status status = call(&answer);
-    if (status != P2M_STATUS_OK) return fail<Answer>(Error(status, p2m_last_error()));
-    return answer;
+    return done(status, answer);
 }
 
 // Returns the object that a call of p2m.h makes.
@@ -505,8 +504,8 @@ public:
 
     Result<std::vector<double>> distances(const Points& queries, const BatchOptions& options = {}) const {
         std::vector<double> distances(queries.count());
-        const auto status =
-            p2m_closest_points(get(), queries.get(), &options, Columns().distance(distances).get());
+        const Columns columns = Columns().distance(distances);
+        const auto status = p2m_closest_points(get(), queries.get(), &options, columns.get());
         return detail::done(status, std::move(distances));
     }
 

@@ -1,6 +1,9 @@
 //! Arrays of the caller.
 
 use crate::status::{Call, Failure, invalid};
+use nalgebra::Point3;
+use p2m_core::Position;
+use std::borrow::Cow;
 use std::ffi::{CStr, c_char, c_void};
 
 /// The type of the numbers of an array.
@@ -67,21 +70,27 @@ fn stride_of<R>(name: &str, data: *const c_void, count: usize, stride: usize, al
     }
 }
 
-/// Rows of numbers, borrowed where they are contiguous.
-pub(crate) enum Rows<'a, T, const N: usize> {
-    Borrowed(&'a [[T; N]]),
-    Copied(Vec<[T; N]>),
-}
-
-impl<T, const N: usize> std::ops::Deref for Rows<'_, T, N> {
-    type Target = [[T; N]];
-    fn deref(&self) -> &[[T; N]] {
-        match self {
-            Self::Borrowed(rows) => rows,
-            Self::Copied(rows) => rows,
+/// Evaluates an expression with the rows of three coordinates of an array, in either type. It is unsafe as `rows` is.
+macro_rules! with_coordinates {
+    ($array:expr, $name:expr, $rows:ident => $body:expr) => {{
+        let array: &$crate::arrays::Array = $array;
+        if array.count == 0 || array.has::<f64>() {
+            let rows = array.rows::<f64, 3>($name)?;
+            let $rows: &[[f64; 3]] = &rows;
+            $body
+        } else if array.has::<f32>() {
+            let rows = array.rows::<f32, 3>($name)?;
+            let $rows: &[[f32; 3]] = &rows;
+            $body
+        } else {
+            return Err($crate::status::invalid(format!(
+                "{}: coordinates are of type P2M_SCALAR_F32 or P2M_SCALAR_F64",
+                $name
+            )));
         }
-    }
+    }};
 }
+pub(crate) use with_coordinates;
 
 impl Array {
     /// Whether the numbers have a type.
@@ -89,22 +98,38 @@ impl Array {
         self.scalar == T::SCALAR as u32
     }
 
-    /// Returns the rows of an array of numbers of this type.
+    /// Returns the rows of an array of numbers of this type, borrowed where they are contiguous.
     ///
     /// # Safety
     /// The array has to point to as much memory as it says, which nobody changes while the rows live.
-    pub(crate) unsafe fn rows<'a, T: Number, const N: usize>(&self, name: &str) -> Call<Rows<'a, T, N>> {
+    pub(crate) unsafe fn rows<'a, T: Number, const N: usize>(&self, name: &str) -> Call<Cow<'a, [[T; N]]>> {
         if self.count == 0 {
-            return Ok(Rows::Borrowed(&[]));
+            return Ok(Cow::Borrowed(&[]));
         }
         let stride = stride_of::<[T; N]>(name, self.data, self.count, self.stride, align_of::<T>())?;
         if stride == size_of::<[T; N]>() {
             // SAFETY: the address is aligned, and the caller vouches for the memory.
-            return Ok(Rows::Borrowed(unsafe { std::slice::from_raw_parts(self.data.cast(), self.count) }));
+            return Ok(Cow::Borrowed(unsafe { std::slice::from_raw_parts(self.data.cast(), self.count) }));
         }
         // SAFETY: each row is aligned and within the memory that the caller vouches for.
         let row = |i: usize| unsafe { self.data.byte_add(i * stride).cast::<[T; N]>().read() };
-        Ok(Rows::Copied((0..self.count).map(row).collect()))
+        Ok((0..self.count).map(row).collect())
+    }
+
+    /// Returns rows of coordinates in either type as points, borrowed where they are contiguous numbers in f64.
+    ///
+    /// # Safety
+    /// The conditions of [`rows`](Self::rows) have to hold.
+    pub(crate) unsafe fn points<'a>(&self, name: &str) -> Call<Cow<'a, [Point3<f64>]>> {
+        // SAFETY: the caller vouches for the memory.
+        unsafe {
+            if self.has::<f64>()
+                && let Cow::Borrowed(rows) = self.rows::<f64, 3>(name)?
+            {
+                return Ok(Cow::Borrowed(bytemuck::cast_slice(rows)));
+            }
+            with_coordinates!(self, name, rows => Ok(rows.iter().map(Position::<f64>::point).collect()))
+        }
     }
 
     /// Returns rows of indices.
@@ -130,28 +155,6 @@ impl Array {
         Err(invalid(format!("{name}: indices are of type P2M_SCALAR_U32 or P2M_SCALAR_U64")))
     }
 }
-
-/// Evaluates an expression with the rows of three coordinates of an array, in either type. It is unsafe as `rows` is.
-macro_rules! with_coordinates {
-    ($array:expr, $name:expr, $rows:ident => $body:expr) => {{
-        let array: &$crate::arrays::Array = $array;
-        if array.count == 0 || array.has::<f64>() {
-            let rows = array.rows::<f64, 3>($name)?;
-            let $rows: &[[f64; 3]] = &rows;
-            $body
-        } else if array.has::<f32>() {
-            let rows = array.rows::<f32, 3>($name)?;
-            let $rows: &[[f32; 3]] = &rows;
-            $body
-        } else {
-            return Err($crate::status::invalid(format!(
-                "{}: coordinates are of type P2M_SCALAR_F32 or P2M_SCALAR_F64",
-                $name
-            )));
-        }
-    }};
-}
-pub(crate) use with_coordinates;
 
 /// The rows of a column, written in place where they are contiguous.
 pub(crate) struct Out<'a, R> {

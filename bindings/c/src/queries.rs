@@ -4,7 +4,6 @@ use crate::arrays::{Array, Column, Out, check_pointer, length, point, reference,
 use crate::index::Index;
 use crate::status::{Call, Failure, Status, invalid, run};
 use crate::threads::{Cancel, checked, with_threads};
-use nalgebra::Point3;
 use p2m_core::batch::{self, ClosestColumns, Interruptible, closest_columns_into};
 use p2m_core::{Feature, Position, PrimitiveId, QueryOptions};
 use std::ffi::{c_int, c_void};
@@ -215,41 +214,24 @@ unsafe fn closest_points<P: Position<f64> + Sync>(
         )
     };
     let has_features = feature.is_some() || normal.is_some();
-    let mut points = vec![Point3::origin(); if point.is_some() { count } else { 0 }];
-    let mut features = vec![Feature::Face; if has_features { count } else { 0 }];
-    let mut own_ids = vec![P2M_NO_PRIMITIVE; if has_features && primitive.is_none() { count } else { 0 }];
+    let mut features = has_features.then(|| vec![Feature::Face; count]);
+    let mut own_ids = (has_features && primitive.is_none()).then(|| vec![P2M_NO_PRIMITIVE; count]);
     let mut wanted = ClosestColumns::default();
-    if let Some(out) = &mut distance {
-        wanted = wanted.with_distance(out.values());
-    }
-    if let Some(out) = &mut primitive {
-        wanted = wanted.with_primitive(out.values());
-    } else if has_features {
-        wanted = wanted.with_primitive(&mut own_ids);
-    }
-    if point.is_some() {
-        wanted = wanted.with_point(&mut points);
-    }
-    if has_features {
-        wanted = wanted.with_feature(&mut features);
-    }
-    if let Some(out) = &mut weights {
-        wanted = wanted.with_barycentric(out.values());
-    }
-    if let Some(out) = &mut lower_bound {
-        wanted = wanted.with_lower_bound(out.values());
-    }
+    wanted.distance = distance.as_mut().map(Out::values);
+    wanted.primitive = primitive.as_mut().map(Out::values).or(own_ids.as_deref_mut());
+    wanted.point = point.as_mut().map(|out| bytemuck::cast_slice_mut(out.values()));
+    wanted.feature = features.as_deref_mut();
+    wanted.barycentric = weights.as_mut().map(Out::values);
+    wanted.lower_bound = lower_bound.as_mut().map(Out::values);
     let query_options = QueryOptions::default().with_max_distance(batch.max_distance);
     let interruptible = Interruptible::new(&*index.built.index, batch.step());
     with_threads(batch.threads, |is_parallel| {
         closest_columns_into(&interruptible, queries, &query_options, &batch.options(is_parallel), wanted);
     })?;
     Cancel::check(batch.cancel)?;
-    if let Some(out) = &mut point {
-        out.values().copy_from_slice(bytemuck::cast_slice(&points));
-    }
-    let ids = primitive.as_mut().map_or(&own_ids[..], |out| &*out.values());
-    let found = ids.iter().map(|id| (*id != P2M_NO_PRIMITIVE).then(|| PrimitiveId::new(*id as usize))).zip(&features);
+    let ids = primitive.as_mut().map(Out::values).or(own_ids.as_deref_mut()).unwrap_or_default();
+    let found = ids.iter().map(|id| (*id != P2M_NO_PRIMITIVE).then(|| PrimitiveId::new(*id as usize)));
+    let found = found.zip(features.as_deref().unwrap_or_default());
     if let Some(out) = &mut feature {
         for (code, (id, feature)) in out.values().iter_mut().zip(found.clone()) {
             *code = id.map_or(u8::MAX, |_| feature.code());

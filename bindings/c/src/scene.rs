@@ -1,15 +1,22 @@
 //! Scenes.
 
-use crate::arrays::{Array, give, reference, take_back, with_coordinates, write};
+use crate::arrays::{Array, give, reference, take_back, write};
 use crate::status::{Call, Failure, Status, invalid, run};
-use nalgebra::Point3;
-use p2m_core::{Element, Position, PrimitiveSet, Soup};
+use p2m_core::{BuildError, Element, PrimitiveSet, Soup};
 use std::sync::Arc;
 
 /// A scene: triangles, segments and points that share vertices. It never changes, and any number of threads may use
 /// it.
 pub struct Scene {
     pub(crate) shared: Arc<p2m_mixed::Scene>,
+}
+
+impl Scene {
+    /// Makes a scene of primitives, or the failure of those that are wrong.
+    pub(crate) fn of(soup: Result<Soup<f64>, BuildError>) -> Call<Self> {
+        let soup = soup.map_err(|error| Failure(Status::InvalidScene, error.to_string()))?;
+        Ok(Self { shared: Arc::new(p2m_mixed::Scene::from(soup)) })
+    }
 }
 
 /// Returns the array behind a pointer, or an empty one for null.
@@ -41,23 +48,18 @@ pub unsafe extern "C" fn p2m_scene_new(
     // SAFETY: the caller vouches for the pointers.
     run(|| unsafe {
         give(scene, "scene", || {
-            let positions = optional(positions, "positions")?;
-            let positions: Vec<Point3<f64>> = with_coordinates!(&positions, "positions", rows => {
-                rows.iter().map(Position::<f64>::point).collect()
-            });
+            let positions = optional(positions, "positions")?.points("positions")?.into_owned();
             let triangles = optional(triangles, "triangles")?.indices::<3>("triangles")?;
             let segments = optional(segments, "segments")?.indices::<2>("segments")?;
             let points = optional(points, "points")?.indices::<1>("points")?;
-            let invalid_scene = |error| Failure(Status::InvalidScene, format!("{error}"));
-            let soup = if segments.is_empty() && points.is_empty() {
-                Soup::from_triangles(positions, triangles).map_err(invalid_scene)?
+            Scene::of(if segments.is_empty() && points.is_empty() {
+                Soup::from_triangles(positions, triangles)
             } else {
                 let triangles = triangles.into_iter().map(Element::Triangle);
                 let segments = segments.into_iter().map(Element::Segment);
                 let points = points.into_iter().map(|[point]| Element::Point(point));
-                Soup::new(positions, triangles.chain(segments).chain(points)).map_err(invalid_scene)?
-            };
-            Ok(Scene { shared: Arc::new(p2m_mixed::Scene::from(soup)) })
+                Soup::new(positions, triangles.chain(segments).chain(points))
+            })
         })
     })
 }

@@ -1,13 +1,13 @@
 //! Signed distances.
 
-use crate::arrays::{Array, Column, Out, reference, with_coordinates};
+use crate::arrays::{Array, Column, Out, reference};
 use crate::index::Index;
 use crate::queries::{Batch, BatchOptions, check_finite};
 use crate::status::{Call, Failure, Status, invalid, run};
 use crate::threads::{Cancel, in_pool, with_threads};
 use nalgebra::Point3;
 use p2m_core::batch::{self, Interruptible};
-use p2m_core::{AnyIndex, ClosestPoint, Position, QueryOptions, Soup};
+use p2m_core::{AnyIndex, ClosestPoint, QueryOptions, Soup};
 use p2m_field::sign::SignedDistance;
 use std::sync::Arc;
 
@@ -36,19 +36,15 @@ unsafe fn answer<V: Copy + Send>(
     options: *const BatchOptions,
     column: Column,
     unset: V,
-    values: impl Fn(&Signs, &(dyn ClosestPoint<f64> + Sync), &[Point3<f64>], f64, &batch::BatchOptions) -> Vec<V> + Sync,
+    fill: impl Fn(&Signs, &(dyn ClosestPoint<f64> + Sync), &[Point3<f64>], f64, &batch::BatchOptions, &mut [V]) + Sync,
 ) -> Call {
     // SAFETY: the caller vouches for the pointers.
     let (index, queries, batch) =
         unsafe { (reference(index, "index")?, reference(queries, "queries")?, Batch::new(options)?) };
     let signs = index.signs(batch.threads)?;
     // SAFETY: the caller vouches for the memory.
-    let points: Vec<Point3<f64>> = unsafe {
-        with_coordinates!(queries, "queries", rows => {
-            check_finite("queries", rows)?;
-            rows.iter().map(Position::<f64>::point).collect()
-        })
-    };
+    let points = unsafe { queries.points("queries") }?;
+    check_finite("queries", &points)?;
     if points.is_empty() {
         return Ok(());
     }
@@ -56,11 +52,11 @@ unsafe fn answer<V: Copy + Send>(
     let out = unsafe { column.out("answers", points.len(), unset) }?;
     let mut out: Out<'_, V> = out.ok_or_else(|| invalid("answers: the column is null"))?;
     let interruptible = Interruptible::new(&*index.built.index, batch.step());
-    let found = with_threads(batch.threads, |is_parallel| {
-        values(signs, &interruptible, &points, batch.max_distance, &batch.options(is_parallel))
+    let values = out.values();
+    with_threads(batch.threads, |is_parallel| {
+        fill(signs, &interruptible, &points, batch.max_distance, &batch.options(is_parallel), values);
     })?;
     Cancel::check(batch.cancel)?;
-    out.values().copy_from_slice(&found);
     out.finish();
     Ok(())
 }
@@ -78,12 +74,12 @@ pub unsafe extern "C" fn p2m_signed_distances(
 ) -> Status {
     // SAFETY: the caller vouches for the pointers.
     run(|| unsafe {
-        answer(index, queries, options, distances, f64::NAN, |signs, index, points, max_distance, batch| {
+        answer(index, queries, options, distances, f64::NAN, |signs, index, points, max_distance, batch, out| {
             let options = QueryOptions::default().with_max_distance(max_distance);
-            let missing = if max_distance < f64::INFINITY { f64::NAN } else { f64::INFINITY };
-            let answers = signs.closest_points_by(index, points, &options, batch);
-            let distance = |signed: &p2m_field::sign::Signed<f64>| signed.distance().unwrap_or(f64::NAN);
-            answers.iter().map(|signed| signed.as_ref().map_or(missing, distance)).collect()
+            signs.distances_into(index, points, &options, batch, out);
+            if max_distance < f64::INFINITY {
+                out.iter_mut().filter(|distance| distance.is_infinite()).for_each(|distance| *distance = f64::NAN);
+            }
         })
     })
 }
@@ -99,8 +95,9 @@ pub unsafe extern "C" fn p2m_contains(
 ) -> Status {
     // SAFETY: the caller vouches for the pointers.
     run(|| unsafe {
-        answer(index, queries, options, is_inside, 0u8, |signs, index, points, _, batch| {
-            signs.contains_each_by(index, points, batch).into_iter().map(u8::from).collect()
+        answer(index, queries, options, is_inside, 0u8, |signs, index, points, _, batch, out| {
+            let inside = signs.contains_each_by(index, points, batch);
+            out.iter_mut().zip(inside).for_each(|(out, is_inside)| *out = u8::from(is_inside));
         })
     })
 }

@@ -72,41 +72,36 @@ function setTriple(into: Triple, at: number): void {
   into[2] = f64[at + 2]!;
 }
 
+/** Returns an answer to be filled. Its numbers are NaN, so that engines keep them as such from the beginning. */
+const newClosest = (): Closest =>
+  ({ distance: NaN, point: [NaN, NaN, NaN], weights: [NaN, NaN, NaN], lowerBound: NaN, primitive: 0, feature: 0 });
+const newHit = (): Hit => ({ t: NaN, point: [NaN, NaN, NaN], weights: [NaN, NaN, NaN], primitive: 0, side: 0 });
+
 /** Reads a closest point, into an object if there is one. */
 export function readClosest(address: number, into?: Closest): Closest | null {
   const primitive = u32[(address + 64) / 4]!;
   if (primitive === NO_PRIMITIVE) return null;
-  const at = address / 8;
-  const feature = u8[address + 68]!;
-  if (into) {
-    into.distance = f64[at]!;
-    setTriple(into.point, at + 1);
-    setTriple(into.weights, at + 4);
-    into.lowerBound = f64[at + 7]!;
-    into.primitive = primitive;
-    into.feature = feature;
-    return into;
-  }
-  return {
-    distance: f64[at]!, point: triple(at + 1), weights: triple(at + 4), lowerBound: f64[at + 7]!, primitive, feature,
-  };
+  const [at, closest] = [address / 8, into ?? newClosest()];
+  closest.distance = f64[at]!;
+  setTriple(closest.point, at + 1);
+  setTriple(closest.weights, at + 4);
+  closest.lowerBound = f64[at + 7]!;
+  closest.primitive = primitive;
+  closest.feature = u8[address + 68]!;
+  return closest;
 }
 
 /** Reads a hit, into an object if there is one. */
 export function readHit(address: number, into?: Hit): Hit | null {
   const primitive = u32[(address + 56) / 4]!;
   if (primitive === NO_PRIMITIVE) return null;
-  const at = address / 8;
-  const side = (u8[address + 60]! << 24) >> 24;
-  if (into) {
-    into.t = f64[at]!;
-    setTriple(into.point, at + 1);
-    setTriple(into.weights, at + 4);
-    into.primitive = primitive;
-    into.side = side;
-    return into;
-  }
-  return { t: f64[at]!, point: triple(at + 1), weights: triple(at + 4), primitive, side };
+  const [at, hit] = [address / 8, into ?? newHit()];
+  hit.t = f64[at]!;
+  setTriple(hit.point, at + 1);
+  setTriple(hit.weights, at + 4);
+  hit.primitive = primitive;
+  hit.side = (u8[address + 60]! << 24) >> 24;
+  return hit;
 }
 
 /** Reads a pair. */

@@ -1,18 +1,25 @@
 //! What the module of the npm package has beside the C interface: memory of the caller, indexes as bytes, answers of any
 //! number as arrays, and scenes whose primitives are in any order.
 
-use crate::arrays::{Array, give, length, point, reference, with_coordinates, write};
+use crate::arrays::{Array, give, length, point, reference, write};
 use crate::index::Index;
+use crate::pairs::Pair;
 use crate::queries::Closest;
 use crate::rays::{Hit, Ray};
 use crate::scene::Scene;
 use crate::status::{Failure, Status, invalid, run};
-use nalgebra::Point3;
 use p2m_core::storage::SavedFile;
-use p2m_core::{Best, Element, Position, QueryOptions, Soup, StatsCollector};
-use std::alloc::{Layout, alloc, dealloc};
+use p2m_core::{Best, Element, QueryOptions, Soup, StatsCollector};
+use std::alloc::{Layout, alloc_zeroed, dealloc};
+use std::mem::offset_of;
 use std::ops::ControlFlow;
-use std::sync::Arc;
+
+// The layout that `answers.ts` reads.
+const _: () = {
+    assert!(size_of::<Closest>() == 72 && offset_of!(Closest, primitive) == 64 && offset_of!(Closest, feature) == 68);
+    assert!(size_of::<Hit>() == 64 && offset_of!(Hit, primitive) == 56 && offset_of!(Hit, side) == 60);
+    assert!(size_of::<Pair>() == 128 && offset_of!(Pair, primitives) == 112 && offset_of!(Pair, features) == 120);
+};
 
 /// The alignment of all memory that crosses the border of the module.
 const ALIGNMENT: usize = 8;
@@ -32,12 +39,12 @@ impl Memory {
     }
 }
 
-/// Returns memory of so many bytes, or null if there is not enough.
+/// Returns memory of so many bytes, which are 0, or null if there is not enough.
 #[unsafe(no_mangle)]
 pub extern "C" fn p2m_js_alloc(bytes: usize) -> *mut u8 {
     match Layout::from_size_align(bytes, ALIGNMENT) {
         // SAFETY: the size is not 0.
-        Ok(layout) if bytes > 0 => unsafe { alloc(layout) },
+        Ok(layout) if bytes > 0 => unsafe { alloc_zeroed(layout) },
         _ => std::ptr::null_mut(),
     }
 }
@@ -64,9 +71,7 @@ pub unsafe extern "C" fn p2m_js_scene_of_mixed(
     // SAFETY: the caller vouches for the pointers.
     run(|| unsafe {
         give(scene, "scene", || {
-            let positions: Vec<Point3<f64>> = with_coordinates!(reference(positions, "positions")?, "positions", rows => {
-                rows.iter().map(Position::<f64>::point).collect()
-            });
+            let positions = reference(positions, "positions")?.points("positions")?.into_owned();
             let vertices = reference(vertices, "vertices")?.indices::<1>("vertices")?;
             let mut rest: &[[u32; 1]] = &vertices;
             let mut elements = Vec::with_capacity(count);
@@ -84,9 +89,7 @@ pub unsafe extern "C" fn p2m_js_scene_of_mixed(
             if !rest.is_empty() {
                 return Err(invalid("sizes: their sum is less than the number of vertices"));
             }
-            let soup = Soup::new(positions, elements);
-            let soup = soup.map_err(|error| Failure(Status::InvalidScene, error.to_string()))?;
-            Ok(Scene { shared: Arc::new(p2m_mixed::Scene::from(soup)) })
+            Scene::of(Soup::new(positions, elements))
         })
     })
 }

@@ -155,6 +155,8 @@ function share<Numbers extends NumberArray | Coordinates>(array: Numbers): Numbe
 class Remote {
   #worker: { postMessage(message: unknown): void; terminate(): void };
   #calls: { resolve: (reply: Reply) => void; reject: (error: Error) => void }[] = [];
+  /** Why the worker answers no more, once it does not. */
+  #failure: Error | undefined;
 
   constructor() {
     const threads = nodeModule("node:worker_threads");
@@ -163,14 +165,12 @@ class Remote {
       if (reply.error === undefined) call?.resolve(reply);
       else call?.reject(new Error(reply.error));
     };
-    const fail = (error: { message?: string }) => {
-      for (const { reject } of this.#calls.splice(0)) reject(new Error(`p2m: a worker failed: ${error.message ?? ""}`));
-    };
+    const fail = (error: { message?: string }) => this.#fail(`p2m: a worker failed: ${error.message ?? ""}`);
     if (threads && typeof Worker === "undefined") {
       // Bundlers look for this address in calls of `new Worker` alone.
       const here = import.meta.url;
       const worker = new threads.Worker(new URL("./worker.js", here));
-      worker.on("message", receive).on("error", fail);
+      worker.on("message", receive).on("error", fail).on("exit", () => fail({ message: "it has ended" }));
       this.#worker = worker;
     } else {
       const worker = new Worker(new URL("./worker.js", import.meta.url), { type: "module" });
@@ -181,6 +181,7 @@ class Remote {
   }
 
   ask(message: Start | Call): Promise<Reply> {
+    if (this.#failure) return Promise.reject(this.#failure);
     return new Promise((resolve, reject) => {
       this.#calls.push({ resolve, reject });
       this.#worker.postMessage(message);
@@ -188,7 +189,13 @@ class Remote {
   }
 
   end(): void {
-    for (const { reject } of this.#calls.splice(0)) reject(new Error("p2m: the pool was disposed of"));
+    this.#fail("p2m: the pool was disposed of");
     this.#worker.terminate();
+  }
+
+  /** Rejects the calls that wait for an answer, and all later ones: a worker that is gone would never answer them. */
+  #fail(message: string): void {
+    this.#failure ??= new Error(message);
+    for (const { reject } of this.#calls.splice(0)) reject(this.#failure);
   }
 }

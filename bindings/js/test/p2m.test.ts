@@ -1,4 +1,5 @@
 import { readFileSync } from "node:fs";
+import { Worker } from "node:worker_threads";
 import { expect, test } from "vitest";
 import { Index, Pool, Scene, init, version } from "../dist/index.js";
 import type { Closest, IndexOptions } from "../dist/index.js";
@@ -258,6 +259,22 @@ test("a pool gives the answers of an index", async () => {
   expect((await pool.closestPoints([0, 0, 9])).distance[0]).toBe(index.closestPoint([0, 0, 9])!.distance);
   pool.dispose();
   await expect(pool.closestPoints([0, 0, 9])).rejects.toThrow("disposed");
+});
+
+test("a pool with a worker that has ended rejects this batch and all later ones", async () => {
+  const started: Worker[] = [];
+  const post = Worker.prototype.postMessage;
+  Worker.prototype.postMessage = function (this: Worker, ...message) {
+    started.push(this);
+    return post.apply(this, message);
+  };
+  const pool = await Pool.create(new Index(new Scene(triangle)), { workers: 2 })
+    .finally(() => { Worker.prototype.postMessage = post; });
+  const [, worker] = started;
+  const pending = pool.closestPoints(new Float64Array(3 << 20));
+  await Promise.all([worker!.terminate(), expect(pending).rejects.toThrow("a worker failed: it has ended")]);
+  await expect(pool.closestPoints(new Float64Array(3 << 12))).rejects.toThrow("a worker failed: it has ended");
+  pool.dispose();
 });
 
 test("a pool of an index that cannot be saved is refused", async () => {

@@ -11,23 +11,13 @@ The others begin at the same starts, with the centroids moved onto each other, b
 from __future__ import annotations
 
 import argparse
-import statistics
-import time
 from collections.abc import Callable
 from pathlib import Path
 
 import numpy as np
+from common import diagonal, importable, medians, surface, timed
 
 import p2m
-
-
-def noisy_points(scene: p2m.Scene, count: int, rng: np.random.Generator, sigma: float) -> np.ndarray:
-    """Return points that are uniformly distributed over the triangles, with noise."""
-    corners = scene.vertices[scene.triangles]
-    areas = np.linalg.norm(np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]), axis=1)
-    chosen = corners[rng.choice(len(areas), count, p=areas / areas.sum())]
-    weights = rng.dirichlet([1, 1, 1], count)
-    return np.einsum("ij,ijk->ik", weights, chosen) + rng.normal(scale=sigma, size=(count, 3))
 
 
 def rotation(rng: np.random.Generator, degrees: float) -> np.ndarray:
@@ -49,7 +39,7 @@ def with_open3d(scene: p2m.Scene) -> Callable[[np.ndarray, np.ndarray], np.ndarr
         mesh.compute_triangle_normals()
         target = mesh.sample_points_uniformly(len(scan), use_triangle_normal=True)
         source = open3d.geometry.PointCloud(open3d.utility.Vector3dVector(scan))
-        reach = 0.1 * float(np.linalg.norm(scene.bounds[1] - scene.bounds[0]))
+        reach = 0.1 * diagonal(scene.bounds)
         method = open3d.pipelines.registration
         found = method.registration_icp(
             source, target, reach, start, method.TransformationEstimationPointToPlane()
@@ -82,10 +72,11 @@ def main() -> None:
     for path in arguments.mesh:
         scene = p2m.read(path)
         index = p2m.Index(scene)
-        diagonal = float(np.linalg.norm(scene.bounds[1] - scene.bounds[0]))
+        size = diagonal(scene.bounds)
         middle = scene.bounds.mean(axis=0)
         rng = np.random.default_rng(7)
-        points = noisy_points(scene, arguments.points, rng, 1e-3 * diagonal)
+        points, _ = surface(scene.vertices, scene.triangles, arguments.points, rng)
+        points += rng.normal(scale=1e-3 * size, size=points.shape)
 
         def rms(moved: np.ndarray) -> float:
             return float(np.sqrt(np.mean(index.distance(moved) ** 2)))
@@ -94,7 +85,7 @@ def main() -> None:
 
         def moved(degrees: float) -> np.ndarray:
             way = rng.normal(size=3)
-            way *= 0.5 * diagonal * rng.random() / np.linalg.norm(way)
+            way *= 0.5 * size * rng.random() / np.linalg.norm(way)
             return (points - middle) @ rotation(rng, degrees).T + middle + way
 
         print(f"{path.name}: {len(points):,} points, {len(scene.triangles):,} triangles")
@@ -104,25 +95,21 @@ def main() -> None:
                 ratios.append(rms(p2m.align(moved(limit * rng.random()), index).points) / noise)
             found = sum(ratio <= 1.01 for ratio in ratios)
             print(f"  below {limit:g} degrees: {found} of {len(ratios)} found, largest {max(ratios):.5f}", flush=True)
+        others = {"Open3D": with_open3d, "trimesh": with_trimesh}
+        names = importable([(name, lambda make=make: make(scene)) for name, make in others.items()])
+        methods = {"p2m": lambda scan, start: p2m.align(scan, p2m.Index(scene)).matrix}
+        methods |= {name: others[name](scene) for name in names}
         results: dict[str, list[tuple[float, float, float]]] = {}
         for _ in range(arguments.rounds):
             scan = moved(10.0)
             start = np.eye(4)
             start[:3, 3] = points.mean(axis=0) - scan.mean(axis=0)
-            methods = {"p2m": lambda scan, start: p2m.align(scan, p2m.Index(scene)).matrix}
-            for name, make in [("Open3D", with_open3d), ("trimesh", with_trimesh)]:
-                try:
-                    methods[name] = make(scene)
-                except ImportError as error:
-                    print(f"  without {name}: {error}")
             for name, method in methods.items():
-                begin = time.perf_counter(), time.process_time()
-                matrix = method(scan, start)
-                times = time.perf_counter() - begin[0], time.process_time() - begin[1]
+                cpu, wall, matrix = timed(lambda method=method: method(scan, start))
                 ratio = rms(scan @ matrix[:3, :3].T + matrix[:3, 3]) / noise
-                results.setdefault(name, []).append((*times, ratio))
+                results.setdefault(name, []).append((cpu, wall, ratio))
         for name, values in results.items():
-            wall, cpu, ratio = (statistics.median(column) for column in zip(*values, strict=True))
+            cpu, wall, ratio = medians(values)
             print(f"  {name}: {wall:.2f} s, {cpu:.2f} s of processors, rms {ratio:.4f} of the noise's", flush=True)
 
 

@@ -15,20 +15,16 @@ of errors come from `compute_distance`, which is not timed.
 from __future__ import annotations
 
 import argparse
-import importlib.metadata
 import json
-import os
-import platform
 import statistics
 import subprocess
 import sys
 import tempfile
-import time
 from pathlib import Path
 from typing import Any
 
-# Before libigl is imported: it answers queries on one thread, like the others.
-os.environ["IGL_NUM_THREADS"] = "1"
+# This sets the number of threads of libigl before it is imported.
+from common import diagonal, head, medians, open3d_scene, rotated, row, surface, timed, versions, with_peak
 
 import numpy as np
 
@@ -55,7 +51,8 @@ class Library:
     """The largest number of rounds of builds."""
 
     def build(self, vertices: np.ndarray, triangles: np.ndarray) -> None:
-        """Build what the library keeps between calls."""
+        """Build what the library keeps between calls: only the mesh if it has no index."""
+        self.vertices, self.triangles = vertices, triangles
 
     def prepare(self, points: np.ndarray) -> np.ndarray:
         """Return queries of the type that the library takes."""
@@ -96,16 +93,14 @@ class Open3d(Library):
         self.name = "Open3D `RaycastingScene` (f32)"
 
     def build(self, vertices, triangles):
-        import open3d
-
-        self.tensor = open3d.core.Tensor
-        self.scene = open3d.t.geometry.RaycastingScene(nthreads=self.threads)
-        self.scene.add_triangles(vertices.astype(np.float32), triangles.astype(np.uint32))
+        self.scene = open3d_scene(vertices, triangles, self.threads)
         # The scene is built by the first query.
         self.scene.compute_closest_points(np.zeros((1, 3), np.float32), nthreads=self.threads)
 
     def prepare(self, points):
-        return self.tensor.from_numpy(points.astype(np.float32))
+        import open3d
+
+        return open3d.core.Tensor.from_numpy(points.astype(np.float32))
 
     def query(self, points):
         return self.scene.compute_closest_points(points, nthreads=self.threads)
@@ -118,9 +113,6 @@ class IglFunction(Library):
     name = "libigl `point_mesh_squared_distance`"
     packages = ("libigl",)
     rounds = 3
-
-    def build(self, vertices, triangles):
-        self.vertices, self.triangles = vertices, triangles
 
     def query(self, points):
         import igl
@@ -139,7 +131,7 @@ class IglTree(Library):
     def build(self, vertices, triangles):
         import igl
 
-        self.vertices, self.triangles = vertices, triangles
+        super().build(vertices, triangles)
         self.tree = igl.AABB()
         self.tree.init(vertices, triangles)
 
@@ -154,9 +146,6 @@ class PointCloudUtils(Library):
     name = "point-cloud-utils `closest_points_on_mesh`"
     packages = ("point-cloud-utils",)
     rounds = 3
-
-    def build(self, vertices, triangles):
-        self.vertices, self.triangles = vertices, triangles
 
     def query(self, points):
         import point_cloud_utils
@@ -231,17 +220,9 @@ class RustBatch:
 
 def near(vertices: np.ndarray, triangles: np.ndarray, count: int, rng: np.random.Generator) -> np.ndarray:
     """Return points of the surface, evenly distributed over its area, moved along the normal."""
-    a, b, c = (vertices[triangles[:, corner]] for corner in range(3))
-    normals = np.cross(b - a, c - a)
-    doubled_areas = np.linalg.norm(normals, axis=1)
-    sums = np.cumsum(doubled_areas)
-    drawn = np.searchsorted(sums, rng.uniform(0.0, sums[-1], count), side="right").clip(0, len(triangles) - 1)
-    u, v = rng.uniform(size=(2, count, 1))
-    root = np.sqrt(u)
-    surface = a[drawn] * (1 - root) + b[drawn] * (root * (1 - v)) + c[drawn] * (root * v)
+    points, normals = surface(vertices, triangles, count, rng)
     sigma = NEAR_SIGMA * diagonal(vertices[triangles].reshape(-1, 3))
-    units = normals[drawn] / doubled_areas[drawn, None]
-    return surface + units * rng.normal(scale=sigma, size=(count, 1))
+    return points + normals * rng.normal(scale=sigma, size=(count, 1))
 
 
 def in_box(vertices: np.ndarray, triangles: np.ndarray, count: int, rng: np.random.Generator) -> np.ndarray:
@@ -251,24 +232,7 @@ def in_box(vertices: np.ndarray, triangles: np.ndarray, count: int, rng: np.rand
     return (low + high) / 2 + rng.uniform(-1, 1, (count, 3)) * (high - low) / 2 * BOX_SCALE
 
 
-def diagonal(points: np.ndarray) -> float:
-    return float(np.linalg.norm(points.max(axis=0) - points.min(axis=0)))
-
-
 SETS = {"near": near, "1x": in_box}
-
-
-def timed(work: Any) -> tuple[float, float, Any]:
-    """Return the CPU time of all threads, the wall time, and the result."""
-    cpu, wall = time.process_time(), time.perf_counter()
-    result = work()
-    return time.process_time() - cpu, time.perf_counter() - wall, result
-
-
-def status(key: str) -> int:
-    """Return a number of bytes from the status of this process on Linux."""
-    line = next(line for line in Path("/proc/self/status").read_text().splitlines() if line.startswith(key))
-    return int(line.split()[1]) * 1024
 
 
 def print_peak_memory(number: int, arrays: str) -> None:
@@ -282,11 +246,12 @@ def print_peak_memory(number: int, arrays: str) -> None:
     library.query(library.prepare(np.zeros((1, 3))))
     library.build(*small)
     queries = library.prepare(points[: library.points])
-    Path("/proc/self/clear_refs").write_text("5")
-    before = status("VmRSS:")
-    library.build(vertices, triangles)
-    library.query(queries)
-    print(status("VmHWM:") - before)
+
+    def work() -> None:
+        library.build(vertices, triangles)
+        library.query(queries)
+
+    print(with_peak(work)[2])
 
 
 def peak_memory(number: int, arrays: Path) -> int | None:
@@ -332,9 +297,7 @@ def measure(model: Path, arguments: argparse.Namespace) -> dict[str, Any]:
             rust_times: list[list[tuple[float, float]]] = [[] for _ in programs]
             for number in range(arguments.rounds):
                 log(f"{model.name}: {name}, round {number + 1}")
-                order = list(range(len(entrants)))
-                order = order[number % len(order) :] + order[: number % len(order)]
-                for i in order:
+                for i in rotated(len(entrants), number):
                     library, queries = entrants[i], prepared[i]
                     if number >= library.rounds:
                         continue
@@ -348,10 +311,9 @@ def measure(model: Path, arguments: argparse.Namespace) -> dict[str, Any]:
                     for program, measured in zip(programs, rust_times):
                         if program.library is library:
                             measured.append(program.run())
-            for row, measured in zip(result["rows"], times):
-                cpu, wall = medians(measured)
-                row[name]["cpu"], row[name]["wall"] = cpu / row[name]["points"], wall / row[name]["points"]
-                row[name]["rounds"] = len(measured)
+            for entry, measured in zip(result["rows"], times):
+                own, (cpu, wall) = entry[name], medians(measured)
+                own["cpu"], own["wall"], own["rounds"] = cpu / own["points"], wall / own["points"], len(measured)
             for program, measured in zip(programs, rust_times):
                 program.close()
                 library = program.library
@@ -372,9 +334,9 @@ def measure(model: Path, arguments: argparse.Namespace) -> dict[str, Any]:
                 arrays = Path(folder) / "arrays.npz"
                 np.savez(arrays, vertices=vertices, triangles=triangles, points=points)
         del entrants, prepared, truth_index
-        for i, row in enumerate(result["rows"]):
-            log(f"{model.name}: memory of {row['name']}")
-            row["memory"] = peak_memory(i, arrays)
+        for i, entry in enumerate(result["rows"]):
+            log(f"{model.name}: memory of {entry['name']}")
+            entry["memory"] = peak_memory(i, arrays)
     return result
 
 
@@ -383,55 +345,43 @@ def is_plain(library: Library) -> bool:
     return isinstance(library, P2m) and library.resolution is None
 
 
-def medians(times: list[tuple[float, float]]) -> tuple[float, float]:
-    return statistics.median(t[0] for t in times), statistics.median(t[1] for t in times)
-
-
 def log(text: str) -> None:
     print(text, file=sys.stderr, flush=True)
 
 
 def table(result: dict[str, Any]) -> str:
     """Return the measurements of a model as a table in Markdown."""
-    sets = list(SETS)
-    head = ["library", "threads", "build, s"]
-    for name in sets:
-        head += [f"{name}, CPU ns", f"{name}, wall ns", f"{name}, times p2m octree"]
-    head += ["largest error", "points", "rounds", "peak memory, MB"]
-    lines = [head, ["---"] * len(head)]
-    ours = {row["threads"]: row for row in reversed(result["rows"]) if row["name"] == "p2m octree"}
-    for row in result["rows"]:
-        builds = row["build_wall"] if row["threads"] > 1 else row["build_cpu"]
-        cells = [row["name"], str(row["threads"]), f"{builds:.2f}" if builds > 1e-3 else "in each call"]
-        for name in sets:
-            measured = row[name]
-            # Times of several threads are compared by the clock.
-            kind = "wall" if row["threads"] > 1 else "cpu"
-            ratio = measured[kind] / ours[row["threads"]][name][kind]
+    columns = ["library", "threads", "build, s"]
+    for name in SETS:
+        columns += [f"{name}, CPU ns", f"{name}, wall ns", f"{name}, times p2m octree"]
+    lines = [head([*columns, "largest error", "points", "rounds", "peak memory, MB"])]
+    ours = {entry["threads"]: entry for entry in reversed(result["rows"]) if entry["name"] == "p2m octree"}
+    for entry in result["rows"]:
+        # Times of several threads are compared by the clock.
+        kind = "wall" if entry["threads"] > 1 else "cpu"
+        build = entry[f"build_{kind}"]
+        cells = [entry["name"], entry["threads"], f"{build:.2f}" if build > 1e-3 else "in each call"]
+        for name in SETS:
+            measured = entry[name]
+            ratio = measured[kind] / ours[entry["threads"]][name][kind]
             cells += [f"{measured['cpu'] * 1e9:,.0f}", f"{measured['wall'] * 1e9:,.0f}", f"{ratio:,.3g}"]
-        largest = max(row[name]["error"] for name in sets)
-        memory = "-" if row.get("memory") is None else f"{row['memory'] / 1e6:,.0f}"
-        cells += [f"{largest:.0e}", f"{row['near']['points']:,}", str(row["near"]["rounds"]), memory]
-        lines.append(cells)
-    return "\n".join("| " + " | ".join(line) + " |" for line in lines)
+        largest = max(entry[name]["error"] for name in SETS)
+        memory = "-" if entry.get("memory") is None else f"{entry['memory'] / 1e6:,.0f}"
+        lines.append(row([*cells, f"{largest:.0e}", f"{entry['near']['points']:,}", entry["near"]["rounds"], memory]))
+    return "\n".join(lines)
 
 
 def rust_table(results: list[dict[str, Any]]) -> str:
     """Return the costs of calls from Python over the same batches in Rust as a table in Markdown."""
-    head = ["model", "set", "backend", "threads", "Rust, CPU ns", "Python, more CPU time", "Python, more wall time"]
-    lines = [head, ["---"] * len(head)]
+    lines = [
+        head(["model", "set", "backend", "threads", "Rust, CPU ns", "Python, more CPU time", "Python, more wall time"])
+    ]
     for result in results:
-        for row in result["rust"]:
-            cpu, wall = f"{100 * row['overhead_cpu']:+.1f} %", f"{100 * row['overhead_wall']:+.1f} %"
-            backend, threads = row["name"].removeprefix("p2m "), str(row["threads"])
-            lines.append([result["model"], row["set"], backend, threads, f"{row['cpu'] * 1e9:,.0f}", cpu, wall])
-    return "\n".join("| " + " | ".join(line) + " |" for line in lines)
-
-
-def versions() -> str:
-    names = sorted({package for library in libraries() for package in library.packages} | {"numpy"})
-    found = [f"{name} {importlib.metadata.version(name)}" for name in names]
-    return ", ".join([f"Python {platform.python_version()}", *found])
+        for entry in result["rust"]:
+            more = [f"{100 * entry[kind]:+.1f} %" for kind in ("overhead_cpu", "overhead_wall")]
+            backend, time = entry["name"].removeprefix("p2m "), f"{entry['cpu'] * 1e9:,.0f}"
+            lines.append(row([result["model"], entry["set"], backend, entry["threads"], time, *more]))
+    return "\n".join(lines)
 
 
 def main() -> None:
@@ -451,7 +401,7 @@ def main() -> None:
     if not arguments.models:
         parser.error("no models")
     print("python bindings/python/benchmarks/compare.py " + " ".join(sys.argv[1:]))
-    print(versions())
+    print(versions(sorted({package for library in libraries() for package in library.packages} | {"numpy"})))
     results = []
     for model in arguments.models:
         result = measure(model, arguments)

@@ -22,13 +22,10 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import Any, NamedTuple
 
-sys.path.insert(0, str(Path(__file__).parent))
 sys.path.insert(0, str(Path(__file__).parent.parent / "tests"))
 
 # This sets the number of threads of libigl before it is imported.
-from compare import diagonal, log, medians, timed
-
-import importlib.metadata
+from common import diagonal, head, interleaved, row, versions
 
 import numpy as np
 from exact import root, squared_distance_of_hulls, vector
@@ -226,23 +223,6 @@ class Differences:
         return "0" if not different else f"{len(different)}; p2m is right in {right} of {len(decided)}"
 
 
-def interleaved(calls: list[Callable[[], Any]], rounds: int) -> tuple[list[float], list[Any]]:
-    """Return the medians of the CPU times, and the first answers."""
-    times: list[list[tuple[float, float]]] = [[] for _ in calls]
-    answers: list[Any] = [None] * len(calls)
-    for number in range(rounds):
-        order = list(range(len(calls)))
-        for i in order[number % len(calls) :] + order[: number % len(calls)]:
-            cpu, wall, answer = timed(calls[i])
-            times[i].append((cpu, wall))
-            answers[i] = answer if number == 0 else answers[i]
-    return [medians(measured)[0] for measured in times], answers
-
-
-def row(cells: list[object]) -> str:
-    return "| " + " | ".join(map(str, cells)) + " |"
-
-
 def compare_meshes(paths: list[Path], arguments: argparse.Namespace) -> None:
     scenes = [p2m.read(path) for path in paths]
     a, b = (Mesh(scene.vertices, scene.triangles) for scene in scenes)
@@ -256,15 +236,14 @@ def compare_meshes(paths: list[Path], arguments: argparse.Namespace) -> None:
     along *= 0.5 * LENGTH * unit / np.linalg.norm(along, axis=1, keepdims=True)
     segments = np.stack([middle - along, middle + along], axis=1)
     entrants: list[Library] = [P2m("aabb"), P2m("kdop"), Fcl(), Coal()]
-    log("builds")
+    print("builds", file=sys.stderr)
     builds, kept = interleaved(
         [lambda library=library: (library.build(a), library.build(b)) for library in entrants], 3
     )
     print(f"\n{paths[0].name}, {len(a.triangles):,} triangles, and {paths[1].name}, {len(b.triangles):,} triangles\n")
-    print(row(["queries", "library", "build of both, s", "a query, CPU us", "times p2m aabb", "differences"]))
-    print(row(["---"] * 6))
+    print(head(["queries", "library", "build of both, s", "a query, CPU us", "times p2m aabb", "differences"]))
     for name in ["far", "near", "capsules"]:
-        log(name)
+        print(name, file=sys.stderr)
         if name == "capsules":
             count, radius = len(segments), RADIUS * unit
             calls = [lambda i=i: entrants[i].capsules(kept[i][0], segments, radius) for i in range(len(entrants))]
@@ -283,9 +262,9 @@ def compare_meshes(paths: list[Path], arguments: argparse.Namespace) -> None:
 
         times, answers = interleaved(calls, arguments.rounds)
         differences = Differences(unit, hulls, radius)
-        for library, build, time, answer in zip(entrants, builds, times, answers):
+        for library, (build, _), (time, _), answer in zip(entrants, builds, times, answers):
             different = "-" if library is entrants[0] else differences.of(answers[0], answer)
-            cells = [name, library.name, f"{build:.2f}", f"{time / count * 1e6:,.1f}", f"{time / times[0]:.3g}"]
+            cells = [name, library.name, f"{build:.2f}", f"{time / count * 1e6:,.1f}", f"{time / times[0][0]:.3g}"]
             print(row([*cells, different]), flush=True)
 
 
@@ -307,16 +286,15 @@ def compare_hausdorff(paths: list[Path], arguments: argparse.Namespace) -> None:
     def libigl() -> tuple[float, None]:
         return igl.hausdorff(V, F, W, G), None
 
-    log("hausdorff")
+    print("hausdorff", file=sys.stderr)
     names = ["p2m, 1e-4 diagonals", "p2m, 1e-6 diagonals", "p2m, vertices alone", "libigl `hausdorff`, vertices alone"]
     calls = [ours(1e-4 * unit), ours(1e-6 * unit), ours(float("inf")), libigl]
     times, answers = interleaved(calls, arguments.rounds)
     print(f"\n{paths[0].name}, {len(F):,} triangles, and {paths[1].name}, {len(G):,} triangles\n")
-    print(row(["Hausdorff distance", "CPU s", "times the first", "at least, diagonals", "at most, diagonals"]))
-    print(row(["---"] * 5))
-    for name, time, (low, high) in zip(names, times, answers):
+    print(head(["Hausdorff distance", "CPU s", "times the first", "at least, diagonals", "at most, diagonals"]))
+    for name, (time, _), (low, high) in zip(names, times, answers):
         most = "-" if high is None else f"{high / unit:.8f}"
-        print(row([name, f"{time:.2f}", f"{time / times[0]:.3g}", f"{low / unit:.8f}", most]), flush=True)
+        print(row([name, f"{time:.2f}", f"{time / times[0][0]:.3g}", f"{low / unit:.8f}", most]), flush=True)
 
 
 def main() -> None:
@@ -329,8 +307,7 @@ def main() -> None:
     parser.add_argument("--seed", type=int, default=1, help="seed of poses and capsules")
     arguments = parser.parse_args()
     print("python bindings/python/benchmarks/compare_pairs.py " + " ".join(sys.argv[1:]))
-    packages = ["numpy", "p2m", "python-fcl", "coal", "libigl"]
-    print(", ".join(f"{name} {importlib.metadata.version(name)}" for name in packages if name != "p2m"))
+    print(versions(["numpy", "python-fcl", "coal", "libigl"]))
     compare_meshes(arguments.models, arguments)
     if arguments.hausdorff is not None:
         compare_hausdorff(arguments.hausdorff, arguments)

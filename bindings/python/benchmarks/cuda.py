@@ -23,6 +23,7 @@ from collections.abc import Callable
 from typing import Any
 
 import numpy as np
+from common import diagonal, surface
 
 import p2m
 
@@ -36,17 +37,8 @@ def make_queries(name: str, scene: p2m.Scene, count: int) -> np.ndarray:
     if name in ("1x", "10x"):
         half = (1.05 if name == "1x" else 10.0) * (high - low) / 2.0
         return (low + high) / 2.0 + rng.uniform(-1.0, 1.0, (count, 3)) * half
-    corners = scene.vertices[scene.triangles]
-    normals = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
-    areas = np.linalg.norm(normals, axis=1)
-    chosen = rng.choice(len(areas), count, p=areas / areas.sum())
-    s, t = np.sqrt(rng.random(count)), rng.random(count)
-    weights = np.stack([1.0 - s, s * (1.0 - t), s * t], axis=1)
-    points = np.einsum("ij,ijk->ik", weights, corners[chosen])
-    if name == "near":
-        sigma = 0.01 * np.linalg.norm(high - low)
-        points += normals[chosen] / areas[chosen, None] * rng.normal(0.0, sigma, (count, 1))
-    return points
+    points, normals = surface(scene.vertices, scene.triangles, count, rng)
+    return points + normals * rng.normal(0.0, 0.01 * diagonal(scene.bounds), (count, 1)) * (name == "near")
 
 
 def along_curve(points: np.ndarray) -> np.ndarray:
@@ -101,7 +93,7 @@ def wrong_answers(scene: p2m.Scene, index: p2m.Index, points: np.ndarray, faces:
     """Count the queries whose triangle is not the nearest one by more than a millionth of the diagonal."""
     rounded = points.astype(np.float32)
     nearest = index.distance(rounded)
-    tolerance = 1e-6 * np.linalg.norm(scene.bounds[1] - scene.bounds[0])
+    tolerance = 1e-6 * diagonal(scene.bounds)
     wrong = int((faces < 0).sum())
     asked = np.nonzero(faces >= 0)[0]
     # The distance from a triangle is that from a scene of it alone; only triangles that differ are asked.

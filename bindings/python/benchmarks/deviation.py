@@ -12,13 +12,12 @@ the mean and the root mean square of the deviations beside those of the noise. O
 from __future__ import annotations
 
 import argparse
-import statistics
-import time
 from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
 import numpy as np
+from common import head, importable, interleaved, open3d_scene, row, surface
 
 import p2m
 
@@ -26,15 +25,9 @@ import p2m
 def noisy_scan(vertices: np.ndarray, triangles: np.ndarray, count: int, sigma: float) -> tuple[np.ndarray, np.ndarray]:
     """Return points of a surface with noise along its normals, and the noise."""
     rng = np.random.default_rng(1)
-    a, b, c = vertices[triangles].transpose(1, 0, 2)
-    normals = np.cross(b - a, c - a)
-    areas = np.linalg.norm(normals, axis=1)
-    drawn = rng.choice(len(triangles), count, p=areas / areas.sum())
-    u, v = rng.random((2, count, 1))
-    u, v = np.where(u + v > 1, 1 - u, u), np.where(u + v > 1, 1 - v, v)
+    points, normals = surface(vertices, triangles, count, rng)
     noise = rng.normal(scale=sigma, size=count)
-    points = a[drawn] + u * (b - a)[drawn] + v * (c - a)[drawn]
-    return points + normals[drawn] / areas[drawn, None] * noise[:, None], noise
+    return points + normals * noise[:, None], noise
 
 
 def with_p2m(vertices: np.ndarray, triangles: np.ndarray, points: np.ndarray) -> np.ndarray:
@@ -51,19 +44,15 @@ def with_pyvista(vertices: np.ndarray, triangles: np.ndarray, points: np.ndarray
 
 
 def with_open3d(vertices: np.ndarray, triangles: np.ndarray, points: np.ndarray) -> np.ndarray:
-    import open3d
-
-    scene = open3d.t.geometry.RaycastingScene()
-    tensor = open3d.core.Tensor
-    scene.add_triangles(tensor(vertices.astype(np.float32)), tensor(triangles.astype(np.uint32)))
-    return np.asarray(scene.compute_signed_distance(tensor(points.astype(np.float32))).numpy())
+    scene = open3d_scene(vertices, triangles)
+    return np.asarray(scene.compute_signed_distance(points.astype(np.float32)).numpy())
 
 
-LIBRARIES: list[tuple[str, Callable[..., Any]]] = [
-    ("p2m `deviation`", with_p2m),
-    ("PyVista `compute_implicit_distance`", with_pyvista),
-    ("Open3D `compute_signed_distance`", with_open3d),
-]
+LIBRARIES: dict[str, Callable[..., Any]] = {
+    "p2m `deviation`": with_p2m,
+    "PyVista `compute_implicit_distance`": with_pyvista,
+    "Open3D `compute_signed_distance`": with_open3d,
+}
 
 
 def main() -> None:
@@ -76,30 +65,17 @@ def main() -> None:
     scene = p2m.read(arguments.mesh)
     vertices, triangles = scene.vertices, scene.triangles
     points, noise = noisy_scan(vertices, triangles, arguments.points, arguments.sigma)
-    available = []
-    for name, compute in LIBRARIES:
-        try:
-            # The first call imports the library.
-            compute(vertices, triangles, points[:100])
-            available.append((name, compute))
-        except ImportError as error:
-            print(f"without {name}: {error}")
-    times: dict[str, list[tuple[float, float]]] = {name: [] for name, _ in available}
-    values = {}
-    for _ in range(arguments.rounds):
-        for name, compute in available:
-            start = time.perf_counter(), time.process_time()
-            values[name] = compute(vertices, triangles, points)
-            times[name].append((time.perf_counter() - start[0], time.process_time() - start[1]))
+    mesh = vertices, triangles
+    first_calls = [(name, lambda call=call: call(*mesh, points[:100])) for name, call in LIBRARIES.items()]
+    names = importable(first_calls)
+    times, values = interleaved([lambda name=name: LIBRARIES[name](*mesh, points) for name in names], arguments.rounds)
     print(f"{arguments.points:,} points, {len(triangles):,} triangles\n")
-    print("| | time, s | CPU time, s | mean | root mean square |")
-    print("| --- | --- | --- | --- | --- |")
-    print(f"| the noise | - | - | {noise.mean():.3g} | {np.sqrt(np.mean(noise**2)):.6g} |")
-    for name, _ in available:
-        found = values[name].astype(float)
+    print(head(["", "time, s", "CPU time, s", "mean", "root mean square"]))
+    print(row(["the noise", "-", "-", f"{noise.mean():.3g}", f"{np.sqrt(np.mean(noise**2)):.6g}"]))
+    for name, (cpu, wall), value in zip(names, times, values):
+        found = value.astype(float)
         mean, rms = found.mean(), np.sqrt(np.mean(found**2))
-        wall, cpu = (statistics.median(part) for part in zip(*times[name], strict=True))
-        print(f"| {name} | {wall:.2f} | {cpu:.2f} | {mean:.3g} | {rms:.6g} |", flush=True)
+        print(row([name, f"{wall:.2f}", f"{cpu:.2f}", f"{mean:.3g}", f"{rms:.6g}"]), flush=True)
 
 
 if __name__ == "__main__":

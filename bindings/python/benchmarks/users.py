@@ -9,14 +9,13 @@ that are slow get fewer points.
 
 from __future__ import annotations
 
-import os
 import subprocess
 import sys
-import time
 from pathlib import Path
 from typing import Any
 
-os.environ["IGL_NUM_THREADS"] = "1"
+# This sets the number of threads of libigl before it is imported.
+from common import head, row, with_peak
 
 import numpy as np
 
@@ -79,12 +78,6 @@ PROGRAMS: list[tuple[str, str, Any, Any, int]] = [
 ]
 
 
-def status(key: str) -> int:
-    """Return a number of bytes from the status of this process."""
-    line = next(line for line in Path("/proc/self/status").read_text().splitlines() if line.startswith(key))
-    return int(line.split()[1]) * 1024
-
-
 def run(number: int) -> None:
     """Run one program and print its CPU time in seconds and its peak memory in bytes, besides the points."""
     _, _, program, make, count = PROGRAMS[number]
@@ -93,24 +86,20 @@ def run(number: int) -> None:
     points = np.random.default_rng(2).uniform(low, high, (count, 3))
     # The first call imports the library.
     program(mesh, points[:SMALL_CALL_POINTS])
-    Path("/proc/self/clear_refs").write_text("5")
-    before = status("VmRSS:")
-    start = time.process_time()
-    program(mesh, points)
-    print(time.process_time() - start, status("VmHWM:") - before)
+    cpu, _, memory = with_peak(lambda: program(mesh, points))
+    print(cpu, memory)
 
 
 def main() -> None:
     if len(sys.argv) > 1:
         return run(int(sys.argv[1]))
-    print("| program | library | points | CPU time, s | time a point, us | peak memory, MB |")
-    print("| --- | --- | --- | --- | --- | --- |")
+    print(head(["program", "library", "points", "CPU time, s", "time a point, us", "peak memory, MB"]))
     for number, (name, library, _, _, count) in enumerate(PROGRAMS):
         command = [sys.executable, __file__, str(number)]
         output = subprocess.run(command, check=True, capture_output=True, text=True).stdout
         seconds, memory = map(float, output.split())
-        each = f"{seconds / count * 1e6:,.2f}"
-        print(f"| {name} | {library} | {count:,} | {seconds:.2f} | {each} | {memory / 1e6:,.0f} |", flush=True)
+        cells = [f"{count:,}", f"{seconds:.2f}", f"{seconds / count * 1e6:,.2f}", f"{memory / 1e6:,.0f}"]
+        print(row([name, library, *cells]), flush=True)
 
 
 if __name__ == "__main__":

@@ -1,12 +1,10 @@
 //! Advice on backends.
 
-use crate::arrays::{Coordinates, with_positions};
+use crate::arrays::Coordinates;
 use crate::errors::value_error;
 use crate::scene::Scene;
 use crate::work::run_owned;
-use nalgebra::Point3;
 use p2m_backends::{Choice, Estimate, QueryRegion, Workload};
-use p2m_core::Position;
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 use std::sync::Arc;
@@ -26,17 +24,14 @@ pub(crate) fn advise(
     max_bytes: Option<usize>,
     threads: usize,
 ) -> PyResult<Vec<Row>> {
-    let points: Option<Vec<Point3<f64>>> = match points {
-        Some(points) => Some(with_positions!(points, slice => slice.iter().map(Position::<f64>::point).collect())),
-        None => None,
-    };
+    let points = points.map(|points| points.points()).transpose()?;
     let is_near = match region {
         "near" => true,
         "box" => false,
         _ => return Err(PyValueError::new_err(format!("region: '{region}' is none of 'near', 'box'"))),
     };
     let shared = scene.shared.clone();
-    let advice = run_owned(py, threads, 1, None, move |_| {
+    let advice = run_owned(py, (threads, None), 1, move |_| {
         let region = match &points {
             Some(points) => QueryRegion::Like(points),
             None if is_near => QueryRegion::NearSurface,

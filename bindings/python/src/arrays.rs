@@ -1,8 +1,9 @@
 //! Arguments that are arrays of NumPy.
 
 use crate::errors::value_error;
-use nalgebra::Isometry3;
-use numpy::{Element, PyArray1, PyArrayMethods, PyReadonlyArray1, PyReadwriteArray1};
+use nalgebra::{Isometry3, Point3};
+use numpy::{Element, PyArray1, PyArray2, PyArrayMethods, PyReadonlyArray1, PyReadwriteArray1};
+use p2m_core::Position;
 use p2m_core::pair::isometry_of_matrix;
 use pyo3::exceptions::PyTypeError;
 use pyo3::prelude::*;
@@ -54,12 +55,26 @@ macro_rules! with_positions {
 }
 pub(crate) use with_positions;
 
+impl Coordinates<'_> {
+    /// Returns the coordinates as points in f64.
+    pub(crate) fn points(&self) -> PyResult<Vec<Point3<f64>>> {
+        Ok(with_positions!(self, slice => slice.iter().map(Position::<f64>::point).collect()))
+    }
+}
+
 /// Returns a contiguous array as arrays of three.
 pub(crate) fn triples<T, E>(slice: Result<&[T], E>) -> PyResult<&[[T; 3]]> {
     match slice.map(<[T]>::as_chunks) {
         Ok((triples, [])) => Ok(triples),
         _ => Err(PyTypeError::new_err("an array is not contiguous, or its length is not a multiple of three")),
     }
+}
+
+/// Returns points as rows, in the memory that they have.
+pub(crate) fn rows(py: Python<'_>, points: Vec<Point3<f64>>) -> PyResult<Bound<'_, PyArray2<f64>>> {
+    let count = points.len();
+    let rows: Vec<[f64; 3]> = points.into_iter().map(|point| point.coords.into()).collect();
+    PyArray1::from_vec(py, rows.into_flattened()).reshape([count, 3])
 }
 
 /// Returns the motions of flat matrices.

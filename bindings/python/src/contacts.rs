@@ -4,7 +4,7 @@ use crate::arrays::triples;
 use crate::columns::{NO_FEATURE, NO_PRIMITIVE, columns};
 use crate::index::Index;
 use crate::parts::{answer_in_parts, batch_options, check_finite};
-use crate::work::{Monitor, Threads};
+use crate::work::{Monitor, Run, Threads};
 use numpy::PyReadonlyArray1;
 use p2m_core::batch;
 use p2m_core::pair::{BallContact, MovingBall};
@@ -33,8 +33,7 @@ impl Index {
         radius: f64,
         tolerance: f64,
         ignore_opening: bool,
-        threads: usize,
-        progress: Option<Py<PyAny>>,
+        run: Run,
     ) -> PyResult<()> {
         let index = self.pair_query()?;
         let (starts, ends) = (triples(starts.as_slice())?, triples(ends.as_slice())?);
@@ -58,6 +57,6 @@ impl Index {
             });
             Ok(())
         };
-        self.run(py, starts.len(), threads, progress, work)
+        self.run(py, starts.len(), run, work)
     }
 }

@@ -60,7 +60,7 @@ impl CudaIndex {
         (options.ordinal, options.reach, options.memory) = (ordinal, reach, memory);
         (options.reorder, options.checked) = (reorder, checked);
         let build = move |_: &_| AabbTree::new(soup).map(|tree| p2m_cuda::CudaIndex::new(tree, &options));
-        let index = run_owned(py, threads, 1, None, build)?.map_err(value_error)?.map_err(cuda_error)?;
+        let index = run_owned(py, (threads, None), 1, build)?.map_err(value_error)?.map_err(cuda_error)?;
         Ok(Self { index, threads })
     }
 

@@ -1,29 +1,32 @@
 //! Statistics, filters, pages and files of deviations.
 
-use crate::arrays::{Coordinates, triples, with_positions};
+use crate::arrays::{Coordinates, triples};
 use crate::errors::value_error;
 use crate::index::Index;
-use crate::scene::Scene;
+use crate::pages::{ABOUT, page, up_axis};
+use crate::scene::{Scene, SharedScene};
 use crate::work::run_owned;
-use nalgebra::Point3;
 use numpy::{IntoPyArray, PyArray1, PyReadonlyArray1};
+use p2m_core::QueryOptions;
 use p2m_core::batch::BatchOptions;
-use p2m_core::{Position, QueryOptions};
 use p2m_field::deviation::{self, DeviationStatistics, LocalPlanes};
 use p2m_mixed::{VertexValues, write_ply_with_values};
-use p2m_page::{Deviations, ObjectDeviations, Sheet, UpAxis, View, diverging_colour};
+use p2m_page::{Deviations, ObjectDeviations, Sheet, View, diverging_colour};
 use pyo3::prelude::*;
 use pyo3::types::{PyBytes, PyDict};
 use std::sync::Arc;
 
-/// Returns the statistics of deviations by their names, with the numbers of values that are finite and that are not.
+/// Returns the statistics of deviations by their names, with the numbers of values that are finite and that are not, and
+/// the usual limit of colours.
 #[pyfunction]
 pub(crate) fn deviation_statistics<'py>(
     py: Python<'py>,
     values: PyReadonlyArray1<'py, f64>,
-) -> PyResult<Bound<'py, PyDict>> {
+    tolerance: Option<f64>,
+) -> PyResult<(Bound<'py, PyDict>, f64)> {
     let values = values.as_slice()?;
-    dictionary(py, &py.detach(|| DeviationStatistics::of(values)))
+    let statistics = py.detach(|| DeviationStatistics::of(values));
+    Ok((dictionary(py, &statistics)?, Deviations::usual_limit(&statistics, tolerance)))
 }
 
 fn dictionary<'py>(py: Python<'py>, statistics: &DeviationStatistics) -> PyResult<Bound<'py, PyDict>> {
@@ -34,33 +37,6 @@ fn dictionary<'py>(py: Python<'py>, statistics: &DeviationStatistics) -> PyResul
         dictionary.set_item(named.key, named.value)?;
     }
     Ok(dictionary)
-}
-
-/// Returns a page that shows a scan with its deviations from a scene, as HTML. `texts` has the title, the
-/// summary and the unit.
-#[pyfunction]
-pub(crate) fn deviation_page(
-    scan: &Scene,
-    values: PyReadonlyArray1<'_, f64>,
-    primitives: PyReadonlyArray1<'_, u32>,
-    scene: &Scene,
-    is_signed: bool,
-    limit: f64,
-    tolerance: Option<f64>,
-    is_y_up: bool,
-    texts: [String; 3],
-) -> PyResult<String> {
-    let (values, primitives) = (values.as_slice()?, primitives.as_slice()?);
-    let (scan, [title, summary, unit]) = (&*scan.shared.soup, texts);
-    let statistics = &DeviationStatistics::of(values);
-    let deviations = &Deviations { scan, values, primitives, statistics, is_signed, limit, tolerance };
-    let mut view = View::new(&scene.shared, &Deviations::bounds(scan))
-        .with_unit(&unit)
-        .with_up(if is_y_up { UpAxis::Y } else { UpAxis::Z })
-        .with_deviations(deviations);
-    (view.title, view.summary) = (title, summary);
-    view.about = format!("p2m {} for Python", env!("CARGO_PKG_VERSION"));
-    view.html().map_err(value_error)
 }
 
 /// Returns a scan with its deviations and their colours as a PLY file.
@@ -79,62 +55,83 @@ pub(crate) fn deviation_ply<'py>(
     Ok(PyBytes::new(py, &file))
 }
 
-/// Returns the name of each object of a scene, with the statistics of the deviations from it.
-#[pyfunction]
-pub(crate) fn deviation_objects<'py>(
-    py: Python<'py>,
-    scene: &Scene,
-    values: PyReadonlyArray1<'_, f64>,
-    primitives: PyReadonlyArray1<'_, u32>,
-) -> PyResult<Vec<(String, Bound<'py, PyDict>)>> {
-    let (values, primitives) = (values.as_slice()?, primitives.as_slice()?);
-    let statistics = &DeviationStatistics::of(values);
-    let scan = &scene.shared.soup;
-    let deviations = Deviations { scan, values, primitives, statistics, is_signed: true, limit: 1.0, tolerance: None };
-    let found = ObjectDeviations::of_scene(&scene.shared, &deviations);
-    found.into_iter().map(|object| Ok((object.name, dictionary(py, &object.statistics)?))).collect()
-}
-
-/// Returns the report of a scan and a scene on one sheet, as a PDF or a PNG file. `texts` has the title, the unit and
-/// what made the report.
-#[pyfunction]
-pub(crate) fn deviation_sheet<'py>(
-    py: Python<'py>,
-    scan: &Scene,
-    values: PyReadonlyArray1<'_, f64>,
-    primitives: PyReadonlyArray1<'_, u32>,
-    scene: &Scene,
+/// The deviations of a scan from a scene, with all that a report of them shows.
+#[pyclass(frozen, module = "p2m._p2m")]
+pub(crate) struct Report {
+    scan: SharedScene,
+    values: Vec<f64>,
+    primitives: Vec<u32>,
+    scene: SharedScene,
+    statistics: DeviationStatistics,
     is_signed: bool,
     limit: f64,
     tolerance: Option<f64>,
-    required: Option<f64>,
-    is_y_up: bool,
-    head: Vec<(String, String)>,
-    texts: [String; 3],
-    is_pdf: bool,
-) -> PyResult<Bound<'py, PyBytes>> {
-    let (values, primitives) = (values.as_slice()?, primitives.as_slice()?);
-    let [title, unit, about] = &texts;
-    let sheet = Sheet {
-        title,
-        head: &head,
-        required,
-        unit,
-        up: if is_y_up { UpAxis::Y } else { UpAxis::Z },
-        scene: &scene.shared,
-        deviations: Deviations {
-            scan: &scan.shared.soup,
-            values,
-            primitives,
-            statistics: &DeviationStatistics::of(values),
-            is_signed,
-            limit,
-            tolerance,
-        },
-        about,
-    };
-    let file = py.detach(|| if is_pdf { Ok(sheet.pdf()) } else { sheet.png() });
-    Ok(PyBytes::new(py, &file.map_err(value_error)?))
+    unit: String,
+}
+
+impl Report {
+    fn deviations(&self) -> Deviations<'_> {
+        let Self { values, primitives, statistics, is_signed, limit, tolerance, .. } = self;
+        let (is_signed, limit, tolerance) = (*is_signed, *limit, *tolerance);
+        Deviations { scan: &self.scan.soup, values, primitives, statistics, is_signed, limit, tolerance }
+    }
+}
+
+#[pymethods]
+impl Report {
+    #[new]
+    fn new(
+        scan: &Scene,
+        values: PyReadonlyArray1<'_, f64>,
+        primitives: PyReadonlyArray1<'_, u32>,
+        scene: &Scene,
+        is_signed: bool,
+        limit: f64,
+        tolerance: Option<f64>,
+        unit: String,
+    ) -> PyResult<Self> {
+        let (scan, scene) = (scan.shared.clone(), scene.shared.clone());
+        let (values, primitives) = (values.as_slice()?.to_vec(), primitives.as_slice()?.to_vec());
+        let statistics = DeviationStatistics::of(&values);
+        Ok(Self { scan, values, primitives, scene, statistics, is_signed, limit, tolerance, unit })
+    }
+
+    /// Returns the name of each object of the scene, with the statistics of the deviations from it.
+    fn objects<'py>(&self, py: Python<'py>) -> PyResult<Vec<(String, Bound<'py, PyDict>)>> {
+        let found = ObjectDeviations::of_scene(&self.scene, &self.deviations());
+        found.into_iter().map(|object| Ok((object.name, dictionary(py, &object.statistics)?))).collect()
+    }
+
+    /// Returns a page that shows the scan and the scene, as HTML.
+    fn page(&self, title: String, summary: String, is_y_up: bool) -> PyResult<String> {
+        let deviations = self.deviations();
+        let view = View::new(&self.scene, &Deviations::bounds(&self.scan.soup)).with_deviations(&deviations);
+        page(view, (title, summary, &self.unit), is_y_up)
+    }
+
+    /// Returns the report on one sheet, as a PDF or a PNG file.
+    fn sheet<'py>(
+        &self,
+        py: Python<'py>,
+        title: &str,
+        head: Vec<(String, String)>,
+        required: Option<f64>,
+        is_y_up: bool,
+        is_pdf: bool,
+    ) -> PyResult<Bound<'py, PyBytes>> {
+        let sheet = Sheet {
+            title,
+            head: &head,
+            required,
+            unit: &self.unit,
+            up: up_axis(is_y_up),
+            scene: &self.scene,
+            deviations: self.deviations(),
+            about: ABOUT,
+        };
+        let file = py.detach(|| if is_pdf { Ok(sheet.pdf()) } else { sheet.png() });
+        Ok(PyBytes::new(py, &file.map_err(value_error)?))
+    }
 }
 
 /// Returns the mean deviation around each vertex of a scene, given the closest primitive of each deviation and the
@@ -160,8 +157,8 @@ pub(crate) fn isolated_points<'py>(
     points: Coordinates<'py>,
     threads: usize,
 ) -> PyResult<Bound<'py, PyArray1<bool>>> {
-    let points: Vec<Point3<f64>> = with_positions!(points, slice => slice.iter().map(Position::<f64>::point).collect());
-    Ok(run_owned(py, threads, 1, None, move |_| deviation::isolated_points(&points))?.into_pyarray(py))
+    let points = points.points()?;
+    Ok(run_owned(py, (threads, None), 1, move |_| deviation::isolated_points(&points))?.into_pyarray(py))
 }
 
 #[pymethods]
@@ -175,10 +172,9 @@ impl Index {
         max_distance: f64,
         threads: usize,
     ) -> PyResult<Option<Bound<'py, PyArray1<f64>>>> {
-        let points: Vec<Point3<f64>> =
-            with_positions!(points, slice => slice.iter().map(Position::<f64>::point).collect());
+        let points = points.points()?;
         let (index, soup) = (self.any(), Arc::clone(&self.scene.soup));
-        let found = run_owned(py, threads, 1, None, move |_| {
+        let found = run_owned(py, (threads, None), 1, move |_| {
             let planes = LocalPlanes::new(&soup, &*index)?;
             let options = QueryOptions::default().with_max_distance(max_distance);
             Some(planes.deviations(&*index, &points, &options, &BatchOptions::default()))

@@ -3,8 +3,7 @@
 use crate::errors::{grid_error, value_error};
 use crate::index::Index;
 use crate::scene::Scene;
-use crate::signs::SignRule;
-use crate::work::run_owned;
+use crate::work::{Run, run_owned};
 use nalgebra::Point3;
 use numpy::{IntoPyArray, PyArray1, PyReadonlyArray1};
 use p2m_core::PrimitiveSet;
@@ -29,17 +28,13 @@ impl Index {
         counts: [usize; 3],
         sign: Option<&str>,
         band: f64,
-        threads: usize,
-        progress: Option<Py<PyAny>>,
+        run: Run,
     ) -> PyResult<Bound<'py, PyArray1<f32>>> {
         let grid = Grid::new(Point3::from(origin), spacing, counts);
         let grid = grid.and_then(|grid| grid.part(first, counts)).map_err(grid_error)?;
-        let signed = match sign {
-            Some(name) => Some(self.signs(py, SignRule::from_name(name)?, threads)?),
-            None => None,
-        };
+        let signed = sign.map(|rule| self.signs(py, rule, run.0)).transpose()?;
         let (index, soup) = (self.any(), Arc::clone(&self.scene.soup));
-        let values = run_owned(py, threads, grid.len(), progress, move |monitor| {
+        let values = run_owned(py, run, grid.len(), move |monitor| {
             let options = FieldOptions::default().with_band(band);
             let done = AtomicUsize::new(0);
             let report = |points: usize| {
@@ -74,12 +69,9 @@ impl Index {
         threads: usize,
     ) -> PyResult<(Scene, f64, f64)> {
         let grid = Grid::new(Point3::from(origin), spacing, counts).map_err(grid_error)?;
-        let signed = match sign {
-            Some(name) => Some(self.signs(py, SignRule::from_name(name)?, threads)?),
-            None => None,
-        };
+        let signed = sign.map(|rule| self.signs(py, rule, threads)).transpose()?;
         let (index, values) = (self.any(), values.as_slice()?.to_vec());
-        let surface = run_owned(py, threads, 1, None, move |_| {
+        let surface = run_owned(py, (threads, None), 1, move |_| {
             offset_surface(&grid, &values, distance, &|point| match &signed {
                 Some(signed) => {
                     signed.closest_point(point).and_then(|found| Some((found.distance()?, found.closest.point)))

@@ -2,9 +2,9 @@
 
 use crate::errors::value_error;
 use crate::scene::{Scene, SharedScene};
-use crate::signs::{SignRule, Signed};
+use crate::signs::{SignRule, Signed, sign_rule};
 use crate::threads::pool;
-use crate::work::{FIRST_STEP_QUERIES, Monitor, Threads, run_batch, run_owned};
+use crate::work::{FIRST_STEP_QUERIES, Monitor, Run, Threads, run_batch, run_owned};
 use p2m_backends::{
     BACKENDS, BackendEntry, BuildSettings, BuiltIndex, Choice, KdopDirections, QueryRegion, SearchStructure, Workload,
 };
@@ -85,7 +85,7 @@ impl Index {
         let soup = &self.scene.soup;
         let parts = py.detach(|| Arc::clone(self.parts.get_or_init(|| Arc::new(Parts::of(soup)))));
         let has_inside = soup.segments().is_empty() && soup.points().is_empty();
-        let signed = if has_inside { Some(self.signs(py, SignRule::from_name("auto")?, threads)?) } else { None };
+        let signed = has_inside.then(|| self.signs(py, "auto", threads)).transpose()?;
         Ok((parts, signed))
     }
 
@@ -121,13 +121,11 @@ impl Index {
         &self,
         py: Python<'_>,
         queries: usize,
-        threads: usize,
-        progress: Option<Py<PyAny>>,
+        (threads, progress): Run,
         work: impl FnOnce(&Threads, &Monitor) -> PyResult<R> + Send,
     ) -> PyResult<R> {
         let threads = self.threads_for(py, queries, threads)?;
-        let monitor = threads.monitor(queries, self.first_step(), progress);
-        run_batch(py, &threads, &monitor, || work(&threads, &monitor))?
+        run_batch(py, &threads, (queries, self.first_step()), progress, work)
     }
 
     /// Returns the index as one that casts rays, or an error if its backend does not.
@@ -147,16 +145,20 @@ impl Index {
         value_error(format!("the backend '{}' {lack} {}", self.backend, alternatives(fits)))
     }
 
-    /// Returns the signs of a rule, which are prepared by the first call.
-    pub(crate) fn signs(&self, py: Python<'_>, rule: SignRule, threads: usize) -> PyResult<Arc<Signed>> {
+    /// Returns the signs of a rule by its name, which are prepared by the first call.
+    pub(crate) fn signs(&self, py: Python<'_>, rule: &str, threads: usize) -> PyResult<Arc<Signed>> {
+        let rule = sign_rule(rule)?;
         let prepared = || self.signs.lock().unwrap_or_else(PoisonError::into_inner);
         if let Some(signed) = prepared().get(&rule) {
             return Ok(Arc::clone(signed));
         }
         // Two threads may both prepare the same signs; the lock must not be held while the interpreter is detached.
         let (index, soup) = (self.any(), Arc::clone(&self.scene.soup));
-        let signed = run_owned(py, threads, 1, None, move |_| rule.prepare(&index, &soup))?.map_err(value_error)?;
-        let signed = Arc::new(signed);
+        let signed = run_owned(py, (threads, None), 1, move |_| match rule {
+            None => Signed::new(index, soup),
+            Some(rule) => Signed::with_rule(index, soup, rule),
+        })?;
+        let signed = Arc::new(signed.map_err(value_error)?);
         prepared().insert(rule, Arc::clone(&signed));
         Ok(signed)
     }
@@ -209,13 +211,11 @@ fn kdop_directions(name: &str) -> PyResult<KdopDirections> {
 impl Index {
     /// Builds an index of a backend of the registry.
     #[staticmethod]
-    #[pyo3(signature = (scene, backend, threads, progress, directions=None, resolution=None, queries=None, max_bytes=None))]
     fn build(
         py: Python<'_>,
         scene: &Scene,
         backend: &str,
-        threads: usize,
-        progress: Option<Py<PyAny>>,
+        run: Run,
         directions: Option<&str>,
         resolution: Option<f64>,
         queries: Option<u64>,
@@ -242,7 +242,7 @@ impl Index {
         let soup = Arc::clone(&scene.shared.soup);
         let workload = Workload::new(queries.unwrap_or_default(), QueryRegion::SceneBox);
         let workload = workload.with_needs_index(true).with_max_bytes(max_bytes.unwrap_or(usize::MAX));
-        let built = run_owned(py, threads, BUILD_UNITS, progress, move |monitor| {
+        let built = run_owned(py, run, BUILD_UNITS, move |monitor| {
             let choice = if is_chosen { Some(Choice::new(Arc::clone(&soup), &workload)?) } else { None };
             let chosen = choice.as_ref().map_or(entry, Choice::backend);
             let built = build(settings, monitor, |settings| match choice {
@@ -258,7 +258,7 @@ impl Index {
     /// Returns an index over the same primitives at other positions.
     fn refitted(&self, py: Python<'_>, scene: &Scene, threads: usize) -> PyResult<Self> {
         let (index, soup) = (self.any(), Arc::clone(&scene.shared.soup));
-        let refitted = run_owned(py, threads, 1, None, move |_| index.refitted(soup))?;
+        let refitted = run_owned(py, (threads, None), 1, move |_| index.refitted(soup))?;
         let refused = || {
             let lack = format!("the backend '{}' has no refit: build a new index, or use", self.backend);
             value_error(format!("{lack} {} for scenes that move", alternatives(|backend| backend.has_refit)))

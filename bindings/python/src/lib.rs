@@ -51,10 +51,7 @@ mod _p2m {
         advise::advise,
         alignment::align,
         columns::NearList,
-        deviations::{
-            deviation_objects, deviation_on_vertices, deviation_page, deviation_ply, deviation_sheet,
-            deviation_statistics, isolated_points,
-        },
+        deviations::{Report, deviation_on_vertices, deviation_ply, deviation_statistics, isolated_points},
         hausdorff::hausdorff,
         index::Index,
         pages::{grid_around, grid_of_offset, scene_page},

@@ -11,6 +11,21 @@ use pyo3::prelude::*;
 /// The origin, the spacing and the counts of a grid.
 type GridParts = ([f64; 3], f64, [usize; 3]);
 
+/// What made a page or a report.
+pub(crate) const ABOUT: &str = concat!("p2m ", env!("CARGO_PKG_VERSION"), " for Python");
+
+/// Returns the axis that points up.
+pub(crate) fn up_axis(is_y_up: bool) -> UpAxis {
+    if is_y_up { UpAxis::Y } else { UpAxis::Z }
+}
+
+/// Returns a view as HTML, with a title, a summary and a unit.
+pub(crate) fn page(view: View<'_>, (title, summary, unit): (String, String, &str), is_y_up: bool) -> PyResult<String> {
+    let mut view = view.with_unit(unit).with_up(up_axis(is_y_up));
+    (view.title, view.summary, view.about) = (title, summary, ABOUT.to_owned());
+    view.html().map_err(value_error)
+}
+
 /// Returns the grid that covers the box of a scene, scaled about its centre, with so many points along its longest side.
 #[pyfunction]
 pub(crate) fn grid_around(scene: &Scene, resolution: usize, scale: f64) -> PyResult<GridParts> {
@@ -44,15 +59,12 @@ pub(crate) fn scene_page(
     if let Some((grid, _)) = &field {
         around = around.union(&Aabb { min: grid.origin(), max: grid.point(grid.counts().map(|n| n - 1)) });
     }
-    let mut view =
-        View::new(&scene.shared, &around).with_unit(&unit).with_up(if is_y_up { UpAxis::Y } else { UpAxis::Z });
+    let mut view = View::new(&scene.shared, &around);
     if is_live {
         view = view.with_live_queries();
     }
     if let Some((grid, values)) = &field {
         view = view.with_field(grid, values.as_slice()?);
     }
-    (view.title, view.summary) = (title, summary);
-    view.about = format!("p2m {} for Python", env!("CARGO_PKG_VERSION"));
-    view.html().map_err(value_error)
+    page(view, (title, summary, &unit), is_y_up)
 }

@@ -5,7 +5,7 @@ use crate::index::{Index, SolidParts};
 use crate::memory::reserve;
 use crate::pair_columns::{PairArrays, PairColumns, PairList};
 use crate::parts::{Split, answer_in_parts, batch_options, check_finite};
-use crate::work::{Monitor, Threads, run_owned};
+use crate::work::{Monitor, Run, Threads, run_owned};
 use nalgebra::{Isometry3, Point3};
 use numpy::{PyReadonlyArray1, ToPyArray};
 use p2m_core::batch::{self, Interruptible};
@@ -58,13 +58,12 @@ impl ScenePair {
     fn run<R: Send + 'static>(
         self,
         py: Python<'_>,
-        threads: usize,
-        progress: Option<Py<PyAny>>,
+        run: Run,
         answer: impl Fn(AnyPairQuery<'_>, AnyPairQuery<'_>, &PairOptions<f64>) -> R + Send + Sync + 'static,
     ) -> PyResult<Vec<R>> {
         let total = self.motions.as_ref().map_or(1, Vec::len);
-        let pool = Threads::Pool(crate::threads::pool(py, threads)?);
-        run_owned(py, threads, total, progress, move |monitor| self.answer(&pool, monitor, answer))
+        let pool = Threads::Pool(crate::threads::pool(py, run.0)?);
+        run_owned(py, run, total, move |monitor| self.answer(&pool, monitor, answer))
     }
 }
 
@@ -143,16 +142,15 @@ impl Index {
         max_distance: f64,
         certified: bool,
         solid: bool,
-        threads: usize,
-        progress: Option<Py<PyAny>>,
+        run: Run,
     ) -> PyResult<()> {
         let index = self.pair_query()?;
-        let parts = if solid { Some(self.solid(py, threads)?) } else { None };
+        let parts = if solid { Some(self.solid(py, run.0)?) } else { None };
         let shapes = Shapes { vertices: triples(shapes.as_slice())?, width };
         let options = PairOptions::default().with_radius(radius).with_max_distance(max_distance);
         let (mut arrays, mut decisions) = (PairArrays::borrow(out)?, borrowed::<bool>(out, "is_near")?);
         let (columns, is_near) = (arrays.columns(shapes.len())?, slice(&mut decisions)?);
-        self.run(py, shapes.len(), threads, progress, |threads, monitor| match is_near {
+        self.run(py, shapes.len(), run, |threads, monitor| match is_near {
             Some(out) => {
                 let answer = |shape: &Shape<f64>| PairQuery::is_any_near(&index, shape, &options);
                 shapes.answer(out, threads, monitor, answer, |answers, out: &mut [bool]| out.copy_from_slice(answers))
@@ -188,12 +186,11 @@ impl Index {
         max_distance: f64,
         certified: bool,
         solid: bool,
-        threads: usize,
-        progress: Option<Py<PyAny>>,
+        run: Run,
     ) -> PyResult<PairList> {
         let scenes = self.with_other(other, transforms, max_distance)?;
-        let parts = if solid { Some([self.solid(py, threads)?, other.solid(py, threads)?]) } else { None };
-        let list = scenes.run(py, threads, progress, move |first, second, options| {
+        let parts = if solid { Some([self.solid(py, run.0)?, other.solid(py, run.0)?]) } else { None };
+        let list = scenes.run(py, run, move |first, second, options| {
             if let Some([of_first, of_second]) = &parts {
                 with_solid(&first, of_first, |first| {
                     with_solid(&second, of_second, |second| first.closest_pair(second, options))
@@ -213,13 +210,11 @@ impl Index {
         py: Python<'py>,
         other: &Self,
         transforms: Option<PyReadonlyArray1<'_, f64>>,
-        threads: usize,
-        progress: Option<Py<PyAny>>,
+        run: Run,
     ) -> PyResult<Bound<'py, PyAny>> {
         let scenes = self.with_other(other, transforms, 0.0)?;
-        let answers = scenes.run(py, threads, progress, |first, second, options| {
-            PairQuery::is_any_pair_near(&first, second, options)
-        })?;
+        let answers =
+            scenes.run(py, run, |first, second, options| PairQuery::is_any_pair_near(&first, second, options))?;
         Ok(answers.to_pyarray(py).into_any())
     }
 
@@ -234,7 +229,7 @@ impl Index {
         threads: usize,
     ) -> PyResult<PairList> {
         let scenes = self.with_other(other, transforms, max_distance)?;
-        let lists = scenes.run(py, threads, None, |first, second, options| {
+        let lists = scenes.run(py, (threads, None), |first, second, options| {
             let mut list: Vec<ClosestPair<f64>> = Vec::new();
             let _ = PairQuery::visit_pairs_within(&first, second, options, &mut |pair| {
                 reserve(&mut list, 1);

@@ -6,9 +6,9 @@ use crate::index::Index;
 use crate::memory::{collected, joined, out_of_memory};
 use crate::parts::{answer_in_parts, batch_options, check_finite};
 use crate::sharded::{ANSWERS_PER_PART, in_shards};
-use crate::signs::{SignRule, Signed as SignedIndex};
+use crate::signs::Signed as SignedIndex;
 use crate::source::{Part, Source};
-use crate::work::{Monitor, Threads, catch};
+use crate::work::{Monitor, Run, Threads, catch};
 use nalgebra::Point3;
 use numpy::{PyReadonlyArray1, PyReadwriteArray1};
 use p2m_core::batch::{BatchOptions, Interruptible, closest_columns_into};
@@ -48,8 +48,7 @@ pub(crate) fn closest(
     epsilon: f64,
     max_visits: Option<u32>,
     certified: bool,
-    threads: usize,
-    progress: Option<Py<PyAny>>,
+    run: Run,
 ) -> PyResult<()> {
     let options = query_options(max_distance, epsilon, max_visits);
     let mut arrays = ClosestArrays::borrow(out)?;
@@ -58,7 +57,7 @@ pub(crate) fn closest(
         let check = || check_finite("points", points, 1);
         if let (Source::Whole(index), false) = (&index, certified) {
             let index = index.get();
-            return index.run(py, points.len(), threads, progress, |threads, monitor| {
+            return index.run(py, points.len(), run, |threads, monitor| {
                 check()?;
                 let interruptible =
                     Interruptible::new(&*index.built.index, |left, answer| monitor.run_step(left, answer));
@@ -68,7 +67,7 @@ pub(crate) fn closest(
             });
         }
         let size = (points.len(), ANSWERS_PER_PART);
-        index.answer(py, size, columns, (threads, progress), check, |part, range, mut columns: ClosestValues<'_>| {
+        index.answer(py, size, columns, run, check, |part, range, mut columns: ClosestValues<'_>| {
             let answers = part.ask(
                 &points[range],
                 Position::point,
@@ -97,14 +96,13 @@ pub(crate) fn k_nearest(
     k: usize,
     out: &Bound<'_, PyDict>,
     max_distance: f64,
-    threads: usize,
-    progress: Option<Py<PyAny>>,
+    run: Run,
 ) -> PyResult<()> {
     let mut arrays = ClosestArrays::borrow(out)?;
     with_positions!(points, points => {
         let rows = Rows { columns: arrays.columns(points.len() * k)?, width: k };
         let (size, check) = ((points.len(), (ANSWERS_PER_PART / k.max(1)).max(1)), || check_finite("points", points, 1));
-        index.answer(py, size, rows, (threads, progress), check, |part, range, mut rows: Rows<ClosestValues<'_>>| {
+        index.answer(py, size, rows, run, check, |part, range, mut rows: Rows<ClosestValues<'_>>| {
             let answers = near(part, &points[range], k, max_distance)?;
             rows.columns.set_all(answers.iter().flat_map(|near| (0..k).map(|place| near.get(place))));
             Ok(())
@@ -136,13 +134,12 @@ pub(crate) fn within(
     points: Coordinates<'_>,
     radius: f64,
     mut counts: PyReadwriteArray1<'_, i64>,
-    threads: usize,
-    progress: Option<Py<PyAny>>,
+    run: Run,
 ) -> PyResult<NearList> {
     let counts = counts.as_slice_mut()?;
     let parts = with_positions!(points, points => {
         let (size, check) = ((points.len(), LISTS_PER_PART), || check_finite("points", points, 1));
-        index.answer(py, size, counts, (threads, progress), check, |part, range, counts: &mut [i64]| {
+        index.answer(py, size, counts, run, check, |part, range, counts: &mut [i64]| {
             let answers = near(part, &points[range], usize::MAX, radius)?;
             write_counts(counts, answers.iter().map(Vec::len));
             Ok(joined(answers))
@@ -166,14 +163,13 @@ pub(crate) fn is_any_within(
     points: Coordinates<'_>,
     radius: f64,
     out: &Bound<'_, PyDict>,
-    threads: usize,
-    progress: Option<Py<PyAny>>,
+    run: Run,
 ) -> PyResult<()> {
     let mut array = borrowed::<bool>(out, "is_within")?;
     let out = slice(&mut array)?.unwrap_or_default();
     with_positions!(points, points => {
         let (size, check) = ((points.len(), ANSWERS_PER_PART), || check_finite("points", points, 1));
-        index.answer(py, size, out, (threads, progress), check, |part, range, out: &mut [bool]| {
+        index.answer(py, size, out, run, check, |part, range, out: &mut [bool]| {
             let answers = part.ask(
                 &points[range],
                 Position::point,
@@ -215,7 +211,7 @@ impl Index {
     /// Returns the name of the rule that decides signs, and a sentence that says why, if the surface is open or
     /// not consistently oriented.
     fn sign_rule(&self, py: Python<'_>, sign: &str, threads: usize) -> PyResult<(&'static str, Option<&'static str>)> {
-        let signed = self.signs(py, SignRule::from_name(sign)?, threads)?;
+        let signed = self.signs(py, sign, threads)?;
         Ok((signed.rule().name(), signed.note()))
     }
 
@@ -226,13 +222,12 @@ impl Index {
         points: Coordinates<'_>,
         out: &Bound<'_, PyDict>,
         sign: &str,
-        threads: usize,
-        progress: Option<Py<PyAny>>,
+        run: Run,
     ) -> PyResult<()> {
-        let signed = self.signs(py, SignRule::from_name(sign)?, threads)?;
+        let signed = self.signs(py, sign, run.0)?;
         let mut array = borrowed::<bool>(out, "contains")?;
         let out = slice(&mut array)?.unwrap_or_default();
-        self.answer_signed(py, points, &signed, out, (threads, progress), |index, points, batch, out| {
+        self.answer_signed(py, points, &signed, out, run, |index, points, batch, out| {
             out.copy_from_slice(&signed.contains_each_by(index, points, batch));
         })
     }
@@ -246,10 +241,9 @@ impl Index {
         sign: &str,
         inside_is_negative: bool,
         max_distance: f64,
-        threads: usize,
-        progress: Option<Py<PyAny>>,
+        run: Run,
     ) -> PyResult<()> {
-        let signed = self.signs(py, SignRule::from_name(sign)?, threads)?;
+        let signed = self.signs(py, sign, run.0)?;
         let mut array = borrowed::<f64>(out, "signed_distance")?;
         let out = slice(&mut array)?.unwrap_or_default();
         let factor = if inside_is_negative { 1.0 } else { -1.0 };
@@ -257,7 +251,7 @@ impl Index {
         // Without primitives there is nothing inside. The side of a point beyond the largest distance is not known.
         let missing = if max_distance < f64::INFINITY { f64::NAN } else { factor * f64::INFINITY };
         let value_of = |distance: f64| if distance == f64::INFINITY { missing } else { factor * distance };
-        self.answer_signed(py, points, &signed, out, (threads, progress), |index, points, batch, out| {
+        self.answer_signed(py, points, &signed, out, run, |index, points, batch, out| {
             signed.distances_into(index, points, &options, batch, out);
             out.iter_mut().for_each(|distance| *distance = value_of(*distance));
         })
@@ -272,7 +266,7 @@ impl Index {
         points: Coordinates<'_>,
         signed: &SignedIndex,
         out: &mut [V],
-        (threads, progress): (usize, Option<Py<PyAny>>),
+        run: Run,
         answer: impl Fn(&(dyn ClosestPoint<f64> + Sync), &[Point3<f64>], &BatchOptions, &mut [V]) + Sync,
     ) -> PyResult<()> {
         with_positions!(points, points => {
@@ -295,7 +289,7 @@ impl Index {
                 }
                 Ok(())
             };
-            self.run(py, points.len(), threads, progress, work)
+            self.run(py, points.len(), run, work)
         })
     }
 }

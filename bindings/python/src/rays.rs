@@ -8,7 +8,7 @@ use crate::memory::{collected, joined};
 use crate::parts::Split;
 use crate::queries::write_counts;
 use crate::source::Source;
-use crate::work::catch;
+use crate::work::{Run, catch};
 use nalgebra::{Point3, Vector3};
 use numpy::PyReadonlyArray1;
 use p2m_core::{Hit, Ray, RayError, RayQuery, Side};
@@ -53,8 +53,7 @@ struct Cast<'a, 'py> {
     directions: &'a [[f64; 3]],
     range: [f64; 2],
     radius: f64,
-    threads: usize,
-    progress: Option<Py<PyAny>>,
+    run: Run,
 }
 
 impl Cast<'_, '_> {
@@ -69,7 +68,7 @@ impl Cast<'_, '_> {
         convert: impl Fn(B) -> A + Send + Sync,
         store: impl Fn(Vec<A>, O) -> R + Send + Sync,
     ) -> PyResult<Vec<R>> {
-        let Self { index, origins, directions, range: [t_min, t_max], radius, threads, progress } = self;
+        let Self { index, origins, directions, range: [t_min, t_max], radius, run } = self;
         let ray = |row: usize| {
             Ray::new(&Point3::from(origins[row]), &Vector3::from(directions[row]))
                 .and_then(|ray| ray.with_range(t_min, t_max)?.with_radius(radius))
@@ -77,7 +76,7 @@ impl Cast<'_, '_> {
         };
         let check = || (0..origins.len()).try_for_each(|row| ray(row).map(drop));
         let size = (origins.len(), RAYS_PER_PART);
-        index.answer(py, size, out, (threads, progress), check, |part, range, out| {
+        index.answer(py, size, out, run, check, |part, range, out| {
             let rays = range.map(ray).collect::<PyResult<Vec<Ray>>>()?;
             let origin = |ray: &Ray| ray.at(0.0);
             let answers =
@@ -111,14 +110,13 @@ pub(crate) fn rays(
     t_min: f64,
     t_max: f64,
     radius: f64,
-    threads: usize,
-    progress: Option<Py<PyAny>>,
+    run: Run,
 ) -> PyResult<Option<HitList>> {
     if let Source::Whole(index) = &index {
         index.get().ray_query()?;
     }
     let (origins, directions) = (triples(origins.as_slice())?, triples(directions.as_slice())?);
-    let cast = Cast { index, origins, directions, range: [t_min, t_max], radius, threads, progress };
+    let cast = Cast { index, origins, directions, range: [t_min, t_max], radius, run };
     let (mut booleans, mut numbers);
     match mode {
         "first" => {

@@ -1,11 +1,12 @@
 //! Random points on and around scenes.
 
+use crate::arrays::rows;
 use crate::errors::value_error;
 use crate::memory::reserve;
 use crate::scene::Scene;
 use crate::work::run_owned;
 use nalgebra::Point3;
-use numpy::{PyArray1, PyArray2, PyArrayMethods};
+use numpy::{PyArray1, PyArray2};
 use p2m_core::{Aabb, PrimitiveId};
 use p2m_field::sample::{self, Samples, SurfaceSampler};
 use pyo3::prelude::*;
@@ -25,7 +26,7 @@ pub(crate) fn sample_surface<'py>(
     threads: usize,
 ) -> PyResult<Columns<'py>> {
     let soup = Arc::clone(&scene.shared.soup);
-    let samples = run_owned(py, threads, 1, None, move |_| -> Option<Samples> {
+    let samples = run_owned(py, (threads, None), 1, move |_| -> Option<Samples> {
         check_memory(count);
         let sampler = SurfaceSampler::new(soup)?;
         Some(if sigmas.is_empty() { sampler.surface(seed, count) } else { sampler.near(seed, count, &sigmas) })
@@ -47,7 +48,7 @@ pub(crate) fn sample_box<'py>(
     threads: usize,
 ) -> PyResult<Bound<'py, PyArray2<f64>>> {
     let bounds = Aabb { min: low.into(), max: high.into() };
-    let points = run_owned(py, threads, 1, None, move |_| {
+    let points = run_owned(py, (threads, None), 1, move |_| {
         check_memory(count);
         sample::in_box(&bounds, seed, count)
     })?;
@@ -57,11 +58,4 @@ pub(crate) fn sample_box<'py>(
 /// Ends the work of this thread if there is no memory for so many samples.
 fn check_memory(count: usize) {
     reserve(&mut Vec::<(Point3<f64>, PrimitiveId)>::new(), count);
-}
-
-/// Returns points as rows, in the memory that they have.
-fn rows(py: Python<'_>, points: Vec<Point3<f64>>) -> PyResult<Bound<'_, PyArray2<f64>>> {
-    let count = points.len();
-    let rows: Vec<[f64; 3]> = points.into_iter().map(|point| point.coords.into()).collect();
-    PyArray1::from_vec(py, rows.into_flattened()).reshape([count, 3])
 }

@@ -45,7 +45,7 @@ fn load_file(file: &SavedFile) -> Result<Loaded, LoadError> {
 pub(crate) fn load(py: Python<'_>, path: PathBuf, map: bool, threads: usize) -> PyResult<Index> {
     let name = path.display().to_string();
     let file = path.clone();
-    let loaded = run_owned(py, threads, 1, None, move |_| {
+    let loaded = run_owned(py, (threads, None), 1, move |_| {
         let saved = if map { self::map(&file) } else { SavedFile::open(&file) }?;
         let loaded = load_file(&saved)?;
         Ok::<_, LoadError>((loaded, format!("{:016x}", saved.checksum())))
@@ -70,7 +70,7 @@ pub(crate) fn load_bytes(py: Python<'_>, bytes: &[u8], backend: &str, threads: u
     let soup = Arc::clone(&scene.soup);
     let work =
         move |monitor: &Monitor| build(BuildSettings::default(), monitor, |settings| entry.build(soup, settings));
-    let built = run_owned(py, threads, 1, None, work)?;
+    let built = run_owned(py, (threads, None), 1, work)?;
     Ok(Index::new(scene, built.map_err(value_error)?, entry, None))
 }
 
@@ -93,7 +93,7 @@ fn write_file(path: &Path, monitor: &Monitor, write: impl FnOnce(&mut OutputFile
 #[pyfunction]
 pub(crate) fn write_bytes(py: Python<'_>, path: PathBuf, bytes: Vec<u8>) -> PyResult<()> {
     let file = path.clone();
-    let saved = run_owned(py, 1, 1, None, move |monitor| write_file(&file, monitor, |out| out.write_all(&bytes)))?;
+    let saved = run_owned(py, (1, None), 1, move |monitor| write_file(&file, monitor, |out| out.write_all(&bytes)))?;
     saved.map_err(|error| io_error(&error, &path))
 }
 
@@ -106,7 +106,7 @@ impl Index {
         }
         let (scene, built, file) = (self.scene.clone(), self.built.clone(), path.clone());
         let saved =
-            run_owned(py, 1, 1, None, move |monitor| write_file(&file, monitor, |out| write(&scene, &built, out)))?;
+            run_owned(py, (1, None), 1, move |monitor| write_file(&file, monitor, |out| write(&scene, &built, out)))?;
         saved.map_err(|error| io_error(&error, &path))
     }
 

@@ -1,12 +1,12 @@
 //! Scenes as objects of Python.
 
-use crate::arrays::{Coordinates, motions, triples, with_positions};
+use crate::arrays::{Coordinates, motions, rows, triples};
 use crate::errors::{io_error, read_error, value_error};
 use crate::work::run_owned;
 use nalgebra::Point3;
 use numpy::{PyArray1, PyArray2, PyArrayMethods, PyReadonlyArray1, PyUntypedArrayMethods};
 use p2m_core::pair::Motion;
-use p2m_core::{Aabb, Element, Position, PrimitiveSet, Soup};
+use p2m_core::{Aabb, Element, PrimitiveSet, Soup};
 use p2m_mixed::engine::OutputFile;
 use p2m_mixed::{Format, PointColumns, WriteError, write_scene};
 use pyo3::exceptions::PyTypeError;
@@ -63,13 +63,12 @@ impl Scene {
         points: PyReadonlyArray1<'_, u32>,
     ) -> PyResult<Self> {
         let contiguous = |_| PyTypeError::new_err("an array of indices is not contiguous");
-        let positions = with_positions!(vertices, slice => slice.iter().map(Position::<f64>::point).collect());
         let (segments, rest) = segments.as_slice().map_err(contiguous)?.as_chunks();
         if !rest.is_empty() {
             return Err(value_error("segments have two indices each"));
         }
         let parts = Parts {
-            positions,
+            positions: vertices.points()?,
             triangles: triples(triangles.as_slice())?.to_vec(),
             segments: segments.to_vec(),
             points: points.as_slice().map_err(contiguous)?.to_vec(),
@@ -82,7 +81,8 @@ impl Scene {
     #[staticmethod]
     fn read(py: Python<'_>, path: PathBuf) -> PyResult<Self> {
         let file = path.clone();
-        let scene = run_owned(py, crate::threads::default_threads(), 1, None, move |_| p2m_formats::read_scene(&file))?;
+        let scene =
+            run_owned(py, (crate::threads::default_threads(), None), 1, move |_| p2m_formats::read_scene(&file))?;
         scene.map(Self::new).map_err(|error| read_error(&error, &path))
     }
 
@@ -90,7 +90,7 @@ impl Scene {
     fn write(&self, py: Python<'_>, path: PathBuf) -> PyResult<()> {
         let format = Format::from_path(&path).map_err(value_error)?;
         let (scene, file) = (Arc::clone(&self.shared), path.clone());
-        let written = run_owned(py, 1, 1, None, move |_| -> Result<(), WriteError> {
+        let written = run_owned(py, (1, None), 1, move |_| -> Result<(), WriteError> {
             let mut out = OutputFile::create(&file)?;
             write_scene(&scene, format, &mut out)?;
             Ok(out.finish()?)
@@ -140,8 +140,7 @@ impl Scene {
 
     /// Returns a scene with the same primitives and names over other positions.
     fn moved(&self, py: Python<'_>, vertices: Coordinates<'_>) -> PyResult<Self> {
-        let positions: Vec<Point3<f64>> =
-            with_positions!(vertices, slice => slice.iter().map(Position::<f64>::point).collect());
+        let positions = vertices.points()?;
         let moved = py.detach(|| {
             let mut scene = (*self.shared).clone();
             Arc::make_mut(&mut scene.soup).set_positions(positions).map(|()| scene)
@@ -233,11 +232,10 @@ pub(crate) fn read_points(
     id: Option<String>,
 ) -> PyResult<ReadPoints<'_>> {
     let (file, columns) = (path.clone(), PointColumns { coordinates, id });
-    let table = run_owned(py, 1, 1, None, move |_| p2m_formats::read_points(&file, &columns))?;
+    let table = run_owned(py, (1, None), 1, move |_| p2m_formats::read_points(&file, &columns))?;
     let table = table.map_err(|error| read_error(&error, &path))?;
     let ids = table.ids.map(|ids| (0..ids.len()).filter_map(|point| ids.get(point).map(str::to_owned)).collect());
-    let points = PyArray1::from_slice(py, bytemuck::cast_slice(&table.points)).reshape([table.points.len(), 3])?;
-    Ok((points, ids, table.unit.map(|unit| unit.to_string())))
+    Ok((rows(py, table.points)?, ids, table.unit.map(|unit| unit.to_string())))
 }
 
 /// Returns indices as rows of an array.

@@ -7,7 +7,7 @@ use crate::index::backend;
 use crate::memory::joined;
 use crate::parts::{Split, answer_in_parts, check_finite};
 use crate::scene::Scene;
-use crate::work::{FIRST_STEP_QUERIES, Monitor, Threads, run_batch};
+use crate::work::{FIRST_STEP_QUERIES, Monitor, Run, Threads, run_batch};
 use numpy::{PyArray1, PyReadonlyArray1};
 use p2m_core::{Key, Position, QueryOptions};
 use p2m_shards::{ShardBatch, ShardClosest, ShardError, ShardOptions, ShardedIndex};
@@ -47,13 +47,11 @@ impl Shards {
     fn run<R: Send>(
         py: Python<'_>,
         queries: usize,
-        threads: usize,
-        progress: Option<Py<PyAny>>,
+        (threads, progress): Run,
         work: impl FnOnce(&Threads, &Monitor) -> PyResult<R> + Send,
     ) -> PyResult<R> {
         let threads = Threads::Pool(crate::threads::pool(py, threads)?);
-        let monitor = threads.monitor(queries, FIRST_STEP_QUERIES, progress);
-        run_batch(py, &threads, &monitor, || work(&threads, &monitor))?
+        run_batch(py, &threads, (queries, FIRST_STEP_QUERIES), progress, work)
     }
 
     /// Runs a batch of queries in parts of so many, each as one batch of the library with the places for its answers.
@@ -63,11 +61,11 @@ impl Shards {
         py: Python<'_>,
         (queries, per_part): (usize, usize),
         mut out: O,
-        (threads, progress): (usize, Option<Py<PyAny>>),
+        run: Run,
         check: impl FnOnce() -> PyResult<()> + Send,
         answer: impl Fn(ShardBatch<'_>, Range<usize>, O) -> PyResult<R> + Send + Sync,
     ) -> PyResult<Vec<R>> {
-        Self::run(py, queries, threads, progress, |_, monitor| {
+        Self::run(py, queries, run, |_, monitor| {
             check()?;
             let done = AtomicUsize::new(0);
             let proceed = |count: usize| {
@@ -160,7 +158,7 @@ impl Shards {
                 });
                 Ok(())
             };
-            Self::run(py, points.len(), threads, None, work)
+            Self::run(py, points.len(), (threads, None), work)
         })
     }
 
@@ -186,7 +184,7 @@ impl Shards {
                 });
                 Ok(joined(parts))
             };
-            Self::run(py, points.len(), threads, None, work)
+            Self::run(py, points.len(), (threads, None), work)
         })?;
         let column = |part: fn(&(usize, usize)) -> usize| {
             PyArray1::from_iter(py, pairs.iter().map(|pair| i64::try_from(part(pair)).unwrap_or(i64::MAX)))
@@ -202,15 +200,14 @@ impl Shards {
         shard: usize,
         out: &Bound<'_, PyDict>,
         max_distance: f64,
-        threads: usize,
-        progress: Option<Py<PyAny>>,
+        run: Run,
     ) -> PyResult<()> {
         let options = QueryOptions::default().with_max_distance(max_distance);
         let (mut arrays, mut keys) = (ClosestArrays::borrow(out)?, borrowed::<f64>(out, "key")?);
         with_positions!(points, points => {
             let places = (arrays.columns(points.len())?, column::<[f64; 2]>(&mut keys, points.len())?);
             let (size, check) = ((points.len(), ANSWERS_PER_PART), || check_finite("points", points, 1));
-            self.answer(py, size, places, (threads, progress), check, |batch, range, (mut columns, keys)| {
+            self.answer(py, size, places, run, check, |batch, range, (mut columns, keys)| {
                 let answers = batch.closest_points_in_shard(shard, &points[range], &options).map_err(shard_error)?;
                 for (key, answer) in keys.into_iter().flatten().zip(&answers) {
                     *key = answer.as_ref().map_or(Key::INFINITY, |(_, key)| *key).order();
@@ -224,19 +221,12 @@ impl Shards {
     }
 
     /// Writes to `out` whether each query is inside of the surface that the triangles form.
-    fn contains(
-        &self,
-        py: Python<'_>,
-        points: Coordinates<'_>,
-        out: &Bound<'_, PyDict>,
-        threads: usize,
-        progress: Option<Py<PyAny>>,
-    ) -> PyResult<()> {
+    fn contains(&self, py: Python<'_>, points: Coordinates<'_>, out: &Bound<'_, PyDict>, run: Run) -> PyResult<()> {
         let mut array = borrowed::<bool>(out, "contains")?;
         let out = slice(&mut array)?.unwrap_or_default();
         with_positions!(points, points => {
             let (size, check) = ((points.len(), ANSWERS_PER_PART), || check_finite("points", points, 1));
-            self.answer(py, size, out, (threads, progress), check, |batch, range, out: &mut [bool]| {
+            self.answer(py, size, out, run, check, |batch, range, out: &mut [bool]| {
                 out.copy_from_slice(&batch.contains(&points[range]).map_err(shard_error)?);
                 Ok(())
             })?;
@@ -287,10 +277,10 @@ impl ShardWriter {
 
     /// Builds and writes the shards. An exception of a signal or of the callback ends it after the shard that is being
     /// built, and all files are removed before this returns.
-    fn finish(&self, py: Python<'_>, threads: usize, progress: Option<Py<PyAny>>) -> PyResult<()> {
+    fn finish(&self, py: Python<'_>, run: Run) -> PyResult<()> {
         let writer = self.take()?;
         let total = usize::try_from(writer.primitive_count()).unwrap_or(usize::MAX);
-        Shards::run(py, total, threads, progress, |_, monitor| {
+        Shards::run(py, total, run, |_, monitor| {
             let written = writer.finish_with_progress(&mut |done| {
                 monitor.set_done(usize::try_from(done).unwrap_or(usize::MAX));
                 if monitor.is_cancelled() { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }

@@ -5,6 +5,7 @@ use crate::errors::shard_error;
 use crate::index::Index;
 use crate::parts::{Split, answer_in_parts, batch_options};
 use crate::sharded::Shards;
+use crate::work::Run;
 use nalgebra::Point3;
 use p2m_core::batch;
 use p2m_shards::{ShardBatch, ShardError};
@@ -35,14 +36,14 @@ impl Source<'_> {
         py: Python<'_>,
         (queries, per_part): (usize, usize),
         out: O,
-        (threads, progress): (usize, Option<Py<PyAny>>),
+        run: Run,
         check: impl FnOnce() -> PyResult<()> + Send,
         answer: impl Fn(&Part<'_>, Range<usize>, O) -> PyResult<R> + Send + Sync,
     ) -> PyResult<Vec<R>> {
         match self {
             Self::Whole(index) => {
                 let index = index.get();
-                index.run(py, queries, threads, progress, |threads, monitor| {
+                index.run(py, queries, run, |threads, monitor| {
                     check()?;
                     let part = |range, out| answer(&Part::Whole(index), range, out);
                     answer_in_parts(queries, out, threads, monitor, &part).into_iter().collect()
@@ -50,7 +51,7 @@ impl Source<'_> {
             }
             Self::Shards(shards) => {
                 let part = |batch: ShardBatch<'_>, range, out| answer(&Part::Shards(batch), range, out);
-                shards.get().answer(py, (queries, per_part), out, (threads, progress), check, part)
+                shards.get().answer(py, (queries, per_part), out, run, check, part)
             }
         }
     }

@@ -15,6 +15,9 @@ use std::sync::mpsc::{RecvTimeoutError, channel};
 use std::sync::{Arc, Mutex, PoisonError};
 use std::time::{Duration, Instant};
 
+/// How a call runs: the number of its threads, and the function of Python that is called with its progress.
+pub(crate) type Run = (usize, Option<Py<PyAny>>);
+
 /// The time between two polls of the interpreter.
 const POLL_INTERVAL: Duration = Duration::from_millis(40);
 /// Steps that are shorter are followed by longer ones.
@@ -206,22 +209,20 @@ impl Threads {
     pub(crate) fn is_parallel(&self) -> bool {
         matches!(self, Self::Pool(_))
     }
-
-    /// Makes the monitor of a batch of so many queries, which begins with a step of `first_step` queries.
-    pub(crate) fn monitor(&self, total: usize, first_step: usize, progress: Option<Py<PyAny>>) -> Monitor {
-        let monitor = Monitor::new(total, progress, !self.is_parallel());
-        monitor.set_step(first_step);
-        monitor
-    }
 }
 
-/// Runs work that borrows, detached from the interpreter, and waits until all of it has ended.
+/// Runs work that borrows, detached from the interpreter, and waits until all of it has ended. It is a batch of so many
+/// queries, and begins with a step of `first_step` of them.
 pub(crate) fn run_batch<R: Send>(
     py: Python<'_>,
     threads: &Threads,
-    monitor: &Monitor,
-    work: impl FnOnce() -> R + Send,
+    (queries, first_step): (usize, usize),
+    progress: Option<Py<PyAny>>,
+    work: impl FnOnce(&Threads, &Monitor) -> PyResult<R> + Send,
 ) -> PyResult<R> {
+    let monitor = Monitor::new(queries, progress, !threads.is_parallel());
+    monitor.set_step(first_step);
+    let work = || work(threads, &monitor);
     let result = match threads {
         Threads::Calling => py.detach(|| catch_unwind(AssertUnwindSafe(work))),
         Threads::Pool(pool) => py.detach(|| {
@@ -240,16 +241,15 @@ pub(crate) fn run_batch<R: Send>(
             result.unwrap_or_else(|| Err(Box::new("its thread has ended")))
         }),
     };
-    monitor.finish(py, result)
+    monitor.finish(py, result)?
 }
 
 /// Runs work that owns what it needs on a pool, detached from the interpreter. If it is cancelled, this returns at
 /// once, and the work ends in the background when it next looks at the monitor.
 pub(crate) fn run_owned<R: Send + 'static>(
     py: Python<'_>,
-    threads: usize,
+    (threads, progress): Run,
     total: usize,
-    progress: Option<Py<PyAny>>,
     work: impl FnOnce(&Monitor) -> R + Send + 'static,
 ) -> PyResult<R> {
     let pool = crate::threads::pool(py, threads)?;

@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from . import _p2m
 from ._arrays import coordinates, real, thread_count, unmasked
-from ._index import Index
+from ._index import index_of, scene_of
 from ._scene import Scene
 
 
@@ -45,7 +45,7 @@ def scan_points(scan: Any) -> tuple[NDArray[Any], Scene | None]:
         if points.ndim != 2 or points.shape[1] != 3:
             raise ValueError(f"scan: the shape is {points.shape} instead of (n, 3)")
         return points, None
-    scene = scan.scene if isinstance(scan, Index) else Scene.of(scan)
+    scene = scene_of(scan)
     return scene.vertices, scene
 
 
@@ -109,9 +109,11 @@ def align(
     """
     points, _ = scan_points(scan)
     count = thread_count(threads)
-    index = part if isinstance(part, Index) else Index(part, threads=threads)
+    index = index_of(part, threads)
     flat = coordinates(points, "scan").reshape(-1)
-    found = _p2m.align(flat, index._raw, point_to_point, scale, real(overlap, "overlap"), search, count)
-    if found["ambiguity"] is not None:
-        warnings.warn(found["ambiguity"], stacklevel=2)
-    return Alignment(**found)
+    found = Alignment(
+        *_p2m.align(flat, index._raw, point_to_point, scale, real(overlap, "overlap"), search, count)
+    )
+    if found.ambiguity is not None:
+        warnings.warn(found.ambiguity, stacklevel=2)
+    return found

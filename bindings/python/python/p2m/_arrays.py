@@ -6,7 +6,8 @@ import contextlib
 import operator
 import threading
 from collections.abc import Callable, Iterator, Mapping, Sequence
-from typing import Any, Literal, Union
+from contextlib import AbstractContextManager
+from typing import Any, Literal, Self, Union
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -16,6 +17,9 @@ from ._records import Record
 
 Progress = Union[Callable[[int, int], object], bool, Literal["tqdm"], None]
 """``callback(done, total)``, or ``True`` or ``"tqdm"`` for a bar of tqdm."""
+
+Run = tuple[int, Union[Callable[[int, int], object], None]]
+"""How a call runs: the number of threads, and the function that receives progress."""
 
 Out = Union[Mapping[str, NDArray[Any]], Record, NDArray[Any], None]
 """Arrays that receive answers, by name, or one array for one answer."""
@@ -69,6 +73,35 @@ def coordinates(values: ArrayLike, name: str, *, only_float64: bool = False) -> 
     if not (flags.c_contiguous and flags.aligned):
         array = array.copy()
     return array
+
+
+def together(
+    first: ArrayLike, first_name: str, second: ArrayLike, second_name: str
+) -> tuple[tuple[int, ...], NDArray[np.float64], NDArray[np.float64]]:
+    """Return the leading axes of two arrays that are broadcast against each other, and both as flat arrays."""
+    arrays = [coordinates(first, first_name, only_float64=True), coordinates(second, second_name, only_float64=True)]
+    shape = np.broadcast_shapes(*(array.shape for array in arrays))
+    a, b = (np.ascontiguousarray(np.broadcast_to(array, shape)).reshape(-1) for array in arrays)
+    return shape[:-1], a, b
+
+
+def grid_of(origin: ArrayLike, shape: Sequence[int]) -> tuple[tuple[float, ...], tuple[int, ...]]:
+    """Return the first point of a grid, and its numbers of points."""
+    corner = coordinates(origin, "origin", only_float64=True)
+    if corner.shape != (3,):
+        raise ValueError(f"origin: the shape is {corner.shape} instead of (3,)")
+    counts = tuple(whole(count, "shape", 0, 2**40) for count in shape)
+    if len(counts) != 3 or min(counts) < 1:
+        raise ValueError(f"shape: {tuple(shape)} are not three numbers of points")
+    return tuple(corner.tolist()), counts
+
+
+def one_transform(values: ArrayLike | None, name: str) -> NDArray[np.float64] | None:
+    """Return the matrix of one rotation and translation."""
+    matrix = rigid_transforms(values, name)
+    if matrix is not None and matrix.ndim != 2:
+        raise ValueError(f"{name}: the shape is {matrix.shape} instead of (4, 4)")
+    return matrix
 
 
 MAX_ROTATION_DEVIATION = 1e-6
@@ -138,6 +171,11 @@ def thread_count(threads: int | None, default: int | None = None) -> int:
     return whole(threads, "threads", 1, 1024)
 
 
+def own_threads(threads: int | None) -> int | None:
+    """Return the number of threads that an object was given, if it was given one."""
+    return None if threads is None else thread_count(threads)
+
+
 def real(value: float, name: str) -> float:
     """Return a number as a float."""
     if isinstance(value, (str, bytes)):
@@ -164,11 +202,29 @@ def not_negative(value: float, name: str) -> float:
     return number
 
 
+def largest_distance(value: float | None, name: str = "max_distance") -> float:
+    """Return the largest distance of answers, which is infinite by default."""
+    return float("inf") if value is None else not_negative(value, name)
+
+
+def check_choice(value: object, name: str, choices: Sequence[object]) -> None:
+    """Fail if a value is none of some."""
+    if value not in choices:
+        raise ValueError(f"{name}: {value!r} is none of {', '.join(map(repr, choices))}")
+
+
+SIGNS = ("auto", "winding", "parity")
+"""The names of the rules of signs."""
+
+INSIDE = ("negative", "positive")
+"""The names of the signs that signed distances may have inside."""
+
+
 def checked_limits(
     max_distance: float | None, epsilon: float, max_visits: int | None, certified: bool
 ) -> tuple[float, float]:
     """Return the largest distance and the relative error, after a check of all limits of a search."""
-    largest = float("inf") if max_distance is None else not_negative(max_distance, "max_distance")
+    largest = largest_distance(max_distance)
     error = not_negative(epsilon, "epsilon")
     if max_visits is not None:
         whole(max_visits, "max_visits", 0, 2**32 - 1)
@@ -246,24 +302,57 @@ def flat(arrays: Mapping[str, NDArray[Any]]) -> dict[str, NDArray[Any]]:
     return {name: array if array.ndim == 1 else array.reshape(-1) for name, array in arrays.items()}
 
 
-@contextlib.contextmanager
-def callback(progress: Progress, what: str, unit: str) -> Iterator[Callable[[int, int], object] | None]:
-    """Yield the function that receives progress, and close its bar afterwards."""
+def running(threads: int, progress: Progress, what: str, unit: str) -> AbstractContextManager[Run]:
+    """Return a context with the number of threads and the function that receives progress, whose bar it closes."""
     if progress is None or progress is False:
-        yield None
-    elif progress is True or progress == "tqdm":
-        try:
-            from tqdm.auto import tqdm
-        except ImportError as error:
-            raise ImportError(f"progress={progress!r} needs the package tqdm") from error
-        with tqdm(desc=what, unit=unit, unit_scale=True, total=0) as bar:
-
-            def update(done: int, total: int) -> None:
-                bar.total = total
-                bar.update(done - bar.n)
-
-            yield update
-    elif callable(progress):
-        yield progress
-    else:
+        return contextlib.nullcontext((threads, None))
+    if progress is True or progress == "tqdm":
+        return _bar(threads, progress, what, unit)
+    if not callable(progress):
         raise TypeError(f"progress: {progress!r} is neither a function nor True nor 'tqdm'")
+    return contextlib.nullcontext((threads, progress))
+
+
+@contextlib.contextmanager
+def _bar(threads: int, progress: Progress, what: str, unit: str) -> Iterator[Run]:
+    """Yield the number of threads and a function that moves a bar of tqdm."""
+    try:
+        from tqdm.auto import tqdm
+    except ImportError as error:
+        raise ImportError(f"progress={progress!r} needs the package tqdm") from error
+    with tqdm(desc=what, unit=unit, unit_scale=True, total=0) as bar:
+
+        def update(done: int, total: int) -> None:
+            bar.total = total
+            bar.update(done - bar.n)
+
+        yield threads, update
+
+
+class Shared:
+    """An object that never changes, so that copies are the object itself."""
+
+    __slots__ = ()
+
+    def __copy__(self) -> Self:
+        return self
+
+    def __deepcopy__(self, memo: object) -> Self:
+        return self
+
+
+class Queries(Shared):
+    """What the queries of an index rest on: the index of the library, and the usual number of threads."""
+
+    __slots__ = ()
+
+    _raw: Any
+    _threads: int | None
+
+    def _count(self, threads: int | None) -> int:
+        return thread_count(threads, self._threads)
+
+    def _running(
+        self, threads: int | None, progress: Progress, unit: str = "points", what: str = "answering"
+    ) -> AbstractContextManager[Run]:
+        return running(thread_count(threads, self._threads), progress, what, unit)

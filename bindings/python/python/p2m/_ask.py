@@ -283,9 +283,7 @@ class Ask:
 
     def _ask_pandas(self, frame: Any) -> Any:
         self._check_new(frame.columns)
-        for name in self._columns:
-            if name not in frame.columns:
-                raise KeyError(name)
+        _check_present(self._columns, frame.columns)
         columns = [frame[name] for name in self._columns]
         if len(columns) == 1:
             points = np.array(columns[0].tolist(), np.float64).reshape(len(frame), -1)
@@ -300,13 +298,17 @@ class Ask:
         import polars
 
         self._check_new(frame.columns)
-        for name in self._columns:
-            if name not in frame.columns:
-                raise KeyError(name)
+        _check_present(self._columns, frame.columns)
         answers = self._arrow_answers(frame.select(self._columns).to_arrow())
         return frame.with_columns([
             polars.Series(name, polars.from_arrow(array)) for name, array in zip(self.names, answers)
         ])
+
+
+def _check_present(columns: Sequence[str], names: Iterable[str]) -> None:
+    for name in columns:
+        if name not in names:
+            raise KeyError(name)
 
 
 def _joined(columns: Sequence[NDArray[Any]]) -> NDArray[Any]:
@@ -348,9 +350,7 @@ def arrow_points(batch: Any, columns: Sequence[str]) -> tuple[NDArray[Any], NDAr
 
     Coordinates of points that are not valid are any numbers.
     """
-    for name in columns:
-        if name not in batch.schema.names:
-            raise KeyError(name)
+    _check_present(columns, batch.schema.names)
     arrays = [_one_chunk(batch.column(name)) for name in columns]
     if len(arrays) == 1:
         return _geometry(arrays[0], columns[0])

@@ -71,11 +71,7 @@ class CudaIndex:
         return {"scene_bytes": scene, "list_bytes": lists, "cells_without_list": without}
 
     def closest(
-        self,
-        points: Any,
-        *,
-        max_distance: float | None = None,
-        fields: str | Sequence[str] = ("distance", "primitive"),
+        self, points: Any, *, max_distance: float | None = None, fields: str | Sequence[str] = ("distance", "primitive")
     ) -> ClosestPoints:
         """Return the closest points of the scene to query points.
 

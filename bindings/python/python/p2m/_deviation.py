@@ -16,8 +16,8 @@ from numpy.typing import NDArray
 from . import _p2m
 from ._align import align as align_points
 from ._align import scan_points
-from ._arrays import Progress, coordinates, not_negative
-from ._index import Index
+from ._arrays import SIGNS, Progress, check_choice, coordinates, largest_distance, not_negative
+from ._index import Index, index_of
 from ._page import Page, checked_up
 from ._scene import Scene
 
@@ -64,16 +64,10 @@ class Deviation:
         limit: float | None,
         unit: str,
     ) -> None:
-        self.values = values
-        self.statistics = _p2m.deviation_statistics(values)
-        self.is_signed = is_signed
-        self.tolerance = tolerance
-        self.unit = unit
-        usual = 3 * tolerance if tolerance else self.statistics["absolute_percentile_95"]
-        self.limit = limit or (usual if usual > 0 else 1.0)
-        self._points = points
-        self._scan = scan
-        self._index = index
+        self.values, self.is_signed, self.tolerance, self.unit = values, is_signed, tolerance, unit
+        self.statistics, usual_limit = _p2m.deviation_statistics(values, tolerance)
+        self.limit = limit or usual_limit
+        self._points, self._scan, self._index = points, scan, index
 
     def __repr__(self) -> str:
         mean, rms = self.statistics["mean"], self.statistics["rms"]
@@ -111,7 +105,7 @@ class Deviation:
 
         The primitives in no object are last, with an empty name. A mesh without objects has an empty list.
         """
-        return _p2m.deviation_objects(self._index.scene._raw, self.values, self._primitives())
+        return self._report().objects()
 
     def figure(self) -> _Figure:
         """Return a figure of matplotlib: the scan, coloured by its deviations, and their histogram.
@@ -182,34 +176,19 @@ class Deviation:
         OSError
             If the file cannot be written.
         """
-        target = Path(path)
-        checked_up(up)
+        target, is_y_up = Path(path), checked_up(up)
         if target.suffix == ".ply":
-            _p2m.write_bytes(target, _p2m.deviation_ply(self._raw_scan(), self.values, self.limit))
-            return
-        if target.suffix == ".csv":
-            _p2m.write_bytes(target, self._table().encode())
-            return
-        if target.suffix in (".pdf", ".png"):
-            sheet = _p2m.deviation_sheet(
-                self._raw_scan(),
-                self.values,
-                self._primitives(),
-                self._index.scene._raw,
-                self.is_signed,
-                self.limit,
-                self.tolerance,
-                required,
-                checked_up(up),
-                [] if head is None else [(str(name), str(value)) for name, value in head.items()],
-                ("Deviations", self.unit, f"p2m {_p2m.__version__} for Python"),
-                target.suffix == ".pdf",
-            )
-            _p2m.write_bytes(target, sheet)
-            return
-        if target.suffix != ".html":
+            data = _p2m.deviation_ply(self._raw_scan(), self.values, self.limit)
+        elif target.suffix == ".csv":
+            data = self._table().encode()
+        elif target.suffix == ".html":
+            data = self.show(up=up).html.encode()
+        elif target.suffix in (".pdf", ".png"):
+            lines = [(str(name), str(value)) for name, value in (head or {}).items()]
+            data = self._report().sheet("Deviations", lines, required, is_y_up, target.suffix == ".pdf")
+        else:
             raise ValueError(f"path: {target.name!r} does not end in .html, .ply, .csv, .pdf or .png")
-        self.show(up=up).save(target)
+        _p2m.write_bytes(target, data)
 
     def show(self, *, up: Literal["y", "z"] = "z") -> Page:
         """Return the page that `save` writes, which notebooks show.
@@ -222,28 +201,17 @@ class Deviation:
         what = "deviations, positive outside" if self.is_signed else "distances"
         count, mean, rms = (self.statistics[key] for key in ("count", "mean", "rms"))
         summary = f"{count:,} {what}: mean {mean:.4g} {self.unit}, root mean square {rms:.4g} {self.unit}"
-        texts = ("Deviations", summary, self.unit)
-        scene = self._index.scene._raw
-        return Page(
-            _p2m.deviation_page(
-                self._raw_scan(),
-                self.values,
-                self._primitives(),
-                scene,
-                self.is_signed,
-                self.limit,
-                self.tolerance,
-                checked_up(up),
-                texts,
-            )
-        )
+        return Page(self._report().page("Deviations", summary, checked_up(up)))
 
-    def _primitives(self) -> NDArray[np.uint32]:
-        """Return the closest primitive of each point."""
+    def _report(self) -> _p2m.Report:
+        """Return what pages and sheets show, for which the closest primitive of each point is searched."""
         primitives = np.full(len(self.values), np.iinfo(np.uint32).max, np.uint32)
         finite = np.isfinite(self._points).all(axis=1)
         primitives[finite] = self._index.closest(self._points[finite], fields="primitive").primitive
-        return primitives
+        scan, scene = self._raw_scan(), self._index.scene._raw
+        return _p2m.Report(
+            scan, self.values, primitives, scene, self.is_signed, self.limit, self.tolerance, self.unit
+        )
 
     def _raw_scan(self) -> _p2m.Scene:
         if self._scan is not None:
@@ -346,19 +314,17 @@ def deviation(
     >>> found.statistics["mean"], found.outside()
     (0.125, (1, 0))
     """
-    if sign not in ("auto", "winding", "parity", None):
-        raise ValueError(f"sign: {sign!r} is none of 'auto', 'winding', 'parity', None")
+    check_choice(sign, "sign", (*SIGNS, None))
     tolerance = None if tolerance is None else not_negative(tolerance, "tolerance")
     limit = None if limit is None else not_negative(limit, "limit")
-    index = mesh if isinstance(mesh, Index) else Index(mesh, threads=threads)
+    index = index_of(mesh, threads)
     points, scene = scan_points(scan)
     if align:
         points = align_points(points, index, threads=threads).points
         scene = None if scene is None else scene.moved(points)
     finite = np.isfinite(points).all(axis=1)
     queries = coordinates(points if finite.all() else points[finite], "scan")
-    farthest = np.inf if max_distance is None else not_negative(max_distance, "max_distance")
-
+    farthest = largest_distance(max_distance)
     numbers: NDArray[np.float64] | None = None
     if sign is None:
         numbers = index.distance(queries, threads=threads, progress=progress)
@@ -382,13 +348,4 @@ def deviation(
         primitives, weights = answers.primitive.astype(np.uint32), answers.barycentric.reshape(-1)
         values = _p2m.deviation_on_vertices(index.scene._raw, primitives, weights, values[known])
         scene, points = index.scene, index.scene.vertices
-    return Deviation(
-        values,
-        points,
-        scene,
-        index,
-        sign is not None,
-        tolerance,
-        limit,
-        unit,
-    )
+    return Deviation(values, points, scene, index, sign is not None, tolerance, limit, unit)

@@ -8,8 +8,8 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from . import _p2m
-from ._arrays import Progress, callback, not_negative, rigid_transforms, thread_count, whole
-from ._index import Index
+from ._arrays import Progress, not_negative, one_transform, running, thread_count, whole
+from ._index import index_of, scene_of
 from ._scene import Scene
 
 
@@ -93,13 +93,11 @@ def hausdorff(
     ([4.0, 0.0, 0.0], 0)
     """
     count = thread_count(threads)
-    matrix = rigid_transforms(transform, "transform")
+    matrix = one_transform(transform, "transform")
     if matrix is not None:
-        if matrix.ndim != 2:
-            raise ValueError(f"transform: the shape is {matrix.shape} instead of (4, 4)")
-        b = Scene._from_raw(_scene_of(b)._raw.transformed(matrix.reshape(-1)))
+        b = Scene._from_raw(scene_of(b)._raw.transformed(matrix.reshape(-1)))
     max_queries = whole(max_queries, "max_queries", 0, 2**64 - 1)
-    scenes = [_scene_of(a), _scene_of(b)]
+    scenes = [scene_of(a), scene_of(b)]
     if tolerance is None:
         if len(scenes[0]) == 0 or len(scenes[1]) == 0:
             raise ValueError("a scene is empty, so there is no Hausdorff distance")
@@ -108,26 +106,10 @@ def hausdorff(
         tolerance = float(np.linalg.norm(high - low)) / 1e4
     margin = not_negative(tolerance, "tolerance")
     # The points of one side alone need no index of their scene.
-    first = None if one_sided else _index_of(a, scenes[0], count)._raw
-    second = _index_of(b, scenes[1], count)._raw
-    with callback(progress, "comparing", "queries") as call:
-        found = _p2m.hausdorff(scenes[0]._raw, first, second, margin, max_queries, count, call)
+    first = None if one_sided else index_of(a, count, scenes[0])._raw
+    second = index_of(b, count, scenes[1])._raw
+    with running(count, progress, "comparing", "queries") as run:
+        found = _p2m.hausdorff(scenes[0]._raw, first, second, margin, max_queries, run)
     if found is None:
         raise ValueError("a scene is empty, so there is no Hausdorff distance")
-    return HausdorffDistance(
-        lower_bound=found["lower_bound"],
-        upper_bound=found["upper_bound"],
-        points=np.array(found["points"], np.float64),
-        primitives=np.array(found["primitives"], np.int64),
-        from_scene=found["from_scene"],
-        queries=found["queries"],
-        reached=found["reached"],
-    )
-
-
-def _scene_of(obj: Any) -> Scene:
-    return obj.scene if isinstance(obj, Index) else Scene.of(obj)
-
-
-def _index_of(obj: Any, scene: Scene, threads: int) -> Index:
-    return obj if isinstance(obj, Index) else Index(scene, threads=threads)
+    return HausdorffDistance(*found)

@@ -16,16 +16,23 @@ from ._arrays import (
     FIELDS,
     HIT_FIELDS,
     Out,
+    INSIDE,
     Progress,
-    callback,
+    Queries,
+    check_choice,
     checked_limits,
     coordinates,
     flat,
+    grid_of,
+    largest_distance,
     not_negative,
     one_output,
     outputs,
+    own_threads,
     real,
+    running,
     thread_count,
+    together,
     whole,
 )
 from ._cuda import CudaIndex
@@ -42,16 +49,10 @@ if TYPE_CHECKING:
     _RayMode = Literal["first", "all", "count", "any", "crossings"]
 
 
-class PointQueries:
+class PointQueries(Queries):
     """The queries for points and rays of an index in one piece or in shards."""
 
     __slots__ = ()
-
-    _raw: Any
-    _threads: int | None
-
-    def _count(self, threads: int | None) -> int:
-        return thread_count(threads, self._threads)
 
     def _objects(self) -> list[tuple[str, int, int]]:
         """Return the names of the objects, with their first id and the one after their last."""
@@ -131,22 +132,15 @@ class PointQueries:
         shape = queries.shape[:-1]
         arrays = outputs(fields, shape, out, CLOSEST_FIELDS, ("distance", "primitive"))
         largest, error = checked_limits(max_distance, epsilon, max_visits, certified)
-        columns, rows = flat(arrays), queries.reshape(-1)
-        objects = columns.pop("object", None)
-        if objects is not None and "primitive" not in columns:
-            columns["primitive"] = np.empty(len(objects), np.int64)
-        normals = columns.pop("normal", None)
-        if normals is not None:
-            if not isinstance(self._raw, _p2m.Index):
-                raise ValueError("fields: 'normal' is not for shards")
-            columns.setdefault("primitive", np.empty(len(rows) // 3, np.int64))
-            columns.setdefault("feature", np.empty(len(rows) // 3, np.uint8))
-        count = thread_count(threads, self._threads)
+        rows = queries.reshape(-1)
+        columns, derived = self._columns(arrays, len(rows) // 3)
+        limits = largest, error, max_visits, certified
         if progress is None:
-            _p2m.closest(self._raw, rows, columns, largest, error, max_visits, certified, count, None)
+            # A context takes a tenth of the time of a call with one point.
+            _p2m.closest(self._raw, rows, columns, *limits, (self._count(threads), None))
         else:
-            with callback(progress, "answering", "points") as call:
-                _p2m.closest(self._raw, rows, columns, largest, error, max_visits, certified, count, call)
+            with self._running(threads, progress) as run:
+                _p2m.closest(self._raw, rows, columns, *limits, run)
         bounds = columns.get("lower_bound")
         if bounds is not None and largest < float("inf"):
             # Where nothing is as near, everything is farther, apart from the error of a distance (8 u M). An empty scene
@@ -155,11 +149,30 @@ class PointQueries:
             below = np.maximum(largest * (1.0 - 2.0**-49) - size * 2.0**-48, 0.0)
             is_open = (bounds == float("inf")) & ~np.isnan(below)
             bounds[is_open] = below[is_open]
-        if objects is not None:
-            self._fill_objects(columns["primitive"], objects)
-        if normals is not None and isinstance(self._raw, _p2m.Index):
-            self._raw.normals(columns["primitive"], columns["feature"], {"normal": normals})
+        if derived:
+            self._derive(derived, columns)
         return ClosestPoints(arrays)
+
+    def _columns(
+        self, arrays: dict[str, NDArray[Any]], count: int
+    ) -> tuple[dict[str, NDArray[Any]], dict[str, NDArray[Any]]]:
+        """Return the flat arrays that a search fills, and those that `_derive` fills afterwards."""
+        columns = flat(arrays)
+        derived: dict[str, NDArray[Any]] = {name: columns.pop(name) for name in ("object", "normal") if name in columns}
+        if "normal" in derived and not isinstance(self._raw, _p2m.Index):
+            raise ValueError("fields: 'normal' is not for shards")
+        if derived:
+            columns.setdefault("primitive", np.empty(count, np.int64))
+        if "normal" in derived:
+            columns.setdefault("feature", np.empty(count, np.uint8))
+        return columns, derived
+
+    def _derive(self, derived: dict[str, NDArray[Any]], columns: dict[str, NDArray[Any]]) -> None:
+        """Fill the columns that follow from primitives and features."""
+        if "object" in derived:
+            self._fill_objects(columns["primitive"], derived["object"])
+        if "normal" in derived:
+            self._raw.normals(columns["primitive"], columns["feature"], derived)
 
     def _box(self) -> NDArray[np.float64]:
         """Return the corners of the box around all primitives; nan for an empty scene."""
@@ -244,15 +257,11 @@ class PointQueries:
         queries = coordinates(points, "points")
         k = whole(k, "k", 1, 2**31 - 1)
         arrays = outputs(fields, (*queries.shape[:-1], k), out, FIELDS, ("distance", "primitive"))
-        largest = float("inf") if max_distance is None else not_negative(max_distance, "max_distance")
-        columns = flat(arrays)
-        objects = columns.pop("object", None)
-        if objects is not None and "primitive" not in columns:
-            columns["primitive"] = np.empty(len(objects), np.int64)
-        with callback(progress, "answering", "points") as call:
-            _p2m.k_nearest(self._raw, queries.reshape(-1), k, columns, largest, self._count(threads), call)
-        if objects is not None:
-            self._fill_objects(columns["primitive"], objects)
+        largest = largest_distance(max_distance)
+        columns, derived = self._columns(arrays, queries.size // 3 * k)
+        with self._running(threads, progress) as run:
+            _p2m.k_nearest(self._raw, queries.reshape(-1), k, columns, largest, run)
+        self._derive(derived, columns)
         return ClosestPoints(arrays)
 
     def within(
@@ -292,17 +301,13 @@ class PointQueries:
         outputs(fields, (0,), None, FIELDS, ("distance", "primitive"))
         rows = queries.reshape(-1)
         splits = np.zeros(len(rows) // 3 + 1, np.int64)
-        with callback(progress, "answering", "points") as call:
-            found = _p2m.within(self._raw, rows, number, splits[1:], self._count(threads), call)
+        with self._running(threads, progress) as run:
+            found = _p2m.within(self._raw, rows, number, splits[1:], run)
         np.cumsum(splits, out=splits)
         arrays = outputs(fields, (len(found),), None, FIELDS, ("distance", "primitive"))
-        columns = flat(arrays)
-        objects = columns.pop("object", None)
-        if objects is not None and "primitive" not in columns:
-            columns["primitive"] = np.empty(len(objects), np.int64)
+        columns, derived = self._columns(arrays, len(found))
         found.fill(columns)
-        if objects is not None:
-            self._fill_objects(columns["primitive"], objects)
+        self._derive(derived, columns)
         return NearPrimitives({"splits": splits, **arrays})
 
     def is_any_within(
@@ -339,9 +344,8 @@ class PointQueries:
         queries = coordinates(points, "points")
         number = not_negative(radius, "radius")
         array = one_output(out, "is_within", _BOOL, queries.shape[:-1])
-        with callback(progress, "answering", "points") as call:
-            columns = {"is_within": array.reshape(-1)}
-            _p2m.is_any_within(self._raw, queries.reshape(-1), number, columns, self._count(threads), call)
+        with self._running(threads, progress) as run:
+            _p2m.is_any_within(self._raw, queries.reshape(-1), number, {"is_within": array.reshape(-1)}, run)
         return array
 
     @overload
@@ -456,35 +460,30 @@ class PointQueries:
         >>> index.rays(origins, [0, 0, -2], "count", t_min=-9)
         array([1, 1, 0])
         """
-        starts = coordinates(origins, "origins", only_float64=True)
-        steps = coordinates(directions, "directions", only_float64=True)
-        shape = np.broadcast_shapes(starts.shape, steps.shape)
-        start = np.ascontiguousarray(np.broadcast_to(starts, shape)).reshape(-1)
-        step = np.ascontiguousarray(np.broadcast_to(steps, shape)).reshape(-1)
-        leading, number = shape[:-1], len(start) // 3
+        leading, start, step = together(origins, "origins", directions, "directions")
+        number = len(start) // 3
         size = not_negative(radius, "radius")
         if not t_min <= t_max:
             raise ValueError(f"t_min, t_max: no parameter lies between {t_min} and {t_max}")
         if fields is not None and mode not in ("first", "all"):
             raise ValueError(f"fields: the mode {mode!r} has none")
-        count = self._count(threads)
-        with callback(progress, "casting", "rays") as call:
+        with self._running(threads, progress, "rays", "casting") as run:
             if mode == "first":
                 arrays = outputs(fields, leading, None, HIT_FIELDS, ("t", "primitive"))
-                _p2m.rays(self._raw, start, step, mode, flat(arrays), t_min, t_max, size, count, call)
+                _p2m.rays(self._raw, start, step, mode, flat(arrays), t_min, t_max, size, run)
                 return FirstHits(arrays)
             if mode == "all":
                 outputs(fields, (0,), None, HIT_FIELDS, ("t", "primitive"))
                 splits = np.zeros(number + 1, np.int64)
                 counts = {"value": splits[1:]}
-                hits = _p2m.rays(self._raw, start, step, mode, counts, t_min, t_max, size, count, call)
+                hits = _p2m.rays(self._raw, start, step, mode, counts, t_min, t_max, size, run)
                 np.cumsum(splits, out=splits)
                 assert hits is not None
                 arrays = outputs(fields, (len(hits),), None, HIT_FIELDS, ("t", "primitive"))
                 hits.fill(flat(arrays))
                 return AllHits({"splits": splits, **arrays})
             values: NDArray[Any] = np.empty(number, np.bool_ if mode == "any" else np.int64)
-            _p2m.rays(self._raw, start, step, mode, {"value": values}, t_min, t_max, size, count, call)
+            _p2m.rays(self._raw, start, step, mode, {"value": values}, t_min, t_max, size, run)
             return values.reshape(leading)
 
 
@@ -570,8 +569,7 @@ class Index(PointQueries, PairQueries):
         resolution: float | None = None,
     ) -> None:
         made = Scene.of(scene)
-        self._threads = None if threads is None else thread_count(threads)
-        count = thread_count(threads)
+        self._threads = own_threads(threads)
         if queries is not None:
             queries = whole(queries, "queries", 0, 2**63 - 1)
         if max_bytes is not None:
@@ -579,8 +577,8 @@ class Index(PointQueries, PairQueries):
         if resolution is not None and not 0.0 < resolution < float("inf"):
             raise ValueError(f"resolution: {resolution} is not positive and finite")
         named = None if directions is None else str(directions)
-        with callback(progress, "building", "%") as call:
-            self._raw = _p2m.Index.build(made._raw, backend, count, call, named, resolution, queries, max_bytes)
+        with self._running(threads, progress, "%", "building") as run:
+            self._raw = _p2m.Index.build(made._raw, backend, run, named, resolution, queries, max_bytes)
 
     @classmethod
     def _from_raw(cls, raw: _p2m.Index, threads: int | None) -> Index:
@@ -619,12 +617,6 @@ class Index(PointQueries, PairQueries):
 
     def __repr__(self) -> str:
         return f"<p2m.Index {self.backend!r} of {len(self)} primitives>"
-
-    def __copy__(self) -> Index:
-        return self
-
-    def __deepcopy__(self, memo: object) -> Index:
-        return self
 
     def _objects(self) -> list[tuple[str, int, int]]:
         return self._raw.scene().objects()
@@ -687,14 +679,10 @@ class Index(PointQueries, PairQueries):
         """
         queries = coordinates(points, "points")
         array = one_output(out, "signed_distance", _FLOAT64, queries.shape[:-1])
-        if inside not in ("negative", "positive"):
-            raise ValueError(f"inside: {inside!r} is none of 'negative', 'positive'")
-        largest = float("inf") if max_distance is None else not_negative(max_distance, "max_distance")
-        is_negative = inside == "negative"
-        count = self._count(threads)
-        with callback(progress, "answering", "points") as call:
-            columns = {"signed_distance": array.reshape(-1)}
-            self._raw.signed_distance(queries.reshape(-1), columns, sign, is_negative, largest, count, call)
+        check_choice(inside, "inside", INSIDE)
+        largest, columns = largest_distance(max_distance), {"signed_distance": array.reshape(-1)}
+        with self._running(threads, progress) as run:
+            self._raw.signed_distance(queries.reshape(-1), columns, sign, inside == "negative", largest, run)
         return array
 
     def contains(
@@ -742,9 +730,8 @@ class Index(PointQueries, PairQueries):
         """
         queries = coordinates(points, "points")
         array = one_output(out, "contains", _BOOL, queries.shape[:-1])
-        count = self._count(threads)
-        with callback(progress, "answering", "points") as call:
-            self._raw.contains(queries.reshape(-1), {"contains": array.reshape(-1)}, sign, count, call)
+        with self._running(threads, progress) as run:
+            self._raw.contains(queries.reshape(-1), {"contains": array.reshape(-1)}, sign, run)
         return array
 
     def sign_rule(self, sign: _Sign = "auto") -> str:
@@ -821,15 +808,10 @@ class Index(PointQueries, PairQueries):
         >>> index.field((0, 0, 0), 3.0, (1, 1, 2), first=(1, 0, 0))[0, 0].tolist()
         [3.0, 4.242640495300293]
         """
-        corner = coordinates(origin, "origin", only_float64=True)
-        if corner.shape != (3,):
-            raise ValueError(f"origin: the shape is {corner.shape} instead of (3,)")
-        counts = tuple(whole(count, "shape", 0, 2**40) for count in shape)
+        corner, counts = grid_of(origin, shape)
         starts = tuple(operator.index(start) for start in first)
         if len(starts) != 3 or not 0 <= min(starts) <= max(starts) <= 2**40:
             raise ValueError(f"first: {starts} are not three indices from 0 to 2**40")
-        if len(counts) != 3 or min(counts) < 1:
-            raise ValueError(f"shape: {tuple(shape)} are not three numbers of points")
         if out is not None:
             if not isinstance(out, np.ndarray):
                 raise TypeError(f"out: {type(out).__name__} is no array of NumPy")
@@ -839,19 +821,9 @@ class Index(PointQueries, PairQueries):
                 raise TypeError(f"out: the type is {out.dtype} instead of float32 or float64")
             if not out.flags.writeable:
                 raise ValueError("out: the array is read-only")
-        width = float("inf") if band is None else not_negative(band, "band")
-        x, y, z = (float(value) for value in corner)
-        with callback(progress, "filling the grid", "points") as call:
-            values = self._raw.field(
-                (x, y, z),
-                real(spacing, "spacing"),
-                (starts[0], starts[1], starts[2]),
-                (counts[0], counts[1], counts[2]),
-                sign if signed else None,
-                width,
-                self._count(threads),
-                call,
-            )
+        rule, width, step = sign if signed else None, largest_distance(band, "band"), real(spacing, "spacing")
+        with self._running(threads, progress, what="filling the grid") as run:
+            values = self._raw.field(corner, step, starts, counts, rule, width, run)
         grid = values.reshape(counts[::-1]).transpose()
         if out is None:
             return grid
@@ -911,12 +883,7 @@ class Index(PointQueries, PairQueries):
         return OffsetSurface(Scene._from_raw(raw), of_vertices, of_triangles)
 
     def show(
-        self,
-        *,
-        field: int | None = None,
-        sign: _Sign | None = None,
-        unit: str = "units",
-        up: Literal["y", "z"] = "z",
+        self, *, field: int | None = None, sign: _Sign | None = None, unit: str = "units", up: Literal["y", "z"] = "z"
     ) -> Page:
         """Return a page that shows the scene, with a slice through its distance field if one is asked for.
 
@@ -1069,8 +1036,17 @@ def load(path: str | os.PathLike[str], map: bool = False, *, threads: int | None
         If it is damaged or not a saved index.
     """
     absolute = os.path.abspath(os.fspath(path))
-    own = None if threads is None else thread_count(threads)
-    return Index._from_raw(_p2m.load(absolute, map, thread_count(threads)), own)
+    return Index._from_raw(_p2m.load(absolute, map, thread_count(threads)), own_threads(threads))
+
+
+def scene_of(obj: Any) -> Scene:
+    """Return the scene of an index, or what `Scene.of` makes of another object."""
+    return obj.scene if isinstance(obj, Index) else Scene.of(obj)
+
+
+def index_of(obj: Any, threads: int | None, scene: Scene | None = None) -> Index:
+    """Return an index as it is, or build a tree of boxes over another object or the scene of it."""
+    return obj if isinstance(obj, Index) else Index(obj if scene is None else scene, threads=threads)
 
 
 class OffsetSurface(NamedTuple):

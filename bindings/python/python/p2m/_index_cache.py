@@ -94,10 +94,11 @@ def read_checksum(path: str) -> str | None:
     return f"{int.from_bytes(header[_CHECKSUM], 'little'):016x}"
 
 
-def _version(path: str, is_mapped: bool) -> _FileVersion:
+def _version(path: str, checksum: str | None, is_mapped: bool, max_bytes: int | None = None) -> _FileVersion:
+    """Return the version of a file, whose checksum was read before."""
     real = os.path.realpath(path)
     status = os.stat(real)
-    return _FileVersion(real, status.st_size, status.st_mtime_ns, status.st_ino, read_checksum(real), is_mapped)
+    return _FileVersion(real, status.st_size, status.st_mtime_ns, status.st_ino, checksum, is_mapped, max_bytes)
 
 
 def _open_version(version: _FileVersion, open_new: Callable[[], _Raw]) -> _Raw:
@@ -173,7 +174,7 @@ def open_index(
     raw = _open_checked(
         f"{absolute} is not the file that the index",
         checksum,
-        lambda: _version(absolute, map),
+        lambda: _version(absolute, read_checksum(absolute), map),
         lambda: _p2m.load(absolute, map, count),
         lambda raw: (raw.origin() or (None, None))[1],
     )
@@ -207,20 +208,14 @@ def open_shards(
     folder = shard_folder(path)
     limit = max_bytes_of(max_bytes)
     manifest = os.path.join(folder, MANIFEST_FILE)
-
-    def version() -> _FileVersion:
-        found, real = manifest_checksum(folder), os.path.realpath(manifest)
-        status = os.stat(real)
-        return _FileVersion(real, status.st_size, status.st_mtime_ns, status.st_ino, found, map, max_bytes)
-
     raw = _open_checked(
         f"{manifest} is not the manifest that the shards",
         checksum,
-        version,
+        lambda: _version(manifest, manifest_checksum(folder), map, max_bytes),
         lambda: _p2m.Shards(folder, limit, map),
         lambda raw: raw.checksum(),
     )
-    return Shards._from_raw(raw, folder, max_bytes, map, threads)
+    return Shards.__new__(Shards)._set(raw, folder, max_bytes, map, threads)
 
 
 @dataclass(frozen=True)
@@ -271,35 +266,17 @@ def opened(source: IndexFile | Index, threads: int | None) -> Index | Shards:
     return source.open(threads) if isinstance(source, IndexFile) else source
 
 
-def _load_index(path: str, checksum: str, is_mapped: bool, threads: int | None) -> Index:
-    return open_index(path, checksum=checksum, map=is_mapped, threads=threads)
-
-
 def _load_bytes(data: bytes, backend: str, threads: int | None) -> Index:
     return Index._from_raw(_p2m.load_bytes(data, backend, thread_count(threads)), threads)
 
 
-def _load_shards(
-    path: str, checksum: str | None, max_bytes: int | None, is_mapped: bool, threads: int | None
-) -> Shards:
-    return open_shards(path, checksum=checksum, max_bytes=max_bytes, map=is_mapped, threads=threads)
+def _reduce(index: Index | Shards) -> tuple[Any, ...]:
+    """Pickle an index as the path of its file or folder, or as bytes if it came from no file."""
+    source = index_source(index, False)
+    if isinstance(source, IndexFile):
+        return source.open, (index._threads,)
+    return _load_bytes, (source._raw.to_bytes(), source.backend, source._threads)
 
 
-def _reduce_index(index: Index) -> tuple[Any, ...]:
-    """Pickle an index as the path of its file, or as bytes if it came from no file."""
-    origin = index._raw.origin()
-    if origin is not None:
-        path, checksum, is_mapped = origin
-        return _load_index, (os.fspath(path), checksum, is_mapped, index._threads)
-    return _load_bytes, (index._raw.to_bytes(), index.backend, index._threads)
-
-
-def _reduce_shards(shards: Shards) -> tuple[Any, ...]:
-    """Pickle an index in shards as the path of its folder."""
-    return _load_shards, (
-        shards._path, shards._manifest_checksum, shards._max_bytes, shards._is_mapped, shards._threads
-    )
-
-
-copyreg.pickle(Index, _reduce_index)
-copyreg.pickle(Shards, _reduce_shards)
+copyreg.pickle(Index, _reduce)
+copyreg.pickle(Shards, _reduce)

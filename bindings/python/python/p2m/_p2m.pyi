@@ -11,6 +11,7 @@ __all__ = [
     "Index",
     "NearList",
     "PairList",
+    "Report",
     "Scene",
     "ShardWriter",
     "Shards",
@@ -20,11 +21,8 @@ __all__ = [
     "backends",
     "closest",
     "default_threads",
-    "deviation_objects",
     "deviation_on_vertices",
-    "deviation_page",
     "deviation_ply",
-    "deviation_sheet",
     "deviation_statistics",
     "grid_around",
     "grid_of_offset",
@@ -46,8 +44,11 @@ __all__ = [
 
 __version__: str
 
-_Coordinates = NDArray[np.float64] | NDArray[np.float32]
-_Progress = Callable[[int, int], object] | None
+_Grid = tuple[tuple[float, float, float], float, tuple[int, int, int]]
+_Floats = NDArray[np.float64]
+_Ints = NDArray[np.int64]
+_Coordinates = _Floats | NDArray[np.float32]
+_Run = tuple[int, Callable[[int, int], object] | None]
 _Arrays = dict[str, NDArray[Any]]
 _Path = str | PathLike[str]
 
@@ -64,84 +65,33 @@ def advise(
     max_bytes: int | None,
     threads: int,
 ) -> list[tuple[str, tuple[float, float, float, float], bool, float | None, str]]: ...
-def deviation_statistics(values: NDArray[np.float64]) -> dict[str, Any]: ...
-def deviation_page(
-    scan: Scene,
-    values: NDArray[np.float64],
-    primitives: NDArray[np.uint32],
-    scene: Scene,
-    is_signed: bool,
-    limit: float,
-    tolerance: float | None,
-    is_y_up: bool,
-    texts: tuple[str, str, str],
-) -> str: ...
-def grid_around(
-    scene: Scene, resolution: int, scale: float
-) -> tuple[tuple[float, float, float], float, tuple[int, int, int]]: ...
-def grid_of_offset(
-    scene: Scene, distance: float, resolution: int
-) -> tuple[tuple[float, float, float], float, tuple[int, int, int]]: ...
+def deviation_statistics(values: _Floats, tolerance: float | None) -> tuple[dict[str, Any], float]: ...
+def grid_around(scene: Scene, resolution: int, scale: float) -> _Grid: ...
+def grid_of_offset(scene: Scene, distance: float, resolution: int) -> _Grid: ...
 def scene_page(
     scene: Scene,
     texts: tuple[str, str, str],
     is_y_up: bool,
     is_live: bool,
-    field: tuple[tuple[tuple[float, float, float], float, tuple[int, int, int]], NDArray[np.float32]] | None,
+    field: tuple[_Grid, NDArray[np.float32]] | None,
 ) -> str: ...
-def deviation_objects(
-    scene: Scene, values: NDArray[np.float64], primitives: NDArray[np.uint32]
-) -> list[tuple[str, dict[str, Any]]]: ...
-def deviation_sheet(
-    scan: Scene,
-    values: NDArray[np.float64],
-    primitives: NDArray[np.uint32],
-    scene: Scene,
-    is_signed: bool,
-    limit: float,
-    tolerance: float | None,
-    required: float | None,
-    is_y_up: bool,
-    head: list[tuple[str, str]],
-    texts: tuple[str, str, str],
-    is_pdf: bool,
-) -> bytes: ...
 def deviation_on_vertices(
-    scene: Scene,
-    primitives: NDArray[np.uint32],
-    barycentric: NDArray[np.float64],
-    values: NDArray[np.float64],
-) -> NDArray[np.float64]: ...
+    scene: Scene, primitives: NDArray[np.uint32], barycentric: _Floats, values: _Floats
+) -> _Floats: ...
 def isolated_points(points: _Coordinates, threads: int) -> NDArray[np.bool_]: ...
-def deviation_ply(scan: Scene, values: NDArray[np.float64], limit: float) -> bytes: ...
+def deviation_ply(scan: Scene, values: _Floats, limit: float) -> bytes: ...
 def align(
-    scan: _Coordinates,
-    index: Index,
-    point_to_point: bool,
-    scale: bool,
-    overlap: float,
-    search: bool,
-    threads: int,
-) -> dict[str, Any]: ...
+    scan: _Coordinates, index: Index, point_to_point: bool, scale: bool, overlap: float, search: bool, threads: int
+) -> tuple[_Floats, _Floats, float, float, float, bool, list[tuple[int, float, float]], str | None, _Floats | None]: ...
 def read_points(
     path: _Path, coordinates: list[str], id: str | None
-) -> tuple[NDArray[np.float64], list[str] | None, str | None]: ...
-def sample_surface(
-    scene: Scene, count: int, sigmas: list[float], seed: int, threads: int
-) -> tuple[NDArray[np.float64], NDArray[np.int64]]: ...
-def sample_box(
-    low: list[float], high: list[float], count: int, seed: int, threads: int
-) -> NDArray[np.float64]: ...
+) -> tuple[_Floats, list[str] | None, str | None]: ...
+def sample_surface(scene: Scene, count: int, sigmas: list[float], seed: int, threads: int) -> tuple[_Floats, _Ints]: ...
+def sample_box(low: list[float], high: list[float], count: int, seed: int, threads: int) -> _Floats: ...
 def main(arguments: list[str]) -> int: ...
 def hausdorff(
-    first: Scene,
-    first_index: Index | None,
-    second: Index,
-    tolerance: float,
-    max_queries: int,
-    threads: int,
-    progress: _Progress,
-) -> dict[str, Any] | None: ...
+    first: Scene, first_index: Index | None, second: Index, tolerance: float, max_queries: int, run: _Run
+) -> tuple[float, float, _Floats, _Ints, int, int, bool] | None: ...
 def closest(
     index: Index | Shards,
     points: _Coordinates,
@@ -150,45 +100,23 @@ def closest(
     epsilon: float,
     max_visits: int | None,
     certified: bool,
-    threads: int,
-    progress: _Progress,
+    run: _Run,
 ) -> None: ...
 def k_nearest(
-    index: Index | Shards,
-    points: _Coordinates,
-    k: int,
-    out: _Arrays,
-    max_distance: float,
-    threads: int,
-    progress: _Progress,
+    index: Index | Shards, points: _Coordinates, k: int, out: _Arrays, max_distance: float, run: _Run
 ) -> None: ...
-def within(
-    index: Index | Shards,
-    points: _Coordinates,
-    radius: float,
-    counts: NDArray[np.int64],
-    threads: int,
-    progress: _Progress,
-) -> NearList: ...
-def is_any_within(
-    index: Index | Shards,
-    points: _Coordinates,
-    radius: float,
-    out: _Arrays,
-    threads: int,
-    progress: _Progress,
-) -> None: ...
+def within(index: Index | Shards, points: _Coordinates, radius: float, counts: _Ints, run: _Run) -> NearList: ...
+def is_any_within(index: Index | Shards, points: _Coordinates, radius: float, out: _Arrays, run: _Run) -> None: ...
 def rays(
     index: Index | Shards,
-    origins: NDArray[np.float64],
-    directions: NDArray[np.float64],
+    origins: _Floats,
+    directions: _Floats,
     mode: str,
     out: _Arrays,
     t_min: float,
     t_max: float,
     radius: float,
-    threads: int,
-    progress: _Progress,
+    run: _Run,
 ) -> HitList | None: ...
 @final
 class Scene:
@@ -209,15 +137,15 @@ class Scene:
     def from_bytes(bytes: bytes) -> Scene: ...
     def to_bytes(self) -> bytes: ...
     def moved(self, vertices: _Coordinates) -> Scene: ...
-    def transformed(self, transform: NDArray[np.float64]) -> Scene: ...
+    def transformed(self, transform: _Floats) -> Scene: ...
     def counts(self) -> tuple[int, int, int, int]: ...
     def bounds(self) -> list[list[float]] | None: ...
-    def vertices(self) -> NDArray[np.float64]: ...
-    def triangles(self) -> NDArray[np.int64]: ...
-    def segments(self) -> NDArray[np.int64]: ...
-    def points(self) -> NDArray[np.int64]: ...
-    def ids(self, vertices: int) -> NDArray[np.int64]: ...
-    def sources(self) -> NDArray[np.int64]: ...
+    def vertices(self) -> _Floats: ...
+    def triangles(self) -> _Ints: ...
+    def segments(self) -> _Ints: ...
+    def points(self) -> _Ints: ...
+    def ids(self, vertices: int) -> _Ints: ...
+    def sources(self) -> _Ints: ...
     def objects(self) -> list[tuple[str, int, int]]: ...
     def skipped(self) -> list[str]: ...
     def unit(self) -> str | None: ...
@@ -238,17 +166,35 @@ class PairList:
     def fill(self, out: _Arrays) -> None: ...
 
 @final
+class Report:
+    def __new__(
+        cls,
+        scan: Scene,
+        values: _Floats,
+        primitives: NDArray[np.uint32],
+        scene: Scene,
+        is_signed: bool,
+        limit: float,
+        tolerance: float | None,
+        unit: str,
+    ) -> Report: ...
+    def objects(self) -> list[tuple[str, dict[str, Any]]]: ...
+    def page(self, title: str, summary: str, is_y_up: bool) -> str: ...
+    def sheet(
+        self, title: str, head: list[tuple[str, str]], required: float | None, is_y_up: bool, is_pdf: bool
+    ) -> bytes: ...
+
+@final
 class Index:
     @staticmethod
     def build(
         scene: Scene,
         backend: str,
-        threads: int,
-        progress: _Progress,
-        directions: str | None = None,
-        resolution: float | None = None,
-        queries: int | None = None,
-        max_bytes: int | None = None,
+        run: _Run,
+        directions: str | None,
+        resolution: float | None,
+        queries: int | None,
+        max_bytes: int | None,
     ) -> Index: ...
     def refitted(self, scene: Scene, threads: int) -> Index: ...
     def scene(self) -> Scene: ...
@@ -257,41 +203,22 @@ class Index:
     def info(self) -> dict[str, Any]: ...
     def save(self, path: _Path) -> None: ...
     def to_bytes(self) -> bytes: ...
-    def normals(
-        self, primitive: NDArray[np.int64], feature: NDArray[np.uint8], out: _Arrays
-    ) -> None: ...
-    def deviations_from_planes(
-        self, points: _Coordinates, max_distance: float, threads: int
-    ) -> NDArray[np.float64] | None: ...
+    def normals(self, primitive: _Ints, feature: NDArray[np.uint8], out: _Arrays) -> None: ...
+    def deviations_from_planes(self, points: _Coordinates, max_distance: float, threads: int) -> _Floats | None: ...
     def sign_rule(self, sign: str, threads: int) -> tuple[str, str | None]: ...
-    def contains(
-        self,
-        points: _Coordinates,
-        out: _Arrays,
-        sign: str,
-        threads: int,
-        progress: _Progress,
-    ) -> None: ...
+    def contains(self, points: _Coordinates, out: _Arrays, sign: str, run: _Run) -> None: ...
     def signed_distance(
-        self,
-        points: _Coordinates,
-        out: _Arrays,
-        sign: str,
-        inside_is_negative: bool,
-        max_distance: float,
-        threads: int,
-        progress: _Progress,
+        self, points: _Coordinates, out: _Arrays, sign: str, inside_is_negative: bool, max_distance: float, run: _Run
     ) -> None: ...
     def field(
         self,
-        origin: tuple[float, float, float],
+        origin: tuple[float, ...],
         spacing: float,
-        first: tuple[int, int, int],
-        counts: tuple[int, int, int],
+        first: tuple[int, ...],
+        counts: tuple[int, ...],
         sign: str | None,
         band: float,
-        threads: int,
-        progress: _Progress,
+        run: _Run,
     ) -> NDArray[np.float32]: ...
     def offset_surface(
         self,
@@ -305,51 +232,30 @@ class Index:
     ) -> tuple[Scene, float, float]: ...
     def closest_to(
         self,
-        shapes: NDArray[np.float64],
+        shapes: _Floats,
         width: int,
         out: _Arrays,
         radius: float,
         max_distance: float,
         certified: bool,
         solid: bool,
-        threads: int,
-        progress: _Progress,
+        run: _Run,
     ) -> None: ...
     def solid_note(self, threads: int) -> str | None: ...
     def closest_pairs(
-        self,
-        other: Index,
-        transforms: NDArray[np.float64] | None,
-        max_distance: float,
-        certified: bool,
-        solid: bool,
-        threads: int,
-        progress: _Progress,
+        self, other: Index, transforms: _Floats | None, max_distance: float, certified: bool, solid: bool, run: _Run
     ) -> PairList: ...
-    def do_intersect(
-        self,
-        other: Index,
-        transforms: NDArray[np.float64] | None,
-        threads: int,
-        progress: _Progress,
-    ) -> NDArray[np.bool_]: ...
-    def pairs_within(
-        self,
-        other: Index,
-        transforms: NDArray[np.float64] | None,
-        max_distance: float,
-        threads: int,
-    ) -> PairList: ...
+    def do_intersect(self, other: Index, transforms: _Floats | None, run: _Run) -> NDArray[np.bool_]: ...
+    def pairs_within(self, other: Index, transforms: _Floats | None, max_distance: float, threads: int) -> PairList: ...
     def first_contact(
         self,
-        starts: NDArray[np.float64],
-        ends: NDArray[np.float64],
+        starts: _Floats,
+        ends: _Floats,
         out: _Arrays,
         radius: float,
         tolerance: float,
         ignore_opening: bool,
-        threads: int,
-        progress: _Progress,
+        run: _Run,
     ) -> None: ...
 
 @final
@@ -362,49 +268,27 @@ class Shards:
     def shards(self) -> list[tuple[str, int, int, list[list[float]]]]: ...
     def checksum(self) -> str: ...
     def loads(self) -> int: ...
-    def nearest_shards(
-        self, points: _Coordinates, out: _Arrays, max_distance: float, threads: int
-    ) -> None: ...
-    def shards_within(
-        self, points: _Coordinates, distances: NDArray[np.float64], threads: int
-    ) -> list[NDArray[np.int64]]: ...
+    def nearest_shards(self, points: _Coordinates, out: _Arrays, max_distance: float, threads: int) -> None: ...
+    def shards_within(self, points: _Coordinates, distances: _Floats, threads: int) -> list[_Ints]: ...
     def closest_in_shard(
-        self,
-        points: _Coordinates,
-        shard: int,
-        out: _Arrays,
-        max_distance: float,
-        threads: int,
-        progress: _Progress,
+        self, points: _Coordinates, shard: int, out: _Arrays, max_distance: float, run: _Run
     ) -> None: ...
-    def contains(
-        self,
-        points: _Coordinates,
-        out: _Arrays,
-        threads: int,
-        progress: _Progress,
-    ) -> None: ...
+    def contains(self, points: _Coordinates, out: _Arrays, run: _Run) -> None: ...
 
 @final
 class ShardWriter:
     def __new__(cls, folder: _Path, max_bytes: int, backend: str, replace: bool) -> ShardWriter: ...
     def add(self, scene: Scene) -> None: ...
     def close(self) -> None: ...
-    def finish(self, threads: int, progress: _Progress) -> None: ...
+    def finish(self, run: _Run) -> None: ...
 
 @final
 class CudaIndex:
     @staticmethod
     def build(
-        index: Index,
-        threads: int,
-        ordinal: int,
-        reach: float,
-        memory: int | None,
-        reorder: bool,
-        checked: int,
+        index: Index, threads: int, ordinal: int, reach: float, memory: int | None, reorder: bool, checked: int
     ) -> CudaIndex: ...
-    def closest(self, points: NDArray[np.float64], out: _Arrays, max_distance: float) -> tuple[int, int, float]: ...
+    def closest(self, points: _Floats, out: _Arrays, max_distance: float) -> tuple[int, int, float]: ...
     def closest_on_card(
         self, queries: tuple[int, int, bool], columns: list[int], max_distance: float, stream: int
     ) -> tuple[int, int, float]: ...

@@ -10,6 +10,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, Literal
 
 from . import _p2m
+from ._arrays import check_choice
 
 if TYPE_CHECKING:
     from ._index import Index
@@ -64,8 +65,7 @@ class Page:
 
 def checked_up(up: str) -> bool:
     """Return whether y points up, and refuse what is no axis."""
-    if up not in ("y", "z"):
-        raise ValueError(f"up: {up!r} is none of 'y', 'z'")
+    check_choice(up, "up", ("y", "z"))
     return up == "y"
 
 

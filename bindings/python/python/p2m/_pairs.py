@@ -13,14 +13,16 @@ from . import _p2m
 from ._arrays import (
     Out,
     Progress,
-    callback,
+    Queries,
     coordinates,
     flat,
+    largest_distance,
     not_negative,
     one_output,
+    one_transform,
     outputs,
     rigid_transforms,
-    thread_count,
+    together,
 )
 from ._records import BallContacts, ClosestPairs, ClosestToShapes
 
@@ -73,21 +75,16 @@ def _shapes(values: ArrayLike) -> tuple[NDArray[np.float64], int]:
     return array, array.shape[1]
 
 
-def _largest(max_distance: float | None) -> float:
-    return float("inf") if max_distance is None else not_negative(max_distance, "max_distance")
-
-
-class PairQueries:
+class PairQueries(Queries):
     """The queries of an index for pairs."""
 
     __slots__ = ()
 
     _raw: _p2m.Index
-    _threads: int | None
 
     def _warn_of_open_surface(self, threads: int | None) -> None:
         """Warn if the inside of the scene is a guess, or does not count."""
-        note = self._raw.solid_note(thread_count(threads, self._threads))
+        note = self._raw.solid_note(self._count(threads))
         if note is not None:
             warnings.warn(note, stacklevel=4)
 
@@ -153,17 +150,15 @@ class PairQueries:
         """
         array, width = _shapes(shapes)
         arrays = outputs(fields, (len(array),), out, SHAPE_FIELDS, ("distance", "primitive"))
-        size, largest = not_negative(radius, "radius"), _largest(max_distance)
+        size, largest = not_negative(radius, "radius"), largest_distance(max_distance)
         if certified and size > 0.0:
             raise ValueError("certified: shapes with a radius have no certified answers")
         if certified and solid:
             raise ValueError("certified: solids have no certified answers")
         if solid:
             self._warn_of_open_surface(threads)
-        count = thread_count(threads, self._threads)
-        with callback(progress, "answering", "shapes") as call:
-            raw = self._raw
-            raw.closest_to(array.reshape(-1), width, flat(arrays), size, largest, certified, solid, count, call)
+        with self._running(threads, progress, "shapes") as run:
+            self._raw.closest_to(array.reshape(-1), width, flat(arrays), size, largest, certified, solid, run)
         return ClosestToShapes(arrays)
 
     def is_any_near(
@@ -201,9 +196,8 @@ class PairQueries:
         array, width = _shapes(shapes)
         largest, size = not_negative(max_distance, "max_distance"), not_negative(radius, "radius")
         answers: NDArray[np.bool_] = one_output(out, "is_near", _BOOL, (len(array),))
-        count = thread_count(threads, self._threads)
-        with callback(progress, "answering", "shapes") as call:
-            self._raw.closest_to(array.reshape(-1), width, {"is_near": answers}, size, largest, False, False, count, call)
+        with self._running(threads, progress, "shapes") as run:
+            self._raw.closest_to(array.reshape(-1), width, {"is_near": answers}, size, largest, False, False, run)
         return answers
 
     def closest_pair(
@@ -255,9 +249,7 @@ class PairQueries:
         >>> float(pair.distance), bool(pair.is_intersecting)
         (2.0, False)
         """
-        matrices = rigid_transforms(transform, "transform")
-        if matrices is not None and matrices.ndim != 2:
-            raise ValueError(f"transform: the shape is {matrices.shape} instead of (4, 4)")
+        matrices = one_transform(transform, "transform")
         return self._closest_pairs(
             other, matrices, max_distance, certified, solid, tuple(PAIR_FIELDS), None, threads, None
         )
@@ -321,15 +313,14 @@ class PairQueries:
     ) -> ClosestPairs:
         shape = () if matrices is None else matrices.shape[:-2]
         arrays = outputs(fields, shape, out, PAIR_FIELDS, ("distance", "primitives"))
-        raw, largest = _raw_of(other), _largest(max_distance)
-        count = thread_count(threads, self._threads)
+        raw, largest = _raw_of(other), largest_distance(max_distance)
         if solid:
             if certified:
                 raise ValueError("certified: solids have no certified answers")
             self._warn_of_open_surface(threads)
             other._warn_of_open_surface(threads)
-        with callback(progress, "answering", "motions") as call:
-            pairs = self._raw.closest_pairs(raw, _flat(matrices), largest, certified, solid, count, call)
+        with self._running(threads, progress, "motions") as run:
+            pairs = self._raw.closest_pairs(raw, _flat(matrices), largest, certified, solid, run)
         pairs.fill(flat(arrays))
         return ClosestPairs(arrays)
 
@@ -366,9 +357,8 @@ class PairQueries:
         True
         """
         matrices = rigid_transforms(transform, "transform")
-        count = thread_count(threads, self._threads)
-        with callback(progress, "answering", "motions") as call:
-            answers = self._raw.do_intersect(_raw_of(other), _flat(matrices), count, call)
+        with self._running(threads, progress, "motions") as run:
+            answers = self._raw.do_intersect(_raw_of(other), _flat(matrices), run)
         return answers.reshape(() if matrices is None else matrices.shape[:-2])
 
     def pairs_within(
@@ -407,13 +397,10 @@ class PairQueries:
         >>> near.primitives.tolist(), near.distance.tolist()
         ([[0, 0], [1, 1], [2, 2], [0, 1], [1, 0]], [0.0, 0.0, 0.0, 2.0, 2.0])
         """
-        matrices = rigid_transforms(transform, "transform")
-        if matrices is not None and matrices.ndim != 2:
-            raise ValueError(f"transform: the shape is {matrices.shape} instead of (4, 4)")
+        matrices = one_transform(transform, "transform")
         largest = not_negative(distance, "distance")
         outputs(fields, (0,), None, PAIR_FIELDS, ("distance", "primitives"))
-        count = thread_count(threads, self._threads)
-        pairs = self._raw.pairs_within(_raw_of(other), _flat(matrices), largest, count)
+        pairs = self._raw.pairs_within(_raw_of(other), _flat(matrices), largest, self._count(threads))
         arrays = outputs(fields, (len(pairs),), None, PAIR_FIELDS, ("distance", "primitives"))
         pairs.fill(flat(arrays))
         return ClosestPairs(arrays)
@@ -479,18 +466,13 @@ class PairQueries:
         >>> float(index.first_contact([0, 0, 1], [0, 0, 5], 1.0, ignore_opening=True).parameter)
         inf
         """
-        first = coordinates(starts, "starts", only_float64=True)
-        last = coordinates(ends, "ends", only_float64=True)
-        shape = np.broadcast_shapes(first.shape, last.shape)
-        start = np.ascontiguousarray(np.broadcast_to(first, shape)).reshape(-1)
-        end = np.ascontiguousarray(np.broadcast_to(last, shape)).reshape(-1)
+        leading, start, end = together(starts, "starts", ends, "ends")
         size, margin = not_negative(radius, "radius"), not_negative(tolerance, "tolerance")
         if not max(size, margin) < float("inf"):
             raise ValueError(f"radius, tolerance: {radius} and {tolerance} are not finite")
-        arrays = outputs(fields, shape[:-1], out, CONTACT_FIELDS, ("parameter", "primitive"))
-        count = thread_count(threads, self._threads)
-        with callback(progress, "moving", "balls") as call:
-            self._raw.first_contact(start, end, flat(arrays), size, margin, bool(ignore_opening), count, call)
+        arrays = outputs(fields, leading, out, CONTACT_FIELDS, ("parameter", "primitive"))
+        with self._running(threads, progress, "balls", "moving") as run:
+            self._raw.first_contact(start, end, flat(arrays), size, margin, bool(ignore_opening), run)
         return BallContacts(arrays)
 
 

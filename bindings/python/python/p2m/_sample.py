@@ -13,8 +13,7 @@ from numpy.typing import DTypeLike, NDArray
 
 from . import _p2m
 from ._arrays import Progress, not_negative, thread_count, usual, whole
-from ._index import Index
-from ._scene import Scene
+from ._index import Index, scene_of
 
 _Item = TypeVar("_Item")
 _Result = TypeVar("_Result")
@@ -39,12 +38,7 @@ class SdfSamples(NamedTuple):
 
 
 def sample_surface(
-    mesh: Any,
-    count: int,
-    *,
-    seed: int = 0,
-    dtype: DTypeLike = np.float64,
-    threads: int | None = None,
+    mesh: Any, count: int, *, seed: int = 0, dtype: DTypeLike = np.float64, threads: int | None = None
 ) -> SurfaceSamples:
     """Return random points of a surface, evenly distributed by area.
 
@@ -78,7 +72,7 @@ def sample_surface(
     >>> found.points.shape, bool(1900 < (found.primitives == 1).sum() < 2100)
     ((3000, 3), True)
     """
-    scene = mesh.scene if isinstance(mesh, Index) else Scene.of(mesh)
+    scene = scene_of(mesh)
     number = whole(count, "count", 0, 2**40)
     points, primitives = _p2m.sample_surface(scene._raw, number, [], _seed(seed), thread_count(threads))
     return SurfaceSamples(points.astype(_real(dtype), copy=False), primitives)
@@ -141,7 +135,7 @@ def sample_sdf(
     """
     counts = [whole(near, "near", 0, 2**40), whole(uniform, "uniform", 0, 2**40)]
     scale, kind, number = _finite(box_scale, "box_scale"), _real(dtype), _seed(seed)
-    scene = mesh.scene if isinstance(mesh, Index) else Scene.of(mesh)
+    scene = scene_of(mesh)
     if len(scene) == 0:
         raise ValueError("the scene is empty, so it has no samples")
     count = thread_count(threads)

@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from . import _p2m
-from ._arrays import coordinates, indices, unmasked
+from ._arrays import Shared, coordinates, indices, unmasked
 from ._page import Page, scene_page
 
 
@@ -32,7 +32,7 @@ class Object(NamedTuple):
     stop: int
 
 
-class Scene:
+class Scene(Shared):
     """A set of triangles, segments and points over shared vertices, which never changes.
 
     Primitives are numbered from 0: first the triangles, then the segments, then the points. In a scene that was read
@@ -394,12 +394,6 @@ class Scene:
     def __repr__(self) -> str:
         counts = self.counts
         return f"<p2m.Scene of {counts.triangles} triangles, {counts.segments} segments, {counts.points} points>"
-
-    def __copy__(self) -> Scene:
-        return self
-
-    def __deepcopy__(self, memo: object) -> Scene:
-        return self
 
     def __reduce__(self) -> tuple[Any, ...]:
         return _scene_from_bytes, (self._raw.to_bytes(),)

@@ -13,13 +13,16 @@ from numpy.typing import ArrayLike, NDArray
 from . import _p2m
 from ._arrays import (
     FIELDS,
+    INSIDE,
     Progress,
-    callback,
+    check_choice,
     coordinates,
     flat,
-    not_negative,
+    largest_distance,
     one_output,
     outputs,
+    own_threads,
+    running,
     thread_count,
     whole,
 )
@@ -119,29 +122,12 @@ class Shards(PointQueries):
         self._set(_p2m.Shards(folder, max_bytes_of(max_bytes), map), folder, max_bytes, map, threads)
 
     def _set(
-        self,
-        raw: _p2m.Shards,
-        path: str,
-        max_bytes: int | None,
-        is_mapped: bool,
-        threads: int | None,
-    ) -> None:
+        self, raw: _p2m.Shards, path: str, max_bytes: int | None, is_mapped: bool, threads: int | None
+    ) -> Shards:
         self._raw, self._path, self._manifest_checksum = raw, path, raw.checksum()
         self._max_bytes, self._is_mapped = max_bytes, bool(is_mapped)
-        self._threads = None if threads is None else thread_count(threads)
-
-    @classmethod
-    def _from_raw(
-        cls,
-        raw: _p2m.Shards,
-        path: str,
-        max_bytes: int | None,
-        is_mapped: bool,
-        threads: int | None,
-    ) -> Shards:
-        shards = cls.__new__(cls)
-        shards._set(raw, path, max_bytes, is_mapped, threads)
-        return shards
+        self._threads = own_threads(threads)
+        return self
 
     @property
     def path(self) -> str:
@@ -190,12 +176,6 @@ class Shards(PointQueries):
     def __repr__(self) -> str:
         return f"<p2m.Shards {self.backend!r} of {len(self)} primitives in {len(self._raw.shards())} shards>"
 
-    def __copy__(self) -> Shards:
-        return self
-
-    def __deepcopy__(self, memo: object) -> Shards:
-        return self
-
     def _objects(self) -> list[tuple[str, int, int]]:
         return self._raw.objects()
 
@@ -231,8 +211,8 @@ class Shards(PointQueries):
         """
         queries = coordinates(points, "points")
         array = one_output(out, "contains", _BOOL, queries.shape[:-1])
-        with callback(progress, "answering", "points") as call:
-            self._raw.contains(queries.reshape(-1), {"contains": array.reshape(-1)}, self._count(threads), call)
+        with self._running(threads, progress) as run:
+            self._raw.contains(queries.reshape(-1), {"contains": array.reshape(-1)}, run)
         return array
 
     def signed_distance(
@@ -280,20 +260,16 @@ class Shards(PointQueries):
         array = one_output(out, "signed_distance", _FLOAT64, queries.shape[:-1])
         if sign != "auto":
             raise ValueError(f"sign: {sign!r} is not for shards, which have only 'auto'")
-        if inside not in ("negative", "positive"):
-            raise ValueError(f"inside: {inside!r} is none of 'negative', 'positive'")
-        if max_distance is not None:
-            not_negative(max_distance, "max_distance")
+        check_choice(inside, "inside", INSIDE)
+        largest = largest_distance(max_distance)
         # Without queries this only checks that the scene has an inside.
         self.contains(np.empty((0, 3)))
         rows, flat = queries.reshape(-1, 3), array.reshape(-1)
-        self.closest(
-            rows, fields="distance", max_distance=max_distance, out=flat, threads=threads, progress=progress
-        )
+        self.distance(rows, max_distance=max_distance, out=flat, threads=threads, progress=progress)
         decided = (flat > 0.0) & (flat < np.inf)
         is_inside = np.zeros(len(flat), np.bool_)
         is_inside[decided] = self.contains(rows[decided], threads=threads, progress=progress)
-        if max_distance is not None and max_distance < float("inf"):
+        if largest < np.inf:
             flat[np.isinf(flat)] = np.nan
         np.negative(flat, out=flat, where=is_inside)
         return array if inside == "negative" else np.negative(array, out=array)
@@ -332,7 +308,7 @@ class Shards(PointQueries):
         """
         queries = coordinates(points, "points")
         numbers = np.empty(queries.shape[:-1], np.int64)
-        largest = float("inf") if max_distance is None else not_negative(max_distance, "max_distance")
+        largest = largest_distance(max_distance)
         self._raw.nearest_shards(queries.reshape(-1), {"shard": numbers.reshape(-1)}, largest, self._count(threads))
         return numbers
 
@@ -431,11 +407,9 @@ class Shards(PointQueries):
         if not 0 <= shard < count:
             raise IndexError(f"shard: {shard} is not from 0 to {count - 1}")
         arrays = outputs(fields, queries.shape[:-1], None, SHARD_FIELDS, ())
-        largest = float("inf") if max_distance is None else not_negative(max_distance, "max_distance")
-        with callback(progress, "answering", "points") as call:
-            self._raw.closest_in_shard(
-                queries.reshape(-1), shard, flat(arrays), largest, self._count(threads), call
-            )
+        largest = largest_distance(max_distance)
+        with self._running(threads, progress) as run:
+            self._raw.closest_in_shard(queries.reshape(-1), shard, flat(arrays), largest, run)
         return ClosestPoints(arrays)
 
 
@@ -534,8 +508,8 @@ def write_shards(
     try:
         for part in _parts(scenes):
             writer.add(Scene.of(part)._raw)
-        with callback(progress, "writing", "primitives") as call:
-            writer.finish(count, call)
+        with running(count, progress, "writing", "primitives") as run:
+            writer.finish(run)
     finally:
         writer.close()
     return Shards(target, threads=threads)

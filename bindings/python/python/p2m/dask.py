@@ -64,13 +64,16 @@ except ImportError:
 from ._arrays import (
     FIELDS,
     HIT_FIELDS,
+    INSIDE,
+    SIGNS,
+    check_choice,
     checked_limits,
-    coordinates,
+    grid_of,
+    largest_distance,
     not_negative,
     outputs,
     real,
     thread_count,
-    whole,
 )
 from ._index import Index
 from ._index_cache import IndexFile, index_source, opened
@@ -282,14 +285,9 @@ def signed_distance(
     >>> p2m.dask.signed_distance(np.array([[0.125, 0.25, 0.25], [0.5, -2.0, 0.25]]), solid).compute()
     array([-0.125,  2.   ])
     """
-    for name, value, known in [
-        ("sign", sign, ("auto", "winding", "parity")),
-        ("inside", inside, ("negative", "positive")),
-    ]:
-        if value not in known:
-            raise ValueError(f"{name}: {value!r} is none of {', '.join(known)}")
-    if max_distance is not None:
-        not_negative(max_distance, "max_distance")
+    check_choice(sign, "sign", SIGNS)
+    check_choice(inside, "inside", INSIDE)
+    largest_distance(max_distance)
     options = {"sign": sign, "inside": inside, "max_distance": max_distance, "threads": thread_count(threads)}
     arrays = {"points": _points(points, "points")}
     return _column("signed_distance", arrays, index_source(index, map), options, np.dtype(np.float64))
@@ -408,16 +406,11 @@ def field(
     >>> grid.compute()[:, 0, :].tolist()
     [[0.0, 3.0], [3.0, 4.242640495300293]]
     """
-    corner = coordinates(origin, "origin", only_float64=True)
-    if corner.shape != (3,):
-        raise ValueError(f"origin: the shape is {corner.shape} instead of (3,)")
-    counts = tuple(whole(count, "shape", 0, 2**40) for count in shape)
-    if len(counts) != 3 or min(counts) < 1:
-        raise ValueError(f"shape: {tuple(shape)} are not three numbers of points")
+    corner, counts = grid_of(origin, shape)
     dtype = np.dtype(np.float32)
     normal = da.core.normalize_chunks(chunks, counts, dtype=dtype)
     options = {
-        "origin": tuple(corner.tolist()),
+        "origin": corner,
         "spacing": real(spacing, "spacing"),
         "signed": bool(signed),
         "sign": sign,

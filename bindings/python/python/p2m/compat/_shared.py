@@ -5,7 +5,7 @@ from __future__ import annotations
 import threading
 import weakref
 from collections.abc import Callable, Sequence
-from typing import Any, Generic, Literal, NamedTuple, TypeVar
+from typing import Any, Generic, NamedTuple, TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
@@ -105,6 +105,21 @@ class ObjectCache(Generic[_T]):
         return len(self._made)
 
 
+Rays = tuple[NDArray[np.float64], NDArray[np.float64]]
+"""The origins and directions of rays, each of shape (n, 3)."""
+
+
+def castable(index: Index, rays: Rays) -> Rays:
+    """Return rays of which those without direction, which hit nothing, lead away from a point beyond the scene."""
+    origins, directions = rays
+    is_zero = (directions == 0.0).all(axis=-1)
+    if is_zero.any():
+        origins, directions = origins.copy(), directions.copy()
+        origins[is_zero] = np.nextafter(np.nan_to_num(index.scene.bounds[1]), np.inf)
+        directions[is_zero] = 1.0
+    return origins, directions
+
+
 class Hits(NamedTuple):
     """All hits of rays, ray by ray, nearest first."""
 
@@ -113,68 +128,8 @@ class Hits(NamedTuple):
     splits: NDArray[np.int64]
 
 
-def _rays_with_direction(directions: NDArray[np.float64]) -> NDArray[np.bool_] | None:
-    """Return which rays have a direction, or None if all have one. A ray without direction hits nothing."""
-    zero = (directions == 0.0).all(axis=-1)
-    return ~zero if zero.any() else None
-
-
-def first_hits(
-    index: Index,
-    origins: NDArray[np.float64],
-    directions: NDArray[np.float64],
-    fields: Sequence[str],
-    threads: int | None,
-) -> dict[str, NDArray[Any]]:
-    """Return the first hits of rays with one leading axis; the primitive is -1 where there is none."""
-    some = _rays_with_direction(directions)
-    if some is None:
-        return index.rays(origins, directions, fields=fields, threads=threads).asdict()
-    found = index.rays(origins[some], directions[some], fields=fields, threads=threads).asdict()
-    columns = {}
-    for name, array in found.items():
-        missing = {"primitive": -1, "t": np.inf, "side": 0}.get(name, np.nan)
-        columns[name] = np.full((len(origins), *array.shape[1:]), missing, array.dtype)
-        columns[name][some] = array
-    return columns
-
-
-def all_hits(
-    index: Index,
-    origins: NDArray[np.float64],
-    directions: NDArray[np.float64],
-    fields: Sequence[str],
-    threads: int | None,
-) -> Hits:
-    """Return all hits of rays with one leading axis."""
-    some = _rays_with_direction(directions)
-    if some is not None:
-        origins, directions = origins[some], directions[some]
-    found = index.rays(origins, directions, "all", fields=fields, threads=threads).asdict()
-    counts = np.diff(found.pop("splits"))
-    if some is not None:
-        every = np.zeros(len(some), np.int64)
-        every[some] = counts
-        counts = every
-    splits = np.zeros(len(counts) + 1, np.int64)
-    np.cumsum(counts, out=splits[1:])
-    return Hits(np.repeat(np.arange(len(counts)), counts), found, splits)
-
-
-def ray_values(
-    index: Index,
-    origins: NDArray[np.float64],
-    directions: NDArray[np.float64],
-    mode: Literal["any", "count"],
-    threads: int | None,
-    *,
-    t_min: float = 0.0,
-    t_max: float = float("inf"),
-) -> NDArray[Any]:
-    """Return whether rays with one leading axis hit anything, or the number of their hits."""
-    some = _rays_with_direction(directions)
-    if some is None:
-        return index.rays(origins, directions, mode, t_min=t_min, t_max=t_max, threads=threads)
-    values: NDArray[Any] = np.zeros(len(origins), np.bool_ if mode == "any" else np.int64)
-    values[some] = index.rays(origins[some], directions[some], mode, t_min=t_min, t_max=t_max, threads=threads)
-    return values
+def all_hits(index: Index, rays: Rays, fields: Sequence[str], threads: int | None = None) -> Hits:
+    """Return all hits of rays."""
+    columns = index.rays(*castable(index, rays), "all", fields=fields, threads=threads).asdict()
+    splits = columns.pop("splits")
+    return Hits(np.repeat(np.arange(len(splits) - 1), np.diff(splits)), columns, splits)

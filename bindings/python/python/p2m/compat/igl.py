@@ -27,7 +27,7 @@ from numpy.typing import ArrayLike, NDArray
 from .._hausdorff import hausdorff as _hausdorff
 from .._index import Index
 from .._scene import Scene
-from ._shared import ContentCache, Hits, all_hits, first_hits
+from ._shared import ContentCache, Rays, all_hits, castable
 
 __all__ = [
     "AABB",
@@ -313,14 +313,10 @@ class AABB:
             For each ray its hits ``(id, t, u, v)``, nearest first: the element, the distance in lengths of the
             direction, and the weights of the second and third vertex. In libigl they have the precision of float32.
         """
-        hits = self._hits(orig, dir)
+        hits = all_hits(self._checked().index, _rays(orig, dir), ("t", "primitive", "barycentric"))
         t, ids, weights = (hits.columns[name].tolist() for name in ("t", "primitive", "barycentric"))
         rows = [(i, s, w[1], w[2]) for i, s, w in zip(ids, t, weights)]
         return [rows[start:stop] for start, stop in zip(hits.splits[:-1], hits.splits[1:])]
-
-    def _hits(self, orig: ArrayLike, dir: ArrayLike) -> Hits:
-        origins, directions = _in_space(orig, "orig"), _in_space(dir, "dir")
-        return all_hits(self._checked().index, origins, directions, ("t", "primitive", "barycentric"), None)
 
     def intersect_ray_first(
         self, V: ArrayLike, Ele: ArrayLike, orig: ArrayLike, dir: ArrayLike, min_t: float = float("inf")
@@ -343,10 +339,9 @@ class AABB:
         UV : ndarray of float64, shape (n, 2)
             The weights of the second and third vertex; nan where nothing is hit, where libigl leaves memory as it is.
         """
-        origins, directions = _in_space(orig, "orig"), _in_space(dir, "dir")
-        fields = ("t", "primitive", "barycentric")
-        found = first_hits(self._checked().index, origins, directions, fields, None)
-        I, T, UV = found["primitive"], found["t"], found["barycentric"][:, 1:]
+        index = self._checked().index
+        found = index.rays(*castable(index, _rays(orig, dir)), fields=("t", "primitive", "barycentric"))
+        I, T, UV = found.primitive, found.t, found.barycentric[:, 1:]
         missed = (I < 0) | (T > min_t)
         I[missed], T[missed], UV[missed] = -1, np.nan, np.nan
         return I, T, np.ascontiguousarray(UV)
@@ -362,6 +357,10 @@ def _in_space(values: ArrayLike, name: str) -> NDArray[np.float64]:
     if array.shape[1] == 2:
         array = np.column_stack([array, np.zeros(len(array))])
     return np.ascontiguousarray(array, np.float64)
+
+
+def _rays(orig: ArrayLike, dir: ArrayLike) -> Rays:
+    return _in_space(orig, "orig"), _in_space(dir, "dir")
 
 
 def _mesh_arrays(V: ArrayLike, Ele: ArrayLike) -> tuple[NDArray[np.float64], NDArray[np.int64]]:

@@ -26,12 +26,15 @@ from numpy.typing import DTypeLike, NDArray
 from .._arrays import indices
 from .._index import Index
 from .._scene import Scene
-from ._shared import all_hits, first_hits, ray_values
+from ._shared import Rays, all_hits, castable
 
 __all__ = ["INVALID_ID", "Array", "RaycastingScene"]
 
 INVALID_ID = 4294967295
 """The id of nothing."""
+
+_FIELDS = ("primitive", "barycentric")
+"""What `RaycastingScene._triangles` needs of answers."""
 
 
 class Array(np.ndarray):
@@ -208,15 +211,9 @@ class RaycastingScene:
         """
         built = self._index()
         points = _rows(query_points, 3, "query_points")
-        fields = ("point", "primitive", "barycentric")
-        answer = built.tree.closest(points, fields=fields, threads=_threads(nthreads))
-        columns = {
-            "points": answer.point.astype(self._dtype),
-            **self._ids(built, answer.primitive),
-            "primitive_uvs": self._weights(answer.primitive, answer.barycentric),
-            "primitive_normals": self._normals(built, answer.primitive),
-        }
-        return {name: _result(array, query_points) for name, array in columns.items()}
+        answer = built.tree.closest(points, fields=("point", *_FIELDS), threads=_threads(nthreads))
+        columns = {"points": answer.point, **self._triangles(built, answer, has_normals=True)}
+        return self._results(columns, query_points)
 
     def compute_distance(self, query_points: Any, nthreads: int = 0) -> Any:
         """Return the distances of points from the scene.
@@ -233,7 +230,7 @@ class RaycastingScene:
         """
         points = _rows(query_points, 3, "query_points")
         distance = self._index().tree.distance(points, threads=_threads(nthreads))
-        return _result(distance.astype(self._dtype), query_points)
+        return self._result(distance, query_points)
 
     def compute_signed_distance(self, query_points: Any, nthreads: int = 0, nsamples: int = 1) -> Any:
         """Return the distances of points from the scene, **negative inside** and positive outside.
@@ -257,7 +254,7 @@ class RaycastingScene:
         """
         points = self._sampled(query_points, nsamples)
         distance = self._index().tree.signed_distance(points, threads=_threads(nthreads))
-        return _result(distance.astype(self._dtype), query_points)
+        return self._result(distance, query_points)
 
     def compute_occupancy(self, query_points: Any, nthreads: int = 0, nsamples: int = 1) -> Any:
         """Return whether points are inside of the scene.
@@ -302,16 +299,10 @@ class RaycastingScene:
             triangles. Weights and normals are 0 where nothing is hit.
         """
         built = self._index()
-        origins, directions, shape = _split(rays)
-        fields = ("t", "primitive", "barycentric")
-        hits = first_hits(built.tree, origins, directions, fields, _threads(nthreads))
-        columns = {
-            "t_hit": hits["t"].astype(self._dtype),
-            **self._ids(built, hits["primitive"]),
-            "primitive_uvs": self._weights(hits["primitive"], hits["barycentric"]),
-            "primitive_normals": self._normals(built, hits["primitive"]),
-        }
-        return {name: _result(array.reshape(shape + array.shape[1:]), rays) for name, array in columns.items()}
+        split, shape = _split(rays)
+        hits = built.tree.rays(*castable(built.tree, split), fields=("t", *_FIELDS), threads=_threads(nthreads))
+        columns = {"t_hit": hits.t, **self._triangles(built, hits, has_normals=True)}
+        return self._results({name: array.reshape(shape + array.shape[1:]) for name, array in columns.items()}, rays)
 
     def count_intersections(self, rays: Any, nthreads: int = 0) -> Any:
         """Return the number of triangles that each ray hits.
@@ -326,8 +317,9 @@ class RaycastingScene:
         Array or Tensor of int32, shape (...)
             The numbers. A ray through an edge hits two triangles there.
         """
-        origins, directions, shape = _split(rays)
-        counts = ray_values(self._index().tree, origins, directions, "count", _threads(nthreads))
+        split, shape = _split(rays)
+        tree = self._index().tree
+        counts = tree.rays(*castable(tree, split), "count", threads=_threads(nthreads))
         return _result(counts.astype(np.int32).reshape(shape), rays)
 
     def test_occlusions(self, rays: Any, tnear: float = 0.0, tfar: float = float("inf"), nthreads: int = 0) -> Any:
@@ -344,12 +336,11 @@ class RaycastingScene:
         -------
         Array or Tensor of bool, shape (...)
         """
-        origins, directions, shape = _split(rays)
-        hit = np.zeros(len(origins), np.bool_)
+        split, shape = _split(rays)
+        hit = np.zeros(len(split[0]), np.bool_)
         if tnear <= tfar:
-            hit = ray_values(
-                self._index().tree, origins, directions, "any", _threads(nthreads), t_min=tnear, t_max=tfar
-            )
+            tree, threads = self._index().tree, _threads(nthreads)
+            hit = tree.rays(*castable(tree, split), "any", t_min=tnear, t_max=tfar, threads=threads)
         return _result(hit.reshape(shape), rays)
 
     def list_intersections(self, rays: Any, nthreads: int = 0) -> dict[str, Any]:
@@ -369,18 +360,25 @@ class RaycastingScene:
             describe h hits as in `cast_rays`.
         """
         built = self._index()
-        origins, directions, _ = _split(rays)
-        fields = ("t", "primitive", "barycentric")
-        hits = all_hits(built.tree, origins, directions, fields, _threads(nthreads))
-        primitive = hits.columns["primitive"]
-        columns = {
-            "ray_splits": hits.splits.astype(np.uint32),
-            "ray_ids": hits.ray.astype(np.uint32),
-            "t_hit": hits.columns["t"].astype(self._dtype),
-            **self._ids(built, primitive),
-            "primitive_uvs": self._weights(primitive, hits.columns["barycentric"]),
-        }
-        return {name: _result(array, rays) for name, array in columns.items()}
+        split, _ = _split(rays)
+        ray, hits, splits = all_hits(built.tree, split, ("t", *_FIELDS), _threads(nthreads))
+        columns = {"ray_splits": splits.astype(np.uint32), "ray_ids": ray.astype(np.uint32), "t_hit": hits["t"]}
+        return self._results({**columns, **self._triangles(built, hits)}, rays)
+
+    def _result(self, array: NDArray[Any], given: Any) -> Any:
+        """Return an answer with real numbers of the type that was asked for."""
+        return _result(array.astype(self._dtype, copy=False) if array.dtype == np.float64 else array, given)
+
+    def _results(self, columns: dict[str, NDArray[Any]], given: Any) -> dict[str, Any]:
+        return {name: self._result(array, given) for name, array in columns.items()}
+
+    def _triangles(self, built: _Built, found: Any, has_normals: bool = False) -> dict[str, NDArray[Any]]:
+        """Return what answers say about the triangles that they have found, of which some are none."""
+        primitive = found["primitive"]
+        # The weights of the second and third vertices, 0 without a triangle.
+        weights = np.where((primitive < 0)[..., None], 0.0, found["barycentric"][..., 1:])
+        columns = {**self._ids(built, primitive), "primitive_uvs": weights}
+        return {**columns, "primitive_normals": self._normals(built, primitive)} if has_normals else columns
 
     def _ids(self, built: _Built, primitive: NDArray[np.int64]) -> dict[str, NDArray[np.uint32]]:
         """Return the geometries of triangles and their numbers there."""
@@ -389,12 +387,6 @@ class RaycastingScene:
         missing = primitive < 0
         geometry[missing] = number[missing] = INVALID_ID
         return {"geometry_ids": geometry.astype(np.uint32), "primitive_ids": number.astype(np.uint32)}
-
-    def _weights(self, primitive: NDArray[np.int64], barycentric: NDArray[np.float64]) -> NDArray[Any]:
-        """Return the weights of the second and third vertices, 0 without a triangle."""
-        weights: NDArray[Any] = barycentric[..., 1:].astype(self._dtype)
-        weights[primitive < 0] = 0.0
-        return weights
 
     def _normals(self, built: _Built, primitive: NDArray[np.int64]) -> NDArray[Any]:
         """Return the normals of triangles, (0, 0, 0) without a triangle and without an area."""
@@ -468,13 +460,13 @@ def _rows(values: Any, width: int, name: str) -> NDArray[Any]:
     return array
 
 
-def _split(rays: Any) -> tuple[NDArray[np.float64], NDArray[np.float64], tuple[int, ...]]:
-    """Return the origins and directions of rays, each of shape (n, 3), and the leading axes."""
+def _split(rays: Any) -> tuple[Rays, tuple[int, ...]]:
+    """Return the origins and directions of rays, and their leading axes."""
     array = _rows(rays, 6, "rays")
     if array.dtype.kind not in "iuf":
         raise TypeError(f"rays: the type is {array.dtype}, but coordinates are real numbers")
     flat = array.reshape(-1, 6)
-    return flat[:, :3].astype(np.float64), flat[:, 3:].astype(np.float64), array.shape[:-1]
+    return (flat[:, :3].astype(np.float64), flat[:, 3:].astype(np.float64)), array.shape[:-1]
 
 
 def _result(array: NDArray[Any], given: Any) -> Any:

@@ -37,7 +37,7 @@ from numpy.typing import ArrayLike, NDArray
 from .._arrays import coordinates
 from .._index import Index
 from .._scene import Scene
-from ._shared import ContentCache, ObjectCache, all_hits, first_hits, ray_values
+from ._shared import ContentCache, ObjectCache, Rays, all_hits, castable
 
 __all__ = [
     "ProximityQuery",
@@ -306,16 +306,14 @@ class RayMeshIntersector:
         The third argument is `return_locations`, as it is in trimesh without Embree. With Embree it is `multiple_hits`,
         so name them. Without hits, `locations` has the shape (0, 3), and in trimesh without Embree the shape (0,).
         """
-        origins, directions = _rays(ray_origins, ray_directions)
-        index = _indexes(self.mesh).surface
+        index, rays = self._cast(ray_origins, ray_directions)
         locations: NDArray[np.float64] | None
         if not multiple_hits:
-            first = first_hits(index, origins, directions, ("primitive", "point"), None)
-            ray = np.nonzero(first["primitive"] >= 0)[0]
-            faces, locations = first["primitive"][ray], first["point"][ray]
+            first = index.rays(*rays, fields=("primitive", "point"))
+            ray = np.nonzero(first.primitive >= 0)[0]
+            faces, locations = first.primitive[ray], first.point[ray]
         else:
-            fields = ("primitive", "t", "point") if return_locations else ("primitive",)
-            hits = all_hits(index, origins, directions, fields, None)
+            hits = all_hits(index, rays, ("primitive", "t", "point") if return_locations else ("primitive",))
             ray, faces, locations = hits.ray, hits.columns["primitive"], hits.columns.get("point")
             if locations is not None:
                 # Parameters are rounded once, so hits at one point have one parameter. Ids ascend among them.
@@ -334,11 +332,7 @@ class RayMeshIntersector:
         return faces, ray
 
     def intersects_location(
-        self,
-        ray_origins: ArrayLike,
-        ray_directions: ArrayLike,
-        multiple_hits: bool = True,
-        max_hits: int | None = None,
+        self, ray_origins: ArrayLike, ray_directions: ArrayLike, multiple_hits: bool = True, max_hits: int | None = None
     ) -> tuple[NDArray[np.float64], NDArray[np.int64], NDArray[np.int64]]:
         """Return the points at which rays hit the mesh, each once.
 
@@ -374,10 +368,8 @@ class RayMeshIntersector:
         ndarray of int64, shape (n,)
             The faces, and -1 for rays that hit nothing. With Embree, trimesh returns int32.
         """
-        origins, directions = _rays(ray_origins, ray_directions)
-        found = first_hits(_indexes(self.mesh).surface, origins, directions, ("primitive",), None)
-        faces: NDArray[np.int64] = found["primitive"]
-        return faces
+        index, rays = self._cast(ray_origins, ray_directions)
+        return index.rays(*rays, fields="primitive").primitive
 
     def intersects_any(self, ray_origins: ArrayLike, ray_directions: ArrayLike) -> NDArray[np.bool_]:
         """Return whether each ray hits the mesh.
@@ -391,8 +383,13 @@ class RayMeshIntersector:
         -------
         ndarray of bool, shape (n,)
         """
-        origins, directions = _rays(ray_origins, ray_directions)
-        return ray_values(_indexes(self.mesh).surface, origins, directions, "any", None)
+        index, rays = self._cast(ray_origins, ray_directions)
+        return index.rays(*rays, "any")
+
+    def _cast(self, ray_origins: ArrayLike, ray_directions: ArrayLike) -> tuple[Index, Rays]:
+        """Return the index of the mesh, and rays of shape (n, 3) that it can cast."""
+        rays, index = _rays(ray_origins, ray_directions), _indexes(self.mesh).surface
+        return index, castable(index, rays)
 
     def contains_points(self, points: ArrayLike) -> NDArray[np.bool_]:
         """Return whether each point is inside of the mesh.
@@ -411,7 +408,7 @@ class RayMeshIntersector:
         return _indexes(self.mesh).surface.contains(_points(points))
 
 
-def _rays(ray_origins: ArrayLike, ray_directions: ArrayLike) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+def _rays(ray_origins: ArrayLike, ray_directions: ArrayLike) -> Rays:
     """Return origins and directions of shape (n, 3)."""
     origins = coordinates(ray_origins, "ray_origins", only_float64=True)
     directions = coordinates(ray_directions, "ray_directions", only_float64=True)
