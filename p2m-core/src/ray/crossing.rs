@@ -105,16 +105,18 @@ impl<'a> Crossing<'a> {
             }
         };
         let side = if front { Side::Front } else { Side::Back };
-        let [low, high] = parameter_bounds(ray, vertices, &offsets[0]);
+        let [mut low, mut high] = parameter_bounds(ray, vertices, &offsets[0]);
         if low > limit || low > ray.max || high < ray.min {
             return None;
         }
-        let crossing = Self { ray, low, high, source: HitSource::Face(*vertices, side) };
-        if ray.min <= low && high <= ray.max {
-            return Some(crossing);
+        if !(ray.min <= low && high <= ray.max) {
+            low = Self { ray, low, high, source: HitSource::Face(*vertices, side) }.parameter();
+            high = low;
+            if !ray.contains(low) {
+                return None;
+            }
         }
-        let t = crossing.parameter();
-        ray.contains(t).then_some(Self { low: t, high: t, ..crossing })
+        Some(Self { ray, low, high, source: HitSource::Face(*vertices, side) })
     }
 
     /// Returns a lower and an upper bound on the parameter.

@@ -4,7 +4,7 @@
 use super::rounding::{PLAIN_MAGNITUDES, U};
 use crate::kernel::arithmetic::{cross, dot};
 use crate::kernel::double_double::{Double, ROUNDING as DOUBLE_ERROR};
-use crate::kernel::vector::V3;
+use crate::kernel::vector::{V3, larger};
 
 /// The intersection of a line and the plane of a triangle, in double-double arithmetic.
 pub(super) struct PlaneIntersection {
@@ -72,7 +72,7 @@ impl PlaneIntersection {
 
 /// Returns the largest magnitude of a component.
 fn size(x: &[Double; 3]) -> f64 {
-    x.iter().fold(0.0, |m, x| m.max(x.high.abs()))
+    larger(larger(x[0].high.abs(), x[1].high.abs()), x[2].high.abs())
 }
 
 /// Returns a bound on the error of a quotient, given those of the dividend and the divisor. It is `None` if the divisor
