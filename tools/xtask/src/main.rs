@@ -5,6 +5,7 @@
 
 mod account;
 mod arm;
+mod budget;
 mod c;
 mod cuda;
 mod debian;
@@ -38,7 +39,7 @@ struct Task {
 /// The result of a task, with a message if it failed.
 type Outcome = Result<(), String>;
 
-const TASKS: [Task; 23] = [
+const TASKS: [Task; 24] = [
     Task {
         name: "quick",
         arguments: "[FILTER]",
@@ -69,6 +70,12 @@ const TASKS: [Task; 23] = [
         arguments: "[--check]",
         about: "Renew the figures of the documents from the data in docs/measurements, or check them",
         run: figures::run,
+    },
+    Task {
+        name: "budget",
+        arguments: "[--write | --llvm]",
+        about: "Compare lines, public names, crates and import circles with tools/xtask/budget.csv, or renew that",
+        run: budget::check,
     },
     Task {
         name: "site",
