@@ -29,13 +29,14 @@ pub mod ray_oracle;
 pub mod rays;
 pub mod saved_file;
 pub mod scenes;
+mod stand_ins;
 mod surface;
 mod thin_scenes;
 pub mod truth;
 
 pub use checksum::restore_e57_checksums;
 pub use depth::{Cases, amount, cases, depth, is_deep};
-pub use models::{all_model_files, model_file, model_files, models};
+pub use models::{all_model_files, model_file, model_files, models, skip};
 use nalgebra::Vector3;
 pub use point_file::point_file;
 use rand::{Rng, RngExt, SeedableRng};
