@@ -1,7 +1,7 @@
 //! Import circles: files that import each other, directly or through others. Imports of tests, and those that only a
 //! checker of types reads, are none. A module may use what stands in the file of a module around it.
 
-use super::source::{PYTHON, RUST, Source, WEB, uses};
+use super::source::{PYTHON, RUST, Source, Use, WEB, uses};
 use std::collections::{BTreeMap, BTreeSet};
 
 /// The files that each file imports.
@@ -45,18 +45,12 @@ struct Module<'a> {
     file: &'a str,
     /// The names of the items that the file declares.
     items: BTreeSet<&'a str>,
-    uses: Vec<Import>,
+    /// The names that it imports, with keys as paths.
+    uses: Vec<Use>,
     /// The keys of what its code names by a path.
     paths: BTreeSet<String>,
     /// The words of its code.
     words: BTreeSet<String>,
-}
-
-/// A name that a module imports, and the key of what it stands for.
-struct Import {
-    key: String,
-    name: String,
-    is_exported: bool,
 }
 
 fn key_of(path: &str) -> Option<&str> {
@@ -72,10 +66,10 @@ fn rust_arrows(sources: &[Source]) -> Arrows {
     let mut arrows = Arrows::new();
     for (key, module) in &modules {
         // A module that is imported counts where something of it is named, and a name that is passed on where it is used.
-        let is_used = |used: &&Import| {
-            !modules.contains_key(&*used.key) && (!used.is_exported || module.words.contains(&used.name))
+        let is_used = |used: &&Use| {
+            !modules.contains_key(&*used.path) && (!used.is_exported || module.words.contains(&used.name))
         };
-        let named = module.uses.iter().filter(is_used).map(|used| &used.key).chain(&module.paths);
+        let named = module.uses.iter().filter(is_used).map(|used| &used.path).chain(&module.paths);
         let defined = named.filter_map(|path| definition(path, &modules, 8));
         let is_around =
             |whole: &str| key.strip_prefix(whole).is_some_and(|rest| rest.is_empty() || rest.starts_with('/'));
@@ -98,9 +92,9 @@ fn definition(path: &str, modules: &BTreeMap<&str, Module<'_>>, hops: u32) -> Op
         return Some(key.to_owned());
     }
     if let Some(used) = module.uses.iter().find(|used| used.name == name) {
-        return definition(&joined(&used.key, tail), modules, hops - 1);
+        return definition(&joined(&used.path, tail), modules, hops - 1);
     }
-    let mut globs = module.uses.iter().filter_map(|used| used.key.strip_suffix("/*"));
+    let mut globs = module.uses.iter().filter_map(|used| used.path.strip_suffix("/*"));
     let has_name = |glob: &&str| modules.get(glob).is_some_and(|module| module.items.contains(name));
     Some(globs.find(has_name).unwrap_or(key).to_owned())
 }
@@ -111,7 +105,7 @@ impl<'a> Module<'a> {
         let (imports, body) = uses(&source.code);
         let root = key.find("/src/").map_or("src", |at| &key[..at + "/src".len()]);
         let root = if key.ends_with("/src") { key } else { root };
-        let absolute = |path: &str, imported: &[Import]| {
+        let absolute = |path: &str, imported: &[Use]| {
             let (first, rest) = path.split_once("::").unwrap_or((path, ""));
             let child = format!("{key}/{first}");
             let base = match first {
@@ -119,17 +113,12 @@ impl<'a> Module<'a> {
                 "self" => key,
                 "super" => folder(key),
                 _ if files.contains_key(&*child) => &child,
-                _ => &imported.iter().find(|import| import.name == first)?.key,
+                _ => &imported.iter().find(|import| import.name == first)?.path,
             };
             Some(joined(base, &rest.replace("super::", "../").replace("::", "/")))
         };
-        let key_of_use = |path: &str| absolute(path, &[]);
-        let uses: Vec<Import> = imports
-            .into_iter()
-            .filter_map(|used| {
-                Some(Import { key: key_of_use(&used.path)?, name: used.name, is_exported: used.is_exported })
-            })
-            .collect();
+        let uses = imports.into_iter().filter_map(|used| Some(Use { path: absolute(&used.path, &[])?, ..used }));
+        let uses: Vec<Use> = uses.collect();
         // Items of a file begin in the first column.
         let items = source.code.lines().filter(|line| line.starts_with(|c: char| c.is_ascii_lowercase()));
         let items = items.filter_map(|line| {

@@ -4,7 +4,7 @@
 mod circles;
 mod source;
 
-use crate::{Outcome, output, read, run};
+use crate::{Outcome, cargo, make_folder, output, read, target, text, write};
 use source::{RUST, Source};
 use std::collections::BTreeMap;
 use std::fs;
@@ -37,7 +37,7 @@ pub(crate) fn check(arguments: &[String]) -> Outcome {
     for (name, build) in BUILDS {
         rows.insert(("crates".into(), name.into()), crates(build)?);
     }
-    let old = if has("--write") && !Path::new(TABLE).exists() { Rows::new() } else { parse(&read(Path::new(TABLE))?)? };
+    let old = if has("--write") && !Path::new(TABLE).exists() { Rows::new() } else { parse(&read(TABLE)?)? };
     if has("--llvm") {
         for name in INSTANTIATING {
             rows.insert(("LLVM".into(), name.into()), llvm_lines(name)?);
@@ -56,19 +56,17 @@ pub(crate) fn check(arguments: &[String]) -> Outcome {
     if has("--write") {
         let lines = rows.iter().map(|((measure, of), value)| format!("{measure},{of},{value}\n"));
         let table = format!("{HEAD}\n{}", lines.collect::<String>());
-        fs::write(TABLE, table).map_err(|error| format!("{TABLE}: {error}"))?;
+        write(TABLE, table)?;
     }
     if !circles.is_empty() {
-        return Err(format!(
-            "files import each other in a circle:\n{}",
-            circles.into_iter().collect::<Vec<_>>().join("\nand\n")
-        ));
+        let circles = circles.into_iter().collect::<Vec<_>>().join("\nand\n");
+        return Err(format!("files import each other in a circle:\n{circles}").into());
     }
     if too_large.is_empty() || has("--write") {
         return Ok(());
     }
     let how = "make it smaller, or raise the row by `cargo xtask budget --write` and give the reason in the commit";
-    Err(format!("the budget is exceeded:\n{}\n{how}", too_large.join("\n")))
+    Err(format!("the budget is exceeded:\n{}\n{how}", too_large.join("\n")).into())
 }
 
 /// Returns the rows that are exceeded, and those that could be lower by more than one percent.
@@ -134,14 +132,13 @@ fn crates(build: &str) -> Result<usize, String> {
 }
 
 /// Returns the lines of LLVM's language that the compiler makes of a crate.
-fn llvm_lines(name: &str) -> Result<usize, String> {
-    let folder = crate::target_folder().join("llvm");
+fn llvm_lines(name: &str) -> Outcome<usize> {
+    let folder = target("llvm");
     let file = folder.join(format!("{name}.ll"));
-    fs::create_dir_all(&folder).map_err(|error| format!("{}: {error}", folder.display()))?;
-    let emit = format!("--emit=llvm-ir={}", std::path::absolute(&file).map_err(|e| e.to_string())?.display());
-    let target = folder.display().to_string();
-    let build = ["rustc", "--locked", "--release", "--lib", "-p", name, "--target-dir", &target];
-    run("cargo", &[&build[..], &["--", "-C", "codegen-units=1", &emit]].concat(), &[])?;
+    make_folder(&folder)?;
+    let build = ["rustc", "--locked", "--release", "--lib", "-p", name, "--target-dir", &text(&folder)];
+    let emit = ["--", "-C", "codegen-units=1", &format!("--emit=llvm-ir={}", text(&file))];
+    cargo(&[&build[..], &emit].concat(), &[])?;
     Ok(read(&file)?.lines().filter(|line| line.starts_with("  ")).count())
 }
 
