@@ -1,10 +1,12 @@
 //! Brute force: every query evaluates every primitive. All other indexes are tested against it.
 
 use crate::{
-    Best, BuildError, BuildIndex, CertifiedQuery, ClosestPoint, Collector, IndexStats, Near, NearQuery, Primitive,
-    PrimitiveId, PrimitiveSet, Real, Shape, StatsCollector, check_set, shape_of,
+    Best, BuildError, BuildIndex, CertifiedQuery, ClosestPoint, Collector, Crossing, Hits, IndexStats, Near, NearQuery,
+    Primitive, PrimitiveId, PrimitiveSet, Ray, RayCollector, RayQuery, Real, Shape, StatsCollector, check_set,
+    shape_of,
 };
 use nalgebra::Point3;
+use std::ops::ControlFlow;
 
 /// An index without a structure, which evaluates every primitive. It is kept simple, so that its
 /// correctness is evident.
@@ -68,6 +70,23 @@ impl<T: Real, S: PrimitiveSet<T>> NearQuery<T> for BruteForce<S> {
             }
             near.offer(id, self.set.get(id).project(query));
         }
+    }
+}
+
+impl<T: Real, S: PrimitiveSet<T>> RayQuery<T> for BruteForce<S> {
+    fn search_ray<'r>(&self, ray: &'r Ray, hits: &mut Hits<'r>) {
+        let only_crossings = hits.only_crossings();
+        let _ = (0..self.set.len()).map(PrimitiveId::new).try_for_each(|id| {
+            match Crossing::from_primitive(&self.set.get(id), ray, hits.limit(), only_crossings) {
+                Some(crossing) => hits.offer(id, &crossing),
+                None => ControlFlow::Continue(()),
+            }
+        });
+    }
+
+    fn visit_ray_candidates(&self, _: &Ray, visit: &mut dyn FnMut(PrimitiveId, &[[f64; 3]]) -> f64) {
+        let mut ids = (0..self.set.len()).map(PrimitiveId::new);
+        let _ = ids.find(|id| visit(*id, &[]) == f64::NEG_INFINITY);
     }
 }
 

@@ -1,7 +1,7 @@
 //! The options of the indexes, and the statistics of what was built.
 
 use crate::list::block::{BLOCK_WIDTH, MAX_BLOCKS};
-use crate::octree::MIN_PRIMITIVES_FOR_BUDGETS;
+use crate::octree::budget::MIN_PRIMITIVES_FOR_BUDGETS;
 use crate::voronoi::list_filter::BuildListFilter;
 use crate::voronoi::locator::BuildLocator;
 use p2m_bvh::SplitOptions;

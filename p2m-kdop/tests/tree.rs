@@ -26,11 +26,8 @@ fn work<V: Volume>(tree: &TreeIndex<f64, &Soup<f64>, V>, queries: &[Point3<f64>]
 }
 
 fn model(name: &str) -> Option<Soup<f64>> {
-    let path = p2m_testkit::model_files().into_iter().find(|path| path.ends_with(name));
-    if path.is_none() {
-        println!("skipped: no model {name}");
-    }
-    path.map(|path| Arc::unwrap_or_clone(p2m_mixed::read_scene(&path).expect("readable").soup))
+    let path = p2m_testkit::model_files().into_iter().find(|path| path.ends_with(name))?;
+    Some(Arc::unwrap_or_clone(p2m_mixed::read_scene(&path).expect("readable").soup))
 }
 
 fn built<const K: usize>(soup: &Soup<f64>) -> Tree<'_, K>

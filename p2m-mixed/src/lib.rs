@@ -46,12 +46,12 @@ mod unit;
 mod write;
 
 pub use error::{FileLocation, HeaderProblem, ReadError, Reason};
-pub use formats::Format;
 pub use formats::obj::{read_obj, write_obj};
 pub use formats::off::{read_off, write_off};
 pub use formats::p2m::{load_scene, read_p2m, save_scene, write_p2m};
 pub use formats::ply::{VertexValues, read_ply, write_ply, write_ply_ascii, write_ply_with_values};
 pub use formats::stl::{StlRounding, read_stl, stl_rounding, write_stl};
+pub use formats::{Format, write_scene};
 pub use p2m_core::{UnknownExtension, UnknownFormat};
 pub use parse::text::set_max_line_bytes;
 pub use pieces::{PieceOptions, PieceSummary, read_scene_in_pieces};
@@ -63,7 +63,7 @@ pub use polygon::MAX_CORNERS;
 pub use read::{read_scene, read_scene_from};
 pub use scene::{Object, Scene, Skipped};
 pub use unit::Unit;
-pub use write::{WriteError, write_scene};
+pub use write::WriteError;
 
 /// The parts of this crate that its sibling crates use. They are not part of the public interface.
 #[doc(hidden)]

@@ -1,30 +1,7 @@
-//! Writing a scene in any format.
+//! What writers of all formats share.
 
-use crate::{Format, Scene};
 use p2m_core::PrimitiveId;
-use std::io::{self, Write};
-
-/// Writes a scene. Every number is written at once, so `writer` should have a buffer.
-///
-/// A file of a [lossless](Format::is_lossless) format reads back as the same scene, with the same positions bit by bit
-/// and the same primitives with the same ids; objects and polygons ([`Scene::sources`]) may be lost. What each format
-/// keeps is described at its function, such as [`write_obj`](crate::write_obj).
-///
-/// ```
-/// use p2m_mixed::{Format, read_obj, read_scene_from, write_scene};
-///
-/// let scene = read_obj("v 0 0 0\nv 1 0 0\nv 0 1 0\nl 1 2\nf 1 2 3\np 3\n".as_bytes(), "scene.obj").unwrap();
-/// let mut file = Vec::new();
-/// write_scene(&scene, Format::Ply, &mut file).unwrap();
-/// assert_eq!(read_scene_from(&file[..], Format::Ply, "scene.ply").unwrap().soup, scene.soup);
-/// ```
-///
-/// # Errors
-/// [`WriteError`] for scenes that STL or a table of points cannot represent, before anything is written, and for errors of `writer`, after
-/// which the file may be incomplete.
-pub fn write_scene(scene: &Scene, format: Format, writer: impl Write) -> Result<(), WriteError> {
-    format.write(scene, writer)
-}
+use std::io;
 
 /// Reasons why a scene cannot be written.
 #[derive(Debug, thiserror::Error)]

@@ -12,11 +12,8 @@ use rand::RngExt;
 use std::sync::Arc;
 
 fn model(name: &str) -> Option<Soup<f64>> {
-    let path = p2m_testkit::model_files().into_iter().find(|path| path.ends_with(name));
-    if path.is_none() {
-        println!("skipped: no model {name}");
-    }
-    path.map(|path| Arc::unwrap_or_clone(p2m::scene::read_scene(&path).expect("readable").soup))
+    let path = p2m_testkit::model_files().into_iter().find(|path| path.ends_with(name))?;
+    Some(Arc::unwrap_or_clone(p2m::scene::read_scene(&path).expect("readable").soup))
 }
 
 /// Returns the nodes and packets that searches for all hits visit, for all rays.

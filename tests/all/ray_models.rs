@@ -152,7 +152,17 @@ fn sides<V: Volume>(tree: &TreeIndex<f64, &Soup<f64>, V>, line: &Ray) -> [usize;
 #[test]
 fn closed_models_let_nothing_slip_through() {
     let cases = cases(5000, 400);
-    let closed = ["bunny.obj", "camel.off", "armadillo.obj", "lucy_100k.ply", "dragon_100k.obj"];
+    let closed = [
+        "scan.obj",
+        "scan.off",
+        "scan.ply",
+        "slivers.stl",
+        "bunny.obj",
+        "camel.off",
+        "armadillo.obj",
+        "lucy_100k.ply",
+        "dragon_100k.obj",
+    ];
     for path in model_files().iter().filter(|path| closed.iter().any(|name| path.ends_with(name))) {
         let (name, soup) = read(path);
         assert!(is_closed(&soup), "{name} should be closed");

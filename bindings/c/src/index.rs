@@ -2,16 +2,17 @@
 
 use crate::arrays::{give, reference, take_back, text};
 use crate::scene::Scene;
-use crate::signs::Signs;
 use crate::status::{Call, Failure, Status, invalid, run};
 use crate::threads::in_pool;
 use p2m_backends::{BACKENDS, BackendEntry, BuildSettings, BuiltIndex, Choice, KdopDirections, QueryRegion, Workload};
-use p2m_core::PrimitiveSet;
 use p2m_core::storage::{LoadError, SavedFile, Writer};
-use p2m_field::sign::Normals;
+use p2m_core::{AnyIndex, PrimitiveSet, Soup};
+use p2m_field::sign::{Normals, SignedDistance};
 use p2m_mixed::{load_scene, save_scene};
 use std::ffi::{CString, c_char};
 use std::sync::{Arc, OnceLock};
+
+pub(crate) type Signs = SignedDistance<Arc<dyn AnyIndex>, Arc<Soup<f64>>>;
 
 /// An index over a scene, which it keeps alive. It never changes, and any number of threads may query it.
 pub struct Index {

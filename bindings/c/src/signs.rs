@@ -1,17 +1,15 @@
 //! Signed distances.
 
 use crate::arrays::{Array, Column, Out, reference};
-use crate::index::Index;
+use crate::index::{Index, Signs};
 use crate::queries::{Batch, BatchOptions, check_finite};
 use crate::status::{Call, Failure, Status, invalid, run};
 use crate::threads::{Cancel, in_pool, with_threads};
 use nalgebra::Point3;
 use p2m_core::batch::{self, Interruptible};
-use p2m_core::{AnyIndex, ClosestPoint, QueryOptions, Soup};
+use p2m_core::{ClosestPoint, QueryOptions};
 use p2m_field::sign::SignedDistance;
 use std::sync::Arc;
-
-pub(crate) type Signs = SignedDistance<Arc<dyn AnyIndex>, Arc<Soup<f64>>>;
 
 impl Index {
     /// Returns the signs of the scene, which the first call prepares.

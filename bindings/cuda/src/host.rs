@@ -36,7 +36,7 @@ fn compiled() -> Option<Library> {
         Ok(status) if status.success() => Some(unsafe { Library::new(&library) }.expect("the library")),
         Ok(_) => panic!("{compiler} does not compile the kernels"),
         Err(error) => {
-            eprintln!("skipped: {compiler} cannot be run ({error})");
+            p2m_testkit::skip(&format!("{compiler} cannot be run ({error})"));
             None
         }
     }

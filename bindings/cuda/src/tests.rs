@@ -256,8 +256,15 @@ fn agrees_at_extreme_scales() {
 
 #[test]
 fn agrees_on_models() {
-    for name in ["bunny.obj", "rotterdam_city_far_from_origin.obj", "thingi10k_1514499_slivers.stl", "dragon_100k.obj"]
-    {
+    for name in [
+        "scan.ply",
+        "city_far_from_origin.obj",
+        "slivers.stl",
+        "bunny.obj",
+        "rotterdam_city_far_from_origin.obj",
+        "thingi10k_1514499_slivers.stl",
+        "dragon_100k.obj",
+    ] {
         let Some(file) = model_file(name) else { continue };
         let soup = p2m_mixed::read_scene(&file).unwrap().soup;
         let count = amount(50_000, 500);

@@ -47,12 +47,13 @@ def models() -> Path | None:
     return None
 
 
-@pytest.fixture(scope="session")
-def model_folder() -> Path:
-    folder = models()
-    if folder is None:
-        pytest.skip("the folder shared/models with real meshes is absent")
-    return folder
+def model(name: str) -> Path:
+    """Return a scene of the repository or a real mesh, or skip the test if the mesh is absent."""
+    scenes = Path(__file__).resolve().parents[3] / "scenes"
+    for folder in [scenes, models()]:
+        if folder is not None and (folder / name).exists():
+            return folder / name
+    pytest.skip(f"the model {name} is absent")
 
 
 def mixed_scene(seed: int = 1, vertices: int = 300, count: int = 200) -> p2m.Scene:

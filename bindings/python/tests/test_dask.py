@@ -16,7 +16,7 @@ from typing import Any
 
 import numpy as np
 import pytest
-from conftest import assert_same, mixed_scene, sphere
+from conftest import assert_same, mixed_scene, models, sphere
 from hypothesis import HealthCheck, Phase, given, settings
 from hypothesis import strategies as st
 
@@ -538,9 +538,11 @@ def test_processes_that_share_shards_load_each_at_most_twice(tmp_path: Path) -> 
     assert count <= loads[True] <= 2 * count < loads[False]
 
 
-def test_millions_of_points_on_two_processes(model_folder: Path, tmp_path: Path) -> None:
-    file = tmp_path / "dragon.p2m"
-    p2m.Index(p2m.read(model_folder / "dragon_100k.obj")).save(file)
+def test_millions_of_points_on_two_processes(tmp_path: Path) -> None:
+    file = tmp_path / "scene.p2m"
+    folder = models()
+    scene = p2m.read(folder / "dragon_100k.obj") if folder else p2m.Scene(*sphere(150, 300))
+    p2m.Index(scene).save(file)
     index = p2m.load(file, map=True)
     count = 10_000_000 if "P2M_DEEP" in os.environ else 2_000_000
     points = np.random.default_rng(1).uniform(*index.scene.bounds, (count, 3))

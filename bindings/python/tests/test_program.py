@@ -9,11 +9,12 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from conftest import model
 
 import p2m
 
-MODELS = ["dragon_100k.obj", "mixed_armadillo_camel_wireframe.obj", "rotterdam_city_far_from_origin.obj",
-          "political_borders_lines.obj", "thingi10k_73416.stl"]
+MODELS = ["knot_and_cables.obj", "dragon_100k.obj", "mixed_armadillo_camel_wireframe.obj",
+          "rotterdam_city_far_from_origin.obj", "political_borders_lines.obj", "thingi10k_73416.stl"]
 
 
 @pytest.fixture(scope="module")
@@ -26,10 +27,8 @@ def program() -> str:
 
 
 @pytest.mark.parametrize("name", MODELS)
-def test_answers_are_those_of_the_program(name: str, program: str, model_folder: Path, tmp_path: Path) -> None:
-    path = model_folder / name
-    if not path.exists():
-        pytest.skip(f"{path} is absent")
+def test_answers_are_those_of_the_program(name: str, program: str, tmp_path: Path) -> None:
+    path = model(name)
     scene = p2m.read(path)
     low, high = scene.bounds
     rng = np.random.default_rng(11)

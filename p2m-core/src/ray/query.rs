@@ -1,11 +1,9 @@
 //! Queries by rays.
 
-use super::collector::{Hits, RayCollector};
-use super::crossing::Crossing;
+use super::collector::Hits;
 use super::hit::Hit;
 use super::line::Ray;
-use crate::{BruteForce, PrimitiveId, PrimitiveSet, Real};
-use std::ops::ControlFlow;
+use crate::{PrimitiveId, Real};
 
 /// Intersections of a scene and a ray. A backend writes two methods, [`search_ray`](Self::search_ray) and
 /// [`visit_ray_candidates`](Self::visit_ray_candidates).
@@ -131,22 +129,5 @@ pub trait RayQuery<T: Real> {
         let mut hits = Hits::crossings();
         self.search_ray(ray, &mut hits);
         hits.signed_count
-    }
-}
-
-impl<T: Real, S: PrimitiveSet<T>> RayQuery<T> for BruteForce<S> {
-    fn search_ray<'r>(&self, ray: &'r Ray, hits: &mut Hits<'r>) {
-        let only_crossings = hits.only_crossings();
-        let _ = (0..self.set().len()).map(PrimitiveId::new).try_for_each(|id| {
-            match Crossing::from_primitive(&self.set().get(id), ray, hits.limit(), only_crossings) {
-                Some(crossing) => hits.offer(id, &crossing),
-                None => ControlFlow::Continue(()),
-            }
-        });
-    }
-
-    fn visit_ray_candidates(&self, _: &Ray, visit: &mut dyn FnMut(PrimitiveId, &[[f64; 3]]) -> f64) {
-        let mut ids = (0..self.set().len()).map(PrimitiveId::new);
-        let _ = ids.find(|id| visit(*id, &[]) == f64::NEG_INFINITY);
     }
 }

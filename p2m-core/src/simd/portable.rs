@@ -1,7 +1,6 @@
 //! Lanes of the crate `wide`, for processors of any kind: the vector instructions that every processor of an
 //! architecture has (SSE2, NEON), or arrays.
 
-use super::isa::run_portable;
 use super::lanes::{Doubles, EightLanes, Float, InstructionSet, Lanes, SimdKernel};
 use super::operators::{float_operators, mask_operators};
 use wide::{f32x8, f64x4};
@@ -16,6 +15,13 @@ pub struct EightDoubles(f64x4, f64x4);
 
 /// The instruction set of every processor. The others are tested against it.
 pub struct Portable;
+
+/// Runs a kernel with portable instructions. It is not inlined, so each kernel is compiled once and not wherever
+/// it is run.
+#[inline(never)]
+pub(super) fn run_portable<K: SimdKernel>(kernel: K) -> K::Output {
+    kernel.run::<Portable>()
+}
 
 impl InstructionSet for Portable {
     #[inline(always)]

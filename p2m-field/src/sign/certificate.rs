@@ -18,20 +18,17 @@
 //! [docs/proofs/fields.md]: https://github.com/p2m-rs/p2m/blob/main/docs/proofs/fields.md
 
 use super::crowding;
-use super::normals::angle;
 use super::surface::{NO_TRIANGLE, Surface};
+use super::triangle::{MIN_SINE, ROUNDING, angle, corners, unit_normal};
 use super::types::{ClosestFeature, RayTree, SharedSoup};
 use nalgebra::Point3;
 use p2m_bvh::TreeIndex;
 use p2m_core::engine::arithmetic::cross;
 use p2m_core::engine::vector::{V3, add, add_scaled, dot, largest, length, scaled, sub};
 use p2m_core::engine::weld::UnionFind;
-use p2m_core::{BuildError, Feature, Soup};
+use p2m_core::{BuildError, Feature};
 use std::sync::atomic::{AtomicI64, Ordering};
 
-/// The smallest sine of a triangle that is no sliver: 2^-16. It is the length of the cross product of two edges,
-/// relative to the square of their largest component.
-const MIN_SINE: f64 = 1.0 / (1 << 16) as f64;
 /// The smallest cosine between the normals of a fan and its pseudonormal: 2^-4.
 const MIN_COSINE: f64 = 1.0 / 16.0;
 /// The bound on the error of a pseudonormal: 2^-24. Normals of triangles that are no slivers have errors below
@@ -217,7 +214,7 @@ impl<S: SharedSoup> Certificates<S> {
                 let i = usize::from(i);
                 let fan = &self.fans[self.vertex_ids[numbers[i] as usize] as usize];
                 let offset = sub(q, corners[i]);
-                Approach { offset, normal: fan.normal, reach: fan.reach, magnitude: magnitude(&[offset]) }
+                Approach { offset, normal: fan.normal, reach: fan.reach, magnitude: largest(&[offset]) }
             }
         };
         let is_front = approach.is_from_front(closest.lower_bound, self.clearance)?;
@@ -262,7 +259,7 @@ impl Approach {
         let reach = |weight: f64, edge: V3| weight * size / dot(edge, edge).sqrt();
         let reach = reach(along_e, f).min(reach(along_f, e)).min(reach(1.0 - along_e - along_f, sub(f, e)));
         let normal = scaled(n, std::f64::consts::TAU / size);
-        Self { offset, normal, reach, magnitude: magnitude(&[v, e, f]) }
+        Self { offset, normal, reach, magnitude: largest(&[v, e, f]) }
     }
 
     /// `other` has the corners of the triangle beyond edge `i`.
@@ -276,7 +273,7 @@ impl Approach {
         // The third edge of a triangle that is no sliver may be 2 sqrt(3) times as long as the largest component of the
         // others, so its angles have sines of at least a sixth of the smallest sine.
         let reach = along.min(1.0 - along) * square.sqrt() * (MIN_SINE / 8.0);
-        Some(Self { offset, normal, reach, magnitude: magnitude(&[v, e]) })
+        Some(Self { offset, normal, reach, magnitude: largest(&[v, e]) })
     }
 
     /// Returns whether the segment arrives from the front, or `None` if that is not proved.
@@ -298,28 +295,8 @@ impl Approach {
     }
 }
 
-/// The bound on the error of an offset, in units of the magnitude of the numbers from which it was computed: 32 u.
-pub(super) const ROUNDING: f64 = 16.0 * f64::EPSILON;
 /// The bound on the error of the foot of a perpendicular in units of that of its distance: four over the smallest sine.
 const FOOT_ERROR: f64 = 4.0 / MIN_SINE;
-
-fn magnitude(vectors: &[V3]) -> f64 {
-    largest(vectors)
-}
-
-pub(super) fn corners(soup: &Soup<f64>, triangle: [u32; 3]) -> [V3; 3] {
-    triangle.map(|i| soup.positions()[i as usize].into())
-}
-
-/// Returns the unit normal of a triangle, or `None` if the triangle is a sliver.
-pub(super) fn unit_normal(corners: [V3; 3]) -> Option<V3> {
-    let edges = [sub(corners[1], corners[0]), sub(corners[2], corners[0])];
-    let size = largest(&edges);
-    let normal = cross(edges[0], edges[1]);
-    let length = dot(normal, normal).sqrt();
-    // A length of NaN is not above the smallest sine, so it gives `None`.
-    (length > MIN_SINE * size * size).then(|| scaled(normal, 1.0 / length))
-}
 
 /// Returns the height of corner `i` over the opposite edge, less its rounding error.
 fn height(corners: [V3; 3], i: usize) -> f64 {

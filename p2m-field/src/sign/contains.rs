@@ -6,7 +6,7 @@
 //! convex and has no surface in it, so its points have the sign of one of them. Points between the planes are answered
 //! one by one.
 
-use super::certificate::{corners, unit_normal};
+use super::triangle::{corners, unit_normal};
 use super::{SharedSoup, Sign, SignedDistance};
 use nalgebra::Point3;
 use p2m_core::batch::{BatchOptions, map_parts_into};

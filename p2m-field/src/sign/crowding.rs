@@ -3,7 +3,7 @@
 //! Groups of triangles that are consecutive in the leaves of the tree take the triangles in their common box from the
 //! tree. Pairs whose boxes overlap are then tested for a separating axis.
 
-use super::certificate::{ROUNDING, corners};
+use super::triangle::{ROUNDING, corners};
 use super::types::{RayTree, SharedSoup};
 use nalgebra::Point3;
 use p2m_bvh::PacketTree;
@@ -118,14 +118,9 @@ impl<S: SharedSoup> Join<'_, S> {
             let near = others.iter().filter(|(other, bounds)| *other != t && overlap(own, bounds));
             let mut apart =
                 near.filter(|(other, _)| !self.welded[*other].iter().any(|vertex| vertices.contains(vertex)));
-            let corners = corners(self.soup, self.soup.triangles()[t]);
-            apart.all(|(other, _)| {
-                are_apart(
-                    &corners,
-                    &super::certificate::corners(self.soup, self.soup.triangles()[*other]),
-                    self.distance,
-                )
-            })
+            let corners_of = |t: usize| corners(self.soup, self.soup.triangles()[t]);
+            let corners = corners_of(t);
+            apart.all(|(other, _)| are_apart(&corners, &corners_of(*other), self.distance))
         };
         marked.into_iter().filter(is_far).collect()
     }

@@ -56,7 +56,7 @@ const SMALL_ERROR: f64 = 1e-4;
 /// A triangle with a larger error is always near.
 const MAX_ERROR: f64 = 0.25;
 /// The bound on the rounding error of a polynomial.
-const ROUNDING: f64 = 1e-9;
+const POLYNOMIAL_ROUNDING: f64 = 1e-9;
 
 impl SolidAngles {
     /// Returns the sum in a ball. It is `None` far away from the triangles.
@@ -109,7 +109,7 @@ impl SolidAngles {
         let is_small = |x: f64| x.abs() <= count;
         // No continued solid angle exceeds 4 pi. A number of NaN is not small.
         if part.error < count && is_small(value) && slope.into_iter().all(is_small) {
-            let Estimate { value, error } = self.rounded(Estimate { value, error: part.error + ROUNDING });
+            let Estimate { value, error } = self.rounded(Estimate { value, error: part.error + POLYNOMIAL_ROUNDING });
             let slope = slope.map(|x| self.rounded(Estimate { value: x, error: 0.0 }).value);
             Part { polynomial: Polynomial { value, slope }, error, ..part }
         } else {
@@ -145,7 +145,7 @@ impl Local {
     pub(super) fn at(&self, q: V3, near: Estimate) -> Estimate {
         let Polynomial { value, slope } = self.polynomial;
         let value = value + dot(slope, scaled(sub(q, self.centre), 1.0 / self.radius)) + near.value;
-        Estimate { value, error: self.error + near.error + ROUNDING }
+        Estimate { value, error: self.error + near.error + POLYNOMIAL_ROUNDING }
     }
 
     /// Returns the bound on the error of the polynomial.

@@ -36,6 +36,7 @@ mod near;
 mod normals;
 mod solid_angles;
 mod surface;
+mod triangle;
 mod types;
 mod winding;
 

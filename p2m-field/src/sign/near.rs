@@ -3,7 +3,8 @@
 //! Half of a solid angle is the argument of a complex number, so a sum is the argument of a product. The product is
 //! continued across the negative real axis by counting turns.
 
-use super::solid_angles::{Estimate, MAX_CANCELLATION, ROUNDING};
+use super::solid_angles::{Estimate, MAX_CANCELLATION};
+use super::triangle::ROUNDING;
 use p2m_core::engine::simd::{Doubles, Float, InstructionSet, SimdKernel};
 use p2m_core::engine::vector::V3;
 use std::f64::consts::PI;

@@ -1,10 +1,10 @@
 //! The normals of a surface at its closest points.
 
-use super::certificate::corners;
 use super::surface::Surface;
+use super::triangle::{angle, corners, unit};
 use nalgebra::Vector3;
 use p2m_core::engine::arithmetic::cross;
-use p2m_core::engine::vector::{V3, add, dot, length, scaled, sub};
+use p2m_core::engine::vector::{V3, add, dot, scaled, sub};
 use p2m_core::{Feature, PrimitiveId, Soup};
 
 /// The normals of the triangles of a scene at their faces, edges and vertices.
@@ -86,16 +86,4 @@ impl Normals {
 fn face_normal(corners: [V3; 3]) -> V3 {
     let [e, f] = [1, 2].map(|k| unit(sub(corners[k], corners[0])));
     unit(cross(e, f))
-}
-
-/// Returns the angle at corner `i` of a triangle.
-pub(super) fn angle(corners: [V3; 3], i: usize) -> f64 {
-    let [e, f] = [1, 2].map(|k| unit(sub(corners[(i + k) % 3], corners[i])));
-    length(cross(e, f)).atan2(dot(e, f))
-}
-
-/// Returns a vector with the length 1, or zero for zero and for vectors without a finite length.
-fn unit(vector: V3) -> V3 {
-    let length = length(vector);
-    if length > 0.0 && length.is_finite() { vector.map(|x| x / length) } else { [0.0; 3] }
 }

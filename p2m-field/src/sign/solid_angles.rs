@@ -17,6 +17,7 @@
 //!
 //! [docs/proofs/fields.md]: https://github.com/p2m-rs/p2m/blob/main/docs/proofs/fields.md
 
+use super::triangle::ROUNDING;
 use super::types::ray;
 use nalgebra::Point3;
 use p2m_core::engine::arithmetic::cross;
@@ -73,8 +74,6 @@ pub(super) struct Estimate {
 
 /// The largest number of triangles in a leaf.
 const MAX_LEAF_TRIANGLES: usize = 4;
-/// The bound on the rounding error of a solid angle over 4 pi, where the terms of its tangent do not cancel: 32 u.
-pub(super) const ROUNDING: f64 = 16.0 * f64::EPSILON;
 /// Where the terms cancel more than this, the query is in an edge apart from rounding, and the angle is unknown.
 pub(super) const MAX_CANCELLATION: f64 = (1u64 << 40) as f64;
 /// Nodes below this level are halved, so no path is long.

@@ -4,6 +4,9 @@ use crate::progress::{BuildStage, Progress};
 use std::ops::{Add, AddAssign, Sub, SubAssign};
 use std::sync::atomic::{AtomicU64, Ordering};
 
+/// The budgets of a scene with fewer primitives are those of a scene with this many.
+pub(crate) const MIN_PRIMITIVES_FOR_BUDGETS: usize = 10_000;
+
 /// The amounts that cells take of the budgets.
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct Spent {

@@ -25,7 +25,7 @@ mod validate;
 
 use crate::list::block::{Block, MAX_LEVEL};
 use crate::list::search;
-use crate::octree::budget::{FinishedPart, Spent};
+use crate::octree::budget::{FinishedPart, MIN_PRIMITIVES_FOR_BUDGETS, Spent};
 use crate::octree::code::{CellCode, CodeWriter, FALLBACK_CODE, Row};
 use crate::octree::domain::DomainCube;
 use crate::octree::passes::Passes;
@@ -48,8 +48,6 @@ use std::ops::ControlFlow;
 const MAX_RESOLUTION: f64 = 1e9;
 /// The resolution below which there are no cells.
 const MIN_RESOLUTION: f64 = 1e-9;
-/// The budgets of a scene with fewer primitives are those of a scene with this many.
-pub(crate) const MIN_PRIMITIVES_FOR_BUDGETS: usize = 10_000;
 
 /// An interception index whose cells are cubes, over a set of primitives that it does not store.
 ///

@@ -53,7 +53,7 @@ macro_rules! scene_formats {
                 }
             }
 
-            pub(crate) fn write(self, scene: &Scene, writer: impl Write) -> Result<(), WriteError> {
+            fn write(self, scene: &Scene, writer: impl Write) -> Result<(), WriteError> {
                 match self {
                     $(Self::$variant => $write(scene, writer),)*
                 }
@@ -81,6 +81,28 @@ scene_formats! {
     Npy = "npy", cloud::read_npy, cloud::write_npy, is_lossless: false;
     /// Files of saved indexes can have a scene, see [`read_p2m`](crate::read_p2m) and [`write_p2m`](crate::write_p2m).
     P2m = "p2m", p2m::read, p2m::write, is_lossless: true;
+}
+
+/// Writes a scene. Every number is written at once, so `writer` should have a buffer.
+///
+/// A file of a [lossless](Format::is_lossless) format reads back as the same scene, with the same positions bit by bit
+/// and the same primitives with the same ids; objects and polygons ([`Scene::sources`]) may be lost. What each format
+/// keeps is described at its function, such as [`write_obj`](crate::write_obj).
+///
+/// ```
+/// use p2m_mixed::{Format, read_obj, read_scene_from, write_scene};
+///
+/// let scene = read_obj("v 0 0 0\nv 1 0 0\nv 0 1 0\nl 1 2\nf 1 2 3\np 3\n".as_bytes(), "scene.obj").unwrap();
+/// let mut file = Vec::new();
+/// write_scene(&scene, Format::Ply, &mut file).unwrap();
+/// assert_eq!(read_scene_from(&file[..], Format::Ply, "scene.ply").unwrap().soup, scene.soup);
+/// ```
+///
+/// # Errors
+/// [`WriteError`] for scenes that STL or a table of points cannot represent, before anything is written, and for errors of
+/// `writer`, after which the file may be incomplete.
+pub fn write_scene(scene: &Scene, format: Format, writer: impl Write) -> Result<(), WriteError> {
+    format.write(scene, writer)
 }
 
 #[cfg(test)]

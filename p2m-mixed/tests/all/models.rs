@@ -1,4 +1,4 @@
-//! Real models have the numbers of primitives that the list of models states.
+//! Models and their stand-ins have the numbers of primitives that a list states.
 
 use crate::common::{bits, lossless, read_back};
 use p2m_mixed::{Format, WriteError, read_scene, stl_rounding, write_stl};
@@ -31,6 +31,15 @@ const MODELS: &[(&str, usize, usize)] = &[
     ("thingi10k_73416.stl", 76_840, 0),
     ("degenerate_sliding.off", 8, 0),
     ("zero_area_triangle.stl", 14, 0),
+    ("scan.obj", 960, 0),
+    ("scan.off", 500, 0),
+    ("scan.ply", 2000, 0),
+    ("slivers.stl", 1200, 0),
+    ("non_manifold.ply", 618, 0),
+    ("mixed.obj", 640, 240),
+    ("lines.obj", 0, 600),
+    ("city_far_from_origin.obj", 704, 0),
+    ("zero_area.off", 8, 0),
 ];
 
 #[test]

@@ -286,6 +286,13 @@ const MODELS: &[(&str, [u64; 5])] = &[
     ("hotel_room_nonmanifold.ply", [0, 1794, 4919, 120, 60]),
     ("heavily_nonmanifold.obj", [22, 6, 14_425, 9708, 56]),
     ("political_borders_lines.obj", [0, 0, 0, 15_093, 816]),
+    ("scan.off", [0, 0, 0, 0, 1]),
+    ("slivers.stl", [0, 600, 0, 0, 1]),
+    ("non_manifold.ply", [0, 0, 197, 46, 1]),
+    ("mixed.obj", [0, 0, 0, 0, 5]),
+    ("lines.obj", [0, 0, 0, 0, 6]),
+    ("city_far_from_origin.obj", [64, 0, 3, 0, 32]),
+    ("zero_area.off", [4, 0, 1, 1, 1]),
 ];
 
 #[test]
@@ -296,16 +303,21 @@ fn models_have_the_figures_of_their_list() {
         let found = [s.shapes.zero_area, s.shapes.slivers, s.edges.non_manifold, s.duplicates.total(), s.components];
         assert_eq!(found, *expected, "{name}");
     }
-    for path in ["camel.off", "bunny.obj", "dragon_100k.obj", "lucy_100k.ply"].into_iter().filter_map(model_file) {
+    let closed = ["scan.obj", "scan.off", "scan.ply", "camel.off", "bunny.obj", "dragon_100k.obj", "lucy_100k.ply"];
+    for path in closed.into_iter().filter_map(model_file) {
         let (name, s) = (path.display(), Statistics::of(&read_scene(&path).unwrap().soup));
         assert!(s.edges.is_closed() && s.notes().is_empty(), "{name}: {:?}", s.notes());
     }
-    let Some(city) = model_file("rotterdam_city_far_from_origin.obj") else { return };
-    let city = Statistics::of(&read_scene(&city).unwrap().soup);
-    assert!(
-        sentence(&city, "far_from_origin")
-            .starts_with("the scene lies 4.452e5 units from the origin, 360 times its size")
-    );
+    let cities = [
+        ("rotterdam_city_far_from_origin.obj", "4.452e5 units from the origin, 360"),
+        ("city_far_from_origin.obj", "444,900 units from the origin, 2,900"),
+    ];
+    for (name, expected) in cities {
+        let Some(city) = model_file(name) else { continue };
+        let city = Statistics::of(&read_scene(&city).unwrap().soup);
+        let found = sentence(&city, "far_from_origin");
+        assert!(found.starts_with(&format!("the scene lies {expected} times its size")), "{found}");
+    }
 }
 
 #[test]

@@ -195,14 +195,18 @@ fn print_line(line: &str) {
     eprintln!("{line}");
 }
 
-/// Appends the location of a loop and its number of cases to the file that `P2M_CASES` names. Each line is a single
-/// write, so that lines of several threads and programs do not mix.
+/// Appends the location of a loop and its number of cases to the file that `P2M_CASES` names.
 fn record(location: &Location<'_>, count: usize) {
-    let Some(path) = std::env::var_os("P2M_CASES") else { return };
+    append("P2M_CASES", &format!("{}:{}\t{count}\n", location.file(), location.line()));
+}
+
+/// Appends a line to the file that a variable names, if it is set. Each line is a single write, so that lines of several
+/// threads and programs do not mix.
+pub(crate) fn append(variable: &str, line: &str) {
+    let Some(path) = std::env::var_os(variable) else { return };
     let file = std::fs::OpenOptions::new().create(true).append(true).open(&path);
-    let line = format!("{}:{}\t{count}\n", location.file(), location.line());
     file.and_then(|mut file| file.write_all(line.as_bytes()))
-        .unwrap_or_else(|error| panic!("P2M_CASES names {}, which cannot be written: {error}", path.display()));
+        .unwrap_or_else(|error| panic!("{variable} names {}, which cannot be written: {error}", path.display()));
 }
 
 #[cfg(test)]

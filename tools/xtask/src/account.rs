@@ -4,10 +4,9 @@
 //! instruction is executed, and addr2line names the functions that were inlined at its address. The first stage in
 //! [`STAGES`] that names one of them has the instruction.
 
-use crate::{Outcome, absolute_target_folder, output, output_of, read};
+use crate::{Outcome, cargo_command, make_empty_folder, need, output_of, read, target};
 use std::collections::BTreeMap;
 use std::ffi::OsStr;
-use std::fs;
 use std::path::Path;
 use std::process::Command;
 
@@ -33,52 +32,35 @@ const COLUMNS: [(&str, &str); 6] = [
 ];
 
 /// The stages, each with its functions, and with files all of whose functions belong to it.
-const STAGES: [(&str, &[&str]); 12] = [
-    ("filters: vertices, edges and normals", &["prepare@distance_filter.rs"]),
-    ("filters: planes", &["lanes_before_plane@", "place_planes@", "set_plane@", "is_beyond@distance_filter.rs"]),
-    ("filters: distances", &["squares_of_several@", "squares@distance_filter.rs", "smallest@distance_filter.rs"]),
+const STAGES: [(&str, &str); 12] = [
+    ("filters: vertices, edges and normals", "prepare@distance_filter.rs"),
+    ("filters: planes", "lanes_before_plane@ place_planes@ set_plane@ is_beyond@distance_filter.rs"),
+    ("filters: distances", "squares_of_several@ squares@distance_filter.rs smallest@distance_filter.rs"),
     (
         "filters: frames and limits",
-        &[
-            "convert@",
-            "set@distance_filter.rs",
-            "local@distance_filter.rs",
-            "update@interleaved_search.rs",
-            "update_limits@",
-        ],
+        "convert@ set@distance_filter.rs local@distance_filter.rs update@interleaved_search.rs update_limits@",
     ),
-    ("filters: candidates", &["push_candidates@", "push_pending@", "at_most@distance_filter.rs", "prefetch_vertices@"]),
+    ("filters: candidates", "push_candidates@ push_pending@ at_most@distance_filter.rs prefetch_vertices@"),
     (
         "evaluation",
-        &[
-            "evaluate_pending_inline@",
-            "evaluate@interleaved_search.rs",
-            "evaluate_early@",
-            "evaluate_triangles@",
-            "@side_by_side.rs",
-            "take@interleaved_search.rs",
-        ],
+        "evaluate_pending_inline@ evaluate@interleaved_search.rs evaluate_early@ evaluate_triangles@ \
+         @side_by_side.rs take@interleaved_search.rs",
     ),
-    ("order along the curve", &["sorted_along_curve@"]),
-    ("cells", &["locate_cell@", "locate_code@"]),
-    ("bounds of lists", &["bound@interleaved_lists.rs", "@block.rs", "sorted_keys@"]),
-    (
-        "turns in lists and filters",
-        &["@interleaved_lists.rs", "@interleaved_search.rs", "search_list@", "packet@search_state.rs"],
-    ),
-    ("nodes and turns in trees", &["@interleaved_traversal.rs", "@nearest.rs", "traverse@"]),
-    ("beginning, answers and columns", &[""]),
+    ("order along the curve", "sorted_along_curve@"),
+    ("cells", "locate_cell@ locate_code@"),
+    ("bounds of lists", "bound@interleaved_lists.rs @block.rs sorted_keys@"),
+    ("turns in lists and filters", "@interleaved_lists.rs @interleaved_search.rs search_list@ packet@search_state.rs"),
+    ("nodes and turns in trees", "@interleaved_traversal.rs @nearest.rs traverse@"),
+    ("beginning, answers and columns", ""),
 ];
 
 /// Counts instructions and writes the table.
 pub(crate) fn run() -> Outcome {
-    for tool in ["valgrind", "addr2line"] {
-        if output(tool, &["--version"]).is_err() {
-            return crate::skip(&format!("there is no program '{tool}'"));
-        }
-    }
+    need("valgrind")?;
+    need("addr2line")?;
     let program = build()?;
-    let folder = empty_folder(&absolute_target_folder()?.join("account"))?;
+    let folder = target("account/files");
+    make_empty_folder(&folder)?;
     let path = |name: &str| folder.join(name);
     succeed(Command::new(&program).arg(format!("--save-in={}", folder.display())))?;
     let counts = path("callgrind");
@@ -92,7 +74,7 @@ pub(crate) fn run() -> Outcome {
             .arg(format!("--measure-in={}", folder.display()))
             .env("RAYON_NUM_THREADS", "1"),
     )?;
-    let tasks = read(Path::new(TASKS))?;
+    let tasks = read(TASKS)?;
     let tasks: Vec<&str> = tasks.lines().filter(|line| line.starts_with(SCENE)).collect();
     let before = SCENES.iter().position(|scene| *scene == SCENE).ok_or("no such scene")? * LANES.len() * tasks.len();
     let mut table = vec![[0; COLUMNS.len()]; STAGES.len()];
@@ -102,7 +84,7 @@ pub(crate) fn run() -> Outcome {
             tasks.iter().position(|task| task.starts_with(&name)).ok_or_else(|| format!("{TASKS}: no {name}"))?;
         // The last instruction set is the one of the table.
         let dump = before + (LANES.len() - 1) * tasks.len() + task + 1;
-        let executed = executed(&read(&counts.with_extension(dump.to_string()))?, &program)?;
+        let executed = executed(&read(counts.with_extension(dump.to_string()))?, &program)?;
         let stages = stages(&program, &executed)?;
         for (count, stage) in executed.values().zip(stages) {
             table[stage][column] += count;
@@ -113,21 +95,13 @@ pub(crate) fn run() -> Outcome {
 
 /// Compiles the program of tests/instructions with line tables, and returns its path.
 fn build() -> Result<std::path::PathBuf, String> {
-    let mut cargo = Command::new("cargo");
-    cargo.args(["test", "--locked", "--release", "--no-run", "--test", "instructions", "--message-format=json"]);
+    let test = ["test", "--locked", "--release", "--no-run", "--test", "instructions", "--message-format=json"];
+    let mut cargo = cargo_command(&test);
     cargo.env("CARGO_PROFILE_RELEASE_DEBUG", "line-tables-only");
-    cargo.env("CARGO_TARGET_DIR", absolute_target_folder()?.join("account"));
+    cargo.env("CARGO_TARGET_DIR", target("account"));
     let messages = succeed(cargo.stderr(std::process::Stdio::inherit()))?;
     let program = messages.split("\"executable\":\"").nth(1).and_then(|rest| rest.split('"').next());
     program.map(Into::into).ok_or_else(|| "cargo names no program".to_owned())
-}
-
-/// Makes an empty folder for the files of callgrind.
-fn empty_folder(parent: &Path) -> Result<std::path::PathBuf, String> {
-    let folder = parent.join("files");
-    let _ = fs::remove_dir_all(&folder);
-    fs::create_dir_all(&folder).map_err(|error| format!("{}: {error}", folder.display()))?;
-    Ok(folder)
 }
 
 /// Returns the standard output of a command that succeeds.
@@ -201,7 +175,7 @@ fn stages(program: &Path, executed: &BTreeMap<u64, u64>) -> Result<Vec<usize>, S
                 if name.starts_with('@') { function.ends_with(name) } else { function.starts_with(name) }
             })
         };
-        STAGES.iter().position(|(_, names)| names.iter().any(is_named)).unwrap_or(STAGES.len() - 1)
+        STAGES.iter().position(|(_, names)| names.split(' ').any(|name| is_named(&name))).unwrap_or(STAGES.len() - 1)
     };
     let found: Vec<usize> = lines.split("\n0x").map(stage).collect();
     if found.len() == executed.len() { Ok(found) } else { Err("addr2line left out addresses".to_owned()) }
@@ -220,10 +194,9 @@ fn write(table: &[[u64; COLUMNS.len()]]) -> Outcome {
     }
     text += &row("**all**", std::array::from_fn(|column| table.iter().map(|counts| counts[column]).sum()));
     print!("{text}");
-    let path = Path::new(DOCUMENT);
-    let document = read(path)?;
+    let document = read(DOCUMENT)?;
     let parts = document.split_once(MARKS[0]).and_then(|(head, rest)| Some((head, rest.split_once(MARKS[1])?.1)));
     let (head, tail) = parts.ok_or_else(|| format!("{DOCUMENT} has no place for the table"))?;
     let new = format!("{head}{}\n{text}\n{}{tail}", MARKS[0], MARKS[1]);
-    fs::write(path, new).map_err(|error| format!("{DOCUMENT}: {error}"))
+    crate::write(DOCUMENT, new)
 }

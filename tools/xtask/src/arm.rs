@@ -4,24 +4,16 @@
 //! the machine. Where any of them is missing, all are packages of Debian.
 
 use crate::debian::{Packages, has_standard_library};
-use crate::{Outcome, absolute_target_folder, debug_program, output, start};
+use crate::{OrSkip, Outcome, debug_program, output, start, target, text};
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
 const TARGET: &str = "aarch64-unknown-linux-gnu";
 /// The packages with the standard library, the linker and what it links to, and qemu.
-const PACKAGES: [&str; 8] = [
-    "libstd-rust-web-dev:arm64",
-    "gcc-12-aarch64-linux-gnu",
-    "binutils-aarch64-linux-gnu",
-    "libgcc-12-dev-arm64-cross",
-    "libgcc-s1-arm64-cross",
-    "libc6-dev-arm64-cross",
-    "libc6-arm64-cross",
-    "qemu-user-static",
-];
+const PACKAGES: &str = "libstd-rust-web-dev:arm64 gcc-12-aarch64-linux-gnu binutils-aarch64-linux-gnu \
+    libgcc-12-dev-arm64-cross libgcc-s1-arm64-cross libc6-dev-arm64-cross libc6-arm64-cross qemu-user-static";
 /// The packages with a qemu that can have plugins.
-const COUNTER_PACKAGES: [&str; 2] = ["qemu-user", "libcapstone4"];
+const COUNTER_PACKAGES: &str = "qemu-user libcapstone4";
 /// The plugin of qemu that counts instructions.
 const COUNTER: &str = "tools/xtask/src/instructions.c";
 /// The crates whose unit tests compare lanes with numbers, and searches with brute force.
@@ -40,17 +32,10 @@ const COMMANDS: [&[&str]; 4] = [
 /// Runs the tests of lanes; with `--all` the unit tests of the search, the agreement of all backends, the program, and
 /// the checksums of answers. With `--instructions` it counts instructions instead.
 pub(crate) fn run(arguments: &[String]) -> Outcome {
-    let arguments: Vec<&str> = arguments.iter().map(String::as_str).collect();
-    if !matches!(arguments[..], [] | ["--all" | "--instructions"]) {
-        return Err("the arguments of this task are --all or --instructions".to_owned());
-    }
     if cfg!(target_arch = "aarch64") {
         return crate::skip("this is an ARM processor, on which `cargo test` runs all tests");
     }
-    let tools = match Tools::find() {
-        Ok(tools) => tools,
-        Err(why) => return crate::skip(&format!("there is no compiler for {TARGET}, or no qemu: {why}")),
-    };
+    let tools = Tools::find().or_skip(&format!("there is no compiler for {TARGET}, or no qemu"))?;
     if arguments == ["--instructions"] {
         return count_instructions(&tools);
     }
@@ -67,7 +52,7 @@ pub(crate) fn run(arguments: &[String]) -> Outcome {
 /// Runs commands of the program for ARM, and compares their output with that of the program for this machine.
 fn compare_programs(tools: &Tools) -> Outcome {
     start(&mut tools.cargo(&["build", "--locked", "--package", "p2m-cli"]))?;
-    let program = tools.target.join(TARGET).join("debug/p2m");
+    let program = target("arm").join(TARGET).join("debug/p2m");
     compare_outputs(|| {
         let mut emulator = Command::new(&tools.qemu);
         emulator.envs(tools.libraries()).arg(&program);
@@ -78,15 +63,13 @@ fn compare_programs(tools: &Tools) -> Outcome {
 /// Runs commands of the program for another machine, by `program`, and compares their output with that of the program
 /// for this one.
 pub(crate) fn compare_outputs(program: impl Fn() -> Command) -> Outcome {
-    start(Command::new("cargo").args(["build", "--locked", "--package", "p2m-cli"]))?;
-    // The path is passed as text.
-    let native = debug_program()?.to_string_lossy().into_owned();
+    crate::cargo(&["build", "--locked", "--package", "p2m-cli"], &[])?;
     for command in COMMANDS {
-        let expected = output(&native, command)?;
+        let expected = output(&text(debug_program()), command)?;
         let mut program = program();
         let found = program.args(command).output().map_err(|error| format!("{program:?}: {error}"))?.stdout;
         if expected.is_empty() || found != expected.as_bytes() {
-            return Err(format!("p2m {}: other output than on this machine", command.join(" ")));
+            return Err(format!("p2m {}: other output than on this machine", command.join(" ")).into());
         }
         println!("p2m {}: the same {} bytes", command.join(" "), found.len());
     }
@@ -95,8 +78,8 @@ pub(crate) fn compare_outputs(program: impl Fn() -> Command) -> Outcome {
 
 /// Prints the instructions per query of each set on each index, with each instruction set.
 fn count_instructions(tools: &Tools) -> Outcome {
-    let packages = Packages::rust_and("counter", &COUNTER_PACKAGES)?;
-    let plugin = tools.target.join("instructions.so");
+    let packages = Packages::rust_and("counter", COUNTER_PACKAGES)?;
+    let plugin = target("arm/instructions.so");
     start(Command::new("cc").args(["-shared", "-fPIC", "-O2", COUNTER, "-o"]).arg(&plugin))?;
     let qemu = packages.file("usr/bin/qemu-aarch64");
     let libraries = packages.file("usr/lib/x86_64-linux-gnu");
@@ -109,12 +92,12 @@ fn count_instructions(tools: &Tools) -> Outcome {
     let counted = cargo.output().map_err(|error| format!("cargo: {error}"))?;
     let [rows, counts] = [&counted.stdout, &counted.stderr].map(|bytes| String::from_utf8_lossy(bytes).into_owned());
     if !counted.status.success() {
-        return Err(counts);
+        return Err(counts.into());
     }
     let counts: Vec<u64> = counts.lines().filter_map(|line| line.strip_prefix("count ")?.parse().ok()).collect();
     let rows: Vec<(&str, &str)> = rows.lines().filter_map(|line| line.rsplit_once(',')).collect();
     if counts.len() != 2 * rows.len() || rows.is_empty() {
-        return Err(format!("{} counts of {} rows", counts.len(), rows.len()));
+        return Err(format!("{} counts of {} rows", counts.len(), rows.len()).into());
     }
     // The queries of each set, as tests/instructions/tasks.rs has them.
     let per_query = |marks: &[u64]| (marks[1] - marks[0]) / 200;
@@ -135,20 +118,17 @@ struct Tools {
     packages: Option<Packages>,
     linker: PathBuf,
     qemu: PathBuf,
-    /// The folder for what is compiled.
-    target: PathBuf,
 }
 
 impl Tools {
     fn find() -> Result<Self, String> {
-        let target = absolute_target_folder()?.join("arm");
         let [linker, qemu] = ["aarch64-linux-gnu-gcc", "qemu-aarch64-static"];
         if has_standard_library(TARGET) && [linker, qemu].iter().all(|tool| output(tool, &["--version"]).is_ok()) {
-            return Ok(Self { packages: None, linker: linker.into(), qemu: qemu.into(), target });
+            return Ok(Self { packages: None, linker: linker.into(), qemu: qemu.into() });
         }
-        let packages = Packages::rust_and("arm", &PACKAGES)?;
+        let packages = Packages::rust_and("arm", PACKAGES)?;
         let [linker, qemu] = ["aarch64-linux-gnu-gcc-12", qemu].map(|tool| packages.file("usr/bin").join(tool));
-        Ok(Self { packages: Some(packages), linker, qemu, target })
+        Ok(Self { packages: Some(packages), linker, qemu })
     }
 
     /// Returns a command of cargo for the target, which runs programs by another program.
@@ -163,7 +143,7 @@ impl Tools {
         }
         // Arguments after two dashes are those of tests.
         cargo.arg(arguments[0]).args(["--target", TARGET]).args(&arguments[1..]);
-        cargo.env("CARGO_TARGET_DIR", &self.target).envs(self.libraries());
+        cargo.env("CARGO_TARGET_DIR", target("arm")).envs(self.libraries());
         cargo
     }
 

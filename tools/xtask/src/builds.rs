@@ -1,9 +1,7 @@
 //! Checks the builds that `p2m info` and `p2m advise` name: their numbers of crates, and that they work.
 
-use crate::{Outcome, output, read, start, target_folder};
+use crate::{Outcome, make_folder, output, read, start, target, write};
 use std::collections::BTreeSet;
-use std::fs;
-use std::path::Path;
 use std::process::Command;
 
 /// The table of the numbers of crates, in which the program looks builds up.
@@ -11,7 +9,7 @@ const TABLE: &str = "apps/cli/src/scene/crates.csv";
 
 /// Compares the table with what `cargo tree` says; with `P2M_BLESS` set, it writes the table.
 pub(crate) fn check_crates() -> Outcome {
-    let table = read(Path::new(TABLE))?;
+    let table = read(TABLE)?;
     let mut counted = String::new();
     for (i, line) in table.lines().enumerate() {
         // The first lines are a comment and the names of the columns.
@@ -19,9 +17,12 @@ pub(crate) fn check_crates() -> Outcome {
         counted.push('\n');
     }
     if std::env::var_os("P2M_BLESS").is_some() {
-        return fs::write(TABLE, counted).map_err(|error| format!("{TABLE}: {error}"));
+        return write(TABLE, counted);
     }
-    if counted == table { Ok(()) } else { Err(format!("{TABLE} is out of date: P2M_BLESS=1 cargo xtask promises")) }
+    if counted != table {
+        return Err(format!("{TABLE} is out of date: P2M_BLESS=1 cargo xtask promises").into());
+    }
+    Ok(())
 }
 
 /// Returns the row of the features of a row, with the number of crates for one platform.
@@ -45,7 +46,8 @@ const SCENES: [(&str, &str); 2] = [
 /// Runs programs that have the named features alone: they read a file and find a closest point.
 pub(crate) fn run_programs() -> Outcome {
     let repository = std::env::current_dir().map_err(|error| error.to_string())?;
-    let folder = target_folder().join("smallest-builds");
+    let folder = target("smallest-builds");
+    make_folder(folder.join("src"))?;
     for (features, reader, index, scene) in [
         ("\"bvh\", \"scene\"", "scene", "AabbTree", SCENES[0]),
         ("\"interception\", \"scene\"", "scene", "OctreeIndex", SCENES[0]),
@@ -64,17 +66,10 @@ pub(crate) fn run_programs() -> Outcome {
              assert_eq!(answer.distance, 3.0);\n}}\n",
             scene.0
         );
-        let write = |name: &str, text: &str| {
-            let path = folder.join(name);
-            fs::create_dir_all(path.parent().unwrap_or(&folder))
-                .and_then(|()| fs::write(&path, text))
-                .map_err(|error| format!("{}: {error}", path.display()))
-        };
-        write("Cargo.toml", &manifest)?;
-        write("src/main.rs", &program)?;
-        write(scene.0, scene.1)?;
         // With the versions of the repository, nothing has to be downloaded.
-        write("Cargo.lock", &read(Path::new("Cargo.lock"))?)?;
+        let lock = read("Cargo.lock")?;
+        let files = [("Cargo.toml", &*manifest), ("src/main.rs", &program), scene, ("Cargo.lock", &lock)];
+        files.iter().try_for_each(|(name, text)| write(folder.join(name), text))?;
         let arguments = ["run", "--offline", "--quiet", "--target-dir", "target"];
         start(Command::new("cargo").args(arguments).current_dir(&folder))?;
     }

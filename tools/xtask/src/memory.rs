@@ -1,7 +1,7 @@
 //! Runs tests under AddressSanitizer, and under the memory checker of valgrind, which knows no instruction set above AVX2.
 
-use crate::{Outcome, absolute_target_folder, output, start};
-use std::process::{Command, Stdio};
+use crate::{Outcome, cargo_command, need, output, start, target};
+use std::process::Command;
 
 /// The crates that have vector kernels, arrays in files, or trees of both.
 const CRATES: [&str; 4] = ["p2m-core", "p2m-bvh", "p2m-kdop", "p2m-interception"];
@@ -11,10 +11,7 @@ const SKIPPED: &str = "walks_end_at_the_nearest_site_wherever_they_begin";
 /// Runs the unit tests of the crates and the tests of saved files.
 pub(crate) fn run() -> Outcome {
     under_address_sanitizer()?;
-    let version = Command::new("valgrind").arg("--version").stdout(Stdio::null()).stderr(Stdio::null()).status();
-    if !version.is_ok_and(|status| status.success()) {
-        return crate::skip("there is no program 'valgrind'");
-    }
+    need("valgrind")?;
     let mut units = under_valgrind();
     units.args(CRATES.map(|name| format!("--package={name}")));
     start(units.args(["--lib", "--", "--skip", SKIPPED]))?;
@@ -23,8 +20,7 @@ pub(crate) fn run() -> Outcome {
 
 /// Returns a command that runs tests under valgrind. An access that is not allowed makes a test program fail.
 fn under_valgrind() -> Command {
-    let mut tests = Command::new("cargo");
-    tests.args(["test", "--locked"]);
+    let mut tests = cargo_command(&["test", "--locked"]);
     tests.env("CARGO_TARGET_X86_64_UNKNOWN_LINUX_GNU_RUNNER", "valgrind --quiet --error-exitcode=99");
     tests
 }
@@ -35,10 +31,10 @@ fn under_address_sanitizer() -> Outcome {
         return crate::skip("there is no nightly compiler for AddressSanitizer");
     };
     let host = version.lines().find_map(|line| line.strip_prefix("host: ")).ok_or("rustc does not say its host")?;
-    let mut tests = Command::new("cargo");
-    tests.args(["+nightly", "test", "--locked", "--lib", "--features", "p2m-core/rayon", "--target", host]);
+    let test = ["+nightly", "test", "--locked", "--lib", "--features", "p2m-core/rayon", "--target", host];
+    let mut tests = cargo_command(&test);
     tests.args(CRATES.map(|name| format!("--package={name}")));
-    tests.arg("--target-dir").arg(absolute_target_folder()?.join("asan")).env("RUSTFLAGS", "-Zsanitizer=address");
+    tests.arg("--target-dir").arg(target("asan")).env("RUSTFLAGS", "-Zsanitizer=address");
     // An allocation that is refused is null, as it is without the sanitizer: a test asks for absurd sizes.
     tests.env("ASAN_OPTIONS", "allocator_may_return_null=1");
     // The assertions of the standard library on its preconditions are on, and reports have lines.

@@ -1,6 +1,6 @@
 //! Packs the crates as for publishing, without a registry, and checks what is in their packages.
 
-use crate::{Outcome, cargo, output, read, target_folder, tools};
+use crate::{Outcome, cargo, entries, files_below, make_empty_folder, output, read, target, text, tools};
 use std::fs;
 use std::path::{Path, PathBuf};
 
@@ -18,27 +18,29 @@ const MANIFEST_KEYS: [&str; 8] =
 pub(crate) fn run() -> Outcome {
     tools::deny()?;
     let published = published_crates()?;
-    let target = target_folder().join("packages");
+    let target = target("packages");
     // A package that an earlier run has left, perhaps of another version, could be checked in place of the new one.
-    if target.exists() {
-        fs::remove_dir_all(&target).map_err(|error| format!("{}: {error}", target.display()))?;
-    }
-    let directory = target.to_str().ok_or_else(|| format!("{}: is not Unicode", target.display()))?;
+    make_empty_folder(&target)?;
+    let directory = text(&target);
     // Without verification nothing is compiled; all sources are compiled by the tests anyway.
     let mut arguments = vec!["package", "--locked", "--offline", "--no-verify", "--allow-dirty", "--quiet"];
-    arguments.extend(["--target-dir", directory]);
+    arguments.extend(["--target-dir", &directory]);
     arguments.extend(published.iter().flat_map(|name| ["--package", name]));
     cargo(&arguments, &[])?;
     let packages = target.join("package");
     let mut failures = Vec::new();
     for name in &published {
         let unpacked = unpack(&packages, name)?;
-        let bytes = size(&unpacked)?;
-        println!("{name:<18} {:>5} KiB", bytes.div_ceil(1024));
+        let bytes = files_below(&unpacked)?.iter().map(|file| fs::metadata(file).map_or(0, |file| file.len())).sum();
+        println!("{name:<18} {:>5} KiB", u64::div_ceil(bytes, 1024));
         let limit = if name == WITH_ASSETS { 2 * MAX_PACKAGE_BYTES } else { MAX_PACKAGE_BYTES };
         failures.extend(faults(&unpacked, bytes, limit)?.into_iter().map(|fault| format!("{name}: {fault}")));
     }
-    if failures.is_empty() { Ok(()) } else { Err(format!("packages are incomplete\n  {}", failures.join("\n  "))) }
+    if failures.is_empty() {
+        Ok(())
+    } else {
+        Err(format!("packages are incomplete\n  {}", failures.join("\n  ")).into())
+    }
 }
 
 /// Returns the names of the crates of the workspace whose manifest does not rule out that they are published.
@@ -46,8 +48,7 @@ fn published_crates() -> Result<Vec<String>, String> {
     let mut names = Vec::new();
     let mut folders = vec![PathBuf::from(".")];
     for parent in [".", "apps", "bindings"] {
-        let entries = fs::read_dir(parent).map_err(|error| format!("{parent}: {error}"))?;
-        folders.extend(entries.filter_map(|entry| Some(entry.ok()?.path())));
+        folders.extend(entries(parent)?);
     }
     for manifest in folders.into_iter().map(|folder| folder.join("Cargo.toml")).filter(|manifest| manifest.is_file()) {
         let text = read(&manifest)?;
@@ -67,12 +68,10 @@ fn unpack(packages: &Path, name: &str) -> Result<PathBuf, String> {
         let version = file.strip_prefix(name).and_then(|rest| rest.strip_prefix('-'));
         version.is_some_and(|version| version.starts_with(|c: char| c.is_ascii_digit()) && version.ends_with(".crate"))
     };
-    let entries = fs::read_dir(packages).map_err(|error| format!("{}: {error}", packages.display()))?;
-    let files = entries.filter_map(|entry| entry.ok()?.file_name().into_string().ok());
-    let file = files.into_iter().find(|file| is_package(file)).ok_or_else(|| format!("{name}: has no package"))?;
-    let path = packages.join(&file);
-    output("tar", &["-xzf", &path.to_string_lossy(), "-C", &packages.to_string_lossy()])?;
-    Ok(packages.join(file.trim_end_matches(".crate")))
+    let is_file = |path: &PathBuf| path.file_name().is_some_and(|file| is_package(&file.to_string_lossy()));
+    let path = entries(packages)?.into_iter().find(is_file).ok_or_else(|| format!("{name}: has no package"))?;
+    output("tar", &["-xzf", &text(&path), "-C", &text(packages)])?;
+    Ok(path.with_extension(""))
 }
 
 /// Returns what is wrong with the content of an unpacked package of so many bytes, of which `limit` are allowed.
@@ -80,7 +79,7 @@ fn faults(unpacked: &Path, bytes: u64, limit: u64) -> Result<Vec<String>, String
     let mut faults = Vec::new();
     for licence in LICENCE_TEXTS {
         // A text may be a link that was checked out as a file with the path in it, so that its content matters.
-        if fs::read_to_string(unpacked.join(licence)).ok() != Some(read(Path::new(licence))?) {
+        if fs::read_to_string(unpacked.join(licence)).ok() != Some(read(licence)?) {
             faults.push(format!("{licence} is absent or differs from that of the workspace"));
         }
     }
@@ -88,7 +87,7 @@ fn faults(unpacked: &Path, bytes: u64, limit: u64) -> Result<Vec<String>, String
         faults.push("README.md is absent or empty".to_owned());
     }
     // Cargo has put the keys that are inherited from the workspace into this manifest.
-    let manifest = read(&unpacked.join("Cargo.toml"))?;
+    let manifest = read(unpacked.join("Cargo.toml"))?;
     let package: Vec<&str> = manifest.lines().skip_while(|line| *line != "[package]").collect();
     for key in MANIFEST_KEYS {
         if !package.iter().any(|line| line.strip_prefix(key).is_some_and(|rest| rest.starts_with(" = "))) {
@@ -99,15 +98,4 @@ fn faults(unpacked: &Path, bytes: u64, limit: u64) -> Result<Vec<String>, String
         faults.push(format!("it has {bytes} bytes, more than the {limit} that are allowed"));
     }
     Ok(faults)
-}
-
-/// Returns the bytes of all files below a folder.
-fn size(folder: &Path) -> Result<u64, String> {
-    let failed = |error| format!("{}: {error}", folder.display());
-    let mut bytes = 0;
-    for entry in fs::read_dir(folder).map_err(failed)? {
-        let path = entry.map_err(failed)?.path();
-        bytes += if path.is_dir() { size(&path)? } else { fs::metadata(&path).map_err(failed)?.len() };
-    }
-    Ok(bytes)
 }

@@ -1,6 +1,6 @@
 //! Checks the script of pages and the npm package, and tests both in a browser.
 
-use crate::{Outcome, build_for_tests, debug_program, output, start};
+use crate::{OrSkip, Outcome, build_for_tests, debug_program, need, output, start};
 use std::path::Path;
 use std::process::Command;
 
@@ -13,44 +13,32 @@ const BROWSERS: [&str; 2] = ["/usr/bin/chromium", "/usr/bin/google-chrome"];
 
 /// Checks that the script in the assets is what the sources make, and runs the tests, or says why it cannot here.
 pub(crate) fn run() -> Outcome {
-    if !install(PAGES, "the script of pages")? {
-        return Ok(());
-    }
+    install(PAGES, "the script of pages")?;
     start(&mut npm(PAGES, &["run", "check"]))?;
     test(PAGES, "pages")
 }
 
 /// Builds the npm package and runs its tests in Node and in a browser, or says why it cannot here.
 pub(crate) fn package() -> Outcome {
-    if !install(PACKAGE, "the npm package")? {
-        return Ok(());
-    }
+    install(PACKAGE, "the npm package")?;
     start(Command::new("node").args(["licences.mjs", "--check"]).current_dir(PACKAGE))?;
     start(&mut npm(PACKAGE, &["run", "build"]))?;
     test(PACKAGE, "the npm package")
 }
 
-/// Installs what the scripts in a folder need, and returns whether it could.
-fn install(folder: &str, what: &str) -> Result<bool, String> {
-    if output("npm", &["--version"]).is_err() {
-        crate::skip(&format!("there is no npm for {what}"))?;
-        return Ok(false);
-    }
-    if let Err(why) = output("npm", &["view", "esbuild", "version"]) {
-        crate::skip(&format!("the registry of packages for {what} cannot be reached\n{why}"))?;
-        return Ok(false);
-    }
-    start(&mut npm(folder, &["ci", "--no-audit", "--no-fund", "--loglevel=error"]))?;
-    Ok(true)
+/// Installs what the scripts in a folder need.
+fn install(folder: &str, what: &str) -> Outcome {
+    need("npm")?;
+    let found = output("npm", &["view", "esbuild", "version"]);
+    found.or_skip(&format!("the registry of packages for {what} cannot be reached"))?;
+    start(&mut npm(folder, &["ci", "--no-audit", "--no-fund", "--loglevel=error"]))
 }
 
 /// Runs the tests in a folder with the program.
 fn test(folder: &str, what: &str) -> Outcome {
-    if let Err(why) = find_browser() {
-        return crate::skip(&format!("there is no Chromium for the tests of {what}: {why}"));
-    }
+    find_browser().or_skip(&format!("there is no Chromium for the tests of {what}"))?;
     build_for_tests()?;
-    start(npm(folder, &["test"]).env("P2M", debug_program()?))
+    start(npm(folder, &["test"]).env("P2M", debug_program()))
 }
 
 fn npm(folder: &str, arguments: &[&str]) -> Command {
@@ -60,7 +48,7 @@ fn npm(folder: &str, arguments: &[&str]) -> Command {
 }
 
 /// Installs a browser if there is none and if this user may install packages.
-fn find_browser() -> Outcome {
+fn find_browser() -> Result<(), String> {
     if BROWSERS.iter().any(|path| Path::new(path).exists()) {
         return Ok(());
     }

@@ -6,7 +6,7 @@
 
 use crate::arm::{AGREEMENT, compare_outputs};
 use crate::debian::{Packages, has_standard_library};
-use crate::{Outcome, absolute_target_folder, output, start};
+use crate::{OrSkip, Outcome, Stop, go_on, make_folder, output, start, target as target_folder};
 use std::process::Command;
 
 /// Windows, macOS, 32 bits, and numbers with the highest byte first.
@@ -21,7 +21,7 @@ const TARGETS: [&str; 7] = [
 ];
 
 /// The package with what makes import libraries for Windows.
-const WINDOWS_PACKAGES: [&str; 1] = ["binutils-mingw-w64-x86-64"];
+const WINDOWS_PACKAGES: &str = "binutils-mingw-w64-x86-64";
 
 /// The target whose programs wine runs.
 const WINDOWS: &str = TARGETS[0];
@@ -40,12 +40,8 @@ pub(crate) fn check(arguments: &[String]) -> Outcome {
     let all = TARGETS.map(str::to_owned);
     for target in if arguments.is_empty() { &all[..] } else { arguments } {
         let packages = ["check", "--locked", "--package", "p2m", "--package", "p2m-cli"];
-        match cargo(target, &packages) {
-            Ok(mut cargo) => start(&mut cargo)?,
-            Err(why) => {
-                crate::skip(&format!("there is no standard library of {target} (rustup target add {target}): {why}"))?
-            }
-        }
+        let why = format!("there is no standard library of {target} (rustup target add {target})");
+        go_on(cargo(target, &packages).or_skip(&why).and_then(|mut cargo| start(&mut cargo)))?;
     }
     Ok(())
 }
@@ -55,13 +51,13 @@ fn cargo(target: &str, arguments: &[&str]) -> Result<Command, String> {
     let mut cargo = Command::new("cargo");
     cargo.args([arguments[0], "--target", target]);
     if !has_standard_library(target) {
-        let packages = Packages::rust_and("windows", &WINDOWS_PACKAGES)?;
+        let packages = Packages::rust_and("windows", WINDOWS_PACKAGES)?;
         packages.set_compiler(&mut cargo);
         Packages::compile_standard_library(&mut cargo, "std,panic_unwind");
         let path = std::env::var_os("PATH").unwrap_or_default();
         let folders = std::env::split_paths(&path).chain([packages.file("usr/bin")]);
         cargo.env("PATH", std::env::join_paths(folders).map_err(|error| format!("PATH: {error}"))?);
-        cargo.env("CARGO_TARGET_DIR", absolute_target_folder()?.join("platforms"));
+        cargo.env("CARGO_TARGET_DIR", target_folder("platforms"));
     }
     cargo.args(&arguments[1..]);
     Ok(cargo)
@@ -70,12 +66,11 @@ fn cargo(target: &str, arguments: &[&str]) -> Result<Command, String> {
 /// Runs the agreement of all backends, the checksums of answers and the program for Windows.
 fn run_under_wine() -> Outcome {
     if [LINKER, WINE].iter().any(|tool| output(tool, &["--version"]).is_err()) {
-        return crate::skip(&format!(
-            "there is no {LINKER} or no {WINE} (apt-get install gcc-mingw-w64-x86-64 wine64)"
-        ));
+        let why = format!("there is no {LINKER} or no {WINE} (apt-get install gcc-mingw-w64-x86-64 wine64)");
+        return Err(Stop::Skipped(why));
     }
-    let folder = absolute_target_folder()?.join("wine");
-    std::fs::create_dir_all(&folder).map_err(|error| format!("{}: {error}", folder.display()))?;
+    let folder = target_folder("wine");
+    make_folder(&folder)?;
     let library = folder.join(RANDOM_LIBRARY);
     start(Command::new(LINKER).args(["-shared", RANDOM_SOURCE, "-ladvapi32", "-o"]).arg(library))?;
     let wine = |command: &mut Command| {
@@ -92,7 +87,7 @@ fn run_under_wine() -> Outcome {
     start(cargo(&agreement)?.args(AGREEMENT))?;
     start(&mut cargo(&["build", "--locked", "--package", "p2m-cli"])?)?;
     let subfolder = if has_standard_library(WINDOWS) { "" } else { "platforms" };
-    let program = absolute_target_folder()?.join(subfolder).join(WINDOWS).join("debug/p2m.exe");
+    let program = target_folder(subfolder).join(WINDOWS).join("debug/p2m.exe");
     compare_outputs(|| {
         let mut program_under_wine = Command::new(WINE);
         wine(program_under_wine.arg(&program));

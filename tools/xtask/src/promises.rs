@@ -1,32 +1,22 @@
 //! Checks the promises that the manifests make to users of p2m.
 
-use crate::{Outcome, builds, cargo, output, tools};
-use std::fs;
+use crate::{Outcome, builds, cargo, output, read, tools};
 
 /// Checks lock files, versions of Rust and the numbers of crates of builds; with `--all` also that the crates compile with
 /// each of their features alone, and that the builds that `p2m info` names work.
 pub(crate) fn check(arguments: &[String]) -> Outcome {
-    let is_complete = match arguments {
-        [] => false,
-        [argument] if argument == "--all" => true,
-        _ => return Err("the argument of this task is --all".to_owned()),
-    };
-    check_lock_files()?;
-    check_rust_version()?;
-    builds::check_crates()?;
-    if is_complete {
-        builds::run_programs()?;
-    }
-    // Without its features the program has no parts of the paper.
-    if is_complete { tools::each_feature(&["p2m", "p2m-mixed", "p2m-cli"]) } else { Ok(()) }
-}
-
-/// Checks that both lock files belong to their manifests.
-fn check_lock_files() -> Outcome {
+    // Both lock files belong to their manifests.
     for manifest in ["Cargo.toml", "tools/fuzz/Cargo.toml"] {
         output("cargo", &["metadata", "--locked", "--format-version", "1", "--manifest-path", manifest])?;
     }
-    Ok(())
+    check_rust_version()?;
+    builds::check_crates()?;
+    if arguments != ["--all"] {
+        return Ok(());
+    }
+    builds::run_programs()?;
+    // Without its features the program has no parts of the paper.
+    tools::each_feature(&["p2m", "p2m-mixed", "p2m-cli"])
 }
 
 /// Checks that the promised version of Rust compiles all of the source, and that no dependency needs a newer one.
@@ -36,14 +26,13 @@ fn check_lock_files() -> Outcome {
 fn check_rust_version() -> Outcome {
     let promised = promised_version()?;
     let promised = promised.as_str();
-    let readme = fs::read_to_string("README.md").map_err(|e| format!("README.md: {e}"))?;
-    if !readme.contains(&format!("Rust ({promised} or newer)")) {
-        return Err(format!("README.md does not say that Rust {promised} is needed"));
+    if !read("README.md")?.contains(&format!("Rust ({promised} or newer)")) {
+        return Err(format!("README.md does not say that Rust {promised} is needed").into());
     }
     let metadata = output("cargo", &["metadata", "--locked", "--format-version", "1"])?;
     for needed in metadata.split("\"rust_version\":\"").skip(1).filter_map(|rest| rest.split('"').next()) {
         if numbers(needed) > numbers(promised) {
-            return Err(format!("a dependency needs Rust {needed}, but {promised} is promised"));
+            return Err(format!("a dependency needs Rust {needed}, but {promised} is promised").into());
         }
     }
     // The promised compiler is the current one, or rustup has it.
@@ -58,12 +47,12 @@ fn check_rust_version() -> Outcome {
             return cargo(&[&toolchain, "check", "--locked", "--package", "p2m", "--package", "p2m-cli"], &[]);
         }
     }
-    Err(format!("Rust {promised} is promised, but is not installed, so nothing can check the promise"))
+    Err(format!("Rust {promised} is promised, but is not installed, so nothing can check the promise").into())
 }
 
 /// Returns the version of Rust that the manifest of the workspace promises.
 pub(crate) fn promised_version() -> Result<String, String> {
-    let manifest = fs::read_to_string("Cargo.toml").map_err(|e| format!("Cargo.toml: {e}"))?;
+    let manifest = read("Cargo.toml")?;
     let mut lines = manifest.lines();
     let version = lines.find_map(|line| line.strip_prefix("rust-version = \"")?.strip_suffix('"'));
     version.map(str::to_owned).ok_or_else(|| "Cargo.toml promises no version of Rust".to_owned())

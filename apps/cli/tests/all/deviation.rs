@@ -1,10 +1,11 @@
 //! Tests of `p2m deviation`.
 
 use crate::common::*;
-use p2m_testkit::{models, normal_number, rng};
+use p2m_testkit::{all_model_files, normal_number, rng};
 use serde_json::Value;
 use std::fmt::Write as _;
 use std::fs;
+use std::path::{Path, PathBuf};
 use tempfile::TempDir;
 
 /// A cube from 0 to 2, whose triangles face outwards.
@@ -172,15 +173,17 @@ fn what_has_no_sign_is_told() {
     }
 }
 
-/// Noise along the normals of a real mesh comes back as the mean and the root mean square of the deviations.
+/// Noise along the normals of a scan comes back as the mean and the root mean square of the deviations.
 #[test]
-fn deviations_of_a_noisy_dragon_are_the_noise() {
-    let Some(folder) = models() else { return };
-    let dragon = folder.join("dragon_100k.obj");
-    let Ok(content) = fs::read_to_string(&dragon) else {
-        eprintln!("skipped: no {}", dragon.display());
-        return;
-    };
+fn deviations_of_a_noisy_scan_are_the_noise() {
+    let is_scan = |path: &PathBuf| path.ends_with("dragon_100k.obj") || path.ends_with("scan.obj");
+    for scan in all_model_files().into_iter().filter(is_scan) {
+        check_noise(&scan);
+    }
+}
+
+fn check_noise(mesh: &Path) {
+    let content = fs::read_to_string(mesh).unwrap();
     let numbers = |line: &str| -> Vec<f64> { line.split_whitespace().skip(1).map(|w| w.parse().unwrap()).collect() };
     let of = |kind: &str| content.lines().filter(|line| line.starts_with(kind)).map(numbers).collect::<Vec<_>>();
     let (vertices, faces) = (of("v "), of("f "));
@@ -196,7 +199,7 @@ fn deviations_of_a_noisy_dragon_are_the_noise() {
     }
     let folder = TempDir::new().unwrap();
     let scan = write(&folder, "scan.xyz", scan);
-    let report = json(&["deviation", &scan, dragon.to_str().unwrap(), "--json"]);
+    let report = json(&["deviation", &scan, mesh.to_str().unwrap(), "--json"]);
     let (mean, rms) = (sum / count, f64::sqrt(squares / count));
     assert_eq!((report["deviations"].as_f64(), &report["sign_rule"]), (Some(count), &"winding".into()));
     assert!((statistic(&report, "mean") - mean).abs() < 0.01 * sigma, "{mean}: {report}");

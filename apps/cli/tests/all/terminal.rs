@@ -15,7 +15,7 @@ fn on_terminal(command: &str, environment: &[(&str, &str)]) -> Option<String> {
         script.env(name, value);
     }
     let Ok(output) = script.output() else {
-        eprintln!("skipped: there is no program 'script'");
+        p2m_testkit::skip("there is no program 'script'");
         return None;
     };
     Some(text(&output.stdout))

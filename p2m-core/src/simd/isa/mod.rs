@@ -10,7 +10,7 @@ mod aarch64;
 mod x86_64;
 
 use super::lanes::SimdKernel;
-use super::portable::Portable;
+use super::portable::run_portable;
 
 /// Requests the cache line at an address before it is read. It has no other effect, and the address may be invalid.
 #[inline(always)]
@@ -136,13 +136,6 @@ impl Isa {
             Kind::Neon => aarch64::run_neon(kernel),
         }
     }
-}
-
-/// Runs a kernel with portable instructions. It is not inlined, so each kernel is compiled once and not wherever
-/// it is run.
-#[inline(never)]
-pub(super) fn run_portable<K: SimdKernel>(kernel: K) -> K::Output {
-    kernel.run::<Portable>()
 }
 
 impl Default for Isa {
