@@ -142,8 +142,8 @@ pub(crate) enum Device {
 
 /// Returns a parser of the names of columns.
 fn columns() -> impl TypedValueParser<Value = AnswerColumn> {
-    let find = |name: String| AnswerColumn::ALL.into_iter().find(|column| column.name() == name);
-    PossibleValuesParser::new(AnswerColumn::ALL.map(AnswerColumn::name))
+    let find = |name: String| AnswerColumn::all().find(|column| column.name() == name);
+    PossibleValuesParser::new(AnswerColumn::all().map(AnswerColumn::name))
         .map(move |name| find(name).expect("the parser accepts the names of columns alone"))
 }
 

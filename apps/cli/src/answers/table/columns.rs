@@ -1,10 +1,10 @@
 //! The columns of answers, and their encoding as records of any format.
 
 use super::AnswerFormat;
-use super::names::{Names, field};
-use super::records::{Header, integer_bytes, put_columns, put_integer, put_numbers, put_text};
+use super::records::Header;
+use super::values::{Kind, Layout, Value, header, put_record};
 use nalgebra::Point3;
-use p2m_core::{Closest, Feature, Soup};
+use p2m_core::{Closest, Soup};
 use p2m_field::sign::Normals;
 use p2m_mixed::{Object, PointIds};
 
@@ -60,40 +60,38 @@ pub(crate) enum AnswerColumn {
 }
 
 impl AnswerColumn {
-    /// All columns, in the order in which files have them by default.
-    pub(crate) const ALL: [Self; 13] = [
-        Self::Number,
-        Self::Id,
-        Self::Query,
-        Self::Point,
-        Self::Distance,
-        Self::Signed,
-        Self::Inside,
-        Self::Normal,
-        Self::LowerBound,
-        Self::Barycentric,
-        Self::Primitive,
-        Self::Feature,
-        Self::Object,
+    /// All columns with their names, in the order in which files have them by default.
+    const ALL: [(Self, Layout<'static>); 13] = [
+        (Self::Number, Layout::new("number", Kind::Integer, &["number"])),
+        (Self::Id, Layout::new("id", Kind::Text, &["id"])),
+        (Self::Query, Layout::new("query", Kind::Triple, &["qx", "qy", "qz"]).in_clouds(&["x", "y", "z"])),
+        (Self::Point, Layout::new("point", Kind::Triple, &["x", "y", "z"]).in_clouds(&["cx", "cy", "cz"])),
+        (Self::Distance, Layout::new("distance", Kind::Number, &["distance"])),
+        (Self::Signed, Layout::new("signed", Kind::Number, &["signed_distance"])),
+        (Self::Inside, Layout::new("inside", Kind::Flag, &["inside"])),
+        (Self::Normal, Layout::new("normal", Kind::Triple, &["nx", "ny", "nz"])),
+        (Self::LowerBound, Layout::new("lower_bound", Kind::Number, &["lower_bound"])),
+        (Self::Barycentric, Layout::new("barycentric", Kind::Triple, &["w0", "w1", "w2"])),
+        (Self::Primitive, Layout::new("primitive", Kind::Index, &["primitive"])),
+        (
+            Self::Feature,
+            Layout::new("feature", Kind::Feature, &["feature"]).in_clouds(&["feature_kind", "feature_number"]),
+        ),
+        (Self::Object, Layout::new("object", Kind::Index, &["object"])),
     ];
 
+    /// Returns all columns in the order in which files have them by default.
+    pub(crate) fn all() -> impl Iterator<Item = Self> {
+        Self::ALL.into_iter().map(|(column, _)| column)
+    }
+
     /// Returns the name of the column on the command line.
-    pub(crate) const fn name(self) -> &'static str {
-        match self {
-            Self::Number => "number",
-            Self::Id => "id",
-            Self::Query => "query",
-            Self::Point => "point",
-            Self::Distance => "distance",
-            Self::Signed => "signed",
-            Self::Inside => "inside",
-            Self::Normal => "normal",
-            Self::LowerBound => "lower_bound",
-            Self::Barycentric => "barycentric",
-            Self::Primitive => "primitive",
-            Self::Feature => "feature",
-            Self::Object => "object",
-        }
+    pub(crate) fn name(self) -> &'static str {
+        self.layout().name
+    }
+
+    fn layout(self) -> Layout<'static> {
+        Self::ALL[self as usize].1
     }
 
     /// Returns the columns that files of a format have by default. Only text has a column of objects, if there are any.
@@ -105,59 +103,7 @@ impl AnswerColumn {
             Self::Signed => has_signs,
             Self::Number | Self::Id | Self::Inside | Self::Normal => false,
         };
-        Self::ALL.into_iter().filter(is_default).collect()
-    }
-
-    /// Returns the names of the columns of text that it consists of.
-    const fn text_names(self) -> &'static [&'static str] {
-        match self {
-            Self::Number => &["number"],
-            Self::Id => &["id"],
-            Self::Query => &["qx", "qy", "qz"],
-            Self::Point => &["x", "y", "z"],
-            Self::Distance => &["distance"],
-            Self::Signed => &["signed_distance"],
-            Self::Inside => &["inside"],
-            Self::Normal => &["nx", "ny", "nz"],
-            Self::LowerBound => &["lower_bound"],
-            Self::Barycentric => &["w0", "w1", "w2"],
-            Self::Primitive => &["primitive"],
-            Self::Feature => &["feature"],
-            Self::Object => &["object"],
-        }
-    }
-
-    /// Returns the fields of an array that it consists of, as NumPy describes them.
-    const fn array_fields(self) -> &'static str {
-        match self {
-            Self::Number => "('number', '<i8')",
-            Self::Id => "", // only text has it
-            Self::Query => "('query', '<f8', (3,))",
-            Self::Point => "('point', '<f8', (3,))",
-            Self::Distance => "('distance', '<f8')",
-            Self::Signed => "('signed_distance', '<f8')",
-            Self::Inside => "('inside', '|b1')",
-            Self::Normal => "('normal', '<f8', (3,))",
-            Self::LowerBound => "('lower_bound', '<f8')",
-            Self::Barycentric => "('barycentric', '<f8', (3,))",
-            Self::Primitive => "('primitive', '<i4')",
-            Self::Feature => "('feature_kind', '<i2'), ('feature_number', '<i2')",
-            Self::Object => "('object', '<i4')",
-        }
-    }
-
-    /// Returns the type and the names of the properties of a point cloud that it consists of.
-    const fn cloud_properties(self) -> (&'static str, &'static [&'static str]) {
-        match self {
-            Self::Query => ("double", &["x", "y", "z"]),
-            Self::Point => ("double", &["cx", "cy", "cz"]),
-            Self::Primitive | Self::Object | Self::Inside => ("int", self.text_names()),
-            Self::Feature => ("int", &["feature_kind", "feature_number"]),
-            Self::Id => ("double", &[]), // only text has it
-            Self::Number | Self::Distance | Self::Signed | Self::Normal | Self::LowerBound | Self::Barycentric => {
-                ("double", self.text_names())
-            }
-        }
+        Self::all().filter(is_default).collect()
     }
 }
 
@@ -178,7 +124,8 @@ pub(crate) struct AnswerRecord<'a> {
 pub(crate) struct AnswerEncoder<'a> {
     format: AnswerFormat,
     columns: Vec<AnswerColumn>,
-    names: Names<'a>,
+    /// The objects of the scene.
+    objects: &'a [Object],
     /// The normals of the scene, for the column [`AnswerColumn::Normal`].
     normals: Option<Normals>,
     /// The ids of queries, for the column [`AnswerColumn::Id`].
@@ -188,7 +135,7 @@ pub(crate) struct AnswerEncoder<'a> {
 impl<'a> AnswerEncoder<'a> {
     /// Makes an encoder of some columns, in this order. The objects are those of the scene.
     pub(crate) fn new(format: AnswerFormat, objects: &'a [Object], columns: Vec<AnswerColumn>) -> Self {
-        Self { format, columns, names: Names(objects), normals: None, ids: None }
+        Self { format, columns, objects, normals: None, ids: None }
     }
 
     /// Adds the normals of a scene, if a column needs them.
@@ -209,127 +156,35 @@ impl<'a> AnswerEncoder<'a> {
 
     /// Returns the header of a file.
     pub(crate) fn header(&self) -> Header {
-        let columns = self.columns.iter();
-        match self.format {
-            AnswerFormat::Csv => {
-                Header::Line(columns.flat_map(|column| column.text_names()).copied().collect::<Vec<_>>().join(","))
-            }
-            AnswerFormat::Npy => {
-                Header::Npy(columns.map(|column| column.array_fields()).collect::<Vec<_>>().join(", "))
-            }
-            AnswerFormat::Ply => {
-                let properties = |column: &AnswerColumn| {
-                    let (kind, names) = column.cloud_properties();
-                    names.iter().map(move |name| (kind, *name))
-                };
-                Header::Ply(columns.flat_map(properties).collect())
-            }
-        }
+        let layouts: Vec<_> = self.columns.iter().map(|column| column.layout()).collect();
+        header(self.format, &layouts)
     }
 
     /// Appends a record.
     pub(crate) fn encode(&self, record: &AnswerRecord<'_>, out: &mut Vec<u8>) {
-        if self.format != AnswerFormat::Csv {
-            return self.columns.iter().for_each(|column| self.put_bytes(*column, record, out));
-        }
-        for (number, column) in self.columns.iter().enumerate() {
-            if number > 0 {
-                out.push(b',');
-            }
-            self.put_text(*column, record, out);
-        }
-        out.push(b'\n');
+        put_record(self.format, self.columns.iter().map(|column| self.value(*column, record)), out);
     }
 
-    /// Appends a column to a line of text, without a comma after it.
-    fn put_text(&self, column: AnswerColumn, record: &AnswerRecord<'_>, out: &mut Vec<u8>) {
-        let three = |out: &mut Vec<u8>, [x, y, z]: [f64; 3]| {
-            put_columns(out, &[x, y]);
-            put_text(out, z);
-        };
-        match (column, record.answer) {
-            (AnswerColumn::Number, _) => put_integer(out, record.number),
-            (AnswerColumn::Id, _) => {
-                let number = usize::try_from(record.number).unwrap_or(usize::MAX);
-                let id = self.ids.as_ref().and_then(|ids| ids.get(number)).unwrap_or_default();
-                out.extend_from_slice(field(id).as_bytes());
-            }
-            (AnswerColumn::Query, _) => three(out, record.query.coords.into()),
-            (AnswerColumn::Inside, _) => put_integer(out, u64::from(record.signed_distance < 0.0)),
-            (_, None) => (1..column.text_names().len()).for_each(|_| out.push(b',')),
-            (AnswerColumn::Point, Some(answer)) => three(out, answer.point.coords.into()),
-            (AnswerColumn::Distance, Some(answer)) => put_text(out, answer.distance),
-            (AnswerColumn::Signed, Some(_)) => put_text(out, record.signed_distance),
-            (AnswerColumn::Normal, Some(answer)) => match self.normal(answer) {
-                Some(normal) => three(out, normal),
-                None => out.extend_from_slice(b",,"),
-            },
-            (AnswerColumn::LowerBound, Some(answer)) => put_text(out, answer.lower_bound),
-            (AnswerColumn::Barycentric, Some(answer)) => three(out, answer.barycentric),
-            (AnswerColumn::Primitive, Some(answer)) => put_integer(out, answer.primitive.index() as u64),
-            (AnswerColumn::Feature, Some(answer)) => out.extend_from_slice(feature_name(answer.feature)),
-            (AnswerColumn::Object, Some(answer)) => self.names.write(out, Some(answer.primitive)),
-        }
-    }
-
-    /// Appends a column to a binary record.
-    fn put_bytes(&self, column: AnswerColumn, record: &AnswerRecord<'_>, out: &mut Vec<u8>) {
-        let (answer, nan) = (record.answer, [f64::NAN; 3]);
+    fn value(&self, column: AnswerColumn, record: &AnswerRecord<'_>) -> Value<'_> {
+        let answer = record.answer;
         match column {
-            AnswerColumn::Number => out.extend(integer_bytes(self.format, record.number)),
-            AnswerColumn::Id => {} // only text has it
-            AnswerColumn::Query => put_numbers(out, record.query.coords.as_ref()),
-            AnswerColumn::Point => put_numbers(out, answer.map_or(&nan, |a| a.point.coords.as_ref())),
-            AnswerColumn::Distance => put_numbers(out, &[answer.map_or(f64::NAN, |a| a.distance)]),
-            AnswerColumn::Signed => put_numbers(out, &[answer.map_or(f64::NAN, |_| record.signed_distance)]),
-            AnswerColumn::Inside => match (record.signed_distance < 0.0, self.format) {
-                (is_inside, AnswerFormat::Ply) => out.extend(i32::from(is_inside).to_le_bytes()),
-                (is_inside, _) => out.push(u8::from(is_inside)),
-            },
-            AnswerColumn::Normal => put_numbers(out, &answer.and_then(|a| self.normal(a)).unwrap_or(nan)),
-            AnswerColumn::LowerBound => put_numbers(out, &[answer.map_or(f64::NAN, |a| a.lower_bound)]),
-            AnswerColumn::Barycentric => put_numbers(out, answer.map_or(&nan, |a| &a.barycentric)),
-            AnswerColumn::Primitive => out.extend(index(answer.map(|a| a.primitive.index())).to_le_bytes()),
-            AnswerColumn::Feature => {
-                for number in feature_numbers(answer.map(|a| a.feature)) {
-                    match self.format {
-                        AnswerFormat::Ply => out.extend(i32::from(number).to_le_bytes()),
-                        _ => out.extend(number.to_le_bytes()),
-                    }
-                }
+            AnswerColumn::Number => Value::Integer(record.number),
+            AnswerColumn::Id => {
+                let number = usize::try_from(record.number).unwrap_or(usize::MAX);
+                Value::Text(self.ids.as_ref().and_then(|ids| ids.get(number)).unwrap_or_default())
             }
-            AnswerColumn::Object => {
-                out.extend(index(answer.and_then(|a| self.names.number(a.primitive))).to_le_bytes());
-            }
+            AnswerColumn::Query => Value::Triple(Some(record.query.coords.into())),
+            AnswerColumn::Point => Value::Triple(answer.map(|answer| answer.point.coords.into())),
+            AnswerColumn::Distance => Value::Number(answer.map(|answer| answer.distance)),
+            AnswerColumn::Signed => Value::Number(answer.map(|_| record.signed_distance)),
+            AnswerColumn::Inside => Value::Flag(record.signed_distance < 0.0),
+            AnswerColumn::Normal => Value::Triple(answer.and_then(|answer| self.normal(answer))),
+            AnswerColumn::LowerBound => Value::Number(answer.map(|answer| answer.lower_bound)),
+            AnswerColumn::Barycentric => Value::Triple(answer.map(|answer| answer.barycentric)),
+            AnswerColumn::Primitive => Value::Index(answer.map(|answer| answer.primitive)),
+            AnswerColumn::Feature => Value::Feature(answer.map(|answer| answer.feature)),
+            AnswerColumn::Object => Value::object_of(self.objects, answer.map(|answer| answer.primitive)),
         }
-    }
-}
-
-/// Returns a number below 2^30, or -1 if there is none.
-fn index(number: Option<usize>) -> i32 {
-    number.and_then(|number| i32::try_from(number).ok()).unwrap_or(-1)
-}
-
-/// Returns the kind and the number of the feature, or -1 twice if there is no answer.
-fn feature_numbers(feature: Option<Feature>) -> [i16; 2] {
-    match feature {
-        None => [-1, -1],
-        Some(Feature::Vertex(i)) => [0, i.into()],
-        Some(Feature::Edge(i)) => [1, i.into()],
-        Some(Feature::Face) => [2, 0],
-    }
-}
-
-/// Returns the feature as [`Feature`] displays it.
-fn feature_name(feature: Feature) -> &'static [u8] {
-    match feature {
-        Feature::Vertex(0) => b"vertex0",
-        Feature::Vertex(1) => b"vertex1",
-        Feature::Vertex(_) => b"vertex2",
-        Feature::Edge(0) => b"edge0",
-        Feature::Edge(1) => b"edge1",
-        Feature::Edge(_) => b"edge2",
-        Feature::Face => b"face",
     }
 }
 
@@ -338,10 +193,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn features_have_the_names_that_they_display() {
-        let numbered = (0..3).flat_map(|i| [Feature::Vertex(i), Feature::Edge(i)]);
-        for feature in numbered.chain([Feature::Face]) {
-            assert_eq!(feature_name(feature), feature.to_string().as_bytes());
-        }
+    fn every_column_has_its_own_layout() {
+        assert!(AnswerColumn::all().enumerate().all(|(place, column)| column as usize == place));
     }
 }

@@ -10,11 +10,11 @@
 //! and written in order by one.
 
 mod columns;
-mod names;
 mod rays;
 mod records;
 #[cfg(test)]
 mod tests;
+mod values;
 
 pub(crate) use columns::{AnswerColumn, AnswerEncoder, AnswerRecord};
 pub(crate) use rays::{HitEncoder, NumberEncoder};

@@ -1,9 +1,9 @@
 //! Records of rays: their hits, or a number for each.
 
 use super::AnswerFormat;
-use super::names::Names;
-use super::records::{Header, integer_bytes, put_columns, put_integer, put_numbers, put_text};
-use p2m_core::{Hit, Ray, Side};
+use super::records::Header;
+use super::values::{Kind, Layout, Value, header, put_record};
+use p2m_core::{Hit, Ray};
 use p2m_mixed::Object;
 
 /// Encodes hits as records, each with its ray and the number of the ray.
@@ -24,7 +24,8 @@ use p2m_mixed::Object;
 /// number is at a multiple of its size.
 pub(crate) struct HitEncoder<'a> {
     format: AnswerFormat,
-    names: Names<'a>,
+    /// The objects of the scene.
+    objects: &'a [Object],
 }
 
 /// Encodes a number for each ray as records, which have the columns `ray,ox,oy,oz,dx,dy,dz` of [`HitEncoder`] and one
@@ -35,65 +36,68 @@ pub(crate) struct NumberEncoder {
     name: &'static str,
 }
 
+/// The number, the origin and the direction of a ray.
+const RAY: [Layout<'static>; 3] = [
+    Layout::new("ray", Kind::Integer, &["ray"]),
+    Layout::new("origin", Kind::Triple, &["ox", "oy", "oz"]).in_clouds(&["x", "y", "z"]),
+    Layout::new("direction", Kind::Triple, &["dx", "dy", "dz"]).in_clouds(&["nx", "ny", "nz"]),
+];
+
+const HIT: [Layout<'static>; 5] = [
+    Layout::new("parameter", Kind::Number, &["parameter"]),
+    Layout::new("point", Kind::Triple, &["x", "y", "z"]).in_clouds(&["hx", "hy", "hz"]),
+    Layout::new("primitive", Kind::Index, &["primitive"]),
+    Layout::new("side", Kind::Side, &["side"]),
+    Layout::new("barycentric", Kind::Triple, &["w0", "w1", "w2"]),
+];
+
+/// Arranges what belongs to [`RAY`] and [`HIT`] as a format has it. In binary records, numbers of 8 bytes come first.
+fn arranged<T>(
+    format: AnswerFormat,
+    [number, origin, direction]: [T; 3],
+    [parameter, point, primitive, side, weights]: [T; 5],
+) -> [T; 8] {
+    match format {
+        AnswerFormat::Csv => [number, origin, direction, parameter, point, primitive, side, weights],
+        _ => [origin, direction, number, parameter, point, weights, primitive, side],
+    }
+}
+
+/// Returns the values of the columns [`RAY`].
+fn ray_values(number: u64, ray: &Ray) -> [Value<'static>; 3] {
+    let (origin, direction) = (ray.origin().coords.into(), ray.direction().into());
+    [Value::Integer(number), Value::Triple(Some(origin)), Value::Triple(Some(direction))]
+}
+
 impl<'a> HitEncoder<'a> {
     /// Makes an encoder. The objects are those of the scene.
     pub(crate) fn new(format: AnswerFormat, objects: &'a [Object]) -> Self {
-        Self { format, names: Names(objects) }
+        Self { format, objects }
+    }
+
+    /// Returns whether the last column has names of objects.
+    fn has_objects(&self) -> bool {
+        self.format == AnswerFormat::Csv && !self.objects.is_empty()
     }
 
     /// Returns the header of a file.
     pub(crate) fn header(&self) -> Header {
-        match self.format {
-            AnswerFormat::Csv => csv_header(&self.names.header("parameter,x,y,z,primitive,side,w0,w1,w2")),
-            AnswerFormat::Npy => npy_header(
-                "('parameter', '<f8'), ('point', '<f8', (3,)), ('barycentric', '<f8', (3,)), ('primitive', '<i4'), \
-                ('side', '<i4')",
-            ),
-            AnswerFormat::Ply => {
-                let doubles = ["parameter", "hx", "hy", "hz", "w0", "w1", "w2"].map(|name| ("double", name));
-                ply_header(doubles.into_iter().chain([("int", "primitive"), ("int", "side")]))
-            }
-        }
+        let object = self.has_objects().then_some(Layout::new("object", Kind::Index, &["object"]));
+        header(self.format, &arranged(self.format, RAY, HIT).into_iter().chain(object).collect::<Vec<_>>())
     }
 
     /// Appends the record of a hit of a ray, or of a ray without a hit. `number` is the number of the ray.
     pub(crate) fn encode(&self, number: u64, ray: &Ray, hit: Option<&Hit>, out: &mut Vec<u8>) {
-        put_ray(self.format, number, ray, out);
-        if self.format == AnswerFormat::Csv {
-            let Some(hit) = hit else {
-                out.extend_from_slice(b",,,,,,,,");
-                return self.names.end_line(out, None);
-            };
-            let side: &[u8] = match hit.side {
-                Side::Front => b",front,",
-                Side::Back => b",back,",
-                Side::Along => b",along,",
-            };
-            let ([x, y, z], [a, b, c]): ([f64; 3], _) = (hit.point().coords.into(), hit.barycentric());
-            put_columns(out, &[hit.parameter, x, y, z]);
-            put_integer(out, hit.primitive.index() as u64);
-            out.extend_from_slice(side);
-            put_columns(out, &[a, b]);
-            put_text(out, c);
-            return self.names.end_line(out, Some(hit.primitive));
-        }
-        match hit {
-            None => put_numbers(out, &[f64::NAN; 7]),
-            Some(hit) => {
-                put_numbers(out, &[hit.parameter]);
-                put_numbers(out, hit.point().coords.as_ref());
-                put_numbers(out, &hit.barycentric());
-            }
-        }
-        let primitive = hit.and_then(|hit| i32::try_from(hit.primitive.index()).ok()); // ids end at 2^30
-        out.extend(primitive.unwrap_or(-1).to_le_bytes());
-        let side: i32 = match hit.map(|hit| hit.side) {
-            None => -1,
-            Some(Side::Front) => 0,
-            Some(Side::Back) => 1,
-            Some(Side::Along) => 2,
-        };
-        out.extend(side.to_le_bytes());
+        let primitive = hit.map(|hit| hit.primitive);
+        let values = [
+            Value::Number(hit.map(|hit| hit.parameter)),
+            Value::Triple(hit.map(|hit| hit.point().coords.into())),
+            Value::Index(primitive),
+            Value::Side(hit.map(|hit| hit.side)),
+            Value::Triple(hit.map(Hit::barycentric)),
+        ];
+        let object = self.has_objects().then(|| Value::object_of(self.objects, primitive));
+        put_record(self.format, arranged(self.format, ray_values(number, ray), values).into_iter().chain(object), out);
     }
 }
 
@@ -105,53 +109,21 @@ impl NumberEncoder {
 
     /// Returns the header of a file.
     pub(crate) fn header(&self) -> Header {
-        let name = self.name;
+        let [ray, origin, direction] = RAY;
+        let names = [self.name];
+        let number = Layout::new(self.name, Kind::Integer, &names);
         match self.format {
-            AnswerFormat::Csv => csv_header(name),
-            AnswerFormat::Npy => npy_header(&format!("('{name}', '<i8')")),
-            AnswerFormat::Ply => ply_header([("double", name)].into_iter()),
+            AnswerFormat::Csv => header(self.format, &[ray, origin, direction, number]),
+            _ => header(self.format, &[origin, direction, ray, number]),
         }
     }
 
     /// Appends the record of a value for a ray. `number` is the number of the ray.
     pub(crate) fn encode(&self, number: u64, ray: &Ray, value: u64, out: &mut Vec<u8>) {
-        put_ray(self.format, number, ray, out);
+        let ([number, origin, direction], value) = (ray_values(number, ray), Value::Integer(value));
         match self.format {
-            AnswerFormat::Csv => {
-                put_integer(out, value);
-                out.push(b'\n');
-            }
-            _ => out.extend(integer_bytes(self.format, value)),
+            AnswerFormat::Csv => put_record(self.format, [number, origin, direction, value], out),
+            _ => put_record(self.format, [origin, direction, number, value], out),
         }
     }
-}
-
-/// Returns the header of a table with the columns of a ray and then others.
-fn csv_header(columns: &str) -> Header {
-    Header::Line(format!("ray,ox,oy,oz,dx,dy,dz,{columns}"))
-}
-
-/// Returns the header of an array with the fields of a ray and then others.
-fn npy_header(fields: &str) -> Header {
-    Header::Npy(format!("('origin', '<f8', (3,)), ('direction', '<f8', (3,)), ('ray', '<i8'), {fields}"))
-}
-
-/// Returns the header of a point cloud with the properties of a ray and then others.
-fn ply_header(properties: impl Iterator<Item = (&'static str, &'static str)>) -> Header {
-    let ray = ["x", "y", "z", "nx", "ny", "nz", "ray"].map(|name| ("double", name));
-    Header::Ply(ray.into_iter().chain(properties).collect())
-}
-
-/// Appends the columns of a ray to a line, or its fields to a record.
-fn put_ray(format: AnswerFormat, number: u64, ray: &Ray, out: &mut Vec<u8>) {
-    let (origin, direction) = (ray.origin(), ray.direction());
-    if format == AnswerFormat::Csv {
-        put_integer(out, number);
-        out.push(b',');
-        put_columns(out, origin.coords.as_ref());
-        return put_columns(out, direction.as_ref());
-    }
-    put_numbers(out, origin.coords.as_ref());
-    put_numbers(out, direction.as_ref());
-    out.extend(integer_bytes(format, number));
 }

@@ -1,6 +1,5 @@
 //! Files of a header and records, whose number may be part of the header.
 
-use super::AnswerFormat;
 use p2m_core::npy_header;
 use std::io::{self, ErrorKind, Write};
 
@@ -80,75 +79,6 @@ impl Header {
                 }
                 (header + "end_header\n").into_bytes()
             }
-        }
-    }
-}
-
-/// Appends numbers to a record, little-endian.
-pub(super) fn put_numbers(out: &mut Vec<u8>, numbers: &[f64]) {
-    numbers.iter().for_each(|x| out.extend(x.to_le_bytes()));
-}
-
-/// Appends a number to a line of text: the shortest that reads back the same, with an exponent if it is far from 1.
-pub(super) fn put_text(out: &mut Vec<u8>, x: f64) {
-    let mut buffer = zmij::Buffer::new();
-    let text = buffer.format(x).as_bytes();
-    // Rust writes exponents without a plus sign, and zmij with one, which only numbers from 1e16 on get.
-    match if x.abs() < 1e16 { None } else { text.iter().position(|byte| *byte == b'+') } {
-        None => out.extend_from_slice(text),
-        Some(plus) => {
-            out.extend_from_slice(&text[..plus]);
-            out.extend_from_slice(&text[plus + 1..]);
-        }
-    }
-}
-
-/// Appends an integer to a line of text.
-pub(super) fn put_integer(out: &mut Vec<u8>, number: u64) {
-    out.extend_from_slice(itoa::Buffer::new().format(number).as_bytes());
-}
-
-/// Appends numbers to a line of text, with a comma after each.
-pub(super) fn put_columns(out: &mut Vec<u8>, numbers: &[f64]) {
-    for x in numbers {
-        put_text(out, *x);
-        out.push(b',');
-    }
-}
-
-/// Returns the bytes of an integer. PLY has no integers of 64 bits, so it gets a `double`.
-#[allow(clippy::cast_precision_loss, reason = "there are fewer than 2^53 rays")]
-pub(super) fn integer_bytes(format: AnswerFormat, number: u64) -> [u8; 8] {
-    if format == AnswerFormat::Ply { (number as f64).to_le_bytes() } else { number.to_le_bytes() }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn numbers_in_text_are_short_and_read_back_the_same() {
-        let text = |x: f64| {
-            let mut out = Vec::new();
-            put_text(&mut out, x);
-            String::from_utf8(out).unwrap()
-        };
-        for (x, expected) in [
-            (0.5, "0.5"),
-            (3.0, "3.0"),
-            (-0.0, "-0.0"),
-            (1e300, "1e300"),
-            (-1.5e16, "-1.5e16"),
-            (1e-300, "1e-300"),
-            (f64::NAN, "NaN"),
-            (f64::NEG_INFINITY, "-inf"),
-        ] {
-            assert_eq!(text(x), expected);
-        }
-        for case in p2m_testkit::cases(100_000, 1000) {
-            let x = f64::from_bits(rand::RngExt::random(&mut p2m_testkit::rng("text", case)));
-            let found: f64 = text(x).parse().unwrap();
-            assert!(found.to_bits() == x.to_bits() || (found.is_nan() && x.is_nan()), "{x:?}");
         }
     }
 }
