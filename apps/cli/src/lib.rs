@@ -23,7 +23,7 @@ pub use measure::harness;
 
 use crate::compare::deviation::NotPassed;
 use crate::io::limits::{Change, Limits};
-use clap::{CommandFactory, FromArgMatches, Parser, Subcommand};
+use clap::{ArgMatches, CommandFactory, FromArgMatches, Parser, Subcommand};
 use std::ffi::OsString;
 use std::io::{ErrorKind, Write};
 
@@ -94,32 +94,6 @@ enum Command {
 }
 
 impl Command {
-    /// The words of the command line that select this command.
-    fn path(&self) -> String {
-        match self {
-            Self::Query(_) => "p2m query".to_owned(),
-            Self::Build(_) => "p2m build".to_owned(),
-            Self::Shard(_) => "p2m shard".to_owned(),
-            Self::Distance(_) => "p2m distance".to_owned(),
-            Self::Hausdorff(_) => "p2m hausdorff".to_owned(),
-            Self::Deviation(_) => "p2m deviation".to_owned(),
-            Self::Align(_) => "p2m align".to_owned(),
-            Self::Stats(_) => "p2m stats".to_owned(),
-            Self::Field(_) => "p2m field".to_owned(),
-            Self::Sample(_) => "p2m sample".to_owned(),
-            Self::Advise(_) => "p2m advise".to_owned(),
-            Self::Tradeoff(_) => "p2m tradeoff".to_owned(),
-            Self::Ray(_) => "p2m ray".to_owned(),
-            Self::Info(_) => "p2m info".to_owned(),
-            Self::Convert(_) => "p2m convert".to_owned(),
-            Self::Generate(args) => format!("p2m generate {}", args.name()),
-            Self::Boxes(_) => "p2m boxes".to_owned(),
-            Self::View(_) => "p2m view".to_owned(),
-            Self::Completions(_) => "p2m completions".to_owned(),
-            Self::Man(_) => "p2m man".to_owned(),
-        }
-    }
-
     fn run(&self, streams: &Streams) -> anyhow::Result<()> {
         match self {
             Self::Query(args) => query::run(streams, args),
@@ -214,13 +188,13 @@ fn arranged(command: clap::Command) -> clap::Command {
 /// A run does not handle signals: a program that is to remove unfinished files at a signal calls [`listen`] first.
 pub fn run(streams: &Streams, arguments: impl IntoIterator<Item = OsString>) -> u8 {
     let matches = streams.fit(command()).try_get_matches_from(arguments);
-    let command = match matches.and_then(|matches| Cli::from_arg_matches(&matches)) {
-        Ok(cli) => {
+    let (path, command) = match matches.and_then(|matches| Ok((path(&matches), Cli::from_arg_matches(&matches)?))) {
+        Ok((path, cli)) => {
             streams.set_quiet(cli.quiet);
             let limits = Limits::with(&cli.read_limit);
             streams.set_limits(limits);
             p2m_mixed::set_max_line_bytes(usize::try_from(limits.line).unwrap_or(usize::MAX));
-            cli.command
+            (path, cli.command)
         }
         Err(error) => {
             let shown = streams.show(&error);
@@ -248,12 +222,18 @@ pub fn run(streams: &Streams, arguments: impl IntoIterator<Item = OsString>) -> 
             streams.show_error(&message);
             if error.is::<crate::io::usage::Usage>() {
                 // An error of writing the message cannot be reported anywhere.
-                let _ = writeln!(streams.stderr(), "\nFor more information, try '{} --help'.", command.path());
+                let _ = writeln!(streams.stderr(), "\nFor more information, try '{path} --help'.");
                 return 2;
             }
             1
         }
     }
+}
+
+/// Returns the words of the command line that select a command, such as `p2m generate sphere`.
+fn path(matches: &ArgMatches) -> String {
+    let names = std::iter::successors(matches.subcommand(), |(_, matches)| matches.subcommand());
+    names.fold("p2m".to_owned(), |path, (name, _)| format!("{path} {name}"))
 }
 
 /// The part of the message for a line that is too long.

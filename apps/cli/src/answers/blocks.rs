@@ -4,6 +4,8 @@
 //! makes the queries of the block after it. So the threads wait for the file or the
 //! source of the queries only if these are slower than answering.
 
+use crate::answers::table::{Header, Table};
+use crate::io::output::Output;
 use crate::io::progress::{Progress, Unit};
 use crate::io::streams::Streams;
 use indicatif::{DecimalBytes, HumanCount, HumanDuration};
@@ -73,34 +75,37 @@ impl<Q, A> Block<Q, A> {
 }
 
 /// The functions that turn queries into records.
-pub(crate) struct Steps<Answer, Encode, Take, WriteRecords> {
+pub(crate) struct Steps<Answer, Encode, Take> {
     /// Answers some queries on all threads of the current pool.
     pub(crate) answer: Answer,
     /// Appends the records of a query, given its number and its answer, and returns how many there are.
     pub(crate) encode: Encode,
     /// Takes each query with its answer, in order, for a summary.
     pub(crate) take: Take,
-    /// Writes some records, in order.
-    pub(crate) write: WriteRecords,
 }
 
-/// Answers queries on all threads of a pool and writes the records of their answers in order. Returns the time that
-/// the answers took.
+/// Answers queries on all threads of a pool and writes the records of their answers in order to a file, if there is one.
+/// The file is given with its header, and with the number of its records if it is known. Returns the time that the
+/// answers took.
 ///
 /// # Errors
 /// It returns the first error of answering or writing, after which nothing more is answered.
-pub(crate) fn answer_all<Q: Send + Sync, A: Send + Sync, E: Send>(
+pub(crate) fn answer_all<Q: Send + Sync, A: Send + Sync>(
     streams: &Streams,
     pool: &ThreadPool,
     mut queries: QueryStream<impl Iterator<Item = Q>>,
+    file: Option<(&mut Output<'_>, Header, Option<u64>)>,
     steps: Steps<
-        impl Fn(&[Q]) -> Result<Vec<A>, E> + Sync,
+        impl Fn(&[Q]) -> anyhow::Result<Vec<A>> + Sync,
         impl Fn(u64, &Q, &A, &mut Vec<u8>) -> u64 + Sync,
         impl FnMut(&Q, &A),
-        impl FnMut(u64, &[u8]) -> Result<(), E>,
     >,
-) -> Result<Duration, E> {
-    let Steps { answer, encode, mut take, mut write } = steps;
+) -> anyhow::Result<Duration> {
+    let Steps { answer, encode, mut take } = steps;
+    let cannot_write = file.as_ref().map(|(output, ..)| output.cannot_write()).unwrap_or_default();
+    let failed = |error| anyhow::Error::new(error).context(cannot_write.clone());
+    let mut table =
+        file.map(|(output, header, count)| Table::new(output, header, count)).transpose().map_err(failed)?;
     let progress = Progress::start(streams, "answering", Some(queries.count), Unit::Items(queries.name));
     // A query by brute force can take milliseconds, and one with many answers much memory.
     let min_block = match queries.block_size {
@@ -112,7 +117,8 @@ pub(crate) fn answer_all<Q: Send + Sync, A: Send + Sync, E: Send>(
     let mut pending: Vec<Q> = queries.iter.by_ref().take(size).collect();
     let mut write_block = |block: Block<Q, A>| {
         block.queries.iter().zip(&block.answers).for_each(|(query, answer)| take(query, answer));
-        block.encoded.iter().try_for_each(|part| write(part.records, &part.bytes))
+        let mut parts = block.encoded.iter();
+        parts.try_for_each(|part| table.as_mut().map_or(Ok(()), |table| table.write(part.records, &part.bytes)))
     };
     while !pending.is_empty() {
         let mut answered = None;
@@ -130,7 +136,7 @@ pub(crate) fn answer_all<Q: Send + Sync, A: Send + Sync, E: Send>(
             let written = finished.take().map_or(Ok(()), &mut write_block);
             (written, queries.iter.by_ref().take(size).collect())
         });
-        written?;
+        written.map_err(failed)?;
         let (block, elapsed) = answered.expect("the scope ends after its task")?;
         let (count, bytes) = (block.queries.len() as u64, block.bytes());
         if first == 0 {
@@ -145,7 +151,8 @@ pub(crate) fn answer_all<Q: Send + Sync, A: Send + Sync, E: Send>(
         }
         (finished, pending) = (Some(block), next);
     }
-    finished.map_or(Ok(()), write_block)?;
+    finished.map_or(Ok(()), write_block).map_err(failed)?;
+    table.map_or(Ok(()), |table| table.finish().map(drop)).map_err(failed)?;
     Ok(time)
 }
 

@@ -3,6 +3,7 @@
 pub(crate) mod args;
 pub(crate) mod blocks;
 pub(crate) mod queries;
+pub(crate) mod run;
 pub(crate) mod running_stats;
 pub(crate) mod summary;
 pub(crate) mod table;

@@ -1,64 +1,72 @@
 //! Summaries of a run: its scene, its index and its answers, as text for people or as JSON for programs.
 
 use crate::answers::running_stats::RunningStats;
+use crate::index::backend::PreparedIndex;
+use crate::io::input::SceneFile;
 use crate::io::json::{self, stats};
+use crate::io::streams::Streams;
 use crate::scene::info::counted;
-use p2m_backends::{BuiltIndex, ChosenDirections};
+use p2m_backends::ChosenDirections;
 use p2m_core::Closest;
-use p2m_formats::FileFormat;
+use p2m_mixed::Skipped;
 use p2m_mixed::statistics::Counts;
 use p2m_mixed::statistics::figure::{Count, Figure, Rate, Time};
-use p2m_mixed::{Scene, Skipped};
 use serde_json::{Value, json};
 use std::fmt::{self, Write};
 use std::time::Duration;
 
-/// The summary of a scene.
-pub(crate) struct SceneSummary<'a> {
+/// The summary of a scene and of the index over it.
+pub(crate) struct IndexSummary<'a> {
+    /// The name of the scene.
     pub(crate) name: String,
     /// The name of the format of its file.
     pub(crate) format: &'static str,
     pub(crate) counts: Counts,
     pub(crate) skipped: &'a [Skipped],
-}
-
-impl<'a> SceneSummary<'a> {
-    pub(crate) fn new(name: String, format: FileFormat, scene: &'a Scene) -> Self {
-        Self { name, format: format.name(), counts: Counts::of(&scene.soup), skipped: &scene.skipped }
-    }
-}
-
-/// The summary of a scene and of the index over it.
-pub(crate) struct IndexSummary<'a> {
-    pub(crate) scene: SceneSummary<'a>,
     pub(crate) backend: &'a str,
-    /// The index, unless it is in shards or lists alone are used.
-    pub(crate) built: Option<&'a BuiltIndex>,
+    /// The index, unless it is in shards, on a card, or lists alone are used.
+    pub(crate) prepared: Option<&'a PreparedIndex>,
     /// Whether the index was loaded from a file.
     pub(crate) is_loaded: bool,
-    /// The reason of the choice of the backend, if the program chose it.
-    pub(crate) reason: Option<String>,
     /// The time to read the scene.
     pub(crate) read_time: Duration,
     /// The time to build or load the index.
     pub(crate) build_time: Duration,
 }
 
-impl IndexSummary<'_> {
+impl<'a> IndexSummary<'a> {
+    /// Returns the summary of a scene in memory and of the index over it, if there is one.
+    pub(crate) fn new(
+        file: &'a SceneFile,
+        backend: &'a str,
+        prepared: Option<&'a PreparedIndex>,
+        build_time: Duration,
+    ) -> Self {
+        Self {
+            name: file.name.clone(),
+            format: file.format.name(),
+            counts: Counts::of(&file.scene.soup),
+            skipped: &file.scene.skipped,
+            backend,
+            prepared,
+            is_loaded: prepared.is_some_and(|prepared| prepared.is_loaded),
+            read_time: file.read_time,
+            build_time,
+        }
+    }
+
     /// Returns the part of a report that describes the scene and the index, as an object.
-    pub(crate) fn json(&self, command: &str) -> Value {
+    pub(crate) fn json(&self) -> Value {
         let directions = self.directions();
         json!({
-            "p2m": command,
-            "version": json::VERSION,
             "scene": {
-                "file": self.scene.name,
-                "format": self.scene.format,
-                "primitives": json::counts(&self.scene.counts),
-                "skipped": json::skipped(self.scene.skipped),
+                "file": self.name,
+                "format": self.format,
+                "primitives": json::counts(&self.counts),
+                "skipped": json::skipped(self.skipped),
             },
             "backend": self.backend,
-            "backend_reason": self.reason,
+            "backend_reason": self.reason(),
             "loaded": self.is_loaded,
             "faces": directions.map(|directions| directions.faces),
             "directions_reason": directions.and_then(|directions| directions.reason.as_ref()),
@@ -67,44 +75,66 @@ impl IndexSummary<'_> {
 
     /// Returns the directions of a k-DOP tree.
     fn directions(&self) -> Option<&ChosenDirections> {
-        self.built?.directions.as_ref()
+        self.prepared?.built.directions.as_ref()
+    }
+
+    /// Returns the reason of the choice of the backend, if the program chose it.
+    fn reason(&self) -> Option<&str> {
+        self.prepared?.reason.as_deref()
+    }
+
+    /// Returns the part of a report about the times of reading, of building, and of something else.
+    pub(crate) fn seconds(&self, what: &str, time: Duration) -> Value {
+        let [read, build, time] = [self.read_time, self.build_time, time].map(|time| time.as_secs_f64());
+        json!({ "read": read, "build": build, what: time })
     }
 
     /// Returns the numbers of cells of an index; null for an index without cells.
     pub(crate) fn cells(&self) -> Value {
-        let Some(cells) = self.built.and_then(|built| built.index.cells()) else { return Value::Null };
+        let Some(cells) = self.prepared.and_then(|prepared| prepared.built.index.cells()) else { return Value::Null };
         let counts = cells.counts.into_iter().map(|(name, count)| (name, count.into()));
         counts.chain(cells.resolution.map(|resolution| ("resolution", json::number(resolution)))).collect()
     }
 
-    /// Writes lines about the scene and the index, with a line for the note if there is one.
-    pub(crate) fn write(&self, text: &mut String, note: Option<String>) -> fmt::Result {
-        writeln!(text, "scene    {}", self.scene.name)?;
-        writeln!(text, "         {}", counted(&self.scene.counts))?;
-        if self.scene.counts.total() == 0 {
+    /// Returns lines about the scene and the index, with a line for the note if there is one.
+    pub(crate) fn text(&self, note: Option<String>) -> String {
+        let mut text = String::new();
+        // Writing to a string does not fail.
+        let _ = self.write(&mut text, note);
+        text
+    }
+
+    fn write(&self, text: &mut String, note: Option<String>) -> fmt::Result {
+        writeln!(text, "scene    {}", self.name)?;
+        writeln!(text, "         {}", counted(&self.counts))?;
+        if self.counts.total() == 0 {
             writeln!(text, "note     the scene is empty: there is nothing to find")?;
         }
         if let Some(note) = note {
             writeln!(text, "note     {note}")?;
         }
-        if !self.scene.skipped.is_empty() {
-            let list: Vec<String> = self.scene.skipped.iter().map(ToString::to_string).collect();
-            writeln!(text, "skipped  {}", list.join(", "))?;
+        if !self.skipped.is_empty() {
+            writeln!(text, "skipped  {}", listed(self.skipped))?;
         }
         let faces = self.directions().map_or(String::new(), |directions| format!(", {} faces", directions.faces));
         let verb = if self.is_loaded { "loaded" } else { "built" };
         writeln!(text, "backend  {}{faces}, {verb} in {}", self.backend, Time(self.build_time))?;
-        if let Some(reason) = &self.reason {
+        if let Some(reason) = self.reason() {
             writeln!(text, "choice   {reason}")?;
         }
         if let Some(reason) = self.directions().and_then(|directions| directions.reason.as_ref()) {
             writeln!(text, "k-DOPs   {reason}")?;
         }
-        if let Some(cells) = self.built.and_then(|built| built.index.cells()) {
+        if let Some(cells) = self.prepared.and_then(|prepared| prepared.built.index.cells()) {
             writeln!(text, "cells    {}", cells.text)?;
         }
         Ok(())
     }
+}
+
+/// Returns a list of skipped records in words.
+pub(crate) fn listed(skipped: &[Skipped]) -> String {
+    skipped.iter().map(ToString::to_string).collect::<Vec<_>>().join(", ")
 }
 
 /// The summary of a run that answers queries or rays.
@@ -116,43 +146,34 @@ pub(crate) struct RunSummary<'a> {
 }
 
 impl RunSummary<'_> {
-    /// Returns the report of a command. `answers` is its part about the answers, and `out` describes their file.
-    pub(crate) fn json(&self, command: &str, answers: Value, out: &Value) -> Value {
-        let end = json!({
-            "seconds": {
-                "read": self.index.read_time.as_secs_f64(),
-                "build": self.index.build_time.as_secs_f64(),
-                "query": self.query_time.as_secs_f64(),
-            },
-            "out": out,
-        });
-        json::joined([self.index.json(command), json!({ "threads": self.threads }), answers, end])
+    /// Prints the report of a command. `answers` is its part about the answers, and `out` describes their file.
+    pub(crate) fn print_json(
+        &self,
+        streams: &Streams,
+        command: &str,
+        answers: Value,
+        out: &Value,
+    ) -> anyhow::Result<()> {
+        let end = json!({ "seconds": self.index.seconds("query", self.query_time), "out": out });
+        json::print_report(streams, command, [self.index.json(), json!({ "threads": self.threads }), answers, end])
     }
 
     /// Returns lines about the scene, the index and the speed of `count` queries. The queries are called `many` in the
     /// plural and `one` in the singular.
-    pub(crate) fn text(&self, many: &str, one: &str, count: u64) -> String {
-        let mut text = String::new();
-        // Writing to a string does not fail.
-        let _ = self.write(&mut text, many, one, count);
-        text
-    }
-
     #[allow(clippy::cast_precision_loss, reason = "counts for people to read")]
-    fn write(&self, text: &mut String, many: &str, one: &str, count: u64) -> fmt::Result {
-        let note = (count == 0).then(|| format!("there are no {many}: nothing is computed"));
-        self.index.write(text, note)?;
+    pub(crate) fn text(&self, many: &str, one: &str, count: u64) -> String {
+        let mut text = self.index.text((count == 0).then(|| format!("there are no {many}: nothing is computed")));
         let threads = if self.threads == 1 { "thread" } else { "threads" };
         let time = Time(self.query_time);
-        write!(text, "{many:9}{} in {time} on {} {threads}", Count(count), self.threads)?;
+        text += &format!("{many:9}{} in {time} on {} {threads}", Count(count), self.threads);
         let seconds = self.query_time.as_secs_f64();
         if count > 0 && seconds > 0.0 {
             let count = count as f64;
             #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "a time is not negative")]
             let each = Count((seconds * 1e9 / count).round() as u64);
-            write!(text, ": {each} ns per {one}, {} {many}/s", Rate(count / seconds))?;
+            text += &format!(": {each} ns per {one}, {} {many}/s", Rate(count / seconds));
         }
-        writeln!(text)
+        text + "\n"
     }
 }
 

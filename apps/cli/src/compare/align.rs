@@ -1,8 +1,8 @@
 //! `p2m align`: moves a scan onto a scene.
 
 use crate::compare::scan::ScanArgs;
-use crate::index::backend::{Backend, SceneSource, backends, saved_or_default};
-use crate::io::input::{SceneArgs, is_standard, name, read_scene_and_index, shown};
+use crate::index::backend::{Backend, backends};
+use crate::io::input::{SceneArgs, SceneFile, is_standard, name, shown};
 use crate::io::json;
 use crate::io::output::Output;
 use crate::io::progress::{Progress, Unit};
@@ -13,8 +13,8 @@ use crate::page::pair::{PairPage, PairPageArgs, PairResult};
 use crate::scene::convert::Target;
 use anyhow::{Context, anyhow};
 use nalgebra::Point3;
-use p2m_backends::P2mSettings;
-use p2m_core::{Aabb, ClosestPoint, PrimitiveSet};
+use p2m_backends::AnyIndex;
+use p2m_core::{Aabb, PrimitiveSet};
 use p2m_field::align::{AlignError, AlignOptions, Alignment, Ambiguity, align};
 use p2m_mixed::Scene;
 use p2m_mixed::statistics::figure::{Count, Figure};
@@ -120,21 +120,16 @@ pub(crate) fn run(streams: &Streams, args: &Args) -> anyhow::Result<()> {
     let scan_format = args.scan.format()?;
     let format = args.scene.format()?;
     let pool = args.threads.pool()?;
-    let (scene, saved) = read_scene_and_index(streams, &pool, &args.scene.path, format, args.scene.map)?;
+    let file = args.scene.read(streams, &pool, format)?;
     let (mut scan, _) = args.scan.read(streams, &pool, scan_format, false)?;
-    let backend = args.backend.unwrap_or_else(|| saved_or_default(saved.as_ref()));
-    let p2m = P2mSettings::default();
-    let source = SceneSource { soup: &scene.soup, kdop_directions: None, p2m, saved: saved.as_ref() };
-    let index = source.prepare(streams, backend, &pool).with_context(|| args.scene.name())?.built.index;
+    let index = file.prepare(streams, &pool, args.backend.unwrap_or_else(|| file.backend()))?.built.index;
     let before = scan.soup.aabb();
-    let found =
-        move_scan(streams, &pool, &args.scan.path, &mut scan, (args.scene.name(), &scene, &*index), &args.options())?;
+    let found = move_scan(streams, &pool, &args.scan.path, &mut scan, (&file, &*index), &args.options())?;
     let written = target.map(|target| target.write(streams, &scan)).transpose()?;
     if let Some(path) = &args.matrix {
         Output::open(streams, Some(path))?.finish_with(rows(&found, ""))?;
     }
     drop(index);
-    let (points, scenes) = (scan.soup.positions().len(), [scene, scan]);
     args.page.write(streams, || {
         let rms = besides_rounding(found.rms, args.page.unit(), &before);
         let verdict = format!("{rms} root mean square distance.");
@@ -143,21 +138,19 @@ pub(crate) fn run(streams: &Streams, args: &Args) -> anyhow::Result<()> {
         facts.extend(args.scale.then_some(("scale", found.scale)));
         let moved = Moved { matrix: found.matrix, facts };
         let found = PairResult::Moved { moved, before };
-        let paths = [&*args.scene.path, &*args.scan.path];
-        PairPage { paths, scenes: &scenes, motion: None, title: "Alignment", verdict, remarks, found }
+        let (paths, scenes) = ([&*args.scene.path, &*args.scan.path], [&file.scene, &scan]);
+        PairPage { paths, scenes, motion: None, title: "Alignment", verdict, remarks, found }
     })?;
     if args.json {
         let head = json!({
-            "p2m": "align",
-            "version": json::VERSION,
-            "scan": { "file": name(&args.scan.path), "format": scan_format.name(), "points": points },
-            "scene": { "file": args.scene.name(), "format": format.name() },
+            "scan": { "file": name(&args.scan.path), "format": scan_format.name(), "points": scan.soup.positions().len() },
+            "scene": { "file": file.name, "format": format.name() },
         });
         let end = json!({
             "out": written.map(|written| written.json()),
             "matrix_file": args.matrix.as_deref().map(shown),
         });
-        return json::print(streams, &json::joined([head, report(&found), end]));
+        return json::print_report(streams, "align", [head, report(&found), end]);
     }
     if let Some(written) = written {
         streams.print_summary(format_args!("{}", written.text()));
@@ -165,24 +158,23 @@ pub(crate) fn run(streams: &Streams, args: &Args) -> anyhow::Result<()> {
     Output::print(streams, text(&found, args.scale))
 }
 
-/// Moves the points of a scan onto a scene, which is given with its name and its index. A warning says if the result
-/// is doubtful.
+/// Moves the points of a scan onto a scene, which is given with its index. A warning says if the result is doubtful.
 pub(crate) fn move_scan(
     streams: &Streams,
     pool: &ThreadPool,
     scan_path: &Path,
     scan: &mut Scene,
-    (scene_name, scene, index): (String, &Scene, &(impl ClosestPoint<f64> + Sync + ?Sized)),
+    (file, index): (&SceneFile, &dyn AnyIndex),
     options: &AlignOptions,
 ) -> anyhow::Result<Alignment> {
     let progress = Progress::start(streams, "aligning", None, Unit::None);
     let points: &[Point3<f64>] = scan.soup.positions();
     let found = pool
-        .install(|| align(&*scene.soup, index, points, options, &mut |_| ControlFlow::Continue(())))
+        .install(|| align(&*file.scene.soup, index, points, options, &mut |_| ControlFlow::Continue(())))
         .map_err(|error| match error {
-            AlignError::EmptyScene | AlignError::NoSize => anyhow!("{scene_name}: {error}"),
-            _ => anyhow!("{}: {error}", name(scan_path)),
-        })?;
+        AlignError::EmptyScene | AlignError::NoSize => anyhow!("{}: {error}", file.name),
+        _ => anyhow!("{}: {error}", name(scan_path)),
+    })?;
     drop(progress);
     for warning in warnings(&found) {
         streams.print_summary(format_args!("warning  {}: {warning}\n", name(scan_path)));

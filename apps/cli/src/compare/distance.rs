@@ -1,6 +1,7 @@
 //! `p2m distance`: finds the nearest points of two scenes.
 
 use crate::compare::scene_pair::{ScenePairArgs, line_of_point, report_of_point};
+use crate::io::input::SceneFile;
 use crate::io::json;
 use crate::io::output::Output;
 use crate::io::progress::{Progress, Unit};
@@ -11,12 +12,10 @@ use crate::page::pair::{PairPage, PairPageArgs, PairResult};
 use anyhow::Context;
 use nalgebra::Point3;
 use p2m_bvh::AabbTree;
-use p2m_core::Soup;
 use p2m_core::pair::{ClosestPair, PairOptions, PairQuery};
+use p2m_core::{PrimitiveSet, Soup};
 use p2m_field::sign::SignedDistance;
 use p2m_field::solid::{Parts, Solid};
-use p2m_formats::FileFormat;
-use p2m_mixed::Scene;
 use p2m_mixed::statistics::figure::{Figure, Length};
 use p2m_page::Measure;
 use serde_json::{Value, json};
@@ -66,24 +65,22 @@ pub(crate) fn run(streams: &Streams, args: &Args) -> anyhow::Result<()> {
     let motion = args.scenes.motion(streams)?;
     let formats = args.scenes.formats()?;
     let pool = args.threads.pool()?;
-    let scenes = args.scenes.read(streams, &pool, formats)?.map(|(scene, _)| scene);
-    let names = args.scenes.names();
+    let files = args.scenes.read(streams, &pool, formats)?;
     let mut options = PairOptions::default().with_max_distance(limit);
     options.motion.clone_from(&motion);
     let progress = Progress::start(streams, "comparing", None, Unit::None);
-    let found = pool.install(|| {
-        let build = |k: usize| AabbTree::<f64, &Soup<f64>>::new(&scenes[k].soup).with_context(|| names[k].clone());
+    let soups = files.each_ref().map(|file| &*file.scene.soup);
+    let (found, notes) = pool.install(|| {
+        let build = |k: usize| AabbTree::<f64, &Soup<f64>>::new(soups[k]).with_context(|| files[k].name.clone());
         let indexes = [build(0)?, build(1)?];
-        let soups = [&*scenes[0].soup, &*scenes[1].soup];
         Ok::<_, anyhow::Error>(match args.solid {
             true => closest_pair_of_solids(&indexes, soups, &options),
             false => (indexes[0].closest_pair(&indexes[1], &options), [None, None]),
         })
     })?;
-    let (found, notes) = found;
-    for (name, note) in names.iter().zip(&notes) {
+    for (file, note) in files.iter().zip(&notes) {
         if let Some(note) = note {
-            streams.print_summary(format_args!("warning  {name}: {note}\n"));
+            streams.print_summary(format_args!("warning  {}: {note}\n", file.name));
         }
     }
     drop(progress);
@@ -98,14 +95,14 @@ pub(crate) fn run(streams: &Streams, args: &Args) -> anyhow::Result<()> {
             Some(pair) => format!("The scenes are {} {unit} apart.", Figure(pair.distance)),
             None => "Nothing is near.".to_owned(),
         };
-        let (paths, motion) = (args.scenes.paths(), motion.as_ref());
-        let found = PairResult::Measures(found.iter().map(measure).collect());
-        PairPage { paths, scenes: &scenes, motion, title: "Distance", verdict, remarks: Vec::new(), found }
+        let (paths, scenes) = (args.scenes.paths(), files.each_ref().map(|file| &file.scene));
+        let (motion, found) = (motion.as_ref(), PairResult::Measures(found.iter().map(measure).collect()));
+        PairPage { paths, scenes, motion, title: "Distance", verdict, remarks: Vec::new(), found }
     })?;
     if args.json {
-        return json::print(streams, &report(&names, formats, &scenes, found.as_ref(), limit, args.solid));
+        return json::print_report(streams, "distance", [report(&files, found.as_ref(), limit, args.solid)]);
     }
-    Output::print(streams, text(&names, &scenes, found.as_ref(), limit))
+    Output::print(streams, text(&files, found.as_ref(), limit))
 }
 
 /// Returns the nearest pair of two scenes whose inside counts, with a note on each scene whose inside is a guess, or that
@@ -131,9 +128,9 @@ fn closest_pair_of_solids<'a>(
     (solid(0).closest_pair(&solid(1), options), notes)
 }
 
-fn text(names: &[String; 2], scenes: &[Scene; 2], found: Option<&ClosestPair<f64>>, limit: f64) -> String {
+fn text(files: &[SceneFile; 2], found: Option<&ClosestPair<f64>>, limit: f64) -> String {
     let Some(pair) = found else {
-        let is_empty = scenes.iter().any(|scene| scene.soup.elements().next().is_none());
+        let is_empty = files.iter().any(|file| file.scene.soup.is_empty());
         return if is_empty { "a scene is empty\n".to_owned() } else { format!("nothing is within {limit}\n") };
     };
     let mut lines = if pair.is_intersecting {
@@ -142,32 +139,23 @@ fn text(names: &[String; 2], scenes: &[Scene; 2], found: Option<&ClosestPair<f64
         let (distance, error) = (Length(pair.distance), Figure(pair.distance - pair.lower_bound));
         format!("distance {distance}, at most {error} too large\n")
     };
-    for k in 0..2 {
-        lines += &line_of_point(&names[k], &scenes[k], pair.points[k], pair.primitives[k], Some(pair.features[k]));
+    for (k, file) in files.iter().enumerate() {
+        lines += &line_of_point(file, pair.points[k], pair.primitives[k], Some(pair.features[k]));
     }
     lines
 }
 
-fn report(
-    names: &[String; 2],
-    formats: [FileFormat; 2],
-    scenes: &[Scene; 2],
-    found: Option<&ClosestPair<f64>>,
-    limit: f64,
-    is_solid: bool,
-) -> Value {
+fn report(files: &[SceneFile; 2], found: Option<&ClosestPair<f64>>, limit: f64, is_solid: bool) -> Value {
     let side = |k: usize| {
         let found = found.map(|pair| {
-            let [before, after] = report_of_point(&scenes[k], pair.points[k], pair.primitives[k]);
-            json::joined([before, json!({ "feature": pair.features[k].to_string() }), after])
+            let feature = json!({ "feature": pair.features[k].to_string() });
+            report_of_point(&files[k].scene, pair.points[k], pair.primitives[k], feature)
         });
-        json!({ "file": names[k], "format": formats[k].name(), "nearest": found })
+        json!({ "file": files[k].name, "format": files[k].format.name(), "nearest": found })
     };
     // Scenes with primitives of which none are near do not intersect.
-    let are_apart = found.is_none() && scenes.iter().all(|scene| scene.soup.elements().next().is_some());
+    let are_apart = found.is_none() && files.iter().all(|file| !file.scene.soup.is_empty());
     json!({
-        "p2m": "distance",
-        "version": json::VERSION,
         "scenes": [side(0), side(1)],
         "max_distance": json::number(limit),
         "solid": is_solid,

@@ -1,7 +1,8 @@
 //! `p2m hausdorff`: finds how far points of two scenes are from the other scene at most.
 
 use crate::compare::scene_pair::{ScenePairArgs, line_of_point, report_of_point};
-use crate::index::backend::{Backend, SceneSource, backends, saved_or_default};
+use crate::index::backend::{Backend, backends};
+use crate::io::input::SceneFile;
 use crate::io::json;
 use crate::io::output::Output;
 use crate::io::progress::{Progress, Unit};
@@ -10,12 +11,9 @@ use crate::io::threads::ThreadArgs;
 use crate::io::usage::finite_not_negative;
 use crate::page::pair::{PairPage, PairPageArgs, PairResult};
 use anyhow::{Context, anyhow};
-use p2m_backends::P2mSettings;
 use p2m_core::PrimitiveSet;
 use p2m_core::pair::Motion;
 use p2m_field::{Direction, HausdorffDistance, HausdorffOptions, hausdorff_distance, one_sided_hausdorff_distance};
-use p2m_formats::FileFormat;
-use p2m_mixed::Scene;
 use p2m_mixed::statistics::figure::Length;
 use p2m_page::Measure;
 use serde_json::{Value, json};
@@ -73,29 +71,26 @@ pub(crate) fn run(streams: &Streams, args: &Args) -> anyhow::Result<()> {
     args.page.check(&args.scenes.paths())?;
     let motion = args.scenes.motion(streams)?;
     let formats = args.scenes.formats()?;
-    let names = args.scenes.names();
     let pool = args.threads.pool()?;
-    let [(first, first_saved), (mut second, mut second_saved)] = args.scenes.read(streams, &pool, formats)?;
+    let mut files = args.scenes.read(streams, &pool, formats)?;
     if let Some(motion) = motion.as_ref().map(Motion::new) {
-        let moved = Arc::make_mut(&mut second.soup).map_positions(|p| motion.apply(p.coords.into()).into());
-        moved.with_context(|| format!("{}: moved by --transform", names[1]))?;
+        let second = &mut files[1];
+        let moved = Arc::make_mut(&mut second.scene.soup).map_positions(|p| motion.apply(p.coords.into()).into());
+        moved.with_context(|| format!("{}: moved by --transform", second.name))?;
         // The saved index is that of the scene before.
-        second_saved = None;
+        second.saved = None;
     }
-    let (scenes, saved) = ([first, second], [first_saved, second_saved]);
-    let bounds = scenes[0].soup.aabb().union(&scenes[1].soup.aabb());
+    let [a, b] = files.each_ref().map(|file| &*file.scene.soup);
+    let bounds = a.aabb().union(&b.aabb());
     let tolerance = args.tolerance.unwrap_or_else(|| (bounds.max - bounds.min).norm() / 1e4);
     let prepare = |k: usize| {
-        let saved = saved[k].as_ref();
-        let backend = args.backend.unwrap_or_else(|| saved_or_default(saved));
-        let source = SceneSource { soup: &scenes[k].soup, kdop_directions: None, p2m: P2mSettings::default(), saved };
-        Ok::<_, anyhow::Error>(source.prepare(streams, backend, &pool).with_context(|| names[k].clone())?.built.index)
+        let backend = args.backend.unwrap_or_else(|| files[k].backend());
+        Ok::<_, anyhow::Error>(files[k].prepare(streams, &pool, backend)?.built.index)
     };
     let options = HausdorffOptions::new(tolerance).with_max_queries(args.max_queries);
     // One side alone needs no index of the first scene.
     let indexes = if args.one_sided { [None, Some(prepare(1)?)] } else { [Some(prepare(0)?), Some(prepare(1)?)] };
     let progress = Progress::start(streams, "comparing", None, Unit::None);
-    let [a, b] = [0, 1].map(|k: usize| &*scenes[k].soup);
     let mut go_on = |_: &_| ControlFlow::Continue(());
     let found = pool.install(|| match &indexes {
         [Some(index_a), Some(index_b)] => hausdorff_distance((a, &**index_a), (b, &**index_b), &options, &mut go_on),
@@ -117,20 +112,26 @@ pub(crate) fn run(streams: &Streams, args: &Args) -> anyhow::Result<()> {
         let measure = Measure { name: "farthest".to_owned(), ends: found.points, length: found.lower_bound };
         // The second scene is in its place already.
         let (paths, found) = (args.scenes.paths(), PairResult::Measures(vec![measure]));
-        PairPage { paths, scenes: &scenes, motion: None, title: "Hausdorff distance", verdict, remarks, found }
+        let scenes = files.each_ref().map(|file| &file.scene);
+        PairPage { paths, scenes, motion: None, title: "Hausdorff distance", verdict, remarks, found }
     })?;
     if args.json {
-        return json::print(streams, &report(&names, formats, &scenes, &found, tolerance, args.one_sided));
+        return json::print_report(streams, "hausdorff", [report(&files, &found, tolerance, args.one_sided)]);
     }
-    Output::print(streams, text(&names, &scenes, &found, tolerance))
+    Output::print(streams, text(&files, &found, tolerance))
 }
 
-fn text(names: &[String; 2], scenes: &[Scene; 2], found: &HausdorffDistance<f64>, tolerance: f64) -> String {
-    let [from, to] = match found.direction {
+/// Returns the numbers of the scene with the farthest point and of the other one.
+fn sides(found: &HausdorffDistance<f64>) -> [usize; 2] {
+    match found.direction {
         Direction::FirstToSecond => [0, 1],
         Direction::SecondToFirst => [1, 0],
-    };
-    let line = |k: usize| line_of_point(&names[k], &scenes[k], found.points[k], found.primitives[k], None);
+    }
+}
+
+fn text(files: &[SceneFile; 2], found: &HausdorffDistance<f64>, tolerance: f64) -> String {
+    let [from, to] = sides(found);
+    let line = |k: usize| line_of_point(&files[k], found.points[k], found.primitives[k], None);
     let note = if found.is_tolerance_reached {
         String::new()
     } else {
@@ -143,37 +144,25 @@ fn text(names: &[String; 2], scenes: &[Scene; 2], found: &HausdorffDistance<f64>
         "at least {} and at most {}\n{note}farthest from {}:\n{}closest to it:\n{}",
         found.lower_bound,
         found.upper_bound,
-        names[to],
+        files[to].name,
         line(from),
         line(to)
     )
 }
 
-fn report(
-    names: &[String; 2],
-    formats: [FileFormat; 2],
-    scenes: &[Scene; 2],
-    found: &HausdorffDistance<f64>,
-    tolerance: f64,
-    is_one_sided: bool,
-) -> Value {
+fn report(files: &[SceneFile; 2], found: &HausdorffDistance<f64>, tolerance: f64, is_one_sided: bool) -> Value {
     let side = |k: usize| {
-        let point = json::joined(report_of_point(&scenes[k], found.points[k], found.primitives[k]));
-        json!({ "file": names[k], "format": formats[k].name(), "farthest": point })
+        let point = report_of_point(&files[k].scene, found.points[k], found.primitives[k], Value::Null);
+        json!({ "file": files[k].name, "format": files[k].format.name(), "farthest": point })
     };
     json!({
-        "p2m": "hausdorff",
-        "version": json::VERSION,
         "scenes": [side(0), side(1)],
         "one_sided": is_one_sided,
         "tolerance": json::number(tolerance),
         "lower_bound": json::number(found.lower_bound),
         "upper_bound": json::number(found.upper_bound),
         "reached": found.is_tolerance_reached,
-        "from": match found.direction {
-            Direction::FirstToSecond => 0,
-            Direction::SecondToFirst => 1,
-        },
+        "from": sides(found)[0],
         "queries": found.queries,
     })
 }

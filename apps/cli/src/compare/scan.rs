@@ -1,6 +1,6 @@
 //! Scans: files of points, or of scenes whose vertices are the points.
 
-use crate::io::input::{SceneArgs, format_list, is_standard, name, read_points, read_scene_and_index, scene_format};
+use crate::io::input::{SceneArgs, SceneFile, format_list, is_standard, name, read_points, scene_format};
 use crate::io::streams::Streams;
 use crate::io::usage::{one_of, usage};
 use anyhow::Context;
@@ -51,7 +51,7 @@ impl ScanArgs {
     ) -> anyhow::Result<(Scene, Option<PointIds>)> {
         let may_have_ids = matches!(format, FileFormat::Own(Format::Xyz | Format::Csv | Format::Npy));
         if self.columns.is_empty() && !(wants_ids && may_have_ids) {
-            return Ok((read_scene_and_index(streams, pool, &self.path, format, false)?.0, None));
+            return Ok((SceneFile::read(streams, pool, &self.path, format, false)?.scene, None));
         }
         let columns = PointColumns { coordinates: self.columns.clone(), id: None };
         let table = read_points(streams, &self.path, format, &columns, "--scan-columns is")?;

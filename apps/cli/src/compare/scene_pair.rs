@@ -1,12 +1,12 @@
 //! The arguments of commands that are about two scenes, and what they print about a point of each.
 
-use crate::io::input::{COMPRESSED, name, read_scene_and_index, read_small_text, scene_format, scene_help};
+use crate::io::input::{COMPRESSED, SceneFile, read_small_text, scene_format, scene_help};
+use crate::io::json;
 use crate::io::streams::Streams;
 use crate::io::usage::{one_of, usage};
 use anyhow::Context;
 use nalgebra::{Isometry3, Point3};
 use p2m_core::pair::{is_rotation_and_translation, isometry_of_matrix};
-use p2m_core::storage::Reader;
 use p2m_core::{Feature, PrimitiveId};
 use p2m_formats::FileFormat;
 use p2m_mixed::Scene;
@@ -39,11 +39,6 @@ pub(crate) struct ScenePairArgs {
 }
 
 impl ScenePairArgs {
-    /// Returns the names of the scenes in messages.
-    pub(crate) fn names(&self) -> [String; 2] {
-        [&self.first, &self.second].map(|path| name(path))
-    }
-
     /// Returns the files of the scenes.
     pub(crate) fn paths(&self) -> [&Path; 2] {
         [&self.first, &self.second]
@@ -62,14 +57,14 @@ impl ScenePairArgs {
         self.transform.as_deref().map(|text| parse_motion(streams, text)).transpose()
     }
 
-    /// Reads the scenes as they are in their files, and the readers of saved indexes.
+    /// Reads the scenes as they are in their files.
     pub(crate) fn read(
         &self,
         streams: &Streams,
         pool: &ThreadPool,
         formats: [FileFormat; 2],
-    ) -> anyhow::Result<[(Scene, Option<Reader>); 2]> {
-        let read = |path: &Path, format| read_scene_and_index(streams, pool, path, format, false);
+    ) -> anyhow::Result<[SceneFile; 2]> {
+        let read = |path: &Path, format| SceneFile::read(streams, pool, path, format, false);
         Ok([read(&self.first, formats[0])?, read(&self.second, formats[1])?])
     }
 }
@@ -110,8 +105,7 @@ fn kind(scene: &Scene, primitive: PrimitiveId) -> &'static str {
 
 /// Returns a line about a point of a primitive and the feature that contains it, if that is known.
 pub(crate) fn line_of_point(
-    name: &str,
-    scene: &Scene,
+    SceneFile { name, scene, .. }: &SceneFile,
     point: Point3<f64>,
     primitive: PrimitiveId,
     feature: Option<Feature>,
@@ -123,14 +117,13 @@ pub(crate) fn line_of_point(
     format!("on {name}: ({x}, {y}, {z}), {kind} {number}{feature}{object}\n")
 }
 
-/// Returns the report of a point of a primitive: the keys before and after that of the feature.
-pub(crate) fn report_of_point(scene: &Scene, point: Point3<f64>, primitive: PrimitiveId) -> [Value; 2] {
-    [
-        json!({
-            "point": [point.x, point.y, point.z],
-            "primitive": primitive.index(),
-            "kind": kind(scene, primitive),
-        }),
-        json!({ "object": scene.object_of(primitive).map(|object| &object.name) }),
-    ]
+/// Returns the report of a point of a primitive. `feature` is an object with the feature that contains it, if that is
+/// known.
+pub(crate) fn report_of_point(scene: &Scene, point: Point3<f64>, primitive: PrimitiveId, feature: Value) -> Value {
+    let place = json!({
+        "point": [point.x, point.y, point.z],
+        "primitive": primitive.index(),
+        "kind": kind(scene, primitive),
+    });
+    json::joined([place, feature, json!({ "object": scene.object_of(primitive).map(|object| &object.name) })])
 }

@@ -1,17 +1,13 @@
 //! The arguments of commands that are about an index: its scene, its backend and its directions.
 
-use crate::index::backend::{Backend, BackendChoice, Chosen, backend_choices, saved_or_default};
+use crate::index::backend::{Backend, BackendChoice, Chosen, backend_choices};
 use crate::index::kdop_directions::{KdopFaces, requested};
 use crate::index::p2m_args::P2mArgs;
-use crate::io::input::SceneArgs;
+use crate::io::input::{SceneArgs, SceneFile};
 use crate::io::streams::Streams;
 use crate::io::threads::ThreadArgs;
-use anyhow::Context;
-use p2m_backends::{KdopDirections, P2mSettings, QueryRegion, Workload};
-use p2m_core::Soup;
-use p2m_core::storage::Reader;
+use p2m_backends::{QueryRegion, Workload};
 use rayon::ThreadPool;
-use std::sync::Arc;
 
 #[derive(clap::Args)]
 pub(crate) struct IndexArgs {
@@ -62,21 +58,15 @@ impl IndexArgs {
         self.named().is_none() && self.k.is_none() && self.p2m.is_unspecified()
     }
 
-    /// Returns the backend, the directions of its k-DOPs and its settings as a P2M index. Without a named backend it is
-    /// that of the file or the default one, and with `auto` the best one for ten million queries in the box of the scene.
+    /// Returns the backend with its options. Without a named backend it is that of the file or the default one, and with
+    /// `auto` the best one for ten million queries in the box of the scene.
     ///
     /// # Errors
     /// For directions with a backend that has no k-DOPs, and for settings of a P2M index with another one.
-    pub(crate) fn choice(
-        &self,
-        saved: Option<&Reader>,
-        soup: &Arc<Soup<f64>>,
-        streams: &Streams,
-        pool: &ThreadPool,
-    ) -> anyhow::Result<(Chosen, Option<KdopDirections>, P2mSettings)> {
+    pub(crate) fn choice(&self, streams: &Streams, pool: &ThreadPool, file: &SceneFile) -> anyhow::Result<Chosen> {
         match self.backend {
-            None => self.with_options(saved_or_default(saved).into()),
-            Some(_) => self.choice_for(DEFAULT_QUERY_COUNT, saved, soup, streams, pool),
+            None => self.with_options(file.backend().into()),
+            Some(_) => self.choice_for(DEFAULT_QUERY_COUNT, streams, pool, file),
         }
     }
 
@@ -85,20 +75,15 @@ impl IndexArgs {
     pub(crate) fn choice_for(
         &self,
         queries: u64,
-        saved: Option<&Reader>,
-        soup: &Arc<Soup<f64>>,
         streams: &Streams,
         pool: &ThreadPool,
-    ) -> anyhow::Result<(Chosen, Option<KdopDirections>, P2mSettings)> {
+        file: &SceneFile,
+    ) -> anyhow::Result<Chosen> {
         let workload = Workload::new(queries, QueryRegion::SceneBox).with_needs_index(true);
-        let chosen = BackendChoice::resolve(self.backend, saved, soup, &workload, streams, pool);
-        self.with_options(chosen.with_context(|| self.scene.name())?)
+        self.with_options(file.choose(streams, pool, self.backend, &workload)?)
     }
 
-    fn with_options(&self, chosen: Chosen) -> anyhow::Result<(Chosen, Option<KdopDirections>, P2mSettings)> {
-        let backend = chosen.backend();
-        let p2m = self.p2m.settings(backend.has_p2m_settings)?;
-        let directions = requested(backend.has_kdop_directions, self.k)?;
-        Ok((chosen, directions, p2m))
+    fn with_options(&self, chosen: Chosen) -> anyhow::Result<Chosen> {
+        chosen.with_p2m(&self.p2m)?.with_k(self.k)
     }
 }

@@ -1,12 +1,14 @@
 //! The values of `--backend`, which come from the registry of backends, and the building or loading of an index.
 
+use crate::index::kdop_directions::{KdopFaces, requested};
+use crate::index::p2m_args::P2mArgs;
+use crate::io::input::SceneFile;
 use crate::io::interrupt::StoppableWork;
 use crate::io::progress::{Progress, Unit};
 use crate::io::streams::Streams;
+use anyhow::Context;
 use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
 use p2m_backends::{BACKENDS, BackendEntry, BuildSettings, BuiltIndex, Choice, KdopDirections, P2mSettings, Workload};
-use p2m_core::Soup;
-use p2m_core::storage::Reader;
 use p2m_interception::{BuildStage, RefinementProgress, StageTimes};
 use rayon::ThreadPool;
 use std::ops::ControlFlow;
@@ -51,61 +53,37 @@ fn named(name: &str) -> Backend {
     BackendEntry::find(name).expect("the parser accepts the names of backends alone")
 }
 
-/// Returns the backend of the index in the file of the scene, or else the default one.
-pub(crate) fn saved_or_default(saved: Option<&Reader>) -> Backend {
-    saved.and_then(BackendEntry::from_saved).unwrap_or_else(BackendEntry::default_backend)
-}
-
-/// The index that a command searches.
-pub(crate) enum Chosen {
-    /// A backend that was named, or that of a saved index.
-    Named(Backend),
-    /// The choice by the work of queries.
-    Counted(Choice),
+/// The index that a command searches, and its options.
+pub(crate) struct Chosen {
+    pub(crate) backend: Backend,
+    /// The choice by the work of queries, unless the backend was named or is that of a saved index.
+    counted: Option<Choice>,
+    /// Requested k-DOP directions; `None` for those of the saved file, or else the default ones.
+    kdop_directions: Option<KdopDirections>,
+    /// The requested parts of a P2M index. A saved one has the default parts.
+    p2m: P2mSettings,
 }
 
 impl From<Backend> for Chosen {
     fn from(backend: Backend) -> Self {
-        Self::Named(backend)
+        Self { backend, counted: None, kdop_directions: None, p2m: P2mSettings::default() }
     }
 }
 
 impl Chosen {
-    pub(crate) fn backend(&self) -> Backend {
-        match self {
-            Self::Named(backend) => backend,
-            Self::Counted(choice) => choice.backend(),
-        }
+    /// Returns whether the work of queries decided.
+    pub(crate) fn is_counted(&self) -> bool {
+        self.counted.is_some()
     }
 
-    /// The reason of a choice, if queries were counted for it.
-    fn reason(&self) -> Option<String> {
-        match self {
-            Self::Named(_) => None,
-            Self::Counted(choice) => choice.reason().map(str::to_owned),
-        }
+    /// Sets the directions that `--k` requests, which are an error for a backend without k-DOPs.
+    pub(crate) fn with_k(self, k: Option<KdopFaces>) -> anyhow::Result<Self> {
+        Ok(Self { kdop_directions: requested(self.backend.has_kdop_directions, k)?, ..self })
     }
-}
 
-impl BackendChoice {
-    /// Returns the named backend. Without a name it is that of the saved index, and without both the work of the queries
-    /// decides.
-    pub(crate) fn resolve(
-        choice: Option<Self>,
-        saved: Option<&Reader>,
-        soup: &Arc<Soup<f64>>,
-        workload: &Workload<'_>,
-        streams: &Streams,
-        pool: &ThreadPool,
-    ) -> anyhow::Result<Chosen> {
-        match (choice, saved.and_then(BackendEntry::from_saved)) {
-            (Some(Self::Named(backend)), _) | (None | Some(Self::Auto), Some(backend)) => return Ok(backend.into()),
-            (None | Some(Self::Auto), None) => {}
-        }
-        let progress = Progress::start(streams, "building a tree", None, Unit::None);
-        let chosen = pool.install(|| Choice::new(Arc::clone(soup), workload))?;
-        drop(progress);
-        Ok(Chosen::Counted(chosen))
+    /// Sets the parts of a P2M index, which are an error for another backend.
+    pub(crate) fn with_p2m(self, args: &P2mArgs) -> anyhow::Result<Self> {
+        Ok(Self { p2m: args.settings(self.backend.has_p2m_settings)?, ..self })
     }
 }
 
@@ -114,6 +92,7 @@ pub(crate) type Stages = Vec<(BuildStage, Duration)>;
 
 /// An index that is ready for queries.
 pub(crate) struct PreparedIndex {
+    pub(crate) backend: Backend,
     pub(crate) built: BuiltIndex,
     /// Whether the index was loaded from a file.
     pub(crate) is_loaded: bool,
@@ -123,44 +102,62 @@ pub(crate) struct PreparedIndex {
     pub(crate) reason: Option<String>,
 }
 
-/// The scene of an index, and the file that may have the index.
-#[derive(Clone, Copy)]
-pub(crate) struct SceneSource<'a> {
-    pub(crate) soup: &'a Arc<Soup<f64>>,
-    /// The directions of k-DOPs that are requested; `None` for those of the file, or else the default ones.
-    pub(crate) kdop_directions: Option<KdopDirections>,
-    /// The requested parts of a P2M index. A saved one has the default parts.
-    pub(crate) p2m: P2mSettings,
-    /// The file that has the scene, if it is one that may have an index as well.
-    pub(crate) saved: Option<&'a Reader>,
-}
+impl SceneFile {
+    /// Returns the backend of the index in the file, or else the default one.
+    pub(crate) fn backend(&self) -> Backend {
+        self.saved_backend().unwrap_or_else(BackendEntry::default_backend)
+    }
 
-impl SceneSource<'_> {
-    /// Loads the index of the backend from the file, or builds it with the threads of a pool if the file has
-    /// none that fits.
-    pub(crate) fn prepare(
-        self,
+    /// Returns the backend of the index in the file, if it has one.
+    pub(crate) fn saved_backend(&self) -> Option<Backend> {
+        self.saved.as_ref().and_then(BackendEntry::from_saved)
+    }
+
+    /// Returns the named backend. Without a name it is that of the saved index, and without both the work of the queries
+    /// decides.
+    pub(crate) fn choose(
+        &self,
         streams: &Streams,
-        chosen: impl Into<Chosen>,
         pool: &ThreadPool,
-    ) -> anyhow::Result<PreparedIndex> {
-        let chosen = chosen.into();
-        let (backend, reason) = (chosen.backend(), chosen.reason());
-        let soup = Arc::clone(self.soup);
-        let may_be_saved = self.p2m == P2mSettings::default();
-        if let Some(reader) = self.saved.filter(|reader| may_be_saved && backend.is_in(reader, self.kdop_directions)) {
-            let _progress = Progress::start(streams, "loading the index", None, Unit::None);
-            return Ok(PreparedIndex {
-                built: pool.install(|| backend.load(soup, reader))?,
-                is_loaded: true,
-                stages: Stages::new(),
-                reason: None,
-            });
+        choice: Option<BackendChoice>,
+        workload: &Workload<'_>,
+    ) -> anyhow::Result<Chosen> {
+        match (choice, self.saved_backend()) {
+            (Some(BackendChoice::Named(backend)), _) | (_, Some(backend)) => return Ok(backend.into()),
+            (None | Some(BackendChoice::Auto), None) => {}
         }
-        let settings = BuildSettings::default().with_kdop_directions(self.kdop_directions).with_p2m(self.p2m);
-        let build = |chosen, settings: &BuildSettings<'_>| match chosen {
-            Chosen::Named(backend) => backend.build(soup, settings),
-            Chosen::Counted(choice) => choice.build(settings),
+        let _progress = Progress::start(streams, "building a tree", None, Unit::None);
+        let choice = pool.install(|| Choice::new(Arc::clone(&self.scene.soup), workload));
+        let choice = choice.with_context(|| self.name.clone())?;
+        let backend = choice.backend();
+        Ok(Chosen { counted: Some(choice), ..backend.into() })
+    }
+
+    /// Loads the index from the file, or builds it with the threads of a pool if the file has none that fits.
+    pub(crate) fn prepare(
+        &self,
+        streams: &Streams,
+        pool: &ThreadPool,
+        chosen: impl Into<Chosen>,
+    ) -> anyhow::Result<PreparedIndex> {
+        self.load_or_build(streams, pool, chosen.into()).with_context(|| self.name.clone())
+    }
+
+    fn load_or_build(&self, streams: &Streams, pool: &ThreadPool, chosen: Chosen) -> anyhow::Result<PreparedIndex> {
+        let Chosen { backend, counted, kdop_directions, p2m } = chosen;
+        let soup = Arc::clone(&self.scene.soup);
+        let may_be_saved = p2m == P2mSettings::default();
+        let saved = self.saved.as_ref().filter(|reader| may_be_saved && backend.is_in(reader, kdop_directions));
+        if let Some(reader) = saved {
+            let _progress = Progress::start(streams, "loading the index", None, Unit::None);
+            let built = pool.install(|| backend.load(soup, reader))?;
+            return Ok(PreparedIndex { backend, built, is_loaded: true, stages: Stages::new(), reason: None });
+        }
+        let reason = counted.as_ref().and_then(|choice| choice.reason().map(str::to_owned));
+        let settings = BuildSettings::default().with_kdop_directions(kdop_directions).with_p2m(p2m);
+        let build = |settings: &BuildSettings<'_>| match counted {
+            Some(choice) => choice.build(settings),
+            None => backend.build(soup, settings),
         };
         let start = Instant::now();
         let times = StageTimes::new(move || start.elapsed());
@@ -182,12 +179,12 @@ impl SceneSource<'_> {
                 if StoppableWork::is_stopped() { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
             };
             let settings = settings.with_progress(&report).with_visit_octree(&visit);
-            pool.install(|| build(chosen, &settings))?
+            pool.install(|| build(&settings))?
         } else {
             let _progress = Progress::start(streams, "building the index", None, Unit::None);
-            pool.install(|| build(chosen, &settings))?
+            pool.install(|| build(&settings))?
         };
-        Ok(PreparedIndex { built, is_loaded: false, stages: times.finish(), reason })
+        Ok(PreparedIndex { backend, built, is_loaded: false, stages: times.finish(), reason })
     }
 }
 

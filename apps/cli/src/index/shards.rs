@@ -1,6 +1,6 @@
 //! Indexes in shards, as commands open and summarize them.
 
-use crate::answers::summary::{IndexSummary, SceneSummary};
+use crate::answers::summary::IndexSummary;
 use crate::io::input::SceneArgs;
 use crate::io::usage::usage;
 use p2m_core::PrimitiveId;
@@ -47,13 +47,14 @@ pub(crate) fn summarize(
     build_time: Duration,
 ) -> IndexSummary<'_> {
     let manifest = index.manifest();
-    let scene = SceneSummary { name, format: "p2m-shards", counts: manifest.counts(), skipped: &[] };
     IndexSummary {
-        scene,
+        name,
+        format: "p2m-shards",
+        counts: manifest.counts(),
+        skipped: &[],
         backend: &manifest.backend,
-        built: None,
+        prepared: None,
         is_loaded: true,
-        reason: None,
         read_time,
         build_time,
     }

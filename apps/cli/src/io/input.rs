@@ -19,6 +19,7 @@ use std::fs::{File, Metadata};
 use std::io::{self, BufRead, BufReader, Read};
 use std::path::{Path, PathBuf};
 use std::rc::Rc;
+use std::time::{Duration, Instant};
 
 /// The size of buffers for reading, in bytes.
 const BUFFER_BYTES: usize = 1 << 16;
@@ -78,6 +79,57 @@ impl SceneArgs {
     /// Returns the format of the scene.
     pub(crate) fn format(&self) -> anyhow::Result<FileFormat> {
         scene_format(&self.path, self.format, "--format")
+    }
+
+    /// Reads the scene.
+    pub(crate) fn read(&self, streams: &Streams, pool: &ThreadPool, format: FileFormat) -> anyhow::Result<SceneFile> {
+        SceneFile::read(streams, pool, &self.path, format, self.map)
+    }
+}
+
+/// A scene that was read from a file.
+pub(crate) struct SceneFile {
+    /// The name of the file in messages.
+    pub(crate) name: String,
+    pub(crate) format: FileFormat,
+    pub(crate) scene: Scene,
+    /// The reader of the index, if the file is a saved one.
+    pub(crate) saved: Option<Reader>,
+    /// The time that reading took.
+    pub(crate) read_time: Duration,
+}
+
+impl SceneFile {
+    /// Reads a scene, and the reader of the index of a saved one, which is mapped if `is_mapped` is set.
+    pub(crate) fn read(
+        streams: &Streams,
+        pool: &ThreadPool,
+        path: &Path,
+        format: FileFormat,
+        is_mapped: bool,
+    ) -> anyhow::Result<Self> {
+        let start = Instant::now();
+        let name = name(path);
+        // A file that is missing is an error of mapping it.
+        let is_no_file = is_standard(path) || (path.exists() && !path.is_file());
+        if is_mapped && (format != Format::P2m.into() || is_no_file || is_compressed(path)) {
+            return Err(usage("--map needs the file of a saved index, which is not compressed"));
+        }
+        let (scene, saved) = if format == Format::P2m.into() {
+            let load = |file: SavedFile| -> Result<_, LoadError> {
+                let reader = file.checked()?;
+                Ok((load_scene(reader)?, Some(reader.clone())))
+            };
+            let file =
+                if is_mapped { map(path) } else { SavedFile::read_with_length(open(streams, path)?, length(path)) };
+            file.and_then(load).with_context(|| name.clone())?
+        } else {
+            let read = |reader| p2m_formats::read_scene_from(reader, format, &name, companions_of(path));
+            let scene = pump(pool, open(streams, path)?, read)?;
+            print_notes(streams, path, scene.unit, scene.is_flat);
+            (scene, None)
+        };
+        Ok(Self { name, format, scene, saved, read_time: start.elapsed() })
     }
 }
 
@@ -152,30 +204,6 @@ pub(crate) fn or_option(error: &impl std::fmt::Display, option: &str) -> anyhow:
     anyhow!("{error}, or name the format with {option}")
 }
 
-/// Reads a scene. Of a saved index, which is mapped if `is_mapped` is set, it returns the reader of the index as well.
-pub(crate) fn read_scene_and_index(
-    streams: &Streams,
-    pool: &ThreadPool,
-    path: &Path,
-    format: FileFormat,
-    is_mapped: bool,
-) -> anyhow::Result<(Scene, Option<Reader>)> {
-    // A file that is missing is an error of mapping it.
-    let is_no_file = is_standard(path) || (path.exists() && !path.is_file());
-    if is_mapped && (format != Format::P2m.into() || is_no_file || is_compressed(path)) {
-        return Err(usage("--map needs the file of a saved index, which is not compressed"));
-    }
-    if format != Format::P2m.into() {
-        return Ok((read_plain_scene(streams, pool, path, format)?, None));
-    }
-    let load = |file: SavedFile| -> Result<_, LoadError> {
-        let reader = file.checked()?;
-        Ok((load_scene(reader)?, Some(reader.clone())))
-    };
-    let file = if is_mapped { map(path) } else { SavedFile::read_with_length(open(streams, path)?, length(path)) };
-    file.and_then(load).with_context(|| name(path))
-}
-
 /// Returns the length of a file in bytes, or 0 where it is not known, as for a pipe.
 fn length(path: &Path) -> u64 {
     path.metadata().ok().filter(Metadata::is_file).map_or(0, |metadata| metadata.len())
@@ -188,25 +216,6 @@ fn map(path: &Path) -> Result<SavedFile, LoadError> {
     unsafe {
         SavedFile::map(path)
     }
-}
-
-/// Reads a scene.
-pub(crate) fn read_scene(
-    streams: &Streams,
-    pool: &ThreadPool,
-    args: &SceneArgs,
-    format: FileFormat,
-) -> anyhow::Result<Scene> {
-    Ok(read_scene_and_index(streams, pool, &args.path, format, args.map)?.0)
-}
-
-/// Reads a scene from a file without an index.
-fn read_plain_scene(streams: &Streams, pool: &ThreadPool, path: &Path, format: FileFormat) -> anyhow::Result<Scene> {
-    let reader = open(streams, path)?;
-    let read = |reader| p2m_formats::read_scene_from(reader, format, &name(path), companions_of(path));
-    let scene = pump(pool, reader, read)?;
-    print_notes(streams, path, scene.unit, scene.is_flat);
-    Ok(scene)
 }
 
 /// Returns the place where a file may have companions.
@@ -309,7 +318,8 @@ fn open<'a>(streams: &'a Streams, path: &Path) -> anyhow::Result<Box<dyn BufRead
         return Ok(Box::new(raw));
     }
     let compressed = Rc::new(Cell::new(0));
-    let raw = Counted { reader: raw, count: Rc::clone(&compressed) };
+    let count = Rc::clone(&compressed);
+    let raw = Counted { reader: raw, add: move |bytes| count.set(count.get() + bytes) };
     let decoder: Box<dyn Read + 'a> =
         if is_gzip { Box::new(MultiGzDecoder::new(raw)) } else { Box::new(ZstdReader::new(raw)) };
     let decompressed = Decompressed::new(decoder, streams.limits(), compressed);
@@ -342,12 +352,15 @@ pub(crate) fn is_plain_file(path: &Path) -> bool {
 const GZIP_MAGIC: [u8; 3] = [0x1f, 0x8b, 8];
 
 /// Opens a file and shows the progress of reading.
-fn open_raw<'a>(streams: &'a Streams, path: &Path) -> anyhow::Result<ProgressReader<'a>> {
+fn open_raw<'a>(streams: &'a Streams, path: &Path) -> anyhow::Result<Box<dyn BufRead + 'a>> {
     let name = name(path);
-    let what = format!("reading {name}");
+    let with_progress = |source: Box<dyn Read + 'a>, total| -> Box<dyn BufRead + 'a> {
+        let progress = Progress::start(streams, &format!("reading {name}"), total, Unit::Bytes);
+        let reader = BufReader::with_capacity(BUFFER_BYTES, source);
+        Box::new(Counted { reader, add: move |bytes| progress.add(bytes) })
+    };
     if is_standard(path) {
-        let reader = Box::new(BufReader::with_capacity(BUFFER_BYTES, streams.stdin()));
-        return Ok(ProgressReader { reader, progress: Progress::start(streams, &what, None, Unit::Bytes) });
+        return Ok(with_progress(Box::new(streams.stdin()), None));
     }
     let cannot_read = || format!("{name}: cannot be read");
     let file = File::open(path).with_context(cannot_read)?;
@@ -358,31 +371,5 @@ fn open_raw<'a>(streams: &'a Streams, path: &Path) -> anyhow::Result<ProgressRea
     }
     // A pipe has no length.
     let total = metadata.is_file().then_some(metadata.len());
-    let reader = Box::new(BufReader::with_capacity(BUFFER_BYTES, file));
-    Ok(ProgressReader { reader, progress: Progress::start(streams, &what, total, Unit::Bytes) })
-}
-
-/// A reader that shows its progress.
-struct ProgressReader<'a> {
-    reader: Box<dyn BufRead + 'a>,
-    progress: Progress,
-}
-
-impl Read for ProgressReader<'_> {
-    fn read(&mut self, buffer: &mut [u8]) -> io::Result<usize> {
-        let count = self.reader.read(buffer)?;
-        self.progress.add(count as u64);
-        Ok(count)
-    }
-}
-
-impl BufRead for ProgressReader<'_> {
-    fn fill_buf(&mut self) -> io::Result<&[u8]> {
-        self.reader.fill_buf()
-    }
-
-    fn consume(&mut self, count: usize) {
-        self.progress.add(count as u64);
-        self.reader.consume(count);
-    }
+    Ok(with_progress(Box::new(file), total))
 }

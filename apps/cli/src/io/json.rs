@@ -26,6 +26,11 @@ pub(crate) fn print(streams: &Streams, report: &Value) -> anyhow::Result<()> {
     write().context("the standard output: cannot be written")
 }
 
+/// Writes the report of a command, which is one object of several parts, to the standard output.
+pub(crate) fn print_report<const N: usize>(streams: &Streams, command: &str, parts: [Value; N]) -> anyhow::Result<()> {
+    print(streams, &joined([json!({ "p2m": command, "version": VERSION }), joined(parts)]))
+}
+
 /// Merges several objects into one.
 pub(crate) fn joined<const N: usize>(parts: [Value; N]) -> Value {
     let mut all = serde_json::Map::new();

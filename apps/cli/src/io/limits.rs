@@ -68,27 +68,27 @@ pub(crate) fn too_large(what: &str, raise: &str) -> io::Error {
     io::Error::new(io::ErrorKind::FileTooLarge, format!("{what} (--read-limit {raise}=.. raises the limit)"))
 }
 
-/// A reader of compressed bytes that counts them.
-pub(crate) struct Counted<R> {
+/// A reader that passes the numbers of bytes that are read to a function.
+pub(crate) struct Counted<R, F> {
     pub(crate) reader: R,
-    pub(crate) count: Rc<Cell<u64>>,
+    pub(crate) add: F,
 }
 
-impl<R: io::BufRead> Read for Counted<R> {
+impl<R: io::BufRead, F: Fn(u64)> Read for Counted<R, F> {
     fn read(&mut self, buffer: &mut [u8]) -> io::Result<usize> {
         let count = self.reader.read(buffer)?;
-        self.count.set(self.count.get() + count as u64);
+        (self.add)(count as u64);
         Ok(count)
     }
 }
 
-impl<R: io::BufRead> io::BufRead for Counted<R> {
+impl<R: io::BufRead, F: Fn(u64)> io::BufRead for Counted<R, F> {
     fn fill_buf(&mut self) -> io::Result<&[u8]> {
         self.reader.fill_buf()
     }
 
     fn consume(&mut self, count: usize) {
-        self.count.set(self.count.get() + count as u64);
+        (self.add)(count as u64);
         self.reader.consume(count);
     }
 }

@@ -1,7 +1,7 @@
 //! `p2m advise`: recommends a backend for a scene and its queries.
 
 use crate::answers::queries::{BOX_SCALE, Queries, Region};
-use crate::io::input::{PointArgs, SceneArgs, read_finite_points, read_scene};
+use crate::io::input::{PointArgs, SceneArgs, read_finite_points};
 use crate::io::json;
 use crate::io::output::Output;
 use crate::io::streams::Streams;
@@ -66,7 +66,7 @@ pub(crate) struct Args {
 pub(crate) fn run(streams: &Streams, args: &Args) -> anyhow::Result<()> {
     let format = args.scene.format()?;
     let pool = args.threads.pool()?;
-    let scene = read_scene(streams, &pool, &args.scene, format)?;
+    let scene = args.scene.read(streams, &pool, format)?.scene;
     let points = read_finite_points(streams, &args.points)?;
     // These are the points by which `query` chooses.
     let sample = match &points {

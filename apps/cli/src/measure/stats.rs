@@ -1,10 +1,10 @@
 //! `p2m stats`: the parts of an index and the costs of its queries, in counts that do not depend on the machine.
 
 use crate::answers::queries::{Queries, Region};
-use crate::answers::summary::{IndexSummary, SceneSummary};
+use crate::answers::summary::IndexSummary;
 use crate::index::args::IndexArgs;
-use crate::index::backend::{PreparedIndex, SceneSource, Stages};
-use crate::io::input::{read_scene_and_index, shown};
+use crate::index::backend::PreparedIndex;
+use crate::io::input::shown;
 use crate::io::json;
 use crate::io::output::Output;
 use crate::io::progress::{Progress, Unit};
@@ -21,7 +21,7 @@ use p2m_core::engine::parallel;
 use p2m_core::{ListStats, PrimitiveSet, QueryCost, RayQuery, Soup, Stat, StatsCollector};
 use p2m_mixed::statistics::figure::{Count, Time};
 use serde_json::{Value, json};
-use std::fmt::{self, Write as _};
+use std::fmt;
 use std::path::{Path, PathBuf};
 use std::time::Instant;
 
@@ -86,60 +86,48 @@ pub(crate) fn run(streams: &Streams, args: &Args) -> anyhow::Result<()> {
     }
     let format = scene_args.format()?;
     let pool = args.index_args.threads.pool()?;
-    let start = Instant::now();
-    let (scene, saved) = read_scene_and_index(streams, &pool, &scene_args.path, format, scene_args.map)?;
-    let read_time = start.elapsed();
+    let file = scene_args.read(streams, &pool, format)?;
     let picture = args.out.as_ref().map(|out| Output::open(streams, Some(out))).transpose()?;
 
     let start = Instant::now();
-    let saved = saved.as_ref();
-    let (chosen, kdop_directions, p2m) = args.index_args.choice(saved, &scene.soup, streams, &pool)?;
-    let backend = chosen.backend();
-    let source = SceneSource { soup: &scene.soup, kdop_directions, p2m, saved };
-    let PreparedIndex { built, is_loaded, stages, reason } =
-        source.prepare(streams, chosen, &pool).with_context(|| scene_args.name())?;
-    let index = &*built.index;
+    let chosen = args.index_args.choice(streams, &pool, &file)?;
+    let prepared = file.prepare(streams, &pool, chosen)?;
+    let (soup, index) = (&*file.scene.soup, &*prepared.built.index);
     let build_time = start.elapsed();
 
     let progress = Progress::start(streams, "querying", None, Unit::None);
-    let region = Region::around(&scene.soup.aabb(), args.box_scale);
+    let region = Region::around(&soup.aabb(), args.box_scale);
     let random: Vec<_> = Queries::random(region, args.queries, args.seed).collect();
     let stats = IndexStats {
         lists: ListStats::from_index(index),
         in_box: QueryCost::measure(index, &random),
-        on_scene: QueryCost::measure(index, &centroid_sample(&scene.soup, args.queries)),
+        on_scene: QueryCost::measure(index, &centroid_sample(soup, args.queries)),
         random_queries: random.len() as u64,
         memory: index.parts(),
-        stages,
-        primitives: scene.soup.len(),
-        is_loaded,
+        prepared: &prepared,
+        primitives: soup.len(),
     };
     if let Some(mut output) = picture {
-        let values: Vec<f64> = centroids(&scene.soup).map(|centroid| query_cost(index, &centroid)).collect();
+        let values: Vec<f64> = centroids(soup).map(|centroid| query_cost(index, &centroid)).collect();
         if args.out.as_ref().is_some_and(|out| has_extension(out, "ply")) {
-            write_values_ply(&scene.soup, &values, &mut output).with_context(|| output.cannot_write())?;
+            write_values_ply(soup, &values, &mut output).with_context(|| output.cannot_write())?;
         } else {
-            args.draw(&scene.soup, &values, &mut output)?;
+            args.draw(soup, &values, &mut output)?;
         }
         output.finish()?;
     }
     drop(progress);
 
-    let (summary, backend) = (SceneSummary::new(scene_args.name(), format, &scene), backend.name);
-    let index = IndexSummary { scene: summary, backend, built: Some(&built), is_loaded, reason, read_time, build_time };
+    let index = IndexSummary::new(&file, prepared.backend.name, Some(&prepared), build_time);
     if args.json {
         let end = json!({
             "cells": index.cells(),
-            "seconds": { "read": read_time.as_secs_f64(), "build": build_time.as_secs_f64() },
+            "seconds": { "read": file.read_time.as_secs_f64(), "build": build_time.as_secs_f64() },
             "out": args.out.as_ref().map(|out| json!({ "file": shown(out) })),
         });
-        return json::print(streams, &json::joined([index.json("stats"), stats.json(), end]));
+        return json::print_report(streams, "stats", [index.json(), stats.json(), end]);
     }
-    let mut text = String::new();
-    // Writing to a string does not fail.
-    let _ = index.write(&mut text, None);
-    let _ = write!(text, "{stats}");
-    Output::print(streams, text)
+    Output::print(streams, format!("{}{stats}", index.text(None)))
 }
 
 fn has_extension(path: &Path, extension: &str) -> bool {
@@ -208,7 +196,7 @@ fn query_cost(index: &dyn AnyIndex, centroid: &Point3<f64>) -> f64 {
 }
 
 /// The statistics of an index and of the costs of its queries.
-struct IndexStats {
+struct IndexStats<'a> {
     lists: Option<ListStats>,
     in_box: QueryCost,
     on_scene: QueryCost,
@@ -216,12 +204,11 @@ struct IndexStats {
     random_queries: u64,
     /// The names of the parts of the index, and their bytes.
     memory: Vec<(&'static str, usize)>,
-    stages: Stages,
+    prepared: &'a PreparedIndex,
     primitives: usize,
-    is_loaded: bool,
 }
 
-impl IndexStats {
+impl IndexStats<'_> {
     fn json(&self) -> Value {
         let stat = |stat: &Stat| json!({ "mean": stat.mean, "max": stat.max });
         let query_cost = |cost: &QueryCost| {
@@ -245,8 +232,12 @@ impl IndexStats {
         });
         let memory: serde_json::Map<_, _> =
             self.memory.iter().map(|(name, n)| ((*name).to_owned(), json!(n))).collect();
-        let stages: serde_json::Map<_, _> =
-            self.stages.iter().map(|(stage, time)| (stage.name().to_owned(), json!(time.as_secs_f64()))).collect();
+        let stages: serde_json::Map<_, _> = self
+            .prepared
+            .stages
+            .iter()
+            .map(|(stage, time)| (stage.name().to_owned(), json!(time.as_secs_f64())))
+            .collect();
         json!({
             "lists": lists,
             "queries": self.random_queries,
@@ -258,7 +249,7 @@ impl IndexStats {
     }
 }
 
-impl fmt::Display for IndexStats {
+impl fmt::Display for IndexStats<'_> {
     #[allow(clippy::cast_precision_loss, reason = "bytes for people to read")]
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         if let Some(lists) = &self.lists {
@@ -284,12 +275,12 @@ impl fmt::Display for IndexStats {
                 nodes.mean, packets.mean, primitives.mean, nodes.max, packets.max, primitives.max
             )?;
         }
-        if !self.stages.is_empty() {
+        if !self.prepared.stages.is_empty() {
             let stages: Vec<String> =
-                self.stages.iter().map(|(stage, time)| format!("{} {}", stage.name(), Time(*time))).collect();
+                self.prepared.stages.iter().map(|(stage, time)| format!("{} {}", stage.name(), Time(*time))).collect();
             writeln!(f, "stages   {}", stages.join(", "))?;
         }
-        if self.is_loaded {
+        if self.prepared.is_loaded {
             return writeln!(f, "memory   that of the file");
         }
         let total: usize = self.memory.iter().map(|part| part.1).sum();

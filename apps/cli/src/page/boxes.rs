@@ -1,7 +1,7 @@
 //! `p2m boxes`: draws the boxes of the AABB tree, or the polytopes of the k-DOP tree, level by level.
 
 use crate::index::kdop_directions::KdopFaces;
-use crate::io::input::{SceneArgs, read_scene, shown};
+use crate::io::input::{SceneArgs, shown};
 use crate::io::json;
 use crate::io::output::Output;
 use crate::io::progress::{Progress, Unit};
@@ -78,7 +78,7 @@ pub(crate) fn run(streams: &Streams, args: &Args) -> anyhow::Result<()> {
     Output::refuse_inputs(&args.out, &[&args.scene.path])?;
     let format = args.scene.format()?;
     let pool = args.threads.pool()?;
-    let scene = read_scene(streams, &pool, &args.scene, format)?;
+    let scene = args.scene.read(streams, &pool, format)?.scene;
     let progress = Progress::start(streams, "building", None, Unit::None);
     let levels = usize::from(args.levels);
     let drawn = pool.install(|| match args.k {
@@ -106,15 +106,13 @@ pub(crate) fn run(streams: &Streams, args: &Args) -> anyhow::Result<()> {
     if args.json {
         let panels: Vec<_> = drawn.iter().map(|d| json!({"level": d.level, "boxes": d.boxes})).collect();
         let report = json!({
-            "p2m": "boxes",
-            "version": json::VERSION,
             "scene": { "file": args.scene.name(), "format": format.name() },
             "out": { "file": shown(&args.out) },
             "faces": directions.as_ref().map(|directions| directions.faces),
             "directions_reason": reason,
             "panels": panels,
         });
-        return json::print(streams, &report);
+        return json::print_report(streams, "boxes", [report]);
     }
     panels.iter().for_each(|panel| streams.print_summary(format_args!("{}\n", panel.title)));
     if let Some(reason) = reason {

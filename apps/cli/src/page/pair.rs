@@ -30,7 +30,7 @@ pub(crate) struct PairPageArgs {
 /// The content of a page about two scenes.
 pub(crate) struct PairPage<'a> {
     pub(crate) paths: [&'a Path; 2],
-    pub(crate) scenes: &'a [Scene; 2],
+    pub(crate) scenes: [&'a Scene; 2],
     /// The motion of the second scene, if it is not in its place yet.
     pub(crate) motion: Option<&'a Isometry3<f64>>,
     pub(crate) title: &'static str,
@@ -87,7 +87,7 @@ impl PairPageArgs {
 }
 
 /// Returns a scene of two, each of which is an object.
-fn joined(names: &[String; 2], scenes: &[Scene; 2], motion: Option<&Isometry3<f64>>) -> anyhow::Result<Scene> {
+fn joined(names: &[String; 2], scenes: [&Scene; 2], motion: Option<&Isometry3<f64>>) -> anyhow::Result<Scene> {
     let (mut positions, mut elements, mut objects) = (Vec::new(), Vec::new(), Vec::new());
     let motion = motion.map(Motion::new);
     for (k, (name, scene)) in names.iter().zip(scenes).enumerate() {

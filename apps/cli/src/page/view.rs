@@ -1,11 +1,9 @@
 //! `p2m view`: a page that shows a scene, its answers, its field and the boxes of its tree in a browser.
 
 use crate::answers::queries::{Queries, Region};
-use crate::index::backend::{Backend, SceneSource, backends, saved_or_default};
+use crate::index::backend::{Backend, backends};
 use crate::index::sign_rule::{SignRule, SignedIndex};
-use crate::io::input::{
-    PointArgs, SceneArgs, is_standard, ray_format, read_finite_points, read_rays, read_scene_and_index,
-};
+use crate::io::input::{PointArgs, SceneArgs, is_standard, ray_format, read_finite_points, read_rays};
 use crate::io::output::Output;
 use crate::io::progress::{Progress, Unit};
 use crate::io::streams::Streams;
@@ -17,7 +15,7 @@ use crate::page::tree_levels::TreeLevels;
 use crate::scene::info::counted;
 use anyhow::{Context, bail};
 use nalgebra::Point3;
-use p2m_backends::{AnyIndex, P2mSettings};
+use p2m_backends::AnyIndex;
 use p2m_bvh::{AabbTree, PacketTree};
 use p2m_core::engine::parallel;
 use p2m_core::{Aabb, Closest, PrimitiveSet, QueryOptions, Ray};
@@ -141,7 +139,8 @@ pub(crate) fn run(streams: &Streams, args: &Args) -> anyhow::Result<()> {
     args.check(&out)?;
     let format = args.scene.format()?;
     let pool = args.threads.pool()?;
-    let (scene, saved) = read_scene_and_index(streams, &pool, &args.scene.path, format, args.scene.map)?;
+    let file = args.scene.read(streams, &pool, format)?;
+    let scene = &file.scene;
     let bounds = scene.soup.aabb();
     let queries = args.queries(streams, &bounds)?;
     let grid = args.grid(&bounds)?;
@@ -152,10 +151,8 @@ pub(crate) fn run(streams: &Streams, args: &Args) -> anyhow::Result<()> {
     }
     let output = Output::open(streams, Some(&out))?;
 
-    let saved = saved.as_ref();
-    let backend = args.backend.unwrap_or_else(|| saved_or_default(saved));
-    let source = SceneSource { soup: &scene.soup, kdop_directions: None, p2m: P2mSettings::default(), saved };
-    let index = source.prepare(streams, backend, &pool).with_context(|| args.scene.name())?.built.index;
+    let backend = args.backend.unwrap_or_else(|| file.backend());
+    let index = file.prepare(streams, &pool, backend)?.built.index;
     if args.lists.is_some() && index.list_lengths().is_empty() {
         return Err(usage(format!("--lists needs an index with lists: {} has none", backend.name)));
     }
@@ -164,7 +161,7 @@ pub(crate) fn run(streams: &Streams, args: &Args) -> anyhow::Result<()> {
     let rule = signed.as_ref().map(|signed| signed.rule().name());
     let source = PageSource { streams, args, pool: &pool, backend, index: &*index, signed: signed.as_ref() };
     let hits = rays.map(|rays| source.hits(&rays)).transpose()?;
-    let mut view = source.view(&scene, queries.as_deref(), grid.as_ref(), hits.as_deref())?;
+    let mut view = source.view(scene, queries.as_deref(), grid.as_ref(), hits.as_deref())?;
     view.about = about(&format!("scene {}", args.scene.name()), backend.name, rule);
     let page = view.html()?;
     output.finish_with(&page)?;

@@ -1,22 +1,17 @@
 //! The answers of `p2m query`: closest points of any source, written as a table.
 
-use crate::answers::blocks::{BlockSize, QueryStream, Steps, answer_all};
+use crate::answers::blocks::{BlockSize, QueryStream, Steps};
 use crate::answers::queries::Queries;
-use crate::answers::summary::{AnswerSummary, IndexSummary, RunSummary};
-use crate::answers::table::{AnswerEncoder, AnswerFormat, AnswerRecord, Table};
-use crate::index::shards::{loads_line, shards_json};
+use crate::answers::run::AnswerRun;
+use crate::answers::summary::AnswerSummary;
+use crate::answers::table::{AnswerEncoder, AnswerRecord};
 use crate::index::sign_rule::SignReport;
 use crate::io::json;
-use crate::io::output::Output;
-use crate::io::streams::Streams;
 use crate::query::args::Args;
 use nalgebra::Point3;
 use p2m_core::{Closest, Soup};
-use p2m_mixed::{Object, PointIds};
-use p2m_shards::ShardedIndex;
-use rayon::ThreadPool;
+use p2m_mixed::PointIds;
 use serde_json::json;
-use std::time::Duration;
 
 /// The closest primitive, if there is one, and the distance with a sign, which is NaN where no signs are asked for.
 pub(crate) type ClosestAnswer = (Option<Closest<f64>>, f64);
@@ -33,66 +28,35 @@ pub(crate) trait Source: Sync {
     fn near(&self, queries: &[Point3<f64>]) -> anyhow::Result<Vec<Vec<Closest<f64>>>>;
 }
 
-/// A run that answers queries.
+/// A run that answers points.
 pub(crate) struct Run<'a> {
-    pub(crate) streams: &'a Streams,
     pub(crate) args: &'a Args,
-    pub(crate) pool: &'a ThreadPool,
+    pub(crate) run: AnswerRun<'a>,
     pub(crate) queries: Queries,
     /// The ids of the queries, if they have them.
     pub(crate) ids: Option<PointIds>,
-    pub(crate) output: Output<'a>,
-    pub(crate) format: AnswerFormat,
-    pub(crate) objects: &'a [Object],
-    pub(crate) index: IndexSummary<'a>,
     /// What decides signs, if there are signs.
     pub(crate) signs: Option<SignReport>,
-    /// The shards, if the index is in shards.
-    pub(crate) shards: Option<&'a ShardedIndex>,
     /// The scene, unless the index is in shards.
     pub(crate) soup: Option<&'a Soup<f64>>,
 }
 
 impl Run<'_> {
     /// Answers all queries, writes their answers, and prints a summary.
-    pub(crate) fn finish(mut self, source: &impl Source) -> anyhow::Result<()> {
-        let (summary, query_time) = self.answer(source)?;
-        let Self { streams, args, pool, output, format, index, signs, shards, .. } = self;
-        let bytes = output.bytes();
-        output.finish()?;
-        let run = RunSummary { index, threads: pool.current_num_threads(), query_time };
-        if args.query_args.json {
-            let shards = shards.map(|index| json!({ "shards": shards_json(index, args.max_memory) }));
-            let signs = json!({ "sign_rule": signs.map(|signs| signs.rule), "inside": summary.inside() });
-            let report = json::joined([shards.unwrap_or_default(), args.report(&summary, &run.index.cells()), signs]);
-            return json::print(streams, &run.json("query", report, &args.query_args.output_json(format, bytes)));
-        }
-        let loads = shards.map_or_else(String::new, loads_line);
-        let signs = signs.map(|signs| signs.text()).unwrap_or_default();
-        streams
-            .print_summary(format_args!("{}{loads}{summary}{signs}", run.text("queries", "query", summary.queries())));
-        Ok(())
-    }
-
-    /// Answers all queries and writes their answers. Returns a summary, and the time that answering took.
-    fn answer<S: Source>(&mut self, source: &S) -> anyhow::Result<(AnswerSummary, Duration)> {
-        let cannot_write = self.output.cannot_write();
-        let failed = |error| anyhow::Error::new(error).context(cannot_write.clone());
-        let has_many = self.args.has_many_answers();
-        let (has_signs, only_inside) = (self.signs.is_some(), self.args.has_only_inside());
-        let ids = self.ids.take();
-        let columns = self.args.columns(self.format, self.objects, ids.is_some());
-        let encoder = AnswerEncoder::new(self.format, self.objects, columns).with_ids(ids);
-        let encoder = match self.soup {
+    pub(crate) fn finish<S: Source>(self, source: &S) -> anyhow::Result<()> {
+        let Self { args, mut run, queries, ids, signs, soup } = self;
+        let has_many = args.has_many_answers();
+        let (has_signs, only_inside) = (signs.is_some(), args.has_only_inside());
+        let columns = args.columns(run.format, run.objects, ids.is_some());
+        let encoder = AnswerEncoder::new(run.format, run.objects, columns).with_ids(ids);
+        let encoder = match soup {
             Some(soup) => encoder.with_normals(soup),
             None => encoder,
         };
+        let count = queries.len();
         // Only with one answer for each query it is known before how many there are.
-        let count = Some(self.queries.len()).filter(|_| !has_many);
-        let mut table = Table::new(&mut self.output, encoder.header(), count).map_err(failed)?;
-        let (count, iter) = (self.queries.len(), &mut self.queries);
-        let queries = QueryStream { name: "queries", count, iter, block_size: S::BLOCK_SIZE };
-        let write = |count, records: &[u8]| table.write(count, records).map_err(failed);
+        let file = (encoder.header(), Some(count).filter(|_| !has_many));
+        let queries = QueryStream { name: "queries", count, iter: queries, block_size: S::BLOCK_SIZE };
         let mut summary = AnswerSummary::default();
         let time = if has_many {
             let steps = Steps {
@@ -105,9 +69,8 @@ impl Run<'_> {
                     answers.len() as u64
                 },
                 take: |_: &_, answers: &Vec<_>| summary.add_all(answers),
-                write,
             };
-            answer_all(self.streams, self.pool, queries, steps)?
+            run.answer(queries, file, steps)?
         } else {
             let steps = Steps {
                 answer: |queries: &[_]| source.closest(queries),
@@ -120,11 +83,12 @@ impl Run<'_> {
                     let is_inside = has_signs.then_some(*signed_distance < 0.0);
                     if only_inside { summary.add_side(is_inside) } else { summary.add(answer.as_ref(), is_inside) }
                 },
-                write,
             };
-            answer_all(self.streams, self.pool, queries, steps)?
+            run.answer(queries, file, steps)?
         };
-        table.finish().map_err(failed)?;
-        Ok((summary, time))
+        let inside = json!({ "sign_rule": signs.map(|signs| signs.rule), "inside": summary.inside() });
+        let report = json::joined([args.report(&summary, &run.index.cells()), inside]);
+        let text = format!("{summary}{}", signs.map(|signs| signs.text()).unwrap_or_default());
+        run.finish(["query", "queries", "query"], summary.queries(), time, report, &text)
     }
 }

@@ -1,10 +1,10 @@
 //! `p2m field`: distances from a scene on a grid or an octree.
 
-use crate::answers::summary::{IndexSummary, SceneSummary};
+use crate::answers::summary::IndexSummary;
 use crate::index::args::IndexArgs;
-use crate::index::backend::{SceneSource, saved_or_default};
+use crate::index::backend::PreparedIndex;
 use crate::index::sign_rule::{SignReport, SignRule, SignedIndex};
-use crate::io::input::{is_standard, or_option, read_scene_and_index, shown};
+use crate::io::input::{SceneFile, is_standard, or_option, shown};
 use crate::io::json;
 use crate::io::output::Output;
 use crate::io::progress::{Progress, Unit};
@@ -15,7 +15,7 @@ use crate::query::field_summary::{ComputedField, FieldSummary};
 use crate::scene::convert::{Target, WrittenScene};
 use anyhow::{Context, anyhow};
 use nalgebra::Point3;
-use p2m_backends::{AnyIndex, P2mSettings};
+use p2m_backends::AnyIndex;
 use p2m_core::{Aabb, PrimitiveSet, Soup};
 use p2m_field::FieldFormat;
 use p2m_field::grid_candidates::{CandidateLists, MAX_COORDINATE};
@@ -112,77 +112,48 @@ pub(crate) fn run(streams: &Streams, args: &Args) -> anyhow::Result<()> {
     let target = args.iso.map(|_| Target::by_extension(streams, &args.out)).transpose()?;
     let format = scene_args.format()?;
     let pool = args.index_args.threads.pool()?;
-    let start = Instant::now();
-    let (scene, saved) = read_scene_and_index(streams, &pool, &scene_args.path, format, scene_args.map)?;
-    let read_time = start.elapsed();
-    let soup = &scene.soup;
-    let resolution = args.resolution as usize;
+    let file = scene_args.read(streams, &pool, format)?;
+    let soup = &file.scene.soup;
     let grid = match args.iso {
-        Some(distance) => offset_grid(&soup.aabb(), distance, resolution),
-        None => Grid::around(&soup.aabb(), resolution, args.box_scale),
+        Some(distance) => offset_grid(&soup.aabb(), distance, args.resolution as usize),
+        None => Grid::around(&soup.aabb(), args.resolution as usize, args.box_scale),
     };
-    let grid = grid.with_context(|| scene_args.name())?;
+    let grid = grid.with_context(|| file.name.clone())?;
     // The files are opened before the work, which would be lost if a name were wrong.
-    let mut output = target.is_none().then(|| Output::open(streams, Some(&args.out))).transpose()?;
+    let output = target.is_none().then(|| Output::open(streams, Some(&args.out))).transpose()?;
     let picture = args.slice.as_ref().map(|path| Output::open(streams, Some(path))).transpose()?;
 
     let start = Instant::now();
     let has_lists = args.index_args.is_unspecified() && args.refine.is_none();
     let lists = if has_lists { candidate_lists(streams, soup, &grid, &pool) } else { None };
-    let mut backend_name = LISTS_NAME;
-    let mut prepared = None;
-    if lists.is_none() || args.signed.is_some() || args.iso.is_some() {
-        let (chosen, kdop_directions, p2m) = match lists {
-            // With lists the index decides signs and moves vertices.
-            Some(_) => (saved_or_default(saved.as_ref()).into(), None, P2mSettings::default()),
-            // Cells are cut by single queries.
-            None if args.refine.is_some() => args.index_args.choice(saved.as_ref(), soup, streams, &pool)?,
-            None => args.index_args.choice_for(grid.len() as u64, saved.as_ref(), soup, streams, &pool)?,
-        };
-        let source = SceneSource { soup, kdop_directions, p2m, saved: saved.as_ref() };
-        if lists.is_none() {
-            backend_name = chosen.backend().name;
-        }
-        prepared = Some(source.prepare(streams, chosen, &pool).with_context(|| scene_args.name())?);
-    }
-    let is_loaded = prepared.as_ref().is_some_and(|prepared| prepared.is_loaded);
-    let reason = prepared.as_ref().and_then(|prepared| prepared.reason.clone());
-    let built = prepared.as_ref().map(|prepared| &prepared.built);
-    let index = match (built, args.signed) {
-        (Some(built), Some(rule)) => {
-            let signed = rule.prepare_signed(streams, &*built.index, soup).with_context(|| scene_args.name())?;
-            Some(FieldIndex::Signed(signed))
-        }
-        (Some(built), None) => Some(FieldIndex::Unsigned(&*built.index)),
-        (None, _) => None,
+    let prepared = args.prepare(streams, &pool, &file, &grid, lists.is_some())?;
+    let index = prepared.as_ref().map(|prepared| &*prepared.built.index);
+    let backend = match &prepared {
+        Some(prepared) if lists.is_none() => prepared.backend.name,
+        _ => LISTS_NAME,
     };
-    let source = DistanceSource { lists, index };
+    let signed = args.signed.zip(index).map(|(rule, index)| rule.prepare_signed(streams, index, soup)).transpose();
+    let source = DistanceSource { lists, index, signed: signed.with_context(|| file.name.clone())? };
     let build_time = start.elapsed();
 
     let start = Instant::now();
-    let progress = match args.refine {
-        Some(_) => Progress::start(streams, "cutting cells", None, Unit::None),
-        None => Progress::start(streams, "filling the grid", Some(grid.len() as u64), Unit::Items("points")),
-    };
-    let field = pool.install(|| args.compute(&source, &grid, &progress))?;
-    drop(progress);
+    let field = args.compute(streams, &pool, &source, &grid)?;
     let field_time = start.elapsed();
-    let mut bytes = 0;
-    if let Some(mut output) = output.take() {
+    let bytes = output.map_or(Ok(0), |mut output| -> anyhow::Result<u64> {
         match &field {
             ComputedField::Cells(cells) => write_cells(cells, &mut output),
             ComputedField::Grid(values) => write_field(&grid, values, out_format, &mut output),
         }
         .with_context(|| output.cannot_write())?;
-        bytes = output.bytes();
-        output.finish()?;
-    }
-    let surface = match (&target, &field, &source.index, args.iso) {
-        (Some(target), ComputedField::Grid(values), Some(index), Some(distance)) => {
+        let bytes = output.bytes();
+        output.finish().map(|()| bytes)
+    })?;
+    let surface = match (&target, &field, args.iso) {
+        (Some(target), ComputedField::Grid(values), Some(distance)) => {
             let _progress = Progress::start(streams, "making the surface", None, Unit::None);
-            let closest = |point: &Point3<f64>| index.closest(point);
-            let surface = pool.install(|| offset_surface(&grid, values, distance, &closest));
-            let surface = surface.with_context(|| scene_args.name())?;
+            let surface =
+                pool.install(|| offset_surface(&grid, values, distance, &|point: &Point3<f64>| source.closest(point)));
+            let surface = surface.with_context(|| file.name.clone())?;
             args.check_surface(streams, &grid, distance, &surface)?;
             Some(WrittenSurface::new(streams, target, &grid, distance, surface)?)
         }
@@ -192,39 +163,29 @@ pub(crate) fn run(streams: &Streams, args: &Args) -> anyhow::Result<()> {
         draw_slice(&grid, values, picture)?;
     }
 
-    let (summary, backend) = (SceneSummary::new(scene_args.name(), format, &scene), backend_name);
-    let index = IndexSummary { scene: summary, backend, built, is_loaded, reason, read_time, build_time };
-    let report = FieldSummary {
-        grid: &grid,
-        field: &field,
-        signs: source.index.as_ref().and_then(FieldIndex::signs),
-        threads: if args.refine.is_some() { 1 } else { pool.current_num_threads() },
-        field_time,
-    };
+    let index = IndexSummary::new(&file, backend, prepared.as_ref(), build_time);
+    let threads = if args.refine.is_some() { 1 } else { pool.current_num_threads() };
+    let signs = source.signed.as_ref().map(SignReport::new);
+    let report = FieldSummary { grid: &grid, field: &field, signs, threads, field_time };
     if args.json {
         let end = json!({
-            "seconds": {
-                "read": read_time.as_secs_f64(),
-                "build": build_time.as_secs_f64(),
-                "field": field_time.as_secs_f64(),
-            },
+            "seconds": index.seconds("field", field_time),
             "surface": surface.as_ref().map(WrittenSurface::json),
             "out": match &surface {
                 Some(surface) => surface.written.json(),
                 None => json!({ "file": shown(&args.out), "format": out_format.name(), "bytes": bytes }),
             },
         });
-        return json::print(streams, &json::joined([index.json("field"), report.json(), end]));
+        return json::print_report(streams, "field", [index.json(), report.json(), end]);
     }
-    let mut text = String::new();
+    let mut text = index.text(None);
     // Writing to a string does not fail.
-    let _ = index.write(&mut text, None);
     let _ = report.write(&mut text);
-    let end = match &surface {
+    text += &match &surface {
         Some(surface) => surface.text(),
         None => format!("written  {}, {bytes} bytes\n", args.out.display()),
     };
-    streams.print_summary(format_args!("{text}{end}"));
+    streams.print_summary(format_args!("{text}"));
     Ok(())
 }
 
@@ -362,30 +323,50 @@ impl Args {
         }
     }
 
-    /// Computes the distances.
-    fn compute(&self, source: &DistanceSource<'_>, grid: &Grid, progress: &Progress) -> anyhow::Result<ComputedField> {
-        if let Some(error) = self.refine {
-            let counts = grid.counts();
-            let bounds = Aabb { min: grid.origin(), max: grid.point(counts.map(|n| n - 1)) };
-            let closest = |point: &Point3<f64>| source.index.as_ref().and_then(|index| index.closest(point));
-            let distance = |point: &Point3<f64>| closest(point).map_or(f64::NAN, |found| found.0);
-            let cells = refined(&bounds, &distance, &RefineOptions::new(error).with_depth(self.depth));
-            return Ok(ComputedField::Cells(cells));
-        }
-        let mut options = FieldOptions::default();
-        if let Some(band) = self.band {
-            options = options.with_band(band);
-        }
-        let count = |points: usize| progress.add(points as u64);
-        let values = match (&source.lists, &source.index) {
-            (Some(lists), Some(FieldIndex::Signed(signed))) => {
-                signed_distances_by_lists(lists, signed, grid, &options, &count)?
-            }
-            (Some(lists), _) => distances_by_lists(lists, grid, &options, &count)?,
-            (None, Some(FieldIndex::Signed(signed))) => signed_distances(signed, grid, &options, &count)?,
-            (None, Some(FieldIndex::Unsigned(index))) => distances(*index, grid, &options, &count)?,
-            (None, None) => return Err(anyhow!("there are neither lists nor an index")),
+    /// Loads or builds the index that distances are computed by, or that decides signs and moves vertices beside lists.
+    fn prepare(
+        &self,
+        streams: &Streams,
+        pool: &ThreadPool,
+        file: &SceneFile,
+        grid: &Grid,
+        has_lists: bool,
+    ) -> anyhow::Result<Option<PreparedIndex>> {
+        let chosen = match has_lists {
+            true if self.signed.is_none() && self.iso.is_none() => return Ok(None),
+            true => file.backend().into(),
+            // Cells are cut by single queries.
+            false if self.refine.is_some() => self.index_args.choice(streams, pool, file)?,
+            false => self.index_args.choice_for(grid.len() as u64, streams, pool, file)?,
         };
+        file.prepare(streams, pool, chosen).map(Some)
+    }
+
+    /// Computes the distances.
+    fn compute(
+        &self,
+        streams: &Streams,
+        pool: &ThreadPool,
+        source: &DistanceSource<'_>,
+        grid: &Grid,
+    ) -> anyhow::Result<ComputedField> {
+        if let Some(error) = self.refine {
+            let _progress = Progress::start(streams, "cutting cells", None, Unit::None);
+            let bounds = Aabb { min: grid.origin(), max: grid.point(grid.counts().map(|n| n - 1)) };
+            let distance = |point: &Point3<f64>| source.closest(point).map_or(f64::NAN, |found| found.0);
+            let options = RefineOptions::new(error).with_depth(self.depth);
+            return Ok(ComputedField::Cells(pool.install(|| refined(&bounds, &distance, &options))));
+        }
+        let progress = Progress::start(streams, "filling the grid", Some(grid.len() as u64), Unit::Items("points"));
+        let options = self.band.map_or_else(FieldOptions::default, |band| FieldOptions::default().with_band(band));
+        let count = |points: usize| progress.add(points as u64);
+        let values = pool.install(|| match (&source.lists, &source.signed, source.index) {
+            (Some(lists), Some(signed), _) => signed_distances_by_lists(lists, signed, grid, &options, &count),
+            (Some(lists), None, _) => distances_by_lists(lists, grid, &options, &count),
+            (None, Some(signed), _) => signed_distances(signed, grid, &options, &count),
+            (None, None, Some(index)) => distances(index, grid, &options, &count),
+            (None, None, None) => unreachable!("without lists there is an index"),
+        })?;
         Ok(ComputedField::Grid(values))
     }
 }
@@ -412,10 +393,23 @@ fn error_of_vertices(surface: &OffsetSurface, grid: &Grid) -> String {
     }
 }
 
-/// The source of distances: lists or an index. An index beside lists decides signs.
+/// The source of distances: lists or an index. An index beside lists decides signs and moves vertices.
 struct DistanceSource<'a> {
     lists: Option<CandidateLists<'a, Soup<f64>>>,
-    index: Option<FieldIndex<'a>>,
+    index: Option<&'a dyn AnyIndex>,
+    signed: Option<SignedIndex<'a>>,
+}
+
+impl DistanceSource<'_> {
+    /// Returns the distance of a point by the index, signed if there are signs, and its closest point; none if the
+    /// distance is undefined.
+    fn closest(&self, point: &Point3<f64>) -> Option<(f64, Point3<f64>)> {
+        let Some(signed) = &self.signed else {
+            return self.index?.closest_point(point).map(|answer| (answer.distance, answer.point));
+        };
+        let answer = signed.closest_point(point)?;
+        Some((answer.distance()?, answer.closest.point))
+    }
 }
 
 /// The name of lists in reports, in place of that of a backend.
@@ -437,31 +431,4 @@ fn candidate_lists<'a>(
     let is_in_range = is_in_range(&grid.origin()) && is_in_range(&last);
     let _progress = Progress::start(streams, "sorting primitives", None, Unit::None);
     pool.install(|| CandidateLists::new(soup)).filter(|_| is_in_range)
-}
-
-/// An index with or without signs.
-enum FieldIndex<'a> {
-    Unsigned(&'a dyn AnyIndex),
-    Signed(SignedIndex<'a>),
-}
-
-impl FieldIndex<'_> {
-    /// What decides signs.
-    fn signs(&self) -> Option<SignReport> {
-        match self {
-            Self::Unsigned(_) => None,
-            Self::Signed(signed) => Some(SignReport::new(signed)),
-        }
-    }
-
-    /// The distance of a point, signed if there are signs, and its closest point; none if the distance is undefined.
-    fn closest(&self, point: &Point3<f64>) -> Option<(f64, Point3<f64>)> {
-        match self {
-            Self::Unsigned(index) => index.closest_point(point).map(|answer| (answer.distance, answer.point)),
-            Self::Signed(signed) => {
-                let answer = signed.closest_point(point)?;
-                Some((answer.distance()?, answer.closest.point))
-            }
-        }
-    }
 }

@@ -12,12 +12,10 @@ pub(crate) mod sample;
 pub(crate) use args::Args;
 
 use crate::answers::blocks::{BlockSize, answer_each};
-use crate::answers::summary::{IndexSummary, SceneSummary};
-use crate::index::backend::{BackendChoice, Chosen, PreparedIndex, SceneSource, saved_or_default};
-use crate::index::kdop_directions::requested;
+use crate::answers::run::AnswerRun;
+use crate::answers::summary::IndexSummary;
 use crate::index::shards::{open, refuse_options_of_builds, shard_folder, summarize};
 use crate::index::sign_rule::{SignReport, SignRule, SignedIndex};
-use crate::io::input::read_scene_and_index;
 use crate::io::output::Output;
 use crate::io::streams::Streams;
 use crate::io::usage::usage;
@@ -43,71 +41,58 @@ pub(crate) fn run(streams: &Streams, args: &Args) -> anyhow::Result<()> {
     args.check(out_format)?;
     let pool = query_args.threads.pool()?;
     let start = Instant::now();
-    let (scene, saved) = read_scene_and_index(streams, &pool, &scene_args.path, format, scene_args.map)?;
-    let PreparedQueries { queries, ids, sample } = queries(streams, args, &scene.soup.aabb())?;
-    let read_time = start.elapsed();
+    let mut file = scene_args.read(streams, &pool, format)?;
+    let PreparedQueries { queries, ids, sample } = queries(streams, args, &file.scene.soup.aabb())?;
+    file.read_time = start.elapsed();
     // The file is opened before the work, which would be lost if its name were wrong.
     let output = Output::open(streams, Some(&query_args.out))?;
+    let (soup, objects) = (&file.scene.soup, &*file.scene.objects);
+    let run = |index| AnswerRun {
+        streams,
+        args: query_args,
+        pool: &pool,
+        output,
+        format: out_format,
+        objects,
+        index,
+        shards: None,
+    };
 
     let start = Instant::now();
-    let (summary, objects) = (SceneSummary::new(scene_args.name(), format, &scene), &*scene.objects);
     #[cfg(feature = "cuda")]
     if args.device.is_some() {
-        let source = pool.install(|| card::CardScene::new(&scene.soup, args)).with_context(|| scene_args.name())?;
-        let (built, build_time) = (None, start.elapsed());
-        let index = IndexSummary {
-            scene: summary,
-            backend: "cuda",
-            built,
-            is_loaded: false,
-            reason: None,
-            read_time,
-            build_time,
-        };
-        let (soup, format, pool) = (Some(&*scene.soup), out_format, &pool);
-        let (signs, shards) = (None, None);
-        return Run { streams, args, pool, queries, ids, output, format, objects, index, signs, shards, soup }
-            .finish(&source);
+        let source = pool.install(|| card::CardScene::new(soup, args)).with_context(|| scene_args.name())?;
+        let run = run(IndexSummary::new(&file, "cuda", None, start.elapsed()));
+        return Run { args, run, queries, ids, signs: None, soup: Some(soup) }.finish(&source);
     }
-    let saved = saved.as_ref();
     let is_counted = !args.has_many_answers() && !args.has_only_inside() && args.accuracy.is_default();
     let chosen = match args.backend {
         // Only exact queries for one closest point are counted; others keep the tree.
-        None if !is_counted => saved_or_default(saved).into(),
+        None if !is_counted => file.backend().into(),
         backend => {
+            let max_bytes = args.max_memory.and_then(|bytes| usize::try_from(bytes).ok()).unwrap_or(usize::MAX);
             let workload = Workload::new(queries.len(), QueryRegion::Like(&sample))
                 .with_needs_index(args.signed.is_some())
                 .with_max_distance(args.max_distance.unwrap_or(f64::INFINITY))
-                .with_max_bytes(
-                    args.max_memory.map_or(usize::MAX, |bytes| usize::try_from(bytes).unwrap_or(usize::MAX)),
-                );
-            let chosen = BackendChoice::resolve(backend, saved, &scene.soup, &workload, streams, &pool);
-            chosen.with_context(|| scene_args.name())?
+                .with_max_bytes(max_bytes);
+            file.choose(streams, &pool, backend, &workload)?
         }
     };
-    if args.max_memory.is_some() && matches!(chosen, Chosen::Named(_)) {
+    if args.max_memory.is_some() && !chosen.is_counted() {
         return Err(usage(
             "--max-memory limits indexes in shards, which `p2m shard` writes, and those that auto chooses",
         ));
     }
-    let backend = chosen.backend();
-    let kdop_directions = requested(backend.has_kdop_directions, query_args.k)?;
-    let p2m = args.p2m.settings(backend.has_p2m_settings)?;
-    let source = SceneSource { soup: &scene.soup, kdop_directions, p2m, saved };
-    let PreparedIndex { built, is_loaded, reason, .. } =
-        source.prepare(streams, chosen, &pool).with_context(|| scene_args.name())?;
-    let index = &*built.index;
+    let prepared = file.prepare(streams, &pool, chosen.with_k(query_args.k)?.with_p2m(&args.p2m)?)?;
+    let index = &*prepared.built.index;
     let build_time = start.elapsed();
 
-    let signed = args.signed.map(|rule| rule.prepare_signed(streams, index, &scene.soup)).transpose();
+    let signed = args.signed.map(|rule| rule.prepare_signed(streams, index, soup)).transpose();
     let signed = signed.with_context(|| scene_args.name())?;
     let signs = signed.as_ref().map(SignReport::new);
     let source = WholeIndex { index, signed: signed.as_ref(), args };
-    let (backend, built) = (backend.name, Some(&built));
-    let index = IndexSummary { scene: summary, backend, built, is_loaded, reason, read_time, build_time };
-    let (soup, format) = (Some(&*scene.soup), out_format);
-    Run { streams, args, pool: &pool, queries, ids, output, format, objects, index, signs, shards: None, soup }
-        .finish(&source)
+    let run = run(IndexSummary::new(&file, prepared.backend.name, Some(&prepared), build_time));
+    Run { args, run, queries, ids, signs, soup: Some(soup) }.finish(&source)
 }
 
 /// Answers queries by an index in shards, which are loaded as queries need them.
@@ -134,12 +119,18 @@ fn run_in_shards(streams: &Streams, args: &Args, folder: &Path) -> anyhow::Resul
     let PreparedQueries { queries, ids, .. } = queries(streams, args, &index.bounds())?;
     let read_time = start.elapsed();
     let output = Output::open(streams, Some(&query_args.out))?;
-
     let (pool, objects) = (query_args.threads.pool()?, index.manifest().objects());
-    let (source, shards) = (Shards { index: &index, args }, Some(&index));
-    let (objects, index) = (&*objects, summarize(args.scene.name(), &index, read_time, build_time));
-    Run { streams, args, pool: &pool, queries, ids, output, format, objects, index, signs, shards, soup: None }
-        .finish(&source)
+    let run = AnswerRun {
+        streams,
+        args: query_args,
+        pool: &pool,
+        output,
+        format,
+        objects: &objects,
+        index: summarize(args.scene.name(), &index, read_time, build_time),
+        shards: Some((&index, args.max_memory)),
+    };
+    Run { args, run, queries, ids, signs, soup: None }.finish(&Shards { index: &index, args })
 }
 
 /// Refuses rules of signs that shards do not have: the surface decides theirs.

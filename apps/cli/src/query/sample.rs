@@ -1,8 +1,8 @@
 //! `p2m sample`: random points on and around a scene.
 
-use crate::index::backend::{BackendChoice, SceneSource, backend_choices};
+use crate::index::backend::{BackendChoice, backend_choices};
 use crate::index::sign_rule::SignRule;
-use crate::io::input::{SceneArgs, is_standard, read_scene_and_index, shown};
+use crate::io::input::{SceneArgs, is_standard, shown};
 use crate::io::json;
 use crate::io::output::Output;
 use crate::io::progress::{Progress, Unit};
@@ -11,7 +11,7 @@ use crate::io::threads::ThreadArgs;
 use crate::io::usage::{count, finite_not_negative, positive, usage};
 use anyhow::{Context, anyhow};
 use nalgebra::Point3;
-use p2m_backends::{P2mSettings, QueryRegion, Workload};
+use p2m_backends::{QueryRegion, Workload};
 use p2m_core::batch::BatchOptions;
 use p2m_core::{Aabb, PrimitiveSet, QueryOptions, npy_header};
 use p2m_field::sample::{SurfaceSampler, in_box};
@@ -117,10 +117,10 @@ pub(crate) fn run(streams: &Streams, args: &Args) -> anyhow::Result<()> {
     }
     let format = args.scene.format()?;
     let pool = args.threads.pool()?;
-    let (scene, saved) = read_scene_and_index(streams, &pool, &args.scene.path, format, args.scene.map)?;
+    let file = args.scene.read(streams, &pool, format)?;
     let output = Output::open(streams, Some(&args.out))?;
-    let sampler = SurfaceSampler::new(&*scene.soup).ok_or_else(|| {
-        anyhow!("{}: the scene is empty, or no area or length of it is finite and above 0", args.scene.name())
+    let sampler = SurfaceSampler::new(&*file.scene.soup).ok_or_else(|| {
+        anyhow!("{}: the scene is empty, or no area or length of it is finite and above 0", file.name)
     })?;
 
     let mut arrays: Vec<(&str, Array)> = Vec::new();
@@ -131,21 +131,18 @@ pub(crate) fn run(streams: &Streams, args: &Args) -> anyhow::Result<()> {
         arrays
             .push(("primitives", Array { kind: "'<i8'", shape: format!("({surface},)"), bytes: primitives.collect() }));
     } else {
-        let mut points = pool.install(|| points(args, &scene, &sampler, near, uniform));
+        let mut points = pool.install(|| points(args, &file.scene, &sampler, near, uniform));
         if args.f32 {
             #[allow(clippy::cast_possible_truncation, reason = "the user asked for it")]
             points.iter_mut().for_each(|point| *point = point.map(|x| f64::from(x as f32)));
         }
         let workload = Workload::new(points.len() as u64, QueryRegion::Like(&points)).with_needs_index(true);
-        let chosen = BackendChoice::resolve(args.backend, saved.as_ref(), &scene.soup, &workload, streams, &pool);
-        let chosen = chosen.with_context(|| args.scene.name())?;
-        let p2m = P2mSettings::default();
-        let source = SceneSource { soup: &scene.soup, kdop_directions: None, p2m, saved: saved.as_ref() };
-        let index = source.prepare(streams, chosen, &pool).with_context(|| args.scene.name())?.built.index;
-        let signed = args.sign.prepare(streams, &*index, &scene.soup);
-        let signed = signed.map_err(|error| anyhow!("{}: {error}", args.scene.name()))?;
+        let chosen = file.choose(streams, &pool, args.backend, &workload)?;
+        let index = file.prepare(streams, &pool, chosen)?.built.index;
+        let signed = args.sign.prepare(streams, &*index, &file.scene.soup);
+        let signed = signed.map_err(|error| anyhow!("{}: {error}", file.name))?;
         if let Some(note) = signed.note().filter(|_| args.sign == SignRule::Auto) {
-            streams.print_summary(format_args!("warning  {}: {note}\n", args.scene.name()));
+            streams.print_summary(format_args!("warning  {}: {note}\n", file.name));
         }
         let progress = Progress::start(streams, "computing distances", Some(points.len() as u64), Unit::None);
         let mut distances = vec![f64::NAN; points.len()];
@@ -164,16 +161,14 @@ pub(crate) fn run(streams: &Streams, args: &Args) -> anyhow::Result<()> {
     output.finish()?;
     if args.json {
         let report = json!({
-            "p2m": "sample",
-            "version": json::VERSION,
-            "scene": { "file": args.scene.name(), "format": format.name() },
+            "scene": { "file": file.name, "format": format.name() },
             "surface": surface,
             "near": near,
             "uniform": uniform,
             "seed": args.seed,
             "out": { "file": shown(&args.out), "format": "npz", "bytes": bytes },
         });
-        return json::print(streams, &report);
+        return json::print_report(streams, "sample", [report]);
     }
     let (total, bytes) = (Count(total as u64), Count(bytes));
     streams.print_summary(format_args!("written  {}: {total} samples, {bytes} bytes\n", shown(&args.out)));

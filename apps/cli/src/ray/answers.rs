@@ -1,20 +1,13 @@
 //! The loop that answers rays and writes their hits or counts, whichever index they are asked of.
 
-use crate::answers::blocks::{Steps, answer_all};
-use crate::answers::summary::{IndexSummary, RunSummary};
-use crate::answers::table::{AnswerFormat, HitEncoder, NumberEncoder, Table};
-use crate::index::shards::{loads_line, shards_json};
-use crate::io::json;
-use crate::io::output::Output;
-use crate::io::streams::Streams;
+use crate::answers::blocks::Steps;
+use crate::answers::run::AnswerRun;
+use crate::answers::table::{HitEncoder, NumberEncoder};
 use crate::ray::args::{Args, Mode, Rays};
 use crate::ray::summary::RaySummary;
 use p2m_core::engine::parallel;
 use p2m_core::{Hit, PrimitiveId, Ray, RayQuery};
-use p2m_mixed::Object;
 use p2m_shards::{ShardBatch, ShardError, ShardHit, ShardedIndex};
-use rayon::ThreadPool;
-use serde_json::json;
 use std::time::Duration;
 
 /// A source of hits: an index in memory or one in shards.
@@ -51,36 +44,17 @@ fn in_scene(hit: ShardHit) -> Hit {
 
 /// A run that answers rays.
 pub(crate) struct Run<'a> {
-    pub(crate) streams: &'a Streams,
     pub(crate) args: &'a Args,
-    pub(crate) pool: &'a ThreadPool,
+    pub(crate) run: AnswerRun<'a>,
     pub(crate) rays: Rays<'a>,
-    pub(crate) output: Output<'a>,
-    pub(crate) format: AnswerFormat,
-    pub(crate) objects: &'a [Object],
-    pub(crate) index: IndexSummary<'a>,
 }
 
 impl Run<'_> {
     /// Answers all rays, writes the answers, and prints a summary.
     pub(crate) fn finish(mut self, source: RaySource<'_>) -> anyhow::Result<()> {
         let (query_time, summary) = self.answer(source)?;
-        let Self { streams, args, pool, output, format, index, .. } = self;
-        let bytes = output.bytes();
-        output.finish()?;
-        let run = RunSummary { index, threads: pool.current_num_threads(), query_time };
-        let shards = match source {
-            RaySource::Whole(_) => None,
-            RaySource::Shards(index) => Some(index),
-        };
-        if args.query_args.json {
-            let shards = shards.map(|index| json!({ "shards": shards_json(index, args.max_memory) }));
-            let report = json::joined([shards.unwrap_or_default(), args.report(summary.json())]);
-            return json::print(streams, &run.json("ray", report, &args.query_args.output_json(format, bytes)));
-        }
-        let (text, loads) = (run.text("rays", "ray", summary.rays()), shards.map_or_else(String::new, loads_line));
-        streams.print_summary(format_args!("{text}{loads}{summary}"));
-        Ok(())
+        let report = self.args.report(summary.json());
+        self.run.finish(["ray", "rays", "ray"], summary.rays(), query_time, report, &summary.to_string())
     }
 
     /// Answers all rays and writes the answers. Returns the time that answering took, and a summary.
@@ -121,10 +95,7 @@ impl Run<'_> {
         mut summary: RaySummary,
         count: impl Fn(&[Ray]) -> anyhow::Result<Vec<u64>> + Sync,
     ) -> anyhow::Result<(Duration, RaySummary)> {
-        let cannot_write = self.output.cannot_write();
-        let failed = |error| anyhow::Error::new(error).context(cannot_write.clone());
-        let encoder = NumberEncoder::new(self.format, name);
-        let mut table = Table::new(&mut self.output, encoder.header(), Some(self.rays.count)).map_err(failed)?;
+        let encoder = NumberEncoder::new(self.run.format, name);
         let steps = Steps {
             answer: count,
             encode: |number, ray: &_, count: &u64, out: &mut _| {
@@ -132,11 +103,9 @@ impl Run<'_> {
                 1
             },
             take: |_: &_, count: &u64| summary.add(*count),
-            write: |count, records: &[u8]| table.write(count, records).map_err(failed),
         };
-        let time = answer_all(self.streams, self.pool, self.rays.by_ref(), steps)?;
-        table.finish().map_err(failed)?;
-        Ok((time, summary))
+        let file = (encoder.header(), Some(self.rays.count));
+        Ok((self.run.answer(self.rays.by_ref(), file, steps)?, summary))
     }
 
     /// Writes the hits of each ray, which `slice` takes from its answer. `records` is the number of records if each ray
@@ -148,10 +117,7 @@ impl Run<'_> {
         intersect: impl Fn(&[Ray]) -> anyhow::Result<Vec<A>> + Sync,
         slice: fn(&A) -> &[Hit],
     ) -> anyhow::Result<(Duration, RaySummary)> {
-        let cannot_write = self.output.cannot_write();
-        let failed = |error| anyhow::Error::new(error).context(cannot_write.clone());
-        let encoder = HitEncoder::new(self.format, self.objects);
-        let mut table = Table::new(&mut self.output, encoder.header(), records).map_err(failed)?;
+        let encoder = HitEncoder::new(self.run.format, self.run.objects);
         let steps = Steps {
             answer: intersect,
             encode: |number, ray: &_, answer: &A, out: &mut _| {
@@ -164,10 +130,8 @@ impl Run<'_> {
                 hits.len() as u64
             },
             take: |_: &_, answer: &A| summary.add_hits(slice(answer)),
-            write: |count, records: &[u8]| table.write(count, records).map_err(failed),
         };
-        let time = answer_all(self.streams, self.pool, self.rays.by_ref(), steps)?;
-        table.finish().map_err(failed)?;
-        Ok((time, summary))
+        let file = (encoder.header(), records);
+        Ok((self.run.answer(self.rays.by_ref(), file, steps)?, summary))
     }
 }

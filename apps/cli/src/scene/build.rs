@@ -1,9 +1,8 @@
 //! `p2m build`: saves an index in a file that other commands use.
 
-use crate::answers::summary::{IndexSummary, SceneSummary};
+use crate::answers::summary::IndexSummary;
 use crate::index::args::IndexArgs;
-use crate::index::backend::{PreparedIndex, SceneSource};
-use crate::io::input::{read_scene, shown};
+use crate::io::input::{is_standard, shown};
 use crate::io::json;
 use crate::io::output::Output;
 use crate::io::streams::Streams;
@@ -52,57 +51,46 @@ pub(crate) fn run(streams: &Streams, args: &Args) -> anyhow::Result<()> {
         return Err(usage(format!("--backend {backend} has no index to save")));
     }
     args.index_args.p2m.check_saveable()?;
-    if args.json && crate::io::input::is_standard(&args.out) {
+    if args.json && is_standard(&args.out) {
         return Err(usage("--json reports on the standard output, so the index has to go to a file"));
     }
     Output::refuse_inputs(&args.out, &[&scene_args.path])?;
     Output::refuse_terminal(streams, &args.out, Format::P2m.name())?;
     let format = scene_args.format()?;
     let pool = args.index_args.threads.pool()?;
-    let start = Instant::now();
-    let scene = read_scene(streams, &pool, scene_args, format)?;
-    let read_time = start.elapsed();
+    let mut file = scene_args.read(streams, &pool, format)?;
+    // The index of a saved file is built again.
+    file.saved = None;
     // The file is opened before the work, which would be lost if its name were wrong.
     let mut output = Output::open(streams, Some(&args.out))?;
 
     let start = Instant::now();
-    let (chosen, kdop_directions, p2m) = args.index_args.choice(None, &scene.soup, streams, &pool)?;
-    let backend = chosen.backend();
-    let source = SceneSource { soup: &scene.soup, kdop_directions, p2m, saved: None };
-    let PreparedIndex { built, is_loaded, reason, .. } =
-        source.prepare(streams, chosen, &pool).with_context(|| scene_args.name())?;
+    let chosen = args.index_args.choice(streams, &pool, &file)?;
+    let prepared = file.prepare(streams, &pool, chosen)?;
     let build_time = start.elapsed();
 
     let start = Instant::now();
     output = output.with_progress(streams);
     let mut writer = Writer::default();
-    save_scene(&scene, &mut writer);
-    built.save(&mut writer);
+    save_scene(&file.scene, &mut writer);
+    prepared.built.save(&mut writer);
     writer.write(&mut output).with_context(|| output.cannot_write())?;
     let bytes = output.bytes();
     output.finish()?;
     let write_time = start.elapsed();
 
-    let summary = SceneSummary::new(scene_args.name(), format, &scene);
-    let backend = backend.name;
-    let index = IndexSummary { scene: summary, backend, built: Some(&built), is_loaded, reason, read_time, build_time };
+    let index = IndexSummary::new(&file, prepared.backend.name, Some(&prepared), build_time);
     let out = shown(&args.out);
     if args.json {
         let end = json!({
             "threads": pool.current_num_threads(),
             "cells": index.cells(),
-            "seconds": {
-                "read": read_time.as_secs_f64(),
-                "build": build_time.as_secs_f64(),
-                "write": write_time.as_secs_f64(),
-            },
+            "seconds": index.seconds("write", write_time),
             "out": { "file": out, "bytes": bytes },
         });
-        return json::print(streams, &json::joined([index.json("build"), end]));
+        return json::print_report(streams, "build", [index.json(), end]);
     }
-    let mut text = String::new();
-    // Writing to a string does not fail.
-    let _ = index.write(&mut text, None);
-    streams.print_summary(format_args!("{text}written  {out}, {} bytes in {}\n", Count(bytes), Time(write_time)));
+    let (text, bytes, time) = (index.text(None), Count(bytes), Time(write_time));
+    streams.print_summary(format_args!("{text}written  {out}, {bytes} bytes in {time}\n"));
     Ok(())
 }

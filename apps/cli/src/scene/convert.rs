@@ -1,8 +1,7 @@
 //! `p2m convert`: converts scenes from one format to another, with changes on request.
 
-use crate::io::input::{
-    self, is_standard, lossless_list, or_option, read_scene_and_index, scene_format, scene_help, shown,
-};
+use crate::answers::summary::listed;
+use crate::io::input::{self, SceneFile, is_standard, lossless_list, or_option, scene_format, scene_help, shown};
 use crate::io::json;
 use crate::io::output::Output;
 use crate::io::streams::Streams;
@@ -16,6 +15,7 @@ use p2m_formats::FileFormat;
 use p2m_mixed::statistics::Counts;
 use p2m_mixed::statistics::figure::{Count, Figure};
 use p2m_mixed::{Format, Scene, WriteError, stl_rounding, write_scene};
+use serde::Serialize;
 use serde_json::{Value, json};
 use std::path::{Path, PathBuf};
 
@@ -70,7 +70,7 @@ pub(crate) fn run(streams: &Streams, args: &Args) -> anyhow::Result<()> {
     target.check_report(args.json)?;
     Output::refuse_inputs(&args.to_file, &[&args.from_file])?;
     let pool = ThreadArgs::default().pool()?;
-    let (read, saved) = read_scene_and_index(streams, &pool, &args.from_file, from, false)?;
+    let SceneFile { scene: read, saved, .. } = SceneFile::read(streams, &pool, &args.from_file, from, false)?;
     let has_index = saved.is_some_and(|reader| p2m_core::storage::kind(&reader).is_ok());
     let before = Counts::of(&read.soup);
     let polygons = count_cut_polygons(&read);
@@ -84,19 +84,16 @@ pub(crate) fn run(streams: &Streams, args: &Args) -> anyhow::Result<()> {
     }
     if args.json {
         let report = json!({
-            "p2m": "convert",
-            "version": json::VERSION,
             "in": { "file": input::name(&args.from_file), "format": from.name(), "primitives": json::counts(&before) },
             "changes": args.modifiers.json(),
             "out": written.json(),
             "skipped": json::skipped(&scene.skipped),
         });
-        return json::print(streams, &report);
+        return json::print_report(streams, "convert", [report]);
     }
     let mut text = format!("in       {} ({from}): {}\n", input::name(&args.from_file), counted(&before));
     if !scene.skipped.is_empty() {
-        let list: Vec<String> = scene.skipped.iter().map(ToString::to_string).collect();
-        text += &format!("skipped  {}\n", list.join(", "));
+        text += &format!("skipped  {}\n", listed(&scene.skipped));
     }
     text += &written.text();
     streams.print_summary(format_args!("{text}"));
@@ -202,14 +199,14 @@ impl WrittenScene {
             "bytes": self.bytes,
             "primitives": json::counts(&self.counts),
             "positions": self.positions,
-            "lost": self.losses.iter().map(Loss::json).collect::<Value>(),
+            "lost": self.losses,
         })
     }
 
     /// Adds that polygons were cut into triangles.
     fn add_cut_polygons(&mut self, count: u64) {
         if count > 0 {
-            self.losses.insert(0, Loss::Polygons(count));
+            self.losses.insert(0, Loss::Polygons { count });
         }
     }
 
@@ -229,47 +226,36 @@ impl WrittenScene {
     }
 }
 
-/// A property of the scene that its file does not have.
+/// A property of the scene that its file does not have. Reports have it as it is here.
+#[derive(Serialize)]
+#[serde(tag = "kind", rename_all = "snake_case")]
 enum Loss {
     /// The number of polygons that were cut into triangles.
-    Polygons(u64),
+    Polygons { count: u64 },
     /// The number of names.
-    Names(u64),
+    Names { count: u64 },
     /// The number of coordinates that were rounded to f32, and the largest change.
-    Rounding { count: u64, largest: f64 },
+    Precision { count: u64, largest: f64 },
     /// The number of positions that no primitive uses.
-    Unused(u64),
+    UnusedPositions { count: u64 },
     /// The vertices that triangles share.
-    Sharing,
+    SharedPositions,
     /// The index of a saved file.
     Index,
 }
 
 impl Loss {
-    fn json(&self) -> Value {
-        match *self {
-            Self::Polygons(count) => json!({ "kind": "polygons", "count": count }),
-            Self::Names(count) => json!({ "kind": "names", "count": count }),
-            Self::Rounding { count, largest } => {
-                json!({ "kind": "precision", "count": count, "largest": json::number(largest) })
-            }
-            Self::Unused(count) => json!({ "kind": "unused_positions", "count": count }),
-            Self::Sharing => json!({ "kind": "shared_positions" }),
-            Self::Index => json!({ "kind": "index" }),
-        }
-    }
-
     fn text(&self) -> String {
         match *self {
-            Self::Polygons(count) => {
+            Self::Polygons { count } => {
                 format!("polygons: {} are written as the triangles that they are cut into", Count(count))
             }
-            Self::Names(count) => format!("names of objects: {}", Count(count)),
-            Self::Rounding { count, largest } => {
+            Self::Names { count } => format!("names of objects: {}", Count(count)),
+            Self::Precision { count, largest } => {
                 format!("precision: coordinates rounded to f32: {}, by up to {}", Count(count), Figure(largest))
             }
-            Self::Unused(count) => format!("positions that belong to no primitive: {}", Count(count)),
-            Self::Sharing => "which corners are shared: each triangle has its own".to_owned(),
+            Self::UnusedPositions { count } => format!("positions that belong to no primitive: {}", Count(count)),
+            Self::SharedPositions => "which corners are shared: each triangle has its own".to_owned(),
             Self::Index => "the index of the saved file (p2m build makes another)".to_owned(),
         }
     }
@@ -282,21 +268,21 @@ fn losses(scene: &Scene, format: Format) -> Vec<Loss> {
         return losses;
     }
     if format != Format::Obj && !scene.objects.is_empty() {
-        losses.push(Loss::Names(scene.objects.len() as u64));
+        losses.push(Loss::Names { count: scene.objects.len() as u64 });
     }
     let unused = count_unused_positions(scene);
     let is_used_only = matches!(format, Format::Stl | Format::Xyz | Format::Csv);
     let is_lost = is_used_only || (format != Format::Ply && scene.soup.is_empty());
     if unused > 0 && is_lost {
-        losses.push(Loss::Unused(unused));
+        losses.push(Loss::UnusedPositions { count: unused });
     }
     if format == Format::Stl {
         let rounding = stl_rounding(scene);
         if rounding.count > 0 {
-            losses.push(Loss::Rounding { count: rounding.count, largest: rounding.largest });
+            losses.push(Loss::Precision { count: rounding.count, largest: rounding.largest });
         }
         if (scene.soup.positions().len() as u64 - unused) < 3 * scene.soup.triangles().len() as u64 {
-            losses.push(Loss::Sharing);
+            losses.push(Loss::SharedPositions);
         }
     }
     losses

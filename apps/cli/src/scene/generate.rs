@@ -37,13 +37,6 @@ Examples:
     )
 }
 
-impl Args {
-    /// The name of the kind of scene on the command line.
-    pub(crate) fn name(&self) -> &'static str {
-        self.kind.parts().0.name()
-    }
-}
-
 /// The file that the scene is written to, and the changes before that.
 #[derive(ClapArgs)]
 struct Destination {
@@ -282,14 +275,12 @@ pub(crate) fn run(streams: &Streams, args: &Args) -> anyhow::Result<()> {
     let written = target.write(streams, &scene)?;
     if destination.json {
         let report = json!({
-            "p2m": "generate",
-            "version": json::VERSION,
             "kind": kind.name(),
             "options": options,
             "changes": destination.modifiers.json(),
             "out": written.json(),
         });
-        return json::print(streams, &report);
+        return json::print_report(streams, "generate", [report]);
     }
     if !is_standard(&destination.out) {
         streams.print_summary(format_args!("made     {}\n{}", kind.description(), written.text()));

@@ -1,6 +1,6 @@
 //! `p2m info`: reports the content of a scene.
 
-use crate::io::input::{SceneArgs, read_scene_and_index};
+use crate::io::input::{SceneArgs, SceneFile};
 use crate::io::json;
 use crate::io::output::Output;
 use crate::io::progress::{Progress, Unit};
@@ -41,7 +41,7 @@ Examples:
 pub(crate) fn run(streams: &Streams, args: &Args) -> anyhow::Result<()> {
     let format = args.scene.format()?;
     let pool = ThreadArgs::default().pool()?;
-    let (scene, saved) = read_scene_and_index(streams, &pool, &args.scene.path, format, args.scene.map)?;
+    let SceneFile { scene, saved, .. } = args.scene.read(streams, &pool, format)?;
     let backend = saved.as_ref().and_then(BackendEntry::from_saved).unwrap_or_else(BackendEntry::default_backend);
     let build = SmallestBuild::new(backend, format);
     let index = saved.and_then(|reader| p2m_core::storage::kind(&reader).ok());

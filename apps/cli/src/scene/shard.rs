@@ -1,13 +1,14 @@
 //! `p2m shard`: writes scenes as an index in shards.
 
 use crate::index::backend::{Backend, backends};
-use crate::io::input::{self, read_scene_and_index};
+use crate::io::input::{self, SceneFile};
 use crate::io::interrupt::{Listed, unfinished};
 use crate::io::json;
 use crate::io::progress::{Progress, Unit};
 use crate::io::streams::Streams;
 use crate::io::threads::ThreadArgs;
 use crate::io::usage::{bytes, one_of};
+use crate::scene::info::counted;
 use p2m_backends::BackendEntry;
 use p2m_formats::FileFormat;
 use p2m_mixed::statistics::figure::{Count, Time};
@@ -75,13 +76,6 @@ pub(crate) struct Args {
     threads: ThreadArgs,
 }
 
-/// The times of a run.
-#[derive(Default)]
-struct Times {
-    read: Duration,
-    write: Duration,
-}
-
 pub(crate) fn run(streams: &Streams, args: &Args) -> anyhow::Result<()> {
     let format_of = |path: &PathBuf| input::scene_format(path, args.format, "--format");
     let formats: Vec<FileFormat> = args.scenes.iter().map(format_of).collect::<Result<_, _>>()?;
@@ -103,12 +97,11 @@ pub(crate) fn run(streams: &Streams, args: &Args) -> anyhow::Result<()> {
         let found = add(streams, &pool, &mut writer, path, format)?;
         skipped.extend(found.into_iter().map(|kind| (input::name(path), kind)));
     }
-    let mut times = Times { read: start.elapsed(), ..Times::default() };
+    let read_time = start.elapsed();
 
     let start = Instant::now();
     let index = finish(streams, args, writer, listed, &pool)?;
-    times.write = start.elapsed();
-    report(streams, args, &index, &skipped, &times)
+    report(streams, args, &index, &skipped, [read_time, start.elapsed()])
 }
 
 /// Adds the primitives of a file, and returns the records that were skipped. The file is read in pieces if that is
@@ -124,7 +117,7 @@ fn add(
         let _progress = Progress::start(streams, &format!("reading {}", input::name(path)), None, Unit::None);
         return Ok(pool.install(|| writer.add_file(path, &PieceOptions::default()))?.skipped);
     }
-    let (scene, _) = read_scene_and_index(streams, pool, path, format, false)?;
+    let scene = SceneFile::read(streams, pool, path, format, false)?.scene;
     writer.add_scene(&scene)?;
     Ok(scene.skipped)
 }
@@ -167,7 +160,7 @@ fn report(
     args: &Args,
     index: &ShardedIndex,
     skipped: &[(String, Skipped)],
-    times: &Times,
+    times: [Duration; 2],
 ) -> anyhow::Result<()> {
     let manifest = index.manifest();
     let lengths = || manifest.shards.iter().map(|shard| shard.bytes);
@@ -175,35 +168,25 @@ fn report(
     let scenes: Vec<String> = args.scenes.iter().map(|path| input::name(path)).collect();
     if args.json {
         let skip = |(file, kind): &(String, Skipped)| json!({ "file": file, "kind": kind.what, "count": kind.count });
-        return json::print(
-            streams,
-            &json!({
-                "p2m": "shard",
-                "version": json::VERSION,
-                "scenes": scenes,
-                "primitives": json::counts(&manifest.counts()),
-                "skipped": skipped.iter().map(skip).collect::<Value>(),
-                "backend": manifest.backend,
-                "shards": { "count": count, "bytes": total, "largest_bytes": largest, "max_bytes": args.max_bytes },
-                "seconds": { "read": times.read.as_secs_f64(), "write": times.write.as_secs_f64() },
-                "out": { "folder": input::shown(&args.out) },
-            }),
-        );
+        let report = json!({
+            "scenes": scenes,
+            "primitives": json::counts(&manifest.counts()),
+            "skipped": skipped.iter().map(skip).collect::<Value>(),
+            "backend": manifest.backend,
+            "shards": { "count": count, "bytes": total, "largest_bytes": largest, "max_bytes": args.max_bytes },
+            "seconds": { "read": times[0].as_secs_f64(), "write": times[1].as_secs_f64() },
+            "out": { "folder": input::shown(&args.out) },
+        });
+        return json::print_report(streams, "shard", [report]);
     }
-    for scene in &scenes {
-        streams.print_summary(format_args!("scene    {scene}\n"));
-    }
-    streams.print_summary(format_args!("         {}\n", crate::scene::info::counted(&manifest.counts())));
-    for (file, kind) in skipped {
-        streams.print_summary(format_args!("skipped  {kind} in {file}\n"));
-    }
+    let mut text: String = scenes.iter().map(|scene| format!("scene    {scene}\n")).collect();
+    text += &format!("         {}\n", counted(&manifest.counts()));
+    text.extend(skipped.iter().map(|(file, kind)| format!("skipped  {kind} in {file}\n")));
     let (backend, folder) = (&manifest.backend, args.out.display());
+    let ([total, largest], [read, write]) = ([total, largest].map(Count), times.map(Time));
     streams.print_summary(format_args!(
-        "backend  {backend}\nread     in {}\nwritten  {folder}, {count} shards, {} bytes, the largest {}, in {}\n",
-        Time(times.read),
-        Count(total),
-        Count(largest),
-        Time(times.write)
+        "{text}backend  {backend}\nread     in {read}\nwritten  {folder}, {count} shards, {total} bytes, the largest \
+         {largest}, in {write}\n"
     ));
     Ok(())
 }

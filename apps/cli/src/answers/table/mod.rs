@@ -18,7 +18,7 @@ mod values;
 
 pub(crate) use columns::{AnswerColumn, AnswerEncoder, AnswerRecord};
 pub(crate) use rays::{HitEncoder, NumberEncoder};
-pub(crate) use records::Table;
+pub(crate) use records::{Header, Table};
 
 p2m_core::formats! {
     /// The file formats of answers.

@@ -1,7 +1,7 @@
 //! The answers to the points of a scan: the closest point and the deviation of each.
 
 use crate::answers::blocks::{BlockSize, QueryStream, Steps, answer_all};
-use crate::answers::table::{AnswerEncoder, AnswerRecord, Table};
+use crate::answers::table::{AnswerEncoder, AnswerRecord};
 use crate::index::sign_rule::SignedIndex;
 use crate::io::output::Output;
 use crate::io::streams::Streams;
@@ -79,34 +79,14 @@ pub(super) struct Answers<'a> {
 }
 
 impl Answers<'_> {
-    /// Answers points as [`add`](Self::add) does, and writes their table.
-    pub(super) fn add_to_table(
-        &mut self,
-        streams: &Streams,
-        pool: &ThreadPool,
-        points: &[Point3<f64>],
-        encoder: &AnswerEncoder<'_>,
-        output: &mut Output<'_>,
-    ) -> anyhow::Result<Duration> {
-        let cannot_write = output.cannot_write();
-        let failed = |error| anyhow::Error::new(error).context(cannot_write.clone());
-        let count = (self.filter.beyond < 0.0).then_some(points.len() as u64);
-        let mut table = Table::new(output, encoder.header(), count).map_err(failed)?;
-        let encode = |record: &AnswerRecord<'_>, out: &mut Vec<u8>| encoder.encode(record, out);
-        let write = |count, records: &[u8]| table.write(count, records).map_err(failed);
-        let time = self.add(streams, pool, points, encode, write)?;
-        table.finish().map_err(failed)?;
-        Ok(time)
-    }
-
-    /// Answers points on all threads of a pool, and writes a record of each. Returns the time that the answers took.
+    /// Answers points on all threads of a pool, and writes their table, if there is one. Returns the time that the answers
+    /// took.
     pub(super) fn add(
         &mut self,
         streams: &Streams,
         pool: &ThreadPool,
         points: &[Point3<f64>],
-        encode: impl Fn(&AnswerRecord<'_>, &mut Vec<u8>) + Sync,
-        write: impl FnMut(u64, &[u8]) -> anyhow::Result<()>,
+        table: Option<(&AnswerEncoder<'_>, &mut Output<'_>)>,
     ) -> anyhow::Result<Duration> {
         let Self { index, signs, filter, values, primitives, barycentric } = self;
         let with_deviation = |(point, answer): (&Point3<f64>, Option<Closest<f64>>)| {
@@ -114,6 +94,9 @@ impl Answers<'_> {
             (answer, deviation.unwrap_or(f64::NAN))
         };
         let options = QueryOptions::default().with_max_distance(filter.max_distance);
+        let count = (filter.beyond < 0.0).then_some(points.len() as u64);
+        let (encoder, output) = table.unzip();
+        let file = output.zip(encoder).map(|(output, encoder)| (output, encoder.header(), count));
         let counted = |number: usize, (answer, deviation): &ClosestAnswer| {
             if filter.is_left_out(number) { (None, f64::NAN) } else { (*answer, *deviation) }
         };
@@ -128,8 +111,11 @@ impl Answers<'_> {
                 if !filter.is_in_table(deviation) {
                     return 0;
                 }
-                encode(&AnswerRecord { number, query, answer: answer.as_ref(), signed_distance: deviation }, out);
-                1
+                let record = AnswerRecord { number, query, answer: answer.as_ref(), signed_distance: deviation };
+                encoder.map_or(0, |encoder| {
+                    encoder.encode(&record, out);
+                    1
+                })
             },
             take: |_: &_, answer: &ClosestAnswer| {
                 let (answer, deviation) = counted(values.len(), answer);
@@ -139,10 +125,9 @@ impl Answers<'_> {
                     all.push(answer.map_or([0.0; 3], |answer| answer.barycentric));
                 }
             },
-            write,
         };
         let iter = points.iter().copied();
         let queries = QueryStream { name: "points", count: points.len() as u64, iter, block_size: BlockSize::Adaptive };
-        answer_all(streams, pool, queries, steps)
+        answer_all(streams, pool, queries, file, steps)
     }
 }

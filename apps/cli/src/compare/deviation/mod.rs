@@ -4,13 +4,13 @@ mod answers;
 mod hints;
 mod report;
 
-use crate::answers::summary::{IndexSummary, RunSummary, SceneSummary};
+use crate::answers::summary::{IndexSummary, RunSummary, listed};
 use crate::answers::table::{AnswerColumn, AnswerEncoder, AnswerFormat};
 use crate::compare::align::{self, move_scan};
 use crate::compare::scan::ScanArgs;
-use crate::index::backend::{BackendChoice, PreparedIndex, SceneSource, backend_choices};
+use crate::index::backend::{BackendChoice, PreparedIndex, backend_choices};
 use crate::index::sign_rule::SignRule;
-use crate::io::input::{SceneArgs, is_standard, name, read_scene_and_index, shown};
+use crate::io::input::{self, SceneArgs, SceneFile, is_standard, name};
 use crate::io::json;
 use crate::io::output::Output;
 use crate::io::progress::{Progress, Unit};
@@ -20,16 +20,17 @@ use crate::io::usage::{finite_not_negative, not_negative, positive, usage};
 use crate::page::open::OpenArgs;
 use crate::page::source::PageArgs;
 use answers::{Answers, Filter, Signs};
-use anyhow::{Context, anyhow};
-use p2m_backends::{AnyIndex, P2mSettings, QueryRegion, Workload};
-use p2m_field::align::AlignOptions;
+use anyhow::anyhow;
+use nalgebra::Point3;
+use p2m_backends::{AnyIndex, QueryRegion, Workload};
+use p2m_field::align::{AlignOptions, Alignment};
 use p2m_field::deviation::{LocalPlanes, isolated_points, on_vertices, primitives_of_positions};
 use p2m_field::sign::SignError;
 use p2m_mixed::Scene;
 use p2m_mixed::statistics::figure::{Count, Figure};
 use rayon::ThreadPool;
 use report::{Compared, DeviationReport};
-use serde_json::{Value, json};
+use serde_json::json;
 use std::path::{Path, PathBuf};
 use std::time::Instant;
 
@@ -164,10 +165,11 @@ pub(crate) fn run(streams: &Streams, args: &Args) -> anyhow::Result<()> {
     let format = args.scene.format()?;
     let pool = args.threads.pool()?;
     let start = Instant::now();
-    let (scene, saved) = read_scene_and_index(streams, &pool, &args.scene.path, format, args.scene.map)?;
+    let mut file = args.scene.read(streams, &pool, format)?;
     let has_table = out_format == Some(DeviationFormat::Csv) && !args.on_part;
     let (mut scan, ids) = args.scan.read(streams, &pool, scan_format, has_table)?;
-    let read_time = start.elapsed();
+    file.read_time = start.elapsed();
+    let scene = &file.scene;
     if let Some(note) = hints::note_on_sizes(&scan.soup, &scene.soup).filter(|_| !args.align) {
         streams.print_summary(format_args!("warning  {note}\n"));
     }
@@ -175,69 +177,30 @@ pub(crate) fn run(streams: &Streams, args: &Args) -> anyhow::Result<()> {
     let mut output = args.out.as_ref().map(|out| Output::open(streams, Some(out))).transpose()?;
 
     let start = Instant::now();
-    let saved = saved.as_ref();
+    let prepared = args.prepare(streams, &pool, &file, scan.soup.positions())?;
+    let index = &*prepared.built.index;
+    let alignment = args.place(streams, &pool, (&file, index), &mut scan)?;
+    let signs = args.signs(streams, &pool, index, scene)?;
     let points = scan.soup.positions();
-    // A scan that is moved first will be like the scene.
-    let region = if args.align { QueryRegion::SceneBox } else { QueryRegion::Like(points) };
-    let workload = Workload::new(points.len() as u64, region).with_needs_index(true);
-    let chosen = BackendChoice::resolve(args.backend, saved, &scene.soup, &workload, streams, &pool);
-    let chosen = chosen.with_context(|| args.scene.name())?;
-    let backend = chosen.backend();
-    let source = SceneSource { soup: &scene.soup, kdop_directions: None, p2m: P2mSettings::default(), saved };
-    let PreparedIndex { built, is_loaded, reason, .. } =
-        source.prepare(streams, chosen, &pool).with_context(|| args.scene.name())?;
-    let index = &*built.index;
-    let alignment = if args.align {
-        let target = (args.scene.name(), &scene, index);
-        Some(move_scan(streams, &pool, &args.scan.path, &mut scan, target, &AlignOptions::default())?)
-    } else {
-        None
-    };
-    let points = scan.soup.positions();
-    let unit = &args.page.unit;
-    let misplaced = || pool.install(|| hints::note_on_place(points, &scene.soup, index, unit));
-    if !args.align
-        && let Some(note) = misplaced()
-    {
-        streams.print_summary(format_args!("warning  {note}\n"));
-    }
-    let signs = args.signs(streams, &pool, index, &scene)?;
-    if let (SignRule::Auto, Signs::Surface(signed)) = (args.sign, &signs)
-        && let Some(note) = signed.note()
-    {
-        streams.print_summary(format_args!("warning  {}: {note}\n", args.scene.name()));
-    }
-    let isolated = || {
-        let _progress = Progress::start(streams, "looking for isolated points", None, Unit::None);
-        pool.install(|| isolated_points(points))
-    };
-    let filter = args.filter(if args.drop_isolated { isolated() } else { Vec::new() });
+    let filter = args.filter(args.isolated(streams, &pool, points));
     let build_time = start.elapsed();
 
     let barycentric = args.on_part.then(Vec::new);
     let mut answers =
         Answers { index, signs: &signs, filter: &filter, values: Vec::new(), primitives: Vec::new(), barycentric };
-    let query_time = match &mut output {
-        Some(output) if has_table => {
-            let columns = args.columns(&scene, ids.is_some());
-            let encoder = AnswerEncoder::new(AnswerFormat::Csv, &scene.objects, columns).with_ids(ids);
-            answers.add_to_table(streams, &pool, points, &encoder, output)?
-        }
-        _ => answers.add(streams, &pool, points, |_, _| (), |_, _| Ok(()))?,
-    };
+    let encoder = has_table.then(|| {
+        let columns = args.columns(scene, ids.is_some());
+        AnswerEncoder::new(AnswerFormat::Csv, &scene.objects, columns).with_ids(ids)
+    });
+    let query_time = answers.add(streams, &pool, points, encoder.as_ref().zip(output.as_mut()))?;
     let Answers { mut values, mut primitives, barycentric, .. } = answers;
     if let Some(barycentric) = barycentric {
         values = on_vertices(&scene.soup, &primitives, &barycentric, &values);
         primitives = primitives_of_positions(&scene.soup);
     }
-    let compared = Compared {
-        scan: if args.on_part { &scene } else { &scan },
-        scene: &scene,
-        values: &values,
-        primitives: &primitives,
-        rule: signs.rule(),
-        backend: backend.name,
-    };
+    let (rule, backend) = (signs.rule(), prepared.backend.name);
+    let shown = if args.on_part { scene } else { &scan };
+    let compared = Compared { scan: shown, scene, values: &values, primitives: &primitives, rule, backend };
     let report = DeviationReport::new(args, compared);
     let bytes = output.zip(out_format).map_or(Ok(0), |(mut output, format)| {
         report.write(format, &mut output)?;
@@ -248,48 +211,36 @@ pub(crate) fn run(streams: &Streams, args: &Args) -> anyhow::Result<()> {
         Output::open(streams, Some(path))?.finish_with(report.histogram())?;
     }
 
-    let summary = SceneSummary::new(args.scene.name(), format, &scene);
-    let index = IndexSummary {
-        scene: summary,
-        backend: backend.name,
-        built: Some(&built),
-        is_loaded,
-        reason,
-        read_time,
-        build_time,
-    };
+    let index = IndexSummary::new(&file, backend, Some(&prepared), build_time);
     let run = RunSummary { index, threads: pool.current_num_threads(), query_time };
     if args.json {
-        let out = args.out.as_ref().zip(out_format).map_or(
-            Value::Null,
-            |(out, format)| json!({ "file": shown(out), "format": format.name(), "bytes": bytes }),
-        );
         let scan = json!({
             "file": name(&args.scan.path),
             "format": scan_format.name(),
             "points": points.len(),
             "skipped": json::skipped(&scan.skipped),
         });
-        let alignment = json!({ "alignment": alignment.as_ref().map(align::report) });
-        let answers = json::joined([json!({ "scan": scan }), alignment, report.json()]);
-        json::print(streams, &run.json("deviation", answers, &out))?;
+        let compared = json!({ "scan": scan, "alignment": alignment.as_ref().map(align::report) });
+        let out = args.out.as_deref().zip(out_format);
+        let out =
+            out.map(|(out, format)| json!({ "file": input::shown(out), "format": format.name(), "bytes": bytes }));
+        run.print_json(streams, "deviation", json::joined([compared, report.json()]), &json!(out))?;
     } else {
-        streams.print_summary(format_args!("{}", run.text("points", "point", points.len() as u64)));
+        let mut text = run.text("points", "point", points.len() as u64);
         if !scan.skipped.is_empty() {
-            let list: Vec<String> = scan.skipped.iter().map(ToString::to_string).collect();
-            streams.print_summary(format_args!("note     of the scan is skipped: {}\n", list.join(", ")));
+            text += &format!("note     of the scan is skipped: {}\n", listed(&scan.skipped));
         }
         if args.drop_isolated {
             let count = Count((0..points.len()).filter(|i| filter.is_left_out(*i)).count() as u64);
-            streams.print_summary(format_args!("dropped  {count} isolated points\n"));
+            text += &format!("dropped  {count} isolated points\n");
         }
         if let Some(found) = &alignment {
-            let (rms, coverage) = (Figure(found.rms), Figure(100.0 * found.coverage));
-            streams.print_summary(format_args!("aligned  rms {rms}, coverage {coverage} %\n"));
+            text += &format!("aligned  rms {}, coverage {} %\n", Figure(found.rms), Figure(100.0 * found.coverage));
         }
         if let Some(out) = &args.out {
-            streams.print_summary(format_args!("written  {}, {bytes} bytes\n", out.display()));
+            text += &format!("written  {}, {bytes} bytes\n", out.display());
         }
+        streams.print_summary(format_args!("{text}"));
         Output::print(streams, report.table())?;
     }
     args.open.show(args.out.as_deref())?;
@@ -353,7 +304,53 @@ impl Args {
         Filter { left_out, max_distance: self.farthest, beyond }
     }
 
-    /// Prepares what gives deviations their signs.
+    /// Loads or builds the index to search for the points of a scan.
+    fn prepare(
+        &self,
+        streams: &Streams,
+        pool: &ThreadPool,
+        file: &SceneFile,
+        points: &[Point3<f64>],
+    ) -> anyhow::Result<PreparedIndex> {
+        // A scan that is moved first will be like the scene.
+        let region = if self.align { QueryRegion::SceneBox } else { QueryRegion::Like(points) };
+        let chosen = file.choose(
+            streams,
+            pool,
+            self.backend,
+            &Workload::new(points.len() as u64, region).with_needs_index(true),
+        )?;
+        file.prepare(streams, pool, chosen)
+    }
+
+    /// Moves the scan onto the scene if that was asked for. Otherwise a warning says if it seems to be elsewhere.
+    fn place(
+        &self,
+        streams: &Streams,
+        pool: &ThreadPool,
+        (file, index): (&SceneFile, &dyn AnyIndex),
+        scan: &mut Scene,
+    ) -> anyhow::Result<Option<Alignment>> {
+        if self.align {
+            return move_scan(streams, pool, &self.scan.path, scan, (file, index), &AlignOptions::default()).map(Some);
+        }
+        let (points, unit) = (scan.soup.positions(), &self.page.unit);
+        if let Some(note) = pool.install(|| hints::note_on_place(points, &file.scene.soup, index, unit)) {
+            streams.print_summary(format_args!("warning  {note}\n"));
+        }
+        Ok(None)
+    }
+
+    /// Returns which points of a scan are left out as isolated ones.
+    fn isolated(&self, streams: &Streams, pool: &ThreadPool, points: &[Point3<f64>]) -> Vec<bool> {
+        if !self.drop_isolated {
+            return Vec::new();
+        }
+        let _progress = Progress::start(streams, "looking for isolated points", None, Unit::None);
+        pool.install(|| isolated_points(points))
+    }
+
+    /// Prepares what gives deviations their signs. A warning says if the rule auto is a guess.
     fn signs<'a>(
         &self,
         streams: &Streams,
@@ -370,8 +367,11 @@ impl Args {
                 return Ok(Signs::Planes(planes));
             }
         }
-        let signed = self.sign.prepare(streams, index, &scene.soup);
-        signed.map(Signs::Surface).map_err(|error| self.without_sign(error))
+        let signed = self.sign.prepare(streams, index, &scene.soup).map_err(|error| self.without_sign(error))?;
+        if let Some(note) = signed.note().filter(|_| self.sign == SignRule::Auto) {
+            streams.print_summary(format_args!("warning  {}: {note}\n", self.scene.name()));
+        }
+        Ok(Signs::Surface(signed))
     }
 
     /// Returns the columns of the table, which are those of `p2m query --signed`, after numbers if points are missing,

@@ -24,7 +24,7 @@ use settings::SETTINGS;
 
 use crate::answers::queries::{Queries as QueryPoints, Region};
 use crate::index::backend::{Backend, backends};
-use crate::io::input::{PointArgs, SceneArgs, read_finite_points, read_scene};
+use crate::io::input::{PointArgs, SceneArgs, read_finite_points};
 use crate::io::output::Output;
 use crate::io::progress::{Progress, Unit};
 use crate::io::streams::Streams;
@@ -152,7 +152,7 @@ pub(crate) fn run(streams: &Streams, args: &Args) -> anyhow::Result<()> {
         bail!("--html and --csv name the same file");
     }
     let pool = ThreadArgs::default().pool()?;
-    let scene = read_scene(streams, &pool, &args.scene, args.scene.format()?)?;
+    let scene = args.scene.read(streams, &pool, args.scene.format()?)?.scene;
     if scene.soup.is_empty() {
         bail!("{}: there is nothing in it", args.scene.name());
     }

@@ -1,0 +1,69 @@
+//! A run that answers points or rays: its index, the file of its answers, and its summary.
+
+use crate::answers::args::QueryArgs;
+use crate::answers::blocks::{QueryStream, Steps, answer_all};
+use crate::answers::summary::{IndexSummary, RunSummary};
+use crate::answers::table::{AnswerFormat, Header};
+use crate::index::shards::{loads_line, shards_json};
+use crate::io::json;
+use crate::io::output::Output;
+use crate::io::streams::Streams;
+use p2m_mixed::Object;
+use p2m_shards::ShardedIndex;
+use rayon::ThreadPool;
+use serde_json::{Value, json};
+use std::time::Duration;
+
+/// A run that answers points or rays.
+pub(crate) struct AnswerRun<'a> {
+    pub(crate) streams: &'a Streams,
+    pub(crate) args: &'a QueryArgs,
+    pub(crate) pool: &'a ThreadPool,
+    pub(crate) output: Output<'a>,
+    pub(crate) format: AnswerFormat,
+    pub(crate) objects: &'a [Object],
+    pub(crate) index: IndexSummary<'a>,
+    /// The shards and the largest number of their bytes in memory, if the index is in shards.
+    pub(crate) shards: Option<(&'a ShardedIndex, Option<u64>)>,
+}
+
+impl AnswerRun<'_> {
+    /// Answers queries and writes their records, whose number is known before if `records` has it. Returns the time that
+    /// answering took.
+    pub(crate) fn answer<Q: Send + Sync, A: Send + Sync>(
+        &mut self,
+        queries: QueryStream<impl Iterator<Item = Q>>,
+        (header, records): (Header, Option<u64>),
+        steps: Steps<
+            impl Fn(&[Q]) -> anyhow::Result<Vec<A>> + Sync,
+            impl Fn(u64, &Q, &A, &mut Vec<u8>) -> u64 + Sync,
+            impl FnMut(&Q, &A),
+        >,
+    ) -> anyhow::Result<Duration> {
+        answer_all(self.streams, self.pool, queries, Some((&mut self.output, header, records)), steps)
+    }
+
+    /// Completes the file, and prints a summary of `count` queries. `report` and `text` are the parts of it about the
+    /// answers, and `words` are the command, and the names of the queries in the plural and in the singular.
+    pub(crate) fn finish(
+        self,
+        [command, many, one]: [&str; 3],
+        count: u64,
+        query_time: Duration,
+        report: Value,
+        text: &str,
+    ) -> anyhow::Result<()> {
+        let Self { streams, args, pool, output, format, index, shards, .. } = self;
+        let bytes = output.bytes();
+        output.finish()?;
+        let run = RunSummary { index, threads: pool.current_num_threads(), query_time };
+        if args.json {
+            let shards = shards.map(|(index, max_memory)| json!({ "shards": shards_json(index, max_memory) }));
+            let answers = json::joined([shards.unwrap_or_default(), report]);
+            return run.print_json(streams, command, answers, &args.output_json(format, bytes));
+        }
+        let loads = shards.map_or_else(String::new, |(index, _)| loads_line(index));
+        streams.print_summary(format_args!("{}{loads}{text}", run.text(many, one, count)));
+        Ok(())
+    }
+}
