@@ -1,20 +1,21 @@
 //! The arguments that `query` and `ray` share.
 
 use crate::answers::table::AnswerFormat;
-use crate::index::kdop_directions::KdopFaces;
+use crate::index::kdop_directions::kdop_faces;
 use crate::io::input::{SceneArgs, is_standard, or_option, shown};
 use crate::io::output::Output;
 use crate::io::streams::Streams;
 use crate::io::threads::ThreadArgs;
 use crate::io::usage::{one_of, usage};
+use p2m_backends::KdopDirections;
 use serde_json::{Value, json};
 use std::path::{Path, PathBuf};
 
 #[derive(clap::Args)]
 pub(crate) struct QueryArgs {
     /// The number of faces of k-DOPs, for --backend kdop [default: the saved index, or 14]
-    #[arg(long, value_name = "K", value_enum, ignore_case = true, allow_negative_numbers = true)]
-    pub(crate) k: Option<KdopFaces>,
+    #[arg(long, value_name = "K", value_parser = kdop_faces(), ignore_case = true, allow_negative_numbers = true)]
+    pub(crate) k: Option<KdopDirections>,
 
     /// Write the answers to this file; `-` is the standard output
     ///

@@ -1,12 +1,12 @@
 //! The arguments of commands that are about an index: its scene, its backend and its directions.
 
 use crate::index::backend::{Backend, BackendChoice, Chosen, backend_choices};
-use crate::index::kdop_directions::{KdopFaces, requested};
+use crate::index::kdop_directions::{kdop_faces, requested};
 use crate::index::p2m_args::P2mArgs;
 use crate::io::input::{SceneArgs, SceneFile};
 use crate::io::streams::Streams;
 use crate::io::threads::ThreadArgs;
-use p2m_backends::{QueryRegion, Workload};
+use p2m_backends::{KdopDirections, QueryRegion, Workload};
 use rayon::ThreadPool;
 
 #[derive(clap::Args)]
@@ -19,8 +19,8 @@ pub(crate) struct IndexArgs {
     backend: Option<BackendChoice>,
 
     /// The number of faces of k-DOPs, for --backend kdop [default: 14]
-    #[arg(long, value_name = "K", value_enum, ignore_case = true, allow_negative_numbers = true)]
-    k: Option<KdopFaces>,
+    #[arg(long, value_name = "K", value_parser = kdop_faces(), ignore_case = true, allow_negative_numbers = true)]
+    k: Option<KdopDirections>,
 
     #[command(flatten)]
     pub(crate) p2m: P2mArgs,

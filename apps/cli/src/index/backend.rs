@@ -1,13 +1,14 @@
 //! The values of `--backend`, which come from the registry of backends, and the building or loading of an index.
 
-use crate::index::kdop_directions::{KdopFaces, requested};
+use crate::index::kdop_directions::requested;
 use crate::index::p2m_args::P2mArgs;
 use crate::io::input::SceneFile;
 use crate::io::interrupt::StoppableWork;
 use crate::io::progress::{Progress, Unit};
 use crate::io::streams::Streams;
+use crate::io::usage::choices;
 use anyhow::Context;
-use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
+use clap::builder::TypedValueParser;
 use p2m_backends::{BACKENDS, BackendEntry, BuildSettings, BuiltIndex, Choice, KdopDirections, P2mSettings, Workload};
 use p2m_interception::{BuildStage, RefinementProgress, StageTimes};
 use rayon::ThreadPool;
@@ -18,9 +19,6 @@ use std::time::{Duration, Instant};
 /// A backend of the registry.
 pub(crate) type Backend = &'static BackendEntry;
 
-/// The name that leaves the choice of the backend to the program.
-const AUTO: &str = "auto";
-
 /// A value of `--backend` where the program may choose.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum BackendChoice {
@@ -30,27 +28,18 @@ pub(crate) enum BackendChoice {
     Auto,
 }
 
-/// A parser of the names of all backends that `fits` accepts.
+/// Returns a parser of the names of all backends that `fits` accepts.
 pub(crate) fn backends(fits: fn(&BackendEntry) -> bool) -> impl TypedValueParser<Value = Backend> {
-    let values = BACKENDS.iter().filter(move |backend| fits(backend)).map(possible_value);
-    PossibleValuesParser::new(values).map(|name| named(&name))
+    choices(
+        BACKENDS.iter().filter(move |backend| fits(backend)).map(|backend| (backend.name, backend.summary, backend)),
+    )
 }
 
-/// A parser of the names of all backends and of `auto`.
+/// Returns a parser of the names of all backends and of `auto`.
 pub(crate) fn backend_choices() -> impl TypedValueParser<Value = BackendChoice> {
-    let auto = PossibleValue::new(AUTO)
-        .help("the one with the least time by the work of the queries, else of ten million in the box of the scene");
-    let values = BACKENDS.iter().map(possible_value).chain([auto]);
-    PossibleValuesParser::new(values)
-        .map(|name| if name == AUTO { BackendChoice::Auto } else { BackendChoice::Named(named(&name)) })
-}
-
-fn possible_value(backend: &BackendEntry) -> PossibleValue {
-    PossibleValue::new(backend.name).help(backend.summary)
-}
-
-fn named(name: &str) -> Backend {
-    BackendEntry::find(name).expect("the parser accepts the names of backends alone")
+    let help = "the one with the least time by the work of the queries, else of ten million in the box of the scene";
+    let named = BACKENDS.iter().map(|backend| (backend.name, backend.summary, BackendChoice::Named(backend)));
+    choices(named.chain([("auto", help, BackendChoice::Auto)]))
 }
 
 /// The index that a command searches, and its options.
@@ -77,7 +66,7 @@ impl Chosen {
     }
 
     /// Sets the directions that `--k` requests, which are an error for a backend without k-DOPs.
-    pub(crate) fn with_k(self, k: Option<KdopFaces>) -> anyhow::Result<Self> {
+    pub(crate) fn with_k(self, k: Option<KdopDirections>) -> anyhow::Result<Self> {
         Ok(Self { kdop_directions: requested(self.backend.has_kdop_directions, k)?, ..self })
     }
 

@@ -1,70 +1,34 @@
 //! The options `--locator` and `--filter`: the parts of a P2M index that may be chosen.
 
-use crate::io::usage::usage;
-use clap::ValueEnum;
-use clap::builder::PossibleValue;
+use crate::io::usage::{choices, usage};
+use clap::builder::TypedValueParser;
 use p2m_backends::{ListFilterKind, LocatorKind, P2mSettings};
 
 #[derive(clap::Args)]
 pub(crate) struct P2mArgs {
     /// How --backend p2m finds the nearest vertex [default: grid]
-    #[arg(long, value_enum, ignore_case = true)]
-    locator: Option<Locator>,
+    #[arg(long, value_parser = locators(), ignore_case = true)]
+    locator: Option<LocatorKind>,
 
     /// How --backend p2m searches long lists [default: sorted]
-    #[arg(long, value_enum, ignore_case = true)]
-    filter: Option<ListFilter>,
+    #[arg(long, value_parser = list_filters(), ignore_case = true)]
+    filter: Option<ListFilterKind>,
 }
 
-/// A value of `--locator`.
-#[derive(Clone, Copy, PartialEq, Eq)]
-struct Locator(LocatorKind);
-
-impl ValueEnum for Locator {
-    fn value_variants<'a>() -> &'a [Self] {
-        &[
-            Self(LocatorKind::Grid),
-            #[cfg(feature = "paper")]
-            Self(LocatorKind::KdTree),
-        ]
-    }
-
-    fn to_possible_value(&self) -> Option<PossibleValue> {
-        match self.0 {
-            LocatorKind::Grid => Some(PossibleValue::new("grid").help("A grid with a vertex in each cell")),
-            #[cfg(feature = "paper")]
-            LocatorKind::KdTree => {
-                Some(PossibleValue::new("kd-tree").help("A KD-tree, as in Zong et al. 2023: up to three times as slow"))
-            }
-            _ => None,
-        }
-    }
+fn locators() -> impl TypedValueParser<Value = LocatorKind> {
+    choices([
+        ("grid", "A grid with a vertex in each cell", LocatorKind::Grid),
+        #[cfg(feature = "paper")]
+        ("kd-tree", "A KD-tree, as in Zong et al. 2023: up to three times as slow", LocatorKind::KdTree),
+    ])
 }
 
-/// A value of `--filter`.
-#[derive(Clone, Copy, PartialEq, Eq)]
-struct ListFilter(ListFilterKind);
-
-impl ValueEnum for ListFilter {
-    fn value_variants<'a>() -> &'a [Self] {
-        &[
-            Self(ListFilterKind::Sorted),
-            #[cfg(feature = "paper")]
-            Self(ListFilterKind::RTree),
-        ]
-    }
-
-    fn to_possible_value(&self) -> Option<PossibleValue> {
-        match self.0 {
-            ListFilterKind::Sorted => Some(PossibleValue::new("sorted").help("In the order of bounds on distances")),
-            #[cfg(feature = "paper")]
-            ListFilterKind::RTree => Some(
-                PossibleValue::new("r-tree")
-                    .help("By R-trees, as in Zong et al. 2023: up to ten times as slow for long lists"),
-            ),
-            _ => None,
-        }
-    }
+fn list_filters() -> impl TypedValueParser<Value = ListFilterKind> {
+    choices([
+        ("sorted", "In the order of bounds on distances", ListFilterKind::Sorted),
+        #[cfg(feature = "paper")]
+        ("r-tree", "By R-trees, as in Zong et al. 2023: up to ten times as slow for long lists", ListFilterKind::RTree),
+    ])
 }
 
 impl P2mArgs {
@@ -82,9 +46,8 @@ impl P2mArgs {
             let option = if self.locator.is_some() { "--locator" } else { "--filter" };
             return Err(usage(format!("{option} is for --backend p2m")));
         }
-        let locator = self.locator.map_or_else(LocatorKind::default, |locator| locator.0);
-        let list_filter = self.filter.map_or_else(ListFilterKind::default, |filter| filter.0);
-        Ok(P2mSettings::default().with_locator(locator).with_list_filter(list_filter))
+        let (locator, filter) = (self.locator.unwrap_or_default(), self.filter.unwrap_or_default());
+        Ok(P2mSettings::default().with_locator(locator).with_list_filter(filter))
     }
 
     /// Refuses settings that a saved index cannot have.

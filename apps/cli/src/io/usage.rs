@@ -1,7 +1,7 @@
 //! Errors of usage that the grammar of the arguments does not detect, and parsers of values.
 
 use bytesize::ByteSize;
-use clap::builder::{PossibleValuesParser, TypedValueParser};
+use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
 use std::fmt;
 use std::str::FromStr;
 
@@ -29,6 +29,18 @@ where
     F::Err: std::error::Error + Send + Sync + 'static,
 {
     PossibleValuesParser::new(names).try_map(|name| name.parse::<F>())
+}
+
+/// Returns a parser of names, which are given with their help and with the values that they stand for.
+pub(crate) fn choices<T: Clone + Send + Sync + 'static>(
+    choices: impl IntoIterator<Item = (&'static str, &'static str, T)>,
+) -> impl TypedValueParser<Value = T> {
+    let choices: Vec<_> = choices.into_iter().collect();
+    let names: Vec<_> = choices.iter().map(|(name, help, _)| PossibleValue::new(*name).help(*help)).collect();
+    PossibleValuesParser::new(names).map(move |found| {
+        let choice = choices.iter().find(|(name, ..)| name.eq_ignore_ascii_case(&found));
+        choice.expect("the parser accepts these names alone").2.clone()
+    })
 }
 
 /// Parses a whole number.

@@ -1,6 +1,6 @@
 //! `p2m boxes`: draws the boxes of the AABB tree, or the polytopes of the k-DOP tree, level by level.
 
-use crate::index::kdop_directions::KdopFaces;
+use crate::index::kdop_directions::kdop_faces;
 use crate::io::input::{SceneArgs, shown};
 use crate::io::json;
 use crate::io::output::Output;
@@ -12,7 +12,7 @@ use crate::page::tree_levels::TreeLevels;
 use crate::page::up_axis::Up;
 use anyhow::{Context, bail};
 use nalgebra::Point3;
-use p2m_backends::KdopVisitor;
+use p2m_backends::{KdopDirections, KdopVisitor};
 use p2m_bvh::{AabbTree, PacketTree, SplitOptions, TreeNode, Volume};
 use p2m_core::Soup;
 use p2m_kdop::{KdopTree, Polytope};
@@ -47,8 +47,8 @@ pub(crate) struct Args {
     levels: u8,
 
     /// Draw a k-DOP tree whose polytopes have this many faces
-    #[arg(long, value_name = "K", value_enum, ignore_case = true, allow_negative_numbers = true)]
-    k: Option<KdopFaces>,
+    #[arg(long, value_name = "K", value_parser = kdop_faces(), ignore_case = true, allow_negative_numbers = true)]
+    k: Option<KdopDirections>,
 
     /// The view of an SVG picture
     #[arg(long, value_enum, default_value_t = View::Isometric)]
@@ -85,7 +85,7 @@ pub(crate) fn run(streams: &Streams, args: &Args) -> anyhow::Result<()> {
         None => AabbTree::new(&*scene.soup)
             .map(|tree| panels(tree.tree(), levels, ["box", "boxes"], |bounds| box_edges(bounds).collect()))
             .map(|panels| (panels, None)),
-        Some(KdopFaces(directions)) => directions
+        Some(directions) => directions
             .build(&*scene.soup, SplitOptions::default(), PolytopePanels { levels })
             .map(|(panels, directions)| (panels, Some(directions))),
     });

@@ -90,17 +90,14 @@ impl Modifiers {
 
     fn transform(&self) -> Option<Transform> {
         let mut transform = Transform::default();
-        if let Some(degrees) = self.rotate_x {
-            transform = transform.rotated_x(degrees);
-        }
-        if let Some(degrees) = self.rotate_y {
-            transform = transform.rotated_y(degrees);
-        }
-        if let Some(degrees) = self.rotate_z {
-            transform = transform.rotated_z(degrees);
-        }
-        if let Some(factor) = self.scale {
-            transform = transform.scaled(factor);
+        let rotations = [
+            (self.rotate_x, Transform::rotated_x as fn(Transform, f64) -> Transform),
+            (self.rotate_y, Transform::rotated_y),
+            (self.rotate_z, Transform::rotated_z),
+            (self.scale, Transform::scaled),
+        ];
+        for (amount, change) in rotations {
+            transform = amount.map_or(transform, |amount| change(transform, amount));
         }
         if let Some(&[x, y, z]) = self.translate.as_deref() {
             transform = transform.translated([x, y, z]);
@@ -110,22 +107,19 @@ impl Modifiers {
 
     /// Returns the requested changes in the order in which they are applied.
     pub(crate) fn json(&self) -> Value {
-        let mut changes = Vec::new();
-        let mut push = |name: &str, value: Option<Value>| {
-            if let Some(value) = value {
-                changes.push(json!({ "change": name, "by": value }));
-            }
-        };
-        push("subdivide", self.subdivide.map(Value::from));
-        push("displace", self.displace.map(Value::from));
-        push("gap", self.gap.map(Value::from));
-        push("penetrate", self.penetrate.map(Value::from));
-        push("rotate_x", self.rotate_x.map(Value::from));
-        push("rotate_y", self.rotate_y.map(Value::from));
-        push("rotate_z", self.rotate_z.map(Value::from));
-        push("scale", self.scale.map(Value::from));
-        push("translate", self.translate.clone().map(Value::from));
-        Value::from(changes)
+        let changes = [
+            ("subdivide", json!(self.subdivide)),
+            ("displace", json!(self.displace)),
+            ("gap", json!(self.gap)),
+            ("penetrate", json!(self.penetrate)),
+            ("rotate_x", json!(self.rotate_x)),
+            ("rotate_y", json!(self.rotate_y)),
+            ("rotate_z", json!(self.rotate_z)),
+            ("scale", json!(self.scale)),
+            ("translate", json!(self.translate)),
+        ];
+        let requested = changes.into_iter().filter(|(_, value)| !value.is_null());
+        requested.map(|(change, value)| json!({ "change": change, "by": value })).collect()
     }
 }
 
