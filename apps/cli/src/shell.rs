@@ -1,7 +1,6 @@
 //! `p2m completions` and `p2m man`: completions of shells and manual pages.
 
-use crate::io::output::Output;
-use crate::io::streams::Streams;
+use crate::io::{Output, Streams};
 use anyhow::Context;
 use clap_complete::Shell;
 use std::path::{Path, PathBuf};

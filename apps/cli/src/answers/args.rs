@@ -2,11 +2,9 @@
 
 use crate::answers::table::AnswerFormat;
 use crate::index::kdop_directions::kdop_faces;
-use crate::io::input::{SceneArgs, is_standard, or_option, shown};
-use crate::io::output::Output;
-use crate::io::streams::Streams;
-use crate::io::threads::ThreadArgs;
+use crate::io::input::or_option;
 use crate::io::usage::{one_of, usage};
+use crate::io::{Output, SceneArgs, Streams, ThreadArgs, is_standard, shown};
 use p2m_backends::KdopDirections;
 use serde_json::{Value, json};
 use std::path::{Path, PathBuf};

@@ -5,9 +5,7 @@
 //! source of the queries only if these are slower than answering.
 
 use crate::answers::table::{Header, Table};
-use crate::io::output::Output;
-use crate::io::progress::{Progress, Unit};
-use crate::io::streams::Streams;
+use crate::io::{Output, Progress, Streams, Unit};
 use indicatif::{DecimalBytes, HumanCount, HumanDuration};
 use p2m_core::engine::parallel;
 use rayon::ThreadPool;

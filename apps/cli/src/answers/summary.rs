@@ -2,9 +2,8 @@
 
 use crate::answers::running_stats::RunningStats;
 use crate::index::backend::PreparedIndex;
-use crate::io::input::SceneFile;
-use crate::io::json::{self, stats};
-use crate::io::streams::Streams;
+use crate::io::json::stats;
+use crate::io::{SceneFile, Streams, json};
 use crate::scene::info::counted;
 use p2m_backends::ChosenDirections;
 use p2m_core::Closest;

@@ -2,13 +2,8 @@
 
 use crate::compare::scan::ScanArgs;
 use crate::index::backend::{Backend, backends};
-use crate::io::input::{SceneArgs, SceneFile, is_standard, name, shown};
-use crate::io::json;
-use crate::io::output::Output;
-use crate::io::progress::{Progress, Unit};
-use crate::io::streams::Streams;
-use crate::io::threads::ThreadArgs;
-use crate::io::usage::usage;
+use crate::io::input::name;
+use crate::io::{Output, Progress, SceneArgs, SceneFile, Streams, ThreadArgs, Unit, is_standard, json, shown, usage};
 use crate::page::pair::{PairPage, PairPageArgs, PairResult};
 use crate::scene::convert::Target;
 use anyhow::{Context, anyhow};

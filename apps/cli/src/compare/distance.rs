@@ -1,13 +1,7 @@
 //! `p2m distance`: finds the nearest points of two scenes.
 
 use crate::compare::scene_pair::{ScenePairArgs, line_of_point, report_of_point};
-use crate::io::input::SceneFile;
-use crate::io::json;
-use crate::io::output::Output;
-use crate::io::progress::{Progress, Unit};
-use crate::io::streams::Streams;
-use crate::io::threads::ThreadArgs;
-use crate::io::usage::usage;
+use crate::io::{Output, Progress, SceneFile, Streams, ThreadArgs, Unit, json, usage};
 use crate::page::pair::{PairPage, PairPageArgs, PairResult};
 use anyhow::Context;
 use nalgebra::Point3;

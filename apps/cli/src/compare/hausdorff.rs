@@ -2,13 +2,8 @@
 
 use crate::compare::scene_pair::{ScenePairArgs, line_of_point, report_of_point};
 use crate::index::backend::{Backend, backends};
-use crate::io::input::SceneFile;
-use crate::io::json;
-use crate::io::output::Output;
-use crate::io::progress::{Progress, Unit};
-use crate::io::streams::Streams;
-use crate::io::threads::ThreadArgs;
 use crate::io::usage::finite_not_negative;
+use crate::io::{Output, Progress, SceneFile, Streams, ThreadArgs, Unit, json};
 use crate::page::pair::{PairPage, PairPageArgs, PairResult};
 use anyhow::{Context, anyhow};
 use p2m_core::PrimitiveSet;

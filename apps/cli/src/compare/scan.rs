@@ -1,8 +1,8 @@
 //! Scans: files of points, or of scenes whose vertices are the points.
 
-use crate::io::input::{SceneArgs, SceneFile, format_list, is_standard, name, read_points, scene_format};
-use crate::io::streams::Streams;
+use crate::io::input::{format_list, name, read_points, scene_format};
 use crate::io::usage::{one_of, usage};
+use crate::io::{SceneArgs, SceneFile, Streams, is_standard};
 use anyhow::Context;
 use p2m_core::Element;
 use p2m_formats::FileFormat;

@@ -1,9 +1,8 @@
 //! The arguments of commands that are about two scenes, and what they print about a point of each.
 
-use crate::io::input::{COMPRESSED, SceneFile, read_small_text, scene_format, scene_help};
-use crate::io::json;
-use crate::io::streams::Streams;
+use crate::io::input::{COMPRESSED, read_small_text, scene_format, scene_help};
 use crate::io::usage::{one_of, usage};
+use crate::io::{SceneFile, Streams, json};
 use anyhow::Context;
 use nalgebra::{Isometry3, Point3};
 use p2m_core::pair::{is_rotation_and_translation, isometry_of_matrix};

@@ -3,9 +3,7 @@
 use crate::index::backend::{Backend, BackendChoice, Chosen, backend_choices};
 use crate::index::kdop_directions::{kdop_faces, requested};
 use crate::index::p2m_args::P2mArgs;
-use crate::io::input::{SceneArgs, SceneFile};
-use crate::io::streams::Streams;
-use crate::io::threads::ThreadArgs;
+use crate::io::{SceneArgs, SceneFile, Streams, ThreadArgs};
 use p2m_backends::{KdopDirections, QueryRegion, Workload};
 use rayon::ThreadPool;
 

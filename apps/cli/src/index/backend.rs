@@ -2,11 +2,9 @@
 
 use crate::index::kdop_directions::requested;
 use crate::index::p2m_args::P2mArgs;
-use crate::io::input::SceneFile;
 use crate::io::interrupt::StoppableWork;
-use crate::io::progress::{Progress, Unit};
-use crate::io::streams::Streams;
 use crate::io::usage::choices;
+use crate::io::{Progress, SceneFile, Streams, Unit};
 use anyhow::Context;
 use clap::builder::TypedValueParser;
 use p2m_backends::{BACKENDS, BackendEntry, BuildSettings, BuiltIndex, Choice, KdopDirections, P2mSettings, Workload};

@@ -1,8 +1,7 @@
 //! Indexes in shards, as commands open and summarize them.
 
 use crate::answers::summary::IndexSummary;
-use crate::io::input::SceneArgs;
-use crate::io::usage::usage;
+use crate::io::{SceneArgs, usage};
 use p2m_core::PrimitiveId;
 use p2m_shards::{ShardedIndex, folder_of};
 use serde_json::{Value, json};

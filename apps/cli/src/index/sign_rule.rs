@@ -1,7 +1,6 @@
 //! The rules that decide which points are inside of a scene.
 
-use crate::io::progress::{Progress, Unit};
-use crate::io::streams::Streams;
+use crate::io::{Progress, Streams, Unit};
 use anyhow::anyhow;
 use clap::ValueEnum;
 use p2m_backends::AnyIndex;

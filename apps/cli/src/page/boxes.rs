@@ -1,12 +1,7 @@
 //! `p2m boxes`: draws the boxes of the AABB tree, or the polytopes of the k-DOP tree, level by level.
 
 use crate::index::kdop_directions::kdop_faces;
-use crate::io::input::{SceneArgs, shown};
-use crate::io::json;
-use crate::io::output::Output;
-use crate::io::progress::{Progress, Unit};
-use crate::io::streams::Streams;
-use crate::io::threads::ThreadArgs;
+use crate::io::{Output, Progress, SceneArgs, Streams, ThreadArgs, Unit, json, shown};
 use crate::page::drawing::{Panel, View, box_edges, write_picture_ply, write_svg};
 use crate::page::tree_levels::TreeLevels;
 use crate::page::up_axis::Up;

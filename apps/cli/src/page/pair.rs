@@ -1,8 +1,6 @@
 //! Pages that show two scenes, and lines between them or how one was moved.
 
-use crate::io::output::Output;
-use crate::io::streams::Streams;
-use crate::io::usage::usage;
+use crate::io::{Output, Streams, usage};
 use crate::page::open::OpenArgs;
 use crate::page::source::{PageArgs, about, file_name};
 use anyhow::Context;

@@ -1,6 +1,6 @@
 //! Pictures in PNG files.
 
-use crate::io::output::Output;
+use crate::io::Output;
 use anyhow::Context;
 
 /// Writes a picture. `bytes` has red, green and blue of each pixel, row by row.

@@ -1,6 +1,7 @@
 //! The arguments and the texts that pages share.
 
-use crate::io::input::{is_standard, name};
+use crate::io::input::name;
+use crate::io::is_standard;
 use crate::page::up_axis::Up;
 use p2m_core::Aabb;
 use p2m_mixed::Scene;

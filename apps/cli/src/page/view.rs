@@ -3,12 +3,9 @@
 use crate::answers::queries::{Queries, Region};
 use crate::index::backend::{Backend, backends};
 use crate::index::sign_rule::{SignRule, SignedIndex};
-use crate::io::input::{PointArgs, SceneArgs, is_standard, ray_format, read_finite_points, read_rays};
-use crate::io::output::Output;
-use crate::io::progress::{Progress, Unit};
-use crate::io::streams::Streams;
-use crate::io::threads::ThreadArgs;
+use crate::io::input::{ray_format, read_finite_points, read_rays};
 use crate::io::usage::{count_in, not_negative, positive, usage, whole_number};
+use crate::io::{Output, PointArgs, Progress, SceneArgs, Streams, ThreadArgs, Unit, is_standard};
 use crate::page::open::OpenArgs;
 use crate::page::source::{PageArgs, about, file_name};
 use crate::page::tree_levels::TreeLevels;

@@ -2,13 +2,8 @@
 
 use crate::index::backend::{BackendChoice, backend_choices};
 use crate::index::sign_rule::SignRule;
-use crate::io::input::{SceneArgs, is_standard, shown};
-use crate::io::json;
-use crate::io::output::Output;
-use crate::io::progress::{Progress, Unit};
-use crate::io::streams::Streams;
-use crate::io::threads::ThreadArgs;
 use crate::io::usage::{count, finite_not_negative, positive, usage};
+use crate::io::{Output, Progress, SceneArgs, Streams, ThreadArgs, Unit, is_standard, json, shown};
 use anyhow::{Context, anyhow};
 use nalgebra::Point3;
 use p2m_backends::{QueryRegion, Workload};

@@ -2,11 +2,7 @@
 
 use crate::answers::summary::IndexSummary;
 use crate::index::args::IndexArgs;
-use crate::io::input::{is_standard, shown};
-use crate::io::json;
-use crate::io::output::Output;
-use crate::io::streams::Streams;
-use crate::io::usage::usage;
+use crate::io::{Output, Streams, is_standard, json, shown, usage};
 use anyhow::Context;
 use p2m_core::storage::Writer;
 use p2m_mixed::statistics::figure::{Count, Time};

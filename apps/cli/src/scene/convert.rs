@@ -1,12 +1,9 @@
 //! `p2m convert`: converts scenes from one format to another, with changes on request.
 
 use crate::answers::summary::listed;
-use crate::io::input::{self, SceneFile, is_standard, lossless_list, or_option, scene_format, scene_help, shown};
-use crate::io::json;
-use crate::io::output::Output;
-use crate::io::streams::Streams;
-use crate::io::threads::ThreadArgs;
+use crate::io::input::{lossless_list, or_option, scene_format, scene_help};
 use crate::io::usage::{one_of, usage};
+use crate::io::{Output, SceneFile, Streams, ThreadArgs, input, is_standard, json, shown};
 use crate::scene::info::counted;
 use crate::scene::modify::{self, Modifiers};
 use anyhow::{Context, anyhow};

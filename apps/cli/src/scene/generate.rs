@@ -1,10 +1,7 @@
 //! `p2m generate`: generates scenes.
 
-use crate::io::input::is_standard;
-use crate::io::json;
-use crate::io::progress::{Progress, Unit};
-use crate::io::streams::Streams;
 use crate::io::usage::{finite, one_of, whole_number};
+use crate::io::{Progress, Streams, Unit, is_standard, json};
 use crate::scene::convert::Target;
 use crate::scene::modify::{self, Modifiers};
 use clap::{Args as ClapArgs, Subcommand, value_parser};

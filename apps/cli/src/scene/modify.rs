@@ -1,8 +1,7 @@
 //! The changes that `p2m convert` and `p2m generate` apply to scenes.
 
-use crate::io::progress::{Progress, Unit};
-use crate::io::streams::Streams;
 use crate::io::usage::{finite, positive, usage};
+use crate::io::{Progress, Streams, Unit};
 use p2m_core::{Element, PrimitiveSet, Soup};
 use p2m_mixed::generate::{GenerateError, Subdivide, Transform, gapped, penetrating, subdivide};
 use p2m_mixed::{Object, Scene};

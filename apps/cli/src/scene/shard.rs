@@ -1,13 +1,9 @@
 //! `p2m shard`: writes scenes as an index in shards.
 
 use crate::index::backend::{Backend, backends};
-use crate::io::input::{self, SceneFile};
 use crate::io::interrupt::{Listed, unfinished};
-use crate::io::json;
-use crate::io::progress::{Progress, Unit};
-use crate::io::streams::Streams;
-use crate::io::threads::ThreadArgs;
 use crate::io::usage::{bytes, one_of};
+use crate::io::{Progress, SceneFile, Streams, ThreadArgs, Unit, input, json};
 use crate::scene::info::counted;
 use p2m_backends::BackendEntry;
 use p2m_formats::FileFormat;

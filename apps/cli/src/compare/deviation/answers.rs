@@ -3,8 +3,7 @@
 use crate::answers::blocks::{BlockSize, QueryStream, Steps, answer_all};
 use crate::answers::table::{AnswerEncoder, AnswerRecord};
 use crate::index::sign_rule::SignedIndex;
-use crate::io::output::Output;
-use crate::io::streams::Streams;
+use crate::io::{Output, Streams};
 use crate::query::answers::ClosestAnswer;
 use nalgebra::Point3;
 use p2m_backends::AnyIndex;

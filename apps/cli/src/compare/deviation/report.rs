@@ -2,8 +2,7 @@
 
 use super::{Args, DeviationFormat};
 use crate::io::input::name;
-use crate::io::json;
-use crate::io::output::Output;
+use crate::io::{Output, json};
 use crate::page::source::{about, file_name};
 use anyhow::Context;
 use nalgebra::Point3;
