@@ -39,11 +39,7 @@ impl QueryArgs {
     /// Refuses impossible combinations of arguments before any work. `file` has the queries, which messages call
     /// `what`.
     pub(crate) fn check(&self, scene: &SceneArgs, file: Option<&Path>, what: &str) -> anyhow::Result<()> {
-        if self.json && is_standard(&self.out) {
-            return Err(usage(
-                "--json reports on the standard output, so the answers have to go to a file: add --out FILE",
-            ));
-        }
+        Output::refuse_report(self.json, &self.out, "the answers have to go to a file: add --out FILE")?;
         if is_standard(&scene.path) && file.is_some_and(is_standard) {
             return Err(usage(format!("the standard input cannot be both the scene and the {what}")));
         }

@@ -50,29 +50,34 @@ impl Region {
 }
 
 /// A sequence of query points, which are computed as they are needed.
-pub(crate) enum Queries {
-    /// The given points, in order.
-    List(std::vec::IntoIter<Point3<f64>>),
-    /// The points of a grid, from index `next` on.
-    Grid { region: Region, side: u64, next: u64 },
-    /// Random points, of which `left` remain.
-    Random { region: Region, left: u64, rng: Box<ChaCha8Rng> },
+pub(crate) struct Queries {
+    points: Box<dyn Iterator<Item = Point3<f64>>>,
+    /// The number of points that remain.
+    left: u64,
 }
 
 impl Queries {
     /// Returns given points.
     pub(crate) fn list(points: Vec<Point3<f64>>) -> Self {
-        Self::List(points.into_iter())
+        Self { left: points.len() as u64, points: Box::new(points.into_iter()) }
     }
 
     /// Returns a grid of `side` points along each axis, ends included; z runs fastest, then y. `side` is at most 2^21.
     pub(crate) fn grid(region: Region, side: u64) -> Self {
-        Self::Grid { region, side, next: 0 }
+        let t = move |index: u64| fraction(index % side, side - 1);
+        let point = move |i| match side {
+            1 => Point3::from(region.centre),
+            _ => region.at([t(i / (side * side)), t(i / side), t(i)]),
+        };
+        let left = side * side * side;
+        Self { left, points: Box::new((0..left).map(point)) }
     }
 
     /// Returns `count` uniformly distributed points. A seed gives the same points on every machine.
     pub(crate) fn random(region: Region, count: u64, seed: u64) -> Self {
-        Self::Random { region, left: count, rng: Box::new(ChaCha8Rng::seed_from_u64(seed)) }
+        let mut rng = ChaCha8Rng::seed_from_u64(seed);
+        let point = move |_| region.at(std::array::from_fn(|_| unit(&mut rng)));
+        Self { left: count, points: Box::new((0..count).map(point)) }
     }
 
     /// Returns some of the points, by which an index is chosen.
@@ -87,11 +92,7 @@ impl Queries {
 
     /// Returns the number of points that remain.
     pub(crate) fn len(&self) -> u64 {
-        match self {
-            Self::List(points) => points.len() as u64,
-            Self::Grid { side, next, .. } => side * side * side - next,
-            Self::Random { left, .. } => *left,
-        }
+        self.left
     }
 }
 
@@ -99,25 +100,9 @@ impl Iterator for Queries {
     type Item = Point3<f64>;
 
     fn next(&mut self) -> Option<Point3<f64>> {
-        match self {
-            Self::List(points) => points.next(),
-            Self::Grid { region, side, next } => {
-                let (i, side) = (*next, *side);
-                if i == side * side * side {
-                    return None;
-                }
-                *next += 1;
-                if side == 1 {
-                    return Some(Point3::from(region.centre));
-                }
-                let t = |index: u64| fraction(index, side - 1);
-                Some(region.at([t(i / (side * side)), t(i / side % side), t(i % side)]))
-            }
-            Self::Random { region, left, rng } => {
-                *left = left.checked_sub(1)?;
-                Some(region.at(std::array::from_fn(|_| unit(rng))))
-            }
-        }
+        let point = self.points.next()?;
+        self.left -= 1;
+        Some(point)
     }
 }
 

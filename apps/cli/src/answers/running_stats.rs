@@ -11,9 +11,12 @@ const SUM_SCALE: f64 = 1.0 / (1u128 << 64) as f64;
 /// The mean is finite for any finite numbers, even if their sum is not.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct RunningStats {
-    count: u64,
-    min: f64,
-    max: f64,
+    /// The number of numbers so far.
+    pub(crate) count: u64,
+    /// The smallest number so far; infinity if there are none.
+    pub(crate) min: f64,
+    /// The largest number so far; minus infinity if there are none.
+    pub(crate) max: f64,
     sum: f64,
     /// The sum of the numbers times [`SUM_SCALE`]. It replaces a sum that overflows.
     scaled_sum: f64,
@@ -33,21 +36,6 @@ impl RunningStats {
         self.max = self.max.max(x);
         self.sum += x;
         self.scaled_sum += x * SUM_SCALE;
-    }
-
-    /// The number of numbers so far.
-    pub(crate) fn count(&self) -> u64 {
-        self.count
-    }
-
-    /// The smallest number so far; infinity if there are none.
-    pub(crate) fn min(&self) -> f64 {
-        self.min
-    }
-
-    /// The largest number so far; minus infinity if there are none.
-    pub(crate) fn max(&self) -> f64 {
-        self.max
     }
 
     /// The mean of the numbers so far; NaN if there are none.

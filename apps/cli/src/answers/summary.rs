@@ -6,12 +6,12 @@ use crate::io::json::stats;
 use crate::io::{SceneFile, Streams, json};
 use crate::scene::info::counted;
 use p2m_backends::ChosenDirections;
-use p2m_core::Closest;
+use p2m_core::{CellSummary, Closest};
 use p2m_mixed::Skipped;
 use p2m_mixed::statistics::Counts;
 use p2m_mixed::statistics::figure::{Count, Figure, Rate, Time};
 use serde_json::{Value, json};
-use std::fmt::{self, Write};
+use std::fmt;
 use std::time::Duration;
 
 /// The summary of a scene and of the index over it.
@@ -82,6 +82,10 @@ impl<'a> IndexSummary<'a> {
         self.prepared?.reason.as_deref()
     }
 
+    fn cells_of_index(&self) -> Option<CellSummary> {
+        self.prepared?.built.index.cells()
+    }
+
     /// Returns the part of a report about the times of reading, of building, and of something else.
     pub(crate) fn seconds(&self, what: &str, time: Duration) -> Value {
         let [read, build, time] = [self.read_time, self.build_time, time].map(|time| time.as_secs_f64());
@@ -90,44 +94,31 @@ impl<'a> IndexSummary<'a> {
 
     /// Returns the numbers of cells of an index; null for an index without cells.
     pub(crate) fn cells(&self) -> Value {
-        let Some(cells) = self.prepared.and_then(|prepared| prepared.built.index.cells()) else { return Value::Null };
+        let Some(cells) = self.cells_of_index() else { return Value::Null };
         let counts = cells.counts.into_iter().map(|(name, count)| (name, count.into()));
         counts.chain(cells.resolution.map(|resolution| ("resolution", json::number(resolution)))).collect()
     }
 
     /// Returns lines about the scene and the index, with a line for the note if there is one.
     pub(crate) fn text(&self, note: Option<String>) -> String {
-        let mut text = String::new();
-        // Writing to a string does not fail.
-        let _ = self.write(&mut text, note);
-        text
-    }
-
-    fn write(&self, text: &mut String, note: Option<String>) -> fmt::Result {
-        writeln!(text, "scene    {}", self.name)?;
-        writeln!(text, "         {}", counted(&self.counts))?;
-        if self.counts.total() == 0 {
-            writeln!(text, "note     the scene is empty: there is nothing to find")?;
-        }
-        if let Some(note) = note {
-            writeln!(text, "note     {note}")?;
-        }
-        if !self.skipped.is_empty() {
-            writeln!(text, "skipped  {}", listed(self.skipped))?;
-        }
+        let is_empty = self.counts.total() == 0;
+        let empty = is_empty.then(|| "the scene is empty: there is nothing to find".to_owned());
+        let skipped = Some(listed(self.skipped)).filter(|list| !list.is_empty());
         let faces = self.directions().map_or(String::new(), |directions| format!(", {} faces", directions.faces));
         let verb = if self.is_loaded { "loaded" } else { "built" };
-        writeln!(text, "backend  {}{faces}, {verb} in {}", self.backend, Time(self.build_time))?;
-        if let Some(reason) = self.reason() {
-            writeln!(text, "choice   {reason}")?;
-        }
-        if let Some(reason) = self.directions().and_then(|directions| directions.reason.as_ref()) {
-            writeln!(text, "k-DOPs   {reason}")?;
-        }
-        if let Some(cells) = self.prepared.and_then(|prepared| prepared.built.index.cells()) {
-            writeln!(text, "cells    {}", cells.text)?;
-        }
-        Ok(())
+        let backend = format!("{}{faces}, {verb} in {}", self.backend, Time(self.build_time));
+        let lines = [
+            ("scene", Some(self.name.clone())),
+            ("", Some(counted(&self.counts))),
+            ("note", empty),
+            ("note", note),
+            ("skipped", skipped),
+            ("backend", Some(backend)),
+            ("choice", self.reason().map(str::to_owned)),
+            ("k-DOPs", self.directions().and_then(|directions| directions.reason.clone())),
+            ("cells", self.cells_of_index().map(|cells| cells.text)),
+        ];
+        lines.into_iter().filter_map(|(label, text)| Some(format!("{label:9}{}\n", text?))).collect()
     }
 }
 
@@ -179,14 +170,14 @@ impl RunSummary<'_> {
 /// The summary of the answers of closest-point queries.
 #[derive(Debug, Default)]
 pub(crate) struct AnswerSummary {
-    queries: u64,
+    pub(crate) queries: u64,
     /// The number of queries without an answer.
     unanswered: u64,
     distances: RunningStats,
     /// The upper bounds of the errors of the distances.
     errors: RunningStats,
     /// The number of queries that are inside, if there are signs.
-    inside: Option<u64>,
+    pub(crate) inside: Option<u64>,
 }
 
 impl AnswerSummary {
@@ -208,11 +199,6 @@ impl AnswerSummary {
         }
     }
 
-    /// Returns the number of queries that are inside, if there are signs.
-    pub(crate) fn inside(&self) -> Option<u64> {
-        self.inside
-    }
-
     /// Adds a query with any number of answers.
     pub(crate) fn add_all(&mut self, answers: &[Closest<f64>]) {
         self.queries += 1;
@@ -221,10 +207,6 @@ impl AnswerSummary {
             self.distances.add(closest.distance);
             self.errors.add(closest.distance - closest.lower_bound);
         }
-    }
-
-    pub(crate) fn queries(&self) -> u64 {
-        self.queries
     }
 
     /// Returns the part of a report about queries that came from `source`.
@@ -237,7 +219,7 @@ impl AnswerSummary {
             "queries": self.queries,
             "answered": self.queries - self.unanswered,
             "unanswered": self.unanswered,
-            "answers": self.distances.count(),
+            "answers": self.distances.count,
             "distance": stats(&self.distances),
             "error": stats(&self.errors),
         })
@@ -246,7 +228,7 @@ impl AnswerSummary {
 
 impl fmt::Display for AnswerSummary {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let answers = self.distances.count();
+        let answers = self.distances.count;
         if let Some(inside) = self.inside {
             writeln!(f, "inside   {} of {}", Count(inside), Count(self.queries))?;
         }
@@ -258,7 +240,7 @@ impl fmt::Display for AnswerSummary {
             writeln!(
                 f,
                 "accuracy distances are too large by at most {}, on average by at most {}",
-                Figure(self.errors.max()),
+                Figure(self.errors.max),
                 Figure(self.errors.mean())
             )?;
         }

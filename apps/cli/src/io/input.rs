@@ -189,9 +189,14 @@ pub(crate) fn uncompressed_name(path: &Path) -> anyhow::Result<PathBuf> {
     Ok(if is_compressed(path) { path.with_extension("") } else { path.to_owned() })
 }
 
+/// Returns whether a name has one of these extensions.
+pub(crate) fn has_extension(path: &Path, extensions: &[&str]) -> bool {
+    path.extension().is_some_and(|found| extensions.iter().any(|extension| found.eq_ignore_ascii_case(extension)))
+}
+
 /// Returns whether a name has the extension of a compression.
 fn is_compressed(path: &Path) -> bool {
-    path.extension().is_some_and(|e| e.eq_ignore_ascii_case("gz") || e.eq_ignore_ascii_case("zst"))
+    has_extension(path, &["gz", "zst"])
 }
 
 /// The error that the standard input has no format.

@@ -55,10 +55,10 @@ pub(crate) fn counts(counts: &Counts) -> Value {
 
 /// Converts least, greatest and mean number; to null if there are no numbers.
 pub(crate) fn stats(stats: &RunningStats) -> Value {
-    if stats.count() == 0 {
+    if stats.count == 0 {
         return Value::Null;
     }
-    json!({ "min": number(stats.min()), "max": number(stats.max()), "mean": number(stats.mean()) })
+    json!({ "min": number(stats.min), "max": number(stats.max), "mean": number(stats.mean()) })
 }
 
 /// Lists the records of a file that were skipped.

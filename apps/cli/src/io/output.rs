@@ -52,6 +52,14 @@ impl<'a> Output<'a> {
         Ok(())
     }
 
+    /// Refuses to write both a report and something else to the standard output.
+    pub(crate) fn refuse_report(is_json: bool, path: &Path, instead: &str) -> anyhow::Result<()> {
+        if is_json && is_standard(path) {
+            return Err(usage(format!("--json reports on the standard output, so {instead}")));
+        }
+        Ok(())
+    }
+
     /// Refuses to write bytes to a terminal.
     pub(crate) fn refuse_terminal(streams: &Streams, path: &Path, format: &str) -> anyhow::Result<()> {
         if is_standard(path) && streams.is_stdout_terminal() {

@@ -4,6 +4,7 @@ use crate::answers::queries::{Queries, Region};
 use crate::answers::summary::IndexSummary;
 use crate::index::args::IndexArgs;
 use crate::index::backend::PreparedIndex;
+use crate::io::input::has_extension;
 use crate::io::usage::{positive, whole_number};
 use crate::io::{Output, Progress, Streams, Unit, json, shown};
 use crate::page::camera::Camera;
@@ -18,7 +19,7 @@ use p2m_core::{ListStats, PrimitiveSet, QueryCost, RayQuery, Soup, Stat, StatsCo
 use p2m_mixed::statistics::figure::{Count, Time};
 use serde_json::{Value, json};
 use std::fmt;
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 use std::time::Instant;
 
 const HELP: &str = "\
@@ -75,7 +76,7 @@ pub(crate) struct Args {
 pub(crate) fn run(streams: &Streams, args: &Args) -> anyhow::Result<()> {
     let scene_args = &args.index_args.scene;
     if let Some(out) = &args.out {
-        if !has_extension(out, "ply") && !has_extension(out, "png") {
+        if !has_extension(out, &["ply", "png"]) {
             bail!("{}: the name of a picture ends in .ply or .png", out.display());
         }
         Output::refuse_inputs(out, &[&scene_args.path])?;
@@ -105,7 +106,7 @@ pub(crate) fn run(streams: &Streams, args: &Args) -> anyhow::Result<()> {
     };
     if let Some(mut output) = picture {
         let values: Vec<f64> = centroids(soup).map(|centroid| query_cost(index, &centroid)).collect();
-        if args.out.as_ref().is_some_and(|out| has_extension(out, "ply")) {
+        if args.out.as_ref().is_some_and(|out| has_extension(out, &["ply"])) {
             write_values_ply(soup, &values, &mut output).with_context(|| output.cannot_write())?;
         } else {
             args.draw(soup, &values, &mut output)?;
@@ -126,10 +127,6 @@ pub(crate) fn run(streams: &Streams, args: &Args) -> anyhow::Result<()> {
     Output::print(streams, format!("{}{stats}", index.text(None)))
 }
 
-fn has_extension(path: &Path, extension: &str) -> bool {
-    path.extension().is_some_and(|found| found.eq_ignore_ascii_case(extension))
-}
-
 /// Parses a direction that has an extent across the vertical axis.
 fn direction(text: &str) -> Result<Vector3<f64>, String> {
     let numbers: Option<Vec<f64>> = text.split(',').map(|x| x.trim().parse().ok()).collect();
@@ -147,14 +144,14 @@ impl Args {
         let camera = camera.context("nothing to draw: the scene is empty or has no extent")?;
         let tree = AabbTree::new(soup)?;
         let colours = value_colours(values);
-        let [width, height] = camera.size();
+        let [width, height] = camera.size;
         let pixel = |row: u32, column: u32| -> [u8; 3] {
             let ray = camera.ray([f64::from(column) + 0.5, f64::from(row) + 0.5]);
             let Some(hit) = tree.first_intersection(&ray) else { return [255; 3] };
             let light = match soup.get(hit.primitive).vertices() {
                 [a, b, c] => {
                     let normal = (b - a).cross(&(c - a));
-                    normal.try_normalize(0.0).map_or(1.0, |n| 0.45 + 0.55 * n.dot(&camera.axes()[2]).abs())
+                    normal.try_normalize(0.0).map_or(1.0, |n| 0.45 + 0.55 * n.dot(&camera.axes[2]).abs())
                 }
                 _ => 1.0,
             };

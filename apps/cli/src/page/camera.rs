@@ -9,14 +9,14 @@ const EYE_DISTANCE_DIAGONALS: f64 = 2.0;
 /// An eye, and a picture in a plane through the centre of the scene, in which y is up.
 pub(crate) struct Camera {
     eye: Point3<f64>,
-    /// The directions to the right, upwards and towards the eye.
-    axes: [Vector3<f64>; 3],
+    /// The unit vectors to the right in the picture, upwards in the picture, and towards the eye.
+    pub(crate) axes: [Vector3<f64>; 3],
     /// The upper left corner of the picture.
     corner: Point3<f64>,
     /// The side of a pixel, in units of the scene.
     pixel: f64,
     /// The width and height of the picture in pixels.
-    size: [u32; 2],
+    pub(crate) size: [u32; 2],
 }
 
 impl Camera {
@@ -53,16 +53,6 @@ impl Camera {
             pixel,
             size: [width, height],
         })
-    }
-
-    /// Returns the width and height of the picture in pixels.
-    pub(crate) fn size(&self) -> [u32; 2] {
-        self.size
-    }
-
-    /// Returns the unit vectors to the right in the picture, upwards in the picture, and towards the eye.
-    pub(crate) fn axes(&self) -> &[Vector3<f64>; 3] {
-        &self.axes
     }
 
     /// Returns the ray from the eye through a point of the picture, which is given in pixels from the upper left

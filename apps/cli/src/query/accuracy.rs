@@ -23,7 +23,7 @@ pub(crate) struct Accuracy {
 
     /// Find the nearest primitive in exact arithmetic, and round its distance once
     #[arg(long)]
-    certified: bool,
+    pub(crate) certified: bool,
 }
 
 impl Accuracy {
@@ -34,11 +34,6 @@ impl Accuracy {
             .with_max_distance(max_distance.unwrap_or(defaults.max_distance))
             .with_epsilon(self.epsilon.unwrap_or(defaults.epsilon))
             .with_max_visits(self.max_visits.unwrap_or(defaults.max_visits))
-    }
-
-    /// Returns whether answers are certified.
-    pub(crate) fn is_certified(&self) -> bool {
-        self.certified
     }
 
     /// Returns whether answers are exact and not certified, as those of batches are.

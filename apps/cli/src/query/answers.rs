@@ -86,9 +86,9 @@ impl Run<'_> {
             };
             run.answer(queries, file, steps)?
         };
-        let inside = json!({ "sign_rule": signs.map(|signs| signs.rule), "inside": summary.inside() });
+        let inside = json!({ "sign_rule": signs.map(|signs| signs.rule), "inside": summary.inside });
         let report = json::joined([args.report(&summary, &run.index.cells()), inside]);
         let text = format!("{summary}{}", signs.map(|signs| signs.text()).unwrap_or_default());
-        run.finish(["query", "queries", "query"], summary.queries(), time, report, &text)
+        run.finish(["query", "queries", "query"], summary.queries, time, report, &text)
     }
 }

@@ -4,7 +4,7 @@ use crate::answers::summary::IndexSummary;
 use crate::index::args::IndexArgs;
 use crate::index::backend::PreparedIndex;
 use crate::index::sign_rule::{SignReport, SignRule, SignedIndex};
-use crate::io::input::or_option;
+use crate::io::input::{has_extension, or_option};
 use crate::io::usage::{finite, not_negative, one_of, positive, usage};
 use crate::io::{Output, Progress, SceneFile, Streams, Unit, is_standard, json, shown};
 use crate::page::picture::write_png;
@@ -175,14 +175,11 @@ pub(crate) fn run(streams: &Streams, args: &Args) -> anyhow::Result<()> {
         });
         return json::print_report(streams, "field", [index.json(), report.json(), end]);
     }
-    let mut text = index.text(None);
-    // Writing to a string does not fail.
-    let _ = report.write(&mut text);
-    text += &match &surface {
+    let written = match &surface {
         Some(surface) => surface.text(),
         None => format!("written  {}, {bytes} bytes\n", args.out.display()),
     };
-    streams.print_summary(format_args!("{text}"));
+    streams.print_summary(format_args!("{}{}{written}", index.text(None), report.text()));
     Ok(())
 }
 
@@ -239,9 +236,7 @@ impl Args {
     /// Refuses arguments that cannot be met before any work, and returns the format of the field.
     fn check(&self, streams: &Streams) -> anyhow::Result<FieldFormat> {
         let scene = &self.index_args.scene;
-        if self.json && is_standard(&self.out) {
-            return Err(usage("--json reports on the standard output, so the field has to go to a file"));
-        }
+        Output::refuse_report(self.json, &self.out, "the field has to go to a file")?;
         if let Some(distance) = self.iso {
             if self.resolution < MIN_ISO_RESOLUTION {
                 return Err(usage(format!("--iso needs a --resolution of at least {MIN_ISO_RESOLUTION}")));
@@ -261,7 +256,7 @@ impl Args {
             if slice == &self.out || is_standard(slice) {
                 return Err(usage("--slice needs a file of its own"));
             }
-            if !slice.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("png")) {
+            if !has_extension(slice, &["png"]) {
                 return Err(usage(format!(
                     "--slice {}: the picture is a PNG file, so its name ends in .png",
                     slice.display()

@@ -5,7 +5,6 @@ use crate::io::json;
 use p2m_field::Grid;
 use p2m_mixed::statistics::figure::{Count, Length, Time};
 use serde_json::{Value, json};
-use std::fmt::Write;
 use std::time::Duration;
 
 /// The content of the file.
@@ -59,35 +58,30 @@ impl FieldSummary<'_> {
         })
     }
 
-    /// Writes lines about the field for people.
+    /// Returns lines about the field for people.
     #[allow(clippy::cast_precision_loss, reason = "numbers for people to read")]
-    pub(crate) fn write(&self, text: &mut String) -> std::fmt::Result {
+    pub(crate) fn text(&self) -> String {
         let (min, max, inside, undefined) = self.values();
-        let threads = if self.threads == 1 { "1 thread".to_owned() } else { format!("{} threads", self.threads) };
-        match self.field {
+        let time = Time(self.field_time);
+        let field = match self.field {
             ComputedField::Grid(values) => {
                 let [x, y, z] = self.grid.counts();
                 let each = self.field_time.as_nanos() as f64 / values.len() as f64;
                 let [at_x, at_y, at_z] = <[f64; 3]>::from(self.grid.origin()).map(Length);
-                let spacing = Length(self.grid.spacing());
-                writeln!(text, "field    {x} x {y} x {z} points, {spacing} apart, from {at_x} {at_y} {at_z}")?;
-                writeln!(text, "filled   in {} on {threads}: {each:.0} ns per point", Time(self.field_time))?;
+                let (threads, spacing) = (self.threads, Length(self.grid.spacing()));
+                let plural = if threads == 1 { "" } else { "s" };
+                format!(
+                    "field    {x} x {y} x {z} points, {spacing} apart, from {at_x} {at_y} {at_z}\n\
+                     filled   in {time} on {threads} thread{plural}: {each:.0} ns per point\n"
+                )
             }
-            ComputedField::Cells(cells) => {
-                writeln!(text, "field    {} cells, cut in {}", Count(cells.len() as u64), Time(self.field_time))?
-            }
-        }
-        write!(text, "distance min {}, max {}", Length(min), Length(max))?;
-        if let Some(signs) = self.signs {
-            write!(
-                text,
-                "; {} values inside, {} undefined\n{}",
-                Count(inside as u64),
-                Count(undefined as u64),
-                signs.text()
-            )?;
-            return Ok(());
-        }
-        writeln!(text)
+            ComputedField::Cells(cells) => format!("field    {} cells, cut in {time}\n", Count(cells.len() as u64)),
+        };
+        let signs = self.signs.map(|signs| {
+            let [inside, undefined] = [inside, undefined].map(|count| Count(count as u64));
+            format!("; {inside} values inside, {undefined} undefined\n{}", signs.text())
+        });
+        let signs = signs.unwrap_or_else(|| "\n".to_owned());
+        format!("{field}distance min {}, max {}{signs}", Length(min), Length(max))
     }
 }

@@ -187,7 +187,7 @@ impl Source for Shards<'_> {
         if self.args.has_only_inside() {
             return Ok(only_inside(batch.contains(queries)?));
         }
-        let answers = match self.args.accuracy.is_certified() {
+        let answers = match self.args.accuracy.certified {
             true => batch.certified_closest_points(queries, &options)?,
             false => batch.closest_points(queries, &options)?,
         };

@@ -2,6 +2,7 @@
 
 use crate::index::backend::{BackendChoice, backend_choices};
 use crate::index::sign_rule::SignRule;
+use crate::io::input::has_extension;
 use crate::io::usage::{count, finite_not_negative, positive, usage};
 use crate::io::{Output, Progress, SceneArgs, Streams, ThreadArgs, Unit, is_standard, json, shown};
 use anyhow::{Context, anyhow};
@@ -93,15 +94,13 @@ const SAMPLE_BYTES: usize = 64;
 const BLOCK: usize = 1 << 22;
 
 pub(crate) fn run(streams: &Streams, args: &Args) -> anyhow::Result<()> {
-    if !is_standard(&args.out) && args.out.extension().is_none_or(|extension| !extension.eq_ignore_ascii_case("npz")) {
+    if !is_standard(&args.out) && !has_extension(&args.out, &["npz"]) {
         return Err(usage(format!(
             "{}: samples are written as NPZ files: choose a name that ends in .npz",
             shown(&args.out)
         )));
     }
-    if args.json && is_standard(&args.out) {
-        return Err(usage("--json reports on the standard output, so the samples have to go to a file"));
-    }
+    Output::refuse_report(args.json, &args.out, "the samples have to go to a file")?;
     Output::refuse_terminal(streams, &args.out, "an NPZ file")?;
     Output::refuse_inputs(&args.out, &[&args.scene.path])?;
     let [surface, near, uniform] = [args.surface, args.near, args.uniform].map(|n| usize::try_from(n.unwrap_or(0)));

@@ -54,7 +54,7 @@ impl Run<'_> {
     pub(crate) fn finish(mut self, source: RaySource<'_>) -> anyhow::Result<()> {
         let (query_time, summary) = self.answer(source)?;
         let report = self.args.report(summary.json());
-        self.run.finish(["ray", "rays", "ray"], summary.rays(), query_time, report, &summary.to_string())
+        self.run.finish(["ray", "rays", "ray"], summary.rays, query_time, report, &summary.to_string())
     }
 
     /// Answers all rays and writes the answers. Returns the time that answering took, and a summary.

@@ -10,7 +10,8 @@ use std::fmt;
 /// The summary of the answers of rays.
 #[derive(Debug, Default)]
 pub(crate) struct RaySummary {
-    rays: u64,
+    /// The number of rays so far.
+    pub(crate) rays: u64,
     /// The number of rays with at least one hit or crossing.
     with_hit: u64,
     /// The parameters of the hits, in modes that return hits.
@@ -51,11 +52,6 @@ impl RaySummary {
         hits.iter().for_each(|hit| self.parameters.add(hit.parameter));
     }
 
-    /// The number of rays so far.
-    pub(crate) fn rays(&self) -> u64 {
-        self.rays
-    }
-
     #[allow(clippy::cast_precision_loss, reason = "more rays and hits than 2^53 are out of reach")]
     fn mean(&self, counts: &CountStats) -> f64 {
         counts.total as f64 / self.rays as f64
@@ -84,7 +80,7 @@ impl fmt::Display for RaySummary {
             let mean = Figure(self.mean(counts));
             writeln!(f, "{label:9}{}, per ray min {min}, max {max}, mean {mean}", Count(*total))?;
         }
-        if self.parameters.count() > 0 {
+        if self.parameters.count > 0 {
             writeln!(f, "at t     {}", self.parameters)?;
         }
         Ok(())

@@ -2,7 +2,7 @@
 
 use crate::answers::summary::IndexSummary;
 use crate::index::args::IndexArgs;
-use crate::io::{Output, Streams, is_standard, json, shown, usage};
+use crate::io::{Output, Streams, json, shown, usage};
 use anyhow::Context;
 use p2m_core::storage::Writer;
 use p2m_mixed::statistics::figure::{Count, Time};
@@ -47,9 +47,7 @@ pub(crate) fn run(streams: &Streams, args: &Args) -> anyhow::Result<()> {
         return Err(usage(format!("--backend {backend} has no index to save")));
     }
     args.index_args.p2m.check_saveable()?;
-    if args.json && is_standard(&args.out) {
-        return Err(usage("--json reports on the standard output, so the index has to go to a file"));
-    }
+    Output::refuse_report(args.json, &args.out, "the index has to go to a file")?;
     Output::refuse_inputs(&args.out, &[&scene_args.path])?;
     Output::refuse_terminal(streams, &args.out, Format::P2m.name())?;
     let format = scene_args.format()?;

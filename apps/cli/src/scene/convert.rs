@@ -143,10 +143,7 @@ impl<'a> Target<'a> {
 
     /// Refuses to write both a report and a scene to the standard output.
     pub(crate) fn check_report(&self, is_json: bool) -> anyhow::Result<()> {
-        if is_json && is_standard(self.path) {
-            return Err(usage("--json reports on the standard output, so the scene has to go to a file"));
-        }
-        Ok(())
+        Output::refuse_report(is_json, self.path, "the scene has to go to a file")
     }
 
     /// Writes the scene.
