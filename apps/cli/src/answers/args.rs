@@ -1,7 +1,7 @@
 //! The arguments that `query` and `ray` share.
 
 use crate::answers::table::AnswerFormat;
-use crate::index::kdop_directions::kdop_faces;
+use crate::index::kdop_faces;
 use crate::io::input::or_option;
 use crate::io::usage::{one_of, usage};
 use crate::io::{Output, SceneArgs, Streams, ThreadArgs, is_standard, shown};

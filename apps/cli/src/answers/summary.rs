@@ -1,7 +1,7 @@
 //! Summaries of a run: its scene, its index and its answers, as text for people or as JSON for programs.
 
 use crate::answers::running_stats::RunningStats;
-use crate::index::backend::PreparedIndex;
+use crate::index::PreparedIndex;
 use crate::io::json::stats;
 use crate::io::{SceneFile, Streams, json};
 use crate::scene::info::counted;

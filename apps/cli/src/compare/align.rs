@@ -1,10 +1,10 @@
 //! `p2m align`: moves a scan onto a scene.
 
 use crate::compare::scan::ScanArgs;
-use crate::index::backend::{Backend, backends};
+use crate::index::{Backend, backends};
 use crate::io::input::name;
 use crate::io::{Output, Progress, SceneArgs, SceneFile, Streams, ThreadArgs, Unit, is_standard, json, shown, usage};
-use crate::page::pair::{PairPage, PairPageArgs, PairResult};
+use crate::page::{PairPage, PairPageArgs, PairResult};
 use crate::scene::convert::Target;
 use anyhow::{Context, anyhow};
 use nalgebra::Point3;

@@ -2,7 +2,7 @@
 
 use crate::compare::scene_pair::{ScenePairArgs, line_of_point, report_of_point};
 use crate::io::{Output, Progress, SceneFile, Streams, ThreadArgs, Unit, json, usage};
-use crate::page::pair::{PairPage, PairPageArgs, PairResult};
+use crate::page::{PairPage, PairPageArgs, PairResult};
 use anyhow::Context;
 use nalgebra::Point3;
 use p2m_bvh::AabbTree;

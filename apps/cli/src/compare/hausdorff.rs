@@ -1,10 +1,10 @@
 //! `p2m hausdorff`: finds how far points of two scenes are from the other scene at most.
 
 use crate::compare::scene_pair::{ScenePairArgs, line_of_point, report_of_point};
-use crate::index::backend::{Backend, backends};
+use crate::index::{Backend, backends};
 use crate::io::usage::finite_not_negative;
 use crate::io::{Output, Progress, SceneFile, Streams, ThreadArgs, Unit, json};
-use crate::page::pair::{PairPage, PairPageArgs, PairResult};
+use crate::page::{PairPage, PairPageArgs, PairResult};
 use anyhow::{Context, anyhow};
 use p2m_core::PrimitiveSet;
 use p2m_core::pair::Motion;

@@ -1,6 +1,6 @@
 //! Indexes in shards, as commands open and summarize them.
 
-use crate::answers::summary::IndexSummary;
+use crate::answers::IndexSummary;
 use crate::io::{SceneArgs, usage};
 use p2m_core::PrimitiveId;
 use p2m_shards::{ShardedIndex, folder_of};

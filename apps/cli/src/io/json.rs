@@ -4,7 +4,7 @@
 //! Within a version keys are added, never removed, renamed or given another meaning. Values that do not exist or are
 //! not finite are null.
 
-use crate::answers::running_stats::RunningStats;
+use crate::answers::RunningStats;
 use crate::io::streams::Streams;
 use anyhow::Context;
 use p2m_mixed::Skipped;

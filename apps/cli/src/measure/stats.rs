@@ -1,9 +1,7 @@
 //! `p2m stats`: the parts of an index and the costs of its queries, in counts that do not depend on the machine.
 
-use crate::answers::queries::{Queries, Region};
-use crate::answers::summary::IndexSummary;
-use crate::index::args::IndexArgs;
-use crate::index::backend::PreparedIndex;
+use crate::answers::{IndexSummary, Queries, Region};
+use crate::index::{IndexArgs, PreparedIndex};
 use crate::io::input::has_extension;
 use crate::io::usage::{positive, whole_number};
 use crate::io::{Output, Progress, Streams, Unit, json, shown};

@@ -1,6 +1,6 @@
 //! `p2m boxes`: draws the boxes of the AABB tree, or the polytopes of the k-DOP tree, level by level.
 
-use crate::index::kdop_directions::kdop_faces;
+use crate::index::kdop_faces;
 use crate::io::{Output, Progress, SceneArgs, Streams, ThreadArgs, Unit, json, shown};
 use crate::page::drawing::{Panel, View, box_edges, write_picture_ply, write_svg};
 use crate::page::tree_levels::TreeLevels;

@@ -10,3 +10,7 @@ pub(crate) mod source;
 pub(crate) mod tree_levels;
 pub(crate) mod up_axis;
 pub(crate) mod view;
+
+pub(crate) use open::OpenArgs;
+pub(crate) use pair::{PairPage, PairPageArgs, PairResult};
+pub(crate) use source::{PageArgs, about, file_name};

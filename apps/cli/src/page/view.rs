@@ -1,8 +1,7 @@
 //! `p2m view`: a page that shows a scene, its answers, its field and the boxes of its tree in a browser.
 
-use crate::answers::queries::{Queries, Region};
-use crate::index::backend::{Backend, backends};
-use crate::index::sign_rule::{SignRule, SignedIndex};
+use crate::answers::{Queries, Region};
+use crate::index::{Backend, SignRule, SignedIndex, backends};
 use crate::io::input::{ray_format, read_finite_points, read_rays};
 use crate::io::usage::{count_in, not_negative, positive, usage, whole_number};
 use crate::io::{Output, PointArgs, Progress, SceneArgs, Streams, ThreadArgs, Unit, is_standard};

@@ -1,6 +1,6 @@
 //! The arguments about the accuracy of answers: two that trade accuracy for speed, and one that certifies answers.
 
-use crate::answers::blocks::answer_each;
+use crate::answers::answer_each;
 use crate::io::usage::finite_not_negative;
 use nalgebra::Point3;
 use p2m_core::batch::{self, BatchOptions};

@@ -1,11 +1,7 @@
 //! The answers of `p2m query`: closest points of any source, written as a table.
 
-use crate::answers::blocks::{BlockSize, QueryStream, Steps};
-use crate::answers::queries::Queries;
-use crate::answers::run::AnswerRun;
-use crate::answers::summary::AnswerSummary;
-use crate::answers::table::{AnswerEncoder, AnswerRecord};
-use crate::index::sign_rule::SignReport;
+use crate::answers::{AnswerEncoder, AnswerRecord, AnswerRun, AnswerSummary, BlockSize, Queries, QueryStream, Steps};
+use crate::index::SignReport;
 use crate::io::json;
 use crate::query::args::Args;
 use nalgebra::Point3;

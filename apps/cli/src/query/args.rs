@@ -1,12 +1,8 @@
 //! The arguments of `p2m query`, and the queries that they ask for.
 
-use crate::answers::args::QueryArgs;
-use crate::answers::queries::{BOX_SCALE, Queries, Region};
-use crate::answers::summary::AnswerSummary;
-use crate::answers::table::{AnswerColumn, AnswerFormat};
-use crate::index::backend::{BackendChoice, backend_choices};
-use crate::index::p2m_args::P2mArgs;
-use crate::index::sign_rule::SignRule;
+use crate::answers::queries::BOX_SCALE;
+use crate::answers::{AnswerColumn, AnswerFormat, AnswerSummary, Queries, QueryArgs, Region};
+use crate::index::{BackendChoice, P2mArgs, SignRule, backend_choices};
 use crate::io::usage::{bytes, count, not_negative, positive, usage, whole_number};
 use crate::io::{PointArgs, SceneArgs, Streams, input, json};
 use crate::query::accuracy::Accuracy;

@@ -1,6 +1,6 @@
 //! `p2m query --device cuda`: answers of an NVIDIA card, which have the bits of those of the processor.
 
-use crate::answers::blocks::BlockSize;
+use crate::answers::BlockSize;
 use crate::query::answers::{ClosestAnswer, Source};
 use crate::query::args::Args;
 use nalgebra::Point3;

@@ -1,9 +1,7 @@
 //! `p2m field`: distances from a scene on a grid or an octree.
 
-use crate::answers::summary::IndexSummary;
-use crate::index::args::IndexArgs;
-use crate::index::backend::PreparedIndex;
-use crate::index::sign_rule::{SignReport, SignRule, SignedIndex};
+use crate::answers::IndexSummary;
+use crate::index::{IndexArgs, PreparedIndex, SignReport, SignRule, SignedIndex};
 use crate::io::input::{has_extension, or_option};
 use crate::io::usage::{finite, not_negative, one_of, positive, usage};
 use crate::io::{Output, Progress, SceneFile, Streams, Unit, is_standard, json, shown};

@@ -1,6 +1,6 @@
 //! The summary of a distance field, as text for people or as JSON for programs.
 
-use crate::index::sign_rule::SignReport;
+use crate::index::SignReport;
 use crate::io::json;
 use p2m_field::Grid;
 use p2m_mixed::statistics::figure::{Count, Length, Time};

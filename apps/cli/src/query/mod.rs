@@ -11,11 +11,9 @@ pub(crate) mod sample;
 
 pub(crate) use args::Args;
 
-use crate::answers::blocks::{BlockSize, answer_each};
-use crate::answers::run::AnswerRun;
-use crate::answers::summary::IndexSummary;
+use crate::answers::{AnswerRun, BlockSize, IndexSummary, answer_each};
 use crate::index::shards::{open, refuse_options_of_builds, shard_folder, summarize};
-use crate::index::sign_rule::{SignReport, SignRule, SignedIndex};
+use crate::index::{SignReport, SignRule, SignedIndex};
 use crate::io::{Output, Streams, usage};
 use crate::query::answers::{ClosestAnswer, Run, Source};
 use crate::query::args::{PreparedQueries, queries};

@@ -1,7 +1,6 @@
 //! `p2m sample`: random points on and around a scene.
 
-use crate::index::backend::{BackendChoice, backend_choices};
-use crate::index::sign_rule::SignRule;
+use crate::index::{BackendChoice, SignRule, backend_choices};
 use crate::io::input::has_extension;
 use crate::io::usage::{count, finite_not_negative, positive, usage};
 use crate::io::{Output, Progress, SceneArgs, Streams, ThreadArgs, Unit, is_standard, json, shown};

@@ -1,8 +1,6 @@
 //! The loop that answers rays and writes their hits or counts, whichever index they are asked of.
 
-use crate::answers::blocks::Steps;
-use crate::answers::run::AnswerRun;
-use crate::answers::table::{HitEncoder, NumberEncoder};
+use crate::answers::{AnswerRun, HitEncoder, NumberEncoder, Steps};
 use crate::ray::args::{Args, Mode, Rays};
 use crate::ray::summary::RaySummary;
 use p2m_core::engine::parallel;

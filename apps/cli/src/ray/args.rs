@@ -1,9 +1,7 @@
 //! The arguments of `p2m ray`, and the rays that they ask for.
 
-use crate::answers::args::QueryArgs;
-use crate::answers::blocks::{BlockSize, QueryStream};
-use crate::answers::queries::{Region, random_rays};
-use crate::index::backend::{Backend, backends};
+use crate::answers::{BlockSize, QueryArgs, QueryStream, Region, random_rays};
+use crate::index::{Backend, backends};
 use crate::io::input::{ray_format, read_rays};
 use crate::io::usage::{bytes, count, finite_not_negative, number, one_of, positive, usage, whole_number};
 use crate::io::{SceneArgs, Streams, input, json};

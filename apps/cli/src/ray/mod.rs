@@ -6,10 +6,8 @@ mod summary;
 
 pub(crate) use args::Args;
 
-use crate::answers::blocks::BlockSize;
-use crate::answers::run::AnswerRun;
-use crate::answers::summary::IndexSummary;
-use crate::index::backend::Chosen;
+use crate::answers::{AnswerRun, BlockSize, IndexSummary};
+use crate::index::Chosen;
 use crate::index::shards::{open, refuse_options_of_builds, shard_folder, summarize};
 use crate::io::{Output, Streams, usage};
 use crate::ray::answers::{RaySource, Run};

@@ -1,6 +1,6 @@
 //! The summary of the answers of rays, as text for people or as JSON for programs.
 
-use crate::answers::running_stats::RunningStats;
+use crate::answers::RunningStats;
 use crate::io::json::stats;
 use p2m_core::Hit;
 use p2m_mixed::statistics::figure::{Count, Figure};

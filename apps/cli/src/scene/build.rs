@@ -1,7 +1,7 @@
 //! `p2m build`: saves an index in a file that other commands use.
 
-use crate::answers::summary::IndexSummary;
-use crate::index::args::IndexArgs;
+use crate::answers::IndexSummary;
+use crate::index::IndexArgs;
 use crate::io::{Output, Streams, json, shown, usage};
 use anyhow::Context;
 use p2m_core::storage::Writer;

@@ -1,6 +1,6 @@
 //! `p2m convert`: converts scenes from one format to another, with changes on request.
 
-use crate::answers::summary::listed;
+use crate::answers::listed;
 use crate::io::input::{lossless_list, or_option, scene_format, scene_help};
 use crate::io::usage::{one_of, usage};
 use crate::io::{Output, SceneFile, Streams, ThreadArgs, input, is_standard, json, shown};

@@ -1,6 +1,6 @@
 //! `p2m shard`: writes scenes as an index in shards.
 
-use crate::index::backend::{Backend, backends};
+use crate::index::{Backend, backends};
 use crate::io::interrupt::{Listed, unfinished};
 use crate::io::usage::{bytes, one_of};
 use crate::io::{Progress, SceneFile, Streams, ThreadArgs, Unit, input, json};

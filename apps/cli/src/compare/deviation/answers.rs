@@ -1,8 +1,7 @@
 //! The answers to the points of a scan: the closest point and the deviation of each.
 
-use crate::answers::blocks::{BlockSize, QueryStream, Steps, answer_all};
-use crate::answers::table::{AnswerEncoder, AnswerRecord};
-use crate::index::sign_rule::SignedIndex;
+use crate::answers::{AnswerEncoder, AnswerRecord, BlockSize, QueryStream, Steps, answer_all};
+use crate::index::SignedIndex;
 use crate::io::{Output, Streams};
 use crate::query::answers::ClosestAnswer;
 use nalgebra::Point3;

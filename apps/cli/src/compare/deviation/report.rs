@@ -3,7 +3,7 @@
 use super::{Args, DeviationFormat};
 use crate::io::input::name;
 use crate::io::{Output, json};
-use crate::page::source::{about, file_name};
+use crate::page::{about, file_name};
 use anyhow::Context;
 use nalgebra::Point3;
 use p2m_field::deviation::{DeviationStatistics, OutsideTolerance, bands, histogram, outside};
