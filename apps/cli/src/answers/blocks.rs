@@ -5,10 +5,9 @@
 //! source of the queries only if these are slower than answering.
 
 use crate::answers::table::{Header, Table};
-use crate::io::{Output, Progress, Streams, Unit};
+use crate::io::{Output, Progress, Session, Streams, Unit};
 use indicatif::{DecimalBytes, HumanCount, HumanDuration};
 use p2m_core::engine::parallel;
-use rayon::ThreadPool;
 use std::time::{Duration, Instant};
 
 /// The largest number of queries of a block. The records of two blocks are in memory at a time.
@@ -89,8 +88,7 @@ pub(crate) struct Steps<Answer, Encode, Take> {
 /// # Errors
 /// It returns the first error of answering or writing, after which nothing more is answered.
 pub(crate) fn answer_all<Q: Send + Sync, A: Send + Sync>(
-    streams: &Streams,
-    pool: &ThreadPool,
+    session: &Session<'_>,
     mut queries: QueryStream<impl Iterator<Item = Q>>,
     file: Option<(&mut Output<'_>, Header, Option<u64>)>,
     steps: Steps<
@@ -104,10 +102,10 @@ pub(crate) fn answer_all<Q: Send + Sync, A: Send + Sync>(
     let failed = |error| anyhow::Error::new(error).context(cannot_write.clone());
     let mut table =
         file.map(|(output, header, count)| Table::new(output, header, count)).transpose().map_err(failed)?;
-    let progress = Progress::start(streams, "answering", Some(queries.count), Unit::Items(queries.name));
+    let progress = Progress::start(session.streams, "answering", Some(queries.count), Unit::Items(queries.name));
     // A query by brute force can take milliseconds, and one with many answers much memory.
     let min_block = match queries.block_size {
-        BlockSize::Adaptive => pool.current_num_threads(),
+        BlockSize::Adaptive => session.pool.current_num_threads(),
         BlockSize::Fixed(size) => size,
     };
     let (mut time, mut first, mut size) = (Duration::ZERO, 0, min_block);
@@ -120,7 +118,7 @@ pub(crate) fn answer_all<Q: Send + Sync, A: Send + Sync>(
     };
     while !pending.is_empty() {
         let mut answered = None;
-        let (written, next) = pool.in_place_scope(|scope| {
+        let (written, next) = session.pool.in_place_scope(|scope| {
             let (block, answered) = (std::mem::take(&mut pending), &mut answered);
             scope.spawn(|_| {
                 let start = Instant::now();
@@ -138,7 +136,7 @@ pub(crate) fn answer_all<Q: Send + Sync, A: Send + Sync>(
         let (block, elapsed) = answered.expect("the scope ends after its task")?;
         let (count, bytes) = (block.queries.len() as u64, block.bytes());
         if first == 0 {
-            announce(streams, &queries, count, bytes, elapsed);
+            announce(session.streams, &queries, count, bytes, elapsed);
         }
         time += elapsed;
         first += count;

@@ -5,18 +5,16 @@ use crate::answers::blocks::{QueryStream, Steps, answer_all};
 use crate::answers::summary::{IndexSummary, RunSummary};
 use crate::answers::table::{AnswerFormat, Header};
 use crate::index::shards::{loads_line, shards_json};
-use crate::io::{Output, Streams, json};
+use crate::io::{Output, Session, json};
 use p2m_mixed::Object;
 use p2m_shards::ShardedIndex;
-use rayon::ThreadPool;
 use serde_json::{Value, json};
 use std::time::Duration;
 
 /// A run that answers points or rays.
 pub(crate) struct AnswerRun<'a> {
-    pub(crate) streams: &'a Streams,
     pub(crate) args: &'a QueryArgs,
-    pub(crate) pool: &'a ThreadPool,
+    pub(crate) session: &'a Session<'a>,
     pub(crate) output: Output<'a>,
     pub(crate) format: AnswerFormat,
     pub(crate) objects: &'a [Object],
@@ -38,7 +36,7 @@ impl AnswerRun<'_> {
             impl FnMut(&Q, &A),
         >,
     ) -> anyhow::Result<Duration> {
-        answer_all(self.streams, self.pool, queries, Some((&mut self.output, header, records)), steps)
+        answer_all(self.session, queries, Some((&mut self.output, header, records)), steps)
     }
 
     /// Completes the file, and prints a summary of `count` queries. `report` and `text` are the parts of it about the
@@ -51,7 +49,7 @@ impl AnswerRun<'_> {
         report: Value,
         text: &str,
     ) -> anyhow::Result<()> {
-        let Self { streams, args, pool, output, format, index, shards, .. } = self;
+        let Self { session: Session { streams, pool }, args, output, format, index, shards, .. } = self;
         let bytes = output.bytes();
         output.finish()?;
         let run = RunSummary { index, threads: pool.current_num_threads(), query_time };

@@ -3,7 +3,9 @@
 use crate::compare::scan::ScanArgs;
 use crate::index::{Backend, backends};
 use crate::io::input::name;
-use crate::io::{Output, Progress, SceneArgs, SceneFile, Streams, ThreadArgs, Unit, is_standard, json, shown, usage};
+use crate::io::{
+    Output, Progress, SceneArgs, SceneFile, Session, Streams, ThreadArgs, Unit, is_standard, json, shown, usage,
+};
 use crate::page::{PairPage, PairPageArgs, PairResult};
 use crate::scene::convert::Target;
 use anyhow::{Context, anyhow};
@@ -14,7 +16,6 @@ use p2m_field::align::{AlignError, AlignOptions, Alignment, Ambiguity, align};
 use p2m_mixed::Scene;
 use p2m_mixed::statistics::figure::{Count, Figure};
 use p2m_page::Moved;
-use rayon::ThreadPool;
 use serde_json::{Value, json};
 use std::fmt::Write as _;
 use std::ops::ControlFlow;
@@ -114,12 +115,12 @@ pub(crate) fn run(streams: &Streams, args: &Args) -> anyhow::Result<()> {
     let target = args.out.as_deref().map(|out| Target::by_extension(streams, out)).transpose()?;
     let scan_format = args.scan.format()?;
     let format = args.scene.format()?;
-    let pool = args.threads.pool()?;
-    let file = args.scene.read(streams, &pool, format)?;
-    let (mut scan, _) = args.scan.read(streams, &pool, scan_format, false)?;
-    let index = file.prepare(streams, &pool, args.backend.unwrap_or_else(|| file.backend()))?.built.index;
+    let session = args.threads.start(streams)?;
+    let file = args.scene.read(&session, format)?;
+    let (mut scan, _) = args.scan.read(&session, scan_format, false)?;
+    let index = file.prepare(&session, args.backend.unwrap_or_else(|| file.backend()))?.built.index;
     let before = scan.soup.aabb();
-    let found = move_scan(streams, &pool, &args.scan.path, &mut scan, (&file, &*index), &args.options())?;
+    let found = move_scan(&session, &args.scan.path, &mut scan, (&file, &*index), &args.options())?;
     let written = target.map(|target| target.write(streams, &scan)).transpose()?;
     if let Some(path) = &args.matrix {
         Output::open(streams, Some(path))?.finish_with(rows(&found, ""))?;
@@ -155,24 +156,24 @@ pub(crate) fn run(streams: &Streams, args: &Args) -> anyhow::Result<()> {
 
 /// Moves the points of a scan onto a scene, which is given with its index. A warning says if the result is doubtful.
 pub(crate) fn move_scan(
-    streams: &Streams,
-    pool: &ThreadPool,
+    session: &Session<'_>,
     scan_path: &Path,
     scan: &mut Scene,
     (file, index): (&SceneFile, &dyn AnyIndex),
     options: &AlignOptions,
 ) -> anyhow::Result<Alignment> {
-    let progress = Progress::start(streams, "aligning", None, Unit::None);
+    let progress = Progress::start(session.streams, "aligning", None, Unit::None);
     let points: &[Point3<f64>] = scan.soup.positions();
-    let found = pool
+    let found = session
+        .pool
         .install(|| align(&*file.scene.soup, index, points, options, &mut |_| ControlFlow::Continue(())))
         .map_err(|error| match error {
-        AlignError::EmptyScene | AlignError::NoSize => anyhow!("{}: {error}", file.name),
-        _ => anyhow!("{}: {error}", name(scan_path)),
-    })?;
+            AlignError::EmptyScene | AlignError::NoSize => anyhow!("{}: {error}", file.name),
+            _ => anyhow!("{}: {error}", name(scan_path)),
+        })?;
     drop(progress);
     for warning in warnings(&found) {
-        streams.print_summary(format_args!("warning  {}: {warning}\n", name(scan_path)));
+        session.streams.print_summary(format_args!("warning  {}: {warning}\n", name(scan_path)));
     }
     let moved = Arc::make_mut(&mut scan.soup).map_positions(|point| found.apply(&point));
     moved.with_context(|| format!("{}: moved", name(scan_path)))?;

@@ -58,13 +58,13 @@ pub(crate) fn run(streams: &Streams, args: &Args) -> anyhow::Result<()> {
     args.page.check(&args.scenes.paths())?;
     let motion = args.scenes.motion(streams)?;
     let formats = args.scenes.formats()?;
-    let pool = args.threads.pool()?;
-    let files = args.scenes.read(streams, &pool, formats)?;
+    let session = args.threads.start(streams)?;
+    let files = args.scenes.read(&session, formats)?;
     let mut options = PairOptions::default().with_max_distance(limit);
     options.motion.clone_from(&motion);
     let progress = Progress::start(streams, "comparing", None, Unit::None);
     let soups = files.each_ref().map(|file| &*file.scene.soup);
-    let (found, notes) = pool.install(|| {
+    let (found, notes) = session.pool.install(|| {
         let build = |k: usize| AabbTree::<f64, &Soup<f64>>::new(soups[k]).with_context(|| files[k].name.clone());
         let indexes = [build(0)?, build(1)?];
         Ok::<_, anyhow::Error>(match args.solid {

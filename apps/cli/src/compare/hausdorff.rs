@@ -66,8 +66,8 @@ pub(crate) fn run(streams: &Streams, args: &Args) -> anyhow::Result<()> {
     args.page.check(&args.scenes.paths())?;
     let motion = args.scenes.motion(streams)?;
     let formats = args.scenes.formats()?;
-    let pool = args.threads.pool()?;
-    let mut files = args.scenes.read(streams, &pool, formats)?;
+    let session = args.threads.start(streams)?;
+    let mut files = args.scenes.read(&session, formats)?;
     if let Some(motion) = motion.as_ref().map(Motion::new) {
         let second = &mut files[1];
         let moved = Arc::make_mut(&mut second.scene.soup).map_positions(|p| motion.apply(p.coords.into()).into());
@@ -80,14 +80,14 @@ pub(crate) fn run(streams: &Streams, args: &Args) -> anyhow::Result<()> {
     let tolerance = args.tolerance.unwrap_or_else(|| (bounds.max - bounds.min).norm() / 1e4);
     let prepare = |k: usize| {
         let backend = args.backend.unwrap_or_else(|| files[k].backend());
-        Ok::<_, anyhow::Error>(files[k].prepare(streams, &pool, backend)?.built.index)
+        Ok::<_, anyhow::Error>(files[k].prepare(&session, backend)?.built.index)
     };
     let options = HausdorffOptions::new(tolerance).with_max_queries(args.max_queries);
     // One side alone needs no index of the first scene.
     let indexes = if args.one_sided { [None, Some(prepare(1)?)] } else { [Some(prepare(0)?), Some(prepare(1)?)] };
     let progress = Progress::start(streams, "comparing", None, Unit::None);
     let mut go_on = |_: &_| ControlFlow::Continue(());
-    let found = pool.install(|| match &indexes {
+    let found = session.pool.install(|| match &indexes {
         [Some(index_a), Some(index_b)] => hausdorff_distance((a, &**index_a), (b, &**index_b), &options, &mut go_on),
         [_, Some(index)] => one_sided_hausdorff_distance(a, &**index, &options, &mut go_on),
         [_, None] => Ok(None),

@@ -2,13 +2,12 @@
 
 use crate::io::input::{format_list, name, read_points, scene_format};
 use crate::io::usage::{one_of, usage};
-use crate::io::{SceneArgs, SceneFile, Streams, is_standard};
+use crate::io::{SceneArgs, SceneFile, Session, is_standard};
 use anyhow::Context;
 use p2m_core::Element;
 use p2m_formats::FileFormat;
 use p2m_mixed::engine::SceneBuilder;
 use p2m_mixed::{Format, PointColumns, PointIds, Scene};
-use rayon::ThreadPool;
 use std::path::PathBuf;
 
 /// The scan of a command.
@@ -44,17 +43,16 @@ impl ScanArgs {
     /// returned as well, where a table or an array has them.
     pub(crate) fn read(
         &self,
-        streams: &Streams,
-        pool: &ThreadPool,
+        session: &Session<'_>,
         format: FileFormat,
         wants_ids: bool,
     ) -> anyhow::Result<(Scene, Option<PointIds>)> {
         let may_have_ids = matches!(format, FileFormat::Own(Format::Xyz | Format::Csv | Format::Npy));
         if self.columns.is_empty() && !(wants_ids && may_have_ids) {
-            return Ok((SceneFile::read(streams, pool, &self.path, format, false)?.scene, None));
+            return Ok((SceneFile::read(session, &self.path, format, false)?.scene, None));
         }
         let columns = PointColumns { coordinates: self.columns.clone(), id: None };
-        let table = read_points(streams, &self.path, format, &columns, "--scan-columns is")?;
+        let table = read_points(session.streams, &self.path, format, &columns, "--scan-columns is")?;
         let too_large = || name(&self.path);
         let (mut builder, mut left_out) = (SceneBuilder::default(), 0);
         for (number, point) in table.points.iter().enumerate() {

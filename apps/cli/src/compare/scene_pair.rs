@@ -2,7 +2,7 @@
 
 use crate::io::input::{COMPRESSED, read_small_text, scene_format, scene_help};
 use crate::io::usage::{one_of, usage};
-use crate::io::{SceneFile, Streams, json};
+use crate::io::{SceneFile, Session, Streams, json};
 use anyhow::Context;
 use nalgebra::{Isometry3, Point3};
 use p2m_core::pair::{is_rotation_and_translation, isometry_of_matrix};
@@ -10,7 +10,6 @@ use p2m_core::{Feature, PrimitiveId};
 use p2m_formats::FileFormat;
 use p2m_mixed::Scene;
 use p2m_mixed::statistics::figure::Length;
-use rayon::ThreadPool;
 use serde_json::{Value, json};
 use std::path::{Path, PathBuf};
 
@@ -57,13 +56,8 @@ impl ScenePairArgs {
     }
 
     /// Reads the scenes as they are in their files.
-    pub(crate) fn read(
-        &self,
-        streams: &Streams,
-        pool: &ThreadPool,
-        formats: [FileFormat; 2],
-    ) -> anyhow::Result<[SceneFile; 2]> {
-        let read = |path: &Path, format| SceneFile::read(streams, pool, path, format, false);
+    pub(crate) fn read(&self, session: &Session<'_>, formats: [FileFormat; 2]) -> anyhow::Result<[SceneFile; 2]> {
+        let read = |path: &Path, format| SceneFile::read(session, path, format, false);
         Ok([read(&self.first, formats[0])?, read(&self.second, formats[1])?])
     }
 }

@@ -3,9 +3,8 @@
 use crate::index::backend::{Backend, BackendChoice, Chosen, backend_choices};
 use crate::index::kdop_directions::{kdop_faces, requested};
 use crate::index::p2m_args::P2mArgs;
-use crate::io::{SceneArgs, SceneFile, Streams, ThreadArgs};
+use crate::io::{SceneArgs, SceneFile, Session, ThreadArgs};
 use p2m_backends::{KdopDirections, QueryRegion, Workload};
-use rayon::ThreadPool;
 
 #[derive(clap::Args)]
 pub(crate) struct IndexArgs {
@@ -61,24 +60,18 @@ impl IndexArgs {
     ///
     /// # Errors
     /// For directions with a backend that has no k-DOPs, and for settings of a P2M index with another one.
-    pub(crate) fn choice(&self, streams: &Streams, pool: &ThreadPool, file: &SceneFile) -> anyhow::Result<Chosen> {
+    pub(crate) fn choice(&self, session: &Session<'_>, file: &SceneFile) -> anyhow::Result<Chosen> {
         match self.backend {
             None => self.with_options(file.backend().into()),
-            Some(_) => self.choice_for(DEFAULT_QUERY_COUNT, streams, pool, file),
+            Some(_) => self.choice_for(DEFAULT_QUERY_COUNT, session, file),
         }
     }
 
     /// Returns the same for a number of queries in the box of the scene, which decide unless a backend is named or the
     /// file has an index.
-    pub(crate) fn choice_for(
-        &self,
-        queries: u64,
-        streams: &Streams,
-        pool: &ThreadPool,
-        file: &SceneFile,
-    ) -> anyhow::Result<Chosen> {
+    pub(crate) fn choice_for(&self, queries: u64, session: &Session<'_>, file: &SceneFile) -> anyhow::Result<Chosen> {
         let workload = Workload::new(queries, QueryRegion::SceneBox).with_needs_index(true);
-        self.with_options(file.choose(streams, pool, self.backend, &workload)?)
+        self.with_options(file.choose(session, self.backend, &workload)?)
     }
 
     fn with_options(&self, chosen: Chosen) -> anyhow::Result<Chosen> {

@@ -4,12 +4,11 @@ use crate::index::kdop_directions::requested;
 use crate::index::p2m_args::P2mArgs;
 use crate::io::interrupt::StoppableWork;
 use crate::io::usage::choices;
-use crate::io::{Progress, SceneFile, Streams, Unit};
+use crate::io::{Progress, SceneFile, Session, Unit};
 use anyhow::Context;
 use clap::builder::TypedValueParser;
 use p2m_backends::{BACKENDS, BackendEntry, BuildSettings, BuiltIndex, Choice, KdopDirections, P2mSettings, Workload};
 use p2m_interception::{BuildStage, RefinementProgress, StageTimes};
-use rayon::ThreadPool;
 use std::ops::ControlFlow;
 use std::sync::{Arc, OnceLock};
 use std::time::{Duration, Instant};
@@ -104,8 +103,7 @@ impl SceneFile {
     /// decides.
     pub(crate) fn choose(
         &self,
-        streams: &Streams,
-        pool: &ThreadPool,
+        session: &Session<'_>,
         choice: Option<BackendChoice>,
         workload: &Workload<'_>,
     ) -> anyhow::Result<Chosen> {
@@ -113,31 +111,26 @@ impl SceneFile {
             (Some(BackendChoice::Named(backend)), _) | (_, Some(backend)) => return Ok(backend.into()),
             (None | Some(BackendChoice::Auto), None) => {}
         }
-        let _progress = Progress::start(streams, "building a tree", None, Unit::None);
-        let choice = pool.install(|| Choice::new(Arc::clone(&self.scene.soup), workload));
+        let _progress = Progress::start(session.streams, "building a tree", None, Unit::None);
+        let choice = session.pool.install(|| Choice::new(Arc::clone(&self.scene.soup), workload));
         let choice = choice.with_context(|| self.name.clone())?;
         let backend = choice.backend();
         Ok(Chosen { counted: Some(choice), ..backend.into() })
     }
 
     /// Loads the index from the file, or builds it with the threads of a pool if the file has none that fits.
-    pub(crate) fn prepare(
-        &self,
-        streams: &Streams,
-        pool: &ThreadPool,
-        chosen: impl Into<Chosen>,
-    ) -> anyhow::Result<PreparedIndex> {
-        self.load_or_build(streams, pool, chosen.into()).with_context(|| self.name.clone())
+    pub(crate) fn prepare(&self, session: &Session<'_>, chosen: impl Into<Chosen>) -> anyhow::Result<PreparedIndex> {
+        self.load_or_build(session, chosen.into()).with_context(|| self.name.clone())
     }
 
-    fn load_or_build(&self, streams: &Streams, pool: &ThreadPool, chosen: Chosen) -> anyhow::Result<PreparedIndex> {
+    fn load_or_build(&self, session: &Session<'_>, chosen: Chosen) -> anyhow::Result<PreparedIndex> {
         let Chosen { backend, counted, kdop_directions, p2m } = chosen;
         let soup = Arc::clone(&self.scene.soup);
         let may_be_saved = p2m == P2mSettings::default();
         let saved = self.saved.as_ref().filter(|reader| may_be_saved && backend.is_in(reader, kdop_directions));
         if let Some(reader) = saved {
-            let _progress = Progress::start(streams, "loading the index", None, Unit::None);
-            let built = pool.install(|| backend.load(soup, reader))?;
+            let _progress = Progress::start(session.streams, "loading the index", None, Unit::None);
+            let built = session.pool.install(|| backend.load(soup, reader))?;
             return Ok(PreparedIndex { backend, built, is_loaded: true, stages: Stages::new(), reason: None });
         }
         let reason = counted.as_ref().and_then(|choice| choice.reason().map(str::to_owned));
@@ -149,13 +142,13 @@ impl SceneFile {
         let start = Instant::now();
         let times = StageTimes::new(move || start.elapsed());
         let built = if backend.reports_progress {
-            let bar = Progress::start(streams, "finding cells", Some(100), Unit::Percent);
+            let bar = Progress::start(session.streams, "finding cells", Some(100), Unit::Percent);
             #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "a part is from 0 to 1")]
             let report = |progress: p2m_interception::Progress| {
                 times.tell(progress);
                 bar.advance_to((progress.part * 100.0) as u64);
             };
-            let shows_progress = streams.shows_progress();
+            let shows_progress = session.streams.shows_progress();
             let work = OnceLock::new();
             let visit = |so_far: &RefinementProgress| {
                 // Users who see no progress do not see either that the refinement can end early.
@@ -166,10 +159,10 @@ impl SceneFile {
                 if StoppableWork::is_stopped() { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
             };
             let settings = settings.with_progress(&report).with_visit_octree(&visit);
-            pool.install(|| build(&settings))?
+            session.pool.install(|| build(&settings))?
         } else {
-            let _progress = Progress::start(streams, "building the index", None, Unit::None);
-            pool.install(|| build(&settings))?
+            let _progress = Progress::start(session.streams, "building the index", None, Unit::None);
+            session.pool.install(|| build(&settings))?
         };
         Ok(PreparedIndex { backend, built, is_loaded: false, stages: times.finish(), reason })
     }

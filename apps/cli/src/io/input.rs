@@ -4,6 +4,7 @@ use crate::io::limits::{Counted, Decompressed, too_large};
 use crate::io::progress::{Progress, Unit};
 use crate::io::read_pipeline::pump;
 use crate::io::streams::Streams;
+use crate::io::threads::Session;
 use crate::io::usage::{one_of, usage};
 use crate::io::zstd::{ZstdReader, is_zstd};
 use anyhow::{Context, anyhow, bail};
@@ -13,7 +14,6 @@ use p2m_core::Ray;
 use p2m_core::storage::{LoadError, Reader, SavedFile};
 use p2m_formats::FileFormat;
 use p2m_mixed::{Format, PointColumns, PointFormat, PointTable, Reason, Scene, Unit as LengthUnit, load_scene};
-use rayon::ThreadPool;
 use std::cell::Cell;
 use std::fs::{File, Metadata};
 use std::io::{self, BufRead, BufReader, Read};
@@ -82,8 +82,8 @@ impl SceneArgs {
     }
 
     /// Reads the scene.
-    pub(crate) fn read(&self, streams: &Streams, pool: &ThreadPool, format: FileFormat) -> anyhow::Result<SceneFile> {
-        SceneFile::read(streams, pool, &self.path, format, self.map)
+    pub(crate) fn read(&self, session: &Session<'_>, format: FileFormat) -> anyhow::Result<SceneFile> {
+        SceneFile::read(session, &self.path, format, self.map)
     }
 }
 
@@ -102,8 +102,7 @@ pub(crate) struct SceneFile {
 impl SceneFile {
     /// Reads a scene, and the reader of the index of a saved one, which is mapped if `is_mapped` is set.
     pub(crate) fn read(
-        streams: &Streams,
-        pool: &ThreadPool,
+        session: &Session<'_>,
         path: &Path,
         format: FileFormat,
         is_mapped: bool,
@@ -120,13 +119,16 @@ impl SceneFile {
                 let reader = file.checked()?;
                 Ok((load_scene(reader)?, Some(reader.clone())))
             };
-            let file =
-                if is_mapped { map(path) } else { SavedFile::read_with_length(open(streams, path)?, length(path)) };
+            let file = if is_mapped {
+                map(path)
+            } else {
+                SavedFile::read_with_length(open(session.streams, path)?, length(path))
+            };
             file.and_then(load).with_context(|| name.clone())?
         } else {
             let read = |reader| p2m_formats::read_scene_from(reader, format, &name, companions_of(path));
-            let scene = pump(pool, open(streams, path)?, read)?;
-            print_notes(streams, path, scene.unit, scene.is_flat);
+            let scene = pump(&session.pool, open(session.streams, path)?, read)?;
+            print_notes(session.streams, path, scene.unit, scene.is_flat);
             (scene, None)
         };
         Ok(Self { name, format, scene, saved, read_time: start.elapsed() })

@@ -16,5 +16,5 @@ pub(crate) use input::{PointArgs, SceneArgs, SceneFile, is_standard, shown};
 pub(crate) use output::Output;
 pub(crate) use progress::{Progress, Unit};
 pub(crate) use streams::Streams;
-pub(crate) use threads::ThreadArgs;
+pub(crate) use threads::{Session, ThreadArgs};
 pub(crate) use usage::usage;

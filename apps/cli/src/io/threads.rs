@@ -1,8 +1,15 @@
-//! The threads of a run.
+//! The threads of a command.
 
+use crate::io::streams::Streams;
 use anyhow::anyhow;
 use p2m_core::engine::default_threads;
 use rayon::ThreadPool;
+
+/// The streams and the threads of a command.
+pub(crate) struct Session<'a> {
+    pub(crate) streams: &'a Streams,
+    pub(crate) pool: ThreadPool,
+}
 
 #[derive(Default, clap::Args)]
 pub(crate) struct ThreadArgs {
@@ -12,11 +19,12 @@ pub(crate) struct ThreadArgs {
 }
 
 impl ThreadArgs {
-    /// Starts the threads. One more thread only reads, writes and waits.
-    pub(crate) fn pool(&self) -> anyhow::Result<ThreadPool> {
+    /// Starts the threads of a command with these streams. One more thread only reads, writes and waits.
+    pub(crate) fn start<'a>(&self, streams: &'a Streams) -> anyhow::Result<Session<'a>> {
         let threads = self.threads.map_or_else(default_threads, usize::from);
         let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build();
         // The error is kept as text, because its source repeats it.
-        pool.map_err(|e| anyhow!("cannot start threads: {e}"))
+        let pool = pool.map_err(|e| anyhow!("cannot start threads: {e}"))?;
+        Ok(Session { streams, pool })
     }
 }

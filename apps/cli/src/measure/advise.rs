@@ -65,8 +65,8 @@ pub(crate) struct Args {
 
 pub(crate) fn run(streams: &Streams, args: &Args) -> anyhow::Result<()> {
     let format = args.scene.format()?;
-    let pool = args.threads.pool()?;
-    let scene = args.scene.read(streams, &pool, format)?.scene;
+    let session = args.threads.start(streams)?;
+    let scene = args.scene.read(&session, format)?.scene;
     let points = read_finite_points(streams, &args.points)?;
     // These are the points by which `query` chooses.
     let sample = match &points {
@@ -81,7 +81,7 @@ pub(crate) fn run(streams: &Streams, args: &Args) -> anyhow::Result<()> {
     #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "saturates")]
     let max_bytes = args.memory.map_or(usize::MAX, |memory| (memory * 1e6) as usize);
     let workload = Workload::new(args.queries, region).with_max_bytes(max_bytes);
-    let choice = pool.install(|| Choice::compare(Arc::clone(&scene.soup), &workload));
+    let choice = session.pool.install(|| Choice::compare(Arc::clone(&scene.soup), &workload));
     let choice = choice.with_context(|| args.scene.name())?;
     let estimates = choice.estimates();
     let build = SmallestBuild::new(choice.backend(), format);

@@ -80,13 +80,13 @@ pub(crate) fn run(streams: &Streams, args: &Args) -> anyhow::Result<()> {
         Output::refuse_inputs(out, &[&scene_args.path])?;
     }
     let format = scene_args.format()?;
-    let pool = args.index_args.threads.pool()?;
-    let file = scene_args.read(streams, &pool, format)?;
+    let session = args.index_args.threads.start(streams)?;
+    let file = scene_args.read(&session, format)?;
     let picture = args.out.as_ref().map(|out| Output::open(streams, Some(out))).transpose()?;
 
     let start = Instant::now();
-    let chosen = args.index_args.choice(streams, &pool, &file)?;
-    let prepared = file.prepare(streams, &pool, chosen)?;
+    let chosen = args.index_args.choice(&session, &file)?;
+    let prepared = file.prepare(&session, chosen)?;
     let (soup, index) = (&*file.scene.soup, &*prepared.built.index);
     let build_time = start.elapsed();
 

@@ -72,11 +72,11 @@ pub(crate) fn run(streams: &Streams, args: &Args) -> anyhow::Result<()> {
     };
     Output::refuse_inputs(&args.out, &[&args.scene.path])?;
     let format = args.scene.format()?;
-    let pool = args.threads.pool()?;
-    let scene = args.scene.read(streams, &pool, format)?.scene;
+    let session = args.threads.start(streams)?;
+    let scene = args.scene.read(&session, format)?.scene;
     let progress = Progress::start(streams, "building", None, Unit::None);
     let levels = usize::from(args.levels);
-    let drawn = pool.install(|| match args.k {
+    let drawn = session.pool.install(|| match args.k {
         None => AabbTree::new(&*scene.soup)
             .map(|tree| panels(tree.tree(), levels, ["box", "boxes"], |bounds| box_edges(bounds).collect()))
             .map(|panels| (panels, None)),

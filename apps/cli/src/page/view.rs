@@ -4,7 +4,7 @@ use crate::answers::{Queries, Region};
 use crate::index::{Backend, SignRule, SignedIndex, backends};
 use crate::io::input::{ray_format, read_finite_points, read_rays};
 use crate::io::usage::{count_in, not_negative, positive, usage, whole_number};
-use crate::io::{Output, PointArgs, Progress, SceneArgs, Streams, ThreadArgs, Unit, is_standard};
+use crate::io::{Output, PointArgs, Progress, SceneArgs, Session, Streams, ThreadArgs, Unit, is_standard};
 use crate::page::open::OpenArgs;
 use crate::page::source::{PageArgs, about, file_name};
 use crate::page::tree_levels::TreeLevels;
@@ -19,7 +19,6 @@ use p2m_field::{FieldOptions, Grid, distances, signed_distances};
 use p2m_mixed::Scene;
 use p2m_mixed::statistics::Counts;
 use p2m_page::{Level, Measure, View};
-use rayon::ThreadPool;
 use std::path::{Path, PathBuf};
 
 const HELP: &str = "\
@@ -134,8 +133,8 @@ pub(crate) fn run(streams: &Streams, args: &Args) -> anyhow::Result<()> {
     let out = args.out()?;
     args.check(&out)?;
     let format = args.scene.format()?;
-    let pool = args.threads.pool()?;
-    let file = args.scene.read(streams, &pool, format)?;
+    let session = args.threads.start(streams)?;
+    let file = args.scene.read(&session, format)?;
     let scene = &file.scene;
     let bounds = scene.soup.aabb();
     let queries = args.queries(streams, &bounds)?;
@@ -148,14 +147,14 @@ pub(crate) fn run(streams: &Streams, args: &Args) -> anyhow::Result<()> {
     let output = Output::open(streams, Some(&out))?;
 
     let backend = args.backend.unwrap_or_else(|| file.backend());
-    let index = file.prepare(streams, &pool, backend)?.built.index;
+    let index = file.prepare(&session, backend)?.built.index;
     if args.lists.is_some() && index.list_lengths().is_empty() {
         return Err(usage(format!("--lists needs an index with lists: {} has none", backend.name)));
     }
     let signed = args.signed.map(|rule| rule.prepare_signed(streams, &*index, &scene.soup)).transpose();
     let signed = signed.with_context(|| args.scene.name())?;
     let rule = signed.as_ref().map(|signed| signed.rule().name());
-    let source = PageSource { streams, args, pool: &pool, backend, index: &*index, signed: signed.as_ref() };
+    let source = PageSource { session: &session, args, backend, index: &*index, signed: signed.as_ref() };
     let hits = rays.map(|rays| source.hits(&rays)).transpose()?;
     let mut view = source.view(scene, queries.as_deref(), grid.as_ref(), hits.as_deref())?;
     view.about = about(&format!("scene {}", args.scene.name()), backend.name, rule);
@@ -167,9 +166,8 @@ pub(crate) fn run(streams: &Streams, args: &Args) -> anyhow::Result<()> {
 
 /// The index and the signs of a scene, by which its page is computed.
 struct PageSource<'a> {
-    streams: &'a Streams,
+    session: &'a Session<'a>,
     args: &'a Args,
-    pool: &'a ThreadPool,
     backend: Backend,
     index: &'a dyn AnyIndex,
     signed: Option<&'a SignedIndex<'a>>,
@@ -214,7 +212,7 @@ impl PageSource<'_> {
             view = view.with_live_queries();
         }
         if args.levels > 0 {
-            let tree = self.pool.install(|| AabbTree::new(&*scene.soup));
+            let tree = self.session.pool.install(|| AabbTree::new(&*scene.soup));
             let tree = tree.with_context(|| args.scene.name())?;
             view = view.with_levels("Boxes of the AABB tree", &levels(tree.tree(), usize::from(args.levels)));
         }
@@ -223,18 +221,19 @@ impl PageSource<'_> {
 
     /// Adds query points and their closest points.
     fn with_answers<'v>(&self, mut view: View<'v>, queries: &[Point3<f64>]) -> View<'v> {
-        let Self { pool, index, .. } = *self;
+        let Self { session, index, .. } = *self;
         let options = QueryOptions::default();
         let options = self.args.max_distance.map_or(options, |limit| options.with_max_distance(limit));
-        let _progress = Progress::start(self.streams, "answering", None, Unit::None);
-        let answers: Vec<Option<Closest<f64>>> =
-            pool.install(|| parallel::map_slice(queries, true, |query| index.closest_point_with(query, &options)));
+        let _progress = Progress::start(self.session.streams, "answering", None, Unit::None);
+        let answers: Vec<Option<Closest<f64>>> = session
+            .pool
+            .install(|| parallel::map_slice(queries, true, |query| index.closest_point_with(query, &options)));
         let signs: Option<Vec<f64>> = self.signed.map(|signed| {
             let sign = |i: usize| {
                 let distance = answers[i].and_then(|answer| signed.with_sign(&queries[i], answer).distance());
                 distance.unwrap_or(f64::NAN)
             };
-            pool.install(|| parallel::map(answers.len(), true, sign))
+            session.pool.install(|| parallel::map(answers.len(), true, sign))
         });
         view.summary +=
             &format!("; {} query points and their closest points, found by {}", queries.len(), self.backend.name);
@@ -250,7 +249,7 @@ impl PageSource<'_> {
             let ends = [ray.origin(), hit.point()];
             Some(Measure { name: String::new(), ends, length: (ends[1] - ends[0]).norm() })
         };
-        Ok(self.pool.install(|| parallel::map_slice(rays, true, hit)))
+        Ok(self.session.pool.install(|| parallel::map_slice(rays, true, hit)))
     }
 
     /// Adds the lengths of the lists at the points of a grid.
@@ -260,7 +259,7 @@ impl PageSource<'_> {
             let point = grid.point([number % x, number / x % y, number / (x * y)]);
             index.list_length(&point).map_or(f32::NAN, |length| length as f32)
         };
-        let lengths: Vec<f32> = self.pool.install(|| parallel::map(grid.len(), true, length));
+        let lengths: Vec<f32> = self.session.pool.install(|| parallel::map(grid.len(), true, length));
         view.summary += &format!("; lengths of the lists of {} at {x} x {y} x {z} points", self.backend.name);
         view.with_list_lengths(grid, &lengths)
     }
@@ -268,11 +267,11 @@ impl PageSource<'_> {
     /// Adds the distances at the points of a grid.
     fn with_field<'v>(&self, mut view: View<'v>, grid: &Grid) -> anyhow::Result<View<'v>> {
         let points = Some(grid.len() as u64);
-        let progress = Progress::start(self.streams, "filling the grid", points, Unit::Items("points"));
+        let progress = Progress::start(self.session.streams, "filling the grid", points, Unit::Items("points"));
         let count = |points: usize| progress.add(points as u64);
         let options = FieldOptions::default();
-        let Self { pool, index, signed, .. } = *self;
-        let values = pool.install(|| match signed {
+        let Self { session, index, signed, .. } = *self;
+        let values = session.pool.install(|| match signed {
             Some(signed) => signed_distances(signed, grid, &options, &count),
             None => distances(index, grid, &options, &count),
         })?;

@@ -4,7 +4,7 @@ use crate::answers::IndexSummary;
 use crate::index::{IndexArgs, PreparedIndex, SignReport, SignRule, SignedIndex};
 use crate::io::input::{has_extension, or_option};
 use crate::io::usage::{finite, not_negative, one_of, positive, usage};
-use crate::io::{Output, Progress, SceneFile, Streams, Unit, is_standard, json, shown};
+use crate::io::{Output, Progress, SceneFile, Session, Streams, Unit, is_standard, json, shown};
 use crate::page::picture::write_png;
 use crate::query::field_summary::{ComputedField, FieldSummary};
 use crate::scene::convert::{Target, WrittenScene};
@@ -20,7 +20,6 @@ use p2m_field::{
 };
 use p2m_mixed::statistics::Statistics;
 use p2m_mixed::statistics::figure::Figure;
-use rayon::ThreadPool;
 use serde_json::{Value, json};
 use std::path::PathBuf;
 use std::time::Instant;
@@ -106,8 +105,8 @@ pub(crate) fn run(streams: &Streams, args: &Args) -> anyhow::Result<()> {
     let out_format = args.check(streams)?;
     let target = args.iso.map(|_| Target::by_extension(streams, &args.out)).transpose()?;
     let format = scene_args.format()?;
-    let pool = args.index_args.threads.pool()?;
-    let file = scene_args.read(streams, &pool, format)?;
+    let session = args.index_args.threads.start(streams)?;
+    let file = scene_args.read(&session, format)?;
     let soup = &file.scene.soup;
     let grid = match args.iso {
         Some(distance) => offset_grid(&soup.aabb(), distance, args.resolution as usize),
@@ -120,8 +119,8 @@ pub(crate) fn run(streams: &Streams, args: &Args) -> anyhow::Result<()> {
 
     let start = Instant::now();
     let has_lists = args.index_args.is_unspecified() && args.refine.is_none();
-    let lists = if has_lists { candidate_lists(streams, soup, &grid, &pool) } else { None };
-    let prepared = args.prepare(streams, &pool, &file, &grid, lists.is_some())?;
+    let lists = if has_lists { candidate_lists(&session, soup, &grid) } else { None };
+    let prepared = args.prepare(&session, &file, &grid, lists.is_some())?;
     let index = prepared.as_ref().map(|prepared| &*prepared.built.index);
     let backend = match &prepared {
         Some(prepared) if lists.is_none() => prepared.backend.name,
@@ -132,7 +131,7 @@ pub(crate) fn run(streams: &Streams, args: &Args) -> anyhow::Result<()> {
     let build_time = start.elapsed();
 
     let start = Instant::now();
-    let field = args.compute(streams, &pool, &source, &grid)?;
+    let field = args.compute(&session, &source, &grid)?;
     let field_time = start.elapsed();
     let bytes = output.map_or(Ok(0), |mut output| -> anyhow::Result<u64> {
         match &field {
@@ -146,8 +145,9 @@ pub(crate) fn run(streams: &Streams, args: &Args) -> anyhow::Result<()> {
     let surface = match (&target, &field, args.iso) {
         (Some(target), ComputedField::Grid(values), Some(distance)) => {
             let _progress = Progress::start(streams, "making the surface", None, Unit::None);
-            let surface =
-                pool.install(|| offset_surface(&grid, values, distance, &|point: &Point3<f64>| source.closest(point)));
+            let surface = session
+                .pool
+                .install(|| offset_surface(&grid, values, distance, &|point: &Point3<f64>| source.closest(point)));
             let surface = surface.with_context(|| file.name.clone())?;
             args.check_surface(streams, &grid, distance, &surface)?;
             Some(WrittenSurface::new(streams, target, &grid, distance, surface)?)
@@ -159,7 +159,7 @@ pub(crate) fn run(streams: &Streams, args: &Args) -> anyhow::Result<()> {
     }
 
     let index = IndexSummary::new(&file, backend, prepared.as_ref(), build_time);
-    let threads = if args.refine.is_some() { 1 } else { pool.current_num_threads() };
+    let threads = if args.refine.is_some() { 1 } else { session.pool.current_num_threads() };
     let signs = source.signed.as_ref().map(SignReport::new);
     let report = FieldSummary { grid: &grid, field: &field, signs, threads, field_time };
     if args.json {
@@ -316,8 +316,7 @@ impl Args {
     /// Loads or builds the index that distances are computed by, or that decides signs and moves vertices beside lists.
     fn prepare(
         &self,
-        streams: &Streams,
-        pool: &ThreadPool,
+        session: &Session<'_>,
         file: &SceneFile,
         grid: &Grid,
         has_lists: bool,
@@ -326,31 +325,31 @@ impl Args {
             true if self.signed.is_none() && self.iso.is_none() => return Ok(None),
             true => file.backend().into(),
             // Cells are cut by single queries.
-            false if self.refine.is_some() => self.index_args.choice(streams, pool, file)?,
-            false => self.index_args.choice_for(grid.len() as u64, streams, pool, file)?,
+            false if self.refine.is_some() => self.index_args.choice(session, file)?,
+            false => self.index_args.choice_for(grid.len() as u64, session, file)?,
         };
-        file.prepare(streams, pool, chosen).map(Some)
+        file.prepare(session, chosen).map(Some)
     }
 
     /// Computes the distances.
     fn compute(
         &self,
-        streams: &Streams,
-        pool: &ThreadPool,
+        session: &Session<'_>,
         source: &DistanceSource<'_>,
         grid: &Grid,
     ) -> anyhow::Result<ComputedField> {
         if let Some(error) = self.refine {
-            let _progress = Progress::start(streams, "cutting cells", None, Unit::None);
+            let _progress = Progress::start(session.streams, "cutting cells", None, Unit::None);
             let bounds = Aabb { min: grid.origin(), max: grid.point(grid.counts().map(|n| n - 1)) };
             let distance = |point: &Point3<f64>| source.closest(point).map_or(f64::NAN, |found| found.0);
             let options = RefineOptions::new(error).with_depth(self.depth);
-            return Ok(ComputedField::Cells(pool.install(|| refined(&bounds, &distance, &options))));
+            return Ok(ComputedField::Cells(session.pool.install(|| refined(&bounds, &distance, &options))));
         }
-        let progress = Progress::start(streams, "filling the grid", Some(grid.len() as u64), Unit::Items("points"));
+        let progress =
+            Progress::start(session.streams, "filling the grid", Some(grid.len() as u64), Unit::Items("points"));
         let options = self.band.map_or_else(FieldOptions::default, |band| FieldOptions::default().with_band(band));
         let count = |points: usize| progress.add(points as u64);
-        let values = pool.install(|| match (&source.lists, &source.signed, source.index) {
+        let values = session.pool.install(|| match (&source.lists, &source.signed, source.index) {
             (Some(lists), Some(signed), _) => signed_distances_by_lists(lists, signed, grid, &options, &count),
             (Some(lists), None, _) => distances_by_lists(lists, grid, &options, &count),
             (None, Some(signed), _) => signed_distances(signed, grid, &options, &count),
@@ -408,10 +407,9 @@ const LISTS_NAME: &str = "lists";
 /// Returns lists of candidates, unless the grid is too coarse for them to pay, coordinates are out of their range, or
 /// memory is short.
 fn candidate_lists<'a>(
-    streams: &Streams,
+    session: &Session<'_>,
     soup: &'a Soup<f64>,
     grid: &Grid,
-    pool: &ThreadPool,
 ) -> Option<CandidateLists<'a, Soup<f64>>> {
     let last = grid.point(grid.counts().map(|n| n - 1));
     if grid.len() < soup.len() {
@@ -419,6 +417,6 @@ fn candidate_lists<'a>(
     }
     let is_in_range = |point: &Point3<f64>| point.iter().all(|x| x.abs() <= MAX_COORDINATE);
     let is_in_range = is_in_range(&grid.origin()) && is_in_range(&last);
-    let _progress = Progress::start(streams, "sorting primitives", None, Unit::None);
-    pool.install(|| CandidateLists::new(soup)).filter(|_| is_in_range)
+    let _progress = Progress::start(session.streams, "sorting primitives", None, Unit::None);
+    session.pool.install(|| CandidateLists::new(soup)).filter(|_| is_in_range)
 }

@@ -35,18 +35,17 @@ pub(crate) fn run(streams: &Streams, args: &Args) -> anyhow::Result<()> {
     query_args.check(scene_args, args.points.points.as_deref(), "points")?;
     let (format, out_format) = (scene_args.format()?, query_args.format(streams)?);
     args.check(out_format)?;
-    let pool = query_args.threads.pool()?;
+    let session = query_args.threads.start(streams)?;
     let start = Instant::now();
-    let mut file = scene_args.read(streams, &pool, format)?;
+    let mut file = scene_args.read(&session, format)?;
     let PreparedQueries { queries, ids, sample } = queries(streams, args, &file.scene.soup.aabb())?;
     file.read_time = start.elapsed();
     // The file is opened before the work, which would be lost if its name were wrong.
     let output = Output::open(streams, Some(&query_args.out))?;
     let (soup, objects) = (&file.scene.soup, &*file.scene.objects);
     let run = |index| AnswerRun {
-        streams,
+        session: &session,
         args: query_args,
-        pool: &pool,
         output,
         format: out_format,
         objects,
@@ -57,7 +56,7 @@ pub(crate) fn run(streams: &Streams, args: &Args) -> anyhow::Result<()> {
     let start = Instant::now();
     #[cfg(feature = "cuda")]
     if args.device.is_some() {
-        let source = pool.install(|| card::CardScene::new(soup, args)).with_context(|| scene_args.name())?;
+        let source = session.pool.install(|| card::CardScene::new(soup, args)).with_context(|| scene_args.name())?;
         let run = run(IndexSummary::new(&file, "cuda", None, start.elapsed()));
         return Run { args, run, queries, ids, signs: None, soup: Some(soup) }.finish(&source);
     }
@@ -71,7 +70,7 @@ pub(crate) fn run(streams: &Streams, args: &Args) -> anyhow::Result<()> {
                 .with_needs_index(args.signed.is_some())
                 .with_max_distance(args.max_distance.unwrap_or(f64::INFINITY))
                 .with_max_bytes(max_bytes);
-            file.choose(streams, &pool, backend, &workload)?
+            file.choose(&session, backend, &workload)?
         }
     };
     if args.max_memory.is_some() && !chosen.is_counted() {
@@ -79,7 +78,7 @@ pub(crate) fn run(streams: &Streams, args: &Args) -> anyhow::Result<()> {
             "--max-memory limits indexes in shards, which `p2m shard` writes, and those that auto chooses",
         ));
     }
-    let prepared = file.prepare(streams, &pool, chosen.with_k(query_args.k)?.with_p2m(&args.p2m)?)?;
+    let prepared = file.prepare(&session, chosen.with_k(query_args.k)?.with_p2m(&args.p2m)?)?;
     let index = &*prepared.built.index;
     let build_time = start.elapsed();
 
@@ -115,11 +114,10 @@ fn run_in_shards(streams: &Streams, args: &Args, folder: &Path) -> anyhow::Resul
     let PreparedQueries { queries, ids, .. } = queries(streams, args, &index.bounds())?;
     let read_time = start.elapsed();
     let output = Output::open(streams, Some(&query_args.out))?;
-    let (pool, objects) = (query_args.threads.pool()?, index.manifest().objects());
+    let (session, objects) = (query_args.threads.start(streams)?, index.manifest().objects());
     let run = AnswerRun {
-        streams,
+        session: &session,
         args: query_args,
-        pool: &pool,
         output,
         format,
         objects: &objects,

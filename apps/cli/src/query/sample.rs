@@ -109,8 +109,8 @@ pub(crate) fn run(streams: &Streams, args: &Args) -> anyhow::Result<()> {
         return Err(anyhow!("there is no memory for {total} samples"));
     }
     let format = args.scene.format()?;
-    let pool = args.threads.pool()?;
-    let file = args.scene.read(streams, &pool, format)?;
+    let session = args.threads.start(streams)?;
+    let file = args.scene.read(&session, format)?;
     let output = Output::open(streams, Some(&args.out))?;
     let sampler = SurfaceSampler::new(&*file.scene.soup).ok_or_else(|| {
         anyhow!("{}: the scene is empty, or no area or length of it is finite and above 0", file.name)
@@ -118,20 +118,20 @@ pub(crate) fn run(streams: &Streams, args: &Args) -> anyhow::Result<()> {
 
     let mut arrays: Vec<(&str, Array)> = Vec::new();
     if args.surface.is_some() {
-        let samples = pool.install(|| sampler.surface(args.seed, surface));
+        let samples = session.pool.install(|| sampler.surface(args.seed, surface));
         arrays.push(("points", Array::points(&samples.points, args.f32)));
         let primitives = samples.primitives.iter().flat_map(|id| i64::from(id.number()).to_le_bytes());
         arrays
             .push(("primitives", Array { kind: "'<i8'", shape: format!("({surface},)"), bytes: primitives.collect() }));
     } else {
-        let mut points = pool.install(|| points(args, &file.scene, &sampler, near, uniform));
+        let mut points = session.pool.install(|| points(args, &file.scene, &sampler, near, uniform));
         if args.f32 {
             #[allow(clippy::cast_possible_truncation, reason = "the user asked for it")]
             points.iter_mut().for_each(|point| *point = point.map(|x| f64::from(x as f32)));
         }
         let workload = Workload::new(points.len() as u64, QueryRegion::Like(&points)).with_needs_index(true);
-        let chosen = file.choose(streams, &pool, args.backend, &workload)?;
-        let index = file.prepare(streams, &pool, chosen)?.built.index;
+        let chosen = file.choose(&session, args.backend, &workload)?;
+        let index = file.prepare(&session, chosen)?.built.index;
         let signed = args.sign.prepare(streams, &*index, &file.scene.soup);
         let signed = signed.map_err(|error| anyhow!("{}: {error}", file.name))?;
         if let Some(note) = signed.note().filter(|_| args.sign == SignRule::Auto) {
@@ -141,7 +141,7 @@ pub(crate) fn run(streams: &Streams, args: &Args) -> anyhow::Result<()> {
         let mut distances = vec![f64::NAN; points.len()];
         for (block, out) in points.chunks(BLOCK).zip(distances.chunks_mut(BLOCK)) {
             let (options, batch) = (QueryOptions::default(), BatchOptions::default());
-            pool.install(|| signed.distances_into(&*index, block, &options, &batch, out));
+            session.pool.install(|| signed.distances_into(&*index, block, &options, &batch, out));
             progress.add(block.len() as u64);
         }
         drop(progress);

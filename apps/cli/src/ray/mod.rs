@@ -29,9 +29,9 @@ pub(crate) fn run(streams: &Streams, args: &Args) -> anyhow::Result<()> {
     let (scene_args, query_args) = (&args.scene, &args.query_args);
     args.check()?;
     let (format, out_format) = (scene_args.format()?, query_args.format(streams)?);
-    let pool = query_args.threads.pool()?;
+    let session = query_args.threads.start(streams)?;
     let start = Instant::now();
-    let mut file = scene_args.read(streams, &pool, format)?;
+    let mut file = scene_args.read(&session, format)?;
     let rays = rays(streams, args, &file.scene.soup.aabb())?;
     file.read_time = start.elapsed();
     // The file is opened before the work, which would be lost if its name were wrong.
@@ -43,11 +43,11 @@ pub(crate) fn run(streams: &Streams, args: &Args) -> anyhow::Result<()> {
     if let Some(other) = file.saved_backend().filter(|other| !other.casts_rays) {
         streams.print_summary(format_args!("note     the saved index ({other}) answers no rays: {backend} is built\n"));
     }
-    let prepared = file.prepare(streams, &pool, Chosen::from(backend).with_k(query_args.k)?)?;
+    let prepared = file.prepare(&session, Chosen::from(backend).with_k(query_args.k)?)?;
     let index = IndexSummary::new(&file, backend.name, Some(&prepared), start.elapsed());
     let source = RaySource::Whole(prepared.built.index.as_ray_query().context("the backend casts no rays")?);
     let (objects, format) = (&*file.scene.objects, out_format);
-    let run = AnswerRun { streams, args: query_args, pool: &pool, output, format, objects, index, shards: None };
+    let run = AnswerRun { session: &session, args: query_args, output, format, objects, index, shards: None };
     Run { args, run, rays }.finish(source)
 }
 
@@ -65,11 +65,10 @@ fn run_in_shards(streams: &Streams, args: &Args, folder: &Path) -> anyhow::Resul
     rays.block_size = BlockSize::OF_SHARDS;
     let read_time = start.elapsed();
     let output = Output::open(streams, Some(&query_args.out))?;
-    let (pool, objects) = (query_args.threads.pool()?, shards.manifest().objects());
+    let (session, objects) = (query_args.threads.start(streams)?, shards.manifest().objects());
     let run = AnswerRun {
-        streams,
+        session: &session,
         args: query_args,
-        pool: &pool,
         output,
         format,
         objects: &objects,

@@ -51,16 +51,16 @@ pub(crate) fn run(streams: &Streams, args: &Args) -> anyhow::Result<()> {
     Output::refuse_inputs(&args.out, &[&scene_args.path])?;
     Output::refuse_terminal(streams, &args.out, Format::P2m.name())?;
     let format = scene_args.format()?;
-    let pool = args.index_args.threads.pool()?;
-    let mut file = scene_args.read(streams, &pool, format)?;
+    let session = args.index_args.threads.start(streams)?;
+    let mut file = scene_args.read(&session, format)?;
     // The index of a saved file is built again.
     file.saved = None;
     // The file is opened before the work, which would be lost if its name were wrong.
     let mut output = Output::open(streams, Some(&args.out))?;
 
     let start = Instant::now();
-    let chosen = args.index_args.choice(streams, &pool, &file)?;
-    let prepared = file.prepare(streams, &pool, chosen)?;
+    let chosen = args.index_args.choice(&session, &file)?;
+    let prepared = file.prepare(&session, chosen)?;
     let build_time = start.elapsed();
 
     let start = Instant::now();
@@ -77,7 +77,7 @@ pub(crate) fn run(streams: &Streams, args: &Args) -> anyhow::Result<()> {
     let out = shown(&args.out);
     if args.json {
         let end = json!({
-            "threads": pool.current_num_threads(),
+            "threads": session.pool.current_num_threads(),
             "cells": index.cells(),
             "seconds": index.seconds("write", write_time),
             "out": { "file": out, "bytes": bytes },

@@ -66,8 +66,8 @@ pub(crate) fn run(streams: &Streams, args: &Args) -> anyhow::Result<()> {
     let target = Target::new(streams, &args.to_file, args.to, None)?;
     target.check_report(args.json)?;
     Output::refuse_inputs(&args.to_file, &[&args.from_file])?;
-    let pool = ThreadArgs::default().pool()?;
-    let SceneFile { scene: read, saved, .. } = SceneFile::read(streams, &pool, &args.from_file, from, false)?;
+    let session = ThreadArgs::default().start(streams)?;
+    let SceneFile { scene: read, saved, .. } = SceneFile::read(&session, &args.from_file, from, false)?;
     let has_index = saved.is_some_and(|reader| p2m_core::storage::kind(&reader).is_ok());
     let before = Counts::of(&read.soup);
     let polygons = count_cut_polygons(&read);

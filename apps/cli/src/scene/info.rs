@@ -40,8 +40,8 @@ Examples:
 
 pub(crate) fn run(streams: &Streams, args: &Args) -> anyhow::Result<()> {
     let format = args.scene.format()?;
-    let pool = ThreadArgs::default().pool()?;
-    let SceneFile { scene, saved, .. } = args.scene.read(streams, &pool, format)?;
+    let session = ThreadArgs::default().start(streams)?;
+    let SceneFile { scene, saved, .. } = args.scene.read(&session, format)?;
     let backend = saved.as_ref().and_then(BackendEntry::from_saved).unwrap_or_else(BackendEntry::default_backend);
     let build = SmallestBuild::new(backend, format);
     let index = saved.and_then(|reader| p2m_core::storage::kind(&reader).ok());

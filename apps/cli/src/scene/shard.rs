@@ -3,14 +3,13 @@
 use crate::index::{Backend, backends};
 use crate::io::interrupt::{Listed, unfinished};
 use crate::io::usage::{bytes, one_of};
-use crate::io::{Progress, SceneFile, Streams, ThreadArgs, Unit, input, json};
+use crate::io::{Progress, SceneFile, Session, Streams, ThreadArgs, Unit, input, json};
 use crate::scene::info::counted;
 use p2m_backends::BackendEntry;
 use p2m_formats::FileFormat;
 use p2m_mixed::statistics::figure::{Count, Time};
 use p2m_mixed::{Format, PieceOptions, Skipped};
 use p2m_shards::{ShardError, ShardOptions, ShardWriter, ShardedIndex, shard_file};
-use rayon::ThreadPool;
 use serde_json::{Value, json};
 use std::ops::ControlFlow;
 use std::path::{Path, PathBuf};
@@ -78,7 +77,7 @@ pub(crate) fn run(streams: &Streams, args: &Args) -> anyhow::Result<()> {
     let backend = args.backend.unwrap_or_else(BackendEntry::default_backend);
     let options =
         ShardOptions::default().with_max_bytes(args.max_bytes).with_backend(backend).with_replace(args.replace);
-    let pool = args.threads.pool()?;
+    let session = args.threads.start(streams)?;
 
     let start = Instant::now();
     let mut files = unfinished();
@@ -90,30 +89,29 @@ pub(crate) fn run(streams: &Streams, args: &Args) -> anyhow::Result<()> {
     drop(files);
     let mut skipped = Vec::new();
     for (path, format) in args.scenes.iter().zip(formats) {
-        let found = add(streams, &pool, &mut writer, path, format)?;
+        let found = add(&session, &mut writer, path, format)?;
         skipped.extend(found.into_iter().map(|kind| (input::name(path), kind)));
     }
     let read_time = start.elapsed();
 
     let start = Instant::now();
-    let index = finish(streams, args, writer, listed, &pool)?;
+    let index = finish(&session, args, writer, listed)?;
     report(streams, args, &index, &skipped, [read_time, start.elapsed()])
 }
 
 /// Adds the primitives of a file, and returns the records that were skipped. The file is read in pieces if that is
 /// possible, so that it may be larger than memory.
 fn add(
-    streams: &Streams,
-    pool: &ThreadPool,
+    session: &Session<'_>,
     writer: &mut ShardWriter,
     path: &Path,
     format: FileFormat,
 ) -> anyhow::Result<Vec<Skipped>> {
     if Format::from_path(path).ok().map(FileFormat::Own) == Some(format) && input::is_plain_file(path) {
-        let _progress = Progress::start(streams, &format!("reading {}", input::name(path)), None, Unit::None);
-        return Ok(pool.install(|| writer.add_file(path, &PieceOptions::default()))?.skipped);
+        let _progress = Progress::start(session.streams, &format!("reading {}", input::name(path)), None, Unit::None);
+        return Ok(session.pool.install(|| writer.add_file(path, &PieceOptions::default()))?.skipped);
     }
-    let scene = SceneFile::read(streams, pool, path, format, false)?.scene;
+    let scene = SceneFile::read(session, path, format, false)?.scene;
     writer.add_scene(&scene)?;
     Ok(scene.skipped)
 }
@@ -121,14 +119,13 @@ fn add(
 /// Builds all shards. Until the last one is written, an interruption removes those that are there. The folder, if it
 /// is new, and the first file are listed already.
 fn finish(
-    streams: &Streams,
+    session: &Session<'_>,
     args: &Args,
     writer: ShardWriter,
     mut listed: Vec<Listed>,
-    pool: &rayon::ThreadPool,
 ) -> anyhow::Result<ShardedIndex> {
     let total = writer.primitive_count();
-    let bar = Progress::start(streams, "building shards", Some(total), Unit::Items("primitives"));
+    let bar = Progress::start(session.streams, "building shards", Some(total), Unit::Items("primitives"));
     let (run, mut finished) = (writer.run(), 0);
     let mut progress = |done| {
         bar.advance_to(done);
@@ -140,7 +137,7 @@ fn finish(
         }
         ControlFlow::Continue(())
     };
-    pool.install(|| writer.finish_with_progress(&mut progress)).map_err(name_the_option)
+    session.pool.install(|| writer.finish_with_progress(&mut progress)).map_err(name_the_option)
 }
 
 /// Adds the option that replaces an index to the error that there is one already.

@@ -2,7 +2,7 @@
 
 use crate::answers::{AnswerEncoder, AnswerRecord, BlockSize, QueryStream, Steps, answer_all};
 use crate::index::SignedIndex;
-use crate::io::{Output, Streams};
+use crate::io::{Output, Session};
 use crate::query::answers::ClosestAnswer;
 use nalgebra::Point3;
 use p2m_backends::AnyIndex;
@@ -10,7 +10,6 @@ use p2m_core::batch::{self, BatchOptions};
 use p2m_core::engine::parallel;
 use p2m_core::{Closest, QueryOptions};
 use p2m_field::deviation::LocalPlanes;
-use rayon::ThreadPool;
 use std::time::Duration;
 
 /// A rule of signs of deviations.
@@ -81,8 +80,7 @@ impl Answers<'_> {
     /// took.
     pub(super) fn add(
         &mut self,
-        streams: &Streams,
-        pool: &ThreadPool,
+        session: &Session<'_>,
         points: &[Point3<f64>],
         table: Option<(&AnswerEncoder<'_>, &mut Output<'_>)>,
     ) -> anyhow::Result<Duration> {
@@ -126,6 +124,6 @@ impl Answers<'_> {
         };
         let iter = points.iter().copied();
         let queries = QueryStream { name: "points", count: points.len() as u64, iter, block_size: BlockSize::Adaptive };
-        answer_all(streams, pool, queries, file, steps)
+        answer_all(session, queries, file, steps)
     }
 }

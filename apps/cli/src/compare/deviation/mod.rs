@@ -10,7 +10,7 @@ use crate::compare::scan::ScanArgs;
 use crate::index::{BackendChoice, PreparedIndex, SignRule, backend_choices};
 use crate::io::input::name;
 use crate::io::usage::{finite_not_negative, not_negative, positive, usage};
-use crate::io::{Output, Progress, SceneArgs, SceneFile, Streams, ThreadArgs, Unit, input, is_standard, json};
+use crate::io::{Output, Progress, SceneArgs, SceneFile, Session, Streams, ThreadArgs, Unit, input, is_standard, json};
 use crate::page::{OpenArgs, PageArgs};
 use answers::{Answers, Filter, Signs};
 use anyhow::anyhow;
@@ -21,7 +21,6 @@ use p2m_field::deviation::{LocalPlanes, isolated_points, on_vertices, primitives
 use p2m_field::sign::SignError;
 use p2m_mixed::Scene;
 use p2m_mixed::statistics::figure::{Count, Figure};
-use rayon::ThreadPool;
 use report::{Compared, DeviationReport};
 use serde_json::json;
 use std::path::{Path, PathBuf};
@@ -156,11 +155,11 @@ pub(crate) fn run(streams: &Streams, args: &Args) -> anyhow::Result<()> {
     let out_format = args.check()?;
     let scan_format = args.scan.format()?;
     let format = args.scene.format()?;
-    let pool = args.threads.pool()?;
+    let session = args.threads.start(streams)?;
     let start = Instant::now();
-    let mut file = args.scene.read(streams, &pool, format)?;
+    let mut file = args.scene.read(&session, format)?;
     let has_table = out_format == Some(DeviationFormat::Csv) && !args.on_part;
-    let (mut scan, ids) = args.scan.read(streams, &pool, scan_format, has_table)?;
+    let (mut scan, ids) = args.scan.read(&session, scan_format, has_table)?;
     file.read_time = start.elapsed();
     let scene = &file.scene;
     if let Some(note) = hints::note_on_sizes(&scan.soup, &scene.soup).filter(|_| !args.align) {
@@ -170,12 +169,12 @@ pub(crate) fn run(streams: &Streams, args: &Args) -> anyhow::Result<()> {
     let mut output = args.out.as_ref().map(|out| Output::open(streams, Some(out))).transpose()?;
 
     let start = Instant::now();
-    let prepared = args.prepare(streams, &pool, &file, scan.soup.positions())?;
+    let prepared = args.prepare(&session, &file, scan.soup.positions())?;
     let index = &*prepared.built.index;
-    let alignment = args.place(streams, &pool, (&file, index), &mut scan)?;
-    let signs = args.signs(streams, &pool, index, scene)?;
+    let alignment = args.place(&session, (&file, index), &mut scan)?;
+    let signs = args.signs(&session, index, scene)?;
     let points = scan.soup.positions();
-    let filter = args.filter(args.isolated(streams, &pool, points));
+    let filter = args.filter(args.isolated(&session, points));
     let build_time = start.elapsed();
 
     let barycentric = args.on_part.then(Vec::new);
@@ -185,7 +184,7 @@ pub(crate) fn run(streams: &Streams, args: &Args) -> anyhow::Result<()> {
         let columns = args.columns(scene, ids.is_some());
         AnswerEncoder::new(AnswerFormat::Csv, &scene.objects, columns).with_ids(ids)
     });
-    let query_time = answers.add(streams, &pool, points, encoder.as_ref().zip(output.as_mut()))?;
+    let query_time = answers.add(&session, points, encoder.as_ref().zip(output.as_mut()))?;
     let Answers { mut values, mut primitives, barycentric, .. } = answers;
     if let Some(barycentric) = barycentric {
         values = on_vertices(&scene.soup, &primitives, &barycentric, &values);
@@ -205,7 +204,7 @@ pub(crate) fn run(streams: &Streams, args: &Args) -> anyhow::Result<()> {
     }
 
     let index = IndexSummary::new(&file, backend, Some(&prepared), build_time);
-    let run = RunSummary { index, threads: pool.current_num_threads(), query_time };
+    let run = RunSummary { index, threads: session.pool.current_num_threads(), query_time };
     if args.json {
         let scan = json!({
             "file": name(&args.scan.path),
@@ -300,69 +299,58 @@ impl Args {
     /// Loads or builds the index to search for the points of a scan.
     fn prepare(
         &self,
-        streams: &Streams,
-        pool: &ThreadPool,
+        session: &Session<'_>,
         file: &SceneFile,
         points: &[Point3<f64>],
     ) -> anyhow::Result<PreparedIndex> {
         // A scan that is moved first will be like the scene.
         let region = if self.align { QueryRegion::SceneBox } else { QueryRegion::Like(points) };
-        let chosen = file.choose(
-            streams,
-            pool,
-            self.backend,
-            &Workload::new(points.len() as u64, region).with_needs_index(true),
-        )?;
-        file.prepare(streams, pool, chosen)
+        let chosen =
+            file.choose(session, self.backend, &Workload::new(points.len() as u64, region).with_needs_index(true))?;
+        file.prepare(session, chosen)
     }
 
     /// Moves the scan onto the scene if that was asked for. Otherwise a warning says if it seems to be elsewhere.
     fn place(
         &self,
-        streams: &Streams,
-        pool: &ThreadPool,
+        session: &Session<'_>,
         (file, index): (&SceneFile, &dyn AnyIndex),
         scan: &mut Scene,
     ) -> anyhow::Result<Option<Alignment>> {
         if self.align {
-            return move_scan(streams, pool, &self.scan.path, scan, (file, index), &AlignOptions::default()).map(Some);
+            return move_scan(session, &self.scan.path, scan, (file, index), &AlignOptions::default()).map(Some);
         }
         let (points, unit) = (scan.soup.positions(), &self.page.unit);
-        if let Some(note) = pool.install(|| hints::note_on_place(points, &file.scene.soup, index, unit)) {
-            streams.print_summary(format_args!("warning  {note}\n"));
+        if let Some(note) = session.pool.install(|| hints::note_on_place(points, &file.scene.soup, index, unit)) {
+            session.streams.print_summary(format_args!("warning  {note}\n"));
         }
         Ok(None)
     }
 
     /// Returns which points of a scan are left out as isolated ones.
-    fn isolated(&self, streams: &Streams, pool: &ThreadPool, points: &[Point3<f64>]) -> Vec<bool> {
+    fn isolated(&self, session: &Session<'_>, points: &[Point3<f64>]) -> Vec<bool> {
         if !self.drop_isolated {
             return Vec::new();
         }
-        let _progress = Progress::start(streams, "looking for isolated points", None, Unit::None);
-        pool.install(|| isolated_points(points))
+        let _progress = Progress::start(session.streams, "looking for isolated points", None, Unit::None);
+        session.pool.install(|| isolated_points(points))
     }
 
     /// Prepares what gives deviations their signs. A warning says if the rule auto is a guess.
-    fn signs<'a>(
-        &self,
-        streams: &Streams,
-        pool: &ThreadPool,
-        index: &'a dyn AnyIndex,
-        scene: &'a Scene,
-    ) -> anyhow::Result<Signs<'a>> {
+    fn signs<'a>(&self, session: &Session<'_>, index: &'a dyn AnyIndex, scene: &'a Scene) -> anyhow::Result<Signs<'a>> {
         if self.unsigned {
             return Ok(Signs::None);
         }
         if self.sign == SignRule::Auto {
-            let _progress = Progress::start(streams, "fitting planes", None, Unit::None);
-            if let Some(planes) = pool.install(|| LocalPlanes::new(&scene.soup, index)) {
+            let _progress = Progress::start(session.streams, "fitting planes", None, Unit::None);
+            if let Some(planes) = session.pool.install(|| LocalPlanes::new(&scene.soup, index)) {
                 return Ok(Signs::Planes(planes));
             }
         }
-        let signed = self.sign.prepare(streams, index, &scene.soup).map_err(|error| self.without_sign(error))?;
+        let signed =
+            self.sign.prepare(session.streams, index, &scene.soup).map_err(|error| self.without_sign(error))?;
         if let Some(note) = signed.note().filter(|_| self.sign == SignRule::Auto) {
-            streams.print_summary(format_args!("warning  {}: {note}\n", self.scene.name()));
+            session.streams.print_summary(format_args!("warning  {}: {note}\n", self.scene.name()));
         }
         Ok(Signs::Surface(signed))
     }

@@ -151,8 +151,8 @@ pub(crate) fn run(streams: &Streams, args: &Args) -> anyhow::Result<()> {
     if args.html.is_some() && args.html == args.csv {
         bail!("--html and --csv name the same file");
     }
-    let pool = ThreadArgs::default().pool()?;
-    let scene = args.scene.read(streams, &pool, args.scene.format()?)?.scene;
+    let session = ThreadArgs::default().start(streams)?;
+    let scene = args.scene.read(&session, args.scene.format()?)?.scene;
     if scene.soup.is_empty() {
         bail!("{}: there is nothing in it", args.scene.name());
     }
