@@ -209,13 +209,9 @@ impl AnswerSummary {
         }
     }
 
-    /// Returns the part of a report about queries that came from `source`.
-    pub(crate) fn json(&self, cells: &Value, max_distance: &Value, accuracy: &Value, source: &Value) -> Value {
+    /// Returns the part of a report about the answers.
+    pub(crate) fn json(&self) -> Value {
         json!({
-            "cells": cells,
-            "max_distance": max_distance,
-            "accuracy": accuracy,
-            "source": source,
             "queries": self.queries,
             "answered": self.queries - self.unanswered,
             "unanswered": self.unanswered,

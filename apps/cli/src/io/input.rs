@@ -161,7 +161,7 @@ pub(crate) fn shown(path: &Path) -> String {
 pub(crate) fn scene_format(path: &Path, given: Option<FileFormat>, option: &str) -> anyhow::Result<FileFormat> {
     match given {
         Some(format) => Ok(format),
-        None if is_standard(path) => Err(unnamed(option, FileFormat::names())),
+        None if is_standard(path) => Err(unnamed("input", option, FileFormat::names())),
         None => FileFormat::from_path(&uncompressed_name(path)?).map_err(|error| match error.reason {
             Reason::UnknownExtension { .. } => or_option(&error, option),
             // The error names a converter.
@@ -174,7 +174,7 @@ pub(crate) fn scene_format(path: &Path, given: Option<FileFormat>, option: &str)
 pub(crate) fn ray_format(path: &Path, given: Option<PointFormat>, option: &str) -> anyhow::Result<PointFormat> {
     match given {
         Some(format) => Ok(format),
-        None if is_standard(path) => Err(unnamed(option, PointFormat::NAMES)),
+        None if is_standard(path) => Err(unnamed("input", option, PointFormat::NAMES)),
         None => PointFormat::from_path(&uncompressed_name(path)?).map_err(|e| or_option(&e, option)),
     }
 }
@@ -201,9 +201,10 @@ fn is_compressed(path: &Path) -> bool {
     has_extension(path, &["gz", "zst"])
 }
 
-/// The error that the standard input has no format.
-pub(crate) fn unnamed(option: &str, names: &[&str]) -> anyhow::Error {
-    usage(format!("the standard input has no extension that names its format: add {option} {}", names.join("|")))
+/// The error that a standard stream has no format.
+pub(crate) fn unnamed(stream: &str, option: &str, names: &[&str]) -> anyhow::Error {
+    let names = names.join("|");
+    usage(format!("the standard {stream} has no extension that names its format: add {option} {names}"))
 }
 
 /// The error of an unknown extension, with the option that names the format.

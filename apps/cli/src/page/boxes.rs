@@ -4,7 +4,7 @@ use crate::index::kdop_faces;
 use crate::io::{Output, Progress, SceneArgs, Streams, ThreadArgs, Unit, json, shown};
 use crate::page::drawing::{Panel, View, box_edges, write_picture_ply, write_svg};
 use crate::page::tree_levels::TreeLevels;
-use crate::page::up_axis::Up;
+use crate::page::up_axis::up_axes;
 use anyhow::{Context, bail};
 use nalgebra::Point3;
 use p2m_backends::{KdopDirections, KdopVisitor};
@@ -12,6 +12,8 @@ use p2m_bvh::{AabbTree, PacketTree, SplitOptions, TreeNode, Volume};
 use p2m_core::Soup;
 use p2m_kdop::{KdopTree, Polytope};
 use p2m_mixed::statistics::figure::Count;
+use p2m_page::UpAxis;
+use serde::Serialize;
 use serde_json::json;
 use std::path::PathBuf;
 
@@ -50,8 +52,8 @@ pub(crate) struct Args {
     view: View,
 
     /// The axis that points up in an SVG picture
-    #[arg(long, value_enum, default_value_t = Up::Z)]
-    up: Up,
+    #[arg(long, value_parser = up_axes(), default_value = "z")]
+    up: UpAxis,
 
     #[command(flatten)]
     threads: ThreadArgs,
@@ -93,19 +95,21 @@ pub(crate) fn run(streams: &Streams, args: &Args) -> anyhow::Result<()> {
         write_picture_ply(&panels, &mut output)
     } else {
         let mut dots = dots(&scene.soup);
-        args.up.rotate_to_z_up(panels.iter_mut().flat_map(|panel| &mut panel.lines).flatten().chain(&mut dots));
+        if args.up == UpAxis::Y {
+            let points = panels.iter_mut().flat_map(|panel| &mut panel.lines).flatten().chain(&mut dots);
+            points.for_each(|p| *p = Point3::new(p.x, -p.z, p.y));
+        }
         write_svg(&panels, &dots, args.view, &mut output)
     };
     written.with_context(|| output.cannot_write())?;
     output.finish()?;
     if args.json {
-        let panels: Vec<_> = drawn.iter().map(|d| json!({"level": d.level, "boxes": d.boxes})).collect();
         let report = json!({
             "scene": { "file": args.scene.name(), "format": format.name() },
             "out": { "file": shown(&args.out) },
             "faces": directions.as_ref().map(|directions| directions.faces),
             "directions_reason": reason,
-            "panels": panels,
+            "panels": drawn,
         });
         return json::print_report(streams, "boxes", [report]);
     }
@@ -116,7 +120,8 @@ pub(crate) fn run(streams: &Streams, args: &Args) -> anyhow::Result<()> {
     Ok(())
 }
 
-/// The content of a panel.
+/// The content of a panel, as reports have it.
+#[derive(Serialize)]
 struct DrawnLevel {
     /// The level, or `None` for the leaves.
     level: Option<usize>,

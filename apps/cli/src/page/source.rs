@@ -2,7 +2,7 @@
 
 use crate::io::input::name;
 use crate::io::is_standard;
-use crate::page::up_axis::Up;
+use crate::page::up_axis::up_axes;
 use p2m_core::Aabb;
 use p2m_mixed::Scene;
 use p2m_page::{UpAxis, View};
@@ -11,8 +11,8 @@ use std::path::Path;
 #[derive(clap::Args)]
 pub(crate) struct PageArgs {
     /// The axis that points up
-    #[arg(long, value_enum, default_value_t = Up::Z)]
-    up: Up,
+    #[arg(long, value_parser = up_axes(), default_value = "z")]
+    pub(crate) up: UpAxis,
 
     /// The name of the unit of length
     #[arg(long, value_name = "NAME", default_value = "units")]
@@ -22,12 +22,7 @@ pub(crate) struct PageArgs {
 impl PageArgs {
     /// Starts a page of a scene, whose picture contains the box `around` as well.
     pub(crate) fn view<'a>(&self, scene: &'a Scene, around: &Aabb<f64>) -> View<'a> {
-        View::new(scene, around).with_unit(&self.unit).with_up(self.up())
-    }
-
-    /// Returns the axis that points up.
-    pub(crate) fn up(&self) -> UpAxis {
-        self.up.into()
+        View::new(scene, around).with_unit(&self.unit).with_up(self.up)
     }
 }
 

@@ -5,9 +5,10 @@ use crate::io::usage::finite_not_negative;
 use nalgebra::Point3;
 use p2m_core::batch::{self, BatchOptions};
 use p2m_core::{CertifiedQuery, Closest, ClosestPoint, QueryOptions};
-use serde_json::{Value, json};
+use serde::Serialize;
 
-#[derive(clap::Args)]
+/// Reports have these arguments as they are here.
+#[derive(clap::Args, Serialize)]
 #[command(next_help_heading = "Accuracy")]
 pub(crate) struct Accuracy {
     /// Allow a relative error of the distance: 0.01 is one per cent
@@ -56,14 +57,5 @@ impl Accuracy {
         let mut answers = vec![None; queries.len()];
         batch::closest_points_into(index, queries, options, &BatchOptions::default(), &mut answers);
         answers
-    }
-
-    /// Returns the part of a report about accuracy.
-    pub(crate) fn json(&self) -> Value {
-        json!({
-            "epsilon": self.epsilon,
-            "max_visits": self.max_visits,
-            "certified": self.certified,
-        })
     }
 }

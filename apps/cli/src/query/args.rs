@@ -163,8 +163,13 @@ impl Args {
 
     /// Returns the part of a report about the queries and their answers.
     pub(crate) fn report(&self, summary: &AnswerSummary, cells: &Value) -> Value {
-        let max_distance = self.max_distance.map_or(Value::Null, json::number);
-        summary.json(cells, &max_distance, &self.accuracy.json(), &source_json(self))
+        let queries = json!({
+            "cells": cells,
+            "max_distance": self.max_distance.map(json::number),
+            "accuracy": self.accuracy,
+            "source": source_json(self),
+        });
+        json::joined([queries, summary.json()])
     }
 
     /// Returns the columns that the arguments name, or else those of the format, with the numbers of queries if these

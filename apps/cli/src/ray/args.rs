@@ -5,6 +5,7 @@ use crate::index::{Backend, backends};
 use crate::io::input::{ray_format, read_rays};
 use crate::io::usage::{bytes, count, finite_not_negative, number, one_of, positive, usage, whole_number};
 use crate::io::{SceneArgs, Streams, input, json};
+use clap::builder::PossibleValue;
 use clap::{ArgGroup, ValueEnum};
 use nalgebra::{Point3, Vector3};
 use p2m_core::{Aabb, Ray, RayError};
@@ -121,20 +122,6 @@ pub(crate) enum Mode {
     Crossings,
 }
 
-impl Mode {
-    /// The name on the command line and in reports.
-    fn name(self) -> &'static str {
-        match self {
-            Self::Intersects => "intersects",
-            Self::Any => "any",
-            Self::First => "first",
-            Self::All => "all",
-            Self::Count => "count",
-            Self::Crossings => "crossings",
-        }
-    }
-}
-
 impl Args {
     /// Refuses combinations of arguments that contradict each other.
     pub(crate) fn check(&self) -> anyhow::Result<()> {
@@ -162,16 +149,13 @@ impl Args {
             None => json!({ "random": self.random, "seed": self.seed, "box_scale": self.box_scale }),
         };
         let [min, max] = self.range().map(json::number);
-        let mut report = json!({
-            "mode": self.mode.name(),
+        let report = json!({
+            "mode": self.mode.to_possible_value().as_ref().map(PossibleValue::get_name),
             "range": { "min": min, "max": max },
             "radius": self.radius,
             "source": source,
         });
-        if let (Value::Object(report), Value::Object(summary)) = (&mut report, summary) {
-            report.extend(summary);
-        }
-        report
+        json::joined([report, summary])
     }
 }
 

@@ -1,7 +1,7 @@
 //! `p2m convert`: converts scenes from one format to another, with changes on request.
 
 use crate::answers::listed;
-use crate::io::input::{lossless_list, or_option, scene_format, scene_help};
+use crate::io::input::{lossless_list, or_option, scene_format, scene_help, unnamed};
 use crate::io::usage::{one_of, usage};
 use crate::io::{Output, SceneFile, Streams, ThreadArgs, input, is_standard, json, shown};
 use crate::scene::info::counted;
@@ -114,12 +114,7 @@ impl<'a> Target<'a> {
     ) -> anyhow::Result<Self> {
         let format = match given.or_else(|| default.filter(|_| is_standard(path))) {
             Some(format) => format,
-            None if is_standard(path) => {
-                let names = Format::NAMES.join("|");
-                return Err(usage(format!(
-                    "the standard output has no extension that names its format: add --to {names}"
-                )));
-            }
+            None if is_standard(path) => return Err(unnamed("output", "--to", Format::NAMES)),
             None => Format::from_path(path).map_err(|e| or_option(&e, "--to"))?,
         };
         Self::with_format(streams, path, format)

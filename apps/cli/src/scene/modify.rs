@@ -5,11 +5,12 @@ use crate::io::{Progress, Streams, Unit};
 use p2m_core::{Element, PrimitiveSet, Soup};
 use p2m_mixed::generate::{GenerateError, Subdivide, Transform, gapped, penetrating, subdivide};
 use p2m_mixed::{Object, Scene};
+use serde::Serialize;
 use serde_json::{Value, json};
 use std::sync::Arc;
 
-/// The changes to a scene.
-#[derive(clap::Args)]
+/// The changes to a scene, in the order in which they are applied. Reports have them by these names.
+#[derive(clap::Args, Serialize)]
 #[command(next_help_heading = "Changes, applied in this order")]
 pub(crate) struct Modifiers {
     /// Split each triangle into four and each segment into two, N times
@@ -22,6 +23,7 @@ pub(crate) struct Modifiers {
 
     /// Seed of the displacements
     #[arg(long, value_name = "K", default_value_t = Subdivide::default().seed, allow_negative_numbers = true, requires = "displace")]
+    #[serde(skip)]
     displace_seed: u64,
 
     /// Shrink each primitive about its centroid by this factor
@@ -106,18 +108,8 @@ impl Modifiers {
 
     /// Returns the requested changes in the order in which they are applied.
     pub(crate) fn json(&self) -> Value {
-        let changes = [
-            ("subdivide", json!(self.subdivide)),
-            ("displace", json!(self.displace)),
-            ("gap", json!(self.gap)),
-            ("penetrate", json!(self.penetrate)),
-            ("rotate_x", json!(self.rotate_x)),
-            ("rotate_y", json!(self.rotate_y)),
-            ("rotate_z", json!(self.rotate_z)),
-            ("scale", json!(self.scale)),
-            ("translate", json!(self.translate)),
-        ];
-        let requested = changes.into_iter().filter(|(_, value)| !value.is_null());
+        let Value::Object(all) = json!(self) else { return Value::Null };
+        let requested = all.into_iter().filter(|(_, value)| !value.is_null());
         requested.map(|(change, value)| json!({ "change": change, "by": value })).collect()
     }
 }

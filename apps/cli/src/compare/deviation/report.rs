@@ -158,7 +158,7 @@ impl<'a> DeviationReport<'a> {
             head: &self.args.head,
             required: self.args.require,
             unit: &self.args.page.unit,
-            up: self.args.page.up(),
+            up: self.args.page.up,
             scene: self.compared.scene,
             deviations: self.deviations(),
             about: &about,
