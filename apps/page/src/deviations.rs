@@ -7,7 +7,7 @@ use p2m_core::{Aabb, PrimitiveId, Soup};
 use p2m_field::deviation::{DeviationStatistics, OutsideTolerance, outside};
 use p2m_mixed::Scene;
 use p2m_mixed::statistics::figure::{Count, Figure};
-use serde::Serialize;
+use serde_json::{Value, json};
 
 /// The deviations of a scan from the scene of a page.
 #[derive(Clone, Copy, Debug)]
@@ -41,7 +41,22 @@ impl Deviations<'_> {
     /// a tolerance.
     #[must_use]
     pub fn verdict(&self, required: Option<f64>, unit: &str) -> Option<Verdict> {
-        Verdict::new(self, required, unit)
+        let tolerance = self.tolerance?;
+        let count = self.statistics.count;
+        let within = outside(self.values, tolerance).percent_within(count);
+        let passes = required.map(|required| within >= required);
+        // Rounding must not reach what the share itself does not.
+        let rounded = (within * 100.0).round() / 100.0;
+        let is_reached = |limit: f64| within < limit && rounded >= limit;
+        let is_misleading = is_reached(100.0) || required.is_some_and(is_reached);
+        let shown = if is_misleading { (within * 1e4).floor() / 1e4 } else { rounded };
+        let required = required.map(|required| format!(", {required} % required")).unwrap_or_default();
+        let sign = if self.is_signed { "+-" } else { "" };
+        let sentence = match count {
+            0 => format!("no point has a deviation{required}"),
+            _ => format!("{shown} % within {sign}{tolerance} {unit}{required}"),
+        };
+        Some(Verdict { passes, sentence })
     }
 
     /// Returns a sentence with the main numbers.
@@ -73,25 +88,6 @@ pub struct Verdict {
 }
 
 impl Verdict {
-    fn new(deviations: &Deviations<'_>, required: Option<f64>, unit: &str) -> Option<Self> {
-        let tolerance = deviations.tolerance?;
-        let count = deviations.statistics.count;
-        let within = outside(deviations.values, tolerance).percent_within(count);
-        let passes = required.map(|required| within >= required);
-        // Rounding must not reach what the share itself does not.
-        let rounded = (within * 100.0).round() / 100.0;
-        let is_reached = |limit: f64| within < limit && rounded >= limit;
-        let is_misleading = is_reached(100.0) || required.is_some_and(is_reached);
-        let shown = if is_misleading { (within * 1e4).floor() / 1e4 } else { rounded };
-        let required = required.map(|required| format!(", {required} % required")).unwrap_or_default();
-        let sign = if deviations.is_signed { "+-" } else { "" };
-        let sentence = match count {
-            0 => format!("no point has a deviation{required}"),
-            _ => format!("{shown} % within {sign}{tolerance} {unit}{required}"),
-        };
-        Some(Self { passes, sentence })
-    }
-
     /// Returns the verdict as a word: `PASS` or `FAIL`.
     #[must_use]
     pub fn word(&self) -> Option<&'static str> {
@@ -138,40 +134,10 @@ impl ObjectDeviations {
 /// The number of equal parts by which the values of a scan are described that has too many points to draw.
 const QUANTILES: usize = 10_000;
 
-#[derive(Debug, Serialize)]
-pub(crate) struct DeviationData {
-    /// The number of points of the scan.
-    total: usize,
-    missing: usize,
-    /// The points that are drawn: every one with this stride.
-    stride: usize,
-    positions: Packed,
-    values: Packed,
-    primitives: Packed,
-    /// The vertices of the triangles that are drawn.
-    triangles: Packed,
-    /// All values in order, or as many of them at equal distances, if not all points are drawn.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    quantiles: Option<Packed>,
-    statistics: Vec<StatisticData>,
-    is_signed: bool,
-    limit: f64,
-    tolerance: Option<f64>,
-    /// The numbers of values above the tolerance and below its negative.
-    outside_tolerance: Option<[usize; 2]>,
-}
-
-#[derive(Debug, Serialize)]
-struct StatisticData {
-    label: String,
-    /// The number; null if there are no deviations.
-    value: f64,
-}
-
-impl DeviationData {
-    /// Packs deviations, and returns a note if not all points are drawn.
-    pub(crate) fn new(deviations: &Deviations<'_>) -> (Self, Option<String>) {
-        let Deviations { scan, values, primitives, statistics, .. } = *deviations;
+impl Deviations<'_> {
+    /// Packs the deviations for the script of a page, and returns a note if not all points are drawn.
+    pub(crate) fn data(&self) -> (Value, Option<String>) {
+        let Deviations { scan, values, primitives, statistics, .. } = *self;
         let total = scan.positions().len();
         assert_eq!([values.len(), primitives.len()], [total; 2], "a value and a primitive for each position");
         let stride = total.div_ceil(MAX_PRIMITIVES).max(1);
@@ -190,26 +156,33 @@ impl DeviationData {
             let drawn = positions.len() / 3;
             format!("The scan has {total} points, of which {drawn} are drawn. The statistics are those of all.")
         });
-        let statistics_data =
-            statistics.named().into_iter().map(|s| StatisticData { label: s.label, value: s.value }).collect();
-        let data = Self {
-            total,
-            missing: statistics.missing,
-            stride,
-            positions: Packed::new(&positions),
-            values: Packed::new(&values.iter().copied().step_by(stride).collect::<Vec<f64>>()),
-            primitives: Packed::new(&primitives.iter().copied().step_by(stride).collect::<Vec<u32>>()),
-            triangles: Packed::new(triangles),
-            quantiles,
-            statistics: statistics_data,
-            is_signed: deviations.is_signed,
-            limit: deviations.limit,
-            tolerance: deviations.tolerance,
-            outside_tolerance: deviations.tolerance.map(|tolerance| {
+        let named = statistics.named();
+        let mut data = json!({
+            "total": total,
+            "missing": statistics.missing,
+            // Every point with this stride is drawn.
+            "stride": stride,
+            "positions": Packed::new(&positions),
+            "values": Packed::new(&values.iter().copied().step_by(stride).collect::<Vec<f64>>()),
+            "primitives": Packed::new(&primitives.iter().copied().step_by(stride).collect::<Vec<u32>>()),
+            // The vertices of the triangles that are drawn.
+            "triangles": Packed::new(triangles),
+            // All values in order, or as many of them at equal distances.
+            "quantiles": quantiles,
+            // A number is null if there are no deviations.
+            "statistics": named.iter().map(|s| json!({ "label": s.label, "value": s.value })).collect::<Value>(),
+            "is_signed": self.is_signed,
+            "limit": self.limit,
+            "tolerance": self.tolerance,
+            // The numbers of values above the tolerance and below its negative.
+            "outside_tolerance": self.tolerance.map(|tolerance| {
                 let outside = outside(values, tolerance);
                 [outside.above, outside.below]
             }),
-        };
+        });
+        if let (Value::Object(data), 1) = (&mut data, stride) {
+            data.shift_remove("quantiles");
+        }
         (data, note)
     }
 }
@@ -273,18 +246,17 @@ mod tests {
             limit: 1.0,
             tolerance: Some(10.0),
         };
-        let (data, note) = DeviationData::new(&deviations);
-        assert_eq!((data.stride, data.total), (3, count));
+        let (data, note) = deviations.data();
+        assert_eq!((&data["stride"], &data["total"]), (&3.into(), &count.into()));
         // These are counted among all points.
-        assert_eq!(data.outside_tolerance, Some([count - 1_000_011, 999_990]));
+        assert_eq!(data["outside_tolerance"], json!([count - 1_000_011, 999_990]));
         assert_eq!(
             note.unwrap(),
             "The scan has 2000001 points, of which 666667 are drawn. The statistics are those of all."
         );
-        assert!(data.quantiles.is_some());
+        assert!(data["quantiles"].is_object());
         let few = Deviations { values: &values[..2], primitives: &[0; 2], ..deviations };
-        let (data, note) =
-            DeviationData::new(&Deviations { scan: &Soup::new(vec![Point3::origin(); 2], []).unwrap(), ..few });
-        assert!(data.quantiles.is_none() && note.is_none());
+        let (data, note) = Deviations { scan: &Soup::new(vec![Point3::origin(); 2], []).unwrap(), ..few }.data();
+        assert!(data.get("quantiles").is_none() && note.is_none());
     }
 }

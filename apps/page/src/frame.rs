@@ -6,7 +6,7 @@ use serde::Serialize;
 
 /// Positions in the frame are divided by a scale and are relative to a point, so that a scene is drawn equally well at
 /// any distance from the origin and in any unit.
-#[derive(Clone, Copy, Debug, Serialize)]
+#[derive(Clone, Copy, Debug, Default, Serialize)]
 pub(crate) struct Frame {
     /// The point at the origin of the frame, in the unit of the scene.
     origin: [f64; 3],

@@ -110,9 +110,9 @@ impl Packed {
         let bytes = bytemuck::cast_slice(numbers);
         let width = size_of::<N>();
         let in_planes = (width > 1).then(|| (Form { planes: true, ..Form::default() }, planes(bytes, width)));
-        let mut best = (Form::default(), compress(bytes));
+        let mut best = (Form::default(), compress(bytes, Compression::fast()));
         for (form, bytes) in in_planes.into_iter().chain(N::shorter(numbers)) {
-            let compressed = compress(&bytes);
+            let compressed = compress(&bytes, Compression::fast());
             if compressed.len() < best.1.len() {
                 best = (form, compressed);
             }
@@ -141,7 +141,7 @@ impl Packed {
         };
         let steps: Vec<u16> = values.iter().map(step).collect();
         let form = Form { planes: true, steps: true, rounded: Some([unit, low]), ..Form::default() };
-        let bytes = compress(&planes(bytemuck::cast_slice(&steps), 2));
+        let bytes = compress(&planes(bytemuck::cast_slice(&steps), 2), Compression::fast());
         Self { kind: f32::NAME, form, bytes: STANDARD.encode(bytes) }
     }
 
@@ -154,14 +154,11 @@ impl Packed {
 
 /// Compresses bytes as much as possible, and returns them as text.
 pub(crate) fn compressed_text(bytes: &[u8]) -> String {
-    STANDARD.encode(compress_by(bytes, Compression::best()))
+    STANDARD.encode(compress(bytes, Compression::best()))
 }
 
-fn compress(bytes: &[u8]) -> Vec<u8> {
-    compress_by(bytes, Compression::fast())
-}
-
-fn compress_by(bytes: &[u8], level: Compression) -> Vec<u8> {
+/// Compresses bytes by deflate.
+pub(crate) fn compress(bytes: &[u8], level: Compression) -> Vec<u8> {
     let mut encoder = ZlibEncoder::new(Vec::new(), level);
     let written = encoder.write_all(bytes).and_then(|()| encoder.finish());
     written.expect("writing to a vector does not fail")

@@ -1,7 +1,7 @@
 //! The page of a scene.
 
 use crate::decimate::{MAX_PRIMITIVES, is_distinct, representatives};
-use crate::deviations::{DeviationData, Deviations};
+use crate::deviations::Deviations;
 use crate::frame::Frame;
 use crate::packed::{Packed, compressed_text};
 use crate::template::{STYLE, escape, fill, script_data};
@@ -11,6 +11,7 @@ use p2m_field::Grid;
 use p2m_mixed::Scene;
 use p2m_mixed::statistics::figure::Count;
 use serde::Serialize;
+use serde_json::{Value, json};
 
 const TEMPLATE: &str = include_str!("view.html");
 /// The script, which begins with the licence of what it contains.
@@ -58,7 +59,8 @@ pub struct View<'a> {
     pub about: String,
 }
 
-#[derive(Debug, Serialize)]
+/// The data of a page. Each optional part is an object as the script reads it.
+#[derive(Debug, Default, Serialize)]
 struct Data {
     unit: String,
     up: UpAxis,
@@ -70,22 +72,25 @@ struct Data {
     /// The kinds of primitives because of which the scene has no inside.
     #[serde(skip_serializing_if = "Option::is_none")]
     no_inside: Option<&'static str>,
+    /// Arrays with an entry for each query. A distance that is no number stands for no answer.
     #[serde(skip_serializing_if = "Option::is_none")]
-    answers: Option<AnswerData>,
+    answers: Option<Value>,
     #[serde(skip_serializing_if = "Option::is_none")]
-    cells: Option<CellData>,
+    cells: Option<Value>,
     #[serde(skip_serializing_if = "Option::is_none")]
     field: Option<FieldData>,
     #[serde(skip_serializing_if = "Option::is_none")]
     lists: Option<FieldData>,
+    /// The data of live queries: the module, and the exact scene with its primitives in the order of their ids.
     #[serde(skip_serializing_if = "Option::is_none")]
-    live: Option<LiveData>,
+    live: Option<Value>,
+    /// Lines with lengths.
     #[serde(skip_serializing_if = "Option::is_none")]
-    measures: Option<MeasureData>,
+    measures: Option<Value>,
     #[serde(skip_serializing_if = "Option::is_none")]
-    moved: Option<MovedData>,
+    moved: Option<Value>,
     #[serde(skip_serializing_if = "Option::is_none")]
-    deviations: Option<DeviationData>,
+    deviations: Option<Value>,
 }
 
 /// A line between two points, with its length.
@@ -108,41 +113,8 @@ pub struct Moved {
     pub facts: Vec<(&'static str, f64)>,
 }
 
-#[derive(Debug, Serialize)]
-struct MovedData {
-    title: String,
-    verdict: String,
-    remarks: Vec<String>,
-    /// The 16 numbers, row by row.
-    matrix: Vec<f64>,
-    facts: Vec<(&'static str, f64)>,
-}
-
-/// Lines with lengths.
-#[derive(Debug, Serialize)]
-struct MeasureData {
-    title: String,
-    verdict: String,
-    remarks: Vec<String>,
-    names: Vec<String>,
-    lengths: Packed,
-    /// Six coordinates for each line.
-    ends: Packed,
-}
-
-/// The data of live queries: the module, and the exact scene with its primitives in the order of their ids.
-#[derive(Debug, Serialize)]
-struct LiveData {
-    module: Packed,
-    coordinates: Packed,
-    /// The numbers of vertices of the primitives.
-    sizes: Packed,
-    /// The vertices of the primitives, one after the other.
-    indices: Packed,
-}
-
 /// The primitives of a scene.
-#[derive(Debug, Serialize)]
+#[derive(Debug, Default, Serialize)]
 struct SceneData {
     /// The primitives that are drawn, or nothing if the exact scene of live queries has the same ones.
     #[serde(flatten)]
@@ -170,38 +142,6 @@ struct ObjectData {
     points: [usize; 2],
 }
 
-/// Arrays with an entry for each query. A distance that is no number stands for no answer.
-#[derive(Debug, Serialize)]
-struct AnswerData {
-    queries: Packed,
-    points: Packed,
-    distances: Packed,
-    lower_bounds: Packed,
-    #[serde(skip_serializing_if = "Option::is_none")]
-    signed: Option<Packed>,
-    primitives: Packed,
-    /// The codes of the features.
-    features: Packed,
-    /// The numbers of vertices of the primitives.
-    sizes: Packed,
-    /// The vertices of the primitives in the frame, three for each.
-    vertices: Packed,
-    /// The numbers of objects from 1, and 0 for none.
-    objects: Packed,
-}
-
-#[derive(Debug, Serialize)]
-struct CellData {
-    title: String,
-    levels: Vec<LevelData>,
-}
-
-#[derive(Debug, Serialize)]
-struct LevelData {
-    title: String,
-    boxes: Packed,
-}
-
 #[derive(Debug, Serialize)]
 struct FieldData {
     counts: [usize; 3],
@@ -216,30 +156,19 @@ impl<'a> View<'a> {
     pub fn new(scene: &'a Scene, around: &Aabb<f64>) -> Self {
         let frame = Frame::of(&scene.soup.aabb().union(around));
         let mut notes = Vec::new();
-        let data = scene_data(scene, &frame, &mut notes);
-        let object_names = scene.objects.iter().map(|object| object.name.clone()).collect();
         let data = Data {
             unit: "units".to_owned(),
-            up: UpAxis::Z,
+            scene: scene_data(scene, &frame, &mut notes),
             notes,
             frame,
-            scene: data,
-            object_names,
-            has_object_colours: false,
+            object_names: scene.objects.iter().map(|object| object.name.clone()).collect(),
             no_inside: match [scene.soup.segments().is_empty(), scene.soup.points().is_empty()] {
                 [false, false] => Some("lines and points"),
                 [false, true] => Some("lines"),
                 [true, false] => Some("points"),
                 [true, true] => None,
             },
-            answers: None,
-            cells: None,
-            field: None,
-            lists: None,
-            live: None,
-            measures: None,
-            moved: None,
-            deviations: None,
+            ..Data::default()
         };
         Self { scene, frame, data, title: "A scene".to_owned(), summary: String::new(), about: String::new() }
     }
@@ -255,13 +184,6 @@ impl<'a> View<'a> {
     #[must_use]
     pub fn with_unit(mut self, unit: &str) -> Self {
         unit.clone_into(&mut self.data.unit);
-        self
-    }
-
-    /// Shows a sentence above the panel.
-    #[must_use]
-    pub fn with_note(mut self, note: String) -> Self {
-        self.data.notes.push(note);
         self
     }
 
@@ -298,18 +220,25 @@ impl<'a> View<'a> {
         };
         let feature = |answer: &Option<Closest<f64>>| answer.map_or(Feature::Face, |answer| answer.feature).code();
         let point = |answer: &Option<Closest<f64>>| answer.map_or([f64::NAN; 3], |answer| answer.point.coords.into());
-        self.data.answers = Some(AnswerData {
-            queries: Packed::new(&queries.iter().flat_map(|q| [q.x, q.y, q.z]).collect::<Vec<f64>>()),
-            points: Packed::new(&answers.iter().flat_map(point).collect::<Vec<f64>>()),
-            distances: Packed::new(&number(|answer| answer.distance)),
-            lower_bounds: Packed::new(&number(|answer| answer.lower_bound)),
-            signed: signed.map(Packed::new),
-            primitives: Packed::new(&answers.iter().map(primitive).collect::<Vec<u32>>()),
-            features: Packed::new(&answers.iter().map(feature).collect::<Vec<u8>>()),
-            sizes: Packed::new(&answers.iter().map(size).collect::<Vec<u8>>()),
-            vertices: Packed::new(&answers.iter().flat_map(vertices).flatten().collect::<Vec<f32>>()),
-            objects: Packed::new(&answers.iter().map(object).collect::<Vec<u32>>()),
+        let mut data = json!({
+            "queries": Packed::new(&queries.iter().flat_map(|q| [q.x, q.y, q.z]).collect::<Vec<f64>>()),
+            "points": Packed::new(&answers.iter().flat_map(point).collect::<Vec<f64>>()),
+            "distances": Packed::new(&number(|answer| answer.distance)),
+            "lower_bounds": Packed::new(&number(|answer| answer.lower_bound)),
+            "signed": signed.map(Packed::new),
+            "primitives": Packed::new(&answers.iter().map(primitive).collect::<Vec<u32>>()),
+            // The codes of the features.
+            "features": Packed::new(&answers.iter().map(feature).collect::<Vec<u8>>()),
+            // The numbers of vertices of the primitives, and these vertices in the frame, three for each.
+            "sizes": Packed::new(&answers.iter().map(size).collect::<Vec<u8>>()),
+            "vertices": Packed::new(&answers.iter().flat_map(vertices).flatten().collect::<Vec<f32>>()),
+            // The numbers of objects from 1, and 0 for none.
+            "objects": Packed::new(&answers.iter().map(object).collect::<Vec<u32>>()),
         });
+        if let (Value::Object(data), None) = (&mut data, signed) {
+            data.shift_remove("signed");
+        }
+        self.data.answers = Some(data);
         self
     }
 
@@ -319,10 +248,10 @@ impl<'a> View<'a> {
         let level = |level: &Level| {
             let ends = level.boxes.iter().flat_map(|bounds| [bounds.min, bounds.max]);
             let boxes: Vec<f32> = ends.flat_map(|point| self.frame.position(&point)).collect();
-            LevelData { title: level.title.clone(), boxes: Packed::new(&boxes) }
+            json!({ "title": level.title, "boxes": Packed::new(&boxes) })
         };
-        let levels: Vec<LevelData> = levels.iter().map(level).collect();
-        self.data.cells = (!levels.is_empty()).then(|| CellData { title: title.to_owned(), levels });
+        let data = || json!({ "title": title, "levels": levels.iter().map(level).collect::<Value>() });
+        self.data.cells = (!levels.is_empty()).then(data);
         self
     }
 
@@ -373,12 +302,13 @@ impl<'a> View<'a> {
         if soup.len() <= MAX_PRIMITIVES {
             self.data.scene.drawn = None;
         }
-        self.data.live = Some(LiveData {
-            module: Packed::zstandard(MODULE),
-            coordinates: Packed::new(&coordinates),
-            sizes: Packed::new(&sizes),
-            indices: Packed::new(&indices),
-        });
+        self.data.live = Some(json!({
+            "module": Packed::zstandard(MODULE),
+            "coordinates": Packed::new(&coordinates),
+            // The numbers of vertices of the primitives, and these vertices one after the other.
+            "sizes": Packed::new(&sizes),
+            "indices": Packed::new(&indices),
+        }));
         self
     }
 
@@ -387,14 +317,16 @@ impl<'a> View<'a> {
     #[must_use]
     pub fn with_measures(mut self, title: &str, verdict: &str, remarks: &[String], measures: &[Measure]) -> Self {
         let ends = measures.iter().flat_map(|measure| measure.ends).flat_map(|p| [p.x, p.y, p.z]);
-        self.data.measures = Some(MeasureData {
-            title: title.to_owned(),
-            verdict: verdict.to_owned(),
-            remarks: remarks.to_vec(),
-            names: measures.iter().map(|measure| measure.name.clone()).filter(|name| !name.is_empty()).collect(),
-            lengths: Packed::new(&measures.iter().map(|measure| measure.length).collect::<Vec<f64>>()),
-            ends: Packed::new(&ends.collect::<Vec<f64>>()),
-        });
+        let names = measures.iter().map(|measure| &measure.name).filter(|name| !name.is_empty());
+        self.data.measures = Some(json!({
+            "title": title,
+            "verdict": verdict,
+            "remarks": remarks,
+            "names": names.collect::<Vec<_>>(),
+            "lengths": Packed::new(&measures.iter().map(|measure| measure.length).collect::<Vec<f64>>()),
+            // Six coordinates for each line.
+            "ends": Packed::new(&ends.collect::<Vec<f64>>()),
+        }));
         self
     }
 
@@ -413,13 +345,11 @@ impl<'a> View<'a> {
     #[must_use]
     pub fn with_moved(mut self, title: &str, verdict: &str, remarks: &[String], moved: &Moved) -> Self {
         assert_eq!(self.scene.objects.len(), 2, "the second of two objects was moved");
-        self.data.moved = Some(MovedData {
-            title: title.to_owned(),
-            verdict: verdict.to_owned(),
-            remarks: remarks.to_vec(),
-            matrix: moved.matrix.transpose().iter().copied().collect(),
-            facts: moved.facts.clone(),
-        });
+        // The 16 numbers of the matrix are there row by row.
+        let rows: Vec<f64> = moved.matrix.transpose().iter().copied().collect();
+        let facts = &moved.facts;
+        self.data.moved =
+            Some(json!({ "title": title, "verdict": verdict, "remarks": remarks, "matrix": rows, "facts": facts }));
         self
     }
 
@@ -432,7 +362,7 @@ impl<'a> View<'a> {
     /// If there is not one value and one primitive for each position of the scan.
     #[must_use]
     pub fn with_deviations(mut self, deviations: &Deviations<'_>) -> Self {
-        let (data, note) = DeviationData::new(deviations);
+        let (data, note) = deviations.data();
         self.data.deviations = Some(data);
         self.data.notes.extend(note);
         self
@@ -549,7 +479,6 @@ impl Drawn {
 mod tests {
     use super::*;
     use p2m_mixed::Object;
-    use serde_json::Value;
 
     fn scene() -> Scene {
         let positions = [[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]].map(Point3::from).to_vec();

@@ -1,9 +1,10 @@
 //! The two files of a sheet: a picture in pixels, and a page with text that can be searched.
 
 use super::picture::Picture;
+use crate::packed::compress;
+use flate2::Compression;
 use noto_sans_mono_bitmap::{FontWeight, RasterHeight, get_raster};
 use pdf_writer::{Content, Filter, Finish, Name, Pdf, Rect, Ref, Str, TextStr};
-use std::io::Write;
 
 /// The size of a sheet in points, of which an inch has 72: A4, upright.
 pub(super) const SIZE: [f64; 2] = [595.0, 842.0];
@@ -167,7 +168,7 @@ impl Page {
         for (_, font, base) in FONTS {
             self.pdf.type1_font(font).base_font(base).encoding_predefined(Name(b"WinAnsiEncoding"));
         }
-        self.pdf.stream(CONTENT, &compressed(&self.content.finish())).filter(Filter::FlateDecode);
+        self.pdf.stream(CONTENT, &compress(&self.content.finish(), Compression::default())).filter(Filter::FlateDecode);
         self.pdf.document_info(INFO).title(TextStr(title));
         self.pdf.finish()
     }
@@ -182,13 +183,6 @@ impl Page {
 #[allow(clippy::cast_possible_truncation, reason = "positions on a sheet")]
 fn single(x: f64) -> f32 {
     x as f32
-}
-
-/// Compresses bytes as files have them. Writing to memory does not fail.
-fn compressed(bytes: &[u8]) -> Vec<u8> {
-    let mut encoder = flate2::write::ZlibEncoder::new(Vec::new(), flate2::Compression::default());
-    let _ = encoder.write_all(bytes);
-    encoder.finish().unwrap_or_default()
 }
 
 impl Canvas for Page {
@@ -208,7 +202,7 @@ impl Canvas for Page {
     #[allow(clippy::cast_possible_truncation, clippy::cast_possible_wrap, reason = "at most the size of a sheet")]
     fn picture(&mut self, [x, y]: [f64; 2], picture: &Picture) {
         let id = Ref::new(FIRST_PICTURE + self.pictures.len() as i32);
-        let bytes = compressed(&picture.bytes);
+        let bytes = compress(&picture.bytes, Compression::default());
         let mut object = self.pdf.image_xobject(id, &bytes);
         object.filter(Filter::FlateDecode);
         object.width(picture.size[0] as i32).height(picture.size[1] as i32);

@@ -205,24 +205,18 @@ impl Sheet<'_> {
         if let Some(tolerance) = tolerance {
             let [t, l] = [tolerance, limit.max(tolerance)].map(Figure);
             let counts = bands(values, tolerance, limit);
-            let labels = [
-                format!("below -{l}"),
-                format!("-{l} to -{t}"),
-                format!("within {t}"),
-                format!("{t} to {l}"),
-                format!("above {l}"),
+            let (near, far) = (0.5 * (limit + tolerance), 2.0 * limit + tolerance);
+            let bands = [
+                (format!("below -{l}"), -far),
+                (format!("-{l} to -{t}"), -near),
+                (format!("within {t}"), 0.0),
+                (format!("{t} to {l}"), near),
+                (format!("above {l}"), far),
             ];
-            let middles = [
-                -2.0 * limit - tolerance,
-                -0.5 * (limit + tolerance),
-                0.0,
-                0.5 * (limit + tolerance),
-                2.0 * limit + tolerance,
-            ];
-            for band in (if is_signed { 0 } else { 2 }..5).rev() {
-                let percent = Figure(100.0 * counts[band] as f64 / statistics.count.max(1) as f64);
-                let text = format!("{} ({percent} %)", Count(counts[band] as u64));
-                right.push((labels[band].clone(), text, self.colour(middles[band])));
+            for ((label, middle), count) in bands.into_iter().zip(counts).skip(if is_signed { 0 } else { 2 }).rev() {
+                let percent = Figure(100.0 * count as f64 / statistics.count.max(1) as f64);
+                let text = format!("{} ({percent} %)", Count(count as u64));
+                right.push((label, text, self.colour(middle)));
             }
         }
         let middle = MARGIN + WIDTH * 0.52;
