@@ -37,8 +37,8 @@ impl Deviations<'_> {
         if limit > 0.0 { limit } else { 1.0 }
     }
 
-    /// Returns the part of the points that is within the tolerance, and whether that is the required percentage, if there is
-    /// a tolerance.
+    /// Returns the part of the points that is within the tolerance, and whether that is the required percentage, if
+    /// there is a tolerance.
     #[must_use]
     pub fn verdict(&self, required: Option<f64>, unit: &str) -> Option<Verdict> {
         let tolerance = self.tolerance?;

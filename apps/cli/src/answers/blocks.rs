@@ -44,13 +44,6 @@ pub(crate) struct QueryStream<I> {
     pub(crate) block_size: BlockSize,
 }
 
-impl<I: Iterator> QueryStream<I> {
-    /// Returns the rest of the stream.
-    pub(crate) fn by_ref(&mut self) -> QueryStream<&mut I> {
-        QueryStream { name: self.name, count: self.count, iter: &mut self.iter, block_size: self.block_size }
-    }
-}
-
 /// The records of some answers.
 struct Encoded {
     records: u64,
@@ -81,15 +74,15 @@ pub(crate) struct Steps<Answer, Encode, Take> {
     pub(crate) take: Take,
 }
 
-/// Answers queries on all threads of a pool and writes the records of their answers in order to a file, if there is one.
-/// The file is given with its header, and with the number of its records if it is known. Returns the time that the
-/// answers took.
+/// Answers queries on all threads of a pool, and writes the records of their answers in order to a file, if there is
+/// one. The file is given with its header, and with the number of its records if it is known. Returns the time that
+/// the answers took.
 ///
 /// # Errors
 /// It returns the first error of answering or writing, after which nothing more is answered.
 pub(crate) fn answer_all<Q: Send + Sync, A: Send + Sync>(
     session: &Session<'_>,
-    mut queries: QueryStream<impl Iterator<Item = Q>>,
+    queries: &mut QueryStream<impl Iterator<Item = Q>>,
     file: Option<(&mut Output<'_>, Header, Option<u64>)>,
     steps: Steps<
         impl Fn(&[Q]) -> anyhow::Result<Vec<A>> + Sync,
@@ -136,7 +129,7 @@ pub(crate) fn answer_all<Q: Send + Sync, A: Send + Sync>(
         let (block, elapsed) = answered.expect("the scope ends after its task")?;
         let (count, bytes) = (block.queries.len() as u64, block.bytes());
         if first == 0 {
-            announce(session.streams, &queries, count, bytes, elapsed);
+            announce(session.streams, queries, count, bytes, elapsed);
         }
         time += elapsed;
         first += count;

@@ -1,9 +1,8 @@
 //! A run that answers points or rays: its index, the file of its answers, and its summary.
 
 use crate::answers::args::QueryArgs;
-use crate::answers::blocks::{QueryStream, Steps, answer_all};
 use crate::answers::summary::{IndexSummary, RunSummary};
-use crate::answers::table::{AnswerFormat, Header};
+use crate::answers::table::AnswerFormat;
 use crate::index::shards::{loads_line, shards_json};
 use crate::io::{Output, Session, json};
 use p2m_mixed::Object;
@@ -24,21 +23,6 @@ pub(crate) struct AnswerRun<'a> {
 }
 
 impl AnswerRun<'_> {
-    /// Answers queries and writes their records, whose number is known before if `records` has it. Returns the time that
-    /// answering took.
-    pub(crate) fn answer<Q: Send + Sync, A: Send + Sync>(
-        &mut self,
-        queries: QueryStream<impl Iterator<Item = Q>>,
-        (header, records): (Header, Option<u64>),
-        steps: Steps<
-            impl Fn(&[Q]) -> anyhow::Result<Vec<A>> + Sync,
-            impl Fn(u64, &Q, &A, &mut Vec<u8>) -> u64 + Sync,
-            impl FnMut(&Q, &A),
-        >,
-    ) -> anyhow::Result<Duration> {
-        answer_all(self.session, queries, Some((&mut self.output, header, records)), steps)
-    }
-
     /// Completes the file, and prints a summary of `count` queries. `report` and `text` are the parts of it about the
     /// answers, and `words` are the command, and the names of the queries in the plural and in the singular.
     pub(crate) fn finish(

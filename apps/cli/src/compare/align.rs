@@ -3,6 +3,7 @@
 use crate::compare::scan::ScanArgs;
 use crate::index::{Backend, backends};
 use crate::io::input::name;
+use crate::io::usage::number_that;
 use crate::io::{
     Output, Progress, SceneArgs, SceneFile, Session, Streams, ThreadArgs, Unit, is_standard, json, shown, usage,
 };
@@ -97,10 +98,7 @@ impl Args {
 
 /// Parses a part of a whole.
 fn part(text: &str) -> Result<f64, String> {
-    match text.parse::<f64>() {
-        Ok(x) if x > 0.0 && x <= 1.0 => Ok(x),
-        _ => Err("not a number above 0 and at most 1".to_owned()),
-    }
+    number_that(text, |x| *x > 0.0 && *x <= 1.0, "number above 0 and at most 1")
 }
 
 pub(crate) fn run(streams: &Streams, args: &Args) -> anyhow::Result<()> {

@@ -99,8 +99,8 @@ pub(crate) fn run(streams: &Streams, args: &Args) -> anyhow::Result<()> {
     Output::print(streams, text(&files, found.as_ref(), limit))
 }
 
-/// Returns the nearest pair of two scenes whose inside counts, with a note on each scene whose inside is a guess, or that
-/// has none because of what is beside its triangles.
+/// Returns the nearest pair of two scenes whose inside counts, with a note on each scene whose inside is a guess, or
+/// that has none because of what is beside its triangles.
 fn closest_pair_of_solids<'a>(
     indexes: &[AabbTree<f64, &'a Soup<f64>>; 2],
     soups: [&'a Soup<f64>; 2],

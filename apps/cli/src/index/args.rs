@@ -30,8 +30,8 @@ pub(crate) struct IndexArgs {
 const DEFAULT_QUERY_COUNT: u64 = 10_000_000;
 
 impl IndexArgs {
-    /// Refuses `--k` for a backend without k-DOPs, and `--locator` and `--filter` for another one than p2m, as far as the
-    /// backend is known before any work.
+    /// Refuses `--k` for a backend without k-DOPs, and `--locator` and `--filter` for another one than p2m, as far as
+    /// the backend is known before any work.
     pub(crate) fn check(&self) -> anyhow::Result<()> {
         let (may_have_kdops, may_have_p2m_settings) = match self.backend {
             Some(BackendChoice::Auto) => (true, false),
@@ -55,8 +55,8 @@ impl IndexArgs {
         self.named().is_none() && self.k.is_none() && self.p2m.is_unspecified()
     }
 
-    /// Returns the backend with its options. Without a named backend it is that of the file or the default one, and with
-    /// `auto` the best one for ten million queries in the box of the scene.
+    /// Returns the backend with its options. Without a named backend it is that of the file or the default one, and
+    /// with `auto` the best one for ten million queries in the box of the scene.
     ///
     /// # Errors
     /// For directions with a backend that has no k-DOPs, and for settings of a P2M index with another one.

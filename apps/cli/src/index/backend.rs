@@ -99,8 +99,8 @@ impl SceneFile {
         self.saved.as_ref().and_then(BackendEntry::from_saved)
     }
 
-    /// Returns the named backend. Without a name it is that of the saved index, and without both the work of the queries
-    /// decides.
+    /// Returns the named backend. Without a name it is that of the saved index, and without both the work of the
+    /// queries decides.
     pub(crate) fn choose(
         &self,
         session: &Session<'_>,

@@ -58,17 +58,12 @@ pub(crate) struct SignReport {
     /// The name of the rule.
     pub(crate) rule: &'static str,
     /// A sentence that says why the rule was chosen, unless the surface is closed and consistently oriented.
-    note: Option<&'static str>,
+    pub(crate) note: Option<&'static str>,
 }
 
 impl SignReport {
     pub(crate) fn new(signed: &SignedIndex<'_>) -> Self {
         Self { rule: signed.rule().name(), note: signed.note() }
-    }
-
-    /// The report of signs that need no note.
-    pub(crate) fn of_rule(rule: sign::SignRule) -> Self {
-        Self { rule: rule.name(), note: None }
     }
 
     /// Returns the lines of a summary.

@@ -73,39 +73,32 @@ pub(crate) fn bytes(text: &str) -> Result<u64, String> {
     }
 }
 
+/// Parses a number for which `is_right` holds, and which messages call `what`.
+pub(crate) fn number_that(text: &str, is_right: impl Fn(&f64) -> bool, what: &str) -> Result<f64, String> {
+    text.parse().ok().filter(is_right).ok_or_else(|| format!("not a {what}"))
+}
+
 /// Parses a positive finite number.
 pub(crate) fn positive(text: &str) -> Result<f64, String> {
-    match text.parse::<f64>() {
-        Ok(x) if x > 0.0 && x.is_finite() => Ok(x),
-        _ => Err("not a positive number".to_owned()),
-    }
+    number_that(text, |x| *x > 0.0 && x.is_finite(), "positive number")
 }
 
 /// Parses a number that is not negative; infinity is one.
 pub(crate) fn not_negative(text: &str) -> Result<f64, String> {
-    match text.parse::<f64>() {
-        Ok(x) if x >= 0.0 => Ok(x),
-        _ => Err("not a number from 0 up".to_owned()),
-    }
+    number_that(text, |x| *x >= 0.0, "number from 0 up")
 }
 
 /// Parses a finite number that is not negative.
 pub(crate) fn finite_not_negative(text: &str) -> Result<f64, String> {
-    not_negative(text).ok().filter(|x| x.is_finite()).ok_or_else(|| "not a finite number from 0 up".to_owned())
+    number_that(text, |x| *x >= 0.0 && x.is_finite(), "finite number from 0 up")
 }
 
 /// Parses any number but NaN.
 pub(crate) fn number(text: &str) -> Result<f64, String> {
-    match text.parse::<f64>() {
-        Ok(x) if !x.is_nan() => Ok(x),
-        _ => Err("not a number".to_owned()),
-    }
+    number_that(text, |x| !x.is_nan(), "number")
 }
 
 /// Parses a finite number.
 pub(crate) fn finite(text: &str) -> Result<f64, String> {
-    match text.parse::<f64>() {
-        Ok(x) if x.is_finite() => Ok(x),
-        _ => Err("not a finite number".to_owned()),
-    }
+    number_that(text, |x| x.is_finite(), "finite number")
 }

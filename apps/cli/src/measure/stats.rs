@@ -221,21 +221,15 @@ impl IndexStats<'_> {
                 "max": lists.max,
             })
         });
-        let memory: serde_json::Map<_, _> =
-            self.memory.iter().map(|(name, n)| ((*name).to_owned(), json!(n))).collect();
-        let stages: serde_json::Map<_, _> = self
-            .prepared
-            .stages
-            .iter()
-            .map(|(stage, time)| (stage.name().to_owned(), json!(time.as_secs_f64())))
-            .collect();
+        let memory: Value = self.memory.iter().copied().collect();
+        let stages = self.prepared.stages.iter().map(|(stage, time)| (stage.name(), time.as_secs_f64()));
         json!({
             "lists": lists,
             "queries": self.random_queries,
             "in_box": query_cost(&self.in_box),
             "on_scene": query_cost(&self.on_scene),
             "memory": memory,
-            "stages": stages,
+            "stages": stages.collect::<Value>(),
         })
     }
 }

@@ -5,6 +5,7 @@
 
 use nalgebra::{Point3, Vector3};
 use p2m_core::{Aabb, Element, PrimitiveSet, Soup};
+use p2m_page::template::escape;
 use std::io::{self, Write};
 
 /// A drawing with a title.
@@ -235,10 +236,6 @@ fn colour(number: usize, of: usize) -> [u8; 3] {
 #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "between 0 and 255")]
 fn shade(t: f64) -> [u8; 3] {
     [40.0 + 170.0 * t, 90.0 + 160.0 * t * (1.0 - t), 200.0 - 160.0 * t].map(|x| x as u8)
-}
-
-fn escape(text: &str) -> String {
-    text.replace('&', "&amp;").replace('<', "&lt;").replace('>', "&gt;")
 }
 
 #[cfg(test)]

@@ -1,6 +1,8 @@
 //! The answers of `p2m query`: closest points of any source, written as a table.
 
-use crate::answers::{AnswerEncoder, AnswerRecord, AnswerRun, AnswerSummary, BlockSize, Queries, QueryStream, Steps};
+use crate::answers::{
+    AnswerEncoder, AnswerRecord, AnswerRun, AnswerSummary, BlockSize, Queries, QueryStream, Steps, answer_all,
+};
 use crate::index::SignReport;
 use crate::io::json;
 use crate::query::args::Args;
@@ -51,8 +53,8 @@ impl Run<'_> {
         };
         let count = queries.len();
         // Only with one answer for each query it is known before how many there are.
-        let file = (encoder.header(), Some(count).filter(|_| !has_many));
-        let queries = QueryStream { name: "queries", count, iter: queries, block_size: S::BLOCK_SIZE };
+        let file = (&mut run.output, encoder.header(), Some(count).filter(|_| !has_many));
+        let mut queries = QueryStream { name: "queries", count, iter: queries, block_size: S::BLOCK_SIZE };
         let mut summary = AnswerSummary::default();
         let time = if has_many {
             let steps = Steps {
@@ -66,7 +68,7 @@ impl Run<'_> {
                 },
                 take: |_: &_, answers: &Vec<_>| summary.add_all(answers),
             };
-            run.answer(queries, file, steps)?
+            answer_all(run.session, &mut queries, Some(file), steps)?
         } else {
             let steps = Steps {
                 answer: |queries: &[_]| source.closest(queries),
@@ -80,7 +82,7 @@ impl Run<'_> {
                     if only_inside { summary.add_side(is_inside) } else { summary.add(answer.as_ref(), is_inside) }
                 },
             };
-            run.answer(queries, file, steps)?
+            answer_all(run.session, &mut queries, Some(file), steps)?
         };
         let inside = json!({ "sign_rule": signs.map(|signs| signs.rule), "inside": summary.inside });
         let report = json::joined([args.report(&summary, &run.index.cells()), inside]);

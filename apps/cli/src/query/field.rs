@@ -7,7 +7,7 @@ use crate::io::usage::{finite, not_negative, one_of, positive, usage};
 use crate::io::{Output, Progress, SceneFile, Session, Streams, Unit, is_standard, json, shown};
 use crate::page::picture::write_png;
 use crate::query::field_summary::{ComputedField, FieldSummary};
-use crate::scene::convert::{Target, WrittenScene};
+use crate::scene::convert::Target;
 use anyhow::{Context, anyhow};
 use nalgebra::Point3;
 use p2m_backends::AnyIndex;
@@ -150,7 +150,7 @@ pub(crate) fn run(streams: &Streams, args: &Args) -> anyhow::Result<()> {
                 .install(|| offset_surface(&grid, values, distance, &|point: &Point3<f64>| source.closest(point)));
             let surface = surface.with_context(|| file.name.clone())?;
             args.check_surface(streams, &grid, distance, &surface)?;
-            Some(WrittenSurface::new(streams, target, &grid, distance, surface)?)
+            Some(write_surface(streams, target, &grid, distance, &surface)?)
         }
         _ => None,
     };
@@ -163,71 +163,42 @@ pub(crate) fn run(streams: &Streams, args: &Args) -> anyhow::Result<()> {
     let signs = source.signed.as_ref().map(SignReport::new);
     let report = FieldSummary { grid: &grid, field: &field, signs, threads, field_time };
     if args.json {
-        let end = json!({
-            "seconds": index.seconds("field", field_time),
-            "surface": surface.as_ref().map(WrittenSurface::json),
-            "out": match &surface {
-                Some(surface) => surface.written.json(),
-                None => json!({ "file": shown(&args.out), "format": out_format.name(), "bytes": bytes }),
-            },
-        });
+        let field_file = || json!({ "file": shown(&args.out), "format": out_format.name(), "bytes": bytes });
+        let (surface, out) = surface.map_or_else(|| (Value::Null, field_file()), |(surface, out, _)| (surface, out));
+        let end = json!({ "seconds": index.seconds("field", field_time), "surface": surface, "out": out });
         return json::print_report(streams, "field", [index.json(), report.json(), end]);
     }
-    let written = match &surface {
-        Some(surface) => surface.text(),
-        None => format!("written  {}, {bytes} bytes\n", args.out.display()),
-    };
+    let field_text = || format!("written  {}, {bytes} bytes\n", args.out.display());
+    let written = surface.map_or_else(field_text, |(_, _, text)| text);
     streams.print_summary(format_args!("{}{}{written}", index.text(None), report.text()));
     Ok(())
 }
 
-/// The surface that was written to a file, as it was measured.
-struct WrittenSurface {
+/// Writes and measures a surface. Returns the parts of a report about the surface and about its file, and lines for
+/// people.
+fn write_surface(
+    streams: &Streams,
+    target: &Target<'_>,
+    grid: &Grid,
     distance: f64,
-    surface: OffsetSurface,
-    /// The largest error of vertices, for people.
-    vertex_error: String,
-    is_closed: bool,
-    written: WrittenScene,
-}
-
-impl WrittenSurface {
-    /// Writes and measures a surface.
-    fn new(
-        streams: &Streams,
-        target: &Target<'_>,
-        grid: &Grid,
-        distance: f64,
-        surface: OffsetSurface,
-    ) -> anyhow::Result<Self> {
-        let vertex_error = error_of_vertices(&surface, grid);
-        let is_closed = Statistics::of(&surface.soup).edges.is_closed();
-        let written = target.write(streams, &surface.soup.clone().into())?;
-        Ok(Self { distance, surface, vertex_error, is_closed, written })
-    }
-
-    fn json(&self) -> Value {
-        json!({
-            "distance": self.distance,
-            "closed": self.is_closed,
-            "vertex_error": json::number(self.surface.vertex_error),
-            "triangle_error": json::number(self.surface.triangle_error),
-        })
-    }
-
-    fn text(&self) -> String {
-        let OffsetSurface { triangle_error, .. } = &self.surface;
-        let closed = match self.is_closed {
-            true => "closed",
-            false => "not closed",
-        };
-        let [distance, triangles] = [self.distance, *triangle_error].map(Figure);
-        let vertices = &self.vertex_error;
-        format!(
-            "surface  {closed}; vertices are within {vertices}, centroids within {triangles} of {distance}\n{}",
-            self.written.text()
-        )
-    }
+    surface: &OffsetSurface,
+) -> anyhow::Result<(Value, Value, String)> {
+    let OffsetSurface { soup, vertex_error, triangle_error, .. } = surface;
+    let is_closed = Statistics::of(soup).edges.is_closed();
+    let written = target.write(streams, &soup.clone().into())?;
+    let report = json!({
+        "distance": distance,
+        "closed": is_closed,
+        "vertex_error": json::number(*vertex_error),
+        "triangle_error": json::number(*triangle_error),
+    });
+    let closed = if is_closed { "closed" } else { "not closed" };
+    let (vertices, [triangles, distance]) = (error_of_vertices(surface, grid), [*triangle_error, distance].map(Figure));
+    let text = format!(
+        "surface  {closed}; vertices are within {vertices}, centroids within {triangles} of {distance}\n{}",
+        written.text()
+    );
+    Ok((report, written.json(), text))
 }
 
 impl Args {

@@ -108,7 +108,8 @@ fn run_in_shards(streams: &Streams, args: &Args, folder: &Path) -> anyhow::Resul
     }
     let start = Instant::now();
     let index = open(folder, args.max_memory, args.scene.map)?;
-    let signs = args.signed.map(|_| index.sign_rule().map(SignReport::of_rule)).transpose()?;
+    let signs =
+        args.signed.map(|_| index.sign_rule().map(|rule| SignReport { rule: rule.name(), note: None })).transpose()?;
     let build_time = start.elapsed();
     let start = Instant::now();
     let PreparedQueries { queries, ids, .. } = queries(streams, args, &index.bounds())?;

@@ -1,6 +1,6 @@
 //! The loop that answers rays and writes their hits or counts, whichever index they are asked of.
 
-use crate::answers::{AnswerRun, HitEncoder, NumberEncoder, Steps};
+use crate::answers::{AnswerRun, HitEncoder, NumberEncoder, Steps, answer_all};
 use crate::ray::args::{Args, Mode, Rays};
 use crate::ray::summary::RaySummary;
 use p2m_core::engine::parallel;
@@ -102,8 +102,8 @@ impl Run<'_> {
             },
             take: |_: &_, count: &u64| summary.add(*count),
         };
-        let file = (encoder.header(), Some(self.rays.count));
-        Ok((self.run.answer(self.rays.by_ref(), file, steps)?, summary))
+        let file = (&mut self.run.output, encoder.header(), Some(self.rays.count));
+        Ok((answer_all(self.run.session, &mut self.rays, Some(file), steps)?, summary))
     }
 
     /// Writes the hits of each ray, which `slice` takes from its answer. `records` is the number of records if each ray
@@ -129,7 +129,7 @@ impl Run<'_> {
             },
             take: |_: &_, answer: &A| summary.add_hits(slice(answer)),
         };
-        let file = (encoder.header(), records);
-        Ok((self.run.answer(self.rays.by_ref(), file, steps)?, summary))
+        let file = (&mut self.run.output, encoder.header(), records);
+        Ok((answer_all(self.run.session, &mut self.rays, Some(file), steps)?, summary))
     }
 }

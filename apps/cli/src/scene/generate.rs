@@ -9,6 +9,7 @@ use p2m_mixed::generate::{
     CableBundle, Cone, Cylinder, IcoSphere, Kind, KnotAndCables, MixedSizes, SkewedGear, Sphere, TorusKnot,
 };
 use p2m_mixed::{Format, Scene};
+use serde::Serialize;
 use serde_json::{Value, json};
 use std::path::PathBuf;
 
@@ -35,7 +36,7 @@ Examples:
 }
 
 /// The file that the scene is written to, and the changes before that.
-#[derive(ClapArgs)]
+#[derive(ClapArgs, Serialize)]
 struct Destination {
     /// Write the scene to this file; `-` is the standard output
     #[arg(long, value_name = "FILE", default_value = "-")]
@@ -43,6 +44,7 @@ struct Destination {
 
     /// The format [default: by the file extension; OBJ on the standard output]
     #[arg(long, value_name = "FORMAT", value_parser = one_of::<Format>(Format::NAMES), ignore_case = true)]
+    #[serde(skip)]
     to: Option<Format>,
 
     /// Print the summary as JSON; needs --out FILE
@@ -53,7 +55,8 @@ struct Destination {
     modifiers: Modifiers,
 }
 
-#[derive(Subcommand)]
+#[derive(Subcommand, Serialize)]
+#[serde(untagged)]
 enum Command {
     /// A torus knot of triangles with cables of segments around it
     #[command(after_help = "Examples:\n  p2m generate knot-and-cables --rings 600 --sides 24 --out fine.obj")]
@@ -209,60 +212,49 @@ enum Command {
 }
 
 impl Command {
-    /// Returns the kind of scene with its options, these options as a report names them, and the target of the scene.
-    fn parts(&self) -> (Kind, Value, &Destination) {
+    /// Returns the kind of scene with its options, and the target of the scene.
+    fn parts(&self) -> (Kind, &Destination) {
         match *self {
             Self::KnotAndCables { rings, sides, cables, cable_segments, ref destination } => {
-                let options = KnotAndCables { rings, sides, cables, cable_segments };
-                let json =
-                    json!({ "rings": rings, "sides": sides, "cables": cables, "cable_segments": cable_segments });
-                (Kind::KnotAndCables(options), json, destination)
+                (Kind::KnotAndCables(KnotAndCables { rings, sides, cables, cable_segments }), destination)
             }
             Self::TorusKnot { p, q, rings, sides, tube_radius, ref destination } => {
-                let options = TorusKnot { p, q, rings, sides, tube_radius };
-                let json = json!({ "p": p, "q": q, "rings": rings, "sides": sides, "tube_radius": tube_radius });
-                (Kind::TorusKnot(options), json, destination)
+                (Kind::TorusKnot(TorusKnot { p, q, rings, sides, tube_radius }), destination)
             }
             Self::SkewedGear { teeth, points, ref destination } => {
-                let options = SkewedGear { teeth, points };
-                (Kind::SkewedGear(options), json!({ "teeth": teeth, "points": points }), destination)
+                (Kind::SkewedGear(SkewedGear { teeth, points }), destination)
             }
             Self::Sphere { meridians, bands, ref destination } => {
-                let options = Sphere { meridians, bands };
-                (Kind::Sphere(options), json!({ "meridians": meridians, "bands": bands }), destination)
+                (Kind::Sphere(Sphere { meridians, bands }), destination)
             }
-            Self::IcoSphere { frequency, ref destination } => {
-                let options = IcoSphere { frequency };
-                (Kind::IcoSphere(options), json!({ "frequency": frequency }), destination)
-            }
+            Self::IcoSphere { frequency, ref destination } => (Kind::IcoSphere(IcoSphere { frequency }), destination),
             Self::Cone { sides, bands, cap_bands, ref destination } => {
-                let options = Cone { sides, bands, cap_bands };
-                let json = json!({ "sides": sides, "bands": bands, "cap_bands": cap_bands });
-                (Kind::Cone(options), json, destination)
+                (Kind::Cone(Cone { sides, bands, cap_bands }), destination)
             }
             Self::Cylinder { sides, bands, cap_bands, ref destination } => {
-                let options = Cylinder { sides, bands, cap_bands };
-                let json = json!({ "sides": sides, "bands": bands, "cap_bands": cap_bands });
-                (Kind::Cylinder(options), json, destination)
+                (Kind::Cylinder(Cylinder { sides, bands, cap_bands }), destination)
             }
             Self::CableBundle { strands, segments, twists, radius, ref destination } => {
-                let options = CableBundle { strands, segments, twists, radius };
-                let json = json!({ "strands": strands, "segments": segments, "twists": twists, "radius": radius });
-                (Kind::CableBundle(options), json, destination)
+                (Kind::CableBundle(CableBundle { strands, segments, twists, radius }), destination)
             }
             Self::MixedSizes { triangles, segments, points, decades, seed, ref destination } => {
-                let options = MixedSizes { triangles, segments, points, decades, seed };
-                let json = json!({
-                    "triangles": triangles, "segments": segments, "points": points, "decades": decades, "seed": seed
-                });
-                (Kind::MixedSizes(options), json, destination)
+                (Kind::MixedSizes(MixedSizes { triangles, segments, points, decades, seed }), destination)
             }
         }
+    }
+
+    /// Returns the options of the kind as a report has them.
+    fn json(&self) -> Value {
+        let mut options = json!(self);
+        if let Value::Object(options) = &mut options {
+            options.shift_remove("destination");
+        }
+        options
     }
 }
 
 pub(crate) fn run(streams: &Streams, args: &Args) -> anyhow::Result<()> {
-    let (kind, options, destination) = args.kind.parts();
+    let (kind, destination) = args.kind.parts();
     let target = Target::new(streams, &destination.out, destination.to, Some(Format::Obj))?;
     target.check_report(destination.json)?;
     let progress = Progress::start(streams, "making the scene", None, Unit::None);
@@ -273,7 +265,7 @@ pub(crate) fn run(streams: &Streams, args: &Args) -> anyhow::Result<()> {
     if destination.json {
         let report = json!({
             "kind": kind.name(),
-            "options": options,
+            "options": args.kind.json(),
             "changes": destination.modifiers.json(),
             "out": written.json(),
         });

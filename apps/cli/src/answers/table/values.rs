@@ -6,8 +6,8 @@ use p2m_core::{Feature, PrimitiveId, Side};
 use p2m_mixed::Object;
 use p2m_mixed::engine::object_number;
 
-/// The kind of the values of a column. It decides their types in files, and what stands for a missing value: empty fields
-/// in CSV, and NaN or -1 elsewhere.
+/// The kind of the values of a column. It decides their types in files. A missing value is an empty field in CSV, and NaN
+/// or -1 elsewhere.
 #[derive(Clone, Copy)]
 pub(super) enum Kind {
     /// A number of a query or a count.
@@ -142,7 +142,9 @@ impl<'a> Value<'a> {
             Self::Index(primitive) => out.extend(index(primitive.map(PrimitiveId::index)).to_le_bytes()),
             Self::Object(object) => out.extend(index(object.map(|object| object.0)).to_le_bytes()),
             Self::Feature(feature) => {
-                let numbers = feature_numbers(feature);
+                // The codes are those of three vertices, three edges and the face.
+                let numbers =
+                    feature.map_or([-1; 2], |feature| [feature.code() / 3, feature.code() % 3].map(i16::from));
                 match is_cloud {
                     true => out.extend(numbers.map(|x| i32::from(x).to_le_bytes()).as_flattened()),
                     false => out.extend(numbers.map(i16::to_le_bytes).as_flattened()),
@@ -164,16 +166,6 @@ pub(super) fn put_record<'a>(format: AnswerFormat, values: impl IntoIterator<Ite
         value.put_text(out);
     }
     out.push(b'\n');
-}
-
-/// Returns the kind and the number of the feature, or -1 twice if there is no answer.
-fn feature_numbers(feature: Option<Feature>) -> [i16; 2] {
-    match feature {
-        None => [-1, -1],
-        Some(Feature::Vertex(i)) => [0, i.into()],
-        Some(Feature::Edge(i)) => [1, i.into()],
-        Some(Feature::Face) => [2, 0],
-    }
 }
 
 /// Appends a number to a line of text: the shortest that reads back the same, with an exponent if it is far from 1.

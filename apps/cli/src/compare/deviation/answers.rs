@@ -76,8 +76,7 @@ pub(super) struct Answers<'a> {
 }
 
 impl Answers<'_> {
-    /// Answers points on all threads of a pool, and writes their table, if there is one. Returns the time that the answers
-    /// took.
+    /// Answers points on all threads, and writes their table, if there is one. Returns the time that the answers took.
     pub(super) fn add(
         &mut self,
         session: &Session<'_>,
@@ -123,7 +122,8 @@ impl Answers<'_> {
             },
         };
         let iter = points.iter().copied();
-        let queries = QueryStream { name: "points", count: points.len() as u64, iter, block_size: BlockSize::Adaptive };
-        answer_all(session, queries, file, steps)
+        let mut queries =
+            QueryStream { name: "points", count: points.len() as u64, iter, block_size: BlockSize::Adaptive };
+        answer_all(session, &mut queries, file, steps)
     }
 }

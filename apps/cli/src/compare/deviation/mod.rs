@@ -9,7 +9,7 @@ use crate::compare::align::{self, move_scan};
 use crate::compare::scan::ScanArgs;
 use crate::index::{BackendChoice, PreparedIndex, SignRule, backend_choices};
 use crate::io::input::name;
-use crate::io::usage::{finite_not_negative, not_negative, positive, usage};
+use crate::io::usage::{finite_not_negative, not_negative, number_that, positive, usage};
 use crate::io::{Output, Progress, SceneArgs, SceneFile, Session, Streams, ThreadArgs, Unit, input, is_standard, json};
 use crate::page::{OpenArgs, PageArgs};
 use answers::{Answers, Filter, Signs};
@@ -253,10 +253,7 @@ impl std::error::Error for NotPassed {}
 
 /// Parses a percentage.
 fn percent(text: &str) -> Result<f64, String> {
-    match text.trim_end_matches('%').trim().parse::<f64>() {
-        Ok(x) if (0.0..=100.0).contains(&x) => Ok(x),
-        _ => Err("not a number from 0 to 100".to_owned()),
-    }
+    number_that(text.trim_end_matches('%').trim(), |x| (0.0..=100.0).contains(x), "number from 0 to 100")
 }
 
 /// Parses a name and a value.

@@ -227,13 +227,8 @@ impl<'a> DeviationReport<'a> {
             }
         }
         let width = rows.iter().map(|(label, _)| label.len()).max().unwrap_or(0);
-        let mut text = String::new();
-        for (label, value) in rows {
-            // Writing to a string does not fail.
-            let _ = writeln!(text, "{label:width$}  {value}");
-        }
-        text += &self.table_of_objects();
-        text + &self.verdict().map(|verdict| verdict + "\n").unwrap_or_default()
+        let rows: String = rows.iter().map(|(label, value)| format!("{label:width$}  {value}\n")).collect();
+        rows + &self.table_of_objects() + &self.verdict().map(|verdict| verdict + "\n").unwrap_or_default()
     }
 
     /// Returns a line for each object, if there are some.
@@ -245,26 +240,19 @@ impl<'a> DeviationReport<'a> {
         let heading = format!("object, in {}", self.args.page.unit);
         let names = objects.iter().map(|object| object.name.chars().count());
         let width = names.max().unwrap_or(0).max(heading.len());
-        let columns = ["points", "mean", "rms", "smallest", "largest", "outside"];
-        let columns = &columns[..if self.outside.is_some() { 6 } else { 5 }];
-        let mut text = format!("\n{heading:width$}");
-        for column in columns {
-            // Writing to a string does not fail.
-            let _ = write!(text, "  {column:>9}");
-        }
-        text.push('\n');
-        for ObjectDeviations { name, statistics, outside } in &objects {
-            let name = if name.is_empty() { "-" } else { name };
-            let _ = write!(text, "{name:width$}  {:>9}", Count(statistics.count as u64).to_string());
-            for number in [statistics.mean, statistics.rms, statistics.min, statistics.max] {
-                let number = if number.is_nan() { "-".to_owned() } else { Figure(number).to_string() };
-                let _ = write!(text, "  {number:>9}");
-            }
-            if let Some(outside) = outside {
-                let _ = write!(text, "  {:>9}", Count((outside.above + outside.below) as u64).to_string());
-            }
-            text.push('\n');
-        }
-        text
+        let line = |name: &str, cells: &[String]| {
+            let cells: String = cells.iter().map(|cell| format!("  {cell:>9}")).collect();
+            format!("{name:width$}{cells}\n")
+        };
+        let columns = ["points", "mean", "rms", "smallest", "largest", "outside"].map(str::to_owned);
+        let head = line(&heading, &columns[..if self.outside.is_some() { 6 } else { 5 }]);
+        let rows = objects.iter().map(|ObjectDeviations { name, statistics, outside }| {
+            let number = |x: f64| if x.is_nan() { "-".to_owned() } else { Figure(x).to_string() };
+            let mut cells = vec![Count(statistics.count as u64).to_string()];
+            cells.extend([statistics.mean, statistics.rms, statistics.min, statistics.max].map(number));
+            cells.extend(outside.map(|outside| Count((outside.above + outside.below) as u64).to_string()));
+            line(if name.is_empty() { "-" } else { name }, &cells)
+        });
+        format!("\n{head}{}", rows.collect::<String>())
     }
 }
