@@ -165,6 +165,7 @@ impl<'a> AnswerEncoder<'a> {
         put_record(self.format, self.columns.iter().map(|column| self.value(*column, record)), out);
     }
 
+    #[inline(always)]
     fn value(&self, column: AnswerColumn, record: &AnswerRecord<'_>) -> Value<'_> {
         let answer = record.answer;
         match column {

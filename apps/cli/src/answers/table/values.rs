@@ -128,35 +128,39 @@ impl<'a> Value<'a> {
     }
 
     /// Appends the value to a binary record, little-endian.
+    #[inline(always)]
     fn put_bytes(self, format: AnswerFormat, out: &mut Vec<u8>) {
         let is_cloud = format == AnswerFormat::Ply;
         let index = |number: Option<usize>| number.and_then(|number| i32::try_from(number).ok()).unwrap_or(-1);
         match self {
             #[allow(clippy::cast_precision_loss, reason = "there are fewer than 2^53 rays")]
-            Self::Integer(number) if is_cloud => out.extend((number as f64).to_le_bytes()),
-            Self::Integer(number) => out.extend(number.to_le_bytes()),
-            Self::Number(x) => out.extend(x.unwrap_or(f64::NAN).to_le_bytes()),
-            Self::Triple(numbers) => out.extend(numbers.unwrap_or([f64::NAN; 3]).map(f64::to_le_bytes).as_flattened()),
-            Self::Flag(is_set) if is_cloud => out.extend(i32::from(is_set).to_le_bytes()),
+            Self::Integer(number) if is_cloud => out.extend_from_slice(&(number as f64).to_le_bytes()),
+            Self::Integer(number) => out.extend_from_slice(&number.to_le_bytes()),
+            Self::Number(x) => out.extend_from_slice(&x.unwrap_or(f64::NAN).to_le_bytes()),
+            Self::Triple(numbers) => {
+                out.extend_from_slice(numbers.unwrap_or([f64::NAN; 3]).map(f64::to_le_bytes).as_flattened())
+            }
+            Self::Flag(is_set) if is_cloud => out.extend_from_slice(&i32::from(is_set).to_le_bytes()),
             Self::Flag(is_set) => out.push(is_set.into()),
-            Self::Index(primitive) => out.extend(index(primitive.map(PrimitiveId::index)).to_le_bytes()),
-            Self::Object(object) => out.extend(index(object.map(|object| object.0)).to_le_bytes()),
+            Self::Index(primitive) => out.extend_from_slice(&index(primitive.map(PrimitiveId::index)).to_le_bytes()),
+            Self::Object(object) => out.extend_from_slice(&index(object.map(|object| object.0)).to_le_bytes()),
             Self::Feature(feature) => {
                 // The codes are those of three vertices, three edges and the face.
                 let numbers =
                     feature.map_or([-1; 2], |feature| [feature.code() / 3, feature.code() % 3].map(i16::from));
                 match is_cloud {
-                    true => out.extend(numbers.map(|x| i32::from(x).to_le_bytes()).as_flattened()),
-                    false => out.extend(numbers.map(i16::to_le_bytes).as_flattened()),
+                    true => out.extend_from_slice(numbers.map(|x| i32::from(x).to_le_bytes()).as_flattened()),
+                    false => out.extend_from_slice(numbers.map(i16::to_le_bytes).as_flattened()),
                 }
             }
-            Self::Side(side) => out.extend(side.map_or(-1, |side| side as i32).to_le_bytes()),
+            Self::Side(side) => out.extend_from_slice(&side.map_or(-1, |side| side as i32).to_le_bytes()),
             Self::Text(_) => {}
         }
     }
 }
 
 /// Appends a record.
+#[inline]
 pub(super) fn put_record<'a>(format: AnswerFormat, values: impl IntoIterator<Item = Value<'a>>, out: &mut Vec<u8>) {
     if format != AnswerFormat::Csv {
         return values.into_iter().for_each(|value| value.put_bytes(format, out));
