@@ -21,9 +21,9 @@ use std::ops::ControlFlow;
 /// The capacity of a stack: at most `WIDTH - 1` pending siblings per level, and `WIDTH` further entries because
 /// `sorted_keys` always writes those of a full node.
 pub(crate) const STACK_LEN: usize = (WIDTH - 1) * MAX_DEPTH + WIDTH;
-/// The capacity of a shorter stack, which suffices for most trees and takes less time to clear.
+/// The capacity of the stacks of searches in turns, which suffices for most trees.
 const SHORT_STACK_LEN: usize = 96;
-/// The largest depth of a tree for which the shorter stack suffices.
+/// The largest depth of a tree for which these stacks suffice.
 const SHORT_STACK_DEPTH: usize = (SHORT_STACK_LEN - WIDTH) / (WIDTH - 1);
 
 /// The part of a traversal that depends on the kind of search.
@@ -48,15 +48,18 @@ pub(crate) trait Visitor<V: VolumeNodes> {
     }
 }
 
-/// The number of entries that stay on a stack when the others are moved away.
-const KEPT_LEN: usize = SHORT_STACK_LEN / 2;
+/// The capacity of the stack of a single search, whose entries below that are moved away. It suffices for most searches,
+/// and is so small that it is cleared by a few instructions.
+const NEAR_STACK_LEN: usize = 64;
+/// The number of entries that stay on the stack when the others are moved away.
+const KEPT_LEN: usize = NEAR_STACK_LEN / 2;
 
 /// Moves all but the uppermost [`KEPT_LEN`] entries of a stack away.
 #[cold]
 #[inline(never)]
 fn spill(
-    keys: &mut [u32; SHORT_STACK_LEN],
-    parents: &mut [u32; SHORT_STACK_LEN],
+    keys: &mut [u32; NEAR_STACK_LEN],
+    parents: &mut [u32; NEAR_STACK_LEN],
     below: &mut Vec<(u32, u32)>,
     top: usize,
 ) {
@@ -69,11 +72,7 @@ fn spill(
 /// Brings back entries that were moved away, and returns their number.
 #[cold]
 #[inline(never)]
-fn refill(
-    keys: &mut [u32; SHORT_STACK_LEN],
-    parents: &mut [u32; SHORT_STACK_LEN],
-    below: &mut Vec<(u32, u32)>,
-) -> usize {
+fn refill(keys: &mut [u32; NEAR_STACK_LEN], parents: &mut [u32; NEAR_STACK_LEN], below: &mut Vec<(u32, u32)>) -> usize {
     let from = below.len().saturating_sub(KEPT_LEN);
     let count = below.len() - from;
     for (i, (key, parent)) in below.drain(from..).enumerate() {
@@ -87,10 +86,10 @@ fn refill(
 pub(crate) fn traverse<I: InstructionSet, V: VolumeNodes, W: Visitor<V>>(tree: &PacketTree<V>, visitor: &mut W) {
     // The pending children of a node are in descending order of their keys. Each entry has the key of a child, which
     // combines its bound and its slot, and the node of which it is a child.
-    let mut keys = [0u32; SHORT_STACK_LEN];
+    let mut keys = [0u32; NEAR_STACK_LEN];
     // The arrays begin with different values, because both would otherwise be filled by one call of a function, which
     // takes longer than a few instructions for each.
-    let mut parents = [u32::MAX; SHORT_STACK_LEN];
+    let mut parents = [u32::MAX; NEAR_STACK_LEN];
     // Entries below those of the two arrays. Only deep trees have some.
     let mut below = Vec::new();
     let mut top = 0;
@@ -114,7 +113,7 @@ pub(crate) fn traverse<I: InstructionSet, V: VolumeNodes, W: Visitor<V>>(tree: &
             visitor.visit_node();
             let node = &tree.nodes[at.number()];
             let bounds: I::F32x8 = visitor.bounds(node);
-            if top > SHORT_STACK_LEN - WIDTH {
+            if top > NEAR_STACK_LEN - WIDTH {
                 spill(&mut keys, &mut parents, &mut below, top);
                 top = KEPT_LEN;
             }
@@ -123,7 +122,7 @@ pub(crate) fn traverse<I: InstructionSet, V: VolumeNodes, W: Visitor<V>>(tree: &
             parents[top..top + WIDTH].fill(at.0);
             // The two nearest children are prefetched without a test of their number, because that branch would be
             // mispredicted. The keys behind the last one are 0, which stands for the first child.
-            let last = SHORT_STACK_LEN - 1;
+            let last = NEAR_STACK_LEN - 1;
             tree.prefetch(node.children()[lane_of_key(keys[(top + count).wrapping_sub(1).min(last)])]);
             tree.prefetch(node.children()[lane_of_key(keys[(top + count).wrapping_sub(2).min(last)])]);
             if count > 0 {
