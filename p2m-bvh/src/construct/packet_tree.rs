@@ -228,6 +228,9 @@ fn pack<'a, V: Volume>(
 /// The function that returns what a packet contains.
 type Content<'c, 'a> = &'c (dyn Fn(usize) -> (&'a [PrimitiveId], bool) + Sync);
 
+/// The function that gets the number of a packet, its primitives and the box around them.
+type BoundFn<'b> = &'b (dyn Fn(usize, &[Member], &Aabb<f64>) + Sync);
+
 /// Makes packets, and calls `bound` with the number of each, its primitives and the box around them. The function does
 /// not depend on the volume, so it is compiled once.
 ///
@@ -239,7 +242,7 @@ fn pack_leaves<'a>(
     members: Members<'_>,
     frame: &Frame,
     parallel: bool,
-    bound: &(dyn Fn(usize, &[Member], &Aabb<f64>) + Sync),
+    bound: BoundFn<'_>,
 ) -> Leaves {
     let pack_chunk = |(first, chunk, vertices): (usize, &mut [Packet], &mut Vec<[f64; 3]>)| {
         vertices.clear();
