@@ -36,10 +36,13 @@ pub(crate) fn is_clean(entries: &[Entry]) -> bool {
     ours.flat_map(|entry| &entry.sets).all(|set| set.as_ref().is_ok_and(|set| set.agreement.is_clean()))
 }
 
+/// The text of a cell of a backend.
+type TextFn<'f> = &'f dyn Fn(&Entry) -> String;
+
 /// Makes a table with a row for each backend: its name and scalar, the cells of `first`, and a cell for each set that
 /// was measured.
 fn table<const N: usize>(
-    first: [(&str, &dyn Fn(&Entry) -> String); N],
+    first: [(&str, TextFn<'_>); N],
     sets: &[QuerySet],
     entries: &[Entry],
     cell: impl Fn(usize, &SetFigures) -> String,

@@ -33,10 +33,13 @@ pub(super) struct Findings {
     pub(super) broken: Broken,
 }
 
+/// Whether a case of a scalar, given by its number, belongs to a row.
+type HasFn = dyn Fn(usize, &Family) -> bool + Send + Sync;
+
 /// A row of the table: its name, and whether a case of a scalar belongs to it.
 pub(super) struct Row {
     pub(super) label: String,
-    has: Box<dyn Fn(usize, &Family) -> bool + Send + Sync>,
+    has: Box<HasFn>,
 }
 
 impl Row {
