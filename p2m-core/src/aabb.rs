@@ -1,10 +1,10 @@
-//! Axis-aligned boxes.
+//! An axis-aligned bounding box.
 
 use crate::Real;
 use crate::real::to_f64_array;
 use nalgebra::Point3;
 
-/// A box with sides along the axes. It is empty if a coordinate of `min` exceeds that of `max`.
+/// An axis-aligned box. It is empty if a coordinate of `min` exceeds the same coordinate of `max`.
 ///
 /// ```
 /// use nalgebra::Point3;
@@ -43,7 +43,7 @@ impl<T: Real> Aabb<T> {
     #[inline(always)]
     #[must_use]
     pub fn union(&self, other: &Self) -> Self {
-        // Comparisons with NaN are false, so the expressions return the operand that is NaN.
+        // Comparisons with NaN are false, so both expressions return the operand that is NaN.
         let low = |a: T, b: T| if a <= b || a.partial_cmp(&a).is_none() { a } else { b };
         let high = |a: T, b: T| if a >= b || a.partial_cmp(&a).is_none() { a } else { b };
         Self {
@@ -63,11 +63,11 @@ impl<T: Real> Aabb<T> {
         Aabb { min: Point3::from(to_f64_array(&self.min)), max: Point3::from(to_f64_array(&self.max)) }
     }
 
-    /// Returns whether all coordinates are finite. Those of the [`empty`](Self::empty) box are not.
+    /// Returns whether all coordinates are finite. The [`empty`](Self::empty) box has infinite ones.
     #[inline]
     #[must_use]
     pub fn is_finite(&self) -> bool {
-        // There is no early end, so that the comparisons are made in lanes.
+        // No early exit, so that the comparisons are vectorised.
         self.min.iter().chain(self.max.iter()).fold(true, |all, x| all & x.is_finite())
     }
 
@@ -118,11 +118,11 @@ impl<T: Real> Aabb<T> {
     /// Returns a lower bound on the squared distance from `query` to all points of the box, in f64.
     ///
     /// # Accuracy
-    /// The bound never exceeds the key of a primitive in the box, rounding included. Both subtract coordinates and sum
-    /// squares in the same order, the kernel keeps each component of its offset within the box of the vertices minus
-    /// the query, and rounding is monotone. So pruning needs no slack: a box is skipped if and only if its bound is
-    /// strictly above [`Collector::prune_above`](crate::Collector::prune_above). The bound exceeds the true squared
-    /// distance by at most 5 u of it.
+    /// The bound never exceeds the key of a primitive in the box, rounding included. The kernel and this function
+    /// subtract coordinates and sum squares in the same order, the kernel keeps each component of its offset within the
+    /// box of the vertices minus the query, and rounding is monotone. So pruning needs no slack: a search skips a box
+    /// if and only if its bound is strictly above [`Collector::prune_above`](crate::Collector::prune_above). The bound
+    /// exceeds the true squared distance by a relative error of at most 5 u.
     #[inline(always)]
     #[must_use]
     pub fn lower_bound(&self, query: &Point3<T>) -> f64 {
@@ -140,8 +140,8 @@ impl<T: Real> Aabb<T> {
     /// Returns a lower bound on the squared distance between points of two boxes, in f64.
     ///
     /// # Accuracy
-    /// The bound never exceeds the key of a pair of primitives in the boxes ([`pair`](crate::pair)), rounding included,
-    /// for the reason that [`lower_bound`](Self::lower_bound) states.
+    /// The bound never exceeds the key of a pair of primitives in the boxes ([`pair`](crate::pair)), rounding included.
+    /// [`lower_bound`](Self::lower_bound) states the reason.
     #[must_use]
     pub fn gap_squared(&self, other: &Self) -> f64 {
         let [[min, max], [other_min, other_max]] =

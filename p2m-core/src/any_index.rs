@@ -1,4 +1,4 @@
-//! Everything that an index can do, behind one pointer.
+//! The object-safe trait of an index.
 
 use crate::pair::PairQuery;
 use crate::storage::Writer;
@@ -7,24 +7,24 @@ use crate::{
 };
 use std::sync::Arc;
 
-/// The summary of an index of cells.
+/// A summary of the cells of an index.
 #[derive(Clone, Debug, PartialEq)]
 pub struct CellSummary {
-    /// A phrase for people.
+    /// A short text for users.
     pub text: String,
-    /// Numbers by their names in reports.
+    /// Named counts for reports.
     pub counts: Vec<(&'static str, u64)>,
-    /// The fineness of the cells, of an index that has a setting for it.
+    /// The resolution of the cells, if the index has an option for it.
     pub resolution: Option<f64>,
 }
 
-/// The result of fitting an index to a moved scene, which it shares.
+/// The result of [`AnyIndex::refitted`]: an index over the moved scene, which the two share.
 pub type Refitted<T> = Result<Arc<dyn AnyIndex<T>>, BuildError>;
 
-/// Everything that an index can do, as a trait that can be used as `dyn AnyIndex<T>`.
+/// The object-safe trait of an index: it is used as `dyn AnyIndex<T>`.
 ///
-/// Every index answers closest-point, near and certified queries, and reports its costs. Rays, boxes and pairs are optional.
-/// Indexes can be sent to other threads and shared among them.
+/// Every index answers closest-point, near and certified queries, and reports its costs. Rays, boxes and pairs are
+/// optional. Indexes can be sent to other threads and shared among them.
 ///
 /// ```
 /// use nalgebra::Point3;
@@ -50,41 +50,41 @@ pub trait AnyIndex<T: Real = f64>: ClosestPoint<T> + CertifiedQuery<T> + IndexSt
     /// Adds the index to a file, without its scene. An index without a saved form adds nothing.
     fn save<'s>(&'s self, writer: &mut Writer<'s>);
 
-    /// Returns the number of primitives, whose ids are all numbers below it.
+    /// Returns the number of primitives. All ids are below it.
     fn primitive_count(&self) -> usize;
 
     /// Returns the heap memory that the index owns besides its scene, in bytes.
     fn memory_bytes(&self) -> usize;
 
-    /// Returns the index as one that rays can be cast at, if it is one.
+    /// Returns the index as a [`RayQuery`], or `None` if it casts no rays.
     fn as_ray_query(&self) -> Option<&(dyn RayQuery<T> + Sync)> {
         None
     }
 
-    /// Returns the index as one that boxes can be queried with, if it is one.
+    /// Returns the index as a [`BoxQuery`], or `None` if it answers no box queries.
     fn as_box_query(&self) -> Option<&(dyn BoxQuery<T> + Sync)> {
         None
     }
 
-    /// Returns the index as one that pairs can be searched in, if it is one.
+    /// Returns the index as a [`PairQuery`], or `None` if it finds no pairs.
     fn as_pair_query(&self) -> Option<&(dyn PairQuery<T> + Sync)> {
         None
     }
 
-    /// Returns a copy that is fitted to a scene in which the same primitives have moved, or `None` if an index of this
-    /// kind has to be built anew. The errors are [`BuildError::OtherLength`] for a scene with another number of
-    /// primitives, and [`BuildError::NonFinite`].
+    /// Returns a copy of the index that is refitted to a scene in which the same primitives have moved. It returns
+    /// `None` if this kind of index cannot be refitted and has to be built anew. The errors are
+    /// [`BuildError::OtherLength`] for a scene with another number of primitives, and [`BuildError::NonFinite`].
     fn refitted(&self, soup: Arc<Soup<T>>) -> Option<Refitted<T>> {
         let _ = soup;
         None
     }
 
-    /// Returns the sum of the areas of all boxes of a tree, which measures its quality.
+    /// Returns the total surface area of the boxes of a tree, which measures its quality.
     fn surface_area(&self) -> Option<f64> {
         None
     }
 
-    /// Returns the summary of the cells of an index that has cells.
+    /// Returns the summary of the cells, if the index has cells.
     fn cells(&self) -> Option<CellSummary> {
         None
     }
@@ -122,7 +122,7 @@ impl<T: Real, S: PrimitiveSet<T> + Send + Sync> AnyIndex<T> for BruteForce<S> {
     }
 }
 
-/// Implements the trait for a pointer type by its target.
+/// Implements the trait for a pointer type by delegation to its target.
 macro_rules! index_behind {
     ($target:ident, $pointer:ty) => {
         impl<T: Real, $target: AnyIndex<T> + ?Sized> AnyIndex<T> for $pointer {

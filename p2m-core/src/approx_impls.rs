@@ -1,9 +1,9 @@
-//! The comparison traits of the crate `approx` for public types, componentwise over their coordinates.
+//! The comparison traits of the crate `approx`, implemented coordinate by coordinate.
 
 use crate::{Aabb, Closest, Point, Real, Segment, Triangle};
 use approx::{AbsDiffEq, RelativeEq, UlpsEq};
 
-/// Implements the three traits for a type, given the fields with coordinates and a condition on the other fields.
+/// Implements the three traits for a type, given its fields with coordinates and a condition on the other fields.
 macro_rules! approx_traits {
     ($type:ident, |$a:ident, $b:ident| $same:expr, $($field:ident),+) => {
         impl<T: Real + AbsDiffEq<Epsilon = T>> AbsDiffEq for $type<T> {

@@ -1,10 +1,9 @@
-//! Queries by boxes.
+//! Box queries.
 
 use crate::{Aabb, BruteForce, Primitive, PrimitiveId, PrimitiveSet, Real};
 use std::ops::ControlFlow;
 
-/// Queries for the primitives of a scene that intersect a box. A backend writes
-/// one method, [`visit_box`](Self::visit_box).
+/// Queries for the primitives that intersect a box. A backend implements one method, [`visit_box`](Self::visit_box).
 ///
 /// # Contract
 ///
@@ -29,14 +28,14 @@ use std::ops::ControlFlow;
 /// ```
 ///
 /// # References
-/// The queries are `BoxIntersectsAPrimitive` and `GetPrimitivesInABox` of \[Cavarga2021\], but the latter does not test
-/// the primitives of the leaves there.
+/// The queries are `BoxIntersectsAPrimitive` and `GetPrimitivesInABox` of \[Cavarga2021\]. The latter does not test the
+/// primitives of the leaves there.
 #[diagnostic::on_unimplemented(
     message = "`{Self}` answers no queries by boxes with coordinates of type `{T}`",
     note = "`AabbTree`, `KdopTree` and `BruteForce` do; the octree and the P2M index answer closest-point queries only"
 )]
 pub trait BoxQuery<T: Real> {
-    /// Calls `visit` once for every primitive that intersects `bounds`, in any order, until it breaks, and returns
+    /// Calls `visit` once for each primitive that intersects `bounds`, in any order, until `visit` breaks. Returns
     /// whether it did.
     ///
     /// # Complexity

@@ -8,8 +8,8 @@ use crate::{
 use nalgebra::Point3;
 use std::ops::ControlFlow;
 
-/// An index without a structure, which evaluates every primitive. It is kept simple, so that its
-/// correctness is evident.
+/// An index without a data structure, which evaluates every primitive. It is kept simple, so that it is evidently
+/// correct.
 ///
 /// # Complexity
 /// Building takes O(n), since it checks the set. A query takes O(n). It needs no memory besides the set.
@@ -43,7 +43,7 @@ impl<S> BruteForce<S> {
         Ok(Self { set })
     }
 
-    /// Returns the set that the index was built over.
+    /// Returns the set over which the index was built.
     pub fn set(&self) -> &S {
         &self.set
     }

@@ -1,14 +1,17 @@
-//! Orders along a Hilbert curve: points that are neighbours on the curve are near each other in space.
+//! Orders along a Hilbert curve: neighbours on the curve are near each other in space.
 
 use crate::kernel::vector::{V3, larger, sub};
 
-/// The number of bits of a coordinate in a key of 64 bits.
+/// The number of bits per coordinate in a key of 64 bits.
 const BITS_PER_AXIS: u32 = 21;
 
-/// One level of the curve. `LEVEL[state][octant]` has the position of the octant on the curve and the state in it.
+/// The transition table of one level of the curve. `LEVEL[state][octant]` has the position of the octant on the curve
+/// and the state in it.
 ///
-/// A state is the corner at which the curve enters a cube, times 3, plus the axis along which the exit lies
-/// from there \[Hamilton2006\].
+/// The basic idea: the curve visits the eight octants of a cube in the order of a Gray code, and visits each octant by
+/// a smaller copy of itself that is rotated and mirrored. A state is such an orientation: the corner at which the curve
+/// enters a cube, times 3, plus the axis along which the exit lies from there \[Hamilton2006\]. The key of a cell is
+/// found level by level, by one look-up each.
 #[allow(clippy::cast_possible_truncation, reason = "small numbers")]
 const LEVEL: [[(u8, u8); 8]; 24] = {
     let mut table = [[(0, 0); 8]; 24];
@@ -41,9 +44,9 @@ const fn rotate(bits: u8, by: u8) -> u8 {
     (bits << by | bits >> (3 - by)) & 7
 }
 
-/// Two levels of the curve at once. The index is a state times 64 plus two octants, the outer one in the higher bits.
-/// The entry is the state in the inner octant times 64 plus its position on the curve. Unused entries make the length a
-/// power of two.
+/// The transition table of two levels at once. The index is a state times 64 plus two octants, the outer one in the
+/// higher bits. The entry is the state in the inner octant times 64 plus its position on the curve. Unused entries make
+/// the length a power of two.
 const TWO_LEVELS: [u16; 2048] = {
     let mut table = [0; 2048];
     let mut state = 0;
@@ -60,7 +63,7 @@ const TWO_LEVELS: [u16; 2048] = {
     table
 };
 
-/// Returns the position on the curve of a cell of a cube that has 2^bits cells along each side. `bits` is at most 21.
+/// Returns the position on the curve of a cell in a cube with 2^bits cells along each side. `bits` is at most 21.
 #[must_use]
 #[inline]
 pub fn position([x, y, z]: [u32; 3], bits: u32) -> u64 {
@@ -90,7 +93,7 @@ fn spread(x: u32) -> u64 {
     (x | x << 2) & 0x1249_2492_4924_9249
 }
 
-/// Returns the lower and the upper corner of the smallest box around some points. Without points the lower one is
+/// Returns the lower and the upper corner of the smallest box around some points. Without points, the lower corner is
 /// infinity and the upper one minus infinity.
 pub fn bounds(points: impl IntoIterator<Item = V3>) -> [V3; 2] {
     let (mut low, mut high) = ([f64::INFINITY; 3], [f64::NEG_INFINITY; 3]);
@@ -103,8 +106,7 @@ pub fn bounds(points: impl IntoIterator<Item = V3>) -> [V3; 2] {
     [low, high]
 }
 
-/// Sorts the indices of points along the curve through their box. Equal points become neighbours, in the order
-/// of their indices.
+/// Sorts the indices of points along the curve through their box. Equal points become neighbours, ordered by index.
 pub fn sort_along_curve(points: &[V3], indices: &mut [u32]) {
     let [low, high] = bounds(indices.iter().map(|&i| points[i as usize]));
     let side = sub(high, low).into_iter().fold(0.0, larger);

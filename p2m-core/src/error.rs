@@ -28,7 +28,7 @@ pub enum BuildError {
         /// The length of the array.
         len: usize,
     },
-    /// Positions should be replaced by another number of positions.
+    /// The new positions are not as many as the old ones.
     #[error("{len} positions, but the scene has {expected}")]
     OtherPositionCount {
         /// The number of new positions.
@@ -39,13 +39,13 @@ pub enum BuildError {
     /// The positions or primitives do not fit into memory.
     #[error("it does not fit into memory")]
     OutOfMemory,
-    /// There are more primitives than the 2^30 that have ids.
+    /// There are more primitives than ids, which are 2^30.
     #[error("{len} primitives are more than the {} that an id can name", crate::PrimitiveId::MAX_COUNT)]
     TooMany {
-        /// The number of primitives, or a lower bound on it where counting stopped.
+        /// The number of primitives, or a lower bound on it if counting stopped.
         len: usize,
     },
-    /// An index should be refitted to a set of another size.
+    /// The set for a refit has another number of primitives.
     #[error("{len} primitives, but the index was built over {expected}")]
     OtherLength {
         /// The number of primitives of that set.
@@ -55,7 +55,7 @@ pub enum BuildError {
     },
 }
 
-/// Returns which positions there are.
+/// Describes the number of positions for an error message.
 fn describe_positions(len: usize) -> String {
     match len {
         0 => "there are no positions".to_owned(),

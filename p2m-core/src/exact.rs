@@ -1,6 +1,6 @@
-//! Exact arithmetic: floats as big integers in units of a common power of two, and fractions of these.
+//! Exact arithmetic: floats as big integers in units of a common power of two, and fractions of them.
 //!
-//! It decides where the rounding of floats could change an answer.
+//! It decides whenever the rounding of floats could change an answer.
 
 use crate::kernel::power_of_two;
 use dashu_int::ops::{BitTest, UnsignedAbs};
@@ -22,7 +22,7 @@ fn decompose(x: f64) -> (i64, i32) {
     (if x.is_sign_negative() { -mantissa } else { mantissa }, exponent)
 }
 
-/// Returns the largest e for which all these finite numbers are multiples of 2^e, or 0 if all are zero.
+/// Returns the largest e such that all these finite numbers are multiples of 2^e, or 0 if all are zero.
 pub fn common_exponent<'a>(numbers: impl IntoIterator<Item = &'a f64>) -> i32 {
     let lowest = |x: &f64| {
         let (mantissa, exponent) = decompose(*x);
@@ -43,23 +43,23 @@ pub fn difference<const N: usize>(p: [f64; N], a: [f64; N], exponent: i32) -> [I
     std::array::from_fn(|k| integer(p[k], exponent) - integer(a[k], exponent))
 }
 
-/// Returns the dot product.
+/// Returns the dot product of two vectors.
 pub fn dot(a: &Vector, b: &Vector) -> IBig {
     &a[0] * &b[0] + &a[1] * &b[1] + &a[2] * &b[2]
 }
 
-/// Returns component k of the cross product.
+/// Returns component k of the cross product of two vectors.
 pub fn cross_component(a: &Vector, b: &Vector, k: usize) -> IBig {
     let (i, j) = ((k + 1) % 3, (k + 2) % 3);
     &a[i] * &b[j] - &a[j] * &b[i]
 }
 
-/// Returns the cross product.
+/// Returns the cross product of two vectors.
 pub fn cross(a: &Vector, b: &Vector) -> Vector {
     std::array::from_fn(|k| cross_component(a, b, k))
 }
 
-/// Returns the sign: the comparison with zero.
+/// Returns the sign of an integer, as the comparison with zero.
 pub fn sign(x: &IBig) -> Ordering {
     x.cmp(&IBig::ZERO)
 }
@@ -79,8 +79,8 @@ impl Fraction {
         (&self.numerator * &other.denominator).cmp(&(&other.numerator * &self.denominator))
     }
 
-    /// Returns the fraction times 2^exponent, rounded to the nearest f64, ties to even. It is infinite beyond the range
-    /// of f64, and never -0.
+    /// Returns the fraction times 2^exponent, rounded to the nearest f64 with ties to even. It is infinite beyond the
+    /// range of f64, and never -0.
     ///
     /// # Panics
     /// If a number has 2^63 bits or more.
@@ -146,7 +146,7 @@ mod tests {
             for d in 1..200 {
                 let expected = n as f64 / d as f64 + 0.0;
                 assert_eq!(fraction(n, d).round(0).to_bits(), expected.to_bits(), "{n} / {d}");
-                // The result is exact, since it is far above the subnormals.
+                // The result is exact, since it is far above the subnormal numbers.
                 let scaled = expected * power_of_two(-1000);
                 assert_eq!(fraction(n, d).round(-1000), scaled);
                 // A subnormal result is rounded once, not twice.

@@ -1,6 +1,6 @@
-//! Names of file formats, which are also the extensions of files, and the header of NPY files.
+//! File formats, which are named by their file extensions, and the header of NPY files.
 
-/// The error for a name that belongs to no format.
+/// The error for an unknown format name.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
 #[error("unknown format '{name}', expected one of {}", supported.join(", "))]
 pub struct UnknownFormat {
@@ -10,7 +10,7 @@ pub struct UnknownFormat {
     pub supported: &'static [&'static str],
 }
 
-/// The error for a file whose extension belongs to no format.
+/// The error for a file with an unknown extension.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
 #[error("{file}: unknown extension '{extension}', expected one of {}", supported.join(", "))]
 pub struct UnknownExtension {
@@ -22,7 +22,7 @@ pub struct UnknownExtension {
     pub supported: &'static [&'static str],
 }
 
-/// Defines an enum of formats with their names, which are also the extensions of files.
+/// Defines an enum of file formats with their names, which are also the extensions of their files.
 #[doc(hidden)]
 #[macro_export]
 macro_rules! formats {
@@ -39,10 +39,10 @@ macro_rules! formats {
         }
 
         impl $format {
-            /// All formats, in the order of their variants.
+            /// All formats, in the order of the variants.
             pub const ALL: &'static [Self] = &[$(Self::$variant),*];
 
-            /// The names of all formats, which are also the extensions of files.
+            /// The names of all formats, which are also the extensions of their files.
             pub const NAMES: &'static [&'static str] = &[$($name, $($other,)*)*];
 
             /// Returns the name of the format, which is the usual extension of its files.
@@ -60,7 +60,7 @@ macro_rules! formats {
                 }
             }
 
-            /// Returns the format that the extension of a file stands for, in any case.
+            /// Returns the format of a file by its extension, ignoring case.
             ///
             /// # Errors
             /// [`UnknownExtension`]($crate::UnknownExtension) if the extension belongs to no format.
@@ -83,7 +83,7 @@ macro_rules! formats {
         impl std::str::FromStr for $format {
             type Err = $crate::UnknownFormat;
 
-            /// Returns the format with this name, in any case.
+            /// Returns the format with this name, ignoring case.
             fn from_str(name: &str) -> Result<Self, $crate::UnknownFormat> {
                 let unknown = || $crate::UnknownFormat { name: name.to_owned(), supported: Self::NAMES };
                 Self::named(name).ok_or_else(unknown)

@@ -3,13 +3,13 @@
 use crate::{BatchAnswer, Best, Closest, Position, PrimitiveSet, QueryOptions, RayQuery, Real};
 use nalgebra::Point3;
 
-/// Queries for the closest point of a scene. A backend writes one method, [`search`](Self::search).
+/// Closest-point queries of a scene. A backend implements one method, [`search`](Self::search).
 ///
 /// # Contract
 ///
-/// In short, no query fails or panics, and every exact index gives the same distance and primitive. Distances are
-/// Euclidean, without sign, and in the unit of the coordinates. For a scene in f64 whose box
-/// has a diagonal of one kilometre, the error is at most 8 * 2^-53 * 1000 m, less than 1e-12 m, for queries in the box.
+/// In short, no query fails or panics, and every exact index returns the same distance and primitive. Distances are
+/// Euclidean, without sign, and in the unit of the coordinates. For a scene in f64 whose box has a diagonal of one
+/// kilometre, the error is at most 8 * 2^-53 * 1000 m, less than 1e-12 m, for queries in the box.
 ///
 /// Let u be [`Real::UNIT_ROUNDOFF`], eta the smallest subnormal, d the true distance, d^ the computed one, and M(t) the
 /// largest distance from the query to a vertex of primitive t. The *key* ([`Key`](crate::Key)) is the number by which
@@ -78,12 +78,13 @@ pub trait ClosestPoint<T: Real> {
         self.closest_point_with(query, &QueryOptions::default())
     }
 
-    /// Answers queries on the current thread, in any order: calls `answered` once for each with its position
+    /// Answers queries on the current thread, in any order, by calling `answered` once for each query with its position
     /// and its answer.
     ///
-    /// Backends that answer several queries at once override it. Distance, primitive, point, feature and weights are
-    /// those of [`closest_point_with`](Self::closest_point_with), and so is the answer to approximate options. The
-    /// certified lower bound may differ in its last bits, since it depends on the primitives that a search evaluates.
+    /// Backends that interleave searches override this method. Each answer has the distance, primitive, point, feature
+    /// and weights that [`closest_point_with`](Self::closest_point_with) returns; with approximate options the whole
+    /// answer is the same. The certified lower bound may differ in its last bits, since it depends on the primitives
+    /// that a search evaluates.
     fn answer_queries(
         &self,
         queries: &[Point3<T>],
@@ -104,14 +105,14 @@ pub trait ClosestPoint<T: Real> {
         self.answer_queries(queries, options, &mut |i, found| out[i] = found.closest());
     }
 
-    /// Returns the index as one that casts rays with little work, if it is one.
+    /// Returns the index as a [`RayQuery`] that casts rays with little work, if it is one.
     #[doc(hidden)]
     fn rays(&self) -> Option<&dyn RayQuery<T>> {
         None
     }
 }
 
-/// Answers queries as [`ClosestPoint::answer_queries`] does by default.
+/// The default implementation of [`ClosestPoint::answer_queries`].
 #[doc(hidden)]
 pub fn answer_one_by_one<T: Real, I: ClosestPoint<T> + ?Sized>(
     index: &I,
@@ -129,7 +130,7 @@ pub fn answer_one_by_one<T: Real, I: ClosestPoint<T> + ?Sized>(
     }
 }
 
-/// Building an index. It is not part of [`ClosestPoint`], so that that trait can be used as `dyn`.
+/// Building an index. It is not part of [`ClosestPoint`], so that [`ClosestPoint`] can be used as `dyn`.
 ///
 /// ```
 /// use p2m_core::{BruteForce, BuildIndex, ClosestPoint, PrimitiveSet};
@@ -153,9 +154,8 @@ pub trait BuildIndex<T: Real, S: PrimitiveSet<T>>: ClosestPoint<T> + Sized {
     /// The error of building.
     type Error: std::error::Error;
 
-    /// Builds the index over `set`, which it keeps. Pass a reference to borrow the scene, or the scene itself to have
-    /// both in one value. An `Arc` shares the scene with other
-    /// owners. The set may be empty.
+    /// Builds the index over `set`, which it keeps. Pass a reference to borrow the scene, the scene itself to have both
+    /// in one value, or an `Arc` to share the scene with other owners. The set may be empty.
     ///
     /// # Errors
     /// The indexes of this project return [`BuildError::NonFinite`](crate::BuildError::NonFinite) for a coordinate that

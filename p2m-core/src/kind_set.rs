@@ -1,16 +1,16 @@
-//! The primitives of one kind of a soup, as a set.
+//! The primitives of one kind in a soup, as a set.
 
 use crate::{Point, PrimitiveId, PrimitiveSet, Real, Segment, Soup, Triangle};
 use std::ops::Deref;
 
-/// The primitives of one kind of a [`Soup`]: triangles for N = 3, segments for N = 2, points for N = 1.
+/// The primitives of one kind in a [`Soup`]: triangles for N = 3, segments for N = 2, points for N = 1.
 ///
 /// The type is written as [`TriangleSet`], [`SegmentSet`] or [`PointSet`]. `S` is a pointer to the soup:
 /// [`Soup::triangle_set`] borrows the soup, and with `Box<Soup<f64>>` or `Arc<Soup<f64>>` the set owns or shares it.
 ///
-/// An index over it compiles to the kernel of that kind alone. Primitives are numbered in the order of the soup. If the
-/// soup has other kinds as well, [`Soup::triangle_ids`], [`Soup::segment_ids`] and [`Soup::point_ids`] map these
-/// numbers to ids of the soup.
+/// An index over this set is compiled for the kernel of that kind alone. Primitives are numbered in the order of the
+/// soup. If the soup has other kinds as well, [`Soup::triangle_ids`], [`Soup::segment_ids`] and [`Soup::point_ids`] map
+/// these numbers to ids of the soup.
 ///
 /// ```
 /// use p2m_core::{BruteForce, ClosestPoint, Element, Soup};
@@ -66,8 +66,8 @@ impl<S, const N: usize> KindSet<S, N> {
     }
 }
 
-/// Implements the set of primitives of one kind, given the type of the set, that of a primitive, the method of a soup
-/// that returns its elements, a pattern for such an element, and its indices.
+/// Implements the set of primitives of one kind. The arguments are the type of the set, the type of a primitive, the
+/// method of a soup that returns its elements, a pattern for an element, and its indices.
 macro_rules! set_of_kind {
     ($set:ident, $primitive:ident, $elements:ident, $element:pat, [$($index:ident),+]) => {
         impl<T: Real, S: Deref<Target = Soup<T>>> PrimitiveSet<T> for $set<S> {
@@ -114,17 +114,17 @@ impl<T: Real> Soup<T> {
         KindSet::new(self)
     }
 
-    /// Returns the ids of the triangles in their order: the i-th one is that of triangle i of [`Soup::triangle_set`].
+    /// Returns the ids of the triangles in their order. The i-th id belongs to triangle i of [`Soup::triangle_set`].
     pub fn triangle_ids(&self) -> impl Iterator<Item = PrimitiveId> + '_ {
         self.ids_of_kind(3)
     }
 
-    /// Returns the ids of the segments in their order: the i-th one is that of segment i of [`Soup::segment_set`].
+    /// Returns the ids of the segments in their order. The i-th id belongs to segment i of [`Soup::segment_set`].
     pub fn segment_ids(&self) -> impl Iterator<Item = PrimitiveId> + '_ {
         self.ids_of_kind(2)
     }
 
-    /// Returns the ids of the points in their order: the i-th one is that of point i of [`Soup::point_set`].
+    /// Returns the ids of the points in their order. The i-th id belongs to point i of [`Soup::point_set`].
     pub fn point_ids(&self) -> impl Iterator<Item = PrimitiveId> + '_ {
         self.ids_of_kind(1)
     }

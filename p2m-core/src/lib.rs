@@ -102,16 +102,16 @@ pub mod engine {
     #[cfg(feature = "rayon")]
     pub use crate::threads::{MAX_THREADS, default_threads};
 
-    /// Loops on all threads, whose scheduler is compiled once.
+    /// Loops over all threads, compiled with one instance of the scheduler.
     pub mod parallel {
         pub use crate::parallel::*;
     }
-    /// Pools of threads that belong to one process.
+    /// Thread pools that belong to one process.
     #[cfg(feature = "rayon")]
     pub mod pools {
         pub use crate::pools::*;
     }
-    /// Searches for near pairs of two trees.
+    /// The search for near pairs of two trees.
     pub mod pairs {
         pub use crate::pair::search::*;
     }
@@ -127,11 +127,11 @@ pub mod engine {
     pub mod exact {
         pub use crate::exact::*;
     }
-    /// Products of vectors in any arithmetic.
+    /// Vector products in any arithmetic.
     pub mod arithmetic {
         pub use crate::kernel::arithmetic::*;
     }
-    /// The collector that searches are compiled for.
+    /// The collector for which searches are compiled.
     pub mod query {
         pub use crate::query::BestF64;
         pub use crate::query::answer::square_within;
@@ -140,11 +140,11 @@ pub mod engine {
     pub mod ray {
         pub use crate::ray::{UNDERFLOW_MARGIN, project_onto_ray};
     }
-    /// Conversion of points to and from f64.
+    /// Conversion of points from and to f64.
     pub mod real {
         pub use crate::real::{from_f64_array, to_f64_array};
     }
-    /// Lanes and instruction sets.
+    /// SIMD lanes and instruction sets.
     pub mod simd {
         pub use crate::simd::*;
     }
@@ -152,7 +152,7 @@ pub mod engine {
     pub mod stats {
         pub use crate::stats::percentile;
     }
-    /// Signs of determinants in stages of growing precision.
+    /// Signs of determinants, computed with increasing precision.
     pub mod adaptive {
         pub use crate::predicates::adaptive::*;
     }
@@ -160,7 +160,7 @@ pub mod engine {
     pub mod vector {
         pub use crate::kernel::vector::*;
     }
-    /// Frames of single primitives.
+    /// Local frames of primitives.
     pub mod local_frame {
         pub use crate::local_frame::*;
     }

@@ -1,15 +1,15 @@
-//! A frame of its own for a primitive, in which its distance from many points is quick to evaluate.
+//! The local frame of a primitive, in which its distance from many points is fast to compute.
 
 use crate::kernel::arithmetic::cross;
 use crate::kernel::vector::{V3, add_scaled, dot, larger, norm_squared, power_of_two, sub};
 
-/// The square of 2^-450. Vectors shorter than that count as zero, because their squares lose digits to underflow.
+/// The square of 2^-450, below which a vector counts as zero, because its square loses digits to underflow.
 const MIN_SQUARED_LENGTH: f64 = power_of_two(-900);
 
-/// The frame of a point, a segment or a triangle.
+/// The local frame of a point, a segment or a triangle.
 ///
-/// The longest edge is on the first axis, and a triangle is in the plane of the first two axes. The axes are
-/// orthonormal within some u for any shape: if the third vertex is too near to the longest edge to determine a
+/// The longest edge lies on the first axis, and a triangle lies in the plane of the first two axes. The axes are
+/// orthonormal within a few u for any shape. If the third vertex is too near to the longest edge to determine a
 /// direction, it is as near to the plane of any direction.
 #[derive(Clone, Copy, Debug)]
 pub struct LocalFrame {
@@ -41,9 +41,10 @@ impl LocalFrame {
             return Self { origin, axes, length: 0.0, apex: [0.0; 2] };
         };
         let third = if n == 3 { sub(vertices[(longest + 2) % 3], origin) } else { [0.0; 3] };
-        // The component of the third vertex perpendicular to the first axis is accurate to some u of the vertex, so its
-        // direction leaves the vertex in the plane within some u. A second projection makes it perpendicular to some u
-        // as well. If it is far from perpendicular at first, it consists of rounding errors, and any direction will do.
+        // The component of the third vertex perpendicular to the first axis is accurate to a few u of the vertex, so
+        // its direction leaves the vertex in the plane within a few u. A second projection makes it perpendicular to a
+        // few u as well. If it is far from perpendicular at first, it consists of rounding errors, and any direction
+        // will do.
         let height = add_scaled(third, -dot(third, first), first);
         let second = normalized(height)
             .filter(|v| dot(*v, first).abs() < 0.5)

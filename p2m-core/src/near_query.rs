@@ -1,7 +1,7 @@
-//! Queries for more than the closest point: the k nearest primitives, all within a radius, whether there is any, and
-//! the closest one among those that a caller accepts.
+//! Queries beyond the closest point: the k nearest primitives, all primitives within a radius, whether there is any,
+//! and the closest one that a caller's filter accepts.
 //!
-//! One collector, [`Near`], serves all of them, so a backend writes one method and its search is compiled once. The
+//! One collector, [`Near`], serves all of them, so a backend implements one method and its search is compiled once. The
 //! same collector finds the primitives among which a [certified](crate::CertifiedQuery) answer is chosen.
 
 use crate::query::answer::{answer, square_within};
@@ -10,12 +10,13 @@ use nalgebra::Point3;
 use std::collections::{BinaryHeap, TryReserveError};
 use std::ops::ControlFlow;
 
-/// Queries for near primitives beyond the closest one. A backend writes one method, [`search_near`](Self::search_near).
+/// Queries for near primitives beyond the closest one. A backend implements one method,
+/// [`search_near`](Self::search_near).
 ///
-/// Each answer equals that of [`ClosestPoint`](crate::ClosestPoint) for its primitive alone, bit for bit, except that
-/// [`Closest::lower_bound`] bounds the distance of that primitive and not of the scene. Distances are compared before
-/// rounding, equal ones by ids, and the radius is inclusive, so all backends give the same answers. The result is empty
-/// for a query that is not finite and for a radius that is negative or NaN.
+/// Each answer equals the answer of [`ClosestPoint`](crate::ClosestPoint) for a scene of its primitive alone, bit for
+/// bit. So its [`Closest::lower_bound`] bounds the distance of that primitive and not of the scene. Distances are
+/// compared before rounding, equal ones by ids, and the radius is inclusive, so all backends give the same answers. The
+/// result is empty for a query that is not finite and for a radius that is negative or NaN.
 ///
 /// ```
 /// use nalgebra::Point3;
@@ -34,7 +35,7 @@ use std::ops::ControlFlow;
 /// # Complexity
 /// Trees take expected O(log n + k log k) for k answers. [`closest_point_among`](Self::closest_point_among) takes as
 /// long as a query for all primitives that are nearer than the accepted one. Brute force takes O(n). The interception
-/// indexes use their trees, since a list is only certain to contain the nearest primitive, not the second nearest.
+/// indexes use their trees, since a list is guaranteed to contain the nearest primitive, but not the second nearest.
 pub trait NearQuery<T: Real> {
     /// Offers to `near` every primitive that could be part of the answer, each at most once. `query` is finite.
     fn search_near(&self, query: &Point3<T>, near: &mut Near<'_>);
@@ -48,8 +49,8 @@ pub trait NearQuery<T: Real> {
         self.try_k_nearest(query, k, radius).expect("memory for the nearest primitives")
     }
 
-    /// Returns what [`k_nearest`](Self::k_nearest) does, if it fits into memory. With `usize::MAX` primitives it is
-    /// what [`all_within`](Self::all_within) returns.
+    /// Returns the answer of [`k_nearest`](Self::k_nearest), or an error if it does not fit into memory. With k =
+    /// `usize::MAX` it is the answer of [`all_within`](Self::all_within).
     ///
     /// # Errors
     /// It returns the error of the allocation.
@@ -59,13 +60,13 @@ pub trait NearQuery<T: Real> {
         near.finish()
     }
 
-    /// Returns all primitives within the radius, nearest first. [`visit_within`](Self::visit_within) stores
-    /// none of them.
+    /// Returns all primitives within the radius, nearest first. [`visit_within`](Self::visit_within) visits them
+    /// without storing them.
     fn all_within(&self, query: &dyn Position<T>, radius: T) -> Vec<Closest<T>> {
         self.k_nearest(query, usize::MAX, radius)
     }
 
-    /// Calls `visit` for each primitive within the radius until it breaks, and returns whether it did. The order
+    /// Calls `visit` for each primitive within the radius until `visit` breaks, and returns whether it did. The order
     /// depends on the backend.
     fn visit_within(
         &self,
@@ -82,7 +83,7 @@ pub trait NearQuery<T: Real> {
         flow
     }
 
-    /// Returns whether any primitive is within the radius. The search ends at the first one that it finds.
+    /// Returns whether any primitive is within the radius. The search ends at the first such primitive.
     fn is_any_within(&self, query: &dyn Position<T>, radius: T) -> bool {
         let mut end = |_: PrimitiveId, _: &Projection| ControlFlow::Break(());
         let mut near = Near::all(radius, &mut end);
@@ -92,8 +93,8 @@ pub trait NearQuery<T: Real> {
 
     /// Returns the closest point of the primitives whose ids `among` accepts.
     ///
-    /// `among` is called only for primitives that are near, perhaps more than once for one of them, and has to be
-    /// consistent. Of the options only the largest distance is used.
+    /// `among` is called only for nearby primitives, perhaps more than once for the same one, and has to be consistent.
+    /// Of the options only the largest distance is used.
     fn closest_point_among(
         &self,
         query: &dyn Position<T>,
@@ -113,37 +114,37 @@ pub(crate) fn search_near_if_valid<T: Real>(
     near: &mut Near<'_>,
 ) {
     let query = query.point();
-    // The comparison is false for a radius of NaN.
+    // The comparison is false for a NaN radius.
     if query.iter().all(|x| x.is_finite()) && !near.is_done() && near.radius >= 0.0 {
         index.search_near(&query, near);
     }
 }
 
-/// The collector of near primitives, which the methods of [`NearQuery`] hand to a backend.
+/// The collector of near primitives, which the methods of [`NearQuery`] pass to a backend.
 ///
-/// A backend searches with it as a [`Collector`], and may end the search when it [is done](Self::is_done).
+/// A backend uses it as a [`Collector`], and may end the search when it [is done](Self::is_done).
 pub struct Near<'a> {
-    /// The largest f64 distance that is reported within the radius.
+    /// The largest f64 distance that is reported as within the radius.
     radius: f64,
-    /// The square that lower bounds must not exceed: at first that of the radius, rounded up; then that of the farthest
-    /// primitive of a full list; [`PRUNE_ALL`] at the end.
+    /// The square above which lower bounds are pruned. At first it is the square of the radius, rounded up. Once a list
+    /// is full, it is the square of the farthest primitive in it. At the end it is [`PRUNE_ALL`].
     prune: f64,
     mode: NearMode<'a>,
     among: Option<&'a mut dyn FnMut(PrimitiveId) -> bool>,
-    /// The error of an allocation, which ended the search.
+    /// The allocation error that ended the search.
     error: Option<TryReserveError>,
 }
 
 enum NearMode<'a> {
-    /// Keeps at most this number of nearest primitives, the farthest of them on top of the heap.
+    /// Keeps at most this number of nearest primitives, with the farthest one on top of the heap.
     Nearest(usize, BinaryHeap<NearCandidate>),
     /// Passes every primitive to a function.
     All(&'a mut dyn FnMut(PrimitiveId, &Projection) -> ControlFlow<()>),
-    /// Passes every primitive to a function, which returns the radius from then on. With a finite slack only primitives
-    /// that are farther than the nearest one by at most that distance are needed.
+    /// Passes every primitive to a function, which returns the new radius. With a finite slack, only primitives that
+    /// are farther than the nearest one by at most the slack are needed.
     Shrinking { slack: f64, visit: &'a mut dyn FnMut(PrimitiveId, &[[f64; 3]]) -> f64 },
-    /// Keeps all primitives that may be nearest once the errors of the kernel are allowed for. The true distance of
-    /// some primitive is at most `upper_bound`.
+    /// Keeps all primitives that may be nearest, given the error bounds of the kernel. The true distance of some
+    /// primitive is at most `upper_bound`.
     Certification { upper_bound: f64, found: Vec<NearCandidate> },
 }
 
@@ -155,12 +156,12 @@ pub(crate) struct NearCandidate {
     key: Key,
     /// The id of the primitive.
     pub(crate) id: PrimitiveId,
-    /// Its nearest point as the kernel computed it.
+    /// The nearest point, computed by the kernel.
     pub(crate) projection: Projection,
 }
 
 impl NearCandidate {
-    /// Returns a lower bound on the true distance, apart from the rounding of this difference.
+    /// Returns a lower bound on the true distance, up to the rounding of the subtraction.
     fn lower_bound(&self) -> f64 {
         lower_bound(&self.projection)
     }
@@ -197,14 +198,14 @@ impl<'a> Near<'a> {
         Self::within(radius, NearMode::All(visit))
     }
 
-    /// Creates a collector that calls `visit` for all primitives within a radius that shrinks during the search, for an
-    /// index that is made of others. Some primitives beyond the radius may be visited as well.
+    /// Creates a collector that calls `visit` for all primitives within a radius that shrinks during the search. It
+    /// serves an index that is composed of other indexes. Some primitives beyond the radius may be visited as well.
     ///
     /// `visit` gets the id of a primitive, and its vertices if the search has them at hand; otherwise it gets no
-    /// vertices. It returns the radius from then on. A larger one than before has no effect, and a negative one ends
-    /// the search. `slack` is the distance by which a primitive may be farther than the nearest one of the index and is
-    /// still needed; it is infinite if all primitives within the radius are. Lengths are in units of the scene and in
-    /// f64, and the radius is inclusive.
+    /// vertices. It returns the new radius. A larger radius than before has no effect, and a negative one ends the
+    /// search. Primitives that are farther than the nearest one of the index by more than `slack` are not needed; it is
+    /// infinite if all primitives within the radius are needed. Lengths are in units of the scene and in f64, and the
+    /// radius is inclusive.
     ///
     /// ```
     /// use nalgebra::Point3;
@@ -228,7 +229,7 @@ impl<'a> Near<'a> {
         near
     }
 
-    /// Reduces the radius, if the new one is less. A negative radius and NaN end the search.
+    /// Reduces the radius if the new one is smaller. A negative radius and NaN end the search.
     fn shrink(&mut self, radius: f64) {
         if radius >= 0.0 {
             self.radius = self.radius.min(radius);
@@ -251,7 +252,8 @@ impl<'a> Near<'a> {
     }
 
     fn within<T: Real>(radius: T, mode: NearMode<'a>) -> Self {
-        // Distances are compared as they are reported, so some beyond the radius round into it. A NaN radius has none.
+        // Distances are compared as they are reported, so some distances beyond the radius round into it. Nothing is
+        // within a NaN radius.
         let radius = radius.to_f64_above();
         Self { radius, prune: square_within(radius), mode, among: None, error: None }
     }
@@ -276,13 +278,13 @@ impl<'a> Near<'a> {
     }
 }
 
-/// Returns a lower bound on the true distance of a projection, apart from the rounding of this difference.
+/// Returns a lower bound on the true distance of a projection, up to the rounding of the subtraction.
 fn lower_bound(projection: &Projection) -> f64 {
     // A distance above the range of f64 is replaced by the end of the range. An infinite error gives minus infinity.
     projection.key.distance().min(f64::MAX) - projection.error
 }
 
-/// Returns the answer for a primitive alone: its lower bound says nothing about the rest of the scene.
+/// Returns the answer for a primitive alone. Its lower bound says nothing about the rest of the scene.
 fn answer_alone<T: Real>(id: PrimitiveId, projection: &Projection) -> Closest<T> {
     answer(id, projection, lower_bound(projection))
 }
@@ -298,14 +300,14 @@ impl Collector for Near<'_> {
 
     fn prune_above_for_id(&self, id: PrimitiveId) -> f64 {
         match &self.mode {
-            // Of equal keys the lowest ids are kept, so a higher id has to be strictly nearer than the farthest one of a
-            // full list.
+            // Ties go to the lowest ids, so a higher id has to be strictly nearer than the farthest primitive of a full
+            // list.
             NearMode::Nearest(k, found) if found.len() >= *k => match found.peek() {
                 Some(last) if last.id < id && last.key == Key::ZERO => PRUNE_ALL,
                 Some(last) if last.id < id && last.key.plain_square() == Some(self.prune) => self.prune.next_down(),
                 _ => self.prune,
             },
-            // Its primitives are compared by true distances, and not by keys.
+            // The visitor compares true distances and not keys, so no limit on keys applies.
             NearMode::Shrinking { .. } if !self.is_done() => f64::INFINITY,
             _ => self.prune,
         }
@@ -341,19 +343,19 @@ impl Collector for Near<'_> {
         let key = projection.key;
         if let NearMode::Certification { upper_bound, found } = &mut self.mode {
             let candidate = NearCandidate { key, id, projection };
-            // The sum is rounded up, with a smallest subnormal for the rounding of the distance.
+            // The sum is rounded up, and a smallest subnormal covers the rounding of the distance.
             let at_most = (key.distance() + projection.error) * (1.0 + 4.0 * f64::EPSILON) + 2.0 * f64::from_bits(1);
             if candidate.lower_bound() <= *upper_bound {
                 found.push(candidate);
             }
-            // The comparison is false where an error of NaN makes the sum NaN.
+            // If an error of NaN makes the sum NaN, the comparison is false.
             if at_most < *upper_bound {
                 *upper_bound = at_most;
                 self.prune = self.prune.min(square_within(at_most));
             }
             return;
         }
-        // A backend need not check whether the collector is done, so what comes after the end is ignored here.
+        // A backend need not check whether the collector is done, so candidates after the end are ignored here.
         let is_near = !self.is_done() && key.distance() <= self.radius;
         if !is_near {
             return;

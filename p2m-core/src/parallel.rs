@@ -1,18 +1,18 @@
 //! Loops and pairs of functions that run on all threads of the current pool.
 //!
-//! An iterator of rayon compiles its scheduler anew for each closure. Here closures are passed to rayon behind pointers,
-//! so the scheduler is compiled once for all crates; a call through such a pointer handles a whole chunk of items. Without
-//! the feature `rayon` everything runs on the calling thread.
+//! An iterator of rayon compiles its scheduler anew for each closure. Here closures are passed to rayon behind
+//! pointers, so the scheduler is compiled once for all crates. Each call through such a pointer handles a whole chunk
+//! of items. Without the feature `rayon` everything runs on the calling thread.
 
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Mutex, MutexGuard, PoisonError};
 
-/// The number of chunks for each thread, so that none waits long for the others.
+/// The number of chunks per thread, so that no thread waits long for the others.
 const CHUNKS_PER_THREAD: usize = 16;
-/// The largest number of items of a chunk of [`map`].
+/// The most items in a chunk of [`map`].
 const MAX_CHUNK_LEN: usize = 1 << 12;
 
-/// Returns the number of threads that work if `parallel` is set.
+/// Returns the number of threads that loops use: all threads of the pool if `parallel` is set, otherwise one.
 #[must_use]
 pub fn thread_count(parallel: bool) -> usize {
     #[cfg(feature = "rayon")]
@@ -64,7 +64,7 @@ pub fn map<B: Send>(count: usize, parallel: bool, f: impl Fn(usize) -> B + Sync)
         return (0..count).map(f).collect();
     }
     let len = count.div_ceil(chunks).clamp(1, MAX_CHUNK_LEN);
-    // Each round adds its results to the list, so that few of them are in memory twice.
+    // Each round moves its results to the list, so that only few results are in memory twice.
     let mapped: Vec<Mutex<Vec<B>>> = (0..count.div_ceil(len).min(chunks)).map(|_| Mutex::default()).collect();
     let mut all = Vec::with_capacity(count);
     while all.len() < count {
@@ -124,12 +124,12 @@ pub fn try_map<B: Send, E: Send>(
         has_failed.fetch_or(result.is_err(), Ordering::Relaxed);
         Some(result)
     });
-    // Where something is missing, there is an error as well.
+    // If a result is missing, there is an error as well, so `flatten` drops nothing.
     mapped.into_iter().flatten().collect()
 }
 
-/// Calls `work` for chunks of a slice, with the number of the chunk, on all threads if `parallel` is set. All chunks have
-/// `len` items, but for the last one.
+/// Calls `work` with each chunk of a slice and its number, on all threads if `parallel` is set. Each chunk has `len`
+/// items, except that the last one may be shorter.
 ///
 /// # Panics
 /// Panics if `len` is 0.
@@ -180,8 +180,8 @@ fn join_pointers(a: &mut (dyn FnMut() + Send), b: &mut (dyn FnMut() + Send)) {
     }
 }
 
-/// Runs `body` on this thread. It may call the function that it is given to run `help` on another thread; all of these
-/// calls have ended when this function returns.
+/// Runs `body` on this thread. `body` receives a function that starts `help` on another thread; all these calls have
+/// ended when this function returns.
 #[inline(never)]
 pub fn with_helpers(help: &(dyn Fn() + Sync), body: &mut dyn FnMut(&dyn Fn())) {
     #[cfg(feature = "rayon")]

@@ -1,4 +1,4 @@
-//! Sets and indexes behind references and smart pointers, which stand for what they point to.
+//! Implementations for references and smart pointers to sets and indexes, which delegate to their targets.
 //!
 //! So an index can own its scene, borrow it, or share it with others (`Arc<Soup<f64>>`), and a function over `impl
 //! ClosestPoint<T>` also takes `&I`, `Box<dyn ClosestPoint<T>>` and `Arc<I>`.
@@ -14,8 +14,8 @@ use std::ops::ControlFlow;
 use std::rc::Rc;
 use std::sync::Arc;
 
-/// Implements the traits of sets and indexes for a pointer type by those of its target. Methods that no backend of this
-/// project overrides keep their defaults, so an override of yours is not called through a pointer.
+/// Implements the traits of sets and indexes for a pointer type by delegation to its target. Methods that no backend of
+/// this project overrides keep their defaults, so if your type overrides one, it is not called through a pointer.
 macro_rules! point_to {
     ($target:ident, $pointer:ty) => {
         impl<T: Real, $target: PrimitiveSet<T> + ?Sized> PrimitiveSet<T> for $pointer {

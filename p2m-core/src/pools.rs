@@ -1,36 +1,36 @@
-//! Pools of threads for other languages, which belong to one process.
+//! Thread pools for bindings to other languages. A pool belongs to one process.
 //!
-//! A process that was forked has none of the threads of its parent, so a pool of the parent would never answer. Pools
-//! are therefore kept with the id of their process, and a child makes its own. The global pool of rayon cannot be made
-//! anew, so it is never used.
+//! A forked process has none of the threads of its parent, so work in a pool of the parent would never end. Pools are
+//! therefore stored with the id of their process, and a child creates its own. The global pool of rayon cannot be
+//! recreated, so it is never used.
 
 use rayon::{ThreadPool, ThreadPoolBuildError, ThreadPoolBuilder};
 use std::cell::RefCell;
 use std::collections::HashMap;
 use std::sync::{Arc, Mutex, PoisonError};
 
-/// The pools of a process by their number of threads.
+/// The pools of a process, by number of threads.
 type Pools = HashMap<usize, Arc<ThreadPool>>;
 
-/// Pools, with the id of the process that they belong to.
+/// Pools with the id of the process to which they belong.
 type OwnedPools = Option<(u32, Pools)>;
 
-/// The pools that all threads share.
+/// The pools that are shared by all threads.
 static POOLS: Mutex<OwnedPools> = Mutex::new(None);
 
 thread_local! {
-    /// The pool of one thread that works for this thread.
+    /// The pool of one thread that serves the current thread.
     static OWN_POOL: RefCell<OwnedPools> = const { RefCell::new(None) };
 }
 
-/// Returns the pool of this process with so many threads, which are started by the first call. It lives as long as the
-/// process, unless it is [abandoned](abandon_pool). Pools of one thread belong to the calling thread and live as long as
-/// it, so that callers on several threads do not wait for each other.
+/// Returns this process's pool of `threads` threads. The first call starts it. It lives as long as the process, unless
+/// it is [abandoned](abandon_pool). Pools of one thread belong to the calling thread and live as long as it does, so
+/// that callers on several threads do not wait for each other.
 ///
-/// A fork in another thread while this function runs leaves a child whose calls never return.
+/// If another thread forks while this function runs, calls in the child process never return.
 ///
 /// # Errors
-/// [`ThreadPoolBuildError`] if the system starts no more threads.
+/// Returns a [`ThreadPoolBuildError`] if the system refuses to start more threads.
 pub fn shared_pool(threads: usize) -> Result<Arc<ThreadPool>, ThreadPoolBuildError> {
     if threads == 1 {
         return OWN_POOL.with_borrow_mut(|owned| pool_of(owned, threads));
@@ -38,11 +38,11 @@ pub fn shared_pool(threads: usize) -> Result<Arc<ThreadPool>, ThreadPoolBuildErr
     pool_of(&mut POOLS.lock().unwrap_or_else(PoisonError::into_inner), threads)
 }
 
-/// Returns the pool with so many threads among these, which is started if there is none.
+/// Returns the pool with this number of threads, and starts it if there is none.
 fn pool_of(owned: &mut OwnedPools, threads: usize) -> Result<Arc<ThreadPool>, ThreadPoolBuildError> {
     let process = std::process::id();
     if owned.as_ref().is_some_and(|(owner, _)| *owner != process) {
-        // To end the pools of the parent would wait for threads that do not exist here.
+        // Dropping the pools of the parent would wait for threads that do not exist in this process.
         std::mem::forget(owned.take());
     }
     let (_, pools) = owned.get_or_insert_with(|| (process, Pools::new()));
@@ -54,13 +54,14 @@ fn pool_of(owned: &mut OwnedPools, threads: usize) -> Result<Arc<ThreadPool>, Th
     Ok(pool)
 }
 
-/// Returns a pool with so many threads that nobody else uses.
+/// Starts a pool with this number of threads that nobody else uses.
 fn start_pool(threads: usize) -> Result<Arc<ThreadPool>, ThreadPoolBuildError> {
     let builder = ThreadPoolBuilder::new().num_threads(threads).thread_name(|number| format!("p2m-{number}"));
     builder.build().map(Arc::new)
 }
 
-/// Leaves a pool to the cancelled work that runs on it: later calls get another one. Its threads end with that work.
+/// Leaves a pool to the cancelled work that runs on it. Later calls get another pool, and the threads end with that
+/// work.
 pub fn abandon_pool(abandoned: &Arc<ThreadPool>) {
     let leave = |owned: &mut OwnedPools| {
         if let Some((_, pools)) = owned {

@@ -1,10 +1,10 @@
-//! Positions in space, as vertices of scenes and as query points.
+//! Positions in space, for vertices of scenes and for query points.
 
 use crate::Real;
 use nalgebra::Point3;
 
-/// Three coordinates that are a position in the scalar `T`: a point or an array of that scalar. Those of f32 are
-/// positions in f64 as well, to which they convert exactly. Features add the types of the crates glam and mint.
+/// Three coordinates in the scalar type `T`: a point or an array. Points and arrays of f32 are positions in f64 as
+/// well, since they convert exactly. Cargo features add the types of the crates glam and mint.
 ///
 /// ```
 /// use nalgebra::Point3;
@@ -69,7 +69,7 @@ impl Position<f64> for Point3<f32> {
     }
 }
 
-/// Implements the trait for a type with the coordinates x, y and z.
+/// Implements the trait for a type with the fields x, y and z.
 #[cfg(any(feature = "glam", feature = "mint"))]
 macro_rules! position_of_fields {
     ($type:ty, $scalar:ty) => {

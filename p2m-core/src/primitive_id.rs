@@ -6,7 +6,7 @@
 pub struct PrimitiveId(u32);
 
 impl PrimitiveId {
-    /// The maximum number of primitives of a set, 2^30. It leaves two bits to structures that pack a kind beside an id.
+    /// The most primitives in a set, 2^30. Two bits are left for structures that pack a kind with an id.
     pub const MAX_COUNT: usize = 1 << 30;
 
     /// Returns the id of the primitive at `index`.

@@ -1,8 +1,8 @@
 //! The two scalar types of scenes, f32 and f64.
 //!
-//! All decisions are made in f64 for both of them. Coordinates in f32 convert to f64 exactly, squares of their
+//! All decisions are made in f64 for both types. Coordinates in f32 convert to f64 exactly, squares of their
 //! differences neither overflow nor underflow there, and the answer is rounded once at the end. So there is one kernel,
-//! and a scalar is defined by its conversions.
+//! and a scalar type is defined by its conversions.
 
 use nalgebra::{Point3, RealField};
 
@@ -75,7 +75,7 @@ impl Real for f32 {
         if !self.is_finite() {
             return f64::from(self);
         }
-        // Numbers round as if 2^128 came after the largest one.
+        // Numbers above the largest one round as if 2^128 were the next one.
         let next = if self < Self::MAX { f64::from(self.next_up()) } else { 2.0 * 2f64.powi(127) };
         let middle = (f64::from(self) + next) / 2.0;
         if Self::round_from_f64(middle) <= self { middle } else { middle.next_down() }

@@ -2,11 +2,11 @@
 
 use crate::{Aabb, BuildError, Primitive, PrimitiveId, Real};
 
-/// A set of primitives with the ids 0, 1, 2, ..
+/// A set of primitives with the ids 0, 1, 2, ...
 ///
-/// An index is generic over the set. So an index over a homogeneous set, such as a slice of
-/// [`Triangle`](crate::Triangle)s, compiles to the kernel of that primitive alone. A [`Soup`](crate::Soup) returns
-/// [`Shape`](crate::Shape)s at the cost of one `match`.
+/// An index is generic over its set. So an index over a homogeneous set, such as a slice of
+/// [`Triangle`](crate::Triangle)s, is compiled for the kernel of that primitive alone. A [`Soup`](crate::Soup) returns
+/// [`Shape`](crate::Shape)s, at the cost of one `match`.
 #[diagnostic::on_unimplemented(
     message = "`{Self}` is not a scene with coordinates of type `{T}`",
     note = "scenes are `Soup<{T}>`, slices, arrays and vectors of primitives, and `&`, `Box` and `Arc` of them"
@@ -20,7 +20,7 @@ pub trait PrimitiveSet<T: Real> {
     /// Returns the number of primitives.
     fn len(&self) -> usize;
 
-    /// Returns the primitive of an id.
+    /// Returns the primitive with an id.
     ///
     /// # Panics
     /// It may panic if `id` is not below `len`.
@@ -31,7 +31,7 @@ pub trait PrimitiveSet<T: Real> {
         self.len() == 0
     }
 
-    /// Returns the smallest box around all primitives, which is the empty box for an empty set.
+    /// Returns the smallest box around all primitives. It is the empty box for an empty set.
     ///
     /// # Complexity
     /// It takes O(n).
@@ -88,7 +88,7 @@ impl<T: Real, P: Primitive<T>> PrimitiveSet<T> for Vec<P> {
     }
 }
 
-/// Checks the requirements of all indexes on their set: at most 2^30 primitives, and finite coordinates.
+/// Checks a set for an index: at most 2^30 primitives, and only finite coordinates.
 ///
 /// # Errors
 /// It returns [`BuildError::TooMany`] or [`BuildError::NonFinite`].

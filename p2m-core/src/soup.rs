@@ -3,7 +3,7 @@
 use crate::{BuildError, Point, Position, PrimitiveId, PrimitiveSet, Real, Segment, Shape, Triangle};
 use nalgebra::Point3;
 
-/// One primitive of a [`Soup`], given by the indices of its positions.
+/// One primitive of a [`Soup`], as indices of positions.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub enum Element {
@@ -16,7 +16,7 @@ pub enum Element {
 }
 
 impl Element {
-    /// Returns the indices of the positions.
+    /// Returns the indices of the positions of the primitive.
     #[must_use]
     pub fn indices(&self) -> &[u32] {
         match self {
@@ -27,8 +27,7 @@ impl Element {
     }
 }
 
-/// The location of a primitive: its kind in the two upper bits, and its index among those of its kind in
-/// the lower bits.
+/// The location of a primitive: its kind in the two upper bits, and its index within that kind in the lower bits.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 struct Slot(u32);
 
@@ -57,12 +56,12 @@ impl Slot {
 /// A set of points, segments and triangles in any order, over shared positions.
 ///
 /// Primitives have ids in the order in which they were given. They are stored by kind: a soup of one kind has no
-/// further overhead, and a mixed soup needs four bytes more for each primitive. Every index of a position is in range,
-/// and every position that a primitive uses is finite. Degenerate primitives are ordinary members.
+/// further overhead, and a mixed soup needs four more bytes per primitive. Every index of a position is in range, and
+/// every position that a primitive uses is finite. Degenerate primitives are ordinary members.
 ///
-/// Coordinates have any unit, the same on all axes, and primitives are straight, so longitudes and latitudes have
-/// to be projected first. Neighbouring f32 coordinates near 5,000,000 differ by half a unit; f64 resolves any
-/// location on earth.
+/// Coordinates have any unit, the same on all axes, and primitives are straight, so longitudes and latitudes have to be
+/// projected first. Neighbouring f32 coordinates near 5,000,000 differ by half a unit; f64 resolves any location on
+/// earth.
 ///
 /// ```
 /// use p2m_core::{Element, Soup, PrimitiveSet};
@@ -80,7 +79,7 @@ pub struct Soup<T: Real = f64> {
     points: Vec<u32>,
     segments: Vec<[u32; 2]>,
     triangles: Vec<[u32; 3]>,
-    /// The slot of each id. It is empty while the soup has one kind only.
+    /// The slot of each id. It is empty as long as the soup has primitives of one kind only.
     slots: Vec<Slot>,
 }
 
@@ -100,9 +99,9 @@ impl<T: Real> Soup<T> {
     /// Creates a soup of `elements` over `positions`, with ids in their order.
     ///
     /// # Errors
-    /// It returns a [`BuildError`] for the first primitive with an index out of range or a position that is not
-    /// finite, and for more than 2^30 primitives. Positions that no primitive uses are not part of the scene and
-    /// are not checked.
+    /// It returns a [`BuildError`] for the first primitive with an index out of range or a position that is not finite,
+    /// and for more than 2^30 primitives. Positions that no primitive uses are not part of the scene and are not
+    /// checked.
     pub fn new(positions: Vec<Point3<T>>, elements: impl IntoIterator<Item = Element>) -> Result<Self, BuildError> {
         let mut soup = Self { positions, ..Self::default() };
         for element in elements {
@@ -126,8 +125,8 @@ impl<T: Real> Soup<T> {
         Ok(soup)
     }
 
-    /// Creates a soup of triangles from arrays, which are copied: positions of any type of [`Position`], such as
-    /// `[f32; 3]`, and indices of any type of integers, such as `u32` and `usize`.
+    /// Creates a soup of triangles from arrays, which are copied. Positions are of any [`Position`] type, such as
+    /// `[f32; 3]`, and indices of any integer type, such as `u32` or `usize`.
     ///
     /// ```
     /// use p2m_core::{PrimitiveSet, Soup};
@@ -150,7 +149,7 @@ impl<T: Real> Soup<T> {
         Self::from_triangles(positions.iter().map(Position::point).collect(), triangles)
     }
 
-    /// Creates a soup of triangles from flat arrays of coordinates (x, y, z, x, ..) and of indices, which are copied.
+    /// Creates a soup of triangles from flat arrays of coordinates (x, y, z, x, ...) and indices, which are copied.
     ///
     /// ```
     /// use p2m_core::{BuildError, PrimitiveSet, Soup};
@@ -176,7 +175,7 @@ impl<T: Real> Soup<T> {
         Self::from_arrays(triples(coordinates)?, triples(indices)?)
     }
 
-    /// Replaces all positions, in their order. Primitives keep their ids and corners.
+    /// Replaces all positions, in their order. Primitives keep their ids and the indices of their positions.
     ///
     /// # Errors
     /// It returns [`BuildError::OtherPositionCount`] for another number of positions and [`BuildError::NonFinite`] for
@@ -206,7 +205,7 @@ impl<T: Real> Soup<T> {
         self.set_positions(self.positions.iter().copied().map(image).collect())
     }
 
-    /// Checks the positions of a primitive.
+    /// Checks that the positions of a primitive exist and are finite.
     fn check(&self, id: PrimitiveId, indices: &[u32]) -> Result<(), BuildError> {
         for &index in indices {
             match self.positions.get(index as usize) {
@@ -235,7 +234,7 @@ impl<T: Real> Soup<T> {
             Element::Triangle(_) => Slot::new(TRIANGLE, self.triangles.len()),
         };
         if self.slots.is_empty() && slot.index() != len {
-            // This is the first primitive of a second kind, so the slots of all others are stored from now on.
+            // This is the first primitive of a second kind, so from now on the slot of each primitive is stored.
             let kind = self.only_kind();
             self.slots.try_reserve_exact(len + 1).map_err(|_| BuildError::OutOfMemory)?;
             self.slots.extend((0..len).map(|i| Slot::new(kind, i)));
@@ -255,7 +254,7 @@ impl<T: Real> Soup<T> {
         Ok(id)
     }
 
-    /// Adds a position and returns its index, which later [`Element`]s can use. It is checked when one does.
+    /// Adds a position and returns its index, which later [`Element`]s can use. The position is checked when one does.
     ///
     /// # Panics
     /// It panics if the position does not fit into memory.
@@ -272,7 +271,7 @@ impl<T: Real> Soup<T> {
         Ok(self.positions.len() - 1)
     }
 
-    /// Frees the memory that is reserved for more positions and primitives.
+    /// Frees the memory that is reserved for further positions and primitives.
     pub fn shrink_to_fit(&mut self) {
         self.positions.shrink_to_fit();
         self.points.shrink_to_fit();
@@ -322,7 +321,7 @@ impl<T: Real> Soup<T> {
         &self.triangles
     }
 
-    /// Returns the primitive of an id, as indices of positions.
+    /// Returns the primitive with an id, as indices of positions.
     ///
     /// # Panics
     /// It panics if there is no such primitive.
@@ -356,15 +355,15 @@ fn triples<X>(flat: &[X]) -> Result<&[[X; 3]], BuildError> {
     }
 }
 
-/// Appends to a list whose capacity grows by half instead of doubling, so that a soup that is filled one by one needs
-/// less memory at its peak.
+/// Appends to a list. Its capacity grows by half instead of doubling, so that a soup that is filled one by one has a
+/// lower peak of memory.
 fn push_growing_by_half<X>(list: &mut Vec<X>, item: X) -> Result<(), BuildError> {
     reserve_half(list)?;
     list.push(item);
     Ok(())
 }
 
-/// Makes room for an item, and for half as many as there are.
+/// Reserves memory for one item, and for half as many more as there are.
 #[inline]
 fn reserve_half<X>(list: &mut Vec<X>) -> Result<(), BuildError> {
     if list.len() == list.capacity() {

@@ -3,12 +3,12 @@
 use crate::{Real, StatsCollector};
 use nalgebra::Point3;
 
-/// The interface by which statistics of an index are collected.
+/// An index with statistics.
 pub trait IndexStats<T: Real> {
     /// Searches for the nearest primitive with a collector that counts the work.
     fn inspect(&self, query: &Point3<T>, stats: &mut StatsCollector<T>);
 
-    /// Returns the heap memory in bytes, without that of the set, as names and sizes of its parts.
+    /// Returns the heap memory in bytes, without the set's, as names and sizes of its parts.
     fn parts(&self) -> Vec<(&'static str, usize)>;
 
     /// Returns the number of primitives in the list of each cell. It is empty for an index without cells.
@@ -56,8 +56,8 @@ impl ListStats {
     }
 }
 
-/// Returns the nearest-rank percentile of increasing values: the smallest value such that at least the fraction
-/// `numerator / denominator` of all values is not larger. Returns `None` if there are no values.
+/// Returns the nearest-rank percentile of sorted values: the smallest value such that at least the fraction `numerator
+/// / denominator` of all values is not larger. Returns `None` if there are no values.
 ///
 /// ```
 /// use p2m_core::engine::stats::percentile;
@@ -71,34 +71,34 @@ pub fn percentile<V: Copy>(sorted: &[V], numerator: usize, denominator: usize) -
     sorted.get(rank.min(sorted.len()).checked_sub(1)?).copied()
 }
 
-/// The mean and the maximum of a count over some queries.
+/// The mean and the maximum of a count over several queries.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Stat {
-    /// The mean over the queries, which is 0 without queries.
+    /// The mean over the queries, or 0 without queries.
     pub mean: f64,
     /// The maximum over the queries.
     pub max: usize,
 }
 
-/// The mean and maximum work of some queries.
+/// The mean and the maximum work of several queries.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct QueryCost {
-    /// The number of nodes of trees that a query visits, and of sites on the way to its Voronoi cell.
+    /// The number of visited nodes of trees, and of sites on the way to a Voronoi cell.
     pub nodes: Stat,
-    /// The number of packets of primitives that a query filters.
+    /// The number of filtered packets.
     pub packets: Stat,
-    /// The number of primitives that a query evaluates.
+    /// The number of evaluated primitives.
     pub primitives: Stat,
-    /// The mean length of the list of the cell that contains a query, over the queries that have one; 0 if none has.
-    /// For uniformly distributed queries it is the mean length weighted by the volumes of cells.
+    /// The mean length of the list of the cell that contains a query. It is taken over the queries that have a list,
+    /// and is 0 if none has. For uniformly distributed queries it is the mean length weighted by the volumes of cells.
     pub list: f64,
-    /// The fraction of queries that have no list.
+    /// The fraction of queries without a list.
     pub without_list: f64,
 }
 
 impl QueryCost {
-    /// Measures some queries. All numbers are zero without queries.
+    /// Measures several queries. All numbers are zero without queries.
     pub fn measure<T: Real>(index: &(impl IndexStats<T> + ?Sized), queries: &[Point3<T>]) -> Self {
         let mut stats = [Stat::default(); 3];
         for query in queries {
@@ -155,7 +155,7 @@ mod tests {
         let of = |parts| percentile(&five, parts, 100);
         assert_eq!([of(0), of(20), of(21), of(50), of(99), of(100)], [10, 10, 20, 30, 50, 50].map(Some));
         assert_eq!(percentile::<u32>(&[], 50, 100), None);
-        // One in a thousand is above, and no more.
+        // Exactly one in a thousand is above.
         let many: Vec<usize> = (0..3000).collect();
         let at = percentile(&many, 999, 1000).unwrap();
         assert_eq!(many.iter().filter(|value| **value > at).count(), 3);

@@ -1,18 +1,18 @@
-//! A collector that counts the work of a search.
+//! A closest-point collector that counts the work of a search.
 
 use crate::{Best, Collector, PrimitiveId, Projection, QueryOptions, Real};
 use nalgebra::Point3;
 
-/// [`Best`] with counters of the work. Counts are deterministic, so tests can compare them where times would vary.
+/// [`Best`] with work counters. Counts are deterministic, so tests can compare them, unlike times.
 #[derive(Clone, Debug)]
 pub struct StatsCollector<T: Real> {
     /// The collector that makes all decisions.
     pub best: Best<T>,
-    /// The number of nodes that were visited.
+    /// The number of visited nodes.
     pub nodes: usize,
-    /// The number of packets that were filtered.
+    /// The number of filtered packets.
     pub packets: usize,
-    /// The number of primitives that were offered.
+    /// The number of offered primitives.
     pub primitives: usize,
 }
 
@@ -34,7 +34,7 @@ impl<T: Real> StatsCollector<T> {
         self.primitives += primitives;
     }
 
-    /// Returns the numbers of nodes, packets and primitives of a query with default options, searched by `visit`.
+    /// Returns the numbers of nodes, packets and primitives of one query with default options. `visit` runs the search.
     pub fn count_query(query: &Point3<T>, visit: impl FnOnce(&Point3<T>, &mut Self)) -> [usize; 3] {
         let mut stats = Self::new(Best::new(&QueryOptions::default()));
         visit(query, &mut stats);

@@ -1,7 +1,7 @@
 //! Welding of vertices: positions with the same coordinates become one vertex.
 //!
-//! Files often repeat positions, STL files for each triangle, and some have positions that no primitive uses. Topology,
-//! components and statistics are therefore about welded vertices.
+//! Files often repeat positions (STL files repeat them for each triangle), and some have positions that no primitive
+//! uses. Topology, components and statistics are therefore computed on welded vertices.
 
 use crate::{PrimitiveSet, Soup};
 use nalgebra::Point3;
@@ -9,7 +9,7 @@ use nalgebra::Point3;
 /// The vertex id of a position that no primitive uses.
 pub const UNUSED: u32 = u32::MAX;
 
-/// The distinct vertices of a soup: positions that primitives use, welded where their coordinates are equal.
+/// The distinct vertices of a soup. Positions that primitives use are welded if their coordinates are equal.
 ///
 /// The coordinates 0 and -0 are equal.
 pub struct VertexWelder {
@@ -25,8 +25,8 @@ impl VertexWelder {
     /// Welds the positions of a soup.
     ///
     /// # Complexity
-    /// O(n log n) time. Memory is 32 bytes for each used position while the function runs, and 4 bytes for
-    /// each position afterwards.
+    /// O(n log n) time. It takes 32 bytes per used position while the function runs, and 4 bytes per position
+    /// afterwards.
     #[allow(clippy::cast_possible_truncation, reason = "positions are numbered by u32")]
     pub fn new(soup: &Soup<f64>) -> Self {
         let mut vertex_ids = vec![UNUSED; soup.positions().len()];
@@ -49,15 +49,15 @@ impl VertexWelder {
         Self { vertex_ids, vertex_count, used_positions: sorted.len() }
     }
 
-    /// Returns the vertex ids of positions.
+    /// Converts indices of positions to vertex ids.
     pub fn weld<const N: usize>(&self, positions: [u32; N]) -> [u32; N] {
         positions.map(|i| self.vertex_ids[i as usize])
     }
 
-    /// Counts the connected components of the scene: parts that share no vertex with each other.
+    /// Returns the number of connected components of the scene. Different components share no vertex.
     ///
     /// # Panics
-    /// If the scene is another one than that of [`VertexWelder::new`], and has more positions.
+    /// Panics if the scene is not the scene of [`VertexWelder::new`] and has more positions.
     pub fn count_components(&self, soup: &Soup<f64>) -> usize {
         let mut sets = UnionFind::new(self.vertex_count);
         for t in soup.triangles() {
@@ -80,14 +80,14 @@ fn coordinate_key(p: &Point3<f64>) -> [u64; 3] {
     [p.x, p.y, p.z].map(|x| (x + 0.0).to_bits())
 }
 
-/// Disjoint sets of the numbers below a limit.
+/// A union-find structure: disjoint sets of the numbers below a limit.
 pub struct UnionFind {
     parent: Vec<u32>,
     set_count: usize,
 }
 
 impl UnionFind {
-    /// Makes a set of each number below `len`.
+    /// Creates a set for each number below `len`.
     #[allow(clippy::cast_possible_truncation, reason = "more numbers than u32 has do not fit into memory")]
     pub fn new(len: usize) -> Self {
         Self { parent: (0..len as u32).collect(), set_count: len }
@@ -100,7 +100,7 @@ impl UnionFind {
             if parent == x {
                 return x;
             }
-            // Halving the path keeps paths short.
+            // Path halving keeps paths short.
             self.parent[x as usize] = self.parent[parent as usize];
             x = parent;
         }
@@ -116,8 +116,7 @@ impl UnionFind {
     }
 }
 
-/// Groups pairs by their vertex and calls `visit` for each vertex in ascending order with the sorted values
-/// of its pairs.
+/// Groups pairs by vertex, and calls `visit` for each vertex in ascending order with the sorted values of its pairs.
 ///
 /// # Complexity
 /// O(n log n) if most pairs are at one vertex, O(n) for meshes.
@@ -135,7 +134,8 @@ pub fn group_by_vertex<V: Copy + Default + Ord>(
     for i in 1..ends.len() {
         ends[i] += ends[i - 1];
     }
-    // `ends` has the start of each group at first. It moves to the end of the group while values are inserted.
+    // `ends` has the start of each group at first. Inserting a value moves it by one, so that it becomes the end of the
+    // group.
     let mut sorted = vec![V::default(); count];
     for (vertex, value) in pairs {
         let end = &mut ends[vertex as usize];

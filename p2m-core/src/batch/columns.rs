@@ -1,14 +1,14 @@
-//! The columns of the answers of a batch.
+//! Answers of a batch as columns (structure of arrays).
 
 use super::parts::Split;
 use crate::{BatchAnswer, Closest, Feature, PrimitiveId, Real};
 use nalgebra::Point3;
 
-/// The columns of the answers that a caller asks for, each with one value for each query.
+/// The requested columns of the answers, each with one value per query.
 ///
-/// A query without an answer, because nothing lies within the largest distance or because it is not finite, has an
-/// infinite distance and lower bound, the primitive [`NO_PRIMITIVE`](Self::NO_PRIMITIVE), a point and weights of NaN,
-/// and the feature `Vertex(0)`.
+/// A query has no answer if nothing lies within the largest distance, or if the query is not finite. Its distance and
+/// its lower bound are infinite, its primitive is [`NO_PRIMITIVE`](Self::NO_PRIMITIVE), its point and its weights are
+/// NaN, and its feature is `Vertex(0)`.
 ///
 /// ```
 /// use p2m_core::batch::ClosestColumns;
@@ -34,7 +34,7 @@ pub struct ClosestColumns<'a, T: Real> {
     pub lower_bound: Option<&'a mut [T]>,
 }
 
-/// Implements the methods that set a column.
+/// Implements the builder methods that set a column.
 macro_rules! setters {
     ($($method:ident, $field:ident: $type:ty, $what:literal;)*) => {
         impl<'a, T: Real> ClosestColumns<'a, T> {
@@ -51,7 +51,7 @@ macro_rules! setters {
                 [$(self.$field.as_ref().map(|column| column.len())),*].into_iter().flatten()
             }
 
-            /// Divides all columns in two, the first with `len` values.
+            /// Splits all columns in two; the first part has `len` values.
             pub(super) fn split_at(self, len: usize) -> (Self, Self) {
                 let (mut first, mut second) = (Self::default(), Self::default());
                 $(
@@ -75,7 +75,7 @@ setters! {
 }
 
 impl<T: Real> ClosestColumns<'_, T> {
-    /// The index that stands for no primitive, which no primitive has.
+    /// The index that marks a query without an answer. No primitive has it.
     pub const NO_PRIMITIVE: u32 = u32::MAX;
 
     /// Returns the length of the columns, and `None` if there are none.
@@ -89,8 +89,8 @@ impl<T: Real> ClosestColumns<'_, T> {
         Some(len)
     }
 
-    /// Returns the answer to the query at a position, after the columns were filled; `None` if there is none, or if a
-    /// column is missing.
+    /// Returns the answer to the query at a position, once the columns are filled. It is `None` if the query has no
+    /// answer or a column is missing.
     #[must_use]
     pub fn closest(&self, position: usize) -> Option<Closest<T>> {
         let number = self.primitive.as_ref()?[position];
@@ -105,14 +105,14 @@ impl<T: Real> ClosestColumns<'_, T> {
         })
     }
 
-    /// Returns whether no column is asked for.
+    /// Returns whether no column is requested.
     #[must_use]
     pub fn is_empty(&self) -> bool {
         self.lengths().next().is_none()
     }
 }
 
-/// A place for answers to queries for the closest point.
+/// A destination for the answers to closest-point queries.
 pub(super) trait Sink<T: Real>: Split {
     /// Stores the answer to the query at a position.
     fn set(&mut self, position: usize, found: BatchAnswer<'_, T>);
@@ -122,7 +122,7 @@ impl<T: Real> Sink<T> for ClosestColumns<'_, T> {
     #[inline(always)]
     fn set(&mut self, i: usize, found: BatchAnswer<'_, T>) {
         if let (None, None, None, None) = (&self.point, &self.feature, &self.barycentric, &self.lower_bound) {
-            // The rest of an answer need not be computed.
+            // The other fields of the answer need not be computed.
             let (distance, primitive) = found.distance_and_index().unwrap_or((T::INFINITY, Self::NO_PRIMITIVE));
             if let Some(column) = &mut self.distance {
                 column[i] = distance;

@@ -1,15 +1,15 @@
-//! An index whose batches can be watched and ended early.
+//! An index whose batches can be observed and ended early.
 
 use crate::{BatchAnswer, Best, ClosestPoint, QueryOptions, Real};
 use nalgebra::Point3;
 
-/// An index that answers the queries of a batch in steps, and skips the rest once a function says so, or whose
-/// searches for [pairs](Self::pairs) end early.
+/// An index that answers batches step by step and can end them early. [`pairs`](Self::pairs) does the same for searches
+/// for pairs.
 ///
-/// Before each step the function gets the number of queries that are left. It calls the second argument with the
-/// number of queries to answer in this step, which is at most that many, and returns whether to go on. All threads of
-/// a batch call it. The functions of [`batch`](crate::batch) order all queries first, so the answers and their order do
-/// not depend on the steps. Queries that are left out keep what was in their places.
+/// Before each step, a thread calls the function with the number of queries that are left. The function answers at most
+/// that many by calling its second argument with the number of queries to answer now, and returns whether to go on. All
+/// threads of a batch call the function. The functions of [`batch`](crate::batch) order all queries first, so neither
+/// the answers nor their order depend on the steps. The places of unanswered queries keep their content.
 ///
 /// ```
 /// use nalgebra::Point3;
@@ -35,7 +35,7 @@ pub struct Interruptible<'a, I: ?Sized, F> {
 }
 
 impl<'a, I: ?Sized, F: Fn(usize, &mut dyn FnMut(usize)) -> bool> Interruptible<'a, I, F> {
-    /// Wraps an index, whose batches call the function before each step.
+    /// Wraps an index so that its batches call `step` before each step.
     pub fn new(index: &'a I, step: F) -> Self {
         Self { index, step }
     }

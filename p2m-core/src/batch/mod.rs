@@ -1,11 +1,11 @@
-//! Batches of queries: reordered, several at a time, on all cores.
+//! Batches of queries: reordered, interleaved, and on all cores.
 //!
-//! Queries that are near each other visit the same nodes and packets. So queries are answered along a curve that fills
-//! their box \[Hamilton2006\], and backends let neighbours on it take turns
-//! ([`ClosestPoint::answer_queries`]). Answers are written to the places of their
-//! queries, and only those columns that the caller asks for are computed.
+//! Nearby queries visit the same nodes and packets. A batch therefore answers its queries along a space-filling curve
+//! through their box \[Hamilton2006\], and backends interleave the searches of neighbours on the curve
+//! ([`ClosestPoint::answer_queries`]). Answers are written at the positions of their queries, and only requested
+//! columns are computed.
 //!
-//! Each thread orders and answers a part of its own, so no step is left to one thread.
+//! Each thread orders and answers a part of its own, so no step runs on one thread alone.
 
 mod columns;
 mod interruptible;
@@ -22,12 +22,12 @@ use nalgebra::Point3;
 use order::sorted_along_curve;
 use parts::answer_parts;
 
-/// Options of a batch. They affect its speed alone, apart from the last bits of lower bounds.
+/// Options of a batch. They only affect its speed, apart from the last bits of lower bounds.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[non_exhaustive]
 pub struct BatchOptions {
-    /// Whether queries are answered along a space-filling curve. Sorting is wasted on queries whose order is spatially
-    /// coherent already, such as those of a scan or a grid.
+    /// Whether queries are answered along a space-filling curve. Sorting is wasted on queries that are already in a
+    /// spatially coherent order, such as the points of a scan or a grid.
     pub reorder: bool,
     /// Whether all threads of the current pool are used. Without the feature `rayon` one thread is used.
     pub parallel: bool,
@@ -53,16 +53,16 @@ impl BatchOptions {
     }
 }
 
-/// The number of ordered queries that are handed to the index at a time.
+/// The number of ordered queries that are passed to the index at a time.
 const QUERIES_PER_BLOCK: usize = 1 << 10;
 
 /// Answers `queries` into `out`, in their order.
 ///
-/// Distance, primitive, point, feature and weights are those of [`ClosestPoint::closest_point_with`] for each query.
-/// The certified lower bound may differ in its last bits, since it depends on the primitives that a search has
-/// evaluated. It does not depend on the other queries, their order or the number of threads.
+/// Each answer has the distance, primitive, point, feature and weights that [`ClosestPoint::closest_point_with`]
+/// returns for its query. The certified lower bound may differ in its last bits, since it depends on the primitives
+/// that a search has evaluated. It does not depend on the other queries, their order or the number of threads.
 ///
-/// [`closest_columns_into`] is faster where only some parts of the answers are needed.
+/// [`closest_columns_into`] is faster if only some fields of the answers are needed.
 ///
 /// ```
 /// use p2m_core::{BruteForce, Point, batch};
@@ -79,8 +79,8 @@ const QUERIES_PER_BLOCK: usize = 1 << 10;
 /// It panics if the slices differ in length.
 ///
 /// # Complexity
-/// Ordering n queries takes O(n) time. Each thread needs 20 bytes for each query of the part that it orders, which has
-/// at most 2^20 queries.
+/// Ordering n queries takes O(n) time. A thread orders parts of at most 2^20 queries, and needs 20 bytes per query of
+/// its part.
 pub fn closest_points_into<T: Real, I: ClosestPoint<T> + Sync + ?Sized>(
     index: &I,
     queries: &[impl Position<T>],
@@ -92,9 +92,9 @@ pub fn closest_points_into<T: Real, I: ClosestPoint<T> + Sync + ?Sized>(
     answer_closest(index, queries, options, batch, out);
 }
 
-/// Answers `queries` into columns, in their order: only what is asked for is computed and written.
+/// Answers `queries` into columns, in their order. Only the requested columns are computed and written.
 ///
-/// The values are those of [`closest_points_into`].
+/// The values equal those of [`closest_points_into`].
 ///
 /// ```
 /// use p2m_core::batch::{ClosestColumns, closest_columns_into};
@@ -113,8 +113,8 @@ pub fn closest_points_into<T: Real, I: ClosestPoint<T> + Sync + ?Sized>(
 /// It panics if a column has another length than `queries`.
 ///
 /// # Complexity
-/// Ordering n queries takes O(n) time. Each thread needs 20 bytes for each query of the part that it orders, which has
-/// at most 2^20 queries.
+/// Ordering n queries takes O(n) time. A thread orders parts of at most 2^20 queries, and needs 20 bytes per query of
+/// its part.
 pub fn closest_columns_into<T: Real, I: ClosestPoint<T> + Sync + ?Sized>(
     index: &I,
     queries: &[impl Position<T>],
@@ -145,12 +145,12 @@ pub fn distances<T: Real, I: ClosestPoint<T> + Sync + ?Sized>(index: &I, queries
     distance
 }
 
-/// Answers queries of any kind by a function, on all threads, and returns the results in the order of the queries.
+/// Calls a function for each query, on all threads, and returns the results in the order of the queries.
 ///
-/// The function is called once for each query, along a curve through the positions of the queries, so queries that are
-/// near each other find what they visit in the cache. That serves queries for the k nearest, for all within a distance,
-/// for certified answers, signs, and rays, whose position is the origin. Positions that are not finite come
-/// at any place.
+/// The function is called once per query, along a curve through the positions of the queries, so that nearby queries
+/// find the data that they visit in the cache. Use it for the k nearest primitives, for all primitives within a
+/// distance, for certified answers, for signs, and for rays, whose position is their origin. Queries whose position is
+/// not finite are called in an unspecified order.
 ///
 /// ```
 /// use p2m_core::{BruteForce, NearQuery, Point, batch};
@@ -163,7 +163,7 @@ pub fn distances<T: Real, I: ClosestPoint<T> + Sync + ?Sized>(index: &I, queries
 /// ```
 ///
 /// # Complexity
-/// Ordering n queries takes O(n) time. A result takes the memory of an `Option` until all are known.
+/// Ordering n queries takes O(n) time. Each result takes the memory of an `Option` until all results are known.
 pub fn map<Q: Sync, R: Send>(
     queries: &[Q],
     batch: &BatchOptions,
@@ -176,12 +176,12 @@ pub fn map<Q: Sync, R: Send>(
             out[*i as usize] = Some(answer(&queries[*i as usize]));
         }
     });
-    // Each query was answered, so none is left out.
+    // Every query has been answered, so `flatten` drops nothing.
     out.into_iter().flatten().collect()
 }
 
-/// Answers parts of a batch by a function that takes the queries of a part, the order in which neighbours follow each
-/// other, and the places of their answers.
+/// Answers a batch part by part. The function receives the queries of a part, their order along the curve, and the
+/// places of their answers.
 #[doc(hidden)]
 pub fn map_parts_into<Q: Sync, R: Send>(
     queries: &[Q],
@@ -195,7 +195,7 @@ pub fn map_parts_into<Q: Sync, R: Send>(
     });
 }
 
-/// Answers queries for the closest point into any place for answers.
+/// Answers closest-point queries into any destination.
 fn answer_closest<T: Real, Q: Position<T>, O: Sink<T>>(
     index: &(impl ClosestPoint<T> + Sync + ?Sized),
     queries: &[Q],

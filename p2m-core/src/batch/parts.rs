@@ -1,17 +1,17 @@
-//! The division of a batch into parts, each of which one thread orders and answers.
+//! The division of a batch into parts, each of which is ordered and answered by one thread.
 
 use crate::parallel::{join, thread_count};
 
-/// The largest number of queries that are ordered and answered at a time by one thread.
+/// The most queries in a part.
 const MAX_QUERIES_PER_PART: usize = 1 << 20;
-/// The number of queries below which a batch is not divided among threads any further.
+/// The fewest queries in a part, if there are several.
 const MIN_QUERIES_PER_PART: usize = 1 << 10;
-/// The number of parts for each thread, so that none waits long for the others.
+/// The number of parts per thread, so that no thread waits long for the others.
 const PARTS_PER_THREAD: usize = 4;
 
-/// A place for answers that can be divided.
+/// A destination for answers that can be split.
 pub(super) trait Split: Send + Sized {
-    /// Divides the place in two, the first for `len` answers.
+    /// Splits the destination in two; the first part takes `len` answers.
     fn split(self, len: usize) -> (Self, Self);
 }
 
@@ -21,7 +21,7 @@ impl<A: Send> Split for &mut [A] {
     }
 }
 
-/// Calls `answer_part` for parts of the queries with the places for their answers, on all threads if `parallel`.
+/// Calls `answer_part` with each part of the queries and the destination of its answers, on all threads if `parallel`.
 pub(super) fn answer_parts<Q: Sync, O: Split>(
     mut queries: &[Q],
     mut out: O,
@@ -41,7 +41,7 @@ pub(super) fn answer_parts<Q: Sync, O: Split>(
     answer_part(queries, &mut out);
 }
 
-/// Halves the queries until a part is small enough for one thread.
+/// Halves the queries until each part is small enough for one thread.
 fn halve<Q: Sync, O: Split>(queries: &[Q], mut out: O, part: usize, answer_part: &(impl Fn(&[Q], &mut O) + Sync)) {
     if queries.len() <= part {
         return answer_part(queries, &mut out);

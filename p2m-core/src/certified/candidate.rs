@@ -1,4 +1,4 @@
-//! Candidates for the nearest primitive.
+//! A candidate for the nearest primitive.
 
 use super::double_double::Square;
 use super::feature::ends;
@@ -17,11 +17,11 @@ pub(super) struct Candidate<'a> {
 }
 
 impl Candidate<'_> {
-    /// Returns whether the features of two candidates are the same set of points. Both are proved to contain the
-    /// nearest point of their candidate.
+    /// Returns whether the features of two candidates are the same set of points. Both features are proved to contain
+    /// the nearest point of their candidate.
     ///
-    /// -0 is equal to 0. The vertices of a proved feature are distinct, so it suffices to find those of one feature
-    /// among those of the other.
+    /// -0 equals 0. The vertices of a proved feature are distinct, so it suffices to find each vertex of one feature
+    /// among the vertices of the other.
     #[allow(clippy::float_cmp, reason = "the same vertices, not near ones")]
     pub(super) fn shares_feature(&self, other: &Self) -> bool {
         match (self.feature, other.feature) {
@@ -35,7 +35,8 @@ impl Candidate<'_> {
         }
     }
 
-    /// Returns the vertices of the feature in an order that is the same for all proved candidates that share it.
+    /// Returns the bits of the vertices of the feature, in an order that is the same for all proved candidates that
+    /// share it.
     pub(super) fn feature_bits(&self) -> [[u64; 3]; 3] {
         let vertices = self.vertices;
         // The sum turns -0 into 0. Unused entries differ from the bits of all finite coordinates.
@@ -58,7 +59,7 @@ impl Candidate<'_> {
         feature_certificate::is_proved(query, self.vertices, self.feature)
     }
 
-    /// Returns the squared distance of the feature, or `None` out of the range of double-double arithmetic.
+    /// Returns the squared distance of the feature, or `None` if double-double arithmetic could overflow or underflow.
     pub(super) fn square(&self, query: V3) -> Option<Square> {
         Square::new(query, self.vertices, self.feature)
     }

@@ -1,4 +1,4 @@
-//! The decision between candidates in two stages.
+//! The decision between candidates, in two stages.
 
 use super::candidate::Candidate;
 use super::double_double::Square;
@@ -12,19 +12,19 @@ use std::cmp::Ordering;
 use std::collections::HashMap;
 use std::collections::hash_map::Entry;
 
-/// The arithmetic that made a decision.
+/// The arithmetic that decided.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum DecidedBy {
     /// Floats with proved bounds on their errors.
     Floats,
-    /// Big integers, for some of the candidates or for the rounding of the distance.
+    /// Big integers, for some of the candidates or to round the distance.
     Integers,
 }
 
-/// The nearest of some candidates.
+/// The nearest of several candidates.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Decision {
-    /// The index of the nearest candidate; of exactly equal distances it is the one with the lowest id.
+    /// The index of the nearest candidate. Exact ties go to the lowest id.
     pub(super) winner: usize,
     /// The true distance, rounded to the nearest f64.
     pub(super) distance: f64,
@@ -40,16 +40,16 @@ impl Decision {
     }
 }
 
-/// Returns the nearest of some candidates, in any order. There is at least one, and their ids differ.
+/// Returns the nearest of several candidates, which may be in any order. There is at least one, and their ids differ.
 ///
 /// # Complexity
-/// The first stage takes some ten nanoseconds for each candidate and fifty to a hundred for each distinct feature. The
-/// second stage takes about a microsecond for each remaining candidate, and more where exponents differ by hundreds.
+/// The first stage takes about ten nanoseconds per candidate and fifty to a hundred per distinct feature. The second
+/// stage takes about a microsecond per remaining candidate, and more if exponents differ by hundreds.
 pub(super) fn decide(query: [f64; 3], candidates: &[Candidate<'_>]) -> Decision {
     decide_fast(query, candidates).unwrap_or_else(|| decide_in_stages(query, candidates))
 }
 
-/// Decides by the first stage alone: a running minimum, which returns `None` at the first uncertainty.
+/// Decides by the first stage alone: a running minimum that returns `None` at the first uncertain comparison.
 fn decide_fast(query: V3, candidates: &[Candidate<'_>]) -> Option<Decision> {
     let mut winner = 0;
     let mut best: Option<Square> = None;
@@ -75,7 +75,7 @@ fn decide_fast(query: V3, candidates: &[Candidate<'_>]) -> Option<Decision> {
     Some(Decision::new(winner, best?.distance()?, DecidedBy::Floats))
 }
 
-/// Candidates with the same proved feature, or a single candidate whose feature is not proved.
+/// Candidates that share a proved feature, or a single candidate without a proof.
 struct Group {
     /// The index of the candidate with the lowest id.
     index: usize,
@@ -85,8 +85,8 @@ struct Group {
     square: Option<Square>,
 }
 
-/// Decides by both stages: the first excludes candidates that are certainly farther than another one, and the second
-/// decides between the others.
+/// Decides by both stages. The first stage excludes candidates that are certainly farther than another one, and the
+/// second stage decides between the rest.
 #[cold]
 #[inline(never)]
 fn decide_in_stages(query: V3, candidates: &[Candidate<'_>]) -> Decision {
@@ -136,8 +136,9 @@ fn groups(query: V3, candidates: &[Candidate<'_>]) -> Vec<Group> {
     groups
 }
 
-/// Returns whether the true distance from the query to a primitive of one to three vertices is at most `radius`. Query
-/// and vertices are finite. It is `false` for a radius that is negative or NaN, and `true` for an infinite one.
+/// Returns whether the true distance from the query to a primitive of one to three vertices is at most `radius`. The
+/// query and the vertices are finite. The result is `false` for a negative radius and for NaN, and `true` for an
+/// infinite one.
 ///
 /// # Complexity
 /// It takes as long as the kernel, unless the distance of the kernel is within its error of the radius.
@@ -153,10 +154,10 @@ pub(super) fn is_within(query: [f64; 3], vertices: &[[f64; 3]], radius: f64) -> 
         .unwrap_or_else(|| is_within_in_stages(query, vertices, nearest.feature, radius))
 }
 
-/// Compares the distance of the kernel with the radius, or returns `None` if its error, which is less than its bound
-/// and one smallest subnormal, leaves that open.
+/// Compares the distance of the kernel with the radius. Returns `None` if the error of the kernel, which is less than
+/// its bound plus one smallest subnormal, leaves the result open.
 fn is_within_by_kernel(nearest: &Nearest, radius: f64) -> Option<bool> {
-    /// A factor above the rounding of this bound and of the difference that is compared with it.
+    /// A factor that covers the rounding of this bound and of the difference that is compared with it.
     const SLACK: f64 = 1.0 + 8.0 * U;
     let distance = nearest.key.distance();
     let gap = (distance - radius).abs();
@@ -175,7 +176,7 @@ fn is_within_in_stages(query: V3, vertices: &[V3], feature: Feature, radius: f64
     order.unwrap_or_else(exact) != Ordering::Greater
 }
 
-/// Returns the nearest point of a primitive according to the kernel.
+/// Returns the nearest point of a primitive, computed by the kernel.
 fn nearest_by_kernel(query: V3, vertices: &[V3]) -> Nearest {
     let nearest = match *vertices {
         [a] => plain_kernel::point(query, a, f64::INFINITY),

@@ -1,4 +1,4 @@
-//! The features of primitives that are given by their vertices.
+//! Features of primitives, which are given by their vertices.
 
 use crate::Feature;
 use crate::kernel::vector::V3;
@@ -12,7 +12,7 @@ pub(super) fn ends(i: u8, vertices: &[V3]) -> [V3; 2] {
     [vertices[i], vertices[(i + 1) % vertices.len()]]
 }
 
-/// Returns whether a primitive with this number of vertices has a feature.
+/// Returns whether a primitive with this number of vertices has this feature.
 pub(super) fn exists(feature: Feature, vertex_count: usize) -> bool {
     match feature {
         Feature::Vertex(i) => usize::from(i) < vertex_count,

@@ -1,4 +1,9 @@
-//! Proofs that a feature of a primitive contains its point nearest to a query.
+//! Certificates: proofs that a feature of a primitive contains its point nearest to a query.
+//!
+//! The basic idea is to verify the claim of the kernel instead of computing the feature again: whether a given feature
+//! contains the nearest point depends only on the signs of a few dot products and determinants. A sign is certain if
+//! the magnitude of the computed number exceeds a bound on its error. If all signs are certain and right, the claim is
+//! proved; otherwise nothing is known, and the caller tries a more precise arithmetic.
 //!
 //! All positions are relative to the query. A point F of a convex set is nearest to the origin if and only if F . (W -
 //! F) is not negative for any point W of the set; it suffices to test the vertices. Let A, B and C be the vertices, D =
@@ -40,10 +45,10 @@ use crate::kernel::double_double::Double;
 use crate::kernel::power_of_two;
 use crate::kernel::vector::{V3, larger};
 
-/// The sizes of vectors for which the error bounds cover underflow, and no product overflows.
+/// The sizes of vectors for which the error bounds cover underflow and no product overflows.
 pub(super) const PLAIN_SIZES: std::ops::RangeInclusive<f64> = power_of_two(-100)..=power_of_two(100);
 
-/// An arithmetic with bounds on its errors, in which signs may be certain.
+/// An arithmetic with error bounds, so that some signs are certain.
 trait BoundedArithmetic: Number {
     /// A bound on the error of a dot product, relative to the product of the sizes of its factors.
     const DOT_ERROR: f64;
@@ -106,8 +111,8 @@ impl<T: BoundedArithmetic> Offset<T> {
             || self.has_zero_dot(other)
     }
 
-    /// Returns whether the dot product is exactly zero because no axis has a component of both vectors. This is common
-    /// for queries above a vertex of a box or a grid.
+    /// Returns whether the dot product is exactly zero because the two vectors have no common axis with a nonzero
+    /// component. This is common for queries above a vertex of a box or a grid.
     fn has_zero_dot(&self, other: &Self) -> bool {
         (0..3).all(|k| self.vector[k].leading() == 0.0 || other.vector[k].leading() == 0.0)
     }
@@ -117,7 +122,7 @@ impl<T: BoundedArithmetic> Offset<T> {
     }
 }
 
-/// The normal of a triangle, with the two edges that it is the cross product of.
+/// The normal of a triangle, with the two edges whose cross product it is.
 struct Normal<T> {
     vector: [T; 3],
     edges: [Offset<T>; 2],
@@ -130,7 +135,7 @@ impl<T: BoundedArithmetic> Normal<T> {
         Self { vector: cross(edges[0].vector, edges[1].vector), edges }
     }
 
-    /// Returns whether the side of an edge is certainly not negative. The edge has a length.
+    /// Returns whether the side of an edge is certainly not negative. The edge has a positive length.
     #[inline]
     fn has_nonnegative_side(&self, query: &V3, [from, to]: [V3; 2]) -> bool {
         let (offset, edge) = (Offset::<T>::new(query, &from), Offset::new(&from, &to));
@@ -146,8 +151,8 @@ impl<T: BoundedArithmetic> Normal<T> {
 
 /// Returns whether a feature is proved to contain the nearest point of a primitive.
 ///
-/// If it is, the ends of a proved edge differ, and a proved face has an area: no edge of it is zero, so at least one
-/// side has a bound above zero, and N is not zero.
+/// The proof implies that the ends of an edge differ, and that a face has an area: none of its edges is zero, so at
+/// least one side has a bound above zero, and N is not zero.
 #[inline]
 pub(super) fn is_proved(query: V3, vertices: &[V3], feature: Feature) -> bool {
     exists(feature, vertices.len())
@@ -180,7 +185,7 @@ fn is_proved_in<T: BoundedArithmetic>(query: V3, vertices: &[V3], feature: Featu
     }
 }
 
-/// Returns whether the projection onto a line is certainly between two points of it, which differ.
+/// Returns whether the projection onto a line lies certainly between two distinct points of the line.
 #[inline]
 fn is_between<T: BoundedArithmetic>(query: &V3, a: &V3, b: &V3) -> bool {
     let edge = Offset::<T>::new(a, b);
@@ -189,11 +194,12 @@ fn is_between<T: BoundedArithmetic>(query: &V3, a: &V3, b: &V3) -> bool {
         && Offset::<T>::new(query, a).has_nonnegative_dot(&Offset::new(b, a))
 }
 
-/// Returns whether the triangle certainly does not come nearer beyond an edge. It is `true` for a segment.
+/// Returns whether certainly no point of the triangle is nearer than the foot on an edge, if the foot lies on that
+/// edge. It is `true` for a segment.
 #[inline]
 fn is_nearest_on_edge<T: BoundedArithmetic>(query: &V3, vertices: &[V3], [a, b]: [V3; 2]) -> bool {
-    // The reversed edge has a side of the opposite sign. A triangle with a repeated vertex is its edge, with a
-    // side of zero.
+    // The reversed edge has a side of the opposite sign. A triangle with a repeated vertex equals its edge, and the
+    // side is zero.
     vertices.len() < 3
         || Normal::<T>::new(vertices).has_nonnegative_side(query, [b, a])
         || has_repeated_vertex(vertices)

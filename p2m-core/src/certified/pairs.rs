@@ -1,4 +1,4 @@
-//! Which of some pairs of primitives is nearest in real arithmetic.
+//! Certified pairs: the nearest of several pairs of primitives in real arithmetic.
 
 use super::rational::Square;
 use crate::kernel::vector::V3;
@@ -9,15 +9,15 @@ use crate::{PrimitiveId, Real};
 pub(crate) struct PairCandidate {
     /// The ids of the primitives.
     pub(crate) ids: [PrimitiveId; 2],
-    /// The vertices of both.
+    /// The vertices of both primitives.
     pub(crate) hulls: [Hull; 2],
-    /// The nearest points as the kernel computed them.
+    /// The nearest points, computed by the kernel.
     pub(crate) pair: NearestPair,
 }
 
-/// The nearest of some pairs.
+/// The nearest of several pairs.
 pub(crate) struct PairDecision {
-    /// The index of the nearest candidate; of exactly equal distances it is the one with the lowest ids.
+    /// The index of the nearest candidate. Exact ties go to the lowest ids.
     pub(crate) winner: usize,
     /// The true distance, rounded to the nearest f64.
     pub(crate) distance: f64,
@@ -25,11 +25,11 @@ pub(crate) struct PairDecision {
     pub(crate) lower: f64,
 }
 
-/// Returns the nearest of some pairs, in any order; `None` if there is none, or if it is farther than the limit. Once
-/// `goes_on` returns `false`, the rest is left out.
+/// Returns the nearest of several pairs, which may be in any order. It is `None` if there is none, or if the nearest
+/// one is farther than the limit. Once `goes_on` returns `false`, the remaining pairs are ignored.
 ///
 /// # Complexity
-/// It takes some ten microseconds for each pair that does not intersect, in big integers.
+/// It takes about ten microseconds per pair that does not intersect, in big integers.
 pub(crate) fn decide_pairs<T: Real>(
     candidates: &[PairCandidate],
     limit: T,
@@ -49,7 +49,7 @@ pub(crate) fn decide_pairs<T: Real>(
     Some(PairDecision { winner, distance: distance.nearest, lower: distance.lower })
 }
 
-/// Returns the true distance of the hulls of some points, rounded to the nearest f64.
+/// Returns the true distance between the convex hulls of two sets of points, rounded to the nearest f64.
 pub(crate) fn true_distance(a: &[V3], b: &[V3]) -> f64 {
     let pair = nearest_of_hulls(a, b, f64::INFINITY).expect("no key exceeds infinity");
     if pair.is_intersecting { 0.0 } else { Square::between(a, b).distance().nearest }

@@ -1,7 +1,7 @@
-//! Certified queries of any index.
+//! Certified queries for any index.
 //!
-//! An index finds all primitives that may be nearest once the errors of the kernel are allowed for. In most cases that
-//! is one primitive, or several that share their nearest feature. [`decide`] returns the nearest of them.
+//! An index finds all primitives that may be nearest, given the error bounds of the kernel. In most cases there is one
+//! such primitive, or several that share their nearest feature. [`decide`] returns the nearest of them.
 
 use super::candidate::Candidate;
 use super::decide::{decide, is_within};
@@ -9,12 +9,12 @@ use crate::near_query::{Near, search_near_if_valid};
 use crate::real::to_f64_array;
 use crate::{Closest, NearQuery, Position, Primitive, PrimitiveId, PrimitiveSet, QueryOptions, Real, Shape};
 
-/// An error of certifying an answer.
+/// The error of a certified query.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, thiserror::Error)]
 #[non_exhaustive]
 pub enum CertifyError {
-    /// A primitive of your own that may be nearest has no [`vertices`](crate::Primitive::vertices), so its distance is
-    /// not known exactly.
+    /// A primitive that may be nearest is of a type of your own without [`vertices`](crate::Primitive::vertices), so
+    /// its exact distance is unknown.
     #[error("primitive {id} is no point, segment or triangle of known vertices")]
     NoVertices {
         /// The first such primitive.
@@ -24,12 +24,12 @@ pub enum CertifyError {
 
 /// Queries whose answers are correct to the last bit (contract N8).
 ///
-/// Coordinates are taken as real numbers. The primitive is the nearest one, and of exactly equal distances the one
-/// with the lowest id. The distance is the true one, rounded once to the nearest f64, and once more for scenes in f32.
-/// So its error is less than one unit in the last place at any scale, even for queries so near the surface that the
-/// usual error of 8 u M exceeds the distance. The lower bound is at most the true distance, and at most one unit in
-/// the last place below the reported one. The other fields of the answer are those of
-/// [`ClosestPoint`](crate::ClosestPoint) for that primitive.
+/// Coordinates are taken as real numbers. The primitive is the nearest one, and exact ties go to the lowest id. The
+/// distance is the true one, rounded once to the nearest f64, and once more for scenes in f32. So its error is less
+/// than one unit in the last place at any scale, even if the query is so near the surface that the usual error of 8 u M
+/// exceeds the distance. The lower bound is at most the true distance, and at most one unit in the last place below the
+/// reported one. The other fields of the answer equal those of [`ClosestPoint`](crate::ClosestPoint) for that
+/// primitive.
 ///
 /// ```
 /// use nalgebra::Point3;
@@ -45,15 +45,15 @@ pub enum CertifyError {
 /// ```
 ///
 /// # Complexity
-/// It takes the search of [`ClosestPoint`](crate::ClosestPoint), and some hundred nanoseconds for the candidates. It
-/// takes some microseconds where big integers have to decide: for exact ties of different features, queries on a
-/// surface, and scales near the ends of the range of f64.
+/// It takes the search of [`ClosestPoint`](crate::ClosestPoint), and a few hundred nanoseconds for the candidates. It
+/// takes a few microseconds if big integers have to decide: for exact ties of different features, queries on a surface,
+/// and scales near the ends of the range of f64.
 pub trait CertifiedQuery<T: Real>: NearQuery<T> {
-    /// Returns a primitive of the scene as a shape, or `None` for one of your own without vertices.
+    /// Returns a primitive of the scene as a shape, or `None` for a primitive of your own without vertices.
     fn shape(&self, id: PrimitiveId) -> Option<Shape<T>>;
 
-    /// Returns the certified closest point. Of the options only the largest distance is used, and it is
-    /// compared without rounding.
+    /// Returns the certified closest point. Of the options only the largest distance is used, which is compared without
+    /// rounding.
     ///
     /// # Errors
     /// It returns [`CertifyError::NoVertices`] if a primitive that may be nearest has no vertices.
@@ -98,8 +98,8 @@ pub trait CertifiedQuery<T: Real>: NearQuery<T> {
     }
 }
 
-/// Returns a primitive of a set as a shape, by its vertices: the answer of [`CertifiedQuery::shape`] for that set. It
-/// is `None` for a primitive without vertices.
+/// Returns a primitive of a set as a shape, made of its vertices. It implements [`CertifiedQuery::shape`] for an index
+/// over that set. It is `None` for a primitive without vertices.
 pub fn shape_of<T: Real, S: PrimitiveSet<T> + ?Sized>(set: &S, id: PrimitiveId) -> Option<Shape<T>> {
     Shape::from_vertices(set.get(id).vertices())
 }

@@ -1,11 +1,11 @@
 //! Squared distances as fractions of big integers, and their square roots rounded once.
 //!
-//! All positions are relative to the query, and integers in units of a power of two that divides all coordinates of
+//! All positions are relative to the query, and are integers in units of a power of two that divides all coordinates of
 //! the query and the primitive. The nearest feature is found by the signs that
-//! [`feature_certificate`](super::feature_certificate) states, which are certain for integers. The nearest point is a
-//! vertex, in the interior of an edge that has a length, or in the interior of a face that has an area. The
-//! conditions are necessary as well as sufficient, and every point of a triangle without area is on an edge. So a
-//! feature is always found.
+//! [`feature_certificate`](super::feature_certificate) defines, which are certain for integers. The nearest point is a
+//! vertex, in the interior of an edge that has a length, or in the interior of a face that has an area. The conditions
+//! are necessary as well as sufficient, and every point of a triangle without area is on an edge. So a feature is
+//! always found.
 
 use super::feature::exists;
 use super::rounded::RoundedDistance;
@@ -26,15 +26,16 @@ pub(super) struct Square {
 
 impl Square {
     /// Computes the squared distance of a primitive. `claim` is the feature that probably contains its nearest point,
-    /// or certainly if `is_proved`.
+    /// and certainly does if `is_proved`.
     pub(super) fn new(query: V3, vertices: &[V3], claim: Feature, is_proved: bool) -> Self {
         let exact = Primitive::new(query, vertices);
         let feature = if is_proved { claim } else { exact.nearest(claim) };
         Self { fraction: exact.square(feature), unit: exact.unit }
     }
 
-    /// Computes the squared distance of two hulls of one to three vertices that do not intersect: the least of those of
-    /// a vertex and the other hull, and of the insides of two edges that are not parallel.
+    /// Computes the squared distance of two hulls of one to three vertices that do not intersect. It is the minimum
+    /// over each vertex and the other hull, and over each pair of edges that are not parallel and nearest in their
+    /// interiors.
     pub(super) fn between(a: &[V3], b: &[V3]) -> Self {
         let of_vertices = |vertices: &[V3], other: &[V3]| -> Vec<Self> {
             vertices.iter().map(|vertex| Self::new(*vertex, other, Feature::Vertex(0), false)).collect()
@@ -51,9 +52,9 @@ impl Square {
         all.into_iter().min_by(Self::cmp).expect("a hull has a vertex")
     }
 
-    /// Computes the squared distance of the lines of two edges, if they are nearest inside of both edges. With the edges
-    /// D and E, the vector R between their first ends, and N = D x E, the parameters are (R x E).N / N.N and
-    /// (R x D).N / N.N, and the square is (R.N)^2 / N.N.
+    /// Computes the squared distance of the lines of two edges, if they are nearest inside of both edges. With the
+    /// edges D and E, the vector R between their first ends, and N = D x E, the parameters are (R x E).N / N.N and (R x
+    /// D).N / N.N, and the square is (R.N)^2 / N.N.
     fn inside_of_edges(p: &[V3; 2], q: &[V3; 2]) -> Option<Self> {
         let unit = common_exponent(p.as_flattened().iter().chain(q.as_flattened()));
         let vector = |to: V3, from: V3| difference(to, from, unit);
@@ -91,7 +92,7 @@ impl Square {
     /// Returns the distance.
     pub(super) fn distance(&self) -> RoundedDistance {
         let nearest = self.root();
-        // The true distance is below an infinite result as well.
+        // If the rounded distance is infinite, the true distance is below it as well.
         let is_above = nearest > 0.0 && (nearest == f64::INFINITY || self.cmp(&Self::from_length(nearest)).is_lt());
         RoundedDistance { nearest, lower: if is_above { nearest.next_down() } else { nearest } }
     }
@@ -124,11 +125,11 @@ impl Square {
     }
 }
 
-/// A primitive in integers, relative to the query.
+/// A primitive in integer coordinates relative to the query.
 struct Primitive {
     /// The vectors from the query to the vertices.
     offsets: Vec<Vector>,
-    /// The exponent of two of which coordinates are multiples.
+    /// The exponent of the power of two that is the unit of the coordinates.
     unit: i32,
     normal: OnceCell<Vector>,
 }
@@ -148,7 +149,7 @@ impl Primitive {
         Self { offsets, unit, normal: OnceCell::new() }
     }
 
-    /// Returns a feature that contains the nearest point: the claimed one if it does.
+    /// Returns a feature that contains the nearest point, preferably the claimed one.
     fn nearest(&self, claim: Feature) -> Feature {
         const ALL: [Feature; 7] = [
             Feature::Vertex(0),
@@ -182,8 +183,8 @@ impl Primitive {
         }
     }
 
-    /// Returns the squared distance of the point, line or plane of a feature. An edge must have a length and a
-    /// face an area.
+    /// Returns the squared distance of the point, line or plane of a feature. An edge must have a positive length and a
+    /// face a positive area.
     fn square(&self, feature: Feature) -> Fraction {
         match feature {
             Feature::Vertex(i) => {

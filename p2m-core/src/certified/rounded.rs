@@ -1,6 +1,6 @@
-//! Distances as they are reported.
+//! A reported distance with its lower bound.
 
-/// A distance as it is reported.
+/// A distance, rounded to nearest, with a lower bound.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct RoundedDistance {
     /// The true distance, rounded to the nearest f64.

@@ -74,8 +74,8 @@ fn candidates<'a>(shapes: &'a [Shape], ids: &[usize], claims: &[Feature]) -> Vec
     shapes.iter().zip(ids).zip(claims).map(candidate).collect()
 }
 
-/// Checks the decision between some primitives with the claims of the kernel and with wrong ones, and
-/// returns the former.
+/// Checks the decision between some primitives with the claims of the kernel and with wrong claims, and returns the
+/// decision for the claims of the kernel.
 fn check(query: V3, shapes: &[Shape], rng: &mut impl Rng) -> Decision {
     let mut ids: Vec<usize> = (0..shapes.len()).map(|i| 3 * i + 1).collect();
     ids.shuffle(rng);
@@ -114,7 +114,7 @@ fn check_radii(query: V3, vertices: &[V3], distance: f64) {
     assert!(!is_within(query, vertices, f64::NAN) && !is_within(query, vertices, -1.0));
 }
 
-/// Returns a point whose coordinates are changed by some units in the last place.
+/// Returns a point with each coordinate changed by a few units in the last place.
 fn nudged(p: V3, rng: &mut impl Rng) -> V3 {
     p.map(|x| match rng.random_range(0..4) {
         0 => x.next_up(),
@@ -193,8 +193,8 @@ fn any_exponents_may_meet() {
     assert_eq!((decision.distance, decision.lower, decision.winner), (f64::INFINITY, f64::MAX, 1));
 }
 
-/// The shapes have small integers as coordinates, some changed by one unit in the last place. So they are often
-/// collinear, repeated, or very small.
+/// The coordinates of the shapes are small integers, some changed by one unit in the last place. So the vertices are
+/// often collinear or repeated, or the shapes are very small.
 #[test]
 fn degenerate_primitives_are_what_their_vertices_span() {
     check_relatives("certified degenerate", cases(3000, 500), |rng| {
@@ -284,7 +284,7 @@ fn ties_on_a_lattice_go_to_the_lowest_id() {
     }
 }
 
-/// Returns a vector that is permuted and mirrored, which does not round.
+/// Returns a shape whose coordinates are permuted and mirrored, which is exact.
 fn placed(shape: &[V3], [query, signs]: [V3; 2], axes: [usize; 3]) -> Shape {
     shape.iter().map(|v| std::array::from_fn(|k| query[k] + signs[k] * v[axes[k]])).collect()
 }
@@ -326,7 +326,7 @@ fn candidate(vertices: &[V3]) -> Candidate<'_> {
     Candidate { id: PrimitiveId::new(0), vertices, feature: Feature::Vertex(0) }
 }
 
-/// The face with the centroid h (1, 2, 2), and an edge through it, have the distance 3 h. They are compared with a
+/// The face with the centroid h (1, 2, 2), and an edge through it, have the distance 3 h. They are compared with one
 /// vertex of the square 9 h^2 + 1, and with one of the square 9 h^2.
 #[test]
 fn faces_edges_and_vertices_that_are_almost_equally_near_are_told_apart() {
@@ -372,8 +372,8 @@ fn fractions_that_almost_agree_are_told_apart() {
     }
 }
 
-/// The distances are about one rounding of the coordinates. The kernel has no correct digit there, but the decision is
-/// rounded to nearest.
+/// The distances are about one rounding error of the coordinates. The kernel has no correct digit there, but the
+/// certified distance is rounded to nearest.
 #[test]
 fn distances_within_rounding_are_as_accurate_as_others() {
     let mut small = 0;
@@ -396,7 +396,7 @@ fn distances_within_rounding_are_as_accurate_as_others() {
     assert!(cases.have_more_than(1000, small), "{small}");
 }
 
-/// Returns whether a claim is proved, and asserts that the feature is then as near as the primitive.
+/// Returns whether a claim is proved, and asserts that a proved feature is as near as the primitive.
 fn proves(query: V3, vertices: &[V3], claim: Feature) -> bool {
     let proved = feature_certificate::is_proved(query, vertices, claim);
     if proved {

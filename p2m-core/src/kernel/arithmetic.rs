@@ -1,10 +1,10 @@
-//! Products of vectors in any arithmetic, such as f64 and double-double.
+//! Vector products in any arithmetic, such as f64 and double-double.
 
 #![allow(clippy::inline_always, reason = "one expression; calls would hide it from the optimiser")]
 
 use std::ops::{Add, Mul, Sub};
 
-/// A number with sums, differences and products.
+/// A number type with sums, differences and products.
 pub trait Number: Copy + Add<Output = Self> + Sub<Output = Self> + Mul<Output = Self> {}
 impl<T: Copy + Add<Output = T> + Sub<Output = T> + Mul<Output = T>> Number for T {}
 

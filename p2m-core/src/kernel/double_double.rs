@@ -1,16 +1,16 @@
 //! Double-double arithmetic: a value as the unevaluated sum of two f64, with about 104 bits.
 //!
-//! The kernel uses it where a sliver triangle needs its height to full relative accuracy, and predicates and certified
-//! queries where f64 cannot decide. The error-free transformations are those of \[Knuth1997\] (sum) and \[Dekker1971\]
+//! The kernel uses it to compute the heights of sliver triangles to full relative accuracy. Predicates and certified
+//! queries use it if f64 cannot decide. The error-free transformations are by \[Knuth1997\] (sum) and \[Dekker1971\]
 //! (product), and the compound operations follow \[Joldes2017\]. There is no fused multiply-add, so the bits are the
 //! same on every machine. The transformations are exact as long as nothing overflows (|x| < 2^990) and their error
-//! terms are no subnormals. The callers guarantee both by the range of their input.
+//! terms are not subnormal. The callers guarantee both by the range of their input.
 
 use super::power_of_two;
 use std::ops::{Add, Div, Mul, Sub};
 
 /// A bound on the error of a sum of a few products of double-double numbers, relative to the sizes of the products. It
-/// is 2^-95, where less than 2^-98 can be shown.
+/// is 2^-95; an error below 2^-98 can be proved.
 pub const ROUNDING: f64 = power_of_two(-95);
 
 /// A double-double number: the sum of its two parts.

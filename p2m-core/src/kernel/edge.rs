@@ -1,7 +1,8 @@
-//! Feet of perpendiculars on edges. Segments and triangles use the same code, so their feet have the same bits.
+//! Projections onto edges: feet of perpendiculars. Segments and triangles share this code, so their feet have the same
+//! bits.
 //!
-//! The code is written once for one edge and for several side by side ([`Float`]), so the bits of a lane are those of
-//! a single edge.
+//! The code is generic over a single edge and several edges side by side ([`Float`]), so a lane has the same bits as a
+//! single edge.
 
 use super::vector::{V3, add_scaled, bounds, clamp, dot, lexicographically_less, norm_squared, select, sub};
 use crate::Feature;
@@ -22,8 +23,8 @@ pub(super) struct EdgeLine<T: Float> {
 }
 
 impl EdgeLine<f64> {
-    /// Projects the origin onto the line through `ends`, whose squared lengths are `squares`. Of two ends that are
-    /// equally near, the first in lexicographic order counts as the nearer one.
+    /// Projects the origin onto the line through `ends`, whose squared lengths are `squares`. If both ends are equally
+    /// near, the first in lexicographic order counts as the nearer one.
     #[inline(always)]
     pub(super) fn new(ends: [V3; 2], squares: [f64; 2]) -> Self {
         let is_second_nearer =
@@ -33,7 +34,7 @@ impl EdgeLine<f64> {
 }
 
 impl<T: Float> EdgeLine<T> {
-    /// Projects the origin onto the line through `ends`, given which of them is nearer.
+    /// Projects the origin onto the line through `ends`, given which end is nearer.
     ///
     /// Projecting from the nearer end keeps t |direction| below the distance to that end.
     #[inline(always)]
@@ -48,7 +49,7 @@ impl<T: Float> EdgeLine<T> {
         Self { is_second_nearer, direction, inverse, t, square: nn + t * projected }
     }
 
-    /// Returns the foot, and whether it lies strictly inside of the edge between `ends`. It does not for NaN.
+    /// Returns the foot, and whether it lies strictly inside of the edge between `ends`. It never does for NaN.
     ///
     /// The foot of the first estimate is projected again, which removes the errors of the first division and of the
     /// first sum along the line.
@@ -89,8 +90,8 @@ pub(super) struct EdgeFoot<T> {
 /// The vertices of the edges of a triangle: edge i runs from vertex i to vertex i + 1.
 pub(super) const EDGES: [[usize; 2]; 3] = [[0, 1], [1, 2], [2, 0]];
 
-/// Returns whether edge i of a triangle precedes a feature with the same key: it precedes another edge if its ends come
-/// first in lexicographic order, and never a vertex.
+/// Returns whether edge i of a triangle precedes a feature with the same key. It precedes another edge if its ends come
+/// first in lexicographic order, and never precedes a vertex.
 #[cold]
 pub(super) fn edge_precedes(vertices: &[V3; 3], i: usize, other: Feature) -> bool {
     let Feature::Edge(j) = other else { return false };

@@ -1,4 +1,4 @@
-//! Feet of perpendiculars on the faces of triangles, including slivers.
+//! Projections onto the faces of triangles, including slivers: feet of perpendiculars.
 
 use super::arithmetic;
 use super::double_double::Double;
@@ -9,24 +9,24 @@ use super::vector::{
 };
 use crate::simd::Float;
 
-/// The greatest ratio, 2^-10, of height and longest edge of a sliver. The height of a sliver is computed in
-/// double-double, which takes longer.
+/// The largest ratio of height to longest edge, 2^-10, at which a triangle counts as a sliver. The height of a sliver
+/// is computed in double-double, which takes longer.
 pub const SLIVER_SINE: f64 = 1.0 / 1024.0;
 /// The square of [`SLIVER_SINE`].
 const SLIVER_SINE_SQUARED: f64 = power_of_two(-20);
-/// The square of 2^-57, the greatest ratio of height and longest edge of a needle. A needle is replaced by its edges:
-/// no point of its face is farther from them than the height, which is at most u M / 8.
+/// The square of 2^-57, the largest ratio of height to longest edge at which a triangle counts as a needle. A needle is
+/// replaced by its edges: no point of its face is farther from them than the height, which is at most u M / 8.
 const NEEDLE_SINE_SQUARED: f64 = power_of_two(-114);
-/// The weight 2^-49 below which the sign of a weight may be due to rounding.
+/// The weight, 2^-49, below which rounding may change the sign of a weight.
 pub(super) const MIN_CERTAIN_WEIGHT: f64 = power_of_two(-49);
 /// The square of the margin by which a face is rejected. First weights of ordinary faces have errors below 2^-38 of the
 /// size of the offsets over the height, and the margin is wider. The errors of a sliver are larger by the ratio of
-/// [`SLIVER_SINE`] and its own sine.
+/// [`SLIVER_SINE`] to its own sine.
 const REJECT_MARGIN_SQUARED: f64 = power_of_two(-72);
-/// The largest factor of error with which a face is estimated: that of a height of 2^-22 of the longest edge.
+/// The largest error factor for which a face is estimated. It belongs to a height of 2^-22 of the longest edge.
 const MAX_ERROR_FACTOR: f64 = power_of_two(24);
 
-/// The axes of a triangle: the longest edge and the height over it.
+/// The axes of a triangle: its longest edge and the height over it.
 ///
 /// They are orthogonal, so the weights are independent, and the error of a sliver is not multiplied by the inverse of
 /// its sine. Only the height needs more precision, see [`sliver_axes`].
@@ -45,8 +45,8 @@ struct Axes<T> {
 }
 
 impl<T: Float> Axes<T> {
-    /// Returns first weights of the foot for the nearer end `n`, the farther one and the apex, and n . height. `t` is
-    /// the position of the foot on the longest edge.
+    /// Returns first estimates of the weights of the foot for the nearer end `n`, the farther end and the apex, and n .
+    /// height. `t` is the position of the foot on the longest edge.
     #[inline(always)]
     fn weights(&self, n: [T; 3], t: T) -> ([T; 3], T) {
         let projected = dot(n, self.height);
@@ -55,7 +55,7 @@ impl<T: Float> Axes<T> {
         ([(T::splat(1.0) - wf) - wa, wf, wa], projected)
     }
 
-    /// Returns the point n + first direction + wa second, and the steps along both axes that lead from it to the foot.
+    /// Returns the point n + first direction + wa second, and the steps along both axes from that point to the foot.
     #[inline(always)]
     fn improve(&self, n: [T; 3], first: T, wa: T, second: [T; 3]) -> ([T; 3], [T; 2]) {
         let point = add(n, combine(first, self.direction, wa, second));
@@ -64,7 +64,7 @@ impl<T: Float> Axes<T> {
         (point, [step_d, step_h])
     }
 
-    /// Returns the foot, given a point near it and the steps that lead from there to the foot.
+    /// Returns the foot, given a nearby point and the steps from it to the foot.
     #[inline(always)]
     fn finish(
         &self,
@@ -90,18 +90,18 @@ pub(super) struct FacePlane<T> {
     side: [T; 3],
     /// The position of the foot on the longest edge.
     t: T,
-    /// First weights of the foot.
+    /// First estimates of the weights of the foot.
     weights: [T; 3],
     /// A first estimate of the squared length of the foot.
     square: T,
-    /// The factor by which errors of the estimates exceed those of ordinary faces: 1, or for slivers the square of the
-    /// ratio of [`SLIVER_SINE`] and their own sine.
+    /// The factor by which errors of the estimates exceed the errors of ordinary faces. It is 1, or for slivers the
+    /// square of the ratio of [`SLIVER_SINE`] to their own sine.
     error_factor: T,
 }
 
 impl<T: Float> FacePlane<T> {
     /// Estimates the foot, given the longest edge, its nearer end and the apex. Also returns whether the foot is
-    /// certainly not inside of the face.
+    /// certainly outside of the face.
     #[inline(always)]
     pub(super) fn new(line: &EdgeLine<T>, n: [T; 3], apex: [T; 3], size: T) -> (Self, T::Mask) {
         let side = sub(apex, n);
@@ -126,7 +126,8 @@ impl<T: Float> FacePlane<T> {
         (plane, is_outside)
     }
 
-    /// Returns whether weights and square are usable estimates. They are not if the height may be rounding error alone.
+    /// Returns whether the weights and the square are usable estimates. They are not if the height may be pure rounding
+    /// error.
     #[inline(always)]
     fn can_estimate(&self) -> T::Mask {
         self.error_factor.is_at_most(T::splat(MAX_ERROR_FACTOR))
@@ -138,9 +139,9 @@ impl<T: Float> FacePlane<T> {
         T::splat(1.0).is_below(self.error_factor)
     }
 
-    /// Returns the estimated squared length of the foot, which is infinite if the foot seems to be outside, and
-    /// the factor by which margins have to be wider than those of ordinary faces. Without an estimate the foot
-    /// may be anywhere.
+    /// Returns the estimated squared length of the foot, and the factor by which margins have to be wider than for
+    /// ordinary faces. The square is infinite if the foot seems to be outside. Without an estimate the foot may be
+    /// anywhere.
     #[inline(always)]
     pub(super) fn estimate(&self) -> (T, T) {
         let is_inside = T::splat(0.0).is_below(smaller(smaller(self.weights[0], self.weights[1]), self.weights[2]));
@@ -158,9 +159,9 @@ impl<T: Float> FacePlane<T> {
         self.square.is_at_most(limit) | !self.can_estimate()
     }
 
-    /// Returns the foot on a face that is no sliver: the point of the first weights, improved by one step along its
-    /// residual. Also returns the least weight, whose sign tells whether the foot is inside of the face unless it is
-    /// below [`MIN_CERTAIN_WEIGHT`].
+    /// Returns the foot on a face that is not a sliver: the point of the first weights, improved by one step along its
+    /// residual. Also returns the least weight. Its sign tells whether the foot is inside of the face, unless the
+    /// weight is below [`MIN_CERTAIN_WEIGHT`].
     #[inline(always)]
     pub(super) fn ordinary_foot(&self, n: [T; 3], bounds: [[T; 3]; 2]) -> (FaceFoot<T>, T) {
         let [_, wf, wa] = self.weights;
@@ -187,8 +188,8 @@ impl FacePlane<f64> {
     }
 
     /// Returns the foot on a sliver if it lies strictly inside of the face. The first weights of a sliver have large
-    /// errors, since its height is small. Along the sides of the triangle they would give large vectors that cancel;
-    /// along the orthogonal axes nothing cancels.
+    /// errors, since its height is small. Along the sides of the triangle these errors would give large vectors that
+    /// cancel; along the orthogonal axes nothing cancels.
     #[inline(always)]
     fn sliver_foot(&self, [n, f, a]: [V3; 3], bounds: [V3; 2]) -> Option<FaceFoot<f64>> {
         let axes = sliver_axes(&self.axes, n, f, a)?;
@@ -222,7 +223,7 @@ pub(super) struct Corners {
 }
 
 impl Corners {
-    /// Returns the order for a triangle with these edges.
+    /// Returns the order for a triangle with these edge lines.
     #[inline(always)]
     pub(super) fn new(vertices: [V3; 3], lines: &[EdgeLine<f64>; 3]) -> Self {
         let base = longest_edge(vertices, lines);
@@ -240,8 +241,8 @@ impl Corners {
     }
 }
 
-/// Returns the longest edge. Of equal edges it is the one whose opposite vertex comes first in lexicographic order, so
-/// that the choice does not depend on the order of the vertices.
+/// Returns the longest edge. Ties go to the edge whose opposite vertex comes first in lexicographic order, so that the
+/// choice does not depend on the order of the vertices.
 #[inline(always)]
 fn longest_edge(vertices: [V3; 3], lines: &[EdgeLine<f64>; 3]) -> usize {
     let mut best = 0;
@@ -255,8 +256,8 @@ fn longest_edge(vertices: [V3; 3], lines: &[EdgeLine<f64>; 3]) -> usize {
     best
 }
 
-/// Returns the axes with a height that is computed in double-double, or `None` for a needle, which is replaced by its
-/// edges. The relative error of the height is below 2^-43.
+/// Returns the axes with a height computed in double-double, or `None` for a needle, which is replaced by its edges.
+/// The relative error of the height is below 2^-43.
 #[cold]
 fn sliver_axes(plain: &Axes<f64>, n: V3, f: V3, a: V3) -> Option<Axes<f64>> {
     let d: [Double; 3] = std::array::from_fn(|k| Double::difference(f[k], n[k]));
@@ -268,7 +269,7 @@ fn sliver_axes(plain: &Axes<f64>, n: V3, f: V3, a: V3) -> Option<Axes<f64>> {
     (!is_needle).then_some(Axes { height, inverse_height: 1.0 / height_squared, along: along.round(), ..*plain })
 }
 
-/// Returns whether the foot on the face has three positive weights, by double-double arithmetic. A foot exactly on an
+/// Returns whether the foot on the face has three positive weights, in double-double arithmetic. A foot exactly on an
 /// edge belongs to the edge, which rounded weights might not show.
 #[cold]
 fn is_strictly_inside(n: V3, f: V3, a: V3) -> bool {

@@ -1,24 +1,24 @@
-//! Keys: the numbers by which candidates are compared.
+//! Keys: extended-range squared distances, by which candidates are compared.
 
 use super::vector::{V3, largest, norm_squared, power_of_two, scale_by_power};
 use std::cmp::Ordering;
 
-/// The exponent of two of the bounds of plain squares: squares below 2^-800 or from 2^800 on are in other tiers.
+/// The exponent of two that bounds plain squares. Squares below 2^-800, and from 2^800 on, are in other tiers.
 const PLAIN_SQUARE_BITS: i32 = 800;
 /// The least plain square.
 pub(super) const SQUARE_MIN: f64 = power_of_two(-PLAIN_SQUARE_BITS);
-/// The least square above the plain ones.
+/// The least square above the plain range.
 pub(super) const SQUARE_MAX: f64 = power_of_two(PLAIN_SQUARE_BITS);
-/// The exponent of two by which squares of neighbouring tiers are scaled.
+/// The exponent of two by which the squares of neighbouring tiers are scaled.
 const TIER_SHIFT: i32 = 2 * PLAIN_SQUARE_BITS;
 
-/// The squared length of the offset from the query to the nearest point, with more range than an f64 has.
+/// The squared length of the offset from the query to the nearest point, with a larger exponent range than f64.
 ///
 /// Keys decide between primitives, in pruning and in ties. Several squares have the same square root, so equal
-/// distances may have different keys. A key is a plain square if that lies in [2^-800, 2^800). Smaller and larger
-/// lengths are in tiers of their own, whose squares are kept times 2^1600 or 2^-1600. The tier depends on the value
-/// alone, and the bits of the square are those of the plain computation. So comparisons depend neither on the formula
-/// by which a key was computed nor on the scale of the scene.
+/// distances may have different keys. A key is a plain square if the square lies in [2^-800, 2^800). Smaller and larger
+/// lengths are in tiers of their own, whose squares are stored times 2^1600 or 2^-1600. The tier depends on the value
+/// alone, and the bits of the square are the same as in the plain computation. So comparisons depend neither on the
+/// formula by which a key was computed nor on the scale of the scene.
 ///
 /// Keys are ordered by value and never NaN.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -30,7 +30,7 @@ pub struct Key {
 impl Key {
     /// The key of length zero.
     pub const ZERO: Self = Self { square: 0.0, tier: 0 };
-    /// A key above those of all lengths.
+    /// A key above the keys of all lengths.
     pub const INFINITY: Self = Self { square: f64::INFINITY, tier: 1 };
 
     /// Returns the key of an offset in units of the scene. An offset with a NaN component has the key
@@ -42,7 +42,8 @@ impl Key {
         Self::plain(square).unwrap_or_else(|| Self::from_scaled_offset(offset, 0))
     }
 
-    /// Returns the key of a plain square, and `None` for any other one. That includes zero, which may be an underflow.
+    /// Returns the key of a plain square, and `None` for any other square. That includes zero, which may be an
+    /// underflow.
     #[inline(always)]
     pub(super) fn plain(square: f64) -> Option<Self> {
         (SQUARE_MIN..SQUARE_MAX).contains(&square).then_some(Self { square, tier: 0 })
@@ -65,8 +66,7 @@ impl Key {
             return Self::ZERO;
         }
         let size_exponent = super::vector::exponent(size);
-        // The square is in [1, 12), and has the bits that any other scale by a power of two without
-        // underflow would give.
+        // The square is in [1, 12). Any other power of two as the scale gives the same bits unless it underflows.
         let square = norm_squared(offset.map(|x| scale_by_power(x, -size_exponent)));
         let shift = 2 * (size_exponent + exponent);
         let tier = match shift + super::vector::exponent(square) {
@@ -75,12 +75,11 @@ impl Key {
             _ => 0,
         };
         let square = scale_by_power(square, shift - tier * TIER_SHIFT);
-        // A square below the lowest tier, far below that of the smallest subnormal, becomes the key of zero.
+        // A square below the lowest tier, which is far below the smallest subnormal, becomes the key of zero.
         if square == 0.0 { Self::ZERO } else { Self { square, tier } }
     }
 
-    /// Returns the length, which is the square root of the key, rounded to nearest. It is infinite beyond the
-    /// range of f64.
+    /// Returns the length: the square root of the key, rounded to nearest. It is infinite beyond the range of f64.
     #[inline]
     #[must_use]
     pub fn distance(self) -> f64 {
@@ -88,8 +87,8 @@ impl Key {
         if self.tier == 0 { root } else { scale_by_power(root, self.tier * PLAIN_SQUARE_BITS) }
     }
 
-    /// Returns two numbers that are ordered as keys are: the first ones decide, and where these are equal the second
-    /// ones. They serve where keys leave a program and are compared elsewhere.
+    /// Returns two numbers that are ordered lexicographically as keys are. They serve programs that compare keys
+    /// elsewhere.
     #[must_use]
     pub fn order(self) -> [f64; 2] {
         // Zero is below all tiers, although it has the tier of plain squares.
@@ -99,8 +98,8 @@ impl Key {
 
     /// Returns a square that is not below the key, for pruning by bounds that are computed in plain f64.
     ///
-    /// It is the key itself in the plain range, 2^-800 below the range (where squares of f64 lose their digits), and
-    /// infinity above it.
+    /// It is the key itself in the plain range. It is 2^-800 below the plain range, where squares of f64 lose their
+    /// digits, and infinity above it.
     #[inline]
     #[must_use]
     pub fn square_above(self) -> f64 {

@@ -1,7 +1,7 @@
-//! The contract kernel: it defines the distance from a query to a primitive, bit for bit.
+//! The contract kernel, which defines the distance from a query to a primitive, bit for bit.
 //!
-//! The functions of `triangle` compute the nearest point, and all filters leave the decision to them. A [`Key`] is the
-//! number by which candidates are compared. [docs/proofs/accuracy.md] has the error bound and its proof.
+//! The functions of `triangle` compute the nearest point, and all filters leave the decision to them. Candidates are
+//! compared by their [`Key`]. [docs/proofs/accuracy.md] has the error bound and its proof.
 //!
 //! [docs/proofs/accuracy.md]: https://github.com/p2m-rs/p2m/blob/main/docs/proofs/accuracy.md
 

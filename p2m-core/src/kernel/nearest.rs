@@ -14,7 +14,7 @@ pub const ERROR_CONSTANT: f64 = 8.0;
 
 /// The nearest point of one primitive.
 ///
-/// It consists of numbers and a small code, not of an enum with payloads, so that it stays in registers on its way
+/// It consists of numbers and a small code rather than an enum with payloads, so that it stays in registers on its way
 /// to a collector.
 #[derive(Clone, Copy)]
 pub(crate) struct Nearest {
@@ -23,7 +23,7 @@ pub(crate) struct Nearest {
     /// The vector from the query to the nearest point, divided by 2^`exponent`.
     pub(super) offset: V3,
     pub(super) exponent: i32,
-    /// The feature of the lowest dimension that contains the nearest point.
+    /// The feature of lowest dimension that contains the nearest point.
     pub(crate) feature: Feature,
     /// The weights of the vertices.
     pub(crate) weights: V3,
@@ -63,7 +63,7 @@ pub(super) fn edge_feature_code(i: usize) -> f64 {
     [3.0, 4.0, 5.0][i]
 }
 
-/// Returns the feature with a code.
+/// Returns the feature of a code.
 #[inline(always)]
 #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "a small whole number")]
 pub(super) fn feature_of_code(code: f64) -> Feature {
@@ -74,10 +74,10 @@ pub(super) fn feature_of_code(code: f64) -> Feature {
     }
 }
 
-/// An upper bound on sqrt(3) u, by a margin above the rounding of products with it.
+/// An upper bound on sqrt(3) u. Its margin exceeds the rounding of products with it.
 pub(crate) const SQRT_3_U: f64 = 1.7321 * (f64::EPSILON / 2.0);
-/// The bound on the error of a distance for each unit of the largest component of an offset to a vertex, apart from
-/// eta: `ERROR_CONSTANT` u M with M <= sqrt(3) size.
+/// The bound on the error of a distance per unit of the largest component of an offset to a vertex, apart from eta. It
+/// is `ERROR_CONSTANT` u M with M <= sqrt(3) size.
 pub(super) const ERROR_PER_SIZE: f64 = ERROR_CONSTANT * SQRT_3_U;
 
 impl Nearest {
@@ -115,8 +115,8 @@ impl Nearest {
         std::array::from_fn(|k| {
             let sum_at =
                 |shift: i32| scale_by_power(query[k], shift) + scale_by_power(self.offset[k], self.exponent + shift);
-            // The sum is rounded once. It is computed at an eighth of the scale where the offset overflows, and at a
-            // much larger scale where the offset is subnormal.
+            // The sum is rounded once. It is computed at an eighth of the scale if the offset overflows, and at a much
+            // larger scale if the offset is subnormal.
             let offset = scale_by_power(self.offset[k], self.exponent);
             if !offset.is_finite() {
                 sum_at(-3) * 8.0

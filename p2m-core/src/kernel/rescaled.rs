@@ -1,7 +1,7 @@
 //! The kernel for scales at which plain f64 arithmetic could overflow or underflow.
 //!
-//! Every feature is computed on offsets that are scaled by a power of two of its own, by the functions of the plain
-//! kernel and hence with the same bits. It is slow but rarely used: never for f32 scenes, and for f64 scenes only
+//! Each feature is computed from offsets that are scaled by a power of two of its own, with the functions of the plain
+//! kernel and hence with the same bits. The code is slow but rarely used: never for f32 scenes, and for f64 scenes only
 //! beyond 2^-250..2^250, for repeated vertices, and for distances that are tiny relative to the primitive.
 
 use super::edge::{EDGES, EdgeLine, edge_precedes};
@@ -14,7 +14,7 @@ use super::vector::{
 };
 use crate::Feature;
 
-/// The length of an edge, 2^-100 of the distance to the query, below which it is replaced by its ends. The error
+/// The length of an edge, 2^-100 of the distance to the query, below which the edge is replaced by its ends. The error
 /// is 2^-100 M.
 const MIN_EDGE_PER_DISTANCE: f64 = power_of_two(-100);
 
@@ -46,11 +46,11 @@ impl<const N: usize> ScaledOffsets<N> {
         Some(Self { raw, base, offsets: raw.map(|v| v.map(|x| scale_by_power(x, -exponent))), exponent })
     }
 
-    /// Returns a foot that was computed from `offsets` as a result.
+    /// Converts a foot that was computed from `offsets` to a result.
     ///
-    /// Scaling down may have lost small components, so that the key could be below the bound of the box. Such a
-    /// foot is scaled back and clamped to the box of the unscaled offsets. Scaling up loses nothing, so such a
-    /// foot remains scaled.
+    /// Scaling down may have lost small components, so that the key could be below the bound of the box. Such a foot is
+    /// scaled back and clamped to the box of the unscaled offsets. Scaling up loses nothing, so a foot that was scaled
+    /// up remains scaled.
     fn candidate(&self, foot: V3, (feature, weights): (Feature, V3), size: f64) -> Nearest {
         let (offset, exponent) = if self.exponent > 0 {
             let [low, high] = bounds(&self.raw);

@@ -1,13 +1,14 @@
-//! The plain kernel for eight triangles or segments side by side, each with a query point of its own.
+//! The plain kernel for eight triangles or segments side by side, each with its own query point.
 //!
-//! A lane makes the same operations of f64 in the same order as `kernel::triangle` does, most of them by the same
-//! code, so its result has the same bits. It computes all features, where a single triangle skips those that
-//! cannot win; neither choice changes the result. Lanes for which the single kernel leaves this path are
-//! not *certain*, and have to be computed by it:
+//! The basic idea is to give each triangle a lane of its own. Every lane makes the same f64 operations in the same
+//! order as `kernel::triangle`, most of them by the same code, so its result has the same bits. There are no branches
+//! per lane: all features are computed and the best one is selected by masks, whereas the single kernel skips features
+//! that cannot win. Neither choice changes the result. A lane is not *certain* if the single kernel would leave this
+//! path; the single kernel then has to compute it:
 //!
 //! - scales that are not plain, and squares that have lost digits or all of them to underflow;
 //! - slivers, and feet so close to the border of a face that their weights do not decide;
-//! - ties between vertices, between edges, or between the lengths of edges, which the order of vertices decides.
+//! - ties between vertices, between edges, or between the lengths of edges, which are decided by the order of vertices.
 //!
 //! [docs/proofs/accuracy.md] has the proof that the bits are equal.
 //!
@@ -27,11 +28,11 @@ use nalgebra::Point3;
 
 /// The number of primitives that are computed at once.
 pub const SIDE_BY_SIDE: usize = 8;
-/// A number for each primitive.
+/// One number per primitive.
 pub type Row = [f64; SIDE_BY_SIDE];
 
-/// The query points and the vertices of eight primitives. `vertices[v][k]` has coordinate k of vertex v of
-/// each of them.
+/// The query points and the vertices of eight primitives. `vertices[v][k]` has coordinate k of vertex v of each
+/// primitive.
 #[derive(Clone, Debug)]
 pub struct TriangleLanes<const N: usize> {
     queries: [Row; 3],
@@ -45,7 +46,7 @@ impl<const N: usize> Default for TriangleLanes<N> {
 }
 
 impl<const N: usize> TriangleLanes<N> {
-    /// Copies a lane to another one.
+    /// Copies one lane to another.
     #[inline(always)]
     pub fn copy_lane(&mut self, from: usize, to: usize) {
         for row in self.queries.iter_mut().chain(self.vertices.as_flattened_mut()) {
@@ -86,29 +87,29 @@ pub struct LaneResults {
     feature: Row,
     /// Lower bounds on the true distances.
     lower_bound: Row,
-    /// One bit for each lane: whether its result is that of the single kernel.
+    /// One bit per lane: whether its result is certain, that is equal to the result of the single kernel.
     certain: u8,
-    /// One bit for each lane: whether its result was not computed.
+    /// One bit per lane: whether its result was not computed.
     skipped: u8,
 }
 
 impl LaneResults {
-    /// Returns whether the primitive in a lane was left out, and has to be computed with others.
+    /// Returns whether the primitive in a lane was skipped and has to be computed in a later call.
     #[inline(always)]
     #[must_use]
     pub fn was_skipped(&self, lane: usize) -> bool {
         self.skipped >> lane & 1 == 1
     }
 
-    /// Returns the squared distance in a lane and a lower bound on the true distance, and `None` if the single kernel has
-    /// to compute it.
+    /// Returns the squared distance in a lane and a lower bound on the true distance, or `None` if the single kernel
+    /// has to compute the lane.
     #[inline(always)]
     #[must_use]
     pub fn square_and_lower_bound(&self, lane: usize) -> Option<(f64, f64)> {
         (self.certain >> lane & 1 == 1).then(|| (self.square[lane], self.lower_bound[lane]))
     }
 
-    /// Returns the result in a lane, and `None` if the single kernel has to compute it.
+    /// Returns the result in a lane, or `None` if the single kernel has to compute the lane.
     #[inline(always)]
     #[must_use]
     pub fn projection(&self, lane: usize) -> Option<Projection> {
@@ -125,7 +126,7 @@ impl LaneResults {
     }
 }
 
-/// One of three alternatives in each lane: the first, unless one of two masks is true.
+/// One of three alternatives in each lane: the first one, unless one of two masks is true.
 #[derive(Clone, Copy)]
 struct Choice<D: Doubles> {
     is_second: D::Mask,
@@ -133,7 +134,7 @@ struct Choice<D: Doubles> {
 }
 
 impl<D: Doubles> Choice<D> {
-    /// Chooses the smallest of three numbers, the first one of equals.
+    /// Chooses the smallest of three numbers; ties go to the first.
     #[inline(always)]
     fn smallest([x, y, z]: [D; 3]) -> Self {
         let is_second = y.is_below(x);
@@ -151,7 +152,7 @@ impl<D: Doubles> Choice<D> {
         select(self.is_third, z, select(self.is_second, y, x))
     }
 
-    /// Returns 1 for the alternative that is chosen, and 0 for the others.
+    /// Returns 1 for the chosen alternative, and 0 for the others.
     #[inline(always)]
     fn weights(self) -> [D; 3] {
         let (zero, one) = (D::splat(0.0), D::splat(1.0));
@@ -171,7 +172,7 @@ struct BestFeature<D> {
 }
 
 impl<D: Doubles> BestFeature<D> {
-    /// Takes another feature where a mask is true.
+    /// Replaces the feature in the lanes where a mask is true.
     #[inline(always)]
     fn replace(&mut self, mask: D::Mask, other: Self) {
         self.square = D::select(mask, other.square, self.square);
@@ -180,7 +181,8 @@ impl<D: Doubles> BestFeature<D> {
         self.feature = D::select(mask, other.feature, self.feature);
     }
 
-    /// Writes the result. The nearest point lies in the box `bounds`, and is `vertex` where the feature is a vertex.
+    /// Stores the result. The nearest point lies in the box `bounds`, and equals `vertex` where the feature is a
+    /// vertex.
     #[inline(always)]
     fn store(
         self,
@@ -218,27 +220,28 @@ impl<D: Doubles> BestFeature<D> {
     }
 }
 
-/// Returns whether the largest component of some offsets is plain.
+/// Returns whether the largest component of the offsets is in the plain range.
 #[inline(always)]
 fn is_plain_size<D: Doubles>(size: D) -> D::Mask {
     D::splat(MIN_PLAIN_SIZE).is_at_most(size) & size.is_at_most(D::splat(MAX_PLAIN_SIZE))
 }
 
-/// Returns whether the features of some offsets are computed in plain f64, given their largest component and the
-/// inverse of the square of the shortest edge.
+/// Returns whether the single kernel would use plain f64 for these offsets, given their largest component and the
+/// inverse square of the shortest edge.
 #[inline(always)]
 fn is_plain<D: Doubles>(size: D, inverse: D) -> D::Mask {
     is_plain_size(size) & (inverse * (size * size)).is_at_most(D::splat(MAX_SIZE_PER_EDGE_SQUARED))
 }
 
-/// Returns the line of edge i. Without ties, the nearer end is that with the smaller square.
+/// Returns the line of edge i. Without ties, the nearer end is the end with the smaller square.
 #[inline(always)]
 fn line<D: Doubles>(offsets: &[[D; 3]; 3], squares: &[D; 3], i: usize) -> EdgeLine<D> {
     let [j, k] = EDGES[i];
     EdgeLine::from_nearer_end([offsets[j], offsets[k]], [squares[j], squares[k]], squares[k].is_below(squares[j]))
 }
 
-/// The number of triangles that may be left out if a vertex is the nearest point of all others.
+/// The most triangles that may be skipped if the nearest points of all others are vertices. There is no record of how
+/// the number was tuned.
 const MAX_SKIPPED: u32 = 3;
 
 /// The nearest vertices of eight triangles.
@@ -253,13 +256,14 @@ struct NearestVertices<D: Doubles> {
     size: D,
     /// The squared lengths of the offsets.
     squares: [D; 3],
-    /// Which vertex is the nearest one.
+    /// The index of the nearest vertex.
     nearest: Choice<D>,
-    /// That vertex as a feature.
+    /// The nearest vertex as a feature.
     vertex: BestFeature<D>,
     /// Whether two vertices are equally near.
     are_tied: D::Mask,
-    /// Whether both edges at the nearest vertex clearly lead away from the query, so that the vertex is the answer.
+    /// Whether both edges at the nearest vertex clearly lead away from the query, so that the vertex is the nearest
+    /// point.
     is_vertex: D::Mask,
 }
 
@@ -293,13 +297,13 @@ impl<D: Doubles> NearestVertices<D> {
         self.is_vertex & is_plain_size(self.size) & !self.are_tied
     }
 
-    /// Returns one bit for each triangle whose nearest point may be no vertex.
+    /// Returns one bit per triangle: whether its nearest point may be other than a vertex.
     #[inline(always)]
     fn uncertain_lanes(&self) -> u8 {
         !D::bits(self.is_certain())
     }
 
-    /// Returns the results of the triangles whose nearest point is certainly a vertex, without the others.
+    /// Returns the results of the triangles whose nearest point is certainly a vertex, and skips the others.
     #[inline(always)]
     fn certain(&self) -> LaneResults {
         let point = self.nearest.of_vectors(self.vertices);
@@ -308,7 +312,7 @@ impl<D: Doubles> NearestVertices<D> {
     }
 }
 
-/// Returns the squared distances of those of eight triangles whose nearest point is certainly a vertex, with the bits of
+/// Returns the squared distance of each of eight triangles whose nearest point is certainly a vertex, with the bits of
 /// the single kernel, and infinity for the others.
 #[inline(always)]
 #[must_use]
@@ -321,7 +325,7 @@ pub fn certain_vertex_squares<D: Doubles>(eight: &TriangleLanes<3>) -> Row {
 
 /// Computes the nearest points of eight triangles.
 ///
-/// If `may_skip`, and a vertex is the nearest point of most of them, the others are left out.
+/// If `may_skip`, and the nearest point of most of them is a vertex, the others are skipped.
 #[inline(always)]
 #[must_use]
 fn triangles<D: Doubles>(eight: &TriangleLanes<3>, may_skip: bool) -> LaneResults {
@@ -413,8 +417,8 @@ fn edge_weights<D: Doubles>(line: &EdgeLine<D>, t: D) -> (D, D) {
     (D::select(line.is_second_nearer, t, rest), D::select(line.is_second_nearer, rest, t))
 }
 
-/// Returns the weights of a foot on a face in the order of the vertices. They are given for the nearer and the farther
-/// end of the longest edge, and the apex.
+/// Returns the weights of a foot on a face in the order of the vertices. The arguments are the weights of the nearer
+/// and the farther end of the longest edge, and of the apex.
 #[inline(always)]
 fn face_weights<D: Doubles>([wn, wf, wa]: [D; 3], longest: Choice<D>, lines: &[EdgeLine<D>; 3]) -> [D; 3] {
     let mut ends = [[wn; 2]; 3];
@@ -457,14 +461,14 @@ fn segments<D: Doubles>(eight: &TriangleLanes<2>) -> LaneResults {
     best.store(query, bounds(&vertices), select(is_second, vertices[1], vertices[0]), size, is_uncertain)
 }
 
-/// Runs [`triangles`] with an instruction set. No lane is certain where lanes of f64 are slower than the single kernel.
+/// Runs [`triangles`] with an instruction set. No lane is certain if lanes of f64 are slower than the single kernel.
 #[inline(never)]
 #[must_use]
 pub fn evaluate_triangles(isa: Isa, eight: &TriangleLanes<3>, may_skip: bool) -> LaneResults {
     isa.run_in_doubles(Triangles(eight, may_skip), LaneResults::default)
 }
 
-/// Runs [`segments`] with an instruction set. No lane is certain where lanes of f64 are slower than the single kernel.
+/// Runs [`segments`] with an instruction set. No lane is certain if lanes of f64 are slower than the single kernel.
 #[inline(never)]
 #[must_use]
 pub fn evaluate_segments(isa: Isa, eight: &TriangleLanes<2>) -> LaneResults {
@@ -513,8 +517,8 @@ mod tests {
         (p.key, point.map(f64::to_bits), p.feature, p.barycentric.map(f64::to_bits), p.error.to_bits())
     }
 
-    /// Returns a query and a primitive with this number of vertices: half of the cases are those that break kernels,
-    /// the others are of ordinary shapes and sizes.
+    /// Returns a query and a primitive with this number of vertices. Half of the cases are built to break kernels, and
+    /// the others have ordinary shapes and sizes.
     fn case(rng: &mut impl Rng, vertex_count: usize) -> ([f64; 3], Vec<[f64; 3]>) {
         if rng.random_range(0..2) == 0 {
             loop {

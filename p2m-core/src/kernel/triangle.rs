@@ -3,26 +3,26 @@
 //! All computations use *offsets*, the vertices minus the query, so the query is the origin. Only this subtraction
 //! depends on the position of the scene in space; it moves each vertex by at most u times its distance. The kernel then
 //! computes the distance from the origin to the triangle of the rounded offsets, whatever shape rounding has given it.
-//! The result is the smallest of the keys of
+//! The result is the smallest key of
 //!
 //! - the three vertices,
 //! - the feet on the three edges ([`EdgeLine`], which segments use as well), and
 //! - the foot on the face ([`FacePlane`]).
 //!
-//! A foot is accepted only if its weights are positive, so features of lower dimension cover all other cases. Values of
-//! vertices and edges depend on their own ends alone, in any order, and so have the same bits in every primitive that
-//! contains them. [docs/proofs/accuracy.md] derives the error bound.
+//! A foot is accepted only if its weights are positive, so features of lower dimension cover all other cases. The
+//! values of a vertex or an edge depend on its own ends alone, in any order, and so have the same bits in every
+//! primitive that contains it. [docs/proofs/accuracy.md] derives the error bound.
 //!
 //! # Work
 //!
 //! Rough squares of all feet are cheap. With a margin wider than their errors, they exclude all features that cannot
-//! win; in most cases one feature remains to be computed in full. They also exclude primitives beyond the limit of the
-//! caller. Neither changes the result.
+//! win; in most cases one feature remains to be computed in full. They also exclude primitives beyond the caller's
+//! limit. Neither changes the result.
 //!
 //! # Scale
 //!
 //! No step compares with an absolute constant. Plain f64 arithmetic is used if no square can leave its range
-//! ([`has_plain_scale`]). Otherwise every feature is computed on offsets that are scaled by a power of two of its own
+//! ([`has_plain_scale`]). Otherwise each feature is computed from offsets that are scaled by a power of two of its own
 //! ([`rescaled`](super::rescaled)), by the same functions and hence with the same bits. The choice between formulas
 //! depends on ratios of lengths, and so on the shape but never on the scale.
 //!
@@ -38,29 +38,30 @@ use super::vector::{
 };
 use crate::Feature;
 
-/// The largest ratio of the squares of size and shortest edge for which the plain kernel is used. The rescaled kernel
+/// The largest ratio of size to shortest edge, squared, for which the plain kernel is used. The rescaled kernel
 /// replaces edges below 2^-100 of the distance by their ends; this limit is stricter, so that the two kernels agree.
 pub(super) const MAX_SIZE_PER_EDGE_SQUARED: f64 = power_of_two(196);
 /// The least size of offsets whose squares, and squares of squares, are well inside of the range of f64.
 pub(super) const MIN_PLAIN_SIZE: f64 = power_of_two(-250);
 /// The largest size of offsets whose squares, and squares of squares, are well inside of the range of f64.
 pub(super) const MAX_PLAIN_SIZE: f64 = power_of_two(250);
-/// The margin, relative to the squared size of the offsets, by which a feature with a larger rough square cannot win.
-/// Rough squares of edges and faces of ordinary shape have errors below 2^-37 of the squared size.
+/// The margin, relative to the squared size of the offsets, by which a rough square has to exceed another one so that
+/// its feature cannot win. Rough squares of edges and faces of ordinary shape have errors below 2^-37 of the squared
+/// size.
 pub(super) const ROUGH_SQUARE_MARGIN: f64 = power_of_two(-34);
 /// The margin, relative to the squared size of the offsets, by which an edge certainly leads away from the query. A
 /// foot that is accepted wrongly because of rounding is within 2^-40 of the squared size of a correct foot.
 pub(super) const OUTWARD_MARGIN: f64 = power_of_two(-38);
 
-/// Returns whether the features of these offsets can be computed in plain f64: the largest component `size` and the
-/// shortest edge, given by the inverse of its square, are of ordinary size. A zero edge is not.
+/// Returns whether the features of these offsets can be computed in plain f64: the largest component, `size`, and the
+/// shortest edge, whose inverse square is `inverse`, are of ordinary size. An edge of length zero is not.
 #[inline(always)]
 fn has_plain_scale(size: f64, inverse: f64) -> bool {
     (MIN_PLAIN_SIZE..=MAX_PLAIN_SIZE).contains(&size) && inverse * (size * size) <= MAX_SIZE_PER_EDGE_SQUARED
 }
 
-/// Returns the index of the nearest of `vertices`, whose offsets have the squared lengths `squares`. Of equal squares
-/// the first vertex in lexicographic order wins.
+/// Returns the index of the nearest of `vertices`, whose offsets have the squared lengths `squares`. Ties go to the
+/// first vertex in lexicographic order.
 #[inline(always)]
 fn nearest_vertex<const N: usize>(vertices: &[V3; N], squares: &[f64; N]) -> usize {
     let mut best = 0;
@@ -86,8 +87,8 @@ pub(crate) fn point(query: V3, vertex: V3, prune: f64) -> Option<Nearest> {
     Some(found.unwrap_or_else(|| rescaled::point(query, vertex)))
 }
 
-/// Returns a lower bound on the key, given the box of the offsets. The arithmetic is
-/// that of [`Aabb::lower_bound`](crate::Aabb::lower_bound).
+/// Returns a lower bound on the key, given the box of the offsets. It uses the arithmetic of
+/// [`Aabb::lower_bound`](crate::Aabb::lower_bound).
 #[inline(always)]
 fn box_bound([low, high]: [V3; 2]) -> f64 {
     let mut gap = [0.0; 3];
@@ -145,8 +146,8 @@ pub(crate) fn triangle(query: V3, vertices: [V3; 3], prune: f64) -> Option<Neare
     triangle_features_outlined(query, &vertices, &offsets, bounds, prune)
 }
 
-/// Calls [`triangle_features`]. It is not inlined, because it is large and would take registers from the loops
-/// that call it.
+/// Calls [`triangle_features`] without inlining it, because it is large and would take registers from the loops that
+/// call it.
 #[inline(never)]
 fn triangle_features_outlined(
     query: V3,
@@ -159,7 +160,7 @@ fn triangle_features_outlined(
 }
 
 /// Returns the nearest point of a triangle that is probably near, or `None` if its key certainly exceeds `prune`. It is
-/// inlined, and does not test the box of the triangle.
+/// inlined, and skips the test of the triangle's box.
 #[inline(always)]
 pub(crate) fn near_triangle(query: V3, vertices: [V3; 3], prune: f64) -> Option<Nearest> {
     let offsets = [sub(vertices[0], query), sub(vertices[1], query), sub(vertices[2], query)];
@@ -172,7 +173,7 @@ fn triangle_features(query: V3, vertices: &[V3; 3], offsets: &[V3; 3], bounds: [
     let squares = [norm_squared(offsets[0]), norm_squared(offsets[1]), norm_squared(offsets[2])];
     let vertex = nearest_vertex(vertices, &squares);
     // If both edges at the nearest vertex clearly lead away from the query, no foot is accepted on them or on the face,
-    // and a foot on the third edge is farther. So the vertex is the answer.
+    // and a foot on the third edge is farther. So the vertex is the nearest point.
     let offset = offsets[vertex];
     let [next, last] = [sub(offsets[(vertex + 1) % 3], offset), sub(offsets[(vertex + 2) % 3], offset)];
     let least = smaller(dot(offset, next), dot(offset, last));
@@ -202,7 +203,7 @@ fn triangle_features(query: V3, vertices: &[V3; 3], offsets: &[V3; 3], bounds: [
     };
     let mut rough = smaller(squares[vertex], face);
     for line in &lines {
-        // For a distant query rounding can confuse the two ends, and the foot then lies beyond the farther one.
+        // For a distant query, rounding can confuse the two ends. The foot then lies beyond the farther one.
         rough = if line.t > 0.0 && line.t < 1.0 { smaller(line.square, rough) } else { rough };
     }
     let margin = ROUGH_SQUARE_MARGIN * error_factor * (size * size);

@@ -1,4 +1,4 @@
-//! Vectors of three f64 as arrays, with a fixed order of operations.
+//! Vectors of three f64, as arrays with a fixed order of operations.
 //!
 //! The contract fixes every rounding, so no expression of the kernel may depend on the order in which a library sums.
 
@@ -72,7 +72,7 @@ pub fn clamp<T: Float>(x: [T; 3], low: [T; 3], high: [T; 3]) -> [T; 3] {
     [larger(x[0], low[0]), larger(x[1], low[1]), larger(x[2], low[2])]
 }
 
-/// Returns the lower and the upper corner of the smallest box around some vectors.
+/// Returns the lower and the upper corner of the smallest box around several vectors.
 #[inline(always)]
 pub fn bounds<T: Float, const N: usize>(vectors: &[[T; 3]; N]) -> [[T; 3]; 2] {
     let (mut low, mut high) = (vectors[0], vectors[0]);

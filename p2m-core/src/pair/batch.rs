@@ -1,11 +1,11 @@
-//! Batches of shapes and of motions.
+//! Batches of pair queries, over shapes or over motions.
 
 use super::{ClosestPair, Hull, PairOptions, PairQuery, bounds_of};
 use crate::batch::{BatchOptions, map};
 use crate::{Primitive, Real};
 use nalgebra::{Isometry3, Point3};
 
-/// Returns the nearest points of a scene and each of some shapes, in their order, on all threads.
+/// Returns the nearest points of a scene and each shape, in the order of the shapes, on all threads.
 ///
 /// ```
 /// use nalgebra::Point3;
@@ -37,8 +37,8 @@ pub fn closest_to_each<T: Real, P: Primitive<T> + Sync, I: PairQuery<T> + Sync>(
     map(shapes, batch, centre, |shape| index.closest_to(shape, options))
 }
 
-/// Returns the nearest points of two scenes for each of some motions of the second one, in their order, on all threads.
-/// The motion and the hint of the options are not used.
+/// Returns the nearest points of two scenes for each motion of the second one, in the order of the motions, on all
+/// threads. The motion and the hint of the options are not used.
 ///
 /// ```
 /// use nalgebra::{Isometry3, Point3};

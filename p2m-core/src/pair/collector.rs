@@ -1,4 +1,4 @@
-//! The collector of near pairs of primitives, and the answer of a search for them.
+//! The collector of near pairs of primitives, its options, and the answer of a search for pairs.
 
 use super::NearestPair;
 use crate::query::answer::{ROUND_DOWN, square_within};
@@ -24,17 +24,18 @@ use std::ops::ControlFlow;
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct PairOptions<T: Real> {
-    /// The largest distance of an answer, inclusive, in units of the scene. It is infinite by default. Within 0 are the
-    /// primitives that intersect, and no others whose distance rounds to 0.
+    /// The largest distance of an answer, inclusive, in units of the scene. It is infinite by default. With 0, only
+    /// primitives that intersect are answers, and no others whose distance rounds to 0.
     pub max_distance: T,
-    /// The motion of the second scene. It is applied to each vertex in f64, and each coordinate is rounded: the answer
-    /// is that of the scene of these vertices. `None`, the default, leaves the scene where it is.
+    /// The motion of the second scene. It is applied to each vertex in f64, and each coordinate is rounded; the answer
+    /// is exact for the rounded vertices. `None`, the default, leaves the scene where it is.
     pub motion: Option<Isometry3<f64>>,
     /// The radius around the shape or the second scene, in units of the scene: all points within this distance belong
-    /// to it, so a segment becomes a capsule. It is 0 by default. Nothing is near a shape with a negative radius, or NaN.
+    /// to it, so a segment becomes a capsule. It is 0 by default. Nothing is near a shape with a negative or NaN
+    /// radius.
     pub radius: T,
-    /// A pair that is probably near, such as the answer for the last motion. It is evaluated first, so a good one saves
-    /// most of the search; it never changes the answer. Ids that a scene does not have are ignored.
+    /// A pair that is probably near, such as the answer for the previous motion. It is evaluated first, so a good hint
+    /// saves most of the search; it never changes the answer. Ids that a scene does not have are ignored.
     pub hint: Option<[PrimitiveId; 2]>,
 }
 
@@ -67,44 +68,44 @@ impl<T: Real> PairOptions<T> {
     }
 }
 
-/// The nearest points of two scenes, or of a scene and a shape. Lengths are in units of the scenes, and arrays of two
-/// have the first scene first.
+/// The nearest points of two scenes, or of a scene and a shape. Lengths are in units of the scenes. In arrays of two,
+/// the first entry belongs to the first scene.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct ClosestPair<T: Real> {
-    /// The nearest points, that of the second scene after its motion. With a radius the second one is moved towards the
-    /// first by the radius, or is the first one if the scenes intersect.
+    /// The nearest points; the point of the second scene is given after the motion. With a radius, the second point is
+    /// moved towards the first by the radius, or equals the first one if the scenes intersect.
     pub points: [Point3<T>; 2],
-    /// The distance of the scenes, which is 0 if they intersect. With a radius it is the distance of the primitives less
-    /// the radius, rounded.
+    /// The distance between the scenes, which is 0 if they intersect. With a radius it is the distance between the
+    /// primitives less the radius, rounded.
     pub distance: T,
-    /// A certified lower bound on the true distance, for the second scene as its motion has rounded it
+    /// A certified lower bound on the true distance. It holds for the second scene as rounded by its motion
     /// ([`Motion`](super::Motion)).
     pub lower_bound: T,
-    /// The primitives that contain the points: of several pairs with equal keys the one with the lowest id in the first
-    /// scene, then in the second. A shape has the id 0.
+    /// The primitives that contain the points. Ties go to the lowest id in the first scene, then to the lowest id in
+    /// the second. A shape has the id 0.
     pub primitives: [PrimitiveId; 2],
     /// The features of these primitives that contain the points.
     pub features: [Feature; 2],
     /// The weights of the vertices of each primitive.
     pub barycentric: [[T; 3]; 2],
-    /// Whether the two primitives intersect, which is exact. If no two primitives do, it is false. With a radius it is
-    /// whether the computed distance of the primitives is at most the radius.
+    /// Whether the two primitives intersect, which is exact. If it is false, no two primitives intersect. With a radius
+    /// it is whether the computed distance between the primitives is at most the radius.
     pub is_intersecting: bool,
 }
 
-/// Receives the pairs that a search finds, and decides what it may leave out.
+/// A collector of pairs: it receives the pairs that a search finds, and decides which parts the search may skip.
 pub struct Pairs<'a> {
-    /// The largest f64 distance of primitives that is reported within the largest one.
+    /// The largest f64 distance between primitives that is reported as within the largest distance.
     reach: f64,
     /// The radius around the second scene.
     radius: f64,
-    /// The square that lower bounds must not exceed.
+    /// The square above which lower bounds are pruned.
     prune: f64,
     mode: Mode<'a>,
-    /// The numbers that are added to the ids that a search offers.
+    /// The offsets that are added to the ids that a search offers.
     offsets: [usize; 2],
-    /// Primitives of the first scene that are left out, in ascending order.
+    /// Primitives of the first scene that are ignored, in ascending order.
     left_out: &'a [PrimitiveId],
     /// Whether nothing can be within reach.
     is_empty: bool,
@@ -116,12 +117,12 @@ pub struct Pairs<'a> {
 type Found = Vec<([PrimitiveId; 2], NearestPair)>;
 
 enum Mode<'a> {
-    /// The nearest pair so far, and the smallest certified bound of all.
+    /// The nearest pair so far, and the smallest certified lower bound of all pairs.
     Nearest { best: Option<([PrimitiveId; 2], NearestPair)>, certified: f64 },
     /// All pairs within reach.
     Each(&'a mut dyn FnMut([PrimitiveId; 2], &NearestPair) -> ControlFlow<()>),
-    /// All pairs that may be nearest once the errors of the kernel are allowed for. The true distance of some pair is at
-    /// most `upper_bound`.
+    /// All pairs that may be nearest, given the error bounds of the kernel. The true distance of some pair is at most
+    /// `upper_bound`.
     Certification { upper_bound: f64, best: Option<([PrimitiveId; 2], NearestPair)>, found: Found },
 }
 
@@ -130,11 +131,11 @@ impl<'a> Pairs<'a> {
         let (largest, radius) = (options.max_distance.to_f64(), options.radius.to_f64());
         let reach = match (largest, radius) {
             (_, radius) if radius > 0.0 => largest + radius,
-            // Within 0 is what intersects, not what rounds to 0.
+            // Only primitives that intersect are within 0, not every distance that rounds to 0.
             (0.0, _) => 0.0,
             _ => options.max_distance.to_f64_above(),
         };
-        // Nothing is within NaN or below 0.
+        // Nothing is within a NaN or negative distance.
         let is_valid = largest >= 0.0 && radius >= 0.0;
         Self {
             reach,
@@ -154,8 +155,8 @@ impl<'a> Pairs<'a> {
         Self::new(options, Mode::Nearest { best: None, certified: f64::INFINITY })
     }
 
-    /// Creates the collector that calls a function for each pair within the largest distance of the options
-    /// until it breaks.
+    /// Creates the collector that calls a function for each pair within the largest distance of the options, until the
+    /// function breaks.
     #[must_use]
     pub fn each<T: Real>(
         options: &PairOptions<T>,
@@ -164,13 +165,13 @@ impl<'a> Pairs<'a> {
         Self::new(options, Mode::Each(visit))
     }
 
-    /// Leaves out primitives of the first scene, whose ids are in ascending order.
+    /// Ignores primitives of the first scene, whose ids are in ascending order.
     pub(crate) fn without(self, left_out: &'a [PrimitiveId]) -> Self {
         Self { left_out, ..self }
     }
 
     /// Creates a collector of all pairs that may be nearest, if the nearest one is within the largest distance of the
-    /// options, to which the radius is not added.
+    /// options. The radius is not added to that distance.
     pub(crate) fn for_certification<T: Real>(options: &PairOptions<T>) -> Self {
         let options = PairOptions { radius: T::zero(), ..*options };
         let upper_bound = options.max_distance.to_f64_above();
@@ -194,8 +195,8 @@ impl<'a> Pairs<'a> {
         }
     }
 
-    /// Returns the square above which the kernel need not evaluate a pair that no bound excludes. Rounding may let a key
-    /// exceed a limit that the true distance does not, so all such pairs are evaluated for certified answers.
+    /// Returns the square above which the kernel may skip a pair that no bound excludes. Rounding may let a key exceed
+    /// a limit that the true distance does not, so for certified answers the kernel evaluates all such pairs.
     #[inline]
     pub(crate) fn kernel_limit(&self) -> f64 {
         if matches!(self.mode, Mode::Certification { .. }) { f64::INFINITY } else { self.prune }
@@ -208,17 +209,17 @@ impl<'a> Pairs<'a> {
         self.prune
     }
 
-    /// Sets the numbers that are added to the ids that a search offers, for scenes of several trees.
+    /// Sets the offsets that are added to the ids that a search offers, for scenes of several trees.
     pub(crate) fn set_offsets(&mut self, offsets: [usize; 2]) {
         self.offsets = offsets;
     }
 
-    /// Returns the ids of primitives of the trees that are searched as ids of their scenes.
+    /// Converts ids of primitives of the searched trees to ids of their scenes.
     fn scene_ids(&self, ids: [PrimitiveId; 2]) -> [PrimitiveId; 2] {
         [0, 1].map(|i| PrimitiveId::new(ids[i].index() + self.offsets[i]))
     }
 
-    /// Returns the distance beyond which nothing can change the answer. It is NaN when the search is over.
+    /// Returns the distance beyond which nothing can change the answer, or NaN once the search is over.
     #[doc(hidden)]
     #[must_use]
     pub fn reach(&self) -> f64 {
@@ -232,7 +233,7 @@ impl<'a> Pairs<'a> {
         self.is_empty || self.has_ended
     }
 
-    /// Returns whether the function that was given to [`each`](Self::each) has ended the search.
+    /// Returns whether the function that was passed to [`each`](Self::each) has ended the search.
     #[must_use]
     pub fn has_ended(&self) -> bool {
         self.has_ended
@@ -245,7 +246,7 @@ impl<'a> Pairs<'a> {
         !matches!(self.mode, Mode::Each(_))
     }
 
-    /// Returns the vector from the nearest point of the first scene to that of the second, for the nearest pair so far.
+    /// Returns the vector between the points of the nearest pair so far, from the first scene to the second.
     #[doc(hidden)]
     #[must_use]
     pub fn separation(&self) -> Option<[f64; 3]> {
@@ -255,7 +256,8 @@ impl<'a> Pairs<'a> {
     /// Returns whether no pair of primitives with at least these ids can change the answer, if the square of the gap
     /// between their boxes is at least `square`. Such a pair could only tie with the nearest one, which has lower ids.
     ///
-    /// Keys never are below the gap, so this is exact. For certified answers keys decide only that primitives intersect.
+    /// Keys are never below the gap, so this is exact. For certified answers, keys only decide whether primitives
+    /// intersect.
     #[inline]
     pub(crate) fn is_settled(&self, square: f64, ids: impl FnOnce() -> [PrimitiveId; 2]) -> bool {
         let Some((best, pair)) = self.best() else { return false };
@@ -266,13 +268,13 @@ impl<'a> Pairs<'a> {
         can_only_tie && *best <= self.scene_ids(ids())
     }
 
-    /// Returns whether a pair is within reach. Only pairs that intersect are within 0: the distance of others is
-    /// positive, even where it rounds to 0.
+    /// Returns whether a pair is within reach. Only pairs that intersect are within 0. The distance of any other pair
+    /// is positive, even if it rounds to 0.
     fn is_within(&self, pair: &NearestPair) -> bool {
         pair.is_intersecting || self.reach > 0.0 && pair.key.distance() <= self.reach
     }
 
-    /// Takes the result of the kernel for a pair of primitives.
+    /// Takes the kernel's result for a pair of primitives.
     pub fn offer_result(&mut self, ids: [PrimitiveId; 2], result: Result<NearestPair, f64>) {
         match (result, &mut self.mode) {
             (Ok(pair), _) => self.offer(ids, &pair),
@@ -311,8 +313,8 @@ impl<'a> Pairs<'a> {
                 if lower_bound(pair) <= *upper_bound {
                     found.push((ids, *pair));
                 }
-                // The sum is rounded up, with a smallest subnormal for the rounding of the distance. The comparison is
-                // false for NaN.
+                // The sum is rounded up, and a smallest subnormal covers the rounding of the distance. The comparison
+                // is false for NaN.
                 let at_most = (distance + pair.error) * (1.0 + 4.0 * f64::EPSILON) + 8.0 * f64::from_bits(1);
                 if at_most < *upper_bound {
                     *upper_bound = at_most;
@@ -322,12 +324,12 @@ impl<'a> Pairs<'a> {
         }
     }
 
-    /// Returns the nearest pair, or `None` if there was none within reach.
+    /// Returns the nearest pair, or `None` if none is within reach.
     #[must_use]
     pub fn finish<T: Real>(self) -> Option<ClosestPair<T>> {
         let Mode::Nearest { best: Some((primitives, pair)), certified } = self.mode else { return None };
         let between = pair.key.distance();
-        // What was pruned is farther than the best pair, whose square is exact to 5 u.
+        // Everything that was pruned is farther than the best pair, whose square is exact to 5 u.
         let bound =
             certified.min(between.min(f64::MAX) * ROUND_DOWN) * ROUND_DOWN - 8.0 * f64::from_bits(1) - self.radius;
         let [on_first, on_second] = pair.points;

@@ -1,15 +1,15 @@
 //! The nearest points inside of two edges that are not parallel.
 //!
 //! Let P run from p0 along D and Q from q0 along E, with r = q0 - p0 and N = D x E. The nearest point of the line of P
-//! to that of Q is at the parameter s = (r x E).N / N.N. The distance from the point at s + ds to the line of Q is the
-//! root of d^2 + (ds |D| sin)^2, where sin is that of the angle between the lines. N is computed in double-double and
-//! rounded, so it has a relative error of 2 u for every angle. Then the error of s |D| sin is a few u |r|, however
-//! nearly parallel the edges are: the plain cross product would lose 1 / sin of that.
+//! to the line of Q is at the parameter s = (r x E).N / N.N. The distance from the point at s + ds to the line of Q is
+//! the root of d^2 + (ds |D| sin)^2, where sin is the sine of the angle between the lines. N is computed in
+//! double-double and rounded, so it has a relative error of 2 u for every angle. Then the error of s |D| sin is a few u
+//! |r|, however nearly parallel the edges are; with the plain cross product it would be larger by the factor 1 / sin.
 //!
-//! Rounding of s matters no further, because the distance is that from the point at the rounded s to the edge Q, which
-//! the kernel for segments computes. Vertices cover all cases in which a nearest point is not strictly inside.
+//! The rounding of s has no further effect: the kernel for segments computes the distance from the point at the rounded
+//! s to the edge Q. Vertices cover all cases in which a nearest point is not strictly inside.
 //!
-//! The edges are put into an order, and so are their ends, so the value does not depend on how they are given.
+//! The edges are sorted, and so are the ends of each edge, so the value does not depend on the order of the arguments.
 
 use crate::Feature;
 use crate::kernel::arithmetic::cross;
@@ -19,22 +19,22 @@ use crate::kernel::vector::{
 };
 use crate::kernel::{Key, triangle};
 
-/// The sizes of edges and offsets for which products of four of them, and of the smallest sine, are in range.
+/// The sizes of edges and offsets for which products of four of them and of the smallest sine are in range.
 const PLAIN_SIZES: std::ops::RangeInclusive<f64> = power_of_two(-100)..=power_of_two(100);
-/// Edges with differences of vertices from here on are scaled down, so that sums of such differences are finite.
+/// The least size of edges that are scaled down, so that sums of differences of vertices are finite.
 const HUGE: f64 = power_of_two(1020);
-/// The exponent of the scale of such edges. The digits that they lose are far below the error of their distance.
+/// The exponent of the scale of huge edges. The digits that they lose are far below the error of their distance.
 const HUGE_SHIFT: i32 = 6;
 
 /// The nearest points inside of two edges.
 pub(super) struct NearestOnEdges {
     pub(super) key: Key,
     pub(super) points: [V3; 2],
-    /// The parameters of the points, from 0 at the first end to 1.
+    /// The parameters of the points: 0 at the first end, 1 at the second.
     pub(super) parameters: [f64; 2],
 }
 
-/// Returns the nearest points of two edges, if both are strictly inside and the edges are not parallel.
+/// Returns the nearest points of two edges, if both points are strictly inside and the edges are not parallel.
 pub(super) fn nearest_on_edges(p: &[V3; 2], q: &[V3; 2]) -> Option<NearestOnEdges> {
     let [low, high] = bounds(&[p[0], p[1], q[0], q[1]]);
     let is_huge = largest(&[sub(high, low)]) >= HUGE;
@@ -69,7 +69,7 @@ fn within(x: V3, edge: &[V3; 2]) -> V3 {
 
 /// The nearest points inside of two edges, relative to the first end of the first one.
 struct Inside {
-    /// The vector from the point of the first edge to that of the second.
+    /// The vector from the point of the first edge to the point of the second.
     offset: V3,
     /// The point of the first edge.
     foot: V3,
@@ -84,14 +84,14 @@ fn inside(p: &[V3; 2], q: &[V3; 2]) -> Option<Inside> {
     if nearest.feature != Feature::Edge(0) {
         return None;
     }
-    // The gap of the boxes is a lower bound on the distance, and it stays one for the computed distance.
+    // The gap between the boxes is a lower bound on the distance, and it remains one for the computed distance.
     let ([p_low, p_high], [q_low, q_high]) = (bounds(p), bounds(q));
     let offset = clamp(nearest.unscaled_offset(), sub(q_low, p_high), sub(q_high, p_low));
     Some(Inside { offset, foot, parameters: [s, nearest.weights[1]] })
 }
 
 /// Returns the parameter, strictly between 0 and 1, of the point at which a line from the origin along `d` is nearest
-/// to the line through `r` along `e`; `None` if it is elsewhere or the lines are parallel.
+/// to the line through `r` along `e`. It is `None` if the parameter is not in that range or the lines are parallel.
 fn parameter_of_line(d: V3, r: V3, e: V3) -> Option<f64> {
     let sizes = [d, r, e].map(|v| largest(&[v]));
     let is_plain = PLAIN_SIZES.contains(&sizes[0]) && PLAIN_SIZES.contains(&sizes[2]) && sizes[1] <= *PLAIN_SIZES.end();
@@ -107,7 +107,7 @@ fn parameter_of_line(d: V3, r: V3, e: V3) -> Option<f64> {
     };
     let normal = accurate_cross(d, e);
     let s = dot(cross(r, e), normal) / dot(normal, normal);
-    // The comparison is false for NaN, which parallel lines give.
+    // Parallel lines give NaN, for which the comparison is false.
     (s > 0.0 && s < 1.0).then_some(s)
 }
 

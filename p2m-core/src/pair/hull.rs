@@ -1,4 +1,4 @@
-//! The vertices of a primitive in f64.
+//! A primitive as the convex hull of its vertices in f64.
 
 use crate::kernel::vector::V3;
 use crate::real::to_f64_array;
@@ -7,7 +7,7 @@ use crate::{Primitive, Real};
 /// The one to three vertices of a primitive in f64. The primitive is their convex hull.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Hull {
-    /// The vertices; those that the primitive does not have are zero.
+    /// The vertices; unused ones are zero.
     vertices: [V3; 3],
     len: usize,
 }
@@ -43,7 +43,7 @@ impl Hull {
         &self.vertices[..self.len]
     }
 
-    /// Returns the hull of moved vertices.
+    /// Applies a motion to the vertices.
     #[must_use]
     pub fn map(mut self, motion: impl Fn([f64; 3]) -> [f64; 3]) -> Self {
         self.vertices[..self.len].iter_mut().for_each(|vertex| *vertex = motion(*vertex));

@@ -6,8 +6,9 @@ use crate::batch::Interruptible;
 use crate::{Aabb, PrimitiveId, Real};
 
 impl<'a, I: ?Sized, F: Fn() -> bool> Interruptible<'a, I, F> {
-    /// Wraps an index whose searches for pairs, of which it is the first scene, call the function before each step. Once
-    /// it returns `false`, a search ends, and its answer is that of the primitives that it has compared.
+    /// Wraps an index so that its searches for pairs call the function before each step. The index has to be the first
+    /// scene of the search. Once the function returns `false`, the search ends, and its answer is the best among the
+    /// primitives that it has compared.
     ///
     /// ```
     /// use p2m_core::batch::Interruptible;

@@ -1,4 +1,4 @@
-//! Whether two primitives intersect, decided exactly.
+//! The exact test whether two primitives intersect.
 //!
 //! A degenerate triangle is the segment between its outermost vertices, and a segment without length is a point. Two
 //! hulls intersect if a vertex of one is on the other, if two edges cross, or if an edge of one pierces the face of the
@@ -12,7 +12,7 @@ use crate::kernel::vector::{V3, dot, exponent, largest, lexicographically_less, 
 use crate::predicates::{orientation_2d, orientation_3d};
 use std::cmp::Ordering;
 
-/// Returns whether the hulls of one to three vertices each, all finite, have a common point. It is exact.
+/// Returns whether two hulls of one to three finite vertices each have a common point. It is exact.
 ///
 /// # Panics
 /// Panics if there are no vertices, or more than three.
@@ -39,7 +39,7 @@ pub fn do_intersect(a: &[V3], b: &[V3]) -> bool {
 }
 
 /// Returns the parameter at which an edge meets the plane of a triangle, if its ends are on different sides. It is
-/// computed in double-double, because the plane of a sliver needs that.
+/// computed in double-double, which slivers need.
 pub(super) fn piercing_parameter([p, q]: &[V3; 2], hull: &[V3]) -> Option<f64> {
     let [a, b, c] = hull else { return None };
     let size = largest(&[*p, *q, *a, *b, *c]);
@@ -56,7 +56,7 @@ pub(super) fn piercing_parameter([p, q]: &[V3; 2], hull: &[V3]) -> Option<f64> {
     (t > 0.0 && t < 1.0).then_some(t)
 }
 
-/// The convex hull of vertices, none of which is superfluous.
+/// The convex hull of some vertices, each of which is an extreme point.
 enum Hull {
     Point(V3),
     Segment([V3; 2]),

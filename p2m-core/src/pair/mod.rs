@@ -2,20 +2,20 @@
 //!
 //! # Method
 //!
-//! The nearest points of two points, segments or triangles are, if these do not intersect,
+//! The nearest points of two points, segments or triangles that do not intersect are
 //!
 //! - a vertex of one and its nearest point on the other, which the kernel for query points finds, or
 //! - points inside of two edges that are not parallel (the file `edges`).
 //!
-//! So the distance is the smallest key of up to six vertices and nine pairs of edges. Whether the primitives intersect
-//! is decided by exact predicates (the file `intersection`), and then the distance is 0.
+//! So the distance is the smallest key of up to six vertices and nine pairs of edges. Exact predicates decide whether
+//! the primitives intersect (the file `intersection`); the distance is then 0.
 //!
 //! # Accuracy
 //!
 //! [`ERROR_CONSTANT_OF_PAIRS`] states the bound, and [docs/proofs/pairs.md] derives it. A key is a pure function of two
-//! features: it depends neither on the order of the primitives nor on that of their vertices, and it is never below the
-//! square of the gap between their boxes, which is computed in the same arithmetic ([`Aabb::gap_squared`]). So a search
-//! may prune by boxes without any slack, and equal distances are equal bits.
+//! features: it does not depend on the order of the primitives or of their vertices, and it is never below the square
+//! of the gap between their boxes, which is computed in the same arithmetic ([`Aabb::gap_squared`]). So a search may
+//! prune by boxes without any slack, and equal distances are equal bits.
 //!
 //! [`Aabb::gap_squared`]: crate::Aabb::gap_squared
 //!
@@ -53,14 +53,15 @@ pub use query::{PairQuery, closest_as_guess};
 /// The bound on the error of the distance between two primitives in units of u M, where M is the largest distance
 /// between a vertex of one and a vertex of the other: |computed - true| <= `ERROR_CONSTANT_OF_PAIRS` u M + 4 eta.
 ///
-/// It is proved in [docs/proofs/pairs.md]. For a vertex and its nearest point the constant is that of query points, 8.
+/// It is proved in [docs/proofs/pairs.md]. For a vertex and its nearest point the constant is 8, as for query points.
 ///
 /// [docs/proofs/pairs.md]: https://github.com/p2m-rs/p2m/blob/main/docs/proofs/pairs.md
 pub const ERROR_CONSTANT_OF_PAIRS: f64 = 32.0;
 
 /// The nearest points of two primitives.
 ///
-/// All numbers are in f64 and in units of the scene, for both scalars. Arrays of two have the first primitive first.
+/// All numbers are in f64 and in units of the scene, for both scalar types. In arrays of two, the first entry belongs
+/// to the first primitive.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct NearestPair {
@@ -68,7 +69,7 @@ pub struct NearestPair {
     pub key: Key,
     /// The nearest points. If the primitives intersect, both are near a common point.
     pub points: [Point3<f64>; 2],
-    /// The features of the lowest dimension that contain the points.
+    /// The features of lowest dimension that contain the points.
     pub features: [Feature; 2],
     /// The weights of the vertices of each primitive for its point.
     pub barycentric: [[f64; 3]; 2],
@@ -89,7 +90,7 @@ impl NearestPair {
     }
 }
 
-/// Returns the nearest points of two primitives that have vertices, which may be degenerate.
+/// Returns the nearest points of two primitives, which have vertices and may be degenerate.
 ///
 /// ```
 /// use nalgebra::Point3;
@@ -105,28 +106,28 @@ impl NearestPair {
 /// ```
 ///
 /// # Panics
-/// Panics if one has no [vertices](Primitive::vertices), as primitives of your own may.
+/// Panics if a primitive has no [vertices](Primitive::vertices), as may be the case for types of your own.
 ///
 /// # Accuracy
 /// The error of the distance is at most [`ERROR_CONSTANT_OF_PAIRS`] u M + 4 eta (proved) if all coordinates are finite;
-/// otherwise the result means nothing. Whether the primitives intersect is exact.
+/// otherwise the result is meaningless. Whether the primitives intersect is exact.
 #[must_use]
 pub fn nearest_pair<T: Real>(a: &impl Primitive<T>, b: &impl Primitive<T>) -> NearestPair {
     nearest_pair_within(a, b, f64::INFINITY).expect("no key exceeds infinity")
 }
 
-/// Returns the nearest points of two primitives, or `None` if their key certainly exceeds `square`, which is the
-/// [square above](Key::square_above) another key.
+/// Returns the nearest points of two primitives, or `None` if their key certainly exceeds `square`. Pass the [square
+/// above](Key::square_above) another key.
 ///
 /// # Panics
-/// Panics if one has no vertices.
+/// Panics if a primitive has no vertices.
 #[must_use]
 pub fn nearest_pair_within<T: Real>(a: &impl Primitive<T>, b: &impl Primitive<T>, square: f64) -> Option<NearestPair> {
     nearest_of_hulls(Hull::of(a).vertices(), Hull::of(b).vertices(), square).ok()
 }
 
-/// Returns the nearest points of the hulls of one to three vertices each. If their key certainly exceeds `square`, it
-/// returns a lower bound on the true distance instead, which is infinite if the hulls are farther than `square` allows.
+/// Returns the nearest points of two hulls of one to three vertices each. If their key certainly exceeds `square`, the
+/// error is a lower bound on the true distance, which is infinite if the hulls are farther apart than `square` allows.
 ///
 /// # Panics
 /// Panics if a hull has no vertex, or more than three.
@@ -138,7 +139,7 @@ pub fn nearest_of_hulls(a: &[V3], b: &[V3], square: f64) -> Result<NearestPair, 
         return Err(f64::INFINITY);
     }
     let is_intersecting = gap == 0.0 && do_intersect(a, b);
-    // The key will be zero, wherever rounding places the candidates.
+    // The key will be zero, so rounding must not exclude any candidate.
     let square = if is_intersecting { f64::INFINITY } else { square };
     let mut best = Candidate(None);
     for (i, vertex) in a.iter().enumerate() {
@@ -167,16 +168,16 @@ pub fn nearest_of_hulls(a: &[V3], b: &[V3], square: f64) -> Result<NearestPair, 
         Some(pair) if is_intersecting => Ok(NearestPair { key: Key::ZERO, is_intersecting, error, ..pair }),
         Some(pair) if pair.key.square_above() <= square.max(Key::ZERO.square_above()) => {
             // If the offset cancels, the distance is still positive, though less than its error. No search may take the
-            // pair for one that intersects.
+            // pair for an intersecting one.
             let key = if pair.key == Key::ZERO { Key::from_offset([f64::from_bits(1), 0.0, 0.0]) } else { pair.key };
             Ok(NearestPair { key, error, ..pair })
         }
-        // Rounding may have dropped points inside of edges for an end that is farther by as much as the error.
+        // Rounding may have replaced points inside of edges by an end that is farther, by as much as the error.
         _ => Err(square.sqrt() * ROUND_DOWN - error),
     }
 }
 
-/// Returns the box around some vertices.
+/// Returns the box around the vertices.
 #[doc(hidden)]
 #[must_use]
 pub fn bounds_of(vertices: &[V3]) -> Aabb<f64> {
@@ -197,7 +198,7 @@ fn edges_of(hull: &[V3]) -> impl Iterator<Item = (u8, [V3; 2])> + Clone + '_ {
 struct Candidate(Option<NearestPair>);
 
 impl Candidate {
-    /// Returns the square above which a candidate is of no use.
+    /// Returns the square above which a candidate is useless.
     fn limit(&self, square: f64) -> f64 {
         self.0.map_or(square, |best| best.key.square_above().min(square))
     }
@@ -209,8 +210,8 @@ impl Candidate {
         }
     }
 
-    /// Offers vertex i of one hull and its nearest point on the other. `is_second` tells whether the vertex is
-    /// of the second hull.
+    /// Offers vertex i of one hull and its nearest point on the other. `is_second` is whether the vertex belongs to the
+    /// second hull.
     #[allow(clippy::cast_possible_truncation, reason = "a primitive has at most three vertices")]
     fn offer_vertex(&mut self, i: usize, vertex: V3, other: &[V3], square: f64, is_second: bool) {
         let Some(projection) = project(vertex, other, self.limit(square)) else { return };
@@ -219,7 +220,7 @@ impl Candidate {
         self.offer_projection(vertex, (Feature::Vertex(i as u8), weights), &projection, is_second);
     }
 
-    /// Offers a point of one hull, with its feature and weights, and its projection onto the other.
+    /// Offers a point of one hull, with its feature and weights, and its projection onto the other hull.
     fn offer_projection(&mut self, point: V3, at: (Feature, V3), projection: &Projection, is_second: bool) {
         let mut points = [point.into(), projection.point];
         let mut features = [at.0, projection.feature];
@@ -243,7 +244,7 @@ impl Candidate {
         self.offer(nearest.key, nearest.points.map(Point3::from), numbers.map(Feature::Edge), weights);
     }
 
-    /// Offers the point in which an edge of one hull pierces the face of the other, if it does.
+    /// Offers the point in which an edge of one hull pierces the face of the other, if there is one.
     fn offer_piercing(&mut self, number: u8, edge: [V3; 2], other: &[V3], is_second: bool) {
         let Some(t) = intersection::piercing_parameter(&edge, other) else { return };
         let [p, q] = edge;

@@ -1,22 +1,22 @@
-//! The motion of a scene, applied to vertices and boxes.
+//! Rigid motions of a scene, applied to vertices and boxes.
 
 use crate::Aabb;
 use crate::kernel::vector::V3;
 use nalgebra::{Isometry3, Matrix3, Rotation3, Translation3, UnitQuaternion, Vector3};
 
-/// The most steps from a matrix that is nearly a rotation to the nearest one. Two or three suffice.
+/// The most iterations from a nearly orthogonal matrix to the nearest rotation. Two or three suffice.
 const MAX_ITERATIONS: usize = 100;
-/// The difference from a whole number, 8 u, that roundings of a rotation leave.
+/// The largest difference from a whole number, 8 u, that the roundings of a rotation leave.
 const ROUNDING: f64 = 4.0 * f64::EPSILON;
 
-/// The largest deviation from the identity of a rotation times its transpose.
+/// The largest entry of M M^T - 1 for which a matrix M counts as a rotation.
 const ROTATION_TOLERANCE: f64 = 1e-6;
 
-/// Returns whether the first twelve numbers of a matrix, row by row, are finite, and the first three columns are a rotation
-/// within 1e-6.
+/// Returns whether the first twelve numbers of a matrix, row by row, are finite, and the first three columns are a
+/// rotation to within 1e-6.
 ///
 /// # Panics
-/// Panics if there are fewer numbers.
+/// Panics if there are fewer than twelve numbers.
 #[must_use]
 pub fn is_rotation_and_translation(matrix: &[f64]) -> bool {
     let rotation = Matrix3::from_fn(|row, column| matrix[4 * row + column]);
@@ -25,29 +25,29 @@ pub fn is_rotation_and_translation(matrix: &[f64]) -> bool {
     deviation <= ROTATION_TOLERANCE && rotation.determinant() > 0.0 && matrix[..12].iter().all(|x| x.is_finite())
 }
 
-/// Returns the isometry of a matrix of 12 numbers, row by row, of which the first three columns are a rotation. Its
-/// rotation is the one nearest to the matrix.
+/// Returns the isometry of a matrix of 12 numbers, row by row, whose first three columns are nearly a rotation. The
+/// rotation of the isometry is the nearest one to the matrix.
 ///
 /// # Panics
-/// Panics if there are fewer numbers. More of them are not used.
+/// Panics if there are fewer than twelve numbers. Further numbers are ignored.
 #[must_use]
 pub fn isometry_of_matrix(matrix: &[f64]) -> Isometry3<f64> {
     let rotation = Matrix3::from_fn(|row, column| matrix[4 * row + column]);
     let translation = Vector3::from_fn(|row, _| matrix[4 * row + 3]);
-    // The iteration may stay at a guess that is half a turn away, so it begins at the rotation of the matrix itself.
+    // The iteration may stop at a guess that is half a turn away, so it starts at the rotation of the matrix itself.
     let guess = UnitQuaternion::from_rotation_matrix(&Rotation3::from_matrix_unchecked(rotation));
     let guess = UnitQuaternion::new_normalize(guess.into_inner());
     let rotation = UnitQuaternion::from_matrix_eps(&rotation, f64::EPSILON, MAX_ITERATIONS, guess);
     Isometry3::from_parts(Translation3::from(translation), rotation)
 }
 
-/// A rotation and a translation, as they are applied to coordinates.
+/// A rotation and a translation, in the form in which they are applied to coordinates.
 ///
 /// # Accuracy
-/// A moved vertex differs from the exact one by at most 32 u (|v| + |t|), where v is the vertex before and t the
+/// A moved vertex differs from the exact one by at most 32 u (|v| + |t|), where v is the original vertex and t the
 /// translation. The rotation is normalised first, so the entries of its matrix are within 8 u (5 u were observed). If
-/// all entries are within 8 u of whole numbers, they become these, so quarter turns and half turns about the axes are
-/// exact. A coordinate errs by 16 u sqrt(3) |v| for both and by 3 u (|v| + |t|) for the roundings of its sum.
+/// all entries are within 8 u of whole numbers, they are rounded to these, so quarter turns and half turns about the
+/// axes are exact. A coordinate errs by 16 u sqrt(3) |v| for both and by 3 u (|v| + |t|) for the roundings of its sum.
 #[derive(Clone, Copy, Debug)]
 pub struct Motion {
     matrix: Matrix3<f64>,
@@ -103,7 +103,7 @@ impl Motion {
         self.translation.into()
     }
 
-    /// Returns whether the rotation and the translation are finite. The rotation of a zero quaternion is not.
+    /// Returns whether the rotation and the translation are finite. The rotation of a zero quaternion is not finite.
     #[must_use]
     pub fn is_finite(&self) -> bool {
         self.matrix.iter().chain(&self.translation).all(|x| x.is_finite())
@@ -129,8 +129,8 @@ impl Motion {
 /// Returns the least and the largest coordinates of the images of the points of a box.
 ///
 /// Coordinate k of an image is the sum of products with the factors (k, j), each rounded. Rounding is monotone, so the
-/// least sum is that of the least products, and a product is least at one end of the box or at the other, by the sign of
-/// the factor. There is no margin.
+/// least sum consists of the least products. The least product is at one end of the box or the other, depending on the
+/// sign of the factor. There is no margin.
 fn turned_box([low, high]: [Vector3<f64>; 2], factor: impl Fn(usize, usize) -> f64) -> [Vector3<f64>; 2] {
     let product = |k: usize, j: usize| {
         let factor = factor(k, j);
@@ -150,7 +150,7 @@ mod tests {
     use super::*;
     use std::f64::consts::PI;
 
-    /// Returns the largest difference of the entries of a matrix and of its motion.
+    /// Returns the largest difference between the entries of a matrix and of its motion.
     fn difference(matrix: &Matrix3<f64>) -> f64 {
         let numbers: Vec<f64> = (0..12).map(|i| if i % 4 == 3 { 0.0 } else { matrix[(i / 4, i % 4)] }).collect();
         (Motion::new(&isometry_of_matrix(&numbers)).matrix - matrix).amax()
@@ -159,14 +159,16 @@ mod tests {
     #[test]
     fn every_rotation_is_the_rotation_of_its_matrix() {
         for i in 0..10_000u32 {
-            // Axes of all directions, and angles up to half a turn, which most of them are, and beyond.
+            // The axes have all directions. Two thirds of the angles are half a turn, and the others go from 0 to 10
+            // radians.
             let [x, y, z] = [0.618_034, 0.754_877, 0.569_840].map(|step: f64| (f64::from(i) * step).fract() - 0.5);
             let axis = nalgebra::Unit::new_normalize(Vector3::new(x, y, z));
             let angle = if i % 3 == 0 { f64::from(i) * 1e-3 } else { PI };
             let matrix = Rotation3::from_axis_angle(&axis, angle).into_inner();
             let found = difference(&matrix);
             assert!(found < 4e-15, "{found} {axis:?} {angle}");
-            // A matrix that is nearly a rotation has the nearest one, which is as near to it as that rotation.
+            // The rotation nearest to a nearly orthogonal matrix is at least as near to it as the rotation that was
+            // sheared.
             let sheared = matrix + Matrix3::new(0.0, 1e-9, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0);
             assert!(difference(&sheared) < 1e-9, "{axis:?} {angle}");
         }

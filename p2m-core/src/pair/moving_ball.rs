@@ -2,30 +2,31 @@
 //!
 //! # Method
 //!
-//! The distance of the centre from a primitive is a convex function of the parameter, because primitives are convex. So
-//! the first parameter at which a primitive is within a distance R is found by bisection between the start and the
-//! parameter at which the primitive is nearest. The search of pairs finds some primitive within R of the path, the path
-//! is cut at its parameter, and so on until no primitive is within R of what is left. If primitives are found in a
-//! random order, the expected number of searches is logarithmic in the number of primitives near the path.
+//! Primitives are convex, so the distance between the moving centre and a primitive is a convex function of the
+//! parameter. The first parameter at which a primitive is within a distance R is therefore found by bisection, between
+//! the start and the parameter at which the primitive is nearest. The search for pairs finds some primitive within R of
+//! the path, and the path is cut off at its parameter. This is repeated until no primitive is within R of the rest of
+//! the path. If primitives are found in a random order, the expected number of searches is logarithmic in the number of
+//! primitives near the path.
 //!
 //! # Rounding
 //!
-//! R is the radius plus a margin: the tolerance, or a few roundings of the coordinates if that is more. In the end one
-//! search of the nearest pair returns a certified lower bound on the distance of the scene from the path up to the
-//! parameter. If it is not above the radius, because the primitives have errors beyond the margin, then the margin is
-//! multiplied by 8 and all is done again. The margin grows until the bound is above the radius or the start is within
-//! R, so this ends.
+//! R is the radius plus a margin. The margin is the tolerance, or a few roundings of the coordinates if that is more.
+//! Finally one search for the nearest pair returns a certified lower bound on the distance between the scene and the
+//! path up to the parameter. If the bound is not above the radius, because the primitives have errors beyond the
+//! margin, the margin is multiplied by 8 and the whole search is repeated. The loop ends, since the margin grows until
+//! the bound is above the radius or the start is within R.
 //!
 //! Let s be the largest magnitude of a coordinate of the path. A component of the centre a (1 - t) + b t is computed
-//! with at most 4 u s + 2 eta of error, so the centre is off by less than 8 u s + 4 eta. The
-//! certified bound is reduced by that.
+//! with at most 4 u s + 2 eta of error, so the centre is off by less than 8 u s + 4 eta. The certified bound is reduced
+//! by this amount.
 //!
 //! # Contacts that open
 //!
-//! A contact at the start opens if the ball comes no nearer to the primitive than it is at the start, to within 64 u
-//! (s + radius). The distance is convex, so the ball then never deepens this contact by more. Both distances are true
-//! ones, rounded once, because errors of the kernel grow with the primitive. Such primitives are left out of all searches
-//! if the ball ignores them.
+//! A contact at the start is *opening* if the ball never comes nearer to the primitive than it is at the start, to
+//! within 64 u (s + radius). The distance is convex, so the ball then never deepens this contact by more. Both
+//! distances are true ones, rounded once, because errors of the kernel grow with the primitive. If the ball ignores
+//! opening contacts, their primitives are left out of all searches.
 
 use super::query::search_hull;
 use super::{NearestPair, PairOptions, PairQuery, Pairs, nearest_of_hulls};
@@ -50,7 +51,8 @@ use std::ops::ControlFlow;
 /// let contact = ball.first_contact(&scene).expect("the ball falls through the floor");
 /// assert!(contact.parameter <= 0.4 && 0.4 - contact.parameter < 1e-12);
 /// assert!(contact.point.coords.norm() < 1e-12);
-/// assert!(MovingBall::new(Point3::new(0.0, 0.0, 5.0), Point3::new(9.0, 9.0, 5.0), 1.0).first_contact(&scene).is_none());
+/// let passing = MovingBall::new(Point3::new(0.0, 0.0, 5.0), Point3::new(9.0, 9.0, 5.0), 1.0);
+/// assert!(passing.first_contact(&scene).is_none());
 /// # Ok::<(), p2m_core::BuildError>(())
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -62,10 +64,10 @@ pub struct MovingBall<T: Real> {
     pub end: Point3<T>,
     /// The radius, in units of the scene.
     pub radius: T,
-    /// The distance within which a contact may be reported too early, in units of the scene. The default is 0, which
-    /// leaves a few roundings. A negative number and NaN count as 0.
+    /// The distance by which a contact may be reported too early, in units of the scene. The default is 0, which leaves
+    /// a few roundings. A negative number and NaN count as 0.
     pub tolerance: T,
-    /// Whether primitives are ignored that the ball touches at the start and comes no nearer to, to within 64 u (s +
+    /// Whether the ball ignores primitives that it touches at the start and does not approach, to within 64 u (s +
     /// radius), where s is the largest coordinate of the path. The default is `false`.
     pub ignores_opening: bool,
 }
@@ -76,24 +78,25 @@ pub struct MovingBall<T: Real> {
 pub struct BallContact<T: Real> {
     /// The parameter of the contact, from 0 to 1, rounded down. The ball certainly touches nothing before it.
     pub parameter: T,
-    /// A parameter at which the scene is certainly within [`distance_bound`](Self::distance_bound) of the centre. It is
-    /// above `parameter` by about 2^-48, and rounded up.
+    /// A parameter at which the scene is certainly within [`distance_bound`](Self::distance_bound) of the centre. It
+    /// exceeds `parameter` by about 2^-48, and is rounded up.
     pub upper_parameter: T,
-    /// A certified upper bound on the distance of the scene from the centre at the upper parameter. It exceeds the
-    /// radius by at most the tolerance and some roundings, unless the ball starts nearer.
+    /// A certified upper bound on the distance between the scene and the centre at the upper parameter. It exceeds the
+    /// radius by at most the tolerance and a few roundings, unless the ball starts nearer.
     pub distance_bound: T,
     /// The point of the scene that is nearest to the centre at the upper parameter.
     pub point: Point3<T>,
-    /// The primitive that contains the point; of several with equal keys it is the one with the lowest id.
+    /// The primitive that contains the point. Ties go to the lowest id.
     pub primitive: PrimitiveId,
     /// The feature of the primitive that contains the point.
     pub feature: Feature,
 }
 
-/// Parameters that differ by less are not told apart.
+/// The difference below which two parameters count as equal.
 const PARAMETER_RESOLUTION: f64 = f64::EPSILON * 4.0;
-/// The number of searches that end at the first primitive with an earlier contact. A later one evaluates all primitives
-/// near the path, so that no order of primitives makes the search long.
+/// The number of searches that end at the first primitive with an earlier contact. A later search evaluates all
+/// primitives near the path, so that no order of primitives makes the loop long. There is no record of how the number
+/// was tuned.
 const SHORT_SEARCHES: usize = 64;
 
 impl<T: Real> MovingBall<T> {
@@ -102,14 +105,14 @@ impl<T: Real> MovingBall<T> {
     pub fn new(start: Point3<T>, end: Point3<T>, radius: T) -> Self {
         Self { start, end, radius, tolerance: T::zero(), ignores_opening: false }
     }
-    /// Sets the distance within which a contact may be reported too early.
+    /// Sets the distance by which a contact may be reported too early.
     #[must_use]
     pub fn with_tolerance(self, tolerance: T) -> Self {
         Self { tolerance, ..self }
     }
-    /// Ignores primitives that the ball touches at the start and comes no nearer to, so that a ball can leave the surface
-    /// that it rests on. A ball that slides over several primitives still touches the next one. What is certain of other
-    /// contacts is so of those that are left. The test takes some twenty microseconds for each primitive that is touched.
+    /// Ignores primitives that the ball touches at the start and does not approach, so that a ball can leave the
+    /// surface on which it rests. A ball that slides over several primitives still touches the next one. All guarantees
+    /// hold for the remaining contacts. The test takes about twenty microseconds per touched primitive.
     ///
     /// ```
     /// use nalgebra::Point3;
@@ -132,23 +135,23 @@ impl<T: Real> MovingBall<T> {
     /// Returns the first contact with the scene of an index. It is `None` if the ball touches nothing, if the radius is
     /// negative, and if a coordinate or the radius is not finite.
     ///
-    /// A ball that touches at the start has the parameter 0. A ball that does not move touches there or nowhere. Only
-    /// surfaces count: a ball inside of a closed one touches it from inside.
+    /// If the ball touches the scene at the start, the parameter is 0. A ball that does not move touches the scene
+    /// there or nowhere. Only surfaces count: a ball inside of a closed surface touches it from inside.
     ///
     /// # Panics
     /// Panics if the scene has primitives without vertices.
     ///
     /// # Accuracy
     /// There is certainly no contact before the parameter, and none at all if the answer is `None`. At the upper
-    /// parameter the distance exceeds the radius by at most the tolerance, or 64 u (s + radius) if that is more, and the
-    /// error of a distance between primitives; s is the largest coordinate of the path. If rounding needs a larger
-    /// margin than that, because primitives near the path have errors beyond it, it is at most 8 times as large as it
-    /// has to be. A ball that passes the scene at a distance within this margin of its radius may be reported as a
-    /// contact. Where the path is nearly tangential, such an error of the distance is a larger one of the parameter.
-    /// Indexes agree within the same errors, but not bit for bit.
+    /// parameter the distance exceeds the radius by at most the tolerance, or 64 u (s + radius) if that is more, plus
+    /// the error of a distance between primitives; s is the largest coordinate of the path. Primitives near the path
+    /// may have larger errors and so need a larger margin, which is then at most 8 times the least one that suffices. A
+    /// ball that passes the scene at a distance within this margin of its radius may be reported as a contact. If the
+    /// path is nearly tangential, a small error of the distance is a larger error of the parameter. Indexes agree to
+    /// within these errors, but not bit for bit.
     ///
     /// # Complexity
-    /// It takes a logarithmic number of searches for pairs, and some fifty evaluations of a distance for each.
+    /// It takes a logarithmic number of searches for pairs, and about fifty distance evaluations for each.
     pub fn first_contact<I: PairQuery<T> + ?Sized>(&self, index: &I) -> Option<BallContact<T>> {
         let (start, end) = (to_f64_array(&self.start), to_f64_array(&self.end));
         let mut path = Path { index, start, end, left_out: Vec::new() };
@@ -160,7 +163,7 @@ impl<T: Real> MovingBall<T> {
         }
         let size = largest(&[path.start, path.end]);
         let rounding = 64.0 * f64::UNIT_ROUNDOFF * (size + radius) + 64.0 * f64::SMALLEST_SUBNORMAL;
-        // NaN becomes the other number.
+        // `max` ignores NaN.
         let mut margin = self.tolerance.to_f64().max(rounding);
         loop {
             if self.ignores_opening {
@@ -181,21 +184,21 @@ impl<T: Real> MovingBall<T> {
         from_f64_array(centre_at(to_f64_array(&self.start), to_f64_array(&self.end), parameter.to_f64()))
     }
 
-    /// Returns a bound on the distance between a computed centre in f64 and the exact one.
+    /// Returns a bound on the distance between a centre computed in f64 and the exact one.
     fn path_error(&self) -> f64 {
         let size = largest(&[to_f64_array(&self.start), to_f64_array(&self.end)]);
         8.0 * f64::UNIT_ROUNDOFF * size + 4.0 * f64::SMALLEST_SUBNORMAL
     }
 
-    /// Returns the answer for a bracket of the first contact.
+    /// Returns the answer, given a bracket of the first contact.
     fn contact<I: PairQuery<T> + ?Sized>(&self, path: &Path<'_, I>, [low, high]: [f64; 2]) -> Option<BallContact<T>> {
         let upper_parameter: T = -T::round_down_from_f64(-high);
-        // In f32 the centre of the rounded parameter counts.
+        // For f32, the centre is taken at the rounded parameter.
         let hull = [path.centre_at(upper_parameter.to_f64())];
         let mut pairs = Pairs::nearest(&PairOptions::<f64>::default()).without(&path.left_out);
         search_hull(path.index, &hull, None, &mut pairs);
         let nearest = pairs.finish::<f64>()?;
-        // The certified distance of the nearest primitive is that of its own pair.
+        // The certified distance of the nearest primitive comes from an evaluation of that pair alone.
         let pair = path.pair_of::<T>(nearest.primitives[0], hull[0]);
         let upper = (pair.key.distance() + pair.error + self.path_error()) * ROUND_UP + 8.0 * f64::SMALLEST_SUBNORMAL;
         Some(BallContact {
@@ -218,7 +221,7 @@ struct Path<'a, I: ?Sized> {
     index: &'a I,
     start: V3,
     end: V3,
-    /// Primitives that do not count, in ascending order.
+    /// Ignored primitives, in ascending order.
     left_out: Vec<PrimitiveId>,
 }
 
@@ -227,7 +230,7 @@ impl<I: ?Sized> Path<'_, I> {
         centre_at(self.start, self.end, t)
     }
 
-    /// Returns the path until a parameter.
+    /// Returns the part of the path up to a parameter.
     fn until(&self, t: f64) -> [V3; 2] {
         [self.start, self.centre_at(t)]
     }
@@ -241,8 +244,8 @@ impl<I: ?Sized> Path<'_, I> {
             .expect("no key exceeds infinity")
     }
 
-    /// Returns the primitives within a distance of the start to which the path comes no nearer than its start, up to a
-    /// tolerance.
+    /// Returns the primitives with opening contacts: within a distance of the start, and not approached by the path, up
+    /// to a tolerance.
     fn opening_within<T: Real>(&self, distance: f64, tolerance: f64) -> Vec<PrimitiveId>
     where
         I: PairQuery<T>,
@@ -264,8 +267,8 @@ impl<I: ?Sized> Path<'_, I> {
         opening
     }
 
-    /// Returns a certified lower bound on the distance of the scene from the path until a parameter; `None`
-    /// for an empty scene.
+    /// Returns a certified lower bound on the distance between the scene and the path up to a parameter, or `None` for
+    /// an empty scene.
     fn lower_bound_until<T: Real>(&self, t: f64) -> Option<f64>
     where
         I: PairQuery<T>,
@@ -275,8 +278,12 @@ impl<I: ?Sized> Path<'_, I> {
         Some(pairs.finish::<f64>()?.lower_bound)
     }
 
-    /// Returns a bracket of the first parameter at which the scene is within a distance, up to rounding; `None`
-    /// if it never is.
+    /// Returns a bracket of the first parameter at which the scene is within a distance, up to rounding, or `None` if
+    /// it never is.
+    ///
+    /// The basic idea is to shorten the path: any primitive near the path yields a contact by bisection, the path is
+    /// cut off there, and the search starts over on the rest. The first [`SHORT_SEARCHES`] searches end at the first
+    /// earlier contact; one last search visits all primitives near the path.
     fn first_within<T: Real>(&self, distance: f64) -> Option<[f64; 2]>
     where
         I: PairQuery<T>,
@@ -286,7 +293,7 @@ impl<I: ?Sized> Path<'_, I> {
             let end = best.map_or(1.0, |[_, high]| high);
             let mut is_improved = false;
             let mut visit = |ids: [PrimitiveId; 2], pair: &NearestPair| {
-                // The primitive of the last contact touches the end of the path.
+                // The primitive of the last contact touches the end of the path, so it is not an earlier contact.
                 if last == Some(ids[0]) {
                     return ControlFlow::Continue(());
                 }
@@ -305,12 +312,12 @@ impl<I: ?Sized> Path<'_, I> {
                 break;
             }
         }
-        // Contacts that are earlier by less than the resolution were passed over.
+        // Contacts that are earlier by less than the resolution were skipped.
         best.map(|[low, high]| [(low - 2.0 * PARAMETER_RESOLUTION).max(0.0), high])
     }
 
-    /// Returns a bracket of the first parameter at which a primitive is within a distance. At `nearest` it is,
-    /// up to rounding.
+    /// Returns a bracket of the first parameter at which a primitive is within a distance, by bisection. At `nearest`
+    /// the primitive is within the distance, up to rounding.
     fn first_within_of<T: Real>(&self, primitive: PrimitiveId, distance: f64, nearest: f64) -> [f64; 2]
     where
         I: PairQuery<T>,
@@ -350,7 +357,7 @@ mod tests {
         let post = [crate::Point::new(point(0.0, 0.0, 0.0))];
         let pipe = [Segment::new(point(-5.0, 0.0, 0.0), point(5.0, 0.0, 0.0))];
         let falls = |radius| MovingBall::new(point(0.0, 0.0, 8.0), point(0.0, 0.0, -8.0), radius);
-        // The ball flies past at a distance of 0.6, and touches 0.8 before the middle.
+        // The ball passes at a distance of 0.6, and touches the scene 0.8 before the middle.
         let passes = MovingBall::new(point(-4.0, 0.6, 0.0), point(4.0, 0.6, 0.0), 1.0);
         let slides = MovingBall::new(point(-20.0, 0.0, 3.0), point(20.0, 0.0, 1.0), 2.0);
         let cases = [
@@ -393,7 +400,7 @@ mod tests {
             contact(&floor(), &along(1.0 + 1e-11).with_tolerance(1e-10)).map(|found| found.parameter),
             Some(0.0)
         );
-        // It grazes a sphere around a point at the middle of its path.
+        // The ball grazes a sphere around a point at the middle of its path.
         let post = [crate::Point::new(point(0.0, 0.0, 0.0))];
         let found = contact(&post, &along(1.0)).expect("a contact within rounding");
         assert!(found.parameter <= 0.5 && found.parameter > 0.5 - 1e-7, "{found:?}");
@@ -405,16 +412,16 @@ mod tests {
         let leaves = |z: f64, end: [f64; 3]| {
             contact(&floor(), &MovingBall::new(point(0.0, 0.0, z), end.into(), 1.0).ignoring_opening())
         };
-        // It rises, slides, starts deep and rises, and does not move.
+        // The ball rises, slides, starts deep and rises, and does not move.
         for (z, end) in [(1.0, [0.0, 3.0, 4.0]), (1.0, [5.0, 0.0, 1.0]), (0.3, [0.0, 0.0, 9.0]), (0.3, [0.0, 0.0, 0.3])]
         {
             assert_eq!(leaves(z, end), None, "from {z} to {end:?}");
         }
-        // It sinks from the start, from within the margin, and from deep inside; it goes through the floor.
+        // The ball sinks from the start, from within the margin, and from deep inside; it goes through the floor.
         for (z, end) in [(1.0, [0.0, 3.0, 0.9]), (1.0, [0.0, 0.0, -9.0]), (0.3, [0.0, 0.0, -9.0])] {
             assert_eq!(leaves(z, end).map(|found| found.parameter), Some(0.0), "from {z} to {end:?}");
         }
-        // A tolerance does not let it sink, and errors of a large floor that is tilted neither let it sink nor hold it.
+        // A tolerance does not let the ball sink. The errors of a large tilted floor neither let it sink nor hold it.
         let sinks = MovingBall::new(point(0.0, 0.0, 1.0), point(0.0, 0.0, 0.9901), 1.0).with_tolerance(0.01);
         assert!(contact(&floor(), &sinks.ignoring_opening()).is_some());
         let tilted = [Triangle::new(
@@ -435,7 +442,7 @@ mod tests {
         let end = point(-0.6306399769886378, 0.4101228804568591, 0.6746850624973458);
         let ball = MovingBall::new(start, end, 1.0000000000000007);
         assert!(contact(&tilted, &ball).is_some() && contact(&tilted, &ball.ignoring_opening()).is_none());
-        // It leaves the floor, and touches the wall that it flies to.
+        // The ball leaves the floor, and touches the wall at the end of its path.
         let mut scene = vec![crate::Shape::Triangle(floor()[0])];
         let corners = [point(5.0, -90.0, -90.0), point(5.0, 90.0, -90.0), point(5.0, 0.0, 90.0)];
         scene.push(crate::Shape::Triangle(Triangle::new(corners[0], corners[1], corners[2])));
@@ -467,7 +474,7 @@ mod tests {
 
     #[test]
     fn many_primitives_in_the_worst_order_take_few_searches() {
-        // Each wall is touched before all that come before it.
+        // Each wall is touched before all walls with a lower id.
         let wall = |x: f64| Segment::new(point(x, -1.0, 0.0), point(x, 1.0, 0.0));
         let walls: Vec<_> = (0..3_000).map(|i| wall(3_000.0 - f64::from(i))).collect();
         let ball = MovingBall::new(point(-1.0, 0.0, 0.0), point(4e3, 0.0, 0.0), 0.5);

@@ -1,4 +1,4 @@
-//! Queries for the nearest primitives of two scenes, and of a scene and a shape.
+//! Queries for the nearest primitives of two scenes, or of a scene and a shape.
 
 use super::search::{PairSide, ShapeSide, search_pairs};
 use super::{ClosestPair, Hull, Motion, NearestPair, PairOptions, Pairs, bounds_of, nearest_of_hulls, project};
@@ -35,22 +35,23 @@ use std::ops::ControlFlow;
 /// # Ok::<(), p2m_core::BuildError>(())
 /// ```
 ///
-/// A pointer to an index is an index, so a trait object answers through a reference to the pointer: if `index` is a
-/// `&dyn PairQuery<T>`, then `(&index).closest_to(..)`.
+/// A pointer to an index is an index, so call a trait object through a reference to the pointer: if `index` is a `&dyn
+/// PairQuery<T>`, then `(&index).closest_to(..)`.
 ///
 /// # Accuracy
-/// Answers of all indexes are those of all pairs of primitives, bit for bit, where vertices that move are rounded first
-/// ([`Motion`]); lower bounds alone depend on the index. The error of a distance is at most
+/// The answers of all indexes equal the answer over all pairs of primitives, bit for bit, where moved vertices are
+/// rounded first ([`Motion`]); only lower bounds depend on the index. The error of a distance is at most
 /// [`ERROR_CONSTANT_OF_PAIRS`](super::ERROR_CONSTANT_OF_PAIRS) u M + 4 eta, and 32 u (|v| + |t|) more for moved
 /// vertices v and a translation t.
 ///
 /// # Panics
-/// All methods panic if there are primitives without [vertices](Primitive::vertices), as primitives of your own may be.
+/// All methods panic if there are primitives without [vertices](Primitive::vertices), as may be the case for types of
+/// your own.
 ///
 /// # Complexity
-/// Trees take expected O(log n) steps for scenes that are apart, and O(n) where they are about equally near in many
-/// places. Brute force evaluates all pairs, and so do trees where distances exceed 2^400, and certified queries where a
-/// motion moves a scene so far away that rounding makes all pairs equally near.
+/// Trees take expected O(log n) steps for scenes that are apart, and O(n) if the scenes are about equally near in many
+/// places. Brute force evaluates all pairs. So do trees if distances exceed 2^400, and certified queries if a motion
+/// moves a scene so far away that rounding makes all pairs equally near.
 #[diagnostic::on_unimplemented(
     message = "`{Self}` answers no queries for pairs with coordinates of type `{T}`",
     note = "`AabbTree`, `KdopTree` and `BruteForce` do; the octree and the P2M index answer closest-point queries only"
@@ -62,18 +63,18 @@ pub trait PairQuery<T: Real> {
     /// Returns the vertices of a primitive in f64.
     fn hull(&self, id: PrimitiveId) -> Hull;
 
-    /// Returns a box around the scene. The default takes the vertices of all primitives.
+    /// Returns a box around the scene. The default bounds the vertices of all primitives.
     #[doc(hidden)]
     fn pair_bounds(&self) -> Aabb<f64> {
         let ids = (0..self.primitive_count()).map(PrimitiveId::new);
         ids.fold(Aabb::empty(), |all, id| all.union(&bounds_of(self.hull(id).vertices())))
     }
 
-    /// Calls `search` with the trees that the index consists of, after some motions in their order, and returns `true`.
-    /// The default, for an index that is no tree, returns `false`.
+    /// Calls `search` with each tree of the index and the motions that are applied to it, in their order, and returns
+    /// `true`. The default, for an index that is not made of trees, returns `false`.
     ///
-    /// `search` gets a tree and the number that is added to the ids of its primitives. It returns the distance from the
-    /// box `near` beyond which no other tree is needed. The nearest trees come first.
+    /// `search` gets a tree and the offset of the ids of its primitives. It returns the distance from the box `near`
+    /// beyond which no other tree is needed. The nearest trees come first.
     #[doc(hidden)]
     fn visit_pair_sides(
         &self,
@@ -85,23 +86,23 @@ pub trait PairQuery<T: Real> {
         false
     }
 
-    /// Returns a point of the scene that is close to `point`, and its primitive. A search begins with it, so it may be
-    /// any point, or none, which is the default.
+    /// Returns a point of the scene that is probably close to `point`, and its primitive. A search starts from it, so
+    /// it may be any point. The default returns none.
     #[doc(hidden)]
     fn guess_closest(&self, point: V3) -> Option<(V3, PrimitiveId)> {
         let _ = point;
         None
     }
 
-    /// Returns whether a search should go on. Searches ask the first index before each step. The default is that they
-    /// do; [`Interruptible`](crate::batch::Interruptible) ends them early.
+    /// Returns whether a search should go on. Searches call it on the first index before each step. The default is
+    /// `true`; [`Interruptible`](crate::batch::Interruptible) ends searches early.
     #[doc(hidden)]
     fn goes_on(&self) -> bool {
         true
     }
 
-    /// Returns the nearest points of the scene and a shape; `None` if nothing is within the largest distance, and for a
-    /// shape whose coordinates are not finite, before or after its motion.
+    /// Returns the nearest points of the scene and a shape. It is `None` if nothing is within the largest distance, and
+    /// for a shape whose coordinates are not finite, before or after its motion.
     fn closest_to<P: Primitive<T>>(&self, shape: &P, options: &PairOptions<T>) -> Option<ClosestPair<T>>
     where
         Self: Sized,
@@ -111,7 +112,8 @@ pub trait PairQuery<T: Real> {
         pairs.finish()
     }
 
-    /// Returns whether a primitive is within the largest distance of a shape. The search ends at the first one.
+    /// Returns whether a primitive is within the largest distance of a shape. The search ends at the first such
+    /// primitive.
     fn is_any_near<P: Primitive<T>>(&self, shape: &P, options: &PairOptions<T>) -> bool
     where
         Self: Sized,
@@ -122,14 +124,13 @@ pub trait PairQuery<T: Real> {
         pairs.has_ended()
     }
 
-    /// Returns the certainly nearest primitive of the scene and a shape, in real arithmetic, of exactly equal distances
-    /// the one with the lowest id. The distance is the true one, rounded once to the nearest f64, and once more for
-    /// scenes in f32. Of the options the radius and the hint are not used, and the largest distance is
-    /// compared without rounding.
+    /// Returns the primitive of the scene that is certainly nearest to a shape, in real arithmetic. Exact ties go to
+    /// the lowest id. The distance is the true one, rounded once to the nearest f64, and once more for scenes in f32.
+    /// Of the options the radius and the hint are not used, and the largest distance is compared without rounding.
     ///
     /// # Complexity
-    /// It takes the search of [`closest_to`](Self::closest_to), and some ten microseconds for each pair that rounding
-    /// does not distinguish.
+    /// It takes the search of [`closest_to`](Self::closest_to), and about ten microseconds per pair that rounding does
+    /// not distinguish.
     fn certified_closest_to<P: Primitive<T>>(&self, shape: &P, options: &PairOptions<T>) -> Option<ClosestPair<T>>
     where
         Self: Sized,
@@ -140,8 +141,8 @@ pub trait PairQuery<T: Real> {
         certify(options, |pairs| search_shape(self, shape, options, pairs), hulls, &|| self.goes_on())
     }
 
-    /// Calls a function for each primitive within the largest distance of a shape, until it breaks, and returns whether
-    /// it did. The order is that of the search.
+    /// Calls a function for each primitive within the largest distance of a shape, until the function breaks, and
+    /// returns whether it did. The order is the order of the search.
     fn visit_near<P: Primitive<T>>(
         &self,
         shape: &P,
@@ -154,8 +155,8 @@ pub trait PairQuery<T: Real> {
         visit_each(options, visit, &mut |pairs| search_shape(self, shape, options, pairs))
     }
 
-    /// Returns the nearest points of this scene and another one; `None` if one is empty, if nothing is within the
-    /// largest distance, or if the box of the moved scene is beyond the range of f64.
+    /// Returns the nearest points of this scene and another one. It is `None` if a scene is empty, if nothing is within
+    /// the largest distance, or if the box of the moved scene is beyond the range of f64.
     fn closest_pair<Q: PairQuery<T> + ?Sized>(&self, other: &Q, options: &PairOptions<T>) -> Option<ClosestPair<T>>
     where
         Self: Sized,
@@ -166,8 +167,8 @@ pub trait PairQuery<T: Real> {
     }
 
     /// Returns the certainly nearest pair of primitives of this scene and another one, in real arithmetic, as
-    /// [`certified_closest_to`](Self::certified_closest_to) does for a shape. A motion moves and rounds
-    /// the vertices first.
+    /// [`certified_closest_to`](Self::certified_closest_to) does for a shape. A motion moves and rounds the vertices
+    /// first.
     fn certified_closest_pair<Q: PairQuery<T> + ?Sized>(
         &self,
         other: &Q,
@@ -181,8 +182,9 @@ pub trait PairQuery<T: Real> {
         certify(options, |pairs| search_scenes(self, other, options, pairs), hulls, &|| self.goes_on())
     }
 
-    /// Returns whether a primitive of this scene and one of another are within the largest distance. The search ends at
-    /// the first pair. With a largest distance of 0 it tests whether the scenes intersect, which is exact.
+    /// Returns whether a primitive of this scene and a primitive of another are within the largest distance of each
+    /// other. The search ends at the first such pair. With a largest distance of 0 it tests whether the scenes
+    /// intersect, which is exact.
     fn is_any_pair_near<Q: PairQuery<T> + ?Sized>(&self, other: &Q, options: &PairOptions<T>) -> bool
     where
         Self: Sized,
@@ -193,8 +195,8 @@ pub trait PairQuery<T: Real> {
         pairs.has_ended()
     }
 
-    /// Calls a function for each pair of primitives within the largest distance of the options, until it breaks, and
-    /// returns whether it did. The order is that of the search.
+    /// Calls a function for each pair of primitives within the largest distance of the options, until the function
+    /// breaks, and returns whether it did. The order is the order of the search.
     fn visit_pairs_within<Q: PairQuery<T> + ?Sized>(
         &self,
         other: &Q,
@@ -208,7 +210,8 @@ pub trait PairQuery<T: Real> {
     }
 }
 
-/// Returns the certified nearest of the pairs that a search may leave; `hulls` returns the vertices of a pair.
+/// Returns the certified nearest pair among the candidates that a search leaves. `hulls` returns the vertices of a
+/// pair.
 fn certify<T: Real>(
     options: &PairOptions<T>,
     search: impl FnOnce(&mut Pairs<'_>),
@@ -254,8 +257,8 @@ fn search_shape<T: Real>(
     search_hull(index, moved(Hull::of(shape), motion.as_ref()).vertices(), options.hint, pairs);
 }
 
-/// Offers the pairs of a scene and the hull of one to three vertices that may be near. There are none if a
-/// coordinate is not finite.
+/// Offers the pairs of a scene and a hull of one to three vertices that may be near. There are none if a coordinate is
+/// not finite.
 pub(super) fn search_hull<T: Real>(
     index: &(impl PairQuery<T> + ?Sized),
     hull: &[V3],
@@ -309,7 +312,7 @@ fn search_scenes<T: Real>(
     offer_hints(first, options.hint, guess, pairs, &mut |id| {
         (id.index() < second.primitive_count()).then(|| moved_hull(id))
     });
-    // Both are trees, unless one of the calls returns `false`, which it does before it searches anything.
+    // Both are trees unless a call returns `false`, which it does before it searches anything.
     let mut is_second_tree = true;
     let is_first_tree = first.visit_pair_sides(&[], &bounds, &mut |a, offset_a| {
         is_second_tree = second.visit_pair_sides(motion.as_slice(), &a.bounds(), &mut |b, offset_b| {
@@ -339,8 +342,8 @@ fn moved(hull: Hull, motion: Option<&Motion>) -> Hull {
     motion.map_or(hull, |motion| hull.map(|vertex| motion.apply(vertex)))
 }
 
-/// Offers the hint of the user and a guess, if the nearest pair is searched for. Ids that a scene does not
-/// have are ignored.
+/// Offers the user's hint and a guess, if the search is for the nearest pair. Ids that a scene does not have are
+/// ignored.
 fn offer_hints<T: Real>(
     first: &(impl PairQuery<T> + ?Sized),
     hint: Option<[PrimitiveId; 2]>,
@@ -351,8 +354,7 @@ fn offer_hints<T: Real>(
     if !pairs.is_nearest() {
         return;
     }
-    // A guess takes some closest-point queries. A hint that is good is better than a guess, and one that is not costs
-    // little.
+    // A guess takes a few closest-point queries. A good hint is better than a guess, and a bad one costs little.
     for [i, j] in hint.into_iter().chain(guess()) {
         if let Some(hull) = hull_of_second(j)
             && i.index() < first.primitive_count()
@@ -362,7 +364,7 @@ fn offer_hints<T: Real>(
     }
 }
 
-/// Offers the pair of a primitive of an index and the hull of the primitive with the id `other`.
+/// Offers the pair of a primitive of an index and a hull, which is the primitive with the id `other`.
 fn offer_of_index<T: Real>(
     index: &(impl PairQuery<T> + ?Sized),
     [id, other]: [PrimitiveId; 2],
@@ -372,14 +374,18 @@ fn offer_of_index<T: Real>(
     pairs.offer_result([id, other], nearest_of_hulls(index.hull(id).vertices(), hull, pairs.kernel_limit()));
 }
 
-/// The largest number of turns of a guess.
+/// The most alternations of a guess. There is no record of how it was tuned.
 const MAX_TURNS: usize = 32;
-/// A turn is worthwhile if it makes the square of the distance smaller by this factor.
+/// The factor by which an alternation has to reduce the squared distance to be worth another one. There is no record of
+/// how it was tuned.
 const WORTHWHILE: f64 = 0.999;
 
-/// Returns a pair that is probably near: the closest point of each scene to that of the other, in turns, beginning with
-/// the closest point of the first one to `point`. The distance falls with each turn, to a local minimum. With a good
-/// pair, a search cuts few nodes.
+/// Returns a pair that is probably near, for the search to start from (decision 054).
+///
+/// The basic idea is alternating projection: project a point onto the first scene, the result onto the second scene,
+/// that result onto the first scene again, and so on. The distance falls with each step, to a local minimum, after a
+/// few closest-point queries. With a good pair at hand, the search prunes most nodes at once. `point` is the first
+/// point to project.
 fn guess_pair(
     mut point: V3,
     on_first: &dyn Fn(V3) -> Option<(V3, PrimitiveId)>,
@@ -393,7 +399,7 @@ fn guess_pair(
         point = on_b;
         let offset = sub(on_b, on_a);
         let square = dot(offset, offset);
-        // The comparison is false for what is not a number.
+        // The comparison is false for NaN.
         if square < best {
             pair = Some([a, b]);
         }
@@ -410,8 +416,8 @@ fn centre(bounds: &Aabb<f64>) -> V3 {
     nalgebra::center(&bounds.min, &bounds.max).coords.into()
 }
 
-/// Returns the closest point of an index and its primitive, as [`PairQuery::guess_closest`] needs it: the query is
-/// rounded to the scalar of the index.
+/// The usual implementation of [`PairQuery::guess_closest`]: a closest-point query, rounded to the scalar type of the
+/// index.
 #[doc(hidden)]
 pub fn closest_as_guess<T: Real>(
     index: &(impl ClosestPoint<T> + ?Sized),

@@ -50,11 +50,11 @@ fn keys_depend_neither_on_order_nor_on_scale() {
         b.reverse();
         let permuted = within(nearest_of_hulls(&a, &b, f64::INFINITY));
         assert_eq!(pair.key, permuted.key, "{number}: {family}: {a:?} {b:?}");
-        // A limit at the key keeps the pair.
+        // A limit that equals the key keeps the pair.
         let limited = nearest_of_hulls(&a, &b, pair.key.square_above());
         assert_eq!(limited.map(|pair| pair.key), Ok(pair.key), "{number}: {family}: {a:?} {b:?}");
         let is_ordinary = |x: &f64| *x == 0.0 || (1e-30..1e30).contains(&x.abs());
-        // A distance that rounds to zero is the smallest number, at any scale.
+        // A distance that rounds to zero becomes the smallest number, at any scale.
         let is_tiny = pair.key.distance() == f64::from_bits(1);
         if !is_tiny && a.iter().chain(&b).flatten().all(is_ordinary) {
             let [a, b] = [&a, &b].map(|hull| hull.iter().map(|v| v.map(|x| scale_by_power(x, 70))).collect::<Vec<_>>());
@@ -141,7 +141,7 @@ fn moved_boxes_are_the_smallest_around_moved_vertices() {
     }
 }
 
-/// Cases that an earlier version had wrong.
+/// Regression tests.
 #[test]
 fn cases_that_were_wrong_are_right() {
     let huge = |[y, z]: [f64; 2]| [power_of_two(1000), y, z];

@@ -1,6 +1,6 @@
-//! Signs of determinants of fixed-point numbers: integers below 2^61 in units of a common power of two.
+//! Signs of determinants in fixed-point arithmetic: integers below 2^61 in units of a common power of two.
 //!
-//! Sums of their products fit into five words, so there is neither rounding nor allocation.
+//! Sums of their products fit into five 64-bit words, so there is neither rounding nor allocation.
 
 use crate::kernel::power_of_two;
 use crate::kernel::vector::{V3, exponent, larger, largest};
@@ -12,7 +12,8 @@ type Row = [i64; 3];
 /// Returns the differences p - origin in units of 2^-61 of the least power of two above all coordinates, or `None` if a
 /// coordinate is not a multiple of the unit.
 ///
-/// All are multiples if none but 0 is below 2^-8 of the largest, or if all have few bits, as in grids.
+/// All coordinates are multiples if each is 0 or at least 2^-8 of the largest one, or if all have few bits, as in
+/// grids.
 #[inline]
 #[allow(clippy::float_cmp, clippy::cast_precision_loss, reason = "a multiple of the unit is one exactly")]
 pub(super) fn rows<const N: usize>(points: &[V3; N], origin: V3) -> Option<[Row; N]> {
@@ -46,13 +47,13 @@ pub(super) fn orientation([a, b, c]: [Row; 3]) -> Ordering {
     sign(&sum)
 }
 
-/// Returns `Greater` if the origin is inside the sphere of four points, where orientation(b - a, c - a, d -
-/// a) is positive.
+/// Returns `Greater` if the origin is inside the sphere of four points for which orientation(b - a, c - a, d - a) is
+/// positive.
 pub(super) fn sphere(rows: [Row; 4]) -> Ordering {
     let [a, b, c, d] = rows;
     let xy = |p: Row, q: Row| minor(p, q, 0, 1);
     let (ab, bc, cd, da, ac, bd) = (xy(a, b), xy(b, c), xy(c, d), xy(d, a), xy(a, c), xy(b, d));
-    // These are the determinants of b, c, d and of its cyclic shifts.
+    // These are the determinants of the rows b, c, d and of their cyclic shifts.
     let determinants = [
         sum_of_products([(cd, b[2]), (-bd, c[2]), (bc, d[2])]),
         sum_of_products([(da, c[2]), (ac, d[2]), (cd, a[2])]),
@@ -89,7 +90,7 @@ fn sum_of_products(terms: [(i128, i64); 3]) -> [u64; 3] {
     sum
 }
 
-/// Returns a b in words of two's complement, the lowest word first.
+/// Returns a b as words in two's complement, the lowest word first.
 #[inline]
 #[allow(clippy::cast_possible_truncation, reason = "words of the product")]
 fn product(a: i128, b: i64) -> [u64; 3] {
@@ -100,7 +101,7 @@ fn product(a: i128, b: i64) -> [u64; 3] {
     if (a < 0) == (b < 0) { words } else { negative(words) }
 }
 
-/// Returns a b for numbers that are not negative, the lowest word first.
+/// Returns a b for non-negative numbers, the lowest word first.
 #[inline]
 #[allow(clippy::cast_possible_truncation, reason = "words of the product")]
 fn wide_product(a: [u64; 3], b: u128) -> [u64; 5] {

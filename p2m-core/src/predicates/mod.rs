@@ -1,9 +1,10 @@
 //! Signs of determinants, exact for all finite input.
 //!
 //! A predicate returns the side of a line or a plane on which a point lies, or whether a point is inside of a sphere.
-//! Such signs decide topology, so they must not depend on rounding. Stages of growing precision compute them where
-//! nothing can overflow or underflow; the last stage consists of the adaptive predicates of Shewchuk \[Shewchuk1997\]
-//! (crate robust). Elsewhere big integers decide (crate dashu-int), since every finite f64 is an integer times 2^-1074.
+//! Such signs decide topology, so they must not depend on rounding. Stages of increasing precision compute them while
+//! nothing can overflow or underflow; the last stage is the adaptive predicate of Shewchuk \[Shewchuk1997\] (crate
+//! robust). For other magnitudes big integers decide (crate dashu-int), since every finite f64 is an integer times
+//! 2^-1074.
 //!
 //! ```
 //! use p2m_core::predicates::orientation_2d;
@@ -27,11 +28,11 @@ use dashu_int::IBig;
 use robust::{Coord, Coord3D, orient2d, orient3d};
 use std::cmp::Ordering;
 
-/// The magnitudes of coordinates for which the crate robust is exact. Their lowest bit is at least 2^-352, so products
-/// of three differences are multiples of 2^-1056, and they are below 2^910.
+/// The magnitudes of coordinates for which the crate robust is exact. The lowest bit of a coordinate is at least
+/// 2^-352, so products of three differences are multiples of 2^-1056, and they are below 2^910.
 const PLAIN_MAGNITUDES: std::ops::RangeInclusive<f64> = power_of_two(-300)..=power_of_two(300);
 
-/// Returns whether all coordinates are 0 or of a plain magnitude.
+/// Returns whether all coordinates are 0 or in the plain range.
 fn is_plain<const N: usize>(points: &[[f64; N]]) -> bool {
     points.as_flattened().iter().all(|x| *x == 0.0 || PLAIN_MAGNITUDES.contains(&x.abs()))
 }
@@ -43,7 +44,7 @@ fn is_plain<const N: usize>(points: &[[f64; N]]) -> bool {
 /// It takes a few multiplications, and some microseconds for coordinates beyond 2^-300..2^300.
 ///
 /// # References
-/// The adaptive predicate is that of \[Shewchuk1997\].
+/// The adaptive predicate is by Shewchuk \[Shewchuk1997\].
 #[must_use]
 pub fn orientation_2d(a: [f64; 2], b: [f64; 2], c: [f64; 2]) -> Ordering {
     if is_plain(&[a, b, c]) {
@@ -62,12 +63,12 @@ pub fn orientation_2d(a: [f64; 2], b: [f64; 2], c: [f64; 2]) -> Ordering {
 /// It takes some tens of multiplications, and some microseconds for coordinates beyond 2^-300..2^300.
 ///
 /// # References
-/// The adaptive predicate is that of \[Shewchuk1997\].
+/// The adaptive predicate is by Shewchuk \[Shewchuk1997\].
 #[must_use]
 pub fn orientation_3d(a: [f64; 3], b: [f64; 3], c: [f64; 3], d: [f64; 3]) -> Ordering {
     if is_plain(&[a, b, c, d]) {
         let coord = |[x, y, z]: [f64; 3]| Coord3D { x, y, z };
-        // The sign of that crate is positive below the plane.
+        // The crate robust returns a positive sign below the plane.
         return adaptive::sign(orient3d(coord(a), coord(b), coord(c), coord(d))).reverse();
     }
     let exponent = common_exponent([a, b, c, d].as_flattened());
@@ -86,7 +87,7 @@ pub fn orientation_3d(a: [f64; 3], b: [f64; 3], c: [f64; 3], d: [f64; 3]) -> Ord
 /// microseconds for coordinates beyond 2^-161..2^190, and in rare cases that need adaptive arithmetic.
 ///
 /// # References
-/// The adaptive predicate is that of \[Shewchuk1997\].
+/// The adaptive predicate is by Shewchuk \[Shewchuk1997\].
 #[must_use]
 pub fn insphere(a: [f64; 3], b: [f64; 3], c: [f64; 3], d: [f64; 3], e: [f64; 3]) -> Ordering {
     let in_range = |x: &f64| *x == 0.0 || adaptive::RANGE.contains(&x.abs());
@@ -97,7 +98,7 @@ pub fn insphere(a: [f64; 3], b: [f64; 3], c: [f64; 3], d: [f64; 3], e: [f64; 3])
     insphere_by_integers([a, b, c, d], e)
 }
 
-/// Computes [`insphere`] in big integers, for coordinates of any exponents.
+/// Computes [`insphere`] in big integers, for coordinates with any exponents.
 fn insphere_by_integers(points: [[f64; 3]; 4], e: [f64; 3]) -> Ordering {
     let exponent = common_exponent(points.as_flattened().iter().chain(&e));
     let rows = points.map(|p| difference(p, e, exponent));
@@ -131,8 +132,8 @@ mod orientations {
         }
     }
 
-    /// Cyclic shifts keep the sign and swaps reverse it. Both arithmetics have to comply where one bit decides, and
-    /// have to agree with each other.
+    /// Cyclic shifts keep the sign and swaps reverse it. Both arithmetics have to comply in cases that one bit decides,
+    /// and have to agree with each other.
     #[test]
     fn one_bit_decides_and_both_ways_agree() {
         let [a, b] = [[0.5, 0.5], [12.0, 12.0]];

@@ -1,15 +1,15 @@
-//! The intersection of a primitive and a box, decided exactly.
+//! The exact test whether a primitive intersects a box.
 //!
 //! Two convex polytopes are disjoint if and only if one of these directions separates them: a face normal of either, or
-//! the cross product of an edge of each (separating-axis theorem \[Gottschalk1996\]). For a box these are
+//! the cross product of an edge of each (separating-axis theorem \[Gottschalk1996\]). For a box the directions are
 //!
 //! - its axes, on which the box of the primitive decides,
-//! - the normal of the triangle, where signs of [`orientation_3d`] at two corners decide, and
+//! - the normal of the triangle, for which signs of [`orientation_3d`] at two corners decide, and
 //! - the cross product of an edge and an axis. In the projection along that axis, the line through the edge separates
 //!   if all corners of a rectangle are on one side; signs of [`orientation_2d`] at two corners decide.
 //!
-//! So nothing is rounded. The box is first reduced to its intersection with the box of the primitive, which changes no
-//! answer but makes its corners finite.
+//! So nothing is rounded. The box is first reduced to its intersection with the box of the primitive. This does not
+//! change the answer, and makes the corners of the box finite.
 
 use crate::predicates::{orientation_2d, orientation_3d};
 use crate::real::to_f64_array;
@@ -54,18 +54,19 @@ fn triangle_intersects([a, b, c]: [[f64; 3]; 3], corners: &[[f64; 3]; 2]) -> boo
     orientation_3d(a, b, c, highest) != Less && orientation_3d(a, b, c, lowest) != Greater
 }
 
-/// Returns the other two coordinates in cyclic order.
+/// Projects a point along an axis: returns the other two coordinates in cyclic order.
 fn project(axis: usize, p: [f64; 3]) -> [f64; 2] {
     [p[(axis + 1) % 3], p[(axis + 2) % 3]]
 }
 
 /// Returns whether the line through `p` and `q`, projected along `axis`, has the box strictly on one side and the
-/// primitive on the other. `inside` is the side of the third vertex; `Equal` means that there is none, so that either
-/// side will do.
+/// primitive on the other. `inside` is the side of the third vertex. `Equal` means that there is no third vertex, so
+/// the box may be on either side.
 fn line_separates(axis: usize, p: [f64; 3], q: [f64; 3], inside: Ordering, corners: &[[f64; 3]; 2]) -> bool {
     let [p, q] = [p, q].map(|v| project(axis, v));
     let [low, high] = corners.map(|corner| project(axis, corner));
-    // The leftmost corner has the smaller x if y rises along the line, and the larger x otherwise; likewise for y.
+    // The leftmost corner has the smaller x if y rises along the line, and the larger x otherwise. The same holds for
+    // y.
     let (x_left, x_right) = if q[1] > p[1] { (low[0], high[0]) } else { (high[0], low[0]) };
     let (y_left, y_right) = if q[0] > p[0] { (high[1], low[1]) } else { (low[1], high[1]) };
     (inside != Less && orientation_2d(p, q, [x_left, y_left]) == Less)

@@ -1,4 +1,4 @@
-//! A check of primitives of your own.
+//! A check for primitive types of your own.
 
 use super::interface::Primitive;
 use super::projection::Projection;
@@ -7,14 +7,14 @@ use crate::kernel::Key;
 use crate::real::to_f64_array;
 use nalgebra::Point3;
 
-/// A way in which a primitive does not keep what [`Primitive`] requires.
+/// A violated requirement of the trait [`Primitive`].
 #[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum PrimitiveDefect {
-    /// The box contains a coordinate that is not finite, or is empty.
+    /// The box has a coordinate that is not finite, or is empty.
     #[error("the box of the primitive is empty or not finite")]
     Box,
-    /// Two calls of `project` with one query return different results.
+    /// Two calls of `project` with the same query return different results.
     #[error("project returns different results for the query {query:?}")]
     NotPure {
         /// The query of the failed check.
@@ -34,22 +34,23 @@ pub enum PrimitiveDefect {
         /// The nearest point that `project` returns.
         point: [f64; 3],
     },
-    /// The key differs from the one that [`Projection::new`] makes of the query and the point by more than rounding.
+    /// The key differs by more than rounding from the key that [`Projection::new`] computes from the query and the
+    /// point.
     #[error("the key for the query {query:?} is not the distance of the point, which Projection::new computes")]
     Key {
         /// The query of the failed check.
         query: [f64; 3],
     },
-    /// The bound on the error is negative, NaN or infinite.
+    /// The error bound is negative, NaN or infinite.
     #[error("the bound on the error for the query {query:?} is {error}, which is no finite number from 0 on")]
     ErrorBound {
         /// The query of the failed check.
         query: [f64; 3],
-        /// The bound on the error.
+        /// The error bound.
         error: f64,
     },
-    /// The distances of two queries differ by more than the distance between the queries and both bounds on the errors
-    /// allow, so one of the points is not the nearest one or one of the bounds is too small.
+    /// The distances of two queries differ by more than the distance between the queries and both error bounds allow.
+    /// So one of the points is not the nearest one, or one of the bounds is too small.
     #[error("the distances from {query:?} and {other:?} differ by more than the queries are apart and errors allow")]
     NotNearest {
         /// The first query.
@@ -57,7 +58,8 @@ pub enum PrimitiveDefect {
         /// The second query.
         other: [f64; 3],
     },
-    /// `project_within` returns another result than `project`, or none although the key does not exceed the square.
+    /// `project_within` and `project` return different results, or `project_within` returns none although the key does
+    /// not exceed the square.
     #[error("project_within disagrees with project for the query {query:?}")]
     Within {
         /// The query of the failed check.
@@ -65,7 +67,8 @@ pub enum PrimitiveDefect {
     },
 }
 
-/// Checks whether a primitive of your own keeps what [`Primitive`] requires, at some finite queries. Call it in a test.
+/// Checks that a primitive of your own meets the requirements of [`Primitive`] at some finite queries. Call it in a
+/// test.
 ///
 /// Queries should lie inside of the primitive, on it, beside it and far away. The check adds six queries beyond the
 /// faces of the box. It proves nothing about other queries.
@@ -95,7 +98,7 @@ pub enum PrimitiveDefect {
 /// It returns the first [`PrimitiveDefect`] that it finds.
 ///
 /// # Complexity
-/// It compares all pairs of queries, so some hundred queries are enough.
+/// It compares all pairs of queries, so pass a hundred or so.
 pub fn check_primitive<T: Real>(primitive: &impl Primitive<T>, queries: &[Point3<T>]) -> Result<(), PrimitiveDefect> {
     let bounds = primitive.aabb();
     if bounds.is_empty() || !bounds.is_finite() {
@@ -126,7 +129,7 @@ pub fn check_primitive<T: Real>(primitive: &impl Primitive<T>, queries: &[Point3
         if !(0.0..f64::INFINITY).contains(&found.error) {
             return Err(PrimitiveDefect::ErrorBound { query, error: found.error });
         }
-        // The kernel of p2m makes more precise keys than `Projection::new`.
+        // The kernel of p2m computes more precise keys than `Projection::new`.
         let expected =
             Projection::new(point, found.point, found.feature, found.barycentric, found.error).key.distance();
         let largest = query.iter().chain(found.point.iter()).fold(0.0f64, |largest, x| largest.max(x.abs()));
@@ -160,7 +163,7 @@ mod tests {
     use rand::RngExt;
     use std::cell::Cell;
 
-    /// A ball of radius 1 with one of several mistakes.
+    /// A ball of radius 1 with one of several defects.
     struct Ball(Mistake, Cell<u32>);
 
     #[derive(PartialEq)]
@@ -207,7 +210,7 @@ mod tests {
         }
     }
 
-    /// A primitive that leaves its projection to another one.
+    /// A primitive that delegates its projection to another one.
     struct Delegate(Triangle<f64>);
 
     impl Primitive<f64> for Delegate {

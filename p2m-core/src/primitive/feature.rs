@@ -1,7 +1,7 @@
 //! The features of a primitive: vertices, edges and the face.
 
-/// The feature of a primitive that contains its nearest point, numbered within that primitive: neighbours in a mesh
-/// number the same vertex or edge differently.
+/// The feature of a primitive that contains its nearest point. Features are numbered within their primitive, so
+/// neighbours in a mesh number the same vertex or edge differently.
 ///
 /// A point has `Vertex(0)`; a segment has `Vertex(0)`, `Vertex(1)` and `Edge(0)`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
@@ -15,8 +15,7 @@ pub enum Feature {
 }
 
 impl Feature {
-    /// Returns the code of the feature in arrays: vertices 0 to 2 have the codes 0 to 2, edges the codes 3 to 5, and the
-    /// face has 6.
+    /// Returns the code of the feature in arrays: 0 to 2 for the vertices, 3 to 5 for the edges, and 6 for the face.
     #[must_use]
     pub fn code(self) -> u8 {
         match self {

@@ -1,21 +1,22 @@
-//! The interface of a primitive.
+//! The trait of primitives.
 
 use super::projection::Projection;
 use crate::{Aabb, Ray, RayHit, Real};
 use nalgebra::Point3;
 
-/// A set of points that has a nearest point to any query.
+/// A primitive: a set of points that has a nearest point to any query.
 ///
-/// [`Point`](crate::Point), [`Segment`](crate::Segment), [`Triangle`](crate::Triangle) and [`Shape`](crate::Shape) keep
+/// [`Point`](crate::Point), [`Segment`](crate::Segment), [`Triangle`](crate::Triangle) and [`Shape`](crate::Shape) meet
 /// the whole contract of [`ClosestPoint`](crate::ClosestPoint). For a primitive of your own, every index of this
-/// project still finds the primitive of the smallest key, lowest id first, and agrees bitwise with
+/// project still finds the primitive with the smallest key, lowest id first, and agrees bitwise with
 /// [`BruteForce`](crate::BruteForce) (N3, and N6 for totality), provided that
 ///
-/// - `project` is a pure function that returns for every finite query,
-/// - its point lies in `aabb()`, and its key is made by [`Projection::new`].
+/// - `project` is a pure function that returns for every finite query, and
+/// - its point lies in `aabb()`, and its key is computed by [`Projection::new`].
 ///
 /// N1, N2 and N5 (accuracy) then hold with your own `error` in place of 8 u M, and N4 (invariance) as far as your
-/// arithmetic has it. Use a tree for them: the lists of `P2mIndex` contain triangles, segments and points only.
+/// arithmetic guarantees it. Use a tree for such primitives: the lists of `P2mIndex` contain triangles, segments and
+/// points only.
 ///
 /// ```
 /// use p2m_core::{Aabb, BruteForce, ClosestPoint, Feature, Primitive, Projection, Ray, RayHit, check_primitive};
@@ -58,7 +59,7 @@ pub trait Primitive<T: Real> {
 
     /// Returns the nearest point, or `None` if its key certainly exceeds `square`.
     ///
-    /// A search passes the square that it would prune above, so a primitive with a cheap bound can save the work. The
+    /// A search passes the square above which it would prune, so a primitive with a cheap bound can save the work. The
     /// default calls [`project`](Self::project).
     #[inline]
     fn project_within(&self, query: &Point3<T>, square: f64) -> Option<Projection> {
@@ -67,18 +68,18 @@ pub trait Primitive<T: Real> {
     }
 
     /// Returns the one to three vertices of a primitive that *is* the [`Point`](crate::Point),
-    /// [`Segment`](crate::Segment) or [`Triangle`](crate::Triangle) of these.
+    /// [`Segment`](crate::Segment) or [`Triangle`](crate::Triangle) of these vertices.
     ///
-    /// Indexes then filter it by more than its box, and may evaluate that shape instead. The default returns none,
-    /// which is right for a primitive whose `project` differs from that of the shape in any bit.
+    /// Indexes then filter it by more than its box, and may evaluate that shape instead of calling `project`. The
+    /// default returns no vertices, which is right for a primitive whose `project` differs from the shape's in any bit.
     fn vertices(&self) -> &[Point3<T>] {
         &[]
     }
 
     /// Returns whether the primitive has a point in a closed box, for [`BoxQuery`](crate::BoxQuery).
     ///
-    /// It is exact for the primitives of this project. The default tests the box of the primitive, which finds at least
-    /// all primitives that have a point in the box.
+    /// It is exact for the primitives of this project. The default tests the box of the primitive, so it may also
+    /// return `true` for a primitive that misses the box, but never `false` for one that intersects it.
     fn intersects_box(&self, bounds: &Aabb<T>) -> bool {
         !bounds.is_empty() && bounds.intersects(&self.aabb())
     }

@@ -1,4 +1,4 @@
-//! The nearest point of one primitive.
+//! The projection of a query onto a primitive.
 
 use super::feature::Feature;
 use crate::Real;
@@ -15,7 +15,7 @@ pub struct Projection {
     pub key: Key,
     /// The nearest point.
     pub point: Point3<f64>,
-    /// The feature of the lowest dimension that contains the nearest point.
+    /// The feature of lowest dimension that contains the nearest point.
     pub feature: Feature,
     /// The weights of the vertices of the primitive. They are >= 0 and add up to 1 within 4 u; unused ones are 0.
     pub barycentric: [f64; 3],
@@ -26,9 +26,9 @@ pub struct Projection {
 impl Projection {
     /// Creates the projection of a primitive of your own, from the query and its nearest point.
     ///
-    /// The key is computed from `point - query`, componentwise, which makes it never less than the lower bound of any
-    /// box that contains `point`. `error` is your bound on the error of the distance, and certified lower bounds are as
-    /// good as it is.
+    /// The key is computed from `point - query`, componentwise, so it is never less than the lower bound of a box that
+    /// contains `point`. `error` is your bound on the error of the distance; certified lower bounds are only as good as
+    /// this bound.
     ///
     /// ```
     /// use p2m_core::{Feature, Projection};
@@ -50,8 +50,8 @@ impl Projection {
         Self { key, point, feature, barycentric, error }
     }
 
-    /// Projects onto a triangle that is probably near: inlined, and without a test of its box. It returns `None` if the
-    /// key certainly exceeds `square`.
+    /// Projects onto a triangle that is probably near. The function is inlined and skips the test of the triangle's
+    /// box. It returns `None` if the key certainly exceeds `square`.
     #[inline(always)]
     #[doc(hidden)]
     pub fn onto_near_triangle(query: [f64; 3], vertices: &[[f64; 3]; 3], square: f64) -> Option<Self> {

@@ -1,4 +1,4 @@
-//! The primitives of a mixed scene.
+//! A primitive of a mixed scene: a point, a segment or a triangle.
 
 use super::interface::Primitive;
 use super::point::Point;
@@ -21,7 +21,8 @@ pub enum Shape<T: Real> {
 }
 
 impl<T: Real> Shape<T> {
-    /// Makes a point, a segment or a triangle of one to three vertices; `None` for another number.
+    /// Creates a point, a segment or a triangle from one to three vertices. It is `None` for any other number of
+    /// vertices.
     #[must_use]
     pub fn from_vertices<P: Copy + Into<Point3<T>>>(vertices: &[P]) -> Option<Self> {
         match *vertices {

@@ -1,4 +1,4 @@
-//! The collector of the single nearest primitive.
+//! The collector of the nearest primitive.
 
 use super::answer::{ROUND_DOWN, ROUND_UP, answer, lower_bound, square_within};
 use super::closest::Closest;
@@ -17,31 +17,32 @@ pub struct Best<T: Real> {
     scalar: PhantomData<T>,
 }
 
-/// The running minimum in f64 for both scalars of scenes, so that a search is compiled once.
+/// The running minimum in f64. It serves both scalar types of scenes, so that a search is compiled once.
 #[derive(Clone, Debug)]
 pub struct BestF64 {
-    /// The largest f64 distance that is reported within the radius.
+    /// The largest f64 distance that is reported as within the radius.
     radius: f64,
     /// The factor (1 + epsilon)^-2, rounded down.
     shrink: f64,
-    /// The square that lower bounds must not exceed: at first that of the radius, rounded up, and from the first answer
-    /// within the radius on the key times `shrink`.
+    /// The square above which lower bounds are pruned. At first it is the square of the radius, rounded up. Once an
+    /// answer within the radius is known, it is the key times `shrink`.
     prune: f64,
     /// The candidate with the least key.
     best: Option<(PrimitiveId, Projection)>,
     /// The key of `best`, or infinity.
     key: Key,
-    /// The smallest `distance - error` of all candidates, and the smallest bound of all that was skipped.
+    /// The smallest `distance - error` of all candidates and the smallest bound of all skipped parts, whichever is
+    /// less.
     certified: f64,
     /// Whether the options allow an answer other than the exact one.
     approximate: bool,
-    /// The number of nodes and packets after whose visit an approximate search may stop.
+    /// The number of visited nodes and packets from which on an approximate search may stop.
     max_visits: u32,
-    /// The numbers of nodes that were visited, of packets that were filtered, and of primitives that were offered.
+    /// The numbers of visited nodes, filtered packets and offered primitives.
     counts: [u32; 3],
 }
 
-/// The factor of epsilon, 2^100, beyond which any answer suffices; squares of it stay in range.
+/// The largest factor 1 + epsilon, 2^100; its square stays in range, and any answer suffices beyond it.
 const MAX_ERROR_FACTOR: f64 = 1.267_650_600_228_229_4e30;
 
 impl<T: Real> Best<T> {
@@ -52,7 +53,8 @@ impl<T: Real> Best<T> {
         let factor = 1.0 + if epsilon > 0.0 { epsilon } else { 0.0 };
         let factor = if factor > MAX_ERROR_FACTOR { MAX_ERROR_FACTOR } else { factor };
         let shrink = if factor > 1.0 { ROUND_DOWN / (factor * factor) } else { 1.0 };
-        // Distances are compared as they are reported, so some beyond the radius round into it. A NaN radius has none.
+        // Distances are compared as they are reported, so some distances beyond the radius round into it. Nothing is
+        // within a NaN radius.
         let radius = options.max_distance.to_f64_above();
         let prune = square_within(radius);
         let minimum = BestF64 {
@@ -75,15 +77,15 @@ impl<T: Real> Best<T> {
         self.hint
     }
 
-    /// Offers the primitive of the hint, if the options name one that the set has.
+    /// Offers the primitive of the hint, if there is a hint and the set has that primitive.
     pub fn offer_hint<S: PrimitiveSet<T> + ?Sized>(&mut self, set: &S, query: &Point3<T>) {
         if let Some(id) = self.hint.filter(|id| id.index() < set.len()) {
             self.offer(id, set.get(id).project(query));
         }
     }
 
-    /// Reports that a part of the scene will not be searched although it could contain the answer; `square` is a lower
-    /// bound as for [`Collector::prune_above`]. The certified lower bound of the answer takes it into account.
+    /// Reports that a part of the scene will be skipped although it could contain the answer. `square` is a lower bound
+    /// as for [`Collector::prune_above`]. The certified lower bound of the answer takes it into account.
     pub fn record_skipped(&mut self, square: f64) {
         self.minimum.record_skipped(square);
     }
@@ -93,13 +95,13 @@ impl<T: Real> Best<T> {
         self.minimum.best.as_ref().map(|(_, p)| p.point.coords.into())
     }
 
-    /// Returns the collector that a search which is not generic over the scalar reports to.
+    /// Returns the running minimum in f64, for a search that is not generic over the scalar type.
     #[inline(always)]
     pub fn minimum(&mut self) -> &mut BestF64 {
         &mut self.minimum
     }
 
-    /// Returns the running minimum in f64, without the hint.
+    /// Returns the running minimum in f64 by reference, without the hint.
     #[inline(always)]
     #[doc(hidden)]
     pub fn minimum_ref(&self) -> &BestF64 {
@@ -137,23 +139,23 @@ impl BestF64 {
         Some(answer(*primitive, p, if *certified < pruned { *certified } else { pruned }))
     }
 
-    /// Returns the numbers of nodes, packets and primitives of the search so far.
+    /// Returns the numbers of nodes, packets and primitives that the search has visited so far.
     #[must_use]
     pub fn counts(&self) -> [u32; 3] {
         self.counts
     }
 
-    /// Returns a lower bound on the distances of all primitives where there is no answer. It is infinite if there
-    /// are no primitives.
+    /// Returns a lower bound on the distances of all primitives if there is no answer. It is infinite if there are no
+    /// primitives.
     pub(crate) fn lower_bound_without_answer<T: Real>(&self) -> T {
-        // Parts beyond the radius were pruned, by a square that is exact to 5 u.
+        // Parts beyond the radius were pruned by a square that is exact to 5 u.
         let bound = self.certified.min(self.radius * ROUND_DOWN);
         if bound < f64::INFINITY { lower_bound(bound) } else { T::INFINITY }
     }
 
-    /// Takes a candidate whose key is the square in a lane, unless the single kernel has to compute it. Returns whether it
-    /// was taken. This does what [`offer`](Collector::offer) does for an exact search, but makes the projection
-    /// only if the candidate is the best one so far.
+    /// Takes the candidate in a lane, unless the single kernel has to compute it. Returns whether it was taken. For an
+    /// exact search the effect is that of [`offer`](Collector::offer), but the projection is computed only if the
+    /// candidate is the best one so far.
     #[inline(always)]
     #[allow(clippy::float_cmp, reason = "ties are equality of bits")]
     pub fn offer_lane(&mut self, id: PrimitiveId, found: &LaneResults, lane: usize) -> bool {
@@ -177,7 +179,7 @@ impl BestF64 {
         (distance <= self.radius).then_some((distance, *primitive))
     }
 
-    /// Returns whether a distance is within the radius, as it will be reported.
+    /// Returns whether a distance, as it will be reported, is within the radius.
     #[inline]
     fn is_within_radius(&self, key: Key) -> bool {
         key.distance() <= self.radius
@@ -192,8 +194,8 @@ impl Collector for BestF64 {
 
     #[inline(always)]
     fn prune_given_upper_bound(&self, square: f64) -> f64 {
-        // Epsilon does not shrink this bound: its primitive may be beyond the radius, or be skipped for a candidate
-        // that is a little farther, and only that candidate determines what else may be skipped.
+        // Epsilon does not shrink this bound. Its primitive may be beyond the radius, or be skipped in favour of a
+        // candidate that is slightly farther, and only that candidate determines which parts may be skipped.
         if square < self.prune { square } else { self.prune }
     }
 
@@ -204,7 +206,7 @@ impl Collector for BestF64 {
 
     #[inline(always)]
     fn prune_given_incumbent(&self, square: f64) -> f64 {
-        // An incumbent beyond the radius is no answer, so epsilon does not apply to it.
+        // An incumbent beyond the radius is not an answer, so epsilon does not apply to it.
         let is_within = square * ROUND_UP < self.radius * self.radius;
         let shrunk = if is_within { square * self.shrink } else { square };
         if shrunk < self.prune { shrunk } else { self.prune }
@@ -212,7 +214,7 @@ impl Collector for BestF64 {
 
     #[inline(always)]
     fn may_stop(&self, has_incumbent: bool) -> bool {
-        // A search without a candidate at a finite distance goes on, however many visits it took.
+        // A search without a candidate at a finite distance goes on, however many nodes and packets it has visited.
         self.counts[0].saturating_add(self.counts[1]) >= self.max_visits
             && (has_incumbent || self.key.distance() < f64::INFINITY)
     }
@@ -229,7 +231,7 @@ impl Collector for BestF64 {
 
     #[inline(always)]
     fn record_skipped(&mut self, square: f64) {
-        // The bound of a box is at most 5 u too large, and wrong by some subnormals near zero. A bound above the range
+        // The bound of a box is at most 5 u too large, and wrong by a few subnormals near zero. A bound above the range
         // of f64 is replaced by the end of the range.
         let square = if square < f64::MAX { square } else { f64::MAX };
         let bound = (square * ROUND_DOWN - 4.0 * f64::from_bits(1)).max(0.0).sqrt();
@@ -241,7 +243,7 @@ impl Collector for BestF64 {
     #[inline(always)]
     fn prune_above_for_id(&self, id: PrimitiveId) -> f64 {
         match &self.best {
-            // Of equal keys the lowest id wins, so a higher id has to be strictly nearer.
+            // Ties go to the lowest id, so a higher id has to be strictly nearer.
             Some((best, p)) if *best < id && p.key.plain_square() == Some(self.prune) => self.prune.next_down(),
             _ => self.prune,
         }
@@ -261,8 +263,8 @@ impl Collector for BestF64 {
     fn offer(&mut self, id: PrimitiveId, projection: Projection) {
         self.counts[2] = self.counts[2].wrapping_add(1);
         let p = projection;
-        // Only a candidate within its error of the certified bound can lower that bound. Its square decides this
-        // without a square root in most cases.
+        // Only a candidate within its error of the certified bound can lower that bound. In most cases its square
+        // decides this without a square root.
         let limit = self.certified + p.error;
         let is_beyond = p.key.plain_square().is_some_and(|square| square * ROUND_DOWN > limit * limit);
         if !is_beyond {
@@ -279,7 +281,7 @@ impl Collector for BestF64 {
             self.best = Some((id, p));
             self.key = p.key;
             let square = p.key.square_above() * self.shrink;
-            // A candidate beyond the radius is no answer, so epsilon does not apply to it.
+            // A candidate beyond the radius is not an answer, so epsilon does not apply to it.
             if square < self.prune && (self.shrink >= 1.0 || self.is_within_radius(p.key)) {
                 self.prune = square;
             }

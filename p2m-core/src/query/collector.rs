@@ -2,22 +2,22 @@
 
 use crate::{PrimitiveId, Projection};
 
-/// A collector takes the candidates of a search, and tells the search which parts of the scene it may skip.
+/// A collector takes the candidates of a search, and decides which parts of the scene the search may skip.
 ///
-/// [`Best`](crate::Best) keeps the single closest candidate. [`Near`](crate::Near) answers the other questions about
-/// near primitives by the same traversals.
+/// [`Best`](crate::Best) keeps the single closest candidate. [`Near`](crate::Near) answers all other near queries with
+/// the same traversals.
 ///
 /// All squares are squared distances in f64 and in units of the scene. The methods that return limits are called in
 /// inner loops, so implementations should be `#[inline]`.
 pub trait Collector {
-    /// Returns the square that a lower bound must not exceed: a search skips bounds strictly above it and keeps equal
+    /// Returns the square above which lower bounds are pruned: a search skips bounds strictly above it and keeps equal
     /// ones. It never rises during a search.
     fn prune_above(&self) -> f64;
 
-    /// Returns the limit of [`prune_above`](Self::prune_above) given that the key of some primitive is at most
-    /// `square`, although that primitive was not offered yet.
+    /// Returns the limit of [`prune_above`](Self::prune_above), given that the key of some primitive is at most
+    /// `square`. The primitive need not have been offered yet.
     ///
-    /// A collector that looks for the single nearest primitive may then prune more. The default ignores `square`.
+    /// A collector of the single nearest primitive may then prune more. The default ignores `square`.
     #[inline(always)]
     fn prune_given_upper_bound(&self, square: f64) -> f64 {
         let _ = square;
@@ -26,7 +26,7 @@ pub trait Collector {
 
     /// Returns the limit of [`prune_above`](Self::prune_above) for the primitive `id`.
     ///
-    /// It is lower than the general limit if the collector would reject that primitive at equality because of its id, and
+    /// It is lower than the general limit if the collector would reject that primitive in a tie because of its id, and
     /// infinite if the collector does not compare keys. The default returns the general limit.
     #[inline(always)]
     fn prune_above_for_id(&self, id: PrimitiveId) -> f64 {
@@ -35,30 +35,30 @@ pub trait Collector {
     }
 
     /// Returns whether a collector of the nearest primitive also needs all primitives that rounding cannot distinguish
-    /// from it. A search then evaluates and offers everything that its filters cannot exclude. The default is `false`.
+    /// from it. A search then evaluates and offers every primitive that its filters cannot exclude. The default is
+    /// `false`.
     #[inline(always)]
     fn keeps_near_ties(&self) -> bool {
         false
     }
 
-    /// Returns the distance by which a primitive may be farther than the nearest one and is still needed, for a
-    /// collector that [keeps near ties](Self::keeps_near_ties). A search adds it to the upper bounds that its filters
-    /// find, before it passes them on, and does not rely on lists of the primitives that can be nearest. It is
-    /// 0 by default.
+    /// Returns the slack of a collector that [keeps near ties](Self::keeps_near_ties): primitives that are farther than
+    /// the nearest one by at most this distance are still needed. A search adds it to the upper bounds of its filters
+    /// before it reports them, and does not rely on lists of the primitives that can be nearest. It is 0 by default.
     #[inline(always)]
     fn near_tie_slack(&self) -> f64 {
         0.0
     }
 
-    /// Returns whether the collector may accept less than the exact result. A search then asks
+    /// Returns whether the collector may accept less than the exact result. A search then calls
     /// [`prune_given_incumbent`](Self::prune_given_incumbent) and [`may_stop`](Self::may_stop). The default is `false`.
     #[inline(always)]
     fn is_approximate(&self) -> bool {
         false
     }
 
-    /// Returns the limit of [`prune_above`](Self::prune_above) given an incumbent with a key of at most `square`: the
-    /// search is certain to offer that primitive, or one that is at least as near.
+    /// Returns the limit of [`prune_above`](Self::prune_above), given an incumbent with a key of at most `square`: the
+    /// search is certain to offer the incumbent, or a primitive that is at least as near.
     ///
     /// An approximate collector may prune more than by [`prune_given_upper_bound`](Self::prune_given_upper_bound),
     /// which is the default.
@@ -67,8 +67,8 @@ pub trait Collector {
         self.prune_given_upper_bound(square)
     }
 
-    /// Returns whether the search may stop before it has visited everything; `has_incumbent` says whether there is a
-    /// primitive that it will certainly offer. The search reports everything that it did not visit by
+    /// Returns whether the search may stop before it has visited everything. `has_incumbent` is whether there is a
+    /// primitive that the search will certainly offer. The search reports all parts that it skips by
     /// [`record_skipped`](Self::record_skipped). The default is `false`.
     #[inline(always)]
     fn may_stop(&self, has_incumbent: bool) -> bool {
@@ -83,38 +83,38 @@ pub trait Collector {
         let _ = square;
     }
 
-    /// Returns whether only the nearest primitive and ties with it count, so that a candidate that is farther than some
-    /// primitive need not be offered. The default is `false`.
+    /// Returns whether only the nearest primitive and ties with it are needed. A candidate that is farther than some
+    /// other primitive then need not be offered. The default is `false`.
     #[inline(always)]
     fn is_single_nearest(&self) -> bool {
         false
     }
 
-    /// Takes a primitive by its one to three vertices, in place of the projection of the query, and returns whether it
-    /// did. A search that has vertices at hand calls it before it evaluates a candidate. The default takes none.
+    /// Takes a primitive by its one to three vertices instead of its projection, and returns whether it did. A search
+    /// that has the vertices at hand calls it before it evaluates a candidate. The default takes none.
     #[inline(always)]
     fn take_vertices(&mut self, id: PrimitiveId, vertices: &[[f64; 3]]) -> bool {
         let _ = (id, vertices);
         false
     }
 
-    /// Takes a candidate.
+    /// Takes a candidate, which has been evaluated.
     fn offer(&mut self, id: PrimitiveId, projection: Projection);
 
-    /// Whether searches with this collector contain a copy of the filter of packets. That is faster and much code, so it
-    /// is for the collector of the nearest primitive.
+    /// Returns whether searches with this collector contain an inlined copy of the packet filter. That is faster but
+    /// adds much code, so it is meant for the collector of the nearest primitive.
     #[doc(hidden)]
     #[inline(always)]
     fn has_inlined_filters(&self) -> bool {
         false
     }
 
-    /// Reports a visit to a node of a tree, or to a site on the way to a Voronoi cell. Collectors that count visits or
-    /// limit them override it.
+    /// Reports a visit to a node of a tree, or to a site on the way to a Voronoi cell. Collectors that count or limit
+    /// visits override it.
     #[inline(always)]
     fn visit_node(&mut self) {}
 
-    /// Reports that a packet of primitives is filtered. Collectors that count visits or limit them override it.
+    /// Reports that a packet of primitives is filtered. Collectors that count or limit visits override it.
     #[inline(always)]
     fn visit_packet(&mut self) {}
 }

@@ -1,8 +1,8 @@
-//! Delegation of trait methods to a field, for collectors that wrap another collector.
+//! Macros for collectors that wrap another collector: delegation of trait methods to a field.
 
-/// Implements trait methods by calling the method of the same name on the field `$field`.
+/// Implements trait methods by delegation to the methods of the same name on the field `$field`.
 ///
-/// The attributes before `fn` are given to every method. A receiver is written `self: &Self` or `self: &mut Self`.
+/// The attributes before `fn` apply to every method. A receiver is written `self: &Self` or `self: &mut Self`.
 macro_rules! forward_methods {
     (@each $field:ident, $attributes:tt, ) => {};
     (@each $field:ident, [$(#[$attribute:meta])*],
@@ -19,8 +19,8 @@ macro_rules! forward_methods {
     };
 }
 
-/// Implements the methods of [`Collector`](crate::Collector) that return decisions, but not those by which
-/// a search reports.
+/// Implements the methods of [`Collector`](crate::Collector) that return decisions, but not the methods by which a
+/// search reports.
 macro_rules! forward_collector_decisions {
     ($field:ident, $attributes:tt) => {
         forward_methods!($field, $attributes, {

@@ -1,17 +1,16 @@
-//! Queries for the closest point: their options, their answers, and the collectors between a search and an answer.
+//! Closest-point queries: their options, their answers, and the collectors between a search and an answer.
 //!
-//! A backend only traverses its structure. It reports candidates to a [`Collector`], which returns the lower bounds
-//! to prune, so the radius, ties, epsilon and the certified lower bound are decided in [`Best`] and nowhere else.
+//! A backend only traverses its structure. It reports candidates to a [`Collector`], which returns the limit for
+//! pruning. So only [`Best`] decides the radius, ties, epsilon and the certified lower bound.
 //!
 //! # Approximation
 //!
-//! Two options give up exactness: a relative error (epsilon) and a limit on visits (`max_visits`). A search that
-//! honours them keeps an *incumbent*: the primitive with the least upper bound on its distance, which need not be
-//! evaluated yet. Incumbents are evaluated before the search ends, so the answer is never farther than the incumbent
-//! was. Subtrees whose lower bound exceeds the distance of the incumbent / (1 + epsilon) are skipped, and subtrees
-//! that are not visited at all are reported with the smallest of their bounds ([`Best::record_skipped`]). So the
-//! lower bound of the answer is certified whatever the options were, and a caller knows the error without another
-//! query ([docs/proofs/accuracy.md], N7).
+//! Two options give up exactness: a relative error (epsilon) and a limit on visits (`max_visits`). A search with these
+//! options keeps an *incumbent*: the primitive with the least upper bound on its distance, which need not have been
+//! evaluated. Incumbents are evaluated before the search ends, so the answer is never farther than the incumbent was.
+//! Subtrees whose lower bound exceeds the distance of the incumbent / (1 + epsilon) are skipped, and the smallest bound
+//! of all unvisited subtrees is reported ([`Best::record_skipped`]). So the lower bound of the answer is certified for
+//! all options, and a caller knows the error without another query ([docs/proofs/accuracy.md], N7).
 //!
 //! [docs/proofs/accuracy.md]: https://github.com/p2m-rs/p2m/blob/main/docs/proofs/accuracy.md
 

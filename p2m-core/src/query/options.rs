@@ -1,8 +1,8 @@
-//! Options of a query.
+//! Options of a closest-point query.
 
 use crate::{PrimitiveId, Real};
 
-/// Options of a query for the closest point. They are built from the default by the `with_` methods.
+/// Options of a closest-point query. Build them from the default by the `with_` methods.
 ///
 /// ```
 /// use p2m_core::QueryOptions;
@@ -14,22 +14,22 @@ use crate::{PrimitiveId, Real};
 #[non_exhaustive]
 pub struct QueryOptions<T: Real> {
     /// The largest distance of an answer, inclusive, in units of the scene. The default is infinity. A negative or NaN
-    /// bound admits no answer.
+    /// value admits no answer.
     pub max_distance: T,
-    /// A primitive that is probably near, such as that of the previous answer along a path. It changes the time of a
-    /// query but never an exact answer, and it is ignored if the set has no such primitive.
+    /// A primitive that is probably near, such as the previous answer along a path. It affects the time of a query but
+    /// never an exact answer, and it is ignored if the set has no such primitive.
     pub hint: Option<PrimitiveId>,
     /// The largest relative error of the distance: reported <= (1 + epsilon) true, apart from rounding (contract N7).
     /// The default is 0, and a negative or NaN value counts as 0.
     pub epsilon: T,
-    /// The maximum number of nodes and packets to visit, besides those that it takes to find any answer at all.
-    /// When it is exhausted, the best candidate so far is the answer, and its `lower_bound` remains valid. The
+    /// The maximum number of nodes and packets to visit, in addition to the visits that finding any answer at all
+    /// takes. When it is exhausted, the best candidate so far is the answer, and its `lower_bound` remains valid. The
     /// default is unlimited.
     ///
     /// The interception indexes count the sites on the way to a cell and the packets of its list; with a limit of 0
-    /// their answer comes from the cell alone. If there is a largest distance as well, `None` says that nothing was
-    /// found within it, and not that nothing is there. [`BruteForce`](crate::BruteForce) ignores the limit
-    /// and answers exactly.
+    /// their answer comes from the cell alone. If there is a largest distance as well, `None` means that nothing was
+    /// found within it, not that nothing is there. [`BruteForce`](crate::BruteForce) ignores the limit and answers
+    /// exactly.
     pub max_visits: u32,
 }
 

@@ -1,14 +1,15 @@
-//! Collectors of hits: they decide which hits a search has to find, and keep them.
+//! Collectors of ray hits, which decide which hits a search has to find, and store them.
 
 use super::crossing::Crossing;
 use super::hit::{Hit, Side};
 use crate::PrimitiveId;
 use std::ops::ControlFlow;
 
-/// A collector of hits: it decides which hits a search has to find, and takes them.
+/// A collector of ray hits: it decides which hits a search has to find, and takes them.
 pub trait RayCollector<'r> {
-    /// Returns whether only crossings of the surface count (see [`RayQuery::crossings`](super::RayQuery::crossings)),
-    /// rather than every primitive that the ray hits. The default is `false`.
+    /// Returns whether only crossings of the surface are needed (see
+    /// [`RayQuery::crossings`](super::RayQuery::crossings)), rather than every primitive that the ray hits. The default
+    /// is `false`.
     fn only_crossings(&self) -> bool {
         false
     }
@@ -18,38 +19,38 @@ pub trait RayCollector<'r> {
         f64::INFINITY
     }
 
-    /// Returns whether a hit of this primitive is needed. A primitive that is not needed is not tested exactly. The
-    /// default is `true`.
+    /// Returns whether a hit on this primitive is needed. Otherwise the primitive is not tested exactly. The default is
+    /// `true`.
     fn wants(&self, _primitive: PrimitiveId) -> bool {
         true
     }
 
-    /// Takes a hit, in any order, and breaks if no other hit is needed.
+    /// Takes a hit, and breaks if no other hit is needed. Hits may come in any order.
     fn offer(&mut self, primitive: PrimitiveId, crossing: &Crossing<'r>) -> ControlFlow<()>;
 
-    /// Reports at the end of a search how many nodes had the bounds of their children tested, and how many packets had
-    /// their primitives filtered.
+    /// Reports the work of a search at its end: the number of nodes whose children's bounds were tested, and the number
+    /// of filtered packets.
     fn record_visits(&mut self, _nodes: usize, _packets: usize) {}
 
     /// Reports that a primitive passed the filter and is tested exactly.
     fn visit_primitive(&mut self) {}
 }
 
-/// The hits that a method of [`RayQuery`](super::RayQuery) needs, and those that were
-/// found. A backend takes it as a [`RayCollector`]; your own code needs one to count the
-/// work of a search ([`RayStatsCollector`](super::RayStatsCollector)).
+/// The collector of the methods of [`RayQuery`](super::RayQuery), which has a mode for each of them. A backend uses it
+/// as a [`RayCollector`]. Your own code needs one to count the work of a search
+/// ([`RayStatsCollector`](super::RayStatsCollector)).
 #[derive(Clone, Debug)]
 pub struct Hits<'r> {
     mode: HitMode,
-    /// The first hit, or any hit, in the modes of one hit.
+    /// The hit of the modes that need one hit: the first one, or any.
     pub(super) one: Option<(PrimitiveId, Crossing<'r>)>,
-    /// All hits, in the mode of all hits.
+    /// The hits of the mode that needs all hits.
     #[doc(hidden)]
     pub all: Vec<Hit>,
-    /// The number of hits, in the modes that count.
+    /// The number of hits, in the counting modes.
     #[doc(hidden)]
     pub count: usize,
-    /// The number of crossings from back to front less those from front to back, in the mode of crossings.
+    /// The number of crossings from back to front minus the number from front to back, in the mode of crossings.
     #[doc(hidden)]
     pub signed_count: i64,
 }
@@ -65,12 +66,12 @@ enum HitMode {
     All,
     /// The number of hits.
     Count,
-    /// The number of crossings of the surface, and their sum with signs.
+    /// The number of crossings of the surface, and their signed sum.
     Crossings,
 }
 
 impl Hits<'_> {
-    /// Creates a collector of one hit, whichever is found first.
+    /// Creates a collector of any one hit.
     #[must_use]
     pub fn any() -> Self {
         Self::new(HitMode::Any)
@@ -94,7 +95,7 @@ impl Hits<'_> {
         Self::new(HitMode::Count)
     }
 
-    /// Creates a collector that counts how often the surface is crossed.
+    /// Creates a collector that counts crossings of the surface.
     #[must_use]
     pub fn crossings() -> Self {
         Self::new(HitMode::Crossings)
@@ -139,14 +140,14 @@ impl<'r> RayCollector<'r> for Hits<'r> {
 }
 
 impl<'r> Hits<'r> {
-    /// Returns all hits in the order of their parameters, and of equal parameters in the order of ids.
+    /// Returns all hits, ordered by parameter and then by id.
     pub(super) fn sorted(mut self) -> Vec<Hit> {
         self.all.sort_unstable_by(|a, b| a.parameter.total_cmp(&b.parameter).then(a.primitive.cmp(&b.primitive)));
         self.all
     }
 
-    /// Keeps the hit with the least parameter, and of equal parameters the one with the lowest id. Parameters are
-    /// computed only where their bounds do not decide.
+    /// Keeps the hit with the least parameter. Ties go to the lowest id. Parameters are computed only if their bounds
+    /// do not decide.
     fn offer_first(&mut self, primitive: PrimitiveId, crossing: &Crossing<'r>) {
         let Some((id, first)) = &mut self.one else {
             self.one = Some((primitive, *crossing));

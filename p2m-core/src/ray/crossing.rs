@@ -1,9 +1,9 @@
-//! The intersection of a ray and a primitive: decided exactly, in f64 where that is certain.
+//! The exact intersection of a ray and a primitive, computed in f64 if that is certain.
 //!
-//! All positions are relative to the origin of the ray. A, B and C are the vertices of a triangle, D is the direction.
-//! The sign of the moment D . (A x B) is the side on which the line passes the edge from A to B. The line hits the
-//! triangle if no two of the three moments have opposite signs, and lies in its plane if all are zero. The parameter of
-//! the plane is n . A / n . D with n = (B - A) x (C - A). [docs/proofs/rays.md] bounds the errors.
+//! All positions are relative to the origin of the ray. A, B and C are the vertices of a triangle, and D is the
+//! direction. The sign of the moment D . (A x B) is the side on which the line passes the edge from A to B. The line
+//! hits the triangle if no two of the three moments have opposite signs, and lies in its plane if all are zero. The
+//! parameter of the plane is n . A / n . D with n = (B - A) x (C - A). [docs/proofs/rays.md] bounds the errors.
 //!
 //! [docs/proofs/rays.md]: https://github.com/p2m-rs/p2m/blob/main/docs/proofs/rays.md
 
@@ -17,7 +17,7 @@ use crate::real::to_f64_array;
 use crate::{Primitive, PrimitiveId, Real};
 use std::cmp::Ordering;
 
-/// A hit whose parameter is known between bounds, and computed exactly on demand.
+/// A hit whose parameter lies between known bounds, and is computed exactly on demand.
 #[derive(Clone, Copy, Debug)]
 pub struct Crossing<'a> {
     ray: &'a Ray,
@@ -27,9 +27,9 @@ pub struct Crossing<'a> {
 }
 
 impl<'a> Crossing<'a> {
-    /// Returns the hit of a ray on a primitive, for a backend of your own. It is `None` for a miss, and
-    /// if the parameter is out of the range of the ray or certainly exceeds `limit`. `only_crossings` is
-    /// that of [`RayCollector`](super::RayCollector).
+    /// Returns the hit of a ray on a primitive, for a backend of your own. It is `None` for a miss, and if the
+    /// parameter is out of the range of the ray or certainly exceeds `limit`. `only_crossings` is the value of
+    /// [`RayCollector::only_crossings`](super::RayCollector::only_crossings).
     #[must_use]
     pub fn from_primitive<T: Real>(
         primitive: &impl Primitive<T>,
@@ -47,7 +47,7 @@ impl<'a> Crossing<'a> {
         }
     }
 
-    /// Returns the hit that a primitive of your own answered, if it is in the range of the ray.
+    /// Converts the hit of a primitive of your own, if it is in the range of the ray.
     #[must_use]
     pub fn from_hit(ray: &'a Ray, hit: RayHit) -> Option<Self> {
         // The sum turns -0 into 0.
@@ -56,8 +56,8 @@ impl<'a> Crossing<'a> {
         ray.contains(t).then_some(Self { ray, low: t, high: t, source: HitSource::Known(hit) })
     }
 
-    /// Returns the hit on a primitive of this project, given its vertices. `limit` and `only_crossings` are
-    /// those of [`from_primitive`](Self::from_primitive).
+    /// Returns the hit on a primitive of this project, given its vertices. `limit` and `only_crossings` have the same
+    /// meaning as for [`from_primitive`](Self::from_primitive).
     #[inline(always)]
     pub fn from_vertices(ray: &'a Ray, vertices: &[V3], limit: f64, only_crossings: bool) -> Option<Self> {
         match vertices {
@@ -125,7 +125,7 @@ impl<'a> Crossing<'a> {
         [self.low, self.high]
     }
 
-    /// Returns the parameter, which takes time unless the bounds are equal.
+    /// Returns the parameter. Computing it takes time unless the bounds are equal.
     #[inline]
     #[must_use]
     pub fn parameter(&self) -> f64 {
@@ -139,7 +139,7 @@ impl<'a> Crossing<'a> {
         }
     }
 
-    /// Returns the crossing with both bounds equal to the parameter.
+    /// Returns the crossing with both bounds set to the parameter.
     #[must_use]
     pub(super) fn resolved(self) -> Self {
         let t = self.parameter();
@@ -165,14 +165,14 @@ impl<'a> Crossing<'a> {
     }
 }
 
-/// Converts a ray and some vertices to integers.
+/// Converts a ray and a primitive's vertices to integers.
 #[cold]
 fn exact(ray: &Ray, vertices: &[V3]) -> Exact {
     Exact::new(&ray.origin, &ray.direction, ray.radius, vertices)
 }
 
-/// Returns 1 or -1 if the moment D . (A x B) is certainly above or below zero, and 0 otherwise. The
-/// offsets are rounded.
+/// Returns 1 or -1 if the moment D . (A x B) is certainly above or below zero, and 0 otherwise. The offsets A and B are
+/// rounded.
 #[inline(always)]
 fn certain_sign(d: &V3, a: &V3, b: &V3) -> i32 {
     let (minors, sizes) = cross_with_sizes(a, b);
@@ -180,7 +180,7 @@ fn certain_sign(d: &V3, a: &V3, b: &V3) -> i32 {
     i32::from(moment > error) - i32::from(moment < -error)
 }
 
-/// Returns the side on which a line passes all edges, where f64 could not decide. `known` has the signs that f64 found.
+/// Returns the side on which a line passes all edges, if f64 could not decide. `known` has the signs that f64 found.
 /// The result is `None` for a miss and `Equal` for a line in the plane.
 #[cold]
 #[inline(never)]
@@ -201,8 +201,8 @@ fn exact_side(ray: &Ray, vertices: &[V3; 3], known: [i32; 3], only_crossings: bo
     Some(all)
 }
 
-/// Returns bounds on the parameter of the plane of a triangle, which is not parallel to the line. `a` is the first
-/// vertex relative to the origin of the ray.
+/// Returns bounds on the parameter of the plane of a triangle that is not parallel to the line. `a` is the first vertex
+/// relative to the origin of the ray.
 #[inline(always)]
 fn parameter_bounds(ray: &Ray, vertices: &[V3; 3], a: &V3) -> [f64; 2] {
     let [e, f] = [sub(vertices[1], vertices[0]), sub(vertices[2], vertices[0])];

@@ -1,8 +1,8 @@
 //! Intersections of rays and primitives in big integers, for cases that f64 cannot decide.
 //!
-//! All positions are relative to the origin of the ray. A, B and C are the vertices and D is the direction.
-//! Positions are multiples of one power of two, the direction is a multiple of another one, and parameters are
-//! multiples of their quotient.
+//! All positions are relative to the origin of the ray. A, B and C are the vertices and D is the direction. Positions
+//! are multiples of one power of two, the direction is a multiple of another one, and parameters are multiples of their
+//! quotient.
 
 use super::line::Ray;
 use crate::exact::{Fraction, Vector, common_exponent, cross, cross_component, difference, dot, integer, sign};
@@ -10,13 +10,13 @@ use crate::kernel::vector::V3;
 use dashu_int::IBig;
 use std::cmp::Ordering;
 
-/// A ray and the vertices of a primitive.
+/// A ray and the vertices of a primitive, as integers.
 pub(super) struct Exact {
     vertices: Vec<Vector>,
     direction: Vector,
-    /// The exponent of two of positions.
+    /// The exponent of two that is the unit of positions.
     unit: i32,
-    /// The exponent of two of the direction.
+    /// The exponent of two that is the unit of the direction.
     direction_unit: i32,
     radius: IBig,
 }
@@ -28,14 +28,15 @@ pub(super) struct LineHit {
     pub(super) weights: V3,
 }
 
-/// The part of a line that is nearest to a segment, or inside of a triangle in whose plane the line lies: one point, or
-/// an interval of parameters. Each end has its parameter and the weights of the vertices.
+/// The part of a line that is nearest to a segment, or inside of a triangle whose plane contains the line. It is one
+/// point or an interval of parameters. Each end has its parameter and the weights of the vertices.
 struct Span {
     ends: [(Fraction, V3); 2],
 }
 
-/// Returns the projection of `point` onto the line of a ray, and the coordinate of that projection along `axis` from
-/// the origin of the ray, in the sense of the direction, which is largest on that axis. Each is rounded once.
+/// Returns the projection of `point` onto the line of a ray, and the coordinate of the projection along `axis`,
+/// measured from the origin of the ray in the sense of the direction. `axis` is the axis of the direction's largest
+/// component. Each number is rounded once.
 pub fn project_onto_ray(ray: &Ray, point: &V3, axis: usize) -> (V3, f64) {
     let unit = common_exponent(ray.origin.iter().chain(point));
     let direction_unit = common_exponent(&ray.direction);
@@ -69,9 +70,9 @@ impl Exact {
         dot(&self.direction, &cross(&self.vertices[i], &self.vertices[j]))
     }
 
-    /// Returns the side of an edge after the line is moved by an infinitely small amount along x, by an infinitely
-    /// smaller one along y and by a still smaller one along z. A move by w changes the moment by -w . ((V_j - V_i) x
-    /// D). The result is `Equal` only for an edge along the line.
+    /// Returns the side of an edge after a symbolic perturbation of the line: a move by an infinitely small amount
+    /// along x, by an infinitely smaller one along y and by a still smaller one along z. A move by w changes the moment
+    /// by -w . ((V_j - V_i) x D). The result is `Equal` only for an edge along the line.
     pub(super) fn perturbed_side(&self, i: usize, j: usize) -> Ordering {
         let edge: Vector = std::array::from_fn(|k| &self.vertices[j][k] - &self.vertices[i][k]);
         let change = |k| sign(&cross_component(&edge, &self.direction, k)).reverse();
@@ -79,7 +80,7 @@ impl Exact {
     }
 
     /// Returns the parameter of the plane of a triangle that is not parallel to the line, and the weights of the
-    /// vertices there, all rounded to nearest.
+    /// vertices there. All numbers are rounded to nearest.
     pub(super) fn face(&self) -> (f64, V3) {
         let moments = [self.moment(1, 2), self.moment(2, 0), self.moment(0, 1)];
         let height = dot(&self.vertices[0], &cross(&self.vertices[1], &self.vertices[2]));
@@ -90,7 +91,7 @@ impl Exact {
         (parameter, moments.map(|m| over(m).round(0)))
     }
 
-    /// Returns the hit of a triangle in whose plane the line lies, or of a triangle without area.
+    /// Returns the hit on a triangle whose plane contains the line, or on a triangle without area.
     pub(super) fn coplanar(&self, ray: &Ray) -> Option<LineHit> {
         let mut all: Option<Span> = None;
         for (i, j) in [(0, 1), (1, 2), (2, 0)] {
@@ -108,7 +109,8 @@ impl Exact {
         self.in_range(ray, &all?)
     }
 
-    /// Returns the hit of a segment or a point: the parameter that is nearest to it, if that is within the radius.
+    /// Returns the hit on a segment or a point, if it is within the radius: the parameter at which the line is nearest
+    /// to it.
     pub(super) fn segment(&self, ray: &Ray) -> Option<LineHit> {
         self.in_range(ray, &self.span(0, self.vertices.len() - 1, &self.radius)?)
     }
@@ -117,7 +119,7 @@ impl Exact {
         self.unit - self.direction_unit
     }
 
-    /// Returns the first parameter of a span that is in the range of the ray.
+    /// Returns the first parameter of a span that is within the range of the ray.
     fn in_range(&self, ray: &Ray, span: &Span) -> Option<LineHit> {
         let [(first, first_weights), (last, last_weights)] = &span.ends;
         let [t, end] = [first, last].map(|t| t.round(self.parameter_unit()));
@@ -127,7 +129,7 @@ impl Exact {
         if t >= ray.min {
             return Some(LineHit { parameter: t, weights: *first_weights });
         }
-        // The range of the ray begins inside of the span.
+        // The range of the ray begins inside the span.
         let fraction = self.fraction_between(ray.min, first, last);
         let weights = std::array::from_fn(|k| first_weights[k] * (1.0 - fraction) + last_weights[k] * fraction);
         Some(LineHit { parameter: ray.min, weights })
@@ -148,8 +150,8 @@ impl Exact {
         fraction.round(0).clamp(0.0, 1.0)
     }
 
-    /// Returns the span in which the line is nearest to the segment from vertex i to vertex j, if that
-    /// is within `radius`.
+    /// Returns the span in which the line is nearest to the segment from vertex i to vertex j, if the segment is within
+    /// `radius`.
     ///
     /// A point of the segment is P = A + s E. Its squared distance from the line is |P|^2 - (P . D)^2 / D^2; with
     /// a = D . D, b = D . E, c = E . E it is least at s = ((A . D) b - a (A . E)) / (a c - b^2).
@@ -167,7 +169,7 @@ impl Exact {
             let n = &along * &b - &a * dot(from, &edge);
             (n.max(IBig::ZERO).min(determinant.clone()), determinant)
         };
-        // This is the point P of the segment, times q.
+        // The point P of the segment, times q.
         let point: Vector = std::array::from_fn(|k| &from[k] * &q + &edge[k] * &n);
         let ahead = dot(&point, d);
         let limit = radius * &q;

@@ -1,4 +1,4 @@
-//! Hits of rays, as they are reported.
+//! Reported hits of rays.
 
 use super::exact::Exact;
 use super::plane::PlaneIntersection;
@@ -11,7 +11,7 @@ use nalgebra::Point3;
 pub enum Side {
     /// The ray comes from the side to which the normal (b - a) x (c - a) of the triangle points.
     Front,
-    /// The ray comes from the side opposite of the normal.
+    /// The ray comes from the side opposite to the normal.
     Back,
     /// The ray runs in the plane of the triangle, or the primitive is a segment, a point or a triangle without area.
     Along,
@@ -22,9 +22,10 @@ pub enum Side {
 pub struct Hit {
     /// The primitive that is hit.
     pub primitive: PrimitiveId,
-    /// The parameter of the ray, in lengths of its direction. For the primitives of this project it is the exact one
-    /// rounded to the nearest f64, and infinite beyond the range of f64. If the ray runs along the primitive, it is the
-    /// least parameter in its range. If the ray has a radius, it is the one nearest to a segment or point.
+    /// The parameter of the ray, in lengths of its direction. For the primitives of this project it is the exact
+    /// parameter rounded to the nearest f64, and infinite beyond the range of f64. If the ray runs along the primitive,
+    /// it is the least parameter in the ray's range. If the ray has a radius, it is the parameter nearest to a segment
+    /// or point.
     pub parameter: f64,
     /// The side from which the primitive is hit.
     pub side: Side,
@@ -38,7 +39,7 @@ pub struct Hit {
 impl Hit {
     /// Returns the weights of the vertices of the primitive, each rounded to nearest; unused ones are 0.
     ///
-    /// They are within 4 u where the range of the ray begins inside of a triangle or segment that it runs along.
+    /// They are only within 4 u if the ray runs along a triangle or segment and its range begins inside of it.
     #[must_use]
     pub fn barycentric(&self) -> [f64; 3] {
         match &self.source {
@@ -47,9 +48,9 @@ impl Hit {
         }
     }
 
-    /// Returns the point of the primitive: the rounded sum of its vertices with the [weights](Self::barycentric),
-    /// which lies in its box. A vertex is returned verbatim. [`Ray::at`](crate::Ray::at) is the point of the ray,
-    /// whose error differs.
+    /// Returns the point of the primitive: the rounded sum of its vertices with the [weights](Self::barycentric), which
+    /// lies in its box. A vertex is returned verbatim. [`Ray::at`](crate::Ray::at) returns the point of the ray, which
+    /// has a different error.
     #[must_use]
     pub fn point(&self) -> Point3<f64> {
         match &self.source {
@@ -66,30 +67,30 @@ impl Hit {
     }
 }
 
-/// The hit of a primitive of your own, as it answers [`Primitive::intersect_ray`](crate::Primitive::intersect_ray).
+/// The hit on a primitive of your own, as [`Primitive::intersect_ray`](crate::Primitive::intersect_ray) returns it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct RayHit {
     /// The parameter, in lengths of the direction.
     pub parameter: f64,
     /// The side from which the primitive is hit.
     pub side: Side,
-    /// The weights, as the primitive defines them.
+    /// The barycentric weights, as the primitive defines them.
     pub barycentric: [f64; 3],
     /// The point of the primitive.
     pub point: Point3<f64>,
 }
 
-/// The data that a hit is computed from.
+/// The data from which the fields of a hit are computed on demand.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum HitSource {
-    /// The vertices of a triangle that is crossed, and the side from which it is.
+    /// The vertices of the triangle that is crossed, and the side from which it is crossed.
     Face([V3; 3], Side),
-    /// A hit that is computed already.
+    /// A hit that has already been computed.
     Known(RayHit),
 }
 
-/// Returns the sum of some vertices with weights, clamped to the box of the vertices. A vertex of weight 1
-/// is returned verbatim.
+/// Returns the weighted sum of several vertices, clamped to the box of the vertices. A vertex of weight 1 is returned
+/// verbatim.
 pub(super) fn weighted_sum(vertices: &[V3], weights: &V3) -> Point3<f64> {
     if let Some(vertex) = weights.iter().position(|w| *w == 1.0) {
         return Point3::from(vertices[vertex]);

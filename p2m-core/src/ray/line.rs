@@ -1,11 +1,11 @@
-//! Rays, lines and parts of lines.
+//! Rays, lines and segments of lines.
 
 use crate::Real;
 use crate::kernel::vector::V3;
 use crate::real::to_f64_array;
 use nalgebra::{Point3, Vector3};
 
-/// An error of making a ray.
+/// The error of an invalid ray.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum RayError {
@@ -15,7 +15,7 @@ pub enum RayError {
     /// The direction is zero.
     #[error("the direction of the ray is zero")]
     ZeroDirection,
-    /// The lower end of the range exceeds the upper one, or one of them is NaN.
+    /// The lower end of the range exceeds the upper one, or an end is NaN.
     #[error("no parameter lies between {min} and {max}")]
     EmptyRange {
         /// The lower end.
@@ -28,11 +28,11 @@ pub enum RayError {
     Radius(f64),
 }
 
-/// The points origin + t direction for all parameters t of a range. A ray has the range from 0 to infinity, a line that
-/// from minus infinity to infinity, and other ranges give parts of a line.
+/// A ray, a line, or a part of a line: the points origin + t direction for all parameters t of a range. A ray has the
+/// range from 0 to infinity, and a line has the range from minus infinity to infinity.
 ///
-/// The direction has any length but zero. Parameters count in its lengths, so they are distances only for a direction
-/// of length 1. All numbers are kept in f64, in which the coordinates of an f32 scene are exact.
+/// The direction has any length but zero. Parameters are measured in lengths of the direction, so they are distances
+/// only if its length is 1. All numbers are stored in f64, in which the coordinates of an f32 scene are exact.
 ///
 /// ```
 /// use nalgebra::{Point3, Vector3};
@@ -46,7 +46,7 @@ pub enum RayError {
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Ray {
-    /// The point of parameter 0.
+    /// The point at the parameter 0.
     #[doc(hidden)]
     pub origin: V3,
     /// The direction, which is not zero.
@@ -58,10 +58,10 @@ pub struct Ray {
     /// The largest parameter, inclusive.
     #[doc(hidden)]
     pub max: f64,
-    /// The distance within which segments and points are hit, in units of the scene.
+    /// The radius within which segments and points are hit, in units of the scene.
     #[doc(hidden)]
     pub radius: f64,
-    /// A bound on the error of the origin, which [`RayQuery::visit_ray_candidates`](super::RayQuery) allows for.
+    /// A bound on the error of the origin, for which [`RayQuery::visit_ray_candidates`](super::RayQuery) allows.
     #[doc(hidden)]
     pub origin_error: f64,
 }
@@ -82,8 +82,8 @@ impl Ray {
         Ok(Self { origin, direction, min: 0.0, max: f64::INFINITY, radius: 0.0, origin_error: 0.0 })
     }
 
-    /// Creates the ray from a point through another one, which has the parameter 1 up to the rounding
-    /// of their difference.
+    /// Creates the ray from a point through a target. The target has the parameter 1, up to the rounding of the
+    /// difference of the two points.
     ///
     /// # Errors
     /// It returns [`RayError::ZeroDirection`] for equal points and [`RayError::NonFinite`] if a coordinate or the
@@ -102,7 +102,7 @@ impl Ray {
     /// Sets the range of parameters from `min` to `max`, both included; they may be infinite.
     ///
     /// # Errors
-    /// It returns [`RayError::EmptyRange`] if `min > max` or one is NaN.
+    /// It returns [`RayError::EmptyRange`] if `min > max` or an end is NaN.
     pub fn with_range(self, min: f64, max: f64) -> Result<Self, RayError> {
         // The sums turn -0 into 0, so that equal parameters have equal bits.
         if min <= max {
@@ -112,7 +112,7 @@ impl Ray {
         }
     }
 
-    /// Sets the distance within which segments and points are hit, in units of the scene. It does not affect triangles.
+    /// Sets the radius within which segments and points are hit, in units of the scene. It does not affect triangles.
     ///
     /// # Errors
     /// It returns [`RayError::Radius`] if the radius is negative or not finite.
@@ -127,7 +127,7 @@ impl Ray {
         Self { origin_error, ..self }
     }
 
-    /// Returns the point of parameter 0.
+    /// Returns the point at the parameter 0.
     #[must_use]
     pub fn origin(&self) -> Point3<f64> {
         Point3::from(self.origin)
@@ -145,7 +145,7 @@ impl Ray {
         [self.min, self.max]
     }
 
-    /// Returns the distance within which segments and points are hit.
+    /// Returns the radius within which segments and points are hit.
     #[must_use]
     pub fn radius(&self) -> f64 {
         self.radius
@@ -157,7 +157,7 @@ impl Ray {
         self.origin_error
     }
 
-    /// Returns the point of a parameter, rounded. It is NaN if the parameter is infinite and the direction has a zero.
+    /// Returns the point at a parameter, rounded. It is NaN if the parameter is infinite and the direction has a zero.
     #[must_use]
     pub fn at(&self, parameter: f64) -> Point3<f64> {
         self.origin() + self.direction() * parameter

@@ -1,6 +1,6 @@
-//! Ray casting: which primitives a ray hits, and at which parameters.
+//! Ray casting: the primitives that a ray hits, and their parameters.
 //!
-//! A [`Ray`] is passed to an index by [`RayQuery`]. Whether it hits a primitive is decided without rounding, and the
+//! Pass a [`Ray`] to an index by [`RayQuery`]. Whether it hits a primitive is decided without rounding, and the
 //! parameter of a hit is the exact one rounded to the nearest f64. So all backends return the same bits, and the first
 //! hit has the least parameter.
 

@@ -1,5 +1,4 @@
-//! The intersection of a line and the plane of a triangle, rounded to nearest where double-double
-//! arithmetic is certain.
+//! The intersection of a line and the plane of a triangle, rounded to nearest if double-double arithmetic is certain.
 
 use super::rounding::{PLAIN_MAGNITUDES, U};
 use crate::kernel::arithmetic::{cross, dot};
@@ -20,7 +19,7 @@ pub(super) struct PlaneIntersection {
 }
 
 impl PlaneIntersection {
-    /// Returns `None` where products might overflow or underflow, or the line is nearly parallel to the plane.
+    /// Returns `None` if products might overflow or underflow, or if the line is nearly parallel to the plane.
     pub(super) fn new(origin: &V3, direction: &V3, [a, b, c]: &[V3; 3]) -> Option<Self> {
         let minus = |p: &V3, q: &V3| -> [Double; 3] { std::array::from_fn(|k| Double::difference(p[k], q[k])) };
         let (e, f, offset) = (minus(b, a), minus(c, a), minus(a, origin));
@@ -37,12 +36,12 @@ impl PlaneIntersection {
         Some(Self { edges: [e, f], offset, direction, normal, parameter, error })
     }
 
-    /// Returns the parameter rounded to nearest, or `None` where its error leaves two roundings.
+    /// Returns the parameter rounded to nearest, or `None` if its error admits two roundings.
     pub(super) fn parameter(&self) -> Option<f64> {
         rounded(self.parameter, self.error)
     }
 
-    /// Returns the weights of the vertices rounded to nearest, or `None` where an error leaves two roundings.
+    /// Returns the weights of the vertices rounded to nearest, or `None` if an error admits two roundings.
     ///
     /// Let p be the vector from the first vertex to the point, and e and f the edges. Then p = v e + w f, so that
     /// v = (p x f) / (e x f) and w = (e x p) / (e x f); the component in which e x f is largest is used.
@@ -75,8 +74,8 @@ fn size(x: &[Double; 3]) -> f64 {
     larger(larger(x[0].high.abs(), x[1].high.abs()), x[2].high.abs())
 }
 
-/// Returns a bound on the error of a quotient, given those of the dividend and the divisor. It is `None` if the divisor
-/// could be zero.
+/// Returns a bound on the error of a quotient, given bounds on the errors of the dividend and the divisor. It is `None`
+/// if the divisor could be zero.
 fn quotient_error(quotient: Double, error: f64, divisor: Double, divisor_error: f64) -> Option<f64> {
     let least = divisor.high.abs() - divisor_error;
     let t = quotient.high.abs();
@@ -84,8 +83,8 @@ fn quotient_error(quotient: Double, error: f64, divisor: Double, divisor_error: 
     (least > 0.0).then_some(error)
 }
 
-/// Returns a number rounded to nearest, or `None` where its error leaves two roundings, for zero, and where
-/// rounding might underflow.
+/// Returns a number rounded to nearest. It is `None` if its error admits two roundings, for zero, and if rounding might
+/// underflow.
 fn rounded(x: Double, error: f64) -> Option<f64> {
     let [low, high] = [x.high + (x.low - error), x.high + (x.low + error)];
     (low == high && PLAIN_MAGNITUDES.contains(&low.abs())).then_some(low)

@@ -1,4 +1,4 @@
-//! Bounds on the rounding of determinants of three vectors in f64. [docs/proofs/rays.md] derives them.
+//! Bounds on the rounding of determinants of three vectors in f64, which [docs/proofs/rays.md] derives.
 //!
 //! [docs/proofs/rays.md]: https://github.com/p2m-rs/p2m/blob/main/docs/proofs/rays.md
 
@@ -7,12 +7,13 @@ use crate::kernel::vector::V3;
 
 /// The unit roundoff u of f64.
 pub(super) const U: f64 = f64::EPSILON / 2.0;
-/// The magnitudes whose products of three neither overflow nor lose to underflow what their error bounds leave out.
+/// The magnitudes for which products of three factors neither overflow nor lose more to underflow than their error
+/// bounds cover.
 pub(super) const PLAIN_MAGNITUDES: std::ops::RangeInclusive<f64> = power_of_two(-250)..=power_of_two(250);
-/// An upper bound on what products and parameters may lose to underflow, relative to their other factors.
+/// An upper bound on the loss of products and parameters to underflow, relative to their other factors.
 pub const UNDERFLOW_MARGIN: f64 = power_of_two(-1000);
 
-/// Returns a bound on the error of a sum of three products of differences. `sizes` are the sums of magnitudes in each
+/// Returns a bound on the error of a sum of three products of differences. `sizes` has the sum of magnitudes of each
 /// component of the first factor, and `x` is the second factor.
 #[inline(always)]
 pub(super) fn determinant_error(sizes: &V3, x: &V3) -> f64 {

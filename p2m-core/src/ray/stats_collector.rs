@@ -1,4 +1,4 @@
-//! A collector of hits that counts the work of a search.
+//! A collector of ray hits that counts the work of a search.
 
 use super::collector::RayCollector;
 use super::crossing::Crossing;
@@ -6,8 +6,8 @@ use super::line::Ray;
 use crate::PrimitiveId;
 use std::ops::ControlFlow;
 
-/// A collector of hits, such as [`Hits`](crate::Hits), with counters of the work.
-/// [`StatsCollector`](crate::StatsCollector) does this for closest points.
+/// A collector of ray hits, such as [`Hits`](crate::Hits), with work counters.
+/// [`StatsCollector`](crate::StatsCollector) does the same for closest points.
 ///
 /// ```
 /// use nalgebra::{Point3, Vector3};
@@ -25,9 +25,9 @@ use std::ops::ControlFlow;
 pub struct RayStatsCollector<C> {
     /// The collector that makes all decisions.
     pub collector: C,
-    /// The number of nodes that were visited.
+    /// The number of visited nodes.
     pub nodes: usize,
-    /// The number of packets that were filtered.
+    /// The number of filtered packets.
     pub packets: usize,
     /// The number of primitives that were tested exactly.
     pub primitives: usize,
@@ -40,8 +40,8 @@ impl<C> RayStatsCollector<C> {
         Self { collector, nodes: 0, packets: 0, primitives: 0 }
     }
 
-    /// Returns the numbers of nodes, packets and primitives of some rays in total. Each ray is searched by `visit` with
-    /// a copy of `collector`.
+    /// Returns the total numbers of nodes, packets and primitives over several rays. `visit` searches each ray with a
+    /// copy of `collector`.
     pub fn count_rays<'r>(
         rays: impl IntoIterator<Item = &'r Ray>,
         collector: &C,

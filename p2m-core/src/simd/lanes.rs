@@ -1,20 +1,20 @@
-//! Lanes of numbers, instruction sets, and the kernels that are compiled for them.
+//! Traits of SIMD vectors, of instruction sets, and of the kernels that are compiled for each instruction set.
 
 use crate::kernel::arithmetic::Number;
 use std::ops::{BitAnd, BitOr, Div, Neg, Not};
 
-/// Several f32 that are computed with at once.
+/// A SIMD vector of `f32`.
 ///
 /// Addition, subtraction and multiplication round to nearest; [`mul_add`](Self::mul_add) rounds once or twice.
 pub trait Lanes: Copy {
     /// The number of lanes.
     const LEN: usize;
-    /// Whether long computations are inlined into each search. Where the portable lanes are not the fastest ones of the
-    /// processor, they are compiled once instead, because their code is several times as long as that of the others.
+    /// Whether long computations are inlined into each search. The portable lanes are compiled out of line instead on
+    /// processors with faster lanes, because their code is several times as long as the others'.
     const INLINES: bool = true;
     /// Returns `x` in every lane.
     fn splat(x: f32) -> Self;
-    /// Loads the first [`LEN`](Self::LEN) values of a slice, which must have that many.
+    /// Loads the first [`LEN`](Self::LEN) values of a slice, which must have at least that many.
     fn load(from: &[f32]) -> Self;
     /// Loads the first [`LEN`](Self::LEN) u16 values of a slice, converted to f32.
     fn load_u16(from: &[u16]) -> Self;
@@ -32,40 +32,40 @@ pub trait Lanes: Copy {
     fn mul_add(self, factor: Self, summand: Self) -> Self;
     /// Returns the square root, rounded to nearest.
     fn sqrt(self) -> Self;
-    /// Returns a b - c d with a relative error of at most 2^-22, if both products are integers times the same power of
-    /// two, below 2^48 of it.
+    /// Returns a b - c d with a relative error of at most 2^-22, provided that both products are integers times the
+    /// same power of two, and below 2^48 times that power.
     fn difference_of_products(a: Self, b: Self, c: Self, d: Self) -> Self;
     /// Returns the smaller value, or `other` if either is NaN.
     fn min(self, other: Self) -> Self;
     /// Returns the larger value, or `other` if either is NaN.
     fn max(self, other: Self) -> Self;
-    /// Returns 1 / self with a relative error of at most 2^-22 for normal results, and any value for 0 and for numbers
-    /// that are not finite.
+    /// Returns 1 / self with a relative error of at most 2^-22 for normal results. For 0 and for numbers that are not
+    /// finite the result is unspecified.
     fn reciprocal(self) -> Self;
     /// Selects `yes` where self < limit, and `no` where it is not or either is NaN.
     fn if_below(self, limit: Self, yes: Self, no: Self) -> Self;
-    /// Returns one bit for each lane, the first lane lowest: whether self <= limit. It is 0 if either is NaN.
+    /// Returns one bit per lane, the first lane lowest: whether self <= limit. It is 0 if either is NaN.
     fn at_most(self, limit: Self) -> u32;
     /// Returns the smallest value of all lanes, none of which may be NaN.
     fn smallest(self) -> f32;
 }
 
-/// Eight lanes, which can be sorted.
+/// A SIMD vector of eight `f32`, which can be sorted.
 pub trait EightLanes: Lanes {
-    /// Writes the lanes that are at most `limit` to the front of `keys`, as keys in descending order, sets the other
-    /// keys to 0, and returns the number of lanes written. No lane may be negative.
+    /// Sorts the lanes that are at most `limit`: writes them as keys in descending order to the front of `keys`, sets
+    /// the other keys to 0, and returns the number of these lanes. No lane may be negative.
     ///
-    /// A key consists of the bits of the value with the lowest four replaced by 8 + lane. So keys are ordered as their
+    /// A key consists of the bits of the value, with the lowest four replaced by 8 + lane. So keys are ordered as their
     /// values are, and [`value_of_key`] is at most 15 units in the last place too small.
     fn sorted_keys(self, limit: f32, keys: &mut [u32; 8]) -> usize;
 }
 
-/// An f64, or several that are computed with at once.
+/// A scalar `f64` or a SIMD vector of them.
 ///
-/// The operators and the methods of this trait round every lane to nearest, as those of f64 do. So a formula over this
-/// trait has the same bits in a lane and as a single number.
+/// The operators and methods of this trait round every lane to nearest, as those of `f64` do. So a formula that is
+/// generic over this trait has the same bits in a lane as for a single number.
 pub trait Float: Number + Div<Output = Self> + Neg<Output = Self> {
-    /// A truth value for each lane.
+    /// A mask: a truth value for each lane.
     type Mask: Copy + BitAnd<Output = Self::Mask> + BitOr<Output = Self::Mask> + Not<Output = Self::Mask>;
     /// Returns `x` in every lane.
     fn splat(x: f64) -> Self;
@@ -123,13 +123,13 @@ impl Float for f64 {
     }
 }
 
-/// Eight f64 that are computed with at once.
+/// A SIMD vector of eight `f64`.
 pub trait Doubles: Float {
-    /// Loads the first eight values of a slice, which must have that many.
+    /// Loads the first eight values of a slice, which must have at least that many.
     fn load(from: &[f64]) -> Self;
     /// Writes the lanes to the front of a slice.
     fn store(self, to: &mut [f64]);
-    /// Loads the first eight values of a slice of f32, which must have that many.
+    /// Loads the first eight values of a slice of f32, which must have at least that many.
     fn load_f32(from: &[f32]) -> Self;
     /// Writes the lanes to the front of a slice, rounded to f32.
     fn store_f32(self, to: &mut [f32]);
@@ -142,32 +142,32 @@ pub trait Doubles: Float {
     fn if_at_most(self, limit: Self, yes: Self, no: Self) -> Self {
         Self::select(self.is_at_most(limit), yes, no)
     }
-    /// Returns one bit for each lane, the first lane lowest: whether self <= limit. It is 0 if either is NaN.
+    /// Returns one bit per lane, the first lane lowest: whether self <= limit. It is 0 if either is NaN.
     #[inline(always)]
     fn at_most(self, limit: Self) -> u8 {
         Self::bits(self.is_at_most(limit))
     }
-    /// Returns one bit for each lane of a mask, the first lane lowest.
+    /// Returns one bit per lane of a mask, the first lane lowest.
     fn bits(mask: Self::Mask) -> u8;
 }
 
-/// Returns a lower bound on the value that a key was made of.
+/// Returns a lower bound on the value of a key.
 #[inline(always)]
 pub fn value_of_key(key: u32) -> f32 {
     f32::from_bits(key & !15)
 }
 
-/// Returns the lane that a key was made of.
+/// Returns the lane of a key.
 #[inline(always)]
 pub fn lane_of_key(key: u32) -> usize {
     (key & 7) as usize
 }
 
-/// An instruction set, given by its types of lanes.
+/// An instruction set, as a set of SIMD vector types.
 pub trait InstructionSet {
     /// The type of eight f32.
     type F32x8: EightLanes;
-    /// The type of eight or sixteen f32, whichever the instruction set computes with faster.
+    /// The type of eight or sixteen f32, whichever is faster with the instruction set.
     type Wide: Lanes;
     /// The type of eight f64.
     type Doubles: Doubles;
@@ -177,11 +177,11 @@ pub trait InstructionSet {
 
 /// A computation that is compiled for each instruction set.
 ///
-/// [`run`](Self::run) and everything that it calls must be `#[inline(always)]`: a function that is not inlined is
+/// [`run`](Self::run) and everything that it calls must be `#[inline(always)]`, since a function that is not inlined is
 /// compiled without the instruction set.
 pub trait SimdKernel {
-    /// The result of the computation.
+    /// The type of the result.
     type Output;
-    /// Runs the computation with the lanes of an instruction set.
+    /// Runs the computation with the vector types of an instruction set.
     fn run<I: InstructionSet>(self) -> Self::Output;
 }

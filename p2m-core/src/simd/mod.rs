@@ -1,11 +1,11 @@
-//! Lanes of f32 and f64, and the choice of an instruction set at run time.
+//! SIMD vectors of f32 and f64, and the choice of an instruction set at run time.
 //!
-//! Algorithms are written once over [`Lanes`]. A [`SimdKernel`] that is passed to [`Isa::run`] is compiled once for
-//! each instruction set, inside of a function that enables it. Everything that it calls is inlined, so the processor is
-//! not checked again. Only the folder `isa` has `unsafe` code.
+//! Algorithms are written once, generic over [`Lanes`]. A [`SimdKernel`] that is passed to [`Isa::run`] is compiled
+//! once for each instruction set, inside of a function that enables it. Everything that it calls is inlined, so the
+//! processor is not checked again. Only the folder `isa` has `unsafe` code.
 //!
 //! Lanes may differ between instruction sets in the last bits of their results. So they are used in filters with a
-//! proven error bound, and never for an answer.
+//! proved error bound, and never for an answer.
 
 mod isa;
 mod lanes;
@@ -21,7 +21,7 @@ mod tests {
     use super::*;
     use rand::RngExt;
 
-    /// Applies every method of lanes to the same numbers.
+    /// A kernel that applies every method of lanes to the same numbers.
     struct All<'a>(&'a [[f32; 16]; 4], &'a [u16; 16]);
 
     impl SimdKernel for All<'_> {
@@ -115,11 +115,11 @@ mod tests {
                     for lane in 0..16 {
                         let (f, e) = (f64::from(found[lane]), f64::from(expected[lane]));
                         let exact = match method % 17 {
-                            // The operation may be fused or not; the products are at most 1e30 in size.
+                            // The operation may be fused or not. The products are at most 1e30 in magnitude.
                             8 => (f - e).abs() <= 2f64.powi(-23) * (f64::from(x[0][lane] * x[1][lane]).abs() + f.abs()),
                             9 => x[0][lane] == 0.0 || (f - e).abs() <= 2f64.powi(-21) * e.abs(),
                             10 => (f - e).abs() <= 2f64.powi(-22) * e.abs(),
-                            // Zeros have signs.
+                            // Zeros are compared with their signs.
                             _ => found[lane].to_bits() == expected[lane].to_bits(),
                         };
                         assert!(exact, "{isa}: method {method} lane {lane}: {f} for {e}");
@@ -129,7 +129,7 @@ mod tests {
         }
     }
 
-    /// Applies every method of eight f64 to the same numbers.
+    /// A kernel that applies every method of eight f64 to the same numbers.
     struct AllDoubles<'a>(&'a [[f64; 8]; 4]);
 
     impl SimdKernel for AllDoubles<'_> {
@@ -189,7 +189,7 @@ mod tests {
                 .concat()
             };
             for i in 0..8 {
-                // All methods but the fused one have the bits of f64.
+                // All methods except the fused one return the bits of f64.
                 let found: Vec<u64> = expected[1..].iter().map(|row| row[i].to_bits()).collect();
                 let by_hand: Vec<u64> = single(i)[1..].iter().map(|x| x.to_bits()).collect();
                 assert_eq!(found, by_hand, "lane {i}");

@@ -1,6 +1,6 @@
-//! Operators of lanes, each of which an expression of intrinsics defines.
+//! Macros that define the operators of lanes by expressions of intrinsics.
 
-/// Implements the operators of a type of f64 lanes. Each expression may use the operands `a` and `b`.
+/// Implements the operators of a vector type of f64. Each expression may use the operands `a` and `b`.
 macro_rules! float_operators {
     ($type:ty, |$a:ident, $b:ident| {
         add: $add:expr, sub: $sub:expr, mul: $mul:expr, div: $div:expr, neg: $neg:expr,
@@ -13,7 +13,7 @@ macro_rules! float_operators {
     };
 }
 
-/// Implements the operators of a type of masks. Each expression may use the operands `a` and `b`.
+/// Implements the operators of a mask type. Each expression may use the operands `a` and `b`.
 macro_rules! mask_operators {
     ($type:ty, |$a:ident, $b:ident| { and: $and:expr, or: $or:expr, not: $not:expr, }) => {
         $crate::simd::operators::binary_operator!($type, BitAnd, bitand, $a, $b, $and);
@@ -22,7 +22,7 @@ macro_rules! mask_operators {
     };
 }
 
-/// Implements an operator of two operands.
+/// Implements a binary operator.
 macro_rules! binary_operator {
     ($type:ty, $trait:ident, $method:ident, $a:ident, $b:ident, $body:expr) => {
         impl std::ops::$trait for $type {
@@ -36,7 +36,7 @@ macro_rules! binary_operator {
     };
 }
 
-/// Implements an operator of one operand.
+/// Implements a unary operator.
 macro_rules! unary_operator {
     ($type:ty, $trait:ident, $method:ident, $a:ident, $body:expr) => {
         impl std::ops::$trait for $type {

@@ -1,4 +1,4 @@
-//! Lanes of the crate `wide`, for processors of any kind: the vector instructions that every processor of an
+//! SIMD vectors of the crate `wide`, for all processors. They use the vector instructions that every processor of an
 //! architecture has (SSE2, NEON), or arrays.
 
 use super::lanes::{Doubles, EightLanes, Float, InstructionSet, Lanes, SimdKernel};
@@ -9,15 +9,15 @@ use wide::{f32x8, f64x4};
 #[derive(Clone, Copy)]
 pub struct F32x8(f32x8);
 
-/// Eight f64, as the first four and the last four.
+/// Eight f64, stored as two vectors of four.
 #[derive(Clone, Copy)]
 pub struct EightDoubles(f64x4, f64x4);
 
-/// The instruction set of every processor. The others are tested against it.
+/// The portable instruction set, which every processor has. The others are tested against it.
 pub struct Portable;
 
-/// Runs a kernel with portable instructions. It is not inlined, so each kernel is compiled once and not wherever
-/// it is run.
+/// Runs a kernel with portable instructions. It is not inlined, so that each kernel is compiled once and not at every
+/// call.
 #[inline(never)]
 pub(super) fn run_portable<K: SimdKernel>(kernel: K) -> K::Output {
     kernel.run::<Portable>()
@@ -87,7 +87,7 @@ impl Lanes for F32x8 {
     }
     #[inline(always)]
     fn mul_add(self, factor: Self, summand: Self) -> Self {
-        // The result is rounded twice: a fused operation would be a function call where the processor has none.
+        // The result is rounded twice, since a fused operation would be a function call on processors without one.
         Self(self.0 * factor.0 + summand.0)
     }
     #[inline(always)]
@@ -159,7 +159,7 @@ float_operators!(EightDoubles, |a, b| {
     neg: Self(-a.0, -a.1),
 });
 
-/// A truth value for each of eight f64: all bits of a number are one or zero.
+/// A mask of eight f64 lanes. All bits of a lane are one or zero.
 #[derive(Clone, Copy)]
 pub struct EightMasks(f64x4, f64x4);
 

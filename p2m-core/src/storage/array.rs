@@ -6,7 +6,7 @@ use std::ops::Deref;
 use std::panic::{RefUnwindSafe, UnwindSafe};
 use std::sync::Arc;
 
-/// The bytes of a file, whose address does not change.
+/// The bytes of a file, at a fixed address.
 pub(super) type FileBytes = Arc<dyn AsRef<[u8]> + Send + Sync + UnwindSafe + RefUnwindSafe>;
 
 /// An array that is owned or part of a file in memory. Reading it is as fast as reading a slice in both cases.
@@ -30,7 +30,7 @@ unsafe impl<T: Send + Sync> Send for Array<T> {}
 unsafe impl<T: Send + Sync> Sync for Array<T> {}
 
 impl<T> Array<T> {
-    /// Changes the elements, and copies them first if they are part of a file.
+    /// Changes the elements. If they are part of a file, they are copied first.
     pub fn edit<R>(&mut self, change: impl FnOnce(&mut Vec<T>) -> R) -> R
     where
         T: Clone,
@@ -46,7 +46,7 @@ impl<T> Array<T> {
         result
     }
 
-    /// Returns the heap memory in bytes, without that of a file.
+    /// Returns the heap memory in bytes, without the file's.
     pub fn memory(&self) -> usize {
         match &self.owner {
             Owner::Vec(elements) => elements.capacity() * size_of::<T>(),
@@ -56,8 +56,8 @@ impl<T> Array<T> {
 }
 
 impl<T: AnyBitPattern> Array<T> {
-    /// Returns the elements in a range of bytes of a file. It is `None` if the range exceeds the file, is not aligned,
-    /// or ends within an element.
+    /// Returns the elements in a byte range of a file. It is `None` if the range exceeds the file, is not aligned, or
+    /// ends within an element.
     pub(super) fn from_file(file: &FileBytes, range: std::ops::Range<usize>) -> Option<Self> {
         let elements: &[T] = bytemuck::try_cast_slice((**file).as_ref().get(range)?).ok()?;
         let (pointer, len) = (elements.as_ptr(), elements.len());
@@ -92,9 +92,9 @@ impl<T> Deref for Array<T> {
     #[inline(always)]
     #[allow(unsafe_code, reason = "a pointer into what it owns")]
     fn deref(&self) -> &[T] {
-        // SAFETY: `pointer` and `len` are those of a slice of `owner`. That is a `Vec` that nobody changes (`edit`
-        // takes it out of the array first), or the bytes of a file, which were checked to be elements and whose address
-        // does not change while `owner` lives. Moving the array moves neither.
+        // SAFETY: `pointer` and `len` describe a slice of `owner`. The owner is either a `Vec` that nobody changes
+        // (`edit` takes it out of the array first), or the bytes of a file, which were checked to be elements and whose
+        // address does not change while `owner` lives. Moving the array moves neither.
         unsafe { std::slice::from_raw_parts(self.pointer, self.len) }
     }
 }

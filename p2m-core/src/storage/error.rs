@@ -2,14 +2,14 @@
 
 use super::section::VERSION;
 
-/// An error of loading an index from a file. Its message includes that of the operating system.
+/// An error of loading an index from a file. Its message includes the message of the operating system.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum LoadError {
     /// The file cannot be opened or read.
     #[error("cannot be read: {0}")]
     Io(std::io::Error),
-    /// The file does not begin with the bytes that mark a saved index.
+    /// The file does not begin with the magic bytes of a saved index.
     #[error("is not a saved index")]
     Foreign,
     /// The file has another version of the format.
@@ -18,12 +18,12 @@ pub enum LoadError {
         /// The version of the file.
         found: u32,
     },
-    /// The length of the file differs from the one in its header.
+    /// The length of the file differs from the length in its header.
     #[error("has {found} bytes instead of {expected}")]
     Length {
         /// The number of bytes of the file.
         found: u64,
-        /// The number of bytes that its header announces.
+        /// The number of bytes that the header announces.
         expected: u64,
     },
     /// The checksum of a section is wrong, so the section was damaged after it was written.
@@ -38,12 +38,12 @@ pub enum LoadError {
         /// The name of the section.
         section: String,
     },
-    /// The content of a section contradicts itself or that of other sections, so no program of this project wrote it.
+    /// The content of a section contradicts itself or another section, so no program of this project wrote it.
     #[error("has contradictory contents: in {section}, {reason}")]
     Inconsistent {
         /// The name of the section.
         section: String,
-        /// A clause that says what is wrong.
+        /// What is wrong, as a clause for the message.
         reason: &'static str,
     },
     /// The file has an index of another kind.
@@ -57,13 +57,13 @@ pub enum LoadError {
     /// The index was built over another set of primitives.
     #[error("was built over other primitives")]
     OtherSet,
-    /// The processor is not little-endian, so it cannot use the numbers of a file.
+    /// The processor is not little-endian, so it cannot use the numbers in a file.
     #[error("cannot be used on a processor that is not little-endian")]
     BigEndian,
 }
 
 impl LoadError {
-    /// Returns the error of a section whose content contradicts itself or that of other sections.
+    /// Returns the error for a section whose content contradicts itself or another section.
     #[must_use]
     pub fn inconsistent(section: &str, reason: &'static str) -> Self {
         Self::Inconsistent { section: section.to_owned(), reason }

@@ -9,21 +9,21 @@ use std::io::{ErrorKind, Read};
 use std::path::Path;
 use std::sync::Arc;
 
-/// A saved file whose header and table were checked. [`checked`](Self::checked) verifies its sections as well.
+/// A saved file whose header and table have been checked. [`checked`](Self::checked) verifies its sections as well.
 #[derive(Clone)]
 pub struct SavedFile(Reader);
 
-/// A cache line: memory that is made of them has the alignment of sections.
+/// A cache line. Memory that is allocated as cache lines has the alignment that sections need.
 #[derive(Clone, Copy, Zeroable, bytemuck::Pod)]
 #[repr(C, align(64))]
 struct CacheLine([u8; 64]);
 
 /// The number of bytes of a cache line.
 const LINE_BYTES: usize = size_of::<CacheLine>();
-/// The least number of cache lines, 16 KiB in all, by which the buffer for a file of unknown length grows.
+/// The least growth of the buffer for a file of unknown length, in cache lines: 16 KiB in all.
 const FIRST_LINES: usize = 1 << 8;
 
-/// Bytes that begin at a cache line.
+/// Bytes that are aligned to a cache line.
 struct AlignedBytes {
     lines: Vec<CacheLine>,
     len: usize,
@@ -46,13 +46,13 @@ impl SavedFile {
         Self::read_with_length(file, length)
     }
 
-    /// Maps the file at a path into memory: pages are read on first use, and processes that map the same
-    /// file share them.
+    /// Maps the file at a path into memory. Pages are read on first use, and processes that map the same file share
+    /// them.
     ///
     /// # Safety
     /// Nobody may change or truncate the file while the mapping, or an index that was loaded from it, is in use. A
-    /// change is a data race, whatever was checked before, and truncation ends the program. To replace a file, write a
-    /// new one and rename it, as `p2m build` does.
+    /// change is a data race, whatever was checked before, and truncation terminates the program. To replace a file,
+    /// write a new one and rename it, as `p2m build` does.
     ///
     /// # Errors
     /// It returns the errors of [`read`](Self::read), and [`LoadError::Io`] if the file cannot be opened or mapped.
@@ -64,8 +64,8 @@ impl SavedFile {
         Ok(Self(Reader::new(Arc::new(map))?))
     }
 
-    /// Reads a file into memory: the header, and then as many bytes as the header announces. What does not begin with a
-    /// header of the right version is refused before more of it is read.
+    /// Reads a file into memory: the header, and then as many bytes as the header announces. Input without a header of
+    /// the right version is refused before more of it is read.
     ///
     /// # Errors
     /// It returns [`LoadError::Io`] if reading fails, [`LoadError::Foreign`], [`LoadError::Version`] or
@@ -74,9 +74,9 @@ impl SavedFile {
         Self::read_with_length(reader, 0)
     }
 
-    /// Reads a file into memory as [`read`](Self::read) does. A file that announces at most `length` bytes gets its
-    /// memory at once, which is several times faster than a buffer that grows. The length is that of the file on disk,
-    /// for instance, and may be wrong.
+    /// Reads a file into memory as [`read`](Self::read) does, given its expected length, for instance the length of the
+    /// file on disk. The length may be wrong. If the header announces at most `length` bytes, the memory is allocated
+    /// at once, which is several times faster than a buffer that grows.
     ///
     /// # Errors
     /// It returns the errors of [`read`](Self::read).
@@ -84,7 +84,7 @@ impl SavedFile {
         let mut lines = vec![CacheLine::zeroed()];
         let mut len = read_until_full(&mut reader, bytemuck::cast_slice_mut(&mut lines))?;
         let expected = check_header(&bytemuck::cast_slice(&lines)[..len])?.length;
-        // The announced length may be wrong, so beyond `length` memory only grows with what was read.
+        // The announced length may be wrong, so beyond `length` the memory only grows with the bytes that were read.
         while (len as u64) < expected && len == size_of_val(&lines[..]) {
             let wanted = usize::try_from(expected.div_ceil(LINE_BYTES as u64)).unwrap_or(usize::MAX);
             let is_there = expected <= length;
@@ -103,7 +103,8 @@ impl SavedFile {
         Ok(Self(Reader::new(Arc::new(AlignedBytes { lines, len }))?))
     }
 
-    /// Returns the checksum of the table, which has the checksums of all sections, so it stands for the whole content.
+    /// Returns the checksum of the table. The table has the checksums of all sections, so this identifies the whole
+    /// content.
     #[must_use]
     pub fn checksum(&self) -> u64 {
         self.0.table_checksum()
@@ -115,7 +116,7 @@ impl SavedFile {
     /// It returns [`LoadError::Damaged`] if a checksum is wrong.
     ///
     /// # Complexity
-    /// It reads the whole file, at some gigabytes a second.
+    /// It reads the whole file, at a few gigabytes per second.
     pub fn checked(&self) -> Result<&Reader, LoadError> {
         self.0.check()?;
         Ok(&self.0)

@@ -1,9 +1,9 @@
-//! Ids of primitives among the plain numbers of a file.
+//! Ids of primitives in files, where they are plain numbers.
 
 use crate::PrimitiveId;
 
-/// Returns numbers of a file as ids. The caller has checked that all of them are below the number of primitives;
-/// [`PrimitiveId`] has no other way from a number that does not check it.
+/// Returns numbers of a file as ids without copying them. The caller has checked that all of them are below the number
+/// of primitives; every other constructor of [`PrimitiveId`] checks its number.
 #[inline(always)]
 #[must_use]
 #[allow(unsafe_code, reason = "a slice of transparent wrappers")]

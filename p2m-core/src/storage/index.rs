@@ -1,4 +1,4 @@
-//! Saving and loading an index, with its kind and a fingerprint of the set that it was built over.
+//! Saving and loading of indexes, with their kind and a fingerprint of the set over which they were built.
 
 use super::error::LoadError;
 use super::reader::Reader;
@@ -9,19 +9,19 @@ use nalgebra::Point3;
 use std::hash::Hasher;
 use twox_hash::XxHash3_64;
 
-/// The structure of an index that can be saved, without the set that it was built over.
+/// The structure of an index that can be saved, without its set.
 pub trait Saved: Sized {
-    /// Returns the kind of the index: `aabb`, `kdop-14`, `octree` or `p2m`, for example.
+    /// Returns the kind of the index, for example `aabb`, `kdop-14`, `octree` or `p2m`.
     fn kind() -> String;
 
     /// Adds the sections of the index to a file.
     fn save<'a>(&'a self, writer: &mut Writer<'a>);
 
-    /// Makes the index of the sections of a file, without copying large arrays. The index is over a set
-    /// of `primitives` primitives.
+    /// Creates the index from the sections of a file, without copying large arrays. The index is over a set of
+    /// `primitives` primitives.
     ///
-    /// A file may come from anybody, so an implementation validates everything that a search relies on in order not to
-    /// panic and not to go on without end.
+    /// A file may come from anyone, so an implementation validates everything that searches need in order not to panic
+    /// and not to loop forever.
     ///
     /// # Errors
     /// It returns [`LoadError::Missing`] for a section that is missing, and [`LoadError::Inconsistent`] for sections
@@ -45,8 +45,8 @@ pub fn save<'a, T: Real, S: PrimitiveSet<T> + ?Sized, I: Saved>(index: &'a I, se
     index.save(writer);
 }
 
-/// Loads an index that was built over an equal set. Primitives of your own are taken to be equal if their boxes are,
-/// and their closest points to the corners of the box of the set.
+/// Loads an index that was built over an equal set. Primitives of your own count as equal if their boxes are equal, and
+/// so are their closest points to the corners of the box of the set.
 ///
 /// # Errors
 /// It returns [`LoadError::OtherKind`] for an index of another kind, [`LoadError::OtherSet`] for an index over another
@@ -70,8 +70,8 @@ pub fn kind(reader: &Reader) -> Result<String, LoadError> {
     Ok(String::from_utf8_lossy(&reader.copy::<u8>(KIND)?).into_owned())
 }
 
-/// Returns an XXH3 hash of the set: of the vertices of its primitives, and for primitives of your own of their boxes
-/// and their closest points to the corners of the box of the set.
+/// Returns an XXH3 hash of the vertices of all primitives. For primitives of your own it covers their boxes, and their
+/// closest points to the corners of the box of the set.
 fn fingerprint<T: Real, S: PrimitiveSet<T> + ?Sized>(set: &S) -> u64 {
     let mut hasher = XxHash3_64::new();
     let bounds = set.aabb();
@@ -81,7 +81,8 @@ fn fingerprint<T: Real, S: PrimitiveSet<T> + ?Sized>(set: &S) -> u64 {
     for id in (0..set.len()).map(PrimitiveId::new) {
         let primitive = set.get(id);
         let vertices = primitive.vertices();
-        // The numbers are those of at most three vertices, or of two corners of a box; the last one says which.
+        // The numbers are the coordinates of at most three vertices, or of two corners of a box; the last number says
+        // which.
         let (mut numbers, mut count) = ([0.0; 10], 0);
         if vertices.is_empty() || vertices.len() > 3 {
             let bounds = primitive.aabb();

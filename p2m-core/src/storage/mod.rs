@@ -1,7 +1,7 @@
 //! Files of built indexes.
 //!
-//! A file consists of a header, a table of sections, and the *sections*, each of which is an array of plain numbers as
-//! it is in memory:
+//! A file consists of a header, a table of sections, and the *sections*. Each section is an array of plain numbers in
+//! their form in memory:
 //!
 //! | bytes | content |
 //! |---|---|
@@ -28,11 +28,10 @@
 //! and [`SavedFile::read`] copy a file into memory. [`SavedFile::map`] maps it, so that processes share its memory; it
 //! is unsafe because another process may change the file. [`SavedFile::checked`] verifies all checksums.
 //!
-//! Checksums detect damage, not malice. Loading an index therefore validates what a search relies on in order to end
-//! without a panic: numbers are in range, children come after their parents, nodes and packets are used once, and every
-//! walk ends. A file that
-//! was made on purpose can still give wrong answers, for example by wrong bounds, but its index neither panics nor
-//! searches without end.
+//! Checksums detect damage, not malice. Loading an index therefore validates everything that searches need in order to
+//! end without a panic: numbers are in range, children come after their parents, nodes and packets are used once, and
+//! every walk ends. A maliciously crafted file can still give wrong answers, for example by wrong bounds, but its index
+//! neither panics nor searches forever.
 //!
 //! ```
 //! use nalgebra::Point3;

@@ -5,7 +5,7 @@ use super::error::LoadError;
 use super::section::{ALIGNMENT, Entry, Header, MAGIC, VERSION, checksum};
 use bytemuck::AnyBitPattern;
 
-/// The sections of a file in memory, by their names.
+/// The sections of a file in memory, by name.
 #[derive(Clone)]
 pub struct Reader {
     file: FileBytes,
@@ -13,7 +13,7 @@ pub struct Reader {
 }
 
 impl Reader {
-    /// Checks the header and the table of a file.
+    /// Creates the reader of a file after checking the header and the table.
     pub(super) fn new(file: FileBytes) -> Result<Self, LoadError> {
         if cfg!(target_endian = "big") {
             return Err(LoadError::BigEndian);
@@ -41,7 +41,7 @@ impl Reader {
         Ok(Self { file, table })
     }
 
-    /// Returns the checksum of the table, which the header has as well.
+    /// Returns the checksum of the table, which is also in the header.
     pub(super) fn table_checksum(&self) -> u64 {
         checksum(bytemuck::cast_slice(&self.table))
     }
@@ -63,7 +63,7 @@ impl Reader {
         self.table.iter().map(|entry| (entry.name(), entry.count * entry.size))
     }
 
-    /// Returns whether there is a section of that name.
+    /// Returns whether there is a section with this name.
     #[must_use]
     pub fn has(&self, name: &str) -> bool {
         self.table.iter().any(|entry| entry.name() == name)
@@ -72,7 +72,7 @@ impl Reader {
     /// Returns a section without copying it.
     ///
     /// # Errors
-    /// It returns [`LoadError::Missing`] if there is no such section, or its elements are no `T`.
+    /// It returns [`LoadError::Missing`] if there is no such section, or its elements are not of type `T`.
     pub fn array<T: AnyBitPattern>(&self, name: &str) -> Result<Array<T>, LoadError> {
         let missing = || LoadError::Missing { section: name.to_owned() };
         let entry = self.table.iter().find(|entry| entry.name() == name).ok_or_else(missing)?;
@@ -83,15 +83,15 @@ impl Reader {
     /// Returns a copy of a section.
     ///
     /// # Errors
-    /// It returns [`LoadError::Missing`] if there is no such section, or its elements are no `T`.
+    /// It returns [`LoadError::Missing`] if there is no such section, or its elements are not of type `T`.
     pub fn copy<T: AnyBitPattern>(&self, name: &str) -> Result<Vec<T>, LoadError> {
         Ok(self.array(name)?.to_vec())
     }
 
-    /// Returns the element of a section that has one.
+    /// Returns the element of a section with one element.
     ///
     /// # Errors
-    /// It returns [`LoadError::Missing`] if there is no such section, or its elements are no `T`, and
+    /// It returns [`LoadError::Missing`] if there is no such section, or its elements are not of type `T`, and
     /// [`LoadError::Inconsistent`] if the number of elements is not 1.
     pub fn one<T: AnyBitPattern>(&self, name: &str) -> Result<T, LoadError> {
         match *self.array::<T>(name)? {
@@ -101,7 +101,7 @@ impl Reader {
     }
 }
 
-/// Returns the header at the beginning of a file.
+/// Checks and returns the header of a file.
 pub(super) fn check_header(bytes: &[u8]) -> Result<Header, LoadError> {
     if !bytes.starts_with(&MAGIC) {
         return Err(LoadError::Foreign);
@@ -117,8 +117,8 @@ pub(super) fn check_header(bytes: &[u8]) -> Result<Header, LoadError> {
     Ok(header)
 }
 
-/// Returns the bytes that belong to no section. It is `None` if the sections are not in the order of the file, overlap,
-/// or leave more than a cache line unused.
+/// Returns the bytes of a file that belong to no section. It is `None` if the sections are not in the order of the
+/// file, overlap, or leave more than a cache line unused.
 fn gaps(table: &[Entry], length: usize) -> Option<Vec<std::ops::Range<usize>>> {
     let mut end = size_of::<Header>() + size_of_val(table);
     let starts = table.iter().map(|entry| entry.range(length as u64)).chain([Some(length..length)]);

@@ -3,13 +3,13 @@
 use bytemuck::{Pod, Zeroable};
 use twox_hash::XxHash3_64;
 
-/// The version of the format that is written, and the only one that is read.
+/// The version of the format that is written, and the only one that can be read.
 pub const VERSION: u32 = 1;
 /// The first bytes of every file.
 pub(super) const MAGIC: [u8; 8] = *b"\x89P2M\r\n\x1a\n";
-/// The number of bytes, a cache line, at whose multiples sections begin.
+/// The alignment of sections in bytes, a cache line.
 pub(super) const ALIGNMENT: usize = 64;
-/// The maximum number of bytes of the name of a section.
+/// The maximum length of the name of a section, in bytes.
 pub(super) const MAX_NAME_BYTES: usize = 32;
 
 /// The header of a file.
@@ -24,7 +24,7 @@ pub(super) struct Header {
     pub(super) length: u64,
     /// The checksum of the table.
     pub(super) checksum: u64,
-    /// Zero, so that a later version can use it.
+    /// Reserved for later versions; zero.
     pub(super) unused: [u64; 4],
 }
 

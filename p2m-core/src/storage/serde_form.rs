@@ -1,7 +1,7 @@
-//! Indexes and scenes as values of serde.
+//! Indexes and scenes as serde values.
 //!
-//! An index is serialised as its scene and the bytes of its saved file, so whatever is checked when a file is loaded is
-//! checked here as well.
+//! An index is serialised as its scene and the bytes of its saved file, so all checks for loading a file apply here as
+//! well.
 
 use super::{Saved, SavedFile, Writer, load, save};
 use crate::real::to_f64_array;
@@ -11,7 +11,7 @@ use serde::de::Error as _;
 use serde::ser::Error as _;
 use serde::{Deserialize, Deserializer, Serialize, Serializer};
 
-/// An index and its scene, in the form that is serialised.
+/// The serialised form of an index and its scene.
 #[derive(Serialize, Deserialize)]
 #[serde(rename = "Index")]
 struct IndexForm<S> {
@@ -40,8 +40,8 @@ pub fn serialize_index<T: Real, S: PrimitiveSet<T> + Serialize, I: Saved, Z: Ser
 /// Deserialises an index and its scene.
 ///
 /// # Errors
-/// It returns the errors of the deserialiser, and those of loading a file with a wrong checksum, another kind of index
-/// or another scene.
+/// It returns the errors of the deserialiser, and the errors of loading a file with a wrong checksum, another kind of
+/// index or another scene.
 pub fn deserialize_index<'de, T: Real, S: PrimitiveSet<T> + Deserialize<'de>, I: Saved, D: Deserializer<'de>>(
     deserializer: D,
 ) -> Result<(S, I), D::Error> {
@@ -51,8 +51,8 @@ pub fn deserialize_index<'de, T: Real, S: PrimitiveSet<T> + Deserialize<'de>, I:
     Ok((scene, index))
 }
 
-/// A soup in the form that is serialised. Coordinates are the bits of f64, since formats of text may round decimals and
-/// have none for NaN, which a position that no primitive uses may be.
+/// The serialised form of a soup. Coordinates are stored as the bits of f64: text formats may round decimals, and have
+/// none for NaN, which a position that no primitive uses may be.
 #[derive(Serialize, Deserialize)]
 #[serde(rename = "Soup")]
 struct SoupForm {

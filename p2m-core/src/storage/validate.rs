@@ -1,9 +1,9 @@
-//! Helpers for the validation of what was loaded.
+//! Helpers for the validation of loaded files.
 
 use super::error::LoadError;
 use crate::parallel;
 
-/// Checks a condition that every valid section of this name satisfies.
+/// Checks a condition that every valid section with this name satisfies.
 ///
 /// # Errors
 /// It returns [`LoadError::Inconsistent`] if the condition is false.
@@ -14,8 +14,8 @@ pub fn require(condition: bool, section: &str, reason: &'static str) -> Result<(
 /// The number of elements that one thread checks at a time.
 const ELEMENTS_PER_CHUNK: usize = 1 << 12;
 
-/// Checks some elements chunk by chunk, each of which is given with the index of its first element. With the feature
-/// `rayon`, all threads check chunks, and any of several errors is returned.
+/// Checks elements chunk by chunk. `check` gets each chunk with the index of its first element. With the feature
+/// `rayon`, chunks are checked on all threads, and any one of several errors is returned.
 ///
 /// # Errors
 /// It returns an error of `check`.

@@ -8,7 +8,7 @@ use std::io::{self, Write};
 /// A collector of the sections of a file. Large arrays are borrowed until the file is written.
 #[derive(Default)]
 pub struct Writer<'a> {
-    /// The name, the bytes and the bytes of an element of each section.
+    /// The name and the bytes of each section, and the bytes of one of its elements.
     sections: Vec<(String, Bytes<'a>, usize)>,
 }
 
@@ -30,7 +30,7 @@ impl<'a> Writer<'a> {
     /// Adds a section with a borrowed array. Its name has at most 32 bytes.
     ///
     /// # Panics
-    /// It panics if the name is longer, or another section has it.
+    /// It panics if the name is longer, or if there is already a section with this name.
     pub fn put<T: NoUninit>(&mut self, name: &str, elements: &'a [T]) {
         self.add(name, Bytes::Borrowed(bytemuck::cast_slice(elements)), size_of::<T>());
     }
@@ -38,12 +38,12 @@ impl<'a> Writer<'a> {
     /// Adds a section with a copy of an array. Its name has at most 32 bytes.
     ///
     /// # Panics
-    /// It panics if the name is longer, or another section has it.
+    /// It panics if the name is longer, or if there is already a section with this name.
     pub fn put_copy<T: NoUninit>(&mut self, name: &str, elements: &[T]) {
         self.add(name, Bytes::Owned(bytemuck::cast_slice(elements).to_vec()), size_of::<T>());
     }
 
-    /// Returns whether there is a section of that name.
+    /// Returns whether there is a section with this name.
     #[must_use]
     pub fn has(&self, name: &str) -> bool {
         self.sections.iter().any(|section| section.0 == name)

@@ -6,18 +6,19 @@ use super::side::PairSide;
 use super::slab::Slab;
 use crate::kernel::vector::{V3, dot, power_of_two};
 
-/// A frame resolves what is at most this many units away from its centre.
+/// The largest distance from the centre of a frame, in units of the frame, at which f32 resolves coordinates well
+/// enough.
 const MAX_UNITS: f64 = power_of_two(10);
 /// The largest sum of all magnitudes with which sums of heights cannot overflow.
 const MAX_SIZE: f64 = power_of_two(1000);
-/// The part of all magnitudes by which heights are wrong that are computed in f64, the vertices of which a motion has
-/// rounded, and keys (docs/proofs/pairs.md).
+/// The relative error of heights that are computed in f64, of vertices that were rounded by a motion, and of keys, as a
+/// fraction of the sum of all magnitudes (docs/proofs/pairs.md).
 const ROUNDING: f64 = power_of_two(-44);
 
-/// A direction of the scene, as both sides need it.
+/// A direction of the scene, in the forms that both sides need.
 struct Direction {
     vector: V3,
-    /// The direction and its opposite in the frame of each side.
+    /// The direction and its opposite, in the frame of each side.
     heights: [[Height; 2]; 2],
     /// The height of the centre of each frame.
     offsets: [f64; 2],
@@ -35,8 +36,8 @@ pub struct Directions {
 }
 
 impl Directions {
-    /// Returns the directions for two sides, unless f32 does not resolve one of them in the frame of the other, or their
-    /// sizes are near the end of the range.
+    /// Returns the directions for two sides. It is `None` if f32 does not resolve one side in the frame of the other,
+    /// or if their sizes are near the end of the range.
     #[must_use]
     pub fn new(sides: [&dyn PairSide; 2]) -> Option<Self> {
         let bounds = sides.map(PairSide::bounds);

@@ -1,45 +1,45 @@
-//! Heights: upper bounds on the contents of nodes along a direction.
+//! Heights: upper bounds on the extents of nodes along a direction.
 
 use super::place::WIDTH;
 use crate::kernel::vector::{V3, dot, power_of_two};
 use crate::simd::Lanes;
 
-/// The part of the sum of all factors that is added as slack. Coordinates of a frame are at most 4, and there are at
-/// most four roundings of 2^-24 of each term.
+/// The slack per unit of the sum of all factors. Coordinates in a frame are at most 4, and each term has at most four
+/// roundings of 2^-24.
 const SLACK: f64 = power_of_two(-19);
 
-/// The lengths of vectors that have a direction.
+/// The lengths of vectors that can be normalised.
 const PLAIN_LENGTHS: std::ops::RangeInclusive<f64> = power_of_two(-400)..=power_of_two(400);
 
-/// Returns a vector of length 1 along `v`, unless the length of `v` overflows or vanishes.
+/// Returns the unit vector along `v`, or `None` if the length of `v` overflows or vanishes.
 pub(super) fn unit(v: V3) -> Option<V3> {
     let length = dot(v, v).sqrt();
     PLAIN_LENGTHS.contains(&length).then(|| v.map(|x| x / length))
 }
 
-/// Returns the least and the largest of some heights.
+/// Returns the least and the largest of several heights.
 pub(super) fn extent(heights: impl Iterator<Item = f64>) -> [f64; 2] {
     heights.fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], x| [low.min(x), high.max(x)])
 }
 
-/// A direction of a frame, as the weighted sum of three rows of numbers of a node.
+/// A direction in a frame, as the weighted sum of three rows of a node.
 ///
-/// The height of a child along the direction is the largest product of the direction and a point of the child. The sum
-/// is an upper bound on it.
+/// The height of a child along a direction is the largest dot product of the direction and a point of the child. The
+/// sum is an upper bound on it.
 #[derive(Clone, Copy, Debug)]
 pub struct Height {
     rows: [usize; 3],
     factors: [f32; 3],
-    /// The sum may be too small by at most this.
+    /// The most by which the sum may be too small.
     pub slack: f32,
 }
 
 impl Height {
-    /// Makes the sum of three rows with these factors.
+    /// Creates the sum of three rows with these factors.
     #[must_use]
     #[allow(clippy::cast_possible_truncation, reason = "the slack covers the rounding")]
     pub fn new(terms: [(usize, f64); 3]) -> Self {
-        // A factor of zero would make a NaN of the infinite bounds of an unused slot.
+        // An unused slot has infinite bounds, and zero times infinity would be NaN.
         let factor =
             |x: f64| if (x as f32).abs() < f32::MIN_POSITIVE { f32::MIN_POSITIVE.copysign(x as f32) } else { x as f32 };
         let sum: f64 = terms.iter().map(|(_, factor)| factor.abs()).sum();
@@ -50,11 +50,11 @@ impl Height {
         }
     }
 
-    /// Returns the heights of the eight children of a node, given by its rows; those of unused slots are negative and
-    /// infinite if their bounds are those of the empty set.
+    /// Returns the heights of the eight children of a node. The heights of unused slots are minus infinity if their
+    /// bounds are those of the empty set.
     #[inline(always)]
     pub fn of_children<L: Lanes, N: Rows>(&self, node: &N) -> L {
-        // There is no closure here, because one would be compiled without the instruction set.
+        // No closure here, because a closure would be compiled without the instruction set.
         let [x, y, z] = self.factors;
         let sum = L::load(node.row(self.rows[0])).mul(L::splat(x));
         let sum = L::load(node.row(self.rows[1])).mul_add(L::splat(y), sum);
@@ -69,7 +69,7 @@ impl Height {
     }
 }
 
-/// The rows of numbers that bound the children of a node.
+/// A node as rows of numbers that bound its children.
 pub trait Rows {
     /// Returns a row.
     fn row(&self, number: usize) -> &[f32; WIDTH];

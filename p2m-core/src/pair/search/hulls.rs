@@ -1,4 +1,4 @@
-//! The primitives of a packet as hulls, and the pairs of those of two packets.
+//! The primitives of a packet as hulls, and the search for pairs between two packets.
 
 use super::height::{extent, unit};
 use super::place::NO_NODE;
@@ -7,24 +7,25 @@ use crate::kernel::vector::{V3, dot, power_of_two, sub};
 use crate::pair::{Hull, Pairs, bounds_of, nearest_of_hulls};
 use crate::{Aabb, PrimitiveId};
 
-/// The margin below which products of two lengths of the scenes cannot overflow: it is 2^-44 of their sizes.
+/// The margin below which products of two lengths of the scenes cannot overflow. A margin is 2^-44 of the sizes of the
+/// scenes.
 const MAX_MARGIN_OF_PRODUCTS: f64 = power_of_two(450);
 /// The largest number of primitives of a packet.
 pub const MAX_HULLS: usize = 16;
 
-/// The primitives of a packet, as hulls of vertices.
+/// The primitives of a packet, as convex hulls of their vertices.
 pub struct Hulls {
-    /// The packet that is loaded.
+    /// The number of the loaded packet.
     pub(super) packet: u32,
     len: usize,
     hulls: [Hull; MAX_HULLS],
     boxes: [Aabb<f64>; MAX_HULLS],
     /// The box around all hulls.
     bounds: Aabb<f64>,
-    /// The normals of triangles, of length 1, or zero for what has none.
+    /// The unit normals of triangles; zero for hulls without a normal.
     normals: [V3; MAX_HULLS],
-    /// The extents of hulls along their normals, from their first vertices. Rounding turns the normal of a thin triangle
-    /// by any angle, so they are not zero.
+    /// The extents of hulls along their normals, measured from their first vertices. They are not zero, since rounding
+    /// turns the normal of a thin triangle by any angle.
     heights: [[f64; 2]; MAX_HULLS],
     ids: [PrimitiveId; MAX_HULLS],
 }
@@ -43,7 +44,7 @@ impl Hulls {
         }
     }
 
-    /// Forgets the primitives of the last packet.
+    /// Clears the hulls for a new packet.
     pub fn start(&mut self, packet: u32) {
         (self.packet, self.len, self.bounds) = (packet, 0, Aabb::empty());
     }
@@ -65,26 +66,30 @@ impl Hulls {
         self.hulls[i].vertices()
     }
 
-    /// Returns the extent of some vertices along the normal of a hull, from its first vertex.
+    /// Returns the extent of several vertices along the normal of a hull, measured from the hull's first vertex.
     fn extent(&self, i: usize, vertices: &[V3]) -> [f64; 2] {
         let first = self.hull(i)[0];
         extent(vertices.iter().map(|vertex| dot(sub(*vertex, first), self.normals[i])))
     }
 
-    /// Returns whether some vertices are farther from a hull than `reach` along the normal of the hull.
+    /// Returns whether several vertices are farther from a hull than `reach` along the normal of the hull.
     fn is_beyond(&self, i: usize, vertices: &[V3], reach: f64) -> bool {
         let ([low, high], [start, end]) = (self.heights[i], self.extent(i, vertices));
         start - high > reach || low - end > reach
     }
 
-    /// Returns one bit for each hull, the first one lowest: whether its box is near another box.
+    /// Returns one bit per hull, the first one lowest: whether its box is near another box.
     fn near(&self, bounds: &Aabb<f64>, prune: f64) -> u16 {
         (0..self.len).fold(0, |mask, i| mask | u16::from(self.boxes[i].gap_squared(bounds) <= prune) << i)
     }
 }
 
-/// Offers the pairs of the primitives of two packets. Heights are compared along `direction` and along normals, unless
-/// they have no margin.
+/// Offers the pairs of the primitives of two packets.
+///
+/// The basic idea is to reject most of the up to 256 pairs before the kernel sees them. A pair is rejected by the gap
+/// between the boxes, by the heights along `direction`, along the normals of both hulls, and along the line through
+/// their first vertices. The pair with the nearest first vertices is offered first, so that its distance prunes the
+/// others. Heights are compared only if they have a `margin`.
 pub(super) fn search_packets(a: &Hulls, b: &Hulls, margin: Option<f64>, direction: Option<V3>, pairs: &mut Pairs<'_>) {
     let least_ids = || [a, b].map(|hulls| *hulls.ids[..hulls.len].iter().min().expect("a packet has primitives"));
     if pairs.is_settled(a.bounds.gap_squared(&b.bounds), least_ids) {
@@ -104,8 +109,8 @@ pub(super) fn search_packets(a: &Hulls, b: &Hulls, margin: Option<f64>, directio
         }
         pairs.offer_result(ids, nearest_of_hulls(a.hull(i), b.hull(j), pairs.kernel_limit()));
     };
-    // Two vertices that are nearer than the best pair belong to a pair that is nearer. It is offered first, so that
-    // others are excluded.
+    // Two vertices that are nearer than the best pair belong to a pair that is nearer. It is offered first, to exclude
+    // other pairs.
     let first = if pairs.is_nearest() { nearest_vertices(a, b, [near_a, near_b], prune) } else { None };
     if let Some((i, j)) = first {
         offer(i, j, pairs);
@@ -122,8 +127,8 @@ pub(super) fn search_packets(a: &Hulls, b: &Hulls, margin: Option<f64>, directio
     }
 }
 
-/// Returns whether two hulls are farther apart than a limit and a margin along a direction from the first to the second,
-/// along the normal of one of them, or along the line through their first vertices.
+/// Returns whether two hulls are farther apart than a limit and a margin along one of these directions: `direction`,
+/// which points from the first to the second, the normal of a hull, or the line through their first vertices.
 fn is_apart([a, b]: [&Hulls; 2], [i, j]: [usize; 2], direction: Option<V3>, limit: f64, margin: f64) -> bool {
     let (p, q) = (a.hull(i), b.hull(j));
     let reach = limit + margin;
@@ -142,12 +147,12 @@ fn is_apart([a, b]: [&Hulls; 2], [i, j]: [usize; 2], direction: Option<V3>, limi
     margin < MAX_MARGIN_OF_PRODUCTS && gap(line) > reach * dot(line, line).sqrt()
 }
 
-/// Returns the numbers of the bits that are set.
+/// Returns the positions of the set bits.
 fn ones(mask: u16) -> impl Iterator<Item = usize> {
     (0..MAX_HULLS).filter(move |i| mask >> i & 1 == 1)
 }
 
-/// Returns the hulls of two masks whose first vertices are nearest, if these are nearer than `prune` allows.
+/// Returns the hulls of two masks whose first vertices are nearest, if they are nearer than `prune` allows.
 fn nearest_vertices(a: &Hulls, b: &Hulls, masks: [u16; 2], prune: f64) -> Option<(usize, usize)> {
     let mut best = (prune, None);
     for i in ones(masks[0]) {

@@ -1,27 +1,31 @@
-//! Searches for near pairs of primitives: of a tree and a shape, or of two trees, one of which may have moved.
+//! The search for near pairs of primitives: between a tree and a shape, or between two trees, one of which may have
+//! moved.
 //!
 //! # Method
 //!
-//! A search holds pairs of nodes, of which one is cut into its children at a time: the one with the larger box. Pairs
-//! that are certainly farther apart than the best pair so far are left out. Two bounds tell that.
+//! The basic idea is a dual-tree traversal: the search keeps a stack of pairs of nodes, takes the nearest pair, and
+//! replaces the larger of its two nodes (or the only one that is not a packet) by its eight children. Pairs of packets
+//! are searched primitive by primitive. A pair of nodes is pruned if it is certainly farther apart than the best pair
+//! so far, by one of two bounds.
 //!
-//! - **Directions** (the files `directions` and `slab`). The other node of the pair is between two planes in each of a
-//!   few directions: the axes of both frames, and for a shape those that are orthogonal to its edges and to an axis.
-//!   The distances of eight children from what is between the planes are bounded side by side, in f32.
+//! - **Directions** (the files `directions` and `slab`). The fixed node of the pair lies between two planes in each of
+//!   a few directions: the axes of both frames, and for a shape the directions that are orthogonal to its edges and to
+//!   an axis. The distances between the eight children and the slabs between these planes are bounded side by side, in
+//!   f32.
 //! - **The direction of the best pair** (the file `support`). Where two surfaces are nearest, they face each other and
-//!   are nearly flat. A box around such a part reaches towards the other surface by as much as the box is wide, but the
-//!   part itself does so by the square of that only. So the extents of nodes along the direction of the best pair are
-//!   those of their vertices, which a search through the node finds. Without this bound, the number of pairs of nodes
-//!   that no box tells apart grows with the number of triangles; with it, few are left on each level.
+//!   are nearly flat. A box around such a piece reaches towards the other surface by as much as the box is wide, but
+//!   the piece itself only by the square of that. So the search computes the exact extents of nodes along the direction
+//!   of the best pair, from their extreme vertices. Without this bound, the number of pairs of nodes that no box
+//!   excludes grows with the number of triangles; with it, few are left on each level.
 //!
-//! In frames in which f32 does not resolve the other node, the gap between boxes in f64 is the only bound.
+//! If f32 does not resolve one node in the frame of the other, the gap between boxes in f64 is the only bound.
 //!
 //! # Correctness
 //!
-//! The gap of two boxes never exceeds the key of primitives in them ([docs/proofs/pairs.md]). The other bounds are
-//! computed with a margin above their rounding and above the error of keys. So the answer is that of all pairs, bit for
-//! bit. The motion of a tree is applied to the vertices of its packets, each coordinate rounded, and to directions and
-//! boxes with a margin above all roundings.
+//! The gap between two boxes never exceeds the key of primitives in them ([docs/proofs/pairs.md]). The other bounds
+//! have margins above their rounding and above the error of keys. So the answer equals the answer over all pairs, bit
+//! for bit. The motion of a tree is applied to the vertices of its packets, each coordinate rounded, and to directions
+//! and boxes with a margin above all roundings.
 //!
 //! [docs/proofs/pairs.md]: https://github.com/p2m-rs/p2m/blob/main/docs/proofs/pairs.md
 
@@ -53,10 +57,10 @@ struct NodePair {
     places: [Place; 2],
 }
 
-/// A search for pairs of two sides.
+/// The state of a search for pairs between two sides.
 struct Search<'a, 'p, 'v> {
     sides: [&'a dyn PairSide; 2],
-    /// The directions, unless f32 does not resolve one side in the frame of the other.
+    /// The directions, or `None` if f32 does not resolve one side in the frame of the other.
     directions: Option<Directions>,
     supports: Supports,
     pending: Vec<NodePair>,
@@ -67,7 +71,8 @@ struct Search<'a, 'p, 'v> {
     pairs: &'p mut Pairs<'v>,
 }
 
-/// Offers every pair of primitives that may be near. It asks `goes_on` before each step whether to go on.
+/// Offers every pair of primitives that may be near. Before each step it calls `goes_on`, and ends if the result is
+/// `false`.
 pub fn search_pairs(a: &dyn PairSide, b: &dyn PairSide, goes_on: &dyn Fn() -> bool, pairs: &mut Pairs<'_>) {
     let (Some(root_a), Some(root_b)) = (a.root(), b.root()) else { return };
     let sides = [a, b];
@@ -118,7 +123,8 @@ impl Search<'_, '_, '_> {
         self.supports.follow(self.pairs);
     }
 
-    /// Offers the pairs of the packets that continue two packets, which can only tie with theirs.
+    /// Offers the pairs of the packets that continue two packets. They have the same vertices, so they can only tie
+    /// with pairs of the first packets.
     fn search_rest_of_runs(&mut self, first: [u32; 2], loaded: &mut [Hulls; 2]) {
         let [side_a, side_b] = self.sides;
         let mut packets = first;
@@ -137,7 +143,7 @@ impl Search<'_, '_, '_> {
         }
     }
 
-    /// Adds the pairs of the children of one node and the other node.
+    /// Adds the pairs of each child of one node with the other node.
     fn cut(&mut self, side: usize, places: [Place; 2]) {
         let prune = self.pairs.prune_above();
         let other = places[1 - side];
@@ -157,7 +163,7 @@ impl Search<'_, '_, '_> {
         let first = self.pending.len();
         for slot in 0..WIDTH {
             let square = children.squares[slot];
-            // The comparison is false for unused slots.
+            // The comparison may be false for unused slots, so the number of the child is tested as well.
             if square > prune || children.nodes[slot] == NO_NODE {
                 continue;
             }
@@ -170,8 +176,8 @@ impl Search<'_, '_, '_> {
                 self.pending.push(pair);
             }
         }
-        // The nearest pair is visited first, and of equally near ones that with the lowest ids, with which all others
-        // can only tie.
+        // The nearest pair is visited first. Ties go to the pair with the lowest ids, with which all others can only
+        // tie.
         let ids = |pair: &NodePair| least_ids(self.sides, &pair.places);
         self.pending[first..].sort_unstable_by(|p, q| q.gap.total_cmp(&p.gap).then_with(|| ids(q).cmp(&ids(p))));
     }

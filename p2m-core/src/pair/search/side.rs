@@ -1,4 +1,4 @@
-//! The two sides of a search for pairs: trees, which other crates implement, and single shapes.
+//! The interface of the two sides of a search for pairs, which trees of other crates and single shapes implement.
 
 use super::height::{Height, extent};
 use super::hulls::Hulls;
@@ -9,12 +9,12 @@ use crate::kernel::vector::{V3, dot, largest, sub};
 use crate::pair::{Hull, bounds_of};
 use crate::{Aabb, PrimitiveId};
 
-/// The eight children of a node, with bounds on their distances from something.
+/// The eight children of a node, with bounds on their distances from a slab or a box.
 #[derive(Clone, Copy, Debug)]
 pub struct Children {
     /// Squares of lower bounds on the distances.
     pub squares: [f64; WIDTH],
-    /// The widest gap in any direction, by which children are ordered. It is negative for what overlaps.
+    /// The widest gap in any direction, by which children are ordered. It is negative if a child overlaps.
     pub gaps: [f32; WIDTH],
     /// The sums of the sides of the boxes.
     pub sizes: [f32; WIDTH],
@@ -32,38 +32,38 @@ impl Children {
     };
 }
 
-/// One of the two sides of a search for pairs: a tree of nodes with eight children over packets of primitives. It is
-/// used as `dyn`, so that a search is compiled once. Lengths and heights are in units of the scene.
+/// One side of a search for pairs: a tree of nodes with eight children over packets of primitives. It is used as `dyn`,
+/// so that a search is compiled once. Lengths and heights are in units of the scene.
 pub trait PairSide {
-    /// Returns the root; `None` if there is nothing.
+    /// Returns the root, or `None` for an empty side.
     fn root(&self) -> Option<Place>;
     /// Returns whether a node is a packet of primitives.
     fn is_packet(&self, node: u32) -> bool;
-    /// Returns a box around everything.
+    /// Returns a box around the whole side.
     fn bounds(&self) -> Aabb<f64>;
-    /// Returns where the frame of the nodes is in the scene.
+    /// Returns the placement of the frame of the nodes in the scene.
     fn placement(&self) -> Placement;
-    /// Returns vectors along which the contents of this side are often narrower than along the axes. Those of a tree are
-    /// three orthogonal ones.
+    /// Returns vectors along which the contents of this side are often narrower than along the axes. A tree returns
+    /// three orthogonal vectors.
     fn directions(&self) -> Vec<V3>;
-    /// Converts a direction of the scene to the form in which heights of nodes along it are computed.
+    /// Converts a direction of the scene to the form in which the heights of nodes are computed.
     fn height(&self, direction: &V3) -> Height;
-    /// Returns the least and the largest height of a node along a direction, which is also given by the heights of it
-    /// and its opposite. `offset` is the height of the centre of the frame.
+    /// Returns the least and the largest height of a node along a direction. `heights` are the forms of the direction
+    /// and its opposite, and `offset` is the height of the centre of the frame.
     fn extent(&self, place: &Place, direction: &V3, offset: f64, heights: &[Height; 2]) -> [f64; 2];
     /// Returns the largest height of a vertex of a node along a direction.
     fn support(&self, node: u32, direction: &V3) -> f64;
-    /// Bounds the distances of the children of a node from what is in some slabs, of which the given number of leading
-    /// triples are orthogonal.
+    /// Bounds the distances between the children of a node and the intersection of several slabs. `triples` is the
+    /// number of leading triples of orthogonal slabs.
     fn cut(&self, node: u32, slabs: &[Slab], triples: usize) -> Children;
-    /// Bounds the distances of the children of a node from a box.
+    /// Bounds the distances between the children of a node and a box.
     fn cut_by_box(&self, node: u32, bounds: &Aabb<f64>) -> Children;
     /// Returns a box around a node.
     fn box_of(&self, place: &Place) -> Aabb<f64>;
     /// Returns the least id of a node or a packet.
     fn least_id(&self, node: u32) -> PrimitiveId;
-    /// Returns the packet with further primitives that have the same vertices as those of a packet, and higher ids. No
-    /// node refers to it.
+    /// Returns the packet that continues the run of a packet, with further primitives that have the same vertices and
+    /// higher ids. No node refers to it.
     fn next_packet(&self, packet: u32) -> Option<u32> {
         let _ = packet;
         None
@@ -72,20 +72,20 @@ pub trait PairSide {
     fn load(&self, packet: u32, hulls: &mut Hulls);
 }
 
-/// Where the frame of a tree is in the scene.
+/// The placement of the frame of a tree in the scene.
 #[derive(Clone, Copy, Debug)]
 pub struct Placement {
     /// The origin of the frame.
     pub centre: V3,
     /// The unit of the frame.
     pub unit: f64,
-    /// A bound on the magnitudes of all coordinates of vertices, before, between and after motions.
+    /// A bound on the magnitudes of all coordinates of vertices, before, between and after the motions.
     pub size: f64,
-    /// Whether there is a frame. A shape has coordinates of the scene.
+    /// Whether there is a frame. A shape has none and uses coordinates of the scene.
     pub is_tree: bool,
 }
 
-/// A single shape of one to three vertices, which is a tree of one packet.
+/// A single shape of one to three vertices, as a tree of one packet.
 pub struct ShapeSide<'a>(pub &'a [V3]);
 
 impl PairSide for ShapeSide<'_> {

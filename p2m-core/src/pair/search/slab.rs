@@ -1,9 +1,9 @@
-//! Slabs between two planes, and the distances of the children of a node from them.
+//! Slabs between two parallel planes, and the distances between the children of a node and slabs.
 
 use super::height::{Height, Rows};
 use crate::simd::Lanes;
 
-/// The extent of something between two planes that are orthogonal to a direction, in the frame of a tree.
+/// A slab: the space between two planes that are orthogonal to a direction, in the frame of a tree.
 #[derive(Clone, Copy, Debug)]
 pub struct Slab {
     /// The direction and its opposite.
@@ -12,19 +12,20 @@ pub struct Slab {
     pub(super) high: f32,
 }
 
-/// Bounds on the distances of the eight children of a node from what is in some slabs, in units of its frame.
+/// Bounds on the distances between the eight children of a node and the intersection of several slabs, in units of the
+/// node's frame.
 #[derive(Clone, Copy)]
 pub struct ChildBounds<L> {
     /// Squares of lower bounds.
     pub squares: L,
-    /// The widest gaps in any direction, negative for what overlaps.
+    /// The widest gaps in any direction, negative for children that overlap.
     pub gaps: L,
     /// The sums of the widths along the first three directions.
     pub sizes: L,
 }
 
-/// Bounds the distances of the children of a node from what is in some slabs, of which the given number of leading
-/// triples are orthogonal.
+/// Bounds the distances between the children of a node and the intersection of several slabs. `triples` is the number
+/// of leading triples of orthogonal slabs.
 #[inline(always)]
 pub fn bound_children<L: Lanes, N: Rows>(node: &N, slabs: &[Slab], triples: usize) -> ChildBounds<L> {
     let zero = L::splat(0.0);
@@ -38,7 +39,7 @@ pub fn bound_children<L: Lanes, N: Rows>(node: &N, slabs: &[Slab], triples: usiz
         if i < 3 {
             bounds.sizes = bounds.sizes.add(width);
         }
-        // The gaps in orthogonal directions add up.
+        // The squared gaps in orthogonal directions add up.
         sum = if i % 3 == 0 || i >= 3 * triples { gap.mul(gap) } else { gap.mul_add(gap, sum) };
         bounds.squares = sum.max(bounds.squares);
         i += 1;

@@ -1,14 +1,14 @@
-//! NEON, which every processor of this architecture has.
+//! The instruction set NEON, which every AArch64 processor has.
 //!
-//! This file is compiled only where the compiler may use NEON everywhere. That makes every `unsafe` block below sound
-//! that reads and writes no memory.
+//! This file is compiled only if the compiler may use NEON everywhere. That makes every `unsafe` block below sound that
+//! accesses no memory.
 
 use crate::simd::lanes::{Doubles, EightLanes, Float, InstructionSet, Lanes, SimdKernel};
 use crate::simd::operators::{float_operators, mask_operators};
 use std::arch::aarch64::*;
 use std::array::from_fn;
 
-/// Runs a kernel with NEON. It is not inlined, so each kernel is compiled once and not wherever it is run.
+/// Runs a kernel with NEON. It is not inlined, so that each kernel is compiled once and not at every call.
 #[inline(never)]
 pub(super) fn run_neon<K: SimdKernel>(kernel: K) -> K::Output {
     kernel.run::<Neon>()
@@ -22,7 +22,7 @@ pub(super) struct F32x8([float32x4_t; 2]);
 #[derive(Clone, Copy)]
 pub(super) struct EightDoubles([float64x2_t; 4]);
 
-/// A truth value for each of eight f64: all bits of a number are one or zero.
+/// A mask of eight f64 lanes. All bits of a lane are one or zero.
 #[derive(Clone, Copy)]
 pub(super) struct EightMasks([uint64x2_t; 4]);
 
@@ -40,7 +40,7 @@ impl InstructionSet for Neon {
     type Doubles = EightDoubles;
 }
 
-/// Makes a value of its registers, by an expression of intrinsics that may use the number `i` of the register.
+/// Creates a value register by register, by an expression of intrinsics that may use the number `i` of the register.
 macro_rules! registers {
     ($result:ident, $i:ident: $body:expr) => {
         $result(from_fn(
@@ -51,7 +51,7 @@ macro_rules! registers {
     };
 }
 
-/// Defines methods that compute each register by itself. The expression may use the number `i` of the register.
+/// Defines methods that compute each register on its own. The expression may use the number `i` of the register.
 macro_rules! for_each_register {
     ($i:ident: $($name:ident($($arg:ident: $type:ty),*) -> $result:ident { $body:expr })*) => {
         $(
@@ -71,7 +71,7 @@ impl F32x8 {
     }
 }
 
-/// Returns one bit for each of eight lanes, whose bits are all one or all zero.
+/// Returns one bit per lane. In each lane all bits are one or all are zero.
 #[inline(always)]
 fn bits_of_lanes(lanes: uint16x8_t) -> u16 {
     const WEIGHTS: [u16; 8] = [1, 2, 4, 8, 16, 32, 64, 128];
@@ -123,7 +123,7 @@ impl Lanes for F32x8 {
         mul(self: Self, b: Self) -> Self { vmulq_f32(self.0[i], b.0[i]) }
         mul_add(self: Self, factor: Self, summand: Self) -> Self { vfmaq_f32(summand.0[i], self.0[i], factor.0[i]) }
         sqrt(self: Self) -> Self { vsqrtq_f32(self.0[i]) }
-        // Instructions for minima treat NaN otherwise.
+        // The instructions for minima treat NaN differently.
         min(self: Self, b: Self) -> Self { vbslq_f32(vcltq_f32(self.0[i], b.0[i]), self.0[i], b.0[i]) }
         max(self: Self, b: Self) -> Self { vbslq_f32(vcgtq_f32(self.0[i], b.0[i]), self.0[i], b.0[i]) }
         difference_of_products(a: Self, b: Self, c: Self, d: Self) -> Self {{
@@ -132,7 +132,7 @@ impl Lanes for F32x8 {
             let error = vfmsq_f32(product, c.0[i], d.0[i]);
             vaddq_f32(vfmaq_f32(vnegq_f32(product), a.0[i], b.0[i]), error)
         }}
-        // A division is one instruction; an estimate has 8 bits, which take two Newton steps.
+        // A division is one instruction; an estimate has only 8 bits and would need two Newton steps.
         reciprocal(self: Self) -> Self { vdivq_f32(vdupq_n_f32(1.0), self.0[i]) }
         if_below(self: Self, limit: Self, yes: Self, no: Self) -> Self {
             vbslq_f32(vcltq_f32(self.0[i], limit.0[i]), yes.0[i], no.0[i])
@@ -165,9 +165,9 @@ impl EightLanes for F32x8 {
             };
             let (a, b) = (key(0), key(1));
             let count = vaddvq_u32(vaddq_u32(within[0], within[1])).wrapping_neg() as usize;
-            // Batcher's bitonic network. In each step the lanes of `a` are compared with those of `b`, and keep the
-            // larger ones. The comments give the places in the sorted sequence that lanes then stand for. Bits of
-            // numbers that are not negative are ordered as integers.
+            // Batcher's bitonic network. In each step the lanes of `a` are compared with the lanes of `b`, and keep the
+            // larger ones. The comments list the positions in the sorted sequence for which the lanes then stand. Bits
+            // of non-negative numbers are ordered as integers.
             let (a, b) = exchange(a, b); // 0 2 4 6, 1 3 5 7
             let (a, b) = exchange(vtrn1q_u32(a, b), vtrn2q_u32(b, a)); // 0 1 4 5, 3 2 7 6
             let (a, b) = exchange(vtrn1q_u32(a, b), vtrn2q_u32(a, b)); // 0 2 4 6, 1 3 5 7

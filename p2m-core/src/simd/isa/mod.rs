@@ -1,7 +1,7 @@
-//! Instruction sets: detection of those that the processor has, and execution of kernels with them.
+//! Instruction sets: detection, and execution of kernels.
 //!
-//! The `unsafe` code of this folder calls functions that are compiled for an instruction set, after the processor was
-//! found to have it.
+//! The `unsafe` code of this folder calls functions that are compiled for an instruction set, after a check that the
+//! processor has it.
 #![allow(unsafe_code, reason = "vector instructions are unsafe to call where they may not exist")]
 
 #[cfg(all(target_arch = "aarch64", target_feature = "neon"))]
@@ -12,7 +12,7 @@ mod x86_64;
 use super::lanes::SimdKernel;
 use super::portable::run_portable;
 
-/// Requests the cache line at an address before it is read. It has no other effect, and the address may be invalid.
+/// Prefetches the cache line at an address. It has no other effect, and the address may be invalid.
 #[inline(always)]
 pub fn prefetch(at: *const u8) {
     #[cfg(target_arch = "x86_64")]
@@ -21,8 +21,8 @@ pub fn prefetch(at: *const u8) {
     let _ = at;
 }
 
-/// Requests all cache lines of `bytes` bytes that begin at an address. It has no other effect, and the address
-/// may be invalid.
+/// Prefetches all cache lines of `bytes` bytes that begin at an address. It has no other effect, and the address may be
+/// invalid.
 #[inline(always)]
 pub fn prefetch_lines<T>(at: *const T, bytes: usize) {
     for line in 0..bytes.div_ceil(64) {
@@ -30,7 +30,7 @@ pub fn prefetch_lines<T>(at: *const T, bytes: usize) {
     }
 }
 
-/// An instruction set that this processor has. Answers do not depend on it.
+/// An instruction set of this processor. Answers do not depend on it.
 ///
 /// ```
 /// use p2m_core::Isa;
@@ -56,7 +56,7 @@ impl Isa {
     /// The instructions that every processor of the architecture has.
     pub const PORTABLE: Self = Self(Kind::Portable);
 
-    /// Returns all instruction sets that this processor has, the fastest one last.
+    /// Returns all instruction sets of this processor, the fastest one last.
     #[must_use]
     pub fn available() -> Vec<Self> {
         #[allow(unused_mut, reason = "on architectures without more")]
@@ -75,7 +75,7 @@ impl Isa {
         all
     }
 
-    /// Returns the fastest instruction set that this processor has.
+    /// Returns the fastest instruction set of this processor.
     #[must_use]
     pub fn best() -> Self {
         Self::available().last().copied().unwrap_or(Self::PORTABLE)
@@ -95,23 +95,23 @@ impl Isa {
         }
     }
 
-    /// Returns whether the kernel is faster in lanes of eight f64 than for one primitive at a time. It is not where a
-    /// register has two f64: instructions for lanes that are not needed then outweigh those that are saved.
+    /// Returns whether the kernel is faster in lanes of eight f64 than for one primitive at a time. It is not if a
+    /// register has only two f64: the extra instructions for unneeded lanes then outweigh the savings.
     #[doc(hidden)]
     #[must_use]
     pub fn has_fast_doubles(self) -> bool {
         matches!(self.name(), "avx2" | "avx512")
     }
 
-    /// Runs a kernel in lanes of eight f64 if they [are fast](Self::has_fast_doubles), and `otherwise` if they are not. So
-    /// the kernel is not compiled for the other instruction sets.
+    /// Runs a kernel in lanes of eight f64 if they [are fast](Self::has_fast_doubles), and `otherwise` if they are not.
+    /// So the kernel is not compiled for the other instruction sets.
     #[inline(always)]
     pub fn run_in_doubles<K: SimdKernel>(self, kernel: K, otherwise: impl FnOnce() -> K::Output) -> K::Output {
         match self.0 {
-            // SAFETY: such a value is made by `available` alone, which has checked the processor.
+            // SAFETY: only `available` creates such a value, after a check of the processor.
             #[cfg(target_arch = "x86_64")]
             Kind::Avx2 => unsafe { x86_64::run_avx2(kernel) },
-            // SAFETY: such a value is made by `available` alone, which has checked the processor.
+            // SAFETY: only `available` creates such a value, after a check of the processor.
             #[cfg(target_arch = "x86_64")]
             Kind::Avx512 => unsafe { x86_64::run_avx512(kernel) },
             _ => {
@@ -126,10 +126,10 @@ impl Isa {
     pub fn run<K: SimdKernel>(self, kernel: K) -> K::Output {
         match self.0 {
             Kind::Portable => run_portable(kernel),
-            // SAFETY: such a value is made by `available` alone, which has checked the processor.
+            // SAFETY: only `available` creates such a value, after a check of the processor.
             #[cfg(target_arch = "x86_64")]
             Kind::Avx2 => unsafe { x86_64::run_avx2(kernel) },
-            // SAFETY: such a value is made by `available` alone, which has checked the processor.
+            // SAFETY: only `available` creates such a value, after a check of the processor.
             #[cfg(target_arch = "x86_64")]
             Kind::Avx512 => unsafe { x86_64::run_avx512(kernel) },
             #[cfg(all(target_arch = "aarch64", target_feature = "neon"))]
@@ -139,7 +139,7 @@ impl Isa {
 }
 
 impl Default for Isa {
-    /// Returns the fastest instruction set that this processor has.
+    /// Returns the fastest instruction set of this processor.
     fn default() -> Self {
         Self::best()
     }

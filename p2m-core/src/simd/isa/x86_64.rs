@@ -1,14 +1,13 @@
-//! AVX2 with FMA, and AVX-512.
+//! The instruction sets AVX2 with FMA, and AVX-512.
 //!
-//! The types are private to this folder. Their methods are called only by a [`SimdKernel`] that one of the two
-//! functions `run_avx2` and `run_avx512` runs, whose callers have checked the processor. That makes every `unsafe`
-//! block below sound.
+//! The types are private to this folder. Their methods are called only by a [`SimdKernel`] that is run by `run_avx2` or
+//! `run_avx512`, whose callers have checked the processor. That makes every `unsafe` block below sound.
 
 use crate::simd::lanes::{Doubles, EightLanes, Float, InstructionSet, Lanes, SimdKernel};
 use crate::simd::operators::{float_operators, mask_operators};
 use std::arch::x86_64::*;
 
-/// Returns whether the processor has the instructions of [`run_avx2`].
+/// Returns whether the processor has the instructions for [`run_avx2`].
 pub(super) fn has_avx2() -> bool {
     is_x86_feature_detected!("avx2")
         && is_x86_feature_detected!("fma")
@@ -18,7 +17,7 @@ pub(super) fn has_avx2() -> bool {
         && is_x86_feature_detected!("popcnt")
 }
 
-/// Returns whether the processor has the instructions of [`run_avx512`].
+/// Returns whether the processor has the instructions for [`run_avx512`].
 pub(super) fn has_avx512() -> bool {
     has_avx2() && is_x86_feature_detected!("avx512f") && is_x86_feature_detected!("avx512vl")
 }
@@ -43,7 +42,7 @@ pub(super) unsafe fn run_avx512<K: SimdKernel>(kernel: K) -> K::Output {
     kernel.run::<Avx512>()
 }
 
-/// Requests the cache line at an address, which every processor of this architecture can do.
+/// Prefetches the cache line at an address, which every x86-64 processor can do.
 #[inline(always)]
 pub(super) fn prefetch(at: *const u8) {
     // SAFETY: a prefetch reads nothing, whatever the address.
@@ -66,9 +65,9 @@ pub(super) struct Pair(__m256d, __m256d);
 #[derive(Clone, Copy)]
 pub(super) struct EightDoubles(__m512d);
 
-/// AVX2 with FMA.
+/// The instruction set AVX2 with FMA.
 pub(super) struct Avx2;
-/// AVX-512 F and VL.
+/// The instruction set AVX-512 F and VL.
 pub(super) struct Avx512;
 
 impl InstructionSet for Avx2 {
@@ -180,8 +179,9 @@ impl EightLanes for F32x8 {
             let lanes = _mm256_setr_epi32(8, 9, 10, 11, 12, 13, 14, 15);
             let x = _mm256_and_si256(within, _mm256_or_si256(bits, lanes));
             let count = _mm256_movemask_ps(_mm256_castsi256_ps(within)).count_ones() as usize;
-            // Batcher's bitonic network: each line compares lanes with their partners and keeps the larger one where
-            // the mask has no bit. Bits of numbers that are not negative are ordered as signed integers.
+            // Batcher's bitonic network. Each line compares lanes with their partners, and keeps the smaller value
+            // where the mask has a bit and the larger one elsewhere. Bits of non-negative numbers are ordered as signed
+            // integers.
             let x = exchange::<0b1001_1001>(x, _mm256_shuffle_epi32::<0b10_11_00_01>(x));
             let x = exchange::<0b1100_0011>(x, _mm256_shuffle_epi32::<0b01_00_11_10>(x));
             let x = exchange::<0b1010_0101>(x, _mm256_shuffle_epi32::<0b10_11_00_01>(x));
@@ -194,7 +194,8 @@ impl EightLanes for F32x8 {
     }
 }
 
-/// Returns the larger value of `x` and its partner in each lane, or the smaller one in the lanes of `SMALLER`.
+/// Returns the larger value of `x` and its partner in each lane, or the smaller one in the lanes whose bit in `SMALLER`
+/// is set.
 ///
 /// # Safety
 /// The processor must have AVX2.
@@ -259,11 +260,11 @@ impl Lanes for F32x16 {
     }
 }
 
-/// A truth value for each of eight f64: all bits of a number are one or zero.
+/// A mask of eight f64 lanes. All bits of a lane are one or zero.
 #[derive(Clone, Copy)]
 pub(super) struct PairMask(__m256d, __m256d);
 
-/// A truth value for each of eight f64, as one bit.
+/// A mask of eight f64 lanes, with one bit per lane.
 #[derive(Clone, Copy)]
 pub(super) struct BitMask(__mmask8);
 
