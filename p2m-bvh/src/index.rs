@@ -1,4 +1,4 @@
-//! A tree together with its set, which is the index that users build and query.
+//! The index that users build and query: a tree together with its set.
 
 use crate::traverse::groups::answer_in_groups;
 use crate::traverse::interleaved_traversal::InterleavedTraversal;
@@ -17,18 +17,18 @@ use std::marker::PhantomData;
 use std::ops::ControlFlow;
 use std::sync::Arc;
 
-/// A [`PacketTree`] with the set that it was built over.
+/// A [`PacketTree`] with the set over which it was built.
 ///
 /// The bounding volume `V` makes it an AABB tree or a k-DOP tree.
 ///
 /// # Complexity
-/// The build takes O(n log n) expected time and a query O(log n). A query takes O(n) at worst, which happens if many
+/// The build takes O(n log n) expected time and a query O(log n). A query takes O(n) at worst. This happens if many
 /// primitives are equally distant, if the query point is more than 2^40 scene sizes away, and in scenes smaller than
 /// 1e-96 or larger than 1e90.
 ///
-/// Besides the set the tree takes, for any scalar, 448 bytes for each packet, 24 bytes for each exact vertex of a
-/// packet, and 256 bytes for each node of boxes or 32 K + 32 bytes for each node of k-DOPs, rounded up to cache lines.
-/// With boxes that is about 65 bytes for each triangle (observed).
+/// In addition to the set, and for any scalar type, the tree takes 448 bytes per packet, 24 bytes per exact vertex of a
+/// packet, and 256 bytes per node of boxes or 32 K + 32 bytes per node of k-DOPs, rounded up to cache lines. With boxes
+/// that is about 65 bytes per triangle (observed).
 #[derive(Clone, Debug)]
 pub struct TreeIndex<T: Real, S, V: Volume> {
     set: S,
@@ -51,7 +51,7 @@ impl<T: Real, S: PrimitiveSet<T>, V: Volume> TreeIndex<T, S, V> {
     /// ```
     ///
     /// # Errors
-    /// The errors are those of [`build_with`](Self::build_with).
+    /// Returns the errors of [`build_with`](Self::build_with).
     pub fn new(set: S) -> Result<Self, BuildError>
     where
         S: Sync,
@@ -60,7 +60,7 @@ impl<T: Real, S: PrimitiveSet<T>, V: Volume> TreeIndex<T, S, V> {
         Self::build_with(set, &V::Options::default())
     }
 
-    /// Builds the tree. Unlike [`BuildIndex::build`] this works as well for volumes without default options, such as
+    /// Builds the tree. Unlike [`BuildIndex::build`] this also works for volumes without default options, such as
     /// k-DOPs of any K.
     ///
     /// # Errors
@@ -73,7 +73,7 @@ impl<T: Real, S: PrimitiveSet<T>, V: Volume> TreeIndex<T, S, V> {
         Ok(Self { set, scalar: PhantomData, tree })
     }
 
-    /// The set that the tree was built over.
+    /// Returns the set over which the tree was built.
     pub fn set(&self) -> &S {
         &self.set
     }
@@ -88,28 +88,28 @@ impl<T: Real, S: PrimitiveSet<T>, V: Volume> TreeIndex<T, S, V> {
         (self.set, self.tree)
     }
 
-    /// The tree without its set.
+    /// Returns the tree without its set.
     pub fn tree(&self) -> &PacketTree<V> {
         &self.tree
     }
 
-    /// The heap memory of the tree without its set, in bytes.
+    /// Returns the heap memory of the tree without its set, in bytes.
     pub fn memory(&self) -> usize {
         self.tree.memory()
     }
 
-    /// Fits the tree to a set in which the same primitives have moved, and replaces the set by that one.
+    /// Refits the tree to a set in which the same primitives have moved, and replaces the old set.
     ///
     /// This takes a fraction of the time of a build. The tree keeps its shape, so searches get slower the farther
-    /// neighbours have moved apart. Answers are those of a tree that is built anew. Of the options only the choice to
-    /// use all threads has an effect: the tree keeps its directions and splits.
+    /// neighbours have moved apart. Answers equal the answers of a tree that is built anew. Of the options only the
+    /// choice to use all threads has an effect: the tree keeps its directions and splits.
     ///
     /// # Errors
     /// Returns [`BuildError::OtherLength`] for a set with another number of primitives, and [`BuildError::NonFinite`]
     /// for a coordinate that is not finite. The tree then stays as it was.
     ///
     /// # Complexity
-    /// O(n), or that of a build if more than sixteen primitives that had the same vertices have moved apart.
+    /// O(n), or the time of a build if more than sixteen primitives that had the same vertices have moved apart.
     pub fn refit(&mut self, set: S, options: &V::Options) -> Result<(), BuildError>
     where
         S: Sync,
@@ -121,7 +121,7 @@ impl<T: Real, S: PrimitiveSet<T>, V: Volume> TreeIndex<T, S, V> {
         Ok(())
     }
 
-    /// Changes the set in place, and fits the tree to it as [`refit`](Self::refit) does, so no second set is needed.
+    /// Changes the set in place and refits the tree to it, as [`refit`](Self::refit) does. So no second set is needed.
     ///
     /// ```
     /// use nalgebra::{Point3, Vector3};
@@ -137,8 +137,8 @@ impl<T: Real, S: PrimitiveSet<T>, V: Volume> TreeIndex<T, S, V> {
     /// # Ok::<(), p2m_core::BuildError>(())
     /// ```
     ///
-    /// The tree is fitted to what `change` left, also if it returns an error or panics, so answers are always
-    /// those of the set.
+    /// The tree is refitted to the set even if `change` returns an error or panics, so answers always belong to the set
+    /// as it is.
     ///
     /// # Errors
     /// Returns the error of `change`. Returns [`BuildError::OtherLength`] or [`BuildError::NonFinite`] if `change` left
@@ -162,7 +162,7 @@ impl<T: Real, S: PrimitiveSet<T>, V: Volume> TreeIndex<T, S, V> {
         changed
     }
 
-    /// Fits the tree to the set of the index. If no tree fits the set, the tree becomes empty.
+    /// Refits the tree to the set of the index. If no tree fits the set, the tree becomes empty.
     fn refit_to_set(&mut self, options: &V::Options) -> Result<(), BuildError>
     where
         S: Sync,
@@ -177,7 +177,7 @@ impl<T: Real, S: PrimitiveSet<T>, V: Volume> TreeIndex<T, S, V> {
         fits
     }
 
-    /// Checks whether a set of this length has the primitives that the tree was built over.
+    /// Checks that a set of this length has as many primitives as the tree.
     fn check_fit(&self, len: usize) -> Result<(), BuildError> {
         let expected = self.tree.packets().1;
         if len == expected { Ok(()) } else { Err(BuildError::OtherLength { len, expected }) }
@@ -189,7 +189,7 @@ impl<T: Real, S: PrimitiveSet<T>, V: Volume> TreeIndex<T, S, V> {
     /// The area is a measure of the quality of the tree for one scene. A refit keeps the shape of the tree, so the area
     /// grows as neighbours move apart. Compare it with its value after the build, and build anew when it has grown by a
     /// third ([docs/measurements/motion.md] has the figures). If the scene grows as a whole, divide the area by the
-    /// square of that growth. It is 0 for a set of up to sixteen primitives, which are one packet.
+    /// square of that growth. The area is 0 for a set of up to sixteen primitives, which are one packet.
     ///
     /// # Complexity
     /// O(n).
@@ -207,13 +207,13 @@ impl<T: Real, S: PrimitiveSet<T>, V: Volume> TreeIndex<T, S, V> {
         storage::save(&self.tree, &self.set, writer);
     }
 
-    /// Loads the tree of a file over a set with the same primitives as the one that it was built over.
+    /// Loads the tree of a file, over a set with the same primitives as the set over which it was built.
     ///
     /// # Errors
-    /// Returns a [`LoadError`] if the file has no such tree, or if it does not fit the set.
+    /// Returns a [`LoadError`] if the file has no such tree, or if the tree does not fit the set.
     ///
     /// # Complexity
-    /// O(n) to compare the set and copy the nodes; packets and vertices stay in the file.
+    /// O(n), to compare the set and copy the nodes; packets and vertices stay in the file.
     pub fn load(set: S, reader: &Reader) -> Result<Self, LoadError> {
         let tree = storage::load(&set, reader)?;
         Ok(Self { set, scalar: PhantomData, tree })
@@ -225,7 +225,7 @@ impl<T: Real, S: PrimitiveSet<T>, V: Volume> TreeIndex<T, S, V> {
         Self { tree: self.tree.with_isa(isa), ..self }
     }
 
-    /// Offers to a collector every primitive that it could want. `query` has to be finite.
+    /// Offers to a collector every primitive that it may need. `query` has to be finite.
     ///
     /// [`ClosestPoint::search`] does this for the collector [`Best`].
     #[inline]
@@ -233,7 +233,7 @@ impl<T: Real, S: PrimitiveSet<T>, V: Volume> TreeIndex<T, S, V> {
         self.tree.search(&self.set, query, collector);
     }
 
-    /// Offers to a collector every hit of a ray that it could want.
+    /// Offers to a collector every hit of a ray that it may need.
     ///
     /// [`RayQuery::search_ray`] does this for the collector [`Hits`].
     #[inline]
@@ -241,13 +241,13 @@ impl<T: Real, S: PrimitiveSet<T>, V: Volume> TreeIndex<T, S, V> {
         self.tree.search_ray(&self.set, ray, collector);
     }
 
-    /// The directions of the faces of all bounding volumes of a k-DOP tree; `()` for an AABB tree.
+    /// Returns the directions of the faces of all bounding volumes of a k-DOP tree, or `()` for an AABB tree.
     pub fn directions(&self) -> &V::Directions {
         self.tree.directions()
     }
 }
 
-/// Fits the tree of an index to its set when it is dropped, which happens if a change of the set panics.
+/// A guard that refits the tree to its set when it is dropped, which happens if a change of the set panics.
 struct RefitOnDrop<'a, T: Real, S: PrimitiveSet<T> + Sync, V: Volume> {
     index: &'a mut TreeIndex<T, S, V>,
     options: &'a V::Options,
@@ -255,7 +255,7 @@ struct RefitOnDrop<'a, T: Real, S: PrimitiveSet<T> + Sync, V: Volume> {
 
 impl<T: Real, S: PrimitiveSet<T> + Sync, V: Volume> Drop for RefitOnDrop<'_, T, S, V> {
     fn drop(&mut self) {
-        // The panic goes on, so nobody could be told that no tree fits.
+        // We are unwinding, so an error could not be reported.
         let _ = self.index.refit_to_set(self.options);
     }
 }

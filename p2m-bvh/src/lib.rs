@@ -1,9 +1,9 @@
-//! AABB tree with surface-area splits.
+//! An AABB tree with surface-area splits.
 //!
 //! [`AabbTree`] is a tree of nodes with eight boxes over packets of sixteen primitives ([`PacketTree`]). A search
-//! visits the nearest node first and uses the vector instructions of the processor that it runs on. Boxes and packets
-//! only bound distances, in f32 and with proof ([docs/proofs/filter.md]). The kernel of the contract evaluates the
-//! primitives that may be the answer, so answers are bitwise those of [`BruteForce`](p2m_core::BruteForce).
+//! visits the nearest node first and uses the vector instructions of the processor. Boxes and packets only bound
+//! distances, in f32 and with a proof ([docs/proofs/filter.md]). The kernel of the contract evaluates the primitives
+//! that may be the answer, so answers are bitwise equal to the answers of [`BruteForce`](p2m_core::BruteForce).
 //!
 //! ```
 //! use p2m_bvh::AabbTree;
@@ -19,10 +19,10 @@
 //! assert_eq!((answer.primitive.index(), answer.distance), (1, 1.0));
 //! ```
 //!
-//! The modules build on each other in this order: `packet` has the leaves, `tree` the nodes and the tree itself,
-//! `traverse` the searches, and `construct` splits primitives top-down by a [`SplitRule`] into a binary tree and
-//! merges its nodes. The k-DOP tree (crate p2m-kdop) and the interception indexes (crate p2m-interception) consist
-//! of the same parts.
+//! The modules build on each other in this order: `packet` has the leaves, `tree` has the nodes and the tree itself,
+//! `traverse` has the searches, and `construct` splits primitives top-down by a [`SplitRule`] into a binary tree and
+//! merges its nodes. The k-DOP tree (crate p2m-kdop) and the interception indexes (crate p2m-interception) are built
+//! from the same parts.
 //!
 //! [docs/proofs/filter.md]: https://github.com/p2m-rs/p2m/blob/main/docs/proofs/filter.md
 #![forbid(unsafe_code)]
@@ -87,7 +87,7 @@ pub mod engine {
         pub use crate::traverse::primitive_fn::EvaluateFn;
         pub use crate::traverse::search_state::SearchState;
     }
-    /// Several searches that take turns.
+    /// Interleaved searches.
     pub mod interleaved {
         pub use crate::traverse::groups::answer_in_groups;
         pub use crate::traverse::interleaved_search::{InterleavedSearch, PacketVisit, SEARCHES};
@@ -99,7 +99,7 @@ pub mod engine {
         pub use crate::tree::frame::Frame;
         pub use crate::tree::node_ref::{NodeRef, WIDTH};
     }
-    /// The sides of a search for pairs.
+    /// Trees as the sides of a search for pairs.
     pub mod pairs {
         pub use crate::traverse::pairs::TreeSide;
     }
@@ -107,7 +107,7 @@ pub mod engine {
     pub mod packet {
         pub use crate::packet::*;
     }
-    /// The range search.
+    /// Range searches.
     pub mod range {
         pub use crate::traverse::range::Selection;
     }

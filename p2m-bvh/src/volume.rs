@@ -1,4 +1,4 @@
-//! The bounding volumes that a tree may have.
+//! The bounding volumes of a tree.
 
 use crate::construct::primitive::BuildPrimitive;
 use crate::construct::{SplitOptions, TreeOptions};
@@ -22,23 +22,23 @@ use p2m_core::{Aabb, Best, Near, PrimitiveId, PrimitiveSet, Ray, RayCollector, R
 
 /// The bounding volume of the nodes of a [`PacketTree`]: [`Aabb<f64>`] or a k-DOP of the crate p2m-kdop.
 ///
-/// The trait is sealed, because searches rest on proofs about the rounding of the nodes. Everything else about a tree
+/// The trait is sealed, because searches rely on proofs about the rounding of the nodes. Everything else about a tree
 /// is the same for all volumes.
 ///
-/// Hidden methods search a tree with the collectors of the library. They depend neither on the set nor on the scalar,
-/// so they are compiled once for each volume, in the crate that defines it, and not in every crate that calls them
-/// (decision 013).
+/// Hidden methods search a tree with the collectors of the library. They depend neither on the set nor on the scalar
+/// type, so they are compiled once for each volume, in the crate that defines it, and not in every crate that calls
+/// them (decision 013).
 #[diagnostic::on_unimplemented(
     message = "`{Self}` is not a bounding volume of trees",
     note = "volumes are `Aabb<f64>` and k-DOPs with an even K from 6 to 26"
 )]
 pub trait Volume: VolumeNodes {
-    /// The options with which a tree is built.
+    /// The options for building a tree.
     type Options: TreeOptions<Self::Shared>;
-    /// The directions of the faces of all volumes of a tree. For boxes, which need none, the type is `()`.
+    /// The directions of the faces of all volumes of a tree, or `()` for boxes, which need none.
     type Directions;
 
-    /// The directions of the faces, from the data that all volumes of a tree share.
+    /// Returns the directions of the faces, from the data that all volumes of a tree share.
     fn directions(shared: &Self::Shared) -> &Self::Directions;
 
     /// Searches for the nearest primitive.
@@ -48,7 +48,7 @@ pub trait Volume: VolumeNodes {
         tree.run(query, minimum, evaluate, finish_nearest);
     }
 
-    /// Searches for the nearest primitives of several query points, those of the first `count` searches.
+    /// Runs the first `count` searches of `several` in turns.
     #[doc(hidden)]
     #[inline(never)]
     fn nearest_of_several(
@@ -67,15 +67,15 @@ pub trait Volume: VolumeNodes {
         tree.run(query, near, evaluate, finish);
     }
 
-    /// Searches for the primitives that a ray may hit, and tests them exactly. `limit` is the parameter above which hits
-    /// are not needed. Returns the numbers of nodes and packets that were visited.
+    /// Searches for the primitives that a ray may hit, and tests them exactly. `limit` is the parameter above which
+    /// hits are not needed. Returns the numbers of visited nodes and packets.
     #[doc(hidden)]
     #[inline(never)]
     fn cast(tree: &PacketTree<Self>, ray: &Ray, radius: f64, limit: f64, test: TestFn<'_>) -> [usize; 2] {
         tree.isa.run(RaySearch { tree, ray, radius, limit, test })
     }
 
-    /// Passes a tree, after some motions in their order, to a search for pairs.
+    /// Passes a tree, with the motions that are applied to it in their order, to a search for pairs.
     #[doc(hidden)]
     #[inline(never)]
     fn as_pair_side(tree: &PacketTree<Self>, motions: &[Motion], search: &mut dyn FnMut(&dyn PairSide)) {
@@ -92,7 +92,7 @@ impl Volume for Aabb<f64> {
     }
 }
 
-/// The searches of a tree, which are compiled in the crate that names them for its volume.
+/// The searches of a tree. They are compiled in the crate that names them for its volume.
 pub type Searches<V> = (
     fn(&PacketTree<V>, V3, &mut BestF64, EvaluateFn<'_, BestF64>),
     fn(&PacketTree<V>, &mut InterleavedTraversal<V>, &mut InterleavedSearch<'_>, usize),
@@ -125,14 +125,14 @@ pub const fn searches<V: Volume>() -> Searches<V> {
 #[cfg(not(test))]
 pub static COMPILED_SEARCHES: Searches<Aabb<f64>> = searches();
 
-/// The exact tests of the collector of the library, which this crate compiles.
+/// The exact tests for the library's collector, which this crate compiles.
 #[cfg(not(test))]
 #[used]
 static COMPILED_TESTS: fn(&mut ExactTests<'static, 'static, p2m_core::Hits<'static>>, usize, usize) -> Option<f64> =
     ExactTests::test;
 
 impl<V: Volume> PacketTree<V> {
-    /// The directions of the faces of the volumes, as [`Volume::Directions`] describes them.
+    /// Returns the directions of the faces of the volumes, see [`Volume::Directions`].
     #[must_use]
     pub fn directions(&self) -> &V::Directions {
         V::directions(&self.shared)
@@ -145,14 +145,14 @@ impl<V: Volume> PacketTree<V> {
         V::nearest(self, to_f64_array(query), best.minimum(), &evaluation(set, query));
     }
 
-    /// Offers to `near` the primitives of `set` that it could want.
+    /// Offers to `near` the primitives of `set` that it may need.
     #[inline]
     #[doc(hidden)]
     pub fn search_near<T: Real, S: PrimitiveSet<T> + ?Sized>(&self, set: &S, query: &Point3<T>, near: &mut Near<'_>) {
         V::near(self, to_f64_array(query), near, &evaluation(set, query));
     }
 
-    /// Offers to `collector` every hit of a ray with `set` that it could want. The tree has to be built over that set.
+    /// Offers to `collector` every hit of a ray with `set` that it may need. The tree has to be built over that set.
     #[inline]
     pub fn search_ray<'r, T: Real, S: PrimitiveSet<T> + ?Sized, C: RayCollector<'r>>(
         &self,

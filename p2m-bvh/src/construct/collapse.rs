@@ -1,10 +1,12 @@
-//! Collapsing a binary tree into a tree of eight children per node.
+//! The collapse of a binary tree into a tree with eight children per node.
 //!
-//! Dynamic programming over the cost of visits decides which nodes of the binary tree become nodes of eight. The
-//! cheapest forest of at most i trees below a binary node is either a single tree, whose root is a node of eight,
-//! or consists of the cheapest forests of j and i - j trees below its two children. \[Ylitie2017\] does this for
-//! rays; the difference is that leaves stay as they are here. A greedy choice from the root would leave the lowest
-//! nodes half empty.
+//! Dynamic programming over the expected cost of visits decides which binary nodes become nodes of eight. The basic
+//! idea: a node of eight is a binary subtree whose inner nodes are dissolved until at most eight subtrees, a forest,
+//! are left below its root. The cheapest forest of at most i trees below a binary node is either a single tree, whose
+//! root is a node of eight, or consists of the cheapest forests of j and i - j trees below its two children, for the
+//! best j. These tables are computed from the leaves to the root; then the nodes are read off from the root downwards.
+//! \[Ylitie2017\] does this for rays; the difference is that leaves stay as they are here. A greedy choice from the
+//! root would leave the lowest nodes half empty (decision 010).
 
 use crate::construct::split::{SplitNode, to_u32};
 use crate::packet::LANES;
@@ -16,9 +18,9 @@ pub(crate) struct PacketBinaryTree {
     nodes: Vec<BinaryNode>,
 }
 
-/// The primitives of a packet.
+/// The primitives of a packet, as a range.
 pub(crate) struct PacketRange {
-    /// Their indices in the order of the leaves.
+    /// The range of their indices in the order of the leaves.
     pub(crate) primitives: Range<u32>,
     /// Whether the next packet has further primitives with the same vertices.
     pub(crate) is_continued: bool,
@@ -30,7 +32,7 @@ struct BinaryNode {
     content: Content,
 }
 
-/// The content of a binary node: a packet, or a node and the next one, by their numbers.
+/// The content of a binary node: the number of a packet, or the number of the first of two consecutive nodes.
 #[derive(Clone, Copy)]
 enum Content {
     Packet(u32),
@@ -38,7 +40,7 @@ enum Content {
 }
 
 impl PacketBinaryTree {
-    /// Takes over a tree of splits. Returns the primitives of its packets as well.
+    /// Converts the split tree, and also returns the primitive range of each packet.
     pub(crate) fn new(splits: &[SplitNode]) -> (Self, Vec<PacketRange>) {
         let mut packets = Vec::with_capacity(splits.len().div_ceil(2));
         let node = |split: &SplitNode| {
@@ -60,8 +62,8 @@ impl PacketBinaryTree {
         (Self { nodes }, packets)
     }
 
-    /// Returns the root, the children of all nodes, and the number of nodes on the longest path. Parents
-    /// come before children.
+    /// Returns the root, the children of all nodes, and the number of nodes on the longest path. Parents come before
+    /// their children.
     pub(crate) fn collapse(&self) -> (NodeRef, Vec<[NodeRef; WIDTH]>, usize) {
         let Some(root) = self.nodes.first() else { return (NodeRef::NONE, Vec::new(), 0) };
         if let Content::Packet(packet) = root.content {
@@ -75,8 +77,8 @@ impl PacketBinaryTree {
         while let Some((number, at, depth)) = pending.pop() {
             longest = longest.max(depth);
             let mut slot = 0;
-            // Binary nodes with the number of slots that their forest may fill, and whether the node has to be replaced
-            // by its children, which is so for the node itself.
+            // Binary nodes, the number of slots that their forest may fill, and whether the node has to be replaced by
+            // its children. The last is true only for the binary node of the wide node itself.
             let mut subtrees = vec![(at, WIDTH, true)];
             while let Some((at, slots, is_opened)) = subtrees.pop() {
                 let forests = &forests[at];
@@ -101,7 +103,7 @@ impl PacketBinaryTree {
         (NodeRef::node(0), nodes, longest)
     }
 
-    /// The cheapest forests below each node.
+    /// Computes the cheapest forests below each node.
     fn forests(&self) -> Vec<Forests> {
         let scene_area = self.nodes[0].half_area;
         let mut forests = vec![Forests::default(); self.nodes.len()];
@@ -115,17 +117,17 @@ impl PacketBinaryTree {
     }
 }
 
-/// The cheapest forests of at most 1, 2, .. trees below a binary node.
+/// The cheapest forests of at most 1, 2, ... trees below a binary node.
 #[derive(Clone, Copy, Default)]
 struct Forests {
     costs: [f64; WIDTH],
-    /// The number of trees of each forest that are below the first child; 0 if the forest is a single tree. For the
-    /// forest of one tree it is the number of children of its root that are below the first child.
+    /// How many trees of each forest are below the first child; 0 if the forest is a single tree. For the forest of one
+    /// tree it is the number of children of its root that are below the first child.
     left: [u8; WIDTH],
 }
 
 impl Forests {
-    /// The forests below a node with these children. A visit of the node costs `visit`.
+    /// Computes the forests below a node with these children. A visit of the node costs `visit`.
     fn above(visit: f64, a: &Self, b: &Self) -> Self {
         let best = |slots: usize| {
             let (mut cost, mut left) = (f64::INFINITY, 0);
@@ -148,8 +150,8 @@ impl Forests {
     }
 }
 
-/// The cost of a node in addition to its share of the area of the scene, so that few nodes are made where all
-/// areas are equal.
+/// The cost of a visit in addition to the node's share of the area of the scene, so that few nodes are created if all
+/// areas are equal. There is no record of how it was tuned.
 const NODE_COST: f64 = 1e-3;
 
 #[cfg(test)]
@@ -177,7 +179,7 @@ mod tests {
         }
     }
 
-    /// Returns the costs of all forests of at most `slots` trees below a node.
+    /// Returns the cost of every forest of at most `slots` trees below a node.
     fn all_forests(tree: &PacketBinaryTree, at: usize, slots: usize) -> Vec<f64> {
         let Content::Nodes(a) = tree.nodes[at].content else { return vec![0.0] };
         let a = a as usize;
@@ -196,14 +198,14 @@ mod tests {
     fn no_other_choice_of_nodes_costs_less() {
         for case in p2m_testkit::cases(60, 20) {
             let mut random = p2m_testkit::rng("collapse", case);
-            // The number of choices grows exponentially with that of packets.
+            // The number of choices grows exponentially with the number of packets.
             let len = 2 + case as usize % p2m_testkit::amount(10, 8);
             let mut tree = PacketBinaryTree { nodes: vec![BinaryNode { half_area: 0.0, content: Content::Packet(0) }] };
             binary(&mut random, 0..len, 0, &mut tree.nodes);
             let expected = all_forests(&tree, 0, 1)[0];
             let found = tree.forests()[0].costs[0];
             assert!((found - expected).abs() < 1e-12 * expected, "{len}: {found} for {expected}");
-            // The collapsed tree has as many children in all as there are nodes and packets below the root.
+            // The collapsed tree has as many children in total as there are nodes and packets below the root.
             let (root, nodes, depth) = tree.collapse();
             assert_eq!(root, NodeRef::node(0));
             let children: Vec<NodeRef> = nodes.concat().into_iter().filter(|child| *child != NodeRef::NONE).collect();

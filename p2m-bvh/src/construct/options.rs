@@ -5,14 +5,14 @@
 #[non_exhaustive]
 pub enum SplitRule {
     /// The surface-area heuristic with 16 bins along each axis \[Wald2007\]. It minimises n_left A_left + n_right
-    /// A_right, where n is a number of primitives and A a surface area, which is the expected cost of a random line.
+    /// A_right, where n is a number of primitives and A a surface area. This is the expected cost of a random line.
     #[default]
     Sah,
-    /// The surface-area heuristic along the longest side of the node alone, as in \[Cavarga2021\]. The cost is sampled
-    /// coarsely first and then twice more finely around the best position. Unlike in the article, a primitive goes to
+    /// The surface-area heuristic along the longest side of the node alone, as in \[Cavarga2021\]. The cost is first
+    /// sampled coarsely and then twice more finely around the best position. Unlike in the article, a primitive goes to
     /// one side only, by its centre.
     AdaptiveSah,
-    /// Each side gets half of the primitives, along the axis on which their centres spread most.
+    /// A split at the median, along the axis on which the centres spread most.
     Median,
 }
 
@@ -27,8 +27,7 @@ impl SplitRule {
 pub struct SplitOptions {
     /// The largest number of primitives in a leaf. Smaller nodes are split as well if that makes queries cheaper.
     pub max_leaf: usize,
-    /// The number of primitives that are tested at once. The cost of a leaf is that of as many blocks of this size
-    /// as it needs.
+    /// The number of primitives that are tested at once. A leaf costs as much as the blocks of this size that it needs.
     pub block: usize,
     /// The cost of visiting an inner node, in units of the cost of testing a primitive.
     pub node_cost: f64,
@@ -40,7 +39,7 @@ pub struct SplitOptions {
 }
 
 impl Default for SplitOptions {
-    /// The options for leaves that are packets of sixteen.
+    /// Returns the options for leaves that are packets of sixteen.
     fn default() -> Self {
         Self { max_leaf: 16, block: 16, node_cost: 16.0, rule: SplitRule::Sah, parallel: true }
     }
@@ -59,11 +58,11 @@ impl SplitOptions {
     }
 }
 
-/// Options of a tree whose volumes share some data.
+/// The options of a tree whose volumes share data.
 pub trait TreeOptions<Shared> {
-    /// The options of its splits.
+    /// Returns the options of the splits.
     fn splits(&self) -> &SplitOptions;
-    /// The data that all volumes of the tree share.
+    /// Returns the data that all volumes of the tree share.
     fn shared(&self) -> Shared;
 }
 

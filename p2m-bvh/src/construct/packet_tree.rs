@@ -16,7 +16,7 @@ use p2m_core::engine::simd::Isa;
 use p2m_core::{Aabb, BuildError, Primitive, PrimitiveId, PrimitiveSet, Real, check_set};
 use std::sync::OnceLock;
 
-/// The least unit of a packet, as a part of the unit of the tree: 2^-36. Finer units would bring nothing.
+/// The least unit of a packet, relative to the unit of the tree: 2^-36. Finer units would bring nothing.
 const MIN_UNIT_RATIO: f64 = 1.0 / (1u64 << 36) as f64;
 
 impl<V: Volume> PacketTree<V> {
@@ -30,7 +30,7 @@ impl<V: Volume> PacketTree<V> {
         Self::build_within(bounds, set, options)
     }
 
-    /// Checks a set as [`check_set`] does and builds the tree over it. Both read the whole set, so they do it at once.
+    /// Checks a set as [`check_set`] does and builds the tree over it, in one pass over the set.
     pub(crate) fn build_checked<T: Real, S: PrimitiveSet<T> + Sync + ?Sized>(
         set: &S,
         options: &V::Options,
@@ -45,7 +45,7 @@ impl<V: Volume> PacketTree<V> {
         Ok(Self::build_within(bounds, set, options))
     }
 
-    /// Builds the tree over a set with this box around it.
+    /// Builds the tree over a set, given its box.
     fn build_within<T: Real, S: PrimitiveSet<T> + Sync + ?Sized>(
         bounds: Aabb<f64>,
         set: &S,
@@ -62,8 +62,8 @@ impl<V: Volume> PacketTree<V> {
         Self::build_from_primitives(primitives, bounds, &members, options.shared(), options.splits())
     }
 
-    /// Builds the tree from all primitives, which stand in the frame around `bounds`. The function does not depend on
-    /// the type of the set, so it is compiled once.
+    /// Builds the tree from all primitives, which are in the frame around `bounds`. The function does not depend on the
+    /// type of the set, so it is compiled once.
     #[inline(never)]
     pub(crate) fn build_from_primitives(
         mut primitives: Vec<BuildPrimitive>,
@@ -104,10 +104,10 @@ impl<V: Volume> PacketTree<V> {
         tree
     }
 
-    /// Computes the bounds of all nodes from those of the packets.
+    /// Computes the bounds of all nodes from the bounds of the packets.
     fn bound_nodes(&mut self, packet_bounds: &[<V::Node as WideNode>::Bounds]) {
         let mut node_bounds = vec![V::Node::EMPTY; self.nodes.len()];
-        // The loop runs backwards, because children come after their parents.
+        // Backwards, because children come after their parents.
         for number in (0..self.nodes.len()).rev() {
             let mut all = V::Node::EMPTY;
             let node = &mut self.nodes[number];
@@ -126,12 +126,12 @@ impl<V: Volume> PacketTree<V> {
         self.root_bounds = packet_bounds.iter().fold(V::Node::EMPTY, |all, bounds| V::Node::union(&all, bounds));
     }
 
-    /// Fits the tree to a set in which the same primitives have moved. Their boxes have to be finite.
+    /// Refits the tree to a set in which the same primitives have moved. Their boxes have to be finite.
     ///
-    /// The tree keeps its shape, so searches get slower the farther primitives have moved apart. Answers are those of a
-    /// tree that is built anew. Of the options only the choice to use all threads has an effect.
+    /// The tree keeps its shape, so searches get slower the farther primitives have moved apart. Answers equal the
+    /// answers of a tree that is built anew. Of the options only the choice to use all threads has an effect.
     ///
-    /// More than sixteen primitives that had the same vertices, bit for bit, are one leaf. If they have moved apart, the
+    /// More than sixteen primitives with the same vertices, bit for bit, are one leaf. If they have moved apart, the
     /// tree is built anew with the default splits, in O(n log n).
     ///
     /// # Panics
@@ -143,13 +143,14 @@ impl<V: Volume> PacketTree<V> {
         self.refit_with(set, options.splits().parallel);
     }
 
-    /// Fits the tree as [`refit`](Self::refit) does, with all threads if `parallel` is set.
+    /// Refits the tree as [`refit`](Self::refit) does, with all threads if `parallel` is set.
     pub(crate) fn refit_with<T: Real, S: PrimitiveSet<T> + Sync + ?Sized>(&mut self, set: &S, parallel: bool) {
         assert_eq!(set.len(), self.len, "as many primitives as before");
         self.refit_to(&|id| Member::from_primitive(&set.get(id)), parallel);
     }
 
-    /// Fits the tree to moved primitives. The function does not depend on the type of the set, so it is compiled once.
+    /// Refits the tree to moved primitives. The function does not depend on the type of the set, so it is compiled
+    /// once.
     #[inline(never)]
     pub(crate) fn refit_to(&mut self, members: Members<'_>, parallel: bool) {
         let boxes = map_slice(&self.leaves.packets, parallel, |packet| {
@@ -176,7 +177,7 @@ impl<V: Volume> PacketTree<V> {
         self.bound_nodes(&packet_bounds);
     }
 
-    /// Whether primitives that were the same, and are one leaf, no longer are.
+    /// Returns whether the primitives of a run no longer have the same vertices.
     fn has_parted_run(&self, members: Members<'_>) -> bool {
         self.leaves.packets.windows(2).filter(|pair| pair[0].is_continued()).any(|pair| {
             let first = members(pair[0].ids()[0]);
@@ -185,7 +186,7 @@ impl<V: Volume> PacketTree<V> {
     }
 }
 
-/// The box around a set, and whether all its primitives are finite.
+/// Returns the box around a set, and whether all its primitives are finite.
 fn scene_box<T: Real, S: PrimitiveSet<T> + Sync + ?Sized>(set: &S, parallel: bool) -> (Aabb<f64>, bool) {
     let len = set.len();
     let of_chunk = |chunk: usize| {
@@ -206,8 +207,7 @@ fn scene_box<T: Real, S: PrimitiveSet<T> + Sync + ?Sized>(set: &S, parallel: boo
 /// The bounds of a node of a tree.
 type Bounds<V> = <<V as VolumeNodes>::Node as WideNode>::Bounds;
 
-/// Makes packets and bounds them in the frame of the tree. `content` returns the ids of the primitives of a packet, and
-/// whether the next packet continues it.
+/// Makes packets and bounds them in the frame of the tree.
 fn pack<'a, V: Volume>(
     packets: usize,
     content: Content<'_, 'a>,
@@ -225,17 +225,18 @@ fn pack<'a, V: Volume>(
     (leaves, bounds.collect())
 }
 
-/// The function that returns what a packet contains.
+/// A function that returns the ids of the primitives of a packet, and whether the next packet continues it.
 type Content<'c, 'a> = &'c (dyn Fn(usize) -> (&'a [PrimitiveId], bool) + Sync);
 
-/// The function that gets the number of a packet, its primitives and the box around them.
+/// A function that receives the number of a packet, its primitives and the box around them.
 type BoundFn<'b> = &'b (dyn Fn(usize, &[Member], &Aabb<f64>) + Sync);
 
-/// Makes packets, and calls `bound` with the number of each, its primitives and the box around them. The function does
-/// not depend on the volume, so it is compiled once.
+/// Makes packets, and calls `bound` with the number of each packet, its primitives and the box around them. The
+/// function does not depend on the volume, so it is compiled once.
 ///
-/// All threads make a group of packets, with lists of vertices that the next groups fill again. The vertices of a group
-/// are joined while the next one is made, so the lists of few groups are in memory beside them.
+/// All threads make a group of packets together, each chunk with a vertex list of its own. The lists of a group are
+/// joined while the next group is made, and are then reused. So only the lists of few groups are in memory beside the
+/// packets (decision 064).
 fn pack_leaves<'a>(
     packets: usize,
     content: Content<'_, 'a>,
@@ -257,7 +258,7 @@ fn pack_leaves<'a>(
                 .with_continuation(is_continued);
         }
     };
-    // The system clears the pages of the array when they are first written.
+    // The operating system clears the pages of the array when they are first written.
     let mut packed: Vec<Packet> = bytemuck::zeroed_vec(packets);
     let mut joined = JoinedVertices::new(packets);
     let chunks_per_group = MIN_CHUNKS_PER_GROUP.max(4 * thread_count(parallel));
@@ -277,7 +278,7 @@ fn pack_leaves<'a>(
     joined.finish(packed)
 }
 
-/// The vertices of all packets in one array, in the order of the packets, and the offsets of the packets in it.
+/// The vertices of all packets in one array, in the order of the packets, and the offset of each packet in it.
 struct JoinedVertices {
     packets: usize,
     vertices: Vec<[f64; 3]>,
@@ -290,7 +291,8 @@ impl JoinedVertices {
         Self { packets, vertices: Vec::new(), offsets: Vec::with_capacity(packets + 1), has_non_triangles: false }
     }
 
-    /// Appends the vertices of the next packets. Each list has those of [`PACKET_CHUNK`] packets, which count from 0.
+    /// Appends the vertices of the next packets. Each list belongs to [`PACKET_CHUNK`] packets, whose vertex offsets
+    /// count from the start of the list.
     fn append(&mut self, packets: &mut [Packet], lists: &[Vec<[f64; 3]>]) {
         for (chunk, list) in packets.chunks_mut(PACKET_CHUNK).zip(lists) {
             let first = to_u32(self.vertices.len());
@@ -300,7 +302,7 @@ impl JoinedVertices {
                 self.has_non_triangles |= !packet.has_triangles();
             }
             if self.vertices.capacity() - self.vertices.len() < list.len() {
-                // The packets that follow probably have as many vertices as those that are here.
+                // The remaining packets probably have as many vertices each as the packets so far.
                 let known = self.vertices.len() + list.len();
                 let all = known as u64 * self.packets as u64 / self.offsets.len() as u64;
                 let more = usize::try_from(all + all / 64).unwrap_or(0).saturating_sub(self.vertices.len());
@@ -322,9 +324,10 @@ impl JoinedVertices {
     }
 }
 
-/// The number of primitives that a thread handles at a time.
+/// The number of primitives that a thread handles at a time. There is no record of how it was tuned.
 const CHUNK: usize = 1 << 14;
-/// The number of packets that a thread makes at a time.
+/// The number of packets that a thread makes at a time. There is no record of how it was tuned.
 const PACKET_CHUNK: usize = 1 << 7;
-/// The number of chunks of packets that are made before their vertices are joined, for up to four threads.
+/// The least number of chunks of packets that are made before their vertices are joined. It applies to up to four
+/// threads. There is no record of how it was tuned.
 const MIN_CHUNKS_PER_GROUP: usize = 1 << 4;

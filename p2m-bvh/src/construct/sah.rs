@@ -1,28 +1,35 @@
-//! The border of each split rule, and the surface-area heuristic: the cost of a split, and the split that costs least.
+//! The binned surface-area heuristic: the cost of a split, and the cheapest split by each rule.
+//!
+//! The basic idea \[Wald2007\]: a random line that hits a box hits a smaller box inside of it with a probability that
+//! is the ratio of their surface areas. So a split into two sides costs about the area of each side times the number of
+//! its primitives, divided by the area of the node. To find a cheap split, primitives are counted in 16 bins along an
+//! axis by their centres, and two sweeps over the bins, from both ends, give the areas and numbers on both sides of the
+//! 15 borders.
 
 use crate::construct::options::{SplitOptions, SplitRule};
 use crate::construct::primitive::{BuildPrimitive, GrowingBox};
 use p2m_core::engine::parallel::join;
 use p2m_core::engine::simd::{InstructionSet, Isa, SimdKernel};
 
-/// The number of bins along an axis.
+/// The number of bins along an axis. More bins give 2 % fewer nodes for 20 % more build time
+/// (docs/decisions/rejected.md).
 const BINS: usize = 16;
 /// The number of the last bin.
 const LAST_BIN: f32 = 15.0;
 const _: () = assert!(BINS == 16);
 
-/// A division of an interval of each axis into bins. Centres outside of the interval count for the first or
-/// the last bin.
+/// A division of an interval of each axis into bins. Centres outside of the interval count for the first or the last
+/// bin.
 #[derive(Clone, Copy)]
 pub(crate) struct Binning {
     low: [f32; 4],
-    /// Bins per length, which is 0 along an axis whose interval is so short that the quotient would not be finite. Then
-    /// the first bin has all primitives.
+    /// Bins per unit of length. It is 0 along an axis whose interval is so short that the quotient would not be finite;
+    /// the first bin then has all primitives.
     scale: [f32; 4],
 }
 
 impl Binning {
-    /// Divides the sides of a box around the centres of some primitives.
+    /// Creates the bins over a box around the centres of the primitives.
     #[inline(always)]
     fn of(centres: &GrowingBox) -> Self {
         let mut binning = Self { low: [0.0; 4], scale: [0.0; 4] };
@@ -32,17 +39,17 @@ impl Binning {
         binning
     }
 
-    /// Divides an interval of an axis.
+    /// Sets the interval of an axis.
     #[inline(always)]
     fn set(&mut self, axis: usize, low: f32, high: f32) {
-        // The centre at the upper end falls into the last bin in spite of all roundings.
+        // In spite of all roundings, the centre at the upper end falls into the last bin.
         const UNROUNDED_BINS: f32 = 16.0 * (1.0 - 4.0 * f32::EPSILON);
         let scale = UNROUNDED_BINS / (high - low);
         self.low[axis] = low;
         self.scale[axis] = if scale.is_finite() && scale > 0.0 { scale } else { 0.0 };
     }
 
-    /// A finer division around the border below `bin`: the two bins beside the border are divided anew.
+    /// Returns a finer division around the border below `bin`: the two bins beside the border are divided anew.
     fn refined_at(mut self, axis: usize, bin: usize) -> Self {
         let border = |bin: u8| self.low[axis] + f32::from(bin) / self.scale[axis];
         let bin = u8::try_from(bin).expect("there are sixteen bins");
@@ -51,11 +58,12 @@ impl Binning {
         self
     }
 
-    /// The bin of a centre along an axis, given twice its coordinate. It never decreases while the centre moves up.
+    /// Returns the bin of a centre along an axis, given twice its coordinate. It never decreases as the centre moves
+    /// up.
     #[inline(always)]
     fn bin_at(&self, axis: usize, centre: f32) -> u32 {
-        // At this size the unit in the last place is 1, so the sum is rounded to an integer, whose lowest bits are
-        // those of its mantissa. That takes fewer instructions than a conversion.
+        // At this magnitude the unit in the last place is 1, so the sum is rounded to an integer, whose lowest bits are
+        // the lowest bits of the mantissa. That takes fewer instructions than a conversion.
         const SHIFT: f32 = (1u32 << 23) as f32;
         let bin = (centre - self.low[axis]) * self.scale[axis] - 0.5;
         let bin = if bin > 0.0 { bin } else { 0.0 };
@@ -63,7 +71,7 @@ impl Binning {
         (bin + SHIFT).to_bits() % 16
     }
 
-    /// The bins of the centre of a primitive along the axes.
+    /// Returns the bins of the centre of a primitive along all axes.
     #[inline(always)]
     fn bins_of(&self, primitive: &BuildPrimitive) -> [u32; 4] {
         let centre = primitive.centre();
@@ -71,7 +79,7 @@ impl Binning {
     }
 }
 
-/// A split of a node: primitives whose centre falls into a bin below `bin` along the axis go left.
+/// A split of a node. Primitives whose centre falls into a bin below `bin` along the axis go left.
 pub(crate) struct SplitPlane {
     binning: Binning,
     axis: usize,
@@ -83,18 +91,18 @@ pub(crate) struct SplitPlane {
 }
 
 impl SplitPlane {
-    /// Whether a primitive goes left.
+    /// Returns whether a primitive goes left.
     #[inline(always)]
     pub(crate) fn is_left(&self, primitive: &BuildPrimitive) -> bool {
         (self.binning.bin_at(self.axis, primitive.centre_at(self.axis)) as usize) < self.bin
     }
 }
 
-/// The number of times that [`SplitRule::AdaptiveSah`] samples the cost again around the best position.
+/// The number of times that [`SplitRule::AdaptiveSah`] resamples the cost around the best position.
 const RESAMPLINGS: usize = 2;
 
-/// The cheapest split that the rule finds; `None` if there is none, or if the rule does not compare costs. The
-/// primitives are sorted into bins by about as many tasks.
+/// Returns the cheapest split that the rule finds, or `None` if there is none or the rule does not compare costs. About
+/// `tasks` tasks sort the primitives into bins.
 pub(crate) fn best_split(
     isa: Isa,
     primitives: &[BuildPrimitive],
@@ -138,13 +146,13 @@ struct Bins {
 impl Bins {
     const EMPTY: Self = Self { boxes: [GrowingBox::EMPTY; BINS], counts: [0; BINS] };
 
-    /// Adds the primitives of other bins of the same division.
+    /// Adds the contents of other bins of the same division.
     fn add(&mut self, other: &Self) {
         self.boxes.iter_mut().zip(&other.boxes).for_each(|(bin, other)| *bin = bin.union(other));
         self.counts.iter_mut().zip(&other.counts).for_each(|(count, other)| *count += other);
     }
 
-    /// The box around the primitives of some bins.
+    /// Returns the box around the primitives of some bins.
     #[inline(always)]
     fn bounds<I: InstructionSet>(&self, bins: std::ops::Range<usize>) -> GrowingBox {
         let mut bounds = GrowingBox::EMPTY;
@@ -154,8 +162,8 @@ impl Bins {
         bounds
     }
 
-    /// The cheapest border between two bins that has primitives on both sides, and its cost. The cost of a side is its
-    /// half area times that of testing its primitives.
+    /// Returns the cheapest border between two bins that has primitives on both sides, and its cost. The cost of a side
+    /// is its half area times the cost of testing its primitives.
     #[inline(always)]
     fn cheapest_border<I: InstructionSet>(&self, node_area: f32, block: usize) -> (usize, f32) {
         // The area and the number of the primitives to the right of the border below each bin.
@@ -172,7 +180,7 @@ impl Bins {
             side.add::<I>(&self.boxes[bin - 1]);
             count += self.counts[bin - 1];
             let [left, right] = [test_cost(count, block), test_cost(counts[bin], block)];
-            // If all boxes lie on a line, every area is zero, and the most balanced split is taken.
+            // If all boxes lie on a line, every area is zero, and the most balanced split wins.
             let sum = if node_area > 0.0 { side.half_area() * left + areas[bin] * right } else { left.max(right) };
             if (count > 0) & (counts[bin] > 0) & (sum < best.1) {
                 best = (bin, sum);
@@ -182,11 +190,11 @@ impl Bins {
     }
 }
 
-/// The cost of testing `n` primitives of which `block` are tested at once, in units of the cost of testing one.
+/// Returns the cost of testing `n` primitives in blocks of `block`, in units of the cost of testing one primitive.
 #[inline(always)]
 #[allow(clippy::cast_precision_loss, clippy::cast_possible_truncation, reason = "costs are rounded")]
 fn test_cost(n: u32, block: usize) -> f32 {
-    // The usual sizes need no division.
+    // The usual sizes are powers of two, which need no division.
     let tested = if block.is_power_of_two() {
         n.wrapping_add(block as u32 - 1) & !(block as u32 - 1)
     } else {
@@ -195,7 +203,7 @@ fn test_cost(n: u32, block: usize) -> f32 {
     tested as f32
 }
 
-/// Sorts primitives into the bins of some axes by about as many tasks.
+/// Sorts primitives into the bins of some axes, with about `tasks` tasks.
 fn fill_bins<const N: usize>(
     isa: Isa,
     primitives: &[BuildPrimitive],
@@ -216,8 +224,8 @@ fn fill_bins<const N: usize>(
     bins
 }
 
-/// A SIMD kernel that sorts primitives into the bins of some axes. It uses the instruction set only
-/// through the compiler.
+/// A SIMD kernel that sorts primitives into the bins of some axes. It uses the instruction set only through the
+/// compiler.
 struct FillBins<'a, const N: usize> {
     primitives: &'a [BuildPrimitive],
     axes: [usize; N],
@@ -243,8 +251,8 @@ impl<const N: usize> SimdKernel for FillBins<'_, N> {
     }
 }
 
-/// A SIMD kernel that returns the cheapest border of the bins of some axes. It uses the instruction set
-/// only through the compiler.
+/// A SIMD kernel that returns the cheapest border of the bins of some axes. It uses the instruction set only through
+/// the compiler.
 struct FindBorder<'a, const N: usize> {
     bins: &'a [Bins; N],
     axes: [usize; N],

@@ -1,15 +1,16 @@
-//! Top-down splits.
+//! Top-down splits of the primitives into a binary tree.
 //!
-//! A node is split in two by the [`SplitRule`](crate::SplitRule) of the options, unless testing all its primitives is
-//! cheaper by the cost of that rule. If the rule returns no border (it is the rule of medians, or centres do not
-//! separate the primitives), each child gets half of them in the order of their centres along the longest axis. Below
-//! half of [`MAX_SPLIT_DEPTH`] every node is split like that, so that no input makes the tree deep.
+//! The basic idea is the usual one: a node is split in two by the [`SplitRule`](crate::SplitRule) of the options, and
+//! its sides are split in turn, until testing all primitives of a node is cheaper than a further split, by the cost of
+//! that rule. Three cases need more than that:
 //!
-//! More primitives with the same vertices than a packet has lanes become one leaf of several packets, a run. Nothing
-//! but ids distinguishes them, so a search for the nearest one reads only the first packet.
-//!
-//! Boxes are in f32, in a frame. A node that is much smaller than its frame gets a frame of its own, so that the
-//! details of a scene are split as well as the whole of it.
+//! - *No border.* If the rule returns no border (it is the median rule, or centres do not separate the primitives),
+//!   each child gets half of the primitives in the order of their centres along the longest axis. Below half of
+//!   [`MAX_SPLIT_DEPTH`] every node is split like that, so that no input makes the tree deep.
+//! - *Equal primitives.* If more primitives than a packet has lanes have the same vertices, they become one leaf of
+//!   several packets, a run. Only ids distinguish them, so a search for the nearest one reads only the first packet.
+//! - *Small details.* Boxes are in f32, in a frame. A node that is much smaller than its frame gets a frame of its own,
+//!   so that the details of a scene are split as well as the whole (decision 057).
 
 use crate::construct::options::SplitOptions;
 use crate::construct::primitive::{BuildPrimitive, GrowingBox};
@@ -21,18 +22,18 @@ use p2m_core::Aabb;
 use p2m_core::engine::parallel::{join, thread_count};
 use p2m_core::engine::simd::{InstructionSet, Isa, SimdKernel};
 
-/// The largest depth of a node below the root, whatever the input. Half of it is for splits by cost and half for
-/// halving, which suffices because sets have at most 2^30 primitives. A tree of eight children per node may have two
-/// nodes more on a path: the root itself, and one above the leaves of a node that is not split.
+/// The largest depth of a binary node below the root, for any input. Half of it is for splits by cost and half for
+/// halving, which suffices because sets have at most 2^30 primitives. In the tree of eight children per node, a path
+/// may have two more nodes: the root itself, and one above the leaves of a node that is not split.
 pub(crate) const MAX_SPLIT_DEPTH: usize = MAX_DEPTH - 2;
 
-/// A node that is longer than this part of the unit of its frame keeps the frame. A coordinate of a shorter node would
+/// The length, in units of its frame, below which a node gets a frame of its own. A coordinate of a shorter node would
 /// have fewer than 14 of the 24 bits of f32.
 const MIN_SIDE: f32 = 1.0 / 1024.0;
 
-/// A node of the binary tree: either the parent of the nodes `first` and `first + 1`, if `count` is 0, or the leaf of
-/// one packet, which gets `count` primitives of one kind from index `first` on. More than [`LANES`] primitives have the
-/// same vertices and get a run of packets.
+/// A node of the binary tree. If `count` is 0, it is the parent of the nodes `first` and `first + 1`. Otherwise it is
+/// the leaf of one packet, which gets `count` primitives of one kind from index `first` on. More than [`LANES`]
+/// primitives have the same vertices and get a run of packets.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct SplitNode {
     /// Half of the surface area of the box around the node, in the frame of the scene.
@@ -45,13 +46,13 @@ impl SplitNode {
     /// A node whose content is not known yet.
     const UNKNOWN: Self = Self { half_area: 0.0, first: 0, count: 0 };
 
-    /// The children of an inner node; `None` for a leaf.
+    /// Returns the children of an inner node, or `None` for a leaf.
     #[cfg(test)]
     pub(crate) fn children(&self) -> Option<[usize; 2]> {
         (self.count == 0).then_some([self.first as usize, self.first as usize + 1])
     }
 
-    /// The indices of the primitives of a leaf in the order of the leaves.
+    /// Returns the indices of the primitives of a leaf, in the order of the leaves.
     #[cfg(test)]
     pub(crate) fn range(&self) -> std::ops::Range<usize> {
         assert!(self.count > 0, "a leaf");
@@ -59,12 +60,13 @@ impl SplitNode {
     }
 }
 
-/// Splits primitives, which stand in the frame of the scene, and sorts them into the order of the leaves. Returns the
-/// nodes; node 0 is the root, and no primitives have no nodes.
+/// Splits primitives, which are in the frame of the scene, sorts them into the order of the leaves, and returns the
+/// nodes. Node 0 is the root. An empty set has no nodes.
 ///
-/// The primitives of one leaf are sorted by [`BuildPrimitive::rank`]. Siblings are side by side, and everything below
-/// the left one comes before everything below the right one. Parents come before children. Neither the nodes nor the
-/// order depend on the number of threads: sides have the same primitives in whichever order, and a leaf sorts its own.
+/// The primitives of one leaf are sorted by [`BuildPrimitive::rank`]. Siblings are adjacent, and everything below the
+/// left one comes before everything below the right one. Parents come before their children. Neither the nodes nor the
+/// order depend on the number of threads: the sides of a split have the same primitives in any order, and a leaf sorts
+/// its own.
 pub(crate) fn split(
     primitives: &mut [BuildPrimitive],
     frame: &Frame,
@@ -84,11 +86,11 @@ pub(crate) fn split(
 struct Part {
     /// The box around the primitives.
     bounds: GrowingBox,
-    /// The box around twice the centres of the primitives.
+    /// The box around the doubled centres of the primitives.
     centres: GrowingBox,
     /// The unit of the frame of the primitives, in units of the frame of the scene.
     unit: f64,
-    /// Whether no other frame would be finer.
+    /// Whether a frame of its own would not be finer.
     is_finest: bool,
     depth: usize,
 }
@@ -99,13 +101,14 @@ impl Part {
     }
 }
 
-/// The part of the tree that a node of the binary tree becomes.
+/// The decision about a node: what it becomes in the binary tree.
 enum Division {
-    /// A leaf, which has a packet for each kind of primitives, or several ones if there are more than its lanes.
+    /// A leaf. It becomes a packet for each kind of primitive, or several packets if there are more primitives than
+    /// lanes.
     Leaf,
     /// A leaf of primitives with the same vertices, in a run of packets.
     Run,
-    /// The parent of two nodes, of which the first has this number of primitives.
+    /// The parent of two nodes. The first one gets this number of primitives.
     Sides(usize, [Part; 2]),
 }
 
@@ -115,14 +118,16 @@ impl Division {
     }
 }
 
-/// The least number of primitives for which the two sides of a split are built on different threads.
+/// The fewest primitives for which the two sides of a split are built on different threads. There is no record of how
+/// the number was tuned.
 #[cfg(feature = "rayon")]
 const MIN_PRIMITIVES_TO_FORK: usize = 1 << 13;
 
-/// The least number of primitives of a node that several threads divide.
+/// The fewest primitives of a node that several threads divide together. There is no record of how the number was
+/// tuned.
 const MIN_PRIMITIVES_TO_SHARE: usize = 1 << 15;
 
-/// The data that all splits of a tree share.
+/// The data that are shared by all splits of a tree.
 struct Splitter<'a> {
     isa: Isa,
     /// The frame of the scene.
@@ -132,14 +137,14 @@ struct Splitter<'a> {
 }
 
 impl Splitter<'_> {
-    /// Returns the root over primitives that stand in the frame of the scene.
+    /// Returns the root over primitives that are in the frame of the scene.
     fn root(&self, primitives: &[BuildPrimitive]) -> Part {
         let [bounds, centres] = bounds_of(self.isa, primitives, self.tasks(primitives.len(), 0));
         Part { bounds, centres, unit: 1.0, is_finest: false, depth: 0 }
     }
 
-    /// The number of tasks that divide a node at this depth. Nodes near the root are fewer than the threads, so several
-    /// threads divide each of them.
+    /// Returns the number of tasks that divide a node at this depth. Near the root there are fewer nodes than threads,
+    /// so several threads divide each node.
     fn tasks(&self, len: usize, depth: usize) -> usize {
         if len < MIN_PRIMITIVES_TO_SHARE {
             return 1;
@@ -147,8 +152,8 @@ impl Splitter<'_> {
         (thread_count(self.options.parallel) >> depth.min(31)).max(1)
     }
 
-    /// The tree over some primitives, which have the indices from `first` on. Its nodes are numbered from its root,
-    /// which is 0.
+    /// Returns the tree over some primitives, whose indices begin at `first`. The nodes are numbered from 0, the root
+    /// of this tree.
     fn subtree(&self, primitives: &mut [BuildPrimitive], first: usize, part: Part) -> Vec<SplitNode> {
         #[cfg(feature = "rayon")]
         if self.options.parallel && primitives.len() >= MIN_PRIMITIVES_TO_FORK {
@@ -184,12 +189,12 @@ impl Splitter<'_> {
         nodes
     }
 
-    /// Sorts the primitives of a node into two sides, unless the node is to be a leaf.
+    /// Sorts the primitives of a node into two sides, unless the node becomes a leaf.
     fn divide(&self, primitives: &mut [BuildPrimitive], part: &Part) -> Division {
         let Self { isa, options, .. } = *self;
         let leaf_cost = to_f64(primitives.len().next_multiple_of(options.block.max(1)));
         let may_be_leaf = primitives.len() <= options.max_leaf;
-        // A split costs at least its node.
+        // A split costs at least the visit of its node.
         if primitives.len() <= 1 || (may_be_leaf && options.node_cost >= leaf_cost) {
             return Division::Leaf;
         }
@@ -223,7 +228,7 @@ impl Splitter<'_> {
         Division::Sides(left, [side(0), side(1)])
     }
 
-    /// Whether more primitives than a packet has lanes have the same vertices.
+    /// Returns whether the primitives have the same vertices and are more than a packet has lanes.
     fn are_same(&self, primitives: &[BuildPrimitive], part: &Part) -> bool {
         if part.centres.longest_side() > 0.0 || primitives.len() <= LANES {
             return false;
@@ -232,8 +237,8 @@ impl Splitter<'_> {
         primitives.iter().all(|primitive| (self.members)(primitive.id()).is_same(&first))
     }
 
-    /// Moves the lower half of some primitives to the front: by their centres along the longest axis, or by their
-    /// vertices, if all centres are equal, so that primitives with the same vertices come together.
+    /// Moves the lower half of the primitives to the front, by their centres along the longest axis. If all centres are
+    /// equal, it compares vertices instead, so that primitives with the same vertices become adjacent.
     fn halve(&self, primitives: &mut [BuildPrimitive], part: &Part) {
         let middle = primitives.len() / 2;
         let ids = |a: &BuildPrimitive, b: &BuildPrimitive| a.id().cmp(&b.id());
@@ -249,7 +254,7 @@ impl Splitter<'_> {
         }
     }
 
-    /// Places the primitives of a node into a frame of their own if they are much smaller than theirs.
+    /// Converts the primitives of a node to a frame of their own if they are much smaller than their frame.
     fn in_finer_frame(&self, primitives: &mut [BuildPrimitive], part: &Part) -> Part {
         if part.is_finest || part.bounds.longest_side() >= MIN_SIDE {
             return *part;
@@ -272,9 +277,9 @@ impl Splitter<'_> {
     }
 }
 
-/// Adds the leaves of a node that is not split: one for each packet, because a packet has at most [`LANES`] primitives
-/// of one kind. They are halved until each is alone, below the node itself, whose number is `at`. A run is one leaf. The
-/// primitives, which have the indices from `first` on, are sorted.
+/// Adds the leaves of a node that is not split, one leaf per packet, because a packet has at most [`LANES`] primitives
+/// of one kind. The leaves are halved until each is alone, below the node itself, whose number is `at`. A run is one
+/// leaf. The primitives, whose indices begin at `first`, are sorted.
 fn add_leaves(
     nodes: &mut Vec<SplitNode>,
     at: usize,
@@ -284,7 +289,7 @@ fn add_leaves(
     is_run: bool,
 ) {
     primitives.sort_unstable_by_key(BuildPrimitive::rank);
-    // Ranks are sorted by the kind first.
+    // The kind is the first part of a rank, so the first and the last primitive tell whether there are several kinds.
     let is_one_kind = primitives.first().zip(primitives.last()).is_none_or(|(first, last)| first.is_same_kind(last));
     if is_run || (is_one_kind && primitives.len() <= LANES) {
         nodes[at] = SplitNode { half_area, first: to_u32(first), count: to_u32(primitives.len()) };
@@ -300,7 +305,7 @@ fn add_leaves(
     halve_leaves(nodes, at, &packets);
 }
 
-/// Makes a node the root of a balanced tree over some leaves.
+/// Makes a node the root of a balanced tree over several leaves.
 fn halve_leaves(nodes: &mut Vec<SplitNode>, at: usize, leaves: &[SplitNode]) {
     if let [leaf] = leaves {
         nodes[at] = *leaf;
@@ -329,7 +334,7 @@ fn joined(half_area: f64, a: &[SplitNode], b: &[SplitNode]) -> Vec<SplitNode> {
     nodes
 }
 
-/// A number of nodes or primitives in 32 bits.
+/// Converts a number of nodes or primitives to 32 bits.
 pub(crate) fn to_u32(n: usize) -> u32 {
     u32::try_from(n).expect("2^30 primitives have less than 2^32 nodes or vertices")
 }
@@ -339,7 +344,7 @@ fn to_f64(n: usize) -> f64 {
     n as f64
 }
 
-/// Returns the box around some primitives and the box around their centres, computed by about as many tasks.
+/// Returns the box around some primitives and the box around their centres, computed by about `tasks` tasks.
 fn bounds_of(isa: Isa, primitives: &[BuildPrimitive], tasks: usize) -> [GrowingBox; 2] {
     if tasks <= 1 {
         return isa.run(BoundPrimitives(primitives));
@@ -350,8 +355,8 @@ fn bounds_of(isa: Isa, primitives: &[BuildPrimitive], tasks: usize) -> [GrowingB
     [a.union(&b), c.union(&d)]
 }
 
-/// Moves the primitives below a plane to the front by about as many tasks, and returns their number and the boxes
-/// around the centres of both sides. The order within a side depends on the number of tasks.
+/// Moves the primitives below a plane to the front, with about `tasks` tasks. Returns their number and the boxes around
+/// the centres of both sides. The order within a side depends on the number of tasks.
 fn partition(
     isa: Isa,
     primitives: &mut [BuildPrimitive],
@@ -367,14 +372,14 @@ fn partition(
         || partition(isa, before, plane, tasks.div_ceil(2)),
         || partition(isa, after, plane, tasks.div_ceil(2)),
     );
-    // The right side of the first half and the left side of the second one are neighbours and change places. Only as
-    // many primitives move as the smaller one has.
+    // The right side of the first half and the left side of the second half are adjacent, and have to change places. It
+    // suffices to swap as many primitives as the smaller one has.
     let moved = b.min(before.len() - a);
     swap(&mut before[a..a + moved], &mut after[b - moved..b], tasks);
     (a + b, [a_left.union(&b_left), a_right.union(&b_right)])
 }
 
-/// Exchanges the contents of two slices by about as many tasks.
+/// Swaps the contents of two slices, with about `tasks` tasks.
 fn swap(a: &mut [BuildPrimitive], b: &mut [BuildPrimitive], tasks: usize) {
     if tasks <= 1 {
         a.swap_with_slice(b);
@@ -403,7 +408,7 @@ impl SimdKernel for BoundPrimitives<'_> {
     }
 }
 
-/// A SIMD kernel that moves the primitives below a plane to the front and returns their number, and the boxes around
+/// A SIMD kernel that moves the primitives below a plane to the front, and returns their number and the boxes around
 /// the centres of both sides. The order of the result is deterministic.
 struct Partition<'a> {
     primitives: &'a mut [BuildPrimitive],
@@ -421,7 +426,7 @@ impl SimdKernel for Partition<'_> {
         for i in 0..primitives.len() {
             let primitive = primitives[i];
             let is_left = plane.is_left(&primitive);
-            // Every primitive is swapped, so no branch depends on its side.
+            // Every primitive is swapped, so that no branch depends on its side.
             primitives[i] = primitives[split];
             primitives[split] = primitive;
             split += usize::from(is_left);
@@ -513,7 +518,7 @@ mod tests {
 
     #[test]
     fn geometric_progressions_do_not_make_the_tree_deep() {
-        // Equal bins separate one primitive at a time, which would give 1900 levels without a limit.
+        // Equal bins would separate one primitive at a time, which would give 1900 levels without a limit.
         let points: Vec<_> = (-950..950).map(|e| point(2f64.powi(e), 0.0, 0.0)).collect();
         assert!(depth(&check(&points)) > MAX_SPLIT_DEPTH / 2);
     }
@@ -532,8 +537,8 @@ mod tests {
         }
     }
 
-    /// Several threads leave the primitives of a side in another order. Neither equal centres, whose zeros may differ in
-    /// sign, nor leaves of several packets may depend on it.
+    /// Several threads leave the primitives of a side in a different order. Neither equal centres, whose zeros may
+    /// differ in sign, nor leaves of several packets may depend on that order.
     #[cfg(feature = "rayon")]
     #[test]
     fn the_tree_is_the_same_for_any_number_of_threads() {

@@ -1,4 +1,10 @@
-//! The distance filter of a packet: bounds from both sides on the distances of a query point to sixteen primitives.
+//! The distance filter of a packet: lower and upper bounds on the distances between a query point and sixteen
+//! primitives.
+//!
+//! The basic idea is to compute sixteen approximate squared distances side by side in f32, together with a bound on
+//! their error, the band. Primitives whose distance minus the error exceeds the limit of a search are excluded. The
+//! smallest distance plus the error is an upper bound on the nearest one, and becomes the new limit. The kernel then
+//! evaluates only the few primitives that pass, exactly.
 //!
 //! # The band
 //!
@@ -8,13 +14,13 @@
 //!
 //! > d - 1 - 32 u X <= sqrt(square) <= d + 1 + 88 u X,
 //!
-//! where d is either its true distance or the distance that the kernel of the contract computes. The proof is in
-//! [docs/proofs/filter.md]. For other primitives, which are filtered by their boxes, the right inequality holds.
+//! where d is either the true distance or the distance that the kernel of the contract computes. The proof is in
+//! [docs/proofs/filter.md]. Other primitives are filtered by their boxes, for which the right inequality holds.
 //!
-//! Two properties make the band independent of the shape of a triangle. Edges and normals are made of differences of
-//! whole numbers, which are exact, so the normal of a sliver is as good as any. A face counts only where the projection
-//! of the query point is inside by more than the test can err, so the filter always finds the distance of some point
-//! of the triangle.
+//! Two properties make the band independent of the shape of a triangle. Edges and normals are computed from differences
+//! of whole numbers, which are exact, so the normal of a sliver is as good as any. A face counts only if the projection
+//! of the query point is inside by more than the error of the test, so the filter always finds the distance of some
+//! point of the triangle.
 //!
 //! [docs/proofs/filter.md]: https://github.com/p2m-rs/p2m/blob/main/docs/proofs/filter.md
 
@@ -24,36 +30,37 @@ use super::squared_distance::{Triangles, V3, lanes_before_plane, square_from_edg
 use p2m_core::engine::simd::{Doubles, Float, InstructionSet, Lanes};
 use p2m_core::engine::vector::power_of_two;
 
-/// If the query point is more units of the frame away than this, the filter lets every primitive pass.
+/// The distance from a query point, in units of the frame, above which the filter lets every primitive pass.
 const MAX_QUERY_UNITS: f64 = power_of_two(40);
-/// The square of the length of the shortest normal with which a plane is placed: shorter ones exclude little, and their
+/// The squared length of the shortest normal for which a plane is placed. Shorter normals exclude little, and their
 /// squares may underflow.
 const SHORTEST_NORMAL: f32 = 1.0;
 /// The unit roundoff u of f32.
 const U: f32 = f32::EPSILON / 2.0;
-/// A factor for bounds that are computed in f32 with a few roundings of their own.
+/// A factor that rounds up bounds that are computed in f32 with a few roundings.
 pub const ROUND_UP: f32 = 1.0 + 16.0 * f32::EPSILON;
 
 /// A query point in the frame of a packet, with the width of the band.
 #[derive(Clone, Copy, Debug)]
 pub struct Local {
     query: [f32; 3],
-    /// The distances that the filter finds are too large by at most this many units.
+    /// The most by which distances of the filter are too large, in units of the frame.
     pub excess: f32,
-    /// The distances that the filter finds are too small by at most this many units.
+    /// The most by which distances of the filter are too small, in units of the frame.
     pub deficit: f32,
-    /// The square of the margin by which the projection onto a face has to be inside.
+    /// The square of the margin by which a projection has to be inside of a face.
     margin_squared: f32,
 }
 
 impl Packet {
-    /// The query point in the frame of the packet; `None` if the frame is not usable, or the point is too far away.
+    /// Returns the query point in the frame of the packet. It is `None` if the frame is not usable, or the point is too
+    /// far away.
     #[inline(always)]
     #[allow(clippy::cast_possible_truncation, reason = "rounding is part of the band")]
     pub fn local(&self, query: &[f64; 3]) -> Option<Local> {
         let q: [f64; 3] = std::array::from_fn(|k| (query[k] - self.origin[k]) * self.per_unit);
         let largest = q[0].abs().max(q[1].abs()).max(q[2].abs());
-        // The negated comparison is true as well if `largest` is NaN, which infinite differences give.
+        // The negated comparison is also true if `largest` is NaN, which infinite differences give.
         if !(self.unit > 0.0 && largest <= MAX_QUERY_UNITS) {
             return None;
         }
@@ -66,8 +73,8 @@ impl Packet {
         })
     }
 
-    /// Computes the squared distances, in the frame, to the primitives or boxes in all lanes. Squares that certainly
-    /// exceed that of `limit`, a distance in the frame, may be infinite instead.
+    /// Computes the squared distances, in the frame, to the primitives or boxes in all lanes. If a square certainly
+    /// exceeds the square of `limit`, a distance in the frame, it may be infinite instead.
     #[inline(always)]
     pub fn squares<I: InstructionSet>(&self, local: &Local, limit: f32, squares: &mut [f32; LANES]) {
         let mut at = 0;
@@ -82,8 +89,8 @@ impl Packet {
         }
     }
 
-    /// Computes the squared distances of several query points, those in the given places of `locals`. What depends on
-    /// the packet alone is computed once. Squares of lanes whose bit in `near` is 0 may be infinite instead.
+    /// Computes the squared distances from several query points, which are at the given places of `locals`. Values that
+    /// depend on the packet alone are computed once. Squares of lanes whose bit in `near` is 0 may be infinite instead.
     #[inline(always)]
     pub fn squares_of_several<I: InstructionSet>(
         &self,
@@ -95,7 +102,7 @@ impl Packet {
         let mut at = 0;
         while at < LANES {
             let lanes = ((1 << I::Wide::LEN) - 1) << at;
-            // Places whose whole packet is left out are not among `places`.
+            // Places whose whole packet is excluded are not among `places`.
             if I::Wide::LEN >= LANES || places.iter().any(|&place| near[usize::from(place) % PLACES] & lanes != 0) {
                 let primitives: Primitives<I::Wide> = self.prepare(at);
                 for place in places.iter().map(|&place| usize::from(place) % PLACES) {
@@ -129,9 +136,9 @@ impl Packet {
         self.squares_of_several::<I>(locals, &ALL_PLACES[..points.len()], &[u32::MAX; PLACES], squares);
     }
 
-    /// Returns for each vertex one bit for each lane: whether this vertex may be the nearest point of its triangle or
-    /// segment for every query point in a cube. The cube has a centre and half of its side. A bit may be wrong by the
-    /// rounding of the packet.
+    /// Returns one bit per lane for each vertex: whether this vertex may be the nearest point of its triangle or
+    /// segment for every query point in a cube, given by its centre and half of its side. A bit may be wrong because
+    /// the packet rounds its vertices.
     #[inline(always)]
     #[allow(clippy::cast_possible_truncation, reason = "rounding is allowed for")]
     pub fn lanes_of_nearest_vertices<I: InstructionSet>(&self, centre: &[f64; 3], half: f64) -> [u32; 3] {
@@ -142,7 +149,7 @@ impl Packet {
         };
         let query = [0, 1, 2].map(|k: usize| ((centre[k] - self.origin[k]) * self.per_unit) as f32);
         let half = (half * self.per_unit) as f32;
-        // Coordinates are below 2^16 and are rounded by half a unit.
+        // Coordinates are below 2^16, and rounded by at most half a unit.
         let reach = query[0].abs() + query[1].abs() + query[2].abs() + 3.0 * 65536.0;
         let tolerance = 2.5 * reach + 6.0 * half;
         let mut all = [u32::MAX; 3];
@@ -151,7 +158,7 @@ impl Packet {
             for &(i, j) in others {
                 let vertex: V3<I::Wide> = self.vertex(i, at);
                 let edge = self.vertex(j, at).sub(&vertex);
-                // The largest values in the cube of (q - v) . (w - v), and of the same with v and w exchanged.
+                // The largest values in the cube of (q - v) . (w - v), and of the same product with v and w exchanged.
                 let middle = V3::splat(query).sub(&vertex).dot(&edge);
                 let from = I::Wide::splat(0.0);
                 let size =
@@ -166,8 +173,8 @@ impl Packet {
         all
     }
 
-    /// Returns one bit for each lane: whether its triangle may be before the plane of a place, which
-    /// [`Locals::place_planes`] sets. All bits are 1 for other primitives.
+    /// Returns one bit per lane: whether its triangle may be in front of the plane of a place, which
+    /// [`Locals::place_planes`] sets. For other primitives all bits are 1.
     #[inline(always)]
     pub fn lanes_before_plane<L: Lanes>(&self, locals: &Locals, place: usize) -> u32 {
         if self.kind() != Kind::Triangle {
@@ -197,7 +204,7 @@ impl Packet {
         }
     }
 
-    /// Prepares the primitives of the lanes from `at` on.
+    /// Decodes the primitives of the lanes from `at` on.
     #[inline(always)]
     fn prepare<L: Lanes>(&self, at: usize) -> Primitives<L> {
         match self.kind() {
@@ -214,21 +221,21 @@ impl Packet {
         }
     }
 
-    /// The vector from the query point to one of the vertices, both in the frame.
+    /// Returns the vector from the query point to one of the packet's vertices, both in the frame.
     #[inline(always)]
     fn normal_of_plane(&self, [x, y, z]: &[f32; 3]) -> [f32; 3] {
         let [a, b, c] = self.sample();
         [a - x, b - y, c - z]
     }
 
-    /// One of the vertices in the frame.
+    /// Returns one of the packet's vertices, in the frame.
     #[inline(always)]
     fn sample(&self) -> [f32; 3] {
         const SAMPLE_LANE: usize = LANES / 2;
         [0, 1, 2].map(|k: usize| f32::from(self.rows[k][SAMPLE_LANE]))
     }
 
-    /// Vertex v of the lanes from `at` on.
+    /// Returns vertex v of the lanes from `at` on.
     #[inline(always)]
     fn vertex<L: Lanes>(&self, v: usize, at: usize) -> V3<L> {
         let [x, y, z] = [&self.rows[3 * v], &self.rows[3 * v + 1], &self.rows[3 * v + 2]];
@@ -236,11 +243,11 @@ impl Packet {
     }
 }
 
-/// The primitives of some lanes, with what their distances from all query points need.
+/// Decoded vertices, edges and normals of a group of lanes, shared by all query points.
 #[allow(clippy::large_enum_variant, reason = "it stays in registers and on the stack")]
 enum Primitives<L> {
     Triangles(Triangles<L>),
-    /// The first ends, the vectors to the other ends, and the inverses of their squares.
+    /// The first ends, the vectors to the other ends, and the inverse squares of these vectors.
     Segments(V3<L>, V3<L>, L),
     Points(V3<L>),
     /// The lower and the upper corners.
@@ -248,7 +255,7 @@ enum Primitives<L> {
 }
 
 impl<L: Lanes> Primitives<L> {
-    /// The squared distances from a query point.
+    /// Returns the squared distances from a query point.
     #[inline(always)]
     fn squares(&self, query: &V3<L>, margin_squared: f32) -> L {
         match self {
@@ -266,10 +273,10 @@ impl<L: Lanes> Primitives<L> {
 /// The number of query points in [`Locals`].
 pub const PLACES: usize = 16;
 
-/// Query points with the packets that they are compared with, one pair in each place, row by row.
+/// Query points paired with packets, one pair in each place, stored as rows.
 #[derive(Clone, Debug)]
 pub struct Locals {
-    /// The query points, in coordinates of the scene.
+    /// The query points, in scene coordinates.
     pub position: [[f64; PLACES]; 3],
     origin: [[f64; PLACES]; 3],
     /// The units of the frames of the packets.
@@ -284,18 +291,19 @@ pub struct Locals {
     pub deficit: [f32; PLACES],
     /// The squared margin of each place, as in [`Local`].
     margin_squared: [f32; PLACES],
-    /// The normals of planes between the query points and the packets. Until the planes are placed, they are a vertex
+    /// The normals of planes between the query points and the packets. Before the planes are placed, these are a vertex
     /// of each packet in its frame.
     normal: [[f32; PLACES]; 3],
-    /// The offsets of the planes: the product of the normal with the vector from the query point to a point
-    /// of the plane.
+    /// The offsets of the planes. An offset is the dot product of the normal with the vector from the query point to a
+    /// point of the plane.
     offset: [f32; PLACES],
-    /// One bit for each place whose query point is not in the frame, as [`Packet::local`] returns `None` for it.
+    /// One bit per place: whether its query point is too far away for the frame, in which case [`Packet::local`]
+    /// returns `None`.
     pub far: u32,
 }
 
 impl Default for Locals {
-    /// Returns places without query points.
+    /// Returns empty places.
     fn default() -> Self {
         Self {
             position: [[0.0; PLACES]; 3],
@@ -323,7 +331,7 @@ impl Locals {
         (self.unit[place], self.per_unit[place]) = (packet.unit, packet.per_unit);
     }
 
-    /// Sets the packet towards which the plane of a place is placed.
+    /// Sets the packet that the plane of a place faces.
     #[inline(always)]
     pub fn set_plane(&mut self, place: usize, packet: &Packet) {
         for (row, coordinate) in self.normal.iter_mut().zip(packet.sample()) {
@@ -331,7 +339,7 @@ impl Locals {
         }
     }
 
-    /// Places a plane before each query point, at the distance `limits` from it in the frame of its packet, towards a
+    /// Places a plane in front of each query point, at the distance `limits` in the frame of its packet, facing a
     /// vertex of the packet.
     #[inline(always)]
     pub fn place_planes<I: InstructionSet>(&mut self, limits: &[f32; PLACES]) {
@@ -363,7 +371,8 @@ impl Locals {
                 let offset = I::Doubles::load(&self.position[k][at..]) - I::Doubles::load(&self.origin[k][at..]);
                 let q = offset * per_unit;
                 q.store_f32(&mut self.query[k][at..]);
-                // Only an infinite difference times an inverse of 0 is NaN, and then the unit is 0 as well.
+                // NaN arises only if an infinite difference is multiplied by an inverse of 0, and then the unit is 0 as
+                // well.
                 largest = q.abs().max(largest);
             }
             largest.store_f32(&mut largest_in_f32[at..]);
@@ -386,7 +395,7 @@ impl Locals {
     }
 }
 
-/// A mask with one bit for each square that is at most `limit`.
+/// Returns one bit per square: whether it is at most `limit`.
 #[inline(always)]
 pub fn at_most<L: Lanes>(squares: &[f32; LANES], limit: f32) -> u32 {
     let mut mask = 0;
@@ -398,7 +407,7 @@ pub fn at_most<L: Lanes>(squares: &[f32; LANES], limit: f32) -> u32 {
     mask
 }
 
-/// The smallest of sixteen squares.
+/// Returns the smallest of sixteen squares.
 #[inline(always)]
 pub fn smallest<L: Lanes>(squares: &[f32; LANES]) -> f32 {
     let mut all = L::load(&squares[..]);
@@ -440,8 +449,8 @@ mod tests {
         [0, 1, 2].map(|k: usize| a[k] + t * (b[k] - a[k]))
     }
 
-    /// Returns a primitive of a random shape: a third are large in the packet, and slivers of every sine, collinear and
-    /// repeated vertices are common.
+    /// Returns a primitive of a random shape. A third are large in the packet, and slivers of every sine and collinear
+    /// and repeated vertices are common.
     fn shape(rng: &mut impl Rng, kind: Kind) -> Shape<f64> {
         let size = 2f64.powi(-(rng.random_range(0..18)));
         let corner = point(rng);

@@ -12,7 +12,7 @@ use p2m_core::{Aabb, Collector, PrimitiveId, Projection};
 /// The number of lanes of a packet, which is the largest number of its primitives.
 pub const LANES: usize = 16;
 
-/// Up to sixteen primitives in a frame of their own.
+/// A packet: up to sixteen primitives in a frame of their own.
 ///
 /// Unused lanes repeat the first primitive, so computations need no mask.
 #[derive(Clone, Copy, Debug, bytemuck::Pod, bytemuck::Zeroable)]
@@ -20,21 +20,21 @@ pub const LANES: usize = 16;
 pub struct Packet {
     /// Coordinate k of vertex v is in row 3 v + k. A box is stored as two vertices, its lower and its upper corner.
     pub(super) rows: [[u16; LANES]; 9],
-    /// The numbers of the ids. Unlike an id, a number may be any that a file has.
+    /// The ids as plain numbers, which a file may set to any value.
     ids: [u32; LANES],
-    /// `corners[v][lane]` is the index of vertex v of that lane among the exact vertices of the packet.
+    /// `corners[v][lane]` is the index of vertex v of a lane among the exact vertices of the packet.
     corners: [[u8; LANES]; 3],
     /// The index of the first exact vertex of the packet among the exact vertices of the tree.
     pub(crate) vertex_offset: u32,
     len: u8,
     /// The [`Kind`] as a number.
     kind: u8,
-    /// 1 if the next packet has further primitives with the vertices of these, and higher ids.
+    /// 1 if the next packet continues the run: it has further primitives with the same vertices and higher ids.
     is_continued: u8,
     unused: u8,
     /// The origin of the frame, in coordinates of the scene.
     pub(super) origin: [f64; 3],
-    /// The unit of the frame, a power of two; 0 if no frame of f64 has room for the box of the packet.
+    /// The unit of the frame, a power of two. It is 0 if no frame in f64 can hold the box of the packet.
     pub(super) unit: f64,
     /// The inverse of the unit; 0 if the unit is 0.
     pub(super) per_unit: f64,
@@ -44,11 +44,11 @@ const _: () = assert!(size_of::<Packet>() == 448);
 
 /// The largest coordinate in the frame of a packet.
 pub(super) const GRID_MAX: f64 = 65535.0;
-/// The units that frames may have: with others, squares of lengths would leave the plain range of keys.
+/// The units that frames may have. With others, squares of lengths would leave the plain range of keys.
 const USABLE_UNITS: std::ops::RangeInclusive<f64> = power_of_two(-360)..=power_of_two(300);
 
 impl Packet {
-    /// The kind of all primitives of the packet.
+    /// Returns the kind of all primitives of the packet.
     #[inline(always)]
     pub(super) fn kind(&self) -> Kind {
         match self.kind {
@@ -59,13 +59,13 @@ impl Packet {
         }
     }
 
-    /// Packs at most sixteen primitives with these ids, and appends their exact vertices, each once, to `vertices`.
+    /// Packs at most sixteen primitives with these ids, and appends each distinct exact vertex once to `vertices`.
     ///
     /// If the primitives are of several kinds, the packet gets their boxes. `bounds` is the box around all of them. The
     /// unit of the frame is at least `finest`, because a finer one would bring nothing.
     ///
     /// # Panics
-    /// Panics if there are more than sixteen ids, or none.
+    /// Panics if there are no ids, or more than sixteen.
     pub fn new(
         ids: &[PrimitiveId],
         primitives: &[Member],
@@ -116,7 +116,7 @@ impl Packet {
 
     /// Evaluates the primitive in a lane and offers it to a collector, unless its key certainly exceeds `square`.
     ///
-    /// `vertices` are all the exact vertices of the tree. The method does nothing for a box, because only the set can
+    /// `vertices` are all exact vertices of the tree. The method does nothing for a box, because only the set can
     /// evaluate such a primitive.
     #[inline(always)]
     pub fn offer<C: Collector>(&self, lane: usize, vertices: &[V3], query: V3, square: f64, collector: &mut C) {
@@ -152,8 +152,8 @@ impl Packet {
         }
     }
 
-    /// The indices of the vertices of a lane among the exact vertices of the tree. Corners that the primitive does not
-    /// have are the first vertex of the packet.
+    /// Returns the indices of the vertices of a lane among the exact vertices of the tree. Unused corners refer to the
+    /// first vertex of the packet.
     #[inline(always)]
     fn corners(&self, lane: usize) -> [usize; 3] {
         let [a, b, c] = &self.corners;
@@ -161,7 +161,7 @@ impl Packet {
         [offset + usize::from(a[lane]), offset + usize::from(b[lane]), offset + usize::from(c[lane])]
     }
 
-    /// The corners of the triangle in a lane; `None` if the packet has no triangles.
+    /// Returns the corners of the triangle in a lane, or `None` if the packet has no triangles.
     #[inline(always)]
     pub fn triangle_corners<'a>(&self, lane: usize, vertices: &'a [V3]) -> Option<[&'a V3; 3]> {
         if self.kind() != Kind::Triangle {
@@ -170,7 +170,7 @@ impl Packet {
         Some(self.corners(lane).map(|index| &vertices[index]))
     }
 
-    /// The indices of the vertices of a lane among the exact vertices of the tree, and the number of those in use.
+    /// Returns the indices of the vertices of a lane among the exact vertices of the tree, and the number of used ones.
     #[inline]
     pub fn vertices_of(&self, lane: usize) -> ([usize; 3], usize) {
         let count = match self.kind() {
@@ -182,7 +182,7 @@ impl Packet {
         (self.corners(lane), count)
     }
 
-    /// A box around the primitives in some lanes, of which `lanes` has one bit each.
+    /// Returns a box around the primitives in the lanes whose bits are set in `lanes`.
     pub fn bounds_of(&self, lanes: u16) -> Aabb<f64> {
         let count = if self.kind() == Kind::Box { 2 } else { self.vertices_of(0).1 };
         let (mut low, mut high) = ([u16::MAX; 3], [0; 3]);
@@ -213,14 +213,15 @@ impl Packet {
         }
     }
 
-    /// The ids of the primitives, lane by lane.
+    /// Returns the ids of the primitives, lane by lane.
     #[inline(always)]
     pub fn ids(&self) -> &[PrimitiveId] {
         &as_ids(&self.ids)[..usize::from(self.len)]
     }
 
-    /// Whether the next packet has further primitives with the same vertices and higher ids. No node refers to that
-    /// packet, because a search for the nearest primitive needs only the first packet of such a run.
+    /// Returns whether the next packet continues the run: it has further primitives with the same vertices and higher
+    /// ids. No node refers to that packet, because a search for the nearest primitive needs only the first packet of a
+    /// run.
     #[inline(always)]
     pub fn is_continued(&self) -> bool {
         self.is_continued != 0
@@ -232,7 +233,7 @@ impl Packet {
         Self { is_continued: u8::from(is_continued), ..self }
     }
 
-    /// Whether the key of the primitive in a lane is at most `square`, which it may be for a box.
+    /// Returns whether the key of the primitive in a lane may be at most `square`. It is always `true` for a box.
     pub(crate) fn is_lane_within(&self, lane: usize, vertices: &[V3], query: V3, square: f64) -> bool {
         let (corners, count) = self.vertices_of(lane);
         let corners = &corners[..count];
@@ -240,21 +241,21 @@ impl Packet {
         count == 0 || project(query, &hull[..count], square).is_some_and(|found| found.key.square_above() <= square)
     }
 
-    /// A mask with one bit for each lane in use.
+    /// Returns one bit per used lane.
     #[inline(always)]
     pub fn lanes(&self) -> u32 {
         (1 << self.len) - 1
     }
 
-    /// Whether the vertices span the primitives. If so, the filter bounds distances from above as well; if not, the
-    /// packet has only boxes around the primitives.
+    /// Returns whether the vertices span the primitives. If so, the filter bounds distances from above as well. If not,
+    /// the packet has only boxes around the primitives.
     #[inline(always)]
     pub fn has_vertices(&self) -> bool {
         self.kind() != Kind::Box
     }
 
-    /// Whether the fields of a packet from a file are within their ranges, if its exact vertices are those from
-    /// `first` to `end`. The ids are not checked.
+    /// Returns whether the fields of a packet from a file are within their ranges, if its exact vertices have the
+    /// indices from `first` to `end`. The ids are not checked.
     pub(crate) fn has_valid_fields(&self, first: u32, end: u32) -> bool {
         let has_frame = USABLE_UNITS.contains(&self.unit) && self.per_unit.to_bits() == self.unit.recip().to_bits();
         let has_no_frame = self.unit == 0.0 && self.per_unit == 0.0;
@@ -272,25 +273,25 @@ impl Packet {
             && largest(&self.corners[vertices..]) == 0
     }
 
-    /// Whether the primitives are triangles.
+    /// Returns whether the primitives are triangles.
     pub(crate) fn has_triangles(&self) -> bool {
         self.kind() == Kind::Triangle
     }
 
-    /// The unit of the frame of the packet, in units of the scene.
+    /// Returns the unit of the frame of the packet, in units of the scene.
     #[inline(always)]
     pub fn unit(&self) -> f64 {
         self.unit
     }
 
-    /// The inverse of the unit of the frame.
+    /// Returns the inverse of the unit of the frame.
     #[inline(always)]
     pub fn per_unit(&self) -> f64 {
         self.per_unit
     }
 }
 
-/// The largest number in some rows; 0 if there are none. It has no early end, so it is computed in lanes.
+/// Returns the largest number in several rows, or 0 if there are none. No early exit, so that it is vectorised.
 fn largest(rows: &[[u8; LANES]]) -> u8 {
     rows.iter().flatten().fold(0, |largest, number| largest.max(*number))
 }
@@ -335,15 +336,15 @@ impl SimdKernel for PackVertices<'_> {
     }
 }
 
-/// The largest number of vertices of a packet.
+/// The most vertices of a packet.
 const MAX_VERTICES: usize = 3 * LANES;
 
-/// The exact vertices of one packet, which are the last ones of a list.
+/// The exact vertices of one packet, at the end of a vertex list.
 struct ExactVertices<'a> {
     list: &'a mut Vec<V3>,
     /// The index of the first vertex of the packet.
     first: usize,
-    /// A key of each vertex; different vertices may have equal ones.
+    /// A hash of each vertex. Different vertices may have equal ones.
     keys: [u32; MAX_VERTICES],
 }
 
@@ -353,8 +354,8 @@ impl<'a> ExactVertices<'a> {
         Self { first: list.len(), list, keys: [0; MAX_VERTICES] }
     }
 
-    /// Returns the index of a vertex, and appends the vertex if it is not there yet. Two vertices are the same if they
-    /// have the same bits.
+    /// Returns the index of a vertex, and appends the vertex if it is new. Two vertices are the same if they have the
+    /// same bits.
     #[inline(always)]
     #[allow(
         clippy::cast_possible_truncation,
@@ -391,8 +392,8 @@ impl<'a> ExactVertices<'a> {
 #[inline(always)]
 #[allow(clippy::cast_possible_truncation, reason = "the lowest bits are the integer")]
 fn round_to_grid(x: f64) -> u16 {
-    // At this size the unit in the last place is 1. The function of the library is a call on processors without an
-    // instruction for it.
+    // At this magnitude the unit in the last place is 1. The library function would be a call on processors without a
+    // rounding instruction.
     const SHIFT: f64 = power_of_two(52);
     // A frame without a unit may give NaN, which becomes 0.
     let x = if x > 0.0 { x } else { 0.0 };
@@ -400,7 +401,7 @@ fn round_to_grid(x: f64) -> u16 {
     (x + SHIFT).to_bits() as u16
 }
 
-/// The smallest power of two of which `size` is at most 65534 times as large; 0 for a size of 0.
+/// Returns the smallest power of two such that `size` is at most 65534 times as large, or 0 for a size of 0.
 pub fn frame_unit(size: f64) -> f64 {
     if size <= 0.0 {
         return 0.0;
@@ -415,8 +416,8 @@ pub fn frame_unit(size: f64) -> f64 {
     scale(e)
 }
 
-/// 2^e, which is 0 or infinite where f64 does not have it.
+/// Returns 2^e, or 0 or infinity beyond the range of f64.
 fn scale(e: i32) -> f64 {
-    // The library function is slow, and almost all sizes are in the range of the other one.
+    // The library function is slow, and almost all exponents are in the range of the fast one.
     if (-1022..=1023).contains(&e) { power_of_two(e) } else { 2f64.powi(e) }
 }

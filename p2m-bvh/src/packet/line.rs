@@ -7,7 +7,7 @@ use p2m_core::engine::vector::power_of_two;
 /// The line of a ray, scaled so that the largest component of its direction is 1 or -1.
 #[derive(Clone, Copy, Debug)]
 pub struct RayLine {
-    /// The origin of the line: that of the ray, or a point of the ray's line near the scene.
+    /// The origin of the line: the origin of the ray, or a point of the ray's line near the scene.
     pub origin: [f64; 3],
     /// The direction of the ray, divided by `divisor`.
     pub direction: [f64; 3],
@@ -27,7 +27,7 @@ pub struct RayLine {
 const LENGTH_ROUNDING: f64 = power_of_two(-50);
 
 impl RayLine {
-    /// The line of a ray that hits segments and points within `radius`.
+    /// Returns the line of a ray that hits segments and points within `radius`.
     #[inline(always)]
     pub fn from_ray(ray: &Ray, radius: f64) -> Self {
         let d = ray.direction;
@@ -51,9 +51,10 @@ impl RayLine {
         }
     }
 
-    /// The line of a ray, with the projection of a point onto it as its origin.
+    /// Returns the line of a ray whose origin is the projection of a point.
     ///
-    /// This is for rays from so far away that f64 would lose the scene on the way. The projection is rounded once.
+    /// It serves rays whose origin is so far away that f64 could not resolve the scene from there. The projection is
+    /// rounded once.
     #[cold]
     #[inline(never)]
     pub fn from_afar(ray: &Ray, radius: f64, point: &[f64; 3]) -> Self {
@@ -64,22 +65,22 @@ impl RayLine {
         Self { origin, origin_length, origin_error, ..line }
     }
 
-    /// The length from the origin of the line to a parameter of the ray, rounded down.
+    /// Returns the length from the origin of the line to a parameter of the ray, rounded down.
     #[inline(always)]
     pub fn length_below(&self, parameter: f64) -> f64 {
         let (length, error) = self.length(parameter);
-        // The comparison is false for NaN, which infinite parameters and lengths that overflow give.
+        // Infinite parameters and lengths that overflow give NaN, for which the comparison is false.
         if length - error > f64::MIN { length - error } else { f64::NEG_INFINITY }
     }
 
-    /// The length from the origin of the line to a parameter of the ray, rounded up.
+    /// Returns the length from the origin of the line to a parameter of the ray, rounded up.
     #[inline(always)]
     pub fn length_above(&self, parameter: f64) -> f64 {
         let (length, error) = self.length(parameter);
         if length + error < f64::MAX { length + error } else { f64::INFINITY }
     }
 
-    /// The length from the origin of the line to a parameter of the ray, and a bound on its error.
+    /// Returns the length from the origin of the line to a parameter of the ray, and a bound on its error.
     #[inline(always)]
     fn length(&self, parameter: f64) -> (f64, f64) {
         let length = parameter * self.divisor;

@@ -1,9 +1,10 @@
 //! The line filter of a packet: which of its primitives a line may hit.
 //!
-//! The origin of the line is moved to the projection of the centre of the packet, so the filter does not depend on how
-//! far away the line begins. All vertices are then projected along the line onto the two axes that it is steepest to.
-//! There a triangle that the line hits has the origin inside, within a margin of one or two units of the frame. The
-//! proof is in [docs/proofs/rays.md]. Primitives that pass the filter are tested exactly.
+//! The basic idea is to look along the line. The origin of the line is moved to the projection of the packet's centre
+//! onto it, so the filter does not depend on how far away the line begins. All vertices are then projected along the
+//! line onto the two axes to which it is steepest, so that the line becomes the point 0. A triangle that the line hits
+//! contains this point, within a margin of one or two units of the frame. The proof is in [docs/proofs/rays.md].
+//! Primitives that pass the filter are tested exactly.
 //!
 //! [docs/proofs/rays.md]: https://github.com/p2m-rs/p2m/blob/main/docs/proofs/rays.md
 
@@ -14,7 +15,7 @@ use p2m_core::engine::simd::{InstructionSet, Lanes};
 
 /// A line in the frame of a packet, with an origin near the centre of the packet.
 struct PacketLine {
-    /// The two axes of the projection, and then the axis along which the line is projected.
+    /// The two axes of the projection plane, and then the axis along which the line is projected.
     axes: [usize; 3],
     base: [f32; 3],
     /// The growth of the first two coordinates along the line, per unit of the third.
@@ -25,24 +26,24 @@ struct PacketLine {
     margin: f32,
     /// A bound on the error of a projected coordinate plus the radius of the ray, for segments, points and boxes.
     wire_margin: f32,
-    /// The least third coordinate of the searched piece of the line, seen from the base.
+    /// The least third coordinate of the searched piece of the line, relative to its base.
     low: f32,
-    /// The largest third coordinate of the searched piece of the line, seen from the base.
+    /// The largest third coordinate of the searched piece of the line, relative to its base.
     high: f32,
 }
 
 /// Half of the edge of the frame, in its units.
 const CENTRE: f64 = (GRID_MAX + 1.0) / 2.0;
-/// A line that passes the centre at more than this many units hits nothing in the packet: 2^18.
+/// The distance from the centre, 2^18 units, beyond which a line hits nothing in the packet.
 const MAX_CENTRE_OFFSET: f64 = 262_144.0;
-/// The filter is not used if the position of the line is uncertain by this many units or more.
+/// The uncertainty of the position of a line, in units of the frame, from which on the filter is not used.
 const MAX_POSITION_ERROR: f64 = 1024.0;
 
 impl Packet {
-    /// A mask with one bit for each lane that a line may hit.
+    /// Returns one bit per lane: whether the line may hit its primitive.
     ///
-    /// Only hits between the lengths `from` and `to` count, which are measured from the origin of the line in units
-    /// of the scene. `is_inlined` tells whether the caller contains the code of the filter.
+    /// Only hits between the lengths `from` and `to` count, which are measured from the origin of the line in units of
+    /// the scene. `is_inlined` is whether the caller contains the code of the filter.
     #[inline(always)]
     pub fn lanes_hit_by<I: InstructionSet>(&self, is_inlined: bool, line: &RayLine, from: f64, to: f64) -> u32 {
         match self.position_of(line, from, to) {
@@ -53,7 +54,7 @@ impl Packet {
         }
     }
 
-    /// The position of a line with respect to the packet.
+    /// Returns the position of a line relative to the packet.
     #[inline(always)]
     #[allow(clippy::cast_possible_truncation, reason = "the margins allow for rounding")]
     fn position_of(&self, line: &RayLine, from: f64, to: f64) -> LinePosition {
@@ -61,14 +62,14 @@ impl Packet {
         let q: [f64; 3] = std::array::from_fn(|k| (line.origin[k] - self.origin[k]) * self.per_unit);
         let square = d[0] * d[0] + d[1] * d[1] + d[2] * d[2];
         let towards = d[0] * (CENTRE - q[0]) + d[1] * (CENTRE - q[1]) + d[2] * (CENTRE - q[2]);
-        // Lengths along the axis are those along the line, because the direction has 1 there.
+        // Lengths along the axis equal lengths along the line, because the direction has the component 1 there.
         let ahead = towards / square;
         let base: [f64; 3] = std::array::from_fn(|k| q[k] + ahead * d[k]);
         let size = |x: &[f64; 3]| x[0].abs().max(x[1].abs()).max(x[2].abs());
         let error = (size(&q) + ahead.abs()) * (8.0 * f64::EPSILON) + line.origin_error * self.per_unit;
         // The radius does not apply to triangles.
         let radius = if self.kind() == Kind::Triangle { 0.0 } else { line.radius * self.per_unit };
-        // The negated comparison is true as well if the error is NaN, which infinite differences give.
+        // The negated comparison is also true if the error is NaN, which infinite differences give.
         if !(self.unit > 0.0 && error < MAX_POSITION_ERROR && radius < MAX_POSITION_ERROR) {
             return LinePosition::Unknown;
         }
@@ -92,25 +93,25 @@ impl Packet {
             is_descending,
             margin: margin as f32,
             wire_margin: (margin + 1.75 * radius) as f32,
-            // Infinite ends give NaN, which `max` and `min` replace by no limit.
+            // Infinite ends give NaN, for which `max` and `min` return the other operand: no limit.
             low: ((low - low_error).max(f64::NEG_INFINITY) as f32).next_down(),
             high: ((high + high_error).min(f64::INFINITY) as f32).next_up(),
         })
     }
 
-    /// A mask of the lanes whose projections reach the origin.
+    /// Runs [`lanes_near`](Self::lanes_near) out of line.
     #[inline(never)]
     fn lanes_near_out_of_line<I: InstructionSet>(&self, line: &PacketLine) -> u32 {
         self.lanes_near::<I>(line)
     }
 
-    /// A mask of the lanes whose projections reach the origin.
+    /// Returns one bit per lane: whether its projection reaches the origin.
     #[inline(always)]
     fn lanes_near<I: InstructionSet>(&self, line: &PacketLine) -> u32 {
         let mut lanes = 0;
         let mut at = 0;
         while at < LANES {
-            // The arrays are spelled out, because closures are compiled without the instruction set.
+            // The arrays are written out, because closures are compiled without the instruction set.
             lanes |= match self.kind() {
                 Kind::Triangle => triangle_lanes::<I::Wide>(
                     line,
@@ -132,7 +133,7 @@ impl Packet {
         lanes
     }
 
-    /// Vertex v of the lanes from `at` on, seen from the base of the line; the axis of the line comes last.
+    /// Returns vertex v of the lanes from `at` on, relative to the base of the line. The axis of the line comes last.
     #[inline(always)]
     fn offset<L: Lanes>(&self, line: &PacketLine, v: usize, at: usize) -> [L; 3] {
         [self.coordinate(line, v, 0, at), self.coordinate(line, v, 1, at), self.coordinate(line, v, 2, at)]
@@ -143,7 +144,8 @@ impl Packet {
         L::load_u16(&self.rows[3 * v + line.axes[k]][at..]).sub(L::splat(line.base[k]))
     }
 
-    /// Vertex v of the lanes from `at` on, projected along the line; the last coordinate is the length along it.
+    /// Returns vertex v of the lanes from `at` on, projected along the line. The last coordinate is the length along
+    /// it.
     #[inline(always)]
     fn projected<L: Lanes>(&self, line: &PacketLine, v: usize, at: usize) -> [L; 3] {
         let [x, y, z] = self.offset::<L>(line, v, at);
@@ -152,7 +154,7 @@ impl Packet {
     }
 }
 
-/// The position of a line with respect to a packet.
+/// The position of a line relative to a packet.
 enum LinePosition {
     /// The line passes so far from the packet that it hits nothing there.
     Beside,
@@ -166,14 +168,14 @@ fn abs<L: Lanes>(x: L) -> L {
     x.max(L::splat(0.0).sub(x))
 }
 
-/// A mask of the lanes whose extent along the line overlaps the searched piece of it.
+/// Returns one bit per lane: whether its extent along the line overlaps the searched piece.
 #[inline(always)]
 fn in_searched_piece<L: Lanes>(line: &PacketLine, least: L, largest: L) -> u32 {
     // The second comparison is low <= largest, written as -largest <= -low.
     least.at_most(L::splat(line.high)) & L::splat(0.0).sub(largest).at_most(L::splat(-line.low))
 }
 
-/// A mask of the triangles that have the origin on one side of all edges, within the margin.
+/// Returns one bit per triangle: whether the origin is on one side of all its edges, within the margin.
 #[inline(always)]
 fn triangle_lanes<L: Lanes>(line: &PacketLine, a: &[L; 3], b: &[L; 3], c: &[L; 3]) -> u32 {
     let (left_of_ab, right_of_ab) = sides(line, a, b);
@@ -184,8 +186,8 @@ fn triangle_lanes<L: Lanes>(line: &PacketLine, a: &[L; 3], b: &[L; 3], c: &[L; 3
         & in_searched_piece(line, least, largest)
 }
 
-/// Two masks: the lanes that have the origin to the left of an edge or on it, and those that have it to the right
-/// or on it.
+/// Returns two masks: the lanes with the origin to the left of an edge or on it, and the lanes with the origin to the
+/// right or on it.
 #[inline(always)]
 fn sides<L: Lanes>(line: &PacketLine, a: &[L; 3], b: &[L; 3]) -> (u32, u32) {
     let area = doubled_area(a, b);
@@ -193,37 +195,37 @@ fn sides<L: Lanes>(line: &PacketLine, a: &[L; 3], b: &[L; 3]) -> (u32, u32) {
     (L::splat(0.0).sub(area).at_most(margin), area.at_most(margin))
 }
 
-/// Twice the signed area of the triangle of the origin and two points.
+/// Returns twice the signed area of the triangle between the origin and two points.
 #[inline(always)]
 fn doubled_area<L: Lanes>(a: &[L; 3], b: &[L; 3]) -> L {
     a[0].mul(b[1]).sub(a[1].mul(b[0]))
 }
 
-/// A bound on the error of [`doubled_area`] if each coordinate errs by at most `margin`.
+/// Returns a bound on the error of [`doubled_area`] if each coordinate errs by at most `margin`.
 #[inline(always)]
 fn area_margin<L: Lanes>(margin: f32, a: &[L; 3], b: &[L; 3]) -> L {
     let sum = abs(a[0]).add(abs(a[1])).add(abs(b[0])).add(abs(b[1]));
     L::splat(margin).mul_add(sum, L::splat(2.0 * margin * margin))
 }
 
-/// A mask of the segments that come near the origin.
+/// Returns one bit per segment: whether it comes near the origin.
 #[inline(always)]
 fn segment_lanes<L: Lanes>(line: &PacketLine, a: &[L; 3], b: &[L; 3]) -> u32 {
-    // The nearest point of a line with a radius may lie that much farther along it.
+    // With a radius, the nearest point of a segment to the line may be farther along the line by that much.
     let margin = L::splat(line.wire_margin);
     let (least, largest) = (a[2].min(b[2]).sub(margin), a[2].max(b[2]).add(margin));
     let near = abs(doubled_area(a, b)).at_most(area_margin(line.wire_margin, a, b));
     near & spans_origin(line, a[0], b[0]) & spans_origin(line, a[1], b[1]) & in_searched_piece(line, least, largest)
 }
 
-/// A mask of the lanes in which 0 lies between two numbers, within the margin.
+/// Returns one bit per lane: whether 0 lies between two numbers, within the margin.
 #[inline(always)]
 fn spans_origin<L: Lanes>(line: &PacketLine, a: L, b: L) -> u32 {
     let margin = L::splat(line.wire_margin);
     a.min(b).at_most(margin) & L::splat(0.0).sub(a.max(b)).at_most(margin)
 }
 
-/// A mask of the boxes, given by two corners, whose projections contain the origin.
+/// Returns one bit per box, given by two corners: whether its projection contains the origin.
 #[inline(always)]
 fn box_lanes<L: Lanes>(line: &PacketLine, min: &[L; 3], max: &[L; 3]) -> u32 {
     let (centre, extent) = centre_and_extent(min[2], max[2]);
@@ -239,7 +241,7 @@ fn box_lanes<L: Lanes>(line: &PacketLine, min: &[L; 3], max: &[L; 3]) -> u32 {
     lanes
 }
 
-/// The middle between two numbers, and half of their difference.
+/// Returns the middle between two numbers, and half of their difference.
 #[inline(always)]
 fn centre_and_extent<L: Lanes>(min: L, max: L) -> (L, L) {
     let half = L::splat(0.5);
@@ -267,7 +269,7 @@ mod tests {
         }
     }
 
-    /// A primitive without vertices, of which a packet stores the box.
+    /// A primitive without vertices, whose box a packet stores.
     struct WithoutVertices(Shape<f64>);
 
     impl Primitive<f64> for WithoutVertices {
@@ -318,7 +320,7 @@ mod tests {
             };
             let size = (bounds.max - bounds.min).norm();
             for _ in 0..8 {
-                // The ray aims at a point of a primitive (a corner, a point of an edge, an inner one) or beside it.
+                // The ray aims at a point of a primitive (a corner, a point of an edge or an inner point) or beside it.
                 let primitive = soup.get(PrimitiveId::new(rng.random_range(0..16)));
                 let vertices = primitive.vertices();
                 let mut weights = [0.0; 3].map(|_: f64| f64::from(rng.random_range(0..4u8)));

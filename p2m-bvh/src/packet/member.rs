@@ -1,11 +1,11 @@
-//! Primitives as a build sees them: in f64, and independent of the type of their set.
+//! Primitives in the form that a build uses: in f64, and independent of the type of their set.
 
 use p2m_core::engine::real::to_f64_array;
 use p2m_core::engine::vector::V3;
 use p2m_core::{Aabb, Primitive, PrimitiveId, Real};
 use std::cmp::Ordering;
 
-/// The kind of the primitives of a packet, by the number of vertices that span them.
+/// The kind of the primitives in a packet, by the number of vertices that span them.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 #[repr(u8)]
 pub enum Kind {
@@ -15,12 +15,12 @@ pub enum Kind {
     Segment,
     /// Three vertices span each primitive.
     Triangle,
-    /// The primitives have no vertices, or more than three: the packet stores their boxes.
+    /// The primitives have no vertices, or more than three. The packet stores their boxes.
     Box,
 }
 
 impl Kind {
-    /// The kind of a primitive.
+    /// Returns the kind of a primitive.
     pub fn of<T: Real>(primitive: &impl Primitive<T>) -> Self {
         match primitive.vertices().len() {
             1 => Self::Point,
@@ -58,13 +58,13 @@ impl Member {
         self.kind.cmp(&other.kind).then_with(|| bits(self).cmp(&bits(other)))
     }
 
-    /// Whether two primitives have the same vertices, bit for bit and in the same order. Nothing is known about
-    /// primitives of which only the box is.
+    /// Returns whether two primitives have the same vertices, bit for bit and in the same order. It is `false` for
+    /// primitives of which only the box is known.
     pub(crate) fn is_same(&self, other: &Self) -> bool {
         self.kind != Kind::Box && self.compare(other).is_eq()
     }
 
-    /// The vertices that span the primitive; the slice is empty for [`Kind::Box`].
+    /// Returns the vertices that span the primitive, which are none for [`Kind::Box`].
     pub fn vertices(&self) -> &[V3] {
         let count = match self.kind {
             Kind::Point => 1,

@@ -1,6 +1,6 @@
 //! Squared distances to points, segments and triangles, lane by lane.
 //!
-//! The band within which they are right is stated in `distance_filter`; its proof is in [docs/proofs/filter.md].
+//! `distance_filter` states the band of their errors; the proof is in [docs/proofs/filter.md].
 //!
 //! [docs/proofs/filter.md]: https://github.com/p2m-rs/p2m/blob/main/docs/proofs/filter.md
 
@@ -40,7 +40,7 @@ impl<L: Lanes> V3<L> {
     pub(super) fn square(&self) -> L {
         self.dot(self)
     }
-    /// The cross product of orthogonal vectors, for which no cancellation makes the result inaccurate.
+    /// Returns the cross product of orthogonal vectors, which cancellation cannot make inaccurate.
     #[inline(always)]
     fn cross(&self, other: &Self) -> Self {
         let zero = L::splat(0.0);
@@ -50,7 +50,7 @@ impl<L: Lanes> V3<L> {
             z: self.x.mul_add(other.y, zero.sub(self.y).mul(other.x)),
         }
     }
-    /// The cross product of vectors of whole numbers, or of multiples of them by one power of two. Only the last bits
+    /// Returns the cross product of integer vectors, or of integer vectors times one power of two. Only the last bits
     /// are rounded, however nearly parallel the vectors are.
     #[inline(always)]
     fn cross_of_integers(&self, other: &Self) -> Self {
@@ -62,7 +62,7 @@ impl<L: Lanes> V3<L> {
     }
 }
 
-/// The squared distance from the origin to the segment from `a` along `e`, given 1 / |e|^2.
+/// Returns the squared distance from the origin to the segment from `a` along `e`, given 1 / |e|^2.
 #[inline(always)]
 pub(super) fn square_from_edge<L: Lanes>(a: &V3<L>, e: &V3<L>, inverse_square: L) -> L {
     let t = L::splat(0.0).sub(a.dot(e)).mul(inverse_square);
@@ -72,7 +72,7 @@ pub(super) fn square_from_edge<L: Lanes>(a: &V3<L>, e: &V3<L>, inverse_square: L
     p.square()
 }
 
-/// Triangles, with what the distances of all query points from them need.
+/// Decoded triangles, shared by all query points.
 pub(super) struct Triangles<L> {
     vertices: [V3<L>; 3],
     edges: [EdgeOfTriangle<L>; 3],
@@ -85,7 +85,7 @@ pub(super) struct Triangles<L> {
 
 /// An edge of triangles.
 struct EdgeOfTriangle<L> {
-    /// The vector from the vertex with the same number to the next one.
+    /// The vector from the vertex with the same number to the next vertex.
     vector: V3<L>,
     length_squared: L,
     /// The number 1 / |vector|^2.
@@ -104,12 +104,12 @@ impl<L: Lanes> EdgeOfTriangle<L> {
 }
 
 impl<L: Lanes> Triangles<L> {
-    /// Prepares triangles whose vertices are whole numbers, of which exact edges are made.
+    /// Decodes triangles whose vertices are whole numbers, so that their edges are exact.
     #[inline(always)]
     pub(super) fn new(vertices: [V3<L>; 3]) -> Self {
         let [a, b, c] = &vertices;
         let vectors = [b.sub(a), c.sub(b), a.sub(c)];
-        // The scale keeps all the squares below from overflowing.
+        // The scale prevents overflow of all the squares below.
         let normal = vectors[0].scaled(L::splat(EDGE_SCALE)).cross_of_integers(&vectors[1]);
         let normal_squared = normal.square();
         let [e, f, g] = vectors;
@@ -117,18 +117,20 @@ impl<L: Lanes> Triangles<L> {
         Self { edges, inverse_square: normal_squared.reciprocal(), normal_squared, normal, vertices }
     }
 
-    /// The squared distances from a query point.
+    /// Returns the squared distances from a query point.
     #[inline(always)]
     pub(super) fn squares(&self, query: &V3<L>, margin_squared: f32) -> L {
         let margin = L::splat(margin_squared).mul(self.normal_squared);
         let mut nearest = L::splat(f32::INFINITY);
-        // This is below zero where the projection onto the plane is inside of all three edges by more than the margin.
+        // The value is below zero if the projection onto the plane is inside of all three edges by more than the
+        // margin.
         let mut outside = L::splat(f32::NEG_INFINITY);
         let mut height = L::splat(0.0);
         for i in 0..3 {
             let (edge, a) = (&self.edges[i], self.vertices[i].sub(query));
             nearest = square_from_edge(&a, &edge.vector, edge.inverse_square).min(nearest);
-            // If the query is inside, the vertex lies ahead in the direction that leaves the triangle across this edge.
+            // If the query is inside, the vertex is ahead of it in the direction that leaves the triangle across this
+            // edge.
             let ahead = a.dot(&edge.outwards);
             let beyond = margin.mul(edge.length_squared).sub(ahead.mul(ahead.max(L::splat(0.0))));
             outside = beyond.max(outside);
@@ -141,9 +143,9 @@ impl<L: Lanes> Triangles<L> {
     }
 }
 
-/// Returns one bit for each lane: whether a vertex of its triangle does not lie behind a plane. The plane is orthogonal
-/// to `normal`, and its offset is the product of the normal with the vector from the query point to a point
-/// of the plane.
+/// Returns one bit per lane: whether a vertex of its triangle is not behind a plane. The plane is orthogonal to
+/// `normal`, and `offset` is the dot product of the normal with the vector from the query point to a point of the
+/// plane.
 #[inline(always)]
 pub(super) fn lanes_before_plane<L: Lanes>(vertices: &[V3<L>; 3], query: &V3<L>, normal: [f32; 3], offset: f32) -> u32 {
     let normal = V3::splat(normal);
@@ -152,6 +154,6 @@ pub(super) fn lanes_before_plane<L: Lanes>(vertices: &[V3<L>; 3], query: &V3<L>,
     a.min(b).min(c).at_most(L::splat(offset))
 }
 
-/// A scale of edges, 2^-34, with which products of two edges are at most about 1.
+/// The scale of edges, 2^-34, with which products of two edges are at most about 1.
 #[allow(clippy::cast_possible_truncation, reason = "a power of two")]
 const EDGE_SCALE: f32 = power_of_two(-34) as f32;

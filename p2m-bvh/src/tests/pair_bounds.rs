@@ -1,5 +1,5 @@
-//! Tests that the bounds of a search for pairs never exceed distances. Wrong pairs are too rare a sign of that: nodes are
-//! rounded outwards, and a bound has to exceed the distance of the very pair that is nearest.
+//! Tests that the bounds of a search for pairs never exceed distances. Wrong answers would reveal an error too rarely:
+//! nodes are rounded outwards, and the bound of the nearest pair itself would have to exceed its distance.
 
 use crate::traverse::pairs::TreeSide;
 use crate::tree::PacketTree;
@@ -14,8 +14,8 @@ use p2m_core::{Aabb, BruteForce, Point, PrimitiveId, Triangle};
 use p2m_testkit::{cases, rng, vector};
 use rand::RngExt;
 
-/// Returns the tree of at most eight points, each of which has a packet of its own, so that boxes have no extent but for
-/// rounding and bounds are tight.
+/// Returns the tree of at most eight points, each in a packet of its own. So the boxes have no extent except for
+/// rounding, and bounds are tight.
 fn tree(points: &[Point<f64>]) -> PacketTree<Aabb<f64>> {
     PacketTree::build(points, &SplitOptions { max_leaf: 1, ..SplitOptions::default() })
 }
@@ -40,7 +40,7 @@ fn bounds_between_nodes_never_exceed_distances() {
     let mut compared = 0;
     for case in all.clone() {
         let mut rng = rng("bounds between nodes", case);
-        // Frames keep a margin in proportion to the distance, so that distances are small beside the frame.
+        // Frames keep a margin in proportion to the distance, so the distances are small relative to the frame.
         let gap = 2f64.powi(-rng.random_range(5..16));
         let far = vector(&mut rng) * [0.0, 1.0, 1e9, 2f64.powi(34), 2f64.powi(35)][rng.random_range(0..5)];
         let turn = [Vector3::zeros(), vector(&mut rng) * 3.0][rng.random_range(0..2)];
@@ -76,7 +76,8 @@ fn bounds_between_nodes_never_exceed_distances() {
     assert!(all.have_more_than(500_000, compared), "{compared}");
 }
 
-/// The vertices of a node are about equally high, so a search that trusts bounds in f32 stops at one that is not highest.
+/// The vertices of a node have about the same height, so a search that trusts bounds in f32 would stop at one that is
+/// not the highest.
 #[test]
 fn extents_along_a_direction_are_those_of_vertices() {
     for case in cases(100_000, 4_000) {
@@ -99,8 +100,8 @@ fn extents_along_a_direction_are_those_of_vertices() {
     }
 }
 
-/// The boxes of nodes are exact here, because the coordinates of the points have few digits. A shape has no slack of its
-/// own, so only that of the children covers how f32 rounds their heights.
+/// The boxes of nodes are exact here, because the coordinates of the points have few digits. A shape has no slack of
+/// its own, so only the slack of the children covers the rounding of their heights to f32.
 #[test]
 fn bounds_between_exact_nodes_and_shapes_never_exceed_distances() {
     for case in cases(200_000, 3_000) {
@@ -138,8 +139,8 @@ fn bounds_between_exact_nodes_and_shapes_never_exceed_distances() {
     }
 }
 
-/// Squares of lengths, or lengths themselves, are subnormal or overflow at these scales, so that heights are rounded by a
-/// large part of themselves.
+/// At these scales squares of lengths, or lengths themselves, are subnormal or overflow, so that heights have large
+/// relative errors.
 #[test]
 fn scenes_of_extreme_sizes_have_the_pairs_of_brute_force() {
     for case in cases(200_000, 3_000) {
@@ -167,8 +168,8 @@ fn scenes_of_extreme_sizes_have_the_pairs_of_brute_force() {
     }
 }
 
-/// Squares of these lengths are one or two of the smallest numbers. Rounded like that, the second offset seems to be
-/// longer than the first.
+/// The squares of these lengths are one or two times the smallest number. Rounded like that, the second offset seems to
+/// be longer than the first.
 #[test]
 fn offsets_whose_squares_are_hardly_numbers_are_compared() {
     for unit in [2f64.powi(-537), 2f64.powi(-536), 2f64.powi(-530)] {

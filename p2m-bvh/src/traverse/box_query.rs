@@ -10,12 +10,12 @@ use std::ops::ControlFlow;
 impl<V: VolumeNodes> PacketTree<V> {
     /// Visits the primitives that intersect a box, in the order of the leaves, until `visit` breaks.
     ///
-    /// `intersects` returns whether a primitive intersects the box. It is called only for primitives for which the
-    /// boxes of nodes do not decide that.
+    /// `intersects` returns whether a primitive intersects the box. It is called only if the boxes of nodes do not
+    /// decide that.
     ///
     /// # Complexity
-    /// O(log n + k) nodes expected for k primitives in a compact box, O(n) at worst. There is no allocation
-    /// and no recursion.
+    /// O(log n + k) nodes expected for k primitives in a compact box, O(n) at worst. There is no allocation and no
+    /// recursion.
     pub fn visit_box(
         &self,
         bounds: &Aabb<f64>,
@@ -25,7 +25,7 @@ impl<V: VolumeNodes> PacketTree<V> {
         if bounds.is_empty() {
             return ControlFlow::Continue(());
         }
-        // Each entry is a child, and whether the box is known to contain it.
+        // Each entry is a child, and whether it is known to lie in the box.
         let mut stack = [(self.root, false); STACK_LEN];
         let mut len = usize::from(self.root != NodeRef::NONE);
         while len > 0 {

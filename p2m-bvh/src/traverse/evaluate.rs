@@ -9,7 +9,8 @@ use p2m_core::engine::query::BestF64;
 use p2m_core::engine::side_by_side::{SIDE_BY_SIDE, TriangleLanes, certain_vertex_squares};
 use p2m_core::engine::simd::{InstructionSet, SimdKernel};
 
-/// Above this number of pending candidates, ties at shared vertices are sorted out before any candidate is evaluated.
+/// The number of pending candidates above which ties at shared vertices are removed before any candidate is evaluated.
+/// There is no record of how it was tuned.
 const SORT_TIES_ABOVE_CANDIDATES: usize = 3;
 
 /// Offers the primitive in a lane to the collector, unless its key exceeds `square`.
@@ -24,8 +25,8 @@ pub(super) fn offer<C: Collector>(
     evaluate: EvaluateFn<'_, C>,
 ) {
     let id = packet.ids()[lane];
-    // A collector that keeps near ties gets every candidate, because another one that is nearer by rounding alone must
-    // not exclude it.
+    // A collector that keeps near ties gets every candidate, because a candidate that is nearer by rounding alone must
+    // not exclude another one.
     let square = if collector.keeps_near_ties() { f64::INFINITY } else { square };
     if !packet.has_vertices() {
         evaluate(collector, id, square);
@@ -37,8 +38,8 @@ pub(super) fn offer<C: Collector>(
 impl<C: Collector> SearchState<'_, C> {
     /// Drops pending triangles that cannot win because they tie or lose at a vertex.
     ///
-    /// For a query far from a mesh, all triangles around the nearest vertex are tied. Among those whose nearest point is
-    /// certainly a vertex, only the nearest one is kept, and of several the one with the lowest id. Keys of vertices are
+    /// For a query far from a mesh, all triangles around the nearest vertex are tied. Among the triangles whose nearest
+    /// point is certainly a vertex, only the nearest one is kept, and ties go to the lowest id. Keys of vertices are
     /// exact to a few u, so dropping the others does not affect the certified lower bound either.
     #[inline(always)]
     #[allow(clippy::float_cmp, reason = "ties are equality of bits")]
@@ -47,7 +48,7 @@ impl<C: Collector> SearchState<'_, C> {
         let count = self.pending_len.min(SIDE_BY_SIDE);
         for (lane, candidate) in self.pending[..count].iter().enumerate() {
             let packet = &self.leaves.packets[candidate.packet as usize];
-            // A primitive of another kind leaves three equal corners, for which no vertex is certain.
+            // A primitive of another kind has three equal corners here, for which no vertex is certain.
             if let Some(vertices) = packet.triangle_corners(candidate.lane as usize, &self.leaves.vertices) {
                 eight.set(lane, &self.query, vertices);
             }
@@ -108,8 +109,7 @@ impl<C: Collector> SearchState<'_, C> {
     fn evaluate_incumbent(&mut self) {
         let Some((Candidate { packet, lane, .. }, _)) = self.incumbent.take() else { return };
         let (packet, lane) = (&self.leaves.packets[packet as usize], lane as usize);
-        // The square is not limited by what the collector has already, because candidates were skipped for the sake
-        // of this one.
+        // The collector's limit is not applied, because candidates were skipped in favour of this one.
         offer(self.leaves, packet, lane, self.query, f64::INFINITY, self.collector, self.evaluate);
         if self.collector.may_stop(false) {
             for candidate in &self.pending[..self.pending_len] {
@@ -124,14 +124,14 @@ impl<C: Collector> SearchState<'_, C> {
 
 /// Evaluates the pending candidates with the instruction set of the tree.
 ///
-/// This is a function of its own so that the traversal need not share its registers with the evaluation.
+/// It is a function of its own, so that the traversal need not share its registers with the evaluation.
 #[inline(never)]
 pub fn finish<C: Collector>(state: &mut SearchState<'_, C>) {
     state.isa.run(EvaluatePending(state));
 }
 
-/// Evaluates the pending candidates of a search for the nearest primitive. Unlike [`finish`] it is not generic, so it
-/// is compiled once.
+/// Evaluates the pending candidates of a search for the nearest primitive. It is not generic, unlike [`finish`], so
+/// that it is compiled once.
 #[inline(never)]
 pub fn finish_nearest(state: &mut SearchState<'_, BestF64>) {
     state.isa.run(EvaluatePending(state));

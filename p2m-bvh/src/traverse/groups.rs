@@ -1,4 +1,4 @@
-//! The division of queries into groups of searches that take turns.
+//! The division of a batch into groups of interleaved searches.
 
 use crate::traverse::interleaved_search::{InterleavedSearch, SEARCHES};
 use crate::traverse::primitive_fn::EvaluateFn;
@@ -11,10 +11,10 @@ use p2m_core::engine::vector::V3;
 use p2m_core::{BatchAnswer, Best, Collector, Primitive, PrimitiveId, PrimitiveSet, QueryOptions, Real};
 use std::cell::Cell;
 
-/// Answers queries in groups, and calls `answered` once for each with its position and its answer. `search` searches
-/// for the first searches of the state, whose number it is given. The options have to be exact.
+/// Answers queries in groups, and calls `answered` once per query with its position and its answer. `search` runs the
+/// first `count` searches of the state; `count` is its first argument. The options have to be exact.
 ///
-/// Queries that are not finite have no answer, and the others are gathered into full groups without them.
+/// Queries that are not finite have no answer. The others are gathered into full groups without them.
 pub fn answer_in_groups<T: Real, S: PrimitiveSet<T>, V: Volume>(
     tree: &PacketTree<V>,
     set: &S,

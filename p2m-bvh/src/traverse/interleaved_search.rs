@@ -1,8 +1,14 @@
-//! The state of several searches for the nearest primitive that take turns, and the filters of packets in it.
+//! The state of interleaved searches for the nearest primitive, with the filters of their packets.
 //!
-//! A single search spends much of its time on branches that the processor mispredicts, and on the latency of memory
-//! and of divisions. Here each step is made for all searches before the next one: loops over packets and candidates
-//! have long bodies without such branches, and the processor works on several of them at a time.
+//! A single search spends much of its time on mispredicted branches, and on the latency of memory and of divisions. The
+//! basic idea is to run sixteen searches step by step, each step for all searches before the next one (decision 048). A
+//! step is a loop over packets or candidates with a long body without such branches, so the processor works on several
+//! iterations at a time. Memory that a step needs is prefetched in the step before.
+//!
+//! A round goes as follows. Each search names a packet ([`PacketVisit`]). All query points are converted to the frames
+//! of their packets; optionally a plane in front of each query excludes far lanes; the filters run; the limits of all
+//! searches are updated; and the lanes within the limits become candidates. At the end, or once a search has many
+//! candidates, the kernel evaluates them eight at a time, and offers them to the collectors.
 
 use crate::packet::{LANES, Locals, PLACES, ROUND_UP, at_most, smallest};
 use crate::traverse::evaluate::offer;
@@ -16,22 +22,23 @@ use p2m_core::engine::simd::{Doubles, Float, InstructionSet, Lanes, SimdKernel};
 use p2m_core::engine::vector::V3;
 use p2m_core::{Collector, Isa, PrimitiveId};
 
-/// The number of searches that take turns. With more of them, packets and nodes of some are displaced from the cache
-/// before the others are done; with fewer, few share a packet.
+/// The number of interleaved searches. With more of them, searches displace each other's packets and nodes from the
+/// cache; with fewer, few searches share a packet. It was tuned on dragon_100k (decision 048).
 pub const SEARCHES: usize = PLACES;
-/// The number of candidates of a search above which they are evaluated at once.
+/// The number of candidates of a search from which on they are evaluated at once. There is no record of how it was
+/// tuned.
 const MAX_CANDIDATES: u32 = 32;
-/// The room for candidates: what passes a filter is added before the number is checked.
+/// The capacity for candidates. All lanes that pass a filter are added before the number is checked.
 const CANDIDATE_ROOM: usize = SEARCHES * (MAX_CANDIDATES as usize + LANES);
 
-/// A packet that a search filters.
+/// A visit of a packet by a search.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct PacketVisit {
     /// The number of the search.
     pub search: u32,
     /// The number of the packet.
     pub packet: u32,
-    /// The lanes that may hold the answer, as bits.
+    /// One bit per lane: whether it may hold the answer.
     pub lanes: u32,
 }
 
@@ -45,16 +52,16 @@ struct Candidate {
     lane: u32,
 }
 
-/// The limits of the searches whose packets are filtered, row by row.
+/// The limits of the searches whose packets are filtered, stored as rows.
 struct LimitRows {
-    /// The distances above which primitives are no candidates.
+    /// The distances above which primitives are not candidates.
     candidate: [f64; SEARCHES],
-    /// The least of the squares that the filter of a packet found, in its frame. It is infinite for a packet of boxes,
-    /// whose filter bounds no distance from above.
+    /// The smallest square that the filter of each packet found, in the packet's frame. It is infinite for a packet of
+    /// boxes, whose filter gives no upper bounds.
     nearest_square: [f32; SEARCHES],
     /// The squares of the distances above which nodes are skipped, in the frame of the tree.
     node: [f32; SEARCHES],
-    /// The distances above which primitives are no candidates, in the frames of the packets.
+    /// The distances above which primitives are not candidates, in the frames of the packets.
     limit: [f32; SEARCHES],
     /// The limits before the filters, in the frames of the packets.
     old_limit: [f32; SEARCHES],
@@ -88,7 +95,7 @@ impl LimitRows {
         }
     }
 
-    /// Computes the limits after the filters from those before them and the least squares.
+    /// Computes the limits after the filters from the limits before them and the smallest squares.
     #[inline(always)]
     fn update<I: InstructionSet>(&mut self, locals: &Locals, frame: &Frame) {
         let mut nearest = [0.0; SEARCHES];
@@ -121,13 +128,13 @@ impl LimitRows {
 #[derive(Clone, Copy)]
 struct Limits {
     query: V3,
-    /// The distance above which primitives are no candidates.
+    /// The distance above which primitives are not candidates.
     candidate: f64,
     /// The square of the distance above which packets are skipped, in the frame of the tree.
     node: f32,
 }
 
-/// The part of the state of several searches that the evaluation of their candidates needs.
+/// The part of the state that the evaluation of candidates needs.
 struct Searches<'a> {
     leaves: &'a Leaves,
     /// The frame of the tree.
@@ -135,15 +142,15 @@ struct Searches<'a> {
     isa: Isa,
     /// The function that searches the whole tree for one query.
     search_tree: SearchTreeFn<'a>,
-    /// The function that evaluates primitives of which the tree has only a box.
+    /// Evaluates primitives without stored vertices.
     evaluate: EvaluateSearchFn<'a>,
     limits: [Limits; SEARCHES],
     minimums: [BestF64; SEARCHES],
 }
 
 impl Searches<'_> {
-    /// Offers results to the collectors of their searches. The kernel for single primitives computes those
-    /// that are not certain.
+    /// Offers results to the collectors of their searches. Results that are not certain are computed by the kernel for
+    /// single primitives.
     #[inline(always)]
     fn take(&mut self, candidates: &[Candidate], found: &LaneResults) {
         for (i, candidate) in candidates.iter().enumerate() {
@@ -157,7 +164,7 @@ impl Searches<'_> {
         }
     }
 
-    /// Evaluates a candidate by the kernel for single primitives.
+    /// Evaluates a candidate with the kernel for single primitives.
     #[inline(never)]
     fn offer_single(&mut self, candidate: Candidate) {
         let (search, lane) = (candidate.search as usize, candidate.lane as usize);
@@ -169,16 +176,16 @@ impl Searches<'_> {
     }
 }
 
-/// The state of several searches. It is large, so a batch makes one and uses it for all of its queries.
+/// The state of interleaved searches. It is large, so a batch creates it once and uses it for all of its queries.
 pub struct InterleavedSearch<'a> {
     searches: Searches<'a>,
     candidates: [Candidate; CANDIDATE_ROOM],
     candidate_count: usize,
     /// The number of candidates of each search.
     counts: [u32; SEARCHES],
-    /// One bit for each search whose candidates are evaluated after the filters of this round: those with many
-    /// candidates, and those whose packet has boxes, which limit a search by their evaluation alone. It depends on the
-    /// search alone, so answers do not depend on the other searches, not even in their lower bounds.
+    /// One bit per search: whether its candidates are evaluated after the filters of this round. These are searches
+    /// with many candidates, and searches whose packet has boxes, which are limited by evaluations alone. A bit depends
+    /// on its search alone, so answers, including their lower bounds, do not depend on the other searches.
     early: u32,
     locals: Locals,
     rows: LimitRows,
@@ -188,14 +195,14 @@ pub struct InterleavedSearch<'a> {
     segments: LaneQueue<2>,
 }
 
-/// A function that offers a primitive to the collector of the search with this number, unless its key exceeds a square.
-/// It is called for primitives of which the tree has only a box.
+/// A function that offers a primitive to the collector of a search, which is given by its number, unless the key
+/// exceeds a square. It is called for primitives without stored vertices.
 pub(crate) type EvaluateSearchFn<'a> = &'a dyn Fn(usize, &mut BestF64, PrimitiveId, f64);
 
 /// A function that searches the whole tree for one query.
 pub(crate) type SearchTreeFn<'a> = &'a dyn Fn(V3, &mut BestF64, EvaluateFn<'_, BestF64>);
 
-/// A factor for bounds that are computed in f64 with a few roundings of their own.
+/// A factor that rounds up bounds that are computed in f64 with a few roundings.
 pub(super) const ROUND_UP_F64: f64 = 1.0 + 4.0 * f64::EPSILON;
 
 impl<'a> InterleavedSearch<'a> {
@@ -246,7 +253,7 @@ impl<'a> InterleavedSearch<'a> {
         self.update_limit(search);
     }
 
-    /// Limits a search to an upper bound on the distance of its nearest primitive.
+    /// Limits a search by an upper bound on the distance of its nearest primitive.
     #[inline(always)]
     pub fn limit_to(&mut self, search: usize, upper_bound: f64) {
         let limits = &mut self.searches.limits[search];
@@ -255,19 +262,19 @@ impl<'a> InterleavedSearch<'a> {
         limits.node = if node < limits.node { node } else { limits.node };
     }
 
-    /// The collectors of the searches.
+    /// Returns the collectors of the searches.
     #[inline(always)]
     pub fn minimums(&mut self) -> &mut [BestF64; SEARCHES] {
         &mut self.searches.minimums
     }
 
-    /// The query point of a search.
+    /// Returns the query point of a search.
     #[inline(always)]
     pub fn query(&self, search: usize) -> &V3 {
         &self.searches.limits[search].query
     }
 
-    /// Computes the limits of a search from its collector as well.
+    /// Tightens the limits of a search to its collector's.
     #[inline(always)]
     fn update_limit(&mut self, search: usize) {
         let prune = self.searches.minimums[search].prune_above();
@@ -279,13 +286,13 @@ impl<'a> InterleavedSearch<'a> {
         limits.node = if node < limits.node { node } else { limits.node };
     }
 
-    /// The square of the distance above which a search skips packets, in the frame of the tree.
+    /// Returns the square of the distance above which a search skips packets, in the frame of the tree.
     #[inline(always)]
     pub fn limit(&self, search: usize) -> f32 {
         self.searches.limits[search].node
     }
 
-    /// Adds a primitive that is evaluated whatever its filter would find.
+    /// Adds a primitive that is evaluated without a filter.
     #[inline(always)]
     #[allow(clippy::cast_possible_truncation, reason = "searches, packets and lanes fit")]
     pub fn add(&mut self, search: usize, packet: usize, lane: usize) {
@@ -294,7 +301,7 @@ impl<'a> InterleavedSearch<'a> {
         self.candidate_count += 1;
     }
 
-    /// Searches the whole tree for one of the queries, apart from this state.
+    /// Answers one of the queries by a search of the whole tree, apart from this state.
     #[cold]
     #[inline(never)]
     pub fn search_tree(&mut self, search: usize) {
@@ -303,7 +310,7 @@ impl<'a> InterleavedSearch<'a> {
         (self.searches.search_tree)(query, &mut self.searches.minimums[search], &evaluate);
     }
 
-    /// Filters packets of one search, which are given by their numbers and lanes.
+    /// Filters packets for one search, given by their numbers and lanes.
     #[cold]
     #[inline(never)]
     #[allow(clippy::cast_possible_truncation, reason = "at most sixteen searches")]
@@ -316,11 +323,11 @@ impl<'a> InterleavedSearch<'a> {
 
     /// Filters at most [`SEARCHES`] packets. Primitives that may be the answer become candidates.
     ///
-    /// If `PLANES`, or if lanes hold a part of a packet only, what a plane excludes is left out first. That pays where
-    /// many packets are far, as in trees; lists have few such packets.
+    /// If `PLANES`, or if a vector has fewer lanes than a packet, planes exclude primitives before the filter runs.
+    /// That pays off if many packets are far, as in trees; lists have few such packets (decision 048).
     ///
-    /// No branch depends on what the filters find until all of them have run. Searches that are near each other often
-    /// visit the same packet one after the other, and what depends on the packet alone is then computed once.
+    /// No branch depends on the results of the filters until all of them have run. Nearby searches often visit the same
+    /// packet one after the other; values that depend on the packet alone are then computed once.
     #[inline(always)]
     pub fn filter<I: InstructionSet, const PLANES: bool>(&mut self, visits: &[PacketVisit]) {
         I::call(Filter::<PLANES> { several: self, visits });
@@ -358,7 +365,7 @@ impl<'a> InterleavedSearch<'a> {
                 *near = if is_far { u32::MAX } else { lanes };
             }
         }
-        // The first `count` of these are the places with a lane that may be near enough.
+        // The first `count` entries are the places with a lane that may be near enough.
         let (mut places, mut count) = ([0u8; SEARCHES], 0);
         for (i, near) in near[..visits.len()].iter().enumerate() {
             places[count % SEARCHES] = i as u8;
@@ -379,7 +386,7 @@ impl<'a> InterleavedSearch<'a> {
         self.rows.update::<I>(&self.locals, self.searches.frame);
         for &place in places {
             let place = usize::from(place) % SEARCHES;
-            // Lanes behind the plane are left out whether their squares were computed for another search or not.
+            // Lanes behind the plane are excluded even if their squares were computed for another search.
             let visit = PacketVisit { lanes: visits[place].lanes & near[place], ..visits[place] };
             self.push_candidates::<I>(&visit, place);
         }
@@ -388,7 +395,7 @@ impl<'a> InterleavedSearch<'a> {
         }
     }
 
-    /// Takes the new limits of a search, and makes the primitives that passed the filter of a packet candidates.
+    /// Stores the new limits of a search, and adds the primitives that passed the filter of a packet as candidates.
     #[inline(always)]
     #[allow(clippy::cast_possible_truncation, reason = "`distance_below` allows for the rounding")]
     fn push_candidates<I: InstructionSet>(&mut self, visit: &PacketVisit, place: usize) {
@@ -420,7 +427,8 @@ impl<'a> InterleavedSearch<'a> {
         }
     }
 
-    /// Evaluates the candidates of some searches before all packets were visited, and limits them by the results.
+    /// Evaluates the candidates of some searches early, before all packets were visited, and limits the searches by the
+    /// results.
     #[cold]
     #[inline(never)]
     fn evaluate_early(&mut self) {
@@ -435,8 +443,8 @@ impl<'a> InterleavedSearch<'a> {
         self.evaluate(u32::MAX);
     }
 
-    /// Evaluates the candidates of the searches with a bit in `searches` that are within the limits of their searches,
-    /// and offers them to the collectors.
+    /// Evaluates the candidates of the searches whose bits are set in `searches` and offers them to the collectors.
+    /// Candidates beyond the limits of their searches are dropped.
     #[inline(always)]
     fn evaluate(&mut self, searches: u32) {
         let leaves = self.searches.leaves;
@@ -483,7 +491,7 @@ impl<'a> InterleavedSearch<'a> {
         }
     }
 
-    /// Evaluates the triangles that wait. If `may_skip`, some of them may go on waiting.
+    /// Evaluates the queued triangles. If `may_skip`, some of them may stay in the queue.
     #[inline(never)]
     fn evaluate_triangles(&mut self, may_skip: bool) {
         let waiting = &mut self.triangles;
@@ -522,7 +530,7 @@ impl<const PLANES: bool> SimdKernel for Filter<'_, '_, PLANES> {
     }
 }
 
-/// Candidates of one kind that wait for evaluation: those in the first `len` lanes.
+/// A queue of candidates of one kind, which fill the first `len` lanes.
 struct LaneQueue<const N: usize> {
     eight: TriangleLanes<N>,
     candidates: [Candidate; SIDE_BY_SIDE],

@@ -1,11 +1,12 @@
-//! The traversal of a tree by several searches that take turns.
+//! The traversal of a tree by interleaved searches.
 //!
-//! In each round every search takes the nearest of its pending children and requests its memory. Then all nodes are
-//! bounded, and then all packets are filtered, so the memory has arrived and the loops have no branch that depends on
-//! the kind of a child.
+//! In each round every search takes the nearest of its pending children and prefetches its memory. Then all nodes are
+//! bounded, and then all packets are filtered. So the memory has arrived by then, and the loops have no branch that
+//! depends on the kind of a child.
 //!
-//! Groups follow each other along a curve, so the last answer of a group limits the searches of the next one. The limits
-//! show which part of the tree the group needs at all, and its searches begin at the node that contains this part.
+//! Groups follow each other along a curve, so the last answer of a group limits the searches of the next one. The
+//! limits show which part of the tree the group needs at all, and its searches begin at the node that contains this
+//! part.
 
 use crate::traverse::interleaved_search::{InterleavedSearch, PacketVisit, ROUND_UP_F64, SEARCHES};
 use crate::traverse::{SHORT_STACK_DEPTH, SHORT_STACK_LEN};
@@ -20,14 +21,14 @@ use p2m_core::engine::vector::{V3, norm_squared, power_of_two, sub};
 struct Stack {
     /// The key of each pending child, which combines its bound and its slot.
     keys: [u32; SHORT_STACK_LEN],
-    /// The node of which it is a child.
+    /// The node to which each pending child belongs.
     parents: [u32; SHORT_STACK_LEN],
     len: usize,
     /// The child that is visited next.
     next: NodeRef,
 }
 
-/// A query that was answered.
+/// An answered query.
 #[derive(Clone, Copy)]
 struct Answered {
     query: V3,
@@ -35,7 +36,7 @@ struct Answered {
 }
 
 impl Answered {
-    /// Returns an upper bound on the distance at another query: that of the triangle inequality, plus more than the
+    /// Returns an upper bound on the distance at another query, by the triangle inequality and with a margin for the
     /// errors of both distances.
     ///
     /// A computed distance d errs by at most 8 u M, where M is the largest distance of a vertex of its primitive
@@ -48,30 +49,30 @@ impl Answered {
     }
 }
 
-/// The traversals of several searches. They are large, so a batch makes them once for all of its queries.
+/// The traversals of interleaved searches. They are large, so a batch creates them once for all of its queries.
 pub struct InterleavedTraversal<V: VolumeNodes> {
     stacks: [Stack; SEARCHES],
-    /// A query of the last group, if it has an answer.
+    /// The last query of the previous group with its distance, if it has an answer.
     last: Option<Answered>,
     /// The query point of each search in the frame of the tree.
     queries: Vec<Option<<V::Node as WideNode>::Query>>,
 }
 
 impl<V: VolumeNodes> InterleavedTraversal<V> {
-    /// Creates traversals that have not begun, or returns `None` for a tree that is too deep for them.
+    /// Creates traversals that have not begun, or returns `None` if the tree is too deep for their stacks, or empty.
     pub fn new(tree: &PacketTree<V>) -> Option<Self> {
         let stack = Stack { keys: [0; SHORT_STACK_LEN], parents: [0; SHORT_STACK_LEN], len: 0, next: NodeRef::NONE };
         let walkers = || Self { stacks: [stack; SEARCHES], last: None, queries: Vec::with_capacity(SEARCHES) };
         (tree.depth <= SHORT_STACK_DEPTH && tree.root != NodeRef::NONE).then(walkers)
     }
 
-    /// Searches the tree for the queries of the first `count` searches of `several`.
+    /// Runs the first `count` searches of `several` in turns.
     #[inline(always)]
     pub fn search(&mut self, tree: &PacketTree<V>, several: &mut InterleavedSearch<'_>, count: usize) {
         tree.isa.run(SearchInTurns { walkers: self, tree, several, count });
     }
 
-    /// Limits the first `count` searches by the last answer, and returns the node at which they may begin: everything
+    /// Limits the first `count` searches by the last answer, and returns a node from which they may begin: everything
     /// within their limits is below it.
     #[inline(always)]
     fn limit<I: InstructionSet>(
@@ -88,7 +89,8 @@ impl<V: VolumeNodes> InterleavedTraversal<V> {
             let query = *several.query(search);
             let upper_bound = last.upper_bound_at(&query, tree.frame.unit);
             several.limit_to(search, upper_bound);
-            // The bound at the centre is as far as the reach of this search from there.
+            // The distance between the query and the centre plus the reach of this search: everything within its limit
+            // is within this distance of the centre.
             let from_centre = Answered { query, distance: upper_bound }.upper_bound_at(&centre, tree.frame.unit);
             reach = if from_centre > reach { from_centre } else { reach };
         }
@@ -106,7 +108,7 @@ impl<V: VolumeNodes> InterleavedTraversal<V> {
     }
 }
 
-/// The traversals of several searches as a kernel that is compiled for each instruction set.
+/// The traversals of interleaved searches as a kernel that is compiled for each instruction set.
 struct SearchInTurns<'a, 'b, V: VolumeNodes> {
     walkers: &'a mut InterleavedTraversal<V>,
     tree: &'a PacketTree<V>,
@@ -124,7 +126,7 @@ impl<V: VolumeNodes> SimdKernel for SearchInTurns<'_, '_, V> {
         let start = walkers.limit::<I>(tree, several, count);
         let InterleavedTraversal { stacks, last, queries } = walkers;
         queries.clear();
-        // The first `active_count` of these are the searches that go on.
+        // The first `active_count` entries are the searches that go on.
         let mut active = [0u8; SEARCHES];
         let mut active_count = 0;
         for (i, stack) in stacks[..count].iter_mut().enumerate() {

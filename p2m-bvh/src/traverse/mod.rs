@@ -1,4 +1,10 @@
-//! Traversals of a tree, which visit the nearest child first.
+//! The traversal of a tree, nearest child first.
+//!
+//! The basic idea is a depth-first search with a stack of pending children. A step takes a child, bounds its eight
+//! children side by side, and pushes the children within the limit in descending order of their bounds, so that the
+//! nearest one is on top. An entry of the stack is one number, a key, which holds the bound in its upper bits and the
+//! slot of the child in the lowest ones; keys are sorted as integers. The limit shrinks during a search, so a bound is
+//! compared with it again when its entry is popped.
 
 pub(crate) mod box_query;
 pub(crate) mod evaluate;
@@ -18,43 +24,43 @@ use crate::tree::{MAX_DEPTH, PacketTree};
 use p2m_core::engine::simd::{EightLanes, InstructionSet, Lanes, lane_of_key, value_of_key};
 use std::ops::ControlFlow;
 
-/// The capacity of a stack: at most `WIDTH - 1` pending siblings per level, and `WIDTH` further entries because
-/// `sorted_keys` always writes those of a full node.
+/// The capacity of a stack. Each level has at most `WIDTH - 1` pending siblings, and `sorted_keys` always writes
+/// `WIDTH` entries.
 pub(crate) const STACK_LEN: usize = (WIDTH - 1) * MAX_DEPTH + WIDTH;
-/// The capacity of the stacks of searches in turns, which suffices for most trees.
+/// The capacity of the stacks of interleaved searches, which suffices for most trees.
 const SHORT_STACK_LEN: usize = 96;
-/// The largest depth of a tree for which these stacks suffice.
+/// The largest depth of a tree for which the stacks of interleaved searches suffice.
 const SHORT_STACK_DEPTH: usize = (SHORT_STACK_LEN - WIDTH) / (WIDTH - 1);
 
 /// The part of a traversal that depends on the kind of search.
 pub(crate) trait Visitor<V: VolumeNodes> {
-    /// Bounds on the children of a node, by which these are sorted. None of them is negative.
+    /// Returns bounds on the children of a node, by which these are sorted. No bound is negative.
     fn bounds<L: Lanes>(&self, node: &V::Node) -> L;
-    /// The largest bound with which a child is visited.
+    /// Returns the largest bound with which a child is visited.
     fn limit(&self) -> f32;
     /// Called for each node that is visited.
     fn visit_node(&mut self);
     /// Called for each packet that is visited; breaks to end the search.
     fn visit_packet<I: InstructionSet>(&mut self, number: usize) -> ControlFlow<()>;
-    /// Whether the search may stop before everything within the limit was visited. By default it may not.
+    /// Returns whether the search may stop before everything within the limit was visited. By default it may not.
     #[inline(always)]
     fn may_stop(&self) -> bool {
         false
     }
-    /// Called when the traversal stops early; `bound` is a lower bound on everything that was not visited.
+    /// Called when the traversal stops early. `bound` is a lower bound on everything that was not visited.
     #[inline(always)]
     fn record_skipped(&mut self, bound: f32) {
         let _ = bound;
     }
 }
 
-/// The capacity of the stack of a single search, whose entries below that are moved away. It suffices for most searches,
-/// and is so small that it is cleared by a few instructions.
+/// The capacity of the stack of a single search, which spills when it is full. It suffices for most searches, and is so
+/// small that a few instructions clear it.
 const NEAR_STACK_LEN: usize = 64;
-/// The number of entries that stay on the stack when the others are moved away.
+/// The number of entries that stay on the stack when it spills.
 const KEPT_LEN: usize = NEAR_STACK_LEN / 2;
 
-/// Moves all but the uppermost [`KEPT_LEN`] entries of a stack away.
+/// Moves all but the uppermost [`KEPT_LEN`] entries of a full stack to a vector.
 #[cold]
 #[inline(never)]
 fn spill(
@@ -69,7 +75,7 @@ fn spill(
     parents.copy_within(moved..top, 0);
 }
 
-/// Brings back entries that were moved away, and returns their number.
+/// Moves spilled entries back to the stack, and returns their number.
 #[cold]
 #[inline(never)]
 fn refill(keys: &mut [u32; NEAR_STACK_LEN], parents: &mut [u32; NEAR_STACK_LEN], below: &mut Vec<(u32, u32)>) -> usize {
@@ -81,23 +87,23 @@ fn refill(keys: &mut [u32; NEAR_STACK_LEN], parents: &mut [u32; NEAR_STACK_LEN],
     count
 }
 
-/// Traverses a tree.
+/// Traverses a tree with a visitor.
 #[inline(always)]
 pub(crate) fn traverse<I: InstructionSet, V: VolumeNodes, W: Visitor<V>>(tree: &PacketTree<V>, visitor: &mut W) {
-    // The pending children of a node are in descending order of their keys. Each entry has the key of a child, which
-    // combines its bound and its slot, and the node of which it is a child.
+    // The stack: for each pending child its key, which combines its bound and its slot, and its parent node. Children
+    // of the same node are in descending order of their keys.
     let mut keys = [0u32; NEAR_STACK_LEN];
-    // The arrays begin with different values, because both would otherwise be filled by one call of a function, which
-    // takes longer than a few instructions for each.
+    // The two arrays are filled with different values. With equal ones the compiler fills both by one function call,
+    // which is slower than a few instructions for each.
     let mut parents = [u32::MAX; NEAR_STACK_LEN];
-    // Entries below those of the two arrays. Only deep trees have some.
+    // Spilled entries from the bottom of the stack. Only deep trees have some.
     let mut below = Vec::new();
     let mut top = 0;
     let mut at = tree.root;
     if at == NodeRef::NONE {
         return;
     }
-    // The bound of the node or packet that is visited.
+    // The bound of the node or packet that is being visited.
     let mut bound = 0.0;
     loop {
         if visitor.may_stop() {
@@ -121,7 +127,7 @@ pub(crate) fn traverse<I: InstructionSet, V: VolumeNodes, W: Visitor<V>>(tree: &
             let count = bounds.sorted_keys(visitor.limit(), entries);
             parents[top..top + WIDTH].fill(at.0);
             // The two nearest children are prefetched without a test of their number, because that branch would be
-            // mispredicted. The keys behind the last one are 0, which stands for the first child.
+            // mispredicted. Keys behind the last one are 0, which stands for the first child.
             let last = NEAR_STACK_LEN - 1;
             tree.prefetch(node.children()[lane_of_key(keys[(top + count).wrapping_sub(1).min(last)])]);
             tree.prefetch(node.children()[lane_of_key(keys[(top + count).wrapping_sub(2).min(last)])]);

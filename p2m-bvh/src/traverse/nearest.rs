@@ -1,10 +1,10 @@
 //! The search for the nearest primitives.
 //!
-//! Filters bound distances from both sides, so the search can traverse the whole tree before it evaluates a single
-//! primitive. It keeps the least upper bound that it has found, skips everything above it, and collects the primitives
-//! below it as pending candidates. At the end few are left, mostly one and those that share its nearest feature. They
-//! are offered to the collector, which decides by exact keys. If the collector wants more than the nearest primitive,
-//! candidates are offered packet by packet.
+//! The basic idea: filters bound distances from both sides, so the search can traverse the whole tree before it
+//! evaluates a single primitive. It keeps the least upper bound so far, skips everything above it, and collects the
+//! primitives below it as pending candidates. At the end few are left, usually one primitive and its neighbours that
+//! share the nearest feature. They are offered to the collector, which decides by exact keys. If the collector needs
+//! more than the nearest primitive, candidates are offered packet by packet.
 
 use crate::packet::Packet;
 use crate::traverse::evaluate::offer;
@@ -22,7 +22,7 @@ use p2m_core::{Collector, PrimitiveSet, Real};
 use std::ops::ControlFlow;
 
 impl<V: VolumeNodes> PacketTree<V> {
-    /// Offers to `collector` every primitive of `set` that it could want. The tree has to be built over that set, and
+    /// Offers to `collector` every primitive of `set` that it may need. The tree has to be built over that set, and
     /// `query` has to be finite.
     #[inline]
     pub fn search<T: Real, S: PrimitiveSet<T> + ?Sized, C: Collector>(
@@ -34,7 +34,7 @@ impl<V: VolumeNodes> PacketTree<V> {
         self.run(to_f64_array(query), collector, &evaluation(set, query), evaluate::finish);
     }
 
-    /// Runs the search of [`search`](Self::search) for any set. Callers that are not generic compile it once.
+    /// Runs the search for any set. Callers that are not generic compile it once.
     #[inline(always)]
     #[doc(hidden)]
     pub fn run<C: Collector>(
@@ -54,16 +54,15 @@ pub struct Search<'a, V: VolumeNodes, C> {
     pub tree: &'a PacketTree<V>,
     /// The query point, which is finite.
     pub query: [f64; 3],
-    /// An upper bound on the distance of the nearest primitive; infinite if none is known.
+    /// An upper bound on the distance of the nearest primitive, or infinity if none is known.
     pub reach: f64,
-    /// The packet and the lane of a primitive within that distance, if it is known.
+    /// The packet and the lane of a primitive within the reach, if one is known.
     pub held: Option<(usize, usize)>,
     /// The collector that receives the candidates.
     pub collector: &'a mut C,
-    /// The function that evaluates primitives of which the tree has only a box.
+    /// Evaluates primitives without stored vertices.
     pub evaluate: EvaluateFn<'a, C>,
-    /// The function that evaluates the pending candidates: [`finish`](evaluate::finish) or
-    /// [`finish_nearest`](evaluate::finish_nearest).
+    /// Evaluates the pending candidates: [`finish`](evaluate::finish) or [`finish_nearest`](evaluate::finish_nearest).
     pub finish: fn(&mut SearchState<'_, C>),
 }
 
@@ -74,7 +73,7 @@ impl<V: VolumeNodes, C: Collector> SimdKernel for Search<'_, V, C> {
     fn run<I: InstructionSet>(self) {
         let tree = self.tree;
         let Some(local) = V::Node::query(&tree.shared, &tree.frame, &self.query) else { return self.run_far() };
-        // The state is made where it stays, because it is large and would otherwise be copied.
+        // The state is created in its final place, because it is large and would otherwise be copied.
         let state = SearchState::new(tree, self.query, self.reach, self.collector, self.evaluate, self.finish);
         let mut visitor = NearestVisitor { state, shared: &tree.shared, local };
         visitor.state.hold(self.held, self.reach);
@@ -122,8 +121,8 @@ impl<V: VolumeNodes, C: Collector> Search<'_, V, C> {
     }
 }
 
-/// Calls [`offer`] without inlining it, so that it is compiled once for all volumes. The slow search has no
-/// need for inlining.
+/// Calls [`offer`] without inlining it, so that it is compiled once for all volumes. The slow search does not need
+/// inlining.
 #[inline(never)]
 fn offer_outlined<C: Collector>(
     leaves: &Leaves,
@@ -137,7 +136,7 @@ fn offer_outlined<C: Collector>(
     offer(leaves, packet, lane, query, square, collector, evaluate);
 }
 
-/// Sorts children by their bounds, the nearest last. The function is not generic, because sorting is much code.
+/// Sorts children by their bounds, the nearest last. Not generic, so that the sort is compiled once.
 fn sort_nearest_last(children: &mut [(f64, NodeRef)]) {
     children.sort_by(|a, b| b.0.total_cmp(&a.0));
 }

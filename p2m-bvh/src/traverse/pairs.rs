@@ -14,7 +14,8 @@ use p2m_core::{Aabb, PrimitiveId};
 
 const _: () = assert!(LANES <= MAX_HULLS);
 
-/// A tree, after some motions in their order. Each of them rounds the coordinates of vertices.
+/// A tree as a side of a search for pairs. Motions are applied to it in their order, and each rounds the coordinates of
+/// vertices.
 pub struct TreeSide<'a, V: VolumeNodes> {
     tree: &'a PacketTree<V>,
     motions: &'a [Motion],
@@ -23,7 +24,7 @@ pub struct TreeSide<'a, V: VolumeNodes> {
 }
 
 impl<'a, V: VolumeNodes> TreeSide<'a, V> {
-    /// Makes a side of a tree.
+    /// Creates a side from a tree.
     pub fn new(tree: &'a PacketTree<V>, motions: &'a [Motion]) -> Self {
         let mut above_root = V::Node::new([NodeRef::NONE; WIDTH]);
         above_root.set_bounds(0, &tree.root_bounds);
@@ -34,12 +35,12 @@ impl<'a, V: VolumeNodes> TreeSide<'a, V> {
         if place.parent == NO_NODE { &self.above_root } else { &self.tree.nodes[NodeRef(place.parent).number()] }
     }
 
-    /// Converts a direction of the scene to that of the tree before its motions.
+    /// Converts a direction of the scene to the coordinates of the tree before its motions.
     fn turned_back(&self, direction: &V3) -> V3 {
         self.motions.iter().rev().fold(*direction, |direction, motion| motion.apply_inverse_to_vector(direction))
     }
 
-    /// Returns the height of the origin of the coordinates of the tree.
+    /// Returns the height of the origin of the tree's coordinates.
     fn shift(&self, direction: &V3) -> f64 {
         dot(self.moved([0.0; 3]), *direction)
     }
@@ -48,7 +49,8 @@ impl<'a, V: VolumeNodes> TreeSide<'a, V> {
         self.motions.iter().fold(point, |point, motion| motion.apply(point))
     }
 
-    /// Returns a box around a child. It is the smallest one where the box of the whole scene is.
+    /// Returns a box around a child after the motions. Where the box of the whole scene is smaller, it is cut to that
+    /// box.
     fn child_box(&self, node: &V::Node, slot: usize) -> Aabb<f64> {
         self.moved_box(&self.tree.child_box(node, slot).intersection(&self.tree.bounds))
     }
@@ -74,7 +76,7 @@ impl<V: VolumeNodes> PairSide for TreeSide<'_, V> {
     fn placement(&self) -> Placement {
         let frame = &self.tree.frame;
         let centre = self.moved(frame.centre);
-        // A motion makes no coordinate larger than the length of the vertex and the translation.
+        // No coordinate of a moved vertex is larger than the length of the vertex plus the translation.
         let grow = |size: f64, motion: &Motion| 2.0 * size + largest(&[motion.translation()]);
         let size = self.motions.iter().fold(largest(&[self.tree.bounds.min.into(), self.tree.bounds.max.into()]), grow);
         Placement { centre, unit: frame.unit, size, is_tree: true }
@@ -151,7 +153,7 @@ impl<V: VolumeNodes> PairSide for TreeSide<'_, V> {
     }
 }
 
-/// Bounds the distances of the children of a node from what is in some slabs.
+/// A kernel that bounds the distances between the children of a node and several slabs.
 struct Cut<'a, V: VolumeNodes> {
     tree: &'a PacketTree<V>,
     node: NodeRef,
@@ -184,7 +186,8 @@ impl<V: VolumeNodes> SimdKernel for Cut<'_, V> {
     }
 }
 
-/// Returns the largest product of a vertex of a node and a direction, in coordinates of the tree.
+/// Returns the support value of a node: the largest dot product of a direction and a vertex, in coordinates of the
+/// tree.
 fn support<V: VolumeNodes>(tree: &PacketTree<V>, node: NodeRef, direction: &V3) -> f64 {
     let height = V::Node::height(&tree.shared, direction);
     tree.isa.run(Support { tree, node, direction: *direction, height })

@@ -1,16 +1,16 @@
-//! Functions through which searches reach the primitives of a set.
+//! Functions through which searches access the primitives of a set.
 //!
-//! They are not type parameters of the searches, so that these do not depend on the set and are compiled once.
+//! They are not type parameters of the searches, so that searches do not depend on the set and are compiled once.
 
 use nalgebra::Point3;
 use p2m_core::{Collector, Crossing, Primitive, PrimitiveId, PrimitiveSet, Ray, Real};
 
 /// A function that offers a primitive to the collector, unless its key exceeds a square. It is called for primitives
-/// of which the tree has only a box.
+/// without stored vertices.
 pub type EvaluateFn<'a, C> = &'a dyn Fn(&mut C, PrimitiveId, f64);
 
 /// A function that returns the crossing of a ray with a primitive, unless its parameter exceeds a limit. It is called
-/// for primitives of which the tree has only a box.
+/// for primitives without stored vertices.
 pub type IntersectFn<'a, 'r> = &'a dyn Fn(PrimitiveId, f64) -> Option<Crossing<'r>>;
 
 /// Returns the [`EvaluateFn`] of a set.

@@ -7,21 +7,21 @@ use crate::tree::wide_node::{VolumeNodes, WideNode, lower_bounds};
 use p2m_core::engine::simd::{InstructionSet, Lanes, SimdKernel};
 use std::ops::ControlFlow;
 
-/// Some lanes of a packet.
+/// Selected lanes of a packet.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Selection {
     /// The number of the packet.
     pub packet: u32,
-    /// A mask with one bit for each selected lane.
+    /// One bit per lane: whether it is selected.
     pub lanes: u16,
 }
 
 impl<V: VolumeNodes> PacketTree<V> {
-    /// Appends to `found` the lanes whose primitives may be at most `radius` away from a point. No nearer primitive is
-    /// left out, unless it is in more than `most` packets.
+    /// Appends to `found` the lanes whose primitives may be at most `radius` away from a point. No primitive within the
+    /// radius is missing, unless the primitives are in more than `most` packets.
     ///
     /// Returns `false` if there are more packets than that, or if f32 cannot represent the point with enough accuracy.
-    /// `tests` grows by the number of nodes and packets that were tested.
+    /// `tests` is increased by the number of tested nodes and packets.
     pub fn ball(
         &self,
         centre: [f64; 3],
@@ -55,12 +55,12 @@ struct BallSearch<'a, V: VolumeNodes> {
     radius: f64,
     /// The square of the radius in the frame of the tree, rounded up.
     limit: f32,
-    /// The number of packets that may still be found.
+    /// The number of packets that may still be added.
     remaining_packets: usize,
     /// Whether the search stopped because there are more packets.
     is_incomplete: bool,
     found: &'a mut Vec<Selection>,
-    /// The number of nodes and packets that were tested.
+    /// The number of tested nodes and packets.
     tests: &'a mut usize,
 }
 
@@ -122,7 +122,8 @@ mod tests {
     use p2m_testkit::vector;
     use rand::RngExt;
 
-    /// Balls find everything within their radius and little else, and a search with too few packets returns `false`.
+    /// Balls find everything within their radius and little else, and a search with too small a limit on packets
+    /// returns `false`.
     #[test]
     fn balls_find_the_primitives_that_they_intersect() {
         let (mut expected_total, mut others) = (0, 0);

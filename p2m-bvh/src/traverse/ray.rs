@@ -1,6 +1,6 @@
-//! Ray casting: the traversal of the nodes that a ray enters, nearest first.
+//! Ray casting: a traversal of the nodes that a ray enters, nearest first.
 //!
-//! Packets leave out primitives that the line of the ray certainly misses; the others are tested exactly.
+//! The filters of packets exclude primitives that the line of the ray certainly misses; the others are tested exactly.
 //! [docs/proofs/rays.md] has the proofs.
 //!
 //! [docs/proofs/rays.md]: https://github.com/p2m-rs/p2m/blob/main/docs/proofs/rays.md
@@ -16,12 +16,13 @@ use p2m_core::engine::simd::{InstructionSet, Lanes, SimdKernel};
 use p2m_core::{Crossing, Isa, Ray, RayCollector};
 use std::ops::ControlFlow;
 
-/// The exact test of a primitive, which is given by its packet and its lane. It returns the parameter of the ray above
-/// which hits are not needed from then on, or `None` if no further one is.
+/// The exact test of a primitive, which is given by its packet and its lane. It returns the new parameter above which
+/// hits are not needed, or `None` if no further hit is needed.
 pub(crate) type TestFn<'a> = &'a mut dyn FnMut(usize, usize) -> Option<f64>;
 
 impl<V: VolumeNodes> PacketTree<V> {
-    /// The distance within which a ray hits primitives that are not triangles; `None` if it certainly misses the scene.
+    /// Returns the radius within which a ray hits primitives other than triangles, or `None` if it certainly misses the
+    /// scene.
     #[inline(always)]
     pub(crate) fn search_radius(&self, ray: &Ray, only_crossings: bool) -> Option<f64> {
         let radius = if self.leaves.has_non_triangles && !only_crossings { ray.radius } else { 0.0 };
@@ -30,12 +31,12 @@ impl<V: VolumeNodes> PacketTree<V> {
     }
 }
 
-/// A search with a ray as a kernel that is compiled for each instruction set. It returns the numbers of nodes and packets
-/// that it visited.
+/// A ray search as a kernel that is compiled for each instruction set. It returns the numbers of visited nodes and
+/// packets.
 pub(crate) struct RaySearch<'a, V: VolumeNodes> {
     pub(crate) tree: &'a PacketTree<V>,
     pub(crate) ray: &'a Ray,
-    /// The distance within which the ray hits segments and points; 0 if there are none, or if they do not count.
+    /// The radius within which the ray hits segments and points; 0 if there are none, or if they do not count.
     pub(crate) radius: f64,
     /// The parameter above which hits are not needed.
     pub(crate) limit: f64,
@@ -64,7 +65,8 @@ impl<V: VolumeNodes> SimdKernel for RaySearch<'_, V> {
     }
 }
 
-/// Tests all primitives, for rays and scenes whose positions neither f32 nor f64 resolves. Returns the number of packets.
+/// Tests all primitives, for rays and scenes whose positions neither f32 nor f64 resolves. Returns the number of tested
+/// packets.
 #[cold]
 #[inline(never)]
 fn test_all(leaves: &Leaves, test: TestFn<'_>) -> usize {
@@ -78,7 +80,7 @@ fn test_all(leaves: &Leaves, test: TestFn<'_>) -> usize {
     leaves.packets.len()
 }
 
-/// The exact tests of a ray with primitives.
+/// The exact tests of the primitives of a tree with a ray.
 pub(crate) struct ExactTests<'a, 'r, C> {
     pub(crate) leaves: &'a Leaves,
     pub(crate) isa: Isa,
@@ -96,8 +98,8 @@ impl<'r, C: RayCollector<'r>> ExactTests<'_, 'r, C> {
     }
 }
 
-/// An exact test as a kernel. It has no lanes, but processors with more instructions copy its structures faster. It does
-/// not depend on the volume and on the set.
+/// An exact test as a kernel. It has no lanes, but processors with more instructions copy its structures faster. It
+/// depends neither on the volume nor on the set.
 struct ExactTest<'t, 'a, 'r, C> {
     tests: &'t mut ExactTests<'a, 'r, C>,
     packet: usize,
@@ -133,7 +135,7 @@ impl<'r, C: RayCollector<'r>> SimdKernel for ExactTest<'_, '_, 'r, C> {
     }
 }
 
-/// The visitor of a search with a ray.
+/// The visitor of a ray search.
 struct RayVisitor<'a, V: VolumeNodes> {
     leaves: &'a Leaves,
     test: TestFn<'a>,
@@ -148,7 +150,7 @@ struct RayVisitor<'a, V: VolumeNodes> {
     to: f64,
     /// The length from the base of the piece at which the search ends, in the frame of the tree.
     limit: f32,
-    /// The numbers of nodes and packets that were visited.
+    /// The numbers of visited nodes and packets.
     visits: [usize; 2],
 }
 

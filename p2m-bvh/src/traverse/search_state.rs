@@ -1,6 +1,6 @@
-//! The state of a search for the nearest primitives, and what the filter of a packet changes in it.
+//! The state of a search for the nearest primitives, and its update by the filter of a packet.
 //!
-//! The state has the least upper bound on the distance that the filters have found. Primitives whose lower bound is
+//! The state holds the least upper bound on the distance that the filters have found. Primitives whose lower bound is
 //! within that limit become pending candidates.
 
 use crate::packet::{LANES, Local, Packet, ROUND_UP, at_most, smallest};
@@ -11,7 +11,7 @@ use crate::tree::{Leaves, PacketTree};
 use p2m_core::engine::simd::{InstructionSet, Lanes, SimdKernel};
 use p2m_core::{Collector, Isa};
 
-/// The largest number of pending candidates.
+/// The most pending candidates. There is no record of how the number was tuned.
 pub(super) const MAX_PENDING: usize = 32;
 
 /// A primitive that may be the answer.
@@ -36,21 +36,21 @@ pub struct SearchState<'a, C> {
     finish: fn(&mut SearchState<'_, C>),
     /// An upper bound on the distance of the nearest primitive.
     pub(super) upper_bound: f64,
-    /// The distance above which primitives are no candidates.
+    /// The distance above which primitives are not candidates.
     pub(super) candidate_limit: f64,
     /// The square of the distance above which nodes are skipped, in the frame of the tree.
     node_limit: f32,
-    /// Whether the collector may accept a primitive that is not the nearest one.
+    /// Whether the collector may accept a primitive other than the nearest one.
     pub(super) is_approximate: bool,
-    /// The candidate that will be evaluated first, and an upper bound on its distance. Only approximate
-    /// searches have one.
+    /// The candidate that will be evaluated first, and an upper bound on its distance. Only approximate searches have
+    /// an incumbent.
     pub(super) incumbent: Option<(Candidate, f64)>,
     pub(super) pending: [Candidate; MAX_PENDING],
     pub(super) pending_len: usize,
 }
 
 impl<'a, C: Collector> SearchState<'a, C> {
-    /// The state at the beginning of a search in which some primitive is known to be within the distance `upper_bound`.
+    /// Creates the state of a new search. `upper_bound` is a distance within which some primitive is known to be.
     #[inline(always)]
     pub fn new<V: VolumeNodes>(
         tree: &'a PacketTree<V>,
@@ -81,27 +81,27 @@ impl<'a, C: Collector> SearchState<'a, C> {
         state
     }
 
-    /// The square of the distance above which boxes are skipped, in the frame of the tree.
+    /// Returns the square of the distance above which boxes are skipped, in the frame of the tree.
     #[inline(always)]
     pub fn limit(&self) -> f32 {
         self.node_limit
     }
 
-    /// Adds a primitive that is evaluated whatever its filter would find.
+    /// Adds a primitive that is evaluated without a filter.
     #[inline(always)]
     #[allow(clippy::cast_possible_truncation, reason = "packets and lanes fit")]
     pub fn add(&mut self, packet: usize, lane: usize) {
         self.push_pending(Candidate { lower_bound: 0.0, packet: packet as u32, lane: lane as u32 });
     }
 
-    /// Whether an approximate search may stop.
+    /// Returns whether an approximate search may stop.
     #[inline(always)]
     pub fn may_stop(&self) -> bool {
         self.is_approximate && self.collector.may_stop(self.incumbent_distance() < f64::INFINITY)
     }
 
-    /// Reports to the collector that everything with at least this bound, a square in the frame of the
-    /// tree, is skipped.
+    /// Reports to the collector that everything with at least this bound is skipped. The bound is a square in the frame
+    /// of the tree.
     #[inline(always)]
     pub fn record_skipped(&mut self, bound: f32) {
         self.collector.record_skipped(self.frame.square_below(bound));
@@ -120,8 +120,8 @@ impl<'a, C: Collector> SearchState<'a, C> {
             && let Some((packet, lane)) = primitive
         {
             // The infinite lower bound keeps this primitive from becoming pending once a nearer one replaces it. The
-            // search reaches it anyway where it can be the answer, and of two copies the wrong one could be dropped
-            // as a tie.
+            // search reaches it anyway if it can be the answer, and of two copies the wrong one could be dropped as a
+            // tie.
             let candidate = Candidate { lower_bound: f32::INFINITY, packet: packet as u32, lane: lane as u32 };
             self.replace_incumbent(candidate, distance);
         }
@@ -163,7 +163,7 @@ impl<'a, C: Collector> SearchState<'a, C> {
         self.packet_inlined_if::<I>(I::F32x8::INLINES, number, lanes);
     }
 
-    /// Filters some lanes of a packet, inlined or not.
+    /// Filters some lanes of a packet, inlined or out of line.
     #[inline(always)]
     pub fn packet_inlined_if<I: InstructionSet>(&mut self, is_inlined: bool, number: usize, lanes: u32) {
         if is_inlined {
@@ -224,20 +224,21 @@ impl<'a, C: Collector> SearchState<'a, C> {
         }
     }
 
-    /// Filters a packet, and those that continue its run as far as the collector wants their primitives. This is out of
-    /// line, so it is compiled once for all volumes.
+    /// Filters a packet, and the packets that continue its run as far as the collector needs their primitives. It is
+    /// out of line, so that it is compiled once for all volumes.
     #[inline(always)]
     pub(super) fn run_of_packets<I: InstructionSet>(&mut self, number: usize) {
         I::call(RunOfPackets { state: self, number });
     }
 
-    /// The lower bound of a candidate in the frame of the tree, from the square that the filter of its packet found.
+    /// Returns the lower bound of a candidate in the frame of the tree, given the square that the filter of its packet
+    /// found.
     #[inline(always)]
     #[allow(clippy::cast_possible_truncation, reason = "`distance_below` allows for the rounding")]
     fn lower_bound(&self, packet: &Packet, local: &Local, square: f32) -> f32 {
         let distance = square.sqrt() * (1.0 - f32::EPSILON) - local.excess;
-        // In the frame of the tree the result is in the range of f32, and no difference of two numbers of f32 of at
-        // least about 1 underflows.
+        // In the frame of the tree the result is in the range of f32. The difference of two f32 numbers of magnitude
+        // about 1 or more does not underflow.
         (f64::from(distance) * packet.unit() * self.frame.per_unit) as f32
     }
 
@@ -247,8 +248,8 @@ impl<'a, C: Collector> SearchState<'a, C> {
         f64::from(lower_bound) * (1.0 - f64::from(f32::EPSILON)) * self.frame.unit
     }
 
-    /// Makes the lane of a packet with the smallest square, whose primitive is within `distance`, the incumbent.
-    /// Returns the bit of that lane.
+    /// Makes the primitive in the lane with the smallest square the incumbent. It is within `distance`. Returns the bit
+    /// of that lane.
     #[cold]
     #[inline(never)]
     #[allow(clippy::cast_possible_truncation, reason = "packets and lanes fit")]

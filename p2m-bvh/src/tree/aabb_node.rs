@@ -1,4 +1,4 @@
-//! Nodes that bound their children by boxes.
+//! The node of an AABB tree, which bounds its children by boxes.
 
 use crate::packet::Member;
 use crate::tree::frame::{Frame, FrameBox};
@@ -13,7 +13,8 @@ use p2m_core::engine::pairs::{Height, Rows};
 use p2m_core::engine::simd::Lanes;
 use p2m_core::storage::{LoadError, Reader, Writer};
 
-/// Eight boxes side by side. The boxes of unused slots are empty, so they are infinitely far from everything.
+/// A node of eight boxes, stored side by side. The boxes of unused slots are empty, so they are infinitely far from
+/// everything.
 #[derive(Clone, Copy, Debug)]
 #[repr(C, align(64))]
 pub struct BoxNode {
@@ -89,7 +90,7 @@ impl WideNode for BoxNode {
     }
 
     fn height((): &(), direction: &[f64; 3]) -> Height {
-        // The lower side is the highest along a direction with a negative component.
+        // Along a direction with a negative component, the lower side is the highest.
         Height::new(std::array::from_fn(|k| (if direction[k] < 0.0 { k } else { k + 3 }, direction[k])))
     }
 

@@ -1,4 +1,4 @@
-//! The frame of a tree, in which its nodes are stored in f32.
+//! The frame of a tree: the coordinate system in which its nodes are stored in f32.
 
 use nalgebra::Point3;
 use p2m_core::Aabb;
@@ -20,19 +20,19 @@ pub struct Frame {
     pub per_unit: f64,
 }
 
-/// The units with which squares of lengths stay in the plain range of keys, as searches in f32 require.
+/// The units for which squares of lengths stay in the plain range of keys, as searches in f32 require.
 const PLAIN_UNITS: std::ops::RangeInclusive<f64> = power_of_two(-320)..=power_of_two(300);
-/// Query points that are farther than this many units away are searched for in f64.
+/// The distance from the centre, in units of the frame, above which queries are searched in f64.
 const MAX_QUERY_UNITS: f64 = power_of_two(40);
 
 impl Frame {
-    /// The frame of a scene with this box.
+    /// Returns the frame of a scene with this box.
     pub fn around(bounds: &Aabb<f64>) -> Self {
         // Coordinates are halved first, because sums and differences of two finite numbers may overflow.
         let halves: [f64; 3] = std::array::from_fn(|k| bounds.max[k] * 0.5 - bounds.min[k] * 0.5);
         let centre: [f64; 3] = std::array::from_fn(|k| bounds.max[k] * 0.5 + bounds.min[k] * 0.5);
         let half = halves.into_iter().fold(0.0, f64::max);
-        // A scene that is a single point gets the size of the rounding error of its coordinates.
+        // A scene of a single point gets the size of the rounding error of its coordinates.
         let half = if half > 0.0 { half } else { centre.iter().fold(0.0, |a, x| x.abs().max(a)) * f64::EPSILON };
         let e = if half > 0.0 && half.is_finite() { exponent(half) + 1 } else { 0 };
         // The limits keep both the unit and its inverse finite.
@@ -40,14 +40,14 @@ impl Frame {
         Self { centre, unit, per_unit: unit.recip() }
     }
 
-    /// A point of the scene in coordinates of the frame.
+    /// Converts a point of the scene to the frame.
     #[inline(always)]
     pub fn place(&self, point: &[f64; 3]) -> [f64; 3] {
         std::array::from_fn(|k| (point[k] - self.centre[k]) * self.per_unit)
     }
 
-    /// The query point in coordinates of the frame; `None` if it is too far away to search in f32, or if the frame is
-    /// too small or too large for that.
+    /// Converts a query point to the frame. It is `None` if the point is too far away to search in f32, or if the frame
+    /// is too small or too large for that.
     #[inline(always)]
     pub fn local(&self, query: &[f64; 3]) -> Option<[f64; 3]> {
         let q = self.place(query);
@@ -55,20 +55,21 @@ impl Frame {
         (PLAIN_UNITS.contains(&self.unit) && largest <= MAX_QUERY_UNITS).then_some(q)
     }
 
-    /// Whether squares of lengths of the scene stay in the plain range of keys, so that searches in f32 are possible.
+    /// Returns whether squares of lengths of the scene stay in the plain range of keys, so that searches in f32 are
+    /// possible.
     #[inline]
     pub fn is_plain(&self) -> bool {
         PLAIN_UNITS.contains(&self.unit)
     }
 
-    /// A box of the scene in coordinates of the frame, rounded outwards.
+    /// Converts a box of the scene to the frame, rounded outwards.
     #[allow(clippy::cast_possible_truncation, reason = "rounded outwards, which covers the rounding of the difference")]
     pub fn enclose(&self, bounds: &Aabb<f64>) -> FrameBox {
         let [min, max] = [&bounds.min, &bounds.max].map(|corner| self.place(&[corner.x, corner.y, corner.z]));
         [min.map(|x| (x as f32).next_down()), max.map(|x| (x as f32).next_up())]
     }
 
-    /// A box of the frame in coordinates of the scene, rounded outwards.
+    /// Converts a box of the frame to the scene, rounded outwards.
     pub fn to_scene(&self, bounds: &Aabb<f64>) -> Aabb<f64> {
         let coordinate = |x: f64, k: usize| self.centre[k] + x * self.unit;
         Aabb {
@@ -77,9 +78,9 @@ impl Frame {
         }
     }
 
-    /// Converts the square of a length in the frame, which is a bound of a node, to the scene and rounds it down.
+    /// Converts the square of a length in the frame, such as the bound of a node, to the scene and rounds it down.
     pub fn square_below(&self, square: f32) -> f64 {
-        // The margins are those of `square_above`.
+        // The margins equal the margins of `square_above`.
         let square = f64::from(square) * (1.0 - power_of_two(-19)) - power_of_two(-120);
         square.max(0.0) * (self.unit * self.unit)
     }
@@ -89,7 +90,7 @@ impl Frame {
     #[inline(always)]
     #[allow(clippy::cast_possible_truncation, reason = "rounded up before")]
     pub fn square_above(&self, square: f64) -> f32 {
-        // The margin is 2^-20 for the bounds that the result is compared with and for this product, and 2^-120 for
+        // The margin is 2^-20 for the bounds with which the result is compared and for this product, and 2^-120 for
         // underflow in either.
         let square = square * (self.per_unit * self.per_unit) * (1.0 + power_of_two(-19)) + power_of_two(-120);
         if square < f64::from(f32::MAX) { square as f32 } else { f32::MAX }

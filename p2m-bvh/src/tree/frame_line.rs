@@ -1,7 +1,7 @@
 //! The line of a ray in the frame of a tree.
 //!
-//! The line is cut to the box of the scene and begins where it enters that box. Nodes can therefore be clipped in f32
-//! wherever the ray comes from. [docs/proofs/rays.md] has the proofs.
+//! The line is cut to the box of the scene and begins where it enters that box. So nodes can be clipped in f32 wherever
+//! the ray comes from. [docs/proofs/rays.md] has the proofs.
 //!
 //! [docs/proofs/rays.md]: https://github.com/p2m-rs/p2m/blob/main/docs/proofs/rays.md
 
@@ -14,25 +14,25 @@ use p2m_core::{Aabb, Ray};
 
 /// A bound on the relative error of a few sums and products in f64.
 const ROUNDING: f64 = power_of_two(-48);
-/// An allowance for further errors of positions in the frame, which is small beside the rounding to f32.
+/// A margin for further errors of positions in the frame, which is small compared with the rounding to f32.
 const POSITION_MARGIN: f64 = power_of_two(-30);
-/// The largest distance of an origin from the scene, in units of the frame, that f64 represents with enough accuracy.
+/// The largest distance of an origin from the scene, in units of the frame, that f64 resolves well enough.
 const MAX_ORIGIN_UNITS: f64 = power_of_two(30);
 /// The largest radius of a ray, in units of the frame, for which the tree is searched.
 const MAX_RADIUS_UNITS: f64 = 64.0;
-/// The width by which the box of the scene is enlarged on each side, in units of the frame.
+/// The margin by which the box of the scene is enlarged on each side, in units of the frame.
 const BOX_MARGIN: f64 = power_of_two(-20);
 
-/// Whether a ray certainly misses the box of a scene with this half extent.
+/// Returns whether a ray certainly misses the box of a scene with this half extent.
 ///
-/// That is so if the ray begins outside and goes away, or if the box lies on one side of its projection along an axis.
-/// Most rays from far away end here.
+/// It does if it begins outside and moves away, or if the box lies on one side of its projection along an axis. Most
+/// rays from far away end here.
 #[inline(always)]
 pub fn misses_scene(ray: &Ray, radius: f64, frame: &Frame, half_extent: &[f64; 3]) -> bool {
     let (o, d, c) = (&ray.origin, &ray.direction, &frame.centre);
     let towards = [c[0] - o[0], c[1] - o[1], c[2] - o[2]];
-    // The half extent is enlarged for the rounding in this function (the rounding of the centre is part of it already)
-    // and for parameters that underflow to zero.
+    // The half extent is enlarged for the rounding in this function and for parameters that underflow to zero. The
+    // rounding of the centre is already included.
     let half =
         [0, 1, 2].map(|k: usize| half_extent[k] + o[k].abs() * ROUNDING + d[k].abs() * UNDERFLOW_MARGIN + radius);
     // All conditions are combined into one branch, because several branches would be mispredicted.
@@ -47,7 +47,8 @@ pub fn misses_scene(ray: &Ray, radius: f64, frame: &Frame, half_extent: &[f64; 3
     goes_away | is_beside(0, 1) | is_beside(1, 2) | is_beside(2, 0)
 }
 
-/// Half of the extent of a scene along each axis, enlarged for the rounding of its centre and of [`misses_scene`].
+/// Returns half of the extent of a scene along each axis, enlarged for the rounding of its centre and of
+/// [`misses_scene`].
 pub fn half_extent(frame: &Frame, bounds: &Aabb<f64>) -> [f64; 3] {
     let half = |k: usize| (bounds.max[k] * 0.5 - bounds.min[k] * 0.5) * (1.0 + MIN_SLAB_GROWTH);
     std::array::from_fn(|k| half(k) + frame.centre[k].abs() * ROUNDING + UNDERFLOW_MARGIN)
@@ -59,17 +60,17 @@ pub struct FrameLine {
     pub base: [f64; 3],
     /// The direction of the line, whose largest component is 1 or -1.
     pub direction: [f64; 3],
-    /// A bound on the error of the base, to which the radius of the ray is added.
+    /// A bound on the error of the base plus the radius of the ray.
     pub margin: f64,
     /// The length from the origin of the line to the base.
     base_length: f64,
-    /// The length from the base to a point behind the box.
+    /// The length from the base to a point beyond the box.
     exit_length: f64,
     per_unit: f64,
 }
 
 impl FrameLine {
-    /// The line of a ray, with an origin near the scene.
+    /// Returns the line of a ray, with an origin near the scene.
     #[inline(always)]
     pub fn line_of(frame: &Frame, ray: &Ray, radius: f64) -> RayLine {
         let [x, y, z] = frame.place(&ray.origin).map(f64::abs);
@@ -80,7 +81,7 @@ impl FrameLine {
         }
     }
 
-    /// Cuts a line, which begins at the length `from` from its origin, to the box of the scene.
+    /// Cuts a line to the box of the scene. The line begins at the length `from` from its origin.
     ///
     /// The result is `None` if f32 cannot represent the piece with enough accuracy, and `Some(None)` if no part of the
     /// line lies in the box.
@@ -92,8 +93,8 @@ impl FrameLine {
         if !(frame.is_plain() && radius <= MAX_RADIUS_UNITS) {
             return None;
         }
-        // The origin is the projection of the centre of the scene onto a line that passes at a large distance: rounding
-        // moves it by much more than the size of the scene, but not by as much as that distance.
+        // The origin is the projection of the centre of the scene onto a line that passes at a large distance. Rounding
+        // moves it by much more than the size of the scene, but by less than that distance.
         if largest - origin_error > MAX_ORIGIN_UNITS {
             return Some(None);
         }

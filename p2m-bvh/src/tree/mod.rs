@@ -2,8 +2,8 @@
 //!
 //! A node is a few cache lines with the bounds of eight children side by side ([`wide_node`]; boxes are in
 //! [`aabb_node`], k-DOPs in the crate p2m-kdop). A leaf is a [`Packet`] of up to sixteen primitives. Both are stored in
-//! f32 or less, in a [`Frame`] of their own, and only bound distances. The crate's modules `build` and `traverse` have
-//! the functions that build and search a tree.
+//! f32 or less, in a [`Frame`] of their own, and only bound distances. The functions that build and search a tree are
+//! in the modules `construct` and `traverse` of this crate.
 
 pub(crate) mod aabb_node;
 pub(crate) mod frame;
@@ -26,11 +26,10 @@ use p2m_core::{Aabb, Collector, PrimitiveId};
 use std::sync::OnceLock;
 use wide_node::{VolumeNodes, WideNode};
 
-/// The largest number of nodes on a path from the root, which every build guarantees. Searches keep their stack in an
-/// array because of it.
+/// The most nodes on a path from the root, which every build guarantees. So searches can keep their stack in an array.
 pub(crate) const MAX_DEPTH: usize = 66;
 
-/// A tree over a set of primitives that it does not contain: every method that needs the set has to get the same one.
+/// A tree over a set of primitives that it does not contain. Every method that needs the set has to get the same one.
 #[derive(Clone, Debug)]
 pub struct PacketTree<V: VolumeNodes = Aabb<f64>> {
     pub(crate) isa: Isa,
@@ -55,7 +54,7 @@ pub struct PacketTree<V: VolumeNodes = Aabb<f64>> {
     pub leaves: Leaves,
     /// The number of primitives.
     pub(crate) len: usize,
-    /// The least id of each node, once a search for pairs has needed it.
+    /// The least id of each node, computed when a search for pairs first needs it.
     pub(crate) least_ids: OnceLock<Vec<PrimitiveId>>,
 }
 
@@ -66,34 +65,34 @@ pub struct Leaves {
     pub packets: Array<Packet>,
     /// The exact vertices of the packets, one packet after the other.
     pub vertices: Array<[f64; 3]>,
-    /// The indices at which the vertices of each packet begin, and the number of all vertices. They are in an array of
-    /// their own, which stays in the cache, so that vertices can be prefetched together with their packet.
+    /// The index of the first vertex of each packet, and the number of all vertices. They are in an array of their own,
+    /// which stays in the cache, so that vertices can be prefetched together with their packet.
     pub(crate) vertex_offsets: Array<u32>,
     /// Whether a packet has primitives other than triangles.
     pub(crate) has_non_triangles: bool,
 }
 
 impl<V: VolumeNodes> PacketTree<V> {
-    /// The box around the whole scene; the empty box for an empty set.
+    /// Returns the box around the whole scene, which is the empty box for an empty set.
     #[must_use]
     pub fn bounds(&self) -> &Aabb<f64> {
         &self.bounds
     }
 
-    /// The number of nodes on the longest path from the root.
+    /// Returns the number of nodes on the longest path from the root.
     #[must_use]
     pub fn depth(&self) -> usize {
         self.depth
     }
 
-    /// The children of a node, with boxes around them.
+    /// Returns the children of a node, with boxes around them.
     #[doc(hidden)]
     pub fn child_boxes(&self, node: NodeRef) -> impl Iterator<Item = (Aabb<f64>, NodeRef)> + '_ {
         let node = &self.nodes[node.number()];
         node.used_slots().map(|slot| (self.child_box(node, slot), node.children()[slot]))
     }
 
-    /// A box around the child in a slot of a node.
+    /// Returns a box around the child in a slot of a node.
     pub(crate) fn child_box(&self, node: &V::Node, slot: usize) -> Aabb<f64> {
         V::Node::scene_box(&node.bounds(slot), &self.shared, &self.frame)
     }
@@ -107,7 +106,7 @@ impl<V: VolumeNodes> PacketTree<V> {
         }
         let least_ids = self.least_ids.get_or_init(|| {
             let mut least_ids = vec![PrimitiveId::new(0); self.nodes.len()];
-            // Children come after their parents.
+            // Backwards, because children come after their parents.
             for (number, node) in self.nodes.iter().enumerate().rev() {
                 let children = node.used_slots().map(|slot| node.children()[slot]);
                 let ids = children.map(|child| match child.is_packet() {
@@ -130,12 +129,12 @@ impl<V: VolumeNodes> PacketTree<V> {
         } else {
             node.wrapping_add(child.number()).cast()
         };
-        // A packet has seven cache lines, and few nodes have more. The lines behind a smaller node mostly belong
-        // to its sibling.
+        // A packet has seven cache lines, and few nodes have more. The lines behind a smaller node mostly belong to its
+        // sibling.
         prefetch_lines(address, size_of::<Packet>().max(size_of::<V::Node>()));
     }
 
-    /// The instruction set that searches use.
+    /// Returns the instruction set that searches use.
     #[must_use]
     pub fn isa(&self) -> Isa {
         self.isa
@@ -148,7 +147,7 @@ impl<V: VolumeNodes> PacketTree<V> {
         Self { isa, ..self }
     }
 
-    /// The heap memory of the tree, in bytes.
+    /// Returns the heap memory of the tree, in bytes.
     #[must_use]
     pub fn memory(&self) -> usize {
         self.nodes.capacity() * size_of::<V::Node>()
@@ -158,7 +157,7 @@ impl<V: VolumeNodes> PacketTree<V> {
             + self.least_ids.get().map_or(0, |ids| ids.capacity() * size_of::<PrimitiveId>())
     }
 
-    /// A mask of the lanes in use for each packet.
+    /// Returns a mask of the used lanes for each packet.
     #[doc(hidden)]
     #[must_use]
     #[allow(clippy::cast_possible_truncation, reason = "a packet has sixteen lanes")]
@@ -166,7 +165,7 @@ impl<V: VolumeNodes> PacketTree<V> {
         self.leaves.packets.iter().map(|packet| packet.lanes() as u16).collect()
     }
 
-    /// The number of packets, and the number of their lanes in use.
+    /// Returns the number of packets, and the number of their used lanes.
     #[must_use]
     pub fn packets(&self) -> (usize, usize) {
         (self.leaves.packets.len(), self.len)
@@ -174,26 +173,26 @@ impl<V: VolumeNodes> PacketTree<V> {
 }
 
 impl Leaves {
-    /// Whether a packet is continued, and the primitives of the next packet may be part of the answer. They have the
-    /// keys of this packet and higher ids.
+    /// Returns whether a packet is continued, and the primitives of the next packet may be part of the answer. They
+    /// have the same keys as this packet's primitives and higher ids.
     #[inline(always)]
     pub(crate) fn is_rest_wanted(&self, number: usize, query: V3, collector: &impl Collector) -> bool {
         let packet = &self.packets[number];
         packet.is_continued() && {
             let limit = collector.prune_above_for_id(self.packets[number + 1].ids()[0]);
-            // A higher limit than the general one is that of a collector that does not go by keys.
+            // A limit above the general one means that the collector does not compare keys.
             limit > collector.prune_above() || (limit >= 0.0 && packet.is_lane_within(0, &self.vertices, query, limit))
         }
     }
 
-    /// Whether a packet continues the run of the packet before.
+    /// Returns whether a packet continues the run of the previous packet.
     #[doc(hidden)]
     #[must_use]
     pub fn is_continuation(&self, number: usize) -> bool {
         number > 0 && self.packets[number - 1].is_continued()
     }
 
-    /// A packet and those that continue it.
+    /// Returns a packet and the packets that continue its run.
     pub(crate) fn run(&self, number: usize) -> impl Iterator<Item = &Packet> {
         let rest = &self.packets[number..];
         let len = 1 + rest.iter().take_while(|packet| packet.is_continued()).count();

@@ -1,4 +1,4 @@
-//! References from a node to its children.
+//! References to nodes and packets.
 
 /// The number of children of a node.
 pub const WIDTH: usize = 8;
@@ -11,29 +11,29 @@ pub struct NodeRef(pub u32);
 const PACKET_BIT: u32 = 1 << 31;
 
 impl NodeRef {
-    /// The reference to neither a node nor a packet, which unused slots have.
+    /// The reference to neither a node nor a packet, which marks unused slots.
     pub const NONE: Self = Self(u32::MAX);
 
-    /// The reference to a node.
+    /// Returns a reference to a node.
     ///
     /// # Panics
     /// Panics if the number does not fit into 32 bits.
     pub fn node(number: usize) -> Self {
         Self(u32::try_from(number).expect("fewer nodes than primitives"))
     }
-    /// The reference to a packet.
+    /// Returns a reference to a packet.
     ///
     /// # Panics
     /// Panics if the number does not fit into 32 bits.
     pub fn packet(number: usize) -> Self {
         Self(u32::try_from(number).expect("fewer packets than primitives") | PACKET_BIT)
     }
-    /// Whether the reference is to a packet.
+    /// Returns whether the reference is to a packet.
     #[inline(always)]
     pub fn is_packet(self) -> bool {
         self.0 & PACKET_BIT != 0
     }
-    /// The number of the node or the packet.
+    /// Returns the number of the node or the packet.
     #[inline(always)]
     pub fn number(self) -> usize {
         (self.0 & !PACKET_BIT) as usize

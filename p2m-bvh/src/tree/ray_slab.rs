@@ -1,14 +1,14 @@
-//! The intersection of a ray with slabs, each of which is the space between two parallel planes.
+//! The intersection of a ray with slabs. A slab is the space between two parallel planes.
 
 use p2m_core::engine::simd::Lanes;
 use p2m_core::engine::vector::power_of_two;
 
-/// A ray counts as parallel to a slab if its product with the normal grows by less than this per unit of length: from
-/// one side of a scene to the other that is less than the error of positions in the frame. The margins for rounding
-/// contain it as well.
+/// The growth of the product with the normal per unit of length below which a ray counts as parallel to a slab. From
+/// one side of a scene to the other that is less than the error of positions in the frame, and the margins for rounding
+/// include it.
 pub(crate) const MIN_SLAB_GROWTH: f64 = power_of_two(-40);
 
-/// The product of a ray with the normal of a slab, with the sign with which it grows along the ray.
+/// The dot product of a ray with the normal of a slab. Its sign is chosen so that it grows along the ray.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct SlabRay {
     /// The product at the base of the ray, rounded up.
@@ -22,8 +22,8 @@ pub struct SlabRay {
 }
 
 impl SlabRay {
-    /// Makes the ray from its product with the normal at its base, the growth of that product per unit of length, and
-    /// a bound on the error of the product.
+    /// Creates the slab ray from the product with the normal at the base, the growth of the product per unit of length,
+    /// and a bound on the error of the product.
     #[allow(clippy::cast_possible_truncation, reason = "rounded outwards, and the margins allow for it")]
     #[inline(always)]
     pub fn new(product: f64, growth: f64, margin: f64) -> Self {
@@ -47,7 +47,7 @@ pub struct RayInterval<L> {
 }
 
 impl<L: Lanes> RayInterval<L> {
-    /// The interval of the complete ray.
+    /// Returns the interval of the complete ray.
     #[inline(always)]
     pub fn complete() -> Self {
         Self { near: L::splat(0.0), far: L::splat(f32::INFINITY) }
@@ -57,14 +57,14 @@ impl<L: Lanes> RayInterval<L> {
     #[inline(always)]
     pub fn clip(&mut self, ray: &SlabRay, min: L, max: L) {
         let zero = L::splat(0.0);
-        // NaN, the product of zero and an infinite inverse, leaves the interval as it is.
+        // NaN, the product of zero and an infinite inverse, leaves the interval unchanged.
         let (near, far) = if ray.is_negated { (zero.sub(max), zero.sub(min)) } else { (min, max) };
         let inverse = L::splat(ray.inverse);
         self.near = near.sub(L::splat(ray.high)).mul(inverse).max(self.near);
         self.far = far.sub(L::splat(ray.low)).mul(inverse).min(self.far);
     }
 
-    /// The length at which each interval begins; infinite if the interval is empty.
+    /// Returns the length at which each interval begins, or infinity for an empty interval.
     #[inline(always)]
     pub fn entry(self) -> L {
         // Both ends have a relative error of at most 2^-22.

@@ -1,4 +1,4 @@
-//! Query points in f32, as nodes of boxes use them.
+//! Query points rounded to f32, for nodes of boxes.
 
 use p2m_core::engine::simd::Lanes;
 
@@ -31,7 +31,7 @@ impl Rounded {
         let mut result = Self { low: [0.0; 3], high: [0.0; 3] };
         for (k, x) in point.into_iter().enumerate() {
             let x = x as f32;
-            // The margin is at least one unit in the last place, and the conversion errs by half of one.
+            // The margin is at least one unit in the last place, and the conversion errs by at most half of one.
             let margin = x.abs() * f32::EPSILON + f32::MIN_POSITIVE;
             (result.low[k], result.high[k]) = (x - margin, x + margin);
         }

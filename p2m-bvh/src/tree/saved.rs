@@ -1,4 +1,4 @@
-//! Trees in saved files.
+//! The saved form of a tree.
 
 use crate::packet::Packet;
 use crate::tree::frame::Frame;
@@ -16,12 +16,13 @@ use std::sync::OnceLock;
 /// The section with the bounds of the nodes.
 const BOUNDS: &str = "tree/bounds";
 
-/// The fields of a tree that are not arrays, as the section `tree` has them.
+/// The fields of a tree that are not arrays, as they are stored in the section `tree`.
 #[derive(Clone, Copy, Pod, Zeroable)]
 #[repr(C)]
 struct Header {
     bounds: [[f64; 3]; 2],
-    /// The frame of the nodes and the lists. It follows from the bounds and is only compared with that result.
+    /// The frame of the nodes and the lists. It follows from the bounds, and is only compared with the frame that
+    /// follows from them.
     frame: [f64; 5],
     depth: u64,
     len: u64,
@@ -29,7 +30,7 @@ struct Header {
     has_non_triangles: u32,
 }
 
-/// The numbers of a frame, as [`Header::frame`] has them.
+/// Returns the numbers of a frame, as [`Header::frame`] stores them.
 fn frame_numbers(frame: &Frame) -> [f64; 5] {
     let [x, y, z] = frame.centre;
     [x, y, z, frame.unit, frame.per_unit]
@@ -52,7 +53,7 @@ impl<V: VolumeNodes> Saved for PacketTree<V> {
         };
         writer.put_copy("tree", &[header]);
         V::save_shared(&self.shared, writer);
-        // The bounds of the whole scene are stored as those of the first child of an additional node.
+        // The bounds of the whole scene are stored as the bounds of the first child of an additional node.
         let mut last = V::Node::new([NodeRef::NONE; WIDTH]);
         last.set_bounds(0, &self.root_bounds);
         let nodes = || self.nodes.iter().chain([&last]);
@@ -72,7 +73,7 @@ impl<V: VolumeNodes> Saved for PacketTree<V> {
         let leaves = load_leaves(reader)?;
         check_leaves(&leaves, primitives)?;
         let mut nodes = load_nodes::<V>(reader)?;
-        // The bounds of the whole scene are those of an additional node, which has no children.
+        // The additional node, which has the bounds of the whole scene and no children.
         let last = nodes.pop();
         let root_bounds = last.ok_or_else(|| LoadError::inconsistent(CHILDREN, "there is no node"))?.bounds(0);
         nodes.iter_mut().for_each(clear_unused_slots::<V>);
@@ -100,7 +101,7 @@ impl<V: VolumeNodes> Saved for PacketTree<V> {
     }
 }
 
-/// Loads the nodes, with the additional one that has the bounds of the scene.
+/// Loads the nodes, including the additional one with the bounds of the scene.
 fn load_nodes<V: VolumeNodes>(reader: &Reader) -> Result<Vec<V::Node>, LoadError> {
     let rows = reader.array::<[f32; WIDTH]>(BOUNDS)?;
     let children = reader.array::<u32>(CHILDREN)?;
@@ -114,7 +115,7 @@ fn load_nodes<V: VolumeNodes>(reader: &Reader) -> Result<Vec<V::Node>, LoadError
     Ok(rows.chunks_exact(V::Node::ROWS).zip(children.chunks_exact(WIDTH)).map(load).collect())
 }
 
-/// Makes the bounds of slots without a child empty, because a search visits a slot for its bounds alone.
+/// Makes the bounds of unused slots empty, because a search visits a slot on the basis of its bounds alone.
 fn clear_unused_slots<V: VolumeNodes>(node: &mut V::Node) {
     let children = *node.children();
     let unused = (0..WIDTH).filter(|slot| children[*slot] == NodeRef::NONE);

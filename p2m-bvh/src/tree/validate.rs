@@ -1,8 +1,8 @@
-//! Validation of the tree of a saved file.
+//! The validation of a tree from a file.
 //!
-//! The checks take one pass over the nodes, the packets and the exact vertices. They cover what searches rely on in
-//! order to end without a panic: all numbers are in range, each node and each packet is used once, and the depth is one
-//! for which stacks have room. They do not cover bounds, which can only make answers wrong.
+//! The checks take one pass over the nodes, the packets and the exact vertices. They cover everything that searches
+//! need in order to end without a panic: all numbers are in range, each node and each packet is used once, and stacks
+//! have room for the depth. They do not cover bounds, which can only make answers wrong.
 
 use crate::tree::node_ref::NodeRef;
 use crate::tree::wide_node::{VolumeNodes, WideNode};
@@ -21,9 +21,9 @@ pub(super) const VERTICES: &str = "tree/vertices";
 /// The section with the index of the first vertex of each packet.
 pub(super) const VERTEX_OFFSETS: &str = "tree/first-vertices";
 
-/// The nodes and packets to which a reference was found.
+/// The nodes and packets that have been referred to.
 struct Referenced {
-    /// The depth of each node; 0 if there is no reference to it yet.
+    /// The depth of each node, or 0 as long as no reference to it was found.
     depths: Vec<usize>,
     packets: Vec<bool>,
 }
@@ -43,7 +43,7 @@ impl Referenced {
 }
 
 /// Checks the references of all nodes and returns the number of nodes on the longest path from the root. A node that
-/// comes before its parent is refused, because a path of such nodes could be a circle.
+/// comes before its parent is refused, because such references could form a cycle.
 pub(super) fn check_references<V: VolumeNodes>(tree: &PacketTree<V>) -> Result<usize, LoadError> {
     let mut referenced =
         Referenced { depths: vec![0; tree.nodes.len()], packets: vec![false; tree.leaves.packets.len()] };
@@ -75,7 +75,7 @@ pub(super) fn check_leaves(leaves: &Leaves, primitives: usize) -> Result<(), Loa
     let (first, last) = (vertex_offsets[0] as usize, vertex_offsets[packets.len()] as usize);
     require(first == 0 && last == vertices.len(), VERTEX_OFFSETS, "the offsets do not cover all vertices")?;
     check_chunks(vertices, |_, chunk| {
-        // A fold without an early end is computed in lanes.
+        // A fold without an early exit is vectorised.
         let are_finite = chunk.as_flattened().iter().fold(true, |all, x| all & x.is_finite());
         require(are_finite, VERTICES, "a coordinate is not finite")
     })?;

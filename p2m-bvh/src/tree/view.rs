@@ -1,4 +1,4 @@
-//! A view of the nodes of a tree, for pictures.
+//! A view of the nodes of a tree, for visualisation.
 
 use crate::tree::PacketTree;
 use crate::tree::node_ref::NodeRef;
@@ -17,14 +17,14 @@ pub struct TreeNode<V> {
 }
 
 impl<V: VolumeNodes> PacketTree<V> {
-    /// The root; `None` for an empty set.
+    /// Returns the root, or `None` for an empty set.
     pub fn root(&self) -> Option<TreeNode<V>> {
         let volume = || V::Node::scene_volume(&self.root_bounds, &self.shared, &self.frame);
         (self.root != NodeRef::NONE).then(|| TreeNode { volume: volume(), depth: 0, reference: self.root })
     }
 
-    /// The children of a node of this tree. A packet has none, unless more primitives have the same vertices than are in
-    /// it: the next packet of them is its child.
+    /// Returns the children of a node of this tree. A packet has no children, except in a run of packets with the same
+    /// vertices, where the next packet counts as its child.
     pub fn children(&self, node: &TreeNode<V>) -> impl Iterator<Item = TreeNode<V>> + '_ {
         let wide = (!node.reference.is_packet()).then(|| &self.nodes[node.reference.number()]);
         let depth = node.depth + 1;
@@ -45,12 +45,12 @@ impl<V: VolumeNodes> PacketTree<V> {
         of_node.chain(next)
     }
 
-    /// The primitives of a packet of this tree; `None` if the node is not a packet.
+    /// Returns the primitives of a packet of this tree, or `None` if the node is not a packet.
     pub fn primitives(&self, node: &TreeNode<V>) -> Option<&[PrimitiveId]> {
         node.reference.is_packet().then(|| self.leaves.packets[node.reference.number()].ids())
     }
 
-    /// The sum of the surface areas of the boxes of all nodes and packets below the root.
+    /// Returns the sum of the surface areas of the boxes of all nodes and packets below the root.
     pub fn surface_area(&self) -> f64 {
         let area = |bounds: Aabb<f64>| {
             let size = bounds.max - bounds.min;
@@ -60,7 +60,7 @@ impl<V: VolumeNodes> PacketTree<V> {
         children.map(area).sum()
     }
 
-    /// All nodes and packets of the tree, parents before children.
+    /// Returns all nodes and packets of the tree, parents before their children.
     pub fn parts(&self) -> impl Iterator<Item = TreeNode<V>> + '_ {
         let mut pending: Vec<TreeNode<V>> = self.root().into_iter().collect();
         std::iter::from_fn(move || {

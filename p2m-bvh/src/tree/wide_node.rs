@@ -12,10 +12,10 @@ use std::fmt::Debug;
 
 /// A node of eight children with their bounds in f32, in the frame of the tree.
 ///
-/// A child stands in one of eight slots, which are the lanes of its bounds.
+/// A child occupies one of eight slots, which are the lanes of its bounds.
 pub trait WideNode: Rows + Copy + Debug + Send + Sync {
-    /// Whether searches contain the bounds of nodes and the filter of packets in portable code as well, where
-    /// [processors have faster lanes](Lanes::INLINES). Each type of nodes costs a copy of that code.
+    /// Whether portable searches contain inlined copies of the node bounds and the packet filter even if [processors
+    /// have faster lanes](Lanes::INLINES). Each type of nodes adds a copy of that code.
     const INLINES_PORTABLE: bool;
     /// The bounding volume of a child, in coordinates of the scene.
     type Volume;
@@ -33,68 +33,68 @@ pub trait WideNode: Rows + Copy + Debug + Send + Sync {
     /// The number of rows of numbers that hold the bounds of eight children.
     const ROWS: usize;
 
-    /// Makes a node with these children, whose bounds are still empty.
+    /// Creates a node with these children, whose bounds are still empty.
     fn new(children: [NodeRef; WIDTH]) -> Self;
-    /// The children of the node; unused slots have [`NodeRef::NONE`].
+    /// Returns the children of the node. Unused slots have [`NodeRef::NONE`].
     fn children(&self) -> &[NodeRef; WIDTH];
-    /// The bounds of the children as rows of numbers, as files store them.
+    /// Returns the bounds of the children as rows of numbers, in the form that files store.
     fn rows(&self) -> impl Iterator<Item = [f32; WIDTH]> {
         (0..Self::ROWS).map(|number| *self.row(number))
     }
-    /// Makes a node from the rows of a file.
+    /// Creates a node from the rows of a file.
     fn from_rows(rows: &[[f32; WIDTH]], children: [NodeRef; WIDTH]) -> Self;
     /// Sets the bounds of the child in a slot.
     fn set_bounds(&mut self, slot: usize, bounds: &Self::Bounds);
     /// Returns the bounds of the child in a slot.
     fn bounds(&self, slot: usize) -> Self::Bounds;
 
-    /// The bounds of some primitives, whose common box is `bounds`.
+    /// Returns the bounds of some primitives, whose common box is `bounds`.
     fn enclose(shared: &Self::Shared, frame: &Frame, primitives: &[Member], bounds: &Aabb<f64>) -> Self::Bounds;
-    /// The smallest bounds around two bounds.
+    /// Returns the smallest bounds around two bounds.
     fn union(a: &Self::Bounds, b: &Self::Bounds) -> Self::Bounds;
 
     /// Converts a query point to the frame. The result is `None` if the point is too far away to search in f32, or if
     /// the frame is too small or too large for that.
     fn query(shared: &Self::Shared, frame: &Frame, query: &[f64; 3]) -> Option<Self::Query>;
-    /// The squares of lower bounds on the distances to the contents of the eight children, in the frame. A square may
-    /// be too large by at most 2^-20 of itself, apart from underflow.
+    /// Returns the squares of lower bounds on the distances to the contents of the eight children, in the frame. A
+    /// square may be too large by at most 2^-20 of itself, apart from underflow.
     fn lower_bounds<L: Lanes>(&self, shared: &Self::Shared, query: &Self::Query) -> L;
 
-    /// Converts a direction of the frame, a vector of length 1, to the form in which heights along it are computed.
+    /// Converts a unit vector of the frame to the form in which heights along it are computed.
     fn height(shared: &Self::Shared, direction: &[f64; 3]) -> Height;
 
-    /// Converts a ray to the form in which nodes are intersected.
+    /// Converts a ray to the form that the intersection with nodes uses.
     fn ray(shared: &Self::Shared, line: &FrameLine) -> Self::Ray;
-    /// The lengths from the base of a ray at which it enters the eight children. A length may be too large by at most
-    /// 2^-22 of itself, is never negative, and is infinite for a child that the ray misses.
+    /// Returns the lengths from the base of a ray at which it enters the eight children. A length may be too large by
+    /// at most 2^-22 of itself, is never negative, and is infinite for a child that the ray misses.
     fn entries<L: Lanes>(&self, ray: &Self::Ray) -> L;
 
-    /// A box in coordinates of the scene around bounds in the frame.
+    /// Returns a box in scene coordinates around bounds in the frame.
     fn scene_box(bounds: &Self::Bounds, shared: &Self::Shared, frame: &Frame) -> Aabb<f64>;
-    /// The volume in coordinates of the scene around bounds in the frame, rounded outwards.
+    /// Returns the volume in scene coordinates around bounds in the frame, rounded outwards.
     fn scene_volume(bounds: &Self::Bounds, shared: &Self::Shared, frame: &Frame) -> Self::Volume;
 
-    /// Whether a child may have a point in common with a box that intersects the box of the child. The default is
-    /// that it may.
+    /// Returns whether a child may have a point in common with a box that intersects the box of the child. The default
+    /// returns `true`.
     fn may_intersect_box(bounds: &Self::Bounds, shared: &Self::Shared, frame: &Frame, other: &Aabb<f64>) -> bool {
         let _ = (bounds, shared, frame, other);
         true
     }
 
-    /// The slots in use.
+    /// Returns the slots in use.
     fn used_slots(&self) -> impl Iterator<Item = usize> + '_ {
         (0..WIDTH).filter(|&slot| self.children()[slot] != NodeRef::NONE)
     }
 }
 
-/// The part of a bounding volume that trees and traversals need. The searches of [`Volume`](crate::Volume) build on it.
+/// The part of a bounding volume that trees and traversals need. [`Volume`](crate::Volume) adds the searches.
 pub trait VolumeNodes: Clone + 'static {
     /// The data that all volumes of a tree share.
     type Shared: Clone + Debug + Send + Sync;
     /// The type of the nodes.
     type Node: WideNode<Volume = Self, Shared = Self::Shared>;
 
-    /// The kind of index that a saved file with a tree of these volumes has.
+    /// Returns the kind of a saved index with these volumes.
     fn name() -> String;
     /// Adds the shared data to a file.
     fn save_shared(shared: &Self::Shared, writer: &mut Writer<'_>);
@@ -105,13 +105,13 @@ pub trait VolumeNodes: Clone + 'static {
     fn load_shared(reader: &Reader) -> Result<Self::Shared, LoadError>;
 }
 
-/// Whether searches of trees with volumes `V` contain the filter of packets.
+/// Returns whether searches of trees with volumes `V` contain an inlined copy of the packet filter.
 #[inline(always)]
 pub(crate) fn is_inlined<V: VolumeNodes, I: InstructionSet>() -> bool {
     I::F32x8::INLINES || V::Node::INLINES_PORTABLE
 }
 
-/// Bounds on the children of a node as [`WideNode::lower_bounds`], inlined or not as the lanes prefer it.
+/// Returns [`WideNode::lower_bounds`], inlined or out of line as the lanes prefer.
 #[inline(always)]
 pub(crate) fn lower_bounds<N: WideNode, L: Lanes>(node: &N, shared: &N::Shared, query: &N::Query) -> L {
     if L::INLINES || N::INLINES_PORTABLE {
@@ -126,7 +126,7 @@ fn lower_bounds_out_of_line<N: WideNode, L: Lanes>(node: &N, shared: &N::Shared,
     node.lower_bounds(shared, query)
 }
 
-/// Bounds on the children of a node as [`WideNode::entries`], inlined or not as the lanes prefer it.
+/// Returns [`WideNode::entries`], inlined or out of line as the lanes prefer.
 #[inline(always)]
 pub(crate) fn entries<N: WideNode, L: Lanes>(node: &N, ray: &N::Ray) -> L {
     if L::INLINES || N::INLINES_PORTABLE { node.entries(ray) } else { entries_out_of_line(node, ray) }
