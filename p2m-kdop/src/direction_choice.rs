@@ -1,9 +1,10 @@
-//! The directions that a scene lies along.
+//! The choice of directions that fit a scene.
 //!
-//! A slab is thin around a facet that is parallel to it, and around a segment that runs along it. The choice is
-//! therefore a frame of three orthogonal directions along which most of the area of facets (by their normals) and most
-//! of the length of segments lie. A scene that was built along some axes has such a frame however it was turned
-//! afterwards.
+//! A slab is thin around a facet that is parallel to it, and around a segment that runs along it. So the basic idea is
+//! to find a frame of three orthogonal directions that is aligned with most of the area of facets (by their normals)
+//! and most of the length of segments. A scene that was modelled along some axes has such a frame, however it was
+//! rotated afterwards. Candidates are the frames that the most frequent directions span; the least misaligned one is
+//! chosen, if it is clearly better than the axes.
 
 use crate::orientation::{candidate_frames, misalignment, sample_directions};
 use crate::{Directions, DirectionsError};
@@ -41,23 +42,24 @@ use std::fmt;
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct DirectionChoice {
-    /// The frame that was found: three orthogonal unit vectors.
+    /// The best frame: three orthogonal unit vectors.
     pub frame: [Vector3<f64>; 3],
-    /// The mean misalignment of facets and segments with the axes: 0 if all of them lie along the axes, and 1
-    /// if none does.
+    /// The mean misalignment of facets and segments with the axes: 0 if all of them are aligned with the axes, and 1 if
+    /// none is.
     pub waste_of_axes: f64,
     /// The mean misalignment of facets and segments with the frame.
     pub waste_of_frame: f64,
 }
 
-/// The frame is used if its misalignment is below this part of that of the axes.
+/// The largest ratio of the frame's misalignment to the axes' at which the frame is used. There is no record of how it
+/// was tuned.
 const MAX_MISALIGNMENT_RATIO: f64 = 0.75;
 
 impl DirectionChoice {
-    /// Chooses directions for a scene. A large scene is sampled, always in the same way.
+    /// Chooses directions for a scene. Large scenes are sampled, deterministically.
     ///
     /// # Errors
-    /// Returns the errors of building a tree: for a coordinate that is not finite, and for more primitives than ids.
+    /// Returns the errors of building a tree, for a coordinate that is not finite and for more primitives than ids.
     pub fn from_scene<T: Real, S: PrimitiveSet<T> + Sync + ?Sized>(set: &S) -> Result<Self, BuildError> {
         check_set(set)?;
         let directions = sample_directions(set);
@@ -73,14 +75,14 @@ impl DirectionChoice {
         Ok(choice)
     }
 
-    /// Whether the chosen directions are along the frame rather than along the axes.
+    /// Returns whether the chosen directions are along the frame rather than along the axes.
     #[must_use]
     pub fn is_turned(&self) -> bool {
         self.waste_of_frame < self.waste_of_axes * MAX_MISALIGNMENT_RATIO
     }
 
-    /// The chosen directions for trees of K faces: the frame or the axes, and then as many of its diagonals as K
-    /// has room for.
+    /// Returns the chosen directions for trees of K faces: the frame or the axes, and then as many of its diagonals as
+    /// K admits.
     ///
     /// # Errors
     /// Returns an error if K is below 6, odd, or above 26.
@@ -88,7 +90,7 @@ impl DirectionChoice {
         frame_and_diagonals(&if self.is_turned() { self.frame } else { [Vector3::x(), Vector3::y(), Vector3::z()] })
     }
 
-    /// The frame that was found and its diagonals, whether or not it was chosen.
+    /// Returns the directions of the best frame and its diagonals, whether or not it was chosen.
     ///
     /// # Errors
     /// Returns an error if K is below 6, odd, or above 26.
@@ -97,8 +99,8 @@ impl DirectionChoice {
     }
 }
 
-/// Returns the axes of a frame and as many of its diagonals as K has room for. These are the default directions if the
-/// frame is that of the axes.
+/// Returns the axes of a frame and as many of its diagonals as K admits. If the frame consists of the coordinate axes,
+/// these are the default directions.
 fn frame_and_diagonals<const K: usize>(frame: &[Vector3<f64>; 3]) -> Result<Directions<K>, DirectionsError> {
     let [x, y, z] = *frame;
     let cube_diagonals = [x + y + z, y + z - x, z - x - y, x - y + z];
@@ -133,7 +135,7 @@ mod tests {
     use nalgebra::{Point3, Rotation3};
     use p2m_core::{PrimitiveId, Segment, Triangle};
 
-    /// Returns facets of boxes, which are turned.
+    /// Returns the facets of rotated boxes.
     fn boxes(turn: &Rotation3<f64>) -> Vec<Triangle<f64>> {
         (0..300)
             .map(|i| {

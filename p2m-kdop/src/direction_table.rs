@@ -11,8 +11,8 @@ pub struct DirectionTable<const K: usize> {
     pub(crate) directions: Directions<K>,
     /// Whether the first three directions are orthogonal.
     pub(crate) is_orthogonal: bool,
-    /// The cosines between normal i and the first three directions if these are orthogonal, and the coordinates of
-    /// normal i otherwise.
+    /// The cosines between normal i and the first three directions if these are orthogonal, or else the coordinates of
+    /// normal i.
     pub(crate) cosines: [[f32; 3]; K],
     /// Whether products with normal i are rounded. Products with a normal along an axis are exact.
     pub(crate) is_rounded: [bool; K],
@@ -42,14 +42,14 @@ impl<const K: usize> DirectionTable<K> {
         Self { directions: *directions, is_orthogonal, cosines, is_rounded, axes, box_margin }
     }
 
-    /// Whether slab j is bounded by two sides of a box along the axes. The distance to such a slab is computed as
-    /// exactly as in a tree of boxes.
+    /// Returns whether slab j is bounded by two sides of an axis-aligned box. The distance to such a slab is as
+    /// accurate as in a tree of boxes.
     #[inline(always)]
     pub(crate) fn is_exact_side(&self, j: usize) -> bool {
         j < 3 && self.is_orthogonal && !self.is_rounded[2 * j]
     }
 
-    /// Returns a direction as the sum of three heights, given by their numbers and factors that are not negative.
+    /// Returns a direction as a weighted sum of three heights: their numbers and non-negative factors.
     pub(crate) fn as_sum_of_heights(&self, direction: &[f64; 3]) -> [(usize, f64); 3] {
         std::array::from_fn(|j| {
             let weight: f64 = (0..3).map(|axis| direction[axis] * self.axes[(j, axis)]).sum();
@@ -57,7 +57,7 @@ impl<const K: usize> DirectionTable<K> {
         })
     }
 
-    /// A box around the k-DOP with these heights.
+    /// Returns a box around the k-DOP with these heights.
     pub(crate) fn enclosing_box(&self, heights: &[f64; K]) -> Aabb<f64> {
         let extent = |axis: usize, sign: f64| {
             let terms = (0..3).map(|j| {
@@ -98,8 +98,8 @@ mod tests {
                 assert!(bounds.contains(&around), "{bounds:?} for {around:?}");
             }
         }
-        // These directions are orthogonal within a little less than 2^-40. Those of the loop below have a determinant
-        // of a little more than 2^-20.
+        // These directions are orthogonal to slightly less than 2^-40. The directions of the loop below have a
+        // determinant slightly above 2^-20.
         let c = 0.99 * 2f64.powi(-40) * 2f64.sqrt();
         let nearly = [Vector3::new(1.0, 0.0, c), Vector3::new(0.0, 1.0, 1.0), Vector3::new(0.0, -1.0, 1.0)];
         let nearly = Directions::<6>::new(&nearly).expect("three");
@@ -122,7 +122,7 @@ mod tests {
                 check(&directions, &[point]);
             }
         }
-        // With the axes as directions, the box is that of the points.
+        // With the axes as directions, the box is the box of the points.
         let points = [Point3::new(0.5, -1.0, 0.25), Point3::new(1.0, 2.0, 0.75)];
         let table = DirectionTable::new(&Directions::<14>::default());
         let bounds = table.enclosing_box(&Kdop::from_points(&table.directions, &points).heights);

@@ -1,11 +1,12 @@
-//! The directions of the faces of k-DOPs, and the default sets of them.
+//! The directions of the faces of k-DOPs, with their default sets.
 
 use nalgebra::Vector3;
 
-/// The K unit normals of k-DOPs, K counting both signs: normal 2 j + 1 is the opposite of normal 2 j.
+/// The K unit normals of k-DOPs. K counts both signs: normal 2 j + 1 is the opposite of normal 2 j.
 ///
-/// If three of the directions are orthogonal to each other, these come first, because they make the bounds of searches
-/// tightest. Otherwise the three that span the largest volume come first. The others keep their order.
+/// If three of the directions are mutually orthogonal, these come first, because they make the bounds of searches
+/// tightest (decision 012). Otherwise the three directions that span the largest volume come first. The others keep
+/// their order.
 ///
 /// ```
 /// use p2m_kdop::Directions;
@@ -23,11 +24,11 @@ pub struct Directions<const K: usize> {
     is_orthogonal: bool,
 }
 
-/// The reason why some directions have no k-DOPs.
+/// The error for directions that define no k-DOPs.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, thiserror::Error)]
 #[non_exhaustive]
 pub enum DirectionsError {
-    /// K is odd, or it is less than 6, so that k-DOPs would be unbounded.
+    /// K is odd, or less than 6, so that k-DOPs would be unbounded.
     #[error("k-DOPs have an even number of faces, at least 6, not {k}")]
     Faces {
         /// The number K of the type.
@@ -55,19 +56,19 @@ pub enum DirectionsError {
         /// The higher index of the two directions.
         second: usize,
     },
-    /// All directions lie in a plane, or within 1e-6 of one, so their k-DOPs are unbounded across it.
+    /// All directions lie in a plane, to within 1e-6, so k-DOPs are unbounded across it.
     #[error("all directions lie in a plane")]
     Flat,
 }
 
-/// The sine up to which two directions count as parallel, and the volume up to which three count as lying in
-/// a plane: 2^-20.
+/// The largest sine at which two directions count as parallel, and the largest volume at which three directions count
+/// as coplanar: 2^-20.
 const MAX_FLAT_VOLUME: f64 = 1.0 / (1u32 << 20) as f64;
-/// The cosine up to which directions count as orthogonal: 2^-40, which is far below the resolution of searches in f32.
+/// The largest cosine at which directions count as orthogonal: 2^-40, far below the resolution of searches in f32.
 const MAX_ORTHOGONAL_COSINE: f64 = 1.0 / (1u64 << 40) as f64;
 
 impl<const K: usize> Directions<K> {
-    /// Makes directions from K / 2 vectors of any length and their opposites.
+    /// Creates directions from K / 2 vectors of any length and their opposites.
     ///
     /// # Errors
     /// Returns a [`DirectionsError`] if k-DOPs of these directions would be unbounded.
@@ -98,10 +99,10 @@ impl<const K: usize> Directions<K> {
         Ok(Self { normals, is_orthogonal })
     }
 
-    /// Makes directions from the normals of a file and keeps their order; `None` if they are not valid.
+    /// Creates directions from the normals of a file and keeps their order. It is `None` if they are not valid.
     pub(crate) fn from_normals(normals: &[Vector3<f64>], is_orthogonal: bool) -> Option<Self> {
         let normals: [Vector3<f64>; K] = normals.try_into().ok()?;
-        // The tolerance covers the three roundings of a square and those of the square root and the quotient.
+        // The tolerance covers the three roundings of a square and the roundings of the square root and the quotient.
         let is_unit = |n: &Vector3<f64>| (n.norm_squared() - 1.0).abs() <= 16.0 * f64::EPSILON;
         let fits = normals.chunks_exact(2).all(|pair| is_unit(&pair[0]) && pair[1] == -pair[0]);
         let [u, v, w] = [normals[0], normals[2], normals[4]];
@@ -113,22 +114,22 @@ impl<const K: usize> Directions<K> {
         (fits && is_first_valid).then_some(Self { normals, is_orthogonal })
     }
 
-    /// The K unit normals.
+    /// Returns the K unit normals.
     #[must_use]
     pub fn normals(&self) -> &[Vector3<f64>; K] {
         &self.normals
     }
 
-    /// Whether the first three directions are orthogonal to each other.
+    /// Returns whether the first three directions are mutually orthogonal.
     #[must_use]
     pub fn starts_orthogonal(&self) -> bool {
         self.is_orthogonal
     }
 }
 
-/// Scales a vector to length 1; `None` if it is zero or not finite.
+/// Scales a vector to length 1. It is `None` if the vector is zero or not finite.
 fn unit(v: &Vector3<f64>) -> Option<Vector3<f64>> {
-    // The largest component need not be NaN if another one is, so all components are tested.
+    // `amax` need not be NaN if a component is, so all components are tested.
     let largest = v.amax();
     (largest > 0.0 && v.iter().all(|x| x.is_finite())).then(|| {
         let scaled = v / largest;
@@ -136,18 +137,18 @@ fn unit(v: &Vector3<f64>) -> Option<Vector3<f64>> {
     })
 }
 
-/// The largest magnitude of a cosine between two of three unit vectors.
+/// Returns the largest magnitude of a cosine between two of three unit vectors.
 fn cosine(u: &Vector3<f64>, v: &Vector3<f64>, w: &Vector3<f64>) -> f64 {
     u.dot(v).abs().max(v.dot(w).abs()).max(w.dot(u).abs())
 }
 
-/// The volume of the parallelepiped that three vectors span.
+/// Returns the volume of the parallelepiped that three vectors span.
 fn volume(u: &Vector3<f64>, v: &Vector3<f64>, w: &Vector3<f64>) -> f64 {
     u.cross(v).dot(w).abs()
 }
 
-/// Returns the indices of the three directions that come first, and whether they are orthogonal; `None` if all lie
-/// in a plane.
+/// Returns the indices of the three directions that come first, and whether they are orthogonal. It is `None` if all
+/// directions lie in a plane.
 fn leading_triple(units: &[Vector3<f64>]) -> Option<([usize; 3], bool)> {
     let mut widest = (MAX_FLAT_VOLUME, None);
     for a in 0..units.len() {
@@ -191,7 +192,7 @@ default_directions! {
     14: AXES, BODY_DIAGONALS;
     /// Returns the axes and the diagonals of the faces of a cube.
     18: AXES, FACE_DIAGONALS;
-    /// Returns the axes, the diagonals of a cube and those of its faces.
+    /// Returns the axes, the diagonals of a cube and the diagonals of its faces.
     26: AXES, BODY_DIAGONALS, FACE_DIAGONALS;
 }
 

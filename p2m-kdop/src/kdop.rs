@@ -1,11 +1,11 @@
-//! k-DOPs: convex polytopes with K faces of given directions.
+//! k-DOPs: convex polytopes whose K faces have given directions.
 //!
-//! A k-DOP is the set of points x with n_i . x <= h_i for K unit vectors n_i, which come in pairs of opposites,
-//! and *heights* h_i. It fits a scene more closely if it has more directions. A box is the k-DOP of the directions
-//! of the axes.
+//! A k-DOP is the set of points x with n_i . x <= h_i for K unit vectors n_i, which come in pairs of opposites, and
+//! *heights* h_i. With more directions it fits a scene more closely. A box is the k-DOP whose directions are the axes.
 //!
 //! # References
-//! \[Klosowski1998\] introduces the volumes. The sets of directions are those of the k-DOP tree in CGAL's manual.
+//! \[Klosowski1998\] introduces the volumes. The sets of directions are taken from the manual of the k-DOP tree in
+//! CGAL.
 
 use crate::Directions;
 use nalgebra::{Point3, Vector3};
@@ -13,22 +13,23 @@ use p2m_core::{Aabb, Real};
 
 /// A k-DOP, given by its heights along the normals of some [`Directions`].
 ///
-/// Heights of points are rounded outwards, so a k-DOP contains the points that it was made of. A height is infinite if
-/// its computation overflows.
+/// Heights of points are rounded outwards, so a k-DOP contains the points from which it was computed. A height is
+/// infinite if its computation overflows.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Kdop<const K: usize> {
-    /// The heights: `heights[i]` is the largest n_i . x of all points x.
+    /// The heights: `heights[i]` is the maximum of n_i . x over all points x.
     pub heights: [f64; K],
 }
 
 impl<const K: usize> Kdop<K> {
-    /// The k-DOP without points.
+    /// Returns the empty k-DOP.
     #[must_use]
     pub fn empty() -> Self {
         Self { heights: [f64::NEG_INFINITY; K] }
     }
 
-    /// The smallest k-DOP around some points, rounded outwards by at most 2^-49 of their distance from the origin.
+    /// Returns the smallest k-DOP around some points, rounded outwards by at most 2^-49 of their distance from the
+    /// origin.
     #[must_use]
     pub fn from_points<T: Real>(directions: &Directions<K>, points: &[Point3<T>]) -> Self {
         let mut result = Self::empty();
@@ -41,8 +42,8 @@ impl<const K: usize> Kdop<K> {
         result
     }
 
-    /// The smallest k-DOP around a box, rounded outwards by at most 2^-49 of the distance of its corners
-    /// from the origin.
+    /// Returns the smallest k-DOP around a box, rounded outwards by at most 2^-49 of the distance of its corners from
+    /// the origin.
     #[must_use]
     pub fn from_box(directions: &Directions<K>, bounds: &Aabb<f64>) -> Self {
         if bounds.is_empty() {
@@ -51,13 +52,13 @@ impl<const K: usize> Kdop<K> {
         Self { heights: std::array::from_fn(|i| box_height(&directions.normals()[i], bounds)) }
     }
 
-    /// The smallest k-DOP around this one and another one of the same directions.
+    /// Returns the smallest k-DOP around two k-DOPs of the same directions.
     #[must_use]
     pub fn union(&self, other: &Self) -> Self {
         Self { heights: std::array::from_fn(|i| self.heights[i].max(other.heights[i])) }
     }
 
-    /// Whether this k-DOP and another one of the same directions overlap along every direction.
+    /// Returns whether two k-DOPs of the same directions overlap along every direction.
     ///
     /// The result is never `false` for two k-DOPs with a point in common, but it may be `true` for two without one.
     #[must_use]
@@ -65,20 +66,21 @@ impl<const K: usize> Kdop<K> {
         (0..K).all(|i| -other.heights[i ^ 1] <= self.heights[i])
     }
 
-    /// Whether this k-DOP and a box overlap along every direction of the k-DOP. The directions of the box are not
-    /// considered: compare the box with one around the k-DOP for that.
+    /// Returns whether this k-DOP and a box overlap along every direction of the k-DOP. The directions of the box are
+    /// not tested; to test them, compare the box with a box around the k-DOP.
     #[must_use]
     pub fn may_intersect_box(&self, directions: &Directions<K>, bounds: &Aabb<f64>) -> bool {
         !bounds.is_empty() && self.may_intersect(&Self::from_box(directions, bounds))
     }
 
-    /// Whether another k-DOP of the same directions lies in this one.
+    /// Returns whether another k-DOP of the same directions lies in this one.
     #[must_use]
     pub fn contains(&self, other: &Self) -> bool {
         (0..K).all(|i| other.heights[i] <= self.heights[i])
     }
 
-    /// Whether a point lies in the k-DOP. Products are rounded down, so a point slightly outside may count as inside.
+    /// Returns whether a point lies in the k-DOP. Products are rounded down, so a point slightly outside may count as
+    /// inside.
     #[must_use]
     pub fn contains_point(&self, directions: &Directions<K>, point: &Point3<f64>) -> bool {
         directions
@@ -88,14 +90,14 @@ impl<const K: usize> Kdop<K> {
             .all(|(normal, height)| -product_above(&-normal, &point.coords) <= *height)
     }
 
-    /// Whether some slab has its faces in the wrong order, so that the k-DOP has no points.
+    /// Returns whether some slab has its faces in the wrong order, so that the k-DOP has no points.
     #[must_use]
     pub fn is_empty(&self) -> bool {
         !(0..K).step_by(2).all(|i| -self.heights[i + 1] <= self.heights[i])
     }
 }
 
-/// Whether a factor changes at most the sign of a number.
+/// Returns whether multiplication by a factor changes at most the sign of a number.
 #[allow(clippy::float_cmp, reason = "exactly 1 is meant")]
 pub(crate) fn is_one(x: f64) -> bool {
     x.abs() == 1.0
@@ -123,7 +125,7 @@ fn product_above(normal: &Vector3<f64>, x: &Vector3<f64>) -> f64 {
     }
 }
 
-/// The height of a box along a normal, rounded up.
+/// Returns the height of a box along a normal, rounded up.
 fn box_height(normal: &Vector3<f64>, bounds: &Aabb<f64>) -> f64 {
     product_above(normal, &Vector3::from_fn(|k, _| if normal[k] > 0.0 { bounds.max[k] } else { bounds.min[k] }))
 }

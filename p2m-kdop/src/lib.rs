@@ -1,13 +1,13 @@
-//! k-DOP tree: bounding volumes of K slab directions.
+//! A k-DOP tree: bounding volumes of K slab directions.
 //!
-//! The tree is that of p2m-bvh (nodes with eight children over packets of sixteen primitives, with the same splits),
-//! but its bounding volumes are [k-DOPs](Kdop) instead of boxes. They fit primitives that are oblique to the axes more
+//! It is the tree of p2m-bvh (nodes with eight children over packets of sixteen primitives, with the same splits), but
+//! its bounding volumes are [k-DOPs](Kdop) instead of boxes. They fit primitives that are oblique to the axes more
 //! closely, so a query visits fewer nodes and packets. In return each node takes more arithmetic and memory.
 //! [docs/measurements/kdop.md] compares the two.
 //!
 //! K is fixed at compile time and counts both signs of a direction, so `KdopTree<f64, _, 14>` has seven slabs.
-//! [`Directions`] has default sets for K = 6, 14, 18 and 26, and can be made from your own vectors. With any directions
-//! answers are bitwise those of [`BruteForce`](p2m_core::BruteForce).
+//! [`Directions`] has default sets for K = 6, 14, 18 and 26, and can be created from your own vectors. With any
+//! directions, answers are bitwise equal to the answers of [`BruteForce`](p2m_core::BruteForce).
 //!
 //! ```
 //! use p2m_core::{ClosestPoint, Segment};
@@ -82,7 +82,7 @@ pub mod engine {
     use p2m_bvh::engine::volume::{Searches, searches};
 
     /// The searches of trees with 6, 14, 18 and 26 faces, which have default directions. A generic function is compiled
-    /// in each crate that calls it, unless a crate upstream has compiled it for the same parameters and it is never
+    /// in each crate that calls it, unless an upstream crate has compiled it for the same parameters and it is never
     /// inlined. The searches are such functions, so crates that use this one need not compile them.
     pub static COMPILED_SEARCHES: (Searches<Kdop<6>>, Searches<Kdop<14>>, Searches<Kdop<18>>, Searches<Kdop<26>>) =
         (searches(), searches(), searches(), searches());

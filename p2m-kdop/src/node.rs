@@ -1,4 +1,4 @@
-//! Nodes that bound their children by k-DOPs.
+//! The node of a k-DOP tree, which bounds its children by k-DOPs.
 
 use crate::Kdop;
 use crate::direction_table::DirectionTable;
@@ -14,7 +14,8 @@ use p2m_core::engine::real::to_f64_array;
 use p2m_core::engine::simd::Lanes;
 use p2m_core::engine::vector::power_of_two;
 
-/// Eight k-DOPs side by side. Those of unused slots are empty, so their distance is infinite or NaN.
+/// A node of eight k-DOPs, stored side by side. The k-DOPs of unused slots are empty, so their distance is infinite or
+/// NaN.
 #[derive(Clone, Copy, Debug)]
 #[repr(C, align(64))]
 pub struct KdopNode<const K: usize> {
@@ -27,13 +28,13 @@ const _: () = assert!(size_of::<KdopNode<14>>() == 512);
 /// A bound on the error of a height in the frame if products are rounded.
 ///
 /// Coordinates are at most 4, so the magnitudes of three products add up to less than 7. Coordinates, products and both
-/// sums err by 2^-53 of that each, which is less than 30 x 2^-53 in all.
+/// sums have relative errors of at most 2^-53 each, which is less than 30 x 2^-53 in total.
 const HEIGHT_SLACK: f64 = power_of_two(-48);
-/// The amount that is subtracted from the products of a query point, relative to its size X in the frame: 20 u of f32.
-/// Sides of a box along the axes are the exception.
+/// The slack of a query point: the amount that is subtracted from its products with the normals, relative to its size X
+/// in the frame. It is 20 u of f32. Sides of an axis-aligned box have no slack.
 ///
-/// The proof needs little of it, and products and heights are rounded outwards besides, and limits have a margin of
-/// 2^-19. Tests therefore do not fail without it.
+/// The proof needs only a small part of it. Besides, products and heights are rounded outwards, and limits have a
+/// margin of 2^-19. Tests therefore do not fail without it.
 const QUERY_SLACK: f64 = 20.0 * power_of_two(-24);
 
 impl<const K: usize> Rows for KdopNode<K> {
@@ -48,9 +49,9 @@ impl<const K: usize> WideNode for KdopNode<K> {
     type Volume = Kdop<K>;
     type Shared = DirectionTable<K>;
     type Bounds = [f32; K];
-    /// The products of the query point with the normals, less [`QUERY_SLACK`] and rounded down.
+    /// The products of the query point with the normals, minus [`QUERY_SLACK`] and rounded down.
     type Query = [f32; K];
-    /// One slab for each pair of opposite directions; the second half of the array is not used.
+    /// One slab per pair of opposite directions. The second half of the array is unused.
     type Ray = [SlabRay; K];
 
     const EMPTY: [f32; K] = [f32::NEG_INFINITY; K];
@@ -170,8 +171,8 @@ impl<const K: usize> WideNode for KdopNode<K> {
     fn may_intersect_box(bounds: &[f32; K], table: &DirectionTable<K>, frame: &Frame, other: &Aabb<f64>) -> bool {
         let to_frame = |p: &Point3<f64>| Point3::from(frame.place(&[p.x, p.y, p.z]));
         // The conversion to the frame errs by u of each coordinate, which the rounding of heights covers. It does not
-        // for faces along the axes, but there the points of the scene were rounded exactly as this box is, and rounding
-        // keeps their order.
+        // cover faces along the axes, but there the points of the scene were rounded exactly as this box is, and
+        // rounding is monotone.
         let kdop = Kdop { heights: bounds.map(f64::from) };
         kdop.may_intersect_box(&table.directions, &Aabb { min: to_frame(&other.min), max: to_frame(&other.max) })
     }
@@ -203,8 +204,8 @@ mod tests {
         let normals = table.directions.normals();
         for case in cases(400, 200) {
             let (round, mut rng) = (case as usize, p2m_testkit::rng("heights of nodes", case));
-            // Terms of the products of these points with a normal cancel. The frame is centred at the origin, so the
-            // points are exact in it.
+            // The terms of the products of these points with a normal cancel. The frame is centred at the origin, so
+            // the points are exact in it.
             let normal = normals[rng.random_range(6..26)];
             let x = normal.cross(&vector(&mut rng));
             let points = [x, -x, vector(&mut rng) * 1e-9].map(Point3::from);

@@ -9,12 +9,12 @@ use p2m_bvh::SplitOptions;
 pub struct KdopOptions<const K: usize> {
     /// The directions of the faces of its k-DOPs.
     pub directions: Directions<K>,
-    /// The options of splits, which are those of an AABB tree.
+    /// The options of the splits, which are the same as for an AABB tree.
     pub splits: SplitOptions,
 }
 
 impl<const K: usize> KdopOptions<K> {
-    /// Makes options with these directions and the default splits.
+    /// Creates options with these directions and the default splits.
     #[must_use]
     pub fn new(directions: Directions<K>) -> Self {
         Self { directions, splits: SplitOptions::default() }

@@ -1,22 +1,27 @@
-//! The orientation of a scene: the directions along which its facets and segments lie.
+//! The orientation of a scene: the directions of its facets and segments.
+//!
+//! The basic idea is a histogram of directions. Normals and edges are counted in cells on the faces of a cube, weighted
+//! by area and length. The heaviest cells are the peaks, and any two peaks that are nearly orthogonal span a
+//! candidate for the frame of the scene.
 
 use nalgebra::Vector3;
 use p2m_core::{Aabb, Primitive, PrimitiveId, PrimitiveSet, Real};
 
-/// The largest number of primitives that are sampled.
+/// The most primitives that are sampled. There is no record of how the number was tuned.
 const MAX_SAMPLED_PRIMITIVES: usize = 40_000;
-/// The number of cells along an edge of the cube on whose faces directions are counted.
+/// The number of cells along an edge of the cube on whose faces directions are counted. There is no record of how it
+/// was tuned.
 const CELLS_PER_EDGE: usize = 32;
-/// The number of the heaviest cells whose directions are considered as axes of a frame.
+/// The number of the heaviest cells whose directions are candidates for axes. There is no record of how it was tuned.
 const MAX_PEAKS: usize = 24;
-/// The sine of 10 degrees. A facet that is turned by this angle from an axis or more counts as not aligned at all.
+/// The sine of 10 degrees, the least angle to an axis at which a facet counts as not aligned at all.
 const ALIGNED_SINE: f64 = 0.174;
 
 /// A unit vector with its weight in the scene.
 pub(crate) type WeightedDirection = (Vector3<f64>, f64);
 
-/// Returns the normals of facets, and the directions of segments and long facets, with weights that add up to 1. A
-/// large scene is sampled, always in the same way.
+/// Returns the normals of facets, and the directions of segments and long facets, with weights that add up to 1. Large
+/// scenes are sampled, deterministically.
 pub(crate) fn sample_directions<T: Real, S: PrimitiveSet<T> + ?Sized>(set: &S) -> Vec<WeightedDirection> {
     let len = set.len();
     let count = len.min(MAX_SAMPLED_PRIMITIVES);
@@ -29,8 +34,9 @@ pub(crate) fn sample_directions<T: Real, S: PrimitiveSet<T> + ?Sized>(set: &S) -
         let primitive = set.get(PrimitiveId::new(i * len / count));
         let corners: Vec<Vector3<f64>> =
             primitive.vertices().iter().map(|p| p.coords.map(|x| x.to_f64() / scale)).collect();
-        // A segment counts as a facet of the square of its length, because nothing relates areas to lengths. A long
-        // facet counts as a segment as well, with a weight that grows with the ratio of its length to its height.
+        // A segment counts as a facet whose area is the square of its length, because areas and lengths are not
+        // comparable. A long facet counts as a segment as well, with a weight that grows with the ratio of its length
+        // to its height.
         let weighted = match corners[..] {
             [a, b] => [(b - a) * (b - a).norm(), Vector3::zeros()],
             [a, b, c] => {
@@ -54,8 +60,8 @@ pub(crate) fn sample_directions<T: Real, S: PrimitiveSet<T> + ?Sized>(set: &S) -
     directions
 }
 
-/// The mean misalignment of directions with a frame. It is 0 for a direction along an axis, and 1 for one whose angle
-/// to all axes has a sine of at least [`ALIGNED_SINE`].
+/// Returns the mean misalignment of directions with a frame. A direction along an axis counts 0. A direction counts 1
+/// if the sines of its angles to all axes are at least [`ALIGNED_SINE`].
 pub(crate) fn misalignment(directions: &[WeightedDirection], frame: &[Vector3<f64>; 3]) -> f64 {
     let misalignment_of = |n: &Vector3<f64>| {
         let cosine = frame.iter().map(|axis| axis.dot(n).abs()).fold(0.0, f64::max);
@@ -64,13 +70,13 @@ pub(crate) fn misalignment(directions: &[WeightedDirection], frame: &[Vector3<f6
     directions.iter().map(|(n, weight)| misalignment_of(n) * weight).sum()
 }
 
-/// Returns the frames that two of the heaviest directions of a scene span, if these are nearly orthogonal.
+/// Returns the frames that pairs of the heaviest directions span, if the two are nearly orthogonal.
 pub(crate) fn candidate_frames(directions: &[WeightedDirection]) -> impl Iterator<Item = [Vector3<f64>; 3]> {
     let peaks = peaks(directions);
     (0..peaks.len()).flat_map(move |i| {
         let u = peaks[i];
         let others = peaks[i + 1..].to_vec();
-        // The second direction is made orthogonal to the first one.
+        // The second direction is made orthogonal to the first.
         others.into_iter().filter(move |v| u.dot(v).abs() < ALIGNED_SINE).map(move |v| {
             let v = (v - u * u.dot(&v)).normalize();
             [u, v, u.cross(&v)]
@@ -82,7 +88,7 @@ pub(crate) fn candidate_frames(directions: &[WeightedDirection]) -> impl Iterato
 fn peaks(directions: &[WeightedDirection]) -> Vec<Vector3<f64>> {
     let mut cells = vec![(Vector3::zeros(), 0.0); 3 * CELLS_PER_EDGE * CELLS_PER_EDGE];
     for (n, weight) in directions {
-        // The cell is the one in which the line with this direction intersects the surface of a cube.
+        // The cell is found where the line with this direction intersects the surface of a cube.
         let axis = n.iamax();
         let n = n * n[axis].signum();
         let cell = |k: usize| {

@@ -1,11 +1,11 @@
-//! The corners, edges and faces of a k-DOP, for pictures and measurements.
+//! The corners, edges and faces of a k-DOP, for visualisation and measurements.
 
 use crate::{Directions, Kdop};
 use nalgebra::{Point3, Vector3};
 use std::io::{self, Write};
 
-/// The largest magnitude of the heights of a k-DOP that has a polytope: 2^1000, so that sums of products
-/// do not overflow.
+/// The largest magnitude of heights, 2^1000, for which a polytope is computed, so that sums of products do not
+/// overflow.
 const MAX_HEIGHT: f64 = f64::from_bits((1000 + 1023) << 52);
 
 /// A convex polytope, given by its corners and faces.
@@ -20,11 +20,11 @@ pub struct Polytope {
 impl Polytope {
     /// Computes the polytope of a k-DOP.
     ///
+    /// A cube around the k-DOP is cut by one face after the other, so the polytope is closed in spite of rounding.
+    ///
     /// Faces are moved outwards by 1e-9 of half the longest side of a box around the first three slabs, so that flat
     /// k-DOPs get a thickness. Corners that are closer together than that may be merged. The result has no corners and
     /// no faces if the k-DOP is empty, or if a height is not finite or exceeds 2^1000 in magnitude.
-    ///
-    /// A cube around the k-DOP is cut by one face after the other, so the polytope is closed in spite of rounding.
     ///
     /// # Complexity
     /// O(K^2).
@@ -46,20 +46,24 @@ impl Polytope {
         polytope
     }
 
-    /// The cube from -h to h along each axis.
+    /// Returns the cube from -h to h along each axis.
     fn cube(h: f64) -> Self {
         let corner = |i: usize| Point3::from([0, 1, 2].map(|k| if i >> k & 1 == 0 { -h } else { h }));
         let faces = [[0, 4, 6, 2], [1, 3, 7, 5], [0, 1, 5, 4], [2, 6, 7, 3], [0, 2, 3, 1], [4, 5, 7, 6]];
         Self { corners: (0..8).map(corner).collect(), faces: faces.map(Vec::from).to_vec() }
     }
 
-    /// Removes the part above a plane. Corners within `tolerance` of the plane count as lying on it.
+    /// Cuts off the part above a plane. Corners within `tolerance` of the plane count as lying on it.
+    ///
+    /// The basic idea is to clip each face as a polygon: keep its corners below the plane, and add one corner for each
+    /// edge that crosses the plane. Where a clipped face follows the plane it has a new edge. These rim edges, chained
+    /// end to end, are the border of the new face.
     fn cut(&mut self, normal: &Vector3<f64>, height: f64, tolerance: f64) {
         let above: Vec<f64> = self.corners.iter().map(|p| normal.dot(&p.coords) - height).collect();
         if above.iter().all(|d| *d <= tolerance) {
             return;
         }
-        // Each edge that intersects the plane gets one new corner, which both of its faces share.
+        // Each edge that crosses the plane gets one new corner, which both of its faces share.
         let mut crossings: Vec<([usize; 2], usize)> = Vec::new();
         let mut corners = std::mem::take(&mut self.corners);
         let mut rim_edges = Vec::new();
@@ -105,7 +109,7 @@ impl Polytope {
                 rim_edges.push([returns, leaves]);
             }
         }
-        // The new face runs along the cut edges, in the opposite direction to the faces beside it.
+        // The new face runs along the rim edges, in the opposite direction to the adjacent faces.
         if let Some(&[first, mut at]) = rim_edges.first() {
             let mut around = vec![first];
             while at != first && around.len() <= rim_edges.len() {
@@ -146,7 +150,7 @@ impl Polytope {
         once.map(|edge| edge.map(|i| self.corners[i]))
     }
 
-    /// The total area of the faces.
+    /// Returns the total area of the faces.
     #[must_use]
     pub fn area(&self) -> f64 {
         let of = |face: &Vec<usize>| {
@@ -156,7 +160,7 @@ impl Polytope {
         self.faces.iter().map(of).sum()
     }
 
-    /// The volume of the polytope.
+    /// Returns the volume of the polytope.
     #[must_use]
     pub fn volume(&self) -> f64 {
         let Some(origin) = self.corners.first() else { return 0.0 };
@@ -169,7 +173,8 @@ impl Polytope {
     }
 }
 
-/// The centre of the box of the first three slabs, and half of the edge of a cube around it that contains the k-DOP.
+/// Returns the centre of the box of the first three slabs, and half of the edge of a cube around that centre that
+/// contains the k-DOP.
 fn centre_and_half_cube<const K: usize>(kdop: &Kdop<K>, normals: &[Vector3<f64>; K]) -> (Vector3<f64>, f64) {
     let rows = nalgebra::Matrix3::from_rows(&[0, 2, 4].map(|i: usize| normals[i].transpose()));
     let inverse = rows.try_inverse().expect("directions do not lie in a plane");
@@ -184,8 +189,8 @@ fn centre_and_half_cube<const K: usize>(kdop: &Kdop<K>, normals: &[Vector3<f64>;
 
 /// Writes polytopes as a PLY file of polygons, one polytope after the other.
 ///
-/// The number beside each polytope, such as its level in a tree, becomes the property `property` of its faces, by which
-/// viewers can colour them.
+/// The number beside each polytope, such as its level in a tree, becomes the property `property` of its faces. Viewers
+/// can colour the faces by it.
 ///
 /// # Errors
 /// Returns the errors of the writer.
@@ -221,7 +226,8 @@ mod tests {
     use p2m_core::Aabb;
     use rand::RngExt;
 
-    /// Checks Euler's formula, that each edge has two faces, and that corners lie within all heights and attain them.
+    /// Checks Euler's formula, that each edge has two faces, and that all corners lie within all heights and attain
+    /// them.
     fn check<const K: usize>(points: &[Point3<f64>], directions: &Directions<K>) -> Polytope {
         let kdop = Kdop::from_points(directions, points);
         let p = Polytope::new(&kdop, directions);
@@ -235,7 +241,7 @@ mod tests {
             }
         }
         for (n, h) in directions.normals().iter().zip(&kdop.heights) {
-            // Heights are those of points, so corners attain them.
+            // Heights are attained by points, so corners attain them.
             let reached = p.corners.iter().map(|c| n.dot(&c.coords)).fold(f64::NEG_INFINITY, f64::max);
             assert!(reached >= h - 1e-7 * size, "{reached} of {h}");
         }

@@ -17,9 +17,9 @@ impl<const K: usize> Volume for Kdop<K> {
     }
 }
 
-/// The section of a file that has the normals, as three numbers each.
+/// The section with the normals, as three numbers each.
 const DIRECTIONS_SECTION: &str = "tree/directions";
-/// The section of a file that has 1 if the first three directions are orthogonal, and 0 otherwise.
+/// The section that has 1 if the first three directions are orthogonal, and 0 otherwise.
 const ORTHOGONAL_SECTION: &str = "tree/orthogonal";
 
 impl<const K: usize> VolumeNodes for Kdop<K> {

@@ -28,8 +28,8 @@ fn vector(rng: &mut impl Rng) -> Vector3<f64> {
     Vector3::from_fn(|_, _| rng.random_range(-0.5..0.5))
 }
 
-/// Computes the distance to a k-DOP from all vertices, edges and faces: the nearest point is the projection of the
-/// query point onto one of them.
+/// Computes the distance to a k-DOP by projecting the query point onto all vertices, edges and faces: the nearest point
+/// is one of these projections.
 fn distance<const K: usize>(kdop: &Kdop<K>, normals: &[Vector3<f64>; K], q: &Vector3<f64>) -> f64 {
     let excess: Vec<f64> = (0..K).map(|i| normals[i].dot(q) - kdop.heights[i]).collect();
     if excess.iter().all(|s| *s <= 0.0) {
@@ -64,11 +64,11 @@ fn distance<const K: usize>(kdop: &Kdop<K>, normals: &[Vector3<f64>; K], q: &Vec
     nearest
 }
 
-/// Compares bounds of random k-DOPs with distances on every instruction set. The k-DOPs are those of triangles of
-/// many sizes and shapes, and the query points are near and far, and across faces and edges.
+/// Compares bounds of random k-DOPs with distances on every instruction set. The k-DOPs bound triangles of many sizes
+/// and shapes, and the query points are near and far, and across faces and edges.
 ///
-/// Returns the number of comparisons, and how often the bound of the k-DOP and that of the box were within 1 %
-/// of the distance.
+/// Returns the number of comparisons, the number of bounds of the k-DOP within 1 % of the distance, and the number of
+/// bounds of the box within 1 % of it.
 fn compare<const K: usize>(directions: &Directions<K>, nodes: &Cases, name: &str) -> [usize; 3] {
     let table = DirectionTable::new(directions);
     let normals = directions.normals();

@@ -25,7 +25,7 @@ impl<N: WideNode> SimdKernel for Entries<'_, N> {
     }
 }
 
-/// Casts rays at points of random triangles and checks that the slots of all triangles that they hit are entered.
+/// Casts rays at points of random triangles and checks that the ray enters the slots of all triangles that it hits.
 /// Returns the number of hits, and the number of other slots that were entered.
 fn compare<N: WideNode>(shared: &N::Shared, name: &str, cases: &Cases) -> [usize; 2] {
     let mut counts = [0; 2];
