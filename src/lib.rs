@@ -34,14 +34,14 @@
 //! | the closest point with an approximation of a stated error | [`QueryOptions`] | every index |
 //! | the certainly closest primitive, with a distance that is rounded once | [`CertifiedQuery`] | every index |
 //! | the closest points to many queries, on all cores | [`batch`] | every index |
-//! | the k nearest, all within a distance, whether there is any, the closest that a filter admits | [`NearQuery`] | every index |
+//! | the k nearest, all or any within a distance, the closest that passes a filter | [`NearQuery`] | every index |
 //! | the hits of a ray | [`RayQuery`] | trees and brute force |
 //! | the primitives that intersect a box | [`BoxQuery`] | trees and brute force |
 //! | the primitive nearest to a segment or a triangle, or whether one is near | [`PairQuery`] | trees and brute force |
 //! | the first contact of a moving ball | [`pair::MovingBall`] | trees and brute force |
 //! | the statistics of deviations of a scan | `field::deviation::DeviationStatistics` | signed distances |
 //! | the Hausdorff distance of two scenes | `field::hausdorff_distance` | every index |
-//! | the nearest points of two scenes, one of which may move | [`pair::PairQuery::closest_pair`] | trees and brute force |
+//! | the nearest points of two scenes, one of them moved | [`pair::PairQuery::closest_pair`] | trees and brute force |
 //! | most of these in a scene larger than memory | `shards::ShardedIndex` | shards of every index |
 //! | any of these in a scene of moving objects | [`instances::Instances`] | objects of every index |
 //! | the cost of a query | [`core::IndexStats`] | every index |
@@ -54,13 +54,15 @@
 //! |---|---|---|
 //! | [`BruteForce`] | no structure: it tests every primitive, which is best for one or two queries | |
 //! | [`AabbTree`] | a tree of boxes, split by the surface-area heuristic and searched nearest first | `bvh` |
-//! | [`OctreeIndex`] | cubic cells with short lists of the primitives that can be nearest in them; faster for many queries, and takes more memory | `interception` |
-//! | [`P2mIndex`] | Voronoi cells of the vertices with such lists; fastest far away, and takes the most memory | `interception` |
-//! | [`P2mIndex`] with `P2mOptions::as_in_paper()` | the KD-tree, the R-trees and the long lists of the paper, for comparison | `paper` |
-//! | [`KdopTree`] | a tree of polytopes of K faces, which fit primitives askew to the axes more closely than boxes | `kdop` |
+//! | [`OctreeIndex`] | cubic cells with candidate lists; faster for many queries, takes more memory | `interception` |
+//! | [`P2mIndex`] | Voronoi cells of the vertices with such lists; fastest far away, most memory | `interception` |
+//! | [`P2mIndex`] with `P2mOptions::as_in_paper()` | KD-tree, R-trees, long lists of the paper, to compare | `paper` |
+//! | [`KdopTree`] | a tree of polytopes of K faces, which fit oblique primitives more closely than boxes do | `kdop` |
+//!
+//! A candidate list is short: it has the primitives that can be nearest in its cell.
 //!
 //! Functions over `I: ClosestPoint<T>` or `&dyn ClosestPoint<T>` leave the choice to the caller. The [guide] has a
-//! tutorial, an example for every choice of scene, index and query, and lists platforms and limits.
+//! tutorial, an example for every choice of scene, index and query, and a list of platforms and limits.
 //!
 //! [guide]: https://github.com/p2m-rs/p2m/blob/main/docs/guide/README.md
 //!
@@ -70,8 +72,8 @@
 //! |---|---|---|
 //! | `bvh` | [`AabbTree`] | yes |
 //! | `interception` | [`OctreeIndex`], [`P2mIndex`] | yes |
-//! | `lean` | all features of the default but `paper`: `default-features = false, features = ["lean"]` compiles 29 crates fewer | yes |
-//! | `paper` | `paper`: the index of the P2M paper, with the KD-tree of kiddo and the R-trees of rstar; slower than [`P2mIndex`] | yes |
+//! | `lean` | all default features except `paper` | yes |
+//! | `paper` | `paper`: the index of the P2M paper, with the trees of kiddo and rstar; slower than [`P2mIndex`] | yes |
 //! | `glam` | [`Position`]s of the crate glam in scenes and batches | no |
 //! | `mint` | [`Position`]s of the crate mint in scenes and batches | no |
 //! | `serde` | [`Soup`] and indexes as values of serde, in the form of saved files | no |
@@ -84,22 +86,23 @@
 //! | `rayon` | building and [`batch`] on all cores | yes |
 //! | `scene` | [`scene`]: reading scenes and points from files | yes |
 //!
+//! `default-features = false, features = ["lean"]` compiles 29 crates fewer than the default.
+//!
 //! [docs/proofs/accuracy.md]: https://github.com/p2m-rs/p2m/blob/main/docs/proofs/accuracy.md
 #![cfg_attr(docsrs, feature(doc_cfg))]
 #![forbid(unsafe_code)]
 
-/// The library of points and vectors that the interface uses, so that programs need not match its version.
+/// The linear-algebra library of the interface, re-exported so that programs need not match its version.
 pub use nalgebra;
-/// The registry of indexes by their names, and which one a scene and its queries call for.
+/// The registry of indexes by name, and the recommendation of an index for a scene and its queries.
 #[cfg(feature = "backends")]
 pub use p2m_backends as backends;
-/// Everything else about trees of boxes: split rules, nodes and packets, and trees of other volumes.
+/// The whole crate p2m-bvh: split rules, nodes and packets, and trees of other volumes.
 #[cfg(feature = "bvh")]
 pub use p2m_bvh as bvh;
 #[cfg(feature = "bvh")]
 pub use p2m_bvh::{AabbTree, SplitOptions};
-/// Everything else about the contract: collectors, the kernel, predicates, and the parts of an index of your own. This
-/// is the crate `p2m-core` as a whole.
+/// The whole crate p2m-core: the contract, collectors, the kernel, predicates, and the parts for an index of your own.
 pub use p2m_core as core;
 pub use p2m_core::pair::{self, PairQuery};
 pub use p2m_core::{
@@ -107,7 +110,7 @@ pub use p2m_core::{
     Feature, Hit, NearQuery, Point, Position, Primitive, PrimitiveId, PrimitiveSet, QueryOptions, Ray, RayHit,
     RayQuery, Real, Segment, Shape, Soup, Triangle, batch, storage,
 };
-/// Distance fields, on which side of a surface a point is, and Hausdorff distances.
+/// Distance fields, signs (the side of a surface on which a point lies), and Hausdorff distances.
 #[cfg(feature = "field")]
 pub use p2m_field as field;
 /// Scenes and scans in the formats of other programs: LAS, E57, PCD, glTF, 3MF, GeoJSON, shapefiles.
@@ -116,12 +119,12 @@ pub use p2m_formats as formats;
 /// Scenes of moving objects: instances of indexes, each with a rotation and a translation.
 #[cfg(feature = "instances")]
 pub use p2m_instances as instances;
-/// Everything else about interception indexes: partitions, reports, Delaunay tetrahedra.
+/// The whole crate p2m-interception: partitions, reports, Delaunay tetrahedra.
 #[cfg(feature = "interception")]
 pub use p2m_interception as interception;
 #[cfg(feature = "interception")]
 pub use p2m_interception::{OctreeIndex, OctreeOptions, P2mIndex, P2mOptions};
-/// Everything else about k-DOPs: polytopes, directions from a scene.
+/// The whole crate p2m-kdop: polytopes, directions from a scene.
 #[cfg(feature = "kdop")]
 pub use p2m_kdop as kdop;
 #[cfg(feature = "kdop")]
@@ -141,8 +144,8 @@ pub mod prelude {
     };
 }
 
-/// The index of the P2M paper, for comparison: its KD-tree, its R-trees, and the traits by which a
-/// [`P2mIndex`] can have others.
+/// The index of the P2M paper, for comparison: its KD-tree, its R-trees, and the traits that give a [`P2mIndex`] other
+/// ones.
 #[cfg(feature = "paper")]
 pub mod paper {
     pub use p2m_interception::{
