@@ -1,7 +1,7 @@
 //! The registry of backends: every index by its name, and the choice between them for a scene and a workload.
 //!
-//! [`BACKENDS`] lists every backend with what it can do. An entry builds and loads its index as one [`AnyIndex`], over a
-//! scene that the index shares.
+//! [`BACKENDS`] lists every backend with what it can do. An entry builds and loads its index as one [`AnyIndex`], over
+//! a scene that the index shares.
 //!
 //! ```
 //! use nalgebra::Point3;

@@ -1,15 +1,14 @@
 //! Fields by candidate lists: blocks of the grid get lists of the primitives that can be nearest in them.
 //!
-//! The grid is halved until blocks have a few dozen points. The candidates of a half are a subset of those of the block
-//! that it is a half of ([`CandidateLists`]). No index is needed, and most of the work is shared by all points of a
-//! block.
+//! The grid is halved until blocks have a few dozen points. The candidates of a half are found among the candidates of
+//! the whole block ([`CandidateLists`]). No index is needed, and most of the work is shared by all points of a block.
 //!
 //! **Bands.** A block is not halved any further if all of it is beyond the band.
 //!
 //! **Signs.** The sign of a surface without a boundary changes only at the surface. So a block that the surface does
 //! not cross has the sign of its centre, and two neighbouring points have the same sign if one of them is farther from
-//! the surface than from the other. Points that are connected in this way have one sign. The points of a block have
-//! their winding numbers by an open surface together.
+//! the surface than from the other. Points that are connected in this way have one sign. With respect to an open
+//! surface, the winding numbers of all points of a block are computed together.
 
 use crate::grid::{Grid, GridError};
 use crate::grid_candidates::{CandidateLists, Candidates, Detail, MAX_COORDINATE};
@@ -22,14 +21,15 @@ use p2m_core::{Aabb, ClosestPoint, PrimitiveSet};
 
 /// Returns the distances at the points of a grid, computed from candidate lists instead of an index.
 ///
-/// The values are those of [`distances`](crate::distances), bit for bit. Lists are the fastest way to a field whose
-/// blocks of 64 points are not much larger than the primitives, or are farther from the primitives than they are wide.
+/// The values equal the values of [`distances`](crate::distances), bit for bit. Lists are the fastest way to a field
+/// whose blocks of 64 points are not much larger than the primitives, or are farther from the primitives than they are
+/// wide.
 ///
 /// # Errors
 /// [`GridError::Memory`] if the values do not fit into memory, and [`GridError::Range`] for coordinates above 2^250.
 ///
 /// # Complexity
-/// O(k) for each point, with k candidates in its block. Memory is 4 bytes for each point, and 4 bytes for each
+/// O(k) per point, with k candidates in its block. Memory is 4 bytes per point, and 4 bytes for each
 /// candidate of a block and of the larger blocks that contain it.
 pub fn distances_by_lists<S: PrimitiveSet<f64> + Sync + ?Sized>(
     lists: &CandidateLists<'_, S>,
@@ -42,8 +42,8 @@ pub fn distances_by_lists<S: PrimitiveSet<f64> + Sync + ?Sized>(
 
 /// Returns the signed distances at the points of a grid, computed from candidate lists.
 ///
-/// The values are those of [`signed_distances`](crate::signed_distances), bit for bit. `lists` and `signed` have to be
-/// of the same scene.
+/// The values equal the values of [`signed_distances`](crate::signed_distances), bit for bit. `lists` and `signed` have
+/// to be of the same scene.
 ///
 /// # Errors
 /// [`GridError::Memory`] if the values do not fit into memory, and [`GridError::Range`] for coordinates above 2^250.
@@ -76,15 +76,16 @@ pub fn signed_distances_by_lists<S: PrimitiveSet<f64> + Sync + ?Sized, I: Closes
 /// Returns the common sign of all points of a ball that the surface does not cross, or `None` if they may differ.
 type SignInBall<'a> = dyn Fn(f64, &Point3<f64>) -> Option<Sign> + Sync + 'a;
 
-/// Computes the signs of the points of a block with these candidates, and leaves out some.
+/// Computes the signs of the points of a block with these candidates, except for points that single queries have to
+/// decide.
 type SignsInBlock<'a> = dyn Fn(&PointBlock<'_>, &Candidates, &mut [Option<Sign>]) + Sync + 'a;
 
 /// The functions that compute signs.
 struct Signs<'a> {
-    /// Returns the sign of a point at this distance from the surface.
+    /// Returns the sign of a point, given its distance from the surface.
     at: &'a (dyn Fn(&Point3<f64>, f32) -> Sign + Sync),
     in_ball: &'a SignInBall<'a>,
-    /// For surfaces that are open.
+    /// Computes the signs of the points of a block, for an open surface.
     in_block: Option<&'a SignsInBlock<'a>>,
     /// Points at a smaller distance than this may be on the surface.
     on_surface: f64,
@@ -113,9 +114,9 @@ struct Block {
     counts: [usize; 3],
 }
 
-/// Slabs of at most this many layers are computed by one thread, which reports progress after each.
+/// The largest number of layers of a slab. One thread computes a slab, and reports progress after it.
 const MAX_SLAB_LAYERS: usize = 8;
-/// Blocks of at most this many points are evaluated, and larger ones are divided.
+/// The largest number of points of a block that is evaluated. Larger blocks are divided.
 const MAX_EVALUATED_POINTS: usize = 64;
 
 impl Block {
@@ -191,7 +192,7 @@ impl<'a, S: PrimitiveSet<f64> + Sync + ?Sized> Sampler<'a, S> {
         Aabb { min: end(0), max: end(1) }
     }
 
-    /// Computes complete layers, whose values are `values`. `candidates` are those of a block that contains the layers.
+    /// Computes the values of complete layers. `candidates` are the candidates of a block that contains the layers.
     fn layers(&self, block: Block, candidates: &Candidates, values: &mut [f32]) {
         let detail = if block.len() <= MAX_EVALUATED_POINTS { Detail::Primitives } else { Detail::Groups };
         let candidates = self.lists.narrowed(candidates, &self.bounds(&block), detail);

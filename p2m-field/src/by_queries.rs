@@ -6,8 +6,8 @@
 //!
 //! **Bands.** A block of points has no point in the band if the distance of its centre exceeds the band plus half of
 //! the diagonal of the block. Other blocks are divided into eight until they are empty or single points. Signs beyond
-//! the band equal those of single queries as well: no surface crosses an empty block, so the sign of its centre holds
-//! for all of it, or winding numbers are computed for each point where they may differ.
+//! the band equal the signs of single queries as well: no surface crosses an empty block, so the sign of its centre
+//! holds for all of it, or winding numbers are computed for each point where they may differ.
 
 use crate::grid::{Grid, GridError};
 use crate::layers::Layers;
@@ -28,7 +28,7 @@ use p2m_core::{Closest, ClosestPoint, QueryOptions};
 ///
 /// # Complexity
 /// One query for each point; with a band, one for each point in the band and for each block outside of it. Memory is
-/// 4 bytes for each point.
+/// 4 bytes per point.
 pub fn distances<I: ClosestPoint<f64> + Sync + ?Sized>(
     index: &I,
     grid: &Grid,
@@ -41,7 +41,7 @@ pub fn distances<I: ClosestPoint<f64> + Sync + ?Sized>(
 
 /// Returns the signed distances at the points of a grid, in the order of [`Grid::number`].
 ///
-/// Values are those of [`distances`], negative inside, and NaN where the sign is not defined.
+/// The values are the distances of [`distances`], negative inside, and NaN where the sign is not defined.
 ///
 /// # Errors
 /// [`GridError::Memory`] if the values do not fit into memory.
@@ -62,7 +62,7 @@ pub fn signed_distances<I: ClosestPoint<f64> + Sync, R: SharedSoup>(
     sampler.field(progress)
 }
 
-/// Returns the common sign of points around a point, by a radius and the closest point.
+/// Returns the common sign of the points around a point, given a radius and the closest point.
 type SignAround<'a> = dyn Fn(f64, &Point3<f64>, &Closest<f64>) -> Option<Sign> + Sync + 'a;
 
 /// The functions that compute signs.
@@ -85,9 +85,10 @@ struct Sampler<'a, I: ?Sized> {
     band: f64,
 }
 
-/// Layers of a slab, which one thread fills. The largest blocks of a band have as many points along each axis.
+/// The number of layers of a slab, which one thread fills. The largest blocks of a band have as many points along each
+/// axis.
 const SLAB_LAYERS: usize = 16;
-/// Points that are passed to the index at once.
+/// The number of points that are passed to the index at once.
 const BATCH_POINTS: usize = 64;
 
 impl<I: ClosestPoint<f64> + Sync + ?Sized> Sampler<'_, I> {
@@ -148,7 +149,7 @@ impl<I: ClosestPoint<f64> + Sync + ?Sized> Sampler<'_, I> {
         }
     }
 
-    /// Returns the value of a point by the answer to its query.
+    /// Returns the value of a point, given the answer to its query.
     fn value(&self, query: &Point3<f64>, answer: Option<&Closest<f64>>) -> f32 {
         let Some(answer) = answer else { return f32::INFINITY };
         let sign = self.signs.as_ref().map_or(Sign::Outside, |signs| (signs.near)(query, answer));

@@ -1,13 +1,13 @@
 //! Surfaces at a distance from a scene, made of a field on a grid.
 //!
-//! A cell of the grid whose corners are on both sides of the distance has one or more loops through its crossed edges, as in
-//! marching cubes \[Lorensen1987\]. On a face with four crossed edges, the corners nearer to the scene are kept apart, in both
-//! cells of the face, so loops fit together. A loop of three is a triangle, and a longer one a fan around a vertex in its
-//! middle. So every edge of a triangle has exactly one other triangle: an edge on a face is that of one loop in each of
-//! its two cells, and no edge of a fan ends at two crossed edges.
+//! A cell of the grid whose corners are on both sides of the distance has one or more loops through its crossed edges,
+//! as in marching cubes \[Lorensen1987\]. On a face with four crossed edges, the corners nearer to the scene are kept
+//! apart, in both cells of the face, so loops fit together. A loop of three edges becomes a triangle, and a longer one
+//! a fan around a vertex in its middle. So every edge is shared by exactly two triangles: a face edge belongs to one
+//! loop in each of the two cells, and a spoke of a fan, which ends at the middle vertex, to two triangles of the fan.
 //!
-//! Then each vertex moves along the gradient of the distance, which the closest point tells, until it is where it should be.
-//! If that does not converge within a spacing of the grid, as at a crease, bisection between two points of the cell on
+//! Then each vertex moves along the gradient of the distance (from the closest point) until its distance matches. If
+//! that does not converge within a spacing of the grid, as at a crease, bisection between two points of the cell on
 //! either side does.
 
 use crate::{Grid, GridError};
@@ -50,8 +50,8 @@ pub enum OffsetError {
     },
 }
 
-/// Returns the distance of a point, with its sign in a field with signs, and its closest point in the scene; nothing if the
-/// distance is not defined.
+/// Returns the distance of a point, with its sign in a field with signs, and its closest point in the scene, or `None`
+/// if the distance is not defined.
 pub type MeasureDistance<'a> = dyn Fn(&Point3<f64>) -> Option<(f64, Point3<f64>)> + Sync + 'a;
 
 /// The corners of the faces of a cell, counterclockwise as seen from outside. Bit k of a corner is set if it is at the
@@ -63,14 +63,14 @@ const STEPS: usize = 8;
 const BISECTIONS: usize = 60;
 /// The error of a vertex, relative to the spacing of the grid, at which it stays.
 const SETTLED: f64 = 1e-7;
-/// The part of an edge at each end that no vertex starts in, so that triangles are not thin.
+/// The fraction of an edge at each end in which no vertex starts, so that triangles are not thin.
 const END: f64 = 0.1;
 
-/// Returns a grid with `resolution` points along its longest side that contains all points at a distance from what is in a
-/// box, and two layers around them.
+/// Returns a grid with `resolution` points along its longest side that contains all points at a distance from a box,
+/// and two layers around them.
 ///
 /// # Errors
-/// Those of [`Grid::around`], and [`GridError::Count`] for a resolution below 8.
+/// The errors of [`Grid::around`], and [`GridError::Count`] for a resolution below 8.
 pub fn offset_grid(bounds: &Aabb<f64>, distance: f64, resolution: usize) -> Result<Grid, GridError> {
     if resolution < 8 {
         return Err(GridError::Count(resolution, resolution, resolution));
@@ -84,9 +84,10 @@ pub fn offset_grid(bounds: &Aabb<f64>, distance: f64, resolution: usize) -> Resu
 
 /// Returns the surface of all points at a distance from a scene, given its field on a grid.
 ///
-/// `values` are those of [`distances`](crate::distances) or [`signed_distances`](crate::signed_distances); NaN counts as
-/// far. `closest` measures the same distances. A negative distance is that of a surface inside. Without signs, a surface around a closed scene has an inner
-/// shell too. Details that are smaller than the spacing of the grid may be lost.
+/// `values` come from [`distances`](crate::distances) or [`signed_distances`](crate::signed_distances); NaN counts as
+/// far. `closest` measures the same distances. With a negative distance, the surface is inside. Without signs, a
+/// surface around a closed scene has an inner shell too. Details that are smaller than the spacing of the grid may be
+/// lost.
 ///
 /// ```
 /// use nalgebra::Point3;
@@ -107,11 +108,11 @@ pub fn offset_grid(bounds: &Aabb<f64>, distance: f64, resolution: usize) -> Resu
 /// An [`OffsetError`] if the surface leaves the grid or has too many vertices, or the distance is not finite.
 ///
 /// # Panics
-/// If the values are not those of the grid.
+/// If there is not one value for each point of the grid.
 ///
 /// # Accuracy
-/// Vertices have the distance within 10^-7 of the spacing, unless rounding of the values to f32, or a sign that changes away from
-/// the surface, prevents it; the result has the largest error.
+/// Vertices have the distance within 10^-7 of the spacing, unless rounding of the values to f32, or a sign that changes
+/// away from the surface, prevents it; the result has the largest error.
 ///
 /// # Complexity
 /// O(n) for n grid points. A vertex takes about three queries, and 80 bytes.
@@ -155,7 +156,7 @@ pub fn offset_surface(
     let largest = |errors: &mut dyn Iterator<Item = f64>| errors.fold(0.0, f64::max);
     let (vertex_error, triangle_error) =
         (largest(&mut settled.iter().map(|(_, error)| *error)), largest(&mut errors.into_iter()));
-    // Indices are those of vertices, which are at most as many as fit.
+    // The indices of vertices fit, because the number of vertices does.
     let soup = Soup::from_triangles(positions, triangles).map_err(|_| OffsetError::TooLarge)?;
     Ok(OffsetSurface { soup, vertex_error, triangle_error })
 }
@@ -257,13 +258,17 @@ impl Mesh<'_> {
     }
 
     /// Adds the triangles of a cell, which is given by its lowest corner.
+    ///
+    /// The loops of a cell follow from its faces. On each face, seen from outside, an edge that runs from far to near
+    /// is linked to the next edge that runs back to far, around the same near corners. `next` has the link of each
+    /// edge. Following the links from face to face yields the loops.
     fn add_cell(&mut self, cell: [usize; 3]) -> Result<(), OffsetError> {
         let corner = |c: usize| -> [usize; 3] { std::array::from_fn(|k| cell[k] + (c >> k & 1)) };
         let is_near = [0, 1, 2, 3, 4, 5, 6, 7].map(|c| self.is_near(corner(c)));
         if is_near == [is_near[0]; 8] {
             return Ok(());
         }
-        // A crossed edge is the pair of its corners, of which the lower one has no bit that the other one lacks.
+        // An edge is identified by its lower corner, which has no bit that the other corner lacks, and by its axis.
         let mut next = [[usize::MAX; 3]; 8];
         let edge = |a: usize, b: usize| (a & b, (a ^ b).trailing_zeros() as usize);
         for face in FACES {
@@ -279,7 +284,7 @@ impl Mesh<'_> {
         for first in 0..24 {
             let mut edge = first;
             let mut vertices = Vec::new();
-            // Each edge of a loop is left out of later ones.
+            // Links are removed as they are followed, so no edge is in two loops.
             while let following = std::mem::replace(&mut next[edge / 3][edge % 3], usize::MAX)
                 && following != usize::MAX
             {
@@ -325,8 +330,8 @@ mod tests {
     use p2m_testkit::{cases, rng};
     use rand::RngExt;
 
-    /// Checks that each edge of a surface has exactly two triangles, in opposite directions, by numbers of vertices and,
-    /// if they are apart, by their coordinates. Returns the volume inside.
+    /// Checks that each edge of a surface has exactly two triangles, in opposite directions, by numbers of vertices
+    /// and, if they are apart, by their coordinates. Returns the volume inside.
     fn check(surface: &OffsetSurface) -> f64 {
         let mut directed = HashMap::new();
         for triangle in surface.soup.triangles() {

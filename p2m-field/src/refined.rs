@@ -68,7 +68,7 @@ impl RefineOptions {
 /// of the large cell.
 ///
 /// # Complexity
-/// Each examined cell needs 27 points, most of which it shares with its neighbours. Memory is 32 bytes for each point
+/// Each examined cell needs 27 points, most of which it shares with its neighbours. Memory is 32 bytes per point
 /// until the function returns.
 pub fn refined(bounds: &Aabb<f64>, distance: &dyn Fn(&Point3<f64>) -> f64, options: &RefineOptions) -> Vec<Cell> {
     let half = (0..3).map(|k| bounds.max[k] * 0.5 - bounds.min[k] * 0.5).fold(0.0, f64::max);

@@ -1,8 +1,8 @@
 //! Random points on and around scenes, the same bits on every platform and for every number of threads.
 //!
 //! Sample i depends on the scene, the seed and i alone, so a longer list begins with the shorter one, and any part of a
-//! list can be computed by itself. The numbers are hashes of the seed and a counter \[Steele2014\]. Logarithms are those
-//! of the crate libm.
+//! list can be computed by itself. The numbers are hashes of the seed and a counter \[Steele2014\]. Logarithms are
+//! computed by the crate libm.
 //!
 //! ```
 //! use p2m_field::sample::{SurfaceSampler, in_box};
@@ -15,7 +15,8 @@
 //! let near = sampler.near(7, 1000, &[0.1]);
 //! let mean = near.points.iter().map(|point| point.coords.norm()).sum::<f64>() / 1000.0;
 //! assert!((mean - 1.0).abs() < 0.05);
-//! assert_eq!(in_box(&p2m_core::PrimitiveSet::aabb(&ball), 7, 1000)[..10], in_box(&p2m_core::PrimitiveSet::aabb(&ball), 7, 10));
+//! let bounds = p2m_core::PrimitiveSet::aabb(&ball);
+//! assert_eq!(in_box(&bounds, 7, 1000)[..10], in_box(&bounds, 7, 10));
 //! ```
 
 use nalgebra::{Point3, Vector3};
@@ -26,9 +27,10 @@ use p2m_core::{Aabb, PrimitiveId, PrimitiveSet, shape_of};
 const CHUNK: usize = 1 << 12;
 /// The constant by which a counter advances: 2^64 divided by the golden ratio.
 const GOLDEN: u64 = 0x9e37_79b9_7f4a_7c15;
-/// The numbers that one sample may use. Rejections beyond them are so rare that they reuse numbers of others.
+/// The number of random numbers that one sample may use. Rejections beyond them are so rare that they reuse the numbers
+/// of other samples.
 const NUMBERS_PER_SAMPLE: u64 = 64;
-/// The numbers of a sample of the surface that choose its primitive.
+/// The number of random numbers of a surface sample that choose its primitive.
 const NUMBERS_OF_CHOICE: u64 = 2;
 
 /// Streams of random numbers, which are independent of each other.
@@ -114,7 +116,8 @@ pub struct SurfaceSampler<S> {
     scene: S,
     /// The primitives that can be chosen.
     ids: Vec<u32>,
-    /// For each of them the part of its share that is its own, and who has the rest.
+    /// The alias table: for each primitive, the fraction of its share that is its own, and the primitive that has the
+    /// rest.
     shares: Vec<(f64, u32)>,
     measure: f64,
 }
@@ -123,7 +126,7 @@ impl<S: PrimitiveSet<f64> + Sync> SurfaceSampler<S> {
     /// Prepares the choice; `None` if the scene is empty.
     ///
     /// # Complexity
-    /// O(n) time and 20 bytes for each primitive.
+    /// O(n) time and 20 bytes per primitive.
     #[must_use]
     pub fn new(scene: S) -> Option<Self> {
         let mut measures = [const { Vec::new() }; 3];
@@ -148,7 +151,7 @@ impl<S: PrimitiveSet<f64> + Sync> SurfaceSampler<S> {
             shares[rich].0 -= 1.0 - shares[poor].0;
             if shares[rich].0 < 1.0 { &mut small } else { &mut large }.push(rich);
         }
-        // Those that are left differ from 1 by rounding, and give nothing away.
+        // The shares that are left differ from 1 only by rounding, and have no alias.
         small.into_iter().chain(large).for_each(|i| shares[i].0 = 1.0);
         measure.is_finite().then(|| Self {
             scene,
@@ -176,8 +179,8 @@ impl<S: PrimitiveSet<f64> + Sync> SurfaceSampler<S> {
         Samples::compute(count, |first, points, ids| self.chunk(seed, first, points, ids))
     }
 
-    /// Returns points of the scene, moved by noise: sample i by a normal distribution in each coordinate, whose standard
-    /// deviation is that of number i modulo their number in `sigmas`.
+    /// Returns points of the scene, moved by normally distributed noise in each coordinate. Its standard deviation for
+    /// sample i is `sigmas[i % sigmas.len()]`.
     ///
     /// # Panics
     /// It panics if `sigmas` is empty and `count` is not 0.

@@ -1,9 +1,9 @@
-//! Solids: closed scenes whose inside counts as filled, so what is inside of them has the distance 0.
+//! Solids: closed scenes that count as filled, so that everything inside of them has the distance 0.
 //!
-//! Queries for pairs know surfaces: a scene inside of a closed one has the distance from its surface. A [`Solid`] asks
-//! whether a vertex of the other scene is inside as well. If the surfaces do not intersect, a connected part of a scene is
-//! inside as a whole or not at all, so one vertex of each part decides. For points, [`Signed::distance_to_solid`] is the
-//! distance.
+//! Pair queries know surfaces only: inside of a closed scene, they return the distance from its surface. A [`Solid`]
+//! also tests whether a vertex of the other scene is inside. If the surfaces do not intersect, a connected part of a
+//! scene is inside as a whole or not at all, so one vertex of each part decides. For points,
+//! [`Signed::distance_to_solid`] is the distance.
 //!
 //! [`Signed::distance_to_solid`]: crate::sign::Signed::distance_to_solid
 
@@ -12,7 +12,8 @@ use p2m_core::engine::weld::{UnionFind, VertexWelder};
 use p2m_core::pair::{ClosestPair, Hull, Motion, PairOptions, PairQuery};
 use p2m_core::{Feature, Point, Primitive, PrimitiveId, Soup};
 
-/// Tells whether a point is inside of a solid, as [`SignedDistance::contains`](crate::sign::SignedDistance::contains) does.
+/// Returns whether a point is inside of a solid, as [`SignedDistance::contains`](crate::sign::SignedDistance::contains)
+/// does.
 pub type Contains<'a> = dyn Fn(&Point3<f64>) -> bool + Sync + 'a;
 
 /// The connected parts of a scene, which share no vertex with each other: the first primitive of each.
@@ -23,7 +24,7 @@ impl Parts {
     /// Finds the parts of a scene. Vertices are welded where they have the same coordinates.
     ///
     /// # Complexity
-    /// Expected linear time, and 8 bytes for each position until it returns.
+    /// Expected linear time, and 8 bytes per position until it returns.
     #[must_use]
     pub fn of(soup: &Soup<f64>) -> Self {
         let welder = VertexWelder::new(soup);
@@ -40,7 +41,7 @@ impl Parts {
     }
 }
 
-/// A scene in queries for pairs, which counts as filled if it has an inside.
+/// A scene in pair queries, which counts as filled if it has an inside.
 ///
 /// ```
 /// use nalgebra::Point3;
@@ -75,8 +76,8 @@ impl<I> std::fmt::Debug for Solid<'_, I> {
 }
 
 impl<'a, I: PairQuery<f64>> Solid<'a, I> {
-    /// Makes a solid of an index and the parts of its scene. Without a function that tells what is inside, only its
-    /// surface counts, as for segments and points.
+    /// Makes a solid of an index and the parts of its scene. Without a function that decides which points are inside,
+    /// only its surface counts, as for segments and points.
     #[must_use]
     pub fn new(index: &'a I, parts: &'a Parts, contains: Option<&'a Contains<'a>>) -> Self {
         Self { index, parts, contains }
@@ -97,15 +98,15 @@ impl<'a, I: PairQuery<f64>> Solid<'a, I> {
 
     /// Returns what [`PairQuery::closest_pair`] does, with the distance 0 if one solid is inside of the other one.
     ///
-    /// Inside, both points are a vertex of the inner solid, and the primitives are one of the inner solid with this vertex
+    /// Inside, both points are a vertex of the inner solid. The primitives are one of the inner solid with this vertex,
     /// and the closest one of the outer solid.
     ///
     /// # Accuracy
-    /// Whether vertices of the first solid are inside of the second one is decided after the inverse of the motion, with
-    /// its rounding.
+    /// The test of whether vertices of the first solid are inside of the second one applies the inverse of the motion,
+    /// with its rounding.
     ///
     /// # Complexity
-    /// A query for pairs, and one for a point for each connected part of both scenes.
+    /// One pair query, and one point query for each connected part of both scenes.
     pub fn closest_pair<J: PairQuery<f64>>(
         &self,
         other: &Solid<'_, J>,
@@ -146,8 +147,8 @@ impl<'a, I: PairQuery<f64>> Solid<'a, I> {
     }
 }
 
-/// Tells whether two scenes may be inside of each other: their surfaces do not intersect, and a distance of 0 would be
-/// an answer.
+/// Returns whether two scenes may be inside of each other: their surfaces do not intersect, and a distance of 0 would
+/// be an answer.
 fn may_be_inside(found: Option<&ClosestPair<f64>>, options: &PairOptions<f64>) -> bool {
     !found.is_some_and(|pair| pair.is_intersecting) && options.max_distance >= 0.0 && options.radius >= 0.0
 }

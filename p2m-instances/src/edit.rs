@@ -1,4 +1,4 @@
-//! Changes of a scene, after which its tree follows once.
+//! Edits of a scene, at the end of which its tree is updated once.
 
 use crate::instance::Instance;
 use crate::instances::{InstanceBox, InstanceTree};
@@ -8,11 +8,12 @@ use p2m_core::{AnyIndex, BuildIndex, PrimitiveId, Real};
 use std::ops::Deref;
 use std::sync::Arc;
 
-/// The tree is built anew when a refit has left it with boxes of more than this factor times the area after its build.
+/// The largest factor by which a refit may enlarge the area of the boxes since the tree was built. Beyond it, the tree
+/// is built anew.
 const MAX_AREA_GROWTH: f64 = 4.0 / 3.0;
 
-/// A change of a scene: instances are added, moved and removed, and the tree of the scene follows when the edit is
-/// dropped. Its methods read the scene as well.
+/// An edit of a scene: instances are added, moved and removed, and the tree of the scene is updated when the edit is
+/// dropped. The methods of the edit read the scene as well.
 ///
 /// An edit that is leaked ([`std::mem::forget`]) leaves the scene without a tree until the next edit, so that queries
 /// test all instances.
@@ -44,7 +45,7 @@ impl<'a, T: Real, I: AnyIndex<T> + ?Sized> Edit<'a, T, I> {
     }
 
     /// Adds an instance of an index, whose motion is applied to its vertices, and returns its id. Its primitives get
-    /// the ids behind those of all other instances.
+    /// the ids after the ids of all other instances.
     ///
     /// The index has to answer as if its scene never changed, which all indexes of this project do.
     ///

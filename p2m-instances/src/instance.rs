@@ -105,8 +105,8 @@ impl<I: ?Sized> Instance<I> {
         (0..self.object.count).map(PrimitiveId::new)
     }
 
-    /// Returns the distance within which an answer in the frame of the object is that of the moved vertices, for a
-    /// query of this size, which is at least the distances of its points from the origin.
+    /// Returns the distance within which an answer in the frame of the object equals the answer for the moved vertices.
+    /// `query_size` is at least the distance of any point of the query from the origin.
     pub(crate) fn margin(&self, query_size: f64) -> f64 {
         // The smallest normal number covers all that underflows.
         MARGIN * (query_size + self.reach) + f64::MIN_POSITIVE
@@ -136,7 +136,7 @@ pub(crate) fn shape(hull: &Hull) -> Shape<f64> {
 }
 
 /// Returns the motion of an isometry, the moved box of an object, and an upper bound on the distances of its vertices
-/// from the origin plus that of the translation.
+/// from the origin plus the length of the translation.
 fn moved<I: ?Sized>(object: &Object<I>, isometry: &Isometry3<f64>) -> Result<(Motion, Aabb<f64>, f64), InstanceError> {
     let motion = Motion::new(isometry);
     if !motion.is_finite() {

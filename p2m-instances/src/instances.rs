@@ -28,7 +28,7 @@ use std::marker::PhantomData;
 /// # Complexity
 /// A query searches the tree of boxes in expected O(log n) for n instances, and the index of each instance whose box it
 /// reaches before the answer is known. Rays and boxes test all primitives of an object whose index does not answer
-/// them. A scene takes at most 400 bytes for each instance besides its name.
+/// them. A scene takes at most 400 bytes per instance besides its name.
 #[derive(Debug)]
 pub struct Instances<T: Real = f64, I: ?Sized = dyn AnyIndex<T>> {
     /// The instances in the order of their ids.
@@ -131,7 +131,7 @@ impl<T: Real, I: AnyIndex<T> + ?Sized> Instances<T, I> {
 
     /// Returns the instance of a primitive, and its id in the object.
     pub(crate) fn owner_of(&self, primitive: PrimitiveId) -> Option<(&Instance<I>, PrimitiveId)> {
-        // Of several instances that begin at the same id all but the last are empty.
+        // Several instances may begin at the same id. All of them but the last are empty.
         let after = self.instances.partition_point(|instance| instance.first <= primitive.index());
         let instance = &self.instances[after.checked_sub(1)?];
         let local = primitive.index() - instance.first;

@@ -33,18 +33,18 @@
 //! # Contract
 //!
 //! The motion of an instance is applied to each vertex in f64, and each coordinate is rounded
-//! ([`Motion`](p2m_core::pair::Motion)). Every answer is that of one index over the scene of these vertices: the bits
-//! of distances, points and parameters and the ids are equal, whatever the indexes of the objects are. The ids of an
-//! instance follow those of the instances that were added before it. Objects in f32 are moved in f64 as well, and
-//! answers are rounded at the end.
+//! ([`Motion`](p2m_core::pair::Motion)). Every answer equals the answer of one index over the scene of these vertices:
+//! the bits of distances, points and parameters and the ids are equal, whatever the indexes of the objects are. The ids
+//! of an instance follow the ids of the instances that were added before it. Objects in f32 are moved in f64 as well,
+//! and answers are rounded at the end.
 //!
 //! # Method
 //!
-//! A tree of the boxes of the instances finds those that a query can reach, nearest first. There the query is moved
-//! back into the frame of the object, and the index of the object searches for all primitives that may win: those
-//! within the best distance so far plus a margin, which covers the roundings of both motions and of the kernel. Each of
-//! them is moved and evaluated by the kernel, and the best distance shrinks while the index searches. Rays take the
-//! same way.
+//! A tree of the boxes of the instances finds the instances that a query can reach, nearest first. For each of them,
+//! the query is moved back into the frame of the object, and the index of the object searches for all primitives that
+//! may win: the primitives within the best distance so far plus a margin, which covers the roundings of both motions
+//! and of the kernel. These primitives are moved and evaluated by the kernel, and the best distance shrinks while the
+//! index searches. Rays take the same way.
 #![forbid(unsafe_code)]
 
 mod boxes;

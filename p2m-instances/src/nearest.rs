@@ -42,7 +42,7 @@ impl<T: Real, I: AnyIndex<T> + ?Sized> Instances<T, I> {
     }
 }
 
-/// Returns the distance above which a collector needs nothing. It is NaN if the collector needs nothing at all.
+/// Returns the distance above which a collector needs nothing, or NaN if it needs nothing at all.
 fn distance_limit(collector: &impl Collector) -> f64 {
     collector.prune_above().sqrt() * ROUND_UP
 }
@@ -66,9 +66,9 @@ fn search_instance<T: Real, I: AnyIndex<T> + ?Sized, C: Collector>(
     if instance.object.bounds.lower_bound(&rounded) > (radius * radius * ROUND_UP).max(MIN_SQUARE) {
         return;
     }
-    // A primitive of the object bounds the best distance up to one margin, and another one needs one as well. The
-    // collector may want what is farther still. Near ties that it keeps differ by two errors of the kernel, for which
-    // the margins have room.
+    // The best primitive of the object bounds the best distance up to one margin, and any other primitive errs by one
+    // margin as well. Collectors of several primitives may want farther ones still. Near ties that a collector keeps
+    // differ by two errors of the kernel, for which the margins have room.
     let is_single = collector.is_single_nearest();
     let slack = if is_single { 2.0 * margin + collector.near_tie_slack() } else { f64::INFINITY };
     let mut visit = |id: PrimitiveId, vertices: &[[f64; 3]]| {
@@ -103,7 +103,8 @@ impl<T: Real, I: AnyIndex<T> + ?Sized> ClosestPoint<T> for Instances<T, I> {
         self.visit(query, best.minimum());
     }
 
-    /// Each search begins with the primitive of the last answer, which is near if the queries are in a spatial order.
+    /// Answers queries in their order. Each search begins with the primitive of the last answer, which is near if the
+    /// queries are in a spatial order.
     fn answer_queries(
         &self,
         queries: &[Point3<T>],

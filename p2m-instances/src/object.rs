@@ -1,4 +1,4 @@
-//! Objects: what instances of one index share.
+//! Objects: the data that all instances of an index share.
 
 use crate::InstanceError;
 use p2m_core::{Aabb, AnyIndex, Primitive, PrimitiveId, Real};
@@ -12,7 +12,8 @@ pub(crate) struct Object<I: ?Sized> {
     pub(crate) count: usize,
     /// The box around all primitives in the frame of the object.
     pub(crate) bounds: Aabb<f64>,
-    /// The sum of the largest magnitudes of the three coordinates. No vertex is farther from the origin.
+    /// An upper bound on the distances of the vertices from the origin: the sum of the largest magnitudes of the three
+    /// coordinates.
     pub(crate) reach: f64,
     pub(crate) index: Arc<I>,
 }

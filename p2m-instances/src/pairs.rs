@@ -1,4 +1,4 @@
-//! Queries for pairs of primitives.
+//! Pair queries: the closest pairs of primitives of two scenes.
 
 use crate::id::InstanceId;
 use crate::instance::Instance;
@@ -60,8 +60,8 @@ impl<T: Real, I: AnyIndex<T> + ?Sized> PairQuery<T> for Instances<T, I> {
     }
 }
 
-/// Calls `search` with the trees of an instance, or with each of its primitives if it has none, and returns
-/// the last result.
+/// Calls `search` with the trees of an instance, or with each of its primitives if it has no trees, and returns the
+/// last result.
 fn visit_instance<T: Real, I: AnyIndex<T> + ?Sized>(
     instance: &Instance<I>,
     motions: &[Motion],
@@ -90,14 +90,14 @@ fn visit_instance<T: Real, I: AnyIndex<T> + ?Sized>(
     reach
 }
 
-/// The part of all magnitudes that is added to distances for the rounding of motions.
+/// The margin for the rounding of motions that is added to distances, as a fraction of all magnitudes.
 const ROUNDING: f64 = 1024.0 * f64::EPSILON;
 
 fn norm(vector: [f64; 3]) -> f64 {
     Point3::from(vector).coords.norm()
 }
 
-/// One instance of a scene, as a scene of its own whose ids are those of the object.
+/// One instance of a scene, as a scene of its own with the ids of the object.
 struct Alone<'a, I: ?Sized>(&'a Instance<I>);
 
 impl<T: Real, I: AnyIndex<T> + ?Sized> PairQuery<T> for Alone<'_, I> {
@@ -131,9 +131,10 @@ impl<T: Real, I: AnyIndex<T> + ?Sized> PairQuery<T> for Alone<'_, I> {
 }
 
 impl<T: Real, I: AnyIndex<T> + ?Sized> Instances<T, I> {
-    /// Returns each two instances that are within a distance of each other, with their nearest pair. The distance is
-    /// inclusive, in units of the scene. With the distance 0 it finds the instances that intersect. The ids of a pair
-    /// are those of the scene. The first instance was added before the second, and pairs are in the order of instances.
+    /// Returns all pairs of instances that are within a distance of each other, each with its closest pair of
+    /// primitives. The distance is inclusive, in units of the scene. With the distance 0 it finds the instances that
+    /// intersect. The ids of the primitives are their ids in the scene. The first instance of a pair was added before
+    /// the second, and pairs are in the order of instances.
     ///
     /// ```
     /// use nalgebra::{Isometry3, Point3};
@@ -155,8 +156,8 @@ impl<T: Real, I: AnyIndex<T> + ?Sized> Instances<T, I> {
     /// ```
     ///
     /// # Complexity
-    /// It takes a query of the tree of boxes for each instance, and a search for the nearest pair of each two whose
-    /// boxes are near.
+    /// It takes a query of the tree of boxes for each instance, and a search for the closest pair of primitives for
+    /// each pair of instances whose boxes are near.
     #[must_use]
     pub fn near_instances(&self, max_distance: T) -> Vec<([InstanceId; 2], ClosestPair<T>)> {
         let options = PairOptions::default().with_max_distance(max_distance);

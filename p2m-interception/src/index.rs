@@ -117,7 +117,7 @@ impl<T: Real, S: PrimitiveSet<T>, P: Partition> InterceptionIndex<T, S, P> {
     /// Builds the index over `set` with default options. Pass a reference to borrow the scene, or an `Arc` to share it.
     ///
     /// # Errors
-    /// The errors are those of [`build_with`](Self::build_with).
+    /// Same as [`build_with`](Self::build_with).
     pub fn new(set: S) -> Result<Self, BuildError>
     where
         S: Sync,
@@ -305,15 +305,15 @@ impl<T: Real, S: PrimitiveSet<T> + Sync, P: Partition> BuildIndex<T, S> for Inte
 }
 
 impl<T: Real, S: PrimitiveSet<T> + Sync> OctreeIndex<T, S> {
-    /// Builds the index as [`build_with_progress`](InterceptionIndex::build_with_progress), until `visit` ends its
-    /// refinement. The index is complete then, and its answers are those of any other index, but its cells are coarser,
+    /// Builds the index as [`build_with_progress`](InterceptionIndex::build_with_progress) does, until `visit` ends its
+    /// refinement. The index is complete then and gives the same answers as any other index, but its cells are coarser,
     /// so queries take longer.
     ///
-    /// `visit` is called between the chunks of the refinement, from the calling thread, with what the octree would be.
-    /// Other threads work on the next chunks meanwhile.
-    /// After it returned [`ControlFlow::Break`], the cells that would have been split get their lists, which takes a
-    /// part of the time that was spent so far. The index depends only on how many calls `visit` continued, and not on
-    /// the number of threads.
+    /// `visit` is called between the chunks of the refinement, from the calling thread, with the size that the octree
+    /// would have if its refinement ended now. Other threads work on the next chunks meanwhile. After it returned
+    /// [`ControlFlow::Break`], the cells that would have been split get their lists, which takes a part of the time
+    /// that was spent so far. The index depends only on how many calls `visit` continued, and not on the number of
+    /// threads.
     ///
     /// ```
     /// use nalgebra::Point3;

@@ -23,7 +23,8 @@
 //!
 //! A tree over the same packets answers outside of the domain, in cells whose lists would be too long, and for queries
 //! that want more than the nearest primitive, such as [`NearQuery`](p2m_core::NearQuery). An interception index takes
-//! longer to build and more memory than this tree. Answers are bitwise those of [`BruteForce`](p2m_core::BruteForce).
+//! longer to build and more memory than this tree. Answers have the same bits as the answers of
+//! [`BruteForce`](p2m_core::BruteForce).
 //!
 //! # Example
 //!

@@ -34,11 +34,11 @@ pub struct OctreeOptions {
     /// The fineness of cells. Larger is finer: 1 takes about one and a half times the memory of 0.3, the default. If
     /// it is not positive, there are no cells and the tree answers everything.
     pub resolution: f64,
-    /// The memory budget of cells and lists, in bytes for each primitive of the scene. It is 190 by default. A scene
-    /// with fewer than 10,000 primitives has the budget of 10,000.
+    /// The memory budget of cells and lists, in bytes per primitive of the scene. It is 190 by default. A scene with
+    /// fewer than 10,000 primitives has the budget of 10,000.
     pub memory: f64,
-    /// The work budget, in tests of a packet at a point for each primitive. It is 200 by default. A scene with fewer
-    /// than 10,000 primitives has the budget of 10,000.
+    /// The work budget, in tests of a packet at a point per primitive. It is 200 by default. A scene with fewer than
+    /// 10,000 primitives has the budget of 10,000.
     pub work: f64,
 }
 
@@ -77,8 +77,8 @@ impl OctreeOptions {
     }
     /// Multiplies the resolution by a factor, and the budgets of memory and work as well if the factor is above 1.
     ///
-    /// Finer cells have shorter lists, so less is computed, but more lies in memory. A single query waits for memory, so
-    /// it gains little. A batch fetches the memory of one query while it computes others, so it gains more:
+    /// Finer cells have shorter lists, so less is computed, but more lies in memory. A single query waits for memory,
+    /// so it gains little. A batch fetches the memory of one query while it computes others, so it gains more:
     /// [docs/measurements/octree.md] has the time, the memory and the build of a factor of 30.
     ///
     /// [docs/measurements/octree.md]: https://github.com/p2m-rs/p2m/blob/main/docs/measurements/octree.md
@@ -88,7 +88,7 @@ impl OctreeOptions {
         let budget = factor.max(1.0);
         Self { resolution: resolution * factor, memory: memory * budget, work: work * budget, ..self }
     }
-    /// Lowers the memory budget to a number of bytes, for a scene with so many primitives.
+    /// Lowers the memory budget to a number of bytes in all, for a scene of `primitives` primitives.
     #[must_use]
     pub fn with_max_bytes(self, bytes: usize, primitives: usize) -> Self {
         let most = bytes as f64 / primitives.max(MIN_PRIMITIVES_FOR_BUDGETS) as f64;
@@ -103,8 +103,8 @@ impl OctreeOptions {
 
 /// The size of an octree if its refinement ended now.
 ///
-/// All numbers are upper bounds, because lists that are not made yet may turn out shorter than what is
-/// reserved for them.
+/// All numbers are upper bounds, because a list that is not made yet may turn out shorter than the space reserved for
+/// it.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[non_exhaustive]
 pub struct RefinementProgress {
@@ -181,8 +181,8 @@ impl From<OctreeReport> for CellSummary {
     }
 }
 
-/// A function that builds a part of an index. Two are equal if they have the same address, so equal functions may
-/// compare as different.
+/// A pointer to a function that builds a part of an index. It is compared by address, so the same function may compare
+/// as different.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct FnPointer<F>(pub(crate) F);
 
@@ -220,11 +220,11 @@ pub struct P2mOptions {
     pub(crate) list_filter: Option<FnPointer<BuildListFilter>>,
     /// The number of primitives above which a list gets a filter, if there are filters. It is 64 by default.
     pub filter_above: usize,
-    /// The memory budget of the lists, in bytes for each primitive, and also that of the packets around all corners
-    /// while building. It is 3072 by default. A scene with fewer than 1000 primitives has the budget of 1000.
+    /// The memory budget of the lists, in bytes per primitive, which also limits the packets around all corners while
+    /// building. It is 3072 by default. A scene with fewer than 1000 primitives has the budget of 1000.
     pub memory: f64,
-    /// The work budget, in tests of a node or a packet at a point for each primitive. It is 2,000 by default, which is
-    /// about 25 times what meshes need and three times what slivers do. A scene with fewer than 1000 primitives has the
+    /// The work budget, in tests of a node or a packet at a point per primitive. It is 2,000 by default, which is about
+    /// 25 times what meshes need and three times what slivers do. A scene with fewer than 1000 primitives has the
     /// budget of 1000.
     pub work: f64,
 }
@@ -260,9 +260,9 @@ impl P2mOptions {
     pub fn with_max_extra_sites(self, max_extra_sites: f64) -> Self {
         Self { max_extra_sites, ..self }
     }
-    /// Sets that lists may be as long as in the paper: no site is added, a list may have 2048 packets, and the budgets
-    /// of memory and work are 100,000 bytes and 1,000,000 tests for each primitive. Between slivers a build takes up to
-    /// 40 times as long as by default ([docs/measurements/p2m.md] has figures).
+    /// Allows lists to be as long as in the paper: no site is added, a list may have 2048 packets, and the budgets of
+    /// memory and work are 100,000 bytes and 1,000,000 tests per primitive. Between slivers a build takes up to 40
+    /// times as long as by default ([docs/measurements/p2m.md] has figures).
     ///
     /// [docs/measurements/p2m.md]: https://github.com/p2m-rs/p2m/blob/main/docs/measurements/p2m.md
     #[must_use]
@@ -288,7 +288,8 @@ impl P2mOptions {
     pub fn with_locator(self, build: BuildLocator) -> Self {
         Self { locator: Some(FnPointer(build)), ..self }
     }
-    /// Sets the function that makes filters of long lists. Answers do not depend on it. A saved index has no filters.
+    /// Sets the function that makes the filters of long lists. Answers do not depend on it. A saved index has no
+    /// filters.
     ///
     /// Without filters, which is the default, a search bounds eight packets of a list at a time and begins with the
     /// nearest. With a `RegionTree` for each long list, a query takes up to ten times as long where lists are long, and

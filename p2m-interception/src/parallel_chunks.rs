@@ -27,8 +27,8 @@ pub(crate) fn map_chunks_in_order<R: Send>(
 
 /// The chunks that are begun and not consumed yet.
 ///
-/// No thread waits for a certain other one, so work may use threads itself. A thread that finds nothing to begin leaves
-/// the scope, in which all threads work, and a new scope begins where chunks are left.
+/// No thread waits for one particular other thread, so work may use threads itself. A thread that finds nothing to
+/// begin leaves the scope, in which all threads work, and a new scope begins if chunks are left.
 struct OpenChunks<R>(std::sync::Mutex<OpenChunksState<R>>);
 
 struct OpenChunksState<R> {

@@ -73,8 +73,8 @@ pub trait Partition: CellQuery + Sized {
     fn with_isa(self, isa: Isa) -> Self;
 }
 
-/// Returns whether a list has all primitives that a collector may need. It has those that can be nearest, and what is
-/// farther by no more than rounding.
+/// Returns whether a list has all primitives that a collector may need. A list holds the primitives that can be
+/// nearest, and those that are farther only by rounding.
 #[inline(always)]
 pub(crate) fn are_lists_enough(collector: &impl Collector) -> bool {
     collector.is_single_nearest() && collector.near_tie_slack() <= 0.0
@@ -99,7 +99,7 @@ pub(crate) trait CellQuery {
     /// Offers the primitives that a [`Near`] may need.
     fn query_near<'n>(&self, query: V3, near: &mut Near<'n>, evaluate: EvaluateFn<'_, Near<'n>>);
 
-    /// Searches for the primitives that may be the nearest to each of several queries: those of the first `count`
-    /// searches of `several`, which take turns.
+    /// Runs the first `count` searches of `several` in turns. Each finds the primitives that may be the nearest to its
+    /// query.
     fn search_several(&self, count: usize, several: &mut InterleavedSearch<'_>, lists: &mut InterleavedLists);
 }

@@ -42,7 +42,7 @@ impl BuildStage {
 pub struct Progress {
     /// The current stage.
     pub stage: BuildStage,
-    /// The finished part of all stages, from 0 to 1. It is an estimate that never decreases.
+    /// The finished fraction of all stages, from 0 to 1. It is an estimate that never decreases.
     pub part: f64,
 }
 
@@ -79,7 +79,7 @@ impl<'a> ProgressReporter<'a> {
     }
 }
 
-/// Sums the times of the stages of a build. Its method [`tell`](Self::tell) takes each report of progress.
+/// A collector of the times of the stages of a build. Its method [`tell`](Self::tell) takes each report of progress.
 ///
 /// ```
 /// use nalgebra::Point3;

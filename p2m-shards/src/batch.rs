@@ -34,7 +34,7 @@ use p2m_core::{Key, Position, QueryOptions, Ray};
 /// # Complexity
 /// A batch loads each shard at most twice, whatever the limit of memory is. Only with an epsilon or a limit on visits
 /// is each query answered by itself, so shards may be loaded more often. Comparing n queries with the boxes of s shards
-/// takes O(n s). Memory is about 250 bytes for each query besides the answers, and 120 bytes for each query of the
+/// takes O(n s). Memory is about 250 bytes per query besides the answers, and 120 bytes per query of the
 /// largest group that a shard answers.
 #[derive(Clone, Copy)]
 pub struct ShardBatch<'a> {
@@ -69,7 +69,7 @@ impl<'a> ShardBatch<'a> {
     /// depend on the other queries of the batch.
     ///
     /// # Errors
-    /// They are those of [all batches](Self#errors).
+    /// See the [errors of all batches](Self#errors).
     pub fn closest_points(
         self,
         queries: &[impl Position<f64>],
@@ -81,7 +81,7 @@ impl<'a> ShardBatch<'a> {
     /// Answers as [`ShardedIndex::certified_closest_point`].
     ///
     /// # Errors
-    /// They are those of [all batches](Self#errors).
+    /// See the [errors of all batches](Self#errors).
     pub fn certified_closest_points(
         self,
         queries: &[impl Position<f64>],
@@ -93,7 +93,7 @@ impl<'a> ShardBatch<'a> {
     /// Answers as [`ShardedIndex::k_nearest`].
     ///
     /// # Errors
-    /// They are those of [all batches](Self#errors).
+    /// See the [errors of all batches](Self#errors).
     pub fn k_nearest(self, queries: &[impl Position<f64>], k: usize, radius: f64) -> Answers<Vec<ShardClosest>> {
         self.answer(queries, |query| near(&query.point(), k, radius))
     }
@@ -101,7 +101,7 @@ impl<'a> ShardBatch<'a> {
     /// Answers as [`ShardedIndex::is_any_within`].
     ///
     /// # Errors
-    /// They are those of [all batches](Self#errors).
+    /// See the [errors of all batches](Self#errors).
     pub fn is_any_within(self, queries: &[impl Position<f64>], radius: f64) -> Answers<bool> {
         self.answer(queries, |query| any_within(&query.point(), radius))
     }
@@ -109,7 +109,7 @@ impl<'a> ShardBatch<'a> {
     /// Answers as [`ShardedIndex::contains`].
     ///
     /// # Errors
-    /// They are those of [all batches](Self#errors).
+    /// See the [errors of all batches](Self#errors).
     pub fn contains(self, queries: &[impl Position<f64>]) -> Answers<bool> {
         let rule = self.index.sign_rule()?;
         self.answer(queries, |query| self.index.inside(rule, &query.point()))
@@ -118,7 +118,7 @@ impl<'a> ShardBatch<'a> {
     /// Answers as [`ShardedIndex::first_intersection`].
     ///
     /// # Errors
-    /// They are those of [all batches](Self#errors).
+    /// See the [errors of all batches](Self#errors).
     pub fn first_intersections(self, rays: &[Ray]) -> Answers<Option<ShardHit>> {
         self.answer(rays, first_hit)
     }
@@ -126,7 +126,7 @@ impl<'a> ShardBatch<'a> {
     /// Answers as [`ShardedIndex::all_intersections`].
     ///
     /// # Errors
-    /// They are those of [all batches](Self#errors).
+    /// See the [errors of all batches](Self#errors).
     pub fn all_intersections(self, rays: &[Ray]) -> Answers<Vec<ShardHit>> {
         self.answer(rays, all_hits)
     }
@@ -134,7 +134,7 @@ impl<'a> ShardBatch<'a> {
     /// Answers as [`ShardedIndex::count`].
     ///
     /// # Errors
-    /// They are those of [all batches](Self#errors).
+    /// See the [errors of all batches](Self#errors).
     pub fn count(self, rays: &[Ray]) -> Answers<usize> {
         self.answer(rays, count)
     }
@@ -142,7 +142,7 @@ impl<'a> ShardBatch<'a> {
     /// Answers as [`ShardedIndex::crossings`].
     ///
     /// # Errors
-    /// They are those of [all batches](Self#errors).
+    /// See the [errors of all batches](Self#errors).
     pub fn crossings(self, rays: &[Ray]) -> Answers<usize> {
         self.answer(rays, crossings)
     }
@@ -150,19 +150,19 @@ impl<'a> ShardBatch<'a> {
     /// Answers as [`ShardedIndex::do_intersect`].
     ///
     /// # Errors
-    /// They are those of [all batches](Self#errors).
+    /// See the [errors of all batches](Self#errors).
     pub fn do_intersect(self, rays: &[Ray]) -> Answers<bool> {
         self.answer(rays, any_hit)
     }
 
     /// Answers queries by one shard alone, each with the key of the answer.
     ///
-    /// Of the answers of all shards that [`nearest_shard`](ShardedIndex::nearest_shard) and
-    /// [`shards_within`](ShardedIndex::shards_within) name, the one with the least key, and of equal keys with the
-    /// lowest id, is the answer of the whole scene. A hint is ignored.
+    /// To answer for the whole scene, ask all shards that [`nearest_shard`](ShardedIndex::nearest_shard) and
+    /// [`shards_within`](ShardedIndex::shards_within) name. The answer is the one with the least key, and of equal keys
+    /// the one with the lowest id. A hint is ignored.
     ///
     /// # Errors
-    /// They are those of [all batches](Self#errors).
+    /// See the [errors of all batches](Self#errors).
     ///
     /// # Panics
     /// It panics if the manifest has no such shard.

@@ -1,5 +1,5 @@
-//! The shards that are in memory. A shard that is not there is loaded when a query needs it, and those unused for
-//! longest make room for it.
+//! A cache of the shards in memory. A shard is loaded when a query needs it, and shards unused for longest make room
+//! for it.
 
 use crate::manifest::Manifest;
 use crate::shard::Shard;
@@ -13,7 +13,7 @@ use std::sync::atomic::{AtomicU64, Ordering};
 use std::sync::{Arc, Mutex, PoisonError, RwLock};
 use std::thread;
 
-/// The place of a shard.
+/// The place of a shard in the cache.
 #[derive(Default)]
 struct Slot {
     shard: RwLock<Option<Arc<Shard>>>,
@@ -34,7 +34,7 @@ pub(crate) struct Cache {
     clock: AtomicU64,
     /// The number of times that a shard was loaded.
     loads: AtomicU64,
-    /// The sum of the estimated bytes of the shards in memory. Who holds it may remove shards.
+    /// The sum of the estimated bytes of the shards in memory. The holder of the lock may remove shards.
     used_bytes: Mutex<u64>,
 }
 
@@ -57,7 +57,7 @@ impl Cache {
         self.loads.load(Ordering::Relaxed)
     }
 
-    /// Returns a shard, which is loaded if it is not in memory. The entries are those of the manifest.
+    /// Returns a shard, which is loaded if it is not in memory. `entries` are the shards of the manifest.
     pub(crate) fn get(&self, number: usize, entries: &[ShardEntry]) -> Result<Arc<Shard>, ShardError> {
         let slot = &self.slots[number];
         slot.last_use.store(self.clock.fetch_add(1, Ordering::Relaxed), Ordering::Relaxed);

@@ -31,12 +31,12 @@ pub enum ShardError {
         /// The folder.
         folder: PathBuf,
     },
-    /// The manifest is not that of a sharded index, or contradicts itself.
+    /// The manifest does not belong to a sharded index, or contradicts itself.
     #[error("{}: {reason}", file.display())]
     Manifest {
         /// The manifest.
         file: PathBuf,
-        /// A clause that says what is wrong.
+        /// What is wrong, as a clause for the message.
         reason: String,
     },
     /// The file of a shard cannot be read, is damaged, or has another length than the manifest states or another
@@ -54,7 +54,7 @@ pub enum ShardError {
     OtherShard {
         /// The file of the shard.
         file: PathBuf,
-        /// A clause that says what differs.
+        /// What differs, as a clause for the message.
         reason: &'static str,
     },
     /// The threads that load a shard cannot be started.

@@ -8,8 +8,8 @@ use std::sync::Arc;
 
 /// An index in shards, which are loaded when a query needs them. The crate documentation has the contract.
 ///
-/// Queries from several threads run at the same time. One that needs a shard which another thread is loading
-/// waits for it.
+/// Queries from several threads run at the same time. A query that needs a shard which another thread is loading waits
+/// for it.
 pub struct ShardedIndex {
     folder: PathBuf,
     manifest: Manifest,
@@ -30,7 +30,7 @@ impl ShardedIndex {
 
     /// Opens the sharded index of a folder, with a limit on the memory of the shards in bytes.
     ///
-    /// The memory of a shard is estimated as the length of its file and 40 bytes for each primitive. If a shard does
+    /// The memory of a shard is estimated as the length of its file and 40 bytes per primitive. If a shard does
     /// not fit, those unused for longest are dropped. Memory may exceed the limit, because one shard is loaded whatever
     /// the limit is, and a dropped shard stays until the threads that use it have finished.
     ///
@@ -46,7 +46,7 @@ impl ShardedIndex {
     /// # Safety
     /// Nobody may change or truncate the file of a shard while the index, or a shard of it, is in use. A change is a
     /// data race, and truncation ends the program. [`ShardWriter`](crate::ShardWriter) never writes to a file that a
-    /// manifest names: it writes new files and removes those of an index that it replaces.
+    /// manifest names: it writes new files and removes the files of an index that it replaces.
     ///
     /// # Errors
     /// It returns the errors of [`Manifest::read`].

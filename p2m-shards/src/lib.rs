@@ -25,13 +25,13 @@
 //! # Contract
 //!
 //! A primitive of the whole scene has an id, which counts from 0 in the order in which primitives were added. Every
-//! answer is that of one index over the whole scene: distances, points, features, weights and parameters have the same
-//! bits. The key of a primitive is its squared distance as the kernel computes it, which is a square with a tier
-//! ([`Key`](p2m_core::Key)), and its distance is the rounded root of that. The least key wins, and of equal keys the
-//! lowest id. So answers depend neither on how the scene was divided, nor on the order in which shards are loaded, nor
-//! on the memory that they may take. Lower bounds are certified, but in their last bits they depend on the primitives
-//! that a search evaluates, as they do between backends. The lower bounds of the k nearest primitives have the bits
-//! that one index gives.
+//! answer equals the answer of one index over the whole scene: distances, points, features, weights and parameters have
+//! the same bits. The key of a primitive is its squared distance as the kernel computes it, which is a square with a
+//! tier ([`Key`](p2m_core::Key)), and its distance is the rounded root of the key. The least key wins, and of equal
+//! keys the lowest id. So answers depend neither on how the scene was divided, nor on the order in which shards are
+//! loaded, nor on the memory that they may take. Lower bounds are certified, but in their last bits they depend on the
+//! primitives that a search evaluates, as they do between backends. The lower bounds of the k nearest primitives have
+//! the bits that one index gives.
 //!
 //! Approximate queries, which have an epsilon or a limit on visits, may have other answers than one index. Their errors
 //! are within the bounds that these options promise.

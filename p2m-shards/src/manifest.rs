@@ -1,4 +1,5 @@
-//! The manifest: the file that names the shards of an index, with what a query needs to know of those it does not load.
+//! The manifest: the file that lists the shards of an index, with the facts that queries need about shards that are not
+//! loaded.
 
 use crate::ShardError;
 use p2m_core::Aabb;
@@ -90,7 +91,7 @@ impl ShardEntry {
 }
 
 impl Manifest {
-    /// Returns the number of primitives of the whole scene, whose ids are all numbers below it.
+    /// Returns the number of primitives of the whole scene. Their ids are the numbers below it.
     #[must_use]
     pub fn primitive_count(&self) -> u64 {
         self.counts().total()
@@ -121,7 +122,7 @@ impl Manifest {
         self.shards.iter().fold(Aabb::empty(), |all, shard| all.union(&shard.bounds()))
     }
 
-    /// Returns the objects as those of a [`Scene`](p2m_mixed::Scene) are described.
+    /// Returns the objects in the form in which a [`Scene`](p2m_mixed::Scene) describes them.
     #[must_use]
     #[allow(clippy::cast_possible_truncation, reason = "ids of a scene fit into usize where its shards can be used")]
     pub fn objects(&self) -> Vec<Object> {
@@ -189,7 +190,7 @@ impl Manifest {
         format!("{:016x}", XxHash3_64::oneshot(text.as_bytes()))
     }
 
-    /// Returns what contradicts itself, if anything does.
+    /// Returns the first contradiction in the manifest, if there is one.
     fn contradiction(&self) -> Option<&'static str> {
         let total = self.shards.iter().try_fold(0u64, |sum, shard| sum.checked_add(shard.primitives));
         let is_name = |file: &str| {

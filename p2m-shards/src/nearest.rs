@@ -1,4 +1,4 @@
-//! Queries for near primitives: what each shard finds is compared until no other shard can be near enough.
+//! Queries for near primitives, which ask shards until no other one can have a primitive that is near enough.
 
 use crate::search::{CHUNK_LEN, Proceed, Search, collect, go_on, least};
 use crate::{Shard, ShardError, ShardedIndex};
@@ -24,7 +24,7 @@ pub struct ShardClosest {
 }
 
 impl ShardClosest {
-    /// Makes the answer of an answer of a shard.
+    /// Makes the answer of the index from the answer of a shard.
     fn new(number: usize, shard: &Shard, closest: Closest<f64>) -> Self {
         Self { id: shard.global_id(closest.primitive), shard: number, closest }
     }
@@ -41,8 +41,8 @@ fn key(shard: &Shard, closest: &Closest<f64>, query: &Point3<f64>) -> Key {
     shard.soup().get(closest.primitive).project(query).key
 }
 
-/// Returns the largest squared lower bound at which a shard may still have something within a distance, or NaN if that
-/// is no number.
+/// Returns the largest squared lower bound at which a shard may still have something within a distance, or NaN if the
+/// distance is NaN.
 fn limit(distance: f64) -> f64 {
     if distance.is_nan() {
         return f64::NAN;
@@ -60,7 +60,7 @@ fn reach(distance: f64, error: f64) -> f64 {
     ((distance + error) * (1.0 + 4.0 * f64::EPSILON)).next_up()
 }
 
-/// Returns a distance that is not above the root of a bound on squared distances.
+/// Returns a distance that is at most the root of a bound on squared distances.
 fn distance_below(bound: f64) -> f64 {
     (bound.min(f64::MAX).sqrt() * (1.0 - 8.0 * f64::EPSILON) - 4.0 * f64::from_bits(1)).max(0.0)
 }
@@ -89,7 +89,7 @@ impl ClosestSearch {
 
     /// Returns the largest distance of an answer that can still matter.
     ///
-    /// It is the best distance plus the error of the kernel, because a shard without an answer within it then has no
+    /// It is the best distance plus the error of the kernel. A shard without an answer within this distance has no
     /// primitive below the lower bound of the best answer.
     fn largest(&self) -> f64 {
         let largest = self.options.max_distance;
@@ -136,14 +136,14 @@ impl Search for ClosestSearch {
         if let Some(closest) = shard.index().closest_point_with(&self.query, &options) {
             self.offer(number, shard, closest);
         } else if self.options.max_visits < u32::MAX {
-            // A search that ended early may have missed everything, so it is only known that nothing of the shard is
-            // nearer than its box.
+            // A search that ended early may have missed anything, so the box of the shard is the only bound on its
+            // primitives.
             self.lower_bound = self.lower_bound.min(distance_below(self.bound(shard.bounds())));
         }
         Ok(())
     }
 
-    /// Asks in the order of the batches of the library.
+    /// Asks for all queries in one batch of the index.
     fn ask_first(
         group: &mut [&mut Self],
         number: usize,
@@ -176,13 +176,13 @@ impl Search for ClosestSearch {
     }
 
     fn prepare_for_others(&mut self, shard: &Shard) {
-        // Without a key the best answer is that of the shard that was asked last.
+        // Without a key, the best answer comes from the shard that was asked last.
         if let (Some(best), None) = (&self.best, self.key) {
             self.key = Some(key(shard, &best.closest, &self.query));
         }
     }
 
-    /// What an approximate search leaves out on purpose depends on the order of shards.
+    /// Returns `true` for approximate searches, because the order of shards decides what they leave out on purpose.
     fn depends_on_order(&self) -> bool {
         self.options.is_approximate()
     }
@@ -329,7 +329,7 @@ impl ShardedIndex {
     }
 
     /// Returns the nearest primitives, at most `k` and none beyond the radius, nearest first. The radius may be
-    /// infinite. The lower bound of each answer is that of its own primitive.
+    /// infinite. Each answer has a lower bound on the distance of its own primitive.
     ///
     /// # Errors
     /// It returns the [errors of loading a shard](ShardError#loading-a-shard).

@@ -102,7 +102,7 @@ pub(crate) fn all_hits(ray: &Ray) -> impl Search<Answer = Vec<ShardHit>> + use<>
     )
 }
 
-/// Returns the search that adds up the counts of shards. Without a ray the sum is 0.
+/// Returns the search for the sum of the counts of shards. Without a ray the sum is 0.
 pub(crate) fn counts<R: Send>(
     ray: Option<Ray>,
     count: fn(&dyn RayQuery<f64>, &Ray) -> i64,

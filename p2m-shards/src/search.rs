@@ -5,15 +5,15 @@ use crate::{Shard, ShardError, ShardedIndex};
 use p2m_core::Aabb;
 use p2m_core::engine::parallel;
 
-/// A function that is called with a number of answered queries, and returns whether to go on.
+/// Receives a number of answered queries, and returns whether to go on.
 pub type Proceed<'a> = dyn Fn(usize) -> bool + Sync + 'a;
 
-/// Reports a number of answered queries, and returns [`ShardError::Cancelled`] if the batch is to end.
+/// Reports a number of answered queries. Returns [`ShardError::Cancelled`] if `proceed` returned `false`.
 pub(crate) fn go_on(proceed: &Proceed<'_>, answered: usize) -> Result<(), ShardError> {
     if proceed(answered) { Ok(()) } else { Err(ShardError::Cancelled) }
 }
 
-/// The state of a query while shards are asked.
+/// The state of a query that asks shards one after the other.
 pub(crate) trait Search: Send + Sync + Sized {
     /// The type of an answer.
     type Answer: Send;
@@ -41,10 +41,11 @@ pub(crate) trait Search: Send + Sync + Sized {
         })
     }
 
-    /// Takes from the shard that was asked last what is needed to compare its answer with those of others.
+    /// Prepares the answer of the shard that was asked last for the comparison with answers of other shards.
     fn prepare_for_others(&mut self, _: &Shard) {}
 
-    /// Returns whether the answer depends on the order of the shards, which then has to be that of their bounds.
+    /// Returns whether the answer depends on the order of the shards, which are then asked in the order of their
+    /// bounds.
     fn depends_on_order(&self) -> bool {
         false
     }
@@ -53,7 +54,7 @@ pub(crate) trait Search: Send + Sync + Sized {
     fn finish(self) -> Self::Answer;
 }
 
-/// A search that asks all shards in the same way.
+/// A search that is given by functions, and asks all shards in the same way.
 struct Collecting<Q, F, L, A, E> {
     query: Q,
     found: F,
@@ -104,7 +105,7 @@ where
     }
 }
 
-/// The state of a query of a batch.
+/// A query of a batch, with the state of its search.
 struct Pending<S> {
     search: S,
     /// The shard with the least bound, which the first phase asks, or [`NONE`].
@@ -137,8 +138,8 @@ impl ShardedIndex {
         Ok(search.finish())
     }
 
-    /// Asks the shards for a batch of queries in two phases, each of which loads a shard at most once: each query asks
-    /// the shard with the least bound, and then every other one that may matter.
+    /// Answers a batch of queries in two phases, each of which loads a shard at most once: each query asks the shard
+    /// with the least bound, and then every other shard that may matter.
     pub(crate) fn answer_all<Q: Sync, S: Search>(
         &self,
         queries: &[Q],
@@ -157,7 +158,7 @@ impl ShardedIndex {
             Ok::<_, ShardError>(chunks[chunk].iter().map(pending).collect())
         })?;
         self.ask_first(all.iter_mut().flatten(), proceed)?;
-        // Most queries need no other shard, so those that do are found once.
+        // Most queries need no other shard, so the queries that do are found once.
         let mut open: Vec<&mut Pending<S>> = all.iter_mut().flatten().filter(|one| !one.limit.is_nan()).collect();
         for (number, bounds) in self.boxes.iter().enumerate() {
             let is_needed = |one: &&mut Pending<S>| one.first != number && one.search.bound(bounds) <= one.limit;
@@ -222,7 +223,7 @@ impl ShardedIndex {
     }
 }
 
-/// Returns the place of the least of some bounds that are at most a limit.
+/// Returns the position of the least of some bounds that are at most a limit.
 pub(crate) fn least(bounds: impl Iterator<Item = f64>, limit: f64) -> Option<usize> {
     let within = bounds.enumerate().filter(|(_, bound)| *bound <= limit);
     within.reduce(|best, next| if next.1 < best.1 { next } else { best }).map(|(number, _)| number)

@@ -24,7 +24,7 @@ pub struct Shard {
 }
 
 impl Shard {
-    /// Loads the shard of an entry of the manifest from the folder, and checks that it is the one.
+    /// Loads the shard of an entry of the manifest from the folder, and checks that the file matches the entry.
     pub(crate) fn load(folder: &Path, backend: &str, entry: &ShardEntry, is_mapped: bool) -> Result<Self, ShardError> {
         let file = folder.join(&entry.file);
         let other = |reason| ShardError::OtherShard { file: file.clone(), reason };

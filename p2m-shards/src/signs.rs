@@ -9,8 +9,8 @@ use p2m_core::{Position, Ray};
 use p2m_field::sign::SignRule;
 
 impl ShardedIndex {
-    /// Returns the rule that decides which points are inside. It is that of
-    /// [`SignedDistance::new`](p2m_field::sign::SignedDistance::new) for the whole scene.
+    /// Returns the rule that decides which points are inside: the same one as
+    /// [`SignedDistance::new`](p2m_field::sign::SignedDistance::new) chooses for the whole scene.
     ///
     /// # Errors
     /// It returns [`ShardError::NoInside`] for a scene with segments or points, and [`ShardError::Open`] for
@@ -24,12 +24,12 @@ impl ShardedIndex {
     /// Returns whether a point is inside of the surface that the triangles form, by [`sign_rule`](Self::sign_rule).
     /// Points on the surface are on either side, and points that are not finite are outside.
     ///
-    /// The direction of the ray is one of the six along the axes, that which passes the fewest boxes of shards. Every
+    /// The direction of the ray is the one of the six along the axes that passes the fewest boxes of shards. Every
     /// direction gives the same answer.
     ///
     /// # Errors
-    /// It returns the errors of [`sign_rule`](Self::sign_rule), [`ShardError::NoRays`] if the backend casts no rays, and
-    /// the [errors of loading a shard](ShardError#loading-a-shard).
+    /// It returns the errors of [`sign_rule`](Self::sign_rule), [`ShardError::NoRays`] if the backend casts no rays,
+    /// and the [errors of loading a shard](ShardError#loading-a-shard).
     pub fn contains(&self, query: &impl Position<f64>) -> Result<bool, ShardError> {
         let rule = self.sign_rule()?;
         self.answer(self.inside(rule, &query.point()))

@@ -1,4 +1,4 @@
-//! The expected costs of each index for a scene and a workload: the model that counts become times by.
+//! The model that turns counts into the expected costs of each index for a scene and a workload.
 
 use super::workload::{Workload, is_mostly_slivers};
 use crate::registry::{BACKENDS, BackendEntry, Cost, SearchStructure};
@@ -9,12 +9,13 @@ use p2m_interception::OctreeOptions;
 /// Indexes are about equally good if their times differ by less than this factor. In the measurements of
 /// docs/measurements/auto.md, almost all choices cost less than this factor of the best one.
 const MODEL_ERROR: f64 = 1.15;
-/// The number of packets per query from which on boxes may fit slivers badly.
+/// The number of packets per query from which on boxes may fit slivers badly. No record exists of how it was chosen.
 const MANY_PACKETS: f64 = 20.0;
 /// The number of primitives of the smallest scene for which cells may pay. A tree of one or two levels leaves nothing
 /// to save.
 const MIN_PRIMITIVES_FOR_CELLS: f64 = 512.0;
-/// The size of the space around a scene whose cells are as those in its box, in boxes of the scene around its centre.
+/// The size of the region around a scene whose cells are like the cells in its box, in boxes of the scene around its
+/// centre.
 const BOXES_INSIDE: f64 = 1.25;
 /// The size of the space that has cells. Farther away, a tree answers.
 const BOXES_WITH_CELLS: f64 = 10.0;
@@ -35,14 +36,14 @@ pub struct Estimate {
     pub bytes: f64,
     /// The time to build the index and to answer all queries, in seconds.
     pub total_seconds: f64,
-    /// Whether it takes about as long as the recommended index, as far as the model can tell.
+    /// Whether the index takes about as long as the recommended one, as far as the model can tell.
     pub is_about_best: bool,
     /// The number of queries at which this backend and the recommended one take the same time; `None` if one of them
     /// is faster for every number of queries.
     pub break_even: Option<f64>,
-    /// The reason for its rank, as a phrase for people.
+    /// The reason for the rank of the index, as a phrase for people.
     pub reason: String,
-    /// Whether the workload permits it.
+    /// Whether the workload permits the index.
     pub(super) is_permitted: bool,
     /// The times of nodes and packets, if the index may be built to count them.
     pub(super) counted: Option<[f64; 2]>,
@@ -82,7 +83,7 @@ fn is_finite(query: &Point3<f64>) -> bool {
     query.iter().all(|x| x.is_finite())
 }
 
-/// What the times of all indexes follow from.
+/// The quantities from which the times of all indexes follow.
 pub(super) struct Model {
     primitives: f64,
     queries: f64,
@@ -97,7 +98,7 @@ pub(super) struct Model {
 }
 
 impl Model {
-    /// `work` is that of the queries in a tree of boxes over the scene.
+    /// Makes the model. `work` is the mean work of the queries in a tree of boxes over the scene.
     pub(super) fn new(soup: &Soup<f64>, workload: &Workload<'_>, queries: &[Point3<f64>], work: Work) -> Self {
         let bounds = soup.aabb();
         let centre = nalgebra::center(&bounds.min, &bounds.max);
@@ -151,7 +152,7 @@ impl Model {
         estimate
     }
 
-    /// The time of a query in the tree of boxes, in nanoseconds.
+    /// Returns the time of a query in the tree of boxes, in nanoseconds.
     fn box_nanoseconds(&self) -> f64 {
         self.work.nanoseconds(Cost::BOXES.work)
     }
@@ -175,7 +176,7 @@ impl Model {
         self.inside * inside + (self.near - self.inside) * outside + (1.0 - self.near) * boxes
     }
 
-    /// Whether the scene is large enough for cells.
+    /// Returns whether the scene is large enough for cells.
     pub(super) fn may_have_cells(&self) -> bool {
         self.primitives >= MIN_PRIMITIVES_FOR_CELLS
     }
@@ -198,24 +199,24 @@ impl Model {
 }
 
 impl Estimate {
-    /// The time to build the index and to answer this number of queries, in seconds.
+    /// Returns the time to build the index and to answer this number of queries, in seconds.
     fn seconds_for(&self, queries: f64) -> f64 {
         self.build_seconds + queries * self.query_seconds
     }
 
-    /// The number of queries from which on `self` takes less time than `other`, which is built sooner.
+    /// Returns the number of queries from which on `self` takes less time than `other`, which is built sooner.
     fn pays_from(&self, other: &Self) -> Option<f64> {
         let queries = (self.build_seconds - other.build_seconds) / (other.query_seconds - self.query_seconds);
         (queries > 0.0 && queries.is_finite()).then_some(queries)
     }
 
-    /// The name of the backend, and whether its cells are finer.
+    /// Returns the name of the backend, and whether its cells are finer.
     fn name(&self) -> String {
         format!("{}{}", self.backend, if self.resolution.is_some() { " with finer cells" } else { "" })
     }
 }
 
-/// Ranks estimates by total time, those that the workload permits first. Of equal ones the tree is the first.
+/// Ranks estimates by total time, permitted ones first. Of equal ones the tree is the first.
 pub(super) fn rank(estimates: &mut [Estimate], max_bytes: f64) {
     let is_default = |e: &Estimate| e.backend == BackendEntry::default_backend();
     estimates.sort_by(|a, b| {
@@ -241,7 +242,11 @@ pub(super) fn rank(estimates: &mut [Estimate], max_bytes: f64) {
     }
 }
 
-/// Returns which of some estimates has the least total, and from which number of queries on it has.
+/// Returns the fastest estimates for all numbers of queries, each with the number from which on it has the least total
+/// time.
+///
+/// The total time is a line over the number of queries, so this walks along the lower envelope of the lines. It begins
+/// with the index that is built soonest, and goes on with whichever index with faster queries pays first.
 pub(super) fn turns<'e>(estimates: impl Iterator<Item = &'e Estimate> + Clone) -> Vec<(&'e Estimate, f64)> {
     let by_query = |a: &Estimate, b: &Estimate| a.query_seconds.total_cmp(&b.query_seconds);
     let first = estimates.clone().min_by(|a, b| a.build_seconds.total_cmp(&b.build_seconds).then(by_query(a, b)));
@@ -255,7 +260,7 @@ pub(super) fn turns<'e>(estimates: impl Iterator<Item = &'e Estimate> + Clone) -
     turns
 }
 
-/// Says from which numbers of queries on other indexes than the default tree take the least time.
+/// Describes from which numbers of queries on other indexes than the default tree take the least time.
 pub(super) fn turns_in_words(turns: &[(&Estimate, f64)]) -> String {
     let is_default = |(estimate, _): &&(&Estimate, f64)| estimate.backend == BackendEntry::default_backend();
     let later = turns.iter().skip_while(|turn| !is_default(turn)).skip(1);

@@ -1,11 +1,11 @@
 //! The choice of an index for a scene and a workload, by counted work.
 //!
 //! The tree of boxes is built first, since an octree contains it. A few of the queries are searched in the tree, and
-//! their nodes and packets are counted. Each entry of the registry says what an index takes for each of them, and for
-//! each primitive of its build ([`Cost`](crate::Cost)). From these follow the times of all indexes. The one with the
+//! their nodes and packets are counted. Each entry of the registry has the time of its index per node, per packet and,
+//! for its build, per primitive ([`Cost`](crate::Cost)). From these follow the times of all indexes. The one with the
 //! least time for its build and all queries is chosen. Nothing else is built, with one exception: boxes fit slivers
-//! badly, and by how much better k-DOPs fit cannot be told from the boxes. Where they may pay, they are built, and
-//! their work is counted as well.
+//! badly, and the boxes do not show how much better k-DOPs fit. Where they may pay, they are built, and their work is
+//! counted as well.
 //!
 //! No time is measured, so the choice depends on the scene, the queries and their number, and not on the load of the
 //! machine; only near a break-even the roundings of instruction sets may differ. It is the one model behind `auto`,
@@ -35,7 +35,7 @@ pub struct Choice {
     estimates: Vec<Estimate>,
     /// The largest number of bytes of the index.
     max_bytes: usize,
-    /// The reason of the choice, unless queries or primitives are few.
+    /// The reason for the choice, unless queries or primitives are few.
     reason: Option<String>,
 }
 
@@ -59,9 +59,9 @@ impl Choice {
     /// [`BuildError`] for a scene with coordinates that are not finite, or with too many primitives.
     ///
     /// # Complexity
-    /// It builds one tree or two, and searches for one of 200 queries, but for at least 8 and at most 512 of them.
+    /// It builds one tree or two, and searches for one in 200 queries, but for at least 8 and at most 512 of them.
     pub fn new(soup: Arc<Soup<f64>>, workload: &Workload<'_>) -> Result<Self, BuildError> {
-        // No work at all is the least that queries in a tree can have.
+        // Zero is a lower bound on the work of queries in a tree.
         let mut estimates = Model::new(&soup, workload, &[], Work::default()).estimates(workload);
         rank(&mut estimates, workload.max_bytes as f64);
         if estimates[0].backend.structure != SearchStructure::Exhaustive {
@@ -70,10 +70,10 @@ impl Choice {
         Ok(Self { soup, tree: None, counted: None, estimates, max_bytes: workload.max_bytes, reason: None })
     }
 
-    /// Makes the same choice, and always counts, so that there are estimates for all indexes.
+    /// Chooses the same index as [`new`](Self::new), but always counts, so that there are estimates for all indexes.
     ///
     /// # Errors
-    /// Those of [`new`](Self::new).
+    /// Same as [`new`](Self::new).
     pub fn compare(soup: Arc<Soup<f64>>, workload: &Workload<'_>) -> Result<Self, BuildError> {
         let tree = Box::new(AabbTree::build(Arc::clone(&soup), &SplitOptions::default())?);
         let queries = workload.counted_queries(&soup);
@@ -101,35 +101,35 @@ impl Choice {
         Ok(Self { soup, tree: Some(tree), counted, estimates, max_bytes: workload.max_bytes, reason })
     }
 
-    /// The backend that was chosen.
+    /// Returns the backend that was chosen.
     #[must_use]
     pub fn backend(&self) -> &'static BackendEntry {
         self.estimates[0].backend
     }
 
-    /// The resolution of the cells of an octree, unless it is the default one.
+    /// Returns the resolution of the cells of an octree, unless it is the default one.
     #[must_use]
     pub fn resolution(&self) -> Option<f64> {
         self.estimates[0].resolution
     }
 
-    /// The reason of the choice as a phrase for people; `None` for few queries and small scenes.
+    /// Returns the reason for the choice as a phrase for people; `None` for few queries and small scenes.
     #[must_use]
     pub fn reason(&self) -> Option<&str> {
         self.reason.as_deref()
     }
 
-    /// An estimate for each backend, with the cells that suit the workload: the chosen one first, then by total time,
-    /// and those that the workload does not permit last. Without [`compare`](Self::compare), queries in an index may
-    /// seem to take no time.
+    /// Returns an estimate for each backend, with the cells that suit the workload: the chosen one first, then the
+    /// others by total time, and at the end the ones that the workload does not permit. Without
+    /// [`compare`](Self::compare), queries in an index may seem to take no time.
     #[must_use]
     pub fn estimates(&self) -> Vec<&Estimate> {
         let is_first = |i: usize| self.estimates[..i].iter().all(|e| e.backend != self.estimates[i].backend);
         (0..self.estimates.len()).filter(|i| is_first(*i)).map(|i| &self.estimates[i]).collect()
     }
 
-    /// Returns which of the estimates that fit has the least total time, and from which number of queries on: in order
-    /// of these numbers, of which the first is 0.
+    /// Returns the fastest of the estimates that fit, for all numbers of queries: each with the number from which on it
+    /// has the least total time. The numbers ascend from 0.
     pub fn turns(&self, fits: impl Fn(&Estimate) -> bool) -> Vec<(&Estimate, f64)> {
         turns(self.estimates.iter().filter(|estimate| fits(estimate)))
     }
@@ -137,7 +137,7 @@ impl Choice {
     /// Builds the index that was chosen. A resolution in the settings is used in place of the chosen one.
     ///
     /// # Errors
-    /// Those of [`BackendEntry::build`].
+    /// Same as [`BackendEntry::build`].
     pub fn build(self, settings: &BuildSettings<'_>) -> Result<BuiltIndex, BuildError> {
         let (backend, resolution) = (self.backend(), self.resolution());
         let settings = settings.with_resolution(settings.resolution.or(resolution));

@@ -1,4 +1,4 @@
-//! The work that an index is needed for, and the queries of it that are counted.
+//! The workload of an index, and the sample of its queries whose work is counted.
 
 use chacha20::ChaCha8Rng;
 use chacha20::rand_core::{Rng, SeedableRng};
@@ -6,15 +6,18 @@ use nalgebra::{Point3, Vector3};
 use p2m_core::{Primitive, PrimitiveId, PrimitiveSet, Soup};
 use std::borrow::Cow;
 
-/// A triangle is a sliver if its height is below this part of its longest edge.
+/// The height of a triangle, as a fraction of its longest edge, below which it is a sliver.
+///
+/// No record exists of how this and the next constants were chosen; docs/measurements/auto.md has the choices that
+/// result from them.
 const SLIVER_HEIGHT_PER_EDGE: f64 = 1.0 / 256.0;
 /// The number of triangles that are examined for slivers.
 const SLIVER_TEST_TRIANGLES: usize = 4096;
-/// The standard deviation of generated queries near the surface, as a part of the diagonal.
+/// The standard deviation of generated queries near the surface, as a fraction of the diagonal.
 const NEAR_DEVIATION_PER_DIAGONAL: f64 = 0.01;
 /// The smallest and the largest number of queries that are counted.
 const COUNTED: [u64; 2] = [8, 512];
-/// One of so many queries is counted.
+/// One query in this many is counted.
 const QUERIES_PER_COUNTED: u64 = 200;
 
 /// The region that queries come from.
@@ -28,7 +31,7 @@ pub enum QueryRegion<'a> {
     Like(&'a [Point3<f64>]),
 }
 
-/// The work that an index is needed for, and the limits of the index.
+/// The work that an index is needed for, and the limits on the index.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct Workload<'a> {
@@ -71,12 +74,12 @@ impl<'a> Workload<'a> {
         Self { needs_index, ..self }
     }
 
-    /// Whether the queries are so few that the work of one of 200 tells nothing.
+    /// Returns whether there are so few queries that the work of one in 200 of them means nothing.
     pub(super) fn has_few_queries(&self) -> bool {
         self.queries < COUNTED[0] * QUERIES_PER_COUNTED
     }
 
-    /// Returns one of 200 queries, but at least 8 and at most 512 of them.
+    /// Returns one in 200 queries, but at least 8 and at most 512 of them.
     #[allow(clippy::cast_possible_truncation, reason = "at most 512")]
     pub(super) fn counted_queries(&self, soup: &Soup<f64>) -> Vec<Point3<f64>> {
         let [least, most] = COUNTED;

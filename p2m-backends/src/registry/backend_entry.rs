@@ -12,14 +12,14 @@ pub enum SearchStructure {
     Exhaustive,
     /// A tree of bounding volumes over the primitives.
     Tree,
-    /// Cells of space, each with a list of primitives near it or of those that can be nearest in it.
+    /// Cells of space, each with a list of the primitives near it, or of the primitives that can be nearest in it.
     SpaceCells,
     /// Cells of vertices with lists of the primitives that can be nearest in them.
     VertexCells,
 }
 
 impl SearchStructure {
-    /// Whether the structure consists of cells with lists.
+    /// Returns whether the structure consists of cells with lists.
     #[must_use]
     pub const fn has_cells(self) -> bool {
         matches!(self, Self::SpaceCells | Self::VertexCells)

@@ -9,7 +9,7 @@ use p2m_interception::{OctreeOptions, Progress, RefinementProgress};
 use std::ops::ControlFlow;
 use std::sync::Arc;
 
-/// An index that was built or loaded, with what reports have about it.
+/// An index that was built or loaded, with the facts that reports state about it.
 #[derive(Clone)]
 pub struct BuiltIndex<T: Real = f64> {
     /// The index itself, which shares its scene.
@@ -35,19 +35,18 @@ pub struct BuildSettings<'p> {
     /// Whether the build uses all threads of the current pool; true by default. It has no effect without the feature
     /// `rayon` of the crate of the index.
     pub is_parallel: bool,
-    /// The directions of k-DOPs; `None` for those with 14 faces.
+    /// The directions of k-DOPs; `None` for the default, which has 14 faces.
     pub kdop_directions: Option<KdopDirections>,
     /// The locator and the list filter of a P2M index; a grid and sorted lists by default.
     pub p2m: P2mSettings,
-    /// The fineness of the cells of an octree; `None` for that of its default options. Finer cells have larger budgets.
+    /// The fineness of the cells of an octree; `None` for the default. Finer cells have larger budgets.
     pub resolution: Option<f64>,
     /// The largest number of bytes of the cells and lists of an octree, besides its tree; unlimited by default. Cells
     /// stay coarser if they would take more.
     pub max_cell_bytes: usize,
-    /// A function that is called with the progress of the build, by backends that
-    /// [report it](crate::BackendEntry::reports_progress).
+    /// Receives the progress of the build, from backends that [report it](crate::BackendEntry::reports_progress).
     pub progress: &'p (dyn Fn(Progress) + Sync),
-    /// A function that sees what an octree would be if its refinement ended now, and may end it
+    /// Receives the size that an octree would have if its refinement ended now, and may end it
     /// ([`OctreeIndex::build_until`](p2m_interception::OctreeIndex::build_until)).
     pub visit_octree: &'p (dyn Fn(&RefinementProgress) -> ControlFlow<()> + Sync),
 }
@@ -109,14 +108,14 @@ impl<'p> BuildSettings<'p> {
         Self { visit_octree, ..self }
     }
 
-    /// The options of an octree over so many primitives.
+    /// Returns the options of an octree over `primitives` primitives.
     pub(crate) fn octree_options(&self, primitives: usize) -> OctreeOptions {
         let options = OctreeOptions::default().with_splits(self.splits());
         let factor = self.resolution.map_or(1.0, |resolution| resolution / options.resolution);
         options.with_finer_cells(factor).with_max_bytes(self.max_cell_bytes, primitives)
     }
 
-    /// The splits of trees, with the choice of threads.
+    /// Returns the splits of trees, with the choice of threads.
     pub(crate) fn splits(&self) -> SplitOptions {
         SplitOptions::default().with_parallel(self.is_parallel)
     }

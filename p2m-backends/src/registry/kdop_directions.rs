@@ -81,8 +81,8 @@ impl KdopDirections {
 
     /// Returns the number of faces of the tree in a saved file, if there is one and it has the requested directions.
     ///
-    /// Without a request every tree fits. A request for a number of faces is not met by a tree whose directions were
-    /// derived from its scene.
+    /// Without a request every tree fits. A tree whose directions were derived from its scene does not fit a request
+    /// for a number of faces.
     #[must_use]
     pub fn saved_faces(requested: Option<Self>, reader: &Reader) -> Option<usize> {
         let kind = storage::kind(reader).ok()?;

@@ -1,9 +1,9 @@
 //! The registry of backends: one table that the program `p2m`, the Python package, pages, shards, the choice of an
 //! index, measurements and tests read.
 //!
-//! A new backend joins them with one entry of [`BACKENDS`], its [`IndexKind`], and the branches below that build and load
-//! its index. The values of `--backend` and of `backend=` in Python, the files of `p2m build`, the estimates of `p2m
-//! advise`, the list of `p2m-bench` and the tests of agreement all come from that entry.
+//! A new backend joins them with one entry of [`BACKENDS`], its [`IndexKind`], and the branches below that build and
+//! load its index. The values of `--backend` and of `backend=` in Python, the files of `p2m build`, the estimates of
+//! `p2m advise`, the list of `p2m-bench` and the tests of agreement all come from that entry.
 //!
 //! Indexes are behind one pointer, [`Arc<dyn AnyIndex>`](AnyIndex), and share their scene. The pointer costs one
 //! indirect call for each query, or for each batch of queries. In rounds of `p2m tradeoff` it makes no measurable
@@ -29,7 +29,7 @@ use p2m_interception::{Octree, OctreeIndex, P2mIndex, Voronoi};
 use p2m_kdop::KdopTree;
 use std::sync::Arc;
 
-/// The tree of boxes, and what other entries have in common with it.
+/// The entry of the tree of boxes, from which other entries take what they have in common with it.
 const BOXES: BackendEntry = BackendEntry {
     name: "aabb",
     summary: "A tree of boxes",
@@ -47,7 +47,7 @@ const BOXES: BackendEntry = BackendEntry {
     kind: IndexKind::Aabb,
 };
 
-/// What the entries of cells have in common. Cells of slivers fall back to a tree.
+/// The common values of the entries with cells. Cells of slivers fall back to a tree.
 const CELLS: BackendEntry = BackendEntry {
     feature: Some("interception"),
     casts_rays: false,
@@ -75,7 +75,7 @@ pub static BACKENDS: &[BackendEntry] = &[
         feature: Some("kdop"),
         has_kdop_directions: true,
         costs: &[Cost::new(400.0, 66.0, [36.0, 47.0])],
-        // The tree of boxes is built first, to count in it.
+        // The tree of boxes is built first, to count its nodes and packets.
         sliver_costs: &[Cost { counted: Some([55.0, 45.0]), ..Cost::new(770.0, 66.0, [20.4, 27.0]) }],
         kind: IndexKind::Kdop,
         ..BOXES
@@ -171,10 +171,10 @@ impl BackendEntry {
         Ok(BuiltIndex { index, directions: None })
     }
 
-    /// Builds an index over the scene of a tree. If it has such a tree, the tree becomes a part of it.
+    /// Builds an index over the scene of a tree. An index that contains such a tree takes it over.
     ///
     /// # Errors
-    /// Those of [`build`](Self::build).
+    /// Same as [`build`](Self::build).
     pub fn build_on(
         &self,
         tree: AabbTree<f64, Arc<Soup<f64>>>,
@@ -192,13 +192,13 @@ impl BackendEntry {
         Ok(BuiltIndex { index, directions: None })
     }
 
-    /// Whether indexes of this backend can be saved and loaded.
+    /// Returns whether indexes of this backend can be saved and loaded.
     #[must_use]
     pub fn is_saveable(&self) -> bool {
         self.kind != IndexKind::Brute
     }
 
-    /// Whether a saved file has an index of this backend, with these directions if it is a k-DOP tree.
+    /// Returns whether a saved file has an index of this backend, with these directions if it is a k-DOP tree.
     #[must_use]
     pub fn is_in(&self, reader: &Reader, directions: Option<KdopDirections>) -> bool {
         match self.kind {

@@ -13,7 +13,7 @@ pub enum LocatorKind {
     /// A grid. This is the fastest, and the only kind that can be saved.
     #[default]
     Grid,
-    /// The KD-tree of the crate kiddo, which is that of the paper. Queries take up to three times as long.
+    /// The KD-tree of the crate kiddo, as in the paper. Queries take up to three times as long.
     #[cfg(feature = "paper")]
     KdTree,
 }
@@ -22,16 +22,17 @@ pub enum LocatorKind {
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum ListFilterKind {
-    /// Lists in the order of the lower bounds on their packets. This is the fastest, and the only kind that can be saved.
+    /// Lists in the order of the lower bounds on their packets. This is the fastest, and the only kind that can be
+    /// saved.
     #[default]
     Sorted,
-    /// An R-tree of the crate rstar for each list, which is that of the paper. Queries take up to ten times as long
-    /// where lists are long.
+    /// An R-tree of the crate rstar for each list, as in the paper. Queries take up to ten times as long where lists
+    /// are long.
     #[cfg(feature = "paper")]
     RTree,
 }
 
-/// The settings of a P2M index apart from those that all trees have.
+/// The settings that only a P2M index has.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[non_exhaustive]
 pub struct P2mSettings {

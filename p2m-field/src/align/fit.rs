@@ -1,4 +1,4 @@
-//! Rounds: the closest points of moved samples, weights, and steps.
+//! One round of an alignment: the closest points of moved samples, their weights, and a step.
 
 use super::AlignOptions;
 use super::pose::Pose;
@@ -15,9 +15,11 @@ const CHUNK: usize = 1 << 10;
 const TUKEY: f64 = 4.685 * 1.4826;
 /// The largest factor by which a step is lengthened for weights that change with it.
 const MAX_LENGTHENING: f64 = 1.5;
-/// The factor by which that distance may shrink in a round.
+/// The smallest factor by which the limit of distances shrinks in a round with distances from planes.
+/// docs/decisions/073-alignment-shrinks-its-reach.md has the reason for one half.
 const SHRINKING_TO_PLANES: f64 = 0.5;
-/// The factor for distances of points, with which scans slide slowly.
+/// The smallest factor by which the limit shrinks in a round with distances from points, along which scans slide
+/// slowly. No record exists of how it was chosen.
 const SHRINKING_TO_POINTS: f64 = 0.8;
 
 /// A scan, and the scene that it is fitted to.
@@ -26,7 +28,7 @@ pub(super) struct Fit<'a, S: ?Sized, I: ?Sized> {
     index: &'a I,
     points: &'a [Point3<f64>],
     pub(super) options: AlignOptions,
-    /// Whether residuals are distances of planes.
+    /// Whether residuals are distances from planes, and not from points.
     to_planes: bool,
     /// The centre of the scan.
     pub(super) centre: Point3<f64>,
@@ -54,7 +56,7 @@ pub(super) struct Round {
     pub(super) eigenvalue: f64,
     /// The largest motion of a point at the radius.
     pub(super) step: f64,
-    /// Whether the limit of distances is that of the noise, or too small to matter.
+    /// Whether the limit of distances follows from the noise, or is too small to matter.
     pub(super) is_settled: bool,
     /// The pose after the step.
     pub(super) next: Pose,
@@ -103,7 +105,7 @@ where
 
     /// Returns about `count` points of the scan that are spread over it, or all of them.
     ///
-    /// They are the multiples of the golden ratio, so they do not fall into step with the lines of a scanner.
+    /// Their numbers are multiples of the golden ratio, so they do not fall into step with the lines of a scanner.
     pub(super) fn sample(&self, count: usize) -> Vec<Point3<f64>> {
         const GOLDEN: u64 = 0x9e37_79b9_7f4a_7c15;
         let len = self.points.len();
@@ -115,13 +117,13 @@ where
         (0..count as u64).map(|i| self.points[at(i)]).collect()
     }
 
-    /// Returns the standard error of the motion that a round determines least, below which a step is noise.
+    /// Returns the standard error of the motion that a round determines worst. A smaller step is noise.
     pub(super) fn small_step(&self, round: &Round) -> f64 {
         let certainty = round.used.max(1) as f64 * round.eigenvalue.max(0.01);
         round.rms / certainty.sqrt() + 1e-11 * self.radius + 1e-3 * self.tiny
     }
 
-    /// Asks for the closest points of a sample in several poses, all in one batch, and returns a step for each.
+    /// Queries the closest points of a sample in several poses, all in one batch, and returns the round of each pose.
     pub(super) fn round(&self, sample: &[Point3<f64>], poses: &[Pose]) -> Vec<Round> {
         let len = sample.len();
         let moved: Vec<Point3<f64>> =
@@ -283,11 +285,11 @@ impl Moments {
         self
     }
 
-    /// Returns the factor that makes a step with fixed weights one of Newton's method.
+    /// Returns the factor that makes a step with fixed weights a step of Newton's method.
     ///
-    /// The weights of a step are those before it. The sum of weighted distances changes by the derivative, which is
-    /// smaller than the weight: 0.758 instead of 0.915 for noise of the normal distribution. So each step would leave a
-    /// sixth of the way.
+    /// A step uses the weights from before the step. The sum of weighted distances changes by the derivative, which is
+    /// smaller than the weight: 0.758 instead of 0.915 for normally distributed noise. So each step would leave a sixth
+    /// of the way.
     fn lengthening(&self) -> f64 {
         let factor = self.weight / self.slope;
         if factor > 1.0 { factor.min(MAX_LENGTHENING) } else { 1.0 }

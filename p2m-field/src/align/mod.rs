@@ -5,40 +5,42 @@
 //! This is the iterative closest point method \[Besl1992\]. Each round asks for the closest point c of every point x of
 //! the scan, and then moves the scan so that the residuals decrease.
 //!
-//! - **Point to plane** \[Chen1992, Low2004\]: the residual is n . (x - c), where n is the direction from c to x, or the
-//!   normal of the triangle where x is so near that rounding decides the direction. n is the gradient of the distance at
-//!   x, so a round is a step of the Gauss-Newton method for the sum of squared distances: the error is squared near the
-//!   solution. A rotation by the vector w about the pivot o and a translation t change the residual by the sum of
-//!   w . ((x - o) x n) and t . n, up to second order. The normal equations have six unknowns, or seven with the scale,
-//!   whose coefficient is n . (x - o).
+//! - **Point to plane** \[Chen1992, Low2004\]: the residual is n . (x - c), where n is the direction from c to x, or
+//!   the normal of the triangle where x is so near that rounding decides the direction. n is the gradient of the
+//!   distance at x, so a round is a step of the Gauss-Newton method for the sum of squared distances: the error is
+//!   squared near the solution. A rotation by the vector w about the pivot o and a translation t change the residual by
+//!   the sum of w . ((x - o) x n) and t . n, up to second order. The normal equations have six unknowns, or seven with
+//!   the scale, whose coefficient is n . (x - o).
 //! - **Point to point** \[Umeyama1991\]: the rotation that minimises the sum of |x - c|^2 comes from the singular value
 //!   decomposition of the covariance of x and c. It needs more rounds on surfaces, because points cannot slide along
 //!   them, but suits scenes of points.
 //!
 //! **Outliers.** Distances d have weights by Tukey's function, (1 - (d / k)^2)^2 up to k and 0 beyond. In the end, k is
-//! 4.685 s, where s is 1.4826 times the median of the distances: this keeps 95 % of the efficiency for Gaussian noise. If only a
-//! part of the scan overlaps with the scene, the median is that of the nearest such part, and the rest has no weight, as
-//! in trimmed ICP \[Chetverikov2005\]. k begins at the largest distance within the radius of the scan and at most halves in a round: otherwise the
-//! faces of a plate would soon fit, its narrow sides would count as outliers, and the plate could slide.
+//! 4.685 s, where s is 1.4826 times the median of the distances: this keeps 95 % of the efficiency for Gaussian noise.
+//! If only a part of the scan overlaps with the scene, the median is taken over the nearest such part, and the rest has
+//! no weight, as in trimmed ICP \[Chetverikov2005\]. k begins at the largest distance within the radius of the scan and
+//! at most halves in a round: otherwise the faces of a plate would soon fit, its narrow sides would count as outliers,
+//! and the plate could slide.
 //!
 //! Weights that are fixed during a round make its step too short, because the weighted distance grows more slowly than
 //! with a fixed weight. So steps are lengthened by the sum of weights over the sum of the derivatives of weighted
 //! distances, which is 1.21 for Gaussian noise.
 //!
-//! **Levels.** A sample of the points converges first, then a larger one, and all points last. A level ends with a step
-//! below the standard error of the result, rms / sqrt(points e) with the relative eigenvalue e of below, or if the next
-//! step will be below half of it, by the ratio of the last steps. So all points take one round, as a rule.
+//! **Levels.** A sample of the points converges first, then a larger one, and all points last. A level ends if its step
+//! is below the standard error of the result, rms / sqrt(points e), where e is the relative eigenvalue (see Ambiguity).
+//! It also ends if the ratio of the last two steps predicts that the next step will be below half of this error. So all
+//! points take one round, as a rule.
 //!
 //! **Far starts.** ICP finds the nearest minimum. If neither the scan as it is nor the scan with its centre moved onto
-//! that of the scene comes to lie within a hundredth of its radius, 122 starts are tried with 256 points each, all in
-//! one batch per round: these two, and 60 rotations, at most 45 degrees from any other one, about the centre of the
-//! scene, both in the axes of the coordinates and in those of inertia. The best twelve continue with 1,024 points. The
-//! scan as it is wins unless another start is clearly better.
+//! the centre of the scene comes to lie within a hundredth of its radius, 122 starts are tried with 256 points each,
+//! all in one batch per round: these two, and 60 rotations about the centre of the scene, both in the axes of the
+//! coordinates and in the axes of inertia. Any rotation is within 45 degrees of one of the 60. The best twelve starts
+//! continue with 1,024 points. The scan as it is wins unless another start is clearly better.
 //!
-//! **Ambiguity.** The smallest eigenvalue of the normal matrix, relative to the largest, is near 0 if the scan can slide
-//! or turn without a change of its distances, as on a sphere, a cylinder or a plane. A second minimum elsewhere with
-//! nearly the same residual is the other kind of ambiguity. The search finds it, or else turns of the scan about its axes
-//! of inertia do: a box fits in at least four ways.
+//! **Ambiguity.** The smallest eigenvalue of the normal matrix, relative to the largest, is near 0 if the scan can
+//! slide or turn without a change of its distances, as on a sphere, a cylinder or a plane. A second minimum elsewhere
+//! with nearly the same residual is the other kind of ambiguity. The search finds it, or else turns of the scan about
+//! its axes of inertia do: a box fits in at least four ways.
 
 mod fit;
 mod pose;
@@ -56,8 +58,8 @@ use std::ops::ControlFlow;
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct AlignOptions {
-    /// Whether residuals are distances of points, and not of planes. The default is `false`; a scene without triangles
-    /// always has distances of points.
+    /// Whether residuals are distances from points, and not from planes. The default is `false`; a scene without
+    /// triangles always has distances from points.
     pub point_to_point: bool,
     /// Whether the scan is scaled as well. The scale stays within a factor of two of the ratio of the sizes if there is
     /// a search, or of 1 if there is none. The default is `false`.
@@ -76,7 +78,7 @@ impl Default for AlignOptions {
 }
 
 impl AlignOptions {
-    /// Sets whether residuals are distances of points.
+    /// Sets whether residuals are distances from points.
     #[must_use]
     pub fn with_point_to_point(self, point_to_point: bool) -> Self {
         Self { point_to_point, ..self }
@@ -106,11 +108,11 @@ pub struct AlignRound {
     pub points: usize,
     /// The root mean square of the distances of the points with a weight, before the step.
     pub rms: f64,
-    /// How far the step would move a point at the distance of the scan's radius, at most.
+    /// The largest distance by which the step would move a point at the radius of the scan.
     pub step: f64,
 }
 
-/// Why another pose would be about as good.
+/// A reason why another pose fits about as well.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
 pub enum Ambiguity {
@@ -187,7 +189,7 @@ pub enum AlignError {
     /// All points of the scan are the same, or squares of their distances are beyond the range of f64.
     #[error("all points of the scan are the same, or their distances are out of range")]
     OnePoint,
-    /// The scan would be scaled, but all of the scene is at one point, or its size is beyond the range of f64.
+    /// The scan would be scaled, but the whole scene is at one point, or its size is beyond the range of f64.
     #[error("the scene has no size that a scan can be scaled to")]
     NoSize,
     /// The overlap is not above 0 and at most 1.
@@ -202,7 +204,7 @@ pub enum AlignError {
 /// start so far.
 pub type ReportRound<'a> = dyn FnMut(&AlignRound) -> ControlFlow<()> + 'a;
 
-/// Finds the rotation and translation that bring the points of a scan onto a scene, which `index` has.
+/// Finds the rotation and translation that bring the points of a scan onto a scene, given an index of the scene.
 ///
 /// The result is the same for every exact index of the scene and every number of threads, bit for bit. Points that are
 /// not finite are left out.
@@ -225,10 +227,11 @@ pub type ReportRound<'a> = dyn FnMut(&AlignRound) -> ControlFlow<()> + 'a;
 /// ```
 ///
 /// # Errors
-/// An [`AlignError`] for an empty scene, a scan of too few points, a wrong overlap, or a scene without a size for the scale.
+/// An [`AlignError`] for an empty scene, a scan of too few points, a wrong overlap, or a scene without a size for the
+/// scale.
 ///
 /// # Complexity
-/// About 500,000 queries for a search, and two for each point after it. 60 bytes for each point.
+/// About 500,000 queries for a search, and two per point after it; 60 bytes per point.
 pub fn align<S, I>(
     scene: &S,
     index: &I,

@@ -1,4 +1,4 @@
-//! Poses: rotations about the centre of a scan, which is moved.
+//! Poses of a scan: rotations about its centre, with translations.
 
 use nalgebra::{Matrix4, Point3, Quaternion, UnitQuaternion, Vector3};
 
@@ -32,8 +32,8 @@ impl Pose {
     /// Returns the pose followed by a small motion about the image of the centre: by a rotation vector, a translation
     /// and a relative change of the scale.
     ///
-    /// The rotation by the vector w is that of the quaternion (1, w / 2), so it needs no functions that differ between
-    /// platforms, and never exceeds half a turn.
+    /// The rotation by the vector w is the rotation of the quaternion (1, w / 2), so it needs no functions that differ
+    /// between platforms, and never exceeds half a turn.
     pub(super) fn then(&self, rotation: Vector3<f64>, translation: Vector3<f64>, growth: f64) -> Self {
         let turn = UnitQuaternion::new_normalize(Quaternion::from_parts(1.0, rotation / 2.0));
         Self {

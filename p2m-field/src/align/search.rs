@@ -8,14 +8,17 @@ use p2m_core::{ClosestPoint, PrimitiveId, PrimitiveSet, shape_of};
 use std::f64::consts::FRAC_1_SQRT_2;
 
 /// The stages of the search: the number of points, of rounds, and of poses that continue.
+///
+/// docs/decisions/073-alignment-shrinks-its-reach.md has the method. No record exists of the scans on which these
+/// constants, and those in [`Fit::start`], were tuned.
 const STAGES: [(usize, usize, usize); 3] = [(1 << 8, 6, 12), (1 << 10, 10, 6), (1 << 13, 10, usize::MAX)];
 /// The number of rounds that show whether the scan is near the scene, with the points of the second stage.
 const ROUNDS_FROM_NEAR: usize = 14;
-/// The score of a scan that lies on the scene, relative to its radius.
+/// The largest score of a pose that lies on the scene, in units of the radius of the scan.
 const NEAR: f64 = 0.01;
-/// Poses continue only if their score is at most this factor of the best one.
+/// The largest score of a pose that continues, in units of the best score.
 const CONTENDERS: f64 = 1.5;
-/// Poses with scores that differ by no more than this factor fit equally well.
+/// The largest ratio of the scores of two poses that fit equally well.
 const EQUAL: f64 = 1.05;
 
 /// A pose of the search.
@@ -24,7 +27,7 @@ struct Candidate {
     pose: Pose,
     score: f64,
     rms: f64,
-    /// Whether it began as the scan is.
+    /// Whether it began as the first start: the scan as it is, or the near pose that was found.
     is_first: bool,
 }
 
@@ -33,7 +36,18 @@ where
     S: PrimitiveSet<f64> + Sync + ?Sized,
     I: ClosestPoint<f64> + Sync + ?Sized,
 {
-    /// Returns the pose to start from, and another one that fits about as well.
+    /// Returns the pose to start from, and another one that fits about as well, if there is one.
+    ///
+    /// The basic idea is a tournament, in which fewer and fewer poses compete with more and more points:
+    ///
+    /// 1. The scan as it is, and the scan at the centre of the scene, run some rounds by themselves. If one of them
+    ///    comes to lie on the scene, only its turns about the axes of inertia compete with it. They find out whether
+    ///    the pose is ambiguous.
+    /// 2. Otherwise 122 poses compete: these two, and 60 rotations in each of two frames.
+    /// 3. In each of the [`STAGES`], all poses run some rounds with a sample of the points and are sorted by their
+    ///    scores. Of poses that move the points to about the same places one is kept, and of the rest the best ones.
+    /// 4. The first pose that is left is the start. The next one is the other pose, if its score is at most a tenth
+    ///    larger.
     pub(super) fn start(&self, report: &mut ReportRound<'_>) -> (Pose, Option<Pose>) {
         let as_it_is = Pose::identity(self.centre);
         if !self.options.search {
@@ -86,7 +100,7 @@ where
             for candidate in candidates {
                 let len = kept_ones.len();
                 let same = kept_ones.iter_mut().find(|other| !is_apart(&candidate, other));
-                // The scan as it is may need more rounds than others that began nearer.
+                // The scan as it is may need more rounds than starts that were nearer to a minimum.
                 let is_spared = candidate.is_first && points == few.len();
                 let is_kept = candidate.score <= limit && len < kept;
                 match same {
@@ -105,8 +119,8 @@ where
         (best.pose, other.map(|other| other.pose))
     }
 
-    /// Returns the poses to start from: the scan as it is, the scan at the centre of the scene, and all others if there is a
-    /// search.
+    /// Returns the poses to start from: the scan as it is, the scan at the centre of the scene, and all others if there
+    /// is a search.
     fn starts(&self, as_it_is: Pose, is_search: bool) -> Vec<Pose> {
         let of_scan = self.inertia();
         let of_scene = Inertia::of_scene(self.scene);
@@ -129,8 +143,8 @@ where
         poses
     }
 
-    /// Returns a pose, and the poses in which the scan is turned about its axes of inertia by halves, thirds and quarters,
-    /// which fit as well if the scan is symmetric.
+    /// Returns a pose, and the poses in which the scan is turned about its axes of inertia by halves, thirds and
+    /// quarters, which fit as well if the scan is symmetric.
     fn turned(&self, pose: Pose) -> Vec<Pose> {
         let axes = self.inertia().axes;
         let mut poses = vec![pose];
@@ -212,9 +226,9 @@ impl Inertia {
     }
 }
 
-/// Returns the 60 rotations of an icosahedron, of which one is within 45 degrees of any rotation.
+/// Returns the 60 rotations of an icosahedron. Every rotation is within 45 degrees of one of them.
 ///
-/// They are the vertices of the 600-cell, of which opposite ones are the same rotation: the even permutations of (phi,
+/// They are the vertices of the 600-cell, where opposite vertices are the same rotation: the even permutations of (phi,
 /// 1, 1 / phi, 0) / 2 with any signs, (1, 1, 1, 1) / 2 with any signs, and (1, 0, 0, 0).
 pub(super) fn rotations() -> Vec<UnitQuaternion<f64>> {
     let phi = f64::midpoint(1.0, 5f64.sqrt());
@@ -227,7 +241,8 @@ pub(super) fn rotations() -> Vec<UnitQuaternion<f64>> {
     };
     all.extend((0..8).map(|bits| signed([1.0; 4], bits)));
     for bits in 0..8 {
-        // The last value is 0, so it needs no sign, and one sign is that of the whole.
+        // The last value is 0 and needs no sign, and one more sign is redundant, because q and -q are the same
+        // rotation.
         let values = signed([phi, 1.0, 1.0 / phi, 0.0], bits);
         if bits & 1 == 0 {
             all.extend(EVEN_PERMUTATIONS.map(|order| order.map(|i| values[i])));
@@ -236,7 +251,7 @@ pub(super) fn rotations() -> Vec<UnitQuaternion<f64>> {
     all.into_iter().map(|[w, i, j, k]| UnitQuaternion::new_normalize(Quaternion::new(w, i, j, k))).collect()
 }
 
-/// The even permutations of four things.
+/// The even permutations of four elements.
 const EVEN_PERMUTATIONS: [[usize; 4]; 12] = [
     [0, 1, 2, 3],
     [0, 2, 3, 1],

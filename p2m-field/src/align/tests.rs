@@ -168,11 +168,11 @@ fn steps_in_noise_go_all_the_way() {
     for motion in [shift, tilt] {
         let scan = moved(&points, &motion);
         let fit = Fit::new(&plane, &index, &scan, &AlignOptions::default()).unwrap();
-        // The limit of distances is that of the noise from the start.
+        // The limit of distances follows from the noise from the start.
         let start = Pose { limit: 0.0, ..Pose::identity(fit.centre) };
         let first = fit.round(&scan, &[start]).remove(0);
         let end = (0..12).fold(first.next, |pose, _| fit.round(&scan, &[pose]).remove(0).next);
-        // The plane determines no other motion than that of heights.
+        // The plane determines motions along its normal only.
         let heights = |pose: &Pose| corners.map(|corner| pose.apply(&(motion * corner)).z);
         let to_end =
             |pose: &Pose| heights(pose).into_iter().zip(heights(&end)).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);

@@ -57,8 +57,8 @@ pub struct HistogramBin {
     pub count: usize,
 }
 
-/// Counts deviations in bins of equal width between two numbers. The first and the last bin have what is below and
-/// above. Values that are not finite are in no bin.
+/// Counts deviations in `bins` bins of equal width between two numbers, after a bin for values below `low` and before a
+/// bin for values above `high`. Values that are not finite are in no bin.
 #[must_use]
 #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "the number of a bin")]
 pub fn histogram<T: Real>(deviations: &[T], low: f64, high: f64, bins: usize) -> Vec<HistogramBin> {

@@ -7,16 +7,17 @@ use p2m_core::{NearQuery, Point};
 
 /// The number of neighbours by which [`isolated_points`] judges.
 const NEIGHBOURS: usize = 8;
-/// How many times as far from its neighbours as these from theirs an isolated point is.
+/// The ratio above which a point is isolated: its mean distance from its neighbours over the median of their mean
+/// distances.
 const ISOLATED: f64 = 4.0;
 
-/// Tells for each point of a scan whether it is isolated: its mean distance from the eight nearest other points exceeds
-/// four times the median of those of these eight. So the density of a scan may change from place to place, but a group
-/// of nine stray points is not isolated. Points that are not finite are not isolated, and a scan of fewer than ten
-/// points has none.
+/// Returns for each point of a scan whether it is isolated: its mean distance from the eight nearest other points
+/// exceeds four times the median of the mean distances of these eight points. So the density of a scan may change from
+/// place to place, but a group of nine stray points is not isolated. Points that are not finite are not isolated, and a
+/// scan of fewer than ten points has no isolated ones.
 ///
 /// # Complexity
-/// Expected O(n log n) time: a few microseconds for each point, and 200 bytes.
+/// Expected O(n log n) time: a few microseconds per point, and 200 bytes.
 #[must_use]
 pub fn isolated_points(points: &[Point3<f64>]) -> Vec<bool> {
     let mut isolated = vec![false; points.len()];

@@ -41,11 +41,11 @@ pub use vertices::{on_vertices, primitives_of_positions};
 use p2m_core::Real;
 use p2m_core::engine::double_double::Double;
 
-/// The percentiles that [`DeviationStatistics`] has, in per cent.
+/// The percentiles in [`DeviationStatistics`], in per cent.
 pub const PERCENTILES: [u8; 7] = [1, 5, 25, 50, 75, 95, 99];
 
 /// The statistics of some deviations, in their unit. Values that are not finite count as missing: a point has no
-/// deviation if it has no closest point or if its side is not defined.
+/// deviation if it has no closest point, or if the sign of the point is not defined.
 ///
 /// Without any deviation, all numbers but the counts are NaN.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -95,7 +95,7 @@ impl DeviationStatistics {
     /// where that is larger. The standard deviation is as accurate unless it is below 2^-30 of the root mean square.
     ///
     /// # Complexity
-    /// O(n log n) time and 16 bytes for each value.
+    /// O(n log n) time and 16 bytes per value.
     #[must_use]
     pub fn of<T: Real>(deviations: &[T]) -> Self {
         let mut sorted: Vec<f64> = deviations.iter().map(|x| x.to_f64()).filter(|x| x.is_finite()).collect();

@@ -11,13 +11,14 @@ const NEIGHBOURS: usize = 12;
 
 /// The plane of least squares through each point of a cloud and its eleven nearest others, and its normal.
 ///
-/// Normals of neighbours agree along a tree of minimal turns \[Hoppe1992\], which starts at the highest point (by z) with
-/// a normal that points up. So they point outwards on a closed surface, and up on a terrain. Parts that share no
+/// Normals of neighbours agree along a tree of minimal turns \[Hoppe1992\], which starts at the highest point (by z)
+/// with a normal that points up. So they point outwards on a closed surface, and up on a terrain. Parts that share no
 /// neighbours have a start each.
 ///
 /// The deviation of a query is measured from the plane of its closest point: along the normal where the foot of the
-/// perpendicular is no farther from the closest point than its neighbours, and otherwise as the distance from the closest point, with the sign of the
-/// side. So noise of the cloud is averaged over twelve points, and the spacing of its points does not count.
+/// perpendicular is no farther from the closest point than its neighbours, and otherwise as the distance from the
+/// closest point, with the sign of the side. So noise of the cloud is averaged over twelve points, and the spacing of
+/// its points does not count.
 ///
 /// ```
 /// use nalgebra::Point3;
@@ -50,11 +51,12 @@ struct Plane {
 }
 
 impl LocalPlanes {
-    /// Computes the planes of a scene that has at least three points and nothing else; otherwise it returns `None`.
+    /// Computes the planes of a scene that has at least three points and nothing else, or returns `None` for any other
+    /// scene.
     /// `index` is an index of the scene.
     ///
     /// # Complexity
-    /// Expected O(n log n) time: about 10 microseconds for each point, and 150 bytes.
+    /// Expected O(n log n) time: about 10 microseconds per point, and 150 bytes.
     #[must_use]
     pub fn new<I: NearQuery<f64> + Sync + ?Sized>(cloud: &Soup<f64>, index: &I) -> Option<Self> {
         let points = cloud.points();
@@ -76,7 +78,8 @@ impl LocalPlanes {
         Some(Self { planes })
     }
 
-    /// Returns the deviations of queries, in their order and computed as a [`batch`], with NaN where there is no answer.
+    /// Returns the deviations of queries, in their order and computed as a [`batch`], with NaN where there is no
+    /// answer.
     pub fn deviations<I: ClosestPoint<f64> + Sync + ?Sized>(
         &self,
         index: &I,
@@ -109,10 +112,11 @@ impl LocalPlanes {
     }
 }
 
-/// The least variance across a line of neighbours, relative to that along it, with which they have a plane.
+/// The least variance of neighbours across their main direction, relative to the variance along it. Neighbours with
+/// less are on a line and have no plane.
 const LEAST_WIDTH: f64 = 1e-3;
 
-/// Returns the plane through a point and its neighbours, of which it is one, with either normal.
+/// Returns the plane through a point and its neighbours, which include the point, with either normal.
 fn plane(point: &Point3<f64>, neighbours: &[Closest<f64>]) -> Plane {
     let count = neighbours.len() as f64;
     let centre = neighbours.iter().map(|other| other.point - point).sum::<Vector3<f64>>() / count;
@@ -135,10 +139,15 @@ fn plane(point: &Point3<f64>, neighbours: &[Closest<f64>]) -> Plane {
 }
 
 /// Turns normals so that they agree along the tree of minimal turns. `downwards` has all planes, the highest first.
+///
+/// This is Prim's algorithm for a spanning tree of neighbours. A queue has planes that are not oriented yet, each with
+/// a neighbour that is. The pair whose normals are the most nearly parallel is taken first: the plane is turned to
+/// agree with its oriented neighbour, and its own neighbours enter the queue. Wherever no neighbour is oriented, a new
+/// tree starts at the highest plane that is left.
 fn orient(planes: &mut [Plane], neighbours: &[Vec<u32>], downwards: &[u32]) {
     let mut is_done = vec![false; planes.len()];
-    // Planes whose normals are not oriented yet: the absolute cosine of the angle to a neighbour that is, whose bits are
-    // ordered as it is, the plane, and that neighbour.
+    // Queued planes whose normals are not oriented yet: the absolute cosine of the angle to an oriented neighbour, the
+    // plane, and that neighbour. The bits of the cosine are ordered as the cosine is.
     let mut waiting: BinaryHeap<(u64, Reverse<u32>, Reverse<u32>)> = BinaryHeap::new();
     let entry = |planes: &[Plane], from: u32, plane: u32| {
         let cosine = planes[from as usize].normal.dot(&planes[plane as usize].normal).abs();
@@ -146,7 +155,7 @@ fn orient(planes: &mut [Plane], neighbours: &[Vec<u32>], downwards: &[u32]) {
     };
     for start in downwards {
         if !is_done[*start as usize] {
-            // A point outside of all neighbourhoods that are done may have one of their points in its own.
+            // A point that is in no neighbourhood of an oriented point may have oriented points in its own.
             let done = neighbours[*start as usize].iter().filter(|other| is_done[**other as usize]);
             waiting.extend(done.map(|other| entry(planes, *other, *start)));
             if waiting.is_empty() {

@@ -3,10 +3,10 @@
 use p2m_core::engine::weld::{UNUSED, VertexWelder};
 use p2m_core::{PrimitiveId, Soup};
 
-/// Returns a deviation for each position of a scene: the mean of those of the points around it.
+/// Returns a deviation for each position of a scene: the mean deviation of the points of the scan around it.
 ///
-/// The closest point of a point of the scan divides its deviation among the vertices of the primitive that it is on, by
-/// its weights: `primitives` and `barycentric` are those of [`Closest`](p2m_core::Closest) for each deviation. A position
+/// The closest point of a point of the scan divides its deviation among the vertices of its primitive, by its weights:
+/// `primitives` and `barycentric` are the fields of [`Closest`](p2m_core::Closest) for each deviation. A position
 /// without a share has NaN: the scan does not cover it. Positions with the same coordinates have the same mean. NaN has
 /// no share.
 ///
@@ -14,7 +14,7 @@ use p2m_core::{PrimitiveId, Soup};
 /// If the slices have different lengths, or a primitive that the scene does not have belongs to a finite deviation.
 ///
 /// # Complexity
-/// Linear time, and 24 bytes for each position.
+/// Linear time, and 24 bytes per position.
 #[must_use]
 pub fn on_vertices(scene: &Soup<f64>, primitives: &[u32], barycentric: &[[f64; 3]], deviations: &[f64]) -> Vec<f64> {
     assert_eq!([primitives.len(), barycentric.len()], [deviations.len(); 2], "a primitive for each deviation");

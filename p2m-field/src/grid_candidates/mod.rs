@@ -1,9 +1,9 @@
 //! Candidate lists of boxes: distances of many points from the few primitives that can be nearest in a box.
 //!
-//! An index answers one query after the other. Points that fill a box, as those of a grid do, have the same few
-//! primitives to choose from. [`Candidates`] are the primitives that can be nearest in a box, found among those of a
-//! larger box, and [`CandidateLists::distances`] evaluates them for all points of the box, with points as lanes of a
-//! vector.
+//! An index answers one query after the other. Points that fill a box, such as the points of a grid, have the same few
+//! primitives to choose from. [`Candidates`] are the primitives that can be nearest in a box, found among the
+//! candidates of a larger box, and [`CandidateLists::distances`] evaluates them for all points of the box, with points
+//! as lanes of a vector.
 //!
 //! # Which primitives can be nearest in a box
 //!
@@ -19,7 +19,7 @@
 //! orthonormal to some u, for slivers as well. Let R be the largest distance of a point of the box from a vertex of any
 //! candidate, and E = 2^-44 R + 2^-400. Then
 //!
-//! > |computed - true| <= E, and |computed - that of the contract's kernel| <= E.
+//! > |computed - true| <= E, and |computed - computed by the contract's kernel| <= E.
 //!
 //! **Proof** (constants are rounded up; u = 2^-53).
 //!
@@ -37,17 +37,17 @@
 //! - Edges below 2^-450 count as points, and squares lose less than 2^-1000 near zero; 2^-400 exceeds both. Coordinates
 //!   up to 2^250 have squares. The closest point of a query has the error of its distance.
 //!
-//! A value that is rounded to f32 equals that of the kernel if all of [d - E, d + E] is rounded to it. For other points
-//! the kernel evaluates all candidates. That is one point of 10^5 if the scene is not much farther away than it is
-//! large.
+//! A value that is rounded to f32 equals the value of the kernel if all of [d - E, d + E] is rounded to it. For other
+//! points the kernel evaluates all candidates. That is one point of 10^5 if the scene is not much farther away than it
+//! is large.
 //!
 //! Dominators have to be nearer by a slack that covers these errors. Let m be the largest distance of a corner from s.
 //! Then p is excluded if it is farther than s at all corners by 16 E m + 64 E^2 in the computed squares. In the true
-//! squares that is at least 12 E m + 47 E^2, since those of p err by 2 E (m + 8 E) + E^2. By convexity it holds in all
-//! of the box, where |q - s| <= m, so d(q, p)^2 >= (|q - s| + 4 E)^2. Hence p is farther than s by 4 E, the primitive
-//! of s is within E of s, and the distances of the kernel are in the same order. That primitive may be excluded by
-//! another one that is nearer still, but the one that is nearest by the kernel cannot be. So the values of the
-//! candidates are those of all primitives, bit for bit.
+//! squares that is at least 12 E m + 47 E^2, since the squares of p err by 2 E (m + 8 E) + E^2. By convexity it holds
+//! in all of the box, where |q - s| <= m, so d(q, p)^2 >= (|q - s| + 4 E)^2. Hence p is farther than s by 4 E, the
+//! primitive of s is within E of s, and the distances of the kernel are in the same order. That primitive may be
+//! excluded by another one that is nearer still, but the one that is nearest by the kernel cannot be. So the candidates
+//! give the same values as all primitives, bit for bit.
 
 mod candidates;
 mod error_bounds;
@@ -82,7 +82,7 @@ impl<'a, S: PrimitiveSet<f64> + ?Sized> CandidateLists<'a, S> {
     /// is not finite or exceeds [`MAX_COORDINATE`], or if memory does not suffice.
     ///
     /// # Complexity
-    /// O(n log n) time; 238 bytes for each primitive.
+    /// O(n log n) time; 238 bytes per primitive.
     #[must_use]
     pub fn new(set: &'a S) -> Option<Self> {
         let Aabb { min, max } = set.aabb();
@@ -119,7 +119,7 @@ impl<'a, S: PrimitiveSet<f64> + ?Sized> CandidateLists<'a, S> {
         Candidates { entries, nearest: 0.0, reach: f64::INFINITY, bounds: None }
     }
 
-    /// Returns the candidates of a part of a box, found among those of the box.
+    /// Returns the candidates of a part of a box, found among the candidates of the box.
     ///
     /// # Panics
     /// If the part is empty, not contained in the box of `candidates`, or has coordinates above [`MAX_COORDINATE`].
@@ -143,7 +143,7 @@ impl<'a, S: PrimitiveSet<f64> + ?Sized> CandidateLists<'a, S> {
     /// If the values are not one for each point, if a point is not in the box, or if the candidates have groups.
     ///
     /// # Complexity
-    /// O(k) for each point and k candidates.
+    /// O(k) per point and k candidates.
     pub fn distances(&self, candidates: &Candidates, axes: [&[f64]; 3], values: &mut [f32]) -> usize {
         assert_eq!(axes.iter().map(|axis| axis.len()).product::<usize>(), values.len(), "a value for each point");
         if candidates.is_empty() || values.is_empty() {

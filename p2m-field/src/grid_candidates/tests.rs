@@ -189,7 +189,7 @@ fn degenerate_triangles_have_the_distances_of_their_convex_hulls() {
     }
 }
 
-/// The squares of some sizes vanish beside those of others, and the box is tiny beside its scene.
+/// Some sizes are so small that their squares vanish beside others, and the box is tiny beside its scene.
 #[test]
 fn primitives_of_all_scales_in_one_scene_have_the_distances_of_brute_force() {
     for case in cases(2000, 500) {

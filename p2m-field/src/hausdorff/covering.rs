@@ -1,13 +1,13 @@
-//! Bounds on the distances of a piece from several primitives together.
+//! Bounds on the distances of a piece by several primitives together.
 //!
-//! A piece that lies on two neighbours of a plane is near neither of them as a whole. So it is divided along the planes
-//! through the edges of a primitive that are perpendicular to it: the part above the primitive is bounded by this one,
-//! and the parts beside it by the others. Parts are convex, so the distances of their corners bound them. No query is
-//! asked.
+//! A piece that lies on two neighbours of a plane is near neither of them as a whole. So it is divided by planes
+//! through the edges of one primitive, perpendicular to that primitive: the part above the primitive is bounded by the
+//! primitive, and the parts beside it by the others. Parts are convex, so the distances of their corners bound them. No
+//! query is needed.
 //!
-//! A part is given by corners that are combinations of those of the piece, rounded to f64. Where it is divided, two points on
-//! its boundary are joined, which divides a convex polygon into two, whatever the points are. So rounding of heights
-//! decides how good a bound is, and not whether it holds.
+//! A part is given by corners, which are combinations of the corners of the piece, rounded to f64. Where it is divided,
+//! two points on its boundary are joined, which divides a convex polygon into two, whatever the points are. So rounding
+//! of heights decides how good a bound is, and not whether it holds.
 
 use nalgebra::{Point3, Vector3};
 use p2m_core::engine::vector::{V3, dot, sub};
@@ -89,7 +89,7 @@ impl Part {
         self.corners().iter().map(upper).fold(0.0, f64::max)
     }
 
-    /// Divides the part by a plane, and returns what is on the side of the normal and what is on the other side.
+    /// Divides the part by a plane. Returns the part on the side of the normal, and the part on the other side.
     fn divide(&self, plane: &V3, normal: &V3, drift: f64) -> (Option<Self>, Option<Self>) {
         let mut heights = [0.0; MAX_CORNERS];
         for (height, corner) in heights.iter_mut().zip(self.corners()) {

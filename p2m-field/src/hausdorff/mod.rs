@@ -5,16 +5,15 @@
 //!
 //! # Method
 //!
-//! It is a branch and bound over pieces of A, which are points, segments and triangles, and the primitives at first
+//! The method is a branch and bound over pieces of A: points, segments and triangles, which are the primitives at first
 //! \[Guthe2005\]. The piece with the largest upper bound is cut in the middle of its longest edge, until that bound is
 //! within the tolerance of the lower bound.
 //!
-//! - **Lower bound.** The distance of any point of A is one. The corners of all primitives are asked first, shared ones
-//!   once, in a batch; then the points in which pieces are cut. The best one is certified
+//! - **Lower bound.** The distance of any point of A is a lower bound. The corners of all primitives are queried first,
+//!   in a batch and shared ones once, and then the points at which pieces are cut. The best one is certified
 //!   ([`CertifiedQuery`]), so its distance is correct to the last digit.
-//! - **Upper bound.** For a primitive p of B and a point x, the distance d(x, p) is a convex function of x, because p is
-//!   convex. So its maximum over a piece is at a corner, and for all x of the piece with the corners c1, c2, c3
-//!
+//! - **Upper bound.** For a primitive p of B and a point x, the distance d(x, p) is a convex function of x, because p
+//!   is convex. So its maximum over a piece is at a corner, and for all x of the piece with the corners c1, c2, c3
 //!   d(x, B) <= d(x, p) <= max d(ci, p).
 //!
 //!   The smallest such bound is taken over the primitives that are nearest to a corner, and one that is nearest to a
@@ -24,26 +23,26 @@
 //!
 //! - **Upper bound by several primitives.** If no single one of these primitives bounds a piece well enough, the piece
 //!   is divided along the edges of one of them, and its parts are bounded by different ones ([`covering`]). Where two
-//!   surfaces are the same set with other triangles, most pieces lie on two or three triangles of a plane. Without these
-//!   bounds they would be cut along all edges until they are as small as the tolerance.
+//!   surfaces are the same set with other triangles, most pieces lie on two or three triangles of a plane. Without
+//!   these bounds they would be cut along all edges until they are as small as the tolerance.
 //!
 //! Pieces of both directions share one queue, so the direction with the larger distance ends the other one early.
 //!
 //! # Rounding
 //!
 //! The middle of an edge is rounded, so a piece is not exactly a part of its primitive. Let u be the unit roundoff of
-//! the scalar, eta its smallest subnormal, and s the largest magnitude of a coordinate of the primitive. The middle
-//! of two corners that are off their exact places by e1 and e2 is off by at most (e1 + e2) / 2 + sqrt(3) (1.01 u s + 2
+//! the scalar, eta its smallest subnormal, and s the largest magnitude of a coordinate of the primitive. The middle of
+//! two corners that are off their exact places by e1 and e2 is off by at most (e1 + e2) / 2 + sqrt(3) (1.01 u s + 2
 //! eta): the two halves err by eta / 2 each, their sum in f64 by u s, and the conversion to f32 by u s. So a corner
-//! after k cuts is off by at most k r with r = 2 (u s + 2 eta). Parts of a piece are divided in f64. A point (1 - t) a +
-//! t b between two corners of a part is off by at most 4 r' more than these, where r' is r for f64: the weight, the
+//! after k cuts is off by at most k r with r = 2 (u s + 2 eta). Parts of a piece are divided in f64. A point (1 - t) a
+//! + t b between two corners of a part is off by at most 4 r' more than these, where r' is r for f64: the weight, the
 //! products and the sum err by 3 sqrt(3) u s.
 //!
 //! A point x of the exact piece is the sum of its exact corners with some weights, and the sum of the rounded corners
 //! with the same weights is within k r of x. After l divisions of a part it is within k r + 4 l r' of x. Hence
 //!
-//! - d(x, B) <= max (d^(ci, p) + error of d^) + k r, where the kernel bounds the error of a computed distance d^ by 8 u M
-//!   (contract N1 of [`ClosestPoint`]). The sum is rounded up;
+//! - d(x, B) <= max (d^(ci, p) + error of d^) + k r, where the kernel bounds the error of a computed distance d^ by 8 u
+//!   M (contract N1 of [`ClosestPoint`]). The sum is rounded up;
 //! - h(A, B) >= l - k r, where l is the certified lower bound on d(ci, B), because the exact corner is in A. The
 //!   difference is rounded down. k is 0 for vertices of the scene.
 //!
@@ -75,8 +74,8 @@ pub struct HausdorffOptions<T: Real> {
     /// are then as near to each other as rounding allows, if `max_queries` suffices. With an infinite one
     /// only vertices are asked.
     pub tolerance: T,
-    /// The largest number of queries besides those of vertices. When it is exhausted, the result has the bounds that
-    /// were reached. The default is 2^24.
+    /// The largest number of queries besides the vertices. When it is exhausted, the result has the bounds that were
+    /// reached. The default is 2^24.
     pub max_queries: u64,
     /// Whether all threads of the current pool are used, which does not change the result. Without the feature `rayon`
     /// one thread is used in any case. The default is `true`.
@@ -89,7 +88,7 @@ impl<T: Real> HausdorffOptions<T> {
     pub fn new(tolerance: T) -> Self {
         Self { tolerance, max_queries: 1 << 24, parallel: true }
     }
-    /// Sets the largest number of queries besides those of vertices.
+    /// Sets the largest number of queries besides the vertices.
     #[must_use]
     pub fn with_max_queries(self, max_queries: u64) -> Self {
         Self { max_queries, ..self }
@@ -101,7 +100,7 @@ impl<T: Real> HausdorffOptions<T> {
     }
 }
 
-/// The scene whose points are measured, and the one from which.
+/// The direction of a one-sided distance: which scene is measured, and from which one.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Direction {
     /// A point of the first scene is farthest from the second one.
@@ -148,8 +147,8 @@ pub struct HausdorffProgress<T: Real> {
 /// Receives the state of a search from time to time, and ends it by [`ControlFlow::Break`].
 pub type ReportProgress<'a, T> = dyn FnMut(&HausdorffProgress<T>) -> ControlFlow<()> + 'a;
 
-/// Returns the largest distance of a point of the first scene from the second one, which `index` has; `None` if either
-/// scene is empty.
+/// Returns the largest distance of a point of the first scene from the second one, given an index of the second one;
+/// `None` if either scene is empty.
 ///
 /// The result is the same for every exact index of the second scene, bit for bit, and for every number of threads.
 ///
@@ -176,14 +175,15 @@ pub type ReportProgress<'a, T> = dyn FnMut(&HausdorffProgress<T>) -> ControlFlow
 /// [`CertifyError::NoVertices`] if a primitive of your own without vertices is nearest to a point that was asked.
 ///
 /// # Accuracy
-/// Both bounds hold in spite of rounding. The point of the first scene is a vertex of it, or within 2 k (u s + 2 eta) of
-/// it, where s is the largest coordinate of its primitive and k the number of times that this was cut, at most some
-/// hundred. The lower bound is less by that much, and correct to the last digit for a vertex.
+/// Both bounds hold in spite of rounding. The point of the first scene is a vertex of it, or within 2 k (u s + 2 eta)
+/// of it, where s is the largest coordinate of its primitive and k the number of times that the primitive was cut, at
+/// most some hundred. The lower bound is less by that much, and correct to the last digit for a vertex.
 ///
 /// # Complexity
-/// One query for each vertex, and two for each cut. Few primitives are cut if the distance is large beside the
-/// primitives. Where whole faces are equally far or the same, the number of cuts is about that of the primitives of both
-/// scenes there times log(1 / tolerance). For n vertices, m primitives and q other queries the memory is 40 (n + q) + 40 (m + q) bytes in f64.
+/// One query per vertex, and two per cut. Few primitives are cut if the distance is large beside the primitives. Where
+/// whole faces are equally far or the same, the number of cuts is about the number of primitives of both scenes there
+/// times log(1 / tolerance). For n vertices, m primitives and q other queries the memory is 40 (n + q) + 40 (m + q)
+/// bytes in f64.
 pub fn one_sided_hausdorff_distance<T: Real, I: HausdorffIndex<T> + ?Sized>(
     first: &Soup<T>,
     index: &I,

@@ -1,4 +1,19 @@
-//! The branch and bound.
+//! The branch and bound of a Hausdorff distance.
+//!
+//! In pseudo-code:
+//!
+//! ```text
+//! query all vertices; lower = the largest of their distances, certified
+//! queue = the primitives of which some point may be farther than lower + tolerance
+//! while the largest upper bound in the queue exceeds lower + tolerance:
+//!     take the pieces with the largest upper bounds: an eighth of the queue, but at least 1024
+//!     query one point of each piece: a point inside at first, later the middle of its longest edge
+//!     raise lower to the largest of these distances, certified
+//!     for each piece, or for its halves if the middle of an edge was queried:
+//!         bound it by the primitives that are nearest to its corners and to the point inside
+//!         return it to the queue if the bound exceeds lower + tolerance
+//! upper = the largest bound in the queue, or of a piece that did not return to it
+//! ```
 
 use super::covering::{MAX_SHAPES, Part};
 use super::{Direction, HausdorffDistance, HausdorffIndex, HausdorffOptions, HausdorffProgress, ReportProgress};
@@ -11,11 +26,11 @@ use std::cmp::Ordering;
 use std::collections::BinaryHeap;
 use std::ops::ControlFlow;
 
-/// The least number of pieces that are cut at a time. Some of them could be left out if they were cut one by one, but
-/// their queries are answered side by side on all threads.
+/// The least number of pieces that are improved in a round. Some of them could be left out if they were improved one by
+/// one, but their queries are answered side by side on all threads.
 const MIN_PIECES_PER_ROUND: usize = 1 << 10;
-/// The part of a long queue that is cut at a time is one over this number. Most of its pieces have to be cut anyway, and
-/// many queries at once visit the index in a better order.
+/// Each round improves one over this number of a long queue. Most of its pieces have to be cut anyway, and many queries
+/// at once visit the index in a better order.
 const ROUNDS_PER_QUEUE: usize = 8;
 /// The number of vertices or primitives that are handled between two reports of progress.
 const ITEMS_PER_REPORT: usize = 1 << 18;
@@ -24,7 +39,7 @@ const ROUND_UP: f64 = 1.0 + 8.0 * f64::EPSILON;
 /// A bound on what the roundings of subnormal numbers add to an upper bound.
 const SUBNORMALS: f64 = f64::from_bits(8);
 
-/// A scene whose points are measured, and the index of the scene from which.
+/// One direction of the search: a scene whose points are measured, and an index of the other scene.
 #[derive(Clone, Copy)]
 pub(super) struct Side<'a, T: Real> {
     pub(super) surface: &'a Soup<T>,
@@ -44,16 +59,16 @@ struct Corner<T: Real> {
 struct Piece {
     /// An upper bound on the distances of its points.
     upper: f64,
-    /// The indices of its corners: one of a point three times, and the second one of a segment twice.
+    /// The indices of its corners. A point has its corner three times, and a segment has its second corner twice.
     corners: [u32; 3],
     /// The primitive that it is a part of.
     primitive: u32,
     /// A primitive of the other scene that is probably near all of its points.
     candidate: u32,
-    /// The number of cuts above it.
+    /// The number of cuts that it results from.
     depth: u16,
     side: u8,
-    /// Whether the nearest primitive of a point inside was asked, or need not be.
+    /// Whether the nearest primitive of a point inside was queried, or is not needed.
     is_sampled: bool,
     /// Whether rounding leaves nothing to gain by a cut.
     is_final: bool,
@@ -89,10 +104,10 @@ struct Step<T: Real> {
     corner: u32,
 }
 
-/// An upper bound on the distances of the points of a piece.
+/// An upper bound on the distances of the points of a piece from the other scene.
 struct Bound {
     upper: f64,
-    /// The primitive that it follows from.
+    /// The primitive that the bound follows from.
     primitive: u32,
     is_final: bool,
 }
@@ -158,7 +173,7 @@ impl<'a, T: Real> Search<'a, T> {
         Ok(self.finish())
     }
 
-    /// Asks all vertices, and puts the primitives that they do not settle into the queue.
+    /// Queries all vertices, and puts the primitives that their distances do not settle into the queue.
     fn start(&mut self, progress: &mut ReportProgress<'_, T>) -> Result<ControlFlow<()>, CertifyError> {
         let mut corners_of_sides = Vec::new();
         for (number, side) in self.sides.iter().enumerate() {
@@ -210,13 +225,14 @@ impl<'a, T: Real> Search<'a, T> {
             candidate: self.corners[corners[0] as usize].nearest,
             depth: 0,
             side: side as u8,
-            // The middle of a segment is where it is cut, and a point has no other one.
+            // A segment is cut at its middle, and a point has no other point inside.
             is_sampled: element.indices().len() < 3,
             is_final: false,
         }
     }
 
-    /// Improves the bounds of the pieces with the largest ones. It returns whether there was something to improve.
+    /// Improves the pieces with the largest upper bounds, by one query each. Returns `false` if there is nothing to
+    /// improve.
     fn improve(&mut self) -> Result<bool, CertifyError> {
         let limit = self.limit();
         let count = (self.pieces.len() / ROUNDS_PER_QUEUE).max(MIN_PIECES_PER_ROUND) as u64;
@@ -239,7 +255,7 @@ impl<'a, T: Real> Search<'a, T> {
             }
             self.ask(number, &points);
         }
-        // The first of equally far points is the one that counts.
+        // Of equally far points, the first one counts.
         let farthest = (steps.iter())
             .map(|step| (self.corners[step.corner as usize].distance.to_f64() - self.drift_of_step(step), step))
             .reduce(|a, b| if b.0 > a.0 { b } else { a });
@@ -254,7 +270,7 @@ impl<'a, T: Real> Search<'a, T> {
         Ok(true)
     }
 
-    /// Returns what to ask about a piece, or `None` if nothing improves its bound.
+    /// Returns the query that improves the bound of a piece, or `None` if no query does.
     fn step(&self, piece: &Piece) -> Option<Step<T>> {
         if piece.is_final {
             return None;
@@ -273,7 +289,7 @@ impl<'a, T: Real> Search<'a, T> {
         Some(Step { point: inside, edge: None, ..step })
     }
 
-    /// Returns the pieces that replace a piece, once the point of the step was asked.
+    /// Returns the pieces that replace a piece, once the query of the step has been answered.
     fn after(&self, step: &Step<T>) -> Vec<Piece> {
         let Some(edge) = step.edge else {
             let candidate = self.corners[step.corner as usize].nearest;
@@ -288,8 +304,8 @@ impl<'a, T: Real> Search<'a, T> {
         vec![Piece { corners: [a, m, c], ..piece }, Piece { corners: [m, b, c], ..piece }]
     }
 
-    /// Bounds the distances of pieces, and puts those above the limit into the queue. It returns the largest
-    /// bound of the others.
+    /// Bounds the distances of pieces, and puts the pieces above the limit into the queue. Returns the largest bound of
+    /// the other pieces.
     fn queue(&mut self, mut pieces: Vec<Piece>) -> Result<f64, CertifyError> {
         let limit = self.limit();
         // Scenes mostly have neighbours in order, and sorting the pieces takes longer than it saves.
@@ -299,7 +315,7 @@ impl<'a, T: Real> Search<'a, T> {
         let mut settled: f64 = 0.0;
         for (piece, bound) in pieces.iter_mut().zip(bounds) {
             let bound = bound?;
-            // A part of a piece has its bound as well.
+            // The bound of a piece holds for its parts as well.
             piece.upper = bound.upper.min(piece.upper);
             (piece.candidate, piece.is_final) = (bound.primitive, bound.is_final);
             if piece.upper <= limit {
@@ -362,13 +378,13 @@ impl<'a, T: Real> Search<'a, T> {
         Ok(best)
     }
 
-    /// Returns a bound on the distance of a corner of a piece from its exact place, if it is cut this often.
+    /// Returns a bound on the distance of a corner of a piece from its exact place, after so many cuts.
     fn drift(&self, piece: &Piece, cuts: u16) -> f64 {
         if cuts == 0 { 0.0 } else { f64::from(cuts) * self.drift_of_cut::<T>(piece) }
     }
 
-    /// Returns a bound on the distance of the middle of an edge, rounded to a scalar, from its exact place, if the ends are
-    /// exact.
+    /// Returns a bound on the distance of the middle of an edge, rounded to a scalar, from its exact place, if the ends
+    /// are exact.
     fn drift_of_cut<R: Real>(&self, piece: &Piece) -> f64 {
         let primitive = self.sides[usize::from(piece.side)].surface.get(PrimitiveId::new(piece.primitive as usize));
         let size = primitive.vertices().iter().map(|v| v.map(T::to_f64).coords.amax()).fold(0.0, f64::max);
@@ -381,7 +397,7 @@ impl<'a, T: Real> Search<'a, T> {
         self.drift(&step.piece, step.piece.depth + if step.edge.is_some() { 1 } else { 2 })
     }
 
-    /// Asks for the distances of points, which become the last corners.
+    /// Queries the distances of points, and appends the points to the corners.
     fn ask(&mut self, side: usize, points: &[Point3<T>]) {
         let (mut distance, mut nearest) = (vec![T::INFINITY; points.len()], vec![0; points.len()]);
         let columns = ClosestColumns::default().with_distance(&mut distance).with_primitive(&mut nearest);
@@ -421,7 +437,7 @@ impl<'a, T: Real> Search<'a, T> {
         Ok(())
     }
 
-    /// Returns the bound that pieces of the queue exceed.
+    /// Returns the limit that the upper bounds of all pieces in the queue exceed.
     fn limit(&self) -> f64 {
         self.lower + self.tolerance
     }
@@ -502,8 +518,8 @@ fn longest_edge<T: Real>(points: &[Point3<T>; 3]) -> usize {
     (1..3).fold(0, |longest, i| if length(i) > length(longest) { i } else { longest })
 }
 
-/// Returns an upper bound on the distances of points from a primitive, apart from a few roundings: by the nearest vertex
-/// in the sum norm, which takes a tenth of the time of the kernel.
+/// Returns an upper bound on the distances of points from a primitive, apart from a few roundings: by the nearest
+/// vertex in the sum norm, which takes a tenth of the time of the kernel.
 fn rough_distance<T: Real>(points: &[Point3<T>; 3], shape: &Shape<T>) -> f64 {
     let distance = |p: &Point3<T>, v: &Point3<T>| (0..3).map(|k| (p[k].to_f64() - v[k].to_f64()).abs()).sum::<f64>();
     let nearest = |p: &Point3<T>| shape.vertices().iter().map(|v| distance(p, v)).fold(f64::INFINITY, f64::min);

@@ -43,7 +43,7 @@ fn assert_contains(found: Option<HausdorffDistance<f64>>, expected: f64, toleran
     assert!(is_between && found.upper_bound - found.lower_bound <= tolerance + rounding, "{found:?} {expected}");
 }
 
-/// Returns whether a lower bound is that of a vertex, which is at most one unit in the last place below the distance.
+/// Returns whether a lower bound belongs to a vertex: it is at most one unit in the last place below the distance.
 fn is_last_digit(lower: f64, distance: f64) -> bool {
     lower <= distance && distance <= lower.next_up()
 }
@@ -145,7 +145,7 @@ fn samples<T: Real>(scene: &Soup<T>, steps: u32) -> (Vec<Point3<T>>, f64) {
     (all, reach)
 }
 
-/// Checks the bounds of a one-sided distance against those of dense samples.
+/// Checks the bounds of a one-sided distance against dense samples.
 fn check_by_samples<T: Real>(case: u64, a: &Soup<T>, b: &Soup<T>, tolerance: f64) {
     let options = HausdorffOptions::new(T::round_from_f64(tolerance)).with_max_queries(200_000);
     let Some(found) = one_sided(a, b, &options) else {

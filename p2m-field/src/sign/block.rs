@@ -1,9 +1,13 @@
-//! Signs of the points of a block by an open surface.
+//! The signs of the points of a block with respect to an open surface.
 //!
 //! The winding number of a point is the number of crossings of a ray less the sum of the solid angles of the caps (the
-//! module `winding`). Both are computed for all points of a block together: the solid angles by a polynomial and the
-//! caps that are near (`local`, `near`), the crossings from those of one ray, by the triangles between neighbours
-//! (`flood`). A smaller error is tried while the numbers of some points are too near a half.
+//! module `winding`). Both are computed for all points of a block together:
+//!
+//! - The solid angles of the caps are summed by a polynomial, except for caps that are near (`local`, `near`).
+//! - The crossings are counted by one ray, from one point. The counts of the other points follow from the triangles
+//!   between neighbouring points (`flood`).
+//!
+//! If the numbers of some points are too near a half for the error of the polynomial, a smaller error is tried.
 
 use super::flood::{Lattice, Wall, change};
 use super::local::Local;
@@ -13,7 +17,7 @@ use super::{SharedSoup, Sign, SignedDistance};
 use nalgebra::Point3;
 use p2m_core::{ClosestPoint, PrimitiveId};
 
-/// The bounds on the errors of polynomials that are tried, until all points have signs.
+/// The error bounds of the polynomial that are tried in turn, until all points have signs.
 const ERRORS: [f64; 5] = [0.4, 0.1, 1.0 / 64.0, 1.0 / 256.0, 1.0 / 1024.0];
 
 /// A block of points of a grid.
@@ -39,7 +43,7 @@ impl PointBlock<'_> {
         indices.map(|indices| [0, 1, 2].map(|k: usize| self.axes[k][indices[k]]).into()).collect()
     }
 
-    /// Returns the one of the eight points in the middle that is farthest from the surface.
+    /// Returns the point, among the eight points in the middle, that is farthest from the surface.
     fn start(&self) -> usize {
         let counts = self.counts();
         let middles = (0..8).map(|i| {
@@ -61,9 +65,22 @@ impl PointBlock<'_> {
 }
 
 impl<I: ClosestPoint<f64>, S: SharedSoup> SignedDistance<I, S> {
-    /// Computes the signs of the points of a block, and leaves out those that single queries have to decide: points that
+    /// Computes the signs of the points of a block. Points that single queries have to decide get `None`: points that
     /// may be on the surface, that are reached only along edges of triangles, or whose numbers are too near a half.
-    /// `triangles` has all triangles of the surface that meet the box of the block.
+    /// `triangles` has all triangles of the surface that intersect the box of the block.
+    ///
+    /// In pseudo-code, with `w = crossings - w(caps)`:
+    ///
+    /// ```text
+    /// crossings = the crossings of a ray from the start, the middle point that is farthest from the surface
+    /// for each error bound, from 0.4 down to 2^-10:
+    ///     refine the polynomial of the caps until its error is below the bound; some caps remain near
+    ///     flood the block from the start; the count changes by one where two neighbours are on different sides
+    ///         of a triangle of the surface or of a near cap
+    ///     for each point without a sign: crossings + its change - (polynomial + near caps)
+    ///         gives the sign, if it is farther from a half than the error
+    ///     return if all points have signs
+    /// ```
     pub(crate) fn signs_of_block(
         &self,
         block: &PointBlock<'_>,

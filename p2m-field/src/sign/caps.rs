@@ -72,7 +72,7 @@ fn polygons(vertex_count: usize, edges: &[[u32; 2]]) -> Vec<Vec<u32>> {
     polygons
 }
 
-/// Spans triangles in a polygon. It is halved, so most triangles are small and near the boundary.
+/// Triangulates a polygon by halving it again and again, so that most triangles are small and near the boundary.
 fn span(polygon: &[u32], triangles: &mut Vec<[u32; 3]>) {
     if let [first, .., last] = *polygon
         && polygon.len() > 2

@@ -2,9 +2,9 @@
 //!
 //! The segment from a query to its closest point crosses no other part of the surface, except perhaps nearer to the
 //! closest point than the error of the distance. So the query is on the side of the surface from which the segment
-//! arrives, if the surface is simple there. The side follows from the pseudonormal: the normal of the face, the sum of
-//! the unit normals of the two faces at an edge, or that of the faces around a vertex, each multiplied by its angle
-//! there \[Baerentzen2005\].
+//! arrives, if the surface is simple there. The side follows from the pseudonormal: on a face, its normal; at an edge,
+//! the sum of the unit normals of its two faces; at a vertex, the sum of the unit normals of the faces around it, each
+//! multiplied by its angle there \[Baerentzen2005\].
 //!
 //! **Where the surface is simple.** A vertex is simple if its triangles form one fan that projects along its
 //! pseudonormal without overlap. A triangle is simple if it is no sliver, its vertices are simple, and no triangle
@@ -38,9 +38,9 @@ const NORMAL_ERROR: f64 = 1.0 / (1 << 24) as f64;
 const MAX_VALENCE: u8 = u8::MAX;
 /// The clearance of triangles, in units of the roundoff of the index and the size of the scene.
 const CLEARANCE: f64 = 128.0;
-/// The patch of a triangle that is not simple.
+/// Marks a triangle that is not simple.
 const NO_PATCH: u32 = u32::MAX;
-/// The winding number of a patch whose winding number is unknown.
+/// Marks a patch whose winding number is unknown.
 const UNKNOWN: i64 = i64::MIN;
 
 /// The simple triangles of a closed surface, and their patches.
@@ -262,7 +262,7 @@ impl Approach {
         Self { offset, normal, reach, magnitude: largest(&[v, e, f]) }
     }
 
-    /// `other` has the corners of the triangle beyond edge `i`.
+    /// Makes the approach to edge `i` of a triangle. `other` has the corners of the triangle beyond the edge.
     fn at_edge(q: V3, corners: [V3; 3], other: [V3; 3], i: usize) -> Option<Self> {
         let (start, end) = (corners[i], corners[(i + 1) % 3]);
         let (v, e) = (sub(q, start), sub(end, start));
@@ -278,7 +278,7 @@ impl Approach {
 
     /// Returns whether the segment arrives from the front, or `None` if that is not proved.
     ///
-    /// `lower_bound` is that of the distance of the query from the surface.
+    /// `lower_bound` is a lower bound on the distance of the query from the surface.
     fn is_from_front(&self, lower_bound: f64, clearance: f64) -> Option<bool> {
         let error = ROUNDING * self.magnitude;
         let distance = length(self.offset) + error;
@@ -295,7 +295,8 @@ impl Approach {
     }
 }
 
-/// The bound on the error of the foot of a perpendicular in units of that of its distance: four over the smallest sine.
+/// The bound on the error of the foot of a perpendicular, in units of the error of its distance: four over the smallest
+/// sine.
 const FOOT_ERROR: f64 = 4.0 / MIN_SINE;
 
 /// Returns the height of corner `i` over the opposite edge, less its rounding error.

@@ -1,4 +1,4 @@
-//! Which points are inside, without their distances.
+//! Tests of whether many points are inside, without computing their distances.
 //!
 //! Points are taken in the order of a curve that fills their box, in blocks. If the ball around a block has no surface
 //! in it, all points of the block have the sign of its centre. Elsewhere, if signs change at the surface alone, the
@@ -14,11 +14,11 @@ use p2m_core::engine::vector::{V3, dot, largest, length, sub};
 use p2m_core::{Aabb, Closest, ClosestPoint, Position, QueryOptions, Real};
 use std::ops::{ControlFlow, Range};
 
-/// The numbers of points in blocks, of which the last ones are divided by planes.
+/// The sizes of blocks that are tried in turn, in points. Blocks of the last size are divided by planes.
 const BLOCKS: [usize; 3] = [512, 128, 32];
 /// The most triangles between the planes of a block.
 const MAX_TRIANGLES: usize = 1024;
-/// Points are as far as this beyond a plane, in units of the largest offset: far more than the rounding of heights.
+/// The least height of a point beyond a plane, in units of the largest offset. It far exceeds the rounding of heights.
 const MIN_HEIGHT: f64 = 1.0 / (1u64 << 40) as f64;
 
 impl<I, S: SharedSoup> SignedDistance<I, S> {
@@ -34,8 +34,8 @@ impl<I, S: SharedSoup> SignedDistance<I, S> {
     /// Returns whether each of some points is inside, as [`contains`](Self::contains) does, in their order.
     ///
     /// # Complexity
-    /// Points that are nearer to each other than to the surface share a query, and so do most points beside a part of the
-    /// surface that is nearly flat. So there are far fewer queries than points, unless the points are few.
+    /// Points that are nearer to each other than to the surface share a query, and so do most points beside a part of
+    /// the surface that is nearly flat. So there are far fewer queries than points, unless the points are few.
     pub fn contains_each<T: Real>(&self, points: &[Point3<T>], batch: &BatchOptions) -> Vec<bool>
     where
         I: ClosestPoint<T> + Sync,
@@ -43,7 +43,7 @@ impl<I, S: SharedSoup> SignedDistance<I, S> {
         self.contains_each_by(&self.index, points, batch)
     }
 
-    /// Does the same with an index that stands for that of these signs.
+    /// Does the same as [`contains_each`](Self::contains_each), by another index over the same scene.
     #[doc(hidden)]
     pub fn contains_each_by<T: Real>(
         &self,
@@ -74,7 +74,7 @@ impl<I, S: SharedSoup> SignedDistance<I, S> {
     ) where
         I: ClosestPoint<T>,
     {
-        // Neighbours stand side by side from here on.
+        // Points that are neighbours are adjacent in memory from here on.
         let points: Vec<Point3<T>> = order.iter().map(|i| points[*i as usize]).collect();
         let mut inside = vec![false; points.len()];
         let mut blocks: Vec<Range<usize>> = std::iter::once(0..points.len()).collect();
@@ -145,8 +145,9 @@ impl<I, S: SharedSoup> SignedDistance<I, S> {
         }
     }
 
-    /// Divides the points of a block by planes that are parallel to a triangle. The points beyond each plane are a
-    /// side, and have one sign; the others are added to the rest.
+    /// Divides the points of a block by two planes that are parallel to a triangle, with all of the surface in the box
+    /// of the block between them. The points beyond a plane form a side, and have one sign; the points between the
+    /// planes are added to `rest`.
     fn divide<T: Real>(
         &self,
         points: &[Point3<T>],

@@ -1,4 +1,4 @@
-//! Triangles that are near others without a common vertex.
+//! The search for triangles that are near triangles with which they share no vertex.
 //!
 //! Groups of triangles that are consecutive in the leaves of the tree take the triangles in their common box from the
 //! tree. Pairs whose boxes overlap are then tested for a separating axis.
@@ -15,9 +15,9 @@ use std::ops::ControlFlow;
 
 /// The number of triangles of a group.
 const GROUP_LEN: usize = 16;
-/// The most triangles whose boxes overlap that of a group.
+/// The largest number of triangles whose boxes overlap the box of a group.
 const MAX_OTHERS: usize = 1024;
-/// The margin around boxes, in units of the size of the scene: four times the rounding of coordinates to f32.
+/// The margin around boxes, in sizes of the scene: four times the rounding of coordinates to f32.
 const BOX_MARGIN: f64 = 1.0 / (1 << 22) as f64;
 
 /// Unmarks each triangle that may be within `distance` of a triangle with which it shares no vertex. `welded` has the

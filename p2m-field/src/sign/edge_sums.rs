@@ -1,10 +1,10 @@
-//! Whether triangles that come one after the other form a surface without a boundary.
+//! A test of whether triangles form a surface without a boundary, which sees each triangle once.
 
 use super::types::SignRule;
 use twox_hash::XxHash3_64;
 
-/// Sums over the edges of triangles, which tell whether these form a surface without a boundary. Triangles may come in
-/// any order and in parts, and take no memory.
+/// Sums over the edges of triangles, which show whether the triangles form a surface without a boundary. Triangles may
+/// be added in any order and in parts, and are not kept in memory.
 ///
 /// Each edge has a hash of 128 bits of the coordinates of its ends. The hashes cancel if as many triangles run through
 /// each edge in one direction as in the other, and each of their bits is set an even number of times if each edge has
@@ -25,7 +25,7 @@ use twox_hash::XxHash3_64;
 /// ```
 #[derive(Clone, Copy, Debug, Default)]
 pub struct EdgeSums {
-    /// The sum of the hashes of edges that run upwards, less those of edges that run downwards.
+    /// The sum of the hashes of edges that run upwards, less the sum of the hashes of edges that run downwards.
     directed: u128,
     /// The exclusive or of all hashes.
     any: u128,
@@ -48,8 +48,8 @@ impl EdgeSums {
         }
     }
 
-    /// Returns the rule of a surface without a boundary, which is that of
-    /// [`SignedDistance::new`](super::SignedDistance::new), or `None` if an edge has an odd number of triangles.
+    /// Returns the rule that [`SignedDistance::new`](super::SignedDistance::new) chooses for a surface without a
+    /// boundary, or `None` if an edge has an odd number of triangles.
     #[must_use]
     pub fn rule(&self) -> Option<SignRule> {
         match (self.directed, self.any) {

@@ -1,4 +1,4 @@
-//! How the number of crossings changes between the points of a block.
+//! Changes of the number of crossings between the points of a block.
 //!
 //! The number falls by one where a segment crosses a triangle from its back to its front, and grows by one in the other
 //! direction. Exact predicates decide which triangles the segments between neighbouring points cross. A segment that
@@ -16,7 +16,7 @@ pub(super) struct Wall {
 }
 
 impl Wall {
-    /// Returns those of some triangles whose boxes meet a box.
+    /// Returns the triangles whose boxes intersect a box.
     pub(super) fn in_box(triangles: impl Iterator<Item = [V3; 3]>, bounds: &[V3; 2]) -> Vec<Self> {
         triangles.map(|corners| Self { corners, bounds: box_of(corners) }).filter(|wall| wall.meets(bounds)).collect()
     }
@@ -51,8 +51,9 @@ pub(super) struct Lattice {
 }
 
 impl Lattice {
-    /// Returns the change of the number of crossings from the start to each point that can be reached. `change` returns
-    /// it for two neighbours, or `None` if no way leads from one to the other.
+    /// Returns the change of the number of crossings from the start to each point that a flood over neighbouring points
+    /// reaches, or `None` for the others. `change` returns the change between two neighbours, or `None` if the flood
+    /// cannot pass from one to the other.
     pub(super) fn flood(&self, start: usize, mut change: impl FnMut(usize, usize) -> Option<i64>) -> Vec<Option<i64>> {
         let [x, y, z] = self.counts;
         let steps = [(1, x), (x, y), (x * y, z)];

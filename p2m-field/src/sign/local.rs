@@ -8,7 +8,7 @@
 //! [`Local`] is the sum of the polynomials of degree 1 of all nodes and triangles of a tree in the centre, with a bound
 //! on the error (proved, docs/proofs/fields.md). A node has a polynomial where its box does not meet the ball, and a
 //! triangle where its edges do not. While the bound is too large, the part with the largest error is replaced by its
-//! children. Triangles that remain are evaluated at each point.
+//! children: a node by two nodes or by its triangles, and a triangle by nothing, so that it is evaluated at each point.
 
 use super::solid_angles::{Estimate, HalfAngle, Node, Queue, SolidAngles};
 use super::solid_angles::{INFLATION, MAX_RELATIVE_COORDINATE, centroid, normal};
@@ -16,7 +16,7 @@ use p2m_core::engine::arithmetic::cross;
 use p2m_core::engine::vector::{V3, add_scaled, dot, length, scaled, sub};
 use std::f64::consts::PI;
 
-/// A sum of solid angles over 4 pi in a ball.
+/// A sum of solid angles over 4 pi, as a function of a point in a ball.
 pub(super) struct Local {
     /// The centre and the radius, multiplied by the scale of the tree.
     centre: V3,
@@ -49,13 +49,21 @@ struct Part {
 }
 
 const ZERO: Polynomial = Polynomial { value: 0.0, slope: [0.0; 3] };
-/// Polynomials of triangles with longer edges in units of their distance have too few digits.
+/// The largest length of an edge, in units of its distance from the ball, of a triangle that has a polynomial by its
+/// solid angle. Longer edges lose too many digits (see [`POLYNOMIAL_ROUNDING`]).
 const MAX_EDGE: f64 = 1e3;
-/// A dipole with a smaller error is not replaced by the solid angle of its triangle.
+/// The error below which the dipole of a triangle is not replaced by a polynomial by its solid angle.
+///
+/// No record exists of how this and the next constant were chosen. They decide the time, and not the bound on the
+/// error.
 const SMALL_ERROR: f64 = 1e-4;
-/// A triangle with a larger error is always near.
+/// The largest error of the polynomial of a triangle. A triangle with a larger one is evaluated at each point.
 const MAX_ERROR: f64 = 0.25;
-/// The bound on the rounding error of a polynomial.
+/// The bound on the rounding error of a polynomial. Values are solid angles over 4 pi, so it needs no scale.
+///
+/// The largest error comes from the gradient of a long edge, which divides by |a| |b| + a . b. For an edge of the
+/// length l at the distance d, cancellation leaves about 8 (d / l)^2 of |a| |b| there. With l < 1000 d ([`MAX_EDGE`]),
+/// the relative error is about 10^5 times a few u = 2^-53, which is below 1e-9 (docs/proofs/fields.md, "Balls").
 const POLYNOMIAL_ROUNDING: f64 = 1e-9;
 
 impl SolidAngles {
@@ -72,7 +80,7 @@ impl SolidAngles {
         Some(local)
     }
 
-    /// Refines a sum until `is_enough` says so.
+    /// Refines a sum until `is_enough` returns `true` or no part is left to refine.
     pub(super) fn refine(&self, local: &mut Local, is_enough: impl Fn(&Local) -> bool) {
         while !is_enough(local) {
             let Some(part) = local.pop() else { break };
@@ -103,11 +111,11 @@ impl SolidAngles {
         self.part(Part { polynomial, error, number, is_triangle: true }, 1.0)
     }
 
-    /// Rounds a part of so many triangles to multiples of the unit, so that sums are exact, and its error upwards.
+    /// Rounds a part of `count` triangles to multiples of the unit, so that sums are exact, and its error upwards.
     fn part(&self, part: Part, count: f64) -> Part {
         let Polynomial { value, slope } = part.polynomial;
         let is_small = |x: f64| x.abs() <= count;
-        // No continued solid angle exceeds 4 pi. A number of NaN is not small.
+        // No continued solid angle exceeds 4 pi. The comparisons are false for NaN.
         if part.error < count && is_small(value) && slope.into_iter().all(is_small) {
             let Estimate { value, error } = self.rounded(Estimate { value, error: part.error + POLYNOMIAL_ROUNDING });
             let slope = slope.map(|x| self.rounded(Estimate { value: x, error: 0.0 }).value);
@@ -136,7 +144,7 @@ impl Local {
         self.error += factor * part.error;
     }
 
-    /// Returns whether the polynomial is all of the sum.
+    /// Returns whether the polynomial is the whole sum, because no triangle is near.
     pub(super) fn is_whole(&self) -> bool {
         self.near.is_empty()
     }
@@ -217,7 +225,7 @@ impl Local {
             gradient = add_scaled(gradient, factor * (0.25 / PI) * self.radius, cross(a, b));
         }
         let error = error * self.radius * self.radius * (0.25 / PI) * INFLATION;
-        // A large error would have the triangle replaced anyway, and NaN is not small.
+        // A triangle with a large error would be replaced anyway. The comparison is false for NaN.
         let is_small = error < MAX_ERROR;
         if !is_small {
             return None;

@@ -95,10 +95,10 @@ impl<I, S> std::fmt::Debug for SignedDistance<I, S> {
     }
 }
 
-/// The number of queries of a batch for each sign that has to be decided, where neighbours share signs. It is small
-/// for points near a surface; if there are more signs, certificates are prepared later.
+/// The assumed number of queries of a batch per sign that has to be decided, where neighbours share signs. Near a
+/// surface fewer queries share a sign; if more signs have to be decided than assumed, certificates are prepared later.
 const QUERIES_PER_SIGN: usize = 16;
-/// The number of queries that an index is asked at once.
+/// The number of queries that are passed to an index at once.
 const BATCH_LEN: usize = 512;
 
 /// The rule of signs of a scene, with the tables that decide them.
@@ -111,7 +111,7 @@ struct Signs<S> {
     is_even: bool,
     /// Whether signs change at the surface alone.
     is_closed: bool,
-    /// The facts that are proved about the normals of a closed surface, once there are so many queries that it pays.
+    /// The proved facts about the normals of a closed surface, once there are enough queries for them to pay.
     certificates: OnceLock<Arc<Certificates<S>>>,
     /// Whether a thread prepares the certificates or has prepared them.
     preparations: Flag,
@@ -121,8 +121,8 @@ struct Signs<S> {
     ray_count: Counter,
 }
 
-/// Certificates are prepared when the rays so far and the queries of the next batch exceed this number for each
-/// triangle: casting the rays would then take about as long.
+/// The number of rays per triangle above which certificates are prepared, counting the rays so far and the queries of
+/// the next batch. Casting so many rays takes about as long as preparing them.
 const RAYS_PER_TRIANGLE: f64 = 2.0;
 
 impl SharedDistance {
@@ -144,16 +144,16 @@ impl<I, S: SharedSoup> SignedDistance<I, S> {
     /// coordinates. An empty scene is not an error.
     ///
     /// # Accuracy
-    /// The signs of oriented surfaces, and those by parity, are those of an exact count of crossings (proved,
-    /// [docs/proofs/fields.md]). Other winding numbers have an error bound that is proved but for the rounding of solid
-    /// angles, where it is observed; where the bound does not decide, the sign is [`Sign::Undefined`].
+    /// Signs of oriented surfaces and signs by parity come from an exact count of crossings (proved,
+    /// [docs/proofs/fields.md]). Other winding numbers have an error bound that is proved except for the rounding of
+    /// solid angles, which is observed. Where the bound does not decide, the sign is [`Sign::Undefined`].
     ///
     /// # Errors
     /// [`SignError::OtherKinds`], [`SignError::OtherScene`] and [`SignError::Build`].
     ///
     /// # Complexity
-    /// O(n log n) time, and again when so many signs were asked for that certificates pay. Then memory is 100 bytes for
-    /// each triangle and 36 bytes for each vertex. An edge of the boundary takes 300 bytes.
+    /// O(n log n) time, and the same again once enough signs have been requested for certificates to pay. Then memory
+    /// is 100 bytes per triangle and 36 bytes per vertex. A boundary edge takes 300 bytes.
     ///
     /// [docs/proofs/fields.md]: https://github.com/p2m-rs/p2m/blob/main/docs/proofs/fields.md
     pub fn new<T: Real>(index: I, soup: S) -> Result<Self, SignError>
@@ -166,11 +166,11 @@ impl<I, S: SharedSoup> SignedDistance<I, S> {
     /// Makes signs by a rule of your choice.
     ///
     /// # Errors
-    /// Those of [`new`](Self::new), and [`SignError::Open`] for [`SignRule::Parity`] if an edge has an odd
-    /// number of triangles.
+    /// The errors of [`new`](Self::new), and [`SignError::Open`] for [`SignRule::Parity`] if an edge has an odd number
+    /// of triangles.
     ///
     /// # Complexity
-    /// The complexity is that of [`new`](Self::new).
+    /// Same as [`new`](Self::new).
     pub fn with_rule<T: Real>(index: I, soup: S, rule: SignRule) -> Result<Self, SignError>
     where
         I: ClosestPoint<T>,
@@ -207,8 +207,8 @@ impl<I, S: SharedSoup> SignedDistance<I, S> {
                  winding number exceeds a half in magnitude, which means little there",
             ),
             SignRule::Winding => Some(
-                "the surface is open: points are inside where the winding number exceeds a half in magnitude, which is a \
-                 guess near holes",
+                "the surface is open: points are inside where the winding number exceeds a half in magnitude, which is \
+                 a guess near holes",
             ),
             SignRule::Parity => Some(
                 "the surface is closed, but its triangles have different orientations: points are inside where a ray \
@@ -263,7 +263,7 @@ impl<I, S: SharedSoup> SignedDistance<I, S> {
         self.closest_points_by(&self.index, queries, options, batch)
     }
 
-    /// Does the same with an index that stands for that of these signs.
+    /// Does the same as [`closest_points`](Self::closest_points), by another index over the same scene.
     #[doc(hidden)]
     pub fn closest_points_by<T: Real>(
         &self,
@@ -283,12 +283,12 @@ impl<I, S: SharedSoup> SignedDistance<I, S> {
         out
     }
 
-    /// Writes the signed distances of queries, in their order, computed as a [`batch`]: NaN where the sign is not defined,
-    /// and infinity where there is no answer. `index` may stand for that of these signs.
+    /// Writes the signed distances of queries, in their order, computed as a [`batch`]: NaN where the sign is not
+    /// defined, and infinity where there is no answer. `index` is an index over the same scene.
     ///
-    /// The values are those of [`closest_points`](Self::closest_points), but neighbours share signs: if the surface is
-    /// closed, all points have one sign that are nearer to a point than the surface is, and so have two such balls that
-    /// intersect.
+    /// The values equal the distances of [`closest_points`](Self::closest_points), but neighbours share signs: if the
+    /// surface is closed, all points within a ball whose radius is the distance of its centre from the surface have one
+    /// sign, and so do the points of two such balls that intersect.
     pub fn distances_into<T: Real>(
         &self,
         index: &(impl ClosestPoint<T> + Sync + ?Sized),
@@ -306,8 +306,8 @@ impl<I, S: SharedSoup> SignedDistance<I, S> {
         });
     }
 
-    /// Returns the signed distance of a query with this answer. `balls` have outside and inside points, and are those of
-    /// queries before it.
+    /// Returns the signed distance of a query, given the answer to it. `balls` are known balls of outside and of inside
+    /// points, from earlier queries.
     fn distance_of<T: Real>(&self, query: &Point3<T>, found: &BatchAnswer<'_, T>, balls: &mut [KnownBall; 2]) -> T
     where
         I: ClosestPoint<T>,
@@ -376,8 +376,9 @@ impl<I: ClosestPoint<f64>, S: SharedSoup> SignedDistance<I, S> {
     }
 }
 
-/// Answers queries in the parts of a [`batch`], each part by a function of its own that `begin` returns. Queries go to the
-/// index in their order, so that signs are looked up in it as well.
+/// Answers queries in the parts of a [`batch`]. For each part, `begin` makes a function that turns answers into
+/// results. Queries are passed to the index in the order of the batch, so that the function sees neighbours one after
+/// the other and they can share signs.
 fn answer_parts<T: Real, R: Send, F: FnMut(&Point3<T>, BatchAnswer<'_, T>) -> R>(
     index: &(impl ClosestPoint<T> + Sync + ?Sized),
     queries: &[Point3<T>],
@@ -406,12 +407,12 @@ struct KnownBall {
 }
 
 impl KnownBall {
-    /// Returns whether a point, with an open ball around it of this radius or without one, is certainly connected with the
-    /// ball: then nothing separates their points from each other.
+    /// Returns whether a point, or the open ball of this radius around it, certainly intersects the known ball. Then no
+    /// surface separates the points of both. A radius of 0 stands for the point alone.
     fn meets(&self, point: &Point3<f64>, radius: f64) -> bool {
         let reach = self.radius + radius;
-        // Smaller squares would lose digits to underflow, and an infinite one is below no other one. The factor covers
-        // the rounding of both squares.
+        // Smaller squares would lose digits to underflow, and an infinite square is never below another one. The factor
+        // covers the rounding of both squares.
         self.radius > 1e-140 && (point - self.centre).norm_squared() < reach * reach * (1.0 - 1e-12)
     }
 }
@@ -433,7 +434,7 @@ impl<S: SharedSoup> Signs<S> {
         Ok(Self { soup, rule, winding, is_even, is_closed, certificates, preparations, roundoff, bounds, ray_count })
     }
 
-    /// Prepares the certificates if that pays for so many queries.
+    /// Prepares the certificates if they pay for this number of queries.
     fn prepare_for(&self, queries: usize) {
         let rays = self.ray_count.get() as f64 + queries as f64;
         let pays = self.is_closed && rays > RAYS_PER_TRIANGLE * self.soup.triangles().len() as f64;
@@ -447,7 +448,7 @@ impl<S: SharedSoup> Signs<S> {
         }
     }
 
-    /// Returns the sign of a query by its closest point. Rays are cast at `rays`, if there are any.
+    /// Returns the sign of a query by its closest point. Rays are cast on `rays`, if it is given.
     fn sign<T: Real>(&self, query: &Point3<f64>, closest: &ClosestFeature, rays: Option<&dyn RayQuery<T>>) -> Sign {
         if closest.distance == 0.0 {
             return Sign::Boundary;

@@ -1,7 +1,7 @@
 //! Sums of the solid angles of a few triangles at the points of a block, eight points at once.
 //!
-//! Half of a solid angle is the argument of a complex number, so a sum is the argument of a product. The product is
-//! continued across the negative real axis by counting turns.
+//! Half of a solid angle is the argument of a complex number, so the sum of such halves is the argument of the product.
+//! The product is continued across the negative real axis by counting turns.
 
 use super::solid_angles::{Estimate, MAX_CANCELLATION};
 use super::triangle::ROUNDING;

@@ -9,10 +9,10 @@ use p2m_core::{Feature, PrimitiveId, Soup};
 
 /// The normals of the triangles of a scene at their faces, edges and vertices.
 ///
-/// The normal of a face is (b - a) x (c - a), with the length 1. At an edge it is the sum of the normals of its
-/// triangles, and at a vertex that of all triangles around it, each multiplied by its angle there, with the length 1 as
-/// well: the pseudonormals of \[Baerentzen2005\]. Vertices are welded where they have the same coordinates. Triangles
-/// without area count as nothing.
+/// The normal of a face is (b - a) x (c - a). The normal of an edge is the sum of the normals of its triangles. The
+/// normal of a vertex is the sum of the normals of all triangles around it, each multiplied by its angle there. All of
+/// them are scaled to the length 1; they are the pseudonormals of \[Baerentzen2005\]. Vertices are welded where they
+/// have the same coordinates. Triangles without area count as nothing.
 ///
 /// ```
 /// use p2m_core::{Feature, PrimitiveId, Soup};
@@ -41,7 +41,7 @@ impl Normals {
     /// Some units of roundoff divided by the smallest sine of the triangles (observed).
     ///
     /// # Complexity
-    /// O(n log n) time; 150 bytes for each triangle.
+    /// O(n log n) time; 150 bytes per triangle.
     #[must_use]
     pub fn new(soup: &Soup<f64>) -> Self {
         let surface = Surface::new(soup);

@@ -74,21 +74,22 @@ pub(super) struct Estimate {
 
 /// The largest number of triangles in a leaf.
 const MAX_LEAF_TRIANGLES: usize = 4;
-/// Where the terms cancel more than this, the query is in an edge apart from rounding, and the angle is unknown.
+/// The largest cancellation of the terms of a tangent with which an angle is known. Beyond it, the query is on an edge
+/// up to rounding.
 pub(super) const MAX_CANCELLATION: f64 = (1u64 << 40) as f64;
-/// Nodes below this level are halved, so no path is long.
+/// The depth below which nodes are halved by number, so that no path is long.
 const MAX_DIVIDED_DEPTH: usize = 48;
 /// The largest coordinate, in units of the largest one of the triangles, of a query that is not far away. Beyond it up
 /// to 2^30 triangles have a total solid angle over 4 pi below 2^30 * 32 / (4 pi 2^80) < 1e-9.
 pub(super) const MAX_RELATIVE_COORDINATE: f64 = (1u64 << 40) as f64;
-/// Nodes allow for the rounding of their moments and of distances by this factor.
+/// The factor by which nodes allow for the rounding of their moments and of distances.
 pub(super) const INFLATION: f64 = 1.0 + 1e-9;
 
 impl SolidAngles {
     /// Builds the tree of a soup of triangles.
     ///
     /// # Complexity
-    /// O(n log n) time; about 130 bytes for each triangle.
+    /// O(n log n) time; about 130 bytes per triangle.
     pub(super) fn new(soup: &Soup<f64>) -> Self {
         let largest = soup.positions().iter().map(|p| p.coords.amax()).fold(0.0, f64::max);
         let scale = scale_of(largest);
@@ -258,8 +259,8 @@ fn build(triangles: &mut [[V3; 3]], first: u32, node: usize, nodes: &mut Vec<Nod
     build(other, second, children + 1, nodes, depth + 1);
 }
 
-/// Reorders triangles so that the boxes of the first ones and of the others are small, and returns the number of the
-/// first ones. `min` and `max` are the corners of the box of the centroids.
+/// Divides triangles into two groups with small boxes, by the surface-area heuristic. The triangles are reordered, and
+/// the number of triangles in the first group is returned. `min` and `max` are the corners of the box of the centroids.
 fn divide(triangles: &mut [[V3; 3]], min: V3, max: V3) -> usize {
     const BINS: usize = 16;
     let area = |b: [V3; 2]| {
@@ -321,7 +322,7 @@ pub(super) fn centroid([a, b, c]: &[V3; 3]) -> V3 {
     scaled(add(add(*a, *b), *c), 1.0 / 3.0)
 }
 
-/// Returns the normal of a triangle whose length is the area.
+/// Returns the normal of a triangle, with its area as the length.
 pub(super) fn normal([a, b, c]: &[V3; 3]) -> V3 {
     scaled(cross(sub(*b, *a), sub(*c, *a)), 0.5)
 }
@@ -394,13 +395,13 @@ pub(super) struct HalfAngle {
 }
 
 impl HalfAngle {
-    /// Returns `None` if the query is on an edge of the triangle, apart from rounding.
+    /// Computes the half-angle, or returns `None` if the query is on an edge of the triangle, up to rounding.
     #[inline]
     pub(super) fn new(triangle: &[V3; 3], q: V3) -> Option<Self> {
         Self::with_cancellation(triangle, q, MAX_CANCELLATION)
     }
 
-    /// Returns `None` if the terms of the tangent cancel more than that.
+    /// Computes the half-angle, or returns `None` if the terms of the tangent cancel more than `most`.
     #[inline]
     fn with_cancellation(triangle: &[V3; 3], q: V3, most: f64) -> Option<Self> {
         let [a, b, c] = triangle.map(|corner| sub(corner, q));
@@ -425,8 +426,8 @@ impl HalfAngle {
         Some(if is_positive { size } else { -size })
     }
 
-    /// Returns whether the query is behind the triangle. In its plane it is where a ray would begin, which is just
-    /// before the triangle. `None` is returned if the ray runs in the plane.
+    /// Returns whether the query is behind the triangle. A query in the plane of the triangle counts as just before the
+    /// triangle on its ray. `None` is returned if the ray runs in the plane.
     fn is_positive(&self, triangle: &[V3; 3], q: V3) -> Option<bool> {
         if self.tangent[1].abs() > ROUNDING * self.size {
             return Some(self.tangent[1] > 0.0);
@@ -442,7 +443,7 @@ impl HalfAngle {
     }
 }
 
-/// Returns the sum of the solid angles of all triangles of a soup over 4 pi. The query is on no triangle.
+/// Returns the sum of the solid angles of all triangles of a soup over 4 pi. The query has to be on no triangle.
 pub(super) fn sum_of_all(soup: &Soup<f64>, query: &Point3<f64>) -> Estimate {
     let bounds = soup.aabb();
     let scale = scale_of([bounds.min, bounds.max, *query].iter().map(|p| p.coords.amax()).fold(0.0, f64::max));

@@ -3,8 +3,8 @@
 use p2m_core::Soup;
 use p2m_core::engine::weld::{VertexWelder, group_by_vertex};
 
-/// The neighbour of an edge that has none: other than two triangles have the edge, both triangles run through it in one
-/// direction, or the triangle has equal corners.
+/// Marks an edge without a neighbour: the edge does not have exactly two triangles, both triangles run through it in
+/// the same direction, or the triangle has equal corners.
 pub(super) const NO_TRIANGLE: u32 = u32::MAX;
 
 /// The connections between triangles. Vertices are welded where they have the same coordinates.

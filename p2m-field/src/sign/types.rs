@@ -74,7 +74,8 @@ pub enum SignError {
     },
     /// The surface has an edge with an odd number of triangles, so parity is not defined.
     #[error(
-        "the surface is open at edge {edge} of triangle {triangle}: the rule parity needs a closed surface, the rule winding does not"
+        "the surface is open at edge {edge} of triangle {triangle}: the rule parity needs a closed surface, \
+         the rule winding does not"
     )]
     Open {
         /// The lowest index of a triangle with such an edge.
@@ -82,10 +83,10 @@ pub enum SignError {
         /// The edge of that triangle, which runs from the vertex of this index to the next.
         edge: usize,
     },
-    /// The index is over another scene than the one that is given.
+    /// The index was built over another scene than the given one.
     #[error("the index is over another scene: vertex {vertex} of triangle {triangle} is not on its scene")]
     OtherScene {
-        /// The triangle of the given scene.
+        /// The triangle of the given scene that shows it.
         triangle: usize,
         /// The vertex of that triangle, from 0 to 2.
         vertex: usize,

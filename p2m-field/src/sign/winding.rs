@@ -48,14 +48,15 @@ impl<S: SharedSoup> WindingNumbers<S> {
     /// [`SignError::OtherKinds`] if a primitive is not a triangle, and [`SignError::Build`] if a tree cannot be built.
     ///
     /// # Complexity
-    /// O(n log n) time. Memory is 60 bytes for each triangle and 300 bytes for each edge of the boundary.
+    /// O(n log n) time. Memory is 60 bytes per triangle and 300 bytes per edge of the boundary.
     pub fn new(soup: S) -> Result<Self, SignError> {
         check_kinds(&soup)?;
         let surface = Surface::new(&soup);
         Self::of_surface(soup, &surface, true)
     }
 
-    /// Without a tree of its own, all methods need rays.
+    /// Prepares the winding numbers of a surface. Unless `has_tree`, it has no tree of its own, and all methods need
+    /// rays.
     pub(super) fn of_surface(soup: S, surface: &Surface, has_tree: bool) -> Result<Self, SignError> {
         let rays = has_tree.then(|| TreeIndex::new(soup.clone())).transpose()?;
         let caps = if surface.boundary.is_empty() {
@@ -74,8 +75,8 @@ impl<S: SharedSoup> WindingNumbers<S> {
     /// whatever the accuracy. A point that is not finite has the number NaN.
     ///
     /// # Accuracy
-    /// The error is at most `accuracy`, unless rounding errors exceed it: about 1e-14 for each triangle of the caps that is
-    /// summed up exactly, and up to 4e-15 l / d at the distance d from a boundary edge of the length l.
+    /// The error is at most `accuracy`, unless rounding errors exceed it: about 1e-14 for each triangle of the caps
+    /// that is summed up exactly, and up to 4e-15 l / d at the distance d from a boundary edge of the length l.
     #[must_use]
     pub fn number(&self, query: &Point3<f64>, accuracy: f64) -> f64 {
         self.number_by(query, accuracy, None::<&dyn RayQuery<f64>>)
@@ -91,7 +92,7 @@ impl<S: SharedSoup> WindingNumbers<S> {
     /// Returns the winding number of a point as the sum over all triangles.
     ///
     /// # Accuracy
-    /// The rounding error is about 1e-14 for each triangle (observed), and more at an edge, as for [`number`](Self::number).
+    /// The rounding error is about 1e-14 per triangle (observed), and more at an edge, as for [`number`](Self::number).
     ///
     /// # Complexity
     /// O(n).
@@ -100,7 +101,8 @@ impl<S: SharedSoup> WindingNumbers<S> {
         sum_of_all(&self.soup, query).value
     }
 
-    /// Returns an estimate of the winding number of a finite point that is enough, or as good as it gets.
+    /// Estimates the winding number of a finite point, until `is_enough` accepts the estimate or it is as good as it
+    /// gets.
     fn estimate<T: Real>(
         &self,
         query: &Point3<f64>,
@@ -116,8 +118,8 @@ impl<S: SharedSoup> WindingNumbers<S> {
         }
     }
 
-    /// Returns the signed number of crossings of a ray from a point with the surface and its caps. The surface is that
-    /// of `rays`, if there are any.
+    /// Returns the signed number of crossings of a ray from a point with the surface and its caps. The surface is
+    /// searched by `rays`, if it is given.
     pub(super) fn crossings<T: Real>(&self, query: &Point3<f64>, rays: Option<&dyn RayQuery<T>>) -> i64 {
         let ray = ray(query);
         let crossings = self.hits(&ray, Hits::crossings(), rays).signed_count;
@@ -156,7 +158,7 @@ impl<S: SharedSoup> WindingNumbers<S> {
         self.caps.is_none()
     }
 
-    /// Returns the hits of a ray on the surface, which is that of `rays`, if there are any.
+    /// Returns the hits of a ray on the surface, which is searched by `rays`, if it is given.
     pub(super) fn hits<'r, T: Real>(
         &self,
         ray: &'r Ray,
@@ -175,7 +177,7 @@ impl<S: SharedSoup> WindingNumbers<S> {
 impl Estimate {
     const ZERO: Self = Self { value: 0.0, error: 0.0 };
 
-    /// Returns the winding number of a surface whose caps have this sum, by the number of crossings with both.
+    /// Returns the winding number of a surface, given this sum over its caps and the number of crossings with both.
     #[allow(clippy::cast_precision_loss, reason = "there are fewer than 2^30 crossings")]
     pub(super) fn complement(self, crossings: i64) -> Self {
         Self { value: crossings as f64 - self.value, ..self }

@@ -53,7 +53,7 @@ pub enum Invalid {
 impl Delaunay {
     /// Checks exactly whether this is the Delaunay triangulation of the sites. All tetrahedra have to be positively
     /// oriented, neighbours have to share faces, no vertex of a neighbour may be inside of a sphere, the outer faces
-    /// have to be those of the octahedron, and every site has to be a vertex.
+    /// have to be the faces of the octahedron, and every site has to be a vertex.
     ///
     /// These conditions suffice. Consider the number of tetrahedra over a point that is on no face. It does not change
     /// across inner faces, which have one tetrahedron on either side, so it is the same everywhere in the octahedron.
@@ -67,7 +67,7 @@ impl Delaunay {
     ///
     /// # Complexity
     ///
-    /// The time is linear, and about that of building the triangulation.
+    /// The time is linear, and about as long as building the triangulation takes.
     pub fn check(&self) -> Result<(), Invalid> {
         if self.tetrahedra.len() != self.neighbours.len() {
             let (tetrahedra, neighbours) = (self.tetrahedra.len(), self.neighbours.len());

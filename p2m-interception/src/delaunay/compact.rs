@@ -8,8 +8,8 @@ pub(crate) type CompactTetrahedra = (Vec<[u32; 4]>, Vec<[u32; 4]>, Vec<u32>);
 /// Removes the gaps of removed tetrahedra and sorts the others by the last of their vertices, so that tetrahedra near
 /// each other on the curve are near in memory. It returns their vertices and neighbours.
 ///
-/// The first tetrahedra were those with the vertices `kept` before others were removed and created. The last vector has
-/// for each tetrahedron its number among these, or [`NO_NEIGHBOUR`] if it is a new one. It is empty if `kept` is.
+/// `kept` has the vertices of the tetrahedra that existed before others were removed and created. The last vector has,
+/// for each tetrahedron, its number among those, or [`NO_NEIGHBOUR`] if it is new. It is empty if `kept` is.
 pub(crate) fn compact(tetrahedra: Vec<Tetrahedron>, sites: usize, kept: &[[u32; 4]]) -> CompactTetrahedra {
     let last_vertex = |t: &Tetrahedron| t.vertices.into_iter().fold(0, u32::max) as usize;
     let is_alive = |t: &Tetrahedron| t.vertices[0] != NO_NEIGHBOUR;

@@ -67,8 +67,9 @@ pub(crate) struct Insertion {
     pub(crate) boundary: Vec<(u32, u32)>,
     /// The new tetrahedra, one for each face of the boundary.
     pub(crate) created: Vec<u32>,
-    /// For each edge of a face around the cavity the index of the created tetrahedron that has it. The row is the
-    /// boundary index of the first end, the column that of the second. Entries of earlier insertions are never read.
+    /// For each edge of a face around the cavity, the index of the created tetrahedron that has it. The row is the
+    /// boundary index of the first end, and the column is the boundary index of the second end. Entries of earlier
+    /// insertions are never read.
     pub(crate) edge_owners: Box<[u8; MAX_LINKED_VERTICES * MAX_LINKED_VERTICES]>,
     /// The work so far.
     pub(crate) work: Work,
@@ -156,7 +157,7 @@ impl Insertion {
         Isa::best().run(InsertAll { insertion: self, sites })
     }
 
-    /// Replaces the first tetrahedra by those of a triangulation of some of the sites, given by vertices and neighbours.
+    /// Replaces the initial tetrahedra by a triangulation of some of the sites, given by vertices and neighbours.
     pub(crate) fn continue_from<'a>(&mut self, tetrahedra: impl Iterator<Item = (&'a [u32; 4], &'a [u32; 4])>) {
         self.tetrahedra.clear();
         self.tetrahedra.extend(
@@ -197,7 +198,7 @@ impl Insertion {
                 } else {
                     self.decide_orientation([corners[i], corners[j], corners[k]], p) == Ordering::Greater
                 };
-                // The orientation of the vertices as seen from p has the opposite sign of that of the face.
+                // Seen from p, the vertices have the opposite orientation of the face.
                 if is_beyond {
                     assert_ne!(next, NO_NEIGHBOUR, "inside the bounding sites");
                     (from, at) = (at, next);

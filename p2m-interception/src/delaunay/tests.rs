@@ -27,8 +27,8 @@ fn valid(points: &[[f64; 3]]) -> Delaunay {
     delaunay
 }
 
-/// Triangulates, and compares the result with the definition: no site is in any sphere, and the volumes add up to that
-/// of the octahedron. The order of the tetrahedra is free.
+/// Triangulates, and compares the result with the definition: no site is in any sphere, and the volumes add up to the
+/// volume of the octahedron. The order of the tetrahedra is free.
 fn valid_by_definition(points: &[[f64; 3]]) {
     let delaunay = valid(points);
     let sites = delaunay.sites();
@@ -350,7 +350,7 @@ fn valid_extension(points: &[[f64; 3]], first: usize) -> f64 {
     assert_eq!((extended.sites(), extended.unit()), (all.sites(), all.unit()));
     assert!((0..points.len()).all(|i| extended.site_of(i) == all.site_of(i)));
     assert_eq!(old_numbers.len(), extended.tetrahedra().len());
-    // The number of the site of the extended triangulation that is each site of the old one.
+    // For each site of the old triangulation, the number of the same site in the extended one.
     let mut new_sites: Vec<usize> = (0..old.sites().len()).collect();
     (0..first).for_each(|i| new_sites[old.site_of(i)] = extended.site_of(i));
     let mut found = vec![false; old.tetrahedra().len()];

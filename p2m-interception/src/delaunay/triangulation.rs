@@ -68,7 +68,7 @@ impl Delaunay {
     /// # Complexity
     ///
     /// The time is O(n log n) expected for points spread over a surface or in space. It is O(n^2) in the worst case,
-    /// as is the number of tetrahedra. While building it needs 32 bytes for each tetrahedron and 60 for each point,
+    /// as is the number of tetrahedra. While building it needs 32 bytes per tetrahedron and 60 for each point,
     /// besides the memory that remains ([`memory`](Self::memory)).
     pub fn new(points: &[[f64; 3]], reach: f64) -> Result<Self, DelaunayError> {
         Self::within(points, reach, Self::NONE as usize)
@@ -85,14 +85,14 @@ impl Delaunay {
         Ok(Self::build_beside(points, reach, max_tetrahedra, None, false, |_| ())?.0)
     }
 
-    /// Adds points to a triangulation. `points` begins with the points that it has, in their order, and `reach` is
-    /// that of before. The result is the triangulation of all points, and for each of its tetrahedra the number that it
-    /// has in this one, or [`NONE`](Self::NONE) if it is new. At most `max_tetrahedra` tetrahedra may exist at a time,
-    /// and eight times as many may be created.
+    /// Adds points to a triangulation. `points` begins with the points of this triangulation, in their order, and
+    /// `reach` is the reach that it was built with. Returns the triangulation of all points and, for each of its
+    /// tetrahedra, the number of that tetrahedron in this triangulation, or [`NONE`](Self::NONE) if it is new. At most
+    /// `max_tetrahedra` tetrahedra may exist at a time, and eight times as many may be created.
     ///
-    /// The tetrahedra satisfy the same definition as those of [`new`](Self::new), but where more than four sites are
-    /// cospherical there are several such triangulations, and they may be others. [`work`](Self::work) is the
-    /// work of adding.
+    /// The tetrahedra satisfy the same definition as after [`new`](Self::new). Where more than four sites are
+    /// cospherical, several triangulations do, and the result may be another one. [`work`](Self::work) is the work of
+    /// adding.
     ///
     /// # Errors
     ///
@@ -119,8 +119,9 @@ impl Delaunay {
     }
 
     /// Triangulates points as [`within`](Self::within), or as [`extend`](Self::extend) if the first ones have a
-    /// triangulation already. The second result is that of `extend`, but empty if everything was built.
-    /// The third one is that of `other`, which gets the sites. If `parallel`, another thread inserts sites meanwhile.
+    /// triangulation already. The second result is the second result of `extend`, but empty if everything was built
+    /// anew. The third one is the result of `other`, which receives the sites. If `parallel`, another thread inserts
+    /// sites while `other` runs.
     #[allow(clippy::float_cmp, reason = "the same or not")]
     pub(crate) fn build_beside<R>(
         points: &[[f64; 3]],

@@ -289,7 +289,7 @@ impl Block {
 }
 
 impl BlockQuery {
-    /// A query at the origin of the frame, which stands for none.
+    /// A placeholder: a query at the origin of the frame.
     pub(crate) const NOWHERE: Self =
         Self { rounded: Rounded { low: [0.0; 3], high: [0.0; 3] }, local: [0.0; 3], cells: [0.0; 3] };
 
@@ -307,8 +307,7 @@ impl BlockQuery {
     }
 }
 
-/// Returns an exponent of units, at least the lowest one, of which every lower one is too low for `length` to be below
-/// 2^`bits` units.
+/// Returns a lower bound on the exponent of a unit with which `length` is below 2^`bits` units, within [`EXPONENTS`].
 fn least_exponent(length: f64, bits: i32) -> i32 {
     let exponent = if length.is_finite() { exponent(length) } else { i32::from(*EXPONENTS.end()) };
     (exponent - bits).clamp(i32::from(*EXPONENTS.start()), i32::from(*EXPONENTS.end()))

@@ -93,7 +93,7 @@ impl BoxTest {
     }
 }
 
-/// The distances from one point to the lanes of a packet, as the filter of the packet finds them.
+/// The distances from one point to the lanes of a packet, computed by the filter of the packet.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct LaneDistances {
     /// The squared distances in the unit of the packet, lane by lane. All are zero if the filter cannot be used
@@ -109,8 +109,8 @@ impl LaneDistances {
     pub(crate) const UNKNOWN: Self = Self { squared: [0.0; LANES], error_above: f32::INFINITY };
 }
 
-/// A SIMD kernel that runs the filter of a packet at a point. It returns the distances, and an upper bound of the
-/// distance to the nearest lane with that lane. The latter is `None` if the filter cannot be used.
+/// A SIMD kernel that runs the filter of a packet at a point. It returns the distances, and the lane with the least
+/// upper bound on its distance, with that bound. The latter is `None` if the filter cannot be used.
 pub(crate) struct DistancesAtPoint<'a> {
     /// The packet whose lanes are tested.
     pub(crate) packet: &'a Packet,
@@ -153,9 +153,9 @@ impl SimdKernel for NearestVertices<'_> {
     }
 }
 
-/// Returns a lower bound of the distance to the nearest of some lanes of a packet, in its unit, given the squared
-/// distances that the filter finds and the amount by which they may exceed the true ones. `exclusion` is zero for these
-/// lanes and infinite for the others.
+/// Returns a lower bound on the distance from a point to the nearest of some lanes of a packet, in the unit of the
+/// packet. It takes the squared distances that the filter computed, and the amount by which they may exceed the true
+/// ones. `exclusion` is zero for these lanes and infinite for the others.
 #[inline(always)]
 pub(crate) fn least_of_lanes<I: InstructionSet>(
     squared: &[f32; LANES],

@@ -1,11 +1,25 @@
-//! The search of the lists of several queries that take turns.
+//! The search of the lists of several queries in turns.
+//!
+//! The basic idea is that in each round every query visits one packet. A single search waits for memory at each packet,
+//! and mispredicts whether the packet is near enough. In a round, the reads of all queries overlap, and arithmetic
+//! replaces the branches:
+//!
+//! ```text
+//! while cursors are left:
+//!     bound and sort the packets of each block that has been opened
+//!     for each cursor: take the nearest packet of its block
+//!         if the packet is within the limit of its query, visit it in this round
+//!         else open the next block, because the other packets of this block are farther still
+//!     filter all packets of the round together
+//!     keep the cursors that have packets or blocks left
+//! ```
 
 use crate::list::block::{BLOCK_WIDTH, Block, BlockQuery};
 use p2m_bvh::PacketTree;
 use p2m_bvh::engine::interleaved::{InterleavedSearch, PacketVisit, SEARCHES};
 use p2m_core::engine::simd::{EightLanes, InstructionSet, lane_of_key, value_of_key};
 
-/// The place of a search in its list.
+/// The position of a search in its list.
 #[derive(Clone, Copy)]
 struct Cursor {
     search: u32,
@@ -20,7 +34,7 @@ struct Cursor {
     query: BlockQuery,
 }
 
-/// The search of several queries, which take turns, in a partition. Each partition implements the SIMD kernel.
+/// A SIMD kernel that searches a partition for several queries in turns. Each partition implements it.
 pub(crate) struct SearchInterleaved<'a, 'b, P> {
     pub(crate) partition: &'a P,
     /// The number of searches of `several` that have begun.

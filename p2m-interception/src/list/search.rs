@@ -35,7 +35,7 @@ impl Block {
     }
 }
 
-/// Searches a list: the packets that can hold the answer are given to `state`, the nearest ones of each block first.
+/// Searches a list. Passes the packets that can hold the answer to `state`, the nearest ones of each block first.
 /// `rest` begins with the blocks that follow `first` in the list and may be longer.
 #[inline(always)]
 pub(crate) fn search_list<I: InstructionSet, C: Collector>(

@@ -4,7 +4,8 @@ use crate::progress::{BuildStage, Progress};
 use std::ops::{Add, AddAssign, Sub, SubAssign};
 use std::sync::atomic::{AtomicU64, Ordering};
 
-/// The budgets of a scene with fewer primitives are those of a scene with this many.
+/// The least number of primitives that budgets are computed for. Smaller scenes have the budgets of a scene with this
+/// many.
 pub(crate) const MIN_PRIMITIVES_FOR_BUDGETS: usize = 10_000;
 
 /// The amounts that cells take of the budgets.
@@ -17,7 +18,7 @@ pub(crate) struct Spent {
 }
 
 impl Spent {
-    /// Returns what a number of bytes and of tests takes.
+    /// Makes an amount of bytes and tests.
     pub(crate) fn new(bytes: usize, tests: usize) -> Self {
         let [bytes, tests] = [bytes, tests].map(|n| i64::try_from(n).unwrap_or(i64::MAX));
         Self { bytes, tests }
@@ -28,12 +29,12 @@ impl Spent {
         self.bytes > budgets.bytes || self.tests > budgets.tests
     }
 
-    /// Returns the larger one of both amounts of each budget.
+    /// Returns the larger amount of each budget.
     pub(crate) fn max(self, other: Self) -> Self {
         Self { bytes: self.bytes.max(other.bytes), tests: self.tests.max(other.tests) }
     }
 
-    /// Returns the part of a budget that has been spent, of the one that is closer to its end.
+    /// Returns the spent fraction of the budget that is closer to its end.
     pub(crate) fn part_of(self, budgets: Self) -> f64 {
         (self.bytes as f64 / budgets.bytes as f64).max(self.tests as f64 / budgets.tests as f64)
     }
@@ -72,7 +73,7 @@ impl SubAssign for Spent {
 pub(crate) struct Account {
     /// The amounts that had been spent before the task, or by an earlier time.
     before: Spent,
-    /// The amounts that have been spent, those from before the task included.
+    /// The amounts that have been spent, including those before the task.
     pub(crate) spent: Spent,
     /// The largest amounts that the task itself had spent before a split.
     pub(crate) peak: Spent,
@@ -91,7 +92,7 @@ impl Account {
         self.spent - self.before
     }
 
-    /// Returns whether no cell may be split any more, because a budget is exceeded.
+    /// Returns whether no cell may be split any more because a budget is exceeded.
     pub(crate) fn exceeds(&mut self, budgets: Spent) -> bool {
         self.peak = self.peak.max(self.own());
         let exceeds = self.spent.exceeds(budgets);

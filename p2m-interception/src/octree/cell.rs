@@ -6,7 +6,7 @@ use crate::octree::candidate::OpenCandidate;
 use crate::octree::cube::Cube;
 use crate::octree::split_rule::MAX_LIST_PACKETS;
 
-/// The tests of a packet at a point that the list of an open cell takes at most: at eight corners, and at the centre.
+/// The largest number of tests per packet that the list of an open cell takes: at the eight corners and at the centre.
 const TESTS_PER_OPEN_PACKET: usize = 9;
 
 /// A cell of an octree that is being built.
@@ -73,7 +73,7 @@ impl OpenCell {
     }
 }
 
-/// The place of a cell among those of a task or of an octree.
+/// The place of a cell among the cells of a task or of an octree.
 #[derive(Clone, Copy)]
 pub(crate) struct Place {
     /// The number of the cell.

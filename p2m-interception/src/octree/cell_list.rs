@@ -103,9 +103,9 @@ pub(crate) fn bound_from_corners(
     scene.isa().run(BoundFromCorners { packets: &scene.tree.leaves.packets, candidates, known, bounds });
 }
 
-/// Returns the lanes of a candidate without those that can only tie with a primitive of a lower id. Such a lane
-/// has one vertex as its nearest point everywhere in the cell, with a margin that makes the kernel return exactly
-/// the distance to this vertex, and a primitive with a lower id has the same vertex.
+/// Returns the lanes of a candidate, except those that can only tie with a primitive of a lower id. Such a lane has one
+/// vertex as its nearest point everywhere in the cell, with a margin that makes the kernel return exactly the distance
+/// to this vertex, and a primitive with a lower id has the same vertex.
 fn lanes_without_ties(scene: &SceneTree<'_>, cube: &Cube, candidate: &Candidate) -> u16 {
     /// The relative margin by which a vertex has to be the nearest point. The kernel needs 2^-38.
     const MARGIN: f64 = 1.0 / (1u64 << 36) as f64;

@@ -1,6 +1,6 @@
 //! The codes of cells: 32-bit numbers that a query follows from the cube of the domain to a leaf.
 //!
-//! The three highest bits of a code say its kind, the other bits are a number.
+//! The three highest bits of a code are its kind, and the other bits are a number.
 
 use crate::list::block::Block;
 use crate::octree::cell::{RefinedCell, RefinedCells};
@@ -9,15 +9,14 @@ use p2m_bvh::engine::packet::LANES;
 
 /// The number of bits of the number in a code. The kind is above them.
 pub(crate) const KIND_SHIFT: u32 = 29;
-/// The kind of a cube that is split twice. The number is that of the first of eight rows, which have the codes
-/// of 64 cubes.
+/// The kind of a cube that is split twice. Its number is the first of eight rows, which have the codes of 64 cubes.
 pub(crate) const KIND_TWO_LEVELS: u32 = 0;
-/// The kind of a cube that is split once. The number is that of the row with the codes of its eight children.
+/// The kind of a cube that is split once. Its number is the row with the codes of the eight children.
 pub(crate) const KIND_ONE_LEVEL: u32 = 1;
-/// The kind of a leaf with a list. The number is that of the first block of the list.
+/// The kind of a leaf with a list. Its number is the first block of the list.
 pub(crate) const KIND_LIST: u32 = 2;
-/// The kind of a leaf in which one primitive is the nearest everywhere. The number is its packet times [`LANES`],
-/// plus its lane.
+/// The kind of a leaf in which one primitive is the nearest everywhere. Its number is the packet times [`LANES`], plus
+/// the lane.
 pub(crate) const KIND_SINGLE: u32 = 3;
 /// The code of a leaf that the tree answers.
 pub(crate) const FALLBACK_CODE: u32 = 4 << KIND_SHIFT;
@@ -41,7 +40,7 @@ pub(crate) struct CodeWriter<'a> {
 
 /// A decoded code.
 pub(crate) enum CellCode {
-    /// The code is that of a cube that is split. Locating a query never ends at one.
+    /// The cube is split. Locating a query never ends at such a code.
     Rows,
     /// The leaf has a list, which begins at this block.
     List(usize),

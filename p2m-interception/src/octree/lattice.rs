@@ -1,9 +1,16 @@
 //! The split of a cell: which of its children the candidates of the cell can reach.
 //!
-//! The children have 27 corners together, the *lattice*. A candidate is tested in two steps. The first one bounds the
-//! distances from the lattice to the box of the candidate, and compares them with the distances to each dominator. The
-//! second one runs the filter of a packet, and only at the corners of those children that the box of the packet may
-//! reach.
+//! The children have 27 corners together, the *lattice*: the corners of the cell, and the middles of its edges, faces
+//! and interior. Each candidate is tested in two steps, the cheap one first:
+//!
+//! 1. Bound the distances from the lattice to the box of the candidate, and compare them with the distances to each
+//!    dominator. The box may reach a child if, for every dominator, some corner of the child may be nearer to the box
+//!    than to the dominator.
+//! 2. If the candidate is a packet, run its filter at the corners of the children that its box may reach, and nowhere
+//!    else. This leaves the lanes of the packet that can hold the answer in each child.
+//!
+//! Every distance serves all children that share its lattice point, and later the children themselves, whose corners
+//! are lattice points.
 
 use crate::list::corner_test::{Corner, Dominators, exclusion_of, least_of_lanes};
 use crate::octree::candidate::Candidate;
@@ -14,7 +21,8 @@ use p2m_core::engine::vector::{V3, norm_squared, sub};
 
 /// The number of points of a lattice, rounded up to whole vectors.
 const WIDTH: usize = LATTICE_POINTS.next_multiple_of(16);
-/// The number of candidates that are tried as the nearest one to a point.
+/// The number of candidates, those with the nearest boxes, that are evaluated to find the nearest point to a lattice
+/// point.
 pub(crate) const NEAREST_BOX_COUNT: usize = 4;
 /// The reciprocal of [`ROUND_UP`], rounded down.
 const ROUND_DOWN: f32 = 1.0 - 16.0 * f32::EPSILON;
@@ -62,14 +70,14 @@ pub(crate) const CUBE_POINTS: u32 = {
     all
 };
 
-/// The distances from the points of the lattice of a cell to the lanes of a packet, as the filter of the packet finds
-/// them. Those that no child needs mean nothing.
+/// The distances from the lattice points of a cell to the lanes of a packet, computed by the filter of the packet.
+/// Values that no child needs are undefined.
 #[derive(Clone)]
 #[repr(align(64))]
 pub(crate) struct LatticeDistances {
     /// The squared distances in the unit of the packet. All are zero if the filter cannot be used at the point.
     squared: [[f32; LANES]; LATTICE_POINTS],
-    /// The smallest of these for each point.
+    /// The smallest squared distance at each point.
     least: [f32; LATTICE_POINTS],
     /// The amounts by which the filter may exceed the true distances, in the unit of the packet.
     error_above: [f32; LATTICE_POINTS],
@@ -105,11 +113,12 @@ pub(crate) struct KnownDistances<'a> {
 
 /// The memory of a split, which is used again for each one.
 pub(crate) struct Lattice {
-    /// For each candidate lower bounds of the squared distances from the lattice to its box, in sides of the cell.
+    /// For each candidate, lower bounds on the squared distances from the lattice to its box, in squared sides of the
+    /// cell.
     squares: Vec<[f32; WIDTH]>,
-    /// For each lattice point the few smallest of these bounds in ascending order.
+    /// For each lattice point, the few smallest values of `squares` in ascending order.
     few_squares: [[f32; WIDTH]; NEAREST_BOX_COUNT],
-    /// The candidates that have them.
+    /// The candidates with the distances in `few_squares`.
     few_numbers: [[u32; WIDTH]; NEAREST_BOX_COUNT],
     /// For each candidate the children that its box may reach, as bits.
     children: Vec<u8>,
@@ -139,7 +148,7 @@ impl Lattice {
         std::array::from_fn(|i| (f64::from(self.few_squares[i][at]) * side * side, self.few_numbers[i][at] as usize))
     }
 
-    /// Lets each candidate reach with all lanes the children that its box may reach.
+    /// Keeps all lanes of each candidate in the children that its box may reach.
     pub(crate) fn keep_all_lanes(&mut self) {
         self.lanes.clear();
         let row = |children: &u8| std::array::from_fn(|child| if children >> child & 1 == 1 { u16::MAX } else { 0 });
@@ -191,7 +200,7 @@ impl SimdKernel for BoundBoxes<'_> {
                 raise_to_interpolated(&mut row, &from_corners[number], per_side);
             }
             squares.push(row);
-            // The bound is inserted into the sorted columns.
+            // Each column of `few_squares` is kept sorted by insertion.
             let mut numbers = [number as u32; WIDTH];
             for (few_squares, few_numbers) in few_squares.iter_mut().zip(few_numbers.iter_mut()) {
                 for at in 0..WIDTH {
@@ -205,10 +214,10 @@ impl SimdKernel for BoundBoxes<'_> {
     }
 }
 
-/// Raises lower bounds of the squared distances from the lattice to a packet, in sides of the cell, given lower bounds
-/// of the distances from the corners of the cell. They follow from the concave function of the corner test: the squared
-/// distance from a weighted mean of corners is at least the mean of their squared distances, minus the mean of the
-/// squared distances between the corners and their mean.
+/// Raises lower bounds on the squared distances from the lattice to a packet, in squared sides of the cell, by
+/// interpolation between lower bounds on the distances from the corners of the cell. By the concave function of the
+/// corner test, the squared distance from a weighted mean of corners is at least the mean of their squared distances,
+/// minus the mean of the squared distances between the corners and their mean.
 #[inline(always)]
 #[allow(clippy::cast_possible_truncation, reason = "rounding is allowed for")]
 fn raise_to_interpolated(row: &mut [f32; WIDTH], from_corners: &[f64; 8], per_side: f64) {
@@ -241,7 +250,7 @@ pub(crate) struct ReachChildren<'a> {
     pub(crate) limits: &'a LatticeLimits,
 }
 
-/// For each dominator, the squared distances from the lattice, rounded up, in units of the side of the cell.
+/// For each dominator, the squared distances from the lattice to it, rounded up, in squared sides of the cell.
 pub(crate) struct LatticeLimits {
     rows: [[f32; WIDTH]; LATTICE_POINTS],
     /// The number of rows in use.
@@ -286,7 +295,8 @@ impl SimdKernel for ReachChildren<'_> {
                     near |= I::Wide::load(&squares[at..]).at_most(I::Wide::load(&row[at..])) << at;
                     at += I::Wide::LEN;
                 }
-                // A child stays reached while some of its corners are near. Once none is, the least number is zero.
+                // Once a dominator leaves none of the corners of a child near, `near & points` is zero, and the minimum
+                // stays zero.
                 for (reached, points) in reached.iter_mut().zip(&CHILD_POINTS) {
                     *reached = (*reached).min(near & points);
                 }
@@ -423,8 +433,8 @@ fn distances_at_points<I: InstructionSet>(
     }
 }
 
-/// Applies the corner test to a packet, given the distances from some points, among which the corners of the cell are.
-/// It returns those of some lanes that pass.
+/// Applies the corner test to a packet, given its distances from points that include the corners of the cell. Returns
+/// the lanes among `lanes` that pass.
 #[inline(always)]
 #[allow(clippy::cast_possible_truncation, reason = "sixteen lanes")]
 fn keep_lanes<I: InstructionSet>(

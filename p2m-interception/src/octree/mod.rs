@@ -236,7 +236,7 @@ fn lowest_owners(tree: &PacketTree) -> Vec<PrimitiveId> {
             }
         }
     }
-    // Packets do not share vertices, so a vertex of the scene may be several ones of the tree.
+    // Packets do not share vertices, so the tree may have several copies of a vertex of the scene.
     let key = |v: &V3| v.map(f64::to_bits);
     let mut lowest: FxHashMap<[u64; 3], PrimitiveId> = FxHashMap::with_capacity_and_hasher(owners.len(), FxBuildHasher);
     for (v, owner) in leaves.vertices.iter().zip(&owners) {

@@ -26,14 +26,14 @@ use crate::octree::task::CellTask;
 use crate::options::Domain;
 use p2m_core::engine::vector::{V3, norm_squared, sub};
 
-/// The most memory that the codes of a split take. Eight rows with two levels stand for at least five splits.
+/// The largest memory of the codes of a split. Eight rows with two levels stand for at least five splits.
 const CODE_BYTES_PER_SPLIT: usize = (8 * size_of::<Row>()).div_ceil(5);
 
 /// A refinement of the cube of a domain: everything that is the same for all cells.
 pub(crate) struct Refinement<'a> {
     /// The scene with its tree.
     pub(crate) scene: SceneTree<'a>,
-    /// Where queries are expected, by which cells are split.
+    /// The expected distribution of queries, by which cells are split.
     pub(crate) queries: ExpectedQueries,
     /// The domain in which queries are expected.
     pub(crate) domain: Domain,
@@ -265,7 +265,23 @@ impl Refinement<'_> {
         RefinedCell::Tree
     }
 
-    /// Splits a cell. The centre of a cell with packets was sampled before.
+    /// Splits a cell into its eight children, and refines each of them depth first.
+    ///
+    /// The basic idea is to treat the children together. Their corners coincide in the 27 points of a lattice, so a
+    /// candidate is tested once at each lattice point instead of once at each of the 64 corners:
+    ///
+    /// 1. Bound the distances from the lattice to the boxes of all candidates.
+    /// 2. Find a dominator for each lattice point: a point of the scene that is the nearest, or nearly so. The corners
+    ///    of the cell have one already, and so has the centre of a cell with packets. For other points the packets with
+    ///    the nearest boxes are evaluated. As long as candidates are nodes, the tree is searched instead.
+    /// 3. Find the children that the box of each candidate may reach, by the corner test of boxes.
+    /// 4. If the candidates are packets, run their filters at the corners of these children only, and apply the corner
+    ///    test to their lanes. Distances at the corners of the cell are `known` and are not computed again.
+    /// 5. Refine each child with the candidates and lanes that reach it, and with the distances that were just
+    ///    computed.
+    ///
+    /// The tree answers in the cell if a budget is exceeded. The centre of a cell with packets has to be sampled
+    /// before.
     fn split(
         &self,
         task: &mut CellTask,

@@ -9,8 +9,8 @@ use p2m_core::engine::vector::V3;
 use p2m_core::{Best, Isa, PrimitiveId, QueryOptions};
 use rustc_hash::FxHashMap;
 
-/// A search of the tree that takes more tests is charged to the work. Shorter ones are included in the charge
-/// of a split.
+/// The number of tests above which a search of the tree is charged to the work budget. Shorter searches are included in
+/// the charge of a split.
 const CHARGE_SEARCH_ABOVE_TESTS: usize = 512;
 
 /// The result of one search of the tree, and the work of it.
@@ -43,8 +43,8 @@ impl SceneTree<'_> {
         self.tree.isa()
     }
 
-    /// Searches the tree. The work of an ordinary search is included in what a split is charged. Where most of the
-    /// scene is about equally near, a search takes time in proportion to the size of the scene, and is charged here.
+    /// Searches the tree. The charge of a split includes the work of an ordinary search. Where most of the scene is
+    /// about equally near, a search takes time in proportion to the size of the scene, and is charged here.
     pub(crate) fn probe(&self, account: &mut Account, x: V3) -> TreeProbe {
         let probe = (self.search)(x);
         let tests = probe.packets + probe.primitives;
@@ -67,9 +67,9 @@ impl SceneTree<'_> {
         *known.entry(x.map(f64::to_bits)).or_insert_with(|| self.nearest(account, x))
     }
 
-    /// Returns a point of the scene that is the nearest to `x`, or nearly so, given the few packets whose boxes are the
-    /// nearest to `x` with the squared lower bounds of their distances, the nearest first. If the filter of one of
-    /// them cannot be used, it searches the tree.
+    /// Returns a point of the scene that is the nearest to `x`, or nearly so. `few` are the candidates with the boxes
+    /// nearest to `x`, nearest first, with squared lower bounds on their distances. The tree is searched if the filter
+    /// of one of them cannot be used.
     pub(crate) fn nearest_of_few(
         &self,
         account: &mut Account,

@@ -2,11 +2,11 @@
 //!
 //! A split costs memory and saves time where queries are. The *mass* of a cell is the share of queries that fall into
 //! it, summed over several kinds of queries, each with a weight: uniform in the domain, uniform in smaller boxes around
-//! the scene, and on the surface. Weights do not add up to 1. The *cost* of the list of a cell is a time: that of the
-//! packets which the bounds of its blocks let pass at the centre of the cell, and that of its blocks, both beyond the
-//! first one. A cell without a list has a fixed cost, that of a search of the tree instead of a list. A cell is split
-//! if its mass times the part of its cost that a split saves exceeds a threshold, which is the lower the higher the
-//! resolution is.
+//! the scene, and on the surface. Weights do not add up to 1. The *cost* of the list of a cell is the time that a query
+//! at the centre of the cell spends on it, beyond the time for one packet in one block: testing the packets that the
+//! bounds of the blocks let pass, and bounding the packets of the blocks. A cell without a list has a fixed cost, the
+//! time by which a search of the tree is slower than a list. A cell is split if its mass times the part of its cost
+//! that a split saves exceeds a threshold. The higher the resolution is, the lower is the threshold.
 //!
 //! A cell that is not split gets a list, unless the list would be long, or the tree is faster than the list.
 //!
@@ -22,12 +22,13 @@ use crate::options::Domain;
 use p2m_core::Aabb;
 use p2m_core::engine::vector::{V3, norm_squared, sub};
 
-/// The boxes in which queries are expected, uniformly in each: the side in sizes of the scene, and the weight. The
-/// boxes are nested, so queries are denser near the scene.
+/// The boxes in which queries are expected to be uniform: the side in sizes of the scene, and the weight. The boxes are
+/// nested, so queries are denser near the scene. No record exists of how the weights were chosen.
 const QUERY_BOXES: [(f64, f64); 4] = [(EVERYWHERE_SCENE_SIZES, 1.0), (4.0, 0.3), (2.0, 0.3), (1.05, 1.0)];
 
-/// The time in which a query tests a packet of a list or of the tree, in nanoseconds. The three times were observed on
-/// one processor. Only their ratios matter, and the cells depend on each of them.
+/// The time in which a query tests a packet of a list or of the tree, in nanoseconds. This and the next two times were
+/// observed on one processor, of which no record exists. Only their ratios matter, and the cells depend on each of
+/// them.
 const NS_PER_PACKET: f64 = 40.0;
 /// The time in which a query bounds the packets of one block of a list, in nanoseconds.
 const NS_PER_BLOCK: f64 = 15.0;
@@ -37,21 +38,23 @@ const NS_PER_NODE: f64 = 30.0;
 /// tree, in nanoseconds.
 pub(crate) const NS_SAVED_BY_LIST: f64 = 300.0;
 
-/// The part of its cost that a cell is assumed to save by a split.
+/// The fraction of its cost that a cell is assumed to save by a split.
 const COST_SAVED_BY_SPLIT: f64 = 0.5;
-/// A cell that would be split even if its list cost this part of what the boxes of its packets predict is split before
-/// the filters of the packets have run.
+/// A cell is split at once, before the filters of its packets run, if even this fraction of the cost predicted from
+/// their boxes justifies it.
 const CERTAIN_PART_OF_BOX_COST: f64 = 0.25;
-/// The time that a split has to save, in nanoseconds times mass, where the mass of a cell is measured in that
+/// The least saving for which a cell is split at resolution 1, in nanoseconds times mass. The unit of mass is the mass
 /// of one packet.
 const MIN_NS_SAVED_BY_SPLIT: f64 = 100.0;
 
-/// A cell with a longer list is left to the tree.
+/// The largest number of packets in a list. Cells with more are left to the tree. Lists of up to 256 packets pay,
+/// because a block of eight is bounded faster than one packet is tested
+/// (docs/decisions/016-lists-bounded-by-cell-corners.md).
 pub(crate) const MAX_LIST_PACKETS: usize = 256;
-/// Longer lists are compared with a search of the tree at the centre of the cell.
+/// The number of packets above which a list is compared with a search of the tree at the centre of the cell.
 const COMPARE_WITH_TREE_ABOVE_PACKETS: usize = 24;
 
-/// Where queries are expected, and so what a split is worth.
+/// The expected distribution of queries, which decides how much a split is worth.
 pub(crate) struct ExpectedQueries {
     /// The boxes in which queries are uniform, each with the number of queries in a unit of volume.
     uniform_boxes: Vec<(Aabb<f64>, f64)>,
@@ -60,7 +63,7 @@ pub(crate) struct ExpectedQueries {
 }
 
 impl ExpectedQueries {
-    /// Expects queries in a domain, with this cube, and on the surface of a number of packets.
+    /// Makes the distribution of queries in a domain with this cube, and on the surface of `packet_count` packets.
     pub(crate) fn new(domain: Domain, cube: &DomainCube, packet_count: usize) -> Self {
         let uniform_box = |scale: f64, weight: f64| {
             let half = cube.scene_extent * (scale * 0.5);
@@ -96,8 +99,8 @@ impl ExpectedQueries {
         mass
     }
 
-    /// Returns the resolution from which on a split is worth its memory, given the cost of the cell. It is infinite for
-    /// a cell of the last level.
+    /// Returns the least resolution at which a split is worth its memory, given the cost of the cell. It is infinite
+    /// for a cell of the last level.
     pub(crate) fn resolution_of_split(&self, cube: &Cube, candidates: &[Candidate], cost: f64) -> f64 {
         if cube.level >= MAX_LEVEL || cost <= 0.0 {
             return f64::INFINITY;
@@ -107,7 +110,7 @@ impl ExpectedQueries {
     }
 }
 
-/// The centre of a cell, where a query is taken to cost what queries cost in the cell. Its vectors are used again.
+/// The centre of a cell, at which one query stands for all queries in the cell. Its vectors are reused.
 #[derive(Default)]
 pub(crate) struct CellCentre {
     /// The nearest point of the scene, which is a dominator.
@@ -123,13 +126,13 @@ pub(crate) struct CellCentre {
 }
 
 impl CellCentre {
-    /// Counts the packets whose boxes let them pass, given `y` and `box_squares`.
+    /// Counts the packets that blocks with boxes would let pass, given `y` and `box_squares`.
     pub(crate) fn count_passing_boxes(&mut self, cube: &Cube) {
         let y_squared = norm_squared(sub(cube.point(LATTICE_CENTRE), self.y));
         self.passing_boxes = self.box_squares.iter().filter(|square| **square <= y_squared).count();
     }
 
-    /// Counts the packets that their distances from the corners let pass, given `y` and `from_corners`.
+    /// Counts the packets that blocks with corners would let pass, given `y` and `from_corners`.
     pub(crate) fn count_passing_corners(&mut self, cube: &Cube) {
         let squares = cube.corners.map(|corner| norm_squared(sub(corner.x, self.y)));
         let y_squared = norm_squared(sub(cube.point(LATTICE_CENTRE), self.y));
@@ -160,7 +163,7 @@ impl CellCentre {
         self.passing_boxes.min(self.passing_corners)
     }
 
-    /// Returns a cost that a list has in any case. Only the boxes of its packets are known yet.
+    /// Returns a cost that the list is taken to have in any case, when only the boxes of its packets are known.
     pub(crate) fn certain_cost(&self, packets: usize) -> f64 {
         CERTAIN_PART_OF_BOX_COST * list_cost(self.passing_boxes, packets)
     }
@@ -185,7 +188,8 @@ impl CellCentre {
     }
 }
 
-/// Returns the cost of a list of which a query tests some packets, in nanoseconds beyond that of the shortest list.
+/// Returns the cost of a list of `packets` packets, of which a query tests `tests`, in nanoseconds beyond the cost of
+/// the shortest list.
 fn list_cost(tests: usize, packets: usize) -> f64 {
     let blocks = packets as f64 / BLOCK_WIDTH as f64;
     NS_PER_PACKET * (tests as f64 - 1.0) + NS_PER_BLOCK * (blocks - 1.0).max(0.0)

@@ -8,7 +8,7 @@ use crate::octree::split_rule::CellCentre;
 use p2m_core::engine::vector::V3;
 use rustc_hash::FxHashMap;
 
-/// The work of one thread: the cells that it finished, and those that it left open.
+/// A task of one thread: the cells that it finished, and the cells that it left open.
 #[derive(Default)]
 pub(crate) struct CellTask {
     /// The resolution of the pass.

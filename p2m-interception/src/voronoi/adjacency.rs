@@ -6,21 +6,21 @@ use p2m_bvh::engine::packet::LANES;
 use p2m_core::PrimitiveId;
 use rustc_hash::{FxBuildHasher, FxHashMap};
 
-/// The vertices and edges of a lane that a primitive with a lower id has as well, as bits: bit i for vertex i, and bit
-/// 3 + i for the edge from vertex i to the next one.
+/// A bit mask of the vertices and edges of a lane that a primitive with a lower id shares: bit i is vertex i, and bit 3
+/// + i is the edge from vertex i to the next one.
 pub(crate) type OwnedByLowerId = u8;
 
 /// The vertices and edges of all primitives.
 pub(crate) struct EdgeAdjacency {
-    /// For each packet and lane the features that a primitive with a lower id has as well.
+    /// For each packet and lane, the vertices and edges that a primitive with a lower id shares.
     pub(crate) owned_by_lower_id: Vec<[OwnedByLowerId; LANES]>,
-    /// For each site the primitive with the lowest id that has it, as its packet times [`LANES`] plus its lane, or
+    /// For each site, the primitive with the lowest id that has it, as packet times [`LANES`] plus lane, or
     /// [`NO_PRIMITIVE`].
     pub(crate) owners: Vec<u32>,
     /// For each site the sites at the other ends of edges.
     pub(crate) edges: IncidenceLists,
-    /// For each packet and lane, and for the edge from each vertex to the next one, another triangle with this edge,
-    /// as its packet times [`LANES`] plus its lane, or [`NO_PRIMITIVE`].
+    /// For each packet and lane, and for the edge from each vertex to the next one, another triangle with this edge, as
+    /// packet times [`LANES`] plus lane, or [`NO_PRIMITIVE`].
     pub(crate) opposite_triangles: Vec<[[u32; 3]; LANES]>,
     /// Whether all sites are exactly at their vertices.
     pub(crate) is_exact: bool,
@@ -35,7 +35,7 @@ pub(crate) struct SiteTopology {
 }
 
 impl SiteTopology {
-    /// Adds the tetrahedra of a triangulation to the edges of primitives on its sites.
+    /// Combines the edges of primitives with the tetrahedra of a triangulation of their sites.
     pub(crate) fn new(adjacency: EdgeAdjacency, delaunay: &Delaunay) -> Self {
         let tetrahedra = (0..).zip(delaunay.tetrahedra());
         let incident = tetrahedra.flat_map(|(number, tetrahedron)| tetrahedron.iter().map(move |v| (*v, number)));
@@ -54,7 +54,7 @@ struct EdgeTriangles {
 /// Marks that there is no primitive.
 pub(crate) const NO_PRIMITIVE: u32 = u32::MAX;
 
-/// A function that takes a packet, a lane of it, the id of the primitive and its sites.
+/// A visitor of lanes. It receives a packet, a lane of it, the id of the primitive and its sites.
 type VisitLane<'a> = &'a mut dyn FnMut(usize, usize, PrimitiveId, &[usize]);
 
 impl EdgeAdjacency {
@@ -143,7 +143,8 @@ pub(crate) struct IncidenceLists<V = u32> {
 }
 
 impl<V: Copy + Default> IncidenceLists<V> {
-    /// Makes the lists of all items, one list after the other, from the index of the first item of each and the end.
+    /// Makes the lists from the items of all lists, one list after the other, and the index of the first item of each
+    /// list and the end.
     pub(crate) fn from_parts(firsts: Vec<u32>, items: Vec<V>) -> Self {
         Self { firsts, items }
     }

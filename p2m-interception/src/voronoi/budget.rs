@@ -2,11 +2,13 @@
 
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 
-/// The budget of a scene with fewer primitives is that of a scene with this many.
+/// The least number of primitives that a budget is computed for. Smaller scenes have the budget of a scene with this
+/// many.
 const MIN_PRIMITIVES_FOR_BUDGET: usize = 1000;
 
-/// The budget of a build. Whether it is exceeded does not depend on the order in which threads work, and nothing that
-/// was made is used then. So the index is the same on any number of threads.
+/// The memory and work budget of a build, which its threads share. Whether it is exceeded does not depend on the order
+/// in which threads work, and if it is exceeded, everything that was built is discarded. So the index is the same on
+/// any number of threads.
 pub(crate) struct BuildBudget {
     /// The largest size of one structure.
     bytes: usize,
@@ -19,7 +21,7 @@ pub(crate) struct BuildBudget {
 }
 
 impl BuildBudget {
-    /// Makes a budget of bytes and of tests for each of some primitives.
+    /// Makes a budget from numbers of bytes and of tests per primitive.
     #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "saturates; NaN is nothing")]
     pub(crate) fn new(bytes: f64, work: f64, primitives: usize) -> Self {
         let count = primitives.max(MIN_PRIMITIVES_FOR_BUDGET) as f64;
@@ -57,15 +59,15 @@ impl BuildBudget {
     }
 }
 
-/// Returns the number of tetrahedra that some vertices may have. Sites usually have seven tetrahedra, and rarely more
-/// than nine (observed).
+/// Returns the largest number of tetrahedra that is allowed for a number of vertices. Sites usually have seven
+/// tetrahedra, and rarely more than nine (observed).
 pub(crate) fn max_tetrahedra(vertices: usize) -> usize {
     const TETRAHEDRA_PER_VERTEX: usize = 16;
     // The corners of all tetrahedra are counted in 32 bits.
     vertices.max(MIN_PRIMITIVES_FOR_BUDGET).saturating_mul(TETRAHEDRA_PER_VERTEX).min(u32::MAX as usize / 4)
 }
 
-/// Converts a number to 32 bits, of which there are enough: budgets see to that.
+/// Converts a number to 32 bits. Budgets ensure that it fits.
 pub(crate) fn to_u32(n: usize) -> u32 {
     u32::try_from(n).expect("numbers of 32 bits")
 }

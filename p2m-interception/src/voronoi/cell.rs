@@ -12,9 +12,12 @@ use p2m_bvh::PacketTree;
 use p2m_bvh::engine::packet::LANES;
 use p2m_core::engine::vector::{V3, dot, norm_squared, sub};
 
-/// A site with more edges, such as the tip of a cone, gets no far half-space.
+/// The largest number of edges at a site with a far half-space. The tip of a cone, for example, has more.
+///
+/// No record exists of the scenes on which this and the next two constants were chosen;
+/// docs/decisions/022-far-queries-read-no-list.md has the method.
 const MAX_EDGES_FOR_HALF_SPACE: usize = 64;
-/// A far half-space that needs a larger relative lead over other sites is of no use.
+/// The largest relative lead over other sites with which a far half-space is of use.
 pub(crate) const MAX_RELATIVE_LEAD: f64 = 0.85;
 /// The distance of a far half-space from its site, in sizes of the scene.
 const HALF_SPACE_SCENE_SIZES: f64 = 0.15;
@@ -69,7 +72,14 @@ impl FarPartBuilder {
         }
     }
 
-    /// Computes the far half-space of the site. It is `None` if there is none that is of use.
+    /// Computes the far half-space of the site, or returns `None` if there is none that is of use.
+    ///
+    /// The basic idea is that far from the scene the nearest point is mostly a vertex. The half-space faces away from
+    /// the edges at the site and begins at a fixed distance from it. The cell is clipped to this half-space, and to the
+    /// points to which no edge at the site is nearer than the site. The corner test of the clipped polytope shows by
+    /// how much other primitives of the list could beat the site there. This lack, relative to the squared distance of
+    /// a primitive from the site, becomes the lead over the other sites that a query needs for the site to be the
+    /// answer.
     #[allow(clippy::cast_possible_truncation, reason = "rounded, and margins have room")]
     pub(crate) fn half_space(
         &mut self,
@@ -114,8 +124,8 @@ impl FarPartBuilder {
                 return None;
             }
         }
-        // The largest part of half the squared distance to another site by which a query has to be nearer to this
-        // site.
+        // The lead over another site that a query needs, as a fraction of half the squared distance between the two
+        // sites.
         let mut max_lead = 0.0f64;
         for entry in entries {
             let packet = &tree.leaves.packets[entry.packet as usize];

@@ -37,14 +37,14 @@ pub(crate) struct ListedPacket {
 pub(crate) struct CellPackets {
     /// The lengths of each cell that gets a list.
     sizes: Vec<Option<CellSize>>,
-    /// For each packet the tetrahedra whose balls it intersects. There are none if no list gets a filter.
+    /// For each packet, the tetrahedra whose balls it intersects. `None` if no list gets a filter.
     near_tetrahedra: Option<IncidenceLists>,
     /// For each site its packets, in ascending order.
     of_sites: IncidenceLists<ListedPacket>,
 }
 
 impl CellPackets {
-    /// Finds the packets of all cells but hubs. They are incomplete if that exceeds the budget.
+    /// Finds the packets of all cells except hubs. They are incomplete if the budget is exceeded.
     pub(crate) fn find(
         cells: &CellContext<'_>,
         adjacency: &EdgeAdjacency,
@@ -68,7 +68,7 @@ impl CellPackets {
         map_chunks_in_order(sites.len(), MEASURED_SITES_PER_TASK, cells.limits.parallel, measure, |chunk: Vec<_>| {
             sizes.extend(chunk);
         });
-        // One vector of all would be copied as it grows.
+        // A single vector of all packets would be copied as it grows.
         let mut packets: Vec<Vec<PacketInCell>> = Vec::new();
         let (mut packets_in_cells, mut candidates) = (0, vec![0u32; sites.len()]);
         let (budget, parallel) = (cells.limits.budget, cells.limits.parallel);

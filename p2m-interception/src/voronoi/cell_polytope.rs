@@ -71,15 +71,19 @@ impl CellPolytope {
         self.faces.push(faces);
     }
 
-    /// Returns whether the number of edges is plausible, which is about that of a polytope with three edges at each
-    /// corner. Where planes are nearly equal, as those of coplanar cells are, rounding may cut a face more than twice.
-    /// Then any two of the cuts are joined by an edge, and each further plane multiplies their number.
+    /// Returns whether the number of edges is plausible: about as many as a polytope with three edges at each corner
+    /// has. Where planes nearly coincide, as those of coplanar cells do, rounding may cut a face more than twice. Then
+    /// an edge joins any two of the cuts, and each further plane multiplies their number.
     pub(crate) fn is_simple(&self) -> bool {
         self.edges.len() <= 2 * self.corners.positions.len() + 16
     }
 
-    /// Replaces the polytope by the part of another one where `height`, which is linear, is at least zero. The new
-    /// face gets the number `face`.
+    /// Replaces the polytope by the part of another one where `height`, which is linear, is at least zero. The new face
+    /// gets the number `face`.
+    ///
+    /// Corners with a height of at least zero are kept. An edge whose ends lie on different sides gets a new corner
+    /// where its height is zero. Two new corners on the same old face are the ends of a new edge, because the plane
+    /// cuts that face there.
     pub(crate) fn clip(&mut self, source: &Self, height: impl Fn(&V3) -> f64, face: u32, site: &V3, slack: f64) {
         self.clear();
         let heights: Vec<f64> = source.corners.positions.iter().map(height).collect();
@@ -102,7 +106,7 @@ impl CellPolytope {
             let t = heights[a] / (heights[a] - heights[b]);
             let (from, to) = (source.corners.positions[a], source.corners.positions[b]);
             let corner = std::array::from_fn(|k| from[k] + t * (to[k] - from[k]));
-            // The error is that of the ends and of the sum. A displacement along the edge is harmless.
+            // The error covers both ends and the rounding of the sum. A displacement along the edge is harmless.
             let error = source.corners.errors[a].max(source.corners.errors[b])
                 + source.corners.max_upper_bound * 4.0 * f64::EPSILON;
             let mut faces = [face; 3];

@@ -31,8 +31,8 @@ use p2m_core::engine::parallel::run_beside;
 use std::ops::Range;
 use std::sync::Arc;
 
-/// The number of neighbours and edges of primitives, added up, above which a site is a *hub*. Half the number of the
-/// tetrahedra at a site stands for the number of its neighbours.
+/// The largest number of neighbours plus edges of primitives at a site that is not a *hub*. The number of neighbours is
+/// estimated as half the number of the tetrahedra at the site.
 ///
 /// The table has no neighbours of a hub, so a walk ends there, and the tree answers in its cell. Otherwise a query in
 /// the cell of a site that all others surround would test all of them: at this number, that takes about as long as the
@@ -55,9 +55,9 @@ pub(crate) struct VoronoiLists {
 }
 
 impl CellContext<'_> {
-    /// Builds the lists of all sites. It returns `None` if that exceeds the budget.
-    /// `near_tetrahedra` are for each packet the tetrahedra whose balls it intersects. `build_locator` is called if
-    /// another thread can run it beside the search for the lists.
+    /// Builds the lists of all sites, or returns `None` if that exceeds the budget. `near_tetrahedra` has, for each
+    /// packet, the tetrahedra whose balls it intersects. `build_locator` is called if another thread can run it beside
+    /// the search for the lists.
     pub(crate) fn build_lists(
         &self,
         near_tetrahedra: IncidenceLists,

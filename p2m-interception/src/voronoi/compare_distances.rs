@@ -10,8 +10,8 @@ use p2m_core::engine::exact::{self, common_exponent, integer};
 use p2m_core::engine::vector::V3;
 use std::cmp::Ordering;
 
-/// The error bound of a sum of three products in f64, relative to the sum of their absolute values. It
-/// covers seven roundings.
+/// The relative error bound of a sum of three products in f64, in units of the sum of their absolute values. It covers
+/// seven roundings.
 const ROUNDING: f64 = 8.0 * f64::EPSILON;
 
 /// Compares the distance from `q` to `v` with the distance from `q` to `w`. All coordinates have to be zero or between

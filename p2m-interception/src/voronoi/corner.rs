@@ -21,10 +21,10 @@ pub(crate) struct CellCorner {
     pub(crate) error: f64,
     /// The distance to the four sites around it, or zero if the corner is unknown.
     pub(crate) radius: f64,
-    /// The index of the first of its packets among those of all corners.
+    /// The index of the first packet of this corner among the packets of all corners.
     pub(crate) first_packet: u32,
-    /// Whether the corner has no packets: it is unknown, or its ball intersects too many. As long as sites are added,
-    /// the limit is lower than that of a list.
+    /// Whether the corner has no packets: it is unknown, or its ball intersects too many. While sites are added, the
+    /// limit is lower than the limit of a list.
     pub(crate) is_crowded: bool,
 }
 

@@ -9,8 +9,8 @@ use p2m_core::engine::simd::{InstructionSet, SimdKernel};
 use p2m_core::engine::vector::V3;
 use p2m_core::{Best, QueryOptions};
 
-/// The distance, in units of a packet, from which the filter of the packet is too imprecise. Primitives are
-/// evaluated exactly instead.
+/// The distance from a packet, in its units, from which on its filter is too imprecise. Primitives are evaluated
+/// exactly there.
 const FILTER_RANGE_UNITS: f64 = (1u64 << 19) as f64;
 
 /// The values of one packet at some corners. Its vectors are reused.
@@ -75,7 +75,7 @@ impl CornerValues {
     }
 }
 
-/// A SIMD kernel that computes the values of a packet at some corners. It returns the lanes that are not above
+/// A SIMD kernel that computes the values of a packet at some corners. It returns the lanes whose value is not above
 /// zero at some corner.
 struct EvaluateCorners<'a> {
     corners: &'a CornerPoints,
@@ -119,8 +119,8 @@ impl SimdKernel for EvaluateCorners<'_> {
     }
 }
 
-/// The evaluation of primitives at the corners that are so far from the packet that its filter is too
-/// imprecise, where it has not excluded them.
+/// The evaluation of primitives at corners that are too far from the packet for its filter, unless the filter has
+/// excluded them.
 struct EvaluateAtFarCorners<'a> {
     corners: &'a CornerPoints,
     packet: &'a Packet,
@@ -153,7 +153,7 @@ impl EvaluateAtFarCorners<'_> {
         }
     }
 
-    /// Raises a value to that of a distance.
+    /// Raises a value to the value that a distance gives.
     #[allow(clippy::cast_possible_truncation, reason = "rounded down")]
     fn raise(&mut self, corner: usize, lane: usize, distance: f64) {
         let (upper_bound, per_unit) = (self.corners.upper_bounds[corner], self.packet.per_unit());

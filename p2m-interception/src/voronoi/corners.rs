@@ -13,7 +13,8 @@ use std::ops::Range;
 /// A ball that intersects more packets than this is crowded.
 const CROWDED_BALL_PACKETS: usize = 24;
 
-/// Floods find the packets of all balls again if at least one of this many is new.
+/// Floods find the packets of all balls anew if more than one ball in this many is new. Otherwise only the new balls
+/// are searched for.
 const FLOODED_PART_DIVISOR: usize = 4;
 
 impl Limits<'_> {
@@ -32,13 +33,13 @@ pub(crate) struct CellCorners {
     packets: Vec<u32>,
     /// The packets of balls that were crowded while sites were added, each with the number of its corner.
     late_packets: Vec<(u32, u32)>,
-    /// The packets of all balls if floods found them. Then there are no others.
+    /// The packets of all balls, if floods found them. `packets` and `late_packets` are empty then.
     flooded: Option<FloodedCorners>,
 }
 
 impl CellCorners {
     /// Computes the corners of all tetrahedra, and finds their packets. If few balls are new, the packets of the others
-    /// are copied from `reused`, which has those of an earlier triangulation.
+    /// are copied from `reused`, the corners of an earlier triangulation.
     pub(crate) fn new(
         tree: &PacketTree,
         delaunay: &Delaunay,
@@ -59,8 +60,8 @@ impl CellCorners {
         found.unwrap_or_else(|all| Self::search(tree, limits, &all, reused, progress))
     }
 
-    /// Computes the corners of all tetrahedra, and finds their packets by floods. If that takes too long the result is
-    /// an error that has the corners without packets.
+    /// Computes the corners of all tetrahedra, and finds their packets by floods. If that takes too long, the error
+    /// holds the corners without packets.
     pub(crate) fn flood(
         tree: &PacketTree,
         delaunay: &Delaunay,
@@ -189,7 +190,7 @@ impl CellCorners {
         self.all.extend(chunk.all.into_iter().map(moved));
     }
 
-    /// Sorts the packets that floods found by balls, so that they can be reused.
+    /// Groups the packets that floods found by balls, so that a later triangulation can reuse them.
     pub(crate) fn list_packets_of_balls(&mut self, tree: &PacketTree) {
         let Some(FloodedCorners { of_packets, packet_counts }) = self.flooded.take() else { return };
         let mut total = 0;
@@ -218,8 +219,8 @@ impl CellCorners {
         &self.packets[self.all[number].first_packet as usize..self.all[number + 1].first_packet as usize]
     }
 
-    /// Takes the packets of all balls, and returns for each of `packet_count` packets the numbers of its
-    /// corners in ascending order.
+    /// Moves the packets of all balls out. Returns the numbers of the corners of each of `packet_count` packets, in
+    /// ascending order.
     pub(crate) fn take_corners_of_packets(&mut self, packet_count: usize) -> IncidenceLists {
         if let Some(flooded) = self.flooded.take() {
             return flooded.of_packets;

@@ -1,4 +1,15 @@
 //! The choice of sites that are added because of crowded balls.
+//!
+//! The basic idea is to look at clusters of balls instead of single ones, because around the centre of a round shape
+//! thousands of balls are nearly the same. A hash grid, whose cells are about a quarter of the radius wide, groups the
+//! corners into clusters. For the first corner of each cluster, the points of the scene in its ball are found:
+//!
+//! - If some points lie deep inside the ball, they become sites. A second hash grid, whose cells grow with the distance
+//!   from the corner, keeps only one of those that are close together.
+//! - If no point lies deep inside and the cluster has several balls, the corner itself becomes an auxiliary site.
+//!
+//! No record exists of the scenes on which the constants below were chosen; docs/decisions/018-added-sites.md has the
+//! rule.
 
 use crate::voronoi::budget::Limits;
 use crate::voronoi::corner::CellCorner;
@@ -9,21 +20,21 @@ use p2m_core::engine::vector::{V3, exponent, scale_by_power};
 use p2m_core::{Aabb, Best, QueryOptions};
 use rustc_hash::{FxHashMap, FxHashSet};
 
-/// The centre of a ball becomes an auxiliary site only if this many crowded balls form a cluster.
+/// The least number of crowded balls in a cluster whose centre becomes an auxiliary site.
 const MIN_BALLS_FOR_AUXILIARY_SITE: usize = 3;
-/// A point of the scene is added if it is nearer to the centre than this part of the radius.
+/// The fraction of the radius within which a point of the scene lies deep inside a ball, and is added.
 const DEEP_RADIUS_PART: f64 = 0.9;
-/// The largest number of packets of a ball in which such points are looked for.
+/// The largest number of packets of a ball in which deep points are looked for.
 const MAX_EXAMINED_PACKETS: usize = 64;
-/// Added points lie in the box of the vertices, enlarged on all sides by this part of its longest side.
+/// The padding of the box in which points are added, as a fraction of the longest side of the box of the vertices.
 const BOX_PADDING_PART: f64 = 0.5;
-/// The size of a cluster: centres are in one cluster if their distance is below about this part of the radius.
+/// The size of a cluster, as a fraction of the radius: centres closer than about this are in one cluster.
 const CLUSTER_RADIUS_PART: f64 = 0.25;
-/// A corner is ignored if its error is more than this part of its radius.
+/// The largest error of a corner that is used, as a fraction of its radius.
 const MAX_ERROR_RADIUS_PART: f64 = 1e-3;
-/// The spacing of added points, as a part of their distance from the centre of the ball.
+/// The spacing of added points, as a fraction of their distance from the centre of the ball.
 const SPACING_DISTANCE_PART: f64 = 0.5;
-/// The smallest distance that the spacing is computed from, as a part of the radius.
+/// The smallest distance from which the spacing is computed, as a fraction of the radius.
 const MIN_SPACING_RADIUS_PART: f64 = 0.1;
 
 /// A point that becomes a site.
@@ -62,9 +73,9 @@ impl CrowdedClusters<'_> {
         self.choose_sites_of_clusters(&self.clusters(|corner| corner.is_crowded), budget)
     }
 
-    /// Chooses points, at most `budget` of them, when it is not known yet which balls are crowded. A cluster counts as
-    /// crowded if its first ball is. This takes one search for each cluster instead of one for each ball, and later
-    /// triangulations show what it misses.
+    /// Chooses points, at most `budget` of them, before it is known which balls are crowded. A cluster counts as
+    /// crowded if its first ball is. This takes one search per cluster instead of one per ball, and later
+    /// triangulations show which balls it missed.
     pub(crate) fn choose_probable_sites(&self, budget: usize) -> Vec<AddedSite> {
         let mut clusters = self.clusters(|_| true);
         let max_packets = self.limits.max_uncrowded_packets();
@@ -136,8 +147,8 @@ impl CrowdedClusters<'_> {
         (0..3).all(|k| position[k] >= min[k] - pad && position[k] <= max[k] + pad)
     }
 
-    /// Returns for some primitives that intersect the ball of a corner the point nearest to the corner, with its
-    /// distance, the nearest first.
+    /// Returns the nearest point of each of some primitives that intersect the ball of a corner, with its distance from
+    /// the corner, nearest first.
     fn nearest_points(&self, corner: &CellCorner) -> Vec<(f64, V3)> {
         let leaves = &self.tree.leaves;
         let (mut selections, mut tests) = (Vec::new(), 0);

@@ -1,5 +1,9 @@
-//! Excluded features: a feature that needs the query on one side of some planes cannot hold the nearest point in a
-//! region that lies on the wrong side of one plane, or of which each point is on the wrong side of one of two planes.
+//! The test that excludes features of a primitive from a region.
+//!
+//! A feature can hold the nearest point only for queries on the right side of all of its planes. So it is excluded if
+//! the whole region lies on the wrong side of one plane. It is also excluded if each point of the region lies on the
+//! wrong side of at least one of two planes, which is certain if the sum of the two heights is negative in the whole
+//! region.
 
 use p2m_core::engine::simd::{Doubles, Float};
 use p2m_core::engine::vector::V3;
@@ -102,7 +106,7 @@ impl ExcludedFeatures {
         self.planes.clear();
     }
 
-    /// Adds a plane of the feature, and returns whether it excludes the feature, alone or with a plane before.
+    /// Adds a plane of the feature. Returns whether it excludes the feature, alone or together with an earlier plane.
     #[inline(always)]
     pub(crate) fn add<D: Doubles>(&mut self, region: &RegionPoints, plane: Plane) -> bool {
         let height = plane.heights(self.middle);
@@ -120,7 +124,7 @@ impl ExcludedFeatures {
     }
 }
 
-/// Returns whether the heights above some planes have a negative sum at all points of a region.
+/// Returns whether the sum of the heights above some planes is negative at all points of a region.
 #[inline(always)]
 fn are_below<D: Doubles, const N: usize>(region: &RegionPoints, planes: [&Plane; N]) -> bool {
     for [x, y, z] in &region.blocks {

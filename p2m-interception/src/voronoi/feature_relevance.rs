@@ -59,7 +59,7 @@ pub(crate) struct CellInfo {
 
 impl CellInfo {
     /// Returns the margin of planes that depend on vertices in a box. It covers the rounding of the kernel near the
-    /// borders of features, and that of the tests.
+    /// borders of features, and the rounding of the tests.
     #[inline(always)]
     fn margin(&self, [low, high]: &[V3; 2]) -> f64 {
         let reach = |k: usize| (high[k] - self.position[k]).max(self.position[k] - low[k]);
@@ -87,13 +87,13 @@ struct FeaturePlane {
 pub(crate) struct PrimitiveFeatures {
     /// The box of the vertices.
     bounds: [V3; 2],
-    /// The box of all vertices that planes depend on, those of other primitives as well.
+    /// The box of all vertices that planes depend on, including vertices of other primitives.
     foreign_bounds: [V3; 2],
     /// The largest margin of cells in which anything can be excluded.
     max_margin: f64,
     /// The planes of all features.
     planes: Vec<FeaturePlane>,
-    /// The features that no primitive with a lower id has.
+    /// The features that belong to no primitive with a lower id.
     features: Vec<Feature>,
 }
 
@@ -144,8 +144,8 @@ impl PrimitiveFeatures {
         }
     }
 
-    /// Returns whether some feature may be relevant in the part of a cell that is the convex hull of a region, and
-    /// belongs to no primitive with a lower id.
+    /// Returns whether the primitive can be the answer in a region of a cell: whether a feature that belongs to no
+    /// primitive with a lower id may be relevant in the convex hull of the region.
     #[inline(always)]
     pub(crate) fn is_relevant<D: Doubles>(
         &self,
@@ -189,7 +189,8 @@ impl PrimitiveFeatures {
     }
 }
 
-/// Returns the plane beyond which a vertex is nearer than the site of a cell, which is never so in the cell.
+/// Returns the bisector between the site of a cell and a vertex, with the margins of both. No point of the cell lies
+/// beyond it, where the vertex is nearer.
 #[inline(always)]
 fn bisector(cell: &CellInfo, vertex: &V3, margin: f64, slack: f64) -> Plane {
     let offset = sub(*vertex, cell.position);
@@ -206,7 +207,7 @@ fn bisector(cell: &CellInfo, vertex: &V3, margin: f64, slack: f64) -> Plane {
 pub(crate) struct LanesOver {
     /// For each plane its point and its normal, row by row.
     planes: [[[[f64; LANES]; 3]; 2]; 3],
-    /// The lanes that have such a feature, which no primitive with a lower id has, as bits.
+    /// A bit mask of the lanes with such a feature that no primitive with a lower id has.
     lanes: u16,
 }
 
@@ -244,8 +245,8 @@ impl LanesOver {
         }
     }
 
-    /// Returns the lanes over whose feature a point is, as bits. Such a feature is relevant in each region that
-    /// has the point.
+    /// Returns a bit mask of the lanes whose largest feature lies below a point. Such a feature is relevant in every
+    /// region that contains the point.
     #[inline(always)]
     pub(crate) fn lanes_below_point<D: Doubles>(&self, point: &V3) -> u16 {
         let mut lanes = 0;
@@ -278,8 +279,8 @@ struct PrimitiveView<'a> {
 }
 
 impl PrimitiveView<'_> {
-    /// Returns the plane through a side of the triangle, from vertex i to the next one. Its right side is that
-    /// of the triangle.
+    /// Returns the plane through the side of the triangle from vertex i to the next one. The triangle is on its right
+    /// side.
     fn side_plane(&self, i: usize) -> FeaturePlane {
         FeaturePlane {
             point: self.vertices[i],

@@ -1,8 +1,9 @@
 //! The packets that intersect the balls of corners, found by floods over the Delaunay tetrahedra.
 //!
-//! The tetrahedra whose balls intersect a primitive are connected through faces, and those at its vertices are among
-//! them ([docs/proofs/p2m.md]). So a flood that begins there finds them all. It tests little more than what it finds,
-//! where a search of the tree for each ball would descend from the root and test one point at a time.
+//! The tetrahedra whose balls intersect a primitive are connected through faces, and include the tetrahedra at its
+//! vertices ([docs/proofs/p2m.md]). So a flood from the vertices finds them all. It tests few balls that do not
+//! intersect the primitive, where a search of the tree for each ball would descend from the root and test one point at
+//! a time.
 //!
 //! Balls whose centres are imprecise, or that are much larger than the scene, are left to searches of the tree. So are
 //! all balls if packets intersect too many of them, as around the centre of a sphere.
@@ -30,8 +31,8 @@ const TRIED_PACKETS: usize = 64;
 /// Floods are given up if they test each ball with more packets than this on average, first for the packets that are
 /// tried, then for all. Usually it is eight, and thirty take about as long as a search of the tree (observed).
 const MAX_PACKETS_PER_BALL: [usize; 2] = [24, 32];
-/// Larger balls are left to searches of the tree. The unit is 2^40 times the slack, about the distance of
-/// the bounding sites.
+/// The largest radius of a ball that floods handle, in units of 2^40 times the slack, which is about the distance of
+/// the bounding sites. Larger balls are left to searches of the tree.
 const MAX_RADIUS: f64 = 1.0;
 
 /// The corners of all packets.
@@ -55,7 +56,7 @@ pub(crate) struct Flood<'a> {
     tetrahedron_of_site: Vec<u32>,
     /// The radius above which balls are left to searches of the tree.
     max_radius: f64,
-    /// The power that a point of a packet has at most in the sphere of a tetrahedron that is crossed.
+    /// An upper bound on the power of a point of a packet in the sphere of a tetrahedron that a flood crosses.
     max_power: f64,
 }
 
@@ -181,13 +182,29 @@ impl<'a> Flood<'a> {
         IncidenceLists::new(self.tree.leaves.packets.len(), found.iter().copied())
     }
 
-    /// Finds the precise corners of a packet, unless more than `max_tested` balls would have to be tested.
+    /// Finds the precise corners of a packet, or stops after `max_tested` balls.
     fn run(&self, packet: usize, state: &mut FloodState, max_tested: usize) {
         self.tree.isa().run(FloodPacket { flood: self, packet, state, max_tested });
     }
 }
 
 /// The flood from one packet as a SIMD kernel.
+///
+/// The basic idea is a breadth-first search over tetrahedra, which begins at a vertex of each primitive of the packet:
+///
+/// ```text
+/// queue = one tetrahedron at a vertex of each primitive
+/// while tetrahedra are left in the queue:
+///     take up to sixteen of them
+///     compute the distances from their corners to all lanes of the packet
+///     for each tetrahedron whose ball, enlarged by the margins, may intersect the packet:
+///         report it if its corner is precise and its ball intersects the packet
+///         append its neighbours to the queue
+/// ```
+///
+/// Sixteen corners are tested together because the filter of a packet works on so many points at a time. The packet is
+/// compared by its box as well, which excludes more far away. A tetrahedron without a known corner is always crossed,
+/// because its ball is unknown.
 struct FloodPacket<'a, 'b> {
     flood: &'a Flood<'a>,
     packet: usize,
@@ -205,7 +222,7 @@ impl SimdKernel for FloodPacket<'_, '_> {
         reached.clear();
         found.clear();
         if flood.tree.leaves.is_continuation(packet) {
-            // Its primitives can only tie with those of an earlier packet, which have lower ids.
+            // The primitives of a continuation can only tie with primitives of an earlier packet, which have lower ids.
             return;
         }
         let packet = &flood.tree.leaves.packets[packet];

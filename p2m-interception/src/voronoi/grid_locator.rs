@@ -225,8 +225,9 @@ impl GridLocator {
     }
 }
 
-/// A SIMD kernel that finds the site of each cell. At first a cell has the number of sites in it. The cells are
-/// visited back and forth along the axes, so that every walk from the last cell is short.
+/// A SIMD kernel that finds the site nearest to the centre of each cell. Before it runs, a cell holds the number of
+/// sites in it. Cells are visited back and forth along the axes, so that each walk begins at the site of an adjacent
+/// cell and is short.
 struct FillGrid<'a> {
     grid: &'a mut Grid,
     neighbours: &'a NeighbourTable,

@@ -46,11 +46,11 @@ impl Region {
 
 /// Chooses among the primitives of a long list.
 ///
-/// The choice has at least those primitives in whose boxes the query point is. Choosing more only takes time,
-/// so answers do not depend on the filter. A list without a filter is searched in the order of the lower
-/// bounds on its packets.
+/// The choice includes at least the primitives whose boxes contain the query point. Choosing more only takes time, so
+/// answers do not depend on the filter. A list without a filter is searched in the order of the lower bounds on its
+/// packets.
 pub trait ListFilter: Debug + Send + Sync {
-    /// Calls `visit` for each primitive in whose box a point is, once each, in any order.
+    /// Calls `visit` once for each primitive whose box contains a point, in any order.
     fn containing(&self, point: &[f64; 3], visit: &mut dyn FnMut(&Region));
 
     /// Returns the heap memory that the filter owns, in bytes.
@@ -69,7 +69,7 @@ pub(crate) struct ListFilters {
     all: Vec<Arc<dyn ListFilter>>,
 }
 
-/// The number of a site whose list has no filter.
+/// Marks a site whose list has no filter.
 const NO_FILTER: u32 = u32::MAX;
 
 impl ListFilters {

@@ -1,10 +1,11 @@
-//! Consecutive numbers for some keys, such as the tetrahedra around a packet.
+//! A map from keys, such as the tetrahedra around a packet, to consecutive numbers.
 
-/// The keys that have numbers, from 0 on in the order in which they came. Removing them all does not touch memory.
+/// A hash map from keys to consecutive numbers, which count from 0 in the order of insertion. Clearing it does not
+/// touch the table, except once in 2^32 times.
 pub(crate) struct LocalNumbers {
-    /// A hash table. Each entry is at the place of its key or after it, and is valid if it is of the current round.
+    /// The hash table, with linear probing. An entry is valid if its round is the current one.
     places: Vec<Entry>,
-    /// The round, above zero. It ends when the keys are removed.
+    /// The number of the current round, above zero. Clearing the map begins the next round.
     round: u32,
     /// The keys in the order of their numbers.
     keys: Vec<u32>,
@@ -56,8 +57,8 @@ impl LocalNumbers {
         (number, is_new)
     }
 
-    /// Puts a key with a new number into the first free place from its own on, unless it has a number. It returns the
-    /// number that the key has.
+    /// Inserts a key with a number by linear probing, unless the key has a number already. Returns the number of the
+    /// key.
     #[inline(always)]
     fn place(&mut self, key: u32, number: u32) -> u32 {
         let mask = self.places.len() - 1;

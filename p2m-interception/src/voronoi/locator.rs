@@ -9,8 +9,8 @@ use std::sync::Arc;
 
 /// Finds a site near a query point.
 ///
-/// Any site will do: the index walks from there to the nearest site, whose cell contains the query point. So answers
-/// do not depend on the locator. If the number is not that of a site, searches panic.
+/// Any site will do: the index walks from there to the nearest site, whose cell contains the query point. So answers do
+/// not depend on the locator. Searches panic if the returned number is not the number of a site.
 pub trait Locator: Debug + Send + Sync {
     /// Returns the number of a site near a point of the domain, or `None` if the tree should answer. The point is in
     /// the units of [`LocatorSites::positions`].
@@ -23,8 +23,8 @@ pub trait Locator: Debug + Send + Sync {
 /// Makes the locator of an index from its sites: a function such as `KdTreeLocator::build`.
 pub type BuildLocator = fn(&LocatorSites<'_>) -> Arc<dyn Locator>;
 
-/// The sites of an index, from which its locator is built. Their unit is that of the points
-/// that [`Locator::start`] takes.
+/// The sites of an index, from which its locator is built. They have the same unit as the points that
+/// [`Locator::start`] takes.
 #[derive(Clone, Copy)]
 pub struct LocatorSites<'a> {
     pub(crate) neighbours: &'a NeighbourTable,

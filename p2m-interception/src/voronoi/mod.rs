@@ -1,6 +1,6 @@
 //! The partition of space into Voronoi cells \[Zong2023\].
 //!
-//! The project has its name from this method, and most of this crate is about it: 33 files and, with
+//! The project has its name from this method, and most of this crate is about it: some 30 files and, with
 //! [`delaunay`](crate::delaunay), more than 7,000 lines, where the octree takes 2,800. The octree, the lists and the
 //! trees do not use it, so whoever works on them need not read it.
 //!
@@ -11,10 +11,9 @@
 //! So the packets of each ball, which a [`flood`] finds, serve the lists of four cells. (The paper grows each list by
 //! flooding over cells, and clips the cells.) Six artificial sites far outside make all cells bounded.
 //!
-//! The modules from sites to lists are [`corner`], [`corners`], [`flood`], [`crowded`], [`packet_cells`], [`cell_packets`] and
-//! [`cells`]. A query is located by a [`locator`], walks over the [`neighbours`] of sites, and searches a list
-//! ([`query`]).
-//! [docs/proofs/p2m.md] has the proofs.
+//! The modules from sites to lists are [`corner`], [`corners`], [`flood`], [`crowded`], [`packet_cells`],
+//! [`cell_packets`] and [`cells`]. A query is located by a [`locator`], walks over the [`neighbours`] of sites, and
+//! searches a list ([`query`]). [docs/proofs/p2m.md] has the proofs.
 //!
 //! [docs/proofs/p2m.md]: https://github.com/p2m-rs/p2m/blob/main/docs/proofs/p2m.md
 
@@ -75,8 +74,7 @@ use p2m_core::engine::vector::V3;
 use p2m_core::storage::Array;
 use p2m_core::{Aabb, Isa, PrimitiveId, PrimitiveSet, Real};
 
-/// The tree answers everything, and no cells are stored, if more than one of this many cells would be left
-/// to the tree.
+/// If more than one cell in this many would be left to the tree, no cells are stored and the tree answers everything.
 const FALLBACK_CELLS_DIVISOR: usize = 4;
 /// The width of the cube of the domain, in widths of the scene.
 const DOMAIN_SCENE_SIZES: f64 = 10.0;
@@ -154,7 +152,7 @@ impl Voronoi {
             self.report.fallback_cells = tree.leaves.vertices.len();
             return;
         };
-        // A query that finds its cell without a list costs more than a few lists save.
+        // Locating a cell that turns out to have no list costs a query more than a few lists save.
         let fallback_count = sites.count_fallback_cells();
         if fallback_count * FALLBACK_CELLS_DIVISOR > sites.delaunay.sites().len() {
             self.report.fallback_cells = fallback_count;
@@ -199,7 +197,7 @@ impl Voronoi {
 }
 
 impl<'a> LocatorSites<'a> {
-    /// Returns the sites of a table over a tree, whose unit is the inverse of `per_unit`, in a domain.
+    /// Makes the sites of a table over a tree, in a domain. `per_unit` is the reciprocal of the unit of the sites.
     pub(crate) fn new(tree: &PacketTree, neighbours: &'a NeighbourTable, per_unit: f64, domain: [V3; 2]) -> Self {
         let scaled = |p: V3| p.map(|x| x * per_unit);
         let scene_box = padded(&vertex_bounds(tree)).map(scaled);

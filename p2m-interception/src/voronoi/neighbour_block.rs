@@ -7,15 +7,15 @@ use p2m_core::engine::vector::{V3, power_of_two, sub};
 /// The number of neighbours in a block.
 pub(crate) const NEIGHBOURS_PER_BLOCK: usize = 8;
 
-/// The offsets from a site to eight neighbours in one cache line.
+/// Offsets from a site to eight neighbours, quantized to 16 bits, in one cache line.
 #[derive(Clone, Copy, Debug, bytemuck::Pod, bytemuck::Zeroable)]
 #[repr(C, align(64))]
 pub(crate) struct NeighbourBlock {
-    /// The offsets in `unit`, increased by [`ZERO_OFFSET`] to be unsigned.
+    /// The offsets in units of `unit`, plus [`ZERO_OFFSET`], so that they are unsigned.
     pub(crate) offsets: [[u16; NEIGHBOURS_PER_BLOCK]; 3],
     /// The unit of the offsets, a power of two.
     pub(crate) unit: f32,
-    /// One bit for each neighbour that is joined to the site by an edge of a primitive.
+    /// A bit mask of the neighbours that an edge of a primitive joins to the site.
     pub(crate) edges: u32,
     pub(crate) unused: [u32; 2],
 }
@@ -24,11 +24,11 @@ const _: () = assert!(size_of::<NeighbourBlock>() == 64);
 
 /// The encoding of the offset 0, which is the middle of the unsigned range.
 const ZERO_OFFSET: u16 = 1 << 15;
-/// The rounding of a sum of products in f32, relative to the sum of their absolute values. It covers five roundings
-/// with a margin.
+/// The relative rounding error of a sum of products in f32, in units of the sum of their absolute values. It covers
+/// five roundings with a margin.
 const PRODUCT_ROUNDING: f32 = 4.0 * f32::EPSILON;
-/// The relative margin by which an angle has to be wider than a right angle, so that the kernel computes nothing but
-/// the distance to the vertex.
+/// The relative margin by which an angle has to exceed a right angle, so that the kernel returns exactly the distance
+/// to the vertex.
 const CERTAIN_ANGLE_MARGIN: f32 = 1.0 / (1u64 << 28) as f32;
 /// The absolute margin that covers underflow of products in f32.
 pub(crate) const UNDERFLOW_MARGIN: f32 = 1e-30;
@@ -36,7 +36,7 @@ pub(crate) const UNDERFLOW_MARGIN: f32 = 1e-30;
 /// The smallest unit. Shorter offsets are negligible beside what underflows.
 const MIN_UNIT: f64 = power_of_two(-99);
 
-/// The offset of a query point from a site, with what the test needs of it.
+/// The offset of a query point from a site, with the lengths and margins that the test needs.
 #[derive(Clone, Copy)]
 pub(crate) struct QueryOffset {
     /// The offset from the site to the query.
@@ -45,23 +45,23 @@ pub(crate) struct QueryOffset {
     pub(crate) size: f32,
     /// The squared length of the offset.
     pub(crate) square: f32,
-    /// The margin in which the gain of a neighbour is not certain.
+    /// The part of the error bound of a gain that depends only on the query and the site.
     pub(crate) tie: f32,
     /// The relative lead that the site needs over a neighbour for its far half-space: see
     /// [`FarHalfSpace`](crate::voronoi::site::FarHalfSpace).
     pub(crate) relative_lead: f32,
 }
 
-/// The result of the test of a block.
+/// The result of testing a query against a block.
 pub(crate) struct NeighbourBounds<L> {
-    /// For each neighbour half the difference of the squared distances from the query to the site and to the
-    /// neighbour. It is positive if the neighbour is nearer.
+    /// The gain of each neighbour: half of the squared distance from the query to the site minus half of the squared
+    /// distance to the neighbour. It is positive if the neighbour is nearer.
     pub(crate) gains: L,
     /// The error bounds of the gains.
     pub(crate) margins: L,
-    /// One bit for each neighbour over which the site does not certainly have the lead that its far half-space needs.
+    /// A bit mask of the neighbours over which the site may lack the lead that its far half-space needs.
     pub(crate) ties: u32,
-    /// One bit for each edge of a primitive on which the site is not certainly the nearest point.
+    /// A bit mask of the edges of primitives on which the site may not be the nearest point.
     pub(crate) edges: u32,
 }
 
@@ -70,7 +70,7 @@ impl NeighbourBlock {
     pub(crate) const EMPTY: Self =
         Self { offsets: [[ZERO_OFFSET; NEIGHBOURS_PER_BLOCK]; 3], unit: 0.0, edges: 0, unused: [0; 2] };
 
-    /// Stores the offsets from a site to at most eight others. The last one is repeated if there are fewer. `is_edge`
+    /// Stores the offsets from a site to at most eight others, and repeats the last one to fill the block. `is_edge`
     /// returns whether an edge of a primitive joins the site to another one.
     #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "rounding is allowed for")]
     pub(crate) fn new(positions: &[V3], site: usize, others: &[u32], is_edge: impl Fn(u32) -> bool) -> Self {

@@ -18,7 +18,8 @@ use p2m_core::engine::vector::{V3, norm_squared, sub};
 use p2m_core::storage::{Array, LoadError, Reader, Writer, check_chunks, require};
 use std::cmp::Ordering;
 
-/// The number of blocks of each site that are found by its number alone, without reading the site.
+/// The number of blocks of each site that lie at a place computed from its number alone, so that they are fetched
+/// together with the site.
 const INLINE_BLOCKS: usize = 2;
 
 /// The section with the sites.
@@ -145,13 +146,13 @@ impl NeighbourTable {
         }
     }
 
-    /// Returns the largest work of a walk: that of a walk over all sites, and one more.
+    /// Returns an upper bound on the work of a walk: one more than the work of visiting every site.
     #[inline(always)]
     pub(crate) fn max_walk_work(&self) -> usize {
         self.blocks.len() + 1
     }
 
-    /// Returns the work of a step from a site, which is at most the number of blocks that belong to it.
+    /// Returns the work of a step from a site, at most the number of its blocks.
     #[inline(always)]
     pub(crate) fn step_work(&self, at: usize) -> usize {
         (self.sites[at].block_count as usize).max(1)
@@ -167,9 +168,8 @@ impl NeighbourTable {
         );
     }
 
-    /// Takes one step. It returns a nearer site, which is the nearest neighbour as far as f32 can decide, or the
-    /// same site if it is the nearest. The second value is that of [`LocatedSite::is_certainly_nearest`], for a walk
-    /// that ends here.
+    /// Takes one step. Returns a nearer site, which is the nearest neighbour as far as f32 can decide, or the same site
+    /// if no neighbour is nearer. The flag is the [`LocatedSite::is_certainly_nearest`] of a walk that ends here.
     #[inline(always)]
     #[allow(clippy::cast_possible_truncation, reason = "rounding is allowed for")]
     pub(crate) fn step<I: InstructionSet>(&self, at: usize, query: &V3) -> (usize, bool) {
@@ -207,8 +207,8 @@ impl NeighbourTable {
         (next.best, next.ties == 0)
     }
 
-    /// Returns whether one site is nearer to the query than another one, exactly. It is rare, so it is kept out
-    /// of the loop.
+    /// Decides exactly whether one site is nearer to the query than another one. Called rarely, so it is kept out of
+    /// the loop.
     #[cold]
     #[inline(never)]
     fn is_nearer(&self, query: &V3, site: usize, than: usize) -> bool {

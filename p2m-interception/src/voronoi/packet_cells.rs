@@ -56,11 +56,11 @@ pub(crate) struct PacketCells {
     pub(crate) values: CornerValues,
     /// The numbers of the sites of near tetrahedra.
     site_numbers: LocalNumbers,
-    /// For each of these sites whether it has a list, and the number of its near corners.
+    /// For each site of a near tetrahedron, whether it has a list, and the number of its near corners.
     near_counts: Vec<(bool, usize)>,
-    /// For each vertex of the tetrahedra of near corners the number of its site.
+    /// For each vertex of the tetrahedra of near corners, the number of its site.
     sites_of_corners: Vec<[u32; 4]>,
-    /// The near corners of all cells, one cell after the other, in ascending order in each.
+    /// The near corners of all cells, one cell after the other, ascending within each cell.
     corners_of_cells: Vec<u32>,
     /// The sites of the cells that have near corners, each with its range in `corners_of_cells`.
     cells: Vec<(u32, Range<usize>)>,
@@ -71,7 +71,7 @@ pub(crate) struct PacketCells {
     regions: [RegionPoints; LANES],
     /// The planes around the largest features of the primitives of the packet.
     over: LanesOver,
-    /// For each near corner the lanes over whose largest feature it is and whose value is not above zero there.
+    /// For each near corner, the lanes whose largest feature lies below it and whose value is not above zero there.
     lanes_over: Vec<u16>,
     /// The features of the primitives of the packet.
     features: [PrimitiveFeatures; LANES],
@@ -158,7 +158,7 @@ impl PacketCells {
             if *has_list {
                 self.cells.push((site, first..first + *count));
             }
-            // The count becomes the place of the next corner.
+            // The count is the place of the next corner from here on.
             let end = first + if *has_list { *count } else { 0 };
             (*count, first) = (first, end);
         }
@@ -184,7 +184,7 @@ impl PacketCells {
             |(corner, (neighbours, lanes))| {
                 neighbours.map(|other| {
                     let other = other as usize;
-                    // No corner has the number that stands for none.
+                    // [`Delaunay::NONE`] is the number of no corner, so `lanes_below` has no entry for it.
                     let is_first = other >= near || corner < other;
                     lanes_below.get(other).filter(|_| is_first).map_or(0, |others| lanes ^ others)
                 })
@@ -241,7 +241,7 @@ impl PacketCells {
     }
 
     /// Passes the region of each of some primitives of the packet to `visit`, with the site and the lane. `lanes_of`
-    /// returns the lanes in question in the cell of a site.
+    /// returns the lanes to be visited in the cell of a site.
     pub(crate) fn visit_regions(
         &mut self,
         lanes_of: impl Fn(u32) -> u16,

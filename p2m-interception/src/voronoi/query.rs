@@ -101,7 +101,7 @@ impl Voronoi {
         }
     }
 
-    /// Returns the packet and the lane of the primitive that is certainly the answer, if the query is in the far
+    /// Returns the packet and the lane of the answer if it is certain without a search, because the query is in the far
     /// half-space of its site.
     #[inline(always)]
     fn known_answer(located: &LocatedSite, site: &Site, position: &V3) -> Option<(usize, usize)> {
@@ -296,7 +296,8 @@ impl SimdKernel for SearchInterleaved<'_, '_, Voronoi> {
 }
 
 impl Voronoi {
-    /// Begins the search of a query in its cell: its list is added to `lists`, unless something else answers.
+    /// Begins the search of a query in its cell. Adds its list to `lists`, unless the far half-space, the tree or a
+    /// filter answers.
     #[inline(always)]
     fn begin_cell(
         &self,

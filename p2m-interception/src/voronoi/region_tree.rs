@@ -7,7 +7,7 @@ use std::sync::Arc;
 /// A filter that keeps the boxes of a list in an R-tree of the crate `rstar` \[Zong2023\].
 ///
 /// # Complexity
-/// A filter takes about 84 bytes for each primitive of its list. It is slower than the lists in order, which are the
+/// A filter takes about 84 bytes per primitive of its list. It is slower than the lists in order, which are the
 /// default, on every scene that was measured: between slivers, where lists are long, queries take three to ten times
 /// as long ([docs/measurements/p2m.md] has figures).
 ///

@@ -11,7 +11,7 @@ use p2m_bvh::PacketTree;
 use p2m_core::engine::vector::V3;
 use p2m_core::storage::{LoadError, Reader, Saved, Writer, require};
 
-/// The fields of a P2M index that are not arrays. The layout is that of the section `voronoi` of the file.
+/// The fields of a P2M index that are not arrays, in the layout of the section `voronoi` of the file.
 #[derive(Clone, Copy, bytemuck::Pod, bytemuck::Zeroable)]
 #[repr(C)]
 struct Header {

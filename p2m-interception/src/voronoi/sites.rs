@@ -24,8 +24,8 @@ use p2m_core::Aabb;
 use p2m_core::engine::parallel::run_beside;
 use p2m_core::engine::vector::V3;
 
-/// The distance of the bounding sites from the centre, in halves of the longest side of the box of all sites. So none
-/// of them is the nearest site in the domain, or nearly the nearest ([docs/proofs/p2m.md]).
+/// The distance of the bounding sites from the centre, in halves of the longest side of the box of all sites. It is so
+/// large that no bounding site is the nearest site in the domain, or nearly the nearest ([docs/proofs/p2m.md]).
 ///
 /// [docs/proofs/p2m.md]: https://github.com/p2m-rs/p2m/blob/main/docs/proofs/p2m.md
 pub(crate) const BOUNDING_DISTANCE: f64 = 300.0;
@@ -58,8 +58,8 @@ struct GrowingSites<'a> {
     added: Vec<AddedSite>,
     /// The triangulation of the points.
     delaunay: Delaunay,
-    /// The topology of the triangulation. It is collected beside the balls if there are threads for it, and later
-    /// otherwise, because only that of the last triangulation is needed.
+    /// The topology of the triangulation, if another thread collected it while the balls were searched. Otherwise it is
+    /// collected at the end, because only the topology of the last triangulation is needed.
     topology: Option<SiteTopology>,
     /// The corners of the triangulation, with the packets of their balls. There are none until these are known.
     corners: CellCorners,
@@ -102,8 +102,8 @@ impl<'a> GrowingSites<'a> {
         Some(sites)
     }
 
-    /// Adds points, and finds the packets of all balls. The packets of balls that remain are those of before, if there
-    /// are corners already. It returns `false` and adds nothing if there would be too many tetrahedra.
+    /// Adds points, and finds the packets of all balls. Balls that remain keep their packets, if there are corners
+    /// already. Returns `false` and adds nothing if there would be too many tetrahedra.
     fn add(&mut self, new_sites: Vec<AddedSite>) -> bool {
         let count_before = self.points.len();
         self.points.extend(new_sites.iter().map(|site| site.position));
@@ -193,7 +193,7 @@ impl Sites {
                 break;
             }
             let crowded_after = growing.corners.count_crowded();
-            // Points do not help everywhere. Between long thin triangles there would have to be too many.
+            // Added points do not help everywhere: between long thin triangles there would have to be too many.
             if crowded_after * 8 > crowded_before * 7 && crowded_after * 16 > ball_count {
                 break;
             }

@@ -28,7 +28,8 @@ pub(super) fn check(index: &Voronoi) -> Result<(), LoadError> {
     for (site, first) in sites.iter().zip(blocks.iter()) {
         check_site(index, lane_masks, site)?;
         if site.has_list() {
-            // The first block of a list has the number of its site, and the others come after those of all sites.
+            // The first block of a list has the number of its site, and the other blocks come after the first blocks of
+            // all sites.
             let start = site.list as usize;
             let end = start + usize::from(first.following);
             require(start >= sites.len() && end <= blocks.len(), LISTS, "a list exceeds the section")?;

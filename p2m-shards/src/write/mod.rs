@@ -2,9 +2,9 @@
 //!
 //! Primitives are written to a temporary file as they come. At the end that file is divided by space into parts, large
 //! parts are divided again, and the index of each part is built and saved by itself. Temporary files are in the folder
-//! of the shards and take 88 bytes for each primitive, and twice that while a file is divided. While a file of a scene
+//! of the shards and take 88 bytes per primitive, and twice that while a file is divided. While a file of a scene
 //! is read, vertices that do not fit into the memory for them are in another temporary file, which takes at most 24
-//! bytes for each vertex of that file.
+//! bytes per vertex of that file.
 //!
 //! Each run of a writer creates files under names of its own. The manifest gets its name when all shards are written,
 //! and only then are the files of an index that is replaced removed. So an index that is in the folder is complete at
@@ -74,9 +74,9 @@ impl ShardOptions {
     }
 }
 
-/// The bytes of a primitive in the file of a shard, besides those of the index, that a first division expects.
+/// The length that a first division expects of a primitive in the file of a shard, in bytes besides the index.
 const FILE_BYTES_PER_PRIMITIVE: f64 = 52.0;
-/// The part of the largest length of a file that a division aims at. Parts are not equally large.
+/// The fraction of the largest length of a file that a division aims at, because parts are not equally large.
 const FILL: f64 = 0.85;
 
 /// The number of bytes of a shard that are written at a time.
@@ -126,7 +126,7 @@ pub struct ShardWriter {
     edges: EdgeSums,
     /// The number of this run, with which the names of its files begin.
     run: u64,
-    /// The files of this run, which are removed unless writing is finished: those of shards in their order.
+    /// The files of this run, which are removed unless writing is finished: the files of shards in their order.
     written: Vec<PathBuf>,
     /// Whether the folder is to be removed as well, because it was not there.
     is_new_folder: bool,
@@ -151,14 +151,14 @@ impl ShardWriter {
         let (folder, written) = (folder.to_owned(), Vec::new());
         let edges = EdgeSums::default();
         let mut writer = Self { folder, options, spill: None, manifest, edges, run: 0, written, is_new_folder };
-        // What fails from here on drops the writer, which removes what it has created.
+        // An error from here on drops the writer, which removes the files that it has created.
         writer.run = begin_run(&writer.folder).map_err(ShardError::io(&writer.folder))?;
         writer.written.push(writer.folder.join(shard_file(writer.run, 0)));
         writer.spill = Some(Spill::new(&writer.folder).map_err(ShardError::io(&writer.folder))?);
         Ok(writer)
     }
 
-    /// Returns the number of this run, which the names of its files have ([`shard_file`]).
+    /// Returns the number of this run, which is in the names of its files ([`shard_file`]).
     #[must_use]
     pub fn run(&self) -> u64 {
         self.run
@@ -192,8 +192,8 @@ impl ShardWriter {
     /// Adds the primitives of a file, which may be larger than the memory, after those that were added before. It is
     /// [read in pieces](read_scene_in_pieces), with a temporary file in the folder of the shards unless `options` name
     /// another one. A piece has at most the primitives of a full shard, and the vertices besides it at most the bytes
-    /// of one. The id of a primitive is that in the scene of [`read_scene`](p2m_mixed::read_scene) plus the number of
-    /// primitives that were added before, and objects are those of that scene.
+    /// of one. The id of a primitive is its id in the scene of [`read_scene`](p2m_mixed::read_scene) plus the number of
+    /// primitives that were added before, and objects are the objects of that scene.
     ///
     /// # Errors
     /// It returns [`ShardError::Scene`] if the file cannot be read, and [`ShardError::Io`] if the temporary file of
@@ -280,7 +280,7 @@ impl ShardWriter {
             }
             let capacity = capacity(max_bytes, FILL, bytes_per_primitive);
             let divided = divide(part, capacity, &self.folder).map_err(ShardError::io(&self.folder))?;
-            // The last one comes first, so that shards are numbered along the tree.
+            // The last part is pushed first, so that shards are numbered along the tree.
             parts.extend(divided.into_iter().rev());
         }
         self.publish()?;
@@ -294,7 +294,7 @@ impl ShardWriter {
         let built = self.options.backend.build(Arc::clone(&scene.soup), &BuildSettings::default())?;
         let file = shard_file(self.run, self.manifest.shards.len());
         let path = self.folder.join(&file);
-        // The file is there if it is the first one, or if it was too long and its part was divided.
+        // The file exists if it is the first one, or if it was too long and its part was divided.
         let is_new = self.written.last() != Some(&path);
         let mut writer = Writer::default();
         save_scene(&scene, &mut writer);
@@ -336,7 +336,7 @@ impl ShardWriter {
             let left = files_of_runs(&self.folder).unwrap_or_default().into_iter().filter(|(run, _)| *run < self.run);
             let left = replaced.into_iter().map(|shard| shard.file).chain(left.map(|(_, file)| file));
             for file in left.filter(|file| run_of(file) != Some(self.run)) {
-                // What cannot be removed stays until the next replacement.
+                // A file that cannot be removed stays until the next replacement.
                 let _ = fs::remove_file(self.folder.join(file));
             }
         }
@@ -346,7 +346,7 @@ impl ShardWriter {
 
 impl Drop for ShardWriter {
     fn drop(&mut self) {
-        // What cannot be removed stays.
+        // A file that cannot be removed stays.
         for path in self.written.iter().rev() {
             let _ = fs::remove_file(path);
         }

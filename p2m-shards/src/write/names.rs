@@ -18,7 +18,7 @@ pub(super) fn unfinished_manifest(run: u64) -> String {
     format!("{run}-{MANIFEST_FILE}")
 }
 
-/// Returns the number of the run that created a file of this name, if the name is that of a run.
+/// Parses the number of the run from a file name. Returns `None` if it is not the name of a file of a run.
 pub(super) fn run_of(name: &str) -> Option<u64> {
     let (run, rest) = name.split_once('-')?;
     let run = u64::from(run.parse::<u32>().ok()?);
@@ -37,8 +37,8 @@ pub(super) fn files_of_runs(folder: &Path) -> io::Result<Vec<(u64, String)>> {
     Ok(files)
 }
 
-/// Begins a run in a folder by creating the file of its first shard, and returns the number of the run, which is
-/// greater than those of all files in the folder.
+/// Begins a run in a folder by creating the file of its first shard. Returns the number of the run, which is greater
+/// than the numbers of all runs with files in the folder.
 pub(super) fn begin_run(folder: &Path) -> io::Result<u64> {
     let last = files_of_runs(folder)?.into_iter().map(|(run, _)| run).max();
     let mut run = last.map_or(0, |last| last + 1);

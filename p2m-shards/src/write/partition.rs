@@ -20,8 +20,8 @@ enum Node {
     Split(usize, f64, Box<[Node; 2]>),
 }
 
-/// Divides primitives into parts of about `capacity` primitives, of which there are at most [`MAX_PARTS`]. If centres
-/// cannot be told apart, the halves are those of the order of ids. It returns at least two parts for two primitives.
+/// Divides primitives into parts of about `capacity` primitives, but at most [`MAX_PARTS`] parts. If centres cannot be
+/// told apart, the primitives are halved in the order of their ids. It returns at least two parts for two primitives.
 pub(super) fn divide(mut spill: Spill, capacity: u64, folder: &Path) -> io::Result<Vec<Spill>> {
     let wanted = spill.len().div_ceil(capacity.max(1)).clamp(2, MAX_PARTS as u64);
     let mut sample = spill.sample_centres(SAMPLE_LEN)?;
@@ -36,7 +36,7 @@ pub(super) fn divide(mut spill: Spill, capacity: u64, folder: &Path) -> io::Resu
     if parts.len() < 2 { halve(spill, folder) } else { Ok(parts) }
 }
 
-/// Divides primitives in the middle of their order.
+/// Divides primitives into two halves in the order of their ids.
 fn halve(mut spill: Spill, folder: &Path) -> io::Result<Vec<Spill>> {
     let mut parts = vec![Spill::new(folder)?, Spill::new(folder)?];
     let (mut number, half) = (0, spill.len() / 2);
