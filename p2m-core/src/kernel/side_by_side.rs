@@ -461,14 +461,15 @@ fn segments<D: Doubles>(eight: &TriangleLanes<2>) -> LaneResults {
     best.store(query, bounds(&vertices), select(is_second, vertices[1], vertices[0]), size, is_uncertain)
 }
 
-/// Runs [`triangles`] with an instruction set. No lane is certain if lanes of f64 are slower than the single kernel.
+/// Computes the nearest points of eight triangles with an instruction set. If `may_skip`, and a vertex is the nearest
+/// point of most of them, the others are left out. No lane is certain if lanes of f64 are slower than the single kernel.
 #[inline(never)]
 #[must_use]
 pub fn evaluate_triangles(isa: Isa, eight: &TriangleLanes<3>, may_skip: bool) -> LaneResults {
     isa.run_in_doubles(Triangles(eight, may_skip), LaneResults::default)
 }
 
-/// Runs [`segments`] with an instruction set. No lane is certain if lanes of f64 are slower than the single kernel.
+/// Computes the nearest points of eight segments with an instruction set. No lane is certain if lanes of f64 are slower than the single kernel.
 #[inline(never)]
 #[must_use]
 pub fn evaluate_segments(isa: Isa, eight: &TriangleLanes<2>) -> LaneResults {
