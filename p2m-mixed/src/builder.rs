@@ -13,8 +13,8 @@ use std::io::BufReader;
 use std::mem::take;
 use std::sync::Arc;
 
-/// The largest number of kinds of skipped records with a count of their own. Further kinds, as a file of noise has
-/// them, share one count.
+/// The most kinds of skipped records that are counted separately. All further kinds share one count, because a file of
+/// noise may have any number of them.
 const MAX_SKIPPED_KINDS: usize = 64;
 
 /// Counts the records of a file that a reader skips, by kind.
@@ -74,7 +74,8 @@ impl SkippedRecords {
     }
 }
 
-/// Collects runs of primitives under one name. A name takes memory only if a run of primitives starts with it.
+/// The objects so far, as runs of consecutive primitives under one name. A name takes memory only if a primitive
+/// follows it.
 #[derive(Default)]
 struct ObjectRuns {
     list: Vec<Object>,
@@ -111,7 +112,7 @@ impl ObjectRuns {
     }
 }
 
-/// The primitives that were added: those of the whole scene, or those of the current piece.
+/// The primitives so far, of the whole scene or of the current piece.
 #[derive(Default)]
 struct Output<'a> {
     soup: Soup<f64>,
@@ -122,7 +123,7 @@ struct Output<'a> {
 }
 
 impl Output<'_> {
-    /// Adds a primitive, whose indices are those of the file.
+    /// Adds a primitive whose vertices have the indices of the file.
     #[inline]
     fn push(&mut self, element: Element, source: u32) -> Result<(), Reason> {
         let element = if self.pieces.is_none() { element } else { self.element_of_piece(element)? };
@@ -132,7 +133,7 @@ impl Output<'_> {
         Ok(())
     }
 
-    /// Ends a full piece, and returns a primitive with the indices that its vertices have in the current piece.
+    /// Ends the current piece if it is full, and returns a primitive whose vertices have the indices of the piece.
     #[cold]
     fn element_of_piece(&mut self, element: Element) -> Result<Element, Reason> {
         self.end_full_piece()?;
@@ -167,7 +168,7 @@ impl Output<'_> {
     }
 }
 
-/// Builds a scene, or pieces of it. Callers have to check that indices are in range and that the vertices of
+/// Builds a scene, or pieces of a scene. The caller checks that indices are in range and that the vertices of
 /// primitives are finite.
 #[derive(Default)]
 pub struct SceneBuilder<'a> {
@@ -193,12 +194,12 @@ impl<'a> SceneBuilder<'a> {
         Self { output, ..Self::default() }
     }
 
-    /// Returns whether it makes pieces.
+    /// Returns whether the scene is built in pieces.
     pub(crate) fn makes_pieces(&self) -> bool {
         self.output.pieces.is_some()
     }
 
-    /// Says that primitives use no vertices of earlier pieces, which are then not kept.
+    /// Stops keeping the vertices of earlier pieces, for a file whose primitives do not use them.
     pub(crate) fn keep_vertices_of_pieces(&mut self) {
         self.output.pieces.iter_mut().for_each(|pieces| pieces.keep_vertices_of_pieces());
     }
@@ -217,8 +218,8 @@ impl<'a> SceneBuilder<'a> {
         }
     }
 
-    /// Returns the positions of all vertices. A builder of pieces has them in memory only if it
-    /// [forgets](Self::forget_old_vertices) them.
+    /// Returns the positions of all vertices. When the scene is built in pieces, the result is empty unless the builder
+    /// [forgets](Self::forget_old_vertices) old vertices, because the others may be in a temporary file.
     pub(crate) fn positions(&self) -> &[Point3<f64>] {
         match &self.output.pieces {
             None => self.output.soup.positions(),
@@ -226,8 +227,8 @@ impl<'a> SceneBuilder<'a> {
         }
     }
 
-    /// Ends a full piece, and removes all vertices if a piece has ended since the last call. Returns whether it removed
-    /// them. The next vertex is number 0 again.
+    /// Ends the current piece if it is full. If a piece has ended since the last call, removes all vertices, so that
+    /// the next vertex has the index 0, and returns `true`.
     pub(crate) fn forget_old_vertices(&mut self) -> Result<bool, Reason> {
         self.output.end_full_piece()?;
         Ok(self.output.pieces.as_mut().is_some_and(|pieces| pieces.forget_old_vertices()))
@@ -282,7 +283,7 @@ impl<'a> SceneBuilder<'a> {
         Ok(())
     }
 
-    /// Returns whether the coordinates of a vertex are finite, so that it may be part of a primitive.
+    /// Returns whether a vertex has finite coordinates, so that it may be part of a primitive.
     ///
     /// # Errors
     /// Those of reading a temporary file, if the scene is read in pieces.

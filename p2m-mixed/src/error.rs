@@ -11,7 +11,7 @@ use std::fmt;
 /// assert!(matches!(error.reason, p2m_mixed::Reason::IndexOutOfRange { index: 2, count: 1 }));
 /// ```
 ///
-/// The message includes that of the operating system, so `println!("{error}")` tells the whole reason.
+/// The message includes the message of the operating system, so `println!("{error}")` shows the whole reason.
 #[derive(Debug)]
 #[non_exhaustive]
 pub struct ReadError {
@@ -81,10 +81,10 @@ pub enum Reason {
     /// The operating system returned an error.
     #[error("cannot be read: {0}")]
     Io(std::io::Error),
-    /// The file is not a saved index, or a damaged one.
+    /// The file is not a saved index, or it is damaged.
     #[error(transparent)]
     Saved(p2m_core::storage::LoadError),
-    /// The primitives do not make a scene, because there are too many.
+    /// There are too many primitives for a scene.
     #[error("no scene can be made of it: {0}")]
     Build(BuildError),
     /// The extension of the file belongs to no format.
@@ -110,20 +110,20 @@ pub enum Reason {
         /// The text in the file.
         text: String,
     },
-    /// A primitive has a vertex with a coordinate that is NaN, infinite, or too large for double precision. The
-    /// location is that of the vertex in a PLY file, and that of the primitive in other files.
+    /// A primitive has a vertex with a coordinate that is NaN, infinite, or too large for double precision. A PLY file
+    /// is located at the vertex, and any other file at the primitive.
     #[error("vertex {index} is part of a primitive, but has a coordinate that is not finite")]
     NonFiniteVertex {
         /// The number of the vertex, which OBJ counts from 1, PLY and OFF from 0.
         index: u64,
     },
-    /// An OBJ file has no vertex, but statements that OBJ does not have.
+    /// The file has no vertex, and it is empty or has statements that OBJ does not define.
     #[error("no vertex in it, is this an OBJ file?")]
     NoVertex,
     /// The large polygons of a file would take too long to be triangulated.
     #[error("its large polygons would take too long to triangulate: divide those of more than 256 vertices")]
     PolygonsTooLarge {
-        /// The largest sum of the squares of the numbers of vertices of polygons with more than 256 of them.
+        /// The largest allowed sum of the squared numbers of vertices, over all polygons of more than 256 vertices.
         limit: u64,
     },
     /// A word is not the expected keyword.
@@ -164,7 +164,7 @@ pub enum Reason {
     IndexOutOfRange {
         /// The index in the file.
         index: i64,
-        /// The number of vertices of the file; for an index that is negative or above 2^32 that of those
+        /// The number of vertices of the file. For an index that is negative or above 2^32, it counts only the vertices
         /// before this line.
         count: u64,
     },
@@ -240,7 +240,7 @@ pub enum Reason {
         /// The number of columns.
         found: usize,
     },
-    /// The first line of a table has the number of its rows, which is another one.
+    /// The first line of a table announces a wrong number of rows.
     #[error("the first line announces {announced} rows, but there are {found}")]
     RowCount {
         /// The number on the first line.
@@ -248,18 +248,19 @@ pub enum Reason {
         /// The number of rows.
         found: u64,
     },
-    /// A row of a table without names has another number of columns than the first one, which has two.
+    /// A row has more or fewer columns than the first row, which has two, in a table whose columns have no names.
     #[error("the first row has 2 columns, but this one has {found}")]
     ColumnCount {
         /// The number of columns.
         found: usize,
     },
-    /// The table has no column with this name or number, which the caller chose.
+    /// The caller chose a column that the table does not have.
     #[error("there is no column '{name}' among {}", names.join(", "))]
     NoSuchColumn {
         /// The name, or the number from 1.
         name: String,
-        /// The names of the columns, or the fields of the first row, or the first ones of them if there are many.
+        /// The names of the columns, or else the fields of the first row. Only the first ones are listed if there are
+        /// many.
         names: Vec<String>,
     },
     /// The reader of a format in another crate found an error.

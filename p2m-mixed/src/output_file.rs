@@ -16,7 +16,7 @@ const BUFFER_BYTES: usize = 1 << 16;
 #[derive(Debug)]
 pub struct OutputFile {
     writer: BufWriter<File>,
-    /// The other name, which nobody can guess, and the name that the file gets; `None` for a device or a pipe.
+    /// The temporary name, which nobody can guess, and the final name; `None` for a device or a pipe.
     names: Option<(TempPath, PathBuf)>,
 }
 
@@ -24,7 +24,7 @@ impl OutputFile {
     /// Opens the file at `path`.
     ///
     /// # Errors
-    /// It refuses a link to nothing, a folder, a read-only file, and a path in a folder in which no file can be made.
+    /// `path` is a link to nothing, a folder or a read-only file, or no file can be created in its folder.
     pub fn create(path: &Path) -> io::Result<Self> {
         // A link is followed, so that it keeps its target.
         let target = match fs::canonicalize(path) {
@@ -49,16 +49,16 @@ impl OutputFile {
         Ok(Self { writer: BufWriter::with_capacity(BUFFER_BYTES, file), names: Some((name, target)) })
     }
 
-    /// Returns the name of the file until it is complete, if it has another one.
+    /// Returns the temporary name of the file, if it has one.
     #[must_use]
     pub fn temporary_name(&self) -> Option<&Path> {
         self.names.as_ref().map(|(temporary, _)| &**temporary)
     }
 
-    /// Completes the file, and gives it its name.
+    /// Completes the file, and renames it to its final name.
     ///
     /// # Errors
-    /// It returns the error of writing or renaming.
+    /// Errors of writing and renaming.
     pub fn finish(mut self) -> io::Result<()> {
         self.writer.flush()?;
         match self.names {

@@ -9,12 +9,12 @@ use p2m_core::kernel::power_of_two;
 /// quadratic for simple concave polygons (observed: two to three seconds for a spiral of this size).
 pub const MAX_CORNERS: usize = 1 << 15;
 
-/// The largest sum of the squares of the numbers of vertices over all polygons of a file with more than 256 vertices:
-/// 2^34, that of sixteen polygons of [`MAX_CORNERS`]. It bounds the time of triangulation (observed: about half a
+/// The largest sum of the squared numbers of vertices over all polygons of a file with more than 256 vertices: 2^34,
+/// which sixteen polygons of [`MAX_CORNERS`] reach. It bounds the time of triangulation (observed: about half a
 /// minute).
 pub(crate) const MAX_CORNER_SQUARES: u64 = 1 << 34;
 
-/// Polygons of more corners are checked for repeated corners before they are triangulated.
+/// The number of corners above which a polygon is checked for repeated corners before it is triangulated.
 pub(crate) const CHECK_REPEATS_ABOVE_CORNERS: usize = 256;
 
 /// Divides polygons into triangles, and reuses its buffers for the next polygon.
@@ -110,7 +110,7 @@ impl Triangulator {
         normal[axis] != 0.0
     }
 
-    /// Returns whether all triangles of the fan around the first corner are without area, apart from rounding.
+    /// Returns whether all triangles of the fan around the first corner have no area, up to rounding.
     fn is_flat(&self) -> bool {
         self.offsets.windows(2).all(|pair| cross(pair[0], pair[1]).iter().all(|x| x.abs() <= 8.0 * f64::EPSILON))
     }

@@ -43,7 +43,7 @@ pub struct Scene {
     pub objects: Vec<Object>,
     /// The records that the reader left out because they are not geometry, in the order of first appearance.
     pub skipped: Vec<Skipped>,
-    /// The unit of the coordinates, if the file has it. Coordinates are those of the file: nothing is converted.
+    /// The unit of the coordinates, if the file states it. Coordinates are not converted.
     pub unit: Option<Unit>,
     /// Whether the points of the file have two coordinates. Their z is then 0.
     pub is_flat: bool,
@@ -81,7 +81,7 @@ pub fn object_number(objects: &[Object], id: PrimitiveId) -> Option<usize> {
     objects[number].ids.contains(&id.index()).then_some(number)
 }
 
-/// A kind of records in a file that are not part of the scene. It displays as an item of a list: `2 x usemtl`.
+/// A kind of records that the reader left out. It displays as an item of a list: `2 x usemtl`.
 #[derive(Debug, Clone, PartialEq, Eq)]
 #[non_exhaustive]
 pub struct Skipped {

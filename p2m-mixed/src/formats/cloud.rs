@@ -9,7 +9,8 @@ use nalgebra::Point3;
 use p2m_core::{Element, PrimitiveId, npy_header};
 use std::io::{BufRead, Write};
 
-/// Reads a cloud with a function that calls another one for each row. Each point that is finite is a primitive.
+/// Reads a point cloud. `for_each_row` reads a file and calls a function for each row, and each finite point becomes a
+/// primitive.
 fn read_cloud(
     mut builder: SceneBuilder<'_>,
     for_each_row: impl FnOnce(&mut dyn FnMut(Point3<f64>) -> Result<(), Reason>) -> Result<TableNotes, ReadError>,
@@ -40,7 +41,7 @@ pub(super) fn read_table(
     })
 }
 
-/// Returns the points of a scene that has nothing else.
+/// Returns the points of a scene, or an error if the scene has other primitives.
 fn points_of(scene: &Scene) -> Result<impl ExactSizeIterator<Item = Point3<f64>>, WriteError> {
     let soup = &scene.soup;
     match soup.elements().position(|element| !matches!(element, Element::Point(_))) {

@@ -15,8 +15,8 @@ use crate::parse::blocks::Source;
 use crate::{ReadError, Scene, WriteError};
 use std::io::{BufRead, Write};
 
-/// Makes [`Format`] of a table: the names of a format, which are the extensions of its files, its reader and writer, and
-/// whether its files hold every scene.
+/// Generates [`Format`] from a table. A row has the names of a format, which are also the extensions of its files, its
+/// reader, its writer, and whether its files preserve every scene.
 macro_rules! scene_formats {
     ($($(#[$doc:meta])* $variant:ident = $name:literal $(| $other:literal)*, $read:path, $write:path, is_lossless: $is_lossless:literal;)*) => {
         p2m_core::formats! {
@@ -34,7 +34,8 @@ macro_rules! scene_formats {
         }
 
         impl Format {
-            /// Returns whether files hold the primitives of every scene, of all kinds, and the bits of their positions.
+            /// Returns whether files of this format preserve every scene: primitives of all kinds, and positions bit
+            /// for bit.
             #[must_use]
             pub fn is_lossless(self) -> bool {
                 match self {
@@ -63,23 +64,22 @@ macro_rules! scene_formats {
 }
 
 scene_formats! {
-    /// Wavefront OBJ is a text format, see [`read_obj`](crate::read_obj) and [`write_obj`](crate::write_obj).
+    /// Wavefront OBJ, a text format: see [`read_obj`](crate::read_obj) and [`write_obj`](crate::write_obj).
     Obj = "obj", obj::read, obj::write, is_lossless: true;
-    /// This is the Stanford polygon format, see [`read_ply`](crate::read_ply) and [`write_ply`](crate::write_ply).
+    /// The Stanford polygon format: see [`read_ply`](crate::read_ply) and [`write_ply`](crate::write_ply).
     Ply = "ply", ply::read, ply::write, is_lossless: true;
-    /// Stereolithography files have triangles in single precision, see [`read_stl`](crate::read_stl) and
+    /// Stereolithography files, which have triangles in single precision: see [`read_stl`](crate::read_stl) and
     /// [`write_stl`](crate::write_stl).
     Stl = "stl", stl::read, stl::write, is_lossless: false;
-    /// This is the object file format of Geomview, see [`read_off`](crate::read_off) and
-    /// [`write_off`](crate::write_off).
+    /// The object file format of Geomview: see [`read_off`](crate::read_off) and [`write_off`](crate::write_off).
     Off = "off", off::read, off::write, is_lossless: true;
-    /// Text tables of points, whose columns are separated by blanks, see [`read_points`](crate::read_points).
+    /// Text tables of points with columns separated by blanks: see [`read_points`](crate::read_points).
     Xyz = "xyz" | "txt" | "asc" | "pts", cloud::read_table, cloud::write_xyz, is_lossless: false;
-    /// Text tables of points, whose columns are separated by commas, see [`read_points`](crate::read_points).
+    /// Text tables of points with columns separated by commas: see [`read_points`](crate::read_points).
     Csv = "csv", cloud::read_table, cloud::write_csv, is_lossless: false;
-    /// Arrays of NumPy hold points, see [`read_points`](crate::read_points).
+    /// NumPy arrays of points: see [`read_points`](crate::read_points).
     Npy = "npy", cloud::read_npy, cloud::write_npy, is_lossless: false;
-    /// Files of saved indexes can have a scene, see [`read_p2m`](crate::read_p2m) and [`write_p2m`](crate::write_p2m).
+    /// Saved indexes that include a scene: see [`read_p2m`](crate::read_p2m) and [`write_p2m`](crate::write_p2m).
     P2m = "p2m", p2m::read, p2m::write, is_lossless: true;
 }
 

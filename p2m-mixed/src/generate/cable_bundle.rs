@@ -31,7 +31,7 @@ impl Default for CableBundle {
     }
 }
 
-/// The golden section of a turn. Strands at its multiples fill a disc evenly.
+/// The golden angle, in turns. Strands at its multiples fill a disc evenly.
 const GOLDEN_TURN: f64 = 0.381_966_011_250_105_1;
 /// The fraction of the trefoil that the bundle follows. The bundle is open, because its strands would not close.
 const KNOT_FRACTION: f64 = 0.95;

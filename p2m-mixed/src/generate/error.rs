@@ -57,7 +57,7 @@ pub enum GenerateError {
     Build(#[from] BuildError),
 }
 
-/// Returns an error unless an option is valid. `range` has the values that are.
+/// Returns [`GenerateError::OutOfRange`] unless `is_valid`. `range` describes the valid values for the message.
 pub(super) fn in_range(
     is_valid: bool,
     option: &'static str,
@@ -71,14 +71,14 @@ pub(super) fn at_least(least: u32, option: &'static str, value: u32) -> Result<(
     if value < least { Err(GenerateError::TooFew { option, value, least }) } else { Ok(()) }
 }
 
-/// The memory that a primitive needs while a scene is made, in bytes: its indices, and its part of the positions and of
-/// the edges that are divided, twice where lists grow.
+/// The memory for each primitive while a scene is made, in bytes: its indices, and its share of the positions and of
+/// the edges of a subdivision, twice because lists double when they grow. An estimate, not a measurement.
 const BYTES_PER_PRIMITIVE: u64 = 64;
-/// The number of primitives from which on the memory is checked.
+/// The number of primitives from which free memory is checked. Smaller scenes need at most 64 MiB.
 const CHECK_FROM_PRIMITIVES: usize = 1 << 20;
 
-/// Returns the number of primitives, or an error if there are not enough ids or there is not enough memory. The argument
-/// has room for the product of three numbers of 32 bits.
+/// Returns the number of primitives as a `usize`, or an error if there are too few ids or too little memory. The
+/// argument is an u128, so that a product of three 32-bit numbers does not overflow.
 pub(super) fn capacity(primitives: u128) -> Result<usize, GenerateError> {
     let len = usize::try_from(primitives).unwrap_or(usize::MAX);
     if len > PrimitiveId::MAX_COUNT {
@@ -93,7 +93,7 @@ fn check_memory(primitives: usize, free: u64) -> Result<(), GenerateError> {
     if needed > free { Err(GenerateError::Memory { primitives, needed, free }) } else { Ok(()) }
 }
 
-/// Returns the memory that is free in bytes, or the largest number where that is not known.
+/// Returns the free memory in bytes, or `u64::MAX` if it is not known.
 fn free_memory() -> u64 {
     let text = std::fs::read_to_string("/proc/meminfo").unwrap_or_default();
     let kilobytes = |name: &str| -> Option<u64> {

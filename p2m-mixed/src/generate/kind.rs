@@ -6,7 +6,7 @@ use super::{
 };
 use p2m_core::Soup;
 
-/// Makes [`Kind`] of a table: the name of a kind, the function that makes it, and a description.
+/// Generates [`Kind`] from a table, whose rows have the name of a kind, the function that makes it, and a description.
 macro_rules! kinds {
     ($($options:ident = $name:literal, $generate:ident, $description:literal;)*) => {
         /// A kind of generated scene with its options.

@@ -2,7 +2,7 @@
 //!
 //! Each kind of scene has a function and a struct of options, and [`Kind`] lists them by name. [`Transform`],
 //! [`subdivide`], [`gapped`] and [`penetrating`] change any scene. Scenes are the same on every platform, bit for bit:
-//! sines are those of the crate libm and random numbers those of ChaCha, and tests compare each kind with a checksum.
+//! sines come from the crate libm and random numbers from ChaCha, and tests compare each kind with a checksum.
 //!
 //! ```
 //! use p2m_mixed::generate::{Kind, Subdivide, Transform, penetrating, subdivide};

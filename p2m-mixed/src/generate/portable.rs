@@ -1,8 +1,8 @@
 //! Angles and random numbers that are the same on every platform, bit for bit.
 //!
-//! The mathematical libraries of platforms differ in their rounding. Sines and cosines are therefore those of the crate
-//! libm, which consist of additions, multiplications and divisions of f64 in a fixed order. `powi` and `mul_add` are
-//! not used.
+//! The mathematical libraries of platforms differ in their rounding. Sines and cosines therefore come from the crate
+//! libm, which computes them by additions, multiplications and divisions of f64 in a fixed order. `powi` and `mul_add`
+//! are not used.
 
 use chacha20::ChaCha8Rng;
 use chacha20::rand_core::{Rng, SeedableRng};

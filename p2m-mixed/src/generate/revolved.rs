@@ -17,7 +17,7 @@ use p2m_core::Soup;
 pub struct Sphere {
     /// The number of vertices of each parallel, at least 3.
     pub meridians: u32,
-    /// The number of bands between parallels, those at the poles included, at least 2.
+    /// The number of bands between parallels, including the two at the poles, at least 2.
     pub bands: u32,
 }
 
@@ -39,7 +39,7 @@ impl Default for Sphere {
 pub struct Cone {
     /// The number of vertices around the axis, at least 3.
     pub sides: u32,
-    /// The number of bands of the slope, the one at the apex included, at least 1.
+    /// The number of bands of the slope, including the one at the apex, at least 1.
     pub bands: u32,
     /// The number of rings of triangles of the base, at least 1.
     pub cap_bands: u32,
@@ -131,7 +131,8 @@ fn check_sides_and_bands(sides: u32, bands: u32, cap_bands: u32) -> Result<(), G
     at_least(1, "cap bands", cap_bands)
 }
 
-/// Checks the number of primitives. `bands` are the bands from pole to pole, and there is one ring less than bands.
+/// Checks the number of primitives. `bands` has the numbers of bands from pole to pole, and there is one ring fewer
+/// than bands.
 fn check_size(sides: u32, bands: &[u32]) -> Result<(), GenerateError> {
     let bands: u128 = bands.iter().copied().map(u128::from).sum();
     capacity(2 * u128::from(sides) * (bands - 1))?;

@@ -36,10 +36,10 @@ impl Default for Subdivide {
 
 /// Splits each triangle at the midpoints of its edges into four and each segment into two, `levels` times.
 ///
-/// The parts of a primitive take its position in the order. The parts of a triangle are those at its first, second
-/// and third corner and then the central one, and they have its orientation. Points do not change. Midpoints come
-/// after the positions of the level before. They are displaced in random directions, so triangles may cross each
-/// other for large amplitudes.
+/// The parts of a primitive take its place in the order. A triangle becomes the parts at its first, second and third
+/// corner and then the central part, all with its orientation. Points do not change. Midpoints come after the positions
+/// of the level before. They are displaced in random directions, so triangles may cross each other for large
+/// amplitudes.
 ///
 /// # Errors
 /// [`GenerateError::OutOfRange`] for an amplitude that is not from 0 to 0.5, [`GenerateError::Build`] if there are more
@@ -91,7 +91,9 @@ pub fn subdivide(scene: &Soup<f64>, options: &Subdivide) -> Result<Soup<f64>, Ge
     Ok(Soup::new(positions, elements)?)
 }
 
-/// The distinct edges of all primitives, sorted by their lower and then their upper vertex.
+/// The distinct edges of all primitives, in compressed rows: an edge is stored at its lower vertex. The edges are
+/// sorted, so the place of an edge is the number of its midpoint, and no hash table is needed to share midpoints
+/// between triangles.
 struct Edges {
     /// The index of the first edge of each lower vertex, and the number of edges at the end.
     start: Vec<usize>,

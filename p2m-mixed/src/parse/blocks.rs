@@ -1,9 +1,9 @@
-//! Blocks of a file, which all threads parse while one thread joins them in order.
+//! Parallel parsing of a file in blocks, which one thread joins in order.
 //!
-//! A block is a part of a file that can be parsed without what is before it. What a block leaves open, such as a
-//! relative index, is settled when blocks are joined. Whatever is unusual is left to the sequential reader of the
-//! format: it continues where the last block was joined, so both readers together give the same scene and the same
-//! errors as the sequential reader alone.
+//! A block is a part of a file that can be parsed without knowing what precedes it. Joining the blocks resolves what
+//! depends on earlier blocks, such as a relative index. Unusual input is left to the sequential reader of the format,
+//! which continues where the last block was joined. So both readers together return the same scene and the same errors
+//! as the sequential reader alone.
 
 use crate::parse::bytes::fill_buffer;
 use p2m_core::engine::parallel::{thread_count, with_helpers};
@@ -11,21 +11,22 @@ use std::collections::VecDeque;
 use std::io::{self, BufRead, Read};
 use std::sync::{Mutex, PoisonError};
 
-/// The size of a block in bytes. A block is parsed in about a tenth of a millisecond.
+/// The size of a block in bytes. Parsing one takes about a tenth of a millisecond.
 pub(crate) const BLOCK_BYTES: usize = 1 << 15;
-/// The number of blocks that are read for each thread while the blocks before them are parsed.
+/// The number of blocks per thread that are read ahead while the blocks before them are parsed. No record of how it was
+/// chosen exists.
 const BLOCKS_PER_THREAD: usize = 4;
-/// The number of bytes of a typical row.
+/// The number of bytes of a typical row, to estimate the size of a file from its number of rows.
 const BYTES_PER_ROW: usize = 32;
-/// A line or row longer than this number of blocks is left to the sequential reader.
+/// The length of a line or row, in blocks, above which it is left to the sequential reader.
 const MAX_BLOCKS_PER_ROW: usize = 32;
 
-/// A reader to which bytes can be returned.
+/// A reader that takes bytes back, as `ungetc` does.
 pub(crate) struct Source<R> {
     reader: R,
-    /// Bytes that come before those of `reader`.
+    /// Returned bytes, which come before the rest of `reader`.
     returned: Vec<u8>,
-    /// The number of bytes of `returned` that were read again.
+    /// The number of bytes of `returned` that have been read again.
     at: usize,
     /// An error of `reader` after the bytes of `returned`.
     error: Option<io::Error>,
@@ -48,12 +49,12 @@ impl<R: BufRead> Source<R> {
         self.reader
     }
 
-    /// Takes an error of the reader, which the next read returns.
+    /// Puts an error back, so that the next read returns it.
     pub(crate) fn return_error(&mut self, error: io::Error) {
         self.error = Some(error);
     }
 
-    /// Returns bytes that were read last.
+    /// Puts bytes back that were read last.
     fn return_bytes(&mut self, bytes: &[u8]) {
         self.returned.splice(..self.at, bytes.iter().copied());
         self.at = 0;
@@ -73,9 +74,9 @@ impl<R: BufRead> Source<R> {
         self.block_bytes > 0 && rows >= (self.block_bytes / BYTES_PER_ROW) as u64
     }
 
-    /// Reads the next block. `cut` returns the length of the longest block at the start of some bytes, which is 0 if
-    /// more bytes are needed, or `None` if no block is wanted. Returns `None`, and no byte is read, at the end of the
-    /// file, before an error, and if there is no block.
+    /// Reads the next block. `cut` gets the bytes read so far and returns the length of the longest block that they
+    /// start with, 0 if it needs more bytes, or `None` if no further block is wanted. At the end of the file, before an
+    /// error and if there is no block, this function returns `None` and consumes nothing.
     fn next_block(&mut self, cut: &mut impl FnMut(&[u8]) -> Option<usize>) -> Option<Vec<u8>> {
         let mut block = Vec::new();
         let mut want = self.block_bytes;
@@ -136,11 +137,11 @@ impl<R: BufRead> BufRead for Source<R> {
     }
 }
 
-/// Parses blocks of a file, with the feature `rayon` on all threads of the current pool, and passes each with its
-/// bytes to `join`, in order and on this thread.
+/// Parses a file in blocks and passes each block to `join`, in order and on this thread. With the feature `rayon`, all
+/// threads of the current pool parse.
 ///
-/// Blocks end where `cut` says (see [`Source::next_block`]). `join` may return a number of bytes of its block to say
-/// that the rest of the block, and all blocks after it, are not wanted; these bytes are the next of the source then.
+/// `cut` decides where blocks end (see [`Source::next_block`]). `join` returns a number to stop: the block is used up
+/// to that byte, and the source continues there. Blocks after it are put back as well.
 pub(crate) fn for_each_block<R: BufRead, P: Send, E>(
     source: &mut Source<R>,
     mut cut: impl FnMut(&[u8]) -> Option<usize>,
@@ -160,14 +161,17 @@ pub(crate) fn for_each_block<R: BufRead, P: Send, E>(
     Ok(())
 }
 
-/// A block, and what it was parsed into.
+/// A block and its parsed form.
 struct Slot<P> {
     bytes: Vec<u8>,
     parsed: Option<P>,
 }
 
-/// Joins the blocks of one round and reads those of the round after the next, while other threads parse the blocks of
-/// the next round.
+/// Parses blocks on all threads, in a pipeline of three rounds of blocks.
+///
+/// In each step of the loop, the helpers parse the blocks of `next`. Meanwhile this thread joins the blocks of
+/// `parsed`, which come before them, and then reads the blocks of `after` from the file. Then the rounds move up. If
+/// `join` stops early, the bytes of all blocks that were read ahead go back to the source.
 fn for_each_block_on_threads<R: BufRead, P: Send, E>(
     source: &mut Source<R>,
     cut: &mut impl FnMut(&[u8]) -> Option<usize>,
@@ -176,7 +180,7 @@ fn for_each_block_on_threads<R: BufRead, P: Send, E>(
 ) -> Result<(), E> {
     let blocks_per_round = thread_count(true) * BLOCKS_PER_THREAD;
     let mut parsed = VecDeque::<Slot<P>>::new();
-    // A small file is one block, which needs no other thread.
+    // A file of one block needs no other thread.
     let mut next = read_round(source, cut, 1);
     if let Some(slot) = next.front_mut() {
         slot.parsed = Some(parse(&slot.bytes));

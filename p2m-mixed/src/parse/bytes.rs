@@ -31,8 +31,8 @@ pub enum Scalar {
     F64,
 }
 
-/// The size of each type in bytes, and its names: in arrays of NumPy, and in PLY files. Integers of 64 bits are not of
-/// that format, but written by some programs.
+/// The types, with their sizes in bytes and their names in NumPy arrays and in PLY files. PLY has no 64-bit integers,
+/// but some programs write them.
 const SCALARS: [(Scalar, usize, [&str; 3]); 10] = [
     (Scalar::I8, 1, ["i1", "char", "int8"]),
     (Scalar::U8, 1, ["u1", "uchar", "uint8"]),
@@ -68,7 +68,7 @@ impl Scalar {
         !matches!(self, Self::F32 | Self::F64)
     }
 
-    /// Returns the number at the start of some bytes, the lowest of which comes first, or `None` if they are too few.
+    /// Returns the little-endian number at the start of `bytes`, or `None` if they are too few.
     #[must_use]
     pub fn number(self, mut bytes: &[u8]) -> Option<f64> {
         Bytes::number(&mut bytes, self, false).ok()
@@ -89,7 +89,7 @@ pub(crate) trait Bytes {
         Ok(bytes)
     }
 
-    /// Reads a number and rounds it to double precision. Only large integers of 64 bits are not exact.
+    /// Reads a number and rounds it to double precision. Only large 64-bit integers change.
     #[inline]
     #[allow(clippy::cast_precision_loss, reason = "documented")]
     fn number(&mut self, scalar: Scalar, big_endian: bool) -> Result<f64, Self::Error> {

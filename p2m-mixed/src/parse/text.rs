@@ -13,16 +13,16 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 /// The largest number of bytes of a line, see [`set_max_line_bytes`].
 static MAX_LINE_BYTES: AtomicUsize = AtomicUsize::new(1 << 26);
 
-/// Sets the largest number of bytes of a line, or of a statement of several lines, in text files that this process reads
-/// from now on. It is 64 MiB by default, so that a file without line ends does not fill the memory.
+/// Sets the largest number of bytes of a line, or of a statement of several lines, in the text files that this process
+/// reads from now on. The default of 64 MiB keeps a file without line ends from filling the memory.
 pub fn set_max_line_bytes(bytes: usize) {
     MAX_LINE_BYTES.store(bytes, Ordering::Relaxed);
 }
 
-/// Longer texts are shortened in messages.
+/// The length in bytes above which a quoted text is shortened.
 const MAX_QUOTED_BYTES: usize = 40;
 
-/// Returns `bytes` in the form in which a message shows them: short, printable and on one line.
+/// Returns `bytes` as a message quotes them: short, printable and on one line.
 pub(crate) fn quote(bytes: &[u8]) -> String {
     if bytes.len() > MAX_QUOTED_BYTES {
         format!("{}..", bytes[..MAX_QUOTED_BYTES].escape_ascii())
@@ -31,7 +31,7 @@ pub(crate) fn quote(bytes: &[u8]) -> String {
     }
 }
 
-/// Parses a number, which may be NaN or infinite. A number beyond the range of f64 is infinite.
+/// Parses a number, which may be NaN or infinite. A number beyond the range of f64 becomes infinite.
 pub(crate) fn parse_number(token: &[u8]) -> Result<f64, Reason> {
     fast_float2::parse(token).map_err(|_| Reason::BadNumber { text: quote(token) })
 }
@@ -49,8 +49,8 @@ pub(crate) fn parse_finite(token: &[u8]) -> Result<f64, Reason> {
     parse_number(token).and_then(|x| if x.is_finite() { Ok(x) } else { Err(Reason::NonFinite { text: quote(token) }) })
 }
 
-/// Parses a decimal integer with an optional sign. An integer beyond the range of i64 saturates, because it is out of
-/// range as an index anyway.
+/// Parses a decimal integer with an optional sign. An integer beyond the range of i64 saturates, which is harmless
+/// because no index is that large.
 pub(crate) fn parse_integer(token: &[u8]) -> Result<i64, Reason> {
     let (negative, digits) = match token {
         [b'-', rest @ ..] => (true, rest),
@@ -96,14 +96,17 @@ pub(crate) fn count_lines(bytes: &[u8]) -> u64 {
     memchr2_iter(b'\n', b'\r', bytes).filter(is_end).count() as u64
 }
 
-/// Returns the length of the part of `bytes` up to the last line end that is complete whatever follows, or 0.
+/// Returns the length of the part of `bytes` up to its last line end, or 0. A `\r` at the end of `bytes` does not
+/// count, because a `
+/// ` may follow.
 pub(crate) fn last_line_end(bytes: &[u8]) -> usize {
     // A `\n` may follow a `\r`.
     let certain = bytes.strip_suffix(b"\r").unwrap_or(bytes);
     memrchr2(b'\n', b'\r', certain).map_or(0, |at| at + 1)
 }
 
-/// Appends the bytes up to and including the first one that `find` finds, at most `max_count`, and returns their number.
+/// Reads bytes up to and including the first one that `find` finds, but at most `max_count`. Appends them to `buffer`
+/// and returns their number.
 pub(crate) fn read_until(
     reader: &mut impl BufRead,
     find: impl Fn(&[u8]) -> Option<usize>,

@@ -20,23 +20,24 @@ const MIN_SLOTS: usize = 2;
 struct Slot {
     positions: Vec<Point3<f64>>,
     block: usize,
-    /// Whether the block differs from that in the file.
+    /// Whether the block differs from its copy in the file.
     is_dirty: bool,
-    /// Whether the block was used since the search for a slot came by.
+    /// Whether the block was used since the clock hand passed it last.
     is_used: bool,
 }
 
-/// Positions that are numbered in the order in which they are added.
+/// A list of positions, of which memory holds a limited number of blocks.
 ///
-/// Memory holds a limited number of blocks. If another one is needed, a block that was not used lately is written to
-/// the temporary file, unless it is there already, and gives up its slot (the clock algorithm).
+/// If another block is needed, the store writes a block that was not used lately to the temporary file, unless it is
+/// there already, and reuses its slot. The choice is that of the clock algorithm: a hand goes round the slots, clears
+/// the mark of each block that was used, and stops at the first one without a mark.
 pub(super) struct PositionStore {
     len: usize,
     /// The slot of each block, or [`NO_SLOT`].
     slot_of_block: Vec<u32>,
     slots: Vec<Slot>,
     max_slots: usize,
-    /// The slot at which the search for a block that was not used lately goes on.
+    /// The clock hand: the slot that is examined first when a slot is needed.
     hand: usize,
     /// The file of the blocks, which is created when the first block leaves the memory.
     file: Option<File>,
@@ -79,7 +80,7 @@ impl PositionStore {
         Ok(self.slot(number / BLOCK_POSITIONS)?.positions[number % BLOCK_POSITIONS])
     }
 
-    /// Returns a block, which is read if it is not in memory.
+    /// Returns a block, and reads it first if it is not in memory.
     #[inline]
     fn slot(&mut self, block: usize) -> io::Result<&mut Slot> {
         let mut slot = self.slot_of_block[block] as usize;
@@ -120,7 +121,7 @@ impl PositionStore {
             self.slots.push(Slot { positions, block: 0, is_dirty: false, is_used: false });
             return Ok(self.slots.len() - 1);
         }
-        // Two rounds find a slot, because the first one marks all blocks as not used.
+        // The search ends in the second round at the latest, because the first one clears all marks.
         while std::mem::take(&mut self.slots[self.hand].is_used) {
             self.hand = (self.hand + 1) % self.slots.len();
         }

@@ -1,4 +1,5 @@
-//! The state of a builder of pieces: the vertices of the file, and those that the current piece uses.
+//! The state of a scene that is built in pieces: the vertices of the file, and the vertices that the current piece
+//! uses.
 
 use super::positions::PositionStore;
 use crate::error::Reason;
@@ -25,7 +26,7 @@ enum Positions {
     OfPiece(Vec<Point3<f64>>),
 }
 
-/// The state of a builder of pieces.
+/// The state of a scene that is built in pieces.
 pub(crate) struct Pieces<'a> {
     max_primitives: usize,
     path: &'a Path,
@@ -47,7 +48,7 @@ impl<'a> Pieces<'a> {
         Self { max_primitives, path, positions, indices, visitor, has_ended: false }
     }
 
-    /// Keeps only the vertices of the current piece, and these in memory.
+    /// Keeps only the vertices of the current piece, in memory.
     pub(crate) fn keep_vertices_of_pieces(&mut self) {
         self.positions = Positions::OfPiece(Vec::new());
     }
@@ -71,7 +72,8 @@ impl<'a> Pieces<'a> {
         }
     }
 
-    /// Returns the vertices that are kept in memory for each piece. Those of a file are not among them.
+    /// Returns the positions of the current piece if only they are kept, and otherwise an empty list, because positions
+    /// of the whole file may be in the temporary file.
     pub(crate) fn resident_positions(&self) -> &[Point3<f64>] {
         match &self.positions {
             Positions::OfFile(_) => &[],
@@ -118,7 +120,7 @@ impl<'a> Pieces<'a> {
         }
     }
 
-    /// Removes the vertices if a piece has ended since the last call, and returns whether it did.
+    /// Removes all vertices and returns `true` if a piece has ended since the last call.
     pub(crate) fn forget_old_vertices(&mut self) -> bool {
         let has_ended = std::mem::take(&mut self.has_ended);
         if let Positions::OfPiece(positions) = &mut self.positions
@@ -135,11 +137,11 @@ fn temporary_file_error(error: io::Error) -> Reason {
     Reason::Io(io::Error::new(error.kind(), format!("the temporary file of vertices: {error}")))
 }
 
-/// The index in a piece of each vertex that it uses.
+/// The map from vertices of the file to indices in the current piece.
 struct IndexTable {
     /// Vertices and their indices.
     table: HashTable<(u32, u32)>,
-    /// A random number, so that no file has vertices whose hashes are known to be equal.
+    /// A random seed, so that no file can be crafted whose vertices have equal hashes.
     seed: u64,
 }
 
@@ -154,7 +156,7 @@ impl IndexTable {
         self.table.clear();
     }
 
-    /// Returns the index of a vertex, which is `next` if it has none yet.
+    /// Returns the index of a vertex. A vertex without an index gets `next`.
     fn get_or_insert(&mut self, vertex: u32, next: u32) -> u32 {
         let seed = self.seed;
         let hash = |vertex: u32| hash(vertex, seed);
@@ -165,7 +167,7 @@ impl IndexTable {
     }
 }
 
-/// Returns both halves of a product of 128 bits, folded.
+/// Hashes a vertex by folded multiplication: the exclusive or of both halves of a product of 128 bits.
 #[allow(clippy::cast_possible_truncation, reason = "the halves of the product are meant")]
 fn hash(vertex: u32, seed: u64) -> u64 {
     let product = u128::from(u64::from(vertex) ^ seed) * 0x9e37_79b9_7f4a_7c15;

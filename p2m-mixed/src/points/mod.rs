@@ -19,13 +19,13 @@ use std::path::Path;
 p2m_core::formats! {
     /// The file formats of query points and rays, see [`read_points`](crate::read_points).
     PointFormat {
-        /// This is a text table, usually with columns that are separated by blanks.
+        /// Text tables, usually with columns separated by blanks.
         Xyz = "xyz" | "txt" | "asc" | "pts",
-        /// This is a text table, usually with columns that are separated by commas or semicolons.
+        /// Text tables, usually with columns separated by commas or semicolons.
         Csv = "csv",
-        /// This is an array of NumPy.
+        /// NumPy arrays.
         Npy = "npy",
-        /// The points are the vertices of a PLY file.
+        /// PLY files, whose vertices are the points.
         Ply = "ply",
     }
 }
@@ -33,42 +33,43 @@ p2m_core::formats! {
 /// Reads query points from a file. Its extension, in any case, selects the format.
 ///
 /// # Text tables: XYZ, TXT, ASC, PTS and CSV
-/// The first record decides what separates the columns: semicolons, commas, tabs or blanks, or what a line such as
-/// `sep=;` before it names. Fields may be quoted, but may not extend over several lines. Blank lines and lines that
-/// start with `#` or `//` are ignored. A line with a whole number alone before the first record is the number of rows.
-/// A file of several scans, as PTS files are, has such a line before each.
+/// The first record determines the separator of columns: semicolons, commas, tabs or blanks, unless a line such as
+/// `sep=;` before it names one. Fields may be quoted, but may not extend over several lines. Blank lines and lines that
+/// start with `#` or `//` are ignored. A line with a single whole number before the first record is the number of rows.
+/// A file of several scans, such as a PTS file, may have such a line before each scan.
 ///
 /// If the first record has columns named `qx`, `qy`, `qz`, or else `x`, `y`, `z`, or else `Points:0`, `Points:1`,
-/// `Points:2`, these are used. The case of names is ignored, and so is text after a blank or a bracket, as in `X [m]`.
-/// So are `easting`, `northing`, `height` or `elevation`. Other names are an error. A record has names if none of its first three fields starts like a number. The names may
-/// also be in a comment before the first record, such as `# id x y z`, if it has as many words as the record.
+/// `Points:2`, these are used. So are `easting`, `northing`, `height` or `elevation`. Upper and lower case are equal,
+/// and text after a blank or a bracket is ignored, as in `X [m]`. Other names are an error. A record has names if none
+/// of its first three fields starts like a number. The names may also be in a comment before the first record, such as
+/// `# id x y z`, if it has as many words as the record.
 ///
-/// Without a third column z is 0: the names are `x` and `y` alone, or each record has two numbers. A column named `id`
-/// has the ids of [`read_point_table`], by which columns can also be chosen.
+/// Points are planar, with z = 0, if only `x` and `y` are named or each record has two numbers. A column named `id` has
+/// the ids that [`read_point_table`] returns. That function can also choose columns.
 ///
-/// Without names the first three columns are used. A first record that has a whole number, three other numbers and a
-/// word is an error, because surveyors write the number of a point before its coordinates.
+/// Without names, the first three columns are used. It is an error if the first record has a whole number, three other
+/// numbers and a word, because surveyors write the number of a point before its coordinates.
 ///
 /// # NPY
-/// An array of NumPy has the shape `(n, 3)`, or `(n, 2)` for z = 0, C or Fortran order, and integers or floats of 4 or 8 bytes in either byte
-/// order. A structured array has the shape `(n,)`, and a field `query` of shape `(3,)` or else the fields `x`, `y`,
-/// `z`. Integers of 64 bits are rounded to double precision. Nothing may follow the array. A field
-/// `id` of integers or text has ids.
+/// An array has the shape `(n, 3)`, or `(n, 2)` for z = 0, in C or Fortran order. Its items are integers or floats of 4
+/// or 8 bytes in either byte order. A structured array has the shape `(n,)`, and a field `query` of shape `(3,)` or
+/// else the fields `x`, `y`, `z`. Integers of 64 bits are rounded to double precision. Nothing may follow the array. A
+/// field `id` of integers or text has ids.
 ///
 /// # PLY
-/// The vertices are the points, whatever the primitives are.
+/// The vertices are the points. Primitives are ignored.
 ///
 /// # Files of answers
 /// A file of answers that the program `p2m` wrote can be read as its queries, in each of its formats.
 ///
 /// # Coordinates that are not finite
-/// They are allowed, as scanners write `nan` where they saw nothing. Such a point has no closest point.
+/// Coordinates may be NaN or infinite, because scanners write `nan` where they saw nothing. Such a point has no closest
+/// point.
 ///
 /// # Errors
-/// [`ReadError`] with the location for invalid numbers, rows of fewer than three numbers, another number of rows than
-/// announced,
-/// columns or fields whose names do not identify the coordinates, arrays of other shapes and types, an early end, and
-/// errors of the file. No memory is allocated for points that the header only announces.
+/// [`ReadError`] with the location for invalid numbers, rows of fewer than three numbers, a wrong announced number of
+/// rows, columns or fields whose names do not identify the coordinates, arrays of other shapes and types, an early end,
+/// and errors of the file. No memory is allocated for points that the header only announces.
 pub fn read_points(path: &Path) -> Result<Vec<Point3<f64>>, ReadError> {
     let format = PointFormat::from_path(path)?;
     let name = path.display().to_string();
@@ -94,13 +95,13 @@ pub fn read_points_from(reader: impl BufRead, format: PointFormat, name: &str) -
 /// The columns of a text table that have the points, by their names in any case, or by their numbers from 1.
 #[derive(Debug, Clone, Default, PartialEq, Eq)]
 pub struct PointColumns {
-    /// The columns of x, y and z, or of x and y. If there are none, the names in the file decide.
+    /// The columns of x, y and z, or of x and y. If it is empty, the names in the file determine them.
     pub coordinates: Vec<String>,
-    /// The column of the ids. If it is `None`, that is a column named `id`, where the file has one.
+    /// The column of the ids. `None` stands for the column named `id`, if the file has one.
     pub id: Option<String>,
 }
 
-/// The points of a file, and what else the file says about them.
+/// The points of a file with their ids and unit.
 #[derive(Debug, Clone, Default, PartialEq)]
 #[non_exhaustive]
 pub struct PointTable {
@@ -108,7 +109,7 @@ pub struct PointTable {
     pub points: Vec<Point3<f64>>,
     /// The id of each point, if the file has them.
     pub ids: Option<PointIds>,
-    /// The unit of the coordinates, if the file has it. Coordinates are those of the file.
+    /// The unit of the coordinates, if the file states it. Coordinates are not converted.
     pub unit: Option<Unit>,
     /// Whether points have two coordinates in the file. Their z is then 0.
     pub is_flat: bool,

@@ -6,7 +6,7 @@ use crate::formats::ply::read_vertices;
 use crate::{PointFormat, ReadError, Reason, Unit};
 use std::io::BufRead;
 
-/// Points or rays, and what the file says about them.
+/// Points or rays, with their ids and unit.
 pub(crate) struct Rows<R> {
     pub(crate) rows: Vec<R>,
     pub(crate) ids: Option<PointIds>,
@@ -14,7 +14,7 @@ pub(crate) struct Rows<R> {
     pub(crate) is_flat: bool,
 }
 
-/// Reads points or rays. Columns can be chosen in text tables alone.
+/// Reads points or rays. Columns can be chosen only in text tables.
 pub(crate) fn read<R: Row<N>, const N: usize>(
     reader: impl BufRead,
     format: PointFormat,

@@ -3,7 +3,7 @@
 use crate::Reason;
 use nalgebra::Point3;
 
-/// A value that N numbers make, such as a point or a ray.
+/// A value made from N numbers, such as a point or a ray.
 pub(crate) trait Row<const N: usize>: Sized {
     /// The names of the columns of a CSV file in lower case. The first names take precedence.
     const COLUMNS: &[[&'static str; N]];

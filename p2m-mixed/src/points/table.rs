@@ -18,7 +18,7 @@ enum Separator {
     Blanks,
 }
 
-/// The unit of a table, and whether its points have two coordinates.
+/// The unit of a table, and whether its points are planar.
 #[derive(Default)]
 pub(crate) struct TableNotes {
     /// The unit in the name of the first coordinate, as in `X [mm]`.
@@ -27,7 +27,7 @@ pub(crate) struct TableNotes {
     pub(crate) is_flat: bool,
 }
 
-/// Calls a function for each row of a table, with the id in the row. The first record decides what the others look like.
+/// Calls a function for each row of a table, with its id. The first record determines the layout of all records.
 pub(crate) fn for_each_row<R: Row<N>, const N: usize>(
     reader: impl BufRead,
     name: &str,
@@ -62,10 +62,10 @@ pub(crate) fn for_each_row<R: Row<N>, const N: usize>(
 /// A row, and its id if there are ids.
 type RowAndId<'a, R> = (R, Option<&'a [u8]>);
 
-/// The content of the lines before the first row, and the columns that the caller chose.
+/// The lines before the first row, and the columns that the caller chose.
 struct Head<'a> {
     chosen: &'a PointColumns,
-    /// The number of rows, if a line has it. Files of several scans have such a line before each of them.
+    /// The number of rows, if a line announces it. A file of several scans has such a line before each scan.
     announced: Option<u64>,
     /// The separator that a line `sep=` names.
     separator: Option<u8>,
@@ -76,15 +76,15 @@ struct Head<'a> {
 /// The largest number of comments before the first row that may have the names of the columns.
 const MAX_COMMENTS: usize = 64;
 
-/// The places of the numbers in a record.
+/// The positions of the numbers and the id in a record.
 #[derive(Clone, Copy)]
 struct Layout<const N: usize> {
     separator: Separator,
-    /// The column of each number. One without a column is 0.
+    /// The column of each number. A number without a column is 0.
     columns: [Option<usize>; N],
     /// The column of the id.
     id: Option<usize>,
-    /// Whether nothing names the columns.
+    /// Whether the columns have no names.
     is_unnamed: bool,
     unit: Option<Unit>,
 }
@@ -94,18 +94,18 @@ impl<const N: usize> Layout<N> {
         self.columns.contains(&None)
     }
 
-    /// Returns the row of a record, and the id in it.
+    /// Parses a record into a row and its id.
     fn row<'a, R: Row<N>>(&self, line: &'a [u8]) -> Result<RowAndId<'a, R>, Reason> {
         let (mut fields, mut id) = ([None; N], None);
         let mut place = |at: usize, field: &'a [u8]| {
             fields.iter_mut().zip(self.columns).filter(|(_, c)| *c == Some(at)).for_each(|(f, _)| *f = Some(field));
             id = if self.id == Some(at) { Some(field) } else { id };
         };
-        // Further numbers in a table of two columns would be heights that are ignored.
+        // In a table of two columns, a third number would be a height that is silently ignored.
         let is_exact = self.is_unnamed && self.is_flat();
         let count = match self.separator {
             Separator::Byte(separator) => {
-                // A first field may be empty where tabs separate.
+                // With a separator such as a tab, the first field may be empty.
                 let all = split(line, separator).ok_or(Reason::BadRecord)?;
                 all.iter().enumerate().for_each(|(at, field)| place(at, field));
                 all.len()
@@ -133,7 +133,7 @@ impl<const N: usize> Layout<N> {
 }
 
 impl Head<'_> {
-    /// Returns the row of a line, if it has one, and the id in it. The first row decides the layout.
+    /// Parses a line into a row and its id, if it has a row. The first row determines the layout.
     fn record<'a, R: Row<N>, const N: usize>(
         &mut self,
         layout: &mut Option<Layout<N>>,
@@ -167,7 +167,12 @@ impl Head<'_> {
         layout.map(|layout| layout.row(line)).transpose()
     }
 
-    /// Returns the layout of the records, and whether the first one is a header; `None` for a line before it.
+    /// Determines the layout of the records from the first one. Returns it with whether that record is a header, or
+    /// `None` if the line comes before the records.
+    ///
+    /// The first of these rules that applies decides: columns that the caller chose, by name or number; the names in
+    /// the first record, if none of its first fields looks like a number; the names in a comment with as many words;
+    /// and otherwise the first columns of the table.
     fn layout<R: Row<N>, const N: usize>(&mut self, line: &[u8]) -> Result<Option<(Layout<N>, bool)>, Reason> {
         let text = trim(line);
         if let [b's' | b'S', b'e' | b'E', b'p' | b'P', b'=', separator] = *text {
@@ -184,7 +189,7 @@ impl Head<'_> {
             }
             _ => !fields.iter().take(N).any(|field| is_like_number(field)),
         };
-        // A comment names the columns if it names as many as there are.
+        // A comment has the names of the columns if it has as many words as there are columns.
         let comments = self.comments.iter().filter_map(|names| self::fields(trim(names), separator).ok());
         let names = if is_header { Some(fields.clone()) } else { None };
         let mut candidates = names.into_iter().chain(comments.filter(|names| names.len() == fields.len()));
@@ -232,12 +237,12 @@ impl Head<'_> {
     }
 }
 
-/// Returns the column, from 0, that a number from 1 stands for.
+/// Parses the number of a column, counted from 1, and returns its index from 0.
 fn column_number(name: &str) -> Option<usize> {
     name.parse::<usize>().ok()?.checked_sub(1)
 }
 
-/// Returns the column with a name or a number from 1.
+/// Returns the index of a column, given by its name or its number from 1.
 fn column(name: &str, names: &[&[u8]]) -> Result<usize, Reason> {
     let is_named = |field: &&[u8]| {
         field.eq_ignore_ascii_case(name.as_bytes()) || first_word(field).eq_ignore_ascii_case(name.as_bytes())
@@ -262,16 +267,17 @@ fn parse_count(digits: &[u8]) -> Result<u64, Reason> {
     std::str::from_utf8(digits).ok().and_then(|digits| digits.parse().ok()).ok_or_else(bad)
 }
 
-/// Returns what separates the fields of a first record with at least `count` fields.
+/// Guesses the separator of the fields of a first record, which has at least `count` fields.
 fn separator(line: &[u8], count: usize) -> Separator {
-    // A text after the numbers may have other separators.
+    // If the record starts with numbers between blanks, other separators can only be in a text after them.
     let mut tokens = Tokens::new(line);
     let is_number = |token: Option<&[u8]>| token.is_some_and(|token| parse_number(token).is_ok());
     let has_numbers = (0..count).all(|_| is_number(tokens.next()));
     if let (false, Some(byte)) = (has_numbers, [b';', b','].into_iter().find(|byte| line.contains(byte))) {
         return Separator::Byte(byte);
     }
-    // Names have blanks, as in `X [m]`, and numbers have none.
+    // Names may have blanks, as in `X [m]`, but numbers have none. A field of several numbers means that tabs only
+    // align.
     let is_mixed = |field: &[u8]| field.is_empty() || (is_like_number(field) && field.contains(&b' '));
     let has_tabs = line.contains(&b'\t') && !line.split(|&b| b == b'\t').any(|field| is_mixed(trim(field)));
     if has_tabs { Separator::Byte(b'\t') } else { Separator::Blanks }
@@ -288,8 +294,8 @@ fn fields(text: &[u8], separator: Separator) -> Result<Vec<&[u8]>, Reason> {
     }
 }
 
-/// Returns whether a field starts like a number, such as `1D0` or `0,5`. It is then no name, and causes an error where
-/// it is a number in a form that is not supported.
+/// Returns whether a field starts like a number, such as `1D0` or `0,5`. Such a field is not a name. If the field is
+/// used, a number in an unsupported form is then an error.
 fn is_like_number(field: &[u8]) -> bool {
     matches!(field.first(), Some(b'0'..=b'9' | b'+' | b'-' | b'.')) || parse_number(field).is_ok() // `nan`
 }
@@ -323,7 +329,7 @@ fn split(line: &[u8], delimiter: u8) -> Option<Vec<&[u8]>> {
     (!quoted).then_some(fields)
 }
 
-/// Returns the columns with the names of coordinates: of all of them, or else of two in `flat`.
+/// Returns the columns named like all coordinates, or else like the two coordinates of an entry of `flat`.
 fn coordinates<R: Row<N>, const N: usize>(names: &[&[u8]], flat: &[[&'static str; 2]]) -> Option<[Option<usize>; N]> {
     let find = |n: &str| names.iter().position(|f| first_word(f).eq_ignore_ascii_case(n.as_bytes()));
     let all = |expected: &[&'static str; N]| {
@@ -338,7 +344,7 @@ fn coordinates<R: Row<N>, const N: usize>(names: &[&[u8]], flat: &[[&'static str
     R::COLUMNS.iter().find_map(all).or_else(|| flat.iter().find_map(two))
 }
 
-/// Returns the columns of the coordinates among the names of a header.
+/// Returns the columns of the coordinates by the names in a header.
 fn named_columns<R: Row<N>, const N: usize>(names: &[&[u8]]) -> Result<[Option<usize>; N], Reason> {
     match coordinates::<R, N>(names, R::FLAT) {
         Some(columns) => Ok(columns),
@@ -347,7 +353,7 @@ fn named_columns<R: Row<N>, const N: usize>(names: &[&[u8]]) -> Result<[Option<u
     }
 }
 
-/// Returns the name of a column without a unit after it.
+/// Returns the name of a column without the unit that follows it.
 fn first_word(field: &[u8]) -> &[u8] {
     let end = field.iter().position(|b| b.is_ascii_whitespace() || matches!(b, b'[' | b'('));
     &field[..end.unwrap_or(field.len())]

@@ -45,8 +45,8 @@ pub struct Statistics {
     pub positions: Positions,
     /// The bounding box of the primitives, or `None` for an empty scene.
     pub bounds: Option<Aabb<f64>>,
-    /// The number of primitives that duplicate another one, which has the same corners by coordinates, in any order.
-    /// One of several equal primitives does not count.
+    /// The number of duplicates: primitives with the same corners as another one, by coordinates and in any order. One
+    /// of several equal primitives does not count.
     pub duplicates: Counts,
     /// The edges of the triangles, and how triangles share them.
     pub edges: Edges,
@@ -199,7 +199,7 @@ pub struct Location {
 }
 
 impl Location {
-    /// Returns the distance between numbers of f32 at the largest coordinate, or `None` if it is beyond their range.
+    /// Returns the spacing of f32 numbers at the largest coordinate, or `None` if it is beyond the range of f32.
     #[must_use]
     pub fn f32_step(&self) -> Option<f64> {
         #[allow(clippy::cast_possible_truncation, reason = "rounded on purpose")]
@@ -207,7 +207,7 @@ impl Location {
         x.is_finite().then(|| f64::from(x) - f64::from(x.next_down()))
     }
 
-    /// Returns the distance between numbers of f64 at the largest coordinate.
+    /// Returns the spacing of f64 numbers at the largest coordinate.
     #[must_use]
     pub fn f64_step(&self) -> f64 {
         self.largest_coordinate - self.largest_coordinate.next_down()
@@ -301,8 +301,8 @@ fn edges(soup: &Soup<f64>, welder: &VertexWelder) -> Edges {
 fn has_negative_volume(soup: &Soup<f64>, bounds: &Aabb<f64>) -> bool {
     let half = 0.5 * (bounds.max - bounds.min).amax();
     let centre = bounds.min + 0.5 * (bounds.max - bounds.min);
-    // In this frame no coordinate exceeds 1 but for rounding, which makes each of them wrong by less than 8 u of the
-    // largest coordinate. A product of three has an error of at most 64 times that, and so has each of six.
+    // In this frame coordinates are at most 1, up to rounding: the error of each is below 8 u of the largest
+    // coordinate. A product of three has an error of at most 64 times that, and so has each of the six products.
     let at = |i: u32| (soup.positions()[i as usize] - centre) / half;
     let volume: f64 = soup.triangles().iter().map(|t| at(t[0]).dot(&at(t[1]).cross(&at(t[2])))).sum();
     let largest = bounds.min.iter().chain(bounds.max.iter()).fold(0.0_f64, |largest, x| largest.max(x.abs()));

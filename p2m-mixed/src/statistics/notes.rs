@@ -10,7 +10,8 @@ use std::fmt;
 pub enum Note {
     /// The scene has no primitives.
     Empty,
-    /// A coordinate or an edge is beyond 1e-120..1e120, so distances may be too, where trees do not prune.
+    /// A coordinate or an edge is beyond 1e-120..1e120. Distances may be as well, and trees do not prune at such
+    /// distances.
     ExtremeScale,
     /// A coordinate is beyond the range of f32.
     BeyondF32,
@@ -18,12 +19,12 @@ pub enum Note {
     FarFromOrigin {
         /// The distance of its centre from the origin.
         distance: f64,
-        /// The distance in diagonals of the scene. Scenes of a single point, for which it is infinite, have
-        /// no such note.
+        /// The distance from the origin in diagonals of the scene. Scenes of a single point have no such note, because
+        /// it would be infinite.
         times: f64,
-        /// The distance between numbers of f32 at the largest coordinate, or `None` if it is beyond their range.
+        /// The spacing of f32 numbers at the largest coordinate, or `None` if it is beyond the range of f32.
         f32_step: Option<f64>,
-        /// The distance between numbers of f64 at the largest coordinate.
+        /// The spacing of f64 numbers at the largest coordinate.
         f64_step: f64,
     },
     /// At least 1 % of the triangles are slivers.
@@ -91,9 +92,10 @@ pub enum Note {
     },
 }
 
-/// The distance from the origin, in diagonals of the scene, from which on there is a note. It costs two digits.
+/// The distance from the origin, in diagonals of the scene, from which there is a note. At this distance, coordinates
+/// lose two decimal digits.
 pub const MIN_FAR_DIAGONALS: f64 = 100.0;
-/// The orders of magnitude between the longest and the shortest edge from which on there is a note.
+/// The ratio of the longest to the shortest edge, in orders of magnitude, from which there is a note.
 pub const MIN_SPREAD_ORDERS: f64 = 6.0;
 
 /// Returns the notes that follow from the statistics of a scene.

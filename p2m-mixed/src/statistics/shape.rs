@@ -43,7 +43,8 @@ impl TriangleMeasures {
         }
         if !UNSCALED_OFFSETS.contains(&size) {
             if size > 1.0 {
-                // Differences of quarters are finite, and what they lose to underflow is negligible beside such sizes.
+                // Differences of quarter coordinates are finite. They may lose digits to underflow, which is negligible
+                // at such sizes.
                 offsets = edges(0.25);
                 exponent = 2;
                 size = largest(&offsets);
@@ -82,7 +83,7 @@ pub(super) fn length(a: V3, b: V3) -> f64 {
     representable(libm::scalbn(norm_squared(scaled).sqrt(), scale + exponent))
 }
 
-/// Returns the length of the cross product of two edges, as a number and the exponent of a power of two to multiply it
+/// Returns the length of the cross product of two edges as a number and the exponent of a power of two to multiply it
 /// by, or `None` if it is zero.
 #[cold]
 fn exact_cross(corners: [V3; 3]) -> Option<(f64, i32)> {

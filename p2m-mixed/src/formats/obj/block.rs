@@ -1,17 +1,19 @@
-//! The statements of a block of an OBJ file, as far as they are known without the file before the block.
+//! Parser of one block of an OBJ file, which needs nothing that comes before the block.
 //!
-//! Vertices, references to them and skipped statements are parsed here, if each is on one line. All other statements,
-//! and those that may be an error, are only located.
+//! The basic idea is that nearly all lines of a large file are plain vertices and faces, which can be parsed in any
+//! order. This module parses vertices, references to vertices and skipped statements that are on one line. Of all other
+//! statements, and of lines that may be an error, it records only where they are. [`Parser`](super::Parser) then goes
+//! through the blocks in order, resolves references and handles the recorded statements one by one.
 
 use crate::Reason;
 use crate::parse::text::{is_space, line_end, parse_integer, parse_number_at_start, quote};
 use crate::polygon::MAX_CORNERS;
 use nalgebra::Point3;
 
-/// The most digits of a reference that is parsed here.
+/// References with more digits are left to the sequential parser. Nine digits always fit into an i32.
 const MAX_DIGITS: usize = 9;
 
-/// The kind of a statement that makes primitives of its vertices.
+/// The kind of a statement that creates primitives.
 #[derive(Clone, Copy, PartialEq, Eq)]
 pub(super) enum Shape {
     Polygon,
@@ -24,11 +26,11 @@ pub(super) enum Shape {
 pub(super) enum Kind {
     /// A run of vertices.
     Vertices,
-    /// A statement that makes primitives of vertices.
+    /// A statement that creates primitives from vertices.
     Shape(Shape),
     /// A run of statements `vn`, or of statements `vt`, which are skipped.
     Skipped,
-    /// A statement that is only located.
+    /// A statement of which only the location is recorded.
     Other,
 }
 
@@ -135,7 +137,7 @@ enum Parsed {
 }
 
 impl Block {
-    /// Parses a statement on one line. Returns `None`, and the statement adds nothing, if it is only located.
+    /// Parses a statement on one line. Returns `None`, and adds nothing, if the sequential parser has to handle it.
     fn statement(&mut self, text: &[u8]) -> Option<Parsed> {
         match trim_start(text) {
             [] | [b'#', ..] => Some(Parsed::Nothing),
@@ -158,7 +160,8 @@ impl Block {
         }
     }
 
-    /// Parses references and returns their number, if it is in a range and all of them are usual.
+    /// Parses references and returns their number, or `None` if the number is not in `counts` or a reference needs the
+    /// sequential parser.
     fn references(&mut self, text: &[u8], counts: std::ops::RangeInclusive<usize>) -> Option<u32> {
         let start = self.references.len();
         let mut rest = text;
@@ -187,7 +190,7 @@ impl Block {
     }
 }
 
-/// Parses the coordinates of a vertex, which numbers may follow.
+/// Parses the coordinates of a vertex, after which there may be further numbers but nothing else.
 fn position(mut rest: &[u8]) -> Option<Point3<f64>> {
     let mut position = Point3::origin();
     for x in position.iter_mut() {

@@ -99,14 +99,14 @@ fn has_objects(reader: impl BufRead) -> bool {
     false
 }
 
-/// A statement that is deferred to the end of the file, because it or one before it refers to a vertex that was not
-/// defined yet. So primitives stay in the order of the file.
+/// A statement that is deferred to the end of the file, because it refers to a vertex that was not defined yet. All
+/// statements after it are deferred as well, so that primitives stay in the order of the file.
 enum Deferred {
     /// The shape, its line, and the range of its vertices in [`Parser::deferred_vertices`].
     Shape(Shape, u64, Range<usize>),
     /// The name of an object that starts here.
     Object(Vec<u8>),
-    /// All objects so far, which come from statements `g`, are removed, because the file has statements `o`.
+    /// The removal of all objects so far, which come from statements `g`, because the file has statements `o`.
     ClearObjects,
 }
 
@@ -127,7 +127,7 @@ struct Parser<'a> {
     has_objects: bool,
     /// Whether there is a statement `g` before all statements `o`.
     has_groups: bool,
-    /// Whether groups are no objects, because statements `o` follow.
+    /// Whether statements `g` are ignored, because statements `o` follow.
     ignores_groups: bool,
     /// The vertices of the current statement.
     vertices: Vec<u32>,
@@ -173,7 +173,8 @@ impl Parser<'_> {
         Ok(())
     }
 
-    /// Takes the references of a statement on one line as its vertices. Returns whether there is no error.
+    /// Resolves the references of a statement on one line into `self.vertices`. Returns `false` if there is an error,
+    /// which the sequential parser then finds and describes.
     fn resolve(&mut self, references: &[i32]) -> bool {
         let count = self.builder.vertex_count();
         self.vertices.clear();
@@ -238,7 +239,7 @@ impl Parser<'_> {
                 // Whether the statement counts as skipped is known only at the end of the file.
                 self.builder.skipped.add(keyword, 1);
                 if keyword == b"o" && !self.has_objects {
-                    // The groups so far are removed.
+                    // The groups so far are no objects, because the file has statements `o`.
                     if self.deferred.is_empty() {
                         self.builder.clear_objects();
                     } else {
@@ -326,7 +327,7 @@ impl Parser<'_> {
         Ok(())
     }
 
-    /// Adds what was deferred. The error has the line of its statement.
+    /// Adds the primitives of the deferred statements. The error has the line of its statement.
     fn add_deferred(&mut self) -> Result<(), (u64, Reason)> {
         let (deferred, vertices) = (std::mem::take(&mut self.deferred), std::mem::take(&mut self.deferred_vertices));
         let count = self.builder.vertex_count() as u64;
@@ -367,7 +368,7 @@ impl Parser<'_> {
         for (found, x) in position.iter_mut().enumerate() {
             *x = parse_number(tokens.next().ok_or(Reason::TooFewCoordinates { found })?)?;
         }
-        // A token that is not a number means that the line is not a vertex.
+        // If a token is not a number, the line is not a vertex.
         while let Some(token) = tokens.next() {
             parse_number(token)?;
         }

@@ -60,9 +60,9 @@ pub(super) fn read(source: Source<impl BufRead>, name: &str, builder: SceneBuild
 }
 
 struct Header {
-    /// The numbers of vertices and faces, or `None` if binary data follow.
+    /// The numbers of vertices and faces, or `None` if the data is binary.
     counts: Option<[u64; 2]>,
-    /// The number of further numbers that each vertex of a binary file has.
+    /// The number of values after the coordinates of each vertex in a binary file.
     extras: u64,
 }
 
@@ -129,7 +129,7 @@ fn count(token: &[u8]) -> Result<u64, Reason> {
     u64::try_from(parse_integer(token)?).map_err(|_| Reason::BadNumber { text: quote(token) })
 }
 
-/// The largest number of numbers after a face, which are its colour.
+/// The most numbers of a colour, which may follow a face.
 const MAX_COLOUR_NUMBERS: u64 = 4;
 
 fn read_text(
@@ -216,7 +216,7 @@ fn read_binary(bytes: &mut ByteReader<impl BufRead>, extras: u64, builder: Scene
 struct Off<'a> {
     builder: SceneBuilder<'a>,
     counts: [u64; 2],
-    /// The numbers of vertices and of faces with numbers that are left out.
+    /// The number of vertices and the number of faces that have further numbers, which are left out.
     extras: [u64; 2],
     /// The vertices of the current face.
     corners: Vec<u32>,

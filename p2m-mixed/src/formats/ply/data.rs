@@ -19,7 +19,7 @@ pub(super) trait Numbers {
         FileLocation::File
     }
 
-    /// Checks that nothing follows an element on its line of a text. Otherwise the header declares too few numbers, and
+    /// Checks that nothing follows an element on its line of text. Otherwise the header declares too few numbers, and
     /// the rest of the line would be read as the next element.
     fn end_element(&mut self) -> Result<(), Self::Error>;
 
@@ -29,7 +29,7 @@ pub(super) trait Numbers {
     /// Reads an integer. `scalar` has to be an integer type.
     fn integer(&mut self, scalar: Scalar) -> Result<i64, Self::Error>;
 
-    /// Skips so many numbers of a type.
+    /// Skips `count` numbers of a type.
     fn skip_numbers(&mut self, count: u64, scalar: Scalar) -> Result<(), Self::Error>;
 
     /// Reads the length of a list.
@@ -68,7 +68,7 @@ pub(super) enum Start {
 }
 
 impl Start {
-    /// Returns the position after some bytes, which are whole rows.
+    /// Returns the position after `bytes`, which are complete rows.
     pub(super) fn after(self, bytes: &[u8]) -> Self {
         match self {
             Self::Line(lines) => Self::Line(lines + count_lines(bytes)),
@@ -84,7 +84,7 @@ pub(super) struct Data<'n, R> {
 }
 
 pub(super) enum Encoded<R> {
-    /// Numbers of text are read as a stream of tokens, because some writers spread an element over several lines.
+    /// Numbers as text. They are read as a stream of tokens, because some writers spread an element over several lines.
     Text(Tokenizer<R>),
     Binary {
         bytes: ByteReader<R>,

@@ -9,7 +9,7 @@ use header::Layout;
 /// The property with the id of a primitive, for files that have primitives in another order.
 const ID_PROPERTY: &str = "p2m_id";
 
-/// The index of each coordinate among the properties, and its type.
+/// The index among the properties and the type of each coordinate.
 pub(super) type Coordinates<const N: usize> = [(usize, Scalar); N];
 
 /// How an element is read, with the indices and types of its properties.
@@ -42,7 +42,7 @@ pub(super) enum Form {
     Point,
 }
 
-/// The types of a list of vertices: those of its count and of its items.
+/// The types of the count and of the items of a list of vertices.
 #[derive(Clone, Copy)]
 pub(super) struct List {
     pub(super) count: Scalar,
@@ -59,7 +59,7 @@ impl ElementPlan {
             }
             b"face" => (Form::Polygon, list(element, "face")?),
             b"tristrips" => (Form::Strip, list(element, "tristrips")?),
-            // An element of this name from another program may have another meaning.
+            // Another program may use an element of this name for something else.
             b"point" => match scalar(element, "point", "vertex_index", true) {
                 Ok(vertex) => (Form::Point, Vertices::Single(vec![vertex])),
                 Err(_) => return Ok(Self::Skip),
@@ -86,7 +86,8 @@ impl MemberPlan {
     }
 }
 
-/// Returns the number of primitives if they have ids, otherwise `None`. It is an error if only some of them do.
+/// Returns the number of primitives if they have ids, and `None` if they have none. It is an error if only some of them
+/// have ids.
 pub(super) fn ids(elements: &[header::Element], plans: &[ElementPlan]) -> Result<Option<u64>, HeaderProblem> {
     let (mut with, mut without) = (0u64, None);
     for (element, plan) in elements.iter().zip(plans) {

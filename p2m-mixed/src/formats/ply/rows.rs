@@ -1,4 +1,9 @@
-//! Reading the members of an element in blocks.
+//! Parallel reader of the rows of a PLY element, where a row is a member of an element.
+//!
+//! The basic idea: a block of the file is parsed optimistically, on any thread. Text is parsed as if each row was on a
+//! line of its own, and parsing stops at the first row that is invalid or unusual. The caller then hands the rest of
+//! the file, from that row on, to the sequential reader, which either reads the row or reports the error with its exact
+//! location. So this module needs no error messages.
 
 use super::data::{Data, Encoded, Numbers, Start, parse_coordinate};
 use super::header::{Layout, Property};
@@ -13,11 +18,11 @@ pub(super) trait ReadRow<T>: Sync {
     fn read<N: Numbers>(&self, numbers: &mut N, parsed: &mut T) -> Result<(), N::Error>;
 }
 
-/// The error of a row that is left to the sequential reader, which has the location and the reason of an error.
+/// The error of a row that the sequential reader has to read, to find the location and the reason of a possible error.
 #[derive(Debug)]
 pub(super) struct Unusual;
 
-/// The numbers in a block.
+/// The numbers in a block, which are read row by row.
 trait RowsOfBlock: Numbers {
     /// Returns the end of the row that was read last.
     fn position(&self) -> usize;
@@ -26,7 +31,7 @@ trait RowsOfBlock: Numbers {
     fn is_end(&self) -> bool;
 }
 
-/// Reads rows up to the first one that is left to the sequential reader, and appends their ends.
+/// Reads rows until one has to be left to the sequential reader, and appends the end of each row.
 fn read_all<T>(rows: &mut impl RowsOfBlock, read_row: &impl ReadRow<T>, parsed: &mut T, ends: &mut Vec<usize>) {
     while !rows.is_end() && read_row.read(rows, parsed).is_ok() {
         ends.push(rows.position());
@@ -145,7 +150,7 @@ impl Numbers for ByteRows<'_> {
     }
 }
 
-/// The rows of a block, up to the first one that is left to the sequential reader.
+/// The rows that were read from a block, before the first row that has to be left to the sequential reader.
 pub(super) struct Rows<'a, T> {
     /// The values of the rows.
     pub(super) parsed: T,
@@ -158,7 +163,7 @@ pub(super) struct Rows<'a, T> {
 }
 
 impl<T> Rows<'_, T> {
-    /// Returns an error for this reason, located as if a row had just been read. `read_row` reads it again.
+    /// Returns an error located at a row. It reads the row again with `read_row` to find the location.
     pub(super) fn error(&self, file: &str, row: usize, reason: Reason, read_row: &impl ReadRow<T>) -> ReadError
     where
         T: Default,
@@ -171,8 +176,8 @@ impl<T> Rows<'_, T> {
 }
 
 impl<R: BufRead> Data<'_, Source<R>> {
-    /// Reads rows of an element in blocks, at most `count`, and returns their number. The others are left
-    /// to the sequential reader.
+    /// Reads at most `count` rows of an element in blocks, and returns how many were read. The sequential reader has to
+    /// read the other rows.
     ///
     /// `read_row` parses a row, and `add` adds the rows of a block.
     pub(super) fn read_rows<T: Default + Send>(
@@ -237,7 +242,8 @@ impl<R: BufRead> Data<'_, Source<R>> {
     }
 }
 
-/// Returns the length of the whole rows in `bytes`, at most `count`, and subtracts their number from `count`.
+/// Returns the length of the complete rows in `bytes`, at most `count` of them, and subtracts their number from
+/// `count`.
 fn cut_rows(bytes: &[u8], properties: &[Property], big_endian: bool, count: &mut u64) -> usize {
     let scalar_size = |p: &Property| match p.layout {
         Layout::Scalar(scalar) => Some(scalar.size() as u64),

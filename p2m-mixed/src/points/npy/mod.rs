@@ -9,14 +9,15 @@ use crate::{FileLocation, HeaderProblem, ReadError, Reason};
 use literal::{Value, parse};
 use std::io::BufRead;
 
-/// The longest header in bytes. NumPy writes longer ones only for arrays of very many fields, and does not read them.
+/// The longest header in bytes. NumPy writes longer headers only for arrays of very many fields, and refuses to read
+/// them.
 const MAX_HEADER_BYTES: u32 = 1 << 16;
 
 /// The largest number of fields that a message lists.
 const MAX_LISTED_FIELDS: usize = 16;
 
-/// Calls a function for each row of an array, with its id if the array has a field of ids. Returns whether rows have no
-/// third number, which is then 0.
+/// Calls a function for each row of an array, with its id if the array has a field of ids. Returns whether rows have
+/// two numbers, so that the third one is 0.
 pub(crate) fn for_each_row<R: Row<N>, const N: usize>(
     reader: impl BufRead,
     name: &str,
@@ -63,7 +64,7 @@ struct Array<const N: usize> {
     id: Option<IdField>,
     /// Whether the array has all x first, then all y, and so on.
     is_fortran: bool,
-    /// Whether items have two numbers. The third coordinate, which comes last, is then 0.
+    /// Whether items have two numbers. The third coordinate is then 0.
     is_flat: bool,
 }
 
@@ -84,20 +85,20 @@ struct IdField {
 /// The type of ids.
 #[derive(Debug, Clone, Copy)]
 enum IdKind {
-    /// An id is a whole number, which may be big-endian.
+    /// A whole number, and whether it is big-endian.
     Integer(Scalar, bool),
-    /// An id is text of so many bytes.
+    /// Text of this number of bytes.
     Bytes(u64),
-    /// An id is text of so many characters of four bytes, which may be big-endian.
+    /// Text of this number of characters of four bytes, and whether they are big-endian.
     Characters(u64, bool),
 }
 
-/// A part of an item that is read.
+/// A part of an item that the reader uses.
 #[derive(Debug, Clone, Copy)]
 enum Part {
-    /// This is the coordinate of an axis.
+    /// The coordinate of an axis.
     Coordinate(usize),
-    /// This is the id.
+    /// The id.
     Id(IdKind),
 }
 
@@ -303,7 +304,7 @@ fn read_columns<const N: usize>(
     Ok(rows)
 }
 
-/// Reads an item, whose parts come in this order at their offsets. The id replaces the one before.
+/// Reads an item, whose parts have these offsets in ascending order. The id replaces the previous one.
 fn read_row<const N: usize>(
     bytes: &mut ByteReader<impl BufRead>,
     array: &Array<N>,
@@ -332,12 +333,12 @@ fn read_row<const N: usize>(
     Ok(row)
 }
 
-/// Reads an id as text, and returns its length in the file. Text ends before the zeros that fill it up.
+/// Reads an id as text, and returns its length in the file. The text ends before the zeros that pad it.
 fn read_id(bytes: &mut ByteReader<impl BufRead>, kind: IdKind, id: &mut Vec<u8>) -> Result<u64, Reason> {
     id.clear();
     let len = match kind {
         IdKind::Integer(scalar, is_big_endian) => {
-            // All integers fit into 128 bits.
+            // All types of integers fit into 128 bits.
             let number = match scalar {
                 Scalar::I64 => i128::from(i64::from_le_bytes(bytes.ordered(is_big_endian)?)),
                 Scalar::U64 => i128::from(u64::from_le_bytes(bytes.ordered(is_big_endian)?)),
