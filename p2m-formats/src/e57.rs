@@ -1,4 +1,4 @@
-//! E57: scans of laser scanners, by the crate e57, with the pose of each.
+//! E57: scans of laser scanners, decoded by the crate e57. The pose of each scan is applied.
 
 use crate::File;
 use crate::sink::Sink;
@@ -12,7 +12,7 @@ pub(crate) fn read(file: &File<'_>) -> Result<Scene, ReadError> {
     let mut sink = Sink::new(file.bytes.len());
     for (number, scan) in reader.pointclouds().iter().enumerate() {
         let fail = |what: &dyn std::fmt::Display| file.error(format!("scan {number}, counted from 0: {what}"));
-        // Constant values take no bytes, and the crate would make points without end of nothing else.
+        // Constant values take no bytes, so a file may announce any number of points that consist of nothing else.
         let is_constant = |kind: &RecordDataType| match kind {
             RecordDataType::Integer { min, max } | RecordDataType::ScaledInteger { min, max, .. } => min == max,
             _ => false,
@@ -27,7 +27,7 @@ pub(crate) fn read(file: &File<'_>) -> Result<Scene, ReadError> {
             let at = |what: &dyn std::fmt::Display| fail(&format_args!("point {row}, counted from 0: {what}"));
             let position = match point.map_err(|error| at(&text(&error)))?.cartesian {
                 CartesianCoordinate::Valid { x, y, z } => [x, y, z],
-                // Points keep their numbers, so an invalid one has a place among them.
+                // An invalid point keeps its place, so that points keep their numbers.
                 _ => [f64::NAN; 3],
             };
             sink.point(position).map_err(|reason| at(&reason))?;

@@ -5,7 +5,8 @@ use earcut::Earcut;
 use p2m_core::Element;
 use p2m_mixed::{MAX_CORNERS, Reason};
 
-/// The largest relative difference between the area of a polygon and that of its triangles: of 2^15 additions.
+/// The largest relative difference between the area of a polygon and the area of its triangles. It is well above the
+/// rounding of 2^15 additions.
 const AREA_TOLERANCE: f64 = 1e-9;
 
 /// Adds the features of a map to a sink. `source` is the number of the feature.
@@ -13,9 +14,9 @@ pub(crate) struct Map {
     pub(crate) sink: Sink,
     pub(crate) source: usize,
     cutter: Earcut<f64>,
-    /// The number of polygons that are left as outlines.
+    /// The number of polygons that are kept as outlines.
     outlines: u64,
-    /// Whether there are positions of two coordinates, and of three.
+    /// Whether there are positions of two coordinates, and whether there are positions of three.
     has_flat: bool,
     has_raised: bool,
 }
@@ -52,8 +53,8 @@ impl Map {
         vertices.windows(2).try_for_each(|ends| self.sink.push_from(Element::Segment([ends[0], ends[1]]), self.source))
     }
 
-    /// Adds the triangles of a polygon in the plane of x and y: its outer ring, and those of its holes. A polygon whose
-    /// triangles do not add up to its area, because it crosses itself or has none, is left as the segments of its rings.
+    /// Adds a polygon in the plane of x and y as triangles, given by its outer ring and the rings of its holes. If the
+    /// triangles do not add up to its area, because it crosses itself or has no area, its rings are added as segments.
     pub(crate) fn polygon(&mut self, rings: &[Vec<[f64; 3]>]) -> Result<(), Reason> {
         // The last position of a ring repeats the first one.
         let open = |ring: &Vec<[f64; 3]>| {
@@ -72,7 +73,7 @@ impl Map {
         }
         let starts: Vec<usize> =
             rings.iter().scan(0, |start, ring| Some(std::mem::replace(start, *start + ring.len()))).collect();
-        // Relative to a corner, areas do not lose their digits far from the origin.
+        // Areas are computed relative to a corner, so that they keep their digits far from the origin.
         let origin = corners.first().copied().unwrap_or_default();
         let plane: Vec<[f64; 2]> = corners.iter().map(|c| [c[0] - origin[0], c[1] - origin[1]]).collect();
         let mut triangles: Vec<usize> = Vec::new();
@@ -113,7 +114,7 @@ impl Map {
     }
 }
 
-/// Returns whether a ring is around a position, in the plane of x and y.
+/// Returns whether a ring surrounds a position in the plane of x and y.
 pub(crate) fn surrounds(ring: &[[f64; 3]], [x, y, _]: [f64; 3]) -> bool {
     let edges = ring.iter().zip(ring.iter().cycle().skip(1));
     let crosses = |(a, b): &(&[f64; 3], &[f64; 3])| {

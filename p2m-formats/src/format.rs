@@ -1,4 +1,4 @@
-//! The formats of files: those of `p2m-mixed` and those of this crate, and what converts others.
+//! The formats of files: those of `p2m-mixed`, those of this crate, and programs that convert other formats.
 
 use crate::{File, e57, geojson, gltf, las, pcd, shapefile, threemf};
 use p2m_core::{UnknownExtension, UnknownFormat};
@@ -52,7 +52,7 @@ pub enum FileFormat {
     Foreign(ForeignFormat),
 }
 
-/// Extensions of formats that are not read, and what to do with such files.
+/// Extensions of unsupported formats, with advice on how to convert such files.
 const CONVERTERS: [(&str, &str); 9] = [
     ("step stp iges igs brep", "FreeCAD or gmsh convert it to STL"),
     ("fbx blend dae 3ds abc usd usda usdc usdz x3d wrl", "Blender converts it to GLB"),

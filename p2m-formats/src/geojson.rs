@@ -34,7 +34,7 @@ pub(crate) fn read(file: &File<'_>) -> Result<Scene, ReadError> {
     Ok(map.finish())
 }
 
-/// Returns an error of the parser with its place: the line, or else the number of the feature.
+/// Returns an error of the parser with its location: the line, or else the number of the feature.
 fn located(file: &File<'_>, error: &geojson::Error) -> ReadError {
     let text = match error {
         geojson::Error::MalformedGeoJson(json) if json.line() > 0 => {

@@ -1,7 +1,7 @@
 //! glTF 2.0 and GLB: meshes, lines and points of the nodes of a scene, with their transforms.
 //!
-//! The description is read by serde, without what no scene of p2m has: materials, animations, cameras. Its numbers are
-//! not trusted: every index, count and offset is checked where it is used.
+//! The description is parsed by serde, without the members that p2m ignores, such as materials, animations and cameras.
+//! Its numbers are not trusted: every index, count and offset is checked where it is used.
 
 use crate::sink::{Sink, fan, is_mirrored, moved, strip};
 use crate::{File, sink};
@@ -142,7 +142,7 @@ pub(crate) fn read(file: &File<'_>) -> Result<Scene, ReadError> {
     Ok(reader.sink.finish())
 }
 
-/// Returns the description in a binary file, and its buffer if it has one.
+/// Returns the JSON chunk of a binary file, and its binary chunk if it has one.
 fn chunks<'a>(file: &'a File<'_>) -> Result<(&'a [u8], Option<&'a [u8]>), ReadError> {
     let version = u32::from_le_bytes(file.array(4)?);
     if version != 2 {
@@ -169,7 +169,7 @@ fn chunks<'a>(file: &'a File<'_>) -> Result<(&'a [u8], Option<&'a [u8]>), ReadEr
     Ok((json, None))
 }
 
-/// Returns the bytes of a buffer, which are in the file, in the text of its address, or in another file.
+/// Returns the bytes of a buffer, which are in the binary chunk, in a data URI, or in another file.
 fn load<'a>(
     file: &File<'_>,
     number: usize,
@@ -204,7 +204,7 @@ struct Reader<'a> {
     description: &'a Description,
     buffers: Vec<Cow<'a, [u8]>>,
     sink: Sink,
-    /// The nodes that were visited. A node has at most one parent.
+    /// Whether each node was visited. A node that is reached twice is an error, because a node has at most one parent.
     visited: Vec<bool>,
 }
 
@@ -214,7 +214,8 @@ impl Reader<'_> {
         list.get(index).ok_or_else(|| self.file.error(format!("description: there is no {what} {index}")))
     }
 
-    /// Adds nodes and those below them, without a recursion that a file could make deep.
+    /// Adds nodes and their descendants, with a list of pending nodes instead of a recursion that a file could make
+    /// deep.
     fn nodes(&mut self, roots: &[usize]) -> Result<(), ReadError> {
         let mut pending: Vec<_> = roots.iter().rev().map(|node| (*node, Matrix4::identity())).collect();
         while let Some((number, above)) = pending.pop() {
@@ -293,7 +294,7 @@ impl Reader<'_> {
         if needed.is_none_or(|needed| needed > data.len()) {
             return Err(fail(format!("its {count} items are outside of its view of {} bytes", data.len())));
         }
-        // Views may overlap themselves, so that few bytes have many items.
+        // Views of buffers may overlap, so a file of few bytes may announce many items.
         if count.saturating_mul(width * size_of::<f64>()) > sink::expanded_limit(self.file.bytes.len()) {
             return Err(fail(format!("it has {count} items, too many for the file")));
         }
@@ -303,7 +304,7 @@ impl Reader<'_> {
     }
 }
 
-/// Returns a type of numbers, which has a code of OpenGL, and what stands for 1 if they are normalized.
+/// Returns the type of numbers with an OpenGL code, and the number that stands for 1 if they are normalized.
 fn component(code: u32) -> Option<(Scalar, f64)> {
     Some(match code {
         5120 => (Scalar::I8, i8::MAX.into()),
@@ -316,7 +317,8 @@ fn component(code: u32) -> Option<(Scalar, f64)> {
     })
 }
 
-/// Returns the transform of a node. It is computed in double precision, from parts where the node has parts.
+/// Returns the transform of a node in double precision, either its matrix or the product of its translation, rotation
+/// and scale.
 fn matrix(node: &Node) -> Matrix4<f64> {
     if let Some(matrix) = &node.matrix {
         return Matrix4::from_column_slice(matrix).map(f64::from);
@@ -327,8 +329,8 @@ fn matrix(node: &Node) -> Matrix4<f64> {
         * Matrix4::new_nonuniform_scaling(&Vector3::from(node.scale.unwrap_or([1.0; 3])).map(f64::from))
 }
 
-/// Adds the primitives that corners make in a mode: points, lines, a loop, a line strip, triangles, a triangle strip or a
-/// fan are the modes 0 to 6. Triangles take the other direction if they are mirrored.
+/// Adds the primitives of a mode. The modes 0 to 6 are points, lines, a line loop, a line strip, triangles, a triangle
+/// strip and a triangle fan. Mirrored triangles are reversed.
 fn push(sink: &mut Sink, mode: u32, corners: &[u32], is_mirrored: bool) -> Result<(), Reason> {
     let turned = |element: Element| match element {
         Element::Triangle([a, b, c]) if is_mirrored => Element::Triangle([a, c, b]),

@@ -1,6 +1,7 @@
 //! LAS files, whose layout is fixed and simple, and LAZ files, which the crate laz decompresses.
 //!
-//! The header, the records and their units are read here: coordinates are the first twelve bytes of each record.
+//! The header, the records of variable length and the point records are read here. Coordinates are the first twelve
+//! bytes of a point record.
 
 use crate::sink::{MAX_RATIO, Sink};
 use crate::{File, wkt};
@@ -11,16 +12,18 @@ use std::io::{self, Cursor, Read, Seek, SeekFrom};
 use std::panic::{AssertUnwindSafe, catch_unwind, resume_unwind};
 use std::thread;
 
-/// The bytes of a record of each format without further bytes.
+/// The minimal length in bytes of a point record of each format.
 const RECORD_BYTES: [u16; 11] = [20, 28, 26, 34, 57, 63, 30, 36, 38, 59, 67];
 
 /// The number of points that are decompressed at a time.
 const BATCH: u64 = 1 << 12;
 
-/// The bytes of stack of the thread that decompresses, and those beyond which data is refused. The crate laz calls
-/// itself for some times of a record, so damaged data can exhaust any stack. From one byte of the file to the next it
-/// makes at most 40,000 such calls, because a symbol takes at least 1/5000 of a bit. A call takes 64 bytes in the release
-/// profile, and may take twenty times as many.
+/// The size in bytes of the stack of the decompressing thread, and the depth of the stack at which data is refused.
+///
+/// The crate laz recurses once for each switch to another sequence of GPS times, so damaged data can exhaust any stack.
+/// The depth is checked whenever the decompressor reads a byte, see [`Shallow`]. Between two bytes it recurses at most
+/// 40,000 times, because a symbol takes at least 1/5000 of a bit. A call takes 64 bytes in the release profile, and may
+/// take twenty times as many in others.
 const STACK: usize = 1 << 26;
 const MAX_STACK: usize = STACK / 4;
 
@@ -122,7 +125,7 @@ fn read_records(file: &File<'_>, header: &Header) -> Result<Scene, ReadError> {
     Ok(sink.finish())
 }
 
-/// A record of variable length: the user, the number and the data.
+/// A record of variable length: user id, record number and data.
 type Variable<'a> = (&'a [u8], u16, &'a [u8]);
 
 /// Returns the records of variable length after the header.
@@ -139,7 +142,7 @@ fn record_variables<'a>(file: &'a File<'_>) -> Result<Vec<Variable<'a>>, ReadErr
     Ok(records)
 }
 
-/// Returns the unit of the coordinate system, which is in well-known text or in the keys of GeoTIFF.
+/// Returns the unit of the coordinate system, which is given by well-known text or by GeoTIFF keys.
 fn unit(records: &[Variable<'_>]) -> Option<Unit> {
     let find = |number| records.iter().find(|(user, n, _)| *user == b"LASF_Projection" && *n == number).map(|r| r.2);
     if let Some(text) = find(2112) {
@@ -158,10 +161,10 @@ fn unit(records: &[Variable<'_>]) -> Option<Unit> {
     }
 }
 
-/// A file that cannot be read once the stack is too deep.
+/// A file that returns an error instead of data once the stack is too deep.
 struct Shallow<'a> {
     file: Cursor<&'a [u8]>,
-    /// The address of something on the stack when reading begins.
+    /// The address of a variable on the stack when reading begins.
     start: usize,
 }
 
@@ -187,7 +190,7 @@ impl Seek for Shallow<'_> {
     }
 }
 
-/// Decompresses all records. What the crate laz would trust is checked before.
+/// Decompresses all records, after checking everything that the crate laz would trust.
 fn decompress(
     file: &File<'_>,
     header: &Header,
@@ -198,7 +201,7 @@ fn decompress(
     let (.., data) = laszip.ok_or_else(|| file.error("the header has no record of the compression"))?;
     let in_record = |error: String| file.error(format!("record of the compression in the header: {error}"));
     let vlr = LazVlr::read_from(*data).map_err(|error| in_record(error.to_string()))?;
-    // The decompressor relies on the items to be those of the format.
+    // The decompressor relies on the items of the point format.
     let extra = header.record_len - RECORD_BYTES[usize::from(header.format)];
     let expected = LazItemRecordBuilder::default_for_point_format_id(header.format, extra);
     let expected = expected.map_err(|error| in_record(error.to_string()))?;
@@ -229,7 +232,8 @@ fn decompress(
     let mut source = Shallow { file: Cursor::new(file.bytes), start: stack_address() };
     source.seek(SeekFrom::Start(header.data_start as u64)).expect("any position is fine");
     let selection = DecompressionSelection::xy_returns_channel().decompress_z();
-    // The decoder indexes beyond its tables at damaged data, of the table of chunks as well. It is dropped then.
+    // Damaged data, including a damaged table of chunks, makes the decoder index beyond its tables. After such a panic
+    // it is dropped.
     let decompressor = catch_unwind(AssertUnwindSafe(|| LasZipDecompressor::selective(source, vlr, selection)));
     let decompressor = decompressor.map_err(|_| at_row(0, &DAMAGED_TABLE))?;
     let mut decompressor = decompressor.map_err(|error| at_row(0, &error))?;
@@ -251,7 +255,7 @@ fn decompress(
 
 const DAMAGED_TABLE: &str = "the table of chunks is damaged";
 
-/// Returns the numbers of points of chunks whose size varies. The decompressor trusts them to end each chunk.
+/// Returns the numbers of points of chunks of varying size. The decompressor trusts these numbers.
 fn varying_counts(file: &File<'_>, header: &Header, vlr: &LazVlr) -> Result<Vec<u64>, String> {
     let mut source = Cursor::new(file.bytes);
     source.set_position(header.data_start as u64);
@@ -268,7 +272,7 @@ fn varying_counts(file: &File<'_>, header: &Header, vlr: &LazVlr) -> Result<Vec<
     Ok(counts)
 }
 
-/// Refuses a table of more chunks than the file can have, for which the decompressor would allocate memory.
+/// Refuses a table of more chunks than the file can have, because the decompressor would allocate memory for them.
 fn check_chunk_table(file: &File<'_>, header: &Header) -> Result<(), ReadError> {
     let end = file.bytes.len() - 8.min(file.bytes.len());
     for at in [header.data_start, end] {
@@ -285,8 +289,8 @@ fn check_chunk_table(file: &File<'_>, header: &Header) -> Result<(), ReadError> 
     Ok(())
 }
 
-/// Refuses layers of a chunk that are longer than the file, for which the decompressor would allocate memory. `counts`
-/// are the numbers of points of chunks, if they vary.
+/// Refuses chunks whose layers are longer than the file, because the decompressor would allocate memory for them.
+/// `counts` has the number of points of each chunk, if they vary.
 fn check_layers(file: &File<'_>, header: &Header, vlr: &LazVlr, counts: &[u64]) -> Result<(), ReadError> {
     let layers: usize = vlr
         .items()
@@ -302,7 +306,7 @@ fn check_layers(file: &File<'_>, header: &Header, vlr: &LazVlr, counts: &[u64]) 
     let mut points = 0u64;
     let mut counts = counts.iter();
     while points < header.count {
-        // A chunk is its first record, the number of its points, the lengths of the layers, and the layers.
+        // A chunk has its first record, the number of its points, the lengths of its layers, and the layers.
         let sizes = at.saturating_add(usize::from(header.record_len));
         let count = u32::from_le_bytes(file.array(sizes)?);
         if count == 0 {
@@ -312,7 +316,7 @@ fn check_layers(file: &File<'_>, header: &Header, vlr: &LazVlr, counts: &[u64]) 
             let text = format!("a chunk has {count} points, but the table of chunks says {expected}");
             return Err(file.error_at(FileLocation::Byte(sizes as u64), text));
         }
-        // The decompressor begins another chunk after the usual number.
+        // The decompressor begins a new chunk after the usual number of points.
         points += u64::from(count.min(vlr.chunk_size()));
         let lens = file.slice(sizes + 4, 4 * layers)?.as_chunks::<4>().0;
         let len: u64 = lens.iter().map(|len| u64::from(u32::from_le_bytes(*len))).sum();

@@ -1,12 +1,13 @@
 //! Scenes and scans in the formats of other programs: LAS and LAZ, E57, PCD, glTF and GLB, 3MF, GeoJSON, shapefiles.
 //!
-//! [`read_scene`] reads files in these formats and in those of `p2m-mixed`, whose functions it calls. Points are points
-//! of the scene, lines are segments, and polygons are triangles. Names of the file name objects.
+//! [`read_scene`] reads files in these formats and in those of `p2m-mixed`. Points of a file become points of the
+//! scene, lines become segments, and polygons become triangles. Names in the file become names of objects.
 //!
-//! Coordinates are those of the file: [`Scene::unit`] has their unit where the file has it, and nothing is converted.
-//! Where a file has two coordinates for each point, z is 0 and [`Scene::is_flat`] is set.
+//! Coordinates are not converted: [`Scene::unit`] has their unit if the file states it. If a file has two coordinates
+//! for each point, z is 0 and [`Scene::is_flat`] is set.
 //!
-//! [`Scene::sources`] counts the primitives of each kind in the file. In maps, it is the number of the feature or record.
+//! [`Scene::sources`] counts the primitives of each kind in the file. In maps, it is the number of the feature or of
+//! the record.
 //!
 //! ```
 //! use p2m_formats::{FileFormat, read_scene_from};
@@ -62,8 +63,8 @@ pub fn read_scene(path: &Path) -> Result<Scene, ReadError> {
     read_scene_from(open(path, &name)?, format, &name, Some(path))
 }
 
-/// Reads a scene from any reader. `name` is the name of the file in messages. `path` is where the file is, so that its
-/// companions are found: the buffers of a glTF file, and the `.prj` file of a shapefile, which has the unit.
+/// Reads a scene from any reader. `name` is the name of the file in messages. `path` is the location of the file, by
+/// which its companions are found: the buffers of a glTF file, and the `.prj` file of a shapefile, which has the unit.
 ///
 /// # Errors
 /// The errors are those of [`read_scene`].
@@ -89,7 +90,7 @@ fn read_foreign_scene(
     let fail = |reason| ReadError::new(name, FileLocation::File, reason);
     reader.read_to_end(&mut bytes).map_err(|error| fail(Reason::Io(error)))?;
     let file = File { bytes: &bytes, name, path };
-    // No state outlives a panic: the scene is dropped.
+    // A panic leaves no broken state behind, because the scene is dropped.
     catch_unwind(AssertUnwindSafe(|| format.read(&file))).unwrap_or_else(|panic| {
         let text = panic.downcast_ref::<String>().map(String::as_str);
         let text = text.or(panic.downcast_ref::<&str>().copied()).unwrap_or("of an unknown kind");
@@ -97,7 +98,7 @@ fn read_foreign_scene(
     })
 }
 
-/// Reads points, with their ids where the file has them, from a file. Its extension, in any case, selects the format.
+/// Reads points, with their ids if the file has them, from a file. Its extension, in any case, selects the format.
 ///
 /// # Errors
 /// The errors are those of [`read_points_from`].
@@ -107,7 +108,7 @@ pub fn read_points(path: &Path, columns: &PointColumns) -> Result<PointTable, Re
     read_points_from(open(path, &name)?, format, &name, Some(path), columns)
 }
 
-/// Reads points, with their ids where the file has them, from any reader. In files that are no tables or arrays, the
+/// Reads points, with their ids if the file has them, from any reader. If the file is not a table or an array, its
 /// vertices are the points.
 ///
 /// # Errors
@@ -137,7 +138,7 @@ struct File<'a> {
 }
 
 impl File<'_> {
-    /// Returns an error of the whole file, or one whose text has the place.
+    /// Returns an error without a location of its own, whose text may describe one.
     fn error(&self, text: impl std::fmt::Display) -> ReadError {
         self.error_at(FileLocation::File, text)
     }
@@ -146,14 +147,14 @@ impl File<'_> {
         ReadError::new(self.name, location, Reason::Format(text.to_string().into()))
     }
 
-    /// Returns the bytes of a range, or an error of the place where the file ends too early.
+    /// Returns the bytes of a range, or an error located at the early end of the file.
     fn slice(&self, start: usize, len: usize) -> Result<&[u8], ReadError> {
         let end = start.checked_add(len).filter(|end| *end <= self.bytes.len());
         let early = || ReadError::new(self.name, FileLocation::Byte(self.bytes.len() as u64), Reason::UnexpectedEnd);
         end.map(|end| &self.bytes[start..end]).ok_or_else(early)
     }
 
-    /// Returns the bytes of a number.
+    /// Returns the `N` bytes from `start`, such as those of a number.
     fn array<const N: usize>(&self, start: usize) -> Result<[u8; N], ReadError> {
         Ok(self.slice(start, N)?.try_into().expect("the slice has N bytes"))
     }

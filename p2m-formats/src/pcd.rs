@@ -1,4 +1,5 @@
-//! PCD, the format of the Point Cloud Library: a header of text, and points as text, bytes, or bytes that LZF compresses.
+//! PCD, the format of the Point Cloud Library. A text header is followed by points as text, as bytes, or as bytes that
+//! are compressed by LZF.
 
 use crate::File;
 use crate::sink::{Sink, expanded_limit};
@@ -7,17 +8,17 @@ use p2m_mixed::{FileLocation, ReadError, Scene};
 use std::borrow::Cow;
 use std::ops::Range;
 
-/// The place of a coordinate in a record.
+/// The position of a coordinate in a record.
 #[derive(Clone, Copy)]
 struct Field {
-    /// The number of the first word of a line of text.
+    /// The number of the first word of the field in a line of text.
     word: usize,
-    /// The offset in a record of bytes.
+    /// The offset of the field in a binary record.
     offset: usize,
     scalar: Scalar,
 }
 
-/// Returns the type of numbers with this letter and this size.
+/// Returns the type of numbers with this letter and this size in bytes.
 fn scalar(kind: u8, size: usize) -> Option<Scalar> {
     let letter = match kind {
         b'F' => 'f',
@@ -33,7 +34,7 @@ struct Header<'a> {
     record_len: usize,
     count: usize,
     data: &'a str,
-    /// The byte after the header.
+    /// The offset of the first byte after the header.
     end: usize,
     lines: u64,
 }
@@ -128,7 +129,7 @@ pub(crate) fn read(file: &File<'_>) -> Result<Scene, ReadError> {
             let data = expand(file.slice(start, len)?, expanded).map_err(|at| {
                 file.error_at(FileLocation::Byte((start + at) as u64), "the compressed data is damaged")
             })?;
-            // Compressed data has all values of a field together.
+            // Compressed data has all values of the first field, then all of the second, and so on.
             let field = |axis: usize, row: usize| {
                 let Field { offset, scalar, .. } = header.fields[axis];
                 let at = header.count * offset + row * scalar.size();
@@ -173,7 +174,7 @@ fn read_text(file: &File<'_>, header: &Header<'_>, sink: &mut Sink) -> Result<()
         let mut position = [0.0; 3];
         for (x, field) in position.iter_mut().zip(header.fields) {
             let word = *words.get(field.word).ok_or_else(|| at_line("a point has too few values".to_owned()))?;
-            // Text is rounded to the type of the field, as the bytes would be.
+            // A number of a text is rounded to the type of its field, as binary numbers are.
             let number = match field.scalar {
                 Scalar::F32 => word.parse::<f32>().map(f64::from),
                 _ => word.parse(),
@@ -192,7 +193,12 @@ fn read_text(file: &File<'_>, header: &Header<'_>, sink: &mut Sink) -> Result<()
     Ok(())
 }
 
-/// Expands data that LZF compressed. The error is the byte at which it is damaged.
+/// Expands data compressed by LZF. The error is the offset at which the data is damaged.
+///
+/// Each step begins with a control byte. If its upper three bits are zero, its value plus one bytes follow as they are.
+/// Otherwise a run of earlier output is repeated: the upper three bits are its length less two (7 means that the next
+/// byte is added), and the lower five bits with one more byte are the distance back, less one. A run may overlap its
+/// own copy.
 fn expand(data: &[u8], len: usize) -> Result<Vec<u8>, usize> {
     let mut out = Vec::new();
     let mut at = 0;
@@ -204,12 +210,12 @@ fn expand(data: &[u8], len: usize) -> Result<Vec<u8>, usize> {
         };
         let mut count = usize::from(control >> 5);
         if count == 0 {
-            // A run of bytes as they are.
+            // A literal run.
             let run = at + 1..at + 2 + usize::from(control);
             at = run.end;
             out.extend_from_slice(data.get(run).ok_or(start)?);
         } else {
-            // A run that occurred before.
+            // A repeated run.
             count += 2 + if count == 7 { next()? } else { 0 };
             let back = (usize::from(control & 0x1f) << 8) + next()? + 1;
             at += 1;

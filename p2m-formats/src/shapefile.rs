@@ -1,5 +1,5 @@
-//! Shapefiles: points, lines, polygons and patches. The number of a record is the source of its primitives, by which
-//! they are joined with the table of attributes.
+//! Shapefiles: points, lines, polygons and patches. The source of a primitive is the number of its record, which joins
+//! it with the table of attributes.
 
 use crate::features::{Map, surrounds};
 use crate::sink::{fan, strip};
@@ -9,11 +9,11 @@ use shapefile::record::traits::HasXY;
 use shapefile::{Patch, PointZ, PolygonRing, ReadableShape, Shape};
 use std::io::Cursor;
 
-/// The length of the header, whose only use here is its first four bytes.
+/// The length of the header, of which only the first four bytes are used.
 const HEADER_BYTES: usize = 100;
-/// The first four bytes of a file, as a number.
+/// The magic number in the first four bytes of a file.
 const FILE_CODE: u32 = 9994;
-/// The largest number of corners of a hole that decide which ring it is in.
+/// The most corners of a hole that are tested to find its outer ring.
 const MAX_TESTED_CORNERS: usize = 8;
 
 pub(crate) fn read(file: &File<'_>) -> Result<Scene, ReadError> {
@@ -32,7 +32,8 @@ pub(crate) fn read(file: &File<'_>) -> Result<Scene, ReadError> {
         let content = content.ok_or_else(|| fail(&format_args!("it has {len} bytes, but the file has {left} more")))?;
         let record = file.slice(at + 8, content)?;
         check_counts(record).map_err(|reason| fail(&reason))?;
-        // Record by record, because the crate loses its place after records that are longer than their shape.
+        // Records are parsed one by one, because the crate loses its position after a record that is longer than its
+        // shape.
         let size = i32::try_from(content).map_err(|_| fail(&"it has more than 2 GiB"))?;
         let shape = Shape::read_from(&mut Cursor::new(record), size).map_err(|error| fail(&text(&error)))?;
         match shape {
@@ -53,8 +54,8 @@ pub(crate) fn read(file: &File<'_>) -> Result<Scene, ReadError> {
     Ok(map.finish())
 }
 
-/// Refuses a record with more parts and positions than its bytes can have, or with parts out of order, for which the
-/// crate would reserve memory.
+/// Refuses a record that announces more parts and positions than its bytes can have, or parts out of order, because the
+/// crate would reserve memory for them.
 fn check_counts(record: &[u8]) -> Result<(), String> {
     let number = |at: usize| {
         record.get(at..at + 4).map_or(0, |bytes| u64::from(u32::from_le_bytes(bytes.try_into().expect("four"))))
@@ -122,15 +123,16 @@ fn lines<P>(map: &mut Map, parts: &[Vec<P>], position: impl Fn(&P) -> [f64; 3]) 
     parts.iter().try_for_each(|part| map.line(&part.iter().map(&position).collect::<Vec<_>>()))
 }
 
-/// Adds polygons. The rings of holes may be anywhere among the others.
+/// Adds polygons. A hole may come anywhere among the rings, so it goes to the outer ring that surrounds most of its
+/// corners, and to the smallest one of rings that surround equally many.
 fn polygons<P>(map: &mut Map, rings: &[PolygonRing<P>], position: impl Fn(&P) -> [f64; 3]) -> Result<(), Reason> {
     let ring = |ring: &PolygonRing<P>| ring.points().iter().map(&position).collect::<Vec<_>>();
     let is_outer = |ring: &&PolygonRing<P>| matches!(ring, PolygonRing::Outer(_));
     let mut polygons: Vec<_> = rings.iter().filter(is_outer).map(|outer| vec![ring(outer)]).collect();
     let outer_count = polygons.len();
     for hole in rings.iter().filter(|ring| !is_outer(ring)).map(ring) {
-        // Corners of a hole may touch the outer ring, and there may be an island in a lake. A few corners tell, and more
-        // would take long in large files.
+        // One corner does not suffice, because it may touch the outer ring, and there may be an island in a lake. All
+        // corners would take long in large files.
         let corners = || hole.iter().step_by(hole.len().div_ceil(MAX_TESTED_CORNERS).max(1));
         let corners_within = |outer: &[[f64; 3]]| corners().filter(|corner| surrounds(outer, **corner)).count();
         let candidates = polygons[..outer_count].iter_mut().map(|polygon| (corners_within(&polygon[0]), polygon));
@@ -139,7 +141,7 @@ fn polygons<P>(map: &mut Map, rings: &[PolygonRing<P>], position: impl Fn(&P) ->
             .max_by(|(a, p), (b, q)| a.cmp(b).then_with(|| doubled_area(&q[0]).total_cmp(&doubled_area(&p[0]))));
         match nearest {
             Some((_, polygon)) => polygon.push(hole),
-            // A ring in the wrong direction is no hole.
+            // A ring in the wrong direction that no outer ring surrounds is a polygon.
             None => polygons.push(vec![hole]),
         }
     }

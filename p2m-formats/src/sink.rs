@@ -1,13 +1,13 @@
-//! The scene that the readers of this crate build.
+//! The builder of scenes for the readers of this crate.
 
 use nalgebra::{Matrix4, Point3};
 use p2m_core::Element;
 use p2m_mixed::engine::SceneBuilder;
 use p2m_mixed::{Reason, Scene};
 
-/// The largest number of bytes of a scene or of decompressed data for each byte of its file.
+/// The most bytes of a scene, or of decompressed data, for each byte of its file.
 pub(crate) const MAX_RATIO: usize = 1000;
-/// The number of bytes that any file may expand to.
+/// The number of bytes to which any file may expand, however short it is.
 const MIN_BYTES: usize = 1 << 26;
 
 /// Returns the largest number of bytes that a file of this length may expand to.
@@ -15,11 +15,11 @@ pub(crate) fn expanded_limit(file_len: usize) -> usize {
     file_len.saturating_mul(MAX_RATIO).max(MIN_BYTES)
 }
 
-/// Collects vertices and primitives, which it numbers by kind.
+/// Collects vertices and primitives, and numbers the primitives by kind.
 pub(crate) struct Sink {
     pub(crate) builder: SceneBuilder<'static>,
     next: [usize; 3],
-    /// The number of bytes that vertices and primitives may still take.
+    /// The number of bytes that further vertices and primitives may take.
     bytes_left: usize,
     /// The number of points that the file marks as invalid.
     pub(crate) invalid: u64,
@@ -31,7 +31,7 @@ impl Sink {
         Self { builder: SceneBuilder::default(), next: [0; 3], bytes_left: expanded_limit(file_len), invalid: 0 }
     }
 
-    /// Accounts for bytes of the scene.
+    /// Subtracts bytes from the allowance of the file, and returns an error if it is used up.
     pub(crate) fn take(&mut self, bytes: usize) -> Result<(), Reason> {
         let too_large = || Reason::Format("the scene would take more than 1,000 times the size of its file".into());
         self.bytes_left = self.bytes_left.checked_sub(bytes).ok_or_else(too_large)?;
@@ -96,17 +96,17 @@ impl Sink {
     }
 }
 
-/// Returns the position that a matrix moves a vertex to.
+/// Returns a position transformed by a matrix.
 pub(crate) fn moved(matrix: &Matrix4<f64>, position: [f64; 3]) -> [f64; 3] {
     matrix.transform_point(&Point3::from(position)).coords.into()
 }
 
-/// Tells whether a matrix mirrors a mesh, so that its triangles take the other direction to face outside as before.
+/// Returns whether a matrix mirrors a mesh. Its triangles then have to be reversed, so that they still face outside.
 pub(crate) fn is_mirrored(matrix: &Matrix4<f64>) -> bool {
     matrix.fixed_view::<3, 3>(0, 0).determinant() < 0.0
 }
 
-/// Returns the triangles of a strip. Every other one has the other direction, so all face the same side.
+/// Returns the triangles of a strip. Every other one is reversed, so that all face the same side.
 pub(crate) fn strip(corners: &[u32]) -> impl Iterator<Item = Element> {
     (0..).zip(corners.windows(3)).map(|(i, t)| {
         let [b, c] = if i % 2 == 0 { [t[1], t[2]] } else { [t[2], t[1]] };
@@ -114,7 +114,7 @@ pub(crate) fn strip(corners: &[u32]) -> impl Iterator<Item = Element> {
     })
 }
 
-/// Returns the triangles of a fan, which share its first corner.
+/// Returns the triangles of a fan, which share the first corner.
 pub(crate) fn fan(corners: &[u32]) -> impl Iterator<Item = Element> {
     corners.get(1..).unwrap_or_default().windows(2).map(|t| Element::Triangle([corners[0], t[0], t[1]]))
 }

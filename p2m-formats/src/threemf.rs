@@ -1,4 +1,4 @@
-//! 3MF: a ZIP archive of models in XML. Items of the build plate are placed, with the components of their objects.
+//! 3MF: a ZIP archive of models in XML. The items of the build plate are placed, with the components of their objects.
 
 use crate::File;
 use crate::sink::{Sink, expanded_limit, is_mirrored, moved};
@@ -25,7 +25,7 @@ struct Object {
     components: Vec<Placed>,
 }
 
-/// An object that is placed by a matrix. It may be in another model of the archive.
+/// An object placed by a matrix. It may be in another model of the archive.
 struct Placed {
     model: Option<String>,
     object: u32,
@@ -86,7 +86,7 @@ pub(crate) fn read(file: &File<'_>) -> Result<Scene, ReadError> {
     Ok(sink.finish())
 }
 
-/// Adds an object and its components. They have the name of the outermost object that has one.
+/// Adds an object and its components. They are named after the outermost object that has a name.
 fn place(
     sink: &mut Sink,
     models: &HashMap<String, Model>,
@@ -107,7 +107,8 @@ fn place(
     let name = if name.is_empty() { object.name.as_str() } else { name };
     let at = |reason: &dyn Display| format!("object {}: {reason}", placed.object);
     sink.builder.start_object(name.as_bytes());
-    // Components of nothing would take time without taking memory.
+    // Each component counts as a byte. A file could otherwise have so many empty ones that visiting them takes too
+    // long.
     sink.take(1).map_err(|reason| at(&reason))?;
     let mut vertices = Vec::new();
     for position in &object.vertices {
@@ -131,7 +132,7 @@ impl Model {
     fn parse(text: &str) -> Result<Self, String> {
         let mut model = Self::default();
         let mut id = None;
-        // Slices have vertices of their own, in layers beside the mesh.
+        // Slices have vertices of their own, which are not those of the mesh.
         let mut is_in_slices = false;
         each_element(text, &mut |element| {
             match element.local_name().as_ref() {
@@ -189,7 +190,7 @@ impl Placed {
             if numbers.len() != 12 {
                 return Err(format!("a transform has {} numbers instead of 12", numbers.len()));
             }
-            // The rows of the file multiply from the left.
+            // The file has matrices for row vectors, so they are transposed here.
             (0..12).for_each(|k| matrix[(k % 3, k / 3)] = numbers[k]);
         }
         let model = attribute(element, "path")?.map(|path| path.trim_start_matches('/').to_owned());
@@ -197,7 +198,7 @@ impl Placed {
     }
 }
 
-/// Calls a function for each element. Errors have the place in the text.
+/// Calls a function for each element of the text. An error has the location in the text.
 fn each_element(text: &str, take: &mut dyn FnMut(&BytesStart<'_>) -> Result<(), String>) -> Result<(), String> {
     let mut reader = Reader::from_str(text);
     loop {

@@ -2,19 +2,19 @@
 
 use p2m_mixed::Unit;
 
-/// Returns the unit of the horizontal coordinates of a coordinate system, as `.prj` files and LAS files have it.
+/// Returns the unit of the horizontal coordinates from the well-known text of a `.prj` file or a LAS file.
 pub(crate) fn unit(text: &str) -> Option<Unit> {
     let text = text.to_ascii_uppercase();
     let first = |text: &str, keywords: &[&str]| keywords.iter().filter_map(|keyword| text.find(keyword)).min();
     let Some(start) = first(&text, &["PROJCS", "PROJCRS", "PROJECTEDCRS"]) else {
         return first(&text, &["GEOGCS", "GEOGCRS", "GEODCRS"]).map(|_| Unit::Degree);
     };
-    // A compound system has one of heights as well, whose unit may be another one.
+    // A compound system also has a vertical part, whose unit may differ.
     let text = &text[start..];
     let heights = first(text, &["VERT_CS[", "VERTCS[", "VERTCRS[", "VERTICALCRS["]);
     let text = &text[..heights.unwrap_or(text.len())];
-    // In the second version, ellipsoids and parameters have units of their own before the axes. In the first one, the
-    // unit of angles comes first, and has a factor to radians.
+    // In version 2, ellipsoids and parameters have units, which come before the units of the axes. In version 1, the
+    // unit of angles comes first, with its factor to radians.
     let axes = text.split_once("CS[CARTESIAN").map_or(text, |(_, axes)| axes);
     axes.split("UNIT[").skip(1).find_map(|rest| {
         let factor = rest.split(']').next()?.split(',').nth(1)?.trim().parse().ok()?;
