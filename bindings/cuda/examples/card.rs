@@ -1,8 +1,8 @@
 //! Compares a card with the processor, and prints its speed: card [QUERIES] FILE..
 //!
-//! For each scene and four sets of queries, all columns of all answers are compared bit for bit. The sets are those of
-//! p2m-bench: uniform in the box (1x), near the surface (near), on it (surface), and uniform in ten boxes (10x). Times
-//! are those of the kernels, and of the whole call from the memory of the processor.
+//! For each scene and four sets of queries, all columns of all answers are compared bit for bit. The sets are the same
+//! as in p2m-bench: uniform in the box (1x), near the surface (near), on the surface (surface), and uniform in ten
+//! boxes (10x). The times are for the kernels alone, and for the whole call on queries in the memory of the processor.
 
 use nalgebra::Point3;
 use p2m_bvh::AabbTree;
@@ -43,7 +43,7 @@ impl Answers {
             .with_barycentric(&mut self.weights)
     }
 
-    /// Returns the number of queries with other bits.
+    /// Returns the number of queries whose answers have other bits.
     fn differences(&self, other: &Self) -> usize {
         let bits = |all: &Self, i: usize| {
             let point = all.point[i].coords.map(f64::to_bits);
@@ -90,7 +90,7 @@ fn compare() -> Result<usize, Box<dyn Error>> {
             let start = Instant::now();
             let report = index.closest_columns_into(&queries, f64::INFINITY, &mut found.columns())?;
             let whole = start.elapsed();
-            // Parts of a batch run at once, so kernels are timed in batches of one part.
+            // The parts of a batch overlap, so kernels are timed in batches of one part.
             let mut kernels = Duration::ZERO;
             for part in queries.chunks(1 << 20) {
                 let mut distance = vec![0.0; part.len()];

@@ -13,8 +13,8 @@ use std::sync::{Mutex, PoisonError};
 
 /// The size of a block in bytes. Parsing one takes about a tenth of a millisecond.
 pub(crate) const BLOCK_BYTES: usize = 1 << 15;
-/// The number of blocks per thread that are read ahead while the blocks before them are parsed. No record of how it was
-/// chosen exists.
+/// The number of blocks per thread that are read ahead while the blocks before them are parsed
+/// (docs/decisions/060-files-are-parsed-in-blocks.md has the memory and the times).
 const BLOCKS_PER_THREAD: usize = 4;
 /// The number of bytes of a typical row, to estimate the size of a file from its number of rows.
 const BYTES_PER_ROW: usize = 32;
@@ -167,7 +167,7 @@ struct Slot<P> {
     parsed: Option<P>,
 }
 
-/// Parses blocks on all threads, in a pipeline of three rounds of blocks.
+/// Parses blocks on all threads, in a pipeline with three stages: a round of blocks is read, parsed and joined.
 ///
 /// In each step of the loop, the helpers parse the blocks of `next`. Meanwhile this thread joins the blocks of
 /// `parsed`, which come before them, and then reads the blocks of `after` from the file. Then the rounds move up. If
