@@ -2,7 +2,8 @@
 //!
 //! For each scene and four sets of queries, all columns of all answers are compared bit for bit. The sets are the same
 //! as in p2m-bench: uniform in the box (1x), near the surface (near), on the surface (surface), and uniform in ten
-//! boxes (10x). The times are for the kernels alone, and for the whole call on queries in the memory of the processor.
+//! boxes (10x). Times are given for the kernels alone, and for the whole call with queries in the memory of the
+//! processor.
 
 use nalgebra::Point3;
 use p2m_bvh::AabbTree;
@@ -43,7 +44,7 @@ impl Answers {
             .with_barycentric(&mut self.weights)
     }
 
-    /// Returns the number of queries whose answers have other bits.
+    /// Returns the number of queries whose answers differ in any bit.
     fn differences(&self, other: &Self) -> usize {
         let bits = |all: &Self, i: usize| {
             let point = all.point[i].coords.map(f64::to_bits);

@@ -1,10 +1,14 @@
-// Answers to queries: candidates by distances in f32, the decision by the kernel of the contract in f64.
+// Answers to queries: f32 distances select candidates, and the kernel of the contract in f64 decides between them.
+//
+// A query reads its list twice. The first pass finds the least computed f32 distance and so an upper bound on the true
+// distance, with a proved margin. The second pass evaluates in f64 the few primitives whose f32 distance does not
+// exceed that bound by more than its error. The tree is searched in the same two passes by queries without a list.
 #pragma once
 
 #include "lists.cuh"
 #include "nearest.cuh"
 
-// The vertices and the id of a primitive. A segment has the third vertex NO_VERTEX, and a point the second one as well.
+// A primitive: the numbers of its vertices, and its id. Unused vertices of segments and points are NO_VERTEX.
 struct alignas(16) Primitive {
     uint32_t vertex[3], id;
 };
@@ -22,7 +26,7 @@ struct Index {
     double centre[3], per_unit;     // of the frame
 };
 
-// Columns of answers. Those that nobody wants are null.
+// The columns of answers. Unwanted columns are null.
 struct Columns {
     void *distance, *lower_bound, *point, *weights; // in the scalar of the scene
     uint32_t *primitive;                            // NO_VERTEX where there is no answer
@@ -69,7 +73,7 @@ template <> P2M_FUNCTION float round_down<float>(double x) {
 #endif
 }
 
-// A query in the frame, rounded to f32; `false` if it is too far away.
+// Converts a query to the frame, rounded to f32; returns `false` if it is too far away.
 P2M_FUNCTION bool place(const Index &index, V3 q, F3 &p) {
     V3 local = {(q.x - index.centre[0]) * index.per_unit, (q.y - index.centre[1]) * index.per_unit,
                 (q.z - index.centre[2]) * index.per_unit};
@@ -114,7 +118,7 @@ template <class S> P2M_CALLED void decide(const Batch &b, V3 q, uint32_t plate, 
         best.plate = plate;
         best.id = primitive.id;
         best.is_found = true;
-        // A square of zero or below the plain range does not prune.
+        // A square that is zero or below the plain range must not prune.
         best.prune = smaller(larger(found.square, SQUARE_MIN), best.prune);
     }
 }
@@ -123,7 +127,7 @@ template <class S> P2M_CALLED void write(const Batch &b, uint32_t i, V3 q, const
     double distance = best.is_found ? root(best.nearest.square) : P2M_INFINITY;
     bool is_within = best.is_found && distance <= b.radius;
     if (b.columns.lower_bound) {
-        // A radius that is NaN bounds nothing.
+        // `smaller` ignores a radius that is NaN.
         double bound = smaller((is_within ? distance : b.radius) * DOWN, best.certified);
         double below = bound * DOWN - 2 * 0x1p-1074;
         ((S *)b.columns.lower_bound)[i] = below > 0 ? round_down<S>(below) : (S)0;
@@ -153,7 +157,7 @@ template <class S> P2M_CALLED void write(const Batch &b, uint32_t i, V3 q, const
     }
 }
 
-// Whether a plate can be the nearest.
+// Returns whether a plate can be the nearest, given an upper bound on the distance.
 P2M_FUNCTION bool is_candidate(const Plate &plate, F3 p, float upper, float fixed) {
     float limit = candidate_limit(upper, plate.length, fixed);
     return square_of(plate, p) <= limit * limit * ENLARGED;
@@ -174,7 +178,7 @@ template <class S> P2M_FUNCTION void finish(const Batch &b, uint32_t i, V3 q, co
         write<S>(b, i, q, best);
 }
 
-// Answers a query by the list of its cell, or leaves it to the tree.
+// Answers a query by the list of its cell. Queries in cells without a list are left to `answer_by_tree`.
 template <class S> P2M_FUNCTION void answer_by_list(uint32_t thread, const Batch &b) {
     const Index &index = b.index;
     const uint32_t i = b.order ? b.order[thread] : thread;
@@ -206,7 +210,7 @@ template <class S> P2M_FUNCTION void answer_by_list(uint32_t thread, const Batch
     finish<S>(b, i, q, best);
 }
 
-// Answers a query that has no list by the tree.
+// Answers a query by the tree, because its cell has no list.
 template <class S> P2M_FUNCTION void answer_by_tree(uint32_t thread, const Batch &b) {
     if (thread >= *b.rest_count) return;
     const Index &index = b.index;
@@ -228,7 +232,7 @@ template <class S> P2M_FUNCTION void answer_by_tree(uint32_t thread, const Batch
     finish<S>(b, i, q, best);
 }
 
-// Gathers a query that a processor has to answer, and writes the answer of the processor.
+// `gather` copies a query that the processor has to answer, and `put` writes the processor's answer.
 template <class S> P2M_FUNCTION void gather(uint32_t i, const Batch &b) {
     V3 q = query<S>(b, b.undecided[i]);
     store<S>(b.gathered, i, q.x, q.y, q.z);
@@ -246,8 +250,9 @@ template <class S> P2M_FUNCTION void put(uint32_t i, const Batch &b) {
     if (to.feature) to.feature[at] = from.feature[i];
 }
 
-// Queries are sorted by cells of a lattice of 128 to a side, those near the scene apart from those far from it. It is a
-// counting sort without an order among the queries of a cell, or among groups of cells.
+// Sorting of queries by the cells of a lattice of 128 to a side, with queries near the scene apart from queries far
+// away. It is a counting sort in three kernels (count, place, scatter). The order within a cell and between groups of
+// cells is arbitrary, because only locality matters.
 constexpr uint32_t KEYS = 1u << 22, KEYS_PER_GROUP = 64;
 
 P2M_FUNCTION uint32_t spread(uint32_t x) {
@@ -270,7 +275,7 @@ template <class S> P2M_FUNCTION void count_key(uint32_t i, const Batch &b) {
     b.keys[i] = key;
     b.ranks[i] = take(b.starts + key, 1u);
 }
-// Gives the keys of a group their places, one after another. Groups take theirs as they come.
+// Assigns consecutive places to the keys of a group. Groups take their places in the order in which they run.
 P2M_FUNCTION void place_keys(uint32_t i, const Batch &b) {
     uint32_t *starts = b.starts + i * KEYS_PER_GROUP, sum = 0;
     for (uint32_t k = 0; k < KEYS_PER_GROUP; k++) sum += starts[k];

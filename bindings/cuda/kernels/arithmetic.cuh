@@ -1,8 +1,9 @@
 // Vectors with a fixed order of operations, on a card and on the host.
 //
-// The contract of p2m-core fixes every rounding. So this code is compiled without contraction (NVRTC: --fmad=false; a C++
-// compiler: -ffp-contract=off), and each operation below is rounded once, as IEEE 754 says. `cargo xtask cuda` checks
-// that no instruction of the PTX is fused. The operations are those of p2m-core/src/kernel/vector.rs in the same order.
+// The contract of p2m-core fixes every rounding. So this code is compiled without contraction (NVRTC: --fmad=false; a
+// C++ compiler: -ffp-contract=off), and each operation below is rounded once, as IEEE 754 says. `cargo xtask cuda`
+// checks that the PTX has no fused instruction. The operations are the same as in p2m-core/src/kernel/vector.rs, in the
+// same order.
 #pragma once
 
 #ifdef __CUDACC__
@@ -43,7 +44,7 @@ P2M_FUNCTION V3 combine(double s, V3 a, double t, V3 b) {
     return {s * a.x + t * b.x, s * a.y + t * b.y, s * a.z + t * b.z};
 }
 
-// The smaller and the larger number by a comparison, so that the sign of zero is that of p2m-core.
+// The smaller and the larger of two numbers, by a comparison that treats the sign of zero as p2m-core does.
 template <class T> P2M_FUNCTION T smaller(T a, T b) { return a < b ? a : b; }
 template <class T> P2M_FUNCTION T larger(T a, T b) { return a > b ? a : b; }
 #ifdef __CUDACC__
@@ -60,7 +61,7 @@ P2M_FUNCTION V3 clamp(V3 x, V3 low, V3 high) {
     return {larger(x.x, low.x), larger(x.y, low.y), larger(x.z, low.z)};
 }
 
-// The corners of the smallest box around a box and a point.
+// Extends the box from `low` to `high` to contain a point.
 P2M_FUNCTION void extend(V3 &low, V3 &high, V3 v) {
     low = {smaller(v.x, low.x), smaller(v.y, low.y), smaller(v.z, low.z)};
     high = {larger(v.x, high.x), larger(v.y, high.y), larger(v.z, high.z)};

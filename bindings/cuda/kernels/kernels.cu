@@ -1,5 +1,5 @@
-// The kernels. A kernel is a function of the number of a thread and of its parameters. On a card each thread calls it
-// once; on the host, for tests, several threads share the numbers.
+// The kernels. A kernel is a function of a thread number and of parameters. On a card, each thread calls it once. On
+// the host, for tests, a few threads share all numbers.
 #include "answer.cuh"
 
 #ifdef __CUDACC__
@@ -11,7 +11,7 @@
 #else
 #include <thread>
 #include <vector>
-// Each of three threads takes every third number, the last one first, so kernels cannot rely on the order of numbers.
+// Each of three threads takes every third number, in descending order, so that no kernel can rely on the order.
 template <class Function> void run(uint32_t threads, Function function) {
     std::vector<std::thread> workers;
     for (uint32_t worker = 0; worker < 3; worker++)
@@ -41,7 +41,7 @@ KERNEL(p2m_put_f32, Batch, put<float>)
 KERNEL(p2m_put_f64, Batch, put<double>)
 
 #ifndef __CUDACC__
-// The kernel in f64 alone, for tests: nine numbers of vertices, of which `count` vertices are used.
+// The f64 kernel alone, for tests. `numbers` has nine coordinates, of which those of `count` vertices are used.
 extern "C" int p2m_nearest(const double *query, const double *numbers, int count, double prune, double *out) {
     V3 q = {query[0], query[1], query[2]}, v[3];
     for (int i = 0; i < count; i++) v[i] = {numbers[3 * i], numbers[3 * i + 1], numbers[3 * i + 2]};
@@ -56,11 +56,11 @@ extern "C" int p2m_nearest(const double *query, const double *numbers, int count
     for (int i = 0; i < 9; i++) out[i] = all[i];
     return outcome;
 }
-// Whether some of a capacity can be taken.
+// `take_of`, for tests of its overflow.
 extern "C" bool p2m_take_of(uint64_t *counter, uint32_t amount, uint32_t capacity) {
     uint32_t first;
     return take_of(counter, amount, capacity, first);
 }
-// The square of a plate, for tests of its error.
+// The computed square of a plate, for tests of its error bound.
 extern "C" float p2m_plate_square(const Plate *plate, const float *p) { return square_of(*plate, F3{p[0], p[1], p[2]}); }
 #endif

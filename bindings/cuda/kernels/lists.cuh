@@ -1,15 +1,20 @@
-// Interception lists: for each cell of an octree the primitives that can be nearest somewhere in it.
+// Interception lists: for each cell of an octree, the primitives that can be nearest to some point of it.
 //
-// The roots are a dense grid of cubes whose sides are a power of two, so a query finds its cell by exact arithmetic. A
-// primitive is left out of a cell if one point of the scene is nearer at all eight corners, by more than the slack. Then it
-// is so everywhere in the cell (docs/proofs/cuda.md, "Lists").
+// The roots are a dense grid of cubes whose sides are a power of two, so a query finds its cell by exact arithmetic.
+//
+// A primitive is left out of a cell if one point of the scene, an anchor, is nearer at all eight corners, by more than
+// the slack. Then the anchor is nearer everywhere in the cell: the squared distance to a primitive less the squared
+// distance to a point is a concave function of the query, so it is positive in a cube if it is positive at the corners
+// (docs/proofs/cuda.md, "Lists").
+//
+// Lists are made level by level. A root takes its candidates from the tree, and its children take theirs from its list.
 #pragma once
 
 #include "tree.cuh"
 
-// The value of `count` in an entry for a cell that is divided, and for one that is left to the tree.
+// Special values of `count` in an entry: the cell is divided, or it has no list and its queries search the tree.
 constexpr uint32_t DIVIDED = 0xffffffffu, NO_LIST = 0xfffffffeu;
-// A cell with more candidates than this is divided by a search of the tree, and not by its list.
+// The most candidates of a cell that its children take from it. The children of a cell with more search the tree anew.
 constexpr int MAX_CANDIDATES = 192;
 constexpr uint32_t FROM_TREE = 0xffffffffu;
 
@@ -24,7 +29,7 @@ struct Grid {
     uint32_t first_entry;    // that of the roots
 };
 
-// The entry of the cell that contains a point.
+// Finds the entry of the cell that contains a point. Returns `false` if there is no list.
 P2M_FUNCTION bool locate(const Grid *grids, int grid_count, const Entry *entries, F3 p, Entry &entry) {
     for (int g = 0; g < grid_count; g++) {
         const Grid &grid = grids[g];
@@ -51,14 +56,13 @@ struct Cell {
     uint32_t first, count;   // the candidates of its parent, or FROM_TREE
 };
 
-// What the threads of a level share.
-// They count what is asked for, also where it is refused, so they have 64 bits.
+// Counters that all threads of a level share. They include refused requests, so they have 64 bits to not wrap around.
 struct Counters {
     uint64_t list_items, entries, cells, candidates; // how many there are
     uint64_t left_out;                               // cells without a list
 };
 
-// Adds to a counter, and returns what it was.
+// Adds to a counter, and returns its previous value.
 template <class T> P2M_FUNCTION T take(T *counter, T amount) {
 #ifdef __CUDACC__
     return atomicAdd(counter, amount);
@@ -67,15 +71,15 @@ template <class T> P2M_FUNCTION T take(T *counter, T amount) {
 #endif
 }
 
-// Takes some of a capacity. Returns whether they fit; `first` is the number of the first one.
+// Takes `amount` items of a capacity. Returns whether they fit; `first` is the number of the first item.
 P2M_FUNCTION bool take_of(uint64_t *counter, uint32_t amount, uint32_t capacity, uint32_t &first) {
     uint64_t before = take(counter, (uint64_t)amount);
     first = (uint32_t)before;
     return before + amount <= capacity;
 }
 
-// The corners of a cell, its centre, and the anchors: points of the scene near them, with upper bounds on the distances
-// of all points of the cell's corners from each.
+// The anchors of a cell: for each of its eight corners and its centre, the nearest point of the scene, with upper
+// bounds on its distances from all eight corners.
 struct Anchors {
     F3 corner[9];
     float fixed;
@@ -94,13 +98,14 @@ struct Anchors {
 
     P2M_FUNCTION void set_anchor(int j, const Plate &plate) {
         F3 y = foot_of(plate, corner[j]);
-        // How far the anchor may be off the plate, and the slack.
+        // The slack covers the rounding of the anchor and its distance from its plate.
         float distance = root(norm_squared(sub(corner[j], y)));
         float slack = 4 * fixed + RELATIVE_ERROR * (distance + plate.length);
         for (int k = 0; k < 8; k++) bound[j][k] = (root(norm_squared(sub(corner[k], y))) + slack) * ENLARGED;
     }
 
-    // Whether something with these lower bounds on its distances can be nearest in the cell.
+    // Returns whether a primitive or box, given lower bounds on its distances from the corners, can be nearest in the
+    // cell.
     P2M_FUNCTION bool is_needed(const float *lower) const {
         for (int j = 8; j >= 0; j--) {
             bool is_farther = true;
@@ -129,7 +134,7 @@ struct Anchors {
     }
 };
 
-// Where the lists of a grid are made.
+// The parameters of `make_list`, which makes the lists of a level of a grid.
 struct Building {
     const Node *nodes;
     const Plate *plates;
@@ -205,7 +210,7 @@ P2M_FUNCTION void make_list(uint32_t i, const Building &b) {
             for (int k = 0; k < count; k++) b.next_candidates[from + k] = found[k];
         else
             from = FROM_TREE;
-        // Cells are written whenever they are counted.
+        // The entries and cells that are counted are written as well, because the next level reads all of them.
         if (take_of(&b.counters->entries, 8, b.entry_capacity, children) &&
             take_of(&b.counters->cells, 8, b.cell_capacity, at)) {
             entry = {children, DIVIDED};

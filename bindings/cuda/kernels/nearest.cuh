@@ -1,8 +1,9 @@
 // The plain kernel of p2m-core in f64: the nearest point of a point, a segment or a triangle.
 //
-// It has the operations of p2m-core/src/kernel/{triangle,edge,face}.rs in the same order, so its bits are the same.
-// What that kernel leaves to slower code is `UNDECIDED` here, and a processor decides it: scales beyond the plain range,
-// faces of slivers, and weights whose sign may be due to rounding. `src/tests.rs` compares both, on the host.
+// It has the operations of p2m-core/src/kernel/{triangle,edge,face}.rs in the same order, so its bits are the same. The
+// slower paths of that kernel are not here: scales beyond the plain range, faces of slivers, and weights whose sign may
+// be due to rounding. In these cases the result is `UNDECIDED`, and the processor answers the query. `src/tests.rs`
+// compares both kernels on the host.
 #pragma once
 
 #include "arithmetic.cuh"
@@ -48,7 +49,7 @@ P2M_FUNCTION Line edge_line(V3 a, V3 b, double aa, double bb) {
     return l;
 }
 
-// The foot on an edge; returns whether it lies strictly inside.
+// Projects the query onto an edge; returns whether the projection lies strictly inside.
 P2M_FUNCTION bool edge_foot(const Line &l, V3 a, V3 b, V3 &offset, double &square, double &t) {
     V3 foot = add_scaled(l.is_second_nearer ? b : a, l.t, l.direction);
     double correction = -(dot(foot, l.direction) * l.inverse);
@@ -81,7 +82,7 @@ P2M_FUNCTION bool has_plain_scale(double size, double inverse) {
     return MIN_PLAIN_SIZE <= size && size <= MAX_PLAIN_SIZE && inverse * (size * size) <= MAX_SIZE_PER_EDGE_SQUARED;
 }
 
-// A square that has lost digits to underflow is not decided here.
+// Returns `UNDECIDED` for a square that has lost digits to underflow.
 P2M_FUNCTION Outcome plain(Nearest &best) {
     if (best.square >= SQUARE_MIN) return best.square < SQUARE_MAX ? FOUND : UNDECIDED;
     if (!is_equal(best.offset, V3{0, 0, 0})) return UNDECIDED;
@@ -159,7 +160,7 @@ P2M_FUNCTION Outcome nearest_of_triangle(V3 query, const V3 *vertices, double pr
     Line lines[3];
     for (int i = 0; i < 3; i++) lines[i] = edge_line(o[i], o[(i + 1) % 3], squares[i], squares[(i + 1) % 3]);
     if (!has_plain_scale(size, larger(larger(lines[0].inverse, lines[1].inverse), lines[2].inverse))) return UNDECIDED;
-    // The longest edge, its nearer and farther end, and the apex.
+    // The longest edge with its nearer and farther end, and the apex opposite to it.
     int base = 0;
     for (int i = 1; i < 3; i++) {
         double x = lines[i].inverse, y = lines[base].inverse;
@@ -169,7 +170,7 @@ P2M_FUNCTION Outcome nearest_of_triangle(V3 query, const V3 *vertices, double pr
     const int near = line.is_second_nearer ? (base + 1) % 3 : base, far = line.is_second_nearer ? base : (base + 1) % 3;
     const int apex = 3 - near - far;
     const V3 n = o[near];
-    // The plane of the face, and a first estimate of the foot.
+    // The plane of the face, and a first estimate of the projection.
     V3 side = sub(o[apex], n);
     double along = dot(side, line.direction) * line.inverse;
     V3 height = add_scaled(side, -along, line.direction);
@@ -210,7 +211,7 @@ P2M_FUNCTION Outcome nearest_of_triangle(V3 query, const V3 *vertices, double pr
     }
     if (!is_outside && (plane_square <= limit || !can_estimate)) {
         if (1.0 < error_factor) return UNDECIDED;
-        // The point of the first weights, improved by one step along both axes.
+        // The point of the first weights, improved by a step along both axes.
         V3 point = add(n, combine(wf, line.direction, wa, side));
         double step_d = -(dot(point, line.direction) * line.inverse);
         double step_h = -(dot(point, height) * inverse_height);
@@ -235,7 +236,7 @@ P2M_FUNCTION Outcome nearest_of_triangle(V3 query, const V3 *vertices, double pr
     return plain(best);
 }
 
-// The nearest point in coordinates of the scene.
+// Returns the nearest point in the coordinates of the scene.
 P2M_FUNCTION V3 point_of(const Nearest &best, V3 query, const V3 *vertices, int count) {
     if (best.feature < 3) return vertices[best.feature];
     V3 point = add(query, best.offset), low, high;

@@ -1,8 +1,9 @@
 // Distances in f32, with a proved bound on their error (docs/proofs/cuda.md).
 //
-// A `Plate` is a primitive in a frame of its own: the first axis runs along its longest edge, the second one to the apex.
-// The axes are orthogonal however thin the triangle is, so errors do not depend on its shape. Segments and points are
-// plates without area. Coordinates are in units of the scene's frame, in which the scene is in the cube from -1 to 1.
+// A `Plate` is a primitive in a local frame. The first axis runs along its longest edge, and the second one in its plane
+// towards the apex. The axes are orthogonal however thin the triangle is, so errors do not depend on its shape. Segments
+// and points are plates without area. Coordinates are in units of the scene's frame, in which the scene fits into the
+// cube from -1 to 1.
 #pragma once
 
 #include "arithmetic.cuh"
@@ -30,16 +31,21 @@ P2M_FUNCTION Plate load(const Plate *at) {
 }
 
 constexpr float U32 = 0x1p-24f;
-// |sqrt(square) - d| <= FIXED_ERROR (|p| + 1) + RELATIVE_ERROR (d + length), where |p| is the largest component of the query.
+// The bounds on the error of `square_of`, which docs/proofs/cuda.md proves:
+// |sqrt(square) - d| <= FIXED_ERROR (|p| + 1) + RELATIVE_ERROR (d + length)
+// d is the true distance, and |p| the largest component of the query.
 constexpr float FIXED_ERROR = 4 * U32, RELATIVE_ERROR = 40 * U32;
-// Enlarges a number by more than the roundings of a few operations.
+// Enlarges a number by more than the rounding errors of a few operations.
 constexpr float ENLARGED = 1 + 16 * U32;
 
 P2M_FUNCTION float fixed_error(F3 p) { return FIXED_ERROR * (largest(p) + 1.0f); }
 
 P2M_FUNCTION float clamp(float x, float end) { return smaller(larger(x, 0.0f), end); }
 
-// The squared distance of a point; `foot` gets the nearest point in the plane of the plate.
+// Returns the squared distance of a point; `foot_x` and `foot_y` get the nearest point in the frame of the plate.
+//
+// The point is projected onto the plane. If its projection is inside of the triangle, only the height counts. Otherwise
+// the nearest of the three edges does. All cases are computed without divisions and compared.
 P2M_FUNCTION float square_and_foot(const Plate &plate, F3 p, float &foot_x, float &foot_y) {
     F3 o = sub(p, plate.origin);
     float x = dot(o, plate.along), y = dot(o, plate.up), z = dot(o, cross(plate.along, plate.up));
@@ -75,19 +81,19 @@ P2M_FUNCTION float square_of(const Plate &plate, F3 p) {
     return square_and_foot(plate, p, x, y);
 }
 
-// The nearest point of a plate, up to rounding.
+// Returns the nearest point of a plate, up to rounding.
 P2M_FUNCTION F3 foot_of(const Plate &plate, F3 p) {
     float x, y;
     square_and_foot(plate, p, x, y);
     return add_scaled(add_scaled(plate.origin, x, plate.along), y, plate.up);
 }
 
-// An upper bound on the distance of the scene, given the computed distance of a plate.
+// Returns an upper bound on the distance of the scene, given the computed distance of one plate.
 P2M_FUNCTION float upper_bound(float distance, float length, float fixed) {
     return (distance + fixed + RELATIVE_ERROR * length) * (1 + 4 * RELATIVE_ERROR);
 }
 
-// The computed distance above which a plate is farther than an upper bound.
+// Returns the computed distance above which a plate is certainly farther than an upper bound.
 P2M_FUNCTION float candidate_limit(float upper, float length, float fixed) {
     return (upper + fixed + RELATIVE_ERROR * (upper + length)) * ENLARGED;
 }

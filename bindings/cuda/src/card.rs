@@ -1,7 +1,7 @@
 //! A card: its memory, and the kernels that run on it.
 //!
-//! [`Card`] is what the rest of the crate needs of it. [`CudaCard`] is the real one. Tests have one that runs the same
-//! kernels on the host.
+//! [`Card`] is the interface that the rest of the crate uses. [`CudaCard`] implements it for a real card, and tests
+//! implement it by the same kernels on the host.
 
 use crate::CudaError;
 use crate::raw::{Address, Batch, Building};
@@ -16,12 +16,12 @@ pub(crate) trait Parameters: Copy + 'static {}
 impl Parameters for Building {}
 impl Parameters for Batch {}
 
-/// A place where kernels run.
+/// A device on which kernels run.
 pub(crate) trait Card: Sized + Sync {
     /// A block of its memory.
     type Memory: Sync;
 
-    /// Returns another queue of copies and kernels on the same card, which runs beside this one.
+    /// Returns another queue of copies and kernels on the same card, which runs concurrently with this one.
     fn lane(&self) -> Result<Self, CudaError>;
 
     fn allocate(&self, bytes: usize) -> Result<Self::Memory, CudaError>;
@@ -29,20 +29,21 @@ pub(crate) trait Card: Sized + Sync {
     /// Copies bytes to the front of a block.
     fn write(&self, memory: &mut Self::Memory, bytes: &[u8]) -> Result<(), CudaError>;
     fn clear(&self, memory: &mut Self::Memory) -> Result<(), CudaError>;
-    /// Copies bytes from the front of a block, once all kernels before have ended.
+    /// Copies bytes from the front of a block, after all earlier kernels have ended.
     fn read(&self, memory: &Self::Memory, bytes: &mut [u8]) -> Result<(), CudaError>;
-    /// Copies bytes at the front of a block into a block of their size.
+    /// Copies bytes from the front of a block into a new block of that size.
     fn copy(&self, memory: &Self::Memory, bytes: usize) -> Result<Self::Memory, CudaError>;
     /// Waits until all kernels have ended.
     fn wait(&self) -> Result<(), CudaError>;
-    /// Changes the number of bytes above which the driver takes back free memory. It counts memory in use, too.
+    /// Changes the number of bytes that the driver keeps instead of returning free memory to the system. Memory in use
+    /// counts.
     fn keep(&self, bytes: i64) -> Result<(), CudaError>;
-    /// Returns the bytes that are free.
+    /// Returns the number of free bytes.
     fn free_memory(&self) -> Result<usize, CudaError>;
-    /// Starts a kernel for each number of a thread.
+    /// Starts a kernel with one thread for each number below `threads`.
     fn launch<P: Parameters>(&self, kernel: &str, threads: usize, parameters: &P) -> Result<(), CudaError>;
 
-    /// Allocates a block with these bytes.
+    /// Allocates a block and copies these bytes into it.
     fn upload(&self, bytes: &[u8]) -> Result<Self::Memory, CudaError> {
         let mut memory = self.allocate(bytes.len().max(1))?;
         self.write(&mut memory, bytes)?;
@@ -50,24 +51,24 @@ pub(crate) trait Card: Sized + Sync {
     }
 }
 
-/// The kernels, which `cargo xtask cuda` compiles.
+/// The compiled kernels, see `cargo xtask cuda`.
 const PTX: &str = include_str!("../kernels/kernels.ptx");
 const THREADS_PER_BLOCK: u32 = 128;
 
-/// The size of the pinned buffer of a lane, and the size of the smallest copy that goes through it. Copies from and to
+/// The size of the pinned buffer of a lane, which is also the smallest copy that goes through it. Copies from and to
 /// pageable memory are several times slower.
 const STAGING_BYTES: usize = 1 << 22;
 
-/// The free memory that the driver keeps for batches: three lanes with all columns in f64 take 380 MB.
+/// The free memory that the driver keeps between batches. Three lanes with all columns in f64 take 380 MB.
 const KEPT_BYTES: u64 = 1 << 29;
 
-/// The context that is current on this thread. It is current again when this value is dropped.
+/// The context that was current on this thread. It becomes current again when this value is dropped.
 pub(crate) struct CallersContext(Option<CUcontext>);
 
 impl CallersContext {
-    /// Remembers the current context. The driver has to be there.
+    /// Saves the current context. The driver has to be present.
     pub(crate) fn new() -> Self {
-        // Before the driver is initialized there is none.
+        // Before the driver is initialized there is no context.
         Self(result::ctx::get_current().ok().flatten())
     }
 }
@@ -87,7 +88,7 @@ pub(crate) struct CudaCard {
 }
 
 impl CudaCard {
-    /// Opens the card of this number. The driver has to be there.
+    /// Opens the card with this number. The driver has to be present.
     pub(crate) fn open(ordinal: usize) -> Result<Self, CudaError> {
         let context = CudaContext::new(ordinal)?;
         let module = context.load_module(Ptx::from_src(PTX))?;
@@ -105,8 +106,8 @@ impl CudaCard {
         Ok(unsafe { result::stream::synchronize(usize::try_from(stream).unwrap_or_default() as _) }?)
     }
 
-    /// Calls a function with the pinned buffer for each piece of a copy of so many bytes. The function has to wait until
-    /// its piece is copied.
+    /// Copies `len` bytes in pieces that fit into the pinned buffer, and calls `copy` for each of them. `copy` has to
+    /// wait until its piece is copied.
     fn in_pieces(
         &self,
         len: usize,
@@ -208,7 +209,7 @@ impl Card for CudaCard {
             unsafe {
                 let pool = result::device::get_default_mem_pool(context.cu_device())?;
                 result::mem_pool::get_attribute(pool, attribute, (&raw mut kept).cast())?;
-                // Other libraries of the process may keep more in the same pool.
+                // Other libraries of the process may have asked for more in the same pool.
                 kept = kept.max(KEPT_BYTES).saturating_add_signed(bytes);
                 result::mem_pool::set_attribute(pool, attribute, (&raw mut kept).cast())?;
             }

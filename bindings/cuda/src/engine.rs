@@ -1,4 +1,4 @@
-//! A scene on a card, and batches of queries that it answers.
+//! A scene on a card, and the batches of queries that it answers.
 
 use crate::card::Card;
 use crate::lists::{self, ListPlan, Lists, Source};
@@ -12,17 +12,17 @@ use p2m_core::engine::query::square_within;
 use std::sync::{Mutex, MutexGuard, PoisonError};
 use std::time::Instant;
 
-/// The number of lanes. While one copies queries, others search or copy answers.
+/// The number of lanes, which work in turns: while one copies its queries, others search or copy their answers.
 const LANES: usize = 3;
-/// The number of queries of a lane at a time.
+/// The number of queries that a lane copies and answers at a time.
 const LANE_QUERIES: usize = 1 << 20;
-/// The number of queries at a time that are on the card already.
+/// The number of queries that are answered at a time if they are on the card already.
 const CARD_QUERIES: usize = 1 << 23;
 
-/// A scene on a card.
+/// A scene on a card, with the lanes that answer batches.
 pub(crate) struct Engine<C: Card> {
     lanes: Vec<C>,
-    /// The blocks that `index` has the addresses of.
+    /// The memory of the scene, to which `index` has addresses.
     _scene: [C::Memory; 4],
     lists: Lists<C::Memory>,
     index: Index,
@@ -30,7 +30,7 @@ pub(crate) struct Engine<C: Card> {
     scene_bytes: usize,
 }
 
-/// The bytes of the columns of a batch, in the order of [`Columns`]. A column that nobody wants is empty.
+/// The columns of a batch as bytes, in the order of [`Columns`]. An unwanted column is empty.
 pub(crate) type Answers<'a> = [&'a mut [u8]; 6];
 
 impl<C: Card> Engine<C> {
@@ -50,7 +50,7 @@ impl<C: Card> Engine<C> {
         ];
         let blocks = [card.upload(parts[0])?, card.upload(parts[1])?, card.upload(parts[2])?, card.upload(parts[3])?];
         let [nodes, plates, primitives, vertices] = [0, 1, 2, 3].map(|i: usize| card.address(&blocks[i]));
-        // Lists take twice their memory while they are made, and their scene and batches need some as well.
+        // Making lists takes twice their memory, and the scene and batches take some as well.
         let memory = match memory {
             Some(memory) => memory,
             None => default_memory(count).min(card.free_memory()? / 4),
@@ -70,7 +70,7 @@ impl<C: Card> Engine<C> {
             ..Index::default()
         };
         index.grids[..lists.grids.len()].copy_from_slice(&lists.grids);
-        // Other lanes do not wait for this one.
+        // The lanes have other streams, which do not wait for this one.
         card.wait()?;
         let mut lanes = vec![card];
         for _ in 1..LANES {
@@ -82,8 +82,8 @@ impl<C: Card> Engine<C> {
         Ok(engine)
     }
 
-    /// The bytes of the scene and of its lists, which the limit of the driver has to include. Otherwise each wait would
-    /// give the memory of a batch back, and the next batch would map it anew.
+    /// The bytes of the scene and of its lists. The driver has to keep them in addition: its limit includes memory in
+    /// use, so otherwise each wait would return the memory of a batch, and the next batch would map it anew.
     fn kept_bytes(&self) -> i64 {
         i64::try_from(self.scene_bytes + self.lists.memory).unwrap_or(i64::MAX)
     }
@@ -103,7 +103,8 @@ impl<C: Card> Engine<C> {
         &self.lanes[0]
     }
 
-    /// Answers queries, and adds to a report. Returns the numbers of those that the card has not decided, in any order.
+    /// Answers queries and adds to a report. Returns the numbers of the queries that the card has not decided, in any
+    /// order.
     pub(crate) fn answer<T: Real + Pod>(
         &self,
         queries: &[Point3<T>],
@@ -177,8 +178,8 @@ impl<C: Card> Engine<C> {
         Ok((left, report))
     }
 
-    /// Answers queries that are on the card into columns there. A function answers those that the card does not decide.
-    /// After an error kernels may still run.
+    /// Answers queries on the card into columns on the card. `by_processor` answers those that the card does not
+    /// decide. After an error, kernels may still be running.
     pub(crate) fn answer_on_card<T: Real + Pod>(
         &self,
         queries: &CardQueries,
@@ -221,7 +222,7 @@ impl<C: Card> Engine<C> {
         Ok(report)
     }
 
-    /// Returns a batch without the memory that a search needs.
+    /// Returns a batch without the temporary memory of a search.
     fn batch(&self, queries: Address, columns: Columns, radius: f64) -> Batch {
         Batch { index: self.index, columns, queries, radius, prune: square_within(radius), ..Batch::default() }
     }
@@ -255,7 +256,7 @@ impl<C: Card> Engine<C> {
         Ok(Undecided { numbers: undecided, count: found[1] as usize })
     }
 
-    /// Sorts the queries of a batch, and returns the memory of their order.
+    /// Sorts the queries of a batch spatially, and returns the memory of the order.
     fn sort<T: Real>(card: &C, count: usize, batch: &mut Batch) -> Result<[C::Memory; 4], CudaError> {
         let [order, keys, ranks] = [card.allocate(count * 4)?, card.allocate(count * 4)?, card.allocate(count * 4)?];
         let mut starts = card.allocate((KEYS + 1) * 4)?;
@@ -280,17 +281,17 @@ impl<C: Card> Drop for Engine<C> {
 
 /// The queries of a batch that the card has left to the processor.
 struct Undecided<M> {
-    /// Their numbers, in any order.
+    /// The numbers of these queries, in any order.
     numbers: M,
     count: usize,
 }
 
-/// The end of the names of kernels for scenes in a scalar.
+/// Returns the suffix of the names of kernels for a scalar.
 fn suffix<T>() -> &'static str {
     if size_of::<T>() == 4 { "f32" } else { "f64" }
 }
 
-/// Waits for kernels of work that has failed, which still use the memory of the caller.
+/// Waits for the kernels of failed work, because they still use the memory of the caller.
 pub(crate) fn after_error<V>(card: &impl Card, result: Result<V, CudaError>) -> Result<V, CudaError> {
     result.inspect_err(|_| drop(card.wait()))
 }
@@ -299,8 +300,9 @@ fn unpoisoned<V>(mutex: &Mutex<V>) -> MutexGuard<'_, V> {
     mutex.lock().unwrap_or_else(PoisonError::into_inner)
 }
 
-/// The bytes that lists may take: 280 for each primitive of a scene of 100,000, and more for those of a larger one,
-/// whose lists are searched from far more cells.
+/// Returns the default memory of lists in bytes: 280 for each primitive of a scene of 100,000, and more in a larger
+/// scene, whose lists are searched from far more cells. No record exists of how it was chosen; no card has run the
+/// kernels yet (docs/decisions/067-a-card-is-a-device.md).
 #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss, clippy::cast_precision_loss, reason = "a size")]
 fn default_memory(primitives: usize) -> usize {
     let n = primitives as f64;

@@ -8,13 +8,13 @@ use p2m_core::PrimitiveId;
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum CudaError {
-    /// There is no driver of NVIDIA.
+    /// No NVIDIA driver is installed.
     #[error("there is no NVIDIA driver (libcuda) on this machine")]
     NoDriver,
-    /// The driver has reported an error, such as that there is no card of this number.
+    /// The driver has reported an error, for example that there is no card with this number.
     #[error("the CUDA driver failed: {0}")]
     Driver(String),
-    /// The memory of the card, or the pinned memory of the processor, does not suffice.
+    /// The memory of the card, or the pinned memory of the processor, is exhausted.
     #[error("the memory of the card does not suffice: {0}")]
     Memory(String),
     /// The scene has no primitives.
@@ -35,16 +35,16 @@ pub enum CudaError {
         /// The number of levels.
         depth: usize,
     },
-    /// An answer that was checked has other bits than that of the processor.
+    /// A checked answer differs from the answer of the processor.
     #[error("the card has answered query {query} with other bits than the processor")]
     Unequal {
         /// The number of the query.
         query: usize,
     },
-    /// There are more parts than numbers of 32 bits.
+    /// The scene has more parts, such as vertices, than 32-bit numbers can count.
     #[error("{count} are too many for numbers of 32 bits")]
     TooMany {
-        /// How many there are.
+        /// The number of parts.
         count: usize,
     },
 }

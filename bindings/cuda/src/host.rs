@@ -1,4 +1,4 @@
-//! A card for tests: the kernels as a library for the host, which a C++ compiler makes.
+//! A card for tests: the kernels as a library for the host, compiled by a C++ compiler.
 
 use crate::CudaError;
 use crate::card::{Card, Parameters};
@@ -29,7 +29,7 @@ fn compiled() -> Option<Library> {
     let folder = tempfile::tempdir().expect("a folder for the library");
     let library = folder.path().join("kernels.so");
     let compiler = std::env::var("CXX").unwrap_or_else(|_| "c++".to_owned());
-    // Nothing may be contracted, as on the card.
+    // As on the card, no operations may be fused.
     let options = "-x c++ -std=c++17 -O2 -ffp-contract=off -pthread -shared -fPIC -Wall -Wextra -Werror";
     match Command::new(&compiler).args(options.split(' ')).arg("-o").arg(&library).arg(source).status() {
         // SAFETY: the library has functions alone, which nothing calls when it is loaded.
@@ -50,7 +50,7 @@ impl Card for HostCard {
         Ok(Self(self.0))
     }
     fn allocate(&self, bytes: usize) -> Result<Vec<u128>, CudaError> {
-        // What is not written is conspicuous.
+        // Uninitialized memory is conspicuous.
         Ok(vec![u128::MAX; bytes.div_ceil(16)])
     }
     fn address(&self, memory: &Vec<u128>) -> Address {

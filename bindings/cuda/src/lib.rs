@@ -1,11 +1,11 @@
-//! Closest points of scenes on an NVIDIA card, with the bits of [`AabbTree`].
+//! Closest points of scenes on an NVIDIA card, bit for bit equal to the answers of [`AabbTree`].
 //!
 //! [`CudaIndex`] copies a scene with its tree to the card, and makes *interception lists* there: for each cell of an
-//! octree the primitives that can be nearest somewhere in it. A query reads the list of its cell; outside the lists it
-//! searches the tree. Distances in f32 with a proved error find the candidates, and the kernel of the contract, in f64
-//! and in the same order of operations, decides between them. What that kernel leaves to slower code, such as slivers
-//! and extreme scales, is answered by the processor. So distance, primitive, point, feature and weights are those of
-//! [`AabbTree`], bit for bit. The proofs are in docs/proofs/cuda.md.
+//! octree, the primitives that can be nearest to some point of the cell. A query reads the list of its cell, or
+//! searches the tree if it is outside of all lists. Distances in f32 with a proved error select the candidates, and the
+//! kernel of the contract, in f64 and in the same order of operations, decides between them. The slower paths of that
+//! kernel, such as those for slivers and extreme scales, stay with the processor. So distance, primitive, point,
+//! feature and weights have the bits of [`AabbTree`]. The proofs are in docs/proofs/cuda.md.
 //!
 //! ```no_run
 //! use p2m_bvh::AabbTree;
@@ -22,7 +22,7 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 //!
-//! The driver is loaded when an index is made, so programs start without one.
+//! The driver is loaded when an index is made, so programs start on machines without one.
 
 mod card;
 mod engine;
@@ -54,16 +54,17 @@ use std::time::Duration;
 pub struct CudaOptions {
     /// The number of the card, from 0. The default is 0.
     pub ordinal: usize,
-    /// The size of the space with lists, in boxes of the scene around its centre: 10.5 by default. Queries farther away
-    /// search the tree. Below 1 and above 10^6 there are lists for the box alone.
+    /// The size of the region with lists, in boxes of the scene around its centre: 10.5 by default. Queries farther
+    /// away search the tree. Below 1 and above 10^6, only the box has lists.
     pub reach: f64,
-    /// The most bytes that lists may take, up to 4 GB. The default is about 280 for each primitive, and more in scenes of
-    /// more than 100,000, but at most a quarter of the free memory. While lists are made, the card needs twice as many,
-    /// and up to 400 for each cell of a level.
+    /// The largest number of bytes of the lists, up to 4 GB. The default is about 280 for each primitive, and more in
+    /// scenes of more than 100,000, but at most a quarter of the free memory. While lists are made, the card needs
+    /// twice as many, and up to 400 for each cell of a level.
     pub memory: Option<usize>,
-    /// Whether queries are sorted on the card. Sorting is wasted on queries whose order is spatially coherent.
+    /// Whether the card sorts the queries. Sorting is wasted if neighbouring queries are near each other already.
     pub reorder: bool,
-    /// The number of answers of each batch from the memory of the processor that the processor checks: 0 by default.
+    /// The number of answers of each batch that the processor checks, 0 by default. Batches that are on the card
+    /// already are not checked.
     pub checked: usize,
 }
 
@@ -73,16 +74,16 @@ impl Default for CudaOptions {
     }
 }
 
-/// How the queries of a batch were answered.
+/// A report on how the queries of a batch were answered.
 #[derive(Clone, Copy, Debug, Default)]
 #[non_exhaustive]
 pub struct BatchReport {
-    /// The number of queries that have no list and were answered by the tree on the card.
+    /// The number of queries without a list, which the card has answered by the tree.
     pub by_tree: usize,
     /// The number of queries that the processor has answered.
     pub by_processor: usize,
-    /// The time of the kernels on the card, sorting included, without transfers. Parts of a batch from the memory of the
-    /// processor run at once, so their times overlap.
+    /// The time of the kernels on the card, including sorting and without transfers. The parts of a batch from the
+    /// memory of the processor overlap, and so do their times.
     pub kernels: Duration,
 }
 
@@ -97,7 +98,7 @@ impl BatchReport {
 /// Queries on the card, for [`CudaIndex::closest_on_card`].
 #[derive(Clone, Copy, Debug)]
 pub struct CardQueries {
-    /// The address of the first coordinate. Three coordinates of a query follow each other, and the queries do.
+    /// The address of the first coordinate. Queries follow each other without gaps, each with three coordinates.
     pub address: u64,
     /// The number of queries.
     pub count: usize,
@@ -105,7 +106,7 @@ pub struct CardQueries {
     pub is_f32: bool,
 }
 
-/// The addresses of columns on the card, for [`CudaIndex::closest_on_card`]; 0 for a column that nobody wants.
+/// The addresses of columns on the card, for [`CudaIndex::closest_on_card`]; 0 for an unwanted column.
 ///
 /// The values are those of [`ClosestColumns`], in the scalar of the scene.
 #[derive(Clone, Copy, Debug, Default)]
@@ -118,9 +119,9 @@ pub struct CardColumns {
     pub point: u64,
     /// The address of the weights of the vertices, three for each query.
     pub barycentric: u64,
-    /// The address of the indices of the primitives, numbers of 32 bits; all bits are 1 where there is no answer.
+    /// The address of the indices of the primitives, as 32-bit numbers. All bits are 1 if there is no answer.
     pub primitive: u64,
-    /// The address of the features, of 8 bits ([`Feature::code`]); 255 where there is no answer.
+    /// The address of the features, of 8 bits ([`Feature::code`]); 255 if there is no answer.
     pub feature: u64,
 }
 
@@ -141,10 +142,10 @@ impl<T: Real + Pod, S: PrimitiveSet<T> + Sync> CudaIndex<T, S> {
     /// Copies a tree with its scene to a card, and makes the lists there.
     ///
     /// # Errors
-    /// Returns a [`CudaError`] if there is no driver or no such card, if the memory of the card does not suffice, for an
-    /// empty scene, for primitives without vertices, and for scenes whose size is not within 2^-320..2^300.
+    /// Returns a [`CudaError`] if there is no driver or no such card, if the memory of the card does not suffice, for
+    /// an empty scene, for primitives without vertices, and for scenes whose size is not within 2^-320..2^300.
     pub fn new(tree: AabbTree<T, S>, options: &CudaOptions) -> Result<Self, CudaError> {
-        // Without a driver the library panics.
+        // The library for the driver panics if there is none.
         if !card::is_driver_present() {
             return Err(CudaError::NoDriver);
         }
@@ -153,30 +154,30 @@ impl<T: Real + Pod, S: PrimitiveSet<T> + Sync> CudaIndex<T, S> {
         Ok(Self { index: ManuallyDrop::new(OnCard::new(card, tree, options)?) })
     }
 
-    /// The tree, which answers single queries and those of other kinds.
+    /// Returns the tree, which answers single queries and other kinds of queries.
     pub fn tree(&self) -> &AabbTree<T, S> {
         &self.index.tree
     }
 
-    /// The bytes of the scene and of its lists on the card.
+    /// Returns the bytes of the scene and of its lists on the card.
     pub fn memory(&self) -> [usize; 2] {
         self.index.engine.memory()
     }
 
-    /// The number of cells without a list, whose queries search the tree.
+    /// Returns the number of cells without a list, whose queries search the tree.
     pub fn cells_without_list(&self) -> u64 {
         self.index.engine.cells_without_list()
     }
 
-    /// Answers queries into columns, in their order, with the values of [`batch::closest_columns_into`] apart from lower
-    /// bounds, which are valid but may differ.
+    /// Answers queries into columns, in their order. The values are the same as those of
+    /// [`batch::closest_columns_into`], except for lower bounds, which are valid but may differ.
     ///
     /// Queries are divided into parts of about a million. The card holds three parts at a time: while one is copied,
-    /// another is searched. For each query of a part it needs 20 bytes, its coordinates and its columns.
+    /// another is searched. For each query of a part it needs 20 bytes besides its coordinates and columns.
     ///
     /// # Errors
-    /// Returns a [`CudaError`] if the card fails, if its memory does not suffice, or if an answer that was checked has
-    /// other bits ([`CudaOptions::checked`]). Columns then have any content.
+    /// Returns a [`CudaError`] if the card fails, if its memory does not suffice, or if a checked answer differs from
+    /// the processor's ([`CudaOptions::checked`]). The content of the columns is then unspecified.
     ///
     /// # Panics
     /// Panics if a column has another length than `queries`, and for more than 2^32 - 1 queries.
@@ -190,21 +191,22 @@ impl<T: Real + Pod, S: PrimitiveSet<T> + Sync> CudaIndex<T, S> {
         self.index.closest_columns_into(queries, max_distance, columns)
     }
 
-    /// Answers queries that are on the card into columns on the card. It waits for a stream of the caller first, and
-    /// returns when all answers are there.
+    /// Answers queries on the card into columns on the card. First it waits for a stream of the caller, and it returns
+    /// when all answers are there.
     ///
     /// The card needs 20 bytes for each of up to eight million queries at a time.
     ///
     /// # Errors
-    /// Returns a [`CudaError`] if the card fails, or if its memory does not suffice. Columns then have any content.
+    /// Returns a [`CudaError`] if the card fails, or if its memory does not suffice. The content of the columns is then
+    /// unspecified.
     ///
     /// # Panics
     /// Panics for more than 2^32 - 1 queries.
     ///
     /// # Safety
-    /// Addresses belong to the primary context of the card of this index. Queries and columns have the sizes that
-    /// [`CardQueries`] and [`CardColumns`] say, are aligned to their scalars, and do not overlap. Nothing else writes to
-    /// either during the call. The stream is one of that context; 0 is the default stream.
+    /// All addresses belong to the primary context of the card of this index. Queries and columns have the sizes that
+    /// [`CardQueries`] and [`CardColumns`] state, are aligned to their scalars, and do not overlap. Nothing else writes
+    /// to either during the call. The stream belongs to that context; 0 is the default stream.
     pub unsafe fn closest_on_card(
         &self,
         queries: &CardQueries,
@@ -219,10 +221,10 @@ impl<T: Real + Pod, S: PrimitiveSet<T> + Sync> CudaIndex<T, S> {
     }
 }
 
-/// The number of the column of lower bounds, which may differ from those of the processor.
+/// The number of the column of lower bounds, which the processor does not check because its bounds may differ.
 const LOWER_BOUND: usize = 1;
 
-/// A tree, and its scene on a card.
+/// A tree with a copy of its scene on a card.
 struct OnCard<T: Real, S, C: Card> {
     tree: AabbTree<T, S>,
     engine: Engine<C>,
@@ -298,13 +300,13 @@ impl<T: Real + Pod, S: PrimitiveSet<T> + Sync, C: Card> OnCard<T, S, C> {
         after_error(self.engine.card(), answered)
     }
 
-    /// Answers queries on the processor. Returns the bytes of the columns that are wanted, in the order of those of the
-    /// card; the others are empty.
+    /// Answers queries on the processor. Returns the bytes of the wanted columns, in the order of the columns of the
+    /// card. The bytes of an unwanted column are empty.
     fn by_processor(&self, queries: &[Point3<T>], max_distance: T, is_wanted: [bool; 6]) -> [Vec<u8>; 6] {
         let len = is_wanted.map(|is_wanted| if is_wanted { queries.len() } else { 0 });
         let (mut distance, mut lower_bound) = (vec![T::zero(); len[0]], vec![T::zero(); len[1]]);
         let (mut point, mut barycentric) = (vec![Point3::origin(); len[2]], vec![[T::zero(); 3]; len[3]]);
-        // A primitive says whether there is a feature.
+        // The primitive tells whether there is a feature, so it is computed for that column as well.
         let (mut primitive, mut feature) = (vec![0; len[4].max(len[5])], vec![Feature::Face; len[5]]);
         let mut columns = ClosestColumns::default();
         // A column that is not wanted is not computed.
@@ -326,7 +328,7 @@ impl<T: Real + Pod, S: PrimitiveSet<T> + Sync, C: Card> OnCard<T, S, C> {
     }
 }
 
-/// Returns the numbers of so many queries, evenly spaced.
+/// Returns the numbers of `wanted` of `count` queries, evenly spaced.
 #[allow(clippy::cast_possible_truncation, reason = "numbers of queries")]
 fn sample(count: usize, wanted: usize) -> Vec<u32> {
     let wanted = wanted.min(count);

@@ -1,30 +1,36 @@
-//! Interception lists, which the card makes level by level.
+//! Construction of interception lists, which the card makes level by level.
+//!
+//! The basic idea: the finest lists are the best, so the host tries to divide every cell with more than 16 candidates,
+//! one level after the other, until the lists no longer fit into the memory. Then it makes the last levels again with a
+//! larger number of candidates above which a cell is divided, and accepts the first choice that fits.
 
 use crate::CudaError;
 use crate::card::Card;
 use crate::raw::{Address, Building, Cell, Counters, FROM_TREE, Grid};
 use bytemuck::{Zeroable, bytes_of, bytes_of_mut, cast_slice};
 
-/// The size of the largest grid, in boxes of the scene. Beyond it there are no cells.
+/// The size of the largest grid, in boxes of the scene.
 const MAX_REACH: f64 = 1e6;
 /// The largest number of roots along a side of a grid.
 const MAX_ROOTS: f64 = 64.0;
-/// The number of levels below the roots, at most.
+/// The largest number of levels below the roots.
 const MAX_LEVELS: i32 = 6;
-/// The numbers of candidates above which a cell is divided: the least one with which lists fit into the memory.
+/// The choices for the number of candidates above which a cell is divided, from the finest lists to the coarsest. The
+/// first one whose lists fit into the memory is used. No record exists of how the numbers were chosen.
 const DIVIDE_ABOVE: [u32; 6] = [16, 24, 32, 48, 64, 96];
-/// The number of cells whose lists are made at a time, because drivers end kernels of seconds on cards with a display.
+/// The number of cells whose lists a launch makes. Drivers end kernels that take seconds on cards with a display.
 const CELLS_PER_LAUNCH: usize = 1 << 17;
-/// The longest list of a cell that is not divided because of memory. Beyond it the tree is faster.
+/// The longest list of a cell that is not divided for lack of memory. With a longer one the tree would be faster (no
+/// record of the measurement exists).
 const LIST_LIMIT: u32 = 128;
 
-/// The size of grids, and the memory that they may take.
+/// The size of the grids, and the memory that they may take.
 pub(crate) struct ListPlan {
     /// Half of the box of the scene, in the frame.
     pub(crate) half_extent: [f64; 3],
     /// The number of primitives.
     pub(crate) primitives: usize,
-    /// The size of the larger grid in boxes of the scene, or less than 1 for no such grid.
+    /// The size of the larger grid in boxes of the scene. Below 1 there is no such grid.
     pub(crate) reach: f64,
     /// The memory of all lists, in bytes.
     pub(crate) memory: usize,
@@ -41,20 +47,20 @@ pub(crate) struct Lists<M> {
     pub(crate) left_out: u64,
 }
 
-/// The parts of the card's scene that lists are made from.
+/// The scene on the card from which lists are made.
 #[derive(Clone, Copy)]
 pub(crate) struct Source {
     pub(crate) nodes: u64,
     pub(crate) plates: u64,
 }
 
-/// A level of a grid that has been made, so that it can be made again as the last one.
+/// A finished level of a grid, kept so that it can be made again as the last level.
 struct Level<M> {
     cells: M,
     cell_count: usize,
     candidates: M,
     side: f32,
-    /// The counters before the level.
+    /// The counters before the level was made.
     before: Counters,
 }
 
@@ -62,7 +68,8 @@ struct Level<M> {
 pub(crate) fn make<C: Card>(card: &C, source: Source, plan: &ListPlan) -> Result<Lists<C::Memory>, CudaError> {
     let longest = plan.half_extent.into_iter().fold(0.0, f64::max);
     let margin = 0.05 * longest + f64::MIN_POSITIVE;
-    // Memory is counted in words of four bytes: an entry has two, an item one. While lists are made, either may have all.
+    // Memory is counted in words of four bytes. An entry takes two, and an item takes one. While lists are made,
+    // entries and items have a buffer of the full size each, because their proportion is not known.
     let words = u32::try_from(plan.memory / 4).unwrap_or(u32::MAX).clamp(1 << 12, u32::MAX / 4);
     let (entries, items) = (card.allocate(words as usize * 4)?, card.allocate(words as usize * 4)?);
     let mut counters = Counters::default();
@@ -104,7 +111,7 @@ fn grid(half: [f64; 3], primitives: usize, first_entry: u64) -> Grid {
     Grid { low, cells, levels: 0, per_cell: side.recip() as f32, first_entry: first_entry as u32 }
 }
 
-/// Makes the lists of a grid. Returns `None` if there is no memory for those of its roots.
+/// Makes the lists of a grid. Returns `None` if even the lists of its roots do not fit into the memory.
 fn make_grid<C: Card>(
     card: &C,
     mut grid: Grid,
@@ -130,7 +137,7 @@ fn make_grid<C: Card>(
     let mut above: Option<Level<C::Memory>> = None;
     let mut shared = card.allocate(size_of::<Counters>())?;
     let fits = |after: &Counters| after.list_items + 2 * after.entries <= u64::from(limit);
-    // The choice of the number of candidates above which the cells of the level above are divided.
+    // The index in `DIVIDE_ABOVE` of the choice for the level above.
     let mut choice = 0;
     loop {
         let (after, _) = make_level(card, &mut building, &level, &mut shared, None)?;
@@ -143,13 +150,13 @@ fn make_grid<C: Card>(
             if let Some(divided) = divided {
                 level = divided?.1;
             } else {
-                // The level above is the last one, which did fit.
+                // No choice is left, so the level above, whose lists did fit, becomes the last one.
                 level = above.take().expect("it is some");
                 grid.levels -= 1;
             }
             continue;
         }
-        // A level after a higher choice is the last one.
+        // After a coarser choice, no further level is tried.
         if choice == 0 && grid.levels < MAX_LEVELS {
             match make_level(card, &mut building, &level, &mut shared, Some(DIVIDE_ABOVE[0])) {
                 Ok((divided, children)) if children.cell_count > 0 && fits(&divided) => {
@@ -157,11 +164,11 @@ fn make_grid<C: Card>(
                     grid.levels += 1;
                     continue;
                 }
-                // Without memory to divide them, these cells are those of the last level.
+                // There is nothing to divide, or no memory for it, so this level is the last one.
                 Ok(_) | Err(CudaError::Memory(_)) => {}
                 Err(error) => return Err(error),
             }
-            // The entries of children do not fit, so the lists of this level are made again.
+            // The attempt to divide has changed this level, so its lists are made again.
             let (_, _) = make_level(card, &mut building, &level, &mut shared, None)?;
         }
         *counters = after;
@@ -172,8 +179,8 @@ fn make_grid<C: Card>(
     }
 }
 
-/// Makes the lists of a level, and divides its cells of more candidates than a number, if there is one. Returns the
-/// counters after it and the cells of the next level.
+/// Makes the lists of a level. With `divide_above`, cells with more candidates are divided instead. Returns the
+/// counters after the level, and the cells of the next one.
 fn make_level<C: Card>(
     card: &C,
     building: &mut Building,

@@ -1,8 +1,8 @@
-//! The structures of the kernels (`kernels/*.cuh`), field by field.
+//! Structures that the kernels use as well (`kernels/*.cuh`), with the same fields.
 
 use bytemuck::{Pod, Zeroable};
 
-/// A plate: a primitive in a frame of its own (`plate.cuh`).
+/// A primitive in a local frame (`plate.cuh`).
 #[repr(C, align(16))]
 #[derive(Clone, Copy, Debug, Pod, Zeroable)]
 pub(crate) struct Plate {
@@ -64,7 +64,7 @@ pub(crate) struct Index {
     pub(crate) per_unit: f64,
 }
 
-/// The addresses of distances, lower bounds, points, weights, primitives and features; 0 for a column that nobody wants.
+/// The addresses of distances, lower bounds, points, weights, primitives and features; 0 for an unwanted column.
 pub(crate) type Columns = [Address; 6];
 
 #[repr(C)]
@@ -89,7 +89,7 @@ pub(crate) struct Batch {
     pub(crate) has_f32_queries: u32,
 }
 
-/// The number of keys by which queries are sorted, and of those that a thread gives their places.
+/// The number of keys by which queries are sorted, and the number of keys to which a thread assigns places.
 pub(crate) const KEYS: usize = 1 << 22;
 pub(crate) const KEYS_PER_GROUP: usize = 64;
 

@@ -10,8 +10,8 @@ use p2m_core::engine::vector::V3;
 use p2m_core::{Aabb, Primitive as _, PrimitiveId, PrimitiveSet, Real};
 use rustc_hash::FxHashMap;
 
-/// Below this depth a subtree is divided by the order of its packets alone, so that the stacks of kernels suffice
-/// (`MAX_DEPTH` in `tree.cuh`): a node of eight children takes two levels, then 14 levels divide 2^28 packets, and one
+/// The depth from which a subtree is divided by the order of its packets alone, which bounds the stacks of the kernels
+/// (`MAX_DEPTH` in `tree.cuh`). A node of eight children takes two levels, then 14 levels divide 2^28 packets, and one
 /// more has the parts of a packet.
 const MAX_SPLIT_DEPTH: usize = 12;
 /// The largest depth of a tree (`tree.cuh`).
@@ -19,7 +19,7 @@ const MAX_DEPTH: usize = 40;
 /// The number of plates of a leaf.
 const LEAF_PLATES: usize = 4;
 
-/// A scene as the card needs it.
+/// A scene in the layout of the card.
 pub(crate) struct Scene<T> {
     pub(crate) nodes: Vec<Node>,
     pub(crate) plates: Vec<Plate>,
@@ -27,7 +27,7 @@ pub(crate) struct Scene<T> {
     pub(crate) vertices: Vec<[T; 3]>,
     pub(crate) centre: V3,
     pub(crate) per_unit: f64,
-    /// Half of the box of the scene in the frame, whose origin is the middle of the box.
+    /// Half of the box of the scene in its frame, whose origin is the centre of the box.
     pub(crate) half_extent: V3,
 }
 
@@ -88,15 +88,16 @@ impl<T: Real + Pod> Scene<T> {
 struct Builder<'a, T: Real, S> {
     set: &'a S,
     tree: &'a PacketTree<Aabb<f64>>,
-    /// The numbers of vertices by the bits of their coordinates.
+    /// The number of each vertex by the bits of its coordinates, so that equal vertices are stored once.
     numbers: FxHashMap<[u64; 3], u32>,
     scene: Scene<T>,
 }
 
 impl<T: Real + Pod, S: PrimitiveSet<T>> Builder<'_, T, S> {
-    /// Converts a node or packet of the tree, below a number of others.
+    /// Converts a node or a packet of the tree, which is `depth` levels below the root.
     fn child(&mut self, node: &TreeNode<Aabb<f64>>, depth: usize) -> Result<Child, CudaError> {
-        // The packets that continue one have equal primitives with higher ids, which never are the answer.
+        // A packet may be continued by packets of equal primitives with higher ids. They are left out, because they are
+        // never the answer.
         if let Some(ids) = self.tree.primitives(node) {
             let runs: Result<Vec<Child>, CudaError> = ids.chunks(LEAF_PLATES).map(|ids| self.run(ids)).collect();
             return Ok(self.joined(&runs?));
@@ -125,7 +126,7 @@ impl<T: Real + Pod, S: PrimitiveSet<T>> Builder<'_, T, S> {
         u32::try_from(self.scene.nodes.len() - 1).expect("fewer nodes than primitives")
     }
 
-    /// Returns the only child, or a node of all children.
+    /// Returns the only child, or a new node with all children.
     fn joined(&mut self, children: &[Child]) -> Child {
         match children {
             &[child] => child,
@@ -138,7 +139,8 @@ impl<T: Real + Pod, S: PrimitiveSet<T>> Builder<'_, T, S> {
         self.fill(number, children)
     }
 
-    /// Gives a node its children, of which a fourth each are a child if there are more than four.
+    /// Sets the children of a node. More than four children are divided into four groups, each of which becomes a
+    /// child.
     fn fill(&mut self, number: u32, children: &[Child]) -> Child {
         let quarter = children.len().div_ceil(4);
         let children: Vec<Child> = children.chunks(quarter).map(|children| self.joined(children)).collect();
