@@ -56,7 +56,8 @@ struct Cell {
     uint32_t first, count;   // the candidates of its parent, or FROM_TREE
 };
 
-// Counters that all threads of a level share. They include refused requests, so they have 64 bits to not wrap around.
+// Counters that all threads of a level share. They count refused requests as well, so they have 64 bits, which never
+// wrap around.
 struct Counters {
     uint64_t list_items, entries, cells, candidates; // how many there are
     uint64_t left_out;                               // cells without a list
