@@ -1,6 +1,6 @@
-// Times closest points of p2m beside those of CGAL's AABB_tree (double) and Embree's point query (float), in one program,
-// one thread, in turns, by the time of the thread. Usage: compare SCENE.obj [QUERIES] [ROUNDS]. docs/c.md has the command
-// that compiles it with Debian's packages libcgal-dev and libembree-dev.
+// Measures closest-point queries of p2m, CGAL's AABB_tree (double) and Embree's point query (float), which take turns
+// in one program on one thread. Times are CPU times of the thread. Usage: compare SCENE.obj [QUERIES] [ROUNDS].
+// docs/c.md has the command that compiles it with Debian's packages libcgal-dev and libembree-dev.
 #include <CGAL/AABB_face_graph_triangle_primitive.h>
 #include <CGAL/AABB_traits.h>
 #include <CGAL/AABB_tree.h>
@@ -37,7 +37,8 @@ static double seconds() {
 template <class V> static V sub(V a, V b) { return {a[0] - b[0], a[1] - b[1], a[2] - b[2]}; }
 template <class V> static auto dot(V a, V b) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
 
-// The nearest point of a triangle in float: the face if the projection is inside, else the nearest edge.
+// The nearest point of a triangle in float: the projection onto the face if it is inside, else the nearest point of the
+// edges.
 using Single = std::array<float, 3>;
 static Single nearest(Single p, Single a, Single b, Single c) {
     Single e = sub(b, a), f = sub(c, a), o = sub(p, a), best = a;

@@ -1,5 +1,5 @@
-//! Writes random queries to a file, and to another one what tests/answers.c has to answer, by single queries of Rust:
-//! `answers SCENE BACKEND COUNT QUERIES ANSWERS`.
+//! Writes random queries to one file, and the answers that tests/answers.c has to reproduce to another one. The answers
+//! come from single queries in Rust: `answers SCENE BACKEND COUNT QUERIES ANSWERS`.
 
 use nalgebra::Point3;
 use p2m_backends::{BackendEntry, BuildSettings};
@@ -18,7 +18,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     let index = entry.build(Arc::clone(&soup), &BuildSettings::default())?.index;
     let normals = Normals::new(&soup);
 
-    // Points of a box that is twice as long as that of the scene, by a linear congruential generator.
+    // Points of a box that is twice as large as the box of the scene, by a linear congruential generator.
     let bounds = soup.aabb();
     let mut state = 1_u64;
     let mut random = || {

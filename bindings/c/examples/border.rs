@@ -1,5 +1,5 @@
-//! Measures what the border to C costs: queries through p2m.h and by the same index in Rust, in turns, on one thread:
-//! `border SCENE COUNT`. It links to the shared library.
+//! Measures the overhead of the C interface: queries through p2m.h and through the same index in Rust take turns on one
+//! thread. Usage: `border SCENE COUNT`. The program links to the shared library.
 
 use nalgebra::{Point3, Vector3};
 use p2m_backends::{BackendEntry, BuildSettings};
@@ -39,7 +39,7 @@ unsafe extern "C" {
     ) -> c_int;
 }
 
-/// The rounds, whose medians are compared.
+/// The number of rounds, whose medians are compared.
 const ROUNDS: usize = 21;
 
 fn main() -> Result<(), Box<dyn Error>> {
@@ -54,7 +54,7 @@ fn main() -> Result<(), Box<dyn Error>> {
         unsafe { p2m_scene_read(path.as_ptr(), &raw mut c_scene) + p2m_index_build(c_scene, null(), &raw mut c_index) };
     assert_eq!(status, 0, "the scene is read and indexed");
 
-    // Points of the box along a diagonal and back, so that neighbours are near each other.
+    // Points along a diagonal of the box and back, so that consecutive queries are near each other.
     let bounds = soup.aabb();
     let count: usize = count.parse()?;
     let size = bounds.max - bounds.min;
@@ -110,7 +110,7 @@ fn main() -> Result<(), Box<dyn Error>> {
         };
         let mut times = [Vec::new(), Vec::new()];
         for round in 0..ROUNDS {
-            // Each begins in every other round.
+            // The two take turns in beginning a round.
             let order = if round % 2 == 0 { [0, 1] } else { [1, 0] };
             let mut sums = [0.0; 2];
             for i in order {

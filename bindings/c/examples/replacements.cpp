@@ -1,4 +1,4 @@
-// How programs with other libraries become programs with p2m. The calls that they replace are named in comments.
+// Replacements of the calls of other libraries by calls of p2m. Comments have the replaced calls.
 #include "p2m.hpp"
 
 #include <iostream>
@@ -29,7 +29,7 @@ static void libigl(const Positions& P, const Positions& V, const Faces& F) {
     std::cout << S[0] << '\n';
 }
 
-// FCL, the clearance of a robot's link, which moves, from its surroundings
+// FCL: the clearance of a moving robot link from its surroundings
 static void fcl(const p2m::Index& surroundings, const p2m::Index& link) {
     // CollisionObjectd o2(link, pose);
     const double pose[4][4] = {{1, 0, 0, 3}, {0, 1, 0, 0}, {0, 0, 1, 0}, {0, 0, 0, 1}};
@@ -43,7 +43,7 @@ static void fcpw(const p2m::Index& scene) {
     std::cout << int(scene.contains(Positions{{0.1, 0.1, 0.1}})[0]) << '\n'; // scene.contains(x)
 }
 
-// Embree, rtcPointQuery with a callback that computes the distance of each triangle, which is not needed here
+// Embree: rtcPointQuery. Its callback, which computes the distance of each triangle, is not needed here
 static void embree(const p2m::Index& scene) {
     // rtcPointQuery(scene, &query, &context, callback, &result);
     const auto result = scene.closest_point({0.1, 0.1, 0.1}, 1.0);

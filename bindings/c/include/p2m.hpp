@@ -5,12 +5,12 @@
 //     p2m::Closest answer = index.closest_point({0.0, 0.5, 1.0});
 //     std::vector<double> distances = index.distances(queries);
 //
-// p2m.h documents units, threads and answers. Failures are exceptions of type p2m::Error. If P2M_NO_EXCEPTIONS is
-// defined, functions return a p2m::Result instead, which holds a value or an error; otherwise Result<T> below is T.
-// Memory that cannot be had is std::bad_alloc, as in the standard library.
+// p2m.h documents units, threads and answers. A failure throws a p2m::Error. If P2M_NO_EXCEPTIONS is defined, functions
+// return a p2m::Result instead, which holds a value or an error; otherwise Result<T> below is T. If memory cannot be
+// allocated, std::bad_alloc is thrown, as in the standard library.
 //
-// Points are of any type with `p[i]`, with members x, y, z, or with functions x(), y(), z(); for others specialise
-// p2m::Coordinates. No other library is included: types of Eigen, glm and CGAL fit by their shape.
+// A point may have any type with `p[i]`, with members x, y, z, or with functions x(), y(), z(). For other types,
+// specialise p2m::Coordinates. No other library is included: the types of Eigen, glm and CGAL fit by their shape.
 #ifndef P2M_HPP
 #define P2M_HPP
 
@@ -29,7 +29,7 @@
 #include <variant>
 #include <vector>
 
-// Units with and without exceptions may be linked into one program.
+// A program may link translation units with exceptions and without.
 #ifdef P2M_NO_EXCEPTIONS
 #define P2M_MODE results
 #else
@@ -45,7 +45,7 @@ using Pair = p2m_pair;
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
 
-// Whether a query has an answer.
+// Returns whether a query has an answer.
 inline bool has_answer(const Closest& answer) { return answer.primitive != P2M_NO_PRIMITIVE; }
 inline bool has_answer(const Hit& hit) { return hit.primitive != P2M_NO_PRIMITIVE; }
 inline bool has_answer(const Pair& pair) { return pair.primitives[0] != P2M_NO_PRIMITIVE; }
@@ -61,7 +61,7 @@ private:
 };
 
 #ifdef P2M_NO_EXCEPTIONS
-// A value or an error. Look at it before use: the value of an error is undefined.
+// A value or an error. Check it before use: the value of an error is undefined.
 template <class T> class [[nodiscard]] Result {
 public:
     Result(T value) : held_(std::in_place_index<0>, std::move(value)) {}
@@ -86,7 +86,7 @@ public:
 template <class T> using Result = T;
 #endif
 
-// The coordinates of a type of points, and the vertices of a type of triangles. Specialise it for other types.
+// The coordinates of a point type, and the vertices of a triangle type. Specialise it for other types.
 template <class P, class = void> struct Coordinates {
     static decltype(auto) at(const P& p, size_t i) { return (p[i]); }
 };
@@ -99,7 +99,7 @@ template <class T> Result<T> fail(Error error) { return error; }
 template <class T> [[noreturn]] T fail(const Error& error) { throw error; }
 #endif
 
-// Ends a call with a value, or with the error of its status.
+// Returns the value of a call, or the error of its status.
 template <class T> Result<T> done(p2m_status status, T value) {
     if (status != P2M_STATUS_OK) return fail<T>(Error(status, p2m_last_error()));
     return value;
@@ -139,14 +139,14 @@ template <class T, void (*free)(T*)> struct Free {
 };
 template <class T, void (*free)(T*)> using Handle = std::unique_ptr<T, Free<T, free>>;
 
-// Returns the answer that a call of p2m.h writes.
+// Calls a function of p2m.h that writes an answer, and returns the answer.
 template <class Answer, class Call> Result<Answer> asked(Call call) {
     Answer answer{};
     const p2m_status status = call(&answer);
     return done(status, answer);
 }
 
-// Returns the object that a call of p2m.h makes.
+// Calls a function of p2m.h that makes an object, and returns the object.
 template <class Object, class T, class Call> Result<Object> made(Call call) {
     T* object = nullptr;
     const p2m_status status = call(&object);
@@ -167,7 +167,7 @@ struct Coordinates<P, std::enable_if_t<detail::has<P, detail::Functions> && !det
     static decltype(auto) at(const P& p, size_t i) { return (i == 0 ? p.x() : i == 1 ? p.y() : p.z()); }
 };
 
-// A point of any type, as an argument.
+// A point of any type, for arguments.
 class Point {
 public:
     Point(double x, double y, double z) : coordinates_{x, y, z} {}
@@ -180,16 +180,17 @@ private:
     double coordinates_[3];
 };
 
-// Rows of an array of the caller, as an argument: of three coordinates, or of one to three indices of vertices. Vectors
-// and spans of points convert to it, other ranges, and Eigen's matrices with a row for each point. Rows of float or
-// double, and of integers of 32 or 64 bits, are read in place if their numbers follow each other; others are copied.
+// Rows of an array of the caller, for arguments: three coordinates, or one to three indices of vertices. Vectors and
+// spans of points, other ranges, and Eigen's matrices with a row for each point convert to it. Rows of float, double,
+// and integers of 32 or 64 bits are read in place if the numbers of a row follow each other; others are copied.
 template <size_t N, bool IsIndex> class Rows {
 public:
     Rows() = default;
     Rows(const Rows&) = delete;
     Rows& operator=(const Rows&) = delete;
 
-    // `count` rows, with a number of bytes from one to the next; 0 stands for no gap.
+    // Makes an array of `count` rows. `stride` is the number of bytes from one row to the next, or 0 if there are no
+    // gaps.
     template <class T> Rows(const T* first, size_t count, size_t stride = 0)
         : array_{first, count, stride, detail::scalar_of<T>} {
         static_assert(detail::is_read_in_place<T, IsIndex>, "no type of coordinates or of indices");
@@ -214,7 +215,7 @@ private:
         using T = typename M::Scalar;
         const auto count = static_cast<size_t>(rows.rows());
         if (static_cast<size_t>(rows.cols()) != N) {
-            // No row has such a stride, so every call fails.
+            // A stride that no row can have, so that every call fails.
             array_ = {this, count, 1, detail::scalar_of<Number>};
             return;
         }
@@ -267,8 +268,8 @@ using TriangleIndices = Rows<3, true>;
 using SegmentIndices = Rows<2, true>;
 using PointIndices = Rows<1, true>;
 
-// A rotation and a translation, as an argument: a matrix of 4 x 4 of Eigen (Matrix4d, Isometry3d), of glm (by its
-// columns), nested arrays by rows, or 16 numbers row by row. By default nothing moves.
+// A rotation and a translation, for arguments: a matrix of 4 x 4 of Eigen (Matrix4d, Isometry3d), of glm (by its
+// columns), nested arrays by rows, or 16 numbers row by row. The default is the identity.
 class Motion {
 public:
     Motion() = default;
@@ -295,7 +296,7 @@ private:
     bool moves_ = false;
 };
 
-// A switch by which another thread, or a signal handler, ends a batch before its time.
+// A switch with which another thread, or a signal handler, cancels a batch.
 class Cancel {
 public:
     Cancel() : handle_(p2m_cancel_new()) {}
@@ -306,24 +307,24 @@ private:
     detail::Handle<p2m_cancel, p2m_cancel_free> handle_;
 };
 
-// The options of a build. A name of a backend converts to them.
+// The options of a build. The name of a backend converts to them.
 struct IndexOptions : p2m_index_options {
     IndexOptions(const char* name = nullptr) : p2m_index_options{name, 0, 0.0, 0, 0} {}
 };
 
-// The options of a batch. A largest distance converts to them.
+// The options of a batch. A number converts to them as the largest distance.
 struct BatchOptions : p2m_batch_options {
     BatchOptions(double largest = infinity) : p2m_batch_options(p2m_batch_options_default()) { max_distance = largest; }
     BatchOptions& with_threads(uint32_t number) { return threads = number, *this; }
     BatchOptions& with_cancel(const Cancel& by) { return cancel = by.get(), *this; }
 };
 
-// The columns that a batch returns, joined by |.
+// The columns that a batch returns. Join them by |.
 enum Wanted : unsigned { Distance = 1, Primitive = 2, ClosestPoint = 4, Feature = 8, Weights = 16, LowerBound = 32,
                          Normal = 64 };
 constexpr Wanted operator|(Wanted a, Wanted b) { return Wanted(unsigned(a) | unsigned(b)); }
 
-// The answers of a batch, as in p2m_columns. A column has a row for each query, or is empty if it is not wanted.
+// The answers of a batch, as in p2m_columns. A column has a row for each query, or is empty if it was not requested.
 struct Answers {
     std::vector<double> distance;
     std::vector<uint32_t> primitive;
@@ -334,7 +335,7 @@ struct Answers {
     std::vector<std::array<double, 3>> normal;
 };
 
-// Memory of the caller for answers: vectors, arrays and spans, whose size a call checks, or a pointer with a number of
+// Memory of the caller for answers: vectors, arrays and spans, whose size is checked, or a pointer with the number of
 // bytes from one row to the next.
 class Columns {
 public:
@@ -346,7 +347,7 @@ public:
     template <class O> Columns& lower_bound(O&& o, size_t skip = 0) { return set<double>(to_.lower_bound, o, skip); }
     template <class O> Columns& normal(O&& o, size_t skip = 0) { return set<double[3]>(to_.normal, o, skip); }
     const p2m_columns* get() const { return &to_; }
-    // The number of rows of the shortest of them.
+    // The number of rows of the shortest column.
     size_t rows() const { return rows_; }
 
 private:
@@ -382,11 +383,11 @@ inline p2m_ray ray(const Point& origin, const Point& direction) {
 // A scene. It never changes.
 class Scene {
 public:
-    // Takes an object of p2m.h, which it frees.
+    // Takes ownership of an object of p2m.h, and frees it.
     explicit Scene(p2m_scene* handle) : handle_(handle) {}
     const p2m_scene* get() const { return handle_.get(); }
 
-    // The ids of primitives are their numbers: first all triangles, then all segments, then all points.
+    // Makes a scene. Primitives are numbered from 0: first all triangles, then all segments, then all points.
     static Result<Scene> make(const Points& positions, const TriangleIndices& triangles,
                               const SegmentIndices& segments = {}, const PointIndices& points = {}) {
         return detail::made<Scene, p2m_scene>([&](auto made) {
@@ -398,8 +399,8 @@ public:
         return detail::made<Scene, p2m_scene>([&](auto made) { return p2m_scene_read(path.c_str(), made); });
     }
 
-    // Makes a scene of a mesh with the functions of CGAL's Surface_mesh, all of whose faces are triangles. The id of a
-    // primitive is the place of its face in `faces()`.
+    // Makes a scene from a triangle mesh with the functions of CGAL's Surface_mesh. The id of a primitive is the place
+    // of its face in `faces()`.
     template <class Mesh> static Result<Scene> from_surface_mesh(const Mesh& mesh) {
         std::vector<std::array<double, 3>> positions;
         for (auto vertex : mesh.vertices()) {
@@ -421,14 +422,14 @@ public:
         return make(positions, {triangles.data(), faces});
     }
 
-    // The number of triangles, segments and points.
+    // Returns the numbers of triangles, segments and points.
     Result<std::array<size_t, 3>> counts() const {
         size_t counts[3] = {};
         const auto status = p2m_scene_counts(get(), &counts);
         return detail::done(status, std::array<size_t, 3>{counts[0], counts[1], counts[2]});
     }
 
-    // The lowest and the highest coordinates of all primitives.
+    // Returns the lowest and the highest coordinates of all primitives.
     Result<std::array<std::array<double, 3>, 2>> bounds() const {
         double low[3] = {}, high[3] = {};
         const auto status = p2m_scene_bounds(get(), &low, &high);
@@ -443,7 +444,7 @@ private:
 // An index over a scene, which it keeps alive. Any number of threads may query it.
 class Index {
 public:
-    // Takes an object of p2m.h, which it frees.
+    // Takes ownership of an object of p2m.h, and frees it.
     explicit Index(p2m_index* handle) : handle_(handle) {}
     const p2m_index* get() const { return handle_.get(); }
 
@@ -457,7 +458,7 @@ public:
 
     Result<void> save(const std::string& path) const { return detail::done(p2m_index_save(get(), path.c_str())); }
 
-    // Returns an index over another scene with as many primitives, in the same order.
+    // Returns an index over another scene that has as many primitives, in the same order.
     Result<Index> refit(const Scene& scene) const {
         return detail::made<Index, p2m_index>([&](auto made) { return p2m_index_refit(get(), scene.get(), made); });
     }
@@ -466,14 +467,14 @@ public:
     size_t primitive_count() const { return p2m_index_primitive_count(get()); }
     size_t memory_bytes() const { return p2m_index_memory_bytes(get()); }
 
-    // The closest point within a distance. `has_answer` says whether there is one.
+    // Finds the closest point within a distance. `has_answer` tells whether there is one.
     Result<Closest> closest_point(const Point& query, double max_distance = infinity) const {
         return detail::asked<Closest>([&](auto answer) {
             return p2m_closest_point(get(), query.data(), max_distance, answer);
         });
     }
 
-    // The closest points of many queries.
+    // Finds the closest points of many queries.
     Result<Answers> closest_points(const Points& queries, Wanted wanted = Distance | Primitive | ClosestPoint,
                                    const BatchOptions& options = {}) const {
         Answers answers;
@@ -493,7 +494,7 @@ public:
         return detail::done(status, std::move(answers));
     }
 
-    // The closest points of many queries, in memory of the caller.
+    // Finds the closest points of many queries, and writes them to memory of the caller.
     Result<void> closest_points_into(const Points& queries, const Columns& columns,
                                      const BatchOptions& options = {}) const {
         if (columns.rows() < queries.count()) {
@@ -509,21 +510,21 @@ public:
         return detail::done(status, std::move(distances));
     }
 
-    // The signed distances of many queries.
+    // Returns the signed distances of many queries.
     Result<std::vector<double>> signed_distances(const Points& queries, const BatchOptions& options = {}) const {
         std::vector<double> distances(queries.count());
         const auto status = p2m_signed_distances(get(), queries.get(), &options, {distances.data(), 0});
         return detail::done(status, std::move(distances));
     }
 
-    // Whether each query is inside, as 1 or 0.
+    // Returns whether each query is inside, as 1 or 0.
     Result<std::vector<uint8_t>> contains(const Points& queries, const BatchOptions& options = {}) const {
         std::vector<uint8_t> is_inside(queries.count());
         const auto status = p2m_contains(get(), queries.get(), &options, {is_inside.data(), 0});
         return detail::done(status, std::move(is_inside));
     }
 
-    // The k nearest primitives within a distance, the nearest first.
+    // Returns the k nearest primitives within a distance, the nearest first.
     Result<std::vector<Closest>> k_nearest(const Point& query, size_t k, double max_distance = infinity) const {
         std::vector<Closest> answers(std::min(k, primitive_count()));
         size_t count = 0;
@@ -539,7 +540,7 @@ public:
         return visitor.end(p2m_visit_within(get(), query.data(), radius, visitor.template call<Closest>, &visitor));
     }
 
-    // The primitives within a radius, in any order.
+    // Returns the primitives within a radius, in any order.
     Result<std::vector<Closest>> within(const Point& query, double radius) const {
         std::vector<Closest> answers;
         Visitor visitor{[&](const Closest& answer) { answers.push_back(answer); }, {}};
@@ -553,7 +554,7 @@ public:
         return detail::asked<bool>([&](auto answer) { return p2m_is_any_within(get(), query.data(), radius, answer); });
     }
 
-    // The first hit of a ray. `has_answer` says whether there is one.
+    // Finds the first hit of a ray. `has_answer` tells whether there is one.
     Result<Hit> first_hit(const p2m_ray& ray) const {
         return detail::asked<Hit>([&](auto answer) { return p2m_first_hit(get(), &ray, answer); });
     }
@@ -568,14 +569,14 @@ public:
         return visitor.end(p2m_visit_hits(get(), &ray, visitor.template call<Hit>, &visitor));
     }
 
-    // The first hits of a vector, an array or a span of rays.
+    // Finds the first hits of a vector, an array or a span of rays.
     template <class R> Result<std::vector<Hit>> first_hits(const R& rays, const BatchOptions& options = {}) const {
         std::vector<Hit> hits(std::size(rays));
         const auto status = p2m_first_hits(get(), std::data(rays), std::size(rays), &options, hits.data());
         return detail::done(status, std::move(hits));
     }
 
-    // The nearest points of two scenes, of which `motion` moves the second one.
+    // Finds the nearest points of two scenes. `motion` moves the second one.
     Result<Pair> closest_pair(const Index& second, const Motion& motion = {}, double max_distance = infinity) const {
         return detail::asked<Pair>([&](auto answer) {
             return p2m_closest_pair(get(), second.get(), motion.data(), max_distance, answer);
@@ -584,7 +585,7 @@ public:
 
 private:
 
-    // A visitor behind a pointer of C, which no exception may cross.
+    // A visitor behind a C pointer. No exception may cross the C code.
     template <class Visit> struct Visitor {
         Visit visit;
         std::exception_ptr thrown;

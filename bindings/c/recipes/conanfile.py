@@ -1,4 +1,4 @@
-"""A recipe for Conan 2: conan create bindings/c/recipes. It needs cargo."""
+"""Recipe for Conan 2: conan create bindings/c/recipes. It needs cargo."""
 
 import os
 

@@ -1,4 +1,4 @@
-//! Arrays of the caller.
+//! Arrays and other pointers from the caller.
 
 use crate::status::{Call, Failure, invalid};
 use nalgebra::Point3;
@@ -20,7 +20,7 @@ pub enum Scalar {
     U64 = 3,
 }
 
-/// An array that the library reads during a call: `count` rows of one to three numbers, as the function says.
+/// An array that the library reads during a call: `count` rows of one to three numbers, depending on the function.
 #[repr(C)]
 #[derive(Clone, Copy, Debug)]
 pub struct Array {
@@ -28,19 +28,20 @@ pub struct Array {
     pub data: *const c_void,
     /// The number of rows.
     pub count: usize,
-    /// The bytes from one row to the next, a multiple of the size of a number; 0 if there are no gaps between rows.
+    /// The number of bytes from one row to the next, a multiple of the size of a number; 0 if there are no gaps between
+    /// rows.
     pub stride: usize,
-    /// The type of the numbers, one of the values of `p2m_scalar`.
+    /// The type of the numbers, a value of `p2m_scalar`.
     pub scalar: u32,
 }
 
-/// A place for answers, one row for each query, which the library writes during a call.
+/// An array that the library fills with answers during a call, with a row for each query.
 #[repr(C)]
 #[derive(Clone, Copy, Debug)]
 pub struct Column {
-    /// The first row, or null if these answers are not wanted.
+    /// The first row, or null if these answers are not needed.
     pub data: *mut c_void,
-    /// The number of bytes from one row to the next; 0 if rows follow each other without a gap.
+    /// The number of bytes from one row to the next; 0 if there are no gaps between rows.
     pub stride: usize,
 }
 
@@ -55,7 +56,7 @@ macro_rules! numbers {
 }
 numbers! { f32: F32 f64: F64 u32: U32 u64: U64 }
 
-/// Returns the distance of rows in bytes, and checks that all of them are in the range of pointers.
+/// Returns the number of bytes from one row to the next, and checks that all rows fit into the address space.
 fn stride_of<R>(name: &str, data: *const c_void, count: usize, stride: usize, alignment: usize) -> Call<usize> {
     let stride = if stride == 0 { size_of::<R>() } else { stride };
     check_pointer(data, name)?;
@@ -70,7 +71,8 @@ fn stride_of<R>(name: &str, data: *const c_void, count: usize, stride: usize, al
     }
 }
 
-/// Evaluates an expression with the rows of three coordinates of an array, in either type. It is unsafe as `rows` is.
+/// Evaluates an expression with the rows of an array of coordinates, in either type. The conditions of `rows` have to
+/// hold.
 macro_rules! with_coordinates {
     ($array:expr, $name:expr, $rows:ident => $body:expr) => {{
         let array: &$crate::arrays::Array = $array;
@@ -93,7 +95,7 @@ macro_rules! with_coordinates {
 pub(crate) use with_coordinates;
 
 impl Array {
-    /// Whether the numbers have a type.
+    /// Returns whether the numbers have type `T`.
     pub(crate) fn has<T: Number>(&self) -> bool {
         self.scalar == T::SCALAR as u32
     }
@@ -101,7 +103,7 @@ impl Array {
     /// Returns the rows of an array of numbers of this type, borrowed where they are contiguous.
     ///
     /// # Safety
-    /// The array has to point to as much memory as it says, which nobody changes while the rows live.
+    /// The array has to point to as much memory as it claims, which nobody changes while the rows live.
     pub(crate) unsafe fn rows<'a, T: Number, const N: usize>(&self, name: &str) -> Call<Cow<'a, [[T; N]]>> {
         if self.count == 0 {
             return Ok(Cow::Borrowed(&[]));
@@ -116,7 +118,7 @@ impl Array {
         Ok((0..self.count).map(row).collect())
     }
 
-    /// Returns rows of coordinates in either type as points, borrowed where they are contiguous numbers in f64.
+    /// Returns rows of coordinates of either type as points. They are borrowed if they are contiguous and f64.
     ///
     /// # Safety
     /// The conditions of [`rows`](Self::rows) have to hold.
@@ -165,7 +167,7 @@ pub(crate) struct Out<'a, R> {
 }
 
 impl<R: Copy> Out<'_, R> {
-    /// The values to be written.
+    /// Returns the values to be written.
     pub(crate) fn values(&mut self) -> &mut [R] {
         match &mut self.in_place {
             Some(rows) => rows,
@@ -173,7 +175,7 @@ impl<R: Copy> Out<'_, R> {
         }
     }
 
-    /// Writes values that are not in place yet.
+    /// Writes the values that are not in place yet.
     pub(crate) fn finish(self) {
         for (i, value) in self.copied.into_iter().enumerate() {
             // SAFETY: each row is aligned and within the memory that the caller vouches for.
@@ -183,10 +185,11 @@ impl<R: Copy> Out<'_, R> {
 }
 
 impl Column {
-    /// Returns the place of `count` rows, or `None` if the column is not wanted. `unset` is what rows are before.
+    /// Returns the destination for `count` rows, or `None` if the column is not wanted. Rows initially have the value
+    /// `unset`.
     ///
     /// # Safety
-    /// The column has to point to as much memory as it says, which nobody else uses while the place lives.
+    /// The column has to point to as much memory as it claims, which nobody else uses while the destination lives.
     pub(crate) unsafe fn out<'a, R: Copy>(self, name: &str, count: usize, unset: R) -> Call<Option<Out<'a, R>>> {
         if self.data.is_null() {
             return Ok(None);
@@ -208,19 +211,19 @@ impl Column {
     }
 }
 
-/// Fails if a pointer cannot point to a value. What it points to is not looked at.
+/// Fails if a pointer is null or misaligned. It is not dereferenced.
 pub(crate) fn check_pointer<T>(pointer: *const T, name: &str) -> Call {
     let is_usable = !pointer.is_null() && pointer.is_aligned();
     is_usable.then_some(()).ok_or_else(|| fault(name, "the pointer is null or misaligned"))
 }
 
-/// Returns the failure for an argument. It is apart, so that checks which pass take few instructions.
+/// Returns the failure for an argument. It is a cold function, so that successful checks take few instructions.
 #[cold]
 fn fault(name: &str, what: &str) -> Failure {
     invalid(format!("{name}: {what}"))
 }
 
-/// Returns what a pointer points to.
+/// Returns a reference to the target of a pointer.
 ///
 /// # Safety
 /// A pointer that is not null has to point to a valid value that lives long enough.
@@ -241,7 +244,8 @@ pub(crate) unsafe fn write<T>(pointer: *mut T, name: &str, value: T) -> Call {
     Ok(())
 }
 
-/// Gives the caller an object behind a pointer. Nothing is made if there is no place for the pointer.
+/// Passes ownership of an object to the caller as a pointer. The object is not made if the place for the pointer is
+/// invalid.
 ///
 /// # Safety
 /// A pointer that is not null has to point to memory for a pointer.
@@ -253,10 +257,10 @@ pub(crate) unsafe fn give<T>(place: *mut *mut T, name: &str, make: impl FnOnce()
     unsafe { write(place, name, object) }
 }
 
-/// Ends the life of an object that [`give`] gave.
+/// Frees an object that [`give`] passed to the caller.
 ///
 /// # Safety
-/// The pointer has to be null, or one that was given and not taken back.
+/// The pointer has to be null, or come from [`give`] and not have been freed.
 pub(crate) unsafe fn take_back<T>(pointer: *mut T) {
     if !pointer.is_null() {
         // SAFETY: the caller vouches for the pointer.
@@ -264,7 +268,7 @@ pub(crate) unsafe fn take_back<T>(pointer: *mut T) {
     }
 }
 
-/// Returns a string of C.
+/// Returns a C string as text.
 ///
 /// # Safety
 /// A pointer that is not null has to point to a string that ends with a zero.
@@ -275,7 +279,7 @@ pub(crate) unsafe fn text<'a>(pointer: *const c_char, name: &str) -> Call<&'a st
     text.to_str().map_err(|_| invalid(format!("{name}: the string is not UTF-8")))
 }
 
-/// Returns a largest distance, which is a number.
+/// Returns a largest distance, or fails if it is NaN.
 pub(crate) fn length(length: f64, name: &str) -> Call<f64> {
     if length.is_nan() { Err(fault(name, "not a number")) } else { Ok(length) }
 }

@@ -11,7 +11,7 @@ use std::ffi::c_char;
 use std::path::PathBuf;
 use std::sync::Arc;
 
-/// Returns a path, which is a string of UTF-8.
+/// Returns a path from a UTF-8 string.
 ///
 /// # Safety
 /// A pointer that is not null has to point to a string that ends with a zero.
@@ -20,8 +20,8 @@ unsafe fn path(pointer: *const c_char) -> Call<PathBuf> {
     unsafe { text(pointer, "path") }.map(PathBuf::from)
 }
 
-/// Reads a scene from a file: OBJ, PLY, STL, OFF, a point cloud, or a saved index. The path is UTF-8. Free it with
-/// `p2m_scene_free`.
+/// Reads a scene from a file: OBJ, PLY, STL, OFF, a point cloud, or a saved index. The path is UTF-8. Free the scene
+/// with `p2m_scene_free`.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn p2m_scene_read(path: *const c_char, scene: *mut *mut Scene) -> Status {
     // SAFETY: the caller vouches for the pointers.
@@ -35,7 +35,7 @@ pub unsafe extern "C" fn p2m_scene_read(path: *const c_char, scene: *mut *mut Sc
     })
 }
 
-/// Saves an index with its scene to a file, which appears when it is complete.
+/// Saves an index with its scene to a file. The file appears under its name when it is complete.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn p2m_index_save(index: *const Index, path: *const c_char) -> Status {
     // SAFETY: the caller vouches for the pointers.
@@ -49,7 +49,7 @@ pub unsafe extern "C" fn p2m_index_save(index: *const Index, path: *const c_char
     })
 }
 
-/// Loads an index with its scene from a file that any binding of p2m has saved. Free it with `p2m_index_free`.
+/// Loads an index with its scene from a file that any p2m program or binding has saved. Free it with `p2m_index_free`.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn p2m_index_load(path: *const c_char, index: *mut *mut Index) -> Status {
     // SAFETY: the caller vouches for the pointers.

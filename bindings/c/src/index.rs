@@ -30,9 +30,9 @@ pub struct Index {
 pub struct IndexOptions {
     /// The name of a backend: "aabb", "kdop", "octree", "p2m", "brute" or "auto"; null stands for "auto".
     pub backend: *const c_char,
-    /// The number of queries that are expected, by which "auto" chooses. With 0 it chooses "aabb".
+    /// The expected number of queries, by which "auto" chooses. With 0 it chooses "aabb".
     pub queries: u64,
-    /// The fineness of the cells of an octree; 0 stands for the default. Larger is finer.
+    /// The fineness of the cells of an octree: a larger number makes finer cells. 0 stands for the default.
     pub resolution: f64,
     /// The number of faces of a k-DOP: 6, 14, 18 or 26; 0 stands for 14.
     pub kdop_faces: u32,
@@ -46,13 +46,13 @@ impl Index {
         Self { scene, built, backend, backend_name, signs: OnceLock::new(), normals: OnceLock::new() }
     }
 
-    /// Returns the normals of the scene, which are computed at the first call.
+    /// Returns the normals of the scene, which the first call computes.
     pub(crate) fn normals(&self, threads: u32) -> &Normals {
         let compute = || Normals::new(&self.scene.soup);
         self.normals.get_or_init(|| in_pool(threads, compute).unwrap_or_else(|_| compute()))
     }
 
-    /// Returns the arrays of the index and its scene, to be saved.
+    /// Returns a writer with the arrays of the index and its scene.
     pub(crate) fn saved(&self) -> Call<Writer<'_>> {
         if !self.backend.is_saveable() {
             return Err(self.unsupported("has no saved form", BackendEntry::is_saveable));
@@ -145,8 +145,8 @@ fn build(scene: Arc<p2m_mixed::Scene>, name: &str, options: &IndexOptions) -> Ca
     Ok(Index::new(scene, built, entry))
 }
 
-/// Makes an index over another scene with as many primitives, in the same order, from one whose backend has a refit: a
-/// tree keeps its shape, and its boxes are computed anew. The old index stays as it is. Free the new one with
+/// Makes an index over another scene with as many primitives in the same order, by a refit: the tree keeps its shape,
+/// and its boxes are recomputed. The backend has to support it. The old index stays valid. Free the new one with
 /// `p2m_index_free`.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn p2m_index_refit(
@@ -166,14 +166,14 @@ pub unsafe extern "C" fn p2m_index_refit(
     })
 }
 
-/// Frees an index that no call uses. Null is ignored.
+/// Frees an index. No other call may be using it. Null is ignored.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn p2m_index_free(index: *mut Index) {
     // SAFETY: the caller vouches for the pointer.
     unsafe { take_back(index) };
 }
 
-/// Returns the name of the backend, which lives as long as the index; null for a null pointer.
+/// Returns the name of the backend, which is valid as long as the index; null for a null pointer.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn p2m_index_backend(index: *const Index) -> *const c_char {
     // SAFETY: the caller vouches for the pointer.

@@ -1,5 +1,5 @@
-//! The C interface of p2m. `include/p2m.h` documents it; cbindgen makes that file of the comments here
-//! (`cargo xtask c --build`).
+//! The C interface of p2m. cbindgen makes its header `include/p2m.h` from the comments in this crate (`cargo xtask c
+//! --build`).
 //!
 //! Every function checks its arguments, catches panics, and returns a status; each thread keeps the message of its last
 //! failure. Pointers are checked for null and alignment, but not for the memory that counts and strides claim.

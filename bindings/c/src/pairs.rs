@@ -10,19 +10,19 @@ use p2m_core::pair::{ClosestPair, PairOptions, PairQuery, is_rotation_and_transl
 #[repr(C)]
 #[derive(Clone, Copy, Debug)]
 pub struct Pair {
-    /// The distance, which is 0 if the scenes intersect; infinity if there is no answer.
+    /// The distance. It is 0 if the scenes intersect, and infinity if there is no answer.
     pub distance: f64,
-    /// A lower bound of the true distance; infinity if there is no answer.
+    /// A lower bound on the true distance; infinity if there is no answer.
     pub lower_bound: f64,
-    /// The point of each scene, that of the second one after its motion.
+    /// The nearest point of each scene. The point of the second scene is given after its motion.
     pub points: [[f64; 3]; 2],
     /// The weights of the vertices of each primitive.
     pub weights: [[f64; 3]; 2],
     /// The id of the primitive of each scene, or `P2M_NO_PRIMITIVE`.
     pub primitives: [u32; 2],
-    /// What each point lies on, as in `p2m_closest`.
+    /// The feature that each point lies on, as in `p2m_closest`.
     pub features: [u8; 2],
-    /// Whether the scenes intersect, which is exact.
+    /// Whether the scenes intersect. It is exact.
     pub is_intersecting: bool,
 }
 
@@ -60,8 +60,8 @@ impl Index {
 }
 
 /// Finds the nearest points of two scenes within a distance, which may be infinite. `motion` moves the second scene:
-/// the 16 numbers of a matrix of 4 x 4, row by row, which is a rotation and a translation; null for none. If there is
-/// no answer, `pair` has `P2M_NO_PRIMITIVE`.
+/// the 16 numbers of a 4 x 4 matrix, row by row, of a rotation and a translation; null for none. If there is no answer,
+/// `pair` has `P2M_NO_PRIMITIVE`.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn p2m_closest_pair(
     first: *const Index,
@@ -84,7 +84,7 @@ pub unsafe extern "C" fn p2m_closest_pair(
     })
 }
 
-/// Returns the motion of a matrix, which has to be a rotation and a translation.
+/// Returns the motion given by a matrix, which has to be a rotation and a translation.
 fn isometry_of(matrix: &[f64; 16]) -> Call<nalgebra::Isometry3<f64>> {
     let is_affine = matrix[12..].iter().zip([0.0, 0.0, 0.0, 1.0]).all(|(x, expected)| x - expected == 0.0);
     if !is_affine || !is_rotation_and_translation(matrix) {

@@ -13,18 +13,19 @@ use std::ops::ControlFlow;
 #[repr(C)]
 #[derive(Clone, Copy, Debug)]
 pub struct Closest {
-    /// The distance in units of the scene; infinity if there is no answer.
+    /// The distance, in units of the scene; infinity if there is no answer.
     pub distance: f64,
     /// The closest point.
     pub point: [f64; 3],
-    /// The weights of the vertices of the primitive: the point is the sum of the vertices times these.
+    /// The weights of the vertices of the primitive. The point is the weighted sum of the vertices.
     pub weights: [f64; 3],
-    /// A lower bound of the true distance; without an answer infinity, or in batches about the largest distance.
+    /// A lower bound on the true distance. If there is no answer, it is infinity, or about the largest distance in a
+    /// batch.
     pub lower_bound: f64,
-    /// The id of the primitive, of equally near ones the lowest; `P2M_NO_PRIMITIVE` if there is no answer.
+    /// The id of the primitive, the lowest of equally near ones; `P2M_NO_PRIMITIVE` if there is no answer.
     pub primitive: u32,
-    /// What the point lies on: 0 to 2 for a vertex, 3 to 5 for the edge from vertex 0, 1 or 2 to the next one, 6 for
-    /// the face, and 255 if there is no answer.
+    /// The feature that the point lies on: 0 to 2 for a vertex, 3 to 5 for the edge from vertex 0, 1 or 2 to the next
+    /// one, 6 for the face, and 255 if there is no answer.
     pub feature: u8,
 }
 
@@ -63,20 +64,20 @@ pub struct BatchOptions {
     pub max_distance: f64,
     /// The number of threads; 0 stands for all processors, and 1 for the calling thread.
     pub threads: u32,
-    /// 1 if queries are answered in their order, because it is coherent in space already, and 0 otherwise.
+    /// 1 to answer queries in their order, because neighbours in it are near each other already, and 0 to reorder them.
     pub keeps_order: u8,
-    /// A switch that ends the call before its time, or null.
+    /// A switch that cancels the call, or null.
     pub cancel: *const Cancel,
 }
 
-/// Returns the default options of a batch: any distance, all processors, any order, no switch.
+/// Returns the default options of a batch: no largest distance, all processors, any order, no switch.
 #[unsafe(no_mangle)]
 pub extern "C" fn p2m_batch_options_default() -> BatchOptions {
     BatchOptions { max_distance: f64::INFINITY, threads: 0, keeps_order: 0, cancel: std::ptr::null() }
 }
 
-/// The columns of the answers of a batch. Each has a row for each query, or `data` null if it is not wanted. All
-/// fields are as in `p2m_closest`. A column that is not wanted costs nothing.
+/// The columns of the answers of a batch. Each has a row for each query; a column whose `data` is null is not computed.
+/// All fields are as in `p2m_closest`.
 #[repr(C)]
 #[derive(Clone, Copy, Debug)]
 pub struct Columns {
@@ -93,7 +94,7 @@ pub struct Columns {
     /// `double`.
     pub lower_bound: Column,
     /// `double[3]`: the normal of the surface at the closest point, of length 1. On edges and at vertices it is the
-    /// mean of the faces there by their angles. It is NaN where there is none.
+    /// mean of the normals of the adjacent faces, weighted by their angles. It is NaN if there is none.
     pub normal: Column,
 }
 
@@ -105,7 +106,7 @@ pub(crate) struct Batch<'a> {
 }
 
 impl<'a> Batch<'a> {
-    /// Returns the options behind a pointer, or the defaults for null.
+    /// Returns the options that a pointer refers to, or the defaults for null.
     ///
     /// # Safety
     /// A pointer that is not null has to point to valid options.
@@ -128,7 +129,7 @@ impl<'a> Batch<'a> {
         batch::BatchOptions::default().with_parallel(is_parallel).with_reorder(!self.keeps_order)
     }
 
-    /// Answers queries by an index that ends early if the switch is set.
+    /// Returns the function that answers a step of a batch, and stops the batch if the switch is set.
     pub(crate) fn step(&self) -> impl Fn(usize, &mut dyn FnMut(usize)) -> bool + Sync + use<'a> {
         let cancel = self.cancel;
         move |left, answer| {
@@ -141,17 +142,17 @@ impl<'a> Batch<'a> {
     }
 }
 
-/// The number of queries between two looks at the switch.
+/// The number of queries between two checks of the switch.
 const QUERIES_PER_STEP: usize = 256;
 
-/// Fails if a row is not finite.
+/// Fails if a row has a coordinate that is not finite.
 pub(crate) fn check_finite<P: Position<f64>>(name: &str, rows: &[P]) -> Call {
     let bad = rows.iter().position(|row| !row.point().iter().all(|x| x.is_finite()));
     bad.map_or(Ok(()), |row| Err(invalid(format!("{name}: row {row} is not finite"))))
 }
 
-/// Finds the closest point of the scene to `query`, three finite coordinates, among those within a distance, which may
-/// be infinite. If there is none, `answer` has `P2M_NO_PRIMITIVE`.
+/// Finds the closest point of the scene to `query`, which has three finite coordinates, within a distance, which may be
+/// infinite. If there is none, `answer` has `P2M_NO_PRIMITIVE`.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn p2m_closest_point(
     index: *const Index,
@@ -170,9 +171,9 @@ pub unsafe extern "C" fn p2m_closest_point(
     })
 }
 
-/// Finds the closest point to each of many queries, and writes the columns. Queries are rows of three finite
-/// coordinates, `float` or `double`. `options` may be null. The answers are those of single queries, bit for bit,
-/// whatever the number of threads; only a lower bound may differ in its last digits.
+/// Finds the closest points of many queries, and writes the columns. Queries are rows of three finite coordinates,
+/// `float` or `double`. `options` may be null. The answers are the same bits as those of single queries, for any number
+/// of threads; only lower bounds may differ in their last digits.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn p2m_closest_points(
     index: *const Index,
@@ -250,8 +251,8 @@ unsafe fn closest_points<P: Position<f64> + Sync>(
     Ok(())
 }
 
-/// Finds the `k` primitives that are nearest to a point within a distance, the nearest first. Writes them to
-/// `answers`, which has room for `k`, and their number to `count`.
+/// Finds the `k` primitives nearest to a point within a distance, the nearest first. Writes them to `answers`, which
+/// has room for `k`, and their number to `count`.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn p2m_k_nearest(
     index: *const Index,
@@ -277,8 +278,7 @@ pub unsafe extern "C" fn p2m_k_nearest(
     })
 }
 
-/// A function that receives an answer, and the pointer that its caller was given. If it returns anything but 0, the
-/// search ends.
+/// A function that receives an answer, and the `user` pointer of the call. Any result but 0 ends the search.
 pub type VisitClosest = Option<unsafe extern "C" fn(answer: *const Closest, user: *mut c_void) -> c_int>;
 
 /// Calls a function for each primitive within a radius of a point, in any order, until it returns anything but 0. The

@@ -13,15 +13,15 @@ use std::ffi::{c_int, c_void};
 #[repr(C)]
 #[derive(Clone, Copy, Debug)]
 pub struct Ray {
-    /// The point of parameter 0.
+    /// The point with the parameter 0.
     pub origin: [f64; 3],
-    /// The direction, of any length but 0. Parameters are in lengths of it.
+    /// The direction, of any length but 0. Parameters are in units of this length.
     pub direction: [f64; 3],
-    /// The least parameter.
+    /// The smallest parameter.
     pub t_min: f64,
     /// The largest parameter, which may be infinite.
     pub t_max: f64,
-    /// The distance within which segments and points are hit. Triangles are hit exactly.
+    /// The distance within which segments and points count as hit. Triangles are hit exactly.
     pub radius: f64,
 }
 
@@ -29,9 +29,9 @@ pub struct Ray {
 #[repr(C)]
 #[derive(Clone, Copy, Debug)]
 pub struct Hit {
-    /// The parameter, rounded once; infinity if there is no hit.
+    /// The parameter, with a single rounding; infinity if there is no hit.
     pub t: f64,
-    /// The point of the primitive.
+    /// The point on the primitive that is hit.
     pub point: [f64; 3],
     /// The weights of the vertices of the primitive.
     pub weights: [f64; 3],
@@ -78,7 +78,7 @@ impl Index {
     }
 }
 
-/// Finds the first hit of a ray: that with the least parameter, of equal ones the lowest id.
+/// Finds the first hit of a ray, the one with the smallest parameter, and of equal ones the one with the lowest id.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn p2m_first_hit(index: *const Index, ray: *const Ray, hit: *mut Hit) -> Status {
     // SAFETY: the caller vouches for the pointers.
@@ -98,12 +98,11 @@ pub unsafe extern "C" fn p2m_any_hit(index: *const Index, ray: *const Ray, is_hi
     })
 }
 
-/// A function that receives a hit, and the pointer that its caller was given. If it returns anything but 0, no more
-/// hits follow.
+/// A function that receives a hit, and the `user` pointer of the call. Any result but 0 ends the search.
 pub type VisitHit = Option<unsafe extern "C" fn(hit: *const Hit, user: *mut c_void) -> c_int>;
 
-/// Calls a function for all hits of a ray, one for each primitive that is hit, the nearest first. The function must
-/// not throw or jump out.
+/// Calls a function for all hits of a ray, one for each primitive that is hit, the nearest first. The function must not
+/// throw or jump out.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn p2m_visit_hits(
     index: *const Index,
@@ -124,8 +123,8 @@ pub unsafe extern "C" fn p2m_visit_hits(
     })
 }
 
-/// Finds the first hits of many rays. `hits` has room for `count`. Of the options, which may be null, the largest
-/// distance is not used.
+/// Finds the first hits of many rays. `hits` has room for `count`. `options` may be null, and its largest distance is
+/// ignored.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn p2m_first_hits(
     index: *const Index,

@@ -5,14 +5,13 @@ use crate::status::{Call, Failure, Status, invalid, run};
 use p2m_core::{BuildError, Element, PrimitiveSet, Soup};
 use std::sync::Arc;
 
-/// A scene: triangles, segments and points that share vertices. It never changes, and any number of threads may use
-/// it.
+/// A scene: triangles, segments and points that share vertices. It is immutable, and any number of threads may use it.
 pub struct Scene {
     pub(crate) shared: Arc<p2m_mixed::Scene>,
 }
 
 impl Scene {
-    /// Makes a scene of primitives, or the failure of those that are wrong.
+    /// Makes a scene from primitives, or returns the failure for invalid primitives.
     pub(crate) fn of(soup: Result<Soup<f64>, BuildError>) -> Call<Self> {
         let soup = soup.map_err(|error| Failure(Status::InvalidScene, error.to_string()))?;
         Ok(Self { shared: Arc::new(p2m_mixed::Scene::from(soup)) })
@@ -31,12 +30,12 @@ unsafe fn optional(array: *const Array, name: &str) -> Call<Array> {
     unsafe { reference(array, name) }.copied()
 }
 
-/// Makes a scene of arrays, which are copied. `positions` are the vertices, of type float or double. `triangles` have
+/// Makes a scene from arrays, which are copied. `positions` are the vertices, of type float or double. `triangles` have
 /// three indices of vertices each, `segments` two, and `points` one. Each of the last three may be null.
 ///
-/// The ids of primitives are their numbers: first all triangles, then all segments, then all points. Free the scene
-/// with `p2m_scene_free`. Fails with `P2M_STATUS_INVALID_SCENE` if an index has no vertex, if a coordinate of a
-/// primitive is not finite, or if there are more than 2^30 primitives.
+/// Primitives are numbered from 0: first all triangles, then all segments, then all points. Free the scene with
+/// `p2m_scene_free`. Fails with `P2M_STATUS_INVALID_SCENE` if an index is out of range, if a coordinate of a primitive
+/// is not finite, or if there are more than 2^30 primitives.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn p2m_scene_new(
     positions: *const Array,
@@ -64,14 +63,14 @@ pub unsafe extern "C" fn p2m_scene_new(
     })
 }
 
-/// Frees a scene. Indexes that were built over it keep what they need. Null is ignored.
+/// Frees a scene. Indexes over it stay valid. Null is ignored.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn p2m_scene_free(scene: *mut Scene) {
     // SAFETY: the caller vouches for the pointer.
     unsafe { take_back(scene) };
 }
 
-/// Writes the number of triangles, segments and points.
+/// Writes the numbers of triangles, segments and points.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn p2m_scene_counts(scene: *const Scene, counts: *mut [usize; 3]) -> Status {
     // SAFETY: the caller vouches for the pointers.

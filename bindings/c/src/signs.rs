@@ -18,16 +18,16 @@ impl Index {
             let (index, soup) = (Arc::clone(&self.built.index), Arc::clone(&self.scene.soup));
             SignedDistance::new(index, soup).map_err(|error| error.to_string())
         };
-        // The lock is taken outside of the pool, whose threads may take over work of others that wait for it.
+        // The lock is taken outside of the pool. Threads of the pool may steal other work that waits for the lock.
         let signs = self.signs.get_or_init(|| in_pool(threads, prepare).unwrap_or_else(|failure| Err(failure.1)));
         signs.as_ref().map_err(|error| Failure(Status::Unsupported, error.clone()))
     }
 }
 
-/// Answers queries in a column.
+/// Answers queries into a column.
 ///
 /// # Safety
-/// The pointers have to be valid, and the column has to point to as much memory as it says.
+/// The pointers have to be valid, and the column has to point to as much memory as it claims.
 unsafe fn answer<V: Copy + Send>(
     index: *const Index,
     queries: *const Array,
@@ -60,9 +60,9 @@ unsafe fn answer<V: Copy + Send>(
 }
 
 /// Writes the signed distance of each query, of type `double`: negative inside of the surface that the triangles form,
-/// and positive outside. It is NaN where nothing is within the largest distance, and where the sign is not determined.
-/// The first call for an index prepares the signs. Fails with `P2M_STATUS_UNSUPPORTED` for a scene with segments or
-/// points. Without any triangle and without a largest distance it is infinity.
+/// and positive outside. It is NaN if nothing is within the largest distance, and if the sign is not determined. In a
+/// scene without triangles and without a largest distance it is infinity. The first call for an index prepares the
+/// signs. Fails with `P2M_STATUS_UNSUPPORTED` for a scene with segments or points.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn p2m_signed_distances(
     index: *const Index,
@@ -82,8 +82,8 @@ pub unsafe extern "C" fn p2m_signed_distances(
     })
 }
 
-/// Writes whether each query is inside of the surface that the triangles form, as 1 or 0 of type `uint8_t`. Of the
-/// options the largest distance is not used.
+/// Writes whether each query is inside of the surface that the triangles form, as 1 or 0 of type `uint8_t`. The largest
+/// distance of the options is ignored.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn p2m_contains(
     index: *const Index,

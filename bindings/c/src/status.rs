@@ -5,8 +5,8 @@ use std::ffi::{CString, c_char};
 use std::fmt::Display;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 
-/// How a call ended. After any other status than `P2M_STATUS_OK`, the outputs of the call are unspecified, and
-/// `p2m_last_error` says what was wrong.
+/// The status of a call. After any other status than `P2M_STATUS_OK`, the outputs of the call are unspecified, and
+/// `p2m_last_error` returns the reason.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Status {
@@ -20,11 +20,11 @@ pub enum Status {
     Unsupported = 3,
     /// A file could not be read or written.
     File = 4,
-    /// Not enough memory for threads, or for the k nearest.
+    /// There is not enough memory for threads, or for the k nearest.
     OutOfMemory = 5,
     /// The call was cancelled.
     Cancelled = 6,
-    /// A defect of p2m. Please report its message.
+    /// There is a bug in p2m. Please report the message.
     Internal = 7,
 }
 
@@ -40,7 +40,7 @@ pub(crate) fn invalid(message: impl Display) -> Failure {
     Failure(Status::InvalidArgument, message.to_string())
 }
 
-/// Runs a call: no panic leaves it, and the message of a failure is kept.
+/// Runs a call, catches panics, and keeps the message of a failure.
 pub(crate) fn run(call: impl FnOnce() -> Call) -> Status {
     let failed = |Failure(status, message): Failure| {
         MESSAGE.with_borrow_mut(|kept| *kept = CString::new(message.replace('\0', " ")).unwrap_or_default());
@@ -56,8 +56,8 @@ pub(crate) fn run(call: impl FnOnce() -> Call) -> Status {
     }
 }
 
-/// Returns the message of the last call of this thread that failed; the empty string if none has. The string is valid
-/// until the next call of this thread fails.
+/// Returns the message of the last failure on this thread, or the empty string if there was none. The string is valid
+/// until the next failure on this thread.
 #[unsafe(no_mangle)]
 pub extern "C" fn p2m_last_error() -> *const c_char {
     MESSAGE.with_borrow(|message| message.as_ptr())

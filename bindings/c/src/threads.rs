@@ -1,21 +1,21 @@
-//! Threads of batches, and their end before their time.
+//! Threads and cancellation of batches.
 
 use crate::status::{Call, Failure, Status, invalid};
 use std::sync::atomic::{AtomicBool, Ordering};
 
-/// A switch by which another thread, or a signal handler, ends a call before its time.
+/// A switch with which another thread, or a signal handler, cancels a call.
 pub struct Cancel {
     pub(crate) is_set: AtomicBool,
 }
 
-/// Makes a switch that is not set. Returns a pointer for `p2m_cancel_free`.
+/// Makes a switch that is not set. Free it with `p2m_cancel_free`.
 #[unsafe(no_mangle)]
 pub extern "C" fn p2m_cancel_new() -> *mut Cancel {
     Box::into_raw(Box::new(Cancel { is_set: AtomicBool::new(false) }))
 }
 
-/// Sets a switch: calls that have it end with `P2M_STATUS_CANCELLED`, within milliseconds once they search. Any thread
-/// and any signal handler may call this. Null is ignored.
+/// Sets a switch. Calls with this switch end with `P2M_STATUS_CANCELLED`, within milliseconds once they search. Any
+/// thread and any signal handler may call this function. Null is ignored.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn p2m_cancel_set(cancel: *const Cancel) {
     // SAFETY: the pointer is null, or one of `p2m_cancel_new`.
@@ -24,7 +24,7 @@ pub unsafe extern "C" fn p2m_cancel_set(cancel: *const Cancel) {
     }
 }
 
-/// Frees a switch that no call has. Null is ignored.
+/// Frees a switch. No other call may be using it. Null is ignored.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn p2m_cancel_free(cancel: *mut Cancel) {
     // SAFETY: the pointer is null, or one of `p2m_cancel_new`.
@@ -42,18 +42,18 @@ impl Cancel {
 /// The largest number of threads of a call.
 const MAX_THREADS: u32 = 1024;
 
-/// Returns a number of threads that is not absurd.
+/// Returns a number of threads, or fails if it is absurdly large.
 pub(crate) fn checked(threads: u32) -> Call<u32> {
     if threads > MAX_THREADS { Err(invalid(format!("threads: more than {MAX_THREADS}"))) } else { Ok(threads) }
 }
 
-/// Runs a batch with a number of threads, and tells it whether it may use several. 0 stands for all processors, and
-/// with 1 the batch runs on the calling thread.
+/// Runs a batch with a number of threads, and passes whether it may use several. 0 stands for all processors. With 1
+/// the batch runs on the calling thread.
 pub(crate) fn with_threads<R: Send>(threads: u32, work: impl FnOnce(bool) -> R + Send) -> Call<R> {
     if threads == 1 { Ok(work(false)) } else { in_pool(threads, || work(true)) }
 }
 
-/// Runs work on a pool of so many threads; 0 stands for all processors.
+/// Runs work on a pool with this number of threads; 0 stands for all processors.
 #[cfg(feature = "rayon")]
 pub(crate) fn in_pool<R: Send>(threads: u32, work: impl FnOnce() -> R + Send) -> Call<R> {
     let threads = if threads == 0 { p2m_core::engine::default_threads() } else { checked(threads)? as usize };
@@ -61,7 +61,7 @@ pub(crate) fn in_pool<R: Send>(threads: u32, work: impl FnOnce() -> R + Send) ->
     Ok(pool.map_err(|error| Failure(Status::OutOfMemory, error.to_string()))?.install(work))
 }
 
-/// Runs work on the calling thread, because there are no others.
+/// Runs work on the calling thread, because the crate was compiled without other threads.
 #[cfg(not(feature = "rayon"))]
 pub(crate) fn in_pool<R: Send>(threads: u32, work: impl FnOnce() -> R + Send) -> Call<R> {
     checked(threads).map(|_| work())

@@ -1,4 +1,4 @@
-// Writes the columns of the answers to a file of queries, each as its bytes: answers SCENE BACKEND QUERIES ANSWERS
+// Writes the columns of the answers to queries from a file, as raw bytes: answers SCENE BACKEND QUERIES ANSWERS
 #include "p2m.h"
 
 #include <math.h>
@@ -26,13 +26,13 @@ int main(int arguments, char **argument) {
     check(p2m_scene_read(argument[1], &scene));
     check(p2m_index_build(scene, &options, &index));
 
-    // The columns, in the order of p2m_columns, follow each other.
+    // The columns are stored one after the other, in the order of p2m_columns.
     const size_t widths[7] = {8, 4, 24, 1, 24, 8, 24};
     p2m_column columns[7];
     for (int i = 0; i < 7; i++) columns[i] = (p2m_column){malloc(count * widths[i]), 0};
     p2m_columns all = {columns[0], columns[1], columns[2], columns[3], columns[4], columns[5], columns[6]};
     check(p2m_closest_points(index, &(p2m_array){queries, count, 0, P2M_SCALAR_F64}, NULL, &all));
-    // Lower bounds depend on the course of the search, so those of single queries are compared.
+    // The lower bounds of a batch depend on the course of the search, so the bounds of single queries are written.
     for (size_t i = 0; i < count; i++) {
         p2m_closest answer;
         check(p2m_closest_point(index, queries + 3 * i, INFINITY, &answer));

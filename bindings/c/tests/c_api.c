@@ -1,4 +1,4 @@
-// Every function of p2m.h, with answers that are known, and every kind of error. The argument is a folder for files.
+// Tests of every function of p2m.h, with known answers and every kind of error. The argument is a folder for files.
 #include "p2m.h"
 
 #include <math.h>
@@ -10,7 +10,7 @@ static int passed, failed;
 #define CHECK(is_true) \
     ((is_true) ? (void)++passed : (void)(++failed, printf("%s:%d: %s\n", __FILE__, __LINE__, #is_true)))
 #define OK(call) CHECK((call) == P2M_STATUS_OK || (puts(p2m_last_error()), 0))
-// A call fails with a status, and with a message that has a word.
+// Checks that a call fails with a status, and that the message contains a word.
 #define FAILS(name, word, call) CHECK((call) == P2M_STATUS_##name && strstr(p2m_last_error(), word))
 #define ARRAY(name, rows, type) ((p2m_array){name, rows, 0, P2M_SCALAR_##type})
 

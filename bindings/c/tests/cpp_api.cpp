@@ -1,4 +1,5 @@
-// p2m.hpp with types of points of several libraries, in either mode of errors. The argument is a folder for files.
+// Tests of p2m.hpp with point types of several libraries, with exceptions and without. The argument is a folder for
+// files.
 #include "p2m.hpp"
 
 #include <cmath>
@@ -13,7 +14,7 @@
 static int passed = 0, failed = 0;
 #define CHECK(is_true) \
     ((is_true) ? (void)++passed : (void)(++failed, std::printf("%s:%d: %s\n", __FILE__, __LINE__, #is_true)))
-// A call fails with a status, and with a message that has a word.
+// Checks that a call fails with a status, and that the message contains a word.
 #define FAILS(status, word, call) CHECK(fails(P2M_STATUS_##status, word, [&] { return call; }))
 
 #ifdef P2M_NO_EXCEPTIONS
@@ -37,7 +38,7 @@ template <class Call> bool fails(p2m_status status, const char* word, Call call)
 }
 #endif
 
-// Types with the shapes of those of other libraries.
+// Types with the shapes of types of other libraries.
 namespace glm_like {
 template <class T> struct vec3 { T x, y, z; };
 struct mat4 { // By columns.

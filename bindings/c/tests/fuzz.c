@@ -1,12 +1,12 @@
-// Calls the functions of p2m.h with arguments that a fuzzer chooses: many of them are invalid, and all of them keep what
-// the header asks for of pointers. `cargo xtask c --fuzz SECONDS` runs it.
+// Calls the functions of p2m.h with arguments that a fuzzer chooses. Many arguments are invalid, but all pointers
+// satisfy the requirements of the header. `cargo xtask c --fuzz SECONDS` runs it.
 #include "p2m.h"
 
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
-// The bytes of the fuzzer, which become numbers.
+// The bytes of the fuzzer, which determine all arguments.
 typedef struct {
     const uint8_t *data;
     size_t size;
@@ -18,7 +18,7 @@ static uint8_t next(bytes *input) {
     return *input->data++;
 }
 
-// A coordinate: small, or one of those that are special.
+// Returns a coordinate, either small or special.
 static double number(bytes *input) {
     static const double special[] = {0.0, -0.0, 1e-310, 1e-160, 1e160, 1.7e308, INFINITY, -INFINITY, NAN};
     uint8_t kind = next(input);
@@ -27,7 +27,7 @@ static double number(bytes *input) {
     return value / 64.0;
 }
 
-// An array of rows of `width` numbers in memory of its own, with a gap between rows or without. It is freed by the caller.
+// Makes an array of rows of `width` numbers in its own memory, with gaps between rows or without. The caller frees it.
 static p2m_array array(bytes *input, size_t width, size_t rows, int is_index) {
     uint8_t kind = next(input);
     int is_wide = kind & 1;
@@ -47,7 +47,7 @@ static p2m_array array(bytes *input, size_t width, size_t rows, int is_index) {
     return made;
 }
 
-// Makes an array one that has to be refused, or leaves it as it is.
+// Makes an array invalid, or leaves it as it is.
 static p2m_array spoiled(bytes *input, p2m_array made) {
     switch (next(input)) {
     case 1: made.data = NULL; break;
