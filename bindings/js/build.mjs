@@ -1,4 +1,5 @@
-// Makes `dist`: the scripts and their types of `src`, and the module of WebAssembly, also as a script.
+// Makes `dist`: the compiled scripts of `src` with their types, and the WebAssembly module, both as a file and as a
+// script.
 
 import { execFileSync } from "node:child_process";
 import { copyFileSync, readFileSync, rmSync, writeFileSync } from "node:fs";
@@ -8,9 +9,13 @@ import { decompress } from "fzstd";
 const folder = new URL("./", import.meta.url);
 const module = new URL("../../apps/page/assets/p2m.wasm.zst", folder);
 rmSync(new URL("dist", folder), { recursive: true, force: true });
-execFileSync(process.execPath, [fileURLToPath(import.meta.resolve("typescript/lib/tsc.js"))], { cwd: folder, stdio: "inherit" });
-// Packages have no links to files.
-for (const licence of ["LICENSE-APACHE", "LICENSE-MIT"]) copyFileSync(new URL(`../../${licence}`, folder), new URL(licence, folder));
+execFileSync(
+  process.execPath, [fileURLToPath(import.meta.resolve("typescript/lib/tsc.js"))],
+  { cwd: folder, stdio: "inherit" }
+);
+// Packages cannot have links to files, so the licences are copied.
+for (const licence of ["LICENSE-APACHE", "LICENSE-MIT"])
+  copyFileSync(new URL(`../../${licence}`, folder), new URL(licence, folder));
 const bytes = Buffer.from(decompress(readFileSync(module)));
 writeFileSync(new URL("dist/p2m.wasm", folder), bytes);
 const text = bytes.toString("base64");

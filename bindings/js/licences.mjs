@@ -1,5 +1,5 @@
-// Writes LICENSES.md: the licences of the crates in the module of WebAssembly, with their texts. With `--check` it fails
-// if the file is not that of the crates. It needs cargo, whose cache has the texts.
+// Writes LICENSES.md: the licences of the crates in the WebAssembly module, with their texts. With `--check` it fails
+// if the file is out of date. It needs cargo, whose cache has the texts.
 
 import { execFileSync } from "node:child_process";
 import { existsSync, readFileSync, readdirSync, writeFileSync } from "node:fs";
@@ -7,10 +7,13 @@ import { dirname, join } from "node:path";
 
 const out = new URL("LICENSES.md", import.meta.url);
 const cwd = new URL("../..", import.meta.url);
-const cargo = (...args) => execFileSync("cargo", args, { cwd, encoding: "utf8", maxBuffer: 1 << 28, stdio: ["ignore", "pipe", "pipe"] });
+const cargo = (...args) =>
+  execFileSync("cargo", args, { cwd, encoding: "utf8", maxBuffer: 1 << 28, stdio: ["ignore", "pipe", "pipe"] });
 
 const target = "wasm32-unknown-unknown";
-const tree = cargo("tree", "--locked", "--package", "p2m-c", "--no-default-features", "--target", target, "--edges", "normal,no-proc-macro",
+const tree = cargo(
+  "tree", "--locked", "--package", "p2m-c", "--no-default-features", "--target", target,
+  "--edges", "normal,no-proc-macro",
   "--prefix", "none", "--format", "{p}|{l}");
 const crates = [...new Set(tree.trim().split("\n").map((line) => line.replace(" (*)", "")))]
   .map((line) => {
@@ -21,14 +24,14 @@ const crates = [...new Set(tree.trim().split("\n").map((line) => line.replace(" 
   .sort((a, b) => (a.name < b.name ? -1 : 1));
 const { packages } = JSON.parse(cargo("metadata", "--locked", "--format-version", "1"));
 
-// Texts that occur more than once are written once, for all crates that have them.
+// A text that several crates share is written once, for all of them.
 const texts = new Map();
 for (const { name, version } of crates) {
   const folder = dirname(packages.find((own) => own.name === name && own.version === version).manifest_path);
   for (const file of readdirSync(folder).filter((own) => /^(licen[cs]e|copying|notice)/i.test(own)).sort()) {
     if (!existsSync(join(folder, file))) continue;
     const text = readFileSync(join(folder, file), "utf8").replaceAll("\r", "").replace(/[ \t]+$/gm, "").trim();
-    // Users of a crate choose between its licences; that of Apache is in this package already.
+    // Users of a crate choose between its licences, and the package has the text of the Apache licence already.
     if (!/Apache License\s+Version 2\.0/.test(text)) texts.set(text, [...(texts.get(text) ?? []), name]);
   }
 }

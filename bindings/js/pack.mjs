@@ -1,12 +1,12 @@
-// Compresses the module of WebAssembly for pages and for the package by Zstandard, whose window contains all of it: its
-// many similar functions are far from each other. Fails if the module is too large: `node pack.mjs MODULE OUT`. This
-// needs the program `zstd`.
+// Compresses the WebAssembly module for pages and for the package by Zstandard, with a window that contains all of the
+// module, because its many similar functions are far from each other. Fails if the module is too large: `node pack.mjs
+// MODULE OUT`. It needs the program `zstd`.
 
 import { execFileSync } from "node:child_process";
 import { readFileSync, statSync } from "node:fs";
 import { brotliCompressSync, constants } from "node:zlib";
 
-/** The largest module as servers send it, compressed by brotli. */
+/** The limit on the size of the module as servers send it, compressed by brotli. */
 const MAX_BROTLI_BYTES = 700_000;
 
 const [module, out] = process.argv.slice(2);

@@ -1,5 +1,5 @@
-// Measures p2m beside three-mesh-bvh in Node.js and in Chromium, and prints tables: `node benchmarks/compare.mjs COUNT
-// MESH.obj ..`. Times are those of all processors for the process: of Node.js, or of the page in Chromium.
+// Measures p2m and three-mesh-bvh in Node.js and in Chromium, and prints tables: `node benchmarks/compare.mjs COUNT
+// MESH.obj ..`. Times are CPU times of the process: of Node.js, or of the page in Chromium.
 
 import { existsSync, mkdtempSync, readFileSync, rmSync, writeFileSync } from "node:fs";
 import { tmpdir } from "node:os";
@@ -23,9 +23,10 @@ function read(file) {
   return { positions, triangles };
 }
 
-const typed = ({ positions, triangles }) => ({ positions: Float32Array.from(positions), triangles: Uint32Array.from(triangles) });
+const typed = ({ positions, triangles }) =>
+  ({ positions: Float32Array.from(positions), triangles: Uint32Array.from(triangles) });
 
-// Returns a function that measures in Chromium.
+// Starts Chromium, and returns a function that measures in it.
 async function openChromium() {
   const root = mkdtempSync(join(tmpdir(), "p2m-benchmark-"));
   const script = fileURLToPath(new URL("measure.mjs", import.meta.url));
@@ -92,6 +93,7 @@ for (const file of files) {
   const name = `${basename(file)}, ${mesh.triangles.length / 3} triangles, ${count} queries`;
   const { medians, memory } = await measure(typed(mesh), Number(count), cpu);
   print(`${name}, Node.js ${process.version}:`, medians, memory);
-  if (browser) print(`${name}, Chromium ${browser.version}:`, (await browser.measure(mesh, Number(count))).medians, memory);
+  if (browser)
+    print(`${name}, Chromium ${browser.version}:`, (await browser.measure(mesh, Number(count))).medians, memory);
 }
 await browser?.close();

@@ -1,15 +1,15 @@
-// Measures p2m beside three-mesh-bvh. It runs in Node.js and in a browser: `compare.mjs` starts both.
+// The measurements of p2m and three-mesh-bvh, which `compare.mjs` runs in Node.js and in a browser.
 
 import { BufferAttribute, BufferGeometry, Ray, Vector3 } from "three";
 import { MeshBVH } from "three-mesh-bvh";
 import { Index, Scene } from "../dist/index.js";
 
-/** The rounds, in each of which everything is measured once, so that other work on the machine hits all alike. */
+/** The number of rounds. Everything is measured once in each, so that other work on the machine affects all alike. */
 const ROUNDS = 7;
 /** The sets of queries. */
 const SETS = ["10x", "1x", "near", "surface"];
 
-/** Returns a generator of numbers below 1 that are the same each time (mulberry32). */
+/** Returns a generator of numbers below 1 with a fixed seed (mulberry32). */
 function generator(seed) {
   return () => {
     seed = (seed + 0x6d2b79f5) | 0;
@@ -19,7 +19,10 @@ function generator(seed) {
   };
 }
 
-/** Returns the queries of each set: in the box of the scene, or of ten times its size, near the surface, and on it. */
+/**
+ * Returns the queries of each set: uniform in the box of the scene, or in one ten times as large; near the surface; on
+ * it.
+ */
 function querySets({ positions, triangles }, count) {
   const random = generator(1);
   const [low, high] = [[Infinity, Infinity, Infinity], [-Infinity, -Infinity, -Infinity]];
@@ -38,12 +41,17 @@ function querySets({ positions, triangles }, count) {
       return a + u * (b - a) + v * (c - a) + displacement * (random() - 0.5);
     });
   };
-  const make = { "10x": () => inBox(10), "1x": () => inBox(1), near: () => onSurface(0.02 * diagonal), surface: () => onSurface(0) };
-  return Object.fromEntries(SETS.map((name) => [name, Float32Array.from(Array.from({ length: count }, make[name]).flat())]));
+  const make = {
+    "10x": () => inBox(10), "1x": () => inBox(1), near: () => onSurface(0.02 * diagonal),
+    surface: () => onSurface(0)
+  };
+  return Object.fromEntries(
+    SETS.map((name) => [name, Float32Array.from(Array.from({ length: count }, make[name]).flat())])
+  );
 }
 
 /**
- * Measures a mesh, and returns the median of the rounds of each measurement, in microseconds. `now` returns the processor
+ * Measures a mesh, and returns the median over the rounds of each measurement, in microseconds. `now` returns the CPU
  * time.
  */
 export async function measure(mesh, count, now) {
@@ -86,7 +94,8 @@ export async function measure(mesh, count, now) {
       for (const [name, index] of [["aabb", tree], ["auto", octree]]) {
         await time(`${set} ${name}`, count, () => {
           let sum = 0;
-          for (let i = 0; i < count; i++) sum += index.closestPoint(vector.fromArray(queries, 3 * i), { into }).distance;
+          for (let i = 0; i < count; i++)
+            sum += index.closestPoint(vector.fromArray(queries, 3 * i), { into }).distance;
           sums[name] = sum;
         });
         const distance = new Float64Array(count);
@@ -94,7 +103,8 @@ export async function measure(mesh, count, now) {
         sums[`${name} batch`] = distance.reduce((a, b) => a + b);
       }
       for (const [name, sum] of Object.entries(sums)) {
-        if (!(Math.abs(sum - sums.aabb) <= 1e-4 * sums.aabb)) throw new Error(`${set}: ${name}: ${sum} instead of ${sums.aabb}`);
+        if (!(Math.abs(sum - sums.aabb) <= 1e-4 * sums.aabb))
+          throw new Error(`${set}: ${name}: ${sum} instead of ${sums.aabb}`);
       }
     }
     // Rays from points of the tenfold box to points of the scene.
@@ -111,7 +121,8 @@ export async function measure(mesh, count, now) {
     await time("rays aabb", count, () => {
       hits.aabb = rays.filter((ray) => tree.raycastFirst(ray, into) !== null).length;
     });
-    if (Math.abs(hits.bvh - hits.aabb) > count / 1000) throw new Error(`rays: ${hits.bvh} hits instead of ${hits.aabb}`);
+    if (Math.abs(hits.bvh - hits.aabb) > count / 1000)
+      throw new Error(`rays: ${hits.bvh} hits instead of ${hits.aabb}`);
     for (const owned of [scene, tree, octree]) owned.dispose();
   }
   const medians = Object.fromEntries(

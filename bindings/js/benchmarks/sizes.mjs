@@ -1,5 +1,5 @@
-// Prints the sizes of the package and of three-mesh-bvh in kB: as they are, and compressed by brotli and by gzip. Scripts
-// are minified, without three.js.
+// Prints the sizes of the package and of three-mesh-bvh in kB: as they are, and compressed by brotli and by gzip.
+// Scripts are minified, without three.js.
 
 import { readFileSync } from "node:fs";
 import { fileURLToPath } from "node:url";
@@ -8,7 +8,7 @@ import { build } from "vite";
 
 const path = (name) => fileURLToPath(new URL(`../${name}`, import.meta.url));
 
-// Returns the scripts of a package in one.
+// Returns the scripts of a package as one minified bundle.
 async function minified(...names) {
   const rolldownOptions = { input: names.map(path), external: ["three"], preserveEntrySignatures: "strict" };
   const options = { write: false, minify: "oxc", assetsInlineLimit: 0, modulePreload: false, rolldownOptions };
@@ -25,5 +25,7 @@ const parts = {
 const kilo = (bytes) => Math.round(bytes.length / 1000);
 console.log("| | kB | by brotli | by gzip |\n|---|---:|---:|---:|");
 for (const [name, bytes] of Object.entries(parts)) {
-  console.log(`| ${name} | ${kilo(bytes)} | ${kilo(brotliCompressSync(bytes))} | ${kilo(gzipSync(bytes, { level: 9 }))} |`);
+  console.log(
+    `| ${name} | ${kilo(bytes)} | ${kilo(brotliCompressSync(bytes))} | ${kilo(gzipSync(bytes, { level: 9 }))} |`
+  );
 }

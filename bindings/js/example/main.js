@@ -1,4 +1,4 @@
-// A mesh, cables and points in one index, and the closest point to a query that follows the pointer.
+// An example page: a mesh, cables and points in one index, and the closest point to a query that follows the pointer.
 
 import * as three from "three";
 import { OrbitControls } from "three/addons/controls/OrbitControls.js";
@@ -45,7 +45,9 @@ scene.add(mesh, new three.Line(path(helix), new three.LineBasicMaterial({ color:
 accelerate(mesh);
 
 // The answer: the query, the closest point, the line between them, the primitive, and the empty ball.
-const ball = (colour, radius) => new three.Mesh(new three.SphereGeometry(radius, 24, 16), new three.MeshBasicMaterial({ color: colour, depthTest: false }));
+const ball = (colour, radius) =>
+  new three.Mesh(new three.SphereGeometry(radius, 24, 16),
+    new three.MeshBasicMaterial({ color: colour, depthTest: false }));
 const [queryMark, pointMark] = [ball("#1769d2", 0.035), ball("#d02b45", 0.035)];
 const emptyBall = new three.Mesh(new three.SphereGeometry(1, 48, 32),
   new three.MeshBasicMaterial({ color: "#1769d2", transparent: true, opacity: 0.12, depthWrite: false }));
@@ -64,7 +66,8 @@ const list = document.querySelector("dl");
 const feature = (code) => (code < 3 ? `vertex ${code}` : code < 6 ? `edge ${code - 3}` : "interior");
 const kind = (primitive) =>
   primitive < triangles.length / 3 ? ["triangle", triangles, 3, primitive]
-    : primitive < triangles.length / 3 + segments.length / 2 ? ["segment", segments, 2, primitive - triangles.length / 3]
+    : primitive < triangles.length / 3 + segments.length / 2
+      ? ["segment", segments, 2, primitive - triangles.length / 3]
       : ["point", points, 1, primitive - triangles.length / 3 - segments.length / 2];
 
 function show() {
@@ -85,8 +88,11 @@ function show() {
     return new three.Vector3().fromArray(positions, 3 * vertex);
   }));
   const [hit] = raycaster.intersectObject(mesh);
-  const rows = [["distance", answer.distance.toFixed(6)], ["nearest", `${name} ${number}`], ["closest point on", feature(answer.feature)],
-    ["under the pointer", hit ? `triangle ${hit.faceIndex}` : "nothing"], ["primitives", index.primitiveCount.toLocaleString("en")],
+  const rows = [
+    ["distance", answer.distance.toFixed(6)], ["nearest", `${name} ${number}`],
+    ["closest point on", feature(answer.feature)],
+    ["under the pointer", hit ? `triangle ${hit.faceIndex}` : "nothing"],
+    ["primitives", index.primitiveCount.toLocaleString("en")],
     ["built in", `${buildTime.toFixed(0)} ms`]];
   if (Number.isFinite(rate)) rows.push(["queries per second", Number(rate.toPrecision(2)).toLocaleString("en")]);
   list.replaceChildren(...rows.flatMap(([term, text]) => {
@@ -97,10 +103,14 @@ function show() {
   renderer.render(scene, camera);
 }
 
-// The query is where the pointer meets the plane through the centre that faces the viewer.
+// The query is the point under the pointer on the plane through the centre that faces the viewer.
 addEventListener("pointermove", (event) => {
-  raycaster.setFromCamera(new three.Vector2((event.clientX / innerWidth) * 2 - 1, 1 - (event.clientY / innerHeight) * 2), camera);
-  const plane = new three.Plane().setFromNormalAndCoplanarPoint(camera.getWorldDirection(new three.Vector3()), controls.target);
+  raycaster.setFromCamera(
+    new three.Vector2((event.clientX / innerWidth) * 2 - 1, 1 - (event.clientY / innerHeight) * 2), camera
+  );
+  const plane = new three.Plane().setFromNormalAndCoplanarPoint(
+    camera.getWorldDirection(new three.Vector3()), controls.target
+  );
   if (event.buttons === 0) raycaster.ray.intersectPlane(plane, query);
   show();
 });

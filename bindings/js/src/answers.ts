@@ -9,24 +9,24 @@ export interface Closest {
   distance: number;
   /** The closest point. */
   point: Triple;
-  /** The weights of the vertices of the primitive: the point is the sum of the vertices times these. */
+  /** The weights of the vertices of the primitive. The point is the weighted sum of the vertices. */
   weights: Triple;
-  /** A lower bound of the true distance. */
+  /** A lower bound on the true distance. */
   lowerBound: number;
-  /** The number of the primitive; of equally near ones it is the lowest. */
+  /** The number of the primitive, the lowest one of equally near primitives. */
   primitive: number;
   /**
-   * What the point lies on: 0 to 2 for a vertex of the primitive, 3 to 5 for the edge from vertex 0, 1 or 2 to the next
-   * one, and 6 for the face.
+   * The feature that the point lies on: 0 to 2 for a vertex of the primitive, 3 to 5 for the edge from vertex 0, 1 or 2
+   * to the next one, and 6 for the face.
    */
   feature: number;
 }
 
 /** A hit of a ray. */
 export interface Hit {
-  /** The parameter of the ray, in lengths of its direction. */
+  /** The parameter of the hit, in lengths of the direction of the ray. */
   t: number;
-  /** The point of the primitive. */
+  /** The point on the primitive that is hit. */
   point: Triple;
   /** The weights of the vertices of the primitive. */
   weights: Triple;
@@ -38,30 +38,30 @@ export interface Hit {
 
 /** The nearest points of two scenes. */
 export interface Pair {
-  /** The distance, which is 0 if the scenes intersect. */
+  /** The distance. It is 0 if the scenes intersect. */
   distance: number;
-  /** A lower bound of the true distance. */
+  /** A lower bound on the true distance. */
   lowerBound: number;
-  /** The point of each scene, that of the second one after its motion. */
+  /** The nearest point of each scene. The point of the second scene is given after its motion. */
   points: [Triple, Triple];
   /** The weights of the vertices of each primitive. */
   weights: [Triple, Triple];
   /** The number of the primitive of each scene. */
   primitives: [number, number];
-  /** What each point lies on, as in {@link Closest}. */
+  /** The feature that each point lies on, as in {@link Closest}. */
   features: [number, number];
-  /** Whether the scenes intersect, which is exact. */
+  /** Whether the scenes intersect. It is exact. */
   isIntersecting: boolean;
 }
 
-// The sizes of structures of C, in bytes.
+// The sizes of C structures, in bytes.
 export const CLOSEST_BYTES = 72;
 export const HIT_BYTES = 64;
 export const PAIR_BYTES = 128;
 
 const NO_PRIMITIVE = 0xffffffff;
 
-/** Returns three numbers at the place of a number in memory. */
+/** Returns three consecutive numbers of the memory. `at` is the number of the first one. */
 export function triple(at: number): Triple {
   return [f64[at]!, f64[at + 1]!, f64[at + 2]!];
 }
@@ -72,12 +72,15 @@ function setTriple(into: Triple, at: number): void {
   into[2] = f64[at + 2]!;
 }
 
-/** Returns an answer to be filled. Its numbers are NaN, so that engines keep them as such from the beginning. */
+/**
+ * Returns an empty answer. Its numbers are NaN, so that engines store them as floating-point numbers from the
+ * beginning.
+ */
 const newClosest = (): Closest =>
   ({ distance: NaN, point: [NaN, NaN, NaN], weights: [NaN, NaN, NaN], lowerBound: NaN, primitive: 0, feature: 0 });
 const newHit = (): Hit => ({ t: NaN, point: [NaN, NaN, NaN], weights: [NaN, NaN, NaN], primitive: 0, side: 0 });
 
-/** Reads a closest point, into an object if there is one. */
+/** Reads a closest point into an object, which is a new one by default. */
 export function readClosest(address: number, into?: Closest): Closest | null {
   const primitive = u32[(address + 64) / 4]!;
   if (primitive === NO_PRIMITIVE) return null;
@@ -91,7 +94,7 @@ export function readClosest(address: number, into?: Closest): Closest | null {
   return closest;
 }
 
-/** Reads a hit, into an object if there is one. */
+/** Reads a hit into an object, which is a new one by default. */
 export function readHit(address: number, into?: Hit): Hit | null {
   const primitive = u32[(address + 56) / 4]!;
   if (primitive === NO_PRIMITIVE) return null;

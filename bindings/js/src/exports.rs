@@ -1,5 +1,5 @@
-//! What the module of the npm package has beside the C interface: memory of the caller, indexes as bytes, answers of any
-//! number as arrays, and scenes whose primitives are in any order.
+//! Functions of the WebAssembly module that the C interface lacks: memory for the caller, indexes as bytes, answers of
+//! any number as arrays, and scenes whose primitives are in any order.
 
 use crate::arrays::{Array, give, length, point, reference, write};
 use crate::index::Index;
@@ -14,17 +14,17 @@ use std::alloc::{Layout, alloc_zeroed, dealloc};
 use std::mem::offset_of;
 use std::ops::ControlFlow;
 
-// The layout that `answers.ts` reads.
+// `answers.ts` reads structures with this layout.
 const _: () = {
     assert!(size_of::<Closest>() == 72 && offset_of!(Closest, primitive) == 64 && offset_of!(Closest, feature) == 68);
     assert!(size_of::<Hit>() == 64 && offset_of!(Hit, primitive) == 56 && offset_of!(Hit, side) == 60);
     assert!(size_of::<Pair>() == 128 && offset_of!(Pair, primitives) == 112 && offset_of!(Pair, features) == 120);
 };
 
-/// The alignment of all memory that crosses the border of the module.
+/// The alignment of all memory that is passed between the module and its caller.
 const ALIGNMENT: usize = 8;
 
-/// Memory for the caller, which frees it with `p2m_js_free`.
+/// Memory that the caller owns, and frees with `p2m_js_free`.
 #[repr(C)]
 pub struct Memory {
     data: *mut u8,
@@ -39,7 +39,7 @@ impl Memory {
     }
 }
 
-/// Returns memory of so many bytes, which are 0, or null if there is not enough.
+/// Returns zeroed memory of this number of bytes, or null if there is not enough.
 #[unsafe(no_mangle)]
 pub extern "C" fn p2m_js_alloc(bytes: usize) -> *mut u8 {
     match Layout::from_size_align(bytes, ALIGNMENT) {
@@ -49,7 +49,7 @@ pub extern "C" fn p2m_js_alloc(bytes: usize) -> *mut u8 {
     }
 }
 
-/// Frees memory of so many bytes.
+/// Frees memory of this number of bytes.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn p2m_js_free(data: *mut u8, bytes: usize) {
     if let (Ok(layout), true) = (Layout::from_size_align(bytes, ALIGNMENT), bytes > 0 && !data.is_null()) {
@@ -58,8 +58,8 @@ pub unsafe extern "C" fn p2m_js_free(data: *mut u8, bytes: usize) {
     }
 }
 
-/// Makes a scene of primitives in any order: `sizes` has the number of vertices of each, of type u8, and `vertices` the
-/// indices of their vertices, one after the other.
+/// Makes a scene of primitives in any order. `sizes` has the number of vertices of each primitive, of type u8, and
+/// `vertices` the indices of all their vertices, one primitive after the other.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn p2m_js_scene_of_mixed(
     positions: *const Array,
@@ -112,7 +112,7 @@ pub unsafe extern "C" fn p2m_js_save(index: *const Index, saved: *mut Memory) ->
     })
 }
 
-/// Counts what is written.
+/// A writer that only counts the bytes.
 struct Count(usize);
 
 impl std::io::Write for Count {
@@ -137,7 +137,7 @@ pub unsafe extern "C" fn p2m_js_load(data: *const u8, bytes: usize, index: *mut 
     })
 }
 
-/// Finds all primitives within a radius, the nearest first, and of equally near ones that with the lowest id.
+/// Finds all primitives within a radius, the nearest first. Equally near primitives come in the order of their ids.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn p2m_js_within(
     index: *const Index,
@@ -168,7 +168,7 @@ pub unsafe extern "C" fn p2m_js_hits(index: *const Index, ray: *const Ray, hits:
     })
 }
 
-/// Writes how many nodes, packets and primitives a query for the closest point visits.
+/// Writes the numbers of nodes, packets and primitives that a query for the closest point visits.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn p2m_js_work(index: *const Index, query: *const f64, work: *mut [f64; 3]) -> Status {
     // SAFETY: the caller vouches for the pointers.

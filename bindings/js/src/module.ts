@@ -1,6 +1,6 @@
-// The module of WebAssembly: how it is loaded, its memory, and the messages of its failures.
+// The WebAssembly module: loading, memory, and messages of failures.
 
-/** The functions of the module: the C interface of p2m, and those of `exports.rs`. Pointers are numbers. */
+/** The functions of the module: the C interface of p2m, and `exports.rs`. Pointers are numbers. */
 export interface Exports {
   memory: WebAssembly.Memory;
   p2m_last_error(): number;
@@ -34,29 +34,29 @@ export interface Exports {
   p2m_js_work(index: number, query: number, work: number): number;
 }
 
-/** Where the module comes from: the address of `p2m.wasm`, its bytes, a response that has them, or a compiled module. */
+/** The source of the module: the address of `p2m.wasm`, its bytes, a response with the bytes, or a compiled module. */
 export type ModuleSource = string | URL | Response | BufferSource | WebAssembly.Module;
 
 /** The functions of the module, once it is loaded. */
 export let wasm: Exports;
-/** The memory of the module as numbers. Calls may let it grow, which detaches these arrays: see `refresh`. */
+/** The memory of the module as numbers. Calls may grow it, which detaches these arrays: see `refresh`. */
 export let f64 = new Float64Array(0);
 export let u32 = new Uint32Array(0);
 export let u8 = new Uint8Array(0);
 
-/** The bytes of memory for the arguments and answers of single calls. */
+/** The size in bytes of the memory for arguments and answers of single calls. */
 const SCRATCH_BYTES = 512;
-/** Their address. */
+/** The address of the memory for arguments and answers of single calls. */
 export let scratch = 0;
 
 let compiled: WebAssembly.Module | undefined;
 let loading: Promise<void> | undefined;
 
 /**
- * Loads the module of WebAssembly. Everything else needs it, so await it first. Only the first call loads anything.
+ * Loads the WebAssembly module. All other functions need it, so await it first. Only the first call loads anything.
  *
- * @param source Where the module comes from. By default it is the file `p2m.wasm` beside this script. The default export
- *   of `p2m/inline` is its bytes, for pages that cannot load files.
+ * @param source The source of the module, by default the file `p2m.wasm` beside this script. Pages that cannot load
+ *   files pass the default export of `p2m/inline`, which is the bytes of the module.
  * @throws Error if the module cannot be loaded.
  */
 export function init(source?: ModuleSource | Promise<ModuleSource>): Promise<void> {
@@ -79,29 +79,31 @@ async function compile(source: ModuleSource): Promise<WebAssembly.Module> {
   const found = typeof source === "string" || source instanceof URL ? await open(source) : source;
   if (!(found instanceof Response)) return WebAssembly.compile(found);
   if (!found.ok) throw new Error(`p2m: ${found.url}: ${found.status} ${found.statusText}`);
-  // Some servers have no type for files of WebAssembly, so the bytes are compiled when all are there.
+  // Some servers send no type for WebAssembly files. Then the bytes are compiled once all of them have arrived.
   return WebAssembly.compile(await found.arrayBuffer());
 }
 
 async function open(address: string | URL): Promise<Response | BufferSource> {
   const url = new URL(address, globalThis.location?.href);
-  // Node.js fetches no files.
+  // `fetch` of Node.js does not read files.
   const files = url.protocol === "file:" ? nodeModule("node:fs") : undefined;
   return files ? files.readFileSync(url) : fetch(url);
 }
 
-/** Returns a module of Node.js, or `undefined` in a browser. Bundlers do not see it. */
+/** Returns a module of Node.js, or `undefined` in a browser. Bundlers cannot see the import. */
 export function nodeModule(name: string): any {
   return (globalThis as { process?: { getBuiltinModule?(name: string): unknown } }).process?.getBuiltinModule?.(name);
 }
 
-/** Returns the compiled module, with which workers need not compile it again. */
+/** Returns the compiled module, so that workers need not compile it again. */
 export function compiledModule(): WebAssembly.Module {
   if (!compiled) throw new Error("p2m: call `await init()` first");
   return compiled;
 }
 
-/** Makes the arrays over the memory anew if they are detached. Each read or write of them after a call needs it. */
+/**
+ * Renews the arrays over the memory if they are detached. Call it after each call of the module, before their next use.
+ */
 export function refresh(): void {
   if (f64.length !== 0) return;
   const { buffer } = wasm.memory;
@@ -110,13 +112,13 @@ export function refresh(): void {
   u8 = new Uint8Array(buffer);
 }
 
-/** Throws the message of a call that failed. */
+/** Throws an error with the message of the call if it failed. */
 export function check(status: number): void {
   refresh();
   if (status !== 0) throw new Error(text(wasm.p2m_last_error()));
 }
 
-/** Makes a call that may use up the memory, which ends the module. */
+/** Makes a call that may run out of memory. That aborts the module, which cannot be used afterwards. */
 export function attempt(call: () => number): void {
   let status;
   try {
@@ -139,10 +141,10 @@ export function version(): string {
   return text(wasm.p2m_version());
 }
 
-/** Allocates memory for the time of a call. */
+/** A function that allocates memory for the duration of a call. */
 export type Allocate = (bytes: number) => number;
 
-/** Runs a function with memory that is freed when it ends. */
+/** Runs a function that allocates memory, and frees the memory when it ends. */
 export function withMemory<R>(use: (allocate: Allocate) => R): R {
   compiledModule();
   const blocks: [number, number][] = [];
@@ -159,20 +161,21 @@ export function withMemory<R>(use: (allocate: Allocate) => R): R {
   }
 }
 
-/** Numbers as the library takes them: coordinates in single or double precision. */
+/** Numbers in the types that the library takes for coordinates: single or double precision. */
 export type Coordinates = Float32Array | Float64Array;
 
-/** The numbers of the types of elements in `p2m_scalar`. */
+/** The values of `p2m_scalar`. */
 const SCALARS = { f32: 0, f64: 1, u32: 2 };
 
-/** Writes an array and its description, and returns the address of the description. */
+/** Copies an array into the memory of the module with its description, and returns the address of the description. */
 export function passArray(array: Coordinates | Uint32Array, width: number, name: string, allocate: Allocate): number {
   if (array.length % width !== 0) {
     throw new Error(`${name}: the length ${array.length} is not a multiple of ${width}`);
   }
   const data = passBytes(array, allocate);
   const description = allocate(16);
-  const scalar = array instanceof Float32Array ? SCALARS.f32 : array instanceof Float64Array ? SCALARS.f64 : SCALARS.u32;
+  const scalar = array instanceof Float32Array ? SCALARS.f32
+    : array instanceof Float64Array ? SCALARS.f64 : SCALARS.u32;
   u32.set([data, array.length / width, 0, scalar], description / 4);
   return description;
 }
@@ -186,7 +189,10 @@ export function passBytes(array: ArrayBufferView, allocate: Allocate): number {
 
 const registry = new FinalizationRegistry<() => void>((free) => free());
 
-/** An object in the memory of the module. It is freed by `dispose`, or some time after the last use of it. */
+/**
+ * An object in the memory of the module. `dispose` frees it, or else the garbage collector some time after its last
+ * use.
+ */
 export class Owned {
   #address: number;
   #free: (address: number) => void;
@@ -204,7 +210,7 @@ export class Owned {
     return this.#address;
   }
 
-  /** Puts another object in the place of this one. @internal */
+  /** Frees this object, and puts another one in its place. @internal */
   replace(address: number): void {
     const free = this.#free;
     this.dispose();
@@ -220,7 +226,7 @@ export class Owned {
     this.#address = 0;
   }
 
-  /** Frees the memory at the end of a block that has the object by `using`. */
+  /** Frees the memory at the end of a block that declares the object with `using`. */
   [Symbol.dispose](): void {
     this.dispose();
   }

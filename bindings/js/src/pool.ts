@@ -10,7 +10,7 @@ export interface Start {
   saved: Uint8Array;
 }
 
-/** The arrays of a part of a batch: columns, or the only array under the name `answer`. */
+/** The arrays of a part of a batch: columns, or a single array under the name `answer`. */
 type Outputs = Columns & { answer?: NumberArray };
 
 /** A message to a worker with a part of a batch. */
@@ -26,15 +26,14 @@ interface Reply {
   error?: string;
 }
 
-/** The least and the largest number of queries in a part. Queries near each other are answered faster together. */
+/** The smallest and the largest number of queries in a part. Queries near each other are answered faster together. */
 const PART_QUERIES = [1 << 10, 1 << 16] as const;
-/** The parts of a batch for each worker, so that none waits long for the others. */
+/** The number of parts of a batch for each worker, so that no worker has to wait long for the others. */
 const PARTS_PER_WORKER = 4;
 
 /**
- * Workers that answer batches together. Each has a copy of the index. Where memory can be shared, which in a browser a
- * page has to be cross-origin isolated for, queries and answers are in memory that all workers share. Elsewhere they are
- * copied.
+ * Workers that answer batches together. Each has a copy of the index. If memory can be shared, which in a browser
+ * requires a cross-origin isolated page, all workers share the queries and answers. Otherwise these are copied.
  */
 export class Pool {
   #workers: Remote[];
@@ -46,11 +45,12 @@ export class Pool {
   /**
    * Starts workers, and sends them an index, which may be disposed of afterwards.
    *
-   * @param options.workers The number of workers, which is that of the processors by default.
+   * @param options.workers The number of workers, by default the number of processors.
    * @throws Error if the backend of the index is "brute", or if a worker cannot be started.
    */
   static async create(index: Index, options: { workers?: number } = {}): Promise<Pool> {
-    const count = options.workers ?? globalThis.navigator?.hardwareConcurrency ?? nodeModule("node:os").availableParallelism();
+    const count = options.workers ?? globalThis.navigator?.hardwareConcurrency
+      ?? nodeModule("node:os").availableParallelism();
     let saved: Uint8Array = index.save();
     if (canShare()) saved = share(saved);
     const pool = new Pool(Array.from({ length: count }, () => new Remote()));
@@ -70,7 +70,9 @@ export class Pool {
 
   /** Finds the closest point to each of many queries: see `Index.closestPoints`. */
   closestPoints(queries: ArrayLike<number>, columns?: undefined, options?: BatchOptions): Promise<DefaultColumns>;
-  closestPoints<Wanted extends Columns>(queries: ArrayLike<number>, columns: Wanted, options?: BatchOptions): Promise<Wanted>;
+  closestPoints<Wanted extends Columns>(
+    queries: ArrayLike<number>, columns: Wanted, options?: BatchOptions
+  ): Promise<Wanted>;
   async closestPoints(
     queries: ArrayLike<number>, columns: Columns = defaultColumns(queryCount(queries)), options: BatchOptions = {},
   ): Promise<Columns> {
@@ -87,7 +89,7 @@ export class Pool {
     return out;
   }
 
-  /** Returns for each of many queries 1 if it is inside, and 0 otherwise: see `Index.containsEach`. */
+  /** Returns 1 for each query that is inside, and 0 for the others: see `Index.containsEach`. */
   async containsEach<Numbers extends NumberArray = Uint8Array>(
     queries: ArrayLike<number>, out = new Uint8Array(queryCount(queries)) as NumberArray as Numbers,
     options: BatchOptions = {},
@@ -102,12 +104,14 @@ export class Pool {
     this.#workers = [];
   }
 
-  /** Ends the workers at the end of a block that has the pool by `using`. */
+  /** Ends the workers at the end of a block that declares the pool with `using`. */
   [Symbol.dispose](): void {
     this.dispose();
   }
 
-  async #answer(method: Call["method"], queries: ArrayLike<number>, out: Outputs, options: BatchOptions): Promise<void> {
+  async #answer(
+    method: Call["method"], queries: ArrayLike<number>, out: Outputs, options: BatchOptions
+  ): Promise<void> {
     if (this.#workers.length === 0) throw new Error("p2m: the pool was disposed of");
     const names = (Object.keys(out) as (keyof Outputs)[]).filter((name) => out[name]);
     const width = (name: keyof Outputs) => (name === "answer" ? 1 : COLUMNS[name].width);
@@ -124,7 +128,7 @@ export class Pool {
       while (next < count) {
         const [start, end] = [next, Math.min(next + part, count)];
         next = end;
-        // Without shared memory, parts are copied, so they are arrays of their own: a message has whole buffers.
+        // Without shared memory, a message copies whole buffers. So each part gets an array of its own.
         const cut = <Numbers extends NumberArray | Coordinates>(array: Numbers, width: number) =>
           (isShared ? array.subarray(start * width, end * width) : array.slice(start * width, end * width)) as Numbers;
         const parts: Outputs = {};
@@ -142,7 +146,7 @@ function canShare(): boolean {
   return typeof SharedArrayBuffer !== "undefined" && globalThis.crossOriginIsolated !== false;
 }
 
-/** Returns an array in shared memory with the same content, which is the array itself if it is shared. */
+/** Returns an array in shared memory with the same content. An array that is shared already is returned as it is. */
 function share<Numbers extends NumberArray | Coordinates>(array: Numbers): Numbers {
   if (array.buffer instanceof SharedArrayBuffer) return array;
   const kind = array.constructor as new (buffer: SharedArrayBuffer) => Numbers;
@@ -151,11 +155,11 @@ function share<Numbers extends NumberArray | Coordinates>(array: Numbers): Numbe
   return copy;
 }
 
-/** A worker, and the calls that it has not answered yet. It answers them in their order. */
+/** A worker with its unanswered calls, which it answers in order. */
 class Remote {
   #worker: { postMessage(message: unknown): void; terminate(): void };
   #calls: { resolve: (reply: Reply) => void; reject: (error: Error) => void }[] = [];
-  /** Why the worker answers no more, once it does not. */
+  /** The failure of the worker, after which it answers no more calls. */
   #failure: Error | undefined;
 
   constructor() {
@@ -167,7 +171,7 @@ class Remote {
     };
     const fail = (error: { message?: string }) => this.#fail(`p2m: a worker failed: ${error.message ?? ""}`);
     if (threads && typeof Worker === "undefined") {
-      // Bundlers look for this address in calls of `new Worker` alone.
+      // Bundlers find this address only in a call of `new Worker`.
       const here = import.meta.url;
       const worker = new threads.Worker(new URL("./worker.js", here));
       worker.on("message", receive).on("error", fail).on("exit", () => fail({ message: "it has ended" }));
@@ -193,7 +197,7 @@ class Remote {
     this.#worker.terminate();
   }
 
-  /** Rejects the calls that wait for an answer, and all later ones: a worker that is gone would never answer them. */
+  /** Rejects all pending and later calls, because a worker that has ended never answers them. */
   #fail(message: string): void {
     this.#failure ??= new Error(message);
     for (const { reject } of this.#calls.splice(0)) reject(this.#failure);

@@ -1,10 +1,12 @@
-import { attempt, check, compiledModule, passArray, passBytes, Owned, scratch, u32, f64, wasm, withMemory } from "./module.js";
+import {
+  attempt, check, compiledModule, passArray, passBytes, Owned, scratch, u32, f64, wasm, withMemory
+} from "./module.js";
 import type { Allocate, Coordinates } from "./module.js";
 
-/** Indices of vertices. Other arrays than `Uint32Array` are converted. */
+/** Indices of vertices. Arrays of other types than `Uint32Array` are converted. */
 export type Indices = ArrayLike<number>;
 
-/** A scene as arrays. Without triangles, segments and points, each position is a point. */
+/** The arrays of a scene. Without triangles, segments and points, each position is a point. */
 export interface SceneArrays {
   /** The coordinates of the vertices, three each. */
   positions: ArrayLike<number>;
@@ -16,7 +18,7 @@ export interface SceneArrays {
   points?: Indices | null;
 }
 
-/** A scene whose primitives are in any order. */
+/** A scene whose primitives may come in any order. */
 export interface MixedArrays {
   /** The coordinates of the vertices, three each. */
   positions: ArrayLike<number>;
@@ -26,10 +28,10 @@ export interface MixedArrays {
   vertices: Indices;
 }
 
-/** A position: three coordinates, or an object that has them by their names. */
+/** A position: three coordinates, or an object with the properties x, y and z. */
 export type Position = ArrayLike<number> | { readonly x: number; readonly y: number; readonly z: number };
 
-/** Returns coordinates as the library takes them. */
+/** Returns coordinates as an array of a type that the library takes. */
 export function coordinates(array: ArrayLike<number>): Coordinates {
   return array instanceof Float32Array || array instanceof Float64Array ? array : Float64Array.from(array);
 }
@@ -39,17 +41,17 @@ function indices(array: Indices): Uint32Array {
 }
 
 /**
- * A set of triangles, segments and points over shared vertices. It never changes, and an index over it keeps what it
- * needs, so a scene can be disposed of once its index is built.
+ * A set of triangles, segments and points over shared vertices. It never changes. An index keeps what it needs of its
+ * scene, so a scene can be disposed of once the index is built.
  *
- * The primitives are numbered: first all triangles, then all segments, then all points. In a scene of {@link MixedArrays}
- * they have the order of these.
+ * Primitives are numbered from 0: first all triangles, then all segments, then all points. A scene of {@link
+ * MixedArrays} keeps the order of its primitives.
  */
 export class Scene extends Owned {
   /**
-   * Makes a scene of arrays, which are copied. Coordinates in single precision are widened, which changes none of them.
+   * Makes a scene from arrays, which are copied. Coordinates in single precision are converted exactly.
    *
-   * @throws Error if an index has no vertex, or if a coordinate of a primitive is not finite.
+   * @throws Error if an index is out of range, or if a coordinate of a primitive is not finite.
    */
   constructor(arrays: SceneArrays | MixedArrays) {
     compiledModule();
@@ -59,7 +61,8 @@ export class Scene extends Owned {
   /** The numbers of primitives of each kind. */
   get counts(): { triangles: number; segments: number; points: number } {
     check(wasm.p2m_scene_counts(this.address, scratch));
-    const [triangles, segments, points] = u32.subarray(scratch / 4, scratch / 4 + 3) as unknown as [number, number, number];
+    const [triangles, segments, points] =
+      u32.subarray(scratch / 4, scratch / 4 + 3) as unknown as [number, number, number];
     return { triangles, segments, points };
   }
 
@@ -85,7 +88,8 @@ function make(arrays: SceneArrays | MixedArrays, allocate: Allocate): number {
     return u32[place / 4]!;
   }
   let { triangles, segments, points } = arrays;
-  if (!triangles && !segments && !points) points = Uint32Array.from({ length: arrays.positions.length / 3 }, (_, i) => i);
+  if (!triangles && !segments && !points)
+    points = Uint32Array.from({ length: arrays.positions.length / 3 }, (_, i) => i);
   const pass = (array: Indices | null | undefined, width: number, name: string) =>
     array ? passArray(indices(array), width, name, allocate) : 0;
   const passed = [pass(triangles, 3, "triangles"), pass(segments, 2, "segments"), pass(points, 1, "points")] as const;

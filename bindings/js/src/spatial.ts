@@ -7,16 +7,16 @@ import type { Allocate } from "./module.js";
 import { coordinates } from "./scene.js";
 import type { Position, Scene } from "./scene.js";
 
-/** The kinds of indexes. The guide of p2m says which one a task calls for. */
+/** The backends. The guide of p2m tells which one suits a task. */
 export type Backend = "aabb" | "kdop" | "octree" | "p2m" | "brute";
 
 /** The options of a build. */
 export interface IndexOptions {
-  /** The kind of the index; "auto", the default, chooses by the number of queries. */
+  /** The backend. "auto", the default, chooses by the number of queries. */
   backend?: Backend | "auto";
-  /** The number of queries that are expected, by which "auto" chooses. Without it, it chooses "aabb". */
+  /** The expected number of queries, by which "auto" chooses. Without it, "auto" chooses "aabb". */
   queries?: number;
-  /** The fineness of the cells of an octree. */
+  /** The fineness of the cells of an octree: a larger number makes finer cells. */
   resolution?: number;
   /** The number of faces of a k-DOP: 6, 14, 18 or 26. */
   kdopFaces?: number;
@@ -26,30 +26,30 @@ export interface IndexOptions {
 export interface QueryOptions<Answer> {
   /** The largest distance of an answer. */
   maxDistance?: number;
-  /** An earlier answer, which is overwritten and returned, so that no object is made. */
+  /** An earlier answer to be overwritten and returned, so that no object is created. */
   into?: Answer;
 }
 
 /** A ray: the points `origin + t * direction` with `tMin <= t <= tMax`. */
 export interface Ray {
-  /** The point of parameter 0. */
+  /** The point with the parameter 0. */
   origin: Position;
   /** The direction, of any length but 0. */
   direction: Position;
-  /** The least parameter, which is 0 by default. */
+  /** The smallest parameter, 0 by default. */
   tMin?: number;
-  /** The largest parameter, which is infinite by default. */
+  /** The largest parameter, infinite by default. */
   tMax?: number;
-  /** The distance within which segments and points are hit; 0 by default. Triangles are hit exactly. */
+  /** The distance within which segments and points count as hit, 0 by default. Triangles are hit exactly. */
   radius?: number;
 }
 
-/** Where numbers of answers go. They are converted to the type of the array. */
+/** An array for answers. Numbers are converted to its type. */
 export type NumberArray = Float64Array | Float32Array | Uint32Array | Int32Array | Uint8Array;
 
 /**
- * The answers of a batch, each an array with a row for each query. Only those that are there are computed. The fields
- * are as in {@link Closest}; where there is no answer, the distance is infinite and the primitive is 4294967295.
+ * The answers of a batch, each an array with a row for each query. Arrays that are missing are not computed. The fields
+ * are as in {@link Closest}. If there is no answer, the distance is infinite and the primitive is 4294967295.
  */
 export interface Columns {
   distance?: NumberArray;
@@ -64,7 +64,7 @@ export interface Columns {
   normal?: NumberArray;
 }
 
-/** The answers of a batch for which no arrays were given. */
+/** The answers of a batch that was given no arrays for them. */
 export interface DefaultColumns {
   distance: Float64Array;
   primitive: Uint32Array;
@@ -75,11 +75,13 @@ export interface DefaultColumns {
 export interface BatchOptions {
   /** The largest distance of an answer. */
   maxDistance?: number;
-  /** Whether queries are answered in their order, because it is coherent in space already. */
+  /** Whether queries are answered in their order, because neighbours in it are near each other already. */
   keepsOrder?: boolean;
 }
 
-/** The columns in the order of `p2m_columns`, the numbers in a row of each, and the arrays of the library. */
+/**
+ * The columns in the order of `p2m_columns`, with the length of their rows and the types of the arrays of the library.
+ */
 export const COLUMNS = {
   distance: { width: 1, array: Float64Array },
   primitive: { width: 1, array: Uint32Array },
@@ -90,24 +92,27 @@ export const COLUMNS = {
   normal: { width: 3, array: Float64Array },
 } as const;
 
-/** Returns the arrays of the answers of a batch for which there are none. */
+/** Returns new arrays for the answers of a batch that was given none. */
 export function defaultColumns(count: number): DefaultColumns {
   return {
     distance: new Float64Array(count), primitive: new Uint32Array(count), point: new Float64Array(3 * count),
   };
 }
 
-/** The number of queries that are answered at a time, so that not all of a large batch are in the memory of the module. */
+/**
+ * The number of queries that are answered at a time, so that a large batch is never in the memory of the module as a
+ * whole.
+ */
 const QUERIES_PER_CALL = 1 << 18;
 
-/** Where the answers of single calls are in memory, behind the query. */
+/** The offset of the answers of single calls in their memory, after the query. */
 const ANSWER = 128;
 
-/** Writes a position to the start of the memory of single calls, or behind other ones, and returns its address. */
+/** Writes a position into the memory of single calls, and returns its address, which is the start by default. */
 function pass(position: Position, at = scratch): number {
   refresh();
   const i = at / 8;
-  // Other ways to tell them apart are several times slower.
+  // Other ways to distinguish the two kinds of positions are several times slower.
   const { x, y, z } = position as { x?: number; y: number; z: number };
   if (x !== undefined) {
     f64[i] = x;
@@ -132,7 +137,7 @@ function passRay({ origin, direction, tMin = 0, tMax = Infinity, radius = 0 }: R
   return scratch;
 }
 
-/** Reads answers of any number from memory that a call gave, and frees it. */
+/** Reads answers from memory that a call allocated, and frees it. */
 function readAll<Answer>(size: number, read: (address: number) => Answer | null): Answer[] {
   const [address, bytes] = [u32[(scratch + ANSWER) / 4]!, u32[(scratch + ANSWER) / 4 + 1]!];
   const answers = Array.from({ length: bytes / size }, (_, i) => read(address + i * size)!);
@@ -141,23 +146,23 @@ function readAll<Answer>(size: number, read: (address: number) => Answer | null)
 }
 
 /**
- * An index over a scene, which answers queries. All kinds of indexes give the same answers, bit for bit, and they are
- * those of the program, of Rust, of Python and of C.
+ * An index over a scene, which answers queries. All backends give the same answers, bit for bit, and so do the program,
+ * Rust, Python and C.
  */
 export class Index extends Owned {
   /**
    * Builds an index.
    *
-   * @throws Error if an option does not fit the kind, and if the memory is used up.
+   * @throws Error if an option does not suit the backend, or if there is not enough memory.
    */
   constructor(scene: Scene, options: IndexOptions = {}) {
     super(withMemory((allocate) => build(scene, options, allocate)), wasm.p2m_index_free);
   }
 
   /**
-   * Makes an index of the bytes of {@link save}, or of a file that the program, Python or C have saved.
+   * Loads an index from the bytes of {@link save}, or of a file that the program, Python or C has saved.
    *
-   * @throws Error if the bytes are no saved index, or damaged.
+   * @throws Error if the bytes are not a saved index, or if they are damaged.
    */
   static load(saved: Uint8Array): Index {
     const address = withMemory((allocate) => {
@@ -166,7 +171,7 @@ export class Index extends Owned {
       attempt(() => wasm.p2m_js_load(data, saved.length, place));
       return u32[place / 4]!;
     });
-    // The constructor of an index would build one.
+    // The constructor of `Index` would build an index.
     return Reflect.construct(Owned, [address, wasm.p2m_index_free], Index) as Index;
   }
 
@@ -185,10 +190,10 @@ export class Index extends Owned {
   }
 
   /**
-   * Fits the index to a scene in which the same primitives have moved. The boxes of a tree are computed anew, which is
-   * faster than a build. Queries get slower if primitives have moved far.
+   * Adapts the index to a scene in which the same primitives have moved. The boxes of a tree are recomputed, which is
+   * faster than a build. Queries become slower if primitives have moved far.
    *
-   * @throws Error if the number of primitives is another one, or if the backend is neither "aabb", "kdop" nor "brute".
+   * @throws Error if the number of primitives differs, or if the backend is neither "aabb", "kdop" nor "brute".
    */
   refit(scene: Scene): void {
     const place = scratch + ANSWER;
@@ -196,7 +201,7 @@ export class Index extends Owned {
     this.replace(u32[place / 4]!);
   }
 
-  /** The kind of the index. */
+  /** The backend of the index. */
   get backend(): Backend {
     return text(wasm.p2m_index_backend(this.address)) as Backend;
   }
@@ -227,8 +232,8 @@ export class Index extends Owned {
    *
    * @param queries Three coordinates for each query, in single or double precision.
    * @param columns The arrays for the answers. Without them, distances, primitives and points are returned.
-   * @returns `columns`.
-   * @throws Error if a coordinate is not finite, or if an array has another length than the answers.
+   * @returns `columns`, or the new arrays.
+   * @throws Error if a coordinate is not finite, or if an array has the wrong length.
    */
   closestPoints(queries: ArrayLike<number>, columns?: undefined, options?: BatchOptions): DefaultColumns;
   closestPoints<Wanted extends Columns>(queries: ArrayLike<number>, columns: Wanted, options?: BatchOptions): Wanted;
@@ -266,7 +271,8 @@ export class Index extends Owned {
   }
 
   /**
-   * Finds all primitives within a radius of a point, the nearest first, and of equally near ones the lowest first.
+   * Finds all primitives within a radius of a point, the nearest first. Equally near ones come in the order of their
+   * numbers.
    *
    * @throws Error if a coordinate is not finite.
    */
@@ -296,8 +302,8 @@ export class Index extends Owned {
   }
 
   /**
-   * Finds the first hit of a ray: that with the least parameter, of equal ones the lowest primitive. Returns `null` if
-   * there is none.
+   * Finds the first hit of a ray, the one with the smallest parameter, and of equal ones the one with the lowest
+   * primitive. Returns `null` if there is no hit.
    *
    * @throws Error if the ray is not valid, or if the backend casts none.
    */
@@ -317,8 +323,8 @@ export class Index extends Owned {
   }
 
   /**
-   * Returns the distance, negative inside of the surface that the triangles form; NaN where the sign is not determined.
-   * The first call of an index prepares the signs.
+   * Returns the distance, negative inside of the surface that the triangles form. It is NaN if the sign is not
+   * determined. The first call on an index prepares the signs.
    *
    * @throws Error if the scene has segments or points, or if a coordinate is not finite.
    */
@@ -329,7 +335,7 @@ export class Index extends Owned {
   /**
    * Returns the signed distance of each of many queries.
    *
-   * @throws Error as {@link signedDistance} does, and if the array has another length than the answers.
+   * @throws Error as {@link signedDistance} does, and if the array has the wrong length.
    */
   signedDistances<Numbers extends NumberArray = Float64Array>(
     queries: ArrayLike<number>, out = new Float64Array(queryCount(queries)) as NumberArray as Numbers,
@@ -348,9 +354,9 @@ export class Index extends Owned {
   }
 
   /**
-   * Returns for each of many queries 1 if it is inside, and 0 otherwise.
+   * Returns 1 for each of many queries that is inside, and 0 for the others.
    *
-   * @throws Error as {@link contains} does, and if the array has another length than the answers.
+   * @throws Error as {@link contains} does, and if the array has the wrong length.
    */
   containsEach<Numbers extends NumberArray = Uint8Array>(
     queries: ArrayLike<number>, out = new Uint8Array(queryCount(queries)) as NumberArray as Numbers,
@@ -363,9 +369,10 @@ export class Index extends Owned {
    * Finds the nearest points of this scene and another one, or returns `null` if there are none within the largest
    * distance.
    *
-   * @param options.matrix Moves the other scene: the 16 numbers of a rotation and a translation, column by column, as in
+   * @param options.matrix Moves the other scene: the 16 numbers of a rotation and a translation, column by column, as
+   * in
    *   `Matrix4.elements` of three.js.
-   * @throws Error if the matrix is not a rotation and a translation, or if a backend answers no such queries.
+   * @throws Error if the matrix is not a rotation and a translation, or if a backend does not answer such queries.
    */
   distanceTo(other: Index, options: { matrix?: ArrayLike<number>; maxDistance?: number } = {}): Pair | null {
     const { matrix, maxDistance = Infinity } = options;
@@ -377,7 +384,7 @@ export class Index extends Owned {
     });
   }
 
-  /** Counts the nodes, packets and primitives that a query for the closest point visits. */
+  /** Returns the numbers of nodes, packets and primitives that a query for the closest point visits. */
   work(query: Position): { nodes: number; packets: number; primitives: number } {
     check(wasm.p2m_js_work(this.address, pass(query), scratch + ANSWER));
     const [nodes, packets, primitives] = triple((scratch + ANSWER) / 8);
@@ -385,7 +392,7 @@ export class Index extends Owned {
   }
 }
 
-/** Writes the options of a build, and builds. */
+/** Passes the options of a build to the library, and builds. */
 function build(scene: Scene, options: IndexOptions, allocate: Allocate): number {
   const { backend = "auto", queries = 0, resolution = 0, kdopFaces = 0 } = options;
   const name = passBytes(new TextEncoder().encode(`${backend}\0`), allocate);
@@ -399,7 +406,10 @@ function build(scene: Scene, options: IndexOptions, allocate: Allocate): number 
   return u32[place / 4]!;
 }
 
-/** Passes a batch in parts. The function gets the queries, the options, the number of queries, and that of the first. */
+/**
+ * Passes a batch to `call` in parts, with the queries, the options, the number of queries and the number of the first
+ * one.
+ */
 function inParts(
   queries: ArrayLike<number>, { maxDistance = Infinity, keepsOrder = false }: BatchOptions,
   answer: (queries: number, options: number, count: number, start: number, allocate: Allocate) => void,
@@ -416,7 +426,7 @@ function inParts(
   }
 }
 
-/** Answers queries by one number for each, which goes into an array. */
+/** Answers each query by one number, and writes the numbers to an array. */
 function answerColumn<Numbers extends NumberArray>(
   index: Index,
   call: (index: number, queries: number, options: number, column: number) => number,
@@ -426,7 +436,7 @@ function answerColumn<Numbers extends NumberArray>(
   inParts(queries, options, (passed, batch, count, start, allocate) => {
     const [place, column] = [allocate(count * kind.BYTES_PER_ELEMENT), allocate(8)];
     u32.set([place, 0], column / 4);
-    // Columns are passed by value, which is by reference between C and WebAssembly.
+    // In C, columns are passed by value. In WebAssembly, this means by their address.
     attempt(() => call(index.address, passed, batch, column));
     out.set(new kind(wasm.memory.buffer, place, count) as ArrayLike<number>, start);
   });

@@ -4,7 +4,8 @@
  * @packageDocumentation
  */
 import {
-  BackSide, BufferGeometry, DoubleSide, FrontSide, InstancedMesh, Line, Matrix3, Matrix4, Mesh, Points, Sphere, Triangle,
+  BackSide, BufferGeometry, DoubleSide, FrontSide, InstancedMesh, Line, Matrix3, Matrix4, Mesh, Points, Sphere,
+  Triangle,
   Vector2, Vector3,
 } from "three";
 import type { Intersection, Material, Raycaster } from "three";
@@ -13,17 +14,17 @@ import type { Hit, IndexOptions, SceneArrays } from "./index.js";
 
 declare module "three" {
   interface Raycaster {
-    /** Whether an accelerated object gives its first hit alone, which is faster. */
+    /** Whether the raycast of an accelerated object returns only the first hit, which is faster. */
     firstHitOnly?: boolean;
   }
 }
 
-/** An object that an index can be made of. */
+/** An object over which an index can be built. */
 export type Indexable = Mesh | Line | Points;
 
 /**
- * Makes a scene of an object or a geometry, in the frame of the object: triangles of meshes and geometries, segments of
- * lines, and points. The draw range decides what is part of it. A mesh with bones or morph targets has its current pose.
+ * Makes a scene from an object or a geometry, in the local frame of the object: triangles of meshes and geometries,
+ * segments of lines, and points. Only the draw range counts. A mesh with bones or morph targets has its current pose.
  */
 export function sceneOf(source: Indexable | BufferGeometry): Scene {
   const geometry = source instanceof BufferGeometry ? source : source.geometry;
@@ -59,11 +60,11 @@ export function indexOf(source: Indexable | BufferGeometry, options?: IndexOptio
 }
 
 /**
- * Gives an object a `raycast` that asks an index. Its hits are those of three.js, but for hits at edges, which an exact
- * search neither misses nor finds twice for rounding. Instances of an instanced mesh share the index.
+ * Replaces the `raycast` of an object by one that uses an index. It returns the hits of three.js, except at edges,
+ * where rounding may make three.js miss a hit or find it twice. Instances of an instanced mesh share the index.
  *
  * @param object A mesh, an instanced mesh, a line or points.
- * @param index The index over the object, which other objects with the same geometry may share. After vertices have moved,
+ * @param index The index over the object. Other objects with the same geometry may share it. After vertices have moved,
  *   call `index.refit(sceneOf(object))`.
  * @returns The index.
  */
@@ -76,7 +77,7 @@ export function accelerate(object: Indexable, index: Index = indexOf(object)): I
   return index;
 }
 
-/** Returns the vertices of a geometry that are drawn. */
+/** Returns the range of the vertices of a geometry that are drawn. */
 function rangeOf({ index, attributes, drawRange }: BufferGeometry): { start: number; end: number } {
   const start = Math.max(0, drawRange.start);
   const all = index ? index.count : attributes["position"]!.count;
@@ -90,7 +91,8 @@ function segmentsOf(line: Line, vertices: number): { step: number; count: number
 
 function positionsOf(source: Indexable | BufferGeometry, geometry: BufferGeometry): ArrayLike<number> {
   const position = geometry.attributes["position"]!;
-  const isPosed = source instanceof Mesh && ("isSkinnedMesh" in source || (source.morphTargetInfluences?.length ?? 0) > 0);
+  const isPosed = source instanceof Mesh
+    && ("isSkinnedMesh" in source || (source.morphTargetInfluences?.length ?? 0) > 0);
   const isPlain = "array" in position && !("isInterleavedBufferAttribute" in position) && position.itemSize === 3;
   if (isPlain && !isPosed && !position.normalized && position.array instanceof Float32Array) return position.array;
   const [all, vector] = [new Float64Array(3 * position.count), new Vector3()];
@@ -102,7 +104,7 @@ function positionsOf(source: Indexable | BufferGeometry, geometry: BufferGeometr
   return all;
 }
 
-// Values that are only used within a call.
+// Temporary values, which are reused by each call.
 const inverse = new Matrix4();
 const linear = new Matrix3();
 const origin = new Vector3();
@@ -111,7 +113,7 @@ const sphere = new Sphere();
 const instanceMatrix = new Matrix4();
 const worldMatrix = new Matrix4();
 
-/** Moves a ray to the frame of an object. Parameters stay distances in the world. */
+/** Transforms a ray to the frame of an object. Parameters remain distances in the world. */
 function toLocal(raycaster: Raycaster, matrixWorld: Matrix4): boolean {
   if (matrixWorld.determinant() === 0) return false;
   inverse.copy(matrixWorld).invert();
@@ -191,7 +193,7 @@ function castAtInstances(
   intersects.push(...found);
 }
 
-/** Finds the segments or points near a ray. */
+/** Finds the segments or points near the line of a ray. */
 function castNear(object: Line | Points, index: Index, raycaster: Raycaster, intersects: Intersection[]): void {
   if (!toLocal(raycaster, object.matrixWorld)) return;
   const { x, y, z } = object.scale;
@@ -202,7 +204,7 @@ function castNear(object: Line | Points, index: Index, raycaster: Raycaster, int
   const step = isLine ? segmentsOf(object, end - start).step : 1;
   const vertex = (i: number) => (geometry.index ? geometry.index.getX(i) : i);
   const hits = index.raycast({ origin, direction, radius });
-  // What is nearest to the line of the ray behind its origin is as far from the ray as from the origin.
+  // Behind the origin, the nearest point of the ray is the origin. So primitives within the radius of it count as well.
   const hit = new Set(hits.map(({ primitive }) => primitive));
   const behind = index.within(origin, radius).filter(({ primitive }) => !hit.has(primitive));
   const found: Intersection[] = [];

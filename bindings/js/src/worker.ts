@@ -1,11 +1,12 @@
-// A worker of a pool. It has an index, and answers parts of batches.
+// A worker of a pool, which has an index and answers parts of batches.
 
 import { Index, init } from "./index.js";
 import { nodeModule } from "./module.js";
 import type { Call, Start } from "./pool.js";
 
 const parent = nodeModule("node:worker_threads")?.parentPort;
-const reply: (message: unknown) => void = parent ? (message) => parent.postMessage(message) : (message) => postMessage(message);
+const reply: (message: unknown) => void =
+  parent ? (message) => parent.postMessage(message) : (message) => postMessage(message);
 
 let index: Index;
 

@@ -38,8 +38,10 @@ test("coordinates of ordinary arrays keep their digits", () => {
 });
 
 test("errors have the messages of the library", () => {
-  expect(() => new Scene({ positions: [0, 0], triangles: [] })).toThrow("positions: the length 2 is not a multiple of 3");
-  expect(() => new Scene({ positions: [0, 0, 0], triangles: [0, 1, 2] })).toThrow("primitive 0 uses position 1, but there is only position 0");
+  expect(() => new Scene({ positions: [0, 0], triangles: [] }))
+    .toThrow("positions: the length 2 is not a multiple of 3");
+  expect(() => new Scene({ positions: [0, 0, 0], triangles: [0, 1, 2] }))
+    .toThrow("primitive 0 uses position 1, but there is only position 0");
   expect(() => new Scene({ positions: [NaN, 0, 0] })).toThrow("not finite");
   expect(() => new Scene({ positions: [], points: [] }).bounds).toThrow("it has no primitives");
   const scene = new Scene(triangle);
@@ -48,7 +50,8 @@ test("errors have the messages of the library", () => {
   const index = new Index(scene);
   expect(() => index.closestPoint([0, NaN, 0])).toThrow("query: not finite");
   expect(() => index.closestPoints([0, 0, 0, 1])).toThrow("queries: the length 4");
-  expect(() => index.closestPoints([0, 0, 0], { point: new Float64Array(2) })).toThrow("point: the length is 2 instead of 3");
+  expect(() => index.closestPoints([0, 0, 0], { point: new Float64Array(2) }))
+    .toThrow("point: the length is 2 instead of 3");
   expect(() => index.closestPoints([0, 0, 0, 0, 0, Infinity])).toThrow("queries: row 1 is not finite");
   expect(() => index.raycast({ origin: [0, 0, 0], direction: [0, 0, 0] })).toThrow("ray");
   expect(() => index.distanceTo(index, { matrix: new Array(16).fill(1) })).toThrow("rotation and a translation");
@@ -81,7 +84,7 @@ test("the memory of disposed objects is used again", () => {
     scene.dispose();
     return address;
   });
-  // 30 indexes of a megabyte would be far above the first ones.
+  // A leak of 30 indexes of a megabyte each would lead to addresses far above the first ones.
   expect(Math.max(...addresses)).toBeLessThan(Math.max(...addresses.slice(0, 10)) + 1e6);
 });
 
@@ -118,7 +121,8 @@ test.each(BACKENDS)("%o answers as an exhaustive search does", (options) => {
     expect(index.isAnyWithin(query, answer.distance * 0.99)).toBe(false);
     expect(index.isAnyWithin(query, answer.distance)).toBe(true);
     if (["octree", "p2m"].includes(index.backend)) {
-      expect(() => index.raycast({ origin: query, direction: [1, 0, 0] })).toThrow("casts no rays; these do: brute, aabb, kdop");
+      expect(() => index.raycast({ origin: query, direction: [1, 0, 0] }))
+        .toThrow("casts no rays; these do: brute, aabb, kdop");
       continue;
     }
     const ray = { origin: query, direction: [random(-1, 1), random(-1, 1), random(-1, 1)], radius: i % 2 ? 0 : 0.1 };
@@ -136,7 +140,10 @@ test("an answer can be overwritten", () => {
   const index = new Index(new Scene(triangle));
   const into = index.closestPoint([0, 0, 1])!;
   expect(index.closestPoint([0.25, 0.25, -3], { into })).toBe(into);
-  expect(into).toEqual({ distance: 3, point: [0.25, 0.25, 0], weights: [0.5, 0.25, 0.25], lowerBound: into.lowerBound, primitive: 0, feature: 6 });
+  expect(into).toEqual({
+    distance: 3, point: [0.25, 0.25, 0], weights: [0.5, 0.25, 0.25],
+    lowerBound: into.lowerBound, primitive: 0, feature: 6
+  });
   const hit = index.raycastFirst({ origin: [0.25, 0.25, 5], direction: [0, 0, -1] })!;
   expect(index.raycastFirst({ origin: [0.25, 0.5, -5], direction: [0, 0, 2] }, hit)).toBe(hit);
   expect(hit).toEqual({ t: 2.5, point: [0.25, 0.5, 0], weights: [0.25, 0.25, 0.5], primitive: 0, side: -1 });
@@ -145,7 +152,7 @@ test("an answer can be overwritten", () => {
 test("batches are single queries", () => {
   const arrays = blob(40);
   const index = new Index(new Scene(arrays), { backend: "octree" });
-  // Two parts, the second of which is small.
+  // The batch has two parts, the second of which is small.
   const count = (1 << 18) + 100;
   const queries = pointsAround(arrays, count, 11);
   const columns = {

@@ -1,5 +1,5 @@
-// The archive of `npm pack` in empty projects: strict TypeScript, Node.js, and pages that Vite and webpack make, which
-// Chromium opens.
+// Tests of the archive of `npm pack` in empty projects: strict TypeScript, Node.js, and pages that are built by Vite
+// and webpack and opened in Chromium.
 
 import { execFileSync } from "node:child_process";
 import { cpSync, existsSync, mkdtempSync, readFileSync, readdirSync, rmSync, writeFileSync } from "node:fs";
@@ -31,12 +31,15 @@ const file = (name: string, text: string) => writeFileSync(join(project, name), 
 beforeAll(() => {
   project = mkdtempSync(join(tmpdir(), "p2m-package-"));
   cpSync(join(ROOT, "example"), project, { recursive: true, filter: (path) => !/node_modules|dist/.test(path) });
-  // The tests run after the build, which `npm pack` would repeat.
+  // `--ignore-scripts` avoids the build, which has run before the tests.
   execFileSync("npm", ["pack", "--ignore-scripts", "--pack-destination", project], { cwd: ROOT, stdio: "pipe" });
   const archive = readdirSync(project).find((name) => name.endsWith(".tgz"))!;
   const { devDependencies } = JSON.parse(readFileSync(join(ROOT, "package.json"), "utf8"));
   const tools = ["three", "@types/three", "typescript", "vite"].map((name) => `${name}@${devDependencies[name]}`);
-  run("npm", "install", "--prefer-offline", "--no-audit", "--no-fund", "--loglevel=error", `./${archive}`, ...tools, WEBPACK);
+  run(
+    "npm", "install", "--prefer-offline", "--no-audit", "--no-fund", "--loglevel=error",
+    `./${archive}`, ...tools, WEBPACK
+  );
 });
 afterAll(() => rmSync(project, { recursive: true, force: true }));
 
@@ -103,7 +106,9 @@ describe.skipIf(!CHROMIUM)("in Chromium", () => {
       const found = join(project, "dist", path === "/" ? "index.html" : path);
       const isolation = { "Cross-Origin-Opener-Policy": "same-origin", "Cross-Origin-Embedder-Policy": "require-corp" };
       if (!existsSync(found)) response.writeHead(404).end();
-      else response.writeHead(200, { "Content-Type": TYPES[extname(found)] ?? "text/plain", ...(isIsolated && isolation) })
+      else response.writeHead(200, {
+        "Content-Type": TYPES[extname(found)] ?? "text/plain", ...(isIsolated && isolation)
+      })
         .end(readFileSync(found));
     });
     await new Promise<void>((resolve) => server.listen(0, "127.0.0.1", resolve));
@@ -158,7 +163,7 @@ describe.skipIf(!CHROMIUM)("in Chromium", () => {
 
   test("webpack makes a page with the module, the pool and its workers", async () => {
     cpSync(join(ROOT, "test/pool/main.js"), join(project, "packed.js"));
-    // The module is a file of its own, which the script loads from beside itself.
+    // In this project the module is a separate file, which the script loads from its own folder.
     const source = readFileSync(join(project, "packed.js"), "utf8").replace("init(bytes)", "init()");
     file("packed.js", source.replace(/import bytes .*\n/, ""));
     file("webpack.mjs", `
@@ -174,7 +179,8 @@ describe.skipIf(!CHROMIUM)("in Chromium", () => {
     file("dist/packed.html", '<!doctype html><link rel="icon" href="data:,"><script src="main.js" defer></script>');
     isIsolated = true;
     const tab = await open("packed.html");
-    expect(await tab.evaluate(() => (globalThis as any).result)).toEqual({ isShared: true, isSame: true, size: 2, inline: 3 });
+    expect(await tab.evaluate(() => (globalThis as any).result))
+      .toEqual({ isShared: true, isSame: true, size: 2, inline: 3 });
     expect(problems).toEqual([]);
     await tab.close();
   });

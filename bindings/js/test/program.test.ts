@@ -1,4 +1,4 @@
-// The answers are those of the program, bit for bit. The variable P2M names it.
+// Compares answers with the program `p2m`, bit for bit. The environment variable P2M names the program.
 
 import { execFileSync } from "node:child_process";
 import { mkdtempSync, readFileSync, rmSync, writeFileSync } from "node:fs";
@@ -13,16 +13,20 @@ import type { Arrays } from "./scenes.js";
 const PROGRAM = process.env["P2M"];
 const QUERIES = 100_000;
 
-/** The scenes, with the backend of the program, and another one here: all give the same answers. */
+/** The scenes, each with a backend for the program and another one for the package. All give the same answers. */
 const SCENES: [string, () => Arrays, Backend, Backend][] = [
-  ["a knot and cables", () => parseObj(readFileSync(new URL("../../../scenes/knot_and_cables.obj", import.meta.url), "utf8")), "aabb", "octree"],
+  [
+    "a knot and cables",
+    () => parseObj(readFileSync(new URL("../../../scenes/knot_and_cables.obj", import.meta.url), "utf8")),
+    "aabb", "octree"
+  ],
   ["a closed surface", () => blob(80), "octree", "aabb"],
   ["a surface far from the origin", () => blob(60, [4e6, 5e5, -3e5], 100), "aabb", "kdop"],
   ["a mixture with degenerate primitives", () => mixture(1500, 800, 300, 29), "kdop", "p2m"],
   ["points", () => mixture(0, 0, 1000, 31), "p2m", "aabb"],
 ];
 
-/** The codes of the features that the program names. */
+/** The codes of the features by their names in the output of the program. */
 const FEATURES: Record<string, number> = {
   vertex0: 0, vertex1: 1, vertex2: 2, edge0: 3, edge1: 4, edge2: 5, face: 6,
 };
@@ -79,13 +83,16 @@ describe.skipIf(!PROGRAM)("the answers of the program", () => {
     expect(index.closestPoints(queries)).toEqual(new Index(new Scene(scene)).closestPoints(queries));
     file("saved.p2m", index.save());
     const output = join(folder, "signed.csv");
-    run("query", saved, "--points", file("queries.npy", npy(queries)), "--signed", "--columns", "signed", "--out", output);
+    run(
+      "query", saved, "--points", file("queries.npy", npy(queries)),
+      "--signed", "--columns", "signed", "--out", output
+    );
     const rows = readFileSync(output, "utf8").trim().split("\n").slice(1).map(Number);
     expect(rows).toEqual([...index.signedDistances(queries)]);
   });
 });
 
-/** Returns rows of three numbers as a file of NumPy. */
+/** Returns rows of three numbers as a NumPy file. */
 function npy(array: Float32Array | Float64Array): Uint8Array {
   const kind = array instanceof Float32Array ? "<f4" : "<f8";
   const header = `{'descr': '${kind}', 'fortran_order': False, 'shape': (${array.length / 3}, 3), }`;

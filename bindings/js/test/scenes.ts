@@ -1,4 +1,4 @@
-// Scenes of the tests, and random numbers that are the same each time.
+// Scenes for tests, and random numbers with fixed seeds.
 
 /** Returns a generator of numbers from `low` to `high` (mulberry32). */
 export function generator(seed: number): (low?: number, high?: number) => number {
@@ -6,7 +6,7 @@ export function generator(seed: number): (low?: number, high?: number) => number
     seed = (seed + 0x6d2b79f5) | 0;
     let t = Math.imul(seed ^ (seed >>> 15), 1 | seed);
     t = (t + Math.imul(t ^ (t >>> 7), 61 | t)) ^ t;
-    // Numbers with all digits of double precision.
+    // The numbers use all digits of double precision.
     return low + (high - low) * (((t ^ (t >>> 14)) >>> 0) / 2 ** 32 + ((t >>> 3) & 0xfffff) / 2 ** 52);
   };
 }
@@ -18,7 +18,7 @@ export interface Arrays {
   points: Uint32Array;
 }
 
-/** Returns a closed surface: a sphere with waves, whose centre may be far from the origin. */
+/** Returns a closed surface: a sphere with waves. Its centre may be far from the origin. */
 export function blob(rings: number, centre = [0, 0, 0], scale = 1): Arrays {
   const [positions, triangles]: [number[], number[]] = [[], []];
   const at = (i: number, j: number) => i * rings * 2 + (j % (rings * 2));
@@ -65,12 +65,12 @@ export function pointsAround({ positions }: Arrays, count: number, seed: number,
   });
 }
 
-/** Returns the arrays in single precision, widened again. */
+/** Returns the arrays rounded to single precision. */
 export function rounded(scene: Arrays): Arrays {
   return { ...scene, positions: Float64Array.from(scene.positions, Math.fround) };
 }
 
-/** Returns the scene as OBJ. Its primitives have the ids of `Scene`. */
+/** Returns the scene as an OBJ file, whose primitives have the same ids as in `Scene`. */
 export function obj({ positions, triangles, segments, points }: Arrays): string {
   const rows = (key: string, array: ArrayLike<number>, width: number, add: number) =>
     Array.from({ length: array.length / width }, (_, i) =>
@@ -78,7 +78,7 @@ export function obj({ positions, triangles, segments, points }: Arrays): string 
   return rows("v", positions, 3, 0) + rows("f", triangles, 3, 1) + rows("l", segments, 2, 1) + rows("p", points, 1, 1);
 }
 
-/** Returns the arrays of an OBJ file whose faces are triangles and whose lines have two vertices. */
+/** Parses an OBJ file whose faces are triangles and whose lines have two vertices. */
 export function parseObj(text: string): Arrays {
   const kinds: Record<string, number[]> = { v: [], f: [], l: [], p: [] };
   for (const line of text.split("\n")) {

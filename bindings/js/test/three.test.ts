@@ -1,6 +1,7 @@
 import {
   BackSide, BufferAttribute, BufferGeometry, DoubleSide, FrontSide, InstancedMesh, InterleavedBuffer,
-  InterleavedBufferAttribute, Line, LineLoop, LineSegments, Matrix4, Mesh, MeshBasicMaterial, Object3D, Points, Raycaster,
+  InterleavedBufferAttribute, Line, LineLoop, LineSegments, Matrix4, Mesh, MeshBasicMaterial, Object3D, Points,
+  Raycaster,
   SphereGeometry, Vector3,
 } from "three";
 import type { Intersection } from "three";
@@ -20,7 +21,7 @@ function cloud(count: number): BufferGeometry {
   return new BufferGeometry().setAttribute("position", new BufferAttribute(positions, 3));
 }
 
-/** Moves an object, with scales that differ, and a mesh with a reflection. */
+/** Moves an object by a transform with different scales, which mirrors a mesh. */
 function moved<Own extends Object3D>(object: Own): Own {
   object.position.set(0.3, -0.2, 0.1);
   object.rotation.set(0.4, 1.1, -0.3);
@@ -29,7 +30,7 @@ function moved<Own extends Object3D>(object: Own): Own {
   return object;
 }
 
-/** Casts rays at an object as three.js does and by an index, and returns the number of hits, which are equal. */
+/** Compares the hits of three.js with those of an index, and returns their number. */
 function compare(object: Indexable, threshold = 0.05): number {
   const raycaster = new Raycaster();
   raycaster.params.Line.threshold = raycaster.params.Points.threshold = threshold;
@@ -41,7 +42,7 @@ function compare(object: Indexable, threshold = 0.05): number {
     raycaster.set(origin, direction);
     [raycaster.near, raycaster.far] = i % 3 === 0 ? [0.5, 2] : [0, Infinity];
     const hits = raycaster.intersectObject(object);
-    // Rounding decides the order of hits that are equally near.
+    // Rounding decides the order of equally near hits.
     const id = ({ instanceId = 0, faceIndex, index }: Intersection) => 1e6 * instanceId + (faceIndex ?? index ?? 0);
     return raycaster.firstHitOnly ? hits : hits.sort((a, b) => id(a) - id(b));
   });
@@ -49,23 +50,24 @@ function compare(object: Indexable, threshold = 0.05): number {
   accelerate(object);
   expect(cast().map((hits) => hits.map(plain))).toEqual(expected.map((hits) => hits.map(plain).map(near)));
   raycaster.firstHitOnly = true;
-  // Of equally near hits, which are those at a shared vertex, either may be the first.
+  // Of equally near hits, which occur at shared vertices, either may come first.
   const distances = (hits: Intersection[]) => hits.map(({ distance }) => distance).sort((a, b) => a - b).slice(0, 1);
   expect(cast().map((hits) => [hits.length, distances(hits)]))
     .toEqual(expected.map((hits) => [Math.min(1, hits.length), distances(hits).map(near)]));
   return expected.flat().length;
 }
 
-/** Returns a hit without classes. */
+/** Returns a hit as plain data, with the id of its object. */
 function plain({ object, ...hit }: Intersection): object {
   return JSON.parse(JSON.stringify({ ...hit, uuid: object.uuid }));
 }
 
-/** Returns what is nearly equal to numbers in a value. */
+/** Returns a value with a matcher for nearly equal numbers in place of each number. */
 function near(value: unknown): unknown {
   if (typeof value === "number") return expect.closeTo(value, 4);
   if (Array.isArray(value)) return value.map(near);
-  if (value && typeof value === "object") return Object.fromEntries(Object.entries(value).map(([k, v]) => [k, near(v)]));
+  if (value && typeof value === "object")
+    return Object.fromEntries(Object.entries(value).map(([k, v]) => [k, near(v)]));
   return value;
 }
 
@@ -105,8 +107,11 @@ describe("hits are those of three.js", () => {
   });
 
   test("of instances", () => {
-    const mesh = moved(new InstancedMesh(new SphereGeometry(0.4, 12, 8), new MeshBasicMaterial({ side: DoubleSide }), 5));
-    for (let i = 0; i < 5; i++) mesh.setMatrixAt(i, new Matrix4().makeTranslation(random(-1, 1), random(-1, 1), random(-1, 1)));
+    const mesh = moved(
+      new InstancedMesh(new SphereGeometry(0.4, 12, 8), new MeshBasicMaterial({ side: DoubleSide }), 5)
+    );
+    for (let i = 0; i < 5; i++)
+      mesh.setMatrixAt(i, new Matrix4().makeTranslation(random(-1, 1), random(-1, 1), random(-1, 1)));
     expect(compare(mesh)).toBeGreaterThan(100);
   });
 
@@ -144,5 +149,6 @@ test("an index of a geometry answers in its frame, and is fitted to its vertices
   geometry.translate(0, 0, 2);
   index.refit(sceneOf(mesh));
   expect(index.closestPoint(new Vector3(0, 0, 5))!.distance).toBeCloseTo(2, 2);
-  expect(new Raycaster(new Vector3(0, 0, 5), new Vector3(0, 0, -1)).intersectObject(mesh)[0]!.distance).toBeCloseTo(2, 2);
+  expect(new Raycaster(new Vector3(0, 0, 5), new Vector3(0, 0, -1))
+    .intersectObject(mesh)[0]!.distance).toBeCloseTo(2, 2);
 });

@@ -1,4 +1,4 @@
-// A page whose pool has to give the answers of the index, and which answers queries for tests.
+// A page that compares the answers of a pool with those of its index, and answers queries for tests.
 
 import { Index, Pool, Scene, init } from "p2m";
 import bytes from "p2m/inline";
