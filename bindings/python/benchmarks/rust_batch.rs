@@ -1,8 +1,9 @@
-//! Answers the queries of `compare.py` in Rust, to show what a call from Python costs besides.
+//! Answers the queries of `compare.py` in Rust, to show the overhead of a call from Python.
 //!
-//! `rust_batch SCENE POINTS BACKEND THREADS`: SCENE is a file of a scene, POINTS one of coordinates as f64 in the byte
-//! order of the machine, and BACKEND is `aabb` or `octree`. For each line of the standard input the program answers all
-//! queries once, with distances, primitives and points, and prints the CPU time and the wall time in seconds.
+//! Usage: `rust_batch SCENE POINTS BACKEND THREADS`. SCENE is a file of a scene, POINTS a file of coordinates as f64 in
+//! the byte order of the machine, and BACKEND is `aabb` or `octree`. For each line of the standard input the program
+//! answers all queries once, with distances, primitives and points, and prints the CPU time and the wall time in
+//! seconds.
 
 use cpu_time::ProcessTime;
 use nalgebra::Point3;
@@ -43,7 +44,7 @@ fn answer_rounds(index: &(impl ClosestPoint<f64> + Sync), points: &[Point3<f64>]
     for line in stdin().lock().lines() {
         line?;
         let (cpu, wall) = (ProcessTime::now(), Instant::now());
-        // A call from Python makes new arrays as well.
+        // New arrays are made each time, as by a call from Python.
         let mut distance = vec![0.0; points.len()];
         let mut primitive = vec![0; points.len()];
         let mut nearest = vec![Point3::origin(); points.len()];

@@ -9,11 +9,12 @@ use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 use std::sync::Arc;
 
-/// The name of a backend, the times of its build and of a query, its memory and the total time; whether it is about as
-/// good as the recommended one, the number of queries at which it breaks even, and the reason for its rank.
+/// A row of the table of estimates: the name of the backend; the times of the build and of a query, the memory and the
+/// total time; whether it is about as good as the recommended backend; the number of queries at which it breaks even;
+/// and the reason for its rank.
 type Row = (&'static str, (f64, f64, f64, f64), bool, Option<f64>, String);
 
-/// Returns the estimates of all backends, the recommended one first.
+/// Returns the estimates for all backends, the recommended one first.
 #[pyfunction]
 pub(crate) fn advise(
     py: Python<'_>,

@@ -13,7 +13,7 @@ use std::sync::Arc;
 
 type Array2<'py> = Bound<'py, PyArray2<f64>>;
 
-/// The parts of `p2m.Alignment`, in its order.
+/// The fields of `p2m.Alignment`, in order.
 type Parts<'py> =
     (Array2<'py>, Array2<'py>, f64, f64, f64, bool, Vec<(usize, f64, f64)>, Option<String>, Option<Array2<'py>>);
 
@@ -55,6 +55,6 @@ pub(crate) fn align<'py>(
 }
 
 fn matrix<'py>(py: Python<'py>, matrix: &Matrix4<f64>) -> PyResult<Array2<'py>> {
-    // The columns of the transpose are the rows.
+    // nalgebra stores columns, so the transpose is written to get rows.
     PyArray1::from_slice(py, matrix.transpose().as_slice()).reshape([4, 4])
 }

@@ -1,4 +1,4 @@
-//! Arguments that are arrays of NumPy.
+//! Conversion of arguments that are NumPy arrays.
 
 use crate::errors::value_error;
 use nalgebra::{Isometry3, Point3};
@@ -9,7 +9,7 @@ use pyo3::exceptions::PyTypeError;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 
-/// Borrows an array of a dictionary for writing.
+/// Borrows an array from a dictionary for writing.
 pub(crate) fn borrowed<'py, T: Element>(
     arrays: &Bound<'py, PyDict>,
     name: &str,
@@ -31,14 +31,14 @@ pub(crate) fn slice<'a, T: Element>(array: &'a mut Option<PyReadwriteArray1<'_, 
     array.as_mut().map(|array| array.as_slice_mut().map_err(contiguous)).transpose()
 }
 
-/// Coordinates in one of the two types that positions may have, three for each.
+/// Coordinates as a flat array, three for each position, in either of the two scalars of positions.
 #[derive(FromPyObject)]
 pub(crate) enum Coordinates<'py> {
     F64(PyReadonlyArray1<'py, f64>),
     F32(PyReadonlyArray1<'py, f32>),
 }
 
-/// Evaluates an expression with the coordinates as a slice of arrays of three, in either type.
+/// Evaluates an expression with the coordinates as a slice of `[T; 3]`, for either scalar.
 macro_rules! with_positions {
     ($coordinates:expr, $slice:ident => $body:expr) => {
         match &$coordinates {
@@ -62,7 +62,7 @@ impl Coordinates<'_> {
     }
 }
 
-/// Returns a contiguous array as arrays of three.
+/// Returns a contiguous array as a slice of `[T; 3]`.
 pub(crate) fn triples<T, E>(slice: Result<&[T], E>) -> PyResult<&[[T; 3]]> {
     match slice.map(<[T]>::as_chunks) {
         Ok((triples, [])) => Ok(triples),
@@ -70,14 +70,14 @@ pub(crate) fn triples<T, E>(slice: Result<&[T], E>) -> PyResult<&[[T; 3]]> {
     }
 }
 
-/// Returns points as rows, in the memory that they have.
+/// Returns points as the rows of an array, without copying them.
 pub(crate) fn rows(py: Python<'_>, points: Vec<Point3<f64>>) -> PyResult<Bound<'_, PyArray2<f64>>> {
     let count = points.len();
     let rows: Vec<[f64; 3]> = points.into_iter().map(|point| point.coords.into()).collect();
     PyArray1::from_vec(py, rows.into_flattened()).reshape([count, 3])
 }
 
-/// Returns the motions of flat matrices.
+/// Returns the motions that flat 4 x 4 matrices stand for.
 pub(crate) fn motions(matrices: &PyReadonlyArray1<'_, f64>) -> PyResult<Vec<Isometry3<f64>>> {
     match matrices.as_slice().map(<[f64]>::as_chunks) {
         Ok((matrices, [])) => Ok(matrices.iter().map(|matrix: &[f64; 16]| isometry_of_matrix(matrix)).collect()),

@@ -1,4 +1,4 @@
-//! Columns of answers in arrays of NumPy.
+//! Columns of answers in NumPy arrays.
 
 use crate::arrays::slice;
 use crate::parts::Split;
@@ -8,16 +8,16 @@ use p2m_core::{Closest, Feature};
 use pyo3::exceptions::PyTypeError;
 use pyo3::prelude::*;
 
-/// The number that stands for no primitive.
+/// The id of a missing primitive.
 pub(crate) const NO_PRIMITIVE: i64 = -1;
-/// The number that stands for no feature.
+/// The code of a missing feature.
 pub(crate) const NO_FEATURE: u8 = 255;
 
-/// A value of a column, which is some items of a flat array.
+/// A value of a column, which takes one or more items of a flat array.
 pub(crate) trait Value: Sized {
     type Item: Element;
 
-    /// Returns the values of a flat array, which has nothing else.
+    /// Casts a flat array to a slice of values, or returns `None` if the length does not fit.
     fn of_flat(flat: &mut [Self::Item]) -> Option<&mut [Self]>;
 }
 
@@ -43,7 +43,7 @@ impl<V: Value, const N: usize> Value for [V; N] {
     }
 }
 
-/// Returns a borrowed array as a column of so many values, if there is one.
+/// Returns a borrowed array as a column of `len` values, if there is an array.
 pub(crate) fn column<'a, V: Value>(
     array: &'a mut Option<PyReadwriteArray1<'_, V::Item>>,
     len: usize,
@@ -55,11 +55,11 @@ pub(crate) fn column<'a, V: Value>(
     }
 }
 
-/// Defines the columns of answers of a type: the arrays, of which those that are not asked for are missing, and the
-/// columns in them. Each column has a name, a type, the value of a missing answer, and a function of an answer.
+/// Defines the arrays and the columns for a type of answers. A missing array is one that the caller did not request.
+/// Each column has a name, a type, the value of a missing answer, and a function of an answer.
 macro_rules! columns {
     ($Arrays:ident, $Columns:ident, $Answer:ty, { $($name:ident: $Value:ty = $missing:expr, $value:expr;)* }) => {
-        /// Arrays that are borrowed for writing.
+        /// The NumPy arrays, borrowed for writing.
         pub(crate) struct $Arrays<'py> {
             $($name: Option<numpy::PyReadwriteArray1<'py, <$Value as $crate::columns::Value>::Item>>,)*
         }
@@ -70,27 +70,27 @@ macro_rules! columns {
                 Ok(Self { $($name: $crate::arrays::borrowed(arrays, stringify!($name))?,)* })
             }
 
-            /// Returns the columns, which have places for `len` answers.
+            /// Returns the columns, each with room for `len` answers.
             pub(crate) fn columns(&mut self, len: usize) -> PyResult<$Columns<'_>> {
                 Ok($Columns { $($name: $crate::columns::column(&mut self.$name, len)?,)* })
             }
         }
 
-        /// Columns of answers, as NumPy has them.
+        /// The columns of the answers.
         #[derive(Default)]
         pub(crate) struct $Columns<'a> {
             $($name: Option<&'a mut [$Value]>,)*
         }
 
         impl $Columns<'_> {
-            /// Writes an answer, or that there is none.
+            /// Writes an answer, or the values of a missing one.
             pub(crate) fn set(&mut self, i: usize, answer: Option<&$Answer>) {
                 $(if let Some(column) = &mut self.$name {
                     column[i] = answer.map_or($missing, $value);
                 })*
             }
 
-            /// Writes answers, some of which may be missing, to the first places.
+            /// Writes answers, some of which may be missing, from the first place on.
             pub(crate) fn set_all<'b>(&mut self, answers: impl IntoIterator<Item = Option<&'b $Answer>>) {
                 answers.into_iter().enumerate().for_each(|(i, answer)| self.set(i, answer));
             }
@@ -107,11 +107,11 @@ macro_rules! columns {
 }
 pub(crate) use columns;
 
-/// Defines a class of Python for answers before they are columns. The function returns an answer of the list, if it
-/// is none that is missing.
+/// Defines a Python class for a list of answers before they become columns. The function returns an answer of the list,
+/// or `None` if it is missing.
 macro_rules! answer_list {
     ($List:ident, $Item:ty, $Arrays:ident, $answer:expr) => {
-        /// Answers, before they are columns.
+        /// A list of answers before they become columns.
         #[pyclass(frozen, module = "p2m._p2m")]
         pub(crate) struct $List(pub(crate) Vec<$Item>);
 
@@ -121,7 +121,7 @@ macro_rules! answer_list {
                 self.0.len()
             }
 
-            /// Writes the columns of the arrays of `out`, which have a place for each answer of the list.
+            /// Writes the columns into the arrays of `out`, which have room for all answers of the list.
             fn fill(&self, py: Python<'_>, out: &Bound<'_, pyo3::types::PyDict>) -> PyResult<()> {
                 let mut arrays = $Arrays::borrow(out)?;
                 let mut columns = arrays.columns(self.0.len())?;
@@ -133,7 +133,7 @@ macro_rules! answer_list {
 }
 pub(crate) use answer_list;
 
-/// The id of a primitive with the point of it that is closest to a query.
+/// The id of a primitive, and its closest point to a query.
 pub(crate) type Near = (i64, Closest<f64>);
 
 columns! { ClosestArrays, ClosestValues, Near, {
@@ -148,16 +148,16 @@ columns! { ClosestArrays, ClosestValues, Near, {
 answer_list!(NearList, Near, ClosestArrays, Some);
 
 impl ClosestValues<'_> {
-    /// Lets a batch fill the columns.
+    /// Passes the columns to a batch, which fills them.
     ///
-    /// Primitives of a batch are u32. They are written to the first half of their column and spread from its end, so no
-    /// other memory is needed.
+    /// The primitives of a batch are u32, but the column is i64. The batch writes them into the first half of the
+    /// column, and [`spread`] then widens them from the last one to the first, so primitives need no other memory.
     pub(crate) fn fill(self, batch: impl FnOnce(ClosestColumns<'_, f64>)) {
         let Self { distance, mut primitive, point, feature, barycentric, lower_bound } = self;
         let mut features = feature.as_ref().map(|column| vec![Feature::Face; column.len()]);
         let mut distances = Vec::new();
         let mut columns = ClosestColumns::default();
-        // A query without an answer has the feature of a vertex, so its distance decides.
+        // The feature of a missing answer is that of a vertex, so the distances show which answers are missing.
         let known_distance = match (distance, &feature) {
             (Some(column), _) => Some(column),
             (None, Some(feature)) => {
@@ -191,16 +191,16 @@ impl ClosestValues<'_> {
 /// Widens the u32 in the first half of a column to i64.
 fn spread(column: &mut [i64]) {
     for i in (0..column.len()).rev() {
-        // The value is at or before the place that is written, so nothing that is still needed is overwritten.
+        // Value `i` lies at or before its destination, so no value that is still needed is overwritten.
         let number = bytemuck::cast_slice::<i64, u32>(column)[i];
         column[i] = if number == ClosestColumns::<f64>::NO_PRIMITIVE { NO_PRIMITIVE } else { i64::from(number) };
     }
 }
 
-/// Places for several answers of each query.
+/// The rows of a column with several answers for each query.
 pub(crate) struct Rows<C> {
     pub(crate) columns: C,
-    /// The number of places for each query.
+    /// The number of answers for each query.
     pub(crate) width: usize,
 }
 

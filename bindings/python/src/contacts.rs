@@ -23,7 +23,7 @@ columns! { ContactArrays, ContactColumns, BallContact<f64>, {
 
 #[pymethods]
 impl Index {
-    /// Finds the first contacts of balls of one radius, for the arrays of `out`.
+    /// Finds the first contacts of balls of one radius, and writes them into the arrays of `out`.
     fn first_contact(
         &self,
         py: Python<'_>,

@@ -16,10 +16,10 @@ use pyo3::prelude::*;
 use pyo3::types::PyDict;
 use std::sync::Arc;
 
-/// The numbers of queries that the tree and the processor have answered, and the seconds of the kernels.
+/// The number of queries answered by the tree, the number answered by the processor, and the seconds of the kernels.
 type Report = (usize, usize, f64);
 
-/// An index on a card. `p2m.CudaIndex` has its documentation. It never changes, so all threads may query it.
+/// An index on a card, see `p2m.CudaIndex`. It never changes, so any number of threads may query it.
 #[pyclass(frozen, module = "p2m._p2m")]
 pub(crate) struct CudaIndex {
     index: p2m_cuda::CudaIndex<f64, Arc<Soup<f64>>>,
@@ -64,7 +64,7 @@ impl CudaIndex {
         Ok(Self { index, threads })
     }
 
-    /// Answers queries of the processor into the arrays of `out`.
+    /// Answers queries from NumPy arrays, and writes the answers into the arrays of `out`.
     fn closest(
         &self,
         py: Python<'_>,
@@ -85,8 +85,8 @@ impl CudaIndex {
         })
     }
 
-    /// Answers queries of the card, with the addresses and sizes that the Python layer has checked, on a stream of the
-    /// caller. Addresses of columns are in the order of `CardColumns`, 0 for those that nobody wants.
+    /// Answers queries on the card, on a stream of the caller. The Python layer has checked the addresses and sizes.
+    /// The addresses of columns are in the order of `CardColumns`, 0 for an unwanted column.
     #[allow(unsafe_code, reason = "other libraries own the memory")]
     fn closest_on_card(
         &self,
@@ -114,7 +114,8 @@ impl CudaIndex {
 }
 
 impl CudaIndex {
-    /// Runs a batch detached from the interpreter. The threads of the index answer what the card leaves to the processor.
+    /// Runs a batch detached from the interpreter. The threads of the index answer the queries that the card leaves to
+    /// the processor.
     fn run(&self, py: Python<'_>, work: impl FnOnce() -> PyResult<Report> + Send) -> PyResult<Report> {
         let pool = pool(py, self.threads)?;
         py.detach(|| catch(|| pool.install(work)))?

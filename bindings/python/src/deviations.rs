@@ -1,4 +1,4 @@
-//! Statistics, filters, pages and files of deviations.
+//! Deviations: statistics, filters, pages and files.
 
 use crate::arrays::{Coordinates, triples};
 use crate::errors::value_error;
@@ -16,8 +16,8 @@ use pyo3::prelude::*;
 use pyo3::types::{PyBytes, PyDict};
 use std::sync::Arc;
 
-/// Returns the statistics of deviations by their names, with the numbers of values that are finite and that are not, and
-/// the usual limit of colours.
+/// Returns the statistics of deviations by name, including the numbers of finite and other values, and the default
+/// limit of the colour scale.
 #[pyfunction]
 pub(crate) fn deviation_statistics<'py>(
     py: Python<'py>,
@@ -39,7 +39,7 @@ fn dictionary<'py>(py: Python<'py>, statistics: &DeviationStatistics) -> PyResul
     Ok(dictionary)
 }
 
-/// Returns a scan with its deviations and their colours as a PLY file.
+/// Returns a scan as a PLY file, with its deviations and their colours.
 #[pyfunction]
 pub(crate) fn deviation_ply<'py>(
     py: Python<'py>,
@@ -55,7 +55,7 @@ pub(crate) fn deviation_ply<'py>(
     Ok(PyBytes::new(py, &file))
 }
 
-/// The deviations of a scan from a scene, with all that a report of them shows.
+/// The deviations of a scan from a scene, with everything that a report shows.
 #[pyclass(frozen, module = "p2m._p2m")]
 pub(crate) struct Report {
     scan: SharedScene,
@@ -96,7 +96,7 @@ impl Report {
         Ok(Self { scan, values, primitives, scene, statistics, is_signed, limit, tolerance, unit })
     }
 
-    /// Returns the name of each object of the scene, with the statistics of the deviations from it.
+    /// Returns the name of each object of the scene with the statistics of the deviations from the object.
     fn objects<'py>(&self, py: Python<'py>) -> PyResult<Vec<(String, Bound<'py, PyDict>)>> {
         let found = ObjectDeviations::of_scene(&self.scene, &self.deviations());
         found.into_iter().map(|object| Ok((object.name, dictionary(py, &object.statistics)?))).collect()
@@ -109,7 +109,7 @@ impl Report {
         page(view, (title, summary, &self.unit), is_y_up)
     }
 
-    /// Returns the report on one sheet, as a PDF or a PNG file.
+    /// Returns the report on one sheet, as a PDF or PNG file.
     fn sheet<'py>(
         &self,
         py: Python<'py>,
@@ -134,8 +134,8 @@ impl Report {
     }
 }
 
-/// Returns the mean deviation around each vertex of a scene, given the closest primitive of each deviation and the
-/// weights of its vertices.
+/// Returns the mean deviation around each vertex of a scene. Each deviation has its closest primitive and the weights
+/// of the vertices of that primitive.
 #[pyfunction]
 pub(crate) fn deviation_on_vertices<'py>(
     py: Python<'py>,
@@ -150,7 +150,7 @@ pub(crate) fn deviation_on_vertices<'py>(
     Ok(found.into_pyarray(py))
 }
 
-/// Tells which points of a scan are isolated.
+/// Returns which points of a scan are isolated.
 #[pyfunction]
 pub(crate) fn isolated_points<'py>(
     py: Python<'py>,
@@ -163,8 +163,8 @@ pub(crate) fn isolated_points<'py>(
 
 #[pymethods]
 impl Index {
-    /// Returns the deviations of points from the local planes of a cloud, with NaN beyond a distance; None for a scene
-    /// that is no cloud.
+    /// Returns the deviations of points from the local planes of a cloud, NaN beyond a distance; `None` if the scene is
+    /// not a cloud.
     fn deviations_from_planes<'py>(
         &self,
         py: Python<'py>,

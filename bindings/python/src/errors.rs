@@ -1,4 +1,4 @@
-//! Exceptions of Python for the errors of the library.
+//! Python exceptions for the errors of the library.
 
 use p2m_core::storage::LoadError;
 use p2m_field::GridError;
@@ -9,17 +9,17 @@ use pyo3::exceptions::{PyFileExistsError, PyMemoryError, PyOSError, PyValueError
 use std::io;
 use std::path::Path;
 
-/// A `ValueError` with the message of an error.
+/// Returns a `ValueError` with the message of an error.
 pub(crate) fn value_error(error: impl std::fmt::Display) -> PyErr {
     PyValueError::new_err(error.to_string())
 }
 
-/// The exception for a row that is not finite.
+/// Returns the exception for a row that is not finite.
 pub(crate) fn not_finite(name: &str, row: usize) -> PyErr {
     value_error(format!("{name}: row {row} has a coordinate that is not finite"))
 }
 
-/// The exception for a grid or a field that cannot be made.
+/// Returns the exception for a grid or a field that cannot be made.
 pub(crate) fn grid_error(error: GridError) -> PyErr {
     match error {
         GridError::Memory(_) => PyMemoryError::new_err(error.to_string()),
@@ -27,10 +27,10 @@ pub(crate) fn grid_error(error: GridError) -> PyErr {
     }
 }
 
-/// The exception for an error of the operating system: an `OSError` of its subclass, with the name of the file.
+/// Returns the exception for an error of the operating system: the subclass of `OSError`, with the name of the file.
 pub(crate) fn io_error(error: &io::Error, path: &Path) -> PyErr {
     match error.raw_os_error() {
-        // Python chooses the subclass by the number.
+        // Python chooses the subclass by the error number.
         Some(number) => PyOSError::new_err((number, plain_message(error), path.display().to_string())),
         None => PyOSError::new_err(format!("{}: {error}", path.display())),
     }
@@ -42,7 +42,7 @@ fn plain_message(error: &io::Error) -> String {
     text.split(" (os error").next().unwrap_or(&text).to_owned()
 }
 
-/// The exception for a scene that cannot be read.
+/// Returns the exception for a scene that cannot be read.
 pub(crate) fn read_error(error: &ReadError, path: &Path) -> PyErr {
     match &error.reason {
         Reason::Io(source) | Reason::Saved(LoadError::Io(source)) => io_error(source, path),
@@ -50,7 +50,7 @@ pub(crate) fn read_error(error: &ReadError, path: &Path) -> PyErr {
     }
 }
 
-/// The exception for a saved index that cannot be loaded.
+/// Returns the exception for a saved index that cannot be loaded.
 pub(crate) fn load_error(error: &LoadError, name: &str) -> PyErr {
     match error {
         LoadError::Io(source) => io_error(source, Path::new(name)),
@@ -58,7 +58,7 @@ pub(crate) fn load_error(error: &LoadError, name: &str) -> PyErr {
     }
 }
 
-/// The exception for shards that cannot be written, opened or asked, with the name of the file.
+/// Returns the exception for shards that cannot be written, opened or queried, with the name of the file.
 pub(crate) fn shard_error(error: ShardError) -> PyErr {
     match &error {
         ShardError::Io { file, error } => io_error(error, file),

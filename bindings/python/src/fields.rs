@@ -18,7 +18,7 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 
 #[pymethods]
 impl Index {
-    /// Returns the distances at the points of a grid from the indices `first` on, with x running fastest.
+    /// Returns the distances at the points of a grid, from the indices `first` on, with x running fastest.
     fn field<'py>(
         &self,
         py: Python<'py>,
@@ -41,7 +41,7 @@ impl Index {
                 monitor.set_done(done.fetch_add(points, Ordering::Relaxed) + points);
                 monitor.unwind_if_cancelled();
             };
-            // Both ways return the same bits. Lists pay for grids that are finer than the scene.
+            // Both methods return the same bits. Lists are faster on grids that are finer than the scene.
             let last = grid.point(grid.counts().map(|n| n - 1));
             let is_in_range = [grid.origin(), last].iter().flat_map(|p| p.iter()).all(|x| x.abs() <= MAX_COORDINATE);
             let has_lists = is_in_range && grid.len() >= soup.len();
@@ -56,7 +56,7 @@ impl Index {
         Ok(values.map_err(grid_error)?.into_pyarray(py))
     }
 
-    /// Returns the surface of a field at a distance, with the errors of its vertices and of its triangles.
+    /// Returns the surface at a distance in a field, with the errors of its vertices and triangles.
     fn offset_surface(
         &self,
         py: Python<'_>,

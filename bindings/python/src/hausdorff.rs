@@ -13,11 +13,11 @@ use pyo3::prelude::*;
 use std::ops::ControlFlow;
 use std::sync::Arc;
 
-/// The parts of `p2m.HausdorffDistance`, in its order.
+/// The fields of `p2m.HausdorffDistance`, in order.
 type Parts<'py> = (f64, f64, Bound<'py, PyArray2<f64>>, Bound<'py, PyArray1<i64>>, u8, u64, bool);
 
-/// Returns the Hausdorff distance of two scenes, or the one-sided one if there is no index of the first scene; `None` if
-/// a scene is empty.
+/// Returns the Hausdorff distance of two scenes, or the one-sided distance if there is no index of the first scene;
+/// `None` if a scene is empty.
 #[pyfunction]
 pub(crate) fn hausdorff<'py>(
     py: Python<'py>,

@@ -1,4 +1,4 @@
-//! Indexes as objects of Python.
+//! Indexes as Python objects.
 
 use crate::errors::value_error;
 use crate::scene::{Scene, SharedScene};
@@ -20,36 +20,36 @@ use std::collections::HashMap;
 use std::path::PathBuf;
 use std::sync::{Arc, Mutex, OnceLock, PoisonError};
 
-/// A batch whose expected time is shorter runs on the calling thread.
+/// The expected time of a batch below which it runs on the calling thread.
 const MIN_PARALLEL_NANOSECONDS: f64 = 2e6;
-/// The expected time of a query that uses a structure.
+/// The expected time of a query of an index with a structure. A rough estimate, without a record of a measurement.
 const QUERY_NANOSECONDS: f64 = 1000.0;
-/// The expected time of an exhaustive search for each primitive.
+/// The expected time per primitive of a query without a structure. A rough estimate, without a record of a measurement.
 const EXHAUSTIVE_NANOSECONDS_PER_PRIMITIVE: f64 = 50.0;
 
-/// The part of a build that is finished is counted in these units.
+/// The number of units in which the progress of a build is counted.
 const BUILD_UNITS: usize = 100;
 
-/// The connected parts of a scene, and the signs that tell what is inside, if there is an inside.
+/// The connected parts of a scene, and the signs that decide what is inside, if the scene has an inside.
 pub(crate) type SolidParts = (Arc<Parts>, Option<Arc<Signed>>);
 
-/// An index. `p2m.Index` has its documentation. It never changes, so all threads may query it.
+/// An index, see `p2m.Index`. It never changes, so any number of threads may query it.
 #[pyclass(frozen, module = "p2m._p2m")]
 pub(crate) struct Index {
     pub(crate) scene: SharedScene,
     pub(crate) built: BuiltIndex,
     pub(crate) backend: &'static BackendEntry,
-    /// The file that the index came from.
+    /// The file from which the index was loaded.
     pub(crate) origin: Option<Origin>,
-    /// The signs that were prepared so far.
+    /// The signs that have been prepared so far, by rule.
     signs: Mutex<HashMap<SignRule, Arc<Signed>>>,
-    /// The normals of the scene, once they are asked for.
+    /// The normals of the scene, computed at the first request.
     normals: OnceLock<Normals>,
-    /// The connected parts of the scene, which solids need.
+    /// The connected parts of the scene, computed at the first request for solids.
     parts: OnceLock<Arc<Parts>>,
 }
 
-/// The file that an index came from.
+/// The file from which an index was loaded.
 #[derive(Clone)]
 pub(crate) struct Origin {
     pub(crate) path: PathBuf,
@@ -80,7 +80,8 @@ impl Index {
         py.detach(|| self.normals.get_or_init(|| Normals::new(&self.scene.soup)))
     }
 
-    /// Returns the connected parts of the scene, and the signs that make it solid if it consists of triangles alone.
+    /// Returns the connected parts of the scene, and the signs that decide what is inside if the scene consists of
+    /// triangles alone.
     pub(crate) fn solid(&self, py: Python<'_>, threads: usize) -> PyResult<SolidParts> {
         let soup = &self.scene.soup;
         let parts = py.detach(|| Arc::clone(self.parts.get_or_init(|| Arc::new(Parts::of(soup)))));
@@ -102,13 +103,13 @@ impl Index {
         }
     }
 
-    /// Returns the number of queries of the first step of a batch, which should not take long.
+    /// Returns the number of queries in the first step of a batch. The step should be short.
     #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "it is clamped")]
     pub(crate) fn first_step(&self) -> usize {
         (MIN_PARALLEL_NANOSECONDS / self.query_nanoseconds().max(1.0)).clamp(1.0, FIRST_STEP_QUERIES as f64) as usize
     }
 
-    /// Returns where a batch of so many queries runs.
+    /// Returns the threads on which a batch of this number of queries runs.
     pub(crate) fn threads_for(&self, py: Python<'_>, queries: usize, threads: usize) -> PyResult<Threads> {
         if threads == 1 || self.query_nanoseconds() * (queries as f64) < MIN_PARALLEL_NANOSECONDS {
             return Ok(Threads::Calling);
@@ -116,7 +117,8 @@ impl Index {
         pool(py, threads).map(Threads::Pool)
     }
 
-    /// Runs a batch of so many queries, detached from the interpreter, where [`threads_for`](Self::threads_for) says.
+    /// Runs a batch of this number of queries detached from the interpreter, on the threads of
+    /// [`threads_for`](Self::threads_for).
     pub(crate) fn run<R: Send>(
         &self,
         py: Python<'_>,
@@ -128,24 +130,24 @@ impl Index {
         run_batch(py, &threads, (queries, self.first_step()), progress, work)
     }
 
-    /// Returns the index as one that casts rays, or an error if its backend does not.
+    /// Returns the index as an index that casts rays, or an error if its backend casts none.
     pub(crate) fn ray_query(&self) -> PyResult<&(dyn RayQuery<f64> + Sync)> {
         let refused = || self.refused("casts no rays: use", |backend| backend.casts_rays);
         self.built.index.as_ray_query().ok_or_else(refused)
     }
 
-    /// Returns the index as one that answers queries for pairs, or an error if its backend does not.
+    /// Returns the index as an index that answers queries for pairs, or an error if its backend answers none.
     pub(crate) fn pair_query(&self) -> PyResult<&(dyn PairQuery<f64> + Sync)> {
         let refused = || self.refused("answers no queries for pairs: use", |backend| backend.answers_pairs);
         self.built.index.as_pair_query().ok_or_else(refused)
     }
 
-    /// Returns the exception for what the backend does not do, with the backends that do it.
+    /// Returns the exception for a query that the backend does not support, with the names of the backends that do.
     fn refused(&self, lack: &str, fits: impl Fn(&BackendEntry) -> bool) -> PyErr {
         value_error(format!("the backend '{}' {lack} {}", self.backend, alternatives(fits)))
     }
 
-    /// Returns the signs of a rule by its name, which are prepared by the first call.
+    /// Returns the signs for the name of a rule. The first call prepares them.
     pub(crate) fn signs(&self, py: Python<'_>, rule: &str, threads: usize) -> PyResult<Arc<Signed>> {
         let rule = sign_rule(rule)?;
         let prepared = || self.signs.lock().unwrap_or_else(PoisonError::into_inner);
@@ -164,7 +166,7 @@ impl Index {
     }
 }
 
-/// Returns the entry of a backend by its name; `auto` is the default one.
+/// Returns the entry of a backend by its name; `auto` is the default backend.
 pub(crate) fn backend(name: &str) -> PyResult<&'static BackendEntry> {
     let named = if name == "auto" { Some(BackendEntry::default_backend()) } else { BackendEntry::find(name) };
     named.ok_or_else(|| {
@@ -173,7 +175,7 @@ pub(crate) fn backend(name: &str) -> PyResult<&'static BackendEntry> {
     })
 }
 
-/// Returns the names of the backends that fit as a phrase, those without a structure last.
+/// Returns the names of the suitable backends as a phrase, those without a structure last.
 fn alternatives(fits: impl Fn(&BackendEntry) -> bool) -> String {
     let mut fitting: Vec<&BackendEntry> = BACKENDS.iter().filter(|backend| fits(backend)).collect();
     fitting.sort_by_key(|backend| backend.structure == SearchStructure::Exhaustive);
@@ -181,7 +183,7 @@ fn alternatives(fits: impl Fn(&BackendEntry) -> bool) -> String {
     names.split_last().map_or_else(String::new, |(last, others)| format!("{} or {last}", others.join(", ")))
 }
 
-/// Builds an index. Cancelled work ends by unwinding.
+/// Builds an index. Cancellation unwinds the build.
 pub(crate) fn build(
     settings: BuildSettings<'_>,
     monitor: &Monitor,
@@ -268,7 +270,7 @@ impl Index {
         Ok(Self::new(scene.shared.clone(), built, self.backend, None))
     }
 
-    /// Returns the scene.
+    /// Returns the scene of the index.
     fn scene(&self) -> Scene {
         Scene { shared: self.scene.clone() }
     }
@@ -278,12 +280,12 @@ impl Index {
         self.backend.name
     }
 
-    /// Returns the file that the index came from, its checksum, and whether it is mapped.
+    /// Returns the file from which the index was loaded, its checksum, and whether it is mapped.
     fn origin(&self) -> Option<(PathBuf, String, bool)> {
         self.origin.clone().map(|origin| (origin.path, origin.checksum, origin.is_mapped))
     }
 
-    /// Returns what is known of the index, by names.
+    /// Returns facts about the index by name.
     fn info<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
         let info = PyDict::new(py);
         let index = &self.built.index;

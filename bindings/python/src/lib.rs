@@ -1,11 +1,11 @@
 //! The native part of the Python package `p2m`.
 //!
-//! The classes here take and fill contiguous arrays of NumPy. Shapes, other types of arrays, records of answers and
-//! the documentation for users are in Python (`python/p2m`). Every build and every batch runs detached from the
-//! interpreter, on threads that never call it (the module `work`).
+//! The classes here take and fill contiguous NumPy arrays. Shapes, other types of arrays, records of answers and the
+//! documentation for users are in Python (`python/p2m`). Every build and every batch runs detached from the
+//! interpreter, on threads that never call it (see the module `work`).
 //!
-//! `unsafe` stands in two places that map saved files and shards where the user asked for it, and in one that passes
-//! memory of other libraries to a card.
+//! `unsafe` is needed in three places: two map saved files and shards at the request of the user, and one passes memory
+//! of other libraries to a card.
 #![deny(unsafe_code)]
 #![allow(clippy::too_many_arguments, reason = "the Python layer passes all arguments of a call")]
 
@@ -40,7 +40,7 @@ mod work;
 
 use pyo3::prelude::*;
 
-/// The functions and classes that the Python files of the package use.
+/// The functions and classes for the Python files of the package.
 #[pymodule]
 mod _p2m {
     #[cfg(feature = "cuda")]

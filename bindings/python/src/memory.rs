@@ -1,22 +1,22 @@
-//! Lists of unknown length, which may not fit into memory. Work that runs out of it unwinds, and Python gets a
+//! Lists of unknown length, which may not fit into memory. If memory runs out, the work unwinds, and Python raises a
 //! `MemoryError`.
 
 use std::panic::resume_unwind;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
-/// The memory that has to be left for all other work when a list grows, in bytes.
+/// The memory in bytes that has to remain free for other work when a list grows.
 const SPARE_BYTES: usize = 1 << 26;
 
-/// The payload of an unwinding because memory is missing.
+/// The panic payload that stands for a lack of memory.
 pub(crate) struct OutOfMemory;
 
-/// Ends the work of this thread because memory is missing.
+/// Unwinds this thread because memory is missing.
 pub(crate) fn out_of_memory() -> ! {
-    // No hook prints anything for it.
+    // `resume_unwind` does not call the panic hook, so nothing is printed.
     resume_unwind(Box::new(OutOfMemory))
 }
 
-/// Returns whether there is memory for other work: small allocations anywhere would abort the process.
+/// Returns whether enough memory remains for other work, whose small allocations would otherwise abort the process.
 fn is_memory_left() -> bool {
     Vec::<u8>::new().try_reserve_exact(SPARE_BYTES).is_ok()
 }
@@ -31,14 +31,14 @@ pub(crate) fn reserve<T>(list: &mut Vec<T>, more: usize) {
     }
 }
 
-/// The bytes of lists since memory was checked.
+/// The number of bytes of lists since memory was last checked.
 static UNCHECKED: AtomicUsize = AtomicUsize::new(0);
 
 /// Collects items, or unwinds.
 pub(crate) fn collected<T>(items: impl ExactSizeIterator<Item = T>) -> Vec<T> {
     let mut list = Vec::new();
     let bytes = items.len() * size_of::<T>();
-    // Checking for each of many short lists would take longer than filling them.
+    // For short lists, checking memory each time would take longer than filling them.
     let unchecked = UNCHECKED.fetch_add(bytes, Ordering::Relaxed) + bytes;
     let is_due = unchecked > SPARE_BYTES / 8;
     if is_due {
@@ -51,7 +51,8 @@ pub(crate) fn collected<T>(items: impl ExactSizeIterator<Item = T>) -> Vec<T> {
     list
 }
 
-/// Joins lists that parts returned, or unwinds. Each is freed as soon as it is moved, so there is little memory besides.
+/// Joins the lists of all parts, or unwinds. Each list is freed once it has been moved, so little extra memory is
+/// needed.
 pub(crate) fn joined<T>(parts: Vec<Vec<T>>) -> Vec<T> {
     let mut all = Vec::new();
     reserve(&mut all, parts.iter().map(Vec::len).sum());

@@ -11,7 +11,7 @@ use pyo3::prelude::*;
 /// The origin, the spacing and the counts of a grid.
 type GridParts = ([f64; 3], f64, [usize; 3]);
 
-/// What made a page or a report.
+/// The name and version of the program that makes pages and reports.
 pub(crate) const ABOUT: &str = concat!("p2m ", env!("CARGO_PKG_VERSION"), " for Python");
 
 /// Returns the axis that points up.
@@ -26,22 +26,22 @@ pub(crate) fn page(view: View<'_>, (title, summary, unit): (String, String, &str
     view.html().map_err(value_error)
 }
 
-/// Returns the grid that covers the box of a scene, scaled about its centre, with so many points along its longest side.
+/// Returns a grid over the box of a scene, scaled about its centre, with `resolution` points along the longest side.
 #[pyfunction]
 pub(crate) fn grid_around(scene: &Scene, resolution: usize, scale: f64) -> PyResult<GridParts> {
     let grid = Grid::around(&scene.shared.soup.aabb(), resolution, scale).map_err(value_error)?;
     Ok((grid.origin().coords.into(), grid.spacing(), grid.counts()))
 }
 
-/// Returns the grid that contains all points at a distance from what is in the box of a scene.
+/// Returns a grid that contains all points at a distance from anything inside of the box of a scene.
 #[pyfunction]
 pub(crate) fn grid_of_offset(scene: &Scene, distance: f64, resolution: usize) -> PyResult<GridParts> {
     let grid = p2m_field::offset_grid(&scene.shared.soup.aabb(), distance, resolution).map_err(value_error)?;
     Ok((grid.origin().coords.into(), grid.spacing(), grid.counts()))
 }
 
-/// Returns a page that shows a scene as HTML. `texts` has the title, the summary and the unit. A field has the values of
-/// a grid, x running fastest.
+/// Returns a page that shows a scene, as HTML. `texts` has the title, the summary and the unit. A field has the values
+/// of a grid, with x running fastest.
 #[pyfunction]
 pub(crate) fn scene_page(
     scene: &Scene,

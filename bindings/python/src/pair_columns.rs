@@ -1,4 +1,4 @@
-//! Columns of near pairs of primitives in arrays of NumPy. Arrays of two have the first scene first.
+//! Columns of near pairs of primitives in NumPy arrays. Arrays with two items per pair have the first scene first.
 
 use crate::columns::{NO_FEATURE, NO_PRIMITIVE, answer_list, columns};
 use p2m_core::Feature;

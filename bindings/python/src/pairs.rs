@@ -1,4 +1,4 @@
-//! Queries for pairs: shapes near a scene, and two scenes, one of which may move.
+//! Queries for pairs: shapes near a scene, and two scenes, of which the second one may move.
 
 use crate::arrays::{borrowed, motions, slice, triples};
 use crate::index::{Index, SolidParts};
@@ -20,17 +20,17 @@ use std::sync::Arc;
 /// An index that answers queries for pairs.
 type AnyPairQuery<'a> = &'a (dyn PairQuery<f64> + Sync);
 
-/// Two indexes of which the second one may move.
+/// Two indexes, of which the second one may move.
 struct ScenePair {
     first: Arc<dyn AnyIndex>,
     second: Arc<dyn AnyIndex>,
-    /// The motions; without one the scenes are as they are, and there is one answer.
+    /// The motions. Without motions the scenes stay in place, and there is one answer.
     motions: Option<Vec<Isometry3<f64>>>,
     options: PairOptions<f64>,
 }
 
 impl ScenePair {
-    /// Calls `answer` for each motion, in parts, and returns the answers in the order of the motions.
+    /// Calls `answer` for each motion, in parts, and returns the answers in order.
     fn answer<R: Send>(
         &self,
         threads: &Threads,
@@ -44,7 +44,7 @@ impl ScenePair {
         let first: AnyPairQuery<'_> = &first;
         let Some(motions) = &self.motions else { return vec![answer(first, second, &self.options)] };
         let position = |motion: &Isometry3<f64>| Point3::from(motion.translation.vector);
-        // One motion may take long.
+        // The answer for one motion may take long.
         monitor.set_step(1);
         let parts = answer_in_parts(motions.len(), (), threads, monitor, &|range, ()| {
             batch::map(&motions[range.clone()], &batch_options(range.len(), false), position, |motion| {
@@ -54,7 +54,8 @@ impl ScenePair {
         parts.into_iter().flatten().collect()
     }
 
-    /// Runs [`answer`](Self::answer) so that an interrupt abandons it at once. Its searches then end.
+    /// Runs [`answer`](Self::answer) so that an interrupt returns at once. The abandoned searches then end on their
+    /// own.
     fn run<R: Send + 'static>(
         self,
         py: Python<'_>,
@@ -67,7 +68,7 @@ impl ScenePair {
     }
 }
 
-/// Shapes with one to three vertices each, one after another.
+/// Shapes with one to three vertices each, stored consecutively.
 struct Shapes<'a> {
     vertices: &'a [[f64; 3]],
     width: usize,
@@ -99,7 +100,7 @@ impl Shapes<'_> {
     }
 }
 
-/// Calls a function with the solid of an index.
+/// Calls a function with an index as a solid.
 fn with_solid<R>(
     index: &AnyPairQuery<'_>,
     (parts, signed): &SolidParts,
@@ -110,7 +111,7 @@ fn with_solid<R>(
 }
 
 impl Index {
-    /// Returns this index with another one and its motions. Both answer queries for pairs.
+    /// Returns this index paired with another one and its motions, if both answer queries for pairs.
     fn with_other(
         &self,
         other: &Self,
@@ -130,8 +131,9 @@ impl Index {
 
 #[pymethods]
 impl Index {
-    /// Finds the nearest points of the scene and of shapes with so many vertices each, for the arrays of `out`. If
-    /// `is_near` is one of them, it is written alone: whether any primitive is within the largest distance of a shape.
+    /// Finds the nearest points of the scene and of shapes with `width` vertices each, and writes them into the arrays
+    /// of `out`. If `out` has `is_near`, only this array is written: whether any primitive is within the largest
+    /// distance of a shape.
     fn closest_to(
         &self,
         py: Python<'_>,
@@ -168,7 +170,8 @@ impl Index {
         })
     }
 
-    /// Returns a sentence if the inside of the scene as a solid is a guess, or is none because of what is beside triangles.
+    /// Returns a warning if it is uncertain what is inside of the scene, or if nothing is because of its segments or
+    /// points.
     fn solid_note(&self, py: Python<'_>, threads: usize) -> PyResult<Option<&'static str>> {
         Ok(match self.solid(py, threads)?.1 {
             Some(signed) => signed.note(),
@@ -177,7 +180,7 @@ impl Index {
         })
     }
 
-    /// Returns the nearest pair of this scene and another one for each motion of the other one, or for none.
+    /// Returns the nearest pair of this scene and another one, for each motion of the other scene or without motion.
     fn closest_pairs(
         &self,
         py: Python<'_>,
@@ -204,7 +207,7 @@ impl Index {
         Ok(PairList(list))
     }
 
-    /// Returns whether this scene and another one intersect, for each motion of the other one, or for none.
+    /// Returns whether this scene and another one intersect, for each motion of the other scene or without motion.
     fn do_intersect<'py>(
         &self,
         py: Python<'py>,
@@ -218,8 +221,8 @@ impl Index {
         Ok(answers.to_pyarray(py).into_any())
     }
 
-    /// Returns all pairs of primitives within a distance, nearest first, and of equally near ones that with the lowest
-    /// ids. The other scene has at most one motion.
+    /// Returns all pairs of primitives within a distance, nearest first, and of equally near pairs those with the
+    /// lowest ids first. The other scene has at most one motion.
     fn pairs_within(
         &self,
         py: Python<'_>,
@@ -239,7 +242,7 @@ impl Index {
             list.sort_unstable_by(|a, b| a.distance.total_cmp(&b.distance).then(a.primitives.cmp(&b.primitives)));
             list
         })?;
-        // There is one list, whose memory is reused.
+        // There is a single list, which is reused without copying.
         Ok(PairList(lists.into_iter().next().unwrap_or_default().into_iter().map(Some).collect()))
     }
 }

@@ -1,4 +1,4 @@
-//! The division of queries of any kind among threads, in parts that are short enough to be watched.
+//! Division of queries of any kind among threads, in parts that are short enough to check for interrupts between them.
 
 use crate::errors::not_finite;
 use crate::work::{Monitor, Threads};
@@ -8,9 +8,9 @@ use pyo3::PyResult;
 use std::ops::Range;
 use std::time::Instant;
 
-/// Places for the answers of queries, which can be divided.
+/// Room for the answers of queries, which can be divided.
 pub(crate) trait Split: Send + Sized {
-    /// Divides the places in two, the first for `len` queries.
+    /// Divides the room into two parts, the first of which is for `len` queries.
     fn split(self, len: usize) -> (Self, Self);
 }
 
@@ -39,11 +39,13 @@ impl<A: Split> Split for Option<A> {
     }
 }
 
-/// Calls `answer` for all queries, in parts with the places for their answers, and returns its results in the order of
-/// the parts. After a cancellation parts are missing.
+/// Calls `answer` for all queries in parts, each with the room for its answers, and returns the results in the order of
+/// the parts. After a cancellation, results are missing.
 ///
-/// The queries are halved until a part is as long as the monitor wants its next step. Parts begin short and are longer
-/// where queries are fast, because the second half is divided after the first was answered.
+/// The basic idea: the queries are halved recursively, and rayon may run the halves on two threads. A range becomes a
+/// part when it is no longer than the step that the monitor currently wants. The monitor doubles the step after fast
+/// parts and halves it after slow ones. The second half is divided after the first one was answered, so parts adapt to
+/// the speed of the queries.
 pub(crate) fn answer_in_parts<O: Split, R: Send>(
     queries: usize,
     out: O,
@@ -92,8 +94,8 @@ fn halve<O: Split, R: Send>(
 /// The number of rows that are checked at a time.
 const ROWS_PER_CHECK: usize = 1 << 10;
 
-/// Checks that all coordinates are finite, of which `width` rows are an argument. A block of rows is
-/// checked without branches.
+/// Checks that all coordinates are finite, and otherwise reports the argument, of which each has `width` rows. A block
+/// of rows is checked without branches.
 pub(crate) fn check_finite<P: Position<f64>>(name: &str, points: &[P], width: usize) -> PyResult<()> {
     let is_finite = |point: &P| point.point().iter().fold(true, |all, x| all & x.is_finite());
     for (block, rows) in points.chunks(ROWS_PER_CHECK).enumerate() {
@@ -105,10 +107,10 @@ pub(crate) fn check_finite<P: Position<f64>>(name: &str, points: &[P], width: us
     Ok(())
 }
 
-/// The number of queries from which on their order along a curve saves more time than finding it takes.
+/// The number of queries from which sorting them along a curve saves more time than it takes.
 const MIN_ORDERED_QUERIES: usize = 256;
 
-/// The options of a batch of so many queries. Parts that were divided already are not divided again.
+/// Returns the options of a batch of this number of queries. A part of a batch is not divided again.
 pub(crate) fn batch_options(queries: usize, parallel: bool) -> BatchOptions {
     BatchOptions::default().with_parallel(parallel).with_reorder(queries >= MIN_ORDERED_QUERIES)
 }

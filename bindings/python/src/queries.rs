@@ -1,4 +1,4 @@
-//! Batches of queries by points.
+//! Batches of point queries.
 
 use crate::arrays::{Coordinates, borrowed, slice, with_positions};
 use crate::columns::{ClosestArrays, ClosestValues, Near, NearList, Rows};
@@ -17,7 +17,7 @@ use pyo3::prelude::*;
 use pyo3::types::PyDict;
 use std::ops::Range;
 
-/// The number of queries with any number of answers that shards answer at a time.
+/// The number of queries that shards answer at a time if each query has any number of answers.
 const LISTS_PER_PART: usize = 1 << 16;
 
 /// Returns the options of queries for the closest point.
@@ -26,18 +26,18 @@ fn query_options(max_distance: f64, epsilon: f64, max_visits: Option<u32>) -> Qu
     options.with_max_visits(max_visits.unwrap_or(u32::MAX))
 }
 
-/// Returns an answer of an index over the whole scene with the id of its primitive.
+/// Returns an answer of an index over the whole scene, with the id of its primitive.
 fn in_whole(closest: Closest<f64>) -> Near {
     (i64::from(closest.primitive.number()), closest)
 }
 
-/// Returns an index as one that answers queries by points, as all do.
+/// Returns an index as an index that answers point queries, which all do.
 #[allow(clippy::unnecessary_wraps, reason = "other kinds of queries are refused by some indexes")]
 fn any_index(index: &Index) -> PyResult<&dyn AnyIndex> {
     Ok(&*index.built.index)
 }
 
-/// Answers queries for the closest point into the arrays of `out`.
+/// Answers closest-point queries into the arrays of `out`.
 #[pyfunction]
 pub(crate) fn closest(
     py: Python<'_>,
@@ -72,7 +72,7 @@ pub(crate) fn closest(
                 &points[range],
                 Position::point,
                 any_index,
-                // Primitives of scenes have vertices, so no answer fails.
+                // The primitives of scenes have vertices, so certification never fails.
                 |index, query| index.certified_closest_point(query, &options).ok().flatten().map(in_whole),
                 |shards, points| match certified {
                     true => shards.certified_closest_points(points, &options),
@@ -87,7 +87,7 @@ pub(crate) fn closest(
     })
 }
 
-/// Answers queries for the k nearest primitives into the arrays of `out`, k places for each query.
+/// Answers queries for the k nearest primitives into the arrays of `out`, which have k rows for each query.
 #[pyfunction]
 pub(crate) fn k_nearest(
     py: Python<'_>,
@@ -111,7 +111,7 @@ pub(crate) fn k_nearest(
     Ok(())
 }
 
-/// Asks a part of a batch for the k nearest primitives.
+/// Finds the k nearest primitives for a part of a batch.
 fn near<P: Position<f64>>(part: &Part<'_>, points: &[P], k: usize, radius: f64) -> PyResult<Vec<Vec<Near>>> {
     part.ask(
         points,
@@ -126,7 +126,7 @@ fn near<P: Position<f64>>(part: &Part<'_>, points: &[P], k: usize, radius: f64) 
     )
 }
 
-/// Returns all primitives within a distance of each query, whose numbers are written to `counts`.
+/// Returns all primitives within a distance of each query, and writes their numbers to `counts`.
 #[pyfunction]
 pub(crate) fn within(
     py: Python<'_>,
@@ -148,7 +148,7 @@ pub(crate) fn within(
     py.detach(|| catch(|| joined(parts))).map(NearList)
 }
 
-/// Writes numbers to a column.
+/// Writes counts to a column.
 pub(crate) fn write_counts(values: &mut [i64], counts: impl Iterator<Item = usize>) {
     for (value, count) in values.iter_mut().zip(counts) {
         *value = i64::try_from(count).unwrap_or(i64::MAX);
@@ -187,7 +187,7 @@ pub(crate) fn is_any_within(
 
 #[pymethods]
 impl Index {
-    /// Writes the normals at features of primitives to `out`, and nan where there is none.
+    /// Writes the normals at features of primitives to `out`; NaN if there is no normal.
     fn normals(
         &self,
         py: Python<'_>,
@@ -208,8 +208,8 @@ impl Index {
         Ok(())
     }
 
-    /// Returns the name of the rule that decides signs, and a sentence that says why, if the surface is open or
-    /// not consistently oriented.
+    /// Returns the name of the rule that decides signs, and a sentence with the reason if the surface is open or not
+    /// consistently oriented.
     fn sign_rule(&self, py: Python<'_>, sign: &str, threads: usize) -> PyResult<(&'static str, Option<&'static str>)> {
         let signed = self.signs(py, sign, threads)?;
         Ok((signed.rule().name(), signed.note()))
@@ -248,7 +248,7 @@ impl Index {
         let out = slice(&mut array)?.unwrap_or_default();
         let factor = if inside_is_negative { 1.0 } else { -1.0 };
         let options = QueryOptions::default().with_max_distance(max_distance);
-        // Without primitives there is nothing inside. The side of a point beyond the largest distance is not known.
+        // Without primitives, everything is outside. The side of a point beyond the largest distance is unknown.
         let missing = if max_distance < f64::INFINITY { f64::NAN } else { factor * f64::INFINITY };
         let value_of = |distance: f64| if distance == f64::INFINITY { missing } else { factor * distance };
         self.answer_signed(py, points, &signed, out, run, |index, points, batch, out| {
@@ -259,7 +259,7 @@ impl Index {
 }
 
 impl Index {
-    /// Answers points by an index with signs. `answer` gets the index that it asks.
+    /// Answers queries by an index with signs. `answer` is called with the index that it has to use.
     fn answer_signed<V: Copy + Send>(
         &self,
         py: Python<'_>,
@@ -278,11 +278,12 @@ impl Index {
                     answer(index, &points, &batch, out);
                 };
                 if signed.is_closed() {
-                    // All points are ordered at once, so that neighbours share queries and signs.
+                    // All points are ordered together, so that neighbours share queries and signs.
                     let index = Interruptible::new(&*self.built.index, |left, answer| monitor.run_step(left, answer));
                     answer(&index, 0..points.len(), threads.is_parallel(), out);
                 } else {
-                    // Most of the work is not that of the index.
+                    // The index does only a small part of the work, so steps of the index would not suffice for
+                    // interrupts.
                     answer_in_parts(points.len(), out, threads, monitor, &|range, out: &mut [V]| {
                         answer(&self.built.index, range, false, out);
                     });

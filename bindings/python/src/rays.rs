@@ -19,7 +19,7 @@ use pyo3::types::PyDict;
 /// The number of rays that shards answer at a time.
 const RAYS_PER_PART: usize = 1 << 18;
 
-/// The id of a primitive with a hit of it.
+/// The id of a primitive, and its hit.
 type RayHit = (i64, Hit);
 
 columns! { HitArrays, HitColumns, RayHit, {
@@ -36,17 +36,17 @@ columns! { HitArrays, HitColumns, RayHit, {
 
 answer_list!(HitList, RayHit, HitArrays, Some);
 
-/// Returns a hit of an index over the whole scene with the id of its primitive.
+/// Returns a hit of an index over the whole scene, with the id of its primitive.
 fn in_whole(hit: Hit) -> RayHit {
     (i64::from(hit.primitive.number()), hit)
 }
 
-/// Returns a hit of shards with the id of its primitive.
+/// Returns a hit of shards, with the id of its primitive.
 fn in_shards(hit: ShardHit) -> RayHit {
     (i64::try_from(hit.id).unwrap_or(i64::MAX), hit.hit)
 }
 
-/// Rays that have a row each, and where they are cast.
+/// The rays of a batch, one for each row, and the index at which they are cast.
 struct Cast<'a, 'py> {
     index: Source<'py>,
     origins: &'a [[f64; 3]],
@@ -57,8 +57,8 @@ struct Cast<'a, 'py> {
 }
 
 impl Cast<'_, '_> {
-    /// Answers all rays in parts by a function of an index and a ray, or by one of shards and all rays, whose
-    /// answers are converted.
+    /// Answers all rays in parts, either by a function of an index and a ray, or by a function of shards and all rays,
+    /// whose answers are converted.
     fn answer<O: Split, A: Send, B, R: Send>(
         self,
         py: Python<'_>,
@@ -97,7 +97,7 @@ fn bad_ray(row: usize, error: &RayError) -> PyErr {
     }
 }
 
-/// Casts rays. The arrays of `out` depend on the mode: columns of hits for `first`, and the array `value` for all
+/// Casts rays. The arrays of `out` depend on the mode: columns of hits for `first`, and the array `value` for the
 /// others. The mode `all` returns the hits.
 #[pyfunction]
 pub(crate) fn rays(

@@ -12,10 +12,10 @@ use p2m_field::sample::{self, Samples, SurfaceSampler};
 use pyo3::prelude::*;
 use std::sync::Arc;
 
-/// Points, and the ids of their primitives.
+/// The points, and the ids of their primitives.
 type Columns<'py> = (Bound<'py, PyArray2<f64>>, Bound<'py, PyArray1<i64>>);
 
-/// Returns points of a scene and the ids of their primitives. If there are sigmas, noise moves the points.
+/// Returns points of a scene and the ids of their primitives. With `sigmas`, noise moves the points.
 #[pyfunction]
 pub(crate) fn sample_surface<'py>(
     py: Python<'py>,
@@ -37,7 +37,7 @@ pub(crate) fn sample_surface<'py>(
     Ok((rows(py, samples.points)?, PyArray1::from_iter(py, primitives)))
 }
 
-/// Returns points that are evenly distributed in a box.
+/// Returns points that are uniformly distributed in a box.
 #[pyfunction]
 pub(crate) fn sample_box<'py>(
     py: Python<'py>,
@@ -55,7 +55,7 @@ pub(crate) fn sample_box<'py>(
     rows(py, points)
 }
 
-/// Ends the work of this thread if there is no memory for so many samples.
+/// Unwinds this thread if there is too little memory for this number of samples.
 fn check_memory(count: usize) {
     reserve(&mut Vec::<(Point3<f64>, PrimitiveId)>::new(), count);
 }

@@ -15,7 +15,7 @@ use std::io::{self, Write};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
-/// Maps the file at a path.
+/// Maps the file at a path into memory.
 #[allow(unsafe_code, reason = "the user asked for it and was told what it needs")]
 fn map(path: &Path) -> Result<SavedFile, LoadError> {
     // SAFETY: the documentation of `p2m.load` says that with `map=True` nobody may change the file.
@@ -31,7 +31,7 @@ fn load_file(file: &SavedFile) -> Result<Loaded, LoadError> {
     let scene = Arc::new(load_scene(reader)?);
     let Some(backend) = BackendEntry::from_saved(reader) else {
         return match storage::kind(reader) {
-            // There is an index, of a kind that nobody knows.
+            // The file has an index of an unknown kind.
             Ok(found) => Err(LoadError::OtherKind { found, expected: "one of p2m.backends()".to_owned() }),
             Err(_) => Ok((scene, None)),
         };
@@ -57,7 +57,7 @@ pub(crate) fn load(py: Python<'_>, path: PathBuf, map: bool, threads: usize) -> 
     Ok(Index::new(scene, built, backend, Some(Origin { path, checksum, is_mapped: map })))
 }
 
-/// Loads an index from the bytes of `Index.to_bytes`. An index of a backend that has no saved form is built anew.
+/// Loads an index from the bytes of `Index.to_bytes`. If the backend has no saved form, the index is built.
 #[pyfunction]
 pub(crate) fn load_bytes(py: Python<'_>, bytes: &[u8], backend: &str, threads: usize) -> PyResult<Index> {
     let name = "the pickled index";
@@ -82,14 +82,14 @@ fn write(scene: &SharedScene, built: &BuiltIndex, out: impl Write) -> io::Result
     writer.write(out)
 }
 
-/// Writes a file, which appears when it is complete, unless the work was cancelled.
+/// Writes a file, which appears under its name when it is complete, unless the work was cancelled.
 fn write_file(path: &Path, monitor: &Monitor, write: impl FnOnce(&mut OutputFile) -> io::Result<()>) -> io::Result<()> {
     let mut file = OutputFile::create(path)?;
     write(&mut file)?;
     if monitor.is_cancelled() { Ok(()) } else { file.finish() }
 }
 
-/// Writes bytes to a file, which appears when it is complete.
+/// Writes bytes to a file, which appears under its name when it is complete.
 #[pyfunction]
 pub(crate) fn write_bytes(py: Python<'_>, path: PathBuf, bytes: Vec<u8>) -> PyResult<()> {
     let file = path.clone();
@@ -110,7 +110,8 @@ impl Index {
         saved.map_err(|error| io_error(&error, &path))
     }
 
-    /// Returns the index with its scene in the format of saved files; only the scene if the backend has no saved form.
+    /// Returns the index with its scene in the format of saved files. If the backend has no saved form, only the scene
+    /// is saved.
     fn to_bytes<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyBytes>> {
         let mut bytes = Vec::new();
         py.detach(|| write(&self.scene, &self.built, &mut bytes)).map_err(value_error)?;

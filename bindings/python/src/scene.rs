@@ -1,4 +1,4 @@
-//! Scenes as objects of Python.
+//! Scenes as Python objects.
 
 use crate::arrays::{Coordinates, motions, rows, triples};
 use crate::errors::{io_error, read_error, value_error};
@@ -15,10 +15,10 @@ use pyo3::types::PyBytes;
 use std::path::PathBuf;
 use std::sync::Arc;
 
-/// A scene that Python objects share. Indexes share its primitives.
+/// A scene that several Python objects and indexes share.
 pub(crate) type SharedScene = Arc<p2m_mixed::Scene>;
 
-/// The coordinates and indices of a scene that is not checked yet.
+/// The coordinates and indices of a scene, before they are checked.
 struct Parts {
     positions: Vec<Point3<f64>>,
     triangles: Vec<[u32; 3]>,
@@ -27,7 +27,7 @@ struct Parts {
 }
 
 impl Parts {
-    /// Makes the scene of the parts: triangles, then segments, then points.
+    /// Makes a scene whose primitives are numbered from 0: first all triangles, then all segments, then all points.
     fn soup(self) -> Result<Soup<f64>, p2m_core::BuildError> {
         let Self { positions, triangles, segments, points } = self;
         if segments.is_empty() && points.is_empty() {
@@ -39,7 +39,7 @@ impl Parts {
     }
 }
 
-/// A scene. `p2m.Scene` has its documentation.
+/// A scene, see `p2m.Scene`.
 #[pyclass(frozen, module = "p2m._p2m", from_py_object)]
 #[derive(Clone)]
 pub(crate) struct Scene {
@@ -101,7 +101,7 @@ impl Scene {
         })
     }
 
-    /// Makes a scene of named parts, which become objects.
+    /// Makes a scene from named parts, which become objects.
     #[staticmethod]
     fn joined(parts: Vec<(String, Self)>) -> PyResult<Self> {
         let mut whole = p2m_mixed::Scene::default();
@@ -111,7 +111,7 @@ impl Scene {
         Ok(Self::new(whole))
     }
 
-    /// Returns the scene with the numbers of the polygons that its triangles are from.
+    /// Returns a copy of the scene in which the source of each triangle is the number of its polygon.
     fn with_sources(&self, triangles: PyReadonlyArray1<'_, u32>) -> PyResult<Self> {
         let mut scene = (*self.shared).clone();
         let numbers = triangles.as_slice()?;
@@ -124,7 +124,7 @@ impl Scene {
         Ok(Self::new(scene))
     }
 
-    /// Makes the scene of `to_bytes`.
+    /// Loads a scene from the bytes of `to_bytes`.
     #[staticmethod]
     fn from_bytes(py: Python<'_>, bytes: &[u8]) -> PyResult<Self> {
         let scene = py.detach(|| p2m_mixed::read_p2m(bytes, "the pickled scene"));
@@ -148,7 +148,7 @@ impl Scene {
         moved.map(Self::new).map_err(value_error)
     }
 
-    /// Returns a scene that a motion has moved, given as a flat matrix of 4 x 4 numbers. Coordinates are rounded.
+    /// Returns the scene after a motion, given as a flat matrix of 4 x 4 numbers. Coordinates are rounded.
     fn transformed(&self, py: Python<'_>, transform: PyReadonlyArray1<'_, f64>) -> PyResult<Self> {
         let motions = motions(&transform)?;
         let moved = py.detach(|| {
@@ -168,7 +168,7 @@ impl Scene {
         (soup.positions().len(), soup.triangles().len(), soup.segments().len(), soup.points().len())
     }
 
-    /// Returns the corners of the box around all primitives, or nothing for an empty scene.
+    /// Returns the corners of the box around all primitives, or `None` for an empty scene.
     fn bounds(&self, py: Python<'_>) -> Option<[[f64; 3]; 2]> {
         let soup = &self.shared.soup;
         let Aabb { min, max } = py.detach(|| soup.aabb());
@@ -192,29 +192,29 @@ impl Scene {
         PyArray1::from_iter(py, self.shared.soup.points().iter().map(|&i| i64::from(i)))
     }
 
-    /// Returns the ids of the primitives with so many vertices.
+    /// Returns the ids of the primitives with this number of vertices.
     fn ids<'py>(&self, py: Python<'py>, vertices: usize) -> Bound<'py, PyArray1<i64>> {
         let elements = self.shared.soup.elements().enumerate();
         let ids = elements.filter(|(_, element)| element.indices().len() == vertices);
         PyArray1::from_iter(py, ids.map(|(id, _)| i64::try_from(id).unwrap_or(-1)))
     }
 
-    /// Returns the number of the statement that each primitive comes from.
+    /// Returns the source of each primitive: the number of its statement in the file.
     fn sources<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<i64>> {
         PyArray1::from_iter(py, self.shared.sources.iter().map(|&source| i64::from(source)))
     }
 
-    /// Returns the names of the objects, with their first id and the one after their last.
+    /// Returns the objects: the name, the first id, and the id after the last one.
     fn objects(&self) -> Vec<(String, usize, usize)> {
         self.shared.objects.iter().map(|object| (object.name.clone(), object.ids.start, object.ids.end)).collect()
     }
 
-    /// Returns the unit of the coordinates, if the file has it.
+    /// Returns the unit of the coordinates, if the file states it.
     fn unit(&self) -> Option<String> {
         self.shared.unit.map(|unit| unit.to_string())
     }
 
-    /// Returns what the reader left out.
+    /// Returns descriptions of the records that the reader left out.
     fn skipped(&self) -> Vec<String> {
         self.shared.skipped.iter().map(ToString::to_string).collect()
     }
@@ -238,7 +238,7 @@ pub(crate) fn read_points(
     Ok((rows(py, table.points)?, ids, table.unit.map(|unit| unit.to_string())))
 }
 
-/// Returns indices as rows of an array.
+/// Returns indices as the rows of an array.
 fn index_rows<'py, const N: usize>(py: Python<'py>, rows: &[[u32; N]]) -> PyResult<Bound<'py, PyArray2<i64>>> {
     let flat = PyArray1::from_iter(py, rows.as_flattened().iter().map(|&i| i64::from(i)));
     debug_assert_eq!(flat.len(), N * rows.len());

@@ -1,4 +1,4 @@
-//! Sharded indexes as objects of Python, and the writer of shards.
+//! Sharded indexes and the writer of shards as Python objects.
 
 use crate::arrays::{Coordinates, borrowed, slice, with_positions};
 use crate::columns::{ClosestArrays, Near, column};
@@ -18,32 +18,32 @@ use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicUsize, Ordering};
 use std::sync::{Mutex, PoisonError};
 
-/// The number of answers of a part of a batch, which limits the memory besides the answers to about 350 MB. A shard is
-/// loaded at most twice for each part.
+/// The number of answers in a part of a batch. It limits the memory besides the answers to about 350 MB. A part loads
+/// each shard at most twice.
 pub(crate) const ANSWERS_PER_PART: usize = 1 << 20;
 
-/// Returns an answer with the id of its primitive.
+/// Returns an answer of shards, with the id of its primitive.
 pub(crate) fn in_shards(answer: ShardClosest) -> Near {
     (i64::try_from(answer.id).unwrap_or(i64::MAX), answer.closest)
 }
 
-/// Maps the shards of a folder.
+/// Maps the shards in a folder into memory.
 #[allow(unsafe_code, reason = "the user asked for it and was told what it needs")]
 fn open_mapped(folder: &Path, max_bytes: u64) -> Result<ShardedIndex, ShardError> {
     // SAFETY: the documentation of `p2m.Shards` says that with `map=True` nobody may change the files.
     unsafe { ShardedIndex::open_mapped(folder, max_bytes) }
 }
 
-/// A sharded index. `p2m.Shards` has its documentation.
+/// A sharded index, see `p2m.Shards`.
 #[pyclass(frozen, module = "p2m._p2m")]
 pub(crate) struct Shards {
     index: ShardedIndex,
 }
 
 impl Shards {
-    /// Runs a batch of so many queries on threads of a pool, detached from the interpreter.
+    /// Runs a batch of this number of queries on a pool, detached from the interpreter.
     ///
-    /// The library divides batches among the threads of the current pool, so there has to be one.
+    /// The library divides batches among the threads of the current pool, so the work has to run on one.
     fn run<R: Send>(
         py: Python<'_>,
         queries: usize,
@@ -54,8 +54,8 @@ impl Shards {
         run_batch(py, &threads, (queries, FIRST_STEP_QUERIES), progress, work)
     }
 
-    /// Runs a batch of queries in parts of so many, each as one batch of the library with the places for its answers.
-    /// The first part is there even if it is empty, so that it returns the errors of the index.
+    /// Runs a batch of queries in parts of `per_part` queries, each as a batch of the library with the room for its
+    /// answers. There is at least one part, even without queries, so that errors of the index are returned.
     pub(crate) fn answer<O: Split, R: Send>(
         &self,
         py: Python<'_>,
@@ -88,7 +88,7 @@ impl Shards {
 
 #[pymethods]
 impl Shards {
-    /// Opens the sharded index of a folder.
+    /// Opens the sharded index in a folder.
     #[new]
     fn open(py: Python<'_>, path: PathBuf, max_bytes: u64, map: bool) -> PyResult<Self> {
         let opened = py.detach(|| {
@@ -102,19 +102,19 @@ impl Shards {
         &self.index.manifest().backend
     }
 
-    /// Returns the number of triangles, segments and points.
+    /// Returns the numbers of triangles, segments and points.
     fn counts(&self) -> (u64, u64, u64) {
         let manifest = self.index.manifest();
         (manifest.triangles, manifest.segments, manifest.points)
     }
 
-    /// Returns the corners of the box around all primitives, or nothing for an empty scene.
+    /// Returns the corners of the box around all primitives, or `None` for an empty scene.
     fn bounds(&self) -> Option<[[f64; 3]; 2]> {
         let bounds = self.index.bounds();
         (self.index.manifest().primitive_count() > 0).then(|| [bounds.min.coords.into(), bounds.max.coords.into()])
     }
 
-    /// Returns the names of the objects, with their first id and the one after their last.
+    /// Returns the objects: the name, the first id, and the id after the last one.
     fn objects(&self) -> Vec<(String, u64, u64)> {
         let objects = self.index.manifest().objects.iter();
         objects.map(|object| (object.name.clone(), object.first, object.first + object.primitives)).collect()
@@ -126,7 +126,7 @@ impl Shards {
         shards.map(|shard| (shard.file.clone(), shard.bytes, shard.primitives, [shard.min, shard.max])).collect()
     }
 
-    /// Returns the checksum of the manifest that was read.
+    /// Returns the checksum of the manifest.
     fn checksum(&self) -> String {
         self.index.manifest().checksum()
     }
@@ -136,7 +136,7 @@ impl Shards {
         self.index.loads()
     }
 
-    /// Writes to `out` the shard with the nearest box of each query, or -1.
+    /// Writes the number of the shard with the nearest box to `out` for each query, or -1.
     fn nearest_shards(
         &self,
         py: Python<'_>,
@@ -162,7 +162,7 @@ impl Shards {
         })
     }
 
-    /// Returns the rows of queries and the shards that may have something as near as a distance, as two arrays.
+    /// Returns pairs of a query and a shard that may have something within the distance of the query, as two arrays.
     fn shards_within<'py>(
         &self,
         py: Python<'py>,
@@ -192,7 +192,7 @@ impl Shards {
         Ok([column(|pair| pair.0), column(|pair| pair.1)])
     }
 
-    /// Answers queries for the closest point by one shard into the arrays of `out`, among which `key` may be.
+    /// Answers closest-point queries by one shard into the arrays of `out`, which may include `key`.
     fn closest_in_shard(
         &self,
         py: Python<'_>,
@@ -235,7 +235,7 @@ impl Shards {
     }
 }
 
-/// A writer of shards. `p2m.write_shards` uses it.
+/// A writer of shards, used by `p2m.write_shards`.
 #[pyclass(frozen, module = "p2m._p2m")]
 pub(crate) struct ShardWriter {
     /// The writer, unless it has finished or failed.
@@ -243,7 +243,7 @@ pub(crate) struct ShardWriter {
 }
 
 impl ShardWriter {
-    /// Takes the writer, which is dropped and removes its files unless it is put back.
+    /// Takes the writer. Unless it is put back, it is dropped, which removes its files.
     fn take(&self) -> PyResult<p2m_shards::ShardWriter> {
         let mut place = self.writer.lock().unwrap_or_else(PoisonError::into_inner);
         place.take().ok_or_else(|| value_error("the shards were written, or could not be written"))
@@ -270,13 +270,13 @@ impl ShardWriter {
         Ok(())
     }
 
-    /// Ends writing. What was written is removed unless it was finished.
+    /// Ends writing. If the shards were not finished, their files are removed.
     fn close(&self) {
         drop(self.writer.lock().unwrap_or_else(PoisonError::into_inner).take());
     }
 
-    /// Builds and writes the shards. An exception of a signal or of the callback ends it after the shard that is being
-    /// built, and all files are removed before this returns.
+    /// Builds and writes the shards. If a signal handler or the callback raises an exception, this function ends after
+    /// the shard that is being built, and removes all files first.
     fn finish(&self, py: Python<'_>, run: Run) -> PyResult<()> {
         let writer = self.take()?;
         let total = usize::try_from(writer.primitive_count()).unwrap_or(usize::MAX);

@@ -1,4 +1,4 @@
-//! Rules of signs, which are prepared once for an index.
+//! Rules of signs, whose data is prepared once for an index.
 
 use crate::errors::value_error;
 use p2m_core::{AnyIndex, Soup};
@@ -9,10 +9,10 @@ use std::sync::Arc;
 /// An index with signs.
 pub(crate) type Signed = SignedDistance<Arc<dyn AnyIndex>, Arc<Soup<f64>>>;
 
-/// The rule that decides which points are inside; without one the surface decides it.
+/// The rule that decides which points are inside. `None` means that the surface determines the rule.
 pub(crate) type SignRule = Option<sign::SignRule>;
 
-/// Returns a rule by its name.
+/// Returns the rule with this name.
 pub(crate) fn sign_rule(name: &str) -> PyResult<SignRule> {
     match name {
         "auto" => Ok(None),

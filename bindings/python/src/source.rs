@@ -1,5 +1,5 @@
-//! The source of the answers of a batch: an index over the whole scene, or one in shards. Both answer queries of all
-//! kinds in parts.
+//! The index that answers a batch: an index over the whole scene, or a sharded one. Both answer all kinds of queries in
+//! parts.
 
 use crate::errors::shard_error;
 use crate::index::Index;
@@ -12,24 +12,24 @@ use p2m_shards::{ShardBatch, ShardError};
 use pyo3::prelude::*;
 use std::ops::Range;
 
-/// An index of Python.
+/// A Python object that is an index.
 #[derive(FromPyObject)]
 pub(crate) enum Source<'py> {
     Whole(Bound<'py, Index>),
     Shards(Bound<'py, Shards>),
 }
 
-/// The index that answers the queries of a part of a batch.
+/// The index for a part of a batch.
 pub(crate) enum Part<'a> {
-    /// An index, on this thread alone.
+    /// An index, to be used on this thread alone.
     Whole(&'a Index),
     /// Shards, on all threads of the current pool.
     Shards(ShardBatch<'a>),
 }
 
 impl Source<'_> {
-    /// Answers a batch of queries, detached from the interpreter, in parts with the places for their answers, and
-    /// returns the results in the order of the parts. `check` is called first, and `per_part` is the number of queries
+    /// Answers a batch of queries in parts, detached from the interpreter, each part with the room for its answers.
+    /// Returns the results in the order of the parts. `check` is called first, and `per_part` is the number of queries
     /// that shards answer at a time.
     pub(crate) fn answer<O: Split, R: Send>(
         &self,
@@ -58,8 +58,9 @@ impl Source<'_> {
 }
 
 impl Part<'_> {
-    /// Answers queries by a function of an index and a query, or by one of shards and all queries, whose answers are
-    /// converted. `place` returns where a query is, and `as_kind` the index as one that answers queries of this kind.
+    /// Answers queries either by a function of an index and a query, or by a function of shards and all queries, whose
+    /// answers are converted. `place` returns the position of a query, and `as_kind` casts the index to the trait of
+    /// the queries.
     pub(crate) fn ask<'a, Q: Sync, A: Send, B, I: Copy + Sync>(
         &'a self,
         queries: &[Q],

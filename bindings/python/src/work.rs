@@ -1,4 +1,4 @@
-//! Running work detached from the interpreter, with signals, progress and an end before its time.
+//! Work that is detached from the interpreter, with signals, progress and cancellation.
 //!
 //! The calling thread waits for the threads that work. Every [`POLL_INTERVAL`] it attaches to the interpreter, lets
 //! it handle signals, and calls the progress callback. If either raises an exception, the work is cancelled. Work that
@@ -15,28 +15,28 @@ use std::sync::mpsc::{RecvTimeoutError, channel};
 use std::sync::{Arc, Mutex, PoisonError};
 use std::time::{Duration, Instant};
 
-/// How a call runs: the number of its threads, and the function of Python that is called with its progress.
+/// The options of a call: the number of threads, and the Python function that receives its progress.
 pub(crate) type Run = (usize, Option<Py<PyAny>>);
 
 /// The time between two polls of the interpreter.
 const POLL_INTERVAL: Duration = Duration::from_millis(40);
-/// Steps that are shorter are followed by longer ones.
+/// The duration below which the next step becomes longer.
 const SHORT_STEP: Duration = Duration::from_millis(2);
-/// Steps that are longer are followed by shorter ones.
+/// The duration above which the next step becomes shorter.
 const LONG_STEP: Duration = Duration::from_millis(10);
-/// The number of queries of the first step, unless they are expected to be slow.
+/// The number of queries in the first step, unless they are expected to be slow.
 pub(crate) const FIRST_STEP_QUERIES: usize = 16;
-/// The largest number of queries of a step.
+/// The largest number of queries in a step.
 const MAX_STEP_QUERIES: usize = 1 << 14;
 
-/// The state of a piece of work that its threads and the calling thread share.
+/// The state of a piece of work, shared by its threads and the calling thread.
 pub(crate) struct Monitor {
     is_cancelled: AtomicBool,
     done: AtomicUsize,
     total: usize,
     /// The number of queries of the next step.
     step: AtomicUsize,
-    /// Whether the work runs on the calling thread, which then has to poll.
+    /// Whether the work runs on the calling thread, which then has to poll between its steps.
     polls_itself: bool,
     start: Instant,
     /// The time of the last poll, in microseconds after the start.
@@ -46,11 +46,11 @@ pub(crate) struct Monitor {
     error: Mutex<Option<PyErr>>,
 }
 
-/// The payload of an unwinding that ends cancelled work.
+/// The panic payload that ends cancelled work.
 struct Cancelled;
 
 impl Monitor {
-    /// Makes the state of work with this total, of which `progress(done, total)` is called from time to time.
+    /// Makes the state of work with a total. `progress(done, total)` is called from time to time.
     fn new(total: usize, progress: Option<Py<PyAny>>, polls_itself: bool) -> Self {
         Self {
             is_cancelled: AtomicBool::new(false),
@@ -65,13 +65,12 @@ impl Monitor {
         }
     }
 
-    /// Returns whether the work was cancelled. What it returns is not used.
+    /// Returns whether the work was cancelled. Its result is then discarded.
     pub(crate) fn is_cancelled(&self) -> bool {
         self.is_cancelled.load(Ordering::Relaxed)
     }
 
-    /// Returns the result of a part of the work. If the part unwinds, such as for lack of memory, the other threads stop
-    /// as well.
+    /// Runs a part of the work. If it unwinds, for example because memory runs out, the other threads stop as well.
     pub(crate) fn run_part<R>(&self, part: impl FnOnce() -> R) -> R {
         catch_unwind(AssertUnwindSafe(part)).unwrap_or_else(|payload| {
             self.is_cancelled.store(true, Ordering::Relaxed);
@@ -79,12 +78,12 @@ impl Monitor {
         })
     }
 
-    /// Sets how much of the work is done.
+    /// Sets the amount of work that is done.
     pub(crate) fn set_done(&self, done: usize) {
         self.done.fetch_max(done, Ordering::Relaxed);
     }
 
-    /// Returns the number of queries that should be answered before the next call of [`end_step`](Self::end_step).
+    /// Returns the number of queries to answer before the next call of [`end_step`](Self::end_step).
     pub(crate) fn step(&self) -> usize {
         self.step.load(Ordering::Relaxed)
     }
@@ -94,13 +93,13 @@ impl Monitor {
         self.step.store(queries, Ordering::Relaxed);
     }
 
-    /// Records that so many queries were answered in a step that began at this time.
+    /// Records the end of a step of this number of queries, and adapts the length of the next one.
     pub(crate) fn end_step(&self, queries: usize, start: Instant) {
         self.done.fetch_add(queries, Ordering::Relaxed);
         let now = Instant::now();
         let elapsed = now - start;
         if elapsed < SHORT_STEP {
-            // After a shorter step than planned, such as the last one, a longer one might not be short enough.
+            // A step that was shorter than planned, such as the last one of a batch, says nothing about longer ones.
             if queries >= self.step() {
                 self.step.store((2 * queries).min(MAX_STEP_QUERIES), Ordering::Relaxed);
             }
@@ -110,10 +109,11 @@ impl Monitor {
         self.poll_if_due(now);
     }
 
-    /// Answers the next step of a batch with so many queries left, unless the work was cancelled. Returns whether to go on.
+    /// Answers the next step of a batch with `left` remaining queries, unless the work was cancelled. Returns whether
+    /// to continue.
     ///
-    /// Batches of the library order all their queries and hand them to the index by the thousand. So the order of a
-    /// batch does not depend on how often it is watched, and steps cost nothing that can be measured.
+    /// The library orders all queries of a batch and hands them to the index in blocks of about a thousand. So the
+    /// order of a batch does not depend on how often it is interrupted, and steps cost no measurable time.
     pub(crate) fn run_step(&self, left: usize, answer: &mut dyn FnMut(usize)) -> bool {
         if self.is_cancelled() {
             return false;
@@ -124,7 +124,7 @@ impl Monitor {
         true
     }
 
-    /// Polls if this thread has to, and has not done so for the interval.
+    /// Polls if this thread has to poll, and the last poll is longer ago than the interval.
     fn poll_if_due(&self, now: Instant) {
         if self.polls_itself {
             let micros = u64::try_from((now - self.start).as_micros()).unwrap_or(u64::MAX);
@@ -136,15 +136,15 @@ impl Monitor {
         }
     }
 
-    /// Ends the work by unwinding if it was cancelled. It is for callbacks that have no other way to end it.
+    /// Unwinds if the work was cancelled. For callbacks that cannot end the work in another way.
     pub(crate) fn unwind_if_cancelled(&self) {
         if self.is_cancelled() {
-            // No hook prints anything for it.
+            // `resume_unwind` does not call the panic hook, so nothing is printed.
             resume_unwind(Box::new(Cancelled));
         }
     }
 
-    /// Lets the interpreter handle signals and calls the callback. An exception cancels the work.
+    /// Lets the interpreter handle signals, and calls the callback. An exception cancels the work.
     fn poll(&self) {
         let polled = Python::attach(|py| py.check_signals().and_then(|()| self.report(py)));
         if let Err(error) = polled {
@@ -160,7 +160,7 @@ impl Monitor {
         callback.bind(py).call1((done, self.total)).map(drop)
     }
 
-    /// Returns the exception of cancelled work, or makes the last call of the callback.
+    /// Returns the exception of cancelled work, or calls the callback for the last time.
     fn finish<R>(&self, py: Python<'_>, result: Result<R, Box<dyn Any + Send>>) -> PyResult<R> {
         if let Some(error) = self.lock_error().take() {
             return Err(error);
@@ -180,8 +180,8 @@ impl Monitor {
     }
 }
 
-/// Returns the exception for work that ran out of memory, or for a panic, which is an error of this package and not
-/// of its user.
+/// Returns the exception for work that ran out of memory, or for a panic, which is a bug of this package and not a
+/// mistake of the user.
 fn panicked(payload: &(dyn Any + Send)) -> PyErr {
     if payload.is::<OutOfMemory>() {
         return PyMemoryError::new_err("the answers do not fit into memory");
@@ -191,12 +191,12 @@ fn panicked(payload: &(dyn Any + Send)) -> PyErr {
     PyRuntimeError::new_err(format!("p2m failed, which is an error in p2m: {text}"))
 }
 
-/// Runs work that may run out of memory on the calling thread.
+/// Runs work that may run out of memory, on the calling thread.
 pub(crate) fn catch<R>(work: impl FnOnce() -> R) -> PyResult<R> {
     catch_unwind(AssertUnwindSafe(work)).map_err(|payload| panicked(&*payload))
 }
 
-/// Where a batch runs.
+/// The threads on which a batch runs.
 pub(crate) enum Threads {
     /// On the calling thread.
     Calling,
@@ -211,8 +211,8 @@ impl Threads {
     }
 }
 
-/// Runs work that borrows, detached from the interpreter, and waits until all of it has ended. It is a batch of so many
-/// queries, and begins with a step of `first_step` of them.
+/// Runs work that borrows data, detached from the interpreter, and waits until all of it has ended. The work is a batch
+/// of this number of queries, and its first step has `first_step` of them.
 pub(crate) fn run_batch<R: Send>(
     py: Python<'_>,
     threads: &Threads,
@@ -244,8 +244,8 @@ pub(crate) fn run_batch<R: Send>(
     monitor.finish(py, result)?
 }
 
-/// Runs work that owns what it needs on a pool, detached from the interpreter. If it is cancelled, this returns at
-/// once, and the work ends in the background when it next looks at the monitor.
+/// Runs work that owns its data on a pool, detached from the interpreter. If the work is cancelled, this function
+/// returns at once, and the work ends in the background when it next checks the monitor.
 pub(crate) fn run_owned<R: Send + 'static>(
     py: Python<'_>,
     (threads, progress): Run,
