@@ -4,8 +4,8 @@
     python bindings/python/benchmarks/align.py bunny.obj armadillo.obj dragon_100k.obj --starts 100
 
 Points of the surface get noise of a thousandth of the diagonal, and each start moves them by a rotation and by up to
-half a diagonal. A start counts as found if the root mean square of the distances is within 1 % of that of the noise.
-The others begin at the same starts, with the centroids moved onto each other, because they have no search.
+half a diagonal. A start counts as found if the rms of the distances is within 1 % of the rms of the noise. The other
+libraries have no search. They begin at the same starts, with the centroids moved onto each other.
 """
 
 from __future__ import annotations
@@ -29,7 +29,7 @@ def rotation(rng: np.random.Generator, degrees: float) -> np.ndarray:
 
 
 def with_open3d(scene: p2m.Scene) -> Callable[[np.ndarray, np.ndarray], np.ndarray]:
-    """Return the point-to-plane ICP of Open3D onto as many points of the surface as the scan has."""
+    """Return the point-to-plane ICP of Open3D, onto a point cloud of the surface with as many points as the scan."""
     import open3d
 
     def fit(scan: np.ndarray, start: np.ndarray) -> np.ndarray:
@@ -50,7 +50,7 @@ def with_open3d(scene: p2m.Scene) -> Callable[[np.ndarray, np.ndarray], np.ndarr
 
 
 def with_trimesh(scene: p2m.Scene) -> Callable[[np.ndarray, np.ndarray], np.ndarray]:
-    """Return the ICP of trimesh onto as many points of the surface as the scan has."""
+    """Return the ICP of trimesh, onto a point cloud of the surface with as many points as the scan."""
     import trimesh
 
     def fit(scan: np.ndarray, start: np.ndarray) -> np.ndarray:

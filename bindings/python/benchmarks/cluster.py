@@ -3,8 +3,8 @@
     pip install './bindings/python[dask]'
     python bindings/python/benchmarks/cluster.py MODEL --points 10000000
 
-It needs Linux, whose kernel tells the shared memory of processes. The points are uniform in the box of the model, and
-lie in files that workers read, a file for each block. All answers are compared bit for bit with those of the one call.
+It needs Linux, whose kernel reports the shared memory of processes. The points are uniform in the box of the model, and
+workers read them from files, one for each block. All answers are compared bit for bit with those of the one call.
 `--quick` takes 200,000 points.
 """
 
@@ -38,7 +38,7 @@ def parse() -> argparse.Namespace:
 
 
 def memory() -> dict[str, int]:
-    """Return the memory of this process in bytes: all pages, and those that no other process has."""
+    """Return the memory of this process in bytes: all pages, and the pages of this process alone."""
     amounts = {}
     for line in Path("/proc/self/smaps_rollup").read_text().splitlines()[1:]:
         name, amount = line.split()[:2]
@@ -51,7 +51,7 @@ def memory() -> dict[str, int]:
 
 
 def memory_of_opening(path: str, is_mapped: bool) -> dict[str, int]:
-    """Open an index and ask it, so that its pages are in memory, and return the memory that was added."""
+    """Open an index and query it, so that its pages are in memory, and return the memory that was added."""
     before = memory()
     index = open_index(path, map=is_mapped)
     low, high = index.scene.bounds

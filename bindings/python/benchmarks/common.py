@@ -11,7 +11,7 @@ from collections.abc import Callable, Iterable
 from pathlib import Path
 from typing import Any
 
-# Before libigl is imported: it answers queries on one thread, like the others.
+# This has to be set before libigl is imported: it answers queries on one thread, like the others.
 os.environ["IGL_NUM_THREADS"] = "1"
 
 import numpy as np
@@ -50,7 +50,7 @@ def medians(times: Iterable[tuple[float, ...]]) -> tuple[float, ...]:
 
 
 def rotated(count: int, number: int) -> list[int]:
-    """Return the order of a round, with which another one begins in each round."""
+    """Return the order of a round. Each round begins with another library."""
     order = list(range(count))
     return order[number % count :] + order[: number % count]
 
@@ -74,7 +74,7 @@ def status(key: str) -> int:
 
 
 def with_peak(work: Callable[[], Any]) -> tuple[float, float, int]:
-    """Return the CPU time, the wall time, and the peak memory in bytes besides what was there, on Linux."""
+    """Return the CPU time, the wall time, and the additional peak memory in bytes of a call, on Linux."""
     Path("/proc/self/clear_refs").write_text("5")
     before = status("VmRSS:")
     cpu, wall, result = timed(work)

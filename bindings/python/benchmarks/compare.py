@@ -5,11 +5,12 @@
     python bindings/python/benchmarks/compare.py ../shared/models/dragon_100k.obj ../shared/models/dragon_871k.ply \
         --rust target/release/examples/rust_batch
 
-In each round every library answers the same queries once, and another library begins. Tables have medians of rounds.
-All libraries get the same vertices and triangles. Open3D gets them and the queries as float32, converted in advance.
+In each round every library answers the same queries once, and each round begins with another library. Tables have
+medians of rounds. All libraries get the same vertices and triangles. Open3D gets them and the queries as float32,
+converted in advance.
 
-Every library returns the closest points, the triangles and, except for Open3D, the distances. Those of Open3D's column
-of errors come from `compute_distance`, which is not timed.
+Every library returns the closest points, the triangles and, except for Open3D, the distances. The errors of Open3D are
+computed from the distances of `compute_distance`, which is not timed.
 """
 
 from __future__ import annotations
@@ -167,7 +168,7 @@ class Trimesh(Library):
         import trimesh
 
         self.mesh = trimesh.Trimesh(vertices, triangles, process=False)
-        # What the first query would build.
+        # The first query would build this.
         trimesh.proximity.closest_point(self.mesh, vertices[:1])
 
     def query(self, points):
@@ -196,7 +197,7 @@ def libraries() -> list[Library]:
 
 
 class RustBatch:
-    """The same batch in a program in Rust, which answers when it gets a line."""
+    """A program in Rust that answers the same batch each time it reads a line."""
 
     def __init__(self, program: Path, model: Path, points: Path, library: P2m) -> None:
         command = [str(program), str(model), str(points), library.backend, str(library.threads)]
@@ -240,7 +241,7 @@ def print_peak_memory(number: int, arrays: str) -> None:
     library = libraries()[number]
     with np.load(arrays) as loaded:
         vertices, triangles, points = (loaded[name] for name in ("vertices", "triangles", "points"))
-    # The first build and query import the library and start its threads.
+    # The first build and query import the library and start its threads, which is not measured.
     small = np.eye(3), np.array([[0, 1, 2]])
     library.build(*small)
     library.query(library.prepare(np.zeros((1, 3))))
@@ -255,7 +256,7 @@ def print_peak_memory(number: int, arrays: str) -> None:
 
 
 def peak_memory(number: int, arrays: Path) -> int | None:
-    """Return the peak memory of one library in a process of its own, or nothing where it cannot be measured."""
+    """Return the peak memory of one library in its own process, or nothing if it cannot be measured."""
     command = [sys.executable, __file__, "--memory-of", str(number), "--arrays", str(arrays)]
     if not Path("/proc/self/clear_refs").exists():
         return None
@@ -341,7 +342,7 @@ def measure(model: Path, arguments: argparse.Namespace) -> dict[str, Any]:
 
 
 def is_plain(library: Library) -> bool:
-    """Return whether the program in Rust has the same index."""
+    """Return whether the Rust program measures this index too."""
     return isinstance(library, P2m) and library.resolution is None
 
 
@@ -357,7 +358,7 @@ def table(result: dict[str, Any]) -> str:
     lines = [head([*columns, "largest error", "points", "rounds", "peak memory, MB"])]
     ours = {entry["threads"]: entry for entry in reversed(result["rows"]) if entry["name"] == "p2m octree"}
     for entry in result["rows"]:
-        # Times of several threads are compared by the clock.
+        # With several threads, wall times are compared.
         kind = "wall" if entry["threads"] > 1 else "cpu"
         build = entry[f"build_{kind}"]
         cells = [entry["name"], entry["threads"], f"{build:.2f}" if build > 1e-3 else "in each call"]
@@ -372,7 +373,7 @@ def table(result: dict[str, Any]) -> str:
 
 
 def rust_table(results: list[dict[str, Any]]) -> str:
-    """Return the costs of calls from Python over the same batches in Rust as a table in Markdown."""
+    """Return a table in Markdown: the cost of calls from Python relative to the same batches in Rust."""
     lines = [
         head(["model", "set", "backend", "threads", "Rust, CPU ns", "Python, more CPU time", "Python, more wall time"])
     ]

@@ -5,13 +5,13 @@
         --hausdorff ../shared/models/dragon_48k_nonmanifold.ply ../shared/models/dragon_871k.ply
 
 The second mesh is scaled to the diagonal of the first one. `far` poses have random rotations and centres at a distance
-of two diagonals, and `near` poses are moved
-along the line of the centres to a gap of about a hundredth of the diagonal.
-Capsules have a length of a tenth of the diagonal and a radius of a hundredth, and lie anywhere in the box of the mesh.
+of two diagonals, and `near` poses are moved along the line of the centres to a gap of about a hundredth of the
+diagonal. Capsules have a length of a tenth of the diagonal and a radius of a hundredth, and lie anywhere in the box of
+the mesh.
 
-In each round every library answers the same queries once, and another one begins. All have one thread. Tables have
-medians of the CPU times. Answers that differ by more than a millionth of the diagonal are counted, and some of them are
-decided by the exact distances of the primitives that the libraries name.
+In each round every library answers the same queries once, and each round begins with another library. All have one
+thread. Tables have medians of the CPU times. Answers that differ by more than a millionth of the diagonal are counted,
+and exact arithmetic decides some of them by the distances of the primitives that the libraries return.
 """
 
 from __future__ import annotations
@@ -34,7 +34,7 @@ from motions import random_rotation
 import p2m
 
 GAP = 0.01
-"""The distance of near poses, in diagonals."""
+"""The distance of the centres of far poses, in diagonals."""
 FAR = 2.0
 """The distance of the centres of far poses, in diagonals."""
 TOLERANCE = 1e-6
@@ -57,7 +57,7 @@ class Library:
     package: str
 
     def build(self, mesh: Mesh) -> Any:
-        """Return what the library keeps of a mesh."""
+        """Return the representation of a mesh that the library keeps."""
         raise NotImplementedError
 
     def pairs(self, first: Any, second: Any, transforms: np.ndarray) -> list[tuple[float, int, int]]:
@@ -184,7 +184,7 @@ def poses(a: Mesh, b: Mesh, count: int, rng: np.random.Generator) -> dict[str, n
         far[k, :3, :3] = random_rotation(rng)
         far[k, :3, 3] = centres[0] + FAR * unit * direction - far[k, :3, :3] @ centres[1]
         near[k] = far[k]
-        # A step by the distance never passes through the mesh.
+        # The mesh cannot pass through the other one in a step of the length of their distance.
         for _ in range(1000):
             gap = float(first.closest_pair(second, near[k]).distance) / unit
             if gap <= 1.1 * GAP:
@@ -199,14 +199,14 @@ def exact_distance(corners: list[np.ndarray]) -> float:
 
 
 class Differences:
-    """What is different from the first library, and who is right."""
+    """The differences from the first library, and the number of them in which p2m is right."""
 
     def __init__(self, unit: float, hulls: Callable[[int, tuple[int, ...]], list[np.ndarray]], radius: float) -> None:
         self.unit, self.hulls, self.radius = unit, hulls, radius
 
     def of(self, ours: list[tuple[Any, ...]], theirs: list[tuple[Any, ...]]) -> str:
-        """Return the number of differences, and for how many of the first ones exact arithmetic says that p2m is
-        right: its triangles are as near as it says, and nearer than the others are."""
+        """Return the number of differences, and for how many of the first ones exact arithmetic confirms that p2m is
+        right: its triangles are as near as it says, and nearer than those of the other library."""
         different = [
             k for k, (a, b) in enumerate(zip(ours, theirs)) if not abs(a[0] - b[0]) <= TOLERANCE * self.unit
         ]
@@ -216,7 +216,7 @@ class Differences:
             exact = max(exact_distance(self.hulls(k, ours[k][1:])) - self.radius, 0.0)
             is_ours = abs(exact - ours[k][0]) <= 1e-12 * self.unit and exact < theirs[k][0]
             if not is_ours and theirs[k][0] < exact:
-                # The other one claims less. It is wrong if its own triangles are not so near.
+                # The other library returns a smaller distance. It is wrong if its own triangles are farther apart.
                 other = max(exact_distance(self.hulls(k, theirs[k][1:])) - self.radius, 0.0)
                 is_ours = abs(exact - ours[k][0]) <= 1e-12 * self.unit and exact <= other
             right += is_ours

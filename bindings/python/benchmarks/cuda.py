@@ -3,12 +3,12 @@
     MATURIN_PEP517_ARGS="--features cuda" pip install ./bindings/python torch warp-lang
     python bindings/python/benchmarks/cuda.py dragon_100k.obj dragon_871k.ply
 
-For each file and four sets of queries it prints million queries per second: of the kernels of Warp in f32, of those of
-p2m in f64, both on queries that are sorted along a curve (of p2m with torch alone), and of whole calls of p2m on queries in random order, from
-arrays of NumPy and from tensors of torch on the card. It also counts the answers of Warp that are wrong, by their true
-distances: that of the triangle that Warp names is more than a millionth of the diagonal above that of the answer. Warp
-gets triangles alone.
-Times are medians of rounds, in which all take turns. What is not installed is left out.
+For each file and four sets of queries it prints million queries per second of three things: the kernels of Warp in f32
+and the kernels of p2m in f64, both on queries that are sorted along a curve (for p2m this needs torch), and whole calls
+of p2m on queries in random order, from NumPy arrays and from torch tensors on the card. It also counts the wrong
+answers of Warp: the true distance of the triangle that Warp returns exceeds the least distance by more than a millionth
+of the diagonal. Warp gets only triangles. Times are medians of rounds, in which all take turns. Libraries that are not
+installed are left out.
 
 Without a card, `--cpu` runs everything on the processor, to try the script.
 """
@@ -31,7 +31,7 @@ SETS = ("10x", "1x", "near", "surface")
 
 
 def make_queries(name: str, scene: p2m.Scene, count: int) -> np.ndarray:
-    """Return the queries of a set, as p2m-bench has them."""
+    """Return the queries of a set, distributed as in p2m-bench."""
     rng = np.random.default_rng(7)
     low, high = scene.bounds
     if name in ("1x", "10x"):
@@ -53,7 +53,7 @@ def along_curve(points: np.ndarray) -> np.ndarray:
 
 
 def warp_search(scene: p2m.Scene, points: np.ndarray, device: str) -> Callable[[], tuple[float, Any]] | None:
-    """Return a function that lets Warp answer, and returns the seconds of its kernel and the triangles."""
+    """Return a function by which Warp answers, and which returns the seconds of its kernel and the triangles."""
     if importlib.util.find_spec("warp") is None:
         return None
     import warp as wp
@@ -90,13 +90,13 @@ def warp_search(scene: p2m.Scene, points: np.ndarray, device: str) -> Callable[[
 
 
 def wrong_answers(scene: p2m.Scene, index: p2m.Index, points: np.ndarray, faces: np.ndarray) -> int:
-    """Count the queries whose triangle is not the nearest one by more than a millionth of the diagonal."""
+    """Count the queries whose triangle is farther than the nearest one by more than a millionth of the diagonal."""
     rounded = points.astype(np.float32)
     nearest = index.distance(rounded)
     tolerance = 1e-6 * diagonal(scene.bounds)
     wrong = int((faces < 0).sum())
     asked = np.nonzero(faces >= 0)[0]
-    # The distance from a triangle is that from a scene of it alone; only triangles that differ are asked.
+    # The distance from a triangle is computed as the distance from a scene of this triangle, where triangles differ.
     own = index.closest(rounded, fields="primitive").primitive
     for i in asked[own[asked] != faces[asked]]:
         corners = scene.vertices[scene.triangles[faces[i]]]

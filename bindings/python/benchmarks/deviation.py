@@ -5,8 +5,8 @@
 
 The scan has uniformly distributed points of the surface with normal noise along the normals of the triangles. Every
 library builds its structure and computes all signed distances on all cores; reading files is not included. The
-libraries take turns in one process, and the table has medians of times by the clock and of CPU times of all threads, with
-the mean and the root mean square of the deviations beside those of the noise. Open3D computes in float32.
+libraries take turns in one process. The table has medians of wall times and of CPU times of all threads, with the mean
+and the root mean square of the deviations beside those of the noise. Open3D computes in float32.
 """
 
 from __future__ import annotations

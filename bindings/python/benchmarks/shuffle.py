@@ -1,4 +1,4 @@
-"""Measures p2m.dask with points that go to shards, beside blocks that each ask all shards, with two worker processes.
+"""Measures p2m.dask with shuffling, beside blocks that each ask all shards, with two worker processes.
 
     pip install './bindings/python[dask]'
     python bindings/python/benchmarks/shuffle.py
@@ -37,7 +37,7 @@ def parse() -> argparse.Namespace:
 
 
 def loads_of(shards: p2m.Shards) -> int:
-    """Return how often this process has loaded a shard."""
+    """Return the number of times that this process has loaded a shard."""
     return shards.loads
 
 
@@ -60,7 +60,7 @@ def main() -> None:
         points = da.from_array(np.load(file, mmap_mode="r"), chunks=(options.points // BLOCKS, 3))
         print("| shards in memory | points go | tasks | seconds | loads of shards |")
         print("| --- | --- | --- | --- | --- |")
-        # Each run has a limit of its own, so its processes open the shards anew.
+        # Each run has another limit, so that its processes open the shards anew.
         for name, limits in [("one", (1, 2)), ("all", (1 << 40, 1 << 41))]:
             for limit, shuffle in zip(limits, (False, True)):
                 shards = p2m.Shards(site, limit)

@@ -1,10 +1,10 @@
-"""Runs the programs of users who reported that other libraries are slow or run out of memory, in one call each.
+"""Runs the programs of users who reported that another library is slow or runs out of memory, in one call each.
 
     pip install ./bindings/python[compare]
     python bindings/python/benchmarks/users.py
 
-It needs Linux, whose kernel tells the peak memory. Each program runs in a process of its own, on one thread. Libraries
-that are slow get fewer points.
+It needs Linux, whose kernel reports the peak memory. Each program runs in its own process, on one thread. Slow
+libraries get fewer points.
 """
 
 from __future__ import annotations
@@ -32,7 +32,7 @@ def few_triangles() -> tuple[np.ndarray, np.ndarray]:
 
 
 def tube() -> tuple[np.ndarray, np.ndarray]:
-    """Return the closed tube of the carried scene, of 3,600 triangles."""
+    """Return the triangles of the scene in the repository: a closed tube of 3,600 triangles."""
     scene = p2m.read(CARRIED)
     return scene.vertices, scene.triangles
 
@@ -79,7 +79,7 @@ PROGRAMS: list[tuple[str, str, Any, Any, int]] = [
 
 
 def run(number: int) -> None:
-    """Run one program and print its CPU time in seconds and its peak memory in bytes, besides the points."""
+    """Run one program, and print its CPU time in seconds and its peak memory in bytes without the points."""
     _, _, program, make, count = PROGRAMS[number]
     mesh = make()
     low, high = mesh[0].min(axis=0), mesh[0].max(axis=0)

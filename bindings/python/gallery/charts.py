@@ -54,7 +54,9 @@ def speed() -> None:
     sets = {"1x ns": "in the box", "near ns": "near the surface"}
     figure, axes = plt.subplots(1, len(sets), figsize=(9, 2.6), sharey=True)
     for axis, (column, title) in zip(axes, sets.items(), strict=True):
-        shown = [(label, float(table[name][column])) for name, label in names.items() if table.get(name, {}).get(column)]
+        shown = [
+            (label, float(table[name][column])) for name, label in names.items() if table.get(name, {}).get(column)
+        ]
         labels, values = [label for label, _ in shown][::-1], [value for _, value in shown][::-1]
         colours = [OURS if label.startswith("p2m") else THEIRS for label in labels]
         bars = axis.barh(labels, values, color=colours)
@@ -84,8 +86,12 @@ def trade() -> None:
         axis.plot(times, "o-", color=colour, label=f"p2m {name}", linewidth=1.3)
         for at, (time, other) in enumerate(zip(times, others, strict=True)):
             beside = (0, 7 if time > other else -15)
-            axis.annotate(f"{time:,.0f}", (at, time), xytext=beside, textcoords="offset points", ha="center", color=colour)
-    axis.set_xticks(range(len(guarantees)), [f"{setting}\n{text}" for setting, text in guarantees.items()], fontsize=8.5)
+            axis.annotate(
+                f"{time:,.0f}", (at, time), xytext=beside, textcoords="offset points", ha="center", color=colour
+            )
+    axis.set_xticks(
+        range(len(guarantees)), [f"{setting}\n{text}" for setting, text in guarantees.items()], fontsize=8.5
+    )
     axis.set_ylim(bottom=0)
     axis.set_xlim(-0.5, len(guarantees) - 0.5)
     axis.set_ylabel("ns per query")

@@ -3,12 +3,12 @@
     pip install ./bindings/python[compare,gallery]
     python bindings/python/gallery/make.py --write
 
-It takes about two minutes. Without `--write` it prints the tables and leaves the document as it is. `--only NAME` makes
-one part: deviation, slice, snapping, clearance, shells, origin, units, rays or fixed. The pictures are of the scene
-that the repository carries and of meshes that this file makes.
+It takes about two minutes. Without `--write` it prints the tables and does not change the document. `--only NAME` makes
+one part: deviation, slice, snapping, clearance, shells, origin, units, rays or fixed. The pictures show the scene in
+the repository and meshes that this file makes.
 
-Other libraries are compared with answers that are decided without rounding: by the coordinates of boxes, by Python's
-fractions, or by the certified distances of p2m.
+Answers of other libraries are compared with exact ones: from the coordinates of boxes, from Python's fractions, or from
+the certified distances of p2m.
 """
 
 from __future__ import annotations
@@ -78,7 +78,7 @@ def polydata(vertices: np.ndarray, triangles: np.ndarray) -> Any:
 
 
 def tube() -> tuple[np.ndarray, np.ndarray]:
-    """Return the vertices and triangles of the carried scene: a closed, knotted tube."""
+    """Return the vertices and triangles of the tube in the scene of the repository, which is closed and knotted."""
     scene = p2m.read(CARRIED)
     return scene.vertices, scene.triangles
 
@@ -87,7 +87,7 @@ def tube() -> tuple[np.ndarray, np.ndarray]:
 
 
 def deviation() -> str:
-    """Draw how far the points of a scan are from the mesh."""
+    """Draw the distances of the points of a scan from the mesh."""
     vertices, triangles = tube()
     rng = np.random.default_rng(1)
     # A scan: points of the surface with noise, and a dent about one vertex and a bulge about another.
@@ -164,7 +164,7 @@ def slice_() -> str:
 
 
 def snapping() -> str:
-    """Draw how points of a track are moved to the nearest street."""
+    """Draw the points of a track, each moved to the nearest street."""
     rng = np.random.default_rng(4)
     # A net of streets: a grid of crossings that are moved at random.
     across, up = 6, 4
@@ -263,11 +263,11 @@ def clearance() -> str:
 
 
 class Degenerate(Exception):
-    """The ray runs through an edge or along a triangle."""
+    """The error for a ray that runs through an edge or along a triangle."""
 
 
 def crossings_exact(vertices: np.ndarray, triangles: np.ndarray, point: np.ndarray, axis: int) -> int:
-    """Return how many triangles the ray from a point along an axis crosses, by fractions."""
+    """Return the number of triangles that the ray from a point along an axis crosses, in fractions."""
     u, v = (axis + 1) % 3, (axis + 2) % 3
     corners = vertices[triangles]
     # Comparisons of floating-point numbers are exact.
@@ -291,7 +291,7 @@ def crossings_exact(vertices: np.ndarray, triangles: np.ndarray, point: np.ndarr
 
 
 def is_inside_exact(vertices: np.ndarray, triangles: np.ndarray, point: np.ndarray) -> bool:
-    """Return whether a point is inside of a closed surface, by fractions."""
+    """Return whether a point is inside of a closed surface, in fractions."""
     for axis in range(3):
         try:
             return crossings_exact(vertices, triangles, point, axis) % 2 == 1
@@ -301,7 +301,7 @@ def is_inside_exact(vertices: np.ndarray, triangles: np.ndarray, point: np.ndarr
 
 
 def is_nearer_exact(query: np.ndarray, corners: np.ndarray, weights: np.ndarray, distance: float) -> bool:
-    """Return whether the point with these weights on a triangle is nearer to a query than a distance, by fractions."""
+    """Return whether the point with these weights on a triangle is nearer to a query than a distance, in fractions."""
     shares = [Fraction(float(w)) for w in weights]
     total = sum(shares)
     points = [sum(s * Fraction(float(c[k])) for s, c in zip(shares, corners)) / total for k in range(3)]
@@ -525,7 +525,7 @@ def rays() -> str:
     rows = []
     for axis, name in enumerate("xyz"):
         direction = np.eye(3)[axis]
-        # The other coordinates are those of the vertex, so the ray runs through it.
+        # The other coordinates equal those of the vertex, so the ray runs through it.
         origins = (targets - 8.0 * direction).astype(np.float32).astype(np.float64)
         queries = np.column_stack([origins, np.broadcast_to(direction, origins.shape)]).astype(np.float32)
         misses = ~scene.test_occlusions(queries).numpy(), ~index.rays(origins, direction, "any")
@@ -536,7 +536,7 @@ def rays() -> str:
 
 
 def fixed() -> str:
-    """Ask the questions of two old reports again."""
+    """Answer the questions of two old reports again."""
     import open3d
 
     box = open3d.geometry.TriangleMesh.create_box(1, 1, 1)
@@ -553,7 +553,7 @@ def fixed() -> str:
         points = points.astype(np.float32).astype(np.float64)
         ours = p2m.Index((vertices, triangles)).signed_distance(points)
         theirs = open3d_scene(vertices, triangles).compute_signed_distance(points.astype(np.float32)).numpy()
-        # Within the accuracy of float32, the rounded mesh of Open3D may have a point on its other side.
+        # Open3D rounds the mesh to float32, so a point within this accuracy may be on its other side.
         differ = ((theirs < 0) != (ours < 0)) & (np.abs(ours) > 1e-6)
         rows.append([name, f"{len(points):,}", str(int(differ.sum()))])
     return markdown(["scene", "points", "signs that differ between Open3D and p2m"], rows)
@@ -578,7 +578,7 @@ def versions() -> str:
 
 
 def replace_block(text: str, name: str, block: str) -> str:
-    """Return a document with another text between the markers of a block."""
+    """Return a document with the text between the markers of a block replaced."""
     pattern = re.compile(rf"(<!-- make\.py {name} -->\n).*?(<!-- end -->)", re.DOTALL)
     replaced, count = pattern.subn(lambda match: f"{match[1]}\n{block}\n\n{match[2]}", text)
     if count != 1:
@@ -587,7 +587,7 @@ def replace_block(text: str, name: str, block: str) -> str:
 
 
 def wrapped(text: str) -> str:
-    """Return prose in lines of at most 120 characters, and tables as they are."""
+    """Return prose wrapped at 120 characters, and tables unchanged."""
     import textwrap
 
     return text if text.startswith("|") else textwrap.fill(text, 120, break_on_hyphens=False)

@@ -25,7 +25,7 @@ CUBE_TRIANGLES = np.array(
 """The cube from 0 to 1, whose normals point outwards."""
 
 DIFFERENCES: list[tuple[str, str, str, str, int, str]] = []
-"""Differences from other packages: the package, what differs, the model, how many, how many were decided, and why."""
+"""Differences from other packages: the package, the difference, the model, the count, the decided count, the reason."""
 
 
 def pytest_terminal_summary(terminalreporter: pytest.TerminalReporter) -> None:
@@ -57,7 +57,7 @@ def model(name: str) -> Path:
 
 
 def mixed_scene(seed: int = 1, vertices: int = 300, count: int = 200) -> p2m.Scene:
-    """Return triangles, segments and points at random, with degenerate ones and duplicates among them."""
+    """Return random triangles, segments and points, some of them degenerate or duplicates."""
     rng = np.random.default_rng(seed)
     positions = rng.normal(size=(vertices, 3))
     triangles = rng.integers(0, vertices, (count, 3))
@@ -113,7 +113,7 @@ def queries() -> np.ndarray:
 
 
 def assert_same(answer: Any, expected: Any, fields: tuple[str, ...] | None = None) -> None:
-    """Check that arrays are the same bits."""
+    """Check that arrays have the same bits."""
     names = fields if fields is not None else expected.fields
     for name in names:
         a, b = answer[name], expected[name]

@@ -1,7 +1,7 @@
-"""Closest triangles, insides and hits of rays in exact arithmetic, by the textbook and with no code of p2m.
+"""Closest triangles, insides and hits of rays in exact arithmetic, by textbook methods and without code of p2m.
 
-Every finite float is a fraction. Floats only leave out triangles that are far from mattering, with a margin that is
-millions of times the rounding.
+Every finite float is a fraction. Floats are used only to leave out triangles that are far from mattering, with margins
+of millions of roundings.
 """
 
 from __future__ import annotations
@@ -15,7 +15,7 @@ import numpy as np
 Vector = tuple[Fraction, Fraction, Fraction]
 
 MARGIN = 1e-9
-"""The share of coordinates by which the filters in floats are too generous. Their rounding is below 1e-14."""
+"""The margin of the filters in floats, relative to the coordinates. Their rounding is below 1e-14."""
 
 
 def vector(values: Sequence[float] | np.ndarray) -> Vector:
@@ -97,7 +97,7 @@ def squared_distance_of_hulls(a: Sequence[Vector], b: Sequence[Vector]) -> Fract
 
 
 class Mesh:
-    """Triangles with what the filters need."""
+    """Triangles with the data of the filters."""
 
     def __init__(self, vertices: np.ndarray, triangles: np.ndarray) -> None:
         self.corners = np.asarray(vertices, np.float64)[np.asarray(triangles, np.int64)]
@@ -118,7 +118,7 @@ class Mesh:
 
     def nearest(self, point: np.ndarray) -> tuple[Fraction, list[int]]:
         """Return the squared distance of a point from the nearest triangles, and their numbers."""
-        # The ball and the box around a triangle are not nearer than they should be, and its corners not farther.
+        # The lower bounds by balls and boxes are valid, and the corners give an upper bound.
         ball = np.linalg.norm(self.center - point, axis=1) - self.radius
         box = np.linalg.norm(np.maximum(0.0, np.maximum(self.low - point, point - self.high)), axis=1)
         least = np.maximum(ball, box)
@@ -144,7 +144,7 @@ class Mesh:
         return None if winding is None else winding != 0
 
     def winding_number(self, point: np.ndarray) -> int | None:
-        """Return how often a closed surface is wound around a point, counted along a ray in the direction of z.
+        """Return the winding number of a closed surface around a point, counted along a ray in the direction of z.
 
         The point is shifted by an infinitesimal (e, e^2) in x and y, so the ray passes by all edges. On the surface the
         answer is None.

@@ -46,7 +46,7 @@ def test_the_matrix_moves_the_scan_back_with_the_same_bits_everywhere() -> None:
     for backend, threads in [("octree", 1), ("kdop", 3)]:
         again = p2m.align(scan, p2m.Index(part(), backend), threads=threads)
         assert again.matrix.tobytes() == found.matrix.tobytes() and again.rounds == found.rounds
-    # Positions in f32 are those of f64.
+    # Points in f32 give the same result as their values in f64.
     rounded = scan.astype(np.float32)
     assert p2m.align(rounded, part()).matrix.tobytes() == p2m.align(rounded.astype(float), part()).matrix.tobytes()
 
@@ -81,7 +81,7 @@ def test_a_deviation_can_align_first(tmp_path: Path) -> None:
     aligned = p2m.deviation(scan, part(), align=True, tolerance=0.005)
     expected = p2m.deviation(p2m.align(scan, part()).points, part())
     assert aligned.values.tobytes() == expected.values.tobytes() and aligned.statistics["rms"] < 0.0015
-    # The file has the moved scan, with its triangles.
+    # The file contains the moved scan, with its triangles.
     corners = part().vertices @ there[:3, :3].T + there[:3, 3]
     turned = p2m.Scene(np.concatenate([scan, corners]), triangles=part().triangles + len(scan))
     p2m.deviation(turned, part(), align=True).save(tmp_path / "aligned.ply")

@@ -258,7 +258,9 @@ def test_meshes_of_other_packages_keep_the_numbers_of_their_cells_and_names() ->
         warnings.simplefilter("error")
         scene = p2m.Scene.of(tetrahedron)
     assert scene.counts.triangles == 4 and scene.sources.tolist() == [0] * 4
-    faces = pyvista.PolyData(np.array([[0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0], [0, 0, 1.0]]), [4, 0, 1, 2, 3, 3, 0, 1, 4])
+    faces = pyvista.PolyData(
+        np.array([[0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0], [0, 0, 1.0]]), [4, 0, 1, 2, 3, 3, 0, 1, 4]
+    )
     assert p2m.Scene.of(faces).sources.tolist() == [0, 0, 1]
 
 

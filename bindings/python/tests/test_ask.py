@@ -1,4 +1,4 @@
-"""`Ask` has the bits of the eager answers for batches of all types."""
+"""`Ask` returns the same bits as the eager queries, for batches of all types."""
 
 from __future__ import annotations
 
@@ -49,7 +49,7 @@ def structs(points: np.ndarray) -> Any:
 
 
 def columns(batch: Any, names: tuple[str, ...] = FIELDS) -> dict[str, np.ndarray]:
-    """Return the answers in a batch of Arrow as arrays of NumPy."""
+    """Return the answers in an Arrow batch as NumPy arrays."""
     arrays = {}
     for name in names:
         column = batch.column(name)
@@ -170,7 +170,7 @@ def test_points_that_are_null_have_null_answers(index: p2m.Index, kinds: list[st
 
 
 def test_empty_batches_have_empty_answers(tmp_path: Path) -> None:
-    # Engines ask for the schema with an empty batch, where the file may be absent.
+    # Engines ask for the schema with an empty batch, on machines where the file may be absent.
     ask = p2m.Ask(tmp_path / "absent.p2m", fields=FIELDS)
     empty = {axis: np.empty(0) for axis in "xyz"}
     found = ask(pa.table(empty))

@@ -69,7 +69,7 @@ def test_surfaces_with_holes() -> None:
     for rule, scale in [(0, 1), (1, 1), (2, 1), (4, 1)]:
         S = igl.signed_distance(points, vertices, opened, rule)[0]
         assert S[0] < -0.85 * scale and S[1] == 2.0
-    # With pseudonormals, the side of a sheet decides.
+    # With pseudonormals, the sides of a sheet decide the sign.
     sheet = np.array([[0, 0, 0], [4, 0, 0], [0, 4, 0]])
     S, _, _, N = igl.signed_distance([[1, 1, 1], [1, 1, -1], [-3, 0, 4]], sheet, [[0, 1, 2]], 0)
     assert S.tolist() == [1, -1, 5] and N[:2].tolist() == [[0, 0, 1]] * 2
@@ -141,7 +141,7 @@ def test_rules_agree_where_a_surface_is_wound_twice() -> None:
         by_normals = igl.signed_distance(points, vertices, faces, igl.SIGNED_DISTANCE_TYPE_PSEUDONORMAL)[0] < 0
         np.testing.assert_array_equal(by_winding, first | second)
         np.testing.assert_array_equal(by_normals, first | second)
-    # A cube that is inside out, in another one.
+    # A cube that is inside out, inside of another one.
     faces = np.concatenate([CUBE_TRIANGLES, CUBE_TRIANGLES[:, ::-1] + 8])
     by_winding = igl.signed_distance(points, vertices, faces)[0] < 0
     np.testing.assert_array_equal(by_winding, first ^ second)

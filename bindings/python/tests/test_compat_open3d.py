@@ -65,7 +65,7 @@ def test_inside_is_negative_and_occupied() -> None:
     for samples in [0, 2]:
         with pytest.raises(ValueError, match="not odd"):
             scene.compute_occupancy(POINTS, nsamples=samples)
-    # An answer in float64 is that of the index.
+    # An answer in float64 equals the answer of the index.
     points = np.random.default_rng(1).normal(size=(50, 3))
     index = p2m.Index(p2m.Scene(CUBE_VERTICES, triangles=CUBE_TRIANGLES))
     exact = RaycastingScene(dtype=np.float64)
@@ -139,7 +139,7 @@ def test_adding_triangles_rebuilds() -> None:
 
 
 def answer_of(scene: RaycastingScene) -> list[float]:
-    """Return distances; a function of the module, for other processes."""
+    """Return distances. It is a function of the module, so that other processes can call it."""
     values: list[float] = scene.compute_signed_distance(POINTS).tolist()
     return values
 

@@ -1,4 +1,4 @@
-"""Indexes on a card. Without a card, a native part that reads and writes memory of the processor takes its place."""
+"""Indexes on a card. Without a card, a substitute for the native part reads and writes memory of the processor."""
 
 from __future__ import annotations
 
@@ -38,7 +38,7 @@ def test_errors_are_clear() -> None:
 
 
 class FakeArray(np.ndarray):
-    """An array of the processor with the attributes of one of CuPy."""
+    """An array in the memory of the processor with the attributes of a CuPy array."""
 
     @property
     def __cuda_array_interface__(self) -> dict[str, Any]:
@@ -64,7 +64,7 @@ class FakeArray(np.ndarray):
 
 
 class FakeRaw:
-    """A native part whose card is the processor."""
+    """A substitute for the native part, whose card is the processor."""
 
     streams: list[int] = []
 

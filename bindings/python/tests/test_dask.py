@@ -1,4 +1,4 @@
-"""Lazy arrays of Dask have the bits of the eager answers, whatever the chunks and the processes."""
+"""Lazy Dask arrays have the same bits as the eager answers, for any chunks and processes."""
 
 from __future__ import annotations
 
@@ -70,7 +70,7 @@ def calls(monkeypatch: pytest.MonkeyPatch) -> list[int]:
 
 @st.composite
 def chunked(draw: st.DrawFn) -> tuple[p2m.Index, Any, np.ndarray]:
-    """Return an index, an array of points in any chunks, and the same points as an array of NumPy."""
+    """Return an index, an array of points in any chunks, and the same points as a NumPy array."""
     seed = draw(st.integers(0, 1000))
     scene = mixed_scene(seed, 40, draw(st.integers(8, 60)))
     shape = draw(st.one_of(
@@ -184,7 +184,7 @@ def test_indexes_with_and_without_a_file_answer(path: Path, index: p2m.Index, ba
         np.testing.assert_array_equal(lazy.compute(), index.distance(POINTS))
     mapped = p2m.dask.distance(points, path, map=True)
     np.testing.assert_array_equal(mapped.compute(), index.distance(POINTS))
-    # The same question has the same name, by which schedulers recognise what they have computed.
+    # The same query has the same name, by which schedulers recognise results that they have already computed.
     assert len(names) == 1 and mapped.name not in names
     lazy = p2m.dask.distance(points, ball_index)
     assert lazy.name == p2m.dask.distance(points, ball_index).name != p2m.dask.distance(points, mixed_ball()).name
@@ -214,14 +214,15 @@ def test_folders_of_shards_have_the_same_bits(
 
 
 NO_SHRINKING = [phase for phase in Phase if phase != Phase.shrink]
-"""Examples that take a second are not made smaller."""
+"""The phases for examples that take a second, which are not shrunk."""
 
 EXACT = tuple(name for name in FIELDS if name != "lower_bound")
 
 
 @st.composite
 def scattered(draw: st.DrawFn) -> tuple[p2m.Index, int, Any, np.ndarray]:
-    """Return an index, a size of shards, points in any chunks, many of them as near to several shards, and the same."""
+    """Return an index, a size of shards, points in any chunks of which many are as near to several shards, and the
+    same."""
     index, array, points = draw(chunked())
     # At vertices many primitives are equally near, and halves of whole numbers are half way between boxes.
     rows = np.concatenate([points.reshape(-1, 3), index.scene.vertices, np.rint(2 * index.scene.vertices) / 2])
@@ -284,7 +285,7 @@ def test_points_that_go_to_shards_without_answers(tmp_path: Path) -> None:
 
 @pytest.fixture(scope="module")
 def workers(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Any]:
-    """Yield the client of two workers of Dask in this process, whose tasks see what tests replace."""
+    """Yield the client of two Dask workers in this process, whose tasks see the replacements of tests."""
     distributed = pytest.importorskip("distributed")
     folder = str(tmp_path_factory.mktemp("workers"))
     with distributed.Client(
@@ -294,7 +295,7 @@ def workers(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Any]:
 
 
 class Failures:
-    """Let tasks raise in their first attempts, before or after they have asked the shards."""
+    """Let the first attempts of tasks raise, before or after they have asked the shards."""
 
     def __init__(self, seed: int, largest: int) -> None:
         self.seed, self.largest = seed, largest
@@ -477,7 +478,7 @@ def test_without_dask_the_message_names_the_package() -> None:
 
 
 def kill_once(block: np.ndarray, flag: str) -> np.ndarray:
-    """Return a block, after ending the process where this is the first block that holds its point."""
+    """Return a block. The process ends if this is the first block that holds its point."""
     if block[0, 0] == POINTS[500, 0]:
         try:
             os.close(os.open(flag, os.O_CREAT | os.O_EXCL))
@@ -519,7 +520,7 @@ def test_processes_of_a_cluster_answer_and_one_may_end(path: Path, index: p2m.In
 
 
 def loads_of(shards: p2m.Shards) -> int:
-    """Return how often this process has loaded a shard."""
+    """Return the number of times that this process has loaded a shard."""
     return shards.loads
 
 
@@ -529,7 +530,7 @@ def test_processes_that_share_shards_load_each_at_most_twice(tmp_path: Path) -> 
     points = da.from_array(POINTS, chunks=(100, 3))
     loads = {}
     with cluster(tmp_path) as client:
-        # An index with another limit is another one to a process, so loads are counted from zero.
+        # A process treats an index with another limit as another index, so loads are counted from zero.
         for shuffle, limit in [(False, 1), (True, 2)]:
             shards = p2m.Shards(tmp_path / "site", limit)
             found = p2m.dask.closest(points, shards, fields=EXACT, shuffle=shuffle).compute(scheduler=client)

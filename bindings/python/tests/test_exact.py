@@ -1,4 +1,4 @@
-"""Answers are those of exact arithmetic."""
+"""Compares answers with exact arithmetic."""
 
 from __future__ import annotations
 
@@ -36,7 +36,7 @@ def test_closest_triangles_signs_and_hits() -> None:
     plain, signed = index.closest(points), index.signed_distance(points)
     for row, point in enumerate(points):
         squared, nearest = mesh.nearest(point)
-        # Certified answers are right to the last bit but one, and others within the documented bound.
+        # Certified distances are rounded correctly, and others are within the documented bound.
         assert certified.primitive[row] == nearest[0]
         assert error(certified.distance[row], squared) <= 0.5001 * np.spacing(certified.distance[row])
         assert error(plain.distance[row], squared) <= 8 * ROUNDING * (np.abs(point).max() + mesh.size)

@@ -1,4 +1,4 @@
-"""Files that are written, results that do not fit into memory, and numbers of threads."""
+"""Tests of files that are written, results that do not fit into memory, and numbers of threads."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Files that other libraries wrote, read as those libraries read them."""
+"""Compares the readers with other libraries, on files that those libraries wrote."""
 
 from __future__ import annotations
 
@@ -44,7 +44,11 @@ def test_las_of_several_chunks_and_its_unit(tmp_path: Path) -> None:
     laspy = pytest.importorskip("laspy")
     pyproj = pytest.importorskip("pyproj")
     pytest.importorskip("lazrs")
-    for form, version, code, unit in [(1, "1.2", 28992, "m"), (7, "1.4", 2263, "US survey ft"), (6, "1.4", 4326, "degrees")]:
+    for form, version, code, unit in [
+        (1, "1.2", 28992, "m"),
+        (7, "1.4", 2263, "US survey ft"),
+        (6, "1.4", 4326, "degrees"),
+    ]:
         header = laspy.LasHeader(version=version, point_format=form)
         header.scales = [1e-5] * 3
         header.add_crs(pyproj.CRS.from_epsg(code), keep_compatibility=form < 6)
@@ -67,14 +71,19 @@ def test_e57(tmp_path: Path) -> None:
     for station in range(2):
         x, y, z = points().T
         data = {"cartesianX": x, "cartesianY": y, "cartesianZ": z, "intensity": x}
-        file.write_scan_raw(data, name=f"station {station}", rotation=rotation, translation=np.array([1, 2, 3 + station]))
+        file.write_scan_raw(
+            data, name=f"station {station}", rotation=rotation, translation=np.array([1, 2, 3 + station])
+        )
     file.close()
     file = pye57.E57(str(path))
     expected = [file.read_scan(station, ignore_missing_fields=True) for station in range(2)]
     wanted = np.concatenate([np.stack([s[f"cartesian{axis}"] for axis in "XYZ"], axis=1) for s in expected])
     scene = p2m.read(path)
     assert np.allclose(scene.vertices, wanted, rtol=0, atol=1e-12)
-    assert [(o.name, o.start, o.stop) for o in scene.objects] == [("station 0", 0, COUNT), ("station 1", COUNT, 2 * COUNT)]
+    assert [(o.name, o.start, o.stop) for o in scene.objects] == [
+        ("station 0", 0, COUNT),
+        ("station 1", COUNT, 2 * COUNT),
+    ]
     assert scene.unit == "m"
 
 
@@ -252,7 +261,9 @@ def test_a_cloud_is_a_scene_a_scan_and_a_list_of_queries(tmp_path: Path) -> None
     cloud.x, cloud.y, cloud.z = points().T
     path = str(tmp_path / "cloud.laz")
     cloud.write(path)
-    rows = csv.DictReader(io.StringIO(run("query", path, "--points", path, "--columns", "number,distance,primitive").stdout))
+    rows = csv.DictReader(
+        io.StringIO(run("query", path, "--points", path, "--columns", "number,distance,primitive").stdout)
+    )
     assert [(row["number"], row["distance"], row["primitive"]) for row in rows] == [
         (str(i), "0.0", str(i)) for i in range(COUNT)
     ]
@@ -269,7 +280,10 @@ def test_ids_are_in_the_answers_of_the_program(tmp_path: Path) -> None:
     result = run("query", str(tmp_path / "map.geojson"), "--points", str(tmp_path / "stations.csv"),
                  "--points-columns", "lon,lat", "--points-id", "nr")
     rows = list(csv.DictReader(io.StringIO(result.stdout)))
-    assert [(row["id"], float(row["distance"])) for row in rows] == [("P7", pytest.approx(1)), ("P,8", pytest.approx(48.4**0.5))]
+    assert [(row["id"], float(row["distance"])) for row in rows] == [
+        ("P7", pytest.approx(1)),
+        ("P,8", pytest.approx(48.4**0.5)),
+    ]
     assert "map.geojson has two coordinates for each point: z is 0" in result.stderr
     assert "is in degrees, so distances are no lengths" in result.stderr
     report = json.loads(run("info", "--json", str(tmp_path / "map.geojson")).stdout)

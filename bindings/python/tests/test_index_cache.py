@@ -1,4 +1,4 @@
-"""Indexes of files, of which a process opens each once."""
+"""Tests of the cache of index files, each of which a process opens once."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ from p2m._index_cache import open_index
 
 @pytest.fixture
 def loads(monkeypatch: pytest.MonkeyPatch) -> Iterator[list[str]]:
-    """Count the files that are loaded, each of which takes a while."""
+    """Count the files that are loaded, and make each loading take a while."""
     seen: list[str] = []
     load = _index_cache._p2m.load
 
@@ -83,7 +83,7 @@ def test_a_replaced_file_is_opened_anew(path: Path, loads: list[str]) -> None:
     status = path.stat()
     other = p2m.Index(mixed_scene(3))
     other.save(path)
-    # The header tells files apart that have the same size and the same time.
+    # The header distinguishes files of the same size and time.
     os.utime(path, ns=(status.st_atime_ns, status.st_mtime_ns))
     second = open_index(path)
     assert len(loads) == 2

@@ -47,10 +47,12 @@ def test_notebooks_show_the_page_in_a_frame(tmp_path: Path) -> None:
     found = p2m.deviation([[0.1, 0.1, 0.1], [2, 2, 2]], SOLID, tolerance=0.5)
     page = found.show()
     frame = page._repr_html_()
-    inner = re.fullmatch(r'<iframe srcdoc="(.*?)" style=.*sandbox="allow-scripts allow-downloads".*</iframe>', frame, re.S)
+    inner = re.fullmatch(
+        r'<iframe srcdoc="(.*?)" style=.*sandbox="allow-scripts allow-downloads".*</iframe>', frame, re.S
+    )
     assert inner is not None and html.unescape(inner[1]) == page.html
     assert '"' not in inner[1]
-    # The file is the same page, whose colours end at three tolerances.
+    # The saved file is the same page, whose colours end at three tolerances.
     found.save(tmp_path / "page.html")
     assert (tmp_path / "page.html").read_text() == page.html
     assert data(page)["deviations"]["limit"] == found.limit == 1.5

@@ -63,7 +63,7 @@ VERTICES = st.lists(st.tuples(COORDINATE, COORDINATE, COORDINATE), min_size=4, m
 
 @st.composite
 def small_scenes(draw: st.DrawFn) -> p2m.Scene:
-    """Return scenes of few primitives on a lattice, which touch, coincide and degenerate often."""
+    """Return scenes of few primitives on a lattice, which often touch, coincide or degenerate."""
     vertices = np.array(draw(VERTICES), float)
     index = st.integers(0, len(vertices) - 1)
     rows = [draw(st.lists(st.tuples(*[index] * width), max_size=2)) for width in (3, 2)]
@@ -174,7 +174,7 @@ def test_pairs_are_those_of_brute_force(backend: str) -> None:
     lots = index.pairs_within(other, 1.0, transforms[4], fields=PAIR_FIELDS)
     assert len(lots.distance) > 10
     assert_same(lots, slow.pairs_within(others, 1.0, transforms[4], fields=PAIR_FIELDS), (*BITS, "primitives"))
-    # The scenes are those that NumPy moves, apart from rounding.
+    # NumPy moves the scenes to the same places, up to rounding.
     for k, transform in enumerate(transforms):
         pair = index.closest_pair(p2m.Index(moved(b, transform), backend))
         assert abs(pair.distance - expected.distance[k]) < 1e-12
@@ -386,7 +386,7 @@ def test_hausdorff_distances_of_points_are_those_of_numpy() -> None:
             assert abs(np.linalg.norm(found.points[1] - found.points[0]) - exact) < 1e-14
             i, j = found.primitives
             assert (found.points == [a[i], b[j]]).all()
-    # A scene that moves with the other one.
+    # The scene moves together with the other one.
     matrix = motions(rng, 1, 3.0)[0]
     found = p2m.hausdorff(moved(scenes[0], matrix), p2m.Index(scenes[1], "kdop"), 0.0, transform=matrix)
     assert abs(found.lower_bound - max(sides)) < 1e-13

@@ -68,7 +68,7 @@ def test_processes_share_indexes(method: str, is_file: bool, tmp_path: Path) -> 
     if is_file:
         index.save(tmp_path / "index.p2m")
         index = p2m.load(tmp_path / "index.p2m", map=True)
-    # The pool of this process has threads before the fork, which its children do not have.
+    # The pool of this process has threads before the fork, and its children do not have these threads.
     expected = distances(index, 2)
     with multiprocessing.get_context(method).Pool(2) as pool:
         answers = pool.starmap_async(distances, [(index, 2), (index, 1), (index, 2)]).get(timeout=120)

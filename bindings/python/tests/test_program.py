@@ -1,4 +1,4 @@
-"""Answers are the bits of the Rust library: those of the program `p2m`, for a million points of each model."""
+"""Compares answers with the program `p2m` bit for bit, for a million points of each model."""
 
 from __future__ import annotations
 

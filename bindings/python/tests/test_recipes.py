@@ -1,4 +1,4 @@
-"""The recipes and the benchmark for engines, whose scripts compare all answers with those of one call."""
+"""Runs the recipes and the benchmark for engines, whose scripts compare all answers with those of one call."""
 
 from __future__ import annotations
 

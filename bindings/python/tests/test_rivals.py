@@ -1,9 +1,9 @@
 """Comparison with trimesh, Open3D, libigl and point-cloud-utils, as far as they are installed.
 
 `cargo xtask python --rivals` installs them and runs these tests, which need the variable P2M_RIVALS. Answers are equal
-within the precision of the other package. Each difference beyond it is decided by exact arithmetic (exact.py), and the
-table at the end of the test run counts them: in all that were decided, p2m is right. P2M_DECIDED is the number that is
-decided of each kind, 25 by default, taken at random.
+within the precision of the other package. Exact arithmetic (exact.py) decides larger differences, and the table at the
+end of the test run counts them: in all decided ones, p2m is right. P2M_DECIDED is the number of differences of each
+kind that are decided, 25 by default, chosen at random.
 """
 
 from __future__ import annotations
@@ -100,7 +100,7 @@ def decide_distances(
     rival: str, name: str, mesh: Mesh, points: np.ndarray, ours: tuple[Any, Any], theirs: tuple[Any, Any],
     tolerance: float, reason: str,
 ) -> None:  # fmt: skip
-    """Check that distances differ by no more than a tolerance, or else that ours is the right one."""
+    """Check that distances differ by at most a tolerance, or else that ours is the right one."""
     size = np.abs(points).max(axis=1) + mesh.size
     differs = ~(np.abs(ours[0] - theirs[0]) <= tolerance * size)
     for row in (rows := chosen(differs)):
@@ -115,7 +115,7 @@ def decide_distances(
 def decide_triangles(
     rival: str, name: str, mesh: Mesh, points: np.ndarray, ours: np.ndarray, theirs: np.ndarray, rounding: float
 ) -> None:
-    """Check that our triangles are the nearest ones, and the first of those that are equally near."""
+    """Check that our triangles are the nearest ones, and the first of equally near ones."""
     differs = np.asarray(ours) != np.asarray(theirs)
     ties = nearer = equal = 0
     for row in (rows := chosen(differs)):
@@ -126,7 +126,7 @@ def decide_triangles(
         elif own < other:
             nearer += 1
         else:
-            # Both are the nearest one as far as distances are computed.
+            # Both triangles are the nearest one up to the error of computed distances.
             bound = 8 * rounding * (np.abs(points[row]).max() + mesh.size)
             assert error(float(own) ** 0.5, other) <= bound, (name, points[row])
             equal += 1
@@ -137,7 +137,7 @@ def decide_triangles(
 def decide_signs(
     rival: str, name: str, mesh: Mesh, points: np.ndarray, ours: np.ndarray, theirs: np.ndarray, reason: str,
 ) -> None:  # fmt: skip
-    """Check that our insides are those of exact crossings, where others differ, and everywhere in a sample."""
+    """Compare our insides with exact crossings, where others differ and in a sample everywhere."""
     differs = np.asarray(ours) != np.asarray(theirs)
     if not mesh.is_closed:
         note("signs", rival, name, int(differs.sum()), len(points), 0, "the surface is not closed: not decided")
@@ -155,7 +155,7 @@ def decide_signs(
 
 
 def documented_parameters(function: Any) -> list[str]:
-    """Return the parameters that the documentation of a compiled function names, one list for each signature."""
+    """Return the parameters in the documentation of a compiled function, a list for each signature."""
     name = function.__name__
     found = []
     for line in function.__doc__.splitlines():
@@ -348,7 +348,7 @@ def test_trimesh_on_models(model: tuple[str, p2m.Scene, Mesh]) -> None:
 
 
 def aimed(scene: p2m.Scene, mesh: Mesh, count: int) -> tuple[np.ndarray, np.ndarray]:
-    """Return rays at random, and others through vertices, edges and faces."""
+    """Return random rays, and rays through vertices, edges and faces."""
     rng = np.random.default_rng(7)
     low, high = scene.bounds
     origins = (low + high) / 2 + rng.normal(size=(4 * count, 3)) * (high - low) * 1.5

@@ -1,4 +1,4 @@
-"""Shards answer as one index does, bit for bit, and wrong files are errors that name the file."""
+"""Shards answer with the same bits as one index, and wrong files are errors that name the file."""
 
 from __future__ import annotations
 

@@ -12,9 +12,10 @@ array([2., 5.])
 [[1.0, 1.0, 0.0], [4.0, 0.0, 0.0]]
 
 `read` reads scenes from files, and `Scene.of` takes meshes of trimesh, Open3D, PyVista and meshio. `Index` has the
-queries. `hausdorff` returns the Hausdorff distance of two scenes, and `deviation` compares a scan with a mesh,
-onto which `align` moves it. `load` loads saved indexes, and `advise` tells which backend a scene calls for. `Ask` and the module `p2m.dask` ask a saved
-index from any number of processes. `write_shards` and `Shards` are for scenes that are larger than memory.
+queries. `hausdorff` returns the Hausdorff distance of two scenes, and `deviation` compares a scan with a mesh, onto
+which `align` moves it. `load` loads saved indexes, and `advise` recommends a backend for a scene. `Ask` and the module
+`p2m.dask` ask a saved index from any number of processes. `write_shards` and `Shards` are for scenes that are larger
+than memory.
 """
 
 from __future__ import annotations

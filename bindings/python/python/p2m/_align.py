@@ -18,21 +18,21 @@ class Alignment(NamedTuple):
     """The pose in which a scan lies on a scene. Lengths are in the unit of the scene."""
 
     matrix: NDArray[np.float64]
-    """The matrix that moves the scan, for columns (x, y, z, 1): shape (4, 4)."""
+    """The matrix that moves the scan, for column vectors (x, y, z, 1): shape (4, 4)."""
     points: NDArray[np.float64]
-    """The moved points, which are accurate far from the origin, too: shape (n, 3)."""
+    """The moved points, which are accurate even far from the origin: shape (n, 3)."""
     rms: float
-    """The root mean square of the distances of the points that are no outliers."""
+    """The root mean square of the distances of all points but outliers."""
     coverage: float
-    """The part of the points that are no outliers."""
+    """The part of the points that are not outliers."""
     scale: float
-    """The factor by which the matrix scales, which is 1 unless it was asked for."""
+    """The factor by which the matrix scales, which is 1 unless scaling was requested."""
     converged: bool
     """Whether the last step was small enough."""
     rounds: list[tuple[int, float, float]]
-    """For each round after the search the number of points, the rms, and the length of the step."""
+    """The number of points, the rms and the length of the step of each round after the search."""
     ambiguity: str | None
-    """Why another pose would fit about as well, if one would."""
+    """The reason why another pose would fit about as well, if one would."""
     other: NDArray[np.float64] | None
     """The matrix of another pose that fits about as well, if one was found."""
 
@@ -61,7 +61,7 @@ def align(
 ) -> Alignment:
     """Return the rotation and translation that bring the points of a scan onto a part.
 
-    It is the iterative closest point method with distances to planes, robust weights, and a search over rotations for
+    It uses the iterative closest point method with distances to planes, robust weights, and a search over rotations for
     the start. The result is the same for every backend and number of threads, bit for bit.
 
     Parameters
@@ -78,16 +78,17 @@ def align(
     scale : bool, optional
         Whether the scan is scaled as well.
     search : bool, optional
-        Whether other starts than the scan as it is are tried, so that any rotation and distance can be found.
+        Whether to search for a start, so that any rotation and distance can be found. Without it, the scan starts as it
+        is.
     point_to_point : bool, optional
-        Whether distances are those of points, which suits scenes of points, and not of planes.
+        Whether to use distances to points instead of planes, which suits scenes of points.
     threads : int, optional
         The number of threads, as for `Index`.
 
     Returns
     -------
     Alignment
-        The matrix, the moved points and how good they fit. A warning says if another pose would fit about as well.
+        The matrix, the moved points and the quality of the fit. A warning says if another pose would fit about as well.
 
     Raises
     ------

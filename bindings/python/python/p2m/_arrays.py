@@ -16,13 +16,13 @@ from . import _p2m
 from ._records import Record
 
 Progress = Union[Callable[[int, int], object], bool, Literal["tqdm"], None]
-"""``callback(done, total)``, or ``True`` or ``"tqdm"`` for a bar of tqdm."""
+"""A function ``callback(done, total)``, or ``True`` or ``"tqdm"`` for a progress bar of tqdm."""
 
 Run = tuple[int, Union[Callable[[int, int], object], None]]
-"""How a call runs: the number of threads, and the function that receives progress."""
+"""The options of a call: the number of threads, and the function that receives progress."""
 
 Out = Union[Mapping[str, NDArray[Any]], Record, NDArray[Any], None]
-"""Arrays that receive answers, by name, or one array for one answer."""
+"""Arrays that receive answers, by name, or a single array for a single answer."""
 
 _FLOAT64 = np.dtype(np.float64)
 _FLOAT32 = np.dtype(np.float32)
@@ -36,10 +36,10 @@ FIELDS: dict[str, tuple[np.dtype[Any], tuple[int, ...]]] = {
     "lower_bound": (_FLOAT64, ()),
     "object": (np.dtype(np.int64), ()),
 }
-"""The type and the last axes of the columns of closest points."""
+"""The types and the last axes of the columns of closest points."""
 
 CLOSEST_FIELDS = {**FIELDS, "normal": (_FLOAT64, (3,))}
-"""The columns of closest points, with those of whole indexes alone."""
+"""The columns of closest points, including those that only indexes over whole scenes have."""
 
 HIT_FIELDS: dict[str, tuple[np.dtype[Any], tuple[int, ...]]] = {
     "t": (_FLOAT64, ()),
@@ -48,18 +48,18 @@ HIT_FIELDS: dict[str, tuple[np.dtype[Any], tuple[int, ...]]] = {
     "barycentric": (_FLOAT64, (3,)),
     "side": (np.dtype(np.int8), ()),
 }
-"""The type and the last axes of the columns of hits."""
+"""The types and the last axes of the columns of hits."""
 
 
 def unmasked(values: ArrayLike, name: str) -> NDArray[Any]:
-    """Return values as an array, unless it hides some of them."""
+    """Return values as an array, or raise an error if it is a masked array that hides some of them."""
     if isinstance(values, np.ma.MaskedArray):
         raise TypeError(f"{name}: a masked array hides numbers: leave its masked rows out, or take its attribute data")
     return np.asarray(values)
 
 
 def coordinates(values: ArrayLike, name: str, *, only_float64: bool = False) -> NDArray[Any]:
-    """Return coordinates as a contiguous array of float64 or float32, which is not copied if it is one."""
+    """Return coordinates as a contiguous array of float64 or float32. It is copied only if necessary."""
     array = unmasked(values, name)
     if array.shape == (0,):
         array = array.reshape(0, 3)
@@ -78,7 +78,7 @@ def coordinates(values: ArrayLike, name: str, *, only_float64: bool = False) -> 
 def together(
     first: ArrayLike, first_name: str, second: ArrayLike, second_name: str
 ) -> tuple[tuple[int, ...], NDArray[np.float64], NDArray[np.float64]]:
-    """Return the leading axes of two arrays that are broadcast against each other, and both as flat arrays."""
+    """Return the common leading axes of two arrays after broadcasting, and both as flat arrays."""
     arrays = [coordinates(first, first_name, only_float64=True), coordinates(second, second_name, only_float64=True)]
     shape = np.broadcast_shapes(*(array.shape for array in arrays))
     a, b = (np.ascontiguousarray(np.broadcast_to(array, shape)).reshape(-1) for array in arrays)
@@ -86,7 +86,7 @@ def together(
 
 
 def grid_of(origin: ArrayLike, shape: Sequence[int]) -> tuple[tuple[float, ...], tuple[int, ...]]:
-    """Return the first point of a grid, and its numbers of points."""
+    """Return the first point of a grid, and its numbers of points along the axes."""
     corner = coordinates(origin, "origin", only_float64=True)
     if corner.shape != (3,):
         raise ValueError(f"origin: the shape is {corner.shape} instead of (3,)")
@@ -156,7 +156,7 @@ def indices(values: ArrayLike | None, name: str, width: int, vertices: int) -> N
 
 
 class _Usual(threading.local):
-    """The usual number of threads of calls on this thread."""
+    """The default number of threads for calls on this thread."""
 
     threads: int | None = None
 
@@ -172,7 +172,7 @@ def thread_count(threads: int | None, default: int | None = None) -> int:
 
 
 def own_threads(threads: int | None) -> int | None:
-    """Return the number of threads that an object was given, if it was given one."""
+    """Return the number of threads that an object was given, or None."""
     return None if threads is None else thread_count(threads)
 
 
@@ -208,7 +208,7 @@ def largest_distance(value: float | None, name: str = "max_distance") -> float:
 
 
 def check_choice(value: object, name: str, choices: Sequence[object]) -> None:
-    """Fail if a value is none of some."""
+    """Raise an error unless a value is one of the choices."""
     if value not in choices:
         raise ValueError(f"{name}: {value!r} is none of {', '.join(map(repr, choices))}")
 
@@ -217,13 +217,13 @@ SIGNS = ("auto", "winding", "parity")
 """The names of the rules of signs."""
 
 INSIDE = ("negative", "positive")
-"""The names of the signs that signed distances may have inside."""
+"""The names of the signs inside that signed distances may have."""
 
 
 def checked_limits(
     max_distance: float | None, epsilon: float, max_visits: int | None, certified: bool
 ) -> tuple[float, float]:
-    """Return the largest distance and the relative error, after a check of all limits of a search."""
+    """Return the largest distance and the relative error, after checking all limits of a search."""
     largest = largest_distance(max_distance)
     error = not_negative(epsilon, "epsilon")
     if max_visits is not None:
@@ -234,7 +234,7 @@ def checked_limits(
 
 
 def checked_out(array: Any, name: str, dtype: np.dtype[Any], shape: tuple[int, ...]) -> NDArray[Any]:
-    """Return an array that answers can be written to."""
+    """Return an array after checking that answers can be written to it."""
     if not isinstance(array, np.ndarray):
         raise TypeError(f"out: {name} is no array of NumPy but {type(array).__name__}")
     if array.dtype != dtype:
@@ -303,7 +303,7 @@ def flat(arrays: Mapping[str, NDArray[Any]]) -> dict[str, NDArray[Any]]:
 
 
 def running(threads: int, progress: Progress, what: str, unit: str) -> AbstractContextManager[Run]:
-    """Return a context with the number of threads and the function that receives progress, whose bar it closes."""
+    """Return a context manager for the number of threads and the progress function. It closes a progress bar."""
     if progress is None or progress is False:
         return contextlib.nullcontext((threads, None))
     if progress is True or progress == "tqdm":
@@ -315,7 +315,7 @@ def running(threads: int, progress: Progress, what: str, unit: str) -> AbstractC
 
 @contextlib.contextmanager
 def _bar(threads: int, progress: Progress, what: str, unit: str) -> Iterator[Run]:
-    """Yield the number of threads and a function that moves a bar of tqdm."""
+    """Yield the number of threads and a function that moves a progress bar of tqdm."""
     try:
         from tqdm.auto import tqdm
     except ImportError as error:
@@ -330,7 +330,7 @@ def _bar(threads: int, progress: Progress, what: str, unit: str) -> Iterator[Run
 
 
 class Shared:
-    """An object that never changes, so that copies are the object itself."""
+    """A base class of immutable objects, whose copies are the object itself."""
 
     __slots__ = ()
 
@@ -342,7 +342,7 @@ class Shared:
 
 
 class Queries(Shared):
-    """What the queries of an index rest on: the index of the library, and the usual number of threads."""
+    """The base class of objects with queries: it has the index of the library, and the default number of threads."""
 
     __slots__ = ()
 

@@ -1,4 +1,4 @@
-"""Queries for batches of tables, which engines call in any process."""
+"""A callable for batches of tables, which data engines call in any process."""
 
 from __future__ import annotations
 
@@ -19,8 +19,8 @@ class Ask:
     """A function of batches of points that appends the closest points of one saved index.
 
     An object of this class is small, can be pickled, and opens the file of the index at its first call in each process.
-    So it is what engines want for their batches: ``map_batches`` of Ray, ``mapInArrow`` of Spark (`iterate`), and
-    loops over files of Parquet. Answers are the same bits as those of `p2m.Index.closest`.
+    This suits the batch functions of engines: ``map_batches`` of Ray, ``mapInArrow`` of Spark (`iterate`), and loops
+    over Parquet files. Answers are the same bits as those of `p2m.Index.closest`.
 
     Parameters
     ----------
@@ -37,7 +37,7 @@ class Ask:
     fields : str or sequence of str, optional
         The columns to append, as for `p2m.Index.closest`.
     prefix : str, optional
-        What comes before the names of the fields in the names of the appended columns.
+        The prefix of the names of the appended columns.
     max_distance, epsilon, max_visits, certified
         As for `p2m.Index.closest`.
     threads : int, optional
@@ -168,7 +168,7 @@ class Ask:
         )
 
     def iterate(self, batches: Iterable[Any]) -> Iterator[Any]:
-        """Yield the answers to batches, one after the other. It is a function for ``DataFrame.mapInArrow`` of Spark.
+        """Yield the answers to batches, one after the other, for ``DataFrame.mapInArrow`` of Spark.
 
         Parameters
         ----------
@@ -226,7 +226,7 @@ class Ask:
         Raises
         ------
         ValueError
-            For the fields ``point``, ``barycentric`` and ``feature``, whose types of Arrow Spark does not take.
+            For the fields ``point``, ``barycentric`` and ``feature``, whose Arrow types Spark does not accept.
         """
         for field in self._fields:
             dtype, tail = FIELDS[field]
@@ -277,7 +277,7 @@ class Ask:
         points, valid = arrow_points(batch, self._columns)
         if valid is None:
             return [_arrow_array(array, None) for array in self._answers(points)]
-        # Points without answers are searched for as well, so that a message has the row of the batch.
+        # Points without answers are searched for as well, so that the row in a message counts all points of the batch.
         points = np.where(valid[:, np.newaxis], points, points.dtype.type(0.0))
         return [_arrow_array(array, ~valid) for array in self._answers(points)]
 
@@ -326,7 +326,7 @@ def _joined(columns: Sequence[NDArray[Any]]) -> NDArray[Any]:
 
 
 def _arrow_type(field: str) -> Any:
-    """Return the type of Arrow of a field."""
+    """Return the Arrow type of a field."""
     import pyarrow
 
     dtype, tail = FIELDS[field]
@@ -335,7 +335,7 @@ def _arrow_type(field: str) -> Any:
 
 
 def _arrow_array(array: NDArray[Any], nulls: NDArray[np.bool_] | None) -> Any:
-    """Return an array of Arrow, with rows of three as `FixedSizeList`."""
+    """Return an Arrow array, with rows of three as `FixedSizeList`."""
     import pyarrow
 
     if array.ndim == 1:
@@ -346,9 +346,9 @@ def _arrow_array(array: NDArray[Any], nulls: NDArray[np.bool_] | None) -> Any:
 
 
 def arrow_points(batch: Any, columns: Sequence[str]) -> tuple[NDArray[Any], NDArray[np.bool_] | None]:
-    """Return the points of a batch of Arrow as an array of shape (n, 3), and which of them are valid if some are not.
+    """Return the points of an Arrow batch as an array of shape (n, 3), and which of them are valid unless all are.
 
-    Coordinates of points that are not valid are any numbers.
+    The coordinates of invalid points are arbitrary.
     """
     _check_present(columns, batch.schema.names)
     arrays = [_one_chunk(batch.column(name)) for name in columns]

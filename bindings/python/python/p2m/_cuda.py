@@ -16,31 +16,31 @@ from ._records import ClosestPoints
 if TYPE_CHECKING:
     from ._index import Index
 
-# The fields in the order of the columns of the native part.
+# The fields, in the order of the columns in Rust.
 _CARD_FIELDS = ("distance", "lower_bound", "point", "barycentric", "primitive", "feature")
 
 
 class CudaIndex:
-    """A scene on an NVIDIA card, which answers queries for the closest point with the bits of `Index`.
+    """A scene on an NVIDIA card, which answers closest-point queries with the same bits as `Index`.
 
-    `Index.to` makes it. Points of NumPy are copied to the card, and their answers back. Points that are on the card are
-    not copied: arrays of torch and CuPy, and those of other libraries with ``__dlpack__`` or
+    `Index.to` makes it. NumPy points are copied to the card, and their answers back. Points that are on the card
+    already are not copied: arrays of torch and CuPy, and those of other libraries with ``__dlpack__`` or
     ``__cuda_array_interface__`` (JAX, Numba), for which CuPy is needed.
 
     Attributes
     ----------
     by_tree : int
-        The number of queries of the last call that have no interception list and were answered by the tree.
+        The number of queries of the last call that have no interception list, which the tree has answered.
     by_processor : int
         The number of queries of the last call that the card could not decide, which the processor has answered.
     kernel_seconds : float
-        The time of the kernels of the last call, without copies. Parts of a million points of NumPy are searched at the
-        same time, so their times overlap.
+        The time of the kernels of the last call, without copies. NumPy points are divided into parts of a million,
+        which are searched at the same time, so their times overlap.
 
     Notes
     -----
-    Any number of threads may query an index, but the attributes are then those of any of their calls. A child that was
-    forked after the first index cannot use cards.
+    Any number of threads may query an index, but the attributes are then those of an arbitrary one of their calls. A
+    process that was forked after the first index was made cannot use cards.
     """
 
     def __init__(self, index: Index, *, threads: int | None, **options: Any) -> None:
@@ -92,8 +92,8 @@ class CudaIndex:
         Returns
         -------
         ClosestPoints
-            A record with the arrays of `fields`: arrays of NumPy for points of NumPy, otherwise arrays on the card of
-            torch or of CuPy. There primitives are of int32.
+            A record with the arrays of `fields`: NumPy arrays for NumPy points, otherwise arrays of torch or CuPy on
+            the card, with primitives as int32.
 
         Raises
         ------
@@ -102,7 +102,7 @@ class CudaIndex:
         TypeError
             For points of a wrong type.
         RuntimeError
-            If the card fails, or if a checked answer has other bits than that of the processor.
+            If the card fails, or if a checked answer differs from the processor's.
         MemoryError
             If the memory of the card does not suffice.
         """
@@ -142,7 +142,7 @@ class CudaIndex:
 
 
 class _Torch:
-    """What is needed of torch."""
+    """The part of the interface of torch that this module uses."""
 
     def __init__(self) -> None:
         self._torch = sys.modules["torch"]
@@ -166,7 +166,7 @@ class _Torch:
 
 
 class _CuPy:
-    """What is needed of CuPy."""
+    """The part of the interface of CuPy that this module uses."""
 
     def __init__(self) -> None:
         try:
@@ -176,7 +176,7 @@ class _CuPy:
         self._cupy = cupy
 
     def array(self, points: Any, ordinal: int) -> Any:
-        # Both wait for the stream of the library that made the array.
+        # Both conversions wait for the stream of the library that made the array.
         is_dlpack = not isinstance(points, self._cupy.ndarray) and hasattr(points, "__dlpack__")
         array = self._cupy.from_dlpack(points) if is_dlpack else self._cupy.asarray(points)
         if array.device.id != ordinal:
@@ -194,17 +194,17 @@ class _CuPy:
         return int(array.data.ptr)
 
     def stream(self, array: Any) -> int:
-        # The current stream is that of the current device.
+        # The current stream depends on the current device.
         with array.device:
             return int(self._cupy.cuda.get_current_stream().ptr)
 
 
 def _library(points: Any) -> _Torch | _CuPy | None:
-    """Return the library of points on a card, and None for points of the processor."""
+    """Return the library of points on a card, or None for points in the memory of the processor."""
     torch = sys.modules.get("torch")
     if torch is not None and isinstance(points, torch.Tensor):
         return _Torch() if points.is_cuda else None
-    # The types of DLPack: 2 is memory of a card.
+    # The device type 2 of DLPack is the memory of a card.
     if hasattr(points, "__dlpack_device__") and points.__dlpack_device__()[0] == 2:
         return _CuPy()
     return _CuPy() if hasattr(points, "__cuda_array_interface__") else None

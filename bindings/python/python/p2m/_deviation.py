@@ -37,19 +37,19 @@ class Deviation:
     __slots__ = ("_index", "_points", "_scan", "is_signed", "limit", "statistics", "tolerance", "unit", "values")
 
     values: NDArray[np.float64]
-    """The deviation of each point: positive outside, nan for a point that is not finite or whose side is not
-    defined. Without signs they are distances."""
+    """The deviation of each point, positive outside, or the distance if `is_signed` is false. It is nan for a point
+    that is not finite or whose side is not defined."""
     statistics: dict[str, Any]
-    """``count`` and ``missing``, the numbers of deviations and of nan, and in the unit of the scan ``mean``,
-    ``mean_absolute``, ``rms``, ``standard_deviation`` (with the count as the divisor), ``min``, ``max``, and
-    ``percentile_p`` and ``absolute_percentile_p`` for p of 1, 5, 25, 50, 75, 95 and 99, as ``numpy.percentile`` has
-    them. Without any deviation they are nan."""
+    """The statistics of the deviations, by name. ``count`` and ``missing`` are the numbers of deviations and of nan. In
+    the unit of the scan there are ``mean``, ``mean_absolute``, ``rms``, ``standard_deviation`` (with the count as the
+    divisor), ``min``, ``max``, and ``percentile_p`` and ``absolute_percentile_p`` for p of 1, 5, 25, 50, 75, 95 and 99,
+    defined as in ``numpy.percentile``. Without any deviation they are nan."""
     is_signed: bool
     """Whether the deviations have signs."""
     tolerance: float | None
-    """The tolerance that was given."""
+    """The tolerance, if one was given."""
     limit: float
-    """The absolute deviation from which on colours do not change."""
+    """The absolute deviation at which the colour scale ends."""
     unit: str
     """The name of the unit of lengths."""
 
@@ -74,12 +74,12 @@ class Deviation:
         return f"Deviation(points={len(self.values)}, mean={mean:.4g}, rms={rms:.4g})"
 
     def outside(self, tolerance: float | None = None) -> tuple[int, int]:
-        """Return how many deviations are above a tolerance and how many below its negative.
+        """Return the number of deviations above a tolerance, and the number below its negative.
 
         Parameters
         ----------
         tolerance : float, optional
-            The tolerance, which itself is inside; by default the one that `deviation` was given.
+            The tolerance, by default that of `deviation`. Deviations of exactly the tolerance are inside.
         """
         limit = self.tolerance if tolerance is None else not_negative(tolerance, "tolerance")
         if limit is None:
@@ -89,7 +89,7 @@ class Deviation:
     def passes(self, required: float) -> bool:
         """Return whether at least this percentage of the deviations is within the tolerance of `deviation`.
 
-        Without any deviation it is False.
+        Without any deviation the result is False.
 
         Parameters
         ----------
@@ -101,9 +101,9 @@ class Deviation:
 
     @property
     def objects(self) -> list[tuple[str, dict[str, Any]]]:
-        """The name of each object of the mesh, with the statistics of the deviations whose closest primitive it has.
+        """The objects of the mesh by name, with the statistics of the deviations whose closest primitive they have.
 
-        The primitives in no object are last, with an empty name. A mesh without objects has an empty list.
+        Primitives outside of all objects come last, with an empty name. Without objects in the mesh the list is empty.
         """
         return self._report().objects()
 
@@ -111,7 +111,7 @@ class Deviation:
         """Return a figure of matplotlib: the scan, coloured by its deviations, and their histogram.
 
         If there are more than 50,000 points, only every n-th point is drawn. The histogram counts all of them. The
-        figure belongs to no window: ``figure.savefig("deviation.png")`` writes it, and notebooks show it.
+        figure is not attached to a window: ``figure.savefig("deviation.png")`` writes it, and notebooks show it.
 
         Raises
         ------
@@ -157,11 +157,10 @@ class Deviation:
         Parameters
         ----------
         path : path
-            A name that ends in ``.html`` is that of a page, which any browser opens without a network. One that ends in
-            ``.ply`` is that of the scan with the property ``deviation`` and colours from blue (inside) to red
-            (outside), with its triangles if it has some. One that ends in ``.csv`` is that of the table that ``p2m
-            query --signed`` writes, where ``signed_distance`` is the deviation. ``.pdf`` and ``.png`` are a report on
-            one sheet.
+            The file, whose extension selects the format. ``.html`` is a page, which any browser opens without a
+            network. ``.ply`` is the scan with the property ``deviation`` and colours from blue (inside) to red
+            (outside), with its triangles if it has some. ``.csv`` is the table that ``p2m query --signed`` writes,
+            where ``signed_distance`` is the deviation. ``.pdf`` and ``.png`` are a report on one sheet.
         up : {"y", "z"}, optional
             The axis that points up on the page.
         head : mapping of str to str, optional
@@ -172,7 +171,7 @@ class Deviation:
         Raises
         ------
         ValueError
-            For another ending.
+            For another extension.
         OSError
             If the file cannot be written.
         """
@@ -204,7 +203,7 @@ class Deviation:
         return Page(self._report().page("Deviations", summary, checked_up(up)))
 
     def _report(self) -> _p2m.Report:
-        """Return what pages and sheets show, for which the closest primitive of each point is searched."""
+        """Return the contents of pages and sheets, after searching for the closest primitive of each point."""
         primitives = np.full(len(self.values), np.iinfo(np.uint32).max, np.uint32)
         finite = np.isfinite(self._points).all(axis=1)
         primitives[finite] = self._index.closest(self._points[finite], fields="primitive").primitive
@@ -257,7 +256,7 @@ def deviation(
     threads: int | None = None,
     progress: Progress = None,
 ) -> Deviation:
-    """Return how far the points of a scan are from a mesh: values, statistics, figures and pages.
+    """Return the deviations of the points of a scan from a mesh: values, statistics, figures and pages.
 
     Parameters
     ----------
@@ -269,14 +268,14 @@ def deviation(
         is built.
     align : bool, optional
         Whether the scan is moved onto the mesh first, as `p2m.align` does by default.
-    on_part : bool, optional
-        Whether the result is about the vertices of the mesh: each has the mean deviation of the points around it, and
+    Whether the result is given at the vertices of the mesh: each has the mean deviation of the points around it, or nan
+    if there are none.
         nan where there are none.
-    drop_isolated : bool, optional
-        Whether isolated points of the scan, such as dust, have no deviation: those that are more than four times as far
+    Whether isolated points of the scan, such as dust, have no deviation. A point is isolated if it is more than four
+    times as far from its neighbours as they are from theirs.
         from their neighbours as these from theirs.
     max_distance : float, optional
-        Points that are farther from the mesh have no deviation.
+        The distance from the mesh above which points have no deviation.
     tolerance : float, optional
         The tolerance that figures, pages and `Deviation.outside` mark, in the unit of the mesh.
     limit : float, optional

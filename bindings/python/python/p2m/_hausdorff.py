@@ -19,18 +19,18 @@ class HausdorffDistance(NamedTuple):
     lower_bound: float
     """A certified lower bound, which a point of one scene attains."""
     upper_bound: float
-    """A certified upper bound, which exceeds the lower one by the tolerance at most unless the limit of queries was
-    reached or rounding does not allow it."""
+    """A certified upper bound. It exceeds the lower bound by at most the tolerance, unless the limit of queries was
+    reached or rounding prevents it."""
     points: NDArray[np.float64]
     """The point that attains the lower bound, and its closest point in the other scene: shape (2, 3)."""
     primitives: NDArray[np.int64]
     """The primitives that contain the points: shape (2,)."""
     from_scene: int
-    """The scene that has the point which is farthest from the other one: 0 or 1."""
+    """The scene that contains the point farthest from the other scene: 0 or 1."""
     queries: int
     """The number of queries that were asked."""
     reached: bool
-    """Whether the bounds differ by no more than the tolerance. If not, the limit of queries ended the search, or rounding
+    """Whether the bounds differ by at most the tolerance. If not, the limit of queries ended the search, or rounding
     allows no smaller difference."""
 
 
@@ -45,7 +45,7 @@ def hausdorff(
     threads: int | None = None,
     progress: Progress = None,
 ) -> HausdorffDistance:
-    """Return the Hausdorff distance of two scenes: how far a point of either scene is from the other one at most.
+    """Return the Hausdorff distance of two scenes: the largest distance of a point of either scene from the other one.
 
     All points of triangles, segments and points count, not only vertices.
 
@@ -62,17 +62,18 @@ def hausdorff(
     transform : array_like, shape (4, 4), optional
         The rotation and the translation that move `b`, as for `Index.closest_pair`. A tree of the moved scene is built.
     max_queries : int, optional
-        The largest number of queries besides those of vertices, each of which takes 80 bytes. The bounds are then those
-        that were reached.
+        The largest number of queries besides those of vertices. Each takes 80 bytes. When it is reached, the bounds so
+        far are returned.
     threads : int, optional
         The number of threads, as for `Index`.
     progress : callable, True or "tqdm", optional
-        It is called with the number of queries and the largest possible one. Most searches end long before it.
+        It is called with the number of queries so far and the largest possible number. Most searches end long before
+        it.
 
     Returns
     -------
     HausdorffDistance
-        The bounds and where they come from. They are the same for every backend and number of threads.
+        The bounds and the points that attain them, the same for every backend and number of threads.
 
     Raises
     ------
@@ -105,7 +106,7 @@ def hausdorff(
         high = np.maximum(scenes[0].bounds[1], scenes[1].bounds[1])
         tolerance = float(np.linalg.norm(high - low)) / 1e4
     margin = not_negative(tolerance, "tolerance")
-    # The points of one side alone need no index of their scene.
+    # A one-sided distance needs no index of the first scene.
     first = None if one_sided else index_of(a, count, scenes[0])._raw
     second = index_of(b, count, scenes[1])._raw
     with running(count, progress, "comparing", "queries") as run:

@@ -50,12 +50,12 @@ if TYPE_CHECKING:
 
 
 class PointQueries(Queries):
-    """The queries for points and rays of an index in one piece or in shards."""
+    """The point and ray queries that indexes and sharded indexes share."""
 
     __slots__ = ()
 
     def _objects(self) -> list[tuple[str, int, int]]:
-        """Return the names of the objects, with their first id and the one after their last."""
+        """Return the objects: the name, the first id, and the id after the last one."""
         raise NotImplementedError
 
     def closest(
@@ -136,15 +136,15 @@ class PointQueries(Queries):
         columns, derived = self._columns(arrays, len(rows) // 3)
         limits = largest, error, max_visits, certified
         if progress is None:
-            # A context takes a tenth of the time of a call with one point.
+            # A context manager would take a tenth of the time of a call with one point.
             _p2m.closest(self._raw, rows, columns, *limits, (self._count(threads), None))
         else:
             with self._running(threads, progress) as run:
                 _p2m.closest(self._raw, rows, columns, *limits, run)
         bounds = columns.get("lower_bound")
         if bounds is not None and largest < float("inf"):
-            # Where nothing is as near, everything is farther, apart from the error of a distance (8 u M). An empty scene
-            # has a box of nan.
+            # If nothing is within the distance, the true distance is at least as large, up to the error of a distance
+            # (8 u M). The box of an empty scene is nan.
             size = np.abs(rows.reshape(-1, 3)).max(axis=1, initial=0.0) + np.abs(self._box()).max()
             below = np.maximum(largest * (1.0 - 2.0**-49) - size * 2.0**-48, 0.0)
             is_open = (bounds == float("inf")) & ~np.isnan(below)
@@ -156,7 +156,7 @@ class PointQueries(Queries):
     def _columns(
         self, arrays: dict[str, NDArray[Any]], count: int
     ) -> tuple[dict[str, NDArray[Any]], dict[str, NDArray[Any]]]:
-        """Return the flat arrays that a search fills, and those that `_derive` fills afterwards."""
+        """Return the flat arrays that a search fills, and the arrays that `_derive` fills afterwards."""
         columns = flat(arrays)
         derived: dict[str, NDArray[Any]] = {name: columns.pop(name) for name in ("object", "normal") if name in columns}
         if "normal" in derived and not isinstance(self._raw, _p2m.Index):
@@ -168,7 +168,7 @@ class PointQueries(Queries):
         return columns, derived
 
     def _derive(self, derived: dict[str, NDArray[Any]], columns: dict[str, NDArray[Any]]) -> None:
-        """Fill the columns that follow from primitives and features."""
+        """Fill the columns that are derived from primitives and features."""
         if "object" in derived:
             self._fill_objects(columns["primitive"], derived["object"])
         if "normal" in derived:
@@ -237,7 +237,7 @@ class PointQueries(Queries):
         Parameters
         ----------
         points, max_distance, fields, out, threads, progress
-            As for `closest`. ``lower_bound`` is that of the primitive and not of the scene.
+            As for `closest`. ``lower_bound`` refers to the primitive and not to the scene.
         k : int
             The number of primitives, at least 1.
 
@@ -499,16 +499,16 @@ class Index(PointQueries, PairQueries):
     scene : Scene or object
         The scene, or an object that `Scene.of` makes one of.
     backend : str
-        ``"aabb"``, a tree of boxes; ``"kdop"``, a tree of polytopes, for scenes askew to the axes; ``"octree"`` and
-        ``"p2m"``, cells with lists, which take longer to build and answer many queries faster; ``"brute"``, no
-        structure. ``"auto"`` is the tree of boxes, or with `queries` another one of these indexes where that
-        pays. `p2m.backends` returns all names.
+        ``"aabb"``, a tree of boxes; ``"kdop"``, a tree of polytopes, for scenes that are not axis-aligned; ``"octree"``
+        and ``"p2m"``, cells with lists, which take longer to build and answer many queries faster; ``"brute"``, no
+        structure. ``"auto"`` is the tree of boxes, or with `queries` another one of these indexes where that pays.
+        `p2m.backends` returns all names.
     threads : int, optional
         The number of threads for the build and, unless they have their own, for queries. By default it is the
         environment variable ``RAYON_NUM_THREADS``, or else the number of processors that this process may use.
     progress : callable, True or "tqdm", optional
-        It is called as ``progress(done, total)`` about 25 times a second during a build that takes longer, or a bar of
-        tqdm is shown. Trees report only their end.
+        It is called as ``progress(done, total)`` about 25 times per second during a long build, or it is a progress bar
+        of tqdm. Trees report only their end.
     queries : int, optional
         The number of queries that are expected, for the choice of ``"auto"``. The choice counts the work of a few
         queries in the box of the scene, so it depends on the scene and this number. An octree casts no rays, and has
@@ -602,13 +602,14 @@ class Index(PointQueries, PairQueries):
 
     @property
     def info(self) -> dict[str, Any]:
-        """What is known of the index, by names.
+        """Facts about the index, by name.
 
         ``backend`` and ``summary`` describe the backend. ``primitives`` is the number of primitives. ``memory_bytes``
-        is the memory of the index besides the scene, and ``parts`` has it by parts. ``casts_rays``, ``answers_pairs``
-        and ``is_saveable`` tell what it can do. ``surface_area`` is that of all boxes of a tree: build anew when it has
-        grown by a third in refits. ``cells`` describes cells, ``directions`` is the number of faces of k-DOPs, and
-        ``path`` the file that the index was loaded from. What a backend does not have is None.
+        is the memory of the index besides the scene, and ``parts`` divides it by parts. ``casts_rays``,
+        ``answers_pairs`` and ``is_saveable`` tell what the index can do. ``surface_area`` is the area of all boxes of a
+        tree: build anew when it has grown by a third in refits. ``cells`` describes cells, ``directions`` is the number
+        of faces of k-DOPs, and ``path`` is the file from which the index was loaded. A fact that does not apply to a
+        backend is None.
         """
         return self._raw.info()
 
@@ -717,8 +718,8 @@ class Index(PointQueries, PairQueries):
 
         Notes
         -----
-        Points that are nearer to each other than to the surface share one query, so many points take far less time than
-        their signed distances. For an open surface this holds only far from its boundary.
+        Points that are nearer to each other than to the surface share one query, so testing many points takes far less
+        time than their signed distances. For an open surface this holds only far from its boundary.
 
         Examples
         --------
@@ -847,8 +848,8 @@ class Index(PointQueries, PairQueries):
         distance : float
             The distance. With `signed`, a negative one is that of a surface inside.
         resolution : int, optional
-            The number of points along the longest side of the grid that the surface is made of, at least 8. Details below
-            the spacing of the grid may be lost.
+            The number of points along the longest side of the grid from which the surface is made, at least 8. Details
+            smaller than the spacing of the grid may be lost.
         signed : bool, optional
             Whether distances are negative inside. Without signs, the surface around a closed scene has an inner shell.
         sign : {"auto", "winding", "parity"}, optional
@@ -859,7 +860,7 @@ class Index(PointQueries, PairQueries):
         Returns
         -------
         OffsetSurface
-            The surface, whose edges have two triangles each, and its errors.
+            The surface, in which each edge has two triangles, and its errors.
 
         Raises
         ------
@@ -885,7 +886,7 @@ class Index(PointQueries, PairQueries):
     def show(
         self, *, field: int | None = None, sign: _Sign | None = None, unit: str = "units", up: Literal["y", "z"] = "z"
     ) -> Page:
-        """Return a page that shows the scene, with a slice through its distance field if one is asked for.
+        """Return a page that shows the scene, with a slice through its distance field if `field` is given.
 
         Parameters
         ----------
@@ -914,8 +915,8 @@ class Index(PointQueries, PairQueries):
     def refit(self, vertices: ArrayLike, *, threads: int | None = None) -> Index:
         """Return an index over the same primitives at other positions, in a fraction of the time of a build.
 
-        This index stays as it is. Answers of the new one are those of an index that is built anew. Its tree keeps its
-        shape, so queries get slower the farther neighbours have moved apart (``info["surface_area"]``).
+        This index does not change. The new one returns the answers of an index that is built from scratch. Its tree
+        keeps its shape, so queries become slower the farther neighbours have moved apart (``info["surface_area"]``).
 
         Parameters
         ----------
@@ -960,12 +961,12 @@ class Index(PointQueries, PairQueries):
         ordinal : int, optional
             The number of the card.
         reach : float, optional
-            The size of the space with lists, in boxes of the scene around its centre. Queries farther away are slower.
+            The size of the region with lists, in boxes of the scene around its centre. Queries farther away are slower.
         memory : int, optional
-            The largest number of bytes of the lists; by default about 280 for each primitive, and more in scenes of more
-            than 100,000.
+            The largest number of bytes of the lists; by default about 280 for each primitive, and more in scenes of
+            more than 100,000.
         reorder : bool, optional
-            Whether the card sorts the queries. It need not if their order is spatially coherent.
+            Whether the card sorts the queries. Sorting is wasted if neighbouring queries are near each other already.
         checked : int, optional
             The number of answers to each batch of NumPy that the processor checks.
 
@@ -984,7 +985,7 @@ class Index(PointQueries, PairQueries):
         return CudaIndex(self, threads=self._threads, **options)
 
     def save(self, path: str | os.PathLike[str]) -> None:
-        """Save the index and its scene to a file, which appears under its name only when it is complete.
+        """Save the index and its scene to a file, which appears under its name when it is complete.
 
         Parameters
         ----------
@@ -1017,9 +1018,9 @@ def load(path: str | os.PathLike[str], map: bool = False, *, threads: int | None
     path : path-like
         The file.
     map : bool, optional
-        Whether the file is mapped into memory, which processes that map it share, instead of being copied. Nobody may
-        change or truncate the file while the index is in use: what happens then is undefined. `Index.save` replaces
-        a file and does not change it.
+        Whether the file is mapped into memory instead of being copied. Processes that map it share the memory. The file
+        must not be changed or truncated while the index is in use: the behaviour is then undefined. `Index.save`
+        replaces a file and does not change it.
     threads : int, optional
         The number of threads for queries, as for `Index`.
 
@@ -1040,12 +1041,12 @@ def load(path: str | os.PathLike[str], map: bool = False, *, threads: int | None
 
 
 def scene_of(obj: Any) -> Scene:
-    """Return the scene of an index, or what `Scene.of` makes of another object."""
+    """Return the scene of an index, or the scene that `Scene.of` makes of another object."""
     return obj.scene if isinstance(obj, Index) else Scene.of(obj)
 
 
 def index_of(obj: Any, threads: int | None, scene: Scene | None = None) -> Index:
-    """Return an index as it is, or build a tree of boxes over another object or the scene of it."""
+    """Return an index unchanged, or build a tree of boxes over another object or its scene."""
     return obj if isinstance(obj, Index) else Index(obj if scene is None else scene, threads=threads)
 
 
@@ -1055,13 +1056,13 @@ class OffsetSurface(NamedTuple):
     scene: Scene
     """The triangles, which face away from the scene."""
     vertex_error: float
-    """The largest difference of a vertex's distance from the one that was asked for."""
+    """The largest difference between the distance of a vertex and the requested distance."""
     triangle_error: float
-    """The largest difference at the centroids of triangles."""
+    """The largest such difference at the centroids of triangles."""
 
 
 class Estimate(NamedTuple):
-    """The costs that are expected of a backend, on one thread."""
+    """The expected costs of a backend, on one thread."""
 
     backend: str
     """The name of the backend."""
@@ -1078,7 +1079,7 @@ class Estimate(NamedTuple):
     break_even_queries: float | None
     """The number of queries at which this backend and the recommended one take the same time, if there is one."""
     reason: str
-    """The reason for its rank, as a phrase."""
+    """The reason for the rank of the backend, as a phrase."""
 
 
 def advise(
@@ -1105,7 +1106,7 @@ def advise(
     region : {"box", "near"}, optional
         Where queries are: anywhere in the box of the scene, or about a hundredth of its diagonal from the surface.
     points : array_like, shape (..., 3), optional
-        Queries that are like those to come, in place of a region.
+        Typical queries, instead of a region.
     max_bytes : int, optional
         The memory that the index may take besides the scene. The tree of boxes may exceed it.
     threads : int, optional

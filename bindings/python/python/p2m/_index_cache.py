@@ -1,4 +1,4 @@
-"""The cache of open index files in each process, and the pickling of indexes, which refers to their files."""
+"""The cache of open index files of a process, and the pickling of indexes by reference to their files."""
 
 from __future__ import annotations
 
@@ -17,18 +17,18 @@ from ._index import Index
 from ._shards import MANIFEST_FILE, Shards, is_shard_folder, manifest_checksum, max_bytes_of, shard_folder
 
 MAX_OPENED = 4
-"""The number of indexes that a process keeps open, which are those that it used last."""
+"""The number of indexes that a process keeps open, the most recently used ones."""
 
 _Raw = TypeVar("_Raw", _p2m.Index, _p2m.Shards)
 
 _HEADER_BYTES = 64
 _MAGIC = b"\x89P2M\r\n\x1a\n"
 _CHECKSUM = slice(24, 32)
-"""The bytes of the header with the checksum, which stands for the whole content of a file."""
+"""The number of bytes of the header, which contains a checksum of the whole file."""
 
 
 class _FileVersion(NamedTuple):
-    """What differs between a file and another one that replaces it, and whether it is mapped."""
+    """The version of a file, which another one may replace at the same path, and whether it is mapped."""
 
     path: str
     size: int
@@ -44,7 +44,7 @@ class _FileVersion(NamedTuple):
 
 
 class _Entry:
-    """An index that is open, or that one thread opens while others wait for it."""
+    """An index that is open, or that one thread is opening while others wait for it."""
 
     def __init__(self, raw: _p2m.Index | _p2m.Shards | None = None) -> None:
         self.lock = threading.Lock()
@@ -56,7 +56,7 @@ _entries: OrderedDict[_FileVersion, _Entry] = OrderedDict()
 
 
 def _after_fork() -> None:
-    """Replace locks in a child process, because threads that the child does not have may hold them."""
+    """Replace the locks in a child process, because they may be held by threads that do not exist there."""
     global _lock
     _lock = threading.Lock()
     for version, entry in list(_entries.items()):
@@ -95,7 +95,7 @@ def read_checksum(path: str) -> str | None:
 
 
 def _version(path: str, checksum: str | None, is_mapped: bool, max_bytes: int | None = None) -> _FileVersion:
-    """Return the version of a file, whose checksum was read before."""
+    """Return the version of a file, whose checksum has been read."""
     real = os.path.realpath(path)
     status = os.stat(real)
     return _FileVersion(real, status.st_size, status.st_mtime_ns, status.st_ino, checksum, is_mapped, max_bytes)
@@ -119,7 +119,7 @@ def _open_version(version: _FileVersion, open_new: Callable[[], _Raw]) -> _Raw:
                     if _entries.get(version) is entry:
                         del _entries[version]
                 raise
-        # The path tells files of indexes from manifests, so it is what this function opened.
+        # The path tells index files and manifests apart, so the entry has the type that this function opens.
         return cast(_Raw, entry.raw)
 
 
@@ -130,7 +130,7 @@ def _open_checked(
     open_new: Callable[[], _Raw],
     checksum_of: Callable[[_Raw], str | None],
 ) -> _Raw:
-    """Return what is at a path now, and has the checksum that it has to have. `wrong` begins the message otherwise."""
+    """Open a path and check the checksum. `wrong` begins the message if it is another one."""
     while True:
         version = read_version()
         if checksum is not None and version.checksum not in (None, checksum):
@@ -144,10 +144,10 @@ def _open_checked(
 def open_index(
     path: str | os.PathLike[str], *, checksum: str | None = None, map: bool = False, threads: int | None = None
 ) -> Index:
-    """Return the index that is saved at a path, which this process opens once.
+    """Return the index that is saved at a path. This process opens it once.
 
-    Later calls return the same index until another file is at the path. Two threads that ask for one path at the same
-    time open it once. The process keeps `MAX_OPENED` indexes.
+    Later calls return the same index until another file is at the path. If two threads request a path at the same time,
+    it is opened once. The process keeps `MAX_OPENED` indexes open.
 
     Parameters
     ----------
@@ -170,7 +170,9 @@ def open_index(
     absolute = os.path.abspath(os.fspath(path))
     count = thread_count(threads)
     if os.path.isdir(absolute):
-        raise IsADirectoryError(errno.EISDIR, "A saved index is a file, and this is a directory without shards", absolute)
+        raise IsADirectoryError(
+            errno.EISDIR, "A saved index is a file, and this is a directory without shards", absolute
+        )
     raw = _open_checked(
         f"{absolute} is not the file that the index",
         checksum,
@@ -189,7 +191,7 @@ def open_shards(
     map: bool = False,
     threads: int | None = None,
 ) -> Shards:
-    """Return the shards of a folder, which this process opens once for each limit of memory.
+    """Return the shards in a folder. This process opens them once for each limit of memory.
 
     Parameters
     ----------
@@ -220,7 +222,7 @@ def open_shards(
 
 @dataclass(frozen=True)
 class IndexFile:
-    """The file of a saved index, or the folder of shards, which other processes open."""
+    """The file of a saved index, or the folder of shards, for other processes to open."""
 
     path: str
     checksum: str | None
@@ -231,7 +233,7 @@ class IndexFile:
 
     def open(self, threads: int | None) -> Index | Shards:
         """Return the index or the shards, which a process opens once."""
-        # Only the process that opens it is sure to see what the path is.
+        # Only the process that opens the path can be sure what is there.
         if not is_shard_folder(self.path):
             return open_index(self.path, checksum=self.checksum, map=self.is_mapped, threads=threads)
         return open_shards(
@@ -256,7 +258,7 @@ def index_source(index: Any, map: bool) -> IndexFile | Index:
     try:
         checksum = manifest_checksum(shard_folder(path)) if is_shard_folder(path) else read_checksum(path)
     except OSError:
-        # Other machines may have a file system that this one has not.
+        # The path may exist only in the file system of other machines.
         checksum = None
     return IndexFile(path, checksum, map)
 

@@ -16,9 +16,9 @@ if TYPE_CHECKING:
     from ._index import Index
     from ._scene import Scene
 
-# The number of primitives up to which pages answer queries where the pointer is.
+# The largest number of primitives for which a page answers queries at the pointer.
 _MAX_LIVE = 100_000
-# The part by which a field reaches beyond the box of its scene.
+# The size of a field relative to the box of its scene.
 _FIELD_SCALE = 1.2
 
 
@@ -40,7 +40,7 @@ class Page:
         return f"Page(bytes={len(self.html.encode())})"
 
     def _repr_html_(self) -> str:
-        # The page has a document of its own, so that its style and its script do not mix with those of the notebook.
+        # The page is a separate document, so that its style and script do not affect the notebook.
         return (
             f'<iframe srcdoc="{html.escape(self.html)}" style="width: 100%; height: 600px; border: 0" '
             'sandbox="allow-scripts allow-downloads" title="p2m"></iframe>'
@@ -57,14 +57,14 @@ class Page:
         _p2m.write_bytes(Path(path), self.html.encode())
 
     def open(self) -> None:
-        """Open the page in the browser. It is written to a folder for temporary files, where it stays."""
+        """Open the page in the browser. The page is written to a folder for temporary files, and stays there."""
         with tempfile.NamedTemporaryFile("w", suffix=".html", prefix="p2m-", encoding="utf-8", delete=False) as file:
             file.write(self.html)
         webbrowser.open(Path(file.name).as_uri())
 
 
 def checked_up(up: str) -> bool:
-    """Return whether y points up, and refuse what is no axis."""
+    """Return whether y points up, and raise an error for another axis than y and z."""
     check_choice(up, "up", ("y", "z"))
     return up == "y"
 
@@ -78,7 +78,7 @@ def scene_page(
     unit: str,
     up: str,
 ) -> Page:
-    """Return the page of a scene, with a field that its index computes if there is a resolution."""
+    """Return the page of a scene. If `field` is given, the index computes a distance field of this resolution."""
     is_y_up = checked_up(up)
     kinds = scene.counts._asdict().items()
     words = [f"{number:,} {kind}" for kind, number in kinds if number > 0 and kind != "vertices"]

@@ -42,14 +42,14 @@ PAIR_FIELDS: dict[str, tuple[np.dtype[Any], tuple[int, ...]]] = {
     "primitives": (_INT64, (2,)),
     **_FIELDS_OF_BOTH,
 }
-"""The type and the last axes of the columns of pairs of primitives."""
+"""The types and the last axes of the columns of pairs of primitives."""
 
 SHAPE_FIELDS: dict[str, tuple[np.dtype[Any], tuple[int, ...]]] = {
     "distance": (_FLOAT64, ()),
     "primitive": (_INT64, ()),
     **_FIELDS_OF_BOTH,
 }
-"""The type and the last axes of the columns of primitives near shapes."""
+"""The types and the last axes of the columns of primitives near shapes."""
 
 CONTACT_FIELDS: dict[str, tuple[np.dtype[Any], tuple[int, ...]]] = {
     "parameter": (_FLOAT64, ()),
@@ -59,7 +59,7 @@ CONTACT_FIELDS: dict[str, tuple[np.dtype[Any], tuple[int, ...]]] = {
     "upper_parameter": (_FLOAT64, ()),
     "distance_bound": (_FLOAT64, ()),
 }
-"""The type and the last axes of the columns of contacts."""
+"""The types and the last axes of the columns of contacts."""
 
 
 def _shapes(values: ArrayLike) -> tuple[NDArray[np.float64], int]:
@@ -76,14 +76,14 @@ def _shapes(values: ArrayLike) -> tuple[NDArray[np.float64], int]:
 
 
 class PairQueries(Queries):
-    """The queries of an index for pairs."""
+    """The queries for pairs of an index."""
 
     __slots__ = ()
 
     _raw: _p2m.Index
 
     def _warn_of_open_surface(self, threads: int | None) -> None:
-        """Warn if the inside of the scene is a guess, or does not count."""
+        """Warn if it is uncertain what is inside of the scene, or if nothing counts as inside."""
         note = self._raw.solid_note(self._count(threads))
         if note is not None:
             warnings.warn(note, stacklevel=4)
@@ -116,8 +116,8 @@ class PairQueries(Queries):
             Whether to find the nearest primitive in exact arithmetic and round its distance once. Shapes
             with a radius have no certified answers.
         solid : bool, optional
-            Whether the inside of the scene counts, so that a shape inside has the distance 0. Then both points are its
-            first vertex. An open surface has the inside of `signed_distance`, with a warning.
+            Whether the inside of the scene counts, so that a shape inside has the distance 0. Both points are then its
+            first vertex. The inside of an open surface is defined as for `signed_distance`, with a warning.
         fields : str or sequence of str, optional
             The arrays of the answer, by default those of `out` or else ``("distance", "primitive")``: any of
             ``distance``, ``primitive``, ``points``, ``features``, ``barycentric``, ``lower_bound`` and
@@ -386,8 +386,8 @@ class PairQueries(Queries):
         Returns
         -------
         ClosestPairs
-            A record with the arrays of `fields`, each with one row for each pair. Of equally near pairs that with the
-            lowest ids comes first.
+            A record with the arrays of `fields`, each with one row for each pair. Equally near pairs are ordered by
+            their ids.
 
         Examples
         --------
@@ -430,8 +430,8 @@ class PairQueries(Queries):
             The distance from the ball within which a contact may be reported too early. The default 0 leaves some
             roundings.
         ignore_opening : bool, optional
-            Whether primitives are ignored that the ball touches at the start and comes no nearer to, so that it can
-            leave the surface that it rests on.
+            Whether to ignore primitives that the ball touches at the start without coming nearer to them, so that it
+            can leave the surface on which it rests.
         fields : str or sequence of str, optional
             The arrays of the answer, by default those of `out` or else ``("parameter", "primitive")``: any of
             ``parameter``, ``primitive``, ``point``, ``feature``, ``upper_parameter`` and ``distance_bound``, which

@@ -10,10 +10,10 @@ from numpy.typing import NDArray
 
 
 class Record:
-    """Named arrays, of which only those exist that were asked for.
+    """Named arrays, of which only the requested ones exist.
 
-    A record has its arrays as attributes, by name (``record["distance"]``), and in order, so it can be unpacked as a
-    tuple.
+    The arrays of a record are attributes and items (``record["distance"]``). A record can be unpacked as a tuple, in
+    the order of the arrays.
 
     Examples
     --------
@@ -106,7 +106,7 @@ class NearPrimitives(ClosestPoints):
     Attributes
     ----------
     splits : ndarray of int64, shape (n + 1,)
-        Where the primitives of each of n queries begin.
+        The index at which the primitives of each query begin, and the number of all primitives.
     """
 
     splits: NDArray[np.int64]
@@ -118,7 +118,7 @@ class FirstHits(Record):
     Attributes
     ----------
     t : ndarray of float64, shape (...)
-        The parameters of the hits, in lengths of the direction; infinite where nothing is hit.
+        The parameters of the hits, in lengths of the direction; infinite if nothing is hit.
     primitive : ndarray of int64, shape (...)
         The ids of the primitives; -1 where nothing is hit.
     point : ndarray of float64, shape (..., 3)
@@ -146,7 +146,7 @@ class AllHits(FirstHits):
     Attributes
     ----------
     splits : ndarray of int64, shape (n + 1,)
-        Where the hits of each of n rays begin.
+        The index at which the hits of each ray begin, and the number of all hits.
     """
 
     splits: NDArray[np.int64]
@@ -191,9 +191,9 @@ class ClosestPairs(_Pairs):
 class ClosestToShapes(_Pairs):
     """The nearest points of a scene and of shapes. Arrays with two places have the scene first, then the shape.
 
-    The other arrays are those of `ClosestPairs`. With a radius the distance is that of the shape less the radius,
-    rounded, the second point is moved towards the first one by the radius, or is the first one if they intersect, and
-    ``is_intersecting`` is whether the computed distance of the shape is at most the radius.
+    The other arrays are those of `ClosestPairs`. With a radius, the distance is the distance of the shape less the
+    radius, rounded. The second point is moved towards the first one by the radius, or equals the first one if they
+    intersect. ``is_intersecting`` tells whether the computed distance of the shape is at most the radius.
 
     Attributes
     ----------
@@ -223,7 +223,7 @@ class BallContacts(Record):
         by about 2**-48; infinite without contact.
     distance_bound : ndarray of float64, shape (...)
         Certified upper bounds on the distance of the scene from the centre at the upper parameter; infinite without
-        contact. They exceed the radius by the tolerance and some roundings at most, unless the ball starts nearer.
+        contact. They exceed the radius by at most the tolerance and some roundings, unless the ball starts nearer.
     """
 
     parameter: NDArray[np.float64]

@@ -43,7 +43,8 @@ def sample_surface(
     """Return random points of a surface, evenly distributed by area.
 
     The points are the same bits on every platform and for every number of threads, and a longer list begins with the
-    shorter one. A scene without triangles has points by length, and one of points alone has these.
+    shorter one. In a scene without triangles, points are distributed by the length of segments, and in a scene of only
+    points they are chosen from these.
 
     Parameters
     ----------
@@ -52,7 +53,7 @@ def sample_surface(
     count : int
         The number of points.
     seed : int, optional
-        Another seed gives other points.
+        The seed of the random numbers.
     dtype : float64 or float32, optional
         The type of the points.
     threads : int, optional
@@ -103,14 +104,14 @@ def sample_sdf(
     near : int, optional
         The number of points near the surface: points as of `sample_surface`, moved by noise.
     uniform : int, optional
-        The number of points that are evenly distributed in the box.
+        The number of points that are uniformly distributed in the box.
     sigma : float or sequence of floats, optional
-        The standard deviation of the noise in each coordinate. Of several, point i has number i modulo their number. By
-        default it is a hundredth of the diagonal of the box of the mesh.
+        The standard deviation of the noise in each coordinate. With several values, point i has value i modulo their
+        number. By default it is a hundredth of the diagonal of the box of the mesh.
     box_scale : float, optional
         The factor by which the box of the mesh is enlarged for uniform points.
     seed : int, optional
-        Another seed gives other points.
+        The seed of the random numbers.
     dtype : float64 or float32, optional
         The type of points and distances. The distances are those of the rounded points.
     sign : {"auto", "winding", "parity"}, optional
@@ -161,9 +162,9 @@ def map(
 ) -> Iterator[_Result]:
     """Call a function for many items, such as small meshes, on all cores, and yield the results in their order.
 
-    The function is called by threads of Python, which the functions of p2m leave free to run at the same time. Within
-    it, the functions of p2m use one thread each unless they are given another number. Only some items are worked on ahead
-    of the result that is taken, so results need not fit into memory together.
+    The function is called by Python threads, which run in parallel while they are in functions of p2m. Within it, the
+    functions of p2m use one thread each unless they are given another number. Only a few items are computed in advance
+    of the result that is taken, so the results need not fit into memory together.
 
     Parameters
     ----------
@@ -177,7 +178,8 @@ def map(
     Yields
     ------
     object
-        What the function returns for each item. Its exceptions are raised here, and the rest is not started.
+        The result of the function for each item. An exception of the function is raised here, and the remaining items
+        are not started.
 
     Examples
     --------

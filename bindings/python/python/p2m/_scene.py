@@ -25,7 +25,7 @@ class Counts(NamedTuple):
 
 
 class Object(NamedTuple):
-    """Consecutive primitives under one name: those with the ids from `start` to `stop` - 1."""
+    """Consecutive primitives under one name, with the ids from `start` to `stop` - 1."""
 
     name: str
     start: int
@@ -98,7 +98,7 @@ class Scene(Shared):
 
     @staticmethod
     def of(obj: Any) -> Scene:
-        """Make a scene of an object of another package, which is recognized by its attributes.
+        """Make a scene from an object of another package, which is recognized by its attributes.
 
         Parameters
         ----------
@@ -125,7 +125,7 @@ class Scene(Shared):
             return Scene(obj[0], triangles=obj[1])
         if isinstance(obj, np.ndarray):
             return Scene(obj)
-        # Attributes alone do not tell the packages apart.
+        # The attributes alone do not distinguish all packages.
         makers = {
             "trimesh": Scene.from_trimesh,
             "open3d": Scene.from_open3d,
@@ -149,7 +149,7 @@ class Scene(Shared):
 
     @staticmethod
     def from_trimesh(mesh: Any) -> Scene:
-        """Make a scene of a mesh, a point cloud, a path or a scene of trimesh.
+        """Make a scene from a mesh, a point cloud, a path or a scene of trimesh.
 
         The faces of a mesh are triangles, the entities of a path are segments, and the vertices of a point cloud are
         points. The nodes of a scene of trimesh become objects with their names, with all of their transformations.
@@ -172,9 +172,9 @@ class Scene(Shared):
 
     @staticmethod
     def from_open3d(geometry: Any) -> Scene:
-        """Make a scene of a mesh, a point cloud or a set of lines of Open3D, legacy or tensor.
+        """Make a scene from a mesh, a point cloud or a set of lines of Open3D, legacy or tensor.
 
-        Coordinates in float32, as those of tensor meshes are by default, convert exactly.
+        Coordinates in float32, the default of tensor meshes, are converted exactly.
         """
         if hasattr(geometry, "to_legacy"):
             lists = {}
@@ -196,13 +196,13 @@ class Scene(Shared):
 
     @staticmethod
     def from_pyvista(mesh: Any) -> Scene:
-        """Make a scene of a mesh of PyVista: of its polygons, lines and vertex cells.
+        """Make a scene from the polygons, lines and vertex cells of a PyVista mesh.
 
-        Polygons are triangulated and polylines divided into segments. Of a grid the surface is taken. The `sources` of
-        triangles are the numbers of their polygons, or of the cells of the grid.
+        Polygons are triangulated and polylines divided into segments. A grid is replaced by its surface. The `sources`
+        of triangles are the numbers of their polygons, or of the cells of the grid.
         """
         if not hasattr(mesh, "GetPolys"):
-            # Versions that can choose the algorithm warn if nobody does.
+            # Versions in which the algorithm can be chosen warn if it is not.
             can_choose = "algorithm" in inspect.signature(mesh.extract_surface).parameters
             mesh = mesh.extract_surface(**({"algorithm": None} if can_choose else {}))
             cells = np.asarray(mesh.cell_data["vtkOriginalCellIds"])
@@ -229,12 +229,12 @@ class Scene(Shared):
         return scene._with_sources(sources)
 
     def _with_sources(self, triangles: NDArray[Any]) -> Scene:
-        """Return the scene with the numbers of the polygons that its triangles are from."""
+        """Return the scene with the numbers of the polygons of its triangles as their sources."""
         return Scene._from_raw(self._raw.with_sources(np.ascontiguousarray(triangles, np.uint32)))
 
     @staticmethod
     def from_meshio(mesh: Any) -> Scene:
-        """Make a scene of a mesh of meshio: of its cells of the types vertex, line, triangle and quad.
+        """Make a scene from the cells of a meshio mesh, of the types vertex, line, triangle and quad.
 
         Quads are divided into triangles along the diagonal of their first and third corner. Cells of other types are
         an error, because they have no surface of their own.
@@ -315,7 +315,7 @@ class Scene(Shared):
 
     @property
     def sources(self) -> NDArray[np.int64]:
-        """For each primitive the number of its statement among those of its kind in the file, shape (m,).
+        """The number of the statement of each primitive, among the statements of its kind in the file, shape (m,).
 
         A polygon is one statement and becomes several triangles.
         """
@@ -328,15 +328,15 @@ class Scene(Shared):
 
     @property
     def unit(self) -> str | None:
-        """The unit of the coordinates, such as ``'mm'``, ``'ft'`` or ``'degrees'``, if the file has it.
+        """The unit of the coordinates, such as ``'mm'``, ``'ft'`` or ``'degrees'``, if the file states it.
 
-        Coordinates are those of the file: nothing is converted. Saved and pickled scenes do not keep the unit.
+        Coordinates are not converted. Saved and pickled scenes do not keep the unit.
         """
         return self._raw.unit()
 
     @property
     def skipped(self) -> list[str]:
-        """What the reader of the file left out, such as ``'2 x usemtl'``."""
+        """Descriptions of the records that the reader left out, such as ``'2 x usemtl'``."""
         return self._raw.skipped()
 
     def moved(self, vertices: ArrayLike) -> Scene:
@@ -355,7 +355,7 @@ class Scene(Shared):
         return Scene._from_raw(self._raw.moved(coordinates(vertices, "vertices").reshape(-1)))
 
     def save(self, path: str | os.PathLike[str]) -> None:
-        """Write the scene to a file, which appears when it is complete.
+        """Write the scene to a file, which appears under its name when it is complete.
 
         Parameters
         ----------
@@ -404,7 +404,7 @@ def _scene_from_bytes(data: bytes) -> Scene:
 
 
 def _in_space(points: NDArray[Any]) -> NDArray[Any]:
-    """Return points with three coordinates; those of the plane get z = 0."""
+    """Return points with three coordinates. Points of the plane get z = 0."""
     if points.ndim == 2 and points.shape[1] == 2:
         return np.column_stack([points, np.zeros(len(points))])
     return points
@@ -421,7 +421,7 @@ def _polylines(lines: Iterable[NDArray[Any]]) -> Scene:
 
 
 def _runs(padded: NDArray[Any]) -> list[NDArray[Any]]:
-    """Return the parts of an array in which each part follows its length."""
+    """Return the runs of an array that consists of runs, each preceded by its length."""
     runs, at = [], 0
     while at < len(padded):
         stop = at + 1 + int(padded[at])
@@ -462,7 +462,7 @@ def read(path: str | os.PathLike[str]) -> Scene:
 
 
 class PointTable(NamedTuple):
-    """The points of a file: an array of shape (n, 3), their ids and the unit, where the file has them."""
+    """The points of a file: an array of shape (n, 3), with their ids and the unit if the file has them."""
 
     points: NDArray[np.float64]
     ids: list[str] | None
@@ -479,8 +479,8 @@ def read_points(
     path : path-like
         The file, in any format of `read`.
     columns : iterable of str or int, optional
-        The columns of x, y and z, or of x and y, in a text table: names, or numbers from 1. By default names such as x,
-        y, z decide, and otherwise the first three columns.
+        The columns of x, y and z, or of x and y, in a text table: names, or numbers from 1. By default columns are
+        found by names such as x, y and z, or else the first three are used.
     id : str or int, optional
         The column of a text table that has the ids of the points. By default it is a column named id.
 

@@ -38,7 +38,7 @@ MANIFEST_FILE = "manifest.json"
 """The name of the file that describes the shards of a folder."""
 
 SHARD_FIELDS = {name: kind for name, kind in FIELDS.items() if name != "object"} | {"key": (_FLOAT64, (2,))}
-"""The type and the last axes of the columns of answers of one shard."""
+"""The types and the last axes of the columns of answers of one shard."""
 
 
 class ShardInfo(NamedTuple):
@@ -55,11 +55,11 @@ class ShardInfo(NamedTuple):
 
 
 class Shards(PointQueries):
-    """An index in shards, which `write_shards` wrote to a folder and which are loaded when a query needs them.
+    """An index in shards in a folder written by `write_shards`. A shard is loaded when a query needs it.
 
-    Answers are those of one `Index` over the whole scene, bit for bit, apart from the last bits of lower bounds. They
-    depend neither on how the scene was divided nor on the memory that shards may take. A query that needs a shard whose
-    file is missing, damaged or another one raises an error with the name of the file.
+    Answers are the same bits as those of one `Index` over the whole scene, except for the last bits of lower bounds.
+    They depend neither on the division of the scene nor on the memory for shards. A query that needs a shard whose file
+    is missing, damaged or another one raises an error with the name of the file.
 
     Parameters
     ----------
@@ -67,12 +67,12 @@ class Shards(PointQueries):
         The folder, or the file ``manifest.json`` in it. No shard is loaded yet.
     max_bytes : int, optional
         The memory that shards may take. A shard counts as the length of its file and 40 bytes for each primitive. If a
-        shard does not fit, those unused for longest are dropped. Memory may exceed the limit, because one shard is
-        loaded whatever the limit is, and a dropped shard stays until the threads that use it have finished. By default
-        there is no limit.
+        shard does not fit, the least recently used ones are dropped. Memory may exceed the limit, because one shard is
+        always loaded, and a dropped shard stays until the threads that use it have finished. By default there is no
+        limit.
     map : bool, optional
-        Whether files are mapped into memory, as for `load`. Nobody may change or truncate a file while the index is in
-        use: what happens then is undefined. `write_shards` replaces files and does not change them.
+        Whether files are mapped into memory, as for `load`. The files must not be changed or truncated while the index
+        is in use: the behaviour is then undefined. `write_shards` replaces files and does not change them.
     threads : int, optional
         The number of threads for queries, as for `Index`.
 
@@ -81,7 +81,7 @@ class Shards(PointQueries):
     OSError
         If the manifest cannot be read.
     ValueError
-        If it is damaged, or not that of shards.
+        If it is damaged, or not a manifest of shards.
 
     Notes
     -----
@@ -131,7 +131,7 @@ class Shards(PointQueries):
 
     @property
     def path(self) -> str:
-        """The folder."""
+        """The folder of the shards."""
         return self._path
 
     @property
@@ -167,7 +167,7 @@ class Shards(PointQueries):
 
     @property
     def loads(self) -> int:
-        """The number of times that a shard was loaded so far."""
+        """The number of times that a shard has been loaded so far."""
         return self._raw.loads()
 
     def __len__(self) -> int:
@@ -191,7 +191,7 @@ class Shards(PointQueries):
 
         The rule is that of `Index.signed_distance` with ``sign="auto"`` for the whole scene. The ray runs along a
         coordinate axis, in the one of six directions in which it passes the fewest boxes of shards. A point on the
-        surface may be reported as inside or outside, unlike by `Index.contains`.
+        surface may be reported as inside or outside, in contrast to `Index.contains`.
 
         Parameters
         ----------
@@ -233,7 +233,7 @@ class Shards(PointQueries):
         points, threads, progress
             As for `closest`. Progress is that of the distances, and then of the sides.
         sign : {"auto"}, optional
-            Only ``"auto"``: the surface decides the rule, which is that of `contains`. Other values are errors.
+            Only ``"auto"``: the surface determines the rule, as for `contains`. Other values are errors.
         inside, max_distance, out
             As for `Index.signed_distance`.
 
@@ -365,9 +365,9 @@ class Shards(PointQueries):
     ) -> ClosestPoints:
         """Return the closest points of one shard, with ids of the whole scene.
 
-        Several processes share a query by this method: each point asks the shard of `nearest_shards`, and then the
-        other shards of `shards_within` for the distance that was found. Of its answers the one with the least key, and
-        of equal keys with the least primitive, is the answer of `closest`.
+        Several processes can share a query by this method: ask the shard of `nearest_shards` for each point, and then
+        the other shards of `shards_within` for the distance that was found. The answer with the least key, and of equal
+        keys with the lowest primitive, is the answer of `closest`.
 
         Parameters
         ----------
@@ -414,14 +414,14 @@ class Shards(PointQueries):
 
 
 def max_bytes_of(max_bytes: int | None) -> int:
-    """Return the limit of memory as the library takes it."""
+    """Return the limit of memory in the form that the library takes."""
     if max_bytes is None:
         return _UNLIMITED
     return whole(max_bytes, "max_bytes", 0, _UNLIMITED)
 
 
 def is_shard_folder(path: str) -> bool:
-    """Return whether a path is a folder with a manifest, or such a manifest."""
+    """Return whether a path is a folder with a manifest, or a manifest."""
     return os.path.basename(path) == MANIFEST_FILE or os.path.exists(os.path.join(path, MANIFEST_FILE))
 
 
@@ -452,7 +452,7 @@ def write_shards(
     threads: int | None = None,
     progress: Progress = None,
 ) -> Shards:
-    """Write a scene as shards, each of which is a saved index of a part of it.
+    """Write a scene as shards. Each shard is a saved index of a part of the scene.
 
     Only one scene and one shard are in memory at the same time, so the whole scene may be larger than memory. It is
     collected in a temporary file in the folder, which takes 88 bytes for each primitive, and twice that at times.
@@ -489,9 +489,8 @@ def write_shards(
         If a file cannot be written.
     ValueError
         For a wrong option.
-    KeyboardInterrupt
-        After the shard that is being built. All files that were written are removed first. After the last shard, the
-        shards are complete and stay.
+    After the shard that is being built, and after removing all files that were written. After the last shard, the
+    shards are complete and stay.
 
     Examples
     --------
@@ -516,7 +515,7 @@ def write_shards(
 
 
 def _parts(scenes: Any) -> Iterable[Any]:
-    """Return the parts of a scene, which may be one."""
+    """Return the parts of a scene, which may be a single part."""
     if isinstance(scenes, Scene) or not isinstance(scenes, Iterable):
         return (scenes,)
     return scenes

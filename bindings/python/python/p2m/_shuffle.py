@@ -1,7 +1,8 @@
-"""The tasks of a shuffled query: in each of two phases one task asks a shard for the points of all blocks.
+"""The tasks of a shuffled query, in two phases. In each phase, a task asks one shard for the points of all blocks.
 
-A block sends its points to shards, a shard answers the pieces of all blocks, and a block joins its answers. The first
-phase sends each point to the shard with the nearest box, and the second phase sends it to all others that may matter.
+A block sends its points to shards, a shard answers the points from all blocks, and a block merges its answers. The
+first phase sends each point to the shard with the nearest box. The second phase sends it to all other shards whose
+boxes are within the distance that was found.
 """
 
 from __future__ import annotations
@@ -20,7 +21,7 @@ from ._shards import SHARD_FIELDS, Shards
 Columns = dict[str, NDArray[Any]]
 
 _NEEDED = ("distance", "primitive", "key")
-"""The fields that decide which shards are asked and which answer wins."""
+"""The fields that determine which shards are asked and which answer is the best."""
 
 _NO_ANSWER = {
     "distance": np.inf,
@@ -31,11 +32,11 @@ _NO_ANSWER = {
     "lower_bound": np.inf,
     "key": np.inf,
 }
-"""The values of a point without an answer; the key is above all keys."""
+"""The values of a missing answer. Its key is above all keys."""
 
 
 class Query(NamedTuple):
-    """What all tasks of a query have to know."""
+    """The data of a query that all its tasks need."""
 
     source: IndexFile
     fields: tuple[str, ...]
@@ -54,16 +55,16 @@ class Query(NamedTuple):
 
 
 class Sent(NamedTuple):
-    """The points that a block sends to shards, in the order of the shards."""
+    """The points that a block sends to shards, grouped by shard."""
 
     shape: tuple[int, ...]
     """The leading axes of the block."""
     rows: NDArray[np.int64]
-    """The row of the block of each point that is sent."""
+    """The row in the block of each point that is sent."""
     points: NDArray[Any]
     """The points that are sent, shape (n, 3)."""
     starts: NDArray[np.int64]
-    """Where the points of each shard begin, and the number of all points."""
+    """The index at which the points of each shard begin, and the number of all points."""
 
     @classmethod
     def of(
@@ -74,7 +75,7 @@ class Sent(NamedTuple):
         shards: NDArray[np.int64],
         shard_count: int,
     ) -> Sent:
-        """Sort rows and their points by the shards that they go to."""
+        """Group rows and their points by their shards."""
         order = np.argsort(shards, kind="stable")
         starts = np.searchsorted(shards[order], np.arange(shard_count + 1))
         return cls(shape, rows[order], points[order], starts)
@@ -89,7 +90,7 @@ class Sent(NamedTuple):
 
 
 def send_to_nearest(block: NDArray[Any], query: Query) -> Sent:
-    """Send each point of a block to the shard with the nearest box, if one is within the largest distance."""
+    """Send each point of a block to the shard with the nearest box, if that is within the largest distance."""
     shards = query.open()
     points = block.reshape(-1, 3)
     nearest = shards.nearest_shards(points, max_distance=query.max_distance)
@@ -98,7 +99,7 @@ def send_to_nearest(block: NDArray[Any], query: Query) -> Sent:
 
 
 def send_to_others(sent: Sent, answers: Sequence[Columns], query: Query) -> Sent:
-    """Send points again, to all other shards that may have something as near as what their nearest shard has."""
+    """Send points to all other shards that may have something nearer than the answer of the first shard."""
     shards = query.open()
     distances = np.concatenate([answer["distance"] for answer in answers] or [np.empty(0)])
     if query.max_distance is not None:
@@ -123,7 +124,7 @@ def ask(pieces: Sequence[NDArray[Any]], shard: int, query: Query) -> list[Column
 def join(
     nearest: Sent, nearest_answers: Sequence[Columns], others: Sent, other_answers: Sequence[Columns], query: Query
 ) -> Columns:
-    """Return the arrays of all fields of a block: of the answers to a point the one with the least key and id."""
+    """Return the arrays of all fields of a block, with the answer of the least key and id for each point."""
     count = math.prod(nearest.shape)
     best: Columns = {}
     for name in query.asked_fields():
@@ -145,7 +146,7 @@ def _keep_nearer(best: Columns, rows: NDArray[np.int64], answer: Columns) -> Non
     wins = (tier < best_tier) | ((tier == best_tier) & ((square < best_square) | is_first))
     for name, values in answer.items():
         if name == "lower_bound":
-            # Nothing in any shard that was asked is nearer than the least bound.
+            # Nothing in any of the shards that were asked is nearer than the least bound.
             best[name][rows] = np.minimum(best[name][rows], values)
         else:
             best[name][rows[wins]] = values[wins]

@@ -1,7 +1,7 @@
-"""Queries of one saved index for arrays of Dask, which are answered block by block by any number of processes.
+"""Queries of a saved index for Dask arrays, answered block by block by any number of processes.
 
-Functions return lazy arrays. Each block of points is one call of the index, which releases the interpreter, and the
-answers are the same bits as those of `p2m.Index`. Each process opens the file of the index once.
+Functions return lazy arrays. Each block of points is one call of the index, which releases the GIL, and the answers are
+the same bits as those of `p2m.Index`. Each process opens the file of the index once.
 
 >>> import os, tempfile
 >>> import dask.array as da
@@ -20,8 +20,8 @@ The module needs Dask: ``pip install "dask[array]"``.
 Parameters that all functions share
 -----------------------------------
 points : dask.array.Array or array_like, shape (..., 3)
-    The points, with any chunks. What is no array of Dask goes through ``dask.array.from_array``: arrays of NumPy and of
-    Zarr, and files that ``numpy.load(path, mmap_mode="r")`` maps. The last axis becomes one chunk. Chunks may have
+    The points, with any chunks. Anything but a Dask array goes through ``dask.array.from_array``: NumPy and Zarr
+    arrays, and files that ``numpy.load(path, mmap_mode="r")`` maps. The last axis becomes one chunk. Chunks may have
     unknown sizes, as those of data frames have.
 index : path-like, p2m.Index or p2m.Shards
     The file of a saved index, or an index that was loaded from one, of which the path is used. The folder of shards
@@ -87,7 +87,7 @@ _Known = Mapping[str, tuple[np.dtype[Any], tuple[int, ...]]]
 
 
 class LazyRecord(Record):
-    """Named lazy arrays, which are computed by one search of each block if they are computed together.
+    """Named lazy arrays. If they are computed together, each block is searched once.
 
     A record has its arrays as attributes, by name and in order, as `p2m.Record` has. `compute` and
     ``dask.compute(*record)`` search once for all arrays. Two computations, one for each array, search twice, unless
@@ -107,7 +107,7 @@ class LazyRecord(Record):
     _computed: type[Record] = Record
 
     def compute(self, **options: Any) -> Any:
-        """Return the record of arrays of NumPy. The options are those of ``dask.compute``."""
+        """Return the record with NumPy arrays. The options are those of ``dask.compute``."""
         return self._computed(dict(zip(self.fields, dask.compute(*self, **options))))
 
     def persist(self, **options: Any) -> Any:
@@ -148,10 +148,9 @@ def closest(
         As the module documents them.
     fields, max_distance, epsilon, max_visits, certified
         As for `p2m.Index.closest`.
-    shuffle : bool, optional
-        Whether points go to the shards that they need, where otherwise each block asks the whole folder. It needs a
-        folder of shards that this process can read, and answers are the same bits. It has neither `epsilon`,
-        `max_visits` nor `certified`. The notes say when it pays.
+    Whether points go to the shards that they need. Otherwise each block asks the whole folder. Shuffling needs a folder
+    of shards that this process can read, and returns the same bits. It supports neither `epsilon`, `max_visits` nor
+    `certified`. The notes describe when it pays.
 
     Returns
     -------
@@ -171,9 +170,10 @@ def closest(
     Notes
     -----
     With `shuffle` each point goes to the shard with the nearest box, and then to the other shards whose boxes are
-    within the distance that was found. A task asks one shard for the points of all blocks, so all workers together load
-    each shard at most twice if they have one thread each, where by block each worker loads each shard that its blocks
-    need. It pays where the points of a block are spread over a scene that does not fit into the memory of a worker.
+    within the distance that was found. A task asks one shard for the points of all blocks. So all workers together load
+    each shard at most twice if each has one thread, while without shuffling each worker loads each shard that its
+    blocks need. Shuffling pays if the points of a block are spread over a scene that does not fit into the memory of a
+    worker.
 
     A point in float64 moves 24 bytes to its shard, and its answer 32 bytes back besides fields other than distance and
     primitive; points near the border of shards move several times. The graph has 4 n s + 3 n + 2 s tasks for n blocks
@@ -274,8 +274,8 @@ def signed_distance(
 
     Notes
     -----
-    Each process prepares the signs at its first block. Shards have
-    only the rule ``"auto"``, so other rules are an error of the computation.
+    Each process prepares the signs at its first block. Shards have only the rule ``"auto"``, so other rules are an
+    error of the computation.
 
     Examples
     --------
@@ -315,8 +315,8 @@ def rays(
     index, threads, map
         As the module documents them.
     mode : {"first", "any", "count", "crossings"}, optional
-        What to return, as for `p2m.Index.rays`. The mode ``"all"`` is missing, because its arrays have no shape that is
-        known beforehand.
+        What to return, as for `p2m.Index.rays`. The mode ``"all"`` is missing, because the shapes of its arrays are not
+        known in advance.
     t_min, t_max, radius, fields
         As for `p2m.Index.rays`.
 
@@ -395,8 +395,8 @@ def field(
 
     Notes
     -----
-    A block that has more points than the scene has primitives sorts these first. Blocks that have several times as many
-    points spend little time on that.
+    A block that has more points than the scene has primitives sorts the primitives first. This takes a small part of
+    the time if the block has several times as many points.
 
     Examples
     --------
@@ -433,23 +433,25 @@ def field(
 
 
 _KEYS: weakref.WeakKeyDictionary[Index, str] = weakref.WeakKeyDictionary()
-"""The keys of indexes that came from no file."""
+"""The keys of indexes that were not loaded from a file."""
 
 
 def _key(source: IndexFile | Index) -> Any:
-    """Return what is the same for the same index, and differs otherwise as far as can be known here."""
+    """Return a key that is the same for the same index, and different for different ones as far as this can be
+    known."""
     if isinstance(source, IndexFile):
         return source.path, source.checksum, source.is_mapped, source.max_bytes
     return _KEYS.setdefault(source, uuid.uuid4().hex)
 
 
 def _in_graph(source: IndexFile | Index) -> Any:
-    """Return what stands for an index in the graph, which has the bytes of an index once and not in every task."""
+    """Return the representation of an index in the graph, where the bytes of an index occur once and not in every
+    task."""
     return source if isinstance(source, IndexFile) else dask.delayed(source, name=f"p2m-index-{_key(source)}")
 
 
 def _points(values: Any, name: str) -> da.Array:
-    """Return an array of Dask whose last axis is one chunk of x, y and z."""
+    """Return a Dask array whose last axis is one chunk of x, y and z."""
     if not isinstance(values, da.Array):
         if not (hasattr(values, "shape") and hasattr(values, "dtype")):
             values = np.asarray(values)
@@ -465,7 +467,7 @@ def _points(values: Any, name: str) -> da.Array:
 def _column(
     query: str, arrays: Mapping[str, da.Array], source: IndexFile | Index, options: dict[str, Any], dtype: np.dtype[Any]
 ) -> da.Array:
-    """Return the lazy array of a query that returns one array."""
+    """Return the lazy array of a query with a single result."""
     return _columns(query, arrays, source, options, {"value": (dtype, ())}, ("value",))["value"]
 
 
@@ -479,7 +481,7 @@ def _columns(
 ) -> dict[str, da.Array]:
     """Return the lazy arrays of a query.
 
-    A layer of the graph has a task for each block, which returns a dictionary with the arrays of all fields.
+    A layer of the graph has a task for each block. The task returns a dictionary with the arrays of all fields.
     """
     token = tokenize(query, [array.name for array in arrays.values()], _key(source), options)
     blocks = _aligned(list(arrays.values()))
@@ -488,7 +490,7 @@ def _columns(
         *blocks,
         chunks=_chunks(blocks),
         dtype=object,
-        # The chunks of this array are dictionaries. It has the axes of the points, and nobody sees it.
+        # The chunks of this array are dictionaries. It has the axes of the points, and is never visible to users.
         meta=np.empty((0,) * max(array.ndim for array in blocks), object),
         name=f"p2m-{query}-{token}",
         query=query,
@@ -500,7 +502,7 @@ def _columns(
 
 
 def _shuffled(points: da.Array, query: Query) -> dict[str, da.Array]:
-    """Return the lazy arrays of a query for the closest point that goes to shards."""
+    """Return the lazy arrays of a closest-point query that is shuffled to shards."""
     shard_count = len(query.open().shards)
     token = tokenize("shuffle", points.name, _key(query.source), query.fields, query.max_distance, query.threads)
     blocks = list(np.ndindex(points.numblocks))
@@ -533,7 +535,7 @@ def _shuffled(points: da.Array, query: Query) -> dict[str, da.Array]:
 
 
 def _fields_of(answers: da.Array, prefix: str, token: str, known: _Known, names: Sequence[str]) -> dict[str, da.Array]:
-    """Return the lazy arrays of fields, for each of which a layer of the graph takes its array out of dictionaries."""
+    """Return the lazy arrays of fields. A layer of the graph for each takes its array out of the dictionaries."""
     axes = tuple(range(answers.ndim))
     columns = {}
     for name in names:
@@ -545,7 +547,7 @@ def _fields_of(answers: da.Array, prefix: str, token: str, known: _Known, names:
             answers,
             axes,
             new_axes=dict(zip(ends, tail)),
-            # The last axis of the dictionaries is one chunk, which is passed as a list with one item.
+            # The last axis of the dictionaries is one chunk, which arrives as a list with one item.
             concatenate=None,
             dtype=dtype,
             meta=np.empty((0,) * (len(axes) - 1 + len(tail)), dtype),
@@ -561,7 +563,7 @@ def _is_known(array: da.Array) -> bool:
 
 
 def _aligned(arrays: list[da.Array]) -> list[da.Array]:
-    """Return arrays with the same chunks along axes that are broadcast against each other."""
+    """Return arrays rechunked to the same chunks along the axes that are broadcast against each other."""
     if len(arrays) == 1 or not all(_is_known(array) for array in arrays):
         return arrays
     np.broadcast_shapes(*(array.shape for array in arrays))
@@ -570,7 +572,7 @@ def _aligned(arrays: list[da.Array]) -> list[da.Array]:
 
 
 def _chunks(arrays: Sequence[da.Array]) -> tuple[tuple[int, ...], ...]:
-    """Return the chunks of arrays that are broadcast against each other, which Dask knows only for one array."""
+    """Return the chunks of arrays after broadcasting, which Dask computes only for one array."""
     chunks: list[tuple[int, ...]] = []
     for axis in range(-max(array.ndim for array in arrays), 0):
         sizes = [array.chunks[axis] for array in arrays if array.ndim >= -axis]
@@ -579,7 +581,7 @@ def _chunks(arrays: Sequence[da.Array]) -> tuple[tuple[int, ...], ...]:
 
 
 class _BlockGrid(NamedTuple):
-    """Where the points of a block are among all points, if all chunks but the last one of an axis have one size."""
+    """The position of each block of points among all points, if all chunks of an axis but the last have one size."""
 
     shape: tuple[int, ...]
     """The leading axes of all points."""
@@ -588,7 +590,7 @@ class _BlockGrid(NamedTuple):
 
     @classmethod
     def of(cls, arrays: Sequence[da.Array]) -> _BlockGrid | None:
-        """Return the grid of the blocks of arrays that are broadcast against each other."""
+        """Return the grid of the blocks of arrays after broadcasting."""
         if not all(_is_known(array) for array in arrays):
             return None
         leading = _chunks(arrays)[:-1]
@@ -598,7 +600,7 @@ class _BlockGrid(NamedTuple):
         return cls(tuple(sum(sizes) for sizes in leading), tuple(sizes[0] for sizes in leading))
 
     def row(self, row: int, block_shape: tuple[int, ...], block: tuple[int, ...]) -> int:
-        """Return the row among all flattened points of a row of a block."""
+        """Return the row among all flattened points, given the row in a block."""
         inner = np.unravel_index(row, block_shape)
         outer = [int(i) + step * number for i, step, number in zip(inner, self.steps, block)]
         return int(np.ravel_multi_index(outer, self.shape)) if outer else row
@@ -611,7 +613,7 @@ _ROW = re.compile(r"(\w+): row (\d+) (.*)", re.DOTALL)
 def _rows_of_all(
     blocks: Sequence[NDArray[Any]], grid: _BlockGrid | None, block_id: tuple[int, ...]
 ) -> Iterator[None]:
-    """Replace the row of a block in the message of an error by the row of all points."""
+    """Replace the row of a block in the message of an error by the row among all points."""
     try:
         yield
     except ValueError as error:

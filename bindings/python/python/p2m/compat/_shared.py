@@ -1,4 +1,4 @@
-"""What the replacements of several packages need: caches of indexes, and rays of which some have no direction."""
+"""The parts that several compatibility modules share: caches of indexes, and rays without direction."""
 
 from __future__ import annotations
 
@@ -15,14 +15,14 @@ from .._index import Index
 _T = TypeVar("_T")
 
 MESHES_PER_CONTENT_CACHE = 4
-"""The number of meshes of which a cache keeps what was made of them."""
+"""The number of meshes in a cache."""
 
 
 class ContentCache(Generic[_T]):
-    """What was made of arrays, found again by their content.
+    """A cache of values that were made from arrays, with the content of the arrays as the key.
 
-    The cache has copies of the arrays and compares all of their bytes, which takes about a millisecond for a mesh of
-    100,000 triangles and is never mistaken. It forgets the mesh that was not used for the longest time.
+    The cache has copies of the arrays and compares all of their bytes. This takes about a millisecond for a mesh of
+    100,000 triangles, and it cannot confuse two meshes. The least recently used mesh is dropped.
     """
 
     def __init__(self, make: Callable[..., _T]) -> None:
@@ -31,7 +31,7 @@ class ContentCache(Generic[_T]):
         self._lock = threading.Lock()
 
     def get(self, *arrays: NDArray[Any]) -> _T:
-        """Return what belongs to contiguous arrays, and make it if there is nothing."""
+        """Return the value for contiguous arrays, and make it if it is missing."""
         value: _T
         with self._lock:
             for entry in reversed(self._entries):
@@ -40,7 +40,7 @@ class ContentCache(Generic[_T]):
                     self._entries.append(entry)
                     value = entry[1]
                     return value
-        # Others may use the cache meanwhile. Two threads may make the same, of which the later one is found first.
+        # The cache is not locked meanwhile. Two threads may make the same value; the later one is then used.
         copies = [array.copy() for array in arrays]
         value = self._make(*copies)
         with self._lock:
@@ -49,7 +49,7 @@ class ContentCache(Generic[_T]):
         return value
 
     def clear(self) -> None:
-        """Forget everything."""
+        """Forget all values."""
         with self._lock:
             self._entries.clear()
 
@@ -59,7 +59,7 @@ def _is_same(kept: NDArray[Any], array: NDArray[Any]) -> bool:
     if kept.shape != array.shape or kept.dtype != array.dtype:
         return False
     a, b = kept.reshape(-1).view(np.int64), array.reshape(-1).view(np.int64)
-    # The first numbers of other meshes differ, so these are found out without a look at all of them.
+    # Meshes usually differ in their first numbers, so these are compared first.
     return bool(np.array_equal(a[:64], b[:64]) and np.array_equal(a, b))
 
 
@@ -70,7 +70,7 @@ class _Made(NamedTuple):
 
 
 class ObjectCache(Generic[_T]):
-    """What was made of objects that change, kept until they change or cease to exist."""
+    """A cache of values that were made from mutable objects, kept until the object changes or is deleted."""
 
     def __init__(self, make: Callable[[Any], _T], content: Callable[[Any], object]) -> None:
         self._make = make
@@ -79,7 +79,7 @@ class ObjectCache(Generic[_T]):
         self._lock = threading.RLock()
 
     def get(self, mesh: Any) -> _T:
-        """Return what belongs to an object in its present state, and make it if there is nothing."""
+        """Return the value for the present state of an object, and make it if it is missing."""
         key, content = id(mesh), self._content(mesh)
         with self._lock:
             made = self._made.get(key)
@@ -97,7 +97,7 @@ class ObjectCache(Generic[_T]):
                 del self._made[key]
 
     def clear(self) -> None:
-        """Forget everything."""
+        """Forget all values."""
         with self._lock:
             self._made.clear()
 
@@ -110,7 +110,7 @@ Rays = tuple[NDArray[np.float64], NDArray[np.float64]]
 
 
 def castable(index: Index, rays: Rays) -> Rays:
-    """Return rays of which those without direction, which hit nothing, lead away from a point beyond the scene."""
+    """Return rays in which those without direction, which must hit nothing, start beyond the scene and lead away."""
     origins, directions = rays
     is_zero = (directions == 0.0).all(axis=-1)
     if is_zero.any():

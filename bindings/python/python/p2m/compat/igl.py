@@ -1,9 +1,9 @@
 """The functions of libigl for distances from meshes, in which inside is negative.
 
-libigl is not needed. Its functions build a tree in every call. These keep the indexes of the four meshes that were used
-last, and find them again by the content of the arrays, of which they have copies: a call compares all bytes, which
-takes about a millisecond for a mesh of 100,000 triangles. For many calls with few points use `AABB`, which compares
-nothing. `clear_cache` frees the memory.
+libigl is not needed. Its functions build a tree in every call. The functions here keep the indexes of the four most
+recently used meshes, and find them by the content of the arrays, of which they have copies: a call compares all bytes,
+which takes about a millisecond for a mesh of 100,000 triangles. For many calls with few points use `AABB`, which
+compares nothing. `clear_cache` frees the memory.
 
 >>> import numpy as np
 >>> import p2m.compat.igl as igl
@@ -13,7 +13,7 @@ nothing. `clear_cache` frees the memory.
 >>> S, I
 (array([-0.125,  2.   ]), array([2, 1]))
 
-Arrays may have any real and integer types, where libigl demands float64 and int64.
+Arrays may have any real and integer types, while libigl demands float64 and int64.
 """
 
 from __future__ import annotations
@@ -45,7 +45,7 @@ __all__ = [
 
 
 class SignedDistanceType(enum.IntEnum):
-    """The rules by which `signed_distance` tells inside from outside, with the numbers that libigl gives them."""
+    """The rules by which `signed_distance` tells inside from outside, with the numbers of libigl."""
 
     SIGNED_DISTANCE_TYPE_PSEUDONORMAL = 0
     SIGNED_DISTANCE_TYPE_WINDING_NUMBER = 1
@@ -62,7 +62,7 @@ SIGNED_DISTANCE_TYPE_FAST_WINDING_NUMBER = SignedDistanceType.SIGNED_DISTANCE_TY
 
 
 class _Mesh:
-    """An index over elements of one kind, and what follows from them."""
+    """An index over elements of one kind, and data that is derived from them."""
 
     def __init__(self, vertices: NDArray[np.float64], elements: NDArray[np.int64]) -> None:
         self.vertices, self.elements = vertices, elements
@@ -156,9 +156,8 @@ def signed_distance(
         inside if its winding number exceeds a half in magnitude. By pseudonormals the sign is the same for a
         closed, consistently oriented surface. For any other surface, a point is inside if it is behind the closest
         point, seen along the normal there. Unsigned distances are positive.
-    lower_bound, upper_bound : float, optional
-        The distances that are needed. As in libigl, with the larger of their magnitudes b, the points at a distance of
-        b or more have no answer, nor have those nearer than ``b - (upper_bound - lower_bound)``.
+    The range of distances that are needed. As in libigl, let b be the larger of their magnitudes. Points at a distance
+    of b or more have no answer, nor have points nearer than ``b - (upper_bound - lower_bound)``.
 
     Returns
     -------
@@ -181,8 +180,8 @@ def signed_distance(
     -----
     The magnitude of S is the distance. In libigl it is the distance times ``abs(1 - 2 w)`` with winding numbers w,
     which is wrong where w is not 0 or 1: for surfaces with holes, for several layers, for a surface that is inside out,
-    and in the fifth digit for all with fast winding numbers. Here S is nan where rounding leaves it open on which side of
-    a half w is.
+    and in the fifth digit for all surfaces with fast winding numbers. Here S is nan if rounding leaves it open whether
+    w exceeds a half.
     """
     rule = SignedDistanceType(int(getattr(sign_type, "value", sign_type)))
     points, mesh = _points_and_mesh(P, V, F)
@@ -214,11 +213,11 @@ def signed_distance(
 def hausdorff(
     VA: ArrayLike, FA: ArrayLike, VB: ArrayLike, FB: ArrayLike, tolerance: float | None = None
 ) -> float:
-    """Return the Hausdorff distance of two meshes: how far a point of either one is from the other one at most.
+    """Return the Hausdorff distance of two meshes: the largest distance of a point of either mesh from the other one.
 
-    This replaces ``igl.hausdorff``, which asks vertices alone: it returns the largest distance of a vertex from the
-    other mesh, so it misses points inside of edges and triangles that are farther. Here all points count, within a
-    tolerance. ``tolerance=float("inf")`` asks vertices alone, as libigl does.
+    This replaces ``igl.hausdorff``, which only asks vertices: it returns the largest distance of a vertex from the
+    other mesh, and misses farther points inside of edges and triangles. Here all points count, within a tolerance.
+    ``tolerance=float("inf")`` asks only vertices, as libigl does.
 
     Parameters
     ----------
@@ -247,7 +246,7 @@ def hausdorff(
 class AABB:
     """An index over a mesh for many calls, as ``igl.AABB`` has it.
 
-    The methods take V and Ele as in libigl. They belong to the mesh that was given to `init`, and are not looked at.
+    The methods take V and Ele as in libigl, but ignore them: they always use the mesh that was given to `init`.
 
     Examples
     --------
@@ -327,7 +326,7 @@ class AABB:
         ----------
         V, Ele, orig, dir
             As for `intersect_ray`.
-        min_t : float, optional
+        The largest distance of a hit, in lengths of the direction.
             The distance at which rays end, in lengths of the direction.
 
         Returns

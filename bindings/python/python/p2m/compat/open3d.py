@@ -1,6 +1,6 @@
 """The scene of triangles of Open3D, ``open3d.t.geometry.RaycastingScene``, in which inside is negative.
 
-Open3D is not needed. Its tensors and meshes are accepted where they come in.
+Open3D is not needed. Its tensors and meshes are accepted as arguments.
 
 >>> import numpy as np
 >>> import p2m.compat.open3d as o3d
@@ -31,14 +31,14 @@ from ._shared import Rays, all_hits, castable
 __all__ = ["INVALID_ID", "Array", "RaycastingScene"]
 
 INVALID_ID = 4294967295
-"""The id of nothing."""
+"""The id that stands for no geometry or triangle."""
 
 _FIELDS = ("primitive", "barycentric")
-"""What `RaycastingScene._triangles` needs of answers."""
+"""The fields of answers that `RaycastingScene._triangles` uses."""
 
 
 class Array(np.ndarray):
-    """An array of NumPy with the methods by which programs turn tensors of Open3D into arrays.
+    """A NumPy array with the methods by which programs turn Open3D tensors into arrays.
 
     Examples
     --------
@@ -49,7 +49,7 @@ class Array(np.ndarray):
     """
 
     def numpy(self) -> NDArray[Any]:
-        """Return the array as one of NumPy, without a copy."""
+        """Return the array as a plain NumPy array, without a copy."""
         return self.view(np.ndarray)
 
     def cpu(self) -> Array:
@@ -76,31 +76,32 @@ class RaycastingScene:
     Parameters
     ----------
     nthreads : int, optional
-        The number of threads for the build and for queries; 0 for that of the processors.
+        The number of threads for the build and for queries; 0 for the number of processors.
     device : object, optional
-        It is ignored: everything is computed by the processor.
+        It is ignored: the processor computes everything.
     dtype : {numpy.float32, numpy.float64}, optional
-        The type of the results with coordinates, distances and weights.
+        The type of results that are coordinates, distances or weights.
 
     Attributes
     ----------
     INVALID_ID : int
-        4294967295, the id of a geometry or triangle where there is none.
+        4294967295, the id that stands for no geometry or triangle.
 
     Notes
     -----
-    The results are `Array`, arrays of NumPy that have the method ``numpy()``; if tensors of Open3D come in, they are
-    tensors of Open3D. Points and rays have any number of leading axes, which the results keep, and also none at all,
-    where Open3D raises an error. These are the differences from Open3D 0.20:
+    The results are `Array`, NumPy arrays that have the method ``numpy()``. If the arguments are tensors of Open3D, the
+    results are tensors too. Points and rays have any number of leading axes, which the results keep. They may have
+    none, where Open3D raises an error. The other differences from Open3D 0.20 are:
 
     - Everything is computed in float64, and rounded once at the end to `dtype`. Open3D has only float32. Inputs may be
       arrays and sequences of any real type, and meshes with float64 keep it.
     - Signs do not depend on rays in random directions, so `nsamples` has no effect. Their rule is that of
-      `p2m.Index.signed_distance`: overlapping shells of the same orientation are united, and a surface with holes has winding numbers, where Open3D counts the hits of a ray. A point whose
-      side is not defined has the distance nan and the occupancy 0.
+      `p2m.Index.signed_distance`: overlapping shells of the same orientation are united, and a surface with holes has
+      winding numbers, while Open3D counts the hits of a ray. A point whose side is not defined has the distance nan and
+      the occupancy 0.
     - Hits are decided exactly. A ray through an edge or a vertex hits each of its triangles, and the first of equal
       hits is that with the lowest id.
-    - In an empty scene distances are infinite and closest points nan, where Open3D answers with the origin.
+    - In an empty scene distances are infinite and closest points nan, while Open3D answers with the origin.
     - A coordinate that is not finite is a `ValueError` with its row.
     - Scenes can be copied and pickled, so the processes of multiprocessing can have them.
 
@@ -127,7 +128,7 @@ class RaycastingScene:
         self._lock = threading.Lock()
 
     def add_triangles(self, vertex_positions: Any = None, triangle_indices: Any = None, *, mesh: Any = None) -> int:
-        """Add a mesh of triangles. The next query builds the index anew.
+        """Add a mesh of triangles. The next query rebuilds the index.
 
         Parameters
         ----------
@@ -136,7 +137,7 @@ class RaycastingScene:
         triangle_indices : array_like of integers, shape (m, 3)
             The vertices of the triangles.
         mesh : object
-            A mesh of Open3D, or another object that `p2m.Scene.of` makes a scene of triangles of.
+            A mesh of Open3D, or another object from which `p2m.Scene.of` makes a scene of triangles.
 
         Returns
         -------
@@ -240,7 +241,7 @@ class RaycastingScene:
         query_points, nthreads
             As for `compute_closest_points`.
         nsamples : int, optional
-            An odd number, which has no effect. Open3D casts so many rays in order to tell inside from outside.
+            An odd number, which has no effect. Open3D casts this number of rays to tell inside from outside.
 
         Returns
         -------
@@ -293,10 +294,10 @@ class RaycastingScene:
         Returns
         -------
         dict
-            ``t_hit`` (...), the distances in lengths of the direction, infinite where nothing is hit; ``geometry_ids``
-            (...) and ``primitive_ids`` (...) as uint32, `INVALID_ID` where nothing is hit; ``primitive_uvs`` (..., 2), the
+            ``t_hit`` (...), the distances in lengths of the direction, infinite if nothing is hit; ``geometry_ids``
+            (...) and ``primitive_ids`` (...) as uint32, `INVALID_ID` if nothing is hit; ``primitive_uvs`` (..., 2), the
             weights of the second and third vertex; ``primitive_normals`` (..., 3), the normals of length 1 of the
-            triangles. Weights and normals are 0 where nothing is hit.
+            triangles. Weights and normals are 0 if nothing is hit.
         """
         built = self._index()
         split, shape = _split(rays)
@@ -366,14 +367,14 @@ class RaycastingScene:
         return self._results({**columns, **self._triangles(built, hits)}, rays)
 
     def _result(self, array: NDArray[Any], given: Any) -> Any:
-        """Return an answer with real numbers of the type that was asked for."""
+        """Return an answer with real numbers, converted to the type of the scene."""
         return _result(array.astype(self._dtype, copy=False) if array.dtype == np.float64 else array, given)
 
     def _results(self, columns: dict[str, NDArray[Any]], given: Any) -> dict[str, Any]:
         return {name: self._result(array, given) for name, array in columns.items()}
 
     def _triangles(self, built: _Built, found: Any, has_normals: bool = False) -> dict[str, NDArray[Any]]:
-        """Return what answers say about the triangles that they have found, of which some are none."""
+        """Return the fields of answers that describe triangles. Some answers may be missing."""
         primitive = found["primitive"]
         # The weights of the second and third vertices, 0 without a triangle.
         weights = np.where((primitive < 0)[..., None], 0.0, found["barycentric"][..., 1:])
@@ -381,7 +382,7 @@ class RaycastingScene:
         return {**columns, "primitive_normals": self._normals(built, primitive)} if has_normals else columns
 
     def _ids(self, built: _Built, primitive: NDArray[np.int64]) -> dict[str, NDArray[np.uint32]]:
-        """Return the geometries of triangles and their numbers there."""
+        """Return the geometries of triangles, and the numbers of the triangles in them."""
         geometry = np.searchsorted(built.first, primitive, side="right") - 1
         number = primitive - built.first[geometry]
         missing = primitive < 0
@@ -389,7 +390,7 @@ class RaycastingScene:
         return {"geometry_ids": geometry.astype(np.uint32), "primitive_ids": number.astype(np.uint32)}
 
     def _normals(self, built: _Built, primitive: NDArray[np.int64]) -> NDArray[Any]:
-        """Return the normals of triangles, (0, 0, 0) without a triangle and without an area."""
+        """Return the normals of triangles, (0, 0, 0) for a missing triangle and for one without area."""
         flat = primitive.reshape(-1)
         normals = np.zeros((len(flat), 3), self._dtype)
         number = np.searchsorted(built.first, flat, side="right") - 1
@@ -448,12 +449,12 @@ def _is_tensor(values: Any) -> bool:
 
 
 def _array(values: Any) -> NDArray[Any]:
-    """Return an array of what may be a tensor of Open3D."""
+    """Return an argument as an array. It may be a tensor of Open3D."""
     return np.asarray(values.cpu().numpy() if _is_tensor(values) else values)
 
 
 def _rows(values: Any, width: int, name: str) -> NDArray[Any]:
-    """Return an array whose last axis has a certain length."""
+    """Return an argument as an array whose last axis has the given length."""
     array = _array(values)
     if array.ndim == 0 or array.shape[-1] != width:
         raise ValueError(f"{name}: the shape is {array.shape} instead of {{.., {width}}}")
@@ -470,7 +471,7 @@ def _split(rays: Any) -> tuple[Rays, tuple[int, ...]]:
 
 
 def _result(array: NDArray[Any], given: Any) -> Any:
-    """Return an answer: a tensor of Open3D if the question is one."""
+    """Return an answer, as a tensor of Open3D if the argument was one."""
     if _is_tensor(given):
         return importlib.import_module("open3d").core.Tensor(array)
     return array.view(Array)

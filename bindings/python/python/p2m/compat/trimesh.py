@@ -1,8 +1,8 @@
 """The proximity and ray queries of trimesh, in which inside is positive.
 
 The functions take the meshes of trimesh, and any other object with ``vertices`` of shape (n, 3) and ``faces`` of shape
-(m, 3). trimesh itself is needed by `enable` alone. The index of a mesh is built by its first query and kept until the
-mesh changes or is deleted; those of the four other objects that were used last are found again by their content.
+(m, 3). Only `enable` needs trimesh itself. The first query of a mesh builds its index, which is kept until the mesh
+changes or is deleted. The indexes of the four most recently used other objects are found by their content.
 
 >>> import numpy as np
 >>> from types import SimpleNamespace
@@ -21,7 +21,7 @@ All functions differ from those of trimesh 5.2.0 in these respects:
 
 - Nothing is rounded to a tolerance. trimesh treats points within 1e-8 of the surface as lying on it, squared distances
   that differ by less than 1e-8 as equal, and hits up to 1e-6 behind the origin of a ray as hits.
-- No points at all are an ordinary query, for which trimesh raises `ValueError`.
+- An empty list of points is an ordinary query, while trimesh raises `ValueError`.
 - A coordinate that is not finite is a `ValueError` with its row, also in rays.
 """
 
@@ -72,7 +72,7 @@ def _arrays(mesh: Any) -> tuple[NDArray[np.float64], NDArray[np.int64]]:
     return np.ascontiguousarray(mesh.vertices, np.float64), np.ascontiguousarray(mesh.faces, np.int64)
 
 
-# The hash of a mesh of trimesh is that of its content, and trimesh computes it anew only after a change.
+# The hash of a trimesh mesh depends on its content, and trimesh recomputes it only after a change.
 _of_meshes: ObjectCache[_Indexes] = ObjectCache(lambda mesh: _Indexes(*_arrays(mesh)), hash)
 _of_others: ContentCache[_Indexes] = ContentCache(_Indexes)
 
@@ -158,10 +158,10 @@ def signed_distance(mesh: Any, points: ArrayLike) -> NDArray[np.float64]:
 
     Notes
     -----
-    The rule of signs is that of `p2m.Index.signed_distance`: overlapping shells of the same orientation are united. trimesh compares with the
-    normal of the nearest face where the closest point is inside of it, and casts rays elsewhere. The distance is nan
-    where rounding leaves it open on which side of a half the winding number of an open surface is. In trimesh, points within 1e-8 of the surface have a
-    positive distance on either side.
+    The rule of signs is that of `p2m.Index.signed_distance`: overlapping shells of the same orientation are united. If
+    the closest point is inside of a face, trimesh compares with the normal of the face, and otherwise it casts rays.
+    The distance is nan if rounding leaves it open whether the winding number of an open surface exceeds a half. In
+    trimesh, points within 1e-8 of the surface have a positive distance on either side.
     """
     distance = _indexes(mesh).surface.signed_distance(_points(points))
     np.negative(distance, out=distance, where=distance != 0.0)
@@ -169,7 +169,7 @@ def signed_distance(mesh: Any, points: ArrayLike) -> NDArray[np.float64]:
 
 
 class ProximityQuery:
-    """The queries for closest points of a mesh, as ``mesh.nearest`` has them.
+    """The closest-point queries of a mesh, as in ``mesh.nearest``.
 
     This replaces ``trimesh.proximity.ProximityQuery``.
 
@@ -180,7 +180,7 @@ class ProximityQuery:
 
     Attributes
     ----------
-    replaced : object
+    The object that `enable` replaced by this one, or None.
         What `enable` replaced by this object, or None.
     """
 
@@ -205,7 +205,7 @@ class ProximityQuery:
         distance : ndarray of float64, shape (...)
             The distances of the nearest vertices; a number for one point.
         vertex_id : ndarray of int64, shape (...)
-            Their places in ``mesh.vertices``; a number for one point. Vertices without faces count, too. Of equally
+            Their indices in ``mesh.vertices``; a number for one point. Vertices without faces count, too. Of equally
             near vertices the first is the answer, and in trimesh any of them.
         """
         answer = _indexes(self._mesh).vertices().closest(points, fields=("distance", "primitive"))
@@ -219,7 +219,7 @@ class ProximityQuery:
 
 
 class RayMeshIntersector:
-    """The ray queries of a mesh, as ``mesh.ray`` has them.
+    """The ray queries of a mesh, as in ``mesh.ray``.
 
     This replaces ``trimesh.ray.ray_triangle.RayMeshIntersector`` and that of ``ray_pyembree``.
 
@@ -231,7 +231,7 @@ class RayMeshIntersector:
     Attributes
     ----------
     replaced : object
-        What `enable` replaced by this object, or None.
+        The object that `enable` replaced by this one, or None.
 
     Notes
     -----
@@ -278,11 +278,10 @@ class RayMeshIntersector:
         ----------
         ray_origins, ray_directions : array_like, shape (n, 3)
             The origins and directions of the rays. Directions have any length.
-        return_locations : bool, optional
-            Whether to return the points as well. Then the hits of a ray at one point, on an edge or vertex of several
-            faces, are one hit of the face with the lowest id.
+        Whether to return the points as well. Then several hits of a ray at one point, on an edge or a vertex, count as
+        one hit of the face with the lowest id.
         multiple_hits : bool, optional
-            Whether to return all hits of a ray and not only the first one.
+            Whether to return all hits of a ray instead of only the first one.
         max_hits : int, optional
             The largest number of hits of a ray, which are its first ones. By default there is no limit; trimesh has a
             limit of 100 with Embree, and ignores this argument without it.
@@ -316,7 +315,8 @@ class RayMeshIntersector:
             hits = all_hits(index, rays, ("primitive", "t", "point") if return_locations else ("primitive",))
             ray, faces, locations = hits.ray, hits.columns["primitive"], hits.columns.get("point")
             if locations is not None:
-                # Parameters are rounded once, so hits at one point have one parameter. Ids ascend among them.
+                # Parameters are rounded only once, so hits at one point have equal parameters, and come in ascending
+                # order of ids.
                 t = hits.columns["t"]
                 is_new = np.ones(len(ray), np.bool_)
                 is_new[1:] = (ray[1:] != ray[:-1]) | (t[1:] != t[:-1])
@@ -387,7 +387,7 @@ class RayMeshIntersector:
         return index.rays(*rays, "any")
 
     def _cast(self, ray_origins: ArrayLike, ray_directions: ArrayLike) -> tuple[Index, Rays]:
-        """Return the index of the mesh, and rays of shape (n, 3) that it can cast."""
+        """Return the index of the mesh, and rays of shape (n, 3) at which it can cast."""
         rays, index = _rays(ray_origins, ray_directions), _indexes(self.mesh).surface
         return index, castable(index, rays)
 
@@ -402,8 +402,8 @@ class RayMeshIntersector:
         Returns
         -------
         ndarray of bool, shape (n,)
-            Whether `signed_distance` is positive: points on the surface are not inside, and in trimesh they may be.
-            Nor are those whose side is not defined.
+            Whether `signed_distance` is positive: points on the surface and points whose side is not defined are not
+            inside. In trimesh, points on the surface may be inside.
         """
         return _indexes(self.mesh).surface.contains(_points(points))
 
@@ -421,17 +421,17 @@ def _rays(ray_origins: ArrayLike, ray_directions: ArrayLike) -> Rays:
 _RAY_METHODS = ("contains_points", "intersects_any", "intersects_first", "intersects_id", "intersects_location")
 
 _patched: list[tuple[Any, str, Any]] = []
-"""The attributes that `enable` replaced: their owner, their name, and what was there."""
+"""The attributes that `enable` replaced: the owner, the name, and the original value."""
 
 
 def enable(mesh: Any = None) -> None:
-    """Let trimesh answer with p2m, until `disable` is called.
+    """Make trimesh answer with p2m, until `disable` is called.
 
     Parameters
     ----------
     mesh : trimesh.Trimesh, optional
-        The mesh whose ``nearest`` and ``ray`` are replaced. Without it, those of all meshes are, present and future
-        ones, and so are ``trimesh.proximity.closest_point`` and ``trimesh.proximity.signed_distance``. Methods that
+        The mesh whose ``nearest`` and ``ray`` are replaced. Without it, those of all present and future meshes are
+        replaced, and so are ``trimesh.proximity.closest_point`` and ``trimesh.proximity.signed_distance``. Methods that
         use them follow, such as ``mesh.contains``.
 
     Raises
@@ -467,7 +467,7 @@ def enable(mesh: Any = None) -> None:
 
 
 def disable(mesh: Any = None) -> None:
-    """Let trimesh answer itself again.
+    """Undo `enable`.
 
     Parameters
     ----------
