@@ -1,15 +1,15 @@
 //! Compares the answers of backends.
 //!
-//! Our backends of one scalar have to agree bitwise, in distance and id, and are compared with the first of them.
-//! External libraries, and our backends in f32, are compared in distance with our first index in f64; the rounding of
-//! the input to f32 is part of that difference.
+//! All our backends of one scalar have to return the same bits, in distance and id, and are compared with the first of
+//! them. For external libraries, and for our backends in f32, distances are compared with our first index in f64; the
+//! rounding of the input to f32 is part of that difference.
 
 use crate::backend::{Answer, Backend, ScalarKind};
 
 /// The answers of a backend in a round.
 #[derive(Clone, Copy)]
 pub(crate) struct Answers<'a> {
-    /// The backend that answered.
+    /// The backend that gave the answers.
     pub(crate) backend: &'a Backend,
     /// The positions of its queries in the set, in increasing order.
     pub(crate) chosen: &'a [usize],
@@ -26,7 +26,7 @@ pub(crate) struct Agreement {
     pub(crate) other_distance: usize,
     /// The number of compared answers that have the same distance and another id.
     pub(crate) other_id: usize,
-    /// A query whose answer differs: its position in the set, the answer, and the one that was expected.
+    /// A query with a different answer: its position in the set, the answer, and the expected answer.
     pub(crate) example: Option<(usize, Answer, Answer)>,
     /// The number of queries without a finite answer.
     pub(crate) failed: usize,
@@ -51,8 +51,8 @@ impl Agreement {
     }
 }
 
-/// Compares all backends of a round and returns one result for each, in their order. The reference of a scalar is the
-/// first of ours that answered all queries, or that visits few primitives.
+/// Compares all backends of a round and returns a result for each, in their order. The reference of a scalar is our
+/// first backend that answered all queries, or that visits few primitives.
 pub(crate) fn compare_round(round: &[Option<Answers<'_>>], total: usize) -> Vec<Agreement> {
     let reference = |scalar: ScalarKind| -> Option<Vec<Option<Answer>>> {
         let of_scalar = || round.iter().flatten().filter(|a| a.backend.is_ours && a.backend.scalar == scalar);
@@ -66,7 +66,7 @@ pub(crate) fn compare_round(round: &[Option<Answers<'_>>], total: usize) -> Vec<
         let peer = if a.backend.scalar == ScalarKind::Double { &double } else { &single };
         for (&at, answer) in a.chosen.iter().zip(a.answers) {
             let expected_at = |all: &Option<Vec<Option<Answer>>>| all.as_ref().and_then(|all| all[at]);
-            // Queries that failed have no difference, because they are counted above.
+            // Failed queries have no difference. They are counted above.
             let difference = expected_at(&double).map(|expected| (answer.distance - expected.distance).abs());
             agreement.difference = difference
                 .filter(|difference| difference.is_finite())
@@ -86,7 +86,7 @@ pub(crate) fn compare_round(round: &[Option<Answers<'_>>], total: usize) -> Vec<
     round.iter().map(|answers| answers.as_ref().map(compare).unwrap_or_default()).collect()
 }
 
-/// Returns the answers at the positions of their queries in the set, `None` for queries that were not asked.
+/// Returns the answers by the positions of their queries in the set, `None` for queries that were not asked.
 fn by_query(answers: &Answers<'_>, total: usize) -> Vec<Option<Answer>> {
     let mut all = vec![None; total];
     answers.chosen.iter().zip(answers.answers).for_each(|(&position, answer)| all[position] = Some(*answer));

@@ -1,4 +1,4 @@
-//! `p2m-bench auto`: what the choice of `auto` costs, relative to the best index for each job.
+//! `p2m-bench auto`: compares the backend that `auto` chooses with the best one for each job.
 //!
 //! A job is a number of queries near the surface or in the box of a scene. Its time is that of a build and of all
 //! queries in batches, on one thread.
@@ -28,18 +28,18 @@ pub(crate) struct Arguments {
     rounds: Rounds,
 }
 
-/// The numbers of queries of jobs.
+/// The numbers of queries of the jobs.
 const JOBS: [u64; 6] = [1_000, 10_000, 100_000, 1_000_000, 10_000_000, 100_000_000];
-/// The sets of queries of jobs.
+/// The query sets of the jobs.
 const SETS: [QuerySet; 2] = [QuerySet::Near, QuerySet::Box1];
-/// A choice is bad if its job takes longer than this factor of the best one.
+/// The factor over the time of the best backend above which a choice is bad.
 const BAD: f64 = 1.15;
 /// The resolution of an octree with finer cells.
 const FINER: f64 = 3.0;
-/// The number of times that each choice is made.
+/// The number of times that each choice is repeated, to check that it is always the same.
 const REPEATS: usize = 20;
 
-/// Measures all jobs. It fails if more than one choice in a hundred is bad, or if one differs when it is made again.
+/// Measures all jobs. It fails if more than one choice in a hundred is bad, or if a repeated choice differs.
 pub(crate) fn run(arguments: &Arguments) -> Result<bool> {
     let about = arguments.rounds.describe("Thread CPU time", arguments.queries, "queries");
     let (mut bad, mut jobs) = (0, 0);
@@ -55,7 +55,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<bool> {
 /// Prints the table of a scene, and returns the number of bad choices.
 fn print(scene: &Scene, arguments: &Arguments) -> Result<usize> {
     let soup = &scene.double;
-    // The octree is there twice, with the finer cells of a choice as well.
+    // The octree is measured twice, because a choice may also ask for finer cells.
     let finer = |backend: &BackendEntry| if backend.has_resolution { vec![None, Some(FINER)] } else { vec![None] };
     let backends: Vec<(&BackendEntry, Option<f64>)> = BACKENDS
         .iter()

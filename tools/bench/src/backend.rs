@@ -13,13 +13,13 @@ use std::sync::Arc;
 pub(crate) struct Answer {
     /// The distance; NaN if there was no answer.
     pub(crate) distance: f64,
-    /// The id of the primitive in the scene for our indexes. An external library numbers its own shape, and that number
-    /// enters the checksum only.
+    /// The id of the primitive in the scene, for our indexes. An external library numbers its own shapes, and its
+    /// number only enters the checksum.
     pub(crate) id: u32,
 }
 
 impl Answer {
-    /// The value that stands for a query without an answer.
+    /// The answer of a query that has none.
     pub(crate) const NONE: Self = Self { distance: f64::NAN, id: u32::MAX };
 
     /// Returns whether the distances of both answers have the same bits.
@@ -28,13 +28,14 @@ impl Answer {
     }
 }
 
-/// An index over a scene that the harness can query. A new backend implements this trait, and [`ErasedIndex`] follows.
+/// An index over a scene that the harness can query. A new backend implements this trait, from which [`ErasedIndex`]
+/// follows.
 pub(crate) trait BenchIndex: Sync {
     /// The scalar of the queries.
     type Scalar: Scalar;
     /// Answers one query with default options and without a hint.
     fn query(&self, query: &Point3<Self::Scalar>) -> Answer;
-    /// Answers several queries in their order, one by one unless the backend has batches of its own.
+    /// Answers several queries in order, one by one unless the backend has batches.
     #[inline(always)]
     fn queries(&self, queries: &[Point3<Self::Scalar>], answers: &mut [Answer]) {
         for (query, answer) in queries.iter().zip(answers) {
@@ -44,9 +45,9 @@ pub(crate) trait BenchIndex: Sync {
 }
 
 /// A [`BenchIndex`] with its scalar erased. The loop over queries is compiled for each backend, so a query costs no
-/// dynamic call beyond its own.
+/// dynamic call beyond those of the backend.
 pub(crate) trait ErasedIndex: Sync {
-    /// Answers queries in their order, and turns a panic into an error.
+    /// Answers queries in order, and turns a panic into an error.
     fn answer(&self, queries: QuerySlice<'_>, answers: &mut [Answer]) -> Result<(), Unavailable>;
 }
 
@@ -59,7 +60,7 @@ impl<C: BenchIndex> ErasedIndex for C {
     }
 }
 
-/// A scalar, with access to the scene in that scalar.
+/// A scalar, with access to the scene in it.
 pub(crate) trait Scalar: p2m_cli::harness::queries::Scalar {
     /// Returns the scene in this scalar and its heap bytes, or an error if the scene overflows the scalar.
     fn soup(scene: &Scene) -> Result<(&Arc<Soup<Self>>, usize), Unavailable>;
@@ -99,7 +100,7 @@ impl ScalarKind {
     }
 }
 
-/// The reason why a backend is not measured, which becomes a footnote of the table.
+/// The reason why a backend is not measured. It becomes a footnote of the table.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Unavailable(pub(crate) String);
 
@@ -120,8 +121,8 @@ impl std::error::Error for Unavailable {}
 /// An index of any backend that is ready for queries.
 pub(crate) type BoxedIndex = Box<dyn ErasedIndex>;
 
-/// A backend before it is built. Copies and conversions of the scene were made already and are not timed, but they
-/// count as memory of the index.
+/// A backend that is ready to be built. The scene has been copied and converted already. This is not timed, but the
+/// copies count as memory of the index.
 pub(crate) struct Prepared {
     /// Builds the index; this call is timed.
     pub(crate) build: Box<dyn FnOnce() -> Result<BoxedIndex, Unavailable>>,
@@ -129,25 +130,25 @@ pub(crate) struct Prepared {
     pub(crate) borrowed: usize,
 }
 
-/// A backend in the list of backends.
+/// A backend of the list of all backends.
 pub(crate) struct Backend {
     /// The name in tables and on the command line.
     pub(crate) name: &'static str,
     /// The scalar of queries and answers.
     pub(crate) scalar: ScalarKind,
-    /// Whether the backend keeps the contract of `ClosestPoint`, so that its answers are compared bitwise.
+    /// Whether the backend keeps the contract of `ClosestPoint`. Its answers are then compared bit for bit.
     pub(crate) is_ours: bool,
-    /// Whether the backend visits every primitive, so that it gets few queries and is the oracle of `verify`.
+    /// Whether the backend visits every primitive. It then gets few queries, and is the oracle of `verify`.
     pub(crate) is_exhaustive: bool,
     /// Prepares a scene for the build.
     pub(crate) prepare: Prepare,
 }
 
-/// A function that copies and converts a scene as far as a build needs it.
+/// A function that copies and converts a scene as the build needs it.
 type Prepare = Box<dyn Fn(&Scene) -> Result<Prepared, Unavailable> + Send + Sync>;
 
 impl Backend {
-    /// Makes a backend of ours in f64 that does not visit every primitive.
+    /// Makes one of our backends, in f64, that does not visit every primitive.
     pub(crate) fn new(
         name: &'static str,
         prepare: impl Fn(&Scene) -> Result<Prepared, Unavailable> + Send + Sync + 'static,
@@ -162,7 +163,7 @@ impl Backend {
     }
 }
 
-/// Runs foreign code and turns its panics into errors.
+/// Runs external code and turns its panics into errors.
 pub(crate) fn catch<V>(run: impl FnOnce() -> Result<V, Unavailable>) -> Result<V, Unavailable> {
     catch_unwind(AssertUnwindSafe(run)).unwrap_or_else(|_| Err(Unavailable("it panicked".to_owned())))
 }

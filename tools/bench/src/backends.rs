@@ -1,4 +1,4 @@
-//! The list of all backends: those of the registry of p2m-backends, settings of them, and external libraries.
+//! The list of all backends: those of the registry of p2m-backends, variants of them, and external libraries.
 
 use crate::backend::{Backend, ScalarKind};
 use crate::bvh_crate::prepare as bvh;
@@ -35,13 +35,13 @@ fn external() -> [Backend; 5] {
 /// The backends that `query` measures by default.
 pub(crate) const DEFAULT: &str = "brute,aabb,aabb-f32,parry3d,parry3d-f64";
 
-/// The external library that ratios refer to.
+/// The external library to which ratios refer.
 pub(crate) const YARDSTICK: &str = "parry3d";
 
-/// The external library in f64, to which ratios are given as well.
+/// The external library in f64, to which further ratios refer.
 pub(crate) const YARDSTICK_DOUBLE: &str = "parry3d-f64";
 
-/// Returns the backend of that name from the list.
+/// Returns the backend with this name.
 pub(crate) fn by_name(name: &str) -> &'static Backend {
     ALL.iter().find(|backend| backend.name == name).expect("a name of the list")
 }

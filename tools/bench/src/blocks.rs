@@ -1,7 +1,7 @@
-//! Blocks of documents: text that a command prints, or writes into a document.
+//! Blocks of documents, whose text is made by a command and printed or written into a document.
 //!
-//! A block with the name `lists` of the command `paper` stands in a document between the lines `<!-- p2m-bench paper
-//! lists -->` and `<!-- end -->`. The text around the blocks is written by hand.
+//! The block `lists` of the command `paper` is in a document between the lines `<!-- p2m-bench paper lists -->` and
+//! `<!-- end -->`. The text around the blocks is written by hand.
 
 use anyhow::{Context, Result};
 use std::path::Path;
@@ -18,12 +18,12 @@ pub(crate) struct Blocks<const N: usize> {
 }
 
 impl<const N: usize> Blocks<N> {
-    /// Returns an error if the document lacks a block, before anything is measured.
+    /// Checks that the document has all blocks, before anything is measured.
     pub(crate) fn check(&self, document: Option<&Path>) -> Result<()> {
         document.map_or(Ok(()), |path| self.read_and_replace(path, &[const { String::new() }; N]).map(|_| ()))
     }
 
-    /// Replaces the blocks of a document, or prints all blocks if there is no document.
+    /// Replaces the blocks in a document, or prints them if there is no document.
     pub(crate) fn publish(&self, document: Option<&Path>, contents: &[String; N]) -> Result<()> {
         match document {
             Some(path) => {

@@ -1,4 +1,5 @@
-//! The crate bvh as a backend. It provides the tree and the search; its user provides the distance to a primitive.
+//! The crate bvh as a backend. The crate has the tree and the search, and its user has to compute the distance to a
+//! primitive.
 
 use crate::backend::{Answer, BenchIndex, BoxedIndex, Prepared, Unavailable};
 use crate::scene::Scene;
@@ -9,7 +10,7 @@ use bvh::point_query::PointDistance;
 use nalgebra::Point3;
 use p2m_core::{PrimitiveId, PrimitiveSet, Shape};
 
-/// A primitive with the index of its leaf.
+/// A primitive with the index of its node, as the crate requires.
 struct Primitive {
     shape: Shape<f64>,
     node: usize,
@@ -43,7 +44,7 @@ impl PointDistance<f64, 3> for Primitive {
     }
 }
 
-/// Returns the closest point on a segment.
+/// Returns the closest point of a segment.
 fn on_segment(query: &Point3<f64>, [a, b]: &[Point3<f64>; 2]) -> Point3<f64> {
     let along = b - a;
     let (part, length) = (along.dot(&(query - a)), along.norm_squared());
@@ -56,7 +57,7 @@ fn on_segment(query: &Point3<f64>, [a, b]: &[Point3<f64>; 2]) -> Point3<f64> {
     }
 }
 
-/// Returns the closest point on a triangle by its regions (Ericson, Real-Time Collision Detection, 5.1.5).
+/// Returns the closest point of a triangle by the region of the query (Ericson, Real-Time Collision Detection, 5.1.5).
 pub(crate) fn on_triangle(query: &Point3<f64>, [a, b, c]: &[Point3<f64>; 3]) -> Point3<f64> {
     let (ab, ac, ap) = (b - a, c - a, query - a);
     let (d1, d2) = (ab.dot(&ap), ac.dot(&ap));

@@ -43,7 +43,7 @@ pub(crate) struct Rounds {
 }
 
 impl Rounds {
-    /// Describes a measurement of some questions a round.
+    /// Describes a measurement of `count` questions per round.
     pub(crate) fn describe(&self, time: &str, count: usize, questions: &str) -> String {
         format!("{time}, {} rounds in turns, {count} {questions} a round, seed {}.", self.rounds, self.seed)
     }
@@ -70,13 +70,13 @@ pub(crate) fn index_names() -> PossibleValuesParser {
     p2m_backends::BACKENDS.iter().map(|backend| backend.name).collect::<Vec<_>>().into()
 }
 
-/// Returns the provenance of a measurement by this program, which runs from its checkout.
+/// Returns the provenance of a measurement by this program, which is run from its checkout.
 pub(crate) fn provenance() -> Provenance {
     Provenance::collect(Some(env!("CARGO_MANIFEST_DIR").as_ref()))
 }
 
-/// Prints the origin of figures and a line about the measurement, measures scenes one by one, and returns
-/// whether all are good.
+/// Prints the provenance and a line about the measurement, measures scenes one by one, and returns whether all are
+/// good.
 pub(crate) fn all_good(
     scenes: &[PathBuf],
     about: &str,

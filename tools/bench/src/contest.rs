@@ -7,17 +7,17 @@ use p2m_core::batch::{BatchOptions, closest_points_into};
 use p2m_core::{Closest, ClosestPoint, QueryOptions};
 use std::hint::black_box;
 
-/// A competitor of another library that would need longer than this for a round answers the first questions only.
+/// The longest time of a round of an external competitor, in seconds. A slower one answers only the first questions.
 const ROUND_SECONDS: f64 = 2.0;
 
-/// The kind of a competitor tells with what its answers are compared.
+/// The kind of a competitor, which determines the reference of its answers.
 #[derive(Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Kind {
-    /// It is ours, and its answers have to be those of the first competitor, bit for bit.
+    /// One of ours, whose answers have to equal those of the first competitor, bit for bit.
     Exact,
-    /// It is ours and answers another question, or in another scalar.
+    /// One of ours that answers another question, or in another scalar.
     Other,
-    /// It is of another library, and may answer fewer questions.
+    /// An external library, which may answer fewer questions.
     External,
 }
 
@@ -32,28 +32,29 @@ pub(crate) struct Competitor<'a, Q, A> {
 }
 
 impl<'a, Q, A> Competitor<'a, Q, A> {
-    /// Makes a competitor that answers questions one after the other. Its loop is compiled for this function.
+    /// Makes a competitor that answers questions one by one. The loop is compiled for this function.
     pub(crate) fn new(name: &'static str, kind: Kind, mut answer: impl FnMut(&Q) -> A + 'a) -> Self {
         Self::in_batches(name, kind, move |questions, out| {
             questions.iter().zip(out).for_each(|(question, out)| *out = answer(question));
         })
     }
 
-    /// Makes a competitor that answers all questions of a round by one call.
+    /// Makes a competitor that answers all questions of a round in one call.
     pub(crate) fn in_batches(name: &'static str, kind: Kind, answer: impl FnMut(&[Q], &mut [A]) + 'a) -> Self {
         Self { name, kind, answer: Box::new(answer) }
     }
 }
 
-/// The result of a competitor.
+/// The measurements of a competitor.
 pub(crate) struct Score<A> {
-    /// The seconds per question of all rounds.
+    /// The seconds per question of each round.
     pub(crate) seconds: MedianRange,
-    /// The answers of the last round, which may be those to the first questions only.
+    /// The answers of the last round, possibly to the first questions only.
     pub(crate) answers: Vec<A>,
 }
 
-/// Lets competitors answer questions, and returns their results in their order. Answers are `none` before the first round.
+/// Measures competitors, which answer questions in turns, and returns their results in order. Answers are `none` before
+/// the first round.
 ///
 /// # Panics
 /// Panics without questions or rounds.
@@ -74,7 +75,7 @@ pub(crate) fn measure<Q, A: Clone>(
     let affordable = |seconds: f64| ((ROUND_SECONDS / seconds.max(1e-9)) as usize).clamp(1, questions.len());
     let mut answers = Vec::new();
     for (at, kind) in kinds.iter().enumerate() {
-        // The first call after a pause is slower, so the second one counts.
+        // The first call after a pause is slow, so the second one is measured.
         let count = match kind {
             Kind::External => affordable([(); 2].map(|()| ask(at, &mut [none.clone()]))[1]),
             Kind::Exact | Kind::Other => questions.len(),
@@ -91,7 +92,7 @@ pub(crate) fn measure<Q, A: Clone>(
     seconds.iter().map(spread).zip(answers).map(|(seconds, answers)| Score { seconds, answers }).collect()
 }
 
-/// An index that answers points one by one, and one that answers them in a batch on one thread.
+/// Returns two competitors for an index: one answers points one by one, and one answers them as a batch on one thread.
 pub(crate) fn single_and_batch<'a, I: ClosestPoint<f64> + Sync + ?Sized>(
     index: &'a I,
 ) -> [Competitor<'a, Point3<f64>, Option<Closest<f64>>>; 2] {

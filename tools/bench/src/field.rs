@@ -21,13 +21,13 @@ use p2m_field::{FieldOptions, Grid, distances, distances_by_lists, signed_distan
 use p2m_interception::{Domain, OctreeIndex, P2mIndex};
 use std::path::PathBuf;
 
-/// The number of layers of the grid in a slab, which methods fill in turn.
+/// The number of layers of the grid in a slab. Methods fill slabs in turns.
 const LAYERS: usize = 16;
 
-/// Fills a slab of the field.
+/// A function that fills a slab of the field.
 type Fill<'a> = dyn Fn(&Grid) -> Vec<f32> + 'a;
 
-/// A method that is built.
+/// A method of filling the field, after its build.
 struct Method<'a> {
     name: &'static str,
     seconds: f64,
@@ -58,7 +58,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<bool> {
 }
 
 impl<'a> Method<'a> {
-    /// Builds an index, and makes a method of it.
+    /// Builds an index, and makes a method from it.
     fn build<I: 'a>(
         name: &'static str,
         build: impl FnOnce() -> Result<I>,
@@ -92,7 +92,7 @@ fn print(scene: &Scene, resolution: usize, stride: usize) -> Result<bool> {
         let expected = fields[0].take().unwrap_or_default();
         for (method, field) in all.iter_mut().zip(fields).skip(1) {
             let Some(field) = field else { continue };
-            // Signed values are compared by their magnitudes. `f64::max` would drop a NaN, so a NaN of one method alone
+            // The magnitudes of signed values are compared. `f64::max` would drop a NaN, so a NaN of only one method
             // becomes an infinite difference.
             let difference = |(a, b): (&f32, &f32)| {
                 let (a, b) = (f64::from(a.abs()), f64::from(b.abs()));

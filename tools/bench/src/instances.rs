@@ -1,4 +1,4 @@
-//! `p2m-bench instances`: compares a scene of moving instances with one index over all of its moved triangles.
+//! `p2m-bench instances`: compares a scene of moving instances with a single index over all of its moved triangles.
 
 use crate::command::{Rounds, at_least_one, provenance};
 use crate::contest::{self, Competitor, Kind};
@@ -20,10 +20,10 @@ use std::collections::HashMap;
 use std::path::PathBuf;
 use std::sync::Arc;
 
-/// One index over all is left out if there are more triangles than this, for lack of memory.
+/// The number of triangles above which the single index is left out, for lack of memory.
 const MAX_TRIANGLES_OF_ONE_INDEX: usize = 25_000_000;
-/// The largest distance by which an instance moves along an axis between two frames, in diagonals of an object, and the
-/// largest angle by which it turns about an axis, in radians.
+/// The largest movement of an instance between two frames: the distance along each axis in diagonals of an object, and
+/// the angle about each axis in radians.
 const STEP: f64 = 0.02;
 
 type Tree<S> = AabbTree<f64, S>;
@@ -50,7 +50,7 @@ pub(crate) struct Arguments {
     rays: usize,
 }
 
-/// Times a scene of instances, and returns whether it answers as one index over all of them.
+/// Times a scene of instances, and returns whether its answers equal those of the single index.
 pub(crate) fn run(arguments: &Arguments) -> Result<bool> {
     let about = arguments.rounds.describe("CPU time of one thread", arguments.queries, "queries");
     println!("{}\n{about}", provenance());
@@ -86,7 +86,7 @@ fn print(arguments: &Arguments) -> Result<bool> {
     let origins: Vec<_> = (0..arguments.rays).map(|_| at()).collect();
     let rays = origins.iter().map(|origin| Ray::new(origin, &vector(&mut bench.rng)));
     let rays = rays.collect::<Result<Vec<_>, _>>().context("directions are not zero")?;
-    // Each row has the times of the scene of instances, then those of the one index.
+    // Each row has the times of the scene of instances, and then those of the single index.
     let mut seconds: [[Vec<f64>; 2]; 2] = Default::default();
     for _ in 0..arguments.rounds.rounds {
         bench.step();
@@ -152,7 +152,7 @@ struct Bench {
 }
 
 impl Bench {
-    /// Scatters instances over a cube, one for each unit of volume.
+    /// Scatters instances over a cube, with one instance per unit of volume on average.
     fn new(objects: Vec<Arc<Tree<Soup<f64>>>>, instances: usize, seed: u64) -> Result<Self> {
         if objects.is_empty() {
             bail!("there is no object");
@@ -166,7 +166,7 @@ impl Bench {
         Ok(bench)
     }
 
-    /// Makes the scene anew.
+    /// Rebuilds the scene.
     fn build(&mut self) -> Result<()> {
         let mut scene = Instances::new();
         let mut edit = scene.edit();
@@ -180,7 +180,7 @@ impl Bench {
         Ok(())
     }
 
-    /// Moves all instances a little, without an update of the scene.
+    /// Moves all instances a little, without updating the scene.
     fn step(&mut self) {
         for motion in &mut self.motions {
             let step = Isometry3::new(vector(&mut self.rng) * STEP, vector(&mut self.rng) * STEP);
@@ -191,7 +191,7 @@ impl Bench {
         }
     }
 
-    /// Gives all instances their motions.
+    /// Updates the scene with the motions of all instances.
     fn update(&mut self) -> Result<()> {
         let mut edit = self.scene.edit();
         for (id, motion) in self.ids.iter().zip(&self.motions) {
@@ -224,7 +224,7 @@ impl Bench {
 }
 
 /// Returns the triangles of a mesh, scaled to a box with a diagonal of 1 about the origin, and simplified to at most
-/// some triangles by merging the vertices in each cell of a grid.
+/// `most` triangles by merging the vertices in each cell of a grid.
 fn object(soup: &Soup<f64>, most: Option<usize>) -> Result<Soup<f64>> {
     let bounds = soup.aabb();
     let (centre, diagonal) = (nalgebra::center(&bounds.min, &bounds.max), (bounds.max - bounds.min).norm());

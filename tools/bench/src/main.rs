@@ -2,11 +2,11 @@
 //!
 //! `p2m-bench query` builds every backend over a scene and lets them answer sets of queries in turns, in one process,
 //! on one thread, one call at a time. `p2m-bench verify` compares our exact backends with brute force, bit for bit.
-//! Each command is a module with its arguments and a function `run`, which returns whether it found what it has to find;
-//! [`command`] has what they share, and the other modules are parts that several of them use.
+//! Each command is a module with its arguments and a function `run`, which returns whether the command found no fault.
+//! [`command`] has the parts that commands share, and the other modules are used by several commands.
 //!
 //! The default build is portable. Figures of libraries that need compile-time target features come from `RUSTFLAGS="-C
-//! target-cpu=native" cargo run --release -p p2m-bench -- query ...`. The line above the tables says which build it was.
+//! target-cpu=native" cargo run --release -p p2m-bench -- query ...`. The line above the tables describes the build.
 #![forbid(unsafe_code)]
 
 mod agree;

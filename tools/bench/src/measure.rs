@@ -1,4 +1,4 @@
-//! Times builds and rounds of queries in thread CPU time, with the backends taking turns to begin.
+//! Times builds and rounds of queries in thread CPU time. Each round begins with another backend.
 
 use crate::agree::{Agreement, Answers, compare_round};
 use crate::backend::{Answer, Backend, BoxedIndex, Unavailable, catch};
@@ -10,15 +10,15 @@ use nalgebra::Point3;
 
 pub(crate) use p2m_cli::harness::MedianRange;
 
-/// Backends that need more nanoseconds for a query than this get [`SLOW_QUERIES`] queries.
+/// The nanoseconds per query above which a backend is slow, and gets [`SLOW_QUERIES`] queries.
 const SLOW_NANOSECONDS: f64 = 20_000.0;
-/// The number of queries in a round of a backend that is slower than [`SLOW_NANOSECONDS`].
+/// The largest number of queries in a round of a slow backend.
 const SLOW_QUERIES: usize = 20_000;
 
 /// The longest time that a round of a slow backend may take, in nanoseconds.
 const SLOW_ROUND_NANOSECONDS: f64 = 1e9;
 
-/// An index is not built again once its builds have taken this many seconds in all.
+/// The total seconds of builds after which an index is not built again.
 const MAX_BUILD_SECONDS: f64 = 10.0;
 
 /// The cost of an index before its first query.
@@ -107,8 +107,12 @@ pub(crate) fn measure_build<V>(
     Ok(index)
 }
 
-/// Measures the given queries and appends the figures to every entry. `affordable` returns the number of queries in a
-/// round for a backend of the given speed in nanoseconds.
+/// Measures queries and appends the figures to every entry. `affordable` returns the number of queries in a round for a
+/// backend of the given speed in nanoseconds.
+///
+/// The basic idea: in each round all backends answer once, and each round begins with another one. So a change of the
+/// machine's speed affects all of them. After each round the answers are compared, so that wrong answers are never
+/// timed unnoticed.
 pub(crate) fn measure(
     queries: Vec<Point3<f64>>,
     entries: &mut [Entry],
@@ -146,7 +150,7 @@ impl Entry {
     }
 }
 
-/// Returns the number of queries in a round that takes about a second at most, or all for a backend that is not slow.
+/// Returns the number of queries in a round that takes at most about a second, or all queries for a fast backend.
 #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "saturates, and is not negative")]
 pub(crate) fn affordable(nanoseconds: f64) -> usize {
     if nanoseconds <= SLOW_NANOSECONDS {
@@ -169,7 +173,7 @@ mod tests {
         assert_eq!([1e3, 3e4, 1e6].map(affordable), [usize::MAX, 20_000, 1000]);
     }
 
-    /// Measures all backends over a scene of these elements with little effort.
+    /// Measures all backends over a scene of these elements, quickly.
     fn measured(elements: &[Element], check: impl FnOnce(&[Entry])) {
         let p = [[1.0, 0.0, 0.0], [2.0, 0.0, 1.0], [1.0, 3.0, 0.0], [5.0, 1.0, 2.0]].map(Point3::from).to_vec();
         let scene = Scene::new("test".into(), Soup::new(p, elements.iter().copied()).unwrap()).unwrap();
@@ -202,7 +206,7 @@ mod tests {
         });
     }
 
-    /// An index whose answers are right apart from the id.
+    /// An index whose answers are right except for the id.
     struct Wrong;
 
     impl BenchIndex for Wrong {

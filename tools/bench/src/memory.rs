@@ -1,4 +1,4 @@
-//! Measures heap memory with an allocator that counts.
+//! Heap memory, measured by an allocator that counts.
 //!
 //! Counting costs every allocation one or two atomic additions and turns growth in place into copies, for all backends
 //! alike. It shows in the build times of backends that grow many vectors, and in queries for all hits of a ray. Other
@@ -9,17 +9,17 @@ use peak_alloc::PeakAlloc;
 #[global_allocator]
 static ALLOCATOR: PeakAlloc = PeakAlloc;
 
-/// Returns the number of bytes that are allocated now.
+/// Returns the number of bytes that are allocated at present.
 pub(crate) fn current() -> usize {
     ALLOCATOR.current_usage()
 }
 
-/// Makes [`peak`] start from the bytes that are allocated now.
+/// Resets [`peak`] to the bytes that are allocated at present.
 pub(crate) fn reset_peak() {
     ALLOCATOR.reset_peak_usage();
 }
 
-/// Returns the largest number of bytes that were allocated at a time since [`reset_peak`].
+/// Returns the largest number of bytes allocated at one time since [`reset_peak`].
 pub(crate) fn peak() -> usize {
     ALLOCATOR.peak_usage()
 }

@@ -1,4 +1,4 @@
-//! Our indexes for the harness: those of the registry, and others with settings of their own.
+//! Our indexes for the harness: those of the registry, and variants with other settings.
 
 use crate::backend::{Answer, Backend, BenchIndex, BoxedIndex, Prepared, Scalar, ScalarKind, Unavailable};
 use nalgebra::Point3;
@@ -13,19 +13,19 @@ use std::sync::{Arc, Mutex};
 
 type Scene = Arc<Soup<f64>>;
 
-/// How an index answers the queries of a round.
+/// The way in which an index answers the queries of a round.
 #[derive(Clone, Copy)]
 pub(crate) enum Way {
     OneByOne,
-    /// By one batch call on one thread, ordering included.
+    /// By one batch on one thread, including sorting.
     Batch,
 }
 
-/// An index of ours.
+/// One of our indexes.
 struct Ours<T, I> {
     index: I,
     way: Way,
-    /// The columns of batches, which a user has as well.
+    /// The columns of batches, which are reused as a user would do.
     columns: Mutex<(Vec<T>, Vec<u32>)>,
 }
 
@@ -75,8 +75,8 @@ pub(crate) fn id_of(primitive: PrimitiveId) -> u32 {
     primitive.index() as u32
 }
 
-/// Makes the backend of an entry of the registry in a scalar. Its index is built on one thread, because thread CPU time
-/// is measured, and asked through a pointer.
+/// Makes the backend for an entry of the registry in a scalar. Its index is built on one thread, because thread CPU
+/// time is measured, and queried through a pointer.
 pub(crate) fn registered(entry: &'static BackendEntry, scalar: ScalarKind, way: Way) -> Backend {
     fn ready<T: Scalar>(built: Result<BuiltIndex<T>, BuildError>, way: Way) -> Result<BoxedIndex, Unavailable> {
         Ok(Ours::boxed(built.map_err(Unavailable::because)?.index, way))
@@ -98,7 +98,7 @@ pub(crate) fn registered(entry: &'static BackendEntry, scalar: ScalarKind, way: 
     Backend { scalar, is_exhaustive, ..Backend::new(name, prepare) }
 }
 
-/// Makes the backend of an index of ours with the instruction set of that name, or the best one.
+/// Makes the backend for one of our indexes, with the instruction set of that name or the best one.
 fn setting<I: ClosestPoint<f64> + Sync + 'static, E: Display>(
     name: &'static str,
     isa: Option<&'static str>,
@@ -114,7 +114,7 @@ fn setting<I: ClosestPoint<f64> + Sync + 'static, E: Display>(
     })
 }
 
-/// Returns our indexes with other settings than those of the registry.
+/// Returns our indexes with settings that are not in the registry.
 pub(crate) fn settings() -> Vec<Backend> {
     use Way::{Batch, OneByOne};
     let (avx2, portable) = (Some("avx2"), Some("portable"));

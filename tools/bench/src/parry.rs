@@ -1,13 +1,13 @@
-//! The library parry3d in both scalars: closest points and rays of scenes, and distances of primitives and of meshes.
+//! The library parry3d in both scalars: closest points and rays of scenes, and distances of primitives and meshes.
 //!
-//! Triangles are a `TriMesh`, segments a `Polyline`. In mixed scenes the polyline is queried within the distance of the
-//! mesh's answer. parry has no shape for a set of points. Every query of a scene is
-//! `project_local_point_and_get_location(query, false)`, and the distance is that of the projected point.
+//! Triangles are a `TriMesh`, segments a `Polyline`. In a mixed scene the polyline is queried within the distance of
+//! the mesh's answer. parry has no shape for a set of points. A query of a scene is
+//! `project_local_point_and_get_location(query, false)`, and the distance is computed from the projected point.
 
 use nalgebra::Point3;
 use p2m_core::Soup;
 
-/// Generates the adapter for one of the two crates of parry, which have the same names for different types.
+/// Generates the adapter for one of the two crates of parry. Both have the same names for different types.
 macro_rules! parry {
     ($(#[$about:meta])* $module:ident, $parry:ident, $scalar:ty) => {
         $(#[$about])*
@@ -28,12 +28,12 @@ macro_rules! parry {
                 Vector::new(x as $scalar, y as $scalar, z as $scalar)
             }
 
-            /// Returns a ray of ours as a ray of parry.
+            /// Converts a ray to parry's type.
             pub(crate) fn ray(ray: &p2m_core::Ray) -> Ray {
                 Ray::new(vector(ray.origin().into()), vector(ray.direction().into()))
             }
 
-            /// Returns a segment or a triangle.
+            /// Returns the shape of a segment or a triangle.
             fn shape(vertices: &[[f64; 3]]) -> Box<dyn Shape> {
                 match *vertices {
                     [a, b] => Box::new(Segment::new(vector(a), vector(b))),
@@ -54,7 +54,7 @@ macro_rules! parry {
                 query::distance(&Pose::IDENTITY, a, motion, b).map_or(f64::NAN, |found| found.distance.into())
             }
 
-            /// Returns the distance between two primitives that are segments or triangles.
+            /// Returns the distance between two primitives, each a segment or a triangle.
             pub(crate) fn distance_between(a: &[[f64; 3]], b: &[[f64; 3]]) -> f64 {
                 distance(&*shape(a), &Pose::IDENTITY, &*shape(b))
             }
@@ -84,7 +84,8 @@ macro_rules! parry {
                         };
                         found.map(|(projection, (id, _))| ((projection.point - q).length(), id))
                     });
-                    // An answer of the polyline is nearer than the mesh, because it was searched within that distance.
+                    // An answer of the polyline is nearer than the answer of the mesh, because the search was limited
+                    // to that distance.
                     match of_lines.or(of_mesh) {
                         Some((distance, id)) => Answer { distance: distance.into(), id },
                         None => Answer::NONE,
@@ -92,7 +93,8 @@ macro_rules! parry {
                 }
             }
 
-            /// Copies the positions of a scene, as a user of parry has to, and returns the build of its shapes.
+            /// Copies the positions of a scene, as a user of parry has to, and returns a function that builds the
+            /// shapes.
             fn copied(scene: &Scene) -> Result<impl FnOnce() -> Result<Parry, Unavailable> + use<>, Unavailable> {
                 <$scalar as Scalar>::soup(scene)?;
                 let soup = &scene.double;
@@ -112,7 +114,7 @@ macro_rules! parry {
                 })
             }
 
-            /// Prepares the backend of the list.
+            /// Prepares the backend for the list.
             pub(crate) fn prepare(scene: &Scene) -> Result<Prepared, Unavailable> {
                 let build = copied(scene)?;
                 let build = move || Ok(Box::new(build()?) as BoxedIndex);
@@ -123,13 +125,13 @@ macro_rules! parry {
             pub(crate) struct Mesh(TriMesh);
 
             impl Mesh {
-                /// Builds the mesh of a scene, which may have segments as well.
+                /// Builds the mesh of a scene. Segments are left out.
                 pub(crate) fn build(scene: &Scene) -> Result<Self, Unavailable> {
                     let mesh = copied(scene)?()?.mesh;
                     mesh.map(Self).ok_or_else(|| Unavailable("the scene has no triangles".to_owned()))
                 }
 
-                /// Returns the parameter of the first hit of a ray, and the triangle if the normal is computed as well.
+                /// Returns the parameter of the first hit of a ray, and the triangle if the normal is requested.
                 #[allow(clippy::useless_conversion, reason = "one of the scalars is f64")]
                 pub(crate) fn first_hit(&self, ray: &Ray, with_normal: bool) -> Option<(f64, usize)> {
                     if with_normal {
@@ -169,7 +171,7 @@ macro_rules! parry {
 }
 
 parry!(
-    /// The adapter for parry3d, which ratios refer to.
+    /// The adapter for parry3d, to which ratios refer.
     single, parry3d, f32
 );
 parry!(
@@ -177,8 +179,8 @@ parry!(
     double, parry3d_f64, f64
 );
 
-/// Returns the positions that `elements` use, in their order, and the renumbered elements. Each shape of parry owns its
-/// positions and should not own those of the other shape.
+/// Returns the positions that `elements` use, in order, and the renumbered elements. Each shape of parry owns its
+/// positions, and should not own those of the other shape.
 #[allow(clippy::cast_possible_truncation, reason = "no more positions than were numbered by u32")]
 fn used_positions<const N: usize>(soup: &Soup<f64>, elements: &[[u32; N]]) -> (Vec<Point3<f64>>, Vec<[u32; N]>) {
     let mut used = vec![false; soup.positions().len()];

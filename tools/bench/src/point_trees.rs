@@ -1,11 +1,11 @@
-//! The KD-tree of the crate kiddo with its default settings, for scenes of points only.
+//! The KD-tree of the crate kiddo with default settings, for scenes of only points.
 
 use crate::backend::{Answer, BenchIndex, BoxedIndex, Prepared, Scalar, Unavailable};
 use crate::scene::Scene;
 use kiddo::{ImmutableKdTree, SquaredEuclidean};
 use nalgebra::Point3;
 
-/// Returns the points of a scene, if it has nothing else.
+/// Returns the points of a scene, unless it has other primitives.
 fn points<T: Scalar>(scene: &Scene) -> Result<Vec<[T; 3]>, Unavailable> {
     let (soup, _) = T::soup(scene)?;
     if soup.points().len() < scene.len() {

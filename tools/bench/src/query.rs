@@ -1,4 +1,5 @@
-//! `p2m-bench query`: measures backends beside other libraries. The answers of these are left to the reader of the table.
+//! `p2m-bench query`: measures backends beside other libraries. A table shows how the answers of other libraries
+//! differ.
 
 use crate::command::{Common, Rounds, all_good, at_least_one, backend_names};
 use crate::{backends, measure, report};
@@ -14,7 +15,8 @@ pub(crate) struct Arguments {
     backends: Vec<String>,
     #[command(flatten)]
     rounds: Rounds,
-    /// Queries in a round; backends slower than 20 us per query get at most 20,000, brute force as many as take a second
+    /// Queries in a round; backends slower than 20 us per query get at most 20,000, brute force as many as take a
+    /// second
     #[arg(long, default_value_t = 200_000)]
     queries: usize,
     /// Number of times that each index is built

@@ -1,7 +1,7 @@
 //! `p2m-bench ray`: times the first hits of rays by our trees and by parry3d, and compares them.
 //!
-//! Rays begin at the points of a query set and have directions that are evenly distributed on the sphere. parry3d
-//! promises nothing about rays through edges, and a parameter of f32 is as accurate as its rounding.
+//! Rays begin at the points of a query set and have directions that are uniformly distributed on the sphere. parry3d
+//! promises nothing about rays through edges, and a parameter in f32 is only as accurate as its rounding.
 
 use crate::command::{Rounds, all_good, at_least_one};
 use crate::contest::{self, Competitor, Kind};
@@ -20,11 +20,11 @@ use std::hint::black_box;
 use std::path::PathBuf;
 
 /// The largest difference of parameters that rounding of the input to f32 explains, relative to the parameter and the
-/// diagonal of the box: a thousand units of the last place.
+/// diagonal of the box: a thousand units in the last place.
 const ROUNDING: f64 = 1000.0 / (1u32 << 24) as f64;
 /// The method of parry3d that returns the triangle, the parameter and the normal, in f32.
 const YARDSTICK: &str = "parry3d";
-/// The method of parry3d that returns the parameter alone, in f32.
+/// The method of parry3d that returns only the parameter, in f32.
 const YARDSTICK_PARAMETER: &str = "parry3d-parameter";
 
 #[derive(Args)]
@@ -42,7 +42,7 @@ pub(crate) struct Arguments {
     rounds: Rounds,
 }
 
-/// A ray in the representation of each competitor.
+/// A ray in the representations of all competitors.
 struct Question {
     ours: Ray,
     single: single::Ray,
@@ -59,15 +59,15 @@ impl Question {
 type Outcome = Option<(f64, usize)>;
 type Caster<'a> = Competitor<'a, Question, Outcome>;
 
-/// Returns a caster of ours.
+/// Returns a competitor for one of our indexes.
 fn ours<'a>(name: &'static str, index: impl RayQuery<f64> + 'a) -> Caster<'a> {
     Competitor::new(name, Kind::Exact, move |question: &Question| {
-        // `black_box` keeps the compiler from leaving out a part of the hit.
+        // `black_box` prevents the compiler from omitting a part of the hit.
         black_box(index.first_intersection(&question.ours)).map(|hit| (hit.parameter, hit.primitive.index()))
     })
 }
 
-/// Returns all casters. Scenes with other primitives than triangles have none of parry.
+/// Returns all competitors. parry is left out for scenes with other primitives than triangles.
 fn casters(scene: &Scene) -> Result<Vec<Caster<'_>>> {
     let soup = &*scene.double;
     let mut all = vec![
@@ -138,11 +138,11 @@ fn measure(scene: &Scene, arguments: &Arguments) -> Result<bool> {
 /// The differences between the answers of a competitor and those of our first one.
 #[derive(Debug, Default, PartialEq)]
 struct Differences {
-    /// The number of rays that hit for the reference only.
+    /// The number of rays that hit only for the reference.
     missed: usize,
-    /// The number of rays that hit for this competitor only.
+    /// The number of rays that hit only for this competitor.
     added: usize,
-    /// The number of rays with other hits: in any bit for our trees, by more than rounding for other libraries.
+    /// The number of rays with different hits: in any bit for our trees, by more than rounding for other libraries.
     other: usize,
     /// The largest difference of a parameter, relative to the parameter and the diagonal of the box.
     largest: f64,

@@ -1,4 +1,4 @@
-//! Prints the results of `p2m-bench query`.
+//! The report of `p2m-bench query`.
 
 use crate::agree::Agreement;
 use crate::backend::Unavailable;
@@ -18,7 +18,7 @@ pub(crate) fn print_scene(scene: &Scene, sets: &[QuerySet], entries: &[Entry]) {
     print_agreement(scene, sets, entries);
 }
 
-/// Prints how answers agree.
+/// Prints the agreement of the answers.
 pub(crate) fn print_agreement(scene: &Scene, sets: &[QuerySet], entries: &[Entry]) {
     println!(
         "Agreement: `=` all answers bitwise equal among ours of the same scalar; then the largest difference of a \
@@ -30,7 +30,7 @@ pub(crate) fn print_agreement(scene: &Scene, sets: &[QuerySet], entries: &[Entry
     }
 }
 
-/// Returns whether our indexes agree, and whether all that could be built answered.
+/// Returns whether our indexes agree, and whether all that could be built have answered.
 pub(crate) fn is_clean(entries: &[Entry]) -> bool {
     let ours = entries.iter().filter(|entry| entry.backend.is_ours && entry.index.is_ok());
     ours.flat_map(|entry| &entry.sets).all(|set| set.as_ref().is_ok_and(|set| set.agreement.is_clean()))
@@ -116,7 +116,7 @@ fn agreement(scene: &Scene, sets: &[QuerySet], entries: &[Entry]) -> Table {
     })
 }
 
-/// Returns footnotes: why backends are missing, and which answers are wrong.
+/// Returns the footnotes: the reasons for missing backends, and wrong answers.
 fn notes(sets: &[QuerySet], entries: &[Entry]) -> Vec<String> {
     let mut notes = Vec::new();
     for entry in entries {
@@ -160,7 +160,7 @@ fn seconds(s: f64) -> String {
     if s < 1e-3 { format!("{s:.1e}") } else { format!("{s:.4}") }
 }
 
-/// Formats a ratio with two digits after the point, and with more if it is small.
+/// Formats a ratio with two decimals, and with more if it is small.
 pub(crate) fn significant(ratio: f64) -> String {
     if ratio < 0.1 { format!("{ratio:.1e}") } else { format!("{ratio:.2}") }
 }

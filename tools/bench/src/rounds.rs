@@ -1,11 +1,11 @@
-//! The parts that all measuring loops of this program share: the rounds of `p2m_cli::harness`, and a checksum of answers.
+//! Checksums of answers, and the rounds of `p2m_cli::harness`, which all measuring loops of this program share.
 
 use p2m_core::Closest;
 
 pub(crate) use p2m_cli::harness::rounds::{Rounds, rotated, thread_seconds};
 
 /// Returns a checksum of answers, each given by the bits of its number and the id of its primitive. It depends on every
-/// bit and on the order of the answers. `start` is the checksum of the answers before these, or 0.
+/// bit and on the order of the answers. `start` is the checksum of earlier answers, or 0.
 pub(crate) fn checksum(start: u64, answers: impl Iterator<Item = (u64, u64)>) -> u64 {
     answers.fold(start, |sum, (bits, id)| (sum ^ bits).wrapping_mul(0x9e37_79b9_7f4a_7c15).rotate_left(23) ^ id)
 }

@@ -1,7 +1,7 @@
 //! `p2m-bench scale`: the costs of each index as the scene grows, for docs/measurements/scale.md.
 //!
-//! The scene is a torus knot of more and more triangles. A size is left out for an index whose build would exceed the
-//! limits on memory or on time, as far as its last build tells.
+//! The scene is a torus knot of more and more triangles. A size is left out for an index if its build would exceed the
+//! limits on memory or time, as extrapolated from its last build.
 
 use crate::backend::Unavailable;
 use crate::blocks::Blocks;
@@ -25,15 +25,15 @@ use std::sync::Arc;
 
 /// The blocks of docs/measurements/scale.md.
 pub(crate) const BLOCKS: Blocks<3> = Blocks { command: "scale", names: ["provenance", "builds", "queries"] };
-/// The number of triangles around the tube of the knot for each along it, so that triangles are about as wide as long.
+/// The ratio of vertices around the tube of the knot to rings along it. With it, triangles are about as wide as long.
 const SIDES_PER_RING: f64 = 0.06;
-/// The number of queries whose visits are counted.
+/// The number of queries for which visits are counted.
 const COUNTED: usize = 2000;
-/// The number of dependent reads by which the latency of memory is measured.
+/// The number of dependent reads in a measurement of the latency of memory.
 const READS: usize = 2_000_000;
 /// The number of times that the latency is measured.
 const LATENCY_ROUNDS: usize = 5;
-/// A build that takes less time than this is repeated.
+/// The seconds below which a build is repeated.
 const SHORT_BUILD_SECONDS: f64 = 1.0;
 
 #[derive(Args)]
@@ -63,7 +63,7 @@ pub(crate) struct Arguments {
     document: Document,
 }
 
-/// The costs of an index over one scene.
+/// The costs of an index over a scene.
 struct Costs {
     triangles: usize,
     build_seconds: f64,
@@ -71,16 +71,16 @@ struct Costs {
     owned: usize,
     /// The largest number of bytes of the build without the scene.
     peak: usize,
-    /// The nanoseconds of one dependent read in an array as large as the index.
+    /// The nanoseconds of a dependent read in an array as large as the index.
     latency: f64,
     sets: Vec<SetCosts>,
 }
 
-/// The costs of a query of one set.
+/// The costs of a query of a set.
 struct SetCosts {
-    /// Nanoseconds of a query, asked one by one.
+    /// The nanoseconds of a single query.
     single: f64,
-    /// Nanoseconds of a query of a batch.
+    /// The nanoseconds of a query in a batch.
     batch: f64,
     /// The numbers of visited nodes, packets and primitives of a query.
     visits: [f64; 3],
@@ -133,7 +133,7 @@ fn knot(triangles: usize) -> Result<Soup<f64>> {
     Ok(torus_knot(&TorusKnot { rings: rings as u32, sides: sides as u32, ..Default::default() })?)
 }
 
-/// Returns the reason why an index should not be built over so many triangles, if its last build tells one.
+/// Returns the reason, if any, why an index should not be built over this number of triangles, given its last build.
 fn obstacle(costs: &[Costs], triangles: usize, scene_bytes: usize, request: &Arguments) -> Option<String> {
     let last = costs.last()?;
     let factor = triangles as f64 / last.triangles as f64;
@@ -191,13 +191,13 @@ fn measure_set(index: &dyn AnyIndex<f64>, queries: &[Point3<f64>], rounds: usize
     }
 }
 
-/// Returns the nanoseconds of a read whose address is the result of the last read, in an array of this many bytes.
+/// Returns the nanoseconds of a read in an array of this many bytes, if each address depends on the previous read.
 fn latency(bytes: usize) -> f64 {
     const LINE: usize = 64;
     let lines = (bytes / LINE).max(2);
     let mut order: Vec<u32> = (0..u32::try_from(lines).unwrap_or(u32::MAX)).collect();
     order.shuffle(&mut rng("latency", 0));
-    // Each line has the number of the line that is read next, on one cycle through all of them.
+    // The lines form one cycle in random order: each has the number of the line that is read next.
     let mut next = vec![[0u32; LINE / size_of::<u32>()]; lines];
     for pair in order.windows(2) {
         next[pair[0] as usize][0] = pair[1];
@@ -205,12 +205,12 @@ fn latency(bytes: usize) -> f64 {
     next[order[order.len() - 1] as usize][0] = order[0];
     drop(order);
     let walk = |steps: usize| (0..steps).fold(0u32, |at, _| black_box(next[at as usize][0]));
-    // The least of some times is taken, because other processes share the caches.
+    // The shortest of several times is taken, because other processes share the caches.
     let times = (0..LATENCY_ROUNDS).map(|_| thread_seconds(|| black_box(walk(READS))).1);
     times.fold(f64::INFINITY, f64::min) * 1e9 / READS as f64
 }
 
-/// Prints the tables or replaces the blocks of the document.
+/// Prints the tables, or replaces the blocks of the document.
 fn publish(request: &Arguments, entries: &[&'static BackendEntry], costs: &[Vec<Costs>]) -> Result<()> {
     let mut builds = Table::new(
         ["triangles", "index", "build s", "us per triangle", "bytes per triangle", "peak of the build"]

@@ -8,7 +8,7 @@ use p2m_testkit::scenes::narrow;
 use std::path::Path;
 use std::sync::Arc;
 
-/// A scene with the data about it that the harness needs.
+/// A scene with the data that the harness needs.
 pub(crate) struct Scene {
     /// The name of the file.
     pub(crate) name: String,
@@ -16,7 +16,7 @@ pub(crate) struct Scene {
     pub(crate) double: Arc<Soup<f64>>,
     /// The scene rounded to f32; `None` if that overflows.
     pub(crate) single: Option<Arc<Soup<f32>>>,
-    /// Heap bytes of `double` without spare capacity, which count for an index that borrows the scene.
+    /// Heap bytes of `double` without spare capacity. They count as memory of an index that borrows the scene.
     pub(crate) double_bytes: usize,
     /// Heap bytes of `single` without spare capacity.
     pub(crate) single_bytes: usize,
@@ -30,7 +30,7 @@ impl Scene {
         Self::new(name, soup)
     }
 
-    /// Makes a scene of the given name.
+    /// Makes a scene with a name.
     pub(crate) fn new(name: String, soup: Soup<f64>) -> Result<Self> {
         if soup.is_empty() {
             bail!("{name} has no primitives");
@@ -42,7 +42,7 @@ impl Scene {
         Ok(Self { name, double, single, double_bytes, single_bytes })
     }
 
-    /// Returns the diagonal of the bounding box, which is the unit of differences.
+    /// Returns the diagonal of the bounding box, to which differences are relative.
     pub(crate) fn diagonal(&self) -> f64 {
         diagonal(&self.double)
     }

@@ -1,5 +1,6 @@
-//! `p2m-bench shards`: writes a terrain that is generated tile by tile as shards, asks them within a limit of memory,
-//! and compares answers with brute force, which generates the tiles anew.
+//! `p2m-bench shards`: writes a generated terrain as shards, queries them within a limit of memory, and compares
+//! answers with brute force. The terrain is generated tile by tile, and anew for brute force, so it is never in memory
+//! as a whole.
 
 use crate::memory;
 use anyhow::{Context, Result};
@@ -14,7 +15,7 @@ use rayon::prelude::*;
 use std::path::PathBuf;
 use std::time::Instant;
 
-/// The number of cells along a side of a tile, each of which has two triangles.
+/// The number of cells along a side of a tile. Each has two triangles.
 const CELLS: u32 = 500;
 /// The number of triangles of a tile.
 const TILE_TRIANGLES: u64 = 2 * (CELLS as u64) * (CELLS as u64);
@@ -60,14 +61,14 @@ impl Terrain {
         self.side * self.side
     }
 
-    /// Returns the height at a place.
+    /// Returns the height of the terrain at a point of the plane.
     fn height(x: f64, y: f64) -> f64 {
         let wave =
             |frequency: f64, phase: f64| ((frequency * x + phase).sin() * (frequency * y - phase).cos()) / frequency;
         wave(2.0, 0.3) + wave(17.0, 1.1) + wave(131.0, 2.7)
     }
 
-    /// Returns a tile by its number. Neighbours have the same vertices along their common side.
+    /// Returns a tile by its number. Adjacent tiles have the same vertices along their common side.
     fn tile(self, number: u32) -> Result<Soup<f64>> {
         let first = [number % self.side, number / self.side].map(|place| place * CELLS);
         let coordinate = |k: usize, i: u32| f64::from(first[k] + i) / f64::from(CELLS);
@@ -91,14 +92,14 @@ impl Terrain {
         })
     }
 
-    /// Returns random points of a slab that is one and a half times as wide as the terrain, and as high as two tiles.
+    /// Returns random points in a slab that is one and a half times as wide as the terrain, and as high as two tiles.
     fn around(self, count: usize, seed: u64) -> Vec<Point3<f64>> {
         self.random_points(count, seed, |[x, y, z], side| {
             Point3::new((1.5 * x - 0.25) * side, (1.5 * y - 0.25) * side, 2.0 * z - 1.0)
         })
     }
 
-    /// Returns points that a function makes of three random numbers from 0 to 1 and the length of a side.
+    /// Returns points that a function makes from three random numbers from 0 to 1 and the length of a side.
     fn random_points(self, count: usize, seed: u64, point: fn([f64; 3], f64) -> Point3<f64>) -> Vec<Point3<f64>> {
         let mut rng = ChaCha8Rng::seed_from_u64(seed);
         let side = f64::from(self.side);
@@ -106,7 +107,7 @@ impl Terrain {
     }
 }
 
-/// A clock and the peak of memory of a piece of work.
+/// The start of a piece of work, whose time and peak memory are measured.
 struct Work(Instant);
 
 impl Work {
@@ -115,7 +116,7 @@ impl Work {
         Self(Instant::now())
     }
 
-    /// Returns the cells of a table about this piece of work, with the number of things that were done.
+    /// Returns the cells of a table about this piece of work, with the number of items that were processed.
     #[allow(clippy::cast_precision_loss, reason = "numbers for people to read")]
     fn row(&self, name: &str, count: u64, note: String) -> Vec<String> {
         let seconds = self.0.elapsed().as_secs_f64();
@@ -124,7 +125,7 @@ impl Work {
     }
 }
 
-/// Writes and asks shards, and returns whether their answers are those of brute force.
+/// Writes and queries shards, and returns whether their answers equal brute force.
 pub(crate) fn run(arguments: &Arguments) -> Result<bool> {
     let terrain = Terrain::with_triangles(arguments.triangles);
     let triangles = u64::from(terrain.tiles()) * TILE_TRIANGLES;
@@ -172,7 +173,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<bool> {
     Ok(are_equal)
 }
 
-/// Compares answers with those of brute force over all tiles, which are generated again one after the other.
+/// Compares answers with brute force over all tiles, which are generated again one by one.
 fn agrees_with_brute_force(
     terrain: Terrain,
     queries: &[Point3<f64>],

@@ -1,6 +1,6 @@
 //! `p2m-bench tables`: measures scenes, indexes and sets of queries in one run, into one file of data.
 //!
-//! `cargo xtask figures` makes the tables and figures of the documents from the file.
+//! `cargo xtask figures` makes the tables and figures of the documents from this file.
 
 use crate::command::{Rounds, provenance};
 use crate::measure::{self, Entry, MedianRange};
@@ -13,7 +13,7 @@ use p2m_testkit::queries::QuerySet;
 use std::fmt::Write as _;
 use std::path::PathBuf;
 
-/// The scenes of the tables, of which those that exist are measured.
+/// The scenes of the tables. Those whose files exist are measured.
 const SCENES: [&str; 6] = [
     "bunny.obj",
     "dragon_100k.obj",

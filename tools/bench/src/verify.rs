@@ -1,4 +1,4 @@
-//! `p2m-bench verify`: compares every exact backend of ours with brute force, bit for bit.
+//! `p2m-bench verify`: compares all our exact backends with brute force, bit for bit.
 
 use crate::command::{Common, all_good, backend_names};
 use crate::{measure, report};
@@ -29,7 +29,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<bool> {
     let is_equal = all_good(&common.scenes, &about, |scene| {
         let mut entries = measure::build_all(&scene, &selected, 1);
         for set in &common.sets {
-            // Brute force answers all queries, however long that takes.
+            // Brute force answers all queries, however long it takes.
             measure::measure(set.generate(&scene.double, *queries, *seed), &mut entries, 1, |_| usize::MAX);
         }
         println!("\n## {}\n", scene.describe());

@@ -1,8 +1,8 @@
-//! What checks count: errors of distances, and broken promises.
+//! The counters of checks: errors of distances, and broken promises.
 
 use p2m_testkit::truth::Truth;
 
-/// The largest number of broken promises that are shown.
+/// The largest number of broken promises that are printed.
 const SHOWN: usize = 20;
 
 /// The range and the precision of a scalar.
@@ -14,7 +14,7 @@ pub(super) struct Precision {
 }
 
 impl Precision {
-    /// The precision of f64, and that of f32.
+    /// The precisions of f64 and of f32.
     pub(super) const ALL: [Self; 2] = [
         Self { bits: 53, smallest: f64::from_bits(1), largest: f64::MAX },
         Self { bits: 24, smallest: f32::from_bits(1) as f64, largest: f32::MAX as f64 },
@@ -25,7 +25,8 @@ impl Precision {
         2f64.powi(-self.bits.cast_signed())
     }
 
-    /// Returns the error of a distance in u M. An infinite distance has none if the true one is out of range.
+    /// Returns the error of a distance in units of u M. An infinite distance has no error if the true one is out of
+    /// range.
     pub(super) fn error(self, truth: &Truth<'_>, distance: f64) -> f64 {
         if distance == f64::INFINITY && truth.is_at_least(self.largest) {
             return 0.0;
@@ -34,23 +35,24 @@ impl Precision {
     }
 }
 
-/// The counts of one subject in one family.
+/// The counters of one subject in one family.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Counts {
     /// The number of answers that were checked.
     pub(super) cases: u64,
-    /// The largest finite error, in u M.
+    /// The largest finite error, in units of u M.
     pub(super) worst: f64,
-    /// The number of answers that are NaN, infinite for a distance in range, or missing.
+    /// The number of answers that are missing, NaN, or infinite for a distance in range.
     pub(super) failed: u64,
     /// The number of panics.
     pub(super) panicked: u64,
-    /// The number of wrong answers to the question whether two primitives intersect.
+    /// The number of wrong answers to whether two primitives intersect.
     pub(super) wrong: u64,
 }
 
 impl Counts {
-    /// Adds an answer with its error, which is infinite if the answer is not a number, or a panic.
+    /// Counts an answer with its error. The error is infinite for an answer that is not a number, and `None` for a
+    /// panic.
     pub(super) fn add(&mut self, error: Option<f64>) {
         match error {
             Some(error) => {
@@ -72,7 +74,7 @@ impl Counts {
         self.wrong += wrong;
     }
 
-    /// Formats the cell of a table: the largest error, and the fraction of answers that are wrong in other ways.
+    /// Formats a cell of a table: the largest error, and the fraction of answers that are wrong in other ways.
     pub(super) fn cell(&self) -> String {
         if self.cases + self.panicked == 0 {
             return "-".to_owned();
@@ -94,7 +96,7 @@ pub(super) fn merge_all(all: &mut [Counts], others: &[Counts]) {
     all.iter_mut().zip(others).for_each(|(counts, other)| counts.merge(other));
 }
 
-/// Broken promises, of which some are shown.
+/// The broken promises, of which the first ones are printed.
 #[derive(Default)]
 pub(super) struct Broken {
     pub(super) count: u64,

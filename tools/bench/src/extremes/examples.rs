@@ -1,4 +1,4 @@
-//! Primitives to which external libraries compute a wrong distance. The checks of this command found them.
+//! Primitives for which external libraries compute a wrong distance. The checks of this command found them.
 
 use crate::backend::{Answer, Unavailable};
 use crate::backends::{self, YARDSTICK, YARDSTICK_DOUBLE};
@@ -8,7 +8,7 @@ use nalgebra::Point3;
 use p2m_core::{Element, Soup};
 use p2m_testkit::truth::Truth;
 
-/// A primitive to which a library computes a wrong distance.
+/// A primitive for which a library computes a wrong distance.
 struct Example {
     /// The name of the library in the list of backends.
     library: &'static str,
@@ -63,18 +63,18 @@ impl Example {
         Ok(answers[0])
     }
 
-    /// Returns the error of an answer in u M, for a scalar with so many bits.
+    /// Returns the error of an answer in units of u M, for a scalar with this number of bits.
     fn error(&self, answer: &Answer, bits: u32) -> f64 {
         Truth::new(self.query, self.vertices).error(answer.distance, bits, 0.0)
     }
 
-    /// Returns the bits of the library's scalar, and the name of a backend of ours in that scalar.
+    /// Returns the bits of the library's scalar, and the name of our backend in that scalar.
     fn scalar(&self) -> (u32, &'static str) {
         if self.library == YARDSTICK { (24, "aabb-f32") } else { (53, "aabb") }
     }
 }
 
-/// Formats the answers of the libraries to all examples beside ours.
+/// Formats the answers of the libraries to all examples, beside ours.
 pub(super) fn list() -> String {
     let lines = EXAMPLES.iter().map(|example| {
         let &Example { library, query, vertices } = example;
@@ -94,7 +94,7 @@ pub(super) fn list() -> String {
 mod tests {
     use super::*;
 
-    /// Errors above this multiple of u M are no roundings: it is twice the bound that is proved for our kernel.
+    /// The error in units of u M above which it is not due to rounding: twice the proved bound of our kernel.
     const ROUNDING: f64 = 16.0;
 
     #[test]

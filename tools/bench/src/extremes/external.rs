@@ -1,4 +1,4 @@
-//! Answers of external libraries about one primitive.
+//! Distances from one primitive by external libraries.
 
 use super::counts::Precision;
 use crate::bvh_crate::on_triangle;
@@ -25,7 +25,7 @@ pub(super) const LIBRARIES: [Library; 3] = [
 ];
 
 impl Library {
-    /// Returns whether the library has primitives with so many vertices.
+    /// Returns whether the library has primitives with this number of vertices.
     pub(super) fn has(&self, vertices: usize) -> bool {
         vertices == 3 || vertices == 2 && self.name != "Ericson"
     }
@@ -37,8 +37,8 @@ impl Library {
     }
 }
 
-/// Returns the distance to the closest point on a triangle of Real-Time Collision Detection, 5.1.5, which many
-/// libraries use and which the crate bvh gets here.
+/// Returns the distance from the closest point of a triangle in Real-Time Collision Detection, 5.1.5, which many
+/// libraries use, and the crate bvh does here.
 fn ericson(query: [f64; 3], vertices: &[[f64; 3]]) -> f64 {
     let &[a, b, c] = vertices else { unreachable!("triangles") };
     let query = Point3::from(query);

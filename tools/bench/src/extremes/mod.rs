@@ -56,7 +56,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<bool> {
     Ok(found.broken.count == 0 && pairs.ours_are_within_their_bound())
 }
 
-/// Runs checks without messages of panics. Those of external libraries are caught and counted, and a message for each
+/// Runs checks without printing panics. Panics of external libraries are caught and counted, and a message for each
 /// would bury the report.
 fn without_messages<V>(check: impl FnOnce() -> V) -> V {
     let default_hook = std::panic::take_hook();
@@ -66,7 +66,7 @@ fn without_messages<V>(check: impl FnOnce() -> V) -> V {
     found
 }
 
-/// Runs jobs on all threads, adds their results, and prints a line after every twentieth of them.
+/// Runs jobs on all threads, adds up their results, and prints a line after every twentieth job.
 fn on_all_threads<F: Default + Send>(
     what: &str,
     jobs: u64,

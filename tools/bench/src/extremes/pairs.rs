@@ -1,4 +1,4 @@
-//! Checks distances between isolated primitives, and those of other libraries.
+//! Checks of distances between isolated primitives, for p2m and other libraries.
 
 use super::counts::{Counts, Precision, merge_all};
 use crate::parry::{double, single};
@@ -23,14 +23,14 @@ const ROWS: [&str; 6] = [
 /// The names of the subjects, which compute in f64, f32, f64 and f32.
 const SUBJECTS: [&str; 4] = ["p2m f64", "p2m f32", "parry3d-f64", "parry3d"];
 
-/// An answer to a pair.
+/// An answer about a pair of primitives.
 struct Answer {
     distance: f64,
-    /// Whether the primitives intersect. parry3d says so by the distance 0.
+    /// Whether the primitives intersect. For parry3d this means that the distance is 0.
     is_intersecting: bool,
 }
 
-/// The counts of all subjects in each row.
+/// The counters of all subjects in each row.
 #[derive(Default)]
 pub(super) struct Findings {
     rows: [[Counts; SUBJECTS.len()]; ROWS.len()],
@@ -77,7 +77,7 @@ pub(super) fn run(cases: u64, seed: u64) -> Findings {
                 let row = &mut found.rows[row_of(&family)];
                 let ours = if scalar == 0 { answer::<f64>(&a, &b) } else { answer::<f32>(&a, &b) };
                 judge(&mut row[scalar], scalar, &truth, Some(ours));
-                // Other libraries have no points.
+                // The other libraries have no points.
                 if a.len() > 1 && b.len() > 1 {
                     let distance = [double::distance_between, single::distance_between][scalar];
                     let distance = catch_unwind(AssertUnwindSafe(|| distance(&a, &b))).ok();
@@ -93,10 +93,10 @@ pub(super) fn run(cases: u64, seed: u64) -> Findings {
     super::on_all_threads("distances of pairs", cases.div_ceil(2 * CHUNK), check, merge)
 }
 
-/// Adds an answer, or a panic.
+/// Counts an answer, or a panic.
 fn judge(counts: &mut Counts, scalar: usize, truth: &Distance, answer: Option<Answer>) {
     let Precision { bits, smallest, largest } = Precision::ALL[scalar];
-    // A distance may be infinite if it exceeds the range together with its error.
+    // A distance may be infinite if the distance plus its error exceeds the range.
     let rounding = truth.times_max_vertex_distance(ERROR_CONSTANT_OF_PAIRS * Precision::ALL[scalar].unit());
     counts.add(answer.as_ref().map(|answer| {
         let beyond = answer.distance == f64::INFINITY && truth.is_at_least(largest - rounding);

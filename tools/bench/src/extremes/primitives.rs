@@ -1,4 +1,4 @@
-//! Checks isolated primitives on every clause of the contract that one primitive can break.
+//! Checks of isolated primitives, for every clause of the contract that a single primitive can break.
 
 use super::counts::{Broken, Counts, merge_all};
 use super::external::LIBRARIES;
@@ -12,7 +12,7 @@ use std::sync::LazyLock;
 
 /// The number of cases of a scalar that a thread takes at a time.
 const CHUNK: u64 = 10_000;
-/// External libraries answer one case out of this many.
+/// The number of cases for each case that external libraries answer.
 const CASES_PER_LIBRARY_CASE: u64 = 20;
 /// Our scalars, and the ranges of their cases.
 const SPANS: [(&str, Span); 2] = [("f64", Span::F64), ("f32", Span::F32)];
@@ -21,11 +21,11 @@ const SUBJECTS: usize = 2 + LIBRARIES.len();
 
 /// The results of all checks.
 pub(super) struct Findings {
-    /// The counts of all subjects in each of the [`ROWS`].
+    /// The counters of all subjects in each of the [`ROWS`].
     pub(super) rows: Vec<[Counts; SUBJECTS]>,
     /// The numbers of our answers in f64 and in f32 that were compared with the true distance.
     pub(super) checked: [u64; 2],
-    /// The number of our answers that were compared with those for another order of vertices and another scale.
+    /// The number of our answers that were compared with answers for another order of vertices and another scale.
     pub(super) invariant: u64,
     /// The number of distances that needed rational arithmetic.
     pub(super) rational: u64,
@@ -48,8 +48,8 @@ impl Row {
     }
 }
 
-/// The rows of the table. Those of sines and of query positions have cases of ordinary scale and position only, so that
-/// a row shows the effect of one parameter.
+/// The rows of the table. The rows of sines and of query positions have only cases of ordinary scale and position, so
+/// that a row shows the effect of one parameter.
 #[allow(clippy::float_cmp, reason = "drawn from the lists")]
 pub(super) static ROWS: LazyLock<Vec<Row>> = LazyLock::new(|| {
     use Family::Shaped;
@@ -153,7 +153,7 @@ impl Findings {
     }
 }
 
-/// Returns the error of our answer, and the number of other answers that it was compared with.
+/// Returns the error of our answer, and the number of further answers that it was compared with.
 fn judged<T: Real>(rng: &mut impl Rng, case: &Case) -> Result<(f64, u64), Violation> {
     let of = |v: [f64; 3]| v.map(T::round_from_f64);
     let (query, vertices) = (of(case.query), case.vertices.iter().map(|v| of(*v)).collect::<Vec<_>>());
@@ -162,7 +162,7 @@ fn judged<T: Real>(rng: &mut impl Rng, case: &Case) -> Result<(f64, u64), Violat
     Ok((error, contract::check_invariance(rng, query, &vertices, &found)?))
 }
 
-/// Checks at least `cases` answers of ours, half of them in each scalar, on all threads.
+/// Checks at least `cases` of our answers, half of them in each scalar, on all threads.
 pub(super) fn run(cases: u64, seed: u64) -> Findings {
     let check = |chunk: u64, found: &mut Findings| {
         let mut rng = p2m_testkit::rng("extreme primitives", (seed << 32) + chunk);

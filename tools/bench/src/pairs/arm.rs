@@ -1,4 +1,4 @@
-//! An arm of six capsules that moves beside a scene.
+//! A robot arm of six capsules that moves beside a scene.
 
 use super::poses::direction;
 use super::{Indexes, distance};
@@ -18,8 +18,7 @@ pub(super) struct Arm {
     radius: f64,
 }
 
-/// Returns an arm at consecutive poses. It stands beside the scene, and each joint turns a little from one pose
-/// to the next.
+/// Returns an arm at consecutive poses. It stands beside the scene, and each joint turns a little between poses.
 pub(super) fn walk(soup: &Soup<f64>, count: usize, seed: u64) -> Vec<Arm> {
     let mut rng = rng("arm", seed);
     let bounds = soup.aabb();
@@ -44,7 +43,7 @@ pub(super) fn walk(soup: &Soup<f64>, count: usize, seed: u64) -> Vec<Arm> {
         .collect()
 }
 
-/// Returns the competitors. Each computes the least distance of the capsules of an arm.
+/// Returns the competitors. Each computes the smallest distance of any capsule of an arm.
 pub(super) fn competitors<'a>(indexes: &'a Indexes<'_>) -> Vec<Competitor<'a, Arm, f64>> {
     let (tree, single, double) = (&indexes.trees[0], &indexes.single[0], &indexes.double[0]);
     let nearest = |[a, b]: &[Point3<f64>; 2], options: PairOptions<f64>, arm: &Arm| {

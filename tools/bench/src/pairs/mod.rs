@@ -1,7 +1,7 @@
 //! `p2m-bench pairs`: distances of two scenes at many poses, and of a robot's arm from a scene, by p2m and by parry3d.
 //!
-//! parry3d answers by `query::distance` of two `TriMesh`es, and of a `TriMesh` and a `Capsule`. The distances of a set
-//! are compared with those of our AABB tree.
+//! parry3d answers by `query::distance` of two `TriMesh`es, and of a `TriMesh` and a `Capsule`. All distances are
+//! compared with those of our AABB tree.
 
 mod arm;
 mod poses;
@@ -21,7 +21,7 @@ use p2m_core::{Real, Soup};
 use p2m_kdop::KdopTree;
 use std::path::PathBuf;
 
-/// The competitor whose times the others are compared with.
+/// The competitor to whose times ratios refer.
 const YARDSTICK: &str = "parry3d-f64";
 
 #[derive(Args)]
@@ -111,8 +111,8 @@ fn distance<T: Real>(pair: Option<ClosestPair<T>>) -> f64 {
     pair.map_or(f64::INFINITY, |pair| pair.distance.to_f64())
 }
 
-/// Prints times of the distances of two scenes, of which the second is scaled to the size of the first and moved, and
-/// of the distances of an arm from the first. Returns whether our exact answers agree.
+/// Prints the times of distances between two scenes, the second of which is scaled to the size of the first and moved,
+/// and of distances of an arm from the first. Returns whether our exact answers agree.
 pub(crate) fn run(arguments: &Arguments) -> Result<bool> {
     let Rounds { rounds, seed } = arguments.rounds;
     let about = arguments.rounds.describe("One thread, thread CPU time", arguments.poses, "poses");
@@ -164,7 +164,7 @@ fn measure<Q>(
             is_good &= equal == count;
             format!("{equal} of {count} equal bits")
         } else {
-            // A competitor that has no distance answers NaN, which is left out.
+            // A competitor without a distance answers NaN, which is left out.
             let differences = found.iter().zip(expected).map(|(x, y)| (x - y).abs());
             let largest = differences.fold(0.0, f64::max) / scene.diagonal();
             format!("differ by at most {largest:.1e} diagonals")

@@ -14,13 +14,13 @@ pub(super) type Trees<'a> = [AabbTree<f64, &'a Soup<f64>>; 2];
 /// A set of poses.
 #[derive(Clone, Copy, PartialEq, Eq)]
 pub(super) enum Set {
-    /// Turned at random, with the centres two diagonals apart.
+    /// Random rotations, with the centres two diagonals apart.
     Far,
-    /// Turned at random, and moved towards the first scene until the gap is about 1 % of the diagonal.
+    /// Random rotations, moved towards the first scene until the gap is about 1 % of the diagonal.
     Near,
-    /// Turned at random, with the centres less than half a diagonal apart, so that most intersect.
+    /// Random rotations, with the centres less than half a diagonal apart, so that most poses intersect.
     Deep,
-    /// On a path around the first scene, in steps of about a degree.
+    /// A path around the first scene, in steps of about a degree.
     Path,
 }
 
