@@ -1,4 +1,5 @@
-//! Hands the compiler's version, target, flags and optimisation to tests whose figures depend on them.
+//! Passes the compiler's version, the target, the flags and the optimisation level to tests whose figures depend on
+//! them.
 
 use std::env;
 use std::process::Command;

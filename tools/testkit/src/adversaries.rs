@@ -15,56 +15,56 @@ pub struct Adversary {
     make: fn(usize) -> Vec<Shape<f64>>,
 }
 
-/// All families, each with what the scene makes slow or large.
+/// All families, each with the weakness that it exploits.
 pub const ADVERSARIES: &[Adversary] = &[
-    // The same triangle again and again: nothing to split by.
+    // The same triangle again and again, so that nothing can be split.
     Adversary { name: "identical", make: identical },
-    // Points at one place: no size at all.
+    // Points at one place, so that boxes have no size.
     Adversary { name: "one place", make: coincident_points },
-    // Triangles in a corner, over 1000 octaves: deep trees.
+    // Triangles in a corner, over 1000 octaves, which make trees deep.
     Adversary { name: "nested", make: nested },
-    // Segments of which each is longer than all before, over 580 octaves: every split by cost takes one off.
+    // Segments, each longer than all before, over 580 octaves. Every split by cost takes only one off.
     Adversary { name: "staircase", make: staircase },
-    // Triangles with one apex, as narrow as they are many: long lists.
+    // Triangles with one apex, the narrower the more they are, which make lists long.
     Adversary { name: "fan", make: triangle_fan },
-    // Long thin triangles through one point: boxes that overlap.
+    // Long thin triangles through one point, whose boxes overlap.
     Adversary { name: "comb", make: comb },
-    // Segments from one point to a sphere: one site has all others around it.
+    // Segments from one point to a sphere, so that one site has all others as neighbours.
     Adversary { name: "star", make: star },
-    // Points on a sphere: all are nearest in the middle.
+    // Points on a sphere, all of which are nearest to its centre.
     Adversary { name: "sphere", make: sphere },
-    // The same points on sixteen concentric spheres: all are nearest in the middle again.
+    // The same points on sixteen concentric spheres, so that again many are equally near to the centre.
     Adversary { name: "spheres", make: spheres },
-    // Points on two skew lines: all pairs make Delaunay tetrahedra.
+    // Points on two skew lines, whose pairs all make Delaunay tetrahedra.
     Adversary { name: "skew points", make: skew_points },
-    // Two skew wires of segments: all pairs again.
+    // Two skew wires of segments, whose pairs all make Delaunay tetrahedra.
     Adversary { name: "skew wires", make: skew_wires },
-    // Two helices around each other: all pairs again.
+    // Two helices around each other, whose pairs all make Delaunay tetrahedra.
     Adversary { name: "helices", make: helices },
-    // Points (t, t^2, t^3): every pair is an edge.
+    // Points (t, t^2, t^3), whose Delaunay tetrahedra have an edge for every pair.
     Adversary { name: "moment curve", make: moment_curve },
-    // Points of a grid: cospherical everywhere.
+    // Points of a grid, which are cospherical everywhere.
     Adversary { name: "grid", make: grid },
-    // Long thin triangles at random in a box: boxes that separate nothing.
+    // Long thin triangles at random in a box, which boxes cannot separate.
     Adversary { name: "needles", make: needles },
-    // Large parallel squares on top of each other: no vertex is near.
+    // Large parallel squares on top of each other, so that no vertex is near a query.
     Adversary { name: "sheets", make: sheets },
-    // Segments on a line but for rounding: flat tetrahedra.
+    // Segments on a line up to rounding, which make tetrahedra flat.
     Adversary { name: "line", make: line },
-    // Triangles in an askew plane but for rounding: flat tetrahedra again.
+    // Triangles in a plane that is not axis-aligned, up to rounding, which make tetrahedra flat.
     Adversary { name: "plane", make: plane },
-    // Triangles of 10^6 and of 1 in turns.
+    // Triangles of sizes 10^6 and 1 in turns.
     Adversary { name: "huge and tiny", make: |n| sizes(n, 1e6) },
-    // Triangles of 10^12 and of 1 in turns.
+    // Triangles of sizes 10^12 and 1 in turns.
     Adversary { name: "huger and tiny", make: |n| sizes(n, 1e12) },
-    // A huge triangle over tiny ones: in the way of every split.
+    // A huge triangle over tiny ones, which crosses every split.
     Adversary { name: "one over all", make: one_over_all },
-    // Two dense clouds of points far apart: grids that are empty.
+    // Two dense clouds of points far apart, which make grids nearly empty.
     Adversary { name: "two clouds", make: two_clouds },
 ];
 
 impl Adversary {
-    /// Returns the family of that name.
+    /// Returns the family with this name.
     #[must_use]
     pub fn named(name: &str) -> &'static Self {
         ADVERSARIES.iter().find(|adversary| adversary.name == name).expect("a name of the list")
@@ -91,7 +91,7 @@ impl Adversary {
     }
 }
 
-/// Returns queries for any scene that is not empty: its middle and the origin, where these scenes are worst, then
+/// Returns queries for any scene that is not empty: its middle and the origin, where these scenes are hardest, then
 /// vertices, points between and near vertices, points in and around the bounding box, and points far away.
 #[must_use]
 pub fn queries(soup: &Soup<f64>, count: usize) -> Vec<Point3<f64>> {

@@ -1,4 +1,4 @@
-//! A user-defined primitive.
+//! A primitive that a user of the library might define.
 
 use nalgebra::{Point3, Vector3};
 use p2m_core::{Aabb, Feature, Primitive, Projection, Ray, RayHit};

@@ -1,9 +1,9 @@
 //! Checksums of E57 files.
 
-/// The bytes of a page without its checksum.
+/// The number of bytes of a page without its checksum.
 const PAGE: usize = 1020;
 
-/// Makes the checksums of all pages right, so that damage of a file reaches what is behind them.
+/// Corrects the checksums of all pages, so that damage in a file reaches the code behind the checksums.
 pub fn restore_e57_checksums(file: &mut [u8]) {
     for page in file.chunks_exact_mut(PAGE + 4) {
         let (data, checksum) = page.split_at_mut(PAGE);

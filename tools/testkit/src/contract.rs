@@ -8,18 +8,18 @@ use crate::truth::Truth;
 use p2m_core::{Best, Closest, Collector, Feature, Primitive, PrimitiveId, QueryOptions, Real};
 use rand::{Rng, RngExt};
 
-/// The largest observed error, in u M, has to stay below this number.
-/// [`ERROR_CONSTANT`](p2m_core::kernel::ERROR_CONSTANT) is the proved bound.
+/// The limit on the observed error, in units of u M. The proved bound is
+/// [`ERROR_CONSTANT`](p2m_core::kernel::ERROR_CONSTANT).
 pub const MAX_OBSERVED_ERROR: f64 = 4.0;
 
-/// The weighted sum of the vertices may be farther from the point than the point is from the primitive by this many u
-/// of the largest coordinate (observed).
+/// The distance by which the weighted sum of the vertices may be farther from the point than the point is from the
+/// primitive, in units of u of the largest coordinate (observed).
 const WEIGHTED_SUM_SLACK: f64 = 8.0;
 
 /// A broken promise.
 #[derive(Clone, Debug)]
 pub struct Violation {
-    /// The clause of docs/proofs/accuracy.md.
+    /// The clause of docs/proofs/accuracy.md that was broken.
     pub clause: &'static str,
     /// A description of the error.
     pub what: String,
@@ -31,7 +31,7 @@ impl std::fmt::Display for Violation {
     }
 }
 
-/// Returns a [`Violation`] of a clause from the surrounding function, unless the condition holds.
+/// Returns a [`Violation`] of a clause from the surrounding function unless the condition holds.
 macro_rules! ensure {
     ($condition:expr, $clause:literal, $($what:tt)+) => {
         // A condition on NaN evaluates to false, so NaN violates the clause.
@@ -42,7 +42,8 @@ macro_rules! ensure {
     };
 }
 
-/// Checks the answer about a primitive in `T`, whose coordinates are given in f64, and returns its error in u M.
+/// Checks the answer in `T` about a primitive whose coordinates are given in f64, and returns the error in units of u
+/// M.
 ///
 /// # Errors
 /// Returns the first promise that the answer breaks.
@@ -55,7 +56,7 @@ pub fn check<T: Real>(query: [f64; 3], vertices: &[[f64; 3]], found: &Closest<T>
     ensure!(!distance.is_nan(), "N6", "the distance is NaN");
     let error = if distance == f64::INFINITY {
         let limit = largest::<T>();
-        // The distance overflows with its error, where M is at most 2 sqrt(3) times the limit.
+        // The distance may overflow by its error. M is at most 2 sqrt(3) times the limit.
         let error = 3.5 * MAX_OBSERVED_ERROR * T::UNIT_ROUNDOFF * limit;
         ensure!(truth.is_at_least(limit - error), "N1", "infinite below the range of the scalar");
         0.0
@@ -95,16 +96,16 @@ pub fn check<T: Real>(query: [f64; 3], vertices: &[[f64; 3]], found: &Closest<T>
         ensure!(may || weight == 0.0, "N5", "{:?}: {weights:?}", found.feature);
     }
 
-    // The point may be this far from the primitive and from the weighted sum of the vertices.
+    // The limit on the distance of the point from the primitive and from the weighted sum of the vertices.
     let u = T::UNIT_ROUNDOFF;
     let size = |all: &[f64]| all.iter().fold(0.0, |m: f64, x| m.max(x.abs()));
     let slack = 4.0 * u * size(&query) + truth.times_max_vertex_distance(8.0 * u) + 2.0 * eta;
-    // `Truth` has `is_at_least` only, so "at most the slack" is tested as "not at least the next larger number".
+    // `Truth` has only `is_at_least`, so "at most the slack" is tested as "not at least the next larger number".
     let off = Truth::new(point, vertices);
     ensure!(!off.is_at_least(slack.next_up()), "N5", "the point is off the primitive by more than {slack:e}");
     let slack = slack + WEIGHTED_SUM_SLACK * u * size(vertices.as_flattened());
     for k in 0..3 {
-        // Halves of the coordinates do not overflow.
+        // Coordinates are halved so that sums do not overflow.
         let other: f64 = weights.iter().zip(vertices).map(|(w, v)| w * (0.5 * v[k])).sum();
         let off = (other - 0.5 * point[k]).abs();
         ensure!(off <= 0.5 * slack + 2.0 * eta, "N5", "the weights {weights:?} are of a point {:e} aside", 2.0 * off);
@@ -125,12 +126,13 @@ pub fn answer<T: Real>(query: [T; 3], vertices: &[[T; 3]]) -> Closest<T> {
     best.finish().expect("the distance is within infinity")
 }
 
-/// The exponent of two below which N4 promises nothing: coordinates are zero or at least 2^N4_MIN_EXPONENT of
-/// the largest one.
+/// The exponent of two below which N4 promises nothing: coordinates are zero or at least 2^N4_MIN_EXPONENT times the
+/// largest one.
 const N4_MIN_EXPONENT: i32 = -200;
 
-/// Checks N4: the answer has to stay the same when the vertices are reordered, and has to scale with the coordinates
-/// when these are multiplied by a power of two. Numbers are compared by value, so zeros may differ in sign. Returns how
+/// Checks N4: the answer stays the same if the vertices are reordered, and scales with the coordinates if these are
+/// multiplied by a power of two. Numbers are compared by value, so zeros may differ in sign. Returns how many of the
+/// two comparisons were possible.
 /// many of the two comparisons were possible.
 ///
 /// # Errors
@@ -164,7 +166,7 @@ pub fn check_invariance<T: Real>(
     let max_exponent = if largest == f64::MAX { 600 } else { 80 };
     let e = rng.random_range(-max_exponent..max_exponent);
     let scale = |x: f64| x * 2f64.powi(e / 2) * 2f64.powi(e - e / 2);
-    // Zero stays zero; other coordinates have to stay normal numbers that are not tiny beside the largest one.
+    // Zeros stay zeros. Other coordinates have to remain normal numbers that are not tiny beside the largest one.
     let all = || vertices.as_flattened().iter().chain(&query).map(|x| x.to_f64());
     let size = all().fold(0.0, |m: f64, x| m.max(x.abs()));
     let is_large_enough = |x: f64| x == 0.0 || x.abs() / size >= 2f64.powi(N4_MIN_EXPONENT);
@@ -221,7 +223,7 @@ mod tests {
             ("N5", "weights that are none", |c| c.barycentric = [f64::NAN; 3]),
             ("N5", "weights that are too large", |c| c.barycentric = c.barycentric.map(|w| w * (1.0 + 1e-14))),
             ("N5", "weights of another point", |c| {
-                // The weights keep their sum, so that only their distribution is wrong.
+                // The changed weights keep their sum, so only their distribution is wrong.
                 let [first, second] = [c.barycentric[0], c.barycentric[1]];
                 c.barycentric[0] = first * 0.999_999_999_9;
                 c.barycentric[1] = second + (first - c.barycentric[0]);

@@ -1,7 +1,8 @@
-//! Runs the queries whose instructions are counted.
+//! The queries whose instructions are counted.
 //!
-//! Generic code is compiled where it is used. Tests optimise this crate and not their own programs, so indexes become
-//! trait objects here, in functions that are not inlined elsewhere, and queries run here.
+//! Generic code is compiled in the crate that uses it. Tests are compiled with optimised dependencies but are not
+//! optimised themselves. So indexes become trait objects in this crate, in functions that are not inlined elsewhere,
+//! and the queries run here.
 
 use nalgebra::Point3;
 use p2m_bvh::TreeIndex;
@@ -49,9 +50,9 @@ pub fn p2m<'a>(index: &'a P2mIndex<f64, &'a Soup<f64>>) -> &'a Index<'a> {
 /// The way in which closest-point queries are passed to an index.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum QueryMode {
-    /// Queries run one after the other.
+    /// One query after the other.
     Single,
-    /// Queries form a reordered batch on one thread, where several queries take turns.
+    /// A reordered batch on one thread, in which several searches are interleaved.
     Several,
 }
 

@@ -1,4 +1,4 @@
-//! The number of cases and the amount of work of all tests, controlled by three environment variables.
+//! The numbers of cases and the amounts of work of all tests, which three environment variables control.
 //!
 //! A loop takes its cases from [`cases`], and each case draws its random numbers from its own number (`rng(name,
 //! case)`). The amount of work within a case, such as the queries of a scene, comes from [`amount`].
@@ -35,22 +35,22 @@ pub struct Cases {
 }
 
 impl Cases {
-    /// Returns whether a single case runs because its number is in `P2M_SEED`. Statistics of many cases
-    /// are meaningless then.
+    /// Returns whether only a single case runs, whose number is in `P2M_SEED`. Statistics of many cases are then
+    /// meaningless.
     #[must_use]
     pub fn is_replay(&self) -> bool {
         self.is_replay
     }
 
-    /// Returns whether `count` exceeds its proportional part of `in_full`, the limit for the full number of cases.
-    /// Returns true when a single case is replayed.
+    /// Returns whether `count` exceeds its share of `in_full`, the limit for the full number of cases. Returns `true`
+    /// when a single case is replayed.
     #[must_use]
     pub fn have_more_than(&self, in_full: usize, count: usize) -> bool {
         self.is_replay || self.scaled(count) > in_full as u128 * self.len() as u128
     }
 
-    /// Returns whether `count` is below its proportional part of `in_full`, the limit for the full number of cases.
-    /// Returns true when a single case is replayed.
+    /// Returns whether `count` is below its share of `in_full`, the limit for the full number of cases. Returns `true`
+    /// when a single case is replayed.
     #[must_use]
     pub fn have_fewer_than(&self, in_full: usize, count: usize) -> bool {
         self.is_replay || self.scaled(count) < in_full as u128 * self.len() as u128
@@ -60,7 +60,7 @@ impl Cases {
         count as u128 * u128::from(self.full)
     }
 
-    /// Returns the number after that of the last case.
+    /// Returns the number after the last case.
     #[must_use]
     pub fn end(&self) -> u64 {
         self.numbers.end
@@ -129,7 +129,7 @@ impl Settings {
         Self { deep: read("P2M_DEEP"), seed: read("P2M_SEED") }
     }
 
-    /// Returns the multiple of the full number of cases that runs; `None` for shallow tests.
+    /// Returns how many times the full number of cases runs, or `None` for shallow tests.
     fn times(&self) -> Option<u64> {
         self.deep.as_ref().map(|text| match text.parse() {
             Ok(times) if times > 0 => times,
@@ -169,7 +169,7 @@ pub fn cases(full: u64, shallow: u64) -> Cases {
     Settings::from_environment().cases(full, shallow)
 }
 
-/// Returns `full` in the deep suite (`P2M_DEEP`), and `shallow` otherwise. Use it for the amount of work within a case.
+/// Returns `full` in the deep suite (`P2M_DEEP`), and `shallow` otherwise. It is for the amount of work within a case.
 #[must_use]
 pub fn amount<T>(full: T, shallow: T) -> T {
     if is_deep() { full } else { shallow }
@@ -181,14 +181,13 @@ pub fn is_deep() -> bool {
     depth() > 0
 }
 
-/// Returns the multiple of the full number of cases that runs, which is the number in `P2M_DEEP`, and zero
-/// for shallow tests.
+/// Returns how many times the full number of cases runs, which is the number in `P2M_DEEP`, or zero for shallow tests.
 #[must_use]
 pub fn depth() -> u64 {
     Settings::from_environment().times().unwrap_or(0)
 }
 
-/// Prints a line, which the tests of this file can read.
+/// Prints a line. The tests of this file can read it.
 fn print_line(line: &str) {
     #[cfg(test)]
     tests::heard(line);
@@ -250,7 +249,7 @@ mod tests {
         PRINTED.with_borrow_mut(|printed| printed.push(line.to_owned()));
     }
 
-    /// Returns the beginnings of the messages that `run` prints when it panics.
+    /// Returns the beginnings of the messages that `run` prints if it panics.
     fn printed(deep: Option<&str>, seed: Option<&str>, run: impl FnOnce(Cases)) -> Vec<String> {
         let cases = settings(deep, seed).cases(60, 24);
         assert!(catch_unwind(AssertUnwindSafe(|| run(cases))).is_err(), "it should panic");
@@ -263,7 +262,7 @@ mod tests {
     fn loops_that_panic_say_their_case() {
         let at_17 = |case: u64| assert_ne!(case, 17, "this panic is meant");
         let panicking_loop = |cases: Cases| {
-            // Neither cases outside of a loop nor a loop that ends well print a message.
+            // Neither cases outside of a loop nor a loop without a panic print a message.
             for case in cases.clone().take(17) {
                 at_17(case);
             }

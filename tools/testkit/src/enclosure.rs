@@ -12,10 +12,10 @@
 
 use std::ops::{Add, Div, Mul, Sub};
 
-/// The distance by which both bounds are moved outwards, in units of the largest component of an offset.
+/// The amount by which both bounds are widened, in units of the largest component of an offset.
 const SLACK: f64 = f64::from_bits((1023 - 94) << 52);
 
-/// The sum of `high` and `low`, where |low| is at most half a unit in the last place of `high`.
+/// An unevaluated sum of two f64, `high` and `low`, where |low| is at most half a unit in the last place of `high`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct Pair {
     high: f64,
@@ -24,14 +24,14 @@ struct Pair {
 
 const ZERO: Pair = Pair { high: 0.0, low: 0.0 };
 
-/// Returns a + b without error.
+/// Returns a + b without rounding error (two-sum).
 fn sum(a: f64, b: f64) -> Pair {
     let high = a + b;
     let b_part = high - a;
     Pair { high, low: (a - (high - b_part)) + (b - b_part) }
 }
 
-/// Returns a + b without error, for |a| at least |b|.
+/// Returns a + b without rounding error, if |a| is at least |b| (fast two-sum).
 fn ordered(a: f64, b: f64) -> Pair {
     let high = a + b;
     Pair { high, low: b - (high - a) }
@@ -106,7 +106,7 @@ fn between(a: &V, b: &V) -> V {
     std::array::from_fn(|k| b[k] - a[k])
 }
 
-/// Returns x 2^e, in steps that stay in range if the result does.
+/// Returns x 2^e, multiplied in steps that stay in range if the result does.
 pub(crate) fn scaled(x: f64, e: i32) -> f64 {
     let half_exponent = e / 2;
     x * 2f64.powi(half_exponent) * 2f64.powi(e - half_exponent)
@@ -117,14 +117,14 @@ pub(crate) fn scaled(x: f64, e: i32) -> f64 {
 pub struct Enclosure {
     low: Pair,
     high: Pair,
-    /// The largest distance from the query to a vertex, to a few roundings.
+    /// The largest distance from the query to a vertex, up to a few roundings.
     max_vertex_distance: f64,
-    /// The exponent of the unit: all lengths are multiples of 2^exponent.
+    /// The exponent of the unit: lengths are multiples of 2^exponent.
     exponent: i32,
 }
 
 impl Enclosure {
-    /// Returns `None` if some coordinates are close to the end of the range and others are tiny.
+    /// Returns `None` if some coordinates are near the end of the range of f64 and others are tiny.
     ///
     /// # Panics
     /// Panics unless there are one to three vertices.
@@ -150,7 +150,7 @@ impl Enclosure {
         if size == 0.0 {
             return Some(Self { low: ZERO, high: ZERO, max_vertex_distance: 0.0, exponent: 0 });
         }
-        // The error of log2 is far below one, and the largest component may as well be 0.9 or 2.1.
+        // `log2` need not be exact: the largest component may also be 0.9 or 2.1.
         #[allow(clippy::cast_possible_truncation, reason = "at most 1024")]
         let exponent = size.log2().floor() as i32;
         for x in offsets.as_flattened_mut() {
@@ -173,14 +173,14 @@ impl Enclosure {
         Some(Self { low, high, max_vertex_distance, exponent: exponent - to })
     }
 
-    /// Returns [`Distance::error`](crate::oracle::Distance::error) or at most a thousandth more; `None` if the bounds
+    /// Returns [`Distance::error`](crate::oracle::Distance::error), or up to a thousandth more; `None` if the bounds
     /// are too far apart.
     #[must_use]
     pub fn error(&self, computed: f64, bits: u32, eta: f64) -> Option<f64> {
         self.error_per(computed, bits, eta, self.max_vertex_distance)
     }
 
-    /// Returns [`Distance::relative_error`](crate::oracle::Distance::relative_error) or at most a thousandth more;
+    /// Returns [`Distance::relative_error`](crate::oracle::Distance::relative_error), or up to a thousandth more;
     /// `None` if the bounds are too far apart.
     #[must_use]
     pub fn relative_error(&self, computed: f64, bits: u32, eta: f64) -> Option<f64> {
@@ -216,15 +216,18 @@ impl Enclosure {
         }
     }
 
-    /// Returns `factor` times the largest distance from the query to a vertex, to a few roundings.
+    /// Returns `factor` times the largest distance from the query to a vertex, up to a few roundings.
     #[must_use]
     pub fn times_max_vertex_distance(&self, factor: f64) -> f64 {
         scaled(self.max_vertex_distance * factor, self.exponent)
     }
 }
 
-/// Returns a point of the hull that is about the nearest to the origin, and a direction with about the whole hull
-/// beyond its plane.
+/// Returns approximately the point of the hull that is nearest to the origin, and a direction in which about the whole
+/// hull lies beyond the plane through the point.
+///
+/// The candidates are the vertices, the projections onto the edges and the projection onto the face, with the offset
+/// itself or the normal of the face as the direction. The nearest candidate wins.
 fn nearest(a: &[V]) -> (V, V) {
     let mut best = (dot(&a[0], &a[0]), a[0], a[0]);
     let mut offer = |point: V, direction: V| {
@@ -272,7 +275,7 @@ mod tests {
     use crate::oracle::Distance;
     use crate::rng;
 
-    /// Checks that the bounds hold, and that errors are those of rational arithmetic or at most a thousandth more.
+    /// Checks that the bounds hold, and that errors are at most a thousandth above those of rational arithmetic.
     #[test]
     fn bounds_hold_and_errors_are_those_of_rationals() {
         let (mut decided, mut total, mut told) = (0, 0, 0);
@@ -285,7 +288,7 @@ mod tests {
             let Some(enclosure) = Enclosure::new(case.query, &case.vertices) else { continue };
             let context = || format!("seed {seed}: {case:?} {enclosure:?}");
             let [near, far] = [enclosure.low, enclosure.high].map(|x| scaled(x.high, enclosure.exponent));
-            // The bounds are rounded to f64, by a factor of at most 1 + 2^-53.
+            // The bounds are rounded to f64, which changes them by a factor of at most 1 + 2^-53.
             let near = near.min(f64::MAX);
             assert!(exact.is_at_least(near * (1.0 - f64::EPSILON) - 2.0 * f64::from_bits(1)), "{}", context());
             let above = far * (1.0 + 4.0 * f64::EPSILON) + 4.0 * f64::from_bits(1);

@@ -82,7 +82,7 @@ impl Extreme {
     }
 
     /// Generates a scene of the family, at a random scale unless the family has its own, and queries on it, near it,
-    /// equidistant and far.
+    /// equidistant from several primitives, and far from it.
     pub fn generate(self, rng: &mut impl Rng, queries: usize) -> (Soup<f64>, Vec<Point3<f64>>) {
         let len = rng.random_range(1..48);
         let mut centre = [0.0; 3];
@@ -144,12 +144,12 @@ impl Extreme {
         (Soup::new(positions, elements).expect("finite, and indices are in range"), asked)
     }
 
-    /// Generates the primitives before they are moved and scaled.
+    /// Generates the primitives, before they are moved and scaled.
     fn shapes<R: Rng>(self, rng: &mut R, len: usize) -> Vec<Vec<V>> {
         let sine = SINES[rng.random_range(0..SINES.len())];
         let mut pool: Vec<Vec<V>> = Vec::new();
         let line = [direction(rng), direction(rng)];
-        // Scenes have all kinds, segments and triangles, or triangles alone.
+        // A scene has all kinds, only segments and triangles, or only triangles.
         let min_vertices = rng.random_range(1..=3);
         let vertices = |rng: &mut R, one: &mut dyn FnMut(&mut R) -> V| -> Vec<V> {
             (0..rng.random_range(min_vertices..=3)).map(|_| one(rng)).collect()
@@ -211,7 +211,7 @@ mod tests {
     use super::*;
     use p2m_core::{Primitive, PrimitiveId, PrimitiveSet};
 
-    /// Returns the doubled areas of triangles over the squares of their longest sides.
+    /// Returns twice the area of each triangle, divided by the square of its longest side.
     fn sines(soup: &Soup<f64>) -> Vec<f64> {
         let of = |[a, b, c]: [Point3<f64>; 3]| {
             let longest = (b - a).norm().max((c - b).norm()).max((a - c).norm());
@@ -253,7 +253,7 @@ mod tests {
                     Extreme::Needles if ordinary => {
                         sines.len() < 12 || sines.iter().filter(|sine| **sine < 0.3).count() * 3 > 2 * sines.len()
                     }
-                    // All sines are one value of the list, or smaller.
+                    // All sines equal a value of the list, or are smaller.
                     Extreme::Slivers if ordinary => {
                         let largest = sines.iter().fold(0.0, |m: f64, s| m.max(*s));
                         SINES.iter().any(|sine| largest <= *sine + 1e-15)

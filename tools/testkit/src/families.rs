@@ -1,4 +1,4 @@
-//! Families of single primitives that break kernels: every scale, offset, sine and query position of the contract.
+//! Families of single primitives that break kernels, over every scale, offset, sine and query position of the contract.
 
 use p2m_core::{Real, Shape};
 use rand::{Rng, RngExt};
@@ -18,7 +18,7 @@ pub enum Family {
     Neighbours,
     /// The shape, its scale, its offset and the query position are parameters.
     Shaped {
-        /// The sine of the smallest angle; for a segment about its length.
+        /// The sine of the smallest angle, or about the length of a segment.
         sine: f64,
         /// The exponent of the scale: coordinates are multiplied by 2^scale.
         scale: i32,
@@ -86,10 +86,10 @@ pub struct Span {
 }
 
 impl Span {
-    /// The range of f64.
+    /// The ranges of f64.
     pub const F64: Self =
         Self { scales: &SCALES, low: -1074, high: 1023, middle: 300, largest: f64::MAX, is_single: false };
-    /// The range of f32.
+    /// The ranges of f32.
     pub const F32: Self =
         Self { scales: &SCALES_OF_F32, low: -149, high: 127, middle: 40, largest: f32::MAX as f64, is_single: true };
 
@@ -133,7 +133,8 @@ fn pick<T: Copy>(rng: &mut impl Rng, from: &[T]) -> T {
     from[rng.random_range(0..from.len())]
 }
 
-/// Returns a triangle of size about one whose height over its longest side is about `sine` times that side.
+/// Returns a triangle of size about one, whose height over its longest side is about `sine` times the length of that
+/// side.
 pub(crate) fn triangle(rng: &mut impl Rng, sine: f64) -> [V; 3] {
     if sine == 0.0 && rng.random_bool(0.5) {
         // Small integers along one direction make the vertices exactly collinear or equal.
@@ -149,7 +150,7 @@ pub(crate) fn triangle(rng: &mut impl Rng, sine: f64) -> [V; 3] {
         }
     };
     let start = unit(rng);
-    // This exponential has the same bits on every machine, as the checksums of answers need.
+    // This exponential function has the same bits on every machine, which the checksums of answers need.
     let length = libm::exp2(rng.random_range(-1.0..1.0));
     // The apex is anywhere over the base, or close to one of its ends.
     let along = if rng.random_bool(0.7) { rng.random_range(0.0..1.0) } else { 2f64.powi(-rng.random_range(1..50)) };
@@ -164,8 +165,8 @@ pub(crate) fn triangle(rng: &mut impl Rng, sine: f64) -> [V; 3] {
     t
 }
 
-/// Generates small integers and a query at integers of any size, so that ties are exact and large lengths
-/// round to ties.
+/// Generates small integers and a query at integers of any size, so that ties are exact, and large lengths often round
+/// to equal ones.
 fn lattice(rng: &mut impl Rng) -> Case {
     let count = rng.random_range(1..=3);
     let vertices: Vec<V> = (0..count).map(|_| std::array::from_fn(|_| f64::from(rng.random_range(-6..=6)))).collect();
@@ -183,7 +184,7 @@ fn lattice(rng: &mut impl Rng) -> Case {
     Case { family: Family::Lattice, query, vertices }
 }
 
-/// Generates coordinates of any magnitude, independently from a small pool, so that some coincide.
+/// Generates coordinates of any magnitude from a small pool, so that some coincide.
 #[must_use]
 pub fn wild(rng: &mut impl Rng) -> Case {
     wild_in(rng, &Span::F64)
@@ -208,7 +209,7 @@ fn wild_in(rng: &mut impl Rng, span: &Span) -> Case {
     Case { family: Family::Wild, query, vertices: vertices[..count].to_vec() }
 }
 
-/// Generates edges and faces that are almost parallel to the axes: their box is thin, so rounding easily moves a
+/// Generates edges and faces that are almost parallel to the axes. Their box is thin, so rounding easily moves a
 /// projection out of it.
 fn almost_flat(rng: &mut impl Rng) -> Case {
     let (count, axis) = (rng.random_range(2..=3), rng.random_range(0..3));
@@ -246,8 +247,8 @@ pub fn case(rng: &mut impl Rng) -> Case {
     case_in(rng, &Span::F64)
 }
 
-/// Generates a case of any family in the range of a scalar. All numbers are numbers of that scalar and not
-/// all are zero.
+/// Generates a case of any family in the range of a scalar. All numbers are representable in that scalar, and not all
+/// are zero.
 pub fn case_in(rng: &mut impl Rng, span: &Span) -> Case {
     loop {
         let Case { family, query, vertices } = drawn(rng, span);
@@ -259,19 +260,19 @@ pub fn case_in(rng: &mut impl Rng, span: &Span) -> Case {
     }
 }
 
-/// Generates two hulls as [`pair_in`] does, in the range of f64.
+/// Generates two hulls in the range of f64, as [`pair_in`] does.
 pub fn pair(rng: &mut impl Rng) -> (Family, [Vec<V>; 2]) {
     pair_in(rng, &Span::F64)
 }
 
-/// Generates two hulls of one to three vertices, in the range of a scalar: of one family side by side, or moved against
-/// each other so that they touch, cross, lie in parallel, or share vertices.
+/// Generates two hulls of one to three vertices in the range of a scalar. They are from one family side by side, or are
+/// moved against each other so that they touch, cross, are parallel, or share vertices.
 pub fn pair_in(rng: &mut impl Rng, span: &Span) -> (Family, [Vec<V>; 2]) {
     let Case { family, query, vertices: a } = case_in(rng, span);
     let mut b = match rng.random_range(0..4) {
         0 => case_in(rng, span).vertices,
         _ => {
-            // A hull of the same family and scale: the query and points between it and the first hull.
+            // A hull of the same family and scale, from the query and points between it and the first hull.
             let point = |rng: &mut dyn Rng| -> V {
                 let (v, t) = (a[rng.random_range(0..a.len())], [0.0, 0.5, 1.0, 1.5][rng.random_range(0..4)]);
                 std::array::from_fn(|k| query[k] * (1.0 - t) + v[k] * t)
@@ -343,14 +344,14 @@ fn drawn(rng: &mut impl Rng, span: &Span) -> Case {
     }
     let (query_position, mut query) = query(rng, &vertices);
     if rng.random_bool(0.2) {
-        // Rounding to few digits makes components equal, sums exact, and projections lie on the box.
+        // Rounding to few digits makes components equal and sums exact, and puts projections on the box.
         let rounded = |v: V| v.map(|x| if x == 0.0 { x } else { (x * 2f64.powi(20)).round() * 2f64.powi(-20) });
         vertices.iter_mut().for_each(|v| *v = rounded(*v));
         query = rounded(query);
     }
     let factor =
         |x: f64| if scale >= -500 { x * 2f64.powi(scale) } else { x * 2f64.powi(-500) * 2f64.powi(scale + 500) };
-    // Offsets times the largest scales would overflow, so they are clamped at the edge of the range.
+    // Offsets times the largest scales would overflow, so they are clamped to the end of the range.
     let clip = |v: V| v.map(|x| factor(x).clamp(-span.largest, span.largest));
     Case {
         family: Family::Shaped { sine, scale, offset, needle, query_position },
@@ -384,7 +385,7 @@ fn query(rng: &mut impl Rng, vertices: &[V]) -> (&'static str, V) {
                 0 => ("above the face", combine([(1.0, inside), (height, up)])),
                 1 => ("above a vertex", combine([(1.0, vertices[i]), (height, up)])),
                 _ => {
-                    // The query is above an edge, slightly to its inner or outer side.
+                    // The query is above an edge, slightly towards its inner or outer side.
                     let along: V = std::array::from_fn(|k| vertices[j][k] - vertices[i][k]);
                     let aside = 2f64.powi(-rng.random_range(20..70)) * if rng.random_bool(0.5) { 1.0 } else { -1.0 };
                     ("above an edge", combine([(1.0, on_edge), (height, up), (aside, cross(up, along))]))
@@ -404,8 +405,8 @@ fn query(rng: &mut impl Rng, vertices: &[V]) -> (&'static str, V) {
         }
         7 => ("far", combine([(1.0, inside), (10f64.powi(rng.random_range(1..20)), direction)])),
         8 if n > 1 && rng.random_bool(0.5) => {
-            // The query is almost perpendicular above a vertex, so rounding decides whether an edge there leads towards
-            // it.
+            // The query is almost perpendicularly above a vertex, so rounding decides whether an edge from the vertex
+            // leads towards it.
             let along: V = std::array::from_fn(|k| vertices[(i + 1) % n][k] - vertices[i][k]);
             let lean = if rng.random_bool(0.5) { small } else { -small };
             let aside = cross(along, direction);

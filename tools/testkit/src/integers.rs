@@ -2,7 +2,7 @@
 
 use dashu_int::IBig;
 
-/// A vector of three integer coordinates.
+/// A vector of three integers.
 pub(crate) type V = [IBig; 3];
 
 /// Splits a finite f64 into mantissa and exponent.
@@ -20,7 +20,7 @@ pub(crate) fn lowest_bit(x: f64) -> i64 {
     if mantissa == 0 { 2000 } else { exponent + i64::from(mantissa.trailing_zeros()) }
 }
 
-/// Returns x as a multiple of 2^unit, which must divide it.
+/// Returns x as a multiple of 2^unit, which has to divide it.
 pub(crate) fn integer(x: f64, unit: i64) -> IBig {
     let (mantissa, exponent) = decompose(x);
     let shift = exponent - unit;
@@ -43,8 +43,8 @@ pub(crate) fn cross(a: &V, b: &V) -> V {
     })
 }
 
-/// Returns the part of a convex polygon (or segment, or point) in homogeneous coordinates on which the linear function
-/// `height` is not negative.
+/// Returns the part of a convex polygon, segment or point in which the linear function `height` is not negative. Points
+/// have homogeneous coordinates.
 pub(crate) fn clip<const N: usize>(hull: &[[IBig; N]], height: impl Fn(&[IBig; N]) -> IBig) -> Vec<[IBig; N]> {
     let heights: Vec<IBig> = hull.iter().map(height).collect();
     let mut rest = Vec::new();
@@ -55,7 +55,7 @@ pub(crate) fn clip<const N: usize>(hull: &[[IBig; N]], height: impl Fn(&[IBig; N
             rest.push(p.clone());
         }
         if (*at_p > IBig::ZERO && *at_q < IBig::ZERO) || (*at_p < IBig::ZERO && *at_q > IBig::ZERO) {
-            // Both weights have the sign of at_p, and the last coordinate has to stay positive.
+            // The sign makes both weights positive, and so keeps the last coordinate positive.
             let sign = if *at_p > IBig::ZERO { IBig::ONE } else { -IBig::ONE };
             rest.push(std::array::from_fn(|k| (&hull[j][k] * at_p - &p[k] * at_q) * &sign));
         }

@@ -44,11 +44,11 @@ use rand::{Rng, RngExt, SeedableRng};
 pub use surface::normal as normal_number;
 pub use thin_scenes::thin_scenes;
 
-/// Returns the random generator of case number `case` of the test `name`. Cases are independent of each other and
-/// of their order.
+/// Returns the random number generator of case number `case` of the test `name`. Cases do not depend on each other or
+/// on their order.
 #[must_use]
 pub fn rng(name: &str, case: u64) -> ChaCha8Rng {
-    // The FNV-1a hash of the name makes two tests with the same case number draw different numbers.
+    // The FNV-1a hash of the name makes the numbers of tests with the same case number different.
     let name = name.bytes().fold(0xcbf2_9ce4_8422_2325_u64, |h, b| (h ^ u64::from(b)).wrapping_mul(0x0100_0000_01b3));
     let mut seed = [0; 32];
     seed[..8].copy_from_slice(&name.to_le_bytes());

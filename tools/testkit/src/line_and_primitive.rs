@@ -1,8 +1,9 @@
-//! A line and a primitive in integers, and the part of the primitive that is on the line.
+//! A line and a primitive in integers, and the part of the primitive that lies on the line.
 //!
-//! A point P of a primitive is given by the weights of its vertices. It is on the line through O with direction D if
-//! the three components of (P - O) x D are zero. Two components suffice where the third component of D is not zero,
-//! because D . ((P - O) x D) = 0. So the primitive is clipped by four half-spaces, and a point or a segment remains.
+//! The point P of a primitive is given by the weights of the vertices. It lies on the line through O with direction D
+//! if the three components of (P - O) x D are zero. Two components suffice if the third component of D is not zero,
+//! because D . ((P - O) x D) = 0. Each of them gives two half-spaces. So the primitive is clipped by four half-spaces,
+//! and a point or a segment remains.
 
 use crate::integers::{V, clip, cross, dot, integer, lowest_bit, sub};
 use crate::ratio::Ratio;
@@ -16,13 +17,13 @@ pub(crate) struct LinePoint {
     pub(crate) weights: [Ratio; 3],
 }
 
-/// A ray and a primitive in integers: offsets from the origin as multiples of 2^unit, and the direction in a unit
-/// of its own.
+/// A ray and a primitive in integers: offsets from the origin as multiples of 2^unit, and the direction as multiples of
+/// another power of two.
 pub(crate) struct LineAndPrimitive {
     pub(crate) offsets: Vec<V>,
     pub(crate) direction: V,
     pub(crate) radius: IBig,
-    /// The exponent of the unit of offsets over that of the direction: parameters are multiples of this power of two.
+    /// The exponent of the unit of parameters, which is the unit of offsets divided by the unit of the direction.
     pub(crate) unit: i64,
 }
 
@@ -41,8 +42,8 @@ impl LineAndPrimitive {
         }
     }
 
-    /// Returns the part of the primitive that is on the line, as the corners of a polygon in the triangle
-    /// of all weights.
+    /// Returns the part of the primitive that lies on the line, as the corners of a polygon. A corner is given by its
+    /// weights.
     pub(crate) fn clip_to_line(&self) -> Vec<V> {
         let aside: Vec<V> = self.offsets.iter().map(|v| cross(v, &self.direction)).collect();
         let corner = |i: usize| std::array::from_fn(|k| IBig::from(u8::from(i == k)));
@@ -59,7 +60,7 @@ impl LineAndPrimitive {
         polygon
     }
 
-    /// Returns the part of a segment or a point that is nearest to the line, if that is within the radius.
+    /// Returns the part of a segment or a point that is nearest to the line, if it is within the radius.
     pub(crate) fn nearest_part(&self) -> Vec<V> {
         let aside: Vec<V> = self.offsets.iter().map(|v| cross(v, &self.direction)).collect();
         let (zero, first, last) = (IBig::ZERO, &aside[0], &aside[aside.len() - 1]);

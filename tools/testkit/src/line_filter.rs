@@ -1,5 +1,5 @@
-//! Finds the primitives of a large scene that a line may intersect, with a plain tree of boxes and generous margins, so
-//! that rational arithmetic decides about few of them.
+//! A filter for the primitives of a large scene that a line may intersect: a plain tree of boxes with generous margins.
+//! Rational arithmetic then has to decide about few primitives.
 
 use crate::ray_oracle::nearest_to;
 use p2m_core::Ray;
@@ -7,10 +7,10 @@ use std::ops::Range;
 
 type P = [f64; 3];
 
-/// The margin of all comparisons, relative to the largest coordinate involved: thousands of roundings.
+/// The margin of all comparisons, relative to the largest coordinate involved. It is thousands of roundings.
 const RELATIVE_MARGIN: f64 = 1e-12;
 
-/// A binary tree over the vertices of primitives.
+/// A binary tree over the vertices of primitives, which finds those that a line may intersect.
 pub struct LineFilter<'a> {
     primitives: &'a [Vec<P>],
     /// The ids in the order of the leaves.
@@ -26,7 +26,7 @@ struct Node {
     children: Option<[usize; 2]>,
 }
 
-/// A line near the scene: a point of it, and its direction with largest component 1.
+/// A line, given by a point near the scene and a direction whose largest component is 1.
 struct Line {
     point: P,
     direction: P,
@@ -42,7 +42,7 @@ fn cross(a: &P, b: &P) -> P {
 }
 
 impl<'a> LineFilter<'a> {
-    /// Builds the filter over primitives of moderate coordinates.
+    /// Builds the filter over primitives with coordinates of moderate size.
     #[must_use]
     pub fn new(primitives: &'a [Vec<P>]) -> Self {
         let mut filter = Self { primitives, order: (0..primitives.len()).collect(), nodes: Vec::new() };
@@ -72,12 +72,12 @@ impl<'a> LineFilter<'a> {
         node
     }
 
-    /// Returns all primitives that the whole line of a ray may intersect, and possibly some others.
+    /// Returns all primitives that the whole line of a ray may intersect, and possibly others.
     #[must_use]
     pub fn near(&self, ray: &Ray) -> Vec<usize> {
         let Some(root) = self.nodes.first() else { return Vec::new() };
         let direction: P = ray.direction().into();
-        // The point is where the line passes the scene; with a far origin the margin would accept everything.
+        // The point is moved along the line to the scene. With a far origin, the margin would accept everything.
         let line = Line {
             point: nearest_to(ray, root.centre),
             direction: direction.map(|x| x / size(&direction)),
@@ -101,7 +101,8 @@ impl<'a> LineFilter<'a> {
 }
 
 impl Line {
-    /// Returns whether the line misses a box: projected along one of the three axes, the corners are all on one side.
+    /// Returns whether the line misses a box: in the projection along one of the three axes, all corners are on one
+    /// side.
     fn misses_box(&self, centre: &P, half_extent: &P) -> bool {
         let offset = std::array::from_fn(|k| centre[k] - self.point[k]);
         let margin = self.radius + RELATIVE_MARGIN * (size(centre) + size(half_extent) + size(&self.point));
@@ -113,12 +114,12 @@ impl Line {
         })
     }
 
-    /// Returns whether the line misses the hull of the vertices: projected along or across an edge, all are
-    /// on one side.
+    /// Returns whether the line misses the hull of the vertices: in the projection along or across an edge, all
+    /// vertices are on one side.
     fn misses_hull(&self, vertices: &[P]) -> bool {
         let aside: Vec<P> =
             vertices.iter().map(|v| cross(&std::array::from_fn(|k| v[k] - self.point[k]), &self.direction)).collect();
-        // The projected distance may be up to three times as long as the vector.
+        // The projected distance may be up to three times as large as the vector.
         let largest = vertices.iter().map(size).fold(size(&self.point), f64::max);
         let radius = if vertices.len() < 3 { self.radius } else { 0.0 };
         let margin = 3.0 * (radius + RELATIVE_MARGIN * largest);

@@ -1,4 +1,4 @@
-//! Checks an index's answers about near primitives against the primitives one by one.
+//! Comparison of an index's answers about near primitives with those of the primitives one by one.
 
 use crate::rng;
 use nalgebra::Point3;
@@ -17,11 +17,11 @@ fn sorted<T: Real>(soup: &Soup<T>, query: &Point3<T>) -> Vec<(PrimitiveId, Proje
     all
 }
 
-/// The fields of an answer that are compared exactly: all of them apart from the lower bound.
+/// The fields of an answer that are compared exactly: all except the lower bound.
 pub type ComparedFields<T> = (PrimitiveId, T, Point3<T>, Feature, [T; 3]);
 
-/// Returns the fields of an answer that every exact backend has to return: all of them except the certified bound,
-/// which depends on the candidates that were evaluated.
+/// Returns the fields of an answer that every exact backend has to return: all except the certified bound, which
+/// depends on the candidates that were evaluated.
 #[must_use]
 pub fn compared_fields<T: Real>(closest: &Closest<T>) -> ComparedFields<T> {
     (closest.primitive, closest.distance, closest.point, closest.feature, closest.barycentric)
@@ -38,8 +38,8 @@ fn expected<T: Real>((id, projection): &(PrimitiveId, Projection)) -> ComparedFi
     )
 }
 
-/// Checks that an index over a soup answers every method of [`NearQuery`] as its primitives do one by one,
-/// number for number.
+/// Checks that every method of [`NearQuery`] gives the same numbers for an index over a soup as for its primitives one
+/// by one.
 ///
 /// # Panics
 /// Panics if an answer differs.
@@ -61,8 +61,8 @@ pub fn agrees<T: Real>(
                 context()
             );
             for (closest, (_, projection)) in found.iter().zip(expected_of) {
-                // The lower bound is the own distance minus its error, up to a few roundings; it is finite if the
-                // distance is.
+                // The lower bound is the primitive's own distance minus its error, up to a few roundings. It is finite
+                // if the distance is.
                 let exact_bound = projection.key.distance().min(f64::MAX) - projection.error;
                 let min_bound = T::round_from_f64(exact_bound * (1.0 - 32.0 * T::UNIT_ROUNDOFF))
                     - T::round_from_f64(4.0 * T::SMALLEST_SUBNORMAL);
@@ -78,7 +78,7 @@ pub fn agrees<T: Real>(
         let k = [0, 1, 2, 7, soup.len() / 2, soup.len(), soup.len() + 3][rng.random_range(0..7)];
         exactly(&all[..k.min(all.len())], &index.k_nearest(q, k, T::INFINITY));
 
-        // The radius is the distance of some primitive, or slightly different.
+        // The radius equals the distance of some primitive, or differs slightly.
         let reference = all.get(rng.random_range(0..all.len().clamp(1, 40)));
         let radius = reference.map_or(T::one(), |(_, p)| T::round_from_f64(p.key.distance()));
         let radius =
@@ -103,7 +103,7 @@ pub fn agrees<T: Real>(
             });
             visited.sort_by_key(|c| within.iter().position(|other| other.primitive == c.primitive));
             assert!(flow.is_continue() && visited == within, "{}", context());
-            // The iterator has to end, and to stay at its end.
+            // The iterator has to end, and to remain at its end.
             let (mut rest, end) = (3, count >= 3);
             let flow = index.visit_within(q, radius, &mut |_| {
                 rest -= 1;

@@ -1,8 +1,8 @@
 //! Distances in exact rational arithmetic.
 //!
-//! Coordinates are integers in units of a common power of two, so everything up to the squared distance is exact: a
-//! fraction of two integers. Only a bound on the distance itself requires a square root, which is taken in fixed point
-//! with at least 60 bits below u M and rounded so that a check can only become stricter.
+//! Coordinates are integers in units of a common power of two. So everything up to the squared distance is exact: it is
+//! a fraction of two integers. Only a bound on the distance itself needs a square root. The root is taken in fixed
+//! point with at least 60 bits below u M, and rounded so that a check can only become stricter.
 
 use crate::integers::{V, clip, cross, dot, integer, lowest_bit, sub};
 use crate::ratio::Ratio;
@@ -67,7 +67,7 @@ impl Distance {
         at(self).compare(&at(other))
     }
 
-    /// Returns the distance and the largest vertex distance as multiples of 2^fine, each rounded down.
+    /// Returns the distance and the largest vertex distance, each rounded down to a multiple of 2^fine.
     fn fixed(&self, fine: i64) -> (UBig, UBig) {
         let shift = usize::try_from(2 * (self.unit - fine)).expect("finer than the input");
         let root = |x: IBig| UBig::try_from(x).expect("squares are not negative").sqrt();
@@ -76,9 +76,10 @@ impl Distance {
     }
 
     /// Returns |computed - true| minus `eta` in units of u M, rounded up, where M is the largest distance from the
-    /// query to a vertex. Returns infinity if `computed` is infinite or NaN although the true distance is below 2^1024.
+    /// query to a vertex. The result is infinite if `computed` is infinite or NaN although the true distance is below
+    /// 2^1024.
     ///
-    /// `bits` is the precision: 53 stands for u = 2^-53.
+    /// `bits` is the precision of the scalar: 53 stands for u = 2^-53.
     #[must_use]
     pub fn error(&self, computed: f64, bits: u32, eta: f64) -> f64 {
         self.error_per(computed, bits, eta, false)
@@ -95,7 +96,8 @@ impl Distance {
             let limit = Self::new([0.0; 3], &[[f64::MAX, 0.0, 0.0]]);
             return if computed > 0.0 && self.compare(&limit) == Ordering::Greater { 0.0 } else { f64::INFINITY };
         }
-        // An eta that is negligible beside u M would only make numbers longer. The distance may be any fraction of M.
+        // An eta that is negligible beside u M is dropped, because it would only make numbers longer. In relative
+        // errors it is kept, because the distance may be any fraction of M.
         let eta = if relative || self.unit < lowest_bit(eta) + 174 { eta } else { 0.0 };
         // 2 max(bits, 64) bits below the lowest bit of all numbers suffice, because u M is at least 2^(unit - 53).
         let fine = self.unit.min(lowest_bit(computed)).min(lowest_bit(eta)) - 160;
@@ -115,7 +117,7 @@ impl Distance {
         ratio.to_f64().value() / f64::from(1 << 20)
     }
 
-    /// Returns whether the true distance is at least `bound`, and false if `bound` is infinite or NaN.
+    /// Returns whether the true distance is at least `bound`. It is never at least a bound that is infinite or NaN.
     #[must_use]
     pub fn is_at_least(&self, bound: f64) -> bool {
         if bound <= 0.0 {
@@ -127,8 +129,8 @@ impl Distance {
         self.compare(&Self::new([0.0; 3], &[[bound, 0.0, 0.0]])) != Ordering::Less
     }
 
-    /// Returns the true distance as the sum of a rounded number and the remainder, to more than 110 bits. The scale of
-    /// the scene must not be extreme, so that both stay in the range of f64.
+    /// Returns the true distance as the sum of a rounded number and a remainder, to more than 110 bits. The scale of
+    /// the scene must be moderate, so that both stay in the range of f64.
     #[must_use]
     pub fn length(&self) -> [f64; 2] {
         // The root has about 118 bits.
@@ -142,13 +144,14 @@ impl Distance {
         [rounded, rest].map(|x| x * 2f64.powi(exponent / 2) * 2f64.powi(exponent - exponent / 2))
     }
 
-    /// Returns the largest distance from the query to a vertex, to a few roundings.
+    /// Returns the largest distance from the query to a vertex, up to a few roundings.
     #[must_use]
     pub fn max_vertex_distance(&self) -> f64 {
         self.times_max_vertex_distance(1.0)
     }
 
-    /// Returns `factor` times the largest distance from the query to a vertex. Only the result has to be in range.
+    /// Returns `factor` times the largest distance from the query to a vertex. Only the result has to be in the range
+    /// of f64.
     #[must_use]
     pub fn times_max_vertex_distance(&self, factor: f64) -> f64 {
         let fine = self.unit - 64;
@@ -196,7 +199,7 @@ fn from_vertex(query: &V, vertices: &[V]) -> Ratio {
     candidates.into_iter().min_by(Ratio::compare).expect("at least one vertex")
 }
 
-/// Returns the squared distance between the lines of two edges if the nearest points are on the edges and unique.
+/// Returns the squared distance between the lines of two edges, if the nearest points are unique and on the edges.
 fn inside_of_edges(p: [&V; 2], q: [&V; 2]) -> Option<Ratio> {
     let (d, e, r) = (sub(p[1], p[0]), sub(q[1], q[0]), sub(q[0], p[0]));
     let normal = cross(&d, &e);
@@ -211,7 +214,8 @@ fn inside_of_edges(p: [&V; 2], q: [&V; 2]) -> Option<Ratio> {
     Some(Ratio::new(&height * &height, denominator))
 }
 
-/// Returns whether the ends of an edge are on different sides of a triangle, and a point of it is in the triangle.
+/// Returns whether an edge pierces a triangle: its ends are on different sides, and the point in the plane is in the
+/// triangle.
 fn pierces([p, q]: [&V; 2], triangle: &[V]) -> bool {
     let [a, b, c] = triangle else { return false };
     let normal = cross(&sub(b, a), &sub(c, a));
@@ -220,7 +224,7 @@ fn pierces([p, q]: [&V; 2], triangle: &[V]) -> bool {
     if !crosses {
         return false;
     }
-    // The edge meets the plane at p + (q - p) at_p / (at_p - at_q); the sign of the denominator is that of at_p.
+    // The edge intersects the plane at p + (q - p) at_p / (at_p - at_q). The denominator has the sign of at_p.
     let weight = &at_p - &at_q;
     let sign = if at_p > IBig::ZERO { IBig::ONE } else { -IBig::ONE };
     edges(triangle).iter().all(|[from, to]| {
@@ -229,10 +233,10 @@ fn pierces([p, q]: [&V; 2], triangle: &[V]) -> bool {
     })
 }
 
-/// Returns whether the convex hull of one to three vertices has a point in a closed box. All coordinates
-/// must be finite.
+/// Returns whether the convex hull of one to three vertices has a point in a closed box. All coordinates must be
+/// finite.
 ///
-/// The hull is clipped by the six half-spaces, one after the other, in homogeneous coordinates.
+/// The hull is clipped by the six half-spaces of the box one after the other, in homogeneous coordinates.
 #[must_use]
 pub fn intersects_box(vertices: &[[f64; 3]], corners: &[[f64; 3]; 2]) -> bool {
     let unit = vertices.iter().chain(corners).flatten().map(|x| lowest_bit(*x)).min().expect("coordinates");
@@ -318,7 +322,7 @@ mod tests {
         assert!(is(&line, &[[1.5, -1.0, 2.0], [1.5, 1.0, 2.0]], 2.0), "a flat triangle");
     }
 
-    /// No two points of the hulls are nearer than the distance, and some are hardly farther.
+    /// No two points of the hulls are nearer than the distance, and some are hardly farther apart.
     #[test]
     fn no_sampled_points_are_nearer_than_the_distance_between_hulls() {
         use rand::RngExt;
@@ -331,7 +335,7 @@ mod tests {
             };
             let (a, b) = (hull(0.0), hull(if case % 2 == 0 { 0.0 } else { 2.5 }));
             let [distance, _] = Distance::between(&a, &b).length();
-            // Points move towards each other by projecting in turns, which ends at the nearest points.
+            // Points are projected onto the other hull in turns, which converges to the nearest points.
             let mut nearest = f64::INFINITY;
             for start in 0..12 {
                 let weights = [0; 3].map(|_| rng.random_range(0.0..1.0f64));

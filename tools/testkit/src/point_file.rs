@@ -1,11 +1,11 @@
-//! Files of points and rays in every format of them.
+//! Files of points and rays in all their formats.
 
-/// The names of coordinates in tables.
+/// The names of the columns in tables.
 const COLUMNS: [&str; 6] = ["x", "y", "z", "dx", "dy", "dz"];
-/// The names of coordinates in PLY files.
+/// The names of the properties in PLY files.
 const PROPERTIES: [&str; 6] = ["x", "y", "z", "nx", "ny", "nz"];
 
-/// Returns a file of points or rays, which are rows of three or six numbers. `format` is `xyz`, `csv`, `npy` or `ply`.
+/// Returns a file of points or rays, given as rows of three or six numbers. `format` is `xyz`, `csv`, `npy` or `ply`.
 #[must_use]
 pub fn point_file<const N: usize>(format: &str, rows: &[[f64; N]]) -> Vec<u8> {
     let (count, bytes) = (rows.len(), rows.as_flattened().iter().flat_map(|x| x.to_le_bytes()));

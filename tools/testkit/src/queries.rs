@@ -1,5 +1,5 @@
-//! The query sets. All are generated in f64 from a fixed seed, each set from its own random stream, so that leaving one
-//! out does not change the others.
+//! The query sets. All are generated in f64 from a fixed seed. Each set has its own random stream, so leaving one out
+//! does not change the others.
 
 use crate::depth::Cases;
 use crate::surface::{SurfaceSampler, direction, normal};
@@ -8,33 +8,32 @@ use nalgebra::{Point3, Vector3};
 use p2m_core::{PrimitiveSet, Ray, Soup};
 use rand::{RngExt, SeedableRng};
 
-/// A distribution of queries. Percentages of lengths refer to the diagonal of the scene's bounding box.
+/// A distribution of queries. Percentages are relative to the diagonal of the scene's bounding box.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum QuerySet {
-    /// Queries are uniform in the box scaled by 10 about its centre.
+    /// Uniform in the box scaled by 10 about its centre.
     Box10,
-    /// Queries are uniform in the box scaled by 1.05.
+    /// Uniform in the box scaled by 1.05.
     Box1,
-    /// Queries are random points of the scene, offset along the normal by a normal distribution with sigma 1 %.
+    /// Random points of the scene, offset along the normal by a normal distribution with sigma 1 %.
     Near,
-    /// Queries are random points of the scene, offset along the normal by a normal distribution with sigma 0.1 %.
+    /// Random points of the scene, offset along the normal by a normal distribution with sigma 0.1 %.
     Nearer,
-    /// Queries are random points of the scene.
+    /// Random points of the scene.
     Surface,
-    /// Queries form a regular lattice over the box scaled by 1.05, z fastest, with about and at most the requested
-    /// number of points.
+    /// A regular lattice over the box scaled by 1.05, with z running fastest, of about and at most the requested number
+    /// of points.
     Grid,
-    /// Queries are uniform on the sphere of 100 diagonals about the centre.
+    /// Uniform on the sphere of 100 diagonals about the centre.
     Far,
-    /// Queries are around 8 random points of the scene in random order, normally distributed in each coordinate with
-    /// sigma 0.5 %.
+    /// Around 8 random points of the scene in random order, normally distributed in each coordinate with sigma 0.5 %.
     Cluster,
 }
 
 /// The number of clusters.
 const CLUSTERS: usize = 8;
 
-/// The offset of the random stream of ray directions from that of the origins.
+/// The number of the random stream for ray directions, relative to the stream for origins.
 const DIRECTIONS: u64 = 1 << 32;
 
 impl QuerySet {
@@ -88,7 +87,7 @@ impl QuerySet {
         }
     }
 
-    /// Generates the queries whose numbers are those of the cases, out of as many as the last case requires.
+    /// Generates the queries with the numbers of the cases, out of as many queries as the last case requires.
     pub fn generate_for_cases(
         self,
         soup: &Soup<f64>,
@@ -100,7 +99,7 @@ impl QuerySet {
         cases.clone().filter_map(move |case| all.get(number(case)).copied())
     }
 
-    /// Generates rays from these queries, whose directions have length 1 and are evenly distributed on the sphere.
+    /// Generates rays from these queries, whose directions have length 1 and are uniformly distributed on the sphere.
     #[must_use]
     pub fn rays(self, soup: &Soup<f64>, count: usize, seed: u64) -> Vec<Ray> {
         let mut rng = ChaCha8Rng::seed_from_u64(seed);
@@ -127,8 +126,8 @@ impl std::str::FromStr for QuerySet {
     }
 }
 
-/// Returns the diagonal of a scene's box, and 1 for a scene that is one point. It is the unit of
-/// offsets and differences.
+/// Returns the diagonal of a scene's box, or 1 for a scene that is a single point. It is the unit of offsets and
+/// differences.
 #[must_use]
 pub fn diagonal(soup: &Soup<f64>) -> f64 {
     Frame::new(soup).diagonal
@@ -145,7 +144,7 @@ struct Frame<'a> {
 impl<'a> Frame<'a> {
     fn new(soup: &'a Soup<f64>) -> Self {
         let bounds = soup.aabb();
-        // Coordinates are halved first, because sums and differences of finite numbers may overflow.
+        // Coordinates are halved, because sums and differences of finite numbers may overflow.
         let (min, max) = (bounds.min.coords * 0.5, bounds.max.coords * 0.5);
         let diagonal = (bounds.max - bounds.min).norm();
         let diagonal = if diagonal > 0.0 { diagonal } else { 1.0 };
@@ -170,8 +169,8 @@ fn near(scene: &Frame<'_>, sigma: f64, count: usize, rng: &mut ChaCha8Rng) -> Ve
         .collect()
 }
 
-/// Generates the finest lattice of equal spacing on all axes (as nearly as integers allow) with at most `count` points,
-/// ends included. A side of length zero has one layer.
+/// Generates the finest lattice of at most `count` points, including both ends, with equal spacing on all axes as
+/// nearly as integers allow. A side of length zero has one layer.
 fn lattice(scene: &Frame<'_>, count: usize) -> Vec<Point3<f64>> {
     let (centre, half_sides) = (scene.centre, scene.half_sides * 1.05);
     let [nx, ny, nz] = lattice_sides((half_sides * 2.0).into(), count);
@@ -189,13 +188,13 @@ fn lattice(scene: &Frame<'_>, count: usize) -> Vec<Point3<f64>> {
     points
 }
 
-/// Returns the number of points of a lattice along each side, found by bisection of its spacing.
+/// Returns the number of points of a lattice along each side, by bisection of the spacing.
 fn lattice_sides(sides: [f64; 3], count: usize) -> [usize; 3] {
     #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "saturates, and is not negative")]
     let layers = |side: f64, spacing: f64| if side > 0.0 { (side / spacing) as usize + 1 } else { 1 };
     let at = |spacing: f64| sides.map(|side| layers(side, spacing));
     let points = |spacing: f64| at(spacing).iter().fold(1usize, |all, n| all.saturating_mul(*n));
-    // The spacing `fine` is always too fine, and `coarse` is always coarse enough.
+    // Invariant: the spacing `fine` makes too many points, and `coarse` does not.
     let (mut fine, mut coarse) = (0.0, sides.iter().fold(0.0, |a: f64, b| a.max(*b)) * 2.0);
     for _ in 0..100 {
         let middle = 0.5 * (fine + coarse);

@@ -1,6 +1,7 @@
-//! Fractions of integers of any length, rounded to the nearest f64.
+//! Fractions of integers of any length, and their rounding to the nearest f64.
 //!
-//! Rounding divides the leading bits in f64 and then moves to the neighbouring f64 until both neighbours are farther.
+//! The leading bits are divided in f64. The result is then moved to a neighbouring f64 until both neighbours are
+//! farther.
 
 use crate::integers::{integer, lowest_bit};
 use dashu_int::IBig;
@@ -53,8 +54,8 @@ impl Ratio {
         self.compare(other) == Ordering::Less
     }
 
-    /// Returns the nearest f64, and the even one of two. The result is infinite from the midpoint of the largest f64
-    /// and 2^1024 on, and never -0.
+    /// Returns the nearest f64, the even one in a tie. The result is infinite from the midpoint of the largest f64 and
+    /// 2^1024 on, and never -0.
     #[must_use]
     pub(crate) fn round(&self) -> f64 {
         if self.numerator < IBig::ZERO {
@@ -81,7 +82,7 @@ impl Ratio {
         x
     }
 
-    /// Returns a finite number near a fraction that is not negative.
+    /// Returns a finite number near a non-negative fraction.
     fn estimate(&self) -> f64 {
         let leading = |x: &IBig| {
             let drop = x.unsigned_abs().bit_len().saturating_sub(60);
@@ -150,7 +151,7 @@ mod tests {
         for case in crate::cases(20_000, 5_000) {
             use rand::RngExt;
             let (i, mut rng) = (case as usize, crate::rng("fractions", case));
-            // Coordinates have few bits, so that ties are common, or many; and all magnitudes occur.
+            // Coordinates have few bits, so that ties are common, or many bits, at all magnitudes.
             let bits = [3, 53][i % 2];
             let mut number = || {
                 let mantissa = (rng.random::<u64>() >> (64 - bits)) as f64 + 1.0;

@@ -1,4 +1,4 @@
-//! Checks an index's answers to rays against the exact ones.
+//! Comparison of an index's answers to rays with the exact ones.
 
 use crate::ray_oracle::{LineIntersection, crossing};
 use p2m_core::{Hit, Ray, RayQuery, Real, Side};
@@ -23,7 +23,8 @@ pub fn bits(hit: &Hit) -> Bits {
 }
 
 impl Truth {
-    /// Computes the hits with the primitives of these ids, in their order; the others are known to be missed.
+    /// Computes the hits with the primitives of these ids, in this order. The other primitives must be known to be
+    /// missed.
     pub fn new(primitives: &[Vec<[f64; 3]>], ids: impl IntoIterator<Item = usize>, ray: &Ray) -> Self {
         let (mut intersections, mut crossings) = (Vec::new(), Vec::new());
         for i in ids {
@@ -33,7 +34,7 @@ impl Truth {
         Self { intersections, crossings }
     }
 
-    /// Returns all hits of an index, each of them checked.
+    /// Returns all hits of an index after checking each of them.
     pub fn checked_hits<T: Real>(
         &self,
         index: &(impl RayQuery<T> + ?Sized),
@@ -58,7 +59,7 @@ impl Truth {
         found
     }
 
-    /// Returns how often the ray crosses the surface in its range.
+    /// Returns the number of times that the ray crosses the surface in its range.
     #[must_use]
     pub fn crossings(&self, ray: &Ray) -> usize {
         let [min, max] = ray.range();
@@ -85,7 +86,7 @@ impl Truth {
     }
 }
 
-/// Checks every function of an index against the exact hits and crossings.
+/// Compares every function of an index with the exact hits and crossings.
 pub fn agrees<T: Real>(
     index: &(impl RayQuery<T> + ?Sized),
     ray: &Ray,

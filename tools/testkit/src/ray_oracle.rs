@@ -1,8 +1,7 @@
 //! The intersections of lines with primitives in exact rational arithmetic.
 //!
-//! The common part of a line and a primitive is a point or a segment, whose ends have exact parameters and weights.
-//! Crossings are found by moving the line by a sufficiently small number and solving for its intersection with the
-//! plane.
+//! The intersection of a line and a primitive is a point or a segment, whose ends have exact parameters and weights.
+//! Crossings are decided by moving the line by a sufficiently small number and intersecting it with the plane.
 
 #![allow(clippy::float_cmp, reason = "nothing here has a tolerance")]
 
@@ -30,12 +29,11 @@ pub fn nearest_to(ray: &Ray, position: [f64; 3]) -> [f64; 3] {
 /// The intersection of a whole line with a primitive.
 #[derive(Clone, Debug)]
 pub struct LineIntersection {
-    /// The ends of the common segment, or twice the common point.
+    /// The ends of the common segment. Both are equal for a common point.
     ends: [LinePoint; 2],
     parameters: [f64; 2],
     side: Side,
-    /// Whether the weights of a point are has_unique_weights, which they are not if three vertices span only a segment
-    /// or a point.
+    /// Whether a point has unique weights. It has not if three vertices only span a segment or a point.
     has_unique_weights: bool,
     vertices: Vec<[f64; 3]>,
 }
@@ -51,7 +49,7 @@ enum WeightAccuracy {
     Any,
 }
 
-/// The exact hit that an answer has to equal.
+/// The exact hit, which an answer has to equal.
 #[derive(Clone, Debug)]
 pub struct ExpectedHit<'a> {
     /// The parameter, to the last bit.
@@ -64,7 +62,7 @@ pub struct ExpectedHit<'a> {
 }
 
 impl LineIntersection {
-    /// Intersects the whole line of a ray with a primitive of one to three vertices; segments and points count within
+    /// Intersects the whole line of a ray with a primitive of one to three vertices. Segments and points count within
     /// the radius of the ray.
     #[must_use]
     pub fn new(ray: &Ray, vertices: &[[f64; 3]]) -> Option<Self> {
@@ -176,8 +174,8 @@ impl ExpectedHit<'_> {
                 let terms = self.vertices.iter().zip(weights).map(|(v, w)| Ratio::from(v[k]) * w.clone());
                 terms.fold(Ratio::from(0.0), |a, b| a + b)
             };
-            // Four roundings of the sum, three of the weights, and underflow add up to 8 u; less accurate weights allow
-            // more.
+            // The rounding errors are 4 u for the sum and 3 u for the weights, and 8 u with underflow. Less accurate
+            // weights allow more.
             let factor = if self.accuracy == WeightAccuracy::Rounded { 8.0 } else { 16.0 };
             let size = self.vertices.iter().fold(0.0, |m: f64, v| m.max(v[k].abs()));
             let slack = Ratio::from(factor * U) * Ratio::from(size) + Ratio::from(3.0 * f64::from_bits(1));
@@ -200,9 +198,9 @@ fn determinant([a, b, c]: [&V; 3]) -> IBig {
     even - odd
 }
 
-/// Returns the side from which the line of a ray crosses a triangle, and the parameter of its plane, after
-/// the line is moved by e along x, by e^2 along y and by e^3 along z. The number e is so small that no
-/// smaller one decides otherwise.
+/// Returns the side from which the line of a ray crosses a triangle, and the parameter of its plane. The line is moved
+/// by e along x, by e^2 along y and by e^3 along z, where e is positive and arbitrarily small, so that it never runs
+/// through an edge or a vertex (simulation of simplicity).
 #[must_use]
 pub fn crossing(ray: &Ray, vertices: &[[f64; 3]]) -> Option<(Side, f64)> {
     if vertices.len() < 3 {
@@ -210,7 +208,7 @@ pub fn crossing(ray: &Ray, vertices: &[[f64; 3]]) -> Option<(Side, f64)> {
     }
     let LineAndPrimitive { offsets: o, direction, unit, .. } =
         LineAndPrimitive::new(&ray.with_radius(0.0).expect("zero"), vertices);
-    // A + u E + v F = O + t D, where O is zero. For a moved O the right side is scaled to integers.
+    // A + u E + v F = O + t D, where O is zero. For a moved O, the right side is scaled to integers.
     let (e, f) = (sub(&o[1], &o[0]), sub(&o[2], &o[0]));
     let back: V = direction.each_ref().map(|x| -x);
     let all = determinant([&e, &f, &back]);
@@ -220,7 +218,7 @@ pub fn crossing(ray: &Ray, vertices: &[[f64; 3]]) -> Option<(Side, f64)> {
     let side = if all > IBig::ZERO { Side::Front } else { Side::Back };
     let right: V = o[0].each_ref().map(|x| -x);
     let turn = if all > IBig::ZERO { IBig::ONE } else { -IBig::ONE };
-    // These are u, v and 1 - u - v times a positive number, for a right side that is scaled by 2^scale.
+    // The weights u, v and 1 - u - v, times a positive number, for a right side that is scaled by 2^scale.
     let weights = |right: &V, scale: usize| {
         let (u, v) = (determinant([right, &f, &back]) * &turn, determinant([&e, right, &back]) * &turn);
         let rest = ((&all * &turn) << scale) - &u - &v;
@@ -228,7 +226,7 @@ pub fn crossing(ray: &Ray, vertices: &[[f64; 3]]) -> Option<(Side, f64)> {
     };
     let zero = IBig::ZERO;
     let mut inside = weights(&right, 0);
-    // Moving the line makes a difference only on an edge or a vertex.
+    // The move matters only if the line runs through an edge or a vertex.
     if inside.iter().all(|x| *x >= zero) && inside.contains(&zero) {
         // Determinants are below 2^(3 bits + 5), and zero or at least 1, so 2^-(3 bits + 8) is negligible beside them.
         let entries = [&e, &f, &back, &right].into_iter().flatten();
@@ -253,7 +251,7 @@ mod tests {
         Ray::new(&Point3::from(origin), &Vector3::from(direction)).expect("a ray").line()
     }
 
-    /// Returns the parameters of the common segment and the weights of its beginning.
+    /// Returns the parameters of the common segment and the weights of its first end.
     fn intersection(
         origin: [f64; 3],
         direction: [f64; 3],

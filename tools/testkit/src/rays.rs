@@ -1,4 +1,4 @@
-//! Rays that break kernels: through vertices and edges, along edges, in planes, from the surface, from afar.
+//! Rays that are hard for kernels: through vertices and edges, along edges, in planes, from the surface, from afar.
 
 use crate::vector;
 use nalgebra::{Point3, Vector3};
@@ -30,7 +30,7 @@ pub enum Aim {
     AlongEdge,
     /// The ray lies in the plane of a facet.
     InPlane,
-    /// The ray leads along an axis or a diagonal through a vertex, exactly as far as the coordinates have enough bits.
+    /// The ray leads along an axis or a diagonal through a vertex, exactly if the coordinates have enough bits.
     Axis,
     /// The ray leads from small integers to small integers.
     Lattice,
@@ -58,7 +58,7 @@ pub const AIMS: [Aim; 14] = [
     Aim::Far,
 ];
 
-/// Returns three vertices of a random primitive; the last one is repeated if it has fewer.
+/// Returns three vertices of a random primitive. If it has fewer, the last one is repeated.
 fn corners(rng: &mut impl Rng, soup: &Soup<f64>) -> [P; 3] {
     let primitive = soup.get(PrimitiveId::new(rng.random_range(0..soup.len())));
     let vertices = primitive.vertices();
@@ -70,7 +70,7 @@ fn small(rng: &mut impl Rng) -> f64 {
     f64::from(rng.random_range(-3..=3))
 }
 
-/// Returns the origin and the direction of a ray that is aimed at a scene that is not empty. The direction may be zero.
+/// Returns the origin and direction of a ray that is aimed at a scene, which is not empty. The direction may be zero.
 fn aimed(rng: &mut impl Rng, soup: &Soup<f64>, bounds: &Aabb<f64>, aim: Aim) -> (P, Vector3<f64>) {
     let size = (bounds.max - bounds.min).amax().max(f64::MIN_POSITIVE);
     let [a, b, c] = corners(rng, soup);
@@ -118,7 +118,7 @@ fn aimed(rng: &mut impl Rng, soup: &Soup<f64>, bounds: &Aabb<f64>, aim: Aim) -> 
     }
 }
 
-/// Returns a finite number that is a few units in the last place beside another.
+/// Returns a finite number a few units in the last place beside another one.
 fn beside(rng: &mut impl Rng, x: f64) -> f64 {
     match rng.random_range(0..3) {
         0 => x.next_up(),
@@ -127,8 +127,8 @@ fn beside(rng: &mut impl Rng, x: f64) -> f64 {
     }
 }
 
-/// Generates a ray, a half line, a line or a segment of one, aimed at a scene that is not empty and has these bounds.
-/// In a third of the cases its coordinates are one unit in the last place off.
+/// Generates a ray, half line, line or segment that is aimed at a scene with these bounds, which is not empty. In a
+/// third of the cases its coordinates are off by a unit in the last place.
 pub fn ray(rng: &mut impl Rng, soup: &Soup<f64>, bounds: &Aabb<f64>, aim: Aim) -> Ray {
     let (mut origin, mut direction) = aimed(rng, soup, bounds, aim);
     if rng.random_range(0..3) == 0 {

@@ -1,4 +1,4 @@
-//! Random scenes and queries for tests that compare backends with each other.
+//! Random scenes and queries for comparisons of backends.
 
 use nalgebra::{Point3, Vector3};
 use p2m_core::{Element, Real, Soup};
@@ -7,33 +7,33 @@ use rand::{Rng, RngExt};
 /// The kinds of primitives of a random scene.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Kinds {
-    /// The scene has points only.
+    /// Only points.
     Points,
-    /// The scene has segments only.
+    /// Only segments.
     Segments,
-    /// The scene has triangles only.
+    /// Only triangles.
     Triangles,
-    /// The scene has all three kinds in random order.
+    /// All three kinds in random order.
     Mixed,
 }
 
-/// All choices of kinds.
+/// All combinations of kinds.
 pub const KINDS: [Kinds; 4] = [Kinds::Points, Kinds::Segments, Kinds::Triangles, Kinds::Mixed];
 
 /// The distribution of coordinates.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Layout {
-    /// Primitives of any size are uniform in a cube.
+    /// Primitives of any size, uniform in a cube.
     Uniform,
-    /// Small primitives are scattered over a cube.
+    /// Small primitives, scattered over a cube.
     Strewn,
-    /// Coordinates are small integers, so that ties, duplicates and degenerate primitives are common.
+    /// Small integers, so that ties, duplicates and degenerate primitives are common.
     Lattice,
-    /// Primitives form a curved grid with shared vertices, so that most nearest features are shared.
+    /// A curved grid with shared vertices, so that most nearest features are shared.
     Sheet,
-    /// Sizes of primitives range over ten orders of magnitude.
+    /// Primitives whose sizes range over ten orders of magnitude.
     Sizes,
-    /// The scene is far from the origin.
+    /// A scene far from the origin.
     Far,
 }
 
@@ -100,7 +100,7 @@ pub fn scene(rng: &mut impl Rng, kinds: Kinds, layout: Layout, len: usize) -> (V
     (positions, elements)
 }
 
-/// Returns the kinds and the layout of the scene of a case. Any 24 consecutive cases have every kind in every layout.
+/// Returns the kinds and the layout for the scene of a case. Any 24 consecutive cases have all kinds in all layouts.
 #[must_use]
 #[allow(clippy::cast_possible_truncation, reason = "remainders are small")]
 pub fn kinds_and_layout(case: u64) -> (Kinds, Layout) {
@@ -157,8 +157,8 @@ pub fn narrow(soup: &Soup<f64>) -> Option<Soup<f32>> {
     Soup::new(positions, soup.elements()).ok()
 }
 
-/// Returns the sides of a gear with fine teeth, skewed and turned: long triangles that are askew to each other and
-/// to the axes.
+/// Returns the sides of a gear with fine teeth, skewed and turned: long triangles that are neither axis-aligned nor
+/// parallel to each other.
 #[must_use]
 pub fn skewed_gear(teeth: u32) -> Soup<f64> {
     let turn = nalgebra::Rotation3::new(Vector3::new(0.4, 0.7, 0.3));
@@ -176,8 +176,8 @@ pub fn skewed_gear(teeth: u32) -> Soup<f64> {
     Soup::new(positions.collect(), elements.collect::<Vec<_>>()).expect("finite")
 }
 
-/// Generates a query around a scene: on a position, between two, near, uniform in the box, on a half-integer
-/// lattice, or far.
+/// Generates a query around a scene: on a position, between two positions, near one, uniform in the box, on a
+/// half-integer lattice, or far away.
 pub fn query(rng: &mut impl Rng, positions: &[Point3<f64>]) -> Point3<f64> {
     if positions.is_empty() {
         return Point3::origin();
@@ -196,7 +196,7 @@ pub fn query(rng: &mut impl Rng, positions: &[Point3<f64>]) -> Point3<f64> {
     }
 }
 
-/// Returns a square spiral of this number of arms, with a width of 1 and gaps of 1.
+/// Returns a square spiral with this number of arms, of width 1 and with gaps of 1.
 #[must_use]
 pub fn square_spiral(arms: i64) -> Vec<[i64; 2]> {
     const DIRECTIONS: [[i64; 2]; 4] = [[1, 0], [0, 1], [-1, 0], [0, -1]];

@@ -1,4 +1,4 @@
-//! Random points of a scene, weighted by area and length.
+//! Random points of a scene, distributed by area and length.
 
 use chacha20::ChaCha8Rng;
 use nalgebra::{Point3, Vector3};
@@ -6,11 +6,11 @@ use p2m_core::{Element, PrimitiveId, PrimitiveSet, Shape, Soup};
 use rand::RngExt;
 use std::f64::consts::TAU;
 
-/// Draws points of a scene, each with a direction that is normal to the scene there.
+/// Draws points of a scene, each with a direction that is normal to the scene at the point.
 ///
-/// Triangles are weighted by area, segments by length times (total area / total length), so that each kind gets half of
-/// the draws in a scene with both. Points and degenerate primitives have weight zero. If all weights are zero, all
-/// primitives are equally likely.
+/// Triangles are weighted by area, and segments by length times (total area / total length), so that each kind gets
+/// half of the draws in a scene with both. Points and degenerate primitives have weight zero. If all weights are zero,
+/// all primitives are equally likely.
 pub(crate) struct SurfaceSampler<'a> {
     soup: &'a Soup<f64>,
     /// The sums of the weights up to and including each primitive.
@@ -54,8 +54,8 @@ impl<'a> SurfaceSampler<'a> {
     }
 
     /// Returns a random point of the scene and a unit vector: the normal of a triangle, a random perpendicular of a
-    /// segment, or any direction at a point. A degenerate triangle counts as its longest edge, a degenerate segment
-    /// as a point.
+    /// segment, or any direction at a point. A degenerate triangle is treated as its longest edge, and a degenerate
+    /// segment as a point.
     pub(crate) fn draw(&self, rng: &mut ChaCha8Rng) -> (Point3<f64>, Vector3<f64>) {
         match self.soup.get(PrimitiveId::new(self.primitive(rng))) {
             Shape::Triangle(t) => {
@@ -77,13 +77,13 @@ impl<'a> SurfaceSampler<'a> {
                 let t = rng.random::<f64>();
                 (Point3::from(a.coords * (1.0 - t) + b.coords * t), perpendicular(rng, &(b - a)))
             }
-            // `Shape` is non-exhaustive; shapes that are no triangles or segments count as points.
+            // `Shape` is non-exhaustive. Shapes other than triangles and segments are treated as points.
             shape => (shape.vertices()[0], direction(rng)),
         }
     }
 }
 
-/// Returns the area or the length, and zero for a point.
+/// Returns the area of a triangle, the length of a segment, or zero for a point.
 fn measure(shape: &Shape<f64>) -> f64 {
     match shape {
         Shape::Triangle(t) => {
@@ -95,7 +95,7 @@ fn measure(shape: &Shape<f64>) -> f64 {
     }
 }
 
-/// Returns a random unit vector perpendicular to `along`, and any direction if that is zero.
+/// Returns a random unit vector perpendicular to `along`, or any unit vector if `along` is zero.
 fn perpendicular(rng: &mut ChaCha8Rng, along: &Vector3<f64>) -> Vector3<f64> {
     let Some(along) = along.try_normalize(0.0) else { return direction(rng) };
     loop {
@@ -115,7 +115,7 @@ pub(crate) fn direction(rng: &mut ChaCha8Rng) -> Vector3<f64> {
     }
 }
 
-/// Returns a number of the standard normal distribution, by the method of Box and Muller.
+/// Returns a normally distributed number with mean 0 and variance 1, by the method of Box and Muller.
 pub fn normal(rng: &mut ChaCha8Rng) -> f64 {
     let radius = (-2.0 * (1.0 - rng.random::<f64>()).ln()).sqrt();
     radius * (TAU * rng.random::<f64>()).cos()

@@ -1,18 +1,19 @@
 //! Pairs of small scenes of thin triangles that touch, cross or nearly touch.
 //!
-//! A filter that trusts the direction of a triangle's normal is wrong for these, because rounding turns the normal of a
-//! thin triangle by any angle.
+//! A filter that trusts the direction of a triangle's normal fails on these scenes, because rounding may turn the
+//! normal of a thin triangle by any angle.
 
 use crate::families::{triangle, unit};
 use rand::{Rng, RngExt};
 
 type V = [f64; 3];
 
-/// Returns the vertices of the primitives of two scenes, which have one to three primitives each.
+/// Returns the vertices of the primitives of two scenes with one to three primitives each.
 ///
-/// The first primitive of the first scene is a thin triangle. Its sine is between 1e-9 and 0.1, or it is collinear but
-/// for rounding. The other scene has a contact with it in most cases: in a corner, on an edge, in its face, or through
-/// its face; exactly, or but for rounding. Half of all scenes have few decimals, as files of CAD programs do.
+/// The first primitive of the first scene is a thin triangle. Its sine is between 1e-9 and 0.1, or its vertices are
+/// collinear up to rounding. In most cases the other scene touches or crosses it: at a corner, on an edge, in its face,
+/// or through its face; exactly, or up to rounding. Half of all scenes have coordinates of few decimals, as files of
+/// CAD programs do.
 pub fn thin_scenes(rng: &mut impl Rng) -> [Vec<Vec<V>>; 2] {
     let size = 10f64.powf(rng.random_range(-1.0..2.0));
     let decimals = rng.random_bool(0.5).then(|| 10f64.powi(rng.random_range(1..6)));
@@ -40,7 +41,7 @@ fn thin_triangle(rng: &mut impl Rng) -> [V; 3] {
     let sine = if rng.random_range(0..4) == 0 { 0.0 } else { 10f64.powf(rng.random_range(-9.0..-1.0)) };
     let mut corners = triangle(rng, sine);
     if sine == 0.0 {
-        // The corners are multiples of a vector, from anywhere, each coordinate rounded.
+        // The corners are on a line through a random point, and each coordinate is rounded.
         let (start, along) = (unit(rng).map(|x| x * f64::from(rng.random_range(0..2))), unit(rng));
         let step = |rng: &mut dyn Rng| f64::from(rng.random_range(-10..=10)) * 0.1;
         corners = [(); 3].map(|()| {

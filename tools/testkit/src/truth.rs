@@ -1,4 +1,4 @@
-//! The true distance to one primitive, by bounds if they decide, and by rational arithmetic otherwise.
+//! The true distance to one primitive. Bounds decide if they can, and rational arithmetic otherwise.
 
 use crate::enclosure::Enclosure;
 use crate::oracle::Distance;
@@ -8,7 +8,7 @@ thread_local! {
     static RATIONAL: Cell<u64> = const { Cell::new(0) };
 }
 
-/// Returns the number of distances of this thread that needed rational arithmetic so far.
+/// Returns the number of distances that this thread had to compute in rational arithmetic so far.
 #[must_use]
 pub fn rational_distances() -> u64 {
     RATIONAL.get()
@@ -41,21 +41,21 @@ impl<'a> Truth<'a> {
         })
     }
 
-    /// Returns [`Distance::error`] or at most a thousandth more.
+    /// Returns [`Distance::error`], or up to a thousandth more.
     #[must_use]
     pub fn error(&self, computed: f64, bits: u32, eta: f64) -> f64 {
         let fast = self.enclosure.and_then(|e| e.error(computed, bits, eta));
         fast.unwrap_or_else(|| self.exact().error(computed, bits, eta))
     }
 
-    /// Returns [`Distance::relative_error`] or at most a thousandth more.
+    /// Returns [`Distance::relative_error`], or up to a thousandth more.
     #[must_use]
     pub fn relative_error(&self, computed: f64, bits: u32, eta: f64) -> f64 {
         let fast = self.enclosure.and_then(|e| e.relative_error(computed, bits, eta));
         fast.unwrap_or_else(|| self.exact().relative_error(computed, bits, eta))
     }
 
-    /// Returns whether the distance is at least `bound`, and false if `bound` is infinite or NaN.
+    /// Returns whether the distance is at least `bound`. It is never at least a bound that is infinite or NaN.
     #[must_use]
     pub fn is_at_least(&self, bound: f64) -> bool {
         if bound <= 0.0 {
@@ -65,7 +65,7 @@ impl<'a> Truth<'a> {
         fast.unwrap_or_else(|| self.exact().is_at_least(bound))
     }
 
-    /// Returns `factor` times the largest distance from the query to a vertex, to a few roundings.
+    /// Returns `factor` times the largest distance from the query to a vertex, up to a few roundings.
     #[must_use]
     pub fn times_max_vertex_distance(&self, factor: f64) -> f64 {
         self.enclosure

@@ -16,7 +16,7 @@ use p2m_testkit::families::{self, Span};
 use p2m_testkit::rays::{AIMS, ray};
 use p2m_testkit::scenes::{narrow, to_f32};
 
-/// The FNV-1a hash of numbers.
+/// An FNV-1a hash of numbers.
 struct Hash(u64);
 
 impl Hash {
@@ -73,14 +73,14 @@ impl Hash {
     }
 }
 
-/// Returns the hash of what a function adds to it.
+/// Returns the hash of the numbers that a function adds.
 fn hash(add: impl FnOnce(&mut Hash)) -> u64 {
     let mut hash = Hash::new();
     add(&mut hash);
     hash.0
 }
 
-/// Adds the answers of single primitives and of pairs of them, of all families of hard cases.
+/// Adds the answers about single primitives and about pairs of them, from all families of hard cases.
 pub(crate) fn of_single_primitives(table: &mut Table) {
     single_primitives::<f64>(table, "f64", &Span::F64);
     single_primitives::<f32>(table, "f32", &Span::F32);
@@ -110,7 +110,7 @@ fn single_primitives<T: Real>(table: &mut Table, scalar: &str, span: &Span) {
     table.add(&format!("families {scalar} pairs"), "the kernel", pairs);
 }
 
-/// Adds the answers of all scenes, see [`table`](crate::table).
+/// Adds the answers about all scenes, see [`table`](crate::table).
 pub(crate) fn of_scenes(table: &mut Table, mut exchange: impl FnMut(&str, Vec<u8>) -> Vec<u8>) {
     for case in scenes::all() {
         let is_smallest = case.name == scenes::SMALLEST;
@@ -122,11 +122,11 @@ pub(crate) fn of_scenes(table: &mut Table, mut exchange: impl FnMut(&str, Vec<u8
     }
 }
 
-/// An index of any type. Questions take trait objects, because they would otherwise be compiled for each type.
+/// An index of any type. Questions take trait objects, so that they are not compiled for each type.
 trait Index<T: Real>: ClosestPoint<T> + NearQuery<T> + CertifiedQuery<T> + Sync {}
 impl<T: Real, I: ClosestPoint<T> + NearQuery<T> + CertifiedQuery<T> + Sync> Index<T> for I {}
 
-/// A table, and the scene and the queries of the questions that add to it.
+/// A table, with the scene and the queries of the questions that are added to it.
 struct Asked<'a, T: Real> {
     table: &'a mut Table,
     case: &'a Case,
@@ -156,7 +156,8 @@ fn of_scene<T: Real>(
                 index.save(&mut writer);
                 let mut bytes = Vec::new();
                 writer.write(&mut bytes).expect("memory");
-                // The coordinates of the smallest scene are whole numbers, so its files are the same in both scalars.
+                // The coordinates of the smallest scene are whole numbers, so that its files are the same in both
+                // scalars.
                 let bytes = exchange(concat!($name, ".p2m"), bytes);
                 let file = SavedFile::read(&bytes[..]).expect("a saved index");
                 let loaded = <$index>::load(soup, file.checked().expect("undamaged")).expect("of this scene");
@@ -180,7 +181,7 @@ fn of_scene<T: Real>(
         "octree": OctreeIndex<T, &Soup<T>>,;
         "p2m": P2mIndex<T, &Soup<T>>,;
     }
-    // A saved index has neither the locator nor the filters of the paper.
+    // Saved indexes have neither the locator nor the filters of the paper, so this index is only built.
     let paper = P2mIndex::build_with(soup, &P2mOptions::as_in_paper()).expect("valid");
     for isa in Isa::available() {
         asked.points(&paper.clone().with_isa(isa), &format!("paper ({isa})"));
@@ -237,7 +238,7 @@ impl<T: Real> Asked<'_, T> {
         }
     }
 
-    /// Asks for all hits of rays that are aimed at the scene.
+    /// Asks for all hits of rays at the scene.
     fn rays(&mut self, index: &dyn RayQuery<T>, by: &str) {
         let (soup, bounds) = (&self.case.soup, self.case.soup.aabb());
         let hits = hash(|hash| {
@@ -251,7 +252,7 @@ impl<T: Real> Asked<'_, T> {
         self.add("rays", by, hits);
     }
 
-    /// Asks for the primitive that is nearest to a triangle of queries.
+    /// Asks for the primitive nearest to a triangle whose vertices are queries.
     fn shapes(&mut self, index: &dyn PairQuery<T>, by: &str) {
         let index = &index;
         let pairs = hash(|hash| {
@@ -263,7 +264,7 @@ impl<T: Real> Asked<'_, T> {
         self.add("pairs with triangles", by, pairs);
     }
 
-    /// Asks for the pair of primitives that are nearest in the scene and in its copy, which is moved.
+    /// Asks for the nearest pair of primitives of the scene and of its moved copy.
     fn scenes(&mut self, index: &dyn PairQuery<T>, by: &str) {
         let index = &index;
         let pairs = hash(|hash| {

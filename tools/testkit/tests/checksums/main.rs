@@ -1,13 +1,13 @@
-//! Answers have the same bits on every processor: checksums of them are those of `checksums.txt`.
+//! Checks that answers have the same bits on every processor, by comparing checksums with `checksums.txt`.
 //!
-//! `cargo test --release --package p2m-testkit --test checksums` computes the checksums of a machine, with every
-//! instruction set that its processor has, and compares them with the file. `P2M_BLESS=1` writes the file, and the saved
-//! indexes that lie beside it, which every machine then loads. `cargo xtask arm` runs this program for ARM, and
-//! `cargo xtask wasm` as a module in Node.
+//! `cargo test --release --package p2m-testkit --test checksums` computes the checksums on a machine, with every
+//! instruction set of its processor, and compares them with the file. `P2M_BLESS=1` writes the file, and the saved
+//! indexes beside it, which every machine then loads. `cargo xtask arm` runs this program for ARM, and `cargo xtask
+//! wasm` as a module in Node.
 //!
-//! A row of the file is a scene, a scalar and a question. All backends answer it, as built and as loaded, and have to
-//! give the checksum of the row. Scenes and queries are made of operations that are rounded to nearest everywhere, or
-//! come from generators that promise the same scene on every machine.
+//! A row of the file is a scene, a scalar and a question. All backends answer it, both as built and as loaded, and have
+//! to produce the checksum of the row. Scenes and queries are made by operations that are rounded to nearest
+//! everywhere, or by generators that promise the same scene on every machine.
 
 mod answers;
 mod scenes;
@@ -16,7 +16,7 @@ use p2m::core::Isa;
 use p2m_testkit::compiled;
 use std::fmt::Write;
 
-/// The file with the checksums, which is compiled in for machines without files, as the saved indexes are.
+/// The file with the checksums. It is compiled in, as the saved indexes are, for machines without files.
 const FILE: &str = include_str!("checksums.txt");
 /// The names and the bytes of saved indexes of the smallest scene.
 const SAVED: [(&str, &[u8]); 5] = [
@@ -30,20 +30,20 @@ const SAVED: [(&str, &[u8]); 5] = [
 #[cfg(not(target_family = "wasm"))]
 const FOLDER: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/tests/checksums");
 
-/// The least number of checksums for each row: WebAssembly, which has one kind of lanes, has about as many.
+/// The least number of checksums per row. WebAssembly, which has one kind of lanes, has about as many.
 const MIN_CHECKSUMS_PER_ROW: usize = 10;
 
-/// The checksums of all questions, and the answers that differ from those of other backends.
+/// The checksums of all questions, and the answers that differ between backends.
 #[derive(Default)]
 struct Table {
     rows: Vec<(String, u64)>,
     faults: Vec<String>,
-    /// The number of checksums that were computed for the rows.
+    /// The number of checksums that were computed for all rows.
     computed: usize,
 }
 
 impl Table {
-    /// Adds the checksum of the answers of one backend to a question. `by` names what answered.
+    /// Adds the checksum of the answers of one backend, named `by`, to a question.
     fn add(&mut self, question: &str, by: &str, checksum: u64) {
         self.computed += 1;
         match self.rows.iter().find(|(name, _)| name == question) {
@@ -61,7 +61,7 @@ impl Table {
         text
     }
 
-    /// Adds the rows that differ from those of the file to the faults.
+    /// Reports the rows that differ from those of the file as faults.
     fn compare(&mut self) {
         let text = self.text();
 
@@ -72,13 +72,13 @@ impl Table {
         for line in expected.iter().filter(|line| !found.contains(line)) {
             self.faults.push(format!("not found here:       {line}"));
         }
-        // Several indexes answer each question, with each kind of lanes.
+        // Several indexes with every kind of lanes answer each question.
         if self.computed < MIN_CHECKSUMS_PER_ROW * self.rows.len() {
             self.faults.push("most indexes were not asked".to_owned());
         }
     }
 
-    /// Returns what a user reports.
+    /// Returns the text that a user reports.
     fn report(&self) -> String {
         let sets: Vec<&str> = Isa::available().into_iter().map(Isa::name).collect();
         let machine = format!("{}, {}; lanes: {}", compiled::TARGET, compiled::RUSTC, sets.join(", "));
@@ -92,8 +92,8 @@ impl Table {
 
 /// Computes all checksums.
 ///
-/// `exchange` is given the name and the bytes of each saved index of the smallest scene, and returns those that are
-/// loaded in their place.
+/// `exchange` gets the name and the bytes of each saved index of the smallest scene, and returns the bytes to load in
+/// their place.
 fn table(exchange: impl FnMut(&str, Vec<u8>) -> Vec<u8>) -> Table {
     let mut table = Table::default();
     answers::of_single_primitives(&mut table);
@@ -101,7 +101,7 @@ fn table(exchange: impl FnMut(&str, Vec<u8>) -> Vec<u8>) -> Table {
     table
 }
 
-/// Computes all checksums, with the saved indexes that lie beside the file, and compares them with the file.
+/// Computes all checksums with the saved indexes beside the file, and compares them with the file.
 fn compared_table() -> Table {
     let mut table = table(|name, _| {
         let saved = SAVED.iter().find(|(saved, _)| *saved == name);
@@ -129,7 +129,7 @@ fn main() -> std::process::ExitCode {
     u8::from(!table.faults.is_empty()).into()
 }
 
-/// A module has no files and prints nothing: `node.mjs` calls these functions.
+/// The functions of the WebAssembly module, which has no files and prints nothing. `node.mjs` calls them.
 #[cfg(target_family = "wasm")]
 mod module {
     use std::sync::OnceLock;

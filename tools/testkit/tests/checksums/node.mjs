@@ -1,4 +1,4 @@
-// Runs the checksums as a WebAssembly module: node node.mjs MODULE. `cargo xtask wasm` calls it.
+// Runs the checksums as a WebAssembly module: node node.mjs MODULE. `cargo xtask wasm` calls this script.
 import { readFileSync } from "node:fs";
 
 const module = await WebAssembly.instantiate(readFileSync(process.argv[2]), {});

@@ -13,18 +13,18 @@ pub(crate) struct Case {
     pub(crate) name: &'static str,
     pub(crate) soup: Soup<f64>,
     pub(crate) queries: Vec<Point3<f64>>,
-    /// Whether it consists of triangles that have an inside.
+    /// Whether the scene consists of triangles that enclose an inside.
     pub(crate) has_inside: bool,
 }
 
-/// The scene whose saved indexes are files.
+/// The scene whose saved indexes are in files.
 pub(crate) const SMALLEST: &str = "ties";
 /// The number of queries of each scene.
 const QUERIES: usize = 60;
-/// The carried scene, for machines without files.
+/// The scene in the repository, compiled in for machines without files.
 const KNOT_AND_CABLES: &[u8] = include_bytes!("../../../../scenes/knot_and_cables.obj");
 
-/// Returns a rough lump, which is noisy like a scan.
+/// Returns a lump with noise, like a scan.
 fn scan() -> Soup<f64> {
     let lump = ico_sphere(&IcoSphere { frequency: 2 }).expect("valid options");
     subdivide(&lump, &Subdivide { levels: 2, amplitude: 0.15, ..Default::default() }).expect("valid options")
