@@ -1,4 +1,4 @@
-//! The questions about closest points, and the checks of the answers.
+//! The questions about closest points, and checks of the answers.
 
 use super::subject::{Subject, compared_fields};
 use super::{approximation, exactness};
@@ -22,7 +22,7 @@ pub fn check_answer<T: Real>(subject: &Subject<'_, T>, question: &str, query: &P
     }
 }
 
-/// Checks that each finite query has an answer, if the scene has primitives.
+/// Checks that a finite query has an answer if the scene has primitives, and that other queries have none.
 fn check_absence<T: Real>(subject: &Subject<'_, T>, query: &Point3<T>) {
     assert!(subject.soup.is_empty() || !query.iter().all(|x| x.is_finite()), "{}", subject.describe(query));
     assert_eq!(subject.index.closest_point(query), None, "{}", subject.describe(query));
@@ -32,7 +32,7 @@ fn check_absence<T: Real>(subject: &Subject<'_, T>, query: &Point3<T>) {
     assert_eq!(subject.index.closest_point_with(query, &rough), None, "{}", subject.describe(query));
 }
 
-/// Checks that the answer has the bits of brute force, with every option that changes the work alone.
+/// Checks that the answer has the bits of brute force, with every option that only changes the work.
 fn check_agreement<T: Real>(subject: &Subject<'_, T>, query: &Point3<T>, expected: &Closest<T>) {
     let context = || subject.describe(query);
     let default = QueryOptions::default();
@@ -41,12 +41,12 @@ fn check_agreement<T: Real>(subject: &Subject<'_, T>, query: &Point3<T>, expecte
     let found = query_with(&default).expect("something");
     assert_eq!(compared_fields(&found), expected.0, "{}", context());
     assert!(found.lower_bound <= found.distance && found.lower_bound >= T::zero(), "{}: {found:?}", context());
-    // A hint may be any primitive, and also one that does not exist.
+    // A hint may be any primitive, even one that does not exist.
     for id in [subject.seed as usize % (subject.soup.len() + 1), found.primitive.index()] {
         let hinted = query_with(&default.with_hint(PrimitiveId::new(id)));
         assert_eq!(hinted.as_ref().map(compared_fields), Some(expected.0), "{}: hint {id}", context());
     }
-    // A radius decides whether there is an answer and does not change it; it is inclusive.
+    // A radius decides whether there is an answer, but does not change it. It is inclusive.
     let beside =
         [expected.1, expected.1 * T::round_from_f64(1.5), T::round_down_from_f64(expected.1.to_f64() * (1.0 - 1e-7))];
     for radius in beside {
@@ -59,7 +59,7 @@ fn check_agreement<T: Real>(subject: &Subject<'_, T>, query: &Point3<T>, expecte
     }
 }
 
-/// Checks that a batch has the answers of single queries; there are enough of them to be interleaved.
+/// Checks that a batch returns the answers of single queries. It is long enough for searches to be interleaved.
 pub fn check_batches<T: Real>(subject: &Subject<'_, T>, queries: &[Point3<T>]) {
     let queries: Vec<_> = queries.iter().copied().cycle().take(37).collect();
     let radius = queries.iter().find_map(|query| subject.brute.closest_point(query)).map_or(T::one(), |c| c.distance);

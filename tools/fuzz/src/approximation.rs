@@ -1,11 +1,11 @@
-//! Checks approximate answers: the requested error, and a valid lower bound.
+//! Checks of approximate answers: the error is as requested, and the lower bound is valid.
 
 use super::exactness;
 use super::subject::{Subject, compared_fields};
 use nalgebra::Point3;
 use p2m::{Closest, Primitive, PrimitiveId, PrimitiveSet, QueryOptions, Real};
 
-/// Queries an index and checks the promises of every answer; `exact` is the answer of brute force.
+/// Queries an index and checks the promises of the answer; `exact` is the answer of brute force.
 fn checked_answer<T: Real>(
     subject: &Subject<'_, T>,
     query: &Point3<T>,
@@ -30,7 +30,7 @@ fn checked_answer<T: Real>(
     found
 }
 
-/// Checks every option, with values that the seed chooses.
+/// Checks every option, with values chosen by the seed.
 pub fn check<T: Real>(subject: &Subject<'_, T>, query: &Point3<T>, exact: &Closest<T>) {
     let context = || format!("{}, {exact:?}", subject.describe(query));
     let default = QueryOptions::default();
@@ -44,7 +44,7 @@ pub fn check<T: Real>(subject: &Subject<'_, T>, query: &Point3<T>, exact: &Close
     checked_answer(subject, query, exact, &default.with_max_visits([0, 1, 2, 3, 5, 9][seed % 6]).with_hint(hint));
     let found = checked_answer(subject, query, exact, &default.with_max_visits(u32::MAX - 1));
     assert_eq!(compared_fields(&found), compared_fields(exact), "{}: a budget for everything: {found:?}", context());
-    // One radius contains a primitive and the other one does not.
+    // One of the radii contains a primitive, and the other one does not.
     let rough = default.with_epsilon(T::round_from_f64(epsilon));
     let found = checked_answer(subject, query, exact, &rough.with_max_distance(exact.distance).with_hint(hint));
     assert_eq!(found.distance, exact.distance, "{}: {found:?}", context());

@@ -1,4 +1,4 @@
-//! Selects a backend by a number.
+//! The backend that an input selects.
 
 use super::bytes::Bytes;
 use p2m::core::Isa;
@@ -13,20 +13,20 @@ use p2m::{
 pub trait Index<T: Real>: ClosestPoint<T> + NearQuery<T> + CertifiedQuery<T> + Sync {}
 impl<T: Real, I: ClosestPoint<T> + NearQuery<T> + CertifiedQuery<T> + Sync> Index<T> for I {}
 
-/// An index that answers ray and box queries as well.
+/// An index that also answers ray and box queries.
 pub trait Tree<T: Real>: Index<T> + RayQuery<T> + BoxQuery<T> {}
 impl<T: Real, I: Index<T> + RayQuery<T> + BoxQuery<T>> Tree<T> for I {}
 
 /// The names of the trees.
 pub const TREES: [&str; 4] = ["aabb", "kdop-6", "kdop-14", "kdop-26"];
-/// The names of the other backends, which answer closest-point queries only.
+/// The names of the other backends, which answer only closest-point queries.
 pub const OTHERS: [&str; 2] = ["octree", "p2m"];
 
 type Built<'a, I> = Result<(&'static str, Box<I>), BuildError>;
 
 fn isa(bytes: &mut Bytes<'_>) -> Isa {
     let mut available = Isa::available();
-    // A zero selects the best instruction set.
+    // The number zero selects the best instruction set.
     available.reverse();
     bytes.pick(&available)
 }
@@ -53,7 +53,7 @@ pub fn tree<'a, T: Real>(bytes: &mut Bytes<'_>, soup: &'a Soup<T>) -> Built<'a, 
     Ok((name, built))
 }
 
-/// Builds an index of any backend, with any instruction set and some options. Half of the numbers select a tree.
+/// Builds an index of any backend, with any instruction set and some options. Half of all numbers select a tree.
 ///
 /// # Errors
 /// Returns the errors of the build.

@@ -1,4 +1,4 @@
-//! Checks box queries on scenes from bytes.
+//! Checks of box queries on scenes from bytes.
 
 use super::backends::Tree;
 use super::scene::vertices;
@@ -6,7 +6,7 @@ use nalgebra::Point3;
 use p2m::{Aabb, PrimitiveId, PrimitiveSet, Real, Soup};
 use p2m_testkit::oracle::intersects_box;
 
-/// Checks boxes that are spanned by pairs of queries.
+/// Checks the boxes that pairs of queries span.
 pub fn check<T: Real>(soup: &Soup<T>, tree: &dyn Tree<T>, name: &str, queries: &[Point3<T>]) {
     for (a, b) in queries.iter().zip(queries.iter().cycle().skip(1)) {
         let bounds = Aabb { min: a.inf(b), max: a.sup(b) };

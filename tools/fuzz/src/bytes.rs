@@ -1,6 +1,6 @@
-//! Interprets an input as a sequence of choices.
+//! An input, read as a sequence of choices.
 
-/// The remaining bytes of an input. After its end there are zeros, so every input is complete.
+/// The remaining bytes of an input. Zeros follow its end, so every input is complete.
 pub struct Bytes<'a>(&'a [u8]);
 
 impl<'a> Bytes<'a> {
@@ -28,7 +28,7 @@ impl<'a> Bytes<'a> {
         from[self.below(from.len())]
     }
 
-    /// Returns a number of two bytes.
+    /// Returns a number made from two bytes.
     pub fn pair(&mut self) -> usize {
         usize::from(u16::from_le_bytes([self.byte(), self.byte()]))
     }
@@ -37,7 +37,7 @@ impl<'a> Bytes<'a> {
         u64::from_le_bytes(std::array::from_fn(|_| self.byte()))
     }
 
-    /// Returns the next `count` bytes, or as many as there are.
+    /// Returns the next `count` bytes, or all that remain if there are fewer.
     pub fn take(&mut self, count: usize) -> &'a [u8] {
         let (taken, rest) = self.0.split_at(count.min(self.0.len()));
         self.0 = rest;

@@ -1,4 +1,4 @@
-//! Compares answers with rational arithmetic.
+//! Comparison of answers with rational arithmetic.
 
 use super::scene::vertices;
 use super::subject::{Subject, compared_fields};
@@ -18,7 +18,7 @@ fn to_f64<T: Real>(p: &Point3<T>) -> [f64; 3] {
     p.map(T::to_f64).coords.into()
 }
 
-/// Returns the nearest primitive (the lowest id of several) and the distances of all.
+/// Returns the nearest primitive, the lowest id of equally near ones, and the distances of all.
 pub fn nearest<T: Real>(soup: &Soup<T>, query: &Point3<T>) -> (usize, Vec<Distance>) {
     let query = to_f64(query);
     let all: Vec<_> = (0..soup.len()).map(|id| Distance::new(query, &vertices(soup, id))).collect();
@@ -35,24 +35,25 @@ pub fn check<T: Real>(subject: &Subject<'_, T>, query: &Point3<T>, found: &Close
     let vertices_of_answer = vertices(subject.soup, id);
     let distance = found.distance.to_f64();
     if distance.is_finite() {
-        // The distance exceeds that of the nearest primitive by at most its rounding, which implies N2.
+        // The distance exceeds the least distance by at most its rounding, which implies N2.
         if !all[best].is_at_least(distance) {
             let wrong = all[best].error(distance, bits, T::SMALLEST_SUBNORMAL);
             assert!(wrong <= ERROR_CONSTANT, "{}: N2, {wrong} from primitive {best}", context());
         }
     } else {
-        // A distance above the range has the rounding error of the largest possible vertices.
+        // A distance above the range is reported as infinite. Its rounding error is bounded by that of the largest
+        // vertices.
         assert!(all[best].is_at_least(largest * (1.0 - 32.0 * T::UNIT_ROUNDOFF)), "{}: infinite", context());
     }
     assert!(all[best].is_at_least(found.lower_bound.to_f64()), "{}: N7", context());
-    // The other fields are checked against the primitive that the answer names.
+    // The other fields are checked against the primitive of the answer.
     if let Err(broken) = contract::check(point, &vertices_of_answer, found) {
         panic!("{}: {broken}", context());
     }
 }
 
-/// Checks N8: the answer is the nearest primitive, the lowest id of several that are exactly as near, with
-/// the rounded distance.
+/// Checks N8: the answer is the nearest primitive, the lowest id of exactly equally near ones, with the rounded
+/// distance.
 pub fn check_certified<T: Real>(subject: &Subject<'_, T>, query: &Point3<T>) {
     let (bits, largest) = precision::<T>();
     let (id, all) = nearest(subject.soup, query);
@@ -70,7 +71,7 @@ pub fn check_certified<T: Real>(subject: &Subject<'_, T>, query: &Point3<T>) {
     } else {
         assert!(truth.is_at_least(largest), "{}: infinite", context());
     }
-    // A radius is compared without rounding.
+    // The radius is compared without rounding.
     let answer = (compared_fields(&found), found.lower_bound);
     let unit = distance * 2.0 * T::UNIT_ROUNDOFF + T::SMALLEST_SUBNORMAL;
     for radius in [distance, distance - unit, distance + 2.0 * unit, distance * 0.5] {

@@ -1,9 +1,9 @@
-//! The checks of the fuzz targets, each as a function of the bytes of an input. `tests/all/fuzzed.rs` of the workspace
-//! runs them on the seeds and on inputs that once failed.
+//! The checks of the fuzz targets, as functions of the bytes of an input. `tests/all/fuzzed.rs` of the workspace runs
+//! them on the seeds and on inputs that once failed.
 //!
 //! - [`readers`]: files of scenes and points.
-//! - [`queries`], [`rays`], [`pairs`]: scenes and questions are made from the bytes, and answers are compared with brute force and
-//!   with rational arithmetic.
+//! - [`queries`], [`rays`], [`pairs`]: scenes and questions that are made from the bytes. Answers are compared with
+//!   brute force and with rational arithmetic.
 //! - [`saved`]: files of saved indexes, damaged or made up.
 
 mod answers;

@@ -1,7 +1,8 @@
-//! Nearest pairs of two scenes from bytes: trees are compared with all pairs and with rational arithmetic.
+//! Checks of the nearest pairs of two scenes from bytes: trees are compared with all pairs and with rational
+//! arithmetic.
 //!
-//! The first byte selects the scalar, the second one the kind of motion and the third one a seed; then come the first
-//! scene, the second one and the motion.
+//! The first byte selects the scalar, the second one the kind of motion, and the third one a seed. Then come the first
+//! scene, the second scene and the motion.
 
 use super::bytes::Bytes;
 use super::scene::{SceneDraft, vertices};
@@ -36,8 +37,8 @@ impl Input {
     }
 }
 
-/// Returns no motion, a translation that brings a point of the second scene to one of the first, or a rotation with such
-/// a translation or with any one.
+/// Returns one of these: no motion, a translation that brings a point of the second scene to a point of the first, a
+/// rotation with such a translation, or a rotation with any translation.
 fn draw_motion(bytes: &mut Bytes<'_>, kind: usize, drafts: &[SceneDraft; 2]) -> Option<Isometry3<f64>> {
     if kind == 0 {
         return None;
@@ -61,7 +62,7 @@ pub fn describe(input: &[u8]) -> String {
     format!("{}\n{}\nmotion {motion:?}", a.describe(), b.describe())
 }
 
-/// Runs the check of an input, and returns whether there was a nearest pair; `None` if a scene is invalid.
+/// Runs the check of an input, and returns whether there is a nearest pair; `None` if a scene is invalid.
 ///
 /// # Panics
 /// Panics if an answer is wrong.
@@ -74,7 +75,7 @@ pub fn check(input: &[u8]) -> Option<bool> {
     }
 }
 
-/// Returns the ids of all pairs within the largest distance of the options, in order.
+/// Returns the ids of all pairs within the largest distance of the options, in ascending order.
 fn ids_within<T: Real>(
     a: &impl PairQuery<T>,
     b: &impl PairQuery<T>,
@@ -90,7 +91,7 @@ fn ids_within<T: Real>(
     ids
 }
 
-/// All fields of an answer but its lower bound, with the bits of the distance.
+/// Returns all fields of an answer except its lower bound, with the bits of the distance.
 fn compared_fields<T: Real>(pair: &ClosestPair<T>) -> impl PartialEq + std::fmt::Debug + use<T> {
     let ClosestPair { points, distance, primitives, features, barycentric, is_intersecting, .. } = *pair;
     (distance.to_f64().to_bits(), points, primitives, features, barycentric, is_intersecting)
@@ -140,7 +141,7 @@ fn check_in<T: Real>(soups: [&Soup<T>; 2], motion: Option<Isometry3<f64>>, seed:
     true
 }
 
-/// Checks that the certified pair is within the bounds of the plain one, and that no pair is nearer.
+/// Checks that the distance of the certified pair is within the bounds of the plain one, and that no pair is nearer.
 fn check_certified<T: Real>(
     [a, b]: [&Soup<T>; 2],
     motion: Option<&Motion>,
@@ -162,7 +163,7 @@ fn check_certified<T: Real>(
     assert!(order.is_le(), "{certified:?} {plain:?}");
 }
 
-/// Checks that a ball that moves from one scene to the other touches nothing before its parameter.
+/// Checks that a ball that moves from one scene to the other one touches nothing before its parameter.
 fn check_ball<T: Real>([a, b]: [&Soup<T>; 2], tree: &impl PairQuery<T>, radius: T) {
     let (start, end) = (b.positions()[0], b.positions()[b.positions().len() - 1]);
     let ball = MovingBall::new(start, end, radius * T::round_from_f64(0.5));

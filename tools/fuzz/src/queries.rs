@@ -1,7 +1,7 @@
-//! Closest points of scenes from bytes: every backend is compared with brute force, bit for bit, and with rational
-//! arithmetic.
+//! Checks of closest points of scenes from bytes: every backend is compared with brute force, bit for bit, and with
+//! rational arithmetic.
 //!
-//! The first byte selects the question, the second one the scalar, and the next ones a backend; then come the scene and
+//! The first byte selects the question, the second one the scalar, and the next ones a backend. Then come the scene and
 //! up to four queries.
 
 use super::answers::{self, QUESTIONS};
@@ -15,12 +15,12 @@ use p2m::{AabbTree, BruteForce, BuildError, Real, Soup};
 use p2m_testkit::near_check;
 use p2m_testkit::scenes::{narrow, to_f32};
 
-/// The part of the library that an input reached.
+/// The part of the library that an input has reached.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub enum Reached {
-    /// The mode of the scene, the backend and the question.
+    /// The mode of the scene, the backend, and the question.
     Answers(&'static str, &'static str, &'static str),
-    /// The scene is an error, as it has to be.
+    /// The scene was refused, as it has to be.
     Refused,
 }
 
@@ -94,7 +94,7 @@ fn check_in<T: Real>(mut input: Input<'_>, soup: &Soup<T>, to_scalar: impl Fn(Po
     Reached::Answers(input.draft.mode, name, QUESTIONS[input.question])
 }
 
-/// Checks that a build over the primitives of a scene with a coordinate that is not finite is an error, too.
+/// Checks that a build over primitives with a coordinate that is not finite is an error, too.
 fn check_build_error(draft: &SceneDraft) {
     let shapes = draft.shapes();
     let id = draft.soup().expect_err("not finite");

@@ -1,6 +1,6 @@
-//! Rays at scenes from bytes: every tree is compared with rational arithmetic.
+//! Checks of rays at scenes from bytes: every tree is compared with rational arithmetic.
 //!
-//! The first byte selects the scalar, and the next ones a tree; then come the scene and up to three rays.
+//! The first byte selects the scalar, and the next ones a tree. Then come the scene and up to three rays.
 
 use super::backends::tree;
 use super::bytes::Bytes;
@@ -11,7 +11,7 @@ use p2m::{BruteForce, PrimitiveSet, Ray, Real, Soup};
 use p2m_testkit::ray_check::{Truth, agrees};
 use p2m_testkit::scenes::narrow;
 
-/// The largest number of primitives of a scene, because the integers of a ray are long.
+/// The largest number of primitives of a scene. It is small because the integers for a ray are long.
 const MAX_PRIMITIVES: usize = 16;
 
 struct Input<'a> {
@@ -33,7 +33,8 @@ impl<'a> Input<'a> {
     }
 }
 
-/// Returns a ray from one point to or through another, or along an axis.
+/// Returns a ray from a point towards another one, or in a direction of small integers or between other points. An
+/// invalid ray has to be the right error.
 fn draw_ray(bytes: &mut Bytes<'_>, draft: &SceneDraft) -> Result<Ray, RayError> {
     let (kind, from) = (bytes.below(5), draft.query(bytes));
     let direction = match kind {

@@ -1,6 +1,6 @@
-//! Checks the promises of readers for any file: reading does not panic, is the same in blocks of any size, and takes
-//! memory in proportion to the size of the file, and the scene can be written in every format and reads back as the same.
-//! Formats of other programs are read from memory, and may take more of it.
+//! Checks of the promises of readers for any file: reading does not panic, returns the same in blocks of any size, and
+//! takes memory in proportion to the size of the file; and the scene can be written in every format, and reading it
+//! returns the same scene. Formats of other programs are read from memory, and may take more of it.
 
 use super::memory;
 use p2m_core::{Element, PrimitiveSet, Soup};
@@ -20,7 +20,7 @@ fn measured<T>(file: &[u8], read: impl FnOnce() -> T) -> T {
     memory::at_most(MEMORY_PER_BYTE * file.len(), read)
 }
 
-/// Checks that blocks of any size give the scene or the error of sequential reading.
+/// Checks that blocks of any size return the scene or the error of sequential reading.
 fn check_blocks(file: &[u8], format: Format) {
     let outcome = |block_bytes| {
         let scene = read_scene_in_blocks(file, format, "fuzz", block_bytes).map_err(|error| error.to_string())?;
@@ -45,7 +45,7 @@ pub enum Reader {
 }
 
 impl Reader {
-    /// Returns the readers of all formats but that of saved indexes, which [`saved`](super::saved) checks.
+    /// Returns the readers of all formats except for saved indexes, which [`saved`](super::saved) checks.
     pub fn all() -> Vec<Self> {
         let scenes = Format::ALL.iter().filter(|format| **format != Format::P2m);
         scenes
@@ -55,7 +55,7 @@ impl Reader {
             .collect()
     }
 
-    /// Returns the name of the reader, which is that of the folder of its seeds.
+    /// Returns the name of the reader, which is also the name of the folder of its seeds.
     pub fn name(self) -> String {
         match self {
             Self::Scene(format) => format.to_string(),
@@ -84,18 +84,18 @@ fn scene(file: &[u8], format: Format) {
     check_written(&scene);
 }
 
-/// The memory that a file of another program may take in addition, beside what its length allows.
+/// The memory in bytes that a file of another program may take, beyond the memory in proportion to its length.
 const FOREIGN_BYTES: usize = 1 << 28;
 
-/// Reads a scene of another program, with the right checksums where the format has them, and writes it.
+/// Reads a scene of another program, after correcting checksums if the format has them, and writes it.
 fn foreign(file: &[u8], format: ForeignFormat) {
     let mut file = file.to_vec();
     if format == ForeignFormat::E57 {
         p2m_testkit::restore_e57_checksums(&mut file);
     }
     let read = || {
-        // The decoder of LAZ panics at damaged data, which its reader makes an error of. The hook of the fuzzer would
-        // end the program.
+        // The decoder of LAZ panics at damaged data, and its reader turns the panic into an error. The hook of the
+        // fuzzer would end the program before.
         let hook = (cfg!(fuzzing) && format == ForeignFormat::Las).then(std::panic::take_hook);
         if hook.is_some() {
             std::panic::set_hook(Box::new(|_| ()));
@@ -126,7 +126,7 @@ fn check_written(scene: &Scene) {
         assert!(again.skipped.is_empty() || format == Format::P2m, "{format}: {:?}", again.skipped);
         let expected = match format {
             Format::Ply | Format::P2m => bits(&scene.soup),
-            // The documentation of the writers has these exceptions.
+            // These exceptions are documented at the writers.
             _ if scene.soup.len() == 0 => Vec::new(),
             _ => bits(&scene.soup).into_iter().map(finite_or_origin).collect(),
         };
@@ -196,7 +196,7 @@ fn points(file: &[u8], format: PointFormat) {
         Err(error) => return assert!(!error.to_string().is_empty()),
     };
     let rows: Vec<[f64; 3]> = points.iter().map(|point| point.coords.into()).collect();
-    // Text has one NaN.
+    // Text does not distinguish the bits of NaN.
     let bits = |p: &[f64; 3]| p.map(|x| if x.is_nan() { f64::NAN.to_bits() } else { x.to_bits() });
     for &format in PointFormat::ALL {
         let written = p2m_testkit::point_file(format.name(), &rows);

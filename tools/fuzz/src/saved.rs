@@ -1,9 +1,9 @@
-//! Files of saved indexes from bytes: damaged, modified on purpose, or made up.
+//! Checks of saved indexes from bytes: damaged files, files modified on purpose, and files made up.
 //!
-//! The first byte selects one of these, and the next two choose a valid file. Damage has to be detected, or to change
-//! no answer. A file that is modified and has its checksums corrected passes for a valid one: `p2m::storage` promises
-//! that loading it succeeds or is an error, takes memory in proportion to its size, and has no undefined behaviour. Its
-//! answers may be wrong, but no query panics, and all queries together take less than a second.
+//! The first byte selects one of these, and the next two a valid file. Damage has to be detected, or change no answer.
+//! A file that is modified and has its checksums corrected passes for a valid one: `p2m::storage` promises that loading
+//! it succeeds or is an error, takes memory in proportion to its size, and has no undefined behaviour. Its answers may
+//! be wrong, but no query panics, and all queries together take less than a second.
 
 use super::bytes::Bytes;
 use super::memory;
@@ -22,7 +22,7 @@ use std::time::Duration;
 
 /// The memory that loading may take for each byte of a file.
 const MEMORY_PER_BYTE: usize = 64;
-/// The processor time of loading and querying a file that was modified on purpose.
+/// The largest CPU time of loading and querying a file that was modified on purpose.
 const MAX_TIME: Duration = Duration::from_secs(1);
 
 type Answers = Vec<Option<(u64, PrimitiveId, [u64; 3])>>;
@@ -30,13 +30,13 @@ type Answers = Vec<Option<(u64, PrimitiveId, [u64; 3])>>;
 /// The outcome of an input.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub enum Reached {
-    /// The file is an error.
+    /// The file was refused.
     Refused,
-    /// The file was loaded and answered, correctly where that is promised.
+    /// The file was loaded and answered queries, correctly where that is promised.
     Answered,
 }
 
-/// An index that answers all kinds of queries that every index has.
+/// An index with the queries that every index answers.
 trait LoadedIndex: ClosestPoint<f64> + NearQuery<f64> + CertifiedQuery<f64> + IndexStats<f64> {}
 
 impl<I: ClosestPoint<f64> + NearQuery<f64> + CertifiedQuery<f64> + IndexStats<f64>> LoadedIndex for I {}
@@ -76,7 +76,7 @@ kinds! {
     "p2m": P2mIndex,
 }
 
-/// Returns a bent strip large enough for cells, a tripod, one point, and an empty scene.
+/// Returns a bent strip that is large enough for cells, a tripod, one point, and an empty scene.
 fn scenes() -> [Scene; 4] {
     let at = |i: i32, j: i32| {
         let (x, y) = (f64::from(i) * 0.5, f64::from(j) * 0.5);
@@ -151,7 +151,7 @@ fn answers_of(bytes: &[u8]) -> Result<Answers, LoadError> {
     })
 }
 
-/// Loads a file that passes for a valid one, and checks that its searches end.
+/// Loads a file that passes for a valid one, and checks that searches in it end.
 fn check_modified(bytes: &[u8]) -> Reached {
     let start = ThreadTime::now();
     let read = loaded(bytes, |soup, index| {
@@ -187,7 +187,7 @@ fn checked_result<R>(read: Result<R, LoadError>) -> Option<R> {
     read.ok()
 }
 
-/// Modifies a file as the bytes of an input say, in the header, the table, or a section.
+/// Modifies a file as an input demands: in the header, the table, or a section.
 fn modify(file: &mut Vec<u8>, bytes: &mut Bytes<'_>) {
     while !bytes.is_empty() && !file.is_empty() {
         let operation = bytes.below(8);

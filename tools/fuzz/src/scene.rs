@@ -9,18 +9,18 @@ const MAX_PRIMITIVES: usize = 40;
 /// The number of positions that the primitives share.
 const POSITIONS: usize = 48;
 
-/// Returns x 2^exponent, in two steps, so that no factor leaves the range.
+/// Returns x 2^exponent, multiplied in two steps, so that no factor leaves the range.
 fn scaled(x: f64, exponent: i32) -> f64 {
     x * 2f64.powi(exponent / 2) * 2f64.powi(exponent - exponent / 2)
 }
 
-/// Returns the number that is `steps` representable numbers further up or down; numbers that are not finite stay.
+/// Returns the number `steps` representable numbers up or down. A number that is not finite stays.
 fn beside(x: f64, steps: i8) -> f64 {
     let one = |x: f64| if steps < 0 { x.next_down() } else { x.next_up() };
     if x.is_finite() { (0..steps.unsigned_abs()).fold(x, |x, _| one(x)) } else { x }
 }
 
-/// The distribution of coordinates.
+/// A distribution of coordinates.
 enum Coordinates {
     /// Integers from -4 to 4, and quarters for queries, moved and scaled without rounding, so that ties are frequent.
     Lattice { offset: f64, exponent: i32 },
@@ -96,7 +96,7 @@ impl Coordinates {
     }
 }
 
-/// A scene that may be invalid, and the distribution from which query points are drawn.
+/// A scene that may be invalid, and the distribution of query points.
 pub struct SceneDraft {
     pub mode: &'static str,
     pub positions: Vec<Point3<f64>>,
@@ -110,7 +110,7 @@ impl SceneDraft {
         let coordinates = Coordinates::draw(bytes);
         let count = 1 + bytes.below(POSITIONS);
         let mut positions: Vec<_> = (0..count).map(|_| coordinates.point(bytes, false)).collect();
-        // Near-ties arise from positions that tie exactly.
+        // Moving some coordinates of an exact tie makes near-ties.
         for _ in 0..bytes.below(8) {
             let (position, axis) = (bytes.below(count), bytes.below(3));
             positions[position][axis] = beside(positions[position][axis], bytes.signed() % 4);
@@ -128,7 +128,7 @@ impl SceneDraft {
         Self { mode: coordinates.mode(), positions, elements, coordinates }
     }
 
-    /// Returns a point around the scene or anywhere, which may be not finite.
+    /// Returns a point around the scene or anywhere. It may not be finite.
     pub fn query(&self, bytes: &mut Bytes<'_>) -> Point3<f64> {
         let kind = bytes.below(9);
         let vertex = |bytes: &mut Bytes<'_>| self.positions[bytes.below(self.positions.len())];
@@ -148,7 +148,7 @@ impl SceneDraft {
         }
     }
 
-    /// Returns the primitives one by one, whatever their coordinates are.
+    /// Returns the primitives one by one, for any coordinates.
     pub fn shapes(&self) -> Vec<Shape<f64>> {
         let at = |i: u32| self.positions[i as usize];
         let shape = |element: &Element| match *element {

@@ -1,4 +1,4 @@
-//! The subject of a check: an index together with the scene and with brute force.
+//! The subject of a check: an index with its scene and with brute force.
 
 use super::backends::Index;
 use nalgebra::Point3;
@@ -13,7 +13,7 @@ pub struct Subject<'a, T: Real> {
     pub seed: u64,
 }
 
-/// All fields of an answer but its lower bound, to the last bit.
+/// All fields of an answer except its lower bound, comparable to the last bit.
 pub type ComparedFields = (PrimitiveId, u64, [u64; 3], Feature, [u64; 3]);
 
 /// Returns the fields of an answer that every index has to return.

@@ -1,4 +1,4 @@
-//! The environment variable `P2M_READER` names the reader.
+//! The fuzz target of readers. The environment variable `P2M_READER` names the reader.
 #![no_main]
 
 use p2m_fuzz::readers::Reader;
