@@ -5,18 +5,18 @@ use p2m::{AabbTree, ClosestPoint};
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
-/// Returns the folder into which cargo puts examples, which is beside the folder of tests.
+/// Returns the folder of the compiled examples, which is beside the folder of tests.
 fn folder() -> PathBuf {
     let test = std::env::current_exe().expect("a program");
     test.ancestors().nth(2).expect("a folder of builds").join("examples")
 }
 
-/// Runs an example in the root of the project and returns its output.
+/// Runs an example in the root folder of the project, and returns its output.
 fn output(name: &str, arguments: &[&str]) -> String {
     let root = Path::new(env!("CARGO_MANIFEST_DIR"));
     let program = folder().join(format!("{name}{}", std::env::consts::EXE_SUFFIX));
     let made = |path: &Path| path.metadata().and_then(|metadata| metadata.modified()).ok();
-    // `cargo test` builds examples, `cargo test --test examples` does not.
+    // `cargo test` builds examples, but `cargo test --test examples` does not.
     let is_new = made(&program) > made(&root.join("examples").join(format!("{name}.rs")));
     assert!(is_new, "{} is missing or old: cargo build --examples makes it", program.display());
     let output = Command::new(&program).args(arguments).current_dir(root).output().expect("a program that runs");
@@ -24,7 +24,7 @@ fn output(name: &str, arguments: &[&str]) -> String {
     String::from_utf8(output.stdout).expect("text")
 }
 
-/// Returns the numbers of a text, in their order.
+/// Returns the numbers in a text, in order.
 fn numbers(text: &str) -> Vec<f64> {
     text.split(|c: char| !(c.is_ascii_digit() || ".-e".contains(c)))
         .filter_map(|word| word.trim_end_matches('.').parse().ok())
@@ -46,11 +46,11 @@ fn a_cloud_is_wrapped_onto_the_scene() {
 fn cables_have_room_beside_the_tube() {
     let text = output("clearance", &[]);
     assert!(text.starts_with("480 pipes beside 3600 triangles"), "{text}");
-    // The clearance of wider pipes is smaller by the difference of the radii.
+    // Wider pipes reduce the clearance by the difference of the radii.
     let clearance = |text: &str| numbers(text.lines().nth(1).expect("a line"))[0];
     let wide = output("clearance", &["scenes/knot_and_cables.obj", "0.03"]);
     assert!((clearance(&text) - clearance(&wide) - 0.01).abs() < 2e-6, "{text}{wide}");
-    // The clearance is not below the distance of points of the axes, and barely above it.
+    // The clearance is at least the distance between points of the axes, and hardly more.
     let scene = p2m::scene::read_scene("scenes/knot_and_cables.obj".as_ref()).expect("carried").soup;
     let index = AabbTree::new(scene.triangle_set()).expect("valid");
     let distances = scene.segments().iter().flat_map(|s| {
@@ -86,7 +86,7 @@ fn an_octahedron_moved_along_a_diagonal_is_as_far_as_it_was_moved() {
     assert_bounds(&output("hausdorff", &[&here, &there]), 0.25, 1e-3);
 }
 
-/// Asserts that the bounds of a Hausdorff distance contain a value and are near to each other.
+/// Asserts that the bounds of a Hausdorff distance contain a value and are close to each other.
 fn assert_bounds(text: &str, expected: f64, tolerance: f64) {
     let found = numbers(text);
     let (lower, upper) = (found[0], found[1]);
@@ -102,10 +102,11 @@ fn a_sphere_that_is_moved_is_as_far_as_it_was_moved() {
 
 #[test]
 fn boxes_on_circles_pass_a_sensor_and_a_beam() {
-    // The only box begins on the axis, with its inner face 0.4 from the sensor, and turns once, by 6 degrees in a step.
+    // The only box begins on the axis, with its inner face 0.4 from the sensor, and turns about it once, by 6 degrees
+    // per step.
     let text = output("moving_boxes", &["1", "61"]);
     assert!(text.starts_with("box 0 comes nearest to the sensor: 0.400000 in step 0\n"), "{text}");
-    // The beam runs 0.2 beside the axis. After one step the box is 0.209 beside it, and after two 0.416.
+    // The beam is 0.2 beside the axis. The box is 0.209 beside the axis after one step, and 0.416 after two.
     assert_eq!(numbers(text.lines().nth(1).expect("a line")), [1.0, 61.0], "{text}");
     let many = output("moving_boxes", &[]);
     assert!(numbers(many.lines().nth(1).expect("a line"))[0] > 1.0, "{many}");

@@ -1,7 +1,7 @@
-//! Builds, queries, moves, saves, loads and drops random scenes on all cores, for as long as requested: no answer may
-//! be lost, and memory has to stay constant.
+//! Builds, queries, moves, saves, loads and drops random scenes on all cores, for as long as requested. No answer may
+//! be lost, and memory has to remain constant.
 //!
-//! `P2M_SOAK=600 cargo test --release --test soak -- --nocapture` runs for ten minutes. The default is a moment, and
+//! `P2M_SOAK=600 cargo test --release --test soak -- --nocapture` runs for ten minutes. The default is a moment, or
 //! three seconds with `P2M_DEEP`.
 #![cfg(all(feature = "bvh", feature = "interception", feature = "kdop"))]
 
@@ -33,7 +33,7 @@ fn brute(soup: &Soup<f64>, queries: &[Point3<f64>]) -> Answers {
     answers(&BruteForce::new(soup).expect("valid"), queries)
 }
 
-/// Returns a small scene that is hard, or a larger one that is not.
+/// Returns either a small hard scene or a larger ordinary one.
 fn scene(rng: &mut impl Rng) -> (Soup<f64>, Vec<Point3<f64>>) {
     if rng.random_bool(0.5) {
         return Extreme::ALL[rng.random_range(0..Extreme::ALL.len())].generate(rng, 32);
@@ -94,14 +94,14 @@ fn cycle(seed: u64) -> u64 {
 #[test]
 fn nothing_is_lost_and_memory_is_flat() {
     let seconds: f64 = std::env::var("P2M_SOAK").map_or_else(|_| amount(3.0, 0.5), |s| s.parse().expect("seconds"));
-    // One cycle runs first, so that memory that is allocated only once exists.
+    // One cycle runs first, so that allocations that happen only once are not measured.
     let first = amount(50, 12);
     for seed in 0..first {
         cycle(seed);
     }
     let before = MEMORY.current_usage();
     let (scenes, answers) = (AtomicU64::new(first), AtomicU64::new(0));
-    // The largest use of memory in each part of the time, as each thread measures it between two scenes.
+    // The largest memory in each part of the time. Each thread measures memory between two scenes.
     let peaks: [AtomicUsize; MEASUREMENTS] = Default::default();
     let start = Instant::now();
     let failed = Mutex::new(false);

@@ -1,5 +1,5 @@
-//! Runs every backend over the adversarial scenes of p2m-testkit: answers have to equal those of brute force, and
-//! counters have to stay below the bounds of docs/measurements/adversaries.md, which has times and memory.
+//! Runs every backend over the adversarial scenes of p2m-testkit. Answers have to equal those of brute force, and
+//! counters have to stay below the bounds of docs/measurements/adversaries.md, which also has times and memory.
 #![cfg(all(feature = "bvh", feature = "interception", feature = "kdop"))]
 
 use nalgebra::Point3;
@@ -21,23 +21,23 @@ fn count() -> usize {
     amount(2_000, 200)
 }
 
-/// Returns the number of queries of a scene.
+/// Returns the number of queries for each scene.
 fn query_count() -> usize {
     amount(40, 6)
 }
 
 /// The largest number of nodes on a path to a packet, for any scene.
 const MAX_DEPTH: usize = 66;
-/// The largest number of bytes per primitive in trees.
+/// The largest number of bytes per primitive of a tree.
 const MAX_TREE_BYTES_PER_PRIMITIVE: usize = 160;
-/// The largest number of bytes of a site with its neighbours and its entries in the grids, without lists.
+/// The largest number of bytes per site, with its neighbours and its entries in the grids, but without lists.
 const MAX_BYTES_PER_SITE: usize = 512;
 
 fn answers(index: &impl ClosestPoint<f64>, queries: &[Point3<f64>]) -> Vec<Option<(u64, PrimitiveId)>> {
     queries.iter().map(|q| index.closest_point(q).map(|c| (c.distance.to_bits(), c.primitive))).collect()
 }
 
-/// Compares an index with brute force, and the work of its queries with the size of the tree.
+/// Compares an index with brute force, and compares the work of its queries with the size of the tree.
 fn check_work<I: ClosestPoint<f64> + IndexStats<f64>, V: Volume>(
     name: &str,
     index: &I,
@@ -50,11 +50,12 @@ fn check_work<I: ClosestPoint<f64> + IndexStats<f64>, V: Volume>(
         assert_eq!(found, expected, "{name} {q:?}");
     }
     let visits = QueryCost::measure(index, &queries);
-    // No node or packet is visited twice. Only primitives may be evaluated early because they seem near.
+    // No node or packet is visited twice. Only primitives may be evaluated twice: those that seem near are evaluated
+    // early.
     assert!(visits.packets.max <= tree.packets().0, "{name}: {visits:?}");
     assert!(visits.primitives.max <= soup.len() + 1, "{name}: {visits:?}");
     assert!(tree.depth() <= MAX_DEPTH, "{name}: {}", tree.depth());
-    // Small trees have nodes that are almost empty, so a minimum number of primitives is assumed.
+    // The nodes of small trees are almost empty, so a minimum number of primitives is assumed.
     assert!(
         tree.memory() <= MAX_TREE_BYTES_PER_PRIMITIVE * soup.len().max(amount(64, 320)),
         "{name}: {} bytes of tree",
@@ -98,7 +99,7 @@ fn every_backend(adversary: &Adversary) {
     check_work(&format!("{name}, p2m"), &p2m, p2m.partition().tree(), soup);
     let report = p2m.report();
     let sites = report.list_cells + report.fallback_cells + report.auxiliary;
-    // A vertex that several packets have counts several times.
+    // A vertex that occurs in several packets counts several times.
     let vertices: usize = (0..soup.len()).map(|i| p2m::Primitive::vertices(&soup.get(PrimitiveId::new(i))).len()).sum();
     assert!(sites <= 6 + 3 * vertices / 2 + soup.len(), "{name}: {report}");
     assert!(
@@ -107,13 +108,13 @@ fn every_backend(adversary: &Adversary) {
     );
     assert!(report.entries <= options.max_list_packets * report.list_cells, "{name}: {report}");
     assert!(p2m.list_lengths().into_iter().all(|len| len <= options.max_list_packets * 16), "{name}");
-    // With fewer primitives the budget is sufficient.
+    // A scene with fewer primitives stays within the budget.
     if is_deep() && ["skew points", "skew wires", "helices", "moment curve"].contains(&name) {
         assert!(report.list_cells == 0 && report.bytes == 0, "{name}: {report}");
     }
 }
 
-/// Two skew lines of points need quadratically many tetrahedra: every pair of neighbours on one line makes a
+/// Points on two skew lines need quadratically many tetrahedra: every pair of neighbours on one line makes a
 /// tetrahedron with every pair on the other.
 #[test]
 fn quadratic_tetrahedra_are_given_up() {
@@ -131,7 +132,7 @@ fn quadratic_tetrahedra_are_given_up() {
     };
     too_many(&few, count - 1);
     too_many(&few, 0);
-    // The build stops after a few of some millions of tetrahedra.
+    // The build stops after a small part of some millions of tetrahedra.
     too_many(&points(4_000), 16 * 4_000);
     let within = Delaunay::within(&few, 300.0, 2 * count).expect("few enough");
     assert_eq!((within.tetrahedra(), within.work()), (all.tetrahedra(), all.work()));
@@ -163,7 +164,7 @@ fn cells_of_vertices_that_take_too_much_are_left_to_the_tree() {
     assert_eq!(ample.report(), unlimited.report());
 }
 
-/// Budgets that nothing exceeds change no answer, with added sites and with lists as long as they get.
+/// Budgets that are never exceeded change no answer, with added sites and with lists of any length.
 #[test]
 fn indexes_with_unlimited_budgets_answer_as_brute_force() {
     for name in ["grid", "sphere", "spheres", "sheets", "plane", "needles", "one over all", "two clouds"] {
@@ -205,8 +206,7 @@ impl PrimitiveSet<f64> for Counted<'_> {
     }
 }
 
-/// Where all primitives are equally near, a search for one corner of a cell visits the whole scene, and that
-/// counts as work.
+/// If all primitives are equally near, a search for one corner of a cell visits the whole scene, which counts as work.
 #[test]
 #[ignore = "deep: the least budget of an octree is millions of searches for corners"]
 fn corners_of_cubes_that_take_the_whole_scene_are_few() {
@@ -220,7 +220,7 @@ fn corners_of_cubes_that_take_the_whole_scene_are_few() {
     assert!((query_count as f64) < 7.0 * options.work * 10_000.0, "{query_count}");
 }
 
-/// A set of more primitives than there are ids, none of which is ever accessed.
+/// A set with more primitives than there are ids. None of them is ever accessed.
 struct TooManyPrimitives(usize);
 
 impl PrimitiveSet<f64> for TooManyPrimitives {

@@ -1,4 +1,4 @@
-//! Compares every backend with brute force, bit for bit (N3), and sets with the exact oracle (N2, N7).
+//! Compares every backend with brute force, bit for bit (N3), and whole sets with the exact oracle (N2, N7).
 //!
 //! One generic suite serves all backends with sets of many types. `registry.rs` compares every backend of the registry
 //! over scenes.
@@ -21,7 +21,7 @@ use p2m_testkit::{amount, cases, oracle::Distance, rng};
 use rand::RngExt;
 use std::fmt::Debug;
 
-/// Generates tests of scenes of all kinds for an index that is not in the registry, in both scalars.
+/// Generates tests on scenes of all kinds, in both scalars, for an index that is not in the registry.
 macro_rules! on_soups {
     ($index:ident) => {
         #[test]
@@ -48,7 +48,7 @@ macro_rules! on_soups {
     };
 }
 
-/// Generates these tests for k-DOP trees whose directions the rest of the suite need not vary.
+/// Generates the same tests for k-DOP trees with other directions, which the rest of the suite need not vary.
 macro_rules! variants {
     ($($name:ident: $index:ident),+ $(,)?) => {
         $(mod $name {
@@ -58,7 +58,7 @@ macro_rules! variants {
     };
 }
 
-/// Generates tests with sets of many types for a backend.
+/// Generates tests on sets of many types for a backend.
 macro_rules! backends {
     ($($name:ident: $index:ident),+ $(,)?) => {
         $(mod $name {
@@ -105,7 +105,7 @@ macro_rules! backends {
                     let mut r = rng("magnitudes", seed);
                     let cases: Vec<_> = (0..amount(12, 7)).map(|_| p2m_testkit::families::wild(&mut r)).collect();
                     let shapes: Vec<Shape<f64>> = cases.iter().map(|c| shape(&c.vertices)).collect();
-                    // Each case is queried at its own query point and near a vertex of another case.
+                    // Each case is queried at its query point, and near a vertex of another case.
                     let vertex = |c: &p2m_testkit::families::Case| Point3::from(c.vertices[0].map(|x| x * (1.0 + 1e-13)));
                     let queries: Vec<Point3<f64>> = cases.iter().map(|c| Point3::from(c.query)).chain(cases.iter().map(vertex))
                         .filter(|q| q.iter().all(|x| x.is_finite())).collect();
@@ -134,7 +134,7 @@ macro_rules! backends {
     };
 }
 
-/// `BruteForce` with the type parameters of the other backends.
+/// `BruteForce` with the type parameters of other backends.
 type Brute<T, S> = BruteForceOf<T, S>;
 
 type Kdop6<T, S> = KdopTree<T, S, 6>;
@@ -157,7 +157,7 @@ variants! {
     p2m_index_as_in_paper: AsInPaper,
 }
 
-// Few sets are used, because these variants take long to compile.
+// Only a few sets are tested, because these variants take long to compile.
 variants! {
     kdop_6: Kdop6,
     kdop_18: Kdop18,
@@ -194,7 +194,7 @@ impl<T: Real, S: PrimitiveSet<T> + Sync> BuildIndex<T, S> for AsInPaper<T, S> {
     }
 }
 
-/// A k-DOP tree with user-defined directions, of which three are orthogonal or none.
+/// A k-DOP tree with user-defined directions. Either three of them are orthogonal, or none are.
 struct OwnDirections<T: Real, S, const K: usize, const ORTHOGONAL: bool>(KdopTree<T, S, K>);
 
 impl<T: Real, S: PrimitiveSet<T>, const K: usize, const O: bool> ClosestPoint<T> for OwnDirections<T, S, K, O> {
@@ -217,7 +217,7 @@ impl<T: Real, S: PrimitiveSet<T> + Sync, const K: usize, const O: bool> BuildInd
     }
 }
 
-/// `BruteForce` has no scalar parameter; this type adds one, so that the suite is tested on itself.
+/// `BruteForce` with a scalar parameter, so that the suite can be tested on itself.
 struct BruteForceOf<T, S>(BruteForce<S>, std::marker::PhantomData<T>);
 
 impl<T: Real, S: PrimitiveSet<T>> ClosestPoint<T> for BruteForceOf<T, S> {
@@ -247,8 +247,8 @@ where
     agrees_with(&brute, seed, set.len(), queries, &index);
 }
 
-/// Checks an index of `len` primitives with every option. It takes trait objects, because it would otherwise be
-/// compiled for many types.
+/// Checks an index of `len` primitives with every option. It takes trait objects, so that it is compiled once and not
+/// for many types.
 pub(crate) fn agrees_with<T: Real>(
     brute: &dyn ClosestPoint<T>,
     seed: u64,
@@ -272,7 +272,7 @@ pub(crate) fn agrees_with<T: Real>(
             continue;
         };
         assert!(found.lower_bound <= found.distance, "{}", context());
-        // A hint, good or bad or out of range, changes no answer.
+        // A hint changes no answer, whether it is good, bad or out of range.
         let hint = PrimitiveId::new(rng.random_range(0..len + 1));
         let hinted = index.closest_point_with(q, &QueryOptions::default().with_hint(hint));
         assert_eq!(without_bound(hinted), without_bound(Some(expected)), "{}: hint {hint}", context());
@@ -297,8 +297,8 @@ pub(crate) fn agrees_with<T: Real>(
             context()
         );
         assert!(rough.lower_bound <= expected.distance, "{}: epsilon {epsilon}", context());
-        // With a hint and a radius in addition, there is an answer if any primitive is within the radius, and it keeps
-        // the bounds.
+        // With both a hint and a radius, there is an answer if any primitive is within the radius, and it keeps the
+        // bounds.
         let stretch = rng.random_range(1.0..1.0 + epsilon);
         let radius = T::round_from_f64(expected.distance.to_f64() * stretch);
         let options = QueryOptions::default().with_epsilon(T::round_from_f64(epsilon)).with_max_distance(radius);
@@ -314,10 +314,10 @@ pub(crate) fn agrees_with<T: Real>(
     }
 }
 
-/// Repeats scenes that were once answered wrongly.
+/// Tests scenes that were answered wrongly by earlier versions.
 fn past_failures<I: BuildIndex<f64, Vec<Shape<f64>>, Error = BuildError>>() {
     let build = |set: Vec<Shape<f64>>| I::build(set, &I::Options::default()).expect("finite");
-    // Scaling down by 1e300 lost the distance of the projection, so the key fell below the bound of the box.
+    // Scaling down by 1e300 lost the distance of the projection, so the key was below the bound of the box.
     let set = vec![shape(&[[0.0, 0.0, 1.1e-100]]), shape(&[[-1e300, 0.0, 0.0], [1e300, 0.0, 0.0]])];
     let q = Point3::new(0.0, 0.0, 1e-100);
     let expected = BruteForce::new(&set[..]).expect("finite").closest_point(&q).expect("not empty");
@@ -325,7 +325,7 @@ fn past_failures<I: BuildIndex<f64, Vec<Shape<f64>>, Error = BuildError>>() {
         build(set).closest_point(&q).map(|c| (c.primitive, c.distance)),
         Some((expected.primitive, expected.distance))
     );
-    // Keys outside of the plain range once had a wrong certified bound.
+    // The certified bound of keys outside of the plain range was wrong.
     let point = [-7.528623501410492e140, -1.5628541052992638e141, 1.5027718543271175e141];
     let q = Point3::new(-7.528623501410494e140, -1.5628541052992638e141, 1.5027718543271175e141);
     let segment = [
@@ -352,7 +352,7 @@ fn past_failures<I: BuildIndex<f64, Vec<Shape<f64>>, Error = BuildError>>() {
     assert!(found.primitive.index() == 60 || found.primitive.index() == 0, "{found:?}");
 }
 
-/// A distance of 1.41 eta is reported as eta, and is within a radius of eta.
+/// A distance of 1.41 eta is reported as eta, and counts as within a radius of eta.
 #[test]
 fn the_radius_is_inclusive_for_subnormal_distances_in_f32() {
     let eta = f32::from_bits(1);
@@ -387,14 +387,14 @@ where
             assert_eq!(error, Some(BuildError::NonFinite { id: PrimitiveId::new(at) }), "{bad} at {at}");
         }
     }
-    // Of equally near primitives the lowest id wins, wherever it lies in the tree.
+    // Of equally near primitives the one with the lowest id wins, wherever it is in the tree.
     let set: Vec<_> = (0..100).map(|i| segment(f64::from(i % 10), f64::from(i % 10))).collect();
     let index = build(set).expect("finite");
     for i in 0..10 {
         let found = index.closest_point(&Point3::new(f64::from(i), 0.0, 1.0)).expect("not empty");
         assert_eq!(found.primitive.index(), usize::try_from(i).expect("small"));
     }
-    // Slices of different lengths are the one documented panic.
+    // Slices of different lengths cause the only documented panic.
     let mut out = [None; 2];
     let short = std::panic::catch_unwind(std::panic::AssertUnwindSafe(|| {
         index.closest_points_into(&[Point3::origin()], &QueryOptions::default(), &mut out);
@@ -429,8 +429,8 @@ fn the_returned_primitive_is_nearest_within_rounding() {
             let nearest = (0..exact.len()).min_by(|a, b| exact[*a].compare(&exact[*b])).expect("not empty");
             let returned = &exact[found.primitive.index()];
             let context = || format!("seed {seed}, query {i}");
-            // N1 for the scene: the returned primitive's M bounds the error on one side, the nearest one's M on the
-            // other.
+            // N1 for scenes: the error is bounded by the M of the returned primitive on one side, and by the M of the
+            // nearest primitive on the other side.
             assert!(returned.error(found.distance, 53, 0.0) <= 4.0, "{}: N1", context());
             for bound in [found.lower_bound, in_batch.lower_bound] {
                 assert!(exact.iter().all(|d| d.is_at_least(bound)), "{}: N7", context());
@@ -449,7 +449,7 @@ fn the_returned_primitive_is_nearest_within_rounding() {
     assert!(cases.is_replay() || wrong < query_count / 50, "{wrong} of {query_count}");
 }
 
-/// Permuting and duplicating primitives and adding far geometry change answers only as they must.
+/// Permuting and duplicating primitives and adding far geometry change answers only as they have to.
 #[test]
 fn scenes_can_be_permuted_duplicated_and_extended() {
     for seed in cases(60, 24) {
@@ -491,7 +491,7 @@ fn scenes_can_be_permuted_duplicated_and_extended() {
     }
 }
 
-/// The bound of a box never exceeds the key of a primitive inside of it, which pruning without slack relies on.
+/// The bound of a box never exceeds the key of a primitive inside of it, so searches can prune without slack.
 #[test]
 fn box_bounds_never_exceed_the_keys_inside() {
     for seed in cases(300_000, 6_000) {

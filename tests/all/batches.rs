@@ -1,5 +1,5 @@
-//! Batches have the answers of single queries, bit for bit: for every backend, size, instruction set and number of
-//! threads, with queries that have no answer among them.
+//! Batches return the same bits as single queries, for every backend, size, instruction set and number of threads. Some
+//! queries have no answer.
 #![cfg(all(feature = "bvh", feature = "interception", feature = "kdop"))]
 
 use nalgebra::Point3;
@@ -13,7 +13,7 @@ use p2m_testkit::{amount, cases, rng};
 use rand::{Rng, RngExt};
 use std::sync::Arc;
 
-/// Returns queries in, around, on and far from a scene, of which some are not finite.
+/// Returns queries in, around, on and far from a scene. Some of them are not finite.
 fn queries<T: Real>(rng: &mut impl Rng, soup: &Soup<T>, count: usize) -> Vec<Point3<T>> {
     let bounds = soup.aabb();
     let size = Real::to_f64((bounds.max - bounds.min).norm()).max(1e-30);
@@ -31,14 +31,14 @@ fn queries<T: Real>(rng: &mut impl Rng, soup: &Soup<T>, count: usize) -> Vec<Poi
         .collect()
 }
 
-/// The fields of an answer that do not depend on what else a search evaluates.
+/// The fields of an answer that do not depend on the other candidates of a search.
 type Fields<T> = (T, PrimitiveId, Point3<T>, Feature, [T; 3]);
 
 fn fields<T: Real>(closest: Closest<T>) -> Fields<T> {
     (closest.distance, closest.primitive, closest.point, closest.feature, closest.barycentric)
 }
 
-/// Checks batches of some queries with all options of an index.
+/// Checks batches of these queries with all options of an index.
 fn check<T: Real>(index: &(impl ClosestPoint<T> + Sync + ?Sized), queries: &[Point3<T>], name: &str) {
     let radius = queries.iter().find_map(|query| index.closest_point(query)).map_or(T::one(), |c| c.distance);
     let default = QueryOptions::default();
@@ -59,7 +59,7 @@ fn check<T: Real>(index: &(impl ClosestPoint<T> + Sync + ?Sized), queries: &[Poi
     }
 }
 
-/// Checks that columns have the values of answers, together and alone.
+/// Checks that columns have the values of the answers, both all columns together and each alone.
 fn check_columns<T: Real>(
     index: &(impl ClosestPoint<T> + Sync + ?Sized),
     queries: &[Point3<T>],
@@ -85,8 +85,8 @@ fn check_columns<T: Real>(
     for (i, expected) in expected.iter().enumerate() {
         let Some(c) = expected else {
             assert!(distance[i] == T::INFINITY && primitive[i] == none);
-            // What is beyond the limits of the options is at least as far as the bound. The true distance exceeds that of
-            // an answer at most by as much as its bound is below it.
+            // Everything beyond the limits of the options is at least as far as the bound. The true distance exceeds
+            // the distance of an answer by at most the difference between that distance and the bound.
             let bound = lower_bound[i];
             let is_bound = index
                 .closest_point(&queries[i])
@@ -165,7 +165,7 @@ fn every_instruction_set_answers_batches_alike() {
 #[test]
 fn a_large_batch_on_several_threads_is_single_queries() {
     let mut rng = rng("large batches", 0);
-    // Queries that are far beyond the scene are searched for linearly, so the scene is small.
+    // The scene is small, because a search for a query far beyond it takes linear time.
     let soup = scenes::soup(&mut rng, Kinds::Triangles, Layout::Strewn, 1000);
     let all = queries(&mut rng, &soup, amount(1_100_000, 20_000));
     let octree = OctreeIndex::new(&soup).expect("valid");

@@ -1,7 +1,8 @@
-//! Compares every backend with brute force in every kind of query, on scenes that proptest shrinks: a failure prints
-//! the smallest scene that it finds as Rust source.
+//! Compares every backend with brute force in every kind of query, on scenes that proptest shrinks. A failure prints
+//! the smallest scene that it finds, as Rust source.
 //!
-//! A scene has some primitives of a large one, which comes from each generator or is random of each kind and layout.
+//! A scene has some primitives of a large one. The large scenes are one from each generator, and a random one of each
+//! kind and layout.
 #![cfg(all(feature = "bvh", feature = "interception", feature = "kdop", feature = "scene"))]
 #![allow(clippy::float_cmp, reason = "bitwise equality is what is tested")]
 
@@ -62,7 +63,7 @@ impl Debug for Case {
     }
 }
 
-/// Returns some primitives of a scene with their vertices.
+/// Returns some primitives of a scene, with their vertices.
 fn part(source: &Soup<f64>, chosen: &[usize]) -> Soup<f64> {
     let mut soup = Soup::default();
     let mut numbers = std::collections::HashMap::new();
@@ -100,11 +101,11 @@ fn case() -> impl Strategy<Value = Case> {
     })
 }
 
-/// An index that answers the queries of all backends.
+/// An index with the queries that all backends answer.
 trait Index<T: Real>: ClosestPoint<T> + NearQuery<T> {}
 impl<T: Real, I: ClosestPoint<T> + NearQuery<T>> Index<T> for I {}
 
-/// An index that answers all queries.
+/// An index with all kinds of queries.
 trait Tree<T: Real>: Index<T> + RayQuery<T> + BoxQuery<T> {}
 impl<T: Real, I: Index<T> + RayQuery<T> + BoxQuery<T>> Tree<T> for I {}
 
@@ -189,7 +190,7 @@ fn check<T: Real>(case: &Case, soup: &Soup<T>, point: impl Fn(&Point3<f64>) -> P
     Ok(())
 }
 
-/// Runs a check on the same cases each time. Each case has a runner of its own whose seed is the case's number, so that
+/// Runs a check on the same cases each time. Each case has its own runner, whose seed is the number of the case. So
 /// `P2M_SEED` generates the same scene again, and a failure shrinks in the same steps.
 fn on_all(check: impl Fn(&Case) -> Result<(), TestCaseError>) {
     for number in p2m_testkit::cases(1000, 24) {

@@ -35,7 +35,7 @@ fn single_case(name: &str, seed: u64) -> (Case, [f32; 3], Vec<[f32; 3]>) {
     (case, query, vertices)
 }
 
-/// Panics with the data that reproduce a case, unless the condition holds.
+/// Panics with the data that reproduce a case unless the condition holds.
 macro_rules! require {
     ($condition:expr, $seed:expr, $case:expr, $($detail:tt)+) => {
         assert!($condition, "seed {}: {}\n{:?}", $seed, format_args!($($detail)+), $case);
@@ -104,7 +104,7 @@ fn n4_scaling_by_powers_of_two_changes_no_bit() {
     let cases = cases(60_000, 1_500);
     for seed in cases.clone() {
         let mut case = case("contract scaling", seed);
-        // The case is brought to scale one, whatever family it is from.
+        // Each case is brought to a scale of about one first, whatever its family.
         let size = case.vertices.as_flattened().iter().chain(&case.query).fold(0.0, |m: f64, x| m.max(x.abs()));
         if !size.is_normal() {
             continue;
@@ -198,7 +198,7 @@ fn shared_features_have_the_same_key_in_every_primitive() {
     assert!(cases.have_more_than(10_000, faces), "{faces}");
 }
 
-/// Searches pass a bound for pruning to the kernel, which may stop early but never changes a value.
+/// Searches pass a bound for pruning to the kernel. The kernel may then stop early, but never returns another value.
 #[test]
 fn a_bound_ends_the_work_only_beyond_the_key() {
     let (mut ended, mut beyond) = (0, 0);
@@ -247,7 +247,7 @@ fn a_point_is_a_degenerate_segment_and_a_degenerate_triangle() {
     }
 }
 
-/// Checks triangles on a 3x3x3 lattice with all queries on it, in integers. The deep suite has all of these triangles.
+/// Checks triangles on a 3x3x3 lattice with all queries on it, in integers. The deep suite checks all such triangles.
 #[test]
 fn every_triangle_of_a_small_lattice_is_answered_exactly() {
     let lattice: Vec<[f64; 3]> = (0..27).map(|i| [f64::from(i % 3), f64::from(i / 3 % 3), f64::from(i / 9)]).collect();
@@ -261,14 +261,14 @@ fn every_triangle_of_a_small_lattice_is_answered_exactly() {
     let mut worst = 0.0f64;
     let cases = cases(3654, 240);
     for case in cases.clone() {
-        // A step without a common divisor reaches all triangles, and a few steps reach some of every kind.
+        // A step without a common divisor reaches all triangles, and few steps reach triangles of every kind.
         let t = corners[(case as usize).wrapping_mul(1009) % corners.len()].map(|i| lattice[i]);
         for q in &lattice {
             let found = answer(*q, &t);
             let exact = Distance::new(*q, &t);
             worst = worst.max(exact.error(found.distance, 53, 0.0));
-            // Squares of these distances are fractions with small denominators. A wrong region would be off by at least
-            // a hundredth, so the nearest feature of exact arithmetic must have been found.
+            // The squared distances are fractions with small denominators. A wrong region would be off by at least a
+            // hundredth, so the nearest feature of exact arithmetic must have been found.
             let feature: Vec<[f64; 3]> = match found.feature {
                 Feature::Vertex(v) => vec![t[usize::from(v)]],
                 Feature::Edge(e) => vec![t[usize::from(e)], t[(usize::from(e) + 1) % 3]],
@@ -295,7 +295,7 @@ fn every_triangle_of_a_small_lattice_is_answered_exactly() {
     assert!(worst <= MAX_OBSERVED_ERROR);
 }
 
-/// Checks the examples that other libraries got wrong, by name.
+/// Checks the named examples that other libraries got wrong.
 #[test]
 fn known_failures_of_other_projects_are_answered() {
     // A query at 1e-170 from the corner of a unit triangle makes squares underflow.
@@ -319,12 +319,12 @@ fn known_failures_of_other_projects_are_answered() {
     assert_eq!(answer([4.0, 3.0, 3.0], &flat).distance, 1.0);
 }
 
-/// Checks cases that this kernel once got wrong, and cases that would go wrong without one of its steps.
+/// Checks cases that earlier versions of the kernel got wrong, and cases that would fail without one of its steps.
 #[test]
 fn past_failures_stay_mended() {
     let error = |q: [f64; 3], v: &[[f64; 3]]| Distance::new(q, v).error(project(q, v).key.distance(), 53, 0.0);
     let origin = [0.0; 3];
-    // Both ends of a tiny edge round to the same distance, so the wrong one seems nearer. The estimate of a projection
+    // Both ends of a tiny edge round to the same distance, so the wrong end seems nearer. The estimate of a projection
     // far beyond the other end must not exclude the edge that has the answer. The error was once 1e14 u M.
     assert!(error([1.0, -5.0, 0.0], &[origin, [2f64.powi(-53), 0.0, 0.0], [2.0, 0.1, 0.0]]) <= MAX_OBSERVED_ERROR);
     let (q, t) = (

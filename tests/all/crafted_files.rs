@@ -1,4 +1,5 @@
-//! Saved indexes with right checksums and wrong contents: each is refused by a typed error, or searches in it end.
+//! Tests of saved indexes with correct checksums and wrong contents. Each is refused by a typed error, or searches in
+//! it end.
 #![cfg(all(feature = "bvh", feature = "interception", feature = "kdop", feature = "scene"))]
 
 use super::saved::{INDEXES, Kind, answers_of, queries, scene};
@@ -10,21 +11,21 @@ use p2m_testkit::{cases, rng};
 use rand::RngExt;
 use std::time::Duration;
 
-/// The bytes of a packet.
+/// The number of bytes of a packet.
 const PACKET: usize = 448;
-/// The bytes of a block of a list.
+/// The number of bytes of a block of a list.
 const BLOCK: usize = 128;
-/// The bytes of a site, and of a block of its neighbours.
+/// The number of bytes of a site, and of a block of its neighbours.
 const SITE: usize = 64;
 
-/// The higher half of a NaN of 64 bits.
+/// The upper half of a NaN of 64 bits.
 const NAN_HIGH_BITS: u32 = 0x7ff8_0000;
 
 fn index(name: &str) -> &'static Kind {
     INDEXES.iter().find(|index| index.name == name).expect("an index")
 }
 
-/// Returns a file of an index in which a section was changed, with right checksums.
+/// Returns the file of an index after a change of a section, with correct checksums.
 fn crafted(index: &Kind, section: &str, change: impl FnOnce(&mut [u8])) -> Vec<u8> {
     let mut bytes = (index.saved)(&scene());
     change(section_mut(&mut bytes, section));
@@ -32,12 +33,12 @@ fn crafted(index: &Kind, section: &str, change: impl FnOnce(&mut [u8])) -> Vec<u
     bytes
 }
 
-/// Returns a change that puts a number of 32 bits at an offset.
+/// Returns a change that writes a 32-bit number at an offset.
 fn put(at: usize, number: u32) -> impl FnOnce(&mut [u8]) {
     move |section| section[at..at + 4].copy_from_slice(&number.to_le_bytes())
 }
 
-/// Returns a change that puts a byte at an offset.
+/// Returns a change that writes a byte at an offset.
 fn byte(at: usize, number: u8) -> impl FnOnce(&mut [u8]) {
     move |section| section[at] = number
 }
@@ -46,7 +47,7 @@ fn some_queries() -> Vec<Point3<f64>> {
     queries(&mut rng("crafted", 0), &scene().soup, 60)
 }
 
-/// Asserts that a changed file is refused, with a reason that names a section.
+/// Asserts that a changed file is refused with a reason that names a section.
 #[track_caller]
 fn assert_refused(name: &str, section: &str, change: impl FnOnce(&mut [u8]), reason: &str) {
     let file = crafted(index(name), section, change);
@@ -67,21 +68,21 @@ fn trees_that_lie_are_refused() {
     let children = numbers("aabb", "tree/children");
     let packet = children.iter().position(|child| child >> 31 == 1 && *child != u32::MAX).expect("a packet");
     let node = children.iter().position(|child| child >> 31 == 0).expect("a node below the root");
-    // A child is its own parent, so that a search would go in a circle; it does not exist; it is used twice.
+    // A child is its own parent, which would make a search endless; it does not exist; or it is used twice.
     assert_refused("aabb", "tree/children", put(4 * node, 0), "used twice");
     assert_refused("aabb", "tree/children", put(4 * node, 1 << 20), "does not exist");
     assert_refused("kdop-14", "tree/children", put(0, 1 << 31 | 1 << 20), "does not exist");
     let other = children.iter().rposition(|child| child >> 31 == 1 && *child != u32::MAX).expect("a packet");
     assert_refused("aabb", "tree/children", put(4 * packet, children[other]), "used twice");
     assert_refused("aabb", "tree/children", put(4 * packet, u32::MAX), "not used");
-    // The number of primitives is that of another set, and the root is not the first node.
+    // The number of primitives is wrong, and the root is not the first node.
     assert_refused("aabb", "tree", byte(96, 1), "number of primitives");
     assert_refused("aabb", "tree", put(104, 1), "before its parent");
     assert_refused("aabb", "tree/bounds", put(0, f32::NAN.to_bits()), "NaN");
     assert_refused("kdop-26", "tree/directions", put(4, NAN_HIGH_BITS), "polytope");
 }
 
-/// The depth in the file is not used, so a search has a stack that is large enough.
+/// The depth in the file is ignored, so a search always has a large enough stack.
 #[test]
 fn a_wrong_depth_changes_nothing() {
     let queries = some_queries();
@@ -113,7 +114,7 @@ fn octrees_that_lie_are_refused() {
     let codes = numbers("octree", "octree/codes");
     let kind = |code: &u32| code >> 29;
     let position = |wanted: u32| codes.iter().position(|code| kind(code) == wanted).expect("a code");
-    // A row leads to itself or to the one before, so that locating a query would not end.
+    // A row leads to itself or to the row before it, which would make locating a query endless.
     assert_refused("octree", "octree/codes", put(0, 0), "before the code");
     assert_refused("octree", "octree/codes", put(4 * position(2), 2 << 29 | 1 << 28), "a list does not exist");
     assert_refused("octree", "octree/codes", put(4 * position(2), 3 << 29 | 1 << 20), "a primitive does not exist");
@@ -123,7 +124,7 @@ fn octrees_that_lie_are_refused() {
     assert_refused("octree", "octree/lists", byte(124, 9), "out of range");
     assert_refused("octree", "octree/lists", byte(119, 31), "out of range");
     assert_refused("octree", "octree/lists", byte(118, 127), "out of range");
-    // As many cells in the report would take more memory than there is.
+    // A report on this number of cells would not fit into memory.
     assert_refused("octree", "octree", byte(64 + 5, 1), "more cells");
 }
 
@@ -140,7 +141,7 @@ fn p2m_indexes_that_lie_are_refused() {
     assert_refused("p2m", "voronoi/neighbours", byte(56, 1), "has no use");
     assert_refused("aabb", "tree/packets", byte(407, 1), "out of range");
     assert_refused("aabb", "tree/packets", byte(406, 2), "out of range");
-    // The next packet has a node, and the last one has no next.
+    // The next packet belongs to a node, and the last packet has no next one.
     assert_refused("aabb", "tree/packets", byte(406, 1), "used twice");
     let last = numbers("aabb", "tree/packets").len() * 4 - PACKET;
     assert_refused("aabb", "tree/packets", byte(last + 406, 1), "does not exist");
@@ -155,12 +156,12 @@ fn p2m_indexes_that_lie_are_refused() {
     assert_refused("p2m", "voronoi", byte(160, 7), "neither 0 nor 1");
 }
 
-/// All sites claim that the next one is much nearer, so that walks would go in circles.
+/// All sites claim that the next site is much nearer, so a walk would go in circles.
 #[test]
 fn walks_end_whatever_the_offsets_are() {
     let file = crafted(index("p2m"), "voronoi/neighbours", |section| {
         for block in section.chunks_exact_mut(SITE) {
-            // The offsets to all neighbours are long, in a direction that depends on nothing.
+            // The offsets to all neighbours are long, in a fixed direction.
             block[..16].copy_from_slice(&[0xff; 16]);
         }
     });
@@ -170,7 +171,7 @@ fn walks_end_whatever_the_offsets_are() {
     assert!(start.elapsed() < Duration::from_secs(1));
 }
 
-/// Bytes that nothing uses have to be zero, and headers have their checksum.
+/// Unused bytes have to be zero, and headers have a checksum.
 #[test]
 fn unused_bytes_are_refused() {
     let bytes = (index("aabb").saved)(&scene());
@@ -182,7 +183,7 @@ fn unused_bytes_are_refused() {
     }
 }
 
-/// Random lies in every section. Loading and searching ends without a panic and in little time.
+/// Every section is changed at random. Loading and searching end without a panic and in little time.
 #[test]
 fn random_lies_neither_panic_nor_search_without_end() {
     let queries = queries(&mut rng("lies", 0), &scene().soup, 12);

@@ -1,8 +1,9 @@
 //! Every backend returns the same bits on every instruction set, for any number of threads, and in every run.
 //!
-//! A single hash of all answers, which is a constant of this file, has to result for each backend, instruction set and
-//! number of threads. In the deep suite it covers more than a million answers of each scalar. Scenes are generated with
-//! additions, multiplications and comparisons alone, so the hash does not depend on a mathematical library either.
+//! All answers have a single hash, which is a constant in this file. Each backend, instruction set and number of
+//! threads has to result in it. In the deep suite it covers more than a million answers of each scalar. Scenes are
+//! generated only by additions, multiplications and comparisons, so the hash does not depend on a mathematical library
+//! either.
 #![cfg(all(feature = "bvh", feature = "interception", feature = "kdop", feature = "rayon"))]
 
 use nalgebra::Point3;
@@ -22,8 +23,8 @@ fn expected() -> [u64; 2] {
     amount([0x1ac3_5da1_fcdd_df14, 0xf722_b457_7191_f48f], [0x9f7d_d08f_cc6f_b08e, 0xf52e_95e7_6ce9_3d5a])
 }
 
-/// Kinds and layouts, with the numbers of primitives and of queries in the deep suite and in the shallow one. At either
-/// depth the last scene is large enough for threads to share its primitives, its sites and its queries.
+/// Kinds and layouts, with the numbers of primitives and of queries in the deep and in the shallow suite. In both, the
+/// last scene is large enough for threads to share its primitives, sites and queries.
 const SCENES: [(Kinds, Layout, [usize; 2], [usize; 2]); 5] = [
     (Kinds::Mixed, Layout::Uniform, [300, 10_000], [50, 100]),
     (Kinds::Mixed, Layout::Strewn, [5000, 10_000], [120, 100]),
@@ -40,7 +41,7 @@ fn scene(number: usize) -> (Soup<f64>, Vec<Point3<f64>>) {
     let bounds = soup.aabb();
     let (centre, size) = (bounds.min + (bounds.max - bounds.min) * 0.5, (bounds.max - bounds.min) * 0.6);
     let mut query = |i: usize| match i % 4 {
-        // Some queries are on the scene, or at positions with ties.
+        // Some queries are on the scene, or at positions where ties occur.
         0 => soup.positions()[rng.random_range(0..soup.positions().len())],
         _ => centre + size.map(|x| x * rng.random_range(-1.0..1.0)),
     };
@@ -48,8 +49,8 @@ fn scene(number: usize) -> (Soup<f64>, Vec<Point3<f64>>) {
     (soup, queries)
 }
 
-/// Returns the FNV-1a hash of the bits of all answers, in their order. The certified bound is left out: it is lowered
-/// by the error of each evaluated candidate, and these depend on where a search begins.
+/// Returns the FNV-1a hash of the bits of all answers, in order. The certified bound is left out: it is lowered by the
+/// error of each evaluated candidate, and the candidates depend on where a search begins.
 fn hash<T: Real>(mut hash: u64, answers: &[Option<Closest<T>>]) -> u64 {
     let mut add = |x: u64| hash = (hash ^ x).wrapping_mul(0x0100_0000_01b3);
     for answer in answers {
@@ -110,7 +111,7 @@ fn check<T: Real>(of: impl Fn(usize) -> (Soup<T>, Vec<Point3<T>>), expected: u64
     };
     for number in 0..SCENES.len() {
         let (soup, queries) = of(number);
-        // Different numbers of threads build the index as well.
+        // The number of threads also varies for the build.
         for threads in [1, 3, 8] {
             let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().expect("threads");
             let indexes = pool.install(|| {

@@ -1,5 +1,5 @@
-//! Scenes of many primitives with the same vertices, such as the invalid returns of a scanner: answers of all indexes
-//! are those of the primitives one by one, and searches do not visit the equal ones one by one.
+//! Tests of scenes in which many primitives have the same vertices, such as the invalid returns of a scanner. All
+//! indexes answer as the primitives one by one do, and searches do not visit equal primitives one by one.
 #![cfg(all(feature = "bvh", feature = "interception", feature = "kdop"))]
 #![allow(clippy::float_cmp, reason = "bitwise equality is what is tested")]
 
@@ -19,8 +19,8 @@ use rand::{Rng, RngExt};
 use std::cell::Cell;
 use std::ops::ControlFlow;
 
-/// Returns a scene of some groups of primitives with the same vertices and some single ones, in any order. All groups
-/// but the first have the same centre.
+/// Returns a scene of several groups of primitives with the same vertices and some single primitives, in any order. All
+/// groups but the first have the same centre.
 fn scene<T: Real>(rng: &mut impl Rng, groups: &[usize], singles: usize) -> Soup<T> {
     let mut positions: Vec<Point3<T>> = Vec::new();
     let mut elements = Vec::new();
@@ -37,7 +37,7 @@ fn scene<T: Real>(rng: &mut impl Rng, groups: &[usize], singles: usize) -> Soup<
     for (number, count) in groups.iter().enumerate() {
         let at = if number == 0 { Vector3::zeros() } else { Vector3::new(0.25, 0.5, 0.125) };
         let half = vector(rng);
-        // The box of a triangle with opposite corners and their middle has the centre of that of a point.
+        // The box of a triangle of two opposite corners and their middle has the same centre as the box of a point.
         add(rng, *count, [at, at + half, at - half].map(|corner| corner.map(|x| (x * 64.0).round() / 64.0)));
     }
     for _ in 0..singles {
@@ -55,7 +55,7 @@ fn bits<T: Real>(closest: &Closest<T>) -> (u64, PrimitiveId, Point3<T>, Feature)
     (closest.distance.to_f64().to_bits(), closest.primitive, closest.point, closest.feature)
 }
 
-/// Returns the answers of an index to questions about near primitives, as text.
+/// Returns the answers of an index about near primitives, as text.
 fn answers<T: Real>(index: &(impl ClosestPoint<T> + CertifiedQuery<T>), at: &Point3<T>) -> String {
     let mut text = format!("{:?}", index.closest_point(at).as_ref().map(bits));
     for k in [1, 5, 17, 300] {
@@ -99,7 +99,7 @@ fn queries<T: Real>(rng: &mut impl Rng, soup: &Soup<T>) -> Vec<Point3<T>> {
 fn equal_primitives_have_the_answers_of_brute_force() {
     for case in cases(300, 12) {
         let mut rng = rng("equal primitives", case);
-        // The third group does not fill its last packet, and the second one has just more than a packet.
+        // The third group does not fill its last packet, and the second one has one primitive more than a packet.
         let groups = [[200, 17, 37, 1], [16, 33, 90, 15], [300, 0, 0, 0]][rng.random_range(0..3)];
         let singles = [0, 8, 100][rng.random_range(0..3)];
         let soup = scene::<f64>(&mut rng, &groups, singles);
@@ -111,7 +111,7 @@ fn equal_primitives_have_the_answers_of_brute_force() {
     }
 }
 
-/// Returns the ids that a box, a ray and a scene meet, in order.
+/// Returns the ids that intersect a box, a ray and a scene, in ascending order.
 fn met(index: &(impl BoxQuery<f64> + RayQuery<f64> + PairQuery<f64>), other: &Soup<f64>, ray: &Ray) -> [Vec<usize>; 4] {
     let bounds = Aabb { min: Point3::new(-0.5, -0.5, -0.5), max: Point3::new(0.5, 0.5, 0.25) };
     let mut ids: [Vec<usize>; 4] = Default::default();
@@ -160,7 +160,7 @@ fn boxes_rays_and_pairs_meet_all_equal_primitives() {
     assert!(total.iter().all(|count| *count > 100), "{total:?}");
 }
 
-/// A tree that counts the nodes and packets that searches for near primitives visit.
+/// A tree that counts the nodes and packets visited by searches for near primitives.
 struct Counted<'a, I>(&'a I, &'a Cell<usize>);
 
 macro_rules! counted {
@@ -195,12 +195,12 @@ impl Collector for Visits<'_, '_> {
     }
 }
 
-/// There are more than 1,200 packets of equal primitives.
+/// The scene has more than 1,200 packets of equal primitives.
 #[test]
 fn few_equal_primitives_are_visited() {
     for case in cases(20, 6) {
         let mut rng = rng("visits of equal primitives", case);
-        // Three single primitives are so near to the equal ones that only exact coordinates tell them apart.
+        // Three single primitives are so near to the equal ones that only exact coordinates distinguish them.
         let mut soup = scene::<f64>(&mut rng, &[20_000, 3, 2], 100);
         if case.is_multiple_of(2) {
             soup = scene::<f64>(&mut rng, &[20_000], 0);
@@ -239,7 +239,7 @@ fn equal_primitives_that_move_apart_are_found() {
     for case in cases(60, 6) {
         let mut rng = rng("moved equal primitives", case);
         let count = 500;
-        // Each primitive has vertices of its own, so that they can move.
+        // The primitives have separate vertices, so that they can move.
         let points = |at: &mut dyn FnMut(usize) -> Point3<f64>| -> Soup<f64> {
             Soup::new((0..count).map(at).collect(), (0..count as u32).map(Element::Point)).expect("valid")
         };
@@ -277,14 +277,15 @@ fn saved_trees_of_equal_primitives_answer_as_before() {
     for at in queries(&mut rng, &soup) {
         assert_eq!(answers(&loaded, &at), answers(&tree, &at));
     }
-    // A view of the tree has every primitive once.
+    // A view of the tree shows every primitive once.
     let parts: Vec<_> = tree.tree().parts().collect();
     let mut ids: Vec<_> = parts.iter().filter_map(|part| tree.tree().primitives(part)).flatten().collect();
     ids.sort_unstable();
     assert!(ids.into_iter().map(|id| id.index()).eq(0..soup.len()));
 }
 
-/// Loads a tree over a set in whose file some packets continue the packet before and are no child any more.
+/// Loads a tree over a set from a forged file, in which some packets continue the previous packet and are no child any
+/// more.
 fn forged<S: PrimitiveSet<f64> + Copy + Sync>(set: S, is_forged: impl Fn(usize) -> bool) -> Result<(), String> {
     const PACKET: usize = 448;
     const IS_CONTINUED: usize = 406;

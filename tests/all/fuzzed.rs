@@ -1,9 +1,9 @@
 //! Runs the checks of the fuzz targets on their seeds and on inputs that once failed (`tools/fuzz/crashes`), without a
 //! nightly compiler.
 //!
-//! `P2M_FUZZED=tools/fuzz/corpus cargo test --test all fuzzed::` adds a folder that has a folder for each target, such as
-//! fuzzing leaves behind. `P2M_BLESS=1 cargo test --test all fuzzed::seeds_are` writes the seeds of scenes and saved
-//! indexes anew.
+//! `P2M_FUZZED=tools/fuzz/corpus cargo test --test all fuzzed::` adds a folder that has a folder for each target, such
+//! as the one that fuzzing leaves behind. `P2M_BLESS=1 cargo test --test all fuzzed::seeds_are` rewrites the seeds of
+//! scenes and saved indexes.
 #![cfg(all(feature = "bvh", feature = "interception", feature = "kdop", feature = "scene"))]
 
 #[allow(unreachable_pub, unexpected_cfgs, reason = "a crate of its own, with its own features")]
@@ -19,7 +19,7 @@ use std::path::{Path, PathBuf};
 
 type Check = Box<dyn Fn(&[u8])>;
 
-/// Returns the names of the targets, which are those of the folders of their seeds, and their checks.
+/// Returns the names of the targets, which are also the names of the folders of their seeds, with their checks.
 fn targets() -> Vec<(String, Check)> {
     let others: [(&str, Check); 4] = [
         ("queries", Box::new(|input| _ = queries::check(input))),
@@ -36,7 +36,7 @@ fn folder(name: &str) -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("tools/fuzz").join(name)
 }
 
-/// Returns the sorted files of a folder, and none if the folder does not exist.
+/// Returns the sorted files of a folder, or none if the folder does not exist.
 fn files(folder: &Path) -> Vec<PathBuf> {
     let mut files: Vec<_> =
         std::fs::read_dir(folder).into_iter().flatten().map(|entry| entry.expect("a file").path()).collect();
@@ -109,8 +109,8 @@ fn seeds_reach_every_backend_and_question() {
     assert_eq!(reached.len(), 2, "{reached:?}");
 }
 
-/// Seeds of scenes are random bytes after a head that selects question and backend. Seeds of saved indexes are some
-/// changes of valid files.
+/// The seeds of scenes are random bytes after a head that selects the question and the backend. The seeds of saved
+/// indexes change valid files.
 #[test]
 fn seeds_are_those_that_are_made_here() {
     let mut made = Vec::new();
@@ -121,7 +121,7 @@ fn seeds_are_those_that_are_made_here() {
     };
     for (q, question) in QUESTIONS.iter().enumerate() {
         for (m, mode) in scene::MODES.iter().enumerate() {
-            // The head selects f64, except for the lattice of every second question, then backend, instruction set and
+            // The head selects f64 (f32 for the lattice of every second question), then backend, instruction set and
             // option, the seed, and the mode.
             let is_single = u8::from(m == 0 && q % 2 == 1);
             let head = [q as u8, is_single, (q * 5 + m) as u8, 0, 1, m as u8 * 3, m as u8];

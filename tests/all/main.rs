@@ -1,5 +1,5 @@
-//! The tests that compare backends with each other and with the oracle, in one program so that shared code is compiled
-//! once. `cargo test --test all pairs::` runs those of one module.
+//! The tests that compare backends with each other and with the oracle. They are one program, so that shared code is
+//! compiled once. `cargo test --test all pairs::` runs the tests of one module.
 //!
 //! Three test programs are separate: `soak` needs its own allocator, `instructions` runs itself under valgrind, and
 //! `examples` runs other programs.

@@ -1,5 +1,5 @@
 //! Compares indexes with brute force, bit for bit, on real meshes: far from the origin, non-manifold, degenerate,
-//! lines, mixed. The tests are skipped, with a message, if there is no folder of models.
+//! lines, mixed. If there is no folder of models, the tests are skipped with a message.
 
 #![cfg(all(feature = "bvh", feature = "interception", feature = "kdop", feature = "scene"))]
 
@@ -10,16 +10,16 @@ use p2m_testkit::queries::QuerySet;
 use p2m_testkit::scenes::narrow;
 use p2m_testkit::{amount, depth, model_files};
 
-/// Returns the number of queries of a set, all of which every index answers.
+/// Returns the number of queries in a set. Every index answers all of them.
 fn queries() -> usize {
     amount(200, 12)
 }
 
-/// Brute force answers all queries of models with at most this many primitives, and every eighth query of larger ones,
-/// because it would otherwise take most of the time of all tests.
+/// The largest number of primitives of a model for which brute force answers all queries. For larger models it answers
+/// every eighth query, because it would otherwise take most of the time of all tests.
 const MAX_PRIMITIVES_FOR_ALL_QUERIES: usize = 20_000;
-/// Returns the size of the largest model that all indexes are tested on. Larger models are tested with the trees in f64
-/// alone, because the other indexes would take half of the remaining time.
+/// Returns the largest number of primitives of a model on which all indexes are tested. Larger models are tested only
+/// with the trees in f64, because the other indexes would take half of the remaining time.
 fn max_primitives_for_all_indexes() -> usize {
     amount(300_000, 5_000)
 }
@@ -45,8 +45,8 @@ fn answers<T: Real, I: ClosestPoint<T> + Sync>(index: &I, queries: &[Point3<T>])
     })
 }
 
-/// Compares trees of boxes, of k-DOPs and of the scene's own directions, the octree and the P2M index with each other
-/// and with brute force. Returns how many answers brute force confirmed.
+/// Compares trees of boxes, trees of k-DOPs with default directions and with the scene's own, the octree and the P2M
+/// index with each other and with brute force. Returns how many answers brute force confirmed.
 fn agrees<T: Real>(name: &str, set: QuerySet, soup: &Soup<T>, trees: &Trees<'_, T>, queries: &[Point3<T>]) -> usize {
     let boxes = answers(&trees.0, queries);
     let every = if soup.len() > MAX_PRIMITIVES_FOR_ALL_QUERIES && !is_in_full() { 8 } else { 1 };
@@ -86,7 +86,7 @@ impl<'a, T: Real> Trees<'a, T> {
             KdopTree::new(soup).expect("valid"),
             KdopTree::build_with(soup, &frame_options).expect("valid"),
             is_small.then(|| OctreeIndex::new(soup).expect("valid")),
-            // The cells are built from f64 for both scalars, and take a while.
+            // The cells are built in f64 for both scalars, which takes a while, so the P2M index is only tested in f64.
             (size_of::<T>() == 8 && is_small).then(|| P2mIndex::new(soup).expect("valid")),
         )
     }
@@ -125,7 +125,7 @@ fn trees_agree_with_brute_force_on_every_model_in_f32() {
         let soup = narrow(&double).expect("models fit f32");
         let trees = Trees::build(&soup, &DirectionChoice::from_scene(&double).expect("valid"));
         for set in QuerySet::ALL {
-            // A quarter of the queries suffices, because the scalar changes the boxes and not the kernel.
+            // A quarter of the queries suffices, because the scalar changes the boxes but not the kernel.
             let queries: Vec<_> =
                 set.generate(&double, queries() / 4, 2).iter().map(|q| q.map(f32::round_from_f64)).collect();
             agrees(&name, set, &soup, &trees, &queries);

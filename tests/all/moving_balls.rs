@@ -1,4 +1,4 @@
-//! Tests the contacts of moving balls against exact distances.
+//! Compares the contacts of moving balls with exact distances.
 #![cfg(all(feature = "bvh", feature = "kdop"))]
 
 use nalgebra::Point3;
@@ -16,7 +16,7 @@ fn to_f64_array<T: Real>(point: &Point3<T>) -> V3 {
     point.map(T::to_f64).coords.into()
 }
 
-/// Returns the centre at a parameter, in the arithmetic of the ball.
+/// Returns the centre of the ball at a parameter, in the arithmetic of the ball.
 fn centre_at(start: V3, end: V3, t: f64) -> V3 {
     std::array::from_fn(|k| start[k] * (1.0 - t) + end[k] * t)
 }
@@ -31,7 +31,7 @@ fn largest(hull: &[V3]) -> f64 {
     hull.as_flattened().iter().fold(0.0, |largest, x| largest.max(x.abs()))
 }
 
-/// Checks the contacts that brute force and the trees find, and returns whether there is one.
+/// Checks the contacts by brute force and by the trees, and returns whether there is one.
 fn check_all<T: Real>(case: u64, soup: &Soup<T>, ball: &MovingBall<T>) -> bool {
     let aabb = AabbTree::new(soup).expect("valid");
     let kdop: KdopTree<T, _> = KdopTree::new(soup).expect("valid");
@@ -40,7 +40,7 @@ fn check_all<T: Real>(case: u64, soup: &Soup<T>, ball: &MovingBall<T>) -> bool {
     check(case, soup, ball, &BruteForce::new(soup).expect("valid"))
 }
 
-/// Checks a contact against exact distances, and returns whether there is one.
+/// Compares a contact with exact distances, and returns whether there is one.
 fn check<T: Real>(case: u64, soup: &Soup<T>, ball: &MovingBall<T>, index: &impl PairQuery<T>) -> bool {
     let found = ball.first_contact(index);
     let text = || format!("{case}: {ball:?} {found:?}");
@@ -61,7 +61,7 @@ fn check<T: Real>(case: u64, soup: &Soup<T>, ball: &MovingBall<T>, index: &impl 
     }
     let centre = centre_at(start, end, found.upper_parameter.to_f64());
     assert!(!is_farther(&[centre], found.distance_bound), "{}", text());
-    // The bound is the radius and the tolerance, up to rounding, unless the ball starts in contact.
+    // The bound is the radius plus the tolerance, up to rounding, unless the ball starts in contact.
     let size = hulls(soup).iter().map(|hull| largest(hull)).fold(largest(&[start, end]), f64::max);
     let step = T::UNIT_ROUNDOFF * (size + ball.radius.to_f64()) + T::SMALLEST_SUBNORMAL;
     let excess = found.distance_bound.to_f64() - ball.radius.to_f64() - ball.tolerance.to_f64();

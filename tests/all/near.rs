@@ -1,5 +1,5 @@
-//! Tests near queries: answers that are stated, and counters. `registry.rs` compares the answers of every backend (k
-//! nearest, all within a distance, any within a distance, filtered nearest) with the primitives one by one.
+//! Tests of near queries with known answers, and of their counters. `registry.rs` compares the answers of every backend
+//! (k nearest, all within a distance, any within a distance, filtered nearest) with the primitives one by one.
 #![cfg(all(feature = "bvh", feature = "interception", feature = "kdop"))]
 #![allow(clippy::float_cmp, reason = "bitwise equality is what is tested")]
 
@@ -28,7 +28,7 @@ fn invalid_queries_return_none() {
     assert!(empty.k_nearest(&at, 3, f64::INFINITY).is_empty() && !empty.is_any_within(&at, f64::INFINITY));
 }
 
-/// The counters detect a lost bound or a lost early exit.
+/// The counters reveal a lost bound or a lost early exit.
 #[test]
 fn searches_end_early() {
     let soup = soup(&mut rng("near sheet", 0), Kinds::Triangles, Layout::Sheet, 20_000);

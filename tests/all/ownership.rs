@@ -1,4 +1,5 @@
-//! Indexes own, borrow and share their scenes, stand behind pointers, move between threads and follow moving scenes.
+//! Tests that indexes own, borrow and share their scenes, work behind pointers, move between threads, and follow moving
+//! scenes.
 
 #![cfg(all(feature = "bvh", feature = "field", feature = "interception", feature = "kdop", feature = "scene"))]
 
@@ -146,11 +147,11 @@ fn a_tree_follows_a_scene_in_place_and_tells_what_it_lost() {
     let mut tree = AabbTree::new(ball()).expect("valid");
     let area = tree.surface_area();
     assert!(area > 10.0 && area < 1000.0, "{area}");
-    // A rigid motion by a right angle keeps the quality.
+    // A rigid motion by a right angle does not change the quality.
     let turn = Rotation3::from_axis_angle(&Vector3::z_axis(), std::f64::consts::FRAC_PI_2);
     tree.refit_in_place(&Default::default(), |soup| soup.map_positions(|p| turn * p)).expect("finite");
     assert!((tree.surface_area() / area - 1.0).abs() < 1e-3);
-    // Scattered vertices ruin it, and a new build is better again.
+    // Scattering the vertices ruins the quality, and a new build restores it.
     let mut rng = rng("scattered", 0);
     let scatter = |_| Point3::from([(); 3].map(|()| rng.random_range(-1.0..1.0)));
     tree.refit_in_place(&Default::default(), |soup| soup.map_positions(scatter)).expect("finite");
@@ -163,7 +164,7 @@ fn a_tree_follows_a_scene_in_place_and_tells_what_it_lost() {
     }
     let rebuilt = AabbTree::new(tree.into_set()).expect("valid");
     assert!(rebuilt.surface_area() < scattered);
-    // A motion that fails leaves scene and tree as they were.
+    // After a failed motion, scene and tree are unchanged.
     let mut tree = rebuilt;
     let before = tree.set().clone();
     let failed = tree.refit_in_place(&Default::default(), |soup| soup.map_positions(|p| p * f64::NAN));
@@ -209,7 +210,7 @@ fn a_tree_answers_for_whatever_a_change_left() {
     };
     let mut tree = AabbTree::new(ball()).expect("valid");
     let up = |p: Point3<f64>| p + Vector3::new(0.0, 0.0, 2.0);
-    // The first motion is legal, the second one is not.
+    // The first motion is valid, the second one is not.
     let failed = tree.refit_in_place(&Default::default(), |soup| {
         soup.map_positions(up)?;
         soup.map_positions(|p| p * f64::NAN)
@@ -222,7 +223,7 @@ fn a_tree_answers_for_whatever_a_change_left() {
         })
     }));
     assert!(panicked.is_err() && same(&tree));
-    // No tree fits a scene of another size, so nothing is found.
+    // No tree fits a scene of another size, so the search finds nothing.
     let other = Soup::from_triangles(ball().positions().to_vec(), vec![[0, 1, 2]]).expect("valid");
     let error = tree.refit_in_place(&Default::default(), |soup| {
         *soup = other;
@@ -244,7 +245,7 @@ fn an_index_of_another_scene_has_no_signs() {
     let other = SignError::OtherScene { triangle: 0, vertex: 0 };
     assert_eq!(SignedDistance::new(index(), Arc::clone(&shifted)).unwrap_err(), other);
     assert_eq!(SignedDistance::with_rule(index(), Arc::clone(&shifted), SignRule::Parity).unwrap_err(), other);
-    // A scene of other kinds has that error, whatever the ids of its triangles are.
+    // A scene with other kinds of primitives returns that error, whatever the ids of its triangles are.
     let elements = [p2m::Element::Segment([2, 3]), p2m::Element::Point(3), p2m::Element::Triangle([0, 1, 2])];
     let mixed = Soup::new(ball().positions()[..4].to_vec(), elements).expect("valid");
     let over_mixed = AabbTree::new(&mixed).expect("valid");

@@ -1,5 +1,5 @@
-//! Tests the nearest pairs of scenes, and of scenes and shapes, against all pairs, which p2m-core tests against rational
-//! arithmetic.
+//! Tests of the nearest pairs of scenes, and of scenes and shapes. All pairs, which p2m-core compares with rational
+//! arithmetic, are the reference.
 #![cfg(all(feature = "bvh", feature = "kdop"))]
 #![allow(clippy::float_cmp, reason = "bitwise equality is what is tested")]
 
@@ -13,7 +13,7 @@ use rand::{Rng, RngExt};
 use std::cell::Cell;
 use std::ops::ControlFlow;
 
-/// Returns the answer for two scenes by all pairs.
+/// Returns the answer for two scenes by evaluating all pairs.
 fn by_all_pairs<T: Real>(a: &Soup<T>, b: &Soup<T>, options: &PairOptions<T>) -> Option<ClosestPair<T>> {
     let [a, b] = [a, b].map(|soup| BruteForce::new(soup).expect("valid"));
     a.closest_pair(&b, options)
@@ -26,7 +26,7 @@ fn motion(rng: &mut impl Rng, size: f64) -> Option<Isometry3<f64>> {
     (rng.random_range(0..4) > 0).then(|| Isometry3::new(vector(rng) * far, turn))
 }
 
-/// Asserts that two answers are equal but for their lower bounds, which depend on what a search evaluated.
+/// Asserts that two answers are equal except for their lower bounds, which depend on the pairs that a search evaluates.
 fn assert_same<T: Real>(found: Option<ClosestPair<T>>, expected: Option<ClosestPair<T>>, text: &str) {
     let bits = |pair: &ClosestPair<T>| {
         (
@@ -60,7 +60,7 @@ fn check_scenes<T: Real>(case: u64, soups: [&Soup<T>; 2], moved: Option<Isometry
         assert_same(aabb_a.closest_pair(&aabb_b, &hinted), expected, &text);
     }
     assert_eq!(aabb_a.is_any_pair_near(&aabb_b, &options), expected.is_some(), "{text}");
-    // All pairs within a distance are those of the brute force.
+    // All pairs within a distance are the same as by brute force.
     if let Some(nearest) = expected {
         let factor = T::round_from_f64(1.05);
         let within = options.with_max_distance(nearest.distance * factor);
@@ -153,7 +153,7 @@ fn shapes_against_scenes_are_those_of_brute_force() {
     }
 }
 
-/// Returns a scene that is stretched, flat, on a sphere or as it was, of another size, and at another place.
+/// Returns a scene after a random deformation: stretched, flattened, put on a sphere or unchanged; scaled; and moved.
 fn deformed(rng: &mut impl Rng, soup: &Soup<f64>) -> Soup<f64> {
     let scale = [[1.0; 3], [1000.0, 1.0, 1.0], [1.0, 1e-9, 1.0]][rng.random_range(0..3)];
     let is_round = rng.random_range(0..4) == 0;
@@ -188,8 +188,8 @@ fn scenes_of_other_shapes_sizes_and_places_have_the_pairs_of_brute_force() {
     }
 }
 
-/// The vertices of the second scene are rounded where they come from, by far more than the roundings of a scene that is
-/// already in place, so of many pairs that are about equally near any one may be the nearest.
+/// The vertices of the second scene have rounding errors from where they were made, which far exceed the rounding of a
+/// scene that is already in place. So of many about equally near pairs, any one may be the nearest.
 #[test]
 fn a_scene_that_comes_from_far_away_has_the_pairs_of_its_rounded_vertices() {
     for case in cases(300, 12) {
@@ -216,8 +216,8 @@ fn a_scene_that_comes_from_far_away_has_the_pairs_of_its_rounded_vertices() {
     }
 }
 
-/// Two parallel sheets that are not along the axes are about equally far apart everywhere, and so are a sheet and a
-/// triangle, so rounding decides which pair is nearest. A bound without its margin leaves the nearest pair out.
+/// Two parallel sheets that are not axis-aligned are about equally far apart everywhere, and so are a sheet and a
+/// triangle, so rounding decides which pair is nearest. A bound without its margin would leave the nearest pair out.
 #[test]
 fn parallel_sheets_have_the_pairs_of_brute_force() {
     for case in cases(10_000, 100) {
@@ -248,7 +248,7 @@ fn parallel_sheets_have_the_pairs_of_brute_force() {
         if case % 2 == 0 {
             check_scenes(case, [&a, &b], None, f64::INFINITY);
         } else {
-            // The second scene moves to its place from elsewhere.
+            // The second scene is moved to its place from elsewhere.
             let moved = Isometry3::new(vector(&mut rng) * 3.0, vector(&mut rng) * 3.0);
             let mut away = b.clone();
             away.map_positions(|p| moved.inverse() * p).expect("finite");
@@ -257,7 +257,7 @@ fn parallel_sheets_have_the_pairs_of_brute_force() {
     }
 }
 
-/// Returns a tree whose packets have one primitive each, so that the boxes of packets of points have no extent and bounds
+/// Returns a tree whose packets have one primitive each. The boxes of packets of points then have no extent, and bounds
 /// between them are as tight as rounding allows.
 fn finest_tree(soup: &Soup<f64>) -> AabbTree<f64, &Soup<f64>> {
     let mut options = SplitOptions::default();
@@ -265,8 +265,9 @@ fn finest_tree(soup: &Soup<f64>) -> AabbTree<f64, &Soup<f64>> {
     AabbTree::build_with(soup, &options).expect("valid")
 }
 
-/// The points of one scene are about equally far from those of the other, each from its own or all in one direction. Any
-/// bound that exceeds a distance by as much as f32 or a motion rounds leaves the nearest pair out.
+/// The points of one scene are about equally far from the points of the other one, each from its own point, or all in
+/// one direction. A bound that exceeds a distance by no more than the rounding of f32 or of a motion leaves the nearest
+/// pair out.
 #[test]
 fn points_at_about_equal_distances_have_the_pairs_of_brute_force() {
     for case in cases(20_000, 600) {
@@ -308,7 +309,7 @@ fn points_at_about_equal_distances_have_the_pairs_of_brute_force() {
     }
 }
 
-/// Rounding drops the points inside of two long edges, and the pair is left out for one that is hardly nearer.
+/// Rounding loses the nearest points inside of two long edges, so a pair that is hardly nearer replaces them.
 #[test]
 fn lower_bounds_hold_where_rounding_leaves_the_nearest_pair_out() {
     let p = [[0.0, 1.4732134762836382e-6, 1.0], [328.4927311896118, -944.5064969457171, 0.9995877563339473]];
@@ -326,7 +327,7 @@ fn lower_bounds_hold_where_rounding_leaves_the_nearest_pair_out() {
     }
 }
 
-/// Of scenes with many intersections only the pairs with lower ids than the best are evaluated.
+/// In scenes with many intersections, only pairs with lower ids than the best are evaluated.
 #[test]
 fn equal_scenes_are_compared_in_few_steps() {
     let soup = scenes::soup(&mut rng("equal scenes", 0), scenes::Kinds::Segments, scenes::Layout::Strewn, 3_000);
@@ -335,7 +336,7 @@ fn equal_scenes_are_compared_in_few_steps() {
     assert_eq!((pair.distance, pair.is_intersecting, pair.primitives), (0.0, true, [PrimitiveId::new(0); 2]));
 }
 
-/// Returns the nearest pair and the number of steps of its search.
+/// Returns the nearest pair, and the number of steps of the search.
 fn counted<T: Real>(
     a: &impl PairQuery<T>,
     b: &impl PairQuery<T>,
@@ -349,7 +350,7 @@ fn counted<T: Real>(
     (counting.closest_pair(b, options), steps.get())
 }
 
-/// Rounding moves all vertices to few places, so all pairs are about equally near, and exact ties are common.
+/// Rounding moves all vertices to few positions, so all pairs are about equally near, and exact ties are common.
 #[test]
 fn scenes_that_a_translation_swallows_are_compared_in_few_steps() {
     let mut rng = rng("swallowed scenes", 0);
@@ -362,14 +363,14 @@ fn scenes_that_a_translation_swallows_are_compared_in_few_steps() {
             let brute = BruteForce::new(small[0].set()).expect("valid");
             let (found, _) = counted(&small[0], &small[1], &options);
             assert_same(found, brute.closest_pair(&brute, &options), &format!("{far:e}, {turn:?}"));
-            // There are more than 200 packets of each scene.
+            // Each scene has more than 200 packets.
             let (_, steps) = counted(&large[0], &large[1], &options);
             assert!(steps < 2_000, "{steps} steps, {far:e}, {turn:?}");
         }
     }
 }
 
-/// All pairs of two clouds of equal points are equally near, or all intersect.
+/// All pairs of two clouds of equal points are equally near, or all of them intersect.
 #[test]
 fn clouds_of_equal_points_are_compared_in_few_steps() {
     for (place, is_same) in [([0.1, 0.2, 0.3], false), ([0.0; 3], true)] {
@@ -422,7 +423,7 @@ fn nothing_is_near_an_empty_scene_or_beyond_the_range() {
         assert_eq!(full.closest_pair(&full, &options.with_motion(motion)), None);
         assert_eq!(full.closest_to(&soup.get(PrimitiveId::new(0)), &options.with_motion(motion)), None);
     }
-    // The distance is beyond the range of numbers, and its bound is not.
+    // The distance is beyond the range of numbers, but its bound is not.
     let far = options.with_motion(Isometry3::translation(f64::MAX, 0.0, f64::MAX));
     let answer = full.closest_to(&soup.get(PrimitiveId::new(0)), &far).expect("a finite shape");
     assert!(answer.distance == f64::INFINITY && answer.lower_bound < f64::INFINITY, "{answer:?}");
@@ -430,7 +431,7 @@ fn nothing_is_near_an_empty_scene_or_beyond_the_range() {
         assert_eq!(full.closest_pair(&full, &options.with_max_distance(limit)), None);
         assert!(!full.is_any_near(&soup.get(PrimitiveId::new(0)), &options.with_max_distance(limit)));
     }
-    // Equal scenes intersect in their first triangle.
+    // The first triangles of equal scenes intersect.
     let same = full.closest_pair(&full, &options.with_max_distance(0.0)).expect("equal scenes intersect");
     assert_eq!((same.distance, same.is_intersecting, same.primitives), (0.0, true, [PrimitiveId::new(0); 2]));
 }
@@ -533,7 +534,7 @@ fn certified_pairs_are_nearest_in_rational_arithmetic() {
         let [tree_a, tree_b] = [&a, &b].map(|soup| AabbTree::new(soup).expect("valid"));
         let found = tree_a.certified_closest_pair(&tree_b, &options).expect("neither is empty");
         assert_eq!(found.primitives, ids, "{text} {found:?}");
-        // The length is the nearest f64 and the rest.
+        // The exact length is given by the nearest f64 and the remainder.
         assert_eq!(found.distance, exact.length()[0], "{text} {found:?}");
         assert!(exact.is_at_least(found.lower_bound), "{text} {found:?}");
         assert!(found.lower_bound >= found.distance.next_down(), "{text} {found:?}");
@@ -576,7 +577,8 @@ fn pairs_are_found_behind_pointers_and_in_batches() {
     assert!((&octree as &dyn p2m::AnyIndex).as_pair_query().is_none());
 }
 
-/// The distances of a segment and a point from the shape differ by less than the error of the kernel, in either order.
+/// The distances between the shape and a segment and a point differ by less than the error of the kernel, in either
+/// order.
 #[test]
 fn certified_pairs_distinguish_what_rounding_does_not() {
     use p2m_testkit::oracle::Distance;
@@ -608,8 +610,8 @@ fn certified_pairs_distinguish_what_rounding_does_not() {
     assert!(all.have_more_than(20, different), "{different}");
 }
 
-/// The kernel is wrong by more about two long segments than it is about two points, whose distance is between the
-/// computed and the true one of the segments.
+/// For two long segments the kernel has a larger error than for two points, whose distance lies between the computed
+/// and the true distance of the segments.
 #[test]
 fn certified_pairs_are_nearest_beside_long_segments() {
     use p2m_testkit::oracle::Distance;

@@ -1,4 +1,5 @@
-//! Checks that a search for hits tests and offers only what its collector wants, for trees of boxes and of k-DOPs.
+//! Checks that a search for hits only tests and offers the primitives that its collector wants, for trees of boxes and
+//! of k-DOPs.
 #![cfg(all(feature = "bvh", feature = "kdop"))]
 
 use nalgebra::{Point3, Vector3};
@@ -8,7 +9,7 @@ use p2m::kdop::Kdop;
 use p2m::{Aabb, Point, PrimitiveId, PrimitiveSet, Ray, Triangle};
 use std::ops::ControlFlow;
 
-/// A collector that wants the hits of one primitive.
+/// A collector that wants only the hits of one primitive.
 #[derive(Clone)]
 struct HitsOfOne(usize, Vec<PrimitiveId>);
 

@@ -1,4 +1,4 @@
-//! Checks the work of rays with counters, which are deterministic.
+//! Checks the work of rays by counters, which are deterministic.
 #![cfg(all(feature = "bvh", feature = "kdop"))]
 
 use p2m::bvh::{TreeIndex, Volume};
@@ -16,7 +16,7 @@ fn model(name: &str) -> Option<Soup<f64>> {
     Some(Arc::unwrap_or_clone(p2m::scene::read_scene(&path).expect("readable").soup))
 }
 
-/// Returns the nodes and packets that searches for all hits visit, for all rays.
+/// Returns the numbers of nodes and packets that searches for all hits visit, summed over all rays.
 fn work<V: Volume>(tree: &TreeIndex<f64, &Soup<f64>, V>, rays: &[Ray]) -> [usize; 2] {
     let [nodes, packets, _] =
         RayStatsCollector::count_rays(rays, &Hits::all(), |ray, counting| tree.visit_ray(ray, counting));
@@ -30,8 +30,8 @@ where
     KdopTree::new(soup).expect("valid")
 }
 
-/// Checks that more faces lead to less work. `max_percent` is the largest percentage of the nodes and packets of 6 faces
-/// that 14, 18 and 26 faces may visit.
+/// Checks that more faces lead to less work. `max_percent` has the largest percentages of the nodes and packets of 6
+/// faces that 14, 18 and 26 faces may visit.
 fn check_work_falls(name: &str, soup: &Soup<f64>, max_percent: [[usize; 2]; 3]) {
     let boxes = AabbTree::new(soup).expect("valid");
     let trees = (built::<6>(soup), built::<14>(soup), built::<18>(soup), built::<26>(soup));
@@ -42,7 +42,7 @@ fn check_work_falls(name: &str, soup: &Soup<f64>, max_percent: [[usize; 2]; 3]) 
         let rows = [work(&trees.0, &rays), work(&trees.1, &rays), work(&trees.2, &rays), work(&trees.3, &rays)];
         println!("{name}, {set}: boxes {boxes:?}, k-DOPs {rows:?} nodes and packets");
         for counter in [0, 1] {
-            // The 6-DOP of the axes is the box.
+            // The 6-DOP along the axes is the box.
             let (six, boxes) = (rows[0][counter], boxes[counter]);
             assert!(six.abs_diff(boxes) * 1000 <= boxes, "{name} {set}: {six} {boxes}");
             assert!(rows.windows(2).all(|pair| pair[1][counter] < pair[0][counter]), "{name} {set}: {rows:?}");
@@ -61,8 +61,8 @@ fn visits_fall_with_the_number_of_faces_on_a_turned_gear() {
     }
 }
 
-/// Lines so far away that neighbouring coordinates differ by more than the scene's size miss it without a test, or
-/// pass near it.
+/// If neighbouring coordinates at the line differ by more than the size of the scene, the line misses the scene without
+/// a test, or passes near it.
 #[test]
 fn lines_that_pass_far_away_cost_nothing() {
     let mut rng = rng("far away", 0);

@@ -1,5 +1,5 @@
 //! Compares rays on real meshes with exact rational arithmetic, and checks that no line slips through a closed surface.
-//! The tests are skipped, with a message, if there is no folder of models.
+//! If there is no folder of models, the tests are skipped with a message.
 
 #![cfg(all(feature = "bvh", feature = "kdop", feature = "scene"))]
 
@@ -23,7 +23,7 @@ fn read(path: &Path) -> (String, Soup<f64>) {
     (name, Arc::unwrap_or_clone(p2m::scene::read_scene(path).expect("readable").soup))
 }
 
-/// Returns the sums of the numbers that the cases return, computed on all cores.
+/// Runs the cases on all cores, and returns the sums of the numbers that they return.
 fn on_all_cores<const N: usize>(cases: &Cases, case: impl Fn(u64) -> [usize; N] + Sync) -> [usize; N] {
     let cores = std::thread::available_parallelism().map_or(1, usize::from);
     let add = |a: [usize; N], b: [usize; N]| std::array::from_fn(|k| a[k] + b[k]);
@@ -81,7 +81,7 @@ fn every_model_is_met_as_exact_arithmetic_says() {
     }
 }
 
-/// The numbers of times that lines enter and leave a surface.
+/// The number of times that lines enter a surface, and the number of times that they leave it.
 #[derive(Default)]
 struct Sides {
     front: usize,
@@ -103,7 +103,7 @@ impl<'r> RayCollector<'r> for Sides {
     }
 }
 
-/// Returns whether each edge occurs equally often in both directions, where vertices are identified by their positions.
+/// Returns whether each edge occurs equally often in both directions. Vertices are identified by their positions.
 fn is_closed(soup: &Soup<f64>) -> bool {
     let mut edges: HashMap<[[u64; 3]; 2], i32> = HashMap::new();
     // Adding 0.0 makes the two zeros equal.
@@ -122,8 +122,8 @@ fn is_closed(soup: &Soup<f64>) -> bool {
     edges.values().all(|sum| *sum == 0)
 }
 
-/// Returns a line through ten times the box. Half of the lines pass exactly through a vertex, or as closely as floats
-/// allow through a point of an edge.
+/// Returns a line through ten times the box. Half of the lines pass exactly through a vertex, or as closely through a
+/// point of an edge as floats allow.
 fn line<R: Rng>(rng: &mut R, soup: &Soup<f64>, bounds: &Aabb<f64>) -> Ray {
     let size = (bounds.max - bounds.min).amax();
     let middle = bounds.min + (bounds.max - bounds.min) * 0.5;

@@ -1,5 +1,5 @@
-//! Compares every backend of the registry with brute force, in both scalars, for all kinds of queries that it answers.
-//! A new backend joins with its entry in the registry.
+//! Compares every backend of the registry with brute force, in both scalars, in all kinds of queries that it answers. A
+//! new backend is tested once it has an entry in the registry.
 #![cfg(all(feature = "bvh", feature = "interception", feature = "kdop"))]
 
 use crate::agreement::agrees_with;
@@ -22,7 +22,7 @@ use std::sync::Arc;
 /// A scene in f64 with queries, and its seed.
 type Case = (u64, Soup<f64>, Vec<Point3<f64>>);
 
-/// Checks the index of every backend over scenes in f64.
+/// Checks the index of every backend, over scenes in f64.
 fn in_f64(cases: impl Iterator<Item = Case>, check: impl Fn(u64, &Soup<f64>, &[Point3<f64>], &dyn AnyIndex)) {
     for (seed, soup, queries) in cases {
         let soup = Arc::new(soup);
@@ -33,7 +33,7 @@ fn in_f64(cases: impl Iterator<Item = Case>, check: impl Fn(u64, &Soup<f64>, &[P
     }
 }
 
-/// Checks the index of every backend over scenes that are rounded to f32.
+/// Checks the index of every backend, over scenes that are rounded to f32.
 fn in_f32(cases: impl Iterator<Item = Case>, check: impl Fn(u64, &Soup<f32>, &[Point3<f32>], &dyn AnyIndex<f32>)) {
     for (seed, soup, queries) in cases {
         let soup = Arc::new(narrow(&soup).expect("fits f32"));
@@ -111,7 +111,7 @@ fn near_queries_agree_at_extreme_scales() {
     in_f64(extreme_soups("near scales"), near);
 }
 
-/// Rays, boxes and certified answers of trees and cells have tests of their own; this is for what a new backend adds.
+/// The trees and cells have separate tests of rays, boxes and certified answers. This test covers new backends.
 #[test]
 fn other_queries_agree_where_a_backend_answers_them() {
     in_f64(random_cases("registry"), |seed, soup, queries, index| {
@@ -132,7 +132,7 @@ fn other_queries_agree_where_a_backend_answers_them() {
     });
 }
 
-/// The answers of all queries for pairs. Lower bounds are left out, because they depend on what a search evaluates.
+/// The answers to all queries for pairs, without lower bounds, which depend on the pairs that a search evaluates.
 #[derive(Debug, Default, PartialEq)]
 struct PairAnswers<T: Real> {
     closest: Vec<Option<ClosestPair<T>>>,
@@ -142,8 +142,8 @@ struct PairAnswers<T: Real> {
 }
 
 impl<T: Real> PairAnswers<T> {
-    /// Asks a scene about triangles between queries, as shapes and as another scene, and about balls that move from one
-    /// query to the next.
+    /// Queries a scene with triangles between queries, as shapes and as another scene, and with balls that move from
+    /// one query to the next.
     fn new(scene: &impl PairQuery<T>, queries: &[Point3<T>]) -> Self {
         let triangle = |i: u32| Element::Triangle([3 * i, 3 * i + 1, 3 * i + 2]);
         let triangles = (0..u32::try_from(queries.len() / 3).expect("few queries")).map(triangle);
@@ -175,7 +175,7 @@ impl<T: Real> PairAnswers<T> {
                     ControlFlow::Continue(())
                 });
             }
-            // Searches find them in any order.
+            // Searches find these in any order.
             for mut found in [pairs, near] {
                 found.sort_unstable_by(|a, b| a.0.cmp(&b.0).then(a.1.to_f64().total_cmp(&b.1.to_f64())));
                 answers.within.push(found);
@@ -205,7 +205,7 @@ fn pairs_agree_on_random_scenes_in_f32() {
     in_f32(random_cases("pairs f32"), pairs);
 }
 
-/// Fits an index to a moved scene, and compares it with brute force.
+/// Refits an index to a moved scene, and compares it with brute force.
 fn refit<T: Real>(seed: u64, soup: &Soup<T>, queries: &[Point3<T>], index: &dyn AnyIndex<T>) {
     let mut moved = soup.clone();
     moved.map_positions(|p| Point3::new(-p.z, p.x + p.y, p.y)).expect("in range");
@@ -216,7 +216,7 @@ fn refit<T: Real>(seed: u64, soup: &Soup<T>, queries: &[Point3<T>], index: &dyn 
     near(seed, &moved, queries, &*refitted);
     pairs(seed, &moved, queries, &*refitted);
     assert_eq!(refitted.primitive_count(), soup.len());
-    // The index itself stays as it was.
+    // The original index is unchanged.
     nearest(seed, soup, queries, index);
     let error = |soup: Soup<T>| index.refitted(Arc::new(soup)).expect("as before").err();
     let shorter = Soup::new(soup.positions().to_vec(), soup.elements().skip(1)).expect("valid");
@@ -274,20 +274,20 @@ fn the_choice_of_auto_follows_from_scene_and_queries() {
             let choice = Choice::new(Arc::clone(soup), &workload).expect("valid scene");
             assert_eq!(choice.backend().name, expected, "{queries} {region:?}");
             let (backend, resolution) = (choice.backend(), choice.resolution());
-            // The index is the one that the backend builds alone.
+            // The index equals the one that the backend builds without a choice.
             let built = choice.build(&BuildSettings::default()).expect("valid scene");
             let alone = BuildSettings::default().with_resolution(resolution);
             let alone = backend.build(Arc::clone(soup), &alone).expect("valid scene");
             assert!(saved_bytes(&built) == saved_bytes(&alone), "{expected}");
         }
     }
-    // The cells of slivers have to be finer.
+    // Slivers need finer cells.
     let choice = Choice::new(gear, &Workload::new(100_000_000, QueryRegion::SceneBox)).expect("valid scene");
     assert!(choice.backend().name == "octree" && choice.resolution().is_some());
     // Points like those of the scene are near the surface.
     let workload = Workload::new(10_000_000, QueryRegion::Like(ball.positions()));
     assert_eq!(Choice::new(Arc::clone(&ball), &workload).expect("valid scene").backend().name, "octree");
-    // Points that are not finite, and those beyond the cells of an octree, are no reason for one.
+    // Points that are not finite, or are beyond the cells of an octree, do not justify an octree.
     let far = |scale: f64| -> Vec<Point3<f64>> { ball.positions().iter().map(|p| p * scale).collect() };
     for points in
         [vec![Point3::new(f64::NAN, 0.0, 0.0); 600], far(1e3), vec![Point3::new(f64::INFINITY, 0.0, 0.0); 600]]
@@ -295,11 +295,11 @@ fn the_choice_of_auto_follows_from_scene_and_queries() {
         let workload = Workload::new(10_000_000, QueryRegion::Like(&points));
         assert_eq!(Choice::new(Arc::clone(&ball), &workload).expect("valid scene").backend().name, "aabb");
     }
-    // Around a closed mesh the cells of vertices often know the answer.
+    // Around a closed mesh, the cells of vertices often contain the answer.
     let around = far(8.0);
     let workload = Workload::new(100_000_000, QueryRegion::Like(&around));
     assert_eq!(Choice::new(Arc::clone(&ball), &workload).expect("valid scene").backend().name, "p2m");
-    // A handful of queries are answered before an index is built.
+    // A few queries take less time than building an index.
     let few = Workload::new(3, QueryRegion::SceneBox);
     for (workload, expected) in [(few, "brute"), (few.with_needs_index(true), "aabb")] {
         for choice in [Choice::new(Arc::clone(&ball), &workload), Choice::compare(Arc::clone(&ball), &workload)] {
@@ -312,13 +312,13 @@ fn the_choice_of_auto_follows_from_scene_and_queries() {
             assert_eq!(built.index.memory_bytes() == 0, expected == "brute");
         }
     }
-    // Within a small distance the tree has little work.
+    // Within a small distance, the tree has little work.
     let box_of = |radius| {
         let workload = Workload::new(60_000, QueryRegion::SceneBox).with_max_distance(radius);
         Choice::new(Arc::clone(&ball), &workload).expect("valid scene").backend().name
     };
     assert_eq!((box_of(f64::INFINITY), box_of(1e-9)), ("octree", "aabb"));
-    // Cells are finer where even more queries pay for them, unless they would take too much memory.
+    // Even more queries justify finer cells, unless these would take too much memory.
     let octree_within = |queries, bytes| {
         let workload = Workload::new(queries, QueryRegion::SceneBox).with_max_bytes(bytes);
         let choice = Choice::new(Arc::clone(&ball), &workload).expect("valid scene");
@@ -334,7 +334,7 @@ fn the_choice_of_auto_follows_from_scene_and_queries() {
         let (_, taken) = octree_within(10_000_000, bytes);
         assert!(taken <= bytes, "{taken} of {bytes}");
     }
-    // A limit of memory excludes the octree, and scenes without primitives have no queries to count.
+    // A limit of memory excludes the octree. A scene without primitives has no work to count.
     let workload = Workload::new(10_000_000, QueryRegion::SceneBox).with_max_bytes(1000);
     assert_eq!(Choice::new(ball, &workload).expect("valid scene").backend().name, "aabb");
     let empty = Choice::new(Arc::default(), &Workload::new(10_000_000, QueryRegion::SceneBox)).expect("valid scene");

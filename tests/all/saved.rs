@@ -1,4 +1,5 @@
-//! Saved indexes return the same answers bit for bit, copied or mapped, and everything else is a typed error.
+//! Tests that saved indexes return the same answers bit for bit, copied or mapped, and that invalid files are typed
+//! errors.
 #![cfg(all(feature = "bvh", feature = "interception", feature = "kdop", feature = "scene"))]
 
 use nalgebra::Point3;
@@ -28,13 +29,13 @@ pub(super) fn queries(rng: &mut impl Rng, soup: &Soup<f64>, count: usize) -> Vec
     queries
 }
 
-/// A type of index: its answers as built, its file, and its answers as loaded.
+/// A type of index: its answers after the build, its file, and its answers after loading.
 pub(super) struct Kind {
     pub(super) name: &'static str,
     built: fn(&Soup<f64>, &[Point3<f64>]) -> Answers,
     pub(super) saved: fn(&Scene) -> Vec<u8>,
     loaded: fn(&Soup<f64>, &Reader, &[Point3<f64>]) -> Loaded,
-    /// The file of the index that is loaded from a file of its scene.
+    /// Loads the index of a file over its scene, and returns the file of saving it again.
     saved_again: fn(&Scene, &Reader) -> Vec<u8>,
 }
 
@@ -79,7 +80,7 @@ fn what_is_loaded_answers_as_what_was_saved() {
     let folder = tempfile::tempdir().expect("a folder");
     for case in cases(96, 24) {
         let (mut rng, (kinds, layout)) = (rng("saved", case), kinds_and_layout(case));
-        // Every 24 cases have all sizes, and 96 have each in every layout.
+        // Any 24 cases have all sizes, and any 96 have each size in every layout.
         let count = [0, 1, 17, amount(400, 60)][((case / 4 + case / 24) % 4) as usize];
         let scene = Scene::from(scenes::soup(&mut rng, kinds, layout, count));
         let queries = queries(&mut rng, &scene.soup, amount(60, 8));
@@ -137,13 +138,13 @@ fn names_origins_and_what_was_skipped_come_back() {
     let mut file = Vec::new();
     p2m::scene::write_p2m(&scene, &mut file).expect("memory");
     assert_eq!(p2m::scene::read_p2m(&file[..], "scene").expect("a scene"), scene);
-    // A file with a scene alone has no index.
+    // A file with only a scene has no index.
     let saved = SavedFile::read(&file[..]).expect("read");
     let error = p2m::storage::kind(saved.checked().expect("whole")).expect_err("none");
     assert!(matches!(error, LoadError::Missing { .. }), "{error}");
 }
 
-/// Loads a file as a program would, and returns its answers or the error.
+/// Loads a file as a program would, and returns the answers or the error.
 pub(super) fn answers_of(index: &Kind, bytes: &[u8], queries: &[Point3<f64>]) -> Loaded {
     let file = SavedFile::read(bytes)?;
     let reader = file.checked()?;
@@ -243,7 +244,7 @@ fn rays_moved_sets_and_primitives_of_ones_own_work_as_before() {
         assert_eq!(loaded.all_intersections(ray), built.all_intersections(ray));
     }
     assert!(rays.iter().filter(|ray| loaded.do_intersect(ray)).count() > 10);
-    // A loaded tree is refitted to moved positions as a built one is.
+    // A loaded tree can be refitted to moved positions as a built one.
     let moved = scene.soup.positions().iter().map(|p| p * 1.5 + vector(&mut rng) * 0.01).collect();
     let moved = Soup::new(moved, scene.soup.elements()).expect("valid");
     let queries = queries(&mut rng, &moved, 100);
@@ -265,21 +266,21 @@ fn rays_moved_sets_and_primitives_of_ones_own_work_as_before() {
     assert!(matches!(P2mIndex::<f64, _>::load(fewer, file.unchecked()), Err(LoadError::OtherSet)));
 }
 
-/// Files that announce more than there can be are errors, and take no memory.
+/// Files that announce more than they can contain are errors, and take no memory.
 #[test]
 fn sizes_that_are_merely_announced_are_refused() {
     const ENOUGH: u64 = 1 << 20;
     let mut file = Vec::new();
     p2m::scene::write_p2m(&Scene::from(scenes::skewed_gear(10)), &mut file).expect("memory");
-    // The header has the number of sections and the length, and each section has its offset, number and size of
-    // elements.
+    // The header has the number of sections and the length. Each section has an offset, a number of elements and their
+    // size.
     let sections = u32::from_le_bytes([file[12], file[13], file[14], file[15]]) as usize;
     let places = (0..sections).flat_map(|section| [32, 40, 48].map(|field| (64 + 64 * section + field, 8)));
     for (offset, size) in [(12, 4), (16, 8)].into_iter().chain(places) {
         for number in [u64::MAX, 1 << 60, u64::from(u32::MAX)] {
             let mut other = file.clone();
             other[offset..offset + size].copy_from_slice(&number.to_le_bytes()[..size]);
-            // The checksum is corrected as if the file had been written so.
+            // The checksum is corrected, as if the file had been written like this.
             let sum = twox_hash::XxHash3_64::oneshot(&other[64..64 + 64 * sections]);
             other[24..32].copy_from_slice(&sum.to_le_bytes());
             let load = || -> Result<Scene, LoadError> { load_scene(SavedFile::read(&other[..])?.checked()?) };
@@ -306,7 +307,7 @@ fn single_precision_comes_back_as_well() {
         let query = Point3::from((vector(&mut rng) * 2.0).map(|x| x as f32));
         assert_eq!(again.closest_point(&query), index.closest_point(&query));
     }
-    // Points are not segments, wherever they are.
+    // Points are not segments, even at the same coordinates.
     let points: Vec<Point<f32>> = wires.iter().map(|wire| Point::new(wire.vertices[0])).collect();
     assert_eq!(points.len(), PrimitiveSet::<f32>::len(&wires));
     assert!(matches!(P2mIndex::<f32, _>::load(&points, file.unchecked()), Err(LoadError::OtherSet)));

@@ -1,4 +1,4 @@
-//! Soups and indexes are values of serde, in the form of saved files.
+//! Tests of soups and indexes as serde values, which contain saved files.
 #![cfg(all(feature = "bvh", feature = "interception", feature = "serde"))]
 
 use p2m::nalgebra::Point3;
@@ -26,7 +26,7 @@ fn indexes_come_back_with_their_scenes() {
         assert_eq!(tree_back.closest_point(&query), tree.closest_point(&query));
         assert_eq!(octree_back.closest_point(&query), octree.closest_point(&query));
     }
-    // An index of another kind, another scene and damaged bytes are errors.
+    // An index of another kind, another scene, and damaged bytes are errors.
     assert!(serde_json::from_str::<Octree>(&tree_text).is_err_and(|e| e.to_string().contains("kind")));
     let bits = |x: f64| x.to_bits().to_string();
     let other_scene = tree_text.replacen(&bits(9.0), &bits(9.5), 1);

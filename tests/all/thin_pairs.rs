@@ -1,4 +1,4 @@
-//! Tests pairs of scenes of thin triangles against rational arithmetic.
+//! Compares pairs of scenes of thin triangles with rational arithmetic.
 #![cfg(all(feature = "bvh", feature = "instances", feature = "kdop"))]
 #![allow(clippy::float_cmp, reason = "bitwise equality is what is tested")]
 
@@ -17,7 +17,7 @@ type Ids = [PrimitiveId; 2];
 /// The exact distances of all pairs of two scenes.
 struct Exact {
     distances: Vec<(Ids, Distance)>,
-    /// The position of the least distance, and of equal ones that of the lowest ids.
+    /// The position of the least distance, and of equal ones the lowest ids.
     nearest: usize,
 }
 
@@ -35,20 +35,20 @@ impl Exact {
         &self.distances[self.nearest].1
     }
 
-    /// Returns the ids of all pairs that intersect, in order.
+    /// Returns the ids of all intersecting pairs, in ascending order.
     fn intersecting(&self) -> Vec<Ids> {
         self.distances.iter().filter(|(_, distance)| distance.is_zero()).map(|(ids, _)| *ids).collect()
     }
 }
 
-/// All fields of an answer but the lower bound, which depends on what a search evaluates.
+/// Returns all fields of an answer except the lower bound, which depends on the pairs that a search evaluates.
 fn fields(pair: Option<ClosestPair<f64>>) -> impl PartialEq + std::fmt::Debug {
     pair.map(|pair| {
         (pair.distance.to_bits(), pair.primitives, pair.points, pair.features, pair.barycentric, pair.is_intersecting)
     })
 }
 
-/// Returns the ids of the pairs within the largest distance, in order.
+/// Returns the ids of the pairs within the largest distance, in ascending order.
 fn ids_within(a: &dyn PairQuery<f64>, b: &dyn PairQuery<f64>, options: &PairOptions<f64>) -> Vec<Ids> {
     let mut ids = Vec::new();
     let _ = (&a).visit_pairs_within(b, options, &mut |pair| {
@@ -67,8 +67,8 @@ fn instance<'a>(index: impl AnyIndex<f64> + 'a) -> Instances<f64, dyn AnyIndex<f
     instances
 }
 
-/// Compares the answers of every backend with the exact ones, and returns whether the scenes intersect. Exact distances
-/// are known as f64 if the scale is ordinary.
+/// Compares the answers of every backend with the exact ones, and returns whether the scenes intersect. At ordinary
+/// scales, exact distances are also available as f64.
 fn check(scenes: &[Vec<Vec<[f64; 3]>>; 2], is_ordinary: bool, text: &str) -> bool {
     let exact = Exact::new(scenes);
     let text = format!("{text}: {scenes:?}");
@@ -80,7 +80,7 @@ fn check(scenes: &[Vec<Vec<[f64; 3]>>; 2], is_ordinary: bool, text: &str) -> boo
     let kdops = shapes.each_ref().map(|scene| KdopTree::<f64, _, 14>::new(scene).expect("finite"));
     let finer = shapes.each_ref().map(|scene| KdopTree::<f64, _, 26>::new(scene).expect("finite"));
     let of_trees = shapes.each_ref().map(|scene| instance(AabbTree::new(scene).expect("finite")));
-    // Each primitive of an instance without a tree is a side of its own.
+    // In an instance without a tree, each primitive is a side of its own.
     let of_brutes = shapes.each_ref().map(|scene| instance(BruteForce::new(scene).expect("finite")));
     let sides: [(&dyn PairQuery<f64>, &dyn PairQuery<f64>, &str); 7] = [
         (&brutes[0], &brutes[1], "brute force"),
@@ -95,7 +95,7 @@ fn check(scenes: &[Vec<Vec<[f64; 3]>>; 2], is_ordinary: bool, text: &str) -> boo
     let plain = brutes[0].closest_pair(&brutes[1], &options).expect("scenes are not empty");
     let intersecting = exact.intersecting();
     let touch = options.with_max_distance(0.0);
-    // The largest distance leaves some pairs out, and is that of a pair.
+    // The largest distance is that of the nearest pair, which is inclusive, or 0.25 if they are nearer.
     let within = options.with_max_distance(plain.distance.max(0.25));
     let near = ids_within(&brutes[0], &brutes[1], &within);
     let certified = brutes[0].certified_closest_pair(&brutes[1], &options);
@@ -113,7 +113,7 @@ fn check(scenes: &[Vec<Vec<[f64; 3]>>; 2], is_ordinary: bool, text: &str) -> boo
         assert_eq!(Some(proved), certified, "{how}, {text}");
         assert_eq!(proved.primitives, exact.distances[exact.nearest].0, "{how}, {text}");
         assert!(!is_ordinary || proved.distance == exact.nearest().length()[0], "{how}: {proved:?}, {text}");
-        // The first primitive of the second scene as a shape.
+        // The first primitive of the second scene is used as a shape.
         let shape = &shapes[1][0];
         let closest = (&a).closest_to(shape, &options);
         assert_eq!(fields(closest), fields(brutes[0].closest_to(shape, &options)), "{how}, {text}");
@@ -126,11 +126,11 @@ fn check(scenes: &[Vec<Vec<[f64; 3]>>; 2], is_ordinary: bool, text: &str) -> boo
     !intersecting.is_empty()
 }
 
-/// Returns the scenes of a case, and the exponent of two of their scale.
+/// Returns the scenes of a case, and the exponent of the power of two by which they are scaled.
 fn scenes_of(case: u64) -> ([Vec<Vec<[f64; 3]>>; 2], i32) {
     let mut rng = rng("pairs of thin triangles", case);
     let mut scenes = thin_scenes(&mut rng);
-    // Squares lose digits or overflow at these scales, and distances of the smallest scenes round to zero.
+    // At these scales squares lose digits or overflow, and distances of the smallest scenes round to zero.
     let exponent =
         [0, 0, 0, [-1070, -1000, -530, -420, 420, 530, 1000][rng.random_range(0..7)]][rng.random_range(0..4)];
     let scale = |x: f64| x * 2f64.powi(exponent / 2) * 2f64.powi(exponent - exponent / 2);
@@ -149,7 +149,7 @@ fn pairs_of_thin_triangles_are_exact() {
     assert!(all.have_more_than(300_000, intersecting), "{intersecting}");
 }
 
-/// Squares overflow at these scales, and so did heights along lines in an earlier version.
+/// At these scales squares overflow, as did heights along lines in an earlier version.
 #[test]
 fn pairs_of_thin_triangles_are_exact_at_large_scales() {
     let mut intersecting = 0;
@@ -164,12 +164,12 @@ fn pairs_of_thin_triangles_are_exact_at_large_scales() {
     assert!(all.have_more_than(30_000, intersecting), "{intersecting}");
 }
 
-/// Inputs that an earlier version had wrong.
+/// Inputs that an earlier version answered wrongly.
 #[test]
 fn thin_triangles_that_were_left_out_are_found() {
     let hull = |vertices: &[[f64; 3]]| vertices.to_vec();
     let scenes = [
-        // The triangle is collinear but for rounding, and crosses another one.
+        // The triangle is collinear up to rounding, and crosses another one.
         [
             vec![hull(&[[0.7, -0.3, 0.7], [-0.21000000000000002, 0.33, -0.14], [-0.6, 0.6, -0.5]])],
             vec![
@@ -177,7 +177,7 @@ fn thin_triangles_that_were_left_out_are_found() {
                 hull(&[[0.0, 0.6, -0.2], [-0.9, 0.0, 0.9], [0.3, -0.8, -0.7]]),
             ],
         ],
-        // The common corner is that of a triangle whose sides are as 1 to 14,000.
+        // The common corner belongs to a triangle whose sides have the ratio 1 to 14,000.
         [
             vec![hull(&[[-7.1, 1.4, -4.5], [-2.6, -8.1, 4.0], [-4.849, -3.35, -0.25]])],
             vec![hull(&[[-2.6, -8.1, 4.0], [1.4, -0.3, 6.2], [6.7, 0.4, 1.9]])],
@@ -188,7 +188,7 @@ fn thin_triangles_that_were_left_out_are_found() {
         let [a, b] = scenes;
         assert!(check(&[b, a], true, "it was wrong"));
     }
-    // Products of coordinates of 2^530 overflow, and are no numbers in sum.
+    // Products of coordinates of 2^530 overflow, and their sum is NaN.
     let (scenes, exponent) = scenes_of(131_090);
     assert_eq!(exponent, 530);
     assert!(check(&scenes, false, "it was wrong"));

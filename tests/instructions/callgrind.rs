@@ -1,6 +1,6 @@
-//! Counts instructions with callgrind, which runs this program on saved indexes.
+//! Counts of instructions by callgrind, which runs this program on saved indexes.
 //!
-//! Callgrind finds the functions of this file by their names, so neither is inlined.
+//! Callgrind finds the functions of this file by name, so none of them is inlined.
 
 use crate::table::Row;
 use crate::tasks::{COUNTERS, Indexes, QUERIES, SCENES, Task, scene};
@@ -10,12 +10,12 @@ use std::path::Path;
 use std::process::Command;
 use std::{env, fs};
 
-/// The instruction sets whose instructions are counted. AVX-512 is missing, because valgrind does not support it.
+/// The instruction sets for which instructions are counted. AVX-512 is missing, because valgrind does not support it.
 const INSTRUCTION_SETS: [&str; 2] = ["portable", "avx2"];
-/// The argument that makes this program run all queries on the indexes of a folder.
+/// The argument with which this program runs all queries on the indexes in a folder.
 pub(crate) const MEASURE: &str = "--measure-in=";
 
-/// The argument that makes this program save the indexes in a folder, for `cargo xtask account`.
+/// The argument with which this program saves the indexes in a folder, for `cargo xtask account`.
 pub(crate) const SAVE: &str = "--save-in=";
 
 /// The function in which callgrind counts instructions.
@@ -25,14 +25,14 @@ fn counted_by_callgrind(task: &Task<'_>) {
     std::hint::black_box(task);
 }
 
-/// The function after which callgrind writes a file with its counts.
+/// The function after which callgrind writes its counts to a file.
 #[inline(never)]
 fn written_by_callgrind(task: &Task<'_>) {
     counted_by_callgrind(task);
     std::hint::black_box(task);
 }
 
-/// Runs all queries on the indexes of a folder, for each scene with each instruction set in turn, under callgrind.
+/// Runs all queries under callgrind on the indexes in a folder, for each scene and each instruction set in turn.
 pub(crate) fn run_everything(folder: &Path) {
     for name in SCENES {
         let soup = scene(name);
@@ -43,7 +43,7 @@ pub(crate) fn run_everything(folder: &Path) {
     }
 }
 
-/// Returns the reason why callgrind cannot count instructions as it did for the table; `None` if it can.
+/// Returns the reason why the counts of callgrind would not be comparable with the table; `None` if they are.
 pub(crate) fn find_obstacle() -> Option<String> {
     let program = env::current_exe().expect("a program");
     let is_in_debug_folder = program.components().any(|part| part.as_os_str() == "debug");
@@ -62,7 +62,7 @@ pub(crate) fn find_obstacle() -> Option<String> {
     }
 }
 
-/// Adds the instructions of the indexes of a folder to the rows.
+/// Adds the instructions for the indexes in a folder to the rows.
 pub(crate) fn count_instructions(folder: &Path, rows: &mut [Row]) {
     let counts = folder.join("callgrind");
     let output = Command::new("valgrind")
@@ -95,7 +95,7 @@ pub(crate) fn count_instructions(folder: &Path, rows: &mut [Row]) {
     }
 }
 
-/// Returns the sum of a file of callgrind; `None` if there is no such file.
+/// Returns the total in a file of callgrind; `None` if there is no such file.
 fn instructions(file: &Path) -> Option<u64> {
     let text = fs::read_to_string(file).ok()?;
     let total = text.lines().find_map(|line| line.strip_prefix("totals: ")).expect("a file of callgrind has totals");

@@ -1,4 +1,4 @@
-//! A repeatable gate for performance: it compares the work of a query with a table, for each backend and query set.
+//! A repeatable gate for performance, which compares the work of queries with a table, for each backend and query set.
 //!
 //! `tests/instructions.csv` has the nodes, packets and primitives that a query visits, and the instructions that it
 //! executes with the portable instruction set and with AVX2. No time is measured.
@@ -10,8 +10,8 @@
 //!   profile, so they are left out, with a message, if those are not the table's. The test fails for a query that takes
 //!   more instructions than the table has, beyond a tolerance, and prints a message for one that takes fewer.
 //!
-//! `P2M_BLESS=1 cargo test --test instructions` writes the table anew. The table is made for the
-//! profile `test`, which optimises the libraries in which the counted code is compiled, and not this program.
+//! `P2M_BLESS=1 cargo test --test instructions` rewrites the table. The table is for the profile `test`, which
+//! optimises the libraries that contain the counted code, but not this program.
 
 mod callgrind;
 mod marks;
@@ -46,11 +46,11 @@ fn main() -> ExitCode {
     if is_selected(&arguments) { check_table() } else { ExitCode::SUCCESS }
 }
 
-/// The name of the only test.
+/// The name of the only test in this program.
 const NAME: &str = "work_is_that_of_the_table";
 
-/// Returns whether the arguments of a test program select this test. If they request a list of the tests,
-/// it is printed.
+/// Returns whether the arguments of a test program select this test. If they request a list of the tests, the function
+/// prints it.
 fn is_selected(arguments: &[String]) -> bool {
     let is_set = |flag: &str| arguments.iter().any(|argument| argument == flag);
     let (mut filters, mut skips) = (Vec::new(), Vec::new());

@@ -1,12 +1,13 @@
-//! Runs the queries between marks, for the counter of `cargo xtask arm --instructions`.
+//! Runs of the queries between marks, for the counter of `cargo xtask arm --instructions`.
 
 use crate::tasks::{Indexes, SCENES, scene};
 use p2m::core::Isa;
 
-/// The argument that makes this program run all queries between marks.
+/// The argument with which this program runs all queries between marks.
 pub(crate) const MARK: &str = "--between-marks";
 
-/// Runs the queries of each task between two marks, with each instruction set in turn, and prints what they were.
+/// Runs the queries of each task between two marks, with each instruction set in turn, and prints the names of the
+/// tasks.
 pub(crate) fn run_between_marks() {
     for name in SCENES {
         let soup = scene(name);
@@ -22,7 +23,8 @@ pub(crate) fn run_between_marks() {
     }
 }
 
-/// Asks for the number of this process, a system call that nothing else here makes. The counter writes its count then.
+/// Makes a mark: a system call (the number of this process) that nothing else here makes, at which the counter writes
+/// its count.
 #[inline(never)]
 fn mark() {
     std::hint::black_box(std::process::id());

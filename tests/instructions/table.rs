@@ -1,22 +1,22 @@
-//! The table of `tests/instructions.csv`: rows of figures, and the comparison of measured rows with it.
+//! The table in `tests/instructions.csv`: rows of figures, and their comparison with measured ones.
 
 use crate::tasks::COUNTERS;
 use std::fmt::Write as _;
 use std::fs;
 use std::path::{Path, PathBuf};
 
-/// The fraction by which the instructions of a query may exceed those of the table. The same code takes up to 0.4 %
-/// more or fewer at another address of the stack, and up to 0.2 % after a change of unrelated functions.
+/// The fraction by which the instructions of a query may exceed the table. The same code takes up to 0.4 % more or
+/// fewer at another address of the stack, and up to 0.2 % after a change of unrelated functions.
 const TOLERANCE: f64 = 0.02;
 /// The columns of figures.
 pub(crate) const COLUMNS: [&str; 5] = ["nodes", "packets", "primitives", "portable", "avx2"];
-/// Whether counters are compared without the tolerance. If the portable instruction set has fused multiply-add, bounds
-/// differ in their last bits from those of the table, and counters may differ.
+/// Whether counters have to be exactly equal. If the portable instruction set has fused multiply-add, the last bits of
+/// bounds differ from the machine of the table, and counters may differ.
 const IS_EXACT: bool = cfg!(all(target_arch = "x86_64", not(target_feature = "fma")));
-/// The command that renews the table.
+/// The command that rewrites the table.
 pub(crate) const RENEWAL: &str = "P2M_BLESS=1 cargo test --test instructions";
 
-/// A row of the table: the figures of a query in columns, some of which may be unknown.
+/// A row of the table: the figures of a query by column, some of which may be unknown.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Row {
     /// The scene, the backend and the query set.
@@ -30,13 +30,13 @@ impl Row {
     }
 }
 
-/// Formats a figure as in the table.
+/// Formats a figure as it is in the table.
 fn formatted(figure: Option<f64>, column: usize) -> String {
     let decimals = if column < COUNTERS { 3 } else { 0 };
     figure.map_or_else(|| "-".to_owned(), |x| format!("{x:.decimals$}"))
 }
 
-/// The table that is checked in.
+/// The table in the repository.
 pub(crate) struct Table {
     /// The compiler and the target for which the table has instructions.
     pub(crate) compiler: String,
@@ -81,7 +81,7 @@ impl Table {
     }
 }
 
-/// The difference of a figure from that of the table, beyond the tolerance.
+/// The change of a figure from the table, beyond the tolerance.
 enum Change {
     None,
     Less,
@@ -89,7 +89,7 @@ enum Change {
 }
 
 impl Change {
-    /// Classifies the change of a figure of a column.
+    /// Classifies the change of a figure in a column.
     fn of(column: usize, before: f64, now: f64) -> Self {
         let tolerance = if column < COUNTERS && IS_EXACT { 0.0 } else { TOLERANCE * before };
         if now > before + tolerance {
@@ -106,7 +106,7 @@ fn percent(before: f64, now: f64) -> f64 {
     (now - before) / before * 100.0
 }
 
-/// Prints all figures in columns, with their difference from the table's in percent.
+/// Prints all figures in columns, with their differences from the table in percent.
 pub(crate) fn print_rows(rows: &[Row], table: &Table) {
     let heads = COLUMNS.map(|name| format!("{name:>10}{:10}", "")).join("");
     println!("{:<16} {:<13} {:<8}{}", "scene", "backend", "set", heads.trim_end());
@@ -124,7 +124,7 @@ pub(crate) fn print_rows(rows: &[Row], table: &Table) {
     }
 }
 
-/// Compares the rows with the table, and returns messages about figures that are worse and about those that are better.
+/// Compares the rows with the table, and returns messages about worse figures and about better ones.
 pub(crate) fn compare(rows: &[Row], table: &Table) -> (Vec<String>, Vec<String>) {
     let (mut wrong, mut better) = (Vec::new(), Vec::new());
     let absent = |list: &[Row], row: &Row| !list.iter().any(|other| other.has_names_of(row));

@@ -1,4 +1,4 @@
-//! The queries that are counted: each set of queries on each index of a scene.
+//! The queries that are counted: each query set on each index of a scene.
 
 use nalgebra::Point3;
 use p2m::core::{Best, Hits, RayStatsCollector, StatsCollector};
@@ -13,7 +13,7 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::sync::Mutex;
 
-/// The number of queries of each set. A count divided by 200 has at most three decimals, so the table has all of them.
+/// The number of queries in each set. A count divided by 200 has at most three decimals, so the table is exact.
 pub(crate) const QUERIES: usize = 200;
 /// The seed of all queries.
 pub(crate) const SEED: u64 = 1;
@@ -21,18 +21,18 @@ pub(crate) const SEED: u64 = 1;
 pub(crate) const SCENES: [&str; 2] = ["knot_and_cables", "scan"];
 /// The query sets of closest points.
 pub(crate) const SETS: [QuerySet; 4] = [QuerySet::Box10, QuerySet::Box1, QuerySet::Near, QuerySet::Surface];
-/// How much finer the cells of the second octree are, which `p2m-bench` calls finest.
+/// The factor by which the cells of the second octree are finer. `p2m-bench` calls it finest.
 const FINER: f64 = 30.0;
 /// The number of counters of a query: nodes, packets and primitives.
 pub(crate) const COUNTERS: usize = 3;
 
-/// Returns a rough lump of 11,520 triangles, which is noisy like a scan and the same on every platform.
+/// Returns a lump of 11,520 triangles with noise like a scan, which is the same on every platform.
 fn scan() -> Soup<f64> {
     let lump = ico_sphere(&IcoSphere { frequency: 3 }).expect("valid options");
     subdivide(&lump, &Subdivide { levels: 3, amplitude: 0.15, ..Default::default() }).expect("valid options")
 }
 
-/// Returns the scene of that name.
+/// Returns the scene with this name.
 pub(crate) fn scene(name: &str) -> Soup<f64> {
     let carried = Path::new(env!("CARGO_MANIFEST_DIR")).join("scenes").join(format!("{name}.obj"));
     if name == "scan" {
@@ -42,7 +42,7 @@ pub(crate) fn scene(name: &str) -> Soup<f64> {
     }
 }
 
-/// Rounds to f32, which removes the last bits, in which logarithms and cosines differ between platforms.
+/// Rounds to f32. This removes the last bits, in which logarithms and cosines differ between platforms.
 fn rounded(x: f64) -> f64 {
     f64::from(x as f32)
 }
@@ -57,10 +57,10 @@ fn rays(soup: &Soup<f64>) -> Vec<Ray> {
     rays.map(|ray| Ray::new(&ray.origin(), &ray.direction().map(rounded)).expect("finite, and not zero")).collect()
 }
 
-/// The nodes, packets and primitives of all queries of a set.
+/// The numbers of nodes, packets and primitives that all queries of a set visit.
 pub(crate) type Counts = [usize; COUNTERS];
 
-/// The queries of one set on one index.
+/// The queries of a set on an index.
 pub(crate) struct Task<'a> {
     pub(crate) backend: &'static str,
     pub(crate) set: &'static str,
@@ -89,7 +89,8 @@ impl<I: IndexStats<f64>> ClosestPoint<f64> for Counted<'_, I> {
     }
 }
 
-/// Returns the queries of all sets of closest points, for an index that counts and the same index as a trait object.
+/// Returns the tasks for all sets of closest-point queries, given an index that counts and the same index as a trait
+/// object.
 fn point_tasks<'a, I: IndexStats<f64> + Sync>(
     backend: &'static str,
     index: &'a I,
@@ -110,7 +111,7 @@ fn point_tasks<'a, I: IndexStats<f64> + Sync>(
     })
 }
 
-/// Returns the rays from the scene's box, whose first hits are searched for.
+/// Returns the task for rays from the scene's box, whose first hits are searched for.
 fn ray_task<'a>(
     backend: &'static str,
     object: &'a dyn counted_queries::Tree,
@@ -122,7 +123,7 @@ fn ray_task<'a>(
     Task { backend, set: "rays", run: Box::new(run), count: Box::new(count) }
 }
 
-/// One scene with all indexes that are measured.
+/// A scene with all indexes that are measured.
 #[derive(Clone)]
 pub(crate) struct Indexes<'a> {
     soup: &'a Soup<f64>,
@@ -171,7 +172,7 @@ impl<'a> Indexes<'a> {
     }
 
     pub(crate) fn load(soup: &'a Soup<f64>, folder: &Path, scene: &str) -> Self {
-        // The files are not verified, because that takes long under valgrind.
+        // The files are not verified, because this takes long under valgrind.
         let open = |backend: &str| SavedFile::open(&file(folder, scene, backend)).expect("written by this program");
         Self {
             soup,
@@ -190,7 +191,7 @@ impl<'a> Indexes<'a> {
         Self { aabb, kdop, octree: octree.with_isa(isa), finer_octree, p2m: p2m.with_isa(isa), ..self }
     }
 
-    /// Returns all queries, in the order of the table.
+    /// Returns all tasks, in the order of the table.
     pub(crate) fn tasks(&self) -> Vec<Task<'_>> {
         let Self { soup, rays, aabb, kdop, octree, finer_octree, p2m } = self;
         let (aabb_object, kdop_object) = (counted_queries::aabb_tree(aabb), counted_queries::kdop_tree(kdop));

@@ -14,7 +14,7 @@ use std::ops::ControlFlow;
 
 pub(super) type Index<'a, T> = (String, Box<dyn RayQuery<T> + 'a>);
 
-/// Adds a tree with every instruction set.
+/// Adds a k-DOP tree with every instruction set.
 pub(super) fn kdops<'a, T: Real, S: PrimitiveSet<T> + Sync + Copy + 'a, const K: usize>(
     all: &mut Vec<Index<'a, T>>,
     set: S,
@@ -29,10 +29,10 @@ pub(super) fn kdops<'a, T: Real, S: PrimitiveSet<T> + Sync + Copy + 'a, const K:
     );
 }
 
-/// An index that finds hits in another order than that of ids.
+/// An index that finds hits in descending order of ids.
 pub(super) struct Reversed<T: Real, S>(AabbTree<T, S>);
 
-/// A collector that keeps all offers.
+/// A collector that records all offers.
 pub(super) struct Offered<'r> {
     only_crossings: bool,
     all: Vec<(PrimitiveId, Crossing<'r>)>,
@@ -71,7 +71,7 @@ pub(super) fn backends<'a, T: Real, S: PrimitiveSet<T> + Sync + Copy + 'a>(set: 
     all
 }
 
-/// Returns brute force, boxes and 14-DOPs. They are few because each tree is compiled for each type of set.
+/// Returns brute force, boxes and 14-DOPs. They are few, because each tree is compiled for each type of set.
 pub(super) fn few_backends<'a, T: Real, S: PrimitiveSet<T> + Sync + Copy + 'a>(set: S) -> Vec<Index<'a, T>> {
     let mut all: Vec<Index<'a, T>> = vec![("brute force".to_owned(), Box::new(BruteForce::new(set).expect("valid")))];
     let boxes = AabbTree::<T, S>::new(set).expect("valid");
@@ -83,7 +83,7 @@ pub(super) fn few_backends<'a, T: Real, S: PrimitiveSet<T> + Sync + Copy + 'a>(s
     all
 }
 
-/// The numbers of rays, hits, and hits along a segment that were checked.
+/// The numbers of checked rays, of hits, and of hits along a segment.
 #[derive(Debug, Default)]
 pub(super) struct Checked {
     pub(super) rays: usize,
@@ -92,7 +92,7 @@ pub(super) struct Checked {
     pub(super) crossings: usize,
 }
 
-/// Compares all backends with the exact hits, for each ray with its own range and with other ranges.
+/// Compares all backends with the exact hits, for each ray in its own range and in other ranges.
 pub(super) fn check<T: Real, R: Rng>(
     soup: &Soup<T>,
     rays: &[Ray],
@@ -120,7 +120,7 @@ pub(super) fn check<T: Real, R: Rng>(
             checked.hits += hits.len();
             checked.along += hits.iter().filter(|h| h.side == Side::Along).count();
             checked.crossings += crossings;
-            // The ranges take turns.
+            // Each case tests one of the ranges.
             let turn = rng.random_range(0..3);
             for (i, (name, index)) in backends.iter().enumerate() {
                 if round == 0 || i == 0 || i % 3 == turn {
@@ -144,12 +144,12 @@ pub(super) fn rays<R: Rng>(rng: &mut R, soup: &Soup<f64>) -> Vec<Ray> {
     AIMS.iter().map(|aim| ray(rng, soup, &soup.aabb(), *aim).with_radius(radius(rng)).expect("valid")).collect()
 }
 
-/// Returns x 2^e, which is infinite or rounded beyond the range of f64.
+/// Returns x 2^e, which is infinite or rounded outside of the range of f64.
 pub(super) fn scaled(x: f64, e: i32) -> f64 {
     x * 2f64.powi(e / 2) * 2f64.powi(e - e / 2)
 }
 
-/// Returns the ray at 2^e times the scene, with 2^f times the direction, if there is one.
+/// Returns the ray at 2^e times the scale of the scene, with 2^f times the direction, if it is valid.
 pub(super) fn scaled_ray(ray: &Ray, e: i32, f: i32) -> Option<Ray> {
     let (origin, direction) = (ray.origin().map(|x| scaled(x, e)), ray.direction().map(|x| scaled(x, f)));
     let [min, max] = ray.range();
@@ -175,8 +175,8 @@ pub(super) fn soup_of(primitives: &[Vec<[f64; 3]>]) -> Soup<f64> {
     Soup::new(positions, elements).expect("finite")
 }
 
-/// Runs a check on random scenes of all kinds and layouts with rays of all aims: three of each, or one in fourteen of
-/// them in shallow tests.
+/// Runs a check on random scenes of all kinds and layouts with rays of all aims: three rays of each aim, or one in
+/// fourteen of them in shallow tests.
 pub(super) fn on_random_scenes(
     name: &str,
     cases: Cases,
@@ -192,7 +192,7 @@ pub(super) fn on_random_scenes(
             vec![Ray::new(&Point3::<f64>::origin(), &Vector3::x()).expect("valid")]
         } else {
             let all: Vec<_> = (0..3).flat_map(|_| rays(&mut rng, &soup)).collect();
-            // The aims take turns.
+            // Each case tests some of the aims.
             all.into_iter().skip(seed as usize % amount(1, 14)).step_by(amount(1, 14)).collect()
         };
         each(seed, soup, rays);

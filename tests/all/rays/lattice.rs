@@ -1,4 +1,4 @@
-//! Rays on a small lattice: all triangles of 27 points, and closed surfaces.
+//! Tests of rays on a small lattice: all triangles of 27 points, and closed surfaces.
 
 use super::backends::{Checked, backends, check, soup_of};
 use nalgebra::{Point3, Vector3};
@@ -6,8 +6,8 @@ use p2m::{Element, Ray, Soup};
 use p2m_testkit::{amount, cases, rng};
 use rand::RngExt;
 
-/// Checks all triangles of a lattice of 27 points (some of them in shallow tests), most of which are degenerate or in a
-/// plane of the lattice, with their vertices in any order, and all segments and points of the lattice.
+/// Checks all triangles of a lattice of 27 points (some of them in shallow tests), with their vertices in any order,
+/// and all segments and points of the lattice. Most of the triangles are degenerate or in a plane of the lattice.
 #[test]
 fn the_whole_lattice_of_three_is_met_as_exact_arithmetic_says() {
     let at = |i: usize| -> [f64; 3] { [i / 9, i / 3 % 3, i % 3].map(|x| x as f64) };
@@ -32,7 +32,7 @@ fn the_whole_lattice_of_three_is_met_as_exact_arithmetic_says() {
     let cases = cases(24, 10);
     for case in cases.clone() {
         let mut rng = rng("rays on the lattice", case + 1);
-        // In shallow tests each line is tested against another subset.
+        // In shallow tests, each line is tested against another subset.
         let (skipped, step) = (case as usize % amount(1, 43), amount(1, 43));
         let soup = soup_of(&primitives.iter().skip(skipped).step_by(step).cloned().collect::<Vec<_>>());
         let origin = Point3::from(at(rng.random_range(0..27))) + Vector3::repeat(if case % 7 == 0 { 0.5 } else { 0.0 });
@@ -54,7 +54,7 @@ fn the_whole_lattice_of_three_is_met_as_exact_arithmetic_says() {
 }
 
 /// Every line of the lattice crosses the surface of a cube as often from outside as from inside, and a ray that begins
-/// inside leaves once more than it enters. The cubes have two triangles a side, or sides cut into four.
+/// inside leaves once more than it enters. The cubes have two triangles per side, or sides cut into four.
 #[test]
 fn closed_surfaces_are_crossed_an_even_number_of_times() {
     let corners: Vec<Point3<f64>> =
@@ -75,7 +75,7 @@ fn closed_surfaces_are_crossed_an_even_number_of_times() {
     for soup in [&halves, &quarters] {
         let backends = backends(soup);
         for case in cases.clone() {
-            // A step without a common divisor reaches all lines, and a few steps reach all directions.
+            // A step without a common divisor reaches all lines, and few steps reach all directions.
             let i = case as usize * 100 % 343;
             let origin = Point3::from([i / 49, i / 7 % 7, i % 7].map(|x| x as f64 - 2.0)) * 0.5 + Vector3::repeat(0.5);
             let inside = origin.iter().all(|x| 0.0 < *x && *x < 2.0);

@@ -1,4 +1,4 @@
-//! Rays at user-defined primitives, and input that is an error or extreme.
+//! Tests of rays at user-defined primitives, and of invalid or extreme input.
 
 use super::backends::{Index, few_backends, soup_of};
 use nalgebra::{Point3, Vector3};
@@ -71,7 +71,7 @@ fn primitives_of_ones_own_are_hit_where_they_say() {
     assert!(count > amount(100, 20), "{count}");
 }
 
-/// A user-defined primitive that ignores the range or returns nonsense.
+/// A user-defined primitive that ignores the range, or returns nonsense.
 #[derive(Clone, Copy)]
 struct Stubborn(f64);
 

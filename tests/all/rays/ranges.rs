@@ -1,4 +1,4 @@
-//! Ranges of rays that end at hits, at zero and at infinity.
+//! Tests of ranges of rays that end at hits, at zero and at infinity.
 
 use super::backends::{backends, rays, scaled, soup_of};
 use nalgebra::{Point3, Vector3};
@@ -9,7 +9,7 @@ use p2m_testkit::scenes::{self, Kinds, LAYOUTS};
 use p2m_testkit::{cases, rng};
 use rand::RngExt;
 
-/// Each hit of a single point is in exactly one of the adjacent ranges [t0, t1], [t1.next_up(), t2] and so on.
+/// Each hit of a single point lies in exactly one of the adjacent ranges [t0, t1], [t1.next_up(), t2] and so on.
 #[test]
 fn ranges_in_a_row_share_the_hits_out() {
     let mut shared = 0;
@@ -44,12 +44,12 @@ fn ranges_in_a_row_share_the_hits_out() {
     assert!(cases.have_more_than(500, shared), "{shared}");
 }
 
-/// Both zeros are equal: a hit at -0 begins at 0, and the lowest id wins.
+/// Both zeros are equal: a hit at -0 is in a range that begins at 0, and the lowest id wins.
 #[test]
 fn ranges_may_begin_at_minus_zero() {
     let flat = |y: f64| vec![[-1.0, 0.0, y], [1.0, 0.0, y], [0.0, 1.0, y]];
     let upright = |z: f64| vec![[0.0, 0.0, z], [0.0, 4.0, z - 1.0], [0.0, 4.0, z + 1.0]];
-    // The first hit begins at zero, the second before it.
+    // One hit begins at zero, and the other one before it.
     let soup = soup_of(&[upright(0.0), flat(0.0), upright(0.0), flat(0.0)]);
     for (name, index) in backends(&soup) {
         for min in [-0.0, 0.0] {
@@ -76,7 +76,7 @@ fn a_tiny_triangle_is_hit_into_a_long_direction() {
     }
 }
 
-/// The end of a common segment may be beyond the range of f64, and it is then all that a range at infinity contains.
+/// The end of a common segment may be beyond the range of f64. A range at infinity then contains only this end.
 #[test]
 fn a_stretch_may_end_at_infinity() {
     let [near, far] = [[1.0, 0.0, 0.0], [2f64.powi(900), 0.0, 0.0]];

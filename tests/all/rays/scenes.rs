@@ -1,4 +1,4 @@
-//! Rays at random scenes of every kind, at every scale, and far from the origin.
+//! Tests of rays at random scenes of every kind, at every scale, and far from the origin.
 
 use super::backends::{Checked, check, on_random_scenes, scaled, scaled_ray, soup_of};
 use nalgebra::{Point3, Vector3};
@@ -34,7 +34,8 @@ fn scenes_of_f32_are_met_as_exact_arithmetic_says() {
     assert!(cases.have_more_than(amount(1000, 102), checked.hits), "{checked:?}");
 }
 
-/// Powers of two change no side, and change a parameter by a power of two, unless a number under- or overflows.
+/// Scaling by powers of two changes no side, and scales a parameter by a power of two, unless a number overflows or
+/// underflows.
 #[test]
 fn no_scale_of_scene_or_direction_is_too_small_or_too_large() {
     let mut checked = Checked::default();
@@ -42,7 +43,7 @@ fn no_scale_of_scene_or_direction_is_too_small_or_too_large() {
     on_random_scenes("scaled rays", cases.clone(), &[1, 5, amount(20, 10)], |seed, soup, rays| {
         let mut rng = rng("scales", seed);
         let scales = SCALES.into_iter().chain([-540, -340, 340, 1022]);
-        // The scales take turns in shallow tests.
+        // Shallow tests use some of the scales for each case.
         for e in scales.skip(seed as usize % amount(1, 4)).step_by(amount(1, 4)) {
             let positions = soup.positions().iter().map(|p| p.map(|x| scaled(x, e))).collect();
             let Ok(soup) = Soup::new(positions, soup.elements()) else { continue };
@@ -87,7 +88,7 @@ fn magnitudes_may_mix_in_scene_and_ray() {
             .map(|aim| ray(&mut rng, &soup, &soup.aabb(), aim))
             .collect();
         for (case, other) in cases.iter().zip(&cases[1..]) {
-            // Rays lead from a vertex or a query into the direction of coordinates, and to another vertex.
+            // Rays lead from a vertex or a query in a direction given by coordinates, and to another vertex.
             let vertex = Point3::from(case.vertices[0]);
             let queries = [Point3::from(case.query), vertex];
             let directions = [other.query.into(), Point3::from(other.vertices[0]) - vertex];
@@ -105,8 +106,8 @@ fn magnitudes_may_mix_in_scene_and_ray() {
     assert!(is_crossed && has_more(amount(2000, 220), checked.hits), "{checked:?}");
 }
 
-/// The scene is thin along one axis, and so far away along another one that the rounding of its centre there is 2^178
-/// times its size, so that its tree cannot locate a line.
+/// The scene is thin along one axis. Along another axis it is so far away that the rounding of its centre is 2^178
+/// times its size, so its tree cannot locate a line.
 #[test]
 fn thin_scenes_far_from_the_origin_are_met() {
     let place = -8.799083088101401e24;
@@ -119,7 +120,7 @@ fn thin_scenes_far_from_the_origin_are_met() {
     assert!(checked.hits > 0, "{checked:?}");
 }
 
-/// The parameter of a hit has as many digits far away as near.
+/// The parameter of a hit has as many digits far from the origin as near it.
 #[test]
 fn far_origins_lose_nothing() {
     let mut checked = Checked::default();

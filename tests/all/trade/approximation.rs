@@ -1,5 +1,5 @@
-//! Checks the promises of approximate answers for every backend, option and scalar: the requested error, a lower bound
-//! that does not exceed the distance, and the exact answer wherever the option allows no error.
+//! Checks the promises of approximate answers for every backend, option and scalar: the error is as requested, the
+//! lower bound does not exceed the distance, and the answer is exact wherever the option allows no error.
 //!
 //! `P2M_DEEP=200 cargo test --profile deep --test all approximate` checks more than ten million answers.
 #![allow(clippy::float_cmp, reason = "bitwise equality is what is tested")]
@@ -33,13 +33,13 @@ struct Case<'a, T: Real> {
     exact: Closest<T>,
     /// The exact answer to the same query.
     truth: Closest<T>,
-    /// The number of lower bounds so close that only rational arithmetic could decide.
+    /// The number of lower bounds that only rational arithmetic could decide, because they are so close.
     compared: &'a mut usize,
     checked: &'a mut usize,
 }
 
 impl<T: Real> Case<'_, T> {
-    /// Queries the index and checks the promises of every answer.
+    /// Queries the index and checks the promises of the answer.
     fn checked_answer(&mut self, options: &QueryOptions<T>) -> Closest<T> {
         let found = self.index.closest_point_with(&self.query, options).expect("there is something");
         let context = || format!("{}, {options:?} at {:?}: {found:?}, not {:?}", self.name, self.query, self.exact);
@@ -77,7 +77,7 @@ impl<T: Real> Case<'_, T> {
                 "{}: {epsilon}: {found:?}, {exact:?}",
                 self.name
             );
-            // The lower bound proves it, up to the roundings of candidates.
+            // The lower bound proves the requested error, up to the rounding of candidates.
             let proved = (found.lower_bound.to_f64() + 4.0 * rounding) * max_distance * (1.0 + 8.0 * u);
             assert!(
                 reached <= proved + T::SMALLEST_SUBNORMAL,
@@ -136,12 +136,12 @@ fn sources() -> Vec<Soup<f64>> {
     let first = |soup: Soup<f64>| {
         Soup::new(soup.positions().to_vec(), soup.elements().take(largest)).expect("of a valid scene")
     };
-    // In this scene more slivers are candidates than the search can keep pending.
+    // This scene has more slivers as candidates than the search can keep pending.
     let gear = std::iter::once(scenes::skewed_gear(amount(1500, 100)));
     generated.chain(random).map(first).chain(gear).collect()
 }
 
-/// Returns the numbers of answers checked and of bounds that rational arithmetic had to decide, in f64 and in f32.
+/// Returns the numbers of checked answers and of bounds that rational arithmetic had to decide, in f64 and in f32.
 fn check_scale(soup: &Soup<f64>, exponent: i32, rng: &mut impl Rng) -> [[usize; 2]; 2] {
     let [mut double, mut single] = [[0; 2]; 2];
     let scale = |p: &Point3<f64>| p.map(|x| x * 2f64.powi(exponent));
@@ -156,8 +156,8 @@ fn check_scale(soup: &Soup<f64>, exponent: i32, rng: &mut impl Rng) -> [[usize; 
     [double, single]
 }
 
-/// Returns the choice out of `choices` for a case of one of `count` sources, which take turns. After `choices` rounds
-/// each source has had each choice, and each source begins with another choice than the previous one.
+/// Returns the choice out of `choices` for a case. The cases go through `count` sources in turns. After `choices`
+/// rounds each source has had each choice, and each source begins with another choice than the previous one.
 fn choice_of_source(case: u64, count: u64, choices: u64) -> usize {
     ((case % count + case / count) % choices) as usize
 }
@@ -166,7 +166,7 @@ fn choice_of_source(case: u64, count: u64, choices: u64) -> usize {
 fn approximate_answers_keep_what_they_promise() {
     let sources = sources();
     let count = sources.len() as u64;
-    // The deep suite has every source at every scale, and the shallow one at one of them.
+    // The deep suite has every source at every scale, and the shallow suite has each source at one scale.
     let cases = cases(EXPONENTS.len() as u64 * count, count);
     let counts = Mutex::new([[0; 2]; 2]);
     let threads = std::thread::available_parallelism().map_or(1, usize::from);
@@ -187,12 +187,12 @@ fn approximate_answers_keep_what_they_promise() {
     });
     let [double, single] = counts.into_inner().expect("no check failed");
     println!("answers, and lower bounds that rational arithmetic had to tell: {double:?} in f64, {single:?} in f32");
-    // Each query has twelve answers of each of four backends.
+    // Each query has twelve answers from each of four backends.
     assert!(cases.have_more_than(amount(39_999, 140 * sources.len()), double[0] + single[0]), "{double:?}, {single:?}");
 }
 
-/// If there are more candidates than can be pending, some are evaluated before the search ends, and the incumbent of
-/// that evaluation is only a bound for the rest.
+/// If there are more candidates than can be pending, some are evaluated before the search ends. The incumbent of that
+/// evaluation is then only a bound for the others.
 #[test]
 fn slivers_side_by_side_keep_epsilon() {
     let soup = scenes::skewed_gear(amount(3000, 800));
@@ -210,7 +210,7 @@ fn slivers_side_by_side_keep_epsilon() {
     }
 }
 
-/// A budget is kept, except for the path to a first answer, and a larger budget never gives a worse answer.
+/// A search exceeds its budget only on the path to a first answer, and a larger budget never gives a worse answer.
 #[test]
 fn budgets_are_kept_and_pay() {
     let options = p2m::scene::generate::TorusKnot::default();
@@ -246,7 +246,7 @@ fn budgets_are_kept_and_pay() {
     }
 }
 
-/// The exact answer of a cell that has one primitive is certified as exact, whatever the options are.
+/// The answer of a cell with a single primitive is exact and certified as such, for any options.
 #[test]
 fn what_is_certain_leaves_nothing_open() {
     let mut rng = p2m_testkit::rng("certain cells", 0);

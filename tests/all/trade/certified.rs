@@ -1,5 +1,5 @@
-//! Compares certified answers of every backend with exact rational arithmetic, on scenes with many primitives whose
-//! distances are equal up to rounding.
+//! Compares certified answers of every backend with exact rational arithmetic, on scenes in which many primitives have
+//! equal distances up to rounding.
 //!
 //! `P2M_DEEP=100 cargo test --profile deep --test all near_ties` runs 150,000 queries on each backend.
 
@@ -24,21 +24,21 @@ fn vertices<T: Real>(soup: &Soup<T>, id: usize) -> Vec<[f64; 3]> {
     shape.vertices().iter().map(|v| v.map(|x| x.to_f64()).coords.into()).collect()
 }
 
-/// Returns the exactly nearest primitive, the lowest id of several.
+/// Returns the nearest primitive in exact arithmetic, the lowest id of equally near ones.
 fn nearest<T: Real>(soup: &Soup<T>, query: [f64; 3]) -> (usize, Distance) {
     let all = (0..soup.len()).map(|id| (id, Distance::new(query, &vertices(soup, id))));
     all.reduce(|a, b| if b.1.compare(&a.1) == Ordering::Less { b } else { a }).expect("not empty")
 }
 
-/// Returns whether a distance is within one unit in the last place of the true one.
+/// Returns whether a distance is within a unit in the last place of the true one.
 fn is_within_a_unit<T: Real>(true_one: &Distance, distance: T) -> bool {
     let unit = distance.to_f64() * 2.0 * T::UNIT_ROUNDOFF + T::SMALLEST_SUBNORMAL;
     let (low, high) = (distance.to_f64() - unit, distance.to_f64() + unit);
     true_one.is_at_least(low.max(0.0)) && !true_one.is_at_least(high.next_up())
 }
 
-/// Checks certified answers, and returns how many queries there were and how many answers without certification
-/// named another primitive.
+/// Checks certified answers. Returns the number of queries, and the number of answers without certification that named
+/// another primitive.
 fn check<T: Real>(soup: &Soup<T>, queries: &[Point3<T>]) -> [usize; 2] {
     let brute = BruteForce::new(soup).expect("valid");
     let tree = AabbTree::new(soup).expect("valid");
@@ -60,7 +60,7 @@ fn check<T: Real>(soup: &Soup<T>, queries: &[Point3<T>]) -> [usize; 2] {
             let usual = index.closest_point(query).expect("found");
             counts[0] += 1;
             counts[1] += usize::from(usual.primitive.index() != id);
-            // A radius is compared without rounding.
+            // The radius is compared without rounding.
             let reported = found.distance.to_f64();
             let within = |r: f64| {
                 let options = QueryOptions::default().with_max_distance(T::round_from_f64(r));
@@ -88,8 +88,8 @@ fn unit(rng: &mut impl Rng) -> Vector3<f64> {
     }
 }
 
-/// Returns a scene of which `close` primitives of all kinds are at distance `radius` from the query up to rounding,
-/// some of them twice, and `far` others are farther.
+/// Returns a scene in which `close` primitives of all kinds are at distance `radius` from the query up to rounding,
+/// some of them twice, and `far` others are farther away.
 fn almost_tied(rng: &mut impl Rng, query: Point3<f64>, radius: f64, close: usize, far: usize) -> Soup<f64> {
     let mut soup = Soup::default();
     let mut add = |rng: &mut dyn Rng, at: f64, size: f64| {
@@ -133,7 +133,7 @@ fn near_ties_are_decided_rightly_by_every_backend() {
         counts = [counts[0] + all, counts[1] + other];
     }
     println!("of {} answers without proof {} named a primitive that is not nearest", counts[0], counts[1]);
-    // Certification makes a difference in enough of the cases.
+    // Certification matters in enough of the cases.
     assert!(cases.is_replay() || counts[1] * 10 > counts[0], "{counts:?}");
 }
 
@@ -171,7 +171,7 @@ fn what_cannot_be_certified_is_told() {
     let query = Point3::new(3.0, 0.0, 0.0);
     let error = CertifyError::NoVertices { id: PrimitiveId::new(0) };
     assert_eq!(tree.certified_closest_point(&query, &Default::default()), Err(error));
-    // There is no answer far beyond the radius, for a query that is not finite, and in an empty scene.
+    // There is no answer far beyond the radius, for a query that is not finite, or in an empty scene.
     let near = QueryOptions::default().with_max_distance(1.0);
     assert_eq!(tree.certified_closest_point(&query, &near), Ok(None));
     let nowhere = Point3::new(f64::NAN, 0.0, 0.0);

@@ -1,4 +1,4 @@
-//! Checks the promises of answers that are less accurate than exact ones, and of those that are certified.
+//! Checks the promises of approximate answers and of certified answers.
 #![cfg(all(feature = "bvh", feature = "interception", feature = "kdop", feature = "scene"))]
 
 mod approximation;
