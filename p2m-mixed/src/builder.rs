@@ -292,7 +292,8 @@ impl<'a> SceneBuilder<'a> {
         Ok(!self.has_non_finite || is_finite(&self.output.position(vertex)?))
     }
 
-    /// Starts an object with this name, whose line ends become blanks. Primitives under an empty name belong to no object.
+    /// Starts an object with this name, whose line ends become blanks. Primitives under an empty name belong to no
+    /// object.
     pub fn start_object(&mut self, name: &[u8]) {
         let name = trim(name);
         if memchr2(b'\n', b'\r', name).is_none() {

@@ -68,9 +68,12 @@ macro_rules! backends {
             fn agrees_on_homogeneous_slices() {
                 for (seed, soup) in random_soups("slices") {
                     let queries = queries(seed, &soup);
-                    let triangles: Vec<Triangle<f64>> = soup.triangles().iter().map(|t| Triangle { vertices: corners(&soup, t) }).collect();
-                    let segments: Vec<Segment<f64>> = soup.segments().iter().map(|s| Segment { vertices: corners(&soup, s) }).collect();
-                    let points: Vec<Point<f64>> = soup.points().iter().map(|p| Point::new(soup.positions()[*p as usize])).collect();
+                    let triangles: Vec<Triangle<f64>> =
+                        soup.triangles().iter().map(|t| Triangle { vertices: corners(&soup, t) }).collect();
+                    let segments: Vec<Segment<f64>> =
+                        soup.segments().iter().map(|s| Segment { vertices: corners(&soup, s) }).collect();
+                    let points: Vec<Point<f64>> =
+                        soup.points().iter().map(|p| Point::new(soup.positions()[*p as usize])).collect();
                     agrees::<f64, &[Triangle<f64>], $index<f64, _>>(seed, &triangles[..], &queries);
                     agrees::<f64, &[Segment<f64>], $index<f64, _>>(seed, &segments[..], &queries);
                     agrees::<f64, &[Point<f64>], $index<f64, _>>(seed, &points[..], &queries);
@@ -84,7 +87,11 @@ macro_rules! backends {
 
             #[test]
             fn many_identical_triangles_are_answered_with_the_first() {
-                let t = Triangle::new(Point3::new(0.0, 0.0, 0.0), Point3::new(1.0, 0.0, 0.0), Point3::new(0.0, 1.0, 0.0));
+                let t = Triangle::new(
+                    Point3::new(0.0, 0.0, 0.0),
+                    Point3::new(1.0, 0.0, 0.0),
+                    Point3::new(0.0, 1.0, 0.0),
+                );
                 let index = <$index<f64, _>>::build(vec![t; amount(10_000, 100)], &Default::default()).expect("finite");
                 for q in [Point3::new(0.2, 0.2, 1.0), Point3::new(-1.0, -1.0, 0.0), Point3::new(1e9, 3.0, 0.0)] {
                     assert_eq!(index.closest_point(&q).map(|c| c.primitive), Some(PrimitiveId::new(0)));
@@ -94,7 +101,10 @@ macro_rules! backends {
             #[test]
             fn adversarial_depth_is_survived() {
                 // Centres and sizes are in geometric progression.
-                let points: Vec<Point<f64>> = (-1000..1000).step_by(amount(1, 9)).map(|e| Point::new(Point3::new(2f64.powi(e), -2f64.powi(e / 2), 0.0))).collect();
+                let points: Vec<Point<f64>> = (-1000..1000)
+                    .step_by(amount(1, 9))
+                    .map(|e| Point::new(Point3::new(2f64.powi(e), -2f64.powi(e / 2), 0.0)))
+                    .collect();
                 let queries: Vec<_> = points.iter().step_by(7).map(|p| p.position * 1.3).collect();
                 agrees::<f64, &[Point<f64>], $index<f64, _>>(0, &points[..], &queries);
             }
@@ -106,9 +116,14 @@ macro_rules! backends {
                     let cases: Vec<_> = (0..amount(12, 7)).map(|_| p2m_testkit::families::wild(&mut r)).collect();
                     let shapes: Vec<Shape<f64>> = cases.iter().map(|c| shape(&c.vertices)).collect();
                     // Each case is queried at its query point, and near a vertex of another case.
-                    let vertex = |c: &p2m_testkit::families::Case| Point3::from(c.vertices[0].map(|x| x * (1.0 + 1e-13)));
-                    let queries: Vec<Point3<f64>> = cases.iter().map(|c| Point3::from(c.query)).chain(cases.iter().map(vertex))
-                        .filter(|q| q.iter().all(|x| x.is_finite())).collect();
+                    let vertex =
+                        |c: &p2m_testkit::families::Case| Point3::from(c.vertices[0].map(|x| x * (1.0 + 1e-13)));
+                    let queries: Vec<Point3<f64>> = cases
+                        .iter()
+                        .map(|c| Point3::from(c.query))
+                        .chain(cases.iter().map(vertex))
+                        .filter(|q| q.iter().all(|x| x.is_finite()))
+                        .collect();
                     agrees::<f64, &[Shape<f64>], $index<f64, _>>(seed, &shapes[..], &queries);
                 }
             }
@@ -122,7 +137,10 @@ macro_rules! backends {
             fn a_primitive_of_ones_own_agrees() {
                 let balls: Vec<Ball> = (0..200).map(|i| {
                     let mut r = rng("balls", i);
-                    Ball { centre: Point3::from(std::array::from_fn(|_| r.random_range(-5.0..5.0))), radius: r.random_range(0.0..1.0) }
+                    Ball {
+                        centre: Point3::from(std::array::from_fn(|_| r.random_range(-5.0..5.0))),
+                        radius: r.random_range(0.0..1.0),
+                    }
                 }).collect();
                 let queries: Vec<_> = (0..amount(300, 60)).map(|i| {
                     let mut r = rng("ball queries", i);

@@ -100,9 +100,9 @@ impl CudaIndex {
         let queries = CardQueries { address, count, is_f32 };
         let [distance, lower_bound, point, barycentric, primitive, feature] = columns;
         let columns = CardColumns { distance, lower_bound, point, barycentric, primitive, feature };
-        // SAFETY: the Python layer passes the addresses of contiguous arrays of torch or CuPy of the right type and size
-        // on this card, which it holds, and their current stream. `p2m.CudaIndex` says that nobody may write to the
-        // points during the call; nobody else knows the new arrays of answers.
+        // SAFETY: the Python layer passes the addresses of contiguous arrays of torch or CuPy of the right type and
+        // size on this card, which it holds, and their current stream. `p2m.CudaIndex` says that nobody may write to
+        // the points during the call; nobody else knows the new arrays of answers.
         self.run(py, || reported(unsafe { self.index.closest_on_card(&queries, max_distance, stream, &columns) }))
     }
 

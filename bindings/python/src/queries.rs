@@ -101,7 +101,8 @@ pub(crate) fn k_nearest(
     let mut arrays = ClosestArrays::borrow(out)?;
     with_positions!(points, points => {
         let rows = Rows { columns: arrays.columns(points.len() * k)?, width: k };
-        let (size, check) = ((points.len(), (ANSWERS_PER_PART / k.max(1)).max(1)), || check_finite("points", points, 1));
+        let (size, check) =
+            ((points.len(), (ANSWERS_PER_PART / k.max(1)).max(1)), || check_finite("points", points, 1));
         index.answer(py, size, rows, run, check, |part, range, mut rows: Rows<ClosestValues<'_>>| {
             let answers = near(part, &points[range], k, max_distance)?;
             rows.columns.set_all(answers.iter().flat_map(|near| (0..k).map(|place| near.get(place))));

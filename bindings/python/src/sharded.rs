@@ -212,7 +212,8 @@ impl Shards {
                 for (key, answer) in keys.into_iter().flatten().zip(&answers) {
                     *key = answer.as_ref().map_or(Key::INFINITY, |(_, key)| *key).order();
                 }
-                let answers: Vec<_> = answers.iter().map(|answer| answer.map(|(answer, _)| in_shards(answer))).collect();
+                let answers: Vec<_> =
+                    answers.iter().map(|answer| answer.map(|(answer, _)| in_shards(answer))).collect();
                 columns.set_all(answers.iter().map(Option::as_ref));
                 Ok(())
             })?;

@@ -18,7 +18,11 @@ use std::io::{BufRead, Write};
 /// Generates [`Format`] from a table. A row has the names of a format, which are also the extensions of its files, its
 /// reader, its writer, and whether its files preserve every scene.
 macro_rules! scene_formats {
-    ($($(#[$doc:meta])* $variant:ident = $name:literal $(| $other:literal)*, $read:path, $write:path, is_lossless: $is_lossless:literal;)*) => {
+    ($(
+        $(#[$doc:meta])*
+        $variant:ident = $name:literal $(| $other:literal)*,
+        $read:path, $write:path, is_lossless: $is_lossless:literal;
+    )*) => {
         p2m_core::formats! {
             /// The file formats of scenes, all of which can be read and written.
             ///

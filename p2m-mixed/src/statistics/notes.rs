@@ -184,7 +184,8 @@ impl fmt::Display for Note {
         match *self {
             Self::Empty => f.write_str("the scene is empty: no query has an answer"),
             Self::ExtremeScale => f.write_str(
-                "the scene has sizes beyond 1e-120..1e120: answers are right there, but trees are no faster than brute force",
+                "the scene has sizes beyond 1e-120..1e120: answers are right there, but trees are no faster than brute \
+                force",
             ),
             Self::BeyondF32 => f.write_str("the coordinates are beyond the range of f32: keep this scene in f64"),
             Self::FarFromOrigin { distance, times, f32_step, f64_step } => {
@@ -213,11 +214,17 @@ impl fmt::Display for Note {
             Self::ZeroArea { count: 1 } => {
                 f.write_str("1 triangle has no area: it counts as the segment or point that it covers")
             }
-            Self::ZeroArea { count } => {
-                write!(f, "{} triangles have no area: they count as the segments or points that they cover", Count(count))
-            }
+            Self::ZeroArea { count } => write!(
+                f,
+                "{} triangles have no area: they count as the segments or points that they cover",
+                Count(count)
+            ),
             Self::ZeroLength { count } => {
-                let they = counted(count, "segment has no length: it counts as a point", "segments have no length: they count as points");
+                let they = counted(
+                    count,
+                    "segment has no length: it counts as a point",
+                    "segments have no length: they count as points",
+                );
                 f.write_str(&they)
             }
             Self::Duplicates { count } => {
@@ -226,18 +233,26 @@ impl fmt::Display for Note {
             }
             Self::NonManifold { count } => {
                 let they = counted(count, "edge belongs", "edges belong");
-                write!(f, "{they} to more than two triangles: closest points are not affected, inside and outside may be")
+                write!(
+                    f,
+                    "{they} to more than two triangles: closest points are not affected, inside and outside may be"
+                )
             }
             Self::Inconsistent { count } => {
                 let they = counted(count, "edge lies", "edges lie");
-                write!(f, "{they} between triangles that face opposite sides: closest points are not affected, normals are")
+                write!(
+                    f,
+                    "{they} between triangles that face opposite sides: closest points are not affected, normals are"
+                )
             }
             Self::InsideOut => f.write_str(
-                "the surface is closed, but its triangles face inwards: inside and outside are right, normals are turned",
+                "the surface is closed, but its triangles face inwards: inside and outside are right, normals are \
+                turned",
             ),
-            Self::Spread { orders } => {
-                write!(f, "edge lengths span {orders:.0} orders of magnitude: very small and very large primitives are mixed")
-            }
+            Self::Spread { orders } => write!(
+                f,
+                "edge lengths span {orders:.0} orders of magnitude: very small and very large primitives are mixed"
+            ),
             Self::Flat { axis, at } => {
                 let name = ["x", "y", "z"].get(axis).copied().unwrap_or("?");
                 write!(f, "the scene is flat: {name} is {} everywhere", Exact(at))

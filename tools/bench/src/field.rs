@@ -133,9 +133,9 @@ fn print(scene: &Scene, resolution: usize, stride: usize) -> Result<bool> {
     }
     println!("\n## {}\n", scene.describe());
     println!(
-        "Grid of {x} x {y} x {z} points around the 1.05-fold box ({:.1} MB of f32), {} of {} slabs of {LAYERS} layers, which \
-         methods fill in turns; one thread, thread CPU time, means over the slabs. *With build*: as if the whole grid was \
-         filled once. *Difference*: from the first method, in diagonals; `=` is bit for bit.\n\n{table}",
+        "Grid of {x} x {y} x {z} points around the 1.05-fold box ({:.1} MB of f32), {} of {} slabs of {LAYERS} layers, \
+         which methods fill in turns; one thread, thread CPU time, means over the slabs. *With build*: as if the whole \
+         grid was filled once. *Difference*: from the first method, in diagonals; `=` is bit for bit.\n\n{table}",
         points * 4.0 / 1e6,
         slabs.len(),
         z.div_ceil(LAYERS),

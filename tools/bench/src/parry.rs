@@ -101,7 +101,8 @@ macro_rules! parry {
                 if !soup.points().is_empty() {
                     return Err(Unavailable("no shape for points".to_owned()));
                 }
-                let vectors = |points: Vec<Point3<f64>>| points.into_iter().map(|p| vector(p.into())).collect::<Vec<_>>();
+                let vectors =
+                    |points: Vec<Point3<f64>>| points.into_iter().map(|p| vector(p.into())).collect::<Vec<_>>();
                 let (triangle_positions, triangles) = used_positions(soup, soup.triangles());
                 let (segment_positions, segments) = used_positions(soup, soup.segments());
                 let (triangle_positions, segment_positions) = (vectors(triangle_positions), vectors(segment_positions));

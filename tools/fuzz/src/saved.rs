@@ -55,7 +55,8 @@ macro_rules! kinds {
         const $all: &[Kind] = &[$(Kind {
             name: $name,
             saved: |scene| {
-                let index = $index::<f64, &Soup<f64> $(, $k)?>::build(&scene.soup, &Default::default()).expect("finite");
+                let index = $index::<f64, &Soup<f64> $(, $k)?>::build(&scene.soup, &Default::default())
+                    .expect("finite");
                 let (mut writer, mut bytes) = (Writer::default(), Vec::new());
                 save_scene(scene, &mut writer);
                 index.save(&mut writer);
