@@ -118,6 +118,14 @@ const turnsInWords = (turns) =>
     .map(({ name, from }) => (from > 0 ? `\`${name}\` from ${count(from)} queries on` : `\`${name}\``))
     .join(", then ");
 
+/** The percentiles of times: their keys, their names, and the number of queries that each needs. */
+const PERCENTILES = [
+  ["p50", "50 %", 2],
+  ["p90", "90 %", 10],
+  ["p99", "99 %", 100],
+  ["p999", "99.9 %", 1000],
+];
+
 /** The number of queries for which the headline names the index, in words below. */
 const COMMON = 1e6;
 /**

@@ -152,24 +152,13 @@ ${keys.join("\n")}
 </svg>`;
 }
 
+/** The errors that a plot may have: the name, that of the axis, and what they are among those of a setting. */
 const MEASURES = [
-  {
-    name: "largest relative error",
-    axis: "largest error, relative to the distance",
-    of: (errors) => errors.relative.max,
-  },
-  {
-    name: "relative error of one query in a thousand",
-    axis: "relative error that one query in a thousand exceeds",
-    of: (errors) => errors.relative.p999,
-  },
-  { name: "largest error in u M", axis: "largest error, in u M", of: (errors) => errors.scaled.max },
-  {
-    name: "error in u M of one query in a thousand",
-    axis: "error in u M that one query in a thousand exceeds",
-    of: (errors) => errors.scaled.p999,
-  },
-];
+  ["largest relative error", "largest error, relative to the distance", "relative", "max"],
+  ["relative error of one query in a thousand", "relative error that one query in a thousand exceeds", "relative", "p999"],
+  ["largest error in u M", "largest error, in u M", "scaled", "max"],
+  ["error in u M of one query in a thousand", "error in u M that one query in a thousand exceeds", "scaled", "p999"],
+].map(([name, axis, kind, part]) => ({ name, axis, of: (errors) => errors[kind][part] }));
 
 /** The columns of settings that are exact, and of those of which no error was seen. */
 const [EXACT, NONE_SEEN] = ["exact", "none seen"];
@@ -224,17 +213,10 @@ const latencyPlot = (curves) =>
     "takes longer than so many ns",
     curves.map((curve) => {
       const { latency, queries } = defaultPoint(curve);
-      const all = latency
-        ? [
-            [2, latency.p50],
-            [10, latency.p90],
-            [100, latency.p99],
-            [1000, latency.p999],
-          ]
-        : [];
-      const points = all
-        .filter(([oneIn]) => oneIn <= queries)
-        .map(([x, y]) => ({ x, y, note: `${curve.name}: one in ${x} takes more than ${y} ns` }));
+      const points = PERCENTILES.filter(([, , oneIn]) => latency && oneIn <= queries).map(([key, , x]) => {
+        const y = latency[key];
+        return { x, y, note: `${curve.name}: one in ${x} takes more than ${y} ns` };
+      });
       return { name: curve.name, points };
     }),
   );
@@ -245,13 +227,11 @@ const totalPlot = (curves) =>
     "queries",
     "seconds, with building",
     costs(curves).map((cost) => {
-      const points = Array.from({ length: 15 }, (_, i) => 10 ** (2 + i / 2)).map((x) => ({ x, y: total(cost, x) }));
-      return {
-        name: cost.name,
-        points: points.map((p) => ({
-          ...p,
-          note: `${cost.name}: ${count(p.x)} queries in ${seconds(p.y)} s, built`,
-        })),
-      };
+      const points = Array.from({ length: 15 }, (_, i) => {
+        const x = 10 ** (2 + i / 2);
+        const y = total(cost, x);
+        return { x, y, note: `${cost.name}: ${count(x)} queries in ${seconds(y)} s, built` };
+      });
+      return { name: cost.name, points };
     }),
   );

@@ -1,45 +1,30 @@
 // Tables, and the page that is made of all.
 
-const SETTING_HEAD = [
-  "index",
-  "setting",
-  "ns per query",
-  "speed-up",
-  "largest relative error",
-  "1 in 1,000 exceeds",
-  "largest error, u M",
-  "1 in 1,000 exceeds",
-  "bound gap",
-  "other primitive",
-  "remarks",
+/** The columns of the table of settings: their names, and their cells for a candidate and its set of queries. */
+const SETTING_COLUMNS = [
+  ["index", ({ curve }) => curve.name],
+  ["setting", ({ point }) => point.setting],
+  ["ns per query", ({ point: { nanoseconds: ns } }) =>
+    `${ns.median.toFixed(0)} (${ns.min.toFixed(0)} to ${ns.max.toFixed(0)})`],
+  ["speed-up", ({ curve, point }) =>
+    `${(defaultPoint(curve).nanoseconds.median / point.nanoseconds.median).toFixed(2)}x`],
+  ["largest relative error", ({ point }) => error(point.errors.relative.max)],
+  ["1 in 1,000 exceeds", ({ point }) => error(point.errors.relative.p999)],
+  ["largest error, u M", ({ point }) => error(point.errors.scaled.max)],
+  ["1 in 1,000 exceeds", ({ point }) => error(point.errors.scaled.p999)],
+  ["bound gap", ({ point }) => error(point.errors.gap)],
+  ["other primitive", ({ point: { errors } }) => percentage(errors.other_ids, errors.compared)],
+  ["remarks", (candidate, set) => remarks(set, candidate)],
 ];
 const settingTable = (set) =>
   table(
-    SETTING_HEAD,
+    SETTING_COLUMNS.map(([name]) => name),
     2,
-    candidates(set.curves).map((candidate) => {
-      const {
-        curve,
-        point: { setting, nanoseconds: ns, errors },
-      } = candidate;
-      return [
-        curve.name,
-        setting,
-        `${ns.median.toFixed(0)} (${ns.min.toFixed(0)} to ${ns.max.toFixed(0)})`,
-        `${(defaultPoint(curve).nanoseconds.median / ns.median).toFixed(2)}x`,
-        error(errors.relative.max),
-        error(errors.relative.p999),
-        error(errors.scaled.max),
-        error(errors.scaled.p999),
-        error(errors.gap),
-        percentage(errors.other_ids, errors.compared),
-        remarks(set, candidate),
-      ];
-    }),
+    candidates(set.curves).map((candidate) => SETTING_COLUMNS.map(([, cell]) => cell(candidate, set))),
   );
 const latencyTable = (set) =>
   table(
-    ["index", "setting", "50 %", "90 %", "99 %", "99.9 %", "all"],
+    ["index", "setting", ...PERCENTILES.map(([, share]) => share), "all"],
     2,
     candidates(set.curves)
       .filter(({ point }) => point.latency)
@@ -47,13 +32,8 @@ const latencyTable = (set) =>
         curve.name,
         setting,
         // A percentile is shown only if there are enough queries for it.
-        ...[
-          [l.p50, 2],
-          [l.p90, 10],
-          [l.p99, 100],
-          [l.p999, 1000],
-          [l.max, 1],
-        ].map(([ns, least]) => (queries < least ? "-" : ns)),
+        ...PERCENTILES.map(([key, , least]) => (queries < least ? "-" : l[key])),
+        l.max,
       ]),
   );
 function breakEvenTable(set) {
@@ -178,20 +158,10 @@ function showTip(target) {
 }
 
 // All scenes have the same sets of queries.
-const sets = data.scenes[0].sets.map((set) => set.name);
 const relative = data.scenes[0].sets[0].curves.some((curve) => !isNone(defaultPoint(curve).errors.relative.max));
-byId("selectors").innerHTML =
-  selector(
-    "scene",
-    "Scene",
-    data.scenes.map((scene) => scene.name),
-  ) +
-  selector("set", "Queries", sets) +
-  selector(
-    "measure",
-    "Error",
-    MEASURES.map((measure) => measure.name),
-  );
+const nameOf = ({ name }) => name;
+byId("selectors").innerHTML = selector("scene", "Scene", data.scenes.map(nameOf)) +
+  selector("set", "Queries", data.scenes[0].sets.map(nameOf)) + selector("measure", "Error", MEASURES.map(nameOf));
 byId("measure").value = relative ? "0" : "2";
 byId("summary").innerHTML = summaryTable();
 byId("backends").innerHTML = terms(data.backends);
@@ -206,21 +176,15 @@ byId("provenance").innerHTML = words(
 document.addEventListener("change", ({ target }) =>
   ["scene", "set"].includes(target.id) ? showSet() : showPlots(),
 );
-document.addEventListener("pointermove", ({ target, clientX, clientY }) => {
+const markAt = ({ target, clientX, clientY }) => {
   const svg = target.closest?.("svg");
-  if (!pinned) showTip(svg ? nearestMark(clientX, clientY, svg) : null);
-});
-document.addEventListener("click", ({ target, clientX, clientY }) => {
-  const svg = target.closest?.("svg");
-  pinned = svg ? nearestMark(clientX, clientY, svg) : null;
-  showTip(pinned);
-});
-document.addEventListener("focusin", ({ target }) => {
-  if (target.classList.contains("dot")) showTip((pinned = target));
-});
-document.addEventListener("keydown", ({ key }) => {
-  if (key === "Escape") showTip((pinned = null));
-});
+  return svg ? nearestMark(clientX, clientY, svg) : null;
+};
+const pin = (mark) => showTip((pinned = mark));
+document.addEventListener("pointermove", (event) => pinned || showTip(markAt(event)));
+document.addEventListener("click", (event) => pin(markAt(event)));
+document.addEventListener("focusin", ({ target }) => target.classList.contains("dot") && pin(target));
+document.addEventListener("keydown", ({ key }) => key === "Escape" && pin(null));
 let drawnWidth = 0;
 globalThis.addEventListener?.("resize", () => {
   if (drawnWidth === document.documentElement.clientWidth) return;
