@@ -129,6 +129,12 @@ export function attempt(call: () => number): void {
   check(status);
 }
 
+/** Makes a call that may use up the memory and writes the address of an object, and returns that address. */
+export function create(call: (place: number) => number): number {
+  attempt(() => call(scratch));
+  return u32[scratch / 4]!;
+}
+
 /** Returns the string at an address, which ends with a zero. */
 export function text(address: number): string {
   refresh();

@@ -1,4 +1,5 @@
 import { compiledModule, nodeModule } from "./module.js";
+import { Remote } from "./remote.js";
 import { COLUMNS, checkLength, defaultColumns, queryCount } from "./spatial.js";
 import type { BatchOptions, Columns, DefaultColumns, Index, NumberArray } from "./spatial.js";
 import { coordinates } from "./scene.js";
@@ -36,9 +37,9 @@ const PARTS_PER_WORKER = 4;
  * requires a cross-origin isolated page, all workers share the queries and answers. Otherwise these are copied.
  */
 export class Pool {
-  #workers: Remote[];
+  #workers: Remote<Reply>[];
 
-  private constructor(workers: Remote[]) {
+  private constructor(workers: Remote<Reply>[]) {
     this.#workers = workers;
   }
 
@@ -53,7 +54,7 @@ export class Pool {
       ?? nodeModule("node:os").availableParallelism();
     let saved: Uint8Array = index.save();
     if (canShare()) saved = share(saved);
-    const pool = new Pool(Array.from({ length: count }, () => new Remote()));
+    const pool = new Pool(Array.from({ length: count }, start));
     try {
       await Promise.all(pool.#workers.map((worker) => worker.ask({ module: compiledModule(), saved })));
     } catch (error) {
@@ -100,7 +101,7 @@ export class Pool {
 
   /** Ends the workers. */
   dispose(): void {
-    for (const worker of this.#workers) worker.end();
+    for (const worker of this.#workers) worker.end("p2m: the pool was disposed of");
     this.#workers = [];
   }
 
@@ -155,51 +156,12 @@ function share<Numbers extends NumberArray | Coordinates>(array: Numbers): Numbe
   return copy;
 }
 
-/** A worker with its unanswered calls, which it answers in order. */
-class Remote {
-  #worker: { postMessage(message: unknown): void; terminate(): void };
-  #calls: { resolve: (reply: Reply) => void; reject: (error: Error) => void }[] = [];
-  /** The failure of the worker, after which it answers no more calls. */
-  #failure: Error | undefined;
-
-  constructor() {
-    const threads = nodeModule("node:worker_threads");
-    const receive = (reply: Reply) => {
-      const call = this.#calls.shift();
-      if (reply.error === undefined) call?.resolve(reply);
-      else call?.reject(new Error(reply.error));
-    };
-    const fail = (error: { message?: string }) => this.#fail(`p2m: a worker failed: ${error.message ?? ""}`);
-    if (threads && typeof Worker === "undefined") {
-      // Bundlers find this address only in a call of `new Worker`.
-      const here = import.meta.url;
-      const worker = new threads.Worker(new URL("./worker.js", here));
-      worker.on("message", receive).on("error", fail).on("exit", () => fail({ message: "it has ended" }));
-      this.#worker = worker;
-    } else {
-      const worker = new Worker(new URL("./worker.js", import.meta.url), { type: "module" });
-      worker.onmessage = ({ data }) => receive(data);
-      worker.onerror = fail;
-      this.#worker = worker;
-    }
-  }
-
-  ask(message: Start | Call): Promise<Reply> {
-    if (this.#failure) return Promise.reject(this.#failure);
-    return new Promise((resolve, reject) => {
-      this.#calls.push({ resolve, reject });
-      this.#worker.postMessage(message);
-    });
-  }
-
-  end(): void {
-    this.#fail("p2m: the pool was disposed of");
-    this.#worker.terminate();
-  }
-
-  /** Rejects all pending and later calls, because a worker that has ended never answers them. */
-  #fail(message: string): void {
-    this.#failure ??= new Error(message);
-    for (const { reject } of this.#calls.splice(0)) reject(this.#failure);
-  }
+/** Starts a worker. */
+function start(): Remote<Reply> {
+  const threads = nodeModule("node:worker_threads");
+  // Bundlers find this address only in a call of `new Worker`.
+  const here = import.meta.url;
+  const worker = threads && typeof Worker === "undefined" ? new threads.Worker(new URL("./worker.js", here))
+    : new Worker(new URL("./worker.js", import.meta.url), { type: "module" });
+  return new Remote(worker, (message = "") => `p2m: a worker failed: ${message}`);
 }

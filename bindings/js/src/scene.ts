@@ -1,6 +1,5 @@
-import {
-  attempt, check, compiledModule, passArray, passBytes, Owned, scratch, u32, f64, wasm, withMemory
-} from "./module.js";
+import { triple } from "./answers.js";
+import { check, compiledModule, create, passArray, passBytes, Owned, scratch, u32, wasm, withMemory } from "./module.js";
 import type { Allocate, Coordinates } from "./module.js";
 
 /** Indices of vertices. Arrays of other types than `Uint32Array` are converted. */
@@ -73,19 +72,16 @@ export class Scene extends Owned {
    */
   get bounds(): { low: [number, number, number]; high: [number, number, number] } {
     check(wasm.p2m_scene_bounds(this.address, scratch, scratch + 24));
-    const at = (i: number) => [...f64.subarray(scratch / 8 + i, scratch / 8 + i + 3)] as [number, number, number];
-    return { low: at(0), high: at(3) };
+    return { low: triple(scratch / 8), high: triple(scratch / 8 + 3) };
   }
 }
 
 function make(arrays: SceneArrays | MixedArrays, allocate: Allocate): number {
-  const place = allocate(4);
   const positions = passArray(coordinates(arrays.positions), 3, "positions", allocate);
   if ("sizes" in arrays) {
     const sizes = passBytes(Uint8Array.from(arrays.sizes), allocate);
     const vertices = passArray(indices(arrays.vertices), 1, "vertices", allocate);
-    attempt(() => wasm.p2m_js_scene_of_mixed(positions, sizes, arrays.sizes.length, vertices, place));
-    return u32[place / 4]!;
+    return create((place) => wasm.p2m_js_scene_of_mixed(positions, sizes, arrays.sizes.length, vertices, place));
   }
   let { triangles, segments, points } = arrays;
   if (!triangles && !segments && !points)
@@ -93,6 +89,5 @@ function make(arrays: SceneArrays | MixedArrays, allocate: Allocate): number {
   const pass = (array: Indices | null | undefined, width: number, name: string) =>
     array ? passArray(indices(array), width, name, allocate) : 0;
   const passed = [pass(triangles, 3, "triangles"), pass(segments, 2, "segments"), pass(points, 1, "points")] as const;
-  attempt(() => wasm.p2m_scene_new(positions, ...passed, place));
-  return u32[place / 4]!;
+  return create((place) => wasm.p2m_scene_new(positions, ...passed, place));
 }

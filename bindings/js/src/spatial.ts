@@ -1,7 +1,7 @@
 import { CLOSEST_BYTES, HIT_BYTES, readClosest, readHit, readPair, triple } from "./answers.js";
 import type { Closest, Hit, Pair } from "./answers.js";
 import {
-  attempt, check, f64, Owned, passArray, passBytes, refresh, scratch, text, u32, u8, wasm, withMemory,
+  attempt, check, create, f64, Owned, passArray, passBytes, refresh, scratch, text, u32, u8, wasm, withMemory,
 } from "./module.js";
 import type { Allocate } from "./module.js";
 import { coordinates } from "./scene.js";
@@ -137,12 +137,17 @@ function passRay({ origin, direction, tMin = 0, tMax = Infinity, radius = 0 }: R
   return scratch;
 }
 
+/** Reads memory that a call allocated, and frees it. */
+function take<Read>(read: (address: number, bytes: number) => Read): Read {
+  const [address, bytes] = [u32[(scratch + ANSWER) / 4]!, u32[(scratch + ANSWER) / 4 + 1]!];
+  const found = read(address, bytes);
+  wasm.p2m_js_free(address, bytes);
+  return found;
+}
+
 /** Reads answers from memory that a call allocated, and frees it. */
 function readAll<Answer>(size: number, read: (address: number) => Answer | null): Answer[] {
-  const [address, bytes] = [u32[(scratch + ANSWER) / 4]!, u32[(scratch + ANSWER) / 4 + 1]!];
-  const answers = Array.from({ length: bytes / size }, (_, i) => read(address + i * size)!);
-  wasm.p2m_js_free(address, bytes);
-  return answers;
+  return take((address, bytes) => Array.from({ length: bytes / size }, (_, i) => read(address + i * size)!));
 }
 
 /**
@@ -166,10 +171,8 @@ export class Index extends Owned {
    */
   static load(saved: Uint8Array): Index {
     const address = withMemory((allocate) => {
-      const place = allocate(4);
       const data = passBytes(saved, allocate);
-      attempt(() => wasm.p2m_js_load(data, saved.length, place));
-      return u32[place / 4]!;
+      return create((place) => wasm.p2m_js_load(data, saved.length, place));
     });
     // The constructor of `Index` would build an index.
     return Reflect.construct(Owned, [address, wasm.p2m_index_free], Index) as Index;
@@ -181,12 +184,8 @@ export class Index extends Owned {
    * @throws Error if the backend is "brute", which has no saved form.
    */
   save(): Uint8Array<ArrayBuffer> {
-    const place = scratch + ANSWER;
-    attempt(() => wasm.p2m_js_save(this.address, place));
-    const [address, bytes] = [u32[place / 4]!, u32[place / 4 + 1]!];
-    const saved = u8.slice(address, address + bytes);
-    wasm.p2m_js_free(address, bytes);
-    return saved;
+    attempt(() => wasm.p2m_js_save(this.address, scratch + ANSWER));
+    return take((address, bytes) => u8.slice(address, address + bytes));
   }
 
   /**
@@ -196,9 +195,7 @@ export class Index extends Owned {
    * @throws Error if the number of primitives differs, or if the backend is neither "aabb", "kdop" nor "brute".
    */
   refit(scene: Scene): void {
-    const place = scratch + ANSWER;
-    attempt(() => wasm.p2m_index_refit(this.address, scene.address, place));
-    this.replace(u32[place / 4]!);
+    this.replace(create((place) => wasm.p2m_index_refit(this.address, scene.address, place)));
   }
 
   /** The backend of the index. */
@@ -396,14 +393,13 @@ export class Index extends Owned {
 function build(scene: Scene, options: IndexOptions, allocate: Allocate): number {
   const { backend = "auto", queries = 0, resolution = 0, kdopFaces = 0 } = options;
   const name = passBytes(new TextEncoder().encode(`${backend}\0`), allocate);
-  const [place, passed] = [allocate(4), allocate(32)];
+  const passed = allocate(32);
   u32[passed / 4] = name;
   new BigUint64Array(wasm.memory.buffer)[passed / 8 + 1] = BigInt(Math.round(queries));
   f64[passed / 8 + 2] = resolution;
   u32[passed / 4 + 6] = kdopFaces;
   u32[passed / 4 + 7] = 1;
-  attempt(() => wasm.p2m_index_build(scene.address, passed, place));
-  return u32[place / 4]!;
+  return create((place) => wasm.p2m_index_build(scene.address, passed, place));
 }
 
 /**

@@ -30,7 +30,7 @@ export function sceneOf(source: Indexable | BufferGeometry): Scene {
   const geometry = source instanceof BufferGeometry ? source : source.geometry;
   const { index } = geometry;
   const { start, end } = rangeOf(geometry);
-  const vertex = (i: number) => (index ? index.getX(i) : i);
+  const vertex = (i: number) => vertexAt(geometry, i);
   const arrays: SceneArrays = { positions: positionsOf(source, geometry) };
   if (source instanceof Points) {
     arrays.points = Uint32Array.from({ length: end - start }, (_, i) => vertex(start + i));
@@ -82,6 +82,11 @@ function rangeOf({ index, attributes, drawRange }: BufferGeometry): { start: num
   const start = Math.max(0, drawRange.start);
   const all = index ? index.count : attributes["position"]!.count;
   return { start, end: Math.max(start, Math.min(all, drawRange.start + drawRange.count)) };
+}
+
+/** Returns the vertex at a place of a geometry. */
+function vertexAt({ index }: BufferGeometry, i: number): number {
+  return index ? index.getX(i) : i;
 }
 
 function segmentsOf(line: Line, vertices: number): { step: number; count: number } {
@@ -151,10 +156,7 @@ function castAtMesh(
   }
   for (const hit of hits) {
     const faceIndex = Math.floor(first / 3) + hit.primitive;
-    const [a, b, c] = [0, 1, 2].map((k) => {
-      const at = first + 3 * hit.primitive + k;
-      return geometry.index ? geometry.index.getX(at) : at;
-    }) as [number, number, number];
+    const [a, b, c] = [0, 1, 2].map((k) => vertexAt(geometry, first + 3 * hit.primitive + k)) as [number, number, number];
     const [pa, pb, pc] = [a, b, c].map((i) => mesh.getVertexPosition(i, new Vector3())) as [Vector3, Vector3, Vector3];
     const barycoord = new Vector3(...hit.weights);
     const point = new Vector3(...hit.point).applyMatrix4(matrixWorld);
@@ -202,7 +204,6 @@ function castNear(object: Line | Points, index: Index, raycaster: Raycaster, int
   const { geometry } = object;
   const { start, end } = rangeOf(geometry);
   const step = isLine ? segmentsOf(object, end - start).step : 1;
-  const vertex = (i: number) => (geometry.index ? geometry.index.getX(i) : i);
   const hits = index.raycast({ origin, direction, radius });
   // Behind the origin, the nearest point of the ray is the origin. So primitives within the radius of it count as well.
   const hit = new Set(hits.map(({ primitive }) => primitive));
@@ -218,7 +219,7 @@ function castNear(object: Line | Points, index: Index, raycaster: Raycaster, int
     const i = start + primitive * step;
     found.push((isLine
       ? { ...common, point: own.applyMatrix4(object.matrixWorld), index: i }
-      : { ...common, distanceToRay, point: onRay, index: vertex(i) }) as unknown as Intersection);
+      : { ...common, distanceToRay, point: onRay, index: vertexAt(geometry, i) }) as unknown as Intersection);
     if (raycaster.firstHitOnly) break;
   }
   intersects.push(...found);

@@ -45,7 +45,7 @@ afterAll(() => rmSync(project, { recursive: true, force: true }));
 
 test("the archive has what it needs, and nothing else", () => {
   const files = run("find", "node_modules/p2m", "-type", "f", "-printf", "%P\n").trim().split("\n").sort();
-  const scripts = ["answers", "index", "inline", "module", "pool", "scene", "spatial", "three", "worker"];
+  const scripts = ["answers", "index", "inline", "module", "pool", "remote", "scene", "spatial", "three", "worker"];
   expect(files).toEqual([
     "LICENSE-APACHE", "LICENSE-MIT", "LICENSES.md", "README.md", "dist/p2m.wasm", "package.json",
     ...scripts.flatMap((name) => [`dist/${name}.d.ts`, `dist/${name}.js`]),
