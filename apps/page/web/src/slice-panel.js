@@ -70,9 +70,7 @@ export class SlicePanel {
     slice.setPlane(axis, this.part * (slice.counts[axis] - 1));
     this.radios.forEach((radio, k) => (radio.checked = k === axis));
     this.range.value = this.part;
-    const position = [...slice.origin];
-    position[axis] += slice.index * slice.spacing;
-    this.text.textContent = `at ${short(viewer.coordinates(position)[axis])} ${viewer.unit}`;
+    this.text.textContent = `at ${short(viewer.coordinates(slice.position(0, 0).toArray())[axis])} ${viewer.unit}`;
     this.isKept = false;
     this.show(this.example(), true);
     viewer.draw();
@@ -99,15 +97,12 @@ export class SlicePanel {
     const { slice, viewer, value } = this;
     // The pointer moves all the time, and screen readers would read each value.
     value.setAttribute("aria-live", event ? "off" : "polite");
-    if (!slice.mesh.visible) {
-      if (!event) value.textContent = "The slice is not shown.";
-      return undefined;
-    }
-    if (!event) {
+    if (!event && !slice.mesh.visible) value.textContent = "The slice is not shown.";
+    if (!event && slice.mesh.visible) {
       this.show(this.example());
-      this.value.hidden = false;
-      return undefined;
+      value.hidden = false;
     }
+    if (!event || !slice.mesh.visible) return undefined;
     const [hit] = viewer.pointer(event).caster().intersectObject(slice.mesh);
     if (!hit) return undefined;
     return this.isKept ? slice.textAt(hit.point, this.unit) : this.show(hit.point);
