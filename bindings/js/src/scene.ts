@@ -1,5 +1,7 @@
 import { triple } from "./answers.js";
-import { check, compiledModule, create, passArray, passBytes, Owned, scratch, u32, wasm, withMemory } from "./module.js";
+import {
+  check, compiledModule, create, Owned, passArray, passBytes, scratch, u32, wasm, withMemory,
+} from "./module.js";
 import type { Allocate, Coordinates } from "./module.js";
 
 /** Indices of vertices. Arrays of other types than `Uint32Array` are converted. */

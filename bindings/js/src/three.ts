@@ -156,7 +156,8 @@ function castAtMesh(
   }
   for (const hit of hits) {
     const faceIndex = Math.floor(first / 3) + hit.primitive;
-    const [a, b, c] = [0, 1, 2].map((k) => vertexAt(geometry, first + 3 * hit.primitive + k)) as [number, number, number];
+    const corners = [0, 1, 2].map((k) => vertexAt(geometry, first + 3 * hit.primitive + k));
+    const [a, b, c] = corners as [number, number, number];
     const [pa, pb, pc] = [a, b, c].map((i) => mesh.getVertexPosition(i, new Vector3())) as [Vector3, Vector3, Vector3];
     const barycoord = new Vector3(...hit.weights);
     const point = new Vector3(...hit.point).applyMatrix4(matrixWorld);

@@ -2,7 +2,9 @@
 
 import { UNDEFINED } from "./colours.js";
 import { answerRows, explainedWords, featureName } from "./answers.js";
-import { button, copyButton, count, counted, element, fillList, key, number, reveal, stepButtons, stepped, tableHead } from "./text.js";
+import {
+  button, copyButton, count, counted, element, fillList, key, number, reveal, stepButtons, stepped, tableHead,
+} from "./text.js";
 
 // The number of rows of a page of the table.
 const ROWS = 50;

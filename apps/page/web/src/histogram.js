@@ -92,7 +92,9 @@ function histogram(values, scale, what, unit, { name = what, weight = 1, marks =
   const width = (right - left) / BINS;
   const entries = counts.map((n, i) => {
     if (i === 0) return { n, text: `less than ${short(low)}`, x: 0, width: OUTER, colour: scale.css(-Infinity) };
-    if (i > BINS) return { n, text: `more than ${short(high)}`, x: WIDTH - OUTER, width: OUTER, colour: scale.css(Infinity) };
+    if (i > BINS) {
+      return { n, text: `more than ${short(high)}`, x: WIDTH - OUTER, width: OUTER, colour: scale.css(Infinity) };
+    }
     const at = (part) => low + ((high - low) * (i - 1 + part)) / BINS;
     const [x, colour] = [left + (i - 1) * width, scale.css(at(0.5))];
     return { n, text: `${short(at(0))} to ${short(at(1))}`, x, width: width - 0.6, colour };

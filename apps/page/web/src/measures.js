@@ -5,7 +5,9 @@ import * as three from "three";
 import { ColourScale } from "./colours.js";
 import { line, limits, marker } from "./answers.js";
 import { geometryOf, vectorAt } from "./shading.js";
-import { button, copyButton, count, element, fillList, number, patch, remarksOn, short, shortened, stepButtons, stepped } from "./text.js";
+import {
+  button, copyButton, count, element, fillList, number, patch, remarksOn, short, shortened, stepButtons, stepped,
+} from "./text.js";
 
 // The number of characters of the name of an object above which its middle is left out.
 const LONGEST_NAME = 18;
@@ -95,7 +97,8 @@ export class MeasuresLayer {
         parts.push(element("p", { class: "buttons" }, fly, copyButton(this.text)));
       }
     } else {
-      parts.push(viewer.figure(() => ({ scale: this.scale, what: "length", unit: viewer.unit, values: this.lengths })).element,
+      const { scale, lengths: values } = this;
+      parts.push(viewer.figure(() => ({ scale, what: "length", unit: viewer.unit, values })).element,
         element("p", { class: "buttons" }, ...stepButtons(step)), this.text);
     }
     add(this.title, "measures", ...parts);

@@ -94,7 +94,8 @@ function check(shader) {
       vPart = part;
       vPlace = position / ${CELL} + vec3(0.237, 0.391, 0.513);`, `
       vec3 cell = floor(vPlace);
-      gl_FragDepth = gl_FragCoord.z + (abs(mod(cell.x + cell.y + cell.z, 2.0) - vPart) < 0.5 ? vFarther : 0.0);`, "attribute float part;\n");
+      gl_FragDepth = gl_FragCoord.z + (abs(mod(cell.x + cell.y + cell.z, 2.0) - vPart) < 0.5 ? vFarther : 0.0);`,
+    "attribute float part;\n");
 }
 
 // What the outline of a scene is: the opacity of its lines, the angle in degrees between facets from which on an edge is

@@ -32,7 +32,8 @@ export function addToolbar(viewer, stage) {
   const views = element("select", { id: "views", "aria-label": "View from", title: "View from", onchange: () => {
     if (views.value) viewer.fit(views.value);
     views.value = "";
-  } }, element("option", { value: "" }, "View"), ...Object.keys(PRESETS).map((view) => element("option", { value: view }, view)));
+  } }, element("option", { value: "" }, "View"),
+  ...Object.keys(PRESETS).map((view) => element("option", { value: view }, view)));
   const hasTriangles = viewer.data.scene.triangles.length > 0;
   const parts = [
     button("fit", "Fit the view (f)", () => viewer.fit()), views,

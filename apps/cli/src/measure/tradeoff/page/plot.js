@@ -155,7 +155,8 @@ ${keys.join("\n")}
 /** The errors that a plot may have: the name, that of the axis, and what they are among those of a setting. */
 const MEASURES = [
   ["largest relative error", "largest error, relative to the distance", "relative", "max"],
-  ["relative error of one query in a thousand", "relative error that one query in a thousand exceeds", "relative", "p999"],
+  ["relative error of one query in a thousand", "relative error that one query in a thousand exceeds", "relative",
+    "p999"],
   ["largest error in u M", "largest error, in u M", "scaled", "max"],
   ["error in u M of one query in a thousand", "error in u M that one query in a thousand exceeds", "scaled", "p999"],
 ].map(([name, axis, kind, part]) => ({ name, axis, of: (errors) => errors[kind][part] }));
