@@ -7,7 +7,7 @@ use crate::PrimitiveId;
 use std::ops::ControlFlow;
 
 /// A collector of hits, such as [`Hits`](crate::Hits), with counters of the work.
-/// [`StatsCollector`](crate::StatsCollector) does this for closest points.
+/// [`IndexStats`](crate::IndexStats) does this for closest points.
 ///
 /// ```
 /// use nalgebra::{Point3, Vector3};
