@@ -159,13 +159,6 @@ pub(crate) struct NearCandidate {
     pub(crate) projection: Projection,
 }
 
-impl NearCandidate {
-    /// Returns a lower bound on the true distance, apart from the rounding of this difference.
-    fn lower_bound(&self) -> f64 {
-        lower_bound(&self.projection)
-    }
-}
-
 impl PartialEq for NearCandidate {
     fn eq(&self, other: &Self) -> bool {
         self.cmp(other).is_eq()
@@ -246,7 +239,7 @@ impl<'a> Near<'a> {
     /// Returns the primitives that may be nearest, from a collector [for certification](Self::for_certification).
     pub(crate) fn certification_candidates(self) -> Vec<NearCandidate> {
         let NearMode::Certification { upper_bound, mut found } = self.mode else { return Vec::new() };
-        found.retain(|candidate| candidate.lower_bound() <= upper_bound);
+        found.retain(|candidate| lower_bound(&candidate.projection) <= upper_bound);
         found
     }
 
@@ -343,7 +336,7 @@ impl Collector for Near<'_> {
             let candidate = NearCandidate { key, id, projection };
             // The sum is rounded up, with a smallest subnormal for the rounding of the distance.
             let at_most = (key.distance() + projection.error) * (1.0 + 4.0 * f64::EPSILON) + 2.0 * f64::from_bits(1);
-            if candidate.lower_bound() <= *upper_bound {
+            if lower_bound(&candidate.projection) <= *upper_bound {
                 found.push(candidate);
             }
             // The comparison is false where an error of NaN makes the sum NaN.

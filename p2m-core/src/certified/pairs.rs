@@ -1,6 +1,7 @@
 //! Which of some pairs of primitives is nearest in real arithmetic.
 
 use super::rational::Square;
+use super::rounded::RoundedDistance;
 use crate::kernel::vector::V3;
 use crate::pair::{Hull, NearestPair, nearest_of_hulls};
 use crate::{PrimitiveId, Real};
@@ -15,17 +16,8 @@ pub(crate) struct PairCandidate {
     pub(crate) pair: NearestPair,
 }
 
-/// The nearest of some pairs.
-pub(crate) struct PairDecision {
-    /// The index of the nearest candidate; of exactly equal distances it is the one with the lowest ids.
-    pub(crate) winner: usize,
-    /// The true distance, rounded to the nearest f64.
-    pub(crate) distance: f64,
-    /// A lower bound on the true distance: `distance` or the f64 before it.
-    pub(crate) lower: f64,
-}
-
-/// Returns the nearest of some pairs, in any order; `None` if there is none, or if it is farther than the limit. Once
+/// Returns the index and the distance of the nearest of some pairs, in any order; of equal distances it is the one with
+/// the lowest ids. It is `None` if there is none, or if it is farther than the limit. Once
 /// `goes_on` returns `false`, the rest is left out.
 ///
 /// # Complexity
@@ -34,10 +26,10 @@ pub(crate) fn decide_pairs<T: Real>(
     candidates: &[PairCandidate],
     limit: T,
     goes_on: &dyn Fn() -> bool,
-) -> Option<PairDecision> {
+) -> Option<(usize, RoundedDistance)> {
     let touching = candidates.iter().enumerate().filter(|(_, one)| one.pair.is_intersecting);
     if let Some((winner, _)) = touching.min_by_key(|(_, one)| one.ids) {
-        return Some(PairDecision { winner, distance: 0.0, lower: 0.0 });
+        return Some((winner, RoundedDistance { nearest: 0.0, lower: 0.0 }));
     }
     let square = |one: &PairCandidate| Square::between(one.hulls[0].vertices(), one.hulls[1].vertices());
     let all = candidates.iter().take_while(|_| goes_on()).map(square).enumerate();
@@ -45,8 +37,7 @@ pub(crate) fn decide_pairs<T: Real>(
     if limit < T::INFINITY && least.cmp(&Square::from_length(limit.to_f64())).is_gt() {
         return None;
     }
-    let distance = least.distance();
-    Some(PairDecision { winner, distance: distance.nearest, lower: distance.lower })
+    Some((winner, least.distance()))
 }
 
 /// Returns the true distance of the hulls of some points, rounded to the nearest f64.

@@ -1,5 +1,6 @@
 //! The interface of a primitive.
 
+use super::box_intersection;
 use super::projection::Projection;
 use crate::{Aabb, Ray, RayHit, Real};
 use nalgebra::Point3;
@@ -77,10 +78,13 @@ pub trait Primitive<T: Real> {
 
     /// Returns whether the primitive has a point in a closed box, for [`BoxQuery`](crate::BoxQuery).
     ///
-    /// It is exact for the primitives of this project. The default tests the box of the primitive, which finds at least
-    /// all primitives that have a point in the box.
+    /// The default is exact for a primitive with [`vertices`](Self::vertices). For others it tests the box of the
+    /// primitive, which finds at least all primitives that have a point in the box.
     fn intersects_box(&self, bounds: &Aabb<T>) -> bool {
-        !bounds.is_empty() && bounds.intersects(&self.aabb())
+        match self.vertices() {
+            [] => !bounds.is_empty() && bounds.intersects(&self.aabb()),
+            vertices => box_intersection::intersects_box(vertices, bounds),
+        }
     }
 
     /// Returns the hit of a ray on a primitive that has no [`vertices`](Self::vertices).
