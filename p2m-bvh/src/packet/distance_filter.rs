@@ -267,7 +267,7 @@ impl<L: Lanes> Primitives<L> {
 pub const PLACES: usize = 16;
 
 /// Query points with the packets that they are compared with, one pair in each place, row by row.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Default)]
 pub struct Locals {
     /// The query points, in coordinates of the scene.
     pub position: [[f64; PLACES]; 3],
@@ -292,25 +292,6 @@ pub struct Locals {
     offset: [f32; PLACES],
     /// One bit for each place whose query point is not in the frame, as [`Packet::local`] returns `None` for it.
     pub far: u32,
-}
-
-impl Default for Locals {
-    /// Returns places without query points.
-    fn default() -> Self {
-        Self {
-            position: [[0.0; PLACES]; 3],
-            origin: [[0.0; PLACES]; 3],
-            unit: [0.0; PLACES],
-            per_unit: [0.0; PLACES],
-            query: [[0.0; PLACES]; 3],
-            excess: [0.0; PLACES],
-            deficit: [0.0; PLACES],
-            margin_squared: [0.0; PLACES],
-            normal: [[0.0; PLACES]; 3],
-            offset: [0.0; PLACES],
-            far: 0,
-        }
-    }
 }
 
 impl Locals {

@@ -23,6 +23,8 @@ use std::ops::ControlFlow;
 pub(crate) const STACK_LEN: usize = (WIDTH - 1) * MAX_DEPTH + WIDTH;
 /// The capacity of a shorter stack, which suffices for most trees and takes less time to clear.
 const SHORT_STACK_LEN: usize = 96;
+/// A column of that stack.
+type ShortStack = [u32; SHORT_STACK_LEN];
 /// The largest depth of a tree for which the shorter stack suffices.
 const SHORT_STACK_DEPTH: usize = (SHORT_STACK_LEN - WIDTH) / (WIDTH - 1);
 
@@ -54,12 +56,7 @@ const KEPT_LEN: usize = SHORT_STACK_LEN / 2;
 /// Moves all but the uppermost [`KEPT_LEN`] entries of a stack away.
 #[cold]
 #[inline(never)]
-fn spill(
-    keys: &mut [u32; SHORT_STACK_LEN],
-    parents: &mut [u32; SHORT_STACK_LEN],
-    below: &mut Vec<(u32, u32)>,
-    top: usize,
-) {
+fn spill(keys: &mut ShortStack, parents: &mut ShortStack, below: &mut Vec<(u32, u32)>, top: usize) {
     let moved = top - KEPT_LEN;
     below.extend(keys[..moved].iter().copied().zip(parents[..moved].iter().copied()));
     keys.copy_within(moved..top, 0);
@@ -69,11 +66,7 @@ fn spill(
 /// Brings back entries that were moved away, and returns their number.
 #[cold]
 #[inline(never)]
-fn refill(
-    keys: &mut [u32; SHORT_STACK_LEN],
-    parents: &mut [u32; SHORT_STACK_LEN],
-    below: &mut Vec<(u32, u32)>,
-) -> usize {
+fn refill(keys: &mut ShortStack, parents: &mut ShortStack, below: &mut Vec<(u32, u32)>) -> usize {
     let from = below.len().saturating_sub(KEPT_LEN);
     let count = below.len() - from;
     for (i, (key, parent)) in below.drain(from..).enumerate() {

@@ -185,14 +185,6 @@ impl Leaves {
             limit > collector.prune_above() || (limit >= 0.0 && packet.is_lane_within(0, &self.vertices, query, limit))
         }
     }
-
-    /// Whether a packet continues the run of the packet before.
-    #[doc(hidden)]
-    #[must_use]
-    pub fn is_continuation(&self, number: usize) -> bool {
-        number > 0 && self.packets[number - 1].is_continued()
-    }
-
     /// A packet and those that continue it.
     pub(crate) fn run(&self, number: usize) -> impl Iterator<Item = &Packet> {
         let rest = &self.packets[number..];
