@@ -251,7 +251,7 @@ impl<T: Real, S: PrimitiveSet<T>, P: Partition> ClosestPoint<T> for Interception
             // Searches that take turns do not count the sites that they visit, which the options may limit.
             return answer_one_by_one(self, queries, options, answered);
         }
-        let (partition, mut lists) = (&self.partition, InterleavedLists::new());
+        let (partition, mut lists) = (&self.partition, InterleavedLists::default());
         answer_in_groups(partition.tree(), &self.set, queries, options, answered, |count, several| {
             partition.search_several(count, several, &mut lists);
         });

@@ -81,11 +81,8 @@ impl<const K: usize> Kdop<K> {
     /// Whether a point lies in the k-DOP. Products are rounded down, so a point slightly outside may count as inside.
     #[must_use]
     pub fn contains_point(&self, directions: &Directions<K>, point: &Point3<f64>) -> bool {
-        directions
-            .normals()
-            .iter()
-            .zip(&self.heights)
-            .all(|(normal, height)| -product_above(&-normal, &point.coords) <= *height)
+        let mut heights = directions.normals().iter().zip(&self.heights);
+        heights.all(|(normal, height)| -product_above(&-normal, &point.coords) <= *height)
     }
 
     /// Whether some slab has its faces in the wrong order, so that the k-DOP has no points.
