@@ -11,7 +11,7 @@ use p2m_core::storage::{self, LoadError, Reader, Writer};
 use p2m_core::{
     Aabb, AnyIndex, BatchAnswer, Best, BoxQuery, BuildError, BuildIndex, CertifiedQuery, ClosestPoint, Collector, Hits,
     IndexStats, Isa, Near, NearQuery, Point, Primitive, PrimitiveId, PrimitiveSet, QueryOptions, Ray, RayCollector,
-    RayQuery, Real, Refitted, Shape, Soup, StatsCollector, check_set, shape_of,
+    RayQuery, Real, Refitted, Shape, Soup, check_set, shape_of,
 };
 use std::marker::PhantomData;
 use std::ops::ControlFlow;
@@ -261,10 +261,6 @@ impl<T: Real, S: PrimitiveSet<T> + Sync, V: Volume> Drop for RefitOnDrop<'_, T, 
 }
 
 impl<T: Real, S: PrimitiveSet<T>, V: Volume> IndexStats<T> for TreeIndex<T, S, V> {
-    fn inspect(&self, query: &Point3<T>, counting: &mut StatsCollector<T>) {
-        counting.count(|best| self.tree.search_nearest(&self.set, query, best));
-    }
-
     fn parts(&self) -> Vec<(&'static str, usize)> {
         vec![("tree", self.memory())]
     }

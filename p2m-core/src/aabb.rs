@@ -47,12 +47,8 @@ impl<T: Real> Aabb<T> {
         let low = |a: T, b: T| if a <= b || a.partial_cmp(&a).is_none() { a } else { b };
         let high = |a: T, b: T| if a >= b || a.partial_cmp(&a).is_none() { a } else { b };
         Self {
-            min: Point3::new(low(self.min.x, other.min.x), low(self.min.y, other.min.y), low(self.min.z, other.min.z)),
-            max: Point3::new(
-                high(self.max.x, other.max.x),
-                high(self.max.y, other.max.y),
-                high(self.max.z, other.max.z),
-            ),
+            min: Point3::from(std::array::from_fn(|k| low(self.min[k], other.min[k]))),
+            max: Point3::from(std::array::from_fn(|k| high(self.max[k], other.max[k]))),
         }
     }
 

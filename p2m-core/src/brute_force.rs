@@ -2,8 +2,7 @@
 
 use crate::{
     Best, BuildError, BuildIndex, CertifiedQuery, ClosestPoint, Collector, Crossing, Hits, IndexStats, Near, NearQuery,
-    Primitive, PrimitiveId, PrimitiveSet, Ray, RayCollector, RayQuery, Real, Shape, StatsCollector, check_set,
-    shape_of,
+    Primitive, PrimitiveId, PrimitiveSet, Ray, RayCollector, RayQuery, Real, Shape, check_set, shape_of,
 };
 use nalgebra::Point3;
 use std::ops::ControlFlow;
@@ -97,12 +96,6 @@ impl<T: Real, S: PrimitiveSet<T>> CertifiedQuery<T> for BruteForce<S> {
 }
 
 impl<T: Real, S: PrimitiveSet<T>> IndexStats<T> for BruteForce<S> {
-    fn inspect(&self, query: &Point3<T>, stats: &mut StatsCollector<T>) {
-        for id in (0..self.set.len()).map(PrimitiveId::new) {
-            stats.offer(id, self.set.get(id).project(query));
-        }
-    }
-
     fn parts(&self) -> Vec<(&'static str, usize)> {
         Vec::new()
     }

@@ -61,7 +61,6 @@ mod set;
 mod simd;
 mod soup;
 mod stats;
-mod stats_collector;
 pub mod storage;
 #[cfg(feature = "rayon")]
 mod threads;
@@ -92,7 +91,6 @@ pub use set::{PrimitiveSet, check_set};
 pub use simd::Isa;
 pub use soup::{Element, Soup};
 pub use stats::{IndexStats, ListStats, QueryCost, Stat};
-pub use stats_collector::StatsCollector;
 
 /// Internal items for the sibling crates of this project. It is not part of the public API and may change
 /// in any release.

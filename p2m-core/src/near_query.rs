@@ -160,13 +160,6 @@ pub(crate) struct NearCandidate {
     pub(crate) projection: Projection,
 }
 
-impl NearCandidate {
-    /// Returns a lower bound on the true distance, up to the rounding of the subtraction.
-    fn lower_bound(&self) -> f64 {
-        lower_bound(&self.projection)
-    }
-}
-
 impl PartialEq for NearCandidate {
     fn eq(&self, other: &Self) -> bool {
         self.cmp(other).is_eq()
@@ -247,7 +240,7 @@ impl<'a> Near<'a> {
     /// Returns the primitives that may be nearest, from a collector [for certification](Self::for_certification).
     pub(crate) fn certification_candidates(self) -> Vec<NearCandidate> {
         let NearMode::Certification { upper_bound, mut found } = self.mode else { return Vec::new() };
-        found.retain(|candidate| candidate.lower_bound() <= upper_bound);
+        found.retain(|candidate| lower_bound(&candidate.projection) <= upper_bound);
         found
     }
 
@@ -345,7 +338,7 @@ impl Collector for Near<'_> {
             let candidate = NearCandidate { key, id, projection };
             // The sum is rounded up, and a smallest subnormal covers the rounding of the distance.
             let at_most = (key.distance() + projection.error) * (1.0 + 4.0 * f64::EPSILON) + 2.0 * f64::from_bits(1);
-            if candidate.lower_bound() <= *upper_bound {
+            if lower_bound(&candidate.projection) <= *upper_bound {
                 found.push(candidate);
             }
             // If an error of NaN makes the sum NaN, the comparison is false.

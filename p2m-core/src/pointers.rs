@@ -7,7 +7,7 @@ use crate::pair::search::PairSide;
 use crate::pair::{Hull, Motion, PairQuery};
 use crate::{
     Aabb, BatchAnswer, Best, BoxQuery, CertifiedQuery, ClosestPoint, Hits, IndexStats, Near, NearQuery, PrimitiveId,
-    PrimitiveSet, QueryOptions, Ray, RayQuery, Real, Shape, StatsCollector,
+    PrimitiveSet, QueryOptions, Ray, RayQuery, Real, Shape,
 };
 use nalgebra::Point3;
 use std::ops::ControlFlow;
@@ -90,9 +90,6 @@ macro_rules! point_to {
         }
 
         impl<T: Real, $target: IndexStats<T> + ?Sized> IndexStats<T> for $pointer {
-            fn inspect(&self, query: &Point3<T>, stats: &mut StatsCollector<T>) {
-                (**self).inspect(query, stats);
-            }
             fn parts(&self) -> Vec<(&'static str, usize)> {
                 (**self).parts()
             }

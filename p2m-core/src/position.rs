@@ -41,16 +41,9 @@ impl<T: Real, P: Position<T> + ?Sized> Position<T> for &P {
     }
 }
 
-impl Position<f64> for [f64; 3] {
+impl<T: Real> Position<T> for [T; 3] {
     #[inline(always)]
-    fn point(&self) -> Point3<f64> {
-        Point3::from(*self)
-    }
-}
-
-impl Position<f32> for [f32; 3] {
-    #[inline(always)]
-    fn point(&self) -> Point3<f32> {
+    fn point(&self) -> Point3<T> {
         Point3::from(*self)
     }
 }

@@ -99,8 +99,6 @@ pub fn check_set<T: Real, S: PrimitiveSet<T> + ?Sized>(set: &S) -> Result<(), Bu
     if set.len() > PrimitiveId::MAX_COUNT {
         return Err(BuildError::TooMany { len: set.len() });
     }
-    match (0..set.len()).map(PrimitiveId::new).find(|id| !set.get(*id).is_finite()) {
-        Some(id) => Err(BuildError::NonFinite { id }),
-        None => Ok(()),
-    }
+    let first_bad = (0..set.len()).map(PrimitiveId::new).find(|id| !set.get(*id).is_finite());
+    first_bad.map_or(Ok(()), |id| Err(BuildError::NonFinite { id }))
 }

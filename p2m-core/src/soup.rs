@@ -73,7 +73,7 @@ impl Slot {
 /// assert_eq!(soup.len(), 3);
 /// assert_eq!(soup.segments(), &[[0, 1]]);
 /// ```
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, Default, PartialEq)]
 pub struct Soup<T: Real = f64> {
     positions: Vec<Point3<T>>,
     points: Vec<u32>,
@@ -81,18 +81,6 @@ pub struct Soup<T: Real = f64> {
     triangles: Vec<[u32; 3]>,
     /// The slot of each id. It is empty as long as the soup has primitives of one kind only.
     slots: Vec<Slot>,
-}
-
-impl<T: Real> Default for Soup<T> {
-    fn default() -> Self {
-        Self {
-            positions: Vec::new(),
-            points: Vec::new(),
-            segments: Vec::new(),
-            triangles: Vec::new(),
-            slots: Vec::new(),
-        }
-    }
 }
 
 impl<T: Real> Soup<T> {

@@ -1,12 +1,23 @@
 //! Statistics of indexes: lengths of lists, and costs of queries in units that do not depend on the machine.
 
-use crate::{Real, StatsCollector};
+use crate::{Best, ClosestPoint, QueryOptions, Real};
 use nalgebra::Point3;
 
-/// An index with statistics.
-pub trait IndexStats<T: Real> {
-    /// Searches for the nearest primitive with a collector that counts the work.
-    fn inspect(&self, query: &Point3<T>, stats: &mut StatsCollector<T>);
+/// The interface by which statistics of an index are collected.
+pub trait IndexStats<T: Real>: ClosestPoint<T> {
+    /// Returns the numbers of nodes and packets that the search for a finite query visits, and of the primitives that it
+    /// evaluates. They are the same on every run, so tests can compare them where times would vary.
+    fn count_query(&self, query: &Point3<T>, options: &QueryOptions<T>) -> [usize; 3] {
+        let mut best = Best::new(options);
+        self.search(query, &mut best);
+        best.counts()
+    }
+
+    /// Returns the sums of [`count_query`](Self::count_query) with default options over several queries.
+    fn count_queries(&self, queries: &[Point3<T>]) -> [usize; 3] {
+        let counts = queries.iter().map(|query| self.count_query(query, &QueryOptions::default()));
+        counts.fold([0; 3], |sums, counts| [0, 1, 2].map(|i| sums[i] + counts[i]))
+    }
 
     /// Returns the heap memory in bytes, without the set's, as names and sizes of its parts.
     fn parts(&self) -> Vec<(&'static str, usize)>;
@@ -102,8 +113,7 @@ impl QueryCost {
     pub fn measure<T: Real>(index: &(impl IndexStats<T> + ?Sized), queries: &[Point3<T>]) -> Self {
         let mut stats = [Stat::default(); 3];
         for query in queries {
-            let counts = StatsCollector::count_query(query, |query, collector| index.inspect(query, collector));
-            for (stat, count) in stats.iter_mut().zip(counts) {
+            for (stat, count) in stats.iter_mut().zip(index.count_query(query, &QueryOptions::default())) {
                 *stat = Stat { mean: stat.mean + count as f64, max: stat.max.max(count) };
             }
         }
@@ -123,14 +133,17 @@ mod tests {
     /// An index with lists of 1 to 200 primitives. A query evaluates the list whose length is its x.
     struct TestLists;
 
-    impl IndexStats<f64> for TestLists {
-        fn inspect(&self, query: &Point3<f64>, stats: &mut StatsCollector<f64>) {
-            stats.visit_node();
+    impl ClosestPoint<f64> for TestLists {
+        fn search(&self, query: &Point3<f64>, best: &mut Best<f64>) {
+            best.visit_node();
             for i in 0..self.list_length(query).unwrap_or(0) {
-                stats.visit_packet();
-                stats.offer(PrimitiveId::new(i), Point::new(Point3::origin()).project(query));
+                best.visit_packet();
+                best.offer(PrimitiveId::new(i), Point::new(Point3::origin()).project(query));
             }
         }
+    }
+
+    impl IndexStats<f64> for TestLists {
         fn parts(&self) -> Vec<(&'static str, usize)> {
             vec![("lists", 20_100)]
         }

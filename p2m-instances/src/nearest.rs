@@ -8,7 +8,7 @@ use p2m_core::pair::PairQuery;
 use p2m_core::storage::Writer;
 use p2m_core::{
     AnyIndex, BatchAnswer, Best, BoxQuery, CertifiedQuery, ClosestPoint, Collector, IndexStats, Near, NearQuery,
-    Primitive, PrimitiveId, QueryOptions, RayQuery, Real, Shape, StatsCollector,
+    Primitive, PrimitiveId, QueryOptions, RayQuery, Real, Shape,
 };
 
 /// The factor 1 + 16 u, by which a value of a few roundings becomes an upper bound.
@@ -138,12 +138,8 @@ impl<I: AnyIndex<f64> + ?Sized> CertifiedQuery<f64> for Instances<f64, I> {
     }
 }
 
+/// Queries count the moved primitives that are evaluated, and neither nodes nor packets.
 impl<T: Real, I: AnyIndex<T> + ?Sized> IndexStats<T> for Instances<T, I> {
-    /// Counts the moved primitives that are evaluated, and neither nodes nor packets.
-    fn inspect(&self, query: &Point3<T>, stats: &mut StatsCollector<T>) {
-        self.visit(query, stats);
-    }
-
     /// Returns the memory of the instances and of the tree of their boxes. Indexes are not included.
     fn parts(&self) -> Vec<(&'static str, usize)> {
         let names: usize = self.instances.iter().map(Instance::name_bytes).sum();

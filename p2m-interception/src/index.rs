@@ -13,8 +13,7 @@ use p2m_core::engine::answer_one_by_one;
 use p2m_core::storage::{self, LoadError, Reader, Saved, Writer};
 use p2m_core::{
     AnyIndex, BatchAnswer, Best, BuildError, BuildIndex, CellSummary, CertifiedQuery, ClosestPoint, Collector,
-    IndexStats, Isa, Near, NearQuery, PrimitiveId, PrimitiveSet, QueryOptions, Real, Shape, StatsCollector, check_set,
-    shape_of,
+    IndexStats, Isa, Near, NearQuery, PrimitiveId, PrimitiveSet, QueryOptions, Real, Shape, check_set, shape_of,
 };
 use std::marker::PhantomData;
 use std::ops::ControlFlow;
@@ -223,10 +222,6 @@ impl<T: Real, S: PrimitiveSet<T>, P: Saved> InterceptionIndex<T, S, P> {
 }
 
 impl<T: Real, S: PrimitiveSet<T>, P: Partition> IndexStats<T> for InterceptionIndex<T, S, P> {
-    fn inspect(&self, query: &Point3<T>, counting: &mut StatsCollector<T>) {
-        counting.count(|best| self.partition.search_nearest(&self.set, query, best));
-    }
-
     fn parts(&self) -> Vec<(&'static str, usize)> {
         self.partition.parts()
     }
@@ -256,7 +251,7 @@ impl<T: Real, S: PrimitiveSet<T>, P: Partition> ClosestPoint<T> for Interception
             // Searches that take turns do not count the sites that they visit, which the options may limit.
             return answer_one_by_one(self, queries, options, answered);
         }
-        let (partition, mut lists) = (&self.partition, InterleavedLists::new());
+        let (partition, mut lists) = (&self.partition, InterleavedLists::default());
         answer_in_groups(partition.tree(), &self.set, queries, options, answered, |count, several| {
             partition.search_several(count, several, &mut lists);
         });

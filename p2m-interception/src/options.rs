@@ -151,6 +151,21 @@ pub struct OctreeReport {
     pub resolution: f64,
 }
 
+impl OctreeReport {
+    /// Returns the counts in the order in which a file stores them.
+    pub(crate) fn counts(&mut self) -> [&mut usize; 7] {
+        [
+            &mut self.list_cells,
+            &mut self.single_cells,
+            &mut self.fallback_cells,
+            &mut self.entries,
+            &mut self.depth,
+            &mut self.bytes,
+            &mut self.tree_bytes,
+        ]
+    }
+}
+
 impl std::fmt::Display for OctreeReport {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         let Self { list_cells, single_cells, fallback_cells, entries, bytes, tree_bytes, work, resolution, .. } = self;
@@ -183,20 +198,8 @@ impl From<OctreeReport> for CellSummary {
 
 /// A pointer to a function that builds a part of an index. It is compared by address, so the same function may compare
 /// as different.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct FnPointer<F>(pub(crate) F);
-
-impl PartialEq for FnPointer<BuildLocator> {
-    fn eq(&self, other: &Self) -> bool {
-        std::ptr::fn_addr_eq(self.0, other.0)
-    }
-}
-
-impl PartialEq for FnPointer<BuildListFilter> {
-    fn eq(&self, other: &Self) -> bool {
-        std::ptr::fn_addr_eq(self.0, other.0)
-    }
-}
 
 /// The options of a P2M index.
 ///
@@ -344,68 +347,37 @@ pub struct P2mReport {
     pub tree_bytes: usize,
 }
 
-/// Converts the report to the numbers that a file stores.
-impl From<P2mReport> for [u64; 11] {
-    fn from(report: P2mReport) -> Self {
-        let P2mReport {
-            list_cells,
-            filtered,
-            added,
-            auxiliary,
-            fallback_cells,
-            candidates,
-            max_candidates,
-            entries,
-            primitives,
-            bytes,
-            tree_bytes,
-        } = report;
+impl P2mReport {
+    /// Returns the numbers in the order in which a file stores them.
+    fn numbers(&mut self) -> [&mut usize; 11] {
         [
-            list_cells,
-            filtered,
-            added,
-            auxiliary,
-            fallback_cells,
-            candidates,
-            max_candidates,
-            entries,
-            primitives,
-            bytes,
-            tree_bytes,
+            &mut self.list_cells,
+            &mut self.filtered,
+            &mut self.added,
+            &mut self.auxiliary,
+            &mut self.fallback_cells,
+            &mut self.candidates,
+            &mut self.max_candidates,
+            &mut self.entries,
+            &mut self.primitives,
+            &mut self.bytes,
+            &mut self.tree_bytes,
         ]
-        .map(|n| n as u64)
+    }
+}
+
+impl From<P2mReport> for [u64; 11] {
+    fn from(mut report: P2mReport) -> Self {
+        report.numbers().map(|number| *number as u64)
     }
 }
 
 impl From<[u64; 11]> for P2mReport {
     #[allow(clippy::cast_possible_truncation, reason = "numbers to report")]
     fn from(numbers: [u64; 11]) -> Self {
-        let [
-            list_cells,
-            filtered,
-            added,
-            auxiliary,
-            fallback_cells,
-            candidates,
-            max_candidates,
-            entries,
-            primitives,
-            bytes,
-            tree_bytes,
-        ] = numbers.map(|n| n as usize);
-        Self {
-            list_cells,
-            filtered,
-            added,
-            auxiliary,
-            fallback_cells,
-            candidates,
-            max_candidates,
-            entries,
-            primitives,
-            bytes,
-            tree_bytes,
-        }
+        let mut report = Self::default();
+        report.numbers().into_iter().zip(numbers).for_each(|(to, number)| *to = number as usize);
+        report
     }
 }
 

@@ -91,8 +91,7 @@ impl<R: Send> OpenChunks<R> {
     // consumed.
 
     fn begin(&self) -> Option<usize> {
-        let mut state = self.lock();
-        state.begin()
+        self.lock().begin()
     }
 
     /// Begins the next chunk, or counts one helper less if none may be begun.
@@ -104,13 +103,11 @@ impl<R: Send> OpenChunks<R> {
     }
 
     fn finish(&self, chunk: usize, result: R) {
-        let mut state = self.lock();
-        state.finish(chunk, result);
+        self.lock().finish(chunk, result);
     }
 
     fn take_first(&self) -> Option<R> {
-        let mut state = self.lock();
-        state.take_first()
+        self.lock().take_first()
     }
 
     fn lock(&self) -> std::sync::MutexGuard<'_, OpenChunksState<R>> {

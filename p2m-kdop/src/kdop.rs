@@ -83,11 +83,8 @@ impl<const K: usize> Kdop<K> {
     /// inside.
     #[must_use]
     pub fn contains_point(&self, directions: &Directions<K>, point: &Point3<f64>) -> bool {
-        directions
-            .normals()
-            .iter()
-            .zip(&self.heights)
-            .all(|(normal, height)| -product_above(&-normal, &point.coords) <= *height)
+        let mut heights = directions.normals().iter().zip(&self.heights);
+        heights.all(|(normal, height)| -product_above(&-normal, &point.coords) <= *height)
     }
 
     /// Returns whether some slab has its faces in the wrong order, so that the k-DOP has no points.

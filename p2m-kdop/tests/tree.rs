@@ -4,8 +4,8 @@
 use nalgebra::{Point3, Rotation3, Vector3};
 use p2m_bvh::AabbTree;
 use p2m_bvh::{TreeIndex, Volume};
+use p2m_core::IndexStats;
 use p2m_core::Isa;
-use p2m_core::StatsCollector;
 use p2m_core::{Aabb, BoxQuery, BruteForce, BuildError, ClosestPoint, Point, Primitive, PrimitiveSet, Soup};
 use p2m_kdop::Directions;
 use p2m_kdop::{KdopOptions, KdopTree};
@@ -21,7 +21,7 @@ type Tree<'a, const K: usize> = KdopTree<f64, &'a Soup<f64>, K>;
 
 /// Returns the nodes and packets that all queries visit.
 fn work<V: Volume>(tree: &TreeIndex<f64, &Soup<f64>, V>, queries: &[Point3<f64>]) -> [usize; 2] {
-    let [nodes, packets, _] = StatsCollector::count_queries(queries, |query, counting| tree.visit(query, counting));
+    let [nodes, packets, _] = tree.count_queries(queries);
     [nodes, packets]
 }
 

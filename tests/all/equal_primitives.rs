@@ -5,7 +5,7 @@
 
 use nalgebra::{Isometry3, Point3, Vector3};
 use p2m::batch::{self, BatchOptions, Interruptible};
-use p2m::core::{Collector, IndexStats, Near, Projection, StatsCollector};
+use p2m::core::{Collector, IndexStats, Near, Projection};
 use p2m::pair::{PairOptions, PairQuery};
 use p2m::storage::{SavedFile, Writer};
 use p2m::{
@@ -211,7 +211,7 @@ fn few_equal_primitives_are_visited() {
         let octree = OctreeIndex::build(&soup, &Default::default()).expect("valid");
         let p2m = P2mIndex::build(&soup, &Default::default()).expect("valid");
         for index in [&aabb as &dyn IndexStats<f64>, &kdop, &octree, &p2m] {
-            let counts = StatsCollector::count_queries(&at, |query, stats| index.inspect(query, stats));
+            let counts = index.count_queries(&at);
             assert!(counts[0] + counts[1] < 30 * at.len() && counts[2] < 40 * at.len(), "{case}: {counts:?}");
         }
         let visits = Cell::new(0);

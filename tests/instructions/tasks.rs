@@ -1,7 +1,7 @@
 //! The queries that are counted: each query set on each index of a scene.
 
 use nalgebra::Point3;
-use p2m::core::{Best, Hits, RayStatsCollector, StatsCollector};
+use p2m::core::{Best, Hits, RayStatsCollector};
 use p2m::core::{IndexStats, Isa};
 use p2m::scene::generate::{IcoSphere, Subdivide, ico_sphere, subdivide};
 use p2m::storage::{SavedFile, Writer};
@@ -74,18 +74,16 @@ pub(crate) struct Task<'a> {
 /// one, so interleaved searches are not counted.
 struct Counted<'a, I> {
     index: &'a I,
-    soup: &'a Soup<f64>,
     counts: Mutex<Counts>,
 }
 
 impl<I: IndexStats<f64>> ClosestPoint<f64> for Counted<'_, I> {
     fn search(&self, query: &Point3<f64>, best: &mut Best<f64>) {
-        best.offer_hint(self.soup, query);
-        let mut counting = StatsCollector::new(best.clone());
-        self.index.inspect(query, &mut counting);
-        let found = [counting.nodes, counting.packets, counting.primitives];
-        self.counts.lock().expect("one thread").iter_mut().zip(found).for_each(|(sum, count)| *sum += count);
-        *best = counting.best;
+        let before = best.counts();
+        self.index.search(query, best);
+        let found = best.counts().into_iter().zip(before);
+        let mut counts = self.counts.lock().expect("one thread");
+        counts.iter_mut().zip(found).for_each(|(sum, (after, before))| *sum += after - before);
     }
 }
 
@@ -103,7 +101,7 @@ fn point_tasks<'a, I: IndexStats<f64> + Sync>(
         let same_queries = queries.clone();
         let run = move || counted_queries::run_queries(object, mode, &queries);
         let count = move || {
-            let counted = Counted { index, soup, counts: Mutex::default() };
+            let counted = Counted { index, counts: Mutex::default() };
             counted_queries::run_queries(&counted, mode, &same_queries);
             counted.counts.into_inner().expect("one thread")
         };

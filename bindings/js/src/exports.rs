@@ -9,7 +9,7 @@ use crate::rays::{Hit, Ray};
 use crate::scene::Scene;
 use crate::status::{Failure, Status, invalid, run};
 use p2m_core::storage::SavedFile;
-use p2m_core::{Best, Element, QueryOptions, Soup, StatsCollector};
+use p2m_core::{Element, QueryOptions, Soup};
 use std::alloc::{Layout, alloc_zeroed, dealloc};
 use std::mem::offset_of;
 use std::ops::ControlFlow;
@@ -174,8 +174,7 @@ pub unsafe extern "C" fn p2m_js_work(index: *const Index, query: *const f64, wor
     // SAFETY: the caller vouches for the pointers.
     run(|| unsafe {
         let (index, query) = (reference(index, "index")?, point(query, "query")?);
-        let mut stats = StatsCollector::new(Best::new(&QueryOptions::default()));
-        index.built.index.inspect(&query.into(), &mut stats);
-        write(work, "work", [stats.nodes, stats.packets, stats.primitives].map(|count| count as f64))
+        let counts = index.built.index.count_query(&query.into(), &QueryOptions::default());
+        write(work, "work", counts.map(|count| count as f64))
     })
 }

@@ -3,7 +3,7 @@
 use super::workload::{Workload, is_mostly_slivers};
 use crate::registry::{BACKENDS, BackendEntry, Cost, SearchStructure};
 use nalgebra::Point3;
-use p2m_core::{Best, IndexStats, PrimitiveSet, QueryOptions, Soup, StatsCollector};
+use p2m_core::{IndexStats, PrimitiveSet, QueryOptions, Soup};
 use p2m_interception::OctreeOptions;
 
 /// Indexes are about equally good if their times differ by less than this factor. In the measurements of
@@ -64,12 +64,9 @@ impl Work {
         workload: &Workload<'_>,
     ) -> Self {
         let options = QueryOptions::default().with_max_distance(workload.max_distance);
-        let visit = |query: &Point3<f64>, stats: &mut StatsCollector<f64>| {
-            stats.best = Best::new(&options);
-            index.inspect(query, stats);
-        };
         let finite = queries.iter().filter(|query| is_finite(query));
-        let [nodes, packets, _] = StatsCollector::count_queries(finite, visit);
+        let counts = finite.map(|query| index.count_query(query, &options));
+        let [nodes, packets] = counts.fold([0, 0], |sums, counts| [sums[0] + counts[0], sums[1] + counts[1]]);
         let count = queries.len().max(1) as f64;
         Self { nodes: nodes as f64 / count, packets: packets as f64 / count }
     }

@@ -112,12 +112,6 @@ enum Division {
     Sides(usize, [Part; 2]),
 }
 
-impl Division {
-    fn is_run(&self) -> bool {
-        matches!(self, Self::Run)
-    }
-}
-
 /// The fewest primitives for which the two sides of a split are built on different threads. There is no record of how
 /// the number was tuned.
 #[cfg(feature = "rayon")]
@@ -161,7 +155,7 @@ impl Splitter<'_> {
                 Division::Sides(left, sides) => (left, sides),
                 leaf => {
                     let mut nodes = vec![SplitNode::UNKNOWN];
-                    add_leaves(&mut nodes, 0, first, primitives, part.half_area(), leaf.is_run());
+                    add_leaves(&mut nodes, 0, first, primitives, part.half_area(), &leaf);
                     return nodes;
                 }
             };
@@ -183,7 +177,7 @@ impl Splitter<'_> {
                     pending.push((child + 1, middle..range.end, b));
                     pending.push((child, range.start..middle, a));
                 }
-                leaf => add_leaves(&mut nodes, at, first + range.start, here, part.half_area(), leaf.is_run()),
+                leaf => add_leaves(&mut nodes, at, first + range.start, here, part.half_area(), &leaf),
             }
         }
         nodes
@@ -192,13 +186,14 @@ impl Splitter<'_> {
     /// Sorts the primitives of a node into two sides, unless the node becomes a leaf.
     fn divide(&self, primitives: &mut [BuildPrimitive], part: &Part) -> Division {
         let Self { isa, options, .. } = *self;
-        let leaf_cost = to_f64(primitives.len().next_multiple_of(options.block.max(1)));
+        let leaf_cost = primitives.len().next_multiple_of(options.block.max(1)) as f64;
         let may_be_leaf = primitives.len() <= options.max_leaf;
         // A split costs at least the visit of its node.
         if primitives.len() <= 1 || (may_be_leaf && options.node_cost >= leaf_cost) {
             return Division::Leaf;
         }
-        let part = &self.in_finer_frame(primitives, part);
+        let is_fine = part.is_finest || part.bounds.longest_side() >= MIN_SIDE;
+        let part = &if is_fine { *part } else { self.placed_anew(primitives, part) };
         let tasks = self.tasks(primitives.len(), part.depth);
         let plane = if part.depth < MAX_SPLIT_DEPTH / 2 {
             best_split(isa, primitives, &part.bounds, &part.centres, options, tasks)
@@ -254,14 +249,7 @@ impl Splitter<'_> {
         }
     }
 
-    /// Converts the primitives of a node to a frame of their own if they are much smaller than their frame.
-    fn in_finer_frame(&self, primitives: &mut [BuildPrimitive], part: &Part) -> Part {
-        if part.is_finest || part.bounds.longest_side() >= MIN_SIDE {
-            return *part;
-        }
-        self.placed_anew(primitives, part)
-    }
-
+    /// Places the primitives of a node into a frame of their own.
     #[cold]
     fn placed_anew(&self, primitives: &mut [BuildPrimitive], part: &Part) -> Part {
         let bounds = primitives
@@ -286,12 +274,12 @@ fn add_leaves(
     first: usize,
     primitives: &mut [BuildPrimitive],
     half_area: f64,
-    is_run: bool,
+    leaf: &Division,
 ) {
     primitives.sort_unstable_by_key(BuildPrimitive::rank);
     // The kind is the first part of a rank, so the first and the last primitive tell whether there are several kinds.
     let is_one_kind = primitives.first().zip(primitives.last()).is_none_or(|(first, last)| first.is_same_kind(last));
-    if is_run || (is_one_kind && primitives.len() <= LANES) {
+    if matches!(leaf, Division::Run) || (is_one_kind && primitives.len() <= LANES) {
         nodes[at] = SplitNode { half_area, first: to_u32(first), count: to_u32(primitives.len()) };
         return;
     }
@@ -337,11 +325,6 @@ fn joined(half_area: f64, a: &[SplitNode], b: &[SplitNode]) -> Vec<SplitNode> {
 /// Converts a number of nodes or primitives to 32 bits.
 pub(crate) fn to_u32(n: usize) -> u32 {
     u32::try_from(n).expect("2^30 primitives have less than 2^32 nodes or vertices")
-}
-
-#[allow(clippy::cast_precision_loss, reason = "counts are far below 2^53")]
-fn to_f64(n: usize) -> f64 {
-    n as f64
 }
 
 /// Returns the box around some primitives and the box around their centres, computed by about `tasks` tasks.

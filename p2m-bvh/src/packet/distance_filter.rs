@@ -274,7 +274,7 @@ impl<L: Lanes> Primitives<L> {
 pub const PLACES: usize = 16;
 
 /// Query points paired with packets, one pair in each place, stored as rows.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Default)]
 pub struct Locals {
     /// The query points, in scene coordinates.
     pub position: [[f64; PLACES]; 3],
@@ -300,25 +300,6 @@ pub struct Locals {
     /// One bit per place: whether its query point is too far away for the frame, in which case [`Packet::local`]
     /// returns `None`.
     pub far: u32,
-}
-
-impl Default for Locals {
-    /// Returns empty places.
-    fn default() -> Self {
-        Self {
-            position: [[0.0; PLACES]; 3],
-            origin: [[0.0; PLACES]; 3],
-            unit: [0.0; PLACES],
-            per_unit: [0.0; PLACES],
-            query: [[0.0; PLACES]; 3],
-            excess: [0.0; PLACES],
-            deficit: [0.0; PLACES],
-            margin_squared: [0.0; PLACES],
-            normal: [[0.0; PLACES]; 3],
-            offset: [0.0; PLACES],
-            far: 0,
-        }
-    }
 }
 
 impl Locals {

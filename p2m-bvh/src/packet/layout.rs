@@ -124,26 +124,20 @@ impl Packet {
         let [a, b, c] = self.corners(lane).map(|index| &vertices[index]);
         // Each kind has a call of its own, so that the projection stays in registers and is not copied.
         match self.kind() {
+            Kind::Triangle if collector.take_vertices(id, &[*a, *b, *c]) => {}
             Kind::Triangle => {
-                if collector.take_vertices(id, &[*a, *b, *c]) {
-                    return;
-                }
                 if let Some(projection) = Projection::onto_near_triangle(query, &[*a, *b, *c], square) {
                     collector.offer(id, projection);
                 }
             }
+            Kind::Segment if collector.take_vertices(id, &[*a, *b]) => {}
             Kind::Segment => {
-                if collector.take_vertices(id, &[*a, *b]) {
-                    return;
-                }
                 if let Some(projection) = Projection::onto_segment(query, &[*a, *b], square) {
                     collector.offer(id, projection);
                 }
             }
+            Kind::Point if collector.take_vertices(id, &[*a]) => {}
             Kind::Point => {
-                if collector.take_vertices(id, &[*a]) {
-                    return;
-                }
                 if let Some(projection) = Projection::onto_point(query, &[*a], square) {
                     collector.offer(id, projection);
                 }
@@ -173,13 +167,7 @@ impl Packet {
     /// Returns the indices of the vertices of a lane among the exact vertices of the tree, and the number of used ones.
     #[inline]
     pub fn vertices_of(&self, lane: usize) -> ([usize; 3], usize) {
-        let count = match self.kind() {
-            Kind::Box => 0,
-            Kind::Point => 1,
-            Kind::Segment => 2,
-            Kind::Triangle => 3,
-        };
-        (self.corners(lane), count)
+        (self.corners(lane), self.kind().vertex_count())
     }
 
     /// Returns a box around the primitives in the lanes whose bits are set in `lanes`.

@@ -29,6 +29,17 @@ impl Kind {
             _ => Self::Box,
         }
     }
+
+    /// Returns the number of vertices that span a primitive.
+    #[inline]
+    pub(super) fn vertex_count(self) -> usize {
+        match self {
+            Self::Box => 0,
+            Self::Point => 1,
+            Self::Segment => 2,
+            Self::Triangle => 3,
+        }
+    }
 }
 
 /// A primitive in f64, so that the code that builds packets and nodes does not depend on the set.
@@ -66,13 +77,7 @@ impl Member {
 
     /// Returns the vertices that span the primitive, which are none for [`Kind::Box`].
     pub fn vertices(&self) -> &[V3] {
-        let count = match self.kind {
-            Kind::Point => 1,
-            Kind::Segment => 2,
-            Kind::Triangle => 3,
-            Kind::Box => 0,
-        };
-        &self.vertices[..count]
+        &self.vertices[..self.kind.vertex_count()]
     }
 }
 

@@ -34,7 +34,8 @@ pub fn answer_in_groups<T: Real, S: PrimitiveSet<T>, V: Volume>(
     let search_tree = |query: V3, best: &mut BestF64, evaluate: EvaluateFn<'_, BestF64>| {
         V::nearest(tree, query, best, evaluate);
     };
-    let mut several = InterleavedSearch::new(tree, &search_tree, template.minimum_ref(), &evaluate);
+    let mut several =
+        InterleavedSearch::new(&tree.leaves, &tree.frame, tree.isa, &search_tree, template.minimum_ref(), &evaluate);
     let mut numbers = 0..queries.len();
     loop {
         let mut count = 0;

@@ -13,9 +13,8 @@
 use crate::packet::{LANES, Locals, PLACES, ROUND_UP, at_most, smallest};
 use crate::traverse::evaluate::offer;
 use crate::traverse::primitive_fn::EvaluateFn;
+use crate::tree::Leaves;
 use crate::tree::frame::Frame;
-use crate::tree::wide_node::VolumeNodes;
-use crate::tree::{Leaves, PacketTree};
 use p2m_core::engine::query::BestF64;
 use p2m_core::engine::side_by_side::{LaneResults, SIDE_BY_SIDE, TriangleLanes, evaluate_segments, evaluate_triangles};
 use p2m_core::engine::simd::{Doubles, Float, InstructionSet, Lanes, SimdKernel};
@@ -53,6 +52,7 @@ struct Candidate {
 }
 
 /// The limits of the searches whose packets are filtered, stored as rows.
+#[derive(Default)]
 struct LimitRows {
     /// The distances above which primitives are not candidates.
     candidate: [f64; SEARCHES],
@@ -68,16 +68,6 @@ struct LimitRows {
 }
 
 impl LimitRows {
-    fn new() -> Self {
-        Self {
-            candidate: [0.0; SEARCHES],
-            nearest_square: [0.0; SEARCHES],
-            node: [0.0; SEARCHES],
-            limit: [0.0; SEARCHES],
-            old_limit: [0.0; SEARCHES],
-        }
-    }
-
     /// Converts the limits before the filters to the frames of the packets.
     #[inline(always)]
     fn convert<I: InstructionSet>(&mut self, locals: &Locals) {
@@ -207,16 +197,7 @@ pub(super) const ROUND_UP_F64: f64 = 1.0 + 4.0 * f64::EPSILON;
 
 impl<'a> InterleavedSearch<'a> {
     /// Creates the state of searches that have not begun. `template` is a collector without a candidate.
-    pub fn new<V: VolumeNodes>(
-        tree: &'a PacketTree<V>,
-        search_tree: SearchTreeFn<'a>,
-        template: &BestF64,
-        evaluate: EvaluateSearchFn<'a>,
-    ) -> Self {
-        Self::new_in(&tree.leaves, &tree.frame, tree.isa, search_tree, template, evaluate)
-    }
-
-    fn new_in(
+    pub fn new(
         leaves: &'a Leaves,
         frame: &'a Frame,
         isa: Isa,
@@ -239,7 +220,7 @@ impl<'a> InterleavedSearch<'a> {
             counts: [0; SEARCHES],
             early: 0,
             locals: Locals::default(),
-            rows: LimitRows::new(),
+            rows: LimitRows::default(),
             squares: [[0.0; LANES]; SEARCHES],
             triangles: LaneQueue::default(),
             segments: LaneQueue::default(),
@@ -531,16 +512,11 @@ impl<const PLANES: bool> SimdKernel for Filter<'_, '_, PLANES> {
 }
 
 /// A queue of candidates of one kind, which fill the first `len` lanes.
+#[derive(Default)]
 struct LaneQueue<const N: usize> {
     eight: TriangleLanes<N>,
     candidates: [Candidate; SIDE_BY_SIDE],
     len: usize,
-}
-
-impl<const N: usize> Default for LaneQueue<N> {
-    fn default() -> Self {
-        Self { eight: TriangleLanes::default(), candidates: [Candidate::default(); SIDE_BY_SIDE], len: 0 }
-    }
 }
 
 impl<const N: usize> LaneQueue<N> {

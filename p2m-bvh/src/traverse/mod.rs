@@ -57,18 +57,15 @@ pub(crate) trait Visitor<V: VolumeNodes> {
 /// The capacity of the stack of a single search, which spills when it is full. It suffices for most searches, and is so
 /// small that a few instructions clear it.
 const NEAR_STACK_LEN: usize = 64;
+/// The keys or the parents of that stack.
+type NearStack = [u32; NEAR_STACK_LEN];
 /// The number of entries that stay on the stack when it spills.
 const KEPT_LEN: usize = NEAR_STACK_LEN / 2;
 
 /// Moves all but the uppermost [`KEPT_LEN`] entries of a full stack to a vector.
 #[cold]
 #[inline(never)]
-fn spill(
-    keys: &mut [u32; NEAR_STACK_LEN],
-    parents: &mut [u32; NEAR_STACK_LEN],
-    below: &mut Vec<(u32, u32)>,
-    top: usize,
-) {
+fn spill(keys: &mut NearStack, parents: &mut NearStack, below: &mut Vec<(u32, u32)>, top: usize) {
     let moved = top - KEPT_LEN;
     below.extend(keys[..moved].iter().copied().zip(parents[..moved].iter().copied()));
     keys.copy_within(moved..top, 0);
@@ -78,7 +75,7 @@ fn spill(
 /// Moves spilled entries back to the stack, and returns their number.
 #[cold]
 #[inline(never)]
-fn refill(keys: &mut [u32; NEAR_STACK_LEN], parents: &mut [u32; NEAR_STACK_LEN], below: &mut Vec<(u32, u32)>) -> usize {
+fn refill(keys: &mut NearStack, parents: &mut NearStack, below: &mut Vec<(u32, u32)>) -> usize {
     let from = below.len().saturating_sub(KEPT_LEN);
     let count = below.len() - from;
     for (i, (key, parent)) in below.drain(from..).enumerate() {

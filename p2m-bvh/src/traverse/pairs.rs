@@ -101,8 +101,9 @@ impl<V: VolumeNodes> PairSide for TreeSide<'_, V> {
     }
 
     fn support(&self, node: u32, direction: &V3) -> f64 {
-        let local = self.turned_back(direction);
-        support(self.tree, NodeRef(node), &local) + self.shift(direction)
+        let (tree, node, local) = (self.tree, NodeRef(node), self.turned_back(direction));
+        let height = V::Node::height(&tree.shared, &local);
+        tree.isa.run(Support { tree, node, direction: local, height }) + self.shift(direction)
     }
 
     fn cut(&self, node: u32, slabs: &[Slab], triples: usize) -> Children {
@@ -186,13 +187,7 @@ impl<V: VolumeNodes> SimdKernel for Cut<'_, V> {
     }
 }
 
-/// Returns the support value of a node: the largest dot product of a direction and a vertex, in coordinates of the
-/// tree.
-fn support<V: VolumeNodes>(tree: &PacketTree<V>, node: NodeRef, direction: &V3) -> f64 {
-    let height = V::Node::height(&tree.shared, direction);
-    tree.isa.run(Support { tree, node, direction: *direction, height })
-}
-
+/// The computation of the largest product of a vertex of a node and a direction, in coordinates of the tree.
 struct Support<'a, V: VolumeNodes> {
     tree: &'a PacketTree<V>,
     node: NodeRef,

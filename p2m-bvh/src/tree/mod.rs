@@ -184,14 +184,6 @@ impl Leaves {
             limit > collector.prune_above() || (limit >= 0.0 && packet.is_lane_within(0, &self.vertices, query, limit))
         }
     }
-
-    /// Returns whether a packet continues the run of the previous packet.
-    #[doc(hidden)]
-    #[must_use]
-    pub fn is_continuation(&self, number: usize) -> bool {
-        number > 0 && self.packets[number - 1].is_continued()
-    }
-
     /// Returns a packet and the packets that continue its run.
     pub(crate) fn run(&self, number: usize) -> impl Iterator<Item = &Packet> {
         let rest = &self.packets[number..];

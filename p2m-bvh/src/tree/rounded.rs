@@ -3,7 +3,7 @@
 use p2m_core::engine::simd::Lanes;
 
 /// A point of a frame in f32, rounded down and up.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, Default)]
 pub struct Rounded {
     /// The coordinates, rounded down.
     pub low: [f32; 3],

@@ -3,7 +3,7 @@
 
 use nalgebra::{Point3, Vector3};
 use p2m_bvh::{AabbTree, SplitOptions};
-use p2m_core::{Best, Collector, StatsCollector};
+use p2m_core::{Best, Collector};
 use p2m_core::{
     BruteForce, BuildError, BuildIndex, Closest, ClosestPoint, Point, Primitive, PrimitiveId, PrimitiveSet,
     QueryOptions, Real, Segment, Shape, Soup, Triangle, batch,
@@ -286,16 +286,17 @@ fn searches_do_little() {
         let mut sums = [0; 3];
         let mut hinted = 0;
         for q in &queries {
-            let mut counting = StatsCollector::<f64>::new(Best::new(&QueryOptions::default()));
-            tree.visit(q, &mut counting);
-            sums = [sums[0] + counting.nodes, sums[1] + counting.packets, sums[2] + counting.primitives];
+            let mut best = Best::<f64>::new(&QueryOptions::default());
+            tree.visit(q, &mut best);
+            let counts = best.counts();
+            sums = [0, 1, 2].map(|i| sums[i] + counts[i]);
             // A hint that is the answer leaves less to visit.
-            let found = counting.best.finish().expect("not empty").primitive;
+            let found = best.finish().expect("not empty").primitive;
             let mut best = Best::<f64>::new(&QueryOptions::default());
             best.offer(found, soup.get(found).project(q));
-            let mut counting = StatsCollector::new(best);
-            tree.visit(q, &mut counting);
-            hinted += counting.nodes + counting.packets;
+            tree.visit(q, &mut best);
+            let [nodes, packets, _] = best.counts();
+            hinted += nodes + packets;
         }
         println!("{isa}: per 1000 queries {sums:?} nodes, packets, primitives; with a hint {hinted} nodes and packets");
         assert!(sums[0] <= NODES && sums[1] <= PACKETS && sums[2] <= PRIMITIVES, "{isa}: {sums:?}");

@@ -124,12 +124,8 @@ impl<T: Real> Sink<T> for ClosestColumns<'_, T> {
         if let (None, None, None, None) = (&self.point, &self.feature, &self.barycentric, &self.lower_bound) {
             // The other fields of the answer need not be computed.
             let (distance, primitive) = found.distance_and_index().unwrap_or((T::INFINITY, Self::NO_PRIMITIVE));
-            if let Some(column) = &mut self.distance {
-                column[i] = distance;
-            }
-            if let Some(column) = &mut self.primitive {
-                column[i] = primitive;
-            }
+            put(&mut self.distance, i, distance);
+            put(&mut self.primitive, i, primitive);
             return;
         }
         self.set_all(i, found);
@@ -146,24 +142,20 @@ impl<T: Real> ClosestColumns<'_, T> {
     fn set_all(&mut self, i: usize, found: BatchAnswer<'_, T>) {
         let nan = T::round_from_f64(f64::NAN);
         let closest = found.closest();
-        if let Some(column) = &mut self.distance {
-            column[i] = closest.map_or(T::INFINITY, |c| c.distance);
-        }
-        if let Some(column) = &mut self.primitive {
-            column[i] = closest.map_or(Self::NO_PRIMITIVE, |c| c.primitive.number());
-        }
-        if let Some(column) = &mut self.point {
-            column[i] = closest.map_or(Point3::new(nan, nan, nan), |c| c.point);
-        }
-        if let Some(column) = &mut self.feature {
-            column[i] = closest.map_or(Feature::Vertex(0), |c| c.feature);
-        }
-        if let Some(column) = &mut self.barycentric {
-            column[i] = closest.map_or([nan; 3], |c| c.barycentric);
-        }
-        if let Some(column) = &mut self.lower_bound {
-            column[i] = closest.map_or_else(|| found.lower_bound(), |c| c.lower_bound);
-        }
+        put(&mut self.distance, i, closest.map_or(T::INFINITY, |c| c.distance));
+        put(&mut self.primitive, i, closest.map_or(Self::NO_PRIMITIVE, |c| c.primitive.number()));
+        put(&mut self.point, i, closest.map_or(Point3::new(nan, nan, nan), |c| c.point));
+        put(&mut self.feature, i, closest.map_or(Feature::Vertex(0), |c| c.feature));
+        put(&mut self.barycentric, i, closest.map_or([nan; 3], |c| c.barycentric));
+        put(&mut self.lower_bound, i, closest.map_or_else(|| found.lower_bound(), |c| c.lower_bound));
+    }
+}
+
+/// Writes a value to a column that is asked for.
+#[inline(always)]
+fn put<V>(column: &mut Option<&mut [V]>, i: usize, value: V) {
+    if let Some(column) = column {
+        column[i] = value;
     }
 }
 

@@ -5,9 +5,9 @@ use super::double_double::Square;
 use super::feature::U;
 use super::rounded::RoundedDistance;
 use super::{feature_certificate, rational};
-use crate::Feature;
 use crate::kernel::vector::V3;
-use crate::kernel::{Nearest, triangle as plain_kernel};
+use crate::pair::project;
+use crate::{Feature, Projection};
 use std::cmp::Ordering;
 use std::collections::HashMap;
 use std::collections::hash_map::Entry;
@@ -26,18 +26,10 @@ pub(super) enum DecidedBy {
 pub(super) struct Decision {
     /// The index of the nearest candidate. Exact ties go to the lowest id.
     pub(super) winner: usize,
-    /// The true distance, rounded to the nearest f64.
-    pub(super) distance: f64,
-    /// A lower bound on the true distance: `distance` or the f64 before it.
-    pub(super) lower: f64,
+    /// Its true distance.
+    pub(super) distance: RoundedDistance,
     /// The arithmetic that made the decision.
     pub(super) decided_by: DecidedBy,
-}
-
-impl Decision {
-    fn new(winner: usize, distance: RoundedDistance, decided_by: DecidedBy) -> Self {
-        Self { winner, distance: distance.nearest, lower: distance.lower, decided_by }
-    }
 }
 
 /// Returns the nearest of several candidates, which may be in any order. There is at least one, and their ids differ.
@@ -72,7 +64,7 @@ fn decide_fast(query: V3, candidates: &[Candidate<'_>]) -> Option<Decision> {
             (winner, best) = (index, Some(square));
         }
     }
-    Some(Decision::new(winner, best?.distance()?, DecidedBy::Floats))
+    Some(Decision { winner, distance: best?.distance()?, decided_by: DecidedBy::Floats })
 }
 
 /// Candidates that share a proved feature, or a single candidate without a proof.
@@ -100,7 +92,7 @@ fn decide_in_stages(query: V3, candidates: &[Candidate<'_>]) -> Decision {
     if let [Group { index, square: Some(square), .. }] = remaining[..]
         && let Some(distance) = square.distance()
     {
-        return Decision::new(*index, distance, DecidedBy::Floats);
+        return Decision { winner: *index, distance, decided_by: DecidedBy::Floats };
     }
     let exact = |group: &Group| {
         let Candidate { id, vertices, feature } = candidates[group.index];
@@ -108,7 +100,7 @@ fn decide_in_stages(query: V3, candidates: &[Candidate<'_>]) -> Decision {
     };
     let nearest = remaining.into_iter().map(exact).min_by(|(a, i, _), (b, j, _)| a.cmp(b).then(i.cmp(j)));
     let (square, _, winner) = nearest.expect("there are candidates, and the least one is not farther than itself");
-    Decision::new(winner, square.distance(), DecidedBy::Integers)
+    Decision { winner, distance: square.distance(), decided_by: DecidedBy::Integers }
 }
 
 /// Groups candidates that share a proved feature.
@@ -149,19 +141,19 @@ pub(super) fn is_within(query: [f64; 3], vertices: &[[f64; 3]], radius: f64) -> 
     if radius < 0.0 {
         return false;
     }
-    let nearest = nearest_by_kernel(query, vertices);
+    let nearest = project(query, vertices, f64::INFINITY).expect("no key exceeds infinity");
     is_within_by_kernel(&nearest, radius)
         .unwrap_or_else(|| is_within_in_stages(query, vertices, nearest.feature, radius))
 }
 
-/// Compares the distance of the kernel with the radius. Returns `None` if the error of the kernel, which is less than
-/// its bound plus one smallest subnormal, leaves the result open.
-fn is_within_by_kernel(nearest: &Nearest, radius: f64) -> Option<bool> {
+/// Compares the distance of the kernel with the radius, or returns `None` if its error, which is less than its bound
+/// and one smallest subnormal, leaves that open.
+fn is_within_by_kernel(nearest: &Projection, radius: f64) -> Option<bool> {
     /// A factor that covers the rounding of this bound and of the difference that is compared with it.
     const SLACK: f64 = 1.0 + 8.0 * U;
     let distance = nearest.key.distance();
     let gap = (distance - radius).abs();
-    let is_certain = distance < f64::INFINITY && gap > nearest.error() * SLACK + 4.0 * f64::from_bits(1);
+    let is_certain = distance < f64::INFINITY && gap > nearest.error * SLACK + 4.0 * f64::from_bits(1);
     is_certain.then_some(distance < radius)
 }
 
@@ -174,15 +166,4 @@ fn is_within_in_stages(query: V3, vertices: &[V3], feature: Feature, radius: f64
     let exact =
         || rational::Square::new(query, vertices, feature, is_proved).cmp(&rational::Square::from_length(radius));
     order.unwrap_or_else(exact) != Ordering::Greater
-}
-
-/// Returns the nearest point of a primitive, computed by the kernel.
-fn nearest_by_kernel(query: V3, vertices: &[V3]) -> Nearest {
-    let nearest = match *vertices {
-        [a] => plain_kernel::point(query, a, f64::INFINITY),
-        [a, b] => plain_kernel::segment(query, [a, b], f64::INFINITY),
-        [a, b, c] => plain_kernel::triangle(query, [a, b, c], f64::INFINITY),
-        _ => unreachable!("one to three vertices"),
-    };
-    nearest.expect("no key exceeds infinity")
 }

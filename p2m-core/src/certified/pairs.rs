@@ -1,6 +1,7 @@
 //! Certified pairs: the nearest of several pairs of primitives in real arithmetic.
 
 use super::rational::Square;
+use super::rounded::RoundedDistance;
 use crate::kernel::vector::V3;
 use crate::pair::{Hull, NearestPair, nearest_of_hulls};
 use crate::{PrimitiveId, Real};
@@ -15,16 +16,6 @@ pub(crate) struct PairCandidate {
     pub(crate) pair: NearestPair,
 }
 
-/// The nearest of several pairs.
-pub(crate) struct PairDecision {
-    /// The index of the nearest candidate. Exact ties go to the lowest ids.
-    pub(crate) winner: usize,
-    /// The true distance, rounded to the nearest f64.
-    pub(crate) distance: f64,
-    /// A lower bound on the true distance: `distance` or the f64 before it.
-    pub(crate) lower: f64,
-}
-
 /// Returns the nearest of several pairs, which may be in any order. It is `None` if there is none, or if the nearest
 /// one is farther than the limit. Once `goes_on` returns `false`, the remaining pairs are ignored.
 ///
@@ -34,10 +25,10 @@ pub(crate) fn decide_pairs<T: Real>(
     candidates: &[PairCandidate],
     limit: T,
     goes_on: &dyn Fn() -> bool,
-) -> Option<PairDecision> {
+) -> Option<(usize, RoundedDistance)> {
     let touching = candidates.iter().enumerate().filter(|(_, one)| one.pair.is_intersecting);
     if let Some((winner, _)) = touching.min_by_key(|(_, one)| one.ids) {
-        return Some(PairDecision { winner, distance: 0.0, lower: 0.0 });
+        return Some((winner, RoundedDistance { nearest: 0.0, lower: 0.0 }));
     }
     let square = |one: &PairCandidate| Square::between(one.hulls[0].vertices(), one.hulls[1].vertices());
     let all = candidates.iter().take_while(|_| goes_on()).map(square).enumerate();
@@ -45,8 +36,7 @@ pub(crate) fn decide_pairs<T: Real>(
     if limit < T::INFINITY && least.cmp(&Square::from_length(limit.to_f64())).is_gt() {
         return None;
     }
-    let distance = least.distance();
-    Some(PairDecision { winner, distance: distance.nearest, lower: distance.lower })
+    Some((winner, least.distance()))
 }
 
 /// Returns the true distance between the convex hulls of two sets of points, rounded to the nearest f64.

@@ -6,6 +6,7 @@
 use super::candidate::Candidate;
 use super::decide::{decide, is_within};
 use crate::near_query::{Near, search_near_if_valid};
+use crate::pair::Hull;
 use crate::real::to_f64_array;
 use crate::{Closest, NearQuery, Position, Primitive, PrimitiveId, PrimitiveSet, QueryOptions, Real, Shape};
 
@@ -65,20 +66,13 @@ pub trait CertifiedQuery<T: Real>: NearQuery<T> {
         let mut near = Near::for_certification(options.max_distance);
         search_near_if_valid(self, query, &mut near);
         let found = near.certification_candidates();
-        let shapes = found.iter().map(|one| {
+        let hulls = found.iter().map(|one| {
             let shape = self.shape(one.id).ok_or(CertifyError::NoVertices { id: one.id })?;
-            let mut vertices = [[0.0; 3]; 3];
-            let corners = shape.vertices();
-            vertices.iter_mut().zip(corners).for_each(|(to, vertex)| *to = to_f64_array(vertex));
-            Ok((vertices, corners.len()))
+            Ok(Hull::of(&shape))
         });
-        let shapes: Vec<_> = shapes.collect::<Result<_, _>>()?;
-        let candidates: Vec<_> = (found.iter().zip(&shapes))
-            .map(|(one, (vertices, count))| Candidate {
-                id: one.id,
-                vertices: &vertices[..*count],
-                feature: one.projection.feature,
-            })
+        let hulls: Vec<Hull> = hulls.collect::<Result<_, _>>()?;
+        let candidates: Vec<_> = (found.iter().zip(&hulls))
+            .map(|(one, hull)| Candidate { id: one.id, vertices: hull.vertices(), feature: one.projection.feature })
             .collect();
         if candidates.is_empty() {
             return Ok(None);
@@ -91,8 +85,8 @@ pub trait CertifiedQuery<T: Real>: NearQuery<T> {
         }
         let one = &found[decision.winner];
         Ok(Some(Closest {
-            distance: T::round_from_f64(decision.distance),
-            lower_bound: T::round_down_from_f64(decision.lower),
+            distance: T::round_from_f64(decision.distance.nearest),
+            lower_bound: T::round_down_from_f64(decision.distance.lower),
             ..crate::query::answer::answer(one.id, &one.projection, 0.0)
         }))
     }

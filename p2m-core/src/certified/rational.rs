@@ -12,6 +12,7 @@ use super::rounded::RoundedDistance;
 use crate::Feature;
 use crate::exact::{Fraction, Vector, common_exponent, cross, difference, dot, integer, round_bits, sign};
 use crate::kernel::vector::V3;
+use crate::pair::edges_of;
 use dashu_int::ops::{BitTest, SquareRoot, UnsignedAbs};
 use dashu_int::{IBig, UBig};
 use std::cell::OnceCell;
@@ -40,14 +41,10 @@ impl Square {
         let of_vertices = |vertices: &[V3], other: &[V3]| -> Vec<Self> {
             vertices.iter().map(|vertex| Self::new(*vertex, other, Feature::Vertex(0), false)).collect()
         };
-        let edges = |hull: &[V3]| -> Vec<[V3; 2]> {
-            let count = if hull.len() < 3 { hull.len() - 1 } else { 3 };
-            (0..count).map(|i| [hull[i], hull[(i + 1) % hull.len()]]).collect()
-        };
         let mut all = of_vertices(a, b);
         all.extend(of_vertices(b, a));
-        for p in edges(a) {
-            all.extend(edges(b).iter().filter_map(|q| Self::inside_of_edges(&p, q)));
+        for (_, p) in edges_of(a) {
+            all.extend(edges_of(b).filter_map(|(_, q)| Self::inside_of_edges(&p, &q)));
         }
         all.into_iter().min_by(Self::cmp).expect("a hull has a vertex")
     }
@@ -151,17 +148,9 @@ impl Primitive {
 
     /// Returns a feature that contains the nearest point, preferably the claimed one.
     fn nearest(&self, claim: Feature) -> Feature {
-        const ALL: [Feature; 7] = [
-            Feature::Vertex(0),
-            Feature::Vertex(1),
-            Feature::Vertex(2),
-            Feature::Edge(0),
-            Feature::Edge(1),
-            Feature::Edge(2),
-            Feature::Face,
-        ];
         let is_nearest = |feature: &Feature| exists(*feature, self.offsets.len()) && self.is_nearest(*feature);
-        std::iter::once(claim).chain(ALL).find(is_nearest).expect("every set of points has a nearest one")
+        let mut all = std::iter::once(claim).chain((0..).map_while(Feature::from_code));
+        all.find(is_nearest).expect("every set of points has a nearest one")
     }
 
     /// Returns whether the interior of a feature contains the nearest point.

@@ -2,9 +2,9 @@
 
 /// A distance, rounded to nearest, with a lower bound.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct RoundedDistance {
+pub(crate) struct RoundedDistance {
     /// The true distance, rounded to the nearest f64.
-    pub(super) nearest: f64,
+    pub(crate) nearest: f64,
     /// A lower bound on the true distance: `nearest` or the f64 before it.
-    pub(super) lower: f64,
+    pub(crate) lower: f64,
 }

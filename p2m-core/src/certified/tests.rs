@@ -4,6 +4,7 @@
 
 use super::candidate::Candidate;
 use super::decide::{DecidedBy, Decision, decide, is_within};
+use super::rounded::RoundedDistance;
 use super::{feature_certificate, rational};
 use crate::kernel::vector::V3;
 use crate::{Feature, Point, Primitive, PrimitiveId, Segment, Triangle};
@@ -85,7 +86,7 @@ fn check(query: V3, shapes: &[Shape], rng: &mut impl Rng) -> Decision {
     let decide_by = |claim: &mut dyn FnMut(&[V3]) -> Feature| {
         let claims: Vec<Feature> = shapes.iter().map(|shape| claim(shape)).collect();
         let decision = decide(query, &candidates(shapes, &ids, &claims));
-        let Decision { winner: found, distance, lower, .. } = decision;
+        let Decision { winner: found, distance: RoundedDistance { nearest: distance, lower }, .. } = decision;
         let context = || format!("{query:?} {shapes:?} {ids:?} {claims:?} {decision:?}");
         assert_eq!(found, winner, "{}", context());
         assert!(is_rounded(query, &shapes[winner], distance), "{}", context());
@@ -96,12 +97,12 @@ fn check(query: V3, shapes: &[Shape], rng: &mut impl Rng) -> Decision {
     let decision = decide_by(&mut |shape| claim(query, shape));
     for _ in 0..2 {
         let other = decide_by(&mut |_| FEATURES[rng.random_range(0..7)]);
-        assert_eq!(other.distance, decision.distance);
+        assert_eq!(other.distance.nearest, decision.distance.nearest);
     }
     for feature in FEATURES {
         decide_by(&mut |_| feature);
     }
-    check_radii(query, &shapes[winner], decision.distance);
+    check_radii(query, &shapes[winner], decision.distance.nearest);
     decision
 }
 
@@ -185,12 +186,12 @@ fn any_exponents_may_meet() {
             vec![at([3.0, -1.0, -1.0]), at([3.0, 4.0, -1.0]), at([3.0, -1.0, 4.0])],
             vec![at([2.0, 2.0, 2.0])],
         ];
-        assert_eq!(check([0.0; 3], &shapes, &mut rng).distance, 3.0 * scale);
+        assert_eq!(check([0.0; 3], &shapes, &mut rng).distance.nearest, 3.0 * scale);
     }
     // The distance exceeds the range of f64.
     let far = [vec![[f64::MAX; 3]], vec![[f64::MAX, f64::MAX, -f64::MAX], [f64::MAX; 3]]];
     let decision = check([-f64::MAX; 3], &far, &mut rng);
-    assert_eq!((decision.distance, decision.lower, decision.winner), (f64::INFINITY, f64::MAX, 1));
+    assert_eq!((decision.distance.nearest, decision.distance.lower, decision.winner), (f64::INFINITY, f64::MAX, 1));
 }
 
 /// The coordinates of the shapes are small integers, some changed by one unit in the last place. So the vertices are
@@ -263,7 +264,7 @@ fn what_is_shared_is_no_tie() {
         let vertices = [vec![a, b, c], vec![d, a], vec![b, a, d], vec![a]];
         let holds = vertices.iter().all(|v| Distance::new(away, v).compare(&Distance::new(away, &[a])).is_eq());
         assert!(check(away, &vertices, &mut rng).decided_by == DecidedBy::Floats || !holds);
-        assert_eq!(check(a, &vertices, &mut rng).distance, 0.0);
+        assert_eq!(check(a, &vertices, &mut rng).distance.nearest, 0.0);
     }
     let square = |i: i32, j: i32| vec![[0.0; 3], [f64::from(i), 0.0, 0.0], [0.0, f64::from(j), 0.0]];
     let grid = [square(1, 1), square(1, -1), square(-1, -1), square(-1, 1)];
@@ -311,7 +312,7 @@ fn points_whose_squares_differ_by_one_are_told_apart() {
             let shapes = [vec![[2.0 * b - 1.0, b - 2.0, c]], vec![[2.0 * b - 2.0, b, c]]];
             let decision = check_placed(&shapes, 1 << (bits - 1), &mut rng);
             assert_eq!(decision.winner, 1);
-            let root = |s: &Shape| decide([0.0; 3], &[candidate(s)]).distance;
+            let root = |s: &Shape| decide([0.0; 3], &[candidate(s)]).distance.nearest;
             one += usize::from(bits >= 30 && root(&shapes[0]) == root(&shapes[1]));
             exact += usize::from(decision.decided_by == DecidedBy::Integers);
             assert!(bits > 40 || decision.decided_by == DecidedBy::Floats, "{bits}");
@@ -345,12 +346,12 @@ fn faces_edges_and_vertices_that_are_almost_equally_near_are_told_apart() {
             let near = |shape: &Shape, rng: &mut _| check_placed(&[beside.clone(), shape.clone()], 1 << bits, rng);
             for shape in [&face, &edge] {
                 let decision = near(shape, &mut rng);
-                assert_eq!((decision.winner, decision.distance), (1, 3.0 * h));
+                assert_eq!((decision.winner, decision.distance.nearest), (1, 3.0 * h));
                 stages[decision.decided_by as usize] += 1;
                 assert!(bits > 40 || decision.decided_by == DecidedBy::Floats, "{bits} {number}");
             }
             let tie = check_placed(&[face, edge, level, beside], 1 << bits, &mut rng);
-            assert_eq!((tie.decided_by, tie.distance), (DecidedBy::Integers, 3.0 * h));
+            assert_eq!((tie.decided_by, tie.distance.nearest), (DecidedBy::Integers, 3.0 * h));
         }
     }
     assert!(cases.have_more_than(20, stages[1]), "{stages:?}");
@@ -391,7 +392,7 @@ fn distances_within_rounding_are_as_accurate_as_others() {
         });
         let other = relative(query, &shape, &mut rng);
         let decision = check(query, &[shape, other], &mut rng);
-        small += usize::from(decision.distance < 1e-15);
+        small += usize::from(decision.distance.nearest < 1e-15);
     }
     assert!(cases.have_more_than(1000, small), "{small}");
 }
@@ -478,6 +479,6 @@ fn roots_of_small_integers_round_as_the_processor_does() {
         let square = f64::from(n * n + (n % 7) * (n % 7) + (n % 3) * (n % 3));
         let exact = rational::Square::new([0.0; 3], &shape, Feature::Face, false).distance();
         assert_eq!(exact.nearest, square.sqrt());
-        assert_eq!(decide([0.0; 3], &[candidate(&shape)]).distance, square.sqrt());
+        assert_eq!(decide([0.0; 3], &[candidate(&shape)]).distance.nearest, square.sqrt());
     }
 }

@@ -38,21 +38,6 @@ fn fast_two_sum(a: f64, b: f64) -> Double {
     Double { high, low: b - (high - a) }
 }
 
-/// Returns a b without error.
-#[inline(always)]
-fn two_product(a: f64, b: f64) -> Double {
-    // The factor 2^27 + 1 splits a number into two parts of at most 26 bits.
-    const SPLITTER: f64 = 134_217_729.0;
-    let split = |x: f64| {
-        let c = SPLITTER * x;
-        let high = c - (c - x);
-        (high, x - high)
-    };
-    let high = a * b;
-    let ((a1, a2), (b1, b2)) = (split(a), split(b));
-    Double { high, low: a2 * b2 - (((high - a1 * b1) - a2 * b1) - a1 * b2) }
-}
-
 impl Double {
     /// Returns a - b without error.
     #[inline(always)]
@@ -63,7 +48,16 @@ impl Double {
     /// Returns a b without error.
     #[inline(always)]
     pub fn product(a: f64, b: f64) -> Self {
-        two_product(a, b)
+        // The factor 2^27 + 1 splits a number into two parts of at most 26 bits.
+        const SPLITTER: f64 = 134_217_729.0;
+        let split = |x: f64| {
+            let c = SPLITTER * x;
+            let high = c - (c - x);
+            (high, x - high)
+        };
+        let high = a * b;
+        let ((a1, a2), (b1, b2)) = (split(a), split(b));
+        Self { high, low: a2 * b2 - (((high - a1 * b1) - a2 * b1) - a1 * b2) }
     }
 
     /// Returns the number rounded to f64.
@@ -95,7 +89,7 @@ impl Mul for Double {
     type Output = Self;
     #[inline(always)]
     fn mul(self, other: Self) -> Self {
-        let high = two_product(self.high, other.high);
+        let high = Self::product(self.high, other.high);
         let cross = self.high * other.low + self.low * other.high;
         fast_two_sum(high.high, high.low + cross)
     }
@@ -126,7 +120,7 @@ mod tests {
         let product = sum * sum;
         assert_eq!((product - one).round(), 2.0 * tiny);
         assert_eq!(((sum / product) - one).round(), -tiny);
-        assert_eq!(two_product(1.0 + f64::EPSILON, 1.0 + f64::EPSILON).low, f64::EPSILON * f64::EPSILON);
+        assert_eq!(Double::product(1.0 + f64::EPSILON, 1.0 + f64::EPSILON).low, f64::EPSILON * f64::EPSILON);
     }
 
     #[test]

@@ -21,5 +21,5 @@ pub(crate) mod vector;
 pub use face::SLIVER_SINE;
 pub use key::Key;
 pub use nearest::ERROR_CONSTANT;
-pub(crate) use nearest::{Nearest, SQRT_3_U};
+pub(crate) use nearest::{Nearest, SQRT_3_U, edge_feature, vertex_feature};
 pub use vector::{exponent, power_of_two};

@@ -34,7 +34,7 @@ pub(crate) struct Nearest {
 /// Returns vertex i as a feature, and its weights.
 #[inline(always)]
 #[allow(clippy::cast_possible_truncation, reason = "a primitive has at most three vertices")]
-pub(super) fn vertex_feature(i: usize) -> (Feature, V3) {
+pub(crate) fn vertex_feature(i: usize) -> (Feature, V3) {
     let weights = match i {
         0 => [1.0, 0.0, 0.0],
         1 => [0.0, 1.0, 0.0],
@@ -46,7 +46,7 @@ pub(super) fn vertex_feature(i: usize) -> (Feature, V3) {
 /// Returns edge i as a feature, and the weights of all vertices, given those of vertices i and i + 1.
 #[inline(always)]
 #[allow(clippy::cast_possible_truncation, reason = "a primitive has at most three vertices")]
-pub(super) fn edge_feature(i: usize, [a, b]: [f64; 2]) -> (Feature, V3) {
+pub(crate) fn edge_feature(i: usize, [a, b]: [f64; 2]) -> (Feature, V3) {
     let weights = match i {
         0 => [a, b, 0.0],
         1 => [0.0, a, b],

@@ -36,7 +36,7 @@ pub mod search;
 mod tests;
 
 use crate::kernel::vector::{V3, bounds, clamp, largest, sub};
-use crate::kernel::{Key, SQRT_3_U};
+use crate::kernel::{Key, SQRT_3_U, edge_feature, vertex_feature};
 use crate::primitive::{Feature, Primitive, Projection};
 use crate::query::answer::ROUND_DOWN;
 use crate::{Aabb, Real};
@@ -185,13 +185,18 @@ pub fn bounds_of(vertices: &[V3]) -> Aabb<f64> {
 }
 
 /// Returns the edges of a hull of one to three vertices, with their numbers.
-fn edges_of(hull: &[V3]) -> impl Iterator<Item = (u8, [V3; 2])> + Clone + '_ {
+pub(crate) fn edges_of(hull: &[V3]) -> impl Iterator<Item = (u8, [V3; 2])> + Clone + '_ {
     let count: u8 = match hull.len() {
         1 => 0,
         2 => 1,
         _ => 3,
     };
     (0..count).map(|i| (i, [hull[usize::from(i)], hull[(usize::from(i) + 1) % hull.len()]]))
+}
+
+/// Returns the feature and the weights of the point with parameter `t` of an edge.
+fn point_of_edge(number: u8, t: f64) -> (Feature, V3) {
+    edge_feature(usize::from(number), [1.0 - t, t])
 }
 
 /// The best pair of points so far.
@@ -212,12 +217,9 @@ impl Candidate {
 
     /// Offers vertex i of one hull and its nearest point on the other. `is_second` is whether the vertex belongs to the
     /// second hull.
-    #[allow(clippy::cast_possible_truncation, reason = "a primitive has at most three vertices")]
     fn offer_vertex(&mut self, i: usize, vertex: V3, other: &[V3], square: f64, is_second: bool) {
         let Some(projection) = project(vertex, other, self.limit(square)) else { return };
-        let mut weights = [0.0; 3];
-        weights[i] = 1.0;
-        self.offer_projection(vertex, (Feature::Vertex(i as u8), weights), &projection, is_second);
+        self.offer_projection(vertex, vertex_feature(i), &projection, is_second);
     }
 
     /// Offers a point of one hull, with its feature and weights, and its projection onto the other hull.
@@ -240,8 +242,8 @@ impl Candidate {
             return;
         }
         let Some(nearest) = nearest_on_edges(&edges[0], &edges[1]) else { return };
-        let weights = [0, 1].map(|k: usize| edge_weights(numbers[k], nearest.parameters[k]));
-        self.offer(nearest.key, nearest.points.map(Point3::from), numbers.map(Feature::Edge), weights);
+        let [(p, p_weights), (q, q_weights)] = [0, 1].map(|k: usize| point_of_edge(numbers[k], nearest.parameters[k]));
+        self.offer(nearest.key, nearest.points.map(Point3::from), [p, q], [p_weights, q_weights]);
     }
 
     /// Offers the point in which an edge of one hull pierces the face of the other, if there is one.
@@ -251,16 +253,7 @@ impl Candidate {
         let [low, high] = bounds(&edge);
         let point = clamp(std::array::from_fn(|k| p[k] * (1.0 - t) + q[k] * t), low, high);
         let Some(projection) = project(point, other, f64::INFINITY) else { return };
-        self.offer_projection(point, (Feature::Edge(number), edge_weights(number, t)), &projection, is_second);
-    }
-}
-
-/// Returns the weights of the vertices of a primitive for the point at parameter `t` of edge i.
-fn edge_weights(i: u8, t: f64) -> V3 {
-    match i {
-        0 => [1.0 - t, t, 0.0],
-        1 => [0.0, 1.0 - t, t],
-        _ => [t, 0.0, 1.0 - t],
+        self.offer_projection(point, point_of_edge(number, t), &projection, is_second);
     }
 }
 

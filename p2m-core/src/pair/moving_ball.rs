@@ -36,6 +36,7 @@ use crate::query::answer::ROUND_UP;
 use crate::real::{from_f64_array, to_f64_array};
 use crate::{Feature, PrimitiveId, Real};
 use nalgebra::Point3;
+use std::marker::PhantomData;
 use std::ops::ControlFlow;
 
 /// A ball whose centre moves along a segment.
@@ -154,7 +155,7 @@ impl<T: Real> MovingBall<T> {
     /// It takes a logarithmic number of searches for pairs, and about fifty distance evaluations for each.
     pub fn first_contact<I: PairQuery<T> + ?Sized>(&self, index: &I) -> Option<BallContact<T>> {
         let (start, end) = (to_f64_array(&self.start), to_f64_array(&self.end));
-        let mut path = Path { index, start, end, left_out: Vec::new() };
+        let mut path = Path { index, scalar: PhantomData, start, end, left_out: Vec::new() };
         let radius = self.radius.to_f64();
         // The comparison is false for NaN.
         let is_valid = [path.start, path.end].as_flattened().iter().all(|x| x.is_finite()) && radius.is_finite();
@@ -190,16 +191,20 @@ impl<T: Real> MovingBall<T> {
         8.0 * f64::UNIT_ROUNDOFF * size + 4.0 * f64::SMALLEST_SUBNORMAL
     }
 
-    /// Returns the answer, given a bracket of the first contact.
-    fn contact<I: PairQuery<T> + ?Sized>(&self, path: &Path<'_, I>, [low, high]: [f64; 2]) -> Option<BallContact<T>> {
+    /// Returns the answer for a bracket of the first contact.
+    fn contact<I: PairQuery<T> + ?Sized>(
+        &self,
+        path: &Path<'_, T, I>,
+        [low, high]: [f64; 2],
+    ) -> Option<BallContact<T>> {
         let upper_parameter: T = -T::round_down_from_f64(-high);
         // For f32, the centre is taken at the rounded parameter.
         let hull = [path.centre_at(upper_parameter.to_f64())];
         let mut pairs = Pairs::nearest(&PairOptions::<f64>::default()).without(&path.left_out);
         search_hull(path.index, &hull, None, &mut pairs);
         let nearest = pairs.finish::<f64>()?;
-        // The certified distance of the nearest primitive comes from an evaluation of that pair alone.
-        let pair = path.pair_of::<T>(nearest.primitives[0], hull[0]);
+        // The certified distance of the nearest primitive is that of its own pair.
+        let pair = path.pair_of(nearest.primitives[0], hull[0]);
         let upper = (pair.key.distance() + pair.error + self.path_error()) * ROUND_UP + 8.0 * f64::SMALLEST_SUBNORMAL;
         Some(BallContact {
             parameter: T::round_down_from_f64(low),
@@ -217,15 +222,16 @@ fn centre_at(start: V3, end: V3, t: f64) -> V3 {
 }
 
 /// The path of a centre in a scene.
-struct Path<'a, I: ?Sized> {
+struct Path<'a, T, I: ?Sized> {
     index: &'a I,
+    scalar: PhantomData<T>,
     start: V3,
     end: V3,
     /// Ignored primitives, in ascending order.
     left_out: Vec<PrimitiveId>,
 }
 
-impl<I: ?Sized> Path<'_, I> {
+impl<T: Real, I: PairQuery<T> + ?Sized> Path<'_, T, I> {
     fn centre_at(&self, t: f64) -> V3 {
         centre_at(self.start, self.end, t)
     }
@@ -236,20 +242,14 @@ impl<I: ?Sized> Path<'_, I> {
     }
 
     /// Returns the nearest points of a primitive and a point.
-    fn pair_of<T: Real>(&self, primitive: PrimitiveId, point: V3) -> NearestPair
-    where
-        I: PairQuery<T>,
-    {
+    fn pair_of(&self, primitive: PrimitiveId, point: V3) -> NearestPair {
         nearest_of_hulls(self.index.hull(primitive).vertices(), &[point], f64::INFINITY)
             .expect("no key exceeds infinity")
     }
 
-    /// Returns the primitives with opening contacts: within a distance of the start, and not approached by the path, up
-    /// to a tolerance.
-    fn opening_within<T: Real>(&self, distance: f64, tolerance: f64) -> Vec<PrimitiveId>
-    where
-        I: PairQuery<T>,
-    {
+    /// Returns the primitives within a distance of the start to which the path comes no nearer than its start, up to a
+    /// tolerance.
+    fn opening_within(&self, distance: f64, tolerance: f64) -> Vec<PrimitiveId> {
         let mut opening = Vec::new();
         let mut visit = |[id, _]: [PrimitiveId; 2], _: &NearestPair| {
             let hull = self.index.hull(id);
@@ -267,27 +267,17 @@ impl<I: ?Sized> Path<'_, I> {
         opening
     }
 
-    /// Returns a certified lower bound on the distance between the scene and the path up to a parameter, or `None` for
-    /// an empty scene.
-    fn lower_bound_until<T: Real>(&self, t: f64) -> Option<f64>
-    where
-        I: PairQuery<T>,
-    {
+    /// Returns a certified lower bound on the distance of the scene from the path until a parameter; `None`
+    /// for an empty scene.
+    fn lower_bound_until(&self, t: f64) -> Option<f64> {
         let mut pairs = Pairs::nearest(&PairOptions::<f64>::default()).without(&self.left_out);
         search_hull(self.index, &self.until(t), None, &mut pairs);
         Some(pairs.finish::<f64>()?.lower_bound)
     }
 
-    /// Returns a bracket of the first parameter at which the scene is within a distance, up to rounding, or `None` if
-    /// it never is.
-    ///
-    /// The basic idea is to shorten the path: any primitive near the path yields a contact by bisection, the path is
-    /// cut off there, and the search starts over on the rest. The first [`SHORT_SEARCHES`] searches end at the first
-    /// earlier contact; one last search visits all primitives near the path.
-    fn first_within<T: Real>(&self, distance: f64) -> Option<[f64; 2]>
-    where
-        I: PairQuery<T>,
-    {
+    /// Returns a bracket of the first parameter at which the scene is within a distance, up to rounding; `None`
+    /// if it never is.
+    fn first_within(&self, distance: f64) -> Option<[f64; 2]> {
         let (mut best, mut last): (Option<[f64; 2]>, _) = (None, None);
         for search in 0.. {
             let end = best.map_or(1.0, |[_, high]| high);
@@ -316,13 +306,10 @@ impl<I: ?Sized> Path<'_, I> {
         best.map(|[low, high]| [(low - 2.0 * PARAMETER_RESOLUTION).max(0.0), high])
     }
 
-    /// Returns a bracket of the first parameter at which a primitive is within a distance, by bisection. At `nearest`
-    /// the primitive is within the distance, up to rounding.
-    fn first_within_of<T: Real>(&self, primitive: PrimitiveId, distance: f64, nearest: f64) -> [f64; 2]
-    where
-        I: PairQuery<T>,
-    {
-        let is_within = |t: f64| self.pair_of::<T>(primitive, self.centre_at(t)).key.distance() <= distance;
+    /// Returns a bracket of the first parameter at which a primitive is within a distance. At `nearest` it is,
+    /// up to rounding.
+    fn first_within_of(&self, primitive: PrimitiveId, distance: f64, nearest: f64) -> [f64; 2] {
+        let is_within = |t: f64| self.pair_of(primitive, self.centre_at(t)).key.distance() <= distance;
         if is_within(0.0) {
             return [0.0; 2];
         }

@@ -222,12 +222,12 @@ fn certify<T: Real>(
     search(&mut pairs);
     let candidate = |(ids, pair)| PairCandidate { ids, hulls: hulls(ids), pair };
     let candidates: Vec<_> = pairs.certification_candidates().into_iter().map(candidate).collect();
-    let decision = decide_pairs(&candidates, options.max_distance, goes_on)?;
-    let winner = &candidates[decision.winner];
+    let (winner, distance) = decide_pairs(&candidates, options.max_distance, goes_on)?;
+    let winner = &candidates[winner];
     let mut alone = Pairs::nearest(&PairOptions::<T>::default());
     alone.offer(winner.ids, &winner.pair);
-    let distance = T::round_from_f64(decision.distance);
-    alone.finish().map(|pair| ClosestPair { distance, lower_bound: T::round_down_from_f64(decision.lower), ..pair })
+    let (lower_bound, distance) = (T::round_down_from_f64(distance.lower), T::round_from_f64(distance.nearest));
+    alone.finish().map(|pair| ClosestPair { distance, lower_bound, ..pair })
 }
 
 /// Calls `visit` for each pair that `search` offers.

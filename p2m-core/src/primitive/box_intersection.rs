@@ -19,7 +19,7 @@ use std::cmp::Ordering::{self, Equal, Greater, Less};
 
 /// Returns whether the convex hull of one to three finite vertices has a point in a closed box. It is `false` for a box
 /// that is empty or has a NaN coordinate.
-pub(super) fn intersects_box<T: Real, const N: usize>(vertices: &[Point3<T>; N], bounds: &Aabb<T>) -> bool {
+pub(super) fn intersects_box<T: Real>(vertices: &[Point3<T>], bounds: &Aabb<T>) -> bool {
     let hull_bounds = Aabb::from_points(vertices);
     // A box that is empty on one axis may still overlap the box of the primitive on all axes.
     if bounds.is_empty() || !bounds.intersects(&hull_bounds) {
@@ -31,10 +31,9 @@ pub(super) fn intersects_box<T: Real, const N: usize>(vertices: &[Point3<T>; N],
     }
     let part = bounds.intersection(&hull_bounds);
     let corners = [to_f64_array(&part.min), to_f64_array(&part.max)];
-    let vertices = vertices.each_ref().map(to_f64_array);
-    match *vertices.as_slice() {
-        [a, b] => (0..3).all(|axis| !line_separates(axis, a, b, Equal, &corners)),
-        [a, b, c] => triangle_intersects([a, b, c], &corners),
+    match vertices {
+        [a, b] => (0..3).all(|axis| !line_separates(axis, to_f64_array(a), to_f64_array(b), Equal, &corners)),
+        [a, b, c] => triangle_intersects([a, b, c].map(to_f64_array), &corners),
         _ => false, // a point outside of the box
     }
 }

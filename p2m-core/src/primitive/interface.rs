@@ -1,5 +1,6 @@
 //! The trait of primitives.
 
+use super::box_intersection;
 use super::projection::Projection;
 use crate::{Aabb, Ray, RayHit, Real};
 use nalgebra::Point3;
@@ -81,7 +82,10 @@ pub trait Primitive<T: Real> {
     /// It is exact for the primitives of this project. The default tests the box of the primitive, so it may also
     /// return `true` for a primitive that misses the box, but never `false` for one that intersects it.
     fn intersects_box(&self, bounds: &Aabb<T>) -> bool {
-        !bounds.is_empty() && bounds.intersects(&self.aabb())
+        match self.vertices() {
+            [] => !bounds.is_empty() && bounds.intersects(&self.aabb()),
+            vertices => box_intersection::intersects_box(vertices, bounds),
+        }
     }
 
     /// Returns the hit of a ray on a primitive that has no [`vertices`](Self::vertices).

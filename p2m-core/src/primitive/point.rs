@@ -1,6 +1,5 @@
 //! Points of a scene.
 
-use super::box_intersection;
 use super::interface::Primitive;
 use super::projection::Projection;
 use crate::real::to_f64_array;
@@ -44,10 +43,6 @@ impl<T: Real> Primitive<T> for Point<T> {
     #[inline(always)]
     fn vertices(&self) -> &[Point3<T>] {
         std::slice::from_ref(&self.position)
-    }
-
-    fn intersects_box(&self, bounds: &Aabb<T>) -> bool {
-        box_intersection::intersects_box(std::array::from_ref(&self.position), bounds)
     }
 
     fn intersect_ray(&self, _: &Ray) -> Option<RayHit> {

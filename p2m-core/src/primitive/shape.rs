@@ -47,20 +47,12 @@ impl<T: Real> Shape<T> {
 impl<T: Real> Primitive<T> for Shape<T> {
     #[inline(always)]
     fn aabb(&self) -> Aabb<T> {
-        match self {
-            Self::Point(p) => p.aabb(),
-            Self::Segment(s) => s.aabb(),
-            Self::Triangle(t) => t.aabb(),
-        }
+        Aabb::from_points(self.vertices())
     }
 
     #[inline(always)]
     fn project(&self, query: &Point3<T>) -> Projection {
-        match self {
-            Self::Point(p) => p.project(query),
-            Self::Segment(s) => s.project(query),
-            Self::Triangle(t) => t.project(query),
-        }
+        self.project_within(query, f64::INFINITY).expect("no key exceeds infinity")
     }
 
     #[inline(always)]
@@ -75,14 +67,6 @@ impl<T: Real> Primitive<T> for Shape<T> {
     #[inline(always)]
     fn vertices(&self) -> &[Point3<T>] {
         Self::vertices(self)
-    }
-
-    fn intersects_box(&self, bounds: &Aabb<T>) -> bool {
-        match self {
-            Self::Point(p) => p.intersects_box(bounds),
-            Self::Segment(s) => s.intersects_box(bounds),
-            Self::Triangle(t) => t.intersects_box(bounds),
-        }
     }
 
     fn intersect_ray(&self, _: &Ray) -> Option<RayHit> {

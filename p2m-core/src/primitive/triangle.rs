@@ -1,6 +1,5 @@
 //! Triangles of a scene.
 
-use super::box_intersection;
 use super::interface::Primitive;
 use super::projection::Projection;
 use crate::real::to_f64_array;
@@ -49,10 +48,6 @@ impl<T: Real> Primitive<T> for Triangle<T> {
     #[inline(always)]
     fn vertices(&self) -> &[Point3<T>] {
         &self.vertices
-    }
-
-    fn intersects_box(&self, bounds: &Aabb<T>) -> bool {
-        box_intersection::intersects_box(&self.vertices, bounds)
     }
 
     fn intersect_ray(&self, _: &Ray) -> Option<RayHit> {

@@ -108,6 +108,12 @@ impl<T: Real> Best<T> {
         &self.minimum
     }
 
+    /// Returns the numbers of nodes, packets and primitives of the search so far.
+    #[must_use]
+    pub fn counts(&self) -> [usize; 3] {
+        self.minimum.counts.map(|count| count as usize)
+    }
+
     /// Returns the answer, or `None` if no candidate was within the radius.
     #[must_use]
     pub fn finish(self) -> Option<Closest<T>> {
@@ -116,8 +122,17 @@ impl<T: Real> Best<T> {
 }
 
 impl<T: Real> Collector for Best<T> {
-    forward_collector_decisions!(minimum, [#[inline(always)]]);
     forward_methods!(minimum, [#[inline(always)]], {
+        fn prune_above(self: &Self) -> f64;
+        fn prune_given_upper_bound(self: &Self, square: f64) -> f64;
+        fn prune_given_incumbent(self: &Self, square: f64) -> f64;
+        fn prune_above_for_id(self: &Self, id: PrimitiveId) -> f64;
+        fn is_single_nearest(self: &Self) -> bool;
+        fn keeps_near_ties(self: &Self) -> bool;
+        fn near_tie_slack(self: &Self) -> f64;
+        fn is_approximate(self: &Self) -> bool;
+        fn may_stop(self: &Self, has_incumbent: bool) -> bool;
+        fn record_skipped(self: &mut Self, square: f64);
         fn offer(self: &mut Self, id: PrimitiveId, projection: Projection);
         fn visit_node(self: &mut Self);
         fn visit_packet(self: &mut Self);
@@ -137,12 +152,6 @@ impl BestF64 {
         let exact = p.key.distance();
         let pruned = exact * shrink.sqrt() * ROUND_DOWN;
         Some(answer(*primitive, p, if *certified < pruned { *certified } else { pruned }))
-    }
-
-    /// Returns the numbers of nodes, packets and primitives that the search has visited so far.
-    #[must_use]
-    pub fn counts(&self) -> [u32; 3] {
-        self.counts
     }
 
     /// Returns a lower bound on the distances of all primitives if there is no answer. It is infinite if there are no

@@ -18,22 +18,3 @@ macro_rules! forward_methods {
         forward_methods!(@each $field, [$(#[$attribute])*], $($methods)*);
     };
 }
-
-/// Implements the methods of [`Collector`](crate::Collector) that return decisions, but not the methods by which a
-/// search reports.
-macro_rules! forward_collector_decisions {
-    ($field:ident, $attributes:tt) => {
-        forward_methods!($field, $attributes, {
-            fn prune_above(self: &Self) -> f64;
-            fn prune_given_upper_bound(self: &Self, square: f64) -> f64;
-            fn prune_given_incumbent(self: &Self, square: f64) -> f64;
-            fn prune_above_for_id(self: &Self, id: $crate::PrimitiveId) -> f64;
-            fn is_single_nearest(self: &Self) -> bool;
-            fn keeps_near_ties(self: &Self) -> bool;
-            fn near_tie_slack(self: &Self) -> f64;
-            fn is_approximate(self: &Self) -> bool;
-            fn may_stop(self: &Self, has_incumbent: bool) -> bool;
-            fn record_skipped(self: &mut Self, square: f64);
-        });
-    };
-}

@@ -81,26 +81,22 @@ fn fingerprint<T: Real, S: PrimitiveSet<T> + ?Sized>(set: &S) -> u64 {
     for id in (0..set.len()).map(PrimitiveId::new) {
         let primitive = set.get(id);
         let vertices = primitive.vertices();
-        // The numbers are the coordinates of at most three vertices, or of two corners of a box; the last number says
-        // which.
-        let (mut numbers, mut count) = ([0.0; 10], 0);
+        // The numbers are those of at most three vertices, or of two corners of a box; the last one says which.
+        let mut numbers = [0.0; 10];
         if vertices.is_empty() || vertices.len() > 3 {
             let bounds = primitive.aabb();
-            for corner in [to_f64_array(&bounds.min), to_f64_array(&bounds.max)] {
-                numbers[3 * count..][..3].copy_from_slice(&corner);
-                count += 1;
-            }
+            numbers[..3].copy_from_slice(&to_f64_array(&bounds.min));
+            numbers[3..6].copy_from_slice(&to_f64_array(&bounds.max));
             numbers[9] = -1.0;
             for corner in &corners {
                 let point: [f64; 3] = primitive.project(corner).point.coords.into();
                 hasher.write(bytemuck::bytes_of(&point));
             }
         } else {
-            for vertex in vertices {
-                numbers[3 * count..][..3].copy_from_slice(&to_f64_array(vertex));
-                count += 1;
+            for (to, vertex) in numbers.as_chunks_mut().0.iter_mut().zip(vertices) {
+                *to = to_f64_array(vertex);
             }
-            numbers[9] = count as f64;
+            numbers[9] = vertices.len() as f64;
         }
         hasher.write(bytemuck::bytes_of(&numbers));
     }

@@ -3,27 +3,14 @@
 use super::error::LoadError;
 use super::section::{ALIGNMENT, Entry, Header, MAGIC, MAX_NAME_BYTES, VERSION, checksum};
 use bytemuck::{NoUninit, Zeroable};
+use std::borrow::Cow;
 use std::io::{self, Write};
 
 /// A collector of the sections of a file. Large arrays are borrowed until the file is written.
 #[derive(Default)]
 pub struct Writer<'a> {
-    /// The name and the bytes of each section, and the bytes of one of its elements.
-    sections: Vec<(String, Bytes<'a>, usize)>,
-}
-
-enum Bytes<'a> {
-    Borrowed(&'a [u8]),
-    Owned(Vec<u8>),
-}
-
-impl Bytes<'_> {
-    fn get(&self) -> &[u8] {
-        match self {
-            Self::Borrowed(bytes) => bytes,
-            Self::Owned(bytes) => bytes,
-        }
-    }
+    /// The name, the bytes and the bytes of an element of each section.
+    sections: Vec<(String, Cow<'a, [u8]>, usize)>,
 }
 
 impl<'a> Writer<'a> {
@@ -32,7 +19,7 @@ impl<'a> Writer<'a> {
     /// # Panics
     /// It panics if the name is longer, or if there is already a section with this name.
     pub fn put<T: NoUninit>(&mut self, name: &str, elements: &'a [T]) {
-        self.add(name, Bytes::Borrowed(bytemuck::cast_slice(elements)), size_of::<T>());
+        self.add(name, Cow::Borrowed(bytemuck::cast_slice(elements)), size_of::<T>());
     }
 
     /// Adds a section with a copy of an array. Its name has at most 32 bytes.
@@ -40,7 +27,7 @@ impl<'a> Writer<'a> {
     /// # Panics
     /// It panics if the name is longer, or if there is already a section with this name.
     pub fn put_copy<T: NoUninit>(&mut self, name: &str, elements: &[T]) {
-        self.add(name, Bytes::Owned(bytemuck::cast_slice(elements).to_vec()), size_of::<T>());
+        self.add(name, Cow::Owned(bytemuck::cast_slice(elements).to_vec()), size_of::<T>());
     }
 
     /// Returns whether there is a section with this name.
@@ -49,7 +36,7 @@ impl<'a> Writer<'a> {
         self.sections.iter().any(|section| section.0 == name)
     }
 
-    fn add(&mut self, name: &str, bytes: Bytes<'a>, size: usize) {
+    fn add(&mut self, name: &str, bytes: Cow<'a, [u8]>, size: usize) {
         assert!(
             name.len() <= MAX_NAME_BYTES && !self.has(name),
             "the section {name} is there already, or its name too long"
@@ -71,7 +58,6 @@ impl<'a> Writer<'a> {
         let mut end = ALIGNMENT * (1 + self.sections.len());
         let mut table = Vec::with_capacity(self.sections.len());
         for (name, bytes, size) in &self.sections {
-            let bytes = bytes.get();
             let mut entry =
                 Entry { size: *size as u64, checksum: checksum(bytes), offset: end as u64, ..Entry::zeroed() };
             entry.name[..name.len()].copy_from_slice(name.as_bytes());
@@ -104,7 +90,6 @@ impl<'a> Writer<'a> {
         writer.write_all(bytemuck::bytes_of(&header))?;
         writer.write_all(table)?;
         for (_, bytes, _) in &self.sections {
-            let bytes = bytes.get();
             writer.write_all(bytes)?;
             writer.write_all(&[0; ALIGNMENT][..bytes.len().next_multiple_of(ALIGNMENT) - bytes.len()])?;
         }

@@ -109,7 +109,7 @@ const UNUSED: [f32; 2 * BLOCK_WIDTH] = {
 };
 
 /// A query point in the forms that blocks need.
-#[derive(Clone, Copy)]
+#[derive(Clone, Copy, Default)]
 pub(crate) struct BlockQuery {
     /// The point in the frame of the scene, rounded to f32 with a bound on the error.
     pub(crate) rounded: Rounded,
@@ -289,10 +289,6 @@ impl Block {
 }
 
 impl BlockQuery {
-    /// A placeholder: a query at the origin of the frame.
-    pub(crate) const NOWHERE: Self =
-        Self { rounded: Rounded { low: [0.0; 3], high: [0.0; 3] }, local: [0.0; 3], cells: [0.0; 3] };
-
     /// Returns the position of the query point in its cell of a level, from 0 to 1 on each axis.
     #[inline(always)]
     #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "fewer than 2^30 cells")]

@@ -20,7 +20,7 @@ use p2m_bvh::engine::interleaved::{InterleavedSearch, PacketVisit, SEARCHES};
 use p2m_core::engine::simd::{EightLanes, InstructionSet, lane_of_key, value_of_key};
 
 /// The position of a search in its list.
-#[derive(Clone, Copy)]
+#[derive(Clone, Copy, Default)]
 struct Cursor {
     search: u32,
     /// The number of the block that is searched, and of the next one.
@@ -44,26 +44,13 @@ pub(crate) struct SearchInterleaved<'a, 'b, P> {
 }
 
 /// The lists that several queries search. It is large, so a batch makes one and uses it for all of its queries.
+#[derive(Default)]
 pub(crate) struct InterleavedLists {
     cursors: [Cursor; SEARCHES],
     len: usize,
 }
 
 impl InterleavedLists {
-    /// Creates the state without lists.
-    pub(crate) fn new() -> Self {
-        let none = Cursor {
-            search: 0,
-            block: 0,
-            next: 0,
-            following: 0,
-            keys: [0; BLOCK_WIDTH],
-            left: 0,
-            query: BlockQuery::NOWHERE,
-        };
-        Self { cursors: [none; SEARCHES], len: 0 }
-    }
-
     /// Removes all lists.
     #[inline(always)]
     pub(crate) fn clear(&mut self) {

@@ -1,7 +1,7 @@
 //! The budgets of a refinement, and how far it has come.
 
 use crate::progress::{BuildStage, Progress};
-use std::ops::{Add, AddAssign, Sub, SubAssign};
+use std::ops::{Add, AddAssign, Sub};
 use std::sync::atomic::{AtomicU64, Ordering};
 
 /// The least number of primitives that budgets are computed for. Smaller scenes have the budgets of a scene with this
@@ -59,12 +59,6 @@ impl Sub for Spent {
 impl AddAssign for Spent {
     fn add_assign(&mut self, other: Self) {
         *self = *self + other;
-    }
-}
-
-impl SubAssign for Spent {
-    fn sub_assign(&mut self, other: Self) {
-        *self = *self - other;
     }
 }
 

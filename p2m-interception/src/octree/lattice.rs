@@ -112,6 +112,7 @@ pub(crate) struct KnownDistances<'a> {
 }
 
 /// The memory of a split, which is used again for each one.
+#[derive(Default)]
 pub(crate) struct Lattice {
     /// For each candidate, lower bounds on the squared distances from the lattice to its box, in squared sides of the
     /// cell.
@@ -126,19 +127,6 @@ pub(crate) struct Lattice {
     pub(crate) lanes: Vec<[u16; 8]>,
     /// The points of a packet.
     locals: Locals,
-}
-
-impl Default for Lattice {
-    fn default() -> Self {
-        Self {
-            squares: Vec::new(),
-            few_squares: [[0.0; WIDTH]; NEAREST_BOX_COUNT],
-            few_numbers: [[0; WIDTH]; NEAREST_BOX_COUNT],
-            children: Vec::new(),
-            lanes: Vec::new(),
-            locals: Locals::default(),
-        }
-    }
 }
 
 impl Lattice {

@@ -40,7 +40,7 @@ use p2m_bvh::PacketTree;
 use p2m_core::engine::real::{from_f64_array, to_f64_array};
 use p2m_core::engine::vector::V3;
 use p2m_core::storage::Array;
-use p2m_core::{Best, Isa, PrimitiveId, PrimitiveSet, QueryOptions, Real, StatsCollector};
+use p2m_core::{Best, Isa, PrimitiveId, PrimitiveSet, QueryOptions, Real};
 use rustc_hash::{FxBuildHasher, FxHashMap};
 use std::ops::ControlFlow;
 
@@ -87,9 +87,9 @@ impl Octree {
         let search = |x: V3| {
             // The query is rounded to the scalar of the set, which is harmless: any point of the scene can be a
             // dominator.
-            let mut counting = StatsCollector::<T>::new(Best::new(&QueryOptions::default()));
-            counting.count(|best| tree.search_nearest(set, &from_f64_array(x), best));
-            let StatsCollector { best, nodes, packets, primitives } = counting;
+            let mut best = Best::<T>::new(&QueryOptions::default());
+            tree.search_nearest(set, &from_f64_array(x), &mut best);
+            let [nodes, packets, primitives] = best.counts();
             TreeProbe { nearest: best.nearest_point().unwrap_or([f64::INFINITY; 3]), nodes, packets, primitives }
         };
         let count = tree.packets().1.max(MIN_PRIMITIVES_FOR_BUDGETS) as f64;

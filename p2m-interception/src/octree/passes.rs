@@ -164,7 +164,7 @@ impl Passes {
         let refine = |range: Range<usize>, before: Spent| {
             let mut task = CellTask::new(resolution, before);
             for cell in &cells[range.clone()] {
-                task.account.spent -= cell.reserved();
+                task.account.spent = task.account.spent - cell.reserved();
                 let number = task.add_cell();
                 task.cells[number] = fate_of(refinement, &mut task, cell, Place { number, ..cell.place });
                 task.roots.push(number);

@@ -221,7 +221,7 @@ impl SimdKernel for FloodPacket<'_, '_> {
         let Self { flood, packet, state: FloodState { reached, found }, max_tested } = self;
         reached.clear();
         found.clear();
-        if flood.tree.leaves.is_continuation(packet) {
+        if packet > 0 && flood.tree.leaves.packets[packet - 1].is_continued() {
             // The primitives of a continuation can only tie with primitives of an earlier packet, which have lower ids.
             return;
         }

@@ -2,7 +2,7 @@
 
 use nalgebra::Point3;
 use p2m_core::storage::{SavedFile, Writer};
-use p2m_core::{BruteForce, BuildIndex, ClosestPoint, Element, Soup, StatsCollector};
+use p2m_core::{BruteForce, BuildIndex, ClosestPoint, Element, IndexStats, Soup};
 use p2m_interception::{
     BuildListFilter, BuildLocator, KdTreeLocator, ListFilter, Locator, LocatorSites, P2mIndex, P2mOptions, Region,
     RegionTree,
@@ -79,7 +79,7 @@ fn answers(index: &impl ClosestPoint<f64>, queries: &[Point3<f64>]) -> [Answers;
 
 /// Returns the number of packets that all queries visit.
 fn packets(index: &Index<'_>, queries: &[Point3<f64>]) -> usize {
-    StatsCollector::count_queries(queries, |query, counting| index.visit(query, counting))[1]
+    index.count_queries(queries)[1]
 }
 
 #[test]
@@ -212,9 +212,7 @@ fn walks_from_the_kd_tree_are_short_and_end_at_the_same_site() {
         for query in &queries {
             assert_eq!(kd_tree.partition().locate_site(query), grid.partition().locate_site(query), "{query:?}");
         }
-        let visited = |index: &Index<'_>| {
-            StatsCollector::count_queries(&queries, |query, counting| index.visit(query, counting))[0] as f64
-        };
+        let visited = |index: &Index<'_>| index.count_queries(&queries)[0] as f64;
         let (from_kd_tree, from_grid) = (visited(&kd_tree), visited(&grid));
         assert!(from_kd_tree < 2.0 * from_grid, "{scale}: {from_kd_tree} and {from_grid} sites");
     }

@@ -4,7 +4,7 @@
 
 use nalgebra::{Point3, Vector3};
 use p2m_core::{Aabb, BruteForce, BuildIndex, ClosestPoint, Point, PrimitiveId, PrimitiveSet, Segment, Shape, Soup};
-use p2m_core::{Collector, StatsCollector};
+use p2m_core::{Collector, IndexStats};
 use p2m_core::{Isa, Projection};
 use p2m_interception::{Domain, OctreeReport, RefinementProgress};
 use p2m_interception::{OctreeIndex, OctreeOptions};
@@ -314,7 +314,7 @@ fn lookups_do_little() {
         let centre = nalgebra::center(&bounds.min, &bounds.max);
         let mut point = || centre + Vector3::from_fn(|k, _| rng.random_range(-extent..extent) * size[k]);
         let queries: Vec<_> = (0..1000).map(|_| point()).collect();
-        let sums = StatsCollector::count_queries(&queries, |query, counting| index.visit(query, counting));
+        let sums = index.count_queries(&queries);
         println!("{name}: per 1000 queries {sums:?} nodes, packets, primitives");
         assert!((0..3).all(|i| sums[i] <= limits[i]), "{name}: {sums:?}");
     }

@@ -4,8 +4,8 @@
 
 use crate::agreement;
 use nalgebra::{Point3, Vector3};
+use p2m_core::IndexStats;
 use p2m_core::Projection;
-use p2m_core::StatsCollector;
 use p2m_core::{
     Aabb, BruteForce, BuildIndex, Closest, ClosestPoint, Point, Primitive, PrimitiveSet, Segment, Shape, Soup, Triangle,
 };
@@ -422,7 +422,7 @@ fn lookups_do_little() {
         let centre = nalgebra::center(&bounds.min, &bounds.max);
         let mut shift = || centre + Vector3::from_fn(|k, _| rng.random_range(-extent..extent) * size[k]);
         let queries: Vec<_> = (0..1000).map(|_| shift()).collect();
-        let sums = StatsCollector::count_queries(&queries, |query, counting| index.visit(query, counting));
+        let sums = index.count_queries(&queries);
         println!("{name}: per 1000 queries {sums:?} nodes and sites, packets, primitives");
         assert!((0..3).all(|i| sums[i] <= limits[i]), "{name}: {sums:?}");
     }

@@ -5,7 +5,7 @@
 #![allow(clippy::float_cmp, reason = "bitwise equality is what is tested")]
 
 use nalgebra::Point3;
-use p2m::core::{Best, IndexStats, StatsCollector};
+use p2m::core::{Best, IndexStats};
 use p2m::scene::generate::Kind;
 use p2m::{
     AabbTree, BruteForce, CertifiedQuery, Closest, ClosestPoint, KdopTree, OctreeIndex, P2mIndex, Primitive,
@@ -229,13 +229,14 @@ fn budgets_are_kept_and_pay() {
             let mut error = 0.0;
             for query in &queries {
                 let options = QueryOptions::default().with_max_visits(budget);
-                let mut counting = StatsCollector::new(Best::new(&options));
-                index.inspect(query, &mut counting);
-                let visits = counting.nodes + counting.packets;
+                let mut best = Best::new(&options);
+                index.search(query, &mut best);
+                let [nodes, packets, primitives] = best.counts();
+                let visits = nodes + packets;
                 // The path leads from the root to a packet, or over the sites to a cell.
                 assert!(visits <= budget as usize + 20, "{name}: {visits} visits for {budget}");
-                least = [least[0].min(visits), least[1].min(counting.primitives)];
-                let found = counting.best.finish().expect("found");
+                least = [least[0].min(visits), least[1].min(primitives)];
+                let found = best.finish().expect("found");
                 error += found.distance / index.closest_point(query).expect("found").distance - 1.0;
             }
             errors.push(error / queries.len() as f64);

@@ -15,7 +15,7 @@ use clap::Args;
 use nalgebra::Point3;
 use p2m_backends::{AnyIndex, BackendEntry, BuildSettings};
 use p2m_cli::harness::Table;
-use p2m_core::{PrimitiveSet, Soup, StatsCollector};
+use p2m_core::{PrimitiveSet, Soup};
 use p2m_mixed::generate::{TorusKnot, torus_knot};
 use p2m_testkit::queries::QuerySet;
 use p2m_testkit::rng;
@@ -181,7 +181,7 @@ fn measure_set(index: &dyn AnyIndex<f64>, queries: &[Point3<f64>], rounds: usize
     let scores = contest::measure(queries, &mut contest::single_and_batch(index), rounds, &None);
     let [single, batch] = [&scores[0], &scores[1]];
     let counted = &queries[..COUNTED.min(queries.len())];
-    let visits = StatsCollector::count_queries(counted, |query, stats| index.inspect(query, stats));
+    let visits = index.count_queries(counted);
     let sums = [checksum_of_closest(&single.answers), checksum_of_closest(&batch.answers)];
     SetCosts {
         single: single.seconds.median * 1e9,
