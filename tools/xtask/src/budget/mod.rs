@@ -4,7 +4,7 @@
 mod circles;
 mod source;
 
-use crate::{Outcome, cargo, make_folder, output, read, target, text, write};
+use crate::{Outcome, command, make_folder, output, read, start, target, write};
 use source::{RUST, Source};
 use std::collections::BTreeMap;
 use std::fs;
@@ -94,7 +94,7 @@ fn parse(table: &str) -> Result<Rows, String> {
 
 /// Returns the files of the repository that have code, also new ones.
 fn sources() -> Result<Vec<Source>, String> {
-    let files = output("git", &["ls-files", "--cached", "--others", "--exclude-standard"])?;
+    let files = output(&mut command("git ls-files --cached --others --exclude-standard"))?;
     // Files that are not text have no code, and files that are deleted are still in the list of Git.
     let source = |path: &str| Source::new(path, &fs::read_to_string(path).ok()?);
     Ok(files.lines().filter_map(source).collect())
@@ -125,8 +125,8 @@ fn count_sources(sources: &[Source], rows: &mut Rows) {
 
 /// Returns how many crates a build compiles on Linux.
 fn crates(build: &str) -> Result<usize, String> {
-    let tree = "tree --locked --edges normal,build --target x86_64-unknown-linux-gnu --prefix none --format {p}";
-    let tree = output("cargo", &tree.split(' ').chain(build.split(' ')).collect::<Vec<_>>())?;
+    let tree = "cargo tree --locked --edges normal,build --target x86_64-unknown-linux-gnu --prefix none --format {p}";
+    let tree = output(&mut command(&format!("{tree} {build}")))?;
     let names = tree.lines().map(|line| line.split(' ').take(2).collect::<Vec<_>>());
     Ok(names.collect::<std::collections::BTreeSet<_>>().len())
 }
@@ -136,9 +136,9 @@ fn llvm_lines(name: &str) -> Outcome<usize> {
     let folder = target("llvm");
     let file = folder.join(format!("{name}.ll"));
     make_folder(&folder)?;
-    let build = ["rustc", "--locked", "--release", "--lib", "-p", name, "--target-dir", &text(&folder)];
-    let emit = ["--", "-C", "codegen-units=1", &format!("--emit=llvm-ir={}", text(&file))];
-    cargo(&[&build[..], &emit].concat(), &[])?;
+    let mut rustc = command(&format!("cargo rustc --locked --release --lib -p {name} --target-dir"));
+    rustc.arg(&folder).args(["--", "-C", "codegen-units=1"]).arg(format!("--emit=llvm-ir={}", file.display()));
+    start(&mut rustc)?;
     Ok(read(&file)?.lines().filter(|line| line.starts_with("  ")).count())
 }
 
