@@ -41,11 +41,10 @@ pub(crate) fn run() -> Outcome {
 /// Returns the names of the crates of the workspace whose manifest does not rule out that they are published.
 fn published_crates() -> Result<Vec<String>, String> {
     let mut names = Vec::new();
-    let mut folders = vec![PathBuf::from(".")];
-    for parent in [".", "apps", "bindings"] {
-        folders.extend(entries(parent)?);
-    }
-    for manifest in folders.into_iter().map(|folder| folder.join("Cargo.toml")).filter(|manifest| manifest.is_file()) {
+    let folders = [vec![".".into()], entries(".")?, entries("apps")?, entries("bindings")?].concat();
+    for manifest in
+        folders.iter().map(|folder: &PathBuf| folder.join("Cargo.toml")).filter(|manifest| manifest.is_file())
+    {
         let text = read(&manifest)?;
         if text.lines().all(|line| line.trim() != "publish = false") {
             let name = text.lines().find_map(|line| line.strip_prefix("name = \"")?.strip_suffix('"'));

@@ -4,7 +4,7 @@
 mod circles;
 mod source;
 
-use crate::{Outcome, command, make_folder, output, read, start, target, write};
+use crate::{Outcome, command, fail_if_any, make_folder, output, read, start, target, write};
 use source::{RUST, Source};
 use std::collections::BTreeMap;
 use std::fs;
@@ -48,9 +48,7 @@ pub(crate) fn check(arguments: &[String]) -> Outcome {
     }
     let circles = circles::circles(&sources);
     let (too_large, hints) = compare(&old, &rows);
-    for line in &hints {
-        println!("{line}");
-    }
+    hints.iter().for_each(|line| println!("  {line}"));
     let sum = |of: fn(&Source) -> usize| sources.iter().map(of).sum::<usize>();
     println!("{} lines of code and {} of tests", sum(Source::lines), sum(|source| source.tests));
     if has("--write") {
@@ -58,21 +56,15 @@ pub(crate) fn check(arguments: &[String]) -> Outcome {
         let table = format!("{HEAD}\n{}", lines.collect::<String>());
         write(TABLE, table)?;
     }
-    if !circles.is_empty() {
-        let circles = circles.into_iter().collect::<Vec<_>>().join("\nand\n");
-        return Err(format!("files import each other in a circle:\n{circles}").into());
-    }
-    if too_large.is_empty() || has("--write") {
-        return Ok(());
-    }
+    fail_if_any("files import each other in a circle:", &circles.into_iter().collect::<Vec<_>>())?;
     let how = "make it smaller, or raise the row by `cargo xtask budget --write` and give the reason in the commit";
-    Err(format!("the budget is exceeded:\n{}\n{how}", too_large.join("\n")).into())
+    if has("--write") { Ok(()) } else { fail_if_any(&format!("the budget is exceeded: {how}"), &too_large) }
 }
 
 /// Returns the rows that are exceeded, and those that could be lower by more than one percent.
 fn compare(old: &Rows, new: &Rows) -> (Vec<String>, Vec<String>) {
     let row = |(measure, of): &(String, String), old: usize, new: usize| {
-        format!("  {measure} of {of}: {new}, and the row of {TABLE} has {old}")
+        format!("{measure} of {of}: {new}, and the row of {TABLE} has {old}")
     };
     let value = |rows: &Rows, name| rows.get(name).copied().unwrap_or(0);
     let larger = new.iter().filter(|(name, new)| **new > value(old, name));
