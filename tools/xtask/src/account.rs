@@ -4,9 +4,8 @@
 //! instruction is executed, and addr2line names the functions that were inlined at its address. The first stage in
 //! [`STAGES`] that names one of them has the instruction.
 
-use crate::{Outcome, cargo_command, make_empty_folder, need, output_of, read, target};
+use crate::{Outcome, command, make_empty_folder, need, output, read, target};
 use std::collections::BTreeMap;
-use std::ffi::OsStr;
 use std::path::Path;
 use std::process::Command;
 
@@ -62,13 +61,12 @@ pub(crate) fn run() -> Outcome {
     let folder = target("account/files");
     make_empty_folder(&folder)?;
     let path = |name: &str| folder.join(name);
-    succeed(Command::new(&program).arg(format!("--save-in={}", folder.display())))?;
+    output(Command::new(&program).arg(format!("--save-in={}", folder.display())))?;
     let counts = path("callgrind");
-    succeed(
-        Command::new("valgrind")
-            .args(["--command-line-only=yes", "--tool=callgrind", "--dump-line=no", "--dump-instr=yes"])
-            .args(["--collect-atstart=no", "--toggle-collect=*counted_by_callgrind*"])
-            .arg("--dump-after=*written_by_callgrind*")
+    let valgrind = "valgrind --command-line-only=yes --tool=callgrind --dump-line=no --dump-instr=yes \
+        --collect-atstart=no --toggle-collect=*counted_by_callgrind* --dump-after=*written_by_callgrind*";
+    output(
+        command(valgrind)
             .arg(format!("--callgrind-out-file={}", counts.display()))
             .arg(&program)
             .arg(format!("--measure-in={}", folder.display()))
@@ -95,18 +93,12 @@ pub(crate) fn run() -> Outcome {
 
 /// Compiles the program of tests/instructions with line tables, and returns its path.
 fn build() -> Result<std::path::PathBuf, String> {
-    let test = ["test", "--locked", "--release", "--no-run", "--test", "instructions", "--message-format=json"];
-    let mut cargo = cargo_command(&test);
+    let mut cargo = command("cargo test --locked --release --no-run --test instructions --message-format=json");
     cargo.env("CARGO_PROFILE_RELEASE_DEBUG", "line-tables-only");
     cargo.env("CARGO_TARGET_DIR", target("account"));
-    let messages = succeed(cargo.stderr(std::process::Stdio::inherit()))?;
+    let messages = output(cargo.stderr(std::process::Stdio::inherit()))?;
     let program = messages.split("\"executable\":\"").nth(1).and_then(|rest| rest.split('"').next());
     program.map(Into::into).ok_or_else(|| "cargo names no program".to_owned())
-}
-
-/// Returns the standard output of a command that succeeds.
-fn succeed(command: &mut Command) -> Result<String, String> {
-    output_of(command).map_err(|error| format!("{}: {error}", command.get_program().display()))
 }
 
 /// Returns how often each instruction of the program was executed, by its address, from a file of callgrind. Those of
@@ -154,12 +146,11 @@ fn executed(dump: &str, program: &Path) -> Result<BTreeMap<u64, u64>, String> {
 /// Returns the number of the stage of each instruction.
 fn stages(program: &Path, executed: &BTreeMap<u64, u64>) -> Result<Vec<usize>, String> {
     let addresses = executed.keys().map(|address| format!("{address:#x}"));
-    let program = program.as_os_str();
-    let options = ["--addresses", "--inlines", "--functions", "--demangle", "--exe"].map(OsStr::new);
     // A line of the command has room for so many addresses.
     let mut lines = String::new();
     for some in addresses.collect::<Vec<_>>().chunks(5000) {
-        lines += &succeed(Command::new("addr2line").args(options).arg(program).args(some))?;
+        let options = "addr2line --addresses --inlines --functions --demangle --exe";
+        lines += &output(command(options).arg(program).args(some))?;
     }
     // Each address is followed by the functions that were inlined there, each with its file and line.
     let stage = |text: &str| {

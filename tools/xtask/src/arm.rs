@@ -3,8 +3,8 @@
 //! The compiler is the current one if it has the standard library of the target, and the linker and qemu are those of
 //! the machine. Where any of them is missing, all are packages of Debian.
 
-use crate::debian::{Packages, has_standard_library};
-use crate::{OrSkip, Outcome, debug_program, output, start, target, text};
+use crate::debian::{Packages, cargo_for, has_standard_library};
+use crate::{OrSkip, Outcome, command, debug_program, exists, output, run as run_line, start, target};
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
@@ -17,16 +17,16 @@ const COUNTER_PACKAGES: &str = "qemu-user libcapstone4";
 /// The plugin of qemu that counts instructions.
 const COUNTER: &str = "tools/xtask/src/instructions.c";
 /// The crates whose unit tests compare lanes with numbers, and searches with brute force.
-const CRATES: [&str; 4] = ["p2m-core", "p2m-bvh", "p2m-kdop", "p2m-interception"];
+const CRATES: &str = "-p p2m-core -p p2m-bvh -p p2m-kdop -p p2m-interception";
 /// The tests of the facade that compare all backends with each other, in bits.
 pub(crate) const AGREEMENT: [&str; 6] =
     ["agreement::", "batches::", "determinism::", "pairs::", "registry::", "saved::"];
 /// Commands of the program whose output has to be that of the program for this machine.
-const COMMANDS: [&[&str]; 4] = [
-    &["query", "scenes/knot_and_cables.obj", "--random", "1000", "--quiet"],
-    &["query", "scenes/knot_and_cables.obj", "--random", "1000", "--quiet", "--backend", "p2m"],
-    &["query", "scenes/knot_and_cables.obj", "--random", "1000", "--quiet", "--backend", "octree", "--k-nearest", "3"],
-    &["ray", "scenes/knot_and_cables.obj", "--random", "1000", "--quiet"],
+const COMMANDS: [&str; 4] = [
+    "query scenes/knot_and_cables.obj --random 1000 --quiet",
+    "query scenes/knot_and_cables.obj --random 1000 --quiet --backend p2m",
+    "query scenes/knot_and_cables.obj --random 1000 --quiet --backend octree --k-nearest 3",
+    "ray scenes/knot_and_cables.obj --random 1000 --quiet",
 ];
 
 /// Runs the tests of lanes; with `--all` the unit tests of the search, the agreement of all backends, the program, and
@@ -40,18 +40,17 @@ pub(crate) fn run(arguments: &[String]) -> Outcome {
         return count_instructions(&tools);
     }
     if arguments == ["--all"] {
-        let crates: Vec<&str> = CRATES.iter().flat_map(|name| ["--package", name]).collect();
-        start(tools.cargo(&["test", "--locked"]).args(crates).arg("--lib"))?;
-        start(tools.cargo(&["test", "--locked", "--package", "p2m", "--test", "all", "--"]).args(AGREEMENT))?;
+        start(&mut tools.cargo(&format!("test --locked {CRATES} --lib")))?;
+        start(tools.cargo("test --locked --package p2m --test all").arg("--").args(AGREEMENT))?;
         compare_programs(&tools)?;
-        return start(&mut tools.cargo(&["test", "--locked", "--package", "p2m-testkit", "--test", "checksums"]));
+        return start(&mut tools.cargo("test --locked --package p2m-testkit --test checksums"));
     }
-    start(&mut tools.cargo(&["test", "--locked", "--package", "p2m-core", "--lib", "simd::"]))
+    start(&mut tools.cargo("test --locked --package p2m-core --lib simd::"))
 }
 
 /// Runs commands of the program for ARM, and compares their output with that of the program for this machine.
 fn compare_programs(tools: &Tools) -> Outcome {
-    start(&mut tools.cargo(&["build", "--locked", "--package", "p2m-cli"]))?;
+    start(&mut tools.cargo("build --locked --package p2m-cli"))?;
     let program = target("arm").join(TARGET).join("debug/p2m");
     compare_outputs(|| {
         let mut emulator = Command::new(&tools.qemu);
@@ -63,15 +62,15 @@ fn compare_programs(tools: &Tools) -> Outcome {
 /// Runs commands of the program for another machine, by `program`, and compares their output with that of the program
 /// for this one.
 pub(crate) fn compare_outputs(program: impl Fn() -> Command) -> Outcome {
-    crate::cargo(&["build", "--locked", "--package", "p2m-cli"], &[])?;
-    for command in COMMANDS {
-        let expected = output(&text(debug_program()), command)?;
-        let mut program = program();
-        let found = program.args(command).output().map_err(|error| format!("{program:?}: {error}"))?.stdout;
-        if expected.is_empty() || found != expected.as_bytes() {
-            return Err(format!("p2m {}: other output than on this machine", command.join(" ")).into());
+    run_line("cargo build --locked --package p2m-cli")?;
+    for line in COMMANDS {
+        let words = || line.split(' ');
+        let expected = output(Command::new(debug_program()).args(words()))?;
+        let found = output(program().args(words()))?;
+        if expected.is_empty() || found != expected {
+            return Err(format!("p2m {line}: other output than on this machine").into());
         }
-        println!("p2m {}: the same {} bytes", command.join(" "), found.len());
+        println!("p2m {line}: the same {} bytes", found.len());
     }
     Ok(())
 }
@@ -80,13 +79,11 @@ pub(crate) fn compare_outputs(program: impl Fn() -> Command) -> Outcome {
 fn count_instructions(tools: &Tools) -> Outcome {
     let packages = Packages::rust_and("counter", COUNTER_PACKAGES)?;
     let plugin = target("arm/instructions.so");
-    start(Command::new("cc").args(["-shared", "-fPIC", "-O2", COUNTER, "-o"]).arg(&plugin))?;
+    start(command(&format!("cc -shared -fPIC -O2 {COUNTER} -o")).arg(&plugin))?;
     let qemu = packages.file("usr/bin/qemu-aarch64");
     let libraries = packages.file("usr/lib/x86_64-linux-gnu");
-    let mut cargo = tools.cargo_with_runner(
-        &["test", "--locked", "--package", "p2m", "--test", "instructions"],
-        &[&qemu, Path::new("-plugin"), &plugin],
-    );
+    let runner = [&*qemu, Path::new("-plugin"), &plugin];
+    let mut cargo = tools.cargo_with_runner("test --locked --package p2m --test instructions", &runner);
     // One thread is counted, and qemu finds its libraries.
     cargo.args(["--", "--between-marks"]).env("RAYON_NUM_THREADS", "1").env("LD_LIBRARY_PATH", libraries);
     let counted = cargo.output().map_err(|error| format!("cargo: {error}"))?;
@@ -123,7 +120,7 @@ struct Tools {
 impl Tools {
     fn find() -> Result<Self, String> {
         let [linker, qemu] = ["aarch64-linux-gnu-gcc", "qemu-aarch64-static"];
-        if has_standard_library(TARGET) && [linker, qemu].iter().all(|tool| output(tool, &["--version"]).is_ok()) {
+        if has_standard_library(TARGET) && exists(linker) && exists(qemu) {
             return Ok(Self { packages: None, linker: linker.into(), qemu: qemu.into() });
         }
         let packages = Packages::rust_and("arm", PACKAGES)?;
@@ -132,24 +129,21 @@ impl Tools {
     }
 
     /// Returns a command of cargo for the target, which runs programs by another program.
-    fn cargo_with_runner(&self, arguments: &[&str], runner: &[&Path]) -> Command {
-        let mut cargo = Command::new("cargo");
+    fn cargo_with_runner(&self, line: &str, runner: &[&Path]) -> Command {
+        let mut cargo = cargo_for(TARGET, self.packages.as_ref(), "", line);
         let setting = |name: &str, value: String| format!("--config=target.{TARGET}.{name}={value}");
         cargo.arg(setting("linker", format!("{:?}", self.linker))).arg(setting("runner", format!("{runner:?}")));
         if let Some(packages) = &self.packages {
-            packages.set_compiler(&mut cargo);
             let root = format!("-Clink-arg=--sysroot={}", packages.folder().display());
             cargo.arg(setting("rustflags", format!("[{root:?}]")));
         }
-        // Arguments after two dashes are those of tests.
-        cargo.arg(arguments[0]).args(["--target", TARGET]).args(&arguments[1..]);
         cargo.env("CARGO_TARGET_DIR", target("arm")).envs(self.libraries());
         cargo
     }
 
     /// Returns a command of cargo for the target, which runs programs by qemu.
-    fn cargo(&self, arguments: &[&str]) -> Command {
-        self.cargo_with_runner(arguments, &[&self.qemu])
+    fn cargo(&self, line: &str) -> Command {
+        self.cargo_with_runner(line, &[&self.qemu])
     }
 
     /// Returns the variable that names the folder in which qemu finds libraries.

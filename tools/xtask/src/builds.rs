@@ -1,8 +1,7 @@
 //! Checks the builds that `p2m info` and `p2m advise` name: their numbers of crates, and that they work.
 
-use crate::{Outcome, make_folder, output, read, start, target, write};
+use crate::{Outcome, command, compare_or_write, make_folder, output, read, start, target, write};
 use std::collections::BTreeSet;
-use std::process::Command;
 
 /// The table of the numbers of crates, in which the program looks builds up.
 const TABLE: &str = "apps/cli/src/scene/crates.csv";
@@ -16,24 +15,17 @@ pub(crate) fn check_crates() -> Outcome {
         counted += &if i < 2 { line.to_owned() } else { row(line)? };
         counted.push('\n');
     }
-    if std::env::var_os("P2M_BLESS").is_some() {
-        return write(TABLE, counted);
-    }
-    if counted != table {
-        return Err(format!("{TABLE} is out of date: P2M_BLESS=1 cargo xtask promises").into());
-    }
-    Ok(())
+    let is_blessed = std::env::var_os("P2M_BLESS").is_some();
+    compare_or_write(TABLE, &counted, "P2M_BLESS=1 cargo xtask promises", is_blessed)
 }
 
 /// Returns the row of the features of a row, with the number of crates for one platform.
 fn row(line: &str) -> Result<String, String> {
     let (features, _) = line.split_once(',').ok_or_else(|| format!("{TABLE}: {line}"))?;
-    let mut arguments = vec!["tree", "--locked", "--package", "p2m", "--edges", "normal,build", "--prefix", "none"];
-    arguments.extend(["--no-dedupe", "--target", "x86_64-unknown-linux-gnu", "--features", features]);
-    if !features.starts_with("default") {
-        arguments.push("--no-default-features");
-    }
-    let tree = output("cargo", &arguments)?;
+    let all = if features.starts_with("default") { "" } else { "--no-default-features" };
+    let tree = "cargo tree --locked --package p2m --edges normal,build --prefix none --no-dedupe \
+        --target x86_64-unknown-linux-gnu --features";
+    let tree = output(&mut command(&format!("{tree} {features} {all}")))?;
     Ok(format!("{features},{}", tree.lines().collect::<BTreeSet<_>>().len()))
 }
 
@@ -70,8 +62,7 @@ pub(crate) fn run_programs() -> Outcome {
         let lock = read("Cargo.lock")?;
         let files = [("Cargo.toml", &*manifest), ("src/main.rs", &program), scene, ("Cargo.lock", &lock)];
         files.iter().try_for_each(|(name, text)| write(folder.join(name), text))?;
-        let arguments = ["run", "--offline", "--quiet", "--target-dir", "target"];
-        start(Command::new("cargo").args(arguments).current_dir(&folder))?;
+        start(command("cargo run --offline --quiet --target-dir target").current_dir(&folder))?;
     }
     Ok(())
 }

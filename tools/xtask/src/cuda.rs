@@ -1,6 +1,7 @@
 //! The kernels for cards of NVIDIA: their PTX is in the repository, so that nobody needs a toolkit.
 
-use crate::{OrSkip, Outcome, compare_or_write, output, read, target, text, tools};
+use crate::{OrSkip, Outcome, compare_or_write, output, read, target, tools};
+use std::process::Command;
 
 const SCRIPT: &str = "bindings/cuda/kernels/compile.py";
 const PTX: &str = "bindings/cuda/kernels/kernels.ptx";
@@ -12,6 +13,6 @@ const NVRTC: &str = "nvidia-cuda-nvrtc-cu12==12.4.127";
 pub(crate) fn run(arguments: &[String]) -> Outcome {
     let python = tools::python("cuda-env", &[NVRTC]).or_skip(&format!("{NVRTC} cannot be installed"))?;
     let compiled = target("kernels.ptx");
-    output(&text(python), &[SCRIPT, &text(&compiled)])?;
+    output(Command::new(python).arg(SCRIPT).arg(&compiled))?;
     compare_or_write(PTX, &read(compiled)?, "cargo xtask cuda --build", !arguments.is_empty())
 }

@@ -2,7 +2,7 @@
 //! nothing is installed.
 
 use crate::promises::{numbers, promised_version};
-use crate::{entries, failed, output, output_of, target, text};
+use crate::{command, entries, failed, output, target};
 use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::Command;
@@ -44,17 +44,6 @@ impl Packages {
         &self.0
     }
 
-    /// Lets a command of cargo use the unpacked compiler.
-    pub(crate) fn set_compiler(&self, cargo: &mut Command) {
-        cargo.env("RUSTC", self.file("usr/bin/rustc")).env("LD_LIBRARY_PATH", self.file("usr/lib/x86_64-linux-gnu"));
-    }
-
-    /// Lets a command of cargo compile these crates of the standard library, because the compiler comes without them.
-    pub(crate) fn compile_standard_library(cargo: &mut Command, crates: &str) {
-        // This is an unstable option, which the variable allows.
-        cargo.arg(format!("-Zbuild-std={crates}")).env("RUSTC_BOOTSTRAP", "1");
-    }
-
     /// Unpacks a group of packages, if that has not been done. An empty file then says so.
     fn unpack(&self, group: &str, names: impl Fn() -> Result<String, String>) -> Result<(), String> {
         let done = self.0.join(format!("{group}.unpacked"));
@@ -68,11 +57,11 @@ impl Packages {
         for folder in [&downloads, &self.0.join("lists/partial")] {
             fs::create_dir_all(folder).map_err(|error| failed(folder, error))?;
         }
-        output_of(self.apt("apt-get").args(["-qq", "update"]))?;
+        output(self.apt("apt-get").args(["-qq", "update"]))?;
         println!("\n== apt-get download {}", names()?);
-        output_of(self.apt("apt-get").args(["-qq", "download"]).args(names()?.split(' ')).current_dir(&downloads))?;
+        output(self.apt("apt-get").args(["-qq", "download"]).args(names()?.split(' ')).current_dir(&downloads))?;
         for package in entries(&downloads)? {
-            output("dpkg", &["-x", &text(package), &text(&self.0)])?;
+            output(command("dpkg -x").arg(package).arg(&self.0))?;
         }
         fs::remove_dir_all(&downloads).and_then(|()| fs::write(&done, "")).map_err(|error| failed(&done, error))
     }
@@ -103,7 +92,7 @@ impl Packages {
 
     /// Returns the package that a package depends on and whose name has a prefix.
     fn dependency(&self, package: &str, prefix: &str) -> Result<String, String> {
-        let depends = output_of(self.apt("apt-cache").args(["depends", package]))?;
+        let depends = output(self.apt("apt-cache").args(["depends", package]))?;
         let mut names = depends.lines().filter_map(|line| line.trim().strip_prefix("Depends: "));
         let name = names.find(|name| name.starts_with(prefix));
         name.map(str::to_owned).ok_or_else(|| format!("the package {package} depends on no {prefix}*"))
@@ -112,6 +101,21 @@ impl Packages {
 
 /// Returns whether the current compiler has the standard library of a target.
 pub(crate) fn has_standard_library(target: &str) -> bool {
-    output("rustc", &["--print", "target-libdir", "--target", target])
+    output(&mut command(&format!("rustc --print target-libdir --target {target}")))
         .is_ok_and(|folder| Path::new(folder.trim()).is_dir())
+}
+
+/// Returns a command of cargo for a target, with the compiler of the packages if they are needed. That compiles these
+/// crates of the standard library if it comes without them.
+pub(crate) fn cargo_for(target: &str, packages: Option<&Packages>, standard_library: &str, line: &str) -> Command {
+    let mut cargo = command(&format!("cargo {line} --target {target}"));
+    if let Some(packages) = packages {
+        cargo.env("RUSTC", packages.file("usr/bin/rustc"));
+        cargo.env("LD_LIBRARY_PATH", packages.file("usr/lib/x86_64-linux-gnu"));
+        if !standard_library.is_empty() {
+            // This is an unstable option, which the variable allows.
+            cargo.arg(format!("-Zbuild-std={standard_library}")).env("RUSTC_BOOTSTRAP", "1");
+        }
+    }
+    cargo
 }

@@ -1,6 +1,6 @@
 //! Runs all tests with all of their cases, and counts the cases.
 
-use crate::{Outcome, cargo_command, make_folder, read, start, target, write};
+use crate::{Outcome, command, make_folder, read, start, target, write};
 use std::collections::BTreeMap;
 use std::env;
 use std::path::Path;
@@ -12,7 +12,7 @@ pub(crate) fn run(filter: &[String]) -> Outcome {
     // Tests append to the file, so it starts empty.
     make_folder(target(""))?;
     write(&log, "")?;
-    let mut tests = cargo_command(&["test", "--locked", "--workspace", "--profile", "deep", "--no-fail-fast", "--"]);
+    let mut tests = command("cargo test --locked --workspace --profile deep --no-fail-fast --");
     tests.args(filter).arg("--include-ignored").env("P2M_CASES", &log);
     if env::var_os("P2M_DEEP").is_none() {
         tests.env("P2M_DEEP", "1");

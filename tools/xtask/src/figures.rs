@@ -14,12 +14,14 @@
 //! the comment `<!--cited-->`, or `<!--exact-->` for sizes and limits that are not measured.
 
 use crate::links::has_extension;
-use crate::{Outcome, entries, files_below, read, write};
+use crate::{Outcome, entries, fail_if_any, files_below, read, write};
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
 /// The folder of data.
 const FOLDER: &str = "docs/measurements";
+/// Pages whose figures need no data.
+const FREE: [&str; 4] = ["docs/measurements", "docs/decisions", "docs/proofs", "docs/SUMMARY.md"];
 /// The data of tables, and of figures that name no file.
 const SPEED: &str = "speed";
 /// The columns of tables after the name of the index.
@@ -49,10 +51,7 @@ pub(crate) fn run(rest: &[String]) -> Outcome {
     for path in documents.filter(|path| has_extension(path, "md")) {
         let old = read(&path)?;
         let new = data.renew(&old).map_err(|why| format!("{}: {why}", path.display()))?;
-        let is_free = ["docs/measurements", "docs/decisions", "docs/proofs", "docs/SUMMARY.md"]
-            .iter()
-            .any(|f| path.starts_with(f));
-        if !is_free {
+        if !FREE.iter().any(|free| path.starts_with(free)) {
             wrong.extend(unknown(&new).into_iter().map(|line| format!("{}:{line}", path.display())));
         }
         if new != old && is_check {
@@ -61,7 +60,7 @@ pub(crate) fn run(rest: &[String]) -> Outcome {
             write(&path, new)?;
         }
     }
-    if wrong.is_empty() { Ok(()) } else { Err(format!("figures without data:\n{}", wrong.join("\n")).into()) }
+    fail_if_any("figures without data", &wrong)
 }
 
 /// The files of data.
@@ -142,16 +141,16 @@ impl Data {
             let (directive, after) = after.split_once(" -->").ok_or("a comment has no end")?;
             new += &format!("{before}<!-- {directive} -->");
             rest = after;
-            if let Some(figure) = directive.strip_prefix("= ") {
-                let (_, after) = rest.split_once("<!-- . -->").ok_or_else(|| format!("nothing ends {directive}"))?;
-                new += &format!("{}<!-- . -->", self.figure(figure).map_err(|why| format!("{directive}: {why}"))?);
-                rest = after;
+            let (made, end) = if let Some(figure) = directive.strip_prefix("= ") {
+                (self.figure(figure), "<!-- . -->")
             } else if let Some(table) = directive.strip_prefix("table ") {
-                let (_, after) = rest.split_once("<!-- end -->").ok_or_else(|| format!("nothing ends {directive}"))?;
-                new +=
-                    &format!("\n\n{}\n\n<!-- end -->", self.table(table).map_err(|why| format!("{directive}: {why}"))?);
-                rest = after;
-            }
+                (self.table(table).map(|table| format!("\n\n{table}\n\n")), "<!-- end -->")
+            } else {
+                continue;
+            };
+            let (_, after) = rest.split_once(end).ok_or_else(|| format!("nothing ends {directive}"))?;
+            new += &(made.map_err(|why| format!("{directive}: {why}"))? + end);
+            rest = after;
         }
         Ok(new + rest)
     }
@@ -230,11 +229,8 @@ fn unknown(document: &str) -> Vec<String> {
             if !is_code && !is_table {
                 paragraph = format!("{paragraph} {line}");
             }
-        } else if let Some(figure) = figure(&paragraph) {
+        } else if let Some(figure) = figure(&std::mem::take(&mut paragraph)) {
             found.push(format!("{number}: {figure}"));
-            paragraph.clear();
-        } else {
-            paragraph.clear();
         }
         is_table &= !is_end;
     }

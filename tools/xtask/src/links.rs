@@ -1,6 +1,6 @@
 //! The links of the documents: where they are in a text, and whether they lead anywhere.
 
-use crate::{Outcome, output, read};
+use crate::{Outcome, command, fail_if_any, output, read};
 use std::collections::HashMap;
 use std::fs;
 use std::ops::Range;
@@ -12,8 +12,7 @@ pub(crate) const REPOSITORY_FILES: &str = "https://github.com/p2m-rs/p2m/blob/ma
 /// Checks that every relative link and every link to a file of the repository leads to a file, and to a heading of it
 /// if it names one. Also checks that the site has every document, and the tests every page of the guide.
 pub(crate) fn check() -> Outcome {
-    let faults = faults(Path::new("."))?;
-    if faults.is_empty() { Ok(()) } else { Err(format!("dead links\n  {}", faults.join("\n  ")).into()) }
+    fail_if_any("dead links", &faults(Path::new("."))?)
 }
 
 /// Returns what is wrong with the links of the repository.
@@ -57,8 +56,7 @@ fn faults(root: &Path) -> Result<Vec<String>, String> {
 
 /// Returns the files of the repository that can have links, without inputs that once failed.
 fn list_files(root: &Path) -> Result<Vec<PathBuf>, String> {
-    let list = ["-C", &root.to_string_lossy(), "ls-files", "--cached", "--others", "--exclude-standard"];
-    let listed = output("git", &list)?;
+    let listed = output(command("git ls-files --cached --others --exclude-standard").current_dir(root))?;
     let files = listed.lines().map(|path| root.join(path)).filter(|path| path.is_file() && !path.is_symlink());
     let has_links = |path: &PathBuf| ["md", "rs", "toml", "py"].iter().any(|extension| has_extension(path, extension));
     Ok(files.filter(|path| has_links(path) && !path.components().any(|part| part.as_os_str() == "crashes")).collect())

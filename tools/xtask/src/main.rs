@@ -25,6 +25,7 @@ mod tools;
 mod wasm;
 mod workflows;
 
+use std::ffi::OsString;
 use std::fs;
 use std::io::Write as _;
 use std::path::{Path, PathBuf};
@@ -76,14 +77,12 @@ ci                              Run everything that a change has to pass";
 /// Runs a task. What cannot be checked on this machine is skipped with a message.
 fn run_task(name: &str, rest: &[String]) -> Outcome {
     match name {
-        "quick" => cargo(&["test", "--locked", "--package", "p2m", "--test", "all", "--"], rest),
-        "test" => cargo(&["test", "--locked", "--workspace"], rest),
+        "quick" => start(command("cargo test --locked --package p2m --test all --").args(rest)),
+        "test" => start(command("cargo test --locked --workspace").args(rest)),
         "deep" => deep::run(rest),
         "lint" => lint(),
         "budget" => budget::check(rest),
-        "docs" => {
-            start(cargo_command(&["doc", "--locked", "--workspace", "--no-deps"]).env("RUSTDOCFLAGS", "-D warnings"))
-        }
+        "docs" => start(command("cargo doc --locked --workspace --no-deps").env("RUSTDOCFLAGS", "-D warnings")),
         "figures" => figures::run(rest),
         "site" => site::build(),
         "promises" => promises::check(rest),
@@ -98,10 +97,10 @@ fn run_task(name: &str, rest: &[String]) -> Outcome {
         "c" => c::check(rest),
         "pages" => pages::run(),
         "js" => pages::package(),
-        "fuzz" => run("tools/fuzz/run", if rest.is_empty() { &["60"] } else { &[] }, rest),
+        "fuzz" => start(command(if rest.is_empty() { "tools/fuzz/run 60" } else { "tools/fuzz/run" }).args(rest)),
         "account" => account::run(),
         "memory" => memory::run(),
-        "ci" => run(".ci/run", &[], rest),
+        "ci" => start(command(".ci/run").args(rest)),
         _ => Err(format!("there is no task {name}\n\n{TASKS}").into()),
     }
 }
@@ -140,13 +139,11 @@ fn check_arguments(name: &str, rest: &[String]) -> Outcome {
 
 /// Runs clippy: all lints for libraries and programs, while tests may compare floats exactly, cast, and panic.
 fn lint() -> Outcome {
-    cargo(&["fmt", "--all", "--check"], &[])?;
-    let clippy = ["clippy", "--locked", "--workspace", "--features", "p2m-cli/cuda,p2m-python/cuda"];
-    let denied = ["--", "-D", "warnings"];
-    let allowed = ["-A", "clippy::float_cmp", "-A", "clippy::cast_possible_truncation"];
-    cargo(&[&clippy[..], &["--lib", "--bins"], &denied].concat(), &[])?;
-    let tests = ["--tests", "--examples"];
-    cargo(&[&clippy[..], &tests, &denied, &allowed, &["-A", "clippy::missing_panics_doc"]].concat(), &[])
+    run("cargo fmt --all --check")?;
+    let clippy = "cargo clippy --locked --workspace --features p2m-cli/cuda,p2m-python/cuda";
+    run(&format!("{clippy} --lib --bins -- -D warnings"))?;
+    let allowed = "-A clippy::float_cmp -A clippy::cast_possible_truncation -A clippy::missing_panics_doc";
+    run(&format!("{clippy} --tests --examples -- -D warnings {allowed}"))
 }
 
 /// Says why a check is skipped. It is an error where `P2M_REQUIRE_TOOLS` is set, as in hosted checks.
@@ -180,7 +177,12 @@ impl<T> OrSkip<T> for Result<T, String> {
 
 /// Skips the rest of a task where a program is missing.
 fn need(program: &str) -> Outcome {
-    output(program, &["--version"]).map(drop).or_skip(&format!("there is no program '{program}'"))
+    output(Command::new(program).arg("--version")).map(drop).or_skip(&format!("there is no program '{program}'"))
+}
+
+/// Returns whether there is a program.
+fn exists(program: &str) -> bool {
+    need(program).is_ok()
 }
 
 /// Returns the absolute path of the folder for what is compiled and for files of tasks, or of something in it.
@@ -197,23 +199,21 @@ fn debug_program() -> PathBuf {
 /// Compiles what the tests of other languages need: libraries, examples and the program. The profile and the features are
 /// about those of `cargo test --workspace`, so little is compiled after it, and nothing after another of these tasks.
 fn build_for_tests() -> Outcome {
-    let build = ["build", "--profile", "test", "--locked", "--workspace", "--lib", "--examples", "--bin", "p2m"];
-    cargo(&[&build[..], &["--features", "p2m-python/cuda"]].concat(), &[])
+    let what = "--workspace --lib --examples --bin p2m --features p2m-python/cuda";
+    run(&format!("cargo build --profile test --locked {what}"))
 }
 
-fn cargo_command(arguments: &[&str]) -> Command {
-    let mut command = Command::new("cargo");
-    command.args(arguments);
+/// Returns the command of a line, whose words are separated by spaces.
+fn command(line: &str) -> Command {
+    let mut words = line.split_whitespace();
+    let mut command = Command::new(words.next().unwrap_or_default());
+    command.args(words);
     command
 }
 
-/// Runs cargo with arguments, followed by the remaining arguments of the task.
-fn cargo(arguments: &[&str], rest: &[String]) -> Outcome {
-    run("cargo", arguments, rest)
-}
-
-fn run(program: &str, arguments: &[&str], rest: &[String]) -> Outcome {
-    start(Command::new(program).args(arguments).args(rest))
+/// Runs the command of a line.
+fn run(line: &str) -> Outcome {
+    start(&mut command(line))
 }
 
 /// Prints a command, runs it and waits for its end.
@@ -227,16 +227,11 @@ fn start(command: &mut Command) -> Outcome {
 }
 
 /// Returns the standard output of a command that succeeds.
-fn output(program: &str, arguments: &[&str]) -> Result<String, String> {
-    let line = format!("{program} {}", arguments.join(" "));
-    output_of(Command::new(program).args(arguments)).map_err(|error| format!("{line}: {error}"))
-}
-
-/// Returns the standard output of a command that succeeds. The error does not name the command.
-fn output_of(command: &mut Command) -> Result<String, String> {
-    let output = command.output().map_err(|error| error.to_string())?;
+fn output(command: &mut Command) -> Result<String, String> {
+    let program = command.get_program().display().to_string();
+    let output = command.output().map_err(|error| format!("{program}: {error}"))?;
     if !output.status.success() {
-        return Err(String::from_utf8_lossy(&output.stderr).trim().to_owned());
+        return Err(format!("{program}: {}", String::from_utf8_lossy(&output.stderr).trim()));
     }
     Ok(String::from_utf8_lossy(&output.stdout).into_owned())
 }
@@ -288,6 +283,19 @@ fn files_below(folder: impl AsRef<Path>) -> Result<Vec<PathBuf>, String> {
 fn copy(from: &Path, to: &Path) -> Outcome {
     make_folder(to.parent().unwrap_or(to))?;
     fs::copy(from, to).map(drop).map_err(|error| failed(from, error).into())
+}
+
+/// Returns `PATH` with a folder in front, or behind with `is_last`.
+fn path_with(folder: &Path, is_last: bool) -> Result<OsString, String> {
+    let path = std::env::var_os("PATH").unwrap_or_default();
+    let mut folders: Vec<PathBuf> = std::env::split_paths(&path).collect();
+    folders.insert(if is_last { folders.len() } else { 0 }, folder.to_owned());
+    std::env::join_paths(folders).map_err(|error| format!("PATH: {error}"))
+}
+
+/// Fails if there are faults, which the message lists.
+fn fail_if_any(what: &str, faults: &[String]) -> Outcome {
+    if faults.is_empty() { Ok(()) } else { Err(format!("{what}\n  {}", faults.join("\n  ")).into()) }
 }
 
 /// Returns a path as text.

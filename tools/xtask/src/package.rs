@@ -1,6 +1,8 @@
 //! Packs the crates as for publishing, without a registry, and checks what is in their packages.
 
-use crate::{Outcome, cargo, entries, files_below, make_empty_folder, output, read, target, text, tools};
+use crate::{
+    Outcome, command, entries, fail_if_any, files_below, make_empty_folder, output, read, start, target, tools,
+};
 use std::fs;
 use std::path::{Path, PathBuf};
 
@@ -21,12 +23,9 @@ pub(crate) fn run() -> Outcome {
     let target = target("packages");
     // A package that an earlier run has left, perhaps of another version, could be checked in place of the new one.
     make_empty_folder(&target)?;
-    let directory = text(&target);
     // Without verification nothing is compiled; all sources are compiled by the tests anyway.
-    let mut arguments = vec!["package", "--locked", "--offline", "--no-verify", "--allow-dirty", "--quiet"];
-    arguments.extend(["--target-dir", &directory]);
-    arguments.extend(published.iter().flat_map(|name| ["--package", name]));
-    cargo(&arguments, &[])?;
+    let mut package = command("cargo package --locked --offline --no-verify --allow-dirty --quiet --target-dir");
+    start(package.arg(&target).args(published.iter().flat_map(|name| ["--package", name])))?;
     let packages = target.join("package");
     let mut failures = Vec::new();
     for name in &published {
@@ -36,21 +35,16 @@ pub(crate) fn run() -> Outcome {
         let limit = if name == WITH_ASSETS { 2 * MAX_PACKAGE_BYTES } else { MAX_PACKAGE_BYTES };
         failures.extend(faults(&unpacked, bytes, limit)?.into_iter().map(|fault| format!("{name}: {fault}")));
     }
-    if failures.is_empty() {
-        Ok(())
-    } else {
-        Err(format!("packages are incomplete\n  {}", failures.join("\n  ")).into())
-    }
+    fail_if_any("packages are incomplete", &failures)
 }
 
 /// Returns the names of the crates of the workspace whose manifest does not rule out that they are published.
 fn published_crates() -> Result<Vec<String>, String> {
     let mut names = Vec::new();
-    let mut folders = vec![PathBuf::from(".")];
-    for parent in [".", "apps", "bindings"] {
-        folders.extend(entries(parent)?);
-    }
-    for manifest in folders.into_iter().map(|folder| folder.join("Cargo.toml")).filter(|manifest| manifest.is_file()) {
+    let folders = [vec![".".into()], entries(".")?, entries("apps")?, entries("bindings")?].concat();
+    for manifest in
+        folders.iter().map(|folder: &PathBuf| folder.join("Cargo.toml")).filter(|manifest| manifest.is_file())
+    {
         let text = read(&manifest)?;
         if text.lines().all(|line| line.trim() != "publish = false") {
             let name = text.lines().find_map(|line| line.strip_prefix("name = \"")?.strip_suffix('"'));
@@ -70,7 +64,7 @@ fn unpack(packages: &Path, name: &str) -> Result<PathBuf, String> {
     };
     let is_file = |path: &PathBuf| path.file_name().is_some_and(|file| is_package(&file.to_string_lossy()));
     let path = entries(packages)?.into_iter().find(is_file).ok_or_else(|| format!("{name}: has no package"))?;
-    output("tar", &["-xzf", &text(&path), "-C", &text(packages)])?;
+    output(command("tar -xzf").arg(&path).arg("-C").arg(packages))?;
     Ok(path.with_extension(""))
 }
 

@@ -5,8 +5,8 @@
 //! standard library as well.
 
 use crate::arm::{AGREEMENT, compare_outputs};
-use crate::debian::{Packages, has_standard_library};
-use crate::{OrSkip, Outcome, Stop, go_on, make_folder, output, start, target as target_folder};
+use crate::debian::{Packages, cargo_for, has_standard_library};
+use crate::{OrSkip, Outcome, Stop, exists, go_on, make_folder, path_with, start, target as target_folder};
 use std::process::Command;
 
 /// Windows, macOS, 32 bits, and numbers with the highest byte first.
@@ -39,33 +39,28 @@ pub(crate) fn check(arguments: &[String]) -> Outcome {
     }
     let all = TARGETS.map(str::to_owned);
     for target in if arguments.is_empty() { &all[..] } else { arguments } {
-        let packages = ["check", "--locked", "--package", "p2m", "--package", "p2m-cli"];
         let why = format!("there is no standard library of {target} (rustup target add {target})");
-        go_on(cargo(target, &packages).or_skip(&why).and_then(|mut cargo| start(&mut cargo)))?;
+        let check = cargo(target, "check --locked --package p2m --package p2m-cli");
+        go_on(check.or_skip(&why).and_then(|mut cargo| start(&mut cargo)))?;
     }
     Ok(())
 }
 
 /// Returns a command of cargo for a target, or why there is no compiler for it.
-fn cargo(target: &str, arguments: &[&str]) -> Result<Command, String> {
-    let mut cargo = Command::new("cargo");
-    cargo.args([arguments[0], "--target", target]);
-    if !has_standard_library(target) {
-        let packages = Packages::rust_and("windows", WINDOWS_PACKAGES)?;
-        packages.set_compiler(&mut cargo);
-        Packages::compile_standard_library(&mut cargo, "std,panic_unwind");
-        let path = std::env::var_os("PATH").unwrap_or_default();
-        let folders = std::env::split_paths(&path).chain([packages.file("usr/bin")]);
-        cargo.env("PATH", std::env::join_paths(folders).map_err(|error| format!("PATH: {error}"))?);
-        cargo.env("CARGO_TARGET_DIR", target_folder("platforms"));
+fn cargo(target: &str, line: &str) -> Result<Command, String> {
+    if has_standard_library(target) {
+        return Ok(cargo_for(target, None, "", line));
     }
-    cargo.args(&arguments[1..]);
+    let packages = Packages::rust_and("windows", WINDOWS_PACKAGES)?;
+    let mut cargo = cargo_for(target, Some(&packages), "std,panic_unwind", line);
+    cargo.env("PATH", path_with(&packages.file("usr/bin"), true)?);
+    cargo.env("CARGO_TARGET_DIR", target_folder("platforms"));
     Ok(cargo)
 }
 
 /// Runs the agreement of all backends, the checksums of answers and the program for Windows.
 fn run_under_wine() -> Outcome {
-    if [LINKER, WINE].iter().any(|tool| output(tool, &["--version"]).is_err()) {
+    if !exists(LINKER) || !exists(WINE) {
         let why = format!("there is no {LINKER} or no {WINE} (apt-get install gcc-mingw-w64-x86-64 wine64)");
         return Err(Stop::Skipped(why));
     }
@@ -77,15 +72,14 @@ fn run_under_wine() -> Outcome {
         // Wine finds libraries there, in its own form of paths, and prints messages of its own unless this is set.
         command.env("WINEPATH", format!("Z:{}", folder.display())).env("WINEDEBUG", "-all");
     };
-    let cargo = |arguments: &[&str]| {
-        let mut cargo = cargo(WINDOWS, arguments)?;
+    let cargo = |line: &str| {
+        let mut cargo = cargo(WINDOWS, line)?;
         wine(cargo.env("CARGO_TARGET_X86_64_PC_WINDOWS_GNU_RUNNER", WINE));
         Ok::<_, String>(cargo)
     };
-    start(&mut cargo(&["test", "--locked", "--package", "p2m-testkit", "--test", "checksums"])?)?;
-    let agreement = ["test", "--locked", "--package", "p2m", "--test", "all", "--"];
-    start(cargo(&agreement)?.args(AGREEMENT))?;
-    start(&mut cargo(&["build", "--locked", "--package", "p2m-cli"])?)?;
+    start(&mut cargo("test --locked --package p2m-testkit --test checksums")?)?;
+    start(cargo("test --locked --package p2m --test all")?.arg("--").args(AGREEMENT))?;
+    start(&mut cargo("build --locked --package p2m-cli")?)?;
     let subfolder = if has_standard_library(WINDOWS) { "" } else { "platforms" };
     let program = target_folder(subfolder).join(WINDOWS).join("debug/p2m.exe");
     compare_outputs(|| {

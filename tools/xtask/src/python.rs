@@ -1,8 +1,6 @@
 //! Builds the Python package, installs it into a virtual environment, and runs its tests there.
 
-use crate::{
-    OrSkip, Outcome, build_for_tests, copy, debug_program, files_below, output, read, start, target, text, tools,
-};
+use crate::{OrSkip, Outcome, build_for_tests, copy, debug_program, files_below, output, read, start, target, tools};
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
@@ -18,7 +16,6 @@ pub(crate) fn check(filter: &[String]) -> Outcome {
     let needed = [extra(&manifest, "dependencies"), extra(&manifest, "test")].concat();
     let environment = if compares { "python-rivals-env" } else { "python-env" };
     let python = tools::python(environment, &needed).or_skip("the package for Python cannot be tested")?;
-    let python = text(&python);
     if compares {
         for rival in extra(&manifest, "compare") {
             if let Err(why) = tools::install(&python, &[rival]) {
@@ -29,29 +26,26 @@ pub(crate) fn check(filter: &[String]) -> Outcome {
     // The crates that search are optimised in this profile.
     build_for_tests()?;
     install_package(&python)?;
-    let in_folder = |folder: &str, arguments: &[&str], variable: (&str, &Path)| {
-        let mut command = Command::new(&python);
-        start(command.arg("-m").args(arguments).env(variable.0, variable.1).current_dir(folder))
-    };
     // The program answers the same queries.
-    let program = debug_program();
-    let program = ("P2M_PROGRAM", program.as_path());
-    let tests = |of: &'static str| [&["pytest", "-rs", "--durations=5", of], &filter[..]].concat();
+    let variable = if compares { ("P2M_RIVALS", "1".into()) } else { ("P2M_PROGRAM", debug_program()) };
+    let in_folder = |folder: &str, line: &str, filter: &[&str]| {
+        let mut command = Command::new(&python);
+        command.arg("-m").args(line.split(' ')).args(filter);
+        start(command.env(variable.0, &variable.1).current_dir(folder))
+    };
     if compares {
-        return in_folder(PACKAGE, &tests("tests/test_rivals.py"), ("P2M_RIVALS", Path::new("1")));
+        return in_folder(PACKAGE, "pytest -rs --durations=5 tests/test_rivals.py", &filter);
     }
-    let on_all_cores = ["--numprocesses=auto", "--dist=loadfile"];
-    in_folder(PACKAGE, &[&tests("tests")[..], &on_all_cores].concat(), program)?;
+    in_folder(PACKAGE, "pytest -rs --durations=5 --numprocesses=auto --dist=loadfile tests", &filter)?;
     if !filter.is_empty() {
         return Ok(());
     }
-    let examples = ["pytest", "--doctest-modules", "--doctest-glob=README.md", "--pyargs", "p2m", "README.md"];
-    in_folder(PACKAGE, &examples, program)?;
+    in_folder(PACKAGE, "pytest --doctest-modules --doctest-glob=README.md --pyargs p2m README.md", &[])?;
     for page in ["docs/python.md", "docs/cluster.md", "docs/guide/training.md"] {
-        in_folder(".", &["pytest", "-q", "--doctest-glob=*.md", page], program)?;
+        in_folder(".", "pytest -q --doctest-glob=*.md", &[page])?;
     }
-    in_folder(PACKAGE, &["mypy"], program)?;
-    in_folder(PACKAGE, &["mypy.stubtest", "--mypy-config-file", "pyproject.toml", "p2m"], program)
+    in_folder(PACKAGE, "mypy", &[])?;
+    in_folder(PACKAGE, "mypy.stubtest --mypy-config-file pyproject.toml p2m", &[])
 }
 
 /// Returns the packages of a list of pyproject.toml.
@@ -61,8 +55,9 @@ fn extra<'a>(manifest: &'a str, name: &str) -> Vec<&'a str> {
 }
 
 /// Copies the package with its library into the virtual environment, as pip would install it.
-fn install_package(python: &str) -> Outcome {
-    let site = output(python, &["-c", "import sysconfig; print(sysconfig.get_paths()['platlib'])"])?;
+fn install_package(python: &Path) -> Outcome {
+    let script = "import sysconfig; print(sysconfig.get_paths()['platlib'])";
+    let site = output(Command::new(python).args(["-c", script]))?;
     let package = Path::new(site.trim()).join("p2m");
     crate::make_empty_folder(&package)?;
     let source = Path::new(PACKAGE).join("python/p2m");

@@ -1,8 +1,9 @@
 //! The documents as a site of mdBook.
 
 use crate::links::{self, REPOSITORY_FILES, destinations, has_extension, normalised};
-use crate::{Outcome, copy, files_below, make_empty_folder, read, run, target, text, tools, write};
+use crate::{Outcome, copy, fail_if_any, files_below, make_empty_folder, read, start, target, tools, write};
 use std::path::Path;
+use std::process::Command;
 
 const MDBOOK_VERSION: &str = "0.4.52";
 
@@ -21,12 +22,9 @@ pub(crate) fn build() -> Outcome {
             write(&copied, on_site(&path, read(&path)?))?;
         }
     }
-    let mdbook = tools::program("mdbook", MDBOOK_VERSION, &["--no-default-features", "--features", "search"], true)?;
-    run(&mdbook, &["build", &text(&source), "--dest-dir", &text(&book)], &[])?;
-    let faults = faults_of_pages(&book)?;
-    if !faults.is_empty() {
-        return Err(format!("dead links of the site\n  {}", faults.join("\n  ")).into());
-    }
+    let mdbook = tools::program("mdbook", MDBOOK_VERSION, "--no-default-features --features search", true)?;
+    start(Command::new(mdbook).arg("build").arg(&source).arg("--dest-dir").arg(&book))?;
+    fail_if_any("dead links of the site", &faults_of_pages(&book)?)?;
     println!("\n== {}", book.join("index.html").display());
     Ok(())
 }

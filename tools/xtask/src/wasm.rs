@@ -4,8 +4,9 @@
 //! packages contain the sources of the standard library, which cargo then compiles. Where the packages are missing the
 //! task is skipped.
 
-use crate::debian::{Packages, has_standard_library};
-use crate::{OrSkip, Outcome, Stop, compare_or_write, entries, need, read, start, target, write};
+use crate::debian::{Packages, cargo_for, has_standard_library};
+use crate::links::has_extension;
+use crate::{OrSkip, Outcome, compare_or_write, entries, need, read, start, target, write};
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
@@ -41,43 +42,38 @@ pub(crate) fn run(arguments: &[String]) -> Outcome {
     if !builds {
         check_stamp()?;
     }
-    let compiler = Compiler::find().or_skip(&format!("there is no compiler for {TARGET} (rustup target add {TARGET})"));
+    // The packages with the compiler, unless the current compiler has the target.
+    let packages = if has_standard_library(TARGET) { Ok(None) } else { Packages::rust().map(Some) };
     if builds {
         // To build nothing would be a failure.
-        return compiler
-            .map_err(|(Stop::Skipped(why) | Stop::Failed(why))| Stop::Failed(why))
-            .and_then(|it| build(&it));
+        return build(packages?.as_ref());
     }
-    let compiler = compiler?;
-    let packages = ["check", "--locked", "--package", "p2m", "--package", MODULE, "--no-default-features"];
-    start(compiler.cargo(&packages, STANDARD_LIBRARY)?.args(["--features", FEATURES]))?;
-    if arguments == ["--all"] { compare_checksums(&compiler) } else { Ok(()) }
+    let packages = packages.or_skip(&format!("there is no compiler for {TARGET} (rustup target add {TARGET})"))?;
+    let check = format!("check --locked --package p2m --package {MODULE} --no-default-features --features {FEATURES}");
+    start(&mut cargo(packages.as_ref(), &check, STANDARD_LIBRARY)?)?;
+    if arguments == ["--all"] { compare_checksums(packages.as_ref()) } else { Ok(()) }
 }
 
 /// Computes the checksums of answers in Node, and compares them with those of other processors.
-fn compare_checksums(compiler: &Compiler) -> Outcome {
+fn compare_checksums(packages: Option<&Packages>) -> Outcome {
     need("node")?;
-    let arguments = ["test", "--locked", "--package", "p2m-testkit", "--test", "checksums"];
-    let mut cargo = compiler.cargo(&arguments, STANDARD_LIBRARY)?;
-    cargo.env("CARGO_TARGET_WASM32_UNKNOWN_UNKNOWN_RUNNER", RUNNER);
-    start(cargo.env("RUSTFLAGS", VECTORS))
+    let mut cargo = cargo(packages, "test --locked --package p2m-testkit --test checksums", STANDARD_LIBRARY)?;
+    start(cargo.env("CARGO_TARGET_WASM32_UNKNOWN_UNKNOWN_RUNNER", RUNNER).env("RUSTFLAGS", VECTORS))
 }
 
 /// Builds the module, and writes it and the checksum of its sources.
-fn build(compiler: &Compiler) -> Outcome {
-    let package = ["rustc", "--locked", "--package", MODULE, "--no-default-features", "--profile", "module"];
-    let mut cargo = compiler.cargo(&package, "std")?;
-    cargo.args(["--lib", "--crate-type", "cdylib"]);
+fn build(packages: Option<&Packages>) -> Outcome {
+    let rustc = "rustc --locked --no-default-features --profile module --lib --crate-type cdylib --package";
+    let mut cargo = cargo(packages, &format!("{rustc} {MODULE}"), "std")?;
     // Paths of this machine are not part of the module.
     let mut flags = VECTORS.to_owned();
     let workspace = std::env::current_dir().map_err(|error| format!("the current folder: {error}"))?;
     let home = std::env::var_os("CARGO_HOME").map(PathBuf::from);
     let home = home.or_else(|| Some(PathBuf::from(std::env::var_os("HOME")?).join(".cargo")));
-    let packages = compiler.packages.as_ref().map(Packages::folder);
-    for folder in [Some(workspace.as_path()), home.as_deref(), packages].into_iter().flatten() {
+    for folder in [Some(&*workspace), home.as_deref(), packages.map(Packages::folder)].into_iter().flatten() {
         flags += &format!(" --remap-path-prefix={}=", folder.display());
     }
-    if compiler.packages.is_some() {
+    if packages.is_some() {
         // The standard library is compiled as well, so that panics need no messages: they end the module in any case.
         flags += " -Zunstable-options -Cpanic=immediate-abort -Zlocation-detail=none";
         cargo.args(["-Zpanic-immediate-abort", "--config", "profile.module.panic='immediate-abort'"]);
@@ -95,11 +91,8 @@ fn check_stamp() -> Outcome {
 
 /// Returns a checksum of the sources of the module, as text.
 fn stamp() -> Result<String, String> {
-    let mut files = Vec::new();
-    for folder in MODULE_SOURCES {
-        files.extend(entries(folder)?);
-    }
-    files.retain(|file| file.extension().is_some_and(|extension| extension == "rs"));
+    let mut files = MODULE_SOURCES.map(entries).into_iter().collect::<Result<Vec<_>, _>>()?.concat();
+    files.retain(|file| has_extension(file, "rs"));
     files.sort();
     // FNV-1a, which is enough to notice a change.
     let mut hash = 0xcbf2_9ce4_8422_2325_u64;
@@ -112,33 +105,18 @@ fn stamp() -> Result<String, String> {
     Ok(format!("{hash:016x}\n"))
 }
 
-/// A compiler for the target.
-struct Compiler {
-    /// The packages with the compiler, unless the current compiler does it.
-    packages: Option<Packages>,
-}
-
-impl Compiler {
-    fn find() -> Result<Self, String> {
-        let packages = if has_standard_library(TARGET) { None } else { Some(Packages::rust()?) };
-        Ok(Self { packages })
+/// Returns a command of cargo for the target. The crates of the standard library are those that it compiles if the
+/// compiler comes without them; panics that abort at once need no crate.
+fn cargo(packages: Option<&Packages>, line: &str, standard_library: &str) -> Result<Command, String> {
+    let mut cargo = cargo_for(TARGET, packages, standard_library, line);
+    cargo.env("CARGO_TARGET_DIR", target("wasm"));
+    if let Some(packages) = packages {
+        let folder = packages.file("usr/bin");
+        let is_linker =
+            |path: &PathBuf| path.file_name().is_some_and(|n| n.display().to_string().starts_with("wasm-ld"));
+        let linker = entries(&folder)?.into_iter().find(is_linker);
+        let linker = linker.ok_or_else(|| format!("{}: has no wasm-ld", folder.display()))?;
+        cargo.env("CARGO_TARGET_WASM32_UNKNOWN_UNKNOWN_LINKER", linker);
     }
-
-    /// Returns a command of cargo for the target. The crates of the standard library are those that it compiles if the
-    /// compiler comes without them; panics that abort at once need no crate.
-    fn cargo(&self, arguments: &[&str], standard_library: &str) -> Result<Command, String> {
-        let mut cargo = Command::new("cargo");
-        cargo.args(arguments).args(["--target", TARGET]).env("CARGO_TARGET_DIR", target("wasm"));
-        if let Some(packages) = &self.packages {
-            packages.set_compiler(&mut cargo);
-            Packages::compile_standard_library(&mut cargo, standard_library);
-            let folder = packages.file("usr/bin");
-            let is_linker =
-                |path: &PathBuf| path.file_name().is_some_and(|n| n.display().to_string().starts_with("wasm-ld"));
-            let linker = entries(&folder)?.into_iter().find(is_linker);
-            let linker = linker.ok_or_else(|| format!("{}: has no wasm-ld", folder.display()))?;
-            cargo.env("CARGO_TARGET_WASM32_UNKNOWN_UNKNOWN_LINKER", linker);
-        }
-        Ok(cargo)
-    }
+    Ok(cargo)
 }

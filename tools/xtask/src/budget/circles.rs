@@ -86,8 +86,8 @@ fn definition(path: &str, modules: &BTreeMap<&str, Module<'_>>, hops: u32) -> Op
         key = key.rsplit_once('/')?.0;
     }
     let module = &modules[key];
-    let (name, tail) = path[key.len()..].trim_start_matches('/').split_once('/').unwrap_or((&path[key.len()..], ""));
-    let name = name.trim_start_matches('/');
+    let rest = path[key.len()..].trim_start_matches('/');
+    let (name, tail) = rest.split_once('/').unwrap_or((rest, ""));
     if module.items.contains(name) || hops == 0 {
         return Some(key.to_owned());
     }

@@ -4,7 +4,7 @@
 mod circles;
 mod source;
 
-use crate::{Outcome, cargo, make_folder, output, read, target, text, write};
+use crate::{Outcome, command, fail_if_any, make_folder, output, read, start, target, write};
 use source::{RUST, Source};
 use std::collections::BTreeMap;
 use std::fs;
@@ -48,9 +48,7 @@ pub(crate) fn check(arguments: &[String]) -> Outcome {
     }
     let circles = circles::circles(&sources);
     let (too_large, hints) = compare(&old, &rows);
-    for line in &hints {
-        println!("{line}");
-    }
+    hints.iter().for_each(|line| println!("  {line}"));
     let sum = |of: fn(&Source) -> usize| sources.iter().map(of).sum::<usize>();
     println!("{} lines of code and {} of tests", sum(Source::lines), sum(|source| source.tests));
     if has("--write") {
@@ -58,21 +56,15 @@ pub(crate) fn check(arguments: &[String]) -> Outcome {
         let table = format!("{HEAD}\n{}", lines.collect::<String>());
         write(TABLE, table)?;
     }
-    if !circles.is_empty() {
-        let circles = circles.into_iter().collect::<Vec<_>>().join("\nand\n");
-        return Err(format!("files import each other in a circle:\n{circles}").into());
-    }
-    if too_large.is_empty() || has("--write") {
-        return Ok(());
-    }
+    fail_if_any("files import each other in a circle:", &circles.into_iter().collect::<Vec<_>>())?;
     let how = "make it smaller, or raise the row by `cargo xtask budget --write` and give the reason in the commit";
-    Err(format!("the budget is exceeded:\n{}\n{how}", too_large.join("\n")).into())
+    if has("--write") { Ok(()) } else { fail_if_any(&format!("the budget is exceeded: {how}"), &too_large) }
 }
 
 /// Returns the rows that are exceeded, and those that could be lower by more than one percent.
 fn compare(old: &Rows, new: &Rows) -> (Vec<String>, Vec<String>) {
     let row = |(measure, of): &(String, String), old: usize, new: usize| {
-        format!("  {measure} of {of}: {new}, and the row of {TABLE} has {old}")
+        format!("{measure} of {of}: {new}, and the row of {TABLE} has {old}")
     };
     let value = |rows: &Rows, name| rows.get(name).copied().unwrap_or(0);
     let larger = new.iter().filter(|(name, new)| **new > value(old, name));
@@ -94,7 +86,7 @@ fn parse(table: &str) -> Result<Rows, String> {
 
 /// Returns the files of the repository that have code, also new ones.
 fn sources() -> Result<Vec<Source>, String> {
-    let files = output("git", &["ls-files", "--cached", "--others", "--exclude-standard"])?;
+    let files = output(&mut command("git ls-files --cached --others --exclude-standard"))?;
     // Files that are not text have no code, and files that are deleted are still in the list of Git.
     let source = |path: &str| Source::new(path, &fs::read_to_string(path).ok()?);
     Ok(files.lines().filter_map(source).collect())
@@ -125,8 +117,8 @@ fn count_sources(sources: &[Source], rows: &mut Rows) {
 
 /// Returns how many crates a build compiles on Linux.
 fn crates(build: &str) -> Result<usize, String> {
-    let tree = "tree --locked --edges normal,build --target x86_64-unknown-linux-gnu --prefix none --format {p}";
-    let tree = output("cargo", &tree.split(' ').chain(build.split(' ')).collect::<Vec<_>>())?;
+    let tree = "cargo tree --locked --edges normal,build --target x86_64-unknown-linux-gnu --prefix none --format {p}";
+    let tree = output(&mut command(&format!("{tree} {build}")))?;
     let names = tree.lines().map(|line| line.split(' ').take(2).collect::<Vec<_>>());
     Ok(names.collect::<std::collections::BTreeSet<_>>().len())
 }
@@ -136,9 +128,9 @@ fn llvm_lines(name: &str) -> Outcome<usize> {
     let folder = target("llvm");
     let file = folder.join(format!("{name}.ll"));
     make_folder(&folder)?;
-    let build = ["rustc", "--locked", "--release", "--lib", "-p", name, "--target-dir", &text(&folder)];
-    let emit = ["--", "-C", "codegen-units=1", &format!("--emit=llvm-ir={}", text(&file))];
-    cargo(&[&build[..], &emit].concat(), &[])?;
+    let mut rustc = command(&format!("cargo rustc --locked --release --lib -p {name} --target-dir"));
+    rustc.arg(&folder).args(["--", "-C", "codegen-units=1"]).arg(format!("--emit=llvm-ir={}", file.display()));
+    start(&mut rustc)?;
     Ok(read(&file)?.lines().filter(|line| line.starts_with("  ")).count())
 }
 

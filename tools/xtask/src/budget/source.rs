@@ -12,26 +12,17 @@ struct Language {
 pub(super) const RUST: &str = "Rust";
 pub(super) const PYTHON: &str = "Python";
 pub(super) const WEB: &str = "web";
+const C: &str = "C";
 const SLASHES: [&str; 2] = ["/*", "*/"];
 
 const LANGUAGES: [Language; 6] = [
-    language(RUST, "rs", "//", SLASHES, "\""),
-    language(PYTHON, "py", "#", ["", ""], "\"'"),
-    language(WEB, "js mjs ts", "//", SLASHES, "\"'`"),
-    language(WEB, "css", "", SLASHES, "\"'"),
-    language(WEB, "html", "", ["<!--", "-->"], ""),
-    language("C", "c h cpp hpp cu cuh", "//", SLASHES, "\"'"),
+    Language { name: RUST, extensions: "rs", line_comment: "//", block_comment: SLASHES, quotes: "\"" },
+    Language { name: PYTHON, extensions: "py", line_comment: "#", block_comment: ["", ""], quotes: "\"'" },
+    Language { name: WEB, extensions: "js mjs ts", line_comment: "//", block_comment: SLASHES, quotes: "\"'`" },
+    Language { name: WEB, extensions: "css", line_comment: "", block_comment: SLASHES, quotes: "\"'" },
+    Language { name: WEB, extensions: "html", line_comment: "", block_comment: ["<!--", "-->"], quotes: "" },
+    Language { name: C, extensions: "c h cpp hpp cu cuh", line_comment: "//", block_comment: SLASHES, quotes: "\"'" },
 ];
-
-const fn language(
-    name: &'static str,
-    extensions: &'static str,
-    line_comment: &'static str,
-    block_comment: [&'static str; 2],
-    quotes: &'static str,
-) -> Language {
-    Language { name, extensions, line_comment, block_comment, quotes }
-}
 
 /// Files that a program writes.
 const GENERATED: [&str; 2] = ["apps/page/assets/viewer.js", "bindings/c/include/p2m.h"];
