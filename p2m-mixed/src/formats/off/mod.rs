@@ -51,7 +51,7 @@ pub(super) fn read(source: Source<impl BufRead>, name: &str, builder: SceneBuild
     let header = read_header(&mut tokens).map_err(|reason| fail(tokens.line(), reason))?;
     let Some(counts) = header.counts else {
         let line = tokens.line();
-        let (reader, offset) = tokens.into_lines().into_reader().map_err(|e| fail(line, Reason::Io(e)))?;
+        let (reader, offset) = tokens.lines.into_reader().map_err(|e| fail(line, Reason::Io(e)))?;
         let mut bytes = ByteReader::new(reader, offset);
         return read_binary(&mut bytes, header.extras, builder)
             .map_err(|reason| ReadError::new(name, FileLocation::Byte(bytes.start()), reason));

@@ -203,7 +203,7 @@ impl<R: BufRead> Data<'_, Source<R>> {
             Ok((left == 0 || used < bytes.len()).then_some(used))
         });
         match (&mut self.source, start, next) {
-            (Encoded::Text(tokens), Start::Line(from), Start::Line(to)) => tokens.skip_lines(to - from, passed),
+            (Encoded::Text(tokens), Start::Line(from), Start::Line(to)) => tokens.lines.skip_lines(to - from, passed),
             (Encoded::Binary { bytes, .. }, ..) => bytes.skip_blocks(passed),
             _ => {}
         }
