@@ -299,23 +299,19 @@ impl Mesh<'_> {
     /// Adds the triangles of a loop.
     fn add_loop(&mut self, vertices: &[u32]) -> Result<(), OffsetError> {
         match *vertices {
-            [] => Ok(()),
-            [a, b, c] => {
-                self.triangles.push([a, b, c]);
-                Ok(())
-            }
+            [] => {}
+            [a, b, c] => self.triangles.push([a, b, c]),
             _ => {
                 let Vertex { start: origin, between } = self.vertices[vertices[0] as usize];
                 let offsets = vertices.iter().map(|v| self.vertices[*v as usize].start - origin);
                 let start = origin + offsets.sum::<Vector3<f64>>() / vertices.len() as f64;
-                let vertex = Vertex { start, between };
-                let middle = self.add_vertex(vertex)?;
+                let middle = self.add_vertex(Vertex { start, between })?;
                 for (i, v) in vertices.iter().enumerate() {
                     self.triangles.push([*v, vertices[(i + 1) % vertices.len()], middle]);
                 }
-                Ok(())
             }
         }
+        Ok(())
     }
 }
 

@@ -99,10 +99,12 @@ pub struct Samples {
 }
 
 impl Samples {
-    /// Computes so many samples in chunks, each from the number of its first sample.
+    /// Computes so many samples in chunks, each from the number of its first sample, on all threads of the current pool
+    /// if there are some.
     fn compute(count: usize, chunk: impl Fn(usize, &mut [Point3<f64>], &mut [PrimitiveId]) + Sync) -> Self {
         let mut samples = Self { points: vec![Point3::origin(); count], primitives: vec![PrimitiveId::new(0); count] };
-        fill(&mut samples.points, &mut samples.primitives, chunk);
+        let parts = samples.points.chunks_mut(CHUNK).zip(samples.primitives.chunks_mut(CHUNK)).enumerate().collect();
+        parallel::map_owned(parts, true, |(k, (points, ids))| chunk(k * CHUNK, points, ids));
         samples
     }
 }
@@ -132,11 +134,7 @@ impl<S: PrimitiveSet<f64> + Sync> SurfaceSampler<S> {
         let mut measures = [const { Vec::new() }; 3];
         for id in 0..scene.len() {
             let Some(shape) = shape_of(&scene, PrimitiveId::new(id)) else { continue };
-            let (kind, measure) = match *shape.vertices() {
-                [a, b, c] => (0, (b - a).cross(&(c - a)).norm() / 2.0),
-                [a, b] => (1, (b - a).norm()),
-                _ => (2, 1.0),
-            };
+            let (kind, measure) = (3 - shape.vertices().len(), measure(shape.vertices()));
             if measure > 0.0 && measure.is_finite() {
                 measures[kind].push((u32::try_from(id).ok()?, measure));
             }
@@ -225,26 +223,28 @@ impl<S: PrimitiveSet<f64> + Sync> SurfaceSampler<S> {
     }
 }
 
+/// Returns the area of a triangle, the length of a segment, or 1 for a point.
+pub(crate) fn measure(vertices: &[Point3<f64>]) -> f64 {
+    match *vertices {
+        [a, b, c] => (b - a).cross(&(c - a)).norm() / 2.0,
+        [a, b] => (b - a).norm(),
+        _ => 1.0,
+    }
+}
+
 /// Returns points that are evenly distributed in a box.
 #[must_use]
 pub fn in_box(bounds: &Aabb<f64>, seed: u64, count: usize) -> Vec<Point3<f64>> {
     let mut points = vec![Point3::origin(); count];
-    let mut nothing = vec![(); count];
     let size = bounds.max - bounds.min;
-    fill(&mut points, &mut nothing, |first, points, _| {
-        for (i, point) in (first..).zip(points) {
+    parallel::for_each_chunk(&mut points, CHUNK, true, |k, points| {
+        for (i, point) in (k * CHUNK..).zip(points) {
             let mut numbers = Numbers::new(seed, Stream::Box, i);
             let unit = Vector3::new(numbers.unit(), numbers.unit(), numbers.unit());
             *point = bounds.min + size.component_mul(&unit);
         }
     });
     points
-}
-
-/// Computes chunks of samples, on all threads of the current pool if there are some.
-fn fill<A: Send, B: Send>(first: &mut [A], second: &mut [B], chunk: impl Fn(usize, &mut [A], &mut [B]) + Sync) {
-    let chunks = first.chunks_mut(CHUNK).zip(second.chunks_mut(CHUNK)).enumerate().collect();
-    parallel::map_owned(chunks, true, |(k, (first, second))| chunk(k * CHUNK, first, second));
 }
 
 #[cfg(test)]

@@ -20,13 +20,8 @@ struct Field {
 
 /// Returns the type of numbers with this letter and this size in bytes.
 fn scalar(kind: u8, size: usize) -> Option<Scalar> {
-    let letter = match kind {
-        b'F' => 'f',
-        b'I' => 'i',
-        b'U' => 'u',
-        _ => return None,
-    };
-    Scalar::of_npy(format!("{letter}{size}").as_bytes())
+    let letter = char::from(kind).to_ascii_lowercase();
+    Scalar::of_npy(format!("{letter}{size}").as_bytes()).filter(|_| kind.is_ascii_uppercase())
 }
 
 struct Header<'a> {

@@ -61,9 +61,7 @@ def speed() -> None:
         colours = [OURS if label.startswith("p2m") else THEIRS for label in labels]
         bars = axis.barh(labels, values, color=colours)
         axis.bar_label(bars, [f"{value:,.0f}" for value in values], padding=3)
-        axis.set_title(title)
-        axis.set_xlim(0, 1.18 * max(values))
-        axis.set_xticks([])
+        axis.set(title=title, xlim=(0, 1.18 * max(values)), xticks=[])
         axis.spines[["top", "right", "bottom"]].set_visible(False)
     figure.suptitle("ns per query on one thread, 871,414 triangles (less is better)", y=1.06)
     save(figure, "speed.svg")
@@ -93,8 +91,7 @@ def trade() -> None:
         range(len(guarantees)), [f"{setting}\n{text}" for setting, text in guarantees.items()], fontsize=8.5
     )
     axis.set_ylim(bottom=0)
-    axis.set_xlim(-0.5, len(guarantees) - 0.5)
-    axis.set_ylabel("ns per query")
+    axis.set(xlim=(-0.5, len(guarantees) - 0.5), ylabel="ns per query")
     axis.spines[["top", "right"]].set_visible(False)
     axis.legend(frameon=False)
     save(figure, "trade.svg")

@@ -34,6 +34,10 @@ from PIL import Image
 
 import p2m
 
+sys.path.insert(0, str(Path(__file__).parent.parent / "tests"))
+
+from exact import Mesh, squared_distance, vector
+
 ROOT = Path(__file__).resolve().parents[3]
 DOCUMENT = ROOT / "docs" / "python.md"
 PICTURES = ROOT / "docs" / "pictures"
@@ -128,9 +132,7 @@ def deviation() -> str:
     middles = (edges[:-1] + edges[1:]) / 2
     colours = plt.get_cmap("coolwarm")((middles + limit) / (2 * limit))
     histogram.bar(middles, counts, width=edges[1] - edges[0], color=colours, edgecolor="#555555", lw=0.3)
-    histogram.set_yscale("log")
-    histogram.set_xlabel("signed distance from the mesh")
-    histogram.set_ylabel("points of the scan")
+    histogram.set(yscale="log", xlabel="signed distance from the mesh", ylabel="points of the scan")
     histogram.set_title("blue: inside, a dent\nred: outside, a bulge", fontsize=9)
     save(figure, "deviation")
     within = float(np.quantile(np.abs(signed), 0.95))
@@ -154,10 +156,8 @@ def slice_() -> str:
     norm = TwoSlopeNorm(0.0, -0.35, 1.8)
     picture = axes.contourf(values.T, levels, extent=extent, cmap="PuOr_r", norm=norm, extend="both")
     axes.contour(values.T, [0.0], extent=extent, colors=INK, linewidths=1.2)
-    axes.set_aspect("equal")
-    axes.set_xlabel("x")
-    axes.set_ylabel("y")
-    axes.set_title("signed distances in the plane z = 0; black is the surface")
+    title = "signed distances in the plane z = 0; black is the surface"
+    axes.set(aspect="equal", xlabel="x", ylabel="y", title=title)
     figure.colorbar(picture, ax=axes, ticks=[-0.3, 0.0, 0.5, 1.0, 1.5], label="negative inside, positive outside")
     save(figure, "signed-slice")
     return f"The picture has {values.size:,} distances, of which {np.count_nonzero(values < 0):,} are negative."
@@ -199,11 +199,9 @@ def snapping() -> str:
     used, colours = np.unique(answer.primitive, return_inverse=True)
     axes.scatter(*answer.point[:, :2].T, s=26, c=plt.get_cmap("tab20")(colours), zorder=3)
     axes.scatter([], [], s=26, color=plt.get_cmap("tab20")(0), label="snapped, one colour for each street")
-    axes.set_aspect("equal")
+    axes.set(aspect="equal", xlabel="x, m", ylabel="y, m")
     axes.set_xlim(track[:, 0].min() - 25, track[:, 0].max() + 25)
     axes.set_ylim(track[:, 1].min() - 20, track[:, 1].max() + 20)
-    axes.set_xlabel("x, m")
-    axes.set_ylabel("y, m")
     axes.legend(loc="lower left", bbox_to_anchor=(0.0, 1.0), ncols=2, frameon=False)
     save(figure, "snapping")
     return (
@@ -246,10 +244,7 @@ def clearance() -> str:
     top = answer.distance.max() * 1.1
     chart.fill_between(length, 0, top, where=is_cable, color="#7a5230", alpha=0.18, lw=0, label="a cable is nearest")
     chart.scatter(length[worst], answer.distance[worst], color=WRONG, s=40, zorder=4, label="the narrowest place")
-    chart.set_ylim(0, top)
-    chart.set_xlim(0, length[-1])
-    chart.set_xlabel("length along the path")
-    chart.set_ylabel("clearance")
+    chart.set(ylim=(0, top), xlim=(0, length[-1]), xlabel="length along the path", ylabel="clearance")
     chart.legend(loc="lower left", bbox_to_anchor=(0.0, 1.0), ncols=2, frameon=False, fontsize=8, columnspacing=1.0)
     save(figure, "clearance")
     kind = "cable" if is_cable[worst] else "tube"
@@ -257,56 +252,6 @@ def clearance() -> str:
         f"The smallest clearance is {answer.distance[worst]:.4f}, {length[worst]:.2f} along the path of length "
         f"{length[-1]:.2f}, from a {kind}. A cable is nearest along {100 * is_cable.mean():.0f} % of the path."
     )
-
-
-# ------------------------------------------------------------------------------------------------- exact arithmetic
-
-
-class Degenerate(Exception):
-    """The error for a ray that runs through an edge or along a triangle."""
-
-
-def crossings_exact(vertices: np.ndarray, triangles: np.ndarray, point: np.ndarray, axis: int) -> int:
-    """Return the number of triangles that the ray from a point along an axis crosses, in fractions."""
-    u, v = (axis + 1) % 3, (axis + 2) % 3
-    corners = vertices[triangles]
-    # Comparisons of floating-point numbers are exact.
-    low, high = corners.min(axis=1), corners.max(axis=1)
-    possible = (low[:, u] <= point[u]) & (point[u] <= high[:, u]) & (low[:, v] <= point[v]) & (point[v] <= high[:, v])
-    p = [Fraction(float(x)) for x in point]
-    count = 0
-    for triangle in corners[possible & (high[:, axis] >= point[axis])]:
-        a, b, c = ([Fraction(float(x)) for x in corner] for corner in triangle)
-
-        def turn(q: list[Fraction], r: list[Fraction]) -> Fraction:
-            return (q[u] - p[u]) * (r[v] - p[v]) - (q[v] - p[v]) * (r[u] - p[u])
-
-        weights = [turn(b, c), turn(c, a), turn(a, b)]
-        if all(w > 0 for w in weights) or all(w < 0 for w in weights):
-            height = sum(w * q[axis] for w, q in zip(weights, (a, b, c))) / sum(weights)
-            count += height > p[axis]
-        elif not (any(w > 0 for w in weights) and any(w < 0 for w in weights)):
-            raise Degenerate
-    return count
-
-
-def is_inside_exact(vertices: np.ndarray, triangles: np.ndarray, point: np.ndarray) -> bool:
-    """Return whether a point is inside of a closed surface, in fractions."""
-    for axis in range(3):
-        try:
-            return crossings_exact(vertices, triangles, point, axis) % 2 == 1
-        except Degenerate:
-            continue
-    raise Degenerate
-
-
-def is_nearer_exact(query: np.ndarray, corners: np.ndarray, weights: np.ndarray, distance: float) -> bool:
-    """Return whether the point with these weights on a triangle is nearer to a query than a distance, in fractions."""
-    shares = [Fraction(float(w)) for w in weights]
-    total = sum(shares)
-    points = [sum(s * Fraction(float(c[k])) for s, c in zip(shares, corners)) / total for k in range(3)]
-    squared = sum((x - Fraction(float(q))) ** 2 for x, q in zip(points, query))
-    return min(shares) >= 0 and squared < Fraction(float(distance)) ** 2
 
 
 # ------------------------------------------------------------------------------------------------------ other libraries
@@ -402,9 +347,7 @@ def shells() -> str:
         for left in (-1, 1):
             axes.plot(np.array([0, 2, 2, 0, 0]) + left, [-1, -1, 1, 1, -1], color=INK, lw=1)
         axes.set_title(f"{library}: {int(wrong.sum())} wrong", color=WRONG if wrong.any() else INK)
-        axes.set_aspect("equal")
-        axes.set_xlim(-2.1, 4.1)
-        axes.set_ylim(-2.1, 2.1)
+        axes.set(aspect="equal", xlim=(-2.1, 4.1), ylim=(-2.1, 2.1))
     legend = grid.flat[-1]
     legend.axis("off")
     for colour, text in ((INSIDE, "inside"), (OUTSIDE, "outside"), (WRONG, "wrong side")):
@@ -436,8 +379,9 @@ def origin() -> str:
         theirs = scene.compute_signed_distance(points.astype(np.float32)).numpy()
         wrong = np.nonzero((theirs < 0) != signs)[0]
         # Signs that differ are decided by fractions, for some of the points.
+        mesh = Mesh(there, triangles)
         for i in wrong[:10]:
-            if is_inside_exact(there, triangles, points[i]) != signs[i]:
+            if mesh.is_inside(points[i]) != signs[i]:
                 raise AssertionError(f"p2m has the wrong sign at {points[i]}")
         found = {
             "p2m": index.distance(points),
@@ -468,8 +412,7 @@ def origin() -> str:
             interpolation="nearest",
         )
         axes.contour(values.T, [0.0], extent=extent, colors=INK, linewidths=0.9)
-        axes.set_title(name)
-        axes.set_xlabel("x - 499,996.65, m")
+        axes.set(title=name, xlabel="x - 499,996.65, m")
     both[0].set_ylabel("y - 5,399,996.7, m")
     figure.colorbar(picture, ax=both, ticks=[-0.3, 0.0, 0.5, 1.0, 1.5], label="signed distance, m")
     save(figure, "far-from-origin")
@@ -490,16 +433,14 @@ def units() -> str:
     rows = []
     for name, scale in (("6 m", 1.0), ("6 cm", 0.01), ("6 mm", 0.001)):
         small, points = vertices * scale, local * scale
-        answer = p2m.Index((small, triangles)).closest(
-            points, certified=True, fields=("distance", "primitive", "barycentric")
-        )
+        answer = p2m.Index((small, triangles)).closest(points, certified=True, fields=("distance", "primitive"))
         true = answer.distance
         theirs = trimesh.proximity.closest_point(trimesh_mesh(small, triangles), points)[1]
         relative = theirs / true - 1
         worst = int(relative.argmax())
         if relative[worst] > 1e-9:
-            found = small[triangles[answer.primitive[worst]]]
-            if not is_nearer_exact(points[worst], found, answer.barycentric[worst], theirs[worst] * (1 - 1e-9)):
+            found = [vector(corner) for corner in small[triangles[answer.primitive[worst]]]]
+            if squared_distance(vector(points[worst]), found) >= Fraction(theirs[worst] * (1 - 1e-9)) ** 2:
                 raise AssertionError("p2m has no nearer point")
         others = {
             "libigl": np.sqrt(igl.point_mesh_squared_distance(points, small, triangles)[0]),

@@ -209,12 +209,10 @@ where
         if distance > self.tiny {
             return (answers.moved[i] - answers.closest[i]) / distance;
         }
-        match shape_of(self.scene, PrimitiveId::new(answers.primitive[i] as usize)) {
-            Some(shape) => match shape.vertices() {
-                [a, b, c] => (b - a).cross(&(c - a)).try_normalize(0.0).unwrap_or_default(),
-                _ => Vector3::zeros(),
-            },
-            None => Vector3::zeros(),
+        let shape = shape_of(self.scene, PrimitiveId::new(answers.primitive[i] as usize));
+        match shape.as_ref().map(|shape| shape.vertices()) {
+            Some([a, b, c]) => (b - a).cross(&(c - a)).try_normalize(0.0).unwrap_or_default(),
+            _ => Vector3::zeros(),
         }
     }
 }

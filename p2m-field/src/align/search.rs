@@ -3,6 +3,7 @@
 use super::fit::Fit;
 use super::pose::Pose;
 use super::{AlignRound, ReportRound};
+use crate::sample::measure;
 use nalgebra::{Matrix3, Point3, Quaternion, Rotation3, SymmetricEigen, UnitQuaternion, Vector3};
 use p2m_core::{ClosestPoint, PrimitiveId, PrimitiveSet, shape_of};
 use std::f64::consts::FRAC_1_SQRT_2;
@@ -182,11 +183,6 @@ impl Inertia {
     pub(super) fn of_scene<S: PrimitiveSet<f64> + ?Sized>(scene: &S) -> Self {
         let shapes = || (0..scene.len()).filter_map(|id| shape_of(scene, PrimitiveId::new(id)));
         let most = shapes().map(|shape| shape.vertices().len()).max().unwrap_or(0);
-        let measure = |vertices: &[Point3<f64>]| match *vertices {
-            [a, b, c] => (b - a).cross(&(c - a)).norm() / 2.0,
-            [a, b] => (b - a).norm(),
-            _ => 1.0,
-        };
         let origin = shapes().next().map_or(Point3::origin(), |shape| shape.vertices()[0]);
         let largest = shapes().filter(|shape| shape.vertices().len() == most);
         Self::of(largest.map(|shape| (measure(shape.vertices()), shape)), origin, |shape| shape.vertices())

@@ -108,7 +108,7 @@ impl<I: ClosestPoint<f64>, S: SharedSoup> SignedDistance<I, S> {
         let mut sums: Vec<EightSums> = lattice.points.chunks(LANES).map(EightSums::new).collect();
         for error in ERRORS {
             let known = local.near.len();
-            angles.refine(&mut local, |local| local.error() < error || is_decided(local));
+            angles.refine(&mut local, |local| local.error < error || is_decided(local));
             let caps = Wall::in_box(angles.triangles(&local.near).copied(), &bounds);
             let change = |from: usize, to: usize| {
                 let by_caps = change(&caps, lattice.points[from], lattice.points[to])?;
@@ -185,7 +185,7 @@ mod tests {
                 let centre = Point3::from(centre);
                 let wanted = 10f64.powf(rng.random_range(-4.0..0.0));
                 let mut local = angles.local(angles.point(&centre), radius).expect("near");
-                angles.refine(&mut local, |local| local.error() < wanted);
+                angles.refine(&mut local, |local| local.error < wanted);
                 let caps = Wall::in_box(angles.triangles(&local.near).copied(), &everywhere);
                 let crossings = winding.crossings(&centre, none);
                 for _ in 0..8 {

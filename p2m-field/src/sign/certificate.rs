@@ -20,13 +20,13 @@
 use super::crowding;
 use super::surface::{NO_TRIANGLE, Surface};
 use super::triangle::{MIN_SINE, ROUNDING, angle, corners, unit_normal};
-use super::types::{ClosestFeature, RayTree, SharedSoup};
+use super::types::{RayTree, SharedSoup};
 use nalgebra::Point3;
 use p2m_bvh::TreeIndex;
 use p2m_core::engine::arithmetic::cross;
 use p2m_core::engine::vector::{V3, add, add_scaled, dot, largest, length, scaled, sub};
 use p2m_core::engine::weld::UnionFind;
-use p2m_core::{BuildError, Feature};
+use p2m_core::{BuildError, Closest, Feature, Real};
 use std::sync::atomic::{AtomicI64, Ordering};
 
 /// The smallest cosine between the normals of a fan and its pseudonormal: 2^-4.
@@ -47,7 +47,7 @@ const UNKNOWN: i64 = i64::MIN;
 pub(super) struct Certificates<S> {
     soup: S,
     /// The tree of the surface.
-    tree: RayTree<S>,
+    pub(super) tree: RayTree<S>,
     /// The distance that other parts of the surface have from simple triangles.
     clearance: f64,
     /// The triangle beyond each edge, or [`NO_TRIANGLE`].
@@ -104,11 +104,6 @@ impl<S: SharedSoup> Certificates<S> {
             found.find_patches();
         }
         Ok(found)
-    }
-
-    /// Returns the tree of the surface.
-    pub(super) fn tree(&self) -> &RayTree<S> {
-        &self.tree
     }
 
     fn weld(&self, corners: [u32; 3]) -> [u32; 3] {
@@ -194,7 +189,7 @@ impl<S: SharedSoup> Certificates<S> {
     }
 
     /// Returns the side of a patch from which the surface is reached from a query, or `None` if that is not proved.
-    pub(super) fn side(&self, query: &Point3<f64>, closest: &ClosestFeature) -> Option<PatchSide> {
+    pub(super) fn side<T: Real>(&self, query: &Point3<f64>, closest: &Closest<T>) -> Option<PatchSide> {
         let soup = &*self.soup;
         let triangle = closest.primitive.index();
         let patch = self.patches[triangle];
@@ -217,7 +212,7 @@ impl<S: SharedSoup> Certificates<S> {
                 Approach { offset, normal: fan.normal, reach: fan.reach, magnitude: largest(&[offset]) }
             }
         };
-        let is_front = approach.is_from_front(closest.lower_bound, self.clearance)?;
+        let is_front = approach.is_from_front(closest.lower_bound.to_f64(), self.clearance)?;
         Some(PatchSide { patch, is_front })
     }
 

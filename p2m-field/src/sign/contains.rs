@@ -165,7 +165,7 @@ impl<I, S: SharedSoup> SignedDistance<I, S> {
         let normal = unit_normal(corners(soup, soup.triangles()[triangle]));
         let (mut low, mut high, mut most, mut count) = (f64::INFINITY, f64::NEG_INFINITY, ball.radius, 0);
         let height = |point: V3| dot(sub(point, origin), normal.unwrap_or_default());
-        let tree = certificates.tree().tree();
+        let tree = certificates.tree.tree();
         let is_near = |id: p2m_core::PrimitiveId| {
             let [a, b, c] = corners(soup, soup.triangles()[id.index()]);
             (0..3).all(|k| a[k].min(b[k]).min(c[k]) <= bounds.max[k] && a[k].max(b[k]).max(c[k]) >= bounds.min[k])

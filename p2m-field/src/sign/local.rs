@@ -23,7 +23,7 @@ pub(super) struct Local {
     radius: f64,
     polynomial: Polynomial,
     /// A bound on the error of the polynomial in the ball.
-    error: f64,
+    pub(super) error: f64,
     /// The triangles that are not in the polynomial.
     pub(super) near: Vec<u32>,
     /// The terms of the polynomial.
@@ -154,11 +154,6 @@ impl Local {
         let Polynomial { value, slope } = self.polynomial;
         let value = value + dot(slope, scaled(sub(q, self.centre), 1.0 / self.radius)) + near.value;
         Estimate { value, error: self.error + near.error + POLYNOMIAL_ROUNDING }
-    }
-
-    /// Returns the bound on the error of the polynomial.
-    pub(super) fn error(&self) -> f64 {
-        self.error
     }
 
     /// Returns the value in the centre, and a bound on how far the sum in the ball is from it.

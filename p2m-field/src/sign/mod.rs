@@ -51,9 +51,10 @@ use nalgebra::Point3;
 use p2m_bvh::TreeIndex;
 use p2m_core::batch::{self, BatchOptions};
 use p2m_core::{Aabb, BatchAnswer, Closest, ClosestPoint, Hits, Position, QueryOptions, Ray, RayQuery, Real, Soup};
+use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 use std::sync::{Arc, OnceLock};
 use surface::Surface;
-use types::{ClosestFeature, Counter, Flag, check_kinds, ray};
+use types::{check_kinds, ray};
 
 /// An index over triangles whose answers have signs.
 ///
@@ -82,7 +83,7 @@ use types::{ClosestFeature, Counter, Flag, check_kinds, ray};
 #[derive(Clone)]
 pub struct SignedDistance<I, S> {
     index: I,
-    signs: Box<Signs<S>>,
+    signs: Arc<Signs<S>>,
 }
 
 /// Signed distances by an AABB tree over a scene that is shared.
@@ -102,7 +103,6 @@ const QUERIES_PER_SIGN: usize = 16;
 const BATCH_LEN: usize = 512;
 
 /// The rule of signs of a scene, with the tables that decide them.
-#[derive(Clone)]
 struct Signs<S> {
     soup: S,
     rule: SignRule,
@@ -112,13 +112,13 @@ struct Signs<S> {
     /// Whether signs change at the surface alone.
     is_closed: bool,
     /// The proved facts about the normals of a closed surface, once there are enough queries for them to pay.
-    certificates: OnceLock<Arc<Certificates<S>>>,
+    certificates: OnceLock<Certificates<S>>,
     /// Whether a thread prepares the certificates or has prepared them.
-    preparations: Flag,
+    is_prepared: AtomicBool,
     /// The unit roundoff of the index.
     roundoff: f64,
     bounds: Aabb<f64>,
-    ray_count: Counter,
+    ray_count: AtomicU64,
 }
 
 /// The number of rays per triangle above which certificates are prepared, counting the rays so far and the queries of
@@ -184,7 +184,7 @@ impl<I, S: SharedSoup> SignedDistance<I, S> {
     {
         check_scene(&index, &soup)?;
         let signs = Signs::new(soup, rule, T::UNIT_ROUNDOFF, index.rays().is_some())?;
-        Ok(Self { index, signs: Box::new(signs) })
+        Ok(Self { index, signs: Arc::new(signs) })
     }
 
     /// Returns the rule that decides signs.
@@ -260,24 +260,9 @@ impl<I, S: SharedSoup> SignedDistance<I, S> {
     where
         I: ClosestPoint<T> + Sync,
     {
-        self.closest_points_by(&self.index, queries, options, batch)
-    }
-
-    /// Does the same as [`closest_points`](Self::closest_points), by another index over the same scene.
-    #[doc(hidden)]
-    pub fn closest_points_by<T: Real>(
-        &self,
-        index: &(impl ClosestPoint<T> + Sync + ?Sized),
-        queries: &[Point3<T>],
-        options: &QueryOptions<T>,
-        batch: &BatchOptions,
-    ) -> Vec<Option<Signed<T>>>
-    where
-        I: ClosestPoint<T> + Sync,
-    {
         self.signs.prepare_for(queries.len());
         let mut out = vec![None; queries.len()];
-        answer_parts(index, queries, options, batch, &mut out, || {
+        answer_parts(&self.index, queries, options, batch, &mut out, || {
             |query: &Point3<T>, found: BatchAnswer<'_, T>| found.closest().map(|closest| self.with_sign(query, closest))
         });
         out
@@ -350,13 +335,13 @@ impl<I, S: SharedSoup> SignedDistance<I, S> {
     where
         I: ClosestPoint<T>,
     {
-        self.signs.sign(&query.map(Real::to_f64), &closest.into(), self.index.rays())
+        self.signs.sign(&query.map(Real::to_f64), closest, self.index.rays())
     }
 
     /// Returns the number of queries so far whose sign a ray or a winding number has decided, because the
     /// closest point did not.
     pub fn ambiguous_count(&self) -> u64 {
-        self.signs.ray_count.get()
+        self.signs.ray_count.load(Ordering::Relaxed)
     }
 }
 
@@ -429,28 +414,28 @@ impl<S: SharedSoup> Signs<S> {
         }
         let winding = WindingNumbers::of_surface(soup.clone(), &surface, !has_rays)?;
         let is_closed = rule == SignRule::Parity || winding.is_closed();
-        let (certificates, preparations, ray_count) = (OnceLock::new(), Flag::default(), Counter::default());
+        let (certificates, is_prepared, ray_count) = (OnceLock::new(), AtomicBool::default(), AtomicU64::default());
         let bounds = soup.aabb();
-        Ok(Self { soup, rule, winding, is_even, is_closed, certificates, preparations, roundoff, bounds, ray_count })
+        Ok(Self { soup, rule, winding, is_even, is_closed, certificates, is_prepared, roundoff, bounds, ray_count })
     }
 
     /// Prepares the certificates if they pay for this number of queries.
     fn prepare_for(&self, queries: usize) {
-        let rays = self.ray_count.get() as f64 + queries as f64;
+        let rays = self.ray_count.load(Ordering::Relaxed) as f64 + queries as f64;
         let pays = self.is_closed && rays > RAYS_PER_TRIANGLE * self.soup.triangles().len() as f64;
         // Only one thread prepares them. The others go on with rays, because a thread that waits for work that it could
         // do itself may wait forever.
-        if pays && self.certificates.get().is_none() && self.preparations.set() {
+        if pays && self.certificates.get().is_none() && !self.is_prepared.swap(true, Ordering::Relaxed) {
             // An index over the scene was built, so a tree can be built as well.
             if let Ok(certificates) = Certificates::new(self.soup.clone(), self.roundoff) {
-                let _ = self.certificates.set(Arc::new(certificates));
+                let _ = self.certificates.set(certificates);
             }
         }
     }
 
     /// Returns the sign of a query by its closest point. Rays are cast on `rays`, if it is given.
-    fn sign<T: Real>(&self, query: &Point3<f64>, closest: &ClosestFeature, rays: Option<&dyn RayQuery<T>>) -> Sign {
-        if closest.distance == 0.0 {
+    fn sign<T: Real>(&self, query: &Point3<f64>, closest: &Closest<T>, rays: Option<&dyn RayQuery<T>>) -> Sign {
+        if closest.distance == T::zero() {
             return Sign::Boundary;
         }
         if query.iter().any(|x| !x.is_finite()) {
@@ -463,11 +448,11 @@ impl<S: SharedSoup> Signs<S> {
         if let Some((certificates, side)) = certificates.and_then(|all| Some((all, all.side(query, closest)?))) {
             return self.sign_of(certificates.winding_number(side, || self.crossings(query, rays)));
         }
-        self.ray_count.increment();
+        self.ray_count.fetch_add(1, Ordering::Relaxed);
         if certificates.is_none() {
             self.prepare_for(0);
         }
-        if closest.lower_bound <= 0.0 && self.is_on_surface(query, rays) {
+        if closest.lower_bound <= T::zero() && self.is_on_surface(query, rays) {
             return Sign::Boundary;
         }
         self.sign_without_closest_point(query, rays)

@@ -109,8 +109,7 @@ impl SolidAngles {
     /// Returns the sum of the solid angles over 4 pi, refined until `is_enough` says that the estimate is. It is `None`
     /// if the query is on an edge of a triangle, apart from rounding, and the estimate was not enough without it.
     pub(super) fn estimate(&self, query: &Point3<f64>, is_enough: impl Fn(Estimate) -> bool) -> Option<Estimate> {
-        let zero = Estimate { value: 0.0, error: 0.0 };
-        let Some(root) = self.nodes.first() else { return Some(zero) };
+        let Some(root) = self.nodes.first() else { return Some(Estimate::ZERO) };
         let q = self.point(query);
         // Far away the solid angle vanishes: the area is at most 32 for each triangle.
         if q.iter().any(|x| x.abs() > MAX_RELATIVE_COORDINATE) {
@@ -448,7 +447,7 @@ pub(super) fn sum_of_all(soup: &Soup<f64>, query: &Point3<f64>) -> Estimate {
     let bounds = soup.aabb();
     let scale = scale_of([bounds.min, bounds.max, *query].iter().map(|p| p.coords.amax()).fold(0.0, f64::max));
     let q = scaled((*query).into(), scale);
-    let mut sum = Estimate { value: 0.0, error: 0.0 };
+    let mut sum = Estimate::ZERO;
     for triangle in soup.triangles() {
         let triangle = triangle.map(|i| scaled(soup.positions()[i as usize].into(), scale));
         // At an edge the angle is unknown, and so it is where products of lengths underflow.

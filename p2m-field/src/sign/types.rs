@@ -2,9 +2,8 @@
 
 use nalgebra::{Point3, Vector3};
 use p2m_bvh::TreeIndex;
-use p2m_core::{Aabb, Closest, Feature, PrimitiveId, PrimitiveSet, Ray, Real, Soup};
+use p2m_core::{Aabb, Closest, PrimitiveSet, Ray, Real, Soup};
 use std::ops::Deref;
-use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 
 /// The rule that decides which points are inside of a surface.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -129,57 +128,6 @@ impl<T: Real> Signed<T> {
 pub trait SharedSoup: Deref<Target = Soup<f64>> + PrimitiveSet<f64> + Clone + Send + Sync {}
 
 impl<S: Deref<Target = Soup<f64>> + PrimitiveSet<f64> + Clone + Send + Sync> SharedSoup for S {}
-
-/// The part of a closest point that the rule of signs needs, in f64.
-pub(super) struct ClosestFeature {
-    pub(super) primitive: PrimitiveId,
-    pub(super) feature: Feature,
-    pub(super) distance: f64,
-    pub(super) lower_bound: f64,
-}
-
-impl<T: Real> From<&Closest<T>> for ClosestFeature {
-    fn from(closest: &Closest<T>) -> Self {
-        let (distance, lower_bound) = (closest.distance.to_f64(), closest.lower_bound.to_f64());
-        Self { primitive: closest.primitive, feature: closest.feature, distance, lower_bound }
-    }
-}
-
-/// A counter that threads share. A clone begins with the count of its original.
-#[derive(Default)]
-pub(super) struct Counter(AtomicU64);
-
-impl Counter {
-    pub(super) fn increment(&self) {
-        self.0.fetch_add(1, Ordering::Relaxed);
-    }
-    pub(super) fn get(&self) -> u64 {
-        self.0.load(Ordering::Relaxed)
-    }
-}
-
-impl Clone for Counter {
-    fn clone(&self) -> Self {
-        Self(AtomicU64::new(self.get()))
-    }
-}
-
-/// A flag that one of several threads sets. A clone is not set.
-#[derive(Default)]
-pub(super) struct Flag(AtomicBool);
-
-impl Flag {
-    /// Sets the flag, and returns whether it was not set before.
-    pub(super) fn set(&self) -> bool {
-        !self.0.swap(true, Ordering::Relaxed)
-    }
-}
-
-impl Clone for Flag {
-    fn clone(&self) -> Self {
-        Self::default()
-    }
-}
 
 /// Returns an error if a primitive is not a triangle.
 pub(super) fn check_kinds(soup: &Soup<f64>) -> Result<(), SignError> {

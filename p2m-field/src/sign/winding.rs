@@ -175,7 +175,7 @@ impl<S: SharedSoup> WindingNumbers<S> {
 }
 
 impl Estimate {
-    const ZERO: Self = Self { value: 0.0, error: 0.0 };
+    pub(super) const ZERO: Self = Self { value: 0.0, error: 0.0 };
 
     /// Returns the winding number of a surface, given this sum over its caps and the number of crossings with both.
     #[allow(clippy::cast_precision_loss, reason = "there are fewer than 2^30 crossings")]

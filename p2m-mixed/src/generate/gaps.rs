@@ -58,11 +58,7 @@ fn about_centroids(scene: &Soup<f64>, factor: f64) -> Result<Soup<f64>, Generate
     for element in scene.elements() {
         let corners = element.indices().iter().map(|&i| scene.positions()[i as usize].coords);
         let count = f64::from(u8::try_from(element.indices().len()).unwrap_or(u8::MAX));
-        let mut sum = Vector3::zeros();
-        for corner in corners.clone() {
-            sum += corner;
-        }
-        let centroid = sum / count;
+        let centroid = corners.clone().sum::<Vector3<f64>>() / count;
         elements.push(match element {
             Element::Point(_) => Element::Point(first),
             Element::Segment(_) => Element::Segment([first, first + 1]),

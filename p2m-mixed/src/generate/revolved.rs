@@ -90,7 +90,7 @@ pub fn sphere(options: &Sphere) -> Result<Soup<f64>, GenerateError> {
         let SinCos { sin, cos } = SinCos::of_fraction(u64::from(i), 2 * bands);
         (sin, 0.0 - cos)
     };
-    revolve(meridians, -1.0, 1.0, (1..bands).map(parallel))
+    revolve(meridians, (1..bands).map(parallel))
 }
 
 /// Makes a closed cone of radius 1 from its base at z = -1 to its apex at z = 1. It has
@@ -104,7 +104,7 @@ pub fn cone(options: &Cone) -> Result<Soup<f64>, GenerateError> {
     check_size(sides, &[bands, cap_bands])?;
     let base = (1..=cap_bands).map(|i| (ratio(i, cap_bands), -1.0));
     let slope = (1..bands).map(|i| (ratio(bands - i, bands), 2.0 * ratio(i, bands) - 1.0));
-    revolve(sides, -1.0, 1.0, base.chain(slope))
+    revolve(sides, base.chain(slope))
 }
 
 /// Makes a closed cylinder of radius 1 from z = -1 to z = 1. It has `sides` (2 `bands` + 4 `cap_bands` - 2) triangles.
@@ -118,7 +118,7 @@ pub fn cylinder(options: &Cylinder) -> Result<Soup<f64>, GenerateError> {
     let base = (1..=cap_bands).map(|i| (ratio(i, cap_bands), -1.0));
     let wall = (1..bands).map(|i| (1.0, 2.0 * ratio(i, bands) - 1.0));
     let lid = (0..cap_bands).map(|i| (ratio(cap_bands - i, cap_bands), 1.0));
-    revolve(sides, -1.0, 1.0, base.chain(wall).chain(lid))
+    revolve(sides, base.chain(wall).chain(lid))
 }
 
 fn ratio(part: u32, whole: u32) -> f64 {
@@ -135,18 +135,12 @@ fn check_sides_and_bands(sides: u32, bands: u32, cap_bands: u32) -> Result<(), G
 /// than bands.
 fn check_size(sides: u32, bands: &[u32]) -> Result<(), GenerateError> {
     let bands: u128 = bands.iter().copied().map(u128::from).sum();
-    capacity(2 * u128::from(sides) * (bands - 1))?;
-    Ok(())
+    capacity(2 * u128::from(sides) * (bands - 1)).map(drop)
 }
 
 /// Makes the closed surface from the lower pole over rings of given radius and height to the upper pole.
-fn revolve(
-    sides: u32,
-    bottom: f64,
-    top: f64,
-    rings: impl Iterator<Item = (f64, f64)>,
-) -> Result<Soup<f64>, GenerateError> {
-    let mut positions = vec![Point3::new(0.0, 0.0, bottom)];
+fn revolve(sides: u32, rings: impl Iterator<Item = (f64, f64)>) -> Result<Soup<f64>, GenerateError> {
+    let mut positions = vec![Point3::new(0.0, 0.0, -1.0)];
     let mut triangles = Vec::new();
     let next = |side: u32| if side + 1 == sides { 0 } else { side + 1 };
     // `first` is the first vertex of the current ring.
@@ -168,7 +162,7 @@ fn revolve(
         }
     }
     let pole = first + sides;
-    positions.push(Point3::new(0.0, 0.0, top));
+    positions.push(Point3::new(0.0, 0.0, 1.0));
     triangles.extend((0..sides).map(|side| [first + side, first + next(side), pole]));
     Ok(Soup::from_triangles(positions, triangles)?)
 }

@@ -77,11 +77,9 @@ impl Scalar {
 
 /// A source of the numbers in binary files.
 pub(crate) trait Bytes {
-    type Error;
+    fn array<const N: usize>(&mut self) -> Result<[u8; N], Reason>;
 
-    fn array<const N: usize>(&mut self) -> Result<[u8; N], Self::Error>;
-
-    fn ordered<const N: usize>(&mut self, big_endian: bool) -> Result<[u8; N], Self::Error> {
+    fn ordered<const N: usize>(&mut self, big_endian: bool) -> Result<[u8; N], Reason> {
         let mut bytes = self.array()?;
         if big_endian {
             bytes.reverse();
@@ -92,7 +90,7 @@ pub(crate) trait Bytes {
     /// Reads a number and rounds it to double precision. Only large 64-bit integers change.
     #[inline]
     #[allow(clippy::cast_precision_loss, reason = "documented")]
-    fn number(&mut self, scalar: Scalar, big_endian: bool) -> Result<f64, Self::Error> {
+    fn number(&mut self, scalar: Scalar, big_endian: bool) -> Result<f64, Reason> {
         Ok(match scalar {
             Scalar::I8 => f64::from(i8::from_le_bytes(self.array()?)),
             Scalar::U8 => f64::from(u8::from_le_bytes(self.array()?)),
@@ -109,8 +107,6 @@ pub(crate) trait Bytes {
 }
 
 impl Bytes for &[u8] {
-    type Error = Reason;
-
     #[inline]
     fn array<const N: usize>(&mut self) -> Result<[u8; N], Reason> {
         let (array, rest) = self.split_first_chunk().ok_or(Reason::UnexpectedEnd)?;
@@ -129,8 +125,6 @@ pub(crate) struct ByteReader<R> {
 }
 
 impl<R: BufRead> Bytes for ByteReader<R> {
-    type Error = Reason;
-
     fn array<const N: usize>(&mut self) -> Result<[u8; N], Reason> {
         self.start = self.offset;
         let mut bytes = [0; N];

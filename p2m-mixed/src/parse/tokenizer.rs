@@ -7,7 +7,7 @@ use std::io::BufRead;
 
 /// Reads the tokens of a text, whatever lines they are on.
 pub(crate) struct Tokenizer<R> {
-    lines: LineReader<R>,
+    pub(crate) lines: LineReader<R>,
     /// The end of the last token in the current line.
     at: usize,
     /// Whether `#` starts a comment.
@@ -74,10 +74,6 @@ impl<R: BufRead> Tokenizer<R> {
         let start = std::mem::replace(&mut self.at, self.lines.bytes().len());
         &self.lines.bytes()[start..]
     }
-
-    pub(crate) fn into_lines(self) -> LineReader<R> {
-        self.lines
-    }
 }
 
 impl<R: BufRead> Tokenizer<Source<R>> {
@@ -89,10 +85,5 @@ impl<R: BufRead> Tokenizer<Source<R>> {
         }
         self.at = self.lines.bytes().len();
         Some(self.lines.blocks())
-    }
-
-    /// Notes that lines were read from [`Self::blocks`].
-    pub(crate) fn skip_lines(&mut self, lines: u64, bytes: u64) {
-        self.lines.skip_lines(lines, bytes);
     }
 }

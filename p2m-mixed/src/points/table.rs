@@ -332,16 +332,10 @@ fn split(line: &[u8], delimiter: u8) -> Option<Vec<&[u8]>> {
 /// Returns the columns named like all coordinates, or else like the two coordinates of an entry of `flat`.
 fn coordinates<R: Row<N>, const N: usize>(names: &[&[u8]], flat: &[[&'static str; 2]]) -> Option<[Option<usize>; N]> {
     let find = |n: &str| names.iter().position(|f| first_word(f).eq_ignore_ascii_case(n.as_bytes()));
-    let all = |expected: &[&'static str; N]| {
-        let columns = expected.map(find);
-        columns.iter().all(Option::is_some).then_some(columns)
-    };
-    let two = |expected: &[&'static str; 2]| {
-        let columns = expected.map(find);
-        let all = columns.iter().all(Option::is_some);
-        all.then(|| std::array::from_fn(|k| columns.get(k).copied().flatten()))
-    };
-    R::COLUMNS.iter().find_map(all).or_else(|| flat.iter().find_map(two))
+    let all = R::COLUMNS.iter().map(|names| &names[..]).chain(flat.iter().map(|names| &names[..]));
+    let mut found = all.map(|expected| expected.iter().map(|name| find(name)).collect::<Vec<_>>());
+    let columns = found.find(|columns| columns.iter().all(Option::is_some))?;
+    Some(std::array::from_fn(|k| columns.get(k).copied().flatten()))
 }
 
 /// Returns the columns of the coordinates by the names in a header.

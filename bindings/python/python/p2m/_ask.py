@@ -156,12 +156,9 @@ class Ask:
         if isinstance(batch, Mapping):
             return self._ask_mapping(batch)
         library = type(batch).__module__.partition(".")[0]
-        if library == "pyarrow":
-            return self._ask_arrow(batch)
-        if library == "pandas":
-            return self._ask_pandas(batch)
-        if library == "polars":
-            return self._ask_polars(batch)
+        ways = {"pyarrow": self._ask_arrow, "pandas": self._ask_pandas, "polars": self._ask_polars}
+        if library in ways:
+            return ways[library](batch)
         raise TypeError(
             f"batch: {type(batch).__name__} is neither a RecordBatch or Table of Arrow, a dictionary of arrays, an "
             "array, nor a DataFrame of pandas or polars"

@@ -138,10 +138,9 @@ class Deviation:
         if self.tolerance is not None:
             for mark in (-self.tolerance, self.tolerance) if self.is_signed else (self.tolerance,):
                 bars.axvline(mark, color="black", linestyle="--")
-        bars.set_xlabel(f"{what} ({self.unit}), ends include what is beyond")
-        bars.set_ylabel("points")
         mean, rms = self.statistics["mean"], self.statistics["rms"]
-        bars.set_title(f"mean {mean:.4g}, root mean square {rms:.4g} {self.unit}")
+        title = f"mean {mean:.4g}, root mean square {rms:.4g} {self.unit}"
+        bars.set(xlabel=f"{what} ({self.unit}), ends include what is beyond", ylabel="points", title=title)
         return figure
 
     def save(

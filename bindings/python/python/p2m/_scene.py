@@ -220,17 +220,7 @@ class Scene(Shared):
         lines = _runs(np.asarray(mesh.lines))
         segments = [np.stack([line[:-1], line[1:]], axis=1) for line in lines]
         points = _runs(np.asarray(mesh.verts))
-        scene = Scene(
-            vertices,
-            triangles=triangles,
-            segments=np.concatenate(segments) if segments else None,
-            points=np.concatenate(points) if points else None,
-        )
-        return scene._with_sources(sources)
-
-    def _with_sources(self, triangles: NDArray[Any]) -> Scene:
-        """Return the scene with the numbers of the polygons of its triangles as their sources."""
-        return Scene._from_raw(self._raw.with_sources(np.ascontiguousarray(triangles, np.uint32)))
+        return _joined(vertices, ([triangles], segments, points), sources)
 
     @staticmethod
     def from_meshio(mesh: Any) -> Scene:
@@ -255,13 +245,8 @@ class Scene(Shared):
                 points.append(cells.reshape(-1))
             else:
                 raise ValueError(f"cells: there are cells of the type {block.type!r}, which are no triangles or lines")
-        scene = Scene(
-            _in_space(np.asarray(mesh.points)),
-            triangles=np.concatenate(triangles) if triangles else None,
-            segments=np.concatenate(segments) if segments else None,
-            points=np.concatenate(points) if points else None,
-        )
-        return scene._with_sources(np.concatenate(sources))
+        vertices = _in_space(np.asarray(mesh.points))
+        return _joined(vertices, (triangles, segments, points), np.concatenate(sources))
 
     @property
     def counts(self) -> Counts:
@@ -401,6 +386,12 @@ class Scene(Shared):
 
 def _scene_from_bytes(data: bytes) -> Scene:
     return Scene._from_raw(_p2m.Scene.from_bytes(data))
+
+
+def _joined(vertices: NDArray[Any], kinds: Iterable[list[NDArray[Any]]], sources: NDArray[Any]) -> Scene:
+    """Return a scene of arrays of triangles, of segments and of points, with the polygon of each triangle."""
+    scene = Scene(vertices, *(np.concatenate(arrays) if arrays else None for arrays in kinds))
+    return Scene._from_raw(scene._raw.with_sources(np.ascontiguousarray(sources, np.uint32)))
 
 
 def _in_space(points: NDArray[Any]) -> NDArray[Any]:

@@ -51,7 +51,7 @@ pub(super) fn read(source: Source<impl BufRead>, name: &str, builder: SceneBuild
     let header = read_header(&mut tokens).map_err(|reason| fail(tokens.line(), reason))?;
     let Some(counts) = header.counts else {
         let line = tokens.line();
-        let (reader, offset) = tokens.into_lines().into_reader().map_err(|e| fail(line, Reason::Io(e)))?;
+        let (reader, offset) = tokens.lines.into_reader().map_err(|e| fail(line, Reason::Io(e)))?;
         let mut bytes = ByteReader::new(reader, offset);
         return read_binary(&mut bytes, header.extras, builder)
             .map_err(|reason| ReadError::new(name, FileLocation::Byte(bytes.start()), reason));
@@ -151,34 +151,31 @@ fn read_text(
                 }
             };
         }
-        let mut extras = 0;
-        while let Some(token) = tokens.next_on_line() {
-            parse_number(token)?;
-            extras += 1;
-            if is_wrapped {
-                // The vertex extends over several lines, so the likely cause is a missing number on an earlier line.
-                return Err(Reason::ExtraWord { text: quote(token) });
-            }
-        }
-        off.vertex(position, extras)?;
+        // If the vertex extends over several lines, the likely cause is a missing number on an earlier line.
+        off.vertex(position, extras(tokens, if is_wrapped { 0 } else { u64::MAX })?)?;
     }
     for face in 0..faces {
         let corners = parse_integer(tokens.next()?)?;
         for _ in 0..off.start_face(corners)? {
             off.corner(parse_integer(tokens.next()?)?)?;
         }
-        let mut extras = 0;
-        while let Some(token) = tokens.next_on_line() {
-            parse_number(token)?;
-            extras += 1;
-            if extras > MAX_COLOUR_NUMBERS {
-                return Err(Reason::ExtraWord { text: quote(token) });
-            }
-        }
-        off.end_face(face, extras)?;
+        off.end_face(face, extras(tokens, MAX_COLOUR_NUMBERS)?)?;
     }
     let rest = tokens.skip_rest()?;
     off.finish(rest, "words after the last face")
+}
+
+/// Passes the numbers on the rest of a line, of which there may be so many, and returns how many there are.
+fn extras(tokens: &mut Tokenizer<impl BufRead>, most: u64) -> Result<u64, Reason> {
+    let mut extras = 0;
+    while let Some(token) = tokens.next_on_line() {
+        parse_number(token)?;
+        extras += 1;
+        if extras > most {
+            return Err(Reason::ExtraWord { text: quote(token) });
+        }
+    }
+    Ok(extras)
 }
 
 fn read_binary(bytes: &mut ByteReader<impl BufRead>, extras: u64, builder: SceneBuilder<'_>) -> Result<Scene, Reason> {

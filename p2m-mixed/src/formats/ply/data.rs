@@ -79,7 +79,7 @@ impl Start {
 
 /// Reads the numbers of a PLY file sequentially.
 pub(super) struct Data<'n, R> {
-    file: &'n str,
+    pub(super) file: &'n str,
     pub(super) source: Encoded<R>,
 }
 
@@ -111,11 +111,6 @@ impl<'n, R: BufRead> Data<'n, R> {
             }
         };
         Self { file, source }
-    }
-
-    /// Returns the name of the file.
-    pub(super) fn file(&self) -> &'n str {
-        self.file
     }
 
     /// Skips the rest of the file. Returns its number of bytes (binary) or words (text), and their description.

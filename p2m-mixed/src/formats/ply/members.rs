@@ -253,7 +253,7 @@ impl<'a> Members<'a> {
     ) -> Result<(), ReadError> {
         let mut member = std::mem::take(&mut self.member);
         let id = self.limits.read_member(data, properties, plan, &mut member)?;
-        let added = self.add_or_keep(plan.form, &member, id, number, data.file(), |reason| data.error(|| reason));
+        let added = self.add_or_keep(plan.form, &member, id, number, data.file, |reason| data.error(|| reason));
         self.member = member;
         added
     }
@@ -266,7 +266,7 @@ impl<'a> Members<'a> {
         plan: &MemberPlan,
     ) -> Result<usize, ReadError> {
         let member_rows = MemberRows { limits: self.limits, properties: &element.properties, plan };
-        let file = data.file();
+        let file = data.file;
         let mut number = 0;
         data.read_rows(&element.properties, element.count, &member_rows, |rows| {
             let (_, list) = &rows.parsed;

@@ -162,7 +162,7 @@ impl VertexRows<'_> {
         data: &mut Data<'_, Source<impl BufRead>>,
         members: &mut Members<'_>,
     ) -> Result<u64, ReadError> {
-        let file = data.file();
+        let file = data.file;
         data.read_rows(&self.element.properties, self.element.count, self, |rows| {
             for (row, &position) in rows.parsed[..rows.count].iter().enumerate() {
                 members.vertex(position, None).map_err(|reason| rows.error(file, row, reason, self))?;

@@ -22,20 +22,19 @@ pub(super) trait ReadRow<T>: Sync {
 #[derive(Debug)]
 pub(super) struct Unusual;
 
-/// The numbers in a block, which are read row by row.
-trait RowsOfBlock: Numbers {
-    /// Returns the end of the row that was read last.
-    fn position(&self) -> usize;
-
-    /// Returns whether there are no more rows.
-    fn is_end(&self) -> bool;
-}
-
-/// Reads rows until one has to be left to the sequential reader, and appends the end of each row.
-fn read_all<T>(rows: &mut impl RowsOfBlock, read_row: &impl ReadRow<T>, parsed: &mut T, ends: &mut Vec<usize>) {
-    while !rows.is_end() && read_row.read(rows, parsed).is_ok() {
-        ends.push(rows.position());
+/// Reads the rows of a block up to the first one that is left to the sequential reader. Returns what was read, and the
+/// end of each row by `position`.
+fn read_all<T: Default, N: Numbers>(
+    mut rows: N,
+    len: usize,
+    position: impl Fn(&N) -> usize,
+    read_row: &impl ReadRow<T>,
+) -> (T, Vec<usize>) {
+    let (mut parsed, mut ends) = (T::default(), Vec::new());
+    while position(&rows) < len && read_row.read(&mut rows, &mut parsed).is_ok() {
+        ends.push(position(&rows));
     }
+    (parsed, ends)
 }
 
 /// The rows of a text, each of which is on one line.
@@ -59,23 +58,13 @@ impl<'a> LineRows<'a> {
                 self.is_start = false;
                 return Ok(token);
             }
-            if !self.is_start || self.is_end() {
+            if !self.is_start || self.next == self.bytes.len() {
                 return Err(Unusual);
             }
             let line;
             (line, self.next) = line_end(self.bytes, self.next);
             self.line = Tokens::new(line);
         }
-    }
-}
-
-impl RowsOfBlock for LineRows<'_> {
-    fn position(&self) -> usize {
-        self.next
-    }
-
-    fn is_end(&self) -> bool {
-        self.next == self.bytes.len()
     }
 }
 
@@ -108,19 +97,7 @@ impl Numbers for LineRows<'_> {
 struct ByteRows<'a> {
     /// The bytes that were not read yet.
     rest: &'a [u8],
-    /// The number of bytes of the block.
-    length: usize,
     big_endian: bool,
-}
-
-impl RowsOfBlock for ByteRows<'_> {
-    fn position(&self) -> usize {
-        self.length - self.rest.len()
-    }
-
-    fn is_end(&self) -> bool {
-        self.rest.is_empty()
-    }
 }
 
 impl Numbers for ByteRows<'_> {
@@ -206,20 +183,12 @@ impl<R: BufRead> Data<'_, Source<R>> {
             Start::Byte { big_endian, .. } if uncut > 0 => Some(cut_rows(bytes, properties, big_endian, &mut uncut)),
             Start::Byte { .. } => None,
         };
-        let parse = |bytes: &[u8]| {
-            let (mut parsed, mut ends) = (T::default(), Vec::new());
-            match start {
-                Start::Line(_) => read_all(&mut LineRows::new(bytes), read_row, &mut parsed, &mut ends),
-                Start::Byte { big_endian, .. } => {
-                    read_all(
-                        &mut ByteRows { rest: bytes, length: bytes.len(), big_endian },
-                        read_row,
-                        &mut parsed,
-                        &mut ends,
-                    );
-                }
+        let parse = |bytes: &[u8]| match start {
+            Start::Line(_) => read_all(LineRows::new(bytes), bytes.len(), |rows| rows.next, read_row),
+            Start::Byte { big_endian, .. } => {
+                let rows = ByteRows { rest: bytes, big_endian };
+                read_all(rows, bytes.len(), |rows| bytes.len() - rows.rest.len(), read_row)
             }
-            (parsed, ends)
         };
         let mut next = start;
         let mut left = count;
@@ -234,7 +203,7 @@ impl<R: BufRead> Data<'_, Source<R>> {
             Ok((left == 0 || used < bytes.len()).then_some(used))
         });
         match (&mut self.source, start, next) {
-            (Encoded::Text(tokens), Start::Line(from), Start::Line(to)) => tokens.skip_lines(to - from, passed),
+            (Encoded::Text(tokens), Start::Line(from), Start::Line(to)) => tokens.lines.skip_lines(to - from, passed),
             (Encoded::Binary { bytes, .. }, ..) => bytes.skip_blocks(passed),
             _ => {}
         }
@@ -255,9 +224,9 @@ fn cut_rows(bytes: &[u8], properties: &[Property], big_endian: bool, count: &mut
         return usize::try_from(rows * size).unwrap_or(0);
     }
     let mut end = 0;
-    let mut data = ByteRows { rest: bytes, length: bytes.len(), big_endian };
+    let mut data = ByteRows { rest: bytes, big_endian };
     while *count > 0 && properties.iter().all(|property| data.skip(property.layout).is_ok()) {
-        end = data.position();
+        end = bytes.len() - data.rest.len();
         *count -= 1;
         if end == bytes.len() {
             break;
