@@ -126,7 +126,6 @@ pub const fn searches<V: Volume>() -> Searches<V> {
 pub static COMPILED_SEARCHES: Searches<Aabb<f64>> = searches();
 
 /// The exact tests for the library's collector, which this crate compiles.
-#[cfg(not(test))]
 #[used]
 static COMPILED_TESTS: fn(&mut ExactTests<'static, 'static, p2m_core::Hits<'static>>, usize, usize) -> Option<f64> =
     ExactTests::test;

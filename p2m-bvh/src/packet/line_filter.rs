@@ -11,7 +11,7 @@
 use super::layout::{GRID_MAX, LANES, Packet};
 use super::line::RayLine;
 use super::member::Kind;
-use p2m_core::engine::simd::{InstructionSet, Lanes};
+use p2m_core::engine::simd::{InstructionSet, Lanes, out_of_line};
 
 /// A line in the frame of a packet, with an origin near the centre of the packet.
 struct PacketLine {
@@ -50,7 +50,7 @@ impl Packet {
             LinePosition::Beside => 0,
             LinePosition::Unknown => self.lanes(),
             LinePosition::Near(local) if is_inlined => self.lanes_near::<I>(&local) & self.lanes(),
-            LinePosition::Near(local) => self.lanes_near_out_of_line::<I>(&local) & self.lanes(),
+            LinePosition::Near(local) => out_of_line(|| self.lanes_near::<I>(&local)) & self.lanes(),
         }
     }
 
@@ -97,12 +97,6 @@ impl Packet {
             low: ((low - low_error).max(f64::NEG_INFINITY) as f32).next_down(),
             high: ((high + high_error).min(f64::INFINITY) as f32).next_up(),
         })
-    }
-
-    /// Runs [`lanes_near`](Self::lanes_near) out of line.
-    #[inline(never)]
-    fn lanes_near_out_of_line<I: InstructionSet>(&self, line: &PacketLine) -> u32 {
-        self.lanes_near::<I>(line)
     }
 
     /// Returns one bit per lane: whether its projection reaches the origin.

@@ -163,11 +163,8 @@ impl<V: VolumeNodes, C: Collector> Visitor<V> for NearestVisitor<'_, V, C> {
     }
     #[inline(always)]
     fn visit_packet<I: InstructionSet>(&mut self, number: usize) -> ControlFlow<()> {
-        if self.state.collector.has_inlined_filters() {
-            self.state.packet_inlined_if::<I>(is_inlined::<V, I>(), number, self.state.leaves.packets[number].lanes());
-        } else {
-            self.state.run_of_packets::<I>(number);
-        }
+        let is_inlined = self.state.collector.has_inlined_filters() && is_inlined::<V, I>();
+        self.state.packet_inlined_if::<I>(is_inlined, number, self.state.leaves.packets[number].lanes());
         ControlFlow::Continue(())
     }
     #[inline(always)]

@@ -169,7 +169,7 @@ impl<'a, C: Collector> SearchState<'a, C> {
         if is_inlined {
             self.packet_inline::<I>(number, lanes);
         } else {
-            I::call(OnePacket { state: self, number, lanes });
+            I::call(Packets { state: self, number, lanes });
         }
     }
 
@@ -224,13 +224,6 @@ impl<'a, C: Collector> SearchState<'a, C> {
         }
     }
 
-    /// Filters a packet, and the packets that continue its run as far as the collector needs their primitives. It is
-    /// out of line, so that it is compiled once for all volumes.
-    #[inline(always)]
-    pub(super) fn run_of_packets<I: InstructionSet>(&mut self, number: usize) {
-        I::call(RunOfPackets { state: self, number });
-    }
-
     /// Returns the lower bound of a candidate in the frame of the tree, given the square that the filter of its packet
     /// found.
     #[inline(always)]
@@ -279,42 +272,29 @@ impl<'a, C: Collector> SearchState<'a, C> {
     }
 }
 
-/// The filters of a run of packets as a kernel.
-struct RunOfPackets<'a, 'b, C> {
+/// The filters of some lanes of a packet, and of the packets that continue its run as far as the collector wants their
+/// primitives, as a kernel.
+struct Packets<'a, 'b, C> {
     state: &'a mut SearchState<'b, C>,
     number: usize,
+    lanes: u32,
 }
 
-impl<C: Collector> SimdKernel for RunOfPackets<'_, '_, C> {
+impl<C: Collector> SimdKernel for Packets<'_, '_, C> {
     type Output = ();
 
     #[inline(always)]
     fn run<I: InstructionSet>(self) {
-        let Self { state, mut number } = self;
+        let Self { state, mut number, mut lanes } = self;
         loop {
-            state.packet::<I>(number, state.leaves.packets[number].lanes());
+            state.packet_inline::<I>(number, lanes);
             if state.collector.is_single_nearest()
                 || !state.leaves.is_rest_wanted(number, state.query, &*state.collector)
             {
                 return;
             }
             number += 1;
+            lanes = state.leaves.packets[number].lanes();
         }
-    }
-}
-
-/// The filter of a packet as a kernel.
-struct OnePacket<'a, 'b, C> {
-    state: &'a mut SearchState<'b, C>,
-    number: usize,
-    lanes: u32,
-}
-
-impl<C: Collector> SimdKernel for OnePacket<'_, '_, C> {
-    type Output = ();
-
-    #[inline(always)]
-    fn run<I: InstructionSet>(self) {
-        self.state.packet_inline::<I>(self.number, self.lanes);
     }
 }

@@ -6,7 +6,7 @@ use crate::tree::frame_line::FrameLine;
 use crate::tree::node_ref::{NodeRef, WIDTH};
 use p2m_core::Aabb;
 use p2m_core::engine::pairs::{Height, Rows};
-use p2m_core::engine::simd::{InstructionSet, Lanes};
+use p2m_core::engine::simd::{InstructionSet, Lanes, out_of_line};
 use p2m_core::storage::{LoadError, Reader, Writer};
 use std::fmt::Debug;
 
@@ -117,22 +117,12 @@ pub(crate) fn lower_bounds<N: WideNode, L: Lanes>(node: &N, shared: &N::Shared, 
     if L::INLINES || N::INLINES_PORTABLE {
         node.lower_bounds(shared, query)
     } else {
-        lower_bounds_out_of_line(node, shared, query)
+        out_of_line(|| node.lower_bounds(shared, query))
     }
-}
-
-#[inline(never)]
-fn lower_bounds_out_of_line<N: WideNode, L: Lanes>(node: &N, shared: &N::Shared, query: &N::Query) -> L {
-    node.lower_bounds(shared, query)
 }
 
 /// Returns [`WideNode::entries`], inlined or out of line as the lanes prefer.
 #[inline(always)]
 pub(crate) fn entries<N: WideNode, L: Lanes>(node: &N, ray: &N::Ray) -> L {
-    if L::INLINES || N::INLINES_PORTABLE { node.entries(ray) } else { entries_out_of_line(node, ray) }
-}
-
-#[inline(never)]
-fn entries_out_of_line<N: WideNode, L: Lanes>(node: &N, ray: &N::Ray) -> L {
-    node.entries(ray)
+    if L::INLINES || N::INLINES_PORTABLE { node.entries(ray) } else { out_of_line(|| node.entries(ray)) }
 }

@@ -185,3 +185,9 @@ pub trait SimdKernel {
     /// Runs the computation with the vector types of an instruction set.
     fn run<I: InstructionSet>(self) -> Self::Output;
 }
+
+/// Runs a function that is not inlined into the caller.
+#[inline(never)]
+pub fn out_of_line<R>(run: impl FnOnce() -> R) -> R {
+    run()
+}

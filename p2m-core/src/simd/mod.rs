@@ -13,7 +13,9 @@ mod operators;
 mod portable;
 
 pub use isa::{Isa, prefetch, prefetch_lines};
-pub use lanes::{Doubles, EightLanes, Float, InstructionSet, Lanes, SimdKernel, lane_of_key, value_of_key};
+pub use lanes::{
+    Doubles, EightLanes, Float, InstructionSet, Lanes, SimdKernel, lane_of_key, out_of_line, value_of_key,
+};
 pub use portable::Portable;
 
 #[cfg(test)]
