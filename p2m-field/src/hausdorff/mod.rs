@@ -34,9 +34,9 @@
 //! the scalar, eta its smallest subnormal, and s the largest magnitude of a coordinate of the primitive. The middle of
 //! two corners that are off their exact places by e1 and e2 is off by at most (e1 + e2) / 2 + sqrt(3) (1.01 u s + 2
 //! eta): the two halves err by eta / 2 each, their sum in f64 by u s, and the conversion to f32 by u s. So a corner
-//! after k cuts is off by at most k r with r = 2 (u s + 2 eta). Parts of a piece are divided in f64. A point (1 - t) a
-//! + t b between two corners of a part is off by at most 4 r' more than these, where r' is r for f64: the weight, the
-//! products and the sum err by 3 sqrt(3) u s.
+//! after k cuts is off by at most k r with r = 2 (u s + 2 eta). Parts of a piece are divided in f64. A point
+//! (1 - t) a + t b between two corners of a part is off by at most 4 r' more than these, where r' is r for f64: the
+//! weight, the products and the sum err by 3 sqrt(3) u s.
 //!
 //! A point x of the exact piece is the sum of its exact corners with some weights, and the sum of the rounded corners
 //! with the same weights is within k r of x. After l divisions of a part it is within k r + 4 l r' of x. Hence
