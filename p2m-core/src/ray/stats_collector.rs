@@ -6,8 +6,8 @@ use super::line::Ray;
 use crate::PrimitiveId;
 use std::ops::ControlFlow;
 
-/// A collector of ray hits, such as [`Hits`](crate::Hits), with work counters.
-/// [`StatsCollector`](crate::StatsCollector) does the same for closest points.
+/// A collector of ray hits, such as [`Hits`](crate::Hits), with work counters. For closest points
+/// [`IndexStats`](crate::IndexStats) counts the work.
 ///
 /// ```
 /// use nalgebra::{Point3, Vector3};

@@ -25,7 +25,7 @@ fn row(line: &str) -> Result<String, String> {
     let all = if features.starts_with("default") { "" } else { "--no-default-features" };
     let tree = "cargo tree --locked --package p2m --edges normal,build --prefix none --no-dedupe \
         --target x86_64-unknown-linux-gnu --features";
-    let tree = output(&mut command(&format!("{tree} {features} {all}")))?;
+    let tree = output(&mut command(&format!("{tree} {} {all}", features.replace(' ', ","))))?;
     Ok(format!("{features},{}", tree.lines().collect::<BTreeSet<_>>().len()))
 }
 
