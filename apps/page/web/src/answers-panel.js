@@ -1,10 +1,8 @@
 // The panel of query points and their answers: a histogram, the selected answer, and all of them as a table.
 
 import { UNDEFINED } from "./colours.js";
-import { answerRows, explainedWords, featureName } from "./answers.js";
-import {
-  button, copyButton, count, counted, element, fillList, key, number, reveal, stepButtons, stepped, tableHead,
-} from "./text.js";
+import { explainedWords } from "./answers.js";
+import { copyButton, count, counted, element, fillList, key, number, reveal, stepped, tableHead } from "./text.js";
 
 // The number of rows of a page of the table.
 const ROWS = 50;
@@ -25,16 +23,20 @@ export class AnswersPanel {
       parts.push(viewer.figure(() => ({ scale, what, unit: viewer.unit, values, keys })).element);
     }
     this.text = element("dl", { id: "answer", "aria-live": "polite" });
+    const step = (by) =>
+      element("button", { type: "button", onclick: () => this.step(by) }, by > 0 ? "Next" : "Previous");
     const symbol = (kind, text) => key(element("span", { class: `patch ${kind}` }), text);
     parts.push(element("div", { id: "symbols" }, symbol("ringed", "query point, in the colour of its distance"),
       symbol("foot", "its closest point"), ...(viewer.slice ? [symbol("faded", "away from the slice")] : [])));
     const section = add("Answer", "selected",
-      element("p", { class: "buttons" }, ...stepButtons((by) => this.step(by)), copyButton(this.text)), this.text);
+      element("p", { class: "buttons" }, step(-1), step(1), copyButton(this.text)), this.text);
     add(`Distances of ${all}`, "distances", ...parts);
     this.table = element("table", { id: "table" });
     this.page = 0;
+    const turn = (by) => element("button", { type: "button", onclick: () => this.turn(by) },
+      by > 0 ? "Next rows" : "Previous rows");
     section.append(explainedWords(), element("details", { id: "answers" }, element("summary", {}, "All answers as a table"),
-      element("p", { class: "buttons" }, ...stepButtons((by) => this.turn(by), " rows")),
+      element("p", { class: "buttons" }, turn(-1), turn(1)),
       element("div", { class: "scrolled", tabindex: "0", role: "region", "aria-label": "answers" }, this.table)));
     this.turn(0);
     this.select(-1);
@@ -49,10 +51,10 @@ export class AnswersPanel {
     const head = ["query", "x", "y", "z", answers.signed ? "signed distance" : "distance", "primitive", "feature"];
     const rows = [];
     for (let i = first; i < Math.min(answers.length, first + ROWS); i++) {
-      const select = button(String(i), () => this.select(i));
+      const select = element("button", { type: "button", onclick: () => this.select(i) }, String(i));
       const cells = answers.isAnswered(i)
         ? [...[...answers.points.subarray(3 * i, 3 * i + 3)].map((x) => this.viewer.coordinate(x)), number(answers.values[i]),
-            answers.primitives[i], featureName(answers.features[i])]
+            answers.primitives[i], answers.featureName(i)]
         : ["no answer", "", "", "", "", ""];
       rows.push(element("tr", {}, element("td", {}, select), ...cells.map((cell) => element("td", {}, cell))));
     }
@@ -99,7 +101,7 @@ export class AnswersPanel {
       rows.push(["none", "Click a query point, or press n."]);
     } else {
       if (answers.isAnswered(i)) {
-        rows.push(...answerRows(viewer, answers.answer(i)));
+        rows.push(...answers.rows(i, viewer));
         const object = answers.objects?.[i];
         if (object) rows.push(["object", viewer.data.object_names[object - 1]]);
       } else {

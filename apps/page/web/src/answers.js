@@ -2,7 +2,7 @@
 
 import * as three from "three";
 import { ColourScale } from "./colours.js";
-import { fade, geometryOf, pointMaterial, vectorAt } from "./shading.js";
+import { fade, pointMaterial } from "./shading.js";
 import { distanceParts, element, number, sideOf } from "./text.js";
 
 // The opacity of segments to closest points.
@@ -36,10 +36,12 @@ export class AnswersLayer {
     for (let i = 0; i < this.length; i++) {
       for (const [end, from] of [[0, this.from], [3, this.to]]) ends.set(from.subarray(3 * i, 3 * i + 3), 6 * i + end);
     }
+    const geometry = new three.BufferGeometry();
+    geometry.setAttribute("position", new three.BufferAttribute(ends, 3));
     // Segments are quiet, so that they do not hide the scene. The selected one is drawn once more.
     const quiet = new three.LineBasicMaterial({ transparent: true, opacity: QUIET, depthWrite: false });
     quiet.onBeforeCompile = (shader) => fade(shader, this.focus);
-    this.segments = new three.LineSegments(geometryOf(ends), quiet);
+    this.segments = new three.LineSegments(geometry, quiet);
     this.group = new three.Group();
     this.group.add(this.dots, this.feet, this.segments);
     this.selection = new three.Group();
@@ -71,8 +73,10 @@ export class AnswersLayer {
 
   // Makes round dots of a size in pixels, which have rims.
   makeDots(positions, size) {
-    const material = pointMaterial({ size, vertexColors: true, transparent: true }, false, this);
-    return new three.Points(geometryOf(positions, new Uint16Array(positions.length)), material);
+    const geometry = new three.BufferGeometry();
+    geometry.setAttribute("position", new three.BufferAttribute(positions, 3));
+    geometry.setAttribute("color", new three.BufferAttribute(new Uint16Array(positions.length), 3, true));
+    return new three.Points(geometry, pointMaterial({ size, vertexColors: true, transparent: true }, false, this));
   }
 
   isAnswered(i) {
@@ -87,14 +91,15 @@ export class AnswersLayer {
     empty(this.highlight);
     empty(this.selection);
     if (i < 0) return;
-    const query = vectorAt(this.from, i);
+    const at = (array, k) => new three.Vector3(...array.subarray(3 * k, 3 * k + 3));
+    const query = at(this.from, i);
     if (!this.isAnswered(i)) {
       this.selection.add(marker(query, colours.selected, 9));
       return;
     }
-    const vertices = [0, 1, 2].slice(0, this.sizes[i]).map((k) => vectorAt(this.vertices, 3 * i + k));
+    const vertices = [0, 1, 2].slice(0, this.sizes[i]).map((k) => at(this.vertices, 3 * i + k));
     const radius = this.hasSphere && withSphere ? this.lower_bounds[i] / this.frame.scale : 0;
-    drawAnswer(this.selection, query, vectorAt(this.to, i), vertices, this.features[i], radius, colours);
+    drawAnswer(this.selection, query, at(this.to, i), vertices, featureOf(this.features[i]), radius, colours);
   }
 
   // Draws the segment of the answer under the pointer once more, or of none.
@@ -102,16 +107,20 @@ export class AnswersLayer {
     this.pointed = i;
     empty(this.highlight);
     if (i < 0 || !this.isAnswered(i) || i === this.selected) return;
-    const [query, foot] = [this.from, this.to].map((ends) => vectorAt(ends, i));
+    const [query, foot] = [this.from, this.to].map((ends) => new three.Vector3(...ends.subarray(3 * i, 3 * i + 3)));
     this.highlight.add(line([query, foot], colours.selected), marker(query, colours.selected, 9));
   }
 
-  // Returns an answer for `answerRows`.
-  answer(i) {
-    return {
+  // Returns the terms and texts of an answer.
+  rows(i, viewer) {
+    return answerRows(viewer, {
       point: this.points.subarray(3 * i, 3 * i + 3), distance: this.distances[i], signed: this.signed?.[i],
       lowerBound: this.lower_bounds[i], size: this.sizes[i], primitive: this.primitives[i], feature: this.features[i],
-    };
+    });
+  }
+
+  featureName(i) {
+    return featureName(this.features[i]);
   }
 
   // Returns the answer whose query or closest point is the nearest to a position on the screen, if one is within
@@ -134,7 +143,7 @@ export class AnswersLayer {
 }
 
 // Returns the kind of the feature with a code, and its number within the primitive.
-function featureOf(code) {
+export function featureOf(code) {
   return code === 6 ? ["face", 0] : code < 3 ? ["vertex", code] : ["edge", code - 3];
 }
 
@@ -183,8 +192,8 @@ export function empty(group) {
   group.clear();
 }
 
-// Adds an answer to a group: the query, the segment to its closest point, the primitive with these vertices, the
-// feature with a code and the sphere of the lower bound.
+// Adds an answer to a group: the query, the segment to its closest point, the primitive with these vertices, its
+// feature and the sphere of the lower bound.
 export function drawAnswer(group, query, foot, vertices, feature, radius, colours) {
   const { selected } = colours;
   group.add(marker(query, selected, 9), marker(foot, selected, 7), line([query, foot], selected));
@@ -200,7 +209,7 @@ export function drawAnswer(group, query, foot, vertices, feature, radius, colour
   }
   if (size > 1) group.add(line([...vertices, vertices[0]].slice(0, size === 3 ? 4 : 2), colours.selected));
   // The feature that holds the closest point is drawn once more, over everything else.
-  const [kind, number] = size > 0 ? featureOf(feature) : ["none", 0];
+  const [kind, number] = size > 0 ? feature : ["none", 0];
   if (kind === "vertex") group.add(marker(vertices[number], colours.feature, 10));
   if (kind === "edge") group.add(line([vertices[number], vertices[(number + 1) % size]], colours.feature));
   if (radius > 0) {
@@ -217,18 +226,13 @@ export function drawAnswer(group, query, foot, vertices, feature, radius, colour
 // The kinds of primitives, by their numbers of vertices.
 export const KINDS = ["", "point", "segment", "triangle"];
 
-// Returns the scale of distances. If some of them are negative, it is symmetric about zero.
-function distanceScale(values) {
+// Returns the scale of distances. If some of them are negative, it is symmetric about zero. It reaches to the largest
+// distance, unless those of the other sign are much smaller and would have hardly a colour.
+export function distanceScale(values) {
   const [low, high] = limits(values);
   if (!(low < 0)) return new ColourScale("field", 0, high);
-  return signedScale(low, high, 4, high > 0 ? 0.6 : 1);
-}
-
-// Returns a scale of signed distances that is symmetric about zero. It reaches to the largest distance, unless those of
-// the other sign are much smaller and would have hardly a colour: then to so many times these, or to a part of it.
-export function signedScale(low, high, times, part) {
   const [shorter, longer] = [Math.min(-low, high), Math.max(-low, high)];
-  const limit = Math.min(longer, Math.max(times * shorter, part * longer));
+  const limit = high > 0 ? Math.min(longer, Math.max(4 * shorter, 0.6 * longer)) : longer;
   return new ColourScale("signedField", -limit, limit).contain(low, high);
 }
 

@@ -2,7 +2,6 @@
 
 import * as three from "three";
 import { OrbitControls } from "three/examples/jsm/controls/OrbitControls.js";
-import { rangesOf } from "./data.js";
 
 // The vertical angles of view in degrees. From far away the lesser one shows lines that are parallel as parallel: over
 // the depth of the scene, sizes differ by less than 0.3 %. Rounding of depths would be seen with an even lesser one.
@@ -21,7 +20,7 @@ const MAX_PAN = 2;
 // The duration of a flight in milliseconds.
 const FLIGHT = 350;
 // The directions of views, with z up.
-export const PRESETS = {
+const PRESETS = {
   front: [0, -1, 0], back: [0, 1, 0], left: [-1, 0, 0], right: [1, 0, 0], top: [0, 0, 1], bottom: [0, 0, -1],
 };
 
@@ -54,6 +53,10 @@ export class Camera {
   // Returns a direction in the axes of the scene of one with z up.
   fromZUp([x, y, z]) {
     return this.isYUp ? [x, z, -y] : [x, y, z];
+  }
+
+  get isOrthographic() {
+    return this.camera.fov === ORTHOGRAPHIC;
   }
 
   // Sets the arrays of positions which a fitted view contains.
@@ -148,7 +151,14 @@ export class Camera {
   // Returns the direction from which a scene is seen at first: from a side, so that its longer side lies across the
   // picture, and a little from above; flat scenes are seen more from above.
   usualDirection() {
-    const side = rangesOf(this.samples).map(([low, high]) => Math.max(0, high - low));
+    const side = [0, 1, 2].map((k) => {
+      let [low, high] = [Infinity, -Infinity];
+      for (let i = k; i < this.samples.length; i += 3) {
+        low = Math.min(low, this.samples[i]);
+        high = Math.max(high, this.samples[i]);
+      }
+      return Math.max(0, high - low);
+    });
     const [width, depth, height] = this.isYUp ? [side[0], side[2], side[1]] : side;
     const flatness = Math.max(0, 1 - (4 * height) / Math.max(width, depth, 1e-30));
     const across = width >= 0.8 * depth ? [this.isOblique ? 0.8 : 0.5, -1] : [1, this.isOblique ? -0.8 : -0.5];
@@ -191,9 +201,16 @@ export class Camera {
 
   // Turns the view by angles, and multiplies the distance by a factor.
   turn(around, up, factor) {
-    this.controls.rotateLeft(-around);
-    this.controls.rotateUp(-up);
-    this.controls.dollyIn(factor);
+    const { camera, controls } = this;
+    const offset = camera.position.clone().sub(controls.target);
+    const toY = new three.Quaternion().setFromUnitVectors(camera.up, new three.Vector3(0, 1, 0));
+    const spherical = new three.Spherical().setFromVector3(offset.applyQuaternion(toY));
+    spherical.theta += around;
+    spherical.phi = Math.max(0.01, Math.min(Math.PI - 0.01, spherical.phi + up));
+    spherical.radius = Math.max(controls.minDistance, Math.min(controls.maxDistance, spherical.radius * factor));
+    offset.setFromSpherical(spherical).applyQuaternion(toY.invert());
+    camera.position.copy(controls.target).add(offset);
+    controls.update();
   }
 
   // Moves the view across itself by parts of the distance.

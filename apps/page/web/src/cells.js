@@ -1,7 +1,6 @@
 // The boxes of an index: the nodes of a tree, level by level.
 
 import * as three from "three";
-import { geometryOf } from "./shading.js";
 import { element } from "./text.js";
 
 // The pairs of corners that an edge of a box joins. Bit k of a corner is set if it is at the upper end of axis k.
@@ -35,10 +34,12 @@ export class CellsLayer {
         for (let k = 0; k < 3; k++) vertices[at++] = boxes[6 * i + k + (corner & (1 << k) ? 3 : 0)];
       }
     }
-    this.group.add(new three.LineSegments(geometryOf(vertices), this.material));
+    const geometry = new three.BufferGeometry();
+    geometry.setAttribute("position", new three.BufferAttribute(vertices, 3));
+    this.group.add(new three.LineSegments(geometry, this.material));
   }
 
-  get title() {
+  title() {
     return this.levels[this.level].title;
   }
 }
@@ -48,12 +49,13 @@ export class CellsPanel {
   constructor(viewer, add) {
     this.viewer = viewer;
     const { cells } = viewer;
-    this.text = element("output", { id: "level" }, cells.title);
+    this.text = element("output", { id: "level" });
     this.range = element("input", {
       type: "range", min: 0, max: cells.levels.length - 1, step: 1, value: cells.level, "aria-label": "level",
       oninput: () => this.show(Number(this.range.value)),
     });
     add(viewer.data.cells.title, "index", this.range, element("p", {}, this.text));
+    this.text.textContent = cells.title();
   }
 
   step(by) {
@@ -66,7 +68,7 @@ export class CellsPanel {
     cells.group.visible = true;
     document.getElementById("show-cells").checked = true;
     this.range.value = cells.level;
-    this.text.textContent = cells.title;
+    this.text.textContent = cells.title();
     this.viewer.draw();
   }
 }

@@ -79,17 +79,6 @@ function drawnScene({ coordinates, sizes, indices }, frame) {
   return { positions: frame.positions(coordinates), triangles, segments, points };
 }
 
-// Returns the least and the largest coordinate of positions along each axis.
-export function rangesOf(positions) {
-  const ranges = [0, 1, 2].map(() => [Infinity, -Infinity]);
-  for (let i = 0; i < positions.length; i++) {
-    const range = ranges[i % 3];
-    range[0] = Math.min(range[0], positions[i]);
-    range[1] = Math.max(range[1], positions[i]);
-  }
-  return ranges;
-}
-
 // The frame of the page: the GPU computes in f32, so positions are divided by a scale and are relative to the centre of
 // the scene. A scene far from the origin is drawn as well as any other.
 export class Frame {

@@ -3,10 +3,7 @@
 import { UNDEFINED } from "./colours.js";
 import { pictureLegend } from "./histogram.js";
 import { spacing } from "./shading.js";
-import {
-  button, choice, copyButton, count, element, fillList, namedRow, remarksOn, reveal, roundingInWords, short, sideOf,
-  stepButtons, stepped, tableHead,
-} from "./text.js";
+import { choice, copyButton, count, element, fillList, namedRow, remarksOn, reveal, roundingInWords, short, sideOf, stepped, tableHead } from "./text.js";
 
 // The share of a fitted view that is seen around a place after a flight to it.
 const NEAR = 0.35;
@@ -24,16 +21,10 @@ export class DeviationsPanel {
     this.verdict = element("p", { id: "verdict", class: "verdict", role: "status" });
     this.figure = viewer.figure(() => this.readFigure(), { id: "deviation-figures" });
     this.parts = element("p", { id: "deviation-parts", "aria-live": "polite" });
-    this.bands = choice("colours", ["bands", "gradient"], this.hasBands ? 0 : 1, (i) => {
-      this.hasBands = i === 0;
-      this.setColours();
-    });
+    this.bands = choice("colours", ["bands", "gradient"], this.hasBands ? 0 : 1, (i) => this.setBands(i === 0));
     this.inputs = {
       tolerance: this.numberInput("tolerance", "Tolerance", layer.tolerance ?? "", (x) => this.setTolerance(x)),
-      limit: this.numberInput("limit", "Colours up to", layer.limit, (x) => {
-        if (x > 0) layer.limit = x;
-        this.setColours();
-      }),
+      limit: this.numberInput("limit", "Colours up to", layer.limit, (x) => x > 0 && this.setLimit(x)),
     };
     const rows = [element("div", { class: "row" }, element("span", {}, "Colours"), this.bands)];
     if (layer.triangleOf) {
@@ -47,8 +38,9 @@ export class DeviationsPanel {
     this.addWorst(add);
     add("Tolerance and colours", "colours", this.figure.element, ...Object.values(this.inputs), ...rows);
     this.text = element("dl", { id: "deviation", "aria-live": "polite" });
+    const step = (by, text) => element("button", { type: "button", onclick: () => this.step(by) }, text);
     add("Point", "point",
-      element("p", { class: "buttons" }, ...stepButtons((by) => this.step(by)), copyButton(this.text)), this.text);
+      element("p", { class: "buttons" }, step(-1, "Previous"), step(1, "Next"), copyButton(this.text)), this.text);
     this.addStatistics(add);
     this.setColours();
     this.select(-1);
@@ -90,11 +82,21 @@ export class DeviationsPanel {
       element("label", { for: id }, `${label} (${this.viewer.unit})`), box, slider);
   }
 
+  setLimit(limit) {
+    this.layer.limit = limit;
+    this.setColours();
+  }
+
   setTolerance(tolerance) {
     const before = this.tolerance;
     this.tolerance = tolerance !== null && tolerance >= 0 ? tolerance : null;
     // The first tolerance brings its bands.
     if (before === null && this.tolerance > 0) this.hasBands = true;
+    this.setColours();
+  }
+
+  setBands(isOn) {
+    this.hasBands = isOn;
     this.setColours();
   }
 
@@ -172,10 +174,11 @@ export class DeviationsPanel {
     this.worst = layer.worst(viewer.data.frame.radius);
     const rows = this.worst.map((i, k) => {
       const value = this.signedText(i);
-      const fly = button([element("span", { class: "mark" }, String(k + 1)), value], () => {
-        this.select(i);
-        this.flyTo(i);
-      }, { title: `Fly to point ${count(i * layer.stride)}`, "data-point": i });
+      const fly = element("button", { type: "button", title: `Fly to point ${count(i * layer.stride)}`, "data-point": i,
+        onclick: () => {
+          this.select(i);
+          this.flyTo(i);
+        } }, element("span", { class: "mark" }, String(k + 1)), value);
       const cells = [...layer.positions.subarray(3 * i, 3 * i + 3)].map((x) => element("td", {}, viewer.coordinate(x)));
       return element("tr", {}, element("th", { scope: "row" }, fly), ...cells);
     });
@@ -271,6 +274,11 @@ export class DeviationsPanel {
   tip(event) {
     const i = this.pick(event);
     if (i < 0) return undefined;
+    return this.inWords(i);
+  }
+
+  // Returns the deviation of a point as a text.
+  inWords(i) {
     const value = this.layer.values[i];
     return Number.isNaN(value) ? `no ${this.what}` : this.viewer.inWords(value, this.layer.is_signed);
   }
@@ -283,14 +291,14 @@ export class DeviationsPanel {
   select(i) {
     const { layer, viewer } = this;
     layer.select(i, viewer.colours ?? { feature: "#c000c0" });
-    const value = layer.values[i];
-    fillList(this.text, i < 0 ? [["none", "Click a point of the scan, or press n."]] : [
+    const rows = i < 0 ? [["none", "Click a point of the scan, or press n."]] : [
       ["number", `${count(i * layer.stride)} of ${count(layer.total)}`],
       ["point", viewer.place(layer.positions.subarray(3 * i, 3 * i + 3))],
-      [this.what, value],
-      ...(layer.is_signed && !Number.isNaN(value) ? [["side", sideOf(value)]] : []),
-      ...(Number.isNaN(value) ? [] : [["primitive", String(layer.primitives[i])]]),
-    ]);
+      [this.what, layer.values[i]],
+      ...(layer.is_signed && !Number.isNaN(layer.values[i]) ? [["side", sideOf(layer.values[i])]] : []),
+      ...(Number.isNaN(layer.values[i]) ? [] : [["primitive", String(layer.primitives[i])]]),
+    ];
+    fillList(this.text, rows);
     if (i >= 0) reveal(this.text);
     viewer.draw();
   }

@@ -3,7 +3,7 @@
 import * as three from "three";
 import { empty, limits, marker } from "./answers.js";
 import { BandScale, ColourScale } from "./colours.js";
-import { geometryOf, neighbours, pointMaterial, spacing, surface, vectorAt } from "./shading.js";
+import { neighbours, pointMaterial, spacing, surface } from "./shading.js";
 
 // The distance in pixels within which a point is read.
 const PICK_RADIUS = 6;
@@ -24,7 +24,9 @@ export class DeviationsLayer {
     this.drawn = frame.positions(data.positions);
     this.colours = new Uint16Array(3 * this.length);
     this.triangleOf = triangleNumbers(scene);
-    const geometry = geometryOf(this.drawn, this.colours);
+    const geometry = new three.BufferGeometry();
+    geometry.setAttribute("position", new three.BufferAttribute(this.drawn, 3));
+    geometry.setAttribute("color", new three.BufferAttribute(this.colours, 3, true));
     const normals = data.triangles.length === 0 && this.triangleOf ? this.pointNormals() : null;
     if (normals) geometry.setAttribute("normal", new three.BufferAttribute(normals, 3, true));
     const isSmooth = normals !== null && isAlike(this.drawn, normals);
@@ -92,8 +94,11 @@ export class DeviationsLayer {
   // Shows the part with the colours of the points that are closest to it, instead of the scan, or the scan.
   showPart(isOn) {
     if (isOn && !this.part) {
+      const geometry = new three.BufferGeometry();
       const { positions, triangles } = this.scene;
-      const geometry = geometryOf(positions, new Uint16Array(positions.length), triangles);
+      geometry.setAttribute("position", new three.BufferAttribute(positions, 3));
+      geometry.setAttribute("color", new three.BufferAttribute(new Uint16Array(positions.length), 3, true));
+      geometry.setIndex(new three.BufferAttribute(triangles, 1));
       geometry.boundingSphere = new three.Sphere(new three.Vector3(), 4);
       this.part = surface(geometry, { vertexColors: true });
       this.group.add(this.part);
@@ -166,7 +171,7 @@ export class DeviationsLayer {
   }
 
   position(i) {
-    return vectorAt(this.drawn, i);
+    return new three.Vector3().fromArray(this.drawn, 3 * i);
   }
 
   // Marks a point, by its number among those that are drawn.

@@ -48,10 +48,13 @@ export class FarScene {
     return point.map((x, k) => this.centre[k] + (x - OFFSET) / this.scale);
   }
 
+  vertex(number) {
+    return [...this.positions.subarray(3 * number, 3 * number + 3)];
+  }
+
   verticesOf(primitive) {
     const first = this.firstVertices[primitive];
-    return [...this.vertices.subarray(first, first + this.sizes[primitive])]
-      .map((number) => [...this.positions.subarray(3 * number, 3 * number + 3)]);
+    return [...this.vertices.subarray(first, first + this.sizes[primitive])].map((number) => this.vertex(number));
   }
 
   // Answers a query, which is moved and rounded as the scene is. All of the answer is in the frame of the scene: the query

@@ -9,15 +9,18 @@ const [OUTER, GAP] = [12, 6];
 // The distance in pixels within which a mark can be dragged.
 const REACH = 14;
 
-// Returns the numbers of values below a range, in equal parts of it, and above it.
-function bins(values, low, high) {
-  const counts = new Array(BINS + 2).fill(0);
+// Returns the numbers of values in equal parts of the range between two limits, and of those beyond the limits.
+export function bins(values, low, high) {
+  const counts = new Array(BINS).fill(0);
+  let [below, above] = [0, 0];
   for (const value of values) {
-    if (Number.isNaN(value)) continue;
-    const bin = 1 + Math.min(BINS - 1, Math.floor((BINS * (value - low)) / (high - low)));
-    counts[value < low ? 0 : value > high ? BINS + 1 : bin]++;
+    if (value < low) below++;
+    else if (value > high) above++;
+    else if (!Number.isNaN(value)) {
+      counts[Math.min(BINS - 1, Math.floor((BINS * (value - low)) / (high - low)))]++;
+    }
   }
-  return counts;
+  return { counts, below, above };
 }
 
 // The legend of a scale and a histogram of values, which are made again when the values or the colours change.
@@ -80,30 +83,36 @@ export class Figure {
 // stands for `weight` values, and lines are drawn at `marks`.
 function histogram(values, scale, what, unit, { name = what, weight = 1, marks = [], onMark } = {}) {
   const { low, high } = scale;
-  const counts = bins(values, low, high).map((n) => Math.round(n * weight));
-  const [below, above] = [counts[0], counts.at(-1)];
-  const most = Math.max(1, ...counts);
+  const { counts, ...outer } = bins(values, low, high);
+  for (let i = 0; i < BINS; i++) counts[i] = Math.round(counts[i] * weight);
+  const [below, above] = [outer.below, outer.above].map((n) => Math.round(n * weight));
+  const most = [...counts, below, above].reduce((a, b) => Math.max(a, b), 1);
   const [left, right] = [below > 0 ? OUTER + GAP : 0, WIDTH - (above > 0 ? OUTER + GAP : 0)];
   const place = {
     left, right,
     x: (value) => left + ((right - left) * (value - low)) / (high - low),
     value: (x) => Math.max(low, Math.min(high, low + ((high - low) * (x - left)) / (right - left))),
   };
-  const width = (right - left) / BINS;
-  const entries = counts.map((n, i) => {
-    if (i === 0) return { n, text: `less than ${short(low)}`, x: 0, width: OUTER, colour: scale.css(-Infinity) };
-    if (i > BINS) {
-      return { n, text: `more than ${short(high)}`, x: WIDTH - OUTER, width: OUTER, colour: scale.css(Infinity) };
-    }
-    const at = (part) => low + ((high - low) * (i - 1 + part)) / BINS;
-    const [x, colour] = [left + (i - 1) * width, scale.css(at(0.5))];
-    return { n, text: `${short(at(0))} to ${short(at(1))}`, x, width: width - 0.6, colour };
-  }).filter(({ n }, i) => n > 0 || (i > 0 && i <= BINS));
-  const bars = entries.map(({ n, text, x, width, colour }) => {
+  const range = (i) => `${short(low + ((high - low) * i) / BINS)} to ${short(low + ((high - low) * (i + 1)) / BINS)}`;
+  const bar = (x, width, n, text, colour) => {
     const height = n > 0 ? Math.max(1, (HEIGHT * n) / most) : 0;
-    return element("rect", { x, y: HEIGHT - height, width, height, fill: colour },
-      element("title", {}, `${text} ${unit}: ${count(n)}`));
-  });
+    const made = element("rect", { x, y: HEIGHT - height, width, height, fill: colour });
+    made.append(element("title", {}, `${text} ${unit}: ${count(n)}`));
+    return made;
+  };
+  const width = (right - left) / BINS;
+  const entries = counts.map((n, i) => ({
+    n, text: range(i), x: left + i * width, width: width - 0.6,
+    colour: scale.css(low + ((high - low) * (i + 0.5)) / BINS),
+  }));
+  if (below > 0) {
+    entries.unshift({ n: below, text: `less than ${short(low)}`, x: 0, width: OUTER, colour: scale.css(-Infinity) });
+  }
+  if (above > 0) {
+    const text = `more than ${short(high)}`;
+    entries.push({ n: above, text, x: WIDTH - OUTER, width: OUTER, colour: scale.css(Infinity) });
+  }
+  const bars = entries.map(({ n, text, x, width, colour }) => bar(x, width, n, text, colour));
   const mode = entries.reduce((a, b) => (b.n > a.n ? b : a));
   const label = `Histogram of ${name} from ${short(low)} to ${short(high)} ${unit}. ` +
     `The most frequent are ${mode.text}, with ${count(mode.n)} of ` +

@@ -1,6 +1,5 @@
 // What mouse, fingers and keyboard do.
 
-import { PRESETS } from "./camera.js";
 import { reveal } from "./text.js";
 
 // The keys, what they do, and the property that the viewer has in pages where they do it.
@@ -41,7 +40,9 @@ export function listen(viewer) {
     if (isDragging) canvas.setPointerCapture(event.pointerId);
   }, { capture: true });
   canvas.addEventListener("pointermove", (event) => {
-    if (isDragging) viewer.slicePanel.shift(-event.movementY / canvas.clientHeight);
+    if (isDragging) {
+      viewer.slicePanel.move(viewer.slice.axis, viewer.slicePart - event.movementY / canvas.clientHeight);
+    }
     viewer.live?.follow(event);
     if (event.buttons === 0) viewer.point(event);
   });
@@ -87,7 +88,8 @@ function press(viewer, event) {
     ArrowUp: () => viewer.turn(0, -0.1, 1), ArrowDown: () => viewer.turn(0, 0.1, 1),
     "+": () => viewer.turn(0, 0, 0.9), "=": () => viewer.turn(0, 0, 0.9), "-": () => viewer.turn(0, 0, 1 / 0.9),
     f: () => viewer.fit(), d: () => viewer.toggleTheme(),
-    ...Object.fromEntries(Object.keys(PRESETS).map((preset, i) => [i + 1, () => viewer.fit(preset)])),
+    1: () => viewer.fit("front"), 2: () => viewer.fit("back"), 3: () => viewer.fit("left"),
+    4: () => viewer.fit("right"), 5: () => viewer.fit("top"), 6: () => viewer.fit("bottom"),
     o: click("orthographic"), e: click("edges"), g: click("grid"), s: click("picture-file"),
     q: viewer.live && (() => viewer.live.setFollowing(!viewer.live.isFollowing)),
     n: list && (() => list.step(1)), p: list && (() => list.step(-1)),

@@ -2,8 +2,7 @@
 // own, so the page can be used while it is built, and the indexes that are ready answer meanwhile.
 
 import * as three from "three";
-import { Remote } from "../../../../bindings/js/src/remote.ts";
-import { answerRows, drawAnswer, empty, explainedWords, line, marker } from "./answers.js";
+import { answerRows, drawAnswer, empty, explainedWords, featureOf, line, marker } from "./answers.js";
 import { checkbox, count, element, fillList, fillTable, short } from "./text.js";
 
 // The indexes in the order of their numbers in the worker.
@@ -24,8 +23,12 @@ export class LiveQueries {
     // The part of the radius of the scene by which the plane is nearer to the viewer than the centre.
     this.depth = 0;
     // For each primitive the place of its first vertex among the indices.
+    this.firstIndices = [];
     let next = 0;
-    this.firstIndices = Array.from(scene.sizes, (size) => (next += size) - size);
+    for (const size of scene.sizes) {
+      this.firstIndices.push(next);
+      next += size;
+    }
     // Triangles have sides.
     this.hasSides = scene.sizes.every((size) => size === 3);
     // The indexes that are ready.
@@ -75,7 +78,7 @@ export class LiveQueries {
     } catch (error) {
       this.failures.push(`The ${name} could not be built: ${error.message}.`);
     }
-    worker.end("the index was given up");
+    worker.end();
     return null;
   }
 
@@ -285,7 +288,7 @@ export class LiveQueries {
     // The sphere of an example would cover much before anybody asked for it.
     const radius = this.hasSphere && !this.isExample ? lowerBound / this.frame.scale : 0;
     const { colours } = this.viewer;
-    drawAnswer(this.group, this.at(this.shown.query), this.at(point), vertices, feature, radius,
+    drawAnswer(this.group, this.at(this.shown.query), this.at(point), vertices, featureOf(feature), radius,
       { selected: colours.live, feature: colours.feature });
   }
 
@@ -355,17 +358,33 @@ export class LiveQueries {
 
 // A module of WebAssembly in a worker, whose script is part of this one, because a page that is a file may not read
 // others.
-class RemoteModule extends Remote {
+class RemoteModule {
   constructor() {
-    const address = URL.createObjectURL(new Blob([WORKER_SCRIPT], { type: "text/javascript" }));
-    const worker = new Worker(address);
-    super(worker, (message = "the browser starts no worker") => message);
-    // The script has been read if there is an answer.
-    for (const event of ["message", "error"]) worker.addEventListener(event, () => URL.revokeObjectURL(address));
+    this.address = URL.createObjectURL(new Blob([WORKER_SCRIPT], { type: "text/javascript" }));
+    this.worker = new Worker(this.address);
+    // The calls that are not answered yet. Answers come in the order of the calls.
+    this.calls = [];
+    this.worker.onmessage = ({ data }) => this.settle(data);
+    this.worker.onerror = ({ message }) => this.settle({ error: message ?? "the browser starts no worker" });
   }
 
   // Calls a function of the worker.
-  async call(name, ...values) {
-    return (await this.ask({ name, values })).result;
+  call(name, ...values) {
+    return new Promise((resolve, reject) => {
+      this.calls.push({ resolve, reject });
+      this.worker.postMessage({ name, values });
+    });
+  }
+
+  settle({ result, error }) {
+    // The script has been read if there is an answer.
+    URL.revokeObjectURL(this.address);
+    const call = this.calls.shift();
+    if (error === undefined) call?.resolve(result);
+    else call?.reject(new Error(error));
+  }
+
+  end() {
+    this.worker.terminate();
   }
 }

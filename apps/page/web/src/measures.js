@@ -4,10 +4,7 @@
 import * as three from "three";
 import { ColourScale } from "./colours.js";
 import { line, limits, marker } from "./answers.js";
-import { geometryOf, vectorAt } from "./shading.js";
-import {
-  button, copyButton, count, element, fillList, number, patch, remarksOn, short, shortened, stepButtons, stepped,
-} from "./text.js";
+import { copyButton, count, element, fillList, number, patch, remarksOn, short, shortened, stepped } from "./text.js";
 
 // The number of characters of the name of an object above which its middle is left out.
 const LONGEST_NAME = 18;
@@ -26,7 +23,9 @@ export class MeasuresLayer {
     this.isLabelled = this.length <= MAX_LABELLED;
     this.group = new three.Group();
     this.selection = new three.Group();
-    const geometry = geometryOf(this.positions, new Uint16Array(this.positions.length));
+    const geometry = new three.BufferGeometry();
+    geometry.setAttribute("position", new three.BufferAttribute(this.positions, 3));
+    geometry.setAttribute("color", new three.BufferAttribute(new Uint16Array(this.positions.length), 3, true));
     const [, longest] = limits(this.lengths);
     this.scale = new ColourScale("sequential", 0, longest);
     this.lines = new three.LineSegments(geometry, new three.LineBasicMaterial({
@@ -37,7 +36,7 @@ export class MeasuresLayer {
   }
 
   ends(i) {
-    return [0, 1].map((k) => vectorAt(this.positions, 2 * i + k));
+    return [0, 3].map((k) => new three.Vector3().fromArray(this.positions, 6 * i + k));
   }
 
   setTheme(theme, colours) {
@@ -81,10 +80,10 @@ export class MeasuresLayer {
     this.unit = viewer.unit;
     this.selected = -1;
     this.text = element("dl", { id: "measure", "aria-live": "polite" });
-    const step = (by) => {
+    const step = (by, text) => element("button", { type: "button", onclick: () => {
       this.selected = stepped(this.selected, by, this.length);
       this.select(viewer);
-    };
+    } }, text);
     const parts = [element("p", { class: "verdict" }, this.verdict), ...remarksOn(this.remarks)];
     // The ends of lines between two objects are on these.
     const names = viewer.scene.colours ? viewer.scene.objects.map((object) => object.name) : [];
@@ -93,13 +92,13 @@ export class MeasuresLayer {
     if (this.isLabelled) {
       parts.push(this.text);
       if (this.length > 0) {
-        const fly = button("Fly there", () => this.fly(viewer), { class: "primary", id: "fly" });
+        const fly = element("button", { type: "button", class: "primary", id: "fly", onclick: () => this.fly(viewer) }, "Fly there");
         parts.push(element("p", { class: "buttons" }, fly, copyButton(this.text)));
       }
     } else {
-      const { scale, lengths: values } = this;
-      parts.push(viewer.figure(() => ({ scale, what: "length", unit: viewer.unit, values })).element,
-        element("p", { class: "buttons" }, ...stepButtons(step)), this.text);
+      const what = "length";
+      parts.push(viewer.figure(() => ({ scale: this.scale, what, unit: viewer.unit, values: this.lengths })).element,
+        element("p", { class: "buttons" }, step(-1, "Previous"), step(1, "Next")), this.text);
     }
     add(this.title, "measures", ...parts);
     this.select(viewer);

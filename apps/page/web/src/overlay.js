@@ -1,7 +1,6 @@
 // What lies over the picture: the axes, the scale bar, labels of lines and lengths, the tooltip, and the grid.
 
 import * as three from "three";
-import { rangesOf } from "./data.js";
 import { element, roundUp, short } from "./text.js";
 
 // The least length of the scale bar in pixels.
@@ -153,19 +152,31 @@ export class Overlay {
 
   makeGrid() {
     const { viewer } = this;
-    const [u, v, up] = viewer.view.isYUp ? [0, 2, 1] : [0, 1, 2];
-    const ranges = rangesOf(viewer.view.samples).map(([low, high]) => (low <= high ? [low, high] : [-1, 1]));
+    const { samples, isYUp } = viewer.view;
+    const [u, v, up] = isYUp ? [0, 2, 1] : [0, 1, 2];
+    const ranges = [u, v, up].map((k) => {
+      let [low, high] = [Infinity, -Infinity];
+      for (let i = k; i < samples.length; i += 3) {
+        low = Math.min(low, samples[i]);
+        high = Math.max(high, samples[i]);
+      }
+      return low <= high ? [low, high] : [-1, 1];
+    });
     const { scale, origin } = viewer.frame;
     const spacing = roundUp((viewer.data.frame.radius * scale) / 8);
     // Lines are at multiples of the spacing in the unit of the scene.
-    const lines = [u, v].map((k) => {
+    const lines = [u, v].map((k, i) => {
       const at = (x) => ((x + origin[k]) * scale) / spacing;
-      const [from, to] = [Math.floor(at(ranges[k][0])) - 1, Math.ceil(at(ranges[k][1])) + 1];
+      const [from, to] = [Math.floor(at(ranges[i][0])) - 1, Math.ceil(at(ranges[i][1])) + 1];
       return Array.from({ length: Math.min(200, to - from + 1) }, (_, j) => ((from + j) * spacing) / scale - origin[k]);
     });
     const points = [];
     const point = (x, y) => {
-      points.push(new three.Vector3().setComponent(u, x).setComponent(v, y).setComponent(up, ranges[up][0]));
+      const made = new three.Vector3();
+      made.setComponent(u, x);
+      made.setComponent(v, y);
+      made.setComponent(up, ranges[2][0]);
+      points.push(made);
     };
     for (const x of lines[0]) [lines[1][0], lines[1].at(-1)].forEach((y) => point(x, y));
     for (const y of lines[1]) [lines[0][0], lines[0].at(-1)].forEach((x) => point(x, y));

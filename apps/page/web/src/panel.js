@@ -1,8 +1,7 @@
 // The panel beside the picture: what the page is about first, then what is shown, then help.
 
 import { KEYS } from "./input.js";
-import { rangesOf } from "./data.js";
-import { button, checkbox, count, counted, element, fillList, patch, short, shortened, withCode } from "./text.js";
+import { checkbox, count, counted, element, fillList, patch, short, shortened, withCode } from "./text.js";
 
 // The number of characters of a word of the title above which its middle is left out.
 const LONGEST_WORD = 26;
@@ -41,7 +40,14 @@ export function makePanel(viewer, { AnswersPanel, CellsPanel, DeviationsPanel, M
 // Adds what the scene is, and what can be done in this page.
 function addFacts(viewer, add) {
   const { data, view, frame, unit } = viewer;
-  const sides = rangesOf(data.scene.positions).map(([low, high]) => (low <= high ? (high - low) * frame.scale : 0));
+  const sides = [0, 1, 2].map((k) => {
+    let [low, high] = [Infinity, -Infinity];
+    for (let i = k; i < data.scene.positions.length; i += 3) {
+      low = Math.min(low, data.scene.positions[i]);
+      high = Math.max(high, data.scene.positions[i]);
+    }
+    return low <= high ? (high - low) * frame.scale : 0;
+  });
   const rows = [["size", `${sides.map(short).join(" × ")} ${unit}`]];
   const middle = frame.coordinates([0, 0, 0]);
   if (Math.hypot(...middle) > 20 * view.radius * frame.scale) {
@@ -126,8 +132,9 @@ function addObjects(viewer, add) {
     scene.update();
     viewer.draw();
   };
+  const button = (text, isOn) => element("button", { type: "button", onclick: () => set(isOn) }, text);
   add(`Objects (${count(boxes.length)})`, "objects",
-    element("p", { class: "buttons" }, button("All", () => set(true)), button("None", () => set(false))),
+    element("p", { class: "buttons" }, button("All", true), button("None", false)),
     element("div", { class: "boxes scrolled", tabindex: "0", role: "region", "aria-label": "objects" }, ...boxes));
 }
 

@@ -35,7 +35,8 @@ export class SceneLayer {
     for (const [kind, size] of KINDS) {
       const indices = scene[kind];
       if (indices.length === 0) continue;
-      const geometry = new three.BufferGeometry().setAttribute("position", positions);
+      const geometry = new three.BufferGeometry();
+      geometry.setAttribute("position", positions);
       geometry.setIndex(new three.BufferAttribute(indices, 1));
       if (this.colours) geometry.setAttribute("color", this.colours);
       if (this.colours && kind === "triangles") geometry.setAttribute("part", this.secondParts(indices));
@@ -178,6 +179,11 @@ export class SceneLayer {
       this.outline.removeFromParent();
       this.outline = null;
     }
+  }
+
+  // Returns the numbers of drawn primitives of each kind.
+  drawnCounts() {
+    return Object.fromEntries(this.parts.map(({ kind, size, geometry }) => [kind, geometry.index.count / size]));
   }
 }
 

@@ -12,18 +12,6 @@ export function addLights(world, camera) {
   world.add(sky, camera);
 }
 
-// Makes a geometry of positions, with colours that the GPU reads as numbers up to 1, and with indices.
-export function geometryOf(positions, colours, indices) {
-  const geometry = new three.BufferGeometry();
-  geometry.setAttribute("position", new three.BufferAttribute(positions, 3));
-  if (colours) geometry.setAttribute("color", new three.BufferAttribute(colours, 3, true));
-  if (indices) geometry.setIndex(new three.BufferAttribute(indices, 1));
-  return geometry;
-}
-
-// Returns the position with a number in an array.
-export const vectorAt = (positions, i) => new three.Vector3().fromArray(positions, 3 * i);
-
 // The cosine between the normal of a facet and that of the surface below which an edge is sharp.
 const SHARP = 0.75;
 
@@ -41,9 +29,7 @@ export function surface(geometry, parameters = {}) {
 // Sets the normals of a geometry, unless its facets are flat.
 export function setNormals(geometry, triangles) {
   if (triangles.length > 3 * MAX_SMOOTH) return;
-  const all = geometryOf(geometry.getAttribute("position").array, null, triangles);
-  all.computeVertexNormals();
-  const normals = new Int8Array(all.getAttribute("normal").array.map((x) => Math.round(127 * x)));
+  const normals = vertexNormals(geometry.getAttribute("position").array, triangles);
   geometry.setAttribute("normal", new three.BufferAttribute(normals, 3, true));
 }
 
@@ -58,17 +44,6 @@ function surfaceMaterial(isSmooth, hasParts, parameters) {
   };
   material.customProgramCacheKey = () => `surface ${isSmooth} ${hasParts}`;
   return material;
-}
-
-// Adds declarations to both shaders of a material, code behind the projection of vertices, and code before colours are
-// written.
-function extend(shader, declarations, vertex, fragment, attributes = "") {
-  shader.vertexShader = shader.vertexShader
-    .replace("#include <common>", `#include <common>\n${attributes}${declarations}`)
-    .replace("#include <project_vertex>", `#include <project_vertex>\n${vertex}`);
-  shader.fragmentShader = shader.fragmentShader
-    .replace("#include <common>", `#include <common>\n${declarations}`)
-    .replace("#include <opaque_fragment>", `${fragment}\n#include <opaque_fragment>`);
 }
 
 function smooth(shader) {
@@ -88,14 +63,40 @@ const [CELL, COINCIDENT] = ["0.06", "0.0004"];
 // Lets cells in space show one of two parts in turn where both are at about one place: the other one is drawn as if it
 // were farther away.
 function check(shader) {
-  extend(shader, "varying float vPart, vFarther;\nvarying vec3 vPlace;", `
+  shader.vertexShader = shader.vertexShader
+    .replace("#include <common>", "#include <common>\nattribute float part;\nvarying float vPart, vFarther;\nvarying vec3 vPlace;")
+    .replace("#include <project_vertex>", `#include <project_vertex>
       vec4 farther = projectionMatrix * (mvPosition - vec4(0.0, 0.0, ${COINCIDENT}, 0.0));
       vFarther = 0.5 * (farther.z / farther.w - gl_Position.z / gl_Position.w);
       vPart = part;
-      vPlace = position / ${CELL} + vec3(0.237, 0.391, 0.513);`, `
+      vPlace = position / ${CELL} + vec3(0.237, 0.391, 0.513);`);
+  shader.fragmentShader = shader.fragmentShader
+    .replace("#include <common>", "#include <common>\nvarying float vPart, vFarther;\nvarying vec3 vPlace;")
+    .replace("#include <opaque_fragment>", `#include <opaque_fragment>
       vec3 cell = floor(vPlace);
-      gl_FragDepth = gl_FragCoord.z + (abs(mod(cell.x + cell.y + cell.z, 2.0) - vPart) < 0.5 ? vFarther : 0.0);`,
-    "attribute float part;\n");
+      gl_FragDepth = gl_FragCoord.z + (abs(mod(cell.x + cell.y + cell.z, 2.0) - vPart) < 0.5 ? vFarther : 0.0);`);
+}
+
+// Returns the normals of vertices, weighted by the areas of their triangles.
+function vertexNormals(positions, triangles) {
+  const sums = new Float32Array(positions.length);
+  for (let i = 0; i < triangles.length; i += 3) {
+    const [a, b, c] = [3 * triangles[i], 3 * triangles[i + 1], 3 * triangles[i + 2]];
+    const [ux, uy, uz] = [positions[b] - positions[a], positions[b + 1] - positions[a + 1], positions[b + 2] - positions[a + 2]];
+    const [vx, vy, vz] = [positions[c] - positions[a], positions[c + 1] - positions[a + 1], positions[c + 2] - positions[a + 2]];
+    const [x, y, z] = [uy * vz - uz * vy, uz * vx - ux * vz, ux * vy - uy * vx];
+    for (const at of [a, b, c]) {
+      sums[at] += x;
+      sums[at + 1] += y;
+      sums[at + 2] += z;
+    }
+  }
+  const normals = new Int8Array(positions.length);
+  for (let i = 0; i < sums.length; i += 3) {
+    const length = Math.hypot(sums[i], sums[i + 1], sums[i + 2]) || 1;
+    for (let k = i; k < i + 3; k++) normals[k] = Math.round((127 * sums[k]) / length);
+  }
+  return normals;
 }
 
 // What the outline of a scene is: the opacity of its lines, the angle in degrees between facets from which on an edge is
@@ -118,12 +119,18 @@ export function outline(kind, geometry) {
   }
   if (geometry.getAttribute("normal")) {
     const material = new three.MeshBasicMaterial({ ...look, side: three.DoubleSide });
-    material.onBeforeCompile = (shader) => extend(shader, "varying float vFacing;", `
+    material.onBeforeCompile = (shader) => {
+      shader.vertexShader = shader.vertexShader.replace("#include <common>", "#include <common>\nvarying float vFacing;")
+        .replace("#include <project_vertex>", `#include <project_vertex>
           vec3 turned = normalize(normalMatrix * normal);
-          vFacing = dot(turned, normalize(mvPosition.xyz));`, `
+          vFacing = dot(turned, normalize(mvPosition.xyz));`);
+      shader.fragmentShader = shader.fragmentShader.replace("#include <common>", "#include <common>\nvarying float vFacing;")
+        .replace("#include <opaque_fragment>", `
           float turn = abs(vFacing) / max(1e-6, fwidth(vFacing));
           diffuseColor.a *= 1.0 - smoothstep(1.0, 2.2, turn);
-          if (diffuseColor.a < 0.004) discard;`);
+          if (diffuseColor.a < 0.004) discard;
+          #include <opaque_fragment>`);
+    };
     material.customProgramCacheKey = () => "outline";
     group.add(new three.Mesh(geometry, material));
   }
@@ -141,9 +148,13 @@ const [FADED, FADES] = ["0.12", "0.03, 0.15"];
 // the scene, and its distance, divided by the same. Nothing fades if all of them are 0.
 export function fade(shader, focus) {
   shader.uniforms.focus = focus;
-  extend(shader, "uniform vec4 focus;\nvarying float vFaded;",
-    `vFaded = smoothstep(${FADES}, abs(dot(focus.xyz, position) - focus.w));`,
-    `diffuseColor.a *= mix(1.0, ${FADED}, vFaded);`);
+  shader.vertexShader = shader.vertexShader
+    .replace("#include <common>", "#include <common>\nuniform vec4 focus;\nvarying float vFaded;")
+    .replace("#include <project_vertex>", `#include <project_vertex>
+      vFaded = smoothstep(${FADES}, abs(dot(focus.xyz, position) - focus.w));`);
+  shader.fragmentShader = shader.fragmentShader
+    .replace("#include <common>", "#include <common>\nvarying float vFaded;")
+    .replace("#include <opaque_fragment>", `diffuseColor.a *= mix(1.0, ${FADED}, vFaded);\n#include <opaque_fragment>`);
 }
 
 // The part of the radius of a point that is not its rim.
@@ -158,12 +169,16 @@ export function pointMaterial(parameters, isLit = false, marks = null) {
     shader.vertexShader = shader.vertexShader.replace("gl_PointSize *= ( scale / - mvPosition.z );",
       `gl_PointSize = clamp(size * projectionMatrix[1][1] * scale / -mvPosition.z, ${isLit ? LIT_SIZES : POINT_SIZES});`);
     if (isLit) {
-      extend(shader, "varying float vLight;", `
+      shader.vertexShader = shader.vertexShader
+        .replace("#include <common>", "#include <common>\nvarying float vLight;")
+        .replace("#include <fog_vertex>", `
           vec3 facing = normalize(normalMatrix * normal + vec3(0.0, 0.0, 1e-6));
           facing = dot(facing, mvPosition.xyz) > 0.0 ? -facing : facing;
           vLight = length(normal) > 0.0
-            ? 0.72 + 0.12 * facing.y + 0.36 * max(0.0, dot(facing, normalize(vec3(-0.7, 0.9, 1.0)))) : 1.0;`, "");
+            ? 0.72 + 0.12 * facing.y + 0.36 * max(0.0, dot(facing, normalize(vec3(-0.7, 0.9, 1.0)))) : 1.0;
+        `);
       shader.fragmentShader = shader.fragmentShader
+        .replace("#include <common>", "#include <common>\nvarying float vLight;")
         .replace("#include <premultiplied_alpha_fragment>", "gl_FragColor.rgb *= vLight;");
     }
     shader.fragmentShader = shader.fragmentShader.replace("#include <clipping_planes_fragment>",
@@ -171,8 +186,11 @@ export function pointMaterial(parameters, isLit = false, marks = null) {
     if (!marks) return;
     fade(shader, marks.focus);
     shader.uniforms.rim = marks.rim;
-    extend(shader, "uniform vec3 rim;", "",
-      `outgoingLight = mix(outgoingLight, rim, step(${RIM}, 2.0 * length(gl_PointCoord - 0.5)));`);
+    shader.fragmentShader = shader.fragmentShader
+      .replace("#include <common>", "#include <common>\nuniform vec3 rim;")
+      .replace("#include <opaque_fragment>", `
+        outgoingLight = mix(outgoingLight, rim, step(${RIM}, 2.0 * length(gl_PointCoord - 0.5)));
+        #include <opaque_fragment>`);
   };
   material.customProgramCacheKey = () => `round ${isLit} ${!!marks}`;
   return material;

@@ -70,7 +70,9 @@ export class SlicePanel {
     slice.setPlane(axis, this.part * (slice.counts[axis] - 1));
     this.radios.forEach((radio, k) => (radio.checked = k === axis));
     this.range.value = this.part;
-    this.text.textContent = `at ${short(viewer.coordinates(slice.position(0, 0).toArray())[axis])} ${viewer.unit}`;
+    const position = [...slice.origin];
+    position[axis] += slice.index * slice.spacing;
+    this.text.textContent = `at ${short(viewer.coordinates(position)[axis])} ${viewer.unit}`;
     this.isKept = false;
     this.show(this.example(), true);
     viewer.draw();
@@ -97,12 +99,15 @@ export class SlicePanel {
     const { slice, viewer, value } = this;
     // The pointer moves all the time, and screen readers would read each value.
     value.setAttribute("aria-live", event ? "off" : "polite");
-    if (!event && !slice.mesh.visible) value.textContent = "The slice is not shown.";
-    if (!event && slice.mesh.visible) {
-      this.show(this.example());
-      value.hidden = false;
+    if (!slice.mesh.visible) {
+      if (!event) value.textContent = "The slice is not shown.";
+      return undefined;
     }
-    if (!event || !slice.mesh.visible) return undefined;
+    if (!event) {
+      this.show(this.example());
+      this.value.hidden = false;
+      return undefined;
+    }
     const [hit] = viewer.pointer(event).caster().intersectObject(slice.mesh);
     if (!hit) return undefined;
     return this.isKept ? slice.textAt(hit.point, this.unit) : this.show(hit.point);

@@ -3,7 +3,7 @@
 
 import * as three from "three";
 import { ColourScale } from "./colours.js";
-import { limits, signedScale } from "./answers.js";
+import { limits } from "./answers.js";
 import { inWords, roundUp, short } from "./text.js";
 
 // The number of lines of equal distance between zero and the largest distance, at most.
@@ -74,7 +74,9 @@ export class SliceLayer {
     } else if (least < 0) {
       // Both signs have the same scale. What is far from the surface has the colour of an end of it, because the
       // inside of a slender scene is not deep.
-      this.scale = signedScale(least, most, 1.6, 0.3);
+      const [shorter, longer] = [Math.min(-least, most), Math.max(-least, most)];
+      const limit = Math.min(longer, Math.max(1.6 * shorter, 0.3 * longer));
+      this.scale = new ColourScale("signedField", -limit, limit).contain(least, most);
     } else {
       // Corners of the field are far from the scene, and would leave it pale.
       this.scale = new ColourScale("field", 0, most > 0 ? quantile(this.values, USUAL) : most).contain(least, most);
@@ -133,7 +135,7 @@ export class SliceLayer {
   setPlane(axis, index) {
     this.axis = axis;
     this.index = Math.max(0, Math.min(this.counts[axis] - 1, index));
-    const [u, v] = this.across;
+    const [u, v] = [0, 1, 2].filter((k) => k !== axis);
     const [width, height] = [u, v].map((k) => this.counts[k]);
     const values = new Float32Array(width * height);
     const across = this.parts(axis, this.index);
@@ -146,7 +148,7 @@ export class SliceLayer {
     this.texture.image = { data: values, width, height };
     this.texture.needsUpdate = true;
     this.uniforms.counts.value.set(width, height);
-    const corner = (x, y) => this.position(x * (width - 1), y * (height - 1));
+    const corner = (x, y) => this.position(axis, x * (width - 1), y * (height - 1));
     const corners = [corner(0, 0), corner(1, 0), corner(1, 1), corner(0, 1)];
     this.corners = corners.flatMap((point) => point.toArray());
     const geometry = new three.BufferGeometry().setFromPoints(corners);
@@ -157,16 +159,11 @@ export class SliceLayer {
     this.labels = this.hasCells ? [] : this.makeLabels(values, width, height);
   }
 
-  // The axes along the plane.
-  get across() {
-    return [0, 1, 2].filter((k) => k !== this.axis);
-  }
-
   // Returns the position in the frame of real indices in the plane.
-  position(x, y) {
+  position(axis, x, y) {
     const position = [...this.origin];
-    const [u, v] = this.across;
-    position[this.axis] += this.index * this.spacing;
+    const [u, v] = [0, 1, 2].filter((k) => k !== axis);
+    position[axis] += this.index * this.spacing;
     position[u] += x * this.spacing;
     position[v] += y * this.spacing;
     return new three.Vector3(...position);
@@ -174,8 +171,8 @@ export class SliceLayer {
 
   // Returns the position in the frame of the middle of the plane.
   middle() {
-    const [u, v] = this.across;
-    return this.position((this.counts[u] - 1) / 2, (this.counts[v] - 1) / 2);
+    const [u, v] = [0, 1, 2].filter((k) => k !== this.axis);
+    return this.position(this.axis, (this.counts[u] - 1) / 2, (this.counts[v] - 1) / 2);
   }
 
   // The coordinate of the plane along its axis in the frame.
@@ -202,7 +199,7 @@ export class SliceLayer {
         const level = Math.ceil(Math.min(a, b));
         if (!(level <= Math.max(a, b)) || a === b) continue;
         const part = (level - a) / (b - a);
-        const position = this.position(ax + part * (bx - ax), ay + part * (by - ay));
+        const position = this.position(this.axis, ax + part * (bx - ax), ay + part * (by - ay));
         labels.push({ text: short(level * this.spacingOfLines), position });
       }
     }

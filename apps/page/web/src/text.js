@@ -70,21 +70,14 @@ function fullText(box) {
   return box.textContent;
 }
 
-export const button = (content, onclick, attributes = {}) =>
-  element("button", { type: "button", ...attributes, onclick }, ...[content].flat());
-
-// Makes the buttons to the previous and to the next of several things. `step` is called with -1 or 1.
-export const stepButtons = (step, what = "") =>
-  [["Previous", -1], ["Next", 1]].map(([word, by]) => button(word + what, () => step(by)));
-
 // Makes a button that copies an element with all digits.
 export function copyButton(copied) {
-  const made = button("Copy", async () => {
+  const button = element("button", { type: "button", onclick: async () => {
     await navigator.clipboard?.writeText(fullText(copied.cloneNode(true))).catch(() => {});
-    made.textContent = "Copied";
-    setTimeout(() => (made.textContent = "Copy"), 1500);
-  });
-  return made;
+    button.textContent = "Copied";
+    setTimeout(() => (button.textContent = "Copy"), 1500);
+  } }, "Copy");
+  return button;
 }
 
 // Returns a whole number with separators of thousands.

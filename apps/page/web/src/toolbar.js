@@ -1,6 +1,5 @@
 // The toolbar over the picture.
 
-import { PRESETS } from "./camera.js";
 import { element } from "./text.js";
 
 const ICONS = {
@@ -13,6 +12,7 @@ const ICONS = {
   theme: "M10 3a7 7 0 1 0 0 14zM10 3a7 7 0 0 1 0 14M10 3v14",
   help: "M7.4 7.6a2.6 2.6 0 1 1 3.9 2.3c-.9.5-1.3 1-1.3 2M10 15v.6",
 };
+const VIEWS = ["front", "back", "left", "right", "top", "bottom"];
 
 // Makes the toolbar of a viewer and puts it over the picture.
 export function addToolbar(viewer, stage) {
@@ -32,8 +32,7 @@ export function addToolbar(viewer, stage) {
   const views = element("select", { id: "views", "aria-label": "View from", title: "View from", onchange: () => {
     if (views.value) viewer.fit(views.value);
     views.value = "";
-  } }, element("option", { value: "" }, "View"),
-  ...Object.keys(PRESETS).map((view) => element("option", { value: view }, view)));
+  } }, element("option", { value: "" }, "View"), ...VIEWS.map((view) => element("option", { value: view }, view)));
   const hasTriangles = viewer.data.scene.triangles.length > 0;
   const parts = [
     button("fit", "Fit the view (f)", () => viewer.fit()), views,

@@ -88,12 +88,16 @@ class Viewer {
     listen(this);
     this.followSystem();
     this.resize();
-    this.deviationsPanel?.face();
+    this.fit();
+    if (this.deviations) {
+      this.deviationsPanel.face();
+      this.fit();
+    }
     if (this.measures?.main) {
       const [a, b] = this.measures.main;
       this.view.layAcross(b.sub(a));
+      this.fit();
     }
-    this.fit();
     if (this.slice) {
       this.slicePanel.lay();
       this.fit();
@@ -108,6 +112,10 @@ class Viewer {
     // A slice is light near the surface in both themes, and so is what lies under answers.
     const { live, selected } = THEMES.light;
     return this.slice ? { ...THEMES[this.theme], live, selected } : THEMES[this.theme];
+  }
+
+  get slicePart() {
+    return this.slicePanel.part;
   }
 
   // What has the latest answer: live queries once they answer, unless the slice has something else than distances.
@@ -261,7 +269,8 @@ class Viewer {
 
   liveTip() {
     const answer = this.live?.isFollowing && this.live.group.visible && this.live.shown?.answers?.[0];
-    return answer ? this.live.inWords(answer) : undefined;
+    if (!answer) return undefined;
+    return this.live.inWords(answer);
   }
 
   // Returns a value as a text: a distance, or a signed distance as a distance and a side.

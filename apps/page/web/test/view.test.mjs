@@ -38,7 +38,7 @@ test("a click selects the answer of a query point", { skip }, async () => {
 });
 
 test("dragging turns the view, and a shifted drag moves the slice", { skip }, async () => {
-  const state = () => page.evaluate(() => [window.viewer.camera.position.toArray(), window.viewer.slicePanel.part]);
+  const state = () => page.evaluate(() => [window.viewer.camera.position.toArray(), window.viewer.slicePart]);
   const drag = async () => {
     await page.mouse.move(400, 400);
     await page.mouse.down();
@@ -57,8 +57,7 @@ test("dragging turns the view, and a shifted drag moves the slice", { skip }, as
 });
 
 test("an object can be hidden, and levels of boxes shown", { skip }, async () => {
-  const counts = () => page.evaluate(() => Object.fromEntries(window.viewer.scene.parts
-    .map(({ kind, size, geometry }) => [kind, geometry.index.count / size])));
+  const counts = () => page.evaluate(() => window.viewer.scene.drawnCounts());
   const whole = await counts();
   await page.click("#objects label >> nth=0");
   assert.notDeepEqual(await counts(), whole);
@@ -416,9 +415,9 @@ test("lines of equal distance have the values of the field as labels", { skip },
 test("the toolbar and its keys change the view", { skip }, async () => {
   const other = await opened.view(opened.scene, "--live", "never");
   const state = () => other.evaluate(() => {
-    const { camera, controls, scene, overlay } = window.viewer;
+    const { camera, controls, view, scene, overlay } = window.viewer;
     const towards = camera.position.clone().sub(controls.target).normalize().toArray().map((x) => Math.round(x * 100) / 100);
-    return { towards, isOrthographic: camera.fov < 1, edges: !!scene.edges?.visible, grid: !!overlay.grid?.visible };
+    return { towards, isOrthographic: view.isOrthographic, edges: !!scene.edges?.visible, grid: !!overlay.grid?.visible };
   });
   for (const [key, towards] of [["1", [0, -1, 0]], ["3", [-1, 0, 0]], ["5", [0, 0, 1]]]) {
     await other.keyboard.press(key);
