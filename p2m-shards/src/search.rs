@@ -35,7 +35,7 @@ pub(crate) trait Search: Send + Sync + Sized {
         proceed: &Proceed<'_>,
     ) -> Result<(), ShardError> {
         // Threads share the progress, so they report several queries at a time.
-        parallel::try_for_each_chunk(group, 16, true, |_, searches| {
+        parallel::try_for_each_chunk(group, ASKED_LEN, true, |_, searches| {
             searches.iter_mut().try_for_each(|search| search.ask(number, shard))?;
             go_on(proceed, searches.len())
         })
@@ -116,6 +116,8 @@ struct Pending<S> {
 
 /// The number of queries that a thread handles at a time.
 pub(crate) const CHUNK_LEN: usize = 1024;
+/// The number of queries for which a thread asks a shard at a time.
+const ASKED_LEN: usize = 16;
 /// The number that stands for no shard.
 const NONE: usize = usize::MAX;
 
@@ -168,13 +170,14 @@ impl ShardedIndex {
                 continue;
             }
             let shard = self.shard(number)?;
-            parallel::try_for_each_chunk(&mut group, 1, true, |_, one| {
-                let one = &mut *one[0];
-                go_on(proceed, 0)?;
-                one.search.ask(number, &shard)?;
-                one.search.prepare_for_others(&shard);
-                one.limit = one.search.limit();
-                Ok::<(), ShardError>(())
+            parallel::try_for_each_chunk(&mut group, ASKED_LEN, true, |_, group| {
+                group.iter_mut().try_for_each(|one| {
+                    go_on(proceed, 0)?;
+                    one.search.ask(number, &shard)?;
+                    one.search.prepare_for_others(&shard);
+                    one.limit = one.search.limit();
+                    Ok::<(), ShardError>(())
+                })
             })?;
         }
         let finish = |Pending { search, .. }: Pending<S>| {
